@@ -1,0 +1,98 @@
+#pragma once
+
+#include <string_view>
+
+#include "core/model.h"
+#include "core/organ.h"
+#include "core/state.h"
+
+namespace ctpm {
+
+/// The one list of everything in a Model and a State. Storing, reading, hashing and comparing are all made from it.
+/// `visit(name, member)` is called for each member in a fixed order; members are arithmetic values, enums,
+/// Vec3, Quat, std::string, or vectors of numbers. A Vec3Array is visited as its three coordinates.
+/// Names are stored in session files: never rename one, append new ones.
+template <class Points, class Visit>
+void visit_points(std::string_view x, std::string_view y, std::string_view z, Points& points, Visit&& visit) {
+  visit(x, points.x), visit(y, points.y), visit(z, points.z);
+}
+
+template <class State_, class Visit>
+  requires std::is_same_v<std::remove_const_t<State_>, State>
+void for_each_field(State_& s, Visit&& visit) {
+  visit("tick", s.tick);
+  visit_points("position.x", "position.y", "position.z", s.position, visit);
+  visit_points("velocity.x", "velocity.y", "velocity.z", s.velocity, visit);
+  visit("kelvin_elongation", s.kelvin_elongation);
+  visit("edge_severed", s.edge_severed);
+  visit("tpm_severed", s.tpm_severed);
+  visit("constraint_severed", s.constraint_severed);
+  visit("last_inputs.tool", s.last_inputs.tool);
+  visit("last_inputs.position", s.last_inputs.position);
+  visit("last_inputs.world_from_tool", s.last_inputs.world_from_tool);
+  visit("last_inputs.buttons", s.last_inputs.buttons);
+}
+
+template <class Tool_, class Visit>
+  requires std::is_same_v<std::remove_const_t<Tool_>, Tool>
+void for_each_field(Tool_& t, Visit&& visit) {
+  visit("name", t.name);
+  visit("kind", t.kind);
+  visit("radius", t.radius);
+  visit("blade_length", t.blade_length);
+}
+
+template <class Organ_, class Visit>
+  requires std::is_same_v<std::remove_const_t<Organ_>, OrganRange>
+void for_each_field(Organ_& o, Visit&& visit) {
+  visit("name", o.name);
+  visit("first", o.first);
+  visit("count", o.count);
+  visit("sphere_radius", o.sphere_radius);
+  visit("spacing", o.spacing);
+  visit("damage_depth", o.damage_depth);
+  visit("layer_count", o.layer_count);
+}
+
+/// As above; `organs` and `tools` are vectors of structs, whose own fields are visited by for_each_field.
+template <class Model_, class Visit>
+  requires std::is_same_v<std::remove_const_t<Model_>, Model>
+void for_each_field(Model_& m, Visit&& visit) {
+  visit("tick", m.tick);
+  visit("gravity", m.gravity);
+  visit_points("rest_position.x", "rest_position.y", "rest_position.z", m.rest_position, visit);
+  visit("mass", m.mass);
+  visit("is_fixed", m.is_fixed);
+  visit("contact_radius", m.contact_radius);
+  visit("layer", m.layer);
+  visit("organs", m.organs);
+  visit("edges.a", m.edges.a);
+  visit("edges.b", m.edges.b);
+  visit("edges.rest_length", m.edges.rest_length);
+  visit("edges.k", m.edges.k);
+  visit("edges.c", m.edges.c);
+  visit("edges.third", m.edges.third);
+  visit("tpms.a", m.tpms.a);
+  visit("tpms.b", m.tpms.b);
+  visit("tpms.rest_length", m.tpms.rest_length);
+  visit("tpms.spring_k", m.tpms.spring_k);
+  visit("tpms.kelvin_k", m.tpms.kelvin_k);
+  visit("tpms.kelvin_c", m.tpms.kelvin_c);
+  visit("constraints.a", m.constraints.a);
+  visit("constraints.c", m.constraints.c);
+  visit("constraints.e", m.constraints.e);
+  visit("constraints.k", m.constraints.k);
+  visit("constraints.edge0", m.constraints.edge[0]);
+  visit("constraints.edge1", m.constraints.edge[1]);
+  visit("constraints.edge2", m.constraints.edge[2]);
+  visit("constraints.edge3", m.constraints.edge[3]);
+  visit("has_softening", m.has_softening);
+  visit("tools", m.tools);
+  visit("contact_k", m.contact_k);
+  visit("solver.tolerance", m.solver.tolerance);
+  visit("solver.velocity_floor", m.solver.velocity_floor);
+  visit("solver.max_iterations", m.solver.max_iterations);
+  visit("solver.substeps", m.solver.substeps);
+}
+
+}  // namespace ctpm

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/vec3.h"
+
+namespace ctpm {
+
+/// Axial elements between two spheres: springs (no dashpot) and Kelvin units (spring parallel to dashpot).
+/// The two elements of a triple A-B-C (spring A-B, Kelvin unit B-C; Eqs. 3, 4, 6) are two edges that know each other.
+struct Edges {
+  std::vector<std::int32_t> a, b;     ///< end spheres, a != b                                           (edge_count)
+  std::vector<double> rest_length;    ///< [m], > 0                                                      (edge_count)
+  std::vector<double> k;              ///< stiffness [N/m], > 0                                          (edge_count)
+  std::vector<double> c;              ///< damping [N s/m], >= 0; empty if the scene has no viscosity    (edge_count)
+  std::vector<std::int32_t> third;    ///< third sphere of the edge's triple, whose tilt counts too; -1 if it has none;
+                                      ///< empty if the scene has no softening                           (edge_count)
+  std::size_t size() const { return a.size(); }
+};
+
+/// Two-sphere TPMs: K2 in series with the Kelvin unit K1 parallel v1 inside one edge, with one internal variable
+/// (the Kelvin elongation, in State). Used where a lattice line has an edge left over, and for the whole model `tpm`.
+struct TwoSphereTpms {
+  std::vector<std::int32_t> a, b;   ///< end spheres                       (tpm_count)
+  std::vector<double> rest_length;  ///< [m], > 0                          (tpm_count)
+  std::vector<double> spring_k;     ///< K2 part [N/m], > 0                (tpm_count)
+  std::vector<double> kelvin_k;     ///< K1 part [N/m], > 0                (tpm_count)
+  std::vector<double> kelvin_c;     ///< v1 part [N s/m], >= 0             (tpm_count)
+  std::size_t size() const { return a.size(); }
+};
+
+/// Constraints of five-sphere lines A B C D E (Eqs. 2, 5): force on C is -2 k' (1 - cos theta) u, u = C - (A + E) / 2,
+/// tan theta = |u| / (|E - A| / 2), and half of the opposite on A and on E.
+struct Constraints {
+  std::vector<std::int32_t> a, c, e;             ///< end, centre, end sphere                            (constraint_count)
+  std::vector<double> k;                         ///< k' = (K' - P2) times the calibrated area [N/m]     (constraint_count)
+  std::vector<std::int32_t> edge[4];             ///< edges A-B, B-C, C-D, D-E that carry the line; severing one ends it
+  std::size_t size() const { return a.size(); }
+};
+
+enum class ToolKind : std::int32_t {
+  ball = 0,     ///< rigid ball that presses
+  scalpel = 1,  ///< blade edge that severs what it sweeps
+};
+
+/// A tool that the session's input can hold. The tool frame's origin is the ball's centre or the blade's tip.
+struct Tool {
+  std::string name;
+  ToolKind kind = ToolKind::ball;
+  double radius = 0;        ///< of a ball [m], > 0; 0 for a scalpel
+  double blade_length = 0;  ///< of a scalpel's edge, from the tip along the tool's +z axis [m], > 0; 0 for a ball
+};
+
+/// A range of spheres that were filled into one organ.
+struct OrganRange {
+  std::string name;
+  std::int32_t first = 0, count = 0;  ///< spheres [first, first + count)
+  double sphere_radius = 0;           ///< r [m]
+  double spacing = 0;                 ///< s [m]
+  double damage_depth = 0;            ///< depth beyond which the tissue is damaged [m]; 0: no limit
+  std::int32_t layer_count = 0;
+};
+
+/// How a tick is solved; all limits are counts or residuals, never times.
+struct SolverSettings {
+  double tolerance = 1e-4;           ///< relative residual at which the implicit solve stops, in (0, 1)
+  double velocity_floor = 1e-6;      ///< residuals below this velocity [m/s] count as solved, > 0
+  std::int32_t max_iterations = 200; ///< of one solve, >= 1
+  std::int32_t substeps = 1;         ///< equal parts of a tick, >= 1
+};
+
+/// Everything about a scene that never changes while it runs. Features that the scene does not have are empty arrays.
+struct Model {
+  double tick = 1e-3;  ///< length of a tick [s], > 0
+  Vec3 gravity;        ///< [m/s^2]; zero: no gravity
+
+  Vec3Array rest_position;                  ///< [m]                                                     (sphere_count)
+  std::vector<double> mass;                 ///< [kg], > 0                                               (sphere_count)
+  std::vector<std::uint8_t> is_fixed;       ///< 1: anchored, never moves                                (sphere_count)
+  std::vector<double> contact_radius;       ///< distance at which a tool touches the sphere [m], > 0    (sphere_count)
+  std::vector<std::int32_t> layer;          ///< 1 = outermost                                           (sphere_count)
+  std::vector<OrganRange> organs;
+
+  Edges edges;
+  TwoSphereTpms tpms;
+  Constraints constraints;
+  bool has_softening = false;  ///< Eq. 8: forces are divided by 1 + tan theta
+
+  std::vector<Tool> tools;
+  double contact_k = 0;  ///< stiffness of a tool's contact with one sphere [N/m], > 0 if there are tools that press
+
+  SolverSettings solver;
+
+  std::size_t sphere_count() const { return mass.size(); }
+  std::size_t element_count() const { return edges.size() + tpms.size() + constraints.size(); }
+};
+
+}  // namespace ctpm
