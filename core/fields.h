@@ -89,6 +89,7 @@ void for_each_field(Model_& m, Visit&& visit) {
   visit("has_softening", m.has_softening);
   visit("tools", m.tools);
   visit("contact_k", m.contact_k);
+  visit("contact_friction", m.contact_friction);
   visit("solver.tolerance", m.solver.tolerance);
   visit("solver.velocity_floor", m.solver.velocity_floor);
   visit("solver.max_iterations", m.solver.max_iterations);

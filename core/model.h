@@ -65,7 +65,8 @@ struct OrganRange {
 
 /// How a tick is solved; all limits are counts or residuals, never times.
 struct SolverSettings {
-  double tolerance = 1e-4;           ///< relative residual at which the implicit solve stops, in (0, 1)
+  double tolerance = 1e-4;           ///< residual at which the implicit solve stops, against that of its first guess (the
+                                     ///< last velocity), so that it does not depend on how fast the body moves; in (0, 1)
   double velocity_floor = 1e-6;      ///< residuals below this velocity [m/s] count as solved, > 0
   std::int32_t max_iterations = 200; ///< of one solve, >= 1
   std::int32_t substeps = 1;         ///< equal parts of a tick, >= 1
@@ -90,6 +91,7 @@ struct Model {
 
   std::vector<Tool> tools;
   double contact_k = 0;  ///< stiffness of a tool's contact with one sphere [N/m], > 0 if there are tools that press
+  double contact_friction = 0;  ///< Coulomb coefficient between tool and tissue, >= 0
 
   SolverSettings solver;
 

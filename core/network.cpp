@@ -1,1 +1,229 @@
 #include "core/network.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <string>
+
+namespace ctpm {
+namespace {
+
+using Cell = std::array<std::int32_t, 3>;
+
+// Lattice directions, each with its first non-zero component in the order k, j, i positive, so that an edge's second
+// sphere always comes later in the (k, j, i) order than its first.
+constexpr std::array<Cell, 3> kAxisDirections{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+constexpr std::array<Cell, 6> kDiagonalDirections{{{1, 1, 0}, {-1, 1, 0}, {1, 0, 1}, {-1, 0, 1}, {0, 1, 1}, {0, -1, 1}}};
+
+constexpr double kFewestPascalPerMetre = 1e-6;
+constexpr double kMostPascalPerMetre = 1e15;
+
+Cell operator+(Cell a, Cell b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+Cell operator-(Cell a, Cell b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+
+double length_of(Cell direction, double spacing) {
+  const int steps = std::abs(direction[0]) + std::abs(direction[1]) + std::abs(direction[2]);
+  return steps == 1 ? spacing : spacing * std::sqrt(double(steps));
+}
+
+double series(double k1, double k2) { return k1 * k2 / (k1 + k2); }
+
+void check_positive(Errors& errors, const std::string& where, const char* what, double value) {
+  if (!(value >= kFewestPascalPerMetre && value <= kMostPascalPerMetre))
+    errors.push_back({where, std::string(what) + ": got " + std::to_string(value) + " Pa/m, must be in [1e-6, 1e15]", ""});
+}
+
+Errors check_organ(const FilledOrgan& organ, const OrganSettings& settings) {
+  Errors errors;
+  const Material& m = settings.material;
+  const std::string where = "organ " + settings.name;
+  if (organ.centre.empty()) errors.push_back({where, "has no spheres", "fill it with smaller spheres"});
+  check_positive(errors, where, "spring modulus K2", m.spring);
+  check_positive(errors, where, "Kelvin modulus K1", m.kelvin);
+  if (settings.structure == Structure::ctpm && !(m.constraint >= series(m.kelvin, m.spring)))
+    errors.push_back({where, "constraint modulus K': got " + std::to_string(m.constraint) +
+                                 " Pa/m, must be at least K1 K2 / (K1 + K2), which the triples already give", ""});
+  if (!(m.viscosity >= 0) || !std::isfinite(m.viscosity))
+    errors.push_back({where, "viscosity v1: got " + std::to_string(m.viscosity) + " Pa s/m, must be 0 or more", ""});
+  if (!(m.density > 0 && m.stiffness_scale > 0 && m.calibration_area > 0 && m.calibration_spacing > 0))
+    errors.push_back({where, "density, stiffness scale, calibration area and spacing must all be more than 0", ""});
+  for (const std::int32_t sphere : settings.anchored)
+    if (sphere < 0 || std::size_t(sphere) >= organ.centre.size())
+      errors.push_back({where, "anchored sphere " + std::to_string(sphere) + " does not exist", ""});
+  return errors;
+}
+
+/// Builds the elements of one organ line by line, then brings the edges into the order in which they are computed.
+class LineTiler {
+ public:
+  LineTiler(Model& model, const FilledOrgan& organ, const OrganSettings& settings, std::int32_t first_sphere)
+      : model_(model), organ_(organ), settings_(settings), first_sphere_(first_sphere) {
+    for (std::size_t i = 0; i < organ.cell.size(); ++i) sphere_at_.emplace(organ.cell[i], std::int32_t(i));
+    const Material& m = settings.material;
+    const double area = edge_area(m, organ.spacing);
+    spring_k_ = m.spring * area;
+    kelvin_k_ = m.kelvin * area;
+    kelvin_c_ = m.viscosity * area;
+    // The triples beside C stretch when C dips and add their own 2 P2 (1 - cos theta) u; K' counts both.
+    constraint_k_ = (m.constraint - series(m.kelvin, m.spring)) * area;
+  }
+
+  void tile(Cell direction) {
+    for (const Cell& start : organ_.cell) {
+      if (sphere_at_.contains(start - direction) || !sphere_at_.contains(start + direction)) continue;
+      std::vector<std::int32_t> run;
+      for (Cell cell = start;; cell = cell + direction) {
+        const auto it = sphere_at_.find(cell);
+        if (it == sphere_at_.end()) break;
+        run.push_back(it->second + first_sphere_);
+      }
+      tile_run(run, length_of(direction, organ_.spacing));
+    }
+    flush_direction();
+  }
+
+ private:
+  struct Edge {
+    std::int32_t a, b, third;
+    double rest_length, k, c;
+    std::int32_t line_number;  ///< position in the order of tiling, by which constraints know their edges
+  };
+  struct Constraint {
+    std::int32_t a, c, e;
+    std::array<std::int32_t, 4> line_number;
+  };
+
+  void tile_run(const std::vector<std::int32_t>& run, double rest_length) {
+    switch (settings_.structure) {
+      case Structure::mass_spring:
+        // Two edges in series are as stiff as one slow triple.
+        for (std::size_t i = 0; i + 1 < run.size(); ++i)
+          add_edge(run[i], run[i + 1], -1, rest_length, 2 * series(kelvin_k_, spring_k_), 0);
+        break;
+      case Structure::tpm:
+        for (std::size_t i = 0; i + 1 < run.size(); ++i) add_tpm(run[i], run[i + 1], rest_length);
+        break;
+      case Structure::ctpm: tile_triples(run, rest_length); break;
+    }
+  }
+
+  /// Triples A-B-C, C-B-A, A-B-C ... that share ends; where two share C, the five spheres carry a constraint.
+  void tile_triples(const std::vector<std::int32_t>& run, double rest_length) {
+    const std::size_t triple_count = (run.size() - 1) / 2;
+    for (std::size_t t = 0; t < triple_count; ++t) {
+      const std::int32_t p = run[2 * t], q = run[2 * t + 1], r = run[2 * t + 2];
+      const bool starts_at_a = t % 2 == 0;
+      const std::int32_t line_number = next_line_number_;
+      if (starts_at_a) {
+        add_edge(p, q, r, rest_length, spring_k_, 0);
+        add_edge(q, r, p, rest_length, kelvin_k_, kelvin_c_);
+      } else {
+        add_edge(p, q, r, rest_length, kelvin_k_, kelvin_c_);
+        add_edge(q, r, p, rest_length, spring_k_, 0);
+        constraints_.push_back({run[2 * t - 2], p, r, {line_number - 2, line_number - 1, line_number, line_number + 1}});
+      }
+    }
+    if (run.size() % 2 == 0) add_tpm(run[run.size() - 2], run.back(), rest_length);
+  }
+
+  void add_edge(std::int32_t a, std::int32_t b, std::int32_t third, double rest_length, double k, double c) {
+    edges_.push_back({a, b, third, rest_length, k, c, next_line_number_++});
+  }
+
+  void add_tpm(std::int32_t a, std::int32_t b, double rest_length) {
+    tpms_.push_back({a, b, -1, rest_length, 0, 0, 0});
+  }
+
+  /// Moves one direction's elements into the Model, sorted by their first sphere: along a lattice row both ends then
+  /// advance by one from edge to edge, and the element loops run without index gathers.
+  void flush_direction() {
+    const auto by_first = [](const Edge& p, const Edge& q) { return p.a < q.a; };
+    std::stable_sort(edges_.begin(), edges_.end(), by_first);
+    std::stable_sort(tpms_.begin(), tpms_.end(), by_first);
+    std::vector<std::int32_t> edge_of_line_number(std::size_t(next_line_number_), -1);
+    Edges& edges = model_.edges;
+    for (const Edge& e : edges_) {
+      edge_of_line_number[std::size_t(e.line_number)] = std::int32_t(edges.size());
+      edges.a.push_back(e.a), edges.b.push_back(e.b), edges.rest_length.push_back(e.rest_length);
+      edges.k.push_back(e.k), edges.c.push_back(e.c), edges.third.push_back(e.third);
+    }
+    for (const Edge& e : tpms_) {
+      TwoSphereTpms& tpms = model_.tpms;
+      tpms.a.push_back(e.a), tpms.b.push_back(e.b), tpms.rest_length.push_back(e.rest_length);
+      tpms.spring_k.push_back(spring_k_), tpms.kelvin_k.push_back(kelvin_k_), tpms.kelvin_c.push_back(kelvin_c_);
+    }
+    for (const Constraint& c : constraints_) {
+      Constraints& all = model_.constraints;
+      all.a.push_back(c.a), all.c.push_back(c.c), all.e.push_back(c.e), all.k.push_back(constraint_k_);
+      for (std::size_t i = 0; i < 4; ++i) all.edge[i].push_back(edge_of_line_number[std::size_t(c.line_number[i])]);
+    }
+    edges_.clear(), tpms_.clear(), constraints_.clear();
+    next_line_number_ = 0;
+  }
+
+  Model& model_;
+  const FilledOrgan& organ_;
+  const OrganSettings& settings_;
+  std::int32_t first_sphere_;
+  std::map<Cell, std::int32_t> sphere_at_;
+  double spring_k_, kelvin_k_, kelvin_c_, constraint_k_;
+  std::vector<Edge> edges_, tpms_;
+  std::vector<Constraint> constraints_;
+  std::int32_t next_line_number_ = 0;
+};
+
+/// How far from its centre a tool touches a sphere: as far as the surface is for the outermost layer, so that the
+/// tool meets the surface one sees, and the sphere's own radius further in.
+double contact_radius_of(const FilledOrgan& organ, std::size_t sphere) {
+  if (organ.layer[sphere] != 1) return organ.sphere_radius;
+  return std::clamp(organ.depth[sphere], organ.sphere_radius, organ.spacing);
+}
+
+void add_spheres(Model& model, const FilledOrgan& organ, const OrganSettings& settings) {
+  const std::size_t first = model.sphere_count();
+  const double mass = settings.material.density * organ.spacing * organ.spacing * organ.spacing;
+  for (std::size_t i = 0; i < organ.centre.size(); ++i) {
+    model.rest_position.push_back(organ.centre[i]);
+    model.contact_radius.push_back(contact_radius_of(organ, i));
+    model.layer.push_back(organ.layer[i]);
+  }
+  model.mass.resize(first + organ.centre.size(), mass);
+  model.is_fixed.resize(first + organ.centre.size(), 0);
+  for (const std::int32_t sphere : settings.anchored) model.is_fixed[first + std::size_t(sphere)] = 1;
+  const int layers = *std::max_element(organ.layer.begin(), organ.layer.end());
+  model.organs.push_back({settings.name, std::int32_t(first), std::int32_t(organ.centre.size()), organ.sphere_radius,
+                          organ.spacing, settings.damage_depth, layers});
+}
+
+/// Gives back the arrays of features that no element uses.
+void leave_out_unused(Model& model) {
+  Edges& edges = model.edges;
+  if (std::all_of(edges.c.begin(), edges.c.end(), [](double c) { return c == 0; })) edges.c = {};
+  if (!model.has_softening) edges.third = {};
+}
+
+}  // namespace
+
+double edge_area(const Material& material, double spacing) {
+  return material.calibration_area * (spacing / material.calibration_spacing) * material.stiffness_scale;
+}
+
+Result<Done> add_organ(Model& model, const FilledOrgan& organ, const OrganSettings& settings) {
+  if (Errors errors = check_organ(organ, settings); !errors.empty()) return errors;
+  // Arrays left out by an earlier organ come back while this one is added.
+  model.edges.c.resize(model.edges.size(), 0.0);
+  model.edges.third.resize(model.edges.size(), -1);
+  const auto first_sphere = std::int32_t(model.sphere_count());
+  add_spheres(model, organ, settings);
+  LineTiler tiler(model, organ, settings, first_sphere);
+  for (const Cell& direction : kAxisDirections) tiler.tile(direction);
+  if (settings.lattice == LatticeKind::cubic_18)
+    for (const Cell& direction : kDiagonalDirections) tiler.tile(direction);
+  model.has_softening = model.has_softening || (settings.structure == Structure::ctpm && model.constraints.size() > 0);
+  leave_out_unused(model);
+  return Done{};
+}
+
+}  // namespace ctpm

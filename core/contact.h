@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/axial.h"
+#include "core/inputs.h"
+#include "core/model.h"
+#include "core/state.h"
+
+namespace ctpm {
+
+/// One sphere that a tool presses: a penalty spring along the line between the centres, and drag across it that is
+/// viscous while the surfaces stick and limited by Coulomb's law when they slip; both solved implicitly.
+struct Contact {
+  std::int32_t sphere;
+  Vec3 normal;         ///< unit vector from the tool to the sphere
+  double penetration;  ///< at the start of the step with the tool at its end [m], > 0
+  double drag;         ///< across the normal [N s/m], >= 0
+};
+
+/// Contacts of a rigid ball with spheres.
+class BallContact {
+ public:
+  explicit BallContact(const Model& model);
+
+  /// Finds the spheres that a ball of `radius` [m] at `centre`, moving with `velocity` [m/s], overlaps.
+  void find(const State& state, Vec3 centre, double radius, Vec3 velocity);
+
+  /// Adds contact forces [N] and linearisation for a step of `h` [s].
+  void linearise(double h, Coordinates& force, DiagonalBlocks& blocks) const;
+
+  /// result += coupling of a step of `h` [s] times `v`.
+  void apply(double h, const Coordinates& v, Coordinates& result) const;
+
+  /// Removes contacts that would pull their sphere after a step of `h` [s] with velocity `v` [m/s]. True if any was.
+  bool drop_pulling(double h, const Coordinates& v);
+
+  /// Force on the tool [N] after the step.
+  Vec3 force_on_tool(double h, const Coordinates& v) const;
+
+  /// Largest displacement from rest of a touched sphere along its contact [m], 0 without contact.
+  double depth(const State& state) const;
+
+  std::int32_t count() const { return std::int32_t(contacts_.size()); }
+  void clear() { contacts_.clear(); }
+
+ private:
+  Vec3 relative_velocity(const Contact& contact, const Coordinates& v) const;
+  double pressure(const Contact& contact, double h, const Coordinates& v) const;
+
+  const Model& model_;
+  Vec3 velocity_;                  ///< of the tool [m/s]
+  std::vector<Contact> contacts_;  ///< room for every sphere, so that a tick never allocates
+};
+
+}  // namespace ctpm

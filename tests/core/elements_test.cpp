@@ -1,0 +1,196 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/forces.h"
+#include "core/state.h"
+#include "tests/core/blocks.h"
+
+namespace ctpm {
+namespace {
+
+using testing::make_block_model;
+using testing::Noise;
+using testing::shake;
+
+// Forces of a shaken liver block are about 1 N; rounding of sums of a few dozen of them stays far below this.
+constexpr double kRounding = 1e-12;
+
+class EveryStructure : public ::testing::TestWithParam<Structure> {};
+
+State moved_rigidly(const Model& model) {
+  State state = rest_state(model);
+  const double c = std::cos(1.1), s = std::sin(1.1);
+  const double c2 = std::cos(0.4), s2 = std::sin(0.4);
+  for (std::size_t i = 0; i < state.position.size(); ++i) {
+    const Vec3 p = state.position[i], q{c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+    state.position.set(i, Vec3{q.x, c2 * q.y - s2 * q.z, s2 * q.y + c2 * q.z} + Vec3{0.3, -0.2, 0.1});
+  }
+  return state;
+}
+
+TEST_P(EveryStructure, RigidMotionGivesNoForce) {
+  const Model model = make_block_model(6, 5, 7, GetParam());
+  const Vec3Array force = internal_forces(model, moved_rigidly(model));
+  for (std::size_t i = 0; i < force.size(); ++i) ASSERT_NEAR(norm(force[i]), 0, 1e-10) << "sphere " << i;
+}
+
+TEST_P(EveryStructure, KeepsLinearAndAngularMomentum) {
+  const Model model = make_block_model(6, 5, 7, GetParam());
+  State state = rest_state(model);
+  shake(state, 0.005, 0.2);
+  Noise noise;
+  for (double& z : state.kelvin_elongation) z = 0.001 * noise.next();
+  const Vec3Array force = internal_forces(model, state);
+  Vec3 sum, torque;
+  double largest = 0;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    sum += force[i], torque += cross(state.position[i], force[i]);
+    largest = std::max(largest, norm(force[i]));
+  }
+  EXPECT_GT(largest, 0.1);
+  EXPECT_NEAR(norm(sum), 0, 1e3 * kRounding);
+  EXPECT_NEAR(norm(torque), 0, 1e2 * kRounding);
+}
+
+TEST_P(EveryStructure, TurnsWithTheBody) {
+  const Model model = make_block_model(5, 5, 5, GetParam());
+  State state = rest_state(model);
+  shake(state, 0.004, 0.1);
+  State turned = state;  // a quarter turn about z: (x, y) -> (-y, x)
+  const auto turn = [](Vec3 p) { return Vec3{-p.y, p.x, p.z}; };
+  for (std::size_t i = 0; i < state.position.size(); ++i)
+    turned.position.set(i, turn(state.position[i])), turned.velocity.set(i, turn(state.velocity[i]));
+  const Vec3Array force = internal_forces(model, state), turned_force = internal_forces(model, turned);
+  for (std::size_t i = 0; i < force.size(); ++i) ASSERT_NEAR(norm(turned_force[i] - turn(force[i])), 0, kRounding);
+}
+
+TEST_P(EveryStructure, StaysFiniteWhenSpheresCoincide) {
+  const Model model = make_block_model(5, 5, 5, GetParam());
+  State state = rest_state(model);
+  for (std::size_t i = 0; i < state.position.size(); ++i) state.position.set(i, {0.01, 0.02, 0.03});
+  const Vec3Array force = internal_forces(model, state);
+  for (std::size_t i = 0; i < force.size(); ++i) ASSERT_TRUE(is_finite(force[i]));
+}
+
+INSTANTIATE_TEST_SUITE_P(Elements, EveryStructure,
+                         ::testing::Values(Structure::mass_spring, Structure::tpm, Structure::ctpm));
+
+TEST(Edges, ForceIsTheGradientOfTheEnergy) {
+  const Model model = make_block_model(4, 4, 4, Structure::mass_spring);
+  State state = rest_state(model);
+  shake(state, 0.004);
+  const Vec3Array force = internal_forces(model, state);
+  constexpr double kStep = 1e-7;  // [m]; a central difference errs by about step^2 k / s^2, here 1e-8 N
+  for (const std::size_t i : {0u, 21u, 42u, 63u})
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3 delta{axis == 0 ? kStep : 0, axis == 1 ? kStep : 0, axis == 2 ? kStep : 0};
+      State plus = state, minus = state;
+      plus.position.add(i, delta), minus.position.add(i, -delta);
+      const double gradient = (elastic_energy(model, plus) - elastic_energy(model, minus)) / (2 * kStep);
+      EXPECT_NEAR(dot(force[i], delta / kStep), -gradient, 1e-7);
+    }
+}
+
+/// Five spheres on a line with the constraint of the paper's liver; C is moved sideways by `tilt`.
+struct Line {
+  explicit Line(double tilt) : model(make_block_model(5, 1, 1)), state(rest_state(model)) {
+    state.position.add(2, {0, 0, tilt});
+  }
+  Model model;
+  State state;
+};
+
+TEST(Constraint, ForceOnCIsEquation2Over8) {
+  for (const double tilt : {0.001, 0.004, 0.012, 0.024}) {
+    Line line(tilt);
+    line.model.edges.k.assign(line.model.edges.size(), 0);  // the constraint alone
+    const double arm = 0.024, k = line.model.constraints.k.at(0);
+    const double cosine = arm / std::sqrt(arm * arm + tilt * tilt);
+    const double expected = -2 * k * (1 - cosine) * tilt / (1 + tilt / arm);
+    const Vec3Array force = internal_forces(line.model, line.state);
+    EXPECT_NEAR(force.z[2], expected, 1e-12);
+    EXPECT_NEAR(force.z[0], -expected / 2, 1e-12);
+    EXPECT_NEAR(force.z[4], -expected / 2, 1e-12);
+  }
+}
+
+TEST(Constraint, IsTheGradientOfItsEnergyWithoutSoftening) {
+  Line line(0.007);
+  line.model.edges.k.assign(line.model.edges.size(), 0);
+  // Integral of 2 k' (1 - h / sqrt(h^2 + u^2)) u du.
+  const double k = line.model.constraints.k.at(0), h = 0.024;
+  const auto energy = [&](double u) { return k * u * u - 2 * k * h * (std::sqrt(h * h + u * u) - h); };
+  constexpr double kStep = 1e-6;
+  const double gradient = (energy(0.007 + kStep) - energy(0.007 - kStep)) / (2 * kStep);
+  const double softening = 1 + 0.007 / h;  // Eq. 8 divides the force; what it divides has an energy
+  EXPECT_NEAR(internal_forces(line.model, line.state).z[2] * softening, -gradient, 1e-8);
+}
+
+TEST(Constraint, AStraightStretchedLineHasNone) {
+  Line line(0);
+  for (std::size_t i = 0; i < 5; ++i) line.state.position.x[i] *= 1.5;
+  line.model.edges.k.assign(line.model.edges.size(), 0);
+  const Vec3Array force = internal_forces(line.model, line.state);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(norm(force[i]), 0);
+}
+
+TEST(Softening, HalvesATripleAt45Degrees) {
+  Line line(0.024);  // tan(theta) = 1
+  const double soft = internal_forces(line.model, line.state).x[1];
+  line.model.has_softening = false;
+  line.model.edges.third = {};
+  const double hard = internal_forces(line.model, line.state).x[1];
+  ASSERT_NE(hard, 0);
+  EXPECT_NEAR(soft, hard / 2, 1e-12);
+}
+
+TEST(Softening, StaysFiniteAt90Degrees) {
+  Line line(0.01);
+  for (const std::size_t i : {0u, 1u, 3u, 4u}) line.state.position.set(i, {0, 0, 0});
+  const Vec3Array force = internal_forces(line.model, line.state);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_TRUE(is_finite(force[i]));
+}
+
+TEST(Network, TilesARunIntoMirroredTriplesThatShareEnds) {
+  const Model model = make_block_model(10, 1, 1);
+  ASSERT_EQ(model.edges.size(), 8u);
+  ASSERT_EQ(model.tpms.size(), 1u);  // nine edges: four triples and one left over
+  ASSERT_EQ(model.constraints.size(), 2u);
+  const std::vector<bool> is_kelvin{false, true, true, false, false, true, true, false};
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(model.edges.c[i] > 0, is_kelvin[i]) << "edge " << i;
+  EXPECT_EQ(model.constraints.c, (std::vector<std::int32_t>{2, 6}));
+  EXPECT_EQ(model.constraints.a, (std::vector<std::int32_t>{0, 4}));
+  EXPECT_EQ(model.constraints.e, (std::vector<std::int32_t>{4, 8}));
+  EXPECT_EQ(model.tpms.a[0], 8);
+}
+
+TEST(Network, InnerSpheresOfCubic18Have18Edges) {
+  const Model model = make_block_model(5, 5, 5, Structure::mass_spring);
+  std::vector<int> degree(model.sphere_count());
+  for (std::size_t i = 0; i < model.edges.size(); ++i)
+    ++degree[std::size_t(model.edges.a[i])], ++degree[std::size_t(model.edges.b[i])];
+  EXPECT_EQ(degree[62], 18);  // the middle
+  EXPECT_EQ(degree[0], 6);    // a corner: 3 axis and 3 diagonal neighbours
+}
+
+TEST(Network, StiffnessIsThePapersModulusTimesProbeArea) {
+  const Model model = make_block_model(3, 1, 1);
+  EXPECT_NEAR(model.edges.k[0], 15e6 * 3.14159265358979 * 4e-6, 1e-9);  // 188.5 N/m
+  EXPECT_NEAR(model.mass[0], 1060 * 0.012 * 0.012 * 0.012, 1e-15);
+}
+
+TEST(Network, SaysEveryModulusThatIsOutOfRange) {
+  Model model;
+  OrganSettings settings;
+  settings.name = "block";
+  settings.material.spring = -1;
+  settings.material.viscosity = NAN;
+  const Result<Done> added = add_organ(model, testing::make_block(2, 2, 2), settings);
+  ASSERT_FALSE(added);
+  EXPECT_GE(added.errors().size(), 3u);
+  EXPECT_EQ(model.sphere_count(), 0u);
+}
+
+}  // namespace
+}  // namespace ctpm

@@ -1,0 +1,217 @@
+#include "core/step.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/forces.h"
+#include "tests/core/blocks.h"
+
+namespace ctpm {
+namespace {
+
+using testing::ball;
+using testing::make_block_model;
+using testing::scalpel;
+using testing::shake;
+
+Inputs tool_at(Vec3 position, std::int32_t tool = 0) {
+  Inputs inputs;
+  inputs.tool = tool;
+  inputs.position = position;
+  return inputs;
+}
+
+TEST(Step, AFreeBlockFallsAsGalileoSays) {
+  Model model = make_block_model(3, 3, 3);
+  model.is_fixed.assign(model.sphere_count(), 0);
+  model.gravity = {0, 0, -9.81};
+  Stepper stepper(model);
+  State state = rest_state(model);
+  for (int i = 0; i < 500; ++i) ASSERT_EQ(stepper.step(state, {}).status, StepStatus::ok);
+  const double t = 0.5, h = 1e-3;
+  for (std::size_t i = 0; i < model.sphere_count(); ++i) {
+    // Each tick's acceleration is solved to 1e-4; (t + h) / 2 holds backward Euler's own error of half a tick.
+    EXPECT_NEAR(state.velocity.z[i], -9.81 * t, 1e-3 * 9.81 * t);
+    EXPECT_NEAR(state.position.z[i] - model.rest_position.z[i], -9.81 * t * (t + h) / 2, 1e-3);
+  }
+}
+
+TEST(Step, HoldsTheLiversStiffDashpotsAtOneMillisecond) {
+  Model model = make_block_model(9, 9, 7);
+  model.tools = {ball(0.002)};
+  Stepper stepper(model);
+  State state = rest_state(model);
+  const double top = 0.072 + 0.006 + 0.002;
+  StepReport report;
+  for (int i = 0; i < 2000; ++i) {
+    const double depth = std::min(0.010, 0.010 * i / 1000.0);
+    report = stepper.step(state, tool_at({0, 0, top - depth}));
+    ASSERT_EQ(report.status, StepStatus::ok) << "tick " << i;
+  }
+  EXPECT_GT(report.tool_force.z, 0.5);
+  EXPECT_LT(report.tool_force.z, 10);
+  EXPECT_NEAR(report.depth, 0.010, 0.0015);  // the penalty contact gives way a little
+}
+
+TEST(Step, EnergyOfAShakenBlockOnlyFalls) {
+  Model model = make_block_model(5, 5, 5);
+  Stepper stepper(model);
+  State state = rest_state(model);
+  shake(state, 0.001, 0.05);
+  for (std::size_t i = 0; i < 25; ++i) state.position.set(i, model.rest_position[i]), state.velocity.set(i, {});
+  const auto energy = [&] {
+    double sum = elastic_energy(model, state);
+    for (std::size_t i = 0; i < model.sphere_count(); ++i) sum += 0.5 * model.mass[i] * dot(state.velocity[i], state.velocity[i]);
+    return sum;
+  };
+  double last = energy();
+  for (int i = 0; i < 300; ++i) {
+    ASSERT_EQ(stepper.step(state, {}).status, StepStatus::ok);
+    const double now = energy();
+    ASSERT_LE(now, last * (1 + 1e-6)) << "tick " << i;
+    last = now;
+  }
+}
+
+TEST(Step, AnchoredSpheresNeverMove) {
+  Model model = make_block_model(4, 4, 4);
+  model.gravity = {0, 0, -9.81};
+  Stepper stepper(model);
+  State state = rest_state(model);
+  for (int i = 0; i < 100; ++i) (void)stepper.step(state, {});
+  for (std::size_t i = 0; i < 16; ++i) EXPECT_EQ(state.position[i], model.rest_position[i]);
+  EXPECT_LT(state.position.z[63], model.rest_position.z[63]);
+}
+
+TEST(Step, SameInputsGiveTheSameBits) {
+  Model model = make_block_model(6, 6, 5);
+  model.tools = {ball(0.006)};
+  State first, second;
+  for (State* state : {&first, &second}) {
+    Stepper stepper(model);
+    *state = rest_state(model);
+    for (int i = 0; i < 200; ++i) (void)stepper.step(*state, tool_at({0, 0, 0.066 - 0.0001 * i}));
+  }
+  EXPECT_EQ(first.position, second.position);
+  EXPECT_EQ(first.velocity, second.velocity);
+}
+
+TEST(Step, GoesOnFromAnyStateOfAnyMoment) {
+  Model model = make_block_model(5, 5, 5);
+  model.tools = {ball(0.006), scalpel(0.05)};
+  const auto inputs = [](int i) { return tool_at({-0.04 + 0.0008 * i, 0.0003, 0.03}, i < 60 ? 0 : 1); };
+  Stepper stepper(model);
+  State state = rest_state(model), saved;
+  for (int i = 0; i < 120; ++i) {
+    if (i == 70) saved = state;
+    (void)stepper.step(state, inputs(i));
+  }
+  for (int i = 70; i < 120; ++i) (void)stepper.step(saved, inputs(i));
+  EXPECT_EQ(saved.position, state.position);
+  EXPECT_EQ(saved.edge_severed, state.edge_severed);
+}
+
+TEST(Step, RefusesPosesThatAreNotNumbersAndLeavesTheState) {
+  Model model = make_block_model(3, 3, 3);
+  model.tools = {ball(0.006)};
+  Stepper stepper(model);
+  State state = rest_state(model);
+  const State before = state;
+  for (const Inputs& inputs : {tool_at({NAN, 0, 0}), tool_at({INFINITY, 0, 0}), tool_at({0, 0, 0}, 7), tool_at({0, 0, 0}, -2)}) {
+    EXPECT_EQ(stepper.step(state, inputs).status, StepStatus::bad_input);
+    EXPECT_EQ(state.tick, before.tick);
+    EXPECT_EQ(state.position, before.position);
+  }
+}
+
+TEST(Step, SaysWhichSphereDivergedAndLeavesTheState) {
+  Model model = make_block_model(3, 3, 3);
+  Stepper stepper(model);
+  State state = rest_state(model);
+  state.velocity.x[20] = NAN;
+  const StepReport report = stepper.step(state, {});
+  EXPECT_EQ(report.status, StepStatus::diverged);
+  EXPECT_GE(report.worst_sphere, 0);
+  EXPECT_EQ(state.tick, 0);
+  EXPECT_EQ(state.position, model.rest_position);
+}
+
+TEST(Contact, ForceOnTheToolBalancesForceOnTheAnchors) {
+  // At rest, what presses on the tool is carried by the anchored spheres.
+  Model model = make_block_model(5, 5, 4);
+  model.tools = {ball(0.010)};
+  model.solver.tolerance = 1e-8;
+  Stepper stepper(model);
+  State state = rest_state(model);
+  StepReport report;
+  for (int i = 0; i < 6000; ++i) report = stepper.step(state, tool_at({0, 0, 0.036 + 0.006 + 0.010 - std::min(0.005, 1e-5 * i)}));
+  const Vec3Array force = internal_forces(model, state);
+  Vec3 anchors;
+  for (std::size_t i = 0; i < 25; ++i) anchors += force[i];
+  EXPECT_GT(report.tool_force.z, 0.1);
+  EXPECT_NEAR(norm(anchors + report.tool_force), 0, 1e-4 * norm(report.tool_force));
+}
+
+TEST(Contact, NeverPullsTheTissueAlong) {
+  Model model = make_block_model(5, 5, 4);
+  model.tools = {ball(0.010)};
+  Stepper stepper(model);
+  State state = rest_state(model);
+  for (int i = 0; i < 500; ++i) (void)stepper.step(state, tool_at({0, 0, 0.045}));
+  for (int i = 0; i < 200; ++i) {
+    const StepReport report = stepper.step(state, tool_at({0, 0, 0.045 + 0.0005 * i}));
+    ASSERT_GE(report.tool_force.z, 0) << "tick " << i;
+  }
+}
+
+TEST(Cutting, AFullCutSeparatesTheBlockExactly) {
+  Model model = make_block_model(6, 4, 4);
+  model.tools = {scalpel(0.2)};
+  Stepper stepper(model);
+  State state = rest_state(model);
+  // The blade hangs from above the block to below it and passes between the third and the fourth plane in x.
+  std::int32_t severed = 0;
+  for (int i = 0; i < 100; ++i) severed += stepper.step(state, tool_at({0.0001, -0.05 + 0.001 * i, -0.05})).severed;
+  EXPECT_GT(severed, 0);
+  for (std::size_t e = 0; e < model.edges.size(); ++e) {
+    const bool crosses = (model.rest_position.x[std::size_t(model.edges.a[e])] < 0) != (model.rest_position.x[std::size_t(model.edges.b[e])] < 0);
+    EXPECT_EQ(state.edge_severed[e] != 0, crosses) << "edge " << e;
+  }
+}
+
+TEST(Cutting, IsExactHoweverFastTheBladeMoves) {
+  for (const int ticks : {2, 7, 50}) {
+    Model model = make_block_model(6, 4, 4);
+    model.tools = {scalpel(0.2)};
+    Stepper stepper(model);
+    State state = rest_state(model);
+    for (int i = 0; i < ticks; ++i) (void)stepper.step(state, tool_at({0.0001, -0.05 + 0.1 * i / (ticks - 1), -0.05}));
+    for (std::size_t e = 0; e < model.edges.size(); ++e) {
+      const bool crosses = (model.rest_position.x[std::size_t(model.edges.a[e])] < 0) != (model.rest_position.x[std::size_t(model.edges.b[e])] < 0);
+      EXPECT_EQ(state.edge_severed[e] != 0, crosses) << ticks << " ticks, edge " << e;
+    }
+  }
+}
+
+TEST(Cutting, AToolThatIsTakenInHandDoesNotCutOnItsWay) {
+  Model model = make_block_model(6, 4, 4);
+  model.tools = {scalpel(0.2)};
+  Stepper stepper(model);
+  State state = rest_state(model);
+  EXPECT_EQ(stepper.step(state, tool_at({0.0001, 0.05, -0.05})).severed, 0);
+}
+
+TEST(Settle, ComesToRestUnderGravityWithoutAdvancingTheTick) {
+  Model model = make_block_model(4, 4, 4);
+  model.gravity = {0, 0, -9.81};
+  Stepper stepper(model);
+  State state = rest_state(model);
+  (void)stepper.settle(state, 20000);
+  EXPECT_EQ(state.tick, 0);
+  const Vec3Array force = internal_forces(model, state);
+  for (std::size_t i = 16; i < model.sphere_count(); ++i) EXPECT_NEAR(force.z[i], 9.81 * model.mass[i], 2e-3 * 9.81 * model.mass[i] + 1e-4);
+}
+
+}  // namespace
+}  // namespace ctpm
