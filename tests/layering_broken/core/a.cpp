@@ -1,0 +1,1 @@
+#include "studio/x.h"
