@@ -43,7 +43,7 @@ Box box_of(Points... points) {
   return box;
 }
 
-/// Severs the live elements for which `crosses(a, b)` holds, then the constraints that lost an edge of their line.
+/// Severs the live elements for which `crosses(a, b)` holds, then the constraints and angle springs that lost an edge.
 template <class Crosses>
 std::int32_t sever(const Model& model, State& state, Crosses&& crosses) {
   std::int32_t count = 0;
@@ -54,14 +54,16 @@ std::int32_t sever(const Model& model, State& state, Crosses&& crosses) {
   sever_axial(model.edges, state.edge_severed);
   sever_axial(model.tpms, state.tpm_severed);
   if (count == 0) return 0;
-  const Constraints& lines = model.constraints;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (state.constraint_severed[i]) continue;
-    const bool lost = std::any_of(std::begin(lines.edge), std::end(lines.edge), [&](const std::vector<std::int32_t>& edge) {
-      return state.edge_severed[std::size_t(edge[i])] != 0;
-    });
-    if (lost) state.constraint_severed[i] = 1, ++count;
-  }
+  const auto sever_lines = [&](const auto& lines, std::vector<std::uint8_t>& severed) {
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const bool lost = std::any_of(std::begin(lines.edge), std::end(lines.edge), [&](const std::vector<std::int32_t>& edge) {
+        return state.edge_severed[std::size_t(edge[i])] != 0;
+      });
+      if (lost && !severed[i]) severed[i] = 1, ++count;
+    }
+  };
+  sever_lines(model.constraints, state.constraint_severed);
+  sever_lines(model.angle_springs, state.angle_severed);
   return count;
 }
 

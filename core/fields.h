@@ -27,6 +27,7 @@ void for_each_field(State_& s, Visit&& visit) {
   visit("edge_severed", s.edge_severed);
   visit("tpm_severed", s.tpm_severed);
   visit("constraint_severed", s.constraint_severed);
+  visit("angle_severed", s.angle_severed);
   visit("last_inputs.tool", s.last_inputs.tool);
   visit("last_inputs.position", s.last_inputs.position);
   visit("last_inputs.world_from_tool", s.last_inputs.world_from_tool);
@@ -86,6 +87,12 @@ void for_each_field(Model_& m, Visit&& visit) {
   visit("constraints.edge1", m.constraints.edge[1]);
   visit("constraints.edge2", m.constraints.edge[2]);
   visit("constraints.edge3", m.constraints.edge[3]);
+  visit("angle_springs.a", m.angle_springs.a);
+  visit("angle_springs.b", m.angle_springs.b);
+  visit("angle_springs.c", m.angle_springs.c);
+  visit("angle_springs.k", m.angle_springs.k);
+  visit("angle_springs.edge0", m.angle_springs.edge[0]);
+  visit("angle_springs.edge1", m.angle_springs.edge[1]);
   visit("has_softening", m.has_softening);
   visit("tools", m.tools);
   visit("contact_k", m.contact_k);

@@ -1,5 +1,6 @@
 #include "core/forces.h"
 
+#include "core/angle_spring.h"
 #include "core/axial.h"
 #include "core/constraint.h"
 
@@ -16,6 +17,7 @@ Vec3Array internal_forces(const Model& model, const State& state) {
   std::vector<double> softness(model.has_softening ? n : 0);
   if (model.has_softening) constraints.measure_tilt(state, softness);
   constraints.linearise(state, softness, kVanishingStep, sum, blocks);
+  AngleElements(model).linearise(state, kVanishingStep, sum, blocks);
   axial.linearise(state, softness, kVanishingStep, sum, blocks);
   for (const auto* coordinate : {&state.velocity.x, &state.velocity.y, &state.velocity.z})
     velocity.insert(velocity.end(), coordinate->begin(), coordinate->end());
@@ -25,6 +27,8 @@ Vec3Array internal_forces(const Model& model, const State& state) {
   return force;
 }
 
-double elastic_energy(const Model& model, const State& state) { return AxialElements(model).elastic_energy(state); }
+double elastic_energy(const Model& model, const State& state) { 
+  return AxialElements(model).elastic_energy(state) + AngleElements(model).elastic_energy(state);
+}
 
 }  // namespace ctpm

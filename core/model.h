@@ -40,6 +40,15 @@ struct Constraints {
   std::size_t size() const { return a.size(); }
 };
 
+/// Springs that resist the angle at the middle one of three collinear neighbours A B C (Fig. 1b): force on B is
+/// -k (B - (A + C) / 2), and half of the opposite on A and on C.
+struct AngleSprings {
+  std::vector<std::int32_t> a, b, c;  ///< end, middle, end sphere                                      (angle_count)
+  std::vector<double> k;              ///< [N/m], > 0                                                   (angle_count)
+  std::vector<std::int32_t> edge[2];  ///< edges A-B and B-C; severing one ends it                      (angle_count)
+  std::size_t size() const { return a.size(); }
+};
+
 enum class ToolKind : std::int32_t {
   ball = 0,     ///< rigid ball that presses
   scalpel = 1,  ///< blade edge that severs what it sweeps
@@ -87,6 +96,7 @@ struct Model {
   Edges edges;
   TwoSphereTpms tpms;
   Constraints constraints;
+  AngleSprings angle_springs;
   bool has_softening = false;  ///< Eq. 8: forces are divided by 1 + tan theta
 
   std::vector<Tool> tools;
@@ -96,7 +106,7 @@ struct Model {
   SolverSettings solver;
 
   std::size_t sphere_count() const { return mass.size(); }
-  std::size_t element_count() const { return edges.size() + tpms.size() + constraints.size(); }
+  std::size_t element_count() const { return edges.size() + tpms.size() + constraints.size() + angle_springs.size(); }
 };
 
 }  // namespace ctpm

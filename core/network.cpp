@@ -90,6 +90,9 @@ class LineTiler {
     double rest_length, k, c;
     std::int32_t line_number;  ///< position in the order of tiling, by which constraints know their edges
   };
+  struct Angle {
+    std::int32_t a, b, c, line_number;
+  };
   struct Constraint {
     std::int32_t a, c, e;
     std::array<std::int32_t, 4> line_number;
@@ -97,16 +100,23 @@ class LineTiler {
 
   void tile_run(const std::vector<std::int32_t>& run, double rest_length) {
     switch (settings_.structure) {
-      case Structure::mass_spring:
-        // Two edges in series are as stiff as one slow triple.
-        for (std::size_t i = 0; i + 1 < run.size(); ++i)
-          add_edge(run[i], run[i + 1], -1, rest_length, 2 * series(kelvin_k_, spring_k_), 0);
+      case Structure::mass_spring: tile_springs(run, rest_length); break;
+      case Structure::angle_mass_spring:
+        for (std::size_t i = 0; i + 2 < run.size(); ++i)
+          angles_.push_back({run[i], run[i + 1], run[i + 2], next_line_number_ + std::int32_t(i)});
+        tile_springs(run, rest_length);
         break;
       case Structure::tpm:
         for (std::size_t i = 0; i + 1 < run.size(); ++i) add_tpm(run[i], run[i + 1], rest_length);
         break;
       case Structure::ctpm: tile_triples(run, rest_length); break;
     }
+  }
+
+  /// Springs of which two in series are as stiff as one slow triple.
+  void tile_springs(const std::vector<std::int32_t>& run, double rest_length) {
+    for (std::size_t i = 0; i + 1 < run.size(); ++i)
+      add_edge(run[i], run[i + 1], -1, rest_length, 2 * series(kelvin_k_, spring_k_), 0);
   }
 
   /// Triples A-B-C, C-B-A, A-B-C ... that share ends; where two share C, the five spheres carry a constraint.
@@ -159,7 +169,13 @@ class LineTiler {
       all.a.push_back(c.a), all.c.push_back(c.c), all.e.push_back(c.e), all.k.push_back(constraint_k_);
       for (std::size_t i = 0; i < 4; ++i) all.edge[i].push_back(edge_of_line_number[std::size_t(c.line_number[i])]);
     }
-    edges_.clear(), tpms_.clear(), constraints_.clear();
+    for (const Angle& angle : angles_) {
+      AngleSprings& all = model_.angle_springs;
+      all.a.push_back(angle.a), all.b.push_back(angle.b), all.c.push_back(angle.c);
+      all.k.push_back(2 * series(kelvin_k_, spring_k_));
+      for (std::size_t i = 0; i < 2; ++i) all.edge[i].push_back(edge_of_line_number[std::size_t(angle.line_number) + i]);
+    }
+    edges_.clear(), tpms_.clear(), constraints_.clear(), angles_.clear();
     next_line_number_ = 0;
   }
 
@@ -171,6 +187,7 @@ class LineTiler {
   double spring_k_, kelvin_k_, kelvin_c_, constraint_k_;
   std::vector<Edge> edges_, tpms_;
   std::vector<Constraint> constraints_;
+  std::vector<Angle> angles_;
   std::int32_t next_line_number_ = 0;
 };
 

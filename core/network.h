@@ -13,9 +13,10 @@ namespace ctpm {
 
 /// Which structure joins the spheres (scene key `model`).
 enum class Structure : std::int32_t {
-  mass_spring = 0,  ///< every edge a spring (Eq. 1)
-  tpm = 2,          ///< a two-sphere TPM in every edge
-  ctpm = 3,         ///< triples, constraints, softening
+  mass_spring = 0,        ///< every edge a spring (Eq. 1)
+  angle_mass_spring = 1,  ///< springs, and springs that resist the angle at each sphere (Fig. 1b)
+  tpm = 2,                ///< a two-sphere TPM in every edge
+  ctpm = 3,               ///< triples, constraints, softening
 };
 
 /// Which lines of the lattice carry elements (scene key `lattice`).

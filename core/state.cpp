@@ -15,6 +15,7 @@ State rest_state(const Model& model) {
     state.edge_severed.assign(model.edges.size(), 0);
     state.tpm_severed.assign(model.tpms.size(), 0);
     state.constraint_severed.assign(model.constraints.size(), 0);
+    state.angle_severed.assign(model.angle_springs.size(), 0);
   }
   return state;
 }

@@ -18,6 +18,7 @@ struct State {
   std::vector<std::uint8_t> edge_severed;        ///< 1: severed; empty if the scene has no scalpel  (edge_count)
   std::vector<std::uint8_t> tpm_severed;         ///< as above                                       (tpm_count)
   std::vector<std::uint8_t> constraint_severed;  ///< as above                                       (constraint_count)
+  std::vector<std::uint8_t> angle_severed;       ///< as above                                       (angle_count)
   Inputs last_inputs;                       ///< of the tick before, where a blade's sweep begins
 };
 

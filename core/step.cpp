@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/angle_spring.h"
 #include "core/axial.h"
 #include "core/block_jacobi.h"
 #include "core/conjugate_gradient.h"
@@ -37,7 +38,7 @@ bool is_usable(const Model& model, const Inputs& inputs) {
 /// backward Euler linearised once: L-stable, first order, and as stiff a dashpot as one likes.
 struct Stepper::Workspace {
   explicit Workspace(const Model& m)
-      : model(m), axial(m), constraints(m), contact(m), jacobi(m.sphere_count()), solver(3 * m.sphere_count()),
+      : model(m), axial(m), constraints(m), angles(m), contact(m), jacobi(m.sphere_count()), solver(3 * m.sphere_count()),
         force(3 * m.sphere_count()), momentum(3 * m.sphere_count()), velocity(3 * m.sphere_count()),
         blocks(6 * m.sphere_count()), softness(m.has_softening ? m.sphere_count() : 0), before(m.sphere_count()) {
     const double total_mass = fixed_order_dot(m.mass, std::vector<double>(m.mass.size(), 1.0));
@@ -47,7 +48,7 @@ struct Stepper::Workspace {
   }
 
   void linearise(const State& state, double h);
-  void apply(double h, const Coordinates& in, Coordinates& out) const;
+  void apply(const State& state, double h, const Coordinates& in, Coordinates& out) const;
   void solve(const State& state, double h, StepReport& report);
   bool check(StepReport& report) const;
   void advance(State& state, double h);
@@ -55,6 +56,7 @@ struct Stepper::Workspace {
   const Model& model;
   AxialElements axial;
   ConstraintElements constraints;
+  AngleElements angles;
   BallContact contact;
   BlockJacobi jacobi;
   ConjugateGradient solver;
@@ -78,16 +80,18 @@ void Stepper::Workspace::linearise(const State& state, double h) {
   }
   if (model.has_softening) constraints.measure_tilt(state, softness);
   if (model.constraints.size() > 0) constraints.linearise(state, softness, h, force, blocks);
+  if (model.angle_springs.size() > 0) angles.linearise(state, h, force, blocks);
   axial.linearise(state, softness, h, force, blocks);
 }
 
-void Stepper::Workspace::apply(double h, const Coordinates& in, Coordinates& out) const {
+void Stepper::Workspace::apply(const State& state, double h, const Coordinates& in, Coordinates& out) const {
   const std::size_t n = model.sphere_count();
   const double* mass = model.mass.data();
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (std::size_t i = 0; i < n; ++i) out[axis * n + i] = mass[i] * in[axis * n + i];
   axial.apply(in, out);
   if (model.constraints.size() > 0) constraints.apply(in, out);
+  if (model.angle_springs.size() > 0) angles.apply(state, h, in, out);
   if (contact.count() > 0) contact.apply(h, in, out);
   for (std::size_t i = 0; i < n; ++i)
     if (model.is_fixed[i]) out[i] = out[n + i] = out[2 * n + i] = 0;
@@ -108,7 +112,7 @@ void Stepper::Workspace::solve(const State& state, double h, StepReport& report)
             model.is_fixed[i] ? 0.0 : model.mass[i] * old_velocity[axis][i] + h * force[axis * n + i];
     jacobi.factorise(blocks);
     const CgOutcome outcome = solver.solve(
-        momentum, velocity, limits, [&](const Coordinates& in, Coordinates& out) { apply(h, in, out); },
+        momentum, velocity, limits, [&](const Coordinates& in, Coordinates& out) { apply(state, h, in, out); },
         [&](const Coordinates& in, Coordinates& out) { jacobi.apply(in, out); });
     report.iterations += outcome.iterations;
     report.residual = outcome.residual;

@@ -74,10 +74,10 @@ TEST_P(EveryStructure, StaysFiniteWhenSpheresCoincide) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, EveryStructure,
-                         ::testing::Values(Structure::mass_spring, Structure::tpm, Structure::ctpm));
+                         ::testing::Values(Structure::mass_spring, Structure::angle_mass_spring, Structure::tpm, Structure::ctpm));
 
-TEST(Edges, ForceIsTheGradientOfTheEnergy) {
-  const Model model = make_block_model(4, 4, 4, Structure::mass_spring);
+TEST(EdgesAndAngleSprings, AreTheGradientOfTheirEnergy) {
+  const Model model = make_block_model(4, 4, 4, Structure::angle_mass_spring);
   State state = rest_state(model);
   shake(state, 0.004);
   const Vec3Array force = internal_forces(model, state);
