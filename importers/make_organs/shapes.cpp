@@ -1,0 +1,103 @@
+#include "importers/make_organs/shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "importers/make_organs/solids.h"
+
+namespace ctpm {
+
+namespace {
+
+/// Both lobes before the underside is shaped. The right lobe leans back, so that its upper face slopes gently
+/// down to a thin front edge and its back stays thick and round; the left one falls and narrows towards the
+/// patient's left.
+double liver_lobes(Vec3 p) {
+  const Vec3 right = turn_z(turn_x(p - Vec3{-46, 4, 28}, -24), 14);
+  const double right_lobe = ellipsoid(right, {0, 0, 0}, {64, 77, 57});
+  const Vec3 left = turn_y(turn_z(turn_x(p - Vec3{8, 18, 14}, -16), -8), -13);
+  const double left_lobe = ellipsoid(left, {0, 0, 0}, {108, 58, 44});
+  return join(right_lobe, left_lobe, 50);
+}
+
+/// Height of the underside over the table: flat at the rim, hollow below the middle.
+double liver_underside(Vec3 p) {
+  const double x = (p.x + 4) / 70, y = (p.y - 8) / 44;
+  return 14.0 * std::exp(-(x * x + y * y));
+}
+
+/// The line of the falciform ligament: a shallow furrow over the dome that opens into a notch in the front
+/// edge. The depth to be taken off at `p` [mm].
+double falciform_furrow(Vec3 p) {
+  const double beside = (p.x - 24 + 0.12 * p.y) / 9.0;
+  const double to_front = std::clamp((5 - p.y) / 45.0, 0.0, 1.0);
+  return (2.0 + 16.0 * to_front * to_front) * std::exp(-beside * beside);
+}
+
+/// Furrows of the underside: the ligamentum teres, the gallbladder's bed, the gate of the vessels between
+/// them, and the groove of the vena cava at the back.
+double liver_without_furrows(Vec3 p, double body) {
+  body = cut_out(body, tapered_capsule(p, {-22, -50, 2}, 9, {-10, -6, 15}, 5), 10);
+  body = cut_out(body, tapered_capsule(p, {23, -40, 3}, 5, {14, 12, 14}, 4), 8);
+  body = cut_out(body, tapered_capsule(p, {-14, 2, 15}, 6, {16, 8, 15}, 6), 10);
+  return cut_out(body, tapered_capsule(p, {6, 84, 2}, 15, {8, 36, 8}, 8), 12);
+}
+
+double liver(Vec3 p) {
+  const double lobes = liver_lobes(p) + falciform_furrow(p);
+  return liver_without_furrows(p, common(lobes, liver_underside(p) - p.z, 20));
+}
+
+double kidney(Vec3 p) {
+  // A bean: a blunt ellipsoid, thicker at the upper pole (-x), bent towards the hilum at +y.
+  const double thickness = 1.0 - 0.0016 * p.x;
+  const Vec3 straight{p.x, (p.y - 0.0036 * p.x * p.x) / thickness, p.z / thickness};
+  const double bean = blunt_ellipsoid(straight, {0, 0, 0}, {55, 29, 22.2}, 2.4);
+  // The hilum: a wide dent with a deep slit between two lips.
+  const double dent = ellipsoid(p, {1, 45, 0}, {20, 24, 40});
+  const double slit = ellipsoid(p, {1, 24, 0}, {15, 18, 7});
+  return cut_out(cut_out(bean, dent, 16), slit, 7);
+}
+
+double skin(Vec3 p) {
+  // Only the upper face waves: the lower one lies flat.
+  const double wave = 1.2 * std::sin(p.x / 13.0 + 0.4) + 0.8 * std::sin((p.y + 0.5 * p.x) / 10.0);
+  const double share = std::clamp((p.z + 14) / 28.0, 0.0, 1.0);
+  return rounded_box({p.x, p.y, p.z - wave * share}, {60, 60, 14.2}, 10);
+}
+
+}  // namespace
+
+std::vector<OrganShape> organ_shapes() {
+  return {
+      {"liver",
+       "Human liver, about life size, lying on its underside.",
+       liver,
+       {-40, 5, 40},
+       220,
+       5.9,
+       {4000, 6000},
+       {1000, 1500},
+       {220, 150, 90}},
+      {"kidney",
+       "Human kidney, about life size, lying on its side; the hilum faces +y.",
+       kidney,
+       {0, -5, 0},
+       90,
+       3.8,
+       {2500, 3500},
+       {120, 180},
+       {110, 60, 45}},
+      {"skin",
+       "Piece of skin with the tissue below it, gently waved on top.",
+       skin,
+       {0, 0, 0},
+       120,
+       5.9,
+       {2500, 3500},
+       {350, 450},
+       {120, 120, 30}},
+  };
+}
+
+}  // namespace ctpm
