@@ -1,0 +1,61 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+namespace ctpm {
+
+/// One contact site of the paper: the five-sphere line over one triple, in the paper's own units so that its table can
+/// be read beside it: moduli in kPa/mm (the paper prints kPa), viscosity in kPa s/mm, lengths in mm, stress in kPa.
+/// Everything in this module is Bao & Wu, section 3; the network is never computed from it, only compared with it.
+struct Site {
+  double spring = 0;       ///< K2 [kPa/mm], > 0
+  double kelvin = 0;       ///< K1 [kPa/mm], > 0
+  double constraint = 0;   ///< K' [kPa/mm], >= 0; 0 gives the TPM without constraint
+  double viscosity = 0;    ///< v1 [kPa s/mm], >= 0
+  double arm = 0;          ///< L, from A to C at rest [mm], > 0
+  double ball_radius = 0;  ///< R of the probe, area S0 = pi R^2 [mm], > 0
+};
+
+double tan_theta(const Site& site, double depth);  ///< eps / L
+double lambda(const Site& site, double depth);     ///< 2 K' (1 - cos theta) [kPa/mm]; Eq. 2
+double p1(const Site& site);                       ///< v1 / (K1 + K2) [s]
+double p2(const Site& site);                       ///< K1 K2 / (K1 + K2) [kPa/mm]
+double p3(const Site& site);                       ///< v1 K2 / (K1 + K2) [kPa s/mm]
+
+/// Stress at rest under a held depth [kPa], Eq. 14: (P2 + lambda) eps / (1 + tan theta).
+double slow_stress(const Site& site, double depth);
+
+/// Stress `t` [s] after a sudden depth that is held [kPa], Eq. 11; Eq. 13 at t = 0.
+double relaxation_stress(const Site& site, double depth, double t);
+
+/// Depth `t` [s] after a sudden stress that is held [mm], Eq. 12 with lambda and theta taken at `depth`; Eq. 15 at t = 0.
+/// lambda depends on the depth itself, so this holds for a small step only; creep() gives the whole curve.
+double creep_depth(const Site& site, double stress, double depth, double t);
+
+/// Depth at rest under a held stress [mm]: the limit of Eq. 12, solved for the depth that lambda itself depends on.
+/// Deviation: Eq. 16 as printed has a first term, sigma0 (1 + tan theta) / (lambda + K2), that the limit does not have.
+double slow_depth(const Site& site, double stress);
+
+/// Force on the probe [N]: stress times S0 (Eq. 17; 1 kPa mm^2 = 1e-3 N).
+double force_of_stress(const Site& site, double stress);
+
+/// Slow force as the paper's Table 1 gives it [N]: with the constraint, and divided by 1 + tan theta only for CTPM.
+double table_force(const Site& site, double depth, bool with_softening);
+
+struct Sample {
+  double time = 0;    ///< [s]
+  double depth = 0;   ///< [mm]
+  double stress = 0;  ///< [kPa]
+};
+
+/// Eq. 10 integrated for a given depth over time; `depth(t)` and its rate `rate(t)` [mm/s]; samples every `interval` [s].
+/// Fourth-order Runge-Kutta, halved until two runs agree to 1e-8 of the largest stress.
+std::vector<Sample> relaxation(const Site& site, const std::function<double(double)>& depth,
+                               const std::function<double(double)>& rate, double duration, double interval);
+
+/// Eq. 10 integrated for a given stress over time, as above, to 1e-8 of the largest depth.
+std::vector<Sample> creep(const Site& site, const std::function<double(double)>& stress,
+                          const std::function<double(double)>& rate, double duration, double interval);
+
+}  // namespace ctpm
