@@ -1,9 +1,10 @@
 #include "importers/make_organs/mesher.h"
 
-#include <CGAL/Complex_2_in_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/IO/facets_in_complex_2_to_triangle_mesh.h>
-#include <CGAL/Implicit_surface_3.h>
+#include <CGAL/Labeled_mesh_domain_3.h>
+#include <CGAL/Mesh_complex_3_in_triangulation_3.h>
+#include <CGAL/Mesh_criteria_3.h>
+#include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
 #include <CGAL/Polygon_mesh_processing/measure.h>
 #include <CGAL/Polygon_mesh_processing/orientation.h>
@@ -11,12 +12,14 @@
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Random.h>
 #include <CGAL/Surface_mesh.h>
-#include <CGAL/Surface_mesh_default_triangulation_3.h>
-#include <CGAL/make_surface_mesh.h>
+#include <CGAL/facets_in_complex_3_to_triangle_mesh.h>
+#include <CGAL/make_mesh_3.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 
 namespace ctpm {
 
@@ -52,26 +55,27 @@ Vec3 onto_surface(const OrganShape& shape, Vec3 p) {
   return p;
 }
 
-/// Delaunay refinement of the implicit surface with triangles about half as long as wanted in the end.
+/// Delaunay refinement of the implicit surface with triangles shorter than wanted in the end. Mesh_3, not the
+/// older Surface_mesher: that one orders by addresses, so what was made before would change the mesh.
 Mesh refine_surface(const OrganShape& shape) {
-  using Triangulation = CGAL::Surface_mesh_default_triangulation_3;
-  using Traits = Triangulation::Geom_traits;
-  const auto level = [&shape](const Traits::Point_3& p) {
-    return shape.distance_mm({CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())});
-  };
+  using Domain = CGAL::Labeled_mesh_domain_3<Kernel>;
+  using Triangulation = CGAL::Mesh_triangulation_3<Domain>::type;
+  using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
+  namespace named = CGAL::parameters;
 
-  CGAL::get_default_random() = CGAL::Random(kSeed);
-  Triangulation triangulation;
-  CGAL::Complex_2_in_triangulation_3<Triangulation> complex(triangulation);
-  const Traits::Sphere_3 bound(Traits::Point_3(shape.inside_mm.x, shape.inside_mm.y, shape.inside_mm.z),
-                               shape.reach_mm * shape.reach_mm);
-  const CGAL::Implicit_surface_3<Traits, decltype(level)> surface(level, bound, 1e-6);
-  const CGAL::Surface_mesh_default_criteria_3<Triangulation> criteria(28.0, 0.4 * shape.edge_mm,
-                                                                      0.05 * shape.edge_mm);
-  CGAL::make_surface_mesh(complex, surface, criteria, CGAL::Manifold_tag());
+  const auto level = [&shape](const Kernel::Point_3& p) { return shape.distance_mm(to_vec3(p)); };
+  const Kernel::Sphere_3 bound(to_point(shape.inside_mm), shape.reach_mm * shape.reach_mm);
+  CGAL::Random random(kSeed);
+  const auto domain =
+      Domain::create_implicit_mesh_domain(named::function = level, named::bounding_object = bound,
+                                          named::p_rng = &random, named::relative_error_bound = 1e-6);
+  const Criteria criteria(named::facet_angle = 28.0, named::facet_size = 0.4 * shape.edge_mm,
+                          named::facet_distance = 0.05 * shape.edge_mm);
+  const auto complex = CGAL::make_mesh_3<CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>>(
+      domain, criteria, named::no_perturb(), named::no_exude(), named::manifold());
 
   Mesh mesh;
-  CGAL::facets_in_complex_2_to_triangle_mesh(complex, mesh);
+  CGAL::facets_in_complex_3_to_triangle_mesh(complex, mesh);
   return mesh;
 }
 

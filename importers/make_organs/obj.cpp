@@ -15,7 +15,7 @@ Result<Done> write_obj(const std::filesystem::path& path, const OrganMesh& mesh,
                shape.description.c_str());
   std::fprintf(
       file,
-      "# Unit: mm. z is up, x runs from the patient's right (-) to the left (+); lowest point at z = 0.\n");
+      "# Unit: mm. z is up, the lowest point at z = 0, the middle of the bounding box over the origin.\n");
   std::fprintf(file, "# %zu vertices, %zu triangles, closed, counter-clockwise seen from outside.\n",
                mesh.vertex_mm.size(), mesh.triangle.size());
   std::fprintf(file, "# SPDX-License-Identifier: GPL-3.0-or-later\n");

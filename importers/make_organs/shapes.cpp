@@ -13,10 +13,10 @@ namespace {
 /// down to a thin front edge and its back stays thick and round; the left one falls and narrows towards the
 /// patient's left.
 double liver_lobes(Vec3 p) {
-  const Vec3 right = turn_z(turn_x(p - Vec3{-46, 4, 28}, -24), 14);
-  const double right_lobe = ellipsoid(right, {0, 0, 0}, {64, 77, 57});
-  const Vec3 left = turn_y(turn_z(turn_x(p - Vec3{8, 18, 14}, -16), -8), -13);
-  const double left_lobe = ellipsoid(left, {0, 0, 0}, {108, 58, 44});
+  const Vec3 right = turn_y(turn_z(turn_x(p - Vec3{-42, 7, 22.5}, -36), 14), -14);
+  const double right_lobe = blunt_ellipsoid(right, {0, 0, 0}, {67, 86, 48.5}, 2.2);
+  const Vec3 left = turn_y(turn_z(turn_x(p - Vec3{6, 18, 16}, -20), -8), -15);
+  const double left_lobe = ellipsoid(left, {0, 0, 0}, {110, 60, 45});
   return join(right_lobe, left_lobe, 50);
 }
 
@@ -37,7 +37,7 @@ double falciform_furrow(Vec3 p) {
 /// Furrows of the underside: the ligamentum teres, the gallbladder's bed, the gate of the vessels between
 /// them, and the groove of the vena cava at the back.
 double liver_without_furrows(Vec3 p, double body) {
-  body = cut_out(body, tapered_capsule(p, {-22, -50, 2}, 9, {-10, -6, 15}, 5), 10);
+  body = cut_out(body, tapered_capsule(p, {-20, -43, 3}, 8, {-10, -6, 15}, 5), 12);
   body = cut_out(body, tapered_capsule(p, {23, -40, 3}, 5, {14, 12, 14}, 4), 8);
   body = cut_out(body, tapered_capsule(p, {-14, 2, 15}, 6, {16, 8, 15}, 6), 10);
   return cut_out(body, tapered_capsule(p, {6, 84, 2}, 15, {8, 36, 8}, 8), 12);
@@ -54,7 +54,7 @@ double kidney(Vec3 p) {
   const Vec3 straight{p.x, (p.y - 0.0036 * p.x * p.x) / thickness, p.z / thickness};
   const double bean = blunt_ellipsoid(straight, {0, 0, 0}, {55, 29, 22.2}, 2.4);
   // The hilum: a wide dent with a deep slit between two lips.
-  const double dent = ellipsoid(p, {1, 45, 0}, {20, 24, 40});
+  const double dent = ellipsoid(p, {1, 45, 0}, {21, 25, 40});
   const double slit = ellipsoid(p, {1, 24, 0}, {15, 18, 7});
   return cut_out(cut_out(bean, dent, 16), slit, 7);
 }
@@ -69,35 +69,37 @@ double skin(Vec3 p) {
 }  // namespace
 
 std::vector<OrganShape> organ_shapes() {
-  return {
-      {"liver",
-       "Human liver, about life size, lying on its underside.",
-       liver,
-       {-40, 5, 40},
-       220,
-       5.9,
-       {4000, 6000},
-       {1000, 1500},
-       {220, 150, 90}},
-      {"kidney",
-       "Human kidney, about life size, lying on its side; the hilum faces +y.",
-       kidney,
-       {0, -5, 0},
-       90,
-       3.8,
-       {2500, 3500},
-       {120, 180},
-       {110, 60, 45}},
-      {"skin",
-       "Piece of skin with the tissue below it, gently waved on top.",
-       skin,
-       {0, 0, 0},
-       120,
-       5.9,
-       {2500, 3500},
-       {350, 450},
-       {120, 120, 30}},
-  };
+  return {{.name = "liver",
+           .description =
+               "Human liver, about life size, lying on its underside; x runs from the patient's right (-) "
+               "to the left (+), the thin front edge faces -y.",
+           .distance_mm = liver,
+           .inside_mm = {-40, 5, 40},
+           .reach_mm = 220,
+           .edge_mm = 5.9,
+           .triangles = {4000, 6000},
+           .volume_ml = {1000, 1500},
+           .size_mm = {220, 150, 90}},
+          {.name = "kidney",
+           .description =
+               "Human kidney, about life size, lying flat; x runs from the upper pole (-) to the lower "
+               "(+), the hilum faces +y.",
+           .distance_mm = kidney,
+           .inside_mm = {0, -5, 0},
+           .reach_mm = 90,
+           .edge_mm = 3.8,
+           .triangles = {2500, 3500},
+           .volume_ml = {120, 180},
+           .size_mm = {110, 60, 45}},
+          {.name = "skin",
+           .description = "Piece of skin with the tissue below it, gently waved on top.",
+           .distance_mm = skin,
+           .inside_mm = {0, 0, 0},
+           .reach_mm = 120,
+           .edge_mm = 5.6,
+           .triangles = {2500, 3500},
+           .volume_ml = {350, 450},
+           .size_mm = {120, 120, 30}}};
 }
 
 }  // namespace ctpm

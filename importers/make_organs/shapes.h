@@ -8,8 +8,8 @@
 
 namespace ctpm {
 
-/// An organ as an implicit shape, and what its mesh must look like to be accepted. z is up, x from the
-/// patient's right (-) to the left (+); the organ lies with its lowest point near z = 0.
+/// An organ as an implicit shape, and what its mesh must look like to be accepted. z is up and the organ lies
+/// with its lowest point near z = 0.
 struct OrganShape {
   /// Both ends are allowed.
   struct Range {
