@@ -50,7 +50,8 @@ struct Sample {
 };
 
 /// Eq. 10 integrated for a given depth over time; `depth(t)` and its rate `rate(t)` [mm/s]; samples every `interval` [s].
-/// Fourth-order Runge-Kutta, halved until two runs agree to 1e-8 of the largest stress.
+/// Fourth-order Runge-Kutta, halved until two runs agree to 1e-8 of the largest stress; kinks of the depth must fall on
+/// samples.
 std::vector<Sample> relaxation(const Site& site, const std::function<double(double)>& depth,
                                const std::function<double(double)>& rate, double duration, double interval);
 

@@ -32,7 +32,7 @@ void ConstraintElements::measure_tilt(const State& state, std::vector<double>& s
     half_length_[i] = 0.5 * norm(e - a);
     // 1 / (1 + tan theta) written so that it stays finite when A and E meet.
     const double tilt = norm(offset_[i]), sum = half_length_[i] + tilt;
-    if (sum > 0) softness[centre] = std::min(softness[centre], half_length_[i] / sum);
+    if (!softness.empty() && sum > 0) softness[centre] = std::min(softness[centre], half_length_[i] / sum);
   }
 }
 
@@ -47,7 +47,7 @@ void ConstraintElements::linearise(const State& state, std::span<const double> s
     if (tilt == 0) continue;
     const auto a = std::size_t(lines.a[i]), c = std::size_t(lines.c[i]), e = std::size_t(lines.e[i]);
     const double cosine = half_length_[i] / hypotenuse, sine = tilt / hypotenuse;
-    const double soft = softness[c];
+    const double soft = softness.empty() ? 1.0 : softness[c];
     // Eq. 2 with Eq. 8: lambda = 2 k' (1 - cos theta), force on C is -lambda u / (1 + tan theta).
     const double lambda = 2 * lines.k[i] * (1 - cosine) * soft;
     const Vec3 pull = -lambda * u;

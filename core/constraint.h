@@ -15,7 +15,7 @@ class ConstraintElements {
   explicit ConstraintElements(const Model& model);
 
   /// Tilt of every line, and from it `softness` = 1 / (1 + tan theta) of every sphere: the largest tilt of the lines
-  /// centred on it, 1 where there is none (Eq. 8)  (sphere_count).
+  /// centred on it, 1 where there is none (Eq. 8)  (sphere_count, or empty without softening).
   void measure_tilt(const State& state, std::vector<double>& softness);
 
   /// Adds the constraint forces (Eqs. 2, 5; divided as Eq. 8 says) and the linearisation for a step of `h` [s].

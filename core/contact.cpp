@@ -17,7 +17,7 @@ void BallContact::find(const State& state, Vec3 centre, double radius, Vec3 velo
   contacts_.clear();
   velocity_ = velocity;
   for (std::size_t i = 0; i < state.position.size(); ++i) {
-    if (model_.is_fixed[i]) continue;
+    if (model_.held_axes[i] == kAnchored) continue;
     const Vec3 apart = state.position[i] - centre;
     const double reach = radius + model_.contact_radius[i];
     const double distance_squared = dot(apart, apart);

@@ -41,6 +41,7 @@ void for_each_field(Tool_& t, Visit&& visit) {
   visit("kind", t.kind);
   visit("radius", t.radius);
   visit("blade_length", t.blade_length);
+  visit("sphere", t.sphere);
 }
 
 template <class Organ_, class Visit>
@@ -63,7 +64,7 @@ void for_each_field(Model_& m, Visit&& visit) {
   visit("gravity", m.gravity);
   visit_points("rest_position.x", "rest_position.y", "rest_position.z", m.rest_position, visit);
   visit("mass", m.mass);
-  visit("is_fixed", m.is_fixed);
+  visit("held_axes", m.held_axes);
   visit("contact_radius", m.contact_radius);
   visit("layer", m.layer);
   visit("organs", m.organs);
@@ -94,6 +95,10 @@ void for_each_field(Model_& m, Visit&& visit) {
   visit("angle_springs.edge0", m.angle_springs.edge[0]);
   visit("angle_springs.edge1", m.angle_springs.edge[1]);
   visit("has_softening", m.has_softening);
+  visit("loads.sphere", m.loads.sphere);
+  visit_points("loads.force.x", "loads.force.y", "loads.force.z", m.loads.force, visit);
+  visit("loads.start", m.loads.start);
+  visit("loads.ramp", m.loads.ramp);
   visit("tools", m.tools);
   visit("contact_k", m.contact_k);
   visit("contact_friction", m.contact_friction);

@@ -15,7 +15,7 @@ Vec3Array internal_forces(const Model& model, const State& state) {
   Coordinates sum(3 * n, 0.0), velocity;
   DiagonalBlocks blocks(6 * n, 0.0);
   std::vector<double> softness(model.has_softening ? n : 0);
-  if (model.has_softening) constraints.measure_tilt(state, softness);
+  constraints.measure_tilt(state, softness);
   constraints.linearise(state, softness, kVanishingStep, sum, blocks);
   AngleElements(model).linearise(state, kVanishingStep, sum, blocks);
   axial.linearise(state, softness, kVanishingStep, sum, blocks);

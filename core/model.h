@@ -52,6 +52,7 @@ struct AngleSprings {
 enum class ToolKind : std::int32_t {
   ball = 0,     ///< rigid ball that presses
   scalpel = 1,  ///< blade edge that severs what it sweeps
+  pin = 2,      ///< holds one sphere exactly where the hand is: the paper's pressed sphere C
 };
 
 /// A tool that the session's input can hold. The tool frame's origin is the ball's centre or the blade's tip.
@@ -60,7 +61,19 @@ struct Tool {
   ToolKind kind = ToolKind::ball;
   double radius = 0;        ///< of a ball [m], > 0; 0 for a scalpel
   double blade_length = 0;  ///< of a scalpel's edge, from the tip along the tool's +z axis [m], > 0; 0 for a ball
+  std::int32_t sphere = -1; ///< that a pin holds; -1 for the others
 };
+
+/// Forces that act on spheres from outside: each rises from 0 at `start` to its full size within `ramp`, and stays.
+struct Loads {
+  std::vector<std::int32_t> sphere;  ///< (load_count)
+  Vec3Array force;                   ///< full size [N]                 (load_count)
+  std::vector<double> start, ramp;   ///< [s], >= 0                     (load_count)
+  std::size_t size() const { return sphere.size(); }
+};
+
+/// Model::held_axes of a sphere that never moves.
+inline constexpr std::uint8_t kAnchored = 7;
 
 /// A range of spheres that were filled into one organ.
 struct OrganRange {
@@ -88,7 +101,7 @@ struct Model {
 
   Vec3Array rest_position;                  ///< [m]                                                     (sphere_count)
   std::vector<double> mass;                 ///< [kg], > 0                                               (sphere_count)
-  std::vector<std::uint8_t> is_fixed;       ///< 1: anchored, never moves                                (sphere_count)
+  std::vector<std::uint8_t> held_axes;      ///< bit 0: x never changes, bit 1: y, bit 2: z; 7: anchored  (sphere_count)
   std::vector<double> contact_radius;       ///< distance at which a tool touches the sphere [m], > 0    (sphere_count)
   std::vector<std::int32_t> layer;          ///< 1 = outermost                                           (sphere_count)
   std::vector<OrganRange> organs;
@@ -98,6 +111,8 @@ struct Model {
   Constraints constraints;
   AngleSprings angle_springs;
   bool has_softening = false;  ///< Eq. 8: forces are divided by 1 + tan theta
+
+  Loads loads;
 
   std::vector<Tool> tools;
   double contact_k = 0;  ///< stiffness of a tool's contact with one sphere [N/m], > 0 if there are tools that press

@@ -49,9 +49,12 @@ Errors check_organ(const FilledOrgan& organ, const OrganSettings& settings) {
     errors.push_back({where, "viscosity v1: got " + std::to_string(m.viscosity) + " Pa s/m, must be 0 or more", ""});
   if (!(m.density > 0 && m.stiffness_scale > 0 && m.calibration_area > 0 && m.calibration_spacing > 0))
     errors.push_back({where, "density, stiffness scale, calibration area and spacing must all be more than 0", ""});
-  for (const std::int32_t sphere : settings.anchored)
+  const auto check_sphere = [&](const char* what, std::int32_t sphere) {
     if (sphere < 0 || std::size_t(sphere) >= organ.centre.size())
-      errors.push_back({where, "anchored sphere " + std::to_string(sphere) + " does not exist", ""});
+      errors.push_back({where, std::string(what) + " sphere " + std::to_string(sphere) + " does not exist", ""});
+  };
+  for (const std::int32_t sphere : settings.anchored) check_sphere("anchored", sphere);
+  for (const OrganSettings::Guide& guide : settings.guides) check_sphere("guided", guide.sphere);
   return errors;
 }
 
@@ -207,8 +210,9 @@ void add_spheres(Model& model, const FilledOrgan& organ, const OrganSettings& se
     model.layer.push_back(organ.layer[i]);
   }
   model.mass.resize(first + organ.centre.size(), mass);
-  model.is_fixed.resize(first + organ.centre.size(), 0);
-  for (const std::int32_t sphere : settings.anchored) model.is_fixed[first + std::size_t(sphere)] = 1;
+  model.held_axes.resize(first + organ.centre.size(), 0);
+  for (const OrganSettings::Guide& guide : settings.guides) model.held_axes[first + std::size_t(guide.sphere)] = guide.axes;
+  for (const std::int32_t sphere : settings.anchored) model.held_axes[first + std::size_t(sphere)] = kAnchored;
   const int layers = *std::max_element(organ.layer.begin(), organ.layer.end());
   model.organs.push_back({settings.name, std::int32_t(first), std::int32_t(organ.centre.size()), organ.sphere_radius,
                           organ.spacing, settings.damage_depth, layers});
@@ -238,7 +242,8 @@ Result<Done> add_organ(Model& model, const FilledOrgan& organ, const OrganSettin
   for (const Cell& direction : kAxisDirections) tiler.tile(direction);
   if (settings.lattice == LatticeKind::cubic_18)
     for (const Cell& direction : kDiagonalDirections) tiler.tile(direction);
-  model.has_softening = model.has_softening || (settings.structure == Structure::ctpm && model.constraints.size() > 0);
+  const bool softens = settings.structure == Structure::ctpm && settings.has_softening && model.constraints.size() > 0;
+  model.has_softening = model.has_softening || softens;
   leave_out_unused(model);
   return Done{};
 }

@@ -42,8 +42,14 @@ struct OrganSettings {
   std::string name;
   Structure structure = Structure::ctpm;
   LatticeKind lattice = LatticeKind::cubic_18;
+  bool has_softening = true;  ///< Eq. 8, for `ctpm`; without it the network gives the TPM column of Table 1
   Material material;
   std::vector<std::int32_t> anchored;  ///< spheres of the organ that never move, by index within the organ
+  struct Guide {
+    std::int32_t sphere;  ///< index within the organ
+    std::uint8_t axes;    ///< that it may not leave, as in Model::held_axes
+  };
+  std::vector<Guide> guides;           ///< spheres that run on rails or planes, for rigs
   double damage_depth = 0;             ///< [m]; 0: no limit
 };
 

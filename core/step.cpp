@@ -39,17 +39,23 @@ bool is_usable(const Model& model, const Inputs& inputs) {
 struct Stepper::Workspace {
   explicit Workspace(const Model& m)
       : model(m), axial(m), constraints(m), angles(m), contact(m), jacobi(m.sphere_count()), solver(3 * m.sphere_count()),
-        force(3 * m.sphere_count()), momentum(3 * m.sphere_count()), velocity(3 * m.sphere_count()),
+        held_axes(m.held_axes), force(3 * m.sphere_count()), momentum(3 * m.sphere_count()), velocity(3 * m.sphere_count()),
         blocks(6 * m.sphere_count()), softness(m.has_softening ? m.sphere_count() : 0), before(m.sphere_count()) {
     const double total_mass = fixed_order_dot(m.mass, std::vector<double>(m.mass.size(), 1.0));
+    for (std::size_t i = 0; i < m.sphere_count(); ++i)
+      if (m.held_axes[i] != 0 && m.held_axes[i] != kAnchored) guided.push_back(std::int32_t(i));
     limits.relative = m.solver.tolerance;
     limits.absolute = m.solver.velocity_floor * std::sqrt(total_mass);
     limits.max_iterations = m.solver.max_iterations;
   }
 
   void linearise(const State& state, double h);
+  void add_loads(double time);
   void apply(const State& state, double h, const Coordinates& in, Coordinates& out) const;
-  void solve(const State& state, double h, StepReport& report);
+  void solve(const State& state, double h, double time, StepReport& report);
+  void uncouple_guided();
+  Vec3 force_on_pin(const State& state, double h);
+  bool is_held(std::size_t sphere, std::size_t axis) const { return (held_axes[sphere] >> axis & 1) != 0; }
   bool check(StepReport& report) const;
   void advance(State& state, double h);
 
@@ -61,6 +67,11 @@ struct Stepper::Workspace {
   BlockJacobi jacobi;
   ConjugateGradient solver;
   CgLimits limits;
+  std::vector<std::uint8_t> held_axes;  ///< of the Model, and of the sphere that a pin holds
+  std::vector<std::int32_t> guided;   ///< spheres of which some axes are held and others not
+  std::int32_t pinned = -1;
+  Vec3 pin_velocity;                  ///< that brings the pinned sphere to the hand [m/s]
+  bool has_loads = true;              ///< loads act (they do not while the scene settles)
   Coordinates force, momentum, velocity;
   DiagonalBlocks blocks;
   std::vector<double> softness;
@@ -78,12 +89,27 @@ void Stepper::Workspace::linearise(const State& state, double h) {
     blocks[i] = blocks[3 * n + i] = blocks[5 * n + i] = mass;
     blocks[n + i] = blocks[2 * n + i] = blocks[4 * n + i] = 0;
   }
-  if (model.has_softening) constraints.measure_tilt(state, softness);
-  if (model.constraints.size() > 0) constraints.linearise(state, softness, h, force, blocks);
+  if (model.constraints.size() > 0) {
+    constraints.measure_tilt(state, softness);
+    constraints.linearise(state, softness, h, force, blocks);
+  }
   if (model.angle_springs.size() > 0) angles.linearise(state, h, force, blocks);
   axial.linearise(state, softness, h, force, blocks);
 }
 
+void Stepper::Workspace::add_loads(double time) {
+  const Loads& loads = model.loads;
+  const std::size_t n = model.sphere_count();
+  for (std::size_t l = 0; l < loads.size(); ++l) {
+    const double since = time - loads.start[l];
+    const double share = since <= 0 ? 0.0 : (since >= loads.ramp[l] ? 1.0 : since / loads.ramp[l]);
+    const Vec3 pull = share * loads.force[l];
+    const auto i = std::size_t(loads.sphere[l]);
+    force[i] += pull.x, force[n + i] += pull.y, force[2 * n + i] += pull.z;
+  }
+}
+
+/// Product with the matrix of all spheres, held ones too.
 void Stepper::Workspace::apply(const State& state, double h, const Coordinates& in, Coordinates& out) const {
   const std::size_t n = model.sphere_count();
   const double* mass = model.mass.data();
@@ -93,32 +119,61 @@ void Stepper::Workspace::apply(const State& state, double h, const Coordinates& 
   if (model.constraints.size() > 0) constraints.apply(in, out);
   if (model.angle_springs.size() > 0) angles.apply(state, h, in, out);
   if (contact.count() > 0) contact.apply(h, in, out);
-  for (std::size_t i = 0; i < n; ++i)
-    if (model.is_fixed[i]) out[i] = out[n + i] = out[2 * n + i] = 0;
 }
 
 /// Velocity at the end of the substep; contacts only push.
-void Stepper::Workspace::solve(const State& state, double h, StepReport& report) {
+void Stepper::Workspace::solve(const State& state, double h, double time, StepReport& report) {
   const std::size_t n = model.sphere_count();
   const double* old_velocity[3] = {state.velocity.x.data(), state.velocity.y.data(), state.velocity.z.data()};
   for (std::size_t axis = 0; axis < 3; ++axis)
-    for (std::size_t i = 0; i < n; ++i) velocity[axis * n + i] = model.is_fixed[i] ? 0.0 : old_velocity[axis][i];
+    for (std::size_t i = 0; i < n; ++i) velocity[axis * n + i] = is_held(i, axis) ? 0.0 : old_velocity[axis][i];
+  if (pinned >= 0) {
+    const auto i = std::size_t(pinned);
+    velocity[i] = pin_velocity.x, velocity[n + i] = pin_velocity.y, velocity[2 * n + i] = pin_velocity.z;
+  }
   for (int round = 0;; ++round) {
     linearise(state, h);
     contact.linearise(h, force, blocks);
+    if (has_loads && model.loads.size() > 0) add_loads(time);
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (std::size_t i = 0; i < n; ++i)
-        momentum[axis * n + i] =
-            model.is_fixed[i] ? 0.0 : model.mass[i] * old_velocity[axis][i] + h * force[axis * n + i];
+        momentum[axis * n + i] = is_held(i, axis) ? 0.0 : model.mass[i] * old_velocity[axis][i] + h * force[axis * n + i];
+    uncouple_guided();
     jacobi.factorise(blocks);
     const CgOutcome outcome = solver.solve(
-        momentum, velocity, limits, [&](const Coordinates& in, Coordinates& out) { apply(state, h, in, out); },
+        momentum, velocity, limits,
+        [&](const Coordinates& in, Coordinates& out) {
+          apply(state, h, in, out);
+          for (std::size_t axis = 0; axis < 3; ++axis)
+            for (std::size_t i = 0; i < n; ++i) out[axis * n + i] = is_held(i, axis) ? 0.0 : out[axis * n + i];
+        },
         [&](const Coordinates& in, Coordinates& out) { jacobi.apply(in, out); });
     report.iterations += outcome.iterations;
     report.residual = outcome.residual;
     if (!outcome.converged) report.status = StepStatus::not_converged;
     if (round == kContactRounds || !contact.drop_pulling(h, velocity)) return;
   }
+}
+
+/// The preconditioner must not move a guided sphere along a held axis.
+void Stepper::Workspace::uncouple_guided() {
+  const std::size_t n = model.sphere_count();
+  for (const std::int32_t sphere : guided) {
+    const auto i = std::size_t(sphere);
+    const bool x = is_held(i, 0), y = is_held(i, 1), z = is_held(i, 2);
+    if (x || y) blocks[n + i] = 0;
+    if (x || z) blocks[2 * n + i] = 0;
+    if (y || z) blocks[4 * n + i] = 0;
+  }
+}
+
+/// What the tissue does to the pin [N]: the pinned sphere's row of the balance of momentum, with the sign turned.
+Vec3 Stepper::Workspace::force_on_pin(const State& state, double h) {
+  const std::size_t n = model.sphere_count();
+  const auto i = std::size_t(pinned);
+  apply(state, h, velocity, momentum);
+  const Vec3 done{momentum[i], momentum[n + i], momentum[2 * n + i]}, own{force[i], force[n + i], force[2 * n + i]};
+  return (model.mass[i] * state.velocity[i] + h * own - done) / h;
 }
 
 /// Refuses velocities that no tissue has; names the fastest sphere.
@@ -171,13 +226,20 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
   const std::int32_t substeps = model_.solver.substeps;
   const double h = model_.tick / substeps;
   const Vec3 from = is_held ? last.position : inputs.position;
+  const bool pins = tool && tool->kind == ToolKind::pin;
+  work.held_axes = model_.held_axes;
+  work.pinned = pins ? tool->sphere : -1;
+  if (pins) work.held_axes[std::size_t(tool->sphere)] = kAnchored;
   for (std::int32_t k = 1; k <= substeps; ++k) {
     work.contact.clear();
+    const double part = double(k) / substeps;
+    const Vec3 hand = from + part * (inputs.position - from);
+    if (pins) work.pin_velocity = (hand - state.position[std::size_t(tool->sphere)]) / h;
     if (tool && tool->kind == ToolKind::ball) {
-      const double part = double(k) / substeps;
-      work.contact.find(state, from + part * (inputs.position - from), tool->radius, (inputs.position - from) / model_.tick);
+      work.contact.find(state, hand, tool->radius, (inputs.position - from) / model_.tick);
     }
-    work.solve(state, h, report);
+    work.solve(state, h, (double(state.tick) + part) * model_.tick, report);
+    if (pins) report.tool_force = work.force_on_pin(state, h);
     if (!work.check(report)) {
       std::swap(state, work.backup);
       return report;
@@ -186,9 +248,15 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
     work.advance(state, h);
     if (cuts) report.severed += sever_moved_through_blade(model_, blade_edge(*tool, inputs), work.before, state.position, state);
   }
-  report.tool_force = work.contact.force_on_tool(h, work.velocity);
-  report.depth = work.contact.depth(state);
-  report.contacts = work.contact.count();
+  if (pins) {
+    const auto i = std::size_t(tool->sphere);
+    report.depth = norm(state.position[i] - model_.rest_position[i]);
+    report.contacts = 1;
+  } else {
+    report.tool_force = work.contact.force_on_tool(h, work.velocity);
+    report.depth = work.contact.depth(state);
+    report.contacts = work.contact.count();
+  }
   state.last_inputs = inputs;
   ++state.tick;
   return report;
@@ -197,6 +265,7 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
 StepReport Stepper::settle(State& state, std::int64_t ticks) {
   const std::int64_t start = state.tick;
   StepReport report;
+  work_->has_loads = false;
   for (std::int64_t i = 0; i < ticks; ++i) {
     report = step(state, Inputs{});
     if (report.status == StepStatus::diverged) break;
@@ -204,6 +273,7 @@ StepReport Stepper::settle(State& state, std::int64_t ticks) {
     if (norm(fastest) < kAtRest) break;
   }
   state.tick = start;
+  work_->has_loads = true;
   return report;
 }
 

@@ -24,7 +24,7 @@ Inputs tool_at(Vec3 position, std::int32_t tool = 0) {
 
 TEST(Step, AFreeBlockFallsAsGalileoSays) {
   Model model = make_block_model(3, 3, 3);
-  model.is_fixed.assign(model.sphere_count(), 0);
+  model.held_axes.assign(model.sphere_count(), 0);
   model.gravity = {0, 0, -9.81};
   Stepper stepper(model);
   State state = rest_state(model);
