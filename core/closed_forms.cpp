@@ -101,40 +101,71 @@ double table_force(const Site& site, double depth, bool with_softening) {
 }
 
 std::vector<Sample> relaxation(const Site& site, const std::function<double(double)>& depth,
-                               const std::function<double(double)>& rate, double duration, double interval) {
-  const auto load = [&](double t) {
-    const double x = depth(t), l = lambda(site, x);
-    return ((p2(site) + l) * x + (p3(site) + l * p1(site)) * rate(t)) / (1 + tan_theta(site, x));
-  };
+                               const std::function<double(double)>& rate, double duration, double interval, Law law) {
   const std::size_t count = count_samples(duration, interval);
-  std::vector<double> stress;
-  if (site.viscosity == 0)
-    for (std::size_t i = 0; i < count; ++i) stress.push_back(load(double(i) * interval));
-  else
-    stress = integrate_to_agreement([&](double t, double s) { return (load(t) - s) / p1(site); },
-                                    relaxation_stress(site, depth(0), 0), count, interval, p1(site));
+  const auto softening = [&](double t) { return 1 + tan_theta(site, depth(t)); };
+  // Both laws are a first-order equation for a stress that follows a given one with the time constant P1: Eq. 10 for
+  // sigma itself, Eqs. 3-8 for sigma_o, the part of the spring and the Kelvin unit.
+  const auto followed = [&](double t) {
+    const double x = depth(t), l = law == Law::eq_10 ? lambda(site, x) : 0.0;
+    return ((p2(site) + l) * x + (p3(site) + l * p1(site)) * rate(t)) / (law == Law::eq_10 ? softening(t) : 1.0);
+  };
+  const auto stress_of = [&](double t, double y) {
+    return law == Law::eq_10 ? y : (y + lambda(site, depth(t)) * depth(t)) / softening(t);
+  };
+  const double sudden = law == Law::eq_10 ? relaxation_stress(site, depth(0), 0) : site.spring * depth(0);
+  std::vector<double> y;
+  if (site.viscosity > 0)
+    y = integrate_to_agreement([&](double t, double s) { return (followed(t) - s) / p1(site); }, sudden, count, interval, p1(site));
   std::vector<Sample> samples;
-  for (std::size_t i = 0; i < count; ++i) samples.push_back({double(i) * interval, depth(double(i) * interval), stress[i]});
+  for (std::size_t i = 0; i < count; ++i) {
+    const double t = double(i) * interval;
+    samples.push_back({t, depth(t), stress_of(t, y.empty() ? followed(t) : y[i])});
+  }
   return samples;
 }
 
+namespace {
+
+/// Depth at which the spring K2 carries, beyond the Kelvin unit's `elongation`, what the constraint leaves of the stress:
+/// K2 (eps - eps1) + lambda eps = sigma (1 + tan theta), Eqs. 4-8, by Newton's rule from the last depth.
+double depth_of(const Site& site, double stress, double elongation) {
+  double x = elongation + stress / site.spring;
+  for (int i = 0; i < 50; ++i) {
+    const double miss = site.spring * (x - elongation) + lambda(site, x) * x - stress * (1 + tan_theta(site, x));
+    const double cosine = 1 / std::sqrt(1 + tan_theta(site, x) * tan_theta(site, x));
+    const double slope = site.spring + lambda(site, x) + 2 * site.constraint * cosine * (1 - cosine * cosine) - stress / site.arm;
+    const double step = miss / slope;
+    x -= step;
+    if (std::abs(step) < 1e-14 * site.arm) break;
+  }
+  return x;
+}
+
+}  // namespace
+
 std::vector<Sample> creep(const Site& site, const std::function<double(double)>& stress,
-                          const std::function<double(double)>& rate, double duration, double interval) {
+                          const std::function<double(double)>& rate, double duration, double interval, Law law) {
   const std::size_t count = count_samples(duration, interval);
+  const double fastest = p3(site) / (p2(site) + lambda(site, site.arm));
   std::vector<double> depth;
   if (site.viscosity == 0) {
     for (std::size_t i = 0; i < count; ++i) depth.push_back(slow_depth(site, stress(double(i) * interval)));
-  } else {
+  } else if (law == Law::eq_10) {
     const auto slope = [&](double t, double x) {
       const double l = lambda(site, x);
       const double load = (stress(t) + p1(site) * rate(t)) * (1 + tan_theta(site, x));
       return (load - (p2(site) + l) * x) / (p3(site) + l * p1(site));
     };
-    // A sudden stress finds the spring K2 alone (Eq. 15).
-    Site sudden = site;
-    sudden.kelvin = 1e12 * site.spring;
-    const double x0 = stress(0) > 0 ? slow_depth(sudden, stress(0)) : 0.0;
-    depth = integrate_to_agreement(slope, x0, count, interval, p3(site) / (p2(site) + lambda(site, site.arm)));
+    depth = integrate_to_agreement(slope, depth_of(site, stress(0), 0), count, interval, fastest);  // Eq. 15 at once
+  } else {
+    // The Kelvin unit's elongation eps1 is what creeps: v1 eps1' = K2 (eps - eps1) - K1 eps1.
+    const auto slope = [&](double t, double elongation) {
+      const double x = depth_of(site, stress(t), elongation);
+      return (site.spring * (x - elongation) - site.kelvin * elongation) / site.viscosity;
+    };
+    depth = integrate_to_agreement(slope, 0, count, interval, fastest);
+    for (std::size_t i = 0; i < count; ++i) depth[i] = depth_of(site, stress(double(i) * interval), depth[i]);
   }
   std::vector<Sample> samples;
   for (std::size_t i = 0; i < count; ++i) samples.push_back({double(i) * interval, depth[i], stress(double(i) * interval)});

@@ -43,20 +43,28 @@ double force_of_stress(const Site& site, double stress);
 /// Slow force as the paper's Table 1 gives it [N]: with the constraint, and divided by 1 + tan theta only for CTPM.
 double table_force(const Site& site, double depth, bool with_softening);
 
+/// Which form of the law is integrated over time.
+enum class Law {
+  eq_10,      ///< the paper's Eq. 10, whose derivation holds lambda and theta constant
+  eqs_3_to_8  ///< Eqs. 3-8 as they stand; the same at rest, up to a few per cent apart while lambda changes fast
+};
+
 struct Sample {
   double time = 0;    ///< [s]
   double depth = 0;   ///< [mm]
   double stress = 0;  ///< [kPa]
 };
 
-/// Eq. 10 integrated for a given depth over time; `depth(t)` and its rate `rate(t)` [mm/s]; samples every `interval` [s].
+/// The law integrated for a given depth over time; `depth(t)` and its rate `rate(t)` [mm/s]; samples every `interval` [s].
 /// Fourth-order Runge-Kutta, halved until two runs agree to 1e-8 of the largest stress; kinks of the depth must fall on
 /// samples.
 std::vector<Sample> relaxation(const Site& site, const std::function<double(double)>& depth,
-                               const std::function<double(double)>& rate, double duration, double interval);
+                               const std::function<double(double)>& rate, double duration, double interval,
+                               Law law = Law::eq_10);
 
-/// Eq. 10 integrated for a given stress over time, as above, to 1e-8 of the largest depth.
+/// The law integrated for a given stress over time, as above, to 1e-8 of the largest depth.
 std::vector<Sample> creep(const Site& site, const std::function<double(double)>& stress,
-                          const std::function<double(double)>& rate, double duration, double interval);
+                          const std::function<double(double)>& rate, double duration, double interval,
+                          Law law = Law::eq_10);
 
 }  // namespace ctpm
