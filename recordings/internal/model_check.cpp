@@ -1,0 +1,225 @@
+#include "recordings/internal/model_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ctpm::session_file {
+namespace {
+
+// A file must not be able to ask for a tick that never ends.
+constexpr std::int32_t max_iterations = 1'000'000;
+constexpr std::int32_t max_substeps = 10'000;
+
+/// Collects problems; every check names the array it is about.
+class Checker {
+ public:
+  explicit Checker(std::string where) : where_(std::move(where)) {}
+  Errors take() { return std::move(errors_); }
+
+  void require(bool good, const std::string& name, const std::string& what) {
+    if (!good) errors_.push_back({where_, name + " " + what, ""});
+  }
+
+  template <class T>
+  bool length(const std::string& name, const std::vector<T>& values, std::size_t expected, bool may_be_empty = false) {
+    const bool good = values.size() == expected || (may_be_empty && values.empty());
+    require(good, name, "has " + std::to_string(values.size()) + " entries, expected " + std::to_string(expected));
+    return good;
+  }
+
+  void indices(const std::string& name, const std::vector<std::int32_t>& values, std::int64_t lowest, std::int64_t end) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (values[i] >= lowest && values[i] < end) continue;
+      return require(false, name, "[" + std::to_string(i) + "] is " + std::to_string(values[i]) + ", must be in [" +
+                                      std::to_string(lowest) + ", " + std::to_string(end) + ")");
+    }
+  }
+
+  void finite(const std::string& name, const std::vector<double>& values) {
+    each(name, values, [](double v) { return std::isfinite(v); }, "must be finite");
+  }
+  void positive(const std::string& name, const std::vector<double>& values) {
+    each(name, values, [](double v) { return std::isfinite(v) && v > 0; }, "must be finite and above 0");
+  }
+  void not_negative(const std::string& name, const std::vector<double>& values) {
+    each(name, values, [](double v) { return std::isfinite(v) && v >= 0; }, "must be finite and not below 0");
+  }
+
+  template <class T>
+  void flags(const std::string& name, const std::vector<T>& values) {
+    each(name, values, [](T v) { return v <= 1; }, "must be 0 or 1");
+  }
+
+  void points(const std::string& name, const Vec3Array& points, std::size_t expected) {
+    const auto one = [&](const char* axis, const std::vector<double>& values) {
+      length(name + axis, values, expected);
+      finite(name + axis, values);
+    };
+    one(".x", points.x), one(".y", points.y), one(".z", points.z);
+  }
+
+ private:
+  template <class T, class Good>
+  void each(const std::string& name, const std::vector<T>& values, Good good, const char* what) {
+    const auto bad = std::find_if_not(values.begin(), values.end(), good);
+    if (bad != values.end()) require(false, name, "[" + std::to_string(bad - values.begin()) + "] " + what);
+  }
+
+  std::string where_;
+  Errors errors_;
+};
+
+/// Ends of elements: in range and not the same sphere.
+void check_ends(Checker& check, const std::string& name, const std::vector<std::int32_t>& a, const std::vector<std::int32_t>& b,
+                std::int64_t sphere_count) {
+  check.indices(name + ".a", a, 0, sphere_count);
+  if (check.length(name + ".b", b, a.size()))
+    for (std::size_t i = 0; i < a.size(); ++i)
+      if (a[i] == b[i]) return check.require(false, name, "[" + std::to_string(i) + "] joins a sphere with itself");
+  check.indices(name + ".b", b, 0, sphere_count);
+}
+
+void check_elements(Checker& check, const Model& model) {
+  const auto spheres = static_cast<std::int64_t>(model.sphere_count());
+  const Edges& edges = model.edges;
+  check_ends(check, "edges", edges.a, edges.b, spheres);
+  check.length("edges.rest_length", edges.rest_length, edges.size());
+  check.positive("edges.rest_length", edges.rest_length);
+  check.length("edges.k", edges.k, edges.size());
+  check.positive("edges.k", edges.k);
+  check.length("edges.c", edges.c, edges.size(), true);
+  check.not_negative("edges.c", edges.c);
+  check.length("edges.third", edges.third, edges.size(), true);
+  check.indices("edges.third", edges.third, -1, spheres);
+
+  const TwoSphereTpms& tpms = model.tpms;
+  check_ends(check, "tpms", tpms.a, tpms.b, spheres);
+  check.length("tpms.rest_length", tpms.rest_length, tpms.size());
+  check.positive("tpms.rest_length", tpms.rest_length);
+  check.length("tpms.spring_k", tpms.spring_k, tpms.size());
+  check.positive("tpms.spring_k", tpms.spring_k);
+  check.length("tpms.kelvin_k", tpms.kelvin_k, tpms.size());
+  check.positive("tpms.kelvin_k", tpms.kelvin_k);
+  check.length("tpms.kelvin_c", tpms.kelvin_c, tpms.size());
+  check.not_negative("tpms.kelvin_c", tpms.kelvin_c);
+
+  const Constraints& constraints = model.constraints;
+  check.indices("constraints.a", constraints.a, 0, spheres);
+  check.length("constraints.c", constraints.c, constraints.size());
+  check.indices("constraints.c", constraints.c, 0, spheres);
+  check.length("constraints.e", constraints.e, constraints.size());
+  check.indices("constraints.e", constraints.e, 0, spheres);
+  check.length("constraints.k", constraints.k, constraints.size());
+  check.finite("constraints.k", constraints.k);
+  for (int i = 0; i < 4; ++i) {
+    const std::string name = "constraints.edge" + std::to_string(i);
+    check.length(name, constraints.edge[i], constraints.size());
+    check.indices(name, constraints.edge[i], 0, static_cast<std::int64_t>(edges.size()));
+  }
+}
+
+void check_organs(Checker& check, const Model& model) {
+  const auto spheres = static_cast<std::int64_t>(model.sphere_count());
+  for (std::size_t i = 0; i < model.organs.size(); ++i) {
+    const OrganRange& organ = model.organs[i];
+    const std::string name = "organs[" + std::to_string(i) + "]";
+    check.require(organ.first >= 0 && organ.count >= 0 && std::int64_t{organ.first} + organ.count <= spheres, name,
+                  "is not a range of spheres");
+    check.require(std::isfinite(organ.sphere_radius) && std::isfinite(organ.spacing) && std::isfinite(organ.damage_depth), name,
+                  "has a length that is not finite");
+  }
+}
+
+void check_tools(Checker& check, const Model& model) {
+  for (std::size_t i = 0; i < model.tools.size(); ++i) {
+    const Tool& tool = model.tools[i];
+    const std::string name = "tools[" + std::to_string(i) + "]";
+    check.require(tool.kind == ToolKind::ball || tool.kind == ToolKind::scalpel, name, "is of an unknown kind");
+    check.require(std::isfinite(tool.radius) && tool.radius >= 0 && std::isfinite(tool.blade_length) && tool.blade_length >= 0, name,
+                  "has a size that is not finite or below 0");
+  }
+}
+
+}  // namespace
+
+Errors check_model(const Model& model) {
+  Checker check("model");
+  const std::size_t spheres = model.sphere_count();
+  check.require(std::isfinite(model.tick) && model.tick > 0, "tick", "must be finite and above 0");
+  check.require(is_finite(model.gravity), "gravity", "must be finite");
+  check.points("rest_position", model.rest_position, spheres);
+  check.positive("mass", model.mass);
+  check.length("is_fixed", model.is_fixed, spheres);
+  check.flags("is_fixed", model.is_fixed);
+  check.length("contact_radius", model.contact_radius, spheres);
+  check.positive("contact_radius", model.contact_radius);
+  check.length("layer", model.layer, spheres);
+  check_organs(check, model);
+  check_elements(check, model);
+  check_tools(check, model);
+  check.require(std::isfinite(model.contact_k) && model.contact_k >= 0, "contact_k", "must be finite and not below 0");
+
+  const SolverSettings& solver = model.solver;
+  check.require(solver.tolerance > 0 && solver.tolerance < 1, "solver.tolerance", "must be in (0, 1)");
+  check.require(std::isfinite(solver.velocity_floor) && solver.velocity_floor > 0, "solver.velocity_floor", "must be above 0");
+  check.require(solver.max_iterations >= 1 && solver.max_iterations <= max_iterations, "solver.max_iterations",
+                "must be in [1, " + std::to_string(max_iterations) + "]");
+  check.require(solver.substeps >= 1 && solver.substeps <= max_substeps, "solver.substeps",
+                "must be in [1, " + std::to_string(max_substeps) + "]");
+  return check.take();
+}
+
+Errors check_state(const Model& model, const State& state) {
+  Checker check("state");
+  check.points("position", state.position, model.sphere_count());
+  check.points("velocity", state.velocity, model.sphere_count());
+  check.length("kelvin_elongation", state.kelvin_elongation, model.tpms.size());
+  check.finite("kelvin_elongation", state.kelvin_elongation);
+
+  // The three sets of severed elements are there together or not at all.
+  const bool cuts = !state.edge_severed.empty() || !state.tpm_severed.empty() || !state.constraint_severed.empty() ||
+                    std::any_of(model.tools.begin(), model.tools.end(), [](const Tool& t) { return t.kind == ToolKind::scalpel; });
+  check.length("edge_severed", state.edge_severed, cuts ? model.edges.size() : 0);
+  check.flags("edge_severed", state.edge_severed);
+  check.length("tpm_severed", state.tpm_severed, cuts ? model.tpms.size() : 0);
+  check.flags("tpm_severed", state.tpm_severed);
+  check.length("constraint_severed", state.constraint_severed, cuts ? model.constraints.size() : 0);
+  check.flags("constraint_severed", state.constraint_severed);
+  const auto tools = static_cast<std::int32_t>(model.tools.size());
+  check.require(state.last_inputs.tool >= -1 && state.last_inputs.tool < tools, "last_inputs.tool", "is not a tool of the model");
+  return check.take();
+}
+
+Errors check_surfaces(const Model& model, const std::vector<Surface>& surfaces) {
+  Checker check("surfaces");
+  if (!surfaces.empty() && surfaces.size() != model.organs.size())
+    check.require(false, "list", "has " + std::to_string(surfaces.size()) + " entries for " + std::to_string(model.organs.size()) + " organs");
+  for (std::size_t i = 0; i < std::min(surfaces.size(), model.organs.size()); ++i) {
+    const Surface& surface = surfaces[i];
+    const std::string name = "[" + std::to_string(i) + "].";
+    const auto vertices = static_cast<std::int32_t>(surface.vertex.size());
+    for (const Vec3& vertex : surface.vertex)
+      if (!is_finite(vertex)) {
+        check.require(false, name + "vertex", "is not finite");
+        break;
+      }
+    std::vector<std::int32_t> corners;
+    for (const auto& triangle : surface.triangle) corners.insert(corners.end(), triangle.begin(), triangle.end());
+    check.indices(name + "triangle", corners, 0, vertices);
+
+    const SurfaceBinding& binding = surface.binding;
+    const auto entries = static_cast<std::int64_t>(binding.sphere.size());
+    check.indices(name + "binding.sphere", binding.sphere, 0, model.organs[i].count);
+    check.length(name + "binding.weight", binding.weight, binding.sphere.size());
+    check.finite(name + "binding.weight", binding.weight);
+    if (check.length(name + "binding.first", binding.first, surface.vertex.size() + 1, surface.vertex.empty()) && !binding.first.empty()) {
+      check.indices(name + "binding.first", binding.first, 0, entries + 1);
+      check.require(binding.first.front() == 0 && binding.first.back() == entries &&
+                        std::is_sorted(binding.first.begin(), binding.first.end()),
+                    name + "binding.first", "does not divide the entries among the vertices");
+    }
+  }
+  return check.take();
+}
+
+}  // namespace ctpm::session_file

@@ -1,0 +1,43 @@
+#include "recordings/internal/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ctpm::session_file {
+namespace {
+
+/// Nearest rank: the smallest value that at least `part` of all values do not exceed.
+double percentile(std::vector<float>& values, double part) {
+  if (values.empty()) return 0;
+  const double rank = std::ceil(part * static_cast<double>(values.size()));
+  const auto place = values.begin() + std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(rank) - 1, 0, values.size() - 1);
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+}  // namespace
+
+void StatisticsCounter::add(const TickRecord& record) {
+  ++sum_.ticks;
+  sum_.severed += record.severed;
+  sum_.max_force = std::max(sum_.max_force, norm(record.tool_force));
+  sum_.max_depth = std::max(sum_.max_depth, record.depth);
+  sum_.tick_time_max = std::max(sum_.tick_time_max, record.tick_time);
+  if (record.tick_time > 0) tick_times_.push_back(static_cast<float>(record.tick_time));
+}
+
+void StatisticsCounter::add(const Event& event) {
+  ++sum_.events;
+  if (event.kind == EventKind::late_tick) ++sum_.late_ticks;
+}
+
+SessionStatistics StatisticsCounter::result() const {
+  SessionStatistics result = sum_;
+  std::vector<float> times = tick_times_;
+  result.tick_time_p50 = percentile(times, 0.5);
+  result.tick_time_p99 = percentile(times, 0.99);
+  result.tick_time_p999 = percentile(times, 0.999);
+  return result;
+}
+
+}  // namespace ctpm::session_file

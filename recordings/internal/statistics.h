@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "recordings/session.h"
+
+namespace ctpm::session_file {
+
+/// Adds up a session while its ticks and events go by. Four bytes per tick, so that percentiles are exact.
+class StatisticsCounter {
+ public:
+  void add(const TickRecord& record);
+  void add(const Event& event);
+  void add_keyframe() { ++sum_.keyframes; }
+  SessionStatistics result() const;
+
+ private:
+  SessionStatistics sum_;
+  std::vector<float> tick_times_;  ///< [s]
+};
+
+/// The part `finish`: fields of a SessionStatistics, with the units in their names.
+template <class S, class Visit>
+  requires std::is_same_v<std::remove_const_t<S>, SessionStatistics>
+void for_each_field(S& s, Visit&& visit) {
+  visit("ticks", s.ticks);
+  visit("keyframes", s.keyframes);
+  visit("events", s.events);
+  visit("late_ticks", s.late_ticks);
+  visit("severed", s.severed);
+  visit("tick_time_p50_s", s.tick_time_p50);
+  visit("tick_time_p99_s", s.tick_time_p99);
+  visit("tick_time_p999_s", s.tick_time_p999);
+  visit("tick_time_max_s", s.tick_time_max);
+  visit("max_force_n", s.max_force);
+  visit("max_depth_m", s.max_depth);
+}
+
+}  // namespace ctpm::session_file

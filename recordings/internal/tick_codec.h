@@ -1,0 +1,33 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "recordings/internal/bytes.h"
+#include "recordings/internal/field_codec.h"
+#include "recordings/session.h"
+
+namespace ctpm::session_file {
+
+/// Content of the part `columns`: what the chunks of this program hold.
+std::string column_text();
+
+/// A chunk's content: all columns, FORMAT.md section 5.
+void put_records(Bytes& out, std::span<const TickRecord> records);
+
+/// Reads chunks by the columns that a file names.
+class RecordDecoder {
+ public:
+  /// `columns` is the part `columns` of a file. Errors: not a list of columns, a column unknown to this program or of another type.
+  static Result<RecordDecoder> create(const std::string& columns);
+
+  /// The `count` records of a chunk's content. Error: it does not decode to exactly these.
+  Result<std::vector<TickRecord>> decode(ByteView content, std::int64_t count) const;
+
+ private:
+  std::vector<std::size_t> columns_;  ///< indices into the program's own list, in the file's order
+};
+
+}  // namespace ctpm::session_file

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/inputs.h"
+#include "core/model.h"
+#include "core/organ.h"
+#include "core/state.h"
+#include "core/step.h"
+#include "core/vec3.h"
+
+namespace ctpm {
+
+/// Everything that is known before the first tick. FORMAT.md section 4.
+struct SessionStart {
+  std::string scene_text;         ///< the scene as it was read; opaque bytes here
+  std::string look;               ///< organ colours and names for whoever draws; opaque bytes here
+  Model model;                    ///< the built network
+  std::vector<Surface> surfaces;  ///< one per organ of the model, or none at all
+  State initial_state;            ///< before tick 0
+  std::string build_fingerprint;  ///< names the build of the program that records
+  std::map<std::string, std::string> metadata;  ///< free; see also parent_session_key
+};
+
+/// Metadata of a session that goes on from a moment of another one.
+inline constexpr const char* parent_session_key = "parent_session";  ///< SessionReader::session_id of the parent
+inline constexpr const char* parent_tick_key = "parent_tick";        ///< decimal: the parent's tick whose keyframe it starts from
+
+/// One tick as it was lived. Tick n of a session is its n-th record, at n times Model::tick.
+struct TickRecord {
+  Inputs inputs;
+  Vec3 tool_force;               ///< force of the tissue on the tool [N]
+  double depth = 0;              ///< [m]
+  std::int32_t status = 0;       ///< StepStatus
+  std::int32_t iterations = 0;   ///< of all solves of the tick
+  std::int32_t contacts = 0;     ///< spheres touched
+  std::int32_t severed = 0;      ///< elements severed in this tick
+  double tick_time = 0;          ///< how long the tick took [s], stored to 1 ns; 0: not measured
+  std::uint64_t state_hash = 0;  ///< state_hash() of the State after the tick
+
+  friend bool operator==(const TickRecord&, const TickRecord&) = default;
+};
+
+/// The record of a tick that was just done.
+TickRecord make_record(const Inputs& inputs, const StepReport& report, double tick_time_s, std::uint64_t state_hash);
+
+enum class EventKind : std::int32_t {
+  contact_begins = 1,
+  contact_ends = 2,
+  cut = 3,
+  damage = 4,
+  late_tick = 5,
+  device_lost = 6,
+  device_back = 7,
+  note = 8,
+};
+
+/// Something worth finding again.
+struct Event {
+  std::int64_t tick = 0;
+  EventKind kind = EventKind::note;
+  std::string text;
+  std::vector<double> values;  ///< numbers that belong to it; the text says which
+
+  friend bool operator==(const Event&, const Event&) = default;
+};
+
+/// The full State before tick `tick`.
+struct Keyframe {
+  std::int64_t tick = 0;
+  State state;
+};
+
+using NamedValue = std::pair<std::string, double>;
+
+/// What a session came to. Percentiles are over the ticks whose time was measured, by nearest rank.
+struct SessionStatistics {
+  std::int64_t ticks = 0;
+  std::int64_t keyframes = 0;
+  std::int64_t events = 0;
+  std::int64_t late_ticks = 0;   ///< events of kind late_tick
+  std::int64_t severed = 0;      ///< elements, over all ticks
+  double tick_time_p50 = 0;      ///< [s]
+  double tick_time_p99 = 0;      ///< [s]
+  double tick_time_p999 = 0;     ///< [s]
+  double tick_time_max = 0;      ///< [s]
+  double max_force = 0;          ///< [N]
+  double max_depth = 0;          ///< [m]
+  std::vector<NamedValue> values;  ///< further numbers given to SessionWriter::finish, unit in the name
+};
+
+}  // namespace ctpm

@@ -1,0 +1,45 @@
+#include "recordings/state_hash.h"
+
+#include <bit>
+#include <type_traits>
+
+#define XXH_STATIC_LINKING_ONLY  // the hash state lives on the stack
+#include <xxhash.h>
+
+#include "core/fields.h"
+
+namespace ctpm {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "values are hashed and stored as they lie in memory");
+static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Quat) == 4 * sizeof(double), "no padding");
+
+struct Hasher {
+  XXH3_state_t& hash;
+
+  template <class T>
+  void operator()(std::string_view, const T& value) {
+    static_assert(std::is_arithmetic_v<T> || std::is_same_v<T, Vec3> || std::is_same_v<T, Quat>);
+    XXH3_64bits_update(&hash, &value, sizeof value);
+  }
+
+  template <class T>
+  void operator()(std::string_view, const std::vector<T>& values) {
+    static_assert(std::is_arithmetic_v<T>);
+    const std::uint64_t count = values.size();
+    XXH3_64bits_update(&hash, &count, sizeof count);
+    XXH3_64bits_update(&hash, values.data(), values.size() * sizeof(T));
+  }
+};
+
+}  // namespace
+
+std::uint64_t state_hash(const State& state) {
+  XXH3_state_t hash;
+  XXH3_INITSTATE(&hash);
+  XXH3_64bits_reset(&hash);
+  for_each_field(state, Hasher{hash});
+  return XXH3_64bits_digest(&hash);
+}
+
+}  // namespace ctpm
