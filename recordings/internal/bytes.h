@@ -17,8 +17,9 @@ using ByteView = std::span<const std::uint8_t>;
 static_assert(std::endian::native == std::endian::little, "session files are written as values lie in memory");
 
 inline void put_raw(Bytes& out, const void* data, std::size_t size) {
-  const auto* bytes = static_cast<const std::uint8_t*>(data);
-  out.insert(out.end(), bytes, bytes + size);
+  const std::size_t place = out.size();
+  out.resize(place + size);
+  if (size > 0) std::memcpy(out.data() + place, data, size);
 }
 
 template <class T>

@@ -191,7 +191,7 @@ class FieldReader {
       if (bits[0] > 1) return complain(name, "must be 0 or 1");
       value = bits[0] == 1;
     } else {
-      std::memcpy(&value, bits.data(), sizeof value);
+      std::memcpy(static_cast<void*>(&value), bits.data(), sizeof value);
     }
   }
 
@@ -212,7 +212,7 @@ class FieldReader {
       std::vector<BitsOf<T>> bits;
       if (!numbers(*field, bits)) return;
       values.resize(bits.size() / numbers_in<T>());
-      if (!bits.empty()) std::memcpy(values.data(), bits.data(), bits.size() * sizeof bits[0]);
+      if (!bits.empty()) std::memcpy(static_cast<void*>(values.data()), bits.data(), bits.size() * sizeof bits[0]);
     }
   }
 

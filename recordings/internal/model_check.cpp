@@ -10,6 +10,9 @@ namespace {
 constexpr std::int32_t max_iterations = 1'000'000;
 constexpr std::int32_t max_substeps = 10'000;
 
+/// "[i]", for the place in an array.
+std::string place(std::ptrdiff_t i) { return std::string("[").append(std::to_string(i)).append("]"); }
+
 /// Collects problems; every check names the array it is about.
 class Checker {
  public:
@@ -30,8 +33,8 @@ class Checker {
   void indices(const std::string& name, const std::vector<std::int32_t>& values, std::int64_t lowest, std::int64_t end) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (values[i] >= lowest && values[i] < end) continue;
-      return require(false, name, "[" + std::to_string(i) + "] is " + std::to_string(values[i]) + ", must be in [" +
-                                      std::to_string(lowest) + ", " + std::to_string(end) + ")");
+      return require(false, name + place(i), "is " + std::to_string(values[i]) + ", must be in [" + std::to_string(lowest) + ", " +
+                                                 std::to_string(end) + ")");
     }
   }
 
@@ -62,7 +65,7 @@ class Checker {
   template <class T, class Good>
   void each(const std::string& name, const std::vector<T>& values, Good good, const char* what) {
     const auto bad = std::find_if_not(values.begin(), values.end(), good);
-    if (bad != values.end()) require(false, name, "[" + std::to_string(bad - values.begin()) + "] " + what);
+    if (bad != values.end()) require(false, name + place(bad - values.begin()), what);
   }
 
   std::string where_;
@@ -75,7 +78,7 @@ void check_ends(Checker& check, const std::string& name, const std::vector<std::
   check.indices(name + ".a", a, 0, sphere_count);
   if (check.length(name + ".b", b, a.size()))
     for (std::size_t i = 0; i < a.size(); ++i)
-      if (a[i] == b[i]) return check.require(false, name, "[" + std::to_string(i) + "] joins a sphere with itself");
+      if (a[i] == b[i]) return check.require(false, name + place(i), "joins a sphere with itself");
   check.indices(name + ".b", b, 0, sphere_count);
 }
 
@@ -89,7 +92,7 @@ void check_elements(Checker& check, const Model& model) {
   check.positive("edges.k", edges.k);
   check.length("edges.c", edges.c, edges.size(), true);
   check.not_negative("edges.c", edges.c);
-  check.length("edges.third", edges.third, edges.size(), true);
+  check.length("edges.third", edges.third, edges.size(), !model.has_softening);
   check.indices("edges.third", edges.third, -1, spheres);
 
   const TwoSphereTpms& tpms = model.tpms;
@@ -116,13 +119,27 @@ void check_elements(Checker& check, const Model& model) {
     check.length(name, constraints.edge[i], constraints.size());
     check.indices(name, constraints.edge[i], 0, static_cast<std::int64_t>(edges.size()));
   }
+
+  const AngleSprings& angles = model.angle_springs;
+  check.indices("angle_springs.a", angles.a, 0, spheres);
+  check.length("angle_springs.b", angles.b, angles.size());
+  check.indices("angle_springs.b", angles.b, 0, spheres);
+  check.length("angle_springs.c", angles.c, angles.size());
+  check.indices("angle_springs.c", angles.c, 0, spheres);
+  check.length("angle_springs.k", angles.k, angles.size());
+  check.positive("angle_springs.k", angles.k);
+  for (int i = 0; i < 2; ++i) {
+    const std::string name = "angle_springs.edge" + std::to_string(i);
+    check.length(name, angles.edge[i], angles.size());
+    check.indices(name, angles.edge[i], 0, static_cast<std::int64_t>(edges.size()));
+  }
 }
 
 void check_organs(Checker& check, const Model& model) {
   const auto spheres = static_cast<std::int64_t>(model.sphere_count());
   for (std::size_t i = 0; i < model.organs.size(); ++i) {
     const OrganRange& organ = model.organs[i];
-    const std::string name = "organs[" + std::to_string(i) + "]";
+    const std::string name = "organs" + place(i);
     check.require(organ.first >= 0 && organ.count >= 0 && std::int64_t{organ.first} + organ.count <= spheres, name,
                   "is not a range of spheres");
     check.require(std::isfinite(organ.sphere_radius) && std::isfinite(organ.spacing) && std::isfinite(organ.damage_depth), name,
@@ -133,7 +150,7 @@ void check_organs(Checker& check, const Model& model) {
 void check_tools(Checker& check, const Model& model) {
   for (std::size_t i = 0; i < model.tools.size(); ++i) {
     const Tool& tool = model.tools[i];
-    const std::string name = "tools[" + std::to_string(i) + "]";
+    const std::string name = "tools" + place(i);
     check.require(tool.kind == ToolKind::ball || tool.kind == ToolKind::scalpel, name, "is of an unknown kind");
     check.require(std::isfinite(tool.radius) && tool.radius >= 0 && std::isfinite(tool.blade_length) && tool.blade_length >= 0, name,
                   "has a size that is not finite or below 0");
@@ -158,6 +175,8 @@ Errors check_model(const Model& model) {
   check_elements(check, model);
   check_tools(check, model);
   check.require(std::isfinite(model.contact_k) && model.contact_k >= 0, "contact_k", "must be finite and not below 0");
+  check.require(std::isfinite(model.contact_friction) && model.contact_friction >= 0, "contact_friction",
+                "must be finite and not below 0");
 
   const SolverSettings& solver = model.solver;
   check.require(solver.tolerance > 0 && solver.tolerance < 1, "solver.tolerance", "must be in (0, 1)");
@@ -176,8 +195,9 @@ Errors check_state(const Model& model, const State& state) {
   check.length("kelvin_elongation", state.kelvin_elongation, model.tpms.size());
   check.finite("kelvin_elongation", state.kelvin_elongation);
 
-  // The three sets of severed elements are there together or not at all.
+  // The sets of severed elements are there together or not at all.
   const bool cuts = !state.edge_severed.empty() || !state.tpm_severed.empty() || !state.constraint_severed.empty() ||
+                    !state.angle_severed.empty() ||
                     std::any_of(model.tools.begin(), model.tools.end(), [](const Tool& t) { return t.kind == ToolKind::scalpel; });
   check.length("edge_severed", state.edge_severed, cuts ? model.edges.size() : 0);
   check.flags("edge_severed", state.edge_severed);
@@ -185,6 +205,8 @@ Errors check_state(const Model& model, const State& state) {
   check.flags("tpm_severed", state.tpm_severed);
   check.length("constraint_severed", state.constraint_severed, cuts ? model.constraints.size() : 0);
   check.flags("constraint_severed", state.constraint_severed);
+  check.length("angle_severed", state.angle_severed, cuts ? model.angle_springs.size() : 0);
+  check.flags("angle_severed", state.angle_severed);
   const auto tools = static_cast<std::int32_t>(model.tools.size());
   check.require(state.last_inputs.tool >= -1 && state.last_inputs.tool < tools, "last_inputs.tool", "is not a tool of the model");
   return check.take();
@@ -196,7 +218,7 @@ Errors check_surfaces(const Model& model, const std::vector<Surface>& surfaces) 
     check.require(false, "list", "has " + std::to_string(surfaces.size()) + " entries for " + std::to_string(model.organs.size()) + " organs");
   for (std::size_t i = 0; i < std::min(surfaces.size(), model.organs.size()); ++i) {
     const Surface& surface = surfaces[i];
-    const std::string name = "[" + std::to_string(i) + "].";
+    const std::string name = place(i) + ".";
     const auto vertices = static_cast<std::int32_t>(surface.vertex.size());
     for (const Vec3& vertex : surface.vertex)
       if (!is_finite(vertex)) {

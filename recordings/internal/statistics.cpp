@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "recordings/internal/field_codec.h"
+
 namespace ctpm::session_file {
 namespace {
 
@@ -38,6 +40,17 @@ SessionStatistics StatisticsCounter::result() const {
   result.tick_time_p99 = percentile(times, 0.99);
   result.tick_time_p999 = percentile(times, 0.999);
   return result;
+}
+
+void put_finish(Bytes& out, const SessionStatistics& statistics) {
+  put_field_set(out, [&](FieldWriter& writer) {
+    for_each_field(statistics, writer);
+    std::string names;
+    std::vector<double> numbers;
+    for (const auto& [name, value] : statistics.values) names += name + "\n", numbers.push_back(value);
+    writer("value_names", names);
+    writer("values", numbers);
+  });
 }
 
 }  // namespace ctpm::session_file

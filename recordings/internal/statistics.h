@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "recordings/internal/bytes.h"
 #include "recordings/session.h"
 
 namespace ctpm::session_file {
@@ -36,5 +37,8 @@ void for_each_field(S& s, Visit&& visit) {
   visit("max_force_n", s.max_force);
   visit("max_depth_m", s.max_depth);
 }
+
+/// Writes the content of the part `finish`.
+void put_finish(Bytes& out, const SessionStatistics& statistics);
 
 }  // namespace ctpm::session_file

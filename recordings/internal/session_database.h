@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/result.h"
+#include "recordings/internal/block.h"
+#include "recordings/internal/database.h"
+#include "recordings/session.h"
+
+namespace ctpm::session_file {
+
+/// The part `session`.
+struct SessionIdentity {
+  std::string id;             ///< 32 hexadecimal digits
+  std::uint64_t seed = 0;     ///< of the checksums of all other blocks
+  std::string build;          ///< build fingerprint
+  double created_unix_s = 0;
+};
+
+template <class S, class Visit>
+  requires std::is_same_v<std::remove_const_t<S>, SessionIdentity>
+void for_each_field(S& s, Visit&& visit) {
+  visit("id", s.id);
+  visit("seed", s.seed);
+  visit("build", s.build);
+  visit("created_unix_s", s.created_unix_s);
+}
+
+/// A new identity: random, from the operating system.
+SessionIdentity new_identity(const std::string& build);
+
+/// What a block is called in its checksum and in messages.
+std::string part_name(const std::string& name);
+std::string chunk_name(std::int64_t first, std::int64_t count);
+std::string keyframe_name(std::int64_t tick);
+std::string event_name(std::int64_t first, std::int64_t count);
+
+/// Makes a complete session file without ticks at `path`, through a file beside it that is synced and renamed. Nothing is left behind after an
+/// error. `overwrite`: replace what is there.
+Result<Done> create_session_file(const std::string& path, const SessionStart& start, const SessionIdentity& identity, bool overwrite,
+                                 int level);
+
+/// The tables of an open session file, for writing. All errors are at the file's path.
+class SessionTables {
+ public:
+  static Result<SessionTables> open_for_writing(const std::string& path);
+
+  Result<Done> begin() { return database_.run("BEGIN IMMEDIATE"); }
+  Result<Done> commit() { return database_.run("COMMIT"); }
+  void rollback();
+
+  Result<Done> insert_part(const std::string& name, const Block& block);
+  Result<Done> insert_chunk(std::int64_t first, std::int64_t count, const Block& block);
+  Result<Done> insert_keyframe(std::int64_t tick, const Block& block);
+  Result<Done> insert_events(std::int64_t first, std::int64_t count, const Block& block);
+
+  /// Leaves one file: folds the log in.
+  Result<Done> close();
+
+ private:
+  friend Result<Done> create_session_file(const std::string&, const SessionStart&, const SessionIdentity&, bool, int);
+  Result<Done> prepare();
+  Result<Done> insert(Statement& statement, int bound, const Block& block);
+
+  Database database_;
+  Statement part_, chunk_, keyframe_, event_;
+};
+
+}  // namespace ctpm::session_file

@@ -1,0 +1,327 @@
+#include "recordings/internal/session_store.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <sstream>
+
+#include "recordings/internal/field_codec.h"
+#include "recordings/internal/model_check.h"
+#include "recordings/internal/schema.h"
+#include "recordings/internal/statistics.h"
+
+namespace ctpm::session_file {
+namespace {
+
+constexpr std::size_t sqlite_header_size = 100;  // [bytes]
+
+/// Errors of a check, put at the file.
+Errors at_file(const std::string& path, const Errors& errors) {
+  Errors placed;
+  for (const Error& error : errors) placed.push_back({path, error.where + ": " + error.message, ""});
+  return placed;
+}
+
+std::uint32_t big_endian(const std::uint8_t* bytes) {
+  return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 | std::uint32_t{bytes[2]} << 8 | bytes[3];
+}
+
+/// Says plainly what is not a session, before SQLite sees it.
+Result<Done> check_file(const std::string& path, bool salvage) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) {
+    if (errno == ENOENT) return Error{path, "does not exist", ""};
+    return Error{path, std::string("cannot be opened: ") + std::strerror(errno), ""};
+  }
+  struct stat info {};
+  std::uint8_t header[sqlite_header_size] = {};
+  const bool known = ::fstat(file, &info) == 0;
+  const ssize_t got = known && S_ISREG(info.st_mode) ? ::pread(file, header, sizeof header, 0) : -1;
+  ::close(file);
+  if (!known || !S_ISREG(info.st_mode)) return Error{path, "is not a session file: it is not a regular file", ""};
+  if (got == 0) return Error{path, "is not a session file: it is empty", ""};
+  static constexpr char magic[16] = "SQLite format 3";
+  if (got < 16 || std::memcmp(header, magic, sizeof magic) != 0)
+    return Error{path, "is not a session file: it does not begin like one", ""};
+  if (got < static_cast<ssize_t>(sizeof header)) return Error{path, "is cut short: " + std::to_string(got) + " bytes are left", "try to recover it"};
+
+  // The size that the header states counts only if the last writer kept it up.
+  const std::uint64_t stated = std::uint64_t{big_endian(header + 28)} * 4096;
+  const bool valid = big_endian(header + 24) == big_endian(header + 92);
+  if (!salvage && valid && static_cast<std::uint64_t>(info.st_size) < stated && ::access((path + "-wal").c_str(), F_OK) != 0)
+    return Error{path, "is cut short: " + std::to_string(info.st_size) + " of " + std::to_string(stated) + " bytes are left",
+                 "try to recover it"};
+  return Done{};
+}
+
+}  // namespace
+
+Error SessionStore::database_error(const std::string& what) const {
+  return error(what + ": " + database_.problem());
+}
+
+Result<SessionStore> SessionStore::open(const std::string& path, bool salvage) {
+  if (auto r = check_file(path, salvage); !r) return r.errors();
+  auto database = Database::open(path, salvage ? Database::Access::salvage : Database::Access::read);
+  if (!database) return database.errors();
+  SessionStore store;
+  store.database_ = std::move(*database);
+  if (auto r = store.check_header(salvage); !r) return r.errors();
+  if (auto r = store.check_schema(); !r) return r.errors();
+  if (auto r = store.prepare(); !r) return r.errors();
+  if (auto r = store.read_identity(); !r) return r.errors();
+  return store;
+}
+
+Result<Done> SessionStore::check_header(bool salvage) {
+  const auto number = [&](const char* pragma) -> Result<std::int64_t> {
+    auto statement = database_.prepare(pragma);
+    if (!statement || statement->step() != Statement::Outcome::row) return database_error("is damaged at its header");
+    return statement->integer(0);
+  };
+  const auto application = number("PRAGMA application_id");
+  if (!application) return application.errors();
+  if (*application != application_id && !salvage) return error("is not a session file: it is another SQLite database");
+  const auto version = number("PRAGMA user_version");
+  if (!version) return version.errors();
+  version_ = static_cast<int>(*version);
+  if (version_ > format_version && !salvage)
+    return Error{database_.path(),
+                 "is of format version " + std::to_string(version_) + ", this program reads up to " + std::to_string(format_version),
+                 "use a newer program"};
+  if (version_ < 1 && !salvage) return error("is of format version " + std::to_string(version_) + ", which never existed");
+  return Done{};
+}
+
+Result<Done> SessionStore::check_schema() {
+  auto statement = database_.prepare("SELECT type, name, sql FROM sqlite_schema ORDER BY rowid");
+  if (!statement) return database_error("is damaged at its list of tables");
+  std::size_t seen = 0;
+  Statement::Outcome outcome;
+  while ((outcome = statement->step()) == Statement::Outcome::row) {
+    if (seen >= tables.size() || statement->text(0) != "table" || statement->text(1) != tables[seen].name ||
+        statement->text(2) != tables[seen].sql)
+      return error("is damaged or no session file: its tables are not those of a session");
+    ++seen;
+  }
+  if (outcome == Statement::Outcome::failed) return database_error("is damaged at its list of tables");
+  if (seen != tables.size()) return error("is damaged or no session file: tables are missing");
+  return Done{};
+}
+
+Result<Done> SessionStore::prepare() {
+  const auto one = [&](Statement& statement, const char* sql) -> Result<Done> {
+    auto prepared = database_.prepare(sql);
+    if (!prepared) return prepared.errors();
+    statement = std::move(*prepared);
+    return Done{};
+  };
+  if (auto r = one(part_, "SELECT size, checksum, data FROM part WHERE name = ?1"); !r) return r;
+  if (auto r = one(chunk_, "SELECT first, count, size, checksum, data FROM chunk WHERE first <= ?1 ORDER BY first DESC LIMIT 1"); !r)
+    return r;
+  if (auto r = one(keyframe_, "SELECT tick, size, checksum, data FROM keyframe WHERE tick <= ?1 ORDER BY tick DESC LIMIT 1"); !r)
+    return r;
+  return one(event_, "SELECT first, count, size, checksum, data FROM event WHERE first <= ?1 ORDER BY first DESC LIMIT 1");
+}
+
+Result<std::optional<Bytes>> SessionStore::part_if_there(const std::string& name) {
+  part_.reset();
+  part_.bind(1, name);
+  const Statement::Outcome outcome = part_.step();
+  if (outcome == Statement::Outcome::failed) return database_error(part_name(name) + " cannot be read");
+  if (outcome == Statement::Outcome::done) return std::optional<Bytes>{};
+  if (!part_.is_integer(0) || !part_.is_integer(1) || !part_.is_blob(2)) return error(part_name(name) + ": is damaged");
+  const std::uint64_t seed = name == "session" ? 0 : identity_.seed;
+  auto content = unpack(part_name(name), part_.integer(0), part_.integer(1), part_.blob(2), seed, max_part_size);
+  if (!content) return error(content.errors().front().message);
+  return std::optional<Bytes>(std::move(*content));
+}
+
+Result<Bytes> SessionStore::part(const std::string& name) {
+  auto content = part_if_there(name);
+  if (!content) return content.errors();
+  if (!*content) return error(part_name(name) + ": is missing");
+  return std::move(**content);
+}
+
+/// Runs `fill(reader, problem)` over a field set.
+template <class Fill>
+Result<Done> SessionStore::decode_fields(const std::string& name, const Bytes& content, Fill&& fill) const {
+  std::string problem;
+  ByteReader in(content, max_part_size);
+  fill(in, problem);
+  if (!problem.empty()) return error(name + ": " + problem);
+  return Done{};
+}
+
+Result<Done> SessionStore::read_identity() {
+  const auto content = part("session");
+  if (!content) return content.errors();
+  return decode_fields("part session", *content, [&](ByteReader& in, std::string& problem) { get_fields(in, identity_, problem); });
+}
+
+Result<std::string> SessionStore::scene() {
+  const auto content = part("scene");
+  if (!content) return content.errors();
+  return text_of(*content);
+}
+
+Result<std::string> SessionStore::look() {
+  const auto content = part("look");
+  if (!content) return content.errors();
+  return text_of(*content);
+}
+
+Result<Model> SessionStore::model() {
+  const auto content = part("model");
+  if (!content) return content.errors();
+  Model model;
+  if (auto r = decode_fields("part model", *content, [&](ByteReader& in, std::string& problem) { get_fields(in, model, problem); }); !r)
+    return r.errors();
+  if (const Errors errors = check_model(model); !errors.empty()) return at_file(database_.path(), errors);
+  return model;
+}
+
+Result<std::vector<Surface>> SessionStore::surfaces(const Model& model) {
+  const auto content = part("surfaces");
+  if (!content) return content.errors();
+  std::vector<Surface> surfaces;
+  const auto decoded = decode_fields("part surfaces", *content, [&](ByteReader& in, std::string& problem) {
+    FieldSet set(in, problem);
+    FieldReader reader(set, in.budget(), problem);
+    reader("surfaces", surfaces);
+  });
+  if (!decoded) return decoded.errors();
+  if (const Errors errors = check_surfaces(model, surfaces); !errors.empty()) return at_file(database_.path(), errors);
+  return surfaces;
+}
+
+Result<std::map<std::string, std::string>> SessionStore::metadata() {
+  const auto content = part("metadata");
+  if (!content) return content.errors();
+  std::map<std::string, std::string> metadata;
+  const auto decoded = decode_fields("part metadata", *content, [&](ByteReader& in, std::string& problem) {
+    const FieldSet set(in, problem);
+    for (const FieldView& field : set.fields()) metadata[field.name] = text_of(field.body);
+  });
+  if (!decoded) return decoded.errors();
+  return metadata;
+}
+
+Result<std::optional<SessionStatistics>> SessionStore::finish() {
+  const auto content = part_if_there("finish");
+  if (!content) return content.errors();
+  if (!*content) return std::optional<SessionStatistics>{};
+  SessionStatistics statistics;
+  const auto decoded = decode_fields("part finish", **content, [&](ByteReader& in, std::string& problem) {
+    FieldSet set(in, problem);
+    FieldReader reader(set, in.budget(), problem);
+    std::string names;
+    std::vector<double> numbers;
+    for_each_field(statistics, reader);
+    reader("value_names", names);
+    reader("values", numbers);
+    std::istringstream lines(names);
+    std::string name;
+    for (std::size_t i = 0; i < numbers.size() && std::getline(lines, name); ++i) statistics.values.emplace_back(name, numbers[i]);
+    if (problem.empty() && statistics.values.size() != numbers.size()) problem = "values without names";
+  });
+  if (!decoded) return decoded.errors();
+  return std::optional<SessionStatistics>(std::move(statistics));
+}
+
+Result<Done> SessionStore::read_columns() {
+  const auto content = part("columns");
+  if (!content) return content.errors();
+  auto decoder = RecordDecoder::create(text_of(*content));
+  if (!decoder) return error(decoder.errors().front().message);
+  decoder_ = std::move(*decoder);
+  return Done{};
+}
+
+/// Steps a bound statement once and proves the block of its row; none if there is no row.
+Result<std::optional<Bytes>> SessionStore::block_of(Statement& statement, const std::string& what, bool has_count,
+                                                    std::uint64_t max_size, std::int64_t& first, std::int64_t& count) {
+  const Statement::Outcome outcome = statement.step();
+  if (outcome == Statement::Outcome::failed) return database_error(what + " cannot be read");
+  if (outcome == Statement::Outcome::done) return std::optional<Bytes>{};
+  const int shift = has_count ? 1 : 0;
+  for (int column = 0; column < 3 + shift; ++column)
+    if (!statement.is_integer(column)) return error(what + ": is damaged");
+  if (!statement.is_blob(3 + shift)) return error(what + ": is damaged");
+  first = statement.integer(0);
+  count = has_count ? statement.integer(1) : 1;
+  const std::string name = has_count ? what + " " + std::to_string(first) + " " + std::to_string(count) : what + " " + std::to_string(first);
+  auto content = unpack(name, statement.integer(1 + shift), statement.integer(2 + shift), statement.blob(3 + shift), identity_.seed, max_size);
+  if (!content) return error(content.errors().front().message);
+  return std::optional<Bytes>(std::move(*content));
+}
+
+Result<std::optional<Run<TickRecord>>> SessionStore::chunk_at(std::int64_t at) {
+  chunk_.reset();
+  chunk_.bind(1, at);
+  std::int64_t first = 0, count = 0;
+  const auto content = block_of(chunk_, "chunk", true, max_chunk_size, first, count);
+  if (!content) return content.errors();
+  if (!*content) return std::optional<Run<TickRecord>>{};
+  if (first < 0 || count < 1 || count > chunk_ticks) return error(chunk_name(first, count) + ": has an impossible place");
+  auto records = decoder_.decode(**content, count);
+  if (!records) return error(chunk_name(first, count) + ": " + records.errors().front().message);
+  return std::optional(Run<TickRecord>{first, std::move(*records)});
+}
+
+Result<std::optional<Run<Event>>> SessionStore::events_at(std::int64_t at) {
+  event_.reset();
+  event_.bind(1, at);
+  std::int64_t first = 0, count = 0;
+  const auto content = block_of(event_, "event", true, max_chunk_size, first, count);
+  if (!content) return content.errors();
+  if (!*content) return std::optional<Run<Event>>{};
+  Run<Event> run{first, {}};
+  const auto decoded = decode_fields(event_name(first, count), **content, [&](ByteReader& in, std::string& problem) {
+    FieldSet set(in, problem);
+    FieldReader reader(set, in.budget(), problem);
+    reader("events", run.items);
+    if (problem.empty() && static_cast<std::int64_t>(run.items.size()) != count) problem = "holds another number of events";
+  });
+  if (!decoded) return decoded.errors();
+  if (first < 0 || count < 1) return error(event_name(first, count) + ": has an impossible place");
+  return std::optional(std::move(run));
+}
+
+Result<std::optional<Keyframe>> SessionStore::keyframe_at(std::int64_t at, const Model& model) {
+  keyframe_.reset();
+  keyframe_.bind(1, at);
+  std::int64_t tick = 0, one = 0;
+  const auto content = block_of(keyframe_, "keyframe", false, max_part_size, tick, one);
+  if (!content) return content.errors();
+  if (!*content) return std::optional<Keyframe>{};
+  Keyframe keyframe;
+  keyframe.tick = tick;
+  const auto decoded = decode_fields(keyframe_name(tick), **content,
+                                     [&](ByteReader& in, std::string& problem) { get_fields(in, keyframe.state, problem); });
+  if (!decoded) return decoded.errors();
+  if (tick < 0) return error(keyframe_name(tick) + ": has an impossible place");
+  if (const Errors errors = check_state(model, keyframe.state); !errors.empty()) {
+    Errors placed = at_file(database_.path(), errors);
+    for (Error& e : placed) e.message = keyframe_name(tick) + ": " + e.message;
+    return placed;
+  }
+  return std::optional(std::move(keyframe));
+}
+
+Result<std::vector<std::int64_t>> SessionStore::keys(const std::string& table) {
+  auto statement = database_.prepare("SELECT " + std::string(table == "keyframe" ? "tick" : "first") + " FROM " + table + " ORDER BY 1");
+  if (!statement) return statement.errors();
+  std::vector<std::int64_t> keys;
+  Statement::Outcome outcome;
+  while ((outcome = statement->step()) == Statement::Outcome::row) keys.push_back(statement->integer(0));
+  if (outcome == Statement::Outcome::failed) return database_error("the table " + table + " cannot be read");
+  return keys;
+}
+
+}  // namespace ctpm::session_file

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "recordings/internal/session_database.h"
+#include "recordings/internal/tick_codec.h"
+#include "recordings/session.h"
+
+namespace ctpm::session_file {
+
+/// A run of ticks or events as it lies in the file.
+template <class T>
+struct Run {
+  std::int64_t first = 0;
+  std::vector<T> items;
+  std::int64_t end() const { return first + static_cast<std::int64_t>(items.size()); }
+};
+
+/// Reads and proves single blocks of a file that is not trusted. What belongs together is the business of SessionReader and
+/// recover_session. Every error is at the file's path and names the block.
+class SessionStore {
+ public:
+  /// `salvage`: goes on where the container contradicts itself, and does not ask for its header numbers.
+  static Result<SessionStore> open(const std::string& path, bool salvage);
+
+  int version() const { return version_; }
+  const SessionIdentity& identity() const { return identity_; }
+
+  Result<Bytes> part(const std::string& name);
+  /// None if the session has no such part: only `finish` may be missing.
+  Result<std::optional<Bytes>> part_if_there(const std::string& name);
+
+  Result<std::string> scene();
+  Result<std::string> look();
+  Result<Model> model();                                      ///< checked
+  Result<std::vector<Surface>> surfaces(const Model& model);  ///< checked
+  Result<std::map<std::string, std::string>> metadata();
+  Result<std::optional<SessionStatistics>> finish();
+  Result<Done> read_columns();  ///< once, before the first chunk
+
+  /// The run with the largest `first` at or below `at`, or none; the chunk or run is proven.
+  Result<std::optional<Run<TickRecord>>> chunk_at(std::int64_t at);
+  Result<std::optional<Run<Event>>> events_at(std::int64_t at);
+  /// The keyframe with the largest tick at or below `at`, checked against the Model.
+  Result<std::optional<Keyframe>> keyframe_at(std::int64_t at, const Model& model);
+
+  /// The keys of a table in ascending order, read without their blocks: "chunk", "keyframe" or "event".
+  Result<std::vector<std::int64_t>> keys(const std::string& table);
+
+ private:
+  Error error(const std::string& message) const { return {database_.path(), message, ""}; }
+  Error database_error(const std::string& what) const;
+  Result<Done> check_header(bool salvage);
+  Result<Done> check_schema();
+  Result<Done> prepare();
+  Result<Done> read_identity();
+  template <class Fill>
+  Result<Done> decode_fields(const std::string& name, const Bytes& content, Fill&& fill) const;
+  Result<std::optional<Bytes>> block_of(Statement& statement, const std::string& what, bool has_count, std::uint64_t max_size,
+                                        std::int64_t& first, std::int64_t& count);
+
+  Database database_;
+  Statement part_, chunk_, keyframe_, event_;
+  int version_ = 0;
+  SessionIdentity identity_;
+  RecordDecoder decoder_;
+};
+
+}  // namespace ctpm::session_file

@@ -1,0 +1,212 @@
+#include "recordings/recover.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "recordings/internal/field_codec.h"
+#include "recordings/internal/schema.h"
+#include "recordings/internal/session_store.h"
+#include "recordings/internal/statistics.h"
+
+namespace ctpm {
+
+using namespace session_file;
+
+namespace {
+
+constexpr int recover_level = 3;  // zstd
+constexpr std::int64_t last_key = std::numeric_limits<std::int64_t>::max();
+
+/// What could be read of the damaged session, ready to be written again.
+struct Salvage {
+  SessionStart start;
+  std::vector<Run<TickRecord>> chunks;
+  std::vector<Keyframe> keyframes;
+  std::vector<Event> events;
+  std::optional<SessionStatistics> finish;
+};
+
+void note(RecoverReport& report, const Errors& errors) {
+  for (const Error& error : errors) report.losses.push_back(error.message);
+}
+
+/// The start. Without Model or initial State there is nothing to replay.
+Result<Done> salvage_start(SessionStore& store, Salvage& salvage, RecoverReport& report) {
+  auto model = store.model();
+  if (!model) return model.errors();
+  salvage.start.model = std::move(*model);
+  auto first = store.keyframe_at(0, salvage.start.model);
+  if (!first) return first.errors();
+  if (!*first) return Error{"", "keyframe 0: is missing", ""};
+  salvage.start.initial_state = std::move((*first)->state);
+  if (auto r = store.read_columns(); !r) return r.errors();
+
+  const auto take = [&](auto result, auto& place) {
+    if (result)
+      place = std::move(*result);
+    else
+      note(report, result.errors());
+  };
+  take(store.scene(), salvage.start.scene_text);
+  take(store.look(), salvage.start.look);
+  take(store.surfaces(salvage.start.model), salvage.start.surfaces);
+  take(store.metadata(), salvage.start.metadata);
+  take(store.finish(), salvage.finish);
+  salvage.start.build_fingerprint = store.identity().build;
+  return Done{};
+}
+
+/// All chunks up to the first gap; what can be read beyond it is only counted.
+void salvage_ticks(SessionStore& store, Salvage& salvage, RecoverReport& report) {
+  std::int64_t next = 0;
+  while (true) {
+    auto chunk = store.chunk_at(next);
+    if (!chunk) {
+      note(report, chunk.errors());
+      break;
+    }
+    if (!*chunk || (*chunk)->first != next) break;
+    next = (*chunk)->end();
+    salvage.chunks.push_back(std::move(**chunk));
+  }
+  report.ticks_saved = next;
+
+  // Walk back from the end: the last chunk that can be read says how long the session was.
+  for (std::int64_t at = last_key; at >= next;) {
+    const auto later = store.chunk_at(at);
+    if (!later) {
+      note(report, later.errors());
+      break;
+    }
+    if (!*later || (*later)->first < next) break;
+    if (report.ticks_dropped == 0 && (*later)->first > next)
+      report.losses.push_back("ticks from " + std::to_string(next) + " on cannot be replayed: a chunk before them is lost");
+    report.ticks_dropped += static_cast<std::int64_t>((*later)->items.size());
+    at = (*later)->first - 1;
+  }
+  if (salvage.finish && salvage.finish->ticks != next)
+    report.losses.push_back("ticks " + std::to_string(next) + " to " + std::to_string(salvage.finish->ticks - 1) + " of " +
+                            std::to_string(salvage.finish->ticks));
+}
+
+void salvage_keyframes(SessionStore& store, Salvage& salvage, RecoverReport& report) {
+  const auto keys = store.keys("keyframe");
+  if (!keys) return note(report, keys.errors());
+  for (const std::int64_t key : *keys) {
+    if (key <= 0 || key > report.ticks_saved) continue;
+    auto keyframe = store.keyframe_at(key, salvage.start.model);
+    if (!keyframe)
+      note(report, keyframe.errors());
+    else if (*keyframe && (*keyframe)->tick == key)
+      salvage.keyframes.push_back(std::move(**keyframe));
+  }
+  report.keyframes_saved = static_cast<std::int64_t>(salvage.keyframes.size());
+  if (salvage.finish && report.ticks_saved == salvage.finish->ticks && report.keyframes_saved != salvage.finish->keyframes)
+    report.losses.push_back("keyframes: " + std::to_string(report.keyframes_saved) + " of " + std::to_string(salvage.finish->keyframes) +
+                            " are left");
+}
+
+void salvage_events(SessionStore& store, Salvage& salvage, RecoverReport& report) {
+  const auto keys = store.keys("event");
+  if (!keys) return note(report, keys.errors());
+  std::int64_t read = 0;
+  for (const std::int64_t key : *keys) {
+    auto run = store.events_at(key);
+    if (!run) {
+      note(report, run.errors());
+      continue;
+    }
+    if (!*run || (*run)->first != key) continue;
+    read += static_cast<std::int64_t>((*run)->items.size());
+    for (Event& event : (*run)->items)
+      if (event.tick <= report.ticks_saved) salvage.events.push_back(std::move(event));
+  }
+  report.events_saved = static_cast<std::int64_t>(salvage.events.size());
+  if (salvage.finish && read != salvage.finish->events)
+    report.losses.push_back("events: " + std::to_string(read) + " of " + std::to_string(salvage.finish->events) + " are left");
+}
+
+/// Writes the salvage as a new session with an identity of its own that names the old one.
+Result<Done> write_salvage(const std::string& out, Salvage& salvage, const SessionStore& from, const RecoverReport& report) {
+  SessionIdentity identity = new_identity(salvage.start.build_fingerprint);
+  identity.created_unix_s = from.identity().created_unix_s;
+  salvage.start.metadata["recovered_from"] = from.identity().id;
+  if (auto r = create_session_file(out, salvage.start, identity, false, recover_level); !r) return r;
+  auto tables = SessionTables::open_for_writing(out);
+  if (!tables) return tables.errors();
+  if (auto r = tables->begin(); !r) return r;
+
+  StatisticsCounter counter;
+  for (const Run<TickRecord>& chunk : salvage.chunks) {
+    Bytes content;
+    put_records(content, chunk.items);
+    const auto count = static_cast<std::int64_t>(chunk.items.size());
+    if (auto r = tables->insert_chunk(chunk.first, count, pack(chunk_name(chunk.first, count), content, identity.seed, recover_level)); !r)
+      return r;
+    for (const TickRecord& record : chunk.items) counter.add(record);
+  }
+  for (const Keyframe& keyframe : salvage.keyframes) {
+    Bytes content;
+    put_fields(content, keyframe.state);
+    if (auto r = tables->insert_keyframe(keyframe.tick, pack(keyframe_name(keyframe.tick), content, identity.seed, recover_level)); !r)
+      return r;
+    counter.add_keyframe();
+  }
+  if (!salvage.events.empty()) {
+    Bytes content;
+    put_field_set(content, [&](FieldWriter& writer) { writer("events", salvage.events); });
+    const auto count = static_cast<std::int64_t>(salvage.events.size());
+    if (auto r = tables->insert_events(0, count, pack(event_name(0, count), content, identity.seed, recover_level)); !r) return r;
+    for (const Event& event : salvage.events) counter.add(event);
+  }
+  // Only a session that is all there has its end.
+  if (salvage.finish && report.losses.empty()) {
+    SessionStatistics statistics = counter.result();
+    statistics.values = salvage.finish->values;
+    Bytes content;
+    put_finish(content, statistics);
+    if (auto r = tables->insert_part("finish", pack(part_name("finish"), content, identity.seed, recover_level)); !r) return r;
+  }
+  if (auto r = tables->commit(); !r) return r;
+  return tables->close();
+}
+
+}  // namespace
+
+Result<RecoverReport> recover_session(const std::string& in, const std::string& out) {
+  auto store = SessionStore::open(in, true);
+  if (!store) return store.errors();
+  Salvage salvage;
+  RecoverReport report;
+  if (auto r = salvage_start(*store, salvage, report); !r) {
+    Errors errors = r.errors();
+    errors.push_back({in, "cannot be recovered: without the model and the initial state there is nothing to replay", ""});
+    return errors;
+  }
+  salvage_ticks(*store, salvage, report);
+  salvage_keyframes(*store, salvage, report);
+  salvage_events(*store, salvage, report);
+  report.complete = report.losses.empty() && salvage.finish.has_value();
+  if (!salvage.finish) report.losses.push_back("the session was cut off: it has no end");
+
+  if (auto r = write_salvage(out, salvage, *store, report); !r) {
+    // The file may be there already; only our own may go.
+    const bool ours = r.errors().front().message.find("exists already") == std::string::npos;
+    if (ours)
+      for (const char* ending : {"", "-wal", "-shm", "-journal"}) ::unlink((out + ending).c_str());
+    return r.errors();
+  }
+
+  // What counts is what can be read back and simulated again.
+  auto reader = SessionReader::open(out);
+  if (!reader) return reader.errors();
+  if (auto r = reader->check_all(); !r) return r.errors();
+  auto verdict = verify_session(*reader);
+  if (!verdict) return verdict.errors();
+  report.verdict = *verdict;
+  return report;
+}
+
+}  // namespace ctpm

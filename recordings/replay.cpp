@@ -1,0 +1,92 @@
+#include "recordings/replay.h"
+
+#include <algorithm>
+
+#include "core/step.h"
+#include "recordings/state_hash.h"
+
+namespace ctpm {
+
+namespace {
+constexpr std::int64_t read_ahead = 1000;  // ticks read at a time
+}
+
+struct ReplayCursor::Impl {
+  explicit Impl(SessionReader& reader_) : reader(reader_), stepper(reader_.start().model), state(reader_.start().initial_state) {}
+
+  SessionReader& reader;
+  Stepper stepper;
+  State state;
+  std::int64_t tick = 0;
+  std::vector<TickRecord> ahead;
+  std::int64_t ahead_first = 0;
+  TickRecord record;
+  StepReport report;
+  bool same = true;
+
+  Result<Keyframe> keyframe_for(std::int64_t target);
+};
+
+ReplayCursor::ReplayCursor(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+ReplayCursor::ReplayCursor(ReplayCursor&&) noexcept = default;
+ReplayCursor& ReplayCursor::operator=(ReplayCursor&&) noexcept = default;
+ReplayCursor::~ReplayCursor() = default;
+
+Result<ReplayCursor> ReplayCursor::create(SessionReader& reader) { return ReplayCursor(std::make_unique<Impl>(reader)); }
+
+/// The nearest keyframe that is whole; keyframe 0 always is.
+Result<Keyframe> ReplayCursor::Impl::keyframe_for(std::int64_t target) {
+  auto nearest = reader.keyframe_at_or_before(target);
+  if (nearest) return nearest;
+  const auto ticks = reader.keyframe_ticks();
+  if (!ticks) return ticks.errors();
+  for (auto t = ticks->rbegin(); t != ticks->rend(); ++t) {
+    if (*t > target) continue;
+    if (auto earlier = reader.keyframe_at_or_before(*t)) return earlier;
+  }
+  return reader.keyframe_at_or_before(0);
+}
+
+Result<Done> ReplayCursor::seek(std::int64_t tick) {
+  Impl& impl = *impl_;
+  if (tick < 0 || tick > impl.reader.tick_count())
+    return Error{impl.reader.path(), "has no tick " + std::to_string(tick) + ", it has " + std::to_string(impl.reader.tick_count()), ""};
+  auto keyframe = impl.keyframe_for(tick);
+  if (!keyframe) return keyframe.errors();
+  if (tick < impl.tick || keyframe->tick > impl.tick) {
+    impl.state = std::move(keyframe->state);
+    impl.tick = keyframe->tick;
+    impl.same = true;
+  }
+  while (impl.tick < tick)
+    if (auto stepped = step(); !stepped) return stepped.errors();
+  return Done{};
+}
+
+Result<bool> ReplayCursor::step() {
+  Impl& impl = *impl_;
+  const std::int64_t count = impl.reader.tick_count();
+  if (impl.tick >= count) return false;
+  const bool is_ahead = impl.tick >= impl.ahead_first && impl.tick < impl.ahead_first + static_cast<std::int64_t>(impl.ahead.size());
+  if (!is_ahead) {
+    auto records = impl.reader.ticks(impl.tick, std::min(impl.tick + read_ahead, count));
+    // Damage further ahead does not concern this tick.
+    if (!records) records = impl.reader.ticks(impl.tick, impl.tick + 1);
+    if (!records) return records.errors();
+    impl.ahead = std::move(*records);
+    impl.ahead_first = impl.tick;
+  }
+  impl.record = impl.ahead[impl.tick - impl.ahead_first];
+  impl.report = impl.stepper.step(impl.state, impl.record.inputs);
+  impl.same = impl.same && state_hash(impl.state) == impl.record.state_hash;
+  ++impl.tick;
+  return true;
+}
+
+std::int64_t ReplayCursor::tick() const { return impl_->tick; }
+const State& ReplayCursor::state() const { return impl_->state; }
+const TickRecord& ReplayCursor::record() const { return impl_->record; }
+const StepReport& ReplayCursor::report() const { return impl_->report; }
+bool ReplayCursor::same_so_far() const { return impl_->same; }
+
+}  // namespace ctpm

@@ -1,0 +1,19 @@
+#include "recordings/session.h"
+
+namespace ctpm {
+
+TickRecord make_record(const Inputs& inputs, const StepReport& report, double tick_time_s, std::uint64_t state_hash) {
+  TickRecord record;
+  record.inputs = inputs;
+  record.tool_force = report.tool_force;
+  record.depth = report.depth;
+  record.status = static_cast<std::int32_t>(report.status);
+  record.iterations = report.iterations;
+  record.contacts = report.contacts;
+  record.severed = report.severed;
+  record.tick_time = tick_time_s;
+  record.state_hash = state_hash;
+  return record;
+}
+
+}  // namespace ctpm

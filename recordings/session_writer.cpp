@@ -1,0 +1,386 @@
+#include "recordings/session_writer.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <cstring>
+#include <mutex>
+#include <thread>
+
+#include "recordings/internal/field_codec.h"
+#include "recordings/internal/model_check.h"
+#include "recordings/internal/ring.h"
+#include "recordings/internal/schema.h"
+#include "recordings/internal/session_database.h"
+#include "recordings/internal/statistics.h"
+#include "recordings/internal/tick_codec.h"
+
+namespace ctpm {
+
+using namespace session_file;
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+constexpr auto poll_interval = std::chrono::milliseconds(5);
+constexpr auto retry_interval = std::chrono::milliseconds(200);
+constexpr std::size_t chunks_per_commit = 32;  // when there is a backlog
+constexpr std::size_t keyframe_slots = 4;
+
+/// A row that is ready to be written.
+struct Row {
+  enum class Kind { chunk, keyframe, events } kind;
+  std::int64_t first = 0, count = 0;
+  Block block;
+};
+
+}  // namespace
+
+struct SessionWriter::Impl {
+  Impl(const SessionStart& start, const WriterOptions& options_)
+      : options(options_), records(options_.queue_ticks, TickRecord{}), keyframes(keyframe_slots, Keyframe{0, start.initial_state}) {}
+  ~Impl() { stop(); }
+
+  // Set before the threads start.
+  std::string path;
+  SessionIdentity identity;
+  WriterOptions options;
+  SessionTables tables;
+  int log_file = -1;
+
+  // Tick thread to writing thread.
+  Ring<TickRecord> records;
+  Ring<Keyframe> keyframes;
+  std::mutex event_mutex;
+  std::vector<Event> shared_events;
+  std::atomic<std::int64_t> appended{0}, committed{0}, refused{0};
+  std::atomic<bool> stopping{false}, saved_all{false};
+
+  // Tick thread only.
+  std::vector<Event> own_events;
+  std::vector<NamedValue> values;
+
+  // Writing thread only.
+  std::int64_t next_tick = 0, next_event = 0;
+  Clock::time_point oldest_seen;
+  bool waiting_seen = false;
+  std::vector<Row> rows;
+  std::vector<TickRecord> batch;
+  std::vector<Event> batch_events;
+  StatisticsCounter counter;
+
+  // Both threads to whoever asks.
+  mutable std::mutex error_mutex;
+  std::string error;
+  std::atomic<bool> has_error{false};
+
+  std::mutex wake_mutex;
+  std::condition_variable wake_writer, wake_syncer;
+  bool sync_wanted = false, sync_stops = false;
+  std::thread writer, syncer;
+
+  Result<Done> begin();
+  void stop();
+  void hand_over_events();
+  void write_until_stopped();
+  void sync_until_stopped();
+  bool gather(bool all);
+  void gather_ticks(bool all);
+  void gather_keyframes();
+  void gather_events();
+  Result<Done> write_rows();
+  bool save(bool all);
+  void set_error(const std::string& text);
+  void clear_error();
+};
+
+// ---- the tick's thread ----
+
+SessionWriter::SessionWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SessionWriter::SessionWriter(SessionWriter&&) noexcept = default;
+SessionWriter& SessionWriter::operator=(SessionWriter&&) noexcept = default;
+SessionWriter::~SessionWriter() = default;
+
+Result<SessionWriter> SessionWriter::create(const std::string& path, const SessionStart& start, const WriterOptions& options) {
+  CTPM_CHECK(options.keyframe_ticks >= 1 && options.queue_ticks >= 2 * chunk_ticks, "WriterOptions out of range");
+  CTPM_CHECK(options.compression_level >= 1 && options.compression_level <= 19, "WriterOptions out of range");
+  Errors errors = check_model(start.model);
+  if (errors.empty()) errors = check_state(start.model, start.initial_state);
+  for (Error& error : check_surfaces(start.model, start.surfaces)) errors.push_back(std::move(error));
+  if (!errors.empty()) return errors;
+
+  auto impl = std::make_unique<Impl>(start, options);
+  impl->path = path;
+  impl->identity = new_identity(start.build_fingerprint);
+  if (auto r = create_session_file(path, start, impl->identity, options.overwrite, options.compression_level); !r) return r.errors();
+  if (auto r = impl->begin(); !r) {
+    impl.reset();
+    for (const char* ending : {"", "-wal", "-shm"}) ::unlink((path + ending).c_str());
+    return r.errors();
+  }
+  return SessionWriter(std::move(impl));
+}
+
+void SessionWriter::append(const State& after, const TickRecord& record) {
+  Impl& impl = *impl_;
+  CTPM_CHECK(!impl.stopping.load(std::memory_order_relaxed), "append() after finish()");
+  TickRecord* slot = impl.records.free_slot();
+  while (!slot && impl.options.wait_when_full && impl.refused.load(std::memory_order_relaxed) == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    slot = impl.records.free_slot();
+    // A disk that is full would be waited for without end.
+    if (!slot && impl.has_error.load(std::memory_order_acquire)) break;
+  }
+  // Ticks after a lost one cannot be replayed: the recording ends there.
+  if (!slot || impl.refused.load(std::memory_order_relaxed) > 0) {
+    impl.refused.fetch_add(1, std::memory_order_relaxed);
+    return;
+  }
+  *slot = record;
+  impl.records.push();
+  const std::int64_t done = impl.appended.load(std::memory_order_relaxed) + 1;
+  impl.appended.store(done, std::memory_order_release);
+
+  // A keyframe is a convenience: if the disk is so far behind that no slot is free, it is left out.
+  if (done % impl.options.keyframe_ticks == 0) {
+    if (Keyframe* keyframe = impl.keyframes.free_slot()) {
+      keyframe->tick = done;
+      keyframe->state = after;
+      impl.keyframes.push();
+    }
+  }
+  if (!impl.own_events.empty()) impl.hand_over_events();
+}
+
+void SessionWriter::event(std::int64_t tick, EventKind kind, std::string text, std::vector<double> values) {
+  impl_->own_events.push_back({tick, kind, std::move(text), std::move(values)});
+  impl_->hand_over_events();
+}
+
+void SessionWriter::Impl::hand_over_events() {
+  // The other thread holds this for as long as a swap takes; if it does just now, the next tick hands over.
+  const std::unique_lock lock(event_mutex, std::try_to_lock);
+  if (!lock) return;
+  for (Event& event : own_events) shared_events.push_back(std::move(event));
+  own_events.clear();
+}
+
+WriterStatus SessionWriter::status() const {
+  const Impl& impl = *impl_;
+  WriterStatus status;
+  const std::int64_t refused = impl.refused.load();
+  status.committed = impl.committed.load(std::memory_order_acquire);
+  status.appended = impl.appended.load(std::memory_order_acquire) + refused;
+  status.lost = impl.saved_all ? status.appended - status.committed : refused;
+  const std::lock_guard lock(impl.error_mutex);
+  status.error = impl.error;
+  if (status.error.empty() && refused > 0) status.error = "the disk is too slow: ticks were lost";
+  return status;
+}
+
+const std::string& SessionWriter::session_id() const { return impl_->identity.id; }
+
+Result<SessionStatistics> SessionWriter::finish(const std::vector<NamedValue>& values) {
+  Impl& impl = *impl_;
+  CTPM_CHECK(!impl.stopping, "finish() twice");
+  impl.values = values;
+  impl.stop();
+
+  SessionStatistics statistics = impl.counter.result();
+  statistics.values = values;
+  const WriterStatus now = status();
+  if (now.lost > 0)
+    return Error{impl.path, std::to_string(now.lost) + " of " + std::to_string(now.appended) + " ticks were not recorded: " + now.error,
+                 "the file holds the session up to tick " + std::to_string(now.committed)};
+  if (!now.error.empty()) return Error{impl.path, now.error, "all ticks are recorded, but the session is not marked as ended"};
+
+  Bytes content;
+  put_finish(content, statistics);
+  const Block block = pack(part_name("finish"), content, impl.identity.seed, impl.options.compression_level);
+  if (auto r = impl.tables.begin(); !r) return r.errors();
+  auto written = impl.tables.insert_part("finish", block);
+  if (written) written = impl.tables.commit();
+  if (!written) {
+    impl.tables.rollback();
+    return written.errors();
+  }
+  if (auto r = impl.tables.close(); !r) return r.errors();
+  return statistics;
+}
+
+// ---- the threads that write ----
+
+Result<Done> SessionWriter::Impl::begin() {
+  auto opened = SessionTables::open_for_writing(path);
+  if (!opened) return opened.errors();
+  tables = std::move(*opened);
+  // An empty transaction makes SQLite create the log.
+  if (auto r = tables.begin(); !r) return r;
+  if (auto r = tables.commit(); !r) return r;
+  log_file = ::open((path + "-wal").c_str(), O_RDONLY | O_CLOEXEC);
+  if (log_file < 0) return Error{path + "-wal", std::string("cannot be opened: ") + std::strerror(errno), ""};
+  writer = std::thread([this] { write_until_stopped(); });
+  syncer = std::thread([this] { sync_until_stopped(); });
+  return Done{};
+}
+
+void SessionWriter::Impl::stop() {
+  if (!writer.joinable()) return;
+  {
+    // Nobody else runs in the tick's thread now: the lock may be waited for.
+    const std::lock_guard lock(event_mutex);
+    for (Event& event : own_events) shared_events.push_back(std::move(event));
+    own_events.clear();
+  }
+  {
+    const std::lock_guard lock(wake_mutex);
+    stopping = true;
+  }
+  wake_writer.notify_all();
+  writer.join();
+  {
+    const std::lock_guard lock(wake_mutex);
+    sync_stops = true;
+  }
+  wake_syncer.notify_all();
+  syncer.join();
+  ::close(log_file);
+}
+
+void SessionWriter::Impl::write_until_stopped() {
+  while (true) {
+    const bool last = stopping;
+    const bool good = save(last);
+    if (last) break;
+    std::unique_lock lock(wake_mutex);
+    wake_writer.wait_for(lock, good ? poll_interval : retry_interval, [this] { return stopping.load(); });
+  }
+  saved_all = true;
+}
+
+/// Writes what is due; `all`: whatever there is. False if the disk refused.
+bool SessionWriter::Impl::save(bool all) {
+  while (gather(all)) {
+    if (auto r = write_rows(); !r) {
+      tables.rollback();
+      set_error(r.errors().front().message);
+      return false;
+    }
+    clear_error();
+    const std::lock_guard lock(wake_mutex);
+    sync_wanted = true;
+    wake_syncer.notify_one();
+  }
+  return true;
+}
+
+/// Packs what is due into rows, unless rows still wait from a failed attempt. False if there is nothing to write.
+bool SessionWriter::Impl::gather(bool all) {
+  if (!rows.empty()) return true;
+  batch.clear();
+  batch_events.clear();
+  gather_keyframes();
+  gather_ticks(all);
+  gather_events();
+  return !rows.empty();
+}
+
+void SessionWriter::Impl::gather_ticks(bool all) {
+  const std::size_t waiting = records.waiting();
+  if (waiting == 0) return;
+  if (!waiting_seen) oldest_seen = Clock::now(), waiting_seen = true;
+  const bool old = std::chrono::duration<double>(Clock::now() - oldest_seen).count() >= chunk_age - 2e-3 * poll_interval.count();
+  std::size_t taken = 0;
+  for (std::size_t chunk = 0; chunk < chunks_per_commit && taken < waiting; ++chunk) {
+    const std::size_t count = std::min<std::size_t>(chunk_ticks, waiting - taken);
+    if (count < static_cast<std::size_t>(chunk_ticks) && !old && !all) break;
+    for (std::size_t i = 0; i < count; ++i) batch.push_back(records.waiting_at(taken + i));
+    const std::int64_t first = next_tick + static_cast<std::int64_t>(taken);
+    Bytes content;
+    put_records(content, std::span(batch).last(count));
+    const auto ticks = static_cast<std::int64_t>(count);
+    rows.push_back({Row::Kind::chunk, first, ticks, pack(chunk_name(first, ticks), content, identity.seed, options.compression_level)});
+    taken += count;
+  }
+  if (taken > 0) waiting_seen = false;
+}
+
+void SessionWriter::Impl::gather_keyframes() {
+  const std::size_t waiting = keyframes.waiting();
+  for (std::size_t i = 0; i < waiting; ++i) {
+    const Keyframe& keyframe = keyframes.waiting_at(i);
+    Bytes content;
+    put_fields(content, keyframe.state);
+    rows.push_back({Row::Kind::keyframe, keyframe.tick, 1,
+                    pack(keyframe_name(keyframe.tick), content, identity.seed, options.compression_level)});
+  }
+}
+
+void SessionWriter::Impl::gather_events() {
+  {
+    const std::lock_guard lock(event_mutex);
+    std::swap(batch_events, shared_events);
+  }
+  if (batch_events.empty()) return;
+  Bytes content;
+  put_field_set(content, [&](FieldWriter& writer) { writer("events", batch_events); });
+  const auto count = static_cast<std::int64_t>(batch_events.size());
+  rows.push_back({Row::Kind::events, next_event, count,
+                  pack(event_name(next_event, count), content, identity.seed, options.compression_level)});
+}
+
+/// One transaction; only when it has succeeded are the queues and the counts moved on.
+Result<Done> SessionWriter::Impl::write_rows() {
+  if (auto r = tables.begin(); !r) return r;
+  std::size_t keyframe_count = 0;
+  for (const Row& row : rows) {
+    Result<Done> written = Done{};
+    if (row.kind == Row::Kind::chunk) written = tables.insert_chunk(row.first, row.count, row.block);
+    if (row.kind == Row::Kind::keyframe) written = tables.insert_keyframe(row.first, row.block), ++keyframe_count;
+    if (row.kind == Row::Kind::events) written = tables.insert_events(row.first, row.count, row.block);
+    if (!written) return written;
+  }
+  if (auto r = tables.commit(); !r) return r;
+
+  for (const TickRecord& record : batch) counter.add(record);
+  for (const Event& event : batch_events) counter.add(event);
+  for (std::size_t i = 0; i < keyframe_count; ++i) counter.add_keyframe();
+  records.pop(batch.size());
+  keyframes.pop(keyframe_count);
+  next_tick += static_cast<std::int64_t>(batch.size());
+  next_event += static_cast<std::int64_t>(batch_events.size());
+  committed.store(next_tick, std::memory_order_release);
+  rows.clear();
+  return Done{};
+}
+
+void SessionWriter::Impl::sync_until_stopped() {
+  std::unique_lock lock(wake_mutex);
+  while (true) {
+    wake_syncer.wait(lock, [this] { return sync_wanted || sync_stops; });
+    if (!sync_wanted) return;
+    sync_wanted = false;
+    lock.unlock();
+    if (::fdatasync(log_file) != 0) set_error(std::string("the disk did not confirm: ") + std::strerror(errno));
+    lock.lock();
+  }
+}
+
+void SessionWriter::Impl::set_error(const std::string& text) {
+  const std::lock_guard lock(error_mutex);
+  if (error.empty()) error = text;
+  has_error = true;
+}
+
+void SessionWriter::Impl::clear_error() {
+  if (!has_error || refused.load() > 0) return;
+  const std::lock_guard lock(error_mutex);
+  error.clear();
+  has_error = false;
+}
+
+}  // namespace ctpm
