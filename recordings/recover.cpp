@@ -82,12 +82,14 @@ void salvage_ticks(SessionStore& store, Salvage& salvage, RecoverReport& report)
     }
     if (!*later || (*later)->first < next) break;
     if (report.ticks_dropped == 0 && (*later)->first > next)
-      report.losses.push_back("ticks from " + std::to_string(next) + " on cannot be replayed: a chunk before them is lost");
+      report.losses.push_back("ticks from " + std::to_string(next) +
+                              " on cannot be replayed: a chunk before them is lost");
     report.ticks_dropped += static_cast<std::int64_t>((*later)->items.size());
     at = (*later)->first - 1;
   }
   if (salvage.finish && salvage.finish->ticks != next)
-    report.losses.push_back("ticks " + std::to_string(next) + " to " + std::to_string(salvage.finish->ticks - 1) + " of " +
+    report.losses.push_back("ticks " + std::to_string(next) + " to " +
+                            std::to_string(salvage.finish->ticks - 1) + " of " +
                             std::to_string(salvage.finish->ticks));
 }
 
@@ -103,9 +105,10 @@ void salvage_keyframes(SessionStore& store, Salvage& salvage, RecoverReport& rep
       salvage.keyframes.push_back(std::move(**keyframe));
   }
   report.keyframes_saved = static_cast<std::int64_t>(salvage.keyframes.size());
-  if (salvage.finish && report.ticks_saved == salvage.finish->ticks && report.keyframes_saved != salvage.finish->keyframes)
-    report.losses.push_back("keyframes: " + std::to_string(report.keyframes_saved) + " of " + std::to_string(salvage.finish->keyframes) +
-                            " are left");
+  if (salvage.finish && report.ticks_saved == salvage.finish->ticks &&
+      report.keyframes_saved != salvage.finish->keyframes)
+    report.losses.push_back("keyframes: " + std::to_string(report.keyframes_saved) + " of " +
+                            std::to_string(salvage.finish->keyframes) + " are left");
 }
 
 void salvage_events(SessionStore& store, Salvage& salvage, RecoverReport& report) {
@@ -125,11 +128,13 @@ void salvage_events(SessionStore& store, Salvage& salvage, RecoverReport& report
   }
   report.events_saved = static_cast<std::int64_t>(salvage.events.size());
   if (salvage.finish && read != salvage.finish->events)
-    report.losses.push_back("events: " + std::to_string(read) + " of " + std::to_string(salvage.finish->events) + " are left");
+    report.losses.push_back("events: " + std::to_string(read) + " of " +
+                            std::to_string(salvage.finish->events) + " are left");
 }
 
 /// Writes the salvage as a new session with an identity of its own that names the old one.
-Result<Done> write_salvage(const std::string& out, Salvage& salvage, const SessionStore& from, const RecoverReport& report) {
+Result<Done> write_salvage(const std::string& out, Salvage& salvage, const SessionStore& from,
+                           const RecoverReport& report) {
   SessionIdentity identity = new_identity(salvage.start.build_fingerprint);
   identity.created_unix_s = from.identity().created_unix_s;
   salvage.start.metadata["recovered_from"] = from.identity().id;
@@ -143,14 +148,18 @@ Result<Done> write_salvage(const std::string& out, Salvage& salvage, const Sessi
     Bytes content;
     put_records(content, chunk.items);
     const auto count = static_cast<std::int64_t>(chunk.items.size());
-    if (auto r = tables->insert_chunk(chunk.first, count, pack(chunk_name(chunk.first, count), content, identity.seed, recover_level)); !r)
+    if (auto r = tables->insert_chunk(
+            chunk.first, count, pack(chunk_name(chunk.first, count), content, identity.seed, recover_level));
+        !r)
       return r;
     for (const TickRecord& record : chunk.items) counter.add(record);
   }
   for (const Keyframe& keyframe : salvage.keyframes) {
     Bytes content;
     put_fields(content, keyframe.state);
-    if (auto r = tables->insert_keyframe(keyframe.tick, pack(keyframe_name(keyframe.tick), content, identity.seed, recover_level)); !r)
+    if (auto r = tables->insert_keyframe(
+            keyframe.tick, pack(keyframe_name(keyframe.tick), content, identity.seed, recover_level));
+        !r)
       return r;
     counter.add_keyframe();
   }
@@ -158,7 +167,10 @@ Result<Done> write_salvage(const std::string& out, Salvage& salvage, const Sessi
     Bytes content;
     put_field_set(content, [&](FieldWriter& writer) { writer("events", salvage.events); });
     const auto count = static_cast<std::int64_t>(salvage.events.size());
-    if (auto r = tables->insert_events(0, count, pack(event_name(0, count), content, identity.seed, recover_level)); !r) return r;
+    if (auto r = tables->insert_events(0, count,
+                                       pack(event_name(0, count), content, identity.seed, recover_level));
+        !r)
+      return r;
     for (const Event& event : salvage.events) counter.add(event);
   }
   // Only a session that is all there has its end.
@@ -167,7 +179,10 @@ Result<Done> write_salvage(const std::string& out, Salvage& salvage, const Sessi
     statistics.values = salvage.finish->values;
     Bytes content;
     put_finish(content, statistics);
-    if (auto r = tables->insert_part("finish", pack(part_name("finish"), content, identity.seed, recover_level)); !r) return r;
+    if (auto r =
+            tables->insert_part("finish", pack(part_name("finish"), content, identity.seed, recover_level));
+        !r)
+      return r;
   }
   if (auto r = tables->commit(); !r) return r;
   return tables->close();
@@ -182,7 +197,8 @@ Result<RecoverReport> recover_session(const std::string& in, const std::string& 
   RecoverReport report;
   if (auto r = salvage_start(*store, salvage, report); !r) {
     Errors errors = r.errors();
-    errors.push_back({in, "cannot be recovered: without the model and the initial state there is nothing to replay", ""});
+    errors.push_back(
+        {in, "cannot be recovered: without the model and the initial state there is nothing to replay", ""});
     return errors;
   }
   salvage_ticks(*store, salvage, report);

@@ -12,7 +12,8 @@ constexpr std::int64_t read_ahead = 1000;  // ticks read at a time
 }
 
 struct ReplayCursor::Impl {
-  explicit Impl(SessionReader& reader_) : reader(reader_), stepper(reader_.start().model), state(reader_.start().initial_state) {}
+  explicit Impl(SessionReader& reader_)
+      : reader(reader_), stepper(reader_.start().model), state(reader_.start().initial_state) {}
 
   SessionReader& reader;
   Stepper stepper;
@@ -32,7 +33,9 @@ ReplayCursor::ReplayCursor(ReplayCursor&&) noexcept = default;
 ReplayCursor& ReplayCursor::operator=(ReplayCursor&&) noexcept = default;
 ReplayCursor::~ReplayCursor() = default;
 
-Result<ReplayCursor> ReplayCursor::create(SessionReader& reader) { return ReplayCursor(std::make_unique<Impl>(reader)); }
+Result<ReplayCursor> ReplayCursor::create(SessionReader& reader) {
+  return ReplayCursor(std::make_unique<Impl>(reader));
+}
 
 /// The nearest keyframe that is whole; keyframe 0 always is.
 Result<Keyframe> ReplayCursor::Impl::keyframe_for(std::int64_t target) {
@@ -50,7 +53,9 @@ Result<Keyframe> ReplayCursor::Impl::keyframe_for(std::int64_t target) {
 Result<Done> ReplayCursor::seek(std::int64_t tick) {
   Impl& impl = *impl_;
   if (tick < 0 || tick > impl.reader.tick_count())
-    return Error{impl.reader.path(), "has no tick " + std::to_string(tick) + ", it has " + std::to_string(impl.reader.tick_count()), ""};
+    return Error{
+        impl.reader.path(),
+        "has no tick " + std::to_string(tick) + ", it has " + std::to_string(impl.reader.tick_count()), ""};
   auto keyframe = impl.keyframe_for(tick);
   if (!keyframe) return keyframe.errors();
   if (tick < impl.tick || keyframe->tick > impl.tick) {
@@ -67,7 +72,8 @@ Result<bool> ReplayCursor::step() {
   Impl& impl = *impl_;
   const std::int64_t count = impl.reader.tick_count();
   if (impl.tick >= count) return false;
-  const bool is_ahead = impl.tick >= impl.ahead_first && impl.tick < impl.ahead_first + static_cast<std::int64_t>(impl.ahead.size());
+  const bool is_ahead = impl.tick >= impl.ahead_first &&
+                        impl.tick < impl.ahead_first + static_cast<std::int64_t>(impl.ahead.size());
   if (!is_ahead) {
     auto records = impl.reader.ticks(impl.tick, std::min(impl.tick + read_ahead, count));
     // Damage further ahead does not concern this tick.

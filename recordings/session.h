@@ -27,8 +27,10 @@ struct SessionStart {
 };
 
 /// Metadata of a session that goes on from a moment of another one.
-inline constexpr const char* parent_session_key = "parent_session";  ///< SessionReader::session_id of the parent
-inline constexpr const char* parent_tick_key = "parent_tick";        ///< decimal: the parent's tick whose keyframe it starts from
+inline constexpr const char* parent_session_key =
+    "parent_session";  ///< SessionReader::session_id of the parent
+inline constexpr const char* parent_tick_key =
+    "parent_tick";  ///< decimal: the parent's tick whose keyframe it starts from
 
 /// One tick as it was lived. Tick n of a session is its n-th record, at n times Model::tick.
 struct TickRecord {
@@ -46,7 +48,8 @@ struct TickRecord {
 };
 
 /// The record of a tick that was just done.
-TickRecord make_record(const Inputs& inputs, const StepReport& report, double tick_time_s, std::uint64_t state_hash);
+TickRecord make_record(const Inputs& inputs, const StepReport& report, double tick_time_s,
+                       std::uint64_t state_hash);
 
 enum class EventKind : std::int32_t {
   contact_begins = 1,
@@ -82,14 +85,14 @@ struct SessionStatistics {
   std::int64_t ticks = 0;
   std::int64_t keyframes = 0;
   std::int64_t events = 0;
-  std::int64_t late_ticks = 0;   ///< events of kind late_tick
-  std::int64_t severed = 0;      ///< elements, over all ticks
-  double tick_time_p50 = 0;      ///< [s]
-  double tick_time_p99 = 0;      ///< [s]
-  double tick_time_p999 = 0;     ///< [s]
-  double tick_time_max = 0;      ///< [s]
-  double max_force = 0;          ///< [N]
-  double max_depth = 0;          ///< [m]
+  std::int64_t late_ticks = 0;     ///< events of kind late_tick
+  std::int64_t severed = 0;        ///< elements, over all ticks
+  double tick_time_p50 = 0;        ///< [s]
+  double tick_time_p99 = 0;        ///< [s]
+  double tick_time_p999 = 0;       ///< [s]
+  double tick_time_max = 0;        ///< [s]
+  double max_force = 0;            ///< [N]
+  double max_depth = 0;            ///< [m]
   std::vector<NamedValue> values;  ///< further numbers given to SessionWriter::finish, unit in the name
 };
 

@@ -10,12 +10,14 @@
 
 namespace ctpm {
 
-/// Reads a session file, finished or not, also while it is being recorded. Nothing in the file is trusted: every block is proven by its checksum before it is
-/// decoded, and the Model, the States and the surfaces are checked before they are handed out.
-/// Memory grows with the Model and one chunk, not with the length of the session. For one thread at a time.
+/// Reads a session file, finished or not, also while it is being recorded. Nothing in the file is trusted:
+/// every block is proven by its checksum before it is decoded, and the Model, the States and the surfaces are
+/// checked before they are handed out. Memory grows with the Model and one chunk, not with the length of the
+/// session. For one thread at a time.
 class SessionReader {
  public:
-  /// Errors: the file does not exist, is not a session, is of a newer version, is cut short, or its start is damaged.
+  /// Errors: the file does not exist, is not a session, is of a newer version, is cut short, or its start is
+  /// damaged.
   static Result<SessionReader> open(const std::string& path);
 
   SessionReader(SessionReader&&) noexcept;
@@ -25,7 +27,7 @@ class SessionReader {
   const std::string& path() const;
   const SessionStart& start() const;
   const std::string& session_id() const;
-  double created_unix_s() const;    ///< when recording began, seconds since 1970
+  double created_unix_s() const;  ///< when recording began, seconds since 1970
   int format_version() const;
   std::int64_t tick_count() const;  ///< at the time of open()
   bool ended_cleanly() const;       ///< false: cut off, or still being recorded

@@ -11,7 +11,8 @@
 namespace ctpm {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "values are hashed and stored as they lie in memory");
+static_assert(std::endian::native == std::endian::little,
+              "values are hashed and stored as they lie in memory");
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Quat) == 4 * sizeof(double), "no padding");
 
 struct Hasher {

@@ -18,7 +18,9 @@ constexpr std::int64_t progress_interval = 500;  // ticks
 struct Pair {
   std::string name;
   double recorded, replayed;
-  bool same() const { return std::bit_cast<std::uint64_t>(recorded) == std::bit_cast<std::uint64_t>(replayed); }
+  bool same() const {
+    return std::bit_cast<std::uint64_t>(recorded) == std::bit_cast<std::uint64_t>(replayed);
+  }
   double difference() const {
     if (same()) return 0;
     const double d = std::abs(replayed - recorded);
@@ -81,7 +83,8 @@ bool locate(const State& recorded, const State& replayed, Verdict& verdict) {
       group = group_of(pair.name);
       verdict.quantity = pair.name;
       verdict.index = before[f].is_array ? static_cast<std::int32_t>(i) : -1;
-      verdict.recorded = pair.recorded, verdict.replayed = pair.replayed, verdict.difference = pair.difference();
+      verdict.recorded = pair.recorded, verdict.replayed = pair.replayed,
+      verdict.difference = pair.difference();
     }
   }
   return !group.empty();
@@ -98,16 +101,20 @@ void note_difference(std::int64_t tick, bool same_hash, const std::vector<Pair>&
   verdict.quantity = verdict.first_quantity;
   if (number == pairs.end()) return;
   verdict.quantity = number->name;
-  verdict.recorded = number->recorded, verdict.replayed = number->replayed, verdict.difference = number->difference();
+  verdict.recorded = number->recorded, verdict.replayed = number->replayed,
+  verdict.difference = number->difference();
 }
 
-/// Compares at a keyframe: it must be the state that its tick's hash proves, and after a difference it says where that lies.
+/// Compares at a keyframe: it must be the state that its tick's hash proves, and after a difference it says
+/// where that lies.
 Result<Done> compare_keyframe(SessionReader& reader, const ReplayCursor& cursor, Verdict& verdict) {
   const auto keyframe = reader.keyframe_at_or_before(cursor.tick());
   if (!keyframe) return keyframe.errors();
   if (keyframe->tick != cursor.tick()) return Done{};
   if (state_hash(keyframe->state) != cursor.record().state_hash)
-    return Error{reader.path(), "keyframe " + std::to_string(keyframe->tick) + ": is not the state whose hash its tick recorded", ""};
+    return Error{
+        reader.path(),
+        "keyframe " + std::to_string(keyframe->tick) + ": is not the state whose hash its tick recorded", ""};
   if (verdict.same || verdict.located_tick >= 0) return Done{};
   Verdict located = verdict;
   located.difference = 0;
@@ -123,8 +130,10 @@ Result<Done> compare_keyframe(SessionReader& reader, const ReplayCursor& cursor,
 Result<Verdict> verify_session(SessionReader& reader, const VerifyOptions& options) {
   const std::int64_t to = options.to < 0 ? reader.tick_count() : options.to;
   if (options.from < 0 || to > reader.tick_count() || options.from > to)
-    return Error{reader.path(), "has no ticks " + std::to_string(options.from) + " to " + std::to_string(to) + ", it has " +
-                                    std::to_string(reader.tick_count()), ""};
+    return Error{reader.path(),
+                 "has no ticks " + std::to_string(options.from) + " to " + std::to_string(to) + ", it has " +
+                     std::to_string(reader.tick_count()),
+                 ""};
   const auto keyframe_ticks = reader.keyframe_ticks();
   if (!keyframe_ticks) return keyframe_ticks.errors();
   auto next_keyframe = std::upper_bound(keyframe_ticks->begin(), keyframe_ticks->end(), options.from);
@@ -139,7 +148,8 @@ Result<Verdict> verify_session(SessionReader& reader, const VerifyOptions& optio
     if (!stepped) return stepped.errors();
     const bool same_hash = state_hash(cursor->state()) == cursor->record().state_hash;
     const std::vector<Pair> pairs = outcomes(cursor->record(), cursor->report());
-    const bool same = same_hash && std::all_of(pairs.begin(), pairs.end(), [](const Pair& p) { return p.same(); });
+    const bool same =
+        same_hash && std::all_of(pairs.begin(), pairs.end(), [](const Pair& p) { return p.same(); });
     if (!same) note_difference(tick, same_hash, pairs, verdict);
     ++verdict.ticks_compared;
     if (next_keyframe != keyframe_ticks->end() && *next_keyframe == cursor->tick()) {
@@ -159,13 +169,14 @@ std::string to_string(const Verdict& verdict) {
     text << "same: " << verdict.ticks_compared << " ticks compared, no difference";
     return text.str();
   }
-  text << "different: first at tick " << verdict.first_tick << " (" << verdict.first_quantity << "), " << verdict.ticks_different << " of "
-       << verdict.ticks_compared << " ticks differ";
+  text << "different: first at tick " << verdict.first_tick << " (" << verdict.first_quantity << "), "
+       << verdict.ticks_different << " of " << verdict.ticks_compared << " ticks differ";
   if (verdict.quantity != "state_hash") {
     text << "; " << verdict.quantity;
     if (verdict.index >= 0) text << "[" << verdict.index << "]";
     if (verdict.located_tick >= 0) text << " at keyframe " << verdict.located_tick;
-    text << " was " << verdict.recorded << ", is " << verdict.replayed << ", difference " << verdict.difference;
+    text << " was " << verdict.recorded << ", is " << verdict.replayed << ", difference "
+         << verdict.difference;
   }
   return text.str();
 }

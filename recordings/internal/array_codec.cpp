@@ -39,7 +39,8 @@ template <class U>
 int best_order(std::span<const U> values) {
   std::array<std::uint64_t, order_count> bits{};
   for (int order = 0; order < order_count; ++order) {
-    for (std::size_t i = order; i < values.size(); ++i) bits[order] += std::bit_width(coded(&values[i], order));
+    for (std::size_t i = order; i < values.size(); ++i)
+      bits[order] += std::bit_width(coded(&values[i], order));
     bits[order] += 8 * sizeof(U) * std::min<std::size_t>(order, values.size());
   }
   return static_cast<int>(std::min_element(bits.begin(), bits.end()) - bits.begin());
@@ -107,8 +108,8 @@ ByteView skip_array(ByteReader& in, std::uint64_t count, std::size_t width) {
   return in.take(2 + begin * width + planes * (count - begin));
 }
 
-#define CTPM_ARRAY_CODEC(U)                                  \
-  template void put_array<U>(Bytes&, std::span<const U>);    \
+#define CTPM_ARRAY_CODEC(U)                               \
+  template void put_array<U>(Bytes&, std::span<const U>); \
   template void get_array<U>(ByteReader&, std::uint64_t, std::vector<U>&);
 CTPM_ARRAY_CODEC(std::uint8_t)
 CTPM_ARRAY_CODEC(std::uint32_t)

@@ -14,7 +14,8 @@ namespace ctpm::session_file {
 using Bytes = std::vector<std::uint8_t>;
 using ByteView = std::span<const std::uint8_t>;
 
-static_assert(std::endian::native == std::endian::little, "session files are written as values lie in memory");
+static_assert(std::endian::native == std::endian::little,
+              "session files are written as values lie in memory");
 
 inline void put_raw(Bytes& out, const void* data, std::size_t size) {
   const std::size_t place = out.size();
@@ -23,18 +24,16 @@ inline void put_raw(Bytes& out, const void* data, std::size_t size) {
 }
 
 template <class T>
-  requires std::is_arithmetic_v<T>
-void put(Bytes& out, T value) {
-  put_raw(out, &value, sizeof value);
-}
+requires std::is_arithmetic_v<T>
+void put(Bytes& out, T value) { put_raw(out, &value, sizeof value); }
 
 inline ByteView view(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 inline std::string text_of(ByteView bytes) { return {bytes.begin(), bytes.end()}; }
 
-/// Reads from bytes that are not trusted. After the first read beyond the end everything fails. `budget` bounds the memory that
-/// decoding may take: small blocks can state large arrays.
+/// Reads from bytes that are not trusted. After the first read beyond the end everything fails. `budget`
+/// bounds the memory that decoding may take: small blocks can state large arrays.
 class ByteReader {
  public:
   explicit ByteReader(ByteView bytes, std::uint64_t budget) : bytes_(bytes), budget_(budget) {}

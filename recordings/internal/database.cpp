@@ -31,7 +31,8 @@ void defend(sqlite3* connection, bool salvage) {
   sqlite3_db_config(connection, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_db_config(connection, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
   sqlite3_db_config(connection, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
-  // Salvage has to go on in a file that is shorter than it says, which SQLite allows only without its defensive mode.
+  // Salvage has to go on in a file that is shorter than it says, which SQLite allows only without its
+  // defensive mode.
   if (salvage)
     sqlite3_db_config(connection, SQLITE_DBCONFIG_WRITABLE_SCHEMA, 1, nullptr);
   else
@@ -39,7 +40,8 @@ void defend(sqlite3* connection, bool salvage) {
   sqlite3_limit(connection, SQLITE_LIMIT_LENGTH, 1 << 30);
   sqlite3_limit(connection, SQLITE_LIMIT_SQL_LENGTH, 10000);
   sqlite3_limit(connection, SQLITE_LIMIT_ATTACHED, 0);
-  sqlite3_exec(connection, "PRAGMA cell_size_check=ON; PRAGMA query_only=ON; PRAGMA mmap_size=0;", nullptr, nullptr, nullptr);
+  sqlite3_exec(connection, "PRAGMA cell_size_check=ON; PRAGMA query_only=ON; PRAGMA mmap_size=0;", nullptr,
+               nullptr, nullptr);
 }
 
 }  // namespace
@@ -70,7 +72,9 @@ Statement::Outcome Statement::step() {
 }
 void Statement::reset() { sqlite3_reset(statement_); }
 
-bool Statement::is_integer(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_INTEGER; }
+bool Statement::is_integer(int column) const {
+  return sqlite3_column_type(statement_, column) == SQLITE_INTEGER;
+}
 bool Statement::is_text(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_TEXT; }
 bool Statement::is_blob(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_BLOB; }
 std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(statement_, column); }
@@ -90,7 +94,8 @@ Result<Database> Database::open(const std::string& path, Access access) {
   int flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_PRIVATECACHE | SQLITE_OPEN_EXRESCODE | SQLITE_OPEN_URI;
   flags |= reads ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
   if (access == Access::create) flags |= SQLITE_OPEN_CREATE;
-  // A file without a log beside it is opened as one that nobody changes, so that SQLite puts no files beside it.
+  // A file without a log beside it is opened as one that nobody changes, so that SQLite puts no files beside
+  // it.
   const bool alone = reads && !has_content(path + "-wal");
   const std::string uri = file_uri(path, alone ? "immutable=1" : "cache=private");
   const int code = sqlite3_open_v2(uri.c_str(), &database.connection_, flags, nullptr);
@@ -110,13 +115,15 @@ Database& Database::operator=(Database&& other) noexcept {
 Database::~Database() { sqlite3_close_v2(connection_); }
 
 Result<Done> Database::run(const std::string& sql) {
-  if (sqlite3_exec(connection_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) return Error{path_, problem(), ""};
+  if (sqlite3_exec(connection_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK)
+    return Error{path_, problem(), ""};
   return Done{};
 }
 
 Result<Statement> Database::prepare(const std::string& sql) {
   Statement statement;
-  if (sqlite3_prepare_v3(connection_, sql.c_str(), -1, SQLITE_PREPARE_PERSISTENT, &statement.statement_, nullptr) != SQLITE_OK)
+  if (sqlite3_prepare_v3(connection_, sql.c_str(), -1, SQLITE_PREPARE_PERSISTENT, &statement.statement_,
+                         nullptr) != SQLITE_OK)
     return Error{path_, problem(), ""};
   return statement;
 }

@@ -48,10 +48,10 @@ class Statement {
 class Database {
  public:
   enum class Access {
-    create,  ///< a new file
-    write,   ///< an existing one
-    read,    ///< an existing one that is not trusted
-    salvage, ///< as read, and goes on where the file contradicts itself
+    create,   ///< a new file
+    write,    ///< an existing one
+    read,     ///< an existing one that is not trusted
+    salvage,  ///< as read, and goes on where the file contradicts itself
   };
 
   static Result<Database> open(const std::string& path, Access access);

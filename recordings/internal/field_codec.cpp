@@ -6,13 +6,17 @@ namespace ctpm::session_file {
 
 std::size_t width_of(FieldType type) {
   switch (type) {
-    case FieldType::u8: return 1;
+    case FieldType::u8:
+      return 1;
     case FieldType::i32:
-    case FieldType::u32: return 4;
+    case FieldType::u32:
+      return 4;
     case FieldType::i64:
     case FieldType::u64:
-    case FieldType::f64: return 8;
-    default: return 0;
+    case FieldType::f64:
+      return 8;
+    default:
+      return 0;
   }
 }
 
@@ -39,7 +43,8 @@ FieldSet::FieldSet(ByteReader& in, std::string& problem) {
 }
 
 FieldView* FieldSet::find(std::string_view name) {
-  const auto found = std::find_if(fields_.begin(), fields_.end(), [&](const FieldView& f) { return f.name == name; });
+  const auto found =
+      std::find_if(fields_.begin(), fields_.end(), [&](const FieldView& f) { return f.name == name; });
   return found == fields_.end() ? nullptr : &*found;
 }
 

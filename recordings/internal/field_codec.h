@@ -17,7 +17,7 @@ namespace ctpm::session_file {
 
 /// Structures of the file that core does not know, in the manner of core/fields.h.
 template <class S, class Visit>
-  requires std::is_same_v<std::remove_const_t<S>, Surface>
+requires std::is_same_v<std::remove_const_t<S>, Surface>
 void for_each_field(S& s, Visit&& visit) {
   visit("vertex", s.vertex);
   visit("triangle", s.triangle);
@@ -27,7 +27,7 @@ void for_each_field(S& s, Visit&& visit) {
 }
 
 template <class E, class Visit>
-  requires std::is_same_v<std::remove_const_t<E>, Event>
+requires std::is_same_v<std::remove_const_t<E>, Event>
 void for_each_field(E& e, Visit&& visit) {
   visit("tick", e.tick);
   visit("kind", e.kind);
@@ -35,19 +35,34 @@ void for_each_field(E& e, Visit&& visit) {
   visit("values", e.values);
 }
 
-enum class FieldType : std::uint8_t { u8 = 1, i32 = 2, u32 = 3, i64 = 4, u64 = 5, f64 = 6, text = 7, list = 8 };
+enum class FieldType : std::uint8_t {
+  u8 = 1,
+  i32 = 2,
+  u32 = 3,
+  i64 = 4,
+  u64 = 5,
+  f64 = 6,
+  text = 7,
+  list = 8
+};
 
 /// Bytes of one value; 0 for texts and lists.
 std::size_t width_of(FieldType type);
 
 template <class T>
 constexpr FieldType type_of() {
-  if constexpr (std::is_enum_v<T>) return type_of<std::underlying_type_t<T>>();
-  else if constexpr (std::is_same_v<T, bool> || std::is_same_v<T, std::uint8_t>) return FieldType::u8;
-  else if constexpr (std::is_same_v<T, std::int32_t>) return FieldType::i32;
-  else if constexpr (std::is_same_v<T, std::uint32_t>) return FieldType::u32;
-  else if constexpr (std::is_same_v<T, std::int64_t>) return FieldType::i64;
-  else if constexpr (std::is_same_v<T, std::uint64_t>) return FieldType::u64;
+  if constexpr (std::is_enum_v<T>)
+    return type_of<std::underlying_type_t<T>>();
+  else if constexpr (std::is_same_v<T, bool> || std::is_same_v<T, std::uint8_t>)
+    return FieldType::u8;
+  else if constexpr (std::is_same_v<T, std::int32_t>)
+    return FieldType::i32;
+  else if constexpr (std::is_same_v<T, std::uint32_t>)
+    return FieldType::u32;
+  else if constexpr (std::is_same_v<T, std::int64_t>)
+    return FieldType::i64;
+  else if constexpr (std::is_same_v<T, std::uint64_t>)
+    return FieldType::u64;
   else {
     static_assert(std::is_same_v<T, double> || std::is_same_v<T, Vec3> || std::is_same_v<T, Quat> ||
                   std::is_same_v<T, std::array<std::int32_t, 3>>);
@@ -58,16 +73,20 @@ constexpr FieldType type_of() {
 /// Numbers in one T: 3 for a vector.
 template <class T>
 constexpr std::size_t numbers_in() {
-  return sizeof(T) / (type_of<T>() == FieldType::u8 ? 1
-                      : type_of<T>() == FieldType::i32 || type_of<T>() == FieldType::u32 ? 4 : 8);
+  return sizeof(T) / (type_of<T>() == FieldType::u8                                      ? 1
+                      : type_of<T>() == FieldType::i32 || type_of<T>() == FieldType::u32 ? 4
+                                                                                         : 8);
 }
 
 template <class T>
-using BitsOf = std::conditional_t<sizeof(T) / numbers_in<T>() == 1, std::uint8_t,
-                                  std::conditional_t<sizeof(T) / numbers_in<T>() == 4, std::uint32_t, std::uint64_t>>;
+using BitsOf =
+    std::conditional_t<sizeof(T) / numbers_in<T>() == 1, std::uint8_t,
+                       std::conditional_t<sizeof(T) / numbers_in<T>() == 4, std::uint32_t, std::uint64_t>>;
 
 template <class S>
-concept Structure_ = requires(S& s) { for_each_field(s, [](std::string_view, auto&) {}); };
+concept Structure_ = requires(S& s) {
+  for_each_field(s, [](std::string_view, auto&) {});
+};
 
 template <class S>
 void put_fields(Bytes& out, const S& structure);
@@ -177,7 +196,8 @@ void get_fields(ByteReader& in, S& structure, std::string& problem);
 /// Fills each visited member from the field of its name; members without a field keep their value.
 class FieldReader {
  public:
-  FieldReader(FieldSet& set, std::uint64_t budget, std::string& problem) : set_(set), budget_(budget), problem_(problem) {}
+  FieldReader(FieldSet& set, std::uint64_t budget, std::string& problem)
+      : set_(set), budget_(budget), problem_(problem) {}
   std::uint64_t budget() const { return budget_; }
 
   template <class T>
@@ -212,7 +232,8 @@ class FieldReader {
       std::vector<BitsOf<T>> bits;
       if (!numbers(*field, bits)) return;
       values.resize(bits.size() / numbers_in<T>());
-      if (!bits.empty()) std::memcpy(static_cast<void*>(values.data()), bits.data(), bits.size() * sizeof bits[0]);
+      if (!bits.empty())
+        std::memcpy(static_cast<void*>(values.data()), bits.data(), bits.size() * sizeof bits[0]);
     }
   }
 
@@ -246,7 +267,8 @@ class FieldReader {
   void list(const FieldView& field, std::vector<T>& structures) {
     ByteReader in(field.body, budget_);
     structures.clear();
-    if (!in.spend(field.count, sizeof(T)) || field.count > in.left()) return complain(field.name, "has too many entries");
+    if (!in.spend(field.count, sizeof(T)) || field.count > in.left())
+      return complain(field.name, "has too many entries");
     for (std::uint64_t i = 0; i < field.count && !in.failed() && problem_.empty(); ++i) {
       ByteReader one(in.take(in.get<std::uint32_t>()), in.budget());
       get_fields(one, structures.emplace_back(), problem_);
@@ -267,7 +289,8 @@ void get_fields(ByteReader& in, S& structure, std::string& problem) {
   FieldReader reader(set, in.budget(), problem);
   if (problem.empty()) for_each_field(structure, reader);
   for (const FieldView& field : set.fields())
-    if (problem.empty() && !field.used) problem = "unknown field " + field.name + ", written by a newer program";
+    if (problem.empty() && !field.used)
+      problem = "unknown field " + field.name + ", written by a newer program";
   if (problem.empty() && !in.at_end()) problem = "bytes are left over";
 }
 

@@ -24,33 +24,40 @@ class Checker {
   }
 
   template <class T>
-  bool length(const std::string& name, const std::vector<T>& values, std::size_t expected, bool may_be_empty = false) {
+  bool length(const std::string& name, const std::vector<T>& values, std::size_t expected,
+              bool may_be_empty = false) {
     const bool good = values.size() == expected || (may_be_empty && values.empty());
-    require(good, name, "has " + std::to_string(values.size()) + " entries, expected " + std::to_string(expected));
+    require(good, name,
+            "has " + std::to_string(values.size()) + " entries, expected " + std::to_string(expected));
     return good;
   }
 
-  void indices(const std::string& name, const std::vector<std::int32_t>& values, std::int64_t lowest, std::int64_t end) {
+  void indices(const std::string& name, const std::vector<std::int32_t>& values, std::int64_t lowest,
+               std::int64_t end) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (values[i] >= lowest && values[i] < end) continue;
-      return require(false, name + place(i), "is " + std::to_string(values[i]) + ", must be in [" + std::to_string(lowest) + ", " +
-                                                 std::to_string(end) + ")");
+      return require(false, name + place(i),
+                     "is " + std::to_string(values[i]) + ", must be in [" + std::to_string(lowest) + ", " +
+                         std::to_string(end) + ")");
     }
   }
 
   void finite(const std::string& name, const std::vector<double>& values) {
-    each(name, values, [](double v) { return std::isfinite(v); }, "must be finite");
+    each(
+        name, values, [](double v) { return std::isfinite(v); }, "must be finite");
   }
   void positive(const std::string& name, const std::vector<double>& values) {
-    each(name, values, [](double v) { return std::isfinite(v) && v > 0; }, "must be finite and above 0");
+    each(
+        name, values, [](double v) { return std::isfinite(v) && v > 0; }, "must be finite and above 0");
   }
   void not_negative(const std::string& name, const std::vector<double>& values) {
-    each(name, values, [](double v) { return std::isfinite(v) && v >= 0; }, "must be finite and not below 0");
+    each(
+        name, values, [](double v) { return std::isfinite(v) && v >= 0; }, "must be finite and not below 0");
   }
 
-  template <class T>
-  void flags(const std::string& name, const std::vector<T>& values) {
-    each(name, values, [](T v) { return v <= 1; }, "must be 0 or 1");
+  void flags(const std::string& name, const std::vector<std::uint8_t>& values, int largest = 1) {
+    each(
+        name, values, [largest](std::uint8_t v) { return v <= largest; }, "has unknown bits");
   }
 
   void points(const std::string& name, const Vec3Array& points, std::size_t expected) {
@@ -73,8 +80,8 @@ class Checker {
 };
 
 /// Ends of elements: in range and not the same sphere.
-void check_ends(Checker& check, const std::string& name, const std::vector<std::int32_t>& a, const std::vector<std::int32_t>& b,
-                std::int64_t sphere_count) {
+void check_ends(Checker& check, const std::string& name, const std::vector<std::int32_t>& a,
+                const std::vector<std::int32_t>& b, std::int64_t sphere_count) {
   check.indices(name + ".a", a, 0, sphere_count);
   if (check.length(name + ".b", b, a.size()))
     for (std::size_t i = 0; i < a.size(); ++i)
@@ -135,15 +142,26 @@ void check_elements(Checker& check, const Model& model) {
   }
 }
 
+void check_loads(Checker& check, const Model& model) {
+  const Loads& loads = model.loads;
+  check.indices("loads.sphere", loads.sphere, 0, static_cast<std::int64_t>(model.sphere_count()));
+  check.points("loads.force", loads.force, loads.size());
+  check.length("loads.start", loads.start, loads.size());
+  check.not_negative("loads.start", loads.start);
+  check.length("loads.ramp", loads.ramp, loads.size());
+  check.not_negative("loads.ramp", loads.ramp);
+}
+
 void check_organs(Checker& check, const Model& model) {
   const auto spheres = static_cast<std::int64_t>(model.sphere_count());
   for (std::size_t i = 0; i < model.organs.size(); ++i) {
     const OrganRange& organ = model.organs[i];
     const std::string name = "organs" + place(i);
-    check.require(organ.first >= 0 && organ.count >= 0 && std::int64_t{organ.first} + organ.count <= spheres, name,
-                  "is not a range of spheres");
-    check.require(std::isfinite(organ.sphere_radius) && std::isfinite(organ.spacing) && std::isfinite(organ.damage_depth), name,
-                  "has a length that is not finite");
+    check.require(organ.first >= 0 && organ.count >= 0 && std::int64_t{organ.first} + organ.count <= spheres,
+                  name, "is not a range of spheres");
+    check.require(std::isfinite(organ.sphere_radius) && std::isfinite(organ.spacing) &&
+                      std::isfinite(organ.damage_depth),
+                  name, "has a length that is not finite");
   }
 }
 
@@ -151,9 +169,13 @@ void check_tools(Checker& check, const Model& model) {
   for (std::size_t i = 0; i < model.tools.size(); ++i) {
     const Tool& tool = model.tools[i];
     const std::string name = "tools" + place(i);
-    check.require(tool.kind == ToolKind::ball || tool.kind == ToolKind::scalpel, name, "is of an unknown kind");
-    check.require(std::isfinite(tool.radius) && tool.radius >= 0 && std::isfinite(tool.blade_length) && tool.blade_length >= 0, name,
-                  "has a size that is not finite or below 0");
+    check.require(tool.kind >= ToolKind::ball && tool.kind <= ToolKind::pin, name, "is of an unknown kind");
+    const std::int64_t lowest = tool.kind == ToolKind::pin ? 0 : -1;
+    check.require(tool.sphere >= lowest && tool.sphere < static_cast<std::int64_t>(model.sphere_count()),
+                  name, "holds a sphere that is not there");
+    check.require(std::isfinite(tool.radius) && tool.radius >= 0 && std::isfinite(tool.blade_length) &&
+                      tool.blade_length >= 0,
+                  name, "has a size that is not finite or below 0");
   }
 }
 
@@ -166,23 +188,26 @@ Errors check_model(const Model& model) {
   check.require(is_finite(model.gravity), "gravity", "must be finite");
   check.points("rest_position", model.rest_position, spheres);
   check.positive("mass", model.mass);
-  check.length("is_fixed", model.is_fixed, spheres);
-  check.flags("is_fixed", model.is_fixed);
+  check.length("held_axes", model.held_axes, spheres);
+  check.flags("held_axes", model.held_axes, kAnchored);
   check.length("contact_radius", model.contact_radius, spheres);
   check.positive("contact_radius", model.contact_radius);
   check.length("layer", model.layer, spheres);
   check_organs(check, model);
   check_elements(check, model);
+  check_loads(check, model);
   check_tools(check, model);
-  check.require(std::isfinite(model.contact_k) && model.contact_k >= 0, "contact_k", "must be finite and not below 0");
+  check.require(std::isfinite(model.contact_k) && model.contact_k >= 0, "contact_k",
+                "must be finite and not below 0");
   check.require(std::isfinite(model.contact_friction) && model.contact_friction >= 0, "contact_friction",
                 "must be finite and not below 0");
 
   const SolverSettings& solver = model.solver;
   check.require(solver.tolerance > 0 && solver.tolerance < 1, "solver.tolerance", "must be in (0, 1)");
-  check.require(std::isfinite(solver.velocity_floor) && solver.velocity_floor > 0, "solver.velocity_floor", "must be above 0");
-  check.require(solver.max_iterations >= 1 && solver.max_iterations <= max_iterations, "solver.max_iterations",
-                "must be in [1, " + std::to_string(max_iterations) + "]");
+  check.require(std::isfinite(solver.velocity_floor) && solver.velocity_floor > 0, "solver.velocity_floor",
+                "must be above 0");
+  check.require(solver.max_iterations >= 1 && solver.max_iterations <= max_iterations,
+                "solver.max_iterations", "must be in [1, " + std::to_string(max_iterations) + "]");
   check.require(solver.substeps >= 1 && solver.substeps <= max_substeps, "solver.substeps",
                 "must be in [1, " + std::to_string(max_substeps) + "]");
   return check.take();
@@ -196,9 +221,10 @@ Errors check_state(const Model& model, const State& state) {
   check.finite("kelvin_elongation", state.kelvin_elongation);
 
   // The sets of severed elements are there together or not at all.
-  const bool cuts = !state.edge_severed.empty() || !state.tpm_severed.empty() || !state.constraint_severed.empty() ||
-                    !state.angle_severed.empty() ||
-                    std::any_of(model.tools.begin(), model.tools.end(), [](const Tool& t) { return t.kind == ToolKind::scalpel; });
+  const bool cuts = !state.edge_severed.empty() || !state.tpm_severed.empty() ||
+                    !state.constraint_severed.empty() || !state.angle_severed.empty() ||
+                    std::any_of(model.tools.begin(), model.tools.end(),
+                                [](const Tool& t) { return t.kind == ToolKind::scalpel; });
   check.length("edge_severed", state.edge_severed, cuts ? model.edges.size() : 0);
   check.flags("edge_severed", state.edge_severed);
   check.length("tpm_severed", state.tpm_severed, cuts ? model.tpms.size() : 0);
@@ -208,14 +234,17 @@ Errors check_state(const Model& model, const State& state) {
   check.length("angle_severed", state.angle_severed, cuts ? model.angle_springs.size() : 0);
   check.flags("angle_severed", state.angle_severed);
   const auto tools = static_cast<std::int32_t>(model.tools.size());
-  check.require(state.last_inputs.tool >= -1 && state.last_inputs.tool < tools, "last_inputs.tool", "is not a tool of the model");
+  check.require(state.last_inputs.tool >= -1 && state.last_inputs.tool < tools, "last_inputs.tool",
+                "is not a tool of the model");
   return check.take();
 }
 
 Errors check_surfaces(const Model& model, const std::vector<Surface>& surfaces) {
   Checker check("surfaces");
   if (!surfaces.empty() && surfaces.size() != model.organs.size())
-    check.require(false, "list", "has " + std::to_string(surfaces.size()) + " entries for " + std::to_string(model.organs.size()) + " organs");
+    check.require(false, "list",
+                  "has " + std::to_string(surfaces.size()) + " entries for " +
+                      std::to_string(model.organs.size()) + " organs");
   for (std::size_t i = 0; i < std::min(surfaces.size(), model.organs.size()); ++i) {
     const Surface& surface = surfaces[i];
     const std::string name = place(i) + ".";
@@ -226,7 +255,8 @@ Errors check_surfaces(const Model& model, const std::vector<Surface>& surfaces) 
         break;
       }
     std::vector<std::int32_t> corners;
-    for (const auto& triangle : surface.triangle) corners.insert(corners.end(), triangle.begin(), triangle.end());
+    for (const auto& triangle : surface.triangle)
+      corners.insert(corners.end(), triangle.begin(), triangle.end());
     check.indices(name + "triangle", corners, 0, vertices);
 
     const SurfaceBinding& binding = surface.binding;
@@ -234,7 +264,9 @@ Errors check_surfaces(const Model& model, const std::vector<Surface>& surfaces) 
     check.indices(name + "binding.sphere", binding.sphere, 0, model.organs[i].count);
     check.length(name + "binding.weight", binding.weight, binding.sphere.size());
     check.finite(name + "binding.weight", binding.weight);
-    if (check.length(name + "binding.first", binding.first, surface.vertex.size() + 1, surface.vertex.empty()) && !binding.first.empty()) {
+    if (check.length(name + "binding.first", binding.first, surface.vertex.size() + 1,
+                     surface.vertex.empty()) &&
+        !binding.first.empty()) {
       check.indices(name + "binding.first", binding.first, 0, entries + 1);
       check.require(binding.first.front() == 0 && binding.first.back() == entries &&
                         std::is_sorted(binding.first.begin(), binding.first.end()),

@@ -7,8 +7,8 @@ namespace ctpm::session_file {
 
 inline constexpr std::int64_t application_id = 0x4354504D;  ///< "CTPM"
 inline constexpr std::int64_t format_version = 1;
-inline constexpr std::int32_t chunk_ticks = 100;     ///< most ticks of a chunk
-inline constexpr double chunk_age = 0.1;             ///< longest time a tick waits for its chunk to close [s]
+inline constexpr std::int32_t chunk_ticks = 100;  ///< most ticks of a chunk
+inline constexpr double chunk_age = 0.1;          ///< longest time a tick waits for its chunk to close [s]
 
 struct Table {
   const char* name;
@@ -17,14 +17,19 @@ struct Table {
 
 /// FORMAT.md section 1, word for word.
 inline constexpr std::array<Table, 4> tables{{
-    {"part", "CREATE TABLE part(name TEXT PRIMARY KEY NOT NULL, size INTEGER NOT NULL, checksum INTEGER NOT NULL, "
-             "data BLOB NOT NULL) WITHOUT ROWID"},
-    {"chunk", "CREATE TABLE chunk(first INTEGER PRIMARY KEY NOT NULL, count INTEGER NOT NULL, size INTEGER NOT NULL, "
-              "checksum INTEGER NOT NULL, data BLOB NOT NULL)"},
-    {"keyframe", "CREATE TABLE keyframe(tick INTEGER PRIMARY KEY NOT NULL, size INTEGER NOT NULL, checksum INTEGER NOT NULL, "
-                 "data BLOB NOT NULL)"},
-    {"event", "CREATE TABLE event(first INTEGER PRIMARY KEY NOT NULL, count INTEGER NOT NULL, size INTEGER NOT NULL, "
-              "checksum INTEGER NOT NULL, data BLOB NOT NULL)"},
+    {"part",
+     "CREATE TABLE part(name TEXT PRIMARY KEY NOT NULL, size INTEGER NOT NULL, checksum INTEGER NOT NULL, "
+     "data BLOB NOT NULL) WITHOUT ROWID"},
+    {"chunk",
+     "CREATE TABLE chunk(first INTEGER PRIMARY KEY NOT NULL, count INTEGER NOT NULL, size INTEGER NOT NULL, "
+     "checksum INTEGER NOT NULL, data BLOB NOT NULL)"},
+    {"keyframe",
+     "CREATE TABLE keyframe(tick INTEGER PRIMARY KEY NOT NULL, size INTEGER NOT NULL, checksum INTEGER NOT "
+     "NULL, "
+     "data BLOB NOT NULL)"},
+    {"event",
+     "CREATE TABLE event(first INTEGER PRIMARY KEY NOT NULL, count INTEGER NOT NULL, size INTEGER NOT NULL, "
+     "checksum INTEGER NOT NULL, data BLOB NOT NULL)"},
 }};
 
 }  // namespace ctpm::session_file

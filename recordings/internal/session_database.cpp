@@ -45,7 +45,8 @@ void remove_with_companions(const std::string& path) {
   for (const char* ending : {"", "-journal", "-wal", "-shm"}) ::unlink((path + ending).c_str());
 }
 
-/// Gives the finished `temporary` its name; a log that belonged to an older file of that name must not be taken for its own.
+/// Gives the finished `temporary` its name; a log that belonged to an older file of that name must not be
+/// taken for its own.
 Result<Done> put_in_place(const std::string& temporary, const std::string& path, bool overwrite) {
   if (overwrite) {
     for (const char* ending : {"-journal", "-wal", "-shm"}) ::unlink((path + ending).c_str());
@@ -63,11 +64,13 @@ Result<Done> check_place(const std::string& path, bool overwrite) {
   struct stat info {};
   if (::stat(folder_of(path).c_str(), &info) != 0 || !S_ISDIR(info.st_mode))
     return Error{path, "the folder " + folder_of(path) + " does not exist", "create it first"};
-  if (::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode)) return Error{path, "is not a regular file", ""};
+  if (::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode))
+    return Error{path, "is not a regular file", ""};
   if (overwrite) return Done{};
   if (exists(path)) return Error{path, "exists already", "choose another name, or allow it to be replaced"};
   if (exists(path + "-wal"))
-    return Error{path + "-wal", "is left over from another session of that name", "move it to its session file, or delete it"};
+    return Error{path + "-wal", "is left over from another session of that name",
+                 "move it to its session file, or delete it"};
   return Done{};
 }
 
@@ -99,9 +102,12 @@ std::vector<NamedContent> start_parts(const SessionStart& start, const SessionId
 }
 
 std::string sql_of_new_file() {
-  std::string sql = "PRAGMA page_size=4096; PRAGMA encoding='UTF-8'; PRAGMA journal_mode=DELETE; PRAGMA synchronous=FULL; BEGIN;";
+  std::string sql =
+      "PRAGMA page_size=4096; PRAGMA encoding='UTF-8'; PRAGMA journal_mode=DELETE; PRAGMA synchronous=FULL; "
+      "BEGIN;";
   for (const Table& table : tables) sql += std::string(table.sql) + ";";
-  return sql + "PRAGMA application_id=" + std::to_string(application_id) + "; PRAGMA user_version=" + std::to_string(format_version);
+  return sql + "PRAGMA application_id=" + std::to_string(application_id) +
+         "; PRAGMA user_version=" + std::to_string(format_version);
 }
 
 }  // namespace
@@ -109,14 +115,16 @@ std::string sql_of_new_file() {
 SessionIdentity new_identity(const std::string& build) {
   SessionIdentity identity;
   std::uint64_t random[3] = {};
-  CTPM_CHECK(::getrandom(random, sizeof random, 0) == static_cast<ssize_t>(sizeof random), "random bytes from the system");
+  CTPM_CHECK(::getrandom(random, sizeof random, 0) == static_cast<ssize_t>(sizeof random),
+             "random bytes from the system");
   char text[33];
   std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(random[0]),
                 static_cast<unsigned long long>(random[1]));
   identity.id = text;
   identity.seed = random[2];
   identity.build = build;
-  identity.created_unix_s = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  identity.created_unix_s =
+      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   return identity;
 }
 
@@ -147,7 +155,9 @@ Result<SessionTables> SessionTables::open_for_writing(const std::string& path) {
   if (!database) return database.errors();
   SessionTables tables;
   tables.database_ = std::move(*database);
-  if (auto r = tables.database_.run("PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL; PRAGMA wal_autocheckpoint=1024;"); !r)
+  if (auto r = tables.database_.run(
+          "PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL; PRAGMA wal_autocheckpoint=1024;");
+      !r)
     return r.errors();
   if (auto r = tables.prepare(); !r) return r.errors();
   return tables;
@@ -191,8 +201,8 @@ Result<Done> SessionTables::close() {
   return database_.close();
 }
 
-Result<Done> create_session_file(const std::string& path, const SessionStart& start, const SessionIdentity& identity, bool overwrite,
-                                 int level) {
+Result<Done> create_session_file(const std::string& path, const SessionStart& start,
+                                 const SessionIdentity& identity, bool overwrite, int level) {
   if (auto r = check_place(path, overwrite); !r) return r;
   const std::string temporary = path + "." + identity.id.substr(0, 8) + ".part";
   const auto write = [&]() -> Result<Done> {
@@ -204,8 +214,10 @@ Result<Done> create_session_file(const std::string& path, const SessionStart& st
     if (auto r = tables.prepare(); !r) return r;
     for (const NamedContent& part : start_parts(start, identity)) {
       const std::uint64_t seed = std::strcmp(part.name, "session") == 0 ? 0 : identity.seed;
-      if (part.content.size() > max_part_size) return Error{path, part_name(part.name) + " is larger than a session file may hold", ""};
-      if (auto r = tables.insert_part(part.name, pack(part_name(part.name), part.content, seed, level)); !r) return r;
+      if (part.content.size() > max_part_size)
+        return Error{path, part_name(part.name) + " is larger than a session file may hold", ""};
+      if (auto r = tables.insert_part(part.name, pack(part_name(part.name), part.content, seed, level)); !r)
+        return r;
     }
     Bytes state;
     put_fields(state, start.initial_state);

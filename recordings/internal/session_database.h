@@ -12,14 +12,14 @@ namespace ctpm::session_file {
 
 /// The part `session`.
 struct SessionIdentity {
-  std::string id;             ///< 32 hexadecimal digits
-  std::uint64_t seed = 0;     ///< of the checksums of all other blocks
-  std::string build;          ///< build fingerprint
+  std::string id;          ///< 32 hexadecimal digits
+  std::uint64_t seed = 0;  ///< of the checksums of all other blocks
+  std::string build;       ///< build fingerprint
   double created_unix_s = 0;
 };
 
 template <class S, class Visit>
-  requires std::is_same_v<std::remove_const_t<S>, SessionIdentity>
+requires std::is_same_v<std::remove_const_t<S>, SessionIdentity>
 void for_each_field(S& s, Visit&& visit) {
   visit("id", s.id);
   visit("seed", s.seed);
@@ -36,10 +36,10 @@ std::string chunk_name(std::int64_t first, std::int64_t count);
 std::string keyframe_name(std::int64_t tick);
 std::string event_name(std::int64_t first, std::int64_t count);
 
-/// Makes a complete session file without ticks at `path`, through a file beside it that is synced and renamed. Nothing is left behind after an
-/// error. `overwrite`: replace what is there.
-Result<Done> create_session_file(const std::string& path, const SessionStart& start, const SessionIdentity& identity, bool overwrite,
-                                 int level);
+/// Makes a complete session file without ticks at `path`, through a file beside it that is synced and
+/// renamed. Nothing is left behind after an error. `overwrite`: replace what is there.
+Result<Done> create_session_file(const std::string& path, const SessionStart& start,
+                                 const SessionIdentity& identity, bool overwrite, int level);
 
 /// The tables of an open session file, for writing. All errors are at the file's path.
 class SessionTables {
@@ -59,7 +59,8 @@ class SessionTables {
   Result<Done> close();
 
  private:
-  friend Result<Done> create_session_file(const std::string&, const SessionStart&, const SessionIdentity&, bool, int);
+  friend Result<Done> create_session_file(const std::string&, const SessionStart&, const SessionIdentity&,
+                                          bool, int);
   Result<Done> prepare();
   Result<Done> insert(Statement& statement, int bound, const Block& block);
 

@@ -20,8 +20,8 @@ struct Run {
   std::int64_t end() const { return first + static_cast<std::int64_t>(items.size()); }
 };
 
-/// Reads and proves single blocks of a file that is not trusted. What belongs together is the business of SessionReader and
-/// recover_session. Every error is at the file's path and names the block.
+/// Reads and proves single blocks of a file that is not trusted. What belongs together is the business of
+/// SessionReader and recover_session. Every error is at the file's path and names the block.
 class SessionStore {
  public:
   /// `salvage`: goes on where the container contradicts itself, and does not ask for its header numbers.
@@ -60,8 +60,8 @@ class SessionStore {
   Result<Done> read_identity();
   template <class Fill>
   Result<Done> decode_fields(const std::string& name, const Bytes& content, Fill&& fill) const;
-  Result<std::optional<Bytes>> block_of(Statement& statement, const std::string& what, bool has_count, std::uint64_t max_size,
-                                        std::int64_t& first, std::int64_t& count);
+  Result<std::optional<Bytes>> block_of(Statement& statement, const std::string& what, bool has_count,
+                                        std::uint64_t max_size, std::int64_t& first, std::int64_t& count);
 
   Database database_;
   Statement part_, chunk_, keyframe_, event_;

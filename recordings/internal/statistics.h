@@ -23,7 +23,7 @@ class StatisticsCounter {
 
 /// The part `finish`: fields of a SessionStatistics, with the units in their names.
 template <class S, class Visit>
-  requires std::is_same_v<std::remove_const_t<S>, SessionStatistics>
+requires std::is_same_v<std::remove_const_t<S>, SessionStatistics>
 void for_each_field(S& s, Visit&& visit) {
   visit("ticks", s.ticks);
   visit("keyframes", s.keyframes);

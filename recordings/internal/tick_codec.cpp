@@ -31,22 +31,23 @@ void set_bits(T& value, std::uint64_t bits) {
   value = std::bit_cast<T>(static_cast<Bits<T>>(bits));
 }
 
-#define CTPM_COLUMN(name, member)                                                 \
-  Column {                                                                        \
-    name, type_of<decltype(TickRecord::member)>(),                                \
-        [](const TickRecord& r) { return bits_of(r.member); },                    \
-        [](TickRecord& r, std::uint64_t bits) { set_bits(r.member, bits); }       \
+#define CTPM_COLUMN(name, member)                                                                         \
+  Column {                                                                                                \
+    name, type_of<decltype(TickRecord::member)>(), [](const TickRecord& r) { return bits_of(r.member); }, \
+        [](TickRecord& r, std::uint64_t bits) { set_bits(r.member, bits); }                               \
   }
-#define CTPM_COLUMN_OF(name, type, member)                                        \
-  Column {                                                                        \
-    name, type, [](const TickRecord& r) { return bits_of(r.member); },            \
-        [](TickRecord& r, std::uint64_t bits) { set_bits(r.member, bits); }       \
+#define CTPM_COLUMN_OF(name, type, member)                                  \
+  Column {                                                                  \
+    name, type, [](const TickRecord& r) { return bits_of(r.member); },      \
+        [](TickRecord& r, std::uint64_t bits) { set_bits(r.member, bits); } \
   }
 
 constexpr double nanoseconds = 1e9;  // in a second
 
 std::uint64_t tick_time_ns(const TickRecord& record) {
-  return record.tick_time > 0 ? static_cast<std::uint64_t>(std::llround(std::min(record.tick_time, 1e9) * nanoseconds)) : 0;
+  return record.tick_time > 0
+             ? static_cast<std::uint64_t>(std::llround(std::min(record.tick_time, 1e9) * nanoseconds))
+             : 0;
 }
 
 const std::array columns = {
@@ -74,10 +75,14 @@ const std::array columns = {
 
 const char* type_name(FieldType type) {
   switch (type) {
-    case FieldType::i32: return "i32";
-    case FieldType::u32: return "u32";
-    case FieldType::u64: return "u64";
-    default: return "f64";
+    case FieldType::i32:
+      return "i32";
+    case FieldType::u32:
+      return "u32";
+    case FieldType::u64:
+      return "u64";
+    default:
+      return "f64";
   }
 }
 
@@ -97,7 +102,8 @@ void put_records(Bytes& out, std::span<const TickRecord> records) {
     if (width_of(column.type) == 8) {
       put_array<std::uint64_t>(out, wide);
     } else {
-      std::transform(wide.begin(), wide.end(), narrow.begin(), [](std::uint64_t bits) { return static_cast<std::uint32_t>(bits); });
+      std::transform(wide.begin(), wide.end(), narrow.begin(),
+                     [](std::uint64_t bits) { return static_cast<std::uint32_t>(bits); });
       put_array<std::uint32_t>(out, narrow);
     }
   }
@@ -112,7 +118,8 @@ Result<RecordDecoder> RecordDecoder::create(const std::string& text) {
     });
     const std::size_t index = found - columns.begin();
     if (found == columns.end())
-      return Error{"", "part columns: unknown column '" + line.substr(0, 40) + "', written by a newer program", ""};
+      return Error{
+          "", "part columns: unknown column '" + line.substr(0, 40) + "', written by a newer program", ""};
     if (std::count(decoder.columns_.begin(), decoder.columns_.end(), index) > 0)
       return Error{"", "part columns: column '" + line + "' stands twice", ""};
     decoder.columns_.push_back(index);

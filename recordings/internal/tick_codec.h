@@ -20,7 +20,8 @@ void put_records(Bytes& out, std::span<const TickRecord> records);
 /// Reads chunks by the columns that a file names.
 class RecordDecoder {
  public:
-  /// `columns` is the part `columns` of a file. Errors: not a list of columns, a column unknown to this program or of another type.
+  /// `columns` is the part `columns` of a file. Errors: not a list of columns, a column unknown to this
+  /// program or of another type.
   static Result<RecordDecoder> create(const std::string& columns);
 
   /// The `count` records of a chunk's content. Error: it does not decode to exactly these.

@@ -1,0 +1,355 @@
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <thread>
+
+#include "core/fields.h"
+#include "tests/recordings/sessions.h"
+
+namespace ctpm {
+namespace {
+
+using namespace ctpm::testing;
+
+/// Every field of two structures as bytes, so that they are compared to the bit.
+template <class S>
+std::string bytes_of(const S& structure) {
+  std::string bytes;
+  const auto visit = [&](auto& self, std::string_view name, const auto& value) -> void {
+    using T = std::decay_t<decltype(value)>;
+    bytes += name;
+    if constexpr (std::is_same_v<T, std::string>) {
+      bytes += value;
+    } else if constexpr (requires {
+                           value.size();
+                           value.data();
+                         }) {
+      bytes += std::to_string(value.size());
+      for (const auto& item : value) {
+        if constexpr (std::is_arithmetic_v<std::decay_t<decltype(item)>>)
+          bytes.append(reinterpret_cast<const char*>(&item), sizeof item);
+        else
+          for_each_field(item, [&](std::string_view n, const auto& v) { self(self, n, v); });
+      }
+    } else {
+      bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+  };
+  for_each_field(structure, [&](std::string_view name, const auto& value) { visit(visit, name, value); });
+  return bytes;
+}
+
+void expect_same_surface(const Surface& a, const Surface& b) {
+  EXPECT_EQ(a.vertex, b.vertex);
+  EXPECT_EQ(a.triangle, b.triangle);
+  EXPECT_EQ(a.binding.first, b.binding.first);
+  EXPECT_EQ(a.binding.sphere, b.binding.sphere);
+  EXPECT_EQ(a.binding.weight, b.binding.weight);
+}
+
+TEST(Session, WhatWasWrittenIsRead) {
+  const Folder folder;
+  SessionStart start = small_start();
+  start.scene_text = std::string("bytes\0 of any kind \xff", 20);
+  start.model.gravity = {0, 0, -9.81};
+  start.initial_state.tick = 5;
+  shake(start.initial_state, 1e-4, 1e-3);
+  const Lived lived = record_session(folder / "a.ctpm", start, 1234);
+
+  auto reader = SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(reader) << text_of(reader.errors());
+  EXPECT_EQ(reader->start().scene_text, start.scene_text);
+  EXPECT_EQ(reader->start().look, start.look);
+  EXPECT_EQ(reader->start().metadata, start.metadata);
+  EXPECT_EQ(reader->start().build_fingerprint, start.build_fingerprint);
+  EXPECT_TRUE(bytes_of(reader->start().model) == bytes_of(start.model));
+  EXPECT_TRUE(bytes_of(reader->start().initial_state) == bytes_of(start.initial_state));
+  ASSERT_EQ(reader->start().surfaces.size(), 1u);
+  expect_same_surface(reader->start().surfaces[0], start.surfaces[0]);
+  EXPECT_EQ(reader->session_id().size(), 32u);
+  EXPECT_TRUE(reader->ended_cleanly());
+  ASSERT_EQ(reader->tick_count(), 1234);
+  const auto records = reader->ticks(0, 1234);
+  ASSERT_TRUE(records) << text_of(records.errors());
+  EXPECT_TRUE(*records == lived.records);
+  EXPECT_TRUE(reader->check_all());
+}
+
+TEST(Session, AnyRangeOfTicksIsTheSameAsThatPartOfTheWhole) {
+  const Folder folder;
+  const Lived lived = record_session(folder / "a.ctpm", small_start(), 555);
+  auto reader = SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(reader);
+  for (const auto& [from, to] :
+       {std::pair{0, 0}, {0, 1}, {99, 101}, {100, 200}, {37, 555}, {554, 555}, {555, 555}}) {
+    const auto records = reader->ticks(from, to);
+    ASSERT_TRUE(records);
+    EXPECT_TRUE(std::equal(records->begin(), records->end(), lived.records.begin() + from,
+                           lived.records.begin() + to))
+        << from;
+  }
+  for (const auto& [from, to] : {std::pair{-1, 1}, {5, 4}, {0, 556}}) EXPECT_FALSE(reader->ticks(from, to));
+}
+
+TEST(Session, KeyframesHoldTheStateBeforeTheirTick) {
+  const Folder folder;
+  const SessionStart start = small_start();
+  std::vector<State> states{start.initial_state};
+  auto writer =
+      SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 100});
+  ASSERT_TRUE(writer);
+  live(start, 450, [&](const State& after, const TickRecord& record) {
+    states.push_back(after);
+    writer->append(after, record);
+    if (record.state_hash % 8 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  });
+  const auto statistics = writer->finish();
+  ASSERT_TRUE(statistics) << text_of(statistics.errors());
+  EXPECT_EQ(statistics->keyframes, 4);
+
+  auto reader = SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(*reader->keyframe_ticks(), (std::vector<std::int64_t>{0, 100, 200, 300, 400}));
+  for (const std::int64_t tick : {0, 1, 99, 100, 101, 250, 399, 400, 450}) {
+    const auto keyframe = reader->keyframe_at_or_before(tick);
+    ASSERT_TRUE(keyframe) << text_of(keyframe.errors());
+    EXPECT_EQ(keyframe->tick, tick / 100 * 100);
+    EXPECT_TRUE(bytes_of(keyframe->state) == bytes_of(states[keyframe->tick])) << tick;
+  }
+}
+
+TEST(Session, EventsAndStatisticsComeBack) {
+  const Folder folder;
+  const SessionStart start = small_start();
+  std::vector<Event> given;
+  auto writer = SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true});
+  ASSERT_TRUE(writer);
+  const Lived lived = live(start, 1000, [&](const State& after, const TickRecord& record) {
+    writer->append(after, record);
+    if (after.tick % 10 != 0) return;
+    given.push_back({after.tick - 1,
+                     after.tick % 20 == 0 ? EventKind::late_tick : EventKind::contact_begins,
+                     "event",
+                     {1.5, -2}});
+    writer->event(given.back().tick, given.back().kind, given.back().text, given.back().values);
+  });
+  const auto written = writer->finish({{"input_age_p99_s", 0.25}});
+  ASSERT_TRUE(written);
+
+  auto reader = SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(reader);
+  const auto events = reader->events();
+  ASSERT_TRUE(events) << text_of(events.errors());
+  EXPECT_EQ(*events, given);
+  const auto statistics = reader->statistics();
+  ASSERT_TRUE(statistics);
+  EXPECT_EQ(statistics->ticks, 1000);
+  EXPECT_EQ(statistics->events, 100);
+  EXPECT_EQ(statistics->late_ticks, 50);
+  EXPECT_EQ(statistics->values, (std::vector<NamedValue>{{"input_age_p99_s", 0.25}}));
+
+  // Percentiles by nearest rank, worked out here by sorting.
+  std::vector<double> times;
+  double max_force = 0, max_depth = 0;
+  std::int64_t severed = 0;
+  for (const TickRecord& record : lived.records) {
+    times.push_back(record.tick_time);
+    max_force = std::max(max_force, norm(record.tool_force));
+    max_depth = std::max(max_depth, record.depth);
+    severed += record.severed;
+  }
+  std::sort(times.begin(), times.end());
+  const double float_step = 1e-7;  // times are kept in single precision for the percentiles
+  EXPECT_NEAR(statistics->tick_time_p50, times[499], float_step * times[499]);
+  EXPECT_NEAR(statistics->tick_time_p99, times[989], float_step * times[989]);
+  EXPECT_NEAR(statistics->tick_time_p999, times[998], float_step * times[998]);
+  EXPECT_EQ(statistics->tick_time_max, times[999]);
+  EXPECT_EQ(statistics->max_force, max_force);
+  EXPECT_EQ(statistics->max_depth, max_depth);
+  EXPECT_EQ(statistics->severed, severed);
+  EXPECT_GT(severed, 0);
+  EXPECT_GT(max_force, 0);
+}
+
+TEST(Session, EveryBitPatternOfARecordSurvives) {
+  const Folder folder;
+  const SessionStart start = small_start();
+  const double strange[] = {
+      0.0,      -0.0, std::nan("7"), -std::nan("1"), std::numeric_limits<double>::infinity(), 5e-324,
+      -1.7e308, 1.0};
+  std::vector<TickRecord> given;
+  Noise noise;
+  for (int i = 0; i < 777; ++i) {
+    TickRecord record;
+    record.inputs.tool = i % 5 == 0 ? std::numeric_limits<std::int32_t>::min() : i % 3 - 1;
+    record.inputs.position = {strange[i % 8], noise.next(), strange[(i / 8) % 8]};
+    record.inputs.world_from_tool = {noise.next(), strange[(i / 3) % 8], 0, 1e-310};
+    record.inputs.buttons = i % 7 == 0 ? 0xffffffffu : 0;
+    record.tool_force = {strange[(i / 5) % 8], 0, -1};
+    record.depth = strange[(i + 3) % 8];
+    record.status = -i, record.iterations = i * i, record.contacts = 3, record.severed = i % 2;
+    record.tick_time = 1e-9 * (i * 7919 % 1000003);
+    record.state_hash = 0x9e3779b97f4a7c15ull * static_cast<std::uint64_t>(i);
+    given.push_back(record);
+  }
+  auto writer = SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true});
+  ASSERT_TRUE(writer);
+  for (const TickRecord& record : given) writer->append(start.initial_state, record);
+  ASSERT_TRUE(writer->finish());
+  auto reader = SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(reader);
+  const auto got = reader->ticks(0, 777);
+  ASSERT_TRUE(got);
+  for (int i = 0; i < 777; ++i) {
+    EXPECT_EQ(std::memcmp(&given[i].inputs.position, &(*got)[i].inputs.position, sizeof(Vec3)), 0) << i;
+    EXPECT_EQ(std::memcmp(&given[i].inputs.world_from_tool, &(*got)[i].inputs.world_from_tool, sizeof(Quat)),
+              0)
+        << i;
+    EXPECT_EQ(std::memcmp(&given[i].tool_force, &(*got)[i].tool_force, sizeof(Vec3)), 0) << i;
+    EXPECT_EQ(std::memcmp(&given[i].depth, &(*got)[i].depth, sizeof(double)), 0) << i;
+    EXPECT_EQ(given[i].inputs.tool, (*got)[i].inputs.tool);
+    EXPECT_EQ(given[i].inputs.buttons, (*got)[i].inputs.buttons);
+    EXPECT_EQ(given[i].status, (*got)[i].status);
+    EXPECT_EQ(given[i].iterations, (*got)[i].iterations);
+    EXPECT_EQ(given[i].state_hash, (*got)[i].state_hash);
+    EXPECT_DOUBLE_EQ(given[i].tick_time, (*got)[i].tick_time);
+  }
+}
+
+TEST(Session, ACleanEndLeavesOneFile) {
+  const Folder folder;
+  record_session(folder / "a.ctpm", small_start(), 300);
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"a.ctpm"});
+  ASSERT_TRUE(SessionReader::open(folder / "a.ctpm"));
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"a.ctpm"}) << "reading leaves nothing behind";
+}
+
+TEST(Session, ATickIsSavedWithin200MsThoughNoOtherFollows) {
+  const Folder folder;
+  const SessionStart start = small_start();
+  auto writer = SessionWriter::create(folder / "a.ctpm", start);
+  ASSERT_TRUE(writer);
+  for (int i = 0; i < 7; ++i) writer->append(start.initial_state, {});
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(200);
+  while (writer->status().committed < 7 && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_EQ(writer->status().committed, 7);
+
+  // Another program sees it while the session goes on.
+  auto reader = SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(reader) << text_of(reader.errors());
+  EXPECT_EQ(reader->tick_count(), 7);
+  EXPECT_FALSE(reader->ended_cleanly());
+}
+
+TEST(Session, ASessionThatIsDroppedIsSavedButHasNoEnd) {
+  const Folder folder;
+  const SessionStart start = small_start();
+  Lived lived;
+  {
+    auto writer = SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true});
+    ASSERT_TRUE(writer);
+    lived = live(start, 333,
+                 [&](const State& after, const TickRecord& record) { writer->append(after, record); });
+  }
+  auto reader = SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(reader) << text_of(reader.errors());
+  EXPECT_FALSE(reader->ended_cleanly());
+  ASSERT_EQ(reader->tick_count(), 333);
+  EXPECT_TRUE(*reader->ticks(0, 333) == lived.records);
+  EXPECT_EQ(reader->statistics()->ticks, 333);
+}
+
+TEST(Session, AnExistingFileIsKeptUnlessItMayBeReplaced) {
+  const Folder folder;
+  write_bytes(folder / "a.ctpm", {'o', 'l', 'd'});
+  const auto refused = SessionWriter::create(folder / "a.ctpm", small_start());
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.errors()[0].where, folder / "a.ctpm");
+  EXPECT_EQ(refused.errors()[0].message, "exists already");
+  EXPECT_EQ(read_bytes(folder / "a.ctpm"), (std::vector<char>{'o', 'l', 'd'}));
+  EXPECT_EQ(folder.names().size(), 1u);
+
+  auto writer = SessionWriter::create(folder / "a.ctpm", small_start(), {.overwrite = true});
+  ASSERT_TRUE(writer) << text_of(writer.errors());
+  ASSERT_TRUE(writer->finish());
+  EXPECT_TRUE(SessionReader::open(folder / "a.ctpm"));
+  EXPECT_EQ(folder.names().size(), 1u);
+}
+
+TEST(Session, AnErrorAtCreationLeavesNothingBehind) {
+  const Folder folder;
+  const auto missing = SessionWriter::create(folder / "no/a.ctpm", small_start());
+  ASSERT_FALSE(missing);
+  EXPECT_NE(missing.errors()[0].message.find("does not exist"), std::string::npos);
+  EXPECT_EQ(missing.errors()[0].where, folder / "no/a.ctpm");
+  EXPECT_TRUE(folder.names().empty());
+
+  SessionStart broken = small_start();
+  broken.model.edges.a[3] = 27;
+  broken.initial_state.velocity.x.pop_back();
+  const auto refused = SessionWriter::create(folder / "a.ctpm", broken);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.errors()[0].message, "edges.a[3] is 27, must be in [0, 27)");
+  EXPECT_TRUE(folder.names().empty());
+
+  EXPECT_FALSE(SessionWriter::create(folder.path(), small_start()));
+  EXPECT_FALSE(SessionWriter::create("/proc/a.ctpm", small_start()));
+  EXPECT_FALSE(SessionWriter::create("", small_start()));
+}
+
+TEST(Session, ALeftOverLogIsNotTakenForItsOwn) {
+  const Folder folder;
+  write_bytes(folder / "a.ctpm-wal", {'l', 'o', 'g'});
+  const auto refused = SessionWriter::create(folder / "a.ctpm", small_start());
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.errors()[0].where, folder / "a.ctpm-wal");
+  EXPECT_EQ(folder.names().size(), 1u);
+}
+
+TEST(StateHash, DependsOnEveryFieldAndEveryBit) {
+  SessionStart start = small_start();
+  State state = start.initial_state;
+  const std::uint64_t before = state_hash(state);
+  EXPECT_EQ(state_hash(state), before);
+  int fields = 0;
+  for_each_field(state, [&](std::string_view name, auto& member) {
+    using T = std::decay_t<decltype(member)>;
+    const auto flip = [&](void* byte) { *static_cast<unsigned char*>(byte) ^= 1; };
+    if constexpr (requires { member.push_back({}); }) {
+      if (!member.empty()) {
+        flip(&member.back());
+        EXPECT_NE(state_hash(state), before) << name;
+        flip(&member.back());
+      }
+      member.push_back({});
+      EXPECT_NE(state_hash(state), before) << name << " with one more";
+      member.pop_back();
+    } else {
+      flip(reinterpret_cast<char*>(&member) + sizeof(T) - 1);
+      EXPECT_NE(state_hash(state), before) << name;
+      flip(reinterpret_cast<char*>(&member) + sizeof(T) - 1);
+    }
+    ++fields;
+  });
+  EXPECT_EQ(fields, 16);
+  EXPECT_EQ(state_hash(state), before);
+}
+
+TEST(StateHash, TellsWhereOneArrayEndsAndTheNextBegins) {
+  State a, b;
+  a.position.x = {1, 0}, a.position.y = {2};
+  b.position.x = {1}, b.position.y = {0, 2};
+  EXPECT_NE(state_hash(a), state_hash(b));
+}
+
+TEST(StateHash, IsWhatTheFormatSays) {
+  // XXH3-64 of the 160 bytes that FORMAT.md section 5 says, laid out by another program.
+  EXPECT_EQ(state_hash(State{}), 0x518046858ef5aa7cull);
+}
+
+}  // namespace
+}  // namespace ctpm

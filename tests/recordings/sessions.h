@@ -1,0 +1,140 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "core/step.h"
+#include "core/surface.h"
+#include "recordings/session_reader.h"
+#include "recordings/session_writer.h"
+#include "recordings/state_hash.h"
+#include "tests/core/blocks.h"
+
+namespace ctpm::testing {
+
+/// A folder of its own for one test, gone with it.
+class Folder {
+ public:
+  Folder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "ctpm-recordings-XXXXXX").string();
+    CTPM_CHECK(::mkdtemp(pattern.data()), "a temporary folder");
+    path_ = pattern;
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  std::string operator/(const std::string& name) const { return path_ + "/" + name; }
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(path_))
+      names.push_back(entry.path().filename().string());
+    return names;
+  }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+inline std::vector<char> read_bytes(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+inline void write_bytes(const std::string& path, const std::vector<char>& bytes) {
+  std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
+
+inline std::string text_of(const Errors& errors) {
+  std::string text;
+  for (const Error& error : errors) text += to_string(error) + "\n";
+  return text;
+}
+
+/// A tetrahedron around a few spheres, bound to the first four.
+inline Surface small_surface() {
+  Surface surface;
+  surface.vertex = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0, 0, 0.01}};
+  surface.triangle = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+  surface.binding.first = {0, 1, 2, 3, 5};
+  surface.binding.sphere = {0, 1, 2, 3, 0};
+  surface.binding.weight = {1, 1, 1, 0.25, 0.75};
+  return surface;
+}
+
+/// The start of a session on a small block with a ball and a scalpel.
+inline SessionStart small_start(int ni = 3, int nj = 3, int nk = 3) {
+  SessionStart start;
+  start.scene_text = "{ \"scene\": \"a block\" }\n";
+  start.look = "block rose";
+  start.model = make_block_model(ni, nj, nk);
+  start.model.tools = {ball(0.006), scalpel(0.02)};
+  start.surfaces = {small_surface()};
+  start.initial_state = rest_state(start.model);
+  start.build_fingerprint = "test build";
+  start.metadata = {{"user", "a trainee"}, {"empty", ""}};
+  return start;
+}
+
+/// What the hand does in these tests: presses the block from above with the ball, then sweeps the scalpel
+/// through it.
+inline Inputs scripted_inputs(std::int64_t tick, double top) {
+  Inputs inputs;
+  const double t = 1e-3 * static_cast<double>(tick);
+  if (tick % 700 < 400) {
+    inputs.tool = 0;
+    inputs.position = {0.001, 0.0005, top + 0.012 - 0.004 * std::sin(4 * t) * std::sin(4 * t)};
+  } else {
+    inputs.tool = 1;
+    inputs.position = {-0.03 + 2e-4 * static_cast<double>(tick % 700 - 400), 0.0061, top - 0.01};
+    inputs.buttons = 1;
+  }
+  return inputs;
+}
+
+/// A session that was really simulated: what was recorded, in memory.
+struct Lived {
+  std::vector<TickRecord> records;
+  State last;
+};
+
+/// Simulates `ticks` ticks from the start and gives each to `each(state, record)`.
+template <class Each>
+Lived live(const SessionStart& start, std::int64_t ticks, Each&& each) {
+  Lived lived;
+  lived.last = start.initial_state;
+  Stepper stepper(start.model);
+  const double top = start.model.rest_position.z.back();
+  for (std::int64_t tick = 0; tick < ticks; ++tick) {
+    const Inputs inputs = scripted_inputs(tick, top);
+    const StepReport report = stepper.step(lived.last, inputs);
+    lived.records.push_back(
+        make_record(inputs, report, static_cast<double>(250000 + tick % 977) / 1e9, state_hash(lived.last)));
+    each(lived.last, lived.records.back());
+  }
+  return lived;
+}
+
+/// Records a whole session and ends it. The writer may wait: these sessions run faster than a disk.
+inline Lived record_session(const std::string& path, const SessionStart& start, std::int64_t ticks,
+                            std::int32_t keyframe_ticks = 250) {
+  WriterOptions options;
+  options.keyframe_ticks = keyframe_ticks;
+  options.wait_when_full = true;
+  auto writer = SessionWriter::create(path, start, options);
+  CTPM_CHECK(bool(writer), "a test's session can be created");
+  const Lived lived = live(start, ticks, [&](const State& after, const TickRecord& record) {
+    writer->append(after, record);
+    if (record.severed > 0)
+      writer->event(after.tick - 1, EventKind::cut, "severed", {double(record.severed)});
+  });
+  CTPM_CHECK(bool(writer->finish({{"input_age_p50_s", 0.0005}})), "a test's session can be finished");
+  return lived;
+}
+
+}  // namespace ctpm::testing

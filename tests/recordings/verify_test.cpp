@@ -1,0 +1,176 @@
+#include <algorithm>
+
+#include "recordings/recover.h"
+#include "recordings/replay.h"
+#include "tests/recordings/sessions.h"
+
+namespace ctpm {
+namespace {
+
+using namespace ctpm::testing;
+
+TEST(Verify, ASessionThatWasLivedIsTheSame) {
+  const Folder folder;
+  record_session(folder / "a.ctpm", small_start(), 900);
+  auto reader = SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(reader);
+  std::int64_t done = 0;
+  const auto verdict = verify_session(*reader, {.progress = [&](std::int64_t d, std::int64_t total) {
+    EXPECT_EQ(total, 900);
+    EXPECT_GT(d, done);
+    done = d;
+  }});
+  ASSERT_TRUE(verdict) << text_of(verdict.errors());
+  EXPECT_TRUE(verdict->same) << to_string(*verdict);
+  EXPECT_EQ(verdict->ticks_compared, 900);
+  EXPECT_EQ(verdict->first_tick, -1);
+  EXPECT_EQ(done, 900);
+}
+
+TEST(Verify, ARangeIsVerifiedFromTheKeyframeBeforeIt) {
+  const Folder folder;
+  record_session(folder / "a.ctpm", small_start(), 900, 100);
+  auto reader = SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(reader);
+  const auto verdict = verify_session(*reader, {.from = 357, .to = 480});
+  ASSERT_TRUE(verdict) << text_of(verdict.errors());
+  EXPECT_TRUE(verdict->same) << to_string(*verdict);
+  EXPECT_EQ(verdict->ticks_compared, 123);
+  EXPECT_FALSE(verify_session(*reader, {.from = 5, .to = 4}));
+  EXPECT_FALSE(verify_session(*reader, {.from = 0, .to = 901}));
+}
+
+TEST(Verify, NamesTheFirstTickTheSphereTheQuantityAndTheSize) {
+  const Folder folder;
+  const SessionStart start = small_start();
+  constexpr std::int64_t wrong_tick = 130;
+  constexpr std::int32_t wrong_sphere = 21;
+  constexpr double push = 1e-5;  // [m]
+  // The recorded session is pushed at one sphere behind the recording's back; the replay is not.
+  auto writer = SessionWriter::create(folder / "a.ctpm", start,
+                                      {.wait_when_full = true, .keyframe_ticks = wrong_tick + 1});
+  ASSERT_TRUE(writer);
+  State state = start.initial_state;
+  Stepper stepper(start.model);
+  for (std::int64_t tick = 0; tick < 200; ++tick) {
+    const Inputs inputs = scripted_inputs(tick, start.model.rest_position.z.back());
+    const StepReport report = stepper.step(state, inputs);
+    if (tick == wrong_tick) state.position.y[wrong_sphere] += push;
+    writer->append(state, make_record(inputs, report, 0, state_hash(state)));
+  }
+  ASSERT_TRUE(writer->finish());
+
+  auto reader = SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(reader);
+  const auto verdict = verify_session(*reader);
+  ASSERT_TRUE(verdict) << text_of(verdict.errors());
+  EXPECT_FALSE(verdict->same);
+  EXPECT_EQ(verdict->first_tick, wrong_tick);
+  EXPECT_EQ(verdict->first_quantity, "state_hash");
+  EXPECT_EQ(verdict->located_tick, wrong_tick + 1);
+  EXPECT_EQ(verdict->quantity, "position.y");
+  EXPECT_EQ(verdict->index, wrong_sphere);
+  EXPECT_NEAR(verdict->difference, push, 1e-15);
+  EXPECT_NEAR(verdict->recorded - verdict->replayed, push, 1e-15);
+  EXPECT_EQ(verdict->ticks_compared, 200) << "goes on after a difference";
+  EXPECT_EQ(verdict->ticks_different, 200 - wrong_tick);
+  EXPECT_NE(to_string(*verdict).find("position.y[21]"), std::string::npos) << to_string(*verdict);
+}
+
+TEST(Verify, AForceThatDiffersAloneIsNamed) {
+  const Folder folder;
+  const SessionStart start = small_start();
+  auto writer = SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true});
+  ASSERT_TRUE(writer);
+  live(start, 150, [&](const State& after, TickRecord record) {
+    if (after.tick == 80) record.tool_force.z += 0.5;
+    writer->append(after, record);
+  });
+  ASSERT_TRUE(writer->finish());
+  auto reader = SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(reader);
+  const auto verdict = verify_session(*reader);
+  ASSERT_TRUE(verdict);
+  EXPECT_EQ(verdict->first_tick, 79);
+  EXPECT_EQ(verdict->first_quantity, "tool_force.z");
+  EXPECT_EQ(verdict->quantity, "tool_force.z");
+  EXPECT_NEAR(verdict->difference, 0.5, 1e-12);
+  EXPECT_EQ(verdict->ticks_different, 1);
+}
+
+TEST(Verify, AKeyframeThatIsNotItsTicksStateIsAnError) {
+  const Folder folder;
+  const SessionStart start = small_start();
+  auto writer =
+      SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 50});
+  ASSERT_TRUE(writer);
+  live(start, 120, [&](State after, const TickRecord& record) {
+    if (after.tick == 100) after.velocity.x[3] += 1;
+    writer->append(after, record);
+  });
+  ASSERT_TRUE(writer->finish());
+  auto reader = SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(reader);
+  const auto verdict = verify_session(*reader);
+  ASSERT_FALSE(verdict);
+  EXPECT_NE(verdict.errors()[0].message.find("keyframe 100"), std::string::npos);
+}
+
+TEST(Replay, SeekingGivesTheSameStateAsWalking) {
+  const Folder folder;
+  const SessionStart start = small_start();
+  std::vector<std::uint64_t> hashes{state_hash(start.initial_state)};
+  auto writer =
+      SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 100});
+  ASSERT_TRUE(writer);
+  live(start, 600, [&](const State& after, const TickRecord& record) {
+    hashes.push_back(record.state_hash);
+    writer->append(after, record);
+  });
+  ASSERT_TRUE(writer->finish());
+  auto reader = SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(reader);
+  auto cursor = ReplayCursor::create(*reader);
+  ASSERT_TRUE(cursor);
+  for (const std::int64_t tick : {350, 351, 20, 600, 0, 100, 99, 599}) {
+    ASSERT_TRUE(cursor->seek(tick));
+    EXPECT_EQ(cursor->tick(), tick);
+    EXPECT_EQ(state_hash(cursor->state()), hashes[tick]) << tick;
+    EXPECT_TRUE(cursor->same_so_far());
+  }
+  ASSERT_TRUE(cursor->step());
+  EXPECT_EQ(cursor->record().state_hash, hashes[600]);
+  const auto end = cursor->step();
+  ASSERT_TRUE(end);
+  EXPECT_FALSE(*end);
+  EXPECT_FALSE(cursor->seek(601));
+  EXPECT_FALSE(cursor->seek(-1));
+}
+
+TEST(Verify, ATickWhoseInputWasRefusedIsReplayedAsSuch) {
+  const Folder folder;
+  const SessionStart start = small_start();
+  auto writer =
+      SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 20});
+  ASSERT_TRUE(writer);
+  State state = start.initial_state;
+  Stepper stepper(start.model);
+  for (int tick = 0; tick < 100; ++tick) {
+    Inputs inputs = scripted_inputs(tick, start.model.rest_position.z.back());
+    if (tick % 9 == 5) inputs.position.x = std::nan("");
+    if (tick % 9 == 7) inputs.tool = 17;
+    const StepReport report = stepper.step(state, inputs);
+    EXPECT_EQ(report.status == StepStatus::bad_input, tick % 9 == 5 || tick % 9 == 7);
+    writer->append(state, make_record(inputs, report, 0, state_hash(state)));
+  }
+  ASSERT_TRUE(writer->finish());
+  auto reader = SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(reader);
+  const auto verdict = verify_session(*reader);
+  ASSERT_TRUE(verdict) << text_of(verdict.errors());
+  EXPECT_TRUE(verdict->same) << to_string(*verdict);
+  EXPECT_EQ(verdict->ticks_compared, 100);
+}
+
+}  // namespace
+}  // namespace ctpm
