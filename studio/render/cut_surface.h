@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "core/model.h"
+#include "core/organ.h"
+#include "core/state.h"
+
+namespace ctpm {
+
+/// An organ's surface as it is drawn: split where the organ was cut, its lips on their own sides, and the wall of
+/// the cut between them. Nothing is remembered from tick to tick but what is severed, so any State may follow any other.
+class CutSurface {
+ public:
+  /// `whole` is the uncut surface of organ `organ`, bound to its spheres.
+  CutSurface(const Model& model, std::size_t organ, const Surface& whole);
+  ~CutSurface();
+  CutSurface(CutSurface&&) noexcept;
+
+  /// Takes over what is severed in `state`. Returns whether surface() changed.
+  bool update(const State& state);
+
+  /// Outer triangles first, then the wall's. The wall has its own vertices, so that normals break at the lip.
+  /// Vertices are given at rest, where both lips of a cut coincide; deform_surface() opens it.
+  const Surface& surface() const;
+  std::size_t outer_triangle_count() const;
+  std::size_t outer_vertex_count() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace ctpm

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/model.h"
+#include "core/state.h"
+
+namespace ctpm {
+
+/// The lattice of one organ as found from its elements: who is joined to whom, and what has been severed.
+/// Spheres are counted within the organ.
+class LatticeLinks {
+ public:
+  /// Steps to the 18 neighbours: 6 along the axes first, then 12 along face diagonals.
+  static constexpr int kSteps = 18;
+  using Cell = std::array<std::int32_t, 3>;
+  static const std::array<Cell, kSteps>& steps();
+
+  /// Finds the lattice of organ `organ` of the model. The axes are those of the organ's elements, so an organ may be
+  /// turned in its scene.
+  LatticeLinks(const Model& model, std::size_t organ);
+
+  /// Takes over what is severed. Returns whether anything changed since the last call.
+  bool update(const State& state);
+
+  std::int32_t count() const { return std::int32_t(cell_.size()); }
+  std::int32_t first() const { return first_; }
+  double spacing() const { return spacing_; }
+  Vec3 rest(std::int32_t sphere) const { return rest_[std::size_t(sphere)]; }
+  Cell cell(std::int32_t sphere) const { return cell_[std::size_t(sphere)]; }
+
+  /// Rest position [m] of a place given in cells, whole or between.
+  Vec3 place(double i, double j, double k) const { return origin_ + i * axis_[0] + j * axis_[1] + k * axis_[2]; }
+
+  /// Sphere in a cell, or -1.
+  std::int32_t at(Cell cell) const;
+
+  /// Neighbour by step, or -1 where there is no sphere.
+  std::int32_t neighbour(std::int32_t sphere, int step) const { return neighbour_[index(sphere, step)]; }
+  bool is_joined(std::int32_t sphere, int step) const { return link_[index(sphere, step)] == Link::joined; }
+  bool is_severed(std::int32_t sphere, int step) const { return link_[index(sphere, step)] == Link::severed; }
+
+  /// Whether any link at the sphere is severed.
+  bool is_cut(std::int32_t sphere) const { return cut_[std::size_t(sphere)]; }
+  bool anything_cut() const { return anything_cut_; }
+
+  /// What a sphere sees of its neighbourhood, in the order of the spheres' index.
+  struct Sight {
+    std::vector<std::int32_t> seen;  ///< reached over joined links in as few hops as before anything was severed
+    std::vector<std::int32_t> lost;  ///< reached before, and now not at all or only by a detour around a cut's end
+  };
+
+  /// What `home` sees, itself included. The two sides of a cut do not see each other, though they meet beyond its end.
+  Sight sight_from(std::int32_t home) const;
+
+ private:
+  enum class Link : std::uint8_t { none, joined, severed };
+  struct Element {
+    std::int32_t sphere;  ///< one end
+    std::int32_t step;    ///< towards the other end
+    std::int32_t source;  ///< index into edges or, beyond those, into TPMs
+  };
+
+  std::size_t index(std::int32_t sphere, int step) const { return std::size_t(sphere) * kSteps + std::size_t(step); }
+  void find_axes(const Model& model, std::size_t organ);
+  void add_element(std::int32_t a, std::int32_t b, std::int32_t source);
+  std::vector<std::array<std::int32_t, 2>> hops_from(std::int32_t home, bool over_severed) const;
+
+  std::int32_t first_ = 0;
+  double spacing_ = 0;
+  Vec3 origin_;
+  Vec3 axis_[3];  ///< one cell along each axis [m]
+  std::vector<Vec3> rest_;
+  std::vector<Cell> cell_;
+  Cell low_{}, extent_{};
+  std::vector<std::int32_t> sphere_at_;  ///< dense over the box of cells
+  std::vector<std::int32_t> neighbour_;
+  std::vector<Link> link_;
+  std::vector<Element> elements_;
+  std::vector<std::uint8_t> severed_;  ///< of elements_, as last seen
+  std::vector<std::uint8_t> cut_;
+  bool anything_cut_ = false;
+  bool has_diagonals_ = false;
+};
+
+}  // namespace ctpm

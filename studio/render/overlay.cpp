@@ -1,0 +1,266 @@
+#include "studio/render/overlay.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace ctpm {
+namespace {
+
+using Ink = std::array<int, 3>;
+
+constexpr Ink kWhite{240, 243, 246}, kGrey{168, 178, 188}, kAmber{255, 190, 80}, kRed{235, 72, 60}, kGreen{96, 205, 140};
+constexpr int kFont = cv::FONT_HERSHEY_DUPLEX;
+constexpr int kOversample = 4;  // strokes are drawn this many times larger and averaged down
+
+std::string fixed(double value, int digits) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+/// The strokes of one character, ready to be blended.
+struct Glyph {
+  cv::Mat mask;
+  int advance = 0;  ///< [pixels]
+};
+
+/// A stroke font in one size.
+class Font {
+ public:
+  explicit Font(int height) : height_(height), scale_(kOversample * height / 22.0) {}
+
+  int height() const { return height_; }
+
+  int width(const std::string& text) {
+    int sum = 0;
+    for (const char c : text) sum += glyph(c).advance;
+    return sum;
+  }
+
+  /// The text, or as much of its beginning as fits into `width`, with an ellipsis.
+  std::string shortened(std::string text, int limit) {
+    if (width(text) <= limit) return text;
+    while (!text.empty() && width(text + "...") > limit) text.pop_back();
+    return text + "...";
+  }
+
+  void write(cv::Mat& rgb, int x, int y, const std::string& text, const Ink& ink) {
+    for (const char c : text) {
+      const Glyph& g = glyph(c);
+      blend(rgb, g.mask, x - height_ / 4, y - height_ / 4, ink);
+      x += g.advance;
+    }
+  }
+
+ private:
+  const Glyph& glyph(char c) {
+    const auto found = glyphs_.find(c);
+    if (found != glyphs_.end()) return found->second;
+    const std::string text(1, c >= 32 && c < 127 ? c : '?');
+    const int thickness = std::max(1, int(std::lround(1.15 * kOversample * height_ / 18.0)));
+    int baseline = 0;
+    const cv::Size size = cv::getTextSize(text, kFont, scale_, 1, &baseline);
+    const int pad = height_ / 4, advance = int(std::lround(double(size.width) / kOversample));
+    cv::Mat large(kOversample * (height_ + height_ / 2 + 2 * pad), kOversample * (advance + 2 * pad), CV_8U, cv::Scalar(0));
+    cv::putText(large, text, {kOversample * pad, kOversample * (pad + height_)}, kFont, scale_, cv::Scalar(255), thickness, cv::LINE_AA);
+    Glyph g{{}, advance};
+    cv::resize(large, g.mask, {large.cols / kOversample, large.rows / kOversample}, 0, 0, cv::INTER_AREA);
+    return glyphs_.emplace(c, g).first->second;
+  }
+
+  static void blend(cv::Mat& rgb, const cv::Mat& mask, int x, int y, const Ink& ink) {
+    for (int r = std::max(0, -y); r < mask.rows && y + r < rgb.rows; ++r)
+      for (int c = std::max(0, -x); c < mask.cols && x + c < rgb.cols; ++c) {
+        const int cover = mask.at<std::uint8_t>(r, c);
+        if (!cover) continue;
+        auto& pixel = rgb.at<cv::Vec3b>(y + r, x + c);
+        for (int k = 0; k < 3; ++k) pixel[k] = std::uint8_t((pixel[k] * (255 - cover) + ink[std::size_t(k)] * cover + 127) / 255);
+      }
+  }
+
+  int height_;
+  double scale_;
+  std::map<char, Glyph> glyphs_;
+};
+
+/// Darkens a rectangle with rounded corners.
+void draw_panel(cv::Mat& rgb, const Box& box, const Ink& tint, int opacity, int radius) {
+  for (int y = std::max(0, box.y); y < std::min(rgb.rows, box.y + box.height); ++y)
+    for (int x = std::max(0, box.x); x < std::min(rgb.cols, box.x + box.width); ++x) {
+      const int dx = std::max({box.x + radius - x, x - (box.x + box.width - 1 - radius), 0});
+      const int dy = std::max({box.y + radius - y, y - (box.y + box.height - 1 - radius), 0});
+      if (dx * dx + dy * dy > radius * radius) continue;
+      auto& pixel = rgb.at<cv::Vec3b>(y, x);
+      for (int k = 0; k < 3; ++k) pixel[k] = std::uint8_t((pixel[k] * (256 - opacity) + tint[std::size_t(k)] * opacity) >> 8);
+    }
+}
+
+struct Line {
+  PlacedText placed;
+  Ink ink;
+  bool is_large = false;
+};
+
+/// Everything that is written, and the panels behind it.
+struct Plan {
+  std::vector<Line> lines;
+  Box facts, plot, verdict, warning;
+  Box curve;  ///< inside of the plot
+  double top_force = 1;
+};
+
+/// The next round number at or above `value`: 1, 2 or 5 times a power of ten.
+double round_up(double value) {
+  const double decade = std::pow(10.0, std::floor(std::log10(std::max(value, 1e-3))));
+  for (const double step : {1.0, 2.0, 5.0})
+    if (step * decade >= value * (1 - 1e-9)) return step * decade;
+  return 10 * decade;
+}
+
+}  // namespace
+
+struct Overlay::Parts {
+  Parts(int w, int h)
+      : width(w), height(h), scale(std::min(w / 1280.0, h / 720.0)), small(std::max(5, px(17))), large(std::max(6, px(23))) {}
+
+  int px(double at_720) const { return int(std::lround(at_720 * scale)); }
+  Plan plan(const OverlayData& data);
+  void plan_facts(const OverlayData& data, Plan& plan);
+  void plan_plot(const OverlayData& data, Plan& plan);
+  void plan_banners(const OverlayData& data, Plan& plan);
+  void draw_curve(cv::Mat& rgb, const OverlayData& data, const Plan& plan) const;
+  Line line(Font& font, const std::string& text, int x, int y, const Ink& ink) {
+    return {{text, {x, y, font.width(text), font.height() + font.height() / 4}}, ink, &font == &large};
+  }
+  bool is_damaged(const OverlayData& data) const { return data.damage_depth > 0 && data.depth > data.damage_depth; }
+
+  int width, height;
+  double scale;
+  Font small, large;
+};
+
+/// Top left: title, time, tick, force, depth.
+void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
+  const int pad = px(16), step = px(28), x = px(20) + pad, inner = px(300);
+  int y = px(20) + pad;
+  if (!data.title.empty()) {
+    plan.lines.push_back(line(large, large.shortened(data.title, inner), x, y, kWhite));
+    y += px(38);
+  }
+  const Ink depth_ink = is_damaged(data) ? kRed : kWhite;
+  const std::array<std::pair<std::string, std::string>, 4> facts{{{"time", fixed(data.time, 3) + " s"},
+                                                                   {"tick", std::to_string(data.tick)},
+                                                                   {"force", fixed(data.force, 3) + " N"},
+                                                                   {"depth", fixed(1000 * data.depth, 2) + " mm"}}};
+  for (const auto& [name, value] : facts) {
+    plan.lines.push_back(line(small, name, x, y, kGrey));
+    Line shown = line(small, value, 0, y, name == "depth" ? depth_ink : kWhite);
+    shown.placed.box.x = x + inner - shown.placed.box.width;  // right-aligned, so that digits stand still
+    plan.lines.push_back(shown);
+    y += step;
+  }
+  plan.facts = {px(20), px(20), inner + 2 * pad, y - px(20) + pad - px(28 - 21)};
+}
+
+/// Bottom left: the force of the last seconds.
+void Overlay::Parts::plan_plot(const OverlayData& data, Plan& plan) {
+  if (data.history.empty()) return;
+  double top = 0.05;
+  for (const ForcePoint& p : data.history)
+    if (p.time >= data.time - data.plot_span) top = std::max(top, p.force);
+  plan.top_force = round_up(top);
+  const int pad = px(16), w = px(332), h = px(160);
+  plan.plot = {px(20), height - px(20) - h, w, h};
+  plan.lines.push_back(line(small, "force [N]", plan.plot.x + pad, plan.plot.y + px(12), kGrey));
+  const std::string scale_text = fixed(plan.top_force, plan.top_force < 0.1 ? 2 : plan.top_force < 1 ? 1 : 0);
+  const int label = px(52);
+  plan.curve = {plan.plot.x + label, plan.plot.y + px(46), w - label - pad, h - px(46) - px(34)};
+  const auto left_label = [&](const std::string& text, int y) {
+    Line shown = line(small, text, 0, y - small.height() / 2, kGrey);
+    shown.placed.box.x = plan.curve.x - px(8) - shown.placed.box.width;
+    plan.lines.push_back(shown);
+  };
+  left_label(scale_text, plan.curve.y), left_label("0", plan.curve.y + plan.curve.height);
+  Line now = line(small, "last " + fixed(data.plot_span, data.plot_span < 1 ? 1 : 0) + " s", 0, plan.curve.y + plan.curve.height + px(8), kGrey);
+  now.placed.box.x = plan.curve.x + plan.curve.width - now.placed.box.width;
+  plan.lines.push_back(now);
+}
+
+/// Top right: the verdict. Bottom right: the damage warning.
+void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
+  const int pad = px(16), h = px(17) + 2 * px(13);
+  const auto banner = [&](const std::string& text, int y, const Ink& ink) {
+    const std::string shown = small.shortened(text, px(520));
+    const int w = small.width(shown) + 2 * pad;
+    const Box box{width - px(20) - w, y, w, h};
+    plan.lines.push_back(line(small, shown, box.x + pad, y + px(13), ink));
+    return box;
+  };
+  if (!data.verdict.empty())
+    plan.verdict = banner(data.verdict, px(20), data.verdict_tone == VerdictTone::good ? kGreen : data.verdict_tone == VerdictTone::bad ? kAmber : kWhite);
+  if (is_damaged(data))
+    plan.warning = banner("TISSUE DAMAGE: " + fixed(1000 * data.depth, 1) + " mm, limit " + fixed(1000 * data.damage_depth, 1) + " mm",
+                          height - px(20) - h, kWhite);
+}
+
+Plan Overlay::Parts::plan(const OverlayData& data) {
+  Plan plan;
+  plan_facts(data, plan), plan_plot(data, plan), plan_banners(data, plan);
+  return plan;
+}
+
+void Overlay::Parts::draw_curve(cv::Mat& rgb, const OverlayData& data, const Plan& plan) const {
+  const Box& c = plan.curve;
+  constexpr int kShift = 4;  // polylines in sixteenths of a pixel
+  const auto at = [&](double time, double force) {
+    const double x = c.x + c.width * (1 - (data.time - time) / data.plot_span);
+    const double y = c.y + c.height * (1 - force / plan.top_force);
+    return cv::Point(int(std::lround(x * (1 << kShift))), int(std::lround(y * (1 << kShift))));
+  };
+  cv::line(rgb, {c.x, c.y + c.height}, {c.x + c.width, c.y + c.height}, cv::Scalar(120, 130, 140), 1);
+  cv::line(rgb, {c.x, c.y}, {c.x + c.width, c.y}, cv::Scalar(70, 78, 86), 1);
+  std::vector<cv::Point> points;
+  for (const ForcePoint& p : data.history)
+    if (p.time >= data.time - data.plot_span && p.time <= data.time) points.push_back(at(p.time, std::max(p.force, 0.0)));
+  if (points.empty()) return;
+  cv::polylines(rgb, points, false, cv::Scalar(kAmber[0], kAmber[1], kAmber[2]), std::max(1, px(2)), cv::LINE_AA, kShift);
+  cv::circle(rgb, points.back(), std::max(1, px(4)) << kShift, cv::Scalar(255, 225, 160), cv::FILLED, cv::LINE_AA, kShift);
+}
+
+Overlay::Overlay(int width, int height) : parts_(std::make_unique<Parts>(width, height)) {}
+Overlay::~Overlay() = default;
+Overlay::Overlay(Overlay&&) noexcept = default;
+
+void Overlay::draw(Frame& frame, const OverlayData& data) {
+  CTPM_CHECK(frame.width == parts_->width && frame.height == parts_->height, "an overlay draws on frames of its own size");
+  cv::Mat rgb(frame.height, frame.width, CV_8UC3, frame.rgb.data());
+  const Plan plan = parts_->plan(data);
+  const int radius = parts_->px(10);
+  for (const Box& box : {plan.facts, plan.plot, plan.verdict}) draw_panel(rgb, box, {14, 19, 25}, 176, radius);
+  draw_panel(rgb, plan.warning, {170, 24, 18}, 224, radius);
+  for (const Line& line : plan.lines)
+    (line.is_large ? parts_->large : parts_->small).write(rgb, line.placed.box.x, line.placed.box.y, line.placed.text, line.ink);
+  if (!data.history.empty()) parts_->draw_curve(rgb, data, plan);
+}
+
+void Overlay::draw_title(Frame& frame, const std::string& title) {
+  CTPM_CHECK(frame.width == parts_->width && frame.height == parts_->height, "an overlay draws on frames of its own size");
+  cv::Mat rgb(frame.height, frame.width, CV_8UC3, frame.rgb.data());
+  Parts& p = *parts_;
+  const std::string text = p.large.shortened(title, p.px(480));
+  const int w = p.large.width(text) + 2 * p.px(16), x = (frame.width - w) / 2;
+  draw_panel(rgb, {x, p.px(20), w, p.px(23 + 2 * 11)}, {14, 19, 25}, 176, p.px(10));
+  p.large.write(rgb, x + p.px(16), p.px(31), text, kWhite);
+}
+
+std::vector<PlacedText> Overlay::layout(const OverlayData& data) {
+  std::vector<PlacedText> texts;
+  for (const Line& line : parts_->plan(data).lines) texts.push_back(line.placed);
+  return texts;
+}
+
+}  // namespace ctpm

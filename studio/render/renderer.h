@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+
+#include "core/result.h"
+#include "core/state.h"
+#include "studio/render/frame.h"
+#include "studio/render/scene_view.h"
+
+namespace ctpm {
+
+/// Draws States of one scene into memory, without a display or a GPU. Only `State` and the options decide what is
+/// drawn: the same ones give the same pixels, in any order of calls. One thread at a time may use a Renderer.
+class Renderer {
+ public:
+  /// Errors: a size outside [16, 8192], a scene without a model or without one surface for each organ, no OpenGL 3.3.
+  static Result<std::unique_ptr<Renderer>> create(int width, int height, SceneView scene);
+  ~Renderer();
+
+  /// The picture of a state; valid until the next call.
+  const Frame& draw(const State& state, const DrawOptions& options);
+
+  const SceneView& scene() const;
+
+ private:
+  struct Parts;
+  explicit Renderer(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace ctpm
