@@ -19,7 +19,8 @@ Vec3 unit(Vec3 v) { return v / norm(v); }
 Axes axes_of(Vec3 look, Vec3 up) {
   const Vec3 back = -unit(look);
   Vec3 right = cross(up, back);
-  if (norm(right) < 1e-9 * std::max(1.0, norm(up))) right = cross(std::abs(back.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, back);
+  if (norm(right) < 1e-9 * std::max(1.0, norm(up)))
+    right = cross(std::abs(back.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, back);
   right = unit(right);
   return {right, cross(back, right), back};
 }
@@ -36,23 +37,30 @@ Bounds bounds_of(std::span<const Vec3> points) {
   return box;
 }
 
-Camera fit_camera(const Bounds& bounds, Vec3 direction, Vec3 up, double fov_deg, double aspect) {
-  constexpr double kMargin = 1.12;
+Camera fit_camera(std::span<const Vec3> points, Vec3 direction, Vec3 up, double fov_deg, double aspect) {
+  constexpr double kMargin = 1.25;  // the overlay needs room at the edges
   Camera camera;
-  camera.fov_deg = fov_deg, camera.up = up, camera.target = bounds.centre();
+  camera.fov_deg = fov_deg, camera.up = up, camera.target = bounds_of(points).centre();
   const Axes axes = axes_of(direction, up);
   const double tan_up = std::tan(fov_deg / 2 * kRadiansPerDegree) / kMargin, tan_right = tan_up * aspect;
   double distance = 1e-6;
-  // Step back until each corner of the box is inside the pyramid of sight.
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 p = Vec3{corner & 1 ? bounds.max.x : bounds.min.x, corner & 2 ? bounds.max.y : bounds.min.y,
-                        corner & 4 ? bounds.max.z : bounds.min.z} - camera.target;
+  // Step back until each point is inside the pyramid of sight.
+  for (const Vec3& point : points) {
+    const Vec3 p = point - camera.target;
     const double towards = dot(p, axes.back);
     distance = std::max({distance, towards + std::abs(dot(p, axes.right)) / tan_right,
                          towards + std::abs(dot(p, axes.up)) / tan_up});
   }
   camera.eye = camera.target + distance * axes.back;
   return camera;
+}
+
+Camera fit_camera(const Bounds& bounds, Vec3 direction, Vec3 up, double fov_deg, double aspect) {
+  std::array<Vec3, 8> corners;
+  for (std::size_t i = 0; i < 8; ++i)
+    corners[i] = {i & 1 ? bounds.max.x : bounds.min.x, i & 2 ? bounds.max.y : bounds.min.y,
+                  i & 4 ? bounds.max.z : bounds.min.z};
+  return fit_camera(std::span<const Vec3>(corners), direction, up, fov_deg, aspect);
 }
 
 Mat4 product(const Mat4& a, const Mat4& b) {
@@ -65,13 +73,42 @@ Mat4 product(const Mat4& a, const Mat4& b) {
 
 Mat4 view_matrix(const Camera& camera) {
   const Axes a = axes_of(camera.target - camera.eye, camera.up);
-  return {a.right.x, a.up.x, a.back.x, 0, a.right.y, a.up.y, a.back.y, 0, a.right.z, a.up.z, a.back.z, 0,
-          -dot(a.right, camera.eye), -dot(a.up, camera.eye), -dot(a.back, camera.eye), 1};
+  return {a.right.x,
+          a.up.x,
+          a.back.x,
+          0,
+          a.right.y,
+          a.up.y,
+          a.back.y,
+          0,
+          a.right.z,
+          a.up.z,
+          a.back.z,
+          0,
+          -dot(a.right, camera.eye),
+          -dot(a.up, camera.eye),
+          -dot(a.back, camera.eye),
+          1};
 }
 
 Mat4 projection_matrix(const Camera& camera, double aspect, double near, double far) {
   const double f = 1 / std::tan(camera.fov_deg / 2 * kRadiansPerDegree);
-  return {f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far), 0};
+  return {f / aspect,
+          0,
+          0,
+          0,
+          0,
+          f,
+          0,
+          0,
+          0,
+          0,
+          (far + near) / (near - far),
+          -1,
+          0,
+          0,
+          2 * far * near / (near - far),
+          0};
 }
 
 Pixel project(const Camera& camera, int width, int height, Vec3 point) {

@@ -26,8 +26,14 @@ struct Bounds {
 /// The smallest box around the points; a point at the origin if there are none.
 Bounds bounds_of(std::span<const Vec3> points);
 
-/// A camera that looks along `direction` and has the whole box in sight, with a margin. `aspect` = width / height.
-Camera fit_camera(const Bounds& bounds, Vec3 direction, Vec3 up, double fov_deg = 32, double aspect = 16.0 / 9);
+/// A camera that looks along `direction` and has the whole box in sight, with a margin. `aspect` = width /
+/// height.
+Camera fit_camera(const Bounds& bounds, Vec3 direction, Vec3 up, double fov_deg = 32,
+                  double aspect = 16.0 / 9);
+
+/// As above, with all the points in sight: closer than their box allows.
+Camera fit_camera(std::span<const Vec3> points, Vec3 direction, Vec3 up, double fov_deg = 32,
+                  double aspect = 16.0 / 9);
 
 /// Column-major 4 x 4 matrix.
 using Mat4 = std::array<double, 16>;

@@ -20,20 +20,24 @@ constexpr double kReachInSpacings = 2.2;  // as a whole surface is bound
 constexpr std::size_t kFewestFollowed = 8;
 constexpr int kSmoothings = 3;
 
-bool holds(const std::vector<Index>& sorted, Index value) { return std::binary_search(sorted.begin(), sorted.end(), value); }
+bool holds(const std::vector<Index>& sorted, Index value) {
+  return std::binary_search(sorted.begin(), sorted.end(), value);
+}
 
-/// A corner of the wall: the middle of a cube of eight lattice cells, as many copies as the cut leaves pieces there.
+/// A corner of the wall: the middle of a cube of eight lattice cells, as many copies as the cut leaves pieces
+/// there.
 struct Corner {
-  Vec3 rest;                         ///< on the cut [m]
-  bool at_border = false;            ///< the cube reaches out of the organ
-  bool is_snapped = false;           ///< lies on the split line of the outer surface
-  std::vector<Index> spheres;        ///< that fill the cube's cells
-  std::vector<Index> piece;          ///< of each of these; named by its first sphere
-  std::map<Index, Index> copy;       ///< piece -> vertex of the wall
-  std::vector<Cell> beside;          ///< corners that share a facet's side with this one
+  Vec3 rest;                    ///< on the cut [m]
+  bool at_border = false;       ///< the cube reaches out of the organ
+  bool is_snapped = false;      ///< lies on the split line of the outer surface
+  std::vector<Index> spheres;   ///< that fill the cube's cells
+  std::vector<Index> piece;     ///< of each of these; named by its first sphere
+  std::map<Index, Index> copy;  ///< piece -> vertex of the wall
+  std::vector<Cell> beside;     ///< corners that share a facet's side with this one
 };
 
-/// A side of the split line: an edge of the outer surface where the wall begins, as its outer triangle walks it.
+/// A side of the split line: an edge of the outer surface where the wall begins, as its outer triangle walks
+/// it.
 struct Lip {
   Index from, to;
 };
@@ -41,7 +45,9 @@ struct Lip {
 }  // namespace
 
 struct CutSurface::Parts {
-  Parts(const Model& model, std::size_t organ, const Surface& uncut) : links(model, organ), whole(uncut) { bind_homes(); }
+  Parts(const Model& model, std::size_t organ, const Surface& uncut) : links(model, organ), whole(uncut) {
+    bind_homes();
+  }
 
   void bind_homes();
   void rebuild();
@@ -73,11 +79,12 @@ struct CutSurface::Parts {
 
   // Working memory of rebuild().
   std::map<Index, LatticeLinks::Sight> sights;
-  std::vector<std::uint8_t> is_near_cut;             ///< of the whole surface's vertices
-  std::map<std::pair<Index, Index>, Index> middles;  ///< (u, v): the copy on u's side of the split of edge u-v
+  std::vector<std::uint8_t> is_near_cut;  ///< of the whole surface's vertices
+  std::map<std::pair<Index, Index>, Index>
+      middles;  ///< (u, v): the copy on u's side of the split of edge u-v
   std::vector<Lip> lips;
   std::map<Cell, Corner> corners;
-  std::map<Index, Index> wall_vertex;                ///< of a vertex on a lip
+  std::map<Index, Index> wall_vertex;  ///< of a vertex on a lip
 };
 
 void CutSurface::Parts::bind_homes() {
@@ -96,20 +103,29 @@ void CutSurface::Parts::bind_homes() {
 
 const LatticeLinks::Sight& CutSurface::Parts::sight(Index sphere) {
   const auto found = sights.find(sphere);
-  return found != sights.end() ? found->second : sights.emplace(sphere, links.sight_from(sphere)).first->second;
+  return found != sights.end() ? found->second
+                               : sights.emplace(sphere, links.sight_from(sphere)).first->second;
 }
 
-/// Appends a binding to what `home` sees around `rest`.
+/// Appends a binding to what `home` sees around `rest`. Spheres that do not span space cannot hold a vertex
+/// at its distance from them; then the reach grows until they do, or until nothing more is seen.
 void CutSurface::Parts::follow(Vec3 rest, Index home_sphere) {
+  constexpr double kWiden = 1.4, kHeld = 1e-6;  // kHeld: of a spacing
   std::vector<std::pair<double, Index>> near;
   for (const Index s : sight(home_sphere).seen) near.emplace_back(norm(links.rest(s) - rest), s);
   std::sort(near.begin(), near.end());
   const std::size_t least = std::min(near.size(), kFewestFollowed);
-  const double reach = std::max(kReachInSpacings * links.spacing(), 1.05 * near[least - 1].first);
   std::vector<Vec3> centres;
-  for (const auto& [distance, s] : near)
-    if (distance < reach) centres.push_back(links.rest(s));
-  const std::vector<double> weights = follow_weights(rest, centres, reach);
+  std::vector<double> weights;
+  for (double reach = std::max(kReachInSpacings * links.spacing(), 1.05 * near[least - 1].first);;
+       reach *= kWiden) {
+    for (std::size_t i = centres.size(); i < near.size() && near[i].first < reach; ++i)
+      centres.push_back(links.rest(near[i].second));
+    weights = follow_weights(rest, centres, reach);
+    Vec3 held = -rest;
+    for (std::size_t i = 0; i < centres.size(); ++i) held += weights[i] * centres[i];
+    if (norm(held) < kHeld * links.spacing() || reach > near.back().first) break;
+  }
   for (std::size_t i = 0; i < centres.size(); ++i) out.binding.sphere.push_back(near[i].second);
   out.binding.weight.insert(out.binding.weight.end(), weights.begin(), weights.end());
   out.binding.first.push_back(Index(out.binding.sphere.size()));
@@ -124,9 +140,12 @@ Index CutSurface::Parts::add_vertex(Vec3 rest, Index home_sphere) {
 /// A second vertex at the same place that follows the same spheres.
 Index CutSurface::Parts::copy_vertex(Index vertex) {
   SurfaceBinding& b = out.binding;
-  const std::size_t begin = std::size_t(b.first[std::size_t(vertex)]), end = std::size_t(b.first[std::size_t(vertex) + 1]);
-  out.vertex.push_back(Vec3(out.vertex[std::size_t(vertex)])), home.push_back(Index(home[std::size_t(vertex)]));
-  for (std::size_t e = begin; e < end; ++e) b.sphere.push_back(Index(b.sphere[e])), b.weight.push_back(double(b.weight[e]));
+  const std::size_t begin = std::size_t(b.first[std::size_t(vertex)]),
+                    end = std::size_t(b.first[std::size_t(vertex) + 1]);
+  out.vertex.push_back(Vec3(out.vertex[std::size_t(vertex)])),
+      home.push_back(Index(home[std::size_t(vertex)]));
+  for (std::size_t e = begin; e < end; ++e)
+    b.sphere.push_back(Index(b.sphere[e])), b.weight.push_back(double(b.weight[e]));
   b.first.push_back(Index(b.sphere.size()));
   return Index(out.vertex.size() - 1);
 }
@@ -150,7 +169,8 @@ void CutSurface::Parts::add_whole_vertices() {
       continue;
     }
     out.binding.sphere.insert(out.binding.sphere.end(), begin, end);
-    out.binding.weight.insert(out.binding.weight.end(), b.weight.begin() + b.first[v], b.weight.begin() + b.first[v + 1]);
+    out.binding.weight.insert(out.binding.weight.end(), b.weight.begin() + b.first[v],
+                              b.weight.begin() + b.first[v + 1]);
     out.binding.first.push_back(Index(out.binding.sphere.size()));
   }
 }
@@ -161,7 +181,8 @@ bool CutSurface::Parts::are_parted(Index u, Index v) {
   return a != b && is_near_cut[std::size_t(u)] && is_near_cut[std::size_t(v)] && holds(sight(a).lost, b);
 }
 
-/// How far along the edge u-v, in (0, 1), the cut passes: where the smoothed sides of its two banks are in balance.
+/// How far along the edge u-v, in (0, 1), the cut passes: where the smoothed sides of its two banks are in
+/// balance.
 double CutSurface::Parts::where_parted(Index u, Index v) {
   const LatticeLinks::Sight& at_u = sight(home[std::size_t(u)]);
   const LatticeLinks::Sight& at_v = sight(home[std::size_t(v)]);
@@ -204,7 +225,8 @@ void CutSurface::Parts::split_triangle(const Triangle& t) {
   if (count == 0) return emit(t[0], t[1], t[2]);
   if (count == 3) {
     // Three banks meet: each keeps its corner.
-    const Vec3 centre = (out.vertex[std::size_t(t[0])] + out.vertex[std::size_t(t[1])] + out.vertex[std::size_t(t[2])]) / 3.0;
+    const Vec3 centre =
+        (out.vertex[std::size_t(t[0])] + out.vertex[std::size_t(t[1])] + out.vertex[std::size_t(t[2])]) / 3.0;
     for (std::size_t i = 0; i < 3; ++i) {
       const Index a = t[i], b = t[(i + 1) % 3], c = t[(i + 2) % 3];
       const Index to_b = middle(a, b), to_c = middle(a, c), own = add_vertex(centre, home[std::size_t(a)]);
@@ -230,18 +252,22 @@ void CutSurface::Parts::split_triangle(const Triangle& t) {
   }
 }
 
-/// The eight cells around a dual corner: which spheres, in which pieces, and where the cut passes between them.
+/// The eight cells around a dual corner: which spheres, in which pieces, and where the cut passes between
+/// them.
 Corner CutSurface::Parts::make_corner(Cell cube) const {
   Corner corner;
   for (Index n = 0; n < 8; ++n) {
     const Index s = links.at({cube[0] + (n & 1), cube[1] + (n >> 1 & 1), cube[2] + (n >> 2)});
-    if (s < 0) corner.at_border = true;
-    else corner.spheres.push_back(s), corner.piece.push_back(s);
+    if (s < 0)
+      corner.at_border = true;
+    else
+      corner.spheres.push_back(s), corner.piece.push_back(s);
   }
   int severed = 0;
   for (std::size_t i = 0; i < corner.spheres.size(); ++i)
     for (int s = 0; s < LatticeLinks::kSteps; ++s) {
-      const auto other = std::find(corner.spheres.begin(), corner.spheres.end(), links.neighbour(corner.spheres[i], s));
+      const auto other =
+          std::find(corner.spheres.begin(), corner.spheres.end(), links.neighbour(corner.spheres[i], s));
       if (other == corner.spheres.end()) continue;
       if (links.is_severed(corner.spheres[i], s)) {
         corner.rest += 0.5 * (links.rest(corner.spheres[i]) + links.rest(*other)), ++severed;
@@ -250,7 +276,8 @@ Corner CutSurface::Parts::make_corner(Cell cube) const {
         std::replace(corner.piece.begin(), corner.piece.end(), std::max(a, b), std::min(a, b));
       }
     }
-  corner.rest = severed ? corner.rest / double(severed) : links.place(cube[0] + 0.5, cube[1] + 0.5, cube[2] + 0.5);
+  corner.rest =
+      severed ? corner.rest / double(severed) : links.place(cube[0] + 0.5, cube[1] + 0.5, cube[2] + 0.5);
   return corner;
 }
 
@@ -287,7 +314,8 @@ void CutSurface::Parts::smooth_corners() {
     if (!corner.is_snapped) continue;
     Vec3 target = corner.rest;
     for (const auto& [edge, vertex] : middles)
-      if (norm(out.vertex[std::size_t(vertex)] - corner.rest) == nearest) target = out.vertex[std::size_t(vertex)];
+      if (norm(out.vertex[std::size_t(vertex)] - corner.rest) == nearest)
+        target = out.vertex[std::size_t(vertex)];
     corner.rest = target;
   }
   for (int round = 0; round < kSmoothings; ++round) {
@@ -324,20 +352,25 @@ void CutSurface::Parts::add_facets() {
       for (std::size_t i = 0; i < 4; ++i) {
         Corner& corner = corners.at(around[i]);
         const auto piece_of = [&](Index sphere) {
-          return corner.piece[std::size_t(std::find(corner.spheres.begin(), corner.spheres.end(), sphere) - corner.spheres.begin())];
+          return corner.piece[std::size_t(std::find(corner.spheres.begin(), corner.spheres.end(), sphere) -
+                                          corner.spheres.begin())];
         };
         at_a[i] = wall_copy(corner, piece_of(a)), at_b[i] = wall_copy(corner, piece_of(b));
       }
       if (at_a == at_b) continue;
-      out.triangle.push_back({at_a[0], at_a[1], at_a[2]}), out.triangle.push_back({at_a[0], at_a[2], at_a[3]});
-      out.triangle.push_back({at_b[0], at_b[2], at_b[1]}), out.triangle.push_back({at_b[0], at_b[3], at_b[2]});
+      out.triangle.push_back({at_a[0], at_a[1], at_a[2]}),
+          out.triangle.push_back({at_a[0], at_a[2], at_a[3]});
+      out.triangle.push_back({at_b[0], at_b[2], at_b[1]}),
+          out.triangle.push_back({at_b[0], at_b[3], at_b[2]});
     }
 }
 
 const Corner* CutSurface::Parts::nearest_corner(Vec3 rest, bool border_only) const {
   const Corner* nearest = nullptr;
   for (const auto& [cube, corner] : corners)
-    if ((!border_only || corner.at_border) && (!nearest || norm(corner.rest - rest) < norm(nearest->rest - rest))) nearest = &corner;
+    if ((!border_only || corner.at_border) &&
+        (!nearest || norm(corner.rest - rest) < norm(nearest->rest - rest)))
+      nearest = &corner;
   return nearest;
 }
 
@@ -346,7 +379,9 @@ Index CutSurface::Parts::piece_seen_by(const Corner& corner, Index home_sphere) 
   std::map<Index, int> seen;
   for (std::size_t i = 0; i < corner.spheres.size(); ++i)
     seen[corner.piece[i]] += holds(sight(home_sphere).seen, corner.spheres[i]) ? 1 : 0;
-  return std::max_element(seen.begin(), seen.end(), [](const auto& a, const auto& b) { return a.second < b.second; })->first;
+  return std::max_element(seen.begin(), seen.end(),
+                          [](const auto& a, const auto& b) { return a.second < b.second; })
+      ->first;
 }
 
 /// The wall's vertex below a vertex of a lip; -1 if there is no wall nearby.
@@ -368,7 +403,8 @@ void CutSurface::Parts::add_skirt() {
       wall_vertex[v] = copy_vertex(v);
     }
   for (const Lip& lip : lips) {
-    const Index from = wall_vertex[lip.from], to = wall_vertex[lip.to], foot_from = foot[lip.from], foot_to = foot[lip.to];
+    const Index from = wall_vertex[lip.from], to = wall_vertex[lip.to], foot_from = foot[lip.from],
+                foot_to = foot[lip.to];
     if (foot_from < 0 || foot_to < 0) continue;
     out.triangle.push_back({to, from, foot_from});
     if (foot_from != foot_to) out.triangle.push_back({to, foot_from, foot_to});

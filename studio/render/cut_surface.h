@@ -9,8 +9,9 @@
 
 namespace ctpm {
 
-/// An organ's surface as it is drawn: split where the organ was cut, its lips on their own sides, and the wall of
-/// the cut between them. Nothing is remembered from tick to tick but what is severed, so any State may follow any other.
+/// An organ's surface as it is drawn: split where the organ was cut, its lips on their own sides, and the
+/// wall of the cut between them. Nothing is remembered from tick to tick but what is severed, so any State
+/// may follow any other.
 class CutSurface {
  public:
   /// `whole` is the uncut surface of organ `organ`, bound to its spheres.

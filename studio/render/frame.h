@@ -10,8 +10,9 @@ namespace ctpm {
 
 /// One picture.
 struct Frame {
-  int width = 0, height = 0;      ///< [pixels]
-  std::vector<std::uint8_t> rgb;  ///< sRGB, row by row, top row first                      (height x width x 3)
+  int width = 0, height = 0;  ///< [pixels]
+  std::vector<std::uint8_t>
+      rgb;  ///< sRGB, row by row, top row first                      (height x width x 3)
 
   friend bool operator==(const Frame&, const Frame&) = default;
 };
@@ -19,8 +20,8 @@ struct Frame {
 /// A frame of one colour.
 Frame blank_frame(int width, int height, std::uint8_t red, std::uint8_t green, std::uint8_t blue);
 
-/// Writes a PNG file: under a temporary name beside `path`, renamed when whole. Errors: an empty frame, a name that
-/// does not end in .png, a folder that cannot be written.
+/// Writes a PNG file: under a temporary name beside `path`, renamed when whole. Errors: an empty frame, a
+/// name that does not end in .png, a folder that cannot be written.
 Result<Done> write_png(const std::string& path, const Frame& frame);
 
 /// Reads a picture that OpenCV knows (PNG). Errors: no file, not a picture.

@@ -22,7 +22,8 @@ GLuint compile(const Gl& gl, GLenum kind, const std::string& source) {
 
 }  // namespace
 
-Result<Program> Program::create(const Gl& gl, const std::string& name, const std::string& vertex, const std::string& fragment) {
+Result<Program> Program::create(const Gl& gl, const std::string& name, const std::string& vertex,
+                                const std::string& fragment) {
   Program program;
   program.gl_ = &gl, program.id_ = gl.CreateProgram();
   const GLuint shaders[] = {compile(gl, GL_VERTEX_SHADER, vertex), compile(gl, GL_FRAGMENT_SHADER, fragment)};
@@ -56,11 +57,13 @@ void VertexArray::create(const Gl& gl) {
   gl.BindBuffer(GL_ARRAY_BUFFER, stream), gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices);
 }
 
-void VertexArray::attribute(const Gl& gl, GLuint slot, int floats, int offset, int stride, GLuint divisor) const {
+void VertexArray::attribute(const Gl& gl, GLuint slot, int floats, int offset, int stride,
+                            GLuint divisor) const {
   gl.BindVertexArray(id), gl.BindBuffer(GL_ARRAY_BUFFER, stream);
   gl.EnableVertexAttribArray(slot);
   const std::size_t bytes = std::size_t(offset) * sizeof(float);
-  gl.VertexAttribPointer(slot, floats, GL_FLOAT, GL_FALSE, stride * int(sizeof(float)), reinterpret_cast<const void*>(bytes));
+  gl.VertexAttribPointer(slot, floats, GL_FLOAT, GL_FALSE, stride * int(sizeof(float)),
+                         reinterpret_cast<const void*>(bytes));
   if (divisor) gl.VertexAttribDivisor(slot, divisor);
 }
 
@@ -90,16 +93,21 @@ Result<Done> MultisampleTarget::create(const Gl& gl, int w, int h) {
     gl.BindRenderbuffer(GL_RENDERBUFFER, buffer);
     gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, w, h);
   };
-  storage(colour[0], kSamples, GL_RGBA8), storage(depth, kSamples, GL_DEPTH_COMPONENT24), storage(colour[1], 0, GL_RGBA8);
+  storage(colour[0], kSamples, GL_RGBA8), storage(depth, kSamples, GL_DEPTH_COMPONENT24),
+      storage(colour[1], 0, GL_RGBA8);
   bool complete = true;
   for (const GLuint target : {framebuffer, resolved}) {
     gl.BindFramebuffer(GL_FRAMEBUFFER, target);
-    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour[target == resolved]);
-    if (target == framebuffer) gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth);
+    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
+                               colour[target == resolved]);
+    if (target == framebuffer)
+      gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth);
     complete = complete && gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
   }
   if (!complete || gl.GetError() != GL_NO_ERROR)
-    return Error{"OpenGL", "no picture of " + std::to_string(w) + "x" + std::to_string(h) + " can be drawn to", "ask for a smaller picture"};
+    return Error{"OpenGL",
+                 "no picture of " + std::to_string(w) + "x" + std::to_string(h) + " can be drawn to",
+                 "ask for a smaller picture"};
   return Done{};
 }
 
@@ -122,8 +130,10 @@ void TextureTarget::create(const Gl& gl, int side) {
   gl.GenTextures(1, &texture), gl.GenFramebuffers(1, &framebuffer);
   gl.BindTexture(GL_TEXTURE_2D, texture);
   gl.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, size, size, 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR), gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE), gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR),
+      gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE),
+      gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
 }
@@ -137,7 +147,8 @@ GLuint create_noise_texture(const Gl& gl) {
   constexpr int kSize = 32, kCell = 4, kKnots = kSize / kCell;
   // Knot values from an integer hash, joined by quintic curves: smooth, and it repeats.
   const auto knot = [](int i, int j, int k) {
-    std::uint32_t h = std::uint32_t(i & (kKnots - 1)) + 31u * std::uint32_t(j & (kKnots - 1)) + 1013u * std::uint32_t(k & (kKnots - 1));
+    std::uint32_t h = std::uint32_t(i & (kKnots - 1)) + 31u * std::uint32_t(j & (kKnots - 1)) +
+                      1013u * std::uint32_t(k & (kKnots - 1));
     h = (h ^ 61u ^ (h >> 16)) * 9u, h = (h ^ (h >> 4)) * 0x27d4eb2du, h ^= h >> 15;
     return double(h & 0xffffu) / 32767.5 - 1;
   };
@@ -147,11 +158,14 @@ GLuint create_noise_texture(const Gl& gl) {
     const double u = ease((x & 3) / 4.0), v = ease((y & 3) / 4.0), w = ease((z & 3) / 4.0);
     double sum = 0;
     for (int n = 0; n < 8; ++n)
-      sum += (n & 1 ? u : 1 - u) * (n & 2 ? v : 1 - v) * (n & 4 ? w : 1 - w) * knot(i + (n & 1), j + (n >> 1 & 1), k + (n >> 2));
+      sum += (n & 1 ? u : 1 - u) * (n & 2 ? v : 1 - v) * (n & 4 ? w : 1 - w) *
+             knot(i + (n & 1), j + (n >> 1 & 1), k + (n >> 2));
     return sum;
   };
   std::vector<std::uint8_t> texels;
-  const auto pack = [&](double x) { texels.push_back(std::uint8_t(std::lround(255 * std::clamp(0.5 + 0.5 * x, 0.0, 1.0)))); };
+  const auto pack = [&](double x) {
+    texels.push_back(std::uint8_t(std::lround(255 * std::clamp(0.5 + 0.5 * x, 0.0, 1.0))));
+  };
   for (int z = 0; z < kSize; ++z)
     for (int y = 0; y < kSize; ++y)
       for (int x = 0; x < kSize; ++x) {
@@ -161,8 +175,10 @@ GLuint create_noise_texture(const Gl& gl) {
   GLuint texture = 0;
   gl.GenTextures(1, &texture), gl.BindTexture(GL_TEXTURE_3D, texture);
   gl.TexImage3D(GL_TEXTURE_3D, 0, GL_RGBA8, kSize, kSize, kSize, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
-  gl.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR), gl.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) gl.TexParameteri(GL_TEXTURE_3D, wrap, GL_REPEAT);
+  gl.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR),
+      gl.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+    gl.TexParameteri(GL_TEXTURE_3D, wrap, GL_REPEAT);
   return texture;
 }
 

@@ -17,14 +17,19 @@ class Program {
  public:
   Program() = default;
   /// Errors: the compiler's or linker's words; a bug of ours unless the driver is too old.
-  static Result<Program> create(const Gl& gl, const std::string& name, const std::string& vertex, const std::string& fragment);
+  static Result<Program> create(const Gl& gl, const std::string& name, const std::string& vertex,
+                                const std::string& fragment);
 
   void use() const { gl_->UseProgram(id_); }
   GLuint id() const { return id_; }
   void set(const char* name, int value) const { gl_->Uniform1i(place(name), value); }
   void set(const char* name, double value) const { gl_->Uniform1f(place(name), float(value)); }
-  void set(const char* name, Vec3 v) const { gl_->Uniform3f(place(name), float(v.x), float(v.y), float(v.z)); }
-  void set(const char* name, Vec3 v, double w) const { gl_->Uniform4f(place(name), float(v.x), float(v.y), float(v.z), float(w)); }
+  void set(const char* name, Vec3 v) const {
+    gl_->Uniform3f(place(name), float(v.x), float(v.y), float(v.z));
+  }
+  void set(const char* name, Vec3 v, double w) const {
+    gl_->Uniform4f(place(name), float(v.x), float(v.y), float(v.z), float(w));
+  }
   void set(const char* name, const Mat4& matrix) const;
 
  private:

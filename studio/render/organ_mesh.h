@@ -17,7 +17,8 @@ class OrganMesh {
   /// Deforms `surface` and fills vertices(). `first_sphere`: of the organ, in the State.
   void update(const Surface& surface, const State& state, std::int32_t first_sphere);
 
-  /// Interleaved floats (vertex_count x kOrganVertexFloats). The crevice is negative in hollows and positive on ridges.
+  /// Interleaved floats (vertex_count x kOrganVertexFloats). The crevice is negative in hollows and positive
+  /// on ridges.
   const std::vector<float>& vertices() const { return data_; }
   const std::vector<Vec3>& positions() const { return position_; }  ///< [m]
 

@@ -12,7 +12,8 @@ namespace {
 
 using Ink = std::array<int, 3>;
 
-constexpr Ink kWhite{240, 243, 246}, kGrey{168, 178, 188}, kAmber{255, 190, 80}, kRed{235, 72, 60}, kGreen{96, 205, 140};
+constexpr Ink kWhite{240, 243, 246}, kGrey{168, 178, 188}, kAmber{255, 190, 80}, kRed{235, 72, 60},
+    kGreen{96, 205, 140};
 constexpr int kFont = cv::FONT_HERSHEY_DUPLEX;
 constexpr int kOversample = 4;  // strokes are drawn this many times larger and averaged down
 
@@ -65,8 +66,10 @@ class Font {
     int baseline = 0;
     const cv::Size size = cv::getTextSize(text, kFont, scale_, 1, &baseline);
     const int pad = height_ / 4, advance = int(std::lround(double(size.width) / kOversample));
-    cv::Mat large(kOversample * (height_ + height_ / 2 + 2 * pad), kOversample * (advance + 2 * pad), CV_8U, cv::Scalar(0));
-    cv::putText(large, text, {kOversample * pad, kOversample * (pad + height_)}, kFont, scale_, cv::Scalar(255), thickness, cv::LINE_AA);
+    cv::Mat large(kOversample * (height_ + height_ / 2 + 2 * pad), kOversample * (advance + 2 * pad), CV_8U,
+                  cv::Scalar(0));
+    cv::putText(large, text, {kOversample * pad, kOversample * (pad + height_)}, kFont, scale_,
+                cv::Scalar(255), thickness, cv::LINE_AA);
     Glyph g{{}, advance};
     cv::resize(large, g.mask, {large.cols / kOversample, large.rows / kOversample}, 0, 0, cv::INTER_AREA);
     return glyphs_.emplace(c, g).first->second;
@@ -78,7 +81,8 @@ class Font {
         const int cover = mask.at<std::uint8_t>(r, c);
         if (!cover) continue;
         auto& pixel = rgb.at<cv::Vec3b>(y + r, x + c);
-        for (int k = 0; k < 3; ++k) pixel[k] = std::uint8_t((pixel[k] * (255 - cover) + ink[std::size_t(k)] * cover + 127) / 255);
+        for (int k = 0; k < 3; ++k)
+          pixel[k] = std::uint8_t((pixel[k] * (255 - cover) + ink[std::size_t(k)] * cover + 127) / 255);
       }
   }
 
@@ -95,7 +99,8 @@ void draw_panel(cv::Mat& rgb, const Box& box, const Ink& tint, int opacity, int 
       const int dy = std::max({box.y + radius - y, y - (box.y + box.height - 1 - radius), 0});
       if (dx * dx + dy * dy > radius * radius) continue;
       auto& pixel = rgb.at<cv::Vec3b>(y, x);
-      for (int k = 0; k < 3; ++k) pixel[k] = std::uint8_t((pixel[k] * (256 - opacity) + tint[std::size_t(k)] * opacity) >> 8);
+      for (int k = 0; k < 3; ++k)
+        pixel[k] = std::uint8_t((pixel[k] * (256 - opacity) + tint[std::size_t(k)] * opacity) >> 8);
     }
 }
 
@@ -125,7 +130,11 @@ double round_up(double value) {
 
 struct Overlay::Parts {
   Parts(int w, int h)
-      : width(w), height(h), scale(std::min(w / 1280.0, h / 720.0)), small(std::max(5, px(17))), large(std::max(6, px(23))) {}
+      : width(w),
+        height(h),
+        scale(std::min(w / 1280.0, h / 720.0)),
+        small(std::max(5, px(17))),
+        large(std::max(6, px(23))) {}
 
   int px(double at_720) const { return int(std::lround(at_720 * scale)); }
   Plan plan(const OverlayData& data);
@@ -136,7 +145,9 @@ struct Overlay::Parts {
   Line line(Font& font, const std::string& text, int x, int y, const Ink& ink) {
     return {{text, {x, y, font.width(text), font.height() + font.height() / 4}}, ink, &font == &large};
   }
-  bool is_damaged(const OverlayData& data) const { return data.damage_depth > 0 && data.depth > data.damage_depth; }
+  bool is_damaged(const OverlayData& data) const {
+    return data.damage_depth > 0 && data.depth > data.damage_depth;
+  }
 
   int width, height;
   double scale;
@@ -152,10 +163,11 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
     y += px(38);
   }
   const Ink depth_ink = is_damaged(data) ? kRed : kWhite;
-  const std::array<std::pair<std::string, std::string>, 4> facts{{{"time", fixed(data.time, 3) + " s"},
-                                                                   {"tick", std::to_string(data.tick)},
-                                                                   {"force", fixed(data.force, 3) + " N"},
-                                                                   {"depth", fixed(1000 * data.depth, 2) + " mm"}}};
+  const std::array<std::pair<std::string, std::string>, 4> facts{
+      {{"time", fixed(data.time, 3) + " s"},
+       {"tick", std::to_string(data.tick)},
+       {"force", fixed(data.force, 3) + " N"},
+       {"depth", fixed(1000 * data.depth, 2) + " mm"}}};
   for (const auto& [name, value] : facts) {
     plan.lines.push_back(line(small, name, x, y, kGrey));
     Line shown = line(small, value, 0, y, name == "depth" ? depth_ink : kWhite);
@@ -185,7 +197,8 @@ void Overlay::Parts::plan_plot(const OverlayData& data, Plan& plan) {
     plan.lines.push_back(shown);
   };
   left_label(scale_text, plan.curve.y), left_label("0", plan.curve.y + plan.curve.height);
-  Line now = line(small, "last " + fixed(data.plot_span, data.plot_span < 1 ? 1 : 0) + " s", 0, plan.curve.y + plan.curve.height + px(8), kGrey);
+  Line now = line(small, "last " + fixed(data.plot_span, data.plot_span < 1 ? 1 : 0) + " s", 0,
+                  plan.curve.y + plan.curve.height + px(8), kGrey);
   now.placed.box.x = plan.curve.x + plan.curve.width - now.placed.box.width;
   plan.lines.push_back(now);
 }
@@ -194,16 +207,20 @@ void Overlay::Parts::plan_plot(const OverlayData& data, Plan& plan) {
 void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
   const int pad = px(16), h = px(17) + 2 * px(13);
   const auto banner = [&](const std::string& text, int y, const Ink& ink) {
-    const std::string shown = small.shortened(text, px(520));
+    const std::string shown = small.shortened(text, px(640));
     const int w = small.width(shown) + 2 * pad;
     const Box box{width - px(20) - w, y, w, h};
     plan.lines.push_back(line(small, shown, box.x + pad, y + px(13), ink));
     return box;
   };
   if (!data.verdict.empty())
-    plan.verdict = banner(data.verdict, px(20), data.verdict_tone == VerdictTone::good ? kGreen : data.verdict_tone == VerdictTone::bad ? kAmber : kWhite);
+    plan.verdict = banner(data.verdict, px(20),
+                          data.verdict_tone == VerdictTone::good  ? kGreen
+                          : data.verdict_tone == VerdictTone::bad ? kAmber
+                                                                  : kWhite);
   if (is_damaged(data))
-    plan.warning = banner("TISSUE DAMAGE: " + fixed(1000 * data.depth, 1) + " mm, limit " + fixed(1000 * data.damage_depth, 1) + " mm",
+    plan.warning = banner("TISSUE DAMAGE: " + fixed(1000 * data.depth, 1) + " mm, limit " +
+                              fixed(1000 * data.damage_depth, 1) + " mm",
                           height - px(20) - h, kWhite);
 }
 
@@ -225,10 +242,13 @@ void Overlay::Parts::draw_curve(cv::Mat& rgb, const OverlayData& data, const Pla
   cv::line(rgb, {c.x, c.y}, {c.x + c.width, c.y}, cv::Scalar(70, 78, 86), 1);
   std::vector<cv::Point> points;
   for (const ForcePoint& p : data.history)
-    if (p.time >= data.time - data.plot_span && p.time <= data.time) points.push_back(at(p.time, std::max(p.force, 0.0)));
+    if (p.time >= data.time - data.plot_span && p.time <= data.time)
+      points.push_back(at(p.time, std::max(p.force, 0.0)));
   if (points.empty()) return;
-  cv::polylines(rgb, points, false, cv::Scalar(kAmber[0], kAmber[1], kAmber[2]), std::max(1, px(2)), cv::LINE_AA, kShift);
-  cv::circle(rgb, points.back(), std::max(1, px(4)) << kShift, cv::Scalar(255, 225, 160), cv::FILLED, cv::LINE_AA, kShift);
+  cv::polylines(rgb, points, false, cv::Scalar(kAmber[0], kAmber[1], kAmber[2]), std::max(1, px(2)),
+                cv::LINE_AA, kShift);
+  cv::circle(rgb, points.back(), std::max(1, px(4)) << kShift, cv::Scalar(255, 225, 160), cv::FILLED,
+             cv::LINE_AA, kShift);
 }
 
 Overlay::Overlay(int width, int height) : parts_(std::make_unique<Parts>(width, height)) {}
@@ -236,19 +256,23 @@ Overlay::~Overlay() = default;
 Overlay::Overlay(Overlay&&) noexcept = default;
 
 void Overlay::draw(Frame& frame, const OverlayData& data) {
-  CTPM_CHECK(frame.width == parts_->width && frame.height == parts_->height, "an overlay draws on frames of its own size");
+  CTPM_CHECK(frame.width == parts_->width && frame.height == parts_->height,
+             "an overlay draws on frames of its own size");
   cv::Mat rgb(frame.height, frame.width, CV_8UC3, frame.rgb.data());
   const Plan plan = parts_->plan(data);
   const int radius = parts_->px(10);
-  for (const Box& box : {plan.facts, plan.plot, plan.verdict}) draw_panel(rgb, box, {14, 19, 25}, 176, radius);
+  for (const Box& box : {plan.facts, plan.plot, plan.verdict})
+    draw_panel(rgb, box, {14, 19, 25}, 176, radius);
   draw_panel(rgb, plan.warning, {170, 24, 18}, 224, radius);
   for (const Line& line : plan.lines)
-    (line.is_large ? parts_->large : parts_->small).write(rgb, line.placed.box.x, line.placed.box.y, line.placed.text, line.ink);
+    (line.is_large ? parts_->large : parts_->small)
+        .write(rgb, line.placed.box.x, line.placed.box.y, line.placed.text, line.ink);
   if (!data.history.empty()) parts_->draw_curve(rgb, data, plan);
 }
 
 void Overlay::draw_title(Frame& frame, const std::string& title) {
-  CTPM_CHECK(frame.width == parts_->width && frame.height == parts_->height, "an overlay draws on frames of its own size");
+  CTPM_CHECK(frame.width == parts_->width && frame.height == parts_->height,
+             "an overlay draws on frames of its own size");
   cv::Mat rgb(frame.height, frame.width, CV_8UC3, frame.rgb.data());
   Parts& p = *parts_;
   const std::string text = p.large.shortened(title, p.px(480));

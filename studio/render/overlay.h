@@ -19,23 +19,25 @@ enum class VerdictTone { none, good, bad };
 
 /// What the overlay says. Texts that are empty are left out; long ones are shortened with an ellipsis.
 struct OverlayData {
-  std::string title;           ///< scene, and model where it matters: "Liver (CTPM)"
-  double time = 0;             ///< [s]
+  std::string title;  ///< scene, and model where it matters: "Liver (CTPM)"
+  double time = 0;    ///< [s]
   std::int64_t tick = 0;
-  double force = 0;            ///< magnitude on the tool [N]
-  double depth = 0;            ///< of the touched tissue [m]
-  double damage_depth = 0;     ///< depth beyond which the tissue is damaged [m]; 0: no limit
-  std::string verdict;         ///< what the replay found, one line
+  double force = 0;         ///< magnitude on the tool [N]
+  double depth = 0;         ///< of the touched tissue [m]
+  double damage_depth = 0;  ///< depth beyond which the tissue is damaged [m]; 0: no limit
+  std::string verdict;      ///< what the replay found, one line
   VerdictTone verdict_tone = VerdictTone::none;
   std::vector<ForcePoint> history;  ///< in order of time; empty: no plot
-  double plot_span = 5;        ///< the plot shows the last so many seconds [s], > 0
+  double plot_span = 5;             ///< the plot shows the last so many seconds [s], > 0
 };
 
 /// A rectangle of the picture [pixels].
 struct Box {
   int x = 0, y = 0, width = 0, height = 0;
 
-  bool overlaps(const Box& o) const { return x < o.x + o.width && o.x < x + width && y < o.y + o.height && o.y < y + height; }
+  bool overlaps(const Box& o) const {
+    return x < o.x + o.width && o.x < x + width && y < o.y + o.height && o.y < y + height;
+  }
 };
 
 /// A text and where it stands.

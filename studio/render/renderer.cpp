@@ -13,7 +13,7 @@
 namespace ctpm {
 namespace {
 
-constexpr int kShadowSize = 96;       // of the shadow texture [pixels]; it is blurred anyway
+constexpr int kShadowSize = 96;        // of the shadow texture [pixels]; it is blurred anyway
 constexpr double kShadowMargin = 1.7;  // ground that can be shaded, against the scene's extent
 
 Vec3 linear(const Colour& c) { return {std::pow(c[0], 2.2), std::pow(c[1], 2.2), std::pow(c[2], 2.2)}; }
@@ -57,7 +57,8 @@ struct Renderer::Parts {
   void place_ground();
   void update_organs(const State& state);
   void draw_shadow();
-  void set_light(const Program& program, const State& state, const DrawOptions& options, const Mat4& clip_from_world);
+  void set_light(const Program& program, const State& state, const DrawOptions& options,
+                 const Mat4& clip_from_world);
   void draw_background(const DrawOptions& options, const Mat4& clip_from_world);
   void draw_organs(const State& state, const DrawOptions& options, const Mat4& clip_from_world);
   void draw_spheres(const State& state, const DrawOptions& options, const Mat4& clip_from_world);
@@ -71,11 +72,14 @@ Result<Done> Renderer::Parts::create_programs() {
   Errors errors;
   const auto make = [&](Program& program, const char* name, const ShaderSource& source) {
     auto made = Program::create(gl(), name, source.vertex, source.fragment);
-    if (made) program = *made;
-    else errors.insert(errors.end(), made.errors().begin(), made.errors().end());
+    if (made)
+      program = *made;
+    else
+      errors.insert(errors.end(), made.errors().begin(), made.errors().end());
   };
   make(background, "background", background_shader()), make(organ, "organ", organ_shader());
-  make(tool, "tool", tool_shader()), make(sphere, "sphere", sphere_shader()), make(ground, "ground", ground_shader());
+  make(tool, "tool", tool_shader()), make(sphere, "sphere", sphere_shader()),
+      make(ground, "ground", ground_shader());
   make(shadow_pass, "shadow", shadow_shader()), make(blur, "blur", shadow_blur_shader());
   if (!errors.empty()) return errors;
   return Done{};
@@ -138,20 +142,25 @@ void Renderer::Parts::update_organs(const State& state) {
 Mat4 Renderer::Parts::clip_from_world(const Camera& camera) const {
   const double away = norm(camera.eye - ground_centre);
   const double near = std::max(away - 3 * size, 0.02 * size), far = away + 3 * size;
-  return product(projection_matrix(camera, double(frame.width) / frame.height, near, far), view_matrix(camera));
+  return product(projection_matrix(camera, double(frame.width) / frame.height, near, far),
+                 view_matrix(camera));
 }
 
 const Tool* Renderer::Parts::held_tool(const State& state, const DrawOptions& options) const {
   const std::int32_t held = state.last_inputs.tool;
-  return options.show_tool && held >= 0 && std::size_t(held) < scene.model->tools.size() ? &scene.model->tools[std::size_t(held)] : nullptr;
+  return options.show_tool && held >= 0 && std::size_t(held) < scene.model->tools.size()
+             ? &scene.model->tools[std::size_t(held)]
+             : nullptr;
 }
 
-void Renderer::Parts::set_light(const Program& program, const State& state, const DrawOptions& options, const Mat4& clip) {
+void Renderer::Parts::set_light(const Program& program, const State& state, const DrawOptions& options,
+                                const Mat4& clip) {
   program.use();
   const Mat4 view = view_matrix(options.camera);
   const Vec3 right{view[0], view[4], view[8]}, back{view[2], view[6], view[10]};
   program.set("clip_from_world", clip);
-  gl().Uniform2f(gl().GetUniformLocation(program.id(), "picture_size"), float(frame.width), float(frame.height));
+  gl().Uniform2f(gl().GetUniformLocation(program.id(), "picture_size"), float(frame.width),
+                 float(frame.height));
   program.set("eye", options.camera.eye), program.set("up", up);
   program.set("key_light", unit(0.85 * up - 0.55 * right + 0.5 * back));
   program.set("fill_light", unit(0.25 * up + 0.9 * right + 0.35 * back));
@@ -161,7 +170,8 @@ void Renderer::Parts::set_light(const Program& program, const State& state, cons
   const Vec3 tip = state.last_inputs.position;
   const bool cuts = held && held->kind == ToolKind::scalpel;
   program.set("tool_tip", tip);
-  program.set("tool_heel", cuts ? tip + rotate(state.last_inputs.world_from_tool, {0, 0, held->blade_length}) : tip);
+  program.set("tool_heel",
+              cuts ? tip + rotate(state.last_inputs.world_from_tool, {0, 0, held->blade_length}) : tip);
   program.set("tool_radius", !held ? 0.0 : cuts ? 0.06 * held->blade_length : held->radius);
 }
 
@@ -172,7 +182,8 @@ void Renderer::Parts::draw_shadow() {
   g.ClearColor(0, 0, 0, 0), g.Clear(GL_COLOR_BUFFER_BIT);
   g.Enable(GL_BLEND), g.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_COLOR);
   shadow_pass.use();
-  shadow_pass.set("ground_centre", ground_centre), shadow_pass.set("ground_x", ground_x), shadow_pass.set("ground_y", ground_y);
+  shadow_pass.set("ground_centre", ground_centre), shadow_pass.set("ground_x", ground_x),
+      shadow_pass.set("ground_y", ground_y);
   shadow_pass.set("up", up), shadow_pass.set("reach", 0.10 * size);
   for (const OrganParts& part : organs) {
     g.BindVertexArray(part.array.id);
@@ -203,7 +214,8 @@ void Renderer::Parts::draw_background(const DrawOptions& options, const Mat4& cl
   ground.use();
   g.Uniform2f(g.GetUniformLocation(ground.id(), "picture_size"), float(frame.width), float(frame.height));
   ground.set("clip_from_world", clip);
-  ground.set("ground_centre", ground_centre), ground.set("ground_x", ground_x), ground.set("ground_y", ground_y);
+  ground.set("ground_centre", ground_centre), ground.set("ground_x", ground_x),
+      ground.set("ground_y", ground_y);
   ground.set("contact", 0), ground.set("wide", 1);
   g.ActiveTexture(GL_TEXTURE0), g.BindTexture(GL_TEXTURE_2D, contact.texture);
   g.ActiveTexture(GL_TEXTURE1), g.BindTexture(GL_TEXTURE_2D, wide.texture);
@@ -220,14 +232,16 @@ void Renderer::Parts::draw_organs(const State& state, const DrawOptions& options
   if (glassy) g.Enable(GL_BLEND), g.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   for (std::size_t i = 0; i < organs.size(); ++i) {
     const OrganLook& look = scene.looks[i];
-    organ.set("outer_colour", linear(look.outer)), organ.set("inner_colour", linear(look.inner)), organ.set("wetness", look.wetness);
+    organ.set("outer_colour", linear(look.outer)), organ.set("inner_colour", linear(look.inner)),
+        organ.set("wetness", look.wetness);
     const VertexArray& array = organs[i].array;
     const GLsizei outer = GLsizei(3 * organs[i].cut.outer_triangle_count());
     g.BindVertexArray(array.id);
     organ.set("is_wall", 0), g.DrawElements(GL_TRIANGLES, outer, GL_UNSIGNED_INT, nullptr);
     organ.set("is_wall", 1);
     if (array.index_count > outer)
-      g.DrawElements(GL_TRIANGLES, array.index_count - outer, GL_UNSIGNED_INT, reinterpret_cast<const void*>(sizeof(GLuint) * std::size_t(outer)));
+      g.DrawElements(GL_TRIANGLES, array.index_count - outer, GL_UNSIGNED_INT,
+                     reinterpret_cast<const void*>(sizeof(GLuint) * std::size_t(outer)));
   }
   g.Disable(GL_BLEND);
 }
@@ -237,13 +251,16 @@ void Renderer::Parts::draw_spheres(const State& state, const DrawOptions& option
   sphere_data.clear();
   for (const OrganRange& range : scene.model->organs)
     for (std::int32_t i = range.first; i < range.first + range.count; ++i) {
-      const Vec3 p = state.position[std::size_t(i)], c = linear(layer_colour(scene.model->layer[std::size_t(i)], range.layer_count));
-      for (const double x : {p.x, p.y, p.z, range.sphere_radius, c.x, c.y, c.z}) sphere_data.push_back(float(x));
+      const Vec3 p = state.position[std::size_t(i)],
+                 c = linear(layer_colour(scene.model->layer[std::size_t(i)], range.layer_count));
+      for (const double x : {p.x, p.y, p.z, range.sphere_radius, c.x, c.y, c.z})
+        sphere_data.push_back(float(x));
     }
   spheres.set_stream(g, sphere_data);
   set_light(sphere, state, options, clip);
   g.Enable(GL_SAMPLE_ALPHA_TO_COVERAGE);
-  g.BindVertexArray(spheres.id), g.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(sphere_data.size() / 7));
+  g.BindVertexArray(spheres.id),
+      g.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(sphere_data.size() / 7));
   g.Disable(GL_SAMPLE_ALPHA_TO_COVERAGE);
 }
 
@@ -252,7 +269,8 @@ void Renderer::Parts::draw_tool(const State& state, const DrawOptions& options, 
   const VertexArray& array = tools[std::size_t(state.last_inputs.tool)];
   set_light(tool, state, options, clip);
   tool.set("world_from_tool", rigid(state.last_inputs.world_from_tool, state.last_inputs.position));
-  gl().BindVertexArray(array.id), gl().DrawElements(GL_TRIANGLES, array.index_count, GL_UNSIGNED_INT, nullptr);
+  gl().BindVertexArray(array.id),
+      gl().DrawElements(GL_TRIANGLES, array.index_count, GL_UNSIGNED_INT, nullptr);
 }
 
 void Renderer::Parts::read_frame() {
@@ -261,7 +279,8 @@ void Renderer::Parts::read_frame() {
   for (std::size_t row = 0; row < height; ++row) {
     const std::uint8_t* from = rgba.data() + (height - 1 - row) * width * 4;
     std::uint8_t* to = frame.rgb.data() + row * width * 3;
-    for (std::size_t x = 0; x < width; ++x) to[3 * x] = from[4 * x], to[3 * x + 1] = from[4 * x + 1], to[3 * x + 2] = from[4 * x + 2];
+    for (std::size_t x = 0; x < width; ++x)
+      to[3 * x] = from[4 * x], to[3 * x + 1] = from[4 * x + 1], to[3 * x + 2] = from[4 * x + 2];
   }
 }
 
@@ -272,11 +291,14 @@ const SceneView& Renderer::scene() const { return parts_->scene; }
 Result<std::unique_ptr<Renderer>> Renderer::create(int width, int height, SceneView scene) {
   Errors errors;
   if (width < 16 || width > 8192 || height < 16 || height > 8192)
-    errors.push_back({"picture size", "got " + std::to_string(width) + "x" + std::to_string(height) + ", each must be in [16, 8192]", ""});
+    errors.push_back(
+        {"picture size",
+         "got " + std::to_string(width) + "x" + std::to_string(height) + ", each must be in [16, 8192]", ""});
   if (!scene.model || scene.model->organs.size() != scene.surfaces.size())
     errors.push_back({"scene", "a picture needs a model and one surface for each of its organs", ""});
   if (!errors.empty()) return errors;
-  for (std::size_t i = scene.looks.size(); i < scene.model->organs.size(); ++i) scene.looks.push_back(look_of(scene.model->organs[i].name));
+  for (std::size_t i = scene.looks.size(); i < scene.model->organs.size(); ++i)
+    scene.looks.push_back(look_of(scene.model->organs[i].name));
 
   auto context = GlContext::create();
   if (!context) return context.errors();
@@ -286,7 +308,8 @@ Result<std::unique_ptr<Renderer>> Renderer::create(int width, int height, SceneV
   const Gl& gl = parts->gl();
   if (auto done = parts->create_programs(); !done) return done.errors();
   if (auto done = parts->target.create(gl, width, height); !done) return done.errors();
-  for (TextureTarget* texture : {&parts->shadow, &parts->contact, &parts->wide}) texture->create(gl, kShadowSize);
+  for (TextureTarget* texture : {&parts->shadow, &parts->contact, &parts->wide})
+    texture->create(gl, kShadowSize);
   parts->noise = create_noise_texture(gl);
   parts->place_ground(), parts->create_organs(), parts->create_tools();
   return std::unique_ptr<Renderer>(new Renderer(std::move(parts)));

@@ -9,11 +9,13 @@
 
 namespace ctpm {
 
-/// Draws States of one scene into memory, without a display or a GPU. Only `State` and the options decide what is
-/// drawn: the same ones give the same pixels, in any order of calls. One thread at a time may use a Renderer.
+/// Draws States of one scene into memory, without a display or a GPU. Only `State` and the options decide
+/// what is drawn: the same ones give the same pixels, in any order of calls. One thread at a time may use a
+/// Renderer.
 class Renderer {
  public:
-  /// Errors: a size outside [16, 8192], a scene without a model or without one surface for each organ, no OpenGL 3.3.
+  /// Errors: a size outside [16, 8192], a scene without a model or without one surface for each organ, no
+  /// OpenGL 3.3.
   static Result<std::unique_ptr<Renderer>> create(int width, int height, SceneView scene);
   ~Renderer();
 

@@ -16,10 +16,10 @@ using Colour = std::array<double, 3>;
 
 /// How one organ looks.
 struct OrganLook {
-  std::string name;                   ///< of the organ
-  Colour outer{0.50, 0.17, 0.13};     ///< of its surface
-  Colour inner{0.46, 0.06, 0.06};     ///< of its inside, seen where it is cut
-  double wetness = 1;                 ///< strength of the wet film's mirror, in [0, 1]
+  std::string name;                ///< of the organ
+  Colour outer{0.50, 0.17, 0.13};  ///< of its surface
+  Colour inner{0.46, 0.06, 0.06};  ///< of its inside, seen where it is cut
+  double wetness = 1;              ///< strength of the wet film's mirror, in [0, 1]
 };
 
 /// The look of a known tissue (liver, kidney, skin), found in the organ's name; a plain red one for others.
@@ -27,9 +27,9 @@ OrganLook look_of(std::string_view organ_name);
 
 /// What is drawn: a Model, and one surface and look for each of its organs.
 struct SceneView {
-  const Model* model = nullptr;    ///< must outlive the Renderer
-  std::vector<Surface> surfaces;   ///< bound to the spheres of their organ    (organ_count)
-  std::vector<OrganLook> looks;    ///< empty: look_of() each organ's name     (organ_count)
+  const Model* model = nullptr;   ///< must outlive the Renderer
+  std::vector<Surface> surfaces;  ///< bound to the spheres of their organ    (organ_count)
+  std::vector<OrganLook> looks;   ///< empty: look_of() each organ's name     (organ_count)
 };
 
 /// The box around everything at rest [m].

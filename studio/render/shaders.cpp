@@ -20,7 +20,8 @@ vec3 dither(vec3 c) {
 }
 )";
 
-// Key light from the upper left, cool fill from the right, rim from behind; a room to be mirrored in wet tissue.
+// Key light from the upper left, cool fill from the right, rim from behind; a room to be mirrored in wet
+// tissue.
 const char* const kLight = R"(
 uniform vec3 eye, up, key_light, fill_light, rim_light;
 uniform vec3 tool_tip, tool_heel;
@@ -79,8 +80,8 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 rest;
 layout(location = 3) in float crevice;
 uniform mat4 clip_from_world;
-out vec3 p, n, q;
-out float hollow;
+centroid out vec3 p, n, q;
+centroid out float hollow;
 void main() {
   p = position; n = normal; q = rest; hollow = crevice;
   gl_Position = clip_from_world * vec4(position, 1.0);
@@ -88,8 +89,8 @@ void main() {
 )";
 
 const char* const kOrganFragment = R"(
-in vec3 p, n, q;
-in float hollow;
+centroid in vec3 p, n, q;
+centroid in float hollow;
 uniform sampler3D noise;
 uniform vec3 outer_colour, inner_colour;
 uniform float wetness;
@@ -265,12 +266,15 @@ void main() {
 }
 )";
 
-std::string join(const char* a, const char* b = "", const char* c = "") { return std::string(kVersion) + a + b + c; }
+std::string join(const char* a, const char* b = "", const char* c = "") {
+  return std::string(kVersion) + a + b + c;
+}
 
 }  // namespace
 
 ShaderSource background_shader() {
-  return {join(kFullScreenVertex), join(kBackdrop, "out vec4 colour;\nvoid main() { colour = vec4(dither(backdrop()), 1.0); }\n")};
+  return {join(kFullScreenVertex),
+          join(kBackdrop, "out vec4 colour;\nvoid main() { colour = vec4(dither(backdrop()), 1.0); }\n")};
 }
 ShaderSource organ_shader() { return {join(kOrganVertex), join(kBackdrop, kLight, kOrganFragment)}; }
 ShaderSource tool_shader() { return {join(kToolVertex), join(kBackdrop, kLight, kToolFragment)}; }

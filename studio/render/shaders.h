@@ -13,8 +13,8 @@ ShaderSource background_shader();
 ShaderSource organ_shader();
 ShaderSource tool_shader();
 ShaderSource sphere_shader();
-ShaderSource ground_shader();       ///< the background, darkened by the shadow
-ShaderSource shadow_shader();       ///< what stands above the ground, seen from straight above
+ShaderSource ground_shader();  ///< the background, darkened by the shadow
+ShaderSource shadow_shader();  ///< what stands above the ground, seen from straight above
 ShaderSource shadow_blur_shader();
 
 }  // namespace ctpm

@@ -19,10 +19,12 @@ class Builder {
     return std::uint32_t(mesh.vertex.size() / 7 - 1);
   }
 
-  void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) { mesh.index.insert(mesh.index.end(), {a, b, c}); }
+  void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    mesh.index.insert(mesh.index.end(), {a, b, c});
+  }
 
-  /// A body of revolution around z through the profile (radius, z), bottom to top; the ends are closed by radius 0.
-  /// `flat` scales y.
+  /// A body of revolution around z through the profile (radius, z), bottom to top; the ends are closed by
+  /// radius 0. `flat` scales y.
   void turn(const std::vector<std::array<double, 2>>& profile, ToolPart part, double flat = 1) {
     std::vector<std::uint32_t> row, last;
     for (std::size_t i = 0; i < profile.size(); ++i) {
@@ -33,7 +35,8 @@ class Builder {
       for (int k = 0; k <= kAround; ++k) {
         const double angle = 2 * std::numbers::pi * k / kAround, c = std::cos(angle), s = std::sin(angle);
         const Vec3 n{dz / length * c, dz / length * s / flat, -dr / length};
-        row.push_back(vertex({profile[i][0] * c, flat * profile[i][0] * s, profile[i][1]}, n / norm(n), part));
+        row.push_back(
+            vertex({profile[i][0] * c, flat * profile[i][0] * s, profile[i][1]}, n / norm(n), part));
       }
       for (std::size_t k = 0; i && k < std::size_t(kAround); ++k)
         triangle(last[k], last[k + 1], row[k + 1]), triangle(last[k], row[k + 1], row[k]);
@@ -65,9 +68,15 @@ ToolMesh make_ball(double radius) {
   }
   builder.turn(profile, ToolPart::steel);
   // The rod starts inside the ball; its proportions are those of a hand-held probe.
-  const double rod = std::max(0.35 * radius, 0.0008), grip = std::max(0.9 * radius, 0.0022), length = std::max(10 * radius, 0.03);
+  const double rod = std::max(0.35 * radius, 0.0008), grip = std::max(0.9 * radius, 0.0022),
+               length = std::max(10 * radius, 0.03);
   builder.turn({{rod, 0.5 * radius}, {rod, length}, {0, length}}, ToolPart::steel);
-  builder.turn({{0, length}, {0.8 * grip, length}, {grip, length + 0.003}, {grip, 3.5 * length}, {0.7 * grip, 3.5 * length + 0.003}, {0, 3.5 * length + 0.004}},
+  builder.turn({{0, length},
+                {0.8 * grip, length},
+                {grip, length + 0.003},
+                {grip, 3.5 * length},
+                {0.7 * grip, 3.5 * length + 0.003},
+                {0, 3.5 * length + 0.004}},
                ToolPart::handle);
   return builder.mesh;
 }
@@ -82,15 +91,23 @@ ToolMesh make_scalpel(double length) {
     const double z = length * i / kRows, t = double(i) / kRows;
     const double w = width * std::sqrt(std::min(1.0, 2.2 * t));
     edge.push_back({0, 0, z}), back.push_back({-w, 0, z});
-    ridge_left.push_back({-0.35 * w, half * std::min(1.0, 4 * t), z}), ridge_right.push_back({-0.35 * w, -half * std::min(1.0, 4 * t), z});
+    ridge_left.push_back({-0.35 * w, half * std::min(1.0, 4 * t), z}),
+        ridge_right.push_back({-0.35 * w, -half * std::min(1.0, 4 * t), z});
   }
   builder.blade_side(edge, ridge_left, 1), builder.blade_side(edge, ridge_right, -1);
   builder.blade_side(back, ridge_left, 1), builder.blade_side(back, ridge_right, -1);
   const std::size_t begin = builder.mesh.vertex.size();
   const double grip = 0.5 * width + 0.0006, top = std::max(3.2 * length, length + 0.08);
-  builder.turn({{0, length}, {0.55 * grip, length}, {grip, 1.12 * length}, {grip, 1.5 * length}, {0.8 * grip, 1.7 * length}, {0.9 * grip, top}, {0, top + 0.002}},
+  builder.turn({{0, length},
+                {0.55 * grip, length},
+                {grip, 1.12 * length},
+                {grip, 1.5 * length},
+                {0.8 * grip, 1.7 * length},
+                {0.9 * grip, top},
+                {0, top + 0.002}},
                ToolPart::handle, 0.45);
-  for (std::size_t i = begin; i < builder.mesh.vertex.size(); i += 7) builder.mesh.vertex[i] -= float(0.5 * width);
+  for (std::size_t i = begin; i < builder.mesh.vertex.size(); i += 7)
+    builder.mesh.vertex[i] -= float(0.5 * width);
   return builder.mesh;
 }
 

@@ -1,5 +1,6 @@
 #include "studio/video/video_writer.h"
 
+#include <unistd.h>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -7,7 +8,6 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <system_error>
-#include <unistd.h>
 
 namespace ctpm {
 namespace {
@@ -23,15 +23,21 @@ struct Format {
 };
 
 Format h264() { return {cv::VideoWriter::fourcc('a', 'v', 'c', '1'), cv::CAP_FFMPEG, "H.264", ".mp4"}; }
-Format motion_jpeg() { return {cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), cv::CAP_OPENCV_MJPEG, "Motion JPEG", ".avi"}; }
+Format motion_jpeg() {
+  return {cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), cv::CAP_OPENCV_MJPEG, "Motion JPEG", ".avi"};
+}
 
 Errors check(const std::string& path, int width, int height, double fps) {
   Errors errors;
   if (!path.ends_with(".mp4")) errors.push_back({path, "a video's name must end in .mp4", ""});
   const auto is_good = [](int n) { return n > 0 && n <= 8192 && n % 2 == 0; };
   if (!is_good(width) || !is_good(height))
-    errors.push_back({path, "got a video size of " + std::to_string(width) + "x" + std::to_string(height) + ", each must be even and in [2, 8192]", ""});
-  if (!(fps >= 1 && fps <= 240)) errors.push_back({path, "got " + std::to_string(fps) + " frames/s, must be in [1, 240]", ""});
+    errors.push_back({path,
+                      "got a video size of " + std::to_string(width) + "x" + std::to_string(height) +
+                          ", each must be even and in [2, 8192]",
+                      ""});
+  if (!(fps >= 1 && fps <= 240))
+    errors.push_back({path, "got " + std::to_string(fps) + " frames/s, must be in [1, 240]", ""});
   const fs::path folder = fs::path(path).parent_path().empty() ? fs::path(".") : fs::path(path).parent_path();
   std::error_code failed;
   if (!fs::is_directory(folder, failed))
@@ -87,7 +93,8 @@ Result<VideoFacts> VideoWriter::Parts::check_file() const {
   try {
     cv::VideoCapture reader(part);
     if (!reader.isOpened()) return Error{facts.path, "the video that was written cannot be opened again", ""};
-    facts.width = int(reader.get(cv::CAP_PROP_FRAME_WIDTH)), facts.height = int(reader.get(cv::CAP_PROP_FRAME_HEIGHT));
+    facts.width = int(reader.get(cv::CAP_PROP_FRAME_WIDTH)),
+    facts.height = int(reader.get(cv::CAP_PROP_FRAME_HEIGHT));
     facts.fps = reader.get(cv::CAP_PROP_FPS);
     while (reader.grab()) ++facts.frames;
   } catch (const cv::Exception& problem) {
@@ -96,9 +103,14 @@ Result<VideoFacts> VideoWriter::Parts::check_file() const {
   std::error_code failed;
   facts.bytes = std::int64_t(fs::file_size(part, failed));
   if (facts.frames != frames)
-    return Error{facts.path, std::to_string(frames) + " frames were written, " + std::to_string(facts.frames) + " are in the file", "check the free space"};
+    return Error{
+        facts.path,
+        std::to_string(frames) + " frames were written, " + std::to_string(facts.frames) + " are in the file",
+        "check the free space"};
   if (facts.width != width || facts.height != height)
-    return Error{facts.path, "the video has the size " + std::to_string(facts.width) + "x" + std::to_string(facts.height), ""};
+    return Error{facts.path,
+                 "the video has the size " + std::to_string(facts.width) + "x" + std::to_string(facts.height),
+                 ""};
   return facts;
 }
 
@@ -108,13 +120,16 @@ VideoWriter::~VideoWriter() {
   if (!parts_->is_finished) parts_->discard();
 }
 
-Result<std::unique_ptr<VideoWriter>> VideoWriter::create(const std::string& path, int width, int height, double fps) {
+Result<std::unique_ptr<VideoWriter>> VideoWriter::create(const std::string& path, int width, int height,
+                                                         double fps) {
   if (Errors errors = check(path, width, height, fps); !errors.empty()) return errors;
   auto parts = std::make_unique<Parts>();
   parts->stem = path.substr(0, path.size() - 4);
   parts->width = width, parts->height = height, parts->fps = fps;
   if (!parts->open(h264())) {
-    if (!parts->open(motion_jpeg())) return Error{path, "neither H.264 nor Motion JPEG can be written here", "install OpenCV's videoio with FFmpeg"};
+    if (!parts->open(motion_jpeg()))
+      return Error{path, "neither H.264 nor Motion JPEG can be written here",
+                   "install OpenCV's videoio with FFmpeg"};
     parts->note = "H.264 is not available here: Motion JPEG in AVI was written instead";
   }
   return std::unique_ptr<VideoWriter>(new VideoWriter(std::move(parts)));
@@ -125,8 +140,10 @@ Result<Done> VideoWriter::add(const Frame& frame) {
   const std::string path = p.stem + p.format.ending;
   if (p.is_finished) return Error{path, "the video is finished", ""};
   if (frame.width != p.width || frame.height != p.height)
-    return Error{path, "got a frame of " + std::to_string(frame.width) + "x" + std::to_string(frame.height) + " for a video of " +
-                           std::to_string(p.width) + "x" + std::to_string(p.height), ""};
+    return Error{path,
+                 "got a frame of " + std::to_string(frame.width) + "x" + std::to_string(frame.height) +
+                     " for a video of " + std::to_string(p.width) + "x" + std::to_string(p.height),
+                 ""};
   try {
     const cv::Mat rgb(frame.height, frame.width, CV_8UC3, const_cast<std::uint8_t*>(frame.rgb.data()));
     cv::cvtColor(rgb, p.bgr, cv::COLOR_RGB2BGR);

@@ -11,22 +11,23 @@ namespace ctpm {
 
 /// What was written, as found by opening the file again.
 struct VideoFacts {
-  std::string path;          ///< of the file, which differs from the one asked for if a fallback was taken
-  std::string codec;         ///< "H.264" or "Motion JPEG"
-  std::string note;          ///< why a fallback was taken; empty if none was
-  int width = 0, height = 0; ///< [pixels]
-  double fps = 0;            ///< frames per second
-  std::int64_t frames = 0;   ///< counted by decoding them all
+  std::string path;           ///< of the file, which differs from the one asked for if a fallback was taken
+  std::string codec;          ///< "H.264" or "Motion JPEG"
+  std::string note;           ///< why a fallback was taken; empty if none was
+  int width = 0, height = 0;  ///< [pixels]
+  double fps = 0;             ///< frames per second
+  std::int64_t frames = 0;    ///< counted by decoding them all
   std::int64_t bytes = 0;
 };
 
-/// Writes frames to a video of constant frame rate: H.264 in MP4, or Motion JPEG in AVI where H.264 is missing.
-/// The file has a temporary name until it is whole and checked; an unfinished one is removed.
+/// Writes frames to a video of constant frame rate: H.264 in MP4, or Motion JPEG in AVI where H.264 is
+/// missing. The file has a temporary name until it is whole and checked; an unfinished one is removed.
 class VideoWriter {
  public:
-  /// `path` ends in .mp4. Errors: another ending, a size that is not positive and even or beyond 8192, a frame rate
-  /// outside [1, 240], a folder that cannot be written, no codec.
-  static Result<std::unique_ptr<VideoWriter>> create(const std::string& path, int width, int height, double fps);
+  /// `path` ends in .mp4. Errors: another ending, a size that is not positive and even or beyond 8192, a
+  /// frame rate outside [1, 240], a folder that cannot be written, no codec.
+  static Result<std::unique_ptr<VideoWriter>> create(const std::string& path, int width, int height,
+                                                     double fps);
   ~VideoWriter();
 
   /// Appends a frame. Errors: a frame of another size, after finish().

@@ -1,0 +1,89 @@
+#include "studio/render/overlay.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace ctpm {
+namespace {
+
+OverlayData full_data() {
+  OverlayData data;
+  data.title = "Liver (CTPM)";
+  data.time = 12.345, data.tick = 12345, data.force = 1.234, data.depth = 0.0134, data.damage_depth = 0.012;
+  data.verdict = "Replay identical: 12345 of 12345 ticks", data.verdict_tone = VerdictTone::good;
+  for (int i = 0; i <= 12345; i += 5) data.history.push_back({i * 1e-3, 1 + std::sin(i * 0.003)});
+  return data;
+}
+
+TEST(Overlay, TextsNeitherOverlapNorLeaveThePicture) {
+  OverlayData long_winded = full_data();
+  long_winded.title = std::string(200, 'W'), long_winded.verdict = std::string(300, 'M');
+  long_winded.tick = 999999999, long_winded.time = 99999.999, long_winded.force = 12345.678;
+  for (const auto& [width, height] :
+       {std::pair{1280, 720}, {640, 360}, {1920, 1080}, {1080, 1080}, {854, 480}})
+    for (const OverlayData& data : {full_data(), long_winded}) {
+      Overlay overlay(width, height);
+      const auto texts = overlay.layout(data);
+      EXPECT_GT(texts.size(), 10u);
+      for (std::size_t i = 0; i < texts.size(); ++i) {
+        const Box& box = texts[i].box;
+        EXPECT_TRUE(box.x >= 0 && box.y >= 0 && box.x + box.width <= width && box.y + box.height <= height)
+            << texts[i].text;
+        for (std::size_t j = 0; j < i; ++j)
+          EXPECT_FALSE(box.overlaps(texts[j].box))
+              << texts[i].text << " and " << texts[j].text << " at " << width << "x" << height;
+      }
+    }
+}
+
+TEST(Overlay, EveryTextLeavesInkInItsPlace) {
+  Overlay overlay(1280, 720);
+  const OverlayData data = full_data();
+  Frame frame = blank_frame(1280, 720, 120, 130, 140);
+  overlay.draw(frame, data);
+  for (const PlacedText& text : overlay.layout(data)) {
+    int least = 255, most = 0;
+    for (int y = text.box.y; y < text.box.y + text.box.height; ++y)
+      for (int x = text.box.x; x < text.box.x + text.box.width; ++x) {
+        const int red = frame.rgb[std::size_t(y * 1280 + x) * 3],
+                  green = frame.rgb[std::size_t(y * 1280 + x) * 3 + 1];
+        least = std::min(least, std::max(red, green)), most = std::max(most, std::max(red, green));
+      }
+    EXPECT_GT(most - least, 60) << text.text;  // white on the red warning is the faintest
+  }
+}
+
+TEST(Overlay, ShowsOnlyWhatThereIs) {
+  Overlay overlay(1280, 720);
+  OverlayData data = full_data();
+  data.depth = 0.002;
+  const auto says = [&](const std::string& word) {
+    for (const PlacedText& text : overlay.layout(data))
+      if (text.text.find(word) != std::string::npos) return true;
+    return false;
+  };
+  EXPECT_FALSE(says("DAMAGE"));
+  data.depth = 0.0121;
+  EXPECT_TRUE(says("DAMAGE"));
+  data.damage_depth = 0;  // a scene without a limit
+  EXPECT_FALSE(says("DAMAGE"));
+  EXPECT_TRUE(says("Replay identical"));
+  data.verdict.clear();
+  EXPECT_FALSE(says("Replay"));
+  EXPECT_TRUE(says("12.345 s") && says("12345") && says("1.234 N") && says("12.10 mm"));
+}
+
+TEST(Overlay, SameDataGivesSamePixels) {
+  Overlay one(640, 360), other(640, 360);
+  Frame a = blank_frame(640, 360, 9, 9, 9), b = a, plain = a;
+  OverlayData earlier = full_data();
+  earlier.history.clear();
+  one.draw(plain, earlier);
+  one.draw(a, full_data()), other.draw(b, full_data());
+  EXPECT_EQ(a, b);
+  EXPECT_NE(a, plain);
+}
+
+}  // namespace
+}  // namespace ctpm
