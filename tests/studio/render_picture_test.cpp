@@ -92,6 +92,7 @@ TEST(Picture, ShowsTheToolWhereItIs) {
   auto renderer = make_renderer(*scene);
   DrawOptions options;
   options.camera = default_camera(scene->view);
+  options.camera.eye = options.camera.eye + 0.8 * (options.camera.eye - options.camera.target);  // room for the tool
   State state = rest_state(scene->model);
   const Frame without = renderer->draw(state, options);
   for (const std::int32_t tool : {0, 1}) {
@@ -101,6 +102,7 @@ TEST(Picture, ShowsTheToolWhereItIs) {
     // The ball's middle; the blade a third up its edge and a little towards its back.
     const Vec3 inside = state.last_inputs.position + (tool ? Vec3{-0.003, 0, 0.012} : Vec3{});
     const Pixel at = project(options.camera, kWidth, kHeight, inside);
+    ASSERT_TRUE(at.x >= 0 && at.x < kWidth && at.y >= 0 && at.y < kHeight) << at.x << ", " << at.y;
     EXPECT_GT(difference(with, without, std::size_t(int(at.y) * kWidth + int(at.x))), 20) << "tool " << tool;
     options.show_tool = false;
     EXPECT_EQ(renderer->draw(state, options), without);
