@@ -1,0 +1,74 @@
+#include "scenes/presets.h"
+
+#include <array>
+
+namespace ctpm {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// One row of the paper's section 5.1, in its own numbers: r and R [mm], K1, K2, K' [kPa/mm], v1.
+constexpr MaterialPreset row(const char* name, const char* organ, double r, double ball, double k1, double k2, double constraint,
+                             double viscosity_kpa_s_per_mm, double least, double most, double damage, const char* source) {
+  MaterialPreset preset{name, organ, r * 1e-3, ball * 1e-3, {}, least, most, damage, source};
+  Material& m = preset.material;
+  m.kelvin = k1 * 1e6, m.spring = k2 * 1e6, m.constraint = constraint * 1e6, m.viscosity = viscosity_kpa_s_per_mm * 1e6;
+  m.density = 1060;
+  m.calibration_area = kPi * (ball * 1e-3) * (ball * 1e-3);
+  m.calibration_spacing = 3 * r * 1e-3;
+  return preset;
+}
+
+constexpr const char* kSlow = "Bao & Wu, section 5.1; viscosity read in kPa s/mm, which gives the creep of their Figs. 7 and 8";
+constexpr const char* kPrinted = "Bao & Wu, section 5.1; viscosity as printed, in Pa s (per mm, like the moduli)";
+
+constexpr std::array<MaterialPreset, 6> kPresets{
+    row("liver", "liver", 4, 2.0, 15, 15, 20, 5, 0.15, 0.40, 0.012, kSlow),
+    row("kidney", "kidney", 4, 1.5, 58, 58, 106, 4, 0.07, 0.20, 0, kSlow),
+    row("skin", "skin", 7, 2.8, 82, 82, 164, 3, 0.05, 0.50, 0, kSlow),
+    row("liver-pa-s", "liver", 4, 2.0, 15, 15, 20, 5e-3, 0.15, 0.40, 0.012, kPrinted),
+    row("kidney-pa-s", "kidney", 4, 1.5, 58, 58, 106, 4e-3, 0.07, 0.20, 0, kPrinted),
+    row("skin-pa-s", "skin", 7, 2.8, 82, 82, 164, 3e-3, 0.05, 0.50, 0, kPrinted),
+};
+
+}  // namespace
+
+std::span<const MaterialPreset> material_presets() { return kPresets; }
+
+const MaterialPreset* find_preset(std::string_view name) {
+  for (const MaterialPreset& preset : kPresets)
+    if (name == preset.name) return &preset;
+  return nullptr;
+}
+
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  for (const MaterialPreset& preset : kPresets) names.emplace_back(preset.name);
+  return names;
+}
+
+ResolvedMaterial resolve_material(const MaterialSpec& spec) {
+  ResolvedMaterial resolved;
+  const MaterialPreset* preset = find_preset(spec.preset);
+  if (preset != nullptr) resolved.material = preset->material;
+  Material& m = resolved.material;
+  const auto take = [&](const std::optional<double>& own, double& value, const char* key) {
+    if (own)
+      value = *own;
+    else if (preset == nullptr)
+      resolved.missing.emplace_back(key);
+  };
+  take(spec.spring, m.spring, "spring_kpa_per_mm");
+  take(spec.kelvin, m.kelvin, "kelvin_kpa_per_mm");
+  take(spec.constraint, m.constraint, "constraint_kpa_per_mm");
+  take(spec.viscosity, m.viscosity, "viscosity_kpa_s_per_mm");
+  double ball = 0;
+  take(spec.calibration_ball, ball, "calibration_ball_radius_mm");
+  if (spec.calibration_ball) m.calibration_area = kPi * ball * ball;
+  take(spec.calibration_spacing, m.calibration_spacing, "calibration_spacing_mm");
+  m.density = spec.density.value_or(m.density);
+  m.stiffness_scale = spec.stiffness_scale.value_or(m.stiffness_scale);
+  return resolved;
+}
+
+}  // namespace ctpm

@@ -1,0 +1,178 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/model.h"
+#include "core/network.h"
+#include "core/vec3.h"
+
+// A scene as its author wrote it, in SI units. Keys, units, ranges and sentences of the text form stand in one
+// table (scene_fields.h); FORMAT.md is made from it. An unset optional means: not written, decided elsewhere.
+namespace ctpm {
+
+/// Unit in which a mesh file holds its coordinates.
+enum class LengthUnit : std::int32_t { millimetre = 0, centimetre = 1, metre = 2, inch = 3 };
+
+/// [m] of one unit of the mesh file.
+constexpr double metres_of(LengthUnit unit) {
+  switch (unit) {
+    case LengthUnit::millimetre: return 1e-3;
+    case LengthUnit::centimetre: return 1e-2;
+    case LengthUnit::metre: return 1.0;
+    case LengthUnit::inch: return 25.4e-3;
+  }
+  return 1.0;
+}
+
+/// How an organ's inside is filled with spheres.
+struct FillSpec {
+  double radius = 4e-3;  ///< r [m]
+  double gap = 4e-3;     ///< surface to surface [m]; spacing s = 2 r + gap
+
+  double spacing() const { return 2 * radius + gap; }
+  friend bool operator==(const FillSpec&, const FillSpec&) = default;
+};
+
+/// A tissue: a preset (presets.h), single values instead of the preset's, or all values without a preset.
+struct MaterialSpec {
+  std::string preset;                         ///< empty: none
+  std::optional<double> spring;               ///< K2 [Pa/m]
+  std::optional<double> kelvin;               ///< K1 [Pa/m]
+  std::optional<double> constraint;           ///< K' [Pa/m]
+  std::optional<double> viscosity;            ///< v1 [Pa s/m]
+  std::optional<double> density;              ///< [kg/m^3]
+  std::optional<double> stiffness_scale;      ///< multiplies every stiffness and damping
+  std::optional<double> calibration_ball;     ///< radius R of the ball the moduli belong to [m]
+  std::optional<double> calibration_spacing;  ///< spacing of the site the moduli belong to [m]
+
+  friend bool operator==(const MaterialSpec&, const MaterialSpec&) = default;
+};
+
+struct BoxRegion {
+  Vec3 min, max;  ///< corners [m]
+  friend bool operator==(const BoxRegion&, const BoxRegion&) = default;
+};
+struct SphereRegion {
+  Vec3 centre;        ///< [m]
+  double radius = 0;  ///< [m]
+  friend bool operator==(const SphereRegion&, const SphereRegion&) = default;
+};
+struct PlaneRegion {
+  Vec3 point;   ///< [m]
+  Vec3 normal;  ///< points to the side that is free; any length but zero
+  friend bool operator==(const PlaneRegion&, const PlaneRegion&) = default;
+};
+
+/// A region whose spheres never move. Exactly one member is set.
+struct AnchorSpec {
+  std::optional<double> lowest;  ///< centres at most this far above the organ's lowest centre, against gravity [m]
+  std::optional<BoxRegion> box;
+  std::optional<SphereRegion> sphere;
+  std::optional<PlaneRegion> plane;
+
+  friend bool operator==(const AnchorSpec&, const AnchorSpec&) = default;
+};
+
+/// A sphere of a rig that runs on a rail or in a plane.
+struct GuideSpec {
+  Vec3 cell;         ///< lattice coordinates of the sphere, whole numbers
+  std::string axes;  ///< axes that it may not leave: letters of "xyz"
+
+  friend bool operator==(const GuideSpec&, const GuideSpec&) = default;
+};
+
+/// Spheres given one by one instead of by a mesh: the paper's test rig (Fig. 3), blocks for studies.
+struct RigSpec {
+  std::vector<Vec3> cells;     ///< lattice coordinates, whole numbers; cell 0, 0, 0 is at the origin
+  std::optional<Vec3> block;   ///< instead of cells: spheres along x, y and z of a full block, centred over the origin, standing on z = 0
+  std::vector<GuideSpec> guides;
+
+  friend bool operator==(const RigSpec&, const RigSpec&) = default;
+};
+
+struct OrganSpec {
+  std::string name;
+  std::string mesh;            ///< path, relative to the scene's folder, with '/'; empty: the organ is a rig
+  std::optional<RigSpec> rig;
+  LengthUnit mesh_unit = LengthUnit::millimetre;
+  Structure model = Structure::ctpm;
+  LatticeKind lattice = LatticeKind::cubic_18;
+  bool softening = true;  ///< Eq. 8
+  FillSpec fill;
+  MaterialSpec material;
+  std::vector<AnchorSpec> anchors;
+  double damage_depth = 0;               ///< [m]; 0: no limit
+  Vec3 surface_color{0.62, 0.24, 0.20};  ///< red, green, blue in [0, 1]
+  Vec3 inner_color{0.80, 0.42, 0.36};    ///< of cut faces and spheres
+
+  friend bool operator==(const OrganSpec&, const OrganSpec&) = default;
+};
+
+struct ToolSpec {
+  std::string name;
+  ToolKind kind = ToolKind::ball;
+  std::optional<double> radius;        ///< of a ball [m]
+  std::optional<double> blade_length;  ///< of a scalpel [m]
+  std::optional<Vec3> holds;           ///< of a pin: it holds the sphere nearest to here at rest [m]
+
+  friend bool operator==(const ToolSpec&, const ToolSpec&) = default;
+};
+
+/// A force on one sphere.
+struct LoadSpec {
+  Vec3 at;           ///< acts on the sphere nearest to here at rest [m]
+  Vec3 force;        ///< [N]
+  double start = 0;  ///< [s]
+  double ramp = 0;   ///< time in which it rises to its full size [s]
+
+  friend bool operator==(const LoadSpec&, const LoadSpec&) = default;
+};
+
+/// A point that is followed: the sphere nearest to it at rest.
+struct ProbeSpec {
+  std::string name;
+  Vec3 at;  ///< [m]
+
+  friend bool operator==(const ProbeSpec&, const ProbeSpec&) = default;
+};
+
+/// Solver settings that the scene asks for; unset ones are those of core's SolverSettings.
+struct SolverSpec {
+  std::optional<double> tolerance;
+  std::optional<double> velocity_floor;  ///< [m/s]
+  std::optional<std::int32_t> max_iterations;
+  std::optional<std::int32_t> substeps;
+
+  friend bool operator==(const SolverSpec&, const SolverSpec&) = default;
+};
+
+struct CameraSpec {
+  std::string name;
+  Vec3 eye, target;            ///< [m]
+  Vec3 up{0, 0, 1};            ///< any length but zero
+  double field_of_view = 35;   ///< vertical [degrees]
+
+  friend bool operator==(const CameraSpec&, const CameraSpec&) = default;
+};
+
+struct SceneSpec {
+  std::string name;
+  Vec3 gravity{0, 0, -9.81};  ///< [m/s^2]
+  double tick = 1e-3;         ///< [s]
+  double settle = 1.0;        ///< time the scene is given to come to rest before the first tick [s]
+  std::vector<OrganSpec> organs;
+  std::vector<ToolSpec> tools;
+  std::optional<double> contact_stiffness;  ///< of a tool against one sphere [N/m]
+  double contact_friction = 0.3;            ///< Coulomb coefficient between tool and tissue
+  std::vector<LoadSpec> loads;
+  std::vector<ProbeSpec> probes;
+  SolverSpec solver;
+  std::vector<CameraSpec> cameras;
+
+  friend bool operator==(const SceneSpec&, const SceneSpec&) = default;
+};
+
+}  // namespace ctpm

@@ -1,0 +1,128 @@
+#include "scenes/script.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "scenes/field_reader.h"
+#include "scenes/field_writer.h"
+#include "scenes/script_fields.h"
+
+namespace ctpm {
+namespace {
+
+void check_steps(Problems& problems, const Script& script, const std::vector<std::string>& tool_names) {
+  bool has_tool = false;
+  for (std::size_t i = 0; i < script.steps.size(); ++i) {
+    const ScriptStep& step = script.steps[i];
+    const std::string at = "/steps/" + std::to_string(i);
+    if (step.take) {
+      has_tool = true;
+      if (std::find(tool_names.begin(), tool_names.end(), step.take->tool) == tool_names.end()) {
+        std::string known;
+        for (const std::string& name : tool_names) known += (known.empty() ? "" : ", ") + name;
+        problems.add_rule(at + "/take/tool", "the scene has no tool " + in_quotes(step.take->tool),
+                          known.empty() ? "the scene has no tools" : "its tools: " + known);
+      }
+      if (step.take->pointing == Vec3{}) problems.add_rule(at + "/take/pointing", "must not be zero");
+    }
+    if (step.put_away) has_tool = false;
+    if (step.put_away == false) problems.add_rule(at + "/put_away", "must be true");
+    for (const auto& press : {step.press, step.release})
+      if (press && press->direction == Vec3{}) problems.add_rule(at, "the direction must not be zero");
+    if ((step.move || step.press || step.release || step.cut) && !has_tool)
+      problems.add_rule(at, "there is no tool in the hand here", "take one first");
+  }
+}
+
+/// The rotation that turns -z onto `pointing` the shortest way.
+Quat orientation_of(Vec3 pointing) {
+  const Vec3 from{0, 0, -1}, to = pointing / norm(pointing);
+  const double w = 1 + dot(from, to);
+  if (w < 1e-9) return {0, 1, 0, 0};  // straight up: half a turn about x
+  const Vec3 axis = cross(from, to);
+  const double length = std::sqrt(w * w + dot(axis, axis));
+  return {w / length, axis.x / length, axis.y / length, axis.z / length};
+}
+
+/// Share of the way after share `t` of the time: speed rises along a cubic in the first fifth and falls in the last.
+double eased(double t) {
+  constexpr double kRamp = 0.2;
+  const auto risen = [](double u) { return u * u * u * (1 - 0.5 * u); };  // integral of 3 u^2 - 2 u^3, 1/2 at u = 1
+  const double whole = 1 - kRamp;
+  if (t < kRamp) return kRamp * risen(t / kRamp) / whole;
+  if (t > 1 - kRamp) return 1 - kRamp * risen((1 - t) / kRamp) / whole;
+  return (0.5 * kRamp + (t - kRamp)) / whole;
+}
+
+/// Time for a way at a speed, with the slower start and end.
+double duration_of(Vec3 from, Vec3 to, double speed) { return norm(to - from) / speed / 0.8; }
+
+}  // namespace
+
+Result<Script> read_script(std::string_view text, const std::string& file_name, const std::vector<std::string>& tool_names) {
+  const Result<JsonNode> root = parse_json(text, file_name);
+  if (!root) return root.errors();
+  Script script;
+  Problems problems(*root, file_name);
+  FieldReader::read_record(*root, "", problems, script);
+  check_steps(problems, script, tool_names);
+  if (Errors errors = problems.errors(); !errors.empty()) return errors;
+  return script;
+}
+
+std::string write_script(const Script& script) {
+  Script copy = script;
+  return FieldWriter::record_text(copy, 0) + "\n";
+}
+
+ScriptPlayer::ScriptPlayer(const Script& script, std::span<const Tool> tools, double tick) : tick_(tick) {
+  std::int32_t tool = -1;
+  Quat orientation;
+  Vec3 hand;
+  const auto go = [&](Vec3 to, double speed) {
+    add_stretch(tool, orientation, hand, to, duration_of(hand, to, speed));
+    hand = to;
+  };
+  for (const ScriptStep& step : script.steps) {
+    if (step.take) {
+      const auto it = std::find_if(tools.begin(), tools.end(), [&](const Tool& t) { return t.name == step.take->tool; });
+      CTPM_CHECK(it != tools.end(), "the script was read with the scene's tools");
+      tool = std::int32_t(it - tools.begin());
+      orientation = orientation_of(step.take->pointing);
+      hand = step.take->at;
+      add_stretch(tool, orientation, hand, hand, tick_);
+    }
+    if (step.move) go(step.move->to, step.move->speed);
+    for (const auto& press : {step.press, step.release})
+      if (press) go(hand + press->distance / norm(press->direction) * press->direction, press->speed);
+    if (step.cut)
+      for (const Vec3& point : step.cut->path) go(point, step.cut->speed);
+    if (step.wait) add_stretch(tool, orientation, hand, hand, *step.wait);
+    if (step.put_away) {
+      tool = -1;
+      add_stretch(tool, {}, {}, {}, tick_);
+    }
+  }
+}
+
+void ScriptPlayer::add_stretch(std::int32_t tool, Quat orientation, Vec3 from, Vec3 to, double duration) {
+  const std::int64_t count = std::max<std::int64_t>(1, std::llround(std::ceil(duration / tick_)));
+  stretches_.push_back({tick_count(), count, tool, orientation, from, to});
+}
+
+std::int64_t ScriptPlayer::tick_count() const { return stretches_.empty() ? 0 : stretches_.back().first + stretches_.back().count; }
+
+Inputs ScriptPlayer::at(std::int64_t tick) const {
+  Inputs inputs;
+  if (stretches_.empty()) return inputs;
+  const auto next = std::upper_bound(stretches_.begin(), stretches_.end(), tick, [](std::int64_t t, const Stretch& s) { return t < s.first; });
+  const Stretch& stretch = next == stretches_.begin() ? *next : *(next - 1);
+  const double share = std::clamp(double(tick - stretch.first + 1) / double(stretch.count), 0.0, 1.0);
+  inputs.tool = stretch.tool;
+  inputs.world_from_tool = stretch.world_from_tool;
+  inputs.position = stretch.from + eased(share) * (stretch.to - stretch.from);
+  return inputs;
+}
+
+}  // namespace ctpm

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/inputs.h"
+#include "core/model.h"
+#include "core/organ.h"
+#include "core/result.h"
+#include "scenes/scene_spec.h"
+
+namespace ctpm {
+
+/// One step of a script: exactly one of `tool`, `move_to`, `press`, `release`, `cut`, `wait`, `put_away` is set. SCRIPT.md.
+struct ScriptStep {
+  struct Take {
+    std::string tool;       ///< name of a tool of the scene
+    Vec3 at;                ///< where its frame's origin appears [m]
+    Vec3 pointing{0, 0, -1};  ///< direction from handle to tip; any length but zero
+    friend bool operator==(const Take&, const Take&) = default;
+  };
+  struct Move {
+    Vec3 to;           ///< [m]
+    double speed = 0;  ///< along the way, once up to speed [m/s]
+    friend bool operator==(const Move&, const Move&) = default;
+  };
+  struct Press {
+    double distance = 0;       ///< [m]
+    Vec3 direction{0, 0, -1};  ///< any length but zero
+    double speed = 0;          ///< [m/s]
+    friend bool operator==(const Press&, const Press&) = default;
+  };
+  struct Cut {
+    std::vector<Vec3> path;  ///< of the tip, from where it is [m]
+    double speed = 0;        ///< [m/s]
+    friend bool operator==(const Cut&, const Cut&) = default;
+  };
+  std::optional<Take> take;
+  std::optional<Move> move;
+  std::optional<Press> press;
+  std::optional<Press> release;  ///< direction says where the tool leaves to
+  std::optional<Cut> cut;
+  std::optional<double> wait;    ///< [s]
+  std::optional<bool> put_away;  ///< no tool from here on
+
+  friend bool operator==(const ScriptStep&, const ScriptStep&) = default;
+};
+
+/// What a hand does, as an author wrote it.
+struct Script {
+  std::vector<ScriptStep> steps;
+  friend bool operator==(const Script&, const Script&) = default;
+};
+
+/// Reads a script's text. Errors: as for scenes, all at once with their places; a tool that the scene does not have; a
+/// step that needs a tool before one was taken.
+Result<Script> read_script(std::string_view text, const std::string& file_name, const std::vector<std::string>& tool_names);
+
+/// Stable text of a script; read_script gives the same steps again.
+std::string write_script(const Script& script);
+
+/// A script that presses the top of the first organ with the scene's first ball and cuts across it with its first scalpel,
+/// as far as the scene has them: something to see for any organ.
+Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organs);
+
+/// The inputs of a script, tick by tick. Each stretch starts and ends at rest: speed rises and falls along a cubic, and is
+/// the step's own in between. Free of transcendental functions, so the same everywhere.
+class ScriptPlayer {
+ public:
+  /// `tick` [s]; the script's tools must be those of `tools`.
+  ScriptPlayer(const Script& script, std::span<const Tool> tools, double tick);
+
+  std::int64_t tick_count() const;
+
+  /// A pure function of the tick; after the end the last inputs stay.
+  Inputs at(std::int64_t tick) const;
+
+ private:
+  struct Stretch {
+    std::int64_t first = 0, count = 0;  ///< ticks
+    std::int32_t tool = -1;
+    Quat world_from_tool;
+    Vec3 from, to;  ///< [m]
+  };
+  void add_stretch(std::int32_t tool, Quat orientation, Vec3 from, Vec3 to, double duration);
+
+  double tick_;
+  std::vector<Stretch> stretches_;
+};
+
+}  // namespace ctpm

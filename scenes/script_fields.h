@@ -1,0 +1,71 @@
+#pragma once
+
+#include "scenes/field_table.h"
+#include "scenes/script.h"
+
+// The one table of the script format. Internal to scenes.
+namespace ctpm {
+
+inline constexpr const char* script_format_name = "ctpm-script";
+inline constexpr int script_format_version = 1;
+
+namespace script_ranges {
+inline constexpr Range coordinate_mm = within(-100000, 100000);
+inline constexpr Range direction = within(-1e6, 1e6);
+inline constexpr Range speed_mm_per_s = above(0, 10000);
+}  // namespace script_ranges
+
+inline RecordInfo info_of(const ScriptStep::Take&) { return {"take", "A tool appears in the hand."}; }
+template <class V>
+void describe_fields(V& v, ScriptStep::Take& take) {
+  v.text(required("tool", "Name of a tool of the scene."), take.tool);
+  v.point(required("at_mm", "Where its origin appears: a ball's centre, a blade's tip."), take.at, units::millimetre,
+          script_ranges::coordinate_mm);
+  v.point(Key{"pointing", "Direction from handle to tip; any length but zero."}, take.pointing, units::none, script_ranges::direction);
+}
+
+inline RecordInfo info_of(const ScriptStep::Move&) { return {"move", "The tool moves along a straight line."}; }
+template <class V>
+void describe_fields(V& v, ScriptStep::Move& move) {
+  v.point(required("to_mm", "Where to."), move.to, units::millimetre, script_ranges::coordinate_mm);
+  v.number(required("speed_mm_per_s", "How fast."), move.speed, units::millimetre_per_second, script_ranges::speed_mm_per_s);
+}
+
+inline RecordInfo info_of(const ScriptStep::Press&) { return {"press", "The tool moves by a distance: into the tissue (press) or out of it (release)."}; }
+template <class V>
+void describe_fields(V& v, ScriptStep::Press& press) {
+  v.number(required("distance_mm", "How far."), press.distance, units::millimetre, above(0, 1000));
+  v.point(Key{"direction", "Which way; any length but zero."}, press.direction, units::none, script_ranges::direction);
+  v.number(required("speed_mm_per_s", "How fast."), press.speed, units::millimetre_per_second, script_ranges::speed_mm_per_s);
+}
+
+inline RecordInfo info_of(const ScriptStep::Cut&) { return {"cut", "The tip moves along a path without stopping at its corners' sides."}; }
+template <class V>
+void describe_fields(V& v, ScriptStep::Cut& cut) {
+  v.points(required("path_mm", "Points that the tip passes, from where it is."), cut.path, units::millimetre,
+           script_ranges::coordinate_mm, 1);
+  v.number(required("speed_mm_per_s", "How fast."), cut.speed, units::millimetre_per_second, script_ranges::speed_mm_per_s);
+}
+
+inline RecordInfo info_of(const ScriptStep&) { return {"step", "One thing that the hand does."}; }
+template <class V>
+void describe_fields(V& v, ScriptStep& step) {
+  v.record(Key{"take", "Take a tool."}, step.take);
+  v.record(Key{"move", "Move it."}, step.move);
+  v.record(Key{"press", "Press into the tissue."}, step.press);
+  v.record(Key{"release", "Leave the tissue."}, step.release);
+  v.record(Key{"cut", "Cut along a path."}, step.cut);
+  v.number(Key{"wait_s", "Hold still."}, step.wait, units::second, within(0, 100000));
+  v.flag(Key{"put_away", "Put the tool away; always true."}, step.put_away);
+  v.exactly_one();
+}
+
+inline RecordInfo info_of(const Script&) { return {"script", "The whole file."}; }
+template <class V>
+void describe_fields(V& v, Script& script) {
+  v.constant(required("format", "Says that this is a script."), script_format_name);
+  v.constant(required("version", "Version of the format."), script_format_version);
+  v.list(required("steps", "What the hand does, one after the other."), script.steps, 1);
+}
+
+}  // namespace ctpm

@@ -1,0 +1,108 @@
+#include "scenes/scene_file.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "scenes/build_model.h"
+
+namespace ctpm {
+namespace {
+
+std::string shipped(const std::string& name) { return std::string(CTPM_SOURCE_DIR) + "/scenes/" + name; }
+
+std::string scene_with(const std::string& organ_keys, const std::string& more = "") {
+  return "{\n\"format\": \"ctpm-scene\", \"version\": 1, \"name\": \"test\",\n\"organs\": [{\"name\": \"a\", \"mesh\": \"a.obj\", " + organ_keys +
+         "}]" + more + "\n}\n";
+}
+
+/// The only error of a text, with its place.
+std::string error_of(const std::string& text) {
+  const Result<SceneText> scene = read_scene(text, "test.json");
+  if (scene) return "no error";
+  std::string all;
+  for (const Error& error : scene.errors()) all += to_string(error) + "\n";
+  return all;
+}
+
+TEST(SceneFile, EveryShippedSceneIsWrittenAndReadBackEqual) {
+  for (const char* name : {"liver.json", "kidney.json", "skin.json"}) {
+    const Result<SceneText> scene = load_scene(shipped(name));
+    ASSERT_TRUE(scene) << to_string(scene.errors().front());
+    EXPECT_TRUE(scene->warnings.empty());
+    const Result<SceneText> again = read_scene(write_scene(scene->spec), name);
+    ASSERT_TRUE(again) << to_string(again.errors().front());
+    EXPECT_TRUE(again->spec == scene->spec) << write_scene(scene->spec);
+  }
+}
+
+TEST(SceneFile, AValueOutOfRangeIsNamedWithItsPlaceAndRange) {
+  EXPECT_EQ(error_of(scene_with("\"material\": {\"preset\": \"liver\"}, \"fill\": {\"radius_mm\": -4}")),
+            "test.json:3:98: error: /organs/0/fill/radius_mm: got -4, must be in (0, 100] mm\n");
+}
+
+TEST(SceneFile, AnUnknownKeyNamesTheNearestOne) {
+  EXPECT_NE(error_of(scene_with("\"material\": {\"preset\": \"liver\"}, \"modle\": \"ctpm\"")).find("did you mean \"model\"?"), std::string::npos);
+}
+
+TEST(SceneFile, AKeyWithTheWrongUnitNamesTheRightOne) {
+  EXPECT_NE(error_of(scene_with("\"material\": {\"preset\": \"liver\"}, \"fill\": {\"radius_cm\": 0.4}")).find("the key is \"radius_mm\""),
+            std::string::npos);
+}
+
+TEST(SceneFile, AllErrorsComeInOneRunInTheOrderOfTheText) {
+  const std::string all = error_of(scene_with("\"material\": {\"preset\": \"lever\"}", ", \"tick_s\": 5, \"gravity_m_per_s2\": [0, 0]"));
+  EXPECT_NE(all.find("/tick_s"), std::string::npos);
+  EXPECT_NE(all.find("/gravity_m_per_s2"), std::string::npos);
+  EXPECT_NE(all.find("did you mean \"liver\"?"), std::string::npos);
+}
+
+TEST(SceneFile, ASyntaxErrorHasItsPlace) {
+  EXPECT_EQ(error_of("{\n  \"format\": ,\n}").substr(0, 16), "test.json:2:13: ");
+}
+
+TEST(SceneFile, AMissingMeshIsNamedAtItsPlace) {
+  const Result<SceneText> missing = load_scene(shipped("nowhere.json"));
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.errors().front().message, "does not exist");
+}
+
+TEST(SceneFile, Cubic6InAnOrganIsWarnedOf) {
+  const Result<SceneText> scene = read_scene(scene_with("\"material\": {\"preset\": \"liver\"}, \"lattice\": \"cubic-6\""), "test.json");
+  ASSERT_TRUE(scene);
+  ASSERT_EQ(scene->warnings.size(), 1u);
+  EXPECT_NE(scene->warnings[0].message.find("no shear stiffness"), std::string::npos);
+}
+
+TEST(BuildModel, ARigBecomesItsSpheresAndElements) {
+  const std::string text = R"({"format": "ctpm-scene", "version": 1, "name": "rig", "gravity_m_per_s2": [0, 0, 0],
+    "organs": [{"name": "rig", "rig": {"cells": [[0,0,0],[1,0,0],[2,0,0],[3,0,0],[4,0,0]]}, "lattice": "cubic-6",
+                "material": {"preset": "liver"}, "anchors": [{"sphere": {"centre_mm": [0,0,0], "radius_mm": 1}}]}],
+    "tools": [{"name": "pin", "kind": "pin", "holds_mm": [24, 0, 0]}]})";
+  const Result<SceneText> scene = read_scene(text, "rig.json");
+  ASSERT_TRUE(scene) << to_string(scene.errors().front());
+  const std::vector<FilledOrgan> organs{fill_rig(scene->spec.organs[0])};
+  const Result<BuiltScene> built = build_model(scene->spec, organs);
+  ASSERT_TRUE(built) << to_string(built.errors().front());
+  EXPECT_EQ(built->model.sphere_count(), 5u);
+  EXPECT_EQ(built->model.edges.size(), 4u);
+  EXPECT_EQ(built->model.constraints.size(), 1u);
+  EXPECT_EQ(built->model.tools[0].sphere, 2);
+  EXPECT_EQ(built->model.held_axes[0], kAnchored);
+  EXPECT_EQ(built->model.held_axes[1], 0);
+}
+
+TEST(BuildModel, AnAnchorThatCatchesNothingIsAnError) {
+  const std::string text = R"({"format": "ctpm-scene", "version": 1, "name": "rig",
+    "organs": [{"name": "rig", "rig": {"block": [3, 3, 3]}, "material": {"preset": "liver"},
+                "anchors": [{"sphere": {"centre_mm": [900,0,0], "radius_mm": 1}}]}]})";
+  const Result<SceneText> scene = read_scene(text, "rig.json");
+  ASSERT_TRUE(scene);
+  const std::vector<FilledOrgan> organs{fill_rig(scene->spec.organs[0])};
+  const Result<BuiltScene> built = build_model(scene->spec, organs);
+  ASSERT_FALSE(built);
+  EXPECT_EQ(built.errors().front().where, "/organs/0/anchors/0");
+}
+
+}  // namespace
+}  // namespace ctpm
