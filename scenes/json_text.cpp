@@ -26,10 +26,10 @@ class GrammarCheck : public nlohmann::json_sax<nlohmann::json> {
   bool end_object() override { return --depth_, true; }
   bool start_array(std::size_t) override { return ++depth_ <= max_depth; }
   bool end_array() override { return --depth_, true; }
-  bool parse_error(std::size_t position, const std::string& last_token,
+  bool parse_error(std::size_t position, const std::string&,
                    const nlohmann::detail::exception& problem) override {
-    const std::size_t end = position == 0 ? 0 : position;
-    offset = end - std::min(end, std::max<std::size_t>(last_token.size(), 1));
+    // `position` is behind the first character that does not fit; the token before it may begin long before.
+    offset = position == 0 ? 0 : position - 1;
     message = problem.what();
     return false;
   }
