@@ -1,0 +1,121 @@
+#include "importers/assimp_reader.h"
+
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <array>
+#include <assimp/Importer.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/vec3.h"
+#include "importers/wire.h"
+
+namespace ctpm {
+namespace {
+
+/// All triangles of the wanted meshes, with the node transforms applied.
+struct Collected {
+  std::vector<std::string> parts;
+  std::vector<Vec3> vertex;
+  std::vector<std::array<std::int32_t, 3>> triangle;
+};
+
+/// A mesh goes by its own name, else by its node's, else by its number.
+std::string part_name(const aiMesh& mesh, const aiNode& node, unsigned index) {
+  if (mesh.mName.length > 0) return mesh.mName.C_Str();
+  if (node.mName.length > 0) return node.mName.C_Str();
+  return "mesh " + std::to_string(index + 1);
+}
+
+void append(const aiMesh& mesh, const aiMatrix4x4t<double>& world_from_mesh, Collected& out) {
+  const std::size_t first = out.vertex.size();
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+    const aiVector3t<double> p(mesh.mVertices[v].x, mesh.mVertices[v].y, mesh.mVertices[v].z);
+    const aiVector3t<double> q = world_from_mesh * p;
+    out.vertex.push_back({q.x, q.y, q.z});
+  }
+  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+    const aiFace& face = mesh.mFaces[f];
+    if (face.mNumIndices != 3) continue;
+    std::array<std::int32_t, 3> triangle{};
+    bool is_in_range = true;
+    for (unsigned c = 0; c < 3; ++c) {
+      is_in_range = is_in_range && face.mIndices[c] < mesh.mNumVertices;
+      triangle[c] = std::int32_t(first + face.mIndices[c]);
+    }
+    if (is_in_range) out.triangle.push_back(triangle);
+  }
+}
+
+void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4t<double>& world_from_parent,
+             const std::string& part, Collected& out) {
+  const aiMatrix4x4& m = node.mTransformation;
+  const aiMatrix4x4t<double> parent_from_node(m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4,
+                                              m.d1, m.d2, m.d3, m.d4);
+  const aiMatrix4x4t<double> world_from_node = world_from_parent * parent_from_node;
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    if (node.mMeshes[i] >= scene.mNumMeshes) continue;
+    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
+    const std::string name = part_name(mesh, node, node.mMeshes[i]);
+    if (std::find(out.parts.begin(), out.parts.end(), name) == out.parts.end()) out.parts.push_back(name);
+    const bool is_wanted = part.empty() || part == name || part == node.mName.C_Str();
+    if (is_wanted) append(mesh, world_from_node, out);
+  }
+  for (unsigned i = 0; i < node.mNumChildren; ++i) collect(scene, *node.mChildren[i], world_from_node, part, out);
+}
+
+std::string suffix_of(const std::string& path) {
+  std::string suffix = std::filesystem::path(path).extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return suffix;
+}
+
+/// Length of one unit [m] where the format says it. glTF is in metres by definition; assimp scales a DAE file to metres
+/// by its <unit>; FBX says its centimetres per unit in the header.
+double unit_said_by(const aiScene& scene, const std::string& suffix) {
+  if (suffix == ".gltf" || suffix == ".glb" || suffix == ".dae") return 1.0;
+  if (suffix == ".fbx" && scene.mMetaData != nullptr) {
+    double centimetres = 0;
+    float centimetres_float = 0;
+    if (scene.mMetaData->Get("UnitScaleFactor", centimetres)) return 0.01 * centimetres;
+    if (scene.mMetaData->Get("UnitScaleFactor", centimetres_float)) return 0.01 * double(centimetres_float);
+  }
+  return 0;
+}
+
+void send_failure(const Send& send, const std::string& text) {
+  wire::Writer message;
+  message.put(wire::Kind::failed);
+  message.put_text(text);
+  send(message.bytes.data(), message.bytes.size());
+}
+
+}  // namespace
+
+void send_mesh_file(const std::string& path, const std::string& part, const Send& send) {
+  Assimp::Importer importer;
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene = importer.ReadFile(path, aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_SortByPType);
+  if (scene == nullptr) return send_failure(send, importer.GetErrorString());
+  Collected found;
+  if (scene->mRootNode != nullptr) collect(*scene, *scene->mRootNode, {}, part, found);
+
+  wire::Writer message;
+  const bool misses_part = !part.empty() && found.triangle.empty();
+  message.put(misses_part ? wire::Kind::no_such_part : wire::Kind::mesh);
+  message.put<std::uint64_t>(found.parts.size());
+  for (const std::string& name : found.parts) message.put_text(name);
+  if (!misses_part) {
+    message.put(unit_said_by(*scene, suffix_of(path)));
+    message.put_list(found.vertex);
+    message.put_list(found.triangle);
+  }
+  send(message.bytes.data(), message.bytes.size());
+}
+
+}  // namespace ctpm

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "importers/child_process.h"
+
+namespace ctpm {
+
+/// Reads the file with assimp and sends it as one message (see wire.h). Meant for a child process.
+void send_mesh_file(const std::string& path, const std::string& part, const Send& send);
+
+}  // namespace ctpm

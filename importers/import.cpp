@@ -1,0 +1,96 @@
+#include "importers/import.h"
+
+#include <cmath>
+
+#include "importers/text.h"
+
+namespace ctpm {
+namespace {
+
+/// Options that no mesh could make right.
+Errors check(const ImportOptions& options) {
+  Errors errors;
+  const auto must = [&](bool is_right, const std::string& message) {
+    if (!is_right) errors.push_back({"options", message, ""});
+  };
+  must(!options.unit_in_metres || (std::isfinite(*options.unit_in_metres) && *options.unit_in_metres > 0),
+       "the unit must be a length above 0");
+  must(options.usual_size.least > 0 && options.usual_size.most > options.usual_size.least,
+       "the usual size must be a range above 0");
+  must(!options.largest_hole || *options.largest_hole >= 0, "the largest hole to fill must be at least 0 mm");
+  must(std::isfinite(options.sphere_radius) && options.sphere_radius > 0,
+       "the sphere radius must be above 0 mm, got " + mm_text(options.sphere_radius));
+  must(std::isfinite(options.gap), "the gap must be a number of millimetres");
+  must(options.most_spheres > 0, "at least one sphere must be allowed");
+  must(options.threads >= 1, "at least one thread is needed, got " + std::to_string(options.threads));
+  must(options.time_limit_s > 0, "the time limit must be above 0 s");
+  return errors;
+}
+
+std::string range_text(UsualSize usual) { return mm_text(usual.least) + " to " + mm_text(usual.most); }
+
+/// The unit is worth a finding where it was guessed or where the size looks wrong.
+void note_unit(const UnitChoice& unit, double diagonal, UsualSize usual, std::vector<Finding>& findings) {
+  if (unit.source == UnitSource::guessed)
+    findings.push_back({"unit_guessed", 1, {},
+                        "the file does not say its unit", "taken as " + unit_name(unit.in_metres) + ", which makes the organ " +
+                            mm_text(diagonal) + " across (usual: " + range_text(usual) + ")",
+                        "give the unit if that is wrong"});
+  if (!unit.is_usual_size)
+    findings.push_back({"unusual_size", 1, {},
+                        "the organ is " + mm_text(diagonal) + " across; usual is " + range_text(usual), "none",
+                        "check the unit"});
+}
+
+Errors with_place(Errors errors, const std::string& path) {
+  for (Error& error : errors)
+    if (error.where.empty()) error.where = path;
+  return errors;
+}
+
+}  // namespace
+
+Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions& options) {
+  if (Errors errors = check(options); !errors.empty()) return errors;
+  if (options.progress) options.progress("read", 0);
+  ReadOptions reading;
+  reading.part = options.part;
+  reading.time_limit_s = options.time_limit_s;
+  const Result<RawMesh> raw = read_mesh(path, reading);
+  if (!raw) return raw.errors();
+
+  ImportedOrgan imported;
+  ImportReport& report = imported.report;
+  report.path = path;
+  report.format = raw->format;
+  report.parts = raw->parts;
+  report.unit = choose_unit(*raw, options.unit_in_metres, options.usual_size);
+  RepairOptions repair;
+  repair.all_parts = options.all_parts;
+  repair.largest_hole = options.largest_hole;
+  repair.progress = options.progress;
+  Result<CheckedMesh> mesh = repair_mesh(*raw, report.unit.in_metres, repair);
+  if (!mesh) return mesh.errors();
+  note_unit(report.unit, norm(mesh->box_most - mesh->box_least), options.usual_size, report.findings);
+  report.findings.insert(report.findings.end(), mesh->findings.begin(), mesh->findings.end());
+  report.before = mesh->before, report.after = mesh->after;
+  report.mesh_volume = mesh->volume, report.mesh_area = mesh->area;
+  report.box_least = mesh->box_least, report.box_most = mesh->box_most;
+
+  FillOptions fill;
+  fill.sphere_radius = options.sphere_radius;
+  fill.gap = options.gap;
+  fill.keep_islands = options.all_parts;
+  fill.most_spheres = options.most_spheres;
+  fill.threads = options.threads;
+  fill.progress = options.progress;
+  Result<Filling> filling = fill_organ(*mesh, fill);
+  if (!filling) return with_place(filling.errors(), path);
+  imported.organ = std::move(filling->organ);
+  report.sphere_radius = imported.organ.sphere_radius, report.spacing = imported.organ.spacing;
+  report.fill = std::move(filling->report);
+  report.findings.insert(report.findings.end(), report.fill.findings.begin(), report.fill.findings.end());
+  return imported;
+}
+
+}  // namespace ctpm

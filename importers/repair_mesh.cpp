@@ -1,0 +1,243 @@
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <numeric>
+
+#include "importers/mesh.h"
+#include "importers/mesh_surgery.h"
+#include "importers/text.h"
+#include "importers/topology.h"
+
+namespace ctpm {
+namespace {
+
+constexpr double kHoleShare = 0.1;         // of the diagonal: holes up to this are filled by default
+constexpr double kFlat = 1e-9;             // a volume below this share of the diagonal cubed bounds nothing
+constexpr std::size_t kMostShown = 5;      // holes that are named one by one
+
+std::string hole_text(const Hole& hole) {
+  return mm_text(hole.diameter) + " wide (" + counted(hole.edges, "edge") + ") at " + place_text(hole.centre);
+}
+
+const Hole& widest(const std::vector<Hole>& holes) {
+  return *std::max_element(holes.begin(), holes.end(),
+                           [](const Hole& a, const Hole& b) { return a.diameter < b.diameter; });
+}
+
+Soup only_part(const Soup& soup, const Parts& parts, std::int32_t part) {
+  Soup piece{soup.vertex, {}};
+  for (std::size_t t = 0; t < soup.triangle.size(); ++t)
+    if (parts.of_triangle[t] == part) piece.triangle.push_back(soup.triangle[t]);
+  // Only the vertices in use stay; vertices that were split apart in one place must not be welded again.
+  std::vector<std::int32_t> new_index(soup.vertex.size(), -1);
+  piece.vertex.clear();
+  for (Triangle& triangle : piece.triangle)
+    for (std::int32_t& v : triangle) {
+      if (new_index[std::size_t(v)] < 0) {
+        new_index[std::size_t(v)] = std::int32_t(piece.vertex.size());
+        piece.vertex.push_back(soup.vertex[std::size_t(v)]);
+      }
+      v = new_index[std::size_t(v)];
+    }
+  return piece;
+}
+
+/// The parts of a mesh as meshes of their own, largest enclosed volume first.
+std::vector<Soup> split_parts(const Soup& soup) {
+  const Parts parts = find_parts(soup.triangle);
+  std::vector<std::vector<Triangle>> triangles(std::size_t(parts.count));
+  for (std::size_t t = 0; t < soup.triangle.size(); ++t)
+    triangles[std::size_t(parts.of_triangle[t])].push_back(soup.triangle[t]);
+  struct Sized {
+    double volume;
+    std::int32_t part;
+  };
+  std::vector<Sized> sized;
+  for (std::int32_t p = 0; p < parts.count; ++p) {
+    // Seen from its own centre, an open part has the volume of the cones over its holes added.
+    const Vec3 centre = bounding_box({soup.vertex, triangles[std::size_t(p)]}).centre();
+    sized.push_back({std::abs(signed_volume(soup.vertex, triangles[std::size_t(p)], centre)), p});
+  }
+  std::stable_sort(sized.begin(), sized.end(), [](const Sized& a, const Sized& b) { return a.volume > b.volume; });
+  std::vector<Soup> pieces;
+  for (const Sized& s : sized) pieces.push_back(only_part(soup, parts, s.part));
+  return pieces;
+}
+
+void append(Soup& to, const Soup& piece) {
+  const std::int32_t first = std::int32_t(to.vertex.size());
+  to.vertex.insert(to.vertex.end(), piece.vertex.begin(), piece.vertex.end());
+  for (const Triangle& t : piece.triangle) to.triangle.push_back({t[0] + first, t[1] + first, t[2] + first});
+}
+
+/// One repair: the soup on its way to a closed mesh, and what was found so far.
+class Repair {
+ public:
+  Repair(const RawMesh& mesh, double unit, const RepairOptions& options) : path_(mesh.path), options_(options) {
+    soup_.triangle = mesh.triangle;
+    soup_.vertex.reserve(mesh.vertex.size());
+    for (const Vec3& p : mesh.vertex) soup_.vertex.push_back(unit * p);
+    out_.before = count_mesh(soup_.vertex, soup_.triangle);
+  }
+
+  Result<CheckedMesh> run() {
+    clean();
+    if (soup_.triangle.empty())
+      return Error{path_, "holds only triangles without area", "export the surface again"};
+    welded_ = soup_;
+    tell("orienting", 0.2);
+    split_and_orient();
+    tell("closing", 0.5);
+    if (Errors errors = keep_closed_parts(); !errors.empty()) return errors;
+    tell("turning outwards", 0.8);
+    turn_outwards();
+    return finish();
+  }
+
+ private:
+  void tell(const char* stage, double fraction) const {
+    if (options_.progress) options_.progress(std::string("repair: ") + stage, fraction);
+  }
+  void note(Finding finding) { out_.findings.push_back(std::move(finding)); }
+
+  void clean() {
+    diagonal_ = bounding_box(soup_).diagonal();
+    if (const std::int64_t n = weld(soup_, options_.weld_distance * diagonal_); n > 0)
+      note({"unwelded", n, {}, counted(n, "vertex") + " in the place of another", "welded", ""});
+    if (const std::int64_t n = drop_collapsed(soup_); n > 0)
+      note({"degenerate", n, {}, counted(n, "triangle") + " with two corners in one place", "dropped", ""});
+    if (const std::int64_t n = drop_duplicates(soup_); n > 0)
+      note({"duplicate", n, {}, counted(n, "triangle") + " that another triangle covers exactly", "dropped", ""});
+  }
+
+  void split_and_orient() {
+    const MeshCounts counts = count_mesh(soup_.vertex, soup_.triangle);
+    const std::int64_t split = orient_and_stitch(soup_);
+    if (counts.non_manifold_edges > 0)
+      note({"non_manifold_edge", counts.non_manifold_edges, {},
+            counted(counts.non_manifold_edges, "edge") + " with more than two triangles", "split", ""});
+    else if (split > 0)
+      note({"non_manifold_vertex", split, {}, counted(split, "vertex") + " where separate sheets touch", "split", ""});
+  }
+
+  /// Fills holes, part by part from the largest, and decides which parts stay. Errors: none can be closed.
+  Errors keep_closed_parts() {
+    const std::vector<Soup> parts = split_parts(soup_);
+    const double largest_hole = options_.largest_hole.value_or(kHoleShare * diagonal_);
+    Soup kept;
+    std::vector<Hole> filled;
+    Errors open;
+    std::int64_t kept_parts = 0, dropped = 0, dropped_triangles = 0;
+    Finding drop;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      Soup piece = parts[p];
+      const bool is_wanted = p == 0 || options_.all_parts;
+      Errors why;
+      if (is_wanted) {
+        const Closing closing = fill_holes(piece, largest_hole);
+        why = describe(closing, largest_hole);
+        if (why.empty() && is_flat(piece)) why = {{path_, "the mesh bounds no volume", "it is a sheet; export a closed surface"}};
+        if (why.empty()) filled.insert(filled.end(), closing.filled.begin(), closing.filled.end());
+      }
+      if (is_wanted && why.empty()) {
+        append(kept, piece);
+        ++kept_parts;
+        continue;
+      }
+      if (open.empty()) open = why;
+      ++dropped, dropped_triangles += std::int64_t(piece.triangle.size());
+      if (!drop.place) drop.place = bounding_box(piece).centre();
+    }
+    if (kept_parts == 0 || (!options_.all_parts && !open.empty())) return open;
+    if (!filled.empty())
+      note({"hole", std::int64_t(filled.size()), widest(filled).centre,
+            counted(std::int64_t(filled.size()), "hole") + ", the widest " + hole_text(widest(filled)), "filled", ""});
+    if (dropped > 0) {
+      drop.code = "other_part", drop.count = dropped;
+      drop.found = counted(dropped, "part") + " beside the " + (kept_parts == 1 ? "largest" : "closed ones") + " (" +
+                   counted(dropped_triangles, "triangle") + ", the largest at " + place_text(*drop.place) + ")";
+      drop.done = "dropped";
+      note(drop);
+    }
+    if (kept_parts > 1)
+      note({"parts", kept_parts, {}, counted(kept_parts, "closed part"), "kept", "the organ is in pieces"});
+    soup_ = std::move(kept);
+    kept_parts_ = kept_parts;
+    return {};
+  }
+
+  Errors describe(const Closing& closing, double largest_hole) const {
+    Errors errors;
+    const auto say = [&](const std::vector<Hole>& holes, const std::string& ending, const std::string& hint) {
+      std::vector<Hole> sorted = holes;
+      std::stable_sort(sorted.begin(), sorted.end(), [](const Hole& a, const Hole& b) { return a.diameter > b.diameter; });
+      for (std::size_t i = 0; i < std::min(sorted.size(), kMostShown); ++i)
+        errors.push_back({path_, "open beyond repair: a hole " + hole_text(sorted[i]) + " " + ending, hint});
+      if (sorted.size() > kMostShown)
+        errors.push_back({path_, "open beyond repair: " + counted(std::int64_t(sorted.size() - kMostShown), "hole") + " more", ""});
+    };
+    say(closing.too_large, "is wider than the " + mm_text(largest_hole) + " that may be filled",
+        "close it in a mesh editor, or allow wider holes");
+    say(closing.unfillable, "cannot be closed by triangles", "close it in a mesh editor");
+    return errors;
+  }
+
+  static bool is_flat(const Soup& piece) {
+    const Box box = bounding_box(piece);
+    const double volume = std::abs(signed_volume(piece.vertex, piece.triangle, box.centre()));
+    return !(volume > kFlat * std::pow(box.diagonal(), 3));
+  }
+
+  void turn_outwards() {
+    if (kept_parts_ > 1) {
+      orient_parts(soup_);
+    } else if (signed_volume(soup_.vertex, soup_.triangle, bounding_box(soup_).centre()) < 0) {
+      for (Triangle& t : soup_.triangle) std::swap(t[1], t[2]);
+    }
+    const Turned turned = count_turned(welded_, soup_);
+    if (turned.turned > 0 && turned.kept == 0)
+      note({"inside_out", turned.turned, {}, "the mesh is inside out", "turned", ""});
+    else if (turned.turned > 0)
+      note({"flipped", turned.turned, {}, counted(turned.turned, "triangle") + " facing the wrong way", "turned", ""});
+  }
+
+  Result<CheckedMesh> finish() {
+    const Box box = bounding_box(soup_);
+    out_.box_least = box.least, out_.box_most = box.most;
+    out_.volume = signed_volume(soup_.vertex, soup_.triangle, box.centre());
+    out_.area = surface_area(soup_.vertex, soup_.triangle);
+    out_.after = count_mesh(soup_.vertex, soup_.triangle);
+    out_.vertex = std::move(soup_.vertex);
+    out_.triangle = std::move(soup_.triangle);
+    if (out_.after.open_edges > 0 || out_.after.non_manifold_edges > 0 || !(out_.volume > 0))
+      return Error{path_, "open beyond repair: " + counted(out_.after.open_edges, "edge") + " still open after all repairs",
+                   "repair it in a mesh editor"};
+    tell("done", 1.0);
+    return std::move(out_);
+  }
+
+  std::string path_;
+  const RepairOptions& options_;
+  Soup soup_, welded_;
+  double diagonal_ = 0;
+  std::int64_t kept_parts_ = 0;
+  CheckedMesh out_;
+};
+
+}  // namespace
+
+Result<CheckedMesh> repair_mesh(const RawMesh& mesh, double unit_in_metres, const RepairOptions& options) {
+  if (!(std::isfinite(unit_in_metres) && unit_in_metres > 0))
+    return Error{mesh.path, "the unit must be a length above 0", "give the length of one unit in metres"};
+  if (options.largest_hole && !(*options.largest_hole >= 0))
+    return Error{mesh.path, "the largest hole to fill must be at least 0 mm", ""};
+  if (!(options.weld_distance >= 0 && options.weld_distance < 0.1))
+    return Error{mesh.path, "the welding distance must be in [0, 0.1) diagonals", ""};
+  try {
+    return Repair(mesh, unit_in_metres, options).run();
+  } catch (const std::exception& trouble) {
+    return Error{mesh.path, std::string("cannot be repaired: ") + trouble.what(), "repair it in a mesh editor"};
+  }
+}
+
+}  // namespace ctpm

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/vec3.h"
+
+namespace ctpm {
+
+/// A length given in metres, in millimetres with at most four digits: "12.35 mm".
+std::string mm_text(double metres);
+/// A place given in metres: "(12.35, -4, 0) mm".
+std::string place_text(Vec3 metres);
+/// "1 hole", "3 holes".
+std::string counted(std::int64_t count, const std::string& noun);
+
+}  // namespace ctpm
