@@ -23,10 +23,10 @@ constexpr const char* kSlow = "Bao & Wu, section 5.1; viscosity read in kPa s/mm
 constexpr const char* kPrinted = "Bao & Wu, section 5.1; viscosity as printed, in Pa s (per mm, like the moduli)";
 
 constexpr std::array<MaterialPreset, 6> kPresets{
-    row("liver", "liver", 4, 2.0, 15, 15, 20, 5, 0.15, 0.40, 0.012, kSlow),
+    row("liver", "liver", 4, 2.0, 15, 15, 20, 5, 0.08, 0.40, 0.012, kSlow),
     row("kidney", "kidney", 4, 1.5, 58, 58, 106, 4, 0.07, 0.20, 0, kSlow),
     row("skin", "skin", 7, 2.8, 82, 82, 164, 3, 0.05, 0.50, 0, kSlow),
-    row("liver-pa-s", "liver", 4, 2.0, 15, 15, 20, 5e-3, 0.15, 0.40, 0.012, kPrinted),
+    row("liver-pa-s", "liver", 4, 2.0, 15, 15, 20, 5e-3, 0.08, 0.40, 0.012, kPrinted),
     row("kidney-pa-s", "kidney", 4, 1.5, 58, 58, 106, 4e-3, 0.07, 0.20, 0, kPrinted),
     row("skin-pa-s", "skin", 7, 2.8, 82, 82, 164, 3e-3, 0.05, 0.50, 0, kPrinted),
 };
