@@ -85,6 +85,8 @@ struct SessionWriter::Impl {
   bool sync_wanted = false, sync_stops = false;
   std::thread writer, syncer;
 
+  template <class T>
+  T* free_slot(Ring<T>& ring);
   Result<Done> begin();
   void stop();
   void hand_over_events();
@@ -131,16 +133,21 @@ Result<SessionWriter> SessionWriter::create(const std::string& path, const Sessi
   return SessionWriter(std::move(impl));
 }
 
+/// A slot to fill; waits for one if the session may wait, unless the disk is full: that could last for ever.
+template <class T>
+T* SessionWriter::Impl::free_slot(Ring<T>& ring) {
+  T* slot = ring.free_slot();
+  while (!slot && options.wait_when_full && !has_error.load(std::memory_order_acquire)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    slot = ring.free_slot();
+  }
+  return slot;
+}
+
 void SessionWriter::append(const State& after, const TickRecord& record) {
   Impl& impl = *impl_;
   CTPM_CHECK(!impl.stopping.load(std::memory_order_relaxed), "append() after finish()");
-  TickRecord* slot = impl.records.free_slot();
-  while (!slot && impl.options.wait_when_full && impl.refused.load(std::memory_order_relaxed) == 0) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    slot = impl.records.free_slot();
-    // A disk that is full would be waited for without end.
-    if (!slot && impl.has_error.load(std::memory_order_acquire)) break;
-  }
+  TickRecord* slot = impl.free_slot(impl.records);
   // Ticks after a lost one cannot be replayed: the recording ends there.
   if (!slot || impl.refused.load(std::memory_order_relaxed) > 0) {
     impl.refused.fetch_add(1, std::memory_order_relaxed);
@@ -153,7 +160,7 @@ void SessionWriter::append(const State& after, const TickRecord& record) {
 
   // A keyframe is a convenience: if the disk is so far behind that no slot is free, it is left out.
   if (done % impl.options.keyframe_ticks == 0) {
-    if (Keyframe* keyframe = impl.keyframes.free_slot()) {
+    if (Keyframe* keyframe = impl.free_slot(impl.keyframes)) {
       keyframe->tick = done;
       keyframe->state = after;
       impl.keyframes.push();
@@ -293,8 +300,8 @@ bool SessionWriter::Impl::gather(bool all) {
   if (!rows.empty()) return true;
   batch.clear();
   batch_events.clear();
-  gather_keyframes();
   gather_ticks(all);
+  gather_keyframes();
   gather_events();
   return !rows.empty();
 }
@@ -321,9 +328,11 @@ void SessionWriter::Impl::gather_ticks(bool all) {
   if (taken > 0) waiting_seen = false;
 }
 
+/// Keyframes go with the ticks that lead to them, never ahead of them.
 void SessionWriter::Impl::gather_keyframes() {
+  const std::int64_t end = next_tick + static_cast<std::int64_t>(batch.size());
   const std::size_t waiting = keyframes.waiting();
-  for (std::size_t i = 0; i < waiting; ++i) {
+  for (std::size_t i = 0; i < waiting && keyframes.waiting_at(i).tick <= end; ++i) {
     const Keyframe& keyframe = keyframes.waiting_at(i);
     Bytes content;
     put_fields(content, keyframe.state);

@@ -1,0 +1,138 @@
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <functional>
+#include <thread>
+
+#include "recordings/replay.h"
+#include "tests/recordings/kills.h"
+#include "tests/recordings/sessions.h"
+
+namespace ctpm {
+namespace {
+
+using namespace ctpm::testing;
+
+TEST(Crash, AKilledRecorderLosesAtMost200Ms) { kill_recorders(25); }
+
+/// Runs `work` in a process whose files cannot grow beyond `bytes`, as on a full disk. Returns its exit code.
+int on_a_full_disk(rlim_t bytes, const std::function<int()>& work) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{bytes, RLIM_INFINITY};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    ::_exit(work());
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 255;
+}
+
+void give_space() {
+  const rlimit limit{RLIM_INFINITY, RLIM_INFINITY};
+  ::setrlimit(RLIMIT_FSIZE, &limit);
+}
+
+constexpr rlim_t full_at = 400 << 10;  // [bytes]
+
+/// Appends until the disk has refused; the number of ticks appended by then, 0 if it never does.
+std::int64_t append_until_full(SessionWriter& writer, const SessionStart& start) {
+  std::int64_t appended = 0;
+  bool full = false;
+  live(start, 12000, [&](const State& after, const TickRecord& record) {
+    if (full) return;
+    writer.append(after, record);
+    ++appended;
+    if (appended % 50 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    full = !writer.status().error.empty();
+  });
+  return full ? appended : 0;
+}
+
+TEST(FullDisk, IsToldByStatusAndByTheEndAndWhatFitsIsGood) {
+  const Folder folder;
+  const std::string path = folder / "a.ctpm";
+  const int code = on_a_full_disk(full_at, [&] {
+    const SessionStart start = small_start(3, 2, 2);
+    auto writer = SessionWriter::create(path, start, {.keyframe_ticks = 100});
+    if (!writer) return 2;
+    if (append_until_full(*writer, start) == 0) return 3;
+    const auto ended = writer->finish();
+    if (ended) return 4;
+    const WriterStatus status = writer->status();
+    if (status.lost <= 0 || status.committed + status.lost != status.appended) return 5;
+    if (ended.errors()[0].where != path ||
+        ended.errors()[0].message.find("were not recorded") == std::string::npos)
+      return 6;
+    return 0;
+  });
+  EXPECT_EQ(code, 0);
+  auto reader = SessionReader::open(path);
+  ASSERT_TRUE(reader) << text_of(reader.errors());
+  EXPECT_FALSE(reader->ended_cleanly());
+  EXPECT_GT(reader->tick_count(), 100);
+  const auto all = reader->check_all();
+  EXPECT_TRUE(all) << text_of(all.errors());
+  const auto verdict = verify_session(*reader);
+  ASSERT_TRUE(verdict);
+  EXPECT_TRUE(verdict->same) << to_string(*verdict);
+}
+
+TEST(FullDisk, SpaceThatIsFreedInTimeLosesNothing) {
+  const Folder folder;
+  const std::string path = folder / "a.ctpm";
+  const int code = on_a_full_disk(full_at, [&] {
+    const SessionStart start = small_start(3, 2, 2);
+    auto writer = SessionWriter::create(path, start, {.keyframe_ticks = 100});
+    if (!writer) return 2;
+    const std::int64_t appended = append_until_full(*writer, start);
+    if (appended == 0) return 3;
+    give_space();
+    const auto ended = writer->finish();
+    if (!ended) return 4;
+    return ended->ticks == appended && writer->status().lost == 0 ? 0 : 5;
+  });
+  EXPECT_EQ(code, 0);
+  auto reader = SessionReader::open(path);
+  ASSERT_TRUE(reader) << text_of(reader.errors());
+  EXPECT_TRUE(reader->ended_cleanly());
+  EXPECT_TRUE(reader->check_all());
+}
+
+TEST(FullDisk, AtCreationLeavesNothingBehind) {
+  const Folder folder;
+  const int code = on_a_full_disk(8 << 10, [&] {
+    const auto writer = SessionWriter::create(folder / "a.ctpm", small_start(5, 5, 5));
+    return !writer && writer.errors()[0].where == folder / "a.ctpm" ? 0 : 1;
+  });
+  EXPECT_EQ(code, 0);
+  EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(FullDisk, AQueueThatOverflowsEndsTheRecordingAndSaysSo) {
+  const Folder folder;
+  const std::string path = folder / "a.ctpm";
+  const int code = on_a_full_disk(full_at, [&] {
+    const SessionStart start = small_start(3, 2, 2);
+    auto writer = SessionWriter::create(path, start, {.keyframe_ticks = 100, .queue_ticks = 300});
+    if (!writer) return 2;
+    const std::int64_t before = append_until_full(*writer, start);
+    if (before == 0) return 3;
+    for (int i = 0; i < 1000; ++i) writer->append(start.initial_state, {});
+    give_space();
+    const auto ended = writer->finish();
+    const WriterStatus status = writer->status();
+    if (ended || status.lost < 600 || status.appended != before + 1000) return 4;
+    return 0;
+  });
+  EXPECT_EQ(code, 0);
+  auto reader = SessionReader::open(path);
+  ASSERT_TRUE(reader) << text_of(reader.errors());
+  EXPECT_TRUE(reader->check_all()) << "what is there has no gap";
+  EXPECT_FALSE(reader->ended_cleanly());
+}
+
+}  // namespace
+}  // namespace ctpm

@@ -1,0 +1,408 @@
+#include <algorithm>
+#include <set>
+
+#include "core/fields.h"
+#include "recordings/recover.h"
+#include "recordings/replay.h"
+#include "tests/recordings/sessions.h"
+
+namespace ctpm {
+namespace {
+
+using namespace ctpm::testing;
+
+/// What an undamaged session gives, for comparing.
+struct Truth {
+  SessionStart start;
+  std::vector<TickRecord> records;
+  std::vector<Event> events;
+  std::vector<std::uint64_t> state_hashes;  ///< before each tick, and after the last
+  std::uint64_t model_hash = 0;
+};
+
+/// A number for a whole Model: the hash of a State with all of its numbers in one array.
+std::uint64_t hash_of(const Model& model) {
+  State all;
+  const auto add = [&](const auto& self, const auto& value) -> void {
+    using T = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<T, Vec3>)
+      all.kelvin_elongation.insert(all.kelvin_elongation.end(), {value.x, value.y, value.z});
+    else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
+      all.kelvin_elongation.push_back(static_cast<double>(value));
+    else if constexpr (requires { value.begin(); })
+      for (const auto& item : value) self(self, item);
+    else
+      for_each_field(value, [&](std::string_view, const auto& member) { self(self, member); });
+  };
+  add(add, model);
+  return state_hash(all);
+}
+
+Truth truth_of(const std::string& path, const SessionStart& start, const Lived& lived) {
+  Truth truth;
+  truth.start = start;
+  truth.records = lived.records;
+  truth.state_hashes.push_back(state_hash(start.initial_state));
+  for (const TickRecord& record : lived.records) truth.state_hashes.push_back(record.state_hash);
+  truth.model_hash = hash_of(start.model);
+  auto reader = SessionReader::open(path);
+  CTPM_CHECK(bool(reader), "the undamaged session opens");
+  truth.events = *reader->events();
+  return truth;
+}
+
+/// What was found out about one damaged file.
+struct Finding {
+  bool opened = false;
+  bool complained = false;  ///< an error was given by open() or by anything after it
+};
+
+/// Everything that the reader hands out must be the truth, and every error must be at the file.
+Finding expect_error_or_truth(const std::string& path, const Truth& truth, const std::string& what) {
+  Finding finding;
+  const auto complain = [&](const Errors& errors) {
+    finding.complained = true;
+    for (const Error& error : errors) {
+      EXPECT_EQ(error.where, path) << what;
+      EXPECT_FALSE(error.message.empty()) << what;
+    }
+  };
+  auto reader = SessionReader::open(path);
+  if (!reader) {
+    complain(reader.errors());
+    return finding;
+  }
+  finding.opened = true;
+  EXPECT_EQ(reader->start().scene_text, truth.start.scene_text) << what;
+  EXPECT_EQ(reader->start().look, truth.start.look) << what;
+  EXPECT_EQ(reader->start().metadata, truth.start.metadata) << what;
+  EXPECT_EQ(reader->start().build_fingerprint, truth.start.build_fingerprint) << what;
+  EXPECT_EQ(hash_of(reader->start().model), truth.model_hash) << what;
+  EXPECT_EQ(state_hash(reader->start().initial_state), truth.state_hashes[0]) << what;
+
+  const std::int64_t count = reader->tick_count();
+  EXPECT_LE(count, static_cast<std::int64_t>(truth.records.size())) << what;
+  if (reader->ended_cleanly()) {
+    EXPECT_EQ(count, static_cast<std::int64_t>(truth.records.size())) << what;
+  }
+  const std::int64_t known = std::min<std::int64_t>(count, truth.records.size());
+  for (std::int64_t from = 0; from < known; from += 50) {
+    const std::int64_t to = std::min(from + 50, known);
+    const auto records = reader->ticks(from, to);
+    if (records) {
+      EXPECT_TRUE(std::equal(records->begin(), records->end(), truth.records.begin() + from,
+                             truth.records.begin() + to))
+          << what;
+    } else {
+      complain(records.errors());
+    }
+    const auto keyframe = reader->keyframe_at_or_before(to);
+    if (keyframe) {
+      EXPECT_EQ(state_hash(keyframe->state), truth.state_hashes.at(keyframe->tick)) << what;
+    } else {
+      complain(keyframe.errors());
+    }
+  }
+  if (const auto events = reader->events(); !events) {
+    complain(events.errors());
+  } else {
+    const std::size_t expected = reader->ended_cleanly() ? truth.events.size() : events->size();
+    EXPECT_TRUE(events->size() == expected && expected <= truth.events.size() &&
+                std::equal(events->begin(), events->end(), truth.events.begin()))
+        << what;
+  }
+  if (const auto all = reader->check_all(); !all) complain(all.errors());
+  return finding;
+}
+
+/// One small session, its bytes and its truth, made once.
+struct Sample {
+  Folder folder;
+  std::string path = folder / "whole.ctpm";
+  Truth truth;
+  std::vector<char> bytes;
+
+  Sample() {
+    const SessionStart start = small_start(3, 2, 2);
+    const Lived lived = record_session(path, start, 730, 200);
+    truth = truth_of(path, start, lived);
+    bytes = read_bytes(path);
+  }
+};
+const Sample& sample() {
+  static const Sample one;
+  return one;
+}
+
+TEST(Damage, AFileCutAtAnyLengthIsAnErrorWithItsPlace) {
+  const Sample& whole = sample();
+  const Folder folder;
+  const std::string path = folder / "cut.ctpm";
+  std::set<std::size_t> lengths;
+  for (std::size_t page = 0; page * 4096 <= whole.bytes.size(); ++page)
+    for (const int beside : {-1, 0, 1, 100, 2048})
+      lengths.insert(page * 4096 + static_cast<std::size_t>(std::max(beside, 0)) - (beside < 0 && page > 0));
+  for (std::size_t length = 0; length < 200; ++length) lengths.insert(length);
+  for (const std::size_t length : lengths) {
+    if (length >= whole.bytes.size()) continue;
+    write_bytes(path, {whole.bytes.begin(), whole.bytes.begin() + static_cast<std::ptrdiff_t>(length)});
+    const Finding finding = expect_error_or_truth(path, whole.truth, "length " + std::to_string(length));
+    EXPECT_FALSE(finding.opened) << "length " << length;
+  }
+}
+
+/// Places that surely are payload: the heads of all compressed frames.
+std::set<std::size_t> frame_heads(const std::vector<char>& bytes) {
+  static constexpr char magic[] = {'\x28', '\xb5', '\x2f', '\xfd'};
+  std::set<std::size_t> places;
+  for (auto at = bytes.begin(); (at = std::search(at, bytes.end(), magic, magic + 4)) != bytes.end(); ++at)
+    for (std::size_t i = 0; i < 12; ++i) places.insert(static_cast<std::size_t>(at - bytes.begin()) + i);
+  return places;
+}
+
+/// Flips one bit at each of the places, one at a time.
+void flip_each(const std::set<std::size_t>& places, bool must_be_found) {
+  const Sample& whole = sample();
+  const Folder folder;
+  const std::string path = folder / "flipped.ctpm";
+  write_bytes(path, whole.bytes);
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  const auto put = [&](std::size_t place, char byte) {
+    file.seekp(static_cast<std::streamoff>(place));
+    file.put(byte);
+    file.flush();
+  };
+  for (const std::size_t place : places) {
+    const int bit = static_cast<int>(place * 5 % 8);
+    put(place, static_cast<char>(whole.bytes[place] ^ (1 << bit)));
+    const Finding finding = expect_error_or_truth(
+        path, whole.truth, "byte " + std::to_string(place) + " bit " + std::to_string(bit));
+    EXPECT_TRUE(finding.complained || !must_be_found) << "byte " << place;
+    put(place, whole.bytes[place]);
+    if (::testing::Test::HasFailure()) return;
+  }
+  EXPECT_FALSE(expect_error_or_truth(path, whole.truth, "mended").complained);
+}
+
+TEST(Damage, AFlippedBitAnywhereIsFoundOrWithoutEffect) {
+  std::set<std::size_t> places;
+  for (std::size_t place = 0; place < sample().bytes.size(); place += 7) places.insert(place);
+  flip_each(places, false);
+}
+
+TEST(Damage, AFlippedBitInAnyBlockIsFound) {
+  const std::set<std::size_t> places = frame_heads(sample().bytes);
+  EXPECT_GE(places.size(), 12u * (7 + 8 + 3 + 1));  // parts, chunks, keyframes, end
+  flip_each(places, true);
+}
+
+/// Writes the file with one byte changed, at the first place where that makes `message` appear in what
+/// check_all() says. Returns all that it says; empty if there is no such place.
+std::string damage_until(const std::string& path, const std::vector<char>& bytes,
+                         const std::string& message) {
+  for (std::size_t place = 4096; place < bytes.size(); place += 61) {
+    std::vector<char> damaged = bytes;
+    damaged[place] = static_cast<char>(damaged[place] ^ 0x10);
+    write_bytes(path, damaged);
+    auto reader = SessionReader::open(path);
+    if (!reader) continue;
+    const auto all = reader->check_all();
+    if (!all && text_of(all.errors()).find(message) != std::string::npos) return text_of(all.errors());
+  }
+  return "";
+}
+
+TEST(Damage, ADamagedChunkIsNamedByItsTicks) {
+  const Sample& whole = sample();
+  const Folder folder;
+  const std::string path = folder / "a.ctpm";
+  ASSERT_NE(damage_until(path, whole.bytes, "chunk 300 100: the checksum does not match"), "");
+  auto reader = SessionReader::open(path);
+  ASSERT_TRUE(reader);
+  EXPECT_TRUE(reader->ticks(0, 300)) << "what is before it can be read";
+  EXPECT_TRUE(reader->ticks(400, 730)) << "what is behind it can be read";
+  const auto lost = reader->ticks(250, 350);
+  ASSERT_FALSE(lost);
+  EXPECT_NE(lost.errors()[0].message.find("chunk 300 100"), std::string::npos);
+  EXPECT_FALSE(verify_session(*reader)) << "a replay cannot step over it";
+}
+
+TEST(Damage, ADamagedKeyframeCostsTimeButNotTheReplay) {
+  const Sample& whole = sample();
+  const Folder folder;
+  const std::string path = folder / "a.ctpm";
+  ASSERT_NE(damage_until(path, whole.bytes, "keyframe 400: the checksum does not match"), "");
+  auto reader = SessionReader::open(path);
+  ASSERT_TRUE(reader);
+  auto cursor = ReplayCursor::create(*reader);
+  ASSERT_TRUE(cursor);
+  ASSERT_TRUE(cursor->seek(450));
+  EXPECT_EQ(state_hash(cursor->state()), whole.truth.state_hashes[450]);
+}
+
+TEST(Damage, WhatIsNotASessionIsSaidPlainly) {
+  const Folder folder;
+  const std::string path = folder / "a.ctpm";
+  const auto message = [&] {
+    const auto reader = SessionReader::open(path);
+    EXPECT_FALSE(reader);
+    return reader ? "" : to_string(reader.errors()[0]);
+  };
+  EXPECT_EQ(message(), path + ": error: does not exist");
+  write_bytes(path, {});
+  EXPECT_EQ(message(), path + ": error: is not a session file: it is empty");
+  write_bytes(path, std::vector<char>(5000, 'v'));
+  EXPECT_EQ(message(), path + ": error: is not a session file: it does not begin like one");
+  std::filesystem::remove(path);
+  std::filesystem::create_directory(path);
+  EXPECT_EQ(message(), path + ": error: is not a session file: it is not a regular file");
+  std::filesystem::remove(path);
+
+  // Another SQLite database: other numbers in the header.
+  std::vector<char> other = sample().bytes;
+  other[71] = 'X';
+  write_bytes(path, other);
+  EXPECT_EQ(message(), path + ": error: is not a session file: it is another SQLite database");
+}
+
+TEST(Damage, ANewerVersionIsRefusedWithBothNumbers) {
+  const Folder folder;
+  std::vector<char> newer = sample().bytes;
+  newer[63] = 9;  // the last byte of user_version
+  write_bytes(folder / "a.ctpm", newer);
+  const auto reader = SessionReader::open(folder / "a.ctpm");
+  ASSERT_FALSE(reader);
+  EXPECT_EQ(reader.errors()[0].message, "is of format version 9, this program reads up to 1");
+}
+
+TEST(Damage, APowerCutInTheLogLosesOnlyTheEnd) {
+  const Folder folder;
+  const SessionStart start = small_start(3, 2, 2);
+  auto writer =
+      SessionWriter::create(folder / "live.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 200});
+  ASSERT_TRUE(writer);
+  const Lived lived = live(start, 600, [&](const State& after, const TickRecord& record) {
+    writer->append(after, record);
+    if (after.tick % 60 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  });
+  while (writer->status().committed < 600) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const std::vector<char> file = read_bytes(folder / "live.ctpm"), log = read_bytes(folder / "live.ctpm-wal");
+  Truth truth = truth_of(folder / "live.ctpm", start, lived);
+
+  const std::string path = folder / "cut.ctpm";
+  std::set<std::int64_t> counts;
+  std::set<std::size_t> lengths{log.size()};
+  for (std::size_t length = 0; length < log.size(); length += 1009) lengths.insert(length);
+  for (const std::size_t length : lengths) {
+    std::filesystem::remove(path + "-shm");
+    write_bytes(path, file);
+    write_bytes(path + "-wal", {log.begin(), log.begin() + static_cast<std::ptrdiff_t>(length)});
+    const Finding finding = expect_error_or_truth(path, truth, "log of " + std::to_string(length));
+    EXPECT_FALSE(finding.complained) << "log of " << length;
+    counts.insert(SessionReader::open(path)->tick_count());
+  }
+  EXPECT_GE(counts.size(), 3u) << "shorter logs hold fewer ticks";
+  EXPECT_EQ(*counts.begin(), 0);
+  EXPECT_EQ(*counts.rbegin(), 600);
+}
+
+TEST(Damage, ALogOfAnotherSessionIsNotMixedIn) {
+  const Folder folder;
+  const SessionStart start = small_start(3, 2, 2);
+  std::vector<char> files[2], logs[2];
+  Truth truth;
+  for (int i = 0; i < 2; ++i) {
+    auto writer = SessionWriter::create(folder / std::to_string(i), start, {.wait_when_full = true});
+    ASSERT_TRUE(writer);
+    const Lived lived = live(
+        start, 300, [&](const State& after, const TickRecord& record) { writer->append(after, record); });
+    while (writer->status().committed < 300) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    files[i] = read_bytes(folder / std::to_string(i)),
+    logs[i] = read_bytes(folder / (std::to_string(i) + "-wal"));
+    if (i == 0) truth = truth_of(folder / "0", start, lived);
+  }
+  write_bytes(folder / "a.ctpm", files[0]);
+  write_bytes(folder / "a.ctpm-wal", logs[1]);
+  EXPECT_TRUE(expect_error_or_truth(folder / "a.ctpm", truth, "mixed").complained);
+}
+
+TEST(Recover, AWholeSessionComesBackWhole) {
+  const Sample& whole = sample();
+  const Folder folder;
+  const auto report = recover_session(whole.path, folder / "out.ctpm");
+  ASSERT_TRUE(report) << text_of(report.errors());
+  EXPECT_TRUE(report->complete);
+  EXPECT_TRUE(report->losses.empty());
+  EXPECT_EQ(report->ticks_saved, 730);
+  EXPECT_EQ(report->keyframes_saved, 3);
+  EXPECT_TRUE(report->verdict.same);
+  EXPECT_EQ(report->verdict.ticks_compared, 730);
+  auto reader = SessionReader::open(folder / "out.ctpm");
+  ASSERT_TRUE(reader);
+  EXPECT_TRUE(reader->ended_cleanly());
+  EXPECT_TRUE(*reader->ticks(0, 730) == whole.truth.records);
+  EXPECT_TRUE(*reader->events() == whole.truth.events);
+}
+
+TEST(Recover, ADamagedChunkIsNamedAndWhatIsBeforeItSaved) {
+  const Sample& whole = sample();
+  const Folder folder;
+  ASSERT_NE(damage_until(folder / "a.ctpm", whole.bytes, "chunk 300 100: the checksum does not match"), "");
+  const auto report = recover_session(folder / "a.ctpm", folder / "out.ctpm");
+  ASSERT_TRUE(report) << text_of(report.errors());
+  EXPECT_FALSE(report->complete);
+  EXPECT_EQ(report->ticks_saved, 300);
+  EXPECT_EQ(report->ticks_dropped, 330);
+  ASSERT_FALSE(report->losses.empty());
+  EXPECT_NE(report->losses[0].find("chunk 300 100"), std::string::npos);
+  EXPECT_TRUE(report->verdict.same);
+  EXPECT_EQ(report->verdict.ticks_compared, 300);
+  auto reader = SessionReader::open(folder / "out.ctpm");
+  ASSERT_TRUE(reader);
+  EXPECT_FALSE(reader->ended_cleanly());
+  ASSERT_EQ(reader->tick_count(), 300);
+  EXPECT_TRUE(std::equal(whole.truth.records.begin(), whole.truth.records.begin() + 300,
+                         reader->ticks(0, 300)->begin()));
+}
+
+TEST(Recover, AFileCutShortGivesItsBeginning) {
+  const Sample& whole = sample();
+  const Folder folder;
+  std::int64_t most = 0;
+  for (const int percent : {40, 60, 70, 80, 90, 97}) {
+    const std::string path = folder / (std::to_string(percent) + ".ctpm");
+    write_bytes(path, {whole.bytes.begin(), whole.bytes.begin() + static_cast<std::ptrdiff_t>(
+                                                                      whole.bytes.size() * percent / 100)});
+    EXPECT_FALSE(SessionReader::open(path));
+    const auto report = recover_session(path, folder / "out.ctpm");
+    if (!report) {
+      EXPECT_FALSE(std::filesystem::exists(folder / "out.ctpm"));
+      continue;
+    }
+    EXPECT_FALSE(report->complete);
+    EXPECT_FALSE(report->losses.empty());
+    EXPECT_TRUE(report->verdict.same);
+    EXPECT_GE(report->ticks_saved, most) << "a longer rest holds no less";
+    most = report->ticks_saved;
+    std::filesystem::remove(folder / "out.ctpm");
+  }
+  EXPECT_GE(most, 300);
+  EXPECT_LT(most, 730);
+}
+
+TEST(Recover, RefusesToReplaceAFileAndWhatCannotBeReplayed) {
+  const Sample& whole = sample();
+  const Folder folder;
+  write_bytes(folder / "out.ctpm", {'o', 'l', 'd'});
+  const auto refused = recover_session(whole.path, folder / "out.ctpm");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.errors()[0].message, "exists already");
+  EXPECT_EQ(read_bytes(folder / "out.ctpm").size(), 3u);
+
+  write_bytes(folder / "no.ctpm", std::vector<char>(9000, 'x'));
+  EXPECT_FALSE(recover_session(folder / "no.ctpm", folder / "new.ctpm"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "new.ctpm"));
+}
+
+}  // namespace
+}  // namespace ctpm
