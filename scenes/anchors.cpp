@@ -19,11 +19,12 @@ double height(Vec3 p, Vec3 gravity) {
 bool is_in(const AnchorSpec& anchor, Vec3 p, Vec3 gravity, double lowest) {
   if (anchor.lowest) return height(p, gravity) <= lowest + *anchor.lowest + kBorder;
   if (anchor.sphere) return norm(p - anchor.sphere->centre) <= anchor.sphere->radius + kBorder;
-  if (anchor.plane) return dot(p - anchor.plane->point, anchor.plane->normal) <= kBorder * norm(anchor.plane->normal);
+  if (anchor.plane)
+    return dot(p - anchor.plane->point, anchor.plane->normal) <= kBorder * norm(anchor.plane->normal);
   if (!anchor.box) return false;
   const Vec3 low = anchor.box->min, high = anchor.box->max;
-  return p.x >= low.x - kBorder && p.y >= low.y - kBorder && p.z >= low.z - kBorder && p.x <= high.x + kBorder &&
-         p.y <= high.y + kBorder && p.z <= high.z + kBorder;
+  return p.x >= low.x - kBorder && p.y >= low.y - kBorder && p.z >= low.z - kBorder &&
+         p.x <= high.x + kBorder && p.y <= high.y + kBorder && p.z <= high.z + kBorder;
 }
 
 std::string extent_of(const FilledOrgan& organ) {
@@ -33,15 +34,17 @@ std::string extent_of(const FilledOrgan& organ) {
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
   char text[160];
-  std::snprintf(text, sizeof text, "its spheres lie from %.1f, %.1f, %.1f to %.1f, %.1f, %.1f mm", low.x * 1e3, low.y * 1e3,
-                low.z * 1e3, high.x * 1e3, high.y * 1e3, high.z * 1e3);
+  std::snprintf(text, sizeof text, "its spheres lie from %.1f, %.1f, %.1f to %.1f, %.1f, %.1f mm",
+                low.x * 1e3, low.y * 1e3, low.z * 1e3, high.x * 1e3, high.y * 1e3, high.z * 1e3);
   return text;
 }
 
 }  // namespace
 
-Result<std::vector<std::int32_t>> select_anchored(const FilledOrgan& organ, const std::vector<AnchorSpec>& anchors, Vec3 gravity,
-                                                  const std::string& where, std::vector<std::int32_t>* counts) {
+Result<std::vector<std::int32_t>> select_anchored(const FilledOrgan& organ,
+                                                  const std::vector<AnchorSpec>& anchors, Vec3 gravity,
+                                                  const std::string& where,
+                                                  std::vector<std::int32_t>* counts) {
   if (organ.centre.empty()) return Error{where, "the organ has no spheres", ""};
   double lowest = height(organ.centre.front(), gravity);
   for (const Vec3& p : organ.centre) lowest = std::min(lowest, height(p, gravity));
@@ -54,16 +57,20 @@ Result<std::vector<std::int32_t>> select_anchored(const FilledOrgan& organ, cons
   }
   Errors errors;
   for (std::size_t a = 0; a < anchors.size(); ++a)
-    if (caught[a] == 0) errors.push_back({where + "/anchors/" + std::to_string(a), "catches no sphere", extent_of(organ)});
+    if (caught[a] == 0)
+      errors.push_back({where + "/anchors/" + std::to_string(a), "catches no sphere", extent_of(organ)});
   if (!errors.empty()) return errors;
   if (counts != nullptr) *counts = caught;
   return selected;
 }
 
 Result<AnchorSpec> parse_anchor(const std::string& text) {
-  const Error error{"--anchor",
-                    "got '" + text + "', must be lowest:HEIGHT, box:X0,Y0,Z0,X1,Y1,Z1, sphere:X,Y,Z,R or plane:X,Y,Z,NX,NY,NZ, "
-                                     "with all lengths in mm", ""};
+  const Error error{
+      "--anchor",
+      "got '" + text +
+          "', must be lowest:HEIGHT, box:X0,Y0,Z0,X1,Y1,Z1, sphere:X,Y,Z,R or plane:X,Y,Z,NX,NY,NZ, "
+          "with all lengths in mm",
+      ""};
   const auto colon = text.find(':');
   if (colon == std::string::npos) return error;
   std::vector<double> v;
@@ -77,11 +84,16 @@ Result<AnchorSpec> parse_anchor(const std::string& text) {
   const std::string kind = text.substr(0, colon);
   AnchorSpec anchor;
   const auto mm = [&](std::size_t i) { return 1e-3 * Vec3{v[i], v[i + 1], v[i + 2]}; };
-  if (kind == "lowest" && v.size() == 1 && v[0] >= 0) anchor.lowest = 1e-3 * v[0];
-  else if (kind == "box" && v.size() == 6) anchor.box = BoxRegion{mm(0), mm(3)};
-  else if (kind == "sphere" && v.size() == 4 && v[3] > 0) anchor.sphere = SphereRegion{mm(0), 1e-3 * v[3]};
-  else if (kind == "plane" && v.size() == 6) anchor.plane = PlaneRegion{mm(0), {v[3], v[4], v[5]}};
-  else return error;
+  if (kind == "lowest" && v.size() == 1 && v[0] >= 0)
+    anchor.lowest = 1e-3 * v[0];
+  else if (kind == "box" && v.size() == 6)
+    anchor.box = BoxRegion{mm(0), mm(3)};
+  else if (kind == "sphere" && v.size() == 4 && v[3] > 0)
+    anchor.sphere = SphereRegion{mm(0), 1e-3 * v[3]};
+  else if (kind == "plane" && v.size() == 6)
+    anchor.plane = PlaneRegion{mm(0), {v[3], v[4], v[5]}};
+  else
+    return error;
   return anchor;
 }
 

@@ -17,7 +17,8 @@ std::vector<OrganSettings::Guide> guides_of(const OrganSpec& spec, const FilledO
   std::vector<OrganSettings::Guide> guides;
   if (!spec.rig) return guides;
   for (const GuideSpec& guide : spec.rig->guides) {
-    const std::array<std::int32_t, 3> cell{std::int32_t(guide.cell.x), std::int32_t(guide.cell.y), std::int32_t(guide.cell.z)};
+    const std::array<std::int32_t, 3> cell{std::int32_t(guide.cell.x), std::int32_t(guide.cell.y),
+                                           std::int32_t(guide.cell.z)};
     const auto it = std::find(organ.cell.begin(), organ.cell.end(), cell);
     std::uint8_t axes = 0;
     for (const char axis : guide.axes) axes = std::uint8_t(axes | (1u << (axis - 'x')));
@@ -41,7 +42,8 @@ void add_tools(Model& model, const SceneSpec& scene) {
     if (spec.holds) tool.sphere = nearest_sphere(model, *spec.holds);
     model.tools.push_back(tool);
   }
-  const bool presses = std::any_of(scene.tools.begin(), scene.tools.end(), [](const ToolSpec& t) { return t.kind == ToolKind::ball; });
+  const bool presses = std::any_of(scene.tools.begin(), scene.tools.end(),
+                                   [](const ToolSpec& t) { return t.kind == ToolKind::ball; });
   if (!presses) return;
   model.contact_k = scene.contact_stiffness.value_or(kContactOverEdge * stiffest_edge(model));
   model.contact_friction = scene.contact_friction;
@@ -62,7 +64,9 @@ FilledOrgan fill_rig(const OrganSpec& organ) {
       for (double j = 0; j < n.y; ++j)
         for (double i = 0; i < n.x; ++i) cells.push_back({i, j, k});
   }
-  std::sort(cells.begin(), cells.end(), [](Vec3 a, Vec3 b) { return a.z != b.z ? a.z < b.z : a.y != b.y ? a.y < b.y : a.x < b.x; });
+  std::sort(cells.begin(), cells.end(), [](Vec3 a, Vec3 b) {
+    return a.z != b.z ? a.z < b.z : a.y != b.y ? a.y < b.y : a.x < b.x;
+  });
   for (const Vec3& c : cells) {
     filled.cell.push_back({std::int32_t(c.x), std::int32_t(c.y), std::int32_t(c.z)});
     filled.centre.push_back(origin + filled.spacing * c);

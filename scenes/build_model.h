@@ -15,14 +15,14 @@ namespace ctpm {
 struct BuiltScene {
   Model model;
   std::vector<std::int32_t> anchored_count;  ///< spheres that each organ's anchors hold         (organ_count)
-  std::vector<std::int32_t> probe_sphere;    ///< sphere of each probe                            (probe_count)
+  std::vector<std::int32_t> probe_sphere;  ///< sphere of each probe                            (probe_count)
 };
 
 /// The spheres of an organ that is given as a rig instead of by a mesh. It has no surface to draw.
 FilledOrgan fill_rig(const OrganSpec& organ);
 
-/// Builds the Model. `organs` are the filled organs in the order of the scene's. Errors: an anchor that catches no sphere,
-/// moduli out of range, with the JSON pointer of the organ.
+/// Builds the Model. `organs` are the filled organs in the order of the scene's. Errors: an anchor that
+/// catches no sphere, moduli out of range, with the JSON pointer of the organ.
 Result<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrgan> organs);
 
 /// The sphere nearest to `point` [m] at rest; the first of several.

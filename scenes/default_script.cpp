@@ -6,7 +6,8 @@
 namespace ctpm {
 namespace {
 
-/// Everything in the plane across gravity and the height above it, so that any scene can be treated as lying on a table.
+/// Everything in the plane across gravity and the height above it, so that any scene can be treated as lying
+/// on a table.
 class Table {
  public:
   explicit Table(Vec3 gravity) {
@@ -29,7 +30,8 @@ class Top {
   Top(const FilledOrgan& organ, const Table& table) : reach_(0.8 * organ.spacing) {
     for (const Vec3& vertex : organ.surface.vertex) points_.push_back(table.to_table(vertex));
     if (points_.empty())
-      for (const Vec3& centre : organ.centre) points_.push_back(table.to_table(centre) + Vec3{0, 0, organ.spacing / 2});
+      for (const Vec3& centre : organ.centre)
+        points_.push_back(table.to_table(centre) + Vec3{0, 0, organ.spacing / 2});
     least_ = most_ = points_.front();
     for (const Vec3& p : points_) {
       least_ = {std::min(least_.x, p.x), std::min(least_.y, p.y), std::min(least_.z, p.z)};
@@ -112,7 +114,8 @@ Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organ
   // Deep enough to be seen, and never through the organ.
   const double height = top.size().z;
   const auto first_of = [&](ToolKind kind) {
-    return std::find_if(scene.tools.begin(), scene.tools.end(), [&](const ToolSpec& t) { return t.kind == kind; });
+    return std::find_if(scene.tools.begin(), scene.tools.end(),
+                        [&](const ToolSpec& t) { return t.kind == kind; });
   };
   if (const auto ball = first_of(ToolKind::ball); ball != scene.tools.end())
     add_press(script, *ball, top, table, std::min(0.010, 0.2 * height));

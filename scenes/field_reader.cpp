@@ -18,7 +18,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     for (std::size_t j = 1; j <= b.size(); ++j) {
       const std::size_t change = a[i - 1] == b[j - 1] ? 0 : 1;
       d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + change});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
     }
   }
   return d[a.size()][b.size()];
@@ -26,13 +27,15 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 /// The key without the unit at its end: "spring_kpa_per_mm" -> "spring".
 std::string without_unit(std::string_view key) {
-  static constexpr std::string_view parts[] = {"mm", "cm",  "um",  "m",  "km",  "in", "inch", "kpa", "pa", "mpa", "s",  "ms",  "us",
-                                               "n",  "mn",  "kn",  "kg", "g",   "m3", "mm3",  "mm2", "m2", "s2",  "deg", "rad", "per",
-                                               "cm3", "hz", "sec", "pas", "min"};
+  static constexpr std::string_view parts[] = {"mm",  "cm",  "um",  "m",   "km",  "in",  "inch", "kpa",
+                                               "pa",  "mpa", "s",   "ms",  "us",  "n",   "mn",   "kn",
+                                               "kg",  "g",   "m3",  "mm3", "mm2", "m2",  "s2",   "deg",
+                                               "rad", "per", "cm3", "hz",  "sec", "pas", "min"};
   for (;;) {
     const auto mark = key.rfind('_');
     if (mark == std::string_view::npos) return std::string(key);
-    if (std::find(std::begin(parts), std::end(parts), key.substr(mark + 1)) == std::end(parts)) return std::string(key);
+    if (std::find(std::begin(parts), std::end(parts), key.substr(mark + 1)) == std::end(parts))
+      return std::string(key);
     key = key.substr(0, mark);
   }
 }
@@ -71,15 +74,18 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
   return best_distance <= std::max<std::size_t>(2, word.size() / 3) ? best : "";
 }
 
-// Problems ---------------------------------------------------------------------------------------------------------
+// Problems
+// ---------------------------------------------------------------------------------------------------------
 
 Problems::Problem Problems::make(const std::string& pointer, Place place, const std::string& message,
                                  const std::string& hint) const {
-  const std::string where = file_name_ + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
+  const std::string where =
+      file_name_ + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
   return {pointer, place, Error{where, (pointer.empty() ? "/" : pointer) + ": " + message, hint}};
 }
 
-void Problems::add(const std::string& pointer, Place place, const std::string& message, const std::string& hint) {
+void Problems::add(const std::string& pointer, Place place, const std::string& message,
+                   const std::string& hint) {
   problems_.push_back(make(pointer, place, message, hint));
 }
 
@@ -133,7 +139,8 @@ Errors Problems::errors() const {
 
 Errors Problems::warnings() const { return in_order(warnings_); }
 
-// FieldReader ------------------------------------------------------------------------------------------------------
+// FieldReader
+// ------------------------------------------------------------------------------------------------------
 
 const JsonNode* FieldReader::take(const Key& key) {
   known_.push_back({key.name, key.is_required});
@@ -149,7 +156,8 @@ const JsonNode* FieldReader::take_list(const Key& key, std::size_t least) {
     return nullptr;
   }
   if (node->children.size() < least) {
-    problems_.add(pointer, node->place, "got " + describe(*node) + ", must have at least " + std::to_string(least));
+    problems_.add(pointer, node->place,
+                  "got " + describe(*node) + ", must have at least " + std::to_string(least));
   }
   return node;
 }
@@ -183,11 +191,12 @@ void FieldReader::text(const Key& key, std::string& value) {
   }
 }
 
-bool FieldReader::read_number(const JsonNode& node, const std::string& pointer, const Unit& unit, const Range& range,
-                              double& value) {
+bool FieldReader::read_number(const JsonNode& node, const std::string& pointer, const Unit& unit,
+                              const Range& range, double& value) {
   const std::string of_unit = unit.name[0] == '\0' ? "" : std::string(" ") + unit.name;
   if (node.kind != JsonKind::number) {
-    problems_.add(pointer, node.place, "got " + describe(node) + ", must be a number in " + to_string(range) + of_unit);
+    problems_.add(pointer, node.place,
+                  "got " + describe(node) + ", must be a number in " + to_string(range) + of_unit);
     return false;
   }
   if (!range.contains(decimal_to_double(node.raw, 0))) {
@@ -199,7 +208,8 @@ bool FieldReader::read_number(const JsonNode& node, const std::string& pointer, 
 }
 
 void FieldReader::number(const Key& key, double& value, const Unit& unit, const Range& range) {
-  if (const JsonNode* node = take(key)) read_number(*node, child_pointer(pointer_, key.name), unit, range, value);
+  if (const JsonNode* node = take(key))
+    read_number(*node, child_pointer(pointer_, key.name), unit, range, value);
 }
 
 void FieldReader::number(const Key& key, std::optional<double>& value, const Unit& unit, const Range& range) {
@@ -208,10 +218,12 @@ void FieldReader::number(const Key& key, std::optional<double>& value, const Uni
   if (node != nullptr && read_number(*node, child_pointer(pointer_, key.name), unit, range, got)) value = got;
 }
 
-bool FieldReader::read_integer(const JsonNode& node, const std::string& pointer, const Range& range, std::int32_t& value) {
+bool FieldReader::read_integer(const JsonNode& node, const std::string& pointer, const Range& range,
+                               std::int32_t& value) {
   const bool is_whole = node.kind == JsonKind::number && node.raw.find_first_of(".eE") == std::string::npos;
   if (!is_whole) {
-    problems_.add(pointer, node.place, "got " + describe(node) + ", must be a whole number in " + to_string(range));
+    problems_.add(pointer, node.place,
+                  "got " + describe(node) + ", must be a whole number in " + to_string(range));
     return false;
   }
   if (!range.contains(decimal_to_double(node.raw, 0))) {
@@ -232,8 +244,8 @@ void FieldReader::integer(const Key& key, std::optional<std::int32_t>& value, co
   if (node != nullptr && read_integer(*node, child_pointer(pointer_, key.name), range, got)) value = got;
 }
 
-bool FieldReader::read_point(const JsonNode& node, const std::string& pointer, const Unit& unit, const Range& range,
-                             Vec3& value) {
+bool FieldReader::read_point(const JsonNode& node, const std::string& pointer, const Unit& unit,
+                             const Range& range, Vec3& value) {
   if (node.kind != JsonKind::list || node.children.size() != 3) {
     problems_.add(pointer, node.place, "got " + describe(node) + ", must be a list of 3 numbers");
     return false;
@@ -259,11 +271,13 @@ void FieldReader::flag(const Key& key, std::optional<bool>& value) {
   if (node->kind == JsonKind::boolean)
     value = node->raw == "true";
   else
-    problems_.add(child_pointer(pointer_, key.name), node->place, "got " + describe(*node) + ", must be true or false");
+    problems_.add(child_pointer(pointer_, key.name), node->place,
+                  "got " + describe(*node) + ", must be true or false");
 }
 
 void FieldReader::point(const Key& key, Vec3& value, const Unit& unit, const Range& range) {
-  if (const JsonNode* node = take(key)) read_point(*node, child_pointer(pointer_, key.name), unit, range, value);
+  if (const JsonNode* node = take(key))
+    read_point(*node, child_pointer(pointer_, key.name), unit, range, value);
 }
 
 void FieldReader::point(const Key& key, std::optional<Vec3>& value, const Unit& unit, const Range& range) {
@@ -312,7 +326,8 @@ void FieldReader::report_unknown(std::size_t member, const std::vector<std::stri
   if (hint.empty()) {
     for (const std::string& name : names) hint += (hint.empty() ? "known here: " : ", ") + name;
   }
-  problems_.add(child_pointer(pointer_, key), object_.key_places[member], "unknown key " + in_quotes(key), hint);
+  problems_.add(child_pointer(pointer_, key), object_.key_places[member], "unknown key " + in_quotes(key),
+                hint);
 }
 
 void FieldReader::finish() {
@@ -322,8 +337,10 @@ void FieldReader::finish() {
     const std::string& key = object_.keys[i];
     const auto first = std::find(object_.keys.begin(), object_.keys.end(), key) - object_.keys.begin();
     if (static_cast<std::size_t>(first) != i) {
-      problems_.add(child_pointer(pointer_, key), object_.key_places[i], "the key " + in_quotes(key) + " is given twice",
-                    "first in line " + std::to_string(object_.key_places[static_cast<std::size_t>(first)].line));
+      problems_.add(
+          child_pointer(pointer_, key), object_.key_places[i],
+          "the key " + in_quotes(key) + " is given twice",
+          "first in line " + std::to_string(object_.key_places[static_cast<std::size_t>(first)].line));
     } else if (std::find(names.begin(), names.end(), key) == names.end()) {
       report_unknown(i, names);
     } else {
@@ -338,8 +355,9 @@ void FieldReader::finish() {
   if (needs_exactly_one_ && written.size() != 1) {
     std::string allowed;
     for (const std::string& name : names) allowed += (allowed.empty() ? "" : ", ") + name;
-    problems_.add(pointer_, object_.place,
-                  "got " + std::to_string(written.size()) + " of the keys, must have exactly one of " + allowed);
+    problems_.add(
+        pointer_, object_.place,
+        "got " + std::to_string(written.size()) + " of the keys, must have exactly one of " + allowed);
   }
 }
 

@@ -22,8 +22,8 @@ class Problems {
   /// A problem with the value at `place`; `pointer` is its JSON pointer.
   void add(const std::string& pointer, Place place, const std::string& message, const std::string& hint = "");
 
-  /// A problem that only shows when values are read together; its place is looked up. Left out if the same top-level
-  /// item (`/organs/0`) already has a problem, which would be its cause.
+  /// A problem that only shows when values are read together; its place is looked up. Left out if the same
+  /// top-level item (`/organs/0`) already has a problem, which would be its cause.
   void add_rule(const std::string& pointer, const std::string& message, const std::string& hint = "");
 
   /// As add_rule, but a scene with it still runs.
@@ -38,7 +38,8 @@ class Problems {
     Place place;
     Error error;
   };
-  Problem make(const std::string& pointer, Place place, const std::string& message, const std::string& hint) const;
+  Problem make(const std::string& pointer, Place place, const std::string& message,
+               const std::string& hint) const;
   Place find(const std::string& pointer) const;
   static Errors in_order(std::vector<Problem> problems);
 
@@ -68,17 +69,20 @@ class FieldReader {
   void integer(const Key& key, std::optional<std::int32_t>& value, const Range& range);
   void point(const Key& key, Vec3& value, const Unit& unit, const Range& range);
   void point(const Key& key, std::optional<Vec3>& value, const Unit& unit, const Range& range);
-  void points(const Key& key, std::vector<Vec3>& value, const Unit& unit, const Range& range, std::size_t least);
+  void points(const Key& key, std::vector<Vec3>& value, const Unit& unit, const Range& range,
+              std::size_t least);
 
   template <class E>
   void choice(const Key& key, E& value) {
     std::vector<std::string> names;
     for (const auto& choice : choices_of(E{})) names.emplace_back(choice.name);
-    if (const int found = read_choice(key, names); found >= 0) value = choices_of(E{})[static_cast<std::size_t>(found)].value;
+    if (const int found = read_choice(key, names); found >= 0)
+      value = choices_of(E{})[static_cast<std::size_t>(found)].value;
   }
   template <class T>
   void record(const Key& key, T& value) {
-    if (const JsonNode* node = take(key)) read_record(*node, child_pointer(pointer_, key.name), problems_, value);
+    if (const JsonNode* node = take(key))
+      read_record(*node, child_pointer(pointer_, key.name), problems_, value);
   }
   template <class T>
   void record(const Key& key, std::optional<T>& value) {
@@ -117,9 +121,12 @@ class FieldReader {
   const JsonNode* take(const Key& key);
   const JsonNode* take_list(const Key& key, std::size_t least);
   int read_choice(const Key& key, const std::vector<std::string>& names);
-  bool read_number(const JsonNode& node, const std::string& pointer, const Unit& unit, const Range& range, double& value);
-  bool read_point(const JsonNode& node, const std::string& pointer, const Unit& unit, const Range& range, Vec3& value);
-  bool read_integer(const JsonNode& node, const std::string& pointer, const Range& range, std::int32_t& value);
+  bool read_number(const JsonNode& node, const std::string& pointer, const Unit& unit, const Range& range,
+                   double& value);
+  bool read_point(const JsonNode& node, const std::string& pointer, const Unit& unit, const Range& range,
+                  Vec3& value);
+  bool read_integer(const JsonNode& node, const std::string& pointer, const Range& range,
+                    std::int32_t& value);
   void report_unknown(std::size_t member, const std::vector<std::string>& names);
 
   struct KnownKey {

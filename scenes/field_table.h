@@ -3,8 +3,9 @@
 #include <limits>
 #include <string>
 
-// The words in which a table of fields is written. A table is a function `describe_fields(visitor, object)` per struct; the
-// reader, the writer, the JSON Schema and the documentation are visitors of it. Internal to scenes.
+// The words in which a table of fields is written. A table is a function `describe_fields(visitor, object)`
+// per struct; the reader, the writer, the JSON Schema and the documentation are visitors of it. Internal to
+// scenes.
 namespace ctpm {
 
 /// A unit of the text form. SI value = value in the text times 10^exponent.
@@ -46,7 +47,7 @@ std::string to_string(const Range& range);
 /// One row of the table.
 struct Key {
   const char* name;
-  const char* meaning;         ///< one sentence, with capital and full stop
+  const char* meaning;  ///< one sentence, with capital and full stop
   bool is_required = false;
   const char* otherwise = "";  ///< what holds if an optional value is not written; empty: nothing
 };

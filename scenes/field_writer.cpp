@@ -10,7 +10,9 @@ std::string bracketed(const std::vector<std::string>& items, char open, char clo
   std::string line(1, open);
   for (std::size_t i = 0; i < items.size(); ++i) line += (i > 0 ? ", " : "") + items[i];
   line += close;
-  if (line.size() + std::size_t(2 * depth) <= kLineLength && line.find('\n') == std::string::npos && depth > 0) return line;
+  if (line.size() + std::size_t(2 * depth) <= kLineLength && line.find('\n') == std::string::npos &&
+      depth > 0)
+    return line;
   std::string block(1, open);
   for (std::size_t i = 0; i < items.size(); ++i)
     block += (i > 0 ? ",\n" : "\n") + std::string(std::size_t(2 * (depth + 1)), ' ') + items[i];
@@ -21,6 +23,8 @@ std::string bracketed(const std::vector<std::string>& items, char open, char clo
 
 std::string FieldWriter::text() const { return bracketed(members_, '{', '}', depth_); }
 
-std::string FieldWriter::list_text(const std::vector<std::string>& items) const { return bracketed(items, '[', ']', depth_ + 1); }
+std::string FieldWriter::list_text(const std::vector<std::string>& items) const {
+  return bracketed(items, '[', ']', depth_ + 1);
+}
 
 }  // namespace ctpm

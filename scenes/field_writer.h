@@ -11,8 +11,9 @@
 // The visitor that writes: struct -> text, in the order of the table. Internal to scenes.
 namespace ctpm {
 
-/// Writes the members of one object. Values that equal the struct's default are written all the same where they are plain,
-/// so that an author sees what can be changed; unset optional values, empty lists and empty texts are left out.
+/// Writes the members of one object. Values that equal the struct's default are written all the same where
+/// they are plain, so that an author sees what can be changed; unset optional values, empty lists and empty
+/// texts are left out.
 class FieldWriter {
  public:
   explicit FieldWriter(int depth) : depth_(depth) {}
@@ -23,7 +24,9 @@ class FieldWriter {
     if (!value.empty()) member(key, in_quotes(value));
   }
   void preset(const Key& key, const std::string& value) { text(key, value); }
-  void number(const Key& key, double value, const Unit& unit, const Range&) { member(key, double_to_decimal(value, unit.exponent)); }
+  void number(const Key& key, double value, const Unit& unit, const Range&) {
+    member(key, double_to_decimal(value, unit.exponent));
+  }
   void number(const Key& key, const std::optional<double>& value, const Unit& unit, const Range& range) {
     if (value) number(key, *value, unit, range);
   }
@@ -35,7 +38,9 @@ class FieldWriter {
     if (value) flag(key, *value);
   }
   void flag(const Key& key, bool value) { member(key, value ? "true" : "false"); }
-  void point(const Key& key, const Vec3& value, const Unit& unit, const Range&) { member(key, point_text(value, unit)); }
+  void point(const Key& key, const Vec3& value, const Unit& unit, const Range&) {
+    member(key, point_text(value, unit));
+  }
   void point(const Key& key, const std::optional<Vec3>& value, const Unit& unit, const Range& range) {
     if (value) point(key, *value, unit, range);
   }
@@ -78,7 +83,9 @@ class FieldWriter {
   }
 
  private:
-  void member(const Key& key, const std::string& value) { members_.push_back(in_quotes(key.name) + ": " + value); }
+  void member(const Key& key, const std::string& value) {
+    members_.push_back(in_quotes(key.name) + ": " + value);
+  }
   static std::string point_text(const Vec3& p, const Unit& unit) {
     return "[" + double_to_decimal(p.x, unit.exponent) + ", " + double_to_decimal(p.y, unit.exponent) + ", " +
            double_to_decimal(p.z, unit.exponent) + "]";

@@ -72,13 +72,24 @@ class Walker {
     JsonNode node;
     node.place = place_;
     switch (peek()) {
-      case '{': container(node, JsonKind::object, '}'); break;
-      case '[': container(node, JsonKind::list, ']'); break;
-      case '"': node.kind = JsonKind::text, node.text = string(node.raw); break;
+      case '{':
+        container(node, JsonKind::object, '}');
+        break;
+      case '[':
+        container(node, JsonKind::list, ']');
+        break;
+      case '"':
+        node.kind = JsonKind::text, node.text = string(node.raw);
+        break;
       case 't':
-      case 'f': node.kind = JsonKind::boolean, node.raw = scalar(); break;
-      case 'n': node.kind = JsonKind::null, node.raw = scalar(); break;
-      default: node.kind = JsonKind::number, node.raw = scalar();
+      case 'f':
+        node.kind = JsonKind::boolean, node.raw = scalar();
+        break;
+      case 'n':
+        node.kind = JsonKind::null, node.raw = scalar();
+        break;
+      default:
+        node.kind = JsonKind::number, node.raw = scalar();
     }
     return node;
   }
@@ -94,11 +105,13 @@ class Walker {
     return c;
   }
   void skip_space() {
-    while (next_ < text_.size() && std::string_view(" \t\r\n").find(text_[next_]) != std::string_view::npos) take();
+    while (next_ < text_.size() && std::string_view(" \t\r\n").find(text_[next_]) != std::string_view::npos)
+      take();
   }
   std::string scalar() {
     std::string raw;
-    while (next_ < text_.size() && std::string_view(" \t\r\n,]}").find(text_[next_]) == std::string_view::npos) {
+    while (next_ < text_.size() &&
+           std::string_view(" \t\r\n,]}").find(text_[next_]) == std::string_view::npos) {
       raw += take();
     }
     return raw;
@@ -155,12 +168,18 @@ const JsonNode* JsonNode::find(std::string_view key) const {
 
 std::string describe(const JsonNode& node) {
   switch (node.kind) {
-    case JsonKind::null: return "null";
-    case JsonKind::boolean: return node.raw;
-    case JsonKind::number: return "the number " + shortened(node.raw);
-    case JsonKind::text: return "the text " + in_quotes(shortened(node.text));
-    case JsonKind::list: return "a list of " + std::to_string(node.children.size());
-    case JsonKind::object: return "an object";
+    case JsonKind::null:
+      return "null";
+    case JsonKind::boolean:
+      return node.raw;
+    case JsonKind::number:
+      return "the number " + shortened(node.raw);
+    case JsonKind::text:
+      return "the text " + in_quotes(shortened(node.text));
+    case JsonKind::list:
+      return "a list of " + std::to_string(node.children.size());
+    case JsonKind::object:
+      return "an object";
   }
   return "";
 }
@@ -255,7 +274,8 @@ std::string double_to_decimal(double value, int exponent) {
     return result + "e" + std::to_string(power);
   }
   if (power < 0) return result + "0." + std::string(static_cast<std::size_t>(-power - 1), '0') + digits;
-  if (count <= power + 1) return result + digits + std::string(static_cast<std::size_t>(power + 1 - count), '0');
+  if (count <= power + 1)
+    return result + digits + std::string(static_cast<std::size_t>(power + 1 - count), '0');
   const auto whole = static_cast<std::size_t>(power + 1);
   return result + digits.substr(0, whole) + "." + digits.substr(whole);
 }

@@ -18,12 +18,14 @@ enum class JsonKind { null, boolean, number, text, list, object };
 
 struct JsonNode {
   JsonKind kind = JsonKind::null;
-  Place place;                      ///< of the value's first character
-  std::string raw;                  ///< a scalar as it is written; numbers are converted from this text, not from a double
-  std::string text;                 ///< a text without quotes and escapes
-  std::vector<std::string> keys;    ///< of an object, in the order of the text, repeated ones included (child_count)
-  std::vector<Place> key_places;    ///<                                                               (child_count)
-  std::vector<JsonNode> children;   ///< of a list or an object                                        (child_count)
+  Place place;       ///< of the value's first character
+  std::string raw;   ///< a scalar as it is written; numbers are converted from this text, not from a double
+  std::string text;  ///< a text without quotes and escapes
+  std::vector<std::string>
+      keys;  ///< of an object, in the order of the text, repeated ones included (child_count)
+  std::vector<Place>
+      key_places;  ///<                                                               (child_count)
+  std::vector<JsonNode> children;  ///< of a list or an object (child_count)
 
   /// The first member of that name; null if there is none.
   const JsonNode* find(std::string_view key) const;
@@ -42,7 +44,8 @@ std::string in_quotes(std::string_view text);
 std::string child_pointer(const std::string& pointer, std::string_view key);
 std::string child_pointer(const std::string& pointer, std::size_t index);
 
-/// The decimal number in `raw`, times 10^exponent, rounded once. So `4.1` in mm is the double nearest to 0.0041.
+/// The decimal number in `raw`, times 10^exponent, rounded once. So `4.1` in mm is the double nearest to
+/// 0.0041.
 double decimal_to_double(std::string_view raw, int exponent);
 
 /// The shortest decimal that decimal_to_double(., exponent) turns into `value` again; `value` must be finite.

@@ -8,19 +8,23 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 
 /// One row of the paper's section 5.1, in its own numbers: r and R [mm], K1, K2, K' [kPa/mm], v1.
-constexpr MaterialPreset row(const char* name, const char* organ, double r, double ball, double k1, double k2, double constraint,
-                             double viscosity_kpa_s_per_mm, double least, double most, double damage, const char* source) {
+constexpr MaterialPreset row(const char* name, const char* organ, double r, double ball, double k1, double k2,
+                             double constraint, double viscosity_kpa_s_per_mm, double least, double most,
+                             double damage, const char* source) {
   MaterialPreset preset{name, organ, r * 1e-3, ball * 1e-3, {}, least, most, damage, source};
   Material& m = preset.material;
-  m.kelvin = k1 * 1e6, m.spring = k2 * 1e6, m.constraint = constraint * 1e6, m.viscosity = viscosity_kpa_s_per_mm * 1e6;
+  m.kelvin = k1 * 1e6, m.spring = k2 * 1e6, m.constraint = constraint * 1e6,
+  m.viscosity = viscosity_kpa_s_per_mm * 1e6;
   m.density = 1060;
   m.calibration_area = kPi * (ball * 1e-3) * (ball * 1e-3);
   m.calibration_spacing = 3 * r * 1e-3;
   return preset;
 }
 
-constexpr const char* kSlow = "Bao & Wu, section 5.1; viscosity read in kPa s/mm, which gives the creep of their Figs. 7 and 8";
-constexpr const char* kPrinted = "Bao & Wu, section 5.1; viscosity as printed, in Pa s (per mm, like the moduli)";
+constexpr const char* kSlow =
+    "Bao & Wu, section 5.1; viscosity read in kPa s/mm, which gives the creep of their Figs. 7 and 8";
+constexpr const char* kPrinted =
+    "Bao & Wu, section 5.1; viscosity as printed, in Pa s (per mm, like the moduli)";
 
 constexpr std::array<MaterialPreset, 6> kPresets{
     row("liver", "liver", 4, 2.0, 15, 15, 20, 5, 0.08, 0.40, 0.012, kSlow),

@@ -13,18 +13,19 @@ namespace ctpm {
 
 /// A tissue of the paper (Bao & Wu, section 5.1), ready to use.
 struct MaterialPreset {
-  const char* name;          ///< as it is written in scenes
-  const char* organ;         ///< "liver", "kidney" or "skin"
-  double sphere_radius;      ///< r that the moduli were calibrated with [m]
-  double ball_radius;        ///< R of the paper's rigid ball [m]
-  Material material;         ///< moduli [Pa/m], viscosity [Pa s/m], calibration area and spacing
-  double usual_size_least;   ///< diagonal of such an organ's bounding box, human, smallest usual [m]
-  double usual_size_most;    ///< largest usual [m]
-  double damage_depth;       ///< [m]; 0: none is known. Liver: 12 mm (Schwartz et al. 2005)
-  const char* source;        ///< where the values come from
+  const char* name;         ///< as it is written in scenes
+  const char* organ;        ///< "liver", "kidney" or "skin"
+  double sphere_radius;     ///< r that the moduli were calibrated with [m]
+  double ball_radius;       ///< R of the paper's rigid ball [m]
+  Material material;        ///< moduli [Pa/m], viscosity [Pa s/m], calibration area and spacing
+  double usual_size_least;  ///< diagonal of such an organ's bounding box, human, smallest usual [m]
+  double usual_size_most;   ///< largest usual [m]
+  double damage_depth;      ///< [m]; 0: none is known. Liver: 12 mm (Schwartz et al. 2005)
+  const char* source;       ///< where the values come from
 };
 
-/// All presets: each organ with the viscosity in kPa s/mm, and with the paper's own Pa s reading as NAME-pa-s.
+/// All presets: each organ with the viscosity in kPa s/mm, and with the paper's own Pa s reading as
+/// NAME-pa-s.
 std::span<const MaterialPreset> material_presets();
 
 /// The preset of that name; null if there is none.
@@ -33,8 +34,8 @@ const MaterialPreset* find_preset(std::string_view name);
 /// Names of all presets, for messages.
 std::vector<std::string> preset_names();
 
-/// Moduli of a material: the preset's, with the spec's own values in their place. Errors: the names of values that are
-/// missing where there is no preset.
+/// Moduli of a material: the preset's, with the spec's own values in their place. Errors: the names of values
+/// that are missing where there is no preset.
 struct ResolvedMaterial {
   Material material;
   std::vector<std::string> missing;  ///< keys that must be written; empty if the material is whole

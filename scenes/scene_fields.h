@@ -5,8 +5,8 @@
 #include "scenes/field_table.h"
 #include "scenes/scene_spec.h"
 
-// The one table of the scene format: key, type, unit, range, sentence of every field; defaults are those of the
-// structs in scene_spec.h. Internal to scenes; FORMAT.md and scene.schema.json are made from it.
+// The one table of the scene format: key, type, unit, range, sentence of every field; defaults are those of
+// the structs in scene_spec.h. Internal to scenes; FORMAT.md and scene.schema.json are made from it.
 namespace ctpm {
 
 inline constexpr const char* scene_format_name = "ctpm-scene";
@@ -40,47 +40,56 @@ inline std::span<const Choice<ToolKind>> choices_of(ToolKind) {
 inline constexpr Range any_coordinate_mm = within(-100000, 100000);
 inline constexpr Range any_direction = within(-1e6, 1e6);
 
-inline RecordInfo info_of(const FillSpec&) { return {"fill", "How the organ's inside is filled with spheres."}; }
+inline RecordInfo info_of(const FillSpec&) {
+  return {"fill", "How the organ's inside is filled with spheres."};
+}
 template <class V>
 void describe_fields(V& v, FillSpec& fill) {
   v.number(Key{"radius_mm", "Radius r of every sphere."}, fill.radius, units::millimetre, above(0, 100));
-  v.number(Key{"gap_mm", "Gap from surface to surface; the spacing is 2 r + gap."}, fill.gap, units::millimetre,
-           within(0, 100));
+  v.number(Key{"gap_mm", "Gap from surface to surface; the spacing is 2 r + gap."}, fill.gap,
+           units::millimetre, within(0, 100));
 }
 
 inline RecordInfo info_of(const MaterialSpec&) {
-  return {"material",
-          "A preset, single values in place of the preset's, or every value without a preset. An edge of spacing s has the "
-          "stiffness K S0 (s / s_cal), S0 = pi R^2, with the ball R and the spacing s_cal of the calibration."};
+  return {
+      "material",
+      "A preset, single values in place of the preset's, or every value without a preset. An edge of spacing "
+      "s has the "
+      "stiffness K S0 (s / s_cal), S0 = pi R^2, with the ball R and the spacing s_cal of the calibration."};
 }
 template <class V>
 void describe_fields(V& v, MaterialSpec& material) {
   constexpr Unit modulus = units::kilopascal_per_millimetre;
-  v.preset(Key{"preset", "Name of a shipped material.", false, "none; then every modulus must be given"}, material.preset);
-  v.number(Key{"spring_kpa_per_mm", "Modulus K2 of the spring.", false, "the preset's"}, material.spring, modulus,
-           above(0, 1e6));
-  v.number(Key{"kelvin_kpa_per_mm", "Modulus K1 of the Kelvin unit.", false, "the preset's"}, material.kelvin, modulus,
-           above(0, 1e6));
-  v.number(Key{"constraint_kpa_per_mm", "Modulus K' of the constraint, at least K1 K2 / (K1 + K2).", false, "the preset's"},
+  v.preset(Key{"preset", "Name of a shipped material.", false, "none; then every modulus must be given"},
+           material.preset);
+  v.number(Key{"spring_kpa_per_mm", "Modulus K2 of the spring.", false, "the preset's"}, material.spring,
+           modulus, above(0, 1e6));
+  v.number(Key{"kelvin_kpa_per_mm", "Modulus K1 of the Kelvin unit.", false, "the preset's"}, material.kelvin,
+           modulus, above(0, 1e6));
+  v.number(Key{"constraint_kpa_per_mm", "Modulus K' of the constraint, at least K1 K2 / (K1 + K2).", false,
+               "the preset's"},
            material.constraint, modulus, above(0, 1e6));
-  v.number(Key{"viscosity_kpa_s_per_mm", "Viscosity v1 of the Kelvin unit.", false, "the preset's"}, material.viscosity,
-           units::kilopascal_second_per_millimetre, within(0, 1e6));
+  v.number(Key{"viscosity_kpa_s_per_mm", "Viscosity v1 of the Kelvin unit.", false, "the preset's"},
+           material.viscosity, units::kilopascal_second_per_millimetre, within(0, 1e6));
   v.number(Key{"density_kg_per_m3", "Mass per volume.", false, "the preset's, else 1060"}, material.density,
            units::kilogram_per_metre3, within(1, 30000));
   v.number(Key{"stiffness_scale", "Multiplies every stiffness and damping.", false, "the preset's, else 1"},
            material.stiffness_scale, units::none, within(1e-6, 1e6));
-  v.number(Key{"calibration_ball_radius_mm", "Radius R of the ball that the moduli were measured with.", false,
-               "the preset's"},
+  v.number(Key{"calibration_ball_radius_mm", "Radius R of the ball that the moduli were measured with.",
+               false, "the preset's"},
            material.calibration_ball, units::millimetre, above(0, 1000));
-  v.number(Key{"calibration_spacing_mm", "Spacing of the spheres that the moduli belong to.", false, "the preset's"},
+  v.number(Key{"calibration_spacing_mm", "Spacing of the spheres that the moduli belong to.", false,
+               "the preset's"},
            material.calibration_spacing, units::millimetre, above(0, 1000));
 }
 
 inline RecordInfo info_of(const BoxRegion&) { return {"box", "A box along the axes, its sides included."}; }
 template <class V>
 void describe_fields(V& v, BoxRegion& box) {
-  v.point(required("min_mm", "Corner with the smallest coordinates."), box.min, units::millimetre, any_coordinate_mm);
-  v.point(required("max_mm", "Corner with the largest coordinates."), box.max, units::millimetre, any_coordinate_mm);
+  v.point(required("min_mm", "Corner with the smallest coordinates."), box.min, units::millimetre,
+          any_coordinate_mm);
+  v.point(required("max_mm", "Corner with the largest coordinates."), box.max, units::millimetre,
+          any_coordinate_mm);
 }
 
 inline RecordInfo info_of(const SphereRegion&) { return {"sphere", "A ball-shaped region."}; }
@@ -90,12 +99,14 @@ void describe_fields(V& v, SphereRegion& sphere) {
   v.number(required("radius_mm", "Its radius."), sphere.radius, units::millimetre, above(0, 100000));
 }
 
-inline RecordInfo info_of(const PlaneRegion&) { return {"plane", "Everything behind a plane, the plane included."}; }
+inline RecordInfo info_of(const PlaneRegion&) {
+  return {"plane", "Everything behind a plane, the plane included."};
+}
 template <class V>
 void describe_fields(V& v, PlaneRegion& plane) {
   v.point(required("point_mm", "A point of the plane."), plane.point, units::millimetre, any_coordinate_mm);
-  v.point(required("normal", "Points to the side that stays free; any length but zero."), plane.normal, units::none,
-          any_direction);
+  v.point(required("normal", "Points to the side that stays free; any length but zero."), plane.normal,
+          units::none, any_direction);
 }
 
 inline RecordInfo info_of(const AnchorSpec&) {
@@ -111,10 +122,13 @@ void describe_fields(V& v, AnchorSpec& anchor) {
   v.exactly_one();
 }
 
-inline RecordInfo info_of(const GuideSpec&) { return {"guide", "A sphere that runs on a rail or in a plane."}; }
+inline RecordInfo info_of(const GuideSpec&) {
+  return {"guide", "A sphere that runs on a rail or in a plane."};
+}
 template <class V>
 void describe_fields(V& v, GuideSpec& guide) {
-  v.point(required("cell", "Lattice coordinates of the sphere."), guide.cell, units::none, within(-1000, 1000));
+  v.point(required("cell", "Lattice coordinates of the sphere."), guide.cell, units::none,
+          within(-1000, 1000));
   v.text(required("axes", "Axes along which it may not move: letters of xyz."), guide.axes);
 }
 
@@ -123,57 +137,75 @@ inline RecordInfo info_of(const RigSpec&) {
 }
 template <class V>
 void describe_fields(V& v, RigSpec& rig) {
-  v.points(Key{"cells", "Lattice coordinates of the spheres, whole numbers; cell 0, 0, 0 is at the origin."}, rig.cells,
-           units::none, within(-1000, 1000), 0);
-  v.point(Key{"block", "Spheres along x, y and z of a full block, centred over the origin and standing on z = 0."}, rig.block,
-          units::none, within(1, 200));
+  v.points(Key{"cells", "Lattice coordinates of the spheres, whole numbers; cell 0, 0, 0 is at the origin."},
+           rig.cells, units::none, within(-1000, 1000), 0);
+  v.point(Key{"block",
+              "Spheres along x, y and z of a full block, centred over the origin and standing on z = 0."},
+          rig.block, units::none, within(1, 200));
   v.list(Key{"guides", "Spheres that may not leave some axes."}, rig.guides, 0);
 }
 
-inline RecordInfo info_of(const OrganSpec&) { return {"organ", "One piece of tissue, from a closed mesh, or a rig."}; }
+inline RecordInfo info_of(const OrganSpec&) {
+  return {"organ", "One piece of tissue, from a closed mesh, or a rig."};
+}
 template <class V>
 void describe_fields(V& v, OrganSpec& organ) {
   v.text(required("name", "How the organ is called; no two alike."), organ.name);
-  v.text(Key{"mesh", "Path of the mesh file from the scene's folder; it may not leave that folder unless the user allows it."},
+  v.text(Key{"mesh",
+             "Path of the mesh file from the scene's folder; it may not leave that folder unless the user "
+             "allows it."},
          organ.mesh);
   v.record(Key{"rig", "Spheres given one by one, in place of a mesh."}, organ.rig);
   v.choice(Key{"mesh_unit", "Unit of the mesh file's coordinates."}, organ.mesh_unit);
   v.choice(Key{"model", "Which structure joins the spheres."}, organ.model);
-  v.choice(Key{"lattice", "Which neighbours are joined; cubic-6 has no shear stiffness and is for rigs."}, organ.lattice);
-  v.flag(Key{"softening", "Forces of triples and constraints are divided by 1 + tan(theta), Eq. 8; for model ctpm."},
+  v.choice(Key{"lattice", "Which neighbours are joined; cubic-6 has no shear stiffness and is for rigs."},
+           organ.lattice);
+  v.flag(Key{"softening",
+             "Forces of triples and constraints are divided by 1 + tan(theta), Eq. 8; for model ctpm."},
          organ.softening);
   v.record(Key{"fill", "The spheres."}, organ.fill);
   v.record(required("material", "The tissue."), organ.material);
   v.list(Key{"anchors", "Regions that never move."}, organ.anchors, 0);
-  v.number(Key{"damage_depth_mm", "Depth of pressing beyond which the tissue counts as damaged; 0: no limit."},
-           organ.damage_depth, units::millimetre, within(0, 1000));
-  v.point(Key{"surface_color", "Red, green and blue of the outside."}, organ.surface_color, units::none, within(0, 1));
-  v.point(Key{"inner_color", "Red, green and blue of cut faces and spheres."}, organ.inner_color, units::none, within(0, 1));
+  v.number(
+      Key{"damage_depth_mm", "Depth of pressing beyond which the tissue counts as damaged; 0: no limit."},
+      organ.damage_depth, units::millimetre, within(0, 1000));
+  v.point(Key{"surface_color", "Red, green and blue of the outside."}, organ.surface_color, units::none,
+          within(0, 1));
+  v.point(Key{"inner_color", "Red, green and blue of cut faces and spheres."}, organ.inner_color, units::none,
+          within(0, 1));
 }
 
 inline RecordInfo info_of(const ToolSpec&) { return {"tool", "A tool that the hand or a script can hold."}; }
 template <class V>
 void describe_fields(V& v, ToolSpec& tool) {
   v.text(required("name", "How scripts and recordings call it; no two alike."), tool.name);
-  v.choice(required("kind", "A rigid ball presses; a scalpel severs what its blade sweeps; a pin holds one sphere where the hand is."), tool.kind);
-  v.number(Key{"radius_mm", "Radius of a ball; needed by a ball, not allowed for others."}, tool.radius, units::millimetre,
-           above(0, 200));
-  v.number(Key{"blade_length_mm", "Length of a scalpel's edge from its tip; needed by a scalpel, not allowed for others."},
+  v.choice(required("kind",
+                    "A rigid ball presses; a scalpel severs what its blade sweeps; a pin holds one sphere "
+                    "where the hand is."),
+           tool.kind);
+  v.number(Key{"radius_mm", "Radius of a ball; needed by a ball, not allowed for others."}, tool.radius,
+           units::millimetre, above(0, 200));
+  v.number(Key{"blade_length_mm",
+               "Length of a scalpel's edge from its tip; needed by a scalpel, not allowed for others."},
            tool.blade_length, units::millimetre, above(0, 500));
-  v.point(Key{"holds_mm", "A pin holds the sphere nearest to here; needed by a pin, not allowed for others."}, tool.holds,
-          units::millimetre, any_coordinate_mm);
+  v.point(Key{"holds_mm", "A pin holds the sphere nearest to here; needed by a pin, not allowed for others."},
+          tool.holds, units::millimetre, any_coordinate_mm);
 }
 
 inline RecordInfo info_of(const LoadSpec&) { return {"load", "A force on one sphere from outside."}; }
 template <class V>
 void describe_fields(V& v, LoadSpec& load) {
-  v.point(required("at_mm", "It acts on the sphere nearest to here at rest."), load.at, units::millimetre, any_coordinate_mm);
+  v.point(required("at_mm", "It acts on the sphere nearest to here at rest."), load.at, units::millimetre,
+          any_coordinate_mm);
   v.point(required("force_n", "Its full size."), load.force, units::newton, within(-1e6, 1e6));
   v.number(Key{"start_s", "When it begins."}, load.start, units::second, within(0, 1e6));
-  v.number(Key{"ramp_s", "Time in which it rises to its full size."}, load.ramp, units::second, within(0, 1e6));
+  v.number(Key{"ramp_s", "Time in which it rises to its full size."}, load.ramp, units::second,
+           within(0, 1e6));
 }
 
-inline RecordInfo info_of(const ProbeSpec&) { return {"probe", "A point whose way is written down: the sphere nearest to it at rest."}; }
+inline RecordInfo info_of(const ProbeSpec&) {
+  return {"probe", "A point whose way is written down: the sphere nearest to it at rest."};
+}
 template <class V>
 void describe_fields(V& v, ProbeSpec& probe) {
   v.text(required("name", "How tables call it; no two alike."), probe.name);
@@ -183,11 +215,12 @@ void describe_fields(V& v, ProbeSpec& probe) {
 inline RecordInfo info_of(const SolverSpec&) { return {"solver", "How a tick is solved."}; }
 template <class V>
 void describe_fields(V& v, SolverSpec& solver) {
-  v.number(Key{"tolerance", "Relative residual at which the solve of a tick stops.", false, "1e-4"}, solver.tolerance,
-           units::none, between(0, 1));
+  v.number(Key{"tolerance", "Relative residual at which the solve of a tick stops.", false, "1e-4"},
+           solver.tolerance, units::none, between(0, 1));
   v.number(Key{"velocity_floor_mm_per_s", "Residuals below this velocity count as solved.", false, "0.001"},
            solver.velocity_floor, units::millimetre_per_second, above(0, 1000));
-  v.integer(Key{"max_iterations", "Most iterations of one solve.", false, "200"}, solver.max_iterations, within(1, 100000));
+  v.integer(Key{"max_iterations", "Most iterations of one solve.", false, "200"}, solver.max_iterations,
+            within(1, 100000));
   v.integer(Key{"substeps", "Equal parts of a tick.", false, "1"}, solver.substeps, within(1, 1000));
 }
 
@@ -197,9 +230,10 @@ void describe_fields(V& v, CameraSpec& camera) {
   v.text(required("name", "How commands call it; no two alike."), camera.name);
   v.point(required("eye_mm", "Where the camera is."), camera.eye, units::millimetre, any_coordinate_mm);
   v.point(required("target_mm", "What it looks at."), camera.target, units::millimetre, any_coordinate_mm);
-  v.point(Key{"up", "Direction that is up in the picture; any length but zero."}, camera.up, units::none, any_direction);
-  v.number(Key{"field_of_view_deg", "Angle from the lower to the upper edge of the picture."}, camera.field_of_view,
-           units::degree, within(1, 150));
+  v.point(Key{"up", "Direction that is up in the picture; any length but zero."}, camera.up, units::none,
+          any_direction);
+  v.number(Key{"field_of_view_deg", "Angle from the lower to the upper edge of the picture."},
+           camera.field_of_view, units::degree, within(1, 150));
 }
 
 inline RecordInfo info_of(const SceneSpec&) { return {"scene", "The whole file."}; }
@@ -211,15 +245,15 @@ void describe_fields(V& v, SceneSpec& scene) {
   v.point(Key{"gravity_m_per_s2", "Acceleration of free fall; all zero: no gravity."}, scene.gravity,
           units::metre_per_second2, within(-1000, 1000));
   v.number(Key{"tick_s", "Length of a tick."}, scene.tick, units::second, within(1e-6, 0.1));
-  v.number(Key{"settle_s", "Longest time in which the scene comes to rest before its first tick."}, scene.settle,
-           units::second, within(0, 60));
+  v.number(Key{"settle_s", "Longest time in which the scene comes to rest before its first tick."},
+           scene.settle, units::second, within(0, 60));
   v.list(required("organs", "The tissue."), scene.organs, 1);
   v.list(Key{"tools", "The tools."}, scene.tools, 0);
   v.number(Key{"contact_stiffness_n_per_m", "Stiffness of a tool against one sphere.", false,
                "20 times the stiffest edge"},
            scene.contact_stiffness, units::newton_per_metre, above(0, 1e12));
-  v.number(Key{"contact_friction", "Coulomb coefficient between tool and tissue."}, scene.contact_friction, units::none,
-           within(0, 10));
+  v.number(Key{"contact_friction", "Coulomb coefficient between tool and tissue."}, scene.contact_friction,
+           units::none, within(0, 10));
   v.list(Key{"loads", "Forces from outside."}, scene.loads, 0);
   v.list(Key{"probes", "Points whose way is written down."}, scene.probes, 0);
   v.record(Key{"solver", "How a tick is solved."}, scene.solver);

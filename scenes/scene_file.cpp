@@ -21,7 +21,9 @@ namespace fs = std::filesystem;
 bool is_zero(Vec3 v) { return v == Vec3{}; }
 bool is_whole(Vec3 v) { return std::floor(v.x) == v.x && std::floor(v.y) == v.y && std::floor(v.z) == v.z; }
 
-std::string item(const char* list, std::size_t index) { return std::string("/") + list + "/" + std::to_string(index); }
+std::string item(const char* list, std::size_t index) {
+  return std::string("/") + list + "/" + std::to_string(index);
+}
 
 /// Names within one list must differ.
 template <class T>
@@ -29,7 +31,8 @@ void check_names(Problems& problems, const char* list, const std::vector<T>& ite
   std::set<std::string> seen;
   for (std::size_t i = 0; i < items.size(); ++i)
     if (!items[i].name.empty() && !seen.insert(items[i].name).second)
-      problems.add_rule(item(list, i) + "/name", "got " + in_quotes(items[i].name) + ", which is taken already");
+      problems.add_rule(item(list, i) + "/name",
+                        "got " + in_quotes(items[i].name) + ", which is taken already");
 }
 
 void check_material(Problems& problems, const std::string& at, const OrganSpec& organ) {
@@ -44,24 +47,28 @@ void check_material(Problems& problems, const std::string& at, const OrganSpec& 
   }
   const ResolvedMaterial resolved = resolve_material(spec);
   for (const std::string& key : resolved.missing)
-    problems.add_rule(at + "/material", "the key " + in_quotes(key) + " is missing, and there is no preset to take it from");
+    problems.add_rule(at + "/material",
+                      "the key " + in_quotes(key) + " is missing, and there is no preset to take it from");
   const Material& m = resolved.material;
   const double p2 = m.spring > 0 && m.kelvin > 0 ? m.kelvin * m.spring / (m.kelvin + m.spring) : 0;
   if (resolved.missing.empty() && organ.model == Structure::ctpm && m.constraint < p2)
     problems.add_rule(at + "/material/constraint_kpa_per_mm",
-                      "got " + double_to_decimal(m.constraint, 6) + " kPa/mm, must be at least K1 K2 / (K1 + K2) = " +
-                          double_to_decimal(p2, 6) + ", which the triples already give");
+                      "got " + double_to_decimal(m.constraint, 6) +
+                          " kPa/mm, must be at least K1 K2 / (K1 + K2) = " + double_to_decimal(p2, 6) +
+                          ", which the triples already give");
 }
 
 void check_rig(Problems& problems, const std::string& at, const RigSpec& rig) {
   if (rig.cells.empty() == !rig.block)
     problems.add_rule(at + "/rig", "must have exactly one of cells, block");
   for (std::size_t i = 0; i < rig.cells.size(); ++i) {
-    if (!is_whole(rig.cells[i])) problems.add_rule(at + "/rig/cells/" + std::to_string(i), "must be whole numbers");
+    if (!is_whole(rig.cells[i]))
+      problems.add_rule(at + "/rig/cells/" + std::to_string(i), "must be whole numbers");
     if (std::count(rig.cells.begin(), rig.cells.end(), rig.cells[i]) > 1)
       problems.add_rule(at + "/rig/cells/" + std::to_string(i), "the cell is given more than once");
   }
-  if (rig.cells.size() == 1) problems.add_rule(at + "/rig/cells", "got one sphere, a rig needs at least two that are neighbours");
+  if (rig.cells.size() == 1)
+    problems.add_rule(at + "/rig/cells", "got one sphere, a rig needs at least two that are neighbours");
   if (rig.block && !is_whole(*rig.block)) problems.add_rule(at + "/rig/block", "must be whole numbers");
   for (std::size_t i = 0; i < rig.guides.size(); ++i) {
     const GuideSpec& guide = rig.guides[i];
@@ -81,21 +88,27 @@ void check_organ(Problems& problems, std::size_t index, const OrganSpec& organ) 
   for (std::size_t i = 0; i < organ.anchors.size(); ++i) {
     const AnchorSpec& anchor = organ.anchors[i];
     const std::string where = at + "/anchors/" + std::to_string(i);
-    if (anchor.plane && is_zero(anchor.plane->normal)) problems.add_rule(where + "/plane/normal", "must not be zero");
-    if (anchor.box && !(anchor.box->min.x <= anchor.box->max.x && anchor.box->min.y <= anchor.box->max.y && anchor.box->min.z <= anchor.box->max.z))
+    if (anchor.plane && is_zero(anchor.plane->normal))
+      problems.add_rule(where + "/plane/normal", "must not be zero");
+    if (anchor.box && !(anchor.box->min.x <= anchor.box->max.x && anchor.box->min.y <= anchor.box->max.y &&
+                        anchor.box->min.z <= anchor.box->max.z))
       problems.add_rule(where + "/box", "min_mm must not be above max_mm in any coordinate");
   }
-  if (organ.lattice == LatticeKind::cubic_6 && organ.model != Structure::angle_mass_spring && !organ.mesh.empty())
+  if (organ.lattice == LatticeKind::cubic_6 && organ.model != Structure::angle_mass_spring &&
+      !organ.mesh.empty())
     problems.add_warning(at + "/lattice",
-                         "cubic-6 has elements along the axes only and no shear stiffness at all: the organ will fold up under a probe",
+                         "cubic-6 has elements along the axes only and no shear stiffness at all: the organ "
+                         "will fold up under a probe",
                          "use cubic-18, or the model angle-mass-spring");
 }
 
 void check_tool(Problems& problems, std::size_t index, const ToolSpec& tool) {
   const auto need = [&](bool is_given, ToolKind kind, const char* key, const char* kind_name) {
     const std::string at = item("tools", index);
-    if (tool.kind == kind && !is_given) problems.add_rule(at, std::string("a ") + kind_name + " needs the key " + in_quotes(key));
-    if (tool.kind != kind && is_given) problems.add_rule(at + "/" + key, std::string("only a ") + kind_name + " has this key");
+    if (tool.kind == kind && !is_given)
+      problems.add_rule(at, std::string("a ") + kind_name + " needs the key " + in_quotes(key));
+    if (tool.kind != kind && is_given)
+      problems.add_rule(at + "/" + key, std::string("only a ") + kind_name + " has this key");
   };
   need(tool.radius.has_value(), ToolKind::ball, "radius_mm", "ball");
   need(tool.blade_length.has_value(), ToolKind::scalpel, "blade_length_mm", "scalpel");
@@ -104,9 +117,12 @@ void check_tool(Problems& problems, std::size_t index, const ToolSpec& tool) {
 
 void check_camera(Problems& problems, std::size_t index, const CameraSpec& camera) {
   const std::string at = item("cameras", index);
-  if (camera.eye == camera.target) problems.add_rule(at + "/target_mm", "must not be the same point as eye_mm");
-  if (is_zero(camera.up)) problems.add_rule(at + "/up", "must not be zero");
-  else if (norm(cross(camera.up, camera.target - camera.eye)) < 1e-6 * norm(camera.up) * norm(camera.target - camera.eye))
+  if (camera.eye == camera.target)
+    problems.add_rule(at + "/target_mm", "must not be the same point as eye_mm");
+  if (is_zero(camera.up))
+    problems.add_rule(at + "/up", "must not be zero");
+  else if (norm(cross(camera.up, camera.target - camera.eye)) <
+           1e-6 * norm(camera.up) * norm(camera.target - camera.eye))
     problems.add_rule(at + "/up", "must not point along the line of sight");
 }
 
@@ -127,7 +143,8 @@ bool leaves_folder(const std::string& path) {
 }
 
 /// Problems with the files that a scene names.
-void check_files(Problems& problems, const SceneSpec& scene, const std::string& scene_path, const LoadOptions& options) {
+void check_files(Problems& problems, const SceneSpec& scene, const std::string& scene_path,
+                 const LoadOptions& options) {
   for (std::size_t i = 0; i < scene.organs.size(); ++i) {
     if (scene.organs[i].mesh.empty()) continue;
     const std::string at = item("organs", i) + "/mesh", path = mesh_path(scene_path, scene.organs[i]);
@@ -136,7 +153,8 @@ void check_files(Problems& problems, const SceneSpec& scene, const std::string& 
       problems.add_rule(at, "got " + in_quotes(scene.organs[i].mesh) + ", which leaves the scene's folder",
                         "put the mesh beside the scene, or allow it with --allow-outside-paths");
     else if (!fs::exists(path, ignored))
-      problems.add_rule(at, "there is no file " + in_quotes(scene.organs[i].mesh) + " in the scene's folder", "looked for " + path);
+      problems.add_rule(at, "there is no file " + in_quotes(scene.organs[i].mesh) + " in the scene's folder",
+                        "looked for " + path);
     else if (!fs::is_regular_file(path, ignored))
       problems.add_rule(at, in_quotes(scene.organs[i].mesh) + " is not a file");
   }
@@ -171,8 +189,9 @@ Result<SceneText> load_scene(const std::string& path, const LoadOptions& options
   std::ostringstream text;
   text << in.rdbuf();
   if (!in) return Error{path, std::string("cannot be read: ") + std::strerror(errno), ""};
-  return read_with(text.str(), path,
-                   [&](Problems& problems, const SceneSpec& scene) { check_files(problems, scene, path, options); });
+  return read_with(text.str(), path, [&](Problems& problems, const SceneSpec& scene) {
+    check_files(problems, scene, path, options);
+  });
 }
 
 std::string mesh_path(const std::string& scene_path, const OrganSpec& organ) {

@@ -9,8 +9,9 @@
 #include "core/network.h"
 #include "core/vec3.h"
 
-// A scene as its author wrote it, in SI units. Keys, units, ranges and sentences of the text form stand in one
-// table (scene_fields.h); FORMAT.md is made from it. An unset optional means: not written, decided elsewhere.
+// A scene as its author wrote it, in SI units. Keys, units, ranges and sentences of the text form stand in
+// one table (scene_fields.h); FORMAT.md is made from it. An unset optional means: not written, decided
+// elsewhere.
 namespace ctpm {
 
 /// Unit in which a mesh file holds its coordinates.
@@ -19,10 +20,14 @@ enum class LengthUnit : std::int32_t { millimetre = 0, centimetre = 1, metre = 2
 /// [m] of one unit of the mesh file.
 constexpr double metres_of(LengthUnit unit) {
   switch (unit) {
-    case LengthUnit::millimetre: return 1e-3;
-    case LengthUnit::centimetre: return 1e-2;
-    case LengthUnit::metre: return 1.0;
-    case LengthUnit::inch: return 25.4e-3;
+    case LengthUnit::millimetre:
+      return 1e-3;
+    case LengthUnit::centimetre:
+      return 1e-2;
+    case LengthUnit::metre:
+      return 1.0;
+    case LengthUnit::inch:
+      return 25.4e-3;
   }
   return 1.0;
 }
@@ -68,7 +73,8 @@ struct PlaneRegion {
 
 /// A region whose spheres never move. Exactly one member is set.
 struct AnchorSpec {
-  std::optional<double> lowest;  ///< centres at most this far above the organ's lowest centre, against gravity [m]
+  std::optional<double>
+      lowest;  ///< centres at most this far above the organ's lowest centre, against gravity [m]
   std::optional<BoxRegion> box;
   std::optional<SphereRegion> sphere;
   std::optional<PlaneRegion> plane;
@@ -86,8 +92,9 @@ struct GuideSpec {
 
 /// Spheres given one by one instead of by a mesh: the paper's test rig (Fig. 3), blocks for studies.
 struct RigSpec {
-  std::vector<Vec3> cells;     ///< lattice coordinates, whole numbers; cell 0, 0, 0 is at the origin
-  std::optional<Vec3> block;   ///< instead of cells: spheres along x, y and z of a full block, centred over the origin, standing on z = 0
+  std::vector<Vec3> cells;    ///< lattice coordinates, whole numbers; cell 0, 0, 0 is at the origin
+  std::optional<Vec3> block;  ///< instead of cells: spheres along x, y and z of a full block, centred over
+                              ///< the origin, standing on z = 0
   std::vector<GuideSpec> guides;
 
   friend bool operator==(const RigSpec&, const RigSpec&) = default;
@@ -95,7 +102,7 @@ struct RigSpec {
 
 struct OrganSpec {
   std::string name;
-  std::string mesh;            ///< path, relative to the scene's folder, with '/'; empty: the organ is a rig
+  std::string mesh;  ///< path, relative to the scene's folder, with '/'; empty: the organ is a rig
   std::optional<RigSpec> rig;
   LengthUnit mesh_unit = LengthUnit::millimetre;
   Structure model = Structure::ctpm;
@@ -151,9 +158,9 @@ struct SolverSpec {
 
 struct CameraSpec {
   std::string name;
-  Vec3 eye, target;            ///< [m]
-  Vec3 up{0, 0, 1};            ///< any length but zero
-  double field_of_view = 35;   ///< vertical [degrees]
+  Vec3 eye, target;           ///< [m]
+  Vec3 up{0, 0, 1};           ///< any length but zero
+  double field_of_view = 35;  ///< vertical [degrees]
 
   friend bool operator==(const CameraSpec&, const CameraSpec&) = default;
 };

@@ -45,10 +45,13 @@ Quat orientation_of(Vec3 pointing) {
   return {w / length, axis.x / length, axis.y / length, axis.z / length};
 }
 
-/// Share of the way after share `t` of the time: speed rises along a cubic in the first fifth and falls in the last.
+/// Share of the way after share `t` of the time: speed rises along a cubic in the first fifth and falls in
+/// the last.
 double eased(double t) {
   constexpr double kRamp = 0.2;
-  const auto risen = [](double u) { return u * u * u * (1 - 0.5 * u); };  // integral of 3 u^2 - 2 u^3, 1/2 at u = 1
+  const auto risen = [](double u) {
+    return u * u * u * (1 - 0.5 * u);
+  };  // integral of 3 u^2 - 2 u^3, 1/2 at u = 1
   const double whole = 1 - kRamp;
   if (t < kRamp) return kRamp * risen(t / kRamp) / whole;
   if (t > 1 - kRamp) return 1 - kRamp * risen((1 - t) / kRamp) / whole;
@@ -60,7 +63,8 @@ double duration_of(Vec3 from, Vec3 to, double speed) { return norm(to - from) / 
 
 }  // namespace
 
-Result<Script> read_script(std::string_view text, const std::string& file_name, const std::vector<std::string>& tool_names) {
+Result<Script> read_script(std::string_view text, const std::string& file_name,
+                           const std::vector<std::string>& tool_names) {
   const Result<JsonNode> root = parse_json(text, file_name);
   if (!root) return root.errors();
   Script script;
@@ -86,7 +90,8 @@ ScriptPlayer::ScriptPlayer(const Script& script, std::span<const Tool> tools, do
   };
   for (const ScriptStep& step : script.steps) {
     if (step.take) {
-      const auto it = std::find_if(tools.begin(), tools.end(), [&](const Tool& t) { return t.name == step.take->tool; });
+      const auto it =
+          std::find_if(tools.begin(), tools.end(), [&](const Tool& t) { return t.name == step.take->tool; });
       CTPM_CHECK(it != tools.end(), "the script was read with the scene's tools");
       tool = std::int32_t(it - tools.begin());
       orientation = orientation_of(step.take->pointing);
@@ -111,12 +116,15 @@ void ScriptPlayer::add_stretch(std::int32_t tool, Quat orientation, Vec3 from, V
   stretches_.push_back({tick_count(), count, tool, orientation, from, to});
 }
 
-std::int64_t ScriptPlayer::tick_count() const { return stretches_.empty() ? 0 : stretches_.back().first + stretches_.back().count; }
+std::int64_t ScriptPlayer::tick_count() const {
+  return stretches_.empty() ? 0 : stretches_.back().first + stretches_.back().count;
+}
 
 Inputs ScriptPlayer::at(std::int64_t tick) const {
   Inputs inputs;
   if (stretches_.empty()) return inputs;
-  const auto next = std::upper_bound(stretches_.begin(), stretches_.end(), tick, [](std::int64_t t, const Stretch& s) { return t < s.first; });
+  const auto next = std::upper_bound(stretches_.begin(), stretches_.end(), tick,
+                                     [](std::int64_t t, const Stretch& s) { return t < s.first; });
   const Stretch& stretch = next == stretches_.begin() ? *next : *(next - 1);
   const double share = std::clamp(double(tick - stretch.first + 1) / double(stretch.count), 0.0, 1.0);
   inputs.tool = stretch.tool;

@@ -16,11 +16,12 @@
 
 namespace ctpm {
 
-/// One step of a script: exactly one of `tool`, `move_to`, `press`, `release`, `cut`, `wait`, `put_away` is set. SCRIPT.md.
+/// One step of a script: exactly one of `tool`, `move_to`, `press`, `release`, `cut`, `wait`, `put_away` is
+/// set. SCRIPT.md.
 struct ScriptStep {
   struct Take {
-    std::string tool;       ///< name of a tool of the scene
-    Vec3 at;                ///< where its frame's origin appears [m]
+    std::string tool;         ///< name of a tool of the scene
+    Vec3 at;                  ///< where its frame's origin appears [m]
     Vec3 pointing{0, 0, -1};  ///< direction from handle to tip; any length but zero
     friend bool operator==(const Take&, const Take&) = default;
   };
@@ -57,19 +58,20 @@ struct Script {
   friend bool operator==(const Script&, const Script&) = default;
 };
 
-/// Reads a script's text. Errors: as for scenes, all at once with their places; a tool that the scene does not have; a
-/// step that needs a tool before one was taken.
-Result<Script> read_script(std::string_view text, const std::string& file_name, const std::vector<std::string>& tool_names);
+/// Reads a script's text. Errors: as for scenes, all at once with their places; a tool that the scene does
+/// not have; a step that needs a tool before one was taken.
+Result<Script> read_script(std::string_view text, const std::string& file_name,
+                           const std::vector<std::string>& tool_names);
 
 /// Stable text of a script; read_script gives the same steps again.
 std::string write_script(const Script& script);
 
-/// A script that presses the top of the first organ with the scene's first ball and cuts across it with its first scalpel,
-/// as far as the scene has them: something to see for any organ.
+/// A script that presses the top of the first organ with the scene's first ball and cuts across it with its
+/// first scalpel, as far as the scene has them: something to see for any organ.
 Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organs);
 
-/// The inputs of a script, tick by tick. Each stretch starts and ends at rest: speed rises and falls along a cubic, and is
-/// the step's own in between. Free of transcendental functions, so the same everywhere.
+/// The inputs of a script, tick by tick. Each stretch starts and ends at rest: speed rises and falls along a
+/// cubic, and is the step's own in between. Free of transcendental functions, so the same everywhere.
 class ScriptPlayer {
  public:
   /// `tick` [s]; the script's tools must be those of `tools`.

@@ -19,32 +19,43 @@ inline RecordInfo info_of(const ScriptStep::Take&) { return {"take", "A tool app
 template <class V>
 void describe_fields(V& v, ScriptStep::Take& take) {
   v.text(required("tool", "Name of a tool of the scene."), take.tool);
-  v.point(required("at_mm", "Where its origin appears: a ball's centre, a blade's tip."), take.at, units::millimetre,
-          script_ranges::coordinate_mm);
-  v.point(Key{"pointing", "Direction from handle to tip; any length but zero."}, take.pointing, units::none, script_ranges::direction);
+  v.point(required("at_mm", "Where its origin appears: a ball's centre, a blade's tip."), take.at,
+          units::millimetre, script_ranges::coordinate_mm);
+  v.point(Key{"pointing", "Direction from handle to tip; any length but zero."}, take.pointing, units::none,
+          script_ranges::direction);
 }
 
-inline RecordInfo info_of(const ScriptStep::Move&) { return {"move", "The tool moves along a straight line."}; }
+inline RecordInfo info_of(const ScriptStep::Move&) {
+  return {"move", "The tool moves along a straight line."};
+}
 template <class V>
 void describe_fields(V& v, ScriptStep::Move& move) {
   v.point(required("to_mm", "Where to."), move.to, units::millimetre, script_ranges::coordinate_mm);
-  v.number(required("speed_mm_per_s", "How fast."), move.speed, units::millimetre_per_second, script_ranges::speed_mm_per_s);
+  v.number(required("speed_mm_per_s", "How fast."), move.speed, units::millimetre_per_second,
+           script_ranges::speed_mm_per_s);
 }
 
-inline RecordInfo info_of(const ScriptStep::Press&) { return {"press", "The tool moves by a distance: into the tissue (press) or out of it (release)."}; }
+inline RecordInfo info_of(const ScriptStep::Press&) {
+  return {"press", "The tool moves by a distance: into the tissue (press) or out of it (release)."};
+}
 template <class V>
 void describe_fields(V& v, ScriptStep::Press& press) {
   v.number(required("distance_mm", "How far."), press.distance, units::millimetre, above(0, 1000));
-  v.point(Key{"direction", "Which way; any length but zero."}, press.direction, units::none, script_ranges::direction);
-  v.number(required("speed_mm_per_s", "How fast."), press.speed, units::millimetre_per_second, script_ranges::speed_mm_per_s);
+  v.point(Key{"direction", "Which way; any length but zero."}, press.direction, units::none,
+          script_ranges::direction);
+  v.number(required("speed_mm_per_s", "How fast."), press.speed, units::millimetre_per_second,
+           script_ranges::speed_mm_per_s);
 }
 
-inline RecordInfo info_of(const ScriptStep::Cut&) { return {"cut", "The tip moves along a path without stopping at its corners' sides."}; }
+inline RecordInfo info_of(const ScriptStep::Cut&) {
+  return {"cut", "The tip moves along a path without stopping at its corners' sides."};
+}
 template <class V>
 void describe_fields(V& v, ScriptStep::Cut& cut) {
   v.points(required("path_mm", "Points that the tip passes, from where it is."), cut.path, units::millimetre,
            script_ranges::coordinate_mm, 1);
-  v.number(required("speed_mm_per_s", "How fast."), cut.speed, units::millimetre_per_second, script_ranges::speed_mm_per_s);
+  v.number(required("speed_mm_per_s", "How fast."), cut.speed, units::millimetre_per_second,
+           script_ranges::speed_mm_per_s);
 }
 
 inline RecordInfo info_of(const ScriptStep&) { return {"step", "One thing that the hand does."}; }

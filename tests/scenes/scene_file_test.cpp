@@ -12,8 +12,9 @@ namespace {
 std::string shipped(const std::string& name) { return std::string(CTPM_SOURCE_DIR) + "/scenes/" + name; }
 
 std::string scene_with(const std::string& organ_keys, const std::string& more = "") {
-  return "{\n\"format\": \"ctpm-scene\", \"version\": 1, \"name\": \"test\",\n\"organs\": [{\"name\": \"a\", \"mesh\": \"a.obj\", " + organ_keys +
-         "}]" + more + "\n}\n";
+  return "{\n\"format\": \"ctpm-scene\", \"version\": 1, \"name\": \"test\",\n\"organs\": [{\"name\": \"a\", "
+         "\"mesh\": \"a.obj\", " +
+         organ_keys + "}]" + more + "\n}\n";
 }
 
 /// The only error of a text, with its place.
@@ -42,16 +43,20 @@ TEST(SceneFile, AValueOutOfRangeIsNamedWithItsPlaceAndRange) {
 }
 
 TEST(SceneFile, AnUnknownKeyNamesTheNearestOne) {
-  EXPECT_NE(error_of(scene_with("\"material\": {\"preset\": \"liver\"}, \"modle\": \"ctpm\"")).find("did you mean \"model\"?"), std::string::npos);
+  EXPECT_NE(error_of(scene_with("\"material\": {\"preset\": \"liver\"}, \"modle\": \"ctpm\""))
+                .find("did you mean \"model\"?"),
+            std::string::npos);
 }
 
 TEST(SceneFile, AKeyWithTheWrongUnitNamesTheRightOne) {
-  EXPECT_NE(error_of(scene_with("\"material\": {\"preset\": \"liver\"}, \"fill\": {\"radius_cm\": 0.4}")).find("the key is \"radius_mm\""),
+  EXPECT_NE(error_of(scene_with("\"material\": {\"preset\": \"liver\"}, \"fill\": {\"radius_cm\": 0.4}"))
+                .find("the key is \"radius_mm\""),
             std::string::npos);
 }
 
 TEST(SceneFile, AllErrorsComeInOneRunInTheOrderOfTheText) {
-  const std::string all = error_of(scene_with("\"material\": {\"preset\": \"lever\"}", ", \"tick_s\": 5, \"gravity_m_per_s2\": [0, 0]"));
+  const std::string all = error_of(
+      scene_with("\"material\": {\"preset\": \"lever\"}", ", \"tick_s\": 5, \"gravity_m_per_s2\": [0, 0]"));
   EXPECT_NE(all.find("/tick_s"), std::string::npos);
   EXPECT_NE(all.find("/gravity_m_per_s2"), std::string::npos);
   EXPECT_NE(all.find("did you mean \"liver\"?"), std::string::npos);
@@ -68,14 +73,16 @@ TEST(SceneFile, AMissingMeshIsNamedAtItsPlace) {
 }
 
 TEST(SceneFile, Cubic6InAnOrganIsWarnedOf) {
-  const Result<SceneText> scene = read_scene(scene_with("\"material\": {\"preset\": \"liver\"}, \"lattice\": \"cubic-6\""), "test.json");
+  const Result<SceneText> scene =
+      read_scene(scene_with("\"material\": {\"preset\": \"liver\"}, \"lattice\": \"cubic-6\""), "test.json");
   ASSERT_TRUE(scene);
   ASSERT_EQ(scene->warnings.size(), 1u);
   EXPECT_NE(scene->warnings[0].message.find("no shear stiffness"), std::string::npos);
 }
 
 TEST(BuildModel, ARigBecomesItsSpheresAndElements) {
-  const std::string text = R"({"format": "ctpm-scene", "version": 1, "name": "rig", "gravity_m_per_s2": [0, 0, 0],
+  const std::string text =
+      R"({"format": "ctpm-scene", "version": 1, "name": "rig", "gravity_m_per_s2": [0, 0, 0],
     "organs": [{"name": "rig", "rig": {"cells": [[0,0,0],[1,0,0],[2,0,0],[3,0,0],[4,0,0]]}, "lattice": "cubic-6",
                 "material": {"preset": "liver"}, "anchors": [{"sphere": {"centre_mm": [0,0,0], "radius_mm": 1}}]}],
     "tools": [{"name": "pin", "kind": "pin", "holds_mm": [24, 0, 0]}]})";
