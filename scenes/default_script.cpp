@@ -80,14 +80,16 @@ void add_press(Script& script, const ToolSpec& ball, const Top& top, const Table
   script.steps.push_back(take(ball.name, table.to_world(place + Vec3{0, 0, radius + clear}), down));
   ScriptStep press, release;
   press.press = ScriptStep::Press{clear + depth, down, 0.020};
-  release.release = ScriptStep::Press{clear + depth + 0.02, -1.0 * down, 0.040};
+  release.release = ScriptStep::Release{clear + depth + 0.02, -1.0 * down, 0.040};
   script.steps.insert(script.steps.end(), {press, wait(0.7), release, wait(0.5)});
 }
 
 void add_cut(Script& script, const ToolSpec& scalpel, const Top& top, const Table& table, double depth) {
   const double clear = 0.020;
   const Vec3 down = table.to_world({0, 0, -1});
-  const double length = std::min(0.30 * top.size().x, 0.060), step_share = length / top.size().x / 4;
+  // A single column of spheres has no width to cut along; the blade then goes down in one place.
+  const double width = top.size().x, length = std::min(0.30 * width, 0.060);
+  const double step_share = width > 0 ? length / width / 4 : 0;
   ScriptStep cut, leave;
   cut.cut = ScriptStep::Cut{{}, 0.030};
   const double y = top.ridge(0.55).y;

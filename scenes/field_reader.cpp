@@ -74,8 +74,7 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
   return best_distance <= std::max<std::size_t>(2, word.size() / 3) ? best : "";
 }
 
-// Problems
-// ---------------------------------------------------------------------------------------------------------
+// ---- Problems
 
 Problems::Problem Problems::make(const std::string& pointer, Place place, const std::string& message,
                                  const std::string& hint) const {
@@ -139,8 +138,11 @@ Errors Problems::errors() const {
 
 Errors Problems::warnings() const { return in_order(warnings_); }
 
-// FieldReader
-// ------------------------------------------------------------------------------------------------------
+void check_direction(Problems& problems, const std::string& pointer, Vec3 direction) {
+  if (norm(direction) < 1e-9) problems.add_rule(pointer, "must not be zero, or shorter than 1e-9");
+}
+
+// ---- FieldReader
 
 const JsonNode* FieldReader::take(const Key& key) {
   known_.push_back({key.name, key.is_required});

@@ -48,6 +48,10 @@ class Problems {
   std::vector<Problem> problems_, rules_, warnings_;
 };
 
+/// Reports a direction that is too short to be one: below 1e-9, so that its length neither vanishes nor loses
+/// digits.
+void check_direction(Problems& problems, const std::string& pointer, Vec3 direction);
+
 /// The word of `known` that `word` was probably meant to be; empty if none is near.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
 

@@ -18,7 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_zero(Vec3 v) { return v == Vec3{}; }
 bool is_whole(Vec3 v) { return std::floor(v.x) == v.x && std::floor(v.y) == v.y && std::floor(v.z) == v.z; }
 
 std::string item(const char* list, std::size_t index) {
@@ -88,8 +87,7 @@ void check_organ(Problems& problems, std::size_t index, const OrganSpec& organ) 
   for (std::size_t i = 0; i < organ.anchors.size(); ++i) {
     const AnchorSpec& anchor = organ.anchors[i];
     const std::string where = at + "/anchors/" + std::to_string(i);
-    if (anchor.plane && is_zero(anchor.plane->normal))
-      problems.add_rule(where + "/plane/normal", "must not be zero");
+    if (anchor.plane) check_direction(problems, where + "/plane/normal", anchor.plane->normal);
     if (anchor.box && !(anchor.box->min.x <= anchor.box->max.x && anchor.box->min.y <= anchor.box->max.y &&
                         anchor.box->min.z <= anchor.box->max.z))
       problems.add_rule(where + "/box", "min_mm must not be above max_mm in any coordinate");
@@ -119,10 +117,9 @@ void check_camera(Problems& problems, std::size_t index, const CameraSpec& camer
   const std::string at = item("cameras", index);
   if (camera.eye == camera.target)
     problems.add_rule(at + "/target_mm", "must not be the same point as eye_mm");
-  if (is_zero(camera.up))
-    problems.add_rule(at + "/up", "must not be zero");
-  else if (norm(cross(camera.up, camera.target - camera.eye)) <
-           1e-6 * norm(camera.up) * norm(camera.target - camera.eye))
+  check_direction(problems, at + "/up", camera.up);
+  if (norm(camera.up) > 0 && norm(cross(camera.up, camera.target - camera.eye)) <
+                                 1e-6 * norm(camera.up) * norm(camera.target - camera.eye))
     problems.add_rule(at + "/up", "must not point along the line of sight");
 }
 

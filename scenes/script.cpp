@@ -11,6 +11,17 @@
 namespace ctpm {
 namespace {
 
+void check_tool(Problems& problems, const std::string& at, const ScriptStep::Take& take,
+                const std::vector<std::string>& tool_names) {
+  if (std::find(tool_names.begin(), tool_names.end(), take.tool) == tool_names.end()) {
+    std::string known;
+    for (const std::string& name : tool_names) known += (known.empty() ? "" : ", ") + name;
+    problems.add_rule(at + "/take/tool", "the scene has no tool " + in_quotes(take.tool),
+                      known.empty() ? "the scene has no tools" : "its tools: " + known);
+  }
+  check_direction(problems, at + "/take/pointing", take.pointing);
+}
+
 void check_steps(Problems& problems, const Script& script, const std::vector<std::string>& tool_names) {
   bool has_tool = false;
   for (std::size_t i = 0; i < script.steps.size(); ++i) {
@@ -18,18 +29,12 @@ void check_steps(Problems& problems, const Script& script, const std::vector<std
     const std::string at = "/steps/" + std::to_string(i);
     if (step.take) {
       has_tool = true;
-      if (std::find(tool_names.begin(), tool_names.end(), step.take->tool) == tool_names.end()) {
-        std::string known;
-        for (const std::string& name : tool_names) known += (known.empty() ? "" : ", ") + name;
-        problems.add_rule(at + "/take/tool", "the scene has no tool " + in_quotes(step.take->tool),
-                          known.empty() ? "the scene has no tools" : "its tools: " + known);
-      }
-      if (step.take->pointing == Vec3{}) problems.add_rule(at + "/take/pointing", "must not be zero");
+      check_tool(problems, at, *step.take, tool_names);
     }
     if (step.put_away) has_tool = false;
     if (step.put_away == false) problems.add_rule(at + "/put_away", "must be true");
-    for (const auto& press : {step.press, step.release})
-      if (press && press->direction == Vec3{}) problems.add_rule(at, "the direction must not be zero");
+    if (step.press) check_direction(problems, at + "/press/direction", step.press->direction);
+    if (step.release) check_direction(problems, at + "/release/direction", step.release->direction);
     if ((step.move || step.press || step.release || step.cut) && !has_tool)
       problems.add_rule(at, "there is no tool in the hand here", "take one first");
   }
@@ -37,12 +42,13 @@ void check_steps(Problems& problems, const Script& script, const std::vector<std
 
 /// The rotation that turns -z onto `pointing` the shortest way.
 Quat orientation_of(Vec3 pointing) {
-  const Vec3 from{0, 0, -1}, to = pointing / norm(pointing);
-  const double w = 1 + dot(from, to);
-  if (w < 1e-9) return {0, 1, 0, 0};  // straight up: half a turn about x
-  const Vec3 axis = cross(from, to);
-  const double length = std::sqrt(w * w + dot(axis, axis));
-  return {w / length, axis.x / length, axis.y / length, axis.z / length};
+  const Vec3 to = pointing / norm(pointing);
+  // w = 1 + cos(angle) = 1 - z; near straight up, where that cancels, from x and y.
+  const double across = to.x * to.x + to.y * to.y;
+  const double w = to.z > 0 ? across / (1 + to.z) : 1 - to.z;
+  if (across < 1e-200 && to.z > 0) return {0, 1, 0, 0};  // straight up: half a turn about x
+  const double length = std::sqrt(w * w + across);
+  return {w / length, to.y / length, -to.x / length, 0};
 }
 
 /// Share of the way after share `t` of the time: speed rises along a cubic in the first fifth and falls in
@@ -60,6 +66,12 @@ double eased(double t) {
 
 /// Time for a way at a speed, with the slower start and end.
 double duration_of(Vec3 from, Vec3 to, double speed) { return norm(to - from) / speed / 0.8; }
+
+/// From where a press or a release begins to where it ends [m].
+template <class Stroke>
+Vec3 way_of(const Stroke& stroke) {
+  return stroke.distance / norm(stroke.direction) * stroke.direction;
+}
 
 }  // namespace
 
@@ -99,8 +111,8 @@ ScriptPlayer::ScriptPlayer(const Script& script, std::span<const Tool> tools, do
       add_stretch(tool, orientation, hand, hand, tick_);
     }
     if (step.move) go(step.move->to, step.move->speed);
-    for (const auto& press : {step.press, step.release})
-      if (press) go(hand + press->distance / norm(press->direction) * press->direction, press->speed);
+    if (step.press) go(hand + way_of(*step.press), step.press->speed);
+    if (step.release) go(hand + way_of(*step.release), step.release->speed);
     if (step.cut)
       for (const Vec3& point : step.cut->path) go(point, step.cut->speed);
     if (step.wait) add_stretch(tool, orientation, hand, hand, *step.wait);

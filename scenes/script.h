@@ -16,7 +16,7 @@
 
 namespace ctpm {
 
-/// One step of a script: exactly one of `tool`, `move_to`, `press`, `release`, `cut`, `wait`, `put_away` is
+/// One step of a script: exactly one of `take`, `move`, `press`, `release`, `cut`, `wait`, `put_away` is
 /// set. SCRIPT.md.
 struct ScriptStep {
   struct Take {
@@ -36,6 +36,12 @@ struct ScriptStep {
     double speed = 0;          ///< [m/s]
     friend bool operator==(const Press&, const Press&) = default;
   };
+  struct Release {
+    double distance = 0;      ///< [m]
+    Vec3 direction{0, 0, 1};  ///< where the tool leaves to; any length but zero
+    double speed = 0;         ///< [m/s]
+    friend bool operator==(const Release&, const Release&) = default;
+  };
   struct Cut {
     std::vector<Vec3> path;  ///< of the tip, from where it is [m]
     double speed = 0;        ///< [m/s]
@@ -44,7 +50,7 @@ struct ScriptStep {
   std::optional<Take> take;
   std::optional<Move> move;
   std::optional<Press> press;
-  std::optional<Press> release;  ///< direction says where the tool leaves to
+  std::optional<Release> release;
   std::optional<Cut> cut;
   std::optional<double> wait;    ///< [s]
   std::optional<bool> put_away;  ///< no tool from here on

@@ -12,7 +12,7 @@ inline constexpr int script_format_version = 1;
 namespace script_ranges {
 inline constexpr Range coordinate_mm = within(-100000, 100000);
 inline constexpr Range direction = within(-1e6, 1e6);
-inline constexpr Range speed_mm_per_s = above(0, 10000);
+inline constexpr Range speed_mm_per_s = within(0.001, 10000);
 }  // namespace script_ranges
 
 inline RecordInfo info_of(const ScriptStep::Take&) { return {"take", "A tool appears in the hand."}; }
@@ -31,31 +31,43 @@ inline RecordInfo info_of(const ScriptStep::Move&) {
 template <class V>
 void describe_fields(V& v, ScriptStep::Move& move) {
   v.point(required("to_mm", "Where to."), move.to, units::millimetre, script_ranges::coordinate_mm);
-  v.number(required("speed_mm_per_s", "How fast."), move.speed, units::millimetre_per_second,
-           script_ranges::speed_mm_per_s);
+  v.number(required("speed_mm_per_s", "Speed between the slower start and end of each straight piece."),
+           move.speed, units::millimetre_per_second, script_ranges::speed_mm_per_s);
 }
 
 inline RecordInfo info_of(const ScriptStep::Press&) {
-  return {"press", "The tool moves by a distance: into the tissue (press) or out of it (release)."};
+  return {"press", "The tool moves by a distance into the tissue."};
 }
 template <class V>
 void describe_fields(V& v, ScriptStep::Press& press) {
   v.number(required("distance_mm", "How far."), press.distance, units::millimetre, above(0, 1000));
   v.point(Key{"direction", "Which way; any length but zero."}, press.direction, units::none,
           script_ranges::direction);
-  v.number(required("speed_mm_per_s", "How fast."), press.speed, units::millimetre_per_second,
-           script_ranges::speed_mm_per_s);
+  v.number(required("speed_mm_per_s", "Speed between the slower start and end of each straight piece."),
+           press.speed, units::millimetre_per_second, script_ranges::speed_mm_per_s);
+}
+
+inline RecordInfo info_of(const ScriptStep::Release&) {
+  return {"release", "The tool moves by a distance out of the tissue."};
+}
+template <class V>
+void describe_fields(V& v, ScriptStep::Release& release) {
+  v.number(required("distance_mm", "How far."), release.distance, units::millimetre, above(0, 1000));
+  v.point(Key{"direction", "Where it leaves to; any length but zero."}, release.direction, units::none,
+          script_ranges::direction);
+  v.number(required("speed_mm_per_s", "Speed between the slower start and end of each straight piece."),
+           release.speed, units::millimetre_per_second, script_ranges::speed_mm_per_s);
 }
 
 inline RecordInfo info_of(const ScriptStep::Cut&) {
-  return {"cut", "The tip moves along a path without stopping at its corners' sides."};
+  return {"cut", "The tip moves from point to point along a path and rests for a moment at each."};
 }
 template <class V>
 void describe_fields(V& v, ScriptStep::Cut& cut) {
   v.points(required("path_mm", "Points that the tip passes, from where it is."), cut.path, units::millimetre,
            script_ranges::coordinate_mm, 1);
-  v.number(required("speed_mm_per_s", "How fast."), cut.speed, units::millimetre_per_second,
-           script_ranges::speed_mm_per_s);
+  v.number(required("speed_mm_per_s", "Speed between the slower start and end of each straight piece."),
+           cut.speed, units::millimetre_per_second, script_ranges::speed_mm_per_s);
 }
 
 inline RecordInfo info_of(const ScriptStep&) { return {"step", "One thing that the hand does."}; }

@@ -1,0 +1,320 @@
+#include "scenes/script.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "scenes/build_model.h"
+#include "scenes/scene_file.h"
+
+namespace ctpm {
+namespace {
+
+const std::vector<std::string> kTools{"ball", "scalpel"};
+constexpr double kTick = 1e-3;  // [s]
+
+std::vector<Tool> tools_of_model() {
+  std::vector<Tool> tools(2);
+  tools[0].name = "ball", tools[0].kind = ToolKind::ball, tools[0].radius = 0.01;
+  tools[1].name = "scalpel", tools[1].kind = ToolKind::scalpel, tools[1].blade_length = 0.05;
+  return tools;
+}
+
+/// A script of these steps, the first of them in line 2 at column 1.
+std::string script_of(const std::string& steps) {
+  return "{\"format\": \"ctpm-script\", \"version\": 1, \"steps\": [\n" + steps + "\n]}\n";
+}
+
+const std::string kTake = R"({"take": {"tool": "ball", "at_mm": [0, 0, 50]}})";
+
+/// Every error of a text, one a line.
+std::string errors_of(const std::string& text) {
+  const Result<Script> script = read_script(text, "s.json", kTools);
+  if (script) return "no error";
+  std::string all;
+  for (const Error& error : script.errors()) all += to_string(error) + "\n";
+  return all;
+}
+
+Script read_good(const std::string& steps) {
+  const Result<Script> script = read_script(script_of(steps), "s.json", kTools);
+  if (!script) {
+    ADD_FAILURE() << to_string(script.errors().front());
+    return {};
+  }
+  return *script;
+}
+
+TEST(ReadScript, AToolThatTheSceneDoesNotHaveIsNamedWithThoseItHas) {
+  EXPECT_EQ(
+      errors_of(script_of(R"({"take": {"tool": "spoon", "at_mm": [0, 0, 50]}})")),
+      "s.json:2:19: error: /steps/0/take/tool: the scene has no tool \"spoon\" (its tools: ball, scalpel)\n");
+}
+
+TEST(ReadScript, AStepBeforeAnyToolIsTakenHasNoHand) {
+  for (const std::string step : {R"({"move": {"to_mm": [0, 0, 0], "speed_mm_per_s": 10}})",
+                                 R"({"press": {"distance_mm": 5, "speed_mm_per_s": 10}})",
+                                 R"({"release": {"distance_mm": 5, "speed_mm_per_s": 10}})",
+                                 R"({"cut": {"path_mm": [[0, 0, 0]], "speed_mm_per_s": 10}})"}) {
+    const std::string expected =
+        "s.json:2:1: error: /steps/0: there is no tool in the hand here (take one first)\n";
+    EXPECT_EQ(errors_of(script_of(step)), expected);
+    EXPECT_NE(errors_of(script_of(kTake + ",\n{\"put_away\": true},\n" + step))
+                  .find("s.json:4:1: error: /steps/2: there is no tool"),
+              std::string::npos);
+  }
+}
+
+TEST(ReadScript, AStepDoesExactlyOneThing) {
+  EXPECT_EQ(errors_of(script_of(kTake + ",\n" + R"({"wait_s": 1, "put_away": true})")),
+            "s.json:3:1: error: /steps/1: got 2 of the keys, must have exactly one of take, move, press, "
+            "release, cut, "
+            "wait_s, put_away\n");
+  EXPECT_EQ(errors_of(script_of("{}")),
+            "s.json:2:1: error: /steps/0: got 0 of the keys, must have exactly one of take, move, press, "
+            "release, cut, "
+            "wait_s, put_away\n");
+}
+
+TEST(ReadScript, AnUnknownKeyIsPlacedAndTheNearestNamed) {
+  const std::string all = errors_of(script_of(R"({"take": {"tool": "ball", "at_cm": [0, 0, 5]}})"));
+  EXPECT_NE(all.find("s.json:2:27: error: /steps/0/take/at_cm: unknown key \"at_cm\" (the key is \"at_mm\": "
+                     "the unit is part of it)"),
+            std::string::npos)
+      << all;
+  EXPECT_NE(all.find("s.json:2:10: error: /steps/0/take: the key \"at_mm\" is missing"), std::string::npos)
+      << all;
+}
+
+TEST(ReadScript, ADirectionWithoutLengthIsRefusedWhereItStands) {
+  for (const std::string zero : {"[0, 0, 0]", "[0, -0.0, 1e-170]", "[1e-320, 0, 0]"}) {
+    const std::string message = "must not be zero, or shorter than 1e-9\n";
+    EXPECT_EQ(
+        errors_of(script_of(R"({"take": {"tool": "ball", "at_mm": [0, 0, 5], "pointing": )" + zero + "}}")),
+        "s.json:2:59: error: /steps/0/take/pointing: " + message);
+    EXPECT_EQ(errors_of(script_of(kTake + ",\n{\"press\": {\"direction\": " + zero +
+                                  R"(, "distance_mm": 5, "speed_mm_per_s": 10}})")),
+              "s.json:3:25: error: /steps/1/press/direction: " + message);
+    EXPECT_EQ(errors_of(script_of(kTake + ",\n{\"release\": {\"direction\": " + zero +
+                                  R"(, "distance_mm": 5, "speed_mm_per_s": 10}})")),
+              "s.json:3:27: error: /steps/1/release/direction: " + message);
+  }
+}
+
+TEST(ReadScript, ASpeedOutOfRangeIsRefusedWhereItStands) {
+  for (const std::string speed : {"0", "-5", "1e-300", "10001", "1e300"}) {
+    EXPECT_EQ(errors_of(script_of(kTake + ",\n{\"move\": {\"speed_mm_per_s\": " + speed +
+                                  R"(, "to_mm": [0, 0, 0]}})")),
+              "s.json:3:29: error: /steps/1/move/speed_mm_per_s: got " + speed +
+                  ", must be in [0.001, 10000] mm/s\n");
+  }
+  EXPECT_NE(errors_of(script_of(kTake + ",\n" + R"({"cut": {"speed_mm_per_s": "fast", "path_mm": []}})"))
+                .find("got the text \"fast\", must be a number"),
+            std::string::npos);
+}
+
+TEST(ReadScript, AScriptWithoutStepsOrAPathWithoutPointsIsRefused) {
+  EXPECT_NE(errors_of(script_of("")).find("/steps: got a list of 0, must have at least 1"),
+            std::string::npos);
+  EXPECT_NE(errors_of(script_of(kTake + R"(, {"cut": {"speed_mm_per_s": 5, "path_mm": []}})"))
+                .find("/path_mm: got a list of 0, must have at least 1"),
+            std::string::npos);
+}
+
+TEST(ReadScript, PuttingAwayIsAlwaysTrue) {
+  EXPECT_EQ(errors_of(script_of(R"({"put_away": false})")),
+            "s.json:2:14: error: /steps/0/put_away: must be true\n");
+}
+
+/// Every kind of step, in numbers that are not exact in binary.
+const std::string kEveryStep = R"(
+  {"take": {"tool": "scalpel", "at_mm": [1.1, -2.7, 50.3], "pointing": [0.1, 0.2, -0.7]}},
+  {"move": {"to_mm": [3.3, 4.1, 20.9], "speed_mm_per_s": 12.3}},
+  {"press": {"distance_mm": 7.7, "direction": [0.3, 0, -1], "speed_mm_per_s": 9.1}},
+  {"release": {"distance_mm": 3.3, "speed_mm_per_s": 33.3}},
+  {"wait_s": 0.35},
+  {"cut": {"path_mm": [[1.7, 2.9, 10.1], [5.3, 2.9, 10.1], [9.7, 3.1, 9.3]], "speed_mm_per_s": 30.7}},
+  {"put_away": true}, {"wait_s": 0.1})";
+
+TEST(WriteScript, WhatIsWrittenIsReadBackEqual) {
+  const Script script = read_good(kEveryStep);
+  ASSERT_EQ(script.steps.size(), 8u);
+  const Result<Script> again = read_script(write_script(script), "again.json", kTools);
+  ASSERT_TRUE(again) << to_string(again.errors().front());
+  EXPECT_TRUE(*again == script) << write_script(script);
+  EXPECT_EQ(write_script(*again), write_script(script));
+}
+
+TEST(WriteScript, AReleaseLeavesUpwardsUnlessAnotherDirectionIsWritten) {
+  const Script script = read_good(kTake + R"(, {"release": {"distance_mm": 3, "speed_mm_per_s": 30}})");
+  EXPECT_EQ(script.steps.at(1).release.value().direction, (Vec3{0, 0, 1}));
+}
+
+/// Positions of the tool from `first` on, as long as it is in the hand.
+std::vector<Vec3> way_in_hand(const ScriptPlayer& player, std::int64_t first = 0) {
+  std::vector<Vec3> way;
+  for (std::int64_t tick = first; tick < player.tick_count() && player.at(tick).tool >= 0; ++tick)
+    way.push_back(player.at(tick).position);
+  return way;
+}
+
+TEST(ScriptPlayer, NeverMovesFasterThanTheStepSays) {
+  const Script script = read_good(kEveryStep);
+  const ScriptPlayer player(script, tools_of_model(), kTick);
+  const std::vector<Vec3> way = way_in_hand(player);
+  ASSERT_GT(way.size(), 100u);
+  double largest = 0;
+  for (std::size_t i = 1; i < way.size(); ++i) largest = std::max(largest, norm(way[i] - way[i - 1]));
+  constexpr double kFastest = 33.3e-3;  // [m/s] of the steps above
+  EXPECT_LE(largest, kFastest * kTick * (1 + 1e-12));
+  EXPECT_GE(largest, 0.9 * kFastest * kTick);
+}
+
+TEST(ScriptPlayer, ReachesItsSpeedAndKeepsItInBetween) {
+  const Script script = read_good(kTake + R"(, {"move": {"to_mm": [100, 0, 50], "speed_mm_per_s": 50}})");
+  const ScriptPlayer player(script, tools_of_model(), kTick);
+  const std::int64_t middle = player.tick_count() / 2;
+  for (std::int64_t tick = middle - 500; tick < middle + 500; ++tick)
+    ASSERT_NEAR(norm(player.at(tick + 1).position - player.at(tick).position), 50e-3 * kTick, 1e-15);
+}
+
+TEST(ScriptPlayer, EveryStretchStartsAndEndsAtRest) {
+  const Script script = read_good(kTake + R"(, {"move": {"to_mm": [100, 0, 50], "speed_mm_per_s": 50}},
+                                               {"move": {"to_mm": [100, 80, 50], "speed_mm_per_s": 20}})");
+  const ScriptPlayer player(script, tools_of_model(), kTick);
+  // After a share t of the time the speed is about 3 (t / 0.2)^2 of the full one: a thousandth in the first
+  // tick of 2500.
+  const auto speed = [&](std::int64_t tick) {
+    return norm(player.at(tick).position - player.at(tick - 1).position) / kTick;
+  };
+  const std::int64_t turn = 1 + 2500;  // one tick to take the tool, 100 mm / 50 mm/s / 0.8
+  EXPECT_LT(speed(1), 1e-3 * 50e-3);
+  EXPECT_LT(speed(turn - 1), 1e-3 * 50e-3);
+  EXPECT_LT(speed(turn), 1e-3 * 20e-3);
+  EXPECT_LT(speed(player.tick_count() - 1), 1e-3 * 20e-3);
+  EXPECT_EQ(player.at(turn - 1).position, (Vec3{0.1, 0, 0.05}));
+  EXPECT_EQ(player.at(player.tick_count() - 1).position, (Vec3{0.1, 0.08, 0.05}));
+  // No jump in acceleration either: the speed changes from tick to tick by little, across the turn as well.
+  for (std::int64_t tick = 2; tick < player.tick_count(); ++tick)
+    ASSERT_LT(std::abs(speed(tick) - speed(tick - 1)), 50e-3 * 1.5 / 0.2 / 2500 * 1.01) << "tick " << tick;
+}
+
+TEST(ScriptPlayer, LastsAsLongAsItsSteps) {
+  const auto ticks = [](const std::string& steps) {
+    return ScriptPlayer(read_good(steps), tools_of_model(), kTick).tick_count();
+  };
+  EXPECT_EQ(ticks(kTake), 1);
+  EXPECT_EQ(ticks(kTake + R"(, {"wait_s": 0.5})"), 501);
+  // Rise and fall take a fifth of the time each and half of the way that full speed would go in them.
+  EXPECT_EQ(ticks(kTake + R"(, {"move": {"to_mm": [0, 0, 130], "speed_mm_per_s": 50}})"), 1 + 2000);
+  EXPECT_EQ(
+      ticks(
+          kTake +
+          R"(, {"press": {"distance_mm": 8, "speed_mm_per_s": 4}}, {"release": {"distance_mm": 8, "speed_mm_per_s": 8}})"),
+      1 + 2500 + 1250);
+}
+
+TEST(ScriptPlayer, IsAPureFunctionOfTheTick) {
+  const Script script = read_good(kEveryStep);
+  const ScriptPlayer player(script, tools_of_model(), kTick), other(script, tools_of_model(), kTick);
+  std::vector<Inputs> forwards;
+  for (std::int64_t tick = 0; tick < player.tick_count(); ++tick) forwards.push_back(player.at(tick));
+  for (std::int64_t tick = player.tick_count() - 1; tick >= 0; --tick) {
+    ASSERT_EQ(player.at(tick), forwards[std::size_t(tick)]);
+    ASSERT_EQ(other.at(tick), forwards[std::size_t(tick)]);
+  }
+}
+
+TEST(ScriptPlayer, StaysAsItIsAfterTheEnd) {
+  const Script script = read_good(kTake + R"(, {"move": {"to_mm": [7, 0, 50], "speed_mm_per_s": 50}})");
+  const ScriptPlayer player(script, tools_of_model(), kTick);
+  const Inputs last = player.at(player.tick_count() - 1);
+  EXPECT_EQ(last.position, (Vec3{0.007, 0, 0.05}));
+  for (const std::int64_t later : {std::int64_t(0), std::int64_t(1), std::int64_t(1) << 60})
+    EXPECT_EQ(player.at(player.tick_count() + later), last);
+}
+
+TEST(ScriptPlayer, TurnsMinusZOntoPointing) {
+  // To a few roundings, next to straight up as well, where the shortest turn loses its axis.
+  constexpr double kRounding = 1e-15;
+  for (const Vec3 pointing :
+       {Vec3{0, 0, -1}, Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{0, -3, 0}, Vec3{1, 2, -3}, Vec3{-1, 5, 4},
+        Vec3{1e-4, 0, 1}, Vec3{0, -1e-6, 1}, Vec3{3e-9, 4e-9, 1}, Vec3{1e-30, 0, 1}, Vec3{1e-130, 0, 1},
+        Vec3{1e-5, 1e-5, -1}, Vec3{2e-9, 0, 0}, Vec3{0, 0, 1e6}}) {
+    Script script;
+    script.steps.emplace_back().take = ScriptStep::Take{"ball", {}, pointing};
+    const Quat q = ScriptPlayer(script, tools_of_model(), kTick).at(0).world_from_tool;
+    EXPECT_NEAR(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z, 1, kRounding);
+    EXPECT_NEAR(norm(rotate(q, {0, 0, -1}) - pointing / norm(pointing)), 0, kRounding)
+        << pointing.x << " " << pointing.y << " " << pointing.z;
+  }
+}
+
+TEST(ScriptPlayer, HoldsTheToolsThatTheStepsSay) {
+  const Script script = read_good(kTake + R"(, {"wait_s": 0.01}, {"put_away": true}, {"wait_s": 0.01},
+                                               {"take": {"tool": "scalpel", "at_mm": [1, 2, 3]}})");
+  const ScriptPlayer player(script, tools_of_model(), kTick);
+  ASSERT_EQ(player.tick_count(), 1 + 10 + 1 + 10 + 1);
+  EXPECT_EQ(player.at(10).tool, 0);
+  for (std::int64_t tick = 11; tick < 22; ++tick) EXPECT_EQ(player.at(tick).tool, -1);
+  EXPECT_EQ(player.at(22).tool, 1);
+  EXPECT_EQ(player.at(22).position, (Vec3{0.001, 0.002, 0.003}));
+}
+
+/// A scene of one block with a ball and a scalpel.
+SceneSpec block_scene(const std::string& block, const std::string& gravity = "[0, 0, -9.81]") {
+  const Result<SceneText> scene =
+      read_scene(R"({"format": "ctpm-scene", "version": 1, "name": "block", "gravity_m_per_s2": )" + gravity +
+                     R"(, "organs": [{"name": "block", "rig": {"block": )" + block +
+                     R"(}, "material": {"preset": "liver"}}],
+           "tools": [{"name": "ball", "kind": "ball", "radius_mm": 6}, {"name": "scalpel", "kind": "scalpel", "blade_length_mm": 40}]})",
+                 "block.json");
+  if (!scene) {
+    ADD_FAILURE() << to_string(scene.errors().front());
+    return {};
+  }
+  return scene->spec;
+}
+
+TEST(DefaultScript, OfAnyBlockIsReadWithTheScenesTools) {
+  for (const std::string block : {"[9, 9, 7]", "[3, 3, 1]", "[1, 1, 5]", "[2, 1, 1]"})
+    for (const std::string gravity : {"[0, 0, -9.81]", "[0, 0, 0]", "[5, 5, 5]"}) {
+      const SceneSpec scene = block_scene(block, gravity);
+      const std::vector<FilledOrgan> organs{fill_rig(scene.organs.at(0))};
+      const Script script = default_script(scene, organs);
+      const Result<Script> again = read_script(write_script(script), "default.json", kTools);
+      ASSERT_TRUE(again) << block << " " << to_string(again.errors().front());
+      EXPECT_TRUE(*again == script);
+      EXPECT_GT(ScriptPlayer(script, tools_of_model(), kTick).tick_count(), 1000);
+    }
+}
+
+TEST(DefaultScript, PressesIntoTheTopOfABlockAndCutsIt) {
+  const SceneSpec scene = block_scene("[9, 9, 7]");
+  const std::vector<FilledOrgan> organs{fill_rig(scene.organs.at(0))};
+  const ScriptPlayer player(default_script(scene, organs), tools_of_model(), kTick);
+  constexpr double kTop = (6 + 0.5) * 12e-3;  // [m]
+  double lowest[2] = {1, 1};
+  for (std::int64_t tick = 0; tick < player.tick_count(); ++tick) {
+    const Inputs inputs = player.at(tick);
+    if (inputs.tool < 0) continue;
+    ASSERT_LT(std::abs(inputs.position.x), 0.05);
+    lowest[inputs.tool] = std::min(lowest[inputs.tool], inputs.position.z);
+  }
+  EXPECT_NEAR(lowest[0] - 0.006, kTop - 0.010, 1e-9);
+  EXPECT_NEAR(lowest[1], kTop - 0.022, 1e-9);
+}
+
+TEST(DefaultScript, OfASceneWithoutToolsWaits) {
+  SceneSpec scene = block_scene("[3, 3, 3]");
+  scene.tools.clear();
+  const std::vector<FilledOrgan> organs{fill_rig(scene.organs.at(0))};
+  const Script script = default_script(scene, organs);
+  EXPECT_TRUE(read_script(write_script(script), "default.json", {}));
+}
+
+}  // namespace
+}  // namespace ctpm
