@@ -1,0 +1,42 @@
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "studio/commands/command.h"
+#include "studio/console.h"
+#include "studio/loaded_scene.h"
+
+namespace ctpm {
+namespace {
+
+struct CheckArguments {
+  std::vector<std::string> scenes;
+  LoadOptions load;
+};
+
+int run_check(const CheckArguments& arguments) {
+  int code = exit_good;
+  for (const std::string& path : arguments.scenes) {
+    const Result<LoadedScene> scene = load_whole_scene(path, arguments.load);
+    if (!scene) {
+      code = print_errors(scene.errors());
+      continue;
+    }
+    std::printf("%s: good, %zu spheres, %zu elements\n", path.c_str(), scene->built.model.sphere_count(),
+                scene->built.model.element_count());
+  }
+  return code;
+}
+
+}  // namespace
+
+Command add_check(CLI::App& program) {
+  auto arguments = std::make_shared<CheckArguments>();
+  CLI::App* app = program.add_subcommand("check", "Validates scenes with their meshes; all errors at once.");
+  app->footer("Example: ctpm check scenes/liver.json");
+  app->add_option("scenes", arguments->scenes, "Scene files (.json)")->required();
+  app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths, "Meshes may lie outside the scene's folder");
+  return {app, [arguments] { return run_check(*arguments); }};
+}
+
+}  // namespace ctpm

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace ctpm {
+
+/// What runs a subcommand once its arguments are read; returns an ExitCode.
+using Run = std::function<int()>;
+
+/// Each adds one subcommand with its options and an example to the program, and returns what runs it.
+struct Command {
+  CLI::App* app;
+  Run run;
+};
+
+Command add_import(CLI::App& program);
+Command add_check(CLI::App& program);
+Command add_plan(CLI::App& program);
+Command add_preview(CLI::App& program);
+Command add_record(CLI::App& program);
+Command add_replay(CLI::App& program);
+Command add_verify(CLI::App& program);
+Command add_info(CLI::App& program);
+Command add_recover(CLI::App& program);
+Command add_export(CLI::App& program);
+Command add_demo(CLI::App& program);
+
+}  // namespace ctpm

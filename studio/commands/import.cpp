@@ -1,0 +1,129 @@
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "importers/import.h"
+#include "scenes/anchors.h"
+#include "studio/commands/command.h"
+#include "studio/console.h"
+#include "studio/files.h"
+#include "studio/import_scene.h"
+#include "studio/json_writer.h"
+
+namespace ctpm {
+namespace {
+
+struct ImportArguments {
+  ImportRequest request;
+  std::string unit, report;
+  std::optional<double> radius_mm, gap_mm;
+  std::vector<std::string> anchors;
+};
+
+/// Everything that is wrong with the arguments, and what they mean in SI.
+Errors complete(ImportArguments& a) {
+  Errors errors;
+  const std::map<std::string, double> units{{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}, {"in", 0.0254}};
+  if (!a.unit.empty() && !units.contains(a.unit))
+    errors.push_back({"--unit", "got '" + a.unit + "', must be mm, cm, m or in", ""});
+  else if (!a.unit.empty())
+    a.request.unit_in_metres = units.at(a.unit);
+  if (a.radius_mm && !(*a.radius_mm > 0 && *a.radius_mm <= 100))
+    errors.push_back({"--radius-mm", "got " + fixed(*a.radius_mm, 3) + ", must be in (0, 100]", ""});
+  else if (a.radius_mm)
+    a.request.sphere_radius = 1e-3 * *a.radius_mm;
+  if (a.gap_mm && !(*a.gap_mm >= 0 && *a.gap_mm <= 100))
+    errors.push_back({"--gap-mm", "got " + fixed(*a.gap_mm, 3) + ", must be in [0, 100]", ""});
+  else if (a.gap_mm)
+    a.request.gap = 1e-3 * *a.gap_mm;
+  for (const std::string& text : a.anchors) {
+    const Result<AnchorSpec> anchor = parse_anchor(text);
+    if (anchor)
+      a.request.anchors.push_back(*anchor);
+    else
+      errors.insert(errors.end(), anchor.errors().begin(), anchor.errors().end());
+  }
+  if (!a.report.empty())
+    if (const Result<Done> writable = check_writable(a.report); !writable)
+      errors.insert(errors.end(), writable.errors().begin(), writable.errors().end());
+  return errors;
+}
+
+void write_point(JsonWriter& json, const char* name, Vec3 p) {
+  json.key(name).begin_list().value(p.x * 1e3).value(p.y * 1e3).value(p.z * 1e3).end_list();
+}
+
+std::string report_json(const ImportReport& r, const ImportOutcome& outcome) {
+  JsonWriter json;
+  json.begin_object().member("mesh", r.path).member("format", r.format).member("unit", unit_name(r.unit.in_metres));
+  const char* sources[] = {"given", "file", "guessed"};
+  json.member("unit_source", sources[int(r.unit.source)]).member("volume_ml", r.mesh_volume * 1e6);
+  write_point(json, "box_least_mm", r.box_least), write_point(json, "box_most_mm", r.box_most);
+  for (const auto& [name, counts] : {std::pair{"before", r.before}, std::pair{"after", r.after}}) {
+    json.key(name).begin_object().member("vertices", counts.vertices).member("triangles", counts.triangles);
+    json.member("parts", counts.parts).member("open_edges", counts.open_edges);
+    json.member("non_manifold_edges", counts.non_manifold_edges).end_object();
+  }
+  json.key("filling").begin_object().member("radius_mm", r.sphere_radius * 1e3).member("spacing_mm", r.spacing * 1e3);
+  json.member("spheres", r.fill.spheres).member("edges", r.fill.edges).member("volume_ml", r.fill.filled_volume * 1e6);
+  json.member("largest_distance_mm", r.fill.largest_distance * 1e3).member("mean_distance_mm", r.fill.mean_distance * 1e3);
+  json.member("anchored", outcome.anchored).key("spheres_per_layer").begin_list();
+  for (const std::int64_t count : r.fill.spheres_per_layer) json.value(count);
+  json.end_list().end_object().key("findings").begin_list();
+  for (const Finding& f : r.findings) {
+    json.begin_object().member("code", f.code).member("count", f.count);
+    if (f.place) write_point(json, "place_mm", *f.place);
+    json.member("found", f.found).member("done", f.done).member("remains", f.remains).end_object();
+  }
+  return json.end_list().end_object().text();
+}
+
+/// Few spheres make a coarse organ; says which radius would give a livelier one.
+void suggest_radius(const ImportReport& report) {
+  constexpr double kFew = 200, kLively = 800;
+  if (double(report.fill.spheres) >= kFew) return;
+  const double radius = report.sphere_radius * 1e3 * std::cbrt(double(report.fill.spheres) / kLively);
+  std::printf("note: %lld spheres are few for this organ; --radius-mm %.1f would give about %.0f\n",
+              (long long)report.fill.spheres, std::max(0.1, std::floor(radius * 10) / 10), kLively);
+}
+
+int run_import(ImportArguments& arguments) {
+  if (const Errors errors = complete(arguments); !errors.empty()) return print_errors(errors);
+  ProgressLine progress("importing");
+  arguments.request.progress = [&](const std::string&, double fraction) { progress.show(std::int64_t(1000 * fraction), 1000); };
+  const Result<ImportOutcome> outcome = import_scene(arguments.request);
+  if (!outcome) return print_errors(outcome.errors());
+  if (!arguments.report.empty())
+    if (const Result<Done> written = write_text_file(arguments.report, report_json(outcome->report, *outcome)); !written)
+      return print_errors(written.errors());
+  std::printf("%s", to_text(outcome->report).c_str());
+  std::printf("anchored: %zu spheres never move\n", outcome->anchored);
+  suggest_radius(outcome->report);
+  const std::string scene = arguments.request.scene, stem = scene.substr(0, scene.size() - 5);
+  std::printf("written: %s, %s, %s\n", scene.c_str(), outcome->mesh_file.c_str(), outcome->script_file.c_str());
+  std::printf("next: ctpm record %s --script %s -o %s.ctpm\n", scene.c_str(), outcome->script_file.c_str(), stem.c_str());
+  return exit_good;
+}
+
+}  // namespace
+
+Command add_import(CLI::App& program) {
+  auto arguments = std::make_shared<ImportArguments>();
+  CLI::App* app = program.add_subcommand("import", "Checks, repairs and fills a mesh, and writes a scene that runs as it is.");
+  app->footer("Example: ctpm import liver.stl --organ liver --unit mm -o my/liver.json");
+  app->add_option("mesh", arguments->request.mesh, "Mesh file (OBJ, STL, PLY, OFF, glTF, ...)")->required();
+  app->add_option("-o,--output", arguments->request.scene, "Scene file to write (.json)")->required();
+  app->add_option("--organ", arguments->request.organ, "Material preset: liver, kidney, skin, or with -pa-s");
+  app->add_option("--unit", arguments->unit, "Unit of the mesh file: mm, cm, m, in; guessed if not given");
+  app->add_option("--radius-mm", arguments->radius_mm, "Radius of the spheres; the preset's if not given");
+  app->add_option("--gap-mm", arguments->gap_mm, "Gap between their surfaces; the radius if not given");
+  app->add_option("--part", arguments->request.part, "Name of the mesh to take, if the file holds several");
+  app->add_flag("--all-parts", arguments->request.all_parts, "Keep every closed part, not only the largest");
+  app->add_option("--anchor", arguments->anchors, "What never moves: lowest:MM, box:..., sphere:..., plane:... (repeatable)");
+  app->add_option("--report", arguments->report, "Write the report as JSON");
+  return {app, [arguments] { return run_import(*arguments); }};
+}
+
+}  // namespace ctpm

@@ -1,0 +1,76 @@
+#include <memory>
+#include <string>
+
+#include "core/step.h"
+#include "studio/commands/command.h"
+#include "studio/console.h"
+#include "studio/files.h"
+#include "studio/loaded_scene.h"
+#include "studio/render/frame.h"
+#include "studio/render/picture_size.h"
+#include "studio/render/renderer.h"
+
+namespace ctpm {
+namespace {
+
+struct PreviewArguments {
+  std::string scene, output, size = "1280x720", camera;
+  bool spheres = false;
+  LoadOptions load;
+};
+
+/// Both pictures side by side.
+Frame beside(const Frame& left, const Frame& right) {
+  Frame both{left.width + right.width, left.height, {}};
+  both.rgb.reserve(left.rgb.size() + right.rgb.size());
+  for (int row = 0; row < left.height; ++row)
+    for (const Frame* frame : {&left, &right}) {
+      const auto begin = frame->rgb.begin() + std::ptrdiff_t(row) * frame->width * 3;
+      both.rgb.insert(both.rgb.end(), begin, begin + std::ptrdiff_t(frame->width) * 3);
+    }
+  return both;
+}
+
+int run_preview(const PreviewArguments& arguments) {
+  const Result<PictureSize> size = parse_picture_size(arguments.size);
+  if (!size) return print_errors(size.errors());
+  if (const Result<Done> writable = check_writable(arguments.output); !writable) return print_errors(writable.errors());
+  const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
+  if (!scene) return print_errors(scene.errors());
+  // With --spheres the surface stands on the left half and the layered spheres on the right.
+  const int width = arguments.spheres ? size->width / 2 : size->width;
+  const Model& model = scene->built.model;
+  SceneView view = view_of(scene->scene.spec, model, surfaces_of(scene->organs));
+  const Result<Camera> camera = find_camera(scene->scene.spec, view, arguments.camera, double(width) / size->height);
+  if (!camera) return print_errors(camera.errors());
+  Result<std::unique_ptr<Renderer>> renderer = Renderer::create(width, size->height, std::move(view));
+  if (!renderer) return print_errors(renderer.errors());
+  const State state = rest_state(model);
+  DrawOptions options;
+  options.camera = *camera;
+  Frame picture = (*renderer)->draw(state, options);
+  if (arguments.spheres) {
+    options.view = View::spheres;
+    picture = beside(picture, (*renderer)->draw(state, options));
+  }
+  if (const Result<Done> written = write_png(arguments.output, picture); !written) return print_errors(written.errors());
+  std::printf("%s: %dx%d\n", arguments.output.c_str(), picture.width, picture.height);
+  return exit_good;
+}
+
+}  // namespace
+
+Command add_preview(CLI::App& program) {
+  auto arguments = std::make_shared<PreviewArguments>();
+  CLI::App* app = program.add_subcommand("preview", "Draws a scene as it is at rest.");
+  app->footer("Example: ctpm preview scenes/liver.json -o liver.png --spheres");
+  app->add_option("scene", arguments->scene, "Scene file (.json)")->required();
+  app->add_option("-o,--output", arguments->output, "Picture (.png)")->required();
+  app->add_flag("--spheres", arguments->spheres, "Beside the surface, the spheres coloured by layer");
+  app->add_option("--size", arguments->size, "Width x height in pixels")->capture_default_str();
+  app->add_option("--camera", arguments->camera, "Name of a camera of the scene");
+  app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths, "Meshes may lie outside the scene's folder");
+  return {app, [arguments] { return run_preview(*arguments); }};
+}
+
+}  // namespace ctpm

@@ -1,0 +1,121 @@
+#include "studio/import_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "scenes/anchors.h"
+#include "scenes/presets.h"
+#include "scenes/scene_file.h"
+#include "scenes/script.h"
+#include "studio/files.h"
+
+namespace ctpm {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The preset that was named, or the one whose organ's name stands in the mesh's file name.
+Result<const MaterialPreset*> choose_preset(const ImportRequest& request) {
+  std::string known;
+  for (const MaterialPreset& preset : material_presets()) {
+    if (request.organ == preset.name) return &preset;
+    known += (known.empty() ? "" : ", ") + std::string(preset.name);
+  }
+  if (!request.organ.empty()) return Error{"--organ", "there is no preset '" + request.organ + "'", "presets: " + known};
+  const std::string name = fs::path(request.mesh).stem().string();
+  for (const MaterialPreset& preset : material_presets())
+    if (name.find(preset.organ) != std::string::npos) return &preset;
+  return Error{"--organ", "the file's name does not say which organ it is", "give one of " + known};
+}
+
+/// A camera that sees the organ from the front, a little from above.
+CameraSpec front_camera(const FilledOrgan& organ) {
+  Vec3 low = organ.surface.vertex.front(), high = low;
+  for (const Vec3& p : organ.surface.vertex) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const auto whole_mm = [](Vec3 p) { return Vec3{std::round(p.x * 1e3) * 1e-3, std::round(p.y * 1e3) * 1e-3, std::round(p.z * 1e3) * 1e-3}; };
+  const double size = norm(high - low);
+  CameraSpec camera;
+  camera.name = "front";
+  camera.target = whole_mm(0.5 * (low + high));
+  camera.eye = whole_mm(camera.target + size * Vec3{-0.18, -1.15, 0.80});
+  camera.field_of_view = 32;
+  return camera;
+}
+
+double extent_z(const FilledOrgan& organ) {
+  const auto [low, high] = std::minmax_element(organ.centre.begin(), organ.centre.end(), [](Vec3 a, Vec3 b) { return a.z < b.z; });
+  return high->z - low->z;
+}
+
+SceneSpec make_scene(const ImportRequest& request, const MaterialPreset& preset, const FilledOrgan& organ, const std::string& name) {
+  SceneSpec scene;
+  scene.name = name;
+  OrganSpec spec;
+  spec.name = name;
+  spec.mesh = name + ".obj";
+  spec.fill.radius = organ.sphere_radius;
+  spec.fill.gap = organ.spacing - 2 * organ.sphere_radius;
+  spec.material.preset = preset.name;
+  spec.damage_depth = preset.damage_depth;
+  spec.anchors = request.anchors;
+  if (spec.anchors.empty()) {
+    AnchorSpec lowest;
+    lowest.lowest = std::round(1e3 * std::max(extent_z(organ) / 8, 0.01 * organ.spacing)) * 1e-3;
+    spec.anchors = {lowest};
+  }
+  scene.organs = {spec};
+  // Tools in proportion to the organ: a ball of two spheres, a blade that reaches through.
+  ToolSpec ball, scalpel;
+  ball.name = "ball", ball.kind = ToolKind::ball, ball.radius = 2.5 * organ.sphere_radius;
+  scalpel.name = "scalpel", scalpel.kind = ToolKind::scalpel;
+  scalpel.blade_length = std::ceil(1e2 * std::max(0.04, 0.7 * extent_z(organ))) * 1e-2;
+  scene.tools = {ball, scalpel};
+  scene.cameras = {front_camera(organ)};
+  return scene;
+}
+
+}  // namespace
+
+Result<ImportOutcome> import_scene(const ImportRequest& request) {
+  const Result<const MaterialPreset*> preset = choose_preset(request);
+  if (!preset) return preset.errors();
+  if (fs::path(request.scene).extension() != ".json") return Error{request.scene, "a scene's name must end in .json", ""};
+  if (const Result<Done> writable = check_writable(request.scene); !writable) return writable.errors();
+  const fs::path folder = fs::path(request.scene).parent_path();
+  const std::string name = fs::path(request.scene).stem().string();
+  ImportOutcome outcome;
+  outcome.mesh_file = (folder / (name + ".obj")).string();
+  outcome.script_file = (folder / (name + ".script.json")).string();
+  std::error_code ignored;
+  if (fs::equivalent(outcome.mesh_file, request.mesh, ignored))
+    return Error{outcome.mesh_file, "the repaired mesh would replace the mesh that is imported", "give the scene another name or folder"};
+
+  ImportOptions options;
+  options.unit_in_metres = request.unit_in_metres;
+  options.usual_size = {(*preset)->usual_size_least, (*preset)->usual_size_most};
+  options.part = request.part, options.all_parts = request.all_parts;
+  options.sphere_radius = request.sphere_radius.value_or((*preset)->sphere_radius);
+  options.gap = request.gap.value_or(-1);
+  options.progress = request.progress;
+  Result<ImportedOrgan> imported = import_organ(request.mesh, options);
+  if (!imported) return imported.errors();
+  outcome.report = imported->report;
+
+  const std::vector<FilledOrgan> organs{std::move(imported->organ)};
+  const SceneSpec scene = make_scene(request, **preset, organs.front(), name);
+  const Result<std::vector<std::int32_t>> anchored = select_anchored(organs.front(), scene.organs[0].anchors, scene.gravity, request.mesh);
+  if (!anchored) return anchored.errors();
+  outcome.anchored = anchored->size();
+  const Surface& surface = organs.front().surface;
+  if (const Result<Done> written = write_obj(outcome.mesh_file, surface.vertex, surface.triangle); !written) return written.errors();
+  const Script script = default_script(scene, organs);
+  if (const Result<Done> written = write_text_file(outcome.script_file, write_script(script)); !written) return written.errors();
+  if (const Result<Done> written = write_text_file(request.scene, write_scene(scene)); !written) return written.errors();
+  return outcome;
+}
+
+}  // namespace ctpm

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "importers/import.h"
+#include "scenes/scene_spec.h"
+
+namespace ctpm {
+
+/// What an author asks of an import.
+struct ImportRequest {
+  std::string mesh;                     ///< mesh file
+  std::string scene;                    ///< scene file to write (.json); mesh and script are written beside it
+  std::string organ;                    ///< name of a material preset; empty: found in the mesh's file name
+  std::optional<double> unit_in_metres; ///< unset: from the file, else guessed
+  std::optional<double> sphere_radius;  ///< [m]; unset: the preset's
+  std::optional<double> gap;            ///< [m]; unset: the radius
+  std::string part;
+  bool all_parts = false;
+  std::vector<AnchorSpec> anchors;      ///< empty: the lowest eighth of the organ's height
+  Progress progress;
+};
+
+struct ImportOutcome {
+  ImportReport report;
+  std::string mesh_file, script_file;  ///< written beside the scene
+  std::size_t anchored = 0;            ///< spheres that never move
+};
+
+/// Imports a mesh and writes a scene that runs as it is: `NAME.json`, the repaired mesh `NAME.obj` in millimetres, and a
+/// script `NAME.script.json` that presses and cuts it. Errors: those of the import, an unknown organ, an anchor that
+/// catches nothing, a folder that cannot be written. The scene is written last, so it never names a missing file.
+Result<ImportOutcome> import_scene(const ImportRequest& request);
+
+}  // namespace ctpm

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace ctpm {
+
+/// Writes JSON for machines: results of commands with --json. Numbers keep all their digits; what is not finite is null.
+class JsonWriter {
+ public:
+  JsonWriter& begin_object() { return open('{'); }
+  JsonWriter& end_object() { return close('}'); }
+  JsonWriter& begin_list() { return open('['); }
+  JsonWriter& end_list() { return close(']'); }
+
+  JsonWriter& key(std::string_view name) {
+    separate();
+    write_text(name);
+    text_ += ": ";
+    after_key_ = true;
+    return *this;
+  }
+  JsonWriter& value(std::string_view text) { return separate(), write_text(text), *this; }
+  JsonWriter& value(const char* text) { return value(std::string_view(text)); }
+  JsonWriter& value(bool flag) { return raw(flag ? "true" : "false"); }
+  JsonWriter& value(std::int64_t number) { return raw(std::to_string(number)); }
+  JsonWriter& value(std::int32_t number) { return raw(std::to_string(number)); }
+  JsonWriter& value(std::size_t number) { return raw(std::to_string(number)); }
+  JsonWriter& value(double number) {
+    if (!std::isfinite(number)) return raw("null");
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%.17g", number);
+    return raw(digits);
+  }
+  template <class T>
+  JsonWriter& member(std::string_view name, const T& v) {
+    return key(name), value(v);
+  }
+
+  /// The finished document, with a newline at its end.
+  std::string text() const { return text_ + "\n"; }
+
+ private:
+  JsonWriter& open(char bracket) {
+    separate();
+    text_ += bracket;
+    ++depth_;
+    is_first_ = true;
+    return *this;
+  }
+  JsonWriter& close(char bracket) {
+    --depth_;
+    if (!is_first_) new_line();
+    text_ += bracket;
+    is_first_ = false;
+    return *this;
+  }
+  JsonWriter& raw(std::string_view word) {
+    separate();
+    text_ += word;
+    return *this;
+  }
+  void separate() {
+    if (after_key_) {
+      after_key_ = false;
+      return;
+    }
+    if (depth_ == 0) return;
+    if (!is_first_) text_ += ',';
+    new_line();
+    is_first_ = false;
+  }
+  void new_line() { text_.append("\n").append(std::size_t(2 * depth_), ' '); }
+  void write_text(std::string_view text) {
+    text_ += '"';
+    for (const char c : text) {
+      if (c == '"' || c == '\\') {
+        text_ += '\\';
+        text_ += c;
+      } else if (static_cast<unsigned char>(c) < 0x20) {
+        char code[8];
+        std::snprintf(code, sizeof code, "\\u%04x", unsigned(c));
+        text_ += code;
+      } else {
+        text_ += c;
+      }
+    }
+    text_ += '"';
+  }
+
+  std::string text_;
+  int depth_ = 0;
+  bool is_first_ = true, after_key_ = false;
+};
+
+}  // namespace ctpm

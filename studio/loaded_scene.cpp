@@ -1,0 +1,94 @@
+#include "studio/loaded_scene.h"
+
+#include "scenes/presets.h"
+#include "studio/console.h"
+
+namespace ctpm {
+namespace {
+
+ImportOptions import_options_of(const OrganSpec& organ) {
+  ImportOptions options;
+  options.unit_in_metres = metres_of(organ.mesh_unit);
+  if (const MaterialPreset* preset = find_preset(organ.material.preset))
+    options.usual_size = {preset->usual_size_least, preset->usual_size_most};
+  options.sphere_radius = organ.fill.radius;
+  options.gap = organ.fill.gap;
+  return options;
+}
+
+/// A rig has no mesh; its surface is empty and bound to nothing.
+FilledOrgan filled_rig(const OrganSpec& organ) {
+  FilledOrgan filled = fill_rig(organ);
+  filled.surface.binding.first = {0};
+  return filled;
+}
+
+}  // namespace
+
+Result<LoadedScene> load_whole_scene(const std::string& path, const LoadOptions& options) {
+  Result<SceneText> scene = load_scene(path, options);
+  if (!scene) return scene.errors();
+  for (const Error& warning : scene->warnings)
+    print_remark(warning.where + ": warning: " + warning.message + (warning.hint.empty() ? "" : " (" + warning.hint + ")"));
+  LoadedScene loaded;
+  loaded.path = path;
+  loaded.scene = std::move(*scene);
+  Errors errors;
+  for (const OrganSpec& organ : loaded.scene.spec.organs) {
+    if (organ.rig) {
+      loaded.organs.push_back(filled_rig(organ));
+      loaded.reports.emplace_back();
+      continue;
+    }
+    Result<ImportedOrgan> imported = import_organ(mesh_path(path, organ), import_options_of(organ));
+    if (!imported) {
+      errors.insert(errors.end(), imported.errors().begin(), imported.errors().end());
+      continue;
+    }
+    loaded.organs.push_back(std::move(imported->organ));
+    loaded.reports.push_back(std::move(imported->report));
+  }
+  if (!errors.empty()) return errors;
+  Result<BuiltScene> built = build_model(loaded.scene.spec, loaded.organs);
+  if (!built) {
+    for (Error error : built.errors()) {
+      error.where = path + ": " + error.where;
+      errors.push_back(error);
+    }
+    return errors;
+  }
+  loaded.built = std::move(*built);
+  return loaded;
+}
+
+SceneView view_of(const SceneSpec& scene, const Model& model, std::vector<Surface> surfaces) {
+  SceneView view;
+  view.model = &model;
+  view.surfaces = std::move(surfaces);
+  for (const OrganSpec& organ : scene.organs) {
+    OrganLook look = look_of(organ.name);
+    look.name = organ.name;
+    look.outer = {organ.surface_color.x, organ.surface_color.y, organ.surface_color.z};
+    look.inner = {organ.inner_color.x, organ.inner_color.y, organ.inner_color.z};
+    view.looks.push_back(look);
+  }
+  return view;
+}
+
+std::vector<Surface> surfaces_of(const std::vector<FilledOrgan>& organs) {
+  std::vector<Surface> surfaces;
+  for (const FilledOrgan& organ : organs) surfaces.push_back(organ.surface);
+  return surfaces;
+}
+
+Result<Camera> find_camera(const SceneSpec& scene, const SceneView& view, const std::string& name, double aspect) {
+  if (name.empty() && scene.cameras.empty()) return default_camera(view, aspect);
+  std::string known;
+  for (const CameraSpec& camera : scene.cameras) {
+    if (name.empty() || camera.name == name) return Camera{camera.eye, camera.target, camera.up, camera.field_of_view};
+    known += (known.empty() ? "" : ", ") + camera.name;
+  }
+  return Error{"--camera", "the scene has no camera '" + name + "'", known.empty() ? "it has none" : "it has: " + known};
+}
+
+}  // namespace ctpm

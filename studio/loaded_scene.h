@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/model.h"
+#include "core/organ.h"
+#include "core/result.h"
+#include "importers/import.h"
+#include "scenes/build_model.h"
+#include "scenes/scene_file.h"
+#include "studio/render/scene_view.h"
+
+namespace ctpm {
+
+/// A scene with everything that it names: its meshes read and filled, its Model built.
+struct LoadedScene {
+  std::string path;
+  SceneText scene;
+  std::vector<FilledOrgan> organs;    ///< (organ_count)
+  std::vector<ImportReport> reports;  ///< of organs that come from meshes; empty ones for rigs   (organ_count)
+  BuiltScene built;
+};
+
+/// Reads, imports and builds. Warnings go to stderr. Errors: those of the scene, its meshes and its anchors, with places.
+Result<LoadedScene> load_whole_scene(const std::string& path, const LoadOptions& options = {});
+
+/// What is drawn of a scene. `model` must outlive the view.
+SceneView view_of(const SceneSpec& scene, const Model& model, std::vector<Surface> surfaces);
+
+/// The surfaces of the organs, in their order.
+std::vector<Surface> surfaces_of(const std::vector<FilledOrgan>& organs);
+
+/// The camera of that name; if the name is empty the scene's first, or one that has everything in sight.
+/// Error: no camera of that name, with the names there are.
+Result<Camera> find_camera(const SceneSpec& scene, const SceneView& view, const std::string& name, double aspect);
+
+}  // namespace ctpm

@@ -1,0 +1,35 @@
+#include <CLI/CLI.hpp>
+#include <clocale>
+#include <exception>
+#include <vector>
+
+#include "studio/commands/command.h"
+#include "studio/console.h"
+
+int main(int argc, char** argv) {
+  using namespace ctpm;
+  std::setlocale(LC_ALL, "C");  // numbers are written and read with a point, wherever the program runs
+
+  CLI::App program{"ctpm: a studio for soft-tissue scenes.\n"
+                   "Authors import organ meshes, trainees record and replay sessions, reviewers export videos.",
+                   "ctpm"};
+  program.set_version_flag("--version", CTPM_VERSION);
+  program.require_subcommand(1);
+  program.failure_message(CLI::FailureMessage::simple);
+  const std::vector<Command> commands{add_import(program), add_check(program),  add_plan(program),   add_preview(program),
+                                      add_record(program), add_replay(program), add_verify(program), add_info(program),
+                                      add_recover(program), add_export(program), add_demo(program)};
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? exit_good : exit_bad_input;
+  }
+  try {
+    for (const Command& command : commands)
+      if (command.app->parsed()) return command.run();
+  } catch (const std::exception& error) {
+    // Nothing of ours throws; what gets here is the machine running out of something.
+    return print_errors({{"", error.what(), ""}});
+  }
+  return exit_bad_input;
+}

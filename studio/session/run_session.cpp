@@ -1,0 +1,81 @@
+#include "studio/session/run_session.h"
+
+#include <chrono>
+#include <string>
+#include <thread>
+
+#include "core/step.h"
+#include "recordings/state_hash.h"
+
+namespace ctpm {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Notes what a reviewer wants to find again: the moments at which something begins or ends.
+class EventWatch {
+ public:
+  EventWatch(const Model& model, SessionWriter& writer) : writer_(writer) {
+    for (const OrganRange& organ : model.organs)
+      if (organ.damage_depth > 0 && (limit_ == 0 || organ.damage_depth < limit_)) limit_ = organ.damage_depth;
+  }
+
+  void look(std::int64_t tick, const StepReport& report) {
+    const bool touches = report.contacts > 0;
+    if (touches != touched_)
+      writer_.event(tick, touches ? EventKind::contact_begins : EventKind::contact_ends,
+                    touches ? "tool touches the tissue" : "tool leaves the tissue");
+    if (report.severed > 0 && !cut_)
+      writer_.event(tick, EventKind::cut, "blade begins to sever; value: elements", {double(report.severed)});
+    const bool damages = limit_ > 0 && report.depth > limit_;
+    if (damages && !damaged_)
+      writer_.event(tick, EventKind::damage, "depth passes the damage limit; values: depth and limit in m", {report.depth, limit_});
+    touched_ = touches, cut_ = report.severed > 0, damaged_ = damages;
+  }
+
+ private:
+  SessionWriter& writer_;
+  double limit_ = 0;
+  bool touched_ = false, cut_ = false, damaged_ = false;
+};
+
+}  // namespace
+
+RunOutcome run_session(const Model& model, State& state, InputSource& source, SessionWriter& writer,
+                       const RunOptions& options) {
+  Stepper stepper(model);
+  EventWatch watch(model, writer);
+  RunOutcome outcome;
+  StepReport report;
+  const auto tick_length = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(model.tick));
+  Clock::time_point deadline = Clock::now();
+  for (std::int64_t tick = 0; options.most_ticks == 0 || tick < options.most_ticks; ++tick) {
+    if (options.should_stop && options.should_stop()) break;
+    const std::optional<Inputs> inputs = source.next(tick, report);
+    if (!inputs) break;
+    if (options.in_real_time) std::this_thread::sleep_until(deadline);
+    const Clock::time_point start = Clock::now();
+    report = stepper.step(state, *inputs);
+    const double tick_time = seconds_since(start);
+    outcome.status = report.status, outcome.worst_sphere = report.worst_sphere;
+    if (report.status == StepStatus::diverged || report.status == StepStatus::bad_input) {
+      writer.event(tick, EventKind::note, "the step was refused; value: sphere", {double(report.worst_sphere)});
+      break;
+    }
+    writer.append(state, make_record(*inputs, report, tick_time, state_hash(state)));
+    watch.look(tick, report);
+    deadline += tick_length;
+    if (options.in_real_time && Clock::now() > deadline) {
+      ++outcome.late_ticks;
+      writer.event(tick, EventKind::late_tick, "tick ended late; value: by how much in s", {seconds_since(deadline)});
+      deadline = Clock::now();  // a late tick does not make the next ones hurry
+    }
+    ++outcome.ticks;
+    if (options.progress) options.progress(outcome.ticks, options.most_ticks ? options.most_ticks : source.tick_count());
+  }
+  return outcome;
+}
+
+}  // namespace ctpm

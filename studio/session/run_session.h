@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "core/model.h"
+#include "core/state.h"
+#include "recordings/session_writer.h"
+#include "studio/session/input_source.h"
+
+namespace ctpm {
+
+struct RunOptions {
+  bool in_real_time = true;         ///< ticks start on absolute deadlines of the wall clock; else one after the other
+  std::int64_t most_ticks = 0;      ///< the session ends after so many; 0: when the source ends
+  std::function<void(std::int64_t done, std::int64_t total)> progress;
+  std::function<bool()> should_stop;  ///< asked every tick: Ctrl-C
+};
+
+/// What a run came to.
+struct RunOutcome {
+  std::int64_t ticks = 0;
+  std::int64_t late_ticks = 0;   ///< ticks that ended after their deadline, in real time only
+  StepStatus status = StepStatus::ok;  ///< of the last tick; a diverged tick ends the run
+  std::int32_t worst_sphere = -1;
+};
+
+/// Runs one session: source -> step -> writer, tick by tick. `state` goes on from where it is.
+RunOutcome run_session(const Model& model, State& state, InputSource& source, SessionWriter& writer,
+                       const RunOptions& options);
+
+}  // namespace ctpm

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/result.h"
+
+namespace ctpm {
+
+/// Ticks [from, to) of a session.
+struct TickRange {
+  std::int64_t from = 0, to = 0;
+};
+
+/// Part of a session as a user gives it.
+struct TimeRange {
+  double from_s = 0;
+  std::optional<double> to_s;  ///< unset: to the end
+
+  /// Errors: not within the session's `tick_count` ticks of `tick` [s], or empty.
+  Result<TickRange> in_ticks(const std::string& where, double tick, std::int64_t tick_count) const {
+    const double end_s = double(tick_count) * tick, last_s = to_s.value_or(end_s);
+    const std::string is_long = "the session lasts " + std::to_string(end_s) + " s";
+    if (!(from_s >= 0 && from_s <= end_s)) return Error{where, "--from-s: got " + std::to_string(from_s) + ", " + is_long, ""};
+    if (!(last_s > from_s) && tick_count > 0) return Error{where, "--to-s: got " + std::to_string(last_s) + ", must be after --from-s", ""};
+    if (last_s > end_s + 0.5 * tick) return Error{where, "--to-s: got " + std::to_string(last_s) + ", " + is_long, ""};
+    return TickRange{std::llround(from_s / tick), std::llround(last_s / tick)};
+  }
+};
+
+inline void add_time_range(CLI::App& app, TimeRange& range) {
+  app.add_option("--from-s", range.from_s, "Where to begin [s]");
+  app.add_option("--to-s", range.to_s, "Where to end [s]; the session's end if not given");
+}
+
+}  // namespace ctpm
