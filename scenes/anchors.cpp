@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
+#include <string_view>
+
+#include "scenes/json_text.h"
 
 namespace ctpm {
 namespace {
@@ -73,25 +77,31 @@ Result<AnchorSpec> parse_anchor(const std::string& text) {
       ""};
   const auto colon = text.find(':');
   if (colon == std::string::npos) return error;
+  std::vector<std::string_view> raw;
   std::vector<double> v;
   for (const char *p = text.data() + colon + 1, *end = text.data() + text.size(); p <= end;) {
     double number = 0;
     const auto [next, problem] = std::from_chars(p, end, number);
-    if (problem != std::errc() || (next != end && *next != ',') || !(std::abs(number) < 1e6)) return error;
-    v.push_back(number);
+    if (problem != std::errc() || (next != end && *next != ',') || !(std::abs(number) <= 1e5)) return error;
+    v.push_back(number), raw.emplace_back(p, next);
     p = next + 1;
   }
   const std::string kind = text.substr(0, colon);
   AnchorSpec anchor;
-  const auto mm = [&](std::size_t i) { return 1e-3 * Vec3{v[i], v[i + 1], v[i + 2]}; };
+  // Converted as scene text is, so that the scene that is written has the same digits.
+  const auto mm = [&](std::size_t i) { return decimal_to_double(raw[i], -3); };
+  const auto point = [&](std::size_t i) { return Vec3{mm(i), mm(i + 1), mm(i + 2)}; };
+  const bool is_box = kind == "box" && v.size() == 6, is_plane = kind == "plane" && v.size() == 6;
+  if (is_box && !(v[0] <= v[3] && v[1] <= v[4] && v[2] <= v[5])) return error;
+  if (is_plane && norm(Vec3{v[3], v[4], v[5]}) < 1e-9) return error;
   if (kind == "lowest" && v.size() == 1 && v[0] >= 0)
-    anchor.lowest = 1e-3 * v[0];
-  else if (kind == "box" && v.size() == 6)
-    anchor.box = BoxRegion{mm(0), mm(3)};
+    anchor.lowest = mm(0);
+  else if (is_box)
+    anchor.box = BoxRegion{point(0), point(3)};
   else if (kind == "sphere" && v.size() == 4 && v[3] > 0)
-    anchor.sphere = SphereRegion{mm(0), 1e-3 * v[3]};
-  else if (kind == "plane" && v.size() == 6)
-    anchor.plane = PlaneRegion{mm(0), {v[3], v[4], v[5]}};
+    anchor.sphere = SphereRegion{point(0), mm(3)};
+  else if (is_plane)
+    anchor.plane = PlaneRegion{point(0), {v[3], v[4], v[5]}};
   else
     return error;
   return anchor;

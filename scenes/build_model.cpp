@@ -101,20 +101,28 @@ Result<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrg
   Errors errors;
   for (std::size_t i = 0; i < organs.size(); ++i) {
     const OrganSpec& spec = scene.organs[i];
+    const std::string where = "/organs/" + std::to_string(i);
     OrganSettings settings;
     settings.name = spec.name, settings.structure = spec.model, settings.lattice = spec.lattice;
     settings.has_softening = spec.softening, settings.material = resolve_material(spec.material).material;
     settings.damage_depth = spec.damage_depth, settings.guides = guides_of(spec, organs[i]);
     Result<std::vector<std::int32_t>> anchored =
-        select_anchored(organs[i], spec.anchors, scene.gravity, "/organs/" + std::to_string(i));
+        select_anchored(organs[i], spec.anchors, scene.gravity, where);
     if (!anchored) {
       errors.insert(errors.end(), anchored.errors().begin(), anchored.errors().end());
       continue;
     }
     built.anchored_count.push_back(std::int32_t(anchored->size()));
     settings.anchored = std::move(*anchored);
-    if (Result<Done> added = add_organ(model, organs[i], settings); !added)
-      errors.insert(errors.end(), added.errors().begin(), added.errors().end());
+    const std::size_t elements_before = model.element_count();
+    if (Result<Done> added = add_organ(model, organs[i], settings); !added) {
+      for (Error error : added.errors()) errors.push_back({where, error.message, error.hint});
+    } else if (model.element_count() == elements_before) {
+      errors.push_back({where,
+                        "no two of its " + std::to_string(organs[i].centre.size()) +
+                            " spheres are neighbours, so nothing joins them",
+                        "fill it with smaller spheres"});
+    }
   }
   if (!errors.empty()) return errors;
   add_tools(model, scene);

@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
+#include <set>
 
 namespace ctpm {
 namespace {
+
+/// A text with more problems than anybody reads is not searched for hints and copies of them any more.
+constexpr std::size_t kMostProblems = 1000;
 
 std::string plain_number(double value) { return double_to_decimal(value, 0); }
 
@@ -71,7 +76,7 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
     const std::size_t distance = edit_distance(normal, normal_form(candidate));
     if (distance < best_distance) best = candidate, best_distance = distance;
   }
-  return best_distance <= std::max<std::size_t>(2, word.size() / 3) ? best : "";
+  return best_distance <= std::max<std::size_t>(2, normal.size() / 3) ? best : "";
 }
 
 // ---- Problems
@@ -83,13 +88,16 @@ Problems::Problem Problems::make(const std::string& pointer, Place place, const 
   return {pointer, place, Error{where, (pointer.empty() ? "/" : pointer) + ": " + message, hint}};
 }
 
+bool Problems::is_full() const { return problem_count_ > kMostProblems; }
+
 void Problems::add(const std::string& pointer, Place place, const std::string& message,
                    const std::string& hint) {
-  problems_.push_back(make(pointer, place, message, hint));
+  ++problem_count_;
+  if (!is_full()) problems_.push_back(make(pointer, place, message, hint));
 }
 
 void Problems::add_rule(const std::string& pointer, const std::string& message, const std::string& hint) {
-  rules_.push_back(make(pointer, find(pointer), message, hint));
+  if (rules_.size() < kMostProblems) rules_.push_back(make(pointer, find(pointer), message, hint));
 }
 
 void Problems::add_warning(const std::string& pointer, const std::string& message, const std::string& hint) {
@@ -127,13 +135,16 @@ Errors Problems::in_order(std::vector<Problem> problems) {
 
 Errors Problems::errors() const {
   std::vector<Problem> all = problems_;
-  for (const Problem& rule : rules_) {
-    const bool has_cause = std::any_of(problems_.begin(), problems_.end(), [&](const Problem& problem) {
-      return top_item(problem.pointer) == top_item(rule.pointer);
-    });
-    if (!has_cause) all.push_back(rule);
-  }
-  return in_order(std::move(all));
+  std::set<std::string> items_with_cause;
+  for (const Problem& problem : problems_) items_with_cause.insert(top_item(problem.pointer));
+  for (const Problem& rule : rules_)
+    if (!items_with_cause.contains(top_item(rule.pointer))) all.push_back(rule);
+  Errors errors = in_order(std::move(all));
+  if (is_full())
+    errors.push_back({file_name_,
+                      std::to_string(problem_count_ - problems_.size()) + " more problems are not listed",
+                      ""});
+  return errors;
 }
 
 Errors Problems::warnings() const { return in_order(warnings_); }
@@ -315,6 +326,7 @@ int FieldReader::read_choice(const Key& key, const std::vector<std::string>& nam
 
 void FieldReader::report_unknown(std::size_t member, const std::vector<std::string>& names) {
   const std::string& key = object_.keys[member];
+  if (problems_.is_full()) return problems_.add("", {}, "");  // only counted: searching for hints takes time
   std::string hint;
   // The right name with the wrong unit, or with none.
   for (const std::string& name : names) {
@@ -335,14 +347,13 @@ void FieldReader::report_unknown(std::size_t member, const std::vector<std::stri
 void FieldReader::finish() {
   std::vector<std::string> names, written;
   for (const KnownKey& known : known_) names.push_back(known.name);
+  std::map<std::string_view, std::size_t> first_of;
   for (std::size_t i = 0; i < object_.keys.size(); ++i) {
     const std::string& key = object_.keys[i];
-    const auto first = std::find(object_.keys.begin(), object_.keys.end(), key) - object_.keys.begin();
-    if (static_cast<std::size_t>(first) != i) {
-      problems_.add(
-          child_pointer(pointer_, key), object_.key_places[i],
-          "the key " + in_quotes(key) + " is given twice",
-          "first in line " + std::to_string(object_.key_places[static_cast<std::size_t>(first)].line));
+    if (const std::size_t first = first_of.emplace(key, i).first->second; first != i) {
+      problems_.add(child_pointer(pointer_, key), object_.key_places[i],
+                    "the key " + in_quotes(key) + " is given twice",
+                    "first in line " + std::to_string(object_.key_places[first].line));
     } else if (std::find(names.begin(), names.end(), key) == names.end()) {
       report_unknown(i, names);
     } else {

@@ -29,7 +29,9 @@ class Problems {
   /// As add_rule, but a scene with it still runs.
   void add_warning(const std::string& pointer, const std::string& message, const std::string& hint = "");
 
-  Errors errors() const;    ///< in the order of the text
+  Errors errors()
+      const;  ///< in the order of the text; of very many the first 1000 and the number of the others
+  bool is_full() const;     ///< further problems are only counted
   Errors warnings() const;  ///< in the order of the text
 
  private:
@@ -46,6 +48,7 @@ class Problems {
   const JsonNode& root_;
   std::string file_name_;
   std::vector<Problem> problems_, rules_, warnings_;
+  std::size_t problem_count_ = 0;  ///< of add()
 };
 
 /// Reports a direction that is too short to be one: below 1e-9, so that its length neither vanishes nor loses

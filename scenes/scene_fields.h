@@ -45,7 +45,7 @@ inline RecordInfo info_of(const FillSpec&) {
 }
 template <class V>
 void describe_fields(V& v, FillSpec& fill) {
-  v.number(Key{"radius_mm", "Radius r of every sphere."}, fill.radius, units::millimetre, above(0, 100));
+  v.number(Key{"radius_mm", "Radius r of every sphere."}, fill.radius, units::millimetre, within(0.01, 100));
   v.number(Key{"gap_mm", "Gap from surface to surface; the spacing is 2 r + gap."}, fill.gap,
            units::millimetre, within(0, 100));
 }
@@ -63,12 +63,12 @@ void describe_fields(V& v, MaterialSpec& material) {
   v.preset(Key{"preset", "Name of a shipped material.", false, "none; then every modulus must be given"},
            material.preset);
   v.number(Key{"spring_kpa_per_mm", "Modulus K2 of the spring.", false, "the preset's"}, material.spring,
-           modulus, above(0, 1e6));
+           modulus, within(1e-6, 1e6));
   v.number(Key{"kelvin_kpa_per_mm", "Modulus K1 of the Kelvin unit.", false, "the preset's"}, material.kelvin,
-           modulus, above(0, 1e6));
+           modulus, within(1e-6, 1e6));
   v.number(Key{"constraint_kpa_per_mm", "Modulus K' of the constraint, at least K1 K2 / (K1 + K2).", false,
                "the preset's"},
-           material.constraint, modulus, above(0, 1e6));
+           material.constraint, modulus, within(1e-6, 1e6));
   v.number(Key{"viscosity_kpa_s_per_mm", "Viscosity v1 of the Kelvin unit.", false, "the preset's"},
            material.viscosity, units::kilopascal_second_per_millimetre, within(0, 1e6));
   v.number(Key{"density_kg_per_m3", "Mass per volume.", false, "the preset's, else 1060"}, material.density,
@@ -77,10 +77,10 @@ void describe_fields(V& v, MaterialSpec& material) {
            material.stiffness_scale, units::none, within(1e-6, 1e6));
   v.number(Key{"calibration_ball_radius_mm", "Radius R of the ball that the moduli were measured with.",
                false, "the preset's"},
-           material.calibration_ball, units::millimetre, above(0, 1000));
+           material.calibration_ball, units::millimetre, within(0.01, 1000));
   v.number(Key{"calibration_spacing_mm", "Spacing of the spheres that the moduli belong to.", false,
                "the preset's"},
-           material.calibration_spacing, units::millimetre, above(0, 1000));
+           material.calibration_spacing, units::millimetre, within(0.01, 1000));
 }
 
 inline RecordInfo info_of(const BoxRegion&) { return {"box", "A box along the axes, its sides included."}; }
@@ -184,10 +184,10 @@ void describe_fields(V& v, ToolSpec& tool) {
                     "where the hand is."),
            tool.kind);
   v.number(Key{"radius_mm", "Radius of a ball; needed by a ball, not allowed for others."}, tool.radius,
-           units::millimetre, above(0, 200));
+           units::millimetre, within(0.01, 200));
   v.number(Key{"blade_length_mm",
                "Length of a scalpel's edge from its tip; needed by a scalpel, not allowed for others."},
-           tool.blade_length, units::millimetre, above(0, 500));
+           tool.blade_length, units::millimetre, within(0.01, 500));
   v.point(Key{"holds_mm", "A pin holds the sphere nearest to here; needed by a pin, not allowed for others."},
           tool.holds, units::millimetre, any_coordinate_mm);
 }
@@ -251,7 +251,7 @@ void describe_fields(V& v, SceneSpec& scene) {
   v.list(Key{"tools", "The tools."}, scene.tools, 0);
   v.number(Key{"contact_stiffness_n_per_m", "Stiffness of a tool against one sphere.", false,
                "20 times the stiffest edge"},
-           scene.contact_stiffness, units::newton_per_metre, above(0, 1e12));
+           scene.contact_stiffness, units::newton_per_metre, within(1e-6, 1e12));
   v.number(Key{"contact_friction", "Coulomb coefficient between tool and tissue."}, scene.contact_friction,
            units::none, within(0, 10));
   v.list(Key{"loads", "Forces from outside."}, scene.loads, 0);

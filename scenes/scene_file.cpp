@@ -1,6 +1,7 @@
 #include "scenes/scene_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -60,22 +61,30 @@ void check_material(Problems& problems, const std::string& at, const OrganSpec& 
 void check_rig(Problems& problems, const std::string& at, const RigSpec& rig) {
   if (rig.cells.empty() == !rig.block)
     problems.add_rule(at + "/rig", "must have exactly one of cells, block");
+  const char* too_few = "got one sphere, a rig needs at least two that are neighbours";
+  std::set<std::array<double, 3>> cells;
   for (std::size_t i = 0; i < rig.cells.size(); ++i) {
-    if (!is_whole(rig.cells[i]))
-      problems.add_rule(at + "/rig/cells/" + std::to_string(i), "must be whole numbers");
-    if (std::count(rig.cells.begin(), rig.cells.end(), rig.cells[i]) > 1)
-      problems.add_rule(at + "/rig/cells/" + std::to_string(i), "the cell is given more than once");
+    const Vec3 cell = rig.cells[i];
+    const std::string where = at + "/rig/cells/" + std::to_string(i);
+    if (!is_whole(cell)) problems.add_rule(where, "must be whole numbers");
+    if (!cells.insert({cell.x, cell.y, cell.z}).second)
+      problems.add_rule(where, "the cell is given more than once");
   }
-  if (rig.cells.size() == 1)
-    problems.add_rule(at + "/rig/cells", "got one sphere, a rig needs at least two that are neighbours");
+  if (rig.cells.size() == 1) problems.add_rule(at + "/rig/cells", too_few);
   if (rig.block && !is_whole(*rig.block)) problems.add_rule(at + "/rig/block", "must be whole numbers");
+  if (rig.block == Vec3{1, 1, 1}) problems.add_rule(at + "/rig/block", too_few);
+  const auto is_cell = [&](Vec3 cell) {
+    if (!rig.block) return cells.contains({cell.x, cell.y, cell.z});
+    const auto is_in = [](double i, double count) { return i >= 0 && i < count; };
+    return is_whole(cell) && is_in(cell.x, rig.block->x) && is_in(cell.y, rig.block->y) &&
+           is_in(cell.z, rig.block->z);
+  };
   for (std::size_t i = 0; i < rig.guides.size(); ++i) {
     const GuideSpec& guide = rig.guides[i];
     const std::string where = at + "/rig/guides/" + std::to_string(i);
     if (guide.axes.find_first_not_of("xyz") != std::string::npos || guide.axes.size() > 3)
       problems.add_rule(where + "/axes", "got " + in_quotes(guide.axes) + ", must be letters of xyz");
-    if (!rig.cells.empty() && std::find(rig.cells.begin(), rig.cells.end(), guide.cell) == rig.cells.end())
-      problems.add_rule(where + "/cell", "is not one of the rig's cells");
+    if (!is_cell(guide.cell)) problems.add_rule(where + "/cell", "is not one of the rig's cells");
   }
 }
 

@@ -39,7 +39,7 @@ TEST(SceneFile, EveryShippedSceneIsWrittenAndReadBackEqual) {
 
 TEST(SceneFile, AValueOutOfRangeIsNamedWithItsPlaceAndRange) {
   EXPECT_EQ(error_of(scene_with("\"material\": {\"preset\": \"liver\"}, \"fill\": {\"radius_mm\": -4}")),
-            "test.json:3:98: error: /organs/0/fill/radius_mm: got -4, must be in (0, 100] mm\n");
+            "test.json:3:98: error: /organs/0/fill/radius_mm: got -4, must be in [0.01, 100] mm\n");
 }
 
 TEST(SceneFile, AnUnknownKeyNamesTheNearestOne) {

@@ -1,0 +1,181 @@
+#include "scenes/build_model.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "core/network.h"
+#include "scenes/presets.h"
+#include "scenes/scene_file.h"
+
+namespace ctpm {
+namespace {
+
+/// A scene of a liver block of 3 x 3 x 3 spheres, 12 mm apart, with more keys of the organ and of the scene.
+SceneSpec block_scene(const std::string& more_of_organ = "", const std::string& more = "") {
+  const Result<SceneText> scene = read_scene(
+      R"({"format": "ctpm-scene", "version": 1, "name": "block", "organs": [{"name": "block", "rig": {"block": [3, 3, 3]},
+          "material": {"preset": "liver"})" +
+          more_of_organ + "}]" + more + "}",
+      "block.json");
+  if (!scene) {
+    ADD_FAILURE() << to_string(scene.errors().front());
+    return {};
+  }
+  return scene->spec;
+}
+
+BuiltScene build(const SceneSpec& scene) {
+  std::vector<FilledOrgan> organs;
+  for (const OrganSpec& organ : scene.organs) organs.push_back(fill_rig(organ));
+  Result<BuiltScene> built = build_model(scene, organs);
+  if (!built) {
+    ADD_FAILURE() << to_string(built.errors().front());
+    return {};
+  }
+  return std::move(*built);
+}
+
+Errors errors_of_build(const SceneSpec& scene) {
+  std::vector<FilledOrgan> organs;
+  for (const OrganSpec& organ : scene.organs) organs.push_back(fill_rig(organ));
+  const Result<BuiltScene> built = build_model(scene, organs);
+  return built ? Errors{} : built.errors();
+}
+
+const std::string kBall = R"(, "tools": [{"name": "ball", "kind": "ball", "radius_mm": 6}])";
+
+TEST(FillRig, ABlockIsCentredOverTheOriginWithLayersFromItsFaces) {
+  const SceneSpec scene = block_scene();
+  const FilledOrgan organ = fill_rig(scene.organs[0]);
+  ASSERT_EQ(organ.centre.size(), 27u);
+  EXPECT_DOUBLE_EQ(organ.spacing, 0.012);
+  Vec3 sum;
+  for (const Vec3 centre : organ.centre) sum += centre;
+  EXPECT_NEAR(norm(sum / 27 - Vec3{0, 0, 0.012}), 0, 1e-15);
+  EXPECT_EQ(std::count(organ.layer.begin(), organ.layer.end(), 1), 26);
+  EXPECT_EQ(organ.layer[13], 2);
+  EXPECT_DOUBLE_EQ(organ.depth[13], 0.018);
+  EXPECT_TRUE(std::is_sorted(organ.cell.begin(), organ.cell.end(), [](const auto& a, const auto& b) {
+    return std::tie(a[2], a[1], a[0]) < std::tie(b[2], b[1], b[0]);
+  }));
+}
+
+TEST(BuildModel, LoadsActOnTheNearestSphereWithTheirTimes) {
+  const BuiltScene built = build(block_scene(
+      "",
+      R"(, "loads": [{"at_mm": [1, -1, 30], "force_n": [0.1, 0, -0.13], "start_s": 0.5, "ramp_s": 0.25}])"));
+  const Loads& loads = built.model.loads;
+  ASSERT_EQ(loads.size(), 1u);
+  EXPECT_EQ(built.model.rest_position[std::size_t(loads.sphere[0])], (Vec3{0, 0, 0.024}));
+  EXPECT_EQ(loads.force[0], (Vec3{0.1, 0, -0.13}));
+  EXPECT_EQ(loads.start[0], 0.5);
+  EXPECT_EQ(loads.ramp[0], 0.25);
+}
+
+TEST(BuildModel, ProbesAndPinsTakeTheNearestSphereTheFirstOfSeveral) {
+  const BuiltScene built = build(
+      block_scene("", R"(, "probes": [{"name": "p", "at_mm": [12, 12, 0]}, {"name": "q", "at_mm": [6, 0, 0]}],
+      "tools": [{"name": "pin", "kind": "pin", "holds_mm": [-13, 0, 25]}])"));
+  ASSERT_EQ(built.probe_sphere.size(), 2u);
+  EXPECT_EQ(built.probe_sphere[0], 8);
+  EXPECT_EQ(built.probe_sphere[1], 4);  // halfway between sphere 4 and 5
+  ASSERT_EQ(built.model.tools.size(), 1u);
+  EXPECT_EQ(built.model.tools[0].kind, ToolKind::pin);
+  EXPECT_EQ(built.model.tools[0].sphere, 21);
+  EXPECT_EQ(built.model.contact_k, 0);  // nothing presses
+}
+
+TEST(BuildModel, AnchorsAreHeldAndCounted) {
+  const BuiltScene built = build(block_scene(R"(, "anchors": [{"lowest_mm": 2}])"));
+  EXPECT_EQ(built.anchored_count, std::vector<std::int32_t>{9});
+  for (std::size_t i = 0; i < 27; ++i) EXPECT_EQ(built.model.held_axes[i], i < 9 ? kAnchored : 0);
+}
+
+TEST(BuildModel, GuidesHoldTheAxesThatTheyName) {
+  SceneSpec scene = block_scene();
+  scene.organs[0].rig->guides = {{{1, 1, 1}, "x"}, {{0, 2, 2}, "zy"}};
+  const BuiltScene built = build(scene);
+  EXPECT_EQ(built.model.held_axes[13], 1);
+  EXPECT_EQ(built.model.held_axes[24], 2 | 4);
+  EXPECT_EQ(std::count(built.model.held_axes.begin(), built.model.held_axes.end(), 0), 25);
+}
+
+TEST(BuildModel, SolverSettingsAreTheScenesOrElseThoseOfTheCore) {
+  const BuiltScene plain = build(block_scene());
+  const SolverSettings standard;
+  EXPECT_EQ(plain.model.solver.tolerance, standard.tolerance);
+  EXPECT_EQ(plain.model.solver.velocity_floor, standard.velocity_floor);
+  EXPECT_EQ(plain.model.solver.max_iterations, standard.max_iterations);
+  EXPECT_EQ(plain.model.solver.substeps, standard.substeps);
+  const BuiltScene own = build(block_scene(
+      "",
+      R"(, "solver": {"tolerance": 1e-7, "velocity_floor_mm_per_s": 2, "max_iterations": 77, "substeps": 3},
+      "tick_s": 0.002, "gravity_m_per_s2": [1, 2, 3])"));
+  EXPECT_EQ(own.model.solver.tolerance, 1e-7);
+  EXPECT_EQ(own.model.solver.velocity_floor, 0.002);
+  EXPECT_EQ(own.model.solver.max_iterations, 77);
+  EXPECT_EQ(own.model.solver.substeps, 3);
+  EXPECT_EQ(own.model.tick, 0.002);
+  EXPECT_EQ(own.model.gravity, (Vec3{1, 2, 3}));
+}
+
+TEST(BuildModel, AToolIsTwentyTimesAsStiffAsTheStiffestEdgeUnlessTheSceneSaysMore) {
+  const double area = edge_area(find_preset("liver")->material, 0.012);
+  EXPECT_NEAR(build(block_scene("", kBall)).model.contact_k, 20 * 15e6 * area, 1e-9);
+  EXPECT_EQ(build(block_scene("", kBall)).model.contact_friction, 0.3);
+  EXPECT_NEAR(build(block_scene(R"(, "model": "tpm")", kBall)).model.contact_k, 20 * 15e6 * area, 1e-9);
+  const BuiltScene own =
+      build(block_scene("", kBall + R"(, "contact_stiffness_n_per_m": 1234, "contact_friction": 0.1)"));
+  EXPECT_EQ(own.model.contact_k, 1234);
+  EXPECT_EQ(own.model.contact_friction, 0.1);
+  EXPECT_EQ(own.model.tools.at(0).radius, 0.006);
+}
+
+TEST(BuildModel, TheOrgansKeysReachTheNetwork) {
+  const BuiltScene ctpm = build(block_scene(R"(, "damage_depth_mm": 12)"));
+  EXPECT_EQ(ctpm.model.organs.at(0).damage_depth, 0.012);
+  EXPECT_EQ(ctpm.model.organs.at(0).name, "block");
+  EXPECT_GT(ctpm.model.edges.size(), 0u);
+  EXPECT_FALSE(ctpm.model.edges.c.empty());
+  const BuiltScene springs = build(block_scene(R"(, "model": "mass-spring")"));
+  EXPECT_TRUE(springs.model.edges.c.empty());
+  EXPECT_EQ(build(block_scene(R"(, "model": "tpm")")).model.tpms.size(), springs.model.edges.size());
+  EXPECT_GT(build(block_scene(R"(, "model": "angle-mass-spring")")).model.angle_springs.size(), 0u);
+  EXPECT_LT(build(block_scene(R"(, "lattice": "cubic-6")")).model.edges.size(), ctpm.model.edges.size());
+}
+
+TEST(BuildModel, SofteningCanBeLeftOut) {
+  SceneSpec scene = block_scene();
+  scene.organs[0].rig->block = Vec3{5, 5, 5};
+  EXPECT_TRUE(build(scene).model.has_softening);
+  scene.organs[0].softening = false;
+  EXPECT_FALSE(build(scene).model.has_softening);
+}
+
+TEST(BuildModel, EveryProblemOfEveryOrganIsReportedAtItsOrgan) {
+  SceneSpec scene = block_scene();
+  scene.organs.push_back(scene.organs[0]);
+  scene.organs[0].anchors.emplace_back().sphere = SphereRegion{{9, 9, 9}, 0.001};
+  scene.organs[1].rig->block.reset();
+  scene.organs[1].rig->cells = {{0, 0, 0}, {5, 0, 0}, {0, 7, 0}};
+  const Errors errors = errors_of_build(scene);
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_EQ(errors[0].where, "/organs/0/anchors/0");
+  EXPECT_EQ(to_string(errors[1]),
+            "/organs/1: error: no two of its 3 spheres are neighbours, so nothing joins them (fill it with "
+            "smaller spheres)");
+}
+
+TEST(BuildModel, AMaterialThatTheNetworkRefusesIsPlacedAtItsOrgan) {
+  SceneSpec scene = block_scene();
+  scene.organs[0].material.spring = -1.0;  // the reader would have refused it
+  const Errors errors = errors_of_build(scene);
+  ASSERT_FALSE(errors.empty());
+  EXPECT_EQ(errors[0].where, "/organs/0");
+  EXPECT_NE(errors[0].message.find("spring modulus K2"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ctpm

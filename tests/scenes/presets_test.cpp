@@ -1,0 +1,96 @@
+#include "scenes/presets.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+namespace ctpm {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Bao & Wu, section 5.1, as printed: r and R [mm], K1, K2, K' [kPa, with the depth in mm], v1 [Pa s].
+struct Row {
+  const char* organ;
+  double sphere_radius, ball_radius, kelvin, spring, constraint, viscosity;
+};
+constexpr Row kPaper[] = {
+    {"skin", 7, 2.8, 82, 82, 164, 3}, {"kidney", 4, 1.5, 58, 58, 106, 4}, {"liver", 4, 2.0, 15, 15, 20, 5}};
+
+TEST(Presets, HoldThePapersNumbersInBothReadingsOfTheViscosity) {
+  for (const Row& row : kPaper)
+    for (const bool as_printed : {false, true}) {
+      const std::string name = row.organ + std::string(as_printed ? "-pa-s" : "");
+      const MaterialPreset* preset = find_preset(name);
+      ASSERT_NE(preset, nullptr) << name;
+      EXPECT_EQ(std::string(preset->organ), row.organ);
+      EXPECT_DOUBLE_EQ(preset->sphere_radius, row.sphere_radius * 1e-3);
+      EXPECT_DOUBLE_EQ(preset->ball_radius, row.ball_radius * 1e-3);
+      const Material& m = preset->material;
+      EXPECT_DOUBLE_EQ(m.kelvin, row.kelvin * 1e6);  // kPa/mm = 1e6 Pa/m
+      EXPECT_DOUBLE_EQ(m.spring, row.spring * 1e6);
+      EXPECT_DOUBLE_EQ(m.constraint, row.constraint * 1e6);
+      EXPECT_DOUBLE_EQ(m.viscosity, row.viscosity * (as_printed ? 1e3 : 1e6));  // Pa s/mm, or kPa s/mm
+      EXPECT_DOUBLE_EQ(m.calibration_area, kPi * std::pow(row.ball_radius * 1e-3, 2));
+      EXPECT_DOUBLE_EQ(m.calibration_spacing, 3 * row.sphere_radius * 1e-3);
+      EXPECT_DOUBLE_EQ(m.density, 1060);
+      EXPECT_EQ(m.stiffness_scale, 1);
+    }
+  EXPECT_EQ(material_presets().size(), 6u);
+}
+
+TEST(Presets, CreepOverSecondsInOneReadingAndInMicrosecondsInTheOther) {
+  for (const Row& row : kPaper) {
+    const auto time_constant = [](const MaterialPreset* preset) {
+      return preset->material.viscosity / (preset->material.kelvin + preset->material.spring);
+    };
+    const double slow = time_constant(find_preset(row.organ)),
+                 fast = time_constant(find_preset(std::string(row.organ) + "-pa-s"));
+    EXPECT_GT(slow, 0.018);
+    EXPECT_LT(slow, 0.17);
+    EXPECT_NEAR(fast, 1e-3 * slow, 1e-12);
+  }
+}
+
+TEST(Presets, OnlyTheLiverHasAKnownDamageDepth) {
+  EXPECT_EQ(find_preset("liver")->damage_depth, 0.012);
+  EXPECT_EQ(find_preset("liver-pa-s")->damage_depth, 0.012);
+  for (const char* name : {"kidney", "skin", "kidney-pa-s", "skin-pa-s"})
+    EXPECT_EQ(find_preset(name)->damage_depth, 0);
+}
+
+TEST(Presets, EachIsFoundByItsNameAndNoOtherIs) {
+  for (const MaterialPreset& preset : material_presets()) EXPECT_EQ(find_preset(preset.name), &preset);
+  EXPECT_EQ(preset_names().size(), material_presets().size());
+  for (const char* name : {"", "Liver", "liver ", "spleen"}) EXPECT_EQ(find_preset(name), nullptr);
+}
+
+TEST(ResolveMaterial, OwnValuesTakeThePresetsPlace) {
+  MaterialSpec spec;
+  spec.preset = "liver";
+  spec.spring = 16e6, spec.density = 1000, spec.calibration_ball = 0.003;
+  const ResolvedMaterial resolved = resolve_material(spec);
+  EXPECT_TRUE(resolved.missing.empty());
+  EXPECT_EQ(resolved.material.spring, 16e6);
+  EXPECT_EQ(resolved.material.kelvin, 15e6);
+  EXPECT_EQ(resolved.material.density, 1000);
+  EXPECT_DOUBLE_EQ(resolved.material.calibration_area, kPi * 9e-6);
+  EXPECT_DOUBLE_EQ(resolved.material.calibration_spacing, 0.012);
+}
+
+TEST(ResolveMaterial, WithoutAPresetNamesWhatIsMissing) {
+  MaterialSpec spec;
+  spec.spring = 1e6, spec.kelvin = 1e6;
+  EXPECT_EQ(resolve_material(spec).missing,
+            (std::vector<std::string>{"constraint_kpa_per_mm", "viscosity_kpa_s_per_mm",
+                                      "calibration_ball_radius_mm", "calibration_spacing_mm"}));
+  spec.constraint = 1e6, spec.viscosity = 0, spec.calibration_ball = 0.002, spec.calibration_spacing = 0.012;
+  const ResolvedMaterial whole = resolve_material(spec);
+  EXPECT_TRUE(whole.missing.empty());
+  EXPECT_EQ(whole.material.density, 1060);
+  EXPECT_EQ(whole.material.stiffness_scale, 1);
+}
+
+}  // namespace
+}  // namespace ctpm
