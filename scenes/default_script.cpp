@@ -74,37 +74,39 @@ ScriptStep wait(double seconds) {
   return step;
 }
 
-void add_press(Script& script, const ToolSpec& ball, const Top& top, const Table& table, double depth) {
+ScriptStep put_away() {
+  ScriptStep step;
+  step.put_away = true;
+  return step;
+}
+
+/// A ball comes down on `place`, presses `depth` beyond it, stays for `hold` seconds and leaves.
+void add_press(Script& script, const ToolSpec& ball, const Table& table, Vec3 place, double depth, double hold) {
   const double clear = 0.010, radius = ball.radius.value_or(0);
-  const Vec3 place = top.ridge(0.35), down = table.to_world({0, 0, -1});
+  const Vec3 down = table.to_world({0, 0, -1});
   script.steps.push_back(take(ball.name, table.to_world(place + Vec3{0, 0, radius + clear}), down));
   ScriptStep press, release;
   press.press = ScriptStep::Press{clear + depth, down, 0.020};
   release.release = ScriptStep::Release{clear + depth + 0.02, -1.0 * down, 0.040};
-  script.steps.insert(script.steps.end(), {press, wait(0.7), release, wait(0.5)});
+  script.steps.insert(script.steps.end(), {press, wait(hold), release, wait(0.3), put_away()});
 }
 
-void add_cut(Script& script, const ToolSpec& scalpel, const Top& top, const Table& table, double depth) {
+/// A blade goes in at `first` and is drawn towards the viewer, `length` far, with its tip `depth` below the top.
+void add_cut(Script& script, const ToolSpec& scalpel, const Top& top, const Table& table, Vec3 first, double length, double depth) {
+  constexpr int kPoints = 5;
   const double clear = 0.020;
   const Vec3 down = table.to_world({0, 0, -1});
-  // A single column of spheres has no width to cut along; the blade then goes down in one place.
-  const double width = top.size().x, length = std::min(0.30 * width, 0.060);
-  const double step_share = width > 0 ? length / width / 4 : 0;
   ScriptStep cut, leave;
-  cut.cut = ScriptStep::Cut{{}, 0.030};
-  const double y = top.ridge(0.55).y;
-  Vec3 first, last;
-  for (int i = 0; i <= 4; ++i) {
-    const double x = top.ridge(0.55 + (i - 2) * step_share).x;
-    last = {x, y, top.height(x, y) - depth};
-    if (i == 0) first = last;
-    cut.cut->path.push_back(table.to_world(last));
+  cut.cut = ScriptStep::Cut{{}, 0.040};
+  Vec3 tip;
+  for (int i = 0; i < kPoints; ++i) {
+    const double y = first.y - length * i / (kPoints - 1);
+    tip = {first.x, y, top.height(first.x, y) - depth};
+    cut.cut->path.push_back(table.to_world(tip));
   }
-  script.steps.push_back(take(scalpel.name, table.to_world(first + Vec3{0, 0, depth + clear}), down));
-  leave.move = ScriptStep::Move{table.to_world(last + Vec3{0, 0, depth + clear}), 0.060};
-  ScriptStep away;
-  away.put_away = true;
-  script.steps.insert(script.steps.end(), {cut, wait(0.2), leave, wait(0.3), away, wait(1.5)});
+  script.steps.push_back(take(scalpel.name, table.to_world(first + Vec3{0, 0, clear}), down));
+  leave.move = ScriptStep::Move{table.to_world(tip + Vec3{0, 0, depth + clear}), 0.080};
+  script.steps.insert(script.steps.end(), {cut, wait(0.2), leave, wait(0.2), put_away(), wait(0.5)});
 }
 
 }  // namespace
@@ -114,15 +116,23 @@ Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organ
   const Table table(scene.gravity);
   const Top top(organs.front(), table);
   // Deep enough to be seen, and never through the organ.
-  const double height = top.size().z;
-  const auto first_of = [&](ToolKind kind) {
-    return std::find_if(scene.tools.begin(), scene.tools.end(),
-                        [&](const ToolSpec& t) { return t.kind == kind; });
+  const Vec3 size = top.size();
+  const double depth = std::min(0.012, 0.2 * size.z), cut_depth = std::min(0.026, 0.45 * size.z);
+  const double cut_length = std::min(0.45 * size.y, 0.065);
+  // A little in front of the ridge, where a viewer before the organ can see it.
+  const auto seen = [&](double share, double forward) {
+    const Vec3 ridge = top.ridge(share);
+    const double y = ridge.y - forward * size.y;
+    return Vec3{ridge.x, y, top.height(ridge.x, y)};
   };
-  if (const auto ball = first_of(ToolKind::ball); ball != scene.tools.end())
-    add_press(script, *ball, top, table, std::min(0.010, 0.2 * height));
-  if (const auto scalpel = first_of(ToolKind::scalpel); scalpel != scene.tools.end())
-    add_cut(script, *scalpel, top, table, std::min(0.022, 0.45 * height));
+  const auto first_of = [&](ToolKind kind) {
+    return std::find_if(scene.tools.begin(), scene.tools.end(), [&](const ToolSpec& t) { return t.kind == kind; });
+  };
+  const auto ball = first_of(ToolKind::ball), scalpel = first_of(ToolKind::scalpel), none = scene.tools.end();
+  if (ball != none) add_press(script, *ball, table, seen(0.35, 0.12), depth, 0.5);
+  if (scalpel != none) add_cut(script, *scalpel, top, table, seen(0.42, 0.0), cut_length, cut_depth);
+  // Pressing beside the cut opens it.
+  if (ball != none && scalpel != none) add_press(script, *ball, table, seen(0.52, 0.16), 1.2 * depth, 1.0);
   if (script.steps.empty()) script.steps.push_back(wait(1));
   return script;
 }

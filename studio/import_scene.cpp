@@ -40,8 +40,9 @@ CameraSpec front_camera(const FilledOrgan& organ) {
   const double size = norm(high - low);
   CameraSpec camera;
   camera.name = "front";
-  camera.target = whole_mm(0.5 * (low + high));
-  camera.eye = whole_mm(camera.target + size * Vec3{-0.18, -1.15, 0.80});
+  // The organ stands right of the middle, clear of the panels on the left.
+  camera.target = whole_mm(0.5 * (low + high) + size * Vec3{-0.13, 0, 0});
+  camera.eye = whole_mm(camera.target + size * Vec3{0.05, -1.25, 0.95});
   camera.field_of_view = 32;
   return camera;
 }
