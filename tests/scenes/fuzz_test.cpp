@@ -11,7 +11,9 @@
 
 #include "scenes/anchors.h"
 #include "scenes/scene_file.h"
+#include "scenes/schema.h"
 #include "scenes/script.h"
+#include "tests/scenes/schema_check.h"
 
 namespace ctpm {
 namespace {
@@ -117,6 +119,7 @@ void expect_placed(const Errors& errors, const std::string& file_name, const std
 TEST(Fuzz, DamagedScenesAreReadOrRefusedWithAPlace) {
   ASSERT_FALSE(read_scene(kScene, "s.json"));  // the line break in a name
   Chance chance(1);
+  const SchemaCheck schema(scene_schema());
   std::string whole = kScene;
   whole.erase(whole.find("\\n"), 2);
   ASSERT_TRUE(read_scene(whole, "s.json")) << to_string(read_scene(whole, "s.json").errors().front());
@@ -129,6 +132,8 @@ TEST(Fuzz, DamagedScenesAreReadOrRefusedWithAPlace) {
       const Result<SceneText> again = read_scene(write_scene(scene->spec), "again.json");
       ASSERT_TRUE(again) << to_string(again.errors().front()) << "\n" << text;
       ASSERT_TRUE(again->spec == scene->spec) << text;
+      // What the reader accepts, the schema accepts.
+      ASSERT_EQ(schema.problem_of(text), "") << text;
     } else {
       ++refused;
       expect_placed(scene.errors(), "s.json", text);
@@ -144,6 +149,7 @@ TEST(Fuzz, DamagedScriptsAreReadAndPlayedOrRefusedWithAPlace) {
   tools[0].name = "ball", tools[1].name = "knife";
   ASSERT_TRUE(read_script(kScript, "s.json", names));
   Chance chance(2);
+  const SchemaCheck schema(script_schema());
   int refused = 0;
   for (int round = 0; round < kRounds; ++round) {
     const std::string text = damaged(kScript, chance);
@@ -152,6 +158,7 @@ TEST(Fuzz, DamagedScriptsAreReadAndPlayedOrRefusedWithAPlace) {
       const Result<Script> again = read_script(write_script(*script), "again.json", names);
       ASSERT_TRUE(again) << to_string(again.errors().front()) << "\n" << text;
       ASSERT_TRUE(*again == *script) << text;
+      ASSERT_EQ(schema.problem_of(text), "") << text;
       const ScriptPlayer player(*script, tools, 1e-3);
       ASSERT_GT(player.tick_count(), 0) << text;
       for (const std::int64_t tick : {std::int64_t(0), player.tick_count() / 3, player.tick_count() - 1}) {
