@@ -45,14 +45,23 @@ class Top {
       if (std::hypot(p.x - x, p.y - y) < reach_) height = std::max(height, p.z);
     return height;
   }
-  /// The place with the share `u` of the extent along x, on the ridge: where the top is highest across.
+  /// Whether there is tissue below the place.
+  bool is_over(double x, double y) const {
+    return std::any_of(points_.begin(), points_.end(),
+                       [&](Vec3 p) { return std::hypot(p.x - x, p.y - y) < reach_; });
+  }
+  /// The place with the share `u` of the extent along x, on the ridge: where the top is highest across, or in
+  /// the middle of a flat top.
   Vec3 ridge(double u) const {
     const double x = least_.x + u * (most_.x - least_.x);
     Vec3 best{x, least_.y, least_.z};
+    double lowest = most_.z;
     for (int i = 5; i <= 15; ++i) {
       const double y = least_.y + i / 20.0 * (most_.y - least_.y), z = height(x, y);
       if (z > best.z) best = {x, y, z};
+      lowest = std::min(lowest, z);
     }
+    if (lowest == best.z) best.y = 0.5 * (least_.y + most_.y);
     return best;
   }
   Vec3 size() const { return most_ - least_; }
@@ -81,7 +90,8 @@ ScriptStep put_away() {
 }
 
 /// A ball comes down on `place`, presses `depth` beyond it, stays for `hold` seconds and leaves.
-void add_press(Script& script, const ToolSpec& ball, const Table& table, Vec3 place, double depth, double hold) {
+void add_press(Script& script, const ToolSpec& ball, const Table& table, Vec3 place, double depth,
+               double hold) {
   const double clear = 0.010, radius = ball.radius.value_or(0);
   const Vec3 down = table.to_world({0, 0, -1});
   script.steps.push_back(take(ball.name, table.to_world(place + Vec3{0, 0, radius + clear}), down));
@@ -91,8 +101,10 @@ void add_press(Script& script, const ToolSpec& ball, const Table& table, Vec3 pl
   script.steps.insert(script.steps.end(), {press, wait(hold), release, wait(0.3), put_away()});
 }
 
-/// A blade goes in at `first` and is drawn towards the viewer, `length` far, with its tip `depth` below the top.
-void add_cut(Script& script, const ToolSpec& scalpel, const Top& top, const Table& table, Vec3 first, double length, double depth) {
+/// A blade goes in at `first` and is drawn towards the viewer, `length` far, with its tip `depth` below the
+/// top.
+void add_cut(Script& script, const ToolSpec& scalpel, const Top& top, const Table& table, Vec3 first,
+             double length, double depth) {
   constexpr int kPoints = 5;
   const double clear = 0.020;
   const Vec3 down = table.to_world({0, 0, -1});
@@ -101,6 +113,7 @@ void add_cut(Script& script, const ToolSpec& scalpel, const Top& top, const Tabl
   Vec3 tip;
   for (int i = 0; i < kPoints; ++i) {
     const double y = first.y - length * i / (kPoints - 1);
+    if (i > 0 && !top.is_over(first.x, y)) break;  // over the edge of the organ
     tip = {first.x, y, top.height(first.x, y) - depth};
     cut.cut->path.push_back(table.to_world(tip));
   }
@@ -126,7 +139,8 @@ Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organ
     return Vec3{ridge.x, y, top.height(ridge.x, y)};
   };
   const auto first_of = [&](ToolKind kind) {
-    return std::find_if(scene.tools.begin(), scene.tools.end(), [&](const ToolSpec& t) { return t.kind == kind; });
+    return std::find_if(scene.tools.begin(), scene.tools.end(),
+                        [&](const ToolSpec& t) { return t.kind == kind; });
   };
   const auto ball = first_of(ToolKind::ball), scalpel = first_of(ToolKind::scalpel), none = scene.tools.end();
   if (ball != none) add_press(script, *ball, table, seen(0.35, 0.12), depth, 0.5);

@@ -301,11 +301,13 @@ TEST(DefaultScript, PressesIntoTheTopOfABlockAndCutsIt) {
   for (std::int64_t tick = 0; tick < player.tick_count(); ++tick) {
     const Inputs inputs = player.at(tick);
     if (inputs.tool < 0) continue;
-    ASSERT_LT(std::abs(inputs.position.x), 0.05);
+    ASSERT_LT(std::max(std::abs(inputs.position.x), std::abs(inputs.position.y)), 0.05);
     lowest[inputs.tool] = std::min(lowest[inputs.tool], inputs.position.z);
   }
-  EXPECT_NEAR(lowest[0] - 0.006, kTop - 0.010, 1e-9);
-  EXPECT_NEAR(lowest[1], kTop - 0.022, 1e-9);
+  // Both into the tissue, and neither through it.
+  EXPECT_LT(lowest[0] - 0.006, kTop - 0.005);
+  EXPECT_LT(lowest[1], kTop - 0.015);
+  for (const double z : lowest) EXPECT_GT(z, kTop / 2);
 }
 
 TEST(DefaultScript, OfASceneWithoutToolsWaits) {
