@@ -11,9 +11,9 @@ namespace ctpm {
 /// Every OpenGL 3.3 entry point that the renderer uses: X(type, name).
 #define CTPM_GL_ENTRY_POINTS(X)                                                                              \
   X(PFNGLACTIVETEXTUREPROC, ActiveTexture)                                                                   \
-  X(PFNGLATTACHSHADERPROC, AttachShader) X(PFNGLBINDBUFFERPROC, BindBuffer) X(                               \
-      PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer) X(PFNGLBINDRENDERBUFFERPROC,                                \
-                                                   BindRenderbuffer) X(PFNGLBINDTEXTUREPROC, BindTexture)    \
+  X(PFNGLATTACHSHADERPROC, AttachShader)                                                                     \
+  X(PFNGLBINDBUFFERPROC, BindBuffer) X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer) X(                         \
+      PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer) X(PFNGLBINDTEXTUREPROC, BindTexture)                      \
       X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray) X(PFNGLBLENDFUNCPROC, BlendFunc) X(                       \
           PFNGLBLITFRAMEBUFFERPROC, BlitFramebuffer) X(PFNGLBUFFERDATAPROC,                                  \
                                                        BufferData) X(PFNGLBUFFERSUBDATAPROC, BufferSubData)  \
@@ -50,10 +50,13 @@ namespace ctpm {
                                                                                        PixelStorei)          \
                                                   X(PFNGLREADPIXELSPROC, ReadPixels) X(                      \
                                                       PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC,               \
-                                                      RenderbufferStorageMultisample)                        \
-                                                      X(PFNGLSHADERSOURCEPROC, ShaderSource) X(              \
-                                                          PFNGLTEXIMAGE2DPROC,                               \
-                                                          TexImage2D) X(PFNGLTEXIMAGE3DPROC, TexImage3D)     \
+                                                      RenderbufferStorageMultisample) X(PFNGLCULLFACEPROC,   \
+                                                                                        CullFace)            \
+                                                      X(PFNGLSCISSORPROC, Scissor) X(                        \
+                                                          PFNGLSHADERSOURCEPROC,                             \
+                                                          ShaderSource) X(PFNGLTEXIMAGE2DPROC,               \
+                                                                          TexImage2D) X(PFNGLTEXIMAGE3DPROC, \
+                                                                                        TexImage3D)          \
                                                           X(PFNGLTEXPARAMETERIPROC, TexParameteri) X(        \
                                                               PFNGLUNIFORM1FPROC,                            \
                                                               Uniform1f) X(PFNGLUNIFORM1IPROC, Uniform1i)    \

@@ -111,75 +111,21 @@ Result<Done> MultisampleTarget::create(const Gl& gl, int w, int h) {
   return Done{};
 }
 
-void MultisampleTarget::begin(const Gl& gl) const {
+void MultisampleTarget::begin(const Gl& gl, const PixelRect& rect) const {
   gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   gl.Viewport(0, 0, width, height);
+  gl.Enable(GL_SCISSOR_TEST), gl.Scissor(rect.x, rect.y, rect.width, rect.height);
+  gl.ClearColor(0, 0, 0, 0), gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-void MultisampleTarget::read(const Gl& gl, std::vector<std::uint8_t>& rgba) const {
-  rgba.resize(std::size_t(width) * std::size_t(height) * 4);
+void MultisampleTarget::read(const Gl& gl, const PixelRect& rect, std::vector<std::uint8_t>& rgba) const {
+  rgba.resize(std::size_t(rect.width) * std::size_t(rect.height) * 4);
+  const int right = rect.x + rect.width, top = rect.y + rect.height;
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer), gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved);
-  gl.BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  gl.BlitFramebuffer(rect.x, rect.y, right, top, rect.x, rect.y, right, top, GL_COLOR_BUFFER_BIT, GL_NEAREST);
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, resolved);
   gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
-  gl.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
-}
-
-void TextureTarget::create(const Gl& gl, int side) {
-  size = side;
-  gl.GenTextures(1, &texture), gl.GenFramebuffers(1, &framebuffer);
-  gl.BindTexture(GL_TEXTURE_2D, texture);
-  gl.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, size, size, 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR),
-      gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE),
-      gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
-}
-
-void TextureTarget::begin(const Gl& gl) const {
-  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-  gl.Viewport(0, 0, size, size);
-}
-
-GLuint create_noise_texture(const Gl& gl) {
-  constexpr int kSize = 32, kCell = 4, kKnots = kSize / kCell;
-  // Knot values from an integer hash, joined by quintic curves: smooth, and it repeats.
-  const auto knot = [](int i, int j, int k) {
-    std::uint32_t h = std::uint32_t(i & (kKnots - 1)) + 31u * std::uint32_t(j & (kKnots - 1)) +
-                      1013u * std::uint32_t(k & (kKnots - 1));
-    h = (h ^ 61u ^ (h >> 16)) * 9u, h = (h ^ (h >> 4)) * 0x27d4eb2du, h ^= h >> 15;
-    return double(h & 0xffffu) / 32767.5 - 1;
-  };
-  const auto value = [&](int x, int y, int z) {
-    const auto ease = [](double t) { return t * t * t * (t * (6 * t - 15) + 10); };
-    const int i = x >> 2, j = y >> 2, k = z >> 2;
-    const double u = ease((x & 3) / 4.0), v = ease((y & 3) / 4.0), w = ease((z & 3) / 4.0);
-    double sum = 0;
-    for (int n = 0; n < 8; ++n)
-      sum += (n & 1 ? u : 1 - u) * (n & 2 ? v : 1 - v) * (n & 4 ? w : 1 - w) *
-             knot(i + (n & 1), j + (n >> 1 & 1), k + (n >> 2));
-    return sum;
-  };
-  std::vector<std::uint8_t> texels;
-  const auto pack = [&](double x) {
-    texels.push_back(std::uint8_t(std::lround(255 * std::clamp(0.5 + 0.5 * x, 0.0, 1.0))));
-  };
-  for (int z = 0; z < kSize; ++z)
-    for (int y = 0; y < kSize; ++y)
-      for (int x = 0; x < kSize; ++x) {
-        pack(value(x + 1, y, z) - value(x - 1, y, z)), pack(value(x, y + 1, z) - value(x, y - 1, z));
-        pack(value(x, y, z + 1) - value(x, y, z - 1)), pack(value(x, y, z));
-      }
-  GLuint texture = 0;
-  gl.GenTextures(1, &texture), gl.BindTexture(GL_TEXTURE_3D, texture);
-  gl.TexImage3D(GL_TEXTURE_3D, 0, GL_RGBA8, kSize, kSize, kSize, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
-  gl.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR),
-      gl.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
-    gl.TexParameteri(GL_TEXTURE_3D, wrap, GL_REPEAT);
-  return texture;
+  gl.ReadPixels(rect.x, rect.y, rect.width, rect.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
 }
 
 }  // namespace ctpm

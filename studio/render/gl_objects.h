@@ -51,6 +51,11 @@ struct VertexArray {
   void set_stream(const Gl& gl, std::span<const float> data);
 };
 
+/// A rectangle of a picture [pixels].
+struct PixelRect {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
 /// A frame buffer with 4 samples per pixel, and what it resolves to.
 struct MultisampleTarget {
   GLuint framebuffer = 0, resolved = 0;
@@ -58,21 +63,10 @@ struct MultisampleTarget {
 
   /// Errors: the driver refuses the size.
   Result<Done> create(const Gl& gl, int width, int height);
-  void begin(const Gl& gl) const;
-  /// Resolves and reads the picture: RGBA, bottom row first.
-  void read(const Gl& gl, std::vector<std::uint8_t>& rgba) const;
+  /// Clears the rectangle to nothing, and keeps what follows inside it. Row 0 is the bottom.
+  void begin(const Gl& gl, const PixelRect& rect) const;
+  /// Resolves and reads the rectangle: RGBA, bottom row first.
+  void read(const Gl& gl, const PixelRect& rect, std::vector<std::uint8_t>& rgba) const;
 };
-
-/// A square one-channel texture that can be drawn to.
-struct TextureTarget {
-  GLuint framebuffer = 0, texture = 0;
-  int size = 0;
-
-  void create(const Gl& gl, int size);
-  void begin(const Gl& gl) const;
-};
-
-/// A texture of smooth noise that repeats: its gradient in rgb and its value in a, each as 0.5 + 0.5 x.
-GLuint create_noise_texture(const Gl& gl);
 
 }  // namespace ctpm

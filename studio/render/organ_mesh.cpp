@@ -1,8 +1,19 @@
 #include "studio/render/organ_mesh.h"
 
 #include "core/surface.h"
+#include "studio/render/noise.h"
 
 namespace ctpm {
+
+void OrganMesh::set_surface(const Surface& surface) {
+  constexpr double kStainsPerMetre = 72;
+  stain_.clear();
+  for (const Vec3& v : surface.vertex) stain_.push_back(float(noise_at(kStainsPerMetre * v)));
+  per_neighbour_.assign(surface.vertex.size(), 0.0f);
+  for (const auto& t : surface.triangle)
+    for (const std::int32_t v : t) per_neighbour_[std::size_t(v)] += 1;
+  for (float& x : per_neighbour_) x = x > 0 ? 1 / x : 0;
+}
 
 void OrganMesh::update(const Surface& surface, const State& state, std::int32_t first_sphere) {
   deform_surface(surface, state.position, first_sphere, position_);
@@ -19,19 +30,22 @@ void OrganMesh::update(const Surface& surface, const State& state, std::int32_t 
     n = length > 0 ? n / length : Vec3{0, 0, 1};
   }
   // Crevice: how far the neighbours stand below the tangent plane, in units of their distance.
-  crevice_.assign(count, 0.0), valence_.assign(count, 0);
+  crevice_.assign(count, 0.0f);
   for (const auto& t : surface.triangle)
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t a = std::size_t(t[i]), b = std::size_t(t[(i + 1) % 3]);
       const Vec3 d = position_[b] - position_[a];
-      const double length = norm(d);
-      if (length > 0) crevice_[a] -= dot(d, normal_[a]) / length, ++valence_[a];
+      const double square = dot(d, d);
+      if (square > 0) crevice_[a] -= float(dot(d, normal_[a]) / std::sqrt(square));
     }
-  data_.clear(), data_.reserve(count * kOrganVertexFloats);
-  const auto add = [&](Vec3 v) { data_.insert(data_.end(), {float(v.x), float(v.y), float(v.z)}); };
-  for (std::size_t v = 0; v < count; ++v) {
-    add(position_[v]), add(normal_[v]), add(surface.vertex[v]);
-    data_.push_back(float(valence_[v] ? crevice_[v] / valence_[v] : 0));
+  data_.resize(count * kOrganVertexFloats);
+  float* to = data_.data();
+  for (std::size_t v = 0; v < count; ++v, to += kOrganVertexFloats) {
+    const Vec3 p = position_[v], n = normal_[v], q = surface.vertex[v];
+    to[0] = float(p.x), to[1] = float(p.y), to[2] = float(p.z), to[3] = float(n.x), to[4] = float(n.y),
+    to[5] = float(n.z);
+    to[6] = float(q.x), to[7] = float(q.y), to[8] = float(q.z), to[9] = crevice_[v] * per_neighbour_[v],
+    to[10] = stain_[v];
   }
 }
 

@@ -8,13 +8,16 @@
 
 namespace ctpm {
 
-/// Floats of one vertex as the organ shader reads them: position, normal, rest position [m], crevice.
-constexpr int kOrganVertexFloats = 10;
+/// Floats of one vertex as the organ shader reads them: position, normal, rest position [m], crevice, stain.
+constexpr int kOrganVertexFloats = 11;
 
 /// The moving vertices of one surface, made new for every picture.
 class OrganMesh {
  public:
-  /// Deforms `surface` and fills vertices(). `first_sphere`: of the organ, in the State.
+  /// Takes over a surface whose vertices or triangles changed.
+  void set_surface(const Surface& surface);
+
+  /// Deforms the surface that was set and fills vertices(). `first_sphere`: of the organ, in the State.
   void update(const Surface& surface, const State& state, std::int32_t first_sphere);
 
   /// Interleaved floats (vertex_count x kOrganVertexFloats). The crevice is negative in hollows and positive
@@ -24,8 +27,7 @@ class OrganMesh {
 
  private:
   std::vector<Vec3> position_, normal_;
-  std::vector<double> crevice_;
-  std::vector<std::int32_t> valence_;
+  std::vector<float> crevice_, per_neighbour_, stain_;
   std::vector<float> data_;
 };
 

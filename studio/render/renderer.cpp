@@ -3,20 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include "studio/render/cut_surface.h"
+#include "studio/render/backdrop.h"
+#include "studio/render/element_values.h"
 #include "studio/render/gl_context.h"
 #include "studio/render/gl_objects.h"
-#include "studio/render/organ_mesh.h"
+#include "studio/render/organ_painter.h"
 #include "studio/render/shaders.h"
 #include "studio/render/tool_mesh.h"
 
 namespace ctpm {
 namespace {
 
-constexpr int kShadowSize = 96;        // of the shadow texture [pixels]; it is blurred anyway
-constexpr double kShadowMargin = 1.7;  // ground that can be shaded, against the scene's extent
+constexpr double kGroundExtent = 1.45;  // side of the ground that can be shaded, against the scene's size
 
-Vec3 linear(const Colour& c) { return {std::pow(c[0], 2.2), std::pow(c[1], 2.2), std::pow(c[2], 2.2)}; }
 Vec3 unit(Vec3 v) { return v / norm(v); }
 
 Mat4 rigid(Quat turn, Vec3 origin) {
@@ -24,10 +23,41 @@ Mat4 rigid(Quat turn, Vec3 origin) {
   return {x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, origin.x, origin.y, origin.z, 1};
 }
 
-struct OrganParts {
-  CutSurface cut;
-  OrganMesh mesh;
-  VertexArray array;
+/// Grows a rectangle around projected points.
+class Footprint {
+ public:
+  Footprint(const Mat4& clip_from_world, int width, int height)
+      : m_(clip_from_world), width_(width), height_(height) {}
+
+  void add(Vec3 p) {
+    const double w = m_[3] * p.x + m_[7] * p.y + m_[11] * p.z + m_[15];
+    if (w <= 0) {
+      everywhere_ = true;
+      return;
+    }
+    const double x = (m_[0] * p.x + m_[4] * p.y + m_[8] * p.z + m_[12]) / w;
+    const double y = (m_[1] * p.x + m_[5] * p.y + m_[9] * p.z + m_[13]) / w;
+    left_ = std::min(left_, x), right_ = std::max(right_, x), bottom_ = std::min(bottom_, y),
+    top_ = std::max(top_, y);
+  }
+
+  /// The pixels that the points and a border around them cover; may be empty.
+  PixelRect pixels() const {
+    constexpr int kBorder = 3;
+    if (everywhere_) return {0, 0, width_, height_};
+    const auto at = [](double clip, int size) { return (0.5 + 0.5 * std::clamp(clip, -1.0, 1.0)) * size; };
+    const int x0 = std::max(0, int(at(left_, width_)) - kBorder),
+              x1 = std::min(width_, int(at(right_, width_)) + kBorder + 1);
+    const int y0 = std::max(0, int(at(bottom_, height_)) - kBorder),
+              y1 = std::min(height_, int(at(top_, height_)) + kBorder + 1);
+    return {x0, y0, std::max(0, x1 - x0), std::max(0, y1 - y0)};
+  }
+
+ private:
+  Mat4 m_;
+  int width_, height_;
+  double left_ = 2, right_ = -2, bottom_ = 2, top_ = -2;
+  bool everywhere_ = false;
 };
 
 }  // namespace
@@ -35,37 +65,41 @@ struct OrganParts {
 struct Renderer::Parts {
   std::unique_ptr<GlContext> context;
   SceneView scene;
-  Frame frame;
+  Frame backdrop, frame;
   std::vector<std::uint8_t> rgba;
   MultisampleTarget target;
-  TextureTarget shadow, contact, wide;
-  Program background, organ, tool, sphere, ground, shadow_pass, blur;
-  GLuint noise = 0;
-  std::vector<OrganParts> organs;
+  Program tool, sphere, rod;
+  OrganPainter organs;
+  std::vector<ToolMesh> tool_meshes;
   std::vector<VertexArray> tools;
-  VertexArray nothing, spheres;
-  std::vector<float> sphere_data;
+  VertexArray spheres, rods;
+  std::vector<float> instances;
+  std::vector<ElementValue> elements;
+  std::unique_ptr<GroundShadow> shadow;
 
   // The scene's frame: up, the ground plane, its size.
   Vec3 up, ground_centre, ground_x, ground_y;
   double ground_height = 0, size = 1;
 
+  // Of the picture being drawn.
+  Mat4 clip{};
+  PixelRect rect;
+
   const Gl& gl() const { return context->gl(); }
   Result<Done> create_programs();
-  void create_organs();
-  void create_tools();
+  void create_arrays();
   void place_ground();
-  void update_organs(const State& state);
-  void draw_shadow();
-  void set_light(const Program& program, const State& state, const DrawOptions& options,
-                 const Mat4& clip_from_world);
-  void draw_background(const DrawOptions& options, const Mat4& clip_from_world);
-  void draw_organs(const State& state, const DrawOptions& options, const Mat4& clip_from_world);
-  void draw_spheres(const State& state, const DrawOptions& options, const Mat4& clip_from_world);
-  void draw_tool(const State& state, const DrawOptions& options, const Mat4& clip_from_world);
-  void read_frame();
   Mat4 clip_from_world(const Camera& camera) const;
   const Tool* held_tool(const State& state, const DrawOptions& options) const;
+  bool sees_ground(const DrawOptions& options) const {
+    return options.show_ground && dot(options.camera.eye, up) > ground_height;
+  }
+  PixelRect footprint(const State& state, const DrawOptions& options) const;
+  void set_light(const Program& program, const State& state, const DrawOptions& options);
+  void draw_spheres(const State& state, const DrawOptions& options);
+  void draw_elements(const State& state, const DrawOptions& options);
+  void draw_tool(const State& state, const DrawOptions& options);
+  void read_frame(const DrawOptions& options);
 };
 
 Result<Done> Renderer::Parts::create_programs() {
@@ -77,34 +111,25 @@ Result<Done> Renderer::Parts::create_programs() {
     else
       errors.insert(errors.end(), made.errors().begin(), made.errors().end());
   };
-  make(background, "background", background_shader()), make(organ, "organ", organ_shader());
-  make(tool, "tool", tool_shader()), make(sphere, "sphere", sphere_shader()),
-      make(ground, "ground", ground_shader());
-  make(shadow_pass, "shadow", shadow_shader()), make(blur, "blur", shadow_blur_shader());
+  make(tool, "tool", tool_shader()), make(sphere, "sphere", sphere_shader());
+  make(rod, "rod", rod_shader());
   if (!errors.empty()) return errors;
-  return Done{};
+  return organs.create(gl(), scene);
 }
 
-void Renderer::Parts::create_organs() {
-  for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
-    organs.push_back({CutSurface(*scene.model, i, scene.surfaces[i]), {}, {}});
-    VertexArray& array = organs.back().array;
-    array.create(gl());
-    array.attribute(gl(), 0, 3, 0, kOrganVertexFloats), array.attribute(gl(), 1, 3, 3, kOrganVertexFloats);
-    array.attribute(gl(), 2, 3, 6, kOrganVertexFloats), array.attribute(gl(), 3, 1, 9, kOrganVertexFloats);
-  }
-  nothing.create(gl());
-  spheres.create(gl());
-  spheres.attribute(gl(), 0, 4, 0, 7, 1), spheres.attribute(gl(), 1, 3, 4, 7, 1);
-}
-
-void Renderer::Parts::create_tools() {
+void Renderer::Parts::create_arrays() {
+  const Gl& g = gl();
+  spheres.create(g);
+  spheres.attribute(g, 0, 4, 0, 7, 1), spheres.attribute(g, 1, 3, 4, 7, 1);
+  rods.create(g);
+  rods.attribute(g, 0, 3, 0, 10, 1), rods.attribute(g, 1, 3, 3, 10, 1);
+  rods.attribute(g, 2, 1, 6, 10, 1), rods.attribute(g, 3, 3, 7, 10, 1);
   for (const Tool& kind : scene.model->tools) {
-    const ToolMesh mesh = make_tool_mesh(kind);
+    tool_meshes.push_back(make_tool_mesh(kind));
     VertexArray array;
-    array.create(gl());
-    array.attribute(gl(), 0, 3, 0, 7), array.attribute(gl(), 1, 3, 3, 7), array.attribute(gl(), 2, 1, 6, 7);
-    array.set_stream(gl(), mesh.vertex), array.set_indices(gl(), mesh.index);
+    array.create(g);
+    array.attribute(g, 0, 3, 0, 7), array.attribute(g, 1, 3, 3, 7), array.attribute(g, 2, 1, 6, 7);
+    array.set_stream(g, tool_meshes.back().vertex), array.set_indices(g, tool_meshes.back().index);
     tools.push_back(array);
   }
 }
@@ -119,24 +144,10 @@ void Renderer::Parts::place_ground() {
   // A little below the lowest point, since organs sag.
   ground_height = lowest - 0.015 * size;
   ground_centre = box.centre() + (ground_height - dot(box.centre(), up)) * up;
-  const double half = 0.5 * kShadowMargin * size;
+  const double half = 0.5 * kGroundExtent * size;
   ground_x = half * unit(cross(std::abs(up.y) < 0.9 ? Vec3{0, 1, 0} : Vec3{1, 0, 0}, up));
   ground_y = cross(up, ground_x);
-}
-
-void Renderer::Parts::update_organs(const State& state) {
-  for (std::size_t i = 0; i < organs.size(); ++i) {
-    OrganParts& part = organs[i];
-    const bool changed = part.cut.update(state);
-    const Surface& surface = part.cut.surface();
-    part.mesh.update(surface, state, scene.model->organs[i].first);
-    part.array.set_stream(gl(), part.mesh.vertices());
-    if (!changed && part.array.index_count) continue;
-    std::vector<std::uint32_t> index;
-    for (const auto& t : surface.triangle)
-      for (const std::int32_t v : t) index.push_back(std::uint32_t(v));
-    part.array.set_indices(gl(), index);
-  }
+  shadow = std::make_unique<GroundShadow>(ground_centre, ground_x, ground_y, up, 0.10 * size);
 }
 
 Mat4 Renderer::Parts::clip_from_world(const Camera& camera) const {
@@ -153,14 +164,32 @@ const Tool* Renderer::Parts::held_tool(const State& state, const DrawOptions& op
              : nullptr;
 }
 
-void Renderer::Parts::set_light(const Program& program, const State& state, const DrawOptions& options,
-                                const Mat4& clip) {
+/// What will be drawn on: the rest of the picture is backdrop.
+PixelRect Renderer::Parts::footprint(const State& state, const DrawOptions& options) const {
+  Footprint print(clip, frame.width, frame.height);
+  organs.for_each_position([&](Vec3 p) { print.add(p); });
+  if (options.view != View::surface)
+    for (const OrganRange& range : scene.model->organs)
+      for (std::int32_t i = range.first; i < range.first + range.count; ++i)
+        for (const double side : {-1.5, 1.5}) {
+          const Vec3 p = state.position[std::size_t(i)];
+          for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+            print.add(p + side * range.sphere_radius * axis);
+        }
+  if (held_tool(state, options)) {
+    const std::vector<float>& v = tool_meshes[std::size_t(state.last_inputs.tool)].vertex;
+    for (std::size_t i = 0; i < v.size(); i += 7)
+      print.add(state.last_inputs.position +
+                rotate(state.last_inputs.world_from_tool, {v[i], v[i + 1], v[i + 2]}));
+  }
+  return print.pixels();
+}
+
+void Renderer::Parts::set_light(const Program& program, const State& state, const DrawOptions& options) {
   program.use();
   const Mat4 view = view_matrix(options.camera);
   const Vec3 right{view[0], view[4], view[8]}, back{view[2], view[6], view[10]};
   program.set("clip_from_world", clip);
-  gl().Uniform2f(gl().GetUniformLocation(program.id(), "picture_size"), float(frame.width),
-                 float(frame.height));
   program.set("eye", options.camera.eye), program.set("up", up);
   program.set("key_light", unit(0.85 * up - 0.55 * right + 0.5 * back));
   program.set("fill_light", unit(0.25 * up + 0.9 * right + 0.35 * back));
@@ -175,112 +204,74 @@ void Renderer::Parts::set_light(const Program& program, const State& state, cons
   program.set("tool_radius", !held ? 0.0 : cuts ? 0.06 * held->blade_length : held->radius);
 }
 
-void Renderer::Parts::draw_shadow() {
+void Renderer::Parts::draw_spheres(const State& state, const DrawOptions& options) {
   const Gl& g = gl();
-  g.Disable(GL_DEPTH_TEST);
-  shadow.begin(g);
-  g.ClearColor(0, 0, 0, 0), g.Clear(GL_COLOR_BUFFER_BIT);
-  g.Enable(GL_BLEND), g.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_COLOR);
-  shadow_pass.use();
-  shadow_pass.set("ground_centre", ground_centre), shadow_pass.set("ground_x", ground_x),
-      shadow_pass.set("ground_y", ground_y);
-  shadow_pass.set("up", up), shadow_pass.set("reach", 0.10 * size);
-  for (const OrganParts& part : organs) {
-    g.BindVertexArray(part.array.id);
-    g.DrawElements(GL_TRIANGLES, GLsizei(3 * part.cut.outer_triangle_count()), GL_UNSIGNED_INT, nullptr);
-  }
-  g.Disable(GL_BLEND);
-  // Blur twice: a narrow one for the contact, a wide one for the room's light.
-  blur.use(), blur.set("picture", 0);
-  g.ActiveTexture(GL_TEXTURE0), g.BindVertexArray(nothing.id);
-  const auto pass = [&](const TextureTarget& from, const TextureTarget& to, double dx, double dy) {
-    to.begin(g), g.BindTexture(GL_TEXTURE_2D, from.texture);
-    g.Uniform2f(g.GetUniformLocation(blur.id(), "stride"), float(dx / kShadowSize), float(dy / kShadowSize));
-    g.DrawArrays(GL_TRIANGLES, 0, 3);
-  };
-  pass(shadow, wide, 0.55, 0), pass(wide, contact, 0, 0.55);
-  pass(contact, shadow, 2, 0), pass(shadow, wide, 0, 2);
-}
-
-void Renderer::Parts::draw_background(const DrawOptions& options, const Mat4& clip) {
-  const Gl& g = gl();
-  target.begin(g);
-  g.Disable(GL_DEPTH_TEST), g.Clear(GL_DEPTH_BUFFER_BIT);
-  background.use();
-  g.Uniform2f(g.GetUniformLocation(background.id(), "picture_size"), float(frame.width), float(frame.height));
-  g.BindVertexArray(nothing.id), g.DrawArrays(GL_TRIANGLES, 0, 3);
-  g.Enable(GL_DEPTH_TEST), g.DepthFunc(GL_LEQUAL);
-  if (!options.show_ground || dot(options.camera.eye, up) <= ground_height) return;
-  ground.use();
-  g.Uniform2f(g.GetUniformLocation(ground.id(), "picture_size"), float(frame.width), float(frame.height));
-  ground.set("clip_from_world", clip);
-  ground.set("ground_centre", ground_centre), ground.set("ground_x", ground_x),
-      ground.set("ground_y", ground_y);
-  ground.set("contact", 0), ground.set("wide", 1);
-  g.ActiveTexture(GL_TEXTURE0), g.BindTexture(GL_TEXTURE_2D, contact.texture);
-  g.ActiveTexture(GL_TEXTURE1), g.BindTexture(GL_TEXTURE_2D, wide.texture);
-  g.ActiveTexture(GL_TEXTURE0);
-  g.DepthMask(GL_FALSE), g.DrawArrays(GL_TRIANGLE_STRIP, 0, 4), g.DepthMask(GL_TRUE);
-}
-
-void Renderer::Parts::draw_organs(const State& state, const DrawOptions& options, const Mat4& clip) {
-  const Gl& g = gl();
-  const bool glassy = options.view == View::both;
-  set_light(organ, state, options, clip);
-  g.ActiveTexture(GL_TEXTURE0), g.BindTexture(GL_TEXTURE_3D, noise);
-  organ.set("noise", 0), organ.set("is_glassy", glassy ? 1 : 0);
-  if (glassy) g.Enable(GL_BLEND), g.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  for (std::size_t i = 0; i < organs.size(); ++i) {
-    const OrganLook& look = scene.looks[i];
-    organ.set("outer_colour", linear(look.outer)), organ.set("inner_colour", linear(look.inner)),
-        organ.set("wetness", look.wetness);
-    const VertexArray& array = organs[i].array;
-    const GLsizei outer = GLsizei(3 * organs[i].cut.outer_triangle_count());
-    g.BindVertexArray(array.id);
-    organ.set("is_wall", 0), g.DrawElements(GL_TRIANGLES, outer, GL_UNSIGNED_INT, nullptr);
-    organ.set("is_wall", 1);
-    if (array.index_count > outer)
-      g.DrawElements(GL_TRIANGLES, array.index_count - outer, GL_UNSIGNED_INT,
-                     reinterpret_cast<const void*>(sizeof(GLuint) * std::size_t(outer)));
-  }
-  g.Disable(GL_BLEND);
-}
-
-void Renderer::Parts::draw_spheres(const State& state, const DrawOptions& options, const Mat4& clip) {
-  const Gl& g = gl();
-  sphere_data.clear();
+  instances.clear();
   for (const OrganRange& range : scene.model->organs)
     for (std::int32_t i = range.first; i < range.first + range.count; ++i) {
       const Vec3 p = state.position[std::size_t(i)],
                  c = linear(layer_colour(scene.model->layer[std::size_t(i)], range.layer_count));
+      if (options.cutaway.leaves_out(p)) continue;
       for (const double x : {p.x, p.y, p.z, range.sphere_radius, c.x, c.y, c.z})
-        sphere_data.push_back(float(x));
+        instances.push_back(float(x));
     }
-  spheres.set_stream(g, sphere_data);
-  set_light(sphere, state, options, clip);
+  spheres.set_stream(g, instances);
+  set_light(sphere, state, options);
   g.Enable(GL_SAMPLE_ALPHA_TO_COVERAGE);
   g.BindVertexArray(spheres.id),
-      g.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(sphere_data.size() / 7));
+      g.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(instances.size() / 7));
   g.Disable(GL_SAMPLE_ALPHA_TO_COVERAGE);
 }
 
-void Renderer::Parts::draw_tool(const State& state, const DrawOptions& options, const Mat4& clip) {
+void Renderer::Parts::draw_elements(const State& state, const DrawOptions& options) {
+  const Gl& g = gl();
+  const double scale = options.full_scale > 0 ? options.full_scale : default_full_scale(options.quantity);
+  measure_elements(*scene.model, state, options.quantity, elements);
+  double radius = 0;
+  for (const OrganRange& range : scene.model->organs) radius = std::max(radius, 0.11 * range.sphere_radius);
+  instances.clear();
+  for (const ElementValue& e : elements) {
+    const Vec3 a = state.position[std::size_t(e.a)], b = state.position[std::size_t(e.b)];
+    if (options.cutaway.leaves_out(0.5 * (a + b))) continue;
+    const double part = e.value / scale;
+    const Vec3 c = linear(quantity_colour(options.quantity, part));
+    const double width = radius * (1 + 1.2 * std::min(std::abs(part), 1.0));  // what carries more is thicker
+    for (const double x : {a.x, a.y, a.z, b.x, b.y, b.z, width, c.x, c.y, c.z}) instances.push_back(float(x));
+  }
+  rods.set_stream(g, instances);
+  set_light(rod, state, options);
+  g.BindVertexArray(rods.id), g.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(instances.size() / 10));
+}
+
+void Renderer::Parts::draw_tool(const State& state, const DrawOptions& options) {
   if (!held_tool(state, options)) return;
   const VertexArray& array = tools[std::size_t(state.last_inputs.tool)];
-  set_light(tool, state, options, clip);
+  set_light(tool, state, options);
   tool.set("world_from_tool", rigid(state.last_inputs.world_from_tool, state.last_inputs.position));
   gl().BindVertexArray(array.id),
       gl().DrawElements(GL_TRIANGLES, array.index_count, GL_UNSIGNED_INT, nullptr);
 }
 
-void Renderer::Parts::read_frame() {
-  target.read(gl(), rgba);
-  const std::size_t width = std::size_t(frame.width), height = std::size_t(frame.height);
-  for (std::size_t row = 0; row < height; ++row) {
-    const std::uint8_t* from = rgba.data() + (height - 1 - row) * width * 4;
-    std::uint8_t* to = frame.rgb.data() + row * width * 3;
-    for (std::size_t x = 0; x < width; ++x)
-      to[3 * x] = from[4 * x], to[3 * x + 1] = from[4 * x + 1], to[3 * x + 2] = from[4 * x + 2];
+/// Reads what was drawn and puts the backdrop and the ground's shadow behind it.
+void Renderer::Parts::read_frame(const DrawOptions& options) {
+  frame.rgb = backdrop.rgb;
+  if (sees_ground(options)) {
+    shadow->clear();
+    organs.add_shadows(*shadow);
+    shadow->draw(frame, clip);
+  }
+  if (rect.width == 0 || rect.height == 0) return;
+  target.read(gl(), rect, rgba);
+  for (int row = 0; row < rect.height; ++row) {
+    const std::uint8_t* from = rgba.data() + std::size_t(row) * std::size_t(rect.width) * 4;
+    std::uint8_t* to =
+        frame.rgb.data() +
+        (std::size_t(frame.height - 1 - rect.y - row) * std::size_t(frame.width) + std::size_t(rect.x)) * 3;
+    for (int x = 0; x < rect.width; ++x, from += 4, to += 3) {
+      const unsigned rest = 255u - from[3];
+      if (rest == 255) continue;
+      for (int c = 0; c < 3; ++c) to[c] = std::uint8_t(std::min(255u, from[c] + (to[c] * rest + 127) / 255));
+    }
   }
 }
 
@@ -305,27 +296,31 @@ Result<std::unique_ptr<Renderer>> Renderer::create(int width, int height, SceneV
   auto parts = std::make_unique<Parts>();
   parts->context = *std::move(context), parts->scene = std::move(scene);
   parts->frame = blank_frame(width, height, 0, 0, 0);
+  parts->backdrop = make_backdrop(width, height);
   const Gl& gl = parts->gl();
   if (auto done = parts->create_programs(); !done) return done.errors();
   if (auto done = parts->target.create(gl, width, height); !done) return done.errors();
-  for (TextureTarget* texture : {&parts->shadow, &parts->contact, &parts->wide})
-    texture->create(gl, kShadowSize);
-  parts->noise = create_noise_texture(gl);
-  parts->place_ground(), parts->create_organs(), parts->create_tools();
+  parts->place_ground(), parts->create_arrays();
   return std::unique_ptr<Renderer>(new Renderer(std::move(parts)));
 }
 
 const Frame& Renderer::draw(const State& state, const DrawOptions& options) {
   Parts& p = *parts_;
   p.context->make_current();
-  const Mat4 clip = p.clip_from_world(options.camera);
-  p.update_organs(state);
-  if (options.show_ground) p.draw_shadow();
-  p.draw_background(options, clip);
-  if (options.view != View::surface) p.draw_spheres(state, options, clip);
-  p.draw_tool(state, options, clip);
-  if (options.view != View::spheres) p.draw_organs(state, options, clip);
-  p.read_frame();
+  const Gl& gl = p.gl();
+  p.clip = p.clip_from_world(options.camera);
+  p.organs.update(gl, p.scene, state);
+  p.rect = p.footprint(state, options);
+  p.target.begin(gl, p.rect);
+  gl.Enable(GL_DEPTH_TEST), gl.DepthFunc(GL_LEQUAL);
+  if (options.view == View::spheres || options.view == View::both) p.draw_spheres(state, options);
+  if (options.view == View::elements) p.draw_elements(state, options);
+  p.draw_tool(state, options);
+  if (options.view == View::surface || options.view == View::both) {
+    p.set_light(p.organs.program(options), state, options);
+    p.organs.draw(gl, p.scene, options);
+  }
+  p.read_frame(options);
   return p.frame;
 }
 

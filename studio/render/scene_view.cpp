@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace ctpm {
 
@@ -38,19 +39,54 @@ Camera default_camera(const SceneView& scene, double aspect) {
   return fit_camera(points, -from, up, 32, aspect);
 }
 
-Colour layer_colour(int layer, int layer_count) {
-  // From the skin inwards: rose, amber, green, blue, violet; equal steps of lightness.
-  static constexpr Colour kLadder[] = {{0.84, 0.40, 0.38}, {0.93, 0.66, 0.32}, {0.62, 0.72, 0.36},
-                                       {0.30, 0.62, 0.68}, {0.36, 0.42, 0.75}, {0.55, 0.33, 0.66}};
-  const int last = int(std::size(kLadder)) - 1;
-  const double place =
-      std::clamp((layer - 1) * (layer_count > last ? double(last) / std::max(layer_count - 1, 1) : 1.0), 0.0,
-                 double(last));
-  const int step = std::min(int(place), last - 1);
+Camera following_camera(const SceneView& scene, const Camera& base, const State& state) {
+  constexpr double kClosest = 0.5;  // of the base camera's distance
+  if (state.last_inputs.tool < 0) return base;
+  const Bounds box = rest_bounds(scene);
+  const Vec3 p = state.last_inputs.position;
+  const auto beyond = [](double low, double high, double x) { return std::max({low - x, x - high, 0.0}); };
+  const double away = norm(Vec3{beyond(box.min.x, box.max.x, p.x), beyond(box.min.y, box.max.y, p.y),
+                                beyond(box.min.z, box.max.z, p.z)});
+  const double t = std::clamp(1 - away / (0.35 * box.diagonal()), 0.0, 1.0), near = t * t * (3 - 2 * t);
+  Camera camera = base;
+  camera.target = base.target + 0.85 * near * (p - base.target);
+  camera.eye = camera.target + (1 - near * (1 - kClosest)) * (base.eye - base.target);
+  return camera;
+}
+
+namespace {
+
+/// The colour at `place` in [0, 1] of a ladder of equal steps.
+Colour on_ladder(std::span<const Colour> ladder, double place) {
+  const double steps = std::clamp(place, 0.0, 1.0) * double(ladder.size() - 1);
+  const std::size_t low = std::min(std::size_t(steps), ladder.size() - 2);
   Colour colour;
   for (std::size_t c = 0; c < 3; ++c)
-    colour[c] = kLadder[step][c] + (place - step) * (kLadder[step + 1][c] - kLadder[step][c]);
+    colour[c] = ladder[low][c] + (steps - double(low)) * (ladder[low + 1][c] - ladder[low][c]);
   return colour;
+}
+
+}  // namespace
+
+double default_full_scale(ElementQuantity quantity) {
+  return quantity == ElementQuantity::stretch ? 0.2 : quantity == ElementQuantity::tilt ? 0.5 : 0.05;
+}
+
+Colour quantity_colour(ElementQuantity quantity, double value) {
+  static constexpr Colour kBothWays[] = {
+      {0.10, 0.25, 0.75}, {0.35, 0.60, 0.90}, {0.80, 0.80, 0.80}, {0.95, 0.55, 0.35}, {0.75, 0.10, 0.12}};
+  static constexpr Colour kOneWay[] = {
+      {0.16, 0.17, 0.42}, {0.16, 0.42, 0.60}, {0.25, 0.66, 0.52}, {0.75, 0.82, 0.32}, {1.00, 0.92, 0.45}};
+  return quantity == ElementQuantity::stretch ? on_ladder(kBothWays, 0.5 + 0.5 * value)
+                                              : on_ladder(kOneWay, value);
+}
+
+Colour layer_colour(int layer, int layer_count) {
+  // From the skin inwards: rose, amber, green, blue, indigo, violet; few layers take the first steps only.
+  static constexpr Colour kLadder[] = {{0.84, 0.40, 0.38}, {0.93, 0.66, 0.32}, {0.62, 0.72, 0.36},
+                                       {0.30, 0.62, 0.68}, {0.36, 0.42, 0.75}, {0.55, 0.33, 0.66}};
+  const int last = std::max(layer_count - 1, int(std::size(kLadder)) - 1);
+  return on_ladder(kLadder, double(layer - 1) / last);
 }
 
 }  // namespace ctpm

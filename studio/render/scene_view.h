@@ -7,6 +7,7 @@
 
 #include "core/model.h"
 #include "core/organ.h"
+#include "core/state.h"
 #include "studio/render/camera.h"
 
 namespace ctpm {
@@ -41,18 +42,49 @@ Vec3 up_of(const Model& model);
 /// A camera in front of the scene, a little above it and to the right, with everything in sight.
 Camera default_camera(const SceneView& scene, double aspect = 16.0 / 9);
 
+/// A camera that comes closer as the held tool nears the organs, and looks where it works. It depends on the
+/// State alone, so a video that starts later shows the same pictures. Without a tool: `base` itself.
+Camera following_camera(const SceneView& scene, const Camera& base, const State& state);
+
 enum class View {
-  surface,  ///< the organs' surfaces, as tissue
-  spheres,  ///< the spheres, coloured by layer
-  both,     ///< the spheres through a glassy surface
+  surface,   ///< the organs' surfaces, as tissue
+  spheres,   ///< the spheres, coloured by layer
+  both,      ///< the spheres through a glassy surface
+  elements,  ///< the elements, coloured by what ElementQuantity says
+};
+
+/// What the colour of an element shows.
+enum class ElementQuantity {
+  stretch,  ///< (length - rest length) / rest length of edges and two-sphere TPMs
+  tilt,     ///< theta of the five-sphere lines [rad]
+  force,    ///< size of the axial force of edges and two-sphere TPMs, softened (Eq. 8) [N]
+};
+
+/// Cuts everything away on one side of a plane, so that one looks inside.
+struct Cutaway {
+  Vec3 point;            ///< on the plane [m]
+  Vec3 normal{0, 0, 0};  ///< towards the side that is left out, unit length; zero: nothing is left out
+
+  bool is_on() const { return dot(normal, normal) > 0; }
+  bool leaves_out(Vec3 p) const { return is_on() && dot(p - point, normal) > 0; }
 };
 
 struct DrawOptions {
   Camera camera;
   View view = View::surface;
+  ElementQuantity quantity = ElementQuantity::stretch;
+  double full_scale = 0;  ///< value that gets the last colour [1, rad or N]; 0: default_full_scale()
+  Cutaway cutaway;
   bool show_tool = true;    ///< at the pose of State::last_inputs
   bool show_ground = true;  ///< a soft shadow below the scene
 };
+
+/// 20 % stretch, 0.5 rad tilt, 0.05 N force.
+double default_full_scale(ElementQuantity quantity);
+
+/// Colour of a value in units of full scale: for stretch from blue (-1) over grey to red (1), else from 0
+/// to 1.
+Colour quantity_colour(ElementQuantity quantity, double value);
 
 /// Colour of a layer, 1 = outermost, of an organ with `layer_count` layers.
 Colour layer_colour(int layer, int layer_count);

@@ -5,21 +5,6 @@ namespace {
 
 const char* const kVersion = "#version 330 core\n";
 
-// Studio backdrop, brightest behind the scene; the dither hides bands in the video.
-const char* const kBackdrop = R"(
-uniform vec2 picture_size;
-vec3 backdrop() {
-  vec2 q = gl_FragCoord.xy / picture_size;
-  float r = length((q - vec2(0.5, 0.56)) * vec2(1.0, 0.8));
-  vec3 c = mix(vec3(0.70, 0.75, 0.79), vec3(0.23, 0.28, 0.335), smoothstep(0.05, 0.85, r));
-  return c * mix(0.86, 1.04, smoothstep(0.0, 1.0, q.y));
-}
-vec3 dither(vec3 c) {
-  float h = fract(52.9829189 * fract(dot(floor(gl_FragCoord.xy), vec2(0.06711056, 0.00583715))));
-  return c + (h - 0.5) / 255.0;
-}
-)";
-
 // Key light from the upper left, cool fill from the right, rim from behind; a room to be mirrored in wet
 // tissue.
 const char* const kLight = R"(
@@ -60,73 +45,110 @@ vec3 diffuse_light(vec3 n, vec3 wrap, float shade) {
   return ambient + key + fill + rim;
 }
 float fresnel(float c) { float m = 1.0 - clamp(c, 0.0, 1.0); float m2 = m * m; return 0.035 + 0.55 * m2 * m2 * m; }
-vec3 to_srgb(vec3 c) {
-  c = c * (1.0 + 0.16 * c) / (1.0 + 0.62 * c);
-  return pow(max(c, vec3(0.0)), vec3(1.0 / 2.2));
-}
-)";
-
-const char* const kFullScreenVertex = R"(
-out vec2 place;
-void main() {
-  place = vec2(gl_VertexID == 1 ? 2.0 : 0.0, gl_VertexID == 2 ? 2.0 : 0.0);
-  gl_Position = vec4(2.0 * place - 1.0, 0.0, 1.0);
-}
+// Soft shoulder, then gamma 2, which is close to sRGB and one square root.
+vec3 to_srgb(vec3 c) { return sqrt(max(c * (1.0 + 0.16 * c) / (1.0 + 0.62 * c), vec3(0.0))); }
 )";
 
 const char* const kOrganVertex = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 rest;
-layout(location = 3) in float crevice;
+layout(location = 3) in vec2 crevice_and_stain;
 uniform mat4 clip_from_world;
 centroid out vec3 p, n, q;
-centroid out float hollow;
+centroid out vec2 hollow_and_stain;
 void main() {
-  p = position; n = normal; q = rest; hollow = crevice;
+  p = position; n = normal; q = rest; hollow_and_stain = crevice_and_stain;
   gl_Position = clip_from_world * vec4(position, 1.0);
+}
+)";
+
+// Small relief that is fixed to the tissue: two gyroids, turned against each other and bent, so that nothing
+// repeats visibly. Parabolas stand for sines.
+const char* const kRelief = R"(
+vec3 wave(vec3 x) { x = fract(x) * 2.0 - 1.0; return 4.0 * x * (abs(x) - 1.0); }
+vec4 gyroid(vec3 x) {
+  vec3 s = wave(x), c = wave(x + 0.25);
+  return vec4(c.xyz * c.yzx - s.zxy * s.xyz, dot(s, c.yzx));
+}
+vec4 relief(vec3 rest) {
+  vec3 x = rest + 0.0021 * wave(rest.yzx * 47.0) + 0.0011 * wave(rest.zxy * 97.0);
+  const mat3 turn = mat3(0.36, 0.48, -0.80, -0.80, 0.60, 0.0, 0.48, 0.64, 0.60);
+  vec4 coarse = gyroid(x * 151.0), fine = gyroid(turn * x * 277.0);
+  return 0.55 * coarse + 0.5 * vec4(fine.xyz * turn, fine.w);
 }
 )";
 
 const char* const kOrganFragment = R"(
 centroid in vec3 p, n, q;
-centroid in float hollow;
-uniform sampler3D noise;
+centroid in vec2 hollow_and_stain;
 uniform vec3 outer_colour, inner_colour;
 uniform float wetness;
 uniform int is_wall;
-uniform int is_glassy;
+uniform vec3 cutaway_point, cutaway_normal;
+uniform mat4 clip_from_world;
 out vec4 colour;
 void main() {
-  if (is_glassy == 1 && !gl_FrontFacing) discard;
+#ifdef CUTAWAY
+  if (dot(p - cutaway_point, cutaway_normal) > 0.0) discard;
+#endif
+#ifdef GLASSY_CUTAWAY
+  if (dot(p - cutaway_point, cutaway_normal) > 0.0) discard;
+#endif
+#ifdef GLASSY
+  if (!gl_FrontFacing) discard;
+#endif
+  float hollow = hollow_and_stain.x, stain = hollow_and_stain.y;
   vec3 v = normalize(eye - p);
   vec3 m = normalize(n);
   bool inside = is_wall == 1 || !gl_FrontFacing;
+#ifdef CUTAWAY
+  // An inner side that one sees through the plane means solid tissue at the plane: draw the section there.
+  vec3 at = p;
+  float above = dot(eye - cutaway_point, cutaway_normal), below = dot(p - cutaway_point, cutaway_normal);
+  bool is_section = !gl_FrontFacing && above > 0.0;
+  if (is_section) at = eye + (p - eye) * (above / (above - below));
+  vec4 clip = clip_from_world * vec4(at, 1.0);
+  gl_FragDepth = 0.5 + 0.5 * clip.z / clip.w;
+#endif
   if (is_wall == 1 ? dot(m, v) < 0.0 : !gl_FrontFacing) m = -m;
-  // Noise is fixed to the tissue: cells of some 4 mm for its relief, of some 25 mm for its colour.
-  vec4 fine = texture(noise, q * 62.0) * 2.0 - 1.0;
-  vec4 broad = texture(noise, q * 9.0) * 2.0 - 1.0;
-  vec3 bumped = normalize(m - (inside ? 0.20 : 0.07) * (fine.xyz - m * dot(m, fine.xyz)) - 0.05 * broad.xyz);
+#ifdef CUTAWAY
+  if (is_section) m = cutaway_normal;
+#define p at
+#define q at
+#endif
+  vec4 fine = relief(q);
+  vec3 bumped = normalize(m - (inside ? 0.11 : 0.045) * (fine.xyz - m * dot(m, fine.xyz)));
   float shade = tool_shade(p, m) * ground_shade(p, m) * clamp(1.0 - 1.6 * max(-hollow, 0.0), 0.35, 1.0);
   vec3 base;
   if (inside) {
-    base = inner_colour * (1.0 + 0.30 * fine.a + 0.16 * broad.a);
+    base = inner_colour * (1.0 + 0.13 * fine.a + 0.16 * stain);
+#ifdef CUTAWAY
+    if (is_wall == 0 && !is_section) shade *= 0.45;
+#else
     if (is_wall == 0) shade *= 0.45;
+#endif
   } else {
-    base = outer_colour * (1.0 + 0.20 * broad.a + 0.09 * fine.a);
-    base = mix(base, base * vec3(1.12, 0.86, 0.80), smoothstep(0.0, 0.8, broad.a));
+    base = outer_colour * (1.0 + 0.20 * stain + 0.035 * fine.a);
+    base = mix(base, base * vec3(1.12, 0.86, 0.80), clamp(stain, 0.0, 1.0));
     base *= 1.0 + 0.6 * clamp(hollow, 0.0, 0.3);
   }
   vec3 c = base * diffuse_light(bumped, vec3(0.38, 0.16, 0.12), shade);
   float facing = dot(bumped, v);
+  float edge = 1.0 - clamp(facing, 0.0, 1.0);
   // Glow at grazing angles, where light has passed a thin layer.
-  c += base * vec3(0.35, 0.10, 0.08) * pow(1.0 - clamp(facing, 0.0, 1.0), 3.0) * shade;
+  c += base * vec3(0.35, 0.10, 0.08) * edge * edge * edge * shade;
   vec3 mirrored = reflect(-v, normalize(mix(m, bumped, 0.55)));
   c += wetness * (inside ? 0.55 : 1.0) * fresnel(facing) * room(mirrored) * mix(0.3, 1.0, shade);
   float broad_spot = max(dot(normalize(key_light + v), bumped), 0.0);
-  c += wetness * vec3(0.10, 0.095, 0.09) * pow(broad_spot, 28.0) * shade;
-  float edge = 1.0 - clamp(facing, 0.0, 1.0);
-  colour = vec4(dither(to_srgb(c)), is_glassy == 1 ? mix(0.16, 0.85, edge * edge) : 1.0);
+  float spot2 = broad_spot * broad_spot, spot4 = spot2 * spot2, spot8 = spot4 * spot4;
+  c += wetness * vec3(0.10, 0.095, 0.09) * spot8 * spot8 * spot8 * shade;
+#ifdef GLASSY
+  float cover = mix(0.16, 0.85, edge * edge);
+  colour = vec4(cover * to_srgb(c), cover);
+#else
+  colour = vec4(to_srgb(c), 1.0);
+#endif
 }
 )";
 
@@ -158,7 +180,7 @@ void main() {
     c = vec3(0.62, 0.65, 0.69) * (0.30 * diffuse_light(m, vec3(0.0), 1.0) + 0.85 * mirrored);
   else
     c = vec3(0.055, 0.075, 0.10) * diffuse_light(m, vec3(0.0), 1.0) + 1.3 * fresnel(dot(m, v)) * mirrored;
-  colour = vec4(dither(to_srgb(c)), 1.0);
+  colour = vec4(to_srgb(c), 1.0);
 }
 )";
 
@@ -204,83 +226,60 @@ void main() {
   vec3 c = paint * diffuse_light(m, vec3(0.1), shade) + fresnel(dot(m, -d)) * room(reflect(d, m)) * 0.8;
   vec4 clip = clip_from_world * vec4(p, 1.0);
   gl_FragDepth = 0.5 + 0.5 * clip.z / clip.w;
-  colour = vec4(dither(to_srgb(c)), cover);
+  colour = vec4(to_srgb(c), 1.0) * cover;
 }
 )";
 
-const char* const kGroundVertex = R"(
+// A rod between two spheres is a ribbon that faces the eye, shaded as a cylinder.
+const char* const kRodVertex = R"(
+layout(location = 0) in vec3 from;
+layout(location = 1) in vec3 to;
+layout(location = 2) in float radius;
+layout(location = 3) in vec3 tint;
 uniform mat4 clip_from_world;
-uniform vec3 ground_centre, ground_x, ground_y;
-out vec2 place;
+uniform vec3 eye;
+out vec3 p, across, towards;
+out float place;
+flat out vec3 paint;
 void main() {
-  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);
-  place = corner;
-  vec2 s = 2.0 * corner - 1.0;
-  gl_Position = clip_from_world * vec4(ground_centre + s.x * ground_x + s.y * ground_y, 1.0);
+  vec3 end = (gl_VertexID >> 1) == 0 ? from : to;
+  towards = normalize(eye - end);
+  across = cross(to - from, towards);
+  across = across / max(length(across), 1e-9);
+  towards = normalize(cross(across, to - from));
+  place = float(gl_VertexID & 1) * 2.0 - 1.0;
+  p = end + place * radius * across;
+  paint = tint;
+  gl_Position = clip_from_world * vec4(p, 1.0);
 }
 )";
 
-const char* const kGroundFragment = R"(
-in vec2 place;
-uniform sampler2D contact, wide;
+const char* const kRodFragment = R"(
+in vec3 p, across, towards;
+in float place;
+flat in vec3 paint;
 out vec4 colour;
 void main() {
-  float shadow = 0.42 * texture(contact, place).r + 0.34 * texture(wide, place).r;
-  vec2 s = abs(2.0 * place - 1.0);
-  shadow *= 1.0 - smoothstep(0.85, 1.0, max(s.x, s.y));
-  colour = vec4(dither(backdrop() * (1.0 - vec3(0.96, 1.0, 1.0) * min(shadow, 0.8))), 1.0);
+  vec3 m = normalize(place * across + sqrt(max(1.0 - place * place, 0.0)) * towards);
+  vec3 c = paint * diffuse_light(m, vec3(0.2), ground_shade(p, m));
+  colour = vec4(to_srgb(c), 1.0);
 }
 )";
 
-const char* const kShadowVertex = R"(
-layout(location = 0) in vec3 position;
-uniform vec3 ground_centre, ground_x, ground_y, up;
-uniform float reach;
-out float closeness;
-void main() {
-  vec3 d = position - ground_centre;
-  closeness = dot(d, up) / reach;
-  gl_Position = vec4(dot(d, ground_x) / dot(ground_x, ground_x), dot(d, ground_y) / dot(ground_y, ground_y), 0.0, 1.0);
-}
-)";
-
-const char* const kShadowFragment = R"(
-in float closeness;
-out vec4 colour;
-void main() { colour = vec4(exp(-max(closeness, 0.0))); }
-)";
-
-const char* const kBlurFragment = R"(
-in vec2 place;
-uniform sampler2D picture;
-uniform vec2 stride;
-out vec4 colour;
-void main() {
-  float sum = 0.0, total = 0.0;
-  for (int i = -6; i <= 6; ++i) {
-    float w = exp(-float(i * i) / 14.0);
-    sum += w * texture(picture, place + float(i) * stride).r;
-    total += w;
-  }
-  colour = vec4(sum / total);
-}
-)";
-
-std::string join(const char* a, const char* b = "", const char* c = "") {
-  return std::string(kVersion) + a + b + c;
+std::string join(const char* a, const char* b = "", const char* c = "", const char* d = "") {
+  return std::string(kVersion) + a + b + c + d;
 }
 
 }  // namespace
 
-ShaderSource background_shader() {
-  return {join(kFullScreenVertex),
-          join(kBackdrop, "out vec4 colour;\nvoid main() { colour = vec4(dither(backdrop()), 1.0); }\n")};
+ShaderSource organ_shader(bool is_glassy, bool has_cutaway) {
+  const std::string defines = std::string(is_glassy ? "#define GLASSY\n" : "") +
+                              (has_cutaway && !is_glassy ? "#define CUTAWAY\n" : "") +
+                              (has_cutaway && is_glassy ? "#define GLASSY_CUTAWAY\n" : "");
+  return {join(kOrganVertex), join(defines.c_str(), kLight, kRelief, kOrganFragment)};
 }
-ShaderSource organ_shader() { return {join(kOrganVertex), join(kBackdrop, kLight, kOrganFragment)}; }
-ShaderSource tool_shader() { return {join(kToolVertex), join(kBackdrop, kLight, kToolFragment)}; }
-ShaderSource sphere_shader() { return {join(kSphereVertex), join(kBackdrop, kLight, kSphereFragment)}; }
-ShaderSource ground_shader() { return {join(kGroundVertex), join(kBackdrop, kGroundFragment)}; }
-ShaderSource shadow_shader() { return {join(kShadowVertex), join(kShadowFragment)}; }
-ShaderSource shadow_blur_shader() { return {join(kFullScreenVertex), join(kBlurFragment)}; }
+ShaderSource tool_shader() { return {join(kToolVertex), join(kLight, kToolFragment)}; }
+ShaderSource sphere_shader() { return {join(kSphereVertex), join(kLight, kSphereFragment)}; }
+ShaderSource rod_shader() { return {join(kRodVertex), join(kLight, kRodFragment)}; }
 
 }  // namespace ctpm

@@ -9,12 +9,11 @@ struct ShaderSource {
   std::string vertex, fragment;
 };
 
-ShaderSource background_shader();
-ShaderSource organ_shader();
+/// Colours come out multiplied by their alpha; the backdrop is put behind them afterwards.
+/// Glassy: see-through where it faces the eye. With a cutaway the section is drawn as inner tissue.
+ShaderSource organ_shader(bool is_glassy, bool has_cutaway);
 ShaderSource tool_shader();
 ShaderSource sphere_shader();
-ShaderSource ground_shader();  ///< the background, darkened by the shadow
-ShaderSource shadow_shader();  ///< what stands above the ground, seen from straight above
-ShaderSource shadow_blur_shader();
+ShaderSource rod_shader();  ///< elements
 
 }  // namespace ctpm

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/model.h"
+#include "core/state.h"
+#include "studio/render/scene_view.h"
+
+namespace ctpm {
+
+/// One element as it is drawn: a rod between two spheres, and what it carries.
+struct ElementValue {
+  std::int32_t a = 0, b = 0;  ///< end spheres
+  double value = 0;           ///< [1, rad or N]
+};
+
+/// The living elements and their values: edges and two-sphere TPMs for stretch and force, both halves of
+/// every five-sphere line for tilt. Force counts springs, dashpots and softening at this very moment.
+void measure_elements(const Model& model, const State& state, ElementQuantity quantity,
+                      std::vector<ElementValue>& values);
+
+}  // namespace ctpm

@@ -1,0 +1,142 @@
+#include "studio/render/ground_shadow.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ctpm {
+namespace {
+
+constexpr std::size_t kTexels = std::size_t(GroundShadow::kSize) * GroundShadow::kSize;
+
+}  // namespace
+
+GroundShadow::GroundShadow(Vec3 centre, Vec3 x, Vec3 y, Vec3 up, double reach)
+    : centre_(centre),
+      half_x_(x),
+      half_y_(y),
+      x_(x / dot(x, x)),
+      y_(y / dot(y, y)),
+      up_(up / reach),
+      touched_(kTexels),
+      narrow_(kTexels),
+      wide_(kTexels),
+      swap_(kTexels) {}
+
+void GroundShadow::clear() { std::fill(touched_.begin(), touched_.end(), 0.0f); }
+
+void GroundShadow::add_point(Vec3 p) {
+  const Vec3 d = p - centre_;
+  const int column = int(std::floor((0.5 + 0.5 * dot(d, x_)) * kSize)),
+            row = int(std::floor((0.5 + 0.5 * dot(d, y_)) * kSize));
+  if (column < 0 || row < 0 || column >= kSize || row >= kSize) return;
+  // 1 on the ground, a third at the reach, nothing far above.
+  const double h = std::max(dot(d, up_), 0.0);
+  float& texel = touched_[std::size_t(row) * kSize + std::size_t(column)];
+  texel = std::max(texel, float(1 / (1 + h * (1 + h))));
+}
+
+void GroundShadow::add(const Surface& surface, std::span<const Vec3> position, std::size_t triangle_count) {
+  const double texel = 2 / (kSize * norm(x_));  // side of a texel [m]
+  for (std::size_t i = 0; i < triangle_count; ++i) {
+    const auto& t = surface.triangle[i];
+    const Vec3 a = position[std::size_t(t[0])], b = position[std::size_t(t[1])] - a,
+               c = position[std::size_t(t[2])] - a;
+    const double longest = std::sqrt(std::max({dot(b, b), dot(c, c), dot(b - c, b - c)}));
+    const int parts = std::clamp(int(longest / texel) + 1, 1, 64);  // points no further apart than a texel
+    if (parts == 1) {
+      add_point(a + (b + c) / 3.0);
+      continue;
+    }
+    for (int u = 0; u <= parts; ++u)
+      for (int v = 0; u + v <= parts; ++v) add_point(a + (double(u) / parts) * b + (double(v) / parts) * c);
+  }
+}
+
+void GroundShadow::blur(const std::vector<float>& from, std::vector<float>& to, double width) {
+  const int radius = int(std::ceil(2.2 * width));
+  std::vector<float> weight;
+  float total = 0;
+  for (int k = -radius; k <= radius; ++k)
+    weight.push_back(float(std::exp(-k * k / (2 * width * width)))), total += weight.back();
+  for (float& w : weight) w /= total;
+  // Rows, then columns; beyond the border there is no shadow.
+  for (int r = 0; r < kSize; ++r)
+    for (int c = 0; c < kSize; ++c) {
+      float sum = 0;
+      for (int k = std::max(-radius, -c); k <= std::min(radius, kSize - 1 - c); ++k)
+        sum += weight[std::size_t(k + radius)] * from[std::size_t(r * kSize + c + k)];
+      swap_[std::size_t(r * kSize + c)] = sum;
+    }
+  for (int r = 0; r < kSize; ++r) {
+    float* row = &to[std::size_t(r * kSize)];
+    std::fill(row, row + kSize, 0.0f);
+    for (int k = std::max(-radius, -r); k <= std::min(radius, kSize - 1 - r); ++k) {
+      const float w = weight[std::size_t(k + radius)];
+      const float* other = &swap_[std::size_t((r + k) * kSize)];
+      for (int c = 0; c < kSize; ++c) row[c] += w * other[c];
+    }
+  }
+}
+
+/// Both blurs together, in wide_.
+void GroundShadow::find_darkness() {
+  constexpr float kContact = 0.46f, kRoom = 0.38f, kDarkest = 0.85f;
+  blur(touched_, narrow_, 1.6), blur(narrow_, wide_, 6.5);
+  for (std::size_t i = 0; i < kTexels; ++i)
+    wide_[i] = std::min(kDarkest, kContact * narrow_[i] + kRoom * wide_[i]);
+}
+
+/// Between texels, at a place in texels; nothing outside.
+float GroundShadow::darkness(float u, float v) const {
+  if (!(u >= 0 && v >= 0 && u < kSize - 1 && v < kSize - 1)) return 0;
+  const int c = int(u), r = int(v);
+  const float s = u - float(c), t = v - float(r);
+  const float* row = &wide_[std::size_t(r * kSize + c)];
+  return (1 - t) * ((1 - s) * row[0] + s * row[1]) + t * ((1 - s) * row[kSize] + s * row[kSize + 1]);
+}
+
+void GroundShadow::draw(Frame& frame, const Mat4& m) {
+  constexpr int kStep = 4;  // pixels between knots; the shadow has no finer detail
+  find_darkness();
+  // Clip coordinates (x, y, w) of ground coordinates (u, v, 1); its adjugate leads back from the picture.
+  const auto row = [&](int r, Vec3 p, double last) {
+    return m[std::size_t(r)] * p.x + m[std::size_t(4 + r)] * p.y + m[std::size_t(8 + r)] * p.z +
+           last * m[std::size_t(12 + r)];
+  };
+  const Vec3 to_x{row(0, half_x_, 0), row(0, half_y_, 0), row(0, centre_, 1)},
+      to_y{row(1, half_x_, 0), row(1, half_y_, 0), row(1, centre_, 1)};
+  const Vec3 to_w{row(3, half_x_, 0), row(3, half_y_, 0), row(3, centre_, 1)};
+  const Vec3 from_x = cross(to_y, to_w), from_y = cross(to_w, to_x), from_w = cross(to_x, to_y);
+  const double facing = dot(to_w, from_w);
+  const int columns = frame.width / kStep + 2, rows = frame.height / kStep + 2;
+  knots_.assign(std::size_t(columns) * std::size_t(rows), 0.0f);
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c) {
+      const double x = 2.0 * c * kStep / frame.width - 1, y = 1 - 2.0 * r * kStep / frame.height;
+      const Vec3 g = x * from_x + y * from_y + from_w;
+      if (g.z * facing <= 0) continue;  // above the horizon
+      const double u = g.x / g.z, v = g.y / g.z;
+      knots_[std::size_t(r * columns + c)] =
+          darkness(float((0.5 + 0.5 * u) * kSize - 0.5), float((0.5 + 0.5 * v) * kSize - 0.5));
+    }
+  // Linear between the knots, and the ground darkened by that much.
+  for (int y = 0; y < frame.height; ++y) {
+    const float t = float(y % kStep) / kStep;
+    const float* upper = &knots_[std::size_t(y / kStep * columns)];
+    const float* lower = upper + columns;
+    std::uint8_t* to = &frame.rgb[std::size_t(y) * std::size_t(frame.width) * 3];
+    for (int c = 0; c * kStep < frame.width; ++c) {
+      const float left = upper[c] + t * (lower[c] - upper[c]),
+                  right = upper[c + 1] + t * (lower[c + 1] - upper[c + 1]);
+      if (left + right <= 0) continue;
+      const int last = std::min(kStep, frame.width - c * kStep);
+      for (int k = 0; k < last; ++k) {
+        const int light = 65536 - int(65536 * (left + float(k) / kStep * (right - left)));
+        std::uint8_t* pixel = to + 3 * (c * kStep + k);
+        for (int b = 0; b < 3; ++b) pixel[b] = std::uint8_t((pixel[b] * light + 32768) >> 16);
+      }
+    }
+  }
+}
+
+}  // namespace ctpm

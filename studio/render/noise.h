@@ -1,0 +1,10 @@
+#pragma once
+
+#include "core/vec3.h"
+
+namespace ctpm {
+
+/// Smooth noise in [-1, 1] with features of the size of 1; the same everywhere and always, repeats after 64.
+double noise_at(Vec3 place);
+
+}  // namespace ctpm

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <vector>
+
+#include "studio/render/cut_surface.h"
+#include "studio/render/gl_objects.h"
+#include "studio/render/ground_shadow.h"
+#include "studio/render/organ_mesh.h"
+#include "studio/render/scene_view.h"
+#include "studio/render/shaders.h"
+
+namespace ctpm {
+
+/// An sRGB colour as light. Gamma 2, as the shaders write it.
+inline Vec3 linear(const Colour& c) { return {c[0] * c[0], c[1] * c[1], c[2] * c[2]}; }
+
+/// Draws the organs' surfaces.
+class OrganPainter {
+ public:
+  /// Errors: shaders that do not compile.
+  Result<Done> create(const Gl& gl, const SceneView& scene);
+
+  /// Deforms and splits the surfaces as the state says.
+  void update(const Gl& gl, const SceneView& scene, const State& state);
+  void add_shadows(GroundShadow& shadow) const;
+
+  /// The program that draw() will use; its light must be set before.
+  const Program& program(const DrawOptions& options) const;
+  void draw(const Gl& gl, const SceneView& scene, const DrawOptions& options) const;
+
+  /// Where the vertices of all organs are [m].
+  template <class Visit>
+  void for_each_position(Visit&& visit) const {
+    for (const Organ& organ : organs_)
+      for (const Vec3& p : organ.mesh.positions()) visit(p);
+  }
+
+ private:
+  struct Organ {
+    CutSurface cut;
+    OrganMesh mesh;
+    VertexArray array;
+    std::size_t outer_indices = 0;
+    bool is_set = false;
+  };
+
+  std::vector<Organ> organs_;
+  Program programs_[2][2];  ///< [is_glassy][has_cutaway]
+};
+
+}  // namespace ctpm
