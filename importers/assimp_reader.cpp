@@ -9,6 +9,7 @@
 #include <assimp/Importer.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -55,8 +56,8 @@ void append(const aiMesh& mesh, const aiMatrix4x4t<double>& world_from_mesh, Col
 void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4t<double>& world_from_parent,
              const std::string& part, Collected& out) {
   const aiMatrix4x4& m = node.mTransformation;
-  const aiMatrix4x4t<double> parent_from_node(m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4,
-                                              m.d1, m.d2, m.d3, m.d4);
+  const aiMatrix4x4t<double> parent_from_node(m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2,
+                                              m.c3, m.c4, m.d1, m.d2, m.d3, m.d4);
   const aiMatrix4x4t<double> world_from_node = world_from_parent * parent_from_node;
   for (unsigned i = 0; i < node.mNumMeshes; ++i) {
     if (node.mMeshes[i] >= scene.mNumMeshes) continue;
@@ -66,17 +67,19 @@ void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4t<double
     const bool is_wanted = part.empty() || part == name || part == node.mName.C_Str();
     if (is_wanted) append(mesh, world_from_node, out);
   }
-  for (unsigned i = 0; i < node.mNumChildren; ++i) collect(scene, *node.mChildren[i], world_from_node, part, out);
+  for (unsigned i = 0; i < node.mNumChildren; ++i)
+    collect(scene, *node.mChildren[i], world_from_node, part, out);
 }
 
 std::string suffix_of(const std::string& path) {
   std::string suffix = std::filesystem::path(path).extension().string();
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
   return suffix;
 }
 
-/// Length of one unit [m] where the format says it. glTF is in metres by definition; assimp scales a DAE file to metres
-/// by its <unit>; FBX says its centimetres per unit in the header.
+/// Length of one unit [m] where the format says it. glTF is in metres by definition; assimp scales a DAE file
+/// to metres by its <unit>; FBX says its centimetres per unit in the header.
 double unit_said_by(const aiScene& scene, const std::string& suffix) {
   if (suffix == ".gltf" || suffix == ".glb" || suffix == ".dae") return 1.0;
   if (suffix == ".fbx" && scene.mMetaData != nullptr) {
@@ -86,6 +89,19 @@ double unit_said_by(const aiScene& scene, const std::string& suffix) {
     if (scene.mMetaData->Get("UnitScaleFactor", centimetres_float)) return 0.01 * double(centimetres_float);
   }
   return 0;
+}
+
+/// The reader turns 3DS files, which are z up, to y up; this turns them back, so that coordinates are the
+/// file's own.
+aiMatrix4x4t<double> file_from_scene(const std::string& suffix) {
+  if (suffix != ".3ds") return {};
+  return {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
+}
+
+/// True for what the reader says of a file that it could read but that has no triangles.
+bool means_no_triangles(const std::string& trouble) {
+  return trouble.find("mNumMeshes is 0") != std::string::npos ||
+         trouble.find("No meshes remaining") != std::string::npos;
 }
 
 void send_failure(const Send& send, const std::string& text) {
@@ -100,10 +116,16 @@ void send_failure(const Send& send, const std::string& text) {
 void send_mesh_file(const std::string& path, const std::string& part, const Send& send) {
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene = importer.ReadFile(path, aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_SortByPType);
-  if (scene == nullptr) return send_failure(send, importer.GetErrorString());
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  const aiScene* scene = importer.ReadFile(
+      path, aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_SortByPType);
+  const std::string trouble = importer.GetErrorString();
+  if (scene == nullptr && trouble.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
+  if (scene == nullptr && !means_no_triangles(trouble)) return send_failure(send, trouble);
   Collected found;
-  if (scene->mRootNode != nullptr) collect(*scene, *scene->mRootNode, {}, part, found);
+  const std::string suffix = suffix_of(path);
+  if (scene != nullptr && scene->mRootNode != nullptr)
+    collect(*scene, *scene->mRootNode, file_from_scene(suffix), part, found);
 
   wire::Writer message;
   const bool misses_part = !part.empty() && found.triangle.empty();
@@ -111,7 +133,7 @@ void send_mesh_file(const std::string& path, const std::string& part, const Send
   message.put<std::uint64_t>(found.parts.size());
   for (const std::string& name : found.parts) message.put_text(name);
   if (!misses_part) {
-    message.put(unit_said_by(*scene, suffix_of(path)));
+    message.put(scene != nullptr ? unit_said_by(*scene, suffix) : 0.0);
     message.put_list(found.vertex);
     message.put_list(found.triangle);
   }

@@ -40,7 +40,8 @@ std::int64_t address_space() {
 void set_limit(int resource, std::int64_t value) {
   rlimit old{};
   getrlimit(static_cast<__rlimit_resource_t>(resource), &old);
-  const rlim_t wanted = old.rlim_max == RLIM_INFINITY ? rlim_t(value) : std::min<rlim_t>(rlim_t(value), old.rlim_max);
+  const rlim_t wanted =
+      old.rlim_max == RLIM_INFINITY ? rlim_t(value) : std::min<rlim_t>(rlim_t(value), old.rlim_max);
   const rlimit limit{wanted, wanted};
   setrlimit(static_cast<__rlimit_resource_t>(resource), &limit);
 }
@@ -48,7 +49,8 @@ void set_limit(int resource, std::int64_t value) {
 /// Cuts the child off from everything but its pipe.
 void shut_in(int pipe_end, const ChildLimits& limits, std::int64_t address_space_before) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGINT, SIGHUP, SIGALRM, SIGCHLD, SIGXCPU})
+  for (const int number :
+       {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGINT, SIGHUP, SIGALRM, SIGCHLD, SIGXCPU})
     signal(number, SIG_DFL);
   signal(SIGPIPE, SIG_IGN);
   sigset_t none;

@@ -16,20 +16,24 @@
 namespace ctpm {
 namespace {
 
-constexpr double kOnSurface = 1e-6;        // of the spacing: a centre this near to the surface is not inside
-constexpr double kMostRows = 5e7;          // of the lattice; a bound on memory
-constexpr double kThinInSpacings = 2.0;    // a surface point farther than this from every sphere is over a thin part
+constexpr double kOnSurface = 1e-6;  // of the spacing: a centre this near to the surface is not inside
+constexpr double kMostRows = 5e7;    // of the lattice; a bound on memory
+constexpr double kThinInSpacings =
+    2.0;  // a surface point farther than this from every sphere is over a thin part
 
-/// Calls `work(begin, end)` for pieces of 0 .. count on several threads. The pieces do not depend on the threads.
+/// Calls `work(begin, end)` for pieces of 0 .. count on several threads. The pieces do not depend on the
+/// threads.
 template <class Work>
 void in_pieces(std::size_t count, int threads, const Work& work) {
   constexpr std::size_t kPiece = 2048;
   std::atomic<std::size_t> next{0};
   const auto run = [&] {
-    for (std::size_t begin; (begin = next.fetch_add(kPiece)) < count;) work(begin, std::min(begin + kPiece, count));
+    for (std::size_t begin; (begin = next.fetch_add(kPiece)) < count;)
+      work(begin, std::min(begin + kPiece, count));
   };
   std::vector<std::future<void>> others;
-  for (int t = 1; t < threads && std::size_t(t) * kPiece < count; ++t) others.push_back(std::async(std::launch::async, run));
+  for (int t = 1; t < threads && std::size_t(t) * kPiece < count; ++t)
+    others.push_back(std::async(std::launch::async, run));
   run();
   for (auto& other : others) other.get();
 }
@@ -40,13 +44,15 @@ Errors check(const CheckedMesh& mesh, const FillOptions& options) {
   if (!(std::isfinite(options.sphere_radius) && options.sphere_radius > 0))
     errors.push_back({"", "the sphere radius must be above 0 mm, got " + number(options.sphere_radius), ""});
   if (!std::isfinite(options.gap)) errors.push_back({"", "the gap must be a number of millimetres", ""});
-  if (options.threads < 1) errors.push_back({"", "at least one thread is needed, got " + std::to_string(options.threads), ""});
+  if (options.threads < 1)
+    errors.push_back({"", "at least one thread is needed, got " + std::to_string(options.threads), ""});
   if (options.most_spheres < 1) errors.push_back({"", "at least one sphere must be allowed", ""});
   CTPM_CHECK(!mesh.triangle.empty() && mesh.volume > 0, "filling needs a checked mesh");
   return errors;
 }
 
-/// Cells that cover the mesh's box, symmetric about its centre. Errors: far more cells than the mesh may have spheres.
+/// Cells that cover the mesh's box, symmetric about its centre. Errors: far more cells than the mesh may have
+/// spheres.
 Result<Lattice> lay_lattice(const CheckedMesh& mesh, double spacing, const FillOptions& options) {
   const Vec3 extent = mesh.box_most - mesh.box_least;
   const auto cells = [&](double length) { return std::max(1.0, std::ceil(length / spacing)); };
@@ -55,16 +61,21 @@ Result<Lattice> lay_lattice(const CheckedMesh& mesh, double spacing, const FillO
   if (expected > 1.2 * double(options.most_spheres) || ny * nz > kMostRows || std::max({nx, ny, nz}) > 1e6) {
     char count[32];
     std::snprintf(count, sizeof count, "%.3g", expected);
-    return Error{"", "about " + std::string(count) + " spheres " + mm_text(spacing) + " apart would be needed; at most " +
-                         std::to_string(options.most_spheres) + " are allowed",
-                 "take a larger sphere radius, or check the unit of the mesh: it is " + mm_text(norm(extent)) + " across"};
+    return Error{"",
+                 "about " + std::string(count) + " spheres " + mm_text(spacing) +
+                     " apart would be needed; at most " + std::to_string(options.most_spheres) +
+                     " are allowed",
+                 "take a larger sphere radius, or check the unit of the mesh: it is " +
+                     mm_text(norm(extent)) + " across"};
   }
-  return Lattice{0.5 * (mesh.box_least + mesh.box_most), spacing, {std::int32_t(nx), std::int32_t(ny), std::int32_t(nz)}};
+  return Lattice{0.5 * (mesh.box_least + mesh.box_most),
+                 spacing,
+                 {std::int32_t(nx), std::int32_t(ny), std::int32_t(nz)}};
 }
 
 /// Depth of every cell's centre below the surface [m].
-std::vector<double> find_depths(const SurfaceIndex& index, const Lattice& lattice, const std::vector<Cell>& cell,
-                                int threads) {
+std::vector<double> find_depths(const SurfaceIndex& index, const Lattice& lattice,
+                                const std::vector<Cell>& cell, int threads) {
   std::vector<double> depth(cell.size());
   in_pieces(cell.size(), threads, [&](std::size_t begin, std::size_t end) {
     // Neighbours in a row have near triangles in common.
@@ -121,11 +132,12 @@ Islands find_islands(const CellLookup& lookup, const std::vector<Cell>& cell) {
 }
 
 /// Drops all islands but the largest (the first of equal ones), or only says that they are there.
-void treat_islands(const Lattice& lattice, std::vector<Cell>& cell, std::vector<double>& depth, bool keeps_islands,
-                   std::vector<Finding>& findings) {
+void treat_islands(const Lattice& lattice, std::vector<Cell>& cell, std::vector<double>& depth,
+                   bool keeps_islands, std::vector<Finding>& findings) {
   const Islands islands = find_islands(CellLookup(lattice, cell), cell);
   if (islands.size.size() < 2) return;
-  const auto largest = std::int32_t(std::max_element(islands.size.begin(), islands.size.end()) - islands.size.begin());
+  const auto largest =
+      std::int32_t(std::max_element(islands.size.begin(), islands.size.end()) - islands.size.begin());
   const std::int64_t loose = std::int64_t(cell.size()) - islands.size[std::size_t(largest)];
   Finding finding;
   finding.code = "island";
@@ -137,8 +149,7 @@ void treat_islands(const Lattice& lattice, std::vector<Cell>& cell, std::vector<
   finding.done = keeps_islands ? "kept" : "dropped";
   if (keeps_islands) finding.remains = "the organ is not one connected network";
   findings.push_back(finding);
-  if (!keeps_islands)
-    keep_only(cell, depth, [&](std::size_t n) { return islands.of_cell[n] == largest; });
+  if (!keeps_islands) keep_only(cell, depth, [&](std::size_t n) { return islands.of_cell[n] == largest; });
 }
 
 /// Whole spacings of depth, with the numbers that no sphere has left out.
@@ -166,22 +177,25 @@ std::int64_t count_edges(const CellLookup& lookup, const std::vector<Cell>& cell
 }
 
 /// How far the surface is from the spheres, and where it is too thin to have any.
-void measure_surface(const CellLookup& lookup, const CheckedMesh& mesh, double spacing, int threads, FillReport& report) {
+void measure_surface(const CellLookup& lookup, const CheckedMesh& mesh, double spacing, int threads,
+                     FillReport& report) {
   std::vector<double> distance(mesh.vertex.size());
   in_pieces(distance.size(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) distance[v] = std::sqrt(lookup.nearest_squared_distance(mesh.vertex[v]));
+    for (std::size_t v = begin; v < end; ++v)
+      distance[v] = std::sqrt(lookup.nearest_squared_distance(mesh.vertex[v]));
   });
   const auto worst = std::max_element(distance.begin(), distance.end());
   report.largest_distance = *worst;
   report.mean_distance = std::accumulate(distance.begin(), distance.end(), 0.0) / double(distance.size());
-  const std::int64_t thin =
-      std::count_if(distance.begin(), distance.end(), [&](double d) { return d > kThinInSpacings * spacing; });
+  const std::int64_t thin = std::count_if(distance.begin(), distance.end(),
+                                          [&](double d) { return d > kThinInSpacings * spacing; });
   if (thin == 0) return;
   const Vec3 place = mesh.vertex[std::size_t(worst - distance.begin())];
-  report.findings.push_back({"thin", thin, place,
-                             counted(thin, "surface vertex") + " over parts that are too thin for a sphere, the farthest " +
-                                 mm_text(*worst) + " from one, at " + place_text(place),
-                             "none", "these parts follow the nearest spheres; a smaller sphere radius fills them"});
+  report.findings.push_back(
+      {"thin", thin, place,
+       counted(thin, "surface vertex") + " over parts that are too thin for a sphere, the farthest " +
+           mm_text(*worst) + " from one, at " + place_text(place),
+       "none", "these parts follow the nearest spheres; a smaller sphere radius fills them"});
 }
 
 }  // namespace
@@ -203,12 +217,15 @@ Result<Filling> fill_organ(const CheckedMesh& mesh, const FillOptions& options) 
   std::vector<double> depth = find_depths(index, lattice, cell, options.threads);
   keep_only(cell, depth, [&](std::size_t n) { return depth[n] > kOnSurface * spacing; });
   if (cell.empty())
-    return Error{"", "no sphere fits: the mesh is " + mm_text(norm(mesh.box_most - mesh.box_least)) +
-                         " across and the spheres are " + mm_text(spacing) + " apart",
+    return Error{"",
+                 "no sphere fits: the mesh is " + mm_text(norm(mesh.box_most - mesh.box_least)) +
+                     " across and the spheres are " + mm_text(spacing) + " apart",
                  "take a smaller sphere radius, or check the unit of the mesh"};
   if (std::int64_t(cell.size()) > options.most_spheres)
-    return Error{"", std::to_string(cell.size()) + " spheres fit, but at most " + std::to_string(options.most_spheres) +
-                         " are allowed", "take a larger sphere radius, or check the unit of the mesh"};
+    return Error{"",
+                 std::to_string(cell.size()) + " spheres fit, but at most " +
+                     std::to_string(options.most_spheres) + " are allowed",
+                 "take a larger sphere radius, or check the unit of the mesh"};
 
   Filling filling;
   FillReport& report = filling.report;

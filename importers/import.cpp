@@ -32,13 +32,19 @@ std::string range_text(UsualSize usual) { return mm_text(usual.least) + " to " +
 /// The unit is worth a finding where it was guessed or where the size looks wrong.
 void note_unit(const UnitChoice& unit, double diagonal, UsualSize usual, std::vector<Finding>& findings) {
   if (unit.source == UnitSource::guessed)
-    findings.push_back({"unit_guessed", 1, {},
-                        "the file does not say its unit", "taken as " + unit_name(unit.in_metres) + ", which makes the organ " +
+    findings.push_back({"unit_guessed",
+                        1,
+                        {},
+                        "the file does not say its unit",
+                        "taken as " + unit_name(unit.in_metres) + ", which makes the organ " +
                             mm_text(diagonal) + " across (usual: " + range_text(usual) + ")",
                         "give the unit if that is wrong"});
   if (!unit.is_usual_size)
-    findings.push_back({"unusual_size", 1, {},
-                        "the organ is " + mm_text(diagonal) + " across; usual is " + range_text(usual), "none",
+    findings.push_back({"unusual_size",
+                        1,
+                        {},
+                        "the organ is " + mm_text(diagonal) + " across; usual is " + range_text(usual),
+                        "none",
                         "check the unit"});
 }
 

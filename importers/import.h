@@ -13,16 +13,18 @@ namespace ctpm {
 
 /// How a mesh file becomes an organ.
 struct ImportOptions {
-  std::optional<double> unit_in_metres;  ///< length of one unit of the file [m], > 0; unset: from the file, else guessed
-  UsualSize usual_size;                  ///< of this kind of organ, to guess the unit with
-  std::string part;                      ///< name of the mesh to take; empty: all, joined
-  bool all_parts = false;                ///< keep every closed part, not only the largest
-  std::optional<double> largest_hole;    ///< holes up to this diameter are filled [m]; unset: a tenth of the diagonal
-  double sphere_radius = 0.004;          ///< r [m], > 0
-  double gap = -1;                       ///< between neighbours' surfaces [m], >= 0; negative: r
-  std::int64_t most_spheres = 2'000'000; ///< more are refused
-  int threads = 2;                       ///< >= 1; the result does not depend on it
-  double time_limit_s = 120;             ///< for reading the file [s]
+  std::optional<double>
+      unit_in_metres;      ///< length of one unit of the file [m], > 0; unset: from the file, else guessed
+  UsualSize usual_size;    ///< of this kind of organ, to guess the unit with
+  std::string part;        ///< name of the mesh to take; empty: all, joined
+  bool all_parts = false;  ///< keep every closed part, not only the largest
+  std::optional<double>
+      largest_hole;              ///< holes up to this diameter are filled [m]; unset: a tenth of the diagonal
+  double sphere_radius = 0.004;  ///< r [m], > 0
+  double gap = -1;               ///< between neighbours' surfaces [m], >= 0; negative: r
+  std::int64_t most_spheres = 2'000'000;  ///< more are refused
+  int threads = 2;                        ///< >= 1; the result does not depend on it
+  double time_limit_s = 120;              ///< for reading the file [s]
   Progress progress;
 };
 
@@ -32,13 +34,13 @@ struct ImportReport {
   std::string format;
   std::vector<std::string> parts;  ///< names of all meshes in the file
   UnitChoice unit;
-  MeshCounts before, after;        ///< the mesh as read and as kept
-  double mesh_volume = 0;          ///< [m^3]
-  double mesh_area = 0;            ///< [m^2]
-  Vec3 box_least, box_most;        ///< [m]
+  MeshCounts before, after;               ///< the mesh as read and as kept
+  double mesh_volume = 0;                 ///< [m^3]
+  double mesh_area = 0;                   ///< [m^2]
+  Vec3 box_least, box_most;               ///< [m]
   double sphere_radius = 0, spacing = 0;  ///< [m]
   FillReport fill;
-  std::vector<Finding> findings;   ///< of all stages, in their order
+  std::vector<Finding> findings;  ///< of all stages, in their order
 };
 
 struct ImportedOrgan {
@@ -46,8 +48,8 @@ struct ImportedOrgan {
   ImportReport report;
 };
 
-/// Reads, repairs, fills and binds: read_mesh, choose_unit, repair_mesh and fill_organ in one call. Errors: theirs, and
-/// options out of range, all at once.
+/// Reads, repairs, fills and binds: read_mesh, choose_unit, repair_mesh and fill_organ in one call. Errors:
+/// theirs, and options out of range, all at once.
 Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions& options = {});
 
 /// The report as lines of plain text for a reader who knows organs, not meshes.

@@ -6,7 +6,8 @@
 
 namespace ctpm {
 
-CellLookup::CellLookup(const Lattice& lattice, const std::vector<Cell>& cell) : lattice_(lattice), cell_(cell) {
+CellLookup::CellLookup(const Lattice& lattice, const std::vector<Cell>& cell)
+    : lattice_(lattice), cell_(cell) {
   first_.assign(std::size_t(lattice.row_count()) + 1, 0);
   for (const Cell& c : cell) ++first_[std::size_t(lattice.row_of(c)) + 1];
   for (std::size_t row = 1; row < first_.size(); ++row) first_[row] += first_[row - 1];
@@ -17,7 +18,8 @@ std::int32_t CellLookup::find(const Cell& wanted) const {
     if (wanted[axis] < 0 || wanted[axis] >= lattice_.count[axis]) return -1;
   const std::size_t row = std::size_t(lattice_.row_of(wanted));
   const auto begin = cell_.begin() + first_[row], end = cell_.begin() + first_[row + 1];
-  const auto it = std::lower_bound(begin, end, wanted[0], [](const Cell& c, std::int32_t i) { return c[0] < i; });
+  const auto it =
+      std::lower_bound(begin, end, wanted[0], [](const Cell& c, std::int32_t i) { return c[0] < i; });
   return it != end && (*it)[0] == wanted[0] ? std::int32_t(it - cell_.begin()) : -1;
 }
 
@@ -42,7 +44,8 @@ double CellLookup::nearest_squared_distance(Vec3 point) const {
     if (it != end) consider(*it);
     if (it != begin) consider(*(it - 1));
   };
-  // Square rings of rows around the point's own; ring n is at least (n - 1/2) spacings away for points in the box.
+  // Square rings of rows around the point's own; ring n is at least (n - 1/2) spacings away for points in the
+  // box.
   const std::int32_t most = std::max(lattice_.count[1], lattice_.count[2]);
   for (std::int32_t ring = 0; ring <= most; ++ring) {
     const double reach = (ring - 0.5) * s;

@@ -12,9 +12,9 @@ using Cell = std::array<std::int32_t, 3>;  // i, j, k
 
 /// A cubic lattice that is symmetric about a point and whose cells cover a box.
 struct Lattice {
-  Vec3 centre;          ///< [m]
-  double spacing = 0;   ///< [m]
-  Cell count{};         ///< cells along each axis
+  Vec3 centre;         ///< [m]
+  double spacing = 0;  ///< [m]
+  Cell count{};        ///< cells along each axis
 
   Vec3 at(const Cell& c) const {
     const auto along = [&](double middle, int axis) {

@@ -17,26 +17,28 @@ using Triangle = std::array<std::int32_t, 3>;
 /// Told while an import runs: the stage that is at work and how much of it is done, 0 to 1.
 using Progress = std::function<void(const std::string& stage, double fraction)>;
 
-/// What a mesh file holds, as it is: node transforms applied, polygons cut into triangles, vertices that repeat the very
-/// same position joined (readers and some formats repeat a vertex for every face), nothing else changed.
+/// What a mesh file holds, as it is: node transforms applied, polygons cut into triangles, vertices that
+/// repeat the very same position joined (readers and some formats repeat a vertex for every face), nothing
+/// else changed.
 struct RawMesh {
   std::string path;                ///< the file
   std::string format;              ///< its suffix in lower case, without the dot
   std::vector<std::string> parts;  ///< names of all meshes in the file, in its order, each once
-  std::vector<Vec3> vertex;        ///< finite, in the file's unit                                 (vertex_count)
-  std::vector<Triangle> triangle;  ///< indices in range                                           (triangle_count)
+  std::vector<Vec3> vertex;  ///< finite, in the file's unit                                 (vertex_count)
+  std::vector<Triangle> triangle;  ///< indices in range (triangle_count)
   double unit_in_metres = 0;       ///< length of one unit [m] if the format says it; 0: it does not
 };
 
 struct ReadOptions {
-  std::string part;                    ///< name of the mesh to take; empty: all, joined
-  double time_limit_s = 120;           ///< the reader is stopped after this long [s], > 0
-  std::int64_t memory_limit_mib = 4096;  ///< the reader may use this much beside the program's own memory [MiB], > 0
+  std::string part;           ///< name of the mesh to take; empty: all, joined
+  double time_limit_s = 120;  ///< the reader is stopped after this long [s], > 0
+  std::int64_t memory_limit_mib =
+      4096;  ///< the reader may use this much beside the program's own memory [MiB], > 0
 };
 
-/// Reads a mesh file in a child process with limits, so a crash or a hang of the reader is an error of this file and
-/// nothing else. Errors: no such file, not a file, empty, not a mesh, no triangles, a vertex that is not finite, no
-/// part of that name (the names are listed), a reader that crashed or broke a limit.
+/// Reads a mesh file in a child process with limits, so a crash or a hang of the reader is an error of this
+/// file and nothing else. Errors: no such file, not a file, empty, not a mesh, no triangles, a vertex that is
+/// not finite, no part of that name (the names are listed), a reader that crashed or broke a limit.
 Result<RawMesh> read_mesh(const std::string& path, const ReadOptions& options = {});
 
 /// How the unit of a mesh was found.
@@ -54,8 +56,8 @@ struct UsualSize {
   double most = 0.5;    ///< [m], > least
 };
 
-/// The unit: as given, else as the file says, else the one of m, cm, mm that puts the diagonal nearest the middle of
-/// the usual size; inch only where no metric unit gives a usual size.
+/// The unit: as given, else as the file says, else the one of m, cm, mm that puts the diagonal nearest the
+/// middle of the usual size; inch only where no metric unit gives a usual size.
 UnitChoice choose_unit(const RawMesh& mesh, std::optional<double> given_in_metres, UsualSize usual);
 
 /// "mm", "cm", "m", "inch", or the length in metres where the unit has no name.
@@ -63,15 +65,16 @@ std::string unit_name(double in_metres);
 
 /// Something that was wrong with a mesh or its filling.
 struct Finding {
-  std::string code;          ///< stable short name, for example `hole`; see the README's list
-  std::int64_t count = 0;    ///< how many
-  std::optional<Vec3> place; ///< where (the worst one) [m]
-  std::string found;         ///< what was found, with sizes
-  std::string done;          ///< what was done about it
-  std::string remains;       ///< what remains of it; empty: nothing
+  std::string code;           ///< stable short name, for example `hole`; see the README's list
+  std::int64_t count = 0;     ///< how many
+  std::optional<Vec3> place;  ///< where (the worst one) [m]
+  std::string found;          ///< what was found, with sizes
+  std::string done;           ///< what was done about it
+  std::string remains;        ///< what remains of it; empty: nothing
 };
 
-/// What a triangle mesh looks like; counted by vertex index, so unwelded meshes have many parts and open edges.
+/// What a triangle mesh looks like; counted by vertex index, so unwelded meshes have many parts and open
+/// edges.
 struct MeshCounts {
   std::int64_t vertices = 0;
   std::int64_t triangles = 0;
@@ -95,21 +98,25 @@ struct CheckedMesh {
 };
 
 struct RepairOptions {
-  bool all_parts = false;              ///< keep every closed part, not only the largest
-  double weld_distance = 1e-6;         ///< vertices this near are one, in bounding-box diagonals, >= 0
-  std::optional<double> largest_hole;  ///< holes up to this diameter are filled [m], >= 0; unset: a tenth of the diagonal
+  bool all_parts = false;       ///< keep every closed part, not only the largest
+  double weld_distance = 1e-6;  ///< vertices this near are one, in bounding-box diagonals, >= 0
+  std::optional<double>
+      largest_hole;  ///< holes up to this diameter are filled [m], >= 0; unset: a tenth of the diagonal
   Progress progress;
 };
 
-/// Welds, drops what is doubled or degenerate, splits what is not manifold, orients, stitches, fills small holes and
-/// keeps the largest part. Errors: a hole above the limit or one that cannot be filled (size and place), nothing that
-/// bounds a volume.
-Result<CheckedMesh> repair_mesh(const RawMesh& mesh, double unit_in_metres, const RepairOptions& options = {});
+/// Welds, drops what is doubled or degenerate, splits what is not manifold, orients, stitches, fills small
+/// holes and keeps the largest part. Errors: a hole above the limit or one that cannot be filled (size and
+/// place), nothing that bounds a volume.
+Result<CheckedMesh> repair_mesh(const RawMesh& mesh, double unit_in_metres,
+                                const RepairOptions& options = {});
 
 /// The mesh as OBJ text in millimetres with six decimals, so the same mesh always gives the same bytes.
 std::string to_obj(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle);
 
-/// Writes to_obj() to a file under a temporary name and renames it when it is whole. Error: cannot be written.
-Result<Done> write_obj(const std::string& path, const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle);
+/// Writes to_obj() to a file under a temporary name and renames it when it is whole. Error: cannot be
+/// written.
+Result<Done> write_obj(const std::string& path, const std::vector<Vec3>& vertex,
+                       const std::vector<Triangle>& triangle);
 
 }  // namespace ctpm

@@ -59,7 +59,8 @@ Soup to_soup(const Mesh& mesh) {
   for (const auto f : mesh.faces()) {
     Triangle triangle{};
     int c = 0;
-    for (const auto v : mesh.vertices_around_face(mesh.halfedge(f))) triangle[c++ % 3] = index[std::size_t(v)];
+    for (const auto v : mesh.vertices_around_face(mesh.halfedge(f)))
+      triangle[c++ % 3] = index[std::size_t(v)];
     soup.triangle.push_back(triangle);
   }
   return soup;
@@ -87,7 +88,7 @@ bool fill_one(Mesh& mesh, Halfedge border) {
 
 }  // namespace
 
-std::int64_t orient_and_stitch(Soup& soup) {
+void orient_and_stitch(Soup& soup) {
   PolygonSoup polygons(soup);
   PMP::orient_polygon_soup(polygons.points, polygons.polygons);
   Mesh mesh = to_mesh(polygons);
@@ -95,9 +96,7 @@ std::int64_t orient_and_stitch(Soup& soup) {
   PMP::stitch_borders(mesh, CGAL::parameters::apply_per_connected_component(true));
   PMP::stitch_borders(mesh);
   PMP::duplicate_non_manifold_vertices(mesh);
-  const std::int64_t count_before = std::int64_t(soup.vertex.size());
   soup = to_soup(mesh);
-  return std::int64_t(soup.vertex.size()) - count_before;
 }
 
 Closing fill_holes(Soup& soup, double largest_hole) {

@@ -15,9 +15,9 @@ struct Hole {
   std::int64_t edges = 0;
 };
 
-/// Gives neighbouring triangles the same sense of rotation, splits vertices and edges at which that is impossible
-/// or that are not manifold, and stitches edges again that fit together. Returns how many vertices were added.
-std::int64_t orient_and_stitch(Soup& soup);
+/// Gives neighbouring triangles the same sense of rotation, splits vertices and edges at which that is
+/// impossible or that are not manifold, and stitches edges again that fit together.
+void orient_and_stitch(Soup& soup);
 
 struct Closing {
   std::vector<Hole> filled;
@@ -28,7 +28,8 @@ struct Closing {
 /// Fills the holes of an oriented manifold mesh up to a diameter [m] with triangles of its own size.
 Closing fill_holes(Soup& soup, double largest_hole);
 
-/// Turns whole parts of a closed mesh so that together they bound a volume: outer ones outwards, cavities inwards.
+/// Turns whole parts of a closed mesh so that together they bound a volume: outer ones outwards, cavities
+/// inwards.
 void orient_parts(Soup& soup);
 
 }  // namespace ctpm

@@ -11,9 +11,9 @@
 namespace ctpm {
 namespace {
 
-constexpr double kHoleShare = 0.1;         // of the diagonal: holes up to this are filled by default
-constexpr double kFlat = 1e-9;             // a volume below this share of the diagonal cubed bounds nothing
-constexpr std::size_t kMostShown = 5;      // holes that are named one by one
+constexpr double kHoleShare = 0.1;     // of the diagonal: holes up to this are filled by default
+constexpr double kFlat = 1e-9;         // a volume below this share of the diagonal cubed bounds nothing
+constexpr std::size_t kMostShown = 5;  // holes that are named one by one
 
 std::string hole_text(const Hole& hole) {
   return mm_text(hole.diameter) + " wide (" + counted(hole.edges, "edge") + ") at " + place_text(hole.centre);
@@ -58,7 +58,8 @@ std::vector<Soup> split_parts(const Soup& soup) {
     const Vec3 centre = bounding_box({soup.vertex, triangles[std::size_t(p)]}).centre();
     sized.push_back({std::abs(signed_volume(soup.vertex, triangles[std::size_t(p)], centre)), p});
   }
-  std::stable_sort(sized.begin(), sized.end(), [](const Sized& a, const Sized& b) { return a.volume > b.volume; });
+  std::stable_sort(sized.begin(), sized.end(),
+                   [](const Sized& a, const Sized& b) { return a.volume > b.volume; });
   std::vector<Soup> pieces;
   for (const Sized& s : sized) pieces.push_back(only_part(soup, parts, s.part));
   return pieces;
@@ -73,7 +74,8 @@ void append(Soup& to, const Soup& piece) {
 /// One repair: the soup on its way to a closed mesh, and what was found so far.
 class Repair {
  public:
-  Repair(const RawMesh& mesh, double unit, const RepairOptions& options) : path_(mesh.path), options_(options) {
+  Repair(const RawMesh& mesh, double unit, const RepairOptions& options)
+      : path_(mesh.path), options_(options) {
     soup_.triangle = mesh.triangle;
     soup_.vertex.reserve(mesh.vertex.size());
     for (const Vec3& p : mesh.vertex) soup_.vertex.push_back(unit * p);
@@ -107,17 +109,29 @@ class Repair {
     if (const std::int64_t n = drop_collapsed(soup_); n > 0)
       note({"degenerate", n, {}, counted(n, "triangle") + " with two corners in one place", "dropped", ""});
     if (const std::int64_t n = drop_duplicates(soup_); n > 0)
-      note({"duplicate", n, {}, counted(n, "triangle") + " that another triangle covers exactly", "dropped", ""});
+      note({"duplicate",
+            n,
+            {},
+            counted(n, "triangle") + " that another triangle covers exactly",
+            "dropped",
+            ""});
   }
 
   void split_and_orient() {
-    const MeshCounts counts = count_mesh(soup_.vertex, soup_.triangle);
-    const std::int64_t split = orient_and_stitch(soup_);
-    if (counts.non_manifold_edges > 0)
-      note({"non_manifold_edge", counts.non_manifold_edges, {},
-            counted(counts.non_manifold_edges, "edge") + " with more than two triangles", "split", ""});
-    else if (split > 0)
-      note({"non_manifold_vertex", split, {}, counted(split, "vertex") + " where separate sheets touch", "split", ""});
+    const std::vector<Vec3> edges = find_non_manifold_edges(soup_);
+    if (!edges.empty())
+      note({"non_manifold_edge", std::int64_t(edges.size()), edges[0],
+            counted(std::int64_t(edges.size()), "edge") + " with more than two triangles, the first at " +
+                place_text(edges[0]),
+            "split", ""});
+    if (const std::vector<std::int32_t> pinched = find_pinched(soup_); !pinched.empty()) {
+      const Vec3 place = soup_.vertex[std::size_t(pinched[0])];
+      note({"non_manifold_vertex", std::int64_t(pinched.size()), place,
+            counted(std::int64_t(pinched.size()), "vertex") + " where separate sheets touch, the first at " +
+                place_text(place),
+            "split", ""});
+    }
+    orient_and_stitch(soup_);
   }
 
   /// Fills holes, part by part from the largest, and decides which parts stay. Errors: none can be closed.
@@ -136,7 +150,8 @@ class Repair {
       if (is_wanted) {
         const Closing closing = fill_holes(piece, largest_hole);
         why = describe(closing, largest_hole);
-        if (why.empty() && is_flat(piece)) why = {{path_, "the mesh bounds no volume", "it is a sheet; export a closed surface"}};
+        if (why.empty() && is_flat(piece))
+          why = {{path_, "the mesh bounds no volume", "it is a sheet; export a closed surface"}};
         if (why.empty()) filled.insert(filled.end(), closing.filled.begin(), closing.filled.end());
       }
       if (is_wanted && why.empty()) {
@@ -151,11 +166,13 @@ class Repair {
     if (kept_parts == 0 || (!options_.all_parts && !open.empty())) return open;
     if (!filled.empty())
       note({"hole", std::int64_t(filled.size()), widest(filled).centre,
-            counted(std::int64_t(filled.size()), "hole") + ", the widest " + hole_text(widest(filled)), "filled", ""});
+            counted(std::int64_t(filled.size()), "hole") + ", the widest " + hole_text(widest(filled)),
+            "filled", ""});
     if (dropped > 0) {
       drop.code = "other_part", drop.count = dropped;
-      drop.found = counted(dropped, "part") + " beside the " + (kept_parts == 1 ? "largest" : "closed ones") + " (" +
-                   counted(dropped_triangles, "triangle") + ", the largest at " + place_text(*drop.place) + ")";
+      drop.found = counted(dropped, "part") + " beside the " + (kept_parts == 1 ? "largest" : "closed ones") +
+                   " (" + counted(dropped_triangles, "triangle") + ", the largest at " +
+                   place_text(*drop.place) + ")";
       drop.done = "dropped";
       note(drop);
     }
@@ -170,11 +187,15 @@ class Repair {
     Errors errors;
     const auto say = [&](const std::vector<Hole>& holes, const std::string& ending, const std::string& hint) {
       std::vector<Hole> sorted = holes;
-      std::stable_sort(sorted.begin(), sorted.end(), [](const Hole& a, const Hole& b) { return a.diameter > b.diameter; });
+      std::stable_sort(sorted.begin(), sorted.end(),
+                       [](const Hole& a, const Hole& b) { return a.diameter > b.diameter; });
       for (std::size_t i = 0; i < std::min(sorted.size(), kMostShown); ++i)
         errors.push_back({path_, "open beyond repair: a hole " + hole_text(sorted[i]) + " " + ending, hint});
       if (sorted.size() > kMostShown)
-        errors.push_back({path_, "open beyond repair: " + counted(std::int64_t(sorted.size() - kMostShown), "hole") + " more", ""});
+        errors.push_back(
+            {path_,
+             "open beyond repair: " + counted(std::int64_t(sorted.size() - kMostShown), "hole") + " more",
+             ""});
     };
     say(closing.too_large, "is wider than the " + mm_text(largest_hole) + " that may be filled",
         "close it in a mesh editor, or allow wider holes");
@@ -198,7 +219,12 @@ class Repair {
     if (turned.turned > 0 && turned.kept == 0)
       note({"inside_out", turned.turned, {}, "the mesh is inside out", "turned", ""});
     else if (turned.turned > 0)
-      note({"flipped", turned.turned, {}, counted(turned.turned, "triangle") + " facing the wrong way", "turned", ""});
+      note({"flipped",
+            turned.turned,
+            {},
+            counted(turned.turned, "triangle") + " facing the wrong way",
+            "turned",
+            ""});
   }
 
   Result<CheckedMesh> finish() {
@@ -210,8 +236,10 @@ class Repair {
     out_.vertex = std::move(soup_.vertex);
     out_.triangle = std::move(soup_.triangle);
     if (out_.after.open_edges > 0 || out_.after.non_manifold_edges > 0 || !(out_.volume > 0))
-      return Error{path_, "open beyond repair: " + counted(out_.after.open_edges, "edge") + " still open after all repairs",
-                   "repair it in a mesh editor"};
+      return Error{
+          path_,
+          "open beyond repair: " + counted(out_.after.open_edges, "edge") + " still open after all repairs",
+          "repair it in a mesh editor"};
     tell("done", 1.0);
     return std::move(out_);
   }
@@ -236,7 +264,8 @@ Result<CheckedMesh> repair_mesh(const RawMesh& mesh, double unit_in_metres, cons
   try {
     return Repair(mesh, unit_in_metres, options).run();
   } catch (const std::exception& trouble) {
-    return Error{mesh.path, std::string("cannot be repaired: ") + trouble.what(), "repair it in a mesh editor"};
+    return Error{mesh.path, std::string("cannot be repaired: ") + trouble.what(),
+                 "repair it in a mesh editor"};
   }
 }
 

@@ -9,8 +9,8 @@ namespace {
 
 /// Where a row's line passes the surface.
 struct Crossing {
-  double x;            ///< [m]
-  std::int32_t enters; ///< +1 into the inside, -1 out of it
+  double x;             ///< [m]
+  std::int32_t enters;  ///< +1 into the inside, -1 out of it
 };
 
 /// +1 or -1 if the edge from `a` to `b`, seen along x, passes the half-line from (y, z) towards +y upwards or
@@ -32,16 +32,19 @@ double height_over(Vec3 a, Vec3 b, Vec3 c, double y, double z) {
   return std::isfinite(x) ? std::clamp(x, least, most) : 0.5 * (least + most);
 }
 
-/// Calls `on_crossing(row, crossing)` for every line of the lattice that passes a triangle, triangle by triangle.
+/// Calls `on_crossing(row, crossing)` for every line of the lattice that passes a triangle, triangle by
+/// triangle.
 template <class OnCrossing>
-void for_each_crossing(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle, const Lattice& lattice,
-                       const OnCrossing& on_crossing) {
+void for_each_crossing(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle,
+                       const Lattice& lattice, const OnCrossing& on_crossing) {
   const Vec3 origin = lattice.at({0, 0, 0});
   const auto first_row = [&](double least, double from, int axis) {
-    return std::int32_t(std::clamp(std::ceil((least - from) / lattice.spacing) - 1, 0.0, double(lattice.count[axis] - 1)));
+    return std::int32_t(
+        std::clamp(std::ceil((least - from) / lattice.spacing) - 1, 0.0, double(lattice.count[axis] - 1)));
   };
   const auto last_row = [&](double most, double from, int axis) {
-    return std::int32_t(std::clamp(std::floor((most - from) / lattice.spacing) + 1, 0.0, double(lattice.count[axis] - 1)));
+    return std::int32_t(
+        std::clamp(std::floor((most - from) / lattice.spacing) + 1, 0.0, double(lattice.count[axis] - 1)));
   };
   for (const Triangle& t : triangle) {
     const Vec3 a = vertex[std::size_t(t[0])], b = vertex[std::size_t(t[1])], c = vertex[std::size_t(t[2])];
@@ -50,9 +53,11 @@ void for_each_crossing(const std::vector<Vec3>& vertex, const std::vector<Triang
     for (std::int32_t k = first_row(std::min({a.z, b.z, c.z}), origin.z, 2); k <= k_end; ++k)
       for (std::int32_t j = first_row(std::min({a.y, b.y, c.y}), origin.y, 1); j <= j_end; ++j) {
         const Vec3 line = lattice.at({0, j, k});
-        const int turns = passes(a, b, line.y, line.z) + passes(b, c, line.y, line.z) + passes(c, a, line.y, line.z);
+        const int turns =
+            passes(a, b, line.y, line.z) + passes(b, c, line.y, line.z) + passes(c, a, line.y, line.z);
         // Counter-clockwise seen from +x means that the outside is towards +x.
-        if (turns != 0) on_crossing(lattice.row_of({0, j, k}), Crossing{height_over(a, b, c, line.y, line.z), -turns});
+        if (turns != 0)
+          on_crossing(lattice.row_of({0, j, k}), Crossing{height_over(a, b, c, line.y, line.z), -turns});
       }
   }
 }
@@ -63,7 +68,8 @@ std::vector<Cell> cells_inside(const std::vector<Vec3>& vertex, const std::vecto
                                const Lattice& lattice) {
   // Crossings of each row, side by side: count, then place.
   std::vector<std::int64_t> first(std::size_t(lattice.row_count()) + 1, 0);
-  for_each_crossing(vertex, triangle, lattice, [&](std::int64_t row, Crossing) { ++first[std::size_t(row) + 1]; });
+  for_each_crossing(vertex, triangle, lattice,
+                    [&](std::int64_t row, Crossing) { ++first[std::size_t(row) + 1]; });
   for (std::size_t row = 1; row < first.size(); ++row) first[row] += first[row - 1];
   std::vector<Crossing> crossings(std::size_t(first.back()));
   std::vector<std::int64_t> next(first.begin(), first.end() - 1);

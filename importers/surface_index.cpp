@@ -55,8 +55,8 @@ SurfaceIndex::SurfaceIndex(const std::vector<Vec3>& vertex, const std::vector<Tr
   build(order, middle, 0, std::int32_t(order.size()), corners);
 }
 
-void SurfaceIndex::build(std::vector<std::int32_t>& order, const std::vector<Vec3>& middle, std::int32_t begin,
-                         std::int32_t end, const std::vector<Corners>& corners) {
+void SurfaceIndex::build(std::vector<std::int32_t>& order, const std::vector<Vec3>& middle,
+                         std::int32_t begin, std::int32_t end, const std::vector<Corners>& corners) {
   constexpr double kFar = std::numeric_limits<double>::max();
   Node node{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}, 0, 0};
   double middle_least[3] = {kFar, kFar, kFar}, middle_most[3] = {-kFar, -kFar, -kFar};
@@ -77,7 +77,8 @@ void SurfaceIndex::build(std::vector<std::int32_t>& order, const std::vector<Vec
   if (end - begin <= kLeafSize) {
     nodes_[self].first = std::int32_t(triangles_.size());
     nodes_[self].count = end - begin;
-    for (std::int32_t n = begin; n < end; ++n) triangles_.push_back(corners[std::size_t(order[std::size_t(n)])]);
+    for (std::int32_t n = begin; n < end; ++n)
+      triangles_.push_back(corners[std::size_t(order[std::size_t(n)])]);
     return;
   }
   // Half of the triangles to either side of the longest extent of their middles.

@@ -20,21 +20,23 @@ class SurfaceIndex {
     std::int32_t triangle = -1;   ///< position in the index's own order; pass it back as `guess`
   };
 
-  /// The triangle nearest to `point`. `guess`: a triangle that is probably near, which only makes the search faster.
+  /// The triangle nearest to `point`. `guess`: a triangle that is probably near, which only makes the search
+  /// faster.
   Nearest nearest(Vec3 point, std::int32_t guess = 0) const;
 
  private:
   struct Node {
     double least[3], most[3];
-    std::int32_t first;  ///< leaf: its first triangle; else its second child (the first child is the next node)
+    std::int32_t
+        first;  ///< leaf: its first triangle; else its second child (the first child is the next node)
     std::int32_t count;  ///< triangles of a leaf; 0: not a leaf
   };
   struct Corners {
     Vec3 a, b, c;
   };
 
-  void build(std::vector<std::int32_t>& order, const std::vector<Vec3>& middle, std::int32_t begin, std::int32_t end,
-             const std::vector<Corners>& corners);
+  void build(std::vector<std::int32_t>& order, const std::vector<Vec3>& middle, std::int32_t begin,
+             std::int32_t end, const std::vector<Corners>& corners);
 
   std::vector<Node> nodes_;
   std::vector<Corners> triangles_;

@@ -23,8 +23,8 @@ struct Box {
 /// Bounding box of the vertices that triangles use; a point at 0 if there are none.
 Box bounding_box(const Soup& soup);
 
-/// One vertex per position: vertices in the very same place (distance 0) or within `distance` of an earlier one become
-/// that one. Returns how many vertices went. Vertices that no triangle uses go too, uncounted.
+/// One vertex per position: vertices in the very same place (distance 0) or within `distance` of an earlier
+/// one become that one. Returns how many vertices went. Vertices that no triangle uses go too, uncounted.
 std::int64_t weld(Soup& soup, double distance);
 
 /// Drops triangles that name a vertex twice; returns how many.
@@ -32,6 +32,12 @@ std::int64_t drop_collapsed(Soup& soup);
 
 /// Drops triangles that have the same three vertices as an earlier one, in whatever order; returns how many.
 std::int64_t drop_duplicates(Soup& soup);
+
+/// Vertices at which fans of triangles touch that no edge joins, in the order of their index.
+std::vector<std::int32_t> find_pinched(const Soup& soup);
+
+/// Edges of more than two triangles: the middle of each, in the order of their vertices.
+std::vector<Vec3> find_non_manifold_edges(const Soup& soup);
 
 /// Triangles grouped into pieces that are joined by edges; pieces are numbered by their first triangle.
 struct Parts {

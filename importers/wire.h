@@ -8,8 +8,9 @@
 
 namespace ctpm::wire {
 
-/// What the reading child sends: kind, then for `failed` a text; for `no_such_part` the parts; for `mesh` the parts,
-/// the unit [m], the vertices as x y z doubles and the triangles as three int32. Counts are uint64 before each list.
+/// What the reading child sends: kind, then for `failed` a text; for `no_such_part` the parts; for `mesh` the
+/// parts, the unit [m], the vertices as x y z doubles and the triangles as three int32. Counts are uint64
+/// before each list.
 enum class Kind : std::uint32_t { failed = 1, no_such_part = 2, mesh = 3 };
 
 /// Appends plain values to a message.

@@ -1,6 +1,6 @@
+#include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
@@ -28,7 +28,8 @@ std::string to_obj(const std::vector<Vec3>& vertex, const std::vector<Triangle>&
   return text;
 }
 
-Result<Done> write_obj(const std::string& path, const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle) {
+Result<Done> write_obj(const std::string& path, const std::vector<Vec3>& vertex,
+                       const std::vector<Triangle>& triangle) {
   const std::string temporary = path + ".part";
   const auto failed = [&](const std::string& why) {
     std::error_code ignored;

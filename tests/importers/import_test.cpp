@@ -1,0 +1,141 @@
+#include "importers/import.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "zoo.h"
+
+namespace ctpm {
+namespace {
+
+using zoo::find;
+using zoo::summary;
+using zoo::text_of;
+
+TEST(Import, ShippedOrgansAreSoundAndHaveTheirVolume) {
+  struct Organ {
+    const char* name;
+    double volume_ml;
+    std::int64_t triangles;
+    Vec3 size_mm;
+  };
+  for (const Organ& organ :
+       {Organ{"liver", 1255, 5598, {223, 151, 90}}, Organ{"kidney", 163, 3210, {110, 59, 45}},
+        Organ{"skin", 383, 3214, {120, 120, 30}}}) {
+    SCOPED_TRACE(organ.name);
+    ImportOptions options;
+    options.unit_in_metres = 0.001;
+    options.sphere_radius = 0.0025;
+    const Result<ImportedOrgan> imported =
+        import_organ(std::string(CTPM_SOURCE_DIR "/scenes/organs/") + organ.name + ".obj", options);
+    ASSERT_TRUE(imported) << text_of(imported.errors());
+    const ImportReport& report = imported->report;
+    EXPECT_EQ(summary(report.findings), "");
+    EXPECT_EQ(report.before.triangles, organ.triangles);
+    EXPECT_EQ(report.after.triangles, organ.triangles);
+    EXPECT_EQ(report.after.parts, 1);
+    EXPECT_NEAR(report.mesh_volume, 1e-6 * organ.volume_ml, 0.5e-6 + 1e-3 * report.mesh_volume);
+    const Vec3 size = report.box_most - report.box_least;
+    EXPECT_LT(norm(1e3 * size - organ.size_mm), 1.0);
+    EXPECT_NEAR(report.box_least.z, 0, 1e-6);
+    // Flat faces are off by up to half a spacing; over a whole organ a tenth of a spacing is left.
+    EXPECT_NEAR(report.fill.filled_volume, report.mesh_volume, 0.1 * report.mesh_area * report.spacing);
+    EXPECT_GE(report.fill.spheres_per_layer.size(), 2u);
+  }
+}
+
+TEST(Import, GuessedUnitIsSaidAloud) {
+  const zoo::Folder folder;
+  const std::string path = folder.write("ball.stl", zoo::to_binary_stl(zoo::sphere(60, 3)));
+  const Result<ImportedOrgan> imported = import_organ(path);
+  ASSERT_TRUE(imported) << text_of(imported.errors());
+  EXPECT_EQ(summary(imported->report.findings), "unit_guessed x 1");
+  EXPECT_EQ(imported->report.unit.in_metres, 0.001);
+  const std::string text = to_text(imported->report);
+  EXPECT_NE(text.find("unit: mm (guessed from the size)"), std::string::npos) << text;
+  EXPECT_NE(text.find("give the unit if that is wrong"), std::string::npos) << text;
+}
+
+TEST(Import, UnusualSizeIsTold) {
+  const zoo::Folder folder;
+  const std::string path = folder.write("ball.stl", zoo::to_binary_stl(zoo::sphere(60, 3)));
+  ImportOptions options;
+  options.unit_in_metres = 0.01;  // 1.2 m across
+  options.sphere_radius = 0.03;
+  const Result<ImportedOrgan> imported = import_organ(path, options);
+  ASSERT_TRUE(imported) << text_of(imported.errors());
+  EXPECT_EQ(summary(imported->report.findings), "unusual_size x 1");
+}
+
+TEST(Import, UnitOfTheFileIsTaken) {
+  const zoo::Folder folder;
+  for (const auto& [name, bytes] :
+       {std::pair<const char*, std::string>{"cm.dae", zoo::to_dae(zoo::sphere(6, 3), 0.01)},
+        {"m.glb", zoo::to_glb(zoo::sphere(0.06, 3))},
+        {"cm.fbx", zoo::to_fbx(zoo::sphere(6, 3), 1)}}) {
+    SCOPED_TRACE(name);
+    const Result<ImportedOrgan> imported = import_organ(folder.write(name, bytes));
+    ASSERT_TRUE(imported) << text_of(imported.errors());
+    EXPECT_EQ(imported->report.unit.source, UnitSource::file);
+    EXPECT_EQ(summary(imported->report.findings), "");
+    EXPECT_NEAR(imported->report.box_most.x - imported->report.box_least.x, 0.12, 0.001);
+  }
+}
+
+TEST(Import, ErrorsNameTheFile) {
+  const zoo::Folder folder;
+  const RawMesh open = zoo::without(zoo::sphere(60, 3), [](Vec3 p) { return p.z > 20; });
+  const std::string path = folder.write("open.obj", zoo::to_obj_text(open));
+  const Result<ImportedOrgan> imported = import_organ(path);
+  ASSERT_FALSE(imported);
+  EXPECT_EQ(imported.errors()[0].where, path);
+  EXPECT_NE(imported.errors()[0].message.find("a hole"), std::string::npos) << text_of(imported.errors());
+  ImportOptions large;
+  large.sphere_radius = 0.5;
+  large.largest_hole = 0.2;
+  // Even the largest sphere has its centre in the middle of a ball, so take one that is too fine instead.
+  large.sphere_radius = 1e-6;
+  const Result<ImportedOrgan> fine = import_organ(path, large);
+  ASSERT_FALSE(fine);
+  EXPECT_EQ(fine.errors()[0].where, path);
+}
+
+TEST(Import, AllOptionsOutOfRangeAreToldAtOnce) {
+  ImportOptions options;
+  options.unit_in_metres = -1;
+  options.usual_size = {1, 0.5};
+  options.largest_hole = -1;
+  options.sphere_radius = 0;
+  options.gap = std::nan("");
+  options.most_spheres = 0;
+  options.threads = 0;
+  options.time_limit_s = 0;
+  const Result<ImportedOrgan> imported = import_organ("nowhere.obj", options);
+  ASSERT_FALSE(imported);
+  EXPECT_EQ(imported.errors().size(), 8u);
+}
+
+TEST(Import, ProgressOnlyGrowsWithinAStage) {
+  const zoo::Folder folder;
+  const std::string path = folder.write("ball.stl", zoo::to_binary_stl(zoo::sphere(60, 4)));
+  ImportOptions options;
+  std::vector<std::pair<std::string, double>> told;
+  options.progress = [&](const std::string& stage, double fraction) { told.emplace_back(stage, fraction); };
+  ASSERT_TRUE(import_organ(path, options));
+  std::set<std::string> stages;
+  double last = 0;
+  std::string last_kind;
+  for (const auto& [stage, fraction] : told) {
+    const std::string kind = stage.substr(0, stage.find(':'));
+    EXPECT_GE(fraction, kind == last_kind ? last : 0.0) << stage;
+    EXPECT_LE(fraction, 1.0);
+    stages.insert(kind), last_kind = kind, last = fraction;
+  }
+  EXPECT_EQ(stages, (std::set<std::string>{"read", "repair", "fill"}));
+  EXPECT_EQ(last, 1.0);
+}
+
+}  // namespace
+}  // namespace ctpm
