@@ -95,4 +95,18 @@ const TickRecord& ReplayCursor::record() const { return impl_->record; }
 const StepReport& ReplayCursor::report() const { return impl_->report; }
 bool ReplayCursor::same_so_far() const { return impl_->same; }
 
+Result<SessionStart> continue_session(SessionReader& parent, std::int64_t tick) {
+  auto cursor = ReplayCursor::create(parent);
+  if (!cursor) return cursor.errors();
+  if (auto r = cursor->seek(tick); !r) return r.errors();
+  if (!cursor->same_so_far())
+    return Error{parent.path(), "does not replay to tick " + std::to_string(tick) + " as it was recorded",
+                 "verify it"};
+  SessionStart start = parent.start();
+  start.initial_state = cursor->state();
+  start.metadata[parent_session_key] = parent.session_id();
+  start.metadata[parent_tick_key] = std::to_string(tick);
+  return start;
+}
+
 }  // namespace ctpm

@@ -39,9 +39,15 @@ class ReplayCursor {
   std::unique_ptr<Impl> impl_;
 };
 
+/// The start of a session that goes on from the State before `tick` of `parent`: its scene, network and look,
+/// with the parent named in the metadata. The State is simulated, not taken from the file. Errors: no such
+/// tick, or the session is damaged or does not replay.
+Result<SessionStart> continue_session(SessionReader& parent, std::int64_t tick);
+
 struct VerifyOptions {
   std::int64_t from = 0;  ///< first tick that is compared; simulation begins at the keyframe at or before it
   std::int64_t to = -1;   ///< tick after the last one; -1: the end
+  int threads = 1;        ///< >= 1; the verdict does not depend on it
   std::function<void(std::int64_t done, std::int64_t total)> progress =
       {};  ///< called now and then; may be empty
 };

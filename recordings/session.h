@@ -30,7 +30,7 @@ struct SessionStart {
 inline constexpr const char* parent_session_key =
     "parent_session";  ///< SessionReader::session_id of the parent
 inline constexpr const char* parent_tick_key =
-    "parent_tick";  ///< decimal: the parent's tick whose keyframe it starts from
+    "parent_tick";  ///< decimal: it starts from the State before this tick of the parent
 
 /// One tick as it was lived. Tick n of a session is its n-th record, at n times Model::tick.
 struct TickRecord {

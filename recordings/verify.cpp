@@ -1,8 +1,12 @@
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <mutex>
+#include <optional>
 #include <sstream>
+#include <thread>
 
 #include "core/fields.h"
 #include "core/step.h"
@@ -125,6 +129,110 @@ Result<Done> compare_keyframe(SessionReader& reader, const ReplayCursor& cursor,
   return Done{};
 }
 
+/// Ticks [from, to) between two keyframes, or the ends of what is asked for.
+struct Stretch {
+  std::int64_t from, to;
+};
+
+/// Tells the caller how far all threads together have come.
+class Progress {
+ public:
+  Progress(const VerifyOptions& options, std::int64_t total) : call_(options.progress), total_(total) {}
+  void add(std::int64_t ticks) {
+    if (!call_) return;
+    const std::lock_guard lock(mutex_);
+    call_(done_ += ticks, total_);
+  }
+
+ private:
+  const std::function<void(std::int64_t, std::int64_t)>& call_;
+  std::int64_t total_, done_ = 0;
+  std::mutex mutex_;
+};
+
+Result<Verdict> verify_stretch(SessionReader& reader, ReplayCursor& cursor, const Stretch& stretch,
+                               Progress& progress) {
+  Verdict verdict;
+  if (stretch.from == stretch.to) return verdict;
+  if (auto r = cursor.seek(stretch.from); !r) return r.errors();
+  std::int64_t told = stretch.from;
+  while (cursor.tick() < stretch.to) {
+    const std::int64_t tick = cursor.tick();
+    const auto stepped = cursor.step();
+    if (!stepped) return stepped.errors();
+    const bool same_hash = state_hash(cursor.state()) == cursor.record().state_hash;
+    const std::vector<Pair> pairs = outcomes(cursor.record(), cursor.report());
+    const bool same =
+        same_hash && std::all_of(pairs.begin(), pairs.end(), [](const Pair& p) { return p.same(); });
+    if (!same) note_difference(tick, same_hash, pairs, verdict);
+    ++verdict.ticks_compared;
+    if (cursor.tick() - told < progress_interval && cursor.tick() < stretch.to) continue;
+    progress.add(cursor.tick() - told);
+    told = cursor.tick();
+  }
+  if (auto r = compare_keyframe(reader, cursor, verdict); !r) return r.errors();
+  return verdict;
+}
+
+/// What came of one stretch: a verdict, or the errors that stood in its way.
+struct Outcome {
+  Verdict verdict;
+  Errors errors;
+};
+
+/// The stretches that all threads share.
+struct Work {
+  std::vector<Stretch> stretches;
+  std::vector<Outcome> outcomes;  ///< (stretches)
+  std::atomic<std::size_t> next{0};
+};
+
+/// One thread's work: takes the next stretch until none is left.
+void verify_next(SessionReader& reader, Work& work, Progress& progress) {
+  std::optional<ReplayCursor> cursor;
+  for (std::size_t i; (i = work.next.fetch_add(1)) < work.stretches.size();) {
+    // A cursor that went astray does not find back by walking on.
+    if (!cursor || !cursor->same_so_far()) {
+      auto fresh = ReplayCursor::create(reader);
+      if (fresh)
+        cursor.emplace(std::move(*fresh));
+      else
+        work.outcomes[i].errors = fresh.errors();
+    }
+    if (!work.outcomes[i].errors.empty()) continue;
+    const auto verdict = verify_stretch(reader, *cursor, work.stretches[i], progress);
+    if (verdict)
+      work.outcomes[i].verdict = *verdict;
+    else
+      work.outcomes[i].errors = verdict.errors();
+  }
+}
+
+/// The stretches of [from, to), cut at the keyframes.
+std::vector<Stretch> cut_at(const std::vector<std::int64_t>& keyframes, std::int64_t from, std::int64_t to) {
+  std::vector<Stretch> stretches{{from, to}};
+  for (const std::int64_t keyframe : keyframes) {
+    if (keyframe <= from || keyframe >= to) continue;
+    stretches.back().to = keyframe;
+    stretches.push_back({keyframe, to});
+  }
+  return stretches;
+}
+
+/// The first difference speaks for the whole; an error comes before any verdict.
+Result<Verdict> merge(const std::vector<Outcome>& outcomes) {
+  Verdict whole;
+  for (const Outcome& outcome : outcomes) {
+    if (!outcome.errors.empty()) return outcome.errors;
+    const Verdict& one = outcome.verdict;
+    const std::int64_t compared = whole.ticks_compared + one.ticks_compared,
+                       different = whole.ticks_different + one.ticks_different;
+    if (whole.same && !one.same) whole = one;
+    whole.ticks_compared = compared, whole.ticks_different = different;
+  }
+  return whole;
+}
+
 }  // namespace
 
 Result<Verdict> verify_session(SessionReader& reader, const VerifyOptions& options) {
@@ -134,32 +242,27 @@ Result<Verdict> verify_session(SessionReader& reader, const VerifyOptions& optio
                  "has no ticks " + std::to_string(options.from) + " to " + std::to_string(to) + ", it has " +
                      std::to_string(reader.tick_count()),
                  ""};
-  const auto keyframe_ticks = reader.keyframe_ticks();
-  if (!keyframe_ticks) return keyframe_ticks.errors();
-  auto next_keyframe = std::upper_bound(keyframe_ticks->begin(), keyframe_ticks->end(), options.from);
+  const auto keyframes = reader.keyframe_ticks();
+  if (!keyframes) return keyframes.errors();
 
-  auto cursor = ReplayCursor::create(reader);
-  if (!cursor) return cursor.errors();
-  if (auto r = cursor->seek(options.from); !r) return r.errors();
-  Verdict verdict;
-  while (cursor->tick() < to) {
-    const std::int64_t tick = cursor->tick();
-    const auto stepped = cursor->step();
-    if (!stepped) return stepped.errors();
-    const bool same_hash = state_hash(cursor->state()) == cursor->record().state_hash;
-    const std::vector<Pair> pairs = outcomes(cursor->record(), cursor->report());
-    const bool same =
-        same_hash && std::all_of(pairs.begin(), pairs.end(), [](const Pair& p) { return p.same(); });
-    if (!same) note_difference(tick, same_hash, pairs, verdict);
-    ++verdict.ticks_compared;
-    if (next_keyframe != keyframe_ticks->end() && *next_keyframe == cursor->tick()) {
-      ++next_keyframe;
-      if (auto r = compare_keyframe(reader, *cursor, verdict); !r) return r.errors();
-    }
-    if (options.progress && (cursor->tick() % progress_interval == 0 || cursor->tick() == to))
-      options.progress(cursor->tick() - options.from, to - options.from);
+  Work work;
+  work.stretches = cut_at(*keyframes, options.from, to);
+  work.outcomes.resize(work.stretches.size());
+  Progress progress(options, to - options.from);
+
+  // Each further thread reads for itself.
+  const std::size_t threads = std::min<std::size_t>(std::max(options.threads, 1), work.stretches.size());
+  std::vector<SessionReader> readers;
+  for (std::size_t i = 1; i < threads; ++i) {
+    auto another = SessionReader::open(reader.path());
+    if (!another) return another.errors();
+    readers.push_back(std::move(*another));
   }
-  return verdict;
+  std::vector<std::thread> running;
+  for (SessionReader& another : readers) running.emplace_back([&] { verify_next(another, work, progress); });
+  verify_next(reader, work, progress);
+  for (std::thread& thread : running) thread.join();
+  return merge(work.outcomes);
 }
 
 std::string to_string(const Verdict& verdict) {
