@@ -1,8 +1,7 @@
 #include "recordings/recover.h"
 
-#include <unistd.h>
-
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 
 #include "recordings/internal/field_codec.h"
@@ -19,17 +18,31 @@ namespace {
 constexpr int recover_level = 3;  // zstd
 constexpr std::int64_t last_key = std::numeric_limits<std::int64_t>::max();
 
-/// What could be read of the damaged session, ready to be written again.
+/// What could be read of the damaged session. Ticks and keyframes are read again when they are written: an
+/// hour of them is large.
 struct Salvage {
   SessionStart start;
-  std::vector<Run<TickRecord>> chunks;
-  std::vector<Keyframe> keyframes;
+  std::vector<std::int64_t> keyframe_ticks;  ///< of those that prove whole
   std::vector<Event> events;
   std::optional<SessionStatistics> finish;
 };
 
 void note(RecoverReport& report, const Errors& errors) {
   for (const Error& error : errors) report.losses.push_back(error.message);
+}
+
+/// Opens the damaged session; if that fails, a copy whose first page is mended.
+Result<SessionStore> open_for_salvage(const std::string& in, const std::string& copy, RecoverReport& report) {
+  auto store = SessionStore::open(in, true);
+  if (store) return store;
+  std::error_code problem;
+  if (!std::filesystem::is_regular_file(in, problem) || std::filesystem::file_size(in, problem) < 2 * 4096)
+    return store;
+  if (!copy_with_new_first_page(in, copy)) return store;
+  auto mended = SessionStore::open(copy, true);
+  if (!mended) return store;
+  report.repairs.push_back("the header and the list of tables were damaged and are written anew");
+  return mended;
 }
 
 /// The start. Without Model or initial State there is nothing to replay.
@@ -69,7 +82,6 @@ void salvage_ticks(SessionStore& store, Salvage& salvage, RecoverReport& report)
     }
     if (!*chunk || (*chunk)->first != next) break;
     next = (*chunk)->end();
-    salvage.chunks.push_back(std::move(**chunk));
   }
   report.ticks_saved = next;
 
@@ -102,9 +114,9 @@ void salvage_keyframes(SessionStore& store, Salvage& salvage, RecoverReport& rep
     if (!keyframe)
       note(report, keyframe.errors());
     else if (*keyframe && (*keyframe)->tick == key)
-      salvage.keyframes.push_back(std::move(**keyframe));
+      salvage.keyframe_ticks.push_back(key);
   }
-  report.keyframes_saved = static_cast<std::int64_t>(salvage.keyframes.size());
+  report.keyframes_saved = static_cast<std::int64_t>(salvage.keyframe_ticks.size());
   if (salvage.finish && report.ticks_saved == salvage.finish->ticks &&
       report.keyframes_saved != salvage.finish->keyframes)
     report.losses.push_back("keyframes: " + std::to_string(report.keyframes_saved) + " of " +
@@ -133,7 +145,7 @@ void salvage_events(SessionStore& store, Salvage& salvage, RecoverReport& report
 }
 
 /// Writes the salvage as a new session with an identity of its own that names the old one.
-Result<Done> write_salvage(const std::string& out, Salvage& salvage, const SessionStore& from,
+Result<Done> write_salvage(const std::string& out, Salvage& salvage, SessionStore& from,
                            const RecoverReport& report) {
   SessionIdentity identity = new_identity(salvage.start.build_fingerprint);
   identity.created_unix_s = from.identity().created_unix_s;
@@ -144,21 +156,27 @@ Result<Done> write_salvage(const std::string& out, Salvage& salvage, const Sessi
   if (auto r = tables->begin(); !r) return r;
 
   StatisticsCounter counter;
-  for (const Run<TickRecord>& chunk : salvage.chunks) {
+  for (std::int64_t next = 0; next < report.ticks_saved;) {
+    const auto chunk = from.chunk_at(next);
+    if (!chunk) return chunk.errors();
+    const std::vector<TickRecord>& records = (*chunk)->items;
+    const auto count = static_cast<std::int64_t>(records.size());
     Bytes content;
-    put_records(content, chunk.items);
-    const auto count = static_cast<std::int64_t>(chunk.items.size());
-    if (auto r = tables->insert_chunk(
-            chunk.first, count, pack(chunk_name(chunk.first, count), content, identity.seed, recover_level));
+    put_records(content, records);
+    if (auto r = tables->insert_chunk(next, count,
+                                      pack(chunk_name(next, count), content, identity.seed, recover_level));
         !r)
       return r;
-    for (const TickRecord& record : chunk.items) counter.add(record);
+    for (const TickRecord& record : records) counter.add(record);
+    next += count;
   }
-  for (const Keyframe& keyframe : salvage.keyframes) {
+  for (const std::int64_t tick : salvage.keyframe_ticks) {
+    const auto keyframe = from.keyframe_at(tick, salvage.start.model);
+    if (!keyframe) return keyframe.errors();
     Bytes content;
-    put_fields(content, keyframe.state);
-    if (auto r = tables->insert_keyframe(
-            keyframe.tick, pack(keyframe_name(keyframe.tick), content, identity.seed, recover_level));
+    put_fields(content, (*keyframe)->state);
+    if (auto r =
+            tables->insert_keyframe(tick, pack(keyframe_name(tick), content, identity.seed, recover_level));
         !r)
       return r;
     counter.add_keyframe();
@@ -191,12 +209,18 @@ Result<Done> write_salvage(const std::string& out, Salvage& salvage, const Sessi
 }  // namespace
 
 Result<RecoverReport> recover_session(const std::string& in, const std::string& out) {
-  auto store = SessionStore::open(in, true);
+  RecoverReport report;
+  const std::string copy = out + ".salvage";
+  struct Remover {
+    const std::string& path;
+    ~Remover() { remove_with_companions(path); }
+  } const remover{copy};
+  auto store = open_for_salvage(in, copy, report);
   if (!store) return store.errors();
   Salvage salvage;
-  RecoverReport report;
   if (auto r = salvage_start(*store, salvage, report); !r) {
     Errors errors = r.errors();
+    for (Error& error : errors) error.where = in;
     errors.push_back(
         {in, "cannot be recovered: without the model and the initial state there is nothing to replay", ""});
     return errors;
@@ -207,11 +231,11 @@ Result<RecoverReport> recover_session(const std::string& in, const std::string& 
   report.complete = report.losses.empty() && salvage.finish.has_value();
   if (!salvage.finish) report.losses.push_back("the session was cut off: it has no end");
 
+  std::error_code ignored;
+  const bool existed = std::filesystem::exists(out, ignored);
   if (auto r = write_salvage(out, salvage, *store, report); !r) {
-    // The file may be there already; only our own may go.
-    const bool ours = r.errors().front().message.find("exists already") == std::string::npos;
-    if (ours)
-      for (const char* ending : {"", "-wal", "-shm", "-journal"}) ::unlink((out + ending).c_str());
+    // Whatever was there before stays.
+    if (!existed) remove_with_companions(out);
     return r.errors();
   }
 

@@ -15,8 +15,9 @@ struct RecoverReport {
   std::int64_t ticks_dropped = 0;  ///< readable ticks after the first gap, which a replay could not reach
   std::int64_t keyframes_saved = 0;
   std::int64_t events_saved = 0;
-  std::vector<std::string> losses;  ///< one sentence for each thing that could not be saved
-  Verdict verdict;                  ///< of the new file, simulated again
+  std::vector<std::string> losses;   ///< one sentence for each thing that could not be saved
+  std::vector<std::string> repairs;  ///< one sentence for each thing that was mended without a loss
+  Verdict verdict;                   ///< of the new file, simulated again
 };
 
 /// Writes all of session `in` that proves whole to a new session `out`, which must not exist, reads it back

@@ -2,7 +2,9 @@
 
 #include <sqlite3.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <utility>
 
 namespace ctpm::session_file {
@@ -24,6 +26,24 @@ std::string file_uri(const std::string& path, const std::string& parameters) {
 bool has_content(const std::string& path) {
   struct stat info {};
   return ::stat(path.c_str(), &info) == 0 && info.st_size > 0;
+}
+
+/// Whether SQLite would need to put an index of the log beside the file and cannot.
+bool needs_a_copy(const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  return !has_content(path + "-shm") && ::access(folder.empty() ? "." : folder.c_str(), W_OK) != 0;
+}
+
+/// Copies a file and its log to a folder of their own and returns that folder; empty if it cannot be done.
+std::string copy_with_log(const std::string& path) {
+  std::error_code problem;
+  std::string folder = (std::filesystem::temp_directory_path(problem) / "ctpm-XXXXXX").string();
+  if (problem || !::mkdtemp(folder.data())) return "";
+  for (const char* ending : {"", "-wal"})
+    if (!problem) std::filesystem::copy_file(path + ending, folder + "/copy" + ending, problem);
+  if (!problem) return folder;
+  std::filesystem::remove_all(folder, problem);
+  return "";
 }
 
 /// Nothing in a file that is not trusted may run, allocate without bound or write.
@@ -97,7 +117,12 @@ Result<Database> Database::open(const std::string& path, Access access) {
   // A file without a log beside it is opened as one that nobody changes, so that SQLite puts no files beside
   // it.
   const bool alone = reads && !has_content(path + "-wal");
-  const std::string uri = file_uri(path, alone ? "immutable=1" : "cache=private");
+  std::string opened = path;
+  if (reads && !alone && needs_a_copy(path)) {
+    database.copy_folder_ = copy_with_log(path);
+    if (!database.copy_folder_.empty()) opened = database.copy_folder_ + "/copy";
+  }
+  const std::string uri = file_uri(opened, alone ? "immutable=1" : "cache=private");
   const int code = sqlite3_open_v2(uri.c_str(), &database.connection_, flags, nullptr);
   if (code != SQLITE_OK) return Error{path, "cannot be opened: " + database.problem(), ""};
   sqlite3_busy_timeout(database.connection_, 2000);
@@ -106,13 +131,20 @@ Result<Database> Database::open(const std::string& path, Access access) {
 }
 
 Database::Database(Database&& other) noexcept
-    : connection_(std::exchange(other.connection_, nullptr)), path_(std::move(other.path_)) {}
+    : connection_(std::exchange(other.connection_, nullptr)),
+      path_(std::move(other.path_)),
+      copy_folder_(std::exchange(other.copy_folder_, "")) {}
 Database& Database::operator=(Database&& other) noexcept {
   std::swap(connection_, other.connection_);
   std::swap(path_, other.path_);
+  std::swap(copy_folder_, other.copy_folder_);
   return *this;
 }
-Database::~Database() { sqlite3_close_v2(connection_); }
+Database::~Database() {
+  sqlite3_close_v2(connection_);
+  std::error_code ignored;
+  if (!copy_folder_.empty()) std::filesystem::remove_all(copy_folder_, ignored);
+}
 
 Result<Done> Database::run(const std::string& sql) {
   if (sqlite3_exec(connection_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK)

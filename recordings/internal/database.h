@@ -75,6 +75,8 @@ class Database {
  private:
   sqlite3* connection_ = nullptr;
   std::string path_;
+  std::string copy_folder_;  ///< where a copy is read, because no index can be put beside the file; empty if
+                             ///< it is not
 };
 
 }  // namespace ctpm::session_file

@@ -9,6 +9,8 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 
 #include "recordings/internal/field_codec.h"
 #include "recordings/internal/schema.h"
@@ -41,10 +43,6 @@ Result<Done> sync_folder(const std::string& path) {
   return Done{};
 }
 
-void remove_with_companions(const std::string& path) {
-  for (const char* ending : {"", "-journal", "-wal", "-shm"}) ::unlink((path + ending).c_str());
-}
-
 /// Gives the finished `temporary` its name; a log that belonged to an older file of that name must not be
 /// taken for its own.
 Result<Done> put_in_place(const std::string& temporary, const std::string& path, bool overwrite) {
@@ -64,6 +62,8 @@ Result<Done> check_place(const std::string& path, bool overwrite) {
   struct stat info {};
   if (::stat(folder_of(path).c_str(), &info) != 0 || !S_ISDIR(info.st_mode))
     return Error{path, "the folder " + folder_of(path) + " does not exist", "create it first"};
+  if (::access(folder_of(path).c_str(), W_OK) != 0)
+    return Error{path, "the folder " + folder_of(path) + " cannot be written", ""};
   if (::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode))
     return Error{path, "is not a regular file", ""};
   if (overwrite) return Done{};
@@ -103,7 +103,8 @@ std::vector<NamedContent> start_parts(const SessionStart& start, const SessionId
 
 std::string sql_of_new_file() {
   std::string sql =
-      "PRAGMA page_size=4096; PRAGMA encoding='UTF-8'; PRAGMA journal_mode=DELETE; PRAGMA synchronous=FULL; "
+      "PRAGMA page_size=4096; PRAGMA auto_vacuum=NONE; PRAGMA encoding='UTF-8'; PRAGMA journal_mode=DELETE; "
+      "PRAGMA synchronous=FULL; "
       "BEGIN;";
   for (const Table& table : tables) sql += std::string(table.sql) + ";";
   return sql + "PRAGMA application_id=" + std::to_string(application_id) +
@@ -111,6 +112,35 @@ std::string sql_of_new_file() {
 }
 
 }  // namespace
+
+void remove_with_companions(const std::string& path) {
+  for (const char* ending : {"", "-journal", "-wal", "-shm"}) ::unlink((path + ending).c_str());
+}
+
+Result<Done> copy_with_new_first_page(const std::string& damaged, const std::string& repaired) {
+  constexpr std::size_t page_size = 4096;
+  // SQLite itself makes the page, in a file that becomes the copy.
+  auto database = Database::open(repaired, Database::Access::create);
+  if (!database) return database.errors();
+  if (auto r = database->run(sql_of_new_file()); !r) return r;
+  if (auto r = database->run("COMMIT"); !r) return r;
+  if (auto r = database->close(); !r) return r;
+  std::vector<char> page(page_size);
+  std::ifstream(repaired, std::ios::binary).read(page.data(), page_size);
+
+  std::error_code problem;
+  std::filesystem::copy_file(damaged, repaired, std::filesystem::copy_options::overwrite_existing, problem);
+  if (!problem && std::filesystem::exists(damaged + "-wal"))
+    std::filesystem::copy_file(damaged + "-wal", repaired + "-wal", problem);
+  if (problem) return Error{repaired, "cannot be written: " + problem.message(), ""};
+
+  // The number of pages, big-endian; a page that was cut off is not there.
+  const auto pages = static_cast<std::uint32_t>(std::filesystem::file_size(repaired, problem) / page_size);
+  for (int byte = 0; byte < 4; ++byte) page[28 + byte] = static_cast<char>(pages >> (24 - 8 * byte));
+  std::fstream file(repaired, std::ios::binary | std::ios::in | std::ios::out);
+  if (!file.write(page.data(), page_size).flush()) return Error{repaired, "cannot be written", ""};
+  return Done{};
+}
 
 SessionIdentity new_identity(const std::string& build) {
   SessionIdentity identity;

@@ -41,6 +41,13 @@ std::string event_name(std::int64_t first, std::int64_t count);
 Result<Done> create_session_file(const std::string& path, const SessionStart& start,
                                  const SessionIdentity& identity, bool overwrite, int level);
 
+/// Writes a copy of the session file `damaged` to `repaired` whose first page is that of a new file: the
+/// header and the list of tables, which are the same in every session of this version. Takes the log along.
+Result<Done> copy_with_new_first_page(const std::string& damaged, const std::string& repaired);
+
+/// Removes a file and what SQLite may have put beside it.
+void remove_with_companions(const std::string& path);
+
 /// The tables of an open session file, for writing. All errors are at the file's path.
 class SessionTables {
  public:

@@ -1,5 +1,6 @@
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <functional>
@@ -132,6 +133,65 @@ TEST(FullDisk, AQueueThatOverflowsEndsTheRecordingAndSaysSo) {
   ASSERT_TRUE(reader) << text_of(reader.errors());
   EXPECT_TRUE(reader->check_all()) << "what is there has no gap";
   EXPECT_FALSE(reader->ended_cleanly());
+}
+
+/// Runs `work` as somebody who may write nothing: as root in a process that gives root up. Returns its exit
+/// code.
+int without_rights(const std::function<int()>& work) {
+  constexpr uid_t nobody = 65534;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (::geteuid() == 0 && ::setuid(nobody) != 0) ::_exit(254);
+    ::_exit(work());
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 255;
+}
+
+TEST(Crash, WhatIsLeftCanBeReadWhereNothingCanBeWritten) {
+  const Folder folder;
+  const std::string path = folder / "a.ctpm";
+  const SessionStart start = small_start(3, 2, 2);
+  const Folder live_folder;
+  auto writer = SessionWriter::create(live_folder / "a.ctpm", start, {.wait_when_full = true});
+  ASSERT_TRUE(writer);
+  for (int i = 0; i < 250; ++i) writer->append(start.initial_state, {});
+  while (writer->status().committed < 250) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  // What kill -9 leaves: the file and its log, and perhaps the log's index.
+  for (const bool with_index : {false, true}) {
+    for (const char* ending : {"", "-wal", "-shm"}) {
+      std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
+      if (std::string(ending) == "-shm" && !with_index) continue;
+      write_bytes(path + ending, read_bytes(live_folder / (std::string("a.ctpm") + ending)));
+      ::chmod((path + ending).c_str(), 0444);
+    }
+    ::chmod(folder.path().c_str(), 0555);
+    const int code = without_rights([&] {
+      auto reader = SessionReader::open(path);
+      if (!reader) {
+        std::fputs(text_of(reader.errors()).c_str(), stderr);
+        return 1;
+      }
+      return reader->tick_count() == 250 && reader->check_all() ? 0 : 2;
+    });
+    EXPECT_EQ(code, 0) << "with index " << with_index;
+    ::chmod(folder.path().c_str(), 0755);
+  }
+  EXPECT_EQ(folder.names().size(), 3u);
+}
+
+TEST(Session, AFolderThatCannotBeWrittenIsSaid) {
+  const Folder folder;
+  ::chmod(folder.path().c_str(), 0555);
+  const int code = without_rights([&] {
+    const auto writer = SessionWriter::create(folder / "a.ctpm", small_start(3, 2, 2));
+    if (writer) return 1;
+    return writer.errors()[0].message == "the folder " + folder.path() + " cannot be written" ? 0 : 2;
+  });
+  EXPECT_EQ(code, 0);
+  ::chmod(folder.path().c_str(), 0755);
+  EXPECT_TRUE(folder.names().empty());
 }
 
 }  // namespace

@@ -390,6 +390,52 @@ TEST(Recover, AFileCutShortGivesItsBeginning) {
   EXPECT_LT(most, 730);
 }
 
+TEST(Recover, ALostHeaderAndListOfTablesCostNothing) {
+  const Sample& whole = sample();
+  const Folder folder;
+  for (const std::size_t lost : {16, 100, 1000, 4096}) {
+    std::vector<char> damaged = whole.bytes;
+    std::fill(damaged.begin(), damaged.begin() + static_cast<std::ptrdiff_t>(lost), '\x55');
+    write_bytes(folder / "a.ctpm", damaged);
+    EXPECT_FALSE(SessionReader::open(folder / "a.ctpm"));
+    const auto report = recover_session(folder / "a.ctpm", folder / "out.ctpm");
+    ASSERT_TRUE(report) << text_of(report.errors());
+    EXPECT_TRUE(report->complete);
+    EXPECT_EQ(report->repairs.size(), 1u);
+    EXPECT_EQ(report->ticks_saved, 730);
+    EXPECT_TRUE(report->verdict.same);
+    EXPECT_EQ(folder.names().size(), 2u) << "nothing else is left";
+    std::filesystem::remove(folder / "out.ctpm");
+  }
+}
+
+TEST(Recover, AnyDamagedPageGivesATrueBeginningOrAnError) {
+  const Sample& whole = sample();
+  const Folder folder;
+  int recovered = 0;
+  for (std::size_t page = 1; page * 4096 < whole.bytes.size(); ++page) {
+    std::vector<char> damaged = whole.bytes;
+    std::fill_n(damaged.begin() + static_cast<std::ptrdiff_t>(page * 4096), 4096, '\0');
+    write_bytes(folder / "a.ctpm", damaged);
+    const auto report = recover_session(folder / "a.ctpm", folder / "out.ctpm");
+    if (!report) {
+      EXPECT_FALSE(std::filesystem::exists(folder / "out.ctpm"));
+      continue;
+    }
+    ++recovered;
+    EXPECT_FALSE(report->complete) << "page " << page;
+    EXPECT_TRUE(report->verdict.same) << "page " << page;
+    auto reader = SessionReader::open(folder / "out.ctpm");
+    ASSERT_TRUE(reader);
+    ASSERT_EQ(reader->tick_count(), report->ticks_saved);
+    const auto records = reader->ticks(0, report->ticks_saved);
+    ASSERT_TRUE(records);
+    EXPECT_TRUE(std::equal(records->begin(), records->end(), whole.truth.records.begin())) << "page " << page;
+    std::filesystem::remove(folder / "out.ctpm");
+  }
+  EXPECT_GE(recovered, 4);
+}
+
 TEST(Recover, RefusesToReplaceAFileAndWhatCannotBeReplayed) {
   const Sample& whole = sample();
   const Folder folder;
