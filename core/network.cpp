@@ -35,20 +35,35 @@ void check_positive(Errors& errors, const std::string& where, const char* what, 
     errors.push_back({where, std::string(what) + ": got " + std::to_string(value) + " Pa/m, must be in [1e-6, 1e15]", ""});
 }
 
-Errors check_organ(const FilledOrgan& organ, const OrganSettings& settings) {
-  Errors errors;
-  const Material& m = settings.material;
-  const std::string where = "organ " + settings.name;
-  if (organ.centre.empty()) errors.push_back({where, "has no spheres", "fill it with smaller spheres"});
+void check_material(Errors& errors, const std::string& where, const Material& m, Structure structure) {
   check_positive(errors, where, "spring modulus K2", m.spring);
   check_positive(errors, where, "Kelvin modulus K1", m.kelvin);
-  if (settings.structure == Structure::ctpm && !(m.constraint >= series(m.kelvin, m.spring)))
+  if (structure == Structure::ctpm && !(m.constraint >= series(m.kelvin, m.spring)))
     errors.push_back({where, "constraint modulus K': got " + std::to_string(m.constraint) +
                                  " Pa/m, must be at least K1 K2 / (K1 + K2), which the triples already give", ""});
   if (!(m.viscosity >= 0) || !std::isfinite(m.viscosity))
     errors.push_back({where, "viscosity v1: got " + std::to_string(m.viscosity) + " Pa s/m, must be 0 or more", ""});
   if (!(m.density > 0 && m.stiffness_scale > 0 && m.calibration_area > 0 && m.calibration_spacing > 0))
     errors.push_back({where, "density, stiffness scale, calibration area and spacing must all be more than 0", ""});
+}
+
+Errors check_organ(const FilledOrgan& organ, const OrganSettings& settings) {
+  Errors errors;
+  const std::string where = "organ " + settings.name;
+  if (organ.centre.empty()) errors.push_back({where, "has no spheres", "fill it with smaller spheres"});
+  double above = 0;
+  for (std::size_t i = 0; i < settings.layers.size(); ++i) {
+    const LayerMaterial& layer = settings.layers[i];
+    const std::string where_layer = where + ", layer " + std::to_string(i);
+    if (!(layer.to_depth > above))
+      errors.push_back({where_layer,
+                        "ends at a depth of " + std::to_string(layer.to_depth) + " m, must be more than " +
+                            std::to_string(above) + " m, where it begins",
+                        ""});
+    above = layer.to_depth;
+    check_material(errors, where_layer, layer.material, settings.structure);
+  }
+  check_material(errors, where, settings.material, settings.structure);
   const auto check_sphere = [&](const char* what, std::int32_t sphere) {
     if (sphere < 0 || std::size_t(sphere) >= organ.centre.size())
       errors.push_back({where, std::string(what) + " sphere " + std::to_string(sphere) + " does not exist", ""});
@@ -58,19 +73,32 @@ Errors check_organ(const FilledOrgan& organ, const OrganSettings& settings) {
   return errors;
 }
 
+const Material& material_of(const FilledOrgan& organ, const OrganSettings& settings, std::size_t sphere) {
+  for (const LayerMaterial& layer : settings.layers)
+    if (layer.to_depth > organ.depth[sphere]) return layer.material;
+  return settings.material;
+}
+
+/// Stiffness and damping that one sphere's material gives to elements.
+struct Stiffness {
+  double spring_k, kelvin_k, kelvin_c, constraint_k;
+};
+
+Stiffness stiffness_of(const Material& m, double spacing) {
+  const double area = edge_area(m, spacing);
+  // The triples beside C stretch when C dips and add their own 2 P2 (1 - cos theta) u; K' counts both.
+  return {m.spring * area, m.kelvin * area, m.viscosity * area,
+          (m.constraint - series(m.kelvin, m.spring)) * area};
+}
+
 /// Builds the elements of one organ line by line, then brings the edges into the order in which they are computed.
 class LineTiler {
  public:
   LineTiler(Model& model, const FilledOrgan& organ, const OrganSettings& settings, std::int32_t first_sphere)
       : model_(model), organ_(organ), settings_(settings), first_sphere_(first_sphere) {
     for (std::size_t i = 0; i < organ.cell.size(); ++i) sphere_at_.emplace(organ.cell[i], std::int32_t(i));
-    const Material& m = settings.material;
-    const double area = edge_area(m, organ.spacing);
-    spring_k_ = m.spring * area;
-    kelvin_k_ = m.kelvin * area;
-    kelvin_c_ = m.viscosity * area;
-    // The triples beside C stretch when C dips and add their own 2 P2 (1 - cos theta) u; K' counts both.
-    constraint_k_ = (m.constraint - series(m.kelvin, m.spring)) * area;
+    for (std::size_t i = 0; i < organ.cell.size(); ++i)
+      stiffness_.push_back(stiffness_of(material_of(organ, settings, i), organ.spacing));
   }
 
   void tile(Cell direction) {
@@ -93,33 +121,57 @@ class LineTiler {
     double rest_length, k, c;
     std::int32_t line_number;  ///< position in the order of tiling, by which constraints know their edges
   };
+  struct Tpm {
+    std::int32_t a, b;
+    double rest_length;
+    Stiffness stiffness;
+  };
   struct Angle {
     std::int32_t a, b, c, line_number;
+    double k;
   };
   struct Constraint {
     std::int32_t a, c, e;
+    double k;
     std::array<std::int32_t, 4> line_number;
   };
+
+  /// Mean over `count` spheres of a run, exactly that of one if all are equal.
+  Stiffness mean_over(const std::vector<std::int32_t>& run, std::size_t first, std::size_t count) const {
+    const auto of = [&](std::size_t i) -> const Stiffness& {
+      return stiffness_[std::size_t(run[first + i] - first_sphere_)];
+    };
+    const auto mean = [&](double Stiffness::*value) {
+      double sum = 0;
+      for (std::size_t i = 1; i < count; ++i) sum += of(i).*value - of(0).*value;
+      return of(0).*value + sum / double(count);
+    };
+    return {mean(&Stiffness::spring_k), mean(&Stiffness::kelvin_k), mean(&Stiffness::kelvin_c),
+            mean(&Stiffness::constraint_k)};
+  }
+
+  /// Of a spring of which two in series are as stiff as one slow triple.
+  static double single_spring(const Stiffness& s) { return 2 * series(s.kelvin_k, s.spring_k); }
 
   void tile_run(const std::vector<std::int32_t>& run, double rest_length) {
     switch (settings_.structure) {
       case Structure::mass_spring: tile_springs(run, rest_length); break;
       case Structure::angle_mass_spring:
         for (std::size_t i = 0; i + 2 < run.size(); ++i)
-          angles_.push_back({run[i], run[i + 1], run[i + 2], next_line_number_ + std::int32_t(i)});
+          angles_.push_back({run[i], run[i + 1], run[i + 2], next_line_number_ + std::int32_t(i),
+                             single_spring(mean_over(run, i, 3))});
         tile_springs(run, rest_length);
         break;
       case Structure::tpm:
-        for (std::size_t i = 0; i + 1 < run.size(); ++i) add_tpm(run[i], run[i + 1], rest_length);
+        for (std::size_t i = 0; i + 1 < run.size(); ++i) add_tpm(run, i, rest_length);
         break;
       case Structure::ctpm: tile_triples(run, rest_length); break;
     }
   }
 
-  /// Springs of which two in series are as stiff as one slow triple.
   void tile_springs(const std::vector<std::int32_t>& run, double rest_length) {
     for (std::size_t i = 0; i + 1 < run.size(); ++i)
-      add_edge(run[i], run[i + 1], -1, rest_length, 2 * series(kelvin_k_, spring_k_), 0);
+      add_edge(run[i], run[i + 1], -1, rest_length, single_spring(mean_over(run, i, 2)), 0);
   }
 
   /// Triples A-B-C, C-B-A, A-B-C ... that share ends; where two share C, the five spheres carry a constraint.
@@ -129,30 +181,35 @@ class LineTiler {
       const std::int32_t p = run[2 * t], q = run[2 * t + 1], r = run[2 * t + 2];
       const bool starts_at_a = t % 2 == 0;
       const std::int32_t line_number = next_line_number_;
+      const Stiffness s = mean_over(run, 2 * t, 3);
       if (starts_at_a) {
-        add_edge(p, q, r, rest_length, spring_k_, 0);
-        add_edge(q, r, p, rest_length, kelvin_k_, kelvin_c_);
+        add_edge(p, q, r, rest_length, s.spring_k, 0);
+        add_edge(q, r, p, rest_length, s.kelvin_k, s.kelvin_c);
       } else {
-        add_edge(p, q, r, rest_length, kelvin_k_, kelvin_c_);
-        add_edge(q, r, p, rest_length, spring_k_, 0);
-        constraints_.push_back({run[2 * t - 2], p, r, {line_number - 2, line_number - 1, line_number, line_number + 1}});
+        add_edge(p, q, r, rest_length, s.kelvin_k, s.kelvin_c);
+        add_edge(q, r, p, rest_length, s.spring_k, 0);
+        constraints_.push_back({run[2 * t - 2],
+                                p,
+                                r,
+                                mean_over(run, 2 * t - 2, 5).constraint_k,
+                                {line_number - 2, line_number - 1, line_number, line_number + 1}});
       }
     }
-    if (run.size() % 2 == 0) add_tpm(run[run.size() - 2], run.back(), rest_length);
+    if (run.size() % 2 == 0) add_tpm(run, run.size() - 2, rest_length);
   }
 
   void add_edge(std::int32_t a, std::int32_t b, std::int32_t third, double rest_length, double k, double c) {
     edges_.push_back({a, b, third, rest_length, k, c, next_line_number_++});
   }
 
-  void add_tpm(std::int32_t a, std::int32_t b, double rest_length) {
-    tpms_.push_back({a, b, -1, rest_length, 0, 0, 0});
+  void add_tpm(const std::vector<std::int32_t>& run, std::size_t first, double rest_length) {
+    tpms_.push_back({run[first], run[first + 1], rest_length, mean_over(run, first, 2)});
   }
 
   /// Moves one direction's elements into the Model, sorted by their first sphere: along a lattice row both ends then
   /// advance by one from edge to edge, and the element loops run without index gathers.
   void flush_direction() {
-    const auto by_first = [](const Edge& p, const Edge& q) { return p.a < q.a; };
+    const auto by_first = [](const auto& p, const auto& q) { return p.a < q.a; };
     std::stable_sort(edges_.begin(), edges_.end(), by_first);
     std::stable_sort(tpms_.begin(), tpms_.end(), by_first);
     std::vector<std::int32_t> edge_of_line_number(std::size_t(next_line_number_), -1);
@@ -162,20 +219,22 @@ class LineTiler {
       edges.a.push_back(e.a), edges.b.push_back(e.b), edges.rest_length.push_back(e.rest_length);
       edges.k.push_back(e.k), edges.c.push_back(e.c), edges.third.push_back(e.third);
     }
-    for (const Edge& e : tpms_) {
+    for (const Tpm& e : tpms_) {
       TwoSphereTpms& tpms = model_.tpms;
+      const Stiffness& s = e.stiffness;
       tpms.a.push_back(e.a), tpms.b.push_back(e.b), tpms.rest_length.push_back(e.rest_length);
-      tpms.spring_k.push_back(spring_k_), tpms.kelvin_k.push_back(kelvin_k_), tpms.kelvin_c.push_back(kelvin_c_);
+      tpms.spring_k.push_back(s.spring_k), tpms.kelvin_k.push_back(s.kelvin_k),
+          tpms.kelvin_c.push_back(s.kelvin_c);
     }
     for (const Constraint& c : constraints_) {
       Constraints& all = model_.constraints;
-      all.a.push_back(c.a), all.c.push_back(c.c), all.e.push_back(c.e), all.k.push_back(constraint_k_);
+      all.a.push_back(c.a), all.c.push_back(c.c), all.e.push_back(c.e), all.k.push_back(c.k);
       for (std::size_t i = 0; i < 4; ++i) all.edge[i].push_back(edge_of_line_number[std::size_t(c.line_number[i])]);
     }
     for (const Angle& angle : angles_) {
       AngleSprings& all = model_.angle_springs;
       all.a.push_back(angle.a), all.b.push_back(angle.b), all.c.push_back(angle.c);
-      all.k.push_back(2 * series(kelvin_k_, spring_k_));
+      all.k.push_back(angle.k);
       for (std::size_t i = 0; i < 2; ++i) all.edge[i].push_back(edge_of_line_number[std::size_t(angle.line_number) + i]);
     }
     edges_.clear(), tpms_.clear(), constraints_.clear(), angles_.clear();
@@ -187,8 +246,9 @@ class LineTiler {
   const OrganSettings& settings_;
   std::int32_t first_sphere_;
   std::map<Cell, std::int32_t> sphere_at_;
-  double spring_k_, kelvin_k_, kelvin_c_, constraint_k_;
-  std::vector<Edge> edges_, tpms_;
+  std::vector<Stiffness> stiffness_;  // (sphere_count)
+  std::vector<Edge> edges_;
+  std::vector<Tpm> tpms_;
   std::vector<Constraint> constraints_;
   std::vector<Angle> angles_;
   std::int32_t next_line_number_ = 0;
@@ -203,13 +263,13 @@ double contact_radius_of(const FilledOrgan& organ, std::size_t sphere) {
 
 void add_spheres(Model& model, const FilledOrgan& organ, const OrganSettings& settings) {
   const std::size_t first = model.sphere_count();
-  const double mass = settings.material.density * organ.spacing * organ.spacing * organ.spacing;
   for (std::size_t i = 0; i < organ.centre.size(); ++i) {
     model.rest_position.push_back(organ.centre[i]);
     model.contact_radius.push_back(contact_radius_of(organ, i));
     model.layer.push_back(organ.layer[i]);
+    model.mass.push_back(material_of(organ, settings, i).density * organ.spacing * organ.spacing *
+                         organ.spacing);
   }
-  model.mass.resize(first + organ.centre.size(), mass);
   model.held_axes.resize(first + organ.centre.size(), 0);
   for (const OrganSettings::Guide& guide : settings.guides) model.held_axes[first + std::size_t(guide.sphere)] = guide.axes;
   for (const std::int32_t sphere : settings.anchored) model.held_axes[first + std::size_t(sphere)] = kAnchored;

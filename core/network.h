@@ -37,13 +37,26 @@ struct Material {
   double calibration_spacing = 0;   ///< spacing of that site [m], > 0
 };
 
+/// A layer that follows the organ's surface: a capsule over a parenchyma.
+struct LayerMaterial {
+  double to_depth = 0;  ///< the layer ends here; depth of a sphere's centre below the surface [m], > 0
+  Material material;
+};
+
 /// How one filled organ becomes part of a Model.
+///
+/// Layers: a sphere belongs to the first layer whose `to_depth` is more than its own depth, and to `material`
+/// if there is none. Its mass is that of its material. An element takes each of its stiffness and damping
+/// values as the mean over its spheres' materials: the two ends of a spring or two-sphere TPM, the three
+/// spheres of a triple or angle spring (so both elements of a triple have the K1, K2, v1 of one place), and
+/// for K' - P2 the five of a constraint's line.
 struct OrganSettings {
   std::string name;
   Structure structure = Structure::ctpm;
   LatticeKind lattice = LatticeKind::cubic_18;
   bool has_softening = true;  ///< Eq. 8, for `ctpm`; without it the network gives the TPM column of Table 1
-  Material material;
+  Material material;          ///< below the last layer
+  std::vector<LayerMaterial> layers;   ///< outermost first, `to_depth` ascending
   std::vector<std::int32_t> anchored;  ///< spheres of the organ that never move, by index within the organ
   struct Guide {
     std::int32_t sphere;  ///< index within the organ
@@ -56,8 +69,8 @@ struct OrganSettings {
 /// Stiffness of an edge of the given spacing per unit of modulus [m^2]: S0_cal (s / s_cal) times the stiffness scale.
 double edge_area(const Material& material, double spacing);
 
-/// Appends the organ's spheres and the elements between them to `model`. Errors: an organ without spheres, a modulus
-/// out of range, an anchor that is not a sphere of the organ.
+/// Appends the organ's spheres and the elements between them to `model`. Errors: an organ without spheres, a
+/// modulus out of range in any layer, layers out of order, an anchor that is not a sphere of the organ.
 Result<Done> add_organ(Model& model, const FilledOrgan& organ, const OrganSettings& settings);
 
 }  // namespace ctpm

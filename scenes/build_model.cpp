@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "core/network.h"
 #include "scenes/anchors.h"
@@ -25,6 +26,39 @@ std::vector<OrganSettings::Guide> guides_of(const OrganSpec& spec, const FilledO
     if (it != organ.cell.end()) guides.push_back({std::int32_t(it - organ.cell.begin()), axes});
   }
   return guides;
+}
+
+std::string in_millimetres(double length) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g mm", length * 1e3);
+  return text;
+}
+
+/// The layers' materials. Adds an error for each layer that holds no sphere, or ends deeper than the deepest
+/// sphere.
+std::vector<LayerMaterial> layers_of(const OrganSpec& spec, const FilledOrgan& organ,
+                                     const std::string& where, Errors& errors) {
+  std::vector<LayerMaterial> layers;
+  if (spec.layers.empty() || organ.depth.empty()) return layers;
+  const auto [least, most] = std::minmax_element(organ.depth.begin(), organ.depth.end());
+  const std::string depths =
+      "its spheres lie " + in_millimetres(*least) + " to " + in_millimetres(*most) + " below its surface";
+  double begin = 0;
+  for (std::size_t i = 0; i < spec.layers.size(); ++i) {
+    const double end = spec.layers[i].to_depth;
+    const std::string at = where + "/layers/" + std::to_string(i) + "/to_depth_mm";
+    const bool holds_any = std::any_of(organ.depth.begin(), organ.depth.end(),
+                                       [&](double depth) { return depth >= begin && depth < end; });
+    if (end > *most)
+      errors.push_back({at, "got " + in_millimetres(end) + ", which is deeper than the organ", depths});
+    else if (!holds_any)
+      errors.push_back(
+          {at, "the layer from " + in_millimetres(begin) + " to " + in_millimetres(end) + " holds no sphere",
+           depths});
+    layers.push_back({end, resolve_material(spec.layers[i].material).material});
+    begin = end;
+  }
+  return layers;
 }
 
 double stiffest_edge(const Model& model) {
@@ -106,12 +140,15 @@ Result<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrg
     settings.name = spec.name, settings.structure = spec.model, settings.lattice = spec.lattice;
     settings.has_softening = spec.softening, settings.material = resolve_material(spec.material).material;
     settings.damage_depth = spec.damage_depth, settings.guides = guides_of(spec, organs[i]);
+    const std::size_t errors_before = errors.size();
+    settings.layers = layers_of(spec, organs[i], where, errors);
     Result<std::vector<std::int32_t>> anchored =
         select_anchored(organs[i], spec.anchors, scene.gravity, where);
     if (!anchored) {
       errors.insert(errors.end(), anchored.errors().begin(), anchored.errors().end());
       continue;
     }
+    if (errors.size() > errors_before) continue;
     built.anchored_count.push_back(std::int32_t(anchored->size()));
     settings.anchored = std::move(*anchored);
     const std::size_t elements_before = model.element_count();

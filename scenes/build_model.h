@@ -21,8 +21,9 @@ struct BuiltScene {
 /// The spheres of an organ that is given as a rig instead of by a mesh. It has no surface to draw.
 FilledOrgan fill_rig(const OrganSpec& organ);
 
-/// Builds the Model. `organs` are the filled organs in the order of the scene's. Errors: an anchor that
-/// catches no sphere, moduli out of range, with the JSON pointer of the organ.
+/// Builds the Model. `organs` are the filled organs in the order of the scene's. Errors,
+/// each with the JSON pointer of its cause: an anchor that catches no sphere, a layer deeper than the organ
+/// or without spheres, moduli out of range, spheres of which no two are neighbours.
 Result<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrgan> organs);
 
 /// The sphere nearest to `point` [m] at rest; the first of several.

@@ -145,6 +145,20 @@ void describe_fields(V& v, RigSpec& rig) {
   v.list(Key{"guides", "Spheres that may not leave some axes."}, rig.guides, 0);
 }
 
+inline RecordInfo info_of(const LayerSpec&) {
+  return {"layer",
+          "Tissue down to a depth below the surface, over what lies below. A sphere belongs to the first "
+          "layer that ends below "
+          "its centre; elements between spheres of different layers have the mean of their values."};
+}
+template <class V>
+void describe_fields(V& v, LayerSpec& layer) {
+  v.number(required("to_depth_mm",
+                    "Depth at which it ends; more than that of the layer above, and within the organ."),
+           layer.to_depth, units::millimetre, above(0, 1000));
+  v.record(required("material", "Its tissue."), layer.material);
+}
+
 inline RecordInfo info_of(const OrganSpec&) {
   return {"organ", "One piece of tissue, from a closed mesh, or a rig."};
 }
@@ -164,7 +178,9 @@ void describe_fields(V& v, OrganSpec& organ) {
              "Forces of triples and constraints are divided by 1 + tan(theta), Eq. 8; for model ctpm."},
          organ.softening);
   v.record(Key{"fill", "The spheres."}, organ.fill);
-  v.record(required("material", "The tissue."), organ.material);
+  v.record(required("material", "The tissue, below the last layer."), organ.material);
+  v.list(Key{"layers", "Layers of other tissue that follow the surface, outermost first.", false, "none"},
+         organ.layers, 0);
   v.list(Key{"anchors", "Regions that never move."}, organ.anchors, 0);
   v.number(
       Key{"damage_depth_mm", "Depth of pressing beyond which the tissue counts as damaged; 0: no limit."},

@@ -35,27 +35,39 @@ void check_names(Problems& problems, const char* list, const std::vector<T>& ite
                         "got " + in_quotes(items[i].name) + ", which is taken already");
 }
 
-void check_material(Problems& problems, const std::string& at, const OrganSpec& organ) {
-  const MaterialSpec& spec = organ.material;
+void check_material(Problems& problems, const std::string& at, const MaterialSpec& spec,
+                    Structure structure) {
   if (!spec.preset.empty() && find_preset(spec.preset) == nullptr) {
     const std::string nearest = nearest_word(spec.preset, preset_names());
     std::string known;
     for (const std::string& name : preset_names()) known += (known.empty() ? "" : ", ") + name;
-    problems.add_rule(at + "/material/preset", "there is no preset " + in_quotes(spec.preset),
+    problems.add_rule(at + "/preset", "there is no preset " + in_quotes(spec.preset),
                       nearest.empty() ? "presets: " + known : "did you mean " + in_quotes(nearest) + "?");
     return;
   }
   const ResolvedMaterial resolved = resolve_material(spec);
   for (const std::string& key : resolved.missing)
-    problems.add_rule(at + "/material",
+    problems.add_rule(at,
                       "the key " + in_quotes(key) + " is missing, and there is no preset to take it from");
   const Material& m = resolved.material;
   const double p2 = m.spring > 0 && m.kelvin > 0 ? m.kelvin * m.spring / (m.kelvin + m.spring) : 0;
-  if (resolved.missing.empty() && organ.model == Structure::ctpm && m.constraint < p2)
-    problems.add_rule(at + "/material/constraint_kpa_per_mm",
+  if (resolved.missing.empty() && structure == Structure::ctpm && m.constraint < p2)
+    problems.add_rule(at + "/constraint_kpa_per_mm",
                       "got " + double_to_decimal(m.constraint, 6) +
                           " kPa/mm, must be at least K1 K2 / (K1 + K2) = " + double_to_decimal(p2, 6) +
                           ", which the triples already give");
+}
+
+void check_layers(Problems& problems, const std::string& at, const OrganSpec& organ) {
+  for (std::size_t i = 0; i < organ.layers.size(); ++i) {
+    const std::string where = at + "/layers/" + std::to_string(i);
+    check_material(problems, where + "/material", organ.layers[i].material, organ.model);
+    if (i > 0 && !(organ.layers[i].to_depth > organ.layers[i - 1].to_depth))
+      problems.add_rule(where + "/to_depth_mm", "got " + double_to_decimal(organ.layers[i].to_depth, -3) +
+                                                    ", must be more than the " +
+                                                    double_to_decimal(organ.layers[i - 1].to_depth, -3) +
+                                                    " mm at which the layer above ends");
+  }
 }
 
 void check_rig(Problems& problems, const std::string& at, const RigSpec& rig) {
@@ -92,7 +104,8 @@ void check_organ(Problems& problems, std::size_t index, const OrganSpec& organ) 
   const std::string at = item("organs", index);
   if (organ.mesh.empty() == !organ.rig) problems.add_rule(at, "must have exactly one of mesh, rig");
   if (organ.rig) check_rig(problems, at, *organ.rig);
-  check_material(problems, at, organ);
+  check_material(problems, at + "/material", organ.material, organ.model);
+  check_layers(problems, at, organ);
   for (std::size_t i = 0; i < organ.anchors.size(); ++i) {
     const AnchorSpec& anchor = organ.anchors[i];
     const std::string where = at + "/anchors/" + std::to_string(i);

@@ -100,6 +100,14 @@ struct RigSpec {
   friend bool operator==(const RigSpec&, const RigSpec&) = default;
 };
 
+/// Tissue down to a depth, over what lies below: a capsule over a parenchyma.
+struct LayerSpec {
+  double to_depth = 0;  ///< the layer ends here, below the organ's surface [m]
+  MaterialSpec material;
+
+  friend bool operator==(const LayerSpec&, const LayerSpec&) = default;
+};
+
 struct OrganSpec {
   std::string name;
   std::string mesh;  ///< path, relative to the scene's folder, with '/'; empty: the organ is a rig
@@ -109,7 +117,8 @@ struct OrganSpec {
   LatticeKind lattice = LatticeKind::cubic_18;
   bool softening = true;  ///< Eq. 8
   FillSpec fill;
-  MaterialSpec material;
+  MaterialSpec material;          ///< below the last layer
+  std::vector<LayerSpec> layers;  ///< outermost first, depths ascending
   std::vector<AnchorSpec> anchors;
   double damage_depth = 0;               ///< [m]; 0: no limit
   Vec3 surface_color{0.62, 0.24, 0.20};  ///< red, green, blue in [0, 1]

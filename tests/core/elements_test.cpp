@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "core/forces.h"
 #include "core/state.h"
@@ -190,6 +192,138 @@ TEST(Network, SaysEveryModulusThatIsOutOfRange) {
   ASSERT_FALSE(added);
   EXPECT_GE(added.errors().size(), 3u);
   EXPECT_EQ(model.sphere_count(), 0u);
+}
+
+/// A capsule around a parenchyma: the outermost spheres of a block, 6 mm deep, are stiffer, heavier and less
+/// viscous.
+LayerMaterial capsule(double to_depth = 0.012) {
+  LayerMaterial layer;
+  layer.to_depth = to_depth;
+  layer.material = testing::liver_material();
+  layer.material.spring = 82e6, layer.material.kelvin = 58e6, layer.material.constraint = 164e6;
+  layer.material.viscosity = 3e6, layer.material.density = 1200;
+  return layer;
+}
+
+Result<Model> make_layered_model(int ni, int nj, int nk, Structure structure,
+                                 const std::vector<LayerMaterial>& layers) {
+  OrganSettings settings;
+  settings.name = "block", settings.structure = structure;
+  settings.material = testing::liver_material(), settings.layers = layers;
+  for (int i = 0; i < ni * nj; ++i) settings.anchored.push_back(i);
+  Model model;
+  if (const Result<Done> added = add_organ(model, testing::make_block(ni, nj, nk), settings); !added)
+    return added.errors();
+  return model;
+}
+
+class EveryLayeredStructure : public EveryStructure {};
+
+TEST_P(EveryLayeredStructure, RigidMotionGivesNoForce) {
+  const Model model = *make_layered_model(6, 5, 7, GetParam(), {capsule()});
+  const Vec3Array force = internal_forces(model, moved_rigidly(model));
+  for (std::size_t i = 0; i < force.size(); ++i) ASSERT_NEAR(norm(force[i]), 0, 1e-10) << "sphere " << i;
+}
+
+TEST_P(EveryLayeredStructure, KeepsLinearAndAngularMomentum) {
+  const Model model = *make_layered_model(6, 5, 7, GetParam(), {capsule()});
+  State state = rest_state(model);
+  shake(state, 0.005, 0.2);
+  Noise noise;
+  for (double& z : state.kelvin_elongation) z = 0.001 * noise.next();
+  const Vec3Array force = internal_forces(model, state);
+  Vec3 sum, torque;
+  double largest = 0;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    sum += force[i], torque += cross(state.position[i], force[i]);
+    largest = std::max(largest, norm(force[i]));
+  }
+  EXPECT_GT(largest, 0.1);
+  // The capsule's forces are five times those of the liver.
+  EXPECT_NEAR(norm(sum), 0, 5e3 * kRounding);
+  EXPECT_NEAR(norm(torque), 0, 5e2 * kRounding);
+}
+
+TEST_P(EveryLayeredStructure, LayersOfOneMaterialAreTheOrganWithoutLayers) {
+  LayerMaterial same{0.012, testing::liver_material()}, deeper{0.020, testing::liver_material()};
+  const Model plain = make_block_model(6, 5, 7, GetParam());
+  const Model layered = *make_layered_model(6, 5, 7, GetParam(), {same, deeper});
+  EXPECT_EQ(layered.mass, plain.mass);
+  EXPECT_EQ(layered.edges.k, plain.edges.k);
+  EXPECT_EQ(layered.edges.c, plain.edges.c);
+  EXPECT_EQ(layered.tpms.spring_k, plain.tpms.spring_k);
+  EXPECT_EQ(layered.tpms.kelvin_k, plain.tpms.kelvin_k);
+  EXPECT_EQ(layered.tpms.kelvin_c, plain.tpms.kelvin_c);
+  EXPECT_EQ(layered.constraints.k, plain.constraints.k);
+  EXPECT_EQ(layered.angle_springs.k, plain.angle_springs.k);
+}
+
+INSTANTIATE_TEST_SUITE_P(Elements, EveryLayeredStructure,
+                         ::testing::Values(Structure::mass_spring, Structure::angle_mass_spring,
+                                           Structure::tpm, Structure::ctpm));
+
+TEST(Layers, EdgesAndAngleSpringsAreTheGradientOfTheirEnergy) {
+  const Model model = *make_layered_model(4, 4, 4, Structure::angle_mass_spring, {capsule()});
+  State state = rest_state(model);
+  shake(state, 0.004);
+  const Vec3Array force = internal_forces(model, state);
+  constexpr double kStep = 1e-7;  // [m]; a central difference errs by about step^2 k / s^2, here 5e-8 N
+  for (const std::size_t i : {0u, 21u, 42u, 63u}) {
+    State plus = state, minus = state;
+    plus.position.add(i, {0, kStep, 0}), minus.position.add(i, {0, -kStep, 0});
+    const double gradient = (elastic_energy(model, plus) - elastic_energy(model, minus)) / (2 * kStep);
+    EXPECT_NEAR(force.y[i], -gradient, 5e-7);
+  }
+}
+
+TEST(Layers, AnElementHasTheMeanOfItsSpheres) {
+  // The middle line along x of a 5 x 3 x 3 block: capsule, liver, liver, liver, capsule.
+  const double area = edge_area(testing::liver_material(), 0.012);
+  const auto value = [&](double mpa) { return mpa * 1e6 * area; };
+  const Model model = *make_layered_model(5, 3, 3, Structure::ctpm, {capsule()});
+  const std::int32_t a = 20;  // of the middle line
+  std::size_t spring = 0, kelvin = 0, line = 0;
+  while (!(model.edges.a[spring] == a && model.edges.b[spring] == a + 1)) ++spring;
+  while (!(model.edges.a[kelvin] == a + 1 && model.edges.b[kelvin] == a + 2)) ++kelvin;
+  while (!(model.constraints.a[line] == a && model.constraints.e[line] == a + 4)) ++line;
+  EXPECT_NEAR(model.edges.k[spring], value((82 + 15 + 15) / 3.0), 1e-9);
+  EXPECT_NEAR(model.edges.k[kelvin], value((58 + 15 + 15) / 3.0), 1e-9);
+  EXPECT_NEAR(model.edges.c[kelvin], value((3 + 5 + 5) / 3.0), 1e-9);
+  const double capsule_p2 = 82.0 * 58 / (82 + 58);
+  EXPECT_NEAR(model.constraints.k[line], value((2 * (164 - capsule_p2) + 3 * (20 - 7.5)) / 5), 1e-9);
+
+  const Model tpm = *make_layered_model(5, 3, 3, Structure::tpm, {capsule()});
+  std::size_t border = 0;
+  while (!(tpm.tpms.a[border] == a && tpm.tpms.b[border] == a + 1)) ++border;
+  EXPECT_NEAR(tpm.tpms.spring_k[border], value((82 + 15) / 2.0), 1e-9);
+  EXPECT_NEAR(tpm.tpms.kelvin_c[border], value((3 + 5) / 2.0), 1e-9);
+}
+
+TEST(Layers, ASphereHasTheMassOfItsOwnLayer) {
+  const double volume = 0.012 * 0.012 * 0.012;
+  LayerMaterial second{0.018, testing::liver_material()};
+  second.material.density = 1100;
+  // The spheres of the second rim are 18 mm deep: a layer that ends there does not hold them, one that ends
+  // below does.
+  for (const auto& [to_depth, density] : {std::pair{0.018, 1060}, {0.0181, 1100}}) {
+    second.to_depth = to_depth;
+    const Model model = *make_layered_model(5, 5, 5, Structure::ctpm, {capsule(0.012), second});
+    EXPECT_NEAR(model.mass[0], 1200 * volume, 1e-15);
+    EXPECT_NEAR(model.mass[31], density * volume, 1e-15);
+    EXPECT_NEAR(model.mass[62], 1060 * volume, 1e-15);
+  }
+}
+
+TEST(Layers, OutOfOrderOrWithABadModulusAreRefusedByNumber) {
+  LayerMaterial bad = capsule(0.020);
+  bad.material.kelvin = -1;
+  const Result<Model> model =
+      make_layered_model(3, 3, 3, Structure::ctpm, {capsule(0.012), capsule(0.012), bad});
+  ASSERT_FALSE(model);
+  EXPECT_EQ(model.errors()[0].where, "organ block, layer 1");
+  EXPECT_NE(model.errors()[0].message.find("must be more than 0.012"), std::string::npos);
+  EXPECT_EQ(model.errors()[1].where, "organ block, layer 2");
+  EXPECT_NE(model.errors()[1].message.find("Kelvin modulus K1"), std::string::npos);
 }
 
 }  // namespace

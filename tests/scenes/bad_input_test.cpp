@@ -107,6 +107,28 @@ TEST(BadInput, AConstraintWeakerThanTheTriplesIsRefused) {
             "= 7.5, which the triples already give\n");
 }
 
+TEST(BadInput, LayersEndDeeperAndDeeperAndHaveAMaterial) {
+  const auto layers = [](const std::string& text) {
+    return errors_of(scene_with(R"("layers": [)" + text + "], " + kMesh + kLiver));
+  };
+  const std::string skin = R"("material": {"preset": "skin"})";
+  EXPECT_EQ(layers(R"({"to_depth_mm": 6, )" + skin + R"(}, {"to_depth_mm": 6.5, )" + skin + "}"), "no error");
+  EXPECT_EQ(layers(R"({"to_depth_mm": 6, )" + skin + R"(}, {"to_depth_mm": 5.9, )" + skin + "}"),
+            "t.json:2:80: error: /organs/0/layers/1/to_depth_mm: got 5.9, must be more than the 6 mm at "
+            "which the layer "
+            "above ends\n");
+  EXPECT_EQ(layers(R"({"to_depth_mm": 0, )" + skin + "}"),
+            "t.json:2:28: error: /organs/0/layers/0/to_depth_mm: got 0, must be in (0, 1000] mm\n");
+  EXPECT_EQ(layers(R"({"to_depth_mm": 6})"),
+            "t.json:2:12: error: /organs/0/layers/0: the key \"material\" is missing\n");
+  EXPECT_EQ(layers(R"({"to_depth_mm": 6, "material": {"preset": "skim"}})"),
+            "t.json:2:54: error: /organs/0/layers/0/material/preset: there is no preset \"skim\" (did you "
+            "mean \"skin\"?)\n");
+  EXPECT_NE(layers(R"({"to_depth_mm": 6, "material": {"preset": "skin", "constraint_kpa_per_mm": 1}})")
+                .find("/organs/0/layers/0/material/constraint_kpa_per_mm: got 1 kPa/mm, must be at least"),
+            std::string::npos);
+}
+
 TEST(BadInput, ARigWithTooFewSpheresIsRefused) {
   const std::string message = "got one sphere, a rig needs at least two that are neighbours\n";
   EXPECT_EQ(errors_of(scene_with(R"("rig": {"cells": [[0, 0, 0]]}, )" + kLiver)),

@@ -146,6 +146,43 @@ TEST(BuildModel, TheOrgansKeysReachTheNetwork) {
   EXPECT_LT(build(block_scene(R"(, "lattice": "cubic-6")")).model.edges.size(), ctpm.model.edges.size());
 }
 
+/// A block of 5 x 5 x 5 spheres, 6, 18 and 30 mm deep, with layers.
+SceneSpec layered_scene(const std::string& layers) {
+  SceneSpec scene = block_scene(R"(, "layers": [)" + layers + "]");
+  scene.organs.at(0).rig->block = Vec3{5, 5, 5};
+  return scene;
+}
+
+TEST(BuildModel, LayersHaveTheirOwnTissue) {
+  const BuiltScene built = build(layered_scene(
+      R"({"to_depth_mm": 12, "material": {"preset": "skin", "density_kg_per_m3": 1200}}, {"to_depth_mm": 20, "material": {"preset": "kidney", "density_kg_per_m3": 1100}})"));
+  const double volume = 0.012 * 0.012 * 0.012;
+  EXPECT_NEAR(built.model.mass[0], 1200 * volume, 1e-15);
+  EXPECT_NEAR(built.model.mass[31], 1100 * volume, 1e-15);
+  EXPECT_NEAR(built.model.mass[62], 1060 * volume, 1e-15);
+  // Along the block's first line all five spheres are skin.
+  EXPECT_NEAR(built.model.edges.k.at(0), 82e6 * edge_area(find_preset("skin")->material, 0.012), 1e-9);
+}
+
+TEST(BuildModel, ALayerDeeperThanTheOrganIsAnErrorAtItsPlace) {
+  const Errors errors = errors_of_build(layered_scene(
+      R"({"to_depth_mm": 12, "material": {"preset": "skin"}}, {"to_depth_mm": 31, "material": {"preset": "skin"}})"));
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(to_string(errors[0]),
+            "/organs/0/layers/1/to_depth_mm: error: got 31 mm, which is deeper than the organ (its spheres "
+            "lie 6 mm to 30 mm below its surface)");
+}
+
+TEST(BuildModel, ALayerThatHoldsNoSphereIsAnErrorAtItsPlace) {
+  const Errors errors = errors_of_build(layered_scene(
+      R"({"to_depth_mm": 6, "material": {"preset": "skin"}}, {"to_depth_mm": 12, "material": {"preset": "skin"}}, {"to_depth_mm": 17.9, "material": {"preset": "skin"}})"));
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_EQ(to_string(errors[0]),
+            "/organs/0/layers/0/to_depth_mm: error: the layer from 0 mm to 6 mm holds no sphere (its spheres "
+            "lie 6 mm to 30 mm below its surface)");
+  EXPECT_EQ(errors[1].where, "/organs/0/layers/2/to_depth_mm");
+}
+
 TEST(BuildModel, SofteningCanBeLeftOut) {
   SceneSpec scene = block_scene();
   scene.organs[0].rig->block = Vec3{5, 5, 5};

@@ -38,6 +38,7 @@ const std::string kScene =
     R"({"format": "ctpm-scene", "version": 1, "name": "s", "gravity_m_per_s2": [0, 0, -9.81], "tick_s": 1e-3, "settle_s": 1,
  "organs": [{"name": "a", "mesh": "a.obj", "mesh_unit": "mm", "model": "ctpm", "lattice": "cubic-18", "softening": true,
    "fill": {"radius_mm": 4, "gap_mm": 4}, "material": {"preset": "liver", "stiffness_scale": 0.3, "spring_kpa_per_mm": 15.5},
+   "layers": [{"to_depth_mm": 6.1, "material": {"preset": "skin"}}, {"to_depth_mm": 9, "material": {"preset": "kidney", "density_kg_per_m3": 1100}}],
    "anchors": [{"lowest_mm": 8}, {"box": {"min_mm": [0, 0, 0], "max_mm": [1, 2, 3]}},
      {"sphere": {"centre_mm": [1, 2, 3], "radius_mm": 4}}, {"plane": {"point_mm": [0, 0, 0], "normal": [0, 0, 1]}}],
    "damage_depth_mm": 12, "surface_color": [0.5, 0.1, 0.1], "inner_color": [0.5, 0, 0]},
