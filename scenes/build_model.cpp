@@ -153,7 +153,8 @@ Result<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrg
     settings.anchored = std::move(*anchored);
     const std::size_t elements_before = model.element_count();
     if (Result<Done> added = add_organ(model, organs[i], settings); !added) {
-      for (Error error : added.errors()) errors.push_back({where, error.message, error.hint});
+      for (const Error& error : added.errors())
+        errors.push_back({where, error.where + ": " + error.message, error.hint});
     } else if (model.element_count() == elements_before) {
       errors.push_back({where,
                         "no two of its " + std::to_string(organs[i].centre.size()) +

@@ -206,12 +206,15 @@ TEST(BuildModel, EveryProblemOfEveryOrganIsReportedAtItsOrgan) {
 }
 
 TEST(BuildModel, AMaterialThatTheNetworkRefusesIsPlacedAtItsOrgan) {
-  SceneSpec scene = block_scene();
-  scene.organs[0].material.spring = -1.0;  // the reader would have refused it
+  SceneSpec scene = layered_scene(R"({"to_depth_mm": 12, "material": {"preset": "skin"}})");
+  scene.organs[0].material.spring = -1.0;  // the reader would have refused both
+  scene.organs[0].layers[0].material.kelvin = -1.0;
   const Errors errors = errors_of_build(scene);
-  ASSERT_FALSE(errors.empty());
-  EXPECT_EQ(errors[0].where, "/organs/0");
-  EXPECT_NE(errors[0].message.find("spring modulus K2"), std::string::npos);
+  std::string all;
+  for (const Error& error : errors) all += to_string(error) + "\n";
+  EXPECT_NE(all.find("/organs/0: error: organ block: spring modulus K2: got -1"), std::string::npos) << all;
+  EXPECT_NE(all.find("/organs/0: error: organ block, layer 0: Kelvin modulus K1: got -1"), std::string::npos)
+      << all;
 }
 
 }  // namespace

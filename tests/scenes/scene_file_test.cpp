@@ -1,10 +1,16 @@
 #include "scenes/scene_file.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "scenes/build_model.h"
+#include "tests/scenes/shipped.h"
 
 namespace ctpm {
 namespace {
@@ -27,11 +33,12 @@ std::string error_of(const std::string& text) {
 }
 
 TEST(SceneFile, EveryShippedSceneIsWrittenAndReadBackEqual) {
-  for (const char* name : {"liver.json", "kidney.json", "skin.json"}) {
-    const Result<SceneText> scene = load_scene(shipped(name));
+  ASSERT_GE(shipped_scenes().size(), 3u);
+  for (const std::string& path : shipped_scenes()) {
+    const Result<SceneText> scene = load_scene(path);
     ASSERT_TRUE(scene) << to_string(scene.errors().front());
     EXPECT_TRUE(scene->warnings.empty());
-    const Result<SceneText> again = read_scene(write_scene(scene->spec), name);
+    const Result<SceneText> again = read_scene(write_scene(scene->spec), path);
     ASSERT_TRUE(again) << to_string(again.errors().front());
     EXPECT_TRUE(again->spec == scene->spec) << write_scene(scene->spec);
   }
@@ -66,10 +73,47 @@ TEST(SceneFile, ASyntaxErrorHasItsPlace) {
   EXPECT_EQ(error_of("{\n  \"format\": ,\n}").substr(0, 16), "test.json:2:13: ");
 }
 
-TEST(SceneFile, AMissingMeshIsNamedAtItsPlace) {
+TEST(SceneFile, ASceneThatIsNotThereOrNotAFileIsRefused) {
   const Result<SceneText> missing = load_scene(shipped("nowhere.json"));
   ASSERT_FALSE(missing);
-  EXPECT_EQ(missing.errors().front().message, "does not exist");
+  EXPECT_EQ(to_string(missing.errors().front()), shipped("nowhere.json") + ": error: does not exist");
+  const Result<SceneText> folder = load_scene(shipped("organs"));
+  ASSERT_FALSE(folder);
+  EXPECT_EQ(to_string(folder.errors().front()), shipped("organs") + ": error: is not a file");
+}
+
+/// Loads a scene in a folder of its own beside a file `outside.obj`, with `mesh` as its mesh.
+Result<SceneText> load_with_mesh(const std::string& mesh, const LoadOptions& options = {}) {
+  namespace fs = std::filesystem;
+  const fs::path outer = fs::path(::testing::TempDir()) / ("scene_file_test_" + std::to_string(::getpid()));
+  const fs::path folder = outer / "inner";
+  fs::create_directories(folder / "folder.obj");
+  std::ofstream(outer / "outside.obj") << "v 0 0 0\n";
+  std::ofstream(folder / "inside.obj") << "v 0 0 0\n";
+  std::ofstream(folder / "scene.json")
+      << "{\"format\": \"ctpm-scene\", \"version\": 1, \"name\": \"t\", \"organs\": [\n{\"mesh\": \"" << mesh
+      << "\", \"name\": \"a\", \"material\": {\"preset\": \"liver\"}}]}\n";
+  Result<SceneText> scene = load_scene((folder / "scene.json").string(), options);
+  fs::remove_all(outer);
+  return scene;
+}
+
+TEST(SceneFile, AMeshIsInTheScenesFolderOrNamedAtItsPlace) {
+  EXPECT_TRUE(load_with_mesh("inside.obj"));
+  for (const auto& [mesh, message] : std::vector<std::pair<std::string, std::string>>{
+           {"nowhere.obj", "there is no file \"nowhere.obj\" in the scene's folder"},
+           {"folder.obj", "\"folder.obj\" is not a file"},
+           {"../outside.obj", "got \"../outside.obj\", which leaves the scene's folder"},
+           {"folder.obj/../../outside.obj", "which leaves the scene's folder"},
+           {"/etc/hostname", "got \"/etc/hostname\", which leaves the scene's folder"}}) {
+    const Result<SceneText> scene = load_with_mesh(mesh);
+    ASSERT_FALSE(scene) << mesh;
+    ASSERT_EQ(scene.errors().size(), 1u);
+    EXPECT_TRUE(scene.errors()[0].where.ends_with("scene.json:2:10")) << scene.errors()[0].where;
+    EXPECT_EQ(scene.errors()[0].message.find("/organs/0/mesh: "), 0u);
+    EXPECT_NE(scene.errors()[0].message.find(message), std::string::npos) << scene.errors()[0].message;
+  }
+  EXPECT_TRUE(load_with_mesh("../outside.obj", LoadOptions{.allow_outside_paths = true}));
 }
 
 TEST(SceneFile, Cubic6InAnOrganIsWarnedOf) {

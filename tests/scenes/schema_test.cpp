@@ -8,24 +8,19 @@
 
 #include <cstdlib>
 #include <fstream>
-#include <sstream>
 #include <string>
 
 #include "scenes/scene_file.h"
 #include "scenes/script.h"
 #include "tests/scenes/schema_check.h"
+#include "tests/scenes/shipped.h"
 
 namespace ctpm {
 namespace {
 
 std::string folder() { return std::string(CTPM_SOURCE_DIR) + "/scenes/"; }
 
-std::string content_of(const std::string& name) {
-  std::ifstream in(folder() + name, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
+std::string content_of(const std::string& name) { return content_of_file(folder() + name); }
 
 void expect_checked_in(const std::string& name, const std::string& text) {
   if (std::getenv("CTPM_REFRESH") != nullptr) std::ofstream(folder() + name, std::ios::binary) << text;
@@ -71,11 +66,11 @@ TEST(Documentation, ItsExamplesAreReadAndFitTheSchemas) {
 
 TEST(SceneSchema, AcceptsTheShippedScenesAndEverythingThatIsWritten) {
   const SchemaCheck schema(scene_schema());
-  for (const char* name : {"liver.json", "kidney.json", "skin.json"}) {
-    EXPECT_EQ(schema.problem_of(content_of(name)), "") << name;
-    const Result<SceneText> scene = load_scene(folder() + name);
-    ASSERT_TRUE(scene);
-    EXPECT_EQ(schema.problem_of(write_scene(scene->spec)), "") << name;
+  for (const std::string& path : shipped_scenes()) {
+    EXPECT_EQ(schema.problem_of(content_of_file(path)), "") << path;
+    const Result<SceneText> scene = load_scene(path);
+    ASSERT_TRUE(scene) << path;
+    EXPECT_EQ(schema.problem_of(write_scene(scene->spec)), "") << path;
   }
 }
 
