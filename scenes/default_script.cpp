@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "scenes/script.h"
 
@@ -72,9 +73,15 @@ class Top {
   Vec3 least_, most_;
 };
 
+/// To a tenth of a millimetre, so that an author can read the script.
+double whole_tenths(double length) { return std::round(length * 1e4) / 1e4 + 0.0; }
+Vec3 whole_tenths(Vec3 p) {
+  return {whole_tenths(p.x), whole_tenths(p.y), whole_tenths(p.z)};
+}
+
 ScriptStep take(const std::string& tool, Vec3 at, Vec3 pointing) {
   ScriptStep step;
-  step.take = ScriptStep::Take{tool, at, pointing};
+  step.take = ScriptStep::Take{tool, whole_tenths(at), pointing};
   return step;
 }
 ScriptStep wait(double seconds) {
@@ -96,29 +103,40 @@ void add_press(Script& script, const ToolSpec& ball, const Table& table, Vec3 pl
   const Vec3 down = table.to_world({0, 0, -1});
   script.steps.push_back(take(ball.name, table.to_world(place + Vec3{0, 0, radius + clear}), down));
   ScriptStep press, release;
-  press.press = ScriptStep::Press{clear + depth, down, 0.020};
-  release.release = ScriptStep::Release{clear + depth + 0.02, -1.0 * down, 0.040};
+  press.press = ScriptStep::Press{whole_tenths(clear + depth), down, 0.020};
+  release.release = ScriptStep::Release{whole_tenths(clear + depth + 0.02), table.to_world({0, 0, 1}), 0.040};
   script.steps.insert(script.steps.end(), {press, wait(hold), release, wait(0.3), put_away()});
 }
 
-/// A blade goes in at `first` and is drawn towards the viewer, `length` far, with its tip `depth` below the
-/// top.
-void add_cut(Script& script, const ToolSpec& scalpel, const Top& top, const Table& table, Vec3 first,
-             double length, double depth) {
+/// Ways of a blade's tip over the top that stay in the tissue: from `first` towards the viewer, or along the organ. Of the
+/// two the one that has more tissue under it; `length` long, `depth` below the top.
+std::vector<Vec3> cut_path(const Top& top, Vec3 first, double length, double depth) {
   constexpr int kPoints = 5;
-  const double clear = 0.020;
-  const Vec3 down = table.to_world({0, 0, -1});
+  std::vector<Vec3> best;
+  int best_inside = -1;
+  for (const Vec3 way : {Vec3{0, -1, 0}, Vec3{1, 0, 0}, Vec3{-1, 0, 0}}) {
+    std::vector<Vec3> path;
+    int inside = 0;
+    for (int i = 0; i < kPoints; ++i) {
+      const Vec3 at = first + length * i / (kPoints - 1) * way;
+      const double height = top.height(at.x, at.y);
+      if (height < first.z - 2 * depth) break;
+      path.push_back({at.x, at.y, height - depth});
+      ++inside;
+    }
+    if (inside > best_inside) best = path, best_inside = inside;
+  }
+  return best;
+}
+
+/// A blade goes in at the path's start and is drawn along it; `depth` below the top.
+void add_cut(Script& script, const ToolSpec& scalpel, const Table& table, const std::vector<Vec3>& path, double depth) {
+  const Vec3 down = table.to_world({0, 0, -1}), clear{0, 0, depth + 0.020};
   ScriptStep cut, leave;
   cut.cut = ScriptStep::Cut{{}, 0.040};
-  Vec3 tip;
-  for (int i = 0; i < kPoints; ++i) {
-    const double y = first.y - length * i / (kPoints - 1);
-    if (i > 0 && !top.is_over(first.x, y)) break;  // over the edge of the organ
-    tip = {first.x, y, top.height(first.x, y) - depth};
-    cut.cut->path.push_back(table.to_world(tip));
-  }
-  script.steps.push_back(take(scalpel.name, table.to_world(first + Vec3{0, 0, clear}), down));
-  leave.move = ScriptStep::Move{table.to_world(tip + Vec3{0, 0, depth + clear}), 0.080};
+  for (const Vec3& tip : path) cut.cut->path.push_back(whole_tenths(table.to_world(tip)));
+  script.steps.push_back(take(scalpel.name, table.to_world(path.front() + clear), down));
+  leave.move = ScriptStep::Move{whole_tenths(table.to_world(path.back() + clear)), 0.080};
   script.steps.insert(script.steps.end(), {cut, wait(0.2), leave, wait(0.2), put_away(), wait(0.5)});
 }
 
@@ -132,11 +150,16 @@ Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organ
   const Vec3 size = top.size();
   const double depth = std::min(0.012, 0.2 * size.z), cut_depth = std::min(0.026, 0.45 * size.z);
   const double cut_length = std::min(0.45 * size.y, 0.065);
-  // A little in front of the ridge, where a viewer before the organ can see it.
+  // A little in front of the ridge, where a viewer before the organ can see it, unless the organ is too thin there.
   const auto seen = [&](double share, double forward) {
     const Vec3 ridge = top.ridge(share);
-    const double y = ridge.y - forward * size.y;
-    return Vec3{ridge.x, y, top.height(ridge.x, y)};
+    Vec3 place = ridge;
+    for (const double part : {1.0, 0.5}) {
+      const double y = ridge.y - part * forward * size.y;
+      place = {ridge.x, y, top.height(ridge.x, y)};
+      if (place.z > ridge.z - 0.15 * size.z) return place;
+    }
+    return ridge;
   };
   const auto first_of = [&](ToolKind kind) {
     return std::find_if(scene.tools.begin(), scene.tools.end(),
@@ -144,7 +167,7 @@ Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organ
   };
   const auto ball = first_of(ToolKind::ball), scalpel = first_of(ToolKind::scalpel), none = scene.tools.end();
   if (ball != none) add_press(script, *ball, table, seen(0.35, 0.12), depth, 0.5);
-  if (scalpel != none) add_cut(script, *scalpel, top, table, seen(0.42, 0.0), cut_length, cut_depth);
+  if (scalpel != none) add_cut(script, *scalpel, table, cut_path(top, seen(0.42, 0.0), cut_length, cut_depth), cut_depth);
   // Pressing beside the cut opens it.
   if (ball != none && scalpel != none) add_press(script, *ball, table, seen(0.52, 0.16), 1.2 * depth, 1.0);
   if (script.steps.empty()) script.steps.push_back(wait(1));

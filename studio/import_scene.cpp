@@ -52,6 +52,15 @@ double extent_z(const FilledOrgan& organ) {
   return high->z - low->z;
 }
 
+/// Height [m] above the lowest sphere within which lies an eighth of all spheres, at least: an organ that stands on less
+/// would fall over while it settles.
+double footing_height(const FilledOrgan& organ) {
+  std::vector<double> heights;
+  for (const Vec3& centre : organ.centre) heights.push_back(centre.z);
+  std::sort(heights.begin(), heights.end());
+  return std::ceil(1e3 * (heights[(heights.size() - 1) / 8] - heights.front()) + 0.5) / 1e3;
+}
+
 SceneSpec make_scene(const ImportRequest& request, const MaterialPreset& preset, const FilledOrgan& organ, const std::string& name) {
   SceneSpec scene;
   scene.name = name;
@@ -65,7 +74,7 @@ SceneSpec make_scene(const ImportRequest& request, const MaterialPreset& preset,
   spec.anchors = request.anchors;
   if (spec.anchors.empty()) {
     AnchorSpec lowest;
-    lowest.lowest = std::round(1e3 * std::max(extent_z(organ) / 8, 0.01 * organ.spacing)) * 1e-3;
+    lowest.lowest = footing_height(organ);
     spec.anchors = {lowest};
   }
   scene.organs = {spec};

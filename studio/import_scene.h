@@ -20,7 +20,7 @@ struct ImportRequest {
   std::optional<double> gap;            ///< [m]; unset: the radius
   std::string part;
   bool all_parts = false;
-  std::vector<AnchorSpec> anchors;      ///< empty: the lowest eighth of the organ's height
+  std::vector<AnchorSpec> anchors;      ///< empty: the lowest eighth of its spheres
   Progress progress;
 };
 

@@ -1,5 +1,7 @@
 #include "studio/loaded_scene.h"
 
+#include <algorithm>
+
 #include "scenes/presets.h"
 #include "studio/console.h"
 
@@ -85,7 +87,11 @@ Result<Camera> find_camera(const SceneSpec& scene, const SceneView& view, const 
   if (name.empty() && scene.cameras.empty()) return default_camera(view, aspect);
   std::string known;
   for (const CameraSpec& camera : scene.cameras) {
-    if (name.empty() || camera.name == name) return Camera{camera.eye, camera.target, camera.up, camera.field_of_view};
+    if (name.empty() || camera.name == name) {
+      // Cameras are set up for 16:9; in a narrower picture they step back so that the sides stay in sight.
+      const double back = std::max(1.0, 16.0 / 9 / aspect);
+      return Camera{camera.target + back * (camera.eye - camera.target), camera.target, camera.up, camera.field_of_view};
+    }
     known += (known.empty() ? "" : ", ") + camera.name;
   }
   return Error{"--camera", "the scene has no camera '" + name + "'", known.empty() ? "it has none" : "it has: " + known};

@@ -66,7 +66,7 @@ int run_record(const RecordArguments& arguments) {
 Command add_record(CLI::App& program) {
   auto arguments = std::make_shared<RecordArguments>();
   CLI::App* app = program.add_subcommand("record", "Runs a session and records it, at 1000 ticks a second.");
-  app->footer("Example: ctpm record scenes/liver.json --script scenes/scripts/liver.json -o liver.ctpm");
+  app->footer("Example: ctpm record scenes/liver.json --script scenes/scripts/liver-cut.json -o liver.ctpm");
   app->add_option("scene", arguments->scene, "Scene file (.json)")->required();
   app->add_option("-o,--output", arguments->output, "Session file (.ctpm)")->required();
   app->add_option("--script", arguments->script, "What the hand does (.json); without it, a press and a cut at the organ's top");

@@ -23,22 +23,39 @@ class EventWatch {
   }
 
   void look(std::int64_t tick, const StepReport& report) {
-    const bool touches = report.contacts > 0;
-    if (touches != touched_)
-      writer_.event(tick, touches ? EventKind::contact_begins : EventKind::contact_ends,
-                    touches ? "tool touches the tissue" : "tool leaves the tissue");
-    if (report.severed > 0 && !cut_)
+    if (begins(contact_, tick, report.contacts > 0)) writer_.event(tick, EventKind::contact_begins, "tool touches the tissue");
+    if (ends(contact_, tick)) writer_.event(contact_.last_tick, EventKind::contact_ends, "tool leaves the tissue");
+    if (begins(cut_, tick, report.severed > 0))
       writer_.event(tick, EventKind::cut, "blade begins to sever; value: elements", {double(report.severed)});
-    const bool damages = limit_ > 0 && report.depth > limit_;
-    if (damages && !damaged_)
+    ends(cut_, tick);
+    if (begins(damage_, tick, limit_ > 0 && report.depth > limit_))
       writer_.event(tick, EventKind::damage, "depth passes the damage limit; values: depth and limit in m", {report.depth, limit_});
-    touched_ = touches, cut_ = report.severed > 0, damaged_ = damages;
+    ends(damage_, tick);
   }
 
  private:
+  /// Something that goes on while it is seen again within kPause; tissue that follows a leaving tool touches it on and off.
+  struct Spell {
+    bool goes_on = false;
+    std::int64_t last_tick = 0;
+  };
+  static constexpr std::int64_t kPause = 100;  // [ticks]
+
+  static bool begins(Spell& spell, std::int64_t tick, bool is_seen) {
+    if (!is_seen) return false;
+    const bool is_new = !spell.goes_on;
+    spell = {true, tick};
+    return is_new;
+  }
+  static bool ends(Spell& spell, std::int64_t tick) {
+    if (!spell.goes_on || tick - spell.last_tick < kPause) return false;
+    spell.goes_on = false;
+    return true;
+  }
+
   SessionWriter& writer_;
   double limit_ = 0;
-  bool touched_ = false, cut_ = false, damaged_ = false;
+  Spell contact_, cut_, damage_;
 };
 
 }  // namespace
