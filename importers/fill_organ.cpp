@@ -82,7 +82,7 @@ std::vector<double> find_depths(const SurfaceIndex& index, const Lattice& lattic
     std::int32_t guess = 0;
     for (std::size_t n = begin; n < end; ++n) {
       const auto nearest = index.nearest(lattice.at(cell[n]), guess);
-      guess = nearest.triangle;
+      guess = nearest.block;
       depth[n] = std::sqrt(nearest.squared_distance);
     }
   });

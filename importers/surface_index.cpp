@@ -2,19 +2,42 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstring>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "core/result.h"
 
 namespace ctpm {
 namespace {
 
-constexpr std::int32_t kLeafSize = 4;
-
 double coordinate(Vec3 p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
 double squared(Vec3 v) { return dot(v, v); }
+
+/// Two numbers that the processor treats as one; the same bits as one after the other.
+using Pair = double __attribute__((vector_size(16)));
+constexpr std::size_t kPair = 2;
+
+Pair load(const double* from) {
+  Pair pair;
+  std::memcpy(&pair, from, sizeof pair);
+  return pair;
+}
+Pair smaller(Pair a, Pair b) { return a < b ? a : b; }
+Pair larger(Pair a, Pair b) { return a > b ? a : b; }
+
+struct PairOfVec3 {
+  Pair x, y, z;
+};
+PairOfVec3 operator-(const PairOfVec3& a, const PairOfVec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+PairOfVec3 operator*(Pair s, const PairOfVec3& a) { return {s * a.x, s * a.y, s * a.z}; }
+Pair dot(const PairOfVec3& a, const PairOfVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+PairOfVec3 cross(const PairOfVec3& a, const PairOfVec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 
 /// Squared distance of a point from a segment.
 double squared_distance(Vec3 p, Vec3 a, Vec3 b) {
@@ -38,96 +61,200 @@ double squared_distance(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   return std::min({squared_distance(p, a, b), squared_distance(p, b, c), squared_distance(p, c, a)});
 }
 
+/// Builds the tree from the root down; siblings split their triangles in half, twice.
+struct SurfaceIndex::Builder {
+  struct Range {
+    std::int32_t begin, end;
+    std::int32_t count() const { return end - begin; }
+  };
+  struct Boxes {
+    Vec3 least, most;                ///< of the triangles
+    Vec3 middle_least, middle_most;  ///< of their middles
+  };
+
+  SurfaceIndex& index;
+  std::vector<std::array<Vec3, 3>> corners;
+  std::vector<Vec3> middle;
+  std::vector<std::int32_t> order;
+
+  Boxes boxes_of(Range range) const {
+    constexpr double kFar = std::numeric_limits<double>::max();
+    const Vec3 far{kFar, kFar, kFar};
+    Boxes boxes{far, -far, far, -far};
+    const auto widen = [](Vec3& least, Vec3& most, Vec3 p) {
+      least = {std::min(least.x, p.x), std::min(least.y, p.y), std::min(least.z, p.z)};
+      most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, p.z)};
+    };
+    for (std::int32_t n = range.begin; n < range.end; ++n) {
+      const std::size_t t = std::size_t(order[std::size_t(n)]);
+      for (const Vec3 p : corners[t]) widen(boxes.least, boxes.most, p);
+      widen(boxes.middle_least, boxes.middle_most, middle[t]);
+    }
+    return boxes;
+  }
+
+  /// Halves a range at the median of the longest extent of its triangles' middles, in whole blocks.
+  std::pair<Range, Range> halves(Range range) {
+    const Boxes boxes = boxes_of(range);
+    const Vec3 extent = boxes.middle_most - boxes.middle_least;
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const std::int32_t blocks = (range.count() + kLanes - 1) / kLanes;
+    const std::int32_t half = range.begin + blocks / 2 * kLanes;
+    std::nth_element(order.begin() + range.begin, order.begin() + half, order.begin() + range.end,
+                     [&](std::int32_t a, std::int32_t b) {
+                       const double ma = coordinate(middle[std::size_t(a)], axis);
+                       const double mb = coordinate(middle[std::size_t(b)], axis);
+                       return ma != mb ? ma < mb : a < b;
+                     });
+    return {{range.begin, half}, {half, range.end}};
+  }
+
+  /// The child for a range: the number of a node, or ~ the number of a block.
+  std::int32_t add(Range range) {
+    if (range.count() <= kLanes) {
+      index.blocks_.push_back(make_block(corners, order.data() + range.begin, range.count()));
+      return ~std::int32_t(index.blocks_.size() - 1);
+    }
+    std::array<Range, kLanes> part{};
+    std::size_t parts = 0;
+    const auto [low, high] = halves(range);
+    for (const Range half : {low, high}) {
+      if (half.count() <= kLanes) {
+        part[parts++] = half;
+        continue;
+      }
+      const auto [first, second] = halves(half);
+      part[parts++] = first, part[parts++] = second;
+    }
+    const std::size_t self = index.nodes_.size();
+    index.nodes_.emplace_back();
+    for (std::size_t n = 0; n < std::size_t(kLanes); ++n) {
+      constexpr double kInfinity = std::numeric_limits<double>::infinity();
+      Boxes boxes{{kInfinity, 0, 0}, {kInfinity, 0, 0}, {}, {}};
+      if (n < parts) boxes = boxes_of(part[n]);
+      const std::int32_t child = n < parts ? add(part[n]) : 0;
+      Node& node = index.nodes_[self];
+      node.child[n] = child;
+      node.least.x[n] = boxes.least.x, node.least.y[n] = boxes.least.y, node.least.z[n] = boxes.least.z;
+      node.most.x[n] = boxes.most.x, node.most.y[n] = boxes.most.y, node.most.z[n] = boxes.most.z;
+    }
+    return std::int32_t(self);
+  }
+};
+
 SurfaceIndex::SurfaceIndex(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle) {
   CTPM_CHECK(!triangle.empty(), "an index needs triangles");
-  std::vector<Corners> corners;
-  std::vector<Vec3> middle;
-  corners.reserve(triangle.size());
-  middle.reserve(triangle.size());
+  Builder builder{*this, {}, {}, {}};
+  builder.corners.reserve(triangle.size());
+  builder.middle.reserve(triangle.size());
   for (const Triangle& t : triangle) {
-    corners.push_back({vertex[std::size_t(t[0])], vertex[std::size_t(t[1])], vertex[std::size_t(t[2])]});
-    middle.push_back((corners.back().a + corners.back().b + corners.back().c) / 3);
+    const Vec3 a = vertex[std::size_t(t[0])], b = vertex[std::size_t(t[1])], c = vertex[std::size_t(t[2])];
+    builder.corners.push_back({a, b, c});
+    builder.middle.push_back((a + b + c) / 3);
   }
-  std::vector<std::int32_t> order(triangle.size());
-  std::iota(order.begin(), order.end(), 0);
-  nodes_.reserve(triangle.size());
-  triangles_.reserve(triangle.size());
-  build(order, middle, 0, std::int32_t(order.size()), corners);
+  builder.order.resize(triangle.size());
+  std::iota(builder.order.begin(), builder.order.end(), 0);
+  blocks_.reserve(triangle.size() / kLanes + 1);
+  nodes_.reserve(triangle.size() / kLanes + 1);
+  builder.add({0, std::int32_t(triangle.size())});
 }
 
-void SurfaceIndex::build(std::vector<std::int32_t>& order, const std::vector<Vec3>& middle,
-                         std::int32_t begin, std::int32_t end, const std::vector<Corners>& corners) {
-  constexpr double kFar = std::numeric_limits<double>::max();
-  Node node{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}, 0, 0};
-  double middle_least[3] = {kFar, kFar, kFar}, middle_most[3] = {-kFar, -kFar, -kFar};
-  for (std::int32_t n = begin; n < end; ++n) {
-    const Corners& t = corners[std::size_t(order[std::size_t(n)])];
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const Vec3 p : {t.a, t.b, t.c}) {
-        node.least[axis] = std::min(node.least[axis], coordinate(p, axis));
-        node.most[axis] = std::max(node.most[axis], coordinate(p, axis));
-      }
-      const double m = coordinate(middle[std::size_t(order[std::size_t(n)])], axis);
-      middle_least[axis] = std::min(middle_least[axis], m);
-      middle_most[axis] = std::max(middle_most[axis], m);
-    }
+SurfaceIndex::Block SurfaceIndex::make_block(const std::vector<std::array<Vec3, 3>>& corners,
+                                             const std::int32_t* triangle, std::int32_t count) {
+  Block block{};
+  const auto put = [](LanesOfVec3& lanes, std::size_t n, Vec3 p) {
+    lanes.x[n] = p.x, lanes.y[n] = p.y, lanes.z[n] = p.z;
+  };
+  const auto inverse = [](double value) { return value > 0 && std::isfinite(1 / value) ? 1 / value : 0.0; };
+  for (std::size_t n = 0; n < std::size_t(kLanes); ++n) {
+    const auto& [a, b, c] = corners[std::size_t(triangle[std::min(std::int32_t(n), count - 1)])];
+    put(block.a, n, a), put(block.b, n, b), put(block.c, n, c);
+    const Vec3 normal = cross(b - a, c - a);
+    put(block.normal, n, inverse(norm(normal)) * normal);
+    block.inverse_ab[n] = inverse(squared(b - a));
+    block.inverse_bc[n] = inverse(squared(c - b));
+    block.inverse_ca[n] = inverse(squared(a - c));
   }
-  const std::size_t self = nodes_.size();
-  nodes_.push_back(node);
-  if (end - begin <= kLeafSize) {
-    nodes_[self].first = std::int32_t(triangles_.size());
-    nodes_[self].count = end - begin;
-    for (std::int32_t n = begin; n < end; ++n)
-      triangles_.push_back(corners[std::size_t(order[std::size_t(n)])]);
-    return;
+  return block;
+}
+
+/// The same as squared_distance(), without branches, for four triangles at once.
+SurfaceIndex::Lanes SurfaceIndex::squared_distances(const Block& block, Vec3 point) {
+  const Pair zero{0, 0}, one{1, 1};
+  const PairOfVec3 p{point.x + zero, point.y + zero, point.z + zero};
+  Lanes result;
+  for (std::size_t n = 0; n < std::size_t(kLanes); n += kPair) {
+    const auto at = [n](const LanesOfVec3& v) {
+      return PairOfVec3{load(&v.x[n]), load(&v.y[n]), load(&v.z[n])};
+    };
+    const PairOfVec3 a = at(block.a), b = at(block.b), c = at(block.c), normal = at(block.normal);
+    const PairOfVec3 ab = b - a, bc = c - b, ca = a - c, ap = p - a, bp = p - b, cp = p - c;
+    const auto to_edge = [&](const PairOfVec3& edge, const PairOfVec3& from_start, const Lanes& inverse) {
+      const Pair share = smaller(larger(dot(from_start, edge) * load(&inverse[n]), zero), one);
+      const PairOfVec3 rest = from_start - share * edge;
+      return dot(rest, rest);
+    };
+    const Pair edge = smaller(smaller(to_edge(ab, ap, block.inverse_ab), to_edge(bc, bp, block.inverse_bc)),
+                              to_edge(ca, cp, block.inverse_ca));
+    // Inside of all three edges the plane is nearest; never so for a triangle without a normal.
+    const Pair side =
+        smaller(smaller(dot(cross(ab, ap), normal), dot(cross(bc, bp), normal)), dot(cross(ca, cp), normal));
+    const Pair height = dot(ap, normal);
+    const Pair squared_distance = side > zero ? height * height : edge;
+    std::memcpy(&result[n], &squared_distance, sizeof squared_distance);
   }
-  // Half of the triangles to either side of the longest extent of their middles.
-  int axis = 0;
-  for (int other = 1; other < 3; ++other)
-    if (middle_most[other] - middle_least[other] > middle_most[axis] - middle_least[axis]) axis = other;
-  const std::int32_t half = begin + (end - begin) / 2;
-  std::nth_element(order.begin() + begin, order.begin() + half, order.begin() + end,
-                   [&](std::int32_t a, std::int32_t b) {
-                     const double ma = coordinate(middle[std::size_t(a)], axis);
-                     const double mb = coordinate(middle[std::size_t(b)], axis);
-                     return ma != mb ? ma < mb : a < b;
-                   });
-  build(order, middle, begin, half, corners);
-  nodes_[self].first = std::int32_t(nodes_.size());
-  build(order, middle, half, end, corners);
+  return result;
+}
+
+SurfaceIndex::Lanes SurfaceIndex::squared_distances(const Node& node, Vec3 point) {
+  const Pair zero{0, 0};
+  Lanes result;
+  for (std::size_t n = 0; n < std::size_t(kLanes); n += kPair) {
+    const auto along = [&](const Lanes& least, const Lanes& most, double p) {
+      return larger(larger(load(&least[n]) - p, p - load(&most[n])), zero);
+    };
+    const Pair dx = along(node.least.x, node.most.x, point.x);
+    const Pair dy = along(node.least.y, node.most.y, point.y);
+    const Pair dz = along(node.least.z, node.most.z, point.z);
+    const Pair squared_distance = dx * dx + dy * dy + dz * dz;
+    std::memcpy(&result[n], &squared_distance, sizeof squared_distance);
+  }
+  return result;
 }
 
 SurfaceIndex::Nearest SurfaceIndex::nearest(Vec3 point, std::int32_t guess) const {
-  const auto box_distance = [&](const Node& n) {
-    const double dx = std::max({n.least[0] - point.x, 0.0, point.x - n.most[0]});
-    const double dy = std::max({n.least[1] - point.y, 0.0, point.y - n.most[1]});
-    const double dz = std::max({n.least[2] - point.z, 0.0, point.z - n.most[2]});
-    return dx * dx + dy * dy + dz * dz;
+  Nearest best{std::numeric_limits<double>::infinity(), guess};
+  const auto look_at_block = [&](std::int32_t block) {
+    const Lanes distance = squared_distances(blocks_[std::size_t(block)], point);
+    const double least = std::min({distance[0], distance[1], distance[2], distance[3]});
+    if (least < best.squared_distance) best = {least, block};
   };
-  const Corners& first = triangles_[std::size_t(guess)];
-  Nearest best{squared_distance(point, first.a, first.b, first.c), guess};
+  look_at_block(guess);
   struct Waiting {
-    std::int32_t node;
+    std::int32_t child;
     double distance;
   };
-  std::array<Waiting, 128> stack;  // the tree is balanced: its depth is far below
+  std::array<Waiting, 128> stack;  // at most three wait on each level, and a level has a quarter of the last
   std::size_t height = 0;
-  stack[height++] = {0, box_distance(nodes_[0])};
+  if (!nodes_.empty()) stack[height++] = {0, 0.0};
   while (height > 0) {
     const Waiting next = stack[--height];
     if (next.distance >= best.squared_distance) continue;
-    const Node& node = nodes_[std::size_t(next.node)];
-    for (std::int32_t t = node.first; node.count > 0 && t < node.first + node.count; ++t) {
-      const Corners& corners = triangles_[std::size_t(t)];
-      const double d = squared_distance(point, corners.a, corners.b, corners.c);
-      if (d < best.squared_distance) best = {d, t};
+    if (next.child < 0) {
+      look_at_block(~next.child);
+      continue;
     }
-    if (node.count > 0) continue;
-    const Waiting left{next.node + 1, box_distance(nodes_[std::size_t(next.node + 1)])};
-    const Waiting right{node.first, box_distance(nodes_[std::size_t(node.first)])};
-    // The nearer child comes off the stack first.
-    stack[height++] = left.distance < right.distance ? right : left;
-    stack[height++] = left.distance < right.distance ? left : right;
+    const Node& node = nodes_[std::size_t(next.child)];
+    const Lanes distance = squared_distances(node, point);
+    const std::size_t first = height;
+    for (std::size_t n = 0; n < std::size_t(kLanes); ++n) {
+      if (!(distance[n] < best.squared_distance)) continue;
+      // The nearest child comes off the stack first.
+      std::size_t place = height++;
+      for (; place > first && stack[place - 1].distance < distance[n]; --place)
+        stack[place] = stack[place - 1];
+      stack[place] = {node.child[n], distance[n]};
+    }
   }
   return best;
 }

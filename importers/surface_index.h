@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -14,32 +15,44 @@ class SurfaceIndex {
   /// At least one triangle.
   SurfaceIndex(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle);
 
-  /// A triangle and its squared distance from a point.
+  /// The squared distance of the nearest triangle, and where it was found.
   struct Nearest {
     double squared_distance = 0;  ///< [m^2]
-    std::int32_t triangle = -1;   ///< position in the index's own order; pass it back as `guess`
+    std::int32_t block = 0;       ///< of triangles, in the index's own order; pass it back as `guess`
   };
 
-  /// The triangle nearest to `point`. `guess`: a triangle that is probably near, which only makes the search
-  /// faster.
+  /// The distance of `point` from the triangles. `guess`: a triangle that is probably near, which only makes
+  /// the search faster.
   Nearest nearest(Vec3 point, std::int32_t guess = 0) const;
 
  private:
-  struct Node {
-    double least[3], most[3];
-    std::int32_t
-        first;  ///< leaf: its first triangle; else its second child (the first child is the next node)
-    std::int32_t count;  ///< triangles of a leaf; 0: not a leaf
-  };
-  struct Corners {
-    Vec3 a, b, c;
+  static constexpr std::int32_t kLanes = 4;
+  using Lanes = std::array<double, kLanes>;  ///< one number of each of four things
+  struct alignas(16) LanesOfVec3 {
+    Lanes x, y, z;
   };
 
-  void build(std::vector<std::int32_t>& order, const std::vector<Vec3>& middle, std::int32_t begin,
-             std::int32_t end, const std::vector<Corners>& corners);
+  /// Boxes of up to four children, side by side so that they are looked at together. Missing ones are
+  /// infinitely far.
+  struct Node {
+    LanesOfVec3 least, most;
+    std::array<std::int32_t, kLanes> child;  ///< a node, or ~block of a leaf
+  };
+  /// Four triangles, side by side; missing ones repeat the last. Corners [m], unit normal, 1 / squared edge
+  /// [1/m^2].
+  struct Block {
+    LanesOfVec3 a, b, c, normal;
+    Lanes inverse_ab, inverse_bc, inverse_ca;
+  };
+  struct Builder;
+
+  static Block make_block(const std::vector<std::array<Vec3, 3>>& corners, const std::int32_t* triangle,
+                          std::int32_t count);
+  static Lanes squared_distances(const Block& block, Vec3 point);
+  static Lanes squared_distances(const Node& node, Vec3 point);
 
   std::vector<Node> nodes_;
-  std::vector<Corners> triangles_;
+  std::vector<Block> blocks_;
 };
 
 /// Squared distance of a point from a triangle, edges and corners included.
