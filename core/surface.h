@@ -15,8 +15,9 @@ namespace ctpm {
 /// under translation). Returns weights that sum to 1, one per candidate.
 std::vector<double> follow_weights(Vec3 point, std::span<const Vec3> candidates, double radius);
 
-/// Binds every vertex of `organ.surface` to the spheres within 2.2 spacings (at least the 8 nearest).
-void bind_surface(FilledOrgan& organ);
+/// Binds every vertex of `organ.surface` to the spheres within 2.2 spacings (at least the 8 nearest). The result does
+/// not depend on `threads`, >= 1.
+void bind_surface(FilledOrgan& organ, int threads = 1);
 
 /// Where the surface's vertices are [m] when the organ's spheres are at `position[first_sphere + ...]` (vertex_count).
 void deform_surface(const Surface& surface, const Vec3Array& position, std::int32_t first_sphere,

@@ -15,7 +15,8 @@ struct FillOptions {
   double gap = -1;                        ///< between neighbours' surfaces [m], >= 0; negative: r
   bool keep_islands = false;              ///< keep spheres that are not joined to the largest network
   std::int64_t most_spheres = 2'000'000;  ///< more are refused before memory is spent on them, > 0
-  int threads = 2;                        ///< >= 1; the result does not depend on it
+  std::int64_t most_triangles = 0;  ///< of the drawn surface, which is coarsened if it has more; 0: never
+  int threads = 2;                  ///< >= 1; the result does not depend on it
   Progress progress;
 };
 
@@ -27,6 +28,7 @@ struct FillReport {
   double filled_volume = 0;                     ///< spheres times spacing cubed [m^3]
   double largest_distance = 0;                  ///< from a surface vertex to the nearest sphere's centre [m]
   double mean_distance = 0;                     ///< the same, mean over the surface vertices [m]
+  std::int64_t surface_triangles = 0;           ///< of the drawn surface
   std::vector<Finding> findings;
 };
 

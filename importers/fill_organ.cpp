@@ -7,19 +7,23 @@
 #include <numeric>
 
 #include "core/surface.h"
+#include "importers/coarsen.h"
 #include "importers/fill.h"
 #include "importers/lattice.h"
 #include "importers/scan_rows.h"
 #include "importers/surface_index.h"
 #include "importers/text.h"
+#include "importers/topology.h"
 
 namespace ctpm {
 namespace {
 
 constexpr double kOnSurface = 1e-6;  // of the spacing: a centre this near to the surface is not inside
-constexpr double kMostRows = 5e7;    // of the lattice; a bound on memory
+constexpr double kMostRows = 1e7;    // of the lattice; a bound on memory
 constexpr double kThinInSpacings =
-    2.0;  // a surface point farther than this from every sphere is over a thin part
+    2.0;  // farther than this from every sphere, a surface point is over a thin part
+
+constexpr std::int64_t kFewestTriangles = 100;  // of a coarsened surface that still looks like its organ
 
 /// Calls `work(begin, end)` for pieces of 0 .. count on several threads. The pieces do not depend on the
 /// threads.
@@ -46,6 +50,11 @@ Errors check(const CheckedMesh& mesh, const FillOptions& options) {
   if (!std::isfinite(options.gap)) errors.push_back({"", "the gap must be a number of millimetres", ""});
   if (options.threads < 1)
     errors.push_back({"", "at least one thread is needed, got " + std::to_string(options.threads), ""});
+  if (options.most_triangles != 0 && options.most_triangles < kFewestTriangles)
+    errors.push_back({"",
+                      "a drawn surface needs at least " + std::to_string(kFewestTriangles) +
+                          " triangles, got " + std::to_string(options.most_triangles),
+                      ""});
   if (options.most_spheres < 1) errors.push_back({"", "at least one sphere must be allowed", ""});
   CTPM_CHECK(!mesh.triangle.empty() && mesh.volume > 0, "filling needs a checked mesh");
   return errors;
@@ -176,6 +185,21 @@ std::int64_t count_edges(const CellLookup& lookup, const std::vector<Cell>& cell
   return edges;
 }
 
+/// How many groups of marked vertices there are that triangles join.
+std::int64_t count_groups(const std::vector<Triangle>& triangle, const std::vector<char>& is_marked) {
+  std::vector<Triangle> marked;
+  for (const Triangle& t : triangle) {
+    // A corner that is not marked is replaced by one that is, so that only marked ones are joined.
+    Triangle kept{};
+    int count = 0;
+    for (const std::int32_t v : t)
+      if (is_marked[std::size_t(v)]) kept[std::size_t(count++)] = v;
+    for (int c = count; c < 3 && count > 0; ++c) kept[std::size_t(c)] = kept[0];
+    if (count > 0) marked.push_back(kept);
+  }
+  return count_joined(marked);
+}
+
 /// How far the surface is from the spheres, and where it is too thin to have any.
 void measure_surface(const CellLookup& lookup, const CheckedMesh& mesh, double spacing, int threads,
                      FillReport& report) {
@@ -187,15 +211,40 @@ void measure_surface(const CellLookup& lookup, const CheckedMesh& mesh, double s
   const auto worst = std::max_element(distance.begin(), distance.end());
   report.largest_distance = *worst;
   report.mean_distance = std::accumulate(distance.begin(), distance.end(), 0.0) / double(distance.size());
-  const std::int64_t thin = std::count_if(distance.begin(), distance.end(),
-                                          [&](double d) { return d > kThinInSpacings * spacing; });
+  std::vector<char> is_thin(distance.size(), 0);
+  for (std::size_t v = 0; v < distance.size(); ++v) is_thin[v] = distance[v] > kThinInSpacings * spacing;
+  const std::int64_t thin = count_groups(mesh.triangle, is_thin);
   if (thin == 0) return;
   const Vec3 place = mesh.vertex[std::size_t(worst - distance.begin())];
   report.findings.push_back(
       {"thin", thin, place,
-       counted(thin, "surface vertex") + " over parts that are too thin for a sphere, the farthest " +
+       counted(thin, "part") + " of the surface too thin for a sphere, the farthest point " +
            mm_text(*worst) + " from one, at " + place_text(place),
-       "none", "these parts follow the nearest spheres; a smaller sphere radius fills them"});
+       "none", "what is thin follows the nearest spheres; a smaller sphere radius fills it"});
+}
+
+/// The surface that is drawn: the mesh, or a coarser one if that was asked for.
+Surface take_surface(const CheckedMesh& mesh, std::int64_t most_triangles, std::vector<Finding>& findings) {
+  Surface surface;
+  surface.vertex = mesh.vertex;
+  surface.triangle = mesh.triangle;
+  if (most_triangles == 0 || std::int64_t(mesh.triangle.size()) <= most_triangles) return surface;
+  Soup coarse = coarsen({mesh.vertex, mesh.triangle}, most_triangles);
+  // How far the mesh's own vertices are off the coarser surface.
+  const SurfaceIndex index(coarse.vertex, coarse.triangle);
+  double off = 0;
+  for (const Vec3& p : mesh.vertex) off = std::max(off, index.nearest(p).squared_distance);
+  surface.vertex = std::move(coarse.vertex);
+  surface.triangle = std::move(coarse.triangle);
+  const std::int64_t count = std::int64_t(surface.triangle.size());
+  findings.push_back({"coarsened",
+                      std::int64_t(mesh.triangle.size()) - count,
+                      {},
+                      std::to_string(mesh.triangle.size()) + " triangles are more than the " +
+                          std::to_string(most_triangles) + " that may be drawn",
+                      "drawn with " + std::to_string(count) + ", at most " + mm_text(std::sqrt(off)) + " off",
+                      count > most_triangles ? "fewer would turn triangles over" : ""});
+  return surface;
 }
 
 }  // namespace
@@ -243,14 +292,18 @@ Result<Filling> fill_organ(const CheckedMesh& mesh, const FillOptions& options) 
   measure_surface(lookup, mesh, spacing, options.threads, report);
   organ.cell = cell;
   organ.depth = std::move(depth);
-  tell("binding", 0.7);
-  organ.surface.vertex = mesh.vertex;
-  organ.surface.triangle = mesh.triangle;
-  bind_surface(organ);
+  tell("surface", 0.7);
+  organ.surface = take_surface(mesh, options.most_triangles, report.findings);
+  report.surface_triangles = std::int64_t(organ.surface.triangle.size());
+  tell("binding", 0.8);
+  bind_surface(organ, options.threads);
   tell("done", 1);
   return filling;
 } catch (const std::bad_alloc&) {
   return Error{"", "filling needs more memory than there is", "take a larger sphere radius"};
+} catch (const std::exception& trouble) {
+  return Error{"", std::string("cannot be filled: ") + trouble.what(),
+               "leave the drawn surface as fine as it is"};
 }
 
 }  // namespace ctpm

@@ -22,6 +22,7 @@ Errors check(const ImportOptions& options) {
        "the sphere radius must be above 0 mm, got " + mm_text(options.sphere_radius));
   must(std::isfinite(options.gap), "the gap must be a number of millimetres");
   must(options.most_spheres > 0, "at least one sphere must be allowed");
+  must(options.most_triangles >= 0, "the drawn surface cannot have fewer than 0 triangles");
   must(options.threads >= 1, "at least one thread is needed, got " + std::to_string(options.threads));
   must(options.time_limit_s > 0, "the time limit must be above 0 s");
   return errors;
@@ -88,6 +89,7 @@ Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions&
   fill.gap = options.gap;
   fill.keep_islands = options.all_parts;
   fill.most_spheres = options.most_spheres;
+  fill.most_triangles = options.most_triangles;
   fill.threads = options.threads;
   fill.progress = options.progress;
   Result<Filling> filling = fill_organ(*mesh, fill);

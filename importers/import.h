@@ -23,8 +23,9 @@ struct ImportOptions {
   double sphere_radius = 0.004;  ///< r [m], > 0
   double gap = -1;               ///< between neighbours' surfaces [m], >= 0; negative: r
   std::int64_t most_spheres = 2'000'000;  ///< more are refused
-  int threads = 2;                        ///< >= 1; the result does not depend on it
-  double time_limit_s = 120;              ///< for reading the file [s]
+  std::int64_t most_triangles = 0;  ///< of the drawn surface, which is coarsened if it has more; 0: never
+  int threads = 2;                  ///< >= 1; the result does not depend on it
+  double time_limit_s = 120;        ///< for reading the file [s]
   Progress progress;
 };
 

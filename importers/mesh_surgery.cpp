@@ -1,70 +1,28 @@
 #include "importers/mesh_surgery.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/border.h>
 #include <CGAL/Polygon_mesh_processing/manifoldness.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/orientation.h>
-#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/stitch_borders.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
-#include <CGAL/Surface_mesh.h>
 
 #include <algorithm>
-#include <array>
 #include <iterator>
-#include <stdexcept>
 #include <vector>
+
+#include "importers/cgal_mesh.h"
 
 namespace ctpm {
 namespace {
 
 namespace PMP = CGAL::Polygon_mesh_processing;
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Point = Kernel::Point_3;
-using Mesh = CGAL::Surface_mesh<Point>;
+using cgal::from_cgal;
+using cgal::Mesh;
+using cgal::PolygonSoup;
+using cgal::to_mesh;
+using cgal::to_soup;
 using Halfedge = Mesh::Halfedge_index;
-using Polygon = std::array<std::size_t, 3>;
-
-Vec3 from_cgal(const Point& p) { return {p.x(), p.y(), p.z()}; }
-
-struct PolygonSoup {
-  std::vector<Point> points;
-  std::vector<Polygon> polygons;
-
-  explicit PolygonSoup(const Soup& soup) {
-    points.reserve(soup.vertex.size());
-    for (const Vec3& p : soup.vertex) points.emplace_back(p.x, p.y, p.z);
-    polygons.reserve(soup.triangle.size());
-    for (const Triangle& t : soup.triangle)
-      polygons.push_back({std::size_t(t[0]), std::size_t(t[1]), std::size_t(t[2])});
-  }
-};
-
-Mesh to_mesh(const PolygonSoup& soup) {
-  if (!PMP::is_polygon_soup_a_polygon_mesh(soup.polygons))
-    throw std::logic_error("an oriented soup is still no manifold mesh");
-  Mesh mesh;
-  PMP::polygon_soup_to_polygon_mesh(soup.points, soup.polygons, mesh);
-  return mesh;
-}
-
-Soup to_soup(const Mesh& mesh) {
-  Soup soup;
-  std::vector<std::int32_t> index(mesh.num_vertices() + mesh.number_of_removed_vertices(), -1);
-  for (const auto v : mesh.vertices()) {
-    index[std::size_t(v)] = std::int32_t(soup.vertex.size());
-    soup.vertex.push_back(from_cgal(mesh.point(v)));
-  }
-  for (const auto f : mesh.faces()) {
-    Triangle triangle{};
-    int c = 0;
-    for (const auto v : mesh.vertices_around_face(mesh.halfedge(f)))
-      triangle[c++ % 3] = index[std::size_t(v)];
-    soup.triangle.push_back(triangle);
-  }
-  return soup;
-}
 
 Hole measure(const Mesh& mesh, Halfedge border) {
   Hole hole;

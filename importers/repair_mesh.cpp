@@ -5,6 +5,7 @@
 
 #include "importers/mesh.h"
 #include "importers/mesh_surgery.h"
+#include "importers/self_crossing.h"
 #include "importers/text.h"
 #include "importers/topology.h"
 
@@ -91,7 +92,9 @@ class Repair {
     split_and_orient();
     tell("closing", 0.5);
     if (Errors errors = keep_closed_parts(); !errors.empty()) return errors;
-    tell("turning outwards", 0.8);
+    tell("looking for crossings", 0.7);
+    treat_crossings();
+    tell("turning outwards", 0.9);
     turn_outwards();
     return finish();
   }
@@ -181,6 +184,28 @@ class Repair {
     soup_ = std::move(kept);
     kept_parts_ = kept_parts;
     return {};
+  }
+
+  /// Cuts out what passes through itself where that is a small place, and says what is left.
+  void treat_crossings() {
+    const std::vector<std::int32_t> crossing = find_crossing(soup_);
+    if (crossing.empty()) return;
+    const Triangle& first = soup_.triangle[std::size_t(crossing[0])];
+    Vec3 place;
+    for (const std::int32_t v : first) place += soup_.vertex[std::size_t(v)] / 3;
+    Finding finding{"self_intersection",
+                    std::int64_t(crossing.size()),
+                    place,
+                    counted(std::int64_t(crossing.size()), "triangle") +
+                        " passing through others, the first at " + place_text(place),
+                    "none",
+                    "the organ is filled wherever the surface is around it at least once"};
+    const double widest = options_.largest_hole.value_or(kHoleShare * diagonal_);
+    if (const std::int64_t cut = kept_parts_ == 1 ? cut_crossing(soup_, crossing, widest) : 0; cut > 0) {
+      finding.done = "cut out with what is around them (" + counted(cut, "triangle") + ") and filled again";
+      finding.remains = "";
+    }
+    note(finding);
   }
 
   Errors describe(const Closing& closing, double largest_hole) const {

@@ -250,6 +250,20 @@ Parts find_parts(const std::vector<Triangle>& triangle) {
   return parts;
 }
 
+std::int64_t count_joined(const std::vector<Triangle>& triangle) {
+  std::int32_t vertex_count = 0;
+  for (const Triangle& t : triangle) vertex_count = std::max({vertex_count, t[0] + 1, t[1] + 1, t[2] + 1});
+  Sets sets(static_cast<std::size_t>(vertex_count));
+  std::vector<char> is_used(static_cast<std::size_t>(vertex_count), 0);
+  for (const Triangle& t : triangle) {
+    sets.join(t[0], t[1]), sets.join(t[0], t[2]);
+    for (const std::int32_t v : t) is_used[std::size_t(v)] = 1;
+  }
+  std::int64_t groups = 0;
+  for (std::int32_t v = 0; v < vertex_count; ++v) groups += is_used[std::size_t(v)] && sets.root(v) == v;
+  return groups;
+}
+
 MeshCounts count_mesh(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle) {
   MeshCounts counts;
   counts.vertices = std::int64_t(vertex.size());

@@ -46,6 +46,9 @@ struct Parts {
 };
 Parts find_parts(const std::vector<Triangle>& triangle);
 
+/// How many groups of triangles there are that common vertices join.
+std::int64_t count_joined(const std::vector<Triangle>& triangle);
+
 /// Signed volume as seen from `from`: positive for a closed mesh that is oriented outwards.
 double signed_volume(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle, Vec3 from);
 double surface_area(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle);

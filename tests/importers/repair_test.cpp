@@ -17,7 +17,10 @@ using zoo::text_of;
 RawMesh ball() { return zoo::sphere(0.05, 4); }
 
 /// True for the triangles around the ball's first vertex, which lies on the pole `pole()`.
-Vec3 pole() { return ball().vertex[0]; }
+Vec3 pole() {
+  static const Vec3 place = ball().vertex[0];
+  return place;
+}
 bool is_at_pole(Vec3 p) { return norm(p - pole()) < 0.003; }
 
 double volume_of(const RawMesh& mesh) { return signed_volume(mesh.vertex, mesh.triangle, {}); }

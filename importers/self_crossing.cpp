@@ -1,0 +1,134 @@
+#include "importers/self_crossing.h"
+
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "importers/cgal_mesh.h"
+#include "importers/mesh_surgery.h"
+
+namespace ctpm {
+namespace {
+
+constexpr int kMostRings = 4;  // of triangles around the crossing ones that may be cut out with them
+
+/// Triangles that touch a chosen one are chosen too.
+void grow(const Soup& soup, std::vector<char>& is_cut) {
+  std::vector<char> is_touched(soup.vertex.size(), 0);
+  for (std::size_t t = 0; t < soup.triangle.size(); ++t)
+    for (const std::int32_t v : soup.triangle[t])
+      if (is_cut[t]) is_touched[std::size_t(v)] = 1;
+  for (std::size_t t = 0; t < soup.triangle.size(); ++t)
+    for (const std::int32_t v : soup.triangle[t])
+      if (is_touched[std::size_t(v)]) is_cut[t] = 1;
+}
+
+Soup without(const Soup& soup, const std::vector<char>& is_cut) {
+  Soup rest{soup.vertex, {}};
+  for (std::size_t t = 0; t < soup.triangle.size(); ++t)
+    if (!is_cut[t]) rest.triangle.push_back(soup.triangle[t]);
+  return rest;
+}
+
+/// The mesh without the chosen triangles; chooses more where the rest would hang together at a point only.
+std::optional<Soup> cut_out(const Soup& soup, std::vector<char>& is_cut) {
+  constexpr int kMostRounds = 20;
+  for (int round = 0; round < kMostRounds; ++round) {
+    Soup rest = without(soup, is_cut);
+    if (rest.triangle.empty()) return {};
+    std::vector<char> is_pinched(soup.vertex.size(), 0);
+    const std::vector<std::int32_t> pinched = find_pinched(rest);
+    if (pinched.empty()) return rest;
+    for (const std::int32_t v : pinched) is_pinched[std::size_t(v)] = 1;
+    for (std::size_t t = 0; t < soup.triangle.size(); ++t)
+      for (const std::int32_t v : soup.triangle[t])
+        if (is_pinched[std::size_t(v)]) is_cut[t] = 1;
+  }
+  return {};
+}
+
+/// Vertices in use less edges plus triangles: 2 for a ball, 0 for a ring.
+std::int64_t euler_number(const Soup& soup) {
+  std::vector<char> is_used(soup.vertex.size(), 0);
+  for (const Triangle& t : soup.triangle)
+    for (const std::int32_t v : t) is_used[std::size_t(v)] = 1;
+  return std::count(is_used.begin(), is_used.end(), 1) - std::int64_t(soup.triangle.size()) / 2;
+}
+
+using Corners = std::array<cgal::Point, 3>;
+
+Corners corners_of(const Soup& soup, std::size_t t) {
+  const auto at = [&](std::size_t c) {
+    const Vec3 p = soup.vertex[std::size_t(soup.triangle[t][c])];
+    return cgal::Point(p.x, p.y, p.z);
+  };
+  return {at(0), at(1), at(2)};
+}
+
+/// Two triangles that meet in a corner or an edge which was split have places in common but no vertices; true
+/// if those places are all that they share.
+bool only_touch(Corners a, Corners b) {
+  // Common corners to the front, in the same order.
+  std::size_t common = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (const auto it = std::find(b.begin() + std::ptrdiff_t(common), b.end(), a[i]); it != b.end()) {
+      std::swap(a[i], a[common]);
+      std::iter_swap(it, b.begin() + std::ptrdiff_t(common));
+      ++common;
+    }
+  using Segment = cgal::Kernel::Segment_3;
+  using Face = cgal::Kernel::Triangle_3;
+  if (common == 1)
+    return !CGAL::do_intersect(Face(a[0], a[1], a[2]), Segment(b[1], b[2])) &&
+           !CGAL::do_intersect(Face(b[0], b[1], b[2]), Segment(a[1], a[2]));
+  if (common == 2)
+    return !CGAL::coplanar(a[0], a[1], a[2], b[2]) ||
+           CGAL::coplanar_orientation(a[0], a[1], a[2], b[2]) == CGAL::NEGATIVE;
+  return false;
+}
+
+bool is_as_good(const Soup& mended, const Soup& soup) {
+  const MeshCounts counts = count_mesh(mended.vertex, mended.triangle);
+  return counts.open_edges == 0 && counts.non_manifold_edges == 0 && counts.parts == 1 &&
+         euler_number(mended) == euler_number(soup);
+}
+
+}  // namespace
+
+std::vector<std::int32_t> find_crossing(const Soup& soup) {
+  namespace PMP = CGAL::Polygon_mesh_processing;
+  using Face = cgal::Mesh::Face_index;
+  const cgal::Mesh mesh = cgal::to_mesh(cgal::PolygonSoup(soup));
+  std::vector<std::pair<Face, Face>> pairs;
+  PMP::self_intersections(mesh, std::back_inserter(pairs));
+  std::vector<std::int32_t> crossing;
+  for (const auto& [a, b] : pairs)
+    if (!only_touch(corners_of(soup, std::size_t(a)), corners_of(soup, std::size_t(b))))
+      crossing.push_back(std::int32_t(a)), crossing.push_back(std::int32_t(b));
+  std::sort(crossing.begin(), crossing.end());
+  crossing.erase(std::unique(crossing.begin(), crossing.end()), crossing.end());
+  return crossing;
+}
+
+std::int64_t cut_crossing(Soup& soup, const std::vector<std::int32_t>& crossing, double largest_hole) {
+  std::vector<char> is_cut(soup.triangle.size(), 0);
+  for (const std::int32_t t : crossing) is_cut[std::size_t(t)] = 1;
+  for (int ring = 0; ring <= kMostRings; ++ring) {
+    if (ring > 0) grow(soup, is_cut);
+    std::optional<Soup> mended = cut_out(soup, is_cut);
+    if (!mended) return 0;
+    const Closing closing = fill_holes(*mended, largest_hole);
+    if (!closing.too_large.empty()) return 0;  // more rings only make it larger
+    if (!closing.unfillable.empty() || !is_as_good(*mended, soup) || !find_crossing(*mended).empty())
+      continue;
+    soup = std::move(*mended);
+    return std::count(is_cut.begin(), is_cut.end(), 1);
+  }
+  return 0;
+}
+
+}  // namespace ctpm

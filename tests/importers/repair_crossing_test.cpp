@@ -1,0 +1,101 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "importers/fill.h"
+#include "importers/self_crossing.h"
+#include "importers/topology.h"
+#include "zoo.h"
+
+namespace ctpm {
+namespace {
+
+using zoo::find;
+using zoo::summary;
+using zoo::text_of;
+
+TEST(Crossing, SoundMeshesHaveNone) {
+  for (const RawMesh& raw :
+       {zoo::sphere(0.05, 3), zoo::torus(0.05, 0.02, 48, 24), zoo::box({0.1, 0.1, 0.02}, 4)})
+    EXPECT_TRUE(find_crossing({raw.vertex, raw.triangle}).empty());
+}
+
+TEST(Crossing, SpikeThroughTheOppositeSideIsCutOutAndFilledAgain) {
+  // One vertex pulled through the ball and out at the other side, as a slip in a mesh editor does.
+  RawMesh raw = zoo::sphere(0.05, 4);
+  raw.vertex[0] = -1.2 * raw.vertex[0] + Vec3{0.001, 0.002, 0.001};
+  const std::vector<std::int32_t> crossing = find_crossing({raw.vertex, raw.triangle});
+  ASSERT_FALSE(crossing.empty());
+  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  ASSERT_TRUE(mesh) << text_of(mesh.errors());
+  EXPECT_EQ(summary(mesh->findings), "self_intersection x " + std::to_string(crossing.size()));
+  const Finding& finding = *find(mesh->findings, "self_intersection");
+  EXPECT_EQ(finding.remains, "") << finding.done;
+  EXPECT_TRUE(find_crossing({mesh->vertex, mesh->triangle}).empty());
+  EXPECT_EQ(mesh->after.open_edges, 0);
+  EXPECT_EQ(mesh->after.parts, 1);
+  const double ball = signed_volume(zoo::sphere(0.05, 4).vertex, raw.triangle, {});
+  EXPECT_NEAR(mesh->volume, ball, 0.01 * ball);
+}
+
+TEST(Crossing, WideCrossingIsLeftAndTold) {
+  // A ring whose tube is pushed through its opposite side.
+  const RawMesh raw = zoo::moved(zoo::torus(0.05, 0.02, 48, 24), [](Vec3 p) {
+    return p.x > 0 ? Vec3{p.x - 0.9 * p.x * p.x / 0.05, p.y, p.z} : p;
+  });
+  ASSERT_FALSE(find_crossing({raw.vertex, raw.triangle}).empty());
+  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  ASSERT_TRUE(mesh) << text_of(mesh.errors());
+  const Finding* finding = find(mesh->findings, "self_intersection");
+  ASSERT_NE(finding, nullptr);
+  EXPECT_EQ(finding->done, "none");
+  EXPECT_NE(finding->remains, "");
+  EXPECT_EQ(mesh->triangle.size(), raw.triangle.size()) << "nothing is cut where not all can be mended";
+}
+
+TEST(Crossing, OverlappingPartsAreFilledOnce) {
+  const RawMesh raw = zoo::both(zoo::sphere(0.05, 4), zoo::sphere(0.03, 4, {0.05, 0, 0}));
+  RepairOptions repair;
+  repair.all_parts = true;
+  const Result<CheckedMesh> mesh = repair_mesh(raw, 1, repair);
+  ASSERT_TRUE(mesh) << text_of(mesh.errors());
+  EXPECT_NE(find(mesh->findings, "self_intersection"), nullptr) << summary(mesh->findings);
+  FillOptions fill;
+  fill.sphere_radius = 0.001;
+  const Result<Filling> filling = fill_organ(*mesh, fill);
+  ASSERT_TRUE(filling) << text_of(filling.errors());
+  std::int64_t expected = 0;
+  const double s = filling->organ.spacing;
+  for (const Vec3& p : filling->organ.centre)
+    expected += norm(p) < 0.05 + s || norm(p - Vec3{0.05, 0, 0}) < 0.03 + s;
+  EXPECT_EQ(filling->report.spheres, expected);
+  // Two balls less their common lens (Weisstein, Sphere-Sphere Intersection).
+  const double R = 0.05, r = 0.03, d = 0.05, pi = std::acos(-1.0);
+  const double lens = pi * std::pow(R + r - d, 2) *
+                      (d * d + 2 * d * r - 3 * r * r + 2 * d * R + 6 * r * R - 3 * R * R) / (12 * d);
+  const double both = 4 * pi / 3 * (R * R * R + r * r * r) - lens;
+  EXPECT_NEAR(filling->report.filled_volume, both, 0.02 * both);
+}
+
+TEST(Crossing, MoebiusStripIsRefused) {
+  RawMesh raw;
+  raw.path = "strip";
+  constexpr int kAround = 40;
+  for (int i = 0; i < kAround; ++i)
+    for (const double side : {-0.02, 0.02}) {
+      const double u = 2 * std::acos(-1.0) * i / kAround, r = 0.05 + side * std::cos(u / 2);
+      raw.vertex.push_back({r * std::cos(u), r * std::sin(u), side * std::sin(u / 2)});
+    }
+  for (int i = 0; i < kAround; ++i) {
+    const bool is_last = i + 1 == kAround;
+    const std::int32_t a = 2 * i, b = a + 1, c = is_last ? 1 : a + 2, d = is_last ? 0 : a + 3;
+    raw.triangle.push_back({a, b, d});
+    raw.triangle.push_back({a, d, c});
+  }
+  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  ASSERT_FALSE(mesh);
+  EXPECT_NE(mesh.errors()[0].message.find("hole"), std::string::npos) << text_of(mesh.errors());
+}
+
+}  // namespace
+}  // namespace ctpm
