@@ -223,6 +223,7 @@ SurfaceIndex::Lanes SurfaceIndex::squared_distances(const Node& node, Vec3 point
 }
 
 SurfaceIndex::Nearest SurfaceIndex::nearest(Vec3 point, std::int32_t guess) const {
+  CTPM_CHECK(guess >= 0 && std::size_t(guess) < blocks_.size(), "a guess comes from an earlier answer");
   Nearest best{std::numeric_limits<double>::infinity(), guess};
   const auto look_at_block = [&](std::int32_t block) {
     const Lanes distance = squared_distances(blocks_[std::size_t(block)], point);
