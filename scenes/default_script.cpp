@@ -148,8 +148,8 @@ Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organ
   const Top top(organs.front(), table);
   // Deep enough to be seen, and never through the organ.
   const Vec3 size = top.size();
-  const double depth = std::min(0.012, 0.2 * size.z), cut_depth = std::min(0.026, 0.45 * size.z);
-  const double cut_length = std::min(0.45 * size.y, 0.065);
+  const double depth = std::min(0.012, 0.2 * size.z), cut_depth = std::min(0.040, 0.45 * size.z);
+  const double cut_length = std::min(0.6 * size.y, 0.080);
   // A little in front of the ridge, where a viewer before the organ can see it, unless the organ is too thin there.
   const auto seen = [&](double share, double forward) {
     const Vec3 ridge = top.ridge(share);
@@ -169,7 +169,7 @@ Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organ
   if (ball != none) add_press(script, *ball, table, seen(0.35, 0.12), depth, 0.5);
   if (scalpel != none) add_cut(script, *scalpel, table, cut_path(top, seen(0.42, 0.0), cut_length, cut_depth), cut_depth);
   // Pressing beside the cut opens it.
-  if (ball != none && scalpel != none) add_press(script, *ball, table, seen(0.52, 0.16), 1.2 * depth, 1.0);
+  if (ball != none && scalpel != none) add_press(script, *ball, table, seen(0.50, 0.18), 1.3 * depth, 1.0);
   if (script.steps.empty()) script.steps.push_back(wait(1));
   return script;
 }

@@ -9,6 +9,7 @@
 #include "scenes/scene_file.h"
 #include "scenes/script.h"
 #include "studio/files.h"
+#include "studio/render/scene_view.h"
 
 namespace ctpm {
 namespace {
@@ -71,6 +72,9 @@ SceneSpec make_scene(const ImportRequest& request, const MaterialPreset& preset,
   spec.fill.gap = organ.spacing - 2 * organ.sphere_radius;
   spec.material.preset = preset.name;
   spec.damage_depth = preset.damage_depth;
+  const OrganLook look = look_of(preset.organ);
+  spec.surface_color = {look.outer[0], look.outer[1], look.outer[2]};
+  spec.inner_color = {look.inner[0], look.inner[1], look.inner[2]};
   spec.anchors = request.anchors;
   if (spec.anchors.empty()) {
     AnchorSpec lowest;

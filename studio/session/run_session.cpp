@@ -39,7 +39,7 @@ class EventWatch {
     bool goes_on = false;
     std::int64_t last_tick = 0;
   };
-  static constexpr std::int64_t kPause = 100;  // [ticks]
+  static constexpr std::int64_t kPause = 300;  // [ticks]
 
   static bool begins(Spell& spell, std::int64_t tick, bool is_seen) {
     if (!is_seen) return false;
