@@ -12,6 +12,8 @@
 namespace ctpm {
 namespace {
 
+constexpr double kCutShare =
+    0.25;  // of the diagonal: so wide a place may be cut out where the mesh crosses itself
 constexpr double kHoleShare = 0.1;     // of the diagonal: holes up to this are filled by default
 constexpr double kFlat = 1e-9;         // a volume below this share of the diagonal cubed bounds nothing
 constexpr std::size_t kMostShown = 5;  // holes that are named one by one
@@ -25,13 +27,10 @@ const Hole& widest(const std::vector<Hole>& holes) {
                            [](const Hole& a, const Hole& b) { return a.diameter < b.diameter; });
 }
 
-Soup only_part(const Soup& soup, const Parts& parts, std::int32_t part) {
-  Soup piece{soup.vertex, {}};
-  for (std::size_t t = 0; t < soup.triangle.size(); ++t)
-    if (parts.of_triangle[t] == part) piece.triangle.push_back(soup.triangle[t]);
-  // Only the vertices in use stay; vertices that were split apart in one place must not be welded again.
-  std::vector<std::int32_t> new_index(soup.vertex.size(), -1);
-  piece.vertex.clear();
+/// Some triangles of a mesh with the vertices that they use. `new_index` is scratch: -1 for every vertex of
+/// the mesh, before and after.
+Soup take(const Soup& soup, const std::vector<Triangle>& triangles, std::vector<std::int32_t>& new_index) {
+  Soup piece{{}, triangles};
   for (Triangle& triangle : piece.triangle)
     for (std::int32_t& v : triangle) {
       if (new_index[std::size_t(v)] < 0) {
@@ -40,6 +39,8 @@ Soup only_part(const Soup& soup, const Parts& parts, std::int32_t part) {
       }
       v = new_index[std::size_t(v)];
     }
+  for (const Triangle& triangle : triangles)
+    for (const std::int32_t v : triangle) new_index[std::size_t(v)] = -1;
   return piece;
 }
 
@@ -49,21 +50,21 @@ std::vector<Soup> split_parts(const Soup& soup) {
   std::vector<std::vector<Triangle>> triangles(std::size_t(parts.count));
   for (std::size_t t = 0; t < soup.triangle.size(); ++t)
     triangles[std::size_t(parts.of_triangle[t])].push_back(soup.triangle[t]);
-  struct Sized {
-    double volume;
-    std::int32_t part;
-  };
-  std::vector<Sized> sized;
-  for (std::int32_t p = 0; p < parts.count; ++p) {
-    // Seen from its own centre, an open part has the volume of the cones over its holes added.
-    const Vec3 centre = bounding_box({soup.vertex, triangles[std::size_t(p)]}).centre();
-    sized.push_back({std::abs(signed_volume(soup.vertex, triangles[std::size_t(p)], centre)), p});
-  }
-  std::stable_sort(sized.begin(), sized.end(),
-                   [](const Sized& a, const Sized& b) { return a.volume > b.volume; });
   std::vector<Soup> pieces;
-  for (const Sized& s : sized) pieces.push_back(only_part(soup, parts, s.part));
-  return pieces;
+  std::vector<double> volume;
+  std::vector<std::int32_t> new_index(soup.vertex.size(), -1);
+  for (const std::vector<Triangle>& part : triangles) {
+    const Soup& piece = pieces.emplace_back(take(soup, part, new_index));
+    // Seen from its own centre, an open part has the volume of the cones over its holes added.
+    volume.push_back(std::abs(signed_volume(piece.vertex, piece.triangle, bounding_box(piece).centre())));
+  }
+  std::vector<std::size_t> order(pieces.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return volume[a] > volume[b]; });
+  std::vector<Soup> sorted;
+  for (const std::size_t p : order) sorted.push_back(std::move(pieces[p]));
+  return sorted;
 }
 
 void append(Soup& to, const Soup& piece) {
@@ -200,7 +201,7 @@ class Repair {
                         " passing through others, the first at " + place_text(place),
                     "none",
                     "the organ is filled wherever the surface is around it at least once"};
-    const double widest = options_.largest_hole.value_or(kHoleShare * diagonal_);
+    const double widest = kCutShare * diagonal_;
     if (const std::int64_t cut = kept_parts_ == 1 ? cut_crossing(soup_, crossing, widest) : 0; cut > 0) {
       finding.done = "cut out with what is around them (" + counted(cut, "triangle") + ") and filled again";
       finding.remains = "";

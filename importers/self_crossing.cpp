@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -15,6 +16,8 @@ namespace ctpm {
 namespace {
 
 constexpr int kMostRings = 4;  // of triangles around the crossing ones that may be cut out with them
+
+constexpr double kMostChange = 0.02;  // of the volume, by what is filled instead
 
 /// Triangles that touch a chosen one are chosen too.
 void grow(const Soup& soup, std::vector<char>& is_cut) {
@@ -91,10 +94,15 @@ bool only_touch(Corners a, Corners b) {
   return false;
 }
 
+double volume_of(const Soup& soup) {
+  return signed_volume(soup.vertex, soup.triangle, bounding_box(soup).centre());
+}
+
 bool is_as_good(const Soup& mended, const Soup& soup) {
   const MeshCounts counts = count_mesh(mended.vertex, mended.triangle);
   return counts.open_edges == 0 && counts.non_manifold_edges == 0 && counts.parts == 1 &&
-         euler_number(mended) == euler_number(soup);
+         euler_number(mended) == euler_number(soup) &&
+         std::abs(volume_of(mended) / volume_of(soup) - 1) <= kMostChange;
 }
 
 }  // namespace
@@ -126,6 +134,7 @@ std::int64_t cut_crossing(Soup& soup, const std::vector<std::int32_t>& crossing,
     if (!closing.unfillable.empty() || !is_as_good(*mended, soup) || !find_crossing(*mended).empty())
       continue;
     soup = std::move(*mended);
+    drop_unused(soup);
     return std::count(is_cut.begin(), is_cut.end(), 1);
   }
   return 0;

@@ -151,10 +151,14 @@ Box bounding_box(const Soup& soup) {
   return box;
 }
 
+void drop_unused(Soup& soup) {
+  std::vector<std::int32_t> itself(soup.vertex.size());
+  std::iota(itself.begin(), itself.end(), 0);
+  renumber(soup, itself);
+}
+
 std::int64_t weld(Soup& soup, double distance) {
-  std::vector<std::int32_t> unused_go(soup.vertex.size());
-  std::iota(unused_go.begin(), unused_go.end(), 0);
-  renumber(soup, unused_go);
+  drop_unused(soup);
   const std::size_t count_before = soup.vertex.size();
   std::vector<std::int32_t> representative = same_place(soup);
   if (distance > 0) join_near(soup, distance, representative);

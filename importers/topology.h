@@ -27,6 +27,9 @@ Box bounding_box(const Soup& soup);
 /// one become that one. Returns how many vertices went. Vertices that no triangle uses go too, uncounted.
 std::int64_t weld(Soup& soup, double distance);
 
+/// Drops vertices that no triangle uses; those that were split apart in one place stay apart.
+void drop_unused(Soup& soup);
+
 /// Drops triangles that name a vertex twice; returns how many.
 std::int64_t drop_collapsed(Soup& soup);
 

@@ -204,7 +204,7 @@ TEST(Unit, EachIsGuessedFromAnOrganOfUsualSize) {
   EXPECT_EQ(unit_name(0.001), "mm");
 }
 
-TEST(Unit, SharedLiverIsInCentimetres) {
+TEST(Unit, LiverOfASegmentationIsInCentimetresAndItsFoldIsMended) {
   const std::string path = CTPM_SOURCE_DIR "/../shared/meshes/liver-smooth.obj";
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) GTEST_SKIP() << "no such mesh here";
@@ -213,6 +213,12 @@ TEST(Unit, SharedLiverIsInCentimetres) {
   const UnitChoice choice = choose_unit(*read, {}, {0.08, 0.40});
   EXPECT_EQ(choice.in_metres, 0.01);
   EXPECT_TRUE(choice.is_usual_size);
+  const Result<CheckedMesh> mesh = repair_mesh(*read, choice.in_metres);
+  ASSERT_TRUE(mesh) << text_of(mesh.errors());
+  const Finding* crossing = zoo::find(mesh->findings, "self_intersection");
+  ASSERT_NE(crossing, nullptr) << zoo::summary(mesh->findings);
+  EXPECT_EQ(crossing->count, 8);
+  EXPECT_EQ(crossing->remains, "");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "importers/fill.h"
@@ -34,6 +35,10 @@ TEST(Crossing, SpikeThroughTheOppositeSideIsCutOutAndFilledAgain) {
   EXPECT_TRUE(find_crossing({mesh->vertex, mesh->triangle}).empty());
   EXPECT_EQ(mesh->after.open_edges, 0);
   EXPECT_EQ(mesh->after.parts, 1);
+  std::vector<char> is_used(mesh->vertex.size(), 0);
+  for (const Triangle& t : mesh->triangle)
+    for (const std::int32_t v : t) is_used[std::size_t(v)] = 1;
+  EXPECT_EQ(std::count(is_used.begin(), is_used.end(), 0), 0) << "no loose vertices";
   const double ball = signed_volume(zoo::sphere(0.05, 4).vertex, raw.triangle, {});
   EXPECT_NEAR(mesh->volume, ball, 0.01 * ball);
 }
