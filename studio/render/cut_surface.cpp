@@ -83,6 +83,7 @@ struct CutSurface::Parts {
   std::map<std::pair<Index, Index>, Index>
       middles;  ///< (u, v): the copy on u's side of the split of edge u-v
   std::vector<Lip> lips;
+  std::vector<std::uint8_t> is_lip;
   std::map<Cell, Corner> corners;
   std::map<Index, Index> wall_vertex;  ///< of a vertex on a lip
 };
@@ -413,6 +414,7 @@ void CutSurface::Parts::add_skirt() {
 
 void CutSurface::Parts::rebuild() {
   home.resize(whole.vertex.size());
+  is_lip.clear();
   if (!links.anything_cut()) {
     out = whole, outer_triangles = whole.triangle.size(), outer_vertices = whole.vertex.size();
     return;
@@ -421,6 +423,8 @@ void CutSurface::Parts::rebuild() {
   add_whole_vertices();
   for (const Triangle& t : whole.triangle) split_triangle(t);
   outer_triangles = out.triangle.size(), outer_vertices = out.vertex.size();
+  is_lip.assign(outer_vertices, 0);
+  for (const Lip& lip : lips) is_lip[std::size_t(lip.from)] = is_lip[std::size_t(lip.to)] = 1;
   find_corners();
   smooth_corners();
   add_facets();
@@ -440,6 +444,7 @@ bool CutSurface::update(const State& state) {
 
 const Surface& CutSurface::surface() const { return parts_->out; }
 std::size_t CutSurface::outer_triangle_count() const { return parts_->outer_triangles; }
+const std::vector<std::uint8_t>& CutSurface::is_lip() const { return parts_->is_lip; }
 std::size_t CutSurface::outer_vertex_count() const { return parts_->outer_vertices; }
 
 }  // namespace ctpm

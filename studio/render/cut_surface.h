@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "core/model.h"
 #include "core/organ.h"
@@ -27,6 +29,10 @@ class CutSurface {
   const Surface& surface() const;
   std::size_t outer_triangle_count() const;
   std::size_t outer_vertex_count() const;
+
+  /// 1 where an outer vertex lies on the lip of a cut                        (outer_vertex_count, or empty
+  /// without a cut)
+  const std::vector<std::uint8_t>& is_lip() const;
 
  private:
   struct Parts;

@@ -1,5 +1,6 @@
 #include "studio/render/frame.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -13,6 +14,23 @@ Frame blank_frame(int width, int height, std::uint8_t red, std::uint8_t green, s
   for (std::size_t i = 0; i < frame.rgb.size(); i += 3)
     frame.rgb[i] = red, frame.rgb[i + 1] = green, frame.rgb[i + 2] = blue;
   return frame;
+}
+
+Frame beside(const Frame& left, const Frame& right) {
+  CTPM_CHECK(left.height == right.height, "pictures side by side have one height");
+  Frame both{left.width + right.width, left.height, {}};
+  const std::size_t a = std::size_t(left.width) * 3, b = std::size_t(right.width) * 3;
+  for (std::size_t row = 0; row < std::size_t(left.height); ++row) {
+    const auto from_left = left.rgb.begin() + std::ptrdiff_t(row * a),
+               from_right = right.rgb.begin() + std::ptrdiff_t(row * b);
+    both.rgb.insert(both.rgb.end(), from_left, from_left + std::ptrdiff_t(a));
+    both.rgb.insert(both.rgb.end(), from_right, from_right + std::ptrdiff_t(b));
+    // The line: two pixels at the seam.
+    const std::size_t seam = row * (a + b) + a;
+    for (std::size_t i = seam - std::min<std::size_t>(a, 3); i < seam + std::min<std::size_t>(b, 3); ++i)
+      both.rgb[i] = 24;
+  }
+  return both;
 }
 
 Result<Done> write_png(const std::string& path, const Frame& frame) {

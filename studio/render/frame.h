@@ -20,6 +20,9 @@ struct Frame {
 /// A frame of one colour.
 Frame blank_frame(int width, int height, std::uint8_t red, std::uint8_t green, std::uint8_t blue);
 
+/// Two pictures of one height side by side, with a thin line between them.
+Frame beside(const Frame& left, const Frame& right);
+
 /// Writes a PNG file: under a temporary name beside `path`, renamed when whole. Errors: an empty frame, a
 /// name that does not end in .png, a folder that cannot be written.
 Result<Done> write_png(const std::string& path, const Frame& frame);

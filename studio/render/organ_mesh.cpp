@@ -5,9 +5,10 @@
 
 namespace ctpm {
 
-void OrganMesh::set_surface(const Surface& surface) {
+void OrganMesh::set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip) {
   constexpr double kStainsPerMetre = 72;
-  stain_.clear();
+  stain_.clear(), lip_.assign(is_lip.begin(), is_lip.end());
+  lip_.resize(surface.vertex.size(), 0.0f);
   for (const Vec3& v : surface.vertex) stain_.push_back(float(noise_at(kStainsPerMetre * v)));
   per_neighbour_.assign(surface.vertex.size(), 0.0f);
   for (const auto& t : surface.triangle)
@@ -45,7 +46,7 @@ void OrganMesh::update(const Surface& surface, const State& state, std::int32_t 
     to[0] = float(p.x), to[1] = float(p.y), to[2] = float(p.z), to[3] = float(n.x), to[4] = float(n.y),
     to[5] = float(n.z);
     to[6] = float(q.x), to[7] = float(q.y), to[8] = float(q.z), to[9] = crevice_[v] * per_neighbour_[v],
-    to[10] = stain_[v];
+    to[10] = stain_[v], to[11] = lip_[v];
   }
 }
 

@@ -15,7 +15,7 @@ Result<Done> OrganPainter::create(const Gl& gl, const SceneView& scene) {
     VertexArray& array = organs_.back().array;
     array.create(gl);
     array.attribute(gl, 0, 3, 0, kOrganVertexFloats), array.attribute(gl, 1, 3, 3, kOrganVertexFloats);
-    array.attribute(gl, 2, 3, 6, kOrganVertexFloats), array.attribute(gl, 3, 2, 9, kOrganVertexFloats);
+    array.attribute(gl, 2, 3, 6, kOrganVertexFloats), array.attribute(gl, 3, 3, 9, kOrganVertexFloats);
   }
   return Done{};
 }
@@ -27,7 +27,7 @@ void OrganPainter::update(const Gl& gl, const SceneView& scene, const State& sta
     const Surface& surface = organ.cut.surface();
     if (changed || !organ.is_set) {
       organ.is_set = true;
-      organ.mesh.set_surface(surface);
+      organ.mesh.set_surface(surface, organ.cut.is_lip());
       std::vector<std::uint32_t> index;
       for (const auto& t : surface.triangle)
         for (const std::int32_t v : t) index.push_back(std::uint32_t(v));

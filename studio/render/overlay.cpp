@@ -113,7 +113,8 @@ struct Line {
 /// Everything that is written, and the panels behind it.
 struct Plan {
   std::vector<Line> lines;
-  Box facts, plot, verdict, warning;
+  Box facts, plot, verdict, warning, legend;
+  Box bar;    ///< the legend's colours
   Box curve;  ///< inside of the plot
   double top_force = 1;
 };
@@ -132,7 +133,8 @@ struct Overlay::Parts {
   Parts(int w, int h)
       : width(w),
         height(h),
-        scale(std::min(w / 1280.0, h / 720.0)),
+        is_narrow(w < 1.4 * h),
+        scale(std::min(w / (is_narrow ? 720.0 : 1280.0), h / 720.0)),
         small(std::max(5, px(17))),
         large(std::max(6, px(23))) {}
 
@@ -141,6 +143,8 @@ struct Overlay::Parts {
   void plan_facts(const OverlayData& data, Plan& plan);
   void plan_plot(const OverlayData& data, Plan& plan);
   void plan_banners(const OverlayData& data, Plan& plan);
+  void plan_legend(const OverlayData& data, Plan& plan);
+  void draw_bar(cv::Mat& rgb, const Legend& legend, const Box& bar) const;
   void draw_curve(cv::Mat& rgb, const OverlayData& data, const Plan& plan) const;
   Line line(Font& font, const std::string& text, int x, int y, const Ink& ink) {
     return {{text, {x, y, font.width(text), font.height() + font.height() / 4}}, ink, &font == &large};
@@ -150,6 +154,7 @@ struct Overlay::Parts {
   }
 
   int width, height;
+  bool is_narrow;
   double scale;
   Font small, large;
 };
@@ -203,30 +208,65 @@ void Overlay::Parts::plan_plot(const OverlayData& data, Plan& plan) {
   plan.lines.push_back(now);
 }
 
-/// Top right: the verdict. Bottom right: the damage warning.
+/// The verdict: top right, or below the facts. The damage warning: bottom right, or above the plot.
 void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
-  const int pad = px(16), h = px(17) + 2 * px(13);
+  const int pad = px(16), margin = px(20), h = px(17) + 2 * px(13);
   const auto banner = [&](const std::string& text, int y, const Ink& ink) {
-    const std::string shown = small.shortened(text, px(640));
+    const std::string shown = small.shortened(text, std::min(px(640), width - 2 * margin - 2 * pad));
     const int w = small.width(shown) + 2 * pad;
-    const Box box{width - px(20) - w, y, w, h};
+    const Box box{is_narrow ? margin : width - margin - w, y, w, h};
     plan.lines.push_back(line(small, shown, box.x + pad, y + px(13), ink));
     return box;
   };
-  if (!data.verdict.empty())
-    plan.verdict = banner(data.verdict, px(20),
-                          data.verdict_tone == VerdictTone::good  ? kGreen
-                          : data.verdict_tone == VerdictTone::bad ? kAmber
-                                                                  : kWhite);
-  if (is_damaged(data))
-    plan.warning = banner("TISSUE DAMAGE: " + fixed(1000 * data.depth, 1) + " mm, limit " +
-                              fixed(1000 * data.damage_depth, 1) + " mm",
-                          height - px(20) - h, kWhite);
+  if (!data.verdict.empty()) {
+    const Ink ink = data.verdict_tone == VerdictTone::good  ? kGreen
+                    : data.verdict_tone == VerdictTone::bad ? kAmber
+                                                            : kWhite;
+    plan.verdict = banner(data.verdict, is_narrow ? plan.facts.y + plan.facts.height + px(10) : margin, ink);
+  }
+  if (is_damaged(data)) {
+    const std::string text = "TISSUE DAMAGE: " + fixed(1000 * data.depth, 1) + " mm, limit " +
+                             fixed(1000 * data.damage_depth, 1) + " mm";
+    plan.warning =
+        banner(text, is_narrow ? height - margin - px(160) - px(10) - h : height - margin - h, kWhite);
+  }
+}
+
+/// Bottom right, above where the warning may come.
+void Overlay::Parts::plan_legend(const OverlayData& data, Plan& plan) {
+  if (data.legend.title.empty()) return;
+  const int pad = px(16), w = px(250), h = px(98);
+  plan.legend = {width - px(20) - w, height - px(20) - h - (is_narrow ? 0 : px(43) + px(10)), w, h};
+  const int x = plan.legend.x + pad, inner = w - 2 * pad, y = plan.legend.y + px(12);
+  plan.lines.push_back(line(small, small.shortened(data.legend.title, inner), x, y, kGrey));
+  plan.bar = {x, y + px(30), inner, px(16)};
+  plan.lines.push_back(line(small, data.legend.low, x, plan.bar.y + px(22), kWhite));
+  Line high = line(small, data.legend.high, 0, plan.bar.y + px(22), kWhite);
+  high.placed.box.x = x + inner - high.placed.box.width;
+  plan.lines.push_back(high);
+}
+
+void Overlay::Parts::draw_bar(cv::Mat& rgb, const Legend& legend, const Box& bar) const {
+  const int count = int(legend.colours.size());
+  for (int x = 0; x < bar.width && count > 0; ++x) {
+    // Single values fill their field; a range runs from the first to the last colour.
+    const double place = legend.is_stepped ? double(x * count / bar.width)
+                                           : double(x) * (count - 1) / std::max(bar.width - 1, 1);
+    const int low = std::min(int(place), count - 1), high = std::min(low + 1, count - 1);
+    cv::Vec3b colour;
+    for (int c = 0; c < 3; ++c) {
+      const double a = legend.colours[std::size_t(low)][std::size_t(c)],
+                   b = legend.colours[std::size_t(high)][std::size_t(c)];
+      colour[c] = std::uint8_t(std::lround(255 * (a + (place - low) * (b - a))));
+    }
+    for (int y = 0; y < bar.height; ++y)
+      if (bar.x + x < rgb.cols && bar.y + y < rgb.rows) rgb.at<cv::Vec3b>(bar.y + y, bar.x + x) = colour;
+  }
 }
 
 Plan Overlay::Parts::plan(const OverlayData& data) {
   Plan plan;
-  plan_facts(data, plan), plan_plot(data, plan), plan_banners(data, plan);
+  plan_facts(data, plan), plan_plot(data, plan), plan_banners(data, plan), plan_legend(data, plan);
   return plan;
 }
 
@@ -261,24 +301,14 @@ void Overlay::draw(Frame& frame, const OverlayData& data) {
   cv::Mat rgb(frame.height, frame.width, CV_8UC3, frame.rgb.data());
   const Plan plan = parts_->plan(data);
   const int radius = parts_->px(10);
-  for (const Box& box : {plan.facts, plan.plot, plan.verdict})
+  for (const Box& box : {plan.facts, plan.plot, plan.verdict, plan.legend})
     draw_panel(rgb, box, {14, 19, 25}, 176, radius);
   draw_panel(rgb, plan.warning, {170, 24, 18}, 224, radius);
   for (const Line& line : plan.lines)
     (line.is_large ? parts_->large : parts_->small)
         .write(rgb, line.placed.box.x, line.placed.box.y, line.placed.text, line.ink);
   if (!data.history.empty()) parts_->draw_curve(rgb, data, plan);
-}
-
-void Overlay::draw_title(Frame& frame, const std::string& title) {
-  CTPM_CHECK(frame.width == parts_->width && frame.height == parts_->height,
-             "an overlay draws on frames of its own size");
-  cv::Mat rgb(frame.height, frame.width, CV_8UC3, frame.rgb.data());
-  Parts& p = *parts_;
-  const std::string text = p.large.shortened(title, p.px(480));
-  const int w = p.large.width(text) + 2 * p.px(16), x = (frame.width - w) / 2;
-  draw_panel(rgb, {x, p.px(20), w, p.px(23 + 2 * 11)}, {14, 19, 25}, 176, p.px(10));
-  p.large.write(rgb, x + p.px(16), p.px(31), text, kWhite);
+  if (!data.legend.title.empty()) parts_->draw_bar(rgb, data.legend, plan.bar);
 }
 
 std::vector<PlacedText> Overlay::layout(const OverlayData& data) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "studio/render/frame.h"
+#include "studio/render/scene_view.h"
 
 namespace ctpm {
 
@@ -28,6 +29,7 @@ struct OverlayData {
   std::string verdict;      ///< what the replay found, one line
   VerdictTone verdict_tone = VerdictTone::none;
   std::vector<ForcePoint> history;  ///< in order of time; empty: no plot
+  Legend legend;                    ///< of the view; nothing if it has no title
   double plot_span = 5;             ///< the plot shows the last so many seconds [s], > 0
 };
 
@@ -46,7 +48,8 @@ struct PlacedText {
   Box box;
 };
 
-/// Writes on pictures of one size. Sizes are those of 1280x720, scaled.
+/// Writes on pictures of one size. Sizes are those of 1280x720, scaled; narrow pictures (half of a pair side
+/// by side) get larger letters and the banners below one another.
 class Overlay {
  public:
   Overlay(int width, int height);
@@ -55,9 +58,6 @@ class Overlay {
 
   /// Draws the panels onto the frame, which must have the overlay's size. Same frame and data: same pixels.
   void draw(Frame& frame, const OverlayData& data);
-
-  /// A title in the middle of the top, for pictures side by side.
-  void draw_title(Frame& frame, const std::string& title);
 
   /// All texts of draw() and their places, without drawing.
   std::vector<PlacedText> layout(const OverlayData& data);

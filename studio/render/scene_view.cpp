@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <numbers>
 #include <span>
 
 namespace ctpm {
@@ -87,6 +89,39 @@ Colour layer_colour(int layer, int layer_count) {
                                        {0.30, 0.62, 0.68}, {0.36, 0.42, 0.75}, {0.55, 0.33, 0.66}};
   const int last = std::max(layer_count - 1, int(std::size(kLadder)) - 1);
   return on_ladder(kLadder, double(layer - 1) / last);
+}
+
+Legend legend_of(const Model& model, const DrawOptions& options) {
+  if (options.view == View::surface) return {};
+  Legend legend;
+  if (options.view != View::elements) {
+    int layers = 1;
+    for (const OrganRange& organ : model.organs) layers = std::max(layers, int(organ.layer_count));
+    legend = {"layer", "1", std::to_string(layers), {}, true};
+    for (int layer = 1; layer <= layers; ++layer) legend.colours.push_back(layer_colour(layer, layers));
+    return legend;
+  }
+  const double scale = options.full_scale > 0 ? options.full_scale : default_full_scale(options.quantity);
+  const auto text = [](const char* format, double value) {
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, format, value);
+    return std::string(buffer);
+  };
+  const bool both_ways = options.quantity == ElementQuantity::stretch;
+  switch (options.quantity) {
+    case ElementQuantity::stretch:
+      legend = {"stretch [%]", text("%.3g", -100 * scale), text("+%.3g", 100 * scale), {}, false};
+      break;
+    case ElementQuantity::tilt:
+      legend = {"tilt [deg]", "0", text("%.3g", scale * 180 / std::numbers::pi), {}, false};
+      break;
+    case ElementQuantity::force:
+      legend = {"force [N]", "0", text("%.3g", scale), {}, false};
+      break;
+  }
+  for (int i = 0; i <= 16; ++i)
+    legend.colours.push_back(quantity_colour(options.quantity, both_ways ? i / 8.0 - 1 : i / 16.0));
+  return legend;
 }
 
 }  // namespace ctpm

@@ -86,6 +86,17 @@ double default_full_scale(ElementQuantity quantity);
 /// to 1.
 Colour quantity_colour(ElementQuantity quantity, double value);
 
+/// What the colours of a view mean.
+struct Legend {
+  std::string title;            ///< with its unit; empty: the view needs no legend
+  std::string low, high;        ///< values of the first and the last colour
+  std::vector<Colour> colours;  ///< in equal steps
+  bool is_stepped = false;      ///< the colours stand for single values, not for a range
+};
+
+/// The legend of the view that the options ask for.
+Legend legend_of(const Model& model, const DrawOptions& options);
+
 /// Colour of a layer, 1 = outermost, of an organ with `layer_count` layers.
 Colour layer_colour(int layer, int layer_count);
 

@@ -53,18 +53,18 @@ const char* const kOrganVertex = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 rest;
-layout(location = 3) in vec2 crevice_and_stain;
+layout(location = 3) in vec3 crevice_stain_lip;
 uniform mat4 clip_from_world;
 centroid out vec3 p, n, q;
-centroid out vec2 hollow_and_stain;
+centroid out vec3 hollow_stain_lip;
 void main() {
-  p = position; n = normal; q = rest; hollow_and_stain = crevice_and_stain;
+  p = position; n = normal; q = rest; hollow_stain_lip = crevice_stain_lip;
   gl_Position = clip_from_world * vec4(position, 1.0);
 }
 )";
 
-// Small relief that is fixed to the tissue: two gyroids, turned against each other and bent, so that nothing
-// repeats visibly. Parabolas stand for sines.
+// Small relief that is fixed to the tissue: where two gyroids, turned against each other and bent, meet in
+// bumps, so that nothing repeats visibly. Parabolas stand for sines.
 const char* const kRelief = R"(
 vec3 wave(vec3 x) { x = fract(x) * 2.0 - 1.0; return 4.0 * x * (abs(x) - 1.0); }
 vec4 gyroid(vec3 x) {
@@ -74,14 +74,14 @@ vec4 gyroid(vec3 x) {
 vec4 relief(vec3 rest) {
   vec3 x = rest + 0.0021 * wave(rest.yzx * 47.0) + 0.0011 * wave(rest.zxy * 97.0);
   const mat3 turn = mat3(0.36, 0.48, -0.80, -0.80, 0.60, 0.0, 0.48, 0.64, 0.60);
-  vec4 coarse = gyroid(x * 151.0), fine = gyroid(turn * x * 277.0);
-  return 0.55 * coarse + 0.5 * vec4(fine.xyz * turn, fine.w);
+  vec4 one = gyroid(x * 141.0), other = gyroid(turn * x * 197.0);
+  return 0.75 * vec4(one.xyz * other.w + 1.35 * (other.xyz * turn) * one.w, one.w * other.w);
 }
 )";
 
 const char* const kOrganFragment = R"(
 centroid in vec3 p, n, q;
-centroid in vec2 hollow_and_stain;
+centroid in vec3 hollow_stain_lip;
 uniform vec3 outer_colour, inner_colour;
 uniform float wetness;
 uniform int is_wall;
@@ -98,7 +98,8 @@ void main() {
 #ifdef GLASSY
   if (!gl_FrontFacing) discard;
 #endif
-  float hollow = hollow_and_stain.x, stain = hollow_and_stain.y;
+  float hollow = hollow_stain_lip.x, stain = hollow_stain_lip.y;
+  float lip = smoothstep(0.80, 0.97, hollow_stain_lip.z);  // a closed cut stays visible as a dark, wet line
   vec3 v = normalize(eye - p);
   vec3 m = normalize(n);
   bool inside = is_wall == 1 || !gl_FrontFacing;
@@ -118,7 +119,7 @@ void main() {
 #define q at
 #endif
   vec4 fine = relief(q);
-  vec3 bumped = normalize(m - (inside ? 0.11 : 0.045) * (fine.xyz - m * dot(m, fine.xyz)));
+  vec3 bumped = normalize(m - (inside ? 0.09 : 0.017) * (fine.xyz - m * dot(m, fine.xyz)));
   float shade = tool_shade(p, m) * ground_shade(p, m) * clamp(1.0 - 1.6 * max(-hollow, 0.0), 0.35, 1.0);
   vec3 base;
   if (inside) {
@@ -132,6 +133,7 @@ void main() {
     base = outer_colour * (1.0 + 0.20 * stain + 0.035 * fine.a);
     base = mix(base, base * vec3(1.12, 0.86, 0.80), clamp(stain, 0.0, 1.0));
     base *= 1.0 + 0.6 * clamp(hollow, 0.0, 0.3);
+    base = mix(base, 0.55 * inner_colour, 0.9 * lip);
   }
   vec3 c = base * diffuse_light(bumped, vec3(0.38, 0.16, 0.12), shade);
   float facing = dot(bumped, v);
