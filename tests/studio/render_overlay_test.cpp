@@ -12,6 +12,7 @@ OverlayData full_data() {
   data.title = "Liver (CTPM)";
   data.time = 12.345, data.tick = 12345, data.force = 1.234, data.depth = 0.0134, data.damage_depth = 0.012;
   data.verdict = "Replay identical: 12345 of 12345 ticks", data.verdict_tone = VerdictTone::good;
+  data.legend = {"stretch [%]", "-20", "+20", {{0.1, 0.2, 0.7}, {0.8, 0.8, 0.8}, {0.8, 0.1, 0.1}}, false};
   for (int i = 0; i <= 12345; i += 5) data.history.push_back({i * 1e-3, 1 + std::sin(i * 0.003)});
   return data;
 }
@@ -21,7 +22,7 @@ TEST(Overlay, TextsNeitherOverlapNorLeaveThePicture) {
   long_winded.title = std::string(200, 'W'), long_winded.verdict = std::string(300, 'M');
   long_winded.tick = 999999999, long_winded.time = 99999.999, long_winded.force = 12345.678;
   for (const auto& [width, height] :
-       {std::pair{1280, 720}, {640, 360}, {1920, 1080}, {1080, 1080}, {854, 480}})
+       {std::pair{1280, 720}, {640, 360}, {1920, 1080}, {1080, 1080}, {854, 480}, {640, 720}, {360, 640}})
     for (const OverlayData& data : {full_data(), long_winded}) {
       Overlay overlay(width, height);
       const auto texts = overlay.layout(data);

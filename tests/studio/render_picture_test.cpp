@@ -92,7 +92,8 @@ TEST(Picture, ShowsTheToolWhereItIs) {
   auto renderer = make_renderer(*scene);
   DrawOptions options;
   options.camera = default_camera(scene->view);
-  options.camera.eye = options.camera.eye + 0.8 * (options.camera.eye - options.camera.target);  // room for the tool
+  options.camera.eye =
+      options.camera.eye + 0.8 * (options.camera.eye - options.camera.target);  // room for the tool
   State state = rest_state(scene->model);
   const Frame without = renderer->draw(state, options);
   for (const std::int32_t tool : {0, 1}) {
