@@ -13,60 +13,58 @@ namespace ctpm {
   X(PFNGLACTIVETEXTUREPROC, ActiveTexture)                                                                   \
   X(PFNGLATTACHSHADERPROC, AttachShader)                                                                     \
   X(PFNGLBINDBUFFERPROC, BindBuffer)                                                                         \
-  X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer) X(PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer) X(             \
-      PFNGLBINDTEXTUREPROC,                                                                                  \
-      BindTexture) X(PFNGLBINDVERTEXARRAYPROC,                                                               \
-                     BindVertexArray) X(PFNGLBLENDFUNCPROC,                                                  \
-                                        BlendFunc) X(PFNGLBLITFRAMEBUFFERPROC,                               \
-                                                     BlitFramebuffer) X(PFNGLBUFFERDATAPROC, BufferData)     \
-      X(PFNGLBUFFERSUBDATAPROC, BufferSubData) X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus) X( \
-          PFNGLCLEARPROC, Clear) X(PFNGLCLEARCOLORPROC, ClearColor) X(PFNGLCOMPILESHADERPROC, CompileShader) \
-          X(PFNGLCREATEPROGRAMPROC, CreateProgram) X(PFNGLCREATESHADERPROC, CreateShader) X(                 \
-              PFNGLDELETEBUFFERSPROC, DeleteBuffers) X(PFNGLDELETEFRAMEBUFFERSPROC,                          \
-                                                       DeleteFramebuffers) X(PFNGLDELETEPROGRAMPROC,         \
-                                                                             DeleteProgram)                  \
-              X(PFNGLDELETERENDERBUFFERSPROC, DeleteRenderbuffers) X(PFNGLDELETESHADERPROC, DeleteShader) X( \
-                  PFNGLDELETETEXTURESPROC,                                                                   \
-                  DeleteTextures) X(PFNGLDELETEVERTEXARRAYSPROC,                                             \
-                                    DeleteVertexArrays) X(PFNGLDEPTHFUNCPROC,                                \
-                                                          DepthFunc) X(PFNGLDEPTHMASKPROC, DepthMask)        \
-                  X(PFNGLDISABLEPROC, Disable) X(PFNGLDRAWARRAYSPROC, DrawArrays) X(                         \
-                      PFNGLDRAWELEMENTSPROC, DrawElements) X(PFNGLDRAWARRAYSINSTANCEDPROC,                   \
-                                                             DrawArraysInstanced) X(PFNGLENABLEPROC, Enable) \
-                      X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) X(                        \
-                          PFNGLFINISHPROC,                                                                   \
-                          Finish) X(PFNGLFRAMEBUFFERRENDERBUFFERPROC,                                        \
-                                    FramebufferRenderbuffer) X(PFNGLFRAMEBUFFERTEXTURE2DPROC,                \
-                                                               FramebufferTexture2D)                         \
-                          X(PFNGLGENBUFFERSPROC, GenBuffers) X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers) X( \
-                              PFNGLGENRENDERBUFFERSPROC,                                                     \
-                              GenRenderbuffers) X(PFNGLGENTEXTURESPROC,                                      \
-                                                  GenTextures) X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)  \
-                              X(PFNGLGETERRORPROC, GetError) X(PFNGLGETINTEGERVPROC, GetIntegerv) X(         \
-                                  PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog) X(PFNGLGETPROGRAMIVPROC,    \
-                                                                                   GetProgramiv)             \
-                                  X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog) X(                          \
-                                      PFNGLGETSHADERIVPROC, GetShaderiv) X(PFNGLGETSTRINGPROC, GetString)    \
-                                      X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation) X(                  \
-                                          PFNGLLINKPROGRAMPROC, LinkProgram) X(PFNGLPIXELSTOREIPROC,         \
-                                                                               PixelStorei)                  \
-                                          X(PFNGLREADPIXELSPROC, ReadPixels) X(                              \
-                                              PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC,                       \
-                                              RenderbufferStorageMultisample) X(PFNGLCULLFACEPROC, CullFace) \
-                                              X(PFNGLSCISSORPROC, Scissor) X(                                \
-                                                  PFNGLSHADERSOURCEPROC,                                     \
-                                                  ShaderSource) X(PFNGLTEXIMAGE2DPROC, TexImage2D)           \
-                                                  X(PFNGLTEXIMAGE3DPROC, TexImage3D) X(                      \
-                                                      PFNGLTEXPARAMETERIPROC,                                \
-                                                      TexParameteri) X(PFNGLUNIFORM1FPROC, Uniform1f)        \
-                                                      X(PFNGLUNIFORM1IPROC, Uniform1i) X(                    \
-                                                          PFNGLUNIFORM2FPROC,                                \
-                                                          Uniform2f) X(PFNGLUNIFORM3FPROC, Uniform3f)        \
-                                                          X(PFNGLUNIFORM4FPROC, Uniform4f)                   \
-                                                              X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv) \
-                                                                  X(PFNGLUSEPROGRAMPROC, UseProgram)         \
-                                                                      X(PFNGLVERTEXATTRIBDIVISORPROC,        \
-                                                                        VertexAttribDivisor)                 \
+  X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                                                               \
+  X(PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer) X(PFNGLBINDTEXTUREPROC, BindTexture) X(                     \
+      PFNGLBINDVERTEXARRAYPROC, BindVertexArray) X(PFNGLBLENDFUNCPROC,                                       \
+                                                   BlendFunc) X(PFNGLBLITFRAMEBUFFERPROC, BlitFramebuffer)   \
+      X(PFNGLBUFFERDATAPROC, BufferData) X(PFNGLBUFFERSUBDATAPROC, BufferSubData) X(                         \
+          PFNGLCHECKFRAMEBUFFERSTATUSPROC,                                                                   \
+          CheckFramebufferStatus) X(PFNGLCLEARPROC, Clear) X(PFNGLCLEARCOLORPROC, ClearColor)                \
+          X(PFNGLCOMPILESHADERPROC, CompileShader) X(PFNGLCREATEPROGRAMPROC, CreateProgram) X(               \
+              PFNGLCREATESHADERPROC, CreateShader) X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                  \
+              X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers) X(PFNGLDELETEPROGRAMPROC, DeleteProgram) X( \
+                  PFNGLDELETERENDERBUFFERSPROC, DeleteRenderbuffers) X(PFNGLDELETESHADERPROC, DeleteShader)  \
+                  X(PFNGLDELETETEXTURESPROC, DeleteTextures) X(                                              \
+                      PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays) X(PFNGLDEPTHFUNCPROC, DepthFunc)      \
+                      X(PFNGLDEPTHMASKPROC, DepthMask) X(PFNGLDISABLEPROC, Disable) X(                       \
+                          PFNGLDRAWARRAYSPROC, DrawArrays) X(PFNGLDRAWELEMENTSPROC, DrawElements)            \
+                          X(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced) X(PFNGLENABLEPROC, Enable) X( \
+                              PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) X(PFNGLFINISHPROC,  \
+                                                                                           Finish)           \
+                              X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, FramebufferRenderbuffer) X(                \
+                                  PFNGLFRAMEBUFFERTEXTURE2DPROC,                                             \
+                                  FramebufferTexture2D) X(PFNGLGENBUFFERSPROC, GenBuffers)                   \
+                                  X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers) X(                            \
+                                      PFNGLGENRENDERBUFFERSPROC,                                             \
+                                      GenRenderbuffers) X(PFNGLGENTEXTURESPROC,                              \
+                                                          GenTextures) X(PFNGLGENVERTEXARRAYSPROC,           \
+                                                                         GenVertexArrays)                    \
+                                      X(PFNGLGETERRORPROC, GetError) X(PFNGLGETINTEGERVPROC, GetIntegerv) X( \
+                                          PFNGLGETPROGRAMINFOLOGPROC,                                        \
+                                          GetProgramInfoLog) X(PFNGLGETPROGRAMIVPROC, GetProgramiv)          \
+                                          X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog) X(                  \
+                                              PFNGLGETSHADERIVPROC, GetShaderiv) X(PFNGLGETSTRINGPROC,       \
+                                                                                   GetString)                \
+                                              X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation) X(          \
+                                                  PFNGLLINKPROGRAMPROC, LinkProgram) X(PFNGLPIXELSTOREIPROC, \
+                                                                                       PixelStorei)          \
+                                                  X(PFNGLREADPIXELSPROC, ReadPixels) X(                      \
+                                                      PFNGLRENDERBUFFERSTORAGEPROC,                          \
+                                                      RenderbufferStorage) X(PFNGLSCISSORPROC, Scissor)      \
+                                                      X(PFNGLSHADERSOURCEPROC, ShaderSource) X(              \
+                                                          PFNGLTEXIMAGE2DPROC,                               \
+                                                          TexImage2D) X(PFNGLTEXIMAGE3DPROC, TexImage3D)     \
+                                                          X(PFNGLTEXPARAMETERIPROC, TexParameteri) X(        \
+                                                              PFNGLUNIFORM1FPROC,                            \
+                                                              Uniform1f) X(PFNGLUNIFORM1IPROC, Uniform1i)    \
+                                                              X(PFNGLUNIFORM2FPROC, Uniform2f) X(            \
+                                                                  PFNGLUNIFORM3FPROC, Uniform3f)             \
+                                                                  X(PFNGLUNIFORM4FPROC, Uniform4f) X(        \
+                                                                      PFNGLUNIFORMMATRIX4FVPROC,             \
+                                                                      UniformMatrix4fv)                      \
+                                                                      X(PFNGLUSEPROGRAMPROC, UseProgram) X(  \
+                                                                          PFNGLVERTEXATTRIBDIVISORPROC,      \
+                                                                          VertexAttribDivisor)               \
                                                                           X(PFNGLVERTEXATTRIBPOINTERPROC,    \
                                                                             VertexAttribPointer)             \
                                                                               X(PFNGLVIEWPORTPROC, Viewport)

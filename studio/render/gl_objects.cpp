@@ -83,47 +83,32 @@ void VertexArray::set_stream(const Gl& gl, std::span<const float> data) {
   }
 }
 
-Result<Done> MultisampleTarget::create(const Gl& gl, int w, int h) {
-  constexpr int kSamples = 4;
+Result<Done> PictureTarget::create(const Gl& gl, int w, int h) {
   width = w, height = h;
-  GLuint colour[2], depth = 0;
-  gl.GenFramebuffers(1, &framebuffer), gl.GenFramebuffers(1, &resolved);
-  gl.GenRenderbuffers(2, colour), gl.GenRenderbuffers(1, &depth);
-  const auto storage = [&](GLuint buffer, int samples, GLenum format) {
-    gl.BindRenderbuffer(GL_RENDERBUFFER, buffer);
-    gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, w, h);
+  GLuint colour = 0, depth = 0;
+  gl.GenFramebuffers(1, &framebuffer), gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  const auto attach = [&](GLuint& buffer, GLenum format, GLenum place) {
+    gl.GenRenderbuffers(1, &buffer), gl.BindRenderbuffer(GL_RENDERBUFFER, buffer);
+    gl.RenderbufferStorage(GL_RENDERBUFFER, format, w, h);
+    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, place, GL_RENDERBUFFER, buffer);
   };
-  storage(colour[0], kSamples, GL_RGBA8), storage(depth, kSamples, GL_DEPTH_COMPONENT24),
-      storage(colour[1], 0, GL_RGBA8);
-  bool complete = true;
-  for (const GLuint target : {framebuffer, resolved}) {
-    gl.BindFramebuffer(GL_FRAMEBUFFER, target);
-    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
-                               colour[target == resolved]);
-    if (target == framebuffer)
-      gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth);
-    complete = complete && gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-  }
-  if (!complete || gl.GetError() != GL_NO_ERROR)
+  attach(colour, GL_RGBA8, GL_COLOR_ATTACHMENT0), attach(depth, GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT);
+  if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE || gl.GetError() != GL_NO_ERROR)
     return Error{"OpenGL",
                  "no picture of " + std::to_string(w) + "x" + std::to_string(h) + " can be drawn to",
                  "ask for a smaller picture"};
   return Done{};
 }
 
-void MultisampleTarget::begin(const Gl& gl, const PixelRect& rect) const {
+void PictureTarget::begin(const Gl& gl, const PixelRect& rect) const {
   gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   gl.Viewport(0, 0, width, height);
   gl.Enable(GL_SCISSOR_TEST), gl.Scissor(rect.x, rect.y, rect.width, rect.height);
   gl.ClearColor(0, 0, 0, 0), gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-void MultisampleTarget::read(const Gl& gl, const PixelRect& rect, std::vector<std::uint8_t>& rgba) const {
+void PictureTarget::read(const Gl& gl, const PixelRect& rect, std::vector<std::uint8_t>& rgba) const {
   rgba.resize(std::size_t(rect.width) * std::size_t(rect.height) * 4);
-  const int right = rect.x + rect.width, top = rect.y + rect.height;
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer), gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved);
-  gl.BlitFramebuffer(rect.x, rect.y, right, top, rect.x, rect.y, right, top, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, resolved);
   gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
   gl.ReadPixels(rect.x, rect.y, rect.width, rect.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
 }

@@ -56,16 +56,16 @@ struct PixelRect {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// A frame buffer with 4 samples per pixel, and what it resolves to.
-struct MultisampleTarget {
-  GLuint framebuffer = 0, resolved = 0;
+/// What a picture is drawn to.
+struct PictureTarget {
+  GLuint framebuffer = 0;
   int width = 0, height = 0;
 
   /// Errors: the driver refuses the size.
   Result<Done> create(const Gl& gl, int width, int height);
   /// Clears the rectangle to nothing, and keeps what follows inside it. Row 0 is the bottom.
   void begin(const Gl& gl, const PixelRect& rect) const;
-  /// Resolves and reads the rectangle: RGBA, bottom row first.
+  /// Reads the rectangle: RGBA, bottom row first.
   void read(const Gl& gl, const PixelRect& rect, std::vector<std::uint8_t>& rgba) const;
 };
 

@@ -11,7 +11,7 @@ Result<Done> OrganPainter::create(const Gl& gl, const SceneView& scene) {
       programs_[glassy][cutaway] = *made;
     }
   for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
-    organs_.push_back({CutSurface(*scene.model, i, scene.surfaces[i]), {}, {}, 0, false});
+    organs_.push_back({CutSurface(*scene.model, i, scene.surfaces[i]), {}, {}, false});
     VertexArray& array = organs_.back().array;
     array.create(gl);
     array.attribute(gl, 0, 3, 0, kOrganVertexFloats), array.attribute(gl, 1, 3, 3, kOrganVertexFloats);
@@ -25,15 +25,8 @@ void OrganPainter::update(const Gl& gl, const SceneView& scene, const State& sta
     Organ& organ = organs_[i];
     const bool changed = organ.cut.update(state);
     const Surface& surface = organ.cut.surface();
-    if (changed || !organ.is_set) {
-      organ.is_set = true;
-      organ.mesh.set_surface(surface, organ.cut.is_lip());
-      std::vector<std::uint32_t> index;
-      for (const auto& t : surface.triangle)
-        for (const std::int32_t v : t) index.push_back(std::uint32_t(v));
-      organ.array.set_indices(gl, index);
-      organ.outer_indices = 3 * organ.cut.outer_triangle_count();
-    }
+    if (changed || !organ.is_set) organ.mesh.set_surface(surface, organ.cut.is_lip());
+    organ.is_set = true;
     organ.mesh.update(surface, state, scene.model->organs[i].first);
     organ.array.set_stream(gl, organ.mesh.vertices());
   }
@@ -48,34 +41,58 @@ const Program& OrganPainter::program(const DrawOptions& options) const {
   return programs_[options.view == View::both][options.cutaway.is_on()];
 }
 
-void OrganPainter::draw(const Gl& gl, const SceneView& scene, const DrawOptions& options) const {
+/// Sorting here is cheaper than letting the software pipeline transform every triangle once for each pass.
+OrganPainter::Order OrganPainter::sort_triangles(const Organ& organ, Vec3 eye, bool needs_averted) {
+  const Surface& surface = organ.cut.surface();
+  const std::vector<Vec3>& p = organ.mesh.positions();
+  const std::size_t outer = organ.cut.outer_triangle_count();
+  indices_.clear(), averted_.clear();
+  const auto add = [&](std::vector<std::uint32_t>& list, const std::array<std::int32_t, 3>& t) {
+    for (const std::int32_t v : t) list.push_back(std::uint32_t(v));
+  };
+  for (std::size_t i = 0; i < outer; ++i) {
+    const auto& t = surface.triangle[i];
+    const Vec3 a = p[std::size_t(t[0])], n = cross(p[std::size_t(t[1])] - a, p[std::size_t(t[2])] - a);
+    if (dot(n, eye - a) >= 0)
+      add(indices_, t);
+    else if (needs_averted)
+      add(averted_, t);
+  }
+  Order order{indices_.size(), 0, averted_.size()};
+  for (std::size_t i = outer; i < surface.triangle.size(); ++i) add(indices_, surface.triangle[i]);
+  order.wall = indices_.size() - order.facing;
+  indices_.insert(indices_.end(), averted_.begin(), averted_.end());
+  return order;
+}
+
+void OrganPainter::draw(const Gl& gl, const SceneView& scene, const DrawOptions& options) {
   const Program& program = this->program(options);
   const bool glassy = options.view == View::both;
   program.set("cutaway_point", options.cutaway.point), program.set("cutaway_normal", options.cutaway.normal);
   if (glassy) gl.Enable(GL_BLEND), gl.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  gl.Enable(GL_CULL_FACE);
   for (std::size_t i = 0; i < organs_.size(); ++i) {
-    const Organ& organ = organs_[i];
+    Organ& organ = organs_[i];
     const OrganLook& look = scene.looks[i];
     program.set("outer_colour", linear(look.outer)), program.set("inner_colour", linear(look.inner));
     program.set("wetness", look.wetness);
-    gl.BindVertexArray(organ.array.id);
-    const auto pass = [&](GLenum culled, bool is_wall) {
-      const std::size_t first = is_wall ? organ.outer_indices : 0;
-      const std::size_t count =
-          is_wall ? std::size_t(organ.array.index_count) - organ.outer_indices : organ.outer_indices;
+    const bool is_cut = organ.cut.outer_triangle_count() < organ.cut.surface().triangle.size();
+    // Inner faces of a whole organ are never seen.
+    const Order order =
+        sort_triangles(organ, options.camera.eye, !glassy && (is_cut || options.cutaway.is_on()));
+    organ.array.set_indices(gl, indices_);
+    const auto pass = [&](std::size_t first, std::size_t count, bool is_wall) {
       if (!count) return;
-      gl.CullFace(culled), program.set("is_wall", is_wall ? 1 : 0);
+      program.set("is_wall", is_wall ? 1 : 0);
       gl.DrawElements(GL_TRIANGLES, GLsizei(count), GL_UNSIGNED_INT,
                       reinterpret_cast<const void*>(first * sizeof(GLuint)));
     };
-    // Outer faces first: they hide most of the rest. Inner faces of a whole organ are never seen.
-    pass(GL_BACK, false);
-    const bool is_cut = std::size_t(organ.array.index_count) > organ.outer_indices;
-    if (glassy || !(is_cut || options.cutaway.is_on())) continue;
-    pass(GL_BACK, true), pass(GL_FRONT, true), pass(GL_FRONT, false);
+    // What faces the eye comes first: it hides most of the rest.
+    pass(0, order.facing, false);
+    if (glassy) continue;
+    pass(order.facing, order.wall, true);
+    pass(order.facing + order.wall, order.averted, false);
   }
-  gl.Disable(GL_CULL_FACE), gl.Disable(GL_BLEND);
+  gl.Disable(GL_BLEND);
 }
 
 }  // namespace ctpm

@@ -26,7 +26,7 @@ class OrganPainter {
 
   /// The program that draw() will use; its light must be set before.
   const Program& program(const DrawOptions& options) const;
-  void draw(const Gl& gl, const SceneView& scene, const DrawOptions& options) const;
+  void draw(const Gl& gl, const SceneView& scene, const DrawOptions& options);
 
   /// Where the vertices of all organs are [m].
   template <class Visit>
@@ -40,11 +40,17 @@ class OrganPainter {
     CutSurface cut;
     OrganMesh mesh;
     VertexArray array;
-    std::size_t outer_indices = 0;
     bool is_set = false;
   };
 
+  /// Index ranges of one organ: what faces the eye, the wall of its cuts, what faces away.
+  struct Order {
+    std::size_t facing = 0, wall = 0, averted = 0;  ///< counts of indices
+  };
+  Order sort_triangles(const Organ& organ, Vec3 eye, bool needs_averted);
+
   std::vector<Organ> organs_;
+  std::vector<std::uint32_t> indices_, averted_;
   Program programs_[2][2];  ///< [is_glassy][has_cutaway]
 };
 

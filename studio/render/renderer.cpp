@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "studio/render/backdrop.h"
+#include "studio/render/edge_smoothing.h"
 #include "studio/render/element_values.h"
 #include "studio/render/gl_context.h"
 #include "studio/render/gl_objects.h"
@@ -66,8 +67,8 @@ struct Renderer::Parts {
   std::unique_ptr<GlContext> context;
   SceneView scene;
   Frame backdrop, frame;
-  std::vector<std::uint8_t> rgba;
-  MultisampleTarget target;
+  std::vector<std::uint8_t> rgba, scratch;
+  PictureTarget target;
   Program tool, sphere, rod;
   OrganPainter organs;
   std::vector<ToolMesh> tool_meshes;
@@ -217,10 +218,8 @@ void Renderer::Parts::draw_spheres(const State& state, const DrawOptions& option
     }
   spheres.set_stream(g, instances);
   set_light(sphere, state, options);
-  g.Enable(GL_SAMPLE_ALPHA_TO_COVERAGE);
   g.BindVertexArray(spheres.id),
       g.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(instances.size() / 7));
-  g.Disable(GL_SAMPLE_ALPHA_TO_COVERAGE);
 }
 
 void Renderer::Parts::draw_elements(const State& state, const DrawOptions& options) {
@@ -262,6 +261,7 @@ void Renderer::Parts::read_frame(const DrawOptions& options) {
   }
   if (rect.width == 0 || rect.height == 0) return;
   target.read(gl(), rect, rgba);
+  smooth_edges(rgba, rect.width, rect.height, scratch);
   for (int row = 0; row < rect.height; ++row) {
     const std::uint8_t* from = rgba.data() + std::size_t(row) * std::size_t(rect.width) * 4;
     std::uint8_t* to =

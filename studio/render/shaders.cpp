@@ -55,8 +55,8 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 rest;
 layout(location = 3) in vec3 crevice_stain_lip;
 uniform mat4 clip_from_world;
-centroid out vec3 p, n, q;
-centroid out vec3 hollow_stain_lip;
+out vec3 p, n, q;
+out vec3 hollow_stain_lip;
 void main() {
   p = position; n = normal; q = rest; hollow_stain_lip = crevice_stain_lip;
   gl_Position = clip_from_world * vec4(position, 1.0);
@@ -80,8 +80,8 @@ vec4 relief(vec3 rest) {
 )";
 
 const char* const kOrganFragment = R"(
-centroid in vec3 p, n, q;
-centroid in vec3 hollow_stain_lip;
+in vec3 p, n, q;
+in vec3 hollow_stain_lip;
 uniform vec3 outer_colour, inner_colour;
 uniform float wetness;
 uniform int is_wall;
@@ -220,15 +220,14 @@ void main() {
   vec3 to_ball = ball.xyz - eye;
   float along = dot(to_ball, d);
   float miss = length(to_ball - along * d);
-  float cover = clamp((ball.w - miss) / max(fwidth(miss), 1e-9) + 0.5, 0.0, 1.0);
-  if (cover <= 0.0) discard;
+  if (miss > ball.w) discard;
   vec3 p = eye + (along - sqrt(max(ball.w * ball.w - miss * miss, 0.0))) * d;
   vec3 m = (p - ball.xyz) / ball.w;
   float shade = tool_shade(p, m) * ground_shade(p, m);
   vec3 c = paint * diffuse_light(m, vec3(0.1), shade) + fresnel(dot(m, -d)) * room(reflect(d, m)) * 0.8;
   vec4 clip = clip_from_world * vec4(p, 1.0);
   gl_FragDepth = 0.5 + 0.5 * clip.z / clip.w;
-  colour = vec4(to_srgb(c), 1.0) * cover;
+  colour = vec4(to_srgb(c), 1.0);
 }
 )";
 
