@@ -16,7 +16,7 @@ Frame blank_frame(int width, int height, std::uint8_t red, std::uint8_t green, s
   return frame;
 }
 
-Frame beside(const Frame& left, const Frame& right) {
+Frame join_beside(const Frame& left, const Frame& right) {
   CTPM_CHECK(left.height == right.height, "pictures side by side have one height");
   Frame both{left.width + right.width, left.height, {}};
   const std::size_t a = std::size_t(left.width) * 3, b = std::size_t(right.width) * 3;

@@ -21,7 +21,7 @@ struct Frame {
 Frame blank_frame(int width, int height, std::uint8_t red, std::uint8_t green, std::uint8_t blue);
 
 /// Two pictures of one height side by side, with a thin line between them.
-Frame beside(const Frame& left, const Frame& right);
+Frame join_beside(const Frame& left, const Frame& right);
 
 /// Writes a PNG file: under a temporary name beside `path`, renamed when whole. Errors: an empty frame, a
 /// name that does not end in .png, a folder that cannot be written.

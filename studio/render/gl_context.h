@@ -14,17 +14,16 @@ namespace ctpm {
   X(PFNGLATTACHSHADERPROC, AttachShader)                                                                     \
   X(PFNGLBINDBUFFERPROC, BindBuffer)                                                                         \
   X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                                                               \
-  X(PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer) X(PFNGLBINDTEXTUREPROC, BindTexture) X(                     \
-      PFNGLBINDVERTEXARRAYPROC, BindVertexArray) X(PFNGLBLENDFUNCPROC,                                       \
-                                                   BlendFunc) X(PFNGLBLITFRAMEBUFFERPROC, BlitFramebuffer)   \
-      X(PFNGLBUFFERDATAPROC, BufferData) X(PFNGLBUFFERSUBDATAPROC, BufferSubData) X(                         \
-          PFNGLCHECKFRAMEBUFFERSTATUSPROC,                                                                   \
-          CheckFramebufferStatus) X(PFNGLCLEARPROC, Clear) X(PFNGLCLEARCOLORPROC, ClearColor)                \
-          X(PFNGLCOMPILESHADERPROC, CompileShader) X(PFNGLCREATEPROGRAMPROC, CreateProgram) X(               \
-              PFNGLCREATESHADERPROC, CreateShader) X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                  \
-              X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers) X(PFNGLDELETEPROGRAMPROC, DeleteProgram) X( \
-                  PFNGLDELETERENDERBUFFERSPROC, DeleteRenderbuffers) X(PFNGLDELETESHADERPROC, DeleteShader)  \
-                  X(PFNGLDELETETEXTURESPROC, DeleteTextures) X(                                              \
+  X(PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer)                                                             \
+  X(PFNGLBINDTEXTUREPROC, BindTexture) X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray) X(                       \
+      PFNGLBLENDFUNCPROC, BlendFunc) X(PFNGLBLITFRAMEBUFFERPROC, BlitFramebuffer) X(PFNGLBUFFERDATAPROC,     \
+                                                                                    BufferData)              \
+      X(PFNGLBUFFERSUBDATAPROC, BufferSubData) X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus) X( \
+          PFNGLCLEARPROC, Clear) X(PFNGLCLEARCOLORPROC, ClearColor) X(PFNGLCOMPILESHADERPROC, CompileShader) \
+          X(PFNGLCREATEPROGRAMPROC, CreateProgram) X(PFNGLCREATESHADERPROC, CreateShader) X(                 \
+              PFNGLDELETEBUFFERSPROC, DeleteBuffers) X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)      \
+              X(PFNGLDELETEPROGRAMPROC, DeleteProgram) X(PFNGLDELETERENDERBUFFERSPROC, DeleteRenderbuffers)  \
+                  X(PFNGLDELETESHADERPROC, DeleteShader) X(PFNGLDELETETEXTURESPROC, DeleteTextures) X(       \
                       PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays) X(PFNGLDEPTHFUNCPROC, DepthFunc)      \
                       X(PFNGLDEPTHMASKPROC, DepthMask) X(PFNGLDISABLEPROC, Disable) X(                       \
                           PFNGLDRAWARRAYSPROC, DrawArrays) X(PFNGLDRAWELEMENTSPROC, DrawElements)            \

@@ -125,7 +125,7 @@ TEST(View, FollowingCameraNearsTheToolThatWorks) {
 
 TEST(View, BesideKeepsBothPictures) {
   const Frame left = blank_frame(100, 40, 200, 10, 10), right = blank_frame(60, 40, 10, 200, 10);
-  const Frame both = beside(left, right);
+  const Frame both = join_beside(left, right);
   ASSERT_EQ(both.width, 160);
   ASSERT_EQ(both.height, 40);
   for (int y = 0; y < 40; ++y)
