@@ -93,6 +93,35 @@ struct SurfaceIndex::Builder {
     return boxes;
   }
 
+  /// The disc of a range, a little larger than it is, so that rounding never makes it too small.
+  Disc disc_of(Range range, Vec3 centre) const {
+    constexpr double kMargin = 1e-12;
+    Disc disc;
+    Vec3 sum;
+    for (std::int32_t n = range.begin; n < range.end; ++n) {
+      const auto& [a, b, c] = corners[std::size_t(order[std::size_t(n)])];
+      sum += cross(b - a, c - a);
+    }
+    disc.normal = norm(sum) > 0 && std::isfinite(1 / norm(sum)) ? sum / norm(sum) : Vec3{1, 0, 0};
+    double low = 0, high = 0, squared_radius = 0;
+    bool is_first = true;
+    for (std::int32_t n = range.begin; n < range.end; ++n)
+      for (const Vec3 p : corners[std::size_t(order[std::size_t(n)])]) {
+        const Vec3 v = p - centre;
+        const double height = dot(v, disc.normal);
+        low = is_first ? height : std::min(low, height), high = is_first ? height : std::max(high, height);
+        squared_radius = std::max(squared_radius, squared(v - height * disc.normal));
+        is_first = false;
+      }
+    disc.centre = centre + 0.5 * (low + high) * disc.normal;
+    const double size = std::sqrt(squared_radius) + std::max(std::abs(low), std::abs(high));
+    // Moving the centre rounds at the size of the coordinates.
+    const double margin = kMargin * (size + norm(centre));
+    disc.half_height = 0.5 * (high - low) + margin;
+    disc.radius = std::sqrt(squared_radius) + margin;
+    return disc;
+  }
+
   /// Halves a range at the median of the longest extent of its triangles' middles, in whole blocks.
   std::pair<Range, Range> halves(Range range) {
     const Boxes boxes = boxes_of(range);
@@ -134,6 +163,7 @@ struct SurfaceIndex::Builder {
       if (n < parts) boxes = boxes_of(part[n]);
       const std::int32_t child = n < parts ? add(part[n]) : 0;
       Node& node = index.nodes_[self];
+      if (n < parts) node.disc[n] = disc_of(part[n], 0.5 * (boxes.least + boxes.most));
       node.child[n] = child;
       node.least.x[n] = boxes.least.x, node.least.y[n] = boxes.least.y, node.least.z[n] = boxes.least.z;
       node.most.x[n] = boxes.most.x, node.most.y[n] = boxes.most.y, node.most.z[n] = boxes.most.z;
@@ -222,6 +252,15 @@ SurfaceIndex::Lanes SurfaceIndex::squared_distances(const Node& node, Vec3 point
   return result;
 }
 
+double SurfaceIndex::squared_distance_from(const Disc& disc, Vec3 point) {
+  const Vec3 v = point - disc.centre;
+  const double height = dot(v, disc.normal);
+  const double above = std::max(std::abs(height) - disc.half_height, 0.0);
+  const double beside = std::max(std::sqrt(std::max(squared(v) - height * height, 0.0)) - disc.radius, 0.0);
+  constexpr double kRounded = 1 - 1e-12;  // never farther than it is
+  return kRounded * (above * above + beside * beside);
+}
+
 SurfaceIndex::Nearest SurfaceIndex::nearest(Vec3 point, std::int32_t guess) const {
   CTPM_CHECK(guess >= 0 && std::size_t(guess) < blocks_.size(), "a guess comes from an earlier answer");
   Nearest best{std::numeric_limits<double>::infinity(), guess};
@@ -246,9 +285,11 @@ SurfaceIndex::Nearest SurfaceIndex::nearest(Vec3 point, std::int32_t guess) cons
       continue;
     }
     const Node& node = nodes_[std::size_t(next.child)];
-    const Lanes distance = squared_distances(node, point);
+    Lanes distance = squared_distances(node, point);
     const std::size_t first = height;
     for (std::size_t n = 0; n < std::size_t(kLanes); ++n) {
+      if (!(distance[n] < best.squared_distance)) continue;
+      distance[n] = std::max(distance[n], squared_distance_from(node.disc[n], point));
       if (!(distance[n] < best.squared_distance)) continue;
       // The nearest child comes off the stack first.
       std::size_t place = height++;

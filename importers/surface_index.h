@@ -32,10 +32,18 @@ class SurfaceIndex {
     Lanes x, y, z;
   };
 
-  /// Boxes of up to four children, side by side so that they are looked at together. Missing ones are
-  /// infinitely far.
+  /// A flat cylinder around triangles, along their mean normal. It hugs a smooth surface far closer than a
+  /// box: a point deep inside is about as far from the boxes of very many triangles as from the nearest one.
+  struct Disc {
+    Vec3 centre, normal;                 ///< [m], unit length
+    double half_height = 0, radius = 0;  ///< [m]
+  };
+
+  /// Boxes of up to four children, side by side so that they are looked at together, and their discs. Missing
+  /// ones are infinitely far.
   struct Node {
     LanesOfVec3 least, most;
+    std::array<Disc, kLanes> disc;
     std::array<std::int32_t, kLanes> child;  ///< a node, or ~block of a leaf
   };
   /// Four triangles, side by side; missing ones repeat the last. Corners [m], unit normal, 1 / squared edge
@@ -50,6 +58,7 @@ class SurfaceIndex {
                           std::int32_t count);
   static Lanes squared_distances(const Block& block, Vec3 point);
   static Lanes squared_distances(const Node& node, Vec3 point);
+  static double squared_distance_from(const Disc& disc, Vec3 point);
 
   std::vector<Node> nodes_;
   std::vector<Block> blocks_;
