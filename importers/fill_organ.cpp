@@ -247,6 +247,31 @@ Surface take_surface(const CheckedMesh& mesh, std::int64_t most_triangles, std::
   return surface;
 }
 
+/// Where the spheres around do not span space (one sheet or one row of them), what they carry has no
+/// thickness: the drawn surface lies in the sheet even at rest. Said, because it looks like a fault of the
+/// mesh.
+void note_flat(const FilledOrgan& organ, std::vector<Finding>& findings) {
+  constexpr double kOff = 1e-3;  // of the spacing; rounding is far below it
+  Vec3Array rest(organ.centre.size());
+  for (std::size_t n = 0; n < organ.centre.size(); ++n) rest.set(n, organ.centre[n]);
+  std::vector<Vec3> drawn;
+  deform_surface(organ.surface, rest, 0, drawn);
+  std::int64_t count = 0;
+  std::size_t worst = 0;
+  const auto off = [&](std::size_t v) { return norm(drawn[v] - organ.surface.vertex[v]); };
+  for (std::size_t v = 0; v < drawn.size(); ++v) {
+    count += off(v) > kOff * organ.spacing;
+    if (off(v) > off(worst)) worst = v;
+  }
+  if (count == 0) return;
+  const Vec3 place = organ.surface.vertex[worst];
+  findings.push_back({"flat", count, place,
+                      counted(count, "surface vertex") +
+                          " beside a single sheet or row of spheres, drawn up to " + mm_text(off(worst)) +
+                          " off their place, the worst at " + place_text(place),
+                      "none", "a smaller sphere radius gives the organ more than one sphere there"});
+}
+
 }  // namespace
 
 Result<Filling> fill_organ(const CheckedMesh& mesh, const FillOptions& options) try {
@@ -297,6 +322,7 @@ Result<Filling> fill_organ(const CheckedMesh& mesh, const FillOptions& options) 
   report.surface_triangles = std::int64_t(organ.surface.triangle.size());
   tell("binding", 0.8);
   bind_surface(organ, options.threads);
+  note_flat(organ, report.findings);
   tell("done", 1);
   return filling;
 } catch (const std::bad_alloc&) {

@@ -354,6 +354,21 @@ TEST(Fill, ThinPartsWithoutSpheresAreTold) {
   EXPECT_NE(thin->remains, "");
 }
 
+TEST(Fill, SingleSheetOfSpheresIsTold) {
+  const Filling filling = filled(checked(zoo::box({0.1, 0.1, 0.008}, 5)), spaced(0.01));
+  EXPECT_EQ(filling.report.spheres, 100);
+  const Finding* flat = find(filling.report.findings, "flat");
+  ASSERT_NE(flat, nullptr) << summary(filling.report.findings);
+  EXPECT_EQ(flat->count, std::int64_t(filling.organ.surface.vertex.size()));
+  Vec3Array rest;
+  for (const Vec3& p : filling.organ.centre) rest.push_back(p);
+  std::vector<Vec3> drawn;
+  deform_surface(filling.organ.surface, rest, 0, drawn);
+  for (const Vec3& p : drawn) ASSERT_NEAR(p.z, 0, 1e-12) << "all of it lies in the sheet";
+  EXPECT_EQ(find(filled(checked(zoo::box({0.1, 0.1, 0.02}, 5)), spaced(0.01)).report.findings, "flat"),
+            nullptr);
+}
+
 TEST(Fill, WhatCannotBeFilledIsRefused) {
   const CheckedMesh mesh = checked(zoo::sphere(0.05, 3));
   const auto message = [&](const FillOptions& options) {
