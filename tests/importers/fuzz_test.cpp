@@ -158,6 +158,69 @@ INSTANTIATE_TEST_SUITE_P(EveryFormat, Fuzz, ::testing::Range<std::size_t>(0, sam
                            return name;
                          });
 
+/// A mesh with several random faults, from a vertex out of place to triangles that join what is far apart.
+RawMesh damaged(RawMesh mesh, std::mt19937& random) {
+  const auto below = [&](std::size_t n) { return std::size_t(random() % n); };
+  const auto unit = [&] { return double(random()) / 4294967295.0 - 0.5; };
+  for (std::size_t faults = 1 + below(12); faults > 0; --faults) {
+    const std::size_t t = below(mesh.triangle.size()), v = below(mesh.vertex.size());
+    switch (random() % 8) {
+      case 0:
+        mesh.vertex[v] = {0.2 * unit(), 0.2 * unit(), 0.2 * unit()};
+        break;
+      case 1:
+        mesh.vertex[v] = mesh.vertex[below(mesh.vertex.size())];
+        break;
+      case 2:
+        mesh.triangle[t][below(3)] = std::int32_t(v);
+        break;
+      case 3:
+        std::swap(mesh.triangle[t][0], mesh.triangle[t][1]);
+        break;
+      case 4:
+        mesh.triangle.push_back(mesh.triangle[t]);
+        break;
+      case 5:
+        mesh.triangle[t] = mesh.triangle.back(), mesh.triangle.pop_back();
+        break;
+      case 6:
+        mesh.vertex[v] = (random() % 2 ? 1e18 : 1e-18) * mesh.vertex[v];
+        break;
+      default:
+        mesh.triangle.push_back({std::int32_t(v), mesh.triangle[t][0], mesh.triangle[t][1]});
+        break;
+    }
+  }
+  return mesh;
+}
+
+TEST(FuzzRepair, DamagedMeshesComeOutSoundOrAreRefused) {
+  const RawMesh whole[] = {zoo::sphere(0.05, 2), zoo::torus(0.05, 0.02, 16, 8), zoo::box({0.1, 0.1, 0.02}, 3),
+                           zoo::both(zoo::box({0.1, 0.1, 0.1}, 2), zoo::sphere(0.03, 1, {0.05, 0.05, 0.05}))};
+  std::mt19937 random(20240502);
+  int closed = 0;
+  constexpr int kRounds = 8 * CTPM_FUZZ_ROUNDS;
+  for (int round = 0; round < kRounds; ++round) {
+    SCOPED_TRACE("round " + std::to_string(round));
+    const RawMesh raw = damaged(whole[round % 4], random);
+    RepairOptions options;
+    options.all_parts = random() % 2;
+    if (random() % 2) options.largest_hole = 1.0;
+    const Result<CheckedMesh> mesh = repair_mesh(raw, 1, options);
+    expect_sound(mesh, raw.path);
+    if (!mesh) continue;
+    ++closed;
+    FillOptions fill;
+    fill.sphere_radius = norm(mesh->box_most - mesh->box_least) / 60;
+    fill.most_triangles = random() % 2 ? 100 : 0;
+    const Result<Filling> filling = fill_organ(*mesh, fill);
+    if (!filling) continue;
+    for (const double weight : filling->organ.surface.binding.weight) ASSERT_TRUE(std::isfinite(weight));
+    for (const double depth : filling->organ.depth) ASSERT_TRUE(std::isfinite(depth) && depth > 0);
+  }
+  EXPECT_GT(closed, kRounds / 10) << "most of the damage can be mended";
+}
+
 TEST(FuzzSamples, AreWholeBeforeTheyAreDamaged) {
   const zoo::Folder folder;
   for (const Sample& sample : samples())
