@@ -7,6 +7,9 @@
 namespace ctpm {
 namespace {
 
+// What is done of an import after reading and after repairing, as it takes on meshes of a scanner.
+constexpr double kReadShare = 0.3, kRepairShare = 0.7;
+
 /// Options that no mesh could make right.
 Errors check(const ImportOptions& options) {
   Errors errors;
@@ -49,6 +52,14 @@ void note_unit(const UnitChoice& unit, double diagonal, UsualSize usual, std::ve
                         "check the unit"});
 }
 
+/// The progress of one stage as its share of the whole import.
+Progress share_of(const Progress& whole, double begin, double end) {
+  if (!whole) return {};
+  return [whole, begin, end](const std::string& stage, double fraction) {
+    whole(stage, begin + (end - begin) * fraction);
+  };
+}
+
 Errors with_place(Errors errors, const std::string& path) {
   for (Error& error : errors)
     if (error.where.empty()) error.where = path;
@@ -75,7 +86,7 @@ Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions&
   RepairOptions repair;
   repair.all_parts = options.all_parts;
   repair.largest_hole = options.largest_hole;
-  repair.progress = options.progress;
+  repair.progress = share_of(options.progress, kReadShare, kRepairShare);
   Result<CheckedMesh> mesh = repair_mesh(*raw, report.unit.in_metres, repair);
   if (!mesh) return mesh.errors();
   note_unit(report.unit, norm(mesh->box_most - mesh->box_least), options.usual_size, report.findings);
@@ -91,7 +102,7 @@ Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions&
   fill.most_spheres = options.most_spheres;
   fill.most_triangles = options.most_triangles;
   fill.threads = options.threads;
-  fill.progress = options.progress;
+  fill.progress = share_of(options.progress, kRepairShare, 1);
   Result<Filling> filling = fill_organ(*mesh, fill);
   if (!filling) return with_place(filling.errors(), path);
   imported.organ = std::move(filling->organ);

@@ -26,7 +26,7 @@ struct ImportOptions {
   std::int64_t most_triangles = 0;  ///< of the drawn surface, which is coarsened if it has more; 0: never
   int threads = 2;                  ///< >= 1; the result does not depend on it
   double time_limit_s = 120;        ///< for reading the file [s]
-  Progress progress;
+  Progress progress;                ///< told the stage and the fraction of the whole import, never falling
 };
 
 /// What was found in the file, what was done about it, and what came out.
