@@ -178,6 +178,7 @@ class Repair {
                    " (" + counted(dropped_triangles, "triangle") + ", the largest at " +
                    place_text(*drop.place) + ")";
       drop.done = "dropped";
+      if (!open.empty()) drop.remains = open[0].message;
       note(drop);
     }
     if (kept_parts > 1)

@@ -233,6 +233,17 @@ TEST(Repair, AllPartsAreKeptWhenWanted) {
   EXPECT_NEAR(mesh->volume, volume_of(ball()) + volume_of(zoo::sphere(0.01, 2)), 1e-12);
 }
 
+TEST(Repair, OpenPartIsDroppedWithTheReason) {
+  const RawMesh bowl = zoo::without(zoo::sphere(0.03, 3, {0.1, 0, 0}), [](Vec3 p) { return p.z > 0; });
+  RepairOptions options;
+  options.all_parts = true;
+  const Result<CheckedMesh> mesh = repair_mesh(zoo::both(bowl, ball()), 1, options);
+  ASSERT_TRUE(mesh) << text_of(mesh.errors());
+  expect_closed(*mesh);
+  EXPECT_EQ(summary(mesh->findings), "other_part x 1");
+  EXPECT_NE(mesh->findings[0].remains.find("a hole 60"), std::string::npos) << mesh->findings[0].remains;
+}
+
 TEST(Repair, CavityStaysACavityWithAllParts) {
   RepairOptions options;
   options.all_parts = true;
