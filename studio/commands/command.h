@@ -25,5 +25,6 @@ Command add_info(CLI::App& program);
 Command add_recover(CLI::App& program);
 Command add_export(CLI::App& program);
 Command add_demo(CLI::App& program);
+Command add_paper(CLI::App& program);
 
 }  // namespace ctpm

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/closed_forms.h"
+#include "core/result.h"
+#include "scenes/scene_spec.h"
+#include "studio/loaded_scene.h"
+#include "studio/reports/report.h"
+
+// The experiments of Bao & Wu, run on the sphere network. Each takes the folder of the shipped scenes, runs scenes of
+// it, and compares what the network gives with the closed forms and with what the paper prints.
+namespace ctpm {
+
+/// One number that three sides may know: the paper as printed, the closed form, the network.
+struct Claim {
+  std::string experiment;  ///< "table-1", "relaxation", ...
+  std::string organ;
+  std::string structure;   ///< "CTPM", "TPM", "mass-spring"
+  std::string viscosity = {};   ///< reading of the viscosity: "kPa s", "Pa s"; empty: it does not matter
+  std::string quantity;    ///< with its unit: "force at 4 mm [N]"
+  std::optional<double> paper = {}, closed_form = {}, network = {};
+  std::optional<double> closed_form_error = {};  ///< of the network [share]; unset: the difference of both values
+  std::optional<double> closed_form_bound = {};  ///< [share]; unset: nothing must hold
+  std::optional<double> paper_bound = {};        ///< [share]; unset: nothing must hold
+  std::string note = {};
+
+  double error_to_closed_form() const;  ///< [share]; NaN if one side is unknown
+  double error_to_paper() const;        ///< [share]; NaN if one side is unknown
+  Verdict verdict() const;              ///< missed if a bound is passed, met if a bound holds, shown without a bound
+};
+
+/// What one experiment gave.
+struct Experiment {
+  Section section;
+  std::vector<Claim> claims;
+};
+
+/// Table 1, Figs. 5 and 6: C of the rig pressed to 2, 4, ... 12 mm and held, three organs, TPM and CTPM.
+Result<Experiment> run_table_1(const std::string& scenes);
+
+/// Fig. 7: C of the rig pressed at 2 mm/s to 4 mm and held; three organs, both readings of the viscosity.
+Result<Experiment> run_relaxation(const std::string& scenes);
+
+/// Fig. 8: 0.196 N and 0.98 N on C of the liver's rig for 33 s, both readings of the viscosity.
+Result<Experiment> run_creep(const std::string& scenes);
+
+/// Figs. 9 to 11: 0.13 N on one surface sphere of a liver block, four structures, both readings of the viscosity.
+/// Without `with_pictures` nothing is drawn.
+Result<Experiment> run_load(const std::string& scenes, bool with_pictures);
+
+/// Figs. 12 to 14: a kidney is cut and four points beside the cut are followed from 1 s to 8 s after it.
+Result<Experiment> run_cut(const std::string& scenes, bool with_pictures);
+
+/// All experiments, in the paper's order.
+struct PaperResults {
+  std::vector<Section> sections;
+  std::vector<Claim> claims;
+};
+/// Runs them all, two at a time. Errors: those of the scenes; a run that diverged.
+Result<PaperResults> run_paper_experiments(const std::string& scenes, const std::function<void(std::int64_t done, std::int64_t total)>& progress);
+
+/// Writes report.html, results.json (all claims, and the points of every plot) and results.csv (all claims) into a folder.
+Result<Done> write_paper_report(const std::string& folder, const PaperResults& results);
+
+/// All claims as one table, for the page, results.json and results.csv.
+Table claims_table(const std::vector<Claim>& claims);
+
+/// The site of the closed forms that an organ's material and filling are.
+Site site_of(const OrganSpec& organ);
+
+/// The loaded scene built again after `change`; its meshes are not read again.
+Result<BuiltScene> build_changed(const LoadedScene& scene, const std::function<void(SceneSpec&)>& change);
+
+/// What the paper prints in its Table 1.
+struct PrintedRow {
+  double depth;                     ///< [mm]
+  double lambda, tpm, ctpm;         ///< [kPa/mm], [N], [N]
+};
+/// The six rows of an organ: "skin", "kidney" or "liver".
+const std::vector<PrintedRow>& printed_table(const std::string& organ);
+
+}  // namespace ctpm

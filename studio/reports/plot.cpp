@@ -1,0 +1,249 @@
+#include "studio/reports/plot.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace ctpm {
+namespace {
+
+/// Colours that people with any colour vision tell apart (Okabe and Ito), darker first.
+constexpr std::array<const char*, 7> kPalette{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#4d4d4d"};
+
+constexpr double kLeft = 62, kRight = 14, kTop = 30, kBottom = 46, kLegendRow = 17;
+
+const char* colour(int index) { return kPalette[std::size_t(std::max(index, 0)) % kPalette.size()]; }
+
+std::string number(double pixels) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f", pixels);
+  return text;
+}
+
+/// One axis: its range, its ticks, and where a value is in the picture.
+class Axis {
+ public:
+  Axis(double low, double high, bool is_log, double from, double to) : is_log_(is_log), from_(from), to_(to) {
+    low_ = is_log ? std::log10(low) : low, high_ = is_log ? std::log10(high) : high;
+    if (!(high_ > low_)) low_ -= 0.5, high_ += 0.5;
+  }
+  double at(double value) const {
+    const double u = ((is_log_ ? std::log10(value) : value) - low_) / (high_ - low_);
+    return from_ + u * (to_ - from_);
+  }
+  bool can_show(double value) const { return std::isfinite(value) && (!is_log_ || value > 0); }
+
+  std::vector<double> ticks(int most) const {
+    std::vector<double> ticks;
+    if (is_log_) {
+      for (double e = std::ceil(low_ - 1e-9); e <= high_ + 1e-9; ++e) ticks.push_back(std::pow(10.0, e));
+      return ticks;
+    }
+    // Steps of 1, 2 or 5 times a power of ten.
+    const double rough = (high_ - low_) / most, power = std::pow(10.0, std::floor(std::log10(rough)));
+    double step = power;
+    for (const double factor : {2.0, 5.0, 10.0})
+      if (step < rough * (1 - 1e-9)) step = factor * power;
+    for (double i = std::ceil(low_ / step - 1e-6); i * step <= high_ + 1e-6 * step; ++i) ticks.push_back(i * step);
+    return ticks;
+  }
+
+ private:
+  bool is_log_;
+  double from_, to_, low_ = 0, high_ = 1;
+};
+
+struct Range {
+  double low = INFINITY, high = -INFINITY;
+  void take(double v) { low = std::min(low, v), high = std::max(high, v); }
+  bool is_empty() const { return !(low <= high); }
+};
+
+/// What must be in sight; linear axes that nearly reach zero begin there, and leave some air above.
+Range range_of(const Plot& plot, bool is_y) {
+  Range range;
+  const bool is_log = is_y ? plot.is_log_y : plot.is_log_x;
+  for (const Series& s : plot.series)
+    for (const double v : is_y ? s.y : s.x)
+      if (std::isfinite(v) && (!is_log || v > 0)) range.take(v);
+  if (is_y)
+    for (const Band& band : plot.bands) range.take(band.low), range.take(band.high);
+  if (range.is_empty()) range = {is_log ? 1.0 : 0.0, is_log ? 10.0 : 1.0};
+  if (is_log) return {std::pow(10.0, std::floor(std::log10(range.low))), std::pow(10.0, std::ceil(std::log10(range.high)))};
+  const double size = std::max(range.high - range.low, 1e-12 * std::max(1.0, std::abs(range.high)));
+  if (!is_y) return range;
+  const bool from_zero = range.low >= 0 && range.low < 0.4 * size;
+  return {from_zero ? 0.0 : range.low - 0.06 * size, range.high + 0.06 * size};
+}
+
+void add_text(std::string& svg, double x, double y, const char* anchor, const char* kind, const std::string& text, const std::string& more = "") {
+  svg += "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" text-anchor=\"" + anchor + "\" class=\"" + kind + "\"" + more + ">" + escape_html(text) + "</text>\n";
+}
+
+void add_line(std::string& svg, double x1, double y1, double x2, double y2, const char* kind) {
+  svg += "<line x1=\"" + number(x1) + "\" y1=\"" + number(y1) + "\" x2=\"" + number(x2) + "\" y2=\"" + number(y2) + "\" class=\"" + kind + "\"/>\n";
+}
+
+bool has_marks_only(const Series& series) { return series.stroke == Stroke::marks || series.stroke == Stroke::crosses; }
+
+/// A drawing of one plot while it is made.
+struct Drawing {
+  const Plot& plot;
+  Axis x, y;
+  double left, right, top, bottom;
+  std::string svg;
+
+  void add_axes() {
+    for (const double v : x.ticks(7)) {
+      add_line(svg, x.at(v), top, x.at(v), bottom, "grid");
+      add_text(svg, x.at(v), bottom + 16, "middle", "tick", short_number(v));
+    }
+    for (const double v : y.ticks(6)) {
+      add_line(svg, left, y.at(v), right, y.at(v), "grid");
+      add_text(svg, left - 6, y.at(v) + 4, "end", "tick", short_number(v));
+    }
+    add_line(svg, left, bottom, right, bottom, "axis"), add_line(svg, left, top, left, bottom, "axis");
+    add_text(svg, 0.5 * (left + right), bottom + 36, "middle", "title", plot.x_title);
+    const std::string turn = " transform=\"rotate(-90 15 " + number(0.5 * (top + bottom)) + ")\"";
+    add_text(svg, 15, 0.5 * (top + bottom), "middle", "title", plot.y_title, turn);
+    add_text(svg, left, 18, "start", "head", plot.title);
+  }
+
+  void add_bands() {
+    for (const Band& band : plot.bands)
+      svg += "<rect x=\"" + number(left) + "\" y=\"" + number(y.at(band.high)) + "\" width=\"" + number(right - left) + "\" height=\"" +
+             number(y.at(band.low) - y.at(band.high)) + "\" fill=\"" + colour(band.colour) + "\" fill-opacity=\"0.15\"/>\n";
+  }
+
+  void add_mark(double px, double py, double radius, const char* ink, bool is_filled) {
+    svg += "<circle cx=\"" + number(px) + "\" cy=\"" + number(py) + "\" r=\"" + number(radius) + "\" stroke=\"" + ink + "\" stroke-width=\"1.4\" fill=\"" + (is_filled ? ink : "white") + "\"/>\n";
+  }
+
+  void add_cross(double px, double py, const char* ink) {
+    for (const double slope : {-1.0, 1.0})
+      svg += "<line x1=\"" + number(px - 4) + "\" y1=\"" + number(py - 4 * slope) + "\" x2=\"" + number(px + 4) + "\" y2=\"" + number(py + 4 * slope) +
+             "\" stroke=\"" + ink + "\" stroke-width=\"1.6\"/>\n";
+  }
+
+  void add_series(const Series& series, const char* ink) {
+    std::string points;
+    std::vector<std::pair<double, double>> places;
+    for (std::size_t i = 0; i < series.x.size(); ++i)
+      if (x.can_show(series.x[i]) && y.can_show(series.y[i])) places.emplace_back(x.at(series.x[i]), y.at(series.y[i]));
+    for (const auto& [px, py] : places) points += number(px) + "," + number(py) + " ";
+    if (!has_marks_only(series))
+      svg += "<polyline fill=\"none\" stroke=\"" + std::string(ink) + "\" stroke-linejoin=\"round\" stroke-width=\"" + (series.stroke == Stroke::path ? "1" : "1.8") + "\"" +
+             (series.stroke == Stroke::dashed ? " stroke-dasharray=\"6 4\"" : "") + " points=\"" + points + "\"/>\n";
+    if (series.stroke == Stroke::crosses)
+      for (const auto& [px, py] : places) add_cross(px, py, ink);
+    if (series.stroke == Stroke::marks || series.stroke == Stroke::path)
+      for (std::size_t i = 0; i < places.size(); ++i)
+        add_mark(places[i].first, places[i].second, series.stroke == Stroke::path && i == 0 ? 4.5 : 3, ink, series.stroke == Stroke::path);
+  }
+
+  /// Below the axes, in two columns.
+  void add_legend(const std::vector<const char*>& inks) {
+    int entry = 0;
+    const auto place = [&] {
+      const double px = left + (entry % 2) * 0.5 * (right - left), py = bottom + 54 + kLegendRow * (entry / 2);
+      ++entry;
+      return std::pair{px, py};
+    };
+    for (std::size_t i = 0; i < plot.series.size(); ++i) {
+      const Series& s = plot.series[i];
+      if (s.name.empty()) continue;
+      const auto [px, py] = place();
+      if (s.stroke == Stroke::crosses)
+        add_cross(px + 11, py - 4, inks[i]);
+      else if (s.stroke == Stroke::marks)
+        add_mark(px + 11, py - 4, 3, inks[i], false);
+      else
+        svg += "<line x1=\"" + number(px) + "\" y1=\"" + number(py - 4) + "\" x2=\"" + number(px + 22) + "\" y2=\"" + number(py - 4) + "\" stroke=\"" + inks[i] +
+               "\" stroke-width=\"2\"" + (s.stroke == Stroke::dashed ? " stroke-dasharray=\"6 4\"" : "") + "/>\n";
+      if (s.stroke == Stroke::path) add_mark(px + 11, py - 4, 3, inks[i], true);
+      add_text(svg, px + 28, py, "start", "legend", s.name);
+    }
+    for (const Band& band : plot.bands) {
+      if (band.name.empty()) continue;
+      const auto [px, py] = place();
+      svg += "<rect x=\"" + number(px) + "\" y=\"" + number(py - 10) + "\" width=\"22\" height=\"11\" fill=\"" + colour(band.colour) + "\" fill-opacity=\"0.25\"/>\n";
+      add_text(svg, px + 28, py, "start", "legend", band.name);
+    }
+  }
+};
+
+int legend_rows(const Plot& plot) {
+  int entries = 0;
+  for (const Series& s : plot.series) entries += s.name.empty() ? 0 : 1;
+  for (const Band& band : plot.bands) entries += band.name.empty() ? 0 : 1;
+  return (entries + 1) / 2;
+}
+
+}  // namespace
+
+void write_points(JsonWriter& json, const Plot& plot) {
+  const auto write_list = [&](const char* key, const std::vector<double>& values) {
+    json.key(key).begin_list();
+    for (const double v : values) json.value(v);
+    json.end_list();
+  };
+  json.begin_object().member("title", std::string_view(plot.title));
+  json.member("x", std::string_view(plot.x_title)).member("y", std::string_view(plot.y_title)).key("series").begin_list();
+  for (const Series& s : plot.series) {
+    json.begin_object().member("name", std::string_view(s.name));
+    write_list("x", s.x), write_list("y", s.y);
+    json.end_object();
+  }
+  json.end_list().key("bands").begin_list();
+  for (const Band& band : plot.bands)
+    json.begin_object().member("name", std::string_view(band.name)).member("low", band.low).member("high", band.high).end_object();
+  json.end_list().end_object();
+}
+
+std::string escape_html(const std::string& text) {
+  std::string out;
+  for (const char c : text) switch (c) {
+      case '&': out += "&amp;"; break;
+      case '<': out += "&lt;"; break;
+      case '>': out += "&gt;"; break;
+      case '"': out += "&quot;"; break;
+      default: out += c;
+    }
+  return out;
+}
+
+std::string short_number(double value, int significant) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*g", significant, std::abs(value) < 1e-300 ? 0.0 : value);
+  return text;
+}
+
+std::string to_svg(const Plot& plot) {
+  const int whole_height = plot.height + int(kLegendRow * legend_rows(plot)) + 6;
+  const double left = kLeft, right = plot.width - kRight, top = kTop, bottom = plot.height - kBottom;
+  const Range xs = plot.x_range ? Range{plot.x_range->first, plot.x_range->second} : range_of(plot, false);
+  const Range ys = plot.y_range ? Range{plot.y_range->first, plot.y_range->second} : range_of(plot, true);
+  Drawing drawing{plot, Axis(xs.low, xs.high, plot.is_log_x, left, right), Axis(ys.low, ys.high, plot.is_log_y, bottom, top), left, right, top, bottom, ""};
+  std::string& svg = drawing.svg;
+  // Names of clips must differ within a page; the title and size of a plot make one.
+  const std::string clip = "c" + std::to_string(std::hash<std::string>{}(plot.title + plot.y_title + std::to_string(plot.series.size())) % 1000000007);
+  svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + std::to_string(plot.width) + " " + std::to_string(whole_height) + "\" width=\"" +
+        std::to_string(plot.width) + "\" height=\"" + std::to_string(whole_height) + "\" role=\"img\">\n<title>" + escape_html(plot.title) + "</title>\n";
+  svg += "<clipPath id=\"" + clip + "\"><rect x=\"" + number(left) + "\" y=\"" + number(top - 5) + "\" width=\"" + number(right - left + 5) + "\" height=\"" +
+         number(bottom - top + 10) + "\"/></clipPath>\n";
+  drawing.add_axes();
+  svg += "<g clip-path=\"url(#" + clip + ")\">\n";
+  drawing.add_bands();
+  std::vector<const char*> inks;
+  int next = 0;
+  for (const Series& s : plot.series) {
+    inks.push_back(colour(s.colour >= 0 ? s.colour : next++));
+    drawing.add_series(s, inks.back());
+  }
+  svg += "</g>\n";
+  drawing.add_legend(inks);
+  return svg + "</svg>\n";
+}
+
+}  // namespace ctpm

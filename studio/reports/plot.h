@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "studio/json_writer.h"
+
+namespace ctpm {
+
+/// How a series is drawn.
+enum class Stroke {
+  line,    ///< a full line
+  dashed,  ///< a dashed line
+  marks,   ///< a circle at each point, no line
+  crosses, ///< a cross at each point, no line
+  path,    ///< a thin line with a mark at each point, the first one larger: where something goes
+};
+
+/// Points of a line plot; `x` and `y` have the same length. Points that are not finite are left out.
+struct Series {
+  std::string name = {};  ///< in the legend; empty: not listed
+  std::vector<double> x = {}, y = {};
+  Stroke stroke = Stroke::line;
+  int colour = -1;  ///< index of the report's palette; -1: the next one that is free
+};
+
+/// A range of y that is tinted over the whole width: measured values.
+struct Band {
+  std::string name;
+  double low = 0, high = 0;
+  int colour = 0;
+};
+
+/// A line plot with axes, units, grid and legend.
+struct Plot {
+  std::string title = {};
+  std::string x_title = {}, y_title = {};  ///< with their units
+  std::vector<Series> series = {};
+  std::vector<Band> bands = {};
+  std::string caption = {};  ///< below the plot; empty: none
+  std::optional<std::pair<double, double>> x_range = {}, y_range = {};  ///< unset: all that is to be seen
+  bool is_log_x = false;  ///< x on a logarithmic axis; points with x <= 0 are left out
+  bool is_log_y = false;
+  int width = 520, height = 340;  ///< [pixels]
+};
+
+/// The plot as an SVG element that stands in a page by itself.
+std::string to_svg(const Plot& plot);
+
+/// The points of the plot as a JSON object: title, axes, series with their x and y, bands.
+void write_points(JsonWriter& json, const Plot& plot);
+
+/// Text as it may stand in HTML, SVG and attributes.
+std::string escape_html(const std::string& text);
+
+/// A number as a person writes it: few digits, no needless zeros.
+std::string short_number(double value, int significant = 4);
+
+}  // namespace ctpm

@@ -1,0 +1,129 @@
+#include "studio/reports/report.h"
+
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "studio/files.h"
+
+namespace ctpm {
+namespace {
+
+constexpr const char* kStyle = R"(
+body { font: 15px/1.5 system-ui, "Liberation Sans", "DejaVu Sans", sans-serif; color: #222; background: #fff; max-width: 1120px; margin: 2rem auto; padding: 0 1.5rem; }
+h1 { font-size: 1.7rem; line-height: 1.25; margin: 0 0 .3rem; }
+h2 { font-size: 1.25rem; margin: 2.4rem 0 .5rem; padding-top: .8rem; border-top: 1px solid #ddd; }
+.subtitle, .caption { color: #555; }
+.caption { font-size: 13px; margin: .3rem 0 0; max-width: 62em; }
+.head { font-weight: 600; margin: .8rem 0 .3rem; }
+.verdict { padding: .5rem .8rem; border-left: 5px solid; background: #f6f6f6; font-weight: 600; }
+.verdict.good { border-color: #009e73; } .verdict.bad { border-color: #c0392b; }
+.row { display: flex; flex-wrap: wrap; gap: 1.2rem; margin: .8rem 0; }
+figure { margin: 0; flex: 0 1 520px; max-width: 100%; }
+figure svg, figure img { max-width: 100%; height: auto; display: block; }
+figure img { border: 1px solid #ddd; }
+.table { overflow-x: auto; margin: .8rem 0 1.2rem; }
+table { border-collapse: collapse; font-size: 13.5px; font-variant-numeric: tabular-nums; }
+th, td { padding: .2rem .7rem; text-align: left; border-bottom: 1px solid #e4e4e4; }
+th { border-bottom: 2px solid #888; vertical-align: bottom; font-weight: 600; }
+td.n { text-align: right; white-space: nowrap; } td { min-width: 2.5em; max-width: 26em; }
+.v { padding: 0 .45rem; border-radius: 3px; font-weight: 600; }
+.v.met { background: #d8f0e6; color: #00654a; } .v.missed { background: #f6d5d1; color: #96271b; } .v.shown { background: #ececec; color: #555; }
+svg .grid { stroke: #e6e6e6; } svg .axis { stroke: #444; }
+svg text { font: 12px system-ui, "Liberation Sans", "DejaVu Sans", sans-serif; fill: #222; }
+svg .tick { fill: #555; font-size: 11.5px; } svg .head { font-weight: 600; font-size: 13.5px; }
+)";
+
+std::string base64(const std::vector<unsigned char>& bytes) {
+  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t rest = bytes.size() - i;
+    const unsigned word = unsigned(bytes[i]) << 16 | (rest > 1 ? unsigned(bytes[i + 1]) << 8 : 0u) | (rest > 2 ? unsigned(bytes[i + 2]) : 0u);
+    text += kDigits[word >> 18 & 63];
+    text += kDigits[word >> 12 & 63];
+    text += rest > 1 ? kDigits[word >> 6 & 63] : '=';
+    text += rest > 2 ? kDigits[word & 63] : '=';
+  }
+  return text;
+}
+
+std::string figure(const std::string& content, const std::string& caption) {
+  const std::string words = caption.empty() ? "" : "<figcaption class=\"caption\">" + escape_html(caption) + "</figcaption>";
+  return "<figure>" + content + words + "</figure>\n";
+}
+
+}  // namespace
+
+Report::Report(std::string title, std::string subtitle) : title_(std::move(title)), subtitle_(std::move(subtitle)) {}
+
+Result<Done> Report::add(const Section& section) {
+  add_heading(section.title);
+  for (const std::string& text : section.paragraphs) add_paragraph(text);
+  if (!section.plots.empty()) add_plots(section.plots);
+  if (!section.pictures.empty())
+    if (Result<Done> added = add_pictures(section.pictures); !added) return added;
+  for (const Table& table : section.tables) add_table(table);
+  return Done{};
+}
+
+void Report::add_heading(const std::string& text) { body_ += "<h2>" + escape_html(text) + "</h2>\n"; }
+void Report::add_paragraph(const std::string& text) { body_ += "<p>" + escape_html(text) + "</p>\n"; }
+void Report::add_verdict(bool is_good, const std::string& text) {
+  body_ += std::string("<p class=\"verdict ") + (is_good ? "good" : "bad") + "\">" + escape_html(text) + "</p>\n";
+}
+void Report::add_table(const Table& table) { body_ += to_html(table); }
+
+void Report::add_plots(const std::vector<Plot>& plots) {
+  body_ += "<div class=\"row\">\n";
+  for (const Plot& plot : plots) body_ += figure(to_svg(plot), plot.caption);
+  body_ += "</div>\n";
+}
+
+Result<Done> Report::add_pictures(const std::vector<Picture>& pictures) {
+  std::string row;
+  for (const Picture& picture : pictures) {
+    const Result<std::string> data = to_data_uri(picture.frame);
+    if (!data) return data.errors();
+    row += figure("<img alt=\"" + escape_html(picture.caption) + "\" src=\"" + *data + "\"/>", picture.caption);
+  }
+  body_ += "<div class=\"row\">\n" + row + "</div>\n";
+  return Done{};
+}
+
+std::string Report::html() const {
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"/><meta name=\"viewport\" content=\"width=device-width\"/><title>" + escape_html(title_) +
+         "</title><style>" + kStyle + "</style></head>\n<body>\n<h1>" + escape_html(title_) + "</h1>\n<p class=\"subtitle\">" + escape_html(subtitle_) + "</p>\n" + body_ +
+         "</body>\n</html>\n";
+}
+
+Result<std::string> to_data_uri(const Frame& frame) {
+  if (frame.width <= 0 || frame.height <= 0) return Error{"picture", "is empty", ""};
+  CTPM_CHECK(frame.rgb.size() == std::size_t(frame.width) * std::size_t(frame.height) * 3, "three bytes a pixel");
+  cv::Mat bgr(frame.height, frame.width, CV_8UC3);
+  for (std::size_t i = 0; i < frame.rgb.size(); ++i) bgr.data[i] = frame.rgb[i / 3 * 3 + (2 - i % 3)];
+  std::vector<unsigned char> png;
+  try {
+    if (!cv::imencode(".png", bgr, png)) return Error{"picture", "cannot be encoded as PNG", ""};
+  } catch (const cv::Exception& error) {
+    return Error{"picture", std::string("cannot be encoded as PNG: ") + error.what(), ""};
+  }
+  return "data:image/png;base64," + base64(png);
+}
+
+Result<Done> prepare_folder(const std::string& folder) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure) return Error{folder, "cannot be made: " + failure.message(), "give another folder with -o"};
+  return check_writable((std::filesystem::path(folder) / "report.html").string());
+}
+
+Result<Done> write_report(const std::string& folder, const std::vector<ReportFile>& files) {
+  if (Result<Done> ready = prepare_folder(folder); !ready) return ready;
+  for (const ReportFile& file : files)
+    if (Result<Done> written = write_text_file((std::filesystem::path(folder) / file.name).string(), file.text); !written) return written;
+  return Done{};
+}
+
+}  // namespace ctpm

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "studio/render/frame.h"
+#include "studio/reports/plot.h"
+#include "studio/reports/table.h"
+
+namespace ctpm {
+
+/// A picture with what it shows.
+struct Picture {
+  Frame frame;
+  std::string caption;
+};
+
+/// One part of a report: said first, then shown.
+struct Section {
+  std::string key;                      ///< name in JSON
+  std::string title;
+  std::vector<std::string> paragraphs;  ///< before everything else
+  std::vector<Plot> plots;
+  std::vector<Picture> pictures;
+  std::vector<Table> tables;
+};
+
+/// One self-contained HTML page: text, tables, line plots and pictures, nothing loaded from elsewhere.
+class Report {
+ public:
+  Report(std::string title, std::string subtitle);
+
+  void add_heading(const std::string& text);
+  void add_paragraph(const std::string& text);
+
+  /// A whole section under its heading. Error: a picture that cannot be encoded.
+  Result<Done> add(const Section& section);
+
+  /// A line that tells good from bad at a glance.
+  void add_verdict(bool is_good, const std::string& text);
+  void add_table(const Table& table);
+
+  /// Plots side by side, as many as fit in a row.
+  void add_plots(const std::vector<Plot>& plots);
+
+  /// Pictures side by side, as many as fit in a row, embedded as PNG. Error: a frame that cannot be encoded.
+  Result<Done> add_pictures(const std::vector<Picture>& pictures);
+
+  /// The page so far.
+  std::string html() const;
+
+ private:
+  std::string title_, subtitle_, body_;
+};
+
+/// A frame as `data:image/png;base64,...`. Error: an empty frame.
+Result<std::string> to_data_uri(const Frame& frame);
+
+/// A file of a report by its name within the report's folder.
+struct ReportFile {
+  std::string name, text;
+};
+
+/// Makes `folder` if need be and checks that it can be written: for before the work that a report is about.
+Result<Done> prepare_folder(const std::string& folder);
+
+/// Writes each file whole under a temporary name and renames it, so no reader ever sees half a file.
+/// Errors: those of files.h.
+Result<Done> write_report(const std::string& folder, const std::vector<ReportFile>& files);
+
+}  // namespace ctpm

@@ -1,0 +1,102 @@
+#include "studio/reports/table.h"
+
+#include <cstdio>
+
+#include "core/result.h"
+#include "studio/reports/plot.h"
+
+namespace ctpm {
+namespace {
+
+std::string whole_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+std::string html_cell(const Cell& cell, int digits) {
+  if (const auto* text = std::get_if<std::string>(&cell)) return "<td>" + escape_html(*text) + "</td>";
+  if (const auto* value = std::get_if<double>(&cell)) return "<td class=\"n\">" + short_number(*value, digits) + "</td>";
+  if (const auto* count = std::get_if<std::int64_t>(&cell)) return "<td class=\"n\">" + std::to_string(*count) + "</td>";
+  if (const auto* verdict = std::get_if<Verdict>(&cell))
+    return std::string("<td><span class=\"v ") + to_word(*verdict) + "\">" + to_word(*verdict) + "</span></td>";
+  return "<td></td>";
+}
+
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string csv_cell(const Cell& cell) {
+  if (const auto* text = std::get_if<std::string>(&cell)) return csv_text(*text);
+  if (const auto* value = std::get_if<double>(&cell)) return whole_number(*value);
+  if (const auto* count = std::get_if<std::int64_t>(&cell)) return std::to_string(*count);
+  if (const auto* verdict = std::get_if<Verdict>(&cell)) return to_word(*verdict);
+  return "";
+}
+
+void check_shape(const Table& table) {
+  for (const auto& row : table.rows) CTPM_CHECK(row.size() == table.columns.size(), "one cell for each column");
+}
+
+}  // namespace
+
+const char* to_word(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::met: return "met";
+    case Verdict::missed: return "missed";
+    case Verdict::shown: return "shown";
+  }
+  return "";
+}
+
+std::string to_html(const Table& table) {
+  check_shape(table);
+  std::string html = "<div class=\"table\">";
+  if (!table.title.empty()) html += "<p class=\"head\">" + escape_html(table.title) + "</p>";
+  html += "<table><thead><tr>";
+  for (const Column& column : table.columns) html += "<th>" + escape_html(column.title) + "</th>";
+  html += "</tr></thead><tbody>\n";
+  for (const auto& row : table.rows) {
+    html += "<tr>";
+    for (std::size_t i = 0; i < row.size(); ++i) html += html_cell(row[i], table.columns[i].digits);
+    html += "</tr>\n";
+  }
+  html += "</tbody></table>";
+  if (!table.caption.empty()) html += "<p class=\"caption\">" + escape_html(table.caption) + "</p>";
+  return html + "</div>\n";
+}
+
+std::string to_csv(const Table& table) {
+  check_shape(table);
+  std::string csv;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) csv += (i ? "," : "") + csv_text(table.columns[i].key);
+  csv += "\n";
+  for (const auto& row : table.rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) csv += (i ? "," : "") + csv_cell(row[i]);
+    csv += "\n";
+  }
+  return csv;
+}
+
+void write_rows(JsonWriter& json, const Table& table) {
+  check_shape(table);
+  json.begin_list();
+  for (const auto& row : table.rows) {
+    json.begin_object();
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string& key = table.columns[i].key;
+      if (const auto* text = std::get_if<std::string>(&row[i])) json.member(key, std::string_view(*text));
+      if (const auto* value = std::get_if<double>(&row[i])) json.member(key, *value);
+      if (const auto* count = std::get_if<std::int64_t>(&row[i])) json.member(key, *count);
+      if (const auto* verdict = std::get_if<Verdict>(&row[i])) json.member(key, to_word(*verdict));
+    }
+    json.end_object();
+  }
+  json.end_list();
+}
+
+}  // namespace ctpm
