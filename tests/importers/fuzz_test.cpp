@@ -105,14 +105,14 @@ void expect_sound(const Result<CheckedMesh>& mesh, const std::string& path) {
 class Fuzz : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(Fuzz, DamagedFilesEndAsAMeshOrAsAnError) {
-  constexpr double kLimit = 1.0;      // [s] for one file
-  constexpr double kSlack = 4.0;      // [s] a loaded machine may need to stop a child
-  constexpr std::int64_t kLeak = 64;  // [MiB] the heap may grow from use
+  constexpr double kLimit = 1.0;                       // [s] for one file
+  constexpr double kSlack = 4.0;                       // [s] a loaded machine may need to stop a child
+  [[maybe_unused]] constexpr std::int64_t kLeak = 64;  // [MiB] the heap may grow from use
   const Sample sample = samples()[GetParam()];
   const zoo::Folder folder;
   std::mt19937 random(std::uint32_t(20240501 + GetParam()));
   const int first_free = lowest_free_file();
-  const std::int64_t resident = resident_mib();
+  [[maybe_unused]] const std::int64_t resident = resident_mib();
   int accepted = 0;
   for (int round = 0; round < CTPM_FUZZ_ROUNDS; ++round) {
     SCOPED_TRACE(sample.name + ", round " + std::to_string(round));
