@@ -81,7 +81,7 @@ Vec3 whole_tenths(Vec3 p) {
 
 ScriptStep take(const std::string& tool, Vec3 at, Vec3 pointing) {
   ScriptStep step;
-  step.take = ScriptStep::Take{tool, whole_tenths(at), pointing};
+  step.take = ScriptStep::Take{tool, whole_tenths(at), pointing, {}};
   return step;
 }
 ScriptStep wait(double seconds) {
@@ -136,6 +136,8 @@ void add_cut(Script& script, const ToolSpec& scalpel, const Table& table, const 
   cut.cut = ScriptStep::Cut{{}, 0.040};
   for (const Vec3& tip : path) cut.cut->path.push_back(whole_tenths(table.to_world(tip)));
   script.steps.push_back(take(scalpel.name, table.to_world(path.front() + clear), down));
+  const Vec3 way = path.back() - path.front();
+  if (way.x != 0 || way.y != 0) script.steps.back().take->facing = whole_tenths(table.to_world(Vec3{way.x, way.y, 0} / norm(way)));
   leave.move = ScriptStep::Move{whole_tenths(table.to_world(path.back() + clear)), 0.080};
   script.steps.insert(script.steps.end(), {cut, wait(0.2), leave, wait(0.2), put_away(), wait(0.5)});
 }
@@ -148,7 +150,7 @@ Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organ
   const Top top(organs.front(), table);
   // Deep enough to be seen, and never through the organ.
   const Vec3 size = top.size();
-  const double depth = std::min(0.012, 0.2 * size.z), cut_depth = std::min(0.040, 0.45 * size.z);
+  const double depth = std::min(0.010, 0.2 * size.z), cut_depth = std::min(0.040, 0.45 * size.z);
   const double cut_length = std::min(0.6 * size.y, 0.080);
   // A little in front of the ridge, where a viewer before the organ can see it, unless the organ is too thin there.
   const auto seen = [&](double share, double forward) {
@@ -169,7 +171,7 @@ Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organ
   if (ball != none) add_press(script, *ball, table, seen(0.35, 0.12), depth, 0.5);
   if (scalpel != none) add_cut(script, *scalpel, table, cut_path(top, seen(0.42, 0.0), cut_length, cut_depth), cut_depth);
   // Pressing beside the cut opens it.
-  if (ball != none && scalpel != none) add_press(script, *ball, table, seen(0.50, 0.18), 1.3 * depth, 1.0);
+  if (ball != none && scalpel != none) add_press(script, *ball, table, seen(0.50, 0.18), 1.6 * depth, 1.0);
   if (script.steps.empty()) script.steps.push_back(wait(1));
   return script;
 }

@@ -20,6 +20,8 @@ void check_tool(Problems& problems, const std::string& at, const ScriptStep::Tak
                       known.empty() ? "the scene has no tools" : "its tools: " + known);
   }
   check_direction(problems, at + "/take/pointing", take.pointing);
+  if (take.facing && norm(cross(*take.facing, take.pointing)) <= 1e-6 * norm(*take.facing) * norm(take.pointing))
+    problems.add_rule(at + "/take/facing", "must not be zero or along pointing");
 }
 
 void check_steps(Problems& problems, const Script& script, const std::vector<std::string>& tool_names) {
@@ -49,6 +51,18 @@ Quat orientation_of(Vec3 pointing) {
   if (across < 1e-200 && to.z > 0) return {0, 1, 0, 0};  // straight up: half a turn about x
   const double length = std::sqrt(w * w + across);
   return {w / length, to.y / length, -to.x / length, 0};
+}
+
+/// `orientation` with a turn about the tool's own axis before it, so that the tool's +x looks to `facing` as well as it can.
+Quat facing(Quat orientation, Vec3 facing) {
+  const Vec3 local = rotate({orientation.w, -orientation.x, -orientation.y, -orientation.z}, facing);
+  const double length = std::sqrt(local.x * local.x + local.y * local.y);
+  if (length == 0) return orientation;
+  // Half of the angle whose cosine is x / length.
+  const double cosine = local.x / length;
+  const double w = std::sqrt((1 + cosine) / 2), z = (local.y < 0 ? -1 : 1) * std::sqrt((1 - cosine) / 2);
+  const Quat q = orientation;
+  return {q.w * w - q.z * z, q.x * w + q.y * z, q.y * w - q.x * z, q.z * w + q.w * z};
 }
 
 /// Share of the way after share `t` of the time: speed rises along a cubic in the first fifth and falls in
@@ -107,6 +121,7 @@ ScriptPlayer::ScriptPlayer(const Script& script, std::span<const Tool> tools, do
       CTPM_CHECK(it != tools.end(), "the script was read with the scene's tools");
       tool = std::int32_t(it - tools.begin());
       orientation = orientation_of(step.take->pointing);
+      if (step.take->facing) orientation = facing(orientation, *step.take->facing);
       hand = step.take->at;
       add_stretch(tool, orientation, hand, hand, tick_);
     }

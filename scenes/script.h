@@ -23,6 +23,7 @@ struct ScriptStep {
     std::string tool;         ///< name of a tool of the scene
     Vec3 at;                  ///< where its frame's origin appears [m]
     Vec3 pointing{0, 0, -1};  ///< direction from handle to tip; any length but zero
+    std::optional<Vec3> facing;  ///< where the tool's +x looks, a blade's cutting side; not along `pointing`
     friend bool operator==(const Take&, const Take&) = default;
   };
   struct Move {

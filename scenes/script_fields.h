@@ -23,6 +23,8 @@ void describe_fields(V& v, ScriptStep::Take& take) {
           units::millimetre, script_ranges::coordinate_mm);
   v.point(Key{"pointing", "Direction from handle to tip; any length but zero."}, take.pointing, units::none,
           script_ranges::direction);
+  v.point(Key{"facing", "Where a blade's cutting side looks; not along pointing.", false, "the shortest turn decides"},
+          take.facing, units::none, script_ranges::direction);
 }
 
 inline RecordInfo info_of(const ScriptStep::Move&) {

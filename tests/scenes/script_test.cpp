@@ -245,7 +245,7 @@ TEST(ScriptPlayer, TurnsMinusZOntoPointing) {
         Vec3{1e-4, 0, 1}, Vec3{0, -1e-6, 1}, Vec3{3e-9, 4e-9, 1}, Vec3{1e-30, 0, 1}, Vec3{1e-130, 0, 1},
         Vec3{1e-5, 1e-5, -1}, Vec3{2e-9, 0, 0}, Vec3{0, 0, 1e6}}) {
     Script script;
-    script.steps.emplace_back().take = ScriptStep::Take{"ball", {}, pointing};
+    script.steps.emplace_back().take = ScriptStep::Take{"ball", {}, pointing, {}};
     const Quat q = ScriptPlayer(script, tools_of_model(), kTick).at(0).world_from_tool;
     EXPECT_NEAR(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z, 1, kRounding);
     EXPECT_NEAR(norm(rotate(q, {0, 0, -1}) - pointing / norm(pointing)), 0, kRounding)
@@ -308,6 +308,21 @@ TEST(DefaultScript, PressesIntoTheTopOfABlockAndCutsIt) {
   EXPECT_LT(lowest[0] - 0.006, kTop - 0.005);
   EXPECT_LT(lowest[1], kTop - 0.015);
   for (const double z : lowest) EXPECT_GT(z, kTop / 2);
+}
+
+TEST(ScriptPlayer, FacingTurnsABladeAboutItsOwnAxisAlone) {
+  for (const Vec3 way : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, -1, 0}, Vec3{0.6, 0.8, 0}}) {
+    Script script;
+    script.steps.emplace_back().take = ScriptStep::Take{"scalpel", {}, {0.3, 0.1, -1}, way};
+    Tool scalpel;
+    scalpel.name = "scalpel", scalpel.kind = ToolKind::scalpel;
+    const Quat q = ScriptPlayer(script, std::span(&scalpel, 1), 1e-3).at(0).world_from_tool;
+    const Vec3 pointing = Vec3{0.3, 0.1, -1} / norm(Vec3{0.3, 0.1, -1});
+    EXPECT_NEAR(norm(rotate(q, {0, 0, -1}) - pointing), 0, 1e-14);
+    // What of the way is across the tool's axis is where +x looks.
+    const Vec3 across = way - dot(way, pointing) * pointing;
+    EXPECT_NEAR(norm(rotate(q, {1, 0, 0}) - across / norm(across)), 0, 1e-14);
+  }
 }
 
 TEST(DefaultScript, OfASceneWithoutToolsWaits) {
