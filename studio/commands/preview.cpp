@@ -19,18 +19,6 @@ struct PreviewArguments {
   LoadOptions load;
 };
 
-/// Both pictures side by side.
-Frame beside(const Frame& left, const Frame& right) {
-  Frame both{left.width + right.width, left.height, {}};
-  both.rgb.reserve(left.rgb.size() + right.rgb.size());
-  for (int row = 0; row < left.height; ++row)
-    for (const Frame* frame : {&left, &right}) {
-      const auto begin = frame->rgb.begin() + std::ptrdiff_t(row) * frame->width * 3;
-      both.rgb.insert(both.rgb.end(), begin, begin + std::ptrdiff_t(frame->width) * 3);
-    }
-  return both;
-}
-
 int run_preview(const PreviewArguments& arguments) {
   const Result<PictureSize> size = parse_picture_size(arguments.size);
   if (!size) return print_errors(size.errors());
@@ -51,7 +39,7 @@ int run_preview(const PreviewArguments& arguments) {
   Frame picture = (*renderer)->draw(state, options);
   if (arguments.spheres) {
     options.view = View::spheres;
-    picture = beside(picture, (*renderer)->draw(state, options));
+    picture = join_beside(picture, (*renderer)->draw(state, options));
   }
   if (const Result<Done> written = write_png(arguments.output, picture); !written) return print_errors(written.errors());
   std::printf("%s: %dx%d\n", arguments.output.c_str(), picture.width, picture.height);

@@ -186,7 +186,7 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
 /// Bottom left: the force of the last seconds.
 void Overlay::Parts::plan_plot(const OverlayData& data, Plan& plan) {
   if (data.history.empty()) return;
-  double top = 0.05;
+  double top = 0.1;
   for (const ForcePoint& p : data.history)
     if (p.time >= data.time - data.plot_span) top = std::max(top, p.force);
   plan.top_force = round_up(top);
