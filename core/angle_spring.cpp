@@ -18,7 +18,8 @@ void add(Coordinates& v, std::size_t i, Vec3 q) {
 
 }  // namespace
 
-void AngleElements::linearise(const State& state, double h, Coordinates& force, DiagonalBlocks& blocks) const {
+void AngleElements::linearise(const State& state, double h, Coordinates& force,
+                              DiagonalBlocks& blocks) const {
   const AngleSprings& springs = model_.angle_springs;
   const std::size_t n = state.position.size();
   for (std::size_t i = 0; i < springs.size(); ++i) {

@@ -6,7 +6,8 @@
 
 namespace ctpm {
 
-/// The angle springs of a Model (Fig. 1b). Their law is linear, so the matrix needs nothing that changes from tick to tick.
+/// The angle springs of a Model (Fig. 1b). Their law is linear, so the matrix needs nothing that changes from
+/// tick to tick.
 class AngleElements {
  public:
   explicit AngleElements(const Model& model) : model_(model) {}
@@ -21,7 +22,9 @@ class AngleElements {
   double elastic_energy(const State& state) const;
 
  private:
-  bool lives(const State& state, std::size_t i) const { return state.angle_severed.empty() || !state.angle_severed[i]; }
+  bool lives(const State& state, std::size_t i) const {
+    return state.angle_severed.empty() || !state.angle_severed[i];
+  }
 
   const Model& model_;
 };

@@ -9,12 +9,16 @@ namespace {
 /// Below this length [m] an element has no direction and gives no force.
 constexpr double kShortest = 1e-12;
 
-double distance(const Vec3Array& p, std::int32_t a, std::int32_t b) { return norm(p[std::size_t(b)] - p[std::size_t(a)]); }
+double distance(const Vec3Array& p, std::int32_t a, std::int32_t b) {
+  return norm(p[std::size_t(b)] - p[std::size_t(a)]);
+}
 
 }  // namespace
 
-AxialElements::AxialElements(const Model& model) : model_(model), edge_count_(std::int32_t(model.edges.size())) {
-  const auto group = [&](const std::vector<std::int32_t>& a, const std::vector<std::int32_t>& b, std::int32_t offset) {
+AxialElements::AxialElements(const Model& model)
+    : model_(model), edge_count_(std::int32_t(model.edges.size())) {
+  const auto group = [&](const std::vector<std::int32_t>& a, const std::vector<std::int32_t>& b,
+                         std::int32_t offset) {
     for (std::size_t i = 0; i < a.size(); ++i) {
       const bool goes_on = i > 0 && a[i] == a[i - 1] + 1 && b[i] == b[i - 1] + 1;
       if (goes_on)
@@ -26,8 +30,8 @@ AxialElements::AxialElements(const Model& model) : model_(model), edge_count_(st
   group(model.edges.a, model.edges.b, 0);
   group(model.tpms.a, model.tpms.b, edge_count_);
   const std::size_t count = model.edges.size() + model.tpms.size();
-  for (auto* array : {&direction_[0], &direction_[1], &direction_[2], &root_[0], &root_[1], &root_[2], &transverse_,
-                      &tension_, &stiffness_})
+  for (auto* array : {&direction_[0], &direction_[1], &direction_[2], &root_[0], &root_[1], &root_[2],
+                      &transverse_, &tension_, &stiffness_})
     array->assign(count, 0.0);
   if (model.has_softening) {
     third_ = model.edges.third;
@@ -37,14 +41,15 @@ AxialElements::AxialElements(const Model& model) : model_(model), edge_count_(st
   }
 }
 
-void AxialElements::linearise(const State& state, std::span<const double> softness, double h, Coordinates& force,
-                              DiagonalBlocks& blocks) {
+void AxialElements::linearise(const State& state, std::span<const double> softness, double h,
+                              Coordinates& force, DiagonalBlocks& blocks) {
   for (const Run& run : runs_) linearise_run(run, state, softness, h, force, blocks);
 }
 
-void AxialElements::linearise_run(const Run& run, const State& state, std::span<const double> softness, double h,
-                                  Coordinates& force, DiagonalBlocks& blocks) {
-  const auto n = std::size_t(run.count), e0 = std::size_t(run.first), a0 = std::size_t(run.a), b0 = std::size_t(run.b);
+void AxialElements::linearise_run(const Run& run, const State& state, std::span<const double> softness,
+                                  double h, Coordinates& force, DiagonalBlocks& blocks) {
+  const auto n = std::size_t(run.count), e0 = std::size_t(run.first), a0 = std::size_t(run.a),
+             b0 = std::size_t(run.b);
   const std::size_t spheres = state.position.size();
   const bool is_tpm = run.first >= edge_count_;
   const std::size_t t0 = is_tpm ? e0 - std::size_t(edge_count_) : 0;
@@ -52,7 +57,7 @@ void AxialElements::linearise_run(const Run& run, const State& state, std::span<
   // Direction and length.
   const double *xa = &state.position.x[a0], *ya = &state.position.y[a0], *za = &state.position.z[a0];
   const double *xb = &state.position.x[b0], *yb = &state.position.y[b0], *zb = &state.position.z[b0];
-  double *__restrict nx = &direction_[0][e0], *__restrict ny = &direction_[1][e0], *__restrict nz = &direction_[2][e0];
+  double* __restrict nx = &direction_[0][e0], * __restrict ny = &direction_[1][e0], * __restrict nz = &direction_[2][e0];
   double* __restrict length = &transverse_[e0];  // the coupling takes its place below
   for (std::size_t i = 0; i < n; ++i) {
     const double dx = xb[i] - xa[i], dy = yb[i] - ya[i], dz = zb[i] - za[i];
@@ -62,7 +67,7 @@ void AxialElements::linearise_run(const Run& run, const State& state, std::span<
   }
 
   // Elastic tension and axial stiffness that act in this step.
-  double *__restrict tension = &tension_[e0], *__restrict stiffness = &stiffness_[e0];
+  double* __restrict tension = &tension_[e0], * __restrict stiffness = &stiffness_[e0];
   if (is_tpm) {
     const TwoSphereTpms& m = model_.tpms;
     for (std::size_t i = 0; i < n; ++i) {
@@ -76,7 +81,8 @@ void AxialElements::linearise_run(const Run& run, const State& state, std::span<
     }
   } else if (model_.edges.c.empty()) {
     const double *k = &model_.edges.k[e0], *rest = &model_.edges.rest_length[e0];
-    for (std::size_t i = 0; i < n; ++i) tension[i] = k[i] * (length[i] - rest[i]), stiffness[i] = h * h * k[i];
+    for (std::size_t i = 0; i < n; ++i)
+      tension[i] = k[i] * (length[i] - rest[i]), stiffness[i] = h * h * k[i];
   } else {
     const double *k = &model_.edges.k[e0], *c = &model_.edges.c[e0], *rest = &model_.edges.rest_length[e0];
     for (std::size_t i = 0; i < n; ++i)
@@ -101,9 +107,9 @@ void AxialElements::linearise_run(const Run& run, const State& state, std::span<
     }
   }
 
-  // Couplings. Tension stiffens across the element; compression would soften and is left out, which keeps the matrix
-  // positive definite.
-  double *__restrict mx = &root_[0][e0], *__restrict my = &root_[1][e0], *__restrict mz = &root_[2][e0];
+  // Couplings. Tension stiffens across the element; compression would soften and is left out, which keeps the
+  // matrix positive definite.
+  double* __restrict mx = &root_[0][e0], * __restrict my = &root_[1][e0], * __restrict mz = &root_[2][e0];
   double* const transverse = length;
   for (std::size_t i = 0; i < n; ++i) {
     const double across = length[i] > kShortest ? h * h * std::max(tension[i], 0.0) / length[i] : 0.0;
@@ -111,14 +117,16 @@ void AxialElements::linearise_run(const Run& run, const State& state, std::span<
     mx[i] = nx[i] * root, my[i] = ny[i] * root, mz[i] = nz[i] * root, transverse[i] = across;
   }
 
-  // Forces and diagonal blocks on the first, then on the second ends; the two ranges may overlap, so two loops.
+  // Forces and diagonal blocks on the first, then on the second ends; the two ranges may overlap, so two
+  // loops.
   const auto scatter = [&](std::size_t end, double sign) {
     double *fx = &force[end], *fy = &force[spheres + end], *fz = &force[2 * spheres + end];
     for (std::size_t i = 0; i < n; ++i) {
       const double t = sign * tension[i];
       fx[i] += t * nx[i], fy[i] += t * ny[i], fz[i] += t * nz[i];
     }
-    double *xx = &blocks[end], *xy = xx + spheres, *xz = xy + spheres, *yy = xz + spheres, *yz = yy + spheres, *zz = yz + spheres;
+    double *xx = &blocks[end], *xy = xx + spheres, *xz = xy + spheres, *yy = xz + spheres, *yz = yy + spheres,
+           *zz = yz + spheres;
     for (std::size_t i = 0; i < n; ++i) {
       xx[i] += mx[i] * mx[i] + transverse[i], xy[i] += mx[i] * my[i], xz[i] += mx[i] * mz[i];
       yy[i] += my[i] * my[i] + transverse[i], yz[i] += my[i] * mz[i], zz[i] += mz[i] * mz[i] + transverse[i];
@@ -135,31 +143,37 @@ void AxialElements::apply(const Coordinates& v, Coordinates& result) const {
   for (const Run& run : runs_)
     for (std::size_t begin = 0; begin < std::size_t(run.count); begin += kBatch) {
       const std::size_t n = std::min(kBatch, std::size_t(run.count) - begin);
-      const std::size_t e = std::size_t(run.first) + begin, a = std::size_t(run.a) + begin, b = std::size_t(run.b) + begin;
+      const std::size_t e = std::size_t(run.first) + begin, a = std::size_t(run.a) + begin,
+                        b = std::size_t(run.b) + begin;
       const double *mx = &root_[0][e], *my = &root_[1][e], *mz = &root_[2][e], *beta = &transverse_[e];
       const double *va = &v[a], *vb = &v[b];
       for (std::size_t i = 0; i < n; ++i) {
-        const double dx = vb[i] - va[i], dy = vb[spheres + i] - va[spheres + i], dz = vb[2 * spheres + i] - va[2 * spheres + i];
+        const double dx = vb[i] - va[i], dy = vb[spheres + i] - va[spheres + i],
+                     dz = vb[2 * spheres + i] - va[2 * spheres + i];
         const double t = mx[i] * dx + my[i] * dy + mz[i] * dz;
         qx[i] = mx[i] * t + beta[i] * dx, qy[i] = my[i] * t + beta[i] * dy, qz[i] = mz[i] * t + beta[i] * dz;
       }
       double* ra = &result[a];
-      for (std::size_t i = 0; i < n; ++i) ra[i] -= qx[i], ra[spheres + i] -= qy[i], ra[2 * spheres + i] -= qz[i];
+      for (std::size_t i = 0; i < n; ++i)
+        ra[i] -= qx[i], ra[spheres + i] -= qy[i], ra[2 * spheres + i] -= qz[i];
       double* rb = &result[b];
-      for (std::size_t i = 0; i < n; ++i) rb[i] += qx[i], rb[spheres + i] += qy[i], rb[2 * spheres + i] += qz[i];
+      for (std::size_t i = 0; i < n; ++i)
+        rb[i] += qx[i], rb[spheres + i] += qy[i], rb[2 * spheres + i] += qz[i];
     }
 }
 
-void AxialElements::add_damping_forces(const State& state, std::span<const double> softness, const Coordinates& v,
-                                       Coordinates& force) const {
+void AxialElements::add_damping_forces(const State& state, std::span<const double> softness,
+                                       const Coordinates& v, Coordinates& force) const {
   if (model_.edges.c.empty()) return;
   const std::size_t spheres = v.size() / 3;
   for (std::size_t e = 0; e < model_.edges.size(); ++e) {
     if (!state.edge_severed.empty() && state.edge_severed[e]) continue;
     const auto a = std::size_t(model_.edges.a[e]), b = std::size_t(model_.edges.b[e]);
     const Vec3 direction{direction_[0][e], direction_[1][e], direction_[2][e]};
-    const Vec3 relative{v[b] - v[a], v[spheres + b] - v[spheres + a], v[2 * spheres + b] - v[2 * spheres + a]};
-    const double s = softness.empty() ? 1.0 : std::min({softness[a], softness[b], softness[std::size_t(third_[e])]});
+    const Vec3 relative{v[b] - v[a], v[spheres + b] - v[spheres + a],
+                        v[2 * spheres + b] - v[2 * spheres + a]};
+    const double s =
+        softness.empty() ? 1.0 : std::min({softness[a], softness[b], softness[std::size_t(third_[e])]});
     const Vec3 pull = s * model_.edges.c[e] * dot(direction, relative) * direction;
     force[a] += pull.x, force[spheres + a] += pull.y, force[2 * spheres + a] += pull.z;
     force[b] -= pull.x, force[spheres + b] -= pull.y, force[2 * spheres + b] -= pull.z;
@@ -171,8 +185,8 @@ void AxialElements::advance_kelvin(const Vec3Array& position, double h, State& s
   for (std::size_t t = 0; t < m.size(); ++t) {
     const double x = distance(position, m.a[t], m.b[t]) - m.rest_length[t];
     const double damping = m.kelvin_c[t] / h;
-    state.kelvin_elongation[t] =
-        (damping * state.kelvin_elongation[t] + m.spring_k[t] * x) / (m.spring_k[t] + m.kelvin_k[t] + damping);
+    state.kelvin_elongation[t] = (damping * state.kelvin_elongation[t] + m.spring_k[t] * x) /
+                                 (m.spring_k[t] + m.kelvin_k[t] + damping);
   }
 }
 
@@ -180,7 +194,8 @@ double AxialElements::elastic_energy(const State& state) const {
   double energy = 0;
   for (std::size_t e = 0; e < model_.edges.size(); ++e) {
     if (!state.edge_severed.empty() && state.edge_severed[e]) continue;
-    const double x = distance(state.position, model_.edges.a[e], model_.edges.b[e]) - model_.edges.rest_length[e];
+    const double x =
+        distance(state.position, model_.edges.a[e], model_.edges.b[e]) - model_.edges.rest_length[e];
     energy += 0.5 * model_.edges.k[e] * x * x;
   }
   return energy;

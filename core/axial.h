@@ -16,7 +16,8 @@ using Coordinates = std::vector<double>;
 using DiagonalBlocks = std::vector<double>;
 
 /// All axial elements of a Model, edges first, then two-sphere TPMs, with what one tick needs of each.
-/// Elements whose two ends both advance by one sphere are grouped into runs, over which loops need no index gathers.
+/// Elements whose two ends both advance by one sphere are grouped into runs, over which loops need no index
+/// gathers.
 class AxialElements {
  public:
   explicit AxialElements(const Model& model);
@@ -34,7 +35,8 @@ class AxialElements {
   void add_damping_forces(const State& state, std::span<const double> softness, const Coordinates& v,
                           Coordinates& force) const;
 
-  /// Advances the Kelvin elongations of the two-sphere TPMs to the end of a step of `h` [s] that moved to `position`.
+  /// Advances the Kelvin elongations of the two-sphere TPMs to the end of a step of `h` [s] that moved to
+  /// `position`.
   void advance_kelvin(const Vec3Array& position, double h, State& state) const;
 
   /// Elastic energy of the edges [J] at `position` (two-sphere TPMs have none of their own to give back).
@@ -44,7 +46,7 @@ class AxialElements {
   struct Run {
     std::int32_t first;  ///< first element
     std::int32_t count;
-    std::int32_t a, b;   ///< ends of the first element
+    std::int32_t a, b;  ///< ends of the first element
   };
   void linearise_run(const Run& run, const State& state, std::span<const double> softness, double h,
                      Coordinates& force, DiagonalBlocks& blocks);
@@ -52,12 +54,14 @@ class AxialElements {
   const Model& model_;
   std::int32_t edge_count_;
   std::vector<Run> runs_;
-  std::vector<std::int32_t> third_;  ///< like Edges::third, with the own first sphere where there is none; empty without softening
-  std::vector<double> direction_[3];  ///< unit vector from a to b, 0 where the ends coincide            (element_count)
-  std::vector<double> root_[3];       ///< direction times the root of the axial coupling [kg^1/2]       (element_count)
-  std::vector<double> transverse_;    ///< coupling across the direction: h^2 tension / length [kg], >= 0 (element_count)
-  std::vector<double> tension_;       ///< softened elastic force, pull positive [N]                     (element_count)
-  std::vector<double> stiffness_;     ///< what acts in the step [kg]                                    (element_count)
+  std::vector<std::int32_t>
+      third_;  ///< like Edges::third, with the own first sphere where there is none; empty without softening
+  std::vector<double> direction_[3];  ///< unit vector from a to b, 0 where the ends coincide (element_count)
+  std::vector<double> root_[3];  ///< direction times the root of the axial coupling [kg^1/2] (element_count)
+  std::vector<double>
+      transverse_;  ///< coupling across the direction: h^2 tension / length [kg], >= 0 (element_count)
+  std::vector<double> tension_;    ///< softened elastic force, pull positive [N] (element_count)
+  std::vector<double> stiffness_;  ///< what acts in the step [kg] (element_count)
 };
 
 }  // namespace ctpm

@@ -5,9 +5,10 @@
 
 namespace ctpm {
 
-/// One contact site of the paper: the five-sphere line over one triple, in the paper's own units so that its table can
-/// be read beside it: moduli in kPa/mm (the paper prints kPa), viscosity in kPa s/mm, lengths in mm, stress in kPa.
-/// Everything in this module is Bao & Wu, section 3; the network is never computed from it, only compared with it.
+/// One contact site of the paper: the five-sphere line over one triple, in the paper's own units so that its
+/// table can be read beside it: moduli in kPa/mm (the paper prints kPa), viscosity in kPa s/mm, lengths in
+/// mm, stress in kPa. Everything in this module is Bao & Wu, section 3; the network is never computed from
+/// it, only compared with it.
 struct Site {
   double spring = 0;       ///< K2 [kPa/mm], > 0
   double kelvin = 0;       ///< K1 [kPa/mm], > 0
@@ -29,24 +30,28 @@ double slow_stress(const Site& site, double depth);
 /// Stress `t` [s] after a sudden depth that is held [kPa], Eq. 11; Eq. 13 at t = 0.
 double relaxation_stress(const Site& site, double depth, double t);
 
-/// Depth `t` [s] after a sudden stress that is held [mm], Eq. 12 with lambda and theta taken at `depth`; Eq. 15 at t = 0.
-/// lambda depends on the depth itself, so this holds for a small step only; creep() gives the whole curve.
+/// Depth `t` [s] after a sudden stress that is held [mm], Eq. 12 with lambda and theta taken at `depth`; Eq.
+/// 15 at t = 0. lambda depends on the depth itself, so this holds for a small step only; creep() gives the
+/// whole curve.
 double creep_depth(const Site& site, double stress, double depth, double t);
 
-/// Depth at rest under a held stress [mm]: the limit of Eq. 12, solved for the depth that lambda itself depends on.
-/// Deviation: Eq. 16 as printed has a first term, sigma0 (1 + tan theta) / (lambda + K2), that the limit does not have.
+/// Depth at rest under a held stress [mm]: the limit of Eq. 12, solved for the depth that lambda itself
+/// depends on. Deviation: Eq. 16 as printed has a first term, sigma0 (1 + tan theta) / (lambda + K2), that
+/// the limit does not have.
 double slow_depth(const Site& site, double stress);
 
 /// Force on the probe [N]: stress times S0 (Eq. 17; 1 kPa mm^2 = 1e-3 N).
 double force_of_stress(const Site& site, double stress);
 
-/// Slow force as the paper's Table 1 gives it [N]: with the constraint, and divided by 1 + tan theta only for CTPM.
+/// Slow force as the paper's Table 1 gives it [N]: with the constraint, and divided by 1 + tan theta only for
+/// CTPM.
 double table_force(const Site& site, double depth, bool with_softening);
 
 /// Which form of the law is integrated over time.
 enum class Law {
   eq_10,      ///< the paper's Eq. 10, whose derivation holds lambda and theta constant
-  eqs_3_to_8  ///< Eqs. 3-8 as they stand; the same at rest, up to a few per cent apart while lambda changes fast
+  eqs_3_to_8  ///< Eqs. 3-8 as they stand; the same at rest, up to a few per cent apart while lambda changes
+              ///< fast
 };
 
 struct Sample {
@@ -55,9 +60,9 @@ struct Sample {
   double stress = 0;  ///< [kPa]
 };
 
-/// The law integrated for a given depth over time; `depth(t)` and its rate `rate(t)` [mm/s]; samples every `interval` [s].
-/// Fourth-order Runge-Kutta, halved until two runs agree to 1e-8 of the largest stress; kinks of the depth must fall on
-/// samples.
+/// The law integrated for a given depth over time; `depth(t)` and its rate `rate(t)` [mm/s]; samples every
+/// `interval` [s]. Fourth-order Runge-Kutta, halved until two runs agree to 1e-8 of the largest stress; kinks
+/// of the depth must fall on samples.
 std::vector<Sample> relaxation(const Site& site, const std::function<double(double)>& depth,
                                const std::function<double(double)>& rate, double duration, double interval,
                                Law law = Law::eq_10);

@@ -28,7 +28,8 @@ struct CgOutcome {
 /// Preconditioned conjugate gradients for a symmetric positive definite matrix. Owns its vectors.
 class ConjugateGradient {
  public:
-  explicit ConjugateGradient(std::size_t size) : residual_(size), preconditioned_(size), direction_(size), product_(size) {}
+  explicit ConjugateGradient(std::size_t size)
+      : residual_(size), preconditioned_(size), direction_(size), product_(size) {}
 
   /// Solves A x = b. `x` is the first guess and the result. `apply(in, out)` sets out = A in;
   /// `precondition(in, out)` sets out = P in with P an approximate inverse of A.
@@ -41,8 +42,8 @@ class ConjugateGradient {
 };
 
 template <class Apply, class Precondition>
-CgOutcome ConjugateGradient::solve(const std::vector<double>& b, std::vector<double>& x, const CgLimits& limits,
-                                   Apply&& apply, Precondition&& precondition) {
+CgOutcome ConjugateGradient::solve(const std::vector<double>& b, std::vector<double>& x,
+                                   const CgLimits& limits, Apply&& apply, Precondition&& precondition) {
   const std::size_t n = b.size();
   apply(x, product_);
   for (std::size_t i = 0; i < n; ++i) residual_[i] = b[i] - product_[i];
@@ -50,7 +51,8 @@ CgOutcome ConjugateGradient::solve(const std::vector<double>& b, std::vector<dou
   direction_ = preconditioned_;
   double energy = fixed_order_dot(residual_, preconditioned_);
   const double first_energy = energy;
-  const double enough = std::max(first_energy * limits.relative * limits.relative, limits.absolute * limits.absolute);
+  const double enough =
+      std::max(first_energy * limits.relative * limits.relative, limits.absolute * limits.absolute);
 
   CgOutcome outcome;
   while (energy > enough && outcome.iterations < limits.max_iterations) {

@@ -36,8 +36,8 @@ void ConstraintElements::measure_tilt(const State& state, std::vector<double>& s
   }
 }
 
-void ConstraintElements::linearise(const State& state, std::span<const double> softness, double h, Coordinates& force,
-                                   DiagonalBlocks& blocks) {
+void ConstraintElements::linearise(const State& state, std::span<const double> softness, double h,
+                                   Coordinates& force, DiagonalBlocks& blocks) {
   const Constraints& lines = model_.constraints;
   const std::size_t spheres = state.position.size();
   active_.clear(), isotropic_.clear(), along_.clear();
@@ -53,9 +53,11 @@ void ConstraintElements::linearise(const State& state, std::span<const double> s
     const Vec3 pull = -lambda * u;
     force[c] += pull.x, force[spheres + c] += pull.y, force[2 * spheres + c] += pull.z;
     for (const std::size_t end : {a, e})
-      force[end] -= 0.5 * pull.x, force[spheres + end] -= 0.5 * pull.y, force[2 * spheres + end] -= 0.5 * pull.z;
+      force[end] -= 0.5 * pull.x, force[spheres + end] -= 0.5 * pull.y,
+          force[2 * spheres + end] -= 0.5 * pull.z;
 
-    // d(lambda u)/du = lambda I + 2 k' cos sin^2 along u; the softening is held, which keeps it positive definite.
+    // d(lambda u)/du = lambda I + 2 k' cos sin^2 along u; the softening is held, which keeps it positive
+    // definite.
     const double isotropic = h * h * lambda, along = h * h * 2 * lines.k[i] * cosine * sine * sine * soft;
     if (isotropic + along < kNegligibleCoupling * model_.mass[c]) continue;
     active_.push_back(std::int32_t(i)), isotropic_.push_back(isotropic);
@@ -75,7 +77,9 @@ void ConstraintElements::apply(const Coordinates& v, Coordinates& result) const 
   const Constraints& lines = model_.constraints;
   const std::size_t spheres = v.size() / 3;
   const auto get = [&](std::size_t i) { return Vec3{v[i], v[spheres + i], v[2 * spheres + i]}; };
-  const auto add = [&](std::size_t i, Vec3 q) { result[i] += q.x, result[spheres + i] += q.y, result[2 * spheres + i] += q.z; };
+  const auto add = [&](std::size_t i, Vec3 q) {
+    result[i] += q.x, result[spheres + i] += q.y, result[2 * spheres + i] += q.z;
+  };
   for (std::size_t n = 0; n < active_.size(); ++n) {
     const auto i = std::size_t(active_[n]);
     const auto a = std::size_t(lines.a[i]), c = std::size_t(lines.c[i]), e = std::size_t(lines.e[i]);

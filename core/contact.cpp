@@ -29,7 +29,8 @@ void BallContact::find(const State& state, Vec3 centre, double radius, Vec3 velo
     const double penetration = reach - distance;
     const Vec3 slip = state.velocity[i] - velocity;
     const double speed = norm(slip - dot(slip, normal) * normal);
-    const double stick = kStickTime * model_.contact_k, limit = model_.contact_friction * model_.contact_k * penetration;
+    const double stick = kStickTime * model_.contact_k,
+                 limit = model_.contact_friction * model_.contact_k * penetration;
     const double drag = model_.contact_friction > 0 ? (speed * stick > limit ? limit / speed : stick) : 0.0;
     contacts_.push_back({std::int32_t(i), normal, penetration, drag});
   }
@@ -40,11 +41,13 @@ void BallContact::linearise(double h, Coordinates& force, DiagonalBlocks& blocks
   for (const Contact& contact : contacts_) {
     const auto i = std::size_t(contact.sphere);
     const Vec3 n = contact.normal;
-    const Vec3 push = model_.contact_k * contact.penetration * n + contact.drag * (velocity_ - dot(velocity_, n) * n);
+    const Vec3 push =
+        model_.contact_k * contact.penetration * n + contact.drag * (velocity_ - dot(velocity_, n) * n);
     force[i] += push.x, force[spheres + i] += push.y, force[2 * spheres + i] += push.z;
     const double across = h * contact.drag, along = h * h * model_.contact_k - across;
     double* block = &blocks[i];
-    block[0] += along * n.x * n.x + across, block[spheres] += along * n.x * n.y, block[2 * spheres] += along * n.x * n.z;
+    block[0] += along * n.x * n.x + across, block[spheres] += along * n.x * n.y,
+        block[2 * spheres] += along * n.x * n.z;
     block[3 * spheres] += along * n.y * n.y + across, block[4 * spheres] += along * n.y * n.z;
     block[5 * spheres] += along * n.z * n.z + across;
   }

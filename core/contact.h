@@ -10,8 +10,9 @@
 
 namespace ctpm {
 
-/// One sphere that a tool presses: a penalty spring along the line between the centres, and drag across it that is
-/// viscous while the surfaces stick and limited by Coulomb's law when they slip; both solved implicitly.
+/// One sphere that a tool presses: a penalty spring along the line between the centres, and drag across it
+/// that is viscous while the surfaces stick and limited by Coulomb's law when they slip; both solved
+/// implicitly.
 struct Contact {
   std::int32_t sphere;
   Vec3 normal;         ///< unit vector from the tool to the sphere
@@ -33,7 +34,8 @@ class BallContact {
   /// result += coupling of a step of `h` [s] times `v`.
   void apply(double h, const Coordinates& v, Coordinates& result) const;
 
-  /// Removes contacts that would pull their sphere after a step of `h` [s] with velocity `v` [m/s]. True if any was.
+  /// Removes contacts that would pull their sphere after a step of `h` [s] with velocity `v` [m/s]. True if
+  /// any was.
   bool drop_pulling(double h, const Coordinates& v);
 
   /// Force on the tool [N] after the step.

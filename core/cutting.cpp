@@ -9,7 +9,8 @@ namespace {
 /// Six times the signed volume of the tetrahedron a b c d.
 double volume(Vec3 a, Vec3 b, Vec3 c, Vec3 d) { return dot(b - a, cross(c - a, d - a)); }
 
-/// Does the segment p-q meet the triangle a b c? Touching an edge or corner counts; a segment in the plane does not.
+/// Does the segment p-q meet the triangle a b c? Touching an edge or corner counts; a segment in the plane
+/// does not.
 bool segment_meets_triangle(Vec3 p, Vec3 q, Vec3 a, Vec3 b, Vec3 c) {
   const double side_p = volume(p, a, b, c), side_q = volume(q, a, b, c);
   if ((side_p > 0) == (side_q > 0) && side_p != 0 && side_q != 0) return false;
@@ -43,22 +44,25 @@ Box box_of(Points... points) {
   return box;
 }
 
-/// Severs the live elements for which `crosses(a, b)` holds, then the constraints and angle springs that lost an edge.
+/// Severs the live elements for which `crosses(a, b)` holds, then the constraints and angle springs that lost
+/// an edge.
 template <class Crosses>
 std::int32_t sever(const Model& model, State& state, Crosses&& crosses) {
   std::int32_t count = 0;
   const auto sever_axial = [&](const auto& elements, std::vector<std::uint8_t>& severed) {
     for (std::size_t i = 0; i < elements.size(); ++i)
-      if (!severed[i] && crosses(std::size_t(elements.a[i]), std::size_t(elements.b[i]))) severed[i] = 1, ++count;
+      if (!severed[i] && crosses(std::size_t(elements.a[i]), std::size_t(elements.b[i])))
+        severed[i] = 1, ++count;
   };
   sever_axial(model.edges, state.edge_severed);
   sever_axial(model.tpms, state.tpm_severed);
   if (count == 0) return 0;
   const auto sever_lines = [&](const auto& lines, std::vector<std::uint8_t>& severed) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      const bool lost = std::any_of(std::begin(lines.edge), std::end(lines.edge), [&](const std::vector<std::int32_t>& edge) {
-        return state.edge_severed[std::size_t(edge[i])] != 0;
-      });
+      const bool lost = std::any_of(std::begin(lines.edge), std::end(lines.edge),
+                                    [&](const std::vector<std::int32_t>& edge) {
+                                      return state.edge_severed[std::size_t(edge[i])] != 0;
+                                    });
       if (lost && !severed[i]) severed[i] = 1, ++count;
     }
   };
@@ -78,7 +82,8 @@ std::int32_t sever_swept_by_blade(const Model& model, const BladeEdge& before, c
   const Box sweep = box_of(before.tip, before.heel, after.tip, after.heel);
   return sever(model, state, [&](std::size_t a, std::size_t b) {
     const Vec3 p = position[a], q = position[b];
-    return sweep.meets(box_of(p, q)) && segment_meets_sweep(p, q, before.tip, before.heel, after.tip, after.heel);
+    return sweep.meets(box_of(p, q)) &&
+           segment_meets_sweep(p, q, before.tip, before.heel, after.tip, after.heel);
   });
 }
 

@@ -8,9 +8,9 @@
 
 namespace ctpm {
 
-/// The one list of everything in a Model and a State. Storing, reading, hashing and comparing are all made from it.
-/// `visit(name, member)` is called for each member in a fixed order; members are arithmetic values, enums,
-/// Vec3, Quat, std::string, or vectors of numbers. A Vec3Array is visited as its three coordinates.
+/// The one list of everything in a Model and a State. Storing, reading, hashing and comparing are all made
+/// from it. `visit(name, member)` is called for each member in a fixed order; members are arithmetic values,
+/// enums, Vec3, Quat, std::string, or vectors of numbers. A Vec3Array is visited as its three coordinates.
 /// Names are stored in session files: never rename one, append new ones.
 template <class Points, class Visit>
 void visit_points(std::string_view x, std::string_view y, std::string_view z, Points& points, Visit&& visit) {
@@ -18,7 +18,7 @@ void visit_points(std::string_view x, std::string_view y, std::string_view z, Po
 }
 
 template <class State_, class Visit>
-  requires std::is_same_v<std::remove_const_t<State_>, State>
+requires std::is_same_v<std::remove_const_t<State_>, State>
 void for_each_field(State_& s, Visit&& visit) {
   visit("tick", s.tick);
   visit_points("position.x", "position.y", "position.z", s.position, visit);
@@ -35,7 +35,7 @@ void for_each_field(State_& s, Visit&& visit) {
 }
 
 template <class Tool_, class Visit>
-  requires std::is_same_v<std::remove_const_t<Tool_>, Tool>
+requires std::is_same_v<std::remove_const_t<Tool_>, Tool>
 void for_each_field(Tool_& t, Visit&& visit) {
   visit("name", t.name);
   visit("kind", t.kind);
@@ -45,7 +45,7 @@ void for_each_field(Tool_& t, Visit&& visit) {
 }
 
 template <class Organ_, class Visit>
-  requires std::is_same_v<std::remove_const_t<Organ_>, OrganRange>
+requires std::is_same_v<std::remove_const_t<Organ_>, OrganRange>
 void for_each_field(Organ_& o, Visit&& visit) {
   visit("name", o.name);
   visit("first", o.first);
@@ -58,7 +58,7 @@ void for_each_field(Organ_& o, Visit&& visit) {
 
 /// As above; `organs` and `tools` are vectors of structs, whose own fields are visited by for_each_field.
 template <class Model_, class Visit>
-  requires std::is_same_v<std::remove_const_t<Model_>, Model>
+requires std::is_same_v<std::remove_const_t<Model_>, Model>
 void for_each_field(Model_& m, Visit&& visit) {
   visit("tick", m.tick);
   visit("gravity", m.gravity);

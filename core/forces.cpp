@@ -27,7 +27,7 @@ Vec3Array internal_forces(const Model& model, const State& state) {
   return force;
 }
 
-double elastic_energy(const Model& model, const State& state) { 
+double elastic_energy(const Model& model, const State& state) {
   return AxialElements(model).elastic_energy(state) + AngleElements(model).elastic_energy(state);
 }
 

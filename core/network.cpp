@@ -12,10 +12,11 @@ namespace {
 
 using Cell = std::array<std::int32_t, 3>;
 
-// Lattice directions, each with its first non-zero component in the order k, j, i positive, so that an edge's second
-// sphere always comes later in the (k, j, i) order than its first.
+// Lattice directions, each with its first non-zero component in the order k, j, i positive, so that an edge's
+// second sphere always comes later in the (k, j, i) order than its first.
 constexpr std::array<Cell, 3> kAxisDirections{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-constexpr std::array<Cell, 6> kDiagonalDirections{{{1, 1, 0}, {-1, 1, 0}, {1, 0, 1}, {-1, 0, 1}, {0, 1, 1}, {0, -1, 1}}};
+constexpr std::array<Cell, 6> kDiagonalDirections{
+    {{1, 1, 0}, {-1, 1, 0}, {1, 0, 1}, {-1, 0, 1}, {0, 1, 1}, {0, -1, 1}}};
 
 constexpr double kFewestPascalPerMetre = 1e-6;
 constexpr double kMostPascalPerMetre = 1e15;
@@ -32,19 +33,24 @@ double series(double k1, double k2) { return k1 * k2 / (k1 + k2); }
 
 void check_positive(Errors& errors, const std::string& where, const char* what, double value) {
   if (!(value >= kFewestPascalPerMetre && value <= kMostPascalPerMetre))
-    errors.push_back({where, std::string(what) + ": got " + std::to_string(value) + " Pa/m, must be in [1e-6, 1e15]", ""});
+    errors.push_back(
+        {where, std::string(what) + ": got " + std::to_string(value) + " Pa/m, must be in [1e-6, 1e15]", ""});
 }
 
 void check_material(Errors& errors, const std::string& where, const Material& m, Structure structure) {
   check_positive(errors, where, "spring modulus K2", m.spring);
   check_positive(errors, where, "Kelvin modulus K1", m.kelvin);
   if (structure == Structure::ctpm && !(m.constraint >= series(m.kelvin, m.spring)))
-    errors.push_back({where, "constraint modulus K': got " + std::to_string(m.constraint) +
-                                 " Pa/m, must be at least K1 K2 / (K1 + K2), which the triples already give", ""});
+    errors.push_back({where,
+                      "constraint modulus K': got " + std::to_string(m.constraint) +
+                          " Pa/m, must be at least K1 K2 / (K1 + K2), which the triples already give",
+                      ""});
   if (!(m.viscosity >= 0) || !std::isfinite(m.viscosity))
-    errors.push_back({where, "viscosity v1: got " + std::to_string(m.viscosity) + " Pa s/m, must be 0 or more", ""});
+    errors.push_back(
+        {where, "viscosity v1: got " + std::to_string(m.viscosity) + " Pa s/m, must be 0 or more", ""});
   if (!(m.density > 0 && m.stiffness_scale > 0 && m.calibration_area > 0 && m.calibration_spacing > 0))
-    errors.push_back({where, "density, stiffness scale, calibration area and spacing must all be more than 0", ""});
+    errors.push_back(
+        {where, "density, stiffness scale, calibration area and spacing must all be more than 0", ""});
 }
 
 Errors check_organ(const FilledOrgan& organ, const OrganSettings& settings) {
@@ -66,7 +72,8 @@ Errors check_organ(const FilledOrgan& organ, const OrganSettings& settings) {
   check_material(errors, where, settings.material, settings.structure);
   const auto check_sphere = [&](const char* what, std::int32_t sphere) {
     if (sphere < 0 || std::size_t(sphere) >= organ.centre.size())
-      errors.push_back({where, std::string(what) + " sphere " + std::to_string(sphere) + " does not exist", ""});
+      errors.push_back(
+          {where, std::string(what) + " sphere " + std::to_string(sphere) + " does not exist", ""});
   };
   for (const std::int32_t sphere : settings.anchored) check_sphere("anchored", sphere);
   for (const OrganSettings::Guide& guide : settings.guides) check_sphere("guided", guide.sphere);
@@ -91,7 +98,8 @@ Stiffness stiffness_of(const Material& m, double spacing) {
           (m.constraint - series(m.kelvin, m.spring)) * area};
 }
 
-/// Builds the elements of one organ line by line, then brings the edges into the order in which they are computed.
+/// Builds the elements of one organ line by line, then brings the edges into the order in which they are
+/// computed.
 class LineTiler {
  public:
   LineTiler(Model& model, const FilledOrgan& organ, const OrganSettings& settings, std::int32_t first_sphere)
@@ -155,7 +163,9 @@ class LineTiler {
 
   void tile_run(const std::vector<std::int32_t>& run, double rest_length) {
     switch (settings_.structure) {
-      case Structure::mass_spring: tile_springs(run, rest_length); break;
+      case Structure::mass_spring:
+        tile_springs(run, rest_length);
+        break;
       case Structure::angle_mass_spring:
         for (std::size_t i = 0; i + 2 < run.size(); ++i)
           angles_.push_back({run[i], run[i + 1], run[i + 2], next_line_number_ + std::int32_t(i),
@@ -165,7 +175,9 @@ class LineTiler {
       case Structure::tpm:
         for (std::size_t i = 0; i + 1 < run.size(); ++i) add_tpm(run, i, rest_length);
         break;
-      case Structure::ctpm: tile_triples(run, rest_length); break;
+      case Structure::ctpm:
+        tile_triples(run, rest_length);
+        break;
     }
   }
 
@@ -206,8 +218,8 @@ class LineTiler {
     tpms_.push_back({run[first], run[first + 1], rest_length, mean_over(run, first, 2)});
   }
 
-  /// Moves one direction's elements into the Model, sorted by their first sphere: along a lattice row both ends then
-  /// advance by one from edge to edge, and the element loops run without index gathers.
+  /// Moves one direction's elements into the Model, sorted by their first sphere: along a lattice row both
+  /// ends then advance by one from edge to edge, and the element loops run without index gathers.
   void flush_direction() {
     const auto by_first = [](const auto& p, const auto& q) { return p.a < q.a; };
     std::stable_sort(edges_.begin(), edges_.end(), by_first);
@@ -229,13 +241,15 @@ class LineTiler {
     for (const Constraint& c : constraints_) {
       Constraints& all = model_.constraints;
       all.a.push_back(c.a), all.c.push_back(c.c), all.e.push_back(c.e), all.k.push_back(c.k);
-      for (std::size_t i = 0; i < 4; ++i) all.edge[i].push_back(edge_of_line_number[std::size_t(c.line_number[i])]);
+      for (std::size_t i = 0; i < 4; ++i)
+        all.edge[i].push_back(edge_of_line_number[std::size_t(c.line_number[i])]);
     }
     for (const Angle& angle : angles_) {
       AngleSprings& all = model_.angle_springs;
       all.a.push_back(angle.a), all.b.push_back(angle.b), all.c.push_back(angle.c);
       all.k.push_back(angle.k);
-      for (std::size_t i = 0; i < 2; ++i) all.edge[i].push_back(edge_of_line_number[std::size_t(angle.line_number) + i]);
+      for (std::size_t i = 0; i < 2; ++i)
+        all.edge[i].push_back(edge_of_line_number[std::size_t(angle.line_number) + i]);
     }
     edges_.clear(), tpms_.clear(), constraints_.clear(), angles_.clear();
     next_line_number_ = 0;
@@ -254,8 +268,8 @@ class LineTiler {
   std::int32_t next_line_number_ = 0;
 };
 
-/// How far from its centre a tool touches a sphere: as far as the surface is for the outermost layer, so that the
-/// tool meets the surface one sees, and the sphere's own radius further in.
+/// How far from its centre a tool touches a sphere: as far as the surface is for the outermost layer, so that
+/// the tool meets the surface one sees, and the sphere's own radius further in.
 double contact_radius_of(const FilledOrgan& organ, std::size_t sphere) {
   if (organ.layer[sphere] != 1) return organ.sphere_radius;
   return std::clamp(organ.depth[sphere], organ.sphere_radius, organ.spacing);
@@ -271,11 +285,13 @@ void add_spheres(Model& model, const FilledOrgan& organ, const OrganSettings& se
                          organ.spacing);
   }
   model.held_axes.resize(first + organ.centre.size(), 0);
-  for (const OrganSettings::Guide& guide : settings.guides) model.held_axes[first + std::size_t(guide.sphere)] = guide.axes;
-  for (const std::int32_t sphere : settings.anchored) model.held_axes[first + std::size_t(sphere)] = kAnchored;
+  for (const OrganSettings::Guide& guide : settings.guides)
+    model.held_axes[first + std::size_t(guide.sphere)] = guide.axes;
+  for (const std::int32_t sphere : settings.anchored)
+    model.held_axes[first + std::size_t(sphere)] = kAnchored;
   const int layers = *std::max_element(organ.layer.begin(), organ.layer.end());
-  model.organs.push_back({settings.name, std::int32_t(first), std::int32_t(organ.centre.size()), organ.sphere_radius,
-                          organ.spacing, settings.damage_depth, layers});
+  model.organs.push_back({settings.name, std::int32_t(first), std::int32_t(organ.centre.size()),
+                          organ.sphere_radius, organ.spacing, settings.damage_depth, layers});
 }
 
 /// Gives back the arrays of features that no element uses.
@@ -302,7 +318,8 @@ Result<Done> add_organ(Model& model, const FilledOrgan& organ, const OrganSettin
   for (const Cell& direction : kAxisDirections) tiler.tile(direction);
   if (settings.lattice == LatticeKind::cubic_18)
     for (const Cell& direction : kDiagonalDirections) tiler.tile(direction);
-  const bool softens = settings.structure == Structure::ctpm && settings.has_softening && model.constraints.size() > 0;
+  const bool softens =
+      settings.structure == Structure::ctpm && settings.has_softening && model.constraints.size() > 0;
   model.has_softening = model.has_softening || softens;
   leave_out_unused(model);
   return Done{};

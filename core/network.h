@@ -21,20 +21,21 @@ enum class Structure : std::int32_t {
 
 /// Which lines of the lattice carry elements (scene key `lattice`).
 enum class LatticeKind : std::int32_t {
-  cubic_6 = 0,   ///< 3 axis lines; no shear stiffness, for rigs only
-  cubic_18 = 1,  ///< 3 axis and 6 face-diagonal lines; isotropic, Poisson ratio 1/4, Young's modulus 2.5 k / s
+  cubic_6 = 0,  ///< 3 axis lines; no shear stiffness, for rigs only
+  cubic_18 =
+      1,  ///< 3 axis and 6 face-diagonal lines; isotropic, Poisson ratio 1/4, Young's modulus 2.5 k / s
 };
 
 /// A tissue's moduli and the site they were calibrated on.
 struct Material {
-  double spring = 0;         ///< K2 [Pa/m], > 0
-  double kelvin = 0;         ///< K1 [Pa/m], > 0
-  double constraint = 0;     ///< K' [Pa/m], >= P2 = K1 K2 / (K1 + K2)
-  double viscosity = 0;      ///< v1 [Pa s/m], >= 0
-  double density = 1060;     ///< [kg/m^3], > 0
-  double stiffness_scale = 1;       ///< multiplies every stiffness and damping, > 0
-  double calibration_area = 0;      ///< S0 = pi R^2 of the ball the moduli were calibrated with [m^2], > 0
-  double calibration_spacing = 0;   ///< spacing of that site [m], > 0
+  double spring = 0;               ///< K2 [Pa/m], > 0
+  double kelvin = 0;               ///< K1 [Pa/m], > 0
+  double constraint = 0;           ///< K' [Pa/m], >= P2 = K1 K2 / (K1 + K2)
+  double viscosity = 0;            ///< v1 [Pa s/m], >= 0
+  double density = 1060;           ///< [kg/m^3], > 0
+  double stiffness_scale = 1;      ///< multiplies every stiffness and damping, > 0
+  double calibration_area = 0;     ///< S0 = pi R^2 of the ball the moduli were calibrated with [m^2], > 0
+  double calibration_spacing = 0;  ///< spacing of that site [m], > 0
 };
 
 /// A layer that follows the organ's surface: a capsule over a parenchyma.
@@ -62,11 +63,12 @@ struct OrganSettings {
     std::int32_t sphere;  ///< index within the organ
     std::uint8_t axes;    ///< that it may not leave, as in Model::held_axes
   };
-  std::vector<Guide> guides;           ///< spheres that run on rails or planes, for rigs
-  double damage_depth = 0;             ///< [m]; 0: no limit
+  std::vector<Guide> guides;  ///< spheres that run on rails or planes, for rigs
+  double damage_depth = 0;    ///< [m]; 0: no limit
 };
 
-/// Stiffness of an edge of the given spacing per unit of modulus [m^2]: S0_cal (s / s_cal) times the stiffness scale.
+/// Stiffness of an edge of the given spacing per unit of modulus [m^2]: S0_cal (s / s_cal) times the
+/// stiffness scale.
 double edge_area(const Material& material, double spacing);
 
 /// Appends the organ's spheres and the elements between them to `model`. Errors: an organ without spheres, a

@@ -36,8 +36,8 @@ inline std::string to_string(const Error& error) {
 }
 
 /// `CTPM_CHECK(condition, "what")`: for our own bugs only; bad input is a Result.
-#define CTPM_CHECK(condition, what) \
-  do {                              \
+#define CTPM_CHECK(condition, what)                                 \
+  do {                                                              \
     if (!(condition)) ::ctpm::fail_check(__FILE__, __LINE__, what); \
   } while (false)
 

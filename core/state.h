@@ -11,14 +11,14 @@ namespace ctpm {
 
 /// All that is needed to go on bit for bit. The velocity is also the warm start of the implicit solve.
 struct State {
-  std::int64_t tick = 0;                    ///< ticks done
-  Vec3Array position;                       ///< [m]                                     (sphere_count)
-  Vec3Array velocity;                       ///< [m/s]                                   (sphere_count)
-  std::vector<double> kelvin_elongation;    ///< internal variable of two-sphere TPMs [m] (tpm_count)
-  std::vector<std::uint8_t> edge_severed;        ///< 1: severed; empty if the scene has no scalpel  (edge_count)
-  std::vector<std::uint8_t> tpm_severed;         ///< as above                                       (tpm_count)
-  std::vector<std::uint8_t> constraint_severed;  ///< as above                                       (constraint_count)
-  std::vector<std::uint8_t> angle_severed;       ///< as above                                       (angle_count)
+  std::int64_t tick = 0;                   ///< ticks done
+  Vec3Array position;                      ///< [m]                                     (sphere_count)
+  Vec3Array velocity;                      ///< [m/s]                                   (sphere_count)
+  std::vector<double> kelvin_elongation;   ///< internal variable of two-sphere TPMs [m] (tpm_count)
+  std::vector<std::uint8_t> edge_severed;  ///< 1: severed; empty if the scene has no scalpel  (edge_count)
+  std::vector<std::uint8_t> tpm_severed;   ///< as above                                       (tpm_count)
+  std::vector<std::uint8_t> constraint_severed;  ///< as above (constraint_count)
+  std::vector<std::uint8_t> angle_severed;  ///< as above                                       (angle_count)
   Inputs last_inputs;                       ///< of the tick before, where a blade's sweep begins
 };
 

@@ -38,9 +38,20 @@ bool is_usable(const Model& model, const Inputs& inputs) {
 /// backward Euler linearised once: L-stable, first order, and as stiff a dashpot as one likes.
 struct Stepper::Workspace {
   explicit Workspace(const Model& m)
-      : model(m), axial(m), constraints(m), angles(m), contact(m), jacobi(m.sphere_count()), solver(3 * m.sphere_count()),
-        held_axes(m.held_axes), force(3 * m.sphere_count()), momentum(3 * m.sphere_count()), velocity(3 * m.sphere_count()),
-        blocks(6 * m.sphere_count()), softness(m.has_softening ? m.sphere_count() : 0), before(m.sphere_count()) {
+      : model(m),
+        axial(m),
+        constraints(m),
+        angles(m),
+        contact(m),
+        jacobi(m.sphere_count()),
+        solver(3 * m.sphere_count()),
+        held_axes(m.held_axes),
+        force(3 * m.sphere_count()),
+        momentum(3 * m.sphere_count()),
+        velocity(3 * m.sphere_count()),
+        blocks(6 * m.sphere_count()),
+        softness(m.has_softening ? m.sphere_count() : 0),
+        before(m.sphere_count()) {
     const double total_mass = fixed_order_dot(m.mass, std::vector<double>(m.mass.size(), 1.0));
     for (std::size_t i = 0; i < m.sphere_count(); ++i)
       if (m.held_axes[i] != 0 && m.held_axes[i] != kAnchored) guided.push_back(std::int32_t(i));
@@ -58,6 +69,9 @@ struct Stepper::Workspace {
   bool is_held(std::size_t sphere, std::size_t axis) const { return (held_axes[sphere] >> axis & 1) != 0; }
   bool check(StepReport& report) const;
   void advance(State& state, double h);
+  struct Grip;
+  bool substep(State& state, const Grip& grip, double h, double share, double time, StepReport& report);
+  void report_tool(const State& state, double h, StepReport& report) const;
 
   const Model& model;
   AxialElements axial;
@@ -68,15 +82,15 @@ struct Stepper::Workspace {
   ConjugateGradient solver;
   CgLimits limits;
   std::vector<std::uint8_t> held_axes;  ///< of the Model, and of the sphere that a pin holds
-  std::vector<std::int32_t> guided;   ///< spheres of which some axes are held and others not
+  std::vector<std::int32_t> guided;     ///< spheres of which some axes are held and others not
   std::int32_t pinned = -1;
-  Vec3 pin_velocity;                  ///< that brings the pinned sphere to the hand [m/s]
-  bool has_loads = true;              ///< loads act (they do not while the scene settles)
+  Vec3 pin_velocity;      ///< that brings the pinned sphere to the hand [m/s]
+  bool has_loads = true;  ///< loads act (they do not while the scene settles)
   Coordinates force, momentum, velocity;
   DiagonalBlocks blocks;
   std::vector<double> softness;
-  Vec3Array before;           ///< positions before the substep, for what moves through a blade
-  State backup;               ///< State before the tick, in case it has to be refused
+  Vec3Array before;  ///< positions before the substep, for what moves through a blade
+  State backup;      ///< State before the tick, in case it has to be refused
 };
 
 /// Forces and matrix at the State's positions; the dashpots' forces are all in the matrix.
@@ -126,7 +140,8 @@ void Stepper::Workspace::solve(const State& state, double h, double time, StepRe
   const std::size_t n = model.sphere_count();
   const double* old_velocity[3] = {state.velocity.x.data(), state.velocity.y.data(), state.velocity.z.data()};
   for (std::size_t axis = 0; axis < 3; ++axis)
-    for (std::size_t i = 0; i < n; ++i) velocity[axis * n + i] = is_held(i, axis) ? 0.0 : old_velocity[axis][i];
+    for (std::size_t i = 0; i < n; ++i)
+      velocity[axis * n + i] = is_held(i, axis) ? 0.0 : old_velocity[axis][i];
   if (pinned >= 0) {
     const auto i = std::size_t(pinned);
     velocity[i] = pin_velocity.x, velocity[n + i] = pin_velocity.y, velocity[2 * n + i] = pin_velocity.z;
@@ -137,7 +152,8 @@ void Stepper::Workspace::solve(const State& state, double h, double time, StepRe
     if (has_loads && model.loads.size() > 0) add_loads(time);
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (std::size_t i = 0; i < n; ++i)
-        momentum[axis * n + i] = is_held(i, axis) ? 0.0 : model.mass[i] * old_velocity[axis][i] + h * force[axis * n + i];
+        momentum[axis * n + i] =
+            is_held(i, axis) ? 0.0 : model.mass[i] * old_velocity[axis][i] + h * force[axis * n + i];
     uncouple_guided();
     jacobi.factorise(blocks);
     const CgOutcome outcome = solver.solve(
@@ -145,7 +161,8 @@ void Stepper::Workspace::solve(const State& state, double h, double time, StepRe
         [&](const Coordinates& in, Coordinates& out) {
           apply(state, h, in, out);
           for (std::size_t axis = 0; axis < 3; ++axis)
-            for (std::size_t i = 0; i < n; ++i) out[axis * n + i] = is_held(i, axis) ? 0.0 : out[axis * n + i];
+            for (std::size_t i = 0; i < n; ++i)
+              out[axis * n + i] = is_held(i, axis) ? 0.0 : out[axis * n + i];
         },
         [&](const Coordinates& in, Coordinates& out) { jacobi.apply(in, out); });
     report.iterations += outcome.iterations;
@@ -167,12 +184,14 @@ void Stepper::Workspace::uncouple_guided() {
   }
 }
 
-/// What the tissue does to the pin [N]: the pinned sphere's row of the balance of momentum, with the sign turned.
+/// What the tissue does to the pin [N]: the pinned sphere's row of the balance of momentum, with the sign
+/// turned.
 Vec3 Stepper::Workspace::force_on_pin(const State& state, double h) {
   const std::size_t n = model.sphere_count();
   const auto i = std::size_t(pinned);
   apply(state, h, velocity, momentum);
-  const Vec3 done{momentum[i], momentum[n + i], momentum[2 * n + i]}, own{force[i], force[n + i], force[2 * n + i]};
+  const Vec3 done{momentum[i], momentum[n + i], momentum[2 * n + i]},
+      own{force[i], force[n + i], force[2 * n + i]};
   return (model.mass[i] * state.velocity[i] + h * own - done) / h;
 }
 
@@ -181,7 +200,8 @@ bool Stepper::Workspace::check(StepReport& report) const {
   const std::size_t n = model.sphere_count();
   double fastest_squared = -1;
   for (std::size_t i = 0; i < n; ++i) {
-    const double squared = velocity[i] * velocity[i] + velocity[n + i] * velocity[n + i] + velocity[2 * n + i] * velocity[2 * n + i];
+    const double squared = velocity[i] * velocity[i] + velocity[n + i] * velocity[n + i] +
+                           velocity[2 * n + i] * velocity[2 * n + i];
     if (!(squared <= kFastest * kFastest)) {
       report.status = StepStatus::diverged;
       report.worst_sphere = std::int32_t(i);
@@ -197,7 +217,7 @@ void Stepper::Workspace::advance(State& state, double h) {
   std::vector<double>* position[3] = {&state.position.x, &state.position.y, &state.position.z};
   std::vector<double>* speed[3] = {&state.velocity.x, &state.velocity.y, &state.velocity.z};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    double *__restrict p = position[axis]->data(), *__restrict v = speed[axis]->data();
+    double* __restrict p = position[axis]->data(), * __restrict v = speed[axis]->data();
     const double* __restrict next = &velocity[axis * n];
     for (std::size_t i = 0; i < n; ++i) v[i] = next[i], p[i] += h * next[i];
   }
@@ -208,6 +228,47 @@ Stepper::Stepper(const Model& model) : model_(model), work_(std::make_unique<Wor
 Stepper::~Stepper() = default;
 Stepper::Stepper(Stepper&&) noexcept = default;
 
+/// What the tool in the hand is in this tick.
+struct Stepper::Workspace::Grip {
+  const Tool* tool = nullptr;  ///< null: the hand is empty
+  Vec3 from, to;               ///< way of the tool's origin in this tick [m]
+  BladeEdge blade;             ///< of a scalpel, at the end of the tick
+
+  bool is(ToolKind kind) const { return tool != nullptr && tool->kind == kind; }
+};
+
+/// One substep of `h` [s] that ends at `time` [s], with the hand at `share` of its way. False: the step must
+/// be refused.
+bool Stepper::Workspace::substep(State& state, const Grip& grip, double h, double share, double time,
+                                 StepReport& report) {
+  const Vec3 hand = grip.from + share * (grip.to - grip.from);
+  contact.clear();
+  if (pinned >= 0) pin_velocity = (hand - state.position[std::size_t(pinned)]) / h;
+  if (grip.is(ToolKind::ball))
+    contact.find(state, hand, grip.tool->radius, (grip.to - grip.from) / model.tick);
+  solve(state, h, time, report);
+  if (pinned >= 0) report.tool_force = force_on_pin(state, h);
+  if (!check(report)) return false;
+  if (grip.is(ToolKind::scalpel)) before = state.position;
+  advance(state, h);
+  if (grip.is(ToolKind::scalpel))
+    report.severed += sever_moved_through_blade(model, grip.blade, before, state.position, state);
+  return true;
+}
+
+/// What the hand feels after the last substep of `h` [s].
+void Stepper::Workspace::report_tool(const State& state, double h, StepReport& report) const {
+  if (pinned >= 0) {
+    const auto i = std::size_t(pinned);
+    report.depth = norm(state.position[i] - model.rest_position[i]);
+    report.contacts = 1;
+    return;
+  }
+  report.tool_force = contact.force_on_tool(h, velocity);
+  report.depth = contact.depth(state);
+  report.contacts = contact.count();
+}
+
 StepReport Stepper::step(State& state, const Inputs& inputs) {
   Workspace& work = *work_;
   StepReport report;
@@ -216,47 +277,29 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
     return report;
   }
   work.backup = state;
-  const Inputs last = state.last_inputs;
-  const bool is_held = inputs.tool >= 0 && last.tool == inputs.tool;
-  const Tool* tool = inputs.tool >= 0 ? &model_.tools[std::size_t(inputs.tool)] : nullptr;
-  const bool cuts = tool && tool->kind == ToolKind::scalpel;
-  if (cuts && is_held)
-    report.severed += sever_swept_by_blade(model_, blade_edge(*tool, last), blade_edge(*tool, inputs), state.position, state);
+  // A tool that was not in the hand before has no way behind it.
+  const Inputs last = inputs.tool >= 0 && state.last_inputs.tool == inputs.tool ? state.last_inputs : inputs;
+  Workspace::Grip grip;
+  grip.tool = inputs.tool >= 0 ? &model_.tools[std::size_t(inputs.tool)] : nullptr;
+  grip.from = last.position, grip.to = inputs.position;
+  if (grip.is(ToolKind::scalpel)) {
+    grip.blade = blade_edge(*grip.tool, inputs);
+    report.severed +=
+        sever_swept_by_blade(model_, blade_edge(*grip.tool, last), grip.blade, state.position, state);
+  }
+  work.held_axes = model_.held_axes;
+  work.pinned = grip.is(ToolKind::pin) ? grip.tool->sphere : -1;
+  if (work.pinned >= 0) work.held_axes[std::size_t(work.pinned)] = kAnchored;
 
   const std::int32_t substeps = model_.solver.substeps;
   const double h = model_.tick / substeps;
-  const Vec3 from = is_held ? last.position : inputs.position;
-  const bool pins = tool && tool->kind == ToolKind::pin;
-  work.held_axes = model_.held_axes;
-  work.pinned = pins ? tool->sphere : -1;
-  if (pins) work.held_axes[std::size_t(tool->sphere)] = kAnchored;
   for (std::int32_t k = 1; k <= substeps; ++k) {
-    work.contact.clear();
-    const double part = double(k) / substeps;
-    const Vec3 hand = from + part * (inputs.position - from);
-    if (pins) work.pin_velocity = (hand - state.position[std::size_t(tool->sphere)]) / h;
-    if (tool && tool->kind == ToolKind::ball) {
-      work.contact.find(state, hand, tool->radius, (inputs.position - from) / model_.tick);
-    }
-    work.solve(state, h, (double(state.tick) + part) * model_.tick, report);
-    if (pins) report.tool_force = work.force_on_pin(state, h);
-    if (!work.check(report)) {
-      std::swap(state, work.backup);
-      return report;
-    }
-    if (cuts) work.before = state.position;
-    work.advance(state, h);
-    if (cuts) report.severed += sever_moved_through_blade(model_, blade_edge(*tool, inputs), work.before, state.position, state);
+    const double share = double(k) / substeps;
+    if (work.substep(state, grip, h, share, (double(state.tick) + share) * model_.tick, report)) continue;
+    std::swap(state, work.backup);
+    return report;
   }
-  if (pins) {
-    const auto i = std::size_t(tool->sphere);
-    report.depth = norm(state.position[i] - model_.rest_position[i]);
-    report.contacts = 1;
-  } else {
-    report.tool_force = work.contact.force_on_tool(h, work.velocity);
-    report.depth = work.contact.depth(state);
-    report.contacts = work.contact.count();
-  }
+  work.report_tool(state, h, report);
   state.last_inputs = inputs;
   ++state.tick;
   return report;

@@ -19,17 +19,17 @@ enum class StepStatus : std::int32_t {
 /// What one tick did. Never thrown, always complete.
 struct StepReport {
   StepStatus status = StepStatus::ok;
-  std::int32_t worst_sphere = -1;   ///< sphere that failed or moves fastest; -1: none
-  double residual = 0;              ///< of the last solve, relative
-  std::int32_t iterations = 0;      ///< of all solves of the tick
-  Vec3 tool_force;                  ///< force of the tissue on the tool [N]
-  double depth = 0;                 ///< largest displacement from rest of a touched sphere, along the contact [m]
-  std::int32_t contacts = 0;        ///< spheres touched
-  std::int32_t severed = 0;         ///< elements severed in this tick
+  std::int32_t worst_sphere = -1;  ///< sphere that failed or moves fastest; -1: none
+  double residual = 0;             ///< of the last solve, relative
+  std::int32_t iterations = 0;     ///< of all solves of the tick
+  Vec3 tool_force;                 ///< force of the tissue on the tool [N]
+  double depth = 0;           ///< largest displacement from rest of a touched sphere, along the contact [m]
+  std::int32_t contacts = 0;  ///< spheres touched
+  std::int32_t severed = 0;   ///< elements severed in this tick
 };
 
-/// Advances States of one Model. Holds the kernels chosen for the Model and their scratch memory, nothing else:
-/// any State of the Model may be given at any call, in any order, and step() allocates nothing.
+/// Advances States of one Model. Holds the kernels chosen for the Model and their scratch memory, nothing
+/// else: any State of the Model may be given at any call, in any order, and step() allocates nothing.
 class Stepper {
  public:
   /// `model` must outlive the Stepper.
@@ -40,7 +40,8 @@ class Stepper {
   /// One tick. Same Model, State and Inputs: the same bits, on every machine.
   StepReport step(State& state, const Inputs& inputs);
 
-  /// Lets the scene come to rest under gravity without a tool, for at most `ticks` ticks; State::tick stays 0.
+  /// Lets the scene come to rest under gravity without a tool, for at most `ticks` ticks; State::tick stays
+  /// 0.
   StepReport settle(State& state, std::int64_t ticks);
 
  private:

@@ -36,7 +36,8 @@ struct Candidate {
 class CellIndex {
  public:
   explicit CellIndex(const FilledOrgan& organ) : organ_(organ), least_(organ.cell[0]), most_(organ.cell[0]) {
-    origin_ = organ.centre[0] - organ.spacing * Vec3{double(organ.cell[0][0]), double(organ.cell[0][1]), double(organ.cell[0][2])};
+    origin_ = organ.centre[0] - organ.spacing * Vec3{double(organ.cell[0][0]), double(organ.cell[0][1]),
+                                                     double(organ.cell[0][2])};
     for (const auto& c : organ.cell)
       for (std::size_t axis = 0; axis < 3; ++axis)
         least_[axis] = std::min(least_[axis], c[axis]), most_[axis] = std::max(most_[axis], c[axis]);
@@ -47,7 +48,8 @@ class CellIndex {
     in_row_.resize(organ.cell.size());
     std::vector<std::int32_t> next(first_.begin(), first_.end() - 1);
     for (std::size_t n = 0; n < organ.cell.size(); ++n)
-      in_row_[std::size_t(next[row_of(organ.cell[n][1], organ.cell[n][2])]++)] = {organ.cell[n][0], std::int32_t(n)};
+      in_row_[std::size_t(next[row_of(organ.cell[n][1], organ.cell[n][2])]++)] = {organ.cell[n][0],
+                                                                                  std::int32_t(n)};
     for (std::size_t row = 0; row + 1 < first_.size(); ++row)
       std::sort(in_row_.begin() + first_[row], in_row_.begin() + first_[row + 1],
                 [](const Entry& a, const Entry& b) { return a.i < b.i; });
@@ -57,16 +59,19 @@ class CellIndex {
   void near(Vec3 point, int rings, double reach, std::vector<Candidate>& found) const {
     found.clear();
     const Vec3 q = (point - origin_) / organ_.spacing;
-    const std::array<int, 3> centre{int(std::floor(q.x + 0.5)), int(std::floor(q.y + 0.5)), int(std::floor(q.z + 0.5))};
+    const std::array<int, 3> centre{int(std::floor(q.x + 0.5)), int(std::floor(q.y + 0.5)),
+                                    int(std::floor(q.z + 0.5))};
     const auto from = [&](std::size_t axis) { return std::max(centre[axis] - rings, least_[axis]); };
     const auto to = [&](std::size_t axis) { return std::min(centre[axis] + rings, most_[axis]); };
     for (int k = from(2); k <= to(2); ++k)
       for (int j = from(1); j <= to(1); ++j) {
         const std::size_t row = row_of(j, k);
         const auto end = in_row_.begin() + first_[row + 1];
-        auto entry = std::lower_bound(in_row_.begin() + first_[row], end, from(0), [](const Entry& e, int i) { return e.i < i; });
+        auto entry = std::lower_bound(in_row_.begin() + first_[row], end, from(0),
+                                      [](const Entry& e, int i) { return e.i < i; });
         for (; entry != end && entry->i <= to(0); ++entry)
-          if (const double d = norm(organ_.centre[std::size_t(entry->sphere)] - point); d < reach) found.push_back({d, entry->sphere});
+          if (const double d = norm(organ_.centre[std::size_t(entry->sphere)] - point); d < reach)
+            found.push_back({d, entry->sphere});
       }
   }
 
@@ -87,7 +92,8 @@ class CellIndex {
 };
 
 /// The spheres that a vertex follows: all within reach, or the nearest few where the reach catches too few.
-void find_followed(const FilledOrgan& organ, const CellIndex& index, Vec3 point, std::vector<Candidate>& found, double& reach) {
+void find_followed(const FilledOrgan& organ, const CellIndex& index, Vec3 point,
+                   std::vector<Candidate>& found, double& reach) {
   // The nearest few may lie just within the reach and stretch it by this much.
   constexpr double kStretch = 1.05;
   const double usual = kReachInSpacings * organ.spacing;
@@ -98,7 +104,8 @@ void find_followed(const FilledOrgan& organ, const CellIndex& index, Vec3 point,
                                  return c.distance < usual;
                                })) < fewest) {
     found.clear();
-    for (; found.size() < fewest; rings *= 2) index.near(point, rings, std::numeric_limits<double>::infinity(), found);
+    for (; found.size() < fewest; rings *= 2)
+      index.near(point, rings, std::numeric_limits<double>::infinity(), found);
   }
   std::sort(found.begin(), found.end());
   reach = std::max(usual, kStretch * found[fewest - 1].distance);
@@ -108,7 +115,8 @@ void find_followed(const FilledOrgan& organ, const CellIndex& index, Vec3 point,
 }
 
 /// Bindings of a run of vertices; `binding.first` begins at 0.
-void bind_run(const FilledOrgan& organ, const CellIndex& index, std::size_t begin, std::size_t end, SurfaceBinding& binding) {
+void bind_run(const FilledOrgan& organ, const CellIndex& index, std::size_t begin, std::size_t end,
+              SurfaceBinding& binding) {
   std::vector<Candidate> followed;
   std::vector<Vec3> centres;
   for (std::size_t v = begin; v < end; ++v) {
@@ -149,11 +157,14 @@ std::vector<double> follow_weights(Vec3 point, std::span<const Vec3> candidates,
     const Vec3 d = (candidates[i] - point) / radius;
     return Eigen::Vector4d(1, d.x, d.y, d.z);
   };
-  for (std::size_t i = 0; i < candidates.size(); ++i) moments += weight[i] / total * basis(i) * basis(i).transpose();
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    moments += weight[i] / total * basis(i) * basis(i).transpose();
   const Eigen::FullPivLU<Eigen::Matrix4d> lu(moments);
-  constexpr double kSpansSpace = 1e-4;  // smallest pivot against the largest; below it the weights would explode
+  constexpr double kSpansSpace =
+      1e-4;  // smallest pivot against the largest; below it the weights would explode
   const bool spans_space = std::abs(lu.matrixLU()(3, 3)) > kSpansSpace * std::abs(lu.matrixLU()(0, 0));
-  const Eigen::Vector4d correction = spans_space ? Eigen::Vector4d(lu.solve(Eigen::Vector4d::UnitX())) : Eigen::Vector4d::UnitX();
+  const Eigen::Vector4d correction =
+      spans_space ? Eigen::Vector4d(lu.solve(Eigen::Vector4d::UnitX())) : Eigen::Vector4d::UnitX();
   for (std::size_t i = 0; i < candidates.size(); ++i) weight[i] *= correction.dot(basis(i)) / total;
   return weight;
 }
@@ -171,7 +182,8 @@ void bind_surface(FilledOrgan& organ, int threads) {
       bind_run(organ, index, run * kRun, std::min((run + 1) * kRun, vertex_count), runs[run]);
   };
   std::vector<std::future<void>> others;
-  for (int t = 1; t < threads && std::size_t(t) < run_count; ++t) others.push_back(std::async(std::launch::async, work));
+  for (int t = 1; t < threads && std::size_t(t) < run_count; ++t)
+    others.push_back(std::async(std::launch::async, work));
   work();
   for (auto& other : others) other.get();
 
@@ -193,7 +205,8 @@ void deform_surface(const Surface& surface, const Vec3Array& position, std::int3
   vertex.assign(surface.vertex.size(), Vec3{});
   for (std::size_t v = 0; v < vertex.size(); ++v)
     for (std::int32_t entry = binding.first[v]; entry < binding.first[v + 1]; ++entry)
-      vertex[v] += binding.weight[std::size_t(entry)] * position[std::size_t(first_sphere + binding.sphere[std::size_t(entry)])];
+      vertex[v] += binding.weight[std::size_t(entry)] *
+                   position[std::size_t(first_sphere + binding.sphere[std::size_t(entry)])];
 }
 
 }  // namespace ctpm

@@ -10,10 +10,10 @@ namespace ctpm {
 
 /// What the program says to its caller.
 enum ExitCode : int {
-  exit_good = 0,               ///< done, and good
-  exit_bad_verdict = 1,        ///< done, and the verdict is bad: diverged, unstable, out of bounds
-  exit_bad_input = 2,          ///< bad usage or bad input
-  exit_partly_recovered = 3,   ///< done, but something could not be saved
+  exit_good = 0,              ///< done, and good
+  exit_bad_verdict = 1,       ///< done, and the verdict is bad: diverged, unstable, out of bounds
+  exit_bad_input = 2,         ///< bad usage or bad input
+  exit_partly_recovered = 3,  ///< done, but something could not be saved
 };
 
 /// Prints every error to stderr, one a line, and returns exit_bad_input.
@@ -22,7 +22,8 @@ int print_errors(const Errors& errors);
 /// Prints a line to stderr: progress and remarks; results go to stdout.
 void print_remark(const std::string& text);
 
-/// A line on stderr that says how far long work is and how long it will still take; silent where stderr is no terminal.
+/// A line on stderr that says how far long work is and how long it will still take; silent where stderr is no
+/// terminal.
 class ProgressLine {
  public:
   explicit ProgressLine(std::string what);

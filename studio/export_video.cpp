@@ -29,10 +29,14 @@ Errors check_options(const ExportOptions& options) {
 const char* structure_name(const SceneSpec& scene) {
   if (scene.organs.empty()) return "";
   switch (scene.organs.front().model) {
-    case Structure::mass_spring: return "mass-spring";
-    case Structure::angle_mass_spring: return "angle-mass-spring";
-    case Structure::tpm: return "TPM";
-    case Structure::ctpm: return "CTPM";
+    case Structure::mass_spring:
+      return "mass-spring";
+    case Structure::angle_mass_spring:
+      return "angle-mass-spring";
+    case Structure::tpm:
+      return "TPM";
+    case Structure::ctpm:
+      return "CTPM";
   }
   return "";
 }
@@ -54,7 +58,8 @@ class OverlayFeed {
     data_.force = norm(cursor.report().tool_force);
     data_.depth = cursor.report().depth;
     if (cursor.tick() % every_ == 0) data_.history.push_back({data_.time, data_.force});
-    if (data_.history.size() > 2 * kPlotPoints) data_.history.erase(data_.history.begin(), data_.history.end() - kPlotPoints - 1);
+    if (data_.history.size() > 2 * kPlotPoints)
+      data_.history.erase(data_.history.begin(), data_.history.end() - kPlotPoints - 1);
     if (!cursor.same_so_far() && same_) {
       same_ = false;
       data_.verdict = "replay differs from the recording since " + fixed(data_.time, 3) + " s";
@@ -86,14 +91,17 @@ std::string sidecar(SessionReader& reader, const ExportOptions& options, const E
   json.member("verdict", outcome.same_as_recorded ? "same" : "different");
   json.member("first_tick", options.range.from).member("last_tick", options.range.to);
   json.member("frames", outcome.video.frames).member("fps", outcome.video.fps).member("speed", options.speed);
-  json.member("codec", outcome.video.codec).member("width", outcome.video.width).member("height", outcome.video.height);
+  json.member("codec", outcome.video.codec)
+      .member("width", outcome.video.width)
+      .member("height", outcome.video.height);
   json.member("camera", options.camera).member("bytes", outcome.video.bytes);
   return json.end_object().text();
 }
 
 }  // namespace
 
-Result<ExportOutcome> export_video(SessionReader& reader, const std::string& path, const ExportOptions& options) {
+Result<ExportOutcome> export_video(SessionReader& reader, const std::string& path,
+                                   const ExportOptions& options) {
   if (Errors errors = check_options(options); !errors.empty()) return errors;
   if (Result<Done> writable = check_writable(path); !writable) return writable.errors();
   const Result<SceneText> scene = read_scene(reader.start().scene_text, reader.path() + " (its scene)");
@@ -119,14 +127,16 @@ Result<ExportOutcome> export_video(SessionReader& reader, const std::string& pat
   const auto frames = std::int64_t(std::ceil(double(options.range.to - options.range.from) / ticks_a_frame));
   for (std::int64_t frame = 0; frame < frames; ++frame) {
     if (options.should_stop && options.should_stop()) return stopped(path);
-    const auto shown = std::min<std::int64_t>(options.range.to, options.range.from + std::llround(double(frame + 1) * ticks_a_frame));
+    const auto shown = std::min<std::int64_t>(
+        options.range.to, options.range.from + std::llround(double(frame + 1) * ticks_a_frame));
     while (cursor->tick() < shown) {
       if (const Result<bool> went_on = cursor->step(); !went_on) return went_on.errors();
       feed.take(*cursor);
     }
     if (!feed.same() && !options.allow_diverged)
-      return Error{reader.path(), "the " + feed.data().verdict + "; no video was written",
-                   "ctpm verify names what differs; --allow-diverged exports all the same and says so on every frame"};
+      return Error{
+          reader.path(), "the " + feed.data().verdict + "; no video was written",
+          "ctpm verify names what differs; --allow-diverged exports all the same and says so on every frame"};
     Frame picture = (*renderer)->draw(cursor->state(), draw);
     overlay.draw(picture, feed.data());
     if (const Result<Done> added = (*writer)->add(picture); !added) return added.errors();
@@ -135,7 +145,8 @@ Result<ExportOutcome> export_video(SessionReader& reader, const std::string& pat
   const Result<VideoFacts> video = (*writer)->finish();
   if (!video) return video.errors();
   const ExportOutcome outcome{*video, feed.same()};
-  if (const Result<Done> written = write_text_file(video->path + ".json", sidecar(reader, options, outcome)); !written)
+  if (const Result<Done> written = write_text_file(video->path + ".json", sidecar(reader, options, outcome));
+      !written)
     return written.errors();
   return outcome;
 }

@@ -14,10 +14,10 @@ namespace ctpm {
 
 struct ExportOptions {
   PictureSize size;
-  double fps = 30;      ///< frames per second, in [1, 240]
-  double speed = 1;     ///< times real speed, > 0
-  std::string camera;   ///< name of a camera of the scene; empty: its first one, else a fitted one
-  TickRange range;      ///< ticks that are shown
+  double fps = 30;              ///< frames per second, in [1, 240]
+  double speed = 1;             ///< times real speed, > 0
+  std::string camera;           ///< name of a camera of the scene; empty: its first one, else a fitted one
+  TickRange range;              ///< ticks that are shown
   bool allow_diverged = false;  ///< go on although the replay differs from the recording
   std::function<void(std::int64_t done, std::int64_t total)> progress;
   std::function<bool()> should_stop;  ///< asked at every frame
@@ -28,9 +28,11 @@ struct ExportOutcome {
   bool same_as_recorded = true;
 };
 
-/// Replays a session into a video with overlay, beside it a sidecar `<video>.json` that says what it shows: session,
-/// verdict, frames, codec, size, camera. Errors: options out of range, an unknown camera, a damaged session, a replay
-/// that differs (unless allowed), an output that cannot be written, stopped. After an error no file is left behind.
-Result<ExportOutcome> export_video(SessionReader& reader, const std::string& path, const ExportOptions& options);
+/// Replays a session into a video with overlay, beside it a sidecar `<video>.json` that says what it shows:
+/// session, verdict, frames, codec, size, camera. Errors: options out of range, an unknown camera, a damaged
+/// session, a replay that differs (unless allowed), an output that cannot be written, stopped. After an error
+/// no file is left behind.
+Result<ExportOutcome> export_video(SessionReader& reader, const std::string& path,
+                                   const ExportOptions& options);
 
 }  // namespace ctpm

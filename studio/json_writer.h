@@ -8,7 +8,8 @@
 
 namespace ctpm {
 
-/// Writes JSON for machines: results of commands with --json. Numbers keep all their digits; what is not finite is null.
+/// Writes JSON for machines: results of commands with --json. Numbers keep all their digits; what is not
+/// finite is null.
 class JsonWriter {
  public:
   JsonWriter& begin_object() { return open('{'); }

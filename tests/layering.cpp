@@ -1,6 +1,8 @@
-// Proves the folder rules of the project from its own #include lines: studio -> {recordings, scenes, importers} -> core,
-// siblings never include each other, and a package's headers are seen by its owner alone, also through other headers.
-//   layering SOURCE_DIR       prints one line `file:line: error: ...` per broken rule; exit code 1 if there is any
+// Proves the folder rules of the project from its own #include lines: studio -> {recordings, scenes,
+// importers} -> core, siblings never include each other, and a package's headers are seen by its owner alone,
+// also through other headers.
+//   layering SOURCE_DIR       prints one line `file:line: error: ...` per broken rule; exit code 1 if there
+//   is any
 
 #include <algorithm>
 #include <array>
@@ -34,9 +36,18 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
 struct Package {
   std::string_view prefix, owner;
 };
-constexpr std::array<Package, 12> kPackages{{{"Eigen/", "core"}, {"assimp/", "importers"}, {"CGAL/", "importers"},
-    {"boost/", "importers"}, {"nlohmann/", "scenes"}, {"sqlite3", "recordings"}, {"zstd", "recordings"},
-    {"xxhash", "recordings"}, {"CLI/", "studio"}, {"GL/", "studio"}, {"opencv2/", "studio"}, {"gtest/", "tests"}}};
+constexpr std::array<Package, 12> kPackages{{{"Eigen/", "core"},
+                                             {"assimp/", "importers"},
+                                             {"CGAL/", "importers"},
+                                             {"boost/", "importers"},
+                                             {"nlohmann/", "scenes"},
+                                             {"sqlite3", "recordings"},
+                                             {"zstd", "recordings"},
+                                             {"xxhash", "recordings"},
+                                             {"CLI/", "studio"},
+                                             {"GL/", "studio"},
+                                             {"opencv2/", "studio"},
+                                             {"gtest/", "tests"}}};
 
 std::string folder_of(const std::string& path) { return path.substr(0, path.find('/')); }
 
@@ -55,7 +66,8 @@ class Sources {
   explicit Sources(const fs::path& root) {
     for (const auto& [folder, allowed] : kMayInclude)
       for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder))
-        if (const fs::path ending = entry.path().extension(); ending == ".h" || ending == ".cpp" || ending == ".inl")
+        if (const fs::path ending = entry.path().extension();
+            ending == ".h" || ending == ".cpp" || ending == ".inl")
           files_[fs::relative(entry.path(), root).generic_string()] = read_includes(entry.path());
   }
 
@@ -74,7 +86,8 @@ class Sources {
 
  private:
   static int report(const std::string& file, const Include& include, const std::string& why) {
-    std::printf("%s:%d: error: includes %s: %s\n", file.c_str(), include.line, include.path.c_str(), why.c_str());
+    std::printf("%s:%d: error: includes %s: %s\n", file.c_str(), include.line, include.path.c_str(),
+                why.c_str());
     return 1;
   }
 
@@ -91,7 +104,8 @@ class Sources {
     if (!seen.insert(path).second) return 0;
     for (const Package& package : kPackages)
       if (path.starts_with(package.prefix) && folder_of(file) != package.owner)
-        return report(file, include, "brings in " + path + ", which only " + std::string(package.owner) + " may include");
+        return report(file, include,
+                      "brings in " + path + ", which only " + std::string(package.owner) + " may include");
     const auto it = files_.find(path);
     if (it == files_.end()) return 0;
     int broken = 0;

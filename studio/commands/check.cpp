@@ -35,7 +35,8 @@ Command add_check(CLI::App& program) {
   CLI::App* app = program.add_subcommand("check", "Validates scenes with their meshes; all errors at once.");
   app->footer("Example: ctpm check scenes/liver.json");
   app->add_option("scenes", arguments->scenes, "Scene files (.json)")->required();
-  app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths, "Meshes may lie outside the scene's folder");
+  app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths,
+                "Meshes may lie outside the scene's folder");
   return {app, [arguments] { return run_check(*arguments); }};
 }
 

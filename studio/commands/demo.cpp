@@ -27,7 +27,8 @@ struct DemoArguments {
   std::string folder = "out";
 };
 
-/// Runs this program again with other arguments and returns its exit code: a process that shares nothing with this one.
+/// Runs this program again with other arguments and returns its exit code: a process that shares nothing with
+/// this one.
 int run_in_new_process(const std::vector<std::string>& arguments) {
   const pid_t child = fork();
   if (child < 0) return exit_bad_input;
@@ -45,14 +46,17 @@ int run_in_new_process(const std::vector<std::string>& arguments) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : exit_bad_input;
 }
 
-void say_step(int number, const std::string& what) { print_remark("[" + std::to_string(number) + "/5] " + what); }
+void say_step(int number, const std::string& what) {
+  print_remark("[" + std::to_string(number) + "/5] " + what);
+}
 
 int run_demo(const DemoArguments& arguments) {
   const fs::path folder = arguments.folder;
   std::error_code failure;
   fs::create_directories(folder, failure);
   if (failure) return print_errors({{arguments.folder, "cannot be made: " + failure.message(), ""}});
-  const std::string scene_file = (folder / "liver.json").string(), session_file = (folder / "demo.ctpm").string(),
+  const std::string scene_file = (folder / "liver.json").string(),
+                    session_file = (folder / "demo.ctpm").string(),
                     video_file = (folder / "demo.mp4").string();
   const auto start = std::chrono::steady_clock::now();
 
@@ -73,7 +77,8 @@ int run_demo(const DemoArguments& arguments) {
   Result<RecordOutcome> recorded = [&] {
     ProgressLine progress("recording");
     options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
-    return record_script(*scene, default_script(scene->scene.spec, scene->organs), session_file, true, options);
+    return record_script(*scene, default_script(scene->scene.spec, scene->organs), session_file, true,
+                         options);
   }();
   if (!recorded) return print_errors(recorded.errors());
   if (stop.came()) return print_errors({{session_file, "stopped", ""}});
@@ -101,14 +106,15 @@ int run_demo(const DemoArguments& arguments) {
   const SessionStatistics& s = recorded->statistics;
   std::printf("spheres         %zu in %d layers\n", model.sphere_count(), model.organs.front().layer_count);
   std::printf("elements        %zu, of which %lld severed\n", model.element_count(), (long long)s.severed);
-  std::printf("tick time       p50 %.3f ms, p99 %.3f ms; %lld of %lld ticks late\n", s.tick_time_p50 * 1e3, s.tick_time_p99 * 1e3,
-              (long long)recorded->run.late_ticks, (long long)s.ticks);
+  std::printf("tick time       p50 %.3f ms, p99 %.3f ms; %lld of %lld ticks late\n", s.tick_time_p50 * 1e3,
+              s.tick_time_p99 * 1e3, (long long)recorded->run.late_ticks, (long long)s.ticks);
   std::printf("ticks compared  %lld\n", (long long)s.ticks);
-  std::printf("verdict         %s\n", verified == exit_good ? "same as recorded, to the bit" : "DIFFERENT from what was recorded");
-  std::printf("video           %lld frames, %s, %dx%d\n", (long long)exported->video.frames, exported->video.codec.c_str(),
-              exported->video.width, exported->video.height);
-  std::printf("files           %s, %s, %s, %s, %s\n", scene_file.c_str(), imported->mesh_file.c_str(), imported->script_file.c_str(),
-              session_file.c_str(), exported->video.path.c_str());
+  std::printf("verdict         %s\n",
+              verified == exit_good ? "same as recorded, to the bit" : "DIFFERENT from what was recorded");
+  std::printf("video           %lld frames, %s, %dx%d\n", (long long)exported->video.frames,
+              exported->video.codec.c_str(), exported->video.width, exported->video.height);
+  std::printf("files           %s, %s, %s, %s, %s\n", scene_file.c_str(), imported->mesh_file.c_str(),
+              imported->script_file.c_str(), session_file.c_str(), exported->video.path.c_str());
   return verified == exit_good && exported->same_as_recorded ? exit_good : exit_bad_verdict;
 }
 
@@ -116,7 +122,8 @@ int run_demo(const DemoArguments& arguments) {
 
 Command add_demo(CLI::App& program) {
   auto arguments = std::make_shared<DemoArguments>();
-  CLI::App* app = program.add_subcommand("demo", "The main job, start to end: mesh, scene, session, verified replay, video.");
+  CLI::App* app = program.add_subcommand(
+      "demo", "The main job, start to end: mesh, scene, session, verified replay, video.");
   app->footer("Example: ctpm demo");
   app->add_option("-o,--output", arguments->folder, "Folder for what it makes")->capture_default_str();
   return {app, [arguments] { return run_demo(*arguments); }};

@@ -26,7 +26,8 @@ int run_export(ExportArguments& arguments) {
   const Result<PictureSize> size = parse_picture_size(arguments.size);
   if (!size) return print_errors(size.errors());
   arguments.options.size = *size;
-  const Result<TickRange> range = arguments.range.in_ticks(arguments.file, reader->start().model.tick, reader->tick_count());
+  const Result<TickRange> range =
+      arguments.range.in_ticks(arguments.file, reader->start().model.tick, reader->tick_count());
   if (!range) return print_errors(range.errors());
   arguments.options.range = *range;
   ProgressLine progress("exporting");
@@ -36,10 +37,11 @@ int run_export(ExportArguments& arguments) {
   const Result<ExportOutcome> outcome = export_video(*reader, arguments.output, arguments.options);
   if (!outcome) return print_errors(outcome.errors());
   if (!outcome->video.note.empty()) print_remark("warning: " + outcome->video.note);
-  std::printf("%s: %lld frames, %dx%d, %g frames/s, %s, %.1f MB; replay %s\n", outcome->video.path.c_str(),
-              (long long)outcome->video.frames, outcome->video.width, outcome->video.height, outcome->video.fps,
-              outcome->video.codec.c_str(), double(outcome->video.bytes) / 1e6,
-              outcome->same_as_recorded ? "same as recorded" : "DIFFERS from what was recorded; every frame says so");
+  std::printf(
+      "%s: %lld frames, %dx%d, %g frames/s, %s, %.1f MB; replay %s\n", outcome->video.path.c_str(),
+      (long long)outcome->video.frames, outcome->video.width, outcome->video.height, outcome->video.fps,
+      outcome->video.codec.c_str(), double(outcome->video.bytes) / 1e6,
+      outcome->same_as_recorded ? "same as recorded" : "DIFFERS from what was recorded; every frame says so");
   return outcome->same_as_recorded ? exit_good : exit_bad_verdict;
 }
 
@@ -53,9 +55,11 @@ Command add_export(CLI::App& program) {
   app->add_option("-o,--output", arguments->output, "Video file (.mp4)")->required();
   app->add_option("--size", arguments->size, "Width x height in pixels")->capture_default_str();
   app->add_option("--fps", arguments->options.fps, "Frames per second")->capture_default_str();
-  app->add_option("--camera", arguments->options.camera, "Name of a camera of the scene; its first one, else a fitted one");
+  app->add_option("--camera", arguments->options.camera,
+                  "Name of a camera of the scene; its first one, else a fitted one");
   app->add_option("--speed", arguments->options.speed, "Times real speed")->capture_default_str();
-  app->add_flag("--allow-diverged", arguments->options.allow_diverged, "Export although the replay differs, and say so on every frame");
+  app->add_flag("--allow-diverged", arguments->options.allow_diverged,
+                "Export although the replay differs, and say so on every frame");
   add_time_range(*app, arguments->range);
   return {app, [arguments] { return run_export(*arguments); }};
 }

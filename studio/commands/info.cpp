@@ -26,14 +26,22 @@ std::string utc(double unix_s) {
 
 const char* kind_name(EventKind kind) {
   switch (kind) {
-    case EventKind::contact_begins: return "contact begins";
-    case EventKind::contact_ends: return "contact ends";
-    case EventKind::cut: return "cut";
-    case EventKind::damage: return "damage";
-    case EventKind::late_tick: return "late tick";
-    case EventKind::device_lost: return "device lost";
-    case EventKind::device_back: return "device back";
-    case EventKind::note: return "note";
+    case EventKind::contact_begins:
+      return "contact begins";
+    case EventKind::contact_ends:
+      return "contact ends";
+    case EventKind::cut:
+      return "cut";
+    case EventKind::damage:
+      return "damage";
+    case EventKind::late_tick:
+      return "late tick";
+    case EventKind::device_lost:
+      return "device lost";
+    case EventKind::device_back:
+      return "device back";
+    case EventKind::note:
+      return "note";
   }
   return "unknown";
 }
@@ -41,19 +49,30 @@ const char* kind_name(EventKind kind) {
 void print_json(SessionReader& reader, const SessionStatistics& s, const std::vector<Event>& events) {
   const Model& model = reader.start().model;
   JsonWriter json;
-  json.begin_object().member("session_id", reader.session_id()).member("format_version", reader.format_version());
+  json.begin_object()
+      .member("session_id", reader.session_id())
+      .member("format_version", reader.format_version());
   json.member("created_utc", utc(reader.created_unix_s())).member("ended_cleanly", reader.ended_cleanly());
-  json.member("build", reader.start().build_fingerprint).member("tick_s", model.tick).member("ticks", reader.tick_count());
+  json.member("build", reader.start().build_fingerprint)
+      .member("tick_s", model.tick)
+      .member("ticks", reader.tick_count());
   json.member("duration_s", double(reader.tick_count()) * model.tick).member("spheres", model.sphere_count());
-  json.member("elements", model.element_count()).member("keyframes", s.keyframes).member("severed", s.severed);
-  json.member("late_ticks", s.late_ticks).member("tick_time_p50_s", s.tick_time_p50).member("tick_time_p99_s", s.tick_time_p99);
+  json.member("elements", model.element_count())
+      .member("keyframes", s.keyframes)
+      .member("severed", s.severed);
+  json.member("late_ticks", s.late_ticks)
+      .member("tick_time_p50_s", s.tick_time_p50)
+      .member("tick_time_p99_s", s.tick_time_p99);
   json.member("tick_time_p999_s", s.tick_time_p999).member("tick_time_max_s", s.tick_time_max);
   json.member("max_force_n", s.max_force).member("max_depth_m", s.max_depth);
   json.key("metadata").begin_object();
   for (const auto& [key, value] : reader.start().metadata) json.member(key, value);
   json.end_object().key("events").begin_list();
   for (const Event& event : events) {
-    json.begin_object().member("tick", event.tick).member("kind", kind_name(event.kind)).member("text", event.text);
+    json.begin_object()
+        .member("tick", event.tick)
+        .member("kind", kind_name(event.kind))
+        .member("text", event.text);
     json.key("values").begin_list();
     for (const double value : event.values) json.value(value);
     json.end_list().end_object();
@@ -63,21 +82,24 @@ void print_json(SessionReader& reader, const SessionStatistics& s, const std::ve
 
 void print_text(SessionReader& reader, const SessionStatistics& s, const std::vector<Event>& events) {
   const Model& model = reader.start().model;
-  std::printf("session    %s, recorded %s%s\n", reader.session_id().c_str(), utc(reader.created_unix_s()).c_str(),
-              reader.ended_cleanly() ? "" : ", without a clean end");
+  std::printf("session    %s, recorded %s%s\n", reader.session_id().c_str(),
+              utc(reader.created_unix_s()).c_str(), reader.ended_cleanly() ? "" : ", without a clean end");
   std::printf("build      %s\n", reader.start().build_fingerprint.c_str());
   std::printf("duration   %.3f s, %lld ticks of %g ms\n", double(reader.tick_count()) * model.tick,
               (long long)reader.tick_count(), model.tick * 1e3);
   for (const OrganRange& organ : model.organs)
-    std::printf("organ      %s: %d spheres in %d layers, radius %g mm, spacing %g mm\n", organ.name.c_str(), organ.count,
-                organ.layer_count, organ.sphere_radius * 1e3, organ.spacing * 1e3);
+    std::printf("organ      %s: %d spheres in %d layers, radius %g mm, spacing %g mm\n", organ.name.c_str(),
+                organ.count, organ.layer_count, organ.sphere_radius * 1e3, organ.spacing * 1e3);
   std::printf("network    %zu spheres, %zu elements\n", model.sphere_count(), model.element_count());
-  std::printf("tick time  p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms; %lld late\n", s.tick_time_p50 * 1e3,
-              s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3, (long long)s.late_ticks);
-  std::printf("at most    %.3f N, %.2f mm deep; %lld elements severed\n", s.max_force, s.max_depth * 1e3, (long long)s.severed);
+  std::printf("tick time  p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms; %lld late\n",
+              s.tick_time_p50 * 1e3, s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3,
+              (long long)s.late_ticks);
+  std::printf("at most    %.3f N, %.2f mm deep; %lld elements severed\n", s.max_force, s.max_depth * 1e3,
+              (long long)s.severed);
   constexpr std::size_t kMostShown = 20;
   for (std::size_t i = 0; i < events.size() && i < kMostShown; ++i)
-    std::printf("event      %8.3f s  %s: %s\n", double(events[i].tick) * model.tick, kind_name(events[i].kind), events[i].text.c_str());
+    std::printf("event      %8.3f s  %s: %s\n", double(events[i].tick) * model.tick,
+                kind_name(events[i].kind), events[i].text.c_str());
   if (events.size() > kMostShown) std::printf("           and %zu more events\n", events.size() - kMostShown);
 }
 

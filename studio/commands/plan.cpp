@@ -38,7 +38,10 @@ template <class Owner>
 std::size_t bytes_of_fields(const Owner& owner, std::string_view prefix) {
   std::size_t bytes = 0;
   for_each_field(owner, [&](std::string_view name, const auto& member) {
-    if constexpr (requires { member.data(); typename std::remove_cvref_t<decltype(member)>::value_type; })
+    if constexpr (requires {
+                    member.data();
+                    typename std::remove_cvref_t<decltype(member)>::value_type;
+                  })
       if (name.starts_with(prefix)) bytes += member.size() * sizeof(*member.data());
   });
   return bytes;
@@ -51,21 +54,41 @@ std::vector<Feature> features_of(const Model& m, const State& s) {
   const auto counted = [](std::size_t count, const char* what, const char* none) {
     return count > 0 ? std::to_string(count) + " " + what : std::string(none);
   };
-  const bool cuts = has_tool(ToolKind::scalpel), limits = std::any_of(m.organs.begin(), m.organs.end(), [](const OrganRange& o) { return o.damage_depth > 0; });
+  const bool cuts = has_tool(ToolKind::scalpel),
+             limits = std::any_of(m.organs.begin(), m.organs.end(),
+                                  [](const OrganRange&o) { return o.damage_depth > 0; });
   const std::size_t edges = bytes_of_fields(m, "edges.") - bytes_of(m.edges.c) - bytes_of(m.edges.third);
   return {
-      {"spheres", true, std::to_string(m.sphere_count()) + " spheres", bytes_of_fields(m, "rest_position") + bytes_of(m.mass) + bytes_of(m.held_axes) + bytes_of(m.contact_radius) + bytes_of(m.layer) + bytes_of_fields(s, "position") + bytes_of_fields(s, "velocity")},
+      {"spheres", true, std::to_string(m.sphere_count()) + " spheres",
+       bytes_of_fields(m, "rest_position") + bytes_of(m.mass) + bytes_of(m.held_axes) +
+           bytes_of(m.contact_radius) + bytes_of(m.layer) + bytes_of_fields(s, "position") +
+           bytes_of_fields(s, "velocity")},
       {"springs and Kelvin units", m.edges.size() > 0, counted(m.edges.size(), "edges", "no edges"), edges},
-      {"viscosity", !m.edges.c.empty(), m.edges.c.empty() ? "no edge has a dashpot" : "the material is viscous", bytes_of(m.edges.c)},
-      {"two-sphere TPMs", m.tpms.size() > 0, counted(m.tpms.size(), "with one internal variable each", "no line has an edge left over"), bytes_of_fields(m, "tpms.") + bytes_of(s.kelvin_elongation)},
-      {"constraint", m.constraints.size() > 0, counted(m.constraints.size(), "five-sphere lines", "the model has none"), bytes_of_fields(m, "constraints.")},
-      {"softening", m.has_softening, m.has_softening ? "forces are divided by 1 + tan(theta)" : "no element tilts or it is switched off", bytes_of(m.edges.third)},
-      {"angle springs", m.angle_springs.size() > 0, counted(m.angle_springs.size(), "springs", "the model has none"), bytes_of_fields(m, "angle_springs.")},
-      {"gravity", !(m.gravity == Vec3{}), m.gravity == Vec3{} ? "the scene has none" : "the scene asks for it", 0},
-      {"ball contact", has_tool(ToolKind::ball), has_tool(ToolKind::ball) ? "a tool presses" : "no tool presses", 0},
-      {"pin", has_tool(ToolKind::pin), has_tool(ToolKind::pin) ? "a tool holds a sphere" : "no tool holds a sphere", 0},
-      {"cutting", cuts, cuts ? "a tool cuts" : "no tool cuts", bytes_of_fields(s, "edge_severed") + bytes_of_fields(s, "tpm_severed") + bytes_of_fields(s, "constraint_severed") + bytes_of_fields(s, "angle_severed")},
-      {"loads", m.loads.size() > 0, counted(m.loads.size(), "forces from outside", "no forces from outside"), bytes_of_fields(m, "loads.")},
+      {"viscosity", !m.edges.c.empty(),
+       m.edges.c.empty() ? "no edge has a dashpot" : "the material is viscous", bytes_of(m.edges.c)},
+      {"two-sphere TPMs", m.tpms.size() > 0,
+       counted(m.tpms.size(), "with one internal variable each", "no line has an edge left over"),
+       bytes_of_fields(m, "tpms.") + bytes_of(s.kelvin_elongation)},
+      {"constraint", m.constraints.size() > 0,
+       counted(m.constraints.size(), "five-sphere lines", "the model has none"),
+       bytes_of_fields(m, "constraints.")},
+      {"softening", m.has_softening,
+       m.has_softening ? "forces are divided by 1 + tan(theta)" : "no element tilts or it is switched off",
+       bytes_of(m.edges.third)},
+      {"angle springs", m.angle_springs.size() > 0,
+       counted(m.angle_springs.size(), "springs", "the model has none"),
+       bytes_of_fields(m, "angle_springs.")},
+      {"gravity", !(m.gravity == Vec3{}),
+       m.gravity == Vec3{} ? "the scene has none" : "the scene asks for it", 0},
+      {"ball contact", has_tool(ToolKind::ball),
+       has_tool(ToolKind::ball) ? "a tool presses" : "no tool presses", 0},
+      {"pin", has_tool(ToolKind::pin),
+       has_tool(ToolKind::pin) ? "a tool holds a sphere" : "no tool holds a sphere", 0},
+      {"cutting", cuts, cuts ? "a tool cuts" : "no tool cuts",
+       bytes_of_fields(s, "edge_severed") + bytes_of_fields(s, "tpm_severed") +
+           bytes_of_fields(s, "constraint_severed") + bytes_of_fields(s, "angle_severed")},
+      {"loads", m.loads.size() > 0, counted(m.loads.size(), "forces from outside", "no forces from outside"),
+       bytes_of_fields(m, "loads.")},
       {"damage limit", limits, limits ? "an organ has a limit" : "no organ has a limit", 0},
   };
 }
@@ -79,7 +102,8 @@ double measure_tick(const Model& model) {
   for (int i = 0; i < kWarmUp + kMeasured; ++i) {
     const auto start = std::chrono::steady_clock::now();
     (void)stepper.step(state, {});
-    if (i >= kWarmUp) times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    if (i >= kWarmUp)
+      times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
   std::nth_element(times.begin(), times.begin() + kMeasured / 2, times.end());
   return times[kMeasured / 2];
@@ -93,7 +117,8 @@ int run_plan(const PlanArguments& arguments) {
   std::size_t total = 0;
   for (const Feature& feature : features) total += feature.is_in ? feature.bytes : 0;
   const double tick = measure_tick(model);
-  const std::string solver = "backward Euler, linearised once a tick, conjugate gradients to " + std::to_string(model.solver.tolerance);
+  const std::string solver = "backward Euler, linearised once a tick, conjugate gradients to " +
+                             std::to_string(model.solver.tolerance);
   const std::string reason = model.edges.c.empty() && model.tpms.size() == 0
                                  ? "unconditionally stable; the scene has no dashpots"
                                  : "the dashpots are too stiff for an explicit step of this length";
@@ -101,20 +126,34 @@ int run_plan(const PlanArguments& arguments) {
     JsonWriter json;
     json.begin_object().member("scene", arguments.scene).member("spheres", model.sphere_count());
     json.member("elements", model.element_count()).member("memory_bytes", total).member("tick_s", model.tick);
-    json.member("measured_tick_time_s", tick).member("solver", solver).member("solver_reason", reason).key("features").begin_list();
+    json.member("measured_tick_time_s", tick)
+        .member("solver", solver)
+        .member("solver_reason", reason)
+        .key("features")
+        .begin_list();
     for (const Feature& f : features)
-      json.begin_object().member("name", f.name).member("is_in", f.is_in).member("why", f.why).member("bytes", f.bytes).end_object();
+      json.begin_object()
+          .member("name", f.name)
+          .member("is_in", f.is_in)
+          .member("why", f.why)
+          .member("bytes", f.bytes)
+          .end_object();
     std::fputs(json.end_list().end_object().text().c_str(), stdout);
     return exit_good;
   }
   for (const bool is_in : {true, false}) {
     std::printf(is_in ? "needed:\n" : "left out:\n");
     for (const Feature& f : features)
-      if (f.is_in == is_in) std::printf("  %-26s %10s  %s\n", f.name.c_str(), f.bytes > 0 ? (std::to_string((f.bytes + 1023) / 1024) + " KiB").c_str() : "", f.why.c_str());
+      if (f.is_in == is_in)
+        std::printf("  %-26s %10s  %s\n", f.name.c_str(),
+                    f.bytes > 0 ? (std::to_string((f.bytes + 1023) / 1024) + " KiB").c_str() : "",
+                    f.why.c_str());
   }
-  std::printf("memory: %.1f KiB, %zu bytes a sphere\n", double(total) / 1024, total / std::max<std::size_t>(1, model.sphere_count()));
+  std::printf("memory: %.1f KiB, %zu bytes a sphere\n", double(total) / 1024,
+              total / std::max<std::size_t>(1, model.sphere_count()));
   std::printf("solver: %s\n        because %s\n", solver.c_str(), reason.c_str());
-  std::printf("time: %.3f ms a tick of %g ms at rest, measured now on this machine (median of 41)\n", tick * 1e3, model.tick * 1e3);
+  std::printf("time: %.3f ms a tick of %g ms at rest, measured now on this machine (median of 41)\n",
+              tick * 1e3, model.tick * 1e3);
   return exit_good;
 }
 
@@ -122,11 +161,13 @@ int run_plan(const PlanArguments& arguments) {
 
 Command add_plan(CLI::App& program) {
   auto arguments = std::make_shared<PlanArguments>();
-  CLI::App* app = program.add_subcommand("plan", "Says what a scene needs and what is left out, memory, time and solver.");
+  CLI::App* app = program.add_subcommand(
+      "plan", "Says what a scene needs and what is left out, memory, time and solver.");
   app->footer("Example: ctpm plan scenes/liver.json");
   app->add_option("scene", arguments->scene, "Scene file (.json)")->required();
   app->add_flag("--json", arguments->json, "Print JSON");
-  app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths, "Meshes may lie outside the scene's folder");
+  app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths,
+                "Meshes may lie outside the scene's folder");
   return {app, [arguments] { return run_plan(*arguments); }};
 }
 

@@ -22,14 +22,16 @@ struct PreviewArguments {
 int run_preview(const PreviewArguments& arguments) {
   const Result<PictureSize> size = parse_picture_size(arguments.size);
   if (!size) return print_errors(size.errors());
-  if (const Result<Done> writable = check_writable(arguments.output); !writable) return print_errors(writable.errors());
+  if (const Result<Done> writable = check_writable(arguments.output); !writable)
+    return print_errors(writable.errors());
   const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
   if (!scene) return print_errors(scene.errors());
   // With --spheres the surface stands on the left half and the layered spheres on the right.
   const int width = arguments.spheres ? size->width / 2 : size->width;
   const Model& model = scene->built.model;
   SceneView view = view_of(scene->scene.spec, model, surfaces_of(scene->organs));
-  const Result<Camera> camera = find_camera(scene->scene.spec, view, arguments.camera, double(width) / size->height);
+  const Result<Camera> camera =
+      find_camera(scene->scene.spec, view, arguments.camera, double(width) / size->height);
   if (!camera) return print_errors(camera.errors());
   Result<std::unique_ptr<Renderer>> renderer = Renderer::create(width, size->height, std::move(view));
   if (!renderer) return print_errors(renderer.errors());
@@ -41,7 +43,8 @@ int run_preview(const PreviewArguments& arguments) {
     options.view = View::spheres;
     picture = join_beside(picture, (*renderer)->draw(state, options));
   }
-  if (const Result<Done> written = write_png(arguments.output, picture); !written) return print_errors(written.errors());
+  if (const Result<Done> written = write_png(arguments.output, picture); !written)
+    return print_errors(written.errors());
   std::printf("%s: %dx%d\n", arguments.output.c_str(), picture.width, picture.height);
   return exit_good;
 }
@@ -57,7 +60,8 @@ Command add_preview(CLI::App& program) {
   app->add_flag("--spheres", arguments->spheres, "Beside the surface, the spheres coloured by layer");
   app->add_option("--size", arguments->size, "Width x height in pixels")->capture_default_str();
   app->add_option("--camera", arguments->camera, "Name of a camera of the scene");
-  app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths, "Meshes may lie outside the scene's folder");
+  app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths,
+                "Meshes may lie outside the scene's folder");
   return {app, [arguments] { return run_preview(*arguments); }};
 }
 

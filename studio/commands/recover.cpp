@@ -15,8 +15,9 @@ struct RecoverArguments {
 int run_recover(const RecoverArguments& arguments) {
   const Result<RecoverReport> report = recover_session(arguments.in, arguments.out);
   if (!report) return print_errors(report.errors());
-  std::printf("%s: %lld ticks, %lld keyframes, %lld events saved\n", arguments.out.c_str(), (long long)report->ticks_saved,
-              (long long)report->keyframes_saved, (long long)report->events_saved);
+  std::printf("%s: %lld ticks, %lld keyframes, %lld events saved\n", arguments.out.c_str(),
+              (long long)report->ticks_saved, (long long)report->keyframes_saved,
+              (long long)report->events_saved);
   for (const std::string& loss : report->losses) std::printf("lost: %s\n", loss.c_str());
   std::printf("%s\n", to_string(report->verdict).c_str());
   if (!report->verdict.same) return exit_bad_verdict;
@@ -27,7 +28,8 @@ int run_recover(const RecoverArguments& arguments) {
 
 Command add_recover(CLI::App& program) {
   auto arguments = std::make_shared<RecoverArguments>();
-  CLI::App* app = program.add_subcommand("recover", "Saves what can be saved of a damaged session; exit code 3 if something is missing.");
+  CLI::App* app = program.add_subcommand(
+      "recover", "Saves what can be saved of a damaged session; exit code 3 if something is missing.");
   app->footer("Example: ctpm recover damaged.ctpm -o saved.ctpm");
   app->add_option("session", arguments->in, "Session file (.ctpm)")->required();
   app->add_option("-o,--output", arguments->out, "New session file")->required();

@@ -15,7 +15,8 @@ struct VerifyArguments {
 int run_verify(const VerifyArguments& arguments) {
   Result<SessionReader> reader = SessionReader::open(arguments.file);
   if (!reader) return print_errors(reader.errors());
-  if (!reader->ended_cleanly()) print_remark(arguments.file + ": warning: the session has no clean end; what is there is verified");
+  if (!reader->ended_cleanly())
+    print_remark(arguments.file + ": warning: the session has no clean end; what is there is verified");
   VerifyOptions options;
   ProgressLine progress("verifying");
   options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
@@ -29,7 +30,8 @@ int run_verify(const VerifyArguments& arguments) {
 
 Command add_verify(CLI::App& program) {
   auto arguments = std::make_shared<VerifyArguments>();
-  CLI::App* app = program.add_subcommand("verify", "Replays a session without pictures and compares every state hash.");
+  CLI::App* app =
+      program.add_subcommand("verify", "Replays a session without pictures and compares every state hash.");
   app->footer("Example: ctpm verify out/demo.ctpm");
   app->add_option("session", arguments->file, "Session file (.ctpm)")->required();
   return {app, [arguments] { return run_verify(*arguments); }};

@@ -22,8 +22,8 @@ std::string build_fingerprint() {
   return std::string("ctpm ") + CTPM_VERSION + ", " + compiler + ", " + kind;
 }
 
-Result<RecordOutcome> record_script(const LoadedScene& scene, const Script& script, const std::string& path, bool overwrite,
-                                    const RunOptions& options) {
+Result<RecordOutcome> record_script(const LoadedScene& scene, const Script& script, const std::string& path,
+                                    bool overwrite, const RunOptions& options) {
   const SceneSpec& spec = scene.scene.spec;
   const Model& model = scene.built.model;
   State state = rest_state(model);

@@ -12,7 +12,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 /// Notes what a reviewer wants to find again: the moments at which something begins or ends.
 class EventWatch {
@@ -23,18 +25,22 @@ class EventWatch {
   }
 
   void look(std::int64_t tick, const StepReport& report) {
-    if (begins(contact_, tick, report.contacts > 0)) writer_.event(tick, EventKind::contact_begins, "tool touches the tissue");
-    if (ends(contact_, tick)) writer_.event(contact_.last_tick, EventKind::contact_ends, "tool leaves the tissue");
+    if (begins(contact_, tick, report.contacts > 0))
+      writer_.event(tick, EventKind::contact_begins, "tool touches the tissue");
+    if (ends(contact_, tick))
+      writer_.event(contact_.last_tick, EventKind::contact_ends, "tool leaves the tissue");
     if (begins(cut_, tick, report.severed > 0))
       writer_.event(tick, EventKind::cut, "blade begins to sever; value: elements", {double(report.severed)});
     ends(cut_, tick);
     if (begins(damage_, tick, limit_ > 0 && report.depth > limit_))
-      writer_.event(tick, EventKind::damage, "depth passes the damage limit; values: depth and limit in m", {report.depth, limit_});
+      writer_.event(tick, EventKind::damage, "depth passes the damage limit; values: depth and limit in m",
+                    {report.depth, limit_});
     ends(damage_, tick);
   }
 
  private:
-  /// Something that goes on while it is seen again within kPause; tissue that follows a leaving tool touches it on and off.
+  /// Something that goes on while it is seen again within kPause; tissue that follows a leaving tool touches
+  /// it on and off.
   struct Spell {
     bool goes_on = false;
     std::int64_t last_tick = 0;
@@ -66,7 +72,8 @@ RunOutcome run_session(const Model& model, State& state, InputSource& source, Se
   EventWatch watch(model, writer);
   RunOutcome outcome;
   StepReport report;
-  const auto tick_length = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(model.tick));
+  const auto tick_length =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(model.tick));
   Clock::time_point deadline = Clock::now();
   for (std::int64_t tick = 0; options.most_ticks == 0 || tick < options.most_ticks; ++tick) {
     if (options.should_stop && options.should_stop()) break;
@@ -78,7 +85,8 @@ RunOutcome run_session(const Model& model, State& state, InputSource& source, Se
     const double tick_time = seconds_since(start);
     outcome.status = report.status, outcome.worst_sphere = report.worst_sphere;
     if (report.status == StepStatus::diverged || report.status == StepStatus::bad_input) {
-      writer.event(tick, EventKind::note, "the step was refused; value: sphere", {double(report.worst_sphere)});
+      writer.event(tick, EventKind::note, "the step was refused; value: sphere",
+                   {double(report.worst_sphere)});
       break;
     }
     writer.append(state, make_record(*inputs, report, tick_time, state_hash(state)));
@@ -86,11 +94,13 @@ RunOutcome run_session(const Model& model, State& state, InputSource& source, Se
     deadline += tick_length;
     if (options.in_real_time && Clock::now() > deadline) {
       ++outcome.late_ticks;
-      writer.event(tick, EventKind::late_tick, "tick ended late; value: by how much in s", {seconds_since(deadline)});
+      writer.event(tick, EventKind::late_tick, "tick ended late; value: by how much in s",
+                   {seconds_since(deadline)});
       deadline = Clock::now();  // a late tick does not make the next ones hurry
     }
     ++outcome.ticks;
-    if (options.progress) options.progress(outcome.ticks, options.most_ticks ? options.most_ticks : source.tick_count());
+    if (options.progress)
+      options.progress(outcome.ticks, options.most_ticks ? options.most_ticks : source.tick_count());
   }
   return outcome;
 }

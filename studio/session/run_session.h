@@ -11,8 +11,9 @@
 namespace ctpm {
 
 struct RunOptions {
-  bool in_real_time = true;         ///< ticks start on absolute deadlines of the wall clock; else one after the other
-  std::int64_t most_ticks = 0;      ///< the session ends after so many; 0: when the source ends
+  bool in_real_time =
+      true;  ///< ticks start on absolute deadlines of the wall clock; else one after the other
+  std::int64_t most_ticks = 0;  ///< the session ends after so many; 0: when the source ends
   std::function<void(std::int64_t done, std::int64_t total)> progress;
   std::function<bool()> should_stop;  ///< asked every tick: Ctrl-C
 };
@@ -20,7 +21,7 @@ struct RunOptions {
 /// What a run came to.
 struct RunOutcome {
   std::int64_t ticks = 0;
-  std::int64_t late_ticks = 0;   ///< ticks that ended after their deadline, in real time only
+  std::int64_t late_ticks = 0;         ///< ticks that ended after their deadline, in real time only
   StepStatus status = StepStatus::ok;  ///< of the last tick; a diverged tick ends the run
   std::int32_t worst_sphere = -1;
 };

@@ -24,9 +24,12 @@ struct TimeRange {
   Result<TickRange> in_ticks(const std::string& where, double tick, std::int64_t tick_count) const {
     const double end_s = double(tick_count) * tick, last_s = to_s.value_or(end_s);
     const std::string is_long = "the session lasts " + std::to_string(end_s) + " s";
-    if (!(from_s >= 0 && from_s <= end_s)) return Error{where, "--from-s: got " + std::to_string(from_s) + ", " + is_long, ""};
-    if (!(last_s > from_s) && tick_count > 0) return Error{where, "--to-s: got " + std::to_string(last_s) + ", must be after --from-s", ""};
-    if (last_s > end_s + 0.5 * tick) return Error{where, "--to-s: got " + std::to_string(last_s) + ", " + is_long, ""};
+    if (!(from_s >= 0 && from_s <= end_s))
+      return Error{where, "--from-s: got " + std::to_string(from_s) + ", " + is_long, ""};
+    if (!(last_s > from_s) && tick_count > 0)
+      return Error{where, "--to-s: got " + std::to_string(last_s) + ", must be after --from-s", ""};
+    if (last_s > end_s + 0.5 * tick)
+      return Error{where, "--to-s: got " + std::to_string(last_s) + ", " + is_long, ""};
     return TickRange{std::llround(from_s / tick), std::llround(last_s / tick)};
   }
 };

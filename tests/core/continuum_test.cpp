@@ -1,5 +1,5 @@
-// What solid the lattice is in the small-strain limit: model cubic-18 with equal edge stiffness is isotropic with
-// Poisson ratio 1/4 and Young's modulus 2.5 k / s.
+// What solid the lattice is in the small-strain limit: model cubic-18 with equal edge stiffness is isotropic
+// with Poisson ratio 1/4 and Young's modulus 2.5 k / s.
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ struct Elasticity {
   double poisson;  ///< [1]
 };
 
-/// Pulls a free bar of n x n x nz spheres at its top and measures strain in its middle half. The sphere's own cell is
-/// its share of the cross-section: area (n s)^2.
+/// Pulls a free bar of n x n x nz spheres at its top and measures strain in its middle half. The sphere's own
+/// cell is its share of the cross-section: area (n s)^2.
 Elasticity stretch_bar(int n, int nz) {
   Material material = testing::liver_material();
   material.viscosity = 0;
@@ -61,8 +61,10 @@ TEST(Cubic18, IsASolidOfYoungsModulus2500OverSpacingAndPoissonRatioOneQuarter) {
   const auto limit = [](double at7, double at13) { return (13 * at13 - 7 * at7) / 6; };
   const Material m = testing::liver_material();
   const double k = m.spring * edge_area(m, 0.012), young = 2.5 * k / 0.012;
-  EXPECT_NEAR(limit(small.young, large.young), young, 0.02 * young) << small.young / young << " " << large.young / young;
-  EXPECT_NEAR(limit(small.poisson, large.poisson), 0.25, 0.02 * 0.25) << small.poisson << " " << large.poisson;
+  EXPECT_NEAR(limit(small.young, large.young), young, 0.02 * young)
+      << small.young / young << " " << large.young / young;
+  EXPECT_NEAR(limit(small.poisson, large.poisson), 0.25, 0.02 * 0.25)
+      << small.poisson << " " << large.poisson;
 }
 
 }  // namespace

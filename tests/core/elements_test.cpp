@@ -64,7 +64,8 @@ TEST_P(EveryStructure, TurnsWithTheBody) {
   for (std::size_t i = 0; i < state.position.size(); ++i)
     turned.position.set(i, turn(state.position[i])), turned.velocity.set(i, turn(state.velocity[i]));
   const Vec3Array force = internal_forces(model, state), turned_force = internal_forces(model, turned);
-  for (std::size_t i = 0; i < force.size(); ++i) ASSERT_NEAR(norm(turned_force[i] - turn(force[i])), 0, kRounding);
+  for (std::size_t i = 0; i < force.size(); ++i)
+    ASSERT_NEAR(norm(turned_force[i] - turn(force[i])), 0, kRounding);
 }
 
 TEST_P(EveryStructure, StaysFiniteWhenSpheresCoincide) {
@@ -76,7 +77,8 @@ TEST_P(EveryStructure, StaysFiniteWhenSpheresCoincide) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, EveryStructure,
-                         ::testing::Values(Structure::mass_spring, Structure::angle_mass_spring, Structure::tpm, Structure::ctpm));
+                         ::testing::Values(Structure::mass_spring, Structure::angle_mass_spring,
+                                           Structure::tpm, Structure::ctpm));
 
 TEST(EdgesAndAngleSprings, AreTheGradientOfTheirEnergy) {
   const Model model = make_block_model(4, 4, 4, Structure::angle_mass_spring);

@@ -1,5 +1,5 @@
-// The rig of the paper's Fig. 3: five spheres A..E on a line with A and E fixed, and one triple below C fixed at its
-// foot; a pin presses C. What it gives must be the closed forms, from the network alone.
+// The rig of the paper's Fig. 3: five spheres A..E on a line with A and E fixed, and one triple below C fixed
+// at its foot; a pin presses C. What it gives must be the closed forms, from the network alone.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,9 @@ struct Organ {
   const char* name;
   Site site;
 };
-const Organ kOrgans[] = {{"skin", {82, 82, 164, 3, 42, 2.8}}, {"kidney", {58, 58, 106, 4, 24, 1.5}}, {"liver", {15, 15, 20, 5, 24, 2.0}}};
+const Organ kOrgans[] = {{"skin", {82, 82, 164, 3, 42, 2.8}},
+                         {"kidney", {58, 58, 106, 4, 24, 1.5}},
+                         {"liver", {15, 15, 20, 5, 24, 2.0}}};
 
 /// Sphere indices of the rig in (k, j, i) order: foot, the sphere above it, then A B C D E.
 constexpr std::int32_t kFoot = 0, kA = 2, kC = 4, kE = 6;
@@ -29,7 +31,8 @@ Model make_rig(const Site& site, bool has_softening, double density = 1060) {
   FilledOrgan organ;
   organ.sphere_radius = spacing / 3;
   organ.spacing = spacing;
-  for (const std::array<std::int32_t, 3>& cell : {std::array{2, 0, 0}, {2, 0, 1}, {0, 0, 2}, {1, 0, 2}, {2, 0, 2}, {3, 0, 2}, {4, 0, 2}}) {
+  for (const std::array<std::int32_t, 3>& cell :
+       {std::array{2, 0, 0}, {2, 0, 1}, {0, 0, 2}, {1, 0, 2}, {2, 0, 2}, {3, 0, 2}, {4, 0, 2}}) {
     organ.cell.push_back(cell);
     organ.centre.push_back(spacing * Vec3{double(cell[0] - 2), 0, double(cell[2] - 2)});
     organ.layer.push_back(1);
@@ -40,7 +43,8 @@ Model make_rig(const Site& site, bool has_softening, double density = 1060) {
   settings.lattice = LatticeKind::cubic_6;
   settings.has_softening = has_softening;
   settings.anchored = {kFoot, kA, kE};
-  // The paper's site is a line and a column in one plane; a free column of three spheres would buckle under a load.
+  // The paper's site is a line and a column in one plane; a free column of three spheres would buckle under a
+  // load.
   for (const std::int32_t sphere : {1, kC}) settings.guides.push_back({sphere, 1 | 2});
   for (const std::int32_t sphere : {3, 5}) settings.guides.push_back({sphere, 2});
   Material& m = settings.material;
@@ -75,7 +79,8 @@ TEST(Rig, HeldStillGivesTable1sClosedFormWithinOnePerMille) {
         StepReport report;
         for (int i = 0; i < 6000; ++i) report = stepper.step(state, pressed_to(std::min(depth, 0.01 * i)));
         const double expected = table_force(organ.site, depth, has_softening);
-        EXPECT_NEAR(report.tool_force.z, expected, 1e-3 * expected) << organ.name << " " << depth << " mm, softening " << has_softening;
+        EXPECT_NEAR(report.tool_force.z, expected, 1e-3 * expected)
+            << organ.name << " " << depth << " mm, softening " << has_softening;
         EXPECT_NEAR(report.tool_force.x, 0, 1e-9);
       }
 }
@@ -116,29 +121,35 @@ TEST_P(RigCreep, FollowsTheIntegratedLaw) {
   Site site = kOrgans[2].site;  // the paper's creep is the liver's
   site.viscosity *= c.viscosity_factor;
   Model model = make_rig(site, true);
-  constexpr double kRamp = 0.5;  // [s]; a sudden load would set the spheres' mass swinging, which no law here has
+  constexpr double kRamp =
+      0.5;  // [s]; a sudden load would set the spheres' mass swinging, which no law here has
   model.loads.sphere = {kC};
   model.loads.force.push_back({0, 0, -c.newton});
   model.loads.start = {0}, model.loads.ramp = {kRamp};
   Stepper stepper(model);
   State state = rest_state(model);
   const double stress = c.newton / force_of_stress(site, 1);
-  const auto expected = creep(site, [=](double t) { return stress * std::min(1.0, t / kRamp); },
-                              [=](double t) { return t < kRamp ? stress / kRamp : 0.0; }, 5.0, 0.05, c.law);
+  const auto expected = creep(
+      site, [=](double t) { return stress * std::min(1.0, t / kRamp); },
+      [=](double t) { return t < kRamp ? stress / kRamp : 0.0; }, 5.0, 0.05, c.law);
   double worst = 0;
   for (int tick = 1; tick <= 5000; ++tick) {
     (void)stepper.step(state, {});
-    if (tick % 50 == 0) worst = std::max(worst, std::abs(-state.position.z[kC] * 1e3 - expected[std::size_t(tick / 50)].depth));
+    if (tick % 50 == 0)
+      worst = std::max(worst, std::abs(-state.position.z[kC] * 1e3 - expected[std::size_t(tick / 50)].depth));
   }
   EXPECT_LE(worst, c.bound * expected.back().depth);
   RecordProperty("worst_over_largest", std::to_string(worst / expected.back().depth));
 }
 
-// Under the large load and the slow reading of the viscosity the network is 2.3 % stiffer while it moves than either
-// law: its two horizontal triples, which give P2 / K' of lambda at rest, are viscoelastic too, lambda in the laws is not.
+// Under the large load and the slow reading of the viscosity the network is 2.3 % stiffer while it moves than
+// either law: its two horizontal triples, which give P2 / K' of lambda at rest, are viscoelastic too, lambda
+// in the laws is not.
 INSTANTIATE_TEST_SUITE_P(Loads, RigCreep,
-                         ::testing::Values(CreepCase{0.196, 1.0, Law::eq_10, 0.01}, CreepCase{0.196, 1e-3, Law::eq_10, 0.01},
-                                           CreepCase{0.98, 1e-3, Law::eq_10, 0.01}, CreepCase{0.98, 1.0, Law::eq_10, 0.025},
+                         ::testing::Values(CreepCase{0.196, 1.0, Law::eq_10, 0.01},
+                                           CreepCase{0.196, 1e-3, Law::eq_10, 0.01},
+                                           CreepCase{0.98, 1e-3, Law::eq_10, 0.01},
+                                           CreepCase{0.98, 1.0, Law::eq_10, 0.025},
                                            CreepCase{0.196, 1.0, Law::eqs_3_to_8, 0.01},
                                            CreepCase{0.98, 1.0, Law::eqs_3_to_8, 0.025}));
 

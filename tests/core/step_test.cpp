@@ -31,7 +31,8 @@ TEST(Step, AFreeBlockFallsAsGalileoSays) {
   for (int i = 0; i < 500; ++i) ASSERT_EQ(stepper.step(state, {}).status, StepStatus::ok);
   const double t = 0.5, h = 1e-3;
   for (std::size_t i = 0; i < model.sphere_count(); ++i) {
-    // Each tick's acceleration is solved to 1e-4; (t + h) / 2 holds backward Euler's own error of half a tick.
+    // Each tick's acceleration is solved to 1e-4; (t + h) / 2 holds backward Euler's own error of half a
+    // tick.
     EXPECT_NEAR(state.velocity.z[i], -9.81 * t, 1e-3 * 9.81 * t);
     EXPECT_NEAR(state.position.z[i] - model.rest_position.z[i], -9.81 * t * (t + h) / 2, 1e-3);
   }
@@ -59,10 +60,12 @@ TEST(Step, EnergyOfAShakenBlockOnlyFalls) {
   Stepper stepper(model);
   State state = rest_state(model);
   shake(state, 0.001, 0.05);
-  for (std::size_t i = 0; i < 25; ++i) state.position.set(i, model.rest_position[i]), state.velocity.set(i, {});
+  for (std::size_t i = 0; i < 25; ++i)
+    state.position.set(i, model.rest_position[i]), state.velocity.set(i, {});
   const auto energy = [&] {
     double sum = elastic_energy(model, state);
-    for (std::size_t i = 0; i < model.sphere_count(); ++i) sum += 0.5 * model.mass[i] * dot(state.velocity[i], state.velocity[i]);
+    for (std::size_t i = 0; i < model.sphere_count(); ++i)
+      sum += 0.5 * model.mass[i] * dot(state.velocity[i], state.velocity[i]);
     return sum;
   };
   double last = energy();
@@ -118,7 +121,8 @@ TEST(Step, RefusesPosesThatAreNotNumbersAndLeavesTheState) {
   Stepper stepper(model);
   State state = rest_state(model);
   const State before = state;
-  for (const Inputs& inputs : {tool_at({NAN, 0, 0}), tool_at({INFINITY, 0, 0}), tool_at({0, 0, 0}, 7), tool_at({0, 0, 0}, -2)}) {
+  for (const Inputs& inputs :
+       {tool_at({NAN, 0, 0}), tool_at({INFINITY, 0, 0}), tool_at({0, 0, 0}, 7), tool_at({0, 0, 0}, -2)}) {
     EXPECT_EQ(stepper.step(state, inputs).status, StepStatus::bad_input);
     EXPECT_EQ(state.tick, before.tick);
     EXPECT_EQ(state.position, before.position);
@@ -145,7 +149,8 @@ TEST(Contact, ForceOnTheToolBalancesForceOnTheAnchors) {
   Stepper stepper(model);
   State state = rest_state(model);
   StepReport report;
-  for (int i = 0; i < 6000; ++i) report = stepper.step(state, tool_at({0, 0, 0.036 + 0.006 + 0.010 - std::min(0.005, 1e-5 * i)}));
+  for (int i = 0; i < 6000; ++i)
+    report = stepper.step(state, tool_at({0, 0, 0.036 + 0.006 + 0.010 - std::min(0.005, 1e-5 * i)}));
   const Vec3Array force = internal_forces(model, state);
   Vec3 anchors;
   for (std::size_t i = 0; i < 25; ++i) anchors += force[i];
@@ -172,10 +177,12 @@ TEST(Cutting, AFullCutSeparatesTheBlockExactly) {
   State state = rest_state(model);
   // The blade hangs from above the block to below it and passes between the third and the fourth plane in x.
   std::int32_t severed = 0;
-  for (int i = 0; i < 100; ++i) severed += stepper.step(state, tool_at({0.0001, -0.05 + 0.001 * i, -0.05})).severed;
+  for (int i = 0; i < 100; ++i)
+    severed += stepper.step(state, tool_at({0.0001, -0.05 + 0.001 * i, -0.05})).severed;
   EXPECT_GT(severed, 0);
   for (std::size_t e = 0; e < model.edges.size(); ++e) {
-    const bool crosses = (model.rest_position.x[std::size_t(model.edges.a[e])] < 0) != (model.rest_position.x[std::size_t(model.edges.b[e])] < 0);
+    const bool crosses = (model.rest_position.x[std::size_t(model.edges.a[e])] < 0) !=
+                         (model.rest_position.x[std::size_t(model.edges.b[e])] < 0);
     EXPECT_EQ(state.edge_severed[e] != 0, crosses) << "edge " << e;
   }
 }
@@ -186,9 +193,11 @@ TEST(Cutting, IsExactHoweverFastTheBladeMoves) {
     model.tools = {scalpel(0.2)};
     Stepper stepper(model);
     State state = rest_state(model);
-    for (int i = 0; i < ticks; ++i) (void)stepper.step(state, tool_at({0.0001, -0.05 + 0.1 * i / (ticks - 1), -0.05}));
+    for (int i = 0; i < ticks; ++i)
+      (void)stepper.step(state, tool_at({0.0001, -0.05 + 0.1 * i / (ticks - 1), -0.05}));
     for (std::size_t e = 0; e < model.edges.size(); ++e) {
-      const bool crosses = (model.rest_position.x[std::size_t(model.edges.a[e])] < 0) != (model.rest_position.x[std::size_t(model.edges.b[e])] < 0);
+      const bool crosses = (model.rest_position.x[std::size_t(model.edges.a[e])] < 0) !=
+                           (model.rest_position.x[std::size_t(model.edges.b[e])] < 0);
       EXPECT_EQ(state.edge_severed[e] != 0, crosses) << ticks << " ticks, edge " << e;
     }
   }
@@ -210,7 +219,8 @@ TEST(Settle, ComesToRestUnderGravityWithoutAdvancingTheTick) {
   (void)stepper.settle(state, 20000);
   EXPECT_EQ(state.tick, 0);
   const Vec3Array force = internal_forces(model, state);
-  for (std::size_t i = 16; i < model.sphere_count(); ++i) EXPECT_NEAR(force.z[i], 9.81 * model.mass[i], 2e-3 * 9.81 * model.mass[i] + 1e-4);
+  for (std::size_t i = 16; i < model.sphere_count(); ++i)
+    EXPECT_NEAR(force.z[i], 9.81 * model.mass[i], 2e-3 * 9.81 * model.mass[i] + 1e-4);
 }
 
 }  // namespace

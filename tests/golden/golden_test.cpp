@@ -1,5 +1,6 @@
-// One small session, pressed and cut, against golden hashes. This file is built twice, with core optimised and not, and
-// both programs must give the same bits; a change of the physics changes the hashes here, knowingly.
+// One small session, pressed and cut, against golden hashes. This file is built twice, with core optimised
+// and not, and both programs must give the same bits; a change of the physics changes the hashes here,
+// knowingly.
 
 #include <gtest/gtest.h>
 
@@ -20,8 +21,10 @@ struct Golden {
 };
 
 constexpr std::array<Golden, 4> kGolden{{
-    {Structure::mass_spring, {0x9907705e43a29a84, 0xe047a5b938cb2e00, 0x73db2f1dd114fe82, 0xe4750373ef0154ef}},
-    {Structure::angle_mass_spring, {0xe38f79220266f37b, 0x752b2d3285b3c061, 0x5b2b13de398fef3e, 0x61bdf2e7f6c3ab68}},
+    {Structure::mass_spring,
+     {0x9907705e43a29a84, 0xe047a5b938cb2e00, 0x73db2f1dd114fe82, 0xe4750373ef0154ef}},
+    {Structure::angle_mass_spring,
+     {0xe38f79220266f37b, 0x752b2d3285b3c061, 0x5b2b13de398fef3e, 0x61bdf2e7f6c3ab68}},
     {Structure::tpm, {0xc268a1c2c2e7ce3e, 0x82ae22fa35b78279, 0xb03349f427cd30e4, 0x4814db1a1177cdd4}},
     {Structure::ctpm, {0x43253179dc10312c, 0x586148d50f4888d8, 0x379315eff8d1ecee, 0x8d647da358105ee4}},
 }};
@@ -57,8 +60,9 @@ TEST(Golden, ASmallSessionGivesTheSameBitsInEveryBuild) {
     EXPECT_GT(severed, 0);
     EXPECT_GT(contacts, 0);
     char actual[128];
-    std::snprintf(actual, sizeof actual, "{0x%016llx, 0x%016llx, 0x%016llx, 0x%016llx}", (unsigned long long)hash[0],
-                  (unsigned long long)hash[1], (unsigned long long)hash[2], (unsigned long long)hash[3]);
+    std::snprintf(actual, sizeof actual, "{0x%016llx, 0x%016llx, 0x%016llx, 0x%016llx}",
+                  (unsigned long long)hash[0], (unsigned long long)hash[1], (unsigned long long)hash[2],
+                  (unsigned long long)hash[3]);
     EXPECT_EQ(hash, golden.hash) << "structure " << int(golden.structure) << " gave " << actual;
   }
 }

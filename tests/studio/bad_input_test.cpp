@@ -1,4 +1,5 @@
-// Bad input of every kind, from outside: a clear message with its place, exit code 2, and nothing half-written.
+// Bad input of every kind, from outside: a clear message with its place, exit code 2, and nothing
+// half-written.
 
 #include <gtest/gtest.h>
 
@@ -20,21 +21,26 @@ const std::string kShipped = std::string(CTPM_SOURCE_DIR) + "/scenes/";
 
 class BadInput : public ::testing::Test {
  protected:
-  void write(const std::string& name, const std::string& text) { std::ofstream(folder_.path() / name, std::ios::binary) << text; }
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_.path() / name, std::ios::binary) << text;
+  }
 
-  /// The command must end with exit code 2, say all of `parts` on stderr, print nothing on stdout and leave the folder.
+  /// The command must end with exit code 2, say all of `parts` on stderr, print nothing on stdout and leave
+  /// the folder.
   void refuse(const std::vector<std::string>& arguments, const std::vector<std::string>& parts) {
     const std::string before = folder_.list();
     const auto outcome = run_ctpm(arguments, folder_.path());
     EXPECT_EQ(outcome.code, 2) << outcome.out << outcome.err;
     EXPECT_EQ(outcome.out, "");
-    for (const std::string& part : parts) EXPECT_NE(outcome.err.find(part), std::string::npos) << "'" << part << "' is not in: " << outcome.err;
+    for (const std::string& part : parts)
+      EXPECT_NE(outcome.err.find(part), std::string::npos) << "'" << part << "' is not in: " << outcome.err;
     EXPECT_EQ(folder_.list(), before);
   }
 
   /// A scene that would be good, with one thing replaced.
   std::string scene_with(const std::string& from, const std::string& to) {
-    fs::copy_file(kShipped + "organs/skin.obj", folder_.path() / "skin.obj", fs::copy_options::overwrite_existing);
+    fs::copy_file(kShipped + "organs/skin.obj", folder_.path() / "skin.obj",
+                  fs::copy_options::overwrite_existing);
     std::string text = testing::slurp(kShipped + "skin.json");
     text.replace(text.find("organs/skin.obj"), 15, "skin.obj");
     const auto at = text.find(from);
@@ -53,7 +59,8 @@ TEST_F(BadInput, NoCommandAndUnknownCommandsAndOptions) {
 }
 
 TEST_F(BadInput, AMeshThatDoesNotExist) {
-  refuse({"import", "nowhere.obj", "--organ", "liver", "-o", "a.json"}, {"nowhere.obj: error:", "no such file"});
+  refuse({"import", "nowhere.obj", "--organ", "liver", "-o", "a.json"},
+         {"nowhere.obj: error:", "no such file"});
 }
 
 TEST_F(BadInput, AMeshThatIsEmptyOrNotAMesh) {
@@ -67,16 +74,21 @@ TEST_F(BadInput, AMeshThatIsEmptyOrNotAMesh) {
 
 TEST_F(BadInput, AMeshThatIsOpenBeyondRepair) {
   // Five of a cube's six sides, 200 mm: the missing side is no small hole.
-  write("open.obj", "v 0 0 0\nv 200 0 0\nv 200 200 0\nv 0 200 0\nv 0 0 200\nv 200 0 200\nv 200 200 200\nv 0 200 200\n"
-                    "f 1 4 3\nf 1 3 2\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n");
-  refuse({"import", "open.obj", "--organ", "liver", "--unit", "mm", "-o", "a.json"}, {"open.obj: error:", "hole", "mm"});
+  write("open.obj",
+        "v 0 0 0\nv 200 0 0\nv 200 200 0\nv 0 200 0\nv 0 0 200\nv 200 0 200\nv 200 200 200\nv 0 200 200\n"
+        "f 1 4 3\nf 1 3 2\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n");
+  refuse({"import", "open.obj", "--organ", "liver", "--unit", "mm", "-o", "a.json"},
+         {"open.obj: error:", "hole", "mm"});
 }
 
 TEST_F(BadInput, AnImportWithBadOptionsNamesThemAll) {
-  refuse({"import", kShipped + "organs/liver.obj", "--unit", "ell", "--radius-mm", "-1", "--anchor", "lowest", "-o", "a.json"},
+  refuse({"import", kShipped + "organs/liver.obj", "--unit", "ell", "--radius-mm", "-1", "--anchor", "lowest",
+          "-o", "a.json"},
          {"--unit: error: got 'ell'", "--radius-mm: error: got -1", "--anchor: error: got 'lowest'"});
-  refuse({"import", kShipped + "organs/liver.obj", "--organ", "lung", "-o", "a.json"}, {"there is no preset 'lung'", "liver, kidney, skin"});
-  refuse({"import", kShipped + "organs/liver.obj", "--anchor", "sphere:900,900,900,5", "-o", "a.json"}, {"catches no sphere"});
+  refuse({"import", kShipped + "organs/liver.obj", "--organ", "lung", "-o", "a.json"},
+         {"there is no preset 'lung'", "liver, kidney, skin"});
+  refuse({"import", kShipped + "organs/liver.obj", "--anchor", "sphere:900,900,900,5", "-o", "a.json"},
+         {"catches no sphere"});
 }
 
 TEST_F(BadInput, ASceneWithASyntaxError) {
@@ -85,8 +97,10 @@ TEST_F(BadInput, ASceneWithASyntaxError) {
 }
 
 TEST_F(BadInput, ASceneWithAnUnknownKeyAWrongUnitAndAWrongValueNamesThemAll) {
-  write("a.json", scene_with("\"fill\": { \"radius_mm\": 7, \"gap_mm\": 7 }", "\"fill\": { \"radius_cm\": 0.7, \"gap_mm\": -7 },\n\"modle\": \"ctpm\""));
-  refuse({"check", "a.json"}, {"the key is \"radius_mm\"", "/organs/0/fill/gap_mm: got -7", "did you mean \"model\"?"});
+  write("a.json", scene_with("\"fill\": { \"radius_mm\": 7, \"gap_mm\": 7 }",
+                             "\"fill\": { \"radius_cm\": 0.7, \"gap_mm\": -7 },\n\"modle\": \"ctpm\""));
+  refuse({"check", "a.json"},
+         {"the key is \"radius_mm\"", "/organs/0/fill/gap_mm: got -7", "did you mean \"model\"?"});
 }
 
 TEST_F(BadInput, ASceneWhoseMeshIsMissing) {
@@ -100,20 +114,27 @@ TEST_F(BadInput, ASceneWhoseMeshLeavesItsFolder) {
 }
 
 TEST_F(BadInput, AScriptWithAnUnknownTool) {
-  write("s.json", "{\"format\": \"ctpm-script\", \"version\": 1, \"steps\": [{\"take\": {\"tool\": \"saw\", \"at_mm\": [0, 0, 0]}}]}");
-  refuse({"record", kShipped + "skin.json", "--script", "s.json", "-o", "a.ctpm"}, {"s.json:1:", "\"saw\"", "ball, scalpel"});
+  write("s.json",
+        "{\"format\": \"ctpm-script\", \"version\": 1, \"steps\": [{\"take\": {\"tool\": \"saw\", \"at_mm\": "
+        "[0, 0, 0]}}]}");
+  refuse({"record", kShipped + "skin.json", "--script", "s.json", "-o", "a.ctpm"},
+         {"s.json:1:", "\"saw\"", "ball, scalpel"});
 }
 
 TEST_F(BadInput, ASessionThatDoesNotExistOrIsNone) {
   refuse({"verify", "nowhere.ctpm"}, {"nowhere.ctpm: error:"});
   write("letter.ctpm", "Dear Sir or Madam,\n");
-  for (const char* command : {"verify", "info", "replay"}) refuse({command, "letter.ctpm"}, {"letter.ctpm: error:"});
+  for (const char* command : {"verify", "info", "replay"})
+    refuse({command, "letter.ctpm"}, {"letter.ctpm: error:"});
   refuse({"export", "letter.ctpm", "-o", "a.mp4"}, {"letter.ctpm: error:"});
   refuse({"recover", "letter.ctpm", "-o", "b.ctpm"}, {"letter.ctpm"});
 }
 
 TEST_F(BadInput, ASessionThatIsCutShort) {
-  ASSERT_EQ(run_ctpm({"record", kShipped + "skin.json", "-o", "whole.ctpm", "--fast", "--duration-s", "1"}, folder_.path()).code, 0);
+  ASSERT_EQ(run_ctpm({"record", kShipped + "skin.json", "-o", "whole.ctpm", "--fast", "--duration-s", "1"},
+                     folder_.path())
+                .code,
+            0);
   const std::string whole = testing::slurp(folder_.path() / "whole.ctpm");
   for (const double share : {0.02, 0.3, 0.7}) {
     write("short.ctpm", whole.substr(0, std::size_t(share * double(whole.size()))));
@@ -122,7 +143,10 @@ TEST_F(BadInput, ASessionThatIsCutShort) {
 }
 
 TEST_F(BadInput, AnOutputFolderThatDoesNotExist) {
-  ASSERT_EQ(run_ctpm({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"}, folder_.path()).code, 0);
+  ASSERT_EQ(run_ctpm({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"},
+                     folder_.path())
+                .code,
+            0);
   refuse({"import", kShipped + "organs/liver.obj", "-o", "no/such/a.json"}, {"no/such"});
   refuse({"record", kShipped + "skin.json", "-o", "no/such/a.ctpm"}, {"no/such"});
   refuse({"preview", kShipped + "skin.json", "-o", "no/such/a.png"}, {"no/such"});
@@ -134,11 +158,18 @@ TEST_F(BadInput, AnOutputThatExistsIsNotOverwrittenUnlessAsked) {
   write("a.ctpm", "precious");
   refuse({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"}, {"a.ctpm"});
   EXPECT_EQ(testing::slurp(folder_.path() / "a.ctpm"), "precious");
-  EXPECT_EQ(run_ctpm({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1", "--overwrite"}, folder_.path()).code, 0);
+  EXPECT_EQ(run_ctpm({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1",
+                      "--overwrite"},
+                     folder_.path())
+                .code,
+            0);
 }
 
 TEST_F(BadInput, ExportOptionsOutOfRange) {
-  ASSERT_EQ(run_ctpm({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"}, folder_.path()).code, 0);
+  ASSERT_EQ(run_ctpm({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"},
+                     folder_.path())
+                .code,
+            0);
   refuse({"export", "a.ctpm", "-o", "a.mp4", "--size", "big"}, {"--size", "1280x720"});
   refuse({"export", "a.ctpm", "-o", "a.mp4", "--fps", "0"}, {"--fps"});
   refuse({"export", "a.ctpm", "-o", "a.mp4", "--camera", "moon"}, {"no camera 'moon'", "front"});

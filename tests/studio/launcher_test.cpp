@@ -28,7 +28,8 @@ class Machine {
   testing::ProgramOutcome launch(const std::string& no_install) {
     return testing::run({"/usr/bin/env", "-i", "PATH=" + bin().string(), "CTPM_NO_INSTALL=" + no_install,
                          "CTPM_BUILD_DIR=" + (folder_.path() / "build").string(), "/usr/bin/bash",
-                         std::string(CTPM_SOURCE_DIR) + "/ctpm", "demo"}, folder_.path());
+                         std::string(CTPM_SOURCE_DIR) + "/ctpm", "demo"},
+                        folder_.path());
   }
   fs::path bin() const { return folder_.path() / "bin"; }
   const testing::TemporaryFolder& folder() const { return folder_; }
@@ -53,7 +54,9 @@ TEST(Launcher, NeverInstallsWhenItIsForbidden) {
   machine.add_program("apt-get", "echo called > " + (machine.folder().path() / "apt-was-called").string());
   const auto outcome = machine.launch("1");
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.err.find("CTPM_NO_INSTALL=1 is set and these packages are missing: g++ cmake"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("CTPM_NO_INSTALL=1 is set and these packages are missing: g++ cmake"),
+            std::string::npos)
+      << outcome.err;
   EXPECT_EQ(machine.folder().list(), "bin");
 }
 

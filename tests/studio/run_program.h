@@ -14,7 +14,7 @@
 namespace ctpm::testing {
 
 struct ProgramOutcome {
-  int code = -1;           ///< exit code; -1 if a signal ended it
+  int code = -1;  ///< exit code; -1 if a signal ended it
   std::string out, err;
 };
 
@@ -72,7 +72,8 @@ class TemporaryFolder {
   /// Names of everything in it, sorted, separated by spaces.
   std::string list() const {
     std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(path_)) names.push_back(entry.path().filename().string());
+    for (const auto& entry : std::filesystem::directory_iterator(path_))
+      names.push_back(entry.path().filename().string());
     std::sort(names.begin(), names.end());
     std::string all;
     for (const std::string& name : names) all += (all.empty() ? "" : " ") + name;
