@@ -50,6 +50,26 @@ void describe_fields(V& v, FillSpec& fill) {
            units::millimetre, within(0, 100));
 }
 
+inline RecordInfo info_of(const FittedForSpec&) {
+  return {"fitted_for",
+          "What the stiffness scale was fitted for, as `ctpm fit` stores it: a ball pressed one sphere so deep "
+          "and met this "
+          "force. It changes nothing."};
+}
+template <class V>
+void describe_fields(V& v, FittedForSpec& fitted) {
+  v.point(required("place_mm", "Where the pressed sphere is at rest."), fitted.place, units::millimetre,
+          any_coordinate_mm);
+  v.number(required("ball_radius_mm", "Radius of the ball that pressed it."), fitted.ball_radius,
+           units::millimetre, within(0.01, 1000));
+  v.number(required("sphere_radius_mm", "Radius of the organ's spheres."), fitted.sphere_radius,
+           units::millimetre, within(0.01, 100));
+  v.number(required("depth_mm", "Depth of the sphere below its rest."), fitted.depth, units::millimetre,
+           above(0, 1000));
+  v.number(required("force_n", "Force on the ball at that depth."), fitted.force, units::newton,
+           above(0, 1e6));
+}
+
 inline RecordInfo info_of(const MaterialSpec&) {
   return {
       "material",
@@ -81,6 +101,7 @@ void describe_fields(V& v, MaterialSpec& material) {
   v.number(Key{"calibration_spacing_mm", "Spacing of the spheres that the moduli belong to.", false,
                "the preset's"},
            material.calibration_spacing, units::millimetre, within(0.01, 1000));
+  v.record(Key{"fitted_for", "What the stiffness scale was fitted for."}, material.fitted_for);
 }
 
 inline RecordInfo info_of(const BoxRegion&) { return {"box", "A box along the axes, its sides included."}; }

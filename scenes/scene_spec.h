@@ -41,6 +41,17 @@ struct FillSpec {
   friend bool operator==(const FillSpec&, const FillSpec&) = default;
 };
 
+/// What a stiffness scale was fitted for: a ball pressed one sphere so deep and met this force.
+struct FittedForSpec {
+  Vec3 place;                ///< of the pressed sphere at rest [m]
+  double ball_radius = 0;    ///< [m]
+  double sphere_radius = 0;  ///< r of the filling [m]
+  double depth = 0;          ///< [m]
+  double force = 0;          ///< [N]
+
+  friend bool operator==(const FittedForSpec&, const FittedForSpec&) = default;
+};
+
 /// A tissue: a preset (presets.h), single values instead of the preset's, or all values without a preset.
 struct MaterialSpec {
   std::string preset;                         ///< empty: none
@@ -52,6 +63,7 @@ struct MaterialSpec {
   std::optional<double> stiffness_scale;      ///< multiplies every stiffness and damping
   std::optional<double> calibration_ball;     ///< radius R of the ball the moduli belong to [m]
   std::optional<double> calibration_spacing;  ///< spacing of the site the moduli belong to [m]
+  std::optional<FittedForSpec> fitted_for;    ///< what the stiffness scale was fitted for; says it, does nothing
 
   friend bool operator==(const MaterialSpec&, const MaterialSpec&) = default;
 };

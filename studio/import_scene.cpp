@@ -9,12 +9,16 @@
 #include "scenes/scene_file.h"
 #include "scenes/script.h"
 #include "studio/files.h"
+#include "studio/fit_stiffness.h"
 #include "studio/render/scene_view.h"
 
 namespace ctpm {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Organs of more spheres are imported without a fit, which would take longer than a few seconds.
+constexpr std::size_t kMostFittedSpheres = 4000;
 
 /// The preset that was named, or the one whose organ's name stands in the mesh's file name.
 Result<const MaterialPreset*> choose_preset(const ImportRequest& request) {
@@ -92,6 +96,21 @@ SceneSpec make_scene(const ImportRequest& request, const MaterialPreset& preset,
   return scene;
 }
 
+/// Fits the organ's stiffness and stores it in the scene; an organ that cannot be fitted keeps the preset's moduli.
+void fit_scene(SceneSpec& scene, const FilledOrgan& organ, ImportOutcome& outcome) {
+  if (organ.centre.size() > kMostFittedSpheres) {
+    outcome.fit_problem = "with " + std::to_string(organ.centre.size()) + " spheres it takes long; run ctpm fit " + outcome.scene_file + " --write";
+    return;
+  }
+  const Result<StiffnessFit> fit = fit_stiffness(scene, 0, organ);
+  if (!fit) {
+    outcome.fit_problem = fit.errors().front().message;
+    return;
+  }
+  apply_fit(scene.organs[0], *fit);
+  outcome.stiffness_scale = fit->scale;
+}
+
 }  // namespace
 
 Result<ImportOutcome> import_scene(const ImportRequest& request) {
@@ -102,6 +121,7 @@ Result<ImportOutcome> import_scene(const ImportRequest& request) {
   const fs::path folder = fs::path(request.scene).parent_path();
   const std::string name = fs::path(request.scene).stem().string();
   ImportOutcome outcome;
+  outcome.scene_file = request.scene;
   outcome.mesh_file = (folder / (name + ".obj")).string();
   outcome.script_file = (folder / (name + ".script.json")).string();
   std::error_code ignored;
@@ -120,10 +140,11 @@ Result<ImportOutcome> import_scene(const ImportRequest& request) {
   outcome.report = imported->report;
 
   const std::vector<FilledOrgan> organs{std::move(imported->organ)};
-  const SceneSpec scene = make_scene(request, **preset, organs.front(), name);
+  SceneSpec scene = make_scene(request, **preset, organs.front(), name);
   const Result<std::vector<std::int32_t>> anchored = select_anchored(organs.front(), scene.organs[0].anchors, scene.gravity, request.mesh);
   if (!anchored) return anchored.errors();
   outcome.anchored = anchored->size();
+  fit_scene(scene, organs.front(), outcome);
   const Surface& surface = organs.front().surface;
   if (const Result<Done> written = write_obj(outcome.mesh_file, surface.vertex, surface.triangle); !written) return written.errors();
   const Script script = default_script(scene, organs);

@@ -26,11 +26,14 @@ struct ImportRequest {
 
 struct ImportOutcome {
   ImportReport report;
+  std::string scene_file;              ///< as asked
   std::string mesh_file, script_file;  ///< written beside the scene
+  std::optional<double> stiffness_scale;  ///< fitted and stored; unset: it could not be fitted
+  std::string fit_problem;                ///< why not
   std::size_t anchored = 0;            ///< spheres that never move
 };
 
-/// Imports a mesh and writes a scene that runs as it is: `NAME.json`, the repaired mesh `NAME.obj` in millimetres, and a
+/// Imports a mesh and writes a scene that runs as it is: `NAME.json` with its stiffness fitted, the repaired mesh `NAME.obj` in millimetres, and a
 /// script `NAME.script.json` that presses and cuts it. Errors: those of the import, an unknown organ, an anchor that
 /// catches nothing, a folder that cannot be written. The scene is written last, so it never names a missing file.
 Result<ImportOutcome> import_scene(const ImportRequest& request);

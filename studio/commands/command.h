@@ -25,6 +25,7 @@ Command add_info(CLI::App& program);
 Command add_recover(CLI::App& program);
 Command add_export(CLI::App& program);
 Command add_demo(CLI::App& program);
+Command add_fit(CLI::App& program);
 Command add_paper(CLI::App& program);
 
 }  // namespace ctpm

@@ -69,7 +69,9 @@ std::string report_json(const ImportReport& r, const ImportOutcome& outcome) {
   json.key("filling").begin_object().member("radius_mm", r.sphere_radius * 1e3).member("spacing_mm", r.spacing * 1e3);
   json.member("spheres", r.fill.spheres).member("edges", r.fill.edges).member("volume_ml", r.fill.filled_volume * 1e6);
   json.member("largest_distance_mm", r.fill.largest_distance * 1e3).member("mean_distance_mm", r.fill.mean_distance * 1e3);
-  json.member("anchored", outcome.anchored).key("spheres_per_layer").begin_list();
+  json.member("anchored", outcome.anchored);
+  if (outcome.stiffness_scale) json.member("stiffness_scale", *outcome.stiffness_scale);
+  json.key("spheres_per_layer").begin_list();
   for (const std::int64_t count : r.fill.spheres_per_layer) json.value(count);
   json.end_list().end_object().key("findings").begin_list();
   for (const Finding& f : r.findings) {
@@ -100,6 +102,10 @@ int run_import(ImportArguments& arguments) {
       return print_errors(written.errors());
   std::printf("%s", to_text(outcome->report).c_str());
   std::printf("anchored: %zu spheres never move\n", outcome->anchored);
+  if (outcome->stiffness_scale)
+    std::printf("stiffness_scale: %.6g, fitted so that the paper's ball meets its Table 1 at 12 mm\n", *outcome->stiffness_scale);
+  else
+    std::printf("stiffness_scale: not fitted, the preset's moduli stay: %s\n", outcome->fit_problem.c_str());
   suggest_radius(outcome->report);
   const std::string scene = arguments.request.scene, stem = scene.substr(0, scene.size() - 5);
   std::printf("written: %s, %s, %s\n", scene.c_str(), outcome->mesh_file.c_str(), outcome->script_file.c_str());

@@ -27,11 +27,12 @@ struct Claim {
   std::optional<double> closed_form_error = {};  ///< of the network [share]; unset: the difference of both values
   std::optional<double> closed_form_bound = {};  ///< [share]; unset: nothing must hold
   std::optional<double> paper_bound = {};        ///< [share]; unset: nothing must hold
+  std::optional<bool> holds = {};  ///< of what is asked of the network alone: whether it is so; unset: nothing is asked
   std::string note = {};
 
   double error_to_closed_form() const;  ///< [share]; NaN if one side is unknown
   double error_to_paper() const;        ///< [share]; NaN if one side is unknown
-  Verdict verdict() const;              ///< missed if a bound is passed, met if a bound holds, shown without a bound
+  Verdict verdict() const;              ///< missed if a bound is passed or something asked is not so; shown if nothing must hold
 };
 
 /// What one experiment gave.
@@ -61,11 +62,20 @@ struct PaperResults {
   std::vector<Section> sections;
   std::vector<Claim> claims;
 };
-/// Runs them all, two at a time. Errors: those of the scenes; a run that diverged.
+/// Runs them all, the long ones with two threads. Errors: those of the scenes; a run that diverged.
 Result<PaperResults> run_paper_experiments(const std::string& scenes, const std::function<void(std::int64_t done, std::int64_t total)>& progress);
 
 /// Writes report.html, results.json (all claims, and the points of every plot) and results.csv (all claims) into a folder.
 Result<Done> write_paper_report(const std::string& folder, const PaperResults& results);
+
+/// How a sphere moves under a load that stays.
+struct Motion {
+  double rest = 0;           ///< where it comes to [same unit as the values]: mean of the last quarter
+  double overshoot = 0;      ///< largest value beyond rest [share of rest]
+  int reversals = 0;         ///< turns that swing back by more than 0.1 % of rest
+  double settling_time = 0;  ///< after which it stays within 5 % of rest [s]
+};
+Motion motion_of(const Series& series);
 
 /// All claims as one table, for the page, results.json and results.csv.
 Table claims_table(const std::vector<Claim>& claims);

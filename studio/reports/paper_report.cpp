@@ -1,7 +1,7 @@
 // All experiments of the paper together, and the report about them.
 
 #include <algorithm>
-#include <future>
+#include <iterator>
 
 #include "studio/reports/paper.h"
 
@@ -68,16 +68,13 @@ Table shortened(const Table& claims) {
 Result<PaperResults> run_paper_experiments(const std::string& scenes, const std::function<void(std::int64_t done, std::int64_t total)>& progress) {
   using Runner = std::function<Result<Experiment>()>;
   // In the order of the paper.
-  const std::vector<Runner> runners{[&] { return run_table_1(scenes); }, [&] { return run_relaxation(scenes); }, [&] { return run_creep(scenes); }};
+  const std::vector<Runner> runners{[&] { return run_table_1(scenes); }, [&] { return run_relaxation(scenes); }, [&] { return run_creep(scenes); },
+                                   [&] { return run_load(scenes, true); }, [&] { return run_cut(scenes, true); }};
   PaperResults results;
   Errors errors;
-  std::vector<std::future<Result<Experiment>>> running(runners.size());
-  const auto total = std::int64_t(runners.size());
   for (std::size_t i = 0; i < runners.size(); ++i) {
-    for (std::size_t next = i; next < std::min(i + 2, runners.size()); ++next)
-      if (!running[next].valid()) running[next] = std::async(std::launch::async, runners[next]);
-    progress(std::int64_t(i), total);
-    Result<Experiment> experiment = running[i].get();
+    progress(std::int64_t(i), std::int64_t(runners.size()));
+    Result<Experiment> experiment = runners[i]();
     if (!experiment) {
       errors.insert(errors.end(), experiment.errors().begin(), experiment.errors().end());
       continue;
