@@ -128,10 +128,11 @@ void add_claims(Experiment& experiment, const std::array<CutRun, 3>& runs) {
 }
 
 Result<Done> add_pictures(Section& section, const LoadedScene& scene, const std::array<CutRun, 3>& runs) {
+  const Camera camera{{-0.03, -0.12, 0.15}, {0, -0.004, 0.028}, {0, 0, 1}, 32};
   for (const std::size_t i : {kMassSpring, kCtpm}) {
     const std::string what = "Figs. 12 and 13, " + runs[i].way_of_a.name + ": ";
     const std::string when = " 1 s after the cut; displacements drawn 5 times as large.";
-    const Result<std::vector<Picture>> pictures = draw_shots(scene.scene.spec, scene.organs, runs[i].model, "front", {{runs[i].state, what + "surface" + when, false, false, 5}, {runs[i].state, what + "inside" + when, true, false, 5}});
+    const Result<std::vector<Picture>> pictures = draw_shots(scene.scene.spec, scene.organs, runs[i].model, camera, {{runs[i].state, what + "surface" + when, false, false, 5}, {runs[i].state, what + "inside" + when, true, false, 5}});
     if (!pictures) return pictures.errors();
     section.pictures.insert(section.pictures.end(), pictures->begin(), pictures->end());
   }

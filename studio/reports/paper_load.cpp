@@ -108,13 +108,15 @@ void add_runs(Experiment& experiment, const std::vector<LoadRun>& runs, const st
 
 /// Fig. 9: surface and inside of both models while the load is young.
 Result<Done> add_block_pictures(Section& section, const LoadedScene& scene, const std::vector<LoadRun>& sudden) {
-  constexpr double kTimes = 20;
+  constexpr double kTimes = 40;
+  // Near the loaded sphere, from above.
+  const Camera camera{{-0.05, -0.15, 0.20}, {0, 0.004, 0.058}, {0, 0, 1}, 30};
   std::vector<FilledOrgan> organs = scene.organs;
   add_box_surface(organs[0], 3);
   for (const std::size_t i : {kMassSpring, kCtpm}) {
     const std::string what = "Fig. 9, " + full_name(kVariants[i]) + ": ";
-    const std::string when = " 40 ms after a sudden 0.13 N; displacements drawn 20 times as large.";
-    const Result<std::vector<Picture>> pictures = draw_shots(scene.scene.spec, organs, scene.built.model, "front",
+    const std::string when = " 40 ms after a sudden 0.13 N; displacements drawn 40 times as large.";
+    const Result<std::vector<Picture>> pictures = draw_shots(scene.scene.spec, organs, scene.built.model, camera,
                                                              {{sudden[i].young, what + "surface" + when, false, false, kTimes}, {sudden[i].young, what + "inside" + when, true, false, kTimes}});
     if (!pictures) return pictures.errors();
     section.pictures.insert(section.pictures.end(), pictures->begin(), pictures->end());
@@ -148,7 +150,10 @@ Result<Done> add_liver_pictures(Section& section, const std::string& scenes) {
       if (report.depth > depth) depth = report.depth, deepest = state;
       if (depth > 0 && report.contacts == 0) break;
     }
-    const Result<std::vector<Picture>> pictures = draw_shots(scene->scene.spec, scene->organs, model, "front",
+    // Near the ball, from the front and above.
+    const Vec3 ball = deepest.last_inputs.position;
+    const Camera camera{ball + Vec3{-0.03, -0.15, 0.11}, ball + Vec3{0, 0, -0.012}, {0, 0, 1}, 32};
+    const Result<std::vector<Picture>> pictures = draw_shots(scene->scene.spec, scene->organs, model, camera,
                                                              {{deepest, "Fig. 10, " + full_name(variant) + ": the liver with a ball " + fixed(1e3 * depth, 1) + " mm deep.", false, true, 1}});
     if (!pictures) return pictures.errors();
     section.pictures.insert(section.pictures.end(), pictures->begin(), pictures->end());

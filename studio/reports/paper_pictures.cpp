@@ -56,11 +56,9 @@ void add_box_surface(FilledOrgan& block, int steps) {
   bind_surface(block);
 }
 
-Result<std::vector<Picture>> draw_shots(const SceneSpec& scene, const std::vector<FilledOrgan>& organs, const Model& model, const std::string& camera,
+Result<std::vector<Picture>> draw_shots(const SceneSpec& scene, const std::vector<FilledOrgan>& organs, const Model& model, const Camera& camera,
                                         const std::vector<Shot>& shots) {
   SceneView view = view_of(scene, model, surfaces_of(organs));
-  const Result<Camera> eye = find_camera(scene, view, camera, double(kWidth) / kHeight);
-  if (!eye) return eye.errors();
   Result<std::unique_ptr<Renderer>> renderer = Renderer::create(kWidth, kHeight, std::move(view));
   if (!renderer) return renderer.errors();
   std::vector<Picture> pictures;
@@ -69,7 +67,7 @@ Result<std::vector<Picture>> draw_shots(const SceneSpec& scene, const std::vecto
     for (std::size_t i = 0; i < model.sphere_count(); ++i)
       state.position.set(i, model.rest_position[i] + shot.exaggeration * (state.position[i] - model.rest_position[i]));
     DrawOptions options;
-    options.camera = *eye;
+    options.camera = camera;
     options.view = shot.is_inside ? View::spheres : View::surface;
     options.show_tool = shot.show_tool;
     pictures.push_back({(*renderer)->draw(state, options), shot.caption});

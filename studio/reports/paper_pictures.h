@@ -20,8 +20,8 @@ struct Shot {
   double exaggeration = 1;   ///< displacements from rest are drawn so many times as large
 };
 
-/// Pictures of several states of one Model, with the scene's camera of that name. Errors: those of the renderer.
+/// Pictures of several states of one Model, all through one camera. Errors: those of the renderer.
 Result<std::vector<Picture>> draw_shots(const SceneSpec& scene, const std::vector<FilledOrgan>& organs, const Model& model,
-                                        const std::string& camera, const std::vector<Shot>& shots);
+                                        const Camera& camera, const std::vector<Shot>& shots);
 
 }  // namespace ctpm

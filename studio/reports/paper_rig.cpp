@@ -227,7 +227,7 @@ Result<Done> add_relaxation(Experiment& experiment, const LoadedScene& scene, co
     claim.closed_form = 1 - law.back() / law_peak, claim.network = 1 - force->y.back() / peak;
     claim.closed_form_error = *claim.network - *claim.closed_form;
     experiment.claims.push_back(claim);
-    if (is_plotted) plot.series.push_back(law_series(std::string("CTPM, Eq. 10, ") + reading.name, samples, law, 6));
+    if (is_plotted) plot.series.push_back(law_series(reading.factor == 1.0 ? "CTPM, Eq. 10 integrated" : "", samples, law, 6));
   }
   return Done{};
 }
@@ -275,7 +275,7 @@ Result<Done> add_creep(Experiment& experiment, const LoadedScene& scene, const C
     const bool is_inside = depth->y.back() >= load.measured_low && depth->y.back() <= load.measured_high;
     claim.note = "measured on pig liver " + short_number(load.measured_low) + " to " + short_number(load.measured_high) + " mm: " + (is_inside ? "inside" : "outside, shown as it is");
     experiment.claims.push_back(claim);
-    plot.series.push_back(law_series(std::string("CTPM, Eq. 10, ") + reading.name, samples, law, 6));
+    plot.series.push_back(law_series(reading.factor == 1.0 ? "CTPM, Eq. 10 integrated" : "", samples, law, 6));
   }
   return Done{};
 }

@@ -72,8 +72,10 @@ Range range_of(const Plot& plot, bool is_y) {
   if (range.is_empty()) range = {is_log ? 1.0 : 0.0, is_log ? 10.0 : 1.0};
   if (is_log) return {std::pow(10.0, std::floor(std::log10(range.low))), std::pow(10.0, std::ceil(std::log10(range.high)))};
   const double size = std::max(range.high - range.low, 1e-12 * std::max(1.0, std::abs(range.high)));
-  if (!is_y) return range;
-  const bool from_zero = range.low >= 0 && range.low < 0.4 * size;
+  // Places in a plane need air on both sides, curves over time do not.
+  const bool has_places = std::any_of(plot.series.begin(), plot.series.end(), [](const Series& s) { return s.stroke == Stroke::path; });
+  if (!is_y && !has_places) return {range.low >= 0 && range.low < 0.1 * size ? 0.0 : range.low, range.high};
+  const bool from_zero = !has_places && range.low >= 0 && range.low < 0.4 * size;
   return {from_zero ? 0.0 : range.low - 0.06 * size, range.high + 0.06 * size};
 }
 
