@@ -28,13 +28,16 @@ constexpr std::size_t kMostTries = 8;
 constexpr double kFitBound = 0.002;
 constexpr int kMostRounds = 4;
 
-Vec3 up_in(const SceneSpec& scene) { return norm(scene.gravity) > 0 ? -1.0 * scene.gravity / norm(scene.gravity) : Vec3{0, 0, 1}; }
+Vec3 up_in(const SceneSpec& scene) {
+  return norm(scene.gravity) > 0 ? -1.0 * scene.gravity / norm(scene.gravity) : Vec3{0, 0, 1};
+}
 
 void multiply_scale(MaterialSpec& material, double factor) {
   material.stiffness_scale = factor * resolve_material(material).material.stiffness_scale;
 }
 
-/// The scene with that organ alone, at rest for good: no gravity, no viscosity, the calibration's ball as its tool.
+/// The scene with that organ alone, at rest for good: no gravity, no viscosity, the calibration's ball as its
+/// tool.
 SceneSpec slow_scene(const SceneSpec& scene, std::size_t organ, double factor) {
   SceneSpec slow;
   slow.name = scene.name, slow.gravity = {}, slow.tick = 10e-3;
@@ -58,12 +61,14 @@ std::optional<std::vector<double>> press(const Model& model, std::int32_t sphere
   State state = rest_state(model);
   std::vector<double> forces;
   double last_depth = 0, last_force = 0;
-  for (double way = 0; way < kFitDepth + kLongestWay && forces.size() < std::size(kDepths); way += speed * model.tick) {
+  for (double way = 0; way < kFitDepth + kLongestWay && forces.size() < std::size(kDepths);
+       way += speed * model.tick) {
     Inputs inputs;
     inputs.tool = 0, inputs.position = touch - way * up;
     const StepReport report = stepper.step(state, inputs);
     if (report.status != StepStatus::ok) return std::nullopt;
-    const double depth = dot(model.rest_position[c] - state.position[c], up), force = dot(report.tool_force, up);
+    const double depth = dot(model.rest_position[c] - state.position[c], up),
+                 force = dot(report.tool_force, up);
     // Between two ticks the force rises in proportion.
     while (forces.size() < std::size(kDepths) && depth >= kDepths[forces.size()]) {
       const double share = (kDepths[forces.size()] - last_depth) / (depth - last_depth);
@@ -75,12 +80,14 @@ std::optional<std::vector<double>> press(const Model& model, std::int32_t sphere
   return forces;
 }
 
-/// Of the eight places one and two steps beside a sphere, across `up`, how many hold a sphere: the paper's C has all.
-/// -1 for a sphere that has another one above it, which the ball would meet first.
+/// Of the eight places one and two steps beside a sphere, across `up`, how many hold a sphere: the paper's C
+/// has all. -1 for a sphere that has another one above it, which the ball would meet first.
 std::vector<int> neighbours_across(const FilledOrgan& filled, Vec3 up) {
   const std::set<std::array<std::int32_t, 3>> cells(filled.cell.begin(), filled.cell.end());
   const double along[3] = {up.x, up.y, up.z};
-  const auto up_axis = std::size_t(std::max_element(along, along + 3, [](double p, double q) { return std::abs(p) < std::abs(q); }) - along);
+  const auto up_axis = std::size_t(
+      std::max_element(along, along + 3, [](double p, double q) { return std::abs(p) < std::abs(q); }) -
+      along);
   std::vector<int> counts;
   for (const std::array<std::int32_t, 3>& cell : filled.cell) {
     int count = 0;
@@ -98,25 +105,31 @@ std::vector<int> neighbours_across(const FilledOrgan& filled, Vec3 up) {
   return counts;
 }
 
-/// Outermost spheres near the top that can move: those first that lie among the most neighbours, as the paper's C does,
-/// since a sphere that sticks out alone gives way sideways; then the highest, then the nearest to the organ's middle.
+/// Outermost spheres near the top that can move: those first that lie among the most neighbours, as the
+/// paper's C does, since a sphere that sticks out alone gives way sideways; then the highest, then the
+/// nearest to the organ's middle.
 std::vector<std::int32_t> top_spheres(const Model& model, const FilledOrgan& filled, Vec3 up) {
   Vec3 middle;
   for (const Vec3& centre : filled.centre) middle += centre / double(filled.centre.size());
-  const auto level = [&](std::int32_t i) { return std::lround(2 * dot(model.rest_position[std::size_t(i)] - middle, up) / filled.spacing); };
+  const auto level = [&](std::int32_t i) {
+    return std::lround(2 * dot(model.rest_position[std::size_t(i)] - middle, up) / filled.spacing);
+  };
   std::vector<std::int32_t> spheres;
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
     if (filled.layer[i] == 1 && model.held_axes[i] == 0) spheres.push_back(std::int32_t(i));
   if (spheres.empty()) return spheres;
-  const long top = level(*std::max_element(spheres.begin(), spheres.end(), [&](std::int32_t p, std::int32_t q) { return level(p) < level(q); }));
+  const long top = level(*std::max_element(
+      spheres.begin(), spheres.end(), [&](std::int32_t p, std::int32_t q) { return level(p) < level(q); }));
   const std::vector<int> neighbours = neighbours_across(filled, up);
   // Near the top: within two spacings.
-  std::erase_if(spheres, [&](std::int32_t i) { return level(i) < top - 4 || neighbours[std::size_t(i)] < 0; });
+  std::erase_if(spheres,
+                [&](std::int32_t i) { return level(i) < top - 4 || neighbours[std::size_t(i)] < 0; });
   const auto order = [&](std::int32_t i) {
     const Vec3 apart = model.rest_position[std::size_t(i)] - middle;
     return std::tuple(-neighbours[std::size_t(i)], -level(i), norm(apart - dot(apart, up) * up));
   };
-  std::stable_sort(spheres.begin(), spheres.end(), [&](std::int32_t p, std::int32_t q) { return order(p) < order(q); });
+  std::stable_sort(spheres.begin(), spheres.end(),
+                   [&](std::int32_t p, std::int32_t q) { return order(p) < order(q); });
   spheres.resize(std::min(spheres.size(), kMostTries));
   return spheres;
 }
@@ -135,7 +148,8 @@ Result<StiffnessFit> fit_stiffness(const SceneSpec& scene, std::size_t organ, co
   const Result<BuiltScene> first = build(1);
   if (!first) return first.errors();
   const std::vector<std::int32_t> tries = top_spheres(first->model, filled, up);
-  if (tries.empty()) return Error{where, "no outermost sphere can move, so nothing can be pressed", "anchor less of it"};
+  if (tries.empty())
+    return Error{where, "no outermost sphere can move, so nothing can be pressed", "anchor less of it"};
   StiffnessFit fit;
   for (const std::int32_t sphere : tries) {
     std::optional<std::vector<double>> forces = press(first->model, sphere, up, 20e-3);
@@ -151,11 +165,15 @@ Result<StiffnessFit> fit_stiffness(const SceneSpec& scene, std::size_t organ, co
     }
     if (!forces || std::abs(forces->back() / wanted - 1) > kFitBound) continue;
     fit.scale = fit.factor * resolve_material(spec.material).material.stiffness_scale;
-    fit.fitted_for = {first->model.rest_position[std::size_t(sphere)], first->model.tools[0].radius, filled.sphere_radius, kFitDepth, forces->back()};
-    for (std::size_t i = 0; i < std::size(kDepths); ++i) fit.rows.push_back({kDepths[i], (*forces)[i], table_force(site, 1e3 * kDepths[i], true)});
+    fit.fitted_for = {first->model.rest_position[std::size_t(sphere)], first->model.tools[0].radius,
+                      filled.sphere_radius, kFitDepth, forces->back()};
+    for (std::size_t i = 0; i < std::size(kDepths); ++i)
+      fit.rows.push_back({kDepths[i], (*forces)[i], table_force(site, 1e3 * kDepths[i], true)});
     return fit;
   }
-  return Error{where, "the ball of " + fixed(site.ball_radius, 1) + " mm slips off each of " + std::to_string(tries.size()) + " spheres at the top before it is 12 mm deep",
+  return Error{where,
+               "the ball of " + fixed(site.ball_radius, 1) + " mm slips off each of " +
+                   std::to_string(tries.size()) + " spheres at the top before it is 12 mm deep",
                "the organ may be too thin or its spheres too small"};
 }
 
@@ -163,11 +181,13 @@ void apply_fit(OrganSpec& organ, const StiffnessFit& fit) {
   // Six digits say more than the fit knows, and stay readable in a scene.
   const auto rounded = [](double value) { return std::stod(short_number(value, 6)); };
   for (LayerSpec& layer : organ.layers)
-    layer.material.stiffness_scale = rounded(fit.factor * resolve_material(layer.material).material.stiffness_scale);
+    layer.material.stiffness_scale =
+        rounded(fit.factor * resolve_material(layer.material).material.stiffness_scale);
   organ.material.stiffness_scale = rounded(fit.scale);
   FittedForSpec fitted = fit.fitted_for;
   const auto to_micrometre = [](double length) { return std::round(length * 1e6) / 1e6; };
-  fitted.place = {to_micrometre(fitted.place.x), to_micrometre(fitted.place.y), to_micrometre(fitted.place.z)};
+  fitted.place = {to_micrometre(fitted.place.x), to_micrometre(fitted.place.y),
+                  to_micrometre(fitted.place.z)};
   fitted.force = rounded(fitted.force);
   organ.material.fitted_for = fitted;
 }

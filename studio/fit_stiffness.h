@@ -26,11 +26,12 @@ struct StiffnessFit {
   std::vector<FitRow> rows;  ///< at 2, 4, ... 12 mm, with the scale applied
 };
 
-/// Fits the stiffness scale of `organ`: the ball of its calibration presses an outermost sphere near the organ's top that
-/// lies among neighbours, along the line through its centre, so slowly that only the forces at rest count (no gravity, no viscosity), until the sphere is
-/// 12 mm deep. There the force must be the CTPM force of the paper's Table 1. Force is proportional to the scale, so one run
-/// gives it and a second one checks it; the other depths show the error of the shape.
-/// Errors: nothing at the top can move; the ball slips off every sphere that was tried; a run that diverged.
+/// Fits the stiffness scale of `organ`: the ball of its calibration presses an outermost sphere near the
+/// organ's top that lies among neighbours, along the line through its centre, so slowly that only the forces
+/// at rest count (no gravity, no viscosity), until the sphere is 12 mm deep. There the force must be the CTPM
+/// force of the paper's Table 1. Force is proportional to the scale, so one run gives it and a second one
+/// checks it; the other depths show the error of the shape. Errors: nothing at the top can move; the ball
+/// slips off every sphere that was tried; a run that diverged.
 Result<StiffnessFit> fit_stiffness(const SceneSpec& scene, std::size_t organ, const FilledOrgan& filled);
 
 /// Stores a fit in the scene: the scale, and what it was fitted for.

@@ -29,10 +29,14 @@ Result<std::size_t> find_organ(const SceneSpec& scene, const std::string& name) 
 void print_fit(const OrganSpec& organ, const StiffnessFit& fit) {
   const FittedForSpec& f = fit.fitted_for;
   std::printf("%s: stiffness_scale %.6g\n", organ.name.c_str(), fit.scale);
-  std::printf("fitted with a ball of %.2f mm on the sphere of %.2f mm at (%.2f, %.2f, %.2f) mm\n\n", 1e3 * f.ball_radius, 1e3 * f.sphere_radius, 1e3 * f.place.x, 1e3 * f.place.y, 1e3 * f.place.z);
+  std::printf("fitted with a ball of %.2f mm on the sphere of %.2f mm at (%.2f, %.2f, %.2f) mm\n\n",
+              1e3 * f.ball_radius, 1e3 * f.sphere_radius, 1e3 * f.place.x, 1e3 * f.place.y, 1e3 * f.place.z);
   std::printf("depth [mm]   force [N]   Table 1, CTPM [N]   error [%%]\n");
-  for (const FitRow& row : fit.rows) std::printf("%10.0f %11.4f %19.4f %11.1f\n", 1e3 * row.depth, row.force, row.closed_form, 100 * row.error());
-  std::printf("\nThe scale is fitted at 12 mm only; the other depths show how the shape of the curve differs.\n");
+  for (const FitRow& row : fit.rows)
+    std::printf("%10.0f %11.4f %19.4f %11.1f\n", 1e3 * row.depth, row.force, row.closed_form,
+                100 * row.error());
+  std::printf(
+      "\nThe scale is fitted at 12 mm only; the other depths show how the shape of the curve differs.\n");
 }
 
 int run_fit(const FitArguments& arguments) {
@@ -42,7 +46,8 @@ int run_fit(const FitArguments& arguments) {
   const Result<std::size_t> organ = find_organ(spec, arguments.organ);
   if (!organ) return print_errors(organ.errors());
   if (arguments.write)
-    if (const Result<Done> writable = check_writable(arguments.scene); !writable) return print_errors(writable.errors());
+    if (const Result<Done> writable = check_writable(arguments.scene); !writable)
+      return print_errors(writable.errors());
   const Result<StiffnessFit> fit = fit_stiffness(spec, *organ, scene->organs[*organ]);
   if (!fit) {
     Errors errors = fit.errors();
@@ -52,7 +57,8 @@ int run_fit(const FitArguments& arguments) {
   print_fit(spec.organs[*organ], *fit);
   if (!arguments.write) return exit_good;
   apply_fit(spec.organs[*organ], *fit);
-  if (const Result<Done> written = write_text_file(arguments.scene, write_scene(spec)); !written) return print_errors(written.errors());
+  if (const Result<Done> written = write_text_file(arguments.scene, write_scene(spec)); !written)
+    return print_errors(written.errors());
   std::printf("written: %s\n", arguments.scene.c_str());
   return exit_good;
 }
@@ -61,12 +67,15 @@ int run_fit(const FitArguments& arguments) {
 
 Command add_fit(CLI::App& program) {
   auto arguments = std::make_shared<FitArguments>();
-  CLI::App* app = program.add_subcommand("fit", "Fits an organ's stiffness: the paper's ball at 12 mm meets Table 1.");
+  CLI::App* app =
+      program.add_subcommand("fit", "Fits an organ's stiffness: the paper's ball at 12 mm meets Table 1.");
   app->footer("Example: ctpm fit my/liver.json --write");
   app->add_option("scene", arguments->scene, "Scene file (.json)")->required();
   app->add_option("--organ", arguments->organ, "Name of the organ; the first if not given");
-  app->add_flag("--write", arguments->write, "Store the scale and what it was fitted for in the scene, in the program's own layout");
-  app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths, "Meshes may lie outside the scene's folder");
+  app->add_flag("--write", arguments->write,
+                "Store the scale and what it was fitted for in the scene, in the program's own layout");
+  app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths,
+                "Meshes may lie outside the scene's folder");
   return {app, [arguments] { return run_fit(*arguments); }};
 }
 

@@ -13,21 +13,26 @@ struct PaperArguments {
 };
 
 int run_paper(const PaperArguments& arguments) {
-  if (const Result<Done> ready = prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
+  if (const Result<Done> ready = prepare_folder(arguments.folder); !ready)
+    return print_errors(ready.errors());
   Result<PaperResults> results = [&] {
     ProgressLine progress("running the paper's experiments");
-    return run_paper_experiments(arguments.scenes, [&](std::int64_t done, std::int64_t total) { progress.show(done, total); });
+    return run_paper_experiments(arguments.scenes,
+                                 [&](std::int64_t done, std::int64_t total) { progress.show(done, total); });
   }();
   if (!results) return print_errors(results.errors());
-  if (const Result<Done> written = write_paper_report(arguments.folder, *results); !written) return print_errors(written.errors());
+  if (const Result<Done> written = write_paper_report(arguments.folder, *results); !written)
+    return print_errors(written.errors());
   int met = 0, missed = 0, shown = 0;
   for (const Claim& claim : results->claims) {
     const Verdict verdict = claim.verdict();
     ++(verdict == Verdict::met ? met : verdict == Verdict::missed ? missed : shown);
     if (verdict == Verdict::missed)
-      std::printf("missed: %s, %s %s %s: %s\n", claim.experiment.c_str(), claim.organ.c_str(), claim.structure.c_str(), claim.viscosity.c_str(), claim.quantity.c_str());
+      std::printf("missed: %s, %s %s %s: %s\n", claim.experiment.c_str(), claim.organ.c_str(),
+                  claim.structure.c_str(), claim.viscosity.c_str(), claim.quantity.c_str());
   }
-  std::printf("%d figures must hold: %d do, %d do not; %d more are shown as they are\n", met + missed, met, missed, shown);
+  std::printf("%d figures must hold: %d do, %d do not; %d more are shown as they are\n", met + missed, met,
+              missed, shown);
   std::printf("written: %s/report.html, results.json, results.csv\n", arguments.folder.c_str());
   return missed == 0 ? exit_good : exit_bad_verdict;
 }
@@ -36,9 +41,12 @@ int run_paper(const PaperArguments& arguments) {
 
 Command add_paper(CLI::App& program) {
   auto arguments = std::make_shared<PaperArguments>();
-  CLI::App* app = program.add_subcommand("paper", "Runs every experiment of the paper on the network and writes a report of what agrees.");
+  CLI::App* app = program.add_subcommand(
+      "paper", "Runs every experiment of the paper on the network and writes a report of what agrees.");
   app->footer("Example: ctpm paper -o out/paper");
-  app->add_option("-o,--output", arguments->folder, "Folder for report.html, results.json and results.csv; made if missing")->required();
+  app->add_option("-o,--output", arguments->folder,
+                  "Folder for report.html, results.json and results.csv; made if missing")
+      ->required();
   app->add_option("--scenes", arguments->scenes, "Folder of the shipped scenes");
   return {app, [arguments] { return run_paper(*arguments); }};
 }

@@ -21,7 +21,9 @@ Cell percent(double value) { return std::isfinite(value) ? Cell(100 * value) : C
 
 }  // namespace
 
-double Claim::error_to_closed_form() const { return closed_form_error ? *closed_form_error : share(network, closed_form); }
+double Claim::error_to_closed_form() const {
+  return closed_form_error ? *closed_form_error : share(network, closed_form);
+}
 double Claim::error_to_paper() const { return share(network, paper); }
 
 Verdict Claim::verdict() const {
@@ -36,17 +38,31 @@ Verdict Claim::verdict() const {
 
 Table claims_table(const std::vector<Claim>& claims) {
   Table table;
-  table.columns = {{"experiment", "experiment"}, {"organ", "organ"}, {"model", "model"}, {"viscosity", "viscosity"},
-                   {"quantity", "quantity"}, {"paper", "paper"}, {"closed_form", "closed form"}, {"network", "network"},
-                   {"error_to_closed_form_percent", "error to closed form [%]", 2}, {"bound_percent", "bound [%]", 3},
-                   {"error_to_paper_percent", "error to paper [%]", 2}, {"paper_bound_percent", "bound [%]", 3},
-                   {"verdict", "must hold"}, {"paper_verdict", "paper"}, {"note", "note"}};
+  table.columns = {{"experiment", "experiment"},
+                   {"organ", "organ"},
+                   {"model", "model"},
+                   {"viscosity", "viscosity"},
+                   {"quantity", "quantity"},
+                   {"paper", "paper"},
+                   {"closed_form", "closed form"},
+                   {"network", "network"},
+                   {"error_to_closed_form_percent", "error to closed form [%]", 2},
+                   {"bound_percent", "bound [%]", 3},
+                   {"error_to_paper_percent", "error to paper [%]", 2},
+                   {"paper_bound_percent", "bound [%]", 3},
+                   {"verdict", "must hold"},
+                   {"paper_verdict", "paper"},
+                   {"note", "note"}};
   for (const Claim& c : claims) {
     const double off = c.error_to_paper();
-    const char* agrees = !std::isfinite(off) ? "" : std::abs(off) <= c.paper_bound.value_or(kAgrees) ? "agrees" : "differs";
-    table.rows.push_back({c.experiment, c.organ, c.structure, c.viscosity, c.quantity, cell(c.paper), cell(c.closed_form), cell(c.network),
-                          percent(c.error_to_closed_form()), c.closed_form_bound ? percent(*c.closed_form_bound) : Cell(), percent(off),
-                          c.paper_bound ? percent(*c.paper_bound) : Cell(), c.verdict(), std::string(agrees), c.note});
+    const char* agrees = !std::isfinite(off)                                ? ""
+                         : std::abs(off) <= c.paper_bound.value_or(kAgrees) ? "agrees"
+                                                                            : "differs";
+    table.rows.push_back({c.experiment, c.organ, c.structure, c.viscosity, c.quantity, cell(c.paper),
+                          cell(c.closed_form), cell(c.network), percent(c.error_to_closed_form()),
+                          c.closed_form_bound ? percent(*c.closed_form_bound) : Cell(), percent(off),
+                          c.paper_bound ? percent(*c.paper_bound) : Cell(), c.verdict(), std::string(agrees),
+                          c.note});
   }
   return table;
 }
@@ -68,10 +84,27 @@ Result<BuiltScene> build_changed(const LoadedScene& scene, const std::function<v
 }
 
 const std::vector<PrintedRow>& printed_table(const std::string& organ) {
-  static const std::map<std::string, std::vector<PrintedRow>> kPrinted{
-      {"skin", {{2, 0.37, 1.6, 1.7}, {4, 1.47, 3.9, 3.6}, {6, 3.3, 6.1, 5.7}, {8, 5.8, 9.2, 7.7}, {10, 8.9, 12.3, 9.9}, {12, 12.6, 15.8, 12.3}}},
-      {"kidney", {{2, 0.73, 0.42, 0.37}, {4, 2.9, 0.8, 0.7}, {6, 6.3, 1.5, 1.2}, {8, 10.8, 2.2, 1.7}, {10, 16.3, 3.2, 2.3}, {12, 22.4, 4.5, 3.0}}},
-      {"liver", {{2, 0.14, 0.19, 0.17}, {4, 0.54, 0.4, 0.25}, {6, 1.2, 0.66, 0.38}, {8, 2.1, 0.96, 0.62}, {10, 3.1, 1.3, 0.84}, {12, 4.2, 1.8, 1.1}}}};
+  static const std::map<std::string, std::vector<PrintedRow>> kPrinted{{"skin",
+                                                                        {{2, 0.37, 1.6, 1.7},
+                                                                         {4, 1.47, 3.9, 3.6},
+                                                                         {6, 3.3, 6.1, 5.7},
+                                                                         {8, 5.8, 9.2, 7.7},
+                                                                         {10, 8.9, 12.3, 9.9},
+                                                                         {12, 12.6, 15.8, 12.3}}},
+                                                                       {"kidney",
+                                                                        {{2, 0.73, 0.42, 0.37},
+                                                                         {4, 2.9, 0.8, 0.7},
+                                                                         {6, 6.3, 1.5, 1.2},
+                                                                         {8, 10.8, 2.2, 1.7},
+                                                                         {10, 16.3, 3.2, 2.3},
+                                                                         {12, 22.4, 4.5, 3.0}}},
+                                                                       {"liver",
+                                                                        {{2, 0.14, 0.19, 0.17},
+                                                                         {4, 0.54, 0.4, 0.25},
+                                                                         {6, 1.2, 0.66, 0.38},
+                                                                         {8, 2.1, 0.96, 0.62},
+                                                                         {10, 3.1, 1.3, 0.84},
+                                                                         {12, 4.2, 1.8, 1.1}}}};
   const auto it = kPrinted.find(organ);
   CTPM_CHECK(it != kPrinted.end(), "the paper has skin, kidney and liver");
   return it->second;

@@ -12,27 +12,30 @@
 #include "studio/loaded_scene.h"
 #include "studio/reports/report.h"
 
-// The experiments of Bao & Wu, run on the sphere network. Each takes the folder of the shipped scenes, runs scenes of
-// it, and compares what the network gives with the closed forms and with what the paper prints.
+// The experiments of Bao & Wu, run on the sphere network. Each takes the folder of the shipped scenes, runs
+// scenes of it, and compares what the network gives with the closed forms and with what the paper prints.
 namespace ctpm {
 
 /// One number that three sides may know: the paper as printed, the closed form, the network.
 struct Claim {
   std::string experiment;  ///< "table-1", "relaxation", ...
   std::string organ;
-  std::string structure;   ///< "CTPM", "TPM", "mass-spring"
-  std::string viscosity = {};   ///< reading of the viscosity: "kPa s", "Pa s"; empty: it does not matter
-  std::string quantity;    ///< with its unit: "force at 4 mm [N]"
+  std::string structure;       ///< "CTPM", "TPM", "mass-spring"
+  std::string viscosity = {};  ///< reading of the viscosity: "kPa s", "Pa s"; empty: it does not matter
+  std::string quantity;        ///< with its unit: "force at 4 mm [N]"
   std::optional<double> paper = {}, closed_form = {}, network = {};
-  std::optional<double> closed_form_error = {};  ///< of the network [share]; unset: the difference of both values
+  std::optional<double> closed_form_error =
+      {};  ///< of the network [share]; unset: the difference of both values
   std::optional<double> closed_form_bound = {};  ///< [share]; unset: nothing must hold
   std::optional<double> paper_bound = {};        ///< [share]; unset: nothing must hold
-  std::optional<bool> holds = {};  ///< of what is asked of the network alone: whether it is so; unset: nothing is asked
+  std::optional<bool> holds =
+      {};  ///< of what is asked of the network alone: whether it is so; unset: nothing is asked
   std::string note = {};
 
   double error_to_closed_form() const;  ///< [share]; NaN if one side is unknown
   double error_to_paper() const;        ///< [share]; NaN if one side is unknown
-  Verdict verdict() const;              ///< missed if a bound is passed or something asked is not so; shown if nothing must hold
+  Verdict verdict()
+      const;  ///< missed if a bound is passed or something asked is not so; shown if nothing must hold
 };
 
 /// What one experiment gave.
@@ -50,8 +53,8 @@ Result<Experiment> run_relaxation(const std::string& scenes);
 /// Fig. 8: 0.196 N and 0.98 N on C of the liver's rig for 33 s, both readings of the viscosity.
 Result<Experiment> run_creep(const std::string& scenes);
 
-/// Figs. 9 to 11: 0.13 N on one surface sphere of a liver block, four structures, both readings of the viscosity.
-/// Without `with_pictures` nothing is drawn.
+/// Figs. 9 to 11: 0.13 N on one surface sphere of a liver block, four structures, both readings of the
+/// viscosity. Without `with_pictures` nothing is drawn.
 Result<Experiment> run_load(const std::string& scenes, bool with_pictures);
 
 /// Figs. 12 to 14: a kidney is cut and four points beside the cut are followed from 1 s to 8 s after it.
@@ -63,9 +66,11 @@ struct PaperResults {
   std::vector<Claim> claims;
 };
 /// Runs them all, the long ones with two threads. Errors: those of the scenes; a run that diverged.
-Result<PaperResults> run_paper_experiments(const std::string& scenes, const std::function<void(std::int64_t done, std::int64_t total)>& progress);
+Result<PaperResults> run_paper_experiments(
+    const std::string& scenes, const std::function<void(std::int64_t done, std::int64_t total)>& progress);
 
-/// Writes report.html, results.json (all claims, and the points of every plot) and results.csv (all claims) into a folder.
+/// Writes report.html, results.json (all claims, and the points of every plot) and results.csv (all claims)
+/// into a folder.
 Result<Done> write_paper_report(const std::string& folder, const PaperResults& results);
 
 /// How a sphere moves under a load that stays.
@@ -88,8 +93,8 @@ Result<BuiltScene> build_changed(const LoadedScene& scene, const std::function<v
 
 /// What the paper prints in its Table 1.
 struct PrintedRow {
-  double depth;                     ///< [mm]
-  double lambda, tpm, ctpm;         ///< [kPa/mm], [N], [N]
+  double depth;              ///< [mm]
+  double lambda, tpm, ctpm;  ///< [kPa/mm], [N], [N]
 };
 /// The six rows of an organ: "skin", "kidney" or "liver".
 const std::vector<PrintedRow>& printed_table(const std::string& organ);

@@ -32,7 +32,9 @@ void add_box_surface(FilledOrgan& block, int steps) {
   std::map<std::array<int, 3>, std::int32_t> vertex_at;
   const auto vertex = [&](const std::array<int, 3>& place) {
     const auto [it, is_new] = vertex_at.emplace(place, std::int32_t(surface.vertex.size()));
-    if (is_new) surface.vertex.push_back({from[0] + edge * place[0], from[1] + edge * place[1], from[2] + edge * place[2]});
+    if (is_new)
+      surface.vertex.push_back(
+          {from[0] + edge * place[0], from[1] + edge * place[1], from[2] + edge * place[2]});
     return it->second;
   };
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -56,7 +58,8 @@ void add_box_surface(FilledOrgan& block, int steps) {
   bind_surface(block);
 }
 
-Result<std::vector<Picture>> draw_shots(const SceneSpec& scene, const std::vector<FilledOrgan>& organs, const Model& model, const Camera& camera,
+Result<std::vector<Picture>> draw_shots(const SceneSpec& scene, const std::vector<FilledOrgan>& organs,
+                                        const Model& model, const Camera& camera,
                                         const std::vector<Shot>& shots) {
   SceneView view = view_of(scene, model, surfaces_of(organs));
   Result<std::unique_ptr<Renderer>> renderer = Renderer::create(kWidth, kHeight, std::move(view));
@@ -65,7 +68,12 @@ Result<std::vector<Picture>> draw_shots(const SceneSpec& scene, const std::vecto
   for (const Shot& shot : shots) {
     State state = shot.state;
     for (std::size_t i = 0; i < model.sphere_count(); ++i)
-      state.position.set(i, model.rest_position[i] + shot.exaggeration * (state.position[i] - model.rest_position[i]));
+      state.position.set(
+          i, model.rest_position[i] + shot.exaggeration * (state.position[i] - model.rest_position[i]));
+    // What is left out goes behind the camera.
+    for (std::size_t i = 0; i < model.sphere_count(); ++i)
+      if (model.rest_position[i].y < shot.from_y)
+        state.position.set(i, camera.eye + 0.5 * (camera.eye - camera.target));
     DrawOptions options;
     options.camera = camera;
     options.view = shot.is_inside ? View::spheres : View::surface;

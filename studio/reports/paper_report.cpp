@@ -11,26 +11,35 @@ namespace {
 /// Overview: how many figures of each experiment hold.
 Table overview(const PaperResults& results) {
   Table table;
-  table.columns = {{"experiment", "experiment"}, {"must_hold", "must hold"}, {"met", "met"}, {"missed", "missed"}, {"shown", "shown as they are"}, {"verdict", "verdict"}};
+  table.columns = {{"experiment", "experiment"}, {"must_hold", "must hold"},     {"met", "met"},
+                   {"missed", "missed"},         {"shown", "shown as they are"}, {"verdict", "verdict"}};
   for (const Section& section : results.sections) {
     std::int64_t counts[3] = {0, 0, 0};
     for (const Claim& claim : results.claims)
       if (claim.experiment == section.key) ++counts[int(claim.verdict())];
     const std::int64_t must = counts[int(Verdict::met)] + counts[int(Verdict::missed)];
-    table.rows.push_back({section.title, must, counts[int(Verdict::met)], counts[int(Verdict::missed)], counts[int(Verdict::shown)],
-                          counts[int(Verdict::missed)] > 0 ? Verdict::missed : must > 0 ? Verdict::met : Verdict::shown});
+    table.rows.push_back({section.title, must, counts[int(Verdict::met)], counts[int(Verdict::missed)],
+                          counts[int(Verdict::shown)],
+                          counts[int(Verdict::missed)] > 0 ? Verdict::missed
+                          : must > 0                       ? Verdict::met
+                                                           : Verdict::shown});
   }
   return table;
 }
 
 std::string results_json(const PaperResults& results) {
   JsonWriter json;
-  json.begin_object().member("format", "ctpm-paper-results").member("version", 1).member("program_version", CTPM_VERSION);
+  json.begin_object()
+      .member("format", "ctpm-paper-results")
+      .member("version", 1)
+      .member("program_version", CTPM_VERSION);
   json.key("claims");
   write_rows(json, claims_table(results.claims));
   json.key("experiments").begin_list();
   for (const Section& section : results.sections) {
-    json.begin_object().member("key", std::string_view(section.key)).member("title", std::string_view(section.title));
+    json.begin_object()
+        .member("key", std::string_view(section.key))
+        .member("title", std::string_view(section.title));
     json.key("tables").begin_list();
     for (const Table& table : section.tables) {
       json.begin_object().member("title", std::string_view(table.title)).key("rows");
@@ -65,11 +74,14 @@ Table shortened(const Table& claims) {
 
 }  // namespace
 
-Result<PaperResults> run_paper_experiments(const std::string& scenes, const std::function<void(std::int64_t done, std::int64_t total)>& progress) {
+Result<PaperResults> run_paper_experiments(
+    const std::string& scenes, const std::function<void(std::int64_t done, std::int64_t total)>& progress) {
   using Runner = std::function<Result<Experiment>()>;
   // In the order of the paper.
-  const std::vector<Runner> runners{[&] { return run_table_1(scenes); }, [&] { return run_relaxation(scenes); }, [&] { return run_creep(scenes); },
-                                   [&] { return run_load(scenes, true); }, [&] { return run_cut(scenes, true); }};
+  const std::vector<Runner> runners{[&] { return run_table_1(scenes); },
+                                    [&] { return run_relaxation(scenes); }, [&] { return run_creep(scenes); },
+                                    [&] { return run_load(scenes, true); },
+                                    [&] { return run_cut(scenes, true); }};
   PaperResults results;
   Errors errors;
   for (std::size_t i = 0; i < runners.size(); ++i) {
@@ -88,20 +100,30 @@ Result<PaperResults> run_paper_experiments(const std::string& scenes, const std:
 
 Result<Done> write_paper_report(const std::string& folder, const PaperResults& results) {
   Report report("The paper's experiments on the sphere network",
-                "Y. Bao and D. Wu, Establishment and Stability Analysis of a Hybrid Viscoelastic Model Based on Meshless for Surgical Robot System. "
-                "Each figure below comes from a shipped scene that the network ran; closed forms are only compared with it.");
-  const auto missed = std::count_if(results.claims.begin(), results.claims.end(), [](const Claim& c) { return c.verdict() == Verdict::missed; });
-  const auto met = std::count_if(results.claims.begin(), results.claims.end(), [](const Claim& c) { return c.verdict() == Verdict::met; });
-  report.add_verdict(missed == 0, missed == 0 ? "All " + std::to_string(met) + " figures that must hold do." : std::to_string(missed) + " of " + std::to_string(met + missed) + " figures that must hold do not.");
+                "Y. Bao and D. Wu, Establishment and Stability Analysis of a Hybrid Viscoelastic Model Based "
+                "on Meshless for Surgical Robot System. "
+                "Each figure below comes from a shipped scene that the network ran; closed forms are only "
+                "compared with it.");
+  const auto missed = std::count_if(results.claims.begin(), results.claims.end(),
+                                    [](const Claim& c) { return c.verdict() == Verdict::missed; });
+  const auto met = std::count_if(results.claims.begin(), results.claims.end(),
+                                 [](const Claim& c) { return c.verdict() == Verdict::met; });
+  report.add_verdict(missed == 0, missed == 0
+                                      ? "All " + std::to_string(met) + " figures that must hold do."
+                                      : std::to_string(missed) + " of " + std::to_string(met + missed) +
+                                            " figures that must hold do not.");
   report.add_table(overview(results));
   for (const Section& section : results.sections) {
     if (const Result<Done> added = report.add(section); !added) return added;
     std::vector<Claim> own;
-    std::copy_if(results.claims.begin(), results.claims.end(), std::back_inserter(own), [&](const Claim& c) { return c.experiment == section.key; });
+    std::copy_if(results.claims.begin(), results.claims.end(), std::back_inserter(own),
+                 [&](const Claim& c) { return c.experiment == section.key; });
     // Table 1 shows its figures itself.
     if (section.key != "table-1" && !own.empty()) report.add_table(shortened(claims_table(own)));
   }
-  return write_report(folder, {{"results.json", results_json(results)}, {"results.csv", to_csv(claims_table(results.claims))}, {"report.html", report.html()}});
+  return write_report(folder, {{"results.json", results_json(results)},
+                               {"results.csv", to_csv(claims_table(results.claims))},
+                               {"report.html", report.html()}});
 }
 
 }  // namespace ctpm

@@ -11,11 +11,11 @@ namespace ctpm {
 
 /// How a series is drawn.
 enum class Stroke {
-  line,    ///< a full line
-  dashed,  ///< a dashed line
-  marks,   ///< a circle at each point, no line
-  crosses, ///< a cross at each point, no line
-  path,    ///< a thin line with a mark at each point, the first one larger: where something goes
+  line,     ///< a full line
+  dashed,   ///< a dashed line
+  marks,    ///< a circle at each point, no line
+  crosses,  ///< a cross at each point, no line
+  path,     ///< a thin line with a mark at each point, the first one larger: where something goes
 };
 
 /// Points of a line plot; `x` and `y` have the same length. Points that are not finite are left out.
@@ -39,7 +39,7 @@ struct Plot {
   std::string x_title = {}, y_title = {};  ///< with their units
   std::vector<Series> series = {};
   std::vector<Band> bands = {};
-  std::string caption = {};  ///< below the plot; empty: none
+  std::string caption = {};                                             ///< below the plot; empty: none
   std::optional<std::pair<double, double>> x_range = {}, y_range = {};  ///< unset: all that is to be seen
   bool is_log_x = false;  ///< x on a logarithmic axis; points with x <= 0 are left out
   bool is_log_y = false;

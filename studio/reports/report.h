@@ -18,7 +18,7 @@ struct Picture {
 
 /// One part of a report: said first, then shown.
 struct Section {
-  std::string key;                      ///< name in JSON
+  std::string key;  ///< name in JSON
   std::string title;
   std::vector<std::string> paragraphs;  ///< before everything else
   std::vector<Plot> plots;

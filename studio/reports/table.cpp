@@ -16,10 +16,13 @@ std::string whole_number(double value) {
 
 std::string html_cell(const Cell& cell, int digits) {
   if (const auto* text = std::get_if<std::string>(&cell)) return "<td>" + escape_html(*text) + "</td>";
-  if (const auto* value = std::get_if<double>(&cell)) return "<td class=\"n\">" + short_number(*value, digits) + "</td>";
-  if (const auto* count = std::get_if<std::int64_t>(&cell)) return "<td class=\"n\">" + std::to_string(*count) + "</td>";
+  if (const auto* value = std::get_if<double>(&cell))
+    return "<td class=\"n\">" + short_number(*value, digits) + "</td>";
+  if (const auto* count = std::get_if<std::int64_t>(&cell))
+    return "<td class=\"n\">" + std::to_string(*count) + "</td>";
   if (const auto* verdict = std::get_if<Verdict>(&cell))
-    return std::string("<td><span class=\"v ") + to_word(*verdict) + "\">" + to_word(*verdict) + "</span></td>";
+    return std::string("<td><span class=\"v ") + to_word(*verdict) + "\">" + to_word(*verdict) +
+           "</span></td>";
   return "<td></td>";
 }
 
@@ -39,16 +42,20 @@ std::string csv_cell(const Cell& cell) {
 }
 
 void check_shape(const Table& table) {
-  for (const auto& row : table.rows) CTPM_CHECK(row.size() == table.columns.size(), "one cell for each column");
+  for (const auto& row : table.rows)
+    CTPM_CHECK(row.size() == table.columns.size(), "one cell for each column");
 }
 
 }  // namespace
 
 const char* to_word(Verdict verdict) {
   switch (verdict) {
-    case Verdict::met: return "met";
-    case Verdict::missed: return "missed";
-    case Verdict::shown: return "shown";
+    case Verdict::met:
+      return "met";
+    case Verdict::missed:
+      return "missed";
+    case Verdict::shown:
+      return "shown";
   }
   return "";
 }
@@ -73,7 +80,8 @@ std::string to_html(const Table& table) {
 std::string to_csv(const Table& table) {
   check_shape(table);
   std::string csv;
-  for (std::size_t i = 0; i < table.columns.size(); ++i) csv += (i ? "," : "") + csv_text(table.columns[i].key);
+  for (std::size_t i = 0; i < table.columns.size(); ++i)
+    csv += (i ? "," : "") + csv_text(table.columns[i].key);
   csv += "\n";
   for (const auto& row : table.rows) {
     for (std::size_t i = 0; i < row.size(); ++i) csv += (i ? "," : "") + csv_cell(row[i]);

@@ -25,8 +25,9 @@ void expect_met(const Result<Experiment>& experiment, std::size_t count) {
   ASSERT_TRUE(experiment) << to_string(experiment.errors().front());
   std::size_t asked = 0;
   for (const Claim& claim : experiment->claims) {
-    EXPECT_NE(claim.verdict(), Verdict::missed) << claim.organ << " " << claim.structure << " " << claim.viscosity << " " << claim.quantity << ": " << claim.error_to_closed_form() << ", paper "
-                                                << claim.error_to_paper();
+    EXPECT_NE(claim.verdict(), Verdict::missed)
+        << claim.organ << " " << claim.structure << " " << claim.viscosity << " " << claim.quantity << ": "
+        << claim.error_to_closed_form() << ", paper " << claim.error_to_paper();
     asked += claim.verdict() == Verdict::met ? 1 : 0;
   }
   EXPECT_EQ(asked, count);
@@ -62,7 +63,12 @@ TEST(Paper, UnderAForceMassSpringSwingsAndCtpmCreeps) { expect_met(run_load(kSce
 TEST(Paper, AfterACutMassSpringWandersAndCtpmSeparatesAndSettles) { expect_met(run_cut(kScenes, false), 6); }
 
 TEST(Paper, AClaimBeyondItsBoundIsMissed) {
-  Claim claim{.experiment = "x", .organ = "x", .structure = "x", .quantity = "x", .closed_form = 1.0, .network = 1.02};
+  Claim claim{.experiment = "x",
+              .organ = "x",
+              .structure = "x",
+              .quantity = "x",
+              .closed_form = 1.0,
+              .network = 1.02};
   EXPECT_EQ(claim.verdict(), Verdict::shown);
   claim.closed_form_bound = 0.01;
   EXPECT_EQ(claim.verdict(), Verdict::missed);
@@ -80,9 +86,9 @@ TEST(Paper, MotionOfADampedSwingIsFound) {
   }
   const Motion motion = motion_of(swing);
   EXPECT_NEAR(motion.rest, 1, 1e-4);
-  EXPECT_NEAR(motion.overshoot, std::exp(-0.3), 0.02);   // at half a period
-  EXPECT_NEAR(motion.settling_time, 1.0, 0.1);           // exp(-3 t) = 0.05
-  EXPECT_NEAR(motion.reversals, 23, 2);                  // ten a second until exp(-3 t) = 0.001
+  EXPECT_NEAR(motion.overshoot, std::exp(-0.3), 0.02);  // at half a period
+  EXPECT_NEAR(motion.settling_time, 1.0, 0.1);          // exp(-3 t) = 0.05
+  EXPECT_NEAR(motion.reversals, 23, 2);                 // ten a second until exp(-3 t) = 0.001
 }
 
 class ShippedOrgan : public ::testing::TestWithParam<const char*> {};
@@ -155,10 +161,21 @@ PaperResults small_results() {
   PaperResults results;
   Section section;
   section.key = "creep", section.title = "A <title> & \"quotes\"", section.paragraphs = {"1 < 2"};
-  section.plots = {{.title = "plot", .x_title = "t [s]", .y_title = "f [N]", .series = {{.name = "a", .x = {0, 1, std::nan("")}, .y = {1, 2, 3}}, {.name = "b", .x = {0.5}, .y = {1.5}, .stroke = Stroke::path}}, .bands = {{"range", 1, 2, 2}}}};
+  section.plots = {{.title = "plot",
+                    .x_title = "t [s]",
+                    .y_title = "f [N]",
+                    .series = {{.name = "a", .x = {0, 1, std::nan("")}, .y = {1, 2, 3}},
+                               {.name = "b", .x = {0.5}, .y = {1.5}, .stroke = Stroke::path}},
+                    .bands = {{"range", 1, 2, 2}}}};
   section.pictures = {{blank_frame(32, 16, 200, 10, 10), "picture"}};
   results.sections = {section};
-  results.claims = {{.experiment = "creep", .organ = "liver", .structure = "CTPM", .quantity = "depth, \"large\" [mm]", .closed_form = 2, .network = 2.001, .closed_form_bound = 0.01}};
+  results.claims = {{.experiment = "creep",
+                     .organ = "liver",
+                     .structure = "CTPM",
+                     .quantity = "depth, \"large\" [mm]",
+                     .closed_form = 2,
+                     .network = 2.001,
+                     .closed_form_bound = 0.01}};
   return results;
 }
 
