@@ -31,14 +31,8 @@ State moved_rigidly(const Model& model) {
   return state;
 }
 
-TEST_P(EveryStructure, RigidMotionGivesNoForce) {
-  const Model model = make_block_model(6, 5, 7, GetParam());
-  const Vec3Array force = internal_forces(model, moved_rigidly(model));
-  for (std::size_t i = 0; i < force.size(); ++i) ASSERT_NEAR(norm(force[i]), 0, 1e-10) << "sphere " << i;
-}
-
-TEST_P(EveryStructure, KeepsLinearAndAngularMomentum) {
-  const Model model = make_block_model(6, 5, 7, GetParam());
+/// The forces of a shaken network, with Kelvin units stretched at random, add up to nothing and turn nothing.
+void expect_momentum_is_kept(const Model& model, double force_bound, double torque_bound) {
   State state = rest_state(model);
   shake(state, 0.005, 0.2);
   Noise noise;
@@ -51,8 +45,19 @@ TEST_P(EveryStructure, KeepsLinearAndAngularMomentum) {
     largest = std::max(largest, norm(force[i]));
   }
   EXPECT_GT(largest, 0.1);
-  EXPECT_NEAR(norm(sum), 0, 1e3 * kRounding);
-  EXPECT_NEAR(norm(torque), 0, 1e2 * kRounding);
+  EXPECT_NEAR(norm(sum), 0, force_bound);
+  EXPECT_NEAR(norm(torque), 0, torque_bound);
+}
+
+TEST_P(EveryStructure, RigidMotionGivesNoForce) {
+  const Model model = make_block_model(6, 5, 7, GetParam());
+  const Vec3Array force = internal_forces(model, moved_rigidly(model));
+  for (std::size_t i = 0; i < force.size(); ++i) ASSERT_NEAR(norm(force[i]), 0, 1e-10) << "sphere " << i;
+}
+
+TEST_P(EveryStructure, KeepsLinearAndAngularMomentum) {
+  const Model model = make_block_model(6, 5, 7, GetParam());
+  expect_momentum_is_kept(model, 1e3 * kRounding, 1e2 * kRounding);
 }
 
 TEST_P(EveryStructure, TurnsWithTheBody) {
@@ -229,21 +234,8 @@ TEST_P(EveryLayeredStructure, RigidMotionGivesNoForce) {
 
 TEST_P(EveryLayeredStructure, KeepsLinearAndAngularMomentum) {
   const Model model = *make_layered_model(6, 5, 7, GetParam(), {capsule()});
-  State state = rest_state(model);
-  shake(state, 0.005, 0.2);
-  Noise noise;
-  for (double& z : state.kelvin_elongation) z = 0.001 * noise.next();
-  const Vec3Array force = internal_forces(model, state);
-  Vec3 sum, torque;
-  double largest = 0;
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    sum += force[i], torque += cross(state.position[i], force[i]);
-    largest = std::max(largest, norm(force[i]));
-  }
-  EXPECT_GT(largest, 0.1);
   // The capsule's forces are five times those of the liver.
-  EXPECT_NEAR(norm(sum), 0, 5e3 * kRounding);
-  EXPECT_NEAR(norm(torque), 0, 5e2 * kRounding);
+  expect_momentum_is_kept(model, 5e3 * kRounding, 5e2 * kRounding);
 }
 
 TEST_P(EveryLayeredStructure, LayersOfOneMaterialAreTheOrganWithoutLayers) {
