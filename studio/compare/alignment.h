@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/vec3.h"
+
+namespace ctpm {
+
+/// Points of two paths that belong together once differences of pace are taken out.
+struct AlignedPair {
+  std::size_t a = 0, b = 0;  ///< indices into the two paths
+  double distance = 0;       ///< between the two points
+};
+
+struct Alignment {
+  std::vector<AlignedPair>
+      pairs;        ///< from both beginnings to both ends; each step goes on in one path or both
+  double mean = 0;  ///< of the pairs' distances
+  double largest = 0;
+};
+
+/// Width of the band: pairs may be out of step by this share of the longer path.
+inline constexpr double kAlignmentBand = 0.1;
+
+/// Dynamic time warping with the symmetric steps and the band of Sakoe and Chiba 1978, laid along the
+/// diagonal of paths of different length. The sum of the distances of the pairs is the least possible.
+/// Neither path may be empty. Time and memory grow with the band's share of a.size() * b.size().
+Alignment align_paths(std::span<const Vec3> a, std::span<const Vec3> b, double band = kAlignmentBand);
+
+}  // namespace ctpm
