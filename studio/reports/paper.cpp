@@ -67,6 +67,15 @@ Table claims_table(const std::vector<Claim>& claims) {
   return table;
 }
 
+std::string full_name(const Variant& variant) {
+  return variant.name + (*variant.reading ? std::string(", ") + variant.reading : "");
+}
+
+void use_variant(SceneSpec& scene, const Variant& variant) {
+  scene.organs[0].model = variant.structure;
+  if (variant.is_pa_s) scene.organs[0].material.preset += "-pa-s";
+}
+
 Site site_of(const OrganSpec& organ) {
   const Material m = resolve_material(organ.material).material;
   Site site;

@@ -38,6 +38,18 @@ struct Claim {
       const;  ///< missed if a bound is passed or something asked is not so; shown if nothing must hold
 };
 
+/// One of the models that an experiment compares.
+struct Variant {
+  const char* name;
+  Structure structure;
+  bool is_pa_s;         ///< viscosity as printed, in Pa s/mm
+  const char* reading;  ///< the viscosity's, as a reader is told; empty: the model has none
+};
+/// "CTPM, kPa s".
+std::string full_name(const Variant& variant);
+/// Gives the scene's first organ the variant's structure and viscosity.
+void use_variant(SceneSpec& scene, const Variant& variant);
+
 /// What one experiment gave.
 struct Experiment {
   Section section;

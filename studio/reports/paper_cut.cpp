@@ -14,12 +14,6 @@
 namespace ctpm {
 namespace {
 
-struct Variant {
-  const char* name;
-  Structure structure;
-  bool is_pa_s;
-  const char* reading;
-};
 constexpr Variant kVariants[] = {{"mass-spring", Structure::mass_spring, false, ""},
                                  {"CTPM", Structure::ctpm, false, "kPa s"},
                                  {"CTPM", Structure::ctpm, true, "Pa s"}};
@@ -45,8 +39,7 @@ struct CutRun {
 
 Result<CutRun> run_kidney(const LoadedScene& scene, const Script& script, const Variant& variant) {
   Result<BuiltScene> built = build_changed(scene, [&](SceneSpec& s) {
-    s.organs[0].model = variant.structure;
-    if (variant.is_pa_s) s.organs[0].material.preset += "-pa-s";
+    use_variant(s, variant);
     s.probes.assign(std::begin(kProbes), std::end(kProbes));
     s.solver.tolerance = 1e-6, s.solver.velocity_floor = 1e-10;
   });
@@ -71,7 +64,7 @@ Result<CutRun> run_kidney(const LoadedScene& scene, const Script& script, const 
     if (report.status == StepStatus::diverged || report.status == StepStatus::bad_input)
       return Error{
           scene.path,
-          std::string(variant.name) + ": the run diverged at sphere " + std::to_string(report.worst_sphere),
+          full_name(variant) + ": the run diverged at sphere " + std::to_string(report.worst_sphere),
           ""};
     severed += report.severed;
     if (report.severed > 0) cut_ends = tick, run.way_of_a = {};
@@ -90,7 +83,7 @@ Result<CutRun> run_kidney(const LoadedScene& scene, const Script& script, const 
   for (std::size_t side = 0; side < 2; ++side)
     run.gap_before[side] = 1e3 * norm(before[side] - before[side + 2]),
     run.gap_after[side] = 1e3 * norm(at(side) - at(side + 2));
-  run.way_of_a.name = variant.name + (*variant.reading ? std::string(", ") + variant.reading : "");
+  run.way_of_a.name = full_name(variant);
   return run;
 }
 

@@ -14,12 +14,6 @@
 namespace ctpm {
 namespace {
 
-struct Variant {
-  const char* name;
-  Structure structure;
-  bool is_pa_s;
-  const char* reading;
-};
 constexpr Variant kVariants[] = {{"mass-spring", Structure::mass_spring, false, ""},
                                  {"angle mass-spring", Structure::angle_mass_spring, false, ""},
                                  {"TPM", Structure::tpm, false, "kPa s"},
@@ -27,8 +21,6 @@ constexpr Variant kVariants[] = {{"mass-spring", Structure::mass_spring, false, 
                                  {"CTPM", Structure::ctpm, false, "kPa s"},
                                  {"CTPM", Structure::ctpm, true, "Pa s"}};
 constexpr std::size_t kMassSpring = 0, kCtpm = 4;
-
-std::string full_name(const Variant& v) { return v.name + (*v.reading ? std::string(", ") + v.reading : ""); }
 
 /// A run of the block.
 struct LoadRun {
@@ -39,8 +31,7 @@ constexpr double kDuration = 1.0;  ///< [s]
 
 Result<LoadRun> run_block(const LoadedScene& scene, const Variant& variant, bool is_sudden) {
   const Result<BuiltScene> built = build_changed(scene, [&](SceneSpec& s) {
-    s.organs[0].model = variant.structure;
-    if (variant.is_pa_s) s.organs[0].material.preset += "-pa-s";
+    use_variant(s, variant);
     if (is_sudden) s.loads[0].ramp = 0;
   });
   if (!built) return built.errors();
@@ -131,7 +122,7 @@ void add_runs(Experiment& experiment, const std::vector<LoadRun>& runs, const st
 Result<State> press_block(const LoadedScene& scene, const Variant& variant) {
   constexpr double kDepth = 12e-3, kSpeed = 0.1;
   const Result<BuiltScene> built = build_changed(scene, [&](SceneSpec& s) {
-    s.organs[0].model = variant.structure;
+    use_variant(s, variant);
     s.loads.clear();
   });
   if (!built) return built.errors();
@@ -191,7 +182,7 @@ Result<Done> add_liver_pictures(Section& section, const std::string& scenes) {
   if (!script) return script.errors();
   for (const Variant& variant : {kVariants[kMassSpring], kVariants[kCtpm]}) {
     const Result<BuiltScene> built =
-        build_changed(*scene, [&](SceneSpec& s) { s.organs[0].model = variant.structure; });
+        build_changed(*scene, [&](SceneSpec& s) { use_variant(s, variant); });
     if (!built) return built.errors();
     const Model& model = built->model;
     Stepper stepper(model);

@@ -33,7 +33,7 @@ std::string error_of(const std::string& text) {
 }
 
 TEST(SceneFile, EveryShippedSceneIsWrittenAndReadBackEqual) {
-  ASSERT_GE(shipped_scenes().size(), 3u);
+  ASSERT_GE(shipped_scenes().size(), 8u);
   for (const std::string& path : shipped_scenes()) {
     const Result<SceneText> scene = load_scene(path);
     ASSERT_TRUE(scene) << to_string(scene.errors().front());
