@@ -206,6 +206,8 @@ void describe_fields(V& v, OrganSpec& organ) {
   v.number(
       Key{"damage_depth_mm", "Depth of pressing beyond which the tissue counts as damaged; 0: no limit."},
       organ.damage_depth, units::millimetre, within(0, 1000));
+  v.number(Key{"damage_force_n", "Force on a tool beyond which the tissue counts as damaged; 0: no limit."},
+           organ.damage_force, units::newton, within(0, 1e6));
   v.point(Key{"surface_color", "Red, green and blue of the outside."}, organ.surface_color, units::none,
           within(0, 1));
   v.point(Key{"inner_color", "Red, green and blue of cut faces and spheres."}, organ.inner_color, units::none,

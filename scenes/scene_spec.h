@@ -133,6 +133,7 @@ struct OrganSpec {
   std::vector<LayerSpec> layers;  ///< outermost first, depths ascending
   std::vector<AnchorSpec> anchors;
   double damage_depth = 0;               ///< [m]; 0: no limit
+  double damage_force = 0;               ///< on the tool [N]; 0: no limit
   Vec3 surface_color{0.62, 0.24, 0.20};  ///< red, green, blue in [0, 1]
   Vec3 inner_color{0.80, 0.42, 0.36};    ///< of cut faces and spheres
 

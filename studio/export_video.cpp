@@ -49,6 +49,7 @@ class OverlayFeed {
     for (const OrganRange& organ : model.organs)
       if (organ.damage_depth > 0 && (data_.damage_depth == 0 || organ.damage_depth < data_.damage_depth))
         data_.damage_depth = organ.damage_depth;
+    data_.damage_force = damage_force_of(scene);
     every_ = std::max<std::int64_t>(1, std::llround(data_.plot_span / tick_ / double(kPlotPoints)));
   }
 

@@ -83,6 +83,13 @@ std::vector<Surface> surfaces_of(const std::vector<FilledOrgan>& organs) {
   return surfaces;
 }
 
+double damage_force_of(const SceneSpec& scene) {
+  double least = 0;
+  for (const OrganSpec& organ : scene.organs)
+    if (organ.damage_force > 0 && (least == 0 || organ.damage_force < least)) least = organ.damage_force;
+  return least;
+}
+
 Result<Camera> find_camera(const SceneSpec& scene, const SceneView& view, const std::string& name, double aspect) {
   if (name.empty() && scene.cameras.empty()) return default_camera(view, aspect);
   std::string known;

@@ -31,6 +31,10 @@ SceneView view_of(const SceneSpec& scene, const Model& model, std::vector<Surfac
 /// The surfaces of the organs, in their order.
 std::vector<Surface> surfaces_of(const std::vector<FilledOrgan>& organs);
 
+/// The least force on a tool that damages an organ of the scene [N]; 0: no organ has a limit. That of the depth
+/// is in the Model (OrganRange::damage_depth).
+double damage_force_of(const SceneSpec& scene);
+
 /// The camera of that name; if the name is empty the scene's first, or one that has everything in sight.
 /// Error: no camera of that name, with the names there are.
 Result<Camera> find_camera(const SceneSpec& scene, const SceneView& view, const std::string& name, double aspect);

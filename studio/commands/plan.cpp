@@ -47,7 +47,7 @@ std::size_t bytes_of_fields(const Owner& owner, std::string_view prefix) {
   return bytes;
 }
 
-std::vector<Feature> features_of(const Model& m, const State& s) {
+std::vector<Feature> features_of(const SceneSpec& scene, const Model& m, const State& s) {
   const auto has_tool = [&](ToolKind kind) {
     return std::any_of(m.tools.begin(), m.tools.end(), [&](const Tool& tool) { return tool.kind == kind; });
   };
@@ -55,8 +55,9 @@ std::vector<Feature> features_of(const Model& m, const State& s) {
     return count > 0 ? std::to_string(count) + " " + what : std::string(none);
   };
   const bool cuts = has_tool(ToolKind::scalpel),
-             limits = std::any_of(m.organs.begin(), m.organs.end(),
-                                  [](const OrganRange&o) { return o.damage_depth > 0; });
+             limits = std::any_of(scene.organs.begin(), scene.organs.end(), [](const OrganSpec& organ) {
+               return organ.damage_depth > 0 || organ.damage_force > 0;
+             });
   const std::size_t edges = bytes_of_fields(m, "edges.") - bytes_of(m.edges.c) - bytes_of(m.edges.third);
   return {
       {"spheres", true, std::to_string(m.sphere_count()) + " spheres",
@@ -113,7 +114,7 @@ int run_plan(const PlanArguments& arguments) {
   const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
   if (!scene) return print_errors(scene.errors());
   const Model& model = scene->built.model;
-  const std::vector<Feature> features = features_of(model, rest_state(model));
+  const std::vector<Feature> features = features_of(scene->scene.spec, model, rest_state(model));
   std::size_t total = 0;
   for (const Feature& feature : features) total += feature.is_in ? feature.bytes : 0;
   const double tick = measure_tick(model);

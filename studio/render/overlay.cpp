@@ -127,6 +127,21 @@ double round_up(double value) {
   return 10 * decade;
 }
 
+bool is_too_deep(const OverlayData& data) { return data.damage_depth > 0 && data.depth > data.damage_depth; }
+bool is_too_strong(const OverlayData& data) {
+  return data.damage_force > 0 && data.force > data.damage_force;
+}
+
+/// What is beyond its limit; empty if nothing is.
+std::string damage_text(const OverlayData& data) {
+  std::string text;
+  if (is_too_deep(data))
+    text += " " + fixed(1000 * data.depth, 1) + " mm, limit " + fixed(1000 * data.damage_depth, 1) + " mm";
+  if (is_too_strong(data))
+    text += (text.empty() ? " " : "; ") + fixed(data.force, 2) + " N, limit " + fixed(data.damage_force, 2) + " N";
+  return text.empty() ? text : "TISSUE DAMAGE:" + text;
+}
+
 }  // namespace
 
 struct Overlay::Parts {
@@ -149,9 +164,6 @@ struct Overlay::Parts {
   Line line(Font& font, const std::string& text, int x, int y, const Ink& ink) {
     return {{text, {x, y, font.width(text), font.height() + font.height() / 4}}, ink, &font == &large};
   }
-  bool is_damaged(const OverlayData& data) const {
-    return data.damage_depth > 0 && data.depth > data.damage_depth;
-  }
 
   int width, height;
   bool is_narrow;
@@ -167,7 +179,6 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
     plan.lines.push_back(line(large, large.shortened(data.title, inner), x, y, kWhite));
     y += px(38);
   }
-  const Ink depth_ink = is_damaged(data) ? kRed : kWhite;
   const std::array<std::pair<std::string, std::string>, 4> facts{
       {{"time", fixed(data.time, 3) + " s"},
        {"tick", std::to_string(data.tick)},
@@ -175,7 +186,8 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
        {"depth", fixed(1000 * data.depth, 2) + " mm"}}};
   for (const auto& [name, value] : facts) {
     plan.lines.push_back(line(small, name, x, y, kGrey));
-    Line shown = line(small, value, 0, y, name == "depth" ? depth_ink : kWhite);
+    const bool is_bad = (name == "depth" && is_too_deep(data)) || (name == "force" && is_too_strong(data));
+    Line shown = line(small, value, 0, y, is_bad ? kRed : kWhite);
     shown.placed.box.x = x + inner - shown.placed.box.width;  // right-aligned, so that digits stand still
     plan.lines.push_back(shown);
     y += step;
@@ -224,12 +236,9 @@ void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
                                                             : kWhite;
     plan.verdict = banner(data.verdict, is_narrow ? plan.facts.y + plan.facts.height + px(10) : margin, ink);
   }
-  if (is_damaged(data)) {
-    const std::string text = "TISSUE DAMAGE: " + fixed(1000 * data.depth, 1) + " mm, limit " +
-                             fixed(1000 * data.damage_depth, 1) + " mm";
+  if (const std::string text = damage_text(data); !text.empty())
     plan.warning =
         banner(text, is_narrow ? height - margin - px(160) - px(10) - h : height - margin - h, kWhite);
-  }
 }
 
 /// Bottom right, above where the warning may come.

@@ -26,6 +26,7 @@ struct OverlayData {
   double force = 0;         ///< magnitude on the tool [N]
   double depth = 0;         ///< of the touched tissue [m]
   double damage_depth = 0;  ///< depth beyond which the tissue is damaged [m]; 0: no limit
+  double damage_force = 0;  ///< force beyond which it is [N]; 0: no limit
   std::string verdict;      ///< what the replay found, one line
   VerdictTone verdict_tone = VerdictTone::none;
   std::vector<ForcePoint> history;  ///< in order of time; empty: no plot

@@ -44,7 +44,9 @@ Result<RecordOutcome> record_script(const LoadedScene& scene, const Script& scri
 
   ScriptSource source(ScriptPlayer(script, model.tools, model.tick));
   RecordOutcome outcome;
-  outcome.run = run_session(model, state, source, *writer, options);
+  RunOptions running = options;
+  running.damage_force = damage_force_of(spec);
+  outcome.run = run_session(model, state, source, *writer, running);
   const Result<SessionStatistics> statistics = writer->finish();
   if (!statistics) return statistics.errors();
   outcome.statistics = *statistics;

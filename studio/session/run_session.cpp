@@ -19,9 +19,11 @@ double seconds_since(Clock::time_point start) {
 /// Notes what a reviewer wants to find again: the moments at which something begins or ends.
 class EventWatch {
  public:
-  EventWatch(const Model& model, SessionWriter& writer) : writer_(writer) {
+  EventWatch(const Model& model, double damage_force, SessionWriter& writer)
+      : writer_(writer), most_force_(damage_force) {
     for (const OrganRange& organ : model.organs)
-      if (organ.damage_depth > 0 && (limit_ == 0 || organ.damage_depth < limit_)) limit_ = organ.damage_depth;
+      if (organ.damage_depth > 0 && (most_depth_ == 0 || organ.damage_depth < most_depth_))
+        most_depth_ = organ.damage_depth;
   }
 
   void look(std::int64_t tick, const StepReport& report) {
@@ -32,10 +34,15 @@ class EventWatch {
     if (begins(cut_, tick, report.severed > 0))
       writer_.event(tick, EventKind::cut, "blade begins to sever; value: elements", {double(report.severed)});
     ends(cut_, tick);
-    if (begins(damage_, tick, limit_ > 0 && report.depth > limit_))
+    if (begins(too_deep_, tick, most_depth_ > 0 && report.depth > most_depth_))
       writer_.event(tick, EventKind::damage, "depth passes the damage limit; values: depth and limit in m",
-                    {report.depth, limit_});
-    ends(damage_, tick);
+                    {report.depth, most_depth_});
+    ends(too_deep_, tick);
+    const double force = norm(report.tool_force);
+    if (begins(too_strong_, tick, most_force_ > 0 && force > most_force_))
+      writer_.event(tick, EventKind::damage, "force passes the damage limit; values: force and limit in N",
+                    {force, most_force_});
+    ends(too_strong_, tick);
   }
 
  private:
@@ -60,8 +67,8 @@ class EventWatch {
   }
 
   SessionWriter& writer_;
-  double limit_ = 0;
-  Spell contact_, cut_, damage_;
+  double most_depth_ = 0, most_force_ = 0;  // [m], [N]; 0: no limit
+  Spell contact_, cut_, too_deep_, too_strong_;
 };
 
 }  // namespace
@@ -69,7 +76,7 @@ class EventWatch {
 RunOutcome run_session(const Model& model, State& state, InputSource& source, SessionWriter& writer,
                        const RunOptions& options) {
   Stepper stepper(model);
-  EventWatch watch(model, writer);
+  EventWatch watch(model, options.damage_force, writer);
   RunOutcome outcome;
   StepReport report;
   const auto tick_length =

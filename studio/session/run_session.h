@@ -13,6 +13,7 @@ namespace ctpm {
 struct RunOptions {
   bool in_real_time =
       true;  ///< ticks start on absolute deadlines of the wall clock; else one after the other
+  double damage_force = 0;      ///< force on the tool beyond which a damage event is noted [N]; 0: no limit
   std::int64_t most_ticks = 0;  ///< the session ends after so many; 0: when the source ends
   std::function<void(std::int64_t done, std::int64_t total)> progress;
   std::function<bool()> should_stop;  ///< asked every tick: Ctrl-C

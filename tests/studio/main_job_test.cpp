@@ -94,5 +94,18 @@ TEST(MainJob, TheSameScriptRecordsTheSameSessionTwice) {
   EXPECT_EQ(tables[0], tables[1]);
 }
 
+TEST(MainJob, AForceBeyondTheScenesLimitIsNotedInTheSession) {
+  const TemporaryFolder folder;
+  fs::copy(fs::path(CTPM_SOURCE_DIR) / "scenes/organs/skin.obj", folder.path() / "skin.obj");
+  std::string scene = testing::slurp(fs::path(CTPM_SOURCE_DIR) / "scenes/skin.json");
+  scene.replace(scene.find("organs/skin.obj\","), 17, "skin.obj\", \"damage_force_n\": 0.05,");
+  std::ofstream(folder.path() / "skin.json") << scene;
+  const auto recorded =
+      run_ctpm({"record", "skin.json", "-o", "skin.ctpm", "--fast", "--duration-s", "1.2"}, folder.path());
+  ASSERT_EQ(recorded.code, 0) << recorded.err;
+  const auto info = run_ctpm({"info", "skin.ctpm"}, folder.path());
+  EXPECT_TRUE(holds(info.out, "force passes the damage limit")) << info.out;
+}
+
 }  // namespace
 }  // namespace ctpm

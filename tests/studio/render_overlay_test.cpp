@@ -69,6 +69,10 @@ TEST(Overlay, ShowsOnlyWhatThereIs) {
   EXPECT_TRUE(says("DAMAGE"));
   data.damage_depth = 0;  // a scene without a limit
   EXPECT_FALSE(says("DAMAGE"));
+  data.damage_force = 1.2;
+  EXPECT_TRUE(says("DAMAGE: 1.23 N, limit 1.20 N"));
+  data.damage_force = 1.3;
+  EXPECT_FALSE(says("DAMAGE"));
   EXPECT_TRUE(says("Replay identical"));
   data.verdict.clear();
   EXPECT_FALSE(says("Replay"));
