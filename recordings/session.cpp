@@ -3,7 +3,7 @@
 namespace ctpm {
 
 TickRecord make_record(const Inputs& inputs, const StepReport& report, double tick_time_s,
-                       std::uint64_t state_hash) {
+                       std::uint64_t state_hash, double input_age_s) {
   TickRecord record;
   record.inputs = inputs;
   record.tool_force = report.tool_force;
@@ -13,6 +13,7 @@ TickRecord make_record(const Inputs& inputs, const StepReport& report, double ti
   record.contacts = report.contacts;
   record.severed = report.severed;
   record.tick_time = tick_time_s;
+  record.input_age = input_age_s;
   record.state_hash = state_hash;
   return record;
 }

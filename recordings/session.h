@@ -42,6 +42,8 @@ struct TickRecord {
   std::int32_t contacts = 0;     ///< spheres touched
   std::int32_t severed = 0;      ///< elements severed in this tick
   double tick_time = 0;          ///< how long the tick took [s], stored to 1 ns; 0: not measured
+  double input_age = 0;          ///< of the device's sample behind the inputs when the tick began [s], stored
+                                 ///< to 1 ns; 0: they come from no device
   std::uint64_t state_hash = 0;  ///< state_hash() of the State after the tick
 
   friend bool operator==(const TickRecord&, const TickRecord&) = default;
@@ -49,7 +51,7 @@ struct TickRecord {
 
 /// The record of a tick that was just done.
 TickRecord make_record(const Inputs& inputs, const StepReport& report, double tick_time_s,
-                       std::uint64_t state_hash);
+                       std::uint64_t state_hash, double input_age_s = 0);
 
 enum class EventKind : std::int32_t {
   contact_begins = 1,
@@ -80,7 +82,8 @@ struct Keyframe {
 
 using NamedValue = std::pair<std::string, double>;
 
-/// What a session came to. Percentiles are over the ticks whose time was measured, by nearest rank.
+/// What a session came to. Percentiles are over the ticks whose time was measured, or whose input has an age,
+/// by nearest rank.
 struct SessionStatistics {
   std::int64_t ticks = 0;
   std::int64_t keyframes = 0;
@@ -91,6 +94,9 @@ struct SessionStatistics {
   double tick_time_p99 = 0;        ///< [s]
   double tick_time_p999 = 0;       ///< [s]
   double tick_time_max = 0;        ///< [s]
+  double input_age_p50 = 0;        ///< [s]
+  double input_age_p99 = 0;        ///< [s]
+  double input_age_max = 0;        ///< [s]
   double max_force = 0;            ///< [N]
   double max_depth = 0;            ///< [m]
   std::vector<NamedValue> values;  ///< further numbers given to SessionWriter::finish, unit in the name

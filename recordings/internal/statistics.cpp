@@ -26,6 +26,8 @@ void StatisticsCounter::add(const TickRecord& record) {
   sum_.max_force = std::max(sum_.max_force, norm(record.tool_force));
   sum_.max_depth = std::max(sum_.max_depth, record.depth);
   sum_.tick_time_max = std::max(sum_.tick_time_max, record.tick_time);
+  sum_.input_age_max = std::max(sum_.input_age_max, record.input_age);
+  if (record.input_age > 0) input_ages_.push_back(static_cast<float>(record.input_age));
   if (record.tick_time > 0) tick_times_.push_back(static_cast<float>(record.tick_time));
 }
 
@@ -40,6 +42,9 @@ SessionStatistics StatisticsCounter::result() const {
   result.tick_time_p50 = percentile(times, 0.5);
   result.tick_time_p99 = percentile(times, 0.99);
   result.tick_time_p999 = percentile(times, 0.999);
+  std::vector<float> ages = input_ages_;
+  result.input_age_p50 = percentile(ages, 0.5);
+  result.input_age_p99 = percentile(ages, 0.99);
   return result;
 }
 

@@ -8,7 +8,7 @@
 
 namespace ctpm::session_file {
 
-/// Adds up a session while its ticks and events go by. Four bytes per tick, so that percentiles are exact.
+/// Adds up a session while its ticks and events go by. Four bytes per tick and measured time, so that percentiles are exact.
 class StatisticsCounter {
  public:
   void add(const TickRecord& record);
@@ -18,7 +18,7 @@ class StatisticsCounter {
 
  private:
   SessionStatistics sum_;
-  std::vector<float> tick_times_;  ///< [s]
+  std::vector<float> tick_times_, input_ages_;  ///< [s], those above 0
 };
 
 /// The part `finish`: fields of a SessionStatistics, with the units in their names.
@@ -34,6 +34,9 @@ void for_each_field(S& s, Visit&& visit) {
   visit("tick_time_p99_s", s.tick_time_p99);
   visit("tick_time_p999_s", s.tick_time_p999);
   visit("tick_time_max_s", s.tick_time_max);
+  visit("input_age_p50_s", s.input_age_p50);
+  visit("input_age_p99_s", s.input_age_p99);
+  visit("input_age_max_s", s.input_age_max);
   visit("max_force_n", s.max_force);
   visit("max_depth_m", s.max_depth);
 }

@@ -44,10 +44,8 @@ void set_bits(T& value, std::uint64_t bits) {
 
 constexpr double nanoseconds = 1e9;  // in a second
 
-std::uint64_t tick_time_ns(const TickRecord& record) {
-  return record.tick_time > 0
-             ? static_cast<std::uint64_t>(std::llround(std::min(record.tick_time, 1e9) * nanoseconds))
-             : 0;
+std::uint64_t to_nanoseconds(double seconds) {
+  return seconds > 0 ? static_cast<std::uint64_t>(std::llround(std::min(seconds, 1e9) * nanoseconds)) : 0;
 }
 
 const std::array columns = {
@@ -68,9 +66,11 @@ const std::array columns = {
     CTPM_COLUMN("iterations", iterations),
     CTPM_COLUMN("contacts", contacts),
     CTPM_COLUMN("severed", severed),
-    Column{"tick_time_ns", FieldType::u64, tick_time_ns,
+    Column{"tick_time_ns", FieldType::u64, [](const TickRecord& r) { return to_nanoseconds(r.tick_time); },
            [](TickRecord& r, std::uint64_t ns) { r.tick_time = static_cast<double>(ns) / nanoseconds; }},
     CTPM_COLUMN("state_hash", state_hash),
+    Column{"input_age_ns", FieldType::u64, [](const TickRecord& r) { return to_nanoseconds(r.input_age); },
+           [](TickRecord& r, std::uint64_t ns) { r.input_age = static_cast<double>(ns) / nanoseconds; }},
 };
 
 const char* type_name(FieldType type) {

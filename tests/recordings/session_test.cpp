@@ -192,6 +192,7 @@ TEST(Session, EveryBitPatternOfARecordSurvives) {
     record.depth = strange[(i + 3) % 8];
     record.status = -i, record.iterations = i * i, record.contacts = 3, record.severed = i % 2;
     record.tick_time = 1e-9 * (i * 7919 % 1000003);
+    record.input_age = 1e-9 * (i * 104729 % 1000003);
     record.state_hash = 0x9e3779b97f4a7c15ull * static_cast<std::uint64_t>(i);
     given.push_back(record);
   }
@@ -216,7 +217,39 @@ TEST(Session, EveryBitPatternOfARecordSurvives) {
     EXPECT_EQ(given[i].iterations, (*got)[i].iterations);
     EXPECT_EQ(given[i].state_hash, (*got)[i].state_hash);
     EXPECT_DOUBLE_EQ(given[i].tick_time, (*got)[i].tick_time);
+    EXPECT_DOUBLE_EQ(given[i].input_age, (*got)[i].input_age);
   }
+  const auto statistics = reader->statistics();
+  ASSERT_TRUE(statistics);
+  std::vector<double> ages;
+  for (const TickRecord& record : given)
+    if (record.input_age > 0) ages.push_back(record.input_age);
+  std::sort(ages.begin(), ages.end());
+  const double float_step = 1e-7;  // ages are kept in single precision for the percentiles
+  EXPECT_NEAR(statistics->input_age_p50, ages[387], float_step * ages[387]);
+  EXPECT_NEAR(statistics->input_age_p99, ages[768], float_step * ages[768]);
+  EXPECT_EQ(statistics->input_age_max, ages.back());
+}
+
+TEST(Session, AFileFromBeforeInputsHadAnAgeIsReadWhole) {
+  // 0.3 s of a block and a ball, recorded before the column `input_age_ns` and the fields `input_age_...` were added.
+  const Folder folder;
+  std::filesystem::copy(CTPM_SOURCE_DIR "/tests/recordings/old/v1-without-input-age.ctpm", folder / "a.ctpm");
+  auto reader = SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(reader) << text_of(reader.errors());
+  EXPECT_TRUE(reader->ended_cleanly());
+  EXPECT_TRUE(reader->check_all());
+  const auto ticks = reader->ticks(0, 300);
+  ASSERT_TRUE(ticks) << text_of(ticks.errors());
+  for (const TickRecord& record : *ticks) {
+    EXPECT_EQ(record.input_age, 0);
+    EXPECT_GT(record.tick_time, 0);
+    EXPECT_NE(record.state_hash, 0u);
+  }
+  const auto statistics = reader->statistics();
+  ASSERT_TRUE(statistics) << text_of(statistics.errors());
+  EXPECT_EQ(statistics->ticks, 300);
+  EXPECT_EQ(statistics->input_age_max, 0);
 }
 
 TEST(Session, ACleanEndLeavesOneFile) {
