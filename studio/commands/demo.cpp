@@ -15,7 +15,7 @@
 #include "studio/files.h"
 #include "studio/import_scene.h"
 #include "studio/loaded_scene.h"
-#include "studio/session/record_script.h"
+#include "studio/session/record_session.h"
 #include "studio/session/stop_signal.h"
 
 namespace ctpm {

@@ -64,8 +64,13 @@ void print_json(SessionReader& reader, const SessionStatistics& s, const std::ve
       .member("tick_time_p50_s", s.tick_time_p50)
       .member("tick_time_p99_s", s.tick_time_p99);
   json.member("tick_time_p999_s", s.tick_time_p999).member("tick_time_max_s", s.tick_time_max);
+  json.member("input_age_p50_s", s.input_age_p50)
+      .member("input_age_p99_s", s.input_age_p99)
+      .member("input_age_max_s", s.input_age_max);
   json.member("max_force_n", s.max_force).member("max_depth_m", s.max_depth);
-  json.key("metadata").begin_object();
+  json.key("values").begin_object();
+  for (const auto& [name, value] : s.values) json.member(name, value);
+  json.end_object().key("metadata").begin_object();
   for (const auto& [key, value] : reader.start().metadata) json.member(key, value);
   json.end_object().key("events").begin_list();
   for (const Event& event : events) {
@@ -80,11 +85,36 @@ void print_json(SessionReader& reader, const SessionStatistics& s, const std::ve
   std::fputs(json.end_list().end_object().text().c_str(), stdout);
 }
 
+std::string metadata_of(const SessionReader& reader, const char* key) {
+  const auto& metadata = reader.start().metadata;
+  const auto it = metadata.find(key);
+  return it == metadata.end() ? "" : it->second;
+}
+
+void print_origin(const SessionReader& reader) {
+  if (const std::string source = metadata_of(reader, "source"); !source.empty())
+    std::printf("source     %s\n", source.c_str());
+  if (const std::string parent = metadata_of(reader, parent_session_key); !parent.empty())
+    std::printf("parent     %s, from tick %s on\n", parent.c_str(), metadata_of(reader, parent_tick_key).c_str());
+}
+
+/// The events, of late ticks only how many there are: on a busy machine they would hide the others.
+void print_events(const std::vector<Event>& events, double tick) {
+  constexpr std::int64_t kMostShown = 20;
+  std::int64_t count = 0;
+  for (const Event& event : events) {
+    if (event.kind == EventKind::late_tick || count++ >= kMostShown) continue;
+    std::printf("event      %8.3f s  %s: %s\n", double(event.tick) * tick, kind_name(event.kind), event.text.c_str());
+  }
+  if (count > kMostShown) std::printf("           and %lld more events\n", (long long)(count - kMostShown));
+}
+
 void print_text(SessionReader& reader, const SessionStatistics& s, const std::vector<Event>& events) {
   const Model& model = reader.start().model;
   std::printf("session    %s, recorded %s%s\n", reader.session_id().c_str(),
               utc(reader.created_unix_s()).c_str(), reader.ended_cleanly() ? "" : ", without a clean end");
   std::printf("build      %s\n", reader.start().build_fingerprint.c_str());
+  print_origin(reader);
   std::printf("duration   %.3f s, %lld ticks of %g ms\n", double(reader.tick_count()) * model.tick,
               (long long)reader.tick_count(), model.tick * 1e3);
   for (const OrganRange& organ : model.organs)
@@ -94,13 +124,13 @@ void print_text(SessionReader& reader, const SessionStatistics& s, const std::ve
   std::printf("tick time  p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms; %lld late\n",
               s.tick_time_p50 * 1e3, s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3,
               (long long)s.late_ticks);
+  if (s.input_age_max > 0)
+    std::printf("input age  p50 %.3f ms, p99 %.3f ms, max %.3f ms\n", s.input_age_p50 * 1e3, s.input_age_p99 * 1e3,
+                s.input_age_max * 1e3);
+  for (const auto& [name, value] : s.values) std::printf("value      %s = %g\n", name.c_str(), value);
   std::printf("at most    %.3f N, %.2f mm deep; %lld elements severed\n", s.max_force, s.max_depth * 1e3,
               (long long)s.severed);
-  constexpr std::size_t kMostShown = 20;
-  for (std::size_t i = 0; i < events.size() && i < kMostShown; ++i)
-    std::printf("event      %8.3f s  %s: %s\n", double(events[i].tick) * model.tick,
-                kind_name(events[i].kind), events[i].text.c_str());
-  if (events.size() > kMostShown) std::printf("           and %zu more events\n", events.size() - kMostShown);
+  print_events(events, model.tick);
 }
 
 int run_info(const InfoArguments& arguments) {

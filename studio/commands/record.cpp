@@ -1,71 +1,120 @@
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "studio/commands/command.h"
 #include "studio/console.h"
 #include "studio/files.h"
 #include "studio/loaded_scene.h"
-#include "studio/session/record_script.h"
+#include "studio/session/open_source.h"
+#include "studio/session/record_session.h"
+#include "studio/session/script_source.h"
 #include "studio/session/stop_signal.h"
 
 namespace ctpm {
 namespace {
 
 struct RecordArguments {
-  std::string scene, output, script;
+  std::string scene, parent, output;
+  std::optional<double> at_s;
+  SourceRequest source;
   double duration_s = 0;
   bool overwrite = false, as_fast_as_possible = false;
   LoadOptions load;
 };
 
+/// What does not fit together, before anything is read.
+Errors check(const RecordArguments& arguments) {
+  Errors errors;
+  if (!(arguments.duration_s >= 0)) errors.push_back({"--duration-s", "must be 0 or more", ""});
+  if (arguments.scene.empty() == arguments.parent.empty())
+    errors.push_back({"record", "needs either a scene or --continue with a session", ""});
+  if (arguments.at_s && arguments.parent.empty())
+    errors.push_back({"--at", "is a moment of the session that --continue names", ""});
+  if (!arguments.parent.empty() && !arguments.at_s)
+    errors.push_back({"--continue", "needs --at, the moment from which to go on [s]", ""});
+  if (count_of(arguments.source) > 1) errors.push_back({"record", "takes one of --script, --motion", ""});
+  if (!arguments.parent.empty() && count_of(arguments.source) == 0)
+    errors.push_back({"--continue", "needs a source: --script, --motion", ""});
+  if (const Result<Done> writable = check_writable(arguments.output); !writable)
+    errors.insert(errors.end(), writable.errors().begin(), writable.errors().end());
+  return errors;
+}
+
+/// A session's start, and the source that a user who names none gets: a press and a cut at the organ's top.
+struct Beginning {
+  SessionStart start;
+  std::optional<Script> script;
+};
+
+Result<Beginning> begin(const RecordArguments& arguments) {
+  Beginning beginning;
+  if (!arguments.parent.empty()) {
+    Result<SessionStart> start = continue_session_at(arguments.parent, *arguments.at_s);
+    if (!start) return start.errors();
+    beginning.start = std::move(*start);
+    return beginning;
+  }
+  const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
+  if (!scene) return scene.errors();
+  beginning.start = start_session(*scene);
+  if (count_of(arguments.source) == 0) beginning.script = default_script(scene->scene.spec, scene->organs);
+  return beginning;
+}
+
+Result<OpenedSource> open(const RecordArguments& arguments, const Beginning& beginning) {
+  const Model& model = beginning.start.model;
+  if (!beginning.script) return open_source(arguments.source, model);
+  print_remark("no source is given: pressing and cutting at the top of the first organ");
+  OpenedSource opened;
+  opened.source = std::make_unique<ScriptSource>(ScriptPlayer(*beginning.script, model.tools, model.tick));
+  opened.metadata = {{"source", "script"}, {"script", write_script(*beginning.script)}};
+  return opened;
+}
+
 int print_outcome(const std::string& path, const Model& model, const RecordOutcome& outcome) {
   const SessionStatistics& s = outcome.statistics;
-  if (outcome.run.status == StepStatus::diverged || outcome.run.status == StepStatus::bad_input)
+  const bool was_refused =
+      outcome.run.status == StepStatus::diverged || outcome.run.status == StepStatus::bad_input;
+  if (was_refused)
     print_remark(path + ": error: the simulation was refused at tick " + std::to_string(outcome.run.ticks) +
                  ", sphere " + std::to_string(outcome.run.worst_sphere) + "; what came before is saved");
-  std::printf(
-      "%s: %.3f s in %lld ticks, tick time p50 %.3f ms, p99 %.3f ms, %lld late, at most %.3f N and %.2f mm "
-      "deep, %lld elements severed\n",
-      path.c_str(), double(s.ticks) * model.tick, (long long)s.ticks, s.tick_time_p50 * 1e3,
-      s.tick_time_p99 * 1e3, (long long)outcome.run.late_ticks, s.max_force, s.max_depth * 1e3,
-      (long long)s.severed);
-  return outcome.run.status == StepStatus::ok || outcome.run.status == StepStatus::not_converged
-             ? exit_good
-             : exit_bad_verdict;
+  if (!outcome.run.fault.empty())
+    print_remark(path + ": error: " + outcome.run.fault + "; what came before is saved");
+  std::printf("%s: %.3f s in %lld ticks, at most %.3f N and %.2f mm deep, %lld elements severed\n", path.c_str(),
+              double(s.ticks) * model.tick, (long long)s.ticks, s.max_force, s.max_depth * 1e3,
+              (long long)s.severed);
+  std::printf("tick time p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms, %lld late\n", s.tick_time_p50 * 1e3,
+              s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3,
+              (long long)outcome.run.late_ticks);
+  if (s.input_age_max > 0)
+    std::printf("input age p50 %.3f ms, p99 %.3f ms, max %.3f ms\n", s.input_age_p50 * 1e3, s.input_age_p99 * 1e3,
+                s.input_age_max * 1e3);
+  return was_refused || !outcome.run.fault.empty() ? exit_bad_verdict : exit_good;
 }
 
 int run_record(const RecordArguments& arguments) {
-  if (arguments.duration_s < 0) return print_errors({{"--duration-s", "must be 0 or more", ""}});
-  if (const Result<Done> writable = check_writable(arguments.output); !writable)
-    return print_errors(writable.errors());
-  const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
-  if (!scene) return print_errors(scene.errors());
-  Script script;
-  if (arguments.script.empty()) {
-    print_remark("no --script is given: pressing and cutting at the top of the first organ");
-    script = default_script(scene->scene.spec, scene->organs);
-  } else {
-    const Result<std::string> text = read_text_file(arguments.script);
-    if (!text) return print_errors(text.errors());
-    std::vector<std::string> tools;
-    for (const ToolSpec& tool : scene->scene.spec.tools) tools.push_back(tool.name);
-    Result<Script> read = read_script(*text, arguments.script, tools);
-    if (!read) return print_errors(read.errors());
-    script = std::move(*read);
-  }
-  const Model& model = scene->built.model;
+  if (const Errors errors = check(arguments); !errors.empty()) return print_errors(errors);
+  Result<Beginning> beginning = begin(arguments);
+  if (!beginning) return print_errors(beginning.errors());
+  SessionStart& start = beginning->start;
+  const Result<OpenedSource> opened = open(arguments, *beginning);
+  if (!opened) return print_errors(opened.errors());
+  for (const auto& [key, value] : opened->metadata) start.metadata[key] = value;
+
   RunOptions options;
   options.in_real_time = !arguments.as_fast_as_possible;
-  options.most_ticks = std::llround(arguments.duration_s / model.tick);
-  ProgressLine progress("recording");
-  options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
+  options.most_ticks = std::llround(arguments.duration_s / start.model.tick);
   const StopSignal stop;
   options.should_stop = [&] { return stop.came(); };
-  const Result<RecordOutcome> outcome =
-      record_script(*scene, script, arguments.output, arguments.overwrite, options);
+  const Result<RecordOutcome> outcome = [&] {
+    ProgressLine progress("recording");
+    options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
+    return record_session(start, *opened->source, arguments.output, arguments.overwrite, options);
+  }();
   if (!outcome) return print_errors(outcome.errors());
-  return print_outcome(arguments.output, model, *outcome);
+  return print_outcome(arguments.output, start.model, *outcome);
 }
 
 }  // namespace
@@ -73,11 +122,18 @@ int run_record(const RecordArguments& arguments) {
 Command add_record(CLI::App& program) {
   auto arguments = std::make_shared<RecordArguments>();
   CLI::App* app = program.add_subcommand("record", "Runs a session and records it, at 1000 ticks a second.");
-  app->footer("Example: ctpm record scenes/liver.json --script scenes/scripts/liver-cut.json -o liver.ctpm");
-  app->add_option("scene", arguments->scene, "Scene file (.json)")->required();
+  app->footer(
+      "Example: ctpm record scenes/liver.json --script scenes/scripts/liver-cut.json -o liver.ctpm\n"
+      "         ctpm record --continue liver.ctpm --at 2.5 --motion hand.csv -o other.ctpm");
+  app->add_option("scene", arguments->scene, "Scene file (.json)");
+  app->add_option("--continue", arguments->parent, "Goes on from a moment of this session (.ctpm) instead");
+  app->add_option("--at", arguments->at_s, "That moment [s]");
   app->add_option("-o,--output", arguments->output, "Session file (.ctpm)")->required();
-  app->add_option("--script", arguments->script,
-                  "What the hand does (.json); without it, a press and a cut at the organ's top");
+  app->add_option("--script", arguments->source.script,
+                  "What the hand does (.json); without any source, a press and a cut at the organ's top");
+  app->add_option("--motion", arguments->source.motion,
+                  "What a hand did (.csv): time_s, tool_x_mm, tool_y_mm, tool_z_mm, and tool_qw to tool_qz, "
+                  "buttons, tool; at any rate");
   app->add_option("--duration-s", arguments->duration_s, "Ends the session after so many seconds");
   app->add_flag("--overwrite", arguments->overwrite, "Replace an existing session file");
   app->add_flag("--fast", arguments->as_fast_as_possible, "Do not wait for the clock between ticks");

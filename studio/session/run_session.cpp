@@ -3,6 +3,7 @@
 #include <chrono>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "core/step.h"
 #include "recordings/state_hash.h"
@@ -84,9 +85,11 @@ RunOutcome run_session(const Model& model, State& state, InputSource& source, Se
   Clock::time_point deadline = Clock::now();
   for (std::int64_t tick = 0; options.most_ticks == 0 || tick < options.most_ticks; ++tick) {
     if (options.should_stop && options.should_stop()) break;
-    const std::optional<Inputs> inputs = source.next(tick, report);
-    if (!inputs) break;
     if (options.in_real_time) std::this_thread::sleep_until(deadline);
+    const std::optional<Inputs> inputs = source.next(tick, report);
+    for (SourceEvent& event : source.take_events())
+      writer.event(tick, event.kind, std::move(event.text), std::move(event.values));
+    if (!inputs) break;
     const Clock::time_point start = Clock::now();
     report = stepper.step(state, *inputs);
     const double tick_time = seconds_since(start);
@@ -96,7 +99,7 @@ RunOutcome run_session(const Model& model, State& state, InputSource& source, Se
                    {double(report.worst_sphere)});
       break;
     }
-    writer.append(state, make_record(*inputs, report, tick_time, state_hash(state)));
+    writer.append(state, make_record(*inputs, report, tick_time, state_hash(state), source.input_age()));
     watch.look(tick, report);
     deadline += tick_length;
     if (options.in_real_time && Clock::now() > deadline) {
@@ -109,6 +112,7 @@ RunOutcome run_session(const Model& model, State& state, InputSource& source, Se
     if (options.progress)
       options.progress(outcome.ticks, options.most_ticks ? options.most_ticks : source.tick_count());
   }
+  outcome.fault = source.fault();
   return outcome;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 
 #include "core/model.h"
 #include "core/state.h"
@@ -25,6 +26,7 @@ struct RunOutcome {
   std::int64_t late_ticks = 0;         ///< ticks that ended after their deadline, in real time only
   StepStatus status = StepStatus::ok;  ///< of the last tick; a diverged tick ends the run
   std::int32_t worst_sphere = -1;
+  std::string fault;  ///< why the source ended the session before its time; empty if it did not
 };
 
 /// Runs one session: source -> step -> writer, tick by tick. `state` goes on from where it is.

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "core/result.h"
+#include "recordings/session.h"
+#include "scenes/script.h"
+#include "studio/loaded_scene.h"
+#include "studio/session/input_source.h"
+#include "studio/session/run_session.h"
+
+namespace ctpm {
+
+struct RecordOutcome {
+  RunOutcome run;
+  SessionStatistics statistics;
+};
+
+/// The start of a session of `scene`, after it has come to rest.
+SessionStart start_session(const LoadedScene& scene);
+
+/// The start of a session that goes on from the State at `at_s` [s] of the session in `file`, which it names as
+/// its parent. Errors: the session cannot be read, does not last so long, or does not replay.
+Result<SessionStart> continue_session_at(const std::string& file, double at_s);
+
+/// Runs a session from `start` with what `source` gives and records it at `path`. Errors: the file exists and
+/// `overwrite` is false, it cannot be written.
+Result<RecordOutcome> record_session(const SessionStart& start, InputSource& source, const std::string& path,
+                                     bool overwrite, const RunOptions& options);
+
+/// Lets the scene come to rest, then runs the script and records it at `path`. Errors: as for record_session().
+Result<RecordOutcome> record_script(const LoadedScene& scene, const Script& script, const std::string& path,
+                                    bool overwrite, const RunOptions& options);
+
+/// Names the program's version, compiler and kind of build.
+std::string build_fingerprint();
+
+}  // namespace ctpm
