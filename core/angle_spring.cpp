@@ -18,15 +18,24 @@ void add(Coordinates& v, std::size_t i, Vec3 q) {
 
 }  // namespace
 
-void AngleElements::linearise(const State& state, double h, Coordinates& force,
-                              DiagonalBlocks& blocks) const {
+void AngleElements::add_forces(const State& state, Coordinates& force) const {
   const AngleSprings& springs = model_.angle_springs;
-  const std::size_t n = state.position.size();
   for (std::size_t i = 0; i < springs.size(); ++i) {
     if (!lives(state, i)) continue;
     const auto a = std::size_t(springs.a[i]), b = std::size_t(springs.b[i]), c = std::size_t(springs.c[i]);
     const Vec3 pull = -springs.k[i] * bend(state.position[a], state.position[b], state.position[c]);
     add(force, b, pull), add(force, a, -0.5 * pull), add(force, c, -0.5 * pull);
+  }
+}
+
+void AngleElements::linearise(const State& state, double h, Coordinates& force,
+                              DiagonalBlocks& blocks) const {
+  add_forces(state, force);
+  const AngleSprings& springs = model_.angle_springs;
+  const std::size_t n = state.position.size();
+  for (std::size_t i = 0; i < springs.size(); ++i) {
+    if (!lives(state, i)) continue;
+    const auto a = std::size_t(springs.a[i]), b = std::size_t(springs.b[i]), c = std::size_t(springs.c[i]);
     const double coupling = h * h * springs.k[i];
     for (const std::size_t diagonal : {std::size_t(0), 3 * n, 5 * n}) {
       blocks[diagonal + b] += coupling;

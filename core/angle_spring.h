@@ -12,6 +12,9 @@ class AngleElements {
  public:
   explicit AngleElements(const Model& model) : model_(model) {}
 
+  /// Adds the forces [N].
+  void add_forces(const State& state, Coordinates& force) const;
+
   /// Adds the forces [N] and the linearisation for a step of `h` [s].
   void linearise(const State& state, double h, Coordinates& force, DiagonalBlocks& blocks) const;
 

@@ -162,28 +162,37 @@ void AxialElements::apply(const Coordinates& v, Coordinates& result) const {
     }
 }
 
-void AxialElements::add_damping_forces(const State& state, std::span<const double> softness,
-                                       const Coordinates& v, Coordinates& force) const {
-  if (model_.edges.c.empty()) return;
-  const std::size_t spheres = v.size() / 3;
-  for (std::size_t e = 0; e < model_.edges.size(); ++e) {
-    if (!state.edge_severed.empty() && state.edge_severed[e]) continue;
-    const auto a = std::size_t(model_.edges.a[e]), b = std::size_t(model_.edges.b[e]);
-    const Vec3 direction{direction_[0][e], direction_[1][e], direction_[2][e]};
-    const Vec3 relative{v[b] - v[a], v[spheres + b] - v[spheres + a],
-                        v[2 * spheres + b] - v[2 * spheres + a]};
-    const double s =
-        softness.empty() ? 1.0 : std::min({softness[a], softness[b], softness[std::size_t(third_[e])]});
-    const Vec3 pull = s * model_.edges.c[e] * dot(direction, relative) * direction;
+void AxialElements::add_forces(const State& state, std::span<const double> softness, Coordinates& force) const {
+  const std::size_t spheres = state.position.size();
+  const auto pull_together = [&](std::size_t e, std::int32_t first, std::int32_t second, double elastic, double damping) {
+    const auto a = std::size_t(first), b = std::size_t(second);
+    const Vec3 apart = state.position[b] - state.position[a];
+    const double length = norm(apart);
+    if (!(length > kShortest)) return;
+    const Vec3 direction = apart / length;
+    const double s = softness.empty() ? 1.0 : std::min({softness[a], softness[b], softness[std::size_t(third_[e])]});
+    const Vec3 pull = s * (elastic + damping * dot(direction, state.velocity[b] - state.velocity[a])) * direction;
     force[a] += pull.x, force[spheres + a] += pull.y, force[2 * spheres + a] += pull.z;
     force[b] -= pull.x, force[spheres + b] -= pull.y, force[2 * spheres + b] -= pull.z;
+  };
+  const Edges& edges = model_.edges;
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    if (!state.edge_severed.empty() && state.edge_severed[e]) continue;
+    const double x = distance(state.position, edges.a[e], edges.b[e]) - edges.rest_length[e];
+    pull_together(e, edges.a[e], edges.b[e], edges.k[e] * x, edges.c.empty() ? 0.0 : edges.c[e]);
+  }
+  const TwoSphereTpms& tpms = model_.tpms;
+  for (std::size_t t = 0; t < tpms.size(); ++t) {
+    if (!state.tpm_severed.empty() && state.tpm_severed[t]) continue;
+    const double x = distance(state.position, tpms.a[t], tpms.b[t]) - tpms.rest_length[t];
+    pull_together(edges.size() + t, tpms.a[t], tpms.b[t], tpms.spring_k[t] * (x - state.kelvin_elongation[t]), 0.0);
   }
 }
 
-void AxialElements::advance_kelvin(const Vec3Array& position, double h, State& state) const {
+void AxialElements::advance_kelvin(double h, State& state) const {
   const TwoSphereTpms& m = model_.tpms;
   for (std::size_t t = 0; t < m.size(); ++t) {
-    const double x = distance(position, m.a[t], m.b[t]) - m.rest_length[t];
+    const double x = distance(state.position, m.a[t], m.b[t]) - m.rest_length[t];
     const double damping = m.kelvin_c[t] / h;
     state.kelvin_elongation[t] = (damping * state.kelvin_elongation[t] + m.spring_k[t] * x) /
                                  (m.spring_k[t] + m.kelvin_k[t] + damping);

@@ -31,13 +31,13 @@ class AxialElements {
   /// result += linearised coupling of all elements times `v`.
   void apply(const Coordinates& v, Coordinates& result) const;
 
-  /// Adds the dashpots' forces [N] at the geometry of the last linearise() with velocity `v` [m/s].
-  void add_damping_forces(const State& state, std::span<const double> softness, const Coordinates& v,
-                          Coordinates& force) const;
+  /// Adds the forces of this moment [N]: springs, dashpots at State::velocity, two-sphere TPMs at their present
+  /// Kelvin elongation; `softness` as above.
+  void add_forces(const State& state, std::span<const double> softness, Coordinates& force) const;
 
   /// Advances the Kelvin elongations of the two-sphere TPMs to the end of a step of `h` [s] that moved to
-  /// `position`.
-  void advance_kelvin(const Vec3Array& position, double h, State& state) const;
+  /// State::position.
+  void advance_kelvin(double h, State& state) const;
 
   /// Elastic energy of the edges [J] at `position` (two-sphere TPMs have none of their own to give back).
   double elastic_energy(const State& state) const;

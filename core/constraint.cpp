@@ -36,10 +36,30 @@ void ConstraintElements::measure_tilt(const State& state, std::vector<double>& s
   }
 }
 
+void ConstraintElements::add_forces(const State& state, std::span<const double> softness,
+                                    Coordinates& force) const {
+  const Constraints& lines = model_.constraints;
+  const std::size_t spheres = state.position.size();
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const Vec3 u = offset_[i];
+    const double tilt = norm(u), hypotenuse = std::sqrt(tilt * tilt + half_length_[i] * half_length_[i]);
+    if (tilt == 0) continue;
+    const auto c = std::size_t(lines.c[i]);
+    const double soft = softness.empty() ? 1.0 : softness[c];
+    // Eq. 2 with Eq. 8: lambda = 2 k' (1 - cos theta), force on C is -lambda u / (1 + tan theta).
+    const Vec3 pull = -2 * lines.k[i] * (1 - half_length_[i] / hypotenuse) * soft * u;
+    force[c] += pull.x, force[spheres + c] += pull.y, force[2 * spheres + c] += pull.z;
+    for (const auto end : {std::size_t(lines.a[i]), std::size_t(lines.e[i])})
+      force[end] -= 0.5 * pull.x, force[spheres + end] -= 0.5 * pull.y,
+          force[2 * spheres + end] -= 0.5 * pull.z;
+  }
+}
+
 void ConstraintElements::linearise(const State& state, std::span<const double> softness, double h,
                                    Coordinates& force, DiagonalBlocks& blocks) {
   const Constraints& lines = model_.constraints;
   const std::size_t spheres = state.position.size();
+  add_forces(state, softness, force);
   active_.clear(), isotropic_.clear(), along_.clear();
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const Vec3 u = offset_[i];
@@ -48,14 +68,7 @@ void ConstraintElements::linearise(const State& state, std::span<const double> s
     const auto a = std::size_t(lines.a[i]), c = std::size_t(lines.c[i]), e = std::size_t(lines.e[i]);
     const double cosine = half_length_[i] / hypotenuse, sine = tilt / hypotenuse;
     const double soft = softness.empty() ? 1.0 : softness[c];
-    // Eq. 2 with Eq. 8: lambda = 2 k' (1 - cos theta), force on C is -lambda u / (1 + tan theta).
     const double lambda = 2 * lines.k[i] * (1 - cosine) * soft;
-    const Vec3 pull = -lambda * u;
-    force[c] += pull.x, force[spheres + c] += pull.y, force[2 * spheres + c] += pull.z;
-    for (const std::size_t end : {a, e})
-      force[end] -= 0.5 * pull.x, force[spheres + end] -= 0.5 * pull.y,
-          force[2 * spheres + end] -= 0.5 * pull.z;
-
     // d(lambda u)/du = lambda I + 2 k' cos sin^2 along u; the softening is held, which keeps it positive
     // definite.
     const double isotropic = h * h * lambda, along = h * h * 2 * lines.k[i] * cosine * sine * sine * soft;

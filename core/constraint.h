@@ -18,8 +18,11 @@ class ConstraintElements {
   /// the lines centred on it, 1 where there is none (Eq. 8)  (sphere_count, or empty without softening).
   void measure_tilt(const State& state, std::vector<double>& softness);
 
-  /// Adds the constraint forces (Eqs. 2, 5; divided as Eq. 8 says) and the linearisation for a step of `h`
-  /// [s]. measure_tilt() of the same State comes first.
+  /// Adds the constraint forces (Eqs. 2, 5; divided as Eq. 8 says). measure_tilt() of the same State comes first.
+  void add_forces(const State& state, std::span<const double> softness, Coordinates& force) const;
+
+  /// Adds the constraint forces and the linearisation for a step of `h` [s]. measure_tilt() of the same State comes
+  /// first.
   void linearise(const State& state, std::span<const double> softness, double h, Coordinates& force,
                  DiagonalBlocks& blocks);
 

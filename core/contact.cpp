@@ -32,14 +32,16 @@ void BallContact::find(const State& state, Vec3 centre, double radius, Vec3 velo
     const double stick = kStickTime * model_.contact_k,
                  limit = model_.contact_friction * model_.contact_k * penetration;
     const double drag = model_.contact_friction > 0 ? (speed * stick > limit ? limit / speed : stick) : 0.0;
-    contacts_.push_back({std::int32_t(i), normal, penetration, drag});
+    contacts_.push_back({std::int32_t(i), normal, penetration, drag, {}});
   }
 }
 
-void BallContact::linearise(double h, Coordinates& force, DiagonalBlocks& blocks) const {
+void BallContact::linearise(double h, Coordinates& force, DiagonalBlocks& blocks) {
   const std::size_t spheres = model_.sphere_count();
-  for (const Contact& contact : contacts_) {
+  for (Contact& contact : contacts_) {
     const auto i = std::size_t(contact.sphere);
+    for (std::size_t k = 0; k < 3; ++k) contact.without[k] = force[k * spheres + i];
+    for (std::size_t k = 0; k < 6; ++k) contact.without[3 + k] = blocks[k * spheres + i];
     const Vec3 n = contact.normal;
     const Vec3 push =
         model_.contact_k * contact.penetration * n + contact.drag * (velocity_ - dot(velocity_, n) * n);
@@ -51,6 +53,31 @@ void BallContact::linearise(double h, Coordinates& force, DiagonalBlocks& blocks
     block[3 * spheres] += along * n.y * n.y + across, block[4 * spheres] += along * n.y * n.z;
     block[5 * spheres] += along * n.z * n.z + across;
   }
+}
+
+void BallContact::undo_linearise(Coordinates& force, DiagonalBlocks& blocks) const {
+  const std::size_t spheres = model_.sphere_count();
+  for (const Contact& contact : contacts_) {
+    const auto i = std::size_t(contact.sphere);
+    for (std::size_t k = 0; k < 3; ++k) force[k * spheres + i] = contact.without[k];
+    for (std::size_t k = 0; k < 6; ++k) blocks[k * spheres + i] = contact.without[3 + k];
+  }
+}
+
+void BallContact::push_apart(double h, const Coordinates& momentum, Coordinates& velocity) {
+  const std::size_t spheres = model_.sphere_count();
+  std::erase_if(contacts_, [&](const Contact& contact) {
+    const auto i = std::size_t(contact.sphere);
+    const Vec3 n = contact.normal, free{momentum[i], momentum[spheres + i], momentum[2 * spheres + i]};
+    const double mass = model_.mass[i], k = model_.contact_k;
+    const double along = (dot(n, free) + h * k * contact.penetration) / (mass + h * h * k);
+    if (contact.penetration < h * along) return true;
+    const Vec3 across = (free - dot(n, free) * n + h * contact.drag * (velocity_ - dot(velocity_, n) * n)) /
+                        (mass + h * contact.drag);
+    const Vec3 pushed = along * n + across;
+    velocity[i] = pushed.x, velocity[spheres + i] = pushed.y, velocity[2 * spheres + i] = pushed.z;
+    return false;
+  });
 }
 
 void BallContact::apply(double h, const Coordinates& v, Coordinates& result) const {
@@ -74,8 +101,13 @@ double BallContact::pressure(const Contact& contact, double h, const Coordinates
   return model_.contact_k * (contact.penetration - h * dot(contact.normal, absolute));
 }
 
-bool BallContact::drop_pulling(double h, const Coordinates& v) {
-  return std::erase_if(contacts_, [&](const Contact& contact) { return pressure(contact, h, v) < 0; }) > 0;
+bool BallContact::has_pulling(double h, const Coordinates& v) const {
+  return std::any_of(contacts_.begin(), contacts_.end(),
+                     [&](const Contact& contact) { return pressure(contact, h, v) < 0; });
+}
+
+void BallContact::drop_pulling(double h, const Coordinates& v) {
+  std::erase_if(contacts_, [&](const Contact& contact) { return pressure(contact, h, v) < 0; });
 }
 
 Vec3 BallContact::force_on_tool(double h, const Coordinates& v) const {

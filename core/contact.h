@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct Contact {
   Vec3 normal;         ///< unit vector from the tool to the sphere
   double penetration;  ///< at the start of the step with the tool at its end [m], > 0
   double drag;         ///< across the normal [N s/m], >= 0
+  std::array<double, 9> without{};  ///< force and block of its sphere before the contact was added
 };
 
 /// Contacts of a rigid ball with spheres.
@@ -29,14 +31,23 @@ class BallContact {
   void find(const State& state, Vec3 centre, double radius, Vec3 velocity);
 
   /// Adds contact forces [N] and linearisation for a step of `h` [s].
-  void linearise(double h, Coordinates& force, DiagonalBlocks& blocks) const;
+  void linearise(double h, Coordinates& force, DiagonalBlocks& blocks);
+
+  /// Takes back to the bit what the last linearise() added.
+  void undo_linearise(Coordinates& force, DiagonalBlocks& blocks) const;
+
+  /// An explicit step of `h` [s] with the contacts solved implicitly, each by itself: `velocity` [m/s] of the touched
+  /// spheres from the `momentum` [kg m/s] they would have without contact, and drops contacts that would pull.
+  void push_apart(double h, const Coordinates& momentum, Coordinates& velocity);
 
   /// result += coupling of a step of `h` [s] times `v`.
   void apply(double h, const Coordinates& v, Coordinates& result) const;
 
-  /// Removes contacts that would pull their sphere after a step of `h` [s] with velocity `v` [m/s]. True if
-  /// any was.
-  bool drop_pulling(double h, const Coordinates& v);
+  /// Whether a contact would pull its sphere after a step of `h` [s] with velocity `v` [m/s].
+  bool has_pulling(double h, const Coordinates& v) const;
+
+  /// Removes the contacts that would.
+  void drop_pulling(double h, const Coordinates& v);
 
   /// Force on the tool [N] after the step.
   Vec3 force_on_tool(double h, const Coordinates& v) const;

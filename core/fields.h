@@ -106,6 +106,7 @@ void for_each_field(Model_& m, Visit&& visit) {
   visit("solver.velocity_floor", m.solver.velocity_floor);
   visit("solver.max_iterations", m.solver.max_iterations);
   visit("solver.substeps", m.solver.substeps);
+  visit("solver.integrator", m.solver.integrator);
 }
 
 }  // namespace ctpm

@@ -89,6 +89,14 @@ struct OrganRange {
   std::int32_t layer_count = 0;
 };
 
+/// How the positions follow from the forces (scene key `solver.integrator`).
+enum class Integrator : std::int32_t {
+  automatic = 0,           ///< chosen from the Model alone, see integrator.h
+  symplectic_euler = 1,    ///< explicit, first order
+  backward_euler = 2,      ///< implicit, first order, L-stable
+  extrapolated_euler = 3,  ///< implicit, second order, L-stable: backward Euler with step h and twice h/2, extrapolated
+};
+
 /// How a tick is solved; all limits are counts or residuals, never times.
 struct SolverSettings {
   double tolerance =
@@ -96,7 +104,8 @@ struct SolverSettings {
              ///< last velocity), so that it does not depend on how fast the body moves; in (0, 1)
   double velocity_floor = 1e-6;       ///< residuals below this velocity [m/s] count as solved, > 0
   std::int32_t max_iterations = 200;  ///< of one solve, >= 1
-  std::int32_t substeps = 1;          ///< equal parts of a tick, >= 1
+  std::int32_t substeps = 1;          ///< equal parts of a tick, >= 1; `automatic` may take more
+  Integrator integrator = Integrator::automatic;
 };
 
 /// Everything about a scene that never changes while it runs. Features that the scene does not have are empty

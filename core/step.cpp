@@ -1,16 +1,16 @@
 #include "core/step.h"
 
-#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
 
-#include "core/angle_spring.h"
-#include "core/axial.h"
-#include "core/block_jacobi.h"
-#include "core/conjugate_gradient.h"
-#include "core/constraint.h"
+#include "core/backward_euler.h"
 #include "core/contact.h"
 #include "core/cutting.h"
-#include "core/result.h"
+#include "core/elements.h"
+#include "core/outside.h"
+#include "core/symplectic_euler.h"
 
 namespace ctpm {
 namespace {
@@ -21,9 +21,6 @@ constexpr double kFastest = 1e4;
 /// Settling ends when no sphere is faster than this [m/s].
 constexpr double kAtRest = 1e-5;
 
-/// Rounds in which contacts that would pull are dropped and the step is solved again.
-constexpr int kContactRounds = 4;
-
 bool is_usable(const Model& model, const Inputs& inputs) {
   if (inputs.tool < -1 || inputs.tool >= std::int32_t(model.tools.size())) return false;
   const Quat q = inputs.world_from_tool;
@@ -31,169 +28,58 @@ bool is_usable(const Model& model, const Inputs& inputs) {
   return inputs.tool == -1 || (is_finite(inputs.position) && std::abs(length_squared - 1) < 1e-3);
 }
 
+/// later + (later - sooner): the limit of two approximations, the second with half the first one's error.
+void extrapolate(const std::vector<double>& sooner, std::vector<double>& later) {
+  for (std::size_t i = 0; i < later.size(); ++i) later[i] += later[i] - sooner[i];
+}
+
 }  // namespace
 
-/// Kernels and scratch of one Model. One substep solves
-///   (M + h C + h^2 K) v' = M v + h (f_elastic(x) + f_contact(x) + M g),  x' = x + h v',
-/// backward Euler linearised once: L-stable, first order, and as stiff a dashpot as one likes.
+/// What the tool in the hand is in one tick.
+struct Grip {
+  const Tool* tool = nullptr;  ///< null: the hand is empty
+  Vec3 from, to;               ///< way of the tool's origin in this tick [m]
+  BladeEdge blade;             ///< of a scalpel, at the end of the tick
+
+  bool is(ToolKind kind) const { return tool != nullptr && tool->kind == kind; }
+};
+
+/// Kernels and scratch of one Model.
 struct Stepper::Workspace {
   explicit Workspace(const Model& m)
       : model(m),
-        axial(m),
-        constraints(m),
-        angles(m),
+        choice(choose_integrator(m)),
+        elements(m),
         contact(m),
-        jacobi(m.sphere_count()),
-        solver(3 * m.sphere_count()),
         held_axes(m.held_axes),
-        force(3 * m.sphere_count()),
-        momentum(3 * m.sphere_count()),
-        velocity(3 * m.sphere_count()),
-        blocks(6 * m.sphere_count()),
-        softness(m.has_softening ? m.sphere_count() : 0),
-        before(m.sphere_count()) {
-    const double total_mass = fixed_order_dot(m.mass, std::vector<double>(m.mass.size(), 1.0));
-    for (std::size_t i = 0; i < m.sphere_count(); ++i)
-      if (m.held_axes[i] != 0 && m.held_axes[i] != kAnchored) guided.push_back(std::int32_t(i));
-    limits.relative = m.solver.tolerance;
-    limits.absolute = m.solver.velocity_floor * std::sqrt(total_mass);
-    limits.max_iterations = m.solver.max_iterations;
+        velocity(3 * m.sphere_count()) {
+    if (choice.integrator == Integrator::symplectic_euler)
+      explicit_solver.emplace(m);
+    else
+      implicit_solver.emplace(m);
   }
 
-  void linearise(const State& state, double h);
-  void add_loads(double time);
-  void apply(const State& state, double h, const Coordinates& in, Coordinates& out) const;
-  void solve(const State& state, double h, double time, StepReport& report);
-  void uncouple_guided();
-  Vec3 force_on_pin(const State& state, double h);
-  bool is_held(std::size_t sphere, std::size_t axis) const { return (held_axes[sphere] >> axis & 1) != 0; }
+  bool advance(State& state, const Grip& grip, double h, double share, double time, StepReport& report);
+  bool advance_extrapolated(State& state, const Grip& grip, double h, double share, double time,
+                            StepReport& report);
   bool check(StepReport& report) const;
-  void advance(State& state, double h);
-  struct Grip;
-  bool substep(State& state, const Grip& grip, double h, double share, double time, StepReport& report);
-  void report_tool(const State& state, double h, StepReport& report) const;
+  void move(State& state, double h);
+  void report_tool(const State& state, StepReport& report) const;
 
   const Model& model;
-  AxialElements axial;
-  ConstraintElements constraints;
-  AngleElements angles;
+  IntegratorChoice choice;
+  Elements elements;
   BallContact contact;
-  BlockJacobi jacobi;
-  ConjugateGradient solver;
-  CgLimits limits;
-  std::vector<std::uint8_t> held_axes;  ///< of the Model, and of the sphere that a pin holds
-  std::vector<std::int32_t> guided;     ///< spheres of which some axes are held and others not
+  std::optional<SymplecticEuler> explicit_solver;
+  std::optional<BackwardEuler> implicit_solver;
+  std::vector<std::uint8_t> held_axes;
   std::int32_t pinned = -1;
-  Vec3 pin_velocity;      ///< that brings the pinned sphere to the hand [m/s]
-  bool has_loads = true;  ///< loads act (they do not while the scene settles)
-  Coordinates force, momentum, velocity;
-  DiagonalBlocks blocks;
-  std::vector<double> softness;
+  bool has_loads = true;
+  Coordinates velocity;
   Vec3Array before;  ///< positions before the substep, for what moves through a blade
   State backup;      ///< State before the tick, in case it has to be refused
+  State coarse;      ///< of the extrapolation: after one whole step
 };
-
-/// Forces and matrix at the State's positions; the dashpots' forces are all in the matrix.
-void Stepper::Workspace::linearise(const State& state, double h) {
-  const std::size_t n = model.sphere_count();
-  const Vec3 gravity = model.gravity;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double mass = model.mass[i];
-    force[i] = mass * gravity.x, force[n + i] = mass * gravity.y, force[2 * n + i] = mass * gravity.z;
-    blocks[i] = blocks[3 * n + i] = blocks[5 * n + i] = mass;
-    blocks[n + i] = blocks[2 * n + i] = blocks[4 * n + i] = 0;
-  }
-  if (model.constraints.size() > 0) {
-    constraints.measure_tilt(state, softness);
-    constraints.linearise(state, softness, h, force, blocks);
-  }
-  if (model.angle_springs.size() > 0) angles.linearise(state, h, force, blocks);
-  axial.linearise(state, softness, h, force, blocks);
-}
-
-void Stepper::Workspace::add_loads(double time) {
-  const Loads& loads = model.loads;
-  const std::size_t n = model.sphere_count();
-  for (std::size_t l = 0; l < loads.size(); ++l) {
-    const double since = time - loads.start[l];
-    const double share = since <= 0 ? 0.0 : (since >= loads.ramp[l] ? 1.0 : since / loads.ramp[l]);
-    const Vec3 pull = share * loads.force[l];
-    const auto i = std::size_t(loads.sphere[l]);
-    force[i] += pull.x, force[n + i] += pull.y, force[2 * n + i] += pull.z;
-  }
-}
-
-/// Product with the matrix of all spheres, held ones too.
-void Stepper::Workspace::apply(const State& state, double h, const Coordinates& in, Coordinates& out) const {
-  const std::size_t n = model.sphere_count();
-  const double* mass = model.mass.data();
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (std::size_t i = 0; i < n; ++i) out[axis * n + i] = mass[i] * in[axis * n + i];
-  axial.apply(in, out);
-  if (model.constraints.size() > 0) constraints.apply(in, out);
-  if (model.angle_springs.size() > 0) angles.apply(state, h, in, out);
-  if (contact.count() > 0) contact.apply(h, in, out);
-}
-
-/// Velocity at the end of the substep; contacts only push.
-void Stepper::Workspace::solve(const State& state, double h, double time, StepReport& report) {
-  const std::size_t n = model.sphere_count();
-  const double* old_velocity[3] = {state.velocity.x.data(), state.velocity.y.data(), state.velocity.z.data()};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (std::size_t i = 0; i < n; ++i)
-      velocity[axis * n + i] = is_held(i, axis) ? 0.0 : old_velocity[axis][i];
-  if (pinned >= 0) {
-    const auto i = std::size_t(pinned);
-    velocity[i] = pin_velocity.x, velocity[n + i] = pin_velocity.y, velocity[2 * n + i] = pin_velocity.z;
-  }
-  for (int round = 0;; ++round) {
-    linearise(state, h);
-    contact.linearise(h, force, blocks);
-    if (has_loads && model.loads.size() > 0) add_loads(time);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (std::size_t i = 0; i < n; ++i)
-        momentum[axis * n + i] =
-            is_held(i, axis) ? 0.0 : model.mass[i] * old_velocity[axis][i] + h * force[axis * n + i];
-    uncouple_guided();
-    jacobi.factorise(blocks);
-    const CgOutcome outcome = solver.solve(
-        momentum, velocity, limits,
-        [&](const Coordinates& in, Coordinates& out) {
-          apply(state, h, in, out);
-          for (std::size_t axis = 0; axis < 3; ++axis)
-            for (std::size_t i = 0; i < n; ++i)
-              out[axis * n + i] = is_held(i, axis) ? 0.0 : out[axis * n + i];
-        },
-        [&](const Coordinates& in, Coordinates& out) { jacobi.apply(in, out); });
-    report.iterations += outcome.iterations;
-    report.residual = outcome.residual;
-    if (!outcome.converged) report.status = StepStatus::not_converged;
-    if (round == kContactRounds || !contact.drop_pulling(h, velocity)) return;
-  }
-}
-
-/// The preconditioner must not move a guided sphere along a held axis.
-void Stepper::Workspace::uncouple_guided() {
-  const std::size_t n = model.sphere_count();
-  for (const std::int32_t sphere : guided) {
-    const auto i = std::size_t(sphere);
-    const bool x = is_held(i, 0), y = is_held(i, 1), z = is_held(i, 2);
-    if (x || y) blocks[n + i] = 0;
-    if (x || z) blocks[2 * n + i] = 0;
-    if (y || z) blocks[4 * n + i] = 0;
-  }
-}
-
-/// What the tissue does to the pin [N]: the pinned sphere's row of the balance of momentum, with the sign
-/// turned.
-Vec3 Stepper::Workspace::force_on_pin(const State& state, double h) {
-  const std::size_t n = model.sphere_count();
-  const auto i = std::size_t(pinned);
-  apply(state, h, velocity, momentum);
-  const Vec3 done{momentum[i], momentum[n + i], momentum[2 * n + i]},
-      own{force[i], force[n + i], force[2 * n + i]};
-  return (model.mass[i] * state.velocity[i] + h * own - done) / h;
-}
 
 /// Refuses velocities that no tissue has; names the fastest sphere.
 bool Stepper::Workspace::check(StepReport& report) const {
@@ -212,7 +98,7 @@ bool Stepper::Workspace::check(StepReport& report) const {
   return true;
 }
 
-void Stepper::Workspace::advance(State& state, double h) {
+void Stepper::Workspace::move(State& state, double h) {
   const std::size_t n = model.sphere_count();
   std::vector<double>* position[3] = {&state.position.x, &state.position.y, &state.position.z};
   std::vector<double>* speed[3] = {&state.velocity.x, &state.velocity.y, &state.velocity.z};
@@ -221,68 +107,83 @@ void Stepper::Workspace::advance(State& state, double h) {
     const double* __restrict next = &velocity[axis * n];
     for (std::size_t i = 0; i < n; ++i) v[i] = next[i], p[i] += h * next[i];
   }
-  axial.advance_kelvin(state.position, h, state);
+  elements.advance_kelvin(h, state);
 }
 
-Stepper::Stepper(const Model& model) : model_(model), work_(std::make_unique<Workspace>(model)) {}
-Stepper::~Stepper() = default;
-Stepper::Stepper(Stepper&&) noexcept = default;
-
-/// What the tool in the hand is in this tick.
-struct Stepper::Workspace::Grip {
-  const Tool* tool = nullptr;  ///< null: the hand is empty
-  Vec3 from, to;               ///< way of the tool's origin in this tick [m]
-  BladeEdge blade;             ///< of a scalpel, at the end of the tick
-
-  bool is(ToolKind kind) const { return tool != nullptr && tool->kind == kind; }
-};
-
-/// One substep of `h` [s] that ends at `time` [s], with the hand at `share` of its way. False: the step must
+/// One first-order step of `h` [s] that ends at `time` [s], with the hand at `share` of its way. False: it must
 /// be refused.
-bool Stepper::Workspace::substep(State& state, const Grip& grip, double h, double share, double time,
+bool Stepper::Workspace::advance(State& state, const Grip& grip, double h, double share, double time,
                                  StepReport& report) {
   const Vec3 hand = grip.from + share * (grip.to - grip.from);
   contact.clear();
-  if (pinned >= 0) pin_velocity = (hand - state.position[std::size_t(pinned)]) / h;
+  Outside outside{h, time, has_loads, contact, held_axes, pinned, {}};
+  if (pinned >= 0) outside.pin_velocity = (hand - state.position[std::size_t(pinned)]) / h;
   if (grip.is(ToolKind::ball))
     contact.find(state, hand, grip.tool->radius, (grip.to - grip.from) / model.tick);
-  solve(state, h, time, report);
-  if (pinned >= 0) report.tool_force = force_on_pin(state, h);
+  if (explicit_solver)
+    explicit_solver->solve(elements, state, outside, velocity);
+  else
+    implicit_solver->solve(elements, state, outside, velocity, report);
+  report.tool_force = contact.force_on_tool(h, velocity);
+  if (pinned >= 0)
+    report.tool_force = explicit_solver
+                            ? explicit_solver->force_on_pin(state, outside)
+                            : implicit_solver->force_on_pin(elements, state, outside, velocity);
   if (!check(report)) return false;
-  if (grip.is(ToolKind::scalpel)) before = state.position;
-  advance(state, h);
-  if (grip.is(ToolKind::scalpel))
-    report.severed += sever_moved_through_blade(model, grip.blade, before, state.position, state);
+  move(state, h);
   return true;
 }
 
-/// What the hand feels after the last substep of `h` [s].
-void Stepper::Workspace::report_tool(const State& state, double h, StepReport& report) const {
+/// As above, second order: one step of `h` and two of half of it have an error of h and of h/2; their
+/// extrapolation to 0 has none of first order (Deuflhard, "Recent progress in extrapolation methods", 1985).
+bool Stepper::Workspace::advance_extrapolated(State& state, const Grip& grip, double h, double share, double time,
+                                              StepReport& report) {
+  const double half = 0.5 * h, half_share = 0.5 * h / model.tick;
+  coarse = state;
+  if (!advance(coarse, grip, h, share, time, report)) return false;
+  const Vec3 coarse_force = report.tool_force;
+  if (!advance(state, grip, half, share - half_share, time - half, report)) return false;
+  if (!advance(state, grip, half, share, time, report)) return false;
+  extrapolate(coarse.position.x, state.position.x), extrapolate(coarse.velocity.x, state.velocity.x);
+  extrapolate(coarse.position.y, state.position.y), extrapolate(coarse.velocity.y, state.velocity.y);
+  extrapolate(coarse.position.z, state.position.z), extrapolate(coarse.velocity.z, state.velocity.z);
+  extrapolate(coarse.kelvin_elongation, state.kelvin_elongation);
+  report.tool_force += report.tool_force - coarse_force;
+  return true;
+}
+
+/// What the hand feels after the last substep.
+void Stepper::Workspace::report_tool(const State& state, StepReport& report) const {
   if (pinned >= 0) {
     const auto i = std::size_t(pinned);
     report.depth = norm(state.position[i] - model.rest_position[i]);
     report.contacts = 1;
     return;
   }
-  report.tool_force = contact.force_on_tool(h, velocity);
   report.depth = contact.depth(state);
   report.contacts = contact.count();
 }
 
+Stepper::Stepper(const Model& model) : model_(model), work_(std::make_unique<Workspace>(model)) {}
+Stepper::~Stepper() = default;
+Stepper::Stepper(Stepper&&) noexcept = default;
+
+const IntegratorChoice& Stepper::integrator() const { return work_->choice; }
+
 StepReport Stepper::step(State& state, const Inputs& inputs) {
   Workspace& work = *work_;
   StepReport report;
-  if (!is_usable(model_, inputs)) {
-    report.status = StepStatus::bad_input;
-    return report;
-  }
+  if (!is_usable(model_, inputs)) report.status = StepStatus::bad_input;
+  if (!work.choice.holds) report.status = StepStatus::too_long;
+  if (report.status != StepStatus::ok) return report;
   work.backup = state;
   // A tool that was not in the hand before has no way behind it.
   const Inputs last = inputs.tool >= 0 && state.last_inputs.tool == inputs.tool ? state.last_inputs : inputs;
-  Workspace::Grip grip;
+  Grip grip;
   grip.tool = inputs.tool >= 0 ? &model_.tools[std::size_t(inputs.tool)] : nullptr;
   grip.from = last.position, grip.to = inputs.position;
-  if (grip.is(ToolKind::scalpel)) {
+  const bool cuts = grip.is(ToolKind::scalpel);
+  if (cuts) {
     grip.blade = blade_edge(*grip.tool, inputs);
     report.severed +=
         sever_swept_by_blade(model_, blade_edge(*grip.tool, last), grip.blade, state.position, state);
@@ -291,15 +192,22 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
   work.pinned = grip.is(ToolKind::pin) ? grip.tool->sphere : -1;
   if (work.pinned >= 0) work.held_axes[std::size_t(work.pinned)] = kAnchored;
 
-  const std::int32_t substeps = model_.solver.substeps;
+  const std::int32_t substeps = work.choice.substeps;
   const double h = model_.tick / substeps;
   for (std::int32_t k = 1; k <= substeps; ++k) {
-    const double share = double(k) / substeps;
-    if (work.substep(state, grip, h, share, (double(state.tick) + share) * model_.tick, report)) continue;
-    std::swap(state, work.backup);
-    return report;
+    const double share = double(k) / substeps, time = (double(state.tick) + share) * model_.tick;
+    if (cuts) work.before = state.position;
+    const bool done = work.choice.integrator == Integrator::extrapolated_euler
+                          ? work.advance_extrapolated(state, grip, h, share, time, report)
+                          : work.advance(state, grip, h, share, time, report);
+    if (!done) {
+      std::swap(state, work.backup);
+      return report;
+    }
+    if (cuts)
+      report.severed += sever_moved_through_blade(model_, grip.blade, work.before, state.position, state);
   }
-  work.report_tool(state, h, report);
+  work.report_tool(state, report);
   state.last_inputs = inputs;
   ++state.tick;
   return report;
@@ -311,7 +219,7 @@ StepReport Stepper::settle(State& state, std::int64_t ticks) {
   work_->has_loads = false;
   for (std::int64_t i = 0; i < ticks; ++i) {
     report = step(state, Inputs{});
-    if (report.status == StepStatus::diverged) break;
+    if (report.status == StepStatus::diverged || report.status == StepStatus::too_long) break;
     const Vec3 fastest = state.velocity[std::size_t(report.worst_sphere)];
     if (norm(fastest) < kAtRest) break;
   }

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/inputs.h"
+#include "core/integrator.h"
 #include "core/model.h"
 #include "core/state.h"
 
@@ -14,6 +15,7 @@ enum class StepStatus : std::int32_t {
   not_converged = 1,  ///< the solve stopped at its count; State went on with what was reached
   bad_input = 2,      ///< the tool's pose is not finite or its index unknown; State is as before the step
   diverged = 3,       ///< a number became infinite or not a number; State is as before the step
+  too_long = 4,       ///< the explicit integrator that the scene names cannot hold steps of this length; State is as before
 };
 
 /// What one tick did. Never thrown, always complete.
@@ -43,6 +45,9 @@ class Stepper {
   /// Lets the scene come to rest under gravity without a tool, for at most `ticks` ticks; State::tick stays
   /// 0.
   StepReport settle(State& state, std::int64_t ticks);
+
+  /// What the Model's integrator is and why.
+  const IntegratorChoice& integrator() const;
 
  private:
   struct Workspace;

@@ -174,6 +174,7 @@ Result<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrg
   model.solver.tolerance = scene.solver.tolerance.value_or(standard.tolerance);
   model.solver.velocity_floor = scene.solver.velocity_floor.value_or(standard.velocity_floor);
   model.solver.max_iterations = scene.solver.max_iterations.value_or(standard.max_iterations);
+  model.solver.integrator = scene.solver.integrator;
   model.solver.substeps = scene.solver.substeps.value_or(standard.substeps);
   return built;
 }

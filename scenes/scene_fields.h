@@ -37,6 +37,14 @@ inline std::span<const Choice<ToolKind>> choices_of(ToolKind) {
   return choices;
 }
 
+inline std::span<const Choice<Integrator>> choices_of(Integrator) {
+  static constexpr Choice<Integrator> choices[] = {{"auto", Integrator::automatic},
+                                                   {"symplectic-euler", Integrator::symplectic_euler},
+                                                   {"backward-euler", Integrator::backward_euler},
+                                                   {"extrapolated-euler", Integrator::extrapolated_euler}};
+  return choices;
+}
+
 inline constexpr Range any_coordinate_mm = within(-100000, 100000);
 inline constexpr Range any_direction = within(-1e6, 1e6);
 
@@ -254,13 +262,18 @@ void describe_fields(V& v, ProbeSpec& probe) {
 inline RecordInfo info_of(const SolverSpec&) { return {"solver", "How a tick is solved."}; }
 template <class V>
 void describe_fields(V& v, SolverSpec& solver) {
+  v.choice(Key{"integrator",
+               "`symplectic-euler` is explicit, `backward-euler` implicit, `extrapolated-euler` implicit and of second "
+               "order; `auto` takes the cheapest that holds the scene's stiffness, and `ctpm plan` says which and why.",
+               false},
+           solver.integrator);
   v.number(Key{"tolerance", "Relative residual at which the solve of a tick stops.", false, "1e-4"},
            solver.tolerance, units::none, between(0, 1));
   v.number(Key{"velocity_floor_mm_per_s", "Residuals below this velocity count as solved.", false, "0.001"},
            solver.velocity_floor, units::millimetre_per_second, above(0, 1000));
   v.integer(Key{"max_iterations", "Most iterations of one solve.", false, "200"}, solver.max_iterations,
             within(1, 100000));
-  v.integer(Key{"substeps", "Equal parts of a tick.", false, "1"}, solver.substeps, within(1, 1000));
+  v.integer(Key{"substeps", "Equal parts of a tick; `auto` may take more.", false, "1"}, solver.substeps, within(1, 1000));
 }
 
 inline RecordInfo info_of(const CameraSpec&) { return {"camera", "A view for pictures and videos."}; }

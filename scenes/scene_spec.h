@@ -170,6 +170,7 @@ struct ProbeSpec {
 
 /// Solver settings that the scene asks for; unset ones are those of core's SolverSettings.
 struct SolverSpec {
+  Integrator integrator = Integrator::automatic;
   std::optional<double> tolerance;
   std::optional<double> velocity_floor;  ///< [m/s]
   std::optional<std::int32_t> max_iterations;

@@ -210,6 +210,8 @@ Errors check_model(const Model& model) {
                 "solver.max_iterations", "must be in [1, " + std::to_string(max_iterations) + "]");
   check.require(solver.substeps >= 1 && solver.substeps <= max_substeps, "solver.substeps",
                 "must be in [1, " + std::to_string(max_substeps) + "]");
+  check.require(solver.integrator >= Integrator::automatic && solver.integrator <= Integrator::extrapolated_euler,
+                "solver.integrator", "is of an unknown kind");
   return check.take();
 }
 

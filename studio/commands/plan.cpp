@@ -110,6 +110,17 @@ double measure_tick(const Model& model) {
   return times[kMeasured / 2];
 }
 
+/// How a tick is solved, in words.
+std::string solver_of(const Model& model, const IntegratorChoice& choice) {
+  std::string words = name_of(choice.integrator);
+  if (choice.substeps > 1) words += ", " + std::to_string(choice.substeps) + " substeps a tick";
+  if (choice.integrator == Integrator::symplectic_euler) return words;
+  char limits[96];
+  std::snprintf(limits, sizeof limits, ", conjugate gradients to a residual of %g, at most %d iterations",
+                model.solver.tolerance, model.solver.max_iterations);
+  return words + limits;
+}
+
 int run_plan(const PlanArguments& arguments) {
   const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
   if (!scene) return print_errors(scene.errors());
@@ -118,18 +129,15 @@ int run_plan(const PlanArguments& arguments) {
   std::size_t total = 0;
   for (const Feature& feature : features) total += feature.is_in ? feature.bytes : 0;
   const double tick = measure_tick(model);
-  const std::string solver = "backward Euler, linearised once a tick, conjugate gradients to " +
-                             std::to_string(model.solver.tolerance);
-  const std::string reason = model.edges.c.empty() && model.tpms.size() == 0
-                                 ? "unconditionally stable; the scene has no dashpots"
-                                 : "the dashpots are too stiff for an explicit step of this length";
+  const IntegratorChoice choice = choose_integrator(model);
+  const std::string solver = solver_of(model, choice);
   if (arguments.json) {
     JsonWriter json;
     json.begin_object().member("scene", arguments.scene).member("spheres", model.sphere_count());
     json.member("elements", model.element_count()).member("memory_bytes", total).member("tick_s", model.tick);
     json.member("measured_tick_time_s", tick)
         .member("solver", solver)
-        .member("solver_reason", reason)
+        .member("solver_reason", choice.reason)
         .key("features")
         .begin_list();
     for (const Feature& f : features)
@@ -152,7 +160,7 @@ int run_plan(const PlanArguments& arguments) {
   }
   std::printf("memory: %.1f KiB, %zu bytes a sphere\n", double(total) / 1024,
               total / std::max<std::size_t>(1, model.sphere_count()));
-  std::printf("solver: %s\n        because %s\n", solver.c_str(), reason.c_str());
+  std::printf("solver: %s\n        because %s\n", solver.c_str(), choice.reason.c_str());
   std::printf("time: %.3f ms a tick of %g ms at rest, measured now on this machine (median of 41)\n",
               tick * 1e3, model.tick * 1e3);
   return exit_good;

@@ -1,0 +1,168 @@
+#include "core/integrator.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "core/forces.h"
+#include "core/step.h"
+#include "tests/core/blocks.h"
+
+namespace ctpm {
+namespace {
+
+using testing::liver_material;
+using testing::make_block_model;
+using testing::shake;
+
+/// A block whose springs and dashpots matter alike at ticks of about a millisecond.
+Model make_smooth_block(Structure structure, double tick, Integrator integrator) {
+  Material material = liver_material();
+  material.viscosity = 5e4;
+  Model model = make_block_model(3, 3, 3, structure, material);
+  model.tick = tick;
+  model.solver.integrator = integrator;
+  model.solver.tolerance = 1e-12;
+  model.solver.velocity_floor = 1e-15;
+  return model;
+}
+
+/// Where the block is `duration` [s] after it was let go out of shape.
+State let_go(const Model& model, double duration) {
+  State state = rest_state(model);
+  for (std::size_t i = 0; i < model.sphere_count(); ++i) {
+    const Vec3 p = model.rest_position[i];
+    if (model.held_axes[i] == 0) state.position.set(i, p + 0.05 * p.z * Vec3{1, 0.5, -0.3});
+  }
+  Stepper stepper(model);
+  for (std::int64_t i = 0; i < std::llround(duration / model.tick); ++i)
+    EXPECT_EQ(stepper.step(state, {}).status, StepStatus::ok);
+  return state;
+}
+
+double distance(const State& a, const State& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.position.size(); ++i) {
+    const Vec3 d = a.position[i] - b.position[i];
+    sum += dot(d, d);
+  }
+  return std::sqrt(sum);
+}
+
+struct Order {
+  Integrator integrator;
+  Structure structure;
+  double expected;
+};
+
+class IntegratorOrder : public ::testing::TestWithParam<Order> {};
+
+TEST_P(IntegratorOrder, IsWhatItsNamePromises) {
+  const Order order = GetParam();
+  constexpr double kDuration = 0.016, kTick = 2e-4;
+  const auto at = [&](double tick, Integrator integrator) {
+    return let_go(make_smooth_block(order.structure, tick, integrator), kDuration);
+  };
+  const State reference = at(kTick / 64, Integrator::extrapolated_euler);
+  const double coarse = distance(at(kTick, order.integrator), reference),
+               fine = distance(at(kTick / 2, order.integrator), reference);
+  EXPECT_GT(fine, 0);
+  EXPECT_NEAR(std::log2(coarse / fine), order.expected, 0.25) << coarse << " and " << fine << " m";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, IntegratorOrder,
+    ::testing::Values(Order{Integrator::symplectic_euler, Structure::mass_spring, 1},
+                      Order{Integrator::symplectic_euler, Structure::tpm, 1},
+                      Order{Integrator::symplectic_euler, Structure::ctpm, 1},
+                      Order{Integrator::backward_euler, Structure::mass_spring, 1},
+                      Order{Integrator::backward_euler, Structure::tpm, 1},
+                      Order{Integrator::backward_euler, Structure::ctpm, 1},
+                      Order{Integrator::extrapolated_euler, Structure::mass_spring, 2},
+                      Order{Integrator::extrapolated_euler, Structure::tpm, 2},
+                      Order{Integrator::extrapolated_euler, Structure::ctpm, 2}));
+
+class ImplicitIntegrator : public ::testing::TestWithParam<Integrator> {};
+
+TEST_P(ImplicitIntegrator, IsLStable) {
+  // A spring a million times too stiff for the tick: what deflects it is gone after a few ticks, and does not ring.
+  Material material = liver_material();
+  material.spring *= 1e6, material.kelvin *= 1e6, material.constraint *= 1e6, material.viscosity = 0;
+  Model model = make_block_model(3, 3, 3, Structure::ctpm, material);
+  model.solver.integrator = GetParam();
+  Stepper stepper(model);
+  State state = rest_state(model);
+  shake(state, 1e-6);
+  for (std::size_t i = 0; i < 9; ++i) state.position.set(i, model.rest_position[i]);
+  const double first = distance(state, rest_state(model));
+  for (int i = 0; i < 10; ++i) ASSERT_LE(stepper.step(state, {}).status, StepStatus::not_converged);
+  EXPECT_LT(distance(state, rest_state(model)), 0.02 * first);
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, ImplicitIntegrator,
+                         ::testing::Values(Integrator::backward_euler, Integrator::extrapolated_euler));
+
+/// Two free spheres and one spring, whose frequency is sqrt(2 k / m).
+Model make_pair() {
+  Model model = make_block_model(2, 1, 1, Structure::mass_spring);
+  model.held_axes.assign(2, 0);
+  return model;
+}
+
+TEST(StableStepBound, IsExactForOneSpring) {
+  const Model model = make_pair();
+  const double frequency = std::sqrt(2 * model.edges.k[0] / model.mass[0]);
+  EXPECT_NEAR(stable_step_bound(model), 2 / frequency, 1e-12);
+}
+
+TEST(StableStepBound, SymplecticEulerHoldsUpToIt) {
+  for (const Structure structure : {Structure::mass_spring, Structure::tpm, Structure::ctpm}) {
+    Model model = make_smooth_block(structure, 1e-3, Integrator::symplectic_euler);
+    model.tick = 0.99 * stable_step_bound(model);
+    Stepper stepper(model);
+    State state = rest_state(model);
+    shake(state, 0.0005);
+    for (std::size_t i = 0; i < 9; ++i) state.position.set(i, model.rest_position[i]);
+    for (int i = 0; i < 5000; ++i) ASSERT_EQ(stepper.step(state, {}).status, StepStatus::ok);
+    EXPECT_LT(distance(state, rest_state(model)), 0.05) << "structure " << int(structure);
+  }
+}
+
+TEST(SymplecticEuler, RefusesStepsThatItCannotHoldAndLeavesTheState) {
+  Model model = make_block_model(3, 3, 3);
+  model.solver.integrator = Integrator::symplectic_euler;
+  Stepper stepper(model);
+  State state = rest_state(model);
+  EXPECT_EQ(stepper.step(state, {}).status, StepStatus::too_long);
+  EXPECT_EQ(state.tick, 0);
+  EXPECT_EQ(state.position, model.rest_position);
+  EXPECT_FALSE(stepper.integrator().holds);
+  EXPECT_NE(stepper.integrator().reason.find("ms"), std::string::npos);
+}
+
+TEST(Automatic, IsExplicitWithoutStiffDashpotsAndImplicitWithThem) {
+  Material material = liver_material();
+  EXPECT_EQ(choose_integrator(make_block_model(4, 4, 4, Structure::ctpm, material)).integrator,
+            Integrator::backward_euler);
+  material.viscosity = 5e3;
+  material.stiffness_scale = 0.3;
+  const IntegratorChoice choice = choose_integrator(make_block_model(4, 4, 4, Structure::ctpm, material));
+  EXPECT_EQ(choice.integrator, Integrator::symplectic_euler);
+  EXPECT_GE(choice.substeps, 1);
+  EXPECT_TRUE(choice.holds);
+}
+
+TEST(Automatic, TakesAsManySubstepsAsTheStiffestSphereNeeds) {
+  Model model = make_pair();
+  const double bound = stable_step_bound(model);
+  model.tick = 0.5 * bound;
+  EXPECT_EQ(choose_integrator(model).substeps, 1);
+  model.tick = 2.5 * bound;
+  EXPECT_EQ(choose_integrator(model).substeps, 3);
+  model.tick = 100 * bound;
+  EXPECT_EQ(choose_integrator(model).integrator, Integrator::backward_euler);
+}
+
+}  // namespace
+}  // namespace ctpm
