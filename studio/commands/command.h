@@ -22,6 +22,7 @@ Command add_record(CLI::App& program);
 Command add_replay(CLI::App& program);
 Command add_verify(CLI::App& program);
 Command add_info(CLI::App& program);
+Command add_compare(CLI::App& program);
 Command add_recover(CLI::App& program);
 Command add_export(CLI::App& program);
 Command add_demo(CLI::App& program);

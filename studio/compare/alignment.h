@@ -22,7 +22,7 @@ struct Alignment {
 };
 
 /// Width of the band: pairs may be out of step by this share of the longer path.
-inline constexpr double kAlignmentBand = 0.1;
+inline constexpr double kAlignmentBand = 0.25;
 
 /// Dynamic time warping with the symmetric steps and the band of Sakoe and Chiba 1978, laid along the
 /// diagonal of paths of different length. The sum of the distances of the pairs is the least possible.

@@ -17,8 +17,8 @@ double path_length(std::span<const Vec3> path);
 
 /// Length of the straight lines from station to station, divided by the length of the path between the first
 /// and the last of them: 1 for a hand that goes straight, less for detours; in [0, 1]. `stations`: ascending
-/// indices of points where the hand had to be. Nothing if the hand did not move. The ratio of ideal to actual
-/// path length of Hofstad et al. 2013.
+/// indices of points where the hand had to be. Nothing if the hand did not move. Gallagher and Satava
+/// 2002.
 std::optional<double> economy_of_motion(std::span<const Vec3> path, std::span<const std::size_t> stations);
 
 /// Speed between neighbours, in units of the path a second (point_count - 1).

@@ -1,0 +1,75 @@
+#include <memory>
+#include <string>
+
+#include "studio/commands/command.h"
+#include "studio/compare/comparison_report.h"
+#include "studio/console.h"
+#include "studio/reports/report.h"
+
+namespace ctpm {
+namespace {
+
+struct CompareArguments {
+  std::string expert, trainee, folder;
+  double force_limit_n = 0;
+  bool has_force_limit = false, json = false;
+};
+
+int run_compare(const CompareArguments& arguments) {
+  if (arguments.has_force_limit && !(arguments.force_limit_n > 0))
+    return print_errors({{"--force-limit", "must be above 0 N", ""}});
+  if (!arguments.folder.empty())
+    if (const Result<Done> ready = prepare_folder(arguments.folder); !ready)
+      return print_errors(ready.errors());
+  Result<SessionReader> expert = SessionReader::open(arguments.expert);
+  Result<SessionReader> trainee = SessionReader::open(arguments.trainee);
+  Errors errors;
+  for (const auto* session : {&expert, &trainee})
+    if (!*session) errors.insert(errors.end(), session->errors().begin(), session->errors().end());
+  if (!errors.empty()) return print_errors(errors);
+  if (const Result<Done> same = check_same_scene(*expert, *trainee); !same)
+    return print_errors(same.errors());
+  const Result<SessionTrack> expert_track = read_track(*expert);
+  const Result<SessionTrack> trainee_track = read_track(*trainee);
+  for (const auto* track : {&expert_track, &trainee_track})
+    if (!*track) errors.insert(errors.end(), track->errors().begin(), track->errors().end());
+  if (!errors.empty()) return print_errors(errors);
+
+  CompareOptions options;
+  if (arguments.has_force_limit) options.force_limit = arguments.force_limit_n;
+  const SessionStart& scene = expert->start();
+  const Comparison comparison = compare_sessions(*expert_track, *trainee_track, scene, options);
+  const ComparedSessions compared{*expert_track, *trainee_track, scene, comparison};
+  if (!arguments.folder.empty())
+    if (const Result<Done> written = write_comparison(arguments.folder, compared); !written)
+      return print_errors(written.errors());
+  for (const SessionTrack* track : {&*expert_track, &*trainee_track})
+    if (!track->replays)
+      print_remark(track->path + ": warning: does not replay as it was recorded; verify it");
+  std::fputs((arguments.json ? comparison_json(compared) : comparison_text(compared)).c_str(), stdout);
+  if (!arguments.folder.empty()) print_remark("written: " + arguments.folder + "/report.html, results.json");
+  return exit_good;
+}
+
+}  // namespace
+
+Command add_compare(CLI::App& program) {
+  auto arguments = std::make_shared<CompareArguments>();
+  CLI::App* app = program.add_subcommand(
+      "compare", "Measures a trainee's session against an expert's of the same scene.");
+  app->footer("Example: ctpm compare expert.ctpm trainee.ctpm -o out/compare");
+  app->add_option("expert", arguments->expert, "Session file of the expert (.ctpm)")->required();
+  app->add_option("trainee", arguments->trainee, "Session file of the trainee (.ctpm)")->required();
+  app->add_option("-o,--output", arguments->folder,
+                  "Folder for report.html and results.json; made if missing");
+  const CLI::Option* limit =
+      app->add_option("--force-limit", arguments->force_limit_n,
+                      "Force that should not be passed [N]; the expert's peak if not given");
+  app->add_flag("--json", arguments->json, "Print the results as JSON");
+  return {app, [arguments, limit] {
+            arguments->has_force_limit = limit->count() > 0;
+            return run_compare(*arguments);
+          }};
+}
+
+}  // namespace ctpm

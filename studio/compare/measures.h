@@ -1,0 +1,76 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "studio/compare/alignment.h"
+#include "studio/compare/session_track.h"
+
+namespace ctpm {
+
+/// Which of two values of a measure speaks for more skill.
+enum class Direction {
+  lower,   ///< the lower one
+  higher,  ///< the higher one
+  nearer,  ///< the one that is nearer to the expert's
+};
+
+/// "lower", "higher", "as the expert".
+const char* to_word(Direction direction);
+
+/// One measure of skill.
+struct Measure {
+  const char* key;    ///< name in JSON, with the unit in it
+  const char* title;  ///< as a person reads it
+  const char* unit;   ///< "1" if it has none
+  Direction direction;
+  const char* meaning;  ///< one sentence
+  const char* source;   ///< who published it
+};
+
+/// A measure of both sessions, or of the trainee's against the expert's.
+struct MeasuredValue {
+  const Measure* measure = nullptr;
+  std::optional<double> expert = {},
+                        trainee = {};  ///< in the measure's unit; expert unset for measures of the pair
+  std::string note = {};               ///< why there is no value; empty if there is one
+};
+
+enum class MomentKind { force, depth, deviation, pause, stray_cut };
+
+/// "force above the limit", "deeper than the damage limit" ...
+const char* to_word(MomentKind kind);
+
+/// A stretch of the trainee's session that a teacher would show.
+struct Moment {
+  MomentKind kind = MomentKind::force;
+  double from_s = 0, to_s = 0, worst_s = 0;
+  double value = 0, limit = 0;  ///< the worst value, and what it should not pass, in `unit`
+  const char* unit = "";
+  double severity = 0;  ///< how far beyond the limit, in limits: 0 at the limit
+};
+
+struct CompareOptions {
+  std::optional<double> force_limit;  ///< [N], > 0; unset: the expert's peak force
+};
+
+/// Everything that is known about a trainee's session beside an expert's.
+struct Comparison {
+  std::optional<double> force_limit;  ///< [N]; unset: none was given and the expert never touched the tissue
+  bool is_force_limit_given = false;  ///< false: it is the expert's peak force
+  double damage_depth = 0;            ///< smallest limit of the scene's organs [m]; 0: no limit
+  double path_limit = 0;  ///< half of the smallest spacing of spheres: beyond it other spheres are nearer [m]
+  std::vector<MeasuredValue> values;              ///< in the order of a report
+  std::vector<Moment> moments;                    ///< worst first
+  Alignment alignment;                            ///< of the paths below; a: the expert's
+  std::vector<Vec3> expert_path, trainee_path;    ///< of the tool, as it was aligned [m]
+  std::vector<double> expert_time, trainee_time;  ///< of the points of these paths [s]
+};
+
+/// Measures a trainee's session against an expert's of the same scene (check_same_scene).
+Comparison compare_sessions(const SessionTrack& expert, const SessionTrack& trainee,
+                            const SessionStart& scene, const CompareOptions& options = {});
+
+}  // namespace ctpm

@@ -1,0 +1,149 @@
+#include "studio/compare/moments.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ctpm {
+namespace {
+
+constexpr double kHandRate = 100;    // [Hz]
+constexpr double kIdleSpeed = 5e-3;  // [m/s]
+constexpr double kIdleLeast = 0.3;   // [s]
+constexpr double kSameMoment = 0.3;  // [s] shorter gaps do not end a moment
+constexpr double kPauseAllowed = 1;  // [s]
+constexpr double kMillimetres = 1e3;
+
+/// One moment for each run of values above `limit`; `time[i]` is when `value[i]` was.
+std::vector<Moment> moments_above(MomentKind kind, const std::vector<double>& value,
+                                  const std::vector<double>& time, double limit, std::size_t gap,
+                                  double scale, const char* unit) {
+  std::vector<bool> is_above;
+  for (const double v : value) is_above.push_back(v > limit);
+  std::vector<Moment> moments;
+  for (const Spell& spell : spells_of(is_above, 1, gap)) {
+    const auto worst = std::max_element(value.begin() + std::ptrdiff_t(spell.first),
+                                        value.begin() + std::ptrdiff_t(spell.last));
+    moments.push_back({kind, time[spell.first], time[spell.last - 1],
+                       time[std::size_t(worst - value.begin())], scale * *worst, scale * limit, unit,
+                       *worst / limit - 1});
+  }
+  return moments;
+}
+
+void append(std::vector<Moment>& all, const std::vector<Moment>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+std::vector<Moment> deviations(const Comparison& comparison) {
+  std::vector<double> distance(comparison.trainee_path.size(), 0.0);
+  for (const AlignedPair& pair : comparison.alignment.pairs)
+    distance[pair.b] = std::max(distance[pair.b], pair.distance);
+  const std::vector<double>& time = comparison.trainee_time;
+  const double step = time.size() > 1 ? time[1] - time[0] : kSameMoment;
+  return moments_above(MomentKind::deviation, distance, time, comparison.path_limit,
+                       std::size_t(std::ceil(kSameMoment / step)), kMillimetres, "mm");
+}
+
+/// All idle spells of a session, in seconds.
+struct Pause {
+  double from_s, to_s;
+};
+
+std::vector<Pause> pauses_of(const SessionTrack& track) {
+  std::vector<Pause> pauses;
+  for (const Spell& stroke : track.strokes) {
+    const HandMotion hand = hand_motion(track, stroke);
+    const double start = track.seconds(stroke.first);
+    for (const Spell& idle : hand.idle)
+      pauses.push_back({start + double(idle.first) / hand.rate_hz, start + double(idle.last) / hand.rate_hz});
+  }
+  return pauses;
+}
+
+std::vector<Moment> long_pauses(const SessionTrack& expert, const SessionTrack& trainee) {
+  double allowed = kPauseAllowed;
+  for (const Pause& pause : pauses_of(expert)) allowed = std::max(allowed, pause.to_s - pause.from_s);
+  std::vector<Moment> moments;
+  for (const Pause& pause : pauses_of(trainee)) {
+    const double length = pause.to_s - pause.from_s;
+    if (length > allowed)
+      moments.push_back({MomentKind::pause, pause.from_s, pause.to_s, pause.from_s, length, allowed, "s",
+                         length / allowed - 1});
+  }
+  return moments;
+}
+
+std::vector<Moment> stray_cuts(const SessionTrack& expert, const SessionTrack& trainee) {
+  const auto by_expert = std::count_if(expert.severed_at.begin(), expert.severed_at.end(),
+                                       [](std::int64_t tick) { return tick >= 0; });
+  std::vector<Moment> moments;
+  for (const Spell& cut : trainee.cuts) {
+    std::vector<std::int64_t> ticks;  // of elements that the expert left whole
+    for (std::size_t i = 0; i < trainee.severed_at.size(); ++i) {
+      const std::int64_t tick = trainee.severed_at[i];
+      if (tick >= std::int64_t(cut.first) && tick < std::int64_t(cut.last) && expert.severed_at[i] < 0)
+        ticks.push_back(tick);
+    }
+    if (ticks.empty()) continue;
+    const auto [first, last] = std::minmax_element(ticks.begin(), ticks.end());
+    const double count = double(ticks.size());
+    moments.push_back({MomentKind::stray_cut, trainee.seconds(std::size_t(*first)),
+                       trainee.seconds(std::size_t(*last)), trainee.seconds(std::size_t(*first)), count, 0,
+                       "elements", count / std::max(1.0, double(by_expert))});
+  }
+  return moments;
+}
+
+bool does_harm(MomentKind kind) { return kind != MomentKind::deviation && kind != MomentKind::pause; }
+
+}  // namespace
+
+const char* to_word(MomentKind kind) {
+  switch (kind) {
+    case MomentKind::force:
+      return "force above the limit";
+    case MomentKind::depth:
+      return "deeper than the damage limit";
+    case MomentKind::deviation:
+      return "away from the expert's path";
+    case MomentKind::pause:
+      return "long pause";
+    case MomentKind::stray_cut:
+      return "cut where the expert did not";
+  }
+  return "";
+}
+
+HandMotion hand_motion(const SessionTrack& track, const Spell& stroke) {
+  HandMotion hand;
+  const auto ticks = std::max<std::size_t>(1, std::size_t(std::llround(1 / (kHandRate * track.tick))));
+  hand.rate_hz = 1 / track.seconds(ticks);
+  hand.path = mean_of_each({track.tip.data() + stroke.first, stroke.last - stroke.first}, ticks);
+  std::vector<bool> is_slow;
+  for (const double speed : speed_along(hand.path, hand.rate_hz)) is_slow.push_back(speed < kIdleSpeed);
+  hand.idle = spells_of(is_slow, std::size_t(std::ceil(kIdleLeast * hand.rate_hz)));
+  return hand;
+}
+
+std::vector<Moment> worst_moments(const Comparison& comparison, const SessionTrack& expert,
+                                  const SessionTrack& trainee) {
+  std::vector<double> time;
+  for (std::size_t i = 0; i < trainee.tick_count(); ++i) time.push_back(trainee.seconds(i));
+  const auto gap = std::size_t(std::llround(kSameMoment / trainee.tick));
+  std::vector<Moment> moments;
+  if (comparison.force_limit)
+    append(moments,
+           moments_above(MomentKind::force, trainee.force, time, *comparison.force_limit, gap, 1, "N"));
+  if (comparison.damage_depth > 0)
+    append(moments, moments_above(MomentKind::depth, trainee.depth, time, comparison.damage_depth, gap,
+                                  kMillimetres, "mm"));
+  append(moments, deviations(comparison));
+  append(moments, long_pauses(expert, trainee));
+  append(moments, stray_cuts(expert, trainee));
+  std::stable_sort(moments.begin(), moments.end(), [](const Moment& a, const Moment& b) {
+    return std::pair(does_harm(a.kind), a.severity) > std::pair(does_harm(b.kind), b.severity);
+  });
+  return moments;
+}
+
+}  // namespace ctpm

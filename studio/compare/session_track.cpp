@@ -1,0 +1,218 @@
+#include "studio/compare/session_track.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "core/fields.h"
+#include "importers/surface_index.h"
+#include "recordings/replay.h"
+
+namespace ctpm {
+namespace {
+
+constexpr std::int64_t kReadTicks = 10000;  // held in memory at a time
+constexpr double kCutSpacings = 3;          // a tip that goes further without severing begins another cut
+
+/// The severed flags of a State in the order of ElementPlaces.
+std::vector<std::uint8_t> severed_flags(const State& state) {
+  std::vector<std::uint8_t> flags;
+  for (const auto* kind :
+       {&state.edge_severed, &state.tpm_severed, &state.constraint_severed, &state.angle_severed})
+    flags.insert(flags.end(), kind->begin(), kind->end());
+  return flags;
+}
+
+/// Simulates each cut again and notes when which element was severed.
+Result<Done> find_severed(SessionReader& session, SessionTrack& track) {
+  track.severed_at.assign(ElementPlaces(session.start().model).count, -1);
+  if (track.cuts.empty()) return Done{};
+  Result<ReplayCursor> cursor = ReplayCursor::create(session);
+  if (!cursor) return cursor.errors();
+  for (const Spell& cut : track.cuts) {
+    if (const Result<Done> found = cursor->seek(std::int64_t(cut.first)); !found) return found.errors();
+    std::vector<std::uint8_t> before = severed_flags(cursor->state());
+    while (cursor->tick() < std::int64_t(cut.last)) {
+      const std::int64_t tick = cursor->tick();
+      if (const Result<bool> stepped = cursor->step(); !stepped) return stepped.errors();
+      if (cursor->report().severed == 0) continue;
+      const std::vector<std::uint8_t> now = severed_flags(cursor->state());
+      for (std::size_t i = 0; i < now.size(); ++i)
+        if (now[i] && !before[i]) track.severed_at[i] = tick;
+      before = now;
+    }
+    track.replays = track.replays && cursor->same_so_far();
+  }
+  return Done{};
+}
+
+std::vector<Spell> strokes_of(const std::vector<std::int32_t>& tool) {
+  std::vector<Spell> strokes;
+  for (std::size_t i = 0; i < tool.size(); ++i) {
+    if (tool[i] < 0) continue;
+    if (i > 0 && tool[i] == tool[i - 1])
+      strokes.back().last = i + 1;
+    else
+      strokes.push_back({i, i + 1});
+  }
+  return strokes;
+}
+
+/// Runs of severing ticks. Where elements lie a spacing apart, a blade that goes on meets the next one soon,
+/// however slow it is.
+std::vector<Spell> cuts_of(const SessionTrack& track, const Model& model) {
+  double most = 0, gone = 0;
+  for (const OrganRange& organ : model.organs) most = std::max(most, kCutSpacings * organ.spacing);
+  std::vector<Spell> cuts;
+  for (std::size_t i = 0; i < track.tick_count(); ++i) {
+    const bool same_tool = i > 0 && track.tool[i] == track.tool[i - 1];
+    gone = same_tool ? gone + norm(track.tip[i] - track.tip[i - 1]) : INFINITY;
+    if (track.severed[i] == 0) continue;
+    if (!cuts.empty() && gone <= most)
+      cuts.back().last = i + 1;
+    else
+      cuts.push_back({i, i + 1});
+    gone = 0;
+  }
+  return cuts;
+}
+
+/// The fields of a Model as bytes, by name.
+struct FieldBytes {
+  std::vector<std::pair<std::string, std::string>>& fields;
+  std::string prefix = {};
+
+  template <class T>
+  void operator()(std::string_view name, const T& value) {
+    if constexpr (std::is_same_v<T, std::string>) {
+      fields.emplace_back(prefix + std::string(name), value);
+    } else {
+      static_assert(std::is_trivially_copyable_v<T>);
+      fields.emplace_back(prefix + std::string(name),
+                          std::string(reinterpret_cast<const char*>(&value), sizeof value));
+    }
+  }
+  template <class T>
+  void operator()(std::string_view name, const std::vector<T>& values) {
+    if constexpr (std::is_arithmetic_v<T>) {
+      fields.emplace_back(
+          prefix + std::string(name),
+          std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)));
+    } else {
+      for (std::size_t i = 0; i < values.size(); ++i)
+        for_each_field(values[i],
+                       FieldBytes{fields, prefix + std::string(name) + "[" + std::to_string(i) + "]."});
+    }
+  }
+};
+
+/// What a person would call the difference of two networks; empty if only numbers differ.
+std::string difference_in_words(const Model& a, const Model& b) {
+  const auto list = [](const auto& things) {
+    std::string names;
+    for (const auto& thing : things) names += (names.empty() ? "" : ", ") + thing.name;
+    return names.empty() ? std::string("none") : names;
+  };
+  if (list(a.organs) != list(b.organs))
+    return "its organs are " + list(b.organs) + " instead of " + list(a.organs);
+  if (a.sphere_count() != b.sphere_count())
+    return "it has " + std::to_string(b.sphere_count()) + " spheres instead of " +
+           std::to_string(a.sphere_count());
+  if (list(a.tools) != list(b.tools))
+    return "its tools are " + list(b.tools) + " instead of " + list(a.tools);
+  return "";
+}
+
+}  // namespace
+
+ElementPlaces::ElementPlaces(const Model& model)
+    : tpms(model.edges.size()),
+      constraints(tpms + model.tpms.size()),
+      angle_springs(constraints + model.constraints.size()),
+      count(angle_springs + model.angle_springs.size()) {}
+
+Result<SessionTrack> read_track(SessionReader& session) {
+  if (!session.ended_cleanly())
+    return Error{session.path(), "has no clean end: it was cut off, or it is still being recorded",
+                 "`ctpm recover` makes a whole session of what is there"};
+  if (const Result<Done> whole = session.check_all(); !whole) return whole.errors();
+  const SessionStart& start = session.start();
+  SessionTrack track;
+  track.path = session.path(), track.session_id = session.session_id(), track.tick = start.model.tick;
+  if (const auto name = start.metadata.find("scene_name"); name != start.metadata.end())
+    track.scene_name = name->second;
+  const std::int64_t count = session.tick_count();
+  for (std::int64_t from = 0; from < count; from += kReadTicks) {
+    const auto records = session.ticks(from, std::min(from + kReadTicks, count));
+    if (!records) return records.errors();
+    for (const TickRecord& record : *records) {
+      track.tool.push_back(record.inputs.tool);
+      track.tip.push_back(record.inputs.position);
+      track.force.push_back(norm(record.tool_force));
+      track.depth.push_back(record.depth);
+      track.severed.push_back(record.severed);
+    }
+  }
+  track.strokes = strokes_of(track.tool);
+  if (track.strokes.empty()) return Error{session.path(), "no tool is ever in the hand", ""};
+  track.cuts = cuts_of(track, start.model);
+  if (const Result<Done> found = find_severed(session, track); !found) return found.errors();
+  return track;
+}
+
+Result<Done> check_same_scene(const SessionReader& expert, const SessionReader& trainee) {
+  const Model& a = expert.start().model;
+  const Model& b = trainee.start().model;
+  std::string reason = difference_in_words(a, b);
+  if (reason.empty()) {
+    std::vector<std::pair<std::string, std::string>> fields_a, fields_b;
+    for_each_field(a, FieldBytes{fields_a});
+    for_each_field(b, FieldBytes{fields_b});
+    const auto [in_a, in_b] =
+        std::mismatch(fields_a.begin(), fields_a.end(), fields_b.begin(), fields_b.end());
+    if (in_a == fields_a.end() && in_b == fields_b.end()) return Done{};
+    reason = "its network differs in " + (in_a != fields_a.end() ? in_a->first : in_b->first);
+  }
+  return Error{trainee.path(), "is of another scene than " + expert.path() + ": " + reason,
+               "sessions can be compared if they were recorded in the same scene"};
+}
+
+std::vector<Path> cut_paths(const SessionTrack& track) {
+  std::vector<Path> paths;
+  for (const Spell& cut : track.cuts)
+    paths.emplace_back(track.tip.begin() + std::ptrdiff_t(cut.first),
+                       track.tip.begin() + std::ptrdiff_t(cut.last));
+  return paths;
+}
+
+Vec3 rest_middle(const Model& model, std::size_t element) {
+  const ElementPlaces places(model);
+  const Vec3Array& rest = model.rest_position;
+  const auto middle = [&](std::int32_t a, std::int32_t b) {
+    return 0.5 * (rest[std::size_t(a)] + rest[std::size_t(b)]);
+  };
+  if (element < places.tpms) return middle(model.edges.a[element], model.edges.b[element]);
+  if (element < places.constraints)
+    return middle(model.tpms.a[element - places.tpms], model.tpms.b[element - places.tpms]);
+  if (element < places.angle_springs)
+    return rest[std::size_t(model.constraints.c[element - places.constraints])];
+  return rest[std::size_t(model.angle_springs.b[element - places.angle_springs])];
+}
+
+std::optional<double> cut_depth(const SessionTrack& track, const SessionStart& start) {
+  std::optional<double> deepest;
+  std::vector<SurfaceIndex> surfaces;
+  for (const Surface& surface : start.surfaces)
+    if (!surface.triangle.empty()) surfaces.emplace_back(surface.vertex, surface.triangle);
+  const std::size_t axial_count = ElementPlaces(start.model).constraints;
+  for (std::size_t i = 0; i < axial_count && !surfaces.empty(); ++i) {
+    if (track.severed_at[i] < 0) continue;
+    double nearest2 = INFINITY;
+    for (const SurfaceIndex& surface : surfaces)
+      nearest2 = std::min(nearest2, surface.nearest(rest_middle(start.model, i)).squared_distance);
+    deepest = std::max(deepest.value_or(0), std::sqrt(nearest2));
+  }
+  return deepest;
+}
+
+}  // namespace ctpm
