@@ -4,6 +4,7 @@
 #include "studio/commands/command.h"
 #include "studio/compare/comparison_report.h"
 #include "studio/console.h"
+#include "studio/loaded_scene.h"
 #include "studio/reports/report.h"
 
 namespace ctpm {
@@ -38,6 +39,9 @@ int run_compare(const CompareArguments& arguments) {
   CompareOptions options;
   if (arguments.has_force_limit) options.force_limit = arguments.force_limit_n;
   const SessionStart& scene = expert->start();
+  // A scene text of another version may not be readable any more; the limit is all that is asked of it.
+  if (const Result<SceneText> text = read_scene(scene.scene_text, arguments.expert); text)
+    options.damage_force = damage_force_of(text->spec);
   const Comparison comparison = compare_sessions(*expert_track, *trainee_track, scene, options);
   const ComparedSessions compared{*expert_track, *trainee_track, scene, comparison};
   if (!arguments.folder.empty())
@@ -64,7 +68,7 @@ Command add_compare(CLI::App& program) {
                   "Folder for report.html and results.json; made if missing");
   const CLI::Option* limit =
       app->add_option("--force-limit", arguments->force_limit_n,
-                      "Force that should not be passed [N]; the expert's peak if not given");
+                      "Force that should not be passed [N]; if not given the scene's, or the expert's peak");
   app->add_flag("--json", arguments->json, "Print the results as JSON");
   return {app, [arguments, limit] {
             arguments->has_force_limit = limit->count() > 0;

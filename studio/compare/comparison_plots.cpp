@@ -110,8 +110,8 @@ std::vector<Plot> plots_over_time(const ComparedSessions& compared) {
   plots[0].series = {curve("expert", expert, expert.force, 1, kExpertColour),
                      curve("trainee", trainee, trainee.force, 1, kTraineeColour)};
   if (comparison.force_limit)
-    plots[0].series.push_back(level(comparison.is_force_limit_given ? "limit" : "limit: the expert's peak", 0,
-                                    end, *comparison.force_limit));
+    plots[0].series.push_back(
+        level(std::string("limit: ") + comparison.force_limit_from, 0, end, *comparison.force_limit));
   plots.push_back({.title = "Depth", .x_title = "time [s]", .y_title = "depth [mm]"});
   plots[1].series = {curve("expert", expert, expert.depth, kMillimetres, kExpertColour),
                      curve("trainee", trainee, trainee.depth, kMillimetres, kTraineeColour)};

@@ -151,7 +151,7 @@ std::string comparison_json(const ComparedSessions& compared) {
   write_session(json, "trainee", compared.trainee);
   if (comparison.force_limit)
     json.member("force_limit_n", *comparison.force_limit)
-        .member("force_limit_from", comparison.is_force_limit_given ? "given" : "peak force of the expert");
+        .member("force_limit_from", comparison.force_limit_from);
   if (comparison.damage_depth > 0) json.member("damage_depth_mm", 1e3 * comparison.damage_depth);
   json.member("alignment_band", kAlignmentBand);
   json.key("measures");

@@ -314,6 +314,17 @@ void add_cut(Comparison& comparison, const SessionTrack& expert, const SessionTr
   values.push_back({&kCutDepth, depth_a, depth_b});
 }
 
+/// The first that there is: given, the scene's, the expert's peak.
+void set_force_limit(Comparison& comparison, const SessionTrack& expert, const CompareOptions& options) {
+  const double expert_peak = *std::max_element(expert.force.begin(), expert.force.end());
+  if (options.force_limit)
+    comparison.force_limit = options.force_limit, comparison.force_limit_from = "given";
+  else if (options.damage_force > 0)
+    comparison.force_limit = options.damage_force, comparison.force_limit_from = "the scene";
+  else if (expert_peak > 0)
+    comparison.force_limit = expert_peak, comparison.force_limit_from = "the expert's peak";
+}
+
 }  // namespace
 
 const char* to_word(Direction direction) {
@@ -323,10 +334,7 @@ const char* to_word(Direction direction) {
 Comparison compare_sessions(const SessionTrack& expert, const SessionTrack& trainee,
                             const SessionStart& scene, const CompareOptions& options) {
   Comparison comparison;
-  const double expert_peak = *std::max_element(expert.force.begin(), expert.force.end());
-  comparison.is_force_limit_given = options.force_limit.has_value();
-  comparison.force_limit = options.force_limit;
-  if (!comparison.force_limit && expert_peak > 0) comparison.force_limit = expert_peak;
+  set_force_limit(comparison, expert, options);
   for (const OrganRange& organ : scene.model.organs) {
     double& depth = comparison.damage_depth;
     if (organ.damage_depth > 0 && (depth == 0 || organ.damage_depth < depth)) depth = organ.damage_depth;

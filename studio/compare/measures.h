@@ -53,13 +53,14 @@ struct Moment {
 };
 
 struct CompareOptions {
-  std::optional<double> force_limit;  ///< [N], > 0; unset: the expert's peak force
+  std::optional<double> force_limit;  ///< [N], > 0; unset: the scene's limit, or else the expert's peak force
+  double damage_force = 0;            ///< the scene's limit [N]; 0: it has none
 };
 
 /// Everything that is known about a trainee's session beside an expert's.
 struct Comparison {
-  std::optional<double> force_limit;  ///< [N]; unset: none was given and the expert never touched the tissue
-  bool is_force_limit_given = false;  ///< false: it is the expert's peak force
+  std::optional<double> force_limit;  ///< [N]; unset: there is none and the expert never touched the tissue
+  const char* force_limit_from = "";  ///< "given", "the scene", "the expert's peak"
   double damage_depth = 0;            ///< smallest limit of the scene's organs [m]; 0: no limit
   double path_limit = 0;  ///< half of the smallest spacing of spheres: beyond it other spheres are nearer [m]
   std::vector<MeasuredValue> values;              ///< in the order of a report
