@@ -43,6 +43,16 @@ inline Quat turned_towards(Quat a, Quat b, double share) {
   return normalised({from * a.w + to * b.w, from * a.x + to * b.x, from * a.y + to * b.y, from * a.z + to * b.z});
 }
 
+/// The shortest turn that brings unit vector `from` onto unit vector `to`.
+inline Quat shortest_turn(Vec3 from, Vec3 to) {
+  const Vec3 axis = cross(from, to);
+  const double w = 1 + dot(from, to);
+  if (w > 1e-12) return normalised({w, axis.x, axis.y, axis.z});
+  // Half a turn about any axis across.
+  const Vec3 across = std::abs(from.x) < 0.9 ? cross(from, {1, 0, 0}) : cross(from, {0, 1, 0});
+  return normalised({0, across.x, across.y, across.z});
+}
+
 /// Angle of the shortest turn from `a` to `b` [rad], in [0, pi].
 inline double angle_between(Quat a, Quat b) { return 2 * std::acos(std::min(1.0, std::abs(dot(a, b)))); }
 

@@ -1,0 +1,107 @@
+#include "studio/devices/device_source.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include "studio/devices/rotation.h"
+
+namespace ctpm {
+
+double device_clock() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+DeviceSource::DeviceSource(std::unique_ptr<Device> device, const DeviceSettings& settings, double tick, Clock clock)
+    : device_(std::move(device)),
+      settings_(settings),
+      tick_(tick),
+      clock_(std::move(clock)),
+      guard_(settings.guard),
+      coupling_(settings.coupling, tick),
+      passive_(settings.most_force) {}
+
+bool DeviceSource::wait_for_first_pose(const std::function<bool()>& should_stop) {
+  while (!guard_.has_pose()) {
+    if (should_stop()) return false;
+    if (!take_reports()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+/// Takes all reports that wait. True if a good pose was among them.
+bool DeviceSource::take_reports() {
+  bool has_new_pose = false;
+  const std::int64_t refused_before = guard_.counts().refused + guard_.counts().unread;
+  for (DeviceReport report; device_->next(report);)
+    if (guard_.take(report)) has_new_pose = true;
+  saw_fault_ = guard_.counts().refused + guard_.counts().unread != refused_before;
+  return has_new_pose;
+}
+
+/// Sends the hand from where it is to the new pose, for as long as it took from one sample to the next: so slow devices
+/// give an even motion, one sample late, and one that jumped is followed no faster than a hand moves.
+void DeviceSource::aim(double now) {
+  constexpr double kMostInterval = 0.05;  // [s]
+  to_ = settings_.map.to_scene(guard_.pose());
+  from_ = hand_.value_or(to_);
+  const double at_most = settings_.guard.most_speed * settings_.map.scale;
+  const double duration =
+      std::max(std::min(guard_.pose_interval(), kMostInterval) - (now - guard_.pose_arrival()),
+               norm(to_.position - from_.position) / at_most);
+  ticks_whole_ = ticks_left_ = std::max<std::int64_t>(1, std::llround(duration / tick_));
+}
+
+std::optional<Inputs> DeviceSource::next(std::int64_t, const StepReport& last) {
+  const double now = clock_();
+  const bool has_new_pose = take_reports();
+  guard_.look(now);
+  if (!guard_.verdict().empty()) return std::nullopt;
+  if (has_new_pose || !hand_) aim(now);
+  if (ticks_left_ > 0) {
+    const double share = double(ticks_whole_ - --ticks_left_) / double(ticks_whole_);
+    hand_ = Pose{from_.position + share * (to_.position - from_.position),
+                 turned_towards(from_.orientation, to_.orientation, share)};
+  }
+  // A tool that was just taken into the hand is where the hand is.
+  const std::int32_t tool = settings_.map.tool_for(guard_.buttons());
+  if (tool != tool_ || tool < 0)
+    coupling_.reset(*hand_);
+  else
+    coupling_.step(*hand_, last.tool_force);
+  tool_ = tool;
+  send_force(has_new_pose);
+  age_ = std::max(now - guard_.pose_arrival(), 1e-9);
+
+  Inputs inputs;
+  inputs.tool = tool;
+  inputs.buttons = guard_.buttons();
+  inputs.position = coupling_.tool().position;
+  inputs.world_from_tool = coupling_.tool().orientation;
+  return inputs;
+}
+
+/// Every good pose is answered with a force; while poses are refused, nobody knows where the hand is, and it gets none.
+void DeviceSource::send_force(bool has_new_pose) {
+  if (!has_new_pose && !saw_fault_) return;
+  Vec3 force;
+  if (has_new_pose)
+    force = passive_.pass(settings_.map.to_device(coupling_.hand_force()), guard_.pose().position);
+  else
+    passive_.release();
+  device_->send_force(force);
+  ++forces_;
+}
+
+std::vector<NamedValue> DeviceSource::statistics() const {
+  const DeviceGuard::Counts& counts = guard_.counts();
+  return {{"device_samples", double(counts.samples)},
+          {"device_samples_refused", double(counts.refused)},
+          {"device_messages_unread", double(counts.unread)},
+          {"device_forces_sent", double(forces_)},
+          {"device_longest_gap_s", counts.longest_gap}};
+}
+
+}  // namespace ctpm

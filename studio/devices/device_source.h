@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "studio/devices/device.h"
+#include "studio/devices/device_guard.h"
+#include "studio/devices/device_map.h"
+#include "studio/devices/virtual_coupling.h"
+#include "studio/session/input_source.h"
+
+namespace ctpm {
+
+struct DeviceSettings {
+  DeviceMap map;
+  GuardSettings guard;
+  CouplingSettings coupling;
+  double most_force = 3;  ///< that is sent to the device [N], > 0
+};
+
+/// A device as the source of a session: its samples are checked, brought into the scene, spread over the ticks between
+/// them and followed by the tool through a virtual coupling, whose force goes back to the device.
+class DeviceSource : public InputSource {
+ public:
+  using Clock = std::function<double()>;
+
+  /// `tick` [s]. `clock` is the one of the reports' arrival.
+  DeviceSource(std::unique_ptr<Device> device, const DeviceSettings& settings, double tick,
+               Clock clock = device_clock);
+
+  /// Waits until the device has told where it is. False if `should_stop` said so before.
+  bool wait_for_first_pose(const std::function<bool()>& should_stop);
+
+  std::optional<Inputs> next(std::int64_t tick, const StepReport& last) override;
+  double input_age() const override { return age_; }
+  std::vector<SourceEvent> take_events() override { return guard_.take_events(); }
+  std::vector<NamedValue> statistics() const override;
+  std::string fault() const override { return guard_.verdict(); }
+
+ private:
+  bool take_reports();
+  void aim(double now);
+  void send_force(bool has_new_pose);
+
+  std::unique_ptr<Device> device_;
+  DeviceSettings settings_;
+  double tick_;  ///< [s]
+  Clock clock_;
+  DeviceGuard guard_;
+  VirtualCoupling coupling_;
+  PassiveForce passive_;
+  std::int32_t tool_ = -1;
+  std::optional<Pose> hand_;   ///< in the scene, as the coupling sees it
+  Pose from_, to_;             ///< the way on which the hand is
+  std::int64_t ticks_left_ = 0;  ///< of that way
+  std::int64_t ticks_whole_ = 1;
+  bool saw_fault_ = false;     ///< a report of this tick was refused
+  double age_ = 0;
+  std::int64_t forces_ = 0;
+};
+
+}  // namespace ctpm
