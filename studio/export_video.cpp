@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <memory>
 
-#include "recordings/replay.h"
-#include "scenes/scene_file.h"
+#include "recordings/byte_hash.h"
 #include "studio/console.h"
 #include "studio/files.h"
-#include "studio/json_writer.h"
+#include "studio/film/session_film.h"
+#include "studio/film/sidecar.h"
 #include "studio/loaded_scene.h"
 #include "studio/render/overlay.h"
 #include "studio/render/renderer.h"
@@ -15,141 +17,160 @@
 namespace ctpm {
 namespace {
 
-constexpr std::size_t kPlotPoints = 600;  ///< most points of the running force plot
+void append(Errors& errors, const Errors& more) { errors.insert(errors.end(), more.begin(), more.end()); }
 
-Errors check_options(const ExportOptions& options) {
+Errors check_options(const std::string& path, const ExportOptions& options) {
   Errors errors;
-  if (!(options.fps >= 1 && options.fps <= 240))
+  const bool is_good_rate = options.fps >= 1 && options.fps <= 240;
+  if (!is_good_rate)
     errors.push_back({"--fps", "got " + fixed(options.fps, 3) + ", must be in [1, 240]", ""});
   if (!(options.speed >= 0.001 && options.speed <= 1000))
     errors.push_back({"--speed", "got " + fixed(options.speed, 3) + ", must be in [0.001, 1000]", ""});
+  append(errors, VideoWriter::check(path, options.size.width, options.size.height,
+                                    is_good_rate ? options.fps : ExportOptions().fps));
   return errors;
 }
 
-const char* structure_name(const SceneSpec& scene) {
-  if (scene.organs.empty()) return "";
-  switch (scene.organs.front().model) {
-    case Structure::mass_spring:
-      return "mass-spring";
-    case Structure::angle_mass_spring:
-      return "angle-mass-spring";
-    case Structure::tpm:
-      return "TPM";
-    case Structure::ctpm:
-      return "CTPM";
+/// The ticks of each session that are shown: the same time of all, as far as they go.
+Result<std::vector<TickRange>> find_ranges(const std::vector<SessionReader*>& sessions,
+                                           const TimeRange& range) {
+  const auto longer = [](const SessionReader* a, const SessionReader* b) {
+    return double(a->tick_count()) * a->start().model.tick < double(b->tick_count()) * b->start().model.tick;
+  };
+  const SessionReader& longest = **std::max_element(sessions.begin(), sessions.end(), longer);
+  const double tick = longest.start().model.tick;
+  const Result<TickRange> shown = range.in_ticks(longest.path(), tick, longest.tick_count());
+  if (!shown) return shown.errors();
+  std::vector<TickRange> ranges;
+  for (const SessionReader* session : sessions) {
+    const auto there = [&](std::int64_t of_longest) {
+      const double ticks = double(of_longest) * tick / session->start().model.tick;
+      return std::min<std::int64_t>(session->tick_count(), std::llround(ticks));
+    };
+    ranges.push_back({there(shown->from), there(shown->to)});
   }
-  return "";
+  return ranges;
 }
 
-/// What the overlay says, gathered tick by tick.
-class OverlayFeed {
- public:
-  OverlayFeed(const SceneSpec& scene, const Model& model) : tick_(model.tick) {
-    data_.title = scene.name + " (" + structure_name(scene) + ")";
-    for (const OrganRange& organ : model.organs)
-      if (organ.damage_depth > 0 && (data_.damage_depth == 0 || organ.damage_depth < data_.damage_depth))
-        data_.damage_depth = organ.damage_depth;
-    data_.damage_force = damage_force_of(scene);
-    every_ = std::max<std::int64_t>(1, std::llround(data_.plot_span / tick_ / double(kPlotPoints)));
+/// One session of the film: what simulates it and what draws it.
+struct Reel {
+  std::unique_ptr<SessionFilm> film;
+  Look look;
+  std::unique_ptr<Renderer> renderer;
+  std::unique_ptr<Overlay> overlay;
+  double ticks_a_frame = 1;
+
+  /// The tick that is shown in a frame, or the last one.
+  std::int64_t tick_of(std::int64_t frame) const {
+    const TickRange& range = film->range();
+    return std::min<std::int64_t>(range.to, range.from + std::llround(double(frame + 1) * ticks_a_frame));
   }
-
-  void take(const ReplayCursor& cursor) {
-    data_.tick = cursor.tick();
-    data_.time = double(cursor.tick()) * tick_;
-    data_.force = norm(cursor.report().tool_force);
-    data_.depth = cursor.report().depth;
-    if (cursor.tick() % every_ == 0) data_.history.push_back({data_.time, data_.force});
-    if (data_.history.size() > 2 * kPlotPoints)
-      data_.history.erase(data_.history.begin(), data_.history.end() - kPlotPoints - 1);
-    if (!cursor.same_so_far() && same_) {
-      same_ = false;
-      data_.verdict = "replay differs from the recording since " + fixed(data_.time, 3) + " s";
-      data_.verdict_tone = VerdictTone::bad;
-    } else if (same_) {
-      data_.verdict = "replay same as recorded";
-      data_.verdict_tone = VerdictTone::good;
-    }
+  std::int64_t frame_count() const {
+    return std::int64_t(std::ceil(double(film->range().to - film->range().from) / ticks_a_frame));
   }
-
-  const OverlayData& data() const { return data_; }
-  bool same() const { return same_; }
-
- private:
-  double tick_;
-  std::int64_t every_ = 1;
-  OverlayData data_;
-  bool same_ = true;
 };
 
-/// Ctrl-C is an error of this export: nothing is left behind.
-Error stopped(const std::string& path) { return {path, "stopped before the end; no video was written", ""}; }
+Result<Reel> make_reel(SessionReader& session, const TickRange& range, int width,
+                       const ExportOptions& options) {
+  Reel reel;
+  Result<std::unique_ptr<SessionFilm>> film = SessionFilm::create(session, range, options.allow_diverged);
+  if (!film) return film.errors();
+  reel.film = std::move(*film);
+  const Model& model = reel.film->model();
+  SceneView view = view_of(reel.film->scene(), model, session.start().surfaces);
+  const int height = options.size.height;
+  const Result<Look> look = find_look(options.look, reel.film->scene(), view, double(width) / height);
+  if (!look) return look.errors();
+  reel.look = *look;
+  Result<std::unique_ptr<Renderer>> renderer = Renderer::create(width, height, std::move(view));
+  if (!renderer) return renderer.errors();
+  reel.renderer = std::move(*renderer);
+  reel.overlay = std::make_unique<Overlay>(width, height);
+  reel.ticks_a_frame = options.speed / (options.fps * model.tick);
+  return reel;
+}
 
-std::string sidecar(SessionReader& reader, const ExportOptions& options, const ExportOutcome& outcome) {
-  JsonWriter json;
-  json.begin_object().member("video", outcome.video.path).member("session", reader.path());
-  json.member("session_id", reader.session_id()).member("session_format_version", reader.format_version());
-  json.member("recorded_by", reader.start().build_fingerprint).member("exported_by", CTPM_VERSION);
-  json.member("verdict", outcome.same_as_recorded ? "same" : "different");
-  json.member("first_tick", options.range.from).member("last_tick", options.range.to);
-  json.member("frames", outcome.video.frames).member("fps", outcome.video.fps).member("speed", options.speed);
-  json.member("codec", outcome.video.codec)
-      .member("width", outcome.video.width)
-      .member("height", outcome.video.height);
-  json.member("camera", options.camera).member("bytes", outcome.video.bytes);
-  return json.end_object().text();
+Frame draw_shot(Reel& reel, Shot& shot, double least_top_force) {
+  const DrawOptions draw = reel.look.at(reel.renderer->scene(), shot.state);
+  Frame picture = reel.renderer->draw(shot.state, draw);
+  shot.overlay.legend = legend_of(reel.film->model(), draw);
+  shot.overlay.least_top_force = std::max(shot.overlay.least_top_force, least_top_force);
+  reel.overlay->draw(picture, shot.overlay);
+  return picture;
+}
+
+/// All sessions at one moment, side by side; their plots have one scale.
+Frame draw_shots(std::vector<Reel>& reels, std::vector<Shot>& shots) {
+  double top_force = 0;
+  for (const Shot& shot : shots) top_force = std::max(top_force, largest_force(shot.overlay));
+  Frame picture = draw_shot(reels[0], shots[0], top_force);
+  for (std::size_t i = 1; i < reels.size(); ++i)
+    picture = join_beside(picture, draw_shot(reels[i], shots[i], top_force));
+  return picture;
+}
+
+Result<StageTimes> make_film(std::vector<Reel>& reels, VideoWriter& writer, ByteHash& pixels,
+                             const ExportOptions& options) {
+  std::int64_t frames = 0, drawn = 0;
+  for (const Reel& reel : reels) frames = std::max(frames, reel.frame_count());
+  FilmWork work;
+  for (Reel& reel : reels)
+    work.shoot.push_back([&reel](std::int64_t frame) { return reel.film->shoot(reel.tick_of(frame)); });
+  work.draw = [&](std::vector<Shot> shots) -> Result<Frame> {
+    // Ctrl-C is an error of this export: nothing is left behind.
+    if (options.should_stop && options.should_stop())
+      return Error{writer.path(), "stopped before the end; no video was written", ""};
+    Frame picture = draw_shots(reels, shots);
+    if (options.progress) options.progress(++drawn, frames);
+    return picture;
+  };
+  work.encode = [&](const Frame& picture) {
+    pixels.add(picture.rgb.data(), picture.rgb.size());
+    return writer.add(picture);
+  };
+  return run_film(frames, work);
 }
 
 }  // namespace
 
-Result<ExportOutcome> export_video(SessionReader& reader, const std::string& path,
+Result<ExportOutcome> export_video(const std::vector<SessionReader*>& sessions, const std::string& path,
                                    const ExportOptions& options) {
-  if (Errors errors = check_options(options); !errors.empty()) return errors;
-  if (Result<Done> writable = check_writable(path); !writable) return writable.errors();
-  const Result<SceneText> scene = read_scene(reader.start().scene_text, reader.path() + " (its scene)");
-  if (!scene) return scene.errors();
-  const Model& model = reader.start().model;
-  const auto [width, height] = options.size;
-  SceneView view = view_of(scene->spec, model, reader.start().surfaces);
-  const Result<Camera> camera = find_camera(scene->spec, view, options.camera, double(width) / height);
-  if (!camera) return camera.errors();
-  Result<std::unique_ptr<Renderer>> renderer = Renderer::create(width, height, std::move(view));
-  if (!renderer) return renderer.errors();
-  Result<std::unique_ptr<VideoWriter>> writer = VideoWriter::create(path, width, height, options.fps);
-  if (!writer) return writer.errors();
-  Result<ReplayCursor> cursor = ReplayCursor::create(reader);
-  if (!cursor) return cursor.errors();
-  if (const Result<Done> found = cursor->seek(options.range.from); !found) return found.errors();
-
-  Overlay overlay(width, height);
-  OverlayFeed feed(scene->spec, model);
-  DrawOptions draw;
-  draw.camera = *camera;
-  const double ticks_a_frame = options.speed / (options.fps * model.tick);
-  const auto frames = std::int64_t(std::ceil(double(options.range.to - options.range.from) / ticks_a_frame));
-  for (std::int64_t frame = 0; frame < frames; ++frame) {
-    if (options.should_stop && options.should_stop()) return stopped(path);
-    const auto shown = std::min<std::int64_t>(
-        options.range.to, options.range.from + std::llround(double(frame + 1) * ticks_a_frame));
-    while (cursor->tick() < shown) {
-      if (const Result<bool> went_on = cursor->step(); !went_on) return went_on.errors();
-      feed.take(*cursor);
-    }
-    if (!feed.same() && !options.allow_diverged)
-      return Error{
-          reader.path(), "the " + feed.data().verdict + "; no video was written",
-          "ctpm verify names what differs; --allow-diverged exports all the same and says so on every frame"};
-    Frame picture = (*renderer)->draw(cursor->state(), draw);
-    overlay.draw(picture, feed.data());
-    if (const Result<Done> added = (*writer)->add(picture); !added) return added.errors();
-    if (options.progress) options.progress(frame + 1, frames);
+  Errors errors = check_options(path, options);
+  const Result<std::vector<TickRange>> ranges = find_ranges(sessions, options.range);
+  if (!ranges) append(errors, ranges.errors());
+  const int width = options.size.width / int(sessions.size());
+  std::vector<Reel> reels;
+  for (std::size_t i = 0; i < sessions.size(); ++i) {
+    Result<Reel> reel = make_reel(*sessions[i], ranges ? (*ranges)[i] : TickRange{}, width, options);
+    if (reel)
+      reels.push_back(std::move(*reel));
+    else
+      append(errors, reel.errors());
   }
+  if (!errors.empty()) return errors;
+  Result<std::unique_ptr<VideoWriter>> writer =
+      VideoWriter::create(path, width * int(sessions.size()), options.size.height, options.fps);
+  if (!writer) return writer.errors();
+
+  ByteHash pixels;
+  const Result<StageTimes> times = make_film(reels, **writer, pixels, options);
+  if (!times) return times.errors();
   const Result<VideoFacts> video = (*writer)->finish();
   if (!video) return video.errors();
-  const ExportOutcome outcome{*video, feed.same()};
-  if (const Result<Done> written = write_text_file(video->path + ".json", sidecar(reader, options, outcome));
-      !written)
-    return written.errors();
-  return outcome;
+  ExportOutcome outcome{*video, {}, *times, hash_text(pixels.value())};
+  std::vector<SidecarSession> shown;
+  for (const Reel& reel : reels) {
+    outcome.sessions.push_back({reel.film->range(), reel.film->first_different_tick()});
+    shown.push_back({reel.film.get(), &reel.look});
+  }
+  const Result<std::string> sidecar =
+      sidecar_text(shown, {*video, *times, outcome.pixels_hash, options.speed, reels[0].renderer->opengl()});
+  const Result<Done> written =
+      sidecar ? write_text_file(video->path + ".json", *sidecar) : Result<Done>(sidecar.errors());
+  if (written) return outcome;
+  std::error_code ignored;
+  std::filesystem::remove_all(video->path, ignored);
+  return written.errors();
 }
 
 }  // namespace ctpm

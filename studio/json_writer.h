@@ -36,6 +36,7 @@ class JsonWriter {
     std::snprintf(digits, sizeof digits, "%.17g", number);
     return raw(digits);
   }
+  JsonWriter& null() { return raw("null"); }
   template <class T>
   JsonWriter& member(std::string_view name, const T& v) {
     return key(name), value(v);

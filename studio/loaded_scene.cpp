@@ -101,7 +101,7 @@ Result<Camera> find_camera(const SceneSpec& scene, const SceneView& view, const 
     }
     known += (known.empty() ? "" : ", ") + camera.name;
   }
-  return Error{"--camera", "the scene has no camera '" + name + "'", known.empty() ? "it has none" : "it has: " + known};
+  return Error{"--camera", "the scene has no camera '" + name + "'", "there are: fitted, follow" + (known.empty() ? "" : ", " + known)};
 }
 
 }  // namespace ctpm

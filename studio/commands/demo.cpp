@@ -91,12 +91,11 @@ int run_demo(const DemoArguments& arguments) {
   Result<SessionReader> reader = SessionReader::open(session_file);
   if (!reader) return print_errors(reader.errors());
   ExportOptions exporting;
-  exporting.range = {0, reader->tick_count()};
   exporting.should_stop = options.should_stop;
   const Result<ExportOutcome> exported = [&] {
     ProgressLine progress("exporting");
     exporting.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
-    return export_video(*reader, video_file, exporting);
+    return export_video({&*reader}, video_file, exporting);
   }();
   if (!exported) return print_errors(exported.errors());
 
@@ -115,7 +114,7 @@ int run_demo(const DemoArguments& arguments) {
               exported->video.codec.c_str(), exported->video.width, exported->video.height);
   std::printf("files           %s, %s, %s, %s, %s\n", scene_file.c_str(), imported->mesh_file.c_str(),
               imported->script_file.c_str(), session_file.c_str(), exported->video.path.c_str());
-  return verified == exit_good && exported->same_as_recorded ? exit_good : exit_bad_verdict;
+  return verified == exit_good && exported->same_as_recorded() ? exit_good : exit_bad_verdict;
 }
 
 }  // namespace

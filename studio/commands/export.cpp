@@ -1,48 +1,68 @@
-#include <csignal>
+#include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
-#include "recordings/replay.h"
 #include "recordings/session_reader.h"
 #include "studio/commands/command.h"
 #include "studio/console.h"
 #include "studio/export_video.h"
 #include "studio/render/picture_size.h"
 #include "studio/session/stop_signal.h"
-#include "studio/session/time_range.h"
 
 namespace ctpm {
 namespace {
 
 struct ExportArguments {
-  std::string file, output, size = "1280x720";
-  TimeRange range;
+  std::string file, beside, output, size = "1280x720";
   ExportOptions options;
 };
 
+void print_outcome(const ExportOutcome& outcome) {
+  const VideoFacts& video = outcome.video;
+  std::printf("%s: %lld frames, %dx%d, %g frames/s, %s, %.1f MB; replay %s\n", video.path.c_str(),
+              (long long)video.frames, video.width, video.height, video.fps, video.codec.c_str(),
+              double(video.bytes) / 1e6,
+              outcome.same_as_recorded() ? "same as recorded"
+                                         : "DIFFERS from what was recorded; every frame says so");
+  const StageTimes& times = outcome.times;
+  const auto share = [&](double part) { return fixed(100 * part / times.work(), 0) + " %"; };
+  print_remark("exported in " + fixed(times.elapsed, 1) + " s, " +
+               fixed(double(video.frames) / video.fps / times.elapsed, 2) + " times real time; of the work " +
+               share(times.simulation) + " simulation, " + share(times.rendering) + " rendering, " +
+               share(times.encoding) + " encoding");
+}
+
 int run_export(ExportArguments& arguments) {
-  Result<SessionReader> reader = SessionReader::open(arguments.file);
-  if (!reader) return print_errors(reader.errors());
+  Errors errors;
+  std::vector<SessionReader> readers;
+  for (const std::string& file : {arguments.file, arguments.beside}) {
+    if (file.empty()) continue;
+    Result<SessionReader> reader = SessionReader::open(file);
+    if (reader)
+      readers.push_back(std::move(*reader));
+    else
+      errors.insert(errors.end(), reader.errors().begin(), reader.errors().end());
+  }
   const Result<PictureSize> size = parse_picture_size(arguments.size);
-  if (!size) return print_errors(size.errors());
-  arguments.options.size = *size;
-  const Result<TickRange> range =
-      arguments.range.in_ticks(arguments.file, reader->start().model.tick, reader->tick_count());
-  if (!range) return print_errors(range.errors());
-  arguments.options.range = *range;
-  ProgressLine progress("exporting");
-  arguments.options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
+  if (size)
+    arguments.options.size = *size;
+  else
+    errors.insert(errors.end(), size.errors().begin(), size.errors().end());
+  if (!errors.empty()) return print_errors(errors);
+  std::vector<SessionReader*> sessions;
+  for (SessionReader& reader : readers) sessions.push_back(&reader);
   const StopSignal stop;  // Ctrl-C ends the loop, and the unfinished file is removed on the way out
   arguments.options.should_stop = [&] { return stop.came(); };
-  const Result<ExportOutcome> outcome = export_video(*reader, arguments.output, arguments.options);
+  const Result<ExportOutcome> outcome = [&] {
+    ProgressLine progress("exporting");
+    arguments.options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
+    return export_video(sessions, arguments.output, arguments.options);
+  }();
   if (!outcome) return print_errors(outcome.errors());
   if (!outcome->video.note.empty()) print_remark("warning: " + outcome->video.note);
-  std::printf(
-      "%s: %lld frames, %dx%d, %g frames/s, %s, %.1f MB; replay %s\n", outcome->video.path.c_str(),
-      (long long)outcome->video.frames, outcome->video.width, outcome->video.height, outcome->video.fps,
-      outcome->video.codec.c_str(), double(outcome->video.bytes) / 1e6,
-      outcome->same_as_recorded ? "same as recorded" : "DIFFERS from what was recorded; every frame says so");
-  return outcome->same_as_recorded ? exit_good : exit_bad_verdict;
+  print_outcome(*outcome);
+  return outcome->same_as_recorded() ? exit_good : exit_bad_verdict;
 }
 
 }  // namespace
@@ -50,17 +70,22 @@ int run_export(ExportArguments& arguments) {
 Command add_export(CLI::App& program) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* app = program.add_subcommand("export", "Replays a session off-screen into a video.");
-  app->footer("Example: ctpm export out/demo.ctpm -o out/demo.mp4 --from-s 4 --speed 0.5");
+  app->footer(
+      "Examples: ctpm export out/demo.ctpm -o out/demo.mp4 --from-s 4 --speed 0.5 --camera follow\n"
+      "          ctpm export expert.ctpm --beside trainee.ctpm -o both.mp4 --view elements --by force");
+  ExportOptions& options = arguments->options;
   app->add_option("session", arguments->file, "Session file (.ctpm)")->required();
-  app->add_option("-o,--output", arguments->output, "Video file (.mp4)")->required();
+  app->add_option("-o,--output", arguments->output,
+                  "Video: .mp4 (H.264), .avi (Motion JPEG), or a folder/ of PNG pictures")
+      ->required();
+  app->add_option("--beside", arguments->beside, "Another session, in step on the right half");
   app->add_option("--size", arguments->size, "Width x height in pixels")->capture_default_str();
-  app->add_option("--fps", arguments->options.fps, "Frames per second")->capture_default_str();
-  app->add_option("--camera", arguments->options.camera,
-                  "Name of a camera of the scene; its first one, else a fitted one");
-  app->add_option("--speed", arguments->options.speed, "Times real speed")->capture_default_str();
-  app->add_flag("--allow-diverged", arguments->options.allow_diverged,
-                "Export although the replay differs, and say so on every frame");
-  add_time_range(*app, arguments->range);
+  app->add_option("--fps", options.fps, "Frames per second")->capture_default_str();
+  app->add_option("--speed", options.speed, "Times real speed")->capture_default_str();
+  add_time_range(*app, options.range);
+  add_look(*app, options.look);
+  app->add_flag("--allow-diverged", options.allow_diverged,
+                "Export although the replay differs, and say so on every frame; it is verified first");
   return {app, [arguments] { return run_export(*arguments); }};
 }
 

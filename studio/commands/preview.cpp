@@ -5,6 +5,7 @@
 #include "studio/commands/command.h"
 #include "studio/console.h"
 #include "studio/files.h"
+#include "studio/film/look.h"
 #include "studio/loaded_scene.h"
 #include "studio/render/frame.h"
 #include "studio/render/picture_size.h"
@@ -14,8 +15,9 @@ namespace ctpm {
 namespace {
 
 struct PreviewArguments {
-  std::string scene, output, size = "1280x720", camera;
+  std::string scene, output, size = "1280x720";
   bool spheres = false;
+  LookRequest look;
   LoadOptions load;
 };
 
@@ -30,14 +32,13 @@ int run_preview(const PreviewArguments& arguments) {
   const int width = arguments.spheres ? size->width / 2 : size->width;
   const Model& model = scene->built.model;
   SceneView view = view_of(scene->scene.spec, model, surfaces_of(scene->organs));
-  const Result<Camera> camera =
-      find_camera(scene->scene.spec, view, arguments.camera, double(width) / size->height);
-  if (!camera) return print_errors(camera.errors());
+  const Result<Look> look =
+      find_look(arguments.look, scene->scene.spec, view, double(width) / size->height);
+  if (!look) return print_errors(look.errors());
   Result<std::unique_ptr<Renderer>> renderer = Renderer::create(width, size->height, std::move(view));
   if (!renderer) return print_errors(renderer.errors());
   const State state = rest_state(model);
-  DrawOptions options;
-  options.camera = *camera;
+  DrawOptions options = look->at((*renderer)->scene(), state);
   Frame picture = (*renderer)->draw(state, options);
   if (arguments.spheres) {
     options.view = View::spheres;
@@ -59,7 +60,7 @@ Command add_preview(CLI::App& program) {
   app->add_option("-o,--output", arguments->output, "Picture (.png)")->required();
   app->add_flag("--spheres", arguments->spheres, "Beside the surface, the spheres coloured by layer");
   app->add_option("--size", arguments->size, "Width x height in pixels")->capture_default_str();
-  app->add_option("--camera", arguments->camera, "Name of a camera of the scene");
+  add_look(*app, arguments->look);
   app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths,
                 "Meshes may lie outside the scene's folder");
   return {app, [arguments] { return run_preview(*arguments); }};

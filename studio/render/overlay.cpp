@@ -144,6 +144,13 @@ std::string damage_text(const OverlayData& data) {
 
 }  // namespace
 
+double largest_force(const OverlayData& data) {
+  double largest = 0;
+  for (const ForcePoint& p : data.history)
+    if (p.time >= data.time - data.plot_span) largest = std::max(largest, p.force);
+  return largest;
+}
+
 struct Overlay::Parts {
   Parts(int w, int h)
       : width(w),
@@ -179,12 +186,15 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
     plan.lines.push_back(line(large, large.shortened(data.title, inner), x, y, kWhite));
     y += px(38);
   }
-  const std::array<std::pair<std::string, std::string>, 4> facts{
-      {{"time", fixed(data.time, 3) + " s"},
+  const std::array<std::pair<std::string, std::string>, 6> facts{
+      {{"session", small.shortened(data.session, px(210))},
+       {"model", small.shortened(data.model, px(210))},
+       {"time", fixed(data.time, 3) + " s"},
        {"tick", std::to_string(data.tick)},
        {"force", fixed(data.force, 3) + " N"},
        {"depth", fixed(1000 * data.depth, 2) + " mm"}}};
   for (const auto& [name, value] : facts) {
+    if (value.empty()) continue;
     plan.lines.push_back(line(small, name, x, y, kGrey));
     const bool is_bad = (name == "depth" && is_too_deep(data)) || (name == "force" && is_too_strong(data));
     Line shown = line(small, value, 0, y, is_bad ? kRed : kWhite);
@@ -198,10 +208,7 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
 /// Bottom left: the force of the last seconds.
 void Overlay::Parts::plan_plot(const OverlayData& data, Plan& plan) {
   if (data.history.empty()) return;
-  double top = 0.1;
-  for (const ForcePoint& p : data.history)
-    if (p.time >= data.time - data.plot_span) top = std::max(top, p.force);
-  plan.top_force = round_up(top);
+  plan.top_force = round_up(std::max(data.least_top_force, largest_force(data)));
   const int pad = px(16), w = px(332), h = px(160);
   plan.plot = {px(20), height - px(20) - h, w, h};
   plan.lines.push_back(line(small, "force [N]", plan.plot.x + pad, plan.plot.y + px(12), kGrey));

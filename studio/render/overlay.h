@@ -20,7 +20,9 @@ enum class VerdictTone { none, good, bad };
 
 /// What the overlay says. Texts that are empty are left out; long ones are shortened with an ellipsis.
 struct OverlayData {
-  std::string title;  ///< scene, and model where it matters: "Liver (CTPM)"
+  std::string title;    ///< of the scene
+  std::string model;    ///< structure of the tissue: "CTPM"
+  std::string session;  ///< which recording it is, where there may be several
   double time = 0;    ///< [s]
   std::int64_t tick = 0;
   double force = 0;         ///< magnitude on the tool [N]
@@ -32,7 +34,11 @@ struct OverlayData {
   std::vector<ForcePoint> history;  ///< in order of time; empty: no plot
   Legend legend;                    ///< of the view; nothing if it has no title
   double plot_span = 5;             ///< the plot shows the last so many seconds [s], > 0
+  double least_top_force = 0.1;     ///< the plot's axis reaches at least to here [N], > 0
 };
+
+/// The largest force in the running plot [N].
+double largest_force(const OverlayData& data);
 
 /// A rectangle of the picture [pixels].
 struct Box {

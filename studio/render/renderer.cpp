@@ -279,6 +279,14 @@ Renderer::Renderer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Renderer::~Renderer() = default;
 const SceneView& Renderer::scene() const { return parts_->scene; }
 
+std::string Renderer::opengl() const {
+  parts_->context->make_current();
+  const auto text = [&](GLenum name) {
+    return std::string(reinterpret_cast<const char*>(parts_->gl().GetString(name)));
+  };
+  return text(GL_RENDERER) + ", OpenGL " + text(GL_VERSION);
+}
+
 Result<std::unique_ptr<Renderer>> Renderer::create(int width, int height, SceneView scene) {
   Errors errors;
   if (width < 16 || width > 8192 || height < 16 || height > 8192)

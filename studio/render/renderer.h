@@ -24,6 +24,9 @@ class Renderer {
 
   const SceneView& scene() const;
 
+  /// What draws, with its version.
+  std::string opengl() const;
+
  private:
   struct Parts;
   explicit Renderer(std::unique_ptr<Parts> parts);

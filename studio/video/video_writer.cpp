@@ -1,12 +1,14 @@
 #include "studio/video/video_writer.h"
 
 #include <unistd.h>
-#include <cmath>
+
+#include <array>
+#include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
+#include <string_view>
 #include <system_error>
 
 namespace ctpm {
@@ -16,34 +18,53 @@ namespace fs = std::filesystem;
 
 /// One way to write a video.
 struct Format {
-  int fourcc;
-  int backend;
+  int fourcc;   ///< 0: PNG pictures
+  int backend;  ///< of OpenCV
   const char* codec;
-  const char* ending;
+  const char* container;  ///< for people
+  const char* ending;     ///< of the path that is asked for
+  const char* written;    ///< of the path that is written, in place of it
+
+  bool is_pictures() const { return fourcc == 0; }
 };
 
-Format h264() { return {cv::VideoWriter::fourcc('a', 'v', 'c', '1'), cv::CAP_FFMPEG, "H.264", ".mp4"}; }
-Format motion_jpeg() {
-  return {cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), cv::CAP_OPENCV_MJPEG, "Motion JPEG", ".avi"};
+/// Best first: each is the fallback of the one before.
+const std::array<Format, 3>& formats() {
+  static const std::array<Format, 3> all{{
+      {cv::VideoWriter::fourcc('a', 'v', 'c', '1'), cv::CAP_FFMPEG, "H.264", "H.264", ".mp4", ".mp4"},
+      {cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), cv::CAP_OPENCV_MJPEG, "Motion JPEG", "Motion JPEG in AVI",
+       ".avi", ".avi"},
+      {0, 0, "PNG", "a folder of PNG pictures", "/", "-frames"},
+  }};
+  return all;
 }
 
-Errors check(const std::string& path, int width, int height, double fps) {
+/// Which format the path asks for; 3 if none.
+std::size_t format_asked_for(const std::string& path) {
+  std::size_t i = 0;
+  while (i < formats().size() && !path.ends_with(formats()[i].ending)) ++i;
+  return i;
+}
+
+/// The picture of frame `index` in a folder, from 1.
+fs::path picture_path(const std::string& folder, std::int64_t index) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%06lld.png", (long long)index);
+  return fs::path(folder) / name;
+}
+
+/// What was found must be what was written.
+Errors differences(const VideoFacts& facts, std::int64_t frames, int width, int height) {
   Errors errors;
-  if (!path.ends_with(".mp4")) errors.push_back({path, "a video's name must end in .mp4", ""});
-  const auto is_good = [](int n) { return n > 0 && n <= 8192 && n % 2 == 0; };
-  if (!is_good(width) || !is_good(height))
-    errors.push_back({path,
-                      "got a video size of " + std::to_string(width) + "x" + std::to_string(height) +
-                          ", each must be even and in [2, 8192]",
-                      ""});
-  if (!(fps >= 1 && fps <= 240))
-    errors.push_back({path, "got " + std::to_string(fps) + " frames/s, must be in [1, 240]", ""});
-  const fs::path folder = fs::path(path).parent_path().empty() ? fs::path(".") : fs::path(path).parent_path();
-  std::error_code failed;
-  if (!fs::is_directory(folder, failed))
-    errors.push_back({path, "the folder " + folder.string() + " does not exist", "make it first"});
-  else if (access(folder.c_str(), W_OK) != 0)
-    errors.push_back({path, "the folder " + folder.string() + " cannot be written", ""});
+  if (facts.frames != frames)
+    errors.push_back({facts.path,
+                      std::to_string(frames) + " frames were written, " + std::to_string(facts.frames) +
+                          " are in the file",
+                      "check the free space"});
+  if (facts.width != width || facts.height != height)
+    errors.push_back(
+        {facts.path,
+         "the video has the size " + std::to_string(facts.width) + "x" + std::to_string(facts.height), ""});
   return errors;
 }
 
@@ -51,6 +72,7 @@ Errors check(const std::string& path, int width, int height, double fps) {
 
 struct VideoWriter::Parts {
   std::string stem;  ///< path without ending
+  std::string path;  ///< of the finished file or folder
   std::string part;  ///< temporary name
   Format format{};
   std::string note;
@@ -61,58 +83,130 @@ struct VideoWriter::Parts {
   cv::VideoWriter writer;
   cv::Mat bgr;
 
+  Result<Done> open_first(std::size_t asked_for);
   bool open(const Format& wanted);
+  Result<Done> open_pictures();
   void discard();
+  Result<Done> put(const Frame& frame);
   Result<VideoFacts> check_file() const;
+  Result<VideoFacts> check_pictures() const;
 };
 
+/// Opens the format that is asked for, or the first that works of those behind it.
+Result<Done> VideoWriter::Parts::open_first(std::size_t asked_for) {
+  for (std::size_t i = asked_for; i < formats().size(); ++i) {
+    format = formats()[i];
+    if (i > asked_for)
+      note = std::string(formats()[asked_for].codec) + " is not available here: " + format.container +
+             " was written instead";
+    path = stem + (i == asked_for && format.is_pictures() ? "" : format.written);
+    part = stem + ".part" + std::to_string(getpid()) + (format.is_pictures() ? "" : format.ending);
+    if (format.is_pictures()) return open_pictures();
+    if (open(format)) return Done{};
+  }
+  return Error{path, "no format can be written", ""};
+}
+
 bool VideoWriter::Parts::open(const Format& wanted) {
-  format = wanted;
-  part = stem + ".part" + std::to_string(getpid()) + wanted.ending;
   try {
     // Quality is the encoder's own constant-quality default for H.264, and near lossless for Motion JPEG.
     std::vector<int> settings{cv::VIDEOWRITER_PROP_QUALITY, 95};
     if (wanted.backend == cv::CAP_FFMPEG) settings.clear();
     if (writer.open(part, wanted.backend, wanted.fourcc, fps, {width, height}, settings)) return true;
   } catch (const cv::Exception&) {
-    // Reported by the caller, once no format is left.
+    // The next format is tried, and the note says so.
   }
   discard();
   return false;
 }
 
+Result<Done> VideoWriter::Parts::open_pictures() {
+  std::error_code failed;
+  if (fs::exists(path, failed))
+    return Error{path, "exists already; pictures are not mixed with what is there",
+                 "remove it or give another name"};
+  fs::create_directory(part, failed);
+  if (failed) return Error{path, "the folder cannot be made: " + failed.message(), ""};
+  return Done{};
+}
+
 void VideoWriter::Parts::discard() {
   writer.release();
   std::error_code ignored;
-  if (!part.empty()) fs::remove(part, ignored);
+  if (!part.empty()) fs::remove_all(part, ignored);
+}
+
+Result<Done> VideoWriter::Parts::put(const Frame& frame) {
+  if (format.is_pictures()) return write_png(picture_path(part, frames + 1).string(), frame);
+  try {
+    const cv::Mat rgb(frame.height, frame.width, CV_8UC3, const_cast<std::uint8_t*>(frame.rgb.data()));
+    cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+    writer.write(bgr);
+  } catch (const cv::Exception& problem) {
+    return Error{path, "a frame could not be written: " + problem.err, ""};
+  }
+  return Done{};
 }
 
 /// Opens the closed temporary file and counts what is in it.
 Result<VideoFacts> VideoWriter::Parts::check_file() const {
-  VideoFacts facts{stem + format.ending, format.codec, note, 0, 0, 0, 0, 0};
+  VideoFacts facts{path, format.codec, note, 0, 0, 0, 0, 0};
   try {
     cv::VideoCapture reader(part);
-    if (!reader.isOpened()) return Error{facts.path, "the video that was written cannot be opened again", ""};
+    if (!reader.isOpened()) return Error{path, "the video that was written cannot be opened again", ""};
     facts.width = int(reader.get(cv::CAP_PROP_FRAME_WIDTH)),
     facts.height = int(reader.get(cv::CAP_PROP_FRAME_HEIGHT));
     facts.fps = reader.get(cv::CAP_PROP_FPS);
     while (reader.grab()) ++facts.frames;
   } catch (const cv::Exception& problem) {
-    return Error{facts.path, "the video that was written cannot be read: " + problem.err, ""};
+    return Error{path, "the video that was written cannot be read: " + problem.err, ""};
   }
   std::error_code failed;
   facts.bytes = std::int64_t(fs::file_size(part, failed));
-  if (facts.frames != frames)
-    return Error{
-        facts.path,
-        std::to_string(frames) + " frames were written, " + std::to_string(facts.frames) + " are in the file",
-        "check the free space"};
-  if (facts.width != width || facts.height != height)
-    return Error{facts.path,
-                 "the video has the size " + std::to_string(facts.width) + "x" + std::to_string(facts.height),
-                 ""};
   return facts;
 }
+
+/// Opens the first and the last picture and counts those between.
+Result<VideoFacts> VideoWriter::Parts::check_pictures() const {
+  VideoFacts facts{path, format.codec, note, 0, 0, fps, 0, 0};
+  for (const std::int64_t index : {std::int64_t(1), frames}) {
+    const Result<Frame> picture = read_picture(picture_path(part, index).string());
+    if (!picture) return picture.errors();
+    facts.width = picture->width, facts.height = picture->height;
+  }
+  std::error_code failed;
+  for (const auto& entry : fs::directory_iterator(part, failed)) {
+    ++facts.frames;
+    facts.bytes += std::int64_t(entry.file_size(failed));
+  }
+  return facts;
+}
+
+Errors VideoWriter::check(const std::string& path, int width, int height, double fps) {
+  Errors errors;
+  if (format_asked_for(path) == formats().size())
+    errors.push_back(
+        {path, "a video's name must end in .mp4 or .avi, or in / for a folder of PNG pictures", ""});
+  const auto is_good = [](int n) { return n > 0 && n <= 8192 && n % 2 == 0; };
+  if (!is_good(width) || !is_good(height))
+    errors.push_back({path,
+                      "got a video size of " + std::to_string(width) + "x" + std::to_string(height) +
+                          ", each must be even and in [2, 8192]",
+                      ""});
+  if (!(fps >= 1 && fps <= 240))
+    errors.push_back({path, "got " + std::to_string(fps) + " frames/s, must be in [1, 240]", ""});
+  const fs::path parent =
+      fs::path(path.ends_with('/') ? path.substr(0, path.size() - 1) : path).parent_path();
+  const fs::path folder = parent.empty() ? fs::path(".") : parent;
+  std::error_code failed;
+  if (!fs::is_directory(folder, failed))
+    errors.push_back({path, "the folder " + folder.string() + " does not exist", "make it first"});
+  else if (access(folder.c_str(), W_OK) != 0)
+    errors.push_back({path, "the folder " + folder.string() + " cannot be written", ""});
+  return errors;
+}
+
+std::string video_library() { return "OpenCV " CV_VERSION; }
 
 VideoWriter::VideoWriter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
@@ -124,47 +218,42 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::create(const std::string& path
                                                          double fps) {
   if (Errors errors = check(path, width, height, fps); !errors.empty()) return errors;
   auto parts = std::make_unique<Parts>();
-  parts->stem = path.substr(0, path.size() - 4);
+  const std::size_t asked_for = format_asked_for(path);
+  parts->stem = path.substr(0, path.size() - std::string_view(formats()[asked_for].ending).size());
   parts->width = width, parts->height = height, parts->fps = fps;
-  if (!parts->open(h264())) {
-    if (!parts->open(motion_jpeg()))
-      return Error{path, "neither H.264 nor Motion JPEG can be written here",
-                   "install OpenCV's videoio with FFmpeg"};
-    parts->note = "H.264 is not available here: Motion JPEG in AVI was written instead";
-  }
+  if (const Result<Done> opened = parts->open_first(asked_for); !opened) return opened.errors();
   return std::unique_ptr<VideoWriter>(new VideoWriter(std::move(parts)));
 }
 
+const std::string& VideoWriter::path() const { return parts_->path; }
+const std::string& VideoWriter::note() const { return parts_->note; }
+
 Result<Done> VideoWriter::add(const Frame& frame) {
   Parts& p = *parts_;
-  const std::string path = p.stem + p.format.ending;
-  if (p.is_finished) return Error{path, "the video is finished", ""};
+  if (p.is_finished) return Error{p.path, "the video is finished", ""};
   if (frame.width != p.width || frame.height != p.height)
-    return Error{path,
+    return Error{p.path,
                  "got a frame of " + std::to_string(frame.width) + "x" + std::to_string(frame.height) +
                      " for a video of " + std::to_string(p.width) + "x" + std::to_string(p.height),
                  ""};
-  try {
-    const cv::Mat rgb(frame.height, frame.width, CV_8UC3, const_cast<std::uint8_t*>(frame.rgb.data()));
-    cv::cvtColor(rgb, p.bgr, cv::COLOR_RGB2BGR);
-    p.writer.write(p.bgr);
-  } catch (const cv::Exception& problem) {
-    return Error{path, "a frame could not be written: " + problem.err, ""};
-  }
+  if (const Result<Done> done = p.put(frame); !done) return done;
   ++p.frames;
   return Done{};
 }
 
 Result<VideoFacts> VideoWriter::finish() {
   Parts& p = *parts_;
-  const std::string path = p.stem + p.format.ending;
-  if (p.is_finished) return Error{path, "the video is finished already", ""};
+  if (p.is_finished) return Error{p.path, "the video is finished already", ""};
   p.is_finished = true;
   p.writer.release();
-  Result<VideoFacts> facts = p.frames ? p.check_file() : Error{path, "a video needs at least one frame", ""};
+  Result<VideoFacts> facts = Error{p.path, "a video needs at least one frame", ""};
+  if (p.frames > 0) facts = p.format.is_pictures() ? p.check_pictures() : p.check_file();
+  if (facts)
+    if (Errors errors = differences(*facts, p.frames, p.width, p.height); !errors.empty()) facts = errors;
   std::error_code failed;
-  if (facts) fs::rename(p.part, path, failed);
-  if (facts && failed) facts = Error{path, "the video could not be given its name: " + failed.message(), ""};
+  if (facts) fs::rename(p.part, p.path, failed);
+  if (facts && failed)
+    facts = Error{p.path, "the video could not be given its name: " + failed.message(), ""};
   if (!facts) p.discard();
   return facts;
 }

@@ -174,7 +174,16 @@ TEST_F(BadInput, ExportOptionsOutOfRange) {
   refuse({"export", "a.ctpm", "-o", "a.mp4", "--fps", "0"}, {"--fps"});
   refuse({"export", "a.ctpm", "-o", "a.mp4", "--camera", "moon"}, {"no camera 'moon'", "front"});
   refuse({"export", "a.ctpm", "-o", "a.mp4", "--from-s", "9"}, {"--from-s"});
-  refuse({"export", "a.ctpm", "-o", "a.avi"}, {"a.avi"});
+  refuse({"export", "a.ctpm", "-o", "a.mov"}, {"a.mov"});
+  refuse({"export", "a.ctpm", "-o", "a.mp4", "--beside", "nowhere.ctpm"}, {"nowhere.ctpm: error:"});
+  refuse({"export", "a.ctpm", "-o", "a.mov", "--fps", "999", "--speed", "0", "--to-s", "7", "--view", "inside",
+          "--cutaway", "w=1", "--camera", "moon"},
+         {"a.mov", "--fps", "--speed", "--to-s", "--view: error: got 'inside'", "--cutaway: error: got 'w=1'",
+          "no camera 'moon'"});
+  refuse({"export", "a.ctpm", "-o", "a.mp4", "--view", "elements", "--by", "layer"}, {"stretch, tilt or force"});
+  refuse({"export", "a.ctpm", "-o", "a.mp4", "--view", "spheres", "--by", "force"}, {"give --view elements"});
+  refuse({"preview", kShipped + "skin.json", "-o", "a.png", "--view", "inside", "--cutaway", "y=deep"},
+         {"--view", "--cutaway: error: got 'y=deep'"});
 }
 
 }  // namespace

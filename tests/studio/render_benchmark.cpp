@@ -20,7 +20,7 @@ struct Bench {
     options.camera = default_camera(scene->view);
     cut(scene->model, severed, {{0, -0.1, 0}, {0, -0.1, 0.1}}, {{0, 0.02, 0}, {0, 0.02, 0.1}});
     severed.last_inputs.tool = 1, severed.last_inputs.position = {0, 0.02, 0};
-    data.title = "Liver (CTPM)", data.verdict = "replay same as recorded";
+    data.title = "Liver", data.model = "CTPM", data.session = "liver-press", data.verdict = "replay same as recorded";
     for (int i = 0; i < 600; ++i) data.history.push_back({i * 0.01, std::abs(std::sin(0.1 * i))});
     data.time = 6;
   }
@@ -35,7 +35,7 @@ void picture_with_overlay(benchmark::State& run) {
     benchmark::DoNotOptimize(frame.rgb.data());
   }
 }
-BENCHMARK(picture_with_overlay)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime()->ArgName("cut");
+BENCHMARK(picture_with_overlay)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime()->ArgName("cut");
 
 /// The split and the wall made new, as while a blade moves.
 void picture_while_cutting(benchmark::State& run) {
@@ -47,7 +47,7 @@ void picture_while_cutting(benchmark::State& run) {
     whole = !whole;
   }
 }
-BENCHMARK(picture_while_cutting)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(picture_while_cutting)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 void encoded_frame(benchmark::State& run) {
   Bench bench;
@@ -56,7 +56,7 @@ void encoded_frame(benchmark::State& run) {
   for (auto _ : run)
     if (!(*writer)->add(frame)) run.SkipWithError("a frame could not be written");
 }
-BENCHMARK(encoded_frame)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(encoded_frame)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 }  // namespace
 }  // namespace ctpm::render_test

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <array>
 #include <filesystem>
 
 #include "studio/video/video_writer.h"
@@ -50,6 +51,27 @@ TEST_F(Video, IsReopenedAndCounted) {
   EXPECT_FALSE((*writer)->add(moving_square(320, 180, 0)));
 }
 
+TEST_F(Video, OtherEndingsGiveMotionJpegAndPictures) {
+  for (const auto& [name, codec, written] :
+       {std::array{"a.avi", "Motion JPEG", "a.avi"}, std::array{"frames/", "PNG", "frames"}}) {
+    auto writer = VideoWriter::create(path(name), 320, 180, 25);
+    ASSERT_TRUE(writer) << to_string(writer.errors()[0]);
+    for (int i = 0; i < 7; ++i) ASSERT_TRUE((*writer)->add(moving_square(320, 180, i)));
+    EXPECT_FALSE(fs::exists(path(written))) << "before it is whole";
+    const auto facts = (*writer)->finish();
+    ASSERT_TRUE(facts) << to_string(facts.errors()[0]);
+    EXPECT_EQ(facts->codec, codec);
+    EXPECT_EQ(facts->path, path(written));
+    EXPECT_EQ(facts->frames, 7);
+    EXPECT_EQ(facts->note, "");
+  }
+  EXPECT_EQ(file_count(), 2);
+  const auto last = read_picture(path("frames/000007.png"));
+  ASSERT_TRUE(last);
+  EXPECT_EQ(*last, moving_square(320, 180, 6)) << "PNG keeps every pixel";
+  EXPECT_FALSE(VideoWriter::create(path("frames/"), 320, 180, 25)) << "pictures are never mixed";
+}
+
 TEST_F(Video, WithoutFramesIsAnErrorAndNoFile) {
   auto writer = VideoWriter::create(path("a.mp4"), 320, 180, 30);
   ASSERT_TRUE(writer);
@@ -62,7 +84,10 @@ TEST_F(Video, LeftUnfinishedIsRemoved) {
     auto writer = VideoWriter::create(path("a.mp4"), 320, 180, 30);
     ASSERT_TRUE(writer);
     ASSERT_TRUE((*writer)->add(moving_square(320, 180, 0)));
-    EXPECT_EQ(file_count(), 1);
+    auto pictures = VideoWriter::create(path("frames/"), 320, 180, 30);
+    ASSERT_TRUE(pictures);
+    ASSERT_TRUE((*pictures)->add(moving_square(320, 180, 0)));
+    EXPECT_EQ(file_count(), 2);
   }
   EXPECT_EQ(file_count(), 0);
 }

@@ -1,0 +1,127 @@
+#include "studio/film/look.h"
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "studio/console.h"
+#include "studio/loaded_scene.h"
+
+namespace ctpm {
+namespace {
+
+template <class T>
+using Choices = std::array<std::pair<const char*, T>, 4>;
+
+constexpr Choices<View> kViews{{{"surface", View::surface},
+                                {"spheres", View::spheres},
+                                {"both", View::both},
+                                {"elements", View::elements}}};
+
+std::optional<View> find_view(const std::string& name, Errors& errors) {
+  for (const auto& [known, view] : kViews)
+    if (name == known) return view;
+  errors.push_back({"--view", "got '" + name + "', must be surface, spheres, both or elements", ""});
+  return std::nullopt;
+}
+
+/// What `--by` asks for; the view decides what there is.
+ElementQuantity find_quantity(const std::string& by, View view, Errors& errors) {
+  if (view == View::elements) {
+    if (by.empty() || by == "stretch") return ElementQuantity::stretch;
+    if (by == "tilt") return ElementQuantity::tilt;
+    if (by == "force") return ElementQuantity::force;
+    errors.push_back({"--by", "got '" + by + "', elements are coloured by stretch, tilt or force", ""});
+  } else if (view == View::surface) {
+    if (!by.empty())
+      errors.push_back({"--by", "the surface has its own colours", "give --view spheres or --view elements"});
+  } else if (!by.empty() && by != "layer") {
+    errors.push_back({"--by", "got '" + by + "', spheres are coloured by layer",
+                      by == "stretch" || by == "tilt" || by == "force" ? "give --view elements" : ""});
+  }
+  return ElementQuantity::stretch;
+}
+
+/// The legend's unit in SI: %, degrees, N.
+double unit_of(ElementQuantity quantity) {
+  switch (quantity) {
+    case ElementQuantity::stretch:
+      return 0.01;
+    case ElementQuantity::tilt:
+      return std::numbers::pi / 180;
+    case ElementQuantity::force:
+      return 1;
+  }
+  return 1;
+}
+
+/// `x`, `y` or `z` through the scene's middle, or with a place; the side towards the eye is left out.
+Cutaway find_cutaway(const std::string& text, const SceneView& scene, Vec3 eye, Errors& errors) {
+  if (text.empty()) return {};
+  Vec3 axis{text[0] == 'x' ? 1.0 : 0.0, text[0] == 'y' ? 1.0 : 0.0, text[0] == 'z' ? 1.0 : 0.0};
+  double place = dot(rest_bounds(scene).centre(), axis);
+  char* end = nullptr;
+  if (text.size() > 2 && text[1] == '=') place = 1e-3 * std::strtod(text.c_str() + 2, &end);
+  const bool is_read = text.size() == 1 || (end && *end == 0 && std::isfinite(place));
+  if (axis == Vec3{} || !is_read) {
+    errors.push_back({"--cutaway", "got '" + text + "', must be x, y or z, or one of them and a place in mm",
+                      "for example y=12.5"});
+    return {};
+  }
+  if (dot(eye, axis) < place) axis = -axis, place = -place;
+  return {place * axis, axis};
+}
+
+}  // namespace
+
+void add_look(CLI::App& app, LookRequest& request) {
+  app.add_option("--view", request.view, "surface, spheres, both or elements")->capture_default_str();
+  app.add_option("--by", request.by,
+                 "What colours show: layer of spheres; stretch, tilt or force of elements");
+  app.add_option("--full-scale", request.full_scale, "Value of the last colour of elements [%, deg or N]");
+  app.add_option("--cutaway", request.cutaway,
+                 "Leave out what is before a plane across x, y or z: y, or y=12.5 in mm");
+  app.add_option("--camera", request.camera,
+                 "A camera of the scene, fitted, or follow the tool; its first one, else fitted");
+}
+
+DrawOptions Look::at(const SceneView& scene, const State& state) const {
+  DrawOptions options = draw;
+  if (follows) options.camera = following_camera(scene, draw.camera, state);
+  return options;
+}
+
+Result<Look> find_look(const LookRequest& request, const SceneSpec& scene, const SceneView& view,
+                       double aspect) {
+  Errors errors;
+  Look look;
+  if (const std::optional<View> found = find_view(request.view, errors)) {
+    look.draw.view = *found;
+    look.draw.quantity = find_quantity(request.by, *found, errors);
+  }
+  if (!(request.full_scale >= 0 && std::isfinite(request.full_scale)))
+    errors.push_back({"--full-scale", "got " + fixed(request.full_scale, 3) + ", must be more than 0", ""});
+  look.draw.full_scale = request.full_scale * unit_of(look.draw.quantity);
+  bool is_the_scenes = false;
+  for (const CameraSpec& camera : scene.cameras) is_the_scenes |= camera.name == request.camera;
+  look.camera = request.camera;
+  if (request.camera == "fitted" && !is_the_scenes) {
+    look.draw.camera = default_camera(view, aspect);
+  } else {
+    look.follows = request.camera == "follow" && !is_the_scenes;
+    const Result<Camera> camera = find_camera(scene, view, look.follows ? "" : request.camera, aspect);
+    if (camera)
+      look.draw.camera = *camera;
+    else
+      errors.insert(errors.end(), camera.errors().begin(), camera.errors().end());
+    if (look.camera.empty()) look.camera = scene.cameras.empty() ? "fitted" : scene.cameras.front().name;
+  }
+  look.draw.cutaway = find_cutaway(request.cutaway, view, look.draw.camera.eye, errors);
+  if (!errors.empty()) return errors;
+  return look;
+}
+
+}  // namespace ctpm

@@ -1,0 +1,118 @@
+#include "studio/film/session_film.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "scenes/scene_file.h"
+#include "studio/console.h"
+#include "studio/loaded_scene.h"
+
+namespace ctpm {
+namespace {
+
+constexpr std::int64_t kPlotPoints = 600;  ///< most points of the running force plot
+
+}  // namespace
+
+std::string structure_name(const SceneSpec& scene) {
+  if (scene.organs.empty()) return "";
+  switch (scene.organs.front().model) {
+    case Structure::mass_spring:
+      return "mass-spring";
+    case Structure::angle_mass_spring:
+      return "angle-mass-spring";
+    case Structure::tpm:
+      return "TPM";
+    case Structure::ctpm:
+      return "CTPM";
+  }
+  return "";
+}
+
+SessionFilm::SessionFilm(SessionReader& reader, SceneSpec scene, const TickRange& range, bool allow_diverged,
+                         ReplayCursor cursor)
+    : reader_(reader),
+      scene_(std::move(scene)),
+      range_(range),
+      allow_diverged_(allow_diverged),
+      cursor_(std::move(cursor)) {}
+
+Result<std::unique_ptr<SessionFilm>> SessionFilm::create(SessionReader& reader, const TickRange& range,
+                                                         bool allow_diverged) {
+  Result<SceneText> scene = read_scene(reader.start().scene_text, reader.path() + " (its scene)");
+  if (!scene) return scene.errors();
+  Result<ReplayCursor> cursor = ReplayCursor::create(reader);
+  if (!cursor) return cursor.errors();
+  std::unique_ptr<SessionFilm> film(
+      new SessionFilm(reader, std::move(scene->spec), range, allow_diverged, std::move(*cursor)));
+  if (const Result<Done> begun = film->begin(); !begun) return begun.errors();
+  return film;
+}
+
+Result<Done> SessionFilm::begin() {
+  const Model& model = this->model();
+  overlay_.title = scene_.name;
+  overlay_.model = structure_name(scene_);
+  overlay_.session = std::filesystem::path(reader_.path()).stem().string();
+  overlay_.damage_force = damage_force_of(scene_);
+  for (const OrganRange& organ : model.organs)
+    if (organ.damage_depth > 0 && (overlay_.damage_depth == 0 || organ.damage_depth < overlay_.damage_depth))
+      overlay_.damage_depth = organ.damage_depth;
+  if (allow_diverged_) {
+    const Result<Verdict> verdict = verify_session(reader_, {range_.from, range_.to});
+    if (!verdict) return verdict.errors();
+    first_different_ = verdict->first_tick;
+  }
+  plot_every_ = std::max<std::int64_t>(1, std::llround(overlay_.plot_span / model.tick) / kPlotPoints);
+  // The plot begins with what was before.
+  const std::int64_t before = std::max<std::int64_t>(0, range_.from - kPlotPoints * plot_every_);
+  const Result<std::vector<TickRecord>> earlier = reader_.ticks(before, range_.from);
+  if (!earlier) return earlier.errors();
+  for (std::int64_t tick = before + 1; tick <= range_.from; ++tick)
+    if (tick % plot_every_ == 0)
+      overlay_.history.push_back(
+          {double(tick) * model.tick, norm((*earlier)[std::size_t(tick - before - 1)].tool_force)});
+  overlay_.tick = range_.from, overlay_.time = double(range_.from) * model.tick;
+  return cursor_.seek(range_.from);
+}
+
+/// Keeps what the overlay says of the tick that was done last.
+void SessionFilm::take_tick() {
+  overlay_.tick = cursor_.tick();
+  overlay_.time = double(overlay_.tick) * model().tick;
+  overlay_.force = norm(cursor_.report().tool_force);
+  overlay_.depth = cursor_.report().depth;
+  std::vector<ForcePoint>& history = overlay_.history;
+  if (overlay_.tick % plot_every_ == 0) history.push_back({overlay_.time, overlay_.force});
+  if (history.size() > 2 * kPlotPoints) history.erase(history.begin(), history.end() - kPlotPoints - 1);
+  if (first_different_ < 0 && !cursor_.same_so_far()) first_different_ = overlay_.tick - 1;
+}
+
+std::string SessionFilm::verdict() const {
+  return is_same() ? "replay same as recorded"
+                   : "REPLAY DIFFERS from the recording since " +
+                         fixed(double(first_different_) * model().tick, 3) + " s";
+}
+
+Error SessionFilm::differs() const {
+  return {reader_.path(),
+          "the replay differs from the recording since " + fixed(double(first_different_) * model().tick, 3) +
+              " s; no video was written",
+          "ctpm verify names what differs; --allow-diverged exports all the same and says so on every frame"};
+}
+
+Result<Shot> SessionFilm::shoot(std::int64_t tick) {
+  while (cursor_.tick() < tick) {
+    const Result<bool> went_on = cursor_.step();
+    if (!went_on) return went_on.errors();
+    if (!*went_on) break;
+    take_tick();
+    if (!is_same() && !allow_diverged_) return differs();
+  }
+  overlay_.verdict = verdict();
+  overlay_.verdict_tone = is_same() ? VerdictTone::good : VerdictTone::bad;
+  return Shot{cursor_.state(), overlay_};
+}
+
+}  // namespace ctpm

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "core/result.h"
+#include "core/state.h"
+#include "recordings/replay.h"
+#include "recordings/session_reader.h"
+#include "scenes/scene_spec.h"
+#include "studio/render/overlay.h"
+#include "studio/session/time_range.h"
+
+namespace ctpm {
+
+/// One moment of a session, ready to be drawn.
+struct Shot {
+  State state;
+  OverlayData overlay;
+};
+
+/// A session simulated again, from one moment to the next.
+class SessionFilm {
+ public:
+  /// `range` is what will be shown; the force before it is taken from the recording. With `allow_diverged`
+  /// the range is verified first, so that every shot can say that the replay differs. Errors: a damaged
+  /// session or scene.
+  static Result<std::unique_ptr<SessionFilm>> create(SessionReader& reader, const TickRange& range,
+                                                     bool allow_diverged);
+
+  /// The state before `tick`, which must not be before the last one. Errors: a damaged session; a replay that
+  /// differs, unless that is allowed.
+  Result<Shot> shoot(std::int64_t tick);
+
+  const SceneSpec& scene() const { return scene_; }
+  const Model& model() const { return reader_.start().model; }
+  const SessionReader& reader() const { return reader_; }
+  const TickRange& range() const { return range_; }
+  std::int64_t first_different_tick() const { return first_different_; }  ///< -1: none was found
+  bool is_same() const { return first_different_ < 0; }
+
+ private:
+  SessionFilm(SessionReader& reader, SceneSpec scene, const TickRange& range, bool allow_diverged,
+              ReplayCursor cursor);
+  Result<Done> begin();
+  void take_tick();
+  Error differs() const;
+  std::string verdict() const;
+
+  SessionReader& reader_;
+  SceneSpec scene_;
+  TickRange range_;
+  bool allow_diverged_;
+  ReplayCursor cursor_;
+  OverlayData overlay_;
+  std::int64_t plot_every_ = 1;  ///< ticks between two points of the force plot
+  std::int64_t first_different_ = -1;
+};
+
+/// What people call the structure of a scene's first organ.
+std::string structure_name(const SceneSpec& scene);
+
+}  // namespace ctpm
