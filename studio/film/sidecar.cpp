@@ -4,7 +4,7 @@
 
 #include "recordings/byte_hash.h"
 #include "studio/json_writer.h"
-#include "studio/session/record_script.h"
+#include "studio/session/record_session.h"
 
 namespace ctpm {
 namespace {
