@@ -47,9 +47,7 @@ int run_compare(const CompareArguments& arguments) {
   if (!arguments.folder.empty())
     if (const Result<Done> written = write_comparison(arguments.folder, compared); !written)
       return print_errors(written.errors());
-  for (const SessionTrack* track : {&*expert_track, &*trainee_track})
-    if (!track->replays)
-      print_remark(track->path + ": warning: does not replay as it was recorded; verify it");
+  for (const std::string& remark : remarks_of(compared)) print_remark("warning: " + remark);
   std::fputs((arguments.json ? comparison_json(compared) : comparison_text(compared)).c_str(), stdout);
   if (!arguments.folder.empty()) print_remark("written: " + arguments.folder + "/report.html, results.json");
   return exit_good;

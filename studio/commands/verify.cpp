@@ -1,16 +1,34 @@
+#include <algorithm>
+#include <chrono>
 #include <memory>
 
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
 #include "studio/commands/command.h"
 #include "studio/console.h"
+#include "studio/session/record_session.h"
 
 namespace ctpm {
 namespace {
 
 struct VerifyArguments {
   std::string file;
+  int threads = 1;
 };
+
+/// Prints the verdict; a difference between builds explains itself.
+void print_verdict(const SessionReader& session, const Verdict& verdict, double seconds) {
+  const double lived = double(verdict.ticks_compared) * session.start().model.tick;
+  std::printf("%s: %s; %.1f times as fast as it was lived\n", session.path().c_str(),
+              to_string(verdict).c_str(), lived / std::max(seconds, 1e-9));
+  if (verdict.same) return;
+  std::printf("recorded by: %s\nreplayed by: %s\n", session.start().build_fingerprint.c_str(),
+              build_fingerprint().c_str());
+  print_remark(
+      "a session replays to the bit only with the physics that recorded it: between builds of one version "
+      "that "
+      "is promised, between versions it is not");
+}
 
 int run_verify(const VerifyArguments& arguments) {
   Result<SessionReader> reader = SessionReader::open(arguments.file);
@@ -18,11 +36,14 @@ int run_verify(const VerifyArguments& arguments) {
   if (!reader->ended_cleanly())
     print_remark(arguments.file + ": warning: the session has no clean end; what is there is verified");
   VerifyOptions options;
+  options.threads = arguments.threads;
   ProgressLine progress("verifying");
   options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
+  const auto start = std::chrono::steady_clock::now();
   const Result<Verdict> verdict = verify_session(*reader, options);
   if (!verdict) return print_errors(verdict.errors());
-  std::printf("%s: %s\n", arguments.file.c_str(), to_string(*verdict).c_str());
+  print_verdict(*reader, *verdict,
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return verdict->same ? exit_good : exit_bad_verdict;
 }
 
@@ -34,6 +55,8 @@ Command add_verify(CLI::App& program) {
       program.add_subcommand("verify", "Replays a session without pictures and compares every state hash.");
   app->footer("Example: ctpm verify out/demo.ctpm");
   app->add_option("session", arguments->file, "Session file (.ctpm)")->required();
+  app->add_option("--threads", arguments->threads, "Parts between keyframes that are replayed side by side")
+      ->check(CLI::Range(1, 256));
   return {app, [arguments] { return run_verify(*arguments); }};
 }
 

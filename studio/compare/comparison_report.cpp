@@ -92,27 +92,29 @@ std::string describe(const Moment& moment) {
   return text;
 }
 
-/// What a reader must know before trusting the numbers.
-std::vector<std::string> remarks_of(const ComparedSessions& compared) {
-  std::vector<std::string> remarks;
-  for (const SessionTrack* track : {&compared.expert, &compared.trainee})
-    if (!track->replays)
-      remarks.push_back(
-          track->path +
-          " does not replay as it was recorded: which elements it severed comes from this program's "
-          "simulation, everything else from the recording");
-  return remarks;
-}
-
 void write_session(JsonWriter& json, const char* key, const SessionTrack& track) {
   json.key(key).begin_object().member("file", std::string_view(track.path));
   json.member("session_id", std::string_view(track.session_id))
       .member("duration_s", track.seconds(track.tick_count()))
+      .member("has_end", track.has_end)
       .member("replays_as_recorded", track.replays)
       .end_object();
 }
 
 }  // namespace
+
+std::vector<std::string> remarks_of(const ComparedSessions& compared) {
+  std::vector<std::string> remarks;
+  for (const SessionTrack* track : {&compared.expert, &compared.trainee}) {
+    if (!track->has_end) remarks.push_back(track->path + " has no clean end: what is there is measured");
+    if (!track->replays)
+      remarks.push_back(
+          track->path +
+          " does not replay as it was recorded: which elements it severed comes from simulating it now, all "
+          "else from the recording");
+  }
+  return remarks;
+}
 
 std::string comparison_text(const ComparedSessions& compared) {
   const Comparison& comparison = compared.comparison;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/result.h"
 #include "studio/compare/measures.h"
@@ -14,6 +15,9 @@ struct ComparedSessions {
   const SessionStart& scene;
   const Comparison& comparison;
 };
+
+/// What a reader must know before trusting the numbers; mostly nothing.
+std::vector<std::string> remarks_of(const ComparedSessions& compared);
 
 /// The measures and the worst moments as lines for a terminal.
 std::string comparison_text(const ComparedSessions& compared);

@@ -132,13 +132,11 @@ ElementPlaces::ElementPlaces(const Model& model)
       count(angle_springs + model.angle_springs.size()) {}
 
 Result<SessionTrack> read_track(SessionReader& session) {
-  if (!session.ended_cleanly())
-    return Error{session.path(), "has no clean end: it was cut off, or it is still being recorded",
-                 "`ctpm recover` makes a whole session of what is there"};
   if (const Result<Done> whole = session.check_all(); !whole) return whole.errors();
   const SessionStart& start = session.start();
   SessionTrack track;
   track.path = session.path(), track.session_id = session.session_id(), track.tick = start.model.tick;
+  track.has_end = session.ended_cleanly();
   if (const auto name = start.metadata.find("scene_name"); name != start.metadata.end())
     track.scene_name = name->second;
   const std::int64_t count = session.tick_count();

@@ -33,7 +33,8 @@ struct SessionTrack {
   std::vector<Spell> strokes;         ///< ticks from taking a tool to putting it away
   std::vector<Spell> cuts;            ///< ticks from the first to the last severed element of each cut
   std::vector<std::int64_t>
-      severed_at;  ///< tick in which each element was severed; -1: never  (ElementPlaces::count)
+      severed_at;       ///< tick in which each element was severed; -1: never  (ElementPlaces::count)
+  bool has_end = true;  ///< false: it was cut off, or is still being recorded, and this is what is there
   bool replays =
       true;  ///< simulating the cuts again gave what was recorded; false: severed_at is what came out
 
@@ -42,7 +43,7 @@ struct SessionTrack {
 };
 
 /// Reads a whole session and simulates its cuts again, from the keyframe before each. Errors: those of
-/// reading; a damaged block, named; no clean end; no tool ever in the hand.
+/// reading; a damaged block, named; no tool ever in the hand.
 Result<SessionTrack> read_track(SessionReader& session);
 
 /// An error with the reason if `trainee` is not of the scene of `expert`: another network, other tools, other

@@ -4,10 +4,13 @@
 #include <sys/mman.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <random>
+#include <span>
 #include <thread>
+#include <vector>
 
 #include "recordings/replay.h"
 #include "tests/recordings/sessions.h"
@@ -64,30 +67,61 @@ void check_what_is_left(const std::string& path, const Shared& shared, std::int6
   EXPECT_EQ(verdict->ticks_compared, kept);
 }
 
+/// One recorder in a process of its own, and what it tells.
+struct Victim {
+  Folder folder;
+  Shared* shared = nullptr;
+  pid_t child = -1;
+  Clock::time_point dies_at;
+  std::int64_t killed_at_ns = 0;
+};
+
+/// Some recorders at the same time, each killed at its own moment. They mostly sleep, so they do not slow
+/// each other down.
+void kill_together(std::span<Shared* const> memory, const SessionStart& start, std::mt19937& random) {
+  std::uniform_int_distribution<int> life_us(500, 430000);
+  std::vector<Victim> victims(memory.size());
+  for (std::size_t i = 0; i < victims.size(); ++i) {
+    Victim& victim = victims[i];
+    victim.shared = new (memory[i]) Shared{};
+    victim.child = ::fork();
+    ASSERT_GE(victim.child, 0);
+    if (victim.child == 0) record_until_killed(victim.folder / "a.ctpm", start, *victim.shared);
+    victim.dies_at = Clock::now() + std::chrono::microseconds(life_us(random));
+  }
+  std::vector<Victim*> in_order;
+  for (Victim& victim : victims) in_order.push_back(&victim);
+  std::sort(in_order.begin(), in_order.end(),
+            [](const Victim* a, const Victim* b) { return a->dies_at < b->dies_at; });
+  for (Victim* victim : in_order) {
+    std::this_thread::sleep_until(victim->dies_at);
+    victim->killed_at_ns = now_ns();
+    ::kill(victim->child, SIGKILL);
+  }
+  for (const Victim& victim : victims) {
+    int status = 0;
+    ASSERT_EQ(::waitpid(victim.child, &status, 0), victim.child);
+    ASSERT_TRUE(WIFSIGNALED(status)) << "the recorder ended by itself";
+    check_what_is_left(victim.folder / "a.ctpm", *victim.shared, victim.killed_at_ns);
+  }
+}
+
 }  // namespace
 
 void kill_recorders(int count) {
+  constexpr int together = 5;
   const SessionStart start = small_start(3, 2, 2);
   std::mt19937 random(12345);
-  std::uniform_int_distribution<int> life_us(500, 430000);
-  void* memory = ::mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  void* memory =
+      ::mmap(nullptr, together * sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   ASSERT_NE(memory, MAP_FAILED);
-  for (int i = 0; i < count && !::testing::Test::HasFailure(); ++i) {
-    SCOPED_TRACE("kill " + std::to_string(i));
-    const Folder folder;
-    auto* shared = new (memory) Shared{};
-    const pid_t child = ::fork();
-    ASSERT_GE(child, 0);
-    if (child == 0) record_until_killed(folder / "a.ctpm", start, *shared);
-    std::this_thread::sleep_for(std::chrono::microseconds(life_us(random)));
-    const std::int64_t killed_at_ns = now_ns();
-    ::kill(child, SIGKILL);
-    int status = 0;
-    ASSERT_EQ(::waitpid(child, &status, 0), child);
-    ASSERT_TRUE(WIFSIGNALED(status)) << "the recorder ended by itself";
-    check_what_is_left(folder / "a.ctpm", *shared, killed_at_ns);
+  std::vector<Shared*> places;
+  for (int i = 0; i < together; ++i) places.push_back(static_cast<Shared*>(memory) + i);
+  for (int killed = 0; killed < count && !::testing::Test::HasFailure(); killed += together) {
+    SCOPED_TRACE("kills from " + std::to_string(killed));
+    kill_together(std::span(places).first(std::size_t(std::min(together, count - killed))), start, random);
   }
-  ::munmap(memory, sizeof(Shared));
+  ::munmap(memory, together * sizeof(Shared));
 }
 
 }  // namespace ctpm::testing

@@ -129,7 +129,7 @@ TEST_F(Compare, SessionsOfDifferentScenesAreRefusedWithTheReason) {
   EXPECT_TRUE(holds(softer.err, "its network differs in edges.k")) << softer.err;
 }
 
-TEST_F(Compare, DamagedUnfinishedAndMissingSessionsAreSaidSo) {
+TEST_F(Compare, DamagedAndMissingSessionsAreSaidSo) {
   std::string bytes = slurp(clumsy_cut_);
   bytes[bytes.size() / 2] = char(bytes[bytes.size() / 2] ^ 1);
   std::ofstream(folder_.path() / "flipped.ctpm", std::ios::binary) << bytes;
