@@ -49,9 +49,12 @@ double table_force(const Site& site, double depth, bool with_softening);
 
 /// Which form of the law is integrated over time.
 enum class Law {
-  eq_10,      ///< the paper's Eq. 10, whose derivation holds lambda and theta constant
-  eqs_3_to_8  ///< Eqs. 3-8 as they stand; the same at rest, up to a few per cent apart while lambda changes
-              ///< fast
+  eq_10,          ///< the paper's Eq. 10, whose derivation holds lambda and theta constant
+  eqs_3_to_8,     ///< Eqs. 3-8 as they stand, lambda acting at once; the same at rest, up to a few per cent
+                  ///< apart while lambda changes fast
+  eqs_3_to_8_rig  ///< Eqs. 3-8 of all three triples of the rig (Fig. 3): of lambda, the share P2 / K' comes
+                  ///< from the stretch of A-B-C and E-D-C, which creep like the triple below C. The same at
+                  ///< rest; the network without its mass
 };
 
 struct Sample {

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kOrgans[] = {"skin", "kidney", "liver"};
 
 /// Bounds of what must hold [share].
-constexpr double kStaticBound = 1e-3, kLambdaBound = 0.025, kMovingBound = 0.01, kLargeCreepBound = 0.025;
+constexpr double kStaticBound = 1e-3, kLambdaBound = 0.025, kMovingBound = 0.01;
 
 struct Reading {
   const char* name;
@@ -285,6 +285,12 @@ struct CreepLoad {
 /// Deviation: the paper's sentence names the ranges for the two forces the wrong way round.
 constexpr CreepLoad kCreepLoads[] = {{0.196, 3.8, 6.65}, {0.98, 9.6, 11.9}};
 
+std::vector<double> depths_of(const std::vector<Sample>& samples) {
+  std::vector<double> depths;
+  for (const Sample& s : samples) depths.push_back(s.depth);
+  return depths;
+}
+
 /// One load and reading of Fig. 8.
 Result<Done> add_creep(Experiment& experiment, const LoadedScene& scene, const CreepLoad& load,
                        const Reading& reading, Plot& plot) {
@@ -294,9 +300,9 @@ Result<Done> add_creep(Experiment& experiment, const LoadedScene& scene, const C
   const double stress = load.newton / force_of_stress(site, 1);
   const auto stress_at = [=](double t) { return stress * std::min(1.0, t / kRamp); };
   const auto rate_at = [=](double t) { return t < kRamp ? stress / kRamp : 0.0; };
-  const std::vector<Sample> samples = creep(site, stress_at, rate_at, kDuration, kInterval);
-  std::vector<double> law;
-  for (const Sample& s : samples) law.push_back(s.depth);
+  const auto creep_with = [&](Law law) { return creep(site, stress_at, rate_at, kDuration, kInterval, law); };
+  const std::vector<Sample> samples = creep_with(Law::eq_10);
+  const std::vector<double> law = depths_of(samples);
   for (const bool softens : {true, false}) {
     const Result<BuiltScene> built = build_changed(scene, [&](SceneSpec& s) {
       read_viscosity(s, reading), s.organs[0].softening = softens, s.loads[0].force = {0, 0, -load.newton};
@@ -308,22 +314,27 @@ Result<Done> add_creep(Experiment& experiment, const LoadedScene& scene, const C
     depth->colour = (reading.factor == 1.0 ? 0 : 1) + (softens ? 0 : 2);
     plot.series.push_back(*depth);
     if (!softens) continue;
-    const Compared found = compare(*depth, law);
-    const bool is_large_and_slow = load.newton > 0.5 && reading.factor == 1.0;
+    const bool is_slow = reading.factor == 1.0, is_large = load.newton > 0.5;
     Claim claim{.experiment = "creep",
                 .organ = "liver",
                 .structure = "CTPM",
                 .viscosity = reading.name,
                 .quantity = "depth over 33 s under " + short_number(load.newton) +
                             " N, largest difference [share of largest]",
-                .closed_form_error = found.share(),
-                .closed_form_bound = is_large_and_slow ? kLargeCreepBound : kMovingBound,
+                .closed_form_error = compare(*depth, law).share(),
+                .closed_form_bound = kMovingBound,
                 .note = "against Eq. 10 integrated"};
-    if (is_large_and_slow)
+    if (is_slow && is_large)
+      claim.closed_form_bound = {},
       claim.note +=
-          "; its own bound, because the rig's two horizontal triples, which carry P2/K' of lambda, are "
-          "viscoelastic while lambda in the law is not";
+          ": more than the 1 % that hold elsewhere, while it moves. Eq. 10 treats lambda as constant and "
+          "elastic; in the network P2/K' of it comes from the line's own triples, which creep (next row)";
     experiment.claims.push_back(claim);
+    if (is_slow)
+      claim.closed_form_error = compare(*depth, depths_of(creep_with(Law::eqs_3_to_8_rig))).share(),
+      claim.closed_form_bound = kMovingBound,
+      claim.note = "against Eqs. 3 to 8 of all three triples of the rig, integrated",
+      experiment.claims.push_back(claim);
     claim.closed_form_error = {}, claim.closed_form_bound = kMovingBound;
     claim.quantity = "depth after 33 s under " + short_number(load.newton) + " N [mm]",
     claim.closed_form = slow_depth(site, stress), claim.network = depth->y.back();
@@ -420,6 +431,12 @@ Result<Experiment> run_creep(const std::string& scenes) {
       "ranges for the two forces the wrong way round: 3.8 to 6.65 mm can only belong to "
       "0.196 N, 9.6 to 11.9 mm to 0.98 N. Under 0.196 N the law, and with it the network, stays below the "
       "measured range; under 0.98 N it lies inside.",
+      "While C moves fast under 0.98 N, with the viscosity in kPa s, the network is 2.3 % stiffer than Eq. "
+      "10: "
+      "that is shown and not called met. Eq. 10 follows from Eqs. 3 to 8 only while lambda is constant, and "
+      "takes all of lambda as elastic. In the network a share of P2/K' of lambda comes from the two triples "
+      "of the line A to E, which are stretched when C dips and creep like every triple. Eqs. 3 to 8 written "
+      "for all three triples of the rig are what the network follows.",
       "The depth at rest is the limit of Eq. 12, sigma0 (1 + tan theta)(K1 + K2) / (lambda (K1 + K2) + K1 "
       "K2). The first term that Eq. 16 prints before it does not belong there."};
   return experiment;

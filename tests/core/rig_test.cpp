@@ -108,50 +108,51 @@ TEST_P(BothViscosities, RelaxationAfterARampFollowsEquation10WithinOnePercent) {
   }
 }
 
-struct CreepCase {
-  double newton, viscosity_factor;
-  Law law;
-  double bound;  ///< of the largest depth
-};
-
-class RigCreep : public ::testing::TestWithParam<CreepCase> {};
-
-TEST_P(RigCreep, FollowsTheIntegratedLaw) {
-  const CreepCase c = GetParam();
+/// Largest difference between the depth of C under a load and a law [share of the largest depth].
+double creep_off_law(double newton, double viscosity_factor, Law law) {
   Site site = kOrgans[2].site;  // the paper's creep is the liver's
-  site.viscosity *= c.viscosity_factor;
+  site.viscosity *= viscosity_factor;
   Model model = make_rig(site, true);
   constexpr double kRamp =
       0.5;  // [s]; a sudden load would set the spheres' mass swinging, which no law here has
   model.loads.sphere = {kC};
-  model.loads.force.push_back({0, 0, -c.newton});
+  model.loads.force.push_back({0, 0, -newton});
   model.loads.start = {0}, model.loads.ramp = {kRamp};
   Stepper stepper(model);
   State state = rest_state(model);
-  const double stress = c.newton / force_of_stress(site, 1);
+  const double stress = newton / force_of_stress(site, 1);
   const auto expected = creep(
       site, [=](double t) { return stress * std::min(1.0, t / kRamp); },
-      [=](double t) { return t < kRamp ? stress / kRamp : 0.0; }, 5.0, 0.05, c.law);
+      [=](double t) { return t < kRamp ? stress / kRamp : 0.0; }, 5.0, 0.05, law);
   double worst = 0;
   for (int tick = 1; tick <= 5000; ++tick) {
     (void)stepper.step(state, {});
     if (tick % 50 == 0)
       worst = std::max(worst, std::abs(-state.position.z[kC] * 1e3 - expected[std::size_t(tick / 50)].depth));
   }
-  EXPECT_LE(worst, c.bound * expected.back().depth);
-  RecordProperty("worst_over_largest", std::to_string(worst / expected.back().depth));
+  return worst / expected.back().depth;
 }
 
-// Under the large load and the slow reading of the viscosity the network is 2.3 % stiffer while it moves than
-// either law: its two horizontal triples, which give P2 / K' of lambda at rest, are viscoelastic too, lambda
-// in the laws is not.
-INSTANTIATE_TEST_SUITE_P(Loads, RigCreep,
-                         ::testing::Values(CreepCase{0.196, 1.0, Law::eq_10, 0.01},
-                                           CreepCase{0.196, 1e-3, Law::eq_10, 0.01},
-                                           CreepCase{0.98, 1e-3, Law::eq_10, 0.01},
-                                           CreepCase{0.98, 1.0, Law::eq_10, 0.025},
-                                           CreepCase{0.196, 1.0, Law::eqs_3_to_8, 0.01},
-                                           CreepCase{0.98, 1.0, Law::eqs_3_to_8, 0.025}));
+TEST(RigCreep, FollowsEquation10WithinOnePercentUnderTheSmallLoadAndWithTheFastViscosity) {
+  for (const auto& [newton, factor] : {std::pair{0.196, 1.0}, {0.196, 1e-3}, {0.98, 1e-3}})
+    EXPECT_LE(creep_off_law(newton, factor, Law::eq_10), 0.01) << newton << " N, " << factor;
+}
+
+TEST(RigCreep, FollowsEquations3To8OfItsThreeTriplesWithinHalfAPercent) {
+  for (const double newton : {0.196, 0.98})
+    for (const double factor : {1.0, 1e-3})
+      EXPECT_LE(creep_off_law(newton, factor, Law::eqs_3_to_8_rig), 0.005) << newton << " N, " << factor;
+}
+
+// The network's two horizontal triples, which give P2 / K' of lambda at rest, are viscoelastic; lambda in the
+// laws is not. The test above shows that this is all there is to the difference.
+TEST(RigCreep, UnderTheLargeLoadAndTheSlowViscosityIsTwoPercentStifferThanTheLawsWhileItMoves) {
+  for (const Law law : {Law::eq_10, Law::eqs_3_to_8}) {
+    const double off = creep_off_law(0.98, 1.0, law);
+    EXPECT_GE(off, 0.020);
+    EXPECT_LE(off, 0.025);
+  }
+}
 
 INSTANTIATE_TEST_SUITE_P(Rig, BothViscosities, ::testing::Values(1.0, 1e-3));  // kPa s and Pa s
 
