@@ -18,14 +18,16 @@ ImportOptions import_options_of(const OrganSpec& organ) {
   return options;
 }
 
-/// A rig has no mesh; its surface is empty and bound to nothing.
-FilledOrgan filled_rig(const OrganSpec& organ) {
-  FilledOrgan filled = fill_rig(organ);
-  filled.surface.binding.first = {0};
+}  // namespace
+
+Result<ImportedOrgan> fill_of(const std::string& scene_path, const OrganSpec& organ) {
+  if (!organ.rig) return import_organ(mesh_path(scene_path, organ), import_options_of(organ));
+  // A rig has no mesh; its surface is empty and bound to nothing.
+  ImportedOrgan filled;
+  filled.organ = fill_rig(organ);
+  filled.organ.surface.binding.first = {0};
   return filled;
 }
-
-}  // namespace
 
 Result<LoadedScene> load_whole_scene(const std::string& path, const LoadOptions& options) {
   Result<SceneText> scene = load_scene(path, options);
@@ -37,12 +39,7 @@ Result<LoadedScene> load_whole_scene(const std::string& path, const LoadOptions&
   loaded.scene = std::move(*scene);
   Errors errors;
   for (const OrganSpec& organ : loaded.scene.spec.organs) {
-    if (organ.rig) {
-      loaded.organs.push_back(filled_rig(organ));
-      loaded.reports.emplace_back();
-      continue;
-    }
-    Result<ImportedOrgan> imported = import_organ(mesh_path(path, organ), import_options_of(organ));
+    Result<ImportedOrgan> imported = fill_of(path, organ);
     if (!imported) {
       errors.insert(errors.end(), imported.errors().begin(), imported.errors().end());
       continue;

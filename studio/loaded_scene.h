@@ -22,6 +22,9 @@ struct LoadedScene {
   BuiltScene built;
 };
 
+/// Fills one organ of a scene: its mesh, or its rig. Errors: those of the mesh.
+Result<ImportedOrgan> fill_of(const std::string& scene_path, const OrganSpec& organ);
+
 /// Reads, imports and builds. Warnings go to stderr. Errors: those of the scene, its meshes and its anchors, with places.
 Result<LoadedScene> load_whole_scene(const std::string& path, const LoadOptions& options = {});
 

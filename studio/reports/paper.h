@@ -72,6 +72,26 @@ Result<Experiment> run_load(const std::string& scenes, bool with_pictures);
 /// Figs. 12 to 14: a kidney is cut and four points beside the cut are followed from 1 s to 8 s after it.
 Result<Experiment> run_cut(const std::string& scenes, bool with_pictures);
 
+/// One filling of an organ.
+struct SagOfFilling {
+  double radius = 0;  ///< of its spheres [mm]
+  std::size_t spheres = 0;
+  double sag = 0;  ///< mean depth by which they have sunk under gravity, at rest [mm]
+};
+/// The same organ filled with r, r/2 and r/4.
+struct Refinement {
+  std::vector<SagOfFilling> fillings = {};
+
+  double shrinkage() const;  ///< second change over first, without sign; below 1: it converges
+  double order() const;      ///< observed order of convergence, from the shrinkage
+  double limit() const;      ///< sag that the three point to [mm] (Richardson)
+};
+/// Fills the scene's organ three times and lets it come to rest. Errors: those of the mesh; no rest is found.
+Result<Refinement> refine(const LoadedScene& scene, const Variant& variant);
+
+/// The same organ with finer and finer fillings: a block in all four structures, and the shipped liver.
+Result<Experiment> run_convergence(const std::string& scenes);
+
 /// All experiments, in the paper's order.
 struct PaperResults {
   std::vector<Section> sections;

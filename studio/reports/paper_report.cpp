@@ -81,7 +81,8 @@ Result<PaperResults> run_paper_experiments(
   const std::vector<Runner> runners{[&] { return run_table_1(scenes); },
                                     [&] { return run_relaxation(scenes); }, [&] { return run_creep(scenes); },
                                     [&] { return run_load(scenes, true); },
-                                    [&] { return run_cut(scenes, true); }};
+                                    [&] { return run_cut(scenes, true); },
+                                    [&] { return run_convergence(scenes); }};
   PaperResults results;
   Errors errors;
   for (std::size_t i = 0; i < runners.size(); ++i) {

@@ -70,6 +70,37 @@ TEST(Paper, UnderAForceMassSpringSwingsAndCtpmCreeps) { expect_met(run_load(kSce
 
 TEST(Paper, AfterACutMassSpringWandersAndCtpmSeparatesAndSettles) { expect_met(run_cut(kScenes, false), 6); }
 
+class EveryModel : public ::testing::TestWithParam<Structure> {};
+
+TEST_P(EveryModel, FilledWithRAndHalfAndQuarterConvergesWithOrderOne) {
+  Result<LoadedScene> scene = load_whole_scene(kScenes + "/paper/convergence-liver.json");
+  ASSERT_TRUE(scene) << to_string(scene.errors().front());
+  scene->scene.spec.organs[0].rig->block = Vec3{4, 4, 3};
+  const Result<Refinement> refined = refine(*scene, {"", GetParam(), false, ""});
+  ASSERT_TRUE(refined) << to_string(refined.errors().front());
+  ASSERT_EQ(refined->fillings.size(), 3u);
+  EXPECT_EQ(refined->fillings[2].spheres, 64 * refined->fillings[0].spheres);
+  EXPECT_EQ(refined->fillings[2].radius, 1);
+  EXPECT_GT(refined->fillings[0].sag, 0);
+  // A coarse block has an order that is still on its way to one.
+  EXPECT_GT(refined->order(), 0.6);
+  EXPECT_LT(refined->order(), 1.4);
+  RecordProperty("order", std::to_string(refined->order()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Paper, EveryModel,
+                         ::testing::Values(Structure::mass_spring, Structure::angle_mass_spring,
+                                           Structure::tpm, Structure::ctpm));
+
+TEST(Paper, ARefinementKnowsItsOrderAndItsLimit) {
+  const Refinement first{{{4, 1, 1.8}, {2, 8, 1.9}, {1, 64, 1.95}}};  // 2 - 0.05 r
+  EXPECT_NEAR(first.order(), 1, 1e-12);
+  EXPECT_NEAR(first.limit(), 2, 1e-12);
+  const Refinement second{{{4, 1, 2.16}, {2, 8, 2.04}, {1, 64, 2.01}}};  // 2 + 0.01 r^2
+  EXPECT_NEAR(second.order(), 2, 1e-12);
+  EXPECT_NEAR(second.limit(), 2, 1e-12);
+}
+
 TEST(Paper, AClaimBeyondItsBoundIsMissed) {
   Claim claim{.experiment = "x",
               .organ = "x",
