@@ -29,7 +29,11 @@ Result<double> sag_at_rest(Model model, const std::string& name) {
   constexpr double kEnough = 1e-6;  // change of the last step [share]
   constexpr int kMostSteps = 30;
   model.tick = 100;
-  model.solver = {.tolerance = 1e-8, .velocity_floor = 1e-14, .max_iterations = 20000, .substeps = 1};
+  model.solver = {.tolerance = 1e-8,
+                  .velocity_floor = 1e-14,
+                  .max_iterations = 20000,
+                  .substeps = 1,
+                  .integrator = Integrator::backward_euler};
   Stepper stepper(model);
   State state = rest_state(model);
   double sag = 0;
