@@ -48,10 +48,11 @@ Alignment align_paths(std::span<const Vec3> a, std::span<const Vec3> b, double b
       return i > 0 && rows[i - 1].has(j) ? before[j - rows[i - 1].first] : INFINITY;
     };
     for (std::size_t j = row.first; j < row.first + row.count; ++j) {
-      const double both = j > 0 ? cost_before(j - 1) : INFINITY, a_only = cost_before(j);
-      const double b_only = j > row.first ? now[j - 1 - row.first] : INFINITY;
-      const double least = i == 0 && j == 0 ? 0 : std::min({both, a_only, b_only});
-      now[j - row.first] = least + norm(a[i] - b[j]);
+      const double cost = norm(a[i] - b[j]);
+      const double both = (j > 0 ? cost_before(j - 1) : INFINITY) + 2 * cost, a_only = cost_before(j) + cost;
+      const double b_only = (j > row.first ? now[j - 1 - row.first] : INFINITY) + cost;
+      const double least = i == 0 && j == 0 ? 2 * cost : std::min({both, a_only, b_only});
+      now[j - row.first] = least;
       if (i == 0 && j == 0) continue;
       from[i][j - row.first] = least == both ? From::both : least == a_only ? From::a_only : From::b_only;
     }
@@ -59,6 +60,7 @@ Alignment align_paths(std::span<const Vec3> a, std::span<const Vec3> b, double b
   }
 
   Alignment alignment;
+  alignment.mean = before.back() / double(a.size() + b.size());
   std::size_t i = a.size() - 1, j = b.size() - 1;
   while (true) {
     alignment.pairs.push_back({i, j, norm(a[i] - b[j])});
@@ -68,10 +70,8 @@ Alignment align_paths(std::span<const Vec3> a, std::span<const Vec3> b, double b
     if (step != From::a_only) --j;
   }
   std::reverse(alignment.pairs.begin(), alignment.pairs.end());
-  for (const AlignedPair& pair : alignment.pairs) {
-    alignment.mean += pair.distance / double(alignment.pairs.size());
+  for (const AlignedPair& pair : alignment.pairs)
     alignment.largest = std::max(alignment.largest, pair.distance);
-  }
   return alignment;
 }
 

@@ -15,18 +15,18 @@ struct AlignedPair {
 };
 
 struct Alignment {
-  std::vector<AlignedPair>
-      pairs;        ///< from both beginnings to both ends; each step goes on in one path or both
-  double mean = 0;  ///< of the pairs' distances
+  /// From both beginnings to both ends; each step goes on in one path or in both.
+  std::vector<AlignedPair> pairs;
+  double mean = 0;  ///< of the pairs' distances; a step in both paths counts twice, as two steps would
   double largest = 0;
 };
 
 /// Width of the band: pairs may be out of step by this share of the longer path.
 inline constexpr double kAlignmentBand = 0.25;
 
-/// Dynamic time warping with the symmetric steps and the band of Sakoe and Chiba 1978, laid along the
-/// diagonal of paths of different length. The sum of the distances of the pairs is the least possible.
-/// Neither path may be empty. Time and memory grow with the band's share of a.size() * b.size().
+/// Dynamic time warping with the symmetric weights and the band of Sakoe and Chiba 1978, laid along the
+/// diagonal of paths of different length. The mean is the least possible, and no way is preferred for being
+/// short. Neither path may be empty. Time and memory grow with the band's share of a.size() * b.size().
 Alignment align_paths(std::span<const Vec3> a, std::span<const Vec3> b, double band = kAlignmentBand);
 
 }  // namespace ctpm

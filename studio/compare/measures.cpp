@@ -240,9 +240,11 @@ double time_beyond(const SessionTrack& track, double depth) {
 void collect_path(const SessionTrack& track, std::vector<Vec3>& path, std::vector<double>& time) {
   const std::size_t step = std::max(std::size_t(std::llround(1 / (kAlignedRate * track.tick))),
                                     (track.tick_count() + kAlignedPoints - 1) / kAlignedPoints);
-  for (const Spell& stroke : track.strokes)
-    for (std::size_t i = stroke.first; i < stroke.last; i += std::max<std::size_t>(step, 1))
-      path.push_back(track.tip[i]), time.push_back(track.seconds(i));
+  const auto add = [&](std::size_t i) { path.push_back(track.tip[i]), time.push_back(track.seconds(i)); };
+  for (const Spell& stroke : track.strokes) {
+    for (std::size_t i = stroke.first; i + 1 < stroke.last; i += std::max<std::size_t>(step, 1)) add(i);
+    add(stroke.last - 1);
+  }
 }
 
 void add_motion(Comparison& comparison, const SessionTrack& expert, const SessionTrack& trainee) {

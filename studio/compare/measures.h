@@ -53,8 +53,9 @@ struct Moment {
 };
 
 struct CompareOptions {
-  std::optional<double> force_limit;  ///< [N], > 0; unset: the scene's limit, or else the expert's peak force
-  double damage_force = 0;            ///< the scene's limit [N]; 0: it has none
+  /// [N], > 0; unset: the scene's limit, or else the expert's peak force.
+  std::optional<double> force_limit = {};
+  double damage_force = 0;  ///< the scene's limit [N]; 0: it has none
 };
 
 /// Everything that is known about a trainee's session beside an expert's.
