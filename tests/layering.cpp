@@ -36,7 +36,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
 struct Package {
   std::string_view prefix, owner;
 };
-constexpr std::array<Package, 12> kPackages{{{"Eigen/", "core"},
+constexpr std::array<Package, 13> kPackages{{{"Eigen/", "core"},
                                              {"assimp/", "importers"},
                                              {"CGAL/", "importers"},
                                              {"boost/", "importers"},
@@ -47,6 +47,7 @@ constexpr std::array<Package, 12> kPackages{{{"Eigen/", "core"},
                                              {"CLI/", "studio"},
                                              {"GL/", "studio"},
                                              {"opencv2/", "studio"},
+                                             {"openigtlink/", "studio"},
                                              {"gtest/", "tests"}}};
 
 std::string folder_of(const std::string& path) { return path.substr(0, path.find('/')); }

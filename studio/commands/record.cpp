@@ -1,4 +1,5 @@
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,11 +35,18 @@ Errors check(const RecordArguments& arguments) {
     errors.push_back({"--at", "is a moment of the session that --continue names", ""});
   if (!arguments.parent.empty() && !arguments.at_s)
     errors.push_back({"--continue", "needs --at, the moment from which to go on [s]", ""});
-  if (count_of(arguments.source) > 1) errors.push_back({"record", "takes one of --script, --motion", ""});
+  const std::string sources = source_names;
+  if (count_of(arguments.source) > 1) errors.push_back({"record", "takes one of " + sources, ""});
   if (!arguments.parent.empty() && count_of(arguments.source) == 0)
-    errors.push_back({"--continue", "needs a source: --script, --motion", ""});
+    errors.push_back({"--continue", "needs a source: one of " + sources, ""});
+  if (arguments.as_fast_as_possible && asks_for_device(arguments.source))
+    errors.push_back({"--fast", "a device is followed in real time", ""});
+  for (Error& error : check_device(arguments.source.device)) errors.push_back(std::move(error));
+  std::error_code ignored;
   if (const Result<Done> writable = check_writable(arguments.output); !writable)
     errors.insert(errors.end(), writable.errors().begin(), writable.errors().end());
+  else if (!arguments.overwrite && std::filesystem::exists(arguments.output, ignored))
+    errors.push_back({arguments.output, "exists already", "--overwrite replaces it"});
   return errors;
 }
 
@@ -63,9 +71,9 @@ Result<Beginning> begin(const RecordArguments& arguments) {
   return beginning;
 }
 
-Result<OpenedSource> open(const RecordArguments& arguments, const Beginning& beginning) {
+Result<OpenedSource> open(const RecordArguments& arguments, OpenedDevice device, const Beginning& beginning) {
   const Model& model = beginning.start.model;
-  if (!beginning.script) return open_source(arguments.source, model);
+  if (!beginning.script) return open_source(arguments.source, std::move(device), model);
   print_remark("no source is given: pressing and cutting at the top of the first organ");
   OpenedSource opened;
   opened.source = std::make_unique<ScriptSource>(ScriptPlayer(*beginning.script, model.tools, model.tick));
@@ -96,18 +104,28 @@ int print_outcome(const std::string& path, const Model& model, const RecordOutco
 
 int run_record(const RecordArguments& arguments) {
   if (const Errors errors = check(arguments); !errors.empty()) return print_errors(errors);
+  const StopSignal stop;
+  const auto should_stop = [&] { return stop.came(); };
+  // First of all, so that a port that is in use is told at once, and a device finds somebody to talk to.
+  Result<OpenedDevice> device = open_device(arguments.source.device);
+  if (!device) return print_errors(device.errors());
+  const std::string place = device->place;
   Result<Beginning> beginning = begin(arguments);
   if (!beginning) return print_errors(beginning.errors());
   SessionStart& start = beginning->start;
-  const Result<OpenedSource> opened = open(arguments, *beginning);
+  const Result<OpenedSource> opened = open(arguments, std::move(*device), *beginning);
   if (!opened) return print_errors(opened.errors());
   for (const auto& [key, value] : opened->metadata) start.metadata[key] = value;
+  if (opened->device) {
+    print_remark(place + "; Ctrl-C ends it");
+    if (!opened->device->wait_for_first_pose(should_stop))
+      return print_errors({{place, "stopped before a pose came; nothing was recorded", ""}});
+  }
 
   RunOptions options;
   options.in_real_time = !arguments.as_fast_as_possible;
   options.most_ticks = std::llround(arguments.duration_s / start.model.tick);
-  const StopSignal stop;
-  options.should_stop = [&] { return stop.came(); };
+  options.should_stop = should_stop;
   const Result<RecordOutcome> outcome = [&] {
     ProgressLine progress("recording");
     options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
@@ -117,6 +135,31 @@ int run_record(const RecordArguments& arguments) {
   return print_outcome(arguments.output, start.model, *outcome);
 }
 
+void add_device_options(CLI::App& app, DeviceRequest& device) {
+  const auto add = [&](const char* name, auto& value, const char* what) {
+    return app.add_option(name, value, what)->group("Devices (studio/devices/README.md)");
+  };
+  add("--igtl", device.address, "Takes what the hand does from an OpenIGTLink server, HOST:PORT");
+  add("--igtl-listen", device.listen_port, "Waits on this port for an OpenIGTLink client; 0: any that is free");
+  add("--igtl-bind", device.interface, "Address of this machine to listen on; others than this machine's own let in "
+      "whoever can reach it")->capture_default_str();
+  add("--igtl-name", device.name, "Takes poses of the device of this name alone");
+  add("--device-tool", device.tool, "Tool in the hand; the scene's first if not given");
+  add("--device-button", device.buttons, "BUTTON=TOOL: while the button is pressed, this tool is; none after =");
+  add("--device-scale", device.scale, "Millimetres in the scene for one of the hand")->capture_default_str();
+  add("--device-offset-mm", device.offset_mm, "Where the device's origin lies in the scene: x y z")->expected(3);
+  add("--device-rotation", device.rotation, "How the device's frame is turned in the scene: w x y z")->expected(4);
+  add("--device-tip", device.tip, "Direction from handle to tip in the instrument's frame: x y z; 0 0 -1 if not given")
+      ->expected(3);
+  add("--device-force-n", device.most_force_n, "Largest force that is sent back")->capture_default_str();
+  add("--device-stiffness-n-per-m", device.stiffness_n_per_m, "Of the spring between hand and tool")
+      ->capture_default_str();
+  add("--device-speed-mm-per-s", device.most_speed_mm_per_s, "A hand that moves faster is taken for a jump")
+      ->capture_default_str();
+  add("--device-timeout-s", device.timeout_s, "Ends the session when nothing usable came for so long")
+      ->capture_default_str();
+}
+
 }  // namespace
 
 Command add_record(CLI::App& program) {
@@ -124,7 +167,8 @@ Command add_record(CLI::App& program) {
   CLI::App* app = program.add_subcommand("record", "Runs a session and records it, at 1000 ticks a second.");
   app->footer(
       "Example: ctpm record scenes/liver.json --script scenes/scripts/liver-cut.json -o liver.ctpm\n"
-      "         ctpm record --continue liver.ctpm --at 2.5 --motion hand.csv -o other.ctpm");
+      "         ctpm record --continue liver.ctpm --at 2.5 --motion hand.csv -o other.ctpm\n"
+      "         ctpm record scenes/liver.json --igtl-listen 18944 --device-offset-mm 0 0 90 -o mine.ctpm");
   app->add_option("scene", arguments->scene, "Scene file (.json)");
   app->add_option("--continue", arguments->parent, "Goes on from a moment of this session (.ctpm) instead");
   app->add_option("--at", arguments->at_s, "That moment [s]");
@@ -134,6 +178,7 @@ Command add_record(CLI::App& program) {
   app->add_option("--motion", arguments->source.motion,
                   "What a hand did (.csv): time_s, tool_x_mm, tool_y_mm, tool_z_mm, and tool_qw to tool_qz, "
                   "buttons, tool; at any rate");
+  add_device_options(*app, arguments->source.device);
   app->add_option("--duration-s", arguments->duration_s, "Ends the session after so many seconds");
   app->add_flag("--overwrite", arguments->overwrite, "Replace an existing session file");
   app->add_flag("--fast", arguments->as_fast_as_possible, "Do not wait for the clock between ticks");

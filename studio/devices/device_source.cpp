@@ -24,7 +24,9 @@ DeviceSource::DeviceSource(std::unique_ptr<Device> device, const DeviceSettings&
       passive_(settings.most_force) {}
 
 bool DeviceSource::wait_for_first_pose(const std::function<bool()>& should_stop) {
-  while (!guard_.has_pose()) {
+  // What came before, while nobody listened, is old.
+  const double began = clock_();
+  while (!guard_.has_pose() || guard_.pose_arrival() < began) {
     if (should_stop()) return false;
     if (!take_reports()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }

@@ -105,7 +105,7 @@ TEST_F(Record, WhatDoesNotFitTogetherIsToldAtOnceAndNothingIsWritten) {
   };
   refused({"-o", "x.ctpm"}, {"needs either a scene or --continue"});
   refused({"block.json", "--continue", "a.ctpm", "--script", "s", "--motion", "m", "-o", "no/x.ctpm"},
-          {"needs either a scene or --continue", "--continue: error: needs --at", "takes one of --script, --motion",
+          {"needs either a scene or --continue", "--continue: error: needs --at", "takes one of --script, --motion, --igtl, --igtl-listen",
            "no/x.ctpm: error:"});
   refused({"--continue", "a.ctpm", "--at", "1", "-o", "x.ctpm"}, {"--continue: error: needs a source"});
   refused({"block.json", "--at", "1", "-o", "x.ctpm"}, {"--at: error:"});
