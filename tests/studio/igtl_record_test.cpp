@@ -102,7 +102,7 @@ class IgtlRecord : public ::testing::Test {
     EXPECT_GE(number(info, "device_forces_sent"), 10);
     EXPECT_GT(number(info, "input_age_p99_s"), 0);
     EXPECT_GT(number(info, "max_force_n"), 0.05);
-    EXPECT_TRUE(holds(ctpm({"info", "a.ctpm"}), "device lost: it hung up; the pose is held"));
+    EXPECT_TRUE(holds(info, "it hung up; the pose is held")) << info;
     const std::string verdict = ctpm({"verify", "a.ctpm"});
     EXPECT_TRUE(holds(verdict, "same")) << verdict;
     EXPECT_TRUE(holds(verdict, std::to_string(int(number(info, "ticks"))))) << verdict;
