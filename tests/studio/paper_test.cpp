@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <vector>
 
+#include "core/step.h"
 #include "scenes/presets.h"
 #include "studio/fit_stiffness.h"
 #include "studio/reports/paper.h"
@@ -148,7 +150,44 @@ TEST_P(ShippedOrgan, HoldsTheScaleThatMeetsTable1AtTwelveMillimetres) {
   EXPECT_NEAR(fit->rows.back().error(), 0, 0.01);
 }
 
-INSTANTIATE_TEST_SUITE_P(Fit, ShippedOrgan, ::testing::Values("liver", "kidney", "skin"));
+INSTANTIATE_TEST_SUITE_P(Fit, ShippedOrgan, ::testing::Values("liver", "kidney", "kidney-capsule", "skin"));
+
+/// Force on a ball that presses the top of an organ by 4 mm, without gravity [N].
+double force_at_four_millimetres(const LoadedScene& scene, const std::function<void(SceneSpec&)>& change) {
+  const Result<BuiltScene> built = build_changed(scene, [&](SceneSpec& s) { s.gravity = {}, change(s); });
+  CTPM_CHECK(bool(built), "a shipped scene is valid");
+  const Model& model = built->model;
+  Vec3 top = scene.scene.spec.organs[0].material.fitted_for->place;
+  const auto c = std::size_t(nearest_sphere(model, top));
+  Inputs inputs;
+  inputs.tool = 0;
+  Stepper stepper(model);
+  State state = rest_state(model);
+  StepReport report;
+  for (int tick = 0; tick <= 1000; ++tick) {
+    inputs.position =
+        model.rest_position[c] +
+        Vec3{0, 0, model.tools[0].radius + model.contact_radius[c] - 4e-3 * std::min(1.0, tick / 400.0)};
+    report = stepper.step(state, inputs);
+  }
+  return report.tool_force.z;
+}
+
+TEST(ShippedCapsule, IsItsOwnTissueAndMakesTheKidneyStiffer) {
+  const Result<LoadedScene> scene = load_whole_scene(kScenes + "/kidney-capsule.json");
+  ASSERT_TRUE(scene) << to_string(scene.errors().front());
+  const std::vector<double>& depth = scene->organs[0].depth;
+  const double end = scene->scene.spec.organs[0].layers.at(0).to_depth;
+  const auto capsule = std::count_if(depth.begin(), depth.end(), [&](double d) { return d < end; });
+  EXPECT_GT(capsule, 100);
+  EXPECT_GT(std::ptrdiff_t(depth.size()) - capsule, 100);
+  const double whole = force_at_four_millimetres(*scene, [](SceneSpec&) {}),
+               bare = force_at_four_millimetres(*scene, [](SceneSpec&s) { s.organs[0].layers.clear(); }),
+               solid = force_at_four_millimetres(
+                   *scene, [](SceneSpec&s) { s.organs[0].material = s.organs[0].layers[0].material; });
+  EXPECT_GT(whole, 1.2 * bare);
+  EXPECT_LT(whole, solid);
+}
 
 TEST(Fit, FindsTheFactorWhateverTheScaleWas) {
   const Result<LoadedScene> scene = load_whole_scene(kScenes + "/skin.json");
