@@ -1,6 +1,8 @@
 #include "studio/reports/paper.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 
@@ -84,6 +86,56 @@ Site site_of(const OrganSpec& organ) {
   site.arm = 2e3 * m.calibration_spacing;
   site.ball_radius = 1e3 * std::sqrt(m.calibration_area / std::numbers::pi);
   return site;
+}
+
+namespace {
+
+/// What an experiment uses of a scene; the others take nothing for granted.
+struct Need {
+  const char* name;
+  std::size_t cells, loads, probes, tools;
+};
+constexpr Need kNeeds[] = {{"paper/rig-skin.json", 7, 0, 0, 1},
+                           {"paper/rig-kidney.json", 7, 0, 0, 1},
+                           {"paper/rig-liver.json", 7, 0, 0, 1},
+                           {"paper/creep-liver.json", 7, 1, 1, 0},
+                           {"paper/block-liver.json", 0, 1, 1, 1},
+                           {"paper/convergence-liver.json", 0, 0, 0, 0},
+                           {"liver.json", 0, 0, 0, 1},
+                           {"kidney.json", 0, 0, 0, 1}};
+
+}  // namespace
+
+Result<LoadedScene> load_experiment(const std::string& scenes, const std::string& name) {
+  Result<LoadedScene> scene = load_whole_scene(scenes + "/" + name);
+  if (!scene) return scene;
+  const auto need =
+      std::find_if(std::begin(kNeeds), std::end(kNeeds), [&](const Need& n) { return n.name == name; });
+  CTPM_CHECK(need != std::end(kNeeds), "every experiment says what it needs");
+  const SceneSpec& spec = scene->scene.spec;
+  Errors errors;
+  const std::size_t cells = spec.organs[0].rig ? spec.organs[0].rig->cells.size() : 0;
+  if (cells < need->cells)
+    errors.push_back({scene->path,
+                      "/organs/0/rig/cells: got " + std::to_string(cells) +
+                          " spheres, the rig of Fig. 3 has 7: A to E on a line, and two below C",
+                      ""});
+  const auto check = [&](const char* key, std::size_t got, std::size_t wanted) {
+    if (got < wanted)
+      errors.push_back({scene->path, std::string("/") + key + ": the experiment needs one", ""});
+  };
+  check("loads", spec.loads.size(), need->loads), check("probes", spec.probes.size(), need->probes),
+      check("tools", spec.tools.size(), need->tools);
+  if (!errors.empty()) return errors;
+  return scene;
+}
+
+Errors check_experiments(const std::string& scenes) {
+  Errors errors;
+  for (const Need& need : kNeeds)
+    if (const Result<LoadedScene> scene = load_experiment(scenes, need.name); !scene)
+      errors.insert(errors.end(), scene.errors().begin(), scene.errors().end());
+  return errors;
 }
 
 Result<BuiltScene> build_changed(const LoadedScene& scene, const std::function<void(SceneSpec&)>& change) {

@@ -120,6 +120,13 @@ Table claims_table(const std::vector<Claim>& claims);
 /// The site of the closed forms that an organ's material and filling are.
 Site site_of(const OrganSpec& organ);
 
+/// Loads a scene of an experiment by its path within the folder of the shipped scenes. Errors: those of the
+/// scene; too few spheres for the rig of Fig. 3; no load, probe or tool where the experiment uses one.
+Result<LoadedScene> load_experiment(const std::string& scenes, const std::string& name);
+
+/// What is wrong with the scenes of all experiments together; empty: nothing.
+Errors check_experiments(const std::string& scenes);
+
 /// The loaded scene built again after `change`; its meshes are not read again.
 Result<BuiltScene> build_changed(const LoadedScene& scene, const std::function<void(SceneSpec&)>& change);
 

@@ -130,8 +130,8 @@ Result<Refinement> refine(const LoadedScene& scene, const Variant& variant) {
 }
 
 Result<Experiment> run_convergence(const std::string& scenes) {
-  const Result<LoadedScene> block = load_whole_scene(scenes + "/paper/convergence-liver.json"),
-                            liver = load_whole_scene(scenes + "/liver.json");
+  const Result<LoadedScene> block = load_experiment(scenes, "paper/convergence-liver.json"),
+                            liver = load_experiment(scenes, "liver.json");
   if (!block) return block.errors();
   if (!liver) return liver.errors();
   // The liver takes longest and runs beside the others.

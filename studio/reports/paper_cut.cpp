@@ -179,7 +179,7 @@ Result<Done> add_pictures(Section& section, const LoadedScene& scene, const std:
 }  // namespace
 
 Result<Experiment> run_cut(const std::string& scenes, bool with_pictures) {
-  const Result<LoadedScene> scene = load_whole_scene(scenes + "/kidney.json");
+  const Result<LoadedScene> scene = load_experiment(scenes, "kidney.json");
   if (!scene) return scene.errors();
   const std::string script_file = scenes + "/scripts/kidney-cut.json";
   const Result<std::string> text = read_text_file(script_file);

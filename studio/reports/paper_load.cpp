@@ -200,7 +200,7 @@ Result<Done> add_block_pictures(Section& section, const LoadedScene& scene) {
 
 /// Fig. 10: the shipped liver under a ball, where its stiffness was fitted, and after it.
 Result<Done> add_liver_pictures(Section& section, const std::string& scenes) {
-  const Result<LoadedScene> scene = load_whole_scene(scenes + "/liver.json");
+  const Result<LoadedScene> scene = load_experiment(scenes, "liver.json");
   if (!scene) return scene.errors();
   const std::optional<FittedForSpec>& fitted = scene->scene.spec.organs[0].material.fitted_for;
   if (!fitted) return Error{scene->path, "its stiffness scale was fitted for no place", "fit it: ctpm fit"};
@@ -250,7 +250,7 @@ Result<Experiment> run_load(const std::string& scenes, bool with_pictures) {
   Section& section = experiment.section;
   section.key = "load",
   section.title = "A force on one surface sphere, mass-spring against CTPM: Figs. 9 to 11";
-  const Result<LoadedScene> scene = load_whole_scene(scenes + "/paper/block-liver.json");
+  const Result<LoadedScene> scene = load_experiment(scenes, "paper/block-liver.json");
   if (!scene) return scene.errors();
   for (const bool is_sudden : {false, true}) {
     const Result<std::vector<LoadRun>> runs = run_variants(*scene, is_sudden);

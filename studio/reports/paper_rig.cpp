@@ -115,7 +115,7 @@ struct OrganForces {
 };
 
 Result<OrganForces> press_organ(const std::string& scenes, const std::string& organ) {
-  const Result<LoadedScene> scene = load_whole_scene(scenes + "/paper/rig-" + organ + ".json");
+  const Result<LoadedScene> scene = load_experiment(scenes, std::string("paper/rig-") + organ + ".json");
   if (!scene) return scene.errors();
   OrganForces out{organ, site_of(scene->scene.spec.organs[0]), {}, {}};
   for (const bool softens : {false, true}) {
@@ -394,7 +394,7 @@ Result<Experiment> run_relaxation(const std::string& scenes) {
   section.key = "relaxation", section.title = "Stress relaxation: Fig. 7";
   Plot plot{.title = "liver: force on C", .x_title = "time [s]", .y_title = "force [N]"};
   for (const char* organ : kOrgans) {
-    const Result<LoadedScene> scene = load_whole_scene(scenes + "/paper/rig-" + organ + ".json");
+    const Result<LoadedScene> scene = load_experiment(scenes, std::string("paper/rig-") + organ + ".json");
     if (!scene) return scene.errors();
     for (const Reading& reading : kReadings)
       if (const Result<Done> added = add_relaxation(experiment, *scene, organ, reading, plot); !added)
@@ -413,7 +413,7 @@ Result<Experiment> run_creep(const std::string& scenes) {
   Experiment experiment;
   Section& section = experiment.section;
   section.key = "creep", section.title = "Creep: Fig. 8";
-  const Result<LoadedScene> scene = load_whole_scene(scenes + "/paper/creep-liver.json");
+  const Result<LoadedScene> scene = load_experiment(scenes, "paper/creep-liver.json");
   if (!scene) return scene.errors();
   for (const CreepLoad& load : kCreepLoads) {
     Plot plot{.title = "liver: depth of C under " + short_number(load.newton) + " N",

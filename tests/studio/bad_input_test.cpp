@@ -176,14 +176,92 @@ TEST_F(BadInput, ExportOptionsOutOfRange) {
   refuse({"export", "a.ctpm", "-o", "a.mp4", "--from-s", "9"}, {"--from-s"});
   refuse({"export", "a.ctpm", "-o", "a.mov"}, {"a.mov"});
   refuse({"export", "a.ctpm", "-o", "a.mp4", "--beside", "nowhere.ctpm"}, {"nowhere.ctpm: error:"});
-  refuse({"export", "a.ctpm", "-o", "a.mov", "--fps", "999", "--speed", "0", "--to-s", "7", "--view", "inside",
-          "--cutaway", "w=1", "--camera", "moon"},
+  refuse({"export", "a.ctpm", "-o", "a.mov", "--fps", "999", "--speed", "0", "--to-s", "7", "--view",
+          "inside", "--cutaway", "w=1", "--camera", "moon"},
          {"a.mov", "--fps", "--speed", "--to-s", "--view: error: got 'inside'", "--cutaway: error: got 'w=1'",
           "no camera 'moon'"});
-  refuse({"export", "a.ctpm", "-o", "a.mp4", "--view", "elements", "--by", "layer"}, {"stretch, tilt or force"});
+  refuse({"export", "a.ctpm", "-o", "a.mp4", "--view", "elements", "--by", "layer"},
+         {"stretch, tilt or force"});
   refuse({"export", "a.ctpm", "-o", "a.mp4", "--view", "spheres", "--by", "force"}, {"give --view elements"});
   refuse({"preview", kShipped + "skin.json", "-o", "a.png", "--view", "inside", "--cutaway", "y=deep"},
          {"--view", "--cutaway: error: got 'y=deep'"});
+}
+
+TEST_F(BadInput, ModuliRadiiSpacingsAndViscositiesThatCannotBeAreAllNamedWithTheirPlaces) {
+  const std::string preset = "\"preset\": \"skin\"", fill = "\"radius_mm\": 7, \"gap_mm\": 7";
+  write(
+      "a.json",
+      scene_with(preset, preset + ",\n\"spring_kpa_per_mm\": 0,\n\"kelvin_kpa_per_mm\": -15,\n"
+                                  "\"constraint_kpa_per_mm\": 1e300,\n\"viscosity_kpa_s_per_mm\": \"nan\",\n"
+                                  "\"calibration_spacing_mm\": 0"));
+  refuse({"check", "a.json"},
+         {"a.json:13:22: error: /organs/0/material/spring_kpa_per_mm: got 0, must be in",
+          "a.json:14:22: error: /organs/0/material/kelvin_kpa_per_mm: got -15, must be in",
+          "a.json:15:26: error: /organs/0/material/constraint_kpa_per_mm: got 1e300, must be in",
+          "a.json:16:27: error: /organs/0/material/viscosity_kpa_s_per_mm: got the text \"nan\", must be a "
+          "number",
+          "a.json:17:27: error: /organs/0/material/calibration_spacing_mm: got 0, must be in"});
+  write("a.json", scene_with(preset, preset + ", \"viscosity_kpa_s_per_mm\": NaN"));
+  refuse({"check", "a.json"}, {"a.json:12:53: error: syntax error"});
+  for (const auto& [value, message] :
+       {std::pair<std::string, std::string>{"0", "got 0, must be in [0.01, 100] mm"},
+        {"-7", "got -7, must be in [0.01, 100] mm"},
+        {"1e9", "got 1e9, must be in [0.01, 100] mm"},
+        {"1e999", "too large for a double"}}) {
+    write("a.json", scene_with(fill, "\"radius_mm\": " + value + ", \"gap_mm\": 7"));
+    refuse({"record", "a.json", "-o", "a.ctpm", "--fast"}, {"a.json:10:", message});
+  }
+  write("a.json", scene_with(fill, "\"radius_mm\": 90, \"gap_mm\": 90"));
+  refuse({"check", "a.json"},
+         {"a.json: /organs/0: error: no two of its 1 spheres are neighbours", "smaller spheres"});
+}
+
+TEST_F(BadInput, APresetThatDoesNotExist) {
+  write("a.json", scene_with("\"preset\": \"skin\"", "\"preset\": \"skim\""));
+  refuse({"check", "a.json"}, {"a.json:", "/organs/0/material/preset", "\"skim\"", "did you mean \"skin\"?"});
+}
+
+TEST_F(BadInput, ALayerThatIsDeeperThanTheOrgan) {
+  write("a.json", scene_with("\"anchors\"",
+                             "\"layers\": [{\"to_depth_mm\": 400, \"material\": {\"preset\": "
+                             "\"kidney\"}}],\n\"anchors\""));
+  refuse({"check", "a.json"}, {"a.json: /organs/0/layers/0/to_depth_mm", "got 400 mm",
+                               "deeper than the organ", "its spheres lie"});
+}
+
+TEST_F(BadInput, ARigWithTooFewSpheres) {
+  const auto rig_of = [](const std::string& cells) {
+    return "{\"format\": \"ctpm-scene\", \"version\": 1, \"name\": \"r\", \"organs\": [{\"name\": \"a\",\n"
+           "\"rig\": {\"cells\": [" +
+           cells + "]}, \"material\": {\"preset\": \"liver\"}}]}\n";
+  };
+  write("a.json", rig_of("[0, 0, 0]"));
+  refuse({"check", "a.json"}, {"a.json:2:", "/organs/0/rig/cells", "at least two"});
+  write("a.json", rig_of("[0, 0, 0], [5, 0, 0]"));
+  refuse({"check", "a.json"}, {"a.json", "/organs/0", "no two of its 2 spheres are neighbours"});
+}
+
+TEST_F(BadInput, AnExperimentOfThePaperWhoseRigHasTooFewSpheresOrNoLoad) {
+  const fs::path scenes = folder_.path() / "scenes";
+  fs::copy(kShipped, scenes, fs::copy_options::recursive);
+  const auto replace_in = [&](const std::string& name, const std::string& from, const std::string& to) {
+    std::string text = testing::slurp(scenes / name);
+    const auto at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    std::ofstream(scenes / name, std::ios::binary) << text.replace(at, from.size(), to);
+  };
+  replace_in("paper/rig-skin.json", ", [1, 0, 0], [2, 0, 0]]", "]");
+  replace_in("paper/rig-skin.json", ",\n          { \"cell\": [1, 0, 0], \"axes\": \"y\" }", "");
+  replace_in("paper/rig-skin.json", "{ \"sphere\": { \"centre_mm\": [42, 0, 0], \"radius_mm\": 1 } },", "");
+  replace_in("paper/block-liver.json",
+             "\"loads\": [{ \"at_mm\": [0, 0, 72], \"force_n\": [0, 0, -0.13], \"ramp_s\": 0.082 }],", "");
+  const auto outcome = run_ctpm({"paper", "--scenes", "scenes", "-o", "out"}, folder_.path());
+  EXPECT_EQ(outcome.code, 2);
+  for (const char* part :
+       {"rig-skin.json: error: /organs/0/rig/cells: got 5 spheres, the rig of Fig. 3 has 7",
+        "block-liver.json: error: /loads: the experiment needs one"})
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << part << " is not in: " << outcome.err;
+  EXPECT_TRUE(fs::is_empty(folder_.path() / "out"));
 }
 
 }  // namespace
