@@ -44,6 +44,7 @@ struct IgtlLink::Impl {
   std::vector<std::uint8_t> unsent;  ///< rest of a message that the device did not take at once
   std::array<std::uint8_t, 1 << 16> buffer;
 
+  void wake_thread();
   void run();
   void tell(DeviceReport report) { (void)reports.push(report); }  // a session that reads no more needs none
   void tell(DeviceNews news, const char* text = "");
@@ -76,7 +77,7 @@ Result<std::unique_ptr<IgtlLink>> IgtlLink::open(const IgtlSettings& settings) {
 
 IgtlLink::~IgtlLink() {
   impl_->stopping = true;
-  send_force({});
+  impl_->wake_thread();
   impl_->thread.join();
 }
 
@@ -86,8 +87,12 @@ bool IgtlLink::next(DeviceReport& report) { return impl_->reports.pop(report); }
 
 void IgtlLink::send_force(Vec3 force) {
   (void)impl_->forces.push(force);  // if so many wait, nobody takes them
+  impl_->wake_thread();
+}
+
+void IgtlLink::Impl::wake_thread() {
   const std::uint64_t one = 1;
-  [[maybe_unused]] const ssize_t written = ::write(impl_->wake.number(), &one, sizeof one);
+  [[maybe_unused]] const ssize_t written = ::write(wake.number(), &one, sizeof one);
 }
 
 // ---- the thread ----

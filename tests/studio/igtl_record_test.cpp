@@ -113,6 +113,171 @@ class IgtlRecord : public ::testing::Test {
 
 TEST_F(IgtlRecord, AClientAtAThousandPosesASecondIsRecordedWholeAndFeelsTheTissue) { a_whole_session_is_recorded(3); }
 
+/// Sends the same pose at 1 kHz for a while, so that a device that was away is back.
+void stay(IgtlPeer& peer, Vec3 position_mm = kHome, int milliseconds = 350) {
+  for (int i = 0; i < milliseconds; ++i) {
+    if (!peer.send(transform_bytes(position_mm))) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+TEST_F(IgtlRecord, EveryFaultIsHeldAndNotedAndTheSessionGoesOnToACleanEnd) {
+  RunningProgram program(listening(), folder_.path());
+  const int port = port_of(program);
+  ASSERT_GT(port, 0);
+  {
+    IgtlPeer peer = IgtlPeer::connect(port);
+    stay(peer);
+    peer.send(transform_bytes({NAN, 0, 0}));
+    stay(peer);
+    peer.send(transform_bytes({50, 0, 0}));
+    stay(peer);
+    peer.send(transform_bytes(kHome, 2000));
+    peer.send(transform_bytes(kHome, 1999));
+    stay(peer);
+    std::string broken = transform_bytes(kHome);
+    broken[90] = char(broken[90] ^ 4);
+    peer.send(broken);
+    stay(peer);
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    stay(peer);
+    peer.send(std::string(200, 'x'));  // garbage: the program hangs up
+    peer.wait_for_end();
+  }
+  {
+    IgtlPeer peer = IgtlPeer::connect(port);
+    stay(peer);
+    peer.send(transform_bytes(kHome).substr(0, 70));  // half a message, and gone
+  }
+  {
+    IgtlPeer peer = IgtlPeer::connect(port);
+    stay(peer);
+    std::string huge = transform_bytes(kHome);
+    huge[42] = '\x7f';  // the highest byte of the body's size
+    peer.send(huge);
+    peer.wait_for_end();
+  }
+  IgtlPeer peer = IgtlPeer::connect(port);
+  stay(peer);
+  program.interrupt();
+  const ProgramOutcome outcome = program.outcome();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_LT(program.most_memory(), 500l << 20);
+
+  const std::string info = ctpm({"info", "a.ctpm", "--json"});
+  EXPECT_TRUE(holds(info, "\"ended_cleanly\": true"));
+  std::size_t at = 0;
+  for (const std::string fault :
+       {"pose is not finite", "jumps farther than a hand moves", "time goes backwards", "a message with a wrong checksum",
+        "nothing usable comes", "what it sends is not OpenIGTLink", "it hung up", "what it sends is not OpenIGTLink"}) {
+    const std::size_t lost = info.find("\"" + fault + "; the pose is held\"", at);
+    ASSERT_NE(lost, std::string::npos) << fault << " is not, or not in its place, in " << info;
+    at = info.find("\"device back\"", lost);
+    ASSERT_NE(at, std::string::npos) << "no way back from: " << fault;
+  }
+  EXPECT_EQ(number(info, "max_force_n"), 0);  // the tool stood where it was all the while
+  EXPECT_TRUE(holds(ctpm({"verify", "a.ctpm"}), "same"));
+}
+
+TEST_F(IgtlRecord, ASecondClientIsTurnedAwayAndTheFirstOneStays) {
+  RunningProgram program(listening(), folder_.path());
+  const int port = port_of(program);
+  ASSERT_GT(port, 0);
+  IgtlPeer first = IgtlPeer::connect(port);
+  stay(first);
+  {
+    IgtlPeer second = IgtlPeer::connect(port);
+    second.wait_for_end();
+    EXPECT_TRUE(second.forces().empty());
+  }
+  stay(first);
+  program.interrupt();
+  EXPECT_EQ(program.outcome().code, 0);
+  first.wait_for_end();
+  EXPECT_FALSE(first.forces().empty());
+  EXPECT_EQ(first.forces().back(), Vec3{});  // no hand is left with a force
+  EXPECT_TRUE(holds(ctpm({"info", "a.ctpm", "--json"}), "a second device came and was turned away"));
+}
+
+TEST_F(IgtlRecord, APortInUseAndANobodyAreToldAtOnceAndNothingIsWritten) {
+  RunningProgram program(listening(), folder_.path());
+  const int port = port_of(program);
+  ASSERT_GT(port, 0);
+  const TemporaryFolder other;
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& part) {
+    const ProgramOutcome outcome = run_ctpm(arguments, other.path());
+    EXPECT_EQ(outcome.code, 2) << outcome.out;
+    EXPECT_TRUE(holds(outcome.err, part)) << outcome.err;
+    EXPECT_EQ(other.list(), "");
+  };
+  const std::string scene = (folder_.path() / "block.json").string(), number = std::to_string(port);
+  refused({"record", scene, "-o", "b.ctpm", "--igtl-listen", number},
+          "127.0.0.1:" + number + ": error: the port is in use");
+  program.interrupt();
+  const ProgramOutcome stopped = program.outcome();
+  EXPECT_EQ(stopped.code, 2);
+  EXPECT_TRUE(holds(stopped.err, "stopped before a pose came; nothing was recorded")) << stopped.err;
+  EXPECT_EQ(folder_.list(), "block.json");
+  refused({"record", scene, "-o", "b.ctpm", "--igtl", "127.0.0.1:" + number}, "cannot connect: Connection refused");
+  refused({"record", scene, "-o", "b.ctpm", "--igtl-listen", "0", "--igtl-bind", "192.0.2.1"}, "cannot listen here");
+}
+
+TEST_F(IgtlRecord, WhatIsWrongWithADevicesOptionsIsToldAtOnce) {
+  const ProgramOutcome outcome =
+      run_ctpm(listening({"--igtl", "nowhere", "--fast", "--device-button", "40=ball", "--device-scale", "0",
+                          "--device-rotation", "0", "0", "0", "0", "--device-tip", "0", "nan", "0", "--device-timeout-s",
+                          "0"}),
+               folder_.path());
+  EXPECT_EQ(outcome.code, 2);
+  for (const std::string part :
+       {"takes one of --script", "--fast: error: a device is followed in real time",
+        "--igtl: error: got 'nowhere', must be HOST:PORT", "--device-button: error: got '40=ball'",
+        "--device-scale: error:", "--device-rotation: error:", "--device-tip: error:", "--device-timeout-s: error:"})
+    EXPECT_TRUE(holds(outcome.err, part)) << part << " is not in: " << outcome.err;
+  const ProgramOutcome tools =
+      run_ctpm(listening({"--device-tool", "saw", "--device-button", "1=spoon"}), folder_.path());
+  EXPECT_EQ(tools.code, 2);
+  EXPECT_TRUE(holds(tools.err, "--device-tool: error: the scene has no tool 'saw' (its tools: ball, scalpel)"));
+  EXPECT_TRUE(holds(tools.err, "--device-button: error: the scene has no tool 'spoon'")) << tools.err;
+  EXPECT_EQ(folder_.list(), "block.json");
+}
+
+TEST_F(IgtlRecord, AServerIsConnectedToCalledAgainAndTakesOverFromAnotherSession) {
+  std::ofstream(folder_.path() / "press.json") << R"({"format": "ctpm-script", "version": 1, "steps": [
+      {"take": {"tool": "ball", "at_mm": [0, 0, 25]}}, {"press": {"distance_mm": 5, "speed_mm_per_s": 10}}]})";
+  ctpm({"record", "block.json", "--script", "press.json", "-o", "parent.ctpm", "--fast"});
+  igtl::ServerSocket::Pointer server = igtl::ServerSocket::New();
+  ASSERT_EQ(server->CreateServer(0), 0);
+  const std::string place = "localhost:" + std::to_string(server->GetServerPort());
+  RunningProgram program({"record", "--continue", "parent.ctpm", "--at", "0.6", "-o", "a.ctpm", "--igtl", place,
+                          "--device-offset-mm", "0", "0", "20", "--device-button", "0=scalpel"},
+                         folder_.path());
+  {
+    igtl::ClientSocket::Pointer socket = server->WaitForConnection(20000);
+    ASSERT_TRUE(socket.IsNotNull());
+    IgtlPeer peer(socket);
+    stay(peer);
+  }
+  igtl::ClientSocket::Pointer socket = server->WaitForConnection(20000);
+  ASSERT_TRUE(socket.IsNotNull());
+  IgtlPeer peer(socket);
+  stay(peer);
+  peer.send(sensor_bytes({1}));
+  stay(peer);
+  program.interrupt();
+  const ProgramOutcome outcome = program.outcome();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const std::string info = ctpm({"info", "a.ctpm", "--json"});
+  EXPECT_TRUE(holds(info, "\"source\": \"igtl\"")) << info;
+  EXPECT_TRUE(holds(info, "\"parent_tick\": \"600\"")) << info;
+  EXPECT_GT(number(info, "max_force_n"), 0.05);  // it began in the dent that the parent had pressed
+  EXPECT_TRUE(holds(ctpm({"verify", "a.ctpm"}), "same"));
+  ctpm({"replay", "a.ctpm", "--csv", "a.csv"});
+  const std::string table = testing::slurp(folder_.path() / "a.csv");
+  EXPECT_TRUE(holds(table, ",ball,"));
+  EXPECT_TRUE(holds(table, ",scalpel,"));
+}
+
 class IgtlRecordSlow : public IgtlRecord {};
 TEST_F(IgtlRecordSlow, AClientAtAThousandPosesASecondIsRecordedWholeFor20Seconds) { a_whole_session_is_recorded(20); }
 
