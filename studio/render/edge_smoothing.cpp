@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 
 namespace ctpm {
 namespace {
@@ -14,6 +15,30 @@ constexpr float kReach = 8;         // longest way along an edge [pixels]
 
 int luma_of(const std::uint8_t* p) {
   return (77 * p[0] + 150 * p[1] + 29 * p[2] + kBackdropLuma * (255 - p[3])) >> 8;
+}
+
+/// Brightness of every pixel. Whole words, so that the compiler makes it several at a time.
+void find_luma(const std::vector<std::uint8_t>& rgba, std::vector<std::uint8_t>& luma) {
+  luma.resize(rgba.size() / 4);
+  for (std::size_t i = 0; i < luma.size(); ++i) {
+    std::uint32_t word;
+    std::memcpy(&word, &rgba[4 * i], 4);
+    const std::uint32_t red = word & 255, green = (word >> 8) & 255, blue = (word >> 16) & 255,
+                        alpha = word >> 24;
+    luma[i] = std::uint8_t((77 * red + 150 * green + 29 * blue + kBackdropLuma * (255 - alpha)) >> 8);
+  }
+}
+
+/// Marks the pixels of a row that differ from their diagonal neighbours.
+void find_edges(const std::uint8_t* row, int width, std::uint8_t* is_edge) {
+  const std::uint8_t *above = row - width, *below = row + width;
+  for (int x = 1; x + 1 < width; ++x) {
+    const std::uint8_t low = std::min(
+        std::min(std::min(above[x - 1], above[x + 1]), std::min(below[x - 1], below[x + 1])), row[x]);
+    const std::uint8_t high = std::max(
+        std::max(std::max(above[x - 1], above[x + 1]), std::max(below[x - 1], below[x + 1])), row[x]);
+    is_edge[x] = high - low >= kLeastContrast;
+  }
 }
 
 /// Colour between the pixels.
@@ -29,42 +54,51 @@ std::array<float, 4> between(const std::uint8_t* rgba, int width, int height, fl
   return mixed;
 }
 
+/// The first edge at or after `x`, or `end`.
+int next_edge(const std::vector<std::uint8_t>& is_edge, int x, int end) {
+  const void* found = x < end ? std::memchr(&is_edge[std::size_t(x)], 1, std::size_t(end - x)) : nullptr;
+  return found ? int(static_cast<const std::uint8_t*>(found) - is_edge.data()) : end;
+}
+
+/// The colour of an edge pixel: the mean of places along the edge.
+std::array<std::uint8_t, 4> along_edge(const std::vector<std::uint8_t>& rgba, const std::uint8_t* m,
+                                       int width, int height, int x, int y) {
+  const int nw = m[-width - 1], ne = m[-width + 1], sw = m[width - 1], se = m[width + 1];
+  const int low = std::min({int(*m), nw, ne, sw, se}), high = std::max({int(*m), nw, ne, sw, se});
+  // Along the edge is across the steepest change.
+  float dx = float(-(nw + ne) + (sw + se)), dy = float((nw + sw) - (ne + se));
+  const float scale =
+      1 / (std::min(std::abs(dx), std::abs(dy)) + std::max(float(nw + ne + sw + se) / 32, 2.0f));
+  dx = std::clamp(dx * scale, -kReach, kReach), dy = std::clamp(dy * scale, -kReach, kReach);
+  const auto at = [&](float way) {
+    return between(rgba.data(), width, height, float(x) + way * dx, float(y) + way * dy);
+  };
+  const auto a = at(-1.0f / 6), b = at(1.0f / 6), c = at(-0.5f), d = at(0.5f);
+  std::array<std::uint8_t, 4> near, far;
+  for (std::size_t k = 0; k < 4; ++k) {
+    near[k] = std::uint8_t(0.5f * (a[k] + b[k]) + 0.5f);
+    far[k] = std::uint8_t(0.25f * (a[k] + b[k] + c[k] + d[k]) + 0.5f);
+  }
+  const int reached = luma_of(far.data());
+  return reached < low || reached > high ? near : far;
+}
+
 }  // namespace
 
-void smooth_edges(std::vector<std::uint8_t>& rgba, int width, int height,
-                  std::vector<std::uint8_t>& scratch) {
+void EdgeSmoother::smooth(std::vector<std::uint8_t>& rgba, int width, int height) {
   if (width < 3 || height < 3) return;
-  const std::size_t count = std::size_t(width) * std::size_t(height);
-  // One plane of brightness, then the untouched picture to read from.
-  scratch.resize(count * 5);
-  std::uint8_t* luma = scratch.data();
-  std::uint8_t* from = scratch.data() + count;
-  std::copy(rgba.begin(), rgba.begin() + std::ptrdiff_t(count * 4), from);
-  for (std::size_t i = 0; i < count; ++i) luma[i] = std::uint8_t(luma_of(from + 4 * i));
-  for (int y = 1; y + 1 < height; ++y)
-    for (int x = 1; x + 1 < width; ++x) {
-      const std::uint8_t* m = luma + std::ptrdiff_t(y) * width + x;
-      const int nw = m[-width - 1], ne = m[-width + 1], sw = m[width - 1], se = m[width + 1];
-      const int low = std::min({int(*m), nw, ne, sw, se}), high = std::max({int(*m), nw, ne, sw, se});
-      if (high - low < kLeastContrast) continue;
-      // Along the edge is across the steepest change.
-      float dx = float(-(nw + ne) + (sw + se)), dy = float((nw + sw) - (ne + se));
-      const float scale =
-          1 / (std::min(std::abs(dx), std::abs(dy)) + std::max(float(nw + ne + sw + se) / 32, 2.0f));
-      dx = std::clamp(dx * scale, -kReach, kReach), dy = std::clamp(dy * scale, -kReach, kReach);
-      const auto at = [&](float way) {
-        return between(from, width, height, float(x) + way * dx, float(y) + way * dy);
-      };
-      const auto a = at(-1.0f / 6), b = at(1.0f / 6), c = at(-0.5f), d = at(0.5f);
-      std::uint8_t near[4], far[4];
-      for (std::size_t k = 0; k < 4; ++k) {
-        near[k] = std::uint8_t(0.5f * (a[k] + b[k]) + 0.5f);
-        far[k] = std::uint8_t(0.25f * (a[k] + b[k] + c[k] + d[k]) + 0.5f);
-      }
-      const int reached = luma_of(far);
-      std::copy_n(reached < low || reached > high ? near : far, 4,
-                  &rgba[(std::size_t(y) * std::size_t(width) + std::size_t(x)) * 4]);
-    }
+  find_luma(rgba, luma_);
+  is_edge_.assign(std::size_t(width), 0);
+  smoothed_.clear();
+  for (int y = 1; y + 1 < height; ++y) {
+    const std::uint8_t* row = luma_.data() + std::ptrdiff_t(y) * width;
+    find_edges(row, width, is_edge_.data());
+    for (int x = next_edge(is_edge_, 1, width - 1); x < width - 1; x = next_edge(is_edge_, x + 1, width - 1))
+      smoothed_.push_back({std::size_t(y) * std::size_t(width) + std::size_t(x),
+                           along_edge(rgba, row + x, width, height, x, y)});
+  }
+  // Written once all are known, for each is made from the picture as it was.
+  for (const Smoothed& s : smoothed_) std::copy_n(s.rgba.data(), 4, &rgba[4 * s.pixel]);
 }
 
 }  // namespace ctpm

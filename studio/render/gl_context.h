@@ -28,8 +28,8 @@ namespace ctpm {
                       X(PFNGLDEPTHMASKPROC, DepthMask) X(PFNGLDISABLEPROC, Disable) X(                       \
                           PFNGLDRAWARRAYSPROC, DrawArrays) X(PFNGLDRAWELEMENTSPROC, DrawElements)            \
                           X(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced) X(PFNGLENABLEPROC, Enable) X( \
-                              PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) X(PFNGLFINISHPROC,  \
-                                                                                           Finish)           \
+                              PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) X(PFNGLFLUSHPROC,  \
+                                                                                           Flush)           \
                               X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, FramebufferRenderbuffer) X(                \
                                   PFNGLFRAMEBUFFERTEXTURE2DPROC,                                             \
                                   FramebufferTexture2D) X(PFNGLGENBUFFERSPROC, GenBuffers)                   \

@@ -6,6 +6,7 @@
 namespace ctpm {
 namespace {
 
+constexpr int kStep = 4;  // pixels between knots; the shadow has no finer detail
 constexpr std::size_t kTexels = std::size_t(GroundShadow::kSize) * GroundShadow::kSize;
 
 }  // namespace
@@ -95,9 +96,32 @@ float GroundShadow::darkness(float u, float v) const {
   return (1 - t) * ((1 - s) * row[0] + s * row[1]) + t * ((1 - s) * row[kSize] + s * row[kSize + 1]);
 }
 
-void GroundShadow::draw(Frame& frame, const Mat4& m) {
-  constexpr int kStep = 4;  // pixels between knots; the shadow has no finer detail
-  find_darkness();
+/// The part of the picture on which the ground square lies, in knots: columns [left, right), rows [top,
+/// bottom).
+GroundShadow::KnotRange GroundShadow::find_range(const Frame& frame, const Mat4& m) const {
+  const KnotRange all{0, 0, frame.width / kStep + 2, frame.height / kStep + 2};
+  double left = 1, right = -1, low = 1, high = -1;
+  for (const double u : {-1.0, 1.0})
+    for (const double v : {-1.0, 1.0}) {
+      const Vec3 p = centre_ + u * half_x_ + v * half_y_;
+      const auto row = [&](std::size_t r) {
+        return m[r] * p.x + m[4 + r] * p.y + m[8 + r] * p.z + m[12 + r];
+      };
+      const double w = row(3);
+      if (w <= 0) return all;  // a corner is behind the eye
+      left = std::min(left, row(0) / w), right = std::max(right, row(0) / w);
+      low = std::min(low, row(1) / w), high = std::max(high, row(1) / w);
+    }
+  const auto knot = [](double clip, int size) {
+    return int((0.5 + 0.5 * std::clamp(clip, -1.0, 1.0)) * size / kStep);
+  };
+  return {knot(left, frame.width), knot(-high, frame.height),
+          std::min(all.right, knot(right, frame.width) + 2),
+          std::min(all.bottom, knot(-low, frame.height) + 2)};
+}
+
+/// Darkness at the knots of a range.
+void GroundShadow::find_knots(const Frame& frame, const Mat4& m, const KnotRange& range) {
   // Clip coordinates (x, y, w) of ground coordinates (u, v, 1); its adjugate leads back from the picture.
   const auto row = [&](int r, Vec3 p, double last) {
     return m[std::size_t(r)] * p.x + m[std::size_t(4 + r)] * p.y + m[std::size_t(8 + r)] * p.z +
@@ -108,34 +132,40 @@ void GroundShadow::draw(Frame& frame, const Mat4& m) {
   const Vec3 to_w{row(3, half_x_, 0), row(3, half_y_, 0), row(3, centre_, 1)};
   const Vec3 from_x = cross(to_y, to_w), from_y = cross(to_w, to_x), from_w = cross(to_x, to_y);
   const double facing = dot(to_w, from_w);
-  const int columns = frame.width / kStep + 2, rows = frame.height / kStep + 2;
-  knots_.assign(std::size_t(columns) * std::size_t(rows), 0.0f);
-  for (int r = 0; r < rows; ++r)
-    for (int c = 0; c < columns; ++c) {
+  knots_.assign(std::size_t(range.columns()) * std::size_t(range.rows()), 0.0f);
+  for (int r = range.top; r < range.bottom; ++r)
+    for (int c = range.left; c < range.right; ++c) {
       const double x = 2.0 * c * kStep / frame.width - 1, y = 1 - 2.0 * r * kStep / frame.height;
       const Vec3 g = x * from_x + y * from_y + from_w;
       if (g.z * facing <= 0) continue;  // above the horizon
       const double u = g.x / g.z, v = g.y / g.z;
-      knots_[std::size_t(r * columns + c)] =
+      knots_[std::size_t((r - range.top) * range.columns() + c - range.left)] =
           darkness(float((0.5 + 0.5 * u) * kSize - 0.5), float((0.5 + 0.5 * v) * kSize - 0.5));
     }
+}
+
+void GroundShadow::draw(Frame& frame, const Mat4& clip_from_world) {
+  find_darkness();
+  const KnotRange range = find_range(frame, clip_from_world);
+  find_knots(frame, clip_from_world, range);
   // Linear between the knots, and the ground darkened by that much.
-  for (int y = 0; y < frame.height; ++y) {
+  const int first = range.left * kStep, last = std::min(frame.width, (range.right - 1) * kStep);
+  light_.resize(std::size_t(3 * kStep * range.columns()));
+  for (int y = range.top * kStep; y < std::min(frame.height, (range.bottom - 1) * kStep); ++y) {
     const float t = float(y % kStep) / kStep;
-    const float* upper = &knots_[std::size_t(y / kStep * columns)];
-    const float* lower = upper + columns;
-    std::uint8_t* to = &frame.rgb[std::size_t(y) * std::size_t(frame.width) * 3];
-    for (int c = 0; c * kStep < frame.width; ++c) {
+    const float* upper = &knots_[std::size_t((y / kStep - range.top) * range.columns())];
+    const float* lower = upper + range.columns();
+    std::uint32_t* light = light_.data();
+    for (int c = 0; c + 1 < range.columns(); ++c) {
       const float left = upper[c] + t * (lower[c] - upper[c]),
                   right = upper[c + 1] + t * (lower[c + 1] - upper[c + 1]);
-      if (left + right <= 0) continue;
-      const int last = std::min(kStep, frame.width - c * kStep);
-      for (int k = 0; k < last; ++k) {
-        const int light = 65536 - int(65536 * (left + float(k) / kStep * (right - left)));
-        std::uint8_t* pixel = to + 3 * (c * kStep + k);
-        for (int b = 0; b < 3; ++b) pixel[b] = std::uint8_t((pixel[b] * light + 32768) >> 16);
-      }
+      for (int k = 0; k < kStep; ++k, light += 3)
+        light[0] = light[1] = light[2] =
+            std::uint32_t(65536 - int(65536 * (left + float(k) / kStep * (right - left))));
     }
+    std::uint8_t* to = &frame.rgb[(std::size_t(y) * std::size_t(frame.width) + std::size_t(first)) * 3];
+    for (int i = 0; i < 3 * (last - first); ++i)
+      to[i] = std::uint8_t((to[i] * light_[std::size_t(i)] + 32768) >> 16);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -31,11 +32,20 @@ class GroundShadow {
 
   Vec3 centre_, half_x_, half_y_;
   Vec3 x_, y_, up_;  ///< turn a world vector into ground coordinates, -1 to 1, and height in reaches
+
+  struct KnotRange {
+    int left, top, right, bottom;
+    int columns() const { return right - left; }
+    int rows() const { return bottom - top; }
+  };
   float darkness(float u, float v) const;
   void find_darkness();
+  KnotRange find_range(const Frame& frame, const Mat4& clip_from_world) const;
+  void find_knots(const Frame& frame, const Mat4& clip_from_world, const KnotRange& range);
 
   std::vector<float> touched_, narrow_, wide_, swap_;  ///< (kSize x kSize)
-  std::vector<float> knots_;                           ///< darkness at every few pixels of the picture
+  std::vector<float> knots_;          ///< darkness at every few pixels of a part of the picture
+  std::vector<std::uint32_t> light_;  ///< of a row, 65536: all; for each part of a colour
 };
 
 }  // namespace ctpm

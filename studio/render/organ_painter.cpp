@@ -3,12 +3,12 @@
 namespace ctpm {
 
 Result<Done> OrganPainter::create(const Gl& gl, const SceneView& scene) {
-  for (const bool glassy : {false, true})
+  for (const OrganPass pass : {OrganPass::outside, OrganPass::inside, OrganPass::glassy})
     for (const bool cutaway : {false, true}) {
-      const ShaderSource source = organ_shader(glassy, cutaway);
+      const ShaderSource source = organ_shader(pass, cutaway);
       auto made = Program::create(gl, "organ", source.vertex, source.fragment);
       if (!made) return made.errors();
-      programs_[glassy][cutaway] = *made;
+      programs_[std::size_t(pass)][cutaway] = *made;
     }
   for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
     organs_.push_back({CutSurface(*scene.model, i, scene.surfaces[i]), {}, {}, false});
@@ -37,8 +37,16 @@ void OrganPainter::add_shadows(GroundShadow& shadow) const {
     shadow.add(organ.cut.surface(), organ.mesh.positions(), organ.cut.outer_triangle_count());
 }
 
-const Program& OrganPainter::program(const DrawOptions& options) const {
-  return programs_[options.view == View::both][options.cutaway.is_on()];
+std::vector<const Program*> OrganPainter::programs(const DrawOptions& options) const {
+  if (options.view == View::both) return {&program(OrganPass::glassy, options)};
+  return {&program(OrganPass::outside, options), &program(OrganPass::inside, options)};
+}
+
+void OrganPainter::set_look(const Program& program, const OrganLook& look, const DrawOptions& options) {
+  program.use();
+  program.set("outer_colour", linear(look.outer)), program.set("inner_colour", linear(look.inner));
+  program.set("wetness", look.wetness);
+  program.set("cutaway_point", options.cutaway.point), program.set("cutaway_normal", options.cutaway.normal);
 }
 
 /// Sorting here is cheaper than letting the software pipeline transform every triangle once for each pass.
@@ -66,31 +74,31 @@ OrganPainter::Order OrganPainter::sort_triangles(const Organ& organ, Vec3 eye, b
 }
 
 void OrganPainter::draw(const Gl& gl, const SceneView& scene, const DrawOptions& options) {
-  const Program& program = this->program(options);
   const bool glassy = options.view == View::both;
-  program.set("cutaway_point", options.cutaway.point), program.set("cutaway_normal", options.cutaway.normal);
+  const Program& outside = program(glassy ? OrganPass::glassy : OrganPass::outside, options);
+  const Program& inside = program(OrganPass::inside, options);
+  const auto draw_indices = [&](std::size_t first, std::size_t count) {
+    if (count)
+      gl.DrawElements(GL_TRIANGLES, GLsizei(count), GL_UNSIGNED_INT,
+                      reinterpret_cast<const void*>(first * sizeof(GLuint)));
+  };
   if (glassy) gl.Enable(GL_BLEND), gl.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   for (std::size_t i = 0; i < organs_.size(); ++i) {
     Organ& organ = organs_[i];
-    const OrganLook& look = scene.looks[i];
-    program.set("outer_colour", linear(look.outer)), program.set("inner_colour", linear(look.inner));
-    program.set("wetness", look.wetness);
     const bool is_cut = organ.cut.outer_triangle_count() < organ.cut.surface().triangle.size();
     // Inner faces of a whole organ are never seen.
     const Order order =
         sort_triangles(organ, options.camera.eye, !glassy && (is_cut || options.cutaway.is_on()));
     organ.array.set_indices(gl, indices_);
-    const auto pass = [&](std::size_t first, std::size_t count, bool is_wall) {
-      if (!count) return;
-      program.set("is_wall", is_wall ? 1 : 0);
-      gl.DrawElements(GL_TRIANGLES, GLsizei(count), GL_UNSIGNED_INT,
-                      reinterpret_cast<const void*>(first * sizeof(GLuint)));
-    };
     // What faces the eye comes first: it hides most of the rest.
-    pass(0, order.facing, false);
-    if (glassy) continue;
-    pass(order.facing, order.wall, true);
-    pass(order.facing + order.wall, order.averted, false);
+    set_look(outside, scene.looks[i], options);
+    draw_indices(0, order.facing);
+    if (glassy || order.wall + order.averted == 0) continue;
+    set_look(inside, scene.looks[i], options);
+    inside.set("is_wall", 1);
+    draw_indices(order.facing, order.wall);
+    inside.set("is_wall", 0);
+    draw_indices(order.facing + order.wall, order.averted);
   }
   gl.Disable(GL_BLEND);
 }

@@ -24,8 +24,8 @@ class OrganPainter {
   void update(const Gl& gl, const SceneView& scene, const State& state);
   void add_shadows(GroundShadow& shadow) const;
 
-  /// The program that draw() will use; its light must be set before.
-  const Program& program(const DrawOptions& options) const;
+  /// The programs that draw() will use; the light of each must be set before.
+  std::vector<const Program*> programs(const DrawOptions& options) const;
   void draw(const Gl& gl, const SceneView& scene, const DrawOptions& options);
 
   /// Where the vertices of all organs are [m].
@@ -51,7 +51,12 @@ class OrganPainter {
 
   std::vector<Organ> organs_;
   std::vector<std::uint32_t> indices_, averted_;
-  Program programs_[2][2];  ///< [is_glassy][has_cutaway]
+  const Program& program(OrganPass pass, const DrawOptions& options) const {
+    return programs_[std::size_t(pass)][options.cutaway.is_on()];
+  }
+  static void set_look(const Program& program, const OrganLook& look, const DrawOptions& options);
+
+  Program programs_[3][2];  ///< [OrganPass][has_cutaway]
 };
 
 }  // namespace ctpm

@@ -67,7 +67,8 @@ struct Renderer::Parts {
   std::unique_ptr<GlContext> context;
   SceneView scene;
   Frame backdrop, frame;
-  std::vector<std::uint8_t> rgba, scratch;
+  std::vector<std::uint8_t> rgba;
+  EdgeSmoother edges;
   PictureTarget target;
   Program tool, sphere, rod;
   OrganPainter organs;
@@ -100,7 +101,8 @@ struct Renderer::Parts {
   void draw_spheres(const State& state, const DrawOptions& options);
   void draw_elements(const State& state, const DrawOptions& options);
   void draw_tool(const State& state, const DrawOptions& options);
-  void read_frame(const DrawOptions& options);
+  void draw_behind(const DrawOptions& options);
+  void read_frame();
 };
 
 Result<Done> Renderer::Parts::create_programs() {
@@ -251,17 +253,20 @@ void Renderer::Parts::draw_tool(const State& state, const DrawOptions& options) 
       gl().DrawElements(GL_TRIANGLES, array.index_count, GL_UNSIGNED_INT, nullptr);
 }
 
-/// Reads what was drawn and puts the backdrop and the ground's shadow behind it.
-void Renderer::Parts::read_frame(const DrawOptions& options) {
+/// The backdrop and the ground's shadow.
+void Renderer::Parts::draw_behind(const DrawOptions& options) {
   frame.rgb = backdrop.rgb;
-  if (sees_ground(options)) {
-    shadow->clear();
-    organs.add_shadows(*shadow);
-    shadow->draw(frame, clip);
-  }
+  if (!sees_ground(options)) return;
+  shadow->clear();
+  organs.add_shadows(*shadow);
+  shadow->draw(frame, clip);
+}
+
+/// Reads what was drawn and puts it before what is behind.
+void Renderer::Parts::read_frame() {
   if (rect.width == 0 || rect.height == 0) return;
   target.read(gl(), rect, rgba);
-  smooth_edges(rgba, rect.width, rect.height, scratch);
+  edges.smooth(rgba, rect.width, rect.height);
   for (int row = 0; row < rect.height; ++row) {
     const std::uint8_t* from = rgba.data() + std::size_t(row) * std::size_t(rect.width) * 4;
     std::uint8_t* to =
@@ -270,6 +275,10 @@ void Renderer::Parts::read_frame(const DrawOptions& options) {
     for (int x = 0; x < rect.width; ++x, from += 4, to += 3) {
       const unsigned rest = 255u - from[3];
       if (rest == 255) continue;
+      if (rest == 0) {
+        to[0] = from[0], to[1] = from[1], to[2] = from[2];
+        continue;
+      }
       for (int c = 0; c < 3; ++c) to[c] = std::uint8_t(std::min(255u, from[c] + (to[c] * rest + 127) / 255));
     }
   }
@@ -325,10 +334,12 @@ const Frame& Renderer::draw(const State& state, const DrawOptions& options) {
   if (options.view == View::elements) p.draw_elements(state, options);
   p.draw_tool(state, options);
   if (options.view == View::surface || options.view == View::both) {
-    p.set_light(p.organs.program(options), state, options);
+    for (const Program* program : p.organs.programs(options)) p.set_light(*program, state, options);
     p.organs.draw(gl, p.scene, options);
   }
-  p.read_frame(options);
+  gl.Flush();  // the driver's threads draw while this one does what is behind
+  p.draw_behind(options);
+  p.read_frame();
   return p.frame;
 }
 

@@ -1,14 +1,41 @@
 #include "studio/render/shaders.h"
 
+#include <initializer_list>
+
 namespace ctpm {
 namespace {
 
 const char* const kVersion = "#version 330 core\n";
+const char* const kUp = "uniform vec3 up;\n";
 
 // Key light from the upper left, cool fill from the right, rim from behind; a room to be mirrored in wet
 // tissue.
 const char* const kLight = R"(
 uniform vec3 eye, up, key_light, fill_light, rim_light;
+vec3 room(vec3 r) {
+  float height = dot(r, up);
+  vec3 c = mix(vec3(0.10, 0.09, 0.09), vec3(0.34, 0.38, 0.42), smoothstep(-0.35, 0.55, height));
+  c += vec3(5.5, 5.2, 4.9) * smoothstep(0.955, 0.988, dot(r, key_light));
+  c += vec3(0.75, 0.85, 1.0) * smoothstep(0.80, 0.97, dot(r, fill_light));
+  c += vec3(1.1) * smoothstep(0.86, 0.97, dot(r, rim_light));
+  return c;
+}
+// Light that wraps around the edge of shadow, in red furthest, as light does that passes through tissue.
+vec3 wrapped(float c, vec3 wrap) { vec3 w = clamp((c + wrap) / (1.0 + wrap), 0.0, 1.0); return w * w; }
+vec3 diffuse_light(vec3 n, vec3 wrap, float shade) {
+  vec3 ambient = mix(vec3(0.30, 0.22, 0.20), vec3(0.50, 0.54, 0.58), 0.5 + 0.5 * dot(n, up)) * shade;
+  vec3 key = vec3(1.55, 1.47, 1.38) * wrapped(dot(n, key_light), wrap) * mix(1.0, shade, 0.7);
+  vec3 fill = vec3(0.26, 0.30, 0.36) * wrapped(dot(n, fill_light), wrap) * shade;
+  float rim = clamp((dot(n, rim_light) + 0.05) / 1.05, 0.0, 1.0);
+  return ambient + key + fill + 0.38 * rim * rim;
+}
+float fresnel(float c) { float m = 1.0 - clamp(c, 0.0, 1.0); float m2 = m * m; return 0.035 + 0.55 * m2 * m2 * m; }
+// Soft shoulder, then gamma 2, which is close to sRGB and one square root.
+vec3 to_srgb(vec3 c) { return sqrt(max(c * (1.0 + 0.16 * c) / (1.0 + 0.62 * c), vec3(0.0))); }
+)";
+
+// Soft shadows of the tool and of the ground nearby.
+const char* const kShade = R"(
 uniform vec3 tool_tip, tool_heel;
 uniform float tool_radius;
 uniform float ground_height, scene_size;
@@ -27,26 +54,13 @@ float ground_shade(vec3 p, vec3 n) {
   float down = 0.5 - 0.5 * dot(n, up);
   return 1.0 - 0.6 * down * exp(-7.0 * max(h, 0.0));
 }
-vec3 room(vec3 r) {
-  float height = dot(r, up);
-  vec3 c = mix(vec3(0.10, 0.09, 0.09), vec3(0.34, 0.38, 0.42), smoothstep(-0.35, 0.55, height));
-  c += vec3(5.5, 5.2, 4.9) * smoothstep(0.955, 0.988, dot(r, key_light));
-  c += vec3(0.75, 0.85, 1.0) * smoothstep(0.80, 0.97, dot(r, fill_light));
-  c += vec3(1.1) * smoothstep(0.86, 0.97, dot(r, rim_light));
-  return c;
-}
-// Light that wraps around the edge of shadow, in red furthest, as light does that passes through tissue.
-vec3 wrapped(float c, vec3 wrap) { vec3 w = clamp((c + wrap) / (1.0 + wrap), 0.0, 1.0); return w * w; }
-vec3 diffuse_light(vec3 n, vec3 wrap, float shade) {
-  vec3 ambient = mix(vec3(0.30, 0.22, 0.20), vec3(0.50, 0.54, 0.58), 0.5 + 0.5 * dot(n, up)) * shade;
-  vec3 key = vec3(1.55, 1.47, 1.38) * wrapped(dot(n, key_light), wrap) * mix(1.0, shade, 0.7);
-  vec3 fill = vec3(0.26, 0.30, 0.36) * wrapped(dot(n, fill_light), wrap) * shade;
-  vec3 rim = vec3(0.38) * wrapped(dot(n, rim_light), vec3(0.05));
-  return ambient + key + fill + rim;
-}
-float fresnel(float c) { float m = 1.0 - clamp(c, 0.0, 1.0); float m2 = m * m; return 0.035 + 0.55 * m2 * m2 * m; }
-// Soft shoulder, then gamma 2, which is close to sRGB and one square root.
-vec3 to_srgb(vec3 c) { return sqrt(max(c * (1.0 + 0.16 * c) / (1.0 + 0.62 * c), vec3(0.0))); }
+)";
+
+// What changes slowly over the tissue is worked out at its vertices: colour, soft shadows, and the place at
+// which the fine relief is looked up, bent so that nothing repeats visibly.
+const char* const kBend = R"(
+vec3 wave(vec3 x) { x = fract(x) * 2.0 - 1.0; return 4.0 * x * (abs(x) - 1.0); }
+vec3 bend(vec3 rest) { return rest + 0.0021 * wave(rest.yzx * 47.0) + 0.0011 * wave(rest.zxy * 97.0); }
 )";
 
 const char* const kOrganVertex = R"(
@@ -55,24 +69,32 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 rest;
 layout(location = 3) in vec3 crevice_stain_lip;
 uniform mat4 clip_from_world;
-out vec3 p, n, q;
-out vec3 hollow_stain_lip;
+uniform vec3 outer_colour, inner_colour;
+out vec3 p, n, q, base;
+out float shadow, lip;
 void main() {
-  p = position; n = normal; q = rest; hollow_stain_lip = crevice_stain_lip;
+  float hollow = crevice_stain_lip.x, stain = crevice_stain_lip.y;
+  p = position; n = normal; q = bend(rest); lip = crevice_stain_lip.z;
+  shadow = tool_shade(p, n) * ground_shade(p, n) * clamp(1.0 + 1.6 * min(hollow, 0.0), 0.35, 1.0);
+#ifdef INSIDE
+  base = inner_colour * (1.0 + 0.16 * stain);
+#else
+  base = outer_colour * (1.0 + 0.20 * stain);
+  base = mix(base, base * vec3(1.12, 0.86, 0.80), clamp(stain, 0.0, 1.0));
+  base *= 1.0 + 0.6 * clamp(hollow, 0.0, 0.3);
+#endif
   gl_Position = clip_from_world * vec4(position, 1.0);
 }
 )";
 
-// Small relief that is fixed to the tissue: where two gyroids, turned against each other and bent, meet in
-// bumps, so that nothing repeats visibly. Parabolas stand for sines.
+// Small relief that is fixed to the tissue: where two gyroids, turned against each other, meet in bumps.
+// Parabolas stand for sines. Gradient, and height.
 const char* const kRelief = R"(
-vec3 wave(vec3 x) { x = fract(x) * 2.0 - 1.0; return 4.0 * x * (abs(x) - 1.0); }
 vec4 gyroid(vec3 x) {
   vec3 s = wave(x), c = wave(x + 0.25);
   return vec4(c.xyz * c.yzx - s.zxy * s.xyz, dot(s, c.yzx));
 }
-vec4 relief(vec3 rest) {
-  vec3 x = rest + 0.0021 * wave(rest.yzx * 47.0) + 0.0011 * wave(rest.zxy * 97.0);
+vec4 relief(vec3 x) {
   const mat3 turn = mat3(0.36, 0.48, -0.80, -0.80, 0.60, 0.0, 0.48, 0.64, 0.60);
   vec4 one = gyroid(x * 141.0), other = gyroid(turn * x * 197.0);
   return 0.75 * vec4(one.xyz * other.w + 1.35 * (other.xyz * turn) * one.w, one.w * other.w);
@@ -80,9 +102,9 @@ vec4 relief(vec3 rest) {
 )";
 
 const char* const kOrganFragment = R"(
-in vec3 p, n, q;
-in vec3 hollow_stain_lip;
-uniform vec3 outer_colour, inner_colour;
+in vec3 p, n, q, base;
+in float shadow, lip;
+uniform vec3 inner_colour;
 uniform float wetness;
 uniform int is_wall;
 uniform vec3 cutaway_point, cutaway_normal;
@@ -92,59 +114,45 @@ void main() {
 #ifdef CUTAWAY
   if (dot(p - cutaway_point, cutaway_normal) > 0.0) discard;
 #endif
-#ifdef GLASSY_CUTAWAY
-  if (dot(p - cutaway_point, cutaway_normal) > 0.0) discard;
-#endif
-#ifdef GLASSY
-  if (!gl_FrontFacing) discard;
-#endif
-  float hollow = hollow_stain_lip.x, stain = hollow_stain_lip.y;
-  float lip = smoothstep(0.80, 0.97, hollow_stain_lip.z);  // a closed cut stays visible as a dark, wet line
-  vec3 v = normalize(eye - p);
-  vec3 m = normalize(n);
-  bool inside = is_wall == 1 || !gl_FrontFacing;
+  vec3 v = normalize(eye - p), m = normalize(n), place = q;
+  float shade = shadow;
+#ifdef INSIDE
+  const float kRough = 0.09, kStained = 0.13, kMirror = 0.55;
+  if (is_wall == 1 ? dot(m, v) < 0.0 : !gl_FrontFacing) m = -m;
+  bool is_section = false;
 #ifdef CUTAWAY
   // An inner side that one sees through the plane means solid tissue at the plane: draw the section there.
   vec3 at = p;
   float above = dot(eye - cutaway_point, cutaway_normal), below = dot(p - cutaway_point, cutaway_normal);
-  bool is_section = !gl_FrontFacing && above > 0.0;
-  if (is_section) at = eye + (p - eye) * (above / (above - below));
+  is_section = !gl_FrontFacing && above > 0.0;
+  if (is_section) {
+    at = eye + (p - eye) * (above / (above - below));
+    m = cutaway_normal, place = bend(at), shade = tool_shade(at, m) * ground_shade(at, m);
+  }
   vec4 clip = clip_from_world * vec4(at, 1.0);
   gl_FragDepth = 0.5 + 0.5 * clip.z / clip.w;
 #endif
-  if (is_wall == 1 ? dot(m, v) < 0.0 : !gl_FrontFacing) m = -m;
-#ifdef CUTAWAY
-  if (is_section) m = cutaway_normal;
-#define p at
-#define q at
-#endif
-  vec4 fine = relief(q);
-  vec3 bumped = normalize(m - (inside ? 0.09 : 0.017) * (fine.xyz - m * dot(m, fine.xyz)));
-  float shade = tool_shade(p, m) * ground_shade(p, m) * clamp(1.0 - 1.6 * max(-hollow, 0.0), 0.35, 1.0);
-  vec3 base;
-  if (inside) {
-    base = inner_colour * (1.0 + 0.13 * fine.a + 0.16 * stain);
-#ifdef CUTAWAY
-    if (is_wall == 0 && !is_section) shade *= 0.45;
+  if (is_wall == 0 && !is_section) shade *= 0.45;
 #else
-    if (is_wall == 0) shade *= 0.45;
+  const float kRough = 0.017, kStained = 0.035, kMirror = 1.0;
 #endif
-  } else {
-    base = outer_colour * (1.0 + 0.20 * stain + 0.035 * fine.a);
-    base = mix(base, base * vec3(1.12, 0.86, 0.80), clamp(stain, 0.0, 1.0));
-    base *= 1.0 + 0.6 * clamp(hollow, 0.0, 0.3);
-    base = mix(base, 0.55 * inner_colour, 0.9 * lip);
-  }
-  vec3 c = base * diffuse_light(bumped, vec3(0.38, 0.16, 0.12), shade);
-  float facing = dot(bumped, v);
+  vec4 fine = relief(place);
+  vec3 bumped = normalize(m - kRough * (fine.xyz - m * dot(m, fine.xyz)));
+  vec3 paint = base * (1.0 + kStained * fine.a);
+#ifndef INSIDE
+  paint = mix(paint, 0.55 * inner_colour, 0.9 * smoothstep(0.80, 0.97, lip));  // a closed cut stays visible
+#endif
+  vec3 c = paint * diffuse_light(bumped, vec3(0.38, 0.16, 0.12), shade);
+  float facing = dot(bumped, v), towards_key = dot(key_light, bumped);
   float edge = 1.0 - clamp(facing, 0.0, 1.0);
   // Glow at grazing angles, where light has passed a thin layer.
-  c += base * vec3(0.35, 0.10, 0.08) * edge * edge * edge * shade;
-  vec3 mirrored = reflect(-v, normalize(mix(m, bumped, 0.55)));
-  c += wetness * (inside ? 0.55 : 1.0) * fresnel(facing) * room(mirrored) * mix(0.3, 1.0, shade);
-  float broad_spot = max(dot(normalize(key_light + v), bumped), 0.0);
+  c += paint * vec3(0.35, 0.10, 0.08) * (edge * edge * edge * shade);
+  vec3 mirrored = reflect(-v, mix(m, bumped, 0.55));  // both are nearly the same, and so is its length
+  c += (wetness * kMirror * fresnel(facing) * mix(0.3, 1.0, shade)) * room(mirrored);
+  // The highlight's half vector, key_light + v, without its three components.
+  float broad_spot = max(towards_key + facing, 0.0) * inversesqrt(max(2.0 + 2.0 * dot(key_light, v), 0.01));
   float spot2 = broad_spot * broad_spot, spot4 = spot2 * spot2, spot8 = spot4 * spot4;
-  c += wetness * vec3(0.10, 0.095, 0.09) * spot8 * spot8 * spot8 * shade;
+  c += vec3(0.10, 0.095, 0.09) * (wetness * spot8 * spot8 * spot8 * shade);
 #ifdef GLASSY
   float cover = mix(0.16, 0.85, edge * edge);
   colour = vec4(cover * to_srgb(c), cover);
@@ -267,20 +275,24 @@ void main() {
 }
 )";
 
-std::string join(const char* a, const char* b = "", const char* c = "", const char* d = "") {
-  return std::string(kVersion) + a + b + c + d;
+std::string join(std::initializer_list<const char*> parts) {
+  std::string source = kVersion;
+  for (const char* part : parts) source += part;
+  return source;
 }
 
 }  // namespace
 
-ShaderSource organ_shader(bool is_glassy, bool has_cutaway) {
-  const std::string defines = std::string(is_glassy ? "#define GLASSY\n" : "") +
-                              (has_cutaway && !is_glassy ? "#define CUTAWAY\n" : "") +
-                              (has_cutaway && is_glassy ? "#define GLASSY_CUTAWAY\n" : "");
-  return {join(kOrganVertex), join(defines.c_str(), kLight, kRelief, kOrganFragment)};
+ShaderSource organ_shader(OrganPass pass, bool has_cutaway) {
+  const char* const side = pass == OrganPass::inside   ? "#define INSIDE\n"
+                           : pass == OrganPass::glassy ? "#define GLASSY\n"
+                                                       : "";
+  const char* const cutaway = has_cutaway ? "#define CUTAWAY\n" : "";
+  return {join({side, kUp, kShade, kBend, kOrganVertex}),
+          join({side, cutaway, kLight, kShade, kBend, kRelief, kOrganFragment})};
 }
-ShaderSource tool_shader() { return {join(kToolVertex), join(kLight, kToolFragment)}; }
-ShaderSource sphere_shader() { return {join(kSphereVertex), join(kLight, kSphereFragment)}; }
-ShaderSource rod_shader() { return {join(kRodVertex), join(kLight, kRodFragment)}; }
+ShaderSource tool_shader() { return {join({kToolVertex}), join({kLight, kToolFragment})}; }
+ShaderSource sphere_shader() { return {join({kSphereVertex}), join({kLight, kShade, kSphereFragment})}; }
+ShaderSource rod_shader() { return {join({kRodVertex}), join({kLight, kShade, kRodFragment})}; }
 
 }  // namespace ctpm
