@@ -37,13 +37,17 @@ void BackwardEuler::solve(Elements& elements, const State& state, Outside& outsi
   elements.linearise(state, outside.h, force_, blocks_);
   for (int round = 0;; ++round) {
     outside.contact.linearise(outside.h, force_, blocks_);
+    outside.pairs.linearise(outside.h, force_, blocks_);
     const CgOutcome outcome = solve_round(elements, state, outside, velocity);
     report.iterations += outcome.iterations;
     report.residual = outcome.residual;
     if (!outcome.converged) report.status = StepStatus::not_converged;
-    if (round == kContactRounds || !outside.contact.has_pulling(outside.h, velocity)) return;
+    const bool pulls = outside.contact.has_pulling(outside.h, velocity) || outside.pairs.has_pulling(outside.h, velocity);
+    if (round == kContactRounds || !pulls) return;
+    outside.pairs.undo_linearise(force_, blocks_);
     outside.contact.undo_linearise(force_, blocks_);
     outside.contact.drop_pulling(outside.h, velocity);
+    outside.pairs.drop_pulling(outside.h, velocity);
   }
 }
 
@@ -79,6 +83,7 @@ void BackwardEuler::apply(const Elements& elements, const State& state, const Ou
     for (std::size_t i = 0; i < n; ++i) out[axis * n + i] = mass[i] * in[axis * n + i];
   elements.apply(state, outside.h, in, out);
   if (outside.contact.count() > 0) outside.contact.apply(outside.h, in, out);
+  if (outside.pairs.count() > 0) outside.pairs.apply(outside.h, in, out);
 }
 
 /// The preconditioner must not move a guided sphere along a held axis.

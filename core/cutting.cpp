@@ -1,61 +1,31 @@
 #include "core/cutting.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "core/blade_geometry.h"
 
 namespace ctpm {
 namespace {
 
-/// Six times the signed volume of the tetrahedron a b c d.
-double volume(Vec3 a, Vec3 b, Vec3 c, Vec3 d) { return dot(b - a, cross(c - a, d - a)); }
-
-/// Does the segment p-q meet the triangle a b c? Touching an edge or corner counts; a segment in the plane
-/// does not.
-bool segment_meets_triangle(Vec3 p, Vec3 q, Vec3 a, Vec3 b, Vec3 c) {
-  const double side_p = volume(p, a, b, c), side_q = volume(q, a, b, c);
-  if ((side_p > 0) == (side_q > 0) && side_p != 0 && side_q != 0) return false;
-  if (side_p == 0 && side_q == 0) return false;
-  const double ab = volume(p, q, a, b), bc = volume(p, q, b, c), ca = volume(p, q, c, a);
-  return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
-}
-
-/// Does segment p-q meet what the segment from-to sweeps while it moves to from2-to2?
-bool segment_meets_sweep(Vec3 p, Vec3 q, Vec3 from, Vec3 to, Vec3 from2, Vec3 to2) {
-  return segment_meets_triangle(p, q, from, to, from2) || segment_meets_triangle(p, q, to, to2, from2);
-}
-
-struct Box {
-  Vec3 low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
-
-  void add(Vec3 p) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  bool meets(const Box& other) const {
-    return low.x <= other.high.x && other.low.x <= high.x && low.y <= other.high.y && other.low.y <= high.y &&
-           low.z <= other.high.z && other.low.z <= high.z;
-  }
-};
-
-template <class... Points>
-Box box_of(Points... points) {
-  Box box;
-  (box.add(points), ...);
-  return box;
-}
-
-/// Severs the live elements for which `crosses(a, b)` holds, then the constraints and angle springs that lost
-/// an edge.
-template <class Crosses>
-std::int32_t sever(const Model& model, State& state, Crosses&& crosses) {
+/// Severs the live elements that `meet(a, b)` says are crossed, then the constraints and angle springs that
+/// lost an edge.
+template <class Meet>
+std::int32_t sever(const Model& model, State& state, std::vector<Crossing>& crossings, Meet&& meet) {
   std::int32_t count = 0;
-  const auto sever_axial = [&](const auto& elements, std::vector<std::uint8_t>& severed) {
-    for (std::size_t i = 0; i < elements.size(); ++i)
-      if (!severed[i] && crosses(std::size_t(elements.a[i]), std::size_t(elements.b[i])))
-        severed[i] = 1, ++count;
+  const auto sever_axial = [&](const auto& elements, std::size_t first, std::vector<std::uint8_t>& severed,
+                               std::vector<std::uint8_t>& crossing) {
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      if (severed[i]) continue;
+      std::optional<Crossing> crossed = meet(std::size_t(elements.a[i]), std::size_t(elements.b[i]));
+      if (!crossed) continue;
+      severed[i] = 1, ++count;
+      if (!crossing.empty()) crossing[i] = stored_crossing(crossed->along);
+      crossed->element = std::int32_t(first + i);
+      crossings.push_back(*crossed);
+    }
   };
-  sever_axial(model.edges, state.edge_severed);
-  sever_axial(model.tpms, state.tpm_severed);
+  sever_axial(model.edges, 0, state.edge_severed, state.edge_crossing);
+  sever_axial(model.tpms, model.edges.size(), state.tpm_severed, state.tpm_crossing);
   if (count == 0) return 0;
   const auto sever_lines = [&](const auto& lines, std::vector<std::uint8_t>& severed) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -77,22 +47,33 @@ BladeEdge blade_edge(const Tool& scalpel, const Inputs& inputs) {
   return {inputs.position, inputs.position + rotate(inputs.world_from_tool, {0, 0, scalpel.blade_length})};
 }
 
+std::uint8_t stored_crossing(double along) {
+  return std::uint8_t(1 + int(std::clamp(along, 0.0, 1.0) / kCrossingUnit + 0.5));
+}
+
+double crossing_of(std::uint8_t stored) { return stored == 0 ? 0.5 : (stored - 1) * kCrossingUnit; }
+
 std::int32_t sever_swept_by_blade(const Model& model, const BladeEdge& before, const BladeEdge& after,
-                                  const Vec3Array& position, State& state) {
-  const Box sweep = box_of(before.tip, before.heel, after.tip, after.heel);
-  return sever(model, state, [&](std::size_t a, std::size_t b) {
+                                  const Vec3Array& position, State& state,
+                                  std::vector<Crossing>& crossings) {
+  const Box sweep(before.tip, before.heel, after.tip, after.heel);
+  return sever(model, state, crossings, [&](std::size_t a, std::size_t b) -> std::optional<Crossing> {
     const Vec3 p = position[a], q = position[b];
-    return sweep.meets(box_of(p, q)) &&
-           segment_meets_sweep(p, q, before.tip, before.heel, after.tip, after.heel);
+    if (!sweep.meets(Box(p, q))) return std::nullopt;
+    const auto hit = meet_sweep(p, q, before.tip, before.heel, after.tip, after.heel);
+    if (!hit) return std::nullopt;
+    return Crossing{-1, hit->along, hit->across, hit->share};
   });
 }
 
 std::int32_t sever_moved_through_blade(const Model& model, const BladeEdge& blade, const Vec3Array& from,
-                                       const Vec3Array& to, State& state) {
-  const Box edge = box_of(blade.tip, blade.heel);
-  return sever(model, state, [&](std::size_t a, std::size_t b) {
-    return edge.meets(box_of(from[a], from[b], to[a], to[b])) &&
-           segment_meets_sweep(blade.tip, blade.heel, from[a], from[b], to[a], to[b]);
+                                       const Vec3Array& to, State& state, std::vector<Crossing>& crossings) {
+  const Box edge(blade.tip, blade.heel);
+  return sever(model, state, crossings, [&](std::size_t a, std::size_t b) -> std::optional<Crossing> {
+    if (!edge.meets(Box(from[a], from[b], to[a], to[b]))) return std::nullopt;
+    const auto hit = meet_sweep(blade.tip, blade.heel, from[a], from[b], to[a], to[b]);
+    if (!hit) return std::nullopt;
+    return Crossing{-1, hit->across, hit->along, hit->share};
   });
 }
 

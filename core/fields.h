@@ -32,6 +32,9 @@ void for_each_field(State_& s, Visit&& visit) {
   visit("last_inputs.position", s.last_inputs.position);
   visit("last_inputs.world_from_tool", s.last_inputs.world_from_tool);
   visit("last_inputs.buttons", s.last_inputs.buttons);
+  visit("edge_crossing", s.edge_crossing);
+  visit("tpm_crossing", s.tpm_crossing);
+  visit_points("blade_trail.x", "blade_trail.y", "blade_trail.z", s.blade_trail, visit);
 }
 
 template <class Tool_, class Visit>
@@ -107,6 +110,11 @@ void for_each_field(Model_& m, Visit&& visit) {
   visit("solver.max_iterations", m.solver.max_iterations);
   visit("solver.substeps", m.solver.substeps);
   visit("solver.integrator", m.solver.integrator);
+  visit("cut_resistance.edge_energy", m.cut_resistance.edge_energy);
+  visit("cut_resistance.tpm_energy", m.cut_resistance.tpm_energy);
+  visit("cut_resistance.edge_friction", m.cut_resistance.edge_friction);
+  visit("cut_resistance.tpm_friction", m.cut_resistance.tpm_friction);
+  visit("lip_k", m.lip_k);
 }
 
 }  // namespace ctpm

@@ -51,6 +51,15 @@ struct AngleSprings {
   std::size_t size() const { return a.size(); }
 };
 
+/// What a blade has to overcome at each axial element. An element stands for an area of tissue across it, so
+/// that the areas of all elements that a plane crosses add up to the plane's area, whichever way it lies.
+/// Empty if the scene has no scalpel or no tissue resists.
+struct CutResistance {
+  std::vector<double> edge_energy, tpm_energy;      ///< fracture toughness J_c times area [J], >= 0
+  std::vector<double> edge_friction, tpm_friction;  ///< of the blade's two flanks, stress times area [N], >= 0
+  bool any() const { return !edge_energy.empty() || !tpm_energy.empty(); }
+};
+
 enum class ToolKind : std::int32_t {
   ball = 0,     ///< rigid ball that presses
   scalpel = 1,  ///< blade edge that severs what it sweeps
@@ -137,6 +146,10 @@ struct Model {
   double contact_friction = 0;  ///< Coulomb coefficient between tool and tissue, >= 0
 
   SolverSettings solver;
+
+  CutResistance cut_resistance;
+  double lip_k = 0;  ///< stiffness with which the sides of a cut meet again, sphere to sphere [N/m]; 0: they
+                     ///< do not, and pass through each other
 
   std::size_t sphere_count() const { return mass.size(); }
   std::size_t element_count() const {

@@ -48,6 +48,9 @@ void check_material(Errors& errors, const std::string& where, const Material& m,
   if (!(m.viscosity >= 0) || !std::isfinite(m.viscosity))
     errors.push_back(
         {where, "viscosity v1: got " + std::to_string(m.viscosity) + " Pa s/m, must be 0 or more", ""});
+  if (!(m.fracture_toughness >= 0 && std::isfinite(m.fracture_toughness) && m.blade_friction >= 0 &&
+        std::isfinite(m.blade_friction)))
+    errors.push_back({where, "fracture toughness and blade friction must be 0 or more", ""});
   if (!(m.density > 0 && m.stiffness_scale > 0 && m.calibration_area > 0 && m.calibration_spacing > 0))
     errors.push_back(
         {where, "density, stiffness scale, calibration area and spacing must all be more than 0", ""});
@@ -294,11 +297,45 @@ void add_spheres(Model& model, const FilledOrgan& organ, const OrganSettings& se
                           organ.sphere_radius, organ.spacing, settings.damage_depth, layers});
 }
 
+/// Area that an element stands for when a cut crosses it at right angles [m^2]. A plane with the unit normal
+/// n crosses |n . D| / s^3 elements of the direction D per area; with this area times |n . D| / |D| for each,
+/// they sum to 1 for every n, since the squared components of all directions add up to a multiple of |n|^2.
+double crossed_area(LatticeKind lattice, double spacing) {
+  return spacing * spacing / (lattice == LatticeKind::cubic_18 ? 1 + 2 * std::sqrt(2.0) : 1);
+}
+
+/// What the elements of an organ, from `first_edge` and `first_tpm` on, set against a blade.
+void add_cut_resistance(Model& model, const FilledOrgan& organ, const OrganSettings& settings,
+                        std::size_t first_edge, std::size_t first_tpm) {
+  CutResistance& cut = model.cut_resistance;
+  const double area = crossed_area(settings.lattice, organ.spacing);
+  const auto first_sphere = std::size_t(model.organs.back().first);
+  const auto add = [&](const auto& elements, std::size_t first, std::vector<double>& energy,
+                       std::vector<double>& friction) {
+    energy.resize(first, 0.0), friction.resize(first, 0.0);
+    for (std::size_t e = first; e < elements.size(); ++e) {
+      const Material& a = material_of(organ, settings, std::size_t(elements.a[e]) - first_sphere);
+      const Material& b = material_of(organ, settings, std::size_t(elements.b[e]) - first_sphere);
+      energy.push_back(area * 0.5 * (a.fracture_toughness + b.fracture_toughness));
+      friction.push_back(2 * area * 0.5 * (a.blade_friction + b.blade_friction));  // two flanks
+    }
+  };
+  add(model.edges, first_edge, cut.edge_energy, cut.edge_friction);
+  add(model.tpms, first_tpm, cut.tpm_energy, cut.tpm_friction);
+}
+
 /// Gives back the arrays of features that no element uses.
 void leave_out_unused(Model& model) {
   Edges& edges = model.edges;
   if (std::all_of(edges.c.begin(), edges.c.end(), [](double c) { return c == 0; })) edges.c = {};
   if (!model.has_softening) edges.third = {};
+  CutResistance& cut = model.cut_resistance;
+  const auto is_zero = [](const std::vector<double>& values) {
+    return std::all_of(values.begin(), values.end(), [](double v) { return v == 0; });
+  };
+  if (is_zero(cut.edge_energy) && is_zero(cut.tpm_energy) && is_zero(cut.edge_friction) &&
+      is_zero(cut.tpm_friction))
+    cut = {};
 }
 
 }  // namespace
@@ -313,6 +350,7 @@ Result<Done> add_organ(Model& model, const FilledOrgan& organ, const OrganSettin
   model.edges.c.resize(model.edges.size(), 0.0);
   model.edges.third.resize(model.edges.size(), -1);
   const auto first_sphere = std::int32_t(model.sphere_count());
+  const std::size_t first_edge = model.edges.size(), first_tpm = model.tpms.size();
   add_spheres(model, organ, settings);
   LineTiler tiler(model, organ, settings, first_sphere);
   for (const Cell& direction : kAxisDirections) tiler.tile(direction);
@@ -321,6 +359,7 @@ Result<Done> add_organ(Model& model, const FilledOrgan& organ, const OrganSettin
   const bool softens =
       settings.structure == Structure::ctpm && settings.has_softening && model.constraints.size() > 0;
   model.has_softening = model.has_softening || softens;
+  add_cut_resistance(model, organ, settings, first_edge, first_tpm);
   leave_out_unused(model);
   return Done{};
 }

@@ -36,6 +36,8 @@ struct Material {
   double stiffness_scale = 1;      ///< multiplies every stiffness and damping, > 0
   double calibration_area = 0;     ///< S0 = pi R^2 of the ball the moduli were calibrated with [m^2], > 0
   double calibration_spacing = 0;  ///< spacing of that site [m], > 0
+  double fracture_toughness = 0;   ///< J_c: energy that opens a unit of area [J/m^2], >= 0
+  double blade_friction = 0;       ///< shear stress on each flank of a blade that moves [Pa], >= 0
 };
 
 /// A layer that follows the organ's surface: a capsule over a parenchyma.

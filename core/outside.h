@@ -6,6 +6,7 @@
 #include "core/axial.h"
 #include "core/contact.h"
 #include "core/model.h"
+#include "core/pair_contact.h"
 
 namespace ctpm {
 
@@ -15,6 +16,7 @@ struct Outside {
   double end_time = 0;   ///< simulated time at its end [s]
   bool has_loads = true; ///< loads act (they do not while a scene settles)
   BallContact& contact;
+  PairContacts& pairs;   ///< a blade's, and those of the lips of cuts
   std::vector<std::uint8_t>& held_axes;  ///< of the Model, and of the sphere that a pin holds (sphere_count)
   std::int32_t pinned = -1;              ///< sphere that a pin holds; -1: none
   Vec3 pin_velocity;                     ///< that brings the pinned sphere to the hand [m/s]

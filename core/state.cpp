@@ -16,6 +16,9 @@ State rest_state(const Model& model) {
     state.tpm_severed.assign(model.tpms.size(), 0);
     state.constraint_severed.assign(model.constraints.size(), 0);
     state.angle_severed.assign(model.angle_springs.size(), 0);
+    state.edge_crossing.assign(model.edges.size(), 0);
+    state.tpm_crossing.assign(model.tpms.size(), 0);
+    state.blade_trail.resize(2);
   }
   return state;
 }

@@ -19,6 +19,11 @@ struct State {
   std::vector<std::uint8_t> tpm_severed;   ///< as above                                       (tpm_count)
   std::vector<std::uint8_t> constraint_severed;  ///< as above (constraint_count)
   std::vector<std::uint8_t> angle_severed;  ///< as above                                       (angle_count)
+  std::vector<std::uint8_t> edge_crossing;  ///< where the blade passed a severed edge (stored_crossing); 0:
+                                            ///< not severed; empty if the scene has no scalpel (edge_count)
+  std::vector<std::uint8_t> tpm_crossing;   ///< as above                                       (tpm_count)
+  Vec3Array blade_trail;                    ///< points towed behind a blade's tip and heel, from which its
+                           ///< heading is known [m]; empty if the scene has no scalpel (2)
   Inputs last_inputs;                       ///< of the tick before, where a blade's sweep begins
 };
 

@@ -1,15 +1,21 @@
 #include "core/step.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "core/backward_euler.h"
+#include "core/blade_force.h"
 #include "core/contact.h"
 #include "core/cutting.h"
 #include "core/elements.h"
+#include "core/lips.h"
 #include "core/outside.h"
+#include "core/pair_contact.h"
+#include "core/pieces.h"
 #include "core/symplectic_euler.h"
 
 namespace ctpm {
@@ -20,6 +26,11 @@ constexpr double kFastest = 1e4;
 
 /// Settling ends when no sphere is faster than this [m/s].
 constexpr double kAtRest = 1e-5;
+
+bool has_scalpel(const Model& model) {
+  return std::any_of(model.tools.begin(), model.tools.end(),
+                     [](const Tool& tool) { return tool.kind == ToolKind::scalpel; });
+}
 
 bool is_usable(const Model& model, const Inputs& inputs) {
   if (inputs.tool < -1 || inputs.tool >= std::int32_t(model.tools.size())) return false;
@@ -39,7 +50,8 @@ void extrapolate(const std::vector<double>& sooner, std::vector<double>& later) 
 struct Grip {
   const Tool* tool = nullptr;  ///< null: the hand is empty
   Vec3 from, to;               ///< way of the tool's origin in this tick [m]
-  BladeEdge blade;             ///< of a scalpel, at the end of the tick
+  BladeMotion blade;           ///< of a scalpel
+  std::size_t swept = 0;       ///< elements that a scalpel severed on its way
 
   bool is(ToolKind kind) const { return tool != nullptr && tool->kind == kind; }
 };
@@ -51,14 +63,21 @@ struct Stepper::Workspace {
         choice(choose_integrator(m)),
         elements(m),
         contact(m),
+        blade(m),
+        lips(m),
+        pairs(m, has_scalpel(m) ? blade.most() + lips.most() : 0),
+        pieces(m),
         held_axes(m.held_axes),
         velocity(3 * m.sphere_count()) {
+    if (has_scalpel(m)) crossings.reserve(m.edges.size() + m.tpms.size()), pieces.reserve();
     if (choice.integrator == Integrator::symplectic_euler)
       explicit_solver.emplace(m);
     else
       implicit_solver.emplace(m);
   }
 
+  void sweep(State& state, const Inputs& last, const Inputs& inputs, Grip& grip, StepReport& report);
+  void find_pairs(const State& state, const Grip& grip);
   bool advance(State& state, const Grip& grip, double h, double share, double time, StepReport& report);
   bool advance_extrapolated(State& state, const Grip& grip, double h, double share, double time,
                             StepReport& report);
@@ -70,6 +89,11 @@ struct Stepper::Workspace {
   IntegratorChoice choice;
   Elements elements;
   BallContact contact;
+  BladeForce blade;
+  LipContact lips;
+  PairContacts pairs;  ///< of the blade and of the lips of cuts
+  Pieces pieces;
+  std::vector<Crossing> crossings;  ///< elements severed in this tick
   std::optional<SymplecticEuler> explicit_solver;
   std::optional<BackwardEuler> implicit_solver;
   std::vector<std::uint8_t> held_axes;
@@ -110,13 +134,39 @@ void Stepper::Workspace::move(State& state, double h) {
   elements.advance_kelvin(h, state);
 }
 
+/// A scalpel's way in this tick, and what it severs of the tissue as it rests.
+void Stepper::Workspace::sweep(State& state, const Inputs& last, const Inputs& inputs, Grip& grip,
+                               StepReport& report) {
+  crossings.clear();
+  grip.blade.from = blade_edge(*grip.tool, last), grip.blade.to = blade_edge(*grip.tool, inputs);
+  if (!state.blade_trail.x.empty()) {
+    if (state.last_inputs.tool != inputs.tool)
+      state.blade_trail.set(0, grip.blade.to.tip), state.blade_trail.set(1, grip.blade.to.heel);
+    tow(state.blade_trail, grip.blade);
+  }
+  report.severed =
+      sever_swept_by_blade(model, grip.blade.from, grip.blade.to, state.position, state, crossings);
+  grip.swept = crossings.size();
+}
+
+/// What a scalpel meets, and lips that meet again.
+void Stepper::Workspace::find_pairs(const State& state, const Grip& grip) {
+  pairs.clear();
+  if (grip.is(ToolKind::scalpel) && blade.any()) {
+    blade.find(state, grip.blade, pairs);
+    blade.add_severed(state, grip.blade, std::span(crossings).first(grip.swept), pairs);
+  }
+  if (lips.is_wanted()) lips.find(state, pairs);
+}
+
 /// One first-order step of `h` [s] that ends at `time` [s], with the hand at `share` of its way. False: it must
 /// be refused.
 bool Stepper::Workspace::advance(State& state, const Grip& grip, double h, double share, double time,
                                  StepReport& report) {
   const Vec3 hand = grip.from + share * (grip.to - grip.from);
   contact.clear();
-  Outside outside{h, time, has_loads, contact, held_axes, pinned, {}};
+  find_pairs(state, grip);
+  Outside outside{h, time, has_loads, contact, pairs, held_axes, pinned, {}};
   if (pinned >= 0) outside.pin_velocity = (hand - state.position[std::size_t(pinned)]) / h;
   if (grip.is(ToolKind::ball))
     contact.find(state, hand, grip.tool->radius, (grip.to - grip.from) / model.tick);
@@ -124,7 +174,7 @@ bool Stepper::Workspace::advance(State& state, const Grip& grip, double h, doubl
     explicit_solver->solve(elements, state, outside, velocity);
   else
     implicit_solver->solve(elements, state, outside, velocity, report);
-  report.tool_force = contact.force_on_tool(h, velocity);
+  report.tool_force = contact.force_on_tool(h, velocity) + pairs.force_on_tool(h, velocity);
   if (pinned >= 0)
     report.tool_force = explicit_solver
                             ? explicit_solver->force_on_pin(state, outside)
@@ -161,7 +211,7 @@ void Stepper::Workspace::report_tool(const State& state, StepReport& report) con
     return;
   }
   report.depth = contact.depth(state);
-  report.contacts = contact.count();
+  report.contacts = contact.count() + pairs.tool_count();
 }
 
 Stepper::Stepper(const Model& model) : model_(model), work_(std::make_unique<Workspace>(model)) {}
@@ -183,11 +233,7 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
   grip.tool = inputs.tool >= 0 ? &model_.tools[std::size_t(inputs.tool)] : nullptr;
   grip.from = last.position, grip.to = inputs.position;
   const bool cuts = grip.is(ToolKind::scalpel);
-  if (cuts) {
-    grip.blade = blade_edge(*grip.tool, inputs);
-    report.severed +=
-        sever_swept_by_blade(model_, blade_edge(*grip.tool, last), grip.blade, state.position, state);
-  }
+  if (cuts) work.sweep(state, last, inputs, grip, report);
   work.held_axes = model_.held_axes;
   work.pinned = grip.is(ToolKind::pin) ? grip.tool->sphere : -1;
   if (work.pinned >= 0) work.held_axes[std::size_t(work.pinned)] = kAnchored;
@@ -205,9 +251,11 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
       return report;
     }
     if (cuts)
-      report.severed += sever_moved_through_blade(model_, grip.blade, work.before, state.position, state);
+      report.severed += sever_moved_through_blade(model_, grip.blade.to, work.before, state.position, state,
+                                                  work.crossings);
   }
   work.report_tool(state, report);
+  if (report.severed > 0) report.came_loose = work.pieces.find(state) - work.pieces.find(work.backup);
   state.last_inputs = inputs;
   ++state.tick;
   return report;

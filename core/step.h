@@ -24,10 +24,11 @@ struct StepReport {
   std::int32_t worst_sphere = -1;  ///< sphere that failed or moves fastest; -1: none
   double residual = 0;             ///< of the last solve, relative
   std::int32_t iterations = 0;     ///< of all solves of the tick
-  Vec3 tool_force;                 ///< force of the tissue on the tool [N]
+  Vec3 tool_force;                 ///< force of the tissue on the tool, ball, pin or blade [N]
   double depth = 0;           ///< largest displacement from rest of a touched sphere, along the contact [m]
-  std::int32_t contacts = 0;  ///< spheres touched
+  std::int32_t contacts = 0;  ///< spheres touched; by a blade, elements before its edge or on its flanks
   std::int32_t severed = 0;   ///< elements severed in this tick
+  std::int32_t came_loose = 0;  ///< pieces that came loose in this tick: how many more there are than before
 };
 
 /// Advances States of one Model. Holds the kernels chosen for the Model and their scratch memory, nothing

@@ -14,6 +14,7 @@ void SymplecticEuler::solve(Elements& elements, const State& state, Outside& out
       velocity[c] = outside.is_held(i, axis) ? 0.0 : momentum_[c] / model_.mass[i];
     }
   outside.contact.push_apart(outside.h, momentum_, velocity);
+  outside.pairs.push_apart(outside.h, outside.held_axes, velocity);
   if (outside.pinned < 0) return;
   const auto i = std::size_t(outside.pinned);
   const Vec3 hand = outside.pin_velocity;

@@ -61,6 +61,23 @@ std::vector<LayerMaterial> layers_of(const OrganSpec& spec, const FilledOrgan& o
   return layers;
 }
 
+double softest_edge(const Model& model) {
+  double k = INFINITY;
+  for (const double edge : model.edges.k) k = std::min(k, edge);
+  for (const double spring : model.tpms.spring_k) k = std::min(k, spring);
+  return k;
+}
+
+/// What only a blade needs.
+void add_cutting(Model& model, const SceneSpec& scene) {
+  const bool cuts = std::any_of(scene.tools.begin(), scene.tools.end(),
+                                [](const ToolSpec& t) { return t.kind == ToolKind::scalpel; });
+  if (!cuts)
+    model.cut_resistance = {};
+  else if (scene.lips_meet)
+    model.lip_k = softest_edge(model);
+}
+
 double stiffest_edge(const Model& model) {
   double k = 0;
   for (const double edge : model.edges.k) k = std::max(k, edge);
@@ -164,6 +181,7 @@ Result<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrg
   }
   if (!errors.empty()) return errors;
   add_tools(model, scene);
+  add_cutting(model, scene);
   for (const LoadSpec& load : scene.loads) {
     model.loads.sphere.push_back(nearest_sphere(model, load.at));
     model.loads.force.push_back(load.force);

@@ -109,6 +109,13 @@ void describe_fields(V& v, MaterialSpec& material) {
   v.number(Key{"calibration_spacing_mm", "Spacing of the spheres that the moduli belong to.", false,
                "the preset's"},
            material.calibration_spacing, units::millimetre, within(0.01, 1000));
+  v.number(Key{"fracture_toughness_j_per_m2",
+               "Energy J_c with which a blade opens a unit of area; 0: it cuts without resistance.", false,
+               "the preset's, else 0"},
+           material.fracture_toughness, units::joule_per_metre2, within(0, 1e6));
+  v.number(Key{"blade_friction_kpa", "Shear stress on each flank of a blade that moves.", false,
+               "the preset's, else 0"},
+           material.blade_friction, units::kilopascal, within(0, 1e4));
   v.record(Key{"fitted_for", "What the stiffness scale was fitted for."}, material.fitted_for);
 }
 
@@ -306,6 +313,8 @@ void describe_fields(V& v, SceneSpec& scene) {
            scene.contact_stiffness, units::newton_per_metre, within(1e-6, 1e12));
   v.number(Key{"contact_friction", "Coulomb coefficient between tool and tissue."}, scene.contact_friction,
            units::none, within(0, 10));
+  v.flag(Key{"lips_meet", "The two sides of a cut meet again without passing through each other."},
+         scene.lips_meet);
   v.list(Key{"loads", "Forces from outside."}, scene.loads, 0);
   v.list(Key{"probes", "Points whose way is written down."}, scene.probes, 0);
   v.record(Key{"solver", "How a tick is solved."}, scene.solver);

@@ -63,6 +63,8 @@ struct MaterialSpec {
   std::optional<double> stiffness_scale;      ///< multiplies every stiffness and damping
   std::optional<double> calibration_ball;     ///< radius R of the ball the moduli belong to [m]
   std::optional<double> calibration_spacing;  ///< spacing of the site the moduli belong to [m]
+  std::optional<double> fracture_toughness;   ///< J_c [J/m^2]
+  std::optional<double> blade_friction;       ///< [Pa]
   std::optional<FittedForSpec> fitted_for;    ///< what the stiffness scale was fitted for; says it, does nothing
 
   friend bool operator==(const MaterialSpec&, const MaterialSpec&) = default;
@@ -197,6 +199,7 @@ struct SceneSpec {
   std::vector<ToolSpec> tools;
   std::optional<double> contact_stiffness;  ///< of a tool against one sphere [N/m]
   double contact_friction = 0.3;            ///< Coulomb coefficient between tool and tissue
+  bool lips_meet = false;  ///< the two sides of a cut meet again without passing through each other
   std::vector<LoadSpec> loads;
   std::vector<ProbeSpec> probes;
   SolverSpec solver;

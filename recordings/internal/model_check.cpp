@@ -152,6 +152,19 @@ void check_loads(Checker& check, const Model& model) {
   check.not_negative("loads.ramp", loads.ramp);
 }
 
+void check_cut_resistance(Checker& check, const Model& model) {
+  const CutResistance& cut = model.cut_resistance;
+  const auto one = [&](const std::string& name, const std::vector<double>& values, std::size_t count) {
+    check.length(name, values, cut.any() ? count : 0);
+    check.not_negative(name, values);
+  };
+  one("cut_resistance.edge_energy", cut.edge_energy, model.edges.size());
+  one("cut_resistance.tpm_energy", cut.tpm_energy, model.tpms.size());
+  one("cut_resistance.edge_friction", cut.edge_friction, model.edges.size());
+  one("cut_resistance.tpm_friction", cut.tpm_friction, model.tpms.size());
+  check.require(std::isfinite(model.lip_k) && model.lip_k >= 0, "lip_k", "must be finite and not below 0");
+}
+
 void check_organs(Checker& check, const Model& model) {
   const auto spheres = static_cast<std::int64_t>(model.sphere_count());
   for (std::size_t i = 0; i < model.organs.size(); ++i) {
@@ -197,6 +210,7 @@ Errors check_model(const Model& model) {
   check_elements(check, model);
   check_loads(check, model);
   check_tools(check, model);
+  check_cut_resistance(check, model);
   check.require(std::isfinite(model.contact_k) && model.contact_k >= 0, "contact_k",
                 "must be finite and not below 0");
   check.require(std::isfinite(model.contact_friction) && model.contact_friction >= 0, "contact_friction",
@@ -235,6 +249,11 @@ Errors check_state(const Model& model, const State& state) {
   check.flags("constraint_severed", state.constraint_severed);
   check.length("angle_severed", state.angle_severed, cuts ? model.angle_springs.size() : 0);
   check.flags("angle_severed", state.angle_severed);
+  // Older sessions do not say where the blade passed.
+  check.length("edge_crossing", state.edge_crossing, cuts ? model.edges.size() : 0, true);
+  check.length("tpm_crossing", state.tpm_crossing, cuts ? model.tpms.size() : 0, true);
+  const Vec3Array& trail = state.blade_trail;
+  if (!trail.x.empty() || !trail.y.empty() || !trail.z.empty()) check.points("blade_trail", state.blade_trail, 2);
   const auto tools = static_cast<std::int32_t>(model.tools.size());
   check.require(state.last_inputs.tool >= -1 && state.last_inputs.tool < tools, "last_inputs.tool",
                 "is not a tool of the model");

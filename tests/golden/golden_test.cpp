@@ -22,13 +22,13 @@ struct Golden {
 };
 
 constexpr Golden kGolden[] = {
-    {Structure::mass_spring, Integrator::automatic, {0x898c77c0eec9e66c, 0xa5461c7bd03abb92, 0x8a2345de73fed2eb, 0x9285007be4e21652}},
-    {Structure::angle_mass_spring, Integrator::automatic, {0x6bfcbc395e932cf0, 0x09b5cc7367191aa4, 0x4d7bad82552c6a76, 0x56026b32e9e8f9ec}},
-    {Structure::tpm, Integrator::automatic, {0x0a083f2511d6c810, 0xcf3d5281d4212105, 0x221049b86b5aff95, 0x2cabddc669833de8}},
-    {Structure::ctpm, Integrator::automatic, {0x43253179dc10312c, 0x586148d50f4888d8, 0x379315eff8d1ecee, 0x8d647da358105ee4}},
-    {Structure::tpm, Integrator::backward_euler, {0xc268a1c2c2e7ce3e, 0x82ae22fa35b78279, 0xb03349f427cd30e4, 0x4814db1a1177cdd4}},
-    {Structure::angle_mass_spring, Integrator::backward_euler, {0xe38f79220266f37b, 0x752b2d3285b3c061, 0x5b2b13de398fef3e, 0x61bdf2e7f6c3ab68}},
-    {Structure::ctpm, Integrator::extrapolated_euler, {0x23fbf369ba1b334b, 0xe88d90ec569ae361, 0xa36c3c9ed87bdf27, 0x3332f1bb2e95db74}},
+    {Structure::mass_spring, Integrator::automatic, {0x6183944f58d1f356, 0xb88de5c71b4d5175, 0x515087af93859efe, 0xbd8e44a9a5f658c4}},
+    {Structure::angle_mass_spring, Integrator::automatic, {0x685a2b0f964dcd37, 0xf8921d183fc490fe, 0xd48e5d602fc6b35a, 0xedaf37813335933b}},
+    {Structure::tpm, Integrator::automatic, {0x62aae1d6849a9ec6, 0xf317f7883353ce72, 0xfc9adb178e1e4476, 0x9813c21bee16acc0}},
+    {Structure::ctpm, Integrator::automatic, {0x8f9ee5d58e8422e6, 0x5d57d9290932b106, 0xd1e300c2fd3c44cd, 0x3cffe265cebb7e40}},
+    {Structure::tpm, Integrator::backward_euler, {0x182c447bd83e3e4e, 0xfa0e88d9cad44f55, 0xe545517443389a27, 0x382d67a9fc53c1a2}},
+    {Structure::angle_mass_spring, Integrator::backward_euler, {0x3c8b3d942af056c2, 0xc547864fd8482918, 0x75096a7577d11f39, 0x53a02637280f9d40}},
+    {Structure::ctpm, Integrator::extrapolated_euler, {0x3f8ccfdc6e03bda5, 0xa650076a680951ad, 0x3ccbca942db9b984, 0x9ec89f28bbc4153a}},
 };
 
 /// A ball presses for 200 ticks, then a scalpel goes through the block.

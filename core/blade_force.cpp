@@ -1,0 +1,135 @@
+#include "core/blade_force.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/blade_geometry.h"
+
+namespace ctpm {
+namespace {
+
+/// Distance of the towed points behind the blade [m].
+constexpr double kTrail = 0.5e-3;
+
+/// Reach of the blade in spacings of the organ with the narrowest lattice: about where the surface that one
+/// sees lies above the outermost spheres.
+constexpr double kReachInSpacings = 0.5;
+
+/// Below this speed [m/s] friction falls to zero linearly, so that a resting blade creeps and does not
+/// chatter.
+constexpr double kSlowest = 1e-3;
+
+/// A lip that has moved so far away from the other [m] has left the flank.
+constexpr double kBladeThickness = 1e-3;
+
+Vec3 unit(Vec3 v) {
+  const double length = norm(v);
+  return length > 0 ? v / length : Vec3{};
+}
+
+Vec3 between(Vec3 tip, Vec3 heel, double across) { return tip + across * (heel - tip); }
+
+}  // namespace
+
+struct BladeForce::Element {
+  std::size_t a, b;
+  double rest_length, energy, friction;
+};
+
+BladeForce::BladeForce(const Model& model) : model_(model) {
+  for (const OrganRange& organ : model.organs) {
+    const double reach = kReachInSpacings * organ.spacing;
+    reach_ = reach_ == 0 ? reach : std::min(reach_, reach);
+  }
+}
+
+BladeForce::Element BladeForce::element(std::size_t index) const {
+  const Edges& edges = model_.edges;
+  const CutResistance& cut = model_.cut_resistance;
+  if (index < edges.size())
+    return {std::size_t(edges.a[index]), std::size_t(edges.b[index]), edges.rest_length[index],
+            cut.edge_energy[index], cut.edge_friction[index]};
+  const std::size_t t = index - edges.size();
+  return {std::size_t(model_.tpms.a[t]), std::size_t(model_.tpms.b[t]), model_.tpms.rest_length[t],
+          cut.tpm_energy[t], cut.tpm_friction[t]};
+}
+
+void BladeForce::find(const State& state, const BladeMotion& motion, PairContacts& contacts) const {
+  const Vec3 tip = motion.to.tip, heel = motion.to.heel, ht = unit(motion.heading_tip),
+             hh = unit(motion.heading_heel);
+  const double certainty = std::max(norm(motion.heading_tip), norm(motion.heading_heel));
+  if (certainty == 0 || reach_ == 0) return;
+  const Vec3 tip_ahead = tip + reach_ * ht, heel_ahead = heel + reach_ * hh, tip_behind = tip - reach_ * ht,
+             heel_behind = heel - reach_ * hh;
+  const Box ahead(tip, heel, tip_ahead, heel_ahead), behind(tip, heel, tip_behind, heel_behind);
+  const std::size_t edges = model_.edges.size(), elements = edges + model_.tpms.size();
+  for (std::size_t i = 0; i < elements; ++i) {
+    const bool severed = i < edges ? state.edge_severed[i] != 0 : state.tpm_severed[i - edges] != 0;
+    const Element e = element(i);
+    const Vec3 p = state.position[e.a], q = state.position[e.b];
+    if (!(severed ? behind : ahead).meets(Box(p, q))) continue;
+    const auto hit = severed ? meet_sweep(p, q, tip, heel, tip_behind, heel_behind)
+                             : meet_sweep(p, q, tip, heel, tip_ahead, heel_ahead);
+    if (!hit) continue;
+    const Vec3 heading = unit(between(ht, hh, hit->across));
+    const Vec3 normal = unit(cross(heel - tip, heading));
+    const double length = norm(q - p);
+    const double facing = length > 0 ? std::abs(dot(normal, q - p)) / length : 0.0;
+    PairContact contact{.a = std::int32_t(e.a), .b = std::int32_t(e.b), .weight_a = 1 - hit->along,
+                        .weight_b = hit->along, .is_tool = true};
+    const Vec3 way = between(motion.to.tip - motion.from.tip, motion.to.heel - motion.from.heel, hit->across);
+    if (severed) {
+      const double on_flank = std::clamp(1 - (length - e.rest_length) / kBladeThickness, 0.0, 1.0);
+      const Vec3 blade = way / model_.tick;
+      const Vec3 slip = blade - ((1 - hit->along) * state.velocity[e.a] + hit->along * state.velocity[e.b]);
+      const double speed = norm(slip - dot(slip, normal) * normal);
+      contact.axis = normal;
+      contact.drag = e.friction * facing * on_flank / std::max(speed, kSlowest);
+      contact.force = contact.drag * (blade - dot(blade, normal) * normal);
+      if (contact.drag == 0) continue;
+    } else {
+      // Energy G p^2, p = 1 - distance / reach: the force is its growth over the tick's advance, 2 G p / reach
+      // if that is short.
+      const double energy = e.energy * facing * certainty, p = 1 - hit->share;
+      const double advance = std::max(0.0, dot(way, heading)) / reach_, p_before = std::max(0.0, p - advance);
+      const double entered = advance > p ? p / advance : 1.0;
+      contact.axis = heading, contact.only_pushes = true;
+      contact.k = 2 * energy / (reach_ * reach_), contact.force = energy / reach_ * (p + p_before) * entered * heading;
+      if (energy == 0) continue;
+    }
+    contacts.add(contact);
+  }
+}
+
+void BladeForce::add_severed(const State& state, const BladeMotion& motion,
+                             std::span<const Crossing> crossings, PairContacts& contacts) const {
+  for (const Crossing& crossing : crossings) {
+    const Element e = element(std::size_t(crossing.element));
+    const Vec3 way = between(motion.to.tip - motion.from.tip, motion.to.heel - motion.from.heel,
+                             crossing.across);
+    const double length = norm(way), apart = norm(state.position[e.b] - state.position[e.a]);
+    if (length == 0 || apart == 0) continue;
+    const Vec3 edge = between(motion.from.heel - motion.from.tip, motion.to.heel - motion.to.tip,
+                              crossing.share);
+    const double facing = std::abs(dot(unit(cross(edge, way)), state.position[e.b] - state.position[e.a])) / apart;
+    const double resisted = std::max(0.0, 1 - crossing.share * length / reach_);
+    const double remaining = e.energy * facing * (1 - resisted * resisted);
+    if (remaining == 0) continue;
+    contacts.add({.a = std::int32_t(e.a), .b = std::int32_t(e.b), .weight_a = 1 - crossing.along,
+                  .weight_b = crossing.along, .axis = way / length, .force = remaining / (length * length) * way,
+                  .is_tool = true});
+  }
+}
+
+void tow(Vec3Array& trail, BladeMotion& motion) {
+  const auto tow_one = [&](std::size_t i, Vec3 end) {
+    const Vec3 way = end - trail[i];
+    const double length = norm(way);
+    if (length <= kTrail) return way / kTrail;
+    trail.set(i, end - kTrail / length * way);
+    return way / length;
+  };
+  motion.heading_tip = tow_one(0, motion.to.tip), motion.heading_heel = tow_one(1, motion.to.heel);
+}
+
+}  // namespace ctpm

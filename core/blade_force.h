@@ -1,0 +1,56 @@
+#pragma once
+
+#include <span>
+
+#include "core/cutting.h"
+#include "core/pair_contact.h"
+
+namespace ctpm {
+
+/// How a blade moves in a tick.
+struct BladeMotion {
+  BladeEdge from, to;                ///< at the tick's start and end
+  Vec3 heading_tip, heading_heel;    ///< where its ends have been going, length 0 to 1
+};
+
+/// The law of cutting: the blade's force times its way is the energy of what it opens and rubs,
+///   F ds = J_c dA + dW_friction
+/// (Mahvash & Hayward, "Haptic rendering of cutting: a fracture mechanics approach", Haptics-e 2 (3), 2001;
+/// Chanthasopeephan, Desai & Lau, Ann. Biomed. Eng. 31, 2003, for liver).
+///
+/// Each element that lies ahead of the edge resists over the last stretch `reach` before it is severed, with a
+/// force that rises linearly from 0, so that the work up to the severing is J_c times the element's share of
+/// the area; then it is gone. That is the rise before a cut, the saw-tooth while cutting and the release after
+/// it. Tissue that has moved onto the flanks, behind the edge, rubs along them with a constant stress. What
+/// the hand feels, the tissue feels with the opposite sign.
+class BladeForce {
+ public:
+  explicit BladeForce(const Model& model);
+
+  /// Whether anything resists a blade.
+  bool any() const { return model_.cut_resistance.any(); }
+
+  /// Most contacts that the functions below add in one substep.
+  std::size_t most() const { return any() ? 2 * (model_.edges.size() + model_.tpms.size()) : 0; }
+
+  /// Adds what the blade, at the end of its motion, meets in `state`: elements ahead, lips on its flanks.
+  void find(const State& state, const BladeMotion& motion, PairContacts& contacts) const;
+
+  /// Adds the elements that were severed within the tick before they could resist to the end: their remaining
+  /// energy over the blade's way in the tick.
+  void add_severed(const State& state, const BladeMotion& motion, std::span<const Crossing> crossings,
+                   PairContacts& contacts) const;
+
+ private:
+  struct Element;
+  Element element(std::size_t index) const;
+
+  const Model& model_;
+  double reach_ = 0;  ///< way ahead of the edge over which an element resists, and height of the flanks [m]
+};
+
+/// Tows `trail` (2) behind the ends of the blade at a distance of at most kTrail, and gives `motion` the
+/// heading that follows: hands tremble, and a heading must not.
+void tow(Vec3Array& trail, BladeMotion& motion);
+
+}  // namespace ctpm
