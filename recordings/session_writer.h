@@ -15,7 +15,7 @@ struct WriterOptions {
   bool wait_when_full =
       false;  ///< append() waits for the disk instead of losing ticks: for runs that are not live
   std::int32_t keyframe_ticks =
-      2000;  ///< ticks between two keyframes, >= 1: seeking costs at most so many steps
+      1000;  ///< ticks between two keyframes, >= 1: seeking costs at most so many steps
   std::int32_t queue_ticks = 1 << 16;  ///< ticks that can wait for a slow disk before they are lost, >= 200
   int compression_level = 3;           ///< zstd, in [1, 19]
 };

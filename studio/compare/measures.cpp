@@ -65,13 +65,13 @@ constexpr Measure kSparc{"spectral_arc_length",
                          "smoothness, spectral arc length",
                          "1",
                          higher,
-                         "of the tip's speed; nearer to 0 is smoother",
+                         "of the tip's speed in each movement between two pauses; nearer to 0 is smoother",
                          kBalasubramanian};
 constexpr Measure kJerk{"log_dimensionless_jerk",
                         "smoothness, log dimensionless jerk",
                         "1",
                         higher,
-                        "of the tip's path; larger is smoother",
+                        "of the tip's path in each movement between two pauses; larger is smoother",
                         kBalasubramanian};
 constexpr Measure kIdle{
     "idle_time_s", "idle time", "s", lower, "a tool in the hand, slower than 5 mm/s for at least 0.3 s",
@@ -190,20 +190,24 @@ struct WeightedMean {
   std::optional<double> value() const { return weight > 0 ? std::optional(sum / weight) : std::nullopt; }
 };
 
-/// Strokes are measured one by one, since the tool jumps between them; the means are weighted by time, the
-/// economy by length.
+/// Strokes are measured one by one, since the tool jumps between them, and smoothness for each movement
+/// between two pauses, for which it is defined. The means are weighted by time, the economy by length.
 Motion motion_of(const SessionTrack& track) {
   Motion motion;
   WeightedMean economy, arc_length, jerk;
   for (const Spell& stroke : track.strokes) {
     const std::span<const Vec3> path(track.tip.data() + stroke.first, stroke.last - stroke.first);
-    const HandMotion hand = hand_motion(track, stroke);
-    const double duration = track.seconds(path.size()), length = path_length(path);
+    const double length = path_length(path);
     motion.path_length += length;
-    for (const Spell& idle : hand.idle) motion.idle_time += double(idle.last - idle.first) / hand.rate_hz;
     economy.add(economy_of_motion(path, stations_of(track, stroke)), length);
-    arc_length.add(spectral_arc_length(speed_along(hand.path, hand.rate_hz), hand.rate_hz), duration);
-    jerk.add(log_dimensionless_jerk(hand.path, hand.rate_hz), duration);
+    const HandMotion hand = hand_motion(track, stroke);
+    for (const Spell& idle : hand.idle) motion.idle_time += double(idle.last - idle.first) / hand.rate_hz;
+    for (const Spell& movement : hand.movements) {
+      const auto places = std::span(hand.path).subspan(movement.first, movement.last - movement.first);
+      const double duration = double(places.size()) / hand.rate_hz;
+      arc_length.add(spectral_arc_length(speed_along(places, hand.rate_hz), hand.rate_hz), duration);
+      jerk.add(log_dimensionless_jerk(places, hand.rate_hz), duration);
+    }
   }
   motion.economy = economy.value(), motion.spectral_arc_length = arc_length.value();
   motion.log_dimensionless_jerk = jerk.value();

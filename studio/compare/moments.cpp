@@ -121,7 +121,12 @@ HandMotion hand_motion(const SessionTrack& track, const Spell& stroke) {
   hand.path = mean_of_each({track.tip.data() + stroke.first, stroke.last - stroke.first}, ticks);
   std::vector<bool> is_slow;
   for (const double speed : speed_along(hand.path, hand.rate_hz)) is_slow.push_back(speed < kIdleSpeed);
-  hand.idle = spells_of(is_slow, std::size_t(std::ceil(kIdleLeast * hand.rate_hz)));
+  const auto least = std::size_t(std::ceil(kIdleLeast * hand.rate_hz));
+  hand.idle = spells_of(is_slow, least);
+  std::vector<bool> moves(hand.path.size(), true);
+  for (const Spell& idle : hand.idle)
+    std::fill(moves.begin() + std::ptrdiff_t(idle.first), moves.begin() + std::ptrdiff_t(idle.last), false);
+  hand.movements = spells_of(moves, least);
   return hand;
 }
 

@@ -10,8 +10,9 @@ namespace ctpm {
 /// hand does is slower than 20 Hz and what is faster is noise of a device.
 struct HandMotion {
   double rate_hz = 0;
-  std::vector<Vec3> path;   ///< [m]
-  std::vector<Spell> idle;  ///< where it is slower than 5 mm/s for at least 0.3 s; indices into `path`
+  std::vector<Vec3> path;        ///< [m]
+  std::vector<Spell> idle;       ///< where it is slower than 5 mm/s for at least 0.3 s; indices into `path`
+  std::vector<Spell> movements;  ///< what lies between, if it lasts as long
 };
 HandMotion hand_motion(const SessionTrack& track, const Spell& stroke);
 

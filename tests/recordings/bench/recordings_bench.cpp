@@ -143,6 +143,40 @@ void ReadOneMinuteInTheMiddleOfAnHour(benchmark::State& state) {
 }
 BENCHMARK(ReadOneMinuteInTheMiddleOfAnHour)->Unit(benchmark::kMillisecond);
 
+/// Any moment of ten minutes: a block of as many spheres as the shipped liver, and the worst moments, just
+/// before a keyframe. The session was not simulated as a whole: 20 s of it were, again and again, with their
+/// keyframes, so each seek reads and simulates what it would of a session that was.
+void SeekInTenMinutes(benchmark::State& state) {
+  const Folder folder;
+  const SessionStart start = small_start(9, 9, 9);
+  const WriterOptions options{.wait_when_full = true};
+  std::vector<State> keyframes;
+  const Lived lived = live(start, session_ticks, [&](const State& after, const TickRecord&) {
+    if (after.tick % options.keyframe_ticks == 0) keyframes.push_back(after);
+  });
+  auto writer = SessionWriter::create(folder / "a.ctpm", start, options);
+  for (std::int64_t tick = 0; tick < 10 * ticks_per_minute; ++tick) {
+    const std::int64_t lived_tick = tick % session_ticks;
+    writer->append(keyframes[static_cast<std::size_t>(lived_tick / options.keyframe_ticks)],
+                   lived.records[static_cast<std::size_t>(lived_tick)]);
+  }
+  if (!writer->finish()) return state.SkipWithError("not recorded");
+  auto reader = SessionReader::open(folder / "a.ctpm");
+  auto cursor = ReplayCursor::create(*reader);
+  std::int64_t keyframe = 0;
+  double longest = 0;
+  for (auto _ : state) {
+    // Far from the last one, so that nothing is gained from where the cursor stands.
+    keyframe = (keyframe + 131) % (reader->tick_count() / options.keyframe_ticks);
+    const auto begin = std::chrono::steady_clock::now();
+    if (!cursor->seek((keyframe + 1) * options.keyframe_ticks - 1)) return state.SkipWithError("not found");
+    longest =
+        std::max(longest, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  }
+  state.counters["longest_s"] = longest;
+}
+BENCHMARK(SeekInTenMinutes)->Iterations(20)->Unit(benchmark::kMillisecond);
+
 /// Verifying a session against the time it lasted.
 void VerifySession(benchmark::State& state) {
   const Folder folder;
