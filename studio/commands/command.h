@@ -28,5 +28,6 @@ Command add_export(CLI::App& program);
 Command add_demo(CLI::App& program);
 Command add_fit(CLI::App& program);
 Command add_paper(CLI::App& program);
+Command add_stability(CLI::App& program);
 
 }  // namespace ctpm

@@ -28,7 +28,7 @@ th, td { padding: .2rem .7rem; text-align: left; border-bottom: 1px solid #e4e4e
 th { border-bottom: 2px solid #888; vertical-align: bottom; font-weight: 600; }
 td.n { text-align: right; white-space: nowrap; } td { min-width: 2.5em; max-width: 26em; }
 .v { padding: 0 .45rem; border-radius: 3px; font-weight: 600; }
-.v.met { background: #d8f0e6; color: #00654a; } .v.missed { background: #f6d5d1; color: #96271b; } .v.shown { background: #ececec; color: #555; }
+.v.met { background: #d8f0e6; color: #00654a; } .v.missed { background: #f6d5d1; color: #96271b; } .v.shown { background: #ececec; color: #555; } .v.refused { background: #fbecc8; color: #7a5200; }
 svg .grid { stroke: #e6e6e6; } svg .axis { stroke: #444; }
 svg text { font: 12px system-ui, "Liberation Sans", "DejaVu Sans", sans-serif; fill: #222; }
 svg .tick { fill: #555; font-size: 11.5px; } svg .head { font-weight: 600; font-size: 13.5px; }

@@ -56,6 +56,8 @@ const char* to_word(Verdict verdict) {
       return "missed";
     case Verdict::shown:
       return "shown";
+    case Verdict::refused:
+      return "refused";
   }
   return "";
 }

@@ -14,6 +14,7 @@ enum class Verdict {
   met,     ///< holds
   missed,  ///< must hold and does not
   shown,   ///< does not agree and need not; it is shown as it is
+  refused,  ///< was refused beforehand, as it may be
 };
 
 /// A number, a word, a verdict, or nothing.
@@ -33,7 +34,7 @@ struct Table {
   std::string caption;
 };
 
-/// "met", "missed", "shown".
+/// "met", "missed", "shown", "refused".
 const char* to_word(Verdict verdict);
 
 /// The table as an HTML element; numbers stand right, verdicts are coloured.

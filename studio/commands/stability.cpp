@@ -1,0 +1,83 @@
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include "studio/commands/command.h"
+#include "studio/console.h"
+#include "studio/reports/report.h"
+#include "studio/reports/stability.h"
+
+namespace ctpm {
+namespace {
+
+struct StabilityArguments {
+  std::string folder;
+  std::vector<std::string> keys;
+  bool is_quick = false;
+};
+
+/// The cases whose keys are asked for; all if none are. Errors: keys that no case has.
+Result<std::vector<StabilityCase>> chosen_cases(const StabilityArguments& arguments) {
+  std::vector<StabilityCase> all = stability_cases(arguments.is_quick), chosen;
+  if (arguments.keys.empty()) return all;
+  Errors errors;
+  for (const std::string& key : arguments.keys) {
+    const auto it =
+        std::find_if(all.begin(), all.end(), [&](const StabilityCase& c) { return c.key == key; });
+    if (it != all.end())
+      chosen.push_back(*it);
+    else
+      errors.push_back({"--case", "there is no case " + key, "results.csv of a whole run names them all"});
+  }
+  if (!errors.empty()) return errors;
+  return chosen;
+}
+
+void print_runs(const std::vector<StabilityRow>& rows) {
+  std::int64_t counts[4] = {0, 0, 0, 0};
+  for (const StabilityRow& row : rows)
+    for (const StabilityRun& run : row.runs) {
+      ++counts[int(run.verdict)];
+      if (run.verdict == Verdict::missed)
+        std::printf("missed: %s under %s: %s\n", row.what->title.c_str(), name_of(run.asked),
+                    run.reason.c_str());
+    }
+  std::printf("%zu cases, %zu integrators: %lld runs hold, %lld were refused beforehand, %lld fail\n",
+              rows.size(), std::size(kStabilityIntegrators), (long long)counts[int(Verdict::met)],
+              (long long)counts[int(Verdict::refused)], (long long)counts[int(Verdict::missed)]);
+}
+
+int run_stability_command(const StabilityArguments& arguments) {
+  const Result<std::vector<StabilityCase>> cases = chosen_cases(arguments);
+  if (!cases) return print_errors(cases.errors());
+  if (const Result<Done> ready = prepare_folder(arguments.folder); !ready)
+    return print_errors(ready.errors());
+  const std::vector<StabilityRow> rows = [&] {
+    ProgressLine progress("running the stability cases");
+    return run_stability(*cases, [&](std::int64_t done, std::int64_t total) { progress.show(done, total); });
+  }();
+  if (const Result<Done> written = write_stability_report(arguments.folder, rows); !written)
+    return print_errors(written.errors());
+  print_runs(rows);
+  std::printf("written: %s/report.html, results.json, results.csv\n", arguments.folder.c_str());
+  return count_failures(rows) == 0 ? exit_good : exit_bad_verdict;
+}
+
+}  // namespace
+
+Command add_stability(CLI::App& program) {
+  auto arguments = std::make_shared<StabilityArguments>();
+  CLI::App* app = program.add_subcommand(
+      "stability", "Runs stiff and extreme cases under every integrator and says what holds.");
+  app->footer(
+      "Example: ctpm stability -o out/stability\n"
+      "Exit code 1 if the integrator that auto chooses fails any case.");
+  app->add_option("-o,--output", arguments->folder,
+                  "Folder for report.html, results.json and results.csv; made if missing")
+      ->required();
+  app->add_option("--case", arguments->keys, "Only the case of this key, as in results.csv; may be repeated");
+  app->add_flag("--quick", arguments->is_quick, "Cuts the long cases down; their titles say so");
+  return {app, [arguments] { return run_stability_command(*arguments); }};
+}
+
+}  // namespace ctpm
