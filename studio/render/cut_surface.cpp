@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "core/result.h"
 #include "core/surface.h"
+#include "studio/render/cut_plane.h"
 #include "studio/render/lattice_links.h"
+#include "studio/render/open_edges.h"
 
 namespace ctpm {
 namespace {
@@ -19,6 +22,8 @@ using Triangle = std::array<Index, 3>;
 constexpr double kReachInSpacings = 2.2;  // as a whole surface is bound
 constexpr std::size_t kFewestFollowed = 8;
 constexpr int kSmoothings = 3;
+constexpr double kPlaneReach = 2.4;    // in spacings: crossings that tell where the cut is at a place
+constexpr double kFarthestHome = 1.8;  // in spacings
 
 bool holds(const std::vector<Index>& sorted, Index value) {
   return std::binary_search(sorted.begin(), sorted.end(), value);
@@ -27,7 +32,7 @@ bool holds(const std::vector<Index>& sorted, Index value) {
 /// A corner of the wall: the middle of a cube of eight lattice cells, as many copies as the cut leaves pieces
 /// there.
 struct Corner {
-  Vec3 rest;                    ///< on the cut [m]
+  Vec3 rest;                    ///< where the blade passed [m]
   bool at_border = false;       ///< the cube reaches out of the organ
   bool is_snapped = false;      ///< lies on the split line of the outer surface
   std::vector<Index> spheres;   ///< that fill the cube's cells
@@ -53,6 +58,8 @@ struct CutSurface::Parts {
   void rebuild();
 
   const LatticeLinks::Sight& sight(Index home);
+  const std::vector<CutPoint>& crossings_around(Index home);
+  Index home_on_own_side(std::size_t vertex);
   Index add_vertex(Vec3 rest, Index home);
   Index copy_vertex(Index vertex);
   void follow(Vec3 rest, Index home);
@@ -66,6 +73,10 @@ struct CutSurface::Parts {
   void smooth_corners();
   void add_facets();
   void add_skirt();
+  Index on_wall(Index vertex);
+  void close();
+  void fill_loop(std::vector<Index> loop);
+  double cost_of_edge(Index u, Index v);
   const Corner* nearest_corner(Vec3 rest, bool border_only) const;
   Index wall_copy(Corner& corner, Index piece);
   Index skirt_foot(Index lip_vertex);
@@ -73,12 +84,14 @@ struct CutSurface::Parts {
 
   LatticeLinks links;
   Surface whole;
-  std::vector<Index> home;  ///< nearest sphere of each vertex of `out`; the whole surface's come first
+  std::vector<Index> nearest;  ///< sphere to each vertex of `whole`
+  std::vector<Index> home;  ///< of each vertex of `out`, the nearest sphere on its side of the cut
   Surface out;
   std::size_t outer_triangles = 0, outer_vertices = 0;
 
   // Working memory of rebuild().
   std::map<Index, LatticeLinks::Sight> sights;
+  std::map<Index, std::vector<CutPoint>> crossings;
   std::vector<std::uint8_t> is_near_cut;  ///< of the whole surface's vertices
   std::map<std::pair<Index, Index>, Index>
       middles;  ///< (u, v): the copy on u's side of the split of edge u-v
@@ -91,12 +104,12 @@ struct CutSurface::Parts {
 void CutSurface::Parts::bind_homes() {
   const SurfaceBinding& b = whole.binding;
   for (std::size_t v = 0; v < whole.vertex.size(); ++v) {
-    Index nearest = b.sphere[std::size_t(b.first[v])];
+    Index near = b.sphere[std::size_t(b.first[v])];
     for (Index e = b.first[v]; e < b.first[v + 1]; ++e) {
       const Index s = b.sphere[std::size_t(e)];
-      if (norm(links.rest(s) - whole.vertex[v]) < norm(links.rest(nearest) - whole.vertex[v])) nearest = s;
+      if (norm(links.rest(s) - whole.vertex[v]) < norm(links.rest(near) - whole.vertex[v])) near = s;
     }
-    home.push_back(nearest);
+    nearest.push_back(near);
   }
   out = whole;
   outer_triangles = whole.triangle.size(), outer_vertices = whole.vertex.size();
@@ -106,6 +119,38 @@ const LatticeLinks::Sight& CutSurface::Parts::sight(Index sphere) {
   const auto found = sights.find(sphere);
   return found != sights.end() ? found->second
                                : sights.emplace(sphere, links.sight_from(sphere)).first->second;
+}
+
+const std::vector<CutPoint>& CutSurface::Parts::crossings_around(Index sphere) {
+  const auto found = crossings.find(sphere);
+  if (found != crossings.end()) return found->second;
+  std::vector<CutPoint>& all = crossings[sphere];
+  const LatticeLinks::Sight& at = sight(sphere);
+  for (const Index s : at.seen)
+    for (int step = 0; links.is_cut(s) && step < LatticeLinks::kSteps; ++step) {
+      if (!links.is_severed(s, step) || !holds(at.lost, links.neighbour(s, step))) continue;
+      const Vec3 way = links.rest(links.neighbour(s, step)) - links.rest(s);
+      all.push_back({links.crossing(s, step), way / norm(way)});
+    }
+  return all;
+}
+
+/// The nearest sphere that has the vertex on its own side of where the blade passed.
+Index CutSurface::Parts::home_on_own_side(std::size_t vertex) {
+  const SurfaceBinding& b = whole.binding;
+  const Vec3 rest = whole.vertex[vertex];
+  std::vector<std::pair<double, Index>> near;
+  for (Index e = b.first[vertex]; e < b.first[vertex + 1]; ++e) {
+    const Index s = b.sphere[std::size_t(e)];
+    near.emplace_back(norm(links.rest(s) - rest), s);
+  }
+  std::sort(near.begin(), near.end());
+  for (const auto& [distance, s] : near) {
+    if (distance > kFarthestHome * links.spacing()) break;
+    const std::optional<Plane> cut = fit_plane(crossings_around(s), rest, kPlaneReach * links.spacing());
+    if (!cut || cut->height(rest) <= 0) return s;
+  }
+  return nearest[vertex];
 }
 
 /// Appends a binding to what `home` sees around `rest`. Spheres that do not span space cannot hold a vertex
@@ -160,7 +205,9 @@ void CutSurface::Parts::add_whole_vertices() {
     const auto begin = b.sphere.begin() + b.first[v], end = b.sphere.begin() + b.first[v + 1];
     is_near_cut[v] = std::any_of(begin, end, [&](Index s) { return links.is_cut(s); });
     bool sees_all = true;
+    home[v] = nearest[v];
     if (is_near_cut[v]) {
+      home[v] = home_on_own_side(v);
       const auto& lost = sight(home[v]).lost;
       sees_all = std::none_of(begin, end, [&](Index s) { return holds(lost, s); });
     }
@@ -182,26 +229,14 @@ bool CutSurface::Parts::are_parted(Index u, Index v) {
   return a != b && is_near_cut[std::size_t(u)] && is_near_cut[std::size_t(v)] && holds(sight(a).lost, b);
 }
 
-/// How far along the edge u-v, in (0, 1), the cut passes: where the smoothed sides of its two banks are in
-/// balance.
+/// How far along the edge u-v, in (0, 1), the blade passed.
 double CutSurface::Parts::where_parted(Index u, Index v) {
-  const LatticeLinks::Sight& at_u = sight(home[std::size_t(u)]);
-  const LatticeLinks::Sight& at_v = sight(home[std::size_t(v)]);
-  const double reach = 1.7 * links.spacing();
-  const auto side = [&](Vec3 p) {
-    double sum = 0;
-    const auto add = [&](const LatticeLinks::Sight& mine, const LatticeLinks::Sight& other, double sign) {
-      for (const Index s : mine.seen) {
-        const double q = norm(links.rest(s) - p) / reach;
-        if (q < 1 && holds(other.lost, s)) sum += sign * (1 - q * q) * (1 - q * q);
-      }
-    };
-    add(at_u, at_v, 1), add(at_v, at_u, -1);
-    return sum;
-  };
-  const double su = side(out.vertex[std::size_t(u)]), sv = side(out.vertex[std::size_t(v)]);
-  if (!(su > 0 && sv < 0)) return su > 0 ? 0.85 : sv < 0 ? 0.15 : 0.5;
-  return std::clamp(su / (su - sv), 0.12, 0.88);
+  const Vec3 p = out.vertex[std::size_t(u)], q = out.vertex[std::size_t(v)];
+  const double reach = kPlaneReach * links.spacing();
+  const std::optional<Plane> cut = fit_plane(crossings_around(home[std::size_t(u)]), 0.5 * (p + q), reach);
+  if (!cut) return 0.5;
+  const double at_u = cut->height(p), at_v = cut->height(q);
+  return at_u == at_v ? 0.5 : std::clamp(at_u / (at_u - at_v), 0.03, 0.97);
 }
 
 /// The vertex on u's side where the cut splits the edge u-v.
@@ -271,7 +306,7 @@ Corner CutSurface::Parts::make_corner(Cell cube) const {
           std::find(corner.spheres.begin(), corner.spheres.end(), links.neighbour(corner.spheres[i], s));
       if (other == corner.spheres.end()) continue;
       if (links.is_severed(corner.spheres[i], s)) {
-        corner.rest += 0.5 * (links.rest(corner.spheres[i]) + links.rest(*other)), ++severed;
+        corner.rest += links.crossing(corner.spheres[i], s), ++severed;
       } else if (links.is_joined(corner.spheres[i], s)) {
         const Index a = corner.piece[i], b = corner.piece[std::size_t(other - corner.spheres.begin())];
         std::replace(corner.piece.begin(), corner.piece.end(), std::max(a, b), std::min(a, b));
@@ -412,14 +447,55 @@ void CutSurface::Parts::add_skirt() {
   }
 }
 
+/// The wall's own vertex in place of one of a lip.
+Index CutSurface::Parts::on_wall(Index vertex) {
+  if (std::size_t(vertex) >= outer_vertices) return vertex;
+  const auto found = wall_vertex.find(vertex);
+  return found != wall_vertex.end() ? found->second : wall_vertex[vertex] = copy_vertex(vertex);
+}
+
+/// Length of an edge at rest, and much more if it would span the cut.
+double CutSurface::Parts::cost_of_edge(Index u, Index v) {
+  const Index a = home[std::size_t(u)], b = home[std::size_t(v)];
+  const double across = a != b && holds(sight(a).lost, b) ? 10 * links.spacing() : 0.0;
+  return across + norm(out.vertex[std::size_t(u)] - out.vertex[std::size_t(v)]);
+}
+
+/// Closes a loop of open edges with triangles, cutting off the cheapest corner first.
+void CutSurface::Parts::fill_loop(std::vector<Index> loop) {
+  while (loop.size() >= 3) {
+    const std::size_t n = loop.size();
+    std::size_t best = 0;
+    double least = INFINITY;
+    for (std::size_t i = 0; i < n && n > 3; ++i) {
+      const double cost = cost_of_edge(loop[(i + n - 1) % n], loop[(i + 1) % n]);
+      if (cost < least) least = cost, best = i;
+    }
+    const Index before = loop[(best + n - 1) % n], at = loop[best], after = loop[(best + 1) % n];
+    out.triangle.push_back({after, at, before});
+    if (n == 3) return;
+    loop.erase(loop.begin() + std::ptrdiff_t(best));
+  }
+}
+
+/// Fills whatever lips, wall and skirt leave open, so that every edge has its opposite: one never looks into the
+/// organ. Where lips and wall fit each other, little is left.
+void CutSurface::Parts::close() {
+  OpenEdges open;
+  for (const Lip& lip : lips) open.add(on_wall(lip.from), on_wall(lip.to));
+  for (std::size_t t = outer_triangles; t < out.triangle.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i) open.add(out.triangle[t][i], out.triangle[t][(i + 1) % 3]);
+  for (const std::vector<Index>& loop : open.take_loops()) fill_loop(loop);
+}
+
 void CutSurface::Parts::rebuild() {
-  home.resize(whole.vertex.size());
+  home.assign(whole.vertex.size(), 0);
   is_lip.clear();
   if (!links.anything_cut()) {
     out = whole, outer_triangles = whole.triangle.size(), outer_vertices = whole.vertex.size();
     return;
   }
-  out = {}, sights.clear(), middles.clear(), lips.clear(), corners.clear(), wall_vertex.clear();
+  out = {}, sights.clear(), crossings.clear(), middles.clear(), lips.clear(), corners.clear(), wall_vertex.clear();
   add_whole_vertices();
   for (const Triangle& t : whole.triangle) split_triangle(t);
   outer_triangles = out.triangle.size(), outer_vertices = out.vertex.size();
@@ -429,6 +505,7 @@ void CutSurface::Parts::rebuild() {
   smooth_corners();
   add_facets();
   add_skirt();
+  close();
 }
 
 CutSurface::CutSurface(const Model& model, std::size_t organ, const Surface& whole)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cutting.h"
 #include "core/result.h"
 
 namespace ctpm {
@@ -71,6 +72,7 @@ LatticeLinks::LatticeLinks(const Model& model, std::size_t organ) {
 
   // Neighbours, and the elements that join them.
   neighbour_.assign(rest_.size() * kSteps, -1), link_.assign(rest_.size() * kSteps, Link::none);
+  crossing_.assign(rest_.size() * kSteps, 0.5f);
   for (std::int32_t i = 0; i < count(); ++i)
     for (int s = 0; s < kSteps; ++s) {
       const Cell c = cell(i), d = steps()[std::size_t(s)];
@@ -80,7 +82,7 @@ LatticeLinks::LatticeLinks(const Model& model, std::size_t organ) {
     add_element(model.edges.a[e], model.edges.b[e], std::int32_t(e));
   for (std::size_t t = 0; t < model.tpms.size(); ++t)
     add_element(model.tpms.a[t], model.tpms.b[t], std::int32_t(model.edges.size() + t));
-  severed_.assign(elements_.size(), 0), cut_.assign(rest_.size(), 0);
+  severed_.assign(elements_.size(), 0), passed_.assign(elements_.size(), 0), cut_.assign(rest_.size(), 0);
 }
 
 void LatticeLinks::find_axes(const Model& model, std::size_t organ) {
@@ -133,8 +135,11 @@ bool LatticeLinks::update(const State& state) {
     const bool severed =
         source < edges ? state.edge_severed[source] != 0
                        : source - edges < state.tpm_severed.size() && state.tpm_severed[source - edges] != 0;
-    changed = changed || severed != (severed_[e] != 0);
-    severed_[e] = severed;
+    const std::vector<std::uint8_t>& crossing = source < edges ? state.edge_crossing : state.tpm_crossing;
+    const std::size_t place = source < edges ? source : source - edges;
+    const std::uint8_t passed = severed && place < crossing.size() ? crossing[place] : std::uint8_t(0);
+    changed = changed || severed != (severed_[e] != 0) || passed != passed_[e];
+    severed_[e] = severed, passed_[e] = passed;
   }
   if (!changed) return false;
   std::fill(cut_.begin(), cut_.end(), std::uint8_t(0));
@@ -143,6 +148,8 @@ bool LatticeLinks::update(const State& state) {
     const auto [a, s, source] = elements_[e];
     const std::int32_t b = neighbour(a, s);
     link_[index(a, s)] = link_[index(b, step_back(s))] = severed_[e] ? Link::severed : Link::joined;
+    const double along = crossing_of(passed_[e]);
+    crossing_[index(a, s)] = float(along), crossing_[index(b, step_back(s))] = float(1 - along);
     if (severed_[e]) cut_[std::size_t(a)] = cut_[std::size_t(b)] = 1, anything_cut_ = true;
   }
   return true;

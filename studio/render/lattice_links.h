@@ -44,6 +44,12 @@ class LatticeLinks {
   bool is_joined(std::int32_t sphere, int step) const { return link_[index(sphere, step)] == Link::joined; }
   bool is_severed(std::int32_t sphere, int step) const { return link_[index(sphere, step)] == Link::severed; }
 
+  /// Where on the link from a sphere by a severed step the blade passed: rest position [m].
+  Vec3 crossing(std::int32_t sphere, int step) const {
+    const double t = crossing_[index(sphere, step)];
+    return (1 - t) * rest(sphere) + t * rest(neighbour(sphere, step));
+  }
+
   /// Whether any link at the sphere is severed.
   bool is_cut(std::int32_t sphere) const { return cut_[std::size_t(sphere)]; }
   bool anything_cut() const { return anything_cut_; }
@@ -85,8 +91,10 @@ class LatticeLinks {
   std::vector<std::int32_t> sphere_at_;  ///< dense over the box of cells
   std::vector<std::int32_t> neighbour_;
   std::vector<Link> link_;
+  std::vector<float> crossing_;  ///< of a severed link, 0 at this sphere to 1 at its neighbour
   std::vector<Element> elements_;
   std::vector<std::uint8_t> severed_;  ///< of elements_, as last seen
+  std::vector<std::uint8_t> passed_;   ///< State's crossing of elements_, as last seen
   std::vector<std::uint8_t> cut_;
   bool anything_cut_ = false;
   bool has_diagonals_ = false;
