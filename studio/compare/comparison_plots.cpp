@@ -101,22 +101,28 @@ Plot deviation_plot(const Comparison& comparison) {
 std::vector<Plot> plots_over_time(const ComparedSessions& compared) {
   const auto& [expert, trainee, scene, comparison] = compared;
   const double end = std::max(expert.seconds(expert.tick_count()), trainee.seconds(trainee.tick_count()));
-  std::vector<Plot> plots;
-  const auto has_force = [](const SessionTrack& track) {
-    return std::any_of(track.force.begin(), track.force.end(), [](double force) { return force > 0; });
+  const auto is_above_zero = [](double value) { return value > 0; };
+  const auto has_any = [&](const std::vector<double>& a, const std::vector<double>& b) {
+    return std::any_of(a.begin(), a.end(), is_above_zero) || std::any_of(b.begin(), b.end(), is_above_zero);
   };
-  if (!has_force(expert) && !has_force(trainee)) return plots;
-  plots.push_back({.title = "Force on the tool", .x_title = "time [s]", .y_title = "force [N]"});
-  plots[0].series = {curve("expert", expert, expert.force, 1, kExpertColour),
-                     curve("trainee", trainee, trainee.force, 1, kTraineeColour)};
-  if (comparison.force_limit)
-    plots[0].series.push_back(
-        level(std::string("limit: ") + comparison.force_limit_from, 0, end, *comparison.force_limit));
-  plots.push_back({.title = "Depth", .x_title = "time [s]", .y_title = "depth [mm]"});
-  plots[1].series = {curve("expert", expert, expert.depth, kMillimetres, kExpertColour),
-                     curve("trainee", trainee, trainee.depth, kMillimetres, kTraineeColour)};
-  if (comparison.damage_depth > 0)
-    plots[1].series.push_back(level("damage limit", 0, end, kMillimetres * comparison.damage_depth));
+  std::vector<Plot> plots;
+  if (has_any(expert.force, trainee.force)) {
+    Plot plot{.title = "Force on the tool", .x_title = "time [s]", .y_title = "force [N]"};
+    plot.series = {curve("expert", expert, expert.force, 1, kExpertColour),
+                   curve("trainee", trainee, trainee.force, 1, kTraineeColour)};
+    if (comparison.force_limit)
+      plot.series.push_back(
+          level(std::string("limit: ") + comparison.force_limit_from, 0, end, *comparison.force_limit));
+    plots.push_back(plot);
+  }
+  if (has_any(expert.depth, trainee.depth)) {
+    Plot plot{.title = "Depth", .x_title = "time [s]", .y_title = "depth [mm]"};
+    plot.series = {curve("expert", expert, expert.depth, kMillimetres, kExpertColour),
+                   curve("trainee", trainee, trainee.depth, kMillimetres, kTraineeColour)};
+    if (comparison.damage_depth > 0)
+      plot.series.push_back(level("damage limit", 0, end, kMillimetres * comparison.damage_depth));
+    plots.push_back(plot);
+  }
   return plots;
 }
 

@@ -7,7 +7,7 @@
 
 namespace ctpm {
 
-/// Force and depth over time of both. Empty if no tool pressed the tissue.
+/// Force and depth over time of both, as far as there is any.
 std::vector<Plot> plots_over_time(const ComparedSessions& compared);
 
 /// Paths of the tool from above and from the side, and how far the aligned paths are apart.

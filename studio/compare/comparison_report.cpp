@@ -185,7 +185,7 @@ Result<Done> write_comparison(const std::string& folder, const ComparedSessions&
   if (const std::vector<Plot> plots = plots_over_time(compared); !plots.empty())
     report.add_plots(plots);
   else
-    report.add_paragraph("No tool pressed the tissue: a blade severs without resistance.");
+    report.add_paragraph("No tool met a force.");
   if (const std::vector<Plot> cut = plots_of_cut(compared); !cut.empty()) {
     report.add_heading("The cut");
     report.add_plots(cut);

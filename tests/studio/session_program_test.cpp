@@ -42,6 +42,7 @@ TEST(ShippedSessions, EachIsTheSameToTheBitWithAnyNumberOfThreads) {
     const ProgramOutcome verified = run_ctpm({"verify", path.string(), "--threads", "2"}, folder.path());
     EXPECT_EQ(verified.code, 0) << verified.out << verified.err
                                 << "after a change of the physics: ninja shipped_sessions";
+    std::printf("%s", verified.out.c_str());
     EXPECT_TRUE(holds(verified.out, ": same: ")) << verified.out;
     EXPECT_TRUE(holds(verified.out, "times as fast as it was lived")) << verified.out;
     EXPECT_LT(fs::file_size(path), 2u << 20) << path;
