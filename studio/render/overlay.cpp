@@ -213,7 +213,7 @@ void Overlay::Parts::plan_plot(const OverlayData& data, Plan& plan) {
   plan.plot = {px(20), height - px(20) - h, w, h};
   plan.lines.push_back(line(small, "force [N]", plan.plot.x + pad, plan.plot.y + px(12), kGrey));
   const std::string scale_text = fixed(plan.top_force, plan.top_force < 0.1 ? 2 : plan.top_force < 1 ? 1 : 0);
-  const int label = px(52);
+  const int label = pad + std::max(small.width("0.02"), small.width(scale_text)) + px(8);
   plan.curve = {plan.plot.x + label, plan.plot.y + px(46), w - label - pad, h - px(46) - px(34)};
   const auto left_label = [&](const std::string& text, int y) {
     Line shown = line(small, text, 0, y - small.height() / 2, kGrey);

@@ -2,13 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <sstream>
 #include <string>
 
 #include "recordings/byte_hash.h"
 #include "recordings/session_reader.h"
 #include "recordings/session_writer.h"
 #include "studio/render/frame.h"
+#include "tests/studio/glyph_reader.h"
 #include "tests/studio/run_program.h"
 
 namespace ctpm {
@@ -92,6 +96,36 @@ TEST_F(Export, TheSidecarSaysWhatTheVideoShows) {
   for (const char* key : {"name", "eye_mm", "program", "elapsed_s", "simulation_s", "rendering_s",
                           "encoding_s", "recorded_by", "pixels_xxh3", "bytes"})
     EXPECT_NE(value_of(json, key).front(), '(') << key;
+}
+
+TEST_F(Export, TheVideoShowsTheNumbersOfTheReplay) {
+  const auto exported = run_ctpm({"export", "press.ctpm", "-o", "a.mp4", "--from-s", "0.9"}, folder_.path());
+  ASSERT_EQ(exported.code, 0) << exported.err;
+  const auto decoded =
+      run({"ffmpeg", "-v", "error", "-i", "a.mp4", "-vf", "select=eq(n\\,8)", "-frames:v", "1", "frame.png"},
+          folder_.path());
+  ASSERT_EQ(decoded.code, 0) << decoded.err;
+  const auto frame = read_picture((folder_.path() / "frame.png").string());
+  ASSERT_TRUE(frame);
+  ASSERT_EQ(run_ctpm({"replay", "press.ctpm", "--csv", "a.csv"}, folder_.path()).code, 0);
+  // Frame 8 shows the state after tick 1199: the last line of the table.
+  const std::string table = testing::slurp(folder_.path() / "a.csv");
+  const std::string last = table.substr(table.rfind('\n', table.size() - 2) + 1);
+  const std::string header = table.substr(0, table.find('\n'));
+  const auto cell = [&](const std::string& name) {
+    const auto column =
+        std::count(header.begin(), header.begin() + std::ptrdiff_t(header.find("," + name) + 1), ',');
+    std::istringstream cells(last);
+    std::string text;
+    for (std::ptrdiff_t i = 0; i <= column; ++i) std::getline(cells, text, ',');
+    return std::stod(text);
+  };
+  const render_test::GlyphReader reader(1280, 720);
+  EXPECT_EQ(reader.read_after(*frame, "time"), "1.200 s");
+  const double force = cell("force_n");
+  EXPECT_GT(force, 0.1) << "the ball presses";
+  EXPECT_NEAR(std::atof(reader.read_after(*frame, "force").c_str()), force, 0.0005 + 1e-9);
+  EXPECT_NEAR(std::atof(reader.read_after(*frame, "depth").c_str()), cell("depth_mm"), 0.005 + 1e-9);
 }
 
 TEST_F(Export, ThePixelsAreTheSameAtAnyNumberOfThreads) {

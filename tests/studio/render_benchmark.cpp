@@ -37,6 +37,24 @@ void picture_with_overlay(benchmark::State& run) {
 }
 BENCHMARK(picture_with_overlay)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime()->ArgName("cut");
 
+/// The parts of a frame: the picture without its overlay, and the overlay.
+void picture_alone(benchmark::State& run) {
+  Bench bench;
+  for (auto _ : run) benchmark::DoNotOptimize(bench.renderer->draw(bench.rest, bench.options).rgb.data());
+}
+BENCHMARK(picture_alone)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+void overlay_alone(benchmark::State& run) {
+  Bench bench;
+  Overlay overlay(1280, 720);
+  Frame frame = bench.renderer->draw(bench.rest, bench.options);
+  for (auto _ : run) {
+    overlay.draw(frame, bench.data);
+    benchmark::DoNotOptimize(frame.rgb.data());
+  }
+}
+BENCHMARK(overlay_alone)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
 /// The split and the wall made new, as while a blade moves.
 void picture_while_cutting(benchmark::State& run) {
   Bench bench;

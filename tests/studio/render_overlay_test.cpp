@@ -4,12 +4,14 @@
 
 #include <cmath>
 
+#include "tests/studio/glyph_reader.h"
+
 namespace ctpm {
 namespace {
 
 OverlayData full_data() {
   OverlayData data;
-  data.title = "Liver (CTPM)";
+  data.title = "Liver", data.model = "CTPM", data.session = "press";
   data.time = 12.345, data.tick = 12345, data.force = 1.234, data.depth = 0.0134, data.damage_depth = 0.012;
   data.verdict = "Replay identical: 12345 of 12345 ticks", data.verdict_tone = VerdictTone::good;
   data.legend = {"stretch [%]", "-20", "+20", {{0.1, 0.2, 0.7}, {0.8, 0.8, 0.8}, {0.8, 0.1, 0.1}}, false};
@@ -53,6 +55,40 @@ TEST(Overlay, EveryTextLeavesInkInItsPlace) {
       }
     EXPECT_GT(most - least, 60) << text.text;  // white on the red warning is the faintest
   }
+}
+
+TEST(Overlay, EveryTextStandsOnAPanel) {
+  for (const auto& [width, height] : {std::pair{1280, 720}, {640, 720}, {640, 360}}) {
+    Overlay overlay(width, height);
+    OverlayData data = full_data();
+    data.history = {{12, 0.04}};  // the plot's axis has its longest numbers
+    Frame frame = blank_frame(width, height, 255, 255, 255);
+    overlay.draw(frame, data);
+    for (const PlacedText& text : overlay.layout(data))
+      for (const int x : {text.box.x, text.box.x + text.box.width - 1})
+        for (const int y : {text.box.y, text.box.y + text.box.height - 1})
+          EXPECT_LT(frame.rgb[std::size_t(y * width + x) * 3 + 1], 200) << text.text << " " << width;
+  }
+}
+
+TEST(Overlay, ItsNumbersAreReadBackFromThePicture) {
+  const render_test::GlyphReader reader(1280, 720);
+  OverlayData data = full_data();
+  data.model = "CTPM", data.session = "expert-2";
+  Overlay overlay(1280, 720);
+  // Behind it a picture with much detail: stripes and blots.
+  Frame frame = blank_frame(1280, 720, 0, 0, 0);
+  for (std::size_t i = 0; i < frame.rgb.size(); ++i)
+    frame.rgb[i] =
+        std::uint8_t(125 + 60 * std::sin(double(i % 3840) * 0.09) * std::cos(double(i / 3840) * 0.31));
+  EXPECT_EQ(reader.read_after(frame, "time"), "") << "nothing is written yet";
+  overlay.draw(frame, data);
+  EXPECT_EQ(reader.read_after(frame, "time"), "12.345 s");
+  EXPECT_EQ(reader.read_after(frame, "tick"), "12345");
+  EXPECT_EQ(reader.read_after(frame, "force"), "1.234 N");
+  EXPECT_EQ(reader.read_after(frame, "depth"), "13.40 mm");
+  EXPECT_EQ(reader.read_after(frame, "session"), "expert-2");
+  EXPECT_EQ(reader.read_after(frame, "model"), "CTPM");
 }
 
 TEST(Overlay, ShowsOnlyWhatThereIs) {
