@@ -92,6 +92,15 @@ std::string describe(const Moment& moment) {
   return text;
 }
 
+/// The command that shows a moment, with a second before and after it.
+std::string export_command(const SessionTrack& trainee, const Moment& moment) {
+  constexpr double kAround = 1;  // [s]
+  char range[80];
+  std::snprintf(range, sizeof range, "--from-s %.1f --to-s %.1f", std::max(0.0, moment.from_s - kAround),
+                std::min(std::floor(10 * trainee.seconds(trainee.tick_count())) / 10, moment.to_s + kAround));
+  return "ctpm export " + trainee.path + " -o worst.mp4 " + range;
+}
+
 void write_session(JsonWriter& json, const char* key, const SessionTrack& track) {
   json.key(key).begin_object().member("file", std::string_view(track.path));
   json.member("session_id", std::string_view(track.session_id))
@@ -104,8 +113,12 @@ void write_session(JsonWriter& json, const char* key, const SessionTrack& track)
 }  // namespace
 
 std::vector<std::string> remarks_of(const ComparedSessions& compared) {
+  const auto& [expert, trainee, scene, comparison] = compared;
   std::vector<std::string> remarks;
-  for (const SessionTrack* track : {&compared.expert, &compared.trainee}) {
+  if (expert.initial_state != trainee.initial_state)
+    remarks.push_back(
+        "the sessions begin from different states of the tissue: one goes on from a moment of another");
+  for (const SessionTrack* track : {&expert, &trainee}) {
     if (!track->has_end) remarks.push_back(track->path + " has no clean end: what is there is measured");
     if (!track->replays)
       remarks.push_back(
@@ -138,6 +151,8 @@ std::string comparison_text(const ComparedSessions& compared) {
     text += describe(comparison.moments[i]) + "\n";
   if (comparison.moments.size() > kMomentsOnConsole)
     text += "and " + std::to_string(comparison.moments.size() - kMomentsOnConsole) + " more\n";
+  if (!comparison.moments.empty())
+    text += "to see the worst: " + export_command(compared.trainee, comparison.moments.front()) + "\n";
   return text;
 }
 
@@ -174,10 +189,12 @@ Result<Done> write_comparison(const std::string& folder, const ComparedSessions&
                 scene + "Expert: " + compared.expert.path + ". Trainee: " + compared.trainee.path + ".");
   for (const std::string& remark : remarks_of(compared)) report.add_verdict(false, remark);
   report.add_heading("Worst moments first");
-  if (comparison.moments.empty())
+  if (comparison.moments.empty()) {
     report.add_verdict(true, "No moment goes beyond a limit.");
-  else
+  } else {
     report.add_table(moments_table(comparison));
+    report.add_paragraph("To see the worst: " + export_command(compared.trainee, comparison.moments.front()));
+  }
   report.add_heading("Measures");
   report.add_table(with_columns(measures_table(comparison),
                                 {"measure", "expert", "trainee", "unit", "better_is", "trainee_is"}));

@@ -7,6 +7,7 @@
 #include "core/fields.h"
 #include "importers/surface_index.h"
 #include "recordings/replay.h"
+#include "recordings/state_hash.h"
 
 namespace ctpm {
 namespace {
@@ -137,6 +138,7 @@ Result<SessionTrack> read_track(SessionReader& session) {
   SessionTrack track;
   track.path = session.path(), track.session_id = session.session_id(), track.tick = start.model.tick;
   track.has_end = session.ended_cleanly();
+  track.initial_state = state_hash(start.initial_state);
   if (const auto name = start.metadata.find("scene_name"); name != start.metadata.end())
     track.scene_name = name->second;
   const std::int64_t count = session.tick_count();

@@ -33,7 +33,8 @@ struct SessionTrack {
   std::vector<Spell> strokes;         ///< ticks from taking a tool to putting it away
   std::vector<Spell> cuts;            ///< ticks from the first to the last severed element of each cut
   std::vector<std::int64_t>
-      severed_at;       ///< tick in which each element was severed; -1: never  (ElementPlaces::count)
+      severed_at;  ///< tick in which each element was severed; -1: never  (ElementPlaces::count)
+  std::uint64_t initial_state = 0;  ///< hash of the State before the first tick
   bool has_end = true;  ///< false: it was cut off, or is still being recorded, and this is what is there
   bool replays =
       true;  ///< simulating the cuts again gave what was recorded; false: severed_at is what came out

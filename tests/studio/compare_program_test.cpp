@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <iterator>
+#include <sstream>
 #include <string>
 
 #include "tests/studio/run_program.h"
@@ -104,6 +106,32 @@ TEST_F(Compare, WritesOnePageThatLoadsNothingAndItsNumbers) {
   EXPECT_LT(page.find("force above the limit"), page.find("away from the expert"));  // harm comes first
   const std::string results = slurp(folder_.path() / "report/results.json");
   EXPECT_EQ(results, compare(press_, hard_press_, {"--json"}).out);
+}
+
+TEST_F(Compare, NamesTheCommandThatShowsTheWorstMoment) {
+  const auto compared = compare(press_, hard_press_);
+  const auto at = compared.out.find("to see the worst: ctpm export ");
+  ASSERT_NE(at, std::string::npos) << compared.out;
+  std::istringstream words(compared.out.substr(at + std::string("to see the worst: ctpm ").size()));
+  std::vector<std::string> command{std::istream_iterator<std::string>(words), {}};
+  for (const char* more : {"--size", "320x180", "--fps", "5"}) command.push_back(more);
+  const auto exported = run_ctpm(command, folder_.path());
+  EXPECT_EQ(exported.code, 0) << exported.err;
+  EXPECT_TRUE(fs::exists(folder_.path() / "worst.mp4"));
+}
+
+TEST_F(Compare, ASessionThatGoesOnFromAnotherIsMeasuredWithAWarning) {
+  const std::string script = kScenes + "/scripts/kidney-cut-expert.json";
+  const auto recorded = run_ctpm({"record", "--continue", clumsy_cut_, "--at", "6", "--script", script, "-o",
+                                  "on.ctpm", "--fast", "--duration-s", "2"},
+                                 folder_.path());
+  ASSERT_EQ(recorded.code, 0) << recorded.err;
+  const auto compared = compare(cut_, "on.ctpm", {"--json"});
+  EXPECT_EQ(compared.code, 0) << compared.err;
+  EXPECT_TRUE(holds(compared.err, "warning: the sessions begin from different states")) << compared.err;
+  // What was severed before the session began is not counted as done in it.
+  EXPECT_LT(value_of(compared.out, "elements_severed", "trainee"),
+            value_of(compared.out, "elements_severed", "expert"));
 }
 
 TEST_F(Compare, SessionsOfDifferentScenesAreRefusedWithTheReason) {
