@@ -103,7 +103,7 @@ void add_press(Script& script, const ToolSpec& ball, const Table& table, Vec3 pl
   const Vec3 down = table.to_world({0, 0, -1});
   script.steps.push_back(take(ball.name, table.to_world(place + Vec3{0, 0, radius + clear}), down));
   ScriptStep press, release;
-  press.press = ScriptStep::Press{whole_tenths(clear + depth), down, 0.020};
+  press.press = ScriptStep::Press{whole_tenths(clear + depth), down, 0.020, {}};
   release.release = ScriptStep::Release{whole_tenths(clear + depth + 0.02), table.to_world({0, 0, 1}), 0.040};
   script.steps.insert(script.steps.end(), {press, wait(hold), release, wait(0.3), put_away()});
 }
@@ -133,7 +133,7 @@ std::vector<Vec3> cut_path(const Top& top, Vec3 first, double length, double dep
 void add_cut(Script& script, const ToolSpec& scalpel, const Table& table, const std::vector<Vec3>& path, double depth) {
   const Vec3 down = table.to_world({0, 0, -1}), clear{0, 0, depth + 0.020};
   ScriptStep cut, leave;
-  cut.cut = ScriptStep::Cut{{}, 0.040};
+  cut.cut = ScriptStep::Cut{{}, 0.040, {}};
   for (const Vec3& tip : path) cut.cut->path.push_back(whole_tenths(table.to_world(tip)));
   script.steps.push_back(take(scalpel.name, table.to_world(path.front() + clear), down));
   const Vec3 way = path.back() - path.front();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "scenes/field_reader.h"
 #include "scenes/field_writer.h"
@@ -78,8 +80,44 @@ double eased(double t) {
   return (0.5 * kRamp + (t - kRamp)) / whole;
 }
 
+/// Length of the way up to each of its points.
+std::vector<double> lengths_along(const std::vector<Vec3>& points) {
+  std::vector<double> lengths{0};
+  for (std::size_t i = 1; i < points.size(); ++i) lengths.push_back(lengths.back() + norm(points[i] - points[i - 1]));
+  return lengths;
+}
+
+/// A curve through the points, as a way of short straight pieces: the centripetal Catmull-Rom spline, which has neither
+/// loops nor swings where points lie close together. Yuksel, Schaefer & Keyser, "Parameterization and applications of
+/// Catmull-Rom curves" (2011).
+std::vector<Vec3> curve_through(std::vector<Vec3> points) {
+  const auto coincide = [](Vec3 a, Vec3 b) { return !(norm(a - b) > 0); };
+  points.erase(std::unique(points.begin(), points.end(), coincide), points.end());
+  if (points.size() < 3) return points;
+  const Vec3 before = 2.0 * points[0] - points[1], after = 2.0 * points.back() - points[points.size() - 2];
+  points.insert(points.begin(), before);
+  points.push_back(after);
+  std::vector<Vec3> way{points[1]};
+  for (std::size_t i = 1; i + 2 < points.size(); ++i) {
+    double knot[4] = {0};
+    for (std::size_t k = 1; k < 4; ++k) knot[k] = knot[k - 1] + std::sqrt(norm(points[i - 1 + k] - points[i - 2 + k]));
+    const auto between = [&](Vec3 p, Vec3 q, std::size_t from, std::size_t to, double t) {
+      return ((knot[to] - t) * p + (t - knot[from]) * q) / (knot[to] - knot[from]);
+    };
+    constexpr int kPieces = 32;
+    for (int piece = 1; piece <= kPieces; ++piece) {
+      const double t = knot[1] + double(piece) / kPieces * (knot[2] - knot[1]);
+      const Vec3 a1 = between(points[i - 1], points[i], 0, 1, t), a2 = between(points[i], points[i + 1], 1, 2, t),
+                 a3 = between(points[i + 1], points[i + 2], 2, 3, t);
+      const Vec3 b1 = between(a1, a2, 0, 2, t), b2 = between(a2, a3, 1, 3, t);
+      way.push_back(piece == kPieces ? points[i + 1] : between(b1, b2, 1, 2, t));
+    }
+  }
+  return way;
+}
+
 /// Time for a way at a speed, with the slower start and end.
-double duration_of(Vec3 from, Vec3 to, double speed) { return norm(to - from) / speed / 0.8; }
+double duration_of(const std::vector<Vec3>& way, double speed) { return lengths_along(way).back() / speed / 0.8; }
 
 /// From where a press or a release begins to where it ends [m].
 template <class Stroke>
@@ -106,58 +144,105 @@ std::string write_script(const Script& script) {
   return FieldWriter::record_text(copy, 0) + "\n";
 }
 
-ScriptPlayer::ScriptPlayer(const Script& script, std::span<const Tool> tools, double tick) : tick_(tick) {
-  std::int32_t tool = -1;
-  Quat orientation;
-  Vec3 hand;
-  const auto go = [&](Vec3 to, double speed) {
-    add_stretch(tool, orientation, hand, to, duration_of(hand, to, speed));
-    hand = to;
-  };
-  for (const ScriptStep& step : script.steps) {
+ScriptPlayer::ScriptPlayer(const Script& script, std::span<const Tool> tools, double tick)
+    : script_(script), tools_(tools.begin(), tools.end()), tick_(tick) {
+  plan(0, -1, {}, {});
+}
+
+/// Lays out the steps from `first_step` on, from a hand that is at `hand` with `tool`.
+void ScriptPlayer::plan(std::size_t first_step, std::int32_t tool, Quat orientation, Vec3 hand) {
+  for (std::size_t i = first_step; i < script_.steps.size(); ++i) {
+    const ScriptStep& step = script_.steps[i];
+    const auto follow = [&](std::vector<Vec3> way, double speed) -> Stretch& {
+      hand = way.back();
+      const double duration = duration_of(way, speed);
+      return add_stretch(i, tool, orientation, std::move(way), duration);
+    };
     if (step.take) {
       const auto it =
-          std::find_if(tools.begin(), tools.end(), [&](const Tool& t) { return t.name == step.take->tool; });
-      CTPM_CHECK(it != tools.end(), "the script was read with the scene's tools");
-      tool = std::int32_t(it - tools.begin());
+          std::find_if(tools_.begin(), tools_.end(), [&](const Tool& t) { return t.name == step.take->tool; });
+      CTPM_CHECK(it != tools_.end(), "the script was read with the scene's tools");
+      tool = std::int32_t(it - tools_.begin());
       orientation = orientation_of(step.take->pointing);
       if (step.take->facing) orientation = facing(orientation, *step.take->facing);
       hand = step.take->at;
-      add_stretch(tool, orientation, hand, hand, tick_);
+      add_stretch(i, tool, orientation, {hand}, tick_);
     }
-    if (step.move) go(step.move->to, step.move->speed);
-    if (step.press) go(hand + way_of(*step.press), step.press->speed);
-    if (step.release) go(hand + way_of(*step.release), step.release->speed);
-    if (step.cut)
-      for (const Vec3& point : step.cut->path) go(point, step.cut->speed);
-    if (step.wait) add_stretch(tool, orientation, hand, hand, *step.wait);
+    if (step.move) follow({hand, step.move->to}, step.move->speed);
+    if (step.press)
+      follow({hand, hand + way_of(*step.press)}, step.press->speed).until_force = step.press->until_force.value_or(0);
+    if (step.release) follow({hand, hand + way_of(*step.release)}, step.release->speed);
+    if (step.cut && step.cut->smooth.value_or(false)) {
+      std::vector<Vec3> points{hand};
+      points.insert(points.end(), step.cut->path.begin(), step.cut->path.end());
+      follow(curve_through(points), step.cut->speed);
+    } else if (step.cut) {
+      for (const Vec3& point : step.cut->path) follow({hand, point}, step.cut->speed);
+    }
+    if (step.wait) add_stretch(i, tool, orientation, {hand}, *step.wait);
     if (step.put_away) {
       tool = -1;
-      add_stretch(tool, {}, {}, {}, tick_);
+      add_stretch(i, tool, {}, {Vec3{}}, tick_);
     }
   }
 }
 
-void ScriptPlayer::add_stretch(std::int32_t tool, Quat orientation, Vec3 from, Vec3 to, double duration) {
-  const std::int64_t count = std::max<std::int64_t>(1, std::llround(std::ceil(duration / tick_)));
-  stretches_.push_back({tick_count(), count, tool, orientation, from, to});
+ScriptPlayer::Stretch& ScriptPlayer::add_stretch(std::size_t step, std::int32_t tool, Quat orientation,
+                                                 std::vector<Vec3> points, double duration) {
+  Stretch stretch;
+  stretch.first = tick_count();
+  stretch.count = stretch.planned = std::max<std::int64_t>(1, std::llround(std::ceil(duration / tick_)));
+  stretch.tool = tool, stretch.world_from_tool = orientation, stretch.step = step;
+  stretch.lengths = lengths_along(points);
+  stretch.points = std::move(points);
+  return stretches_.emplace_back(std::move(stretch));
 }
 
 std::int64_t ScriptPlayer::tick_count() const {
   return stretches_.empty() ? 0 : stretches_.back().first + stretches_.back().count;
 }
 
+const ScriptPlayer::Stretch& ScriptPlayer::stretch_at(std::int64_t tick) const {
+  const auto next = std::upper_bound(stretches_.begin(), stretches_.end(), tick,
+                                     [](std::int64_t t, const Stretch& s) { return t < s.first; });
+  return next == stretches_.begin() ? *next : *(next - 1);
+}
+
 Inputs ScriptPlayer::at(std::int64_t tick) const {
   Inputs inputs;
   if (stretches_.empty()) return inputs;
-  const auto next = std::upper_bound(stretches_.begin(), stretches_.end(), tick,
-                                     [](std::int64_t t, const Stretch& s) { return t < s.first; });
-  const Stretch& stretch = next == stretches_.begin() ? *next : *(next - 1);
-  const double share = std::clamp(double(tick - stretch.first + 1) / double(stretch.count), 0.0, 1.0);
+  const Stretch& stretch = stretch_at(tick);
   inputs.tool = stretch.tool;
   inputs.world_from_tool = stretch.world_from_tool;
-  inputs.position = stretch.from + eased(share) * (stretch.to - stretch.from);
+  const std::int64_t done = std::clamp<std::int64_t>(tick - stretch.first + 1, 0, stretch.count);
+  const double share = double(done) / double(stretch.planned);
+  const auto& [points, lengths] = std::tie(stretch.points, stretch.lengths);
+  const double length = eased(share) * lengths.back();
+  const auto next = std::upper_bound(lengths.begin(), lengths.end(), length);
+  if (next == lengths.end()) {
+    inputs.position = points.back();
+    return inputs;
+  }
+  const std::size_t i = std::size_t(next - lengths.begin());
+  const double part = (length - lengths[i - 1]) / (lengths[i] - lengths[i - 1]);
+  inputs.position = points[i - 1] + part * (points[i] - points[i - 1]);
   return inputs;
+}
+
+PressEnd ScriptPlayer::feel(std::int64_t tick, Vec3 force) {
+  if (tick < 0 || tick >= tick_count()) return PressEnd::none;
+  const std::size_t index = std::size_t(&stretch_at(tick) - stretches_.data());
+  Stretch& stretch = stretches_[index];
+  if (stretch.until_force == 0) return PressEnd::none;
+  const Vec3 way = stretch.points.back() - stretch.points.front();
+  if (dot(force, way) > -stretch.until_force * norm(way))
+    return tick == stretch.first + stretch.count - 1 ? PressEnd::at_depth : PressEnd::none;
+  const Inputs now = at(tick);
+  stretch.count = tick - stretch.first + 1;
+  const std::size_t next_step = stretch.step + 1;
+  stretches_.resize(index + 1);
+  plan(next_step, now.tool, now.world_from_tool, now.position);
+  return PressEnd::at_force;
 }
 
 }  // namespace ctpm

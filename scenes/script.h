@@ -32,9 +32,10 @@ struct ScriptStep {
     friend bool operator==(const Move&, const Move&) = default;
   };
   struct Press {
-    double distance = 0;       ///< [m]
+    double distance = 0;       ///< at most [m]
     Vec3 direction{0, 0, -1};  ///< any length but zero
     double speed = 0;          ///< [m/s]
+    std::optional<double> until_force;  ///< ends as soon as the tissue pushes back with so much [N]
     friend bool operator==(const Press&, const Press&) = default;
   };
   struct Release {
@@ -46,6 +47,7 @@ struct ScriptStep {
   struct Cut {
     std::vector<Vec3> path;  ///< of the tip, from where it is [m]
     double speed = 0;        ///< [m/s]
+    std::optional<bool> smooth;  ///< along one curve through the points; otherwise straight, at rest at each
     friend bool operator==(const Cut&, const Cut&) = default;
   };
   std::optional<Take> take;
@@ -77,27 +79,44 @@ std::string write_script(const Script& script);
 /// first scalpel, as far as the scene has them: something to see for any organ.
 Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organs);
 
+/// How a press to a force ended.
+enum class PressEnd { none, at_force, at_depth };
+
 /// The inputs of a script, tick by tick. Each stretch starts and ends at rest: speed rises and falls along a
-/// cubic, and is the step's own in between. Free of transcendental functions, so the same everywhere.
+/// cubic, and is the step's own in between; a press to a force stops where it reaches it. Free of transcendental
+/// functions, so the same everywhere.
 class ScriptPlayer {
  public:
   /// `tick` [s]; the script's tools must be those of `tools`.
   ScriptPlayer(const Script& script, std::span<const Tool> tools, double tick);
 
+  /// Those known by now: presses to a force count with their whole distance until they have ended.
   std::int64_t tick_count() const;
 
-  /// A pure function of the tick; after the end the last inputs stay.
+  /// A pure function of the tick and of what was felt before; after the end the last inputs stay.
   Inputs at(std::int64_t tick) const;
+
+  /// The tissue pushed the tool with `force` [N] in tick `tick`. If that ends a press to a force, the steps after it
+  /// go on from where the tool is. Without it presses go their whole distance.
+  PressEnd feel(std::int64_t tick, Vec3 force);
 
  private:
   struct Stretch {
     std::int64_t first = 0, count = 0;  ///< ticks
+    std::int64_t planned = 0;           ///< ticks, had it not ended before
     std::int32_t tool = -1;
     Quat world_from_tool;
-    Vec3 from, to;  ///< [m]
+    std::vector<Vec3> points;     ///< of the way, straight from one to the next; at least one [m]
+    std::vector<double> lengths;  ///< of the way up to each point [m]
+    std::size_t step = 0;         ///< of the script, to which it belongs
+    double until_force = 0;       ///< [N]; 0: none
   };
-  void add_stretch(std::int32_t tool, Quat orientation, Vec3 from, Vec3 to, double duration);
+  void plan(std::size_t first_step, std::int32_t tool, Quat orientation, Vec3 hand);
+  Stretch& add_stretch(std::size_t step, std::int32_t tool, Quat orientation, std::vector<Vec3> points, double duration);
+  const Stretch& stretch_at(std::int64_t tick) const;
 
+  Script script_;
+  std::vector<Tool> tools_;
   double tick_;
   std::vector<Stretch> stretches_;
 };

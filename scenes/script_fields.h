@@ -38,11 +38,15 @@ void describe_fields(V& v, ScriptStep::Move& move) {
 }
 
 inline RecordInfo info_of(const ScriptStep::Press&) {
-  return {"press", "The tool moves by a distance into the tissue."};
+  return {"press", "The tool moves into the tissue, by a distance or up to a force."};
 }
 template <class V>
 void describe_fields(V& v, ScriptStep::Press& press) {
-  v.number(required("distance_mm", "How far."), press.distance, units::millimetre, above(0, 1000));
+  v.number(required("distance_mm", "How far; with until_force_n, how far at most: there it gives up."), press.distance,
+           units::millimetre, above(0, 1000));
+  v.number(Key{"until_force_n", "Ends where the tissue pushes back with so much against the direction.", false,
+               "the whole distance"},
+           press.until_force, units::newton, above(0, 1000));
   v.point(Key{"direction", "Which way; any length but zero."}, press.direction, units::none,
           script_ranges::direction);
   v.number(required("speed_mm_per_s", "Speed between the slower start and end of each straight piece."),
@@ -62,12 +66,15 @@ void describe_fields(V& v, ScriptStep::Release& release) {
 }
 
 inline RecordInfo info_of(const ScriptStep::Cut&) {
-  return {"cut", "The tip moves from point to point along a path and rests for a moment at each."};
+  return {"cut", "The tip moves along a path of points."};
 }
 template <class V>
 void describe_fields(V& v, ScriptStep::Cut& cut) {
   v.points(required("path_mm", "Points that the tip passes, from where it is."), cut.path, units::millimetre,
            script_ranges::coordinate_mm, 1);
+  v.flag(Key{"smooth", "Along one smooth curve through the points, without a rest at any.", false,
+             "straight from point to point, with a moment of rest at each"},
+         cut.smooth);
   v.number(required("speed_mm_per_s", "Speed between the slower start and end of each straight piece."),
            cut.speed, units::millimetre_per_second, script_ranges::speed_mm_per_s);
 }

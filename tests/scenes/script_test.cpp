@@ -133,15 +133,16 @@ TEST(ReadScript, PuttingAwayIsAlwaysTrue) {
 const std::string kEveryStep = R"(
   {"take": {"tool": "scalpel", "at_mm": [1.1, -2.7, 50.3], "pointing": [0.1, 0.2, -0.7]}},
   {"move": {"to_mm": [3.3, 4.1, 20.9], "speed_mm_per_s": 12.3}},
-  {"press": {"distance_mm": 7.7, "direction": [0.3, 0, -1], "speed_mm_per_s": 9.1}},
+  {"press": {"distance_mm": 7.7, "direction": [0.3, 0, -1], "speed_mm_per_s": 9.1, "until_force_n": 1.7}},
   {"release": {"distance_mm": 3.3, "speed_mm_per_s": 33.3}},
   {"wait_s": 0.35},
   {"cut": {"path_mm": [[1.7, 2.9, 10.1], [5.3, 2.9, 10.1], [9.7, 3.1, 9.3]], "speed_mm_per_s": 30.7}},
+  {"cut": {"path_mm": [[1.7, 2.9, 10.1], [5.3, 2.9, 10.1], [9.7, 3.1, 9.3]], "speed_mm_per_s": 30.7, "smooth": true}},
   {"put_away": true}, {"wait_s": 0.1})";
 
 TEST(WriteScript, WhatIsWrittenIsReadBackEqual) {
   const Script script = read_good(kEveryStep);
-  ASSERT_EQ(script.steps.size(), 8u);
+  ASSERT_EQ(script.steps.size(), 9u);
   const Result<Script> again = read_script(write_script(script), "again.json", kTools);
   ASSERT_TRUE(again) << to_string(again.errors().front());
   EXPECT_TRUE(*again == script) << write_script(script);
@@ -277,6 +278,96 @@ SceneSpec block_scene(const std::string& block, const std::string& gravity = "[0
     return {};
   }
   return scene->spec;
+}
+
+/// Tissue that pushes back with 100 N/m below `surface_z` [m].
+Vec3 spring_force(const Inputs& inputs, double surface_z) {
+  return {0, 0, std::max(0.0, 100 * (surface_z - inputs.position.z))};
+}
+
+const std::string kPressToForce = R"(, {"press": {"distance_mm": 20, "speed_mm_per_s": 10, "until_force_n": 0.5}},
+                                       {"wait_s": 0.1}, {"release": {"distance_mm": 3, "speed_mm_per_s": 10}})";
+
+TEST(ScriptPlayer, APressToAForceEndsWhereTheTissuePushesBackWithItAndTheNextStepsGoOnFromThere) {
+  ScriptPlayer player(read_good(kTake + kPressToForce), tools_of_model(), kTick);
+  const std::int64_t whole = player.tick_count();
+  std::int64_t ended = -1;
+  double lowest = 1;
+  for (std::int64_t tick = 0; tick < player.tick_count(); ++tick) {
+    const Inputs before = player.at(tick);
+    lowest = std::min(lowest, before.position.z);
+    const PressEnd end = player.feel(tick, spring_force(before, 0.045));
+    EXPECT_EQ(player.at(tick), before) << "what was done stays done";
+    if (end == PressEnd::none) continue;
+    EXPECT_EQ(end, PressEnd::at_force);
+    EXPECT_EQ(ended, -1) << "it ends once";
+    ended = tick;
+  }
+  // 0.5 N at 100 N/m are 5 mm below the surface; one tick goes 10 um.
+  EXPECT_NEAR(lowest, 0.040, 1.1e-5);
+  EXPECT_LE(lowest, 0.040);
+  ASSERT_GT(ended, 0);
+  for (std::int64_t tick = ended; tick < ended + 100; ++tick) EXPECT_EQ(player.at(tick).position.z, lowest);
+  EXPECT_LT(player.tick_count(), whole);
+  EXPECT_NEAR(player.at(player.tick_count()).position.z, lowest + 0.003, 1e-12);
+}
+
+TEST(ScriptPlayer, APressToAForceThatNeverComesGivesUpAtItsDepth) {
+  ScriptPlayer player(read_good(kTake + kPressToForce), tools_of_model(), kTick);
+  const std::int64_t whole = player.tick_count();
+  int gave_up = 0;
+  for (std::int64_t tick = 0; tick < player.tick_count(); ++tick)
+    gave_up += player.feel(tick, {0.6, 0.6, 0.49}) == PressEnd::at_depth;  // only what is against the way counts
+  EXPECT_EQ(gave_up, 1);
+  EXPECT_EQ(player.tick_count(), whole);
+  EXPECT_NEAR(player.at(whole).position.z, 0.05 - 0.02 + 0.003, 1e-12);
+}
+
+TEST(ReadScript, AForceToPressToMustBeAPositiveNumber) {
+  EXPECT_EQ(errors_of(script_of(kTake + ",\n" + R"({"press": {"until_force_n": 0, "distance_mm": 5, "speed_mm_per_s": 10}})")),
+            "s.json:3:29: error: /steps/1/press/until_force_n: got 0, must be in (0, 1000] N\n");
+  EXPECT_NE(errors_of(script_of(kTake + R"(, {"press": {"until_force_n": 1, "speed_mm_per_s": 10}})"))
+                .find("the key \"distance_mm\" is missing"),
+            std::string::npos);
+}
+
+TEST(ScriptPlayer, ASmoothCutPassesItsPointsWithoutARestOrACorner) {
+  const std::string path = R"("path_mm": [[10, 0, 50], [10, 10, 50], [12, 11, 50], [40, 0, 45]], "speed_mm_per_s": 20)";
+  const Script script = read_good(kTake + R"(, {"cut": {)" + path + R"(, "smooth": true}})");
+  const ScriptPlayer player(script, tools_of_model(), kTick);
+  const std::vector<Vec3> way = way_in_hand(player);
+  for (const Vec3& point : script.steps.at(1).cut->path) {
+    double nearest = 1;
+    for (const Vec3& p : way) nearest = std::min(nearest, norm(p - point));
+    EXPECT_LT(nearest, 10.1e-6) << "half a tick's way";
+  }
+  EXPECT_EQ(way.back(), (Vec3{0.04, 0, 0.045}));
+  const std::size_t first = way.size() / 5 + 1, last = way.size() - first - 1;
+  for (std::size_t i = first; i < last; ++i) {
+    const Vec3 before = way[i] - way[i - 1], after = way[i + 1] - way[i];
+    EXPECT_NEAR(norm(after) / kTick, 20e-3, 0.2e-3) << "even speed, tick " << i;
+    EXPECT_GT(dot(before, after), 0.97 * norm(before) * norm(after)) << "no corner, tick " << i;
+  }
+  // Without it there is a corner of a right angle, and a rest.
+  const std::vector<Vec3> straight = way_in_hand(
+      ScriptPlayer(read_good(kTake + R"(, {"cut": {)" + path + "}}"), tools_of_model(), kTick));
+  double slowest = 1;
+  for (std::size_t i = straight.size() / 5; i < straight.size() * 4 / 5; ++i)
+    slowest = std::min(slowest, norm(straight[i] - straight[i - 1]) / kTick);
+  EXPECT_LT(slowest, 1e-3);
+}
+
+TEST(ScriptPlayer, ASmoothCutOfPointsThatCoincideOrOfOneIsAStraightWay) {
+  for (const std::string path : {"[[0, 0, 40]]", "[[0, 0, 50], [0, 0, 50], [0, 0, 40], [0, 0, 40]]",
+                                 "[[1e-300, 0, 50], [0, 0, 50], [0, 0, 40]]"}) {
+    const ScriptPlayer player(read_good(kTake + R"(, {"cut": {"smooth": true, "speed_mm_per_s": 20, "path_mm": )" + path + "}}"),
+                              tools_of_model(), kTick);
+    for (const Vec3& p : way_in_hand(player)) {
+      ASSERT_TRUE(is_finite(p)) << path;
+      EXPECT_NEAR(p.x, 0, 1e-12);
+    }
+    EXPECT_EQ(player.at(player.tick_count()).position, (Vec3{0, 0, 0.04}));
+  }
 }
 
 TEST(DefaultScript, OfAnyBlockIsReadWithTheScenesTools) {

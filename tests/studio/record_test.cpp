@@ -74,6 +74,23 @@ TEST_F(Record, AMotionAtAnyRateIsSampledEveryTick) {
   EXPECT_NEAR(std::stod(cell(table, 380, kToolZ)), 22, 1e-6);
 }
 
+TEST_F(Record, APressToAForceStopsAtItAndOneThatCannotReachItSaysSo) {
+  const auto script = [](const std::string& force) {
+    return R"({"format": "ctpm-script", "version": 1, "steps": [{"take": {"tool": "ball", "at_mm": [0, 0, 28]}},
+      {"press": {"distance_mm": 9, "speed_mm_per_s": 10, "until_force_n": )" + force + "}}, {\"wait_s\": 0.2}]}";
+  };
+  write("some.json", script("0.2")), write("much.json", script("500"));
+  ctpm({"record", "block.json", "--script", "some.json", "-o", "some.ctpm", "--fast"});
+  ctpm({"record", "block.json", "--script", "much.json", "-o", "much.ctpm", "--fast"});
+  EXPECT_TRUE(holds(ctpm({"info", "some.ctpm"}), "note: press reaches its force"));
+  EXPECT_TRUE(holds(ctpm({"info", "much.ctpm"}), "note: press gives up at its depth"));
+  EXPECT_TRUE(holds(ctpm({"verify", "some.ctpm"}), "same"));
+  const std::string info = ctpm({"info", "some.ctpm", "--json"});
+  const double most = std::stod(info.substr(info.find("\"max_force_n\":") + 14));
+  EXPECT_GE(most, 0.2);
+  EXPECT_LT(most, 0.22);
+}
+
 TEST_F(Record, ASessionGoesOnFromAMomentOfAnotherAndRemembersIt) {
   ctpm({"record", "block.json", "--script", "press.json", "-o", "a.ctpm", "--fast"});
   write("hold.csv", "time_s,tool_x_mm,tool_y_mm,tool_z_mm\n0,0,0,20\n0.3,0,0,20\n");
