@@ -15,7 +15,7 @@ uniform vec3 eye, up, key_light, fill_light, rim_light;
 vec3 room(vec3 r) {
   float height = dot(r, up);
   vec3 c = mix(vec3(0.10, 0.09, 0.09), vec3(0.34, 0.38, 0.42), smoothstep(-0.35, 0.55, height));
-  c += vec3(5.5, 5.2, 4.9) * smoothstep(0.955, 0.988, dot(r, key_light));
+  c += vec3(6.0, 5.7, 5.4) * smoothstep(0.925, 1.0, dot(r, key_light));
   c += vec3(0.75, 0.85, 1.0) * smoothstep(0.80, 0.97, dot(r, fill_light));
   c += vec3(1.1) * smoothstep(0.86, 0.97, dot(r, rim_light));
   return c;
