@@ -1,6 +1,8 @@
 #pragma once
 
 #include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,6 +18,8 @@ namespace ctpm::testing {
 struct ProgramOutcome {
   int code = -1;  ///< exit code; -1 if a signal ended it
   std::string out, err;
+  double cpu_s = 0;       ///< processor time of all its threads [s]
+  double memory_mib = 0;  ///< the most that it had at a time [MiB]
 };
 
 inline std::string slurp(const std::filesystem::path& path) {
@@ -42,8 +46,12 @@ inline ProgramOutcome run(const std::vector<std::string>& command, const std::fi
     _exit(127);
   }
   int status = 0;
-  waitpid(child, &status, 0);
+  struct rusage used = {};
+  wait4(child, &status, 0, &used);
   ProgramOutcome outcome;
+  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+  outcome.cpu_s = seconds(used.ru_utime) + seconds(used.ru_stime);
+  outcome.memory_mib = double(used.ru_maxrss) / 1024;
   outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   outcome.out = slurp(out), outcome.err = slurp(err);
   std::filesystem::remove(out), std::filesystem::remove(err);
