@@ -11,16 +11,16 @@ constexpr int kContactRounds = 4;
 
 }  // namespace
 
-BackwardEuler::BackwardEuler(const Model& model)
+BackwardEuler::BackwardEuler(const Model& model, const Slabs& slabs, Team& team, const Kernels& kernels)
     : model_(model),
-      jacobi_(model.sphere_count()),
-      solver_(3 * model.sphere_count()),
+      slabs_(slabs),
+      team_(team),
+      solver_(model, slabs, team, kernels),
       force_(3 * model.sphere_count()),
       momentum_(3 * model.sphere_count()),
       blocks_(6 * model.sphere_count()) {
-  const double total_mass = fixed_order_dot(model.mass, std::vector<double>(model.mass.size(), 1.0));
-  for (std::size_t i = 0; i < model.sphere_count(); ++i)
-    if (model.held_axes[i] != 0 && model.held_axes[i] != kAnchored) guided_.push_back(std::int32_t(i));
+  double total_mass = 0;
+  for (const double mass : model.mass) total_mass += mass;
   limits_.relative = model.solver.tolerance;
   limits_.absolute = model.solver.velocity_floor * std::sqrt(total_mass);
   limits_.max_iterations = model.solver.max_iterations;
@@ -29,11 +29,16 @@ BackwardEuler::BackwardEuler(const Model& model)
 void BackwardEuler::solve(Elements& elements, const State& state, Outside& outside, Coordinates& velocity,
                           StepReport& report) {
   const std::size_t n = model_.sphere_count();
-  start_velocities(state, outside, velocity);
-  set_outer_forces(model_, outside, force_);
-  std::fill(blocks_.begin(), blocks_.end(), 0.0);
-  for (const std::size_t diagonal : {std::size_t(0), 3 * n, 5 * n})
-    std::copy(model_.mass.begin(), model_.mass.end(), blocks_.begin() + std::ptrdiff_t(diagonal));
+  team_.for_each(slabs_.count(), [&](int slab) {
+    const auto begin = std::size_t(slabs_.begin(slab)), end = std::size_t(slabs_.end(slab));
+    start_velocities(state, outside, begin, end, velocity);
+    set_weight(model_, begin, end, force_);
+    for (std::size_t k = 0; k < 6; ++k) {
+      const bool is_diagonal = k == 0 || k == 3 || k == 5;
+      for (std::size_t i = begin; i < end; ++i) blocks_[k * n + i] = is_diagonal ? model_.mass[i] : 0.0;
+    }
+  });
+  add_loads(model_, outside, force_);
   elements.linearise(state, outside.h, force_, blocks_);
   for (int round = 0;; ++round) {
     outside.contact.linearise(outside.h, force_, blocks_);
@@ -54,48 +59,16 @@ void BackwardEuler::solve(Elements& elements, const State& state, Outside& outsi
 /// Solves with the contacts there are, starting from `velocity`.
 CgOutcome BackwardEuler::solve_round(const Elements& elements, const State& state, const Outside& outside,
                                      Coordinates& velocity) {
-  const std::size_t n = model_.sphere_count();
-  const double* old_velocity[3] = {state.velocity.x.data(), state.velocity.y.data(), state.velocity.z.data()};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (std::size_t i = 0; i < n; ++i)
-      momentum_[axis * n + i] = outside.is_held(i, axis) ? 0.0
-                                                         : model_.mass[i] * old_velocity[axis][i] +
-                                                               outside.h * force_[axis * n + i];
-  uncouple_guided(outside);
-  jacobi_.factorise(blocks_);
-  return solver_.solve(
-      momentum_, velocity, limits_,
-      [&](const Coordinates& in, Coordinates& out) {
-        apply(elements, state, outside, in, out);
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          for (std::size_t i = 0; i < n; ++i)
-            out[axis * n + i] = outside.is_held(i, axis) ? 0.0 : out[axis * n + i];
-      },
-      [&](const Coordinates& in, Coordinates& out) { jacobi_.apply(in, out); });
-}
-
-/// Product with the matrix of all spheres, held ones too.
-void BackwardEuler::apply(const Elements& elements, const State& state, const Outside& outside,
-                          const Coordinates& in, Coordinates& out) const {
-  const std::size_t n = model_.sphere_count();
-  const double* mass = model_.mass.data();
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (std::size_t i = 0; i < n; ++i) out[axis * n + i] = mass[i] * in[axis * n + i];
-  elements.apply(state, outside.h, in, out);
-  if (outside.contact.count() > 0) outside.contact.apply(outside.h, in, out);
-  if (outside.pairs.count() > 0) outside.pairs.apply(outside.h, in, out);
-}
-
-/// The preconditioner must not move a guided sphere along a held axis.
-void BackwardEuler::uncouple_guided(const Outside& outside) {
-  const std::size_t n = model_.sphere_count();
-  for (const std::int32_t sphere : guided_) {
-    const auto i = std::size_t(sphere);
-    const bool x = outside.is_held(i, 0), y = outside.is_held(i, 1), z = outside.is_held(i, 2);
-    if (x || y) blocks_[n + i] = 0;
-    if (x || z) blocks_[2 * n + i] = 0;
-    if (y || z) blocks_[4 * n + i] = 0;
-  }
+  team_.for_each(slabs_.count(), [&](int slab) {
+    find_momentum(model_, state, outside.h, force_, std::size_t(slabs_.begin(slab)), std::size_t(slabs_.end(slab)),
+                  momentum_);
+  });
+  solver_.set_blocks(blocks_, outside.pinned);
+  return solver_.solve(momentum_, velocity, limits_, [&](const double* in, double* out) {
+    elements.apply(in, out);
+    if (outside.contact.count() > 0) outside.contact.apply(outside.h, in, out);
+    if (outside.pairs.count() > 0) outside.pairs.apply(outside.h, in, out);
+  });
 }
 
 /// The pinned sphere's row of the balance of momentum, with the sign turned.
@@ -103,10 +76,11 @@ Vec3 BackwardEuler::force_on_pin(const Elements& elements, const State& state, c
                                  const Coordinates& velocity) {
   const std::size_t n = model_.sphere_count();
   const auto i = std::size_t(outside.pinned);
-  apply(elements, state, outside, velocity, momentum_);
-  const Vec3 done{momentum_[i], momentum_[n + i], momentum_[2 * n + i]},
+  std::fill(momentum_.begin(), momentum_.end(), 0.0);
+  elements.apply(velocity.data(), momentum_.data());
+  const Vec3 coupling{momentum_[i], momentum_[n + i], momentum_[2 * n + i]},
       own{force_[i], force_[n + i], force_[2 * n + i]};
-  return (model_.mass[i] * state.velocity[i] + outside.h * own - done) / outside.h;
+  return (model_.mass[i] * (state.velocity[i] - outside.pin_velocity) - coupling) / outside.h + own;
 }
 
 }  // namespace ctpm

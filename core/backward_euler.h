@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/block_jacobi.h"
 #include "core/conjugate_gradient.h"
 #include "core/elements.h"
 #include "core/outside.h"
@@ -14,7 +13,7 @@ namespace ctpm {
 /// (1998), with what would make the matrix indefinite left out of it.
 class BackwardEuler {
  public:
-  explicit BackwardEuler(const Model& model);
+  BackwardEuler(const Model& model, const Slabs& slabs, Team& team, const Kernels& kernels);
 
   /// `velocity` [m/s] at the end of the substep (3 x sphere_count); contacts that would pull are dropped.
   /// Iterations and residual go into `report`.
@@ -27,15 +26,12 @@ class BackwardEuler {
  private:
   CgOutcome solve_round(const Elements& elements, const State& state, const Outside& outside,
                         Coordinates& velocity);
-  void apply(const Elements& elements, const State& state, const Outside& outside, const Coordinates& in,
-             Coordinates& out) const;
-  void uncouple_guided(const Outside& outside);
 
   const Model& model_;
-  BlockJacobi jacobi_;
+  const Slabs& slabs_;
+  Team& team_;
   ConjugateGradient solver_;
   CgLimits limits_;
-  std::vector<std::int32_t> guided_;  ///< spheres of which some axes are held and others not
   Coordinates force_, momentum_;
   DiagonalBlocks blocks_;
 };

@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
-namespace ctpm {
+#include "core/axial.h"
+#include "core/kernels/kernels.h"
+#include "core/slabs.h"
+#include "core/team.h"
 
-/// Dot product whose order of summation depends on the length alone, never on the instruction set.
-double fixed_order_dot(std::span<const double> a, std::span<const double> b);
+namespace ctpm {
 
 /// When a solve may stop. Norms are of the preconditioned residual, whose square is an energy.
 struct CgLimits {
@@ -25,47 +25,75 @@ struct CgOutcome {
   bool converged = false;
 };
 
-/// Preconditioned conjugate gradients for a symmetric positive definite matrix. Owns its vectors.
+/// Conjugate gradients for A x = b with A = mass + coupling, symmetric and positive definite, preconditioned by each
+/// sphere's own 3x3 block (Saad, "Iterative methods for sparse linear systems", 2003, alg. 9.1). Sums go slab by slab,
+/// so they do not depend on the number of threads.
 class ConjugateGradient {
  public:
-  explicit ConjugateGradient(std::size_t size)
-      : residual_(size), preconditioned_(size), direction_(size), product_(size) {}
+  ConjugateGradient(const Model& model, const Slabs& slabs, Team& team, const Kernels& kernels);
 
-  /// Solves A x = b. `x` is the first guess and the result. `apply(in, out)` sets out = A in;
-  /// `precondition(in, out)` sets out = P in with P an approximate inverse of A.
-  template <class Apply, class Precondition>
-  CgOutcome solve(const std::vector<double>& b, std::vector<double>& x, const CgLimits& limits, Apply&& apply,
-                  Precondition&& precondition);
+  /// Takes the diagonal blocks of A. Coordinates that are held, as in Model::held_axes, and the sphere `pinned` stay at
+  /// the first guess: their rows are left out of the system.
+  void set_blocks(const DiagonalBlocks& blocks, std::int32_t pinned);
+
+  /// `x` is the first guess and the result. `add_coupling(in, out)` does out += coupling times in.
+  template <class AddCoupling>
+  CgOutcome solve(const Coordinates& b, Coordinates& x, const CgLimits& limits, AddCoupling&& add_coupling);
 
  private:
-  std::vector<double> residual_, preconditioned_, direction_, product_;
+  template <class Part>
+  double sum_over_slabs(Part&& part);
+  void hold(std::size_t sphere, std::uint8_t axes);
+
+  const Model& model_;
+  const Slabs& slabs_;
+  Team& team_;
+  const Kernels& kernels_;
+  std::vector<std::int32_t> held_;  ///< spheres of which an axis or more is held
+  std::vector<double> inverse_;     ///< inverse blocks, 0 along held axes (6 x sphere_count)
+  Coordinates residual_, preconditioned_, direction_, product_;
+  std::vector<double> part_;  ///< of a sum (slab_count)
 };
 
-template <class Apply, class Precondition>
-CgOutcome ConjugateGradient::solve(const std::vector<double>& b, std::vector<double>& x,
-                                   const CgLimits& limits, Apply&& apply, Precondition&& precondition) {
-  const std::size_t n = b.size();
-  apply(x, product_);
-  for (std::size_t i = 0; i < n; ++i) residual_[i] = b[i] - product_[i];
-  precondition(residual_, preconditioned_);
-  direction_ = preconditioned_;
-  double energy = fixed_order_dot(residual_, preconditioned_);
+template <class Part>
+double ConjugateGradient::sum_over_slabs(Part&& part) {
+  team_.for_each(slabs_.count(), [&](int slab) {
+    part_[std::size_t(slab)] = part(std::size_t(slabs_.begin(slab)), std::size_t(slabs_.end(slab)));
+  });
+  double sum = 0;
+  for (const double value : part_) sum += value;
+  return sum;
+}
+
+template <class AddCoupling>
+CgOutcome ConjugateGradient::solve(const Coordinates& b, Coordinates& x, const CgLimits& limits,
+                                   AddCoupling&& add_coupling) {
+  const SolverArrays m{model_.sphere_count(),  model_.mass.data(), inverse_.data(), x.data(), residual_.data(),
+                       preconditioned_.data(), direction_.data(),  product_.data()};
+  const auto for_each_slab = [&](auto&& part) {
+    team_.for_each(slabs_.count(),
+                   [&](int slab) { part(std::size_t(slabs_.begin(slab)), std::size_t(slabs_.end(slab))); });
+  };
+  for_each_slab([&](std::size_t begin, std::size_t end) { kernels_.multiply_mass(m, x.data(), begin, end); });
+  add_coupling(x.data(), m.product);
+  double energy = sum_over_slabs(
+      [&](std::size_t begin, std::size_t end) { return kernels_.begin_solve(m, b.data(), begin, end); });
   const double first_energy = energy;
   const double enough =
       std::max(first_energy * limits.relative * limits.relative, limits.absolute * limits.absolute);
 
   CgOutcome outcome;
+  double turn = 0;
   while (energy > enough && outcome.iterations < limits.max_iterations) {
-    apply(direction_, product_);
-    const double curvature = fixed_order_dot(direction_, product_);
+    for_each_slab([&](std::size_t begin, std::size_t end) { kernels_.turn(m, turn, begin, end); });
+    add_coupling(m.direction, m.product);
+    const double curvature =
+        sum_over_slabs([&](std::size_t begin, std::size_t end) { return kernels_.curvature(m, begin, end); });
     if (!(curvature > 0)) break;  // not a number, or nothing left to gain
     const double step = energy / curvature;
-    for (std::size_t i = 0; i < n; ++i) x[i] += step * direction_[i];
-    for (std::size_t i = 0; i < n; ++i) residual_[i] -= step * product_[i];
-    precondition(residual_, preconditioned_);
-    const double next = fixed_order_dot(residual_, preconditioned_);
-    const double turn = next / energy;
-    for (std::size_t i = 0; i < n; ++i) direction_[i] = preconditioned_[i] + turn * direction_[i];
+    const double next =
+        sum_over_slabs([&](std::size_t begin, std::size_t end) { return kernels_.descend(m, step, begin, end); });
+    turn = next / energy;
     energy = next;
     ++outcome.iterations;
   }

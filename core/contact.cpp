@@ -80,7 +80,7 @@ void BallContact::push_apart(double h, const Coordinates& momentum, Coordinates&
   });
 }
 
-void BallContact::apply(double h, const Coordinates& v, Coordinates& result) const {
+void BallContact::apply(double h, const double* v, double* result) const {
   const std::size_t spheres = model_.sphere_count();
   for (const Contact& contact : contacts_) {
     const auto i = std::size_t(contact.sphere);

@@ -41,7 +41,7 @@ class BallContact {
   void push_apart(double h, const Coordinates& momentum, Coordinates& velocity);
 
   /// result += coupling of a step of `h` [s] times `v`.
-  void apply(double h, const Coordinates& v, Coordinates& result) const;
+  void apply(double h, const double* v, double* result) const;
 
   /// Whether a contact would pull its sphere after a step of `h` [s] with velocity `v` [m/s].
   bool has_pulling(double h, const Coordinates& v) const;

@@ -1,36 +1,69 @@
 #include "core/elements.h"
 
+#include <algorithm>
+
 namespace ctpm {
 
-Elements::Elements(const Model& model)
-    : model_(model),
-      axial_(model),
-      constraints_(model),
-      angles_(model),
+Elements::Elements(const Model& model, Team& team, InstructionSet set)
+    : team_(team),
+      slabs_(model.sphere_count()),
+      schedule_(slabs_),
+      axial_(model, slabs_, schedule_, kernels_for(set)),
+      constraints_(model, model.constraints, slabs_, schedule_, kernels_for(set)),
+      angles_(model, model.angle_springs, slabs_, schedule_, kernels_for(set)),
       softness_(model.has_softening ? model.sphere_count() : 0) {}
 
+/// Calls task(step, number) for all tasks of the schedule; those of one step may run at the same time.
+template <class Task>
+void Elements::for_each_task(Task&& task) const {
+  for (int step = 0; step < Schedule::kSteps; ++step)
+    team_.for_each(schedule_.task_count(step), [&](int number) { task(step, number); });
+}
+
+void Elements::measure(const LineArrays& constraints, const LineArrays& angles) {
+  if (constraints_.empty() && angles_.empty()) return;
+  team_.for_each(slabs_.count(), [&](int slab) {
+    if (!softness_.empty()) std::fill(&softness_[0] + slabs_.begin(slab), &softness_[0] + slabs_.end(slab), 1.0);
+    constraints_.measure(constraints, slab);
+    angles_.measure(angles, slab);
+  });
+}
+
 void Elements::add_forces(const State& state, Coordinates& force) {
-  if (model_.constraints.size() > 0) {
-    constraints_.measure_tilt(state, softness_);
-    constraints_.add_forces(state, softness_, force);
-  }
-  if (model_.angle_springs.size() > 0) angles_.add_forces(state, force);
-  axial_.add_forces(state, softness_, force);
+  double* softness = softness_.empty() ? nullptr : softness_.data();
+  const LineArrays constraints = constraints_.arrays(state, softness, force.data()),
+                   angles = angles_.arrays(state, nullptr, force.data());
+  const AxialArrays axial = axial_.arrays(state, softness, force.data());
+  measure(constraints, angles);
+  for_each_task([&](int step, int task) {
+    constraints_.add_forces(constraints, step, task);
+    angles_.add_forces(angles, step, task);
+    axial_.add_forces(axial, step, task);
+  });
 }
 
 void Elements::linearise(const State& state, double h, Coordinates& force, DiagonalBlocks& blocks) {
-  if (model_.constraints.size() > 0) {
-    constraints_.measure_tilt(state, softness_);
-    constraints_.linearise(state, softness_, h, force, blocks);
-  }
-  if (model_.angle_springs.size() > 0) angles_.linearise(state, h, force, blocks);
-  axial_.linearise(state, softness_, h, force, blocks);
+  double* softness = softness_.empty() ? nullptr : softness_.data();
+  LineArrays constraints = constraints_.arrays(state, softness, force.data()),
+             angles = angles_.arrays(state, nullptr, force.data());
+  AxialArrays axial = axial_.arrays(state, softness, force.data());
+  constraints.h = angles.h = axial.h = h;
+  constraints.blocks = angles.blocks = axial.blocks = blocks.data();
+  constraints_.prepare_linearise(), angles_.prepare_linearise(), axial_.prepare_linearise();
+  measure(constraints, angles);
+  for_each_task([&](int step, int task) {
+    constraints_.linearise(constraints, step, task);
+    angles_.linearise(angles, step, task);
+    axial_.linearise(axial, step, task);
+  });
 }
 
-void Elements::apply(const State& state, double h, const Coordinates& v, Coordinates& result) const {
-  axial_.apply(v, result);
-  if (model_.constraints.size() > 0) constraints_.apply(v, result);
-  if (model_.angle_springs.size() > 0) angles_.apply(state, h, v, result);
+void Elements::apply(const double* v, double* result) const {
+  for_each_task([&](int step, int task) {
+    constraints_.apply(step, task, v, result);
+    angles_.apply(step, task, v, result);
+    axial_.apply(step, task, v, result);
+  });
 }
 
 }  // namespace ctpm

@@ -138,11 +138,11 @@ class LineTiler {
     Stiffness stiffness;
   };
   struct Angle {
-    std::int32_t a, b, c, line_number;
+    std::int32_t a, middle, c, line_number;
     double k;
   };
   struct Constraint {
-    std::int32_t a, c, e;
+    std::int32_t a, middle, e;
     double k;
     std::array<std::int32_t, 4> line_number;
   };
@@ -227,6 +227,9 @@ class LineTiler {
     const auto by_first = [](const auto& p, const auto& q) { return p.a < q.a; };
     std::stable_sort(edges_.begin(), edges_.end(), by_first);
     std::stable_sort(tpms_.begin(), tpms_.end(), by_first);
+    const auto by_middle = [](const auto& p, const auto& q) { return p.middle < q.middle; };
+    std::stable_sort(constraints_.begin(), constraints_.end(), by_middle);
+    std::stable_sort(angles_.begin(), angles_.end(), by_middle);
     std::vector<std::int32_t> edge_of_line_number(std::size_t(next_line_number_), -1);
     Edges& edges = model_.edges;
     for (const Edge& e : edges_) {
@@ -243,13 +246,13 @@ class LineTiler {
     }
     for (const Constraint& c : constraints_) {
       Constraints& all = model_.constraints;
-      all.a.push_back(c.a), all.c.push_back(c.c), all.e.push_back(c.e), all.k.push_back(c.k);
+      all.a.push_back(c.a), all.c.push_back(c.middle), all.e.push_back(c.e), all.k.push_back(c.k);
       for (std::size_t i = 0; i < 4; ++i)
         all.edge[i].push_back(edge_of_line_number[std::size_t(c.line_number[i])]);
     }
     for (const Angle& angle : angles_) {
       AngleSprings& all = model_.angle_springs;
-      all.a.push_back(angle.a), all.b.push_back(angle.b), all.c.push_back(angle.c);
+      all.a.push_back(angle.a), all.b.push_back(angle.middle), all.c.push_back(angle.c);
       all.k.push_back(angle.k);
       for (std::size_t i = 0; i < 2; ++i)
         all.edge[i].push_back(edge_of_line_number[std::size_t(angle.line_number) + i]);

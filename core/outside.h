@@ -24,10 +24,19 @@ struct Outside {
   bool is_held(std::size_t sphere, std::size_t axis) const { return (held_axes[sphere] >> axis & 1) != 0; }
 };
 
-/// Writes gravity and, while they act, loads into `force` [N]  (3 x sphere_count).
-void set_outer_forces(const Model& model, const Outside& outside, Coordinates& force);
+/// Writes the weight of spheres [begin, end) into `force` [N]  (3 x sphere_count).
+void set_weight(const Model& model, std::size_t begin, std::size_t end, Coordinates& force);
 
-/// Velocities from which a solve starts: those of `state`, none along held axes, the hand's where a pin holds.
-void start_velocities(const State& state, const Outside& outside, Coordinates& velocity);
+/// Adds loads, while they act, to `force` [N].
+void add_loads(const Model& model, const Outside& outside, Coordinates& force);
+
+/// momentum = mass * velocity + h * force [kg m/s] of spheres [begin, end)  (3 x sphere_count).
+void find_momentum(const Model& model, const State& state, double h, const Coordinates& force, std::size_t begin,
+                   std::size_t end, Coordinates& momentum);
+
+/// Velocities of spheres [begin, end) from which a solve starts: those of `state`, none along held axes, the hand's
+/// where a pin holds.
+void start_velocities(const State& state, const Outside& outside, std::size_t begin, std::size_t end,
+                      Coordinates& velocity);
 
 }  // namespace ctpm

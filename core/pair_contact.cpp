@@ -69,7 +69,7 @@ void PairContacts::push_apart(double h, std::span<const std::uint8_t> held_axes,
 }
 
 /// The matrix of one contact times the point's velocity [kg m/s].
-Vec3 PairContacts::coupling(const PairContact& c, double h, const Coordinates& v) const {
+Vec3 PairContacts::coupling(const PairContact& c, double h, const double* v) const {
   const std::size_t n = model_.sphere_count(), a = std::size_t(c.a), b = std::size_t(c.b);
   const Vec3 u = c.weight_a * Vec3{v[a], v[n + a], v[2 * n + a]} +
                  c.weight_b * Vec3{v[b], v[n + b], v[2 * n + b]};
@@ -77,7 +77,7 @@ Vec3 PairContacts::coupling(const PairContact& c, double h, const Coordinates& v
   return along * dot(c.axis, u) * c.axis + across * u;
 }
 
-void PairContacts::apply(double h, const Coordinates& v, Coordinates& result) const {
+void PairContacts::apply(double h, const double* v, double* result) const {
   const std::size_t n = model_.sphere_count();
   for (const PairContact& c : contacts_) {
     const Vec3 q = coupling(c, h, v);
@@ -89,7 +89,7 @@ void PairContacts::apply(double h, const Coordinates& v, Coordinates& result) co
 }
 
 bool PairContacts::pulls(const PairContact& c, double h, const Coordinates& v) const {
-  return c.only_pushes && dot(c.axis, c.force - coupling(c, h, v) / h) < 0;
+  return c.only_pushes && dot(c.axis, c.force - coupling(c, h, v.data()) / h) < 0;
 }
 
 bool PairContacts::has_pulling(double h, const Coordinates& v) const {
@@ -103,7 +103,7 @@ void PairContacts::drop_pulling(double h, const Coordinates& v) {
 Vec3 PairContacts::force_on_tool(double h, const Coordinates& v) const {
   Vec3 force;
   for (const PairContact& c : contacts_)
-    if (c.is_tool) force += is_explicit_ ? -c.acting : coupling(c, h, v) / h - c.force;
+    if (c.is_tool) force += is_explicit_ ? -c.acting : coupling(c, h, v.data()) / h - c.force;
   return force;
 }
 

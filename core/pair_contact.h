@@ -48,7 +48,7 @@ class PairContacts {
   void push_apart(double h, std::span<const std::uint8_t> held_axes, Coordinates& velocity);
 
   /// result += coupling of a step of `h` [s] times `v`.
-  void apply(double h, const Coordinates& v, Coordinates& result) const;
+  void apply(double h, const double* v, double* result) const;
 
   /// Whether a contact would pull after a step of `h` [s] with velocity `v` [m/s].
   bool has_pulling(double h, const Coordinates& v) const;
@@ -61,7 +61,7 @@ class PairContacts {
   std::int32_t tool_count() const;
 
  private:
-  Vec3 coupling(const PairContact& contact, double h, const Coordinates& v) const;
+  Vec3 coupling(const PairContact& contact, double h, const double* v) const;
   bool pulls(const PairContact& contact, double h, const Coordinates& v) const;
 
   const Model& model_;

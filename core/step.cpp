@@ -58,10 +58,12 @@ struct Grip {
 
 /// Kernels and scratch of one Model.
 struct Stepper::Workspace {
-  explicit Workspace(const Model& m)
+  Workspace(const Model& m, const StepperOptions& options)
       : model(m),
         choice(choose_integrator(m)),
-        elements(m),
+        kernels(kernels_for(options.instruction_set)),
+        team(options.threads),
+        elements(m, team, options.instruction_set),
         contact(m),
         blade(m),
         lips(m),
@@ -71,9 +73,9 @@ struct Stepper::Workspace {
         velocity(3 * m.sphere_count()) {
     if (has_scalpel(m)) crossings.reserve(m.edges.size() + m.tpms.size()), pieces.reserve();
     if (choice.integrator == Integrator::symplectic_euler)
-      explicit_solver.emplace(m);
+      explicit_solver.emplace(m, elements.slabs(), team);
     else
-      implicit_solver.emplace(m);
+      implicit_solver.emplace(m, elements.slabs(), team, kernels);
   }
 
   void sweep(State& state, const Inputs& last, const Inputs& inputs, Grip& grip, StepReport& report);
@@ -81,12 +83,14 @@ struct Stepper::Workspace {
   bool advance(State& state, const Grip& grip, double h, double share, double time, StepReport& report);
   bool advance_extrapolated(State& state, const Grip& grip, double h, double share, double time,
                             StepReport& report);
-  bool check(StepReport& report) const;
+  bool check(StepReport& report);
   void move(State& state, double h);
   void report_tool(const State& state, StepReport& report) const;
 
   const Model& model;
   IntegratorChoice choice;
+  const Kernels& kernels;
+  Team team;
   Elements elements;
   BallContact contact;
   BladeForce blade;
@@ -100,37 +104,50 @@ struct Stepper::Workspace {
   std::int32_t pinned = -1;
   bool has_loads = true;
   Coordinates velocity;
+  std::vector<double> fastest_of_slab;  ///< squared speed [m^2/s^2] (slab_count)
   Vec3Array before;  ///< positions before the substep, for what moves through a blade
   State backup;      ///< State before the tick, in case it has to be refused
   State coarse;      ///< of the extrapolation: after one whole step
 };
 
 /// Refuses velocities that no tissue has; names the fastest sphere.
-bool Stepper::Workspace::check(StepReport& report) const {
+bool Stepper::Workspace::check(StepReport& report) {
   const std::size_t n = model.sphere_count();
-  double fastest_squared = -1;
-  for (std::size_t i = 0; i < n; ++i) {
+  const Slabs& slabs = elements.slabs();
+  fastest_of_slab.resize(std::size_t(slabs.count()));
+  team.for_each(slabs.count(), [&](int slab) {
+    fastest_of_slab[std::size_t(slab)] = kernels.fastest_squared(
+        n, velocity.data(), std::size_t(slabs.begin(slab)), std::size_t(slabs.end(slab)));
+  });
+  const auto fastest = std::max_element(fastest_of_slab.begin(), fastest_of_slab.end());
+  const auto slab = int(fastest - fastest_of_slab.begin());
+  report.worst_sphere = slabs.begin(slab);
+  for (std::int32_t sphere = slabs.begin(slab); sphere < slabs.end(slab); ++sphere) {
+    const auto i = std::size_t(sphere);
     const double squared = velocity[i] * velocity[i] + velocity[n + i] * velocity[n + i] +
                            velocity[2 * n + i] * velocity[2 * n + i];
-    if (!(squared <= kFastest * kFastest)) {
-      report.status = StepStatus::diverged;
-      report.worst_sphere = std::int32_t(i);
-      return false;
-    }
-    if (squared > fastest_squared) fastest_squared = squared, report.worst_sphere = std::int32_t(i);
+    if (squared < *fastest) continue;  // not so if it is not a number
+    report.worst_sphere = sphere;
+    break;
   }
-  return true;
+  if (*fastest <= kFastest * kFastest) return true;
+  report.status = StepStatus::diverged;
+  return false;
 }
 
 void Stepper::Workspace::move(State& state, double h) {
   const std::size_t n = model.sphere_count();
   std::vector<double>* position[3] = {&state.position.x, &state.position.y, &state.position.z};
   std::vector<double>* speed[3] = {&state.velocity.x, &state.velocity.y, &state.velocity.z};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    double* __restrict p = position[axis]->data(), * __restrict v = speed[axis]->data();
-    const double* __restrict next = &velocity[axis * n];
-    for (std::size_t i = 0; i < n; ++i) v[i] = next[i], p[i] += h * next[i];
-  }
+  const Slabs& slabs = elements.slabs();
+  team.for_each(slabs.count(), [&](int slab) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double* __restrict p = position[axis]->data(), * __restrict v = speed[axis]->data();
+      const double* __restrict next = &velocity[axis * n];
+      for (auto i = std::size_t(slabs.begin(slab)); i < std::size_t(slabs.end(slab)); ++i)
+        v[i] = next[i], p[i] += h * next[i];
+    }
+  });
   elements.advance_kelvin(h, state);
 }
 
@@ -214,7 +231,8 @@ void Stepper::Workspace::report_tool(const State& state, StepReport& report) con
   report.contacts = contact.count() + pairs.tool_count();
 }
 
-Stepper::Stepper(const Model& model) : model_(model), work_(std::make_unique<Workspace>(model)) {}
+Stepper::Stepper(const Model& model, const StepperOptions& options)
+    : model_(model), work_(std::make_unique<Workspace>(model, options)) {}
 Stepper::~Stepper() = default;
 Stepper::Stepper(Stepper&&) noexcept = default;
 
@@ -226,13 +244,16 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
   if (!is_usable(model_, inputs)) report.status = StepStatus::bad_input;
   if (!work.choice.holds) report.status = StepStatus::too_long;
   if (report.status != StepStatus::ok) return report;
-  work.backup = state;
   // A tool that was not in the hand before has no way behind it.
   const Inputs last = inputs.tool >= 0 && state.last_inputs.tool == inputs.tool ? state.last_inputs : inputs;
   Grip grip;
   grip.tool = inputs.tool >= 0 ? &model_.tools[std::size_t(inputs.tool)] : nullptr;
   grip.from = last.position, grip.to = inputs.position;
   const bool cuts = grip.is(ToolKind::scalpel);
+  const bool extrapolates = work.choice.integrator == Integrator::extrapolated_euler;
+  // One uncut step is checked before State changes; all others may have to be taken back.
+  const bool keeps_backup = cuts || extrapolates || work.choice.substeps > 1;
+  if (keeps_backup) work.backup = state;
   if (cuts) work.sweep(state, last, inputs, grip, report);
   work.held_axes = model_.held_axes;
   work.pinned = grip.is(ToolKind::pin) ? grip.tool->sphere : -1;
@@ -243,11 +264,11 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
   for (std::int32_t k = 1; k <= substeps; ++k) {
     const double share = double(k) / substeps, time = (double(state.tick) + share) * model_.tick;
     if (cuts) work.before = state.position;
-    const bool done = work.choice.integrator == Integrator::extrapolated_euler
+    const bool done = extrapolates
                           ? work.advance_extrapolated(state, grip, h, share, time, report)
                           : work.advance(state, grip, h, share, time, report);
     if (!done) {
-      std::swap(state, work.backup);
+      if (keeps_backup) std::swap(state, work.backup);
       return report;
     }
     if (cuts)

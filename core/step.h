@@ -5,6 +5,7 @@
 
 #include "core/inputs.h"
 #include "core/integrator.h"
+#include "core/kernels/kernels.h"
 #include "core/model.h"
 #include "core/state.h"
 
@@ -31,12 +32,18 @@ struct StepReport {
   std::int32_t came_loose = 0;  ///< pieces that came loose in this tick: how many more there are than before
 };
 
+/// What a Stepper may use of the machine. None of it changes a bit of what comes out.
+struct StepperOptions {
+  int threads = 1;  ///< >= 1; more only help from some thousand spheres on
+  InstructionSet instruction_set = best_instruction_set();
+};
+
 /// Advances States of one Model. Holds the kernels chosen for the Model and their scratch memory, nothing
 /// else: any State of the Model may be given at any call, in any order, and step() allocates nothing.
 class Stepper {
  public:
   /// `model` must outlive the Stepper.
-  explicit Stepper(const Model& model);
+  explicit Stepper(const Model& model, const StepperOptions& options = {});
   ~Stepper();
   Stepper(Stepper&&) noexcept;
 

@@ -4,15 +4,19 @@ namespace ctpm {
 
 void SymplecticEuler::solve(Elements& elements, const State& state, Outside& outside, Coordinates& velocity) {
   const std::size_t n = model_.sphere_count();
-  set_outer_forces(model_, outside, force_);
+  const auto for_each_slab = [&](auto&& part) {
+    team_.for_each(slabs_.count(),
+                   [&](int slab) { part(std::size_t(slabs_.begin(slab)), std::size_t(slabs_.end(slab))); });
+  };
+  for_each_slab([&](std::size_t begin, std::size_t end) { set_weight(model_, begin, end, force_); });
+  add_loads(model_, outside, force_);
   elements.add_forces(state, force_);
-  const double* old_velocity[3] = {state.velocity.x.data(), state.velocity.y.data(), state.velocity.z.data()};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::size_t c = axis * n + i;
-      momentum_[c] = model_.mass[i] * old_velocity[axis][i] + outside.h * force_[c];
-      velocity[c] = outside.is_held(i, axis) ? 0.0 : momentum_[c] / model_.mass[i];
-    }
+  for_each_slab([&](std::size_t begin, std::size_t end) {
+    find_momentum(model_, state, outside.h, force_, begin, end, momentum_);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t i = begin; i < end; ++i)
+        velocity[axis * n + i] = outside.is_held(i, axis) ? 0.0 : momentum_[axis * n + i] / model_.mass[i];
+  });
   outside.contact.push_apart(outside.h, momentum_, velocity);
   outside.pairs.push_apart(outside.h, outside.held_axes, velocity);
   if (outside.pinned < 0) return;

@@ -10,8 +10,8 @@ namespace ctpm {
 /// stable_step_bound() (integrator.h).
 class SymplecticEuler {
  public:
-  explicit SymplecticEuler(const Model& model)
-      : model_(model), force_(3 * model.sphere_count()), momentum_(3 * model.sphere_count()) {}
+  SymplecticEuler(const Model& model, const Slabs& slabs, Team& team)
+      : model_(model), slabs_(slabs), team_(team), force_(3 * model.sphere_count()), momentum_(3 * model.sphere_count()) {}
 
   /// `velocity` [m/s] at the end of the substep (3 x sphere_count); contacts that would pull are dropped.
   void solve(Elements& elements, const State& state, Outside& outside, Coordinates& velocity);
@@ -21,6 +21,8 @@ class SymplecticEuler {
 
  private:
   const Model& model_;
+  const Slabs& slabs_;
+  Team& team_;
   Coordinates force_, momentum_;
 };
 

@@ -22,13 +22,13 @@ struct Golden {
 };
 
 constexpr Golden kGolden[] = {
-    {Structure::mass_spring, Integrator::automatic, {0x6183944f58d1f356, 0xb88de5c71b4d5175, 0x515087af93859efe, 0xbd8e44a9a5f658c4}},
-    {Structure::angle_mass_spring, Integrator::automatic, {0x685a2b0f964dcd37, 0xf8921d183fc490fe, 0xd48e5d602fc6b35a, 0xedaf37813335933b}},
-    {Structure::tpm, Integrator::automatic, {0x62aae1d6849a9ec6, 0xf317f7883353ce72, 0xfc9adb178e1e4476, 0x9813c21bee16acc0}},
-    {Structure::ctpm, Integrator::automatic, {0x8f9ee5d58e8422e6, 0x5d57d9290932b106, 0xd1e300c2fd3c44cd, 0x3cffe265cebb7e40}},
-    {Structure::tpm, Integrator::backward_euler, {0x182c447bd83e3e4e, 0xfa0e88d9cad44f55, 0xe545517443389a27, 0x382d67a9fc53c1a2}},
-    {Structure::angle_mass_spring, Integrator::backward_euler, {0x3c8b3d942af056c2, 0xc547864fd8482918, 0x75096a7577d11f39, 0x53a02637280f9d40}},
-    {Structure::ctpm, Integrator::extrapolated_euler, {0x3f8ccfdc6e03bda5, 0xa650076a680951ad, 0x3ccbca942db9b984, 0x9ec89f28bbc4153a}},
+    {Structure::mass_spring, Integrator::automatic, {0x9ecbfff087a726db, 0x2695dc2b34839dfe, 0xea028efb160903b7, 0x6fa319b59304f018}},
+    {Structure::angle_mass_spring, Integrator::automatic, {0x200766316f785d65, 0xf59f93f12609fdaf, 0x4e22efbdf0bcdb92, 0x797ba80c49f59c54}},
+    {Structure::tpm, Integrator::automatic, {0x3d241f525b19fef5, 0x82d052459cb01235, 0x13edb384703b3833, 0x82603d49f31697c8}},
+    {Structure::ctpm, Integrator::automatic, {0xc44506146e8361ac, 0xe3b558cc999ce3a3, 0x2e972e40073d2104, 0xee0257afa05d6726}},
+    {Structure::tpm, Integrator::backward_euler, {0x1691f751ab81ef95, 0xa888ab576848b857, 0x806b8c9c7195d204, 0x472541ac2ca2bf31}},
+    {Structure::angle_mass_spring, Integrator::backward_euler, {0x1f35cc5560467d14, 0x541047df50a13e68, 0xc4858ff42cae5899, 0x1a77209b2549588f}},
+    {Structure::ctpm, Integrator::extrapolated_euler, {0xcb76cb1b726d4353, 0x0dc3605fab324f1a, 0x2830d7d56941114f, 0x99e7a7ae943d5057}},
 };
 
 /// A ball presses for 200 ticks, then a scalpel goes through the block.

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+namespace ctpm {
+
+/// A fixed set of threads that share numbered tasks. Which thread runs a task never changes what comes out, so results
+/// are the same for any number of threads. Between calls the threads first watch for work, then sleep; the caller does
+/// what they have not begun, so that a thread that the system keeps away from its core holds nobody up.
+class Team {
+ public:
+  /// `threads` >= 1, the caller's own among them; 1 starts none.
+  explicit Team(int threads);
+  ~Team();
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+
+  int size() const { return int(workers_.size()) + 1; }
+
+  /// Calls `task(i)` once for each i in [0, count), possibly at the same time, and returns when all are done. count is
+  /// below 65536.
+  template <class Task>
+  void for_each(int count, Task&& task) {
+    if (workers_.empty() || count <= 1) {
+      for (int i = 0; i < count; ++i) task(i);
+      return;
+    }
+    run(
+        count, [](void* what, int i) { (*static_cast<std::remove_reference_t<Task>*>(what))(i); },
+        const_cast<void*>(static_cast<const void*>(&task)));
+  }
+
+ private:
+  using Call = void (*)(void* what, int task);
+  void run(int count, Call call, void* what);
+  void work();
+  bool claim(std::uint32_t round, bool from_below, int& task);
+
+  std::vector<std::thread> workers_;
+  Call call_ = nullptr;
+  void* what_ = nullptr;
+  std::atomic<bool> stops_{false};
+  alignas(64) std::atomic<std::uint32_t> round_{0};  ///< goes up when there is work
+  alignas(64) std::atomic<std::uint64_t> open_{0};   ///< round, and the range of tasks that nobody has begun
+  alignas(64) std::atomic<int> undone_{0};           ///< tasks of the round that are not finished
+};
+
+}  // namespace ctpm

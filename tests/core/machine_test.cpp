@@ -1,0 +1,98 @@
+// What a Stepper uses of the machine must not change a bit of what it computes.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "core/slabs.h"
+#include "core/step.h"
+#include "core/team.h"
+#include "tests/core/blocks.h"
+
+namespace ctpm {
+namespace {
+
+using testing::ball;
+using testing::make_block_model;
+using testing::scalpel;
+
+struct Machine {
+  InstructionSet set;
+  int threads;
+};
+
+class EveryMachine : public ::testing::TestWithParam<Machine> {};
+
+/// Large enough to be cut into slabs; pressed, then cut.
+Model make_model(Structure structure, Integrator integrator) {
+  Material material = testing::liver_material();
+  if (integrator == Integrator::symplectic_euler) material.viscosity = 5e3, material.stiffness_scale = 0.3;
+  Model model = make_block_model(13, 12, 12, structure, material);
+  model.gravity = {0, 0, -9.81};
+  model.tools = {ball(0.02), scalpel(0.1)};
+  model.solver.integrator = integrator;
+  return model;
+}
+
+State run(const Model& model, const StepperOptions& options) {
+  Stepper stepper(model, options);
+  State state = rest_state(model);
+  for (int tick = 0; tick < 24; ++tick) {
+    Inputs inputs;
+    inputs.tool = tick < 14 ? 0 : 1;
+    inputs.position = tick < 14 ? Vec3{0.003, 0.001, 0.158 - 0.0005 * tick} : Vec3{0.0007, -0.1 + 0.008 * (tick - 14), 0.1};
+    EXPECT_LE(stepper.step(state, inputs).status, StepStatus::not_converged);
+  }
+  return state;
+}
+
+TEST_P(EveryMachine, GivesTheSameBits) {
+  const StepperOptions options{GetParam().threads, GetParam().set};
+  for (const auto& [structure, integrator] :
+       {std::pair{Structure::ctpm, Integrator::backward_euler}, std::pair{Structure::ctpm, Integrator::symplectic_euler},
+        std::pair{Structure::angle_mass_spring, Integrator::backward_euler},
+        std::pair{Structure::tpm, Integrator::extrapolated_euler}}) {
+    const Model model = make_model(structure, integrator);
+    const State plain = run(model, {1, InstructionSet::baseline}), other = run(model, options);
+    EXPECT_EQ(plain.position, other.position) << "structure " << int(structure);
+    EXPECT_EQ(plain.velocity, other.velocity) << "structure " << int(structure);
+    EXPECT_EQ(plain.kelvin_elongation, other.kelvin_elongation) << "structure " << int(structure);
+    EXPECT_EQ(plain.edge_severed, other.edge_severed) << "structure " << int(structure);
+    EXPECT_NE(plain.position, model.rest_position);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Machines, EveryMachine,
+                         ::testing::Values(Machine{InstructionSet::baseline, 2}, Machine{InstructionSet::baseline, 4},
+                                           Machine{InstructionSet::avx2, 1}, Machine{InstructionSet::avx2, 2},
+                                           Machine{InstructionSet::avx512, 1}, Machine{InstructionSet::avx512, 3}),
+                         [](const auto& of) {
+                           return std::string(name_of(of.param.set)) + "With" + std::to_string(of.param.threads) + "Threads";
+                         });
+
+TEST(Slabs, DependOnTheModelAlone) {
+  EXPECT_EQ(Slabs(729).count(), 1);
+  EXPECT_EQ(Slabs(5000).count(), 4);
+  const Slabs many(100000);
+  EXPECT_EQ(many.count() % 4, 0);
+  for (std::int32_t sphere = 0; sphere < 100000; sphere += 997) {
+    const int slab = many.of(sphere);
+    EXPECT_LE(many.begin(slab), sphere);
+    EXPECT_LT(sphere, many.end(slab));
+  }
+}
+
+TEST(Team, DoesEveryTaskOnce) {
+  for (const int threads : {1, 2, 5}) {
+    Team team(threads);
+    for (const int count : {0, 1, 2, 7, 64})
+      for (int round = 0; round < 50; ++round) {
+        std::vector<int> done(std::size_t(count), 0);
+        team.for_each(count, [&](int i) { ++done[std::size_t(i)]; });
+        EXPECT_EQ(done, std::vector<int>(std::size_t(count), 1));
+      }
+  }
+}
+
+}  // namespace
+}  // namespace ctpm
