@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 
+#include "core/step.h"
 #include "recordings/byte_hash.h"
 #include "recordings/session_reader.h"
 #include "recordings/session_writer.h"
@@ -213,7 +214,13 @@ void falsify(const std::string& from, const std::string& to, std::int64_t bad_ti
   auto records = reader->ticks(0, reader->tick_count());
   ASSERT_TRUE(records);
   (*records)[std::size_t(bad_tick)].state_hash ^= 1;
-  for (const TickRecord& record : *records) writer->append(reader->start().initial_state, record);
+  // Simulated again, since the new file's keyframes must be what its ticks say.
+  Stepper stepper(reader->start().model);
+  State state = reader->start().initial_state;
+  for (const TickRecord& record : *records) {
+    ASSERT_EQ(stepper.step(state, record.inputs).status, StepStatus::ok);
+    writer->append(state, record);
+  }
   ASSERT_TRUE(writer->finish());
 }
 
