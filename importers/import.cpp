@@ -108,6 +108,7 @@ Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions&
   imported.organ = std::move(filling->organ);
   report.sphere_radius = imported.organ.sphere_radius, report.spacing = imported.organ.spacing;
   report.fill = std::move(filling->report);
+  imported.mesh = std::move(*mesh);
   report.findings.insert(report.findings.end(), report.fill.findings.begin(), report.fill.findings.end());
   return imported;
 }

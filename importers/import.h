@@ -46,6 +46,7 @@ struct ImportReport {
 
 struct ImportedOrgan {
   FilledOrgan organ;
+  CheckedMesh mesh;  ///< the repaired mesh that was filled; the organ's surface may be coarser
   ImportReport report;
 };
 

@@ -65,6 +65,7 @@ std::string to_text(const ImportReport& report) {
                     100 * fill.filled_volume / report.mesh_volume);
   text += formatted("  edges: %lld, %.1f per sphere\n", static_cast<long long>(fill.edges),
                     double(fill.edges) / double(fill.spheres));
+  text += "  drawn with " + counted(fill.surface_triangles, "triangle") + "\n";
   text += "  from the surface to the nearest sphere: mean " + mm_text(fill.mean_distance) + ", at most " +
           mm_text(fill.largest_distance) + "\n";
   return text;

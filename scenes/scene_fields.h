@@ -207,6 +207,10 @@ void describe_fields(V& v, OrganSpec& organ) {
          organ.mesh);
   v.record(Key{"rig", "Spheres given one by one, in place of a mesh."}, organ.rig);
   v.choice(Key{"mesh_unit", "Unit of the mesh file's coordinates."}, organ.mesh_unit);
+  v.flag(Key{"all_parts", "Keep every closed part of the mesh, not only the largest."}, organ.all_parts);
+  v.integer(Key{"most_triangles", "The drawn surface is made coarser if it has more; the spheres stay the same.",
+                false, "as many as the mesh has"},
+            organ.most_triangles, within(100, 10000000));
   v.choice(Key{"model", "Which structure joins the spheres."}, organ.model);
   v.choice(Key{"lattice", "Which neighbours are joined; cubic-6 has no shear stiffness and is for rigs."},
            organ.lattice);

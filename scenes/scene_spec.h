@@ -127,6 +127,8 @@ struct OrganSpec {
   std::string mesh;  ///< path, relative to the scene's folder, with '/'; empty: the organ is a rig
   std::optional<RigSpec> rig;
   LengthUnit mesh_unit = LengthUnit::millimetre;
+  bool all_parts = false;                      ///< every closed part of the mesh, not only the largest
+  std::optional<std::int32_t> most_triangles;  ///< of the drawn surface, which is made coarser if it has more
   Structure model = Structure::ctpm;
   LatticeKind lattice = LatticeKind::cubic_18;
   bool softening = true;  ///< Eq. 8

@@ -72,6 +72,7 @@ SceneSpec make_scene(const ImportRequest& request, const MaterialPreset& preset,
   OrganSpec spec;
   spec.name = name;
   spec.mesh = name + ".obj";
+  spec.all_parts = request.all_parts, spec.most_triangles = request.most_triangles;
   spec.fill.radius = organ.sphere_radius;
   spec.fill.gap = organ.spacing - 2 * organ.sphere_radius;
   spec.material.preset = preset.name;
@@ -134,6 +135,7 @@ Result<ImportOutcome> import_scene(const ImportRequest& request) {
   options.part = request.part, options.all_parts = request.all_parts;
   options.sphere_radius = request.sphere_radius.value_or((*preset)->sphere_radius);
   options.gap = request.gap.value_or(-1);
+  options.most_triangles = request.most_triangles.value_or(0);
   options.progress = request.progress;
   Result<ImportedOrgan> imported = import_organ(request.mesh, options);
   if (!imported) return imported.errors();
@@ -145,8 +147,8 @@ Result<ImportOutcome> import_scene(const ImportRequest& request) {
   if (!anchored) return anchored.errors();
   outcome.anchored = anchored->size();
   fit_scene(scene, organs.front(), outcome);
-  const Surface& surface = organs.front().surface;
-  if (const Result<Done> written = write_obj(outcome.mesh_file, surface.vertex, surface.triangle); !written) return written.errors();
+  const CheckedMesh& mesh = imported->mesh;
+  if (const Result<Done> written = write_obj(outcome.mesh_file, mesh.vertex, mesh.triangle); !written) return written.errors();
   const Script script = default_script(scene, organs);
   if (const Result<Done> written = write_text_file(outcome.script_file, write_script(script)); !written) return written.errors();
   if (const Result<Done> written = write_text_file(request.scene, write_scene(scene)); !written) return written.errors();

@@ -15,6 +15,8 @@ ImportOptions import_options_of(const OrganSpec& organ) {
     options.usual_size = {preset->usual_size_least, preset->usual_size_most};
   options.sphere_radius = organ.fill.radius;
   options.gap = organ.fill.gap;
+  options.all_parts = organ.all_parts;
+  options.most_triangles = organ.most_triangles.value_or(0);
   return options;
 }
 

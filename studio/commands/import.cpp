@@ -19,6 +19,7 @@ struct ImportArguments {
   ImportRequest request;
   std::string unit, report;
   std::optional<double> radius_mm, gap_mm;
+  std::optional<std::int64_t> most_triangles;
   std::vector<std::string> anchors;
 };
 
@@ -38,6 +39,10 @@ Errors complete(ImportArguments& a) {
     errors.push_back({"--gap-mm", "got " + fixed(*a.gap_mm, 3) + ", must be in [0, 100]", ""});
   else if (a.gap_mm)
     a.request.gap = 1e-3 * *a.gap_mm;
+  if (a.most_triangles && !(*a.most_triangles >= 100 && *a.most_triangles <= 10'000'000))
+    errors.push_back({"--most-triangles", "got " + std::to_string(*a.most_triangles) + ", must be in [100, 10000000]", ""});
+  else if (a.most_triangles)
+    a.request.most_triangles = std::int32_t(*a.most_triangles);
   for (const std::string& text : a.anchors) {
     const Result<AnchorSpec> anchor = parse_anchor(text);
     if (anchor)
@@ -67,6 +72,7 @@ std::string report_json(const ImportReport& r, const ImportOutcome& outcome) {
     json.member("non_manifold_edges", counts.non_manifold_edges).end_object();
   }
   json.key("filling").begin_object().member("radius_mm", r.sphere_radius * 1e3).member("spacing_mm", r.spacing * 1e3);
+  json.member("surface_triangles", r.fill.surface_triangles);
   json.member("spheres", r.fill.spheres).member("edges", r.fill.edges).member("volume_ml", r.fill.filled_volume * 1e6);
   json.member("largest_distance_mm", r.fill.largest_distance * 1e3).member("mean_distance_mm", r.fill.mean_distance * 1e3);
   json.member("anchored", outcome.anchored);
@@ -127,6 +133,8 @@ Command add_import(CLI::App& program) {
   app->add_option("--gap-mm", arguments->gap_mm, "Gap between their surfaces; the radius if not given");
   app->add_option("--part", arguments->request.part, "Name of the mesh to take, if the file holds several");
   app->add_flag("--all-parts", arguments->request.all_parts, "Keep every closed part, not only the largest");
+  app->add_option("--most-triangles", arguments->most_triangles,
+                  "Draw a coarser surface if the mesh has more triangles; the spheres stay the same");
   app->add_option("--anchor", arguments->anchors, "What never moves: lowest:MM, box:..., sphere:..., plane:... (repeatable)");
   app->add_option("--report", arguments->report, "Write the report as JSON");
   return {app, [arguments] { return run_import(*arguments); }};
