@@ -5,6 +5,7 @@
 
 #include "importers/mesh.h"
 #include "importers/mesh_surgery.h"
+#include "importers/seams.h"
 #include "importers/self_crossing.h"
 #include "importers/text.h"
 #include "importers/topology.h"
@@ -15,6 +16,7 @@ namespace {
 constexpr double kCutShare =
     0.25;  // of the diagonal: so wide a place may be cut out where the mesh crosses itself
 constexpr double kHoleShare = 0.1;     // of the diagonal: holes up to this are filled by default
+constexpr double kCrackShare = 1e-3;   // of the diagonal: cracks up to this wide are closed at T-junctions
 constexpr double kFlat = 1e-9;         // a volume below this share of the diagonal cubed bounds nothing
 constexpr std::size_t kMostShown = 5;  // holes that are named one by one
 
@@ -88,6 +90,9 @@ class Repair {
     clean();
     if (soup_.triangle.empty())
       return Error{path_, "holds only triangles without area", "export the surface again"};
+    tell("looking for cracks and walls", 0.1);
+    close_cracks();
+    drop_inner_walls();
     welded_ = soup_;
     tell("orienting", 0.2);
     split_and_orient();
@@ -119,6 +124,35 @@ class Repair {
             counted(n, "triangle") + " that another triangle covers exactly",
             "dropped",
             ""});
+  }
+
+  void close_cracks() {
+    const std::vector<Vec3> places = split_t_junctions(soup_, kCrackShare * diagonal_);
+    if (places.empty()) return;
+    const auto n = std::int64_t(places.size());
+    note({"t_junction", n, places[0],
+          counted(n, "vertex") + " on the edge of a triangle that does not know of it, the first at " +
+              place_text(places[0]),
+          "the edge split there, so that the crack is closed", ""});
+  }
+
+  void drop_inner_walls() {
+    const std::vector<std::int32_t> walls = find_inner_walls(soup_);
+    if (walls.empty()) return;
+    Vec3 place;
+    for (const std::int32_t v : soup_.triangle[std::size_t(walls[0])])
+      place += soup_.vertex[std::size_t(v)] / 3;
+    note({"inner_wall", std::int64_t(walls.size()), place,
+          counted(std::int64_t(walls.size()), "triangle") + " of walls inside the mesh, the first at " +
+              place_text(place),
+          "dropped", ""});
+    std::vector<char> goes(soup_.triangle.size(), 0);
+    for (const std::int32_t t : walls) goes[std::size_t(t)] = 1;
+    std::vector<Triangle> stays;
+    for (std::size_t t = 0; t < goes.size(); ++t)
+      if (!goes[t]) stays.push_back(soup_.triangle[t]);
+    soup_.triangle = std::move(stays);
+    drop_unused(soup_);
   }
 
   void split_and_orient() {

@@ -37,17 +37,6 @@ std::array<std::int64_t, 3> bits_of(Vec3 p) {
   return bits;
 }
 
-/// All edges with the triangle they belong to, equal edges side by side.
-std::vector<std::pair<Edge, std::int32_t>> sorted_edges(const std::vector<Triangle>& triangle) {
-  std::vector<std::pair<Edge, std::int32_t>> edges;
-  edges.reserve(3 * triangle.size());
-  for (std::size_t t = 0; t < triangle.size(); ++t)
-    for (int c = 0; c < 3; ++c)
-      edges.emplace_back(edge_of(triangle[t][c], triangle[t][(c + 1) % 3]), std::int32_t(t));
-  std::sort(edges.begin(), edges.end());
-  return edges;
-}
-
 /// Disjoint sets, for parts.
 class Sets {
  public:
@@ -136,6 +125,16 @@ Triangle rotated(Triangle t) {
 }
 
 }  // namespace
+
+std::vector<std::pair<Edge, std::int32_t>> sorted_edges(const std::vector<Triangle>& triangle) {
+  std::vector<std::pair<Edge, std::int32_t>> edges;
+  edges.reserve(3 * triangle.size());
+  for (std::size_t t = 0; t < triangle.size(); ++t)
+    for (int c = 0; c < 3; ++c)
+      edges.emplace_back(edge_of(triangle[t][c], triangle[t][(c + 1) % 3]), std::int32_t(t));
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
 
 Box bounding_box(const Soup& soup) {
   Box box;

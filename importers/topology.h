@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/vec3.h"
@@ -35,6 +36,10 @@ std::int64_t drop_collapsed(Soup& soup);
 
 /// Drops triangles that have the same three vertices as an earlier one, in whatever order; returns how many.
 std::int64_t drop_duplicates(Soup& soup);
+
+/// All edges, the smaller vertex in the upper half, each with a triangle it belongs to; equal edges side by
+/// side.
+std::vector<std::pair<std::uint64_t, std::int32_t>> sorted_edges(const std::vector<Triangle>& triangle);
 
 /// Vertices at which fans of triangles touch that no edge joins, in the order of their index.
 std::vector<std::int32_t> find_pinched(const Soup& soup);
