@@ -31,7 +31,8 @@ Result<ImportedOrgan> fill_of(const std::string& scene_path, const OrganSpec& or
   return filled;
 }
 
-Result<LoadedScene> load_whole_scene(const std::string& path, const LoadOptions& options) {
+Result<LoadedScene> load_whole_scene(const std::string& path, const LoadOptions& options,
+                                     const std::function<void(SceneSpec&)>& change) {
   Result<SceneText> scene = load_scene(path, options);
   if (!scene) return scene.errors();
   for (const Error& warning : scene->warnings)
@@ -39,6 +40,7 @@ Result<LoadedScene> load_whole_scene(const std::string& path, const LoadOptions&
   LoadedScene loaded;
   loaded.path = path;
   loaded.scene = std::move(*scene);
+  if (change) change(loaded.scene.spec);
   Errors errors;
   for (const OrganSpec& organ : loaded.scene.spec.organs) {
     Result<ImportedOrgan> imported = fill_of(path, organ);

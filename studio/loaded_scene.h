@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,10 @@ struct LoadedScene {
 /// Fills one organ of a scene: its mesh, or its rig. Errors: those of the mesh.
 Result<ImportedOrgan> fill_of(const std::string& scene_path, const OrganSpec& organ);
 
-/// Reads, imports and builds. Warnings go to stderr. Errors: those of the scene, its meshes and its anchors, with places.
-Result<LoadedScene> load_whole_scene(const std::string& path, const LoadOptions& options = {});
+/// Reads, imports and builds; `change` may alter what was read before anything is made of it. Warnings go to stderr.
+/// Errors: those of the scene, its meshes and its anchors, with places.
+Result<LoadedScene> load_whole_scene(const std::string& path, const LoadOptions& options = {},
+                                     const std::function<void(SceneSpec&)>& change = {});
 
 /// What is drawn of a scene. `model` must outlive the view.
 SceneView view_of(const SceneSpec& scene, const Model& model, std::vector<Surface> surfaces);

@@ -138,4 +138,8 @@ struct PrintedRow {
 /// The six rows of an organ: "skin", "kidney" or "liver".
 const std::vector<PrintedRow>& printed_table(const std::string& organ);
 
+/// Force at rest at each depth of a rig whose pin holds C [N]: pressed on at 10 mm/s from depth to depth and held at each
+/// until the spheres beside C, which nothing but the step damps, have stopped swinging. Error: a step that failed.
+Result<std::vector<double>> press_rig(const Model& model, const std::string& name, const std::vector<PrintedRow>& rows);
+
 }  // namespace ctpm

@@ -38,27 +38,6 @@ Error diverged(const std::string& scene, const StepReport& report) {
   return {scene, "the run diverged at sphere " + std::to_string(report.worst_sphere), ""};
 }
 
-/// Force at rest at each depth [N]: pressed on at 10 mm/s from depth to depth and held at each until the
-/// spheres beside C, which nothing but the step damps, have stopped swinging.
-Result<std::vector<double>> press_and_hold(const Model& model, const std::string& name,
-                                           const std::vector<PrintedRow>& rows) {
-  constexpr double kSpeed = 10, kHold = 12;
-  Stepper stepper(model);
-  State state = rest_state(model);
-  std::vector<double> force;
-  double depth = 0;
-  for (const PrintedRow& row : rows) {
-    StepReport report;
-    for (double held = 0; held < kHold; held += depth < row.depth ? 0 : model.tick) {
-      depth = std::min(row.depth, depth + kSpeed * model.tick);
-      report = stepper.step(state, pressed_to(depth));
-      if (report.status != StepStatus::ok) return diverged(name, report);
-    }
-    force.push_back(report.tool_force.z);
-  }
-  return force;
-}
-
 /// Plot of one organ's Table 1, as in Figs. 5 and 6.
 Plot force_plot(const std::string& organ, const Site& site, const std::vector<double>& tpm,
                 const std::vector<double>& ctpm) {
@@ -122,7 +101,7 @@ Result<OrganForces> press_organ(const std::string& scenes, const std::string& or
     const Result<BuiltScene> built =
         build_changed(*scene, [&](SceneSpec& s) { s.organs[0].softening = softens; });
     if (!built) return built.errors();
-    Result<std::vector<double>> force = press_and_hold(built->model, scene->path, printed_table(organ));
+    Result<std::vector<double>> force = press_rig(built->model, scene->path, printed_table(organ));
     if (!force) return force.errors();
     (softens ? out.ctpm : out.tpm) = std::move(*force);
   }
@@ -362,6 +341,25 @@ Plot beginning_of(Plot plot, double until) {
 }
 
 }  // namespace
+
+Result<std::vector<double>> press_rig(const Model& model, const std::string& name,
+                                           const std::vector<PrintedRow>& rows) {
+  constexpr double kSpeed = 10, kHold = 12;
+  Stepper stepper(model);
+  State state = rest_state(model);
+  std::vector<double> force;
+  double depth = 0;
+  for (const PrintedRow& row : rows) {
+    StepReport report;
+    for (double held = 0; held < kHold; held += depth < row.depth ? 0 : model.tick) {
+      depth = std::min(row.depth, depth + kSpeed * model.tick);
+      report = stepper.step(state, pressed_to(depth));
+      if (report.status != StepStatus::ok) return diverged(name, report);
+    }
+    force.push_back(report.tool_force.z);
+  }
+  return force;
+}
 
 Result<Experiment> run_table_1(const std::string& scenes) {
   Experiment experiment;
