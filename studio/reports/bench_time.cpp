@@ -221,10 +221,13 @@ Plot diagram(const std::string& title, const std::vector<Point>& points, double 
   return plot;
 }
 
-/// Slope of the error over the substeps at the tightest tolerance, between the two finest runs.
-Table orders(const std::vector<Point>& points) {
+/// Slope of the error over the substeps at the tightest tolerance, between the two finest runs whose error
+/// the reference, off by up to `gap` itself, can tell.
+Table orders(const std::vector<Point>& points, double gap) {
   Table table;
-  table.title = "Observed order, between the two finest steps at the tightest tolerance";
+  table.title =
+      "Observed order, between the two finest steps that the reference tells apart, at the tightest "
+      "tolerance";
   table.columns = {{"integrator", "integrator"}, {"position", "in position", 3}, {"force", "in force", 3}};
   for (const Integrator integrator :
        {Integrator::symplectic_euler, Integrator::backward_euler, Integrator::extrapolated_euler}) {
@@ -233,7 +236,8 @@ Table orders(const std::vector<Point>& points) {
     for (const Point& p : points)
       if (p.setting.integrator == integrator) tightest = std::min(tightest, p.setting.tolerance);
     for (const Point& p : points)
-      if (p.setting.integrator == integrator && p.setting.tolerance == tightest) own.push_back(&p);
+      if (p.setting.integrator == integrator && p.setting.tolerance == tightest && p.position_error > 2 * gap)
+        own.push_back(&p);
     if (own.size() < 2) continue;
     const Point &coarse = *own[own.size() - 2], &fine = *own.back();
     const double ratio = std::log(double(fine.setting.substeps) / coarse.setting.substeps);
@@ -310,7 +314,7 @@ BenchStudy study(const TimeJob& job, const BenchOptions& options, const std::fun
       "Numbers in the legend are tolerances; along a line the substeps double."};
   study.sentences = {recommendation(job, points)};
   study.section.paragraphs.push_back(study.sentences[0]);
-  study.section.tables = {orders(points)};
+  study.section.tables = {orders(points, position_gap)};
   study.points = bench_layout();
   for (const Point& p : points)
     study.points.rows.push_back(
