@@ -288,7 +288,7 @@ StepReport Stepper::settle(State& state, std::int64_t ticks) {
   work_->has_loads = false;
   for (std::int64_t i = 0; i < ticks; ++i) {
     report = step(state, Inputs{});
-    if (report.status == StepStatus::diverged || report.status == StepStatus::too_long) break;
+    if (is_refused(report.status)) break;
     const Vec3 fastest = state.velocity[std::size_t(report.worst_sphere)];
     if (norm(fastest) < kAtRest) break;
   }

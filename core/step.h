@@ -19,6 +19,9 @@ enum class StepStatus : std::int32_t {
   too_long = 4,       ///< the explicit integrator that the scene names cannot hold steps of this length; State is as before
 };
 
+/// Whether a tick was not done, and State is as before it.
+constexpr bool is_refused(StepStatus status) { return status >= StepStatus::bad_input; }
+
 /// What one tick did. Never thrown, always complete.
 struct StepReport {
   StepStatus status = StepStatus::ok;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/integrator.h"
 #include "core/network.h"
 #include "scenes/anchors.h"
 #include "scenes/presets.h"
@@ -194,6 +195,9 @@ Result<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrg
   model.solver.max_iterations = scene.solver.max_iterations.value_or(standard.max_iterations);
   model.solver.integrator = scene.solver.integrator;
   model.solver.substeps = scene.solver.substeps.value_or(standard.substeps);
+  if (const IntegratorChoice choice = choose_integrator(model); !choice.holds)
+    return Errors{{"/solver/integrator", std::string(name_of(choice.integrator)) + ": " + choice.reason,
+                   "take `auto`, `backward-euler`, or more substeps"}};
   return built;
 }
 

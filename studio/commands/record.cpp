@@ -23,6 +23,7 @@ struct RecordArguments {
   double duration_s = 0;
   bool overwrite = false, as_fast_as_possible = false;
   LoadOptions load;
+  int threads = 0;  ///< 0: as many as pay
 };
 
 /// What does not fit together, before anything is read.
@@ -83,8 +84,7 @@ Result<OpenedSource> open(const RecordArguments& arguments, OpenedDevice device,
 
 int print_outcome(const std::string& path, const Model& model, const RecordOutcome& outcome) {
   const SessionStatistics& s = outcome.statistics;
-  const bool was_refused =
-      outcome.run.status == StepStatus::diverged || outcome.run.status == StepStatus::bad_input;
+  const bool was_refused = is_refused(outcome.run.status);
   if (was_refused)
     print_remark(path + ": error: the simulation was refused at tick " + std::to_string(outcome.run.ticks) +
                  ", sphere " + std::to_string(outcome.run.worst_sphere) + "; what came before is saved");
@@ -126,6 +126,7 @@ int run_record(const RecordArguments& arguments) {
   options.in_real_time = !arguments.as_fast_as_possible;
   options.most_ticks = std::llround(arguments.duration_s / start.model.tick);
   options.should_stop = should_stop;
+  options.threads = arguments.threads > 0 ? arguments.threads : threads_for(start.model);
   const Result<RecordOutcome> outcome = [&] {
     ProgressLine progress("recording");
     options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
@@ -182,6 +183,9 @@ Command add_record(CLI::App& program) {
   app->add_option("--duration-s", arguments->duration_s, "Ends the session after so many seconds");
   app->add_flag("--overwrite", arguments->overwrite, "Replace an existing session file");
   app->add_flag("--fast", arguments->as_fast_as_possible, "Do not wait for the clock between ticks");
+  app->add_option("--threads", arguments->threads,
+                  "Threads that share a tick, which change no bit of it; by default two for large scenes")
+      ->check(CLI::Range(1, 64));
   app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths,
                 "Meshes may lie outside the scene's folder");
   return {app, [arguments] { return run_record(*arguments); }};

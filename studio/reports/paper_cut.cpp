@@ -63,7 +63,7 @@ Result<CutRun> run_kidney(const LoadedScene& scene, const Script& script, const 
   const auto per_second = std::int64_t(std::lround(1 / model.tick));
   for (std::int64_t tick = 0; tick < player.tick_count(); ++tick) {
     const StepReport report = stepper.step(state, player.at(tick));
-    if (report.status == StepStatus::diverged || report.status == StepStatus::bad_input)
+    if (is_refused(report.status))
       return Error{scene.path,
                    full_name(variant) + ": the run diverged at sphere " + std::to_string(report.worst_sphere),
                    ""};

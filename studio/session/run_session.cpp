@@ -74,9 +74,14 @@ class EventWatch {
 
 }  // namespace
 
+int threads_for(const Model& model) {
+  constexpr std::size_t kWorthSharing = 3000;  // spheres
+  return model.sphere_count() >= kWorthSharing && std::thread::hardware_concurrency() > 1 ? 2 : 1;
+}
+
 RunOutcome run_session(const Model& model, State& state, InputSource& source, SessionWriter& writer,
                        const RunOptions& options) {
-  Stepper stepper(model);
+  Stepper stepper(model, {.threads = options.threads});
   EventWatch watch(model, options.damage_force, writer);
   RunOutcome outcome;
   StepReport report;
@@ -94,7 +99,7 @@ RunOutcome run_session(const Model& model, State& state, InputSource& source, Se
     report = stepper.step(state, *inputs);
     const double tick_time = seconds_since(start);
     outcome.status = report.status, outcome.worst_sphere = report.worst_sphere;
-    if (report.status == StepStatus::diverged || report.status == StepStatus::bad_input) {
+    if (is_refused(report.status)) {
       writer.event(tick, EventKind::note, "the step was refused; value: sphere",
                    {double(report.worst_sphere)});
       break;

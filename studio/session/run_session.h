@@ -16,9 +16,13 @@ struct RunOptions {
       true;  ///< ticks start on absolute deadlines of the wall clock; else one after the other
   double damage_force = 0;      ///< force on the tool beyond which a damage event is noted [N]; 0: no limit
   std::int64_t most_ticks = 0;  ///< the session ends after so many; 0: when the source ends
+  int threads = 1;              ///< that share a tick, >= 1; they change no bit of it
   std::function<void(std::int64_t done, std::int64_t total)> progress;
   std::function<bool()> should_stop;  ///< asked every tick: Ctrl-C
 };
+
+/// Threads that pay for a scene on this machine: two where there are so many cores and a tick has enough to share.
+int threads_for(const Model& model);
 
 /// What a run came to.
 struct RunOutcome {

@@ -8,9 +8,7 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "core/step.h"
-#include "recordings/state_hash.h"
-#include "tests/core/blocks.h"
+#include "tests/golden/session.h"
 
 namespace ctpm {
 namespace {
@@ -31,42 +29,17 @@ constexpr Golden kGolden[] = {
     {Structure::ctpm, Integrator::extrapolated_euler, {0xcb76cb1b726d4353, 0x0dc3605fab324f1a, 0x2830d7d56941114f, 0x99e7a7ae943d5057}},
 };
 
-/// A ball presses for 200 ticks, then a scalpel goes through the block.
-Inputs inputs_at(int tick) {
-  Inputs inputs;
-  if (tick < 200) {
-    inputs.tool = 0;
-    inputs.position = {0.001, -0.002, 0.048 + 0.012 - 0.00008 * tick};
-  } else {
-    inputs.tool = 1;
-    inputs.position = {0.0007, -0.05 + 0.0005 * (tick - 200), 0.020};
-  }
-  return inputs;
-}
-
 TEST(Golden, ASmallSessionGivesTheSameBitsInEveryBuild) {
   for (const Golden& golden : kGolden) {
-    Model model = testing::make_block_model(6, 5, 5, golden.structure);
-    model.gravity = {0, 0, -9.81};
-    model.solver.integrator = golden.integrator;
-    model.tools = {testing::ball(0.006), testing::scalpel(0.06)};
-    State state = rest_state(model);
-    Stepper stepper(model);
-    std::array<std::uint64_t, 4> hash{};
-    std::int32_t severed = 0, contacts = 0;
-    for (int tick = 0; tick < 400; ++tick) {
-      const StepReport report = stepper.step(state, inputs_at(tick));
-      ASSERT_EQ(report.status, StepStatus::ok);
-      severed += report.severed, contacts += report.contacts;
-      if ((tick + 1) % 100 == 0) hash[std::size_t(tick / 100)] = state_hash(state);
-    }
-    EXPECT_GT(severed, 0);
-    EXPECT_GT(contacts, 0);
+    const testing::GoldenRun run = testing::run_golden(6, 5, 5, 400, golden.structure, golden.integrator);
+    EXPECT_TRUE(run.is_good);
+    EXPECT_GT(run.severed, 0);
+    EXPECT_GT(run.contacts, 0);
     char actual[128];
     std::snprintf(actual, sizeof actual, "{0x%016llx, 0x%016llx, 0x%016llx, 0x%016llx}",
-                  (unsigned long long)hash[0], (unsigned long long)hash[1], (unsigned long long)hash[2],
-                  (unsigned long long)hash[3]);
-    EXPECT_EQ(hash, golden.hash) << "structure " << int(golden.structure) << ", " << name_of(golden.integrator) << " gave " << actual;
+                  (unsigned long long)run.hash[0], (unsigned long long)run.hash[1], (unsigned long long)run.hash[2],
+                  (unsigned long long)run.hash[3]);
+    EXPECT_EQ(run.hash, golden.hash) << "structure " << int(golden.structure) << ", " << name_of(golden.integrator) << " gave " << actual;
   }
 }
 

@@ -217,5 +217,17 @@ TEST(BuildModel, AMaterialThatTheNetworkRefusesIsPlacedAtItsOrgan) {
       << all;
 }
 
+TEST(BuildModel, RefusesAnExplicitIntegratorThatCannotHoldItsStep) {
+  const auto with_solver = [](const char* solver) {
+    return errors_of_build(block_scene("", std::string(R"(, "solver": )") + solver));
+  };
+  const Errors errors = with_solver(R"({"integrator": "symplectic-euler"})");
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].where, "/solver/integrator");
+  EXPECT_NE(errors[0].message.find("substeps up to"), std::string::npos) << errors[0].message;
+  EXPECT_TRUE(with_solver(R"({"integrator": "symplectic-euler", "substeps": 1000})").empty());
+  EXPECT_TRUE(with_solver(R"({"integrator": "extrapolated-euler"})").empty());
+}
+
 }  // namespace
 }  // namespace ctpm

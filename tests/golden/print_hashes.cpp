@@ -1,0 +1,52 @@
+// Prints the hashes of the golden sessions and of a larger block, once for each instruction set of the machine and for
+// several thread counts. matrix.sh builds it in many ways; all must print the same.
+
+#include <cstdio>
+
+#include "tests/golden/session.h"
+
+using namespace ctpm;
+
+namespace {
+
+struct Session {
+  const char* name;
+  int ni, nj, nk, ticks;
+  Structure structure;
+  Integrator integrator;
+};
+
+constexpr Session kSessions[] = {
+    {"mass-spring", 6, 5, 5, 400, Structure::mass_spring, Integrator::automatic},
+    {"angle-mass-spring", 6, 5, 5, 400, Structure::angle_mass_spring, Integrator::backward_euler},
+    {"tpm", 6, 5, 5, 400, Structure::tpm, Integrator::automatic},
+    {"ctpm", 6, 5, 5, 400, Structure::ctpm, Integrator::automatic},
+    {"ctpm, second order", 6, 5, 5, 400, Structure::ctpm, Integrator::extrapolated_euler},
+    {"ctpm in slabs", 13, 12, 12, 40, Structure::ctpm, Integrator::automatic},
+    {"mass-spring in slabs", 13, 12, 12, 40, Structure::mass_spring, Integrator::automatic},
+};
+
+}  // namespace
+
+int main() {
+  bool all_equal = true;
+  for (const Session& session : kSessions) {
+    const auto run = [&](const StepperOptions& options) {
+      return testing::run_golden(session.ni, session.nj, session.nk, session.ticks, session.structure,
+                                 session.integrator, options);
+    };
+    const testing::GoldenRun plain = run({1, InstructionSet::baseline});
+    for (const InstructionSet set : {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512})
+      for (const int threads : {1, 2, 4}) {
+        if (set > best_instruction_set()) continue;
+        const bool equal = run({threads, set}).hash == plain.hash;
+        if (!equal) std::printf("%s differs with %s and %d threads\n", session.name, name_of(set), threads);
+        all_equal = all_equal && equal;
+      }
+    std::printf("%s:", session.name);
+    for (const std::uint64_t hash : plain.hash) std::printf(" %016llx", (unsigned long long)hash);
+    std::printf(plain.is_good ? "\n" : " and a tick failed\n");
+    all_equal = all_equal && plain.is_good;
+  }
+  return all_equal ? 0 : 1;
+}
