@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <limits>
 
+#include "core/step.h"
 #include "recordings/internal/field_codec.h"
 #include "recordings/internal/schema.h"
 #include "recordings/internal/session_store.h"
 #include "recordings/internal/statistics.h"
+#include "recordings/state_hash.h"
 
 namespace ctpm {
 
@@ -45,16 +47,33 @@ Result<SessionStore> open_for_salvage(const std::string& in, const std::string& 
   return mended;
 }
 
+/// The State before tick 0: as it was stored, or else at rest, where that is proven by what the first tick
+/// led to. A scene without gravity begins there.
+Result<State> initial_state(SessionStore& store, const Model& model, RecoverReport& report) {
+  auto first = store.keyframe_at(0, model);
+  if (first && *first) return std::move((*first)->state);
+  const Errors lost = first ? Errors{{"", "keyframe 0: is missing", ""}} : first.errors();
+  const auto chunk = store.chunk_at(0);
+  if (!chunk || !*chunk || (*chunk)->first != 0 || (*chunk)->items.empty()) return lost;
+  const TickRecord& record = (*chunk)->items.front();
+  State state = rest_state(model);
+  Stepper(model).step(state, record.inputs);
+  if (state_hash(state) != record.state_hash) return lost;
+  report.repairs.push_back(
+      "the initial state was damaged; the first tick proves that the session began at rest, so it is written "
+      "anew");
+  return rest_state(model);
+}
+
 /// The start. Without Model or initial State there is nothing to replay.
 Result<Done> salvage_start(SessionStore& store, Salvage& salvage, RecoverReport& report) {
   auto model = store.model();
   if (!model) return model.errors();
   salvage.start.model = std::move(*model);
-  auto first = store.keyframe_at(0, salvage.start.model);
-  if (!first) return first.errors();
-  if (!*first) return Error{"", "keyframe 0: is missing", ""};
-  salvage.start.initial_state = std::move((*first)->state);
   if (auto r = store.read_columns(); !r) return r.errors();
+  auto initial = initial_state(store, salvage.start.model, report);
+  if (!initial) return initial.errors();
+  salvage.start.initial_state = std::move(*initial);
 
   const auto take = [&](auto result, auto& place) {
     if (result)

@@ -109,7 +109,7 @@ void kill_together(std::span<Shared* const> memory, const SessionStart& start, s
 }  // namespace
 
 void kill_recorders(int count) {
-  constexpr int together = 5;
+  constexpr int together = 2;
   const SessionStart start = small_start(3, 2, 2);
   std::mt19937 random(12345);
   void* memory =

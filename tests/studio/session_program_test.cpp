@@ -206,6 +206,21 @@ TEST(RecoverProgram, ExitsWith3WhenSomethingIsMissingAndWith0WhenNothingIs) {
   EXPECT_EQ(run_ctpm({"verify", "saved.ctpm"}, folder.path()).code, 0);
 }
 
+TEST(RecoverProgram, SavesTheBeginningOfAFileThatWasCutShort) {
+  const TemporaryFolder folder;
+  for (const int percent : {97, 90}) {
+    const std::string name = std::to_string(percent) + ".ctpm", saved = "saved-" + name;
+    const std::string whole = slurp(kPress);
+    std::ofstream(folder.path() / name, std::ios::binary)
+        << whole.substr(0, whole.size() * std::size_t(percent) / 100);
+    EXPECT_EQ(run_ctpm({"verify", name}, folder.path()).code, 2);
+    const auto recovered = run_ctpm({"recover", name, "-o", saved}, folder.path());
+    EXPECT_EQ(recovered.code, 3) << recovered.out << recovered.err;
+    EXPECT_TRUE(holds(recovered.out, "same: ")) << recovered.out;
+    EXPECT_FALSE(recovered.out.starts_with(saved + ": 0 ticks")) << recovered.out;
+  }
+}
+
 TEST(KilledProgram, LeavesASessionThatIsSaidToBeUnfinishedAndCanBeRecovered) {
   const TemporaryFolder folder;
   const std::string scene = kScenes + "/skin.json", session = (folder.path() / "a.ctpm").string();
