@@ -16,40 +16,56 @@
 
 namespace ctpm {
 
+/// A tool appears in the hand.
+struct TakeStep {
+  std::string tool;         ///< name of a tool of the scene
+  Vec3 at;                  ///< where its frame's origin appears [m]
+  Vec3 pointing{0, 0, -1};  ///< direction from handle to tip; any length but zero
+  std::optional<Vec3> facing;  ///< where the tool's +x looks, a blade's cutting side; not along `pointing`
+  friend bool operator==(const TakeStep&, const TakeStep&) = default;
+};
+
+/// It moves along a straight line.
+struct MoveStep {
+  Vec3 to;           ///< [m]
+  double speed = 0;  ///< along the way, once up to speed [m/s]
+  friend bool operator==(const MoveStep&, const MoveStep&) = default;
+};
+
+/// It moves into the tissue.
+struct PressStep {
+  double distance = 0;       ///< at most [m]
+  Vec3 direction{0, 0, -1};  ///< any length but zero
+  double speed = 0;          ///< [m/s]
+  std::optional<double> until_force;  ///< ends as soon as the tissue pushes back with so much [N]
+  friend bool operator==(const PressStep&, const PressStep&) = default;
+};
+
+/// It leaves the tissue.
+struct ReleaseStep {
+  double distance = 0;      ///< [m]
+  Vec3 direction{0, 0, 1};  ///< where the tool leaves to; any length but zero
+  double speed = 0;         ///< [m/s]
+  friend bool operator==(const ReleaseStep&, const ReleaseStep&) = default;
+};
+
+/// Its tip moves along a path.
+struct CutStep {
+  std::vector<Vec3> path;  ///< of the tip, from where it is [m]
+  double speed = 0;        ///< [m/s]
+  std::optional<bool> smooth;  ///< along one curve through the points; otherwise straight, at rest at each
+  friend bool operator==(const CutStep&, const CutStep&) = default;
+};
+
 /// One step of a script: exactly one of `take`, `move`, `press`, `release`, `cut`, `wait`, `put_away` is
 /// set. SCRIPT.md.
 struct ScriptStep {
-  struct Take {
-    std::string tool;         ///< name of a tool of the scene
-    Vec3 at;                  ///< where its frame's origin appears [m]
-    Vec3 pointing{0, 0, -1};  ///< direction from handle to tip; any length but zero
-    std::optional<Vec3> facing;  ///< where the tool's +x looks, a blade's cutting side; not along `pointing`
-    friend bool operator==(const Take&, const Take&) = default;
-  };
-  struct Move {
-    Vec3 to;           ///< [m]
-    double speed = 0;  ///< along the way, once up to speed [m/s]
-    friend bool operator==(const Move&, const Move&) = default;
-  };
-  struct Press {
-    double distance = 0;       ///< at most [m]
-    Vec3 direction{0, 0, -1};  ///< any length but zero
-    double speed = 0;          ///< [m/s]
-    std::optional<double> until_force;  ///< ends as soon as the tissue pushes back with so much [N]
-    friend bool operator==(const Press&, const Press&) = default;
-  };
-  struct Release {
-    double distance = 0;      ///< [m]
-    Vec3 direction{0, 0, 1};  ///< where the tool leaves to; any length but zero
-    double speed = 0;         ///< [m/s]
-    friend bool operator==(const Release&, const Release&) = default;
-  };
-  struct Cut {
-    std::vector<Vec3> path;  ///< of the tip, from where it is [m]
-    double speed = 0;        ///< [m/s]
-    std::optional<bool> smooth;  ///< along one curve through the points; otherwise straight, at rest at each
-    friend bool operator==(const Cut&, const Cut&) = default;
-  };
+  using Take = TakeStep;
+  using Move = MoveStep;
+  using Press = PressStep;
+  using Release = ReleaseStep;
+  using Cut = CutStep;
+
   std::optional<Take> take;
   std::optional<Move> move;
   std::optional<Press> press;
