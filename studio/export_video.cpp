@@ -65,6 +65,12 @@ struct Reel {
     const TickRange& range = film->range();
     return std::min<std::int64_t>(range.to, range.from + std::llround(double(frame + 1) * ticks_a_frame));
   }
+  /// The moment of a frame; a session that is over says so and stands still.
+  Result<Shot> shoot(std::int64_t frame) const {
+    Result<Shot> shot = film->shoot(tick_of(frame));
+    if (shot) shot->overlay.is_over = frame >= frame_count();
+    return shot;
+  }
   std::int64_t frame_count() const {
     return std::int64_t(std::ceil(double(film->range().to - film->range().from) / ticks_a_frame));
   }
@@ -114,8 +120,7 @@ Result<StageTimes> make_film(std::vector<Reel>& reels, VideoWriter& writer, Byte
   std::int64_t frames = 0, drawn = 0;
   for (const Reel& reel : reels) frames = std::max(frames, reel.frame_count());
   FilmWork work;
-  for (Reel& reel : reels)
-    work.shoot.push_back([&reel](std::int64_t frame) { return reel.film->shoot(reel.tick_of(frame)); });
+  for (Reel& reel : reels) work.shoot.push_back([&reel](std::int64_t frame) { return reel.shoot(frame); });
   work.draw = [&](std::vector<Shot> shots) -> Result<Frame> {
     // Ctrl-C is an error of this export: nothing is left behind.
     if (options.should_stop && options.should_stop())

@@ -187,9 +187,9 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
     y += px(38);
   }
   const std::array<std::pair<std::string, std::string>, 6> facts{
-      {{"session", small.shortened(data.session, px(210))},
-       {"model", small.shortened(data.model, px(210))},
-       {"time", fixed(data.time, 3) + " s"},
+      {{"session", small.shortened(data.session, px(195))},
+       {"model", small.shortened(data.model, px(195))},
+       {data.is_over ? "ended" : "time", fixed(data.time, 3) + " s"},
        {"tick", std::to_string(data.tick)},
        {"force", fixed(data.force, 3) + " N"},
        {"depth", fixed(1000 * data.depth, 2) + " mm"}}};

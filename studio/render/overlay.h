@@ -24,6 +24,7 @@ struct OverlayData {
   std::string model;    ///< structure of the tissue: "CTPM"
   std::string session;  ///< which recording it is, where there may be several
   double time = 0;    ///< [s]
+  bool is_over = false;  ///< the session has ended at `time`
   std::int64_t tick = 0;
   double force = 0;         ///< magnitude on the tool [N]
   double depth = 0;         ///< of the touched tissue [m]

@@ -181,6 +181,22 @@ TEST_F(Export, CtrlCLeavesNothingBehind) {
   }
 }
 
+TEST_F(Export, BesideSaysThatASessionHasEnded) {
+  record("short.ctpm", "0.6");
+  const auto both = run_ctpm({"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--from-s",
+                              "0.5", "--to-s", "0.8", "--speed", "3"},
+                             folder_.path());
+  ASSERT_EQ(both.code, 0) << both.err;
+  Frame half = picture("both", 3);  // 0.8 s
+  for (int y = 0; y < 720; ++y)
+    std::copy_n(half.rgb.begin() + (y * 1280 + 640) * 3, 640 * 3, half.rgb.begin() + y * 640 * 3);
+  half.width = 640, half.rgb.resize(std::size_t(640 * 720 * 3));
+  const render_test::GlyphReader reader(640, 720);
+  EXPECT_EQ(reader.read_after(half, "ended"), "0.600 s");
+  EXPECT_EQ(reader.read_after(half, "time"), "");
+  EXPECT_EQ(reader.read_after(half, "session"), "short");
+}
+
 TEST_F(Export, BesideShowsTwoSessionsInStep) {
   record("short.ctpm", "0.6");
   const auto both = run_ctpm(
