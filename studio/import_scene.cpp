@@ -135,6 +135,7 @@ Result<ImportOutcome> import_scene(const ImportRequest& request) {
   options.part = request.part, options.all_parts = request.all_parts;
   options.sphere_radius = request.sphere_radius.value_or((*preset)->sphere_radius);
   options.gap = request.gap.value_or(-1);
+  options.largest_hole = request.largest_hole;
   options.most_triangles = request.most_triangles.value_or(0);
   options.progress = request.progress;
   Result<ImportedOrgan> imported = import_organ(request.mesh, options);

@@ -20,6 +20,7 @@ struct ImportRequest {
   std::optional<double> gap;            ///< [m]; unset: the radius
   std::string part;
   bool all_parts = false;
+  std::optional<double> largest_hole;          ///< holes up to this diameter are filled [m]; unset: a tenth of the diagonal
   std::optional<std::int32_t> most_triangles;  ///< of the drawn surface; unset: as many as the mesh has
   std::vector<AnchorSpec> anchors;      ///< empty: the lowest eighth of its spheres
   Progress progress;

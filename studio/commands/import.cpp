@@ -18,7 +18,7 @@ namespace {
 struct ImportArguments {
   ImportRequest request;
   std::string unit, report;
-  std::optional<double> radius_mm, gap_mm;
+  std::optional<double> radius_mm, gap_mm, largest_hole_mm;
   std::optional<std::int64_t> most_triangles;
   std::vector<std::string> anchors;
 };
@@ -39,6 +39,10 @@ Errors complete(ImportArguments& a) {
     errors.push_back({"--gap-mm", "got " + fixed(*a.gap_mm, 3) + ", must be in [0, 100]", ""});
   else if (a.gap_mm)
     a.request.gap = 1e-3 * *a.gap_mm;
+  if (a.largest_hole_mm && !(*a.largest_hole_mm >= 0 && *a.largest_hole_mm <= 10000))
+    errors.push_back({"--largest-hole-mm", "got " + fixed(*a.largest_hole_mm, 3) + ", must be in [0, 10000]", ""});
+  else if (a.largest_hole_mm)
+    a.request.largest_hole = 1e-3 * *a.largest_hole_mm;
   if (a.most_triangles && !(*a.most_triangles >= 100 && *a.most_triangles <= 10'000'000))
     errors.push_back({"--most-triangles", "got " + std::to_string(*a.most_triangles) + ", must be in [100, 10000000]", ""});
   else if (a.most_triangles)
@@ -133,6 +137,8 @@ Command add_import(CLI::App& program) {
   app->add_option("--gap-mm", arguments->gap_mm, "Gap between their surfaces; the radius if not given");
   app->add_option("--part", arguments->request.part, "Name of the mesh to take, if the file holds several");
   app->add_flag("--all-parts", arguments->request.all_parts, "Keep every closed part, not only the largest");
+  app->add_option("--largest-hole-mm", arguments->largest_hole_mm,
+                  "Holes up to this diameter are filled; a tenth of the mesh's diagonal if not given");
   app->add_option("--most-triangles", arguments->most_triangles,
                   "Draw a coarser surface if the mesh has more triangles; the spheres stay the same");
   app->add_option("--anchor", arguments->anchors, "What never moves: lowest:MM, box:..., sphere:..., plane:... (repeatable)");

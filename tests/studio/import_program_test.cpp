@@ -79,5 +79,26 @@ TEST_F(ImportProgram, AllPartsAreInTheSceneAsWell) {
   EXPECT_EQ(spheres(both.out), 2 * spheres(one.out)) << one.out << both.out;
 }
 
+TEST_F(ImportProgram, AHoleWiderThanUsualIsFilledWhenThatIsAskedFor) {
+  write("open.obj", zoo::to_obj_text(zoo::without(bean(1, 3), [](Vec3 p) { return p.x > 40; })));
+  const auto refused = import("open.obj", {"--unit", "mm"});
+  EXPECT_EQ(refused.code, 2);
+  expect_says(refused.err, {"open beyond repair: a hole", "allow wider holes"});
+  EXPECT_FALSE(fs::exists(folder_.path() / "scene.json"));
+  const auto filled = import("open.obj", {"--unit", "mm", "--largest-hole-mm", "60"});
+  EXPECT_EQ(filled.code, 0) << filled.err;
+  expect_says(filled.out, {"1 hole, the widest", "filled", "next: ctpm record scene.json"});
+  EXPECT_EQ(import("open.obj", {"--largest-hole-mm", "-1"}).code, 2);
+}
+
+TEST_F(ImportProgram, CrumbsFarAwayDoNotMakeTheOrganUnusuallyLarge) {
+  const RawMesh crumb = zoo::sphere(3, 1, {150, 0, 0});
+  write("crumb.obj", zoo::to_obj_text(zoo::both(bean(1, 3), crumb)));
+  const auto outcome = import("crumb.obj");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  expect_says(report(), {"\"code\": \"unit_guessed\"", "\"code\": \"other_part\""});
+  EXPECT_EQ(report().find("unusual_size"), std::string::npos) << outcome.out;
+}
+
 }  // namespace
 }  // namespace ctpm
