@@ -48,6 +48,8 @@ void check_material(Errors& errors, const std::string& where, const Material& m,
   if (!(m.viscosity >= 0) || !std::isfinite(m.viscosity))
     errors.push_back(
         {where, "viscosity v1: got " + std::to_string(m.viscosity) + " Pa s/m, must be 0 or more", ""});
+  if (!(m.prestrain >= 0 && m.prestrain <= 0.5))
+    errors.push_back({where, "prestrain: got " + std::to_string(m.prestrain) + ", must be in [0, 0.5]", ""});
   if (!(m.fracture_toughness >= 0 && std::isfinite(m.fracture_toughness) && m.blade_friction >= 0 &&
         std::isfinite(m.blade_friction)))
     errors.push_back({where, "fracture toughness and blade friction must be 0 or more", ""});
@@ -89,16 +91,17 @@ const Material& material_of(const FilledOrgan& organ, const OrganSettings& setti
   return settings.material;
 }
 
-/// Stiffness and damping that one sphere's material gives to elements.
+/// Stiffness, damping and prestrain that one sphere's material gives to elements.
 struct Stiffness {
   double spring_k, kelvin_k, kelvin_c, constraint_k;
+  double rest_part;  ///< rest length over the length in the lattice
 };
 
 Stiffness stiffness_of(const Material& m, double spacing) {
   const double area = edge_area(m, spacing);
   // The triples beside C stretch when C dips and add their own 2 P2 (1 - cos theta) u; K' counts both.
   return {m.spring * area, m.kelvin * area, m.viscosity * area,
-          (m.constraint - series(m.kelvin, m.spring)) * area};
+          (m.constraint - series(m.kelvin, m.spring)) * area, 1 - m.prestrain};
 }
 
 /// Builds the elements of one organ line by line, then brings the edges into the order in which they are
@@ -158,7 +161,7 @@ class LineTiler {
       return of(0).*value + sum / double(count);
     };
     return {mean(&Stiffness::spring_k), mean(&Stiffness::kelvin_k), mean(&Stiffness::kelvin_c),
-            mean(&Stiffness::constraint_k)};
+            mean(&Stiffness::constraint_k), mean(&Stiffness::rest_part)};
   }
 
   /// Of a spring of which two in series are as stiff as one slow triple.
@@ -185,8 +188,10 @@ class LineTiler {
   }
 
   void tile_springs(const std::vector<std::int32_t>& run, double rest_length) {
-    for (std::size_t i = 0; i + 1 < run.size(); ++i)
-      add_edge(run[i], run[i + 1], -1, rest_length, single_spring(mean_over(run, i, 2)), 0);
+    for (std::size_t i = 0; i + 1 < run.size(); ++i) {
+      const Stiffness s = mean_over(run, i, 2);
+      add_edge(run[i], run[i + 1], -1, s.rest_part * rest_length, single_spring(s), 0);
+    }
   }
 
   /// Triples A-B-C, C-B-A, A-B-C ... that share ends; where two share C, the five spheres carry a constraint.
@@ -197,12 +202,13 @@ class LineTiler {
       const bool starts_at_a = t % 2 == 0;
       const std::int32_t line_number = next_line_number_;
       const Stiffness s = mean_over(run, 2 * t, 3);
+      const double length = s.rest_part * rest_length;
       if (starts_at_a) {
-        add_edge(p, q, r, rest_length, s.spring_k, 0);
-        add_edge(q, r, p, rest_length, s.kelvin_k, s.kelvin_c);
+        add_edge(p, q, r, length, s.spring_k, 0);
+        add_edge(q, r, p, length, s.kelvin_k, s.kelvin_c);
       } else {
-        add_edge(p, q, r, rest_length, s.kelvin_k, s.kelvin_c);
-        add_edge(q, r, p, rest_length, s.spring_k, 0);
+        add_edge(p, q, r, length, s.kelvin_k, s.kelvin_c);
+        add_edge(q, r, p, length, s.spring_k, 0);
         constraints_.push_back({run[2 * t - 2],
                                 p,
                                 r,
@@ -218,7 +224,8 @@ class LineTiler {
   }
 
   void add_tpm(const std::vector<std::int32_t>& run, std::size_t first, double rest_length) {
-    tpms_.push_back({run[first], run[first + 1], rest_length, mean_over(run, first, 2)});
+    const Stiffness s = mean_over(run, first, 2);
+    tpms_.push_back({run[first], run[first + 1], s.rest_part * rest_length, s});
   }
 
   /// Moves one direction's elements into the Model, sorted by their first sphere: along a lattice row both

@@ -36,6 +36,8 @@ struct Material {
   double stiffness_scale = 1;      ///< multiplies every stiffness and damping, > 0
   double calibration_area = 0;     ///< S0 = pi R^2 of the ball the moduli were calibrated with [m^2], > 0
   double calibration_spacing = 0;  ///< spacing of that site [m], > 0
+  double prestrain = 0;            ///< of the tissue in the body: an element at rest is shorter by this part of
+                                   ///< its length in the lattice, in [0, 0.5]; what makes a cut gape
   double fracture_toughness = 0;   ///< J_c: energy that opens a unit of area [J/m^2], >= 0
   double blade_friction = 0;       ///< shear stress on each flank of a blade that moves [Pa], >= 0
 };
@@ -50,7 +52,7 @@ struct LayerMaterial {
 ///
 /// Layers: a sphere belongs to the first layer whose `to_depth` is more than its own depth, and to `material`
 /// if there is none. Its mass is that of its material. An element takes each of its stiffness and damping
-/// values as the mean over its spheres' materials: the two ends of a spring or two-sphere TPM, the three
+/// values, prestrain too, as the mean over its spheres' materials: the two ends of a spring or two-sphere TPM, the three
 /// spheres of a triple or angle spring (so both elements of a triple have the K1, K2, v1 of one place), and
 /// for K' - P2 the five of a constraint's line.
 struct OrganSettings {

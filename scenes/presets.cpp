@@ -80,6 +80,7 @@ ResolvedMaterial resolve_material(const MaterialSpec& spec) {
   take(spec.calibration_spacing, m.calibration_spacing, "calibration_spacing_mm");
   m.density = spec.density.value_or(m.density);
   m.stiffness_scale = spec.stiffness_scale.value_or(m.stiffness_scale);
+  m.prestrain = spec.prestrain.value_or(m.prestrain);
   m.fracture_toughness = spec.fracture_toughness.value_or(m.fracture_toughness);
   m.blade_friction = spec.blade_friction.value_or(m.blade_friction);
   return resolved;

@@ -109,6 +109,11 @@ void describe_fields(V& v, MaterialSpec& material) {
   v.number(Key{"calibration_spacing_mm", "Spacing of the spheres that the moduli belong to.", false,
                "the preset's"},
            material.calibration_spacing, units::millimetre, within(0.01, 1000));
+  v.number(Key{"prestrain",
+               "Strain of the tissue in the body: elements without force are shorter by this part; a capsule that "
+               "has more than what it covers makes a cut gape.",
+               false, "0"},
+           material.prestrain, units::none, within(0, 0.5));
   v.number(Key{"fracture_toughness_j_per_m2",
                "Energy J_c with which a blade opens a unit of area; 0: it cuts without resistance.", false,
                "the preset's, else 0"},

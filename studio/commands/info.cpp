@@ -6,6 +6,7 @@
 #include "studio/commands/command.h"
 #include "studio/console.h"
 #include "studio/json_writer.h"
+#include "studio/session/run_session.h"
 
 namespace ctpm {
 namespace {
@@ -46,6 +47,15 @@ const char* kind_name(EventKind kind) {
   return "unknown";
 }
 
+/// Pieces of tissue that came loose in the whole session.
+std::int64_t pieces_in(const std::vector<Event>& events) {
+  double pieces = 0;
+  for (const Event& event : events)
+    if (event.kind == EventKind::cut && event.text == piece_came_loose && !event.values.empty())
+      pieces += event.values[0];
+  return std::int64_t(pieces);
+}
+
 void print_json(SessionReader& reader, const SessionStatistics& s, const std::vector<Event>& events) {
   const Model& model = reader.start().model;
   JsonWriter json;
@@ -59,7 +69,8 @@ void print_json(SessionReader& reader, const SessionStatistics& s, const std::ve
   json.member("duration_s", double(reader.tick_count()) * model.tick).member("spheres", model.sphere_count());
   json.member("elements", model.element_count())
       .member("keyframes", s.keyframes)
-      .member("severed", s.severed);
+      .member("severed", s.severed)
+      .member("pieces_came_loose", pieces_in(events));
   json.member("late_ticks", s.late_ticks)
       .member("tick_time_p50_s", s.tick_time_p50)
       .member("tick_time_p99_s", s.tick_time_p99);
@@ -128,8 +139,8 @@ void print_text(SessionReader& reader, const SessionStatistics& s, const std::ve
     std::printf("input age  p50 %.3f ms, p99 %.3f ms, max %.3f ms\n", s.input_age_p50 * 1e3, s.input_age_p99 * 1e3,
                 s.input_age_max * 1e3);
   for (const auto& [name, value] : s.values) std::printf("value      %s = %g\n", name.c_str(), value);
-  std::printf("at most    %.3f N, %.2f mm deep; %lld elements severed\n", s.max_force, s.max_depth * 1e3,
-              (long long)s.severed);
+  std::printf("at most    %.3f N, %.2f mm deep; %lld elements severed, %lld pieces came loose\n", s.max_force, s.max_depth * 1e3,
+              (long long)s.severed, (long long)pieces_in(events));
   print_events(events, model.tick);
 }
 

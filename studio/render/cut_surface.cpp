@@ -67,6 +67,7 @@ struct CutSurface::Parts {
   bool are_parted(Index u, Index v);
   Index middle(Index u, Index v);
   double where_parted(Index u, Index v);
+  Index end_of_cut(Index a, Index b, Index c);
   void split_triangle(const Triangle& t);
   void find_corners();
   Corner make_corner(Cell cube) const;
@@ -251,6 +252,26 @@ Index CutSurface::Parts::middle(Index u, Index v) {
   return middles[{u, v}];
 }
 
+/// Where a cut that enters the triangle a b c between a and b ends: inside, where the blade passed. What c sees
+/// belongs to both banks.
+Index CutSurface::Parts::end_of_cut(Index a, Index b, Index c) {
+  constexpr double kInto = 0.45, kInside = 0.03;  // towards c; least weight of a corner
+  const Index low = std::min(a, b), high = std::max(a, b);
+  double along = where_parted(low, high);
+  if (low != a) along = 1 - along;
+  const Vec3 pa = out.vertex[std::size_t(a)], pb = out.vertex[std::size_t(b)], pc = out.vertex[std::size_t(c)];
+  double weight_a = (1 - kInto) * (1 - along), weight_b = (1 - kInto) * along;
+  const Vec3 straight = weight_a * pa + weight_b * pb + kInto * pc;
+  const std::optional<Plane> cut =
+      fit_plane(crossings_around(home[std::size_t(a)]), straight, kPlaneReach * links.spacing());
+  if (cut && cut->height(pa) != cut->height(pb)) {
+    const double shift = cut->height(straight) / (cut->height(pa) - cut->height(pb));
+    const double kept = std::clamp(shift, std::min(0.0, kInside - weight_b), std::max(0.0, weight_a - kInside));
+    weight_a -= kept, weight_b += kept;
+  }
+  return add_vertex(weight_a * pa + weight_b * pb + kInto * pc, home[std::size_t(c)]);
+}
+
 /// Emits what the cut leaves of one triangle; the pieces keep its orientation.
 void CutSurface::Parts::split_triangle(const Triangle& t) {
   const auto emit = [&](Index a, Index b, Index c) { out.triangle.push_back({a, b, c}); };
@@ -274,10 +295,9 @@ void CutSurface::Parts::split_triangle(const Triangle& t) {
   for (std::size_t i = 0; i < 3; ++i) {
     const Index a = t[i], b = t[(i + 1) % 3], c = t[(i + 2) % 3];
     if (count == 1 && parted[i]) {
-      // The cut ends at c, which belongs to both banks.
-      const Index at_a = middle(a, b), at_b = middle(b, a);
-      emit(a, at_a, c), emit(at_b, b, c);
-      lips.push_back({at_a, c}), lips.push_back({c, at_b});
+      const Index at_a = middle(a, b), at_b = middle(b, a), tip = end_of_cut(a, b, c);
+      emit(a, at_a, tip), emit(at_b, b, tip), emit(b, c, tip), emit(c, a, tip);
+      lips.push_back({at_a, tip}), lips.push_back({tip, at_b});
     }
     if (count == 2 && !parted[(i + 1) % 3]) {
       // a is alone on its bank.

@@ -35,6 +35,8 @@ class EventWatch {
     if (begins(cut_, tick, report.severed > 0))
       writer_.event(tick, EventKind::cut, "blade begins to sever; value: elements", {double(report.severed)});
     ends(cut_, tick);
+    if (report.came_loose > 0)
+      writer_.event(tick, EventKind::cut, piece_came_loose, {double(report.came_loose)});
     if (begins(too_deep_, tick, most_depth_ > 0 && report.depth > most_depth_))
       writer_.event(tick, EventKind::damage, "depth passes the damage limit; values: depth and limit in m",
                     {report.depth, most_depth_});

@@ -11,6 +11,9 @@
 
 namespace ctpm {
 
+/// Text of the event (of kind `cut`) that notes pieces of tissue which came loose; its value is how many.
+inline constexpr const char* piece_came_loose = "a piece comes loose; value: pieces";
+
 struct RunOptions {
   bool in_real_time =
       true;  ///< ticks start on absolute deadlines of the wall clock; else one after the other

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <filesystem>
 
+#include "core/step.h"
 #include "studio/render/cut_surface.h"
 #include "studio/render/open_edges.h"
 #include "tests/studio/render_scene.h"
@@ -272,6 +274,87 @@ TEST(CutPicture, OpensShowsItsWallAndNoBackground) {
     EXPECT_EQ(green(before), 0);
     EXPECT_GT(green(after), 300);
     EXPECT_EQ(holes(after, backdrop), 0);
+  }
+}
+
+/// The blob with a capsule under tension, held below, and a blade on its way through the top of it: the states at
+/// two fifths, seven tenths and the whole of the way, and half a second later.
+struct Stages {
+  std::unique_ptr<TestScene> scene;
+  std::vector<State> states;
+};
+
+Stages cut_in_stages() {
+  Stages stages;
+  const FilledOrgan organ = fill(blob, star_surface(blob, 60), 0.002);
+  OrganSettings settings;
+  settings.name = "liver";
+  settings.material = {15e6, 15e6, 20e6, 5e6, 1060, 1, std::numbers::pi * 4e-6, 0.012};
+  settings.material.fracture_toughness = 164, settings.material.blade_friction = 2000;
+  settings.layers = {{0.005, settings.material}};
+  settings.layers[0].material.prestrain = 0.25;
+  for (std::size_t i = 0; i < organ.centre.size(); ++i)
+    if (organ.centre[i].z < -0.016) settings.anchored.push_back(std::int32_t(i));
+  stages.scene = std::make_unique<TestScene>();
+  Model& model = stages.scene->model;
+  EXPECT_TRUE(add_organ(model, organ, settings));
+  model.gravity = {0, 0, -9.81}, model.tools = {{"scalpel", ToolKind::scalpel, 0, 0.05}};
+  stages.scene->view.model = &model, stages.scene->view.surfaces = {organ.surface};
+  stages.scene->view.looks = {look_of("liver")};
+  Stepper stepper(model);
+  State state = rest_state(model);
+  (void)stepper.settle(state, 500);
+  const Vec3 from{0.001, -0.055, 0.006}, to{0.001, 0.025, 0.006};
+  constexpr int kTicks = 800;
+  for (int i = 0; i <= kTicks + 500; ++i) {
+    Inputs inputs;
+    if (i <= kTicks) {
+      inputs.tool = 0, inputs.position = from + double(i) / kTicks * (to - from);
+      inputs.world_from_tool = {std::sqrt(0.5), 0, 0, std::sqrt(0.5)};  // faces along y
+    }
+    EXPECT_EQ(stepper.step(state, inputs).status, StepStatus::ok);
+    if (i == kTicks * 2 / 5 || i == kTicks * 7 / 10 || i == kTicks || i == kTicks + 500)
+      stages.states.push_back(state);
+  }
+  return stages;
+}
+
+/// How far the outermost spheres across the cut are apart, at most, beyond their distance at rest [m].
+double gape(const Model& model, const State& state) {
+  double most = 0;
+  for (std::size_t e = 0; e < model.edges.size(); ++e) {
+    const auto a = std::size_t(model.edges.a[e]), b = std::size_t(model.edges.b[e]);
+    if (state.edge_severed[e] && model.layer[a] == 1 && model.layer[b] == 1)
+      most = std::max(most, norm(state.position[a] - state.position[b]) -
+                                norm(model.rest_position[a] - model.rest_position[b]));
+  }
+  return most;
+}
+
+TEST(CutPicture, FourStagesOfACutFromTwoCameras) {
+  const Stages stages = cut_in_stages();
+  const Model& model = stages.scene->model;
+  ASSERT_EQ(stages.states.size(), 4u);
+  EXPECT_GT(gape(model, stages.states[3]), 0.002) << "the lips gape";
+  const std::filesystem::path folder = "cut_stages";
+  std::filesystem::create_directories(folder);
+  auto made = Renderer::create(640, 400, stages.scene->view);
+  ASSERT_TRUE(made);
+  const std::pair<const char*, Vec3> cameras[] = {{"above", {0.25, 0.6, -1}}, {"along", {-0.1, 1, -0.45}}};
+  for (const auto& [name, direction] : cameras) {
+    DrawOptions options;
+    options.camera = fit_camera(rest_bounds(stages.scene->view), direction, {0, 0, 1});
+    options.show_tool = false, options.show_ground = false;
+    DrawOptions away = options;
+    away.camera.target = options.camera.eye + (options.camera.eye - options.camera.target);
+    const Frame backdrop = (*made)->draw(stages.states[0], away);
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_EQ(holes((*made)->draw(stages.states[i], options), backdrop), 0) << name << ", stage " << i + 1;
+      DrawOptions shown = options;
+      shown.show_tool = shown.show_ground = true;
+      const std::string file = "stage_" + std::to_string(i + 1) + "_" + name + ".png";
+      EXPECT_TRUE(write_png((folder / file).string(), (*made)->draw(stages.states[i], shown)));
+    }
   }
 }
 

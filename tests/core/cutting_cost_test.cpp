@@ -1,0 +1,76 @@
+// Cutting costs nothing in scenes without a blade, and ticks never allocate.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "core/step.h"
+#include "tests/core/blocks.h"
+
+namespace {
+std::size_t allocations = 0;
+}
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace ctpm {
+namespace {
+
+std::size_t allocations_of_ticks(const Model& model, const std::vector<Inputs>& inputs) {
+  Stepper stepper(model);
+  State state = rest_state(model);
+  (void)stepper.step(state, inputs[0]);  // scratch that is as large as State takes its room here
+  const std::size_t before = allocations;
+  for (const Inputs& each : inputs) (void)stepper.step(state, each);
+  return allocations - before;
+}
+
+std::vector<Inputs> way_through(Vec3 from, Vec3 to) {
+  std::vector<Inputs> inputs(100);
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    inputs[i].tool = 0, inputs[i].position = from + double(i) / 99 * (to - from);
+  return inputs;
+}
+
+TEST(CuttingCost, WithoutABladeNothingIsKeptForOne) {
+  Model model = testing::make_block_model(5, 5, 4);
+  model.tools = {testing::ball(0.006)};
+  const State state = rest_state(model);
+  EXPECT_TRUE(state.edge_severed.empty() && state.tpm_severed.empty() && state.constraint_severed.empty() &&
+              state.angle_severed.empty() && state.edge_crossing.empty() && state.tpm_crossing.empty() &&
+              state.blade_trail.x.empty());
+  EXPECT_FALSE(model.cut_resistance.any()) << "the tissue has no toughness";
+  const std::size_t before = allocations;
+  { const Stepper stepper(model); }
+  const std::size_t without = allocations - before;
+  // The same network with a blade needs more room, so the comparison can fail.
+  model.tools = {testing::scalpel(0.1)};
+  Material tough = testing::liver_material();
+  tough.fracture_toughness = 100;
+  Model blade = testing::make_block_model(5, 5, 4, Structure::ctpm, tough);
+  blade.tools = model.tools;
+  const std::size_t before_blade = allocations;
+  { const Stepper stepper(blade); }
+  EXPECT_GT(allocations - before_blade, without);
+}
+
+TEST(CuttingCost, TicksDoNotAllocateNotEvenWhileTheyCut) {
+  Material tough = testing::liver_material();
+  tough.fracture_toughness = 100, tough.blade_friction = 1000;
+  Model model = testing::make_block_model(6, 5, 4, Structure::ctpm, tough);
+  model.tools = {testing::scalpel(0.1)};
+  model.lip_k = model.edges.k[0];
+  EXPECT_EQ(allocations_of_ticks(model, way_through({0.0002, -0.05, -0.03}, {0.0002, 0.05, -0.03})), 0u);
+  model.tools = {testing::ball(0.006)}, model.cut_resistance = {}, model.lip_k = 0;
+  EXPECT_EQ(allocations_of_ticks(model, way_through({0, 0, 0.05}, {0, 0, 0.03})), 0u);
+}
+
+}  // namespace
+}  // namespace ctpm
