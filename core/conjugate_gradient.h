@@ -14,7 +14,9 @@ namespace ctpm {
 
 /// When a solve may stop. Norms are of the preconditioned residual, whose square is an energy.
 struct CgLimits {
-  double relative = 1e-4;  ///< residual against that of the first guess
+  double relative = 1e-4;  ///< residual against that of the first guess, or against the root of the first guess's
+                           ///< kinetic energy x M x where that is less: dashpots that are far stiffer than the mass make
+                           ///< the first residual so large that soft motions would be left unsolved
   double absolute = 0;     ///< residual that counts as solved anyway
   std::int32_t max_iterations = 200;
 };
@@ -75,12 +77,18 @@ CgOutcome ConjugateGradient::solve(const Coordinates& b, Coordinates& x, const C
                    [&](int slab) { part(std::size_t(slabs_.begin(slab)), std::size_t(slabs_.end(slab))); });
   };
   for_each_slab([&](std::size_t begin, std::size_t end) { kernels_.multiply_mass(m, x.data(), begin, end); });
+  const double kinetic = sum_over_slabs([&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t i = axis * m.spheres + begin; i < axis * m.spheres + end; ++i) sum += x[i] * product_[i];
+    return sum;
+  });
   add_coupling(x.data(), m.product);
   double energy = sum_over_slabs(
       [&](std::size_t begin, std::size_t end) { return kernels_.begin_solve(m, b.data(), begin, end); });
   const double first_energy = energy;
   const double enough =
-      std::max(first_energy * limits.relative * limits.relative, limits.absolute * limits.absolute);
+      std::max(std::min(first_energy, kinetic) * limits.relative * limits.relative, limits.absolute * limits.absolute);
 
   CgOutcome outcome;
   double turn = 0;

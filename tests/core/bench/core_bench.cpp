@@ -1,0 +1,117 @@
+// What a tick costs: forces and ticks of cubic blocks of liver, beside a loop that only streams the same bytes.
+//   ctpm_core_bench                 all of it
+//   ctpm_core_bench --benchmark_filter=Forces
+// "per_spring" is time by axial elements; compare within one run, since machines and their load differ.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/elements.h"
+#include "core/fields.h"
+#include "core/step.h"
+#include "tests/core/blocks.h"
+
+namespace ctpm {
+namespace {
+
+/// Edge of a block of about `spheres` spheres.
+int edge_of(std::int64_t spheres) { return int(std::lround(std::cbrt(double(spheres)))); }
+
+Model make_model(std::int64_t spheres, Structure structure, double viscosity) {
+  Material material = testing::liver_material();
+  material.viscosity = viscosity, material.stiffness_scale = 0.29;
+  const int n = edge_of(spheres);
+  Model model = testing::make_block_model(n, n, n, structure, material);
+  model.tools = {testing::ball(0.006)};
+  return model;
+}
+
+std::size_t axial_count(const Model& model) { return model.edges.size() + model.tpms.size(); }
+
+void report(benchmark::State& run, const Model& model) {
+  run.counters["spheres"] = double(model.sphere_count());
+  run.counters["per_spring"] = benchmark::Counter(double(axial_count(model)),
+                                                     benchmark::Counter::kIsIterationInvariantRate |
+                                                         benchmark::Counter::kInvert);
+}
+
+void forces(benchmark::State& run, Structure structure, double viscosity) {
+  const Model model = make_model(run.range(0), structure, viscosity);
+  Team team(int(run.range(1)));
+  Elements elements(model, team);
+  State state = rest_state(model);
+  testing::shake(state, 1e-4, 1e-3);
+  Coordinates force(3 * model.sphere_count());
+  for (auto _ : run) elements.add_forces(state, force), benchmark::DoNotOptimize(force.data());
+  report(run, model);
+}
+
+/// Reads and writes what a force evaluation must at the least: positions, velocities and forces once.
+void streaming(benchmark::State& run) {
+  const Model model = make_model(run.range(0), Structure::mass_spring, 0);
+  const std::size_t n = 3 * model.sphere_count();
+  std::vector<double> position(n, 1), velocity(n, 2), force(n);
+  for (auto _ : run) {
+    for (std::size_t i = 0; i < n; ++i) force[i] += position[i] + velocity[i];
+    benchmark::DoNotOptimize(force.data());
+    benchmark::ClobberMemory();
+  }
+  report(run, model);
+}
+
+/// A ball presses at 20 mm/s; percentiles of the tick, and what its solves took.
+void ticks(benchmark::State& run, double viscosity, double velocity_floor) {
+  Model model = make_model(run.range(0), Structure::ctpm, viscosity);
+  model.solver.velocity_floor = velocity_floor;
+  const double top = 0.012 * (edge_of(run.range(0)) - 1) + 0.006 + 0.006;
+  Stepper stepper(model, {.threads = int(run.range(1))});
+  State state = rest_state(model);
+  std::vector<double> times;
+  double iterations = 0;
+  for (auto _ : run) {
+    Inputs inputs;
+    inputs.tool = 0;
+    inputs.position = {0.001, 0.002, top - 2e-5 * double(state.tick)};
+    const auto start = std::chrono::steady_clock::now();
+    iterations += stepper.step(state, inputs).iterations;
+    times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  std::sort(times.begin(), times.end());
+  const auto percentile = [&](double p) { return 1e3 * times[std::size_t(p * double(times.size() - 1))]; };
+  run.counters["p50_ms"] = percentile(0.5), run.counters["p99_ms"] = percentile(0.99);
+  run.counters["iterations"] = iterations / double(times.size());
+  run.SetLabel(name_of(stepper.integrator().integrator));
+  report(run, model);
+}
+
+/// Bytes of Model and State of a sphere, with all features of the tissue and without.
+void memory(benchmark::State& run, Structure structure, double viscosity) {
+  const Model model = make_model(run.range(0), structure, viscosity);
+  const State state = rest_state(model);
+  double bytes = 0;
+  const auto count = [&](std::string_view, const auto& member) {
+    if constexpr (requires { member.data(); }) bytes += double(member.size() * sizeof(*member.data()));
+  };
+  for (auto _ : run) bytes = 0, for_each_field(model, count), for_each_field(state, count);
+  run.counters["bytes_per_sphere"] = bytes / double(model.sphere_count());
+}
+
+constexpr double kPascal = 5e3, kKilopascal = 5e6;  // v1 of the liver in both readings [Pa s/m]
+
+BENCHMARK(streaming)->Arg(1000)->Arg(10000)->Arg(100000);
+BENCHMARK_CAPTURE(forces, springs, Structure::mass_spring, 0.0)->ArgsProduct({{1000, 10000, 100000}, {1, 2}})->UseRealTime();
+BENCHMARK_CAPTURE(forces, two_sphere_tpms, Structure::tpm, kPascal)->ArgsProduct({{1000, 10000, 100000}, {1, 2}})->UseRealTime();
+BENCHMARK_CAPTURE(forces, ctpm, Structure::ctpm, kPascal)->ArgsProduct({{1000, 10000, 100000}, {1, 2}})->UseRealTime();
+BENCHMARK_CAPTURE(ticks, stiff_liver, kKilopascal, 1e-6)->ArgsProduct({{729, 4913}, {1, 2}})->Iterations(500)->UseRealTime();
+BENCHMARK_CAPTURE(ticks, stiff_liver_solved_tightly, kKilopascal, 1e-9)->ArgsProduct({{729, 4913}, {1, 2}})->Iterations(500)->UseRealTime();
+BENCHMARK_CAPTURE(ticks, liver_not_stiff, kPascal, 1e-6)->ArgsProduct({{4913, 29791}, {1, 2}})->Iterations(500)->UseRealTime();
+BENCHMARK_CAPTURE(memory, springs, Structure::mass_spring, 0.0)->Arg(5000);
+BENCHMARK_CAPTURE(memory, ctpm, Structure::ctpm, kKilopascal)->Arg(5000);
+
+}  // namespace
+}  // namespace ctpm
+
+BENCHMARK_MAIN();
