@@ -110,6 +110,33 @@ struct Line {
   State state;
 };
 
+TEST(TwoSphereTpm, ForcesAreTheGradientOfTheSeriesSpringWhileTheKelvinUnitRests) {
+  const Model model = make_block_model(3, 3, 3, Structure::tpm);
+  State state = rest_state(model);
+  shake(state, 0.001);
+  testing::Noise noise;
+  for (double& elongation : state.kelvin_elongation) elongation = 5e-4 * noise.next();
+  const auto energy = [&](const State& at) {
+    const TwoSphereTpms& tpms = model.tpms;
+    double sum = 0;
+    for (std::size_t t = 0; t < tpms.size(); ++t) {
+      const double length = norm(at.position[std::size_t(tpms.b[t])] - at.position[std::size_t(tpms.a[t])]);
+      const double x = length - tpms.rest_length[t] - at.kelvin_elongation[t];
+      sum += 0.5 * tpms.spring_k[t] * x * x;
+    }
+    return sum;
+  };
+  const Vec3Array force = internal_forces(model, state);
+  constexpr double kStep = 1e-7;
+  for (std::size_t i = 0; i < model.sphere_count(); ++i)
+    for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
+      State plus = state, minus = state;
+      plus.position.add(i, kStep * axis), minus.position.add(i, -kStep * axis);
+      const double gradient = (energy(plus) - energy(minus)) / (2 * kStep);
+      EXPECT_NEAR(dot(force[i], axis), -gradient, 1e-6) << "sphere " << i;
+    }
+}
+
 TEST(Constraint, ForceOnCIsEquation2Over8) {
   for (const double tilt : {0.001, 0.004, 0.012, 0.024}) {
     Line line(tilt);
