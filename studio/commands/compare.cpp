@@ -19,9 +19,6 @@ struct CompareArguments {
 int run_compare(const CompareArguments& arguments) {
   if (arguments.has_force_limit && !(arguments.force_limit_n > 0))
     return print_errors({{"--force-limit", "must be above 0 N", ""}});
-  if (!arguments.folder.empty())
-    if (const Result<Done> ready = prepare_folder(arguments.folder); !ready)
-      return print_errors(ready.errors());
   Result<SessionReader> expert = SessionReader::open(arguments.expert);
   Result<SessionReader> trainee = SessionReader::open(arguments.trainee);
   Errors errors;
@@ -35,6 +32,10 @@ int run_compare(const CompareArguments& arguments) {
   for (const auto* track : {&expert_track, &trainee_track})
     if (!*track) errors.insert(errors.end(), track->errors().begin(), track->errors().end());
   if (!errors.empty()) return print_errors(errors);
+  // Only now, so that sessions that are refused leave no folder behind.
+  if (!arguments.folder.empty())
+    if (const Result<Done> ready = prepare_folder(arguments.folder); !ready)
+      return print_errors(ready.errors());
 
   CompareOptions options;
   if (arguments.has_force_limit) options.force_limit = arguments.force_limit_n;
