@@ -54,7 +54,12 @@ BladeForce::Element BladeForce::element(std::size_t index) const {
           cut.tpm_energy[t], cut.tpm_friction[t]};
 }
 
-void BladeForce::find(const State& state, const BladeMotion& motion, PairContacts& contacts) const {
+Box BladeForce::around(const BladeMotion& motion) const {
+  return Box(motion.from.tip, motion.from.heel, motion.to.tip, motion.to.heel).grown(reach_);
+}
+
+void BladeForce::find(const State& state, const NearElements& near, const BladeMotion& motion,
+                      PairContacts& contacts) const {
   const Vec3 tip = motion.to.tip, heel = motion.to.heel, ht = unit(motion.heading_tip),
              hh = unit(motion.heading_heel);
   const double certainty = std::max(norm(motion.heading_tip), norm(motion.heading_heel));
@@ -62,8 +67,9 @@ void BladeForce::find(const State& state, const BladeMotion& motion, PairContact
   const Vec3 tip_ahead = tip + reach_ * ht, heel_ahead = heel + reach_ * hh, tip_behind = tip - reach_ * ht,
              heel_behind = heel - reach_ * hh;
   const Box ahead(tip, heel, tip_ahead, heel_ahead), behind(tip, heel, tip_behind, heel_behind);
-  const std::size_t edges = model_.edges.size(), elements = edges + model_.tpms.size();
-  for (std::size_t i = 0; i < elements; ++i) {
+  const std::size_t edges = model_.edges.size();
+  for (const std::int32_t index : near.elements()) {
+    const auto i = std::size_t(index);
     const bool severed = i < edges ? state.edge_severed[i] != 0 : state.tpm_severed[i - edges] != 0;
     const Element e = element(i);
     const Vec3 p = state.position[e.a], q = state.position[e.b];

@@ -33,8 +33,12 @@ class BladeForce {
   /// Most contacts that the functions below add in one substep.
   std::size_t most() const { return any() ? 2 * (model_.edges.size() + model_.tpms.size()) : 0; }
 
-  /// Adds what the blade, at the end of its motion, meets in `state`: elements ahead, lips on its flanks.
-  void find(const State& state, const BladeMotion& motion, PairContacts& contacts) const;
+  /// Where find() looks, at the most.
+  Box around(const BladeMotion& motion) const;
+
+  /// Adds what the blade, at the end of its motion, meets in `state`, of the elements that are `near`: those ahead, and
+  /// lips on its flanks.
+  void find(const State& state, const NearElements& near, const BladeMotion& motion, PairContacts& contacts) const;
 
   /// Adds the elements that were severed within the tick before they could resist to the end: their remaining
   /// energy over the blade's way in the tick.

@@ -7,25 +7,30 @@
 namespace ctpm {
 namespace {
 
-/// Severs the live elements that `meet(a, b)` says are crossed, then the constraints and angle springs that
-/// lost an edge.
+/// Severs the live elements, of those that are `near`, that `meet(a, b)` says are crossed, then the
+/// constraints and angle springs that lost an edge.
 template <class Meet>
-std::int32_t sever(const Model& model, State& state, std::vector<Crossing>& crossings, Meet&& meet) {
+std::int32_t sever(const Model& model, const NearElements& near, State& state,
+                   std::vector<Crossing>& crossings, Meet&& meet) {
   std::int32_t count = 0;
-  const auto sever_axial = [&](const auto& elements, std::size_t first, std::vector<std::uint8_t>& severed,
-                               std::vector<std::uint8_t>& crossing) {
-    for (std::size_t i = 0; i < elements.size(); ++i) {
-      if (severed[i]) continue;
-      std::optional<Crossing> crossed = meet(std::size_t(elements.a[i]), std::size_t(elements.b[i]));
-      if (!crossed) continue;
-      severed[i] = 1, ++count;
-      if (!crossing.empty()) crossing[i] = stored_crossing(crossed->along);
-      crossed->element = std::int32_t(first + i);
-      crossings.push_back(*crossed);
-    }
+  const auto sever_axial = [&](const auto& elements, std::size_t i, std::int32_t element,
+                               std::vector<std::uint8_t>& severed, std::vector<std::uint8_t>& crossing) {
+    if (severed[i]) return;
+    std::optional<Crossing> crossed = meet(std::size_t(elements.a[i]), std::size_t(elements.b[i]));
+    if (!crossed) return;
+    severed[i] = 1, ++count;
+    if (!crossing.empty()) crossing[i] = stored_crossing(crossed->along);
+    crossed->element = element;
+    crossings.push_back(*crossed);
   };
-  sever_axial(model.edges, 0, state.edge_severed, state.edge_crossing);
-  sever_axial(model.tpms, model.edges.size(), state.tpm_severed, state.tpm_crossing);
+  const std::size_t edges = model.edges.size();
+  for (const std::int32_t element : near.elements()) {
+    const auto i = std::size_t(element);
+    if (i < edges)
+      sever_axial(model.edges, i, element, state.edge_severed, state.edge_crossing);
+    else
+      sever_axial(model.tpms, i - edges, element, state.tpm_severed, state.tpm_crossing);
+  }
   if (count == 0) return 0;
   const auto sever_lines = [&](const auto& lines, std::vector<std::uint8_t>& severed) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -53,11 +58,11 @@ std::uint8_t stored_crossing(double along) {
 
 double crossing_of(std::uint8_t stored) { return stored == 0 ? 0.5 : (stored - 1) * kCrossingUnit; }
 
-std::int32_t sever_swept_by_blade(const Model& model, const BladeEdge& before, const BladeEdge& after,
-                                  const Vec3Array& position, State& state,
+std::int32_t sever_swept_by_blade(const Model& model, const NearElements& near, const BladeEdge& before,
+                                  const BladeEdge& after, const Vec3Array& position, State& state,
                                   std::vector<Crossing>& crossings) {
   const Box sweep(before.tip, before.heel, after.tip, after.heel);
-  return sever(model, state, crossings, [&](std::size_t a, std::size_t b) -> std::optional<Crossing> {
+  return sever(model, near, state, crossings, [&](std::size_t a, std::size_t b) -> std::optional<Crossing> {
     const Vec3 p = position[a], q = position[b];
     if (!sweep.meets(Box(p, q))) return std::nullopt;
     const auto hit = meet_sweep(p, q, before.tip, before.heel, after.tip, after.heel);
@@ -66,10 +71,11 @@ std::int32_t sever_swept_by_blade(const Model& model, const BladeEdge& before, c
   });
 }
 
-std::int32_t sever_moved_through_blade(const Model& model, const BladeEdge& blade, const Vec3Array& from,
-                                       const Vec3Array& to, State& state, std::vector<Crossing>& crossings) {
+std::int32_t sever_moved_through_blade(const Model& model, const NearElements& near, const BladeEdge& blade,
+                                       const Vec3Array& from, const Vec3Array& to, State& state,
+                                       std::vector<Crossing>& crossings) {
   const Box edge(blade.tip, blade.heel);
-  return sever(model, state, crossings, [&](std::size_t a, std::size_t b) -> std::optional<Crossing> {
+  return sever(model, near, state, crossings, [&](std::size_t a, std::size_t b) -> std::optional<Crossing> {
     if (!edge.meets(Box(from[a], from[b], to[a], to[b]))) return std::nullopt;
     const auto hit = meet_sweep(blade.tip, blade.heel, from[a], from[b], to[a], to[b]);
     if (!hit) return std::nullopt;

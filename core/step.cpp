@@ -13,6 +13,7 @@
 #include "core/cutting.h"
 #include "core/elements.h"
 #include "core/lips.h"
+#include "core/near_elements.h"
 #include "core/outside.h"
 #include "core/pair_contact.h"
 #include "core/pieces.h"
@@ -71,7 +72,7 @@ struct Stepper::Workspace {
         pieces(m),
         held_axes(m.held_axes),
         velocity(3 * m.sphere_count()) {
-    if (has_scalpel(m)) crossings.reserve(m.edges.size() + m.tpms.size()), pieces.reserve();
+    if (has_scalpel(m)) near.emplace(m), crossings.reserve(m.edges.size() + m.tpms.size()), pieces.reserve();
     if (choice.integrator == Integrator::symplectic_euler)
       explicit_solver.emplace(m, elements.slabs(), team);
     else
@@ -97,6 +98,7 @@ struct Stepper::Workspace {
   LipContact lips;
   PairContacts pairs;  ///< of the blade and of the lips of cuts
   Pieces pieces;
+  std::optional<NearElements> near;  ///< the blade, if the Model has one
   std::vector<Crossing> crossings;  ///< elements severed in this tick
   std::optional<SymplecticEuler> explicit_solver;
   std::optional<BackwardEuler> implicit_solver;
@@ -161,8 +163,9 @@ void Stepper::Workspace::sweep(State& state, const Inputs& last, const Inputs& i
       state.blade_trail.set(0, grip.blade.to.tip), state.blade_trail.set(1, grip.blade.to.heel);
     tow(state.blade_trail, grip.blade);
   }
+  near->find(state.position, blade.around(grip.blade));
   report.severed =
-      sever_swept_by_blade(model, grip.blade.from, grip.blade.to, state.position, state, crossings);
+      sever_swept_by_blade(model, *near, grip.blade.from, grip.blade.to, state.position, state, crossings);
   grip.swept = crossings.size();
 }
 
@@ -170,7 +173,8 @@ void Stepper::Workspace::sweep(State& state, const Inputs& last, const Inputs& i
 void Stepper::Workspace::find_pairs(const State& state, const Grip& grip) {
   pairs.clear();
   if (grip.is(ToolKind::scalpel) && blade.any()) {
-    blade.find(state, grip.blade, pairs);
+    near->follow(state.position);
+    blade.find(state, *near, grip.blade, pairs);
     blade.add_severed(state, grip.blade, std::span(crossings).first(grip.swept), pairs);
   }
   if (lips.is_wanted()) lips.find(state, pairs);
@@ -271,9 +275,10 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
       if (keeps_backup) std::swap(state, work.backup);
       return report;
     }
-    if (cuts)
-      report.severed += sever_moved_through_blade(model_, grip.blade.to, work.before, state.position, state,
-                                                  work.crossings);
+    if (!cuts) continue;
+    work.near->follow(state.position);
+    report.severed += sever_moved_through_blade(model_, *work.near, grip.blade.to, work.before, state.position, state,
+                                                work.crossings);
   }
   work.report_tool(state, report);
   if (report.severed > 0) report.came_loose = work.pieces.find(state) - work.pieces.find(work.backup);

@@ -111,7 +111,7 @@ inline std::unique_ptr<TestScene> make_blob_scene(double radius = 0.003, int row
 /// Severs what a blade through `tip`-`heel` sweeps on its way to the other end.
 inline void cut(const Model& model, State& state, const BladeEdge& from, const BladeEdge& to) {
   std::vector<Crossing> crossings;
-  sever_swept_by_blade(model, from, to, state.position, state, crossings);
+  sever_swept_by_blade(model, NearElements(model), from, to, state.position, state, crossings);
 }
 
 /// Moves the spheres apart on both sides of the plane through `point` with the given normal, more the nearer
