@@ -25,9 +25,9 @@ int run_paper(const PaperArguments& arguments) {
     return print_errors(written.errors());
   int met = 0, missed = 0, shown = 0;
   for (const Claim& claim : results->claims) {
-    const Verdict verdict = claim.verdict();
-    ++(verdict == Verdict::met ? met : verdict == Verdict::missed ? missed : shown);
-    if (verdict == Verdict::missed)
+    const ReportVerdict verdict = claim.verdict();
+    ++(verdict == ReportVerdict::met ? met : verdict == ReportVerdict::missed ? missed : shown);
+    if (verdict == ReportVerdict::missed)
       std::printf("missed: %s, %s %s %s: %s\n", claim.experiment.c_str(), claim.organ.c_str(),
                   claim.structure.c_str(), claim.viscosity.c_str(), claim.quantity.c_str());
   }

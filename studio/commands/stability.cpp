@@ -38,13 +38,13 @@ void print_runs(const std::vector<StabilityRow>& rows) {
   for (const StabilityRow& row : rows)
     for (const StabilityRun& run : row.runs) {
       ++counts[int(run.verdict)];
-      if (run.verdict == Verdict::missed)
+      if (run.verdict == ReportVerdict::missed)
         std::printf("missed: %s under %s: %s\n", row.what->title.c_str(), name_of(run.asked),
                     run.reason.c_str());
     }
   std::printf("%zu cases, %zu integrators: %lld runs hold, %lld were refused beforehand, %lld fail\n",
-              rows.size(), std::size(kStabilityIntegrators), (long long)counts[int(Verdict::met)],
-              (long long)counts[int(Verdict::refused)], (long long)counts[int(Verdict::missed)]);
+              rows.size(), std::size(kStabilityIntegrators), (long long)counts[int(ReportVerdict::met)],
+              (long long)counts[int(ReportVerdict::refused)], (long long)counts[int(ReportVerdict::missed)]);
 }
 
 int run_stability_command(const StabilityArguments& arguments) {

@@ -28,14 +28,14 @@ double Claim::error_to_closed_form() const {
 }
 double Claim::error_to_paper() const { return share(network, paper); }
 
-Verdict Claim::verdict() const {
+ReportVerdict Claim::verdict() const {
   bool is_met = true;
   // Written so that an error that is not a number counts as missed.
   if (closed_form_bound) is_met = is_met && std::abs(error_to_closed_form()) <= *closed_form_bound;
   if (paper_bound) is_met = is_met && std::abs(error_to_paper()) <= *paper_bound;
   if (holds) is_met = is_met && *holds;
-  if (!is_met) return Verdict::missed;
-  return closed_form_bound || paper_bound || holds ? Verdict::met : Verdict::shown;
+  if (!is_met) return ReportVerdict::missed;
+  return closed_form_bound || paper_bound || holds ? ReportVerdict::met : ReportVerdict::shown;
 }
 
 Table claims_table(const std::vector<Claim>& claims) {

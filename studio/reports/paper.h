@@ -34,7 +34,7 @@ struct Claim {
 
   double error_to_closed_form() const;  ///< [share]; NaN if one side is unknown
   double error_to_paper() const;        ///< [share]; NaN if one side is unknown
-  Verdict verdict()
+  ReportVerdict verdict()
       const;  ///< missed if a bound is passed or something asked is not so; shown if nothing must hold
 };
 

@@ -17,12 +17,12 @@ Table overview(const PaperResults& results) {
     std::int64_t counts[3] = {0, 0, 0};
     for (const Claim& claim : results.claims)
       if (claim.experiment == section.key) ++counts[int(claim.verdict())];
-    const std::int64_t must = counts[int(Verdict::met)] + counts[int(Verdict::missed)];
-    table.rows.push_back({section.title, must, counts[int(Verdict::met)], counts[int(Verdict::missed)],
-                          counts[int(Verdict::shown)],
-                          counts[int(Verdict::missed)] > 0 ? Verdict::missed
-                          : must > 0                       ? Verdict::met
-                                                           : Verdict::shown});
+    const std::int64_t met = counts[int(ReportVerdict::met)], missed = counts[int(ReportVerdict::missed)];
+    const ReportVerdict verdict = missed > 0 ? ReportVerdict::missed
+                                  : met > 0  ? ReportVerdict::met
+                                             : ReportVerdict::shown;
+    table.rows.push_back(
+        {section.title, met + missed, met, missed, counts[int(ReportVerdict::shown)], verdict});
   }
   return table;
 }
@@ -107,9 +107,9 @@ Result<Done> write_paper_report(const std::string& folder, const PaperResults& r
                 "Each figure below comes from a shipped scene that the network ran; closed forms are only "
                 "compared with it.");
   const auto missed = std::count_if(results.claims.begin(), results.claims.end(),
-                                    [](const Claim& c) { return c.verdict() == Verdict::missed; });
+                                    [](const Claim& c) { return c.verdict() == ReportVerdict::missed; });
   const auto met = std::count_if(results.claims.begin(), results.claims.end(),
-                                 [](const Claim& c) { return c.verdict() == Verdict::met; });
+                                 [](const Claim& c) { return c.verdict() == ReportVerdict::met; });
   report.add_verdict(missed == 0, missed == 0
                                       ? "All " + std::to_string(met) + " figures that must hold do."
                                       : std::to_string(missed) + " of " + std::to_string(met + missed) +

@@ -45,7 +45,7 @@ std::vector<StabilityCase> stability_cases(bool is_quick);
 struct StabilityRun {
   Integrator asked = Integrator::automatic, used = Integrator::automatic;
   std::int32_t substeps = 1;
-  Verdict verdict = Verdict::missed;  ///< met, missed or refused
+  ReportVerdict verdict = ReportVerdict::missed;  ///< met, missed or refused
   std::string reason;                 ///< why it was missed or refused; empty if met
   std::int64_t ticks = 0;             ///< done
   std::int64_t unconverged = 0;       ///< ticks whose solve stopped at its count

@@ -62,7 +62,7 @@ Table refusals(const std::vector<StabilityRow>& rows) {
       {"title", "case"}, {"integrator", "integrator"}, {"ticks", "after ticks"}, {"reason", "reason"}};
   for (const StabilityRow& row : rows)
     for (const StabilityRun& run : row.runs)
-      if (run.verdict == Verdict::refused)
+      if (run.verdict == ReportVerdict::refused)
         table.rows.push_back({row.what->title, std::string(name_of(run.asked)), run.ticks, run.reason});
   return table;
 }
@@ -81,7 +81,7 @@ std::vector<Section> failures(const std::vector<StabilityRow>& rows) {
   for (const bool is_automatic : {true, false})
     for (const StabilityRow& row : rows)
       for (const StabilityRun& run : row.runs) {
-        if (run.verdict != Verdict::missed || (run.asked == Integrator::automatic) != is_automatic) continue;
+        if (run.verdict != ReportVerdict::missed || (run.asked == Integrator::automatic) != is_automatic) continue;
         Section section;
         section.key = row.what->key + "/" + name_of(run.asked);
         section.title = std::string("Missed under ") + name_of(run.asked) + ": " + row.what->title;

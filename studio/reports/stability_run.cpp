@@ -189,7 +189,7 @@ StabilityRun run_stability_case(const StabilityCase& what, Integrator integrator
     else if (is_refused) {
       run.reason = at_tick(tick, model.tick) + ": " + to_words(report.status);
       if (report.status == StepStatus::too_long) run.reason = choice.reason;
-      if (integrator != Integrator::automatic) run.verdict = Verdict::refused;
+      if (integrator != Integrator::automatic) run.verdict = ReportVerdict::refused;
     } else if (is_bad_input) {
       run.reason = at_tick(tick, model.tick) + ": input that no hand gives was taken";
     } else {
@@ -201,7 +201,7 @@ StabilityRun run_stability_case(const StabilityCase& what, Integrator integrator
     }
   }
   if (run.reason.empty()) run.reason = watch.finish(first, state);
-  if (run.reason.empty()) run.verdict = Verdict::met;
+  if (run.reason.empty()) run.verdict = ReportVerdict::met;
   return run;
 }
 
@@ -232,7 +232,7 @@ std::vector<StabilityRow> run_stability(
 
 std::int64_t count_failures(const std::vector<StabilityRow>& rows) {
   return std::count_if(rows.begin(), rows.end(),
-                       [](const StabilityRow& row) { return row.runs[0].verdict != Verdict::met; });
+                       [](const StabilityRow& row) { return row.runs[0].verdict != ReportVerdict::met; });
 }
 
 }  // namespace ctpm

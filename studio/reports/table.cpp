@@ -20,7 +20,7 @@ std::string html_cell(const Cell& cell, int digits) {
     return "<td class=\"n\">" + short_number(*value, digits) + "</td>";
   if (const auto* count = std::get_if<std::int64_t>(&cell))
     return "<td class=\"n\">" + std::to_string(*count) + "</td>";
-  if (const auto* verdict = std::get_if<Verdict>(&cell))
+  if (const auto* verdict = std::get_if<ReportVerdict>(&cell))
     return std::string("<td><span class=\"v ") + to_word(*verdict) + "\">" + to_word(*verdict) +
            "</span></td>";
   return "<td></td>";
@@ -37,7 +37,7 @@ std::string csv_cell(const Cell& cell) {
   if (const auto* text = std::get_if<std::string>(&cell)) return csv_text(*text);
   if (const auto* value = std::get_if<double>(&cell)) return whole_number(*value);
   if (const auto* count = std::get_if<std::int64_t>(&cell)) return std::to_string(*count);
-  if (const auto* verdict = std::get_if<Verdict>(&cell)) return to_word(*verdict);
+  if (const auto* verdict = std::get_if<ReportVerdict>(&cell)) return to_word(*verdict);
   return "";
 }
 
@@ -48,15 +48,15 @@ void check_shape(const Table& table) {
 
 }  // namespace
 
-const char* to_word(Verdict verdict) {
+const char* to_word(ReportVerdict verdict) {
   switch (verdict) {
-    case Verdict::met:
+    case ReportVerdict::met:
       return "met";
-    case Verdict::missed:
+    case ReportVerdict::missed:
       return "missed";
-    case Verdict::shown:
+    case ReportVerdict::shown:
       return "shown";
-    case Verdict::refused:
+    case ReportVerdict::refused:
       return "refused";
   }
   return "";
@@ -102,7 +102,7 @@ void write_rows(JsonWriter& json, const Table& table) {
       if (const auto* text = std::get_if<std::string>(&row[i])) json.member(key, std::string_view(*text));
       if (const auto* value = std::get_if<double>(&row[i])) json.member(key, *value);
       if (const auto* count = std::get_if<std::int64_t>(&row[i])) json.member(key, *count);
-      if (const auto* verdict = std::get_if<Verdict>(&row[i])) json.member(key, to_word(*verdict));
+      if (const auto* verdict = std::get_if<ReportVerdict>(&row[i])) json.member(key, to_word(*verdict));
     }
     json.end_object();
   }

@@ -10,7 +10,7 @@
 namespace ctpm {
 
 /// What became of something that must hold.
-enum class Verdict {
+enum class ReportVerdict {
   met,     ///< holds
   missed,  ///< must hold and does not
   shown,   ///< does not agree and need not; it is shown as it is
@@ -18,7 +18,7 @@ enum class Verdict {
 };
 
 /// A number, a word, a verdict, or nothing.
-using Cell = std::variant<std::monostate, std::string, double, std::int64_t, Verdict>;
+using Cell = std::variant<std::monostate, std::string, double, std::int64_t, ReportVerdict>;
 
 struct Column {
   std::string key;    ///< name in JSON and CSV, with the unit in it (`force_n`)
@@ -35,7 +35,7 @@ struct Table {
 };
 
 /// "met", "missed", "shown", "refused".
-const char* to_word(Verdict verdict);
+const char* to_word(ReportVerdict verdict);
 
 /// The table as an HTML element; numbers stand right, verdicts are coloured.
 std::string to_html(const Table& table);

@@ -27,10 +27,10 @@ void expect_met(const Result<Experiment>& experiment, std::size_t count) {
   ASSERT_TRUE(experiment) << to_string(experiment.errors().front());
   std::size_t asked = 0;
   for (const Claim& claim : experiment->claims) {
-    EXPECT_NE(claim.verdict(), Verdict::missed)
+    EXPECT_NE(claim.verdict(), ReportVerdict::missed)
         << claim.organ << " " << claim.structure << " " << claim.viscosity << " " << claim.quantity << ": "
         << claim.error_to_closed_form() << ", paper " << claim.error_to_paper();
-    asked += claim.verdict() == Verdict::met ? 1 : 0;
+    asked += claim.verdict() == ReportVerdict::met ? 1 : 0;
   }
   EXPECT_EQ(asked, count);
 }
@@ -54,7 +54,7 @@ TEST(Paper, TheRigCreepsAsEquation10AndTheMeasuredRangesAreNamed) {
   // Two rows for each load and reading, one more for each load; one of them is not asked for.
   expect_met(experiment, 2 * 2 * 2 + 2 - 1);
   for (const Claim& c : experiment->claims) {
-    if (c.verdict() == Verdict::shown) {
+    if (c.verdict() == ReportVerdict::shown) {
       EXPECT_NE(c.quantity.find("under 0.98 N"), std::string::npos);
       EXPECT_EQ(c.viscosity, "kPa s");
       EXPECT_GT(c.error_to_closed_form(), 0.020);
@@ -110,13 +110,13 @@ TEST(Paper, AClaimBeyondItsBoundIsMissed) {
               .quantity = "x",
               .closed_form = 1.0,
               .network = 1.02};
-  EXPECT_EQ(claim.verdict(), Verdict::shown);
+  EXPECT_EQ(claim.verdict(), ReportVerdict::shown);
   claim.closed_form_bound = 0.01;
-  EXPECT_EQ(claim.verdict(), Verdict::missed);
+  EXPECT_EQ(claim.verdict(), ReportVerdict::missed);
   claim.closed_form_bound = 0.03;
-  EXPECT_EQ(claim.verdict(), Verdict::met);
+  EXPECT_EQ(claim.verdict(), ReportVerdict::met);
   claim.network = std::nan("");
-  EXPECT_EQ(claim.verdict(), Verdict::missed);
+  EXPECT_EQ(claim.verdict(), ReportVerdict::missed);
 }
 
 TEST(Paper, MotionOfADampedSwingIsFound) {

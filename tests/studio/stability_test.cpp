@@ -25,7 +25,7 @@ StabilityCase case_named(const std::string& key) {
 
 TEST(Stability, ACaseThatHoldsIsMet) {
   const StabilityRun run = run_stability_case(case_named("stiffness-1"), Integrator::automatic);
-  EXPECT_EQ(run.verdict, Verdict::met) << run.reason;
+  EXPECT_EQ(run.verdict, ReportVerdict::met) << run.reason;
   EXPECT_EQ(run.ticks, 1000);
   EXPECT_GT(run.reach, 4e-3);
   EXPECT_EQ(run.distance.x.size(), run.energy.y.size());
@@ -35,7 +35,7 @@ TEST(Stability, ASphereThatLeavesItsBoundsIsMissed) {
   StabilityCase what = case_named("stiffness-1");
   what.reach = 2e-3;  // it is pressed 6 mm
   const StabilityRun run = run_stability_case(what, Integrator::automatic);
-  EXPECT_EQ(run.verdict, Verdict::missed);
+  EXPECT_EQ(run.verdict, ReportVerdict::missed);
   EXPECT_NE(run.reason.find("more than 2 mm"), std::string::npos) << run.reason;
 }
 
@@ -43,7 +43,7 @@ TEST(Stability, EnergyThatGrowsIsMissed) {
   StabilityCase what = case_named("stiffness-1");
   what.free_from = 0;  // the ball has not come yet, and will do work
   const StabilityRun run = run_stability_case(what, Integrator::automatic);
-  EXPECT_EQ(run.verdict, Verdict::missed);
+  EXPECT_EQ(run.verdict, ReportVerdict::missed);
   EXPECT_NE(run.reason.find("energy grew"), std::string::npos) << run.reason;
 }
 
@@ -51,7 +51,7 @@ TEST(Stability, WhatDoesNotComeToRestIsMissed) {
   StabilityCase what = case_named("swing-mass-spring");
   what.end_speed = 1e-3;  // springs without dashpots go on swinging
   const StabilityRun run = run_stability_case(what, Integrator::automatic);
-  EXPECT_EQ(run.verdict, Verdict::missed);
+  EXPECT_EQ(run.verdict, ReportVerdict::missed);
   EXPECT_NE(run.reason.find("rest"), std::string::npos) << run.reason;
 }
 
@@ -59,13 +59,13 @@ TEST(Stability, BadInputThatIsTakenIsMissed) {
   StabilityCase what = case_named("stiffness-1");
   what.is_bad_input = [](std::int64_t tick) { return tick == 7; };  // it is good
   const StabilityRun run = run_stability_case(what, Integrator::automatic);
-  EXPECT_EQ(run.verdict, Verdict::missed);
+  EXPECT_EQ(run.verdict, ReportVerdict::missed);
   EXPECT_EQ(run.ticks, 7);
 }
 
 TEST(Stability, AnIntegratorThatSaysItCannotIsRefusedIfItWasNamed) {
   const StabilityRun run = run_stability_case(case_named("stiffness-1"), Integrator::symplectic_euler);
-  EXPECT_EQ(run.verdict, Verdict::refused);
+  EXPECT_EQ(run.verdict, ReportVerdict::refused);
   EXPECT_EQ(run.ticks, 0);
   EXPECT_NE(run.reason.find("ms"), std::string::npos) << run.reason;
 }
@@ -74,7 +74,7 @@ TEST(Stability, NoIntegratorTakesWhatABrokenDeviceSends) {
   const StabilityCase what = case_named("device-nan");
   for (const Integrator integrator : kStabilityIntegrators) {
     const StabilityRun run = run_stability_case(what, integrator);
-    EXPECT_NE(run.verdict, Verdict::missed) << name_of(integrator) << ": " << run.reason;
+    EXPECT_NE(run.verdict, ReportVerdict::missed) << name_of(integrator) << ": " << run.reason;
   }
 }
 
