@@ -17,15 +17,19 @@ int luma_of(const std::uint8_t* p) {
   return (77 * p[0] + 150 * p[1] + 29 * p[2] + kBackdropLuma * (255 - p[3])) >> 8;
 }
 
-/// Brightness of every pixel. Whole words, so that the compiler makes it several at a time.
+/// Brightness of every pixel. Whole words through plain pointers, so that the compiler makes several at a
+/// time.
 void find_luma(const std::vector<std::uint8_t>& rgba, std::vector<std::uint8_t>& luma) {
-  luma.resize(rgba.size() / 4);
-  for (std::size_t i = 0; i < luma.size(); ++i) {
+  const std::size_t count = rgba.size() / 4;
+  luma.resize(count);
+  const std::uint8_t* from = rgba.data();
+  std::uint8_t* to = luma.data();
+  for (std::size_t i = 0; i < count; ++i) {
     std::uint32_t word;
-    std::memcpy(&word, &rgba[4 * i], 4);
+    std::memcpy(&word, from + 4 * i, 4);
     const std::uint32_t red = word & 255, green = (word >> 8) & 255, blue = (word >> 16) & 255,
                         alpha = word >> 24;
-    luma[i] = std::uint8_t((77 * red + 150 * green + 29 * blue + kBackdropLuma * (255 - alpha)) >> 8);
+    to[i] = std::uint8_t((77 * red + 150 * green + 29 * blue + kBackdropLuma * (255 - alpha)) >> 8);
   }
 }
 
@@ -37,7 +41,7 @@ void find_edges(const std::uint8_t* row, int width, std::uint8_t* is_edge) {
         std::min(std::min(above[x - 1], above[x + 1]), std::min(below[x - 1], below[x + 1])), row[x]);
     const std::uint8_t high = std::max(
         std::max(std::max(above[x - 1], above[x + 1]), std::max(below[x - 1], below[x + 1])), row[x]);
-    is_edge[x] = high - low >= kLeastContrast;
+    is_edge[x] = std::uint8_t(high - low) >= kLeastContrast;
   }
 }
 

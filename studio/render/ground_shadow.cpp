@@ -6,7 +6,7 @@
 namespace ctpm {
 namespace {
 
-constexpr int kStep = 4;  // pixels between knots; the shadow has no finer detail
+constexpr int kStep = 8;  // pixels between knots; the shadow has no finer detail
 constexpr std::size_t kTexels = std::size_t(GroundShadow::kSize) * GroundShadow::kSize;
 
 }  // namespace
@@ -18,22 +18,21 @@ GroundShadow::GroundShadow(Vec3 centre, Vec3 x, Vec3 y, Vec3 up, double reach)
       x_(x / dot(x, x)),
       y_(y / dot(y, y)),
       up_(up / reach),
+      lowest_(kTexels),
       touched_(kTexels),
       narrow_(kTexels),
       wide_(kTexels),
       swap_(kTexels) {}
 
-void GroundShadow::clear() { std::fill(touched_.begin(), touched_.end(), 0.0f); }
+void GroundShadow::clear() { std::fill(lowest_.begin(), lowest_.end(), INFINITY); }
 
 void GroundShadow::add_point(Vec3 p) {
   const Vec3 d = p - centre_;
   const int column = int(std::floor((0.5 + 0.5 * dot(d, x_)) * kSize)),
             row = int(std::floor((0.5 + 0.5 * dot(d, y_)) * kSize));
   if (column < 0 || row < 0 || column >= kSize || row >= kSize) return;
-  // 1 on the ground, a third at the reach, nothing far above.
-  const double h = std::max(dot(d, up_), 0.0);
-  float& texel = touched_[std::size_t(row) * kSize + std::size_t(column)];
-  texel = std::max(texel, float(1 / (1 + h * (1 + h))));
+  float& texel = lowest_[std::size_t(row) * kSize + std::size_t(column)];
+  texel = std::min(texel, float(dot(d, up_)));
 }
 
 void GroundShadow::add(const Surface& surface, std::span<const Vec3> position, std::size_t triangle_count) {
@@ -42,12 +41,13 @@ void GroundShadow::add(const Surface& surface, std::span<const Vec3> position, s
     const auto& t = surface.triangle[i];
     const Vec3 a = position[std::size_t(t[0])], b = position[std::size_t(t[1])] - a,
                c = position[std::size_t(t[2])] - a;
-    const double longest = std::sqrt(std::max({dot(b, b), dot(c, c), dot(b - c, b - c)}));
-    const int parts = std::clamp(int(longest / texel) + 1, 1, 64);  // points no further apart than a texel
-    if (parts == 1) {
+    const double longest = std::max({dot(b, b), dot(c, c), dot(b - c, b - c)});
+    if (longest < texel * texel) {
       add_point(a + (b + c) / 3.0);
       continue;
     }
+    const int parts =
+        std::min(int(std::sqrt(longest) / texel) + 1, 64);  // points no further apart than a texel
     for (int u = 0; u <= parts; ++u)
       for (int v = 0; u + v <= parts; ++v) add_point(a + (double(u) / parts) * b + (double(v) / parts) * c);
   }
@@ -82,6 +82,11 @@ void GroundShadow::blur(const std::vector<float>& from, std::vector<float>& to, 
 /// Both blurs together, in wide_.
 void GroundShadow::find_darkness() {
   constexpr float kContact = 0.46f, kRoom = 0.38f, kDarkest = 0.85f;
+  // 1 on the ground, a third at the reach, nothing far above.
+  for (std::size_t i = 0; i < kTexels; ++i) {
+    const float h = std::max(lowest_[i], 0.0f);
+    touched_[i] = 1 / (1 + h * (1 + h));
+  }
   blur(touched_, narrow_, 1.6), blur(narrow_, wide_, 6.5);
   for (std::size_t i = 0; i < kTexels; ++i)
     wide_[i] = std::min(kDarkest, kContact * narrow_[i] + kRoom * wide_[i]);
@@ -148,24 +153,34 @@ void GroundShadow::draw(Frame& frame, const Mat4& clip_from_world) {
   find_darkness();
   const KnotRange range = find_range(frame, clip_from_world);
   find_knots(frame, clip_from_world, range);
-  // Linear between the knots, and the ground darkened by that much.
-  const int first = range.left * kStep, last = std::min(frame.width, (range.right - 1) * kStep);
   light_.resize(std::size_t(3 * kStep * range.columns()));
-  for (int y = range.top * kStep; y < std::min(frame.height, (range.bottom - 1) * kStep); ++y) {
-    const float t = float(y % kStep) / kStep;
-    const float* upper = &knots_[std::size_t((y / kStep - range.top) * range.columns())];
-    const float* lower = upper + range.columns();
-    std::uint32_t* light = light_.data();
-    for (int c = 0; c + 1 < range.columns(); ++c) {
-      const float left = upper[c] + t * (lower[c] - upper[c]),
-                  right = upper[c + 1] + t * (lower[c + 1] - upper[c + 1]);
-      for (int k = 0; k < kStep; ++k, light += 3)
-        light[0] = light[1] = light[2] =
-            std::uint32_t(65536 - int(65536 * (left + float(k) / kStep * (right - left))));
-    }
-    std::uint8_t* to = &frame.rgb[(std::size_t(y) * std::size_t(frame.width) + std::size_t(first)) * 3];
-    for (int i = 0; i < 3 * (last - first); ++i)
-      to[i] = std::uint8_t((to[i] * light_[std::size_t(i)] + 32768) >> 16);
+  for (int r = range.top; r + 1 < range.bottom; ++r)
+    for (int y = r * kStep; y < std::min(frame.height, (r + 1) * kStep); ++y) darken_row(frame, range, y);
+}
+
+/// Darkens one row of the picture by what lies linearly between the knots.
+void GroundShadow::darken_row(Frame& frame, const KnotRange& range, int y) {
+  const float t = float(y % kStep) / kStep;
+  const float* upper = &knots_[std::size_t((y / kStep - range.top) * range.columns())];
+  const float* lower = upper + range.columns();
+  const auto at = [&](int c) { return upper[c] + t * (lower[c] - upper[c]); };
+  int begin = 0, end = range.columns() - 1;  // without shadow nothing changes
+  while (begin < end && at(begin) + at(begin + 1) == 0) ++begin;
+  while (begin < end && at(end) + at(end - 1) == 0) --end;
+  if (begin == end) return;
+  for (int c = begin; c < end; ++c) {
+    std::uint16_t* light = &light_[std::size_t(3 * kStep * (c - begin))];
+    const float left = 65535 * (1 - at(c)), step = 65535 * (at(c) - at(c + 1)) / kStep;
+    for (int k = 0; k < kStep; ++k)
+      light[3 * k] = light[3 * k + 1] = light[3 * k + 2] = std::uint16_t(left + float(k) * step);
+  }
+  const int first = (range.left + begin) * kStep, last = std::min(frame.width, (range.left + end) * kStep);
+  std::uint8_t* to = &frame.rgb[(std::size_t(y) * std::size_t(frame.width) + std::size_t(first)) * 3];
+  const std::uint16_t* light = light_.data();
+  // In 16 bits, so that the compiler makes many at a time: colour * light in 1/256, rounded.
+  for (int i = 0; i < 3 * (last - first); ++i) {
+    const std::uint16_t product = std::uint16_t((std::uint32_t(to[i] << 8) * light[i]) >> 16);
+    to[i] = std::uint8_t(std::uint16_t(product + 128) >> 8);
   }
 }
 

@@ -41,11 +41,13 @@ class GroundShadow {
   float darkness(float u, float v) const;
   void find_darkness();
   KnotRange find_range(const Frame& frame, const Mat4& clip_from_world) const;
+  void darken_row(Frame& frame, const KnotRange& range, int y);
   void find_knots(const Frame& frame, const Mat4& clip_from_world, const KnotRange& range);
 
+  std::vector<float> lowest_;  ///< height of what stands there [reaches] (kSize x kSize)
   std::vector<float> touched_, narrow_, wide_, swap_;  ///< (kSize x kSize)
   std::vector<float> knots_;          ///< darkness at every few pixels of a part of the picture
-  std::vector<std::uint32_t> light_;  ///< of a row, 65536: all; for each part of a colour
+  std::vector<std::uint16_t> light_;  ///< of a row, 65535: all; for each part of a colour
 };
 
 }  // namespace ctpm

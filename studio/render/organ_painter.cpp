@@ -1,5 +1,7 @@
 #include "studio/render/organ_painter.h"
 
+#include <algorithm>
+
 namespace ctpm {
 
 Result<Done> OrganPainter::create(const Gl& gl, const SceneView& scene) {
@@ -44,7 +46,11 @@ std::vector<const Program*> OrganPainter::programs(const DrawOptions& options) c
 
 void OrganPainter::set_look(const Program& program, const OrganLook& look, const DrawOptions& options) {
   program.use();
-  program.set("outer_colour", linear(look.outer)), program.set("inner_colour", linear(look.inner));
+  const Vec3 outer = linear(look.outer), inner = linear(look.inner);
+  program.set("outer_colour", outer), program.set("inner_colour", inner);
+  // Towards a dark inside, as if paint were mixed before it is lit.
+  const auto tint = [](double in, double out) { return 0.55 * in / std::max(out, 0.01); };
+  program.set("lip_tint", Vec3{tint(inner.x, outer.x), tint(inner.y, outer.y), tint(inner.z, outer.z)});
   program.set("wetness", look.wetness);
   program.set("cutaway_point", options.cutaway.point), program.set("cutaway_normal", options.cutaway.normal);
 }
@@ -85,10 +91,8 @@ void OrganPainter::draw(const Gl& gl, const SceneView& scene, const DrawOptions&
   if (glassy) gl.Enable(GL_BLEND), gl.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   for (std::size_t i = 0; i < organs_.size(); ++i) {
     Organ& organ = organs_[i];
-    const bool is_cut = organ.cut.outer_triangle_count() < organ.cut.surface().triangle.size();
-    // Inner faces of a whole organ are never seen.
-    const Order order =
-        sort_triangles(organ, options.camera.eye, !glassy && (is_cut || options.cutaway.is_on()));
+    // Surface and walls are closed: inner faces are seen through a cutaway only.
+    const Order order = sort_triangles(organ, options.camera.eye, !glassy && options.cutaway.is_on());
     organ.array.set_indices(gl, indices_);
     // What faces the eye comes first: it hides most of the rest.
     set_look(outside, scene.looks[i], options);

@@ -91,17 +91,17 @@ class Font {
   std::map<char, Glyph> glyphs_;
 };
 
-/// Darkens a rectangle with rounded corners.
+/// Tints a rectangle with rounded corners; `opacity` of 256.
 void draw_panel(cv::Mat& rgb, const Box& box, const Ink& tint, int opacity, int radius) {
-  for (int y = std::max(0, box.y); y < std::min(rgb.rows, box.y + box.height); ++y)
-    for (int x = std::max(0, box.x); x < std::min(rgb.cols, box.x + box.width); ++x) {
-      const int dx = std::max({box.x + radius - x, x - (box.x + box.width - 1 - radius), 0});
-      const int dy = std::max({box.y + radius - y, y - (box.y + box.height - 1 - radius), 0});
-      if (dx * dx + dy * dy > radius * radius) continue;
-      auto& pixel = rgb.at<cv::Vec3b>(y, x);
+  for (int y = std::max(0, box.y); y < std::min(rgb.rows, box.y + box.height); ++y) {
+    const int dy = std::max({box.y + radius - y, y - (box.y + box.height - 1 - radius), 0});
+    const int inset = radius - int(std::sqrt(radius * radius - dy * dy));
+    const int left = std::max(0, box.x + inset), right = std::min(rgb.cols, box.x + box.width - inset);
+    std::uint8_t* to = rgb.ptr<std::uint8_t>(y) + 3 * left;
+    for (int x = left; x < right; ++x, to += 3)
       for (int k = 0; k < 3; ++k)
-        pixel[k] = std::uint8_t((pixel[k] * (256 - opacity) + tint[std::size_t(k)] * opacity) >> 8);
-    }
+        to[k] = std::uint8_t((to[k] * (256 - opacity) + tint[std::size_t(k)] * opacity) >> 8);
+  }
 }
 
 struct Line {

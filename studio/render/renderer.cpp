@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "studio/render/backdrop.h"
 #include "studio/render/edge_smoothing.h"
@@ -276,7 +277,7 @@ void Renderer::Parts::read_frame() {
       const unsigned rest = 255u - from[3];
       if (rest == 255) continue;
       if (rest == 0) {
-        to[0] = from[0], to[1] = from[1], to[2] = from[2];
+        std::memcpy(to, from, 3);
         continue;
       }
       for (int c = 0; c < 3; ++c) to[c] = std::uint8_t(std::min(255u, from[c] + (to[c] * rest + 127) / 255));

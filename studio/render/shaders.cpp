@@ -6,25 +6,25 @@ namespace ctpm {
 namespace {
 
 const char* const kVersion = "#version 330 core\n";
-const char* const kUp = "uniform vec3 up;\n";
 
 // Key light from the upper left, cool fill from the right, rim from behind; a room to be mirrored in wet
 // tissue.
 const char* const kLight = R"(
 uniform vec3 eye, up, key_light, fill_light, rim_light;
-vec3 room(vec3 r) {
+vec3 soft_room(vec3 r) {
   float height = dot(r, up);
   vec3 c = mix(vec3(0.10, 0.09, 0.09), vec3(0.34, 0.38, 0.42), smoothstep(-0.35, 0.55, height));
-  c += vec3(6.0, 5.7, 5.4) * smoothstep(0.925, 1.0, dot(r, key_light));
-  c += vec3(0.75, 0.85, 1.0) * smoothstep(0.80, 0.97, dot(r, fill_light));
-  c += vec3(1.1) * smoothstep(0.86, 0.97, dot(r, rim_light));
-  return c;
+  return c + vec3(0.75, 0.85, 1.0) * smoothstep(0.80, 0.97, dot(r, fill_light));
 }
+vec3 key_in_room(float towards) { return vec3(6.0, 5.7, 5.4) * smoothstep(0.925, 1.0, towards); }
+float rim_in_room(float towards) { return 1.1 * smoothstep(0.86, 0.97, towards); }
+vec3 room(vec3 r) { return soft_room(r) + key_in_room(dot(r, key_light)) + rim_in_room(dot(r, rim_light)); }
 // Light that wraps around the edge of shadow, in red furthest, as light does that passes through tissue.
 vec3 wrapped(float c, vec3 wrap) { vec3 w = clamp((c + wrap) / (1.0 + wrap), 0.0, 1.0); return w * w; }
+const vec3 kKey = vec3(1.55, 1.47, 1.38);
 vec3 diffuse_light(vec3 n, vec3 wrap, float shade) {
   vec3 ambient = mix(vec3(0.30, 0.22, 0.20), vec3(0.50, 0.54, 0.58), 0.5 + 0.5 * dot(n, up)) * shade;
-  vec3 key = vec3(1.55, 1.47, 1.38) * wrapped(dot(n, key_light), wrap) * mix(1.0, shade, 0.7);
+  vec3 key = kKey * wrapped(dot(n, key_light), wrap) * mix(1.0, shade, 0.7);
   vec3 fill = vec3(0.26, 0.30, 0.36) * wrapped(dot(n, fill_light), wrap) * shade;
   float rim = clamp((dot(n, rim_light) + 0.05) / 1.05, 0.0, 1.0);
   return ambient + key + fill + 0.38 * rim * rim;
@@ -56,11 +56,42 @@ float ground_shade(vec3 p, vec3 n) {
 }
 )";
 
-// What changes slowly over the tissue is worked out at its vertices: colour, soft shadows, and the place at
-// which the fine relief is looked up, bent so that nothing repeats visibly.
+// Where the fine relief is looked up, bent so that nothing repeats visibly.
 const char* const kBend = R"(
 vec3 wave(vec3 x) { x = fract(x) * 2.0 - 1.0; return 4.0 * x * (abs(x) - 1.0); }
 vec3 bend(vec3 rest) { return rest + 0.0021 * wave(rest.yzx * 47.0) + 0.0011 * wave(rest.zxy * 97.0); }
+)";
+
+// What changes slowly over tissue, and how it follows small turns of the normal. Worked out at the vertices
+// of the outer surface: its triangles are so small that most of the work on their pixels would be done in
+// vain.
+const char* const kSmooth = R"(
+uniform float wetness;
+struct Smooth {
+  vec3 body;                // light out of the tissue
+  vec3 key_side, eye_side;  // parts of the ways to key light and eye along the surface
+  vec4 turn;    // normal towards eye and key light; share that body gains by a turn to the key; film's strength
+  vec4 mirror;  // the mirrored way towards key and rim; normal towards rim; 1 / length of key_light + way to eye
+  float film;   // what the wet film mirrors of the room, without key and rim, in kFilm
+};
+const vec3 kFilm = vec3(0.86, 0.95, 1.06);
+Smooth smooth_light(vec3 p, vec3 n, vec3 base, float shade, float mirror) {
+  const vec3 kWrap = vec3(0.38, 0.16, 0.12), kLuma = vec3(0.3, 0.6, 0.1);
+  vec3 v = normalize(eye - p);
+  float facing = dot(n, v), key = dot(n, key_light);
+  float edge = 1.0 - clamp(facing, 0.0, 1.0), strength = wetness * mirror * mix(0.3, 1.0, shade);
+  vec3 r = 2.0 * facing * n - v, light = diffuse_light(n, kWrap, shade);
+  vec3 gain = 2.0 * kKey * clamp((key + kWrap) / (1.0 + kWrap), 0.0, 1.0) / (1.0 + kWrap) * mix(1.0, shade, 0.7);
+  Smooth s;
+  // Glow at grazing angles, where light has passed a thin layer.
+  s.body = base * (light + vec3(0.35, 0.10, 0.08) * (edge * edge * edge * shade));
+  s.film = strength * dot(soft_room(r), vec3(0.35));
+  s.key_side = key_light - key * n, s.eye_side = v - facing * n;
+  s.turn = vec4(facing, key, dot(base * gain, kLuma) / dot(s.body, kLuma), strength);
+  s.mirror = vec4(dot(r, key_light), dot(r, rim_light), dot(n, rim_light),
+                  inversesqrt(max(2.0 + 2.0 * dot(key_light, v), 0.01)));
+  return s;
+}
 )";
 
 const char* const kOrganVertex = R"(
@@ -70,18 +101,28 @@ layout(location = 2) in vec3 rest;
 layout(location = 3) in vec3 crevice_stain_lip;
 uniform mat4 clip_from_world;
 uniform vec3 outer_colour, inner_colour;
-out vec3 p, n, q, base;
-out float shadow, lip;
+out vec3 p, q;
+#ifdef INSIDE
+out vec3 n, base;
+out float shadow;
+#else
+out Smooth slow;
+out float lip;
+#endif
 void main() {
   float hollow = crevice_stain_lip.x, stain = crevice_stain_lip.y;
-  p = position; n = normal; q = bend(rest); lip = crevice_stain_lip.z;
-  shadow = tool_shade(p, n) * ground_shade(p, n) * clamp(1.0 + 1.6 * min(hollow, 0.0), 0.35, 1.0);
+  float shade = tool_shade(position, normal) * ground_shade(position, normal) *
+                clamp(1.0 + 1.6 * min(hollow, 0.0), 0.35, 1.0);
+  p = position; q = bend(rest);
 #ifdef INSIDE
+  n = normal; shadow = shade;
   base = inner_colour * (1.0 + 0.16 * stain);
 #else
-  base = outer_colour * (1.0 + 0.20 * stain);
+  vec3 base = outer_colour * (1.0 + 0.20 * stain);
   base = mix(base, base * vec3(1.12, 0.86, 0.80), clamp(stain, 0.0, 1.0));
   base *= 1.0 + 0.6 * clamp(hollow, 0.0, 0.3);
+  slow = smooth_light(position, normal, base, shade, 1.0);
+  lip = crevice_stain_lip.z;
 #endif
   gl_Position = clip_from_world * vec4(position, 1.0);
 }
@@ -91,38 +132,45 @@ void main() {
 // Parabolas stand for sines. Gradient, and height.
 const char* const kRelief = R"(
 vec4 gyroid(vec3 x) {
-  vec3 s = wave(x), c = wave(x + 0.25);
+  x = fract(x) * 2.0 - 1.0;
+  vec3 a = abs(x), z = a - 0.5;
+  vec3 s = x * (a - 1.0), c = z * (1.0 - abs(z));  // a quarter of sine and cosine
   return vec4(c.xyz * c.yzx - s.zxy * s.xyz, dot(s, c.yzx));
 }
 vec4 relief(vec3 x) {
   const mat3 turn = mat3(0.36, 0.48, -0.80, -0.80, 0.60, 0.0, 0.48, 0.64, 0.60);
   vec4 one = gyroid(x * 141.0), other = gyroid(turn * x * 197.0);
-  return 0.75 * vec4(one.xyz * other.w + 1.35 * (other.xyz * turn) * one.w, one.w * other.w);
+  return 192.0 * vec4(one.xyz * other.w + 1.35 * (other.xyz * turn) * one.w, one.w * other.w);
 }
 )";
 
 const char* const kOrganFragment = R"(
-in vec3 p, n, q, base;
-in float shadow, lip;
-uniform vec3 inner_colour;
-uniform float wetness;
+in vec3 p, q;
+#ifdef INSIDE
+in vec3 n, base;
+in float shadow;
 uniform int is_wall;
-uniform vec3 cutaway_point, cutaway_normal;
 uniform mat4 clip_from_world;
+#else
+in Smooth slow;
+in float lip;
+uniform vec3 lip_tint;
+#endif
+uniform vec3 cutaway_point, cutaway_normal;
 out vec4 colour;
 void main() {
 #ifdef CUTAWAY
   if (dot(p - cutaway_point, cutaway_normal) > 0.0) discard;
 #endif
-  vec3 v = normalize(eye - p), m = normalize(n), place = q;
-  float shade = shadow;
+  vec3 place = q;
 #ifdef INSIDE
-  const float kRough = 0.09, kStained = 0.13, kMirror = 0.55;
-  if (is_wall == 1 ? dot(m, v) < 0.0 : !gl_FrontFacing) m = -m;
+  const float kRough = 0.09, kStained = 0.13;
+  vec3 at = p, m = normalize(n);
+  float shade = shadow;
+  if (is_wall == 1 ? dot(m, eye - p) < 0.0 : !gl_FrontFacing) m = -m;
   bool is_section = false;
 #ifdef CUTAWAY
   // An inner side that one sees through the plane means solid tissue at the plane: draw the section there.
-  vec3 at = p;
   float above = dot(eye - cutaway_point, cutaway_normal), below = dot(p - cutaway_point, cutaway_normal);
   is_section = !gl_FrontFacing && above > 0.0;
   if (is_section) {
@@ -133,28 +181,26 @@ void main() {
   gl_FragDepth = 0.5 + 0.5 * clip.z / clip.w;
 #endif
   if (is_wall == 0 && !is_section) shade *= 0.45;
+  Smooth slow = smooth_light(at, m, base, shade, 0.55);
 #else
-  const float kRough = 0.017, kStained = 0.035, kMirror = 1.0;
+  const float kRough = 0.017, kStained = 0.035;
 #endif
   vec4 fine = relief(place);
-  vec3 bumped = normalize(m - kRough * (fine.xyz - m * dot(m, fine.xyz)));
-  vec3 paint = base * (1.0 + kStained * fine.a);
+  float to_key = -kRough * dot(fine.xyz, slow.key_side), to_eye = -kRough * dot(fine.xyz, slow.eye_side);
+  float facing = slow.turn.x + to_eye;
+  vec3 c = slow.body * (1.0 + kStained * fine.a + slow.turn.z * to_key);
 #ifndef INSIDE
-  paint = mix(paint, 0.55 * inner_colour, 0.9 * smoothstep(0.80, 0.97, lip));  // a closed cut stays visible
+  c *= mix(vec3(1.0), lip_tint, 0.9 * smoothstep(0.80, 0.97, lip));  // a closed cut stays visible
 #endif
-  vec3 c = paint * diffuse_light(bumped, vec3(0.38, 0.16, 0.12), shade);
-  float facing = dot(bumped, v), towards_key = dot(key_light, bumped);
-  float edge = 1.0 - clamp(facing, 0.0, 1.0);
-  // Glow at grazing angles, where light has passed a thin layer.
-  c += paint * vec3(0.35, 0.10, 0.08) * (edge * edge * edge * shade);
-  vec3 mirrored = reflect(-v, mix(m, bumped, 0.55));  // both are nearly the same, and so is its length
-  c += (wetness * kMirror * fresnel(facing) * mix(0.3, 1.0, shade)) * room(mirrored);
-  // The highlight's half vector, key_light + v, without its three components.
-  float broad_spot = max(towards_key + facing, 0.0) * inversesqrt(max(2.0 + 2.0 * dot(key_light, v), 0.01));
+  // The mirrored way turns by twice as much; the film is half as rough as the tissue below.
+  float mirrored_key = slow.mirror.x + 1.1 * (to_eye * slow.turn.y + slow.turn.x * to_key);
+  float mirrored_rim = slow.mirror.y + 1.1 * to_eye * slow.mirror.z;
+  c += fresnel(facing) * (kFilm * slow.film + slow.turn.w * (key_in_room(mirrored_key) + rim_in_room(mirrored_rim)));
+  float broad_spot = max(slow.turn.y + to_key + facing, 0.0) * slow.mirror.w;
   float spot2 = broad_spot * broad_spot, spot4 = spot2 * spot2, spot8 = spot4 * spot4;
-  c += vec3(0.10, 0.095, 0.09) * (wetness * spot8 * spot8 * spot8 * shade);
+  c += vec3(0.10, 0.095, 0.09) * (slow.turn.w * spot8 * spot8 * spot8);
 #ifdef GLASSY
-  float cover = mix(0.16, 0.85, edge * edge);
+  float edge = 1.0 - clamp(facing, 0.0, 1.0), cover = mix(0.16, 0.85, edge * edge);
   colour = vec4(cover * to_srgb(c), cover);
 #else
   colour = vec4(to_srgb(c), 1.0);
@@ -288,8 +334,8 @@ ShaderSource organ_shader(OrganPass pass, bool has_cutaway) {
                            : pass == OrganPass::glassy ? "#define GLASSY\n"
                                                        : "";
   const char* const cutaway = has_cutaway ? "#define CUTAWAY\n" : "";
-  return {join({side, kUp, kShade, kBend, kOrganVertex}),
-          join({side, cutaway, kLight, kShade, kBend, kRelief, kOrganFragment})};
+  return {join({side, cutaway, kLight, kShade, kSmooth, kBend, kOrganVertex}),
+          join({side, cutaway, kLight, kShade, kSmooth, kBend, kRelief, kOrganFragment})};
 }
 ShaderSource tool_shader() { return {join({kToolVertex}), join({kLight, kToolFragment})}; }
 ShaderSource sphere_shader() { return {join({kSphereVertex}), join({kLight, kShade, kSphereFragment})}; }
