@@ -19,8 +19,9 @@ std::optional<Plane> fit_plane(const std::vector<CutPoint>& crossings, Vec3 near
   double sum = 0;
   Vec3 middle, across;
   const auto weight = [&](const CutPoint& c) {
-    const double q = norm(c.place - near) / reach;
-    return q < 1 ? (1 - q * q) * (1 - q * q) : 0.0;
+    const Vec3 d = c.place - near;
+    const double q = dot(d, d) / (reach * reach);
+    return q < 1 ? (1 - q) * (1 - q) : 0.0;
   };
   for (const CutPoint& c : crossings)
     if (const double w = weight(c); w > 0) sum += w, middle += w * c.place, across += w * c.across;
@@ -28,8 +29,9 @@ std::optional<Plane> fit_plane(const std::vector<CutPoint>& crossings, Vec3 near
   middle = middle / sum, across = across / norm(across);
   std::array<double, 6> scatter{};
   for (const CutPoint& c : crossings) {
-    const Vec3 d = (c.place - middle) / reach;
     const double w = weight(c) / sum;
+    if (w == 0) continue;
+    const Vec3 d = (c.place - middle) / reach;
     scatter[0] += w * d.x * d.x, scatter[1] += w * d.x * d.y, scatter[2] += w * d.x * d.z;
     scatter[3] += w * d.y * d.y, scatter[4] += w * d.y * d.z, scatter[5] += w * d.z * d.z;
   }

@@ -7,8 +7,8 @@
 
 namespace ctpm {
 
-/// Where the blade passed around a sphere: crossings of the links between what it sees and what it lost, with the
-/// direction across.
+/// Where the blade passed around a sphere: crossings of the links between what it sees and what it lost, with
+/// the direction across.
 struct CutPoint {
   Vec3 place, across;  ///< [m], unit vector away from the sphere
 };
@@ -19,8 +19,8 @@ struct Plane {
   double height(Vec3 p) const { return dot(p - point, normal); }
 };
 
-/// The plane of the crossings near a place; none if there are none. Of all directions that fit them alike, as where
-/// they lie on one line, it takes the mean direction across.
+/// The plane of the crossings near a place; none if there are none. Of all directions that fit them alike, as
+/// where they lie on one line, it takes the mean direction across.
 std::optional<Plane> fit_plane(const std::vector<CutPoint>& crossings, Vec3 near, double reach);
 
 }  // namespace ctpm

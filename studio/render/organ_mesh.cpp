@@ -1,5 +1,7 @@
 #include "studio/render/organ_mesh.h"
 
+#include <cmath>
+
 #include "core/surface.h"
 #include "studio/render/noise.h"
 
@@ -7,9 +9,13 @@ namespace ctpm {
 
 void OrganMesh::set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip) {
   constexpr double kStainsPerMetre = 72;
-  stain_.clear(), lip_.assign(is_lip.begin(), is_lip.end());
+  lip_.assign(is_lip.begin(), is_lip.end());
   lip_.resize(surface.vertex.size(), 0.0f);
-  for (const Vec3& v : surface.vertex) stain_.push_back(float(noise_at(kStainsPerMetre * v)));
+  // While a cut grows, most vertices stay.
+  stain_.resize(surface.vertex.size()), stained_.resize(surface.vertex.size(), Vec3{INFINITY, 0, 0});
+  for (std::size_t v = 0; v < stain_.size(); ++v)
+    if (!(stained_[v] == surface.vertex[v]))
+      stain_[v] = float(noise_at(kStainsPerMetre * surface.vertex[v])), stained_[v] = surface.vertex[v];
   per_neighbour_.assign(surface.vertex.size(), 0.0f);
   for (const auto& t : surface.triangle)
     for (const std::int32_t v : t) per_neighbour_[std::size_t(v)] += 1;

@@ -29,6 +29,7 @@ class OrganMesh {
 
  private:
   std::vector<Vec3> position_, normal_;
+  std::vector<Vec3> stained_;  ///< rest position of which stain_ is [m]
   std::vector<float> crevice_, per_neighbour_, stain_, lip_;
   std::vector<float> data_;
 };

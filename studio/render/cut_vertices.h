@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/organ.h"
+#include "studio/render/cut_plane.h"
+#include "studio/render/lattice_links.h"
+
+namespace ctpm {
+
+/// The vertices of a cut organ's surface. Each has a home, a sphere on its own side of the cut, and follows
+/// only spheres that its home sees.
+class CutVertices {
+ public:
+  using Index = std::int32_t;
+
+  /// `links` must outlive this.
+  explicit CutVertices(const LatticeLinks& links) : links_(links) {}
+
+  /// Forgets all vertices, and what spheres saw before the links changed.
+  void clear();
+
+  const LatticeLinks::Sight& sight(Index sphere);
+  bool sees(Index sphere, Index other);   ///< over joined links, as before anything was severed
+  bool loses(Index sphere, Index other);  ///< the cut passes between two spheres that saw each other before
+  /// Where the blade passed between what a sphere sees and what it lost.
+  const std::vector<CutPoint>& crossings_around(Index sphere);
+
+  Index add(Vec3 rest, Index home);
+  /// A vertex that is bound as given.
+  Index add(Vec3 rest, Index home, std::span<const Index> spheres, std::span<const double> weights);
+  Index copy(Index vertex);  ///< a second vertex at the same place that follows the same spheres
+
+  const LatticeLinks& links() const { return links_; }
+  Index count() const { return Index(surface_.vertex.size()); }
+  Vec3 rest(Index vertex) const { return surface_.vertex[std::size_t(vertex)]; }
+  Index home(Index vertex) const { return home_[std::size_t(vertex)]; }
+
+  /// The vertices with their binding, and the triangles that were added to them.
+  Surface& surface() { return surface_; }
+  const Surface& surface() const { return surface_; }
+
+ private:
+  void follow(Vec3 rest, Index home);
+
+  const LatticeLinks& links_;
+  Surface surface_;
+  std::vector<Index> home_;                           ///< (vertex_count)
+  std::map<Index, LatticeLinks::Sight> sights_;       ///< of spheres that were asked for
+  std::map<Index, std::vector<CutPoint>> crossings_;  ///< of spheres that were asked for
+  std::vector<std::pair<double, Index>> near_;        ///< working memory of follow()
+};
+
+}  // namespace ctpm
