@@ -1,0 +1,156 @@
+#include "tests/core/bench/network_ode.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/contact.h"
+#include "core/outside.h"
+
+namespace ctpm::testing {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// As in contact.cpp.
+constexpr double kStickTime = 0.1;
+
+}  // namespace
+
+Vec3 Press::centre(double time) const {
+  const double wave = std::sin(kPi * time / duration);
+  return touch - Vec3{0, 0, depth * wave * wave};
+}
+
+Vec3 Press::velocity(double time) const {
+  return {0, 0, -depth * kPi / duration * std::sin(2 * kPi * time / duration)};
+}
+
+NetworkOde::NetworkOde(const Model& model, const State& start, const Press& press)
+    : model_(model),
+      start_(start),
+      press_(press),
+      spheres_(model.sphere_count()),
+      team_(1),
+      elements_(model, team_),
+      state_(start),
+      force_(3 * spheres_),
+      blocks_(6 * spheres_),
+      inverse_(6 * spheres_) {}
+
+std::vector<double> NetworkOde::start_values() const {
+  std::vector<double> y(3 * spheres_);
+  for (const auto* axis : {&start_.velocity.x, &start_.velocity.y, &start_.velocity.z})
+    y.insert(y.end(), axis->begin(), axis->end());
+  y.insert(y.end(), start_.kelvin_elongation.begin(), start_.kelvin_elongation.end());
+  return y;
+}
+
+std::vector<double> NetworkOde::scales() const {
+  std::vector<double> scale(size(), press_.depth);
+  std::fill_n(scale.begin() + std::ptrdiff_t(3 * spheres_), 3 * spheres_, press_.depth / press_.duration);
+  return scale;
+}
+
+void NetworkOde::take_state(const double* y) {
+  std::vector<double>* position[3] = {&state_.position.x, &state_.position.y, &state_.position.z};
+  std::vector<double>* velocity[3] = {&state_.velocity.x, &state_.velocity.y, &state_.velocity.z};
+  const std::vector<double>* start[3] = {&start_.position.x, &start_.position.y, &start_.position.z};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double *u = y + axis * spheres_, *v = u + 3 * spheres_;
+    for (std::size_t i = 0; i < spheres_; ++i) (*position[axis])[i] = (*start[axis])[i] + u[i];
+    std::copy_n(v, spheres_, velocity[axis]->begin());
+  }
+  std::copy_n(y + 6 * spheres_, state_.kelvin_elongation.size(), state_.kelvin_elongation.begin());
+}
+
+void NetworkOde::add_loads(double time) {
+  const Loads& loads = model_.loads;
+  for (std::size_t l = 0; l < loads.size(); ++l) {
+    const Vec3 pull = std::clamp((time - loads.start[l]) / loads.ramp[l], 0.0, 1.0) * loads.force[l];
+    const auto i = std::size_t(loads.sphere[l]);
+    force_[i] += pull.x, force_[spheres_ + i] += pull.y, force_[2 * spheres_ + i] += pull.z;
+  }
+}
+
+/// Calls touch(contact, slip) for every sphere that the ball overlaps; slip is its velocity across the
+/// normal.
+template <class Touch>
+void NetworkOde::for_each_touched(double time, Touch&& touch) const {
+  if (press_.radius == 0) return;
+  const Vec3 centre = press_.centre(time), velocity = press_.velocity(time);
+  const double k = model_.contact_k, friction = model_.contact_friction;
+  for (std::size_t i = 0; i < spheres_; ++i) {
+    const Vec3 apart = state_.position[i] - centre;
+    const double reach = press_.radius + model_.contact_radius[i], squared = dot(apart, apart);
+    if (model_.held_axes[i] == kAnchored || squared >= reach * reach) continue;
+    const double distance = std::sqrt(squared), penetration = reach - distance;
+    const Vec3 normal = apart / distance, past = state_.velocity[i] - velocity;
+    const Vec3 slip = past - dot(past, normal) * normal;
+    const double speed = norm(slip), stick = kStickTime * k, limit = friction * k * penetration;
+    const double drag = friction > 0 ? (speed * stick > limit ? limit / speed : stick) : 0.0;
+    touch(Contact{std::int32_t(i), normal, penetration, drag, {}}, slip);
+  }
+}
+
+void NetworkOde::derive(double time, const double* y, double* derivative) {
+  take_state(y);
+  set_weight(model_, 0, spheres_, force_);
+  elements_.add_forces(state_, force_);
+  add_loads(time);
+  for_each_touched(time, [&](const Contact& contact, Vec3 slip) {
+    const Vec3 push = model_.contact_k * contact.penetration * contact.normal - contact.drag * slip;
+    const auto i = std::size_t(contact.sphere);
+    force_[i] += push.x, force_[spheres_ + i] += push.y, force_[2 * spheres_ + i] += push.z;
+  });
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double* v = y + (3 + axis) * spheres_;
+    double *way = derivative + axis * spheres_, *speed = way + 3 * spheres_;
+    for (std::size_t i = 0; i < spheres_; ++i) {
+      const bool is_held = (model_.held_axes[i] >> axis & 1) != 0;
+      way[i] = is_held ? 0.0 : v[i], speed[i] = is_held ? 0.0 : force_[axis * spheres_ + i] / model_.mass[i];
+    }
+  }
+  const TwoSphereTpms& tpms = model_.tpms;
+  for (std::size_t t = 0; t < tpms.size(); ++t) {
+    const Vec3 apart = state_.position[std::size_t(tpms.b[t])] - state_.position[std::size_t(tpms.a[t])];
+    const double x = norm(apart) - tpms.rest_length[t], z = state_.kelvin_elongation[t];
+    derivative[6 * spheres_ + t] = (tpms.spring_k[t] * (x - z) - tpms.kelvin_k[t] * z) / tpms.kelvin_c[t];
+  }
+}
+
+void NetworkOde::take_blocks(double time, double gamma, const double* y) {
+  take_state(y);
+  for (std::size_t k = 0; k < 6; ++k)
+    for (std::size_t i = 0; i < spheres_; ++i)
+      blocks_[k * spheres_ + i] = k == 0 || k == 3 || k == 5 ? model_.mass[i] : 0.0;
+  elements_.linearise(state_, gamma, force_, blocks_);
+  for_each_touched(time, [&](const Contact& contact, Vec3) {
+    const Vec3 n = contact.normal;
+    const double across = gamma * contact.drag, along = gamma * gamma * model_.contact_k - across;
+    const double own[6] = {along * n.x * n.x + across, along * n.x * n.y, along * n.x * n.z,
+                           along * n.y * n.y + across, along * n.y * n.z, along * n.z * n.z + across};
+    for (std::size_t k = 0; k < 6; ++k) blocks_[k * spheres_ + std::size_t(contact.sphere)] += own[k];
+  });
+  kernels_for(best_instruction_set()).invert_blocks(spheres_, blocks_.data(), inverse_.data(), 0, spheres_);
+}
+
+void NetworkOde::precondition(double gamma, const double* r, double* z) const {
+  const std::size_t n = spheres_;
+  const double* b = inverse_.data();
+  for (std::size_t i = 0; i < n; ++i) {
+    const double m = model_.mass[i], x = m * r[3 * n + i], y = m * r[4 * n + i], w = m * r[5 * n + i];
+    z[3 * n + i] = b[i] * x + b[n + i] * y + b[2 * n + i] * w;
+    z[4 * n + i] = b[n + i] * x + b[3 * n + i] * y + b[4 * n + i] * w;
+    z[5 * n + i] = b[2 * n + i] * x + b[4 * n + i] * y + b[5 * n + i] * w;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if ((model_.held_axes[i] >> k & 1) != 0) z[(3 + k) * n + i] = r[(3 + k) * n + i];
+      z[k * n + i] = r[k * n + i] + gamma * z[(3 + k) * n + i];
+    }
+  }
+  const TwoSphereTpms& tpms = model_.tpms;
+  for (std::size_t t = 0; t < tpms.size(); ++t)
+    z[6 * n + t] = r[6 * n + t] / (1 + gamma * (tpms.spring_k[t] + tpms.kelvin_k[t]) / tpms.kelvin_c[t]);
+}
+
+}  // namespace ctpm::testing

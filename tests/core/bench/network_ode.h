@@ -1,0 +1,64 @@
+#pragma once
+
+#include <vector>
+
+#include "core/elements.h"
+#include "core/model.h"
+#include "core/state.h"
+
+namespace ctpm::testing {
+
+/// A rigid ball that presses straight down and leaves again: its depth is `depth` sin^2(pi t / duration).
+struct Press {
+  Vec3 touch;           ///< centre of the ball at the start and at the end [m]
+  double radius = 0;    ///< [m]
+  double depth = 0;     ///< at half of the time [m]
+  double duration = 0;  ///< [s]
+
+  Vec3 centre(double time) const;
+  Vec3 velocity(double time) const;
+};
+
+/// The law that core integrates as y' = f(t, y) for any other integrator: y is displacement from the start,
+/// velocity, and Kelvin elongation. Elements are core's own; loads and the ball's contact are those of
+/// outside.h and contact.h at time t, which is what core's substeps come to as they get shorter.
+class NetworkOde {
+ public:
+  /// `model` must outlive it; `start` is the State that y = start_values() stands for.
+  NetworkOde(const Model& model, const State& start, const Press& press);
+
+  std::size_t size() const { return 6 * spheres_ + start_.kelvin_elongation.size(); }
+  std::size_t sphere_count() const { return spheres_; }
+  std::vector<double> start_values() const;
+
+  /// Sizes of displacement [m], velocity [m/s] and Kelvin elongation [m] that a tolerance is relative to
+  /// (size()).
+  std::vector<double> scales() const;
+
+  /// y' = f(t, y).
+  void derive(double time, const double* y, double* derivative);
+
+  /// Takes the 3x3 block of each sphere of M + gamma C + gamma^2 K at (t, y): core's own preconditioner.
+  void take_blocks(double time, double gamma, const double* y);
+
+  /// Solves (1 - gamma f'(y)) z = r with the rest of the matrix left out.
+  void precondition(double gamma, const double* r, double* z) const;
+
+ private:
+  void take_state(const double* y);
+  void add_loads(double time);
+  template <class Touch>
+  void for_each_touched(double time, Touch&& touch) const;
+
+  const Model& model_;
+  const State start_;
+  const Press press_;
+  const std::size_t spheres_;
+  Team team_;
+  Elements elements_;
+  State state_;
+  Coordinates force_;
+  DiagonalBlocks blocks_, inverse_;
+};
+
+}  // namespace ctpm::testing
