@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/only_springs.h"
+
 namespace ctpm {
 namespace {
 
@@ -41,12 +43,15 @@ void BackwardEuler::solve(Elements& elements, const State& state, Outside& outsi
   add_loads(model_, outside, force_);
   elements.linearise(state, outside.h, force_, blocks_);
   for (int round = 0;; ++round) {
-    outside.contact.linearise(outside.h, force_, blocks_);
-    outside.pairs.linearise(outside.h, force_, blocks_);
+    if constexpr (!kOnlySprings) {
+      outside.contact.linearise(outside.h, force_, blocks_);
+      outside.pairs.linearise(outside.h, force_, blocks_);
+    }
     const CgOutcome outcome = solve_round(elements, state, outside, velocity);
     report.iterations += outcome.iterations;
     report.residual = outcome.residual;
     if (!outcome.converged) report.status = StepStatus::not_converged;
+    if constexpr (kOnlySprings) return;
     const bool pulls = outside.contact.has_pulling(outside.h, velocity) || outside.pairs.has_pulling(outside.h, velocity);
     if (round == kContactRounds || !pulls) return;
     outside.pairs.undo_linearise(force_, blocks_);
@@ -66,6 +71,7 @@ CgOutcome BackwardEuler::solve_round(const Elements& elements, const State& stat
   solver_.set_blocks(blocks_, outside.pinned);
   return solver_.solve(momentum_, velocity, limits_, [&](const double* in, double* out) {
     elements.apply(in, out);
+    if constexpr (kOnlySprings) return;
     if (outside.contact.count() > 0) outside.contact.apply(outside.h, in, out);
     if (outside.pairs.count() > 0) outside.pairs.apply(outside.h, in, out);
   });

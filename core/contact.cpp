@@ -11,7 +11,10 @@ constexpr double kStickTime = 0.1;
 
 }  // namespace
 
-BallContact::BallContact(const Model& model) : model_(model) { contacts_.reserve(model.sphere_count()); }
+BallContact::BallContact(const Model& model) : model_(model) {
+  const auto presses = [](const Tool& tool) { return tool.kind == ToolKind::ball; };
+  if (std::any_of(model.tools.begin(), model.tools.end(), presses)) contacts_.reserve(model.sphere_count());
+}
 
 void BallContact::find(const State& state, Vec3 centre, double radius, Vec3 velocity) {
   contacts_.clear();

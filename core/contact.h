@@ -64,7 +64,7 @@ class BallContact {
 
   const Model& model_;
   Vec3 velocity_;                  ///< of the tool [m/s]
-  std::vector<Contact> contacts_;  ///< room for every sphere, so that a tick never allocates
+  std::vector<Contact> contacts_;  ///< room for every sphere if the scene has a ball, so that a tick never allocates
 };
 
 }  // namespace ctpm

@@ -21,7 +21,7 @@ void Elements::for_each_task(Task&& task) const {
 }
 
 void Elements::measure(const LineArrays& constraints, const LineArrays& angles) {
-  if (constraints_.empty() && angles_.empty()) return;
+  if (kOnlySprings || (constraints_.empty() && angles_.empty())) return;
   team_.for_each(slabs_.count(), [&](int slab) {
     if (!softness_.empty()) std::fill(&softness_[0] + slabs_.begin(slab), &softness_[0] + slabs_.end(slab), 1.0);
     constraints_.measure(constraints, slab);
@@ -36,8 +36,10 @@ void Elements::add_forces(const State& state, Coordinates& force) {
   const AxialArrays axial = axial_.arrays(state, softness, force.data());
   measure(constraints, angles);
   for_each_task([&](int step, int task) {
-    constraints_.add_forces(constraints, step, task);
-    angles_.add_forces(angles, step, task);
+    if constexpr (!kOnlySprings) {
+      constraints_.add_forces(constraints, step, task);
+      angles_.add_forces(angles, step, task);
+    }
     axial_.add_forces(axial, step, task);
   });
 }
@@ -52,16 +54,20 @@ void Elements::linearise(const State& state, double h, Coordinates& force, Diago
   constraints_.prepare_linearise(), angles_.prepare_linearise(), axial_.prepare_linearise();
   measure(constraints, angles);
   for_each_task([&](int step, int task) {
-    constraints_.linearise(constraints, step, task);
-    angles_.linearise(angles, step, task);
+    if constexpr (!kOnlySprings) {
+      constraints_.linearise(constraints, step, task);
+      angles_.linearise(angles, step, task);
+    }
     axial_.linearise(axial, step, task);
   });
 }
 
 void Elements::apply(const double* v, double* result) const {
   for_each_task([&](int step, int task) {
-    constraints_.apply(step, task, v, result);
-    angles_.apply(step, task, v, result);
+    if constexpr (!kOnlySprings) {
+      constraints_.apply(step, task, v, result);
+      angles_.apply(step, task, v, result);
+    }
     axial_.apply(step, task, v, result);
   });
 }

@@ -6,6 +6,7 @@
 #include "core/kernels/kernels.h"
 #include "core/lines.h"
 #include "core/model.h"
+#include "core/only_springs.h"
 #include "core/slabs.h"
 #include "core/state.h"
 #include "core/team.h"
@@ -31,8 +32,9 @@ class Elements {
 
   /// Brings the Kelvin elongations of the two-sphere TPMs to the end of a step of `h` [s] that moved to
   /// State::position.
-  void advance_kelvin(double h, State& state) const { axial_.advance_kelvin(h, state); }
-
+  void advance_kelvin(double h, State& state) const {
+    if constexpr (!kOnlySprings) axial_.advance_kelvin(h, state);
+  }
 
   const Slabs& slabs() const { return slabs_; }
 

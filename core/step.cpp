@@ -13,6 +13,7 @@
 #include "core/cutting.h"
 #include "core/elements.h"
 #include "core/lips.h"
+#include "core/only_springs.h"
 #include "core/near_elements.h"
 #include "core/outside.h"
 #include "core/pair_contact.h"
@@ -171,6 +172,7 @@ void Stepper::Workspace::sweep(State& state, const Inputs& last, const Inputs& i
 
 /// What a scalpel meets, and lips that meet again.
 void Stepper::Workspace::find_pairs(const State& state, const Grip& grip) {
+  if constexpr (kOnlySprings) return;
   pairs.clear();
   if (grip.is(ToolKind::scalpel) && blade.any()) {
     near->follow(state.position);
@@ -189,7 +191,7 @@ bool Stepper::Workspace::advance(State& state, const Grip& grip, double h, doubl
   find_pairs(state, grip);
   Outside outside{h, time, has_loads, contact, pairs, held_axes, pinned, {}};
   if (pinned >= 0) outside.pin_velocity = (hand - state.position[std::size_t(pinned)]) / h;
-  if (grip.is(ToolKind::ball))
+  if (!kOnlySprings && grip.is(ToolKind::ball))
     contact.find(state, hand, grip.tool->radius, (grip.to - grip.from) / model.tick);
   if (explicit_solver)
     explicit_solver->solve(elements, state, outside, velocity);

@@ -1,5 +1,7 @@
 #include "core/symplectic_euler.h"
 
+#include "core/only_springs.h"
+
 namespace ctpm {
 
 void SymplecticEuler::solve(Elements& elements, const State& state, Outside& outside, Coordinates& velocity) {
@@ -17,6 +19,7 @@ void SymplecticEuler::solve(Elements& elements, const State& state, Outside& out
       for (std::size_t i = begin; i < end; ++i)
         velocity[axis * n + i] = outside.is_held(i, axis) ? 0.0 : momentum_[axis * n + i] / model_.mass[i];
   });
+  if constexpr (kOnlySprings) return;
   outside.contact.push_apart(outside.h, momentum_, velocity);
   outside.pairs.push_apart(outside.h, outside.held_axes, velocity);
   if (outside.pinned < 0) return;

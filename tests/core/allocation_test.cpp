@@ -1,32 +1,43 @@
 // A tick must not ask for memory: the allocator may take long, and a haptic device does not wait.
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <atomic>
 #include <cstdlib>
 #include <new>
+#include <set>
+#include <string>
 
+#include "core/fields.h"
 #include "core/step.h"
 #include "tests/core/blocks.h"
 
 namespace {
 
-std::atomic<long> allocations{0};
+std::atomic<long> allocations{0}, live_bytes{0};
 
 void* allocate(std::size_t size) {
   ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
+  void* memory = std::malloc(size == 0 ? 1 : size);
+  if (memory == nullptr) throw std::bad_alloc();
+  live_bytes += long(malloc_usable_size(memory));
+  return memory;
+}
+
+void release(void* memory) {
+  live_bytes -= long(malloc_usable_size(memory));
+  std::free(memory);
 }
 
 }  // namespace
 
 void* operator new(std::size_t size) { return allocate(size); }
 void* operator new[](std::size_t size) { return allocate(size); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory) noexcept { release(memory); }
+void operator delete[](void* memory) noexcept { release(memory); }
+void operator delete(void* memory, std::size_t) noexcept { release(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { release(memory); }
 
 namespace ctpm {
 namespace {
@@ -64,6 +75,66 @@ TEST_P(EveryIntegrator, AllocatesNothingAfterTheFirstTick) {
 INSTANTIATE_TEST_SUITE_P(All, EveryIntegrator,
                          ::testing::Values(Integrator::symplectic_euler, Integrator::backward_euler,
                                            Integrator::extrapolated_euler));
+
+Model springs_only() {
+  Material material = testing::liver_material();
+  material.stiffness_scale = 0.29;
+  Model model = testing::make_block_model(11, 11, 11, Structure::mass_spring, material);
+  model.solver.integrator = Integrator::symplectic_euler;
+  return model;
+}
+
+/// What a Stepper of `model` holds after a tick [bytes].
+long stepper_bytes(const Model& model) {
+  State state = rest_state(model);
+  const long before = live_bytes;
+  Stepper stepper(model);
+  EXPECT_EQ(stepper.step(state, {}).status, StepStatus::ok);
+  return live_bytes - before;
+}
+
+TEST(SpringsOnly, ModelAndStateHaveNoArraysOfOtherFeatures) {
+  const Model model = springs_only();
+  const State state = rest_state(model);
+  std::set<std::string> filled;
+  const auto note = [&](std::string_view name, const auto& member) {
+    if constexpr (requires { member.data(); })
+      if (member.size() > 0) filled.emplace(name);
+  };
+  for_each_field(model, note), for_each_field(state, note);
+  const std::set<std::string> expected{
+      "rest_position.x", "rest_position.y", "rest_position.z",   "mass",       "held_axes",  "contact_radius",
+      "layer",           "organs",          "edges.rest_length", "edges.a",    "edges.b",    "edges.k",
+      "position.x",      "position.y",      "position.z",        "velocity.x", "velocity.y", "velocity.z"};
+  EXPECT_EQ(filled, expected);
+}
+
+TEST(SpringsOnly, StepperHoldsForceMomentumVelocityAndTheBatchesOfEdges) {
+  const Model model = springs_only();
+  const long spheres = long(model.sphere_count()), edges = long(model.edges.size());
+  const long bound = spheres * (3 * 3 * 8 + 1) + edges * 4, bytes = stepper_bytes(model), room = bound - bytes;
+  EXPECT_GT(room, 0);
+
+  // What each feature takes is more than what the bound leaves, so that it could not hide there.
+  const auto taken_by = [&](auto&& feature) {
+    Model other = springs_only();
+    feature(other);
+    return stepper_bytes(other) - bytes;
+  };
+  EXPECT_GT(taken_by([](Model& m) { m.tools = {testing::ball(0.01)}; }), room);
+  EXPECT_GT(taken_by([](Model& m) { m.tools = {testing::scalpel(0.05)}; }), room);
+  const auto dashpots = [](Model& m) {
+    for (std::size_t e = 0; e < m.edges.size(); ++e) m.edges.c.push_back(1e-9 * double(e));
+  };
+  EXPECT_GT(taken_by(dashpots), room);
+  const auto constraints = [](Model& m) {
+    m.constraints = testing::make_block_model(11, 11, 11).constraints;
+    for (double& k : m.constraints.k) k *= 1e-3;
+  };
+  EXPECT_GT(taken_by(constraints), room);
+  const auto softening = [](Model& m) { m.has_softening = true, m.edges.third.assign(m.edges.size(), -1); };
+  EXPECT_GT(taken_by(softening), room);
+}
 
 }  // namespace
 }  // namespace ctpm
