@@ -41,6 +41,13 @@ std::vector<Vec3> vertices_of(const fs::path& mesh) {
   return vertices;
 }
 
+/// The scene with whose name the script's begins.
+std::string scene_of(std::string script) {
+  while (!script.empty() && !fs::exists(kScenes / (script + ".json")))
+    script.resize(script.find('-') == std::string::npos ? 0 : script.rfind('-'));
+  return script;
+}
+
 struct Shipped {
   std::string name;
   SceneSpec scene;
@@ -54,7 +61,7 @@ std::vector<Shipped> shipped_scripts() {
   for (const auto& entry : fs::directory_iterator(kScenes / "scripts")) {
     if (entry.path().extension() != ".json") continue;
     const std::string name = entry.path().stem().string();
-    const auto scene = load_scene((kScenes / (name.substr(0, name.find('-')) + ".json")).string());
+    const auto scene = load_scene((kScenes / (scene_of(name) + ".json")).string());
     if (!scene) {
       ADD_FAILURE() << name << ": " << to_string(scene.errors().front());
       continue;
@@ -72,14 +79,15 @@ std::vector<Shipped> shipped_scripts() {
       ADD_FAILURE() << to_string(script.errors().front());
       continue;
     }
-    all.push_back(
-        {name, scene->spec, *script, tools, vertices_of(kScenes / scene->spec.organs.front().mesh)});
+    Shipped& shipped = all.emplace_back(Shipped{name, scene->spec, *script, tools, {}});
+    for (const OrganSpec& organ : scene->spec.organs)
+      for (const Vec3& vertex : vertices_of(kScenes / organ.mesh)) shipped.vertices.push_back(vertex);
   }
   std::sort(all.begin(), all.end(), [](const Shipped& a, const Shipped& b) { return a.name < b.name; });
   return all;
 }
 
-/// How deep a tool is in the organ at rest: a ball beyond its nearest vertex, a tip below the top around it
+/// How deep a tool is in the organs at rest: a ball beyond its nearest vertex, a tip below the top around it
 /// [m]. Negative: not in it.
 double depth_of(const Shipped& shipped, const Inputs& inputs) {
   const Tool& tool = shipped.tools[static_cast<std::size_t>(inputs.tool)];
@@ -97,8 +105,8 @@ double depth_of(const Shipped& shipped, const Inputs& inputs) {
 TEST(ShippedScripts, EachSceneHasOne) {
   std::vector<std::string> names;
   for (const Shipped& shipped : shipped_scripts())
-    names.push_back(shipped.name.substr(0, shipped.name.find('-')));
-  for (const std::string scene : {"liver", "kidney", "skin"})
+    names.push_back(scene_of(shipped.name));
+  for (const std::string scene : {"liver", "kidney", "skin", "incision", "two-organs"})
     EXPECT_NE(std::find(names.begin(), names.end(), scene), names.end()) << scene;
 }
 
