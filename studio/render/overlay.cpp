@@ -92,7 +92,7 @@ class Font {
 };
 
 /// Tints a rectangle with rounded corners; `opacity` of 256.
-void draw_panel(cv::Mat& rgb, const Box& box, const Ink& tint, int opacity, int radius) {
+void draw_panel(cv::Mat& rgb, const PixelBox& box, const Ink& tint, int opacity, int radius) {
   for (int y = std::max(0, box.y); y < std::min(rgb.rows, box.y + box.height); ++y) {
     const int dy = std::max({box.y + radius - y, y - (box.y + box.height - 1 - radius), 0});
     const int inset = radius - int(std::sqrt(radius * radius - dy * dy));
@@ -113,9 +113,9 @@ struct Line {
 /// Everything that is written, and the panels behind it.
 struct Plan {
   std::vector<Line> lines;
-  Box facts, plot, verdict, warning, legend;
-  Box bar;    ///< the legend's colours
-  Box curve;  ///< inside of the plot
+  PixelBox facts, plot, verdict, warning, legend;
+  PixelBox bar;    ///< the legend's colours
+  PixelBox curve;  ///< inside of the plot
   double top_force = 1;
 };
 
@@ -166,7 +166,7 @@ struct Overlay::Parts {
   void plan_plot(const OverlayData& data, Plan& plan);
   void plan_banners(const OverlayData& data, Plan& plan);
   void plan_legend(const OverlayData& data, Plan& plan);
-  void draw_bar(cv::Mat& rgb, const Legend& legend, const Box& bar) const;
+  void draw_bar(cv::Mat& rgb, const Legend& legend, const PixelBox& bar) const;
   void draw_curve(cv::Mat& rgb, const OverlayData& data, const Plan& plan) const;
   Line line(Font& font, const std::string& text, int x, int y, const Ink& ink) {
     return {{text, {x, y, font.width(text), font.height() + font.height() / 4}}, ink, &font == &large};
@@ -233,7 +233,7 @@ void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
   const auto banner = [&](const std::string& text, int y, const Ink& ink) {
     const std::string shown = small.shortened(text, std::min(px(640), width - 2 * margin - 2 * pad));
     const int w = small.width(shown) + 2 * pad;
-    const Box box{is_narrow ? margin : width - margin - w, y, w, h};
+    const PixelBox box{is_narrow ? margin : width - margin - w, y, w, h};
     plan.lines.push_back(line(small, shown, box.x + pad, y + px(13), ink));
     return box;
   };
@@ -262,7 +262,7 @@ void Overlay::Parts::plan_legend(const OverlayData& data, Plan& plan) {
   plan.lines.push_back(high);
 }
 
-void Overlay::Parts::draw_bar(cv::Mat& rgb, const Legend& legend, const Box& bar) const {
+void Overlay::Parts::draw_bar(cv::Mat& rgb, const Legend& legend, const PixelBox& bar) const {
   const int count = int(legend.colours.size());
   for (int x = 0; x < bar.width && count > 0; ++x) {
     // Single values fill their field; a range runs from the first to the last colour.
@@ -287,7 +287,7 @@ Plan Overlay::Parts::plan(const OverlayData& data) {
 }
 
 void Overlay::Parts::draw_curve(cv::Mat& rgb, const OverlayData& data, const Plan& plan) const {
-  const Box& c = plan.curve;
+  const PixelBox& c = plan.curve;
   constexpr int kShift = 4;  // polylines in sixteenths of a pixel
   const auto at = [&](double time, double force) {
     const double x = c.x + c.width * (1 - (data.time - time) / data.plot_span);
@@ -317,7 +317,7 @@ void Overlay::draw(Frame& frame, const OverlayData& data) {
   cv::Mat rgb(frame.height, frame.width, CV_8UC3, frame.rgb.data());
   const Plan plan = parts_->plan(data);
   const int radius = parts_->px(10);
-  for (const Box& box : {plan.facts, plan.plot, plan.verdict, plan.legend})
+  for (const PixelBox& box : {plan.facts, plan.plot, plan.verdict, plan.legend})
     draw_panel(rgb, box, {14, 19, 25}, 176, radius);
   draw_panel(rgb, plan.warning, {170, 24, 18}, 224, radius);
   for (const Line& line : plan.lines)

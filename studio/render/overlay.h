@@ -42,10 +42,10 @@ struct OverlayData {
 double largest_force(const OverlayData& data);
 
 /// A rectangle of the picture [pixels].
-struct Box {
+struct PixelBox {
   int x = 0, y = 0, width = 0, height = 0;
 
-  bool overlaps(const Box& o) const {
+  bool overlaps(const PixelBox& o) const {
     return x < o.x + o.width && o.x < x + width && y < o.y + o.height && o.y < y + height;
   }
 };
@@ -53,7 +53,7 @@ struct Box {
 /// A text and where it stands.
 struct PlacedText {
   std::string text;
-  Box box;
+  PixelBox box;
 };
 
 /// Writes on pictures of one size. Sizes are those of 1280x720, scaled; narrow pictures (half of a pair side

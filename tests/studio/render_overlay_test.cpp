@@ -30,7 +30,7 @@ TEST(Overlay, TextsNeitherOverlapNorLeaveThePicture) {
       const auto texts = overlay.layout(data);
       EXPECT_GT(texts.size(), 10u);
       for (std::size_t i = 0; i < texts.size(); ++i) {
-        const Box& box = texts[i].box;
+        const PixelBox& box = texts[i].box;
         EXPECT_TRUE(box.x >= 0 && box.y >= 0 && box.x + box.width <= width && box.y + box.height <= height)
             << texts[i].text;
         for (std::size_t j = 0; j < i; ++j)
