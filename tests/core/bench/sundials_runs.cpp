@@ -13,7 +13,7 @@
 namespace ctpm::testing {
 namespace {
 
-/// Dimension of the Krylov space; CVODE's own 5 makes it reject steps of stiff tissue.
+/// Dimension of the Krylov space. At equal error, 5 (CVODE's own) and 60 take about as long.
 constexpr int kKrylov = 30;
 
 constexpr long kMostSteps = 100'000'000;
