@@ -148,9 +148,10 @@ Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organ
   Script script;
   const Table table(scene.gravity);
   const Top top(organs.front(), table);
-  // Deep enough to be seen, and never through the organ.
+  // Deep enough to be seen, never through the organ, and no deeper than a hand would cut at once: the force on a blade
+  // is the toughness times its length in the tissue, 4 N in liver at 25 mm.
   const Vec3 size = top.size();
-  const double depth = std::min(0.010, 0.2 * size.z), cut_depth = std::min(0.040, 0.45 * size.z);
+  const double depth = std::min(0.010, 0.2 * size.z), cut_depth = std::min(0.025, 0.45 * size.z);
   const double cut_length = std::min(0.6 * size.y, 0.080);
   // A little in front of the ridge, where a viewer before the organ can see it, unless the organ is too thin there.
   const auto seen = [&](double share, double forward) {
