@@ -75,7 +75,9 @@ std::string full_name(const Variant& variant) {
 
 void use_variant(SceneSpec& scene, const Variant& variant) {
   scene.organs[0].model = variant.structure;
-  if (variant.is_pa_s) scene.organs[0].material.preset += "-pa-s";
+  if (!variant.is_pa_s) return;
+  scene.organs[0].material.preset += "-pa-s";
+  for (LayerSpec& layer : scene.organs[0].layers) layer.material.preset += "-pa-s";
 }
 
 Site site_of(const OrganSpec& organ) {
@@ -102,7 +104,7 @@ constexpr Need kNeeds[] = {{"paper/rig-skin.json", 7, 0, 0, 1},
                            {"paper/block-liver.json", 0, 1, 1, 1},
                            {"paper/convergence-liver.json", 0, 0, 0, 0},
                            {"liver.json", 0, 0, 0, 1},
-                           {"kidney.json", 0, 0, 0, 1}};
+                           {"incision.json", 0, 0, 4, 1}};
 
 }  // namespace
 
