@@ -47,15 +47,6 @@ const char* kind_name(EventKind kind) {
   return "unknown";
 }
 
-/// Pieces of tissue that came loose in the whole session.
-std::int64_t pieces_in(const std::vector<Event>& events) {
-  double pieces = 0;
-  for (const Event& event : events)
-    if (event.kind == EventKind::cut && event.text == piece_came_loose && !event.values.empty())
-      pieces += event.values[0];
-  return std::int64_t(pieces);
-}
-
 void print_json(SessionReader& reader, const SessionStatistics& s, const std::vector<Event>& events) {
   const Model& model = reader.start().model;
   JsonWriter json;
@@ -70,7 +61,7 @@ void print_json(SessionReader& reader, const SessionStatistics& s, const std::ve
   json.member("elements", model.element_count())
       .member("keyframes", s.keyframes)
       .member("severed", s.severed)
-      .member("pieces_came_loose", pieces_in(events));
+      .member("pieces_came_loose", pieces_came_loose(events, reader.tick_count()));
   json.member("late_ticks", s.late_ticks)
       .member("tick_time_p50_s", s.tick_time_p50)
       .member("tick_time_p99_s", s.tick_time_p99);
@@ -140,7 +131,7 @@ void print_text(SessionReader& reader, const SessionStatistics& s, const std::ve
                 s.input_age_max * 1e3);
   for (const auto& [name, value] : s.values) std::printf("value      %s = %g\n", name.c_str(), value);
   std::printf("at most    %.3f N, %.2f mm deep; %lld elements severed, %lld pieces came loose\n", s.max_force, s.max_depth * 1e3,
-              (long long)s.severed, (long long)pieces_in(events));
+              (long long)s.severed, (long long)pieces_came_loose(events, reader.tick_count()));
   print_events(events, model.tick);
 }
 

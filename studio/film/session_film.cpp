@@ -7,6 +7,7 @@
 #include "scenes/scene_file.h"
 #include "studio/console.h"
 #include "studio/loaded_scene.h"
+#include "studio/session/run_session.h"
 
 namespace ctpm {
 namespace {
@@ -73,6 +74,9 @@ Result<Done> SessionFilm::begin() {
     if (tick % plot_every_ == 0)
       overlay_.history.push_back(
           {double(tick) * model.tick, norm((*earlier)[std::size_t(tick - before - 1)].tool_force)});
+  const Result<std::vector<Event>> events = reader_.events();
+  if (!events) return events.errors();
+  overlay_.loose = pieces_came_loose(*events, range_.from);
   overlay_.tick = range_.from, overlay_.time = double(range_.from) * model.tick;
   return cursor_.seek(range_.from);
 }
@@ -83,6 +87,7 @@ void SessionFilm::take_tick() {
   overlay_.time = double(overlay_.tick) * model().tick;
   overlay_.force = norm(cursor_.report().tool_force);
   overlay_.depth = cursor_.report().depth;
+  overlay_.loose += cursor_.report().came_loose;
   std::vector<ForcePoint>& history = overlay_.history;
   if (overlay_.tick % plot_every_ == 0) history.push_back({overlay_.time, overlay_.force});
   if (history.size() > 2 * kPlotPoints) history.erase(history.begin(), history.end() - kPlotPoints - 1);

@@ -33,6 +33,9 @@ class SessionFilm {
   /// differs, unless that is allowed.
   Result<Shot> shoot(std::int64_t tick);
 
+  /// Pieces of tissue that came loose from the session's start to the last shot.
+  std::int64_t pieces_loose() const { return overlay_.loose; }
+
   const SceneSpec& scene() const { return scene_; }
   const Model& model() const { return reader_.start().model; }
   const SessionReader& reader() const { return reader_; }

@@ -138,7 +138,8 @@ std::string damage_text(const OverlayData& data) {
   if (is_too_deep(data))
     text += " " + fixed(1000 * data.depth, 1) + " mm, limit " + fixed(1000 * data.damage_depth, 1) + " mm";
   if (is_too_strong(data))
-    text += (text.empty() ? " " : "; ") + fixed(data.force, 2) + " N, limit " + fixed(data.damage_force, 2) + " N";
+    text += (text.empty() ? " " : "; ") + fixed(data.force, 2) + " N, limit " + fixed(data.damage_force, 2) +
+            " N";
   return text.empty() ? text : "TISSUE DAMAGE:" + text;
 }
 
@@ -178,7 +179,7 @@ struct Overlay::Parts {
   Font small, large;
 };
 
-/// Top left: title, time, tick, force, depth.
+/// Top left: title, time, tick, force, depth, pieces that came loose.
 void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
   const int pad = px(16), step = px(28), x = px(20) + pad, inner = px(300);
   int y = px(20) + pad;
@@ -186,13 +187,15 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
     plan.lines.push_back(line(large, large.shortened(data.title, inner), x, y, kWhite));
     y += px(38);
   }
-  const std::array<std::pair<std::string, std::string>, 6> facts{
+  const std::array<std::pair<std::string, std::string>, 7> facts{
       {{"session", small.shortened(data.session, px(195))},
        {"model", small.shortened(data.model, px(195))},
        {data.is_over ? "ended" : "time", fixed(data.time, 3) + " s"},
        {"tick", std::to_string(data.tick)},
        {"force", fixed(data.force, 3) + " N"},
-       {"depth", fixed(1000 * data.depth, 2) + " mm"}}};
+       {"depth", fixed(1000 * data.depth, 2) + " mm"},
+       {"loose",
+        data.loose == 0 ? "" : std::to_string(data.loose) + (data.loose == 1 ? " piece" : " pieces")}}};
   for (const auto& [name, value] : facts) {
     if (value.empty()) continue;
     plan.lines.push_back(line(small, name, x, y, kGrey));

@@ -28,6 +28,7 @@ struct OverlayData {
   std::int64_t tick = 0;
   double force = 0;         ///< magnitude on the tool [N]
   double depth = 0;         ///< of the touched tissue [m]
+  std::int64_t loose = 0;   ///< pieces of tissue that came loose; 0 is not shown
   double damage_depth = 0;  ///< depth beyond which the tissue is damaged [m]; 0: no limit
   double damage_force = 0;  ///< force beyond which it is [N]; 0: no limit
   std::string verdict;      ///< what the replay found, one line

@@ -76,6 +76,15 @@ class EventWatch {
 
 }  // namespace
 
+std::int64_t pieces_came_loose(const std::vector<Event>& events, std::int64_t end) {
+  double pieces = 0;
+  for (const Event& event : events)
+    if (event.tick < end && event.kind == EventKind::cut && event.text == piece_came_loose &&
+        !event.values.empty())
+      pieces += event.values[0];
+  return std::int64_t(pieces);
+}
+
 int threads_for(const Model& model) {
   constexpr std::size_t kWorthSharing = 3000;  // spheres
   return model.sphere_count() >= kWorthSharing && std::thread::hardware_concurrency() > 1 ? 2 : 1;

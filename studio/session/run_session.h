@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "core/model.h"
 #include "core/state.h"
@@ -13,6 +14,9 @@ namespace ctpm {
 
 /// Text of the event (of kind `cut`) that notes pieces of tissue which came loose; its value is how many.
 inline constexpr const char* piece_came_loose = "a piece comes loose; value: pieces";
+
+/// Pieces of tissue that came loose in the ticks before `end`.
+std::int64_t pieces_came_loose(const std::vector<Event>& events, std::int64_t end);
 
 struct RunOptions {
   bool in_real_time =

@@ -44,6 +44,18 @@ TEST(CuttingSession, TellsTheForceAndThePieceThatComesLoose) {
   const auto json = run_ctpm({"info", "cut.ctpm", "--json"}, folder.path());
   EXPECT_TRUE(holds(json.out, "\"pieces_came_loose\": 1")) << json.out;
 
+  // The video says so too, whether or not the moment itself is shown.
+  for (const char* from : {"0", "1.1"}) {
+    const auto exported =
+        run_ctpm({"export", "cut.ctpm", "-o", "cut.avi", "--size", "320x180", "--fps", "5", "--from-s", from}, folder.path());
+    ASSERT_EQ(exported.code, 0) << exported.err;
+    EXPECT_TRUE(holds(testing::slurp(folder.path() / "cut.avi.json"), "\"pieces_came_loose\": 1")) << from;
+  }
+  const auto before =
+      run_ctpm({"export", "cut.ctpm", "-o", "before.avi", "--size", "320x180", "--fps", "5", "--to-s", "0.4"}, folder.path());
+  ASSERT_EQ(before.code, 0) << before.err;
+  EXPECT_TRUE(holds(testing::slurp(folder.path() / "before.avi.json"), "\"pieces_came_loose\": 0"));
+
   // The force of the CSV: none before, newtons while it cuts, none after.
   const auto replayed = run_ctpm({"replay", "cut.ctpm", "--csv", "cut.csv"}, folder.path());
   ASSERT_EQ(replayed.code, 0) << replayed.err;

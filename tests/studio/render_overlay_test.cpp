@@ -13,6 +13,7 @@ OverlayData full_data() {
   OverlayData data;
   data.title = "Liver", data.model = "CTPM", data.session = "press";
   data.time = 12.345, data.tick = 12345, data.force = 1.234, data.depth = 0.0134, data.damage_depth = 0.012;
+  data.loose = 2;
   data.verdict = "Replay identical: 12345 of 12345 ticks", data.verdict_tone = VerdictTone::good;
   data.legend = {"stretch [%]", "-20", "+20", {{0.1, 0.2, 0.7}, {0.8, 0.8, 0.8}, {0.8, 0.1, 0.1}}, false};
   for (int i = 0; i <= 12345; i += 5) data.history.push_back({i * 1e-3, 1 + std::sin(i * 0.003)});
@@ -87,6 +88,7 @@ TEST(Overlay, ItsNumbersAreReadBackFromThePicture) {
   EXPECT_EQ(reader.read_after(frame, "tick"), "12345");
   EXPECT_EQ(reader.read_after(frame, "force"), "1.234 N");
   EXPECT_EQ(reader.read_after(frame, "depth"), "13.40 mm");
+  EXPECT_EQ(reader.read_after(frame, "loose"), "2 pieces");
   EXPECT_EQ(reader.read_after(frame, "session"), "expert-2");
   EXPECT_EQ(reader.read_after(frame, "model"), "CTPM");
 }
@@ -112,6 +114,11 @@ TEST(Overlay, ShowsOnlyWhatThereIs) {
   EXPECT_TRUE(says("Replay identical"));
   data.verdict.clear();
   EXPECT_FALSE(says("Replay"));
+  EXPECT_TRUE(says("2 pieces"));
+  data.loose = 1;
+  EXPECT_TRUE(says("1 piece"));
+  data.loose = 0;
+  EXPECT_FALSE(says("loose") || says("piece"));
   EXPECT_TRUE(says("12.345 s") && says("12345") && says("1.234 N") && says("12.10 mm"));
 }
 
