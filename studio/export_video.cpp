@@ -97,7 +97,7 @@ Result<Reel> make_reel(SessionReader& session, const TickRange& range, int width
 }
 
 Frame draw_shot(Reel& reel, Shot& shot, double least_top_force) {
-  const DrawOptions draw = reel.look.at(reel.renderer->scene(), shot.state);
+  const DrawOptions draw = reel.look.at(reel.renderer->scene(), shot.moments);
   Frame picture = reel.renderer->draw(shot.state, draw);
   shot.overlay.legend = legend_of(reel.film->model(), draw);
   shot.overlay.least_top_force = std::max(shot.overlay.least_top_force, least_top_force);

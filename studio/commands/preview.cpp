@@ -38,7 +38,7 @@ int run_preview(const PreviewArguments& arguments) {
   Result<std::unique_ptr<Renderer>> renderer = Renderer::create(width, size->height, std::move(view));
   if (!renderer) return print_errors(renderer.errors());
   const State state = rest_state(model);
-  DrawOptions options = look->at((*renderer)->scene(), state);
+  DrawOptions options = look->at((*renderer)->scene(), {&state.last_inputs, 1});
   Frame picture = (*renderer)->draw(state, options);
   if (arguments.spheres) {
     options.view = View::spheres;

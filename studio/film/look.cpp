@@ -88,9 +88,9 @@ void add_look(CLI::App& app, LookRequest& request) {
                  "A camera of the scene, fitted, or follow the tool; its first one, else fitted");
 }
 
-DrawOptions Look::at(const SceneView& scene, const State& state) const {
+DrawOptions Look::at(const SceneView& scene, std::span<const Inputs> moments) const {
   DrawOptions options = draw;
-  if (follows) options.camera = following_camera(scene, draw.camera, state);
+  if (follows) options.camera = following_camera(scene, draw.camera, moments);
   return options;
 }
 

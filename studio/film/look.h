@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <span>
 #include <string>
 
 #include "core/result.h"
@@ -27,8 +28,8 @@ struct Look {
   bool follows = false;  ///< the camera follows the tool
   std::string camera;    ///< its name: of the scene, `fitted`, or `follow`
 
-  /// The options for a moment of the scene.
-  DrawOptions at(const SceneView& scene, const State& state) const;
+  /// The options for a moment of the scene; `moments` as following_camera() wants them.
+  DrawOptions at(const SceneView& scene, std::span<const Inputs> moments) const;
 };
 
 /// Finds what the request names. Errors: an unknown view, colour or camera, with those there are; colours

@@ -66,14 +66,19 @@ Result<Done> SessionFilm::begin() {
     first_different_ = verdict->first_tick;
   }
   plot_every_ = std::max<std::int64_t>(1, std::llround(overlay_.plot_span / model.tick) / kPlotPoints);
-  // The plot begins with what was before.
-  const std::int64_t before = std::max<std::int64_t>(0, range_.from - kPlotPoints * plot_every_);
+  moment_every_ = std::size_t(std::max(1ll, std::llround(kFollowedEvery / model.tick)));
+  // Plot and camera begin with what was before.
+  const std::int64_t needed =
+      std::max(kPlotPoints * plot_every_, std::int64_t(kFollowedMoments * moment_every_));
+  const std::int64_t before = std::max<std::int64_t>(0, range_.from - needed);
   const Result<std::vector<TickRecord>> earlier = reader_.ticks(before, range_.from);
   if (!earlier) return earlier.errors();
-  for (std::int64_t tick = before + 1; tick <= range_.from; ++tick)
+  for (std::int64_t tick = before + 1; tick <= range_.from; ++tick) {
+    const TickRecord& record = (*earlier)[std::size_t(tick - before - 1)];
+    keep_inputs(record.inputs);
     if (tick % plot_every_ == 0)
-      overlay_.history.push_back(
-          {double(tick) * model.tick, norm((*earlier)[std::size_t(tick - before - 1)].tool_force)});
+      overlay_.history.push_back({double(tick) * model.tick, norm(record.tool_force)});
+  }
   const Result<std::vector<Event>> events = reader_.events();
   if (!events) return events.errors();
   overlay_.loose = pieces_came_loose(*events, range_.from);
@@ -88,10 +93,25 @@ void SessionFilm::take_tick() {
   overlay_.force = norm(cursor_.report().tool_force);
   overlay_.depth = cursor_.report().depth;
   overlay_.loose += cursor_.report().came_loose;
+  keep_inputs(cursor_.record().inputs);
   std::vector<ForcePoint>& history = overlay_.history;
   if (overlay_.tick % plot_every_ == 0) history.push_back({overlay_.time, overlay_.force});
   if (history.size() > 2 * kPlotPoints) history.erase(history.begin(), history.end() - kPlotPoints - 1);
   if (first_different_ < 0 && !cursor_.same_so_far()) first_different_ = overlay_.tick - 1;
+}
+
+void SessionFilm::keep_inputs(const Inputs& inputs) {
+  inputs_.push_back(inputs);
+  if (inputs_.size() > kFollowedMoments * moment_every_) inputs_.pop_front();
+}
+
+/// Counted back from the tick that was done last.
+std::vector<Inputs> SessionFilm::moments() const {
+  std::vector<Inputs> moments;
+  for (std::size_t back = 0; back < inputs_.size(); back += moment_every_)
+    moments.push_back(inputs_[inputs_.size() - 1 - back]);
+  std::reverse(moments.begin(), moments.end());
+  return moments;
 }
 
 std::string SessionFilm::verdict() const {
@@ -117,7 +137,7 @@ Result<Shot> SessionFilm::shoot(std::int64_t tick) {
   }
   overlay_.verdict = verdict();
   overlay_.verdict_tone = is_same() ? VerdictTone::good : VerdictTone::bad;
-  return Shot{cursor_.state(), overlay_};
+  return Shot{cursor_.state(), overlay_, moments()};
 }
 
 }  // namespace ctpm

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/result.h"
 #include "core/state.h"
@@ -18,6 +20,7 @@ namespace ctpm {
 struct Shot {
   State state;
   OverlayData overlay;
+  std::vector<Inputs> moments;  ///< as following_camera() wants them
 };
 
 /// A session simulated again, from one moment to the next.
@@ -48,6 +51,8 @@ class SessionFilm {
               ReplayCursor cursor);
   Result<Done> begin();
   void take_tick();
+  void keep_inputs(const Inputs& inputs);
+  std::vector<Inputs> moments() const;
   Error differs() const;
   std::string verdict() const;
 
@@ -57,7 +62,9 @@ class SessionFilm {
   bool allow_diverged_;
   ReplayCursor cursor_;
   OverlayData overlay_;
-  std::int64_t plot_every_ = 1;  ///< ticks between two points of the force plot
+  std::int64_t plot_every_ = 1;   ///< ticks between two points of the force plot
+  std::size_t moment_every_ = 1;  ///< ticks between two moments of a following camera
+  std::deque<Inputs> inputs_;     ///< of the last ticks, as many as these moments need
   std::int64_t first_different_ = -1;
 };
 

@@ -41,18 +41,37 @@ Camera default_camera(const SceneView& scene, double aspect) {
   return fit_camera(points, -from, up, 32, aspect);
 }
 
-Camera following_camera(const SceneView& scene, const Camera& base, const State& state) {
-  constexpr double kClosest = 0.5;  // of the base camera's distance
-  if (state.last_inputs.tool < 0) return base;
-  const Bounds box = rest_bounds(scene);
-  const Vec3 p = state.last_inputs.position;
+namespace {
+
+/// How near the held tool is to the organs: 0 where it does not matter, 1 where it works.
+double nearness(const Bounds& organs, const Inputs& inputs) {
+  if (inputs.tool < 0) return 0;
+  const Vec3 p = inputs.position;
   const auto beyond = [](double low, double high, double x) { return std::max({low - x, x - high, 0.0}); };
-  const double away = norm(Vec3{beyond(box.min.x, box.max.x, p.x), beyond(box.min.y, box.max.y, p.y),
-                                beyond(box.min.z, box.max.z, p.z)});
-  const double t = std::clamp(1 - away / (0.35 * box.diagonal()), 0.0, 1.0), near = t * t * (3 - 2 * t);
+  const double away =
+      norm(Vec3{beyond(organs.min.x, organs.max.x, p.x), beyond(organs.min.y, organs.max.y, p.y),
+                beyond(organs.min.z, organs.max.z, p.z)});
+  const double t = std::clamp(1 - away / (0.35 * organs.diagonal()), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+}  // namespace
+
+Camera following_camera(const SceneView& scene, const Camera& base, std::span<const Inputs> moments) {
+  constexpr double kClosest = 0.5;  // of the base camera's distance
+  const Bounds organs = rest_bounds(scene);
+  // Weights that rise and fall: after a sudden change the camera sets out and arrives gently.
+  double sum = 0, near = 0;
+  Vec3 pull;
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    const double age = std::min(1.0, (double(moments.size() - 1 - i) + 0.5) / kFollowedMoments);
+    const double weight = age * (1 - age), part = weight * nearness(organs, moments[i]);
+    sum += weight, near += part, pull += part * (moments[i].position - base.target);
+  }
+  if (sum == 0 || near == 0) return base;
   Camera camera = base;
-  camera.target = base.target + 0.85 * near * (p - base.target);
-  camera.eye = camera.target + (1 - near * (1 - kClosest)) * (base.eye - base.target);
+  camera.target = base.target + 0.85 / sum * pull;
+  camera.eye = camera.target + (1 - near / sum * (1 - kClosest)) * (base.eye - base.target);
   return camera;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,9 +44,15 @@ Vec3 up_of(const Model& model);
 /// A camera in front of the scene, a little above it and to the right, with everything in sight.
 Camera default_camera(const SceneView& scene, double aspect = 16.0 / 9);
 
-/// A camera that comes closer as the held tool nears the organs, and looks where it works. It depends on the
-/// State alone, so a video that starts later shows the same pictures. Without a tool: `base` itself.
-Camera following_camera(const SceneView& scene, const Camera& base, const State& state);
+/// How many moments a following camera moves over, and how far they are apart: it lags by half of 0.8 s.
+inline constexpr std::size_t kFollowedMoments = 80;
+inline constexpr double kFollowedEvery = 0.01;  ///< [s]
+
+/// A camera that comes closer as the held tool nears the organs, and looks where it works. `moments` are the
+/// inputs of the last moments, oldest first; fewer at a session's beginning. The camera moves softly whatever
+/// the tool does, and depends on nothing else, so a video that starts later shows the same pictures. Without
+/// a tool: `base` itself.
+Camera following_camera(const SceneView& scene, const Camera& base, std::span<const Inputs> moments);
 
 enum class View {
   surface,   ///< the organs' surfaces, as tissue

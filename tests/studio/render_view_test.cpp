@@ -105,22 +105,44 @@ TEST(View, ElementsShowColoursOfTheirLegend) {
 TEST(View, FollowingCameraNearsTheToolThatWorks) {
   const auto scene = make_blob_scene(0.004, 12);
   const Camera base = default_camera(scene->view);
-  State state = rest_state(scene->model);
+  Inputs inputs;
+  const auto follow = [&] { return following_camera(scene->view, base, {&inputs, 1}); };
   const auto distance = [](const Camera& c) { return norm(c.eye - c.target); };
-  EXPECT_EQ(distance(following_camera(scene->view, base, state)), distance(base));
-  state.last_inputs.tool = 0, state.last_inputs.position = {0, 0, 10};
-  EXPECT_EQ(distance(following_camera(scene->view, base, state)), distance(base)) << "far away";
+  EXPECT_EQ(distance(follow()), distance(base));
+  inputs.tool = 0, inputs.position = {0, 0, 10};
+  EXPECT_EQ(distance(follow()), distance(base)) << "far away";
   double last = distance(base);
   for (const double height : {0.06, 0.05, 0.04, 0.03}) {
-    state.last_inputs.position.z = height;
-    const Camera camera = following_camera(scene->view, base, state);
-    EXPECT_LT(distance(camera), last);
-    last = distance(camera);
+    inputs.position.z = height;
+    EXPECT_LT(distance(follow()), last);
+    last = distance(follow());
   }
-  state.last_inputs.position = {0.05, 0, 0.02};
-  const Camera camera = following_camera(scene->view, base, state);
-  EXPECT_LT(norm(camera.target - state.last_inputs.position),
-            norm(base.target - state.last_inputs.position) / 2);
+  inputs.position = {0.05, 0, 0.02};
+  EXPECT_LT(norm(follow().target - inputs.position), norm(base.target - inputs.position) / 2);
+}
+
+TEST(View, FollowingCameraMovesSoftlyWhenTheToolIsPutAwayAtTheTissue) {
+  const auto scene = make_blob_scene(0.004, 12);
+  const Camera base = default_camera(scene->view);
+  // Two seconds of work at the tissue, then nothing is held.
+  std::vector<Inputs> all(400);
+  for (std::size_t i = 0; i < 200; ++i) all[i].tool = 0, all[i].position = {0.05, 0, 0.02};
+  std::vector<Vec3> eye;
+  for (std::size_t now = 1; now <= all.size(); ++now) {
+    const std::size_t count = std::min(now, kFollowedMoments);
+    eye.push_back(following_camera(scene->view, base, std::span(all).subspan(now - count, count)).eye);
+  }
+  const double way = norm(eye[199] - base.eye);
+  EXPECT_GT(way, 0.02);
+  EXPECT_LT(norm(eye[199] - eye[0]), 1e-12) << "it stands still while the tool does";
+  EXPECT_EQ(eye.back(), base.eye);
+  double fastest = 0, sharpest = 0;
+  for (std::size_t i = 2; i < eye.size(); ++i) {
+    fastest = std::max(fastest, norm(eye[i] - eye[i - 1]));
+    sharpest = std::max(sharpest, norm(eye[i] - 2.0 * eye[i - 1] + eye[i - 2]));
+  }
+  EXPECT_LT(fastest, way / 50) << "80 moments for the way";
+  EXPECT_LT(sharpest, way / 1000) << "it sets out and arrives gently";
 }
 
 TEST(View, BesideKeepsBothPictures) {
