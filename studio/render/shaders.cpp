@@ -190,7 +190,7 @@ void main() {
   float facing = slow.turn.x + to_eye;
   vec3 c = slow.body * (1.0 + kStained * fine.a + slow.turn.z * to_key);
 #ifndef INSIDE
-  c *= mix(vec3(1.0), lip_tint, 0.9 * smoothstep(0.80, 0.97, lip));  // a closed cut stays visible
+  c *= mix(vec3(1.0), lip_tint, 0.9 * smoothstep(0.62, 0.92, lip));  // a closed cut stays visible
 #endif
   // The mirrored way turns by twice as much; the film is half as rough as the tissue below.
   float mirrored_key = slow.mirror.x + 1.1 * (to_eye * slow.turn.y + slow.turn.x * to_key);

@@ -6,6 +6,7 @@
 #include "core/step.h"
 #include "studio/render/cut_surface.h"
 #include "studio/render/open_edges.h"
+#include "studio/render/organ_mesh.h"
 #include "tests/studio/render_scene.h"
 
 namespace ctpm::render_test {
@@ -230,6 +231,87 @@ TEST(CutSurface, WallAndLipsStandWhereTheBladePassed) {
       EXPECT_LT(off[off.size() * 95 / 100], 5e-4) << "nearly all, at " << x << " leaning " << lean;
       EXPECT_LT(off.back(), 3e-3) << "all, at " << x << " leaning " << lean;
     }
+}
+
+/// Outward normal of the blob at a place on it.
+Vec3 blob_normal(Vec3 p) {
+  constexpr double h = 1e-6;
+  const auto slope = [&](Vec3 d) { return blob(p + h * d) - blob(p - h * d); };
+  const Vec3 n{slope({1, 0, 0}), slope({0, 1, 0}), slope({0, 0, 1})};
+  return n / norm(n);
+}
+
+TEST(CutSurface, NormalsAndColourContinueOverTheClosedCut) {
+  const auto scene = make_blob_scene(0.003, 60);
+  const State rest = rest_state(scene->model);
+  State state = cut_along_y(scene->model, 0.001, 0.02, -0.005);
+  cut(scene->model, state, {{-0.1, 0, 0}, {-0.1, 0.01, 0.1}}, {{0.1, 0, 0}, {0.1, 0.01, 0.1}});
+  CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
+  ASSERT_TRUE(cut_surface.update(state));
+  const Surface &whole = scene->view.surfaces[0], &surface = cut_surface.surface();
+  OrganMesh uncut, mesh;
+  uncut.set_surface(whole, {}), uncut.update(whole, rest, 0);
+  mesh.set_surface(surface, cut_surface.is_lip()), mesh.update(surface, state, 0);
+  const auto normal = [](const OrganMesh& m, std::size_t v) {
+    const float* f = &m.vertices()[v * kOrganVertexFloats];
+    return Vec3{f[3], f[4], f[5]};
+  };
+  const auto stain = [](const OrganMesh& m, std::size_t v) { return m.vertices()[v * kOrganVertexFloats + 10]; };
+  const auto degrees = [](Vec3 a, Vec3 b) { return std::asin(norm(cross(a, b))) * 180 / std::numbers::pi; };
+  double worst_uncut = 0, worst_kept = 0, worst_lip = 0;
+  std::map<std::array<double, 3>, std::pair<int, float>> lips;  // place -> how many copies, and their stain
+  for (std::size_t v = 0; v < cut_surface.outer_vertex_count(); ++v) {
+    if (v < whole.vertex.size()) {
+      worst_uncut = std::max(worst_uncut, degrees(normal(uncut, v), blob_normal(whole.vertex[v])));
+      worst_kept = std::max(worst_kept, degrees(normal(mesh, v), normal(uncut, v)));
+      EXPECT_EQ(stain(mesh, v), stain(uncut, v)) << v;
+    }
+    if (!cut_surface.is_lip()[v]) continue;
+    const Vec3 p = surface.vertex[v];
+    worst_lip = std::max(worst_lip, degrees(normal(mesh, v), blob_normal(p)));
+    auto& [copies, colour] = lips.try_emplace({p.x, p.y, p.z}, 0, stain(mesh, v)).first->second;
+    ++copies;
+    EXPECT_EQ(stain(mesh, v), colour) << "the other lip at the same place";
+  }
+  int paired = 0;
+  for (const auto& [place, copies] : lips) paired += copies.first >= 2;
+  EXPECT_GT(paired, 60);
+  // A lip has triangles on one side only. From triangle to triangle the surface turns by 3 to 6 degrees.
+  EXPECT_LT(worst_uncut, 1);
+  EXPECT_LT(worst_kept, 3) << "vertices beside the cut";
+  EXPECT_LT(worst_lip, 4) << "vertices on its lips";
+}
+
+TEST(CutPicture, AClosedCutIsALineAndChangesNothingElse) {
+  constexpr int kWidth = 640, kHeight = 360, kLine = 3;  // kLine: half the line's width, with smoothed edges [pixels]
+  const auto scene = make_blob_scene(0.003, 60);
+  auto made = Renderer::create(kWidth, kHeight, scene->view);
+  ASSERT_TRUE(made);
+  DrawOptions options;
+  options.camera = fit_camera(rest_bounds(scene->view), {0.1, 0.35, -1}, {0, 1, 0});
+  const State rest = rest_state(scene->model), severed = cut_along_y(scene->model, 0.001, 0.02, -0.005);
+  const Frame whole = (*made)->draw(rest, options), closed = (*made)->draw(severed, options);
+  CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
+  ASSERT_TRUE(cut_surface.update(severed));
+  std::vector<bool> near_lip(kWidth * kHeight);
+  for (std::size_t v = 0; v < cut_surface.outer_vertex_count(); ++v) {
+    if (!cut_surface.is_lip()[v]) continue;
+    const Pixel at = project(options.camera, kWidth, kHeight, cut_surface.surface().vertex[v]);
+    for (int y = std::max(0, int(at.y) - 3 * kLine); y < std::min(kHeight, int(at.y) + 3 * kLine); ++y)
+      for (int x = std::max(0, int(at.x) - kLine); x < std::min(kWidth, int(at.x) + kLine); ++x)
+        near_lip[std::size_t(y * kWidth + x)] = true;
+  }
+  int darker = 0, worst = 0;
+  for (std::size_t i = 0; i < near_lip.size(); ++i) {
+    int change = 0;
+    for (std::size_t c = 0; c < 3; ++c) change = std::max(change, std::abs(whole.rgb[3 * i + c] - closed.rgb[3 * i + c]));
+    if (near_lip[i])
+      darker += closed.rgb[3 * i] + 12 < whole.rgb[3 * i];
+    else
+      worst = std::max(worst, change);
+  }
+  EXPECT_GT(darker, 60) << "the line is seen";
+  EXPECT_LE(worst, 4) << "of 255, beside the line";
 }
 
 /// Backdrop that cannot be reached from the picture's edge: what one sees through a hole.
