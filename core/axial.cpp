@@ -11,11 +11,13 @@ double distance(const Vec3Array& p, std::int32_t a, std::int32_t b) {
   return norm(p[std::size_t(b)] - p[std::size_t(a)]);
 }
 
-/// Elements of one kind that follow each other in the Model.
+/// Edges at most so many spheres apart share a batch.
+constexpr std::int32_t kBridged = 4;
+
+/// Elements of one kind.
 struct Kind {
   const std::vector<std::int32_t>&a, &b;
-  std::int32_t first;                                      ///< number of its first element
-  std::vector<const std::vector<double>*> parameters;      ///< rows of a batch
+  std::vector<const std::vector<double>*> parameters;  ///< rows of a batch
   AxialLaw law;
 };
 
@@ -24,11 +26,12 @@ class ParameterPool {
  public:
   explicit ParameterPool(std::vector<double>& pool) : pool_(pool) {}
 
-  std::int32_t offset_of(const Kind& kind, std::size_t first, std::size_t count, bool has_dashpots) {
+  /// Where the rows of `elements` begin; a place without an element has k = 0.
+  std::int32_t offset_of(const Kind& kind, const std::vector<std::int32_t>& elements, bool has_dashpots) {
     std::vector<double> rows;
     for (const std::vector<double>* row : kind.parameters) {
       if (kind.law != AxialLaw::two_sphere_tpm && row == kind.parameters.back() && !has_dashpots) break;
-      rows.insert(rows.end(), row->begin() + std::ptrdiff_t(first), row->begin() + std::ptrdiff_t(first + count));
+      for (const std::int32_t element : elements) rows.push_back(element < 0 ? 0.0 : (*row)[std::size_t(element)]);
     }
     const auto [place, is_new] = known_.emplace(std::move(rows), std::int32_t(pool_.size()));
     if (is_new) pool_.insert(pool_.end(), place->first.begin(), place->first.end());
@@ -40,96 +43,122 @@ class ParameterPool {
   std::map<std::vector<double>, std::int32_t> known_;
 };
 
-bool has_dashpots(const Kind& kind, std::size_t first, std::size_t count) {
+/// Elements of one kind that lie so that they can share a batch, and the places between them.
+struct Run {
+  std::size_t first, last;            ///< elements [first, last)
+  std::vector<std::int32_t> element;  ///< of each place; -1: none (place_count)
+};
+
+/// The longest run from element `first` on.
+Run find_run(const Kind& kind, std::size_t first, const Slabs& slabs) {
+  const std::int32_t bridged = kind.law == AxialLaw::two_sphere_tpm ? 1 : kBridged;
+  Run run{first, first + 1, {std::int32_t(first)}};
+  const int slab_a = slabs.of(kind.a[first]), slab_b = slabs.of(kind.b[first]);
+  for (; run.last < kind.a.size(); ++run.last) {
+    const std::int32_t gap = kind.a[run.last] - kind.a[run.last - 1];
+    if (gap < 1 || gap > bridged || kind.b[run.last] - kind.b[run.last - 1] != gap) break;
+    if (run.element.size() + std::size_t(gap) > std::size_t(kBatch)) break;
+    if (slabs.of(kind.a[run.last]) != slab_a || slabs.of(kind.b[run.last]) != slab_b) break;
+    run.element.insert(run.element.end(), std::size_t(gap - 1), -1);
+    run.element.push_back(std::int32_t(run.last));
+  }
+  return run;
+}
+
+bool has_dashpots(const Kind& kind, const Run& run) {
   if (kind.law != AxialLaw::spring_and_dashpot) return false;
   const std::vector<double>& c = *kind.parameters.back();
-  return std::any_of(c.begin() + std::ptrdiff_t(first), c.begin() + std::ptrdiff_t(first + count),
+  return std::any_of(c.begin() + std::ptrdiff_t(run.first), c.begin() + std::ptrdiff_t(run.last),
                      [](double value) { return value != 0; });
 }
 
 }  // namespace
 
-AxialElements::AxialElements(const Model& model, const Slabs& slabs, const Schedule& schedule, const Kernels& kernels)
-    : model_(model), kernels_(kernels) {
-  for (int step = 0; step < Schedule::kSteps; ++step)
-    tasks_[std::size_t(step)].resize(std::size_t(schedule.task_count(step)));
+AxialElements::AxialElements(const Model& model, const Slabs& slabs, const Kernels& kernels)
+    : model_(model), kernels_(kernels), of_slab_(std::size_t(slabs.count())) {
   ParameterPool pool(parameters_);
-  const auto place_of = [&](const Kind& kind, std::size_t i) {
-    const auto [low, high] = std::minmax({slabs.of(kind.a[i]), slabs.of(kind.b[i])});
-    return schedule.place(low, high);
-  };
-  const auto add = [&](const Kind& kind) {
-    for (std::size_t i = 0, end; i < kind.a.size(); i = end) {
-      const auto place = place_of(kind, i);
-      for (end = i + 1; end < kind.a.size() && end - i < std::size_t(kBatch); ++end)
-        if (kind.a[end] != kind.a[end - 1] + 1 || kind.b[end] != kind.b[end - 1] + 1 || place_of(kind, end) != place) break;
-      AxialBatch batch{std::int32_t(end - i), kind.first + std::int32_t(i), kind.a[i], kind.b[i], 0, kind.law};
-      const bool viscous = has_dashpots(kind, i, end - i);
-      if (kind.law == AxialLaw::spring_and_dashpot && !viscous) batch.law = AxialLaw::spring;
-      batch.parameters = pool.offset_of(kind, i, end - i, viscous);
-      tasks_[std::size_t(place.first)][std::size_t(place.second)].push_back(batch);
-    }
-  };
   const Edges& edges = model.edges;
   const TwoSphereTpms& tpms = model.tpms;
+  const auto third_of = [&](const Kind& kind, std::int32_t element) {
+    const bool has_third = kind.law != AxialLaw::two_sphere_tpm && edges.third[std::size_t(element)] >= 0;
+    return has_third ? edges.third[std::size_t(element)] : kind.a[std::size_t(element)];
+  };
+  const auto add_places = [&](const Kind& kind, const Run& run) {
+    std::int32_t last = std::int32_t(run.first);
+    for (const std::int32_t element : run.element) {
+      if (element >= 0) last = element;
+      if (model.has_softening) third_.push_back(third_of(kind, last));
+      if (model.has_scalpel()) edge_.push_back(kind.law == AxialLaw::two_sphere_tpm ? 0 : last);
+    }
+    place_count_ += run.element.size();
+  };
+  std::vector<std::pair<const Kind*, Run>> runs;
   const std::vector<double> none(edges.c.empty() ? edges.size() : 0);
-  add({edges.a, edges.b, 0, {&edges.rest_length, &edges.k, edges.c.empty() ? &none : &edges.c},
-       AxialLaw::spring_and_dashpot});
-  add({tpms.a, tpms.b, std::int32_t(edges.size()), {&tpms.rest_length, &tpms.spring_k, &tpms.kelvin_k, &tpms.kelvin_c},
-       AxialLaw::two_sphere_tpm});
-  if (model.has_softening) {
-    third_ = edges.third;
-    for (std::size_t i = 0; i < third_.size(); ++i)
-      if (third_[i] < 0) third_[i] = edges.a[i];
-    third_.insert(third_.end(), tpms.a.begin(), tpms.a.end());
+  const Kind kinds[] = {
+      {edges.a, edges.b, {&edges.rest_length, &edges.k, edges.c.empty() ? &none : &edges.c}, AxialLaw::spring_and_dashpot},
+      {tpms.a, tpms.b, {&tpms.rest_length, &tpms.spring_k, &tpms.kelvin_k, &tpms.kelvin_c}, AxialLaw::two_sphere_tpm}};
+  for (const Kind& kind : kinds)
+    for (std::size_t i = 0; i < kind.a.size(); i = runs.back().second.last) runs.emplace_back(&kind, find_run(kind, i, slabs));
+  for (int slab = 0; slab < slabs.count(); ++slab) {
+    for (const auto& [kind, run] : runs) {
+      const std::int32_t a = kind->a[run.first], b = kind->b[run.first];
+      const bool adds_a = slabs.of(a) == slab, adds_b = slabs.of(b) == slab;
+      if (!adds_a && !adds_b) continue;
+      const bool viscous = has_dashpots(*kind, run);
+      const bool is_spring = kind->law == AxialLaw::spring_and_dashpot && !viscous;
+      of_slab_[std::size_t(slab)].push_back({std::int32_t(run.element.size()), std::int32_t(place_count_), a, b,
+                                             pool.offset_of(*kind, run.element, viscous), std::int32_t(run.first), adds_a,
+                                             adds_b, is_spring ? AxialLaw::spring : kind->law});
+      add_places(*kind, run);
+    }
   }
 }
 
-AxialArrays AxialElements::arrays(const State& state, const double* softness, double* force) const {
+AxialArrays AxialElements::arrays(const State& state, const double* softness) const {
   const auto or_null = [](const auto& array) { return array.empty() ? nullptr : array.data(); };
   AxialArrays m{};
   m.spheres = state.position.size();
   m.x = state.position.x.data(), m.y = state.position.y.data(), m.z = state.position.z.data();
   m.vx = state.velocity.x.data(), m.vy = state.velocity.y.data(), m.vz = state.velocity.z.data();
   m.parameters = parameters_.data();
-  m.softness = softness, m.third = or_null(third_);
+  m.softness = softness, m.third = or_null(third_), m.edge = or_null(edge_);
   m.edge_severed = or_null(state.edge_severed), m.tpm_severed = or_null(state.tpm_severed);
   m.kelvin_elongation = state.kelvin_elongation.data();
-  m.edge_count = std::int32_t(model_.edges.size());
-  m.force = force;
   return m;
 }
 
-void AxialElements::add_forces(const AxialArrays& m, int step, int task) const {
-  const Task& batches = tasks_[std::size_t(step)][std::size_t(task)];
+void AxialElements::add_forces(const AxialArrays& m, int slab) const {
+  const Batches& batches = of_slab_[std::size_t(slab)];
   kernels_.add_axial_forces(m, batches.data(), batches.data() + batches.size());
 }
 
 void AxialElements::prepare_linearise() {
-  const std::size_t count = model_.edges.size() + model_.tpms.size();
-  if (across_.size() == count) return;
-  for (auto* array : {&root_[0], &root_[1], &root_[2], &across_}) array->assign(count, 0.0);
+  if (across_.size() == place_count_) return;
+  for (auto* array : {&root_[0], &root_[1], &root_[2], &across_}) array->assign(place_count_, 0.0f);
 }
 
-void AxialElements::linearise(AxialArrays m, int step, int task) {
+void AxialElements::linearise(AxialArrays m, int slab) {
   m.root_x = root_[0].data(), m.root_y = root_[1].data(), m.root_z = root_[2].data(), m.across = across_.data();
-  const Task& batches = tasks_[std::size_t(step)][std::size_t(task)];
+  const Batches& batches = of_slab_[std::size_t(slab)];
   kernels_.linearise_axial(m, batches.data(), batches.data() + batches.size());
 }
 
-void AxialElements::apply(int step, int task, const double* v, double* result) const {
+template <class Real>
+void AxialElements::apply(int slab, const Real* v, SlabTarget<Real> result) const {
   AxialArrays m{};
   m.spheres = model_.sphere_count();
   // The loops only read these here.
-  m.root_x = const_cast<double*>(root_[0].data()), m.root_y = const_cast<double*>(root_[1].data());
-  m.root_z = const_cast<double*>(root_[2].data()), m.across = const_cast<double*>(across_.data());
-  const Task& batches = tasks_[std::size_t(step)][std::size_t(task)];
-  kernels_.apply_axial(m, batches.data(), batches.data() + batches.size(), v, result);
+  m.root_x = const_cast<float*>(root_[0].data()), m.root_y = const_cast<float*>(root_[1].data());
+  m.root_z = const_cast<float*>(root_[2].data()), m.across = const_cast<float*>(across_.data());
+  const Batches& batches = of_slab_[std::size_t(slab)];
+  solver_kernels<Real>(kernels_).apply_axial(m, batches.data(), batches.data() + batches.size(), v, result);
 }
+template void AxialElements::apply(int slab, const float* v, SlabTarget<float> result) const;
+template void AxialElements::apply(int slab, const double* v, SlabTarget<double> result) const;
 
-void AxialElements::advance_kelvin(double h, State& state) const {
+void AxialElements::advance_kelvin(double h, State& state, std::size_t first, std::size_t last) const {
   const TwoSphereTpms& m = model_.tpms;
-  for (std::size_t t = 0; t < m.size(); ++t) {
+  for (std::size_t t = first; t < last; ++t) {
     const double x = distance(state.position, m.a[t], m.b[t]) - m.rest_length[t];
     const double damping = m.kelvin_c[t] / h;
     state.kelvin_elongation[t] = (damping * state.kelvin_elongation[t] + m.spring_k[t] * x) /

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -21,40 +20,42 @@ using DiagonalBlocks = std::vector<double>;
 /// with the same parameters share one copy of them, so a tissue of one material streams none from memory.
 class AxialElements {
  public:
-  AxialElements(const Model& model, const Slabs& slabs, const Schedule& schedule, const Kernels& kernels);
+  AxialElements(const Model& model, const Slabs& slabs, const Kernels& kernels);
 
   /// What the loops of one call read and write; `softness` as in Elements, null without it.
-  AxialArrays arrays(const State& state, const double* softness, double* force) const;
+  AxialArrays arrays(const State& state, const double* softness) const;
 
-  /// Adds the forces of this moment [N] of one task's elements to `m.force`.
-  void add_forces(const AxialArrays& m, int step, int task) const;
+  /// Adds the forces of this moment [N] of one slab's elements to `m.force`.
+  void add_forces(const AxialArrays& m, int slab) const;
 
   /// Makes room for the coupling; before the first linearise().
   void prepare_linearise();
 
   /// Adds the elastic forces [N] to `m.force` and the diagonal of h^2 K + h C [kg] to `m.blocks`, and keeps the coupling
   /// for apply().
-  void linearise(AxialArrays m, int step, int task);
+  void linearise(AxialArrays m, int slab);
 
-  /// result += coupling times `v`.
-  void apply(int step, int task, const double* v, double* result) const;
+  /// result += coupling times `v`, in the precision of `v`, float or double.
+  template <class Real>
+  void apply(int slab, const Real* v, SlabTarget<Real> result) const;
 
-  /// Advances the Kelvin elongations of the two-sphere TPMs to the end of a step of `h` [s] that moved to
+  /// Advances the Kelvin elongations of two-sphere TPMs [first, last) to the end of a step of `h` [s] that moved to
   /// State::position.
-  void advance_kelvin(double h, State& state) const;
-
+  void advance_kelvin(double h, State& state, std::size_t first, std::size_t last) const;
 
  private:
-  using Task = std::vector<AxialBatch>;
+  using Batches = std::vector<AxialBatch>;
 
   const Model& model_;
   const Kernels& kernels_;
-  std::array<std::vector<Task>, Schedule::kSteps> tasks_;
+  std::vector<Batches> of_slab_;  ///< whose spheres they add to
   std::vector<double> parameters_;
   std::vector<std::int32_t>
-      third_;  ///< like Edges::third, with the own first sphere where there is none; empty without softening
-  std::vector<double> root_[3];  ///< direction times the root of the axial coupling [kg^1/2]; empty until needed
-  std::vector<double> across_;   ///< coupling across the direction: h^2 tension / length [kg], >= 0
+      third_;  ///< like Edges::third, with the own first sphere where there is none; empty without softening (place_count)
+  std::vector<std::int32_t> edge_;  ///< AxialArrays::edge; empty without a scalpel (place_count)
+  std::size_t place_count_ = 0;
+  std::vector<float> root_[3];  ///< direction times the root of the axial coupling [kg^1/2]; empty until needed
+  std::vector<float> across_;   ///< coupling across the direction: h^2 tension / length [kg], >= 0
 };
 
 }  // namespace ctpm

@@ -17,6 +17,7 @@ BackwardEuler::BackwardEuler(const Model& model, const Slabs& slabs, Team& team,
     : model_(model),
       slabs_(slabs),
       team_(team),
+      held_(model, slabs),
       solver_(model, slabs, team, kernels),
       force_(3 * model.sphere_count()),
       momentum_(3 * model.sphere_count()),
@@ -31,23 +32,23 @@ BackwardEuler::BackwardEuler(const Model& model, const Slabs& slabs, Team& team,
 void BackwardEuler::solve(Elements& elements, const State& state, Outside& outside, Coordinates& velocity,
                           StepReport& report) {
   const std::size_t n = model_.sphere_count();
-  team_.for_each(slabs_.count(), [&](int slab) {
+  const double* old[3] = {state.velocity.x.data(), state.velocity.y.data(), state.velocity.z.data()};
+  elements.linearise(state, outside.h, force_, blocks_, [&](int slab) {
     const auto begin = std::size_t(slabs_.begin(slab)), end = std::size_t(slabs_.end(slab));
-    start_velocities(state, outside, begin, end, velocity);
-    set_weight(model_, begin, end, force_);
+    for (std::size_t axis = 0; axis < 3; ++axis) std::copy(old[axis] + begin, old[axis] + end, &velocity[axis * n + begin]);
+    held_.stop(outside, slab, velocity);
+    start_force(model_, outside, begin, end, force_);
     for (std::size_t k = 0; k < 6; ++k) {
       const bool is_diagonal = k == 0 || k == 3 || k == 5;
       for (std::size_t i = begin; i < end; ++i) blocks_[k * n + i] = is_diagonal ? model_.mass[i] : 0.0;
     }
   });
-  add_loads(model_, outside, force_);
-  elements.linearise(state, outside.h, force_, blocks_);
   for (int round = 0;; ++round) {
     if constexpr (!kOnlySprings) {
       outside.contact.linearise(outside.h, force_, blocks_);
       outside.pairs.linearise(outside.h, force_, blocks_);
     }
-    const CgOutcome outcome = solve_round(elements, state, outside, velocity);
+    const SolverOutcome outcome = solve_round(elements, state, outside, velocity);
     report.iterations += outcome.iterations;
     report.residual = outcome.residual;
     if (!outcome.converged) report.status = StepStatus::not_converged;
@@ -62,18 +63,17 @@ void BackwardEuler::solve(Elements& elements, const State& state, Outside& outsi
 }
 
 /// Solves with the contacts there are, starting from `velocity`.
-CgOutcome BackwardEuler::solve_round(const Elements& elements, const State& state, const Outside& outside,
+SolverOutcome BackwardEuler::solve_round(const Elements& elements, const State& state, const Outside& outside,
                                      Coordinates& velocity) {
   team_.for_each(slabs_.count(), [&](int slab) {
     find_momentum(model_, state, outside.h, force_, std::size_t(slabs_.begin(slab)), std::size_t(slabs_.end(slab)),
                   momentum_);
   });
   solver_.set_blocks(blocks_, outside.pinned);
-  return solver_.solve(momentum_, velocity, limits_, [&](const double* in, double* out) {
-    elements.apply(in, out);
-    if constexpr (kOnlySprings) return;
-    if (outside.contact.count() > 0) outside.contact.apply(outside.h, in, out);
-    if (outside.pairs.count() > 0) outside.pairs.apply(outside.h, in, out);
+  return solver_.solve(momentum_, velocity, limits_, [&](const auto* in, auto* out, auto&& after) {
+    elements.apply(in, out, after);
+    if constexpr (kOnlySprings) return 0.0;
+    return outside.contact.apply(outside.h, in, out) + outside.pairs.apply(outside.h, in, out);
   });
 }
 
@@ -83,7 +83,7 @@ Vec3 BackwardEuler::force_on_pin(const Elements& elements, const State& state, c
   const std::size_t n = model_.sphere_count();
   const auto i = std::size_t(outside.pinned);
   std::fill(momentum_.begin(), momentum_.end(), 0.0);
-  elements.apply(velocity.data(), momentum_.data());
+  elements.apply(static_cast<const double*>(velocity.data()), momentum_.data(), [](int) {});
   const Vec3 coupling{momentum_[i], momentum_[n + i], momentum_[2 * n + i]},
       own{force_[i], force_[n + i], force_[2 * n + i]};
   return (model_.mass[i] * (state.velocity[i] - outside.pin_velocity) - coupling) / outside.h + own;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/conjugate_gradient.h"
+#include "core/linear_solver.h"
 #include "core/elements.h"
 #include "core/outside.h"
 #include "core/step.h"
@@ -24,14 +24,15 @@ class BackwardEuler {
                     const Coordinates& velocity);
 
  private:
-  CgOutcome solve_round(const Elements& elements, const State& state, const Outside& outside,
+  SolverOutcome solve_round(const Elements& elements, const State& state, const Outside& outside,
                         Coordinates& velocity);
 
   const Model& model_;
   const Slabs& slabs_;
   Team& team_;
-  ConjugateGradient solver_;
-  CgLimits limits_;
+  HeldSpheres held_;
+  LinearSolver solver_;
+  SolverLimits limits_;
   Coordinates force_, momentum_;
   DiagonalBlocks blocks_;
 };

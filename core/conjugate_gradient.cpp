@@ -2,50 +2,46 @@
 
 namespace ctpm {
 
-ConjugateGradient::ConjugateGradient(const Model& model, const Slabs& slabs, Team& team, const Kernels& kernels)
-    : model_(model),
-      slabs_(slabs),
+template <class Real>
+ConjugateGradient<Real>::ConjugateGradient(const std::vector<double>& mass, const Slabs& slabs, Team& team,
+                                           const Kernels& kernels)
+    : slabs_(slabs),
       team_(team),
-      kernels_(kernels),
-      inverse_(6 * model.sphere_count()),
-      residual_(3 * model.sphere_count()),
-      preconditioned_(3 * model.sphere_count()),
-      direction_(3 * model.sphere_count()),
-      product_(3 * model.sphere_count()),
-      part_(std::size_t(slabs.count())) {
-  for (std::size_t i = 0; i < model.sphere_count(); ++i)
-    if (model.held_axes[i] != 0) held_.push_back(std::int32_t(i));
+      kernels_(solver_kernels<Real>(kernels)),
+      mass_(mass.begin(), mass.end()),
+      inverse_(6 * mass.size()),
+      parts_(std::size_t(slabs.count())) {
+  for (auto* vector : {&solution_, &residual_, &preconditioned_, &direction_, &product_}) vector->resize(3 * mass.size());
 }
 
-void ConjugateGradient::set_blocks(const DiagonalBlocks& blocks, std::int32_t pinned) {
-  const std::size_t n = model_.sphere_count();
-  team_.for_each(slabs_.count(), [&](int slab) {
-    kernels_.invert_blocks(n, blocks.data(), inverse_.data(), std::size_t(slabs_.begin(slab)),
-                           std::size_t(slabs_.end(slab)));
+template <class Real>
+SolverArrays<Real> ConjugateGradient<Real>::arrays() {
+  return {mass_.size(),     mass_.data(),           inverse_.data(),   solution_.data(),
+          residual_.data(), preconditioned_.data(), direction_.data(), product_.data()};
+}
+
+template <class Real>
+double ConjugateGradient<Real>::begin(const Coordinates& residual, double scale) {
+  const SolverArrays<Real> m = arrays();
+  scale_ = scale;
+  energy_ = sum_over_slabs(slabs_, team_, parts_, [&](std::size_t begin, std::size_t end) {
+    return kernels_.begin_solve(m, residual.data(), scale, begin, end);
   });
-  for (const std::int32_t sphere : held_) {
-    const auto i = std::size_t(sphere);
-    if (model_.held_axes[i] != kAnchored) {
-      // What is left free is inverted by itself.
-      double own[6], inverse[6];
-      for (std::size_t k = 0; k < 6; ++k) own[k] = blocks[k * n + i];
-      const auto is_held = [&](int axis) { return (model_.held_axes[i] >> axis & 1) != 0; };
-      if (is_held(0) || is_held(1)) own[1] = 0;
-      if (is_held(0) || is_held(2)) own[2] = 0;
-      if (is_held(1) || is_held(2)) own[4] = 0;
-      kernels_.invert_blocks(1, own, inverse, 0, 1);
-      for (std::size_t k = 0; k < 6; ++k) inverse_[k * n + i] = inverse[k];
-    }
-    hold(i, model_.held_axes[i]);
-  }
-  if (pinned >= 0) hold(std::size_t(pinned), kAnchored);
+  return energy_;
 }
 
-void ConjugateGradient::hold(std::size_t sphere, std::uint8_t axes) {
-  const std::size_t n = model_.sphere_count();
-  constexpr std::uint8_t kAxes[6] = {1, 3, 5, 2, 6, 4};  // which axes xx, xy, xz, yy, yz, zz belong to
-  for (std::size_t k = 0; k < 6; ++k)
-    if ((kAxes[k] & axes) != 0) inverse_[k * n + sphere] = 0;
+template <class Real>
+void ConjugateGradient<Real>::add_to(Coordinates& x) const {
+  const std::size_t n = mass_.size();
+  const double factor = 1 / scale_;
+  team_.for_each(slabs_.count(), [&](int slab) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t i = axis * n + std::size_t(slabs_.begin(slab)); i < axis * n + std::size_t(slabs_.end(slab)); ++i)
+        x[i] += factor * double(solution_[i]);
+  });
 }
+
+template class ConjugateGradient<float>;
+template class ConjugateGradient<double>;
 
 }  // namespace ctpm

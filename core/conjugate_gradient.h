@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -12,102 +11,74 @@
 
 namespace ctpm {
 
-/// When a solve may stop. Norms are of the preconditioned residual, whose square is an energy.
-struct CgLimits {
-  double relative = 1e-4;  ///< residual against that of the first guess, or against the root of the first guess's
-                           ///< kinetic energy x M x where that is less: dashpots that are far stiffer than the mass make
-                           ///< the first residual so large that soft motions would be left unsolved
-  double absolute = 0;     ///< residual that counts as solved anyway
-  std::int32_t max_iterations = 200;
-};
-
-struct CgOutcome {
-  std::int32_t iterations = 0;
-  double residual = 0;  ///< relative to that of the first guess
-  bool converged = false;
-};
-
-/// Conjugate gradients for A x = b with A = mass + coupling, symmetric and positive definite, preconditioned by each
-/// sphere's own 3x3 block (Saad, "Iterative methods for sparse linear systems", 2003, alg. 9.1). Sums go slab by slab,
-/// so they do not depend on the number of threads.
-class ConjugateGradient {
- public:
-  ConjugateGradient(const Model& model, const Slabs& slabs, Team& team, const Kernels& kernels);
-
-  /// Takes the diagonal blocks of A. Coordinates that are held, as in Model::held_axes, and the sphere `pinned` stay at
-  /// the first guess: their rows are left out of the system.
-  void set_blocks(const DiagonalBlocks& blocks, std::int32_t pinned);
-
-  /// `x` is the first guess and the result. `add_coupling(in, out)` does out += coupling times in.
-  template <class AddCoupling>
-  CgOutcome solve(const Coordinates& b, Coordinates& x, const CgLimits& limits, AddCoupling&& add_coupling);
-
- private:
-  template <class Part>
-  double sum_over_slabs(Part&& part);
-  void hold(std::size_t sphere, std::uint8_t axes);
-
-  const Model& model_;
-  const Slabs& slabs_;
-  Team& team_;
-  const Kernels& kernels_;
-  std::vector<std::int32_t> held_;  ///< spheres of which an axis or more is held
-  std::vector<double> inverse_;     ///< inverse blocks, 0 along held axes (6 x sphere_count)
-  Coordinates residual_, preconditioned_, direction_, product_;
-  std::vector<double> part_;  ///< of a sum (slab_count)
-};
-
+/// sum over all slabs of part(begin, end), which get a range of spheres each. Sums go slab by slab, so they do not depend
+/// on the number of threads.
 template <class Part>
-double ConjugateGradient::sum_over_slabs(Part&& part) {
-  team_.for_each(slabs_.count(), [&](int slab) {
-    part_[std::size_t(slab)] = part(std::size_t(slabs_.begin(slab)), std::size_t(slabs_.end(slab)));
+double sum_over_slabs(const Slabs& slabs, Team& team, std::vector<double>& parts, Part&& part) {
+  team.for_each(slabs.count(), [&](int slab) {
+    parts[std::size_t(slab)] = part(std::size_t(slabs.begin(slab)), std::size_t(slabs.end(slab)));
   });
   double sum = 0;
-  for (const double value : part_) sum += value;
+  for (const double value : parts) sum += value;
   return sum;
 }
 
-template <class AddCoupling>
-CgOutcome ConjugateGradient::solve(const Coordinates& b, Coordinates& x, const CgLimits& limits,
-                                   AddCoupling&& add_coupling) {
-  const SolverArrays m{model_.sphere_count(),  model_.mass.data(), inverse_.data(), x.data(), residual_.data(),
-                       preconditioned_.data(), direction_.data(),  product_.data()};
-  const auto for_each_slab = [&](auto&& part) {
-    team_.for_each(slabs_.count(),
-                   [&](int slab) { part(std::size_t(slabs_.begin(slab)), std::size_t(slabs_.end(slab))); });
-  };
-  for_each_slab([&](std::size_t begin, std::size_t end) { kernels_.multiply_mass(m, x.data(), begin, end); });
-  const double kinetic = sum_over_slabs([&](std::size_t begin, std::size_t end) {
-    double sum = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (std::size_t i = axis * m.spheres + begin; i < axis * m.spheres + end; ++i) sum += x[i] * product_[i];
-    return sum;
-  });
-  add_coupling(x.data(), m.product);
-  double energy = sum_over_slabs(
-      [&](std::size_t begin, std::size_t end) { return kernels_.begin_solve(m, b.data(), begin, end); });
-  const double first_energy = energy;
-  const double enough =
-      std::max(std::min(first_energy, kinetic) * limits.relative * limits.relative, limits.absolute * limits.absolute);
+/// Conjugate gradients for A c = r from c = 0, with vectors of Real, preconditioned by each sphere's own 3x3 block (Saad,
+/// "Iterative methods for sparse linear systems", 2003, alg. 9.1). r is scaled, so that float has room for it.
+template <class Real>
+class ConjugateGradient {
+ public:
+  ConjugateGradient(const std::vector<double>& mass, const Slabs& slabs, Team& team, const Kernels& kernels);
 
-  CgOutcome outcome;
+  /// Inverse blocks, to be filled before a solve; 0 along axes that are held  (6 x sphere_count).
+  std::vector<Real>& inverse() { return inverse_; }
+
+  /// Takes r = `scale` * `residual`; returns its energy r . (inverse blocks) r.
+  double begin(const Coordinates& residual, double scale);
+
+  /// Goes on until the residual's energy is at most `enough` or `iterations` are used up; counts those down and returns
+  /// the energy. `add_coupling(in, out, after)` does out += coupling times in and calls after(slab) for each slab whose
+  /// part of out is done; what it adds later, it returns as in . addition.
+  template <class AddCoupling>
+  double descend(double enough, std::int32_t& iterations, AddCoupling&& add_coupling);
+
+  /// x += c / scale.
+  void add_to(Coordinates& x) const;
+
+ private:
+  SolverArrays<Real> arrays();
+
+  const Slabs& slabs_;
+  Team& team_;
+  const SolverKernels<Real>& kernels_;
+  std::vector<Real> mass_, inverse_, solution_, residual_, preconditioned_, direction_, product_;
+  std::vector<double> parts_;  ///< of a sum (slab_count)
+  double scale_ = 1, energy_ = 0;
+};
+
+template <class Real>
+template <class AddCoupling>
+double ConjugateGradient<Real>::descend(double enough, std::int32_t& iterations, AddCoupling&& add_coupling) {
+  const SolverArrays<Real> m = arrays();
   double turn = 0;
-  while (energy > enough && outcome.iterations < limits.max_iterations) {
-    for_each_slab([&](std::size_t begin, std::size_t end) { kernels_.turn(m, turn, begin, end); });
-    add_coupling(m.direction, m.product);
-    const double curvature =
-        sum_over_slabs([&](std::size_t begin, std::size_t end) { return kernels_.curvature(m, begin, end); });
+  while (energy_ > enough && iterations > 0) {
+    team_.for_each(slabs_.count(), [&](int slab) {
+      kernels_.turn(m, Real(turn), std::size_t(slabs_.begin(slab)), std::size_t(slabs_.end(slab)));
+    });
+    double curvature = add_coupling(static_cast<const Real*>(m.direction), m.product, [&](int slab) {
+      parts_[std::size_t(slab)] = kernels_.curvature(m, std::size_t(slabs_.begin(slab)), std::size_t(slabs_.end(slab)));
+    });
+    for (const double part : parts_) curvature += part;
     if (!(curvature > 0)) break;  // not a number, or nothing left to gain
-    const double step = energy / curvature;
-    const double next =
-        sum_over_slabs([&](std::size_t begin, std::size_t end) { return kernels_.descend(m, step, begin, end); });
-    turn = next / energy;
-    energy = next;
-    ++outcome.iterations;
+    const double step = energy_ / curvature;
+    const double next = sum_over_slabs(slabs_, team_, parts_, [&](std::size_t begin, std::size_t end) {
+      return kernels_.descend(m, Real(step), begin, end);
+    });
+    turn = next / energy_;
+    energy_ = next;
+    --iterations;
   }
-  outcome.converged = energy <= enough;
-  outcome.residual = first_energy > 0 ? std::sqrt(energy / first_energy) : 0.0;
-  return outcome;
+  return energy_;
 }
 
 }  // namespace ctpm

@@ -9,17 +9,32 @@ namespace {
 /// While surfaces stick, drag is contact_k times this [s]: a sphere under a resting tool creeps over seconds.
 constexpr double kStickTime = 0.1;
 
+/// Spheres whose distance is looked at together before each is looked at by itself.
+constexpr std::size_t kLookedAtOnce = 128;
+
 }  // namespace
 
-BallContact::BallContact(const Model& model) : model_(model) {
+BallContact::BallContact(const Model& model, const Kernels& kernels) : model_(model), kernels_(kernels) {
   const auto presses = [](const Tool& tool) { return tool.kind == ToolKind::ball; };
   if (std::any_of(model.tools.begin(), model.tools.end(), presses)) contacts_.reserve(model.sphere_count());
+  for (const double radius : model.contact_radius) largest_radius_ = std::max(largest_radius_, radius);
 }
 
 void BallContact::find(const State& state, Vec3 centre, double radius, Vec3 velocity) {
   contacts_.clear();
   velocity_ = velocity;
-  for (std::size_t i = 0; i < state.position.size(); ++i) {
+  const double farthest = (radius + largest_radius_) * (radius + largest_radius_), at[3] = {centre.x, centre.y, centre.z};
+  for (std::size_t begin = 0; begin < state.position.size(); begin += kLookedAtOnce) {
+    const std::size_t end = std::min(begin + kLookedAtOnce, state.position.size());
+    const double nearest = kernels_.nearest_squared(state.position.x.data(), state.position.y.data(),
+                                                    state.position.z.data(), at, begin, end);
+    if (nearest < farthest) find_among(state, centre, radius, begin, end);
+  }
+}
+
+void BallContact::find_among(const State& state, Vec3 centre, double radius, std::size_t begin, std::size_t end) {
+  const Vec3 velocity = velocity_;
+  for (std::size_t i = begin; i < end; ++i) {
     if (model_.held_axes[i] == kAnchored) continue;
     const Vec3 apart = state.position[i] - centre;
     const double reach = radius + model_.contact_radius[i];
@@ -67,12 +82,12 @@ void BallContact::undo_linearise(Coordinates& force, DiagonalBlocks& blocks) con
   }
 }
 
-void BallContact::push_apart(double h, const Coordinates& momentum, Coordinates& velocity) {
+void BallContact::push_apart(double h, Coordinates& velocity) {
   const std::size_t spheres = model_.sphere_count();
   std::erase_if(contacts_, [&](const Contact& contact) {
     const auto i = std::size_t(contact.sphere);
-    const Vec3 n = contact.normal, free{momentum[i], momentum[spheres + i], momentum[2 * spheres + i]};
     const double mass = model_.mass[i], k = model_.contact_k;
+    const Vec3 n = contact.normal, free = mass * Vec3{velocity[i], velocity[spheres + i], velocity[2 * spheres + i]};
     const double along = (dot(n, free) + h * k * contact.penetration) / (mass + h * h * k);
     if (contact.penetration < h * along) return true;
     const Vec3 across = (free - dot(n, free) * n + h * contact.drag * (velocity_ - dot(velocity_, n) * n)) /
@@ -83,16 +98,22 @@ void BallContact::push_apart(double h, const Coordinates& momentum, Coordinates&
   });
 }
 
-void BallContact::apply(double h, const double* v, double* result) const {
+template <class Real>
+double BallContact::apply(double h, const Real* v, Real* result) const {
   const std::size_t spheres = model_.sphere_count();
+  double energy = 0;
   for (const Contact& contact : contacts_) {
     const auto i = std::size_t(contact.sphere);
     const Vec3 n = contact.normal, u{v[i], v[spheres + i], v[2 * spheres + i]};
     const double across = h * contact.drag, along = h * h * model_.contact_k - across;
     const Vec3 q = along * dot(n, u) * n + across * u;
-    result[i] += q.x, result[spheres + i] += q.y, result[2 * spheres + i] += q.z;
+    result[i] += Real(q.x), result[spheres + i] += Real(q.y), result[2 * spheres + i] += Real(q.z);
+    energy += dot(u, q);
   }
+  return energy;
 }
+template double BallContact::apply(double h, const float* v, float* result) const;
+template double BallContact::apply(double h, const double* v, double* result) const;
 
 Vec3 BallContact::relative_velocity(const Contact& contact, const Coordinates& v) const {
   const std::size_t spheres = model_.sphere_count(), i = std::size_t(contact.sphere);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/kernels/kernels.h"
 #include "core/axial.h"
 #include "core/inputs.h"
 #include "core/model.h"
@@ -25,7 +26,7 @@ struct Contact {
 /// Contacts of a rigid ball with spheres.
 class BallContact {
  public:
-  explicit BallContact(const Model& model);
+  BallContact(const Model& model, const Kernels& kernels);
 
   /// Finds the spheres that a ball of `radius` [m] at `centre`, moving with `velocity` [m/s], overlaps.
   void find(const State& state, Vec3 centre, double radius, Vec3 velocity);
@@ -36,12 +37,14 @@ class BallContact {
   /// Takes back to the bit what the last linearise() added.
   void undo_linearise(Coordinates& force, DiagonalBlocks& blocks) const;
 
-  /// An explicit step of `h` [s] with the contacts solved implicitly, each by itself: `velocity` [m/s] of the touched
-  /// spheres from the `momentum` [kg m/s] they would have without contact, and drops contacts that would pull.
-  void push_apart(double h, const Coordinates& momentum, Coordinates& velocity);
+  /// After an explicit step of `h` [s] without contacts: changes the `velocity` [m/s] of the touched spheres, each contact
+  /// solved implicitly by itself, and drops contacts that would pull.
+  void push_apart(double h, Coordinates& velocity);
 
-  /// result += coupling of a step of `h` [s] times `v`.
-  void apply(double h, const double* v, double* result) const;
+  /// result += coupling of a step of `h` [s] times `v`, in the precision of `v`, float or double;
+  /// returns v . coupling . v.
+  template <class Real>
+  double apply(double h, const Real* v, Real* result) const;
 
   /// Whether a contact would pull its sphere after a step of `h` [s] with velocity `v` [m/s].
   bool has_pulling(double h, const Coordinates& v) const;
@@ -59,10 +62,13 @@ class BallContact {
   void clear() { contacts_.clear(); }
 
  private:
+  void find_among(const State& state, Vec3 centre, double radius, std::size_t begin, std::size_t end);
   Vec3 relative_velocity(const Contact& contact, const Coordinates& v) const;
   double pressure(const Contact& contact, double h, const Coordinates& v) const;
 
   const Model& model_;
+  const Kernels& kernels_;
+  double largest_radius_ = 0;      ///< of a sphere [m]
   Vec3 velocity_;                  ///< of the tool [m/s]
   std::vector<Contact> contacts_;  ///< room for every sphere if the scene has a ball, so that a tick never allocates
 };

@@ -1,74 +1,115 @@
 #include "core/elements.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace ctpm {
+namespace {
+
+/// Numbers between the rows of one slab and those of the next: more than a processor reads ahead.
+constexpr std::size_t kApart = 256;
+
+}  // namespace
 
 Elements::Elements(const Model& model, Team& team, InstructionSet set)
     : team_(team),
       slabs_(model.sphere_count()),
-      schedule_(slabs_),
-      axial_(model, slabs_, schedule_, kernels_for(set)),
-      constraints_(model, model.constraints, slabs_, schedule_, kernels_for(set)),
-      angles_(model, model.angle_springs, slabs_, schedule_, kernels_for(set)),
-      softness_(model.has_softening ? model.sphere_count() : 0) {}
+      axial_(model, slabs_, kernels_for(set)),
+      constraints_(model, model.constraints, slabs_, kernels_for(set)),
+      angles_(model, model.angle_springs, slabs_, kernels_for(set)),
+      softness_(model.has_softening ? model.sphere_count() : 0),
+      workbenches_(std::size_t(slabs_.count())) {}
 
-/// Calls task(step, number) for all tasks of the schedule; those of one step may run at the same time.
-template <class Task>
-void Elements::for_each_task(Task&& task) const {
-  for (int step = 0; step < Schedule::kSteps; ++step)
-    team_.for_each(schedule_.task_count(step), [&](int number) { task(step, number); });
+void Elements::make_room(std::size_t full_rows, std::size_t single_rows) {
+  for (int slab = 0; slab < slabs_.count(); ++slab) {
+    const auto size = std::size_t(slabs_.end(slab) - slabs_.begin(slab));
+    Workbench& workbench = workbenches_[std::size_t(slab)];
+    if (workbench.full.size() < full_rows * size) workbench.full.resize(full_rows * size + kApart);
+    if (workbench.single.size() < single_rows * size) workbench.single.resize(single_rows * size + kApart);
+  }
 }
 
-void Elements::measure(const LineArrays& constraints, const LineArrays& angles) {
+template <class Real>
+SlabTarget<Real> Elements::clean_rows(int slab, std::size_t rows) const {
+  const auto size = std::size_t(slabs_.end(slab) - slabs_.begin(slab));
+  Workbench& workbench = workbenches_[std::size_t(slab)];
+  Real* room;
+  if constexpr (std::is_same_v<Real, float>)
+    room = workbench.single.data();
+  else
+    room = workbench.full.data();
+  std::fill_n(room, rows * size, Real(0));
+  return {room, slabs_.begin(slab), size};
+}
+template SlabTarget<float> Elements::clean_rows(int slab, std::size_t rows) const;
+template SlabTarget<double> Elements::clean_rows(int slab, std::size_t rows) const;
+
+template <class Real>
+void Elements::add_rows(const SlabTarget<Real>& own, std::size_t rows, Real* all) const {
+  const auto spheres = std::size_t(slabs_.end(slabs_.count() - 1));
+  for (std::size_t row = 0; row < rows; ++row) {
+    const Real* __restrict from = own.data + row * own.stride;
+    Real* __restrict to = all + row * spheres + own.begin;
+    for (std::size_t i = 0; i < own.stride; ++i) to[i] += from[i];
+  }
+}
+template void Elements::add_rows(const SlabTarget<float>& own, std::size_t rows, float* all) const;
+template void Elements::add_rows(const SlabTarget<double>& own, std::size_t rows, double* all) const;
+
+Elements::Arrays Elements::arrays(const State& state) {
+  double* softness = softness_.empty() ? nullptr : softness_.data();
+  return {constraints_.arrays(state, softness), angles_.arrays(state, nullptr), axial_.arrays(state, softness)};
+}
+
+void Elements::measure(const Arrays& arrays) {
   if (kOnlySprings || (constraints_.empty() && angles_.empty())) return;
   team_.for_each(slabs_.count(), [&](int slab) {
     if (!softness_.empty()) std::fill(&softness_[0] + slabs_.begin(slab), &softness_[0] + slabs_.end(slab), 1.0);
-    constraints_.measure(constraints, slab);
-    angles_.measure(angles, slab);
+    constraints_.measure(arrays.constraints, slab);
+    angles_.measure(arrays.angles, slab);
   });
 }
 
 void Elements::add_forces(const State& state, Coordinates& force) {
-  double* softness = softness_.empty() ? nullptr : softness_.data();
-  const LineArrays constraints = constraints_.arrays(state, softness, force.data()),
-                   angles = angles_.arrays(state, nullptr, force.data());
-  const AxialArrays axial = axial_.arrays(state, softness, force.data());
-  measure(constraints, angles);
-  for_each_task([&](int step, int task) {
-    if constexpr (!kOnlySprings) {
-      constraints_.add_forces(constraints, step, task);
-      angles_.add_forces(angles, step, task);
-    }
-    axial_.add_forces(axial, step, task);
-  });
+  add_forces(state, force, [](int) {}, [](int) {});
 }
 
-void Elements::linearise(const State& state, double h, Coordinates& force, DiagonalBlocks& blocks) {
-  double* softness = softness_.empty() ? nullptr : softness_.data();
-  LineArrays constraints = constraints_.arrays(state, softness, force.data()),
-             angles = angles_.arrays(state, nullptr, force.data());
-  AxialArrays axial = axial_.arrays(state, softness, force.data());
-  constraints.h = angles.h = axial.h = h;
-  constraints.blocks = angles.blocks = axial.blocks = blocks.data();
+void Elements::add_forces_of(int slab, Arrays arrays, Coordinates& force) {
+  const SlabTarget<double> own = clean_rows<double>(slab, 3);
+  arrays.constraints.force = arrays.angles.force = arrays.axial.force = own;
+  if constexpr (!kOnlySprings) {
+    constraints_.add_forces(arrays.constraints, slab);
+    angles_.add_forces(arrays.angles, slab);
+  }
+  axial_.add_forces(arrays.axial, slab);
+  add_rows(own, 3, force.data());
+}
+
+void Elements::prepare_linearise() {
   constraints_.prepare_linearise(), angles_.prepare_linearise(), axial_.prepare_linearise();
-  measure(constraints, angles);
-  for_each_task([&](int step, int task) {
-    if constexpr (!kOnlySprings) {
-      constraints_.linearise(constraints, step, task);
-      angles_.linearise(angles, step, task);
-    }
-    axial_.linearise(axial, step, task);
-  });
+  make_room(9, 3);
 }
 
-void Elements::apply(const double* v, double* result) const {
-  for_each_task([&](int step, int task) {
-    if constexpr (!kOnlySprings) {
-      constraints_.apply(step, task, v, result);
-      angles_.apply(step, task, v, result);
-    }
-    axial_.apply(step, task, v, result);
+void Elements::linearise_of(int slab, Arrays arrays, double h, Coordinates& force, DiagonalBlocks& blocks) {
+  const SlabTarget<double> own = clean_rows<double>(slab, 9);
+  const SlabTarget<double> own_blocks{own.data + 3 * own.stride, own.begin, own.stride};
+  arrays.constraints.h = arrays.angles.h = arrays.axial.h = h;
+  arrays.constraints.force = arrays.angles.force = arrays.axial.force = own;
+  arrays.constraints.blocks = arrays.angles.blocks = arrays.axial.blocks = own_blocks;
+  if constexpr (!kOnlySprings) {
+    constraints_.linearise(arrays.constraints, slab);
+    angles_.linearise(arrays.angles, slab);
+  }
+  axial_.linearise(arrays.axial, slab);
+  add_rows(own, 3, force.data());
+  add_rows(own_blocks, 6, blocks.data());
+}
+
+void Elements::advance_kelvin(double h, State& state) const {
+  const std::size_t tpms = state.kelvin_elongation.size(), parts = std::size_t(slabs_.count());
+  if (kOnlySprings || tpms == 0) return;
+  team_.for_each(slabs_.count(), [&](int part) {
+    axial_.advance_kelvin(h, state, tpms * std::size_t(part) / parts, tpms * std::size_t(part + 1) / parts);
   });
 }
 

@@ -23,32 +23,91 @@ class Elements {
   /// their present Kelvin elongation, constraints, softening (Eqs. 1-8)  (3 x sphere_count).
   void add_forces(const State& state, Coordinates& force);
 
-  /// Adds the elastic forces [N] to `force` and the diagonal of h^2 K + h C [kg] to `blocks`, for a step of `h`
-  /// [s]. The dashpots' forces are left to the matrix.
-  void linearise(const State& state, double h, Coordinates& force, DiagonalBlocks& blocks);
+  /// As above, with before(slab) ahead of what is added to a slab's spheres and after(slab) behind it.
+  template <class Before, class After>
+  void add_forces(const State& state, Coordinates& force, Before&& before, After&& after);
 
-  /// result += (h^2 K + h C) v as of the last linearise()  (3 x sphere_count each).
-  void apply(const double* v, double* result) const;
+  /// Adds the elastic forces [N] to `force` and the diagonal of h^2 K + h C [kg] to `blocks`, for a step of `h`
+  /// [s]; before(slab) is called ahead of what is added to a slab's spheres. The dashpots' forces are left to the matrix.
+  template <class Before>
+  void linearise(const State& state, double h, Coordinates& force, DiagonalBlocks& blocks, Before&& before);
+
+  /// result += (h^2 K + h C) v as of the last linearise(), in the precision of `v`, float or double  (3 x sphere_count
+  /// each). `after(slab)` is called for each slab when its part of `result` is done.
+  template <class Real, class After>
+  void apply(const Real* v, Real* result, After&& after) const;
 
   /// Brings the Kelvin elongations of the two-sphere TPMs to the end of a step of `h` [s] that moved to
   /// State::position.
-  void advance_kelvin(double h, State& state) const {
-    if constexpr (!kOnlySprings) axial_.advance_kelvin(h, state);
-  }
+  void advance_kelvin(double h, State& state) const;
 
   const Slabs& slabs() const { return slabs_; }
 
  private:
-  void measure(const LineArrays& constraints, const LineArrays& angles);
-  template <class Task>
-  void for_each_task(Task&& task) const;
+  /// Room for what one slab's elements add, before it goes to where all spheres are.
+  struct Workbench {
+    std::vector<double> full;
+    std::vector<float> single;
+  };
+
+  /// What the loops of one call read and write.
+  struct Arrays {
+    LineArrays constraints, angles;
+    AxialArrays axial;
+  };
+
+  Arrays arrays(const State& state);
+  void measure(const Arrays& arrays);
+  void add_forces_of(int slab, Arrays arrays, Coordinates& force);
+  void prepare_linearise();
+  void linearise_of(int slab, Arrays arrays, double h, Coordinates& force, DiagonalBlocks& blocks);
+
+  void make_room(std::size_t full_rows, std::size_t single_rows);
+
+  /// Rows for a slab to add to, all 0.
+  template <class Real>
+  SlabTarget<Real> clean_rows(int slab, std::size_t rows) const;
+
+  /// Adds a slab's rows to `all`  (rows x sphere_count).
+  template <class Real>
+  void add_rows(const SlabTarget<Real>& own, std::size_t rows, Real* all) const;
 
   Team& team_;
   Slabs slabs_;
-  Schedule schedule_;
   AxialElements axial_;
   LineElements constraints_, angles_;
   std::vector<double> softness_;  ///< 1 / (1 + tan theta) of each sphere; empty without softening (sphere_count)
+  mutable std::vector<Workbench> workbenches_;  ///< (slab_count)
 };
+
+template <class Before, class After>
+void Elements::add_forces(const State& state, Coordinates& force, Before&& before, After&& after) {
+  make_room(3, 0);
+  const Arrays all = arrays(state);
+  measure(all);
+  team_.for_each(slabs_.count(), [&](int slab) { before(slab), add_forces_of(slab, all, force), after(slab); });
+}
+
+template <class Before>
+void Elements::linearise(const State& state, double h, Coordinates& force, DiagonalBlocks& blocks, Before&& before) {
+  prepare_linearise();
+  const Arrays all = arrays(state);
+  measure(all);
+  team_.for_each(slabs_.count(), [&](int slab) { before(slab), linearise_of(slab, all, h, force, blocks); });
+}
+
+template <class Real, class After>
+void Elements::apply(const Real* v, Real* result, After&& after) const {
+  team_.for_each(slabs_.count(), [&](int slab) {
+    const SlabTarget<Real> own = clean_rows<Real>(slab, 3);
+    if constexpr (!kOnlySprings) {
+      constraints_.apply(slab, v, own);
+      angles_.apply(slab, v, own);
+    }
+    axial_.apply(slab, v, own);
+    add_rows(own, 3, result);
+    after(slab);
+  });
+}
 
 }  // namespace ctpm

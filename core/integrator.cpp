@@ -64,6 +64,14 @@ double stable_step_bound(const Model& model) {
   return longest;
 }
 
+double stiffness_ratio_bound(const Model& model, double h) {
+  const Bound bound = bound_of(model);
+  double ratio = 0;
+  for (std::size_t i = 0; i < model.sphere_count(); ++i)
+    if (model.held_axes[i] != kAnchored) ratio = std::max(ratio, h * (h * bound.stiffness[i] + bound.damping[i]));
+  return ratio;
+}
+
 IntegratorChoice choose_integrator(const Model& model) {
   const double longest = stable_step_bound(model);
   const SolverSettings& solver = model.solver;

@@ -14,6 +14,9 @@ namespace ctpm {
 /// whole (Gershgorin). Contacts do not count, they are solved implicitly.
 double stable_step_bound(const Model& model);
 
+/// Bounds the largest eigenvalue of M^-1 (h^2 K + h C) for a step of `h` [s] in the same way [1].
+double stiffness_ratio_bound(const Model& model, double h);
+
 /// How a Model is integrated, and why.
 struct IntegratorChoice {
   Integrator integrator = Integrator::backward_euler;  ///< never `automatic`

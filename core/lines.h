@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -17,49 +16,50 @@ namespace ctpm {
 /// whose stiffness is constant.
 class LineElements {
  public:
-  LineElements(const Model& model, const Constraints& constraints, const Slabs& slabs, const Schedule& schedule,
-               const Kernels& kernels);
-  LineElements(const Model& model, const AngleSprings& angle_springs, const Slabs& slabs, const Schedule& schedule,
-               const Kernels& kernels);
+  LineElements(const Model& model, const Constraints& constraints, const Slabs& slabs, const Kernels& kernels);
+  LineElements(const Model& model, const AngleSprings& angle_springs, const Slabs& slabs, const Kernels& kernels);
 
-  bool empty() const { return middle_->empty(); }
+  bool empty() const { return k_.empty(); }
 
   /// What the loops of one call read and write. `softness` [1] = 1 / (1 + tan theta) of each sphere, null without
   /// softening.
-  LineArrays arrays(const State& state, double* softness, double* force);
+  LineArrays arrays(const State& state, double* softness);
 
-  /// u of every line whose middle sphere is in `slab`, and from its tilt the softness of that sphere: the least of all
-  /// lines centred on it (Eq. 8).
+  /// u of every line of a slab, and from its tilt the softness of the slab's own middle spheres: the least of all lines
+  /// centred on them (Eq. 8).
   void measure(const LineArrays& m, int slab) const;
 
-  /// Adds the forces [N] of one task's elements to `m.force`. measure() of all slabs comes first.
-  void add_forces(const LineArrays& m, int step, int task) const;
+  /// Adds the forces [N] of one slab's lines to `m.force`. measure() of all slabs comes first.
+  void add_forces(const LineArrays& m, int slab) const;
 
   /// Adds the forces to `m.force` and the diagonal of h^2 K [kg] to `m.blocks`, and keeps the coupling for apply().
-  void linearise(LineArrays m, int step, int task);
+  void linearise(LineArrays m, int slab);
   void prepare_linearise();
 
-  /// result += coupling times `v`.
-  void apply(int step, int task, const double* v, double* result) const;
-
+  /// result += coupling times `v`, in the precision of `v`, float or double.
+  template <class Real>
+  void apply(int slab, const Real* v, SlabTarget<Real> result) const;
 
  private:
+  /// Batches [first, last) are one slab's.
+  struct Range {
+    std::size_t first, last;
+  };
+
   LineElements(const Model& model, bool is_constraint, const std::vector<std::int32_t>& first,
                const std::vector<std::int32_t>& middle, const std::vector<std::int32_t>& last,
-               const std::vector<double>& k, const Slabs& slabs, const Schedule& schedule, const Kernels& kernels);
-  bool advance_by_one(std::size_t line) const;
+               const std::vector<double>& k, const Slabs& slabs, const Kernels& kernels);
 
   const Model& model_;
   const Kernels& kernels_;
   bool is_constraint_;
-  const std::vector<std::int32_t>*first_, *middle_, *last_;
-  const std::vector<double>* k_;
+  std::vector<std::int32_t> first_, middle_, last_, line_;  ///< spheres and line of each place (place_count)
+  std::vector<double> k_;                                   ///< (place_count)
   std::vector<LineBatch> batches_;
-  std::array<std::vector<std::vector<std::int32_t>>, Schedule::kSteps> tasks_;  ///< batches of each task
-  std::vector<std::vector<std::int32_t>> of_slab_;  ///< batches whose middle spheres are in the slab
-  std::vector<std::uint8_t> matters_;               ///< of each batch, whether its coupling does
-  std::vector<double> offset_[3], half_length_;     ///< u and |E - A| / 2 [m] (line_count)
-  std::vector<double> along_[3], isotropic_;        ///< coupling: along u its root [kg^1/2], and in all directions [kg]
+  std::vector<Range> of_slab_;                   ///< (slab_count)
+  std::vector<std::uint8_t> matters_;            ///< of each batch, whether its coupling does
+  std::vector<double> offset_[3], half_length_;  ///< u and |E - A| / 2 [m] (place_count)
+  std::vector<float> along_[3], isotropic_;      ///< coupling: along u its root [kg^1/2], and in all directions [kg]
 };
 
 }  // namespace ctpm

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -152,6 +153,9 @@ struct Model {
                      ///< do not, and pass through each other
 
   std::size_t sphere_count() const { return mass.size(); }
+  bool has_scalpel() const {
+    return std::any_of(tools.begin(), tools.end(), [](const Tool& tool) { return tool.kind == ToolKind::scalpel; });
+  }
   std::size_t element_count() const {
     return edges.size() + tpms.size() + constraints.size() + angle_springs.size();
   }

@@ -2,22 +2,39 @@
 
 namespace ctpm {
 
-void set_weight(const Model& model, std::size_t begin, std::size_t end, Coordinates& force) {
-  const std::size_t n = model.sphere_count();
-  const double gravity[3] = {model.gravity.x, model.gravity.y, model.gravity.z};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (std::size_t i = begin; i < end; ++i) force[axis * n + i] = model.mass[i] * gravity[axis];
+HeldSpheres::HeldSpheres(const Model& model, const Slabs& slabs)
+    : model_(model), slabs_(slabs), of_slab_(std::size_t(slabs.count())) {
+  for (std::size_t i = 0; i < model.sphere_count(); ++i)
+    if (model.held_axes[i] != 0) of_slab_[std::size_t(slabs.of(std::int32_t(i)))].push_back(std::int32_t(i));
 }
 
-void add_loads(const Model& model, const Outside& outside, Coordinates& force) {
-  if (!outside.has_loads) return;
+void HeldSpheres::stop(const Outside& outside, int slab, Coordinates& velocity) const {
+  const std::size_t n = model_.sphere_count();
+  for (const std::int32_t sphere : of_slab_[std::size_t(slab)])
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if ((model_.held_axes[std::size_t(sphere)] >> axis & 1) != 0) velocity[axis * n + std::size_t(sphere)] = 0;
+  if (outside.pinned < slabs_.begin(slab) || outside.pinned >= slabs_.end(slab)) return;
+  const auto i = std::size_t(outside.pinned);
+  const Vec3 hand = outside.pin_velocity;
+  velocity[i] = hand.x, velocity[n + i] = hand.y, velocity[2 * n + i] = hand.z;
+}
+
+void start_force(const Model& model, const Outside& outside, std::size_t begin, std::size_t end, Coordinates& force) {
   const std::size_t n = model.sphere_count();
+  const double gravity[3] = {model.gravity.x, model.gravity.y, model.gravity.z};
+  const double* mass = model.mass.data();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double* __restrict out = &force[axis * n];
+    for (std::size_t i = begin; i < end; ++i) out[i] = mass[i] * gravity[axis];
+  }
+  if (!outside.has_loads) return;
   const Loads& loads = model.loads;
   for (std::size_t l = 0; l < loads.size(); ++l) {
+    const auto i = std::size_t(loads.sphere[l]);
+    if (i < begin || i >= end) continue;
     const double since = outside.end_time - loads.start[l];
     const double share = since <= 0 ? 0.0 : (since >= loads.ramp[l] ? 1.0 : since / loads.ramp[l]);
     const Vec3 pull = share * loads.force[l];
-    const auto i = std::size_t(loads.sphere[l]);
     force[i] += pull.x, force[n + i] += pull.y, force[2 * n + i] += pull.z;
   }
 }
@@ -32,19 +49,6 @@ void find_momentum(const Model& model, const State& state, double h, const Coord
     double* __restrict out = &momentum[axis * n];
     for (std::size_t i = begin; i < end; ++i) out[i] = mass[i] * v[i] + h * f[i];
   }
-}
-
-void start_velocities(const State& state, const Outside& outside, std::size_t begin, std::size_t end,
-                      Coordinates& velocity) {
-  const std::size_t n = state.position.size();
-  const double* old[3] = {state.velocity.x.data(), state.velocity.y.data(), state.velocity.z.data()};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (std::size_t i = begin; i < end; ++i)
-      velocity[axis * n + i] = outside.is_held(i, axis) ? 0.0 : old[axis][i];
-  if (outside.pinned < std::int32_t(begin) || outside.pinned >= std::int32_t(end)) return;
-  const auto i = std::size_t(outside.pinned);
-  const Vec3 hand = outside.pin_velocity;
-  velocity[i] = hand.x, velocity[n + i] = hand.y, velocity[2 * n + i] = hand.z;
 }
 
 }  // namespace ctpm

@@ -7,6 +7,7 @@
 #include "core/contact.h"
 #include "core/model.h"
 #include "core/pair_contact.h"
+#include "core/slabs.h"
 
 namespace ctpm {
 
@@ -20,23 +21,27 @@ struct Outside {
   std::vector<std::uint8_t>& held_axes;  ///< of the Model, and of the sphere that a pin holds (sphere_count)
   std::int32_t pinned = -1;              ///< sphere that a pin holds; -1: none
   Vec3 pin_velocity;                     ///< that brings the pinned sphere to the hand [m/s]
-
-  bool is_held(std::size_t sphere, std::size_t axis) const { return (held_axes[sphere] >> axis & 1) != 0; }
 };
 
-/// Writes the weight of spheres [begin, end) into `force` [N]  (3 x sphere_count).
-void set_weight(const Model& model, std::size_t begin, std::size_t end, Coordinates& force);
+/// Spheres of which an axis or more is held.
+class HeldSpheres {
+ public:
+  HeldSpheres(const Model& model, const Slabs& slabs);
 
-/// Adds loads, while they act, to `force` [N].
-void add_loads(const Model& model, const Outside& outside, Coordinates& force);
+  /// Sets velocities along held axes of a slab's spheres to 0, and that of the pinned sphere to the hand's.
+  void stop(const Outside& outside, int slab, Coordinates& velocity) const;
+
+ private:
+  const Model& model_;
+  const Slabs& slabs_;
+  std::vector<std::vector<std::int32_t>> of_slab_;
+};
+
+/// Writes weight and loads, while they act, of spheres [begin, end) into `force` [N]  (3 x sphere_count).
+void start_force(const Model& model, const Outside& outside, std::size_t begin, std::size_t end, Coordinates& force);
 
 /// momentum = mass * velocity + h * force [kg m/s] of spheres [begin, end)  (3 x sphere_count).
 void find_momentum(const Model& model, const State& state, double h, const Coordinates& force, std::size_t begin,
                    std::size_t end, Coordinates& momentum);
-
-/// Velocities of spheres [begin, end) from which a solve starts: those of `state`, none along held axes, the hand's
-/// where a pin holds.
-void start_velocities(const State& state, const Outside& outside, std::size_t begin, std::size_t end,
-                      Coordinates& velocity);
 
 }  // namespace ctpm

@@ -68,28 +68,38 @@ void PairContacts::push_apart(double h, std::span<const std::uint8_t> held_axes,
   is_explicit_ = true;
 }
 
-/// The matrix of one contact times the point's velocity [kg m/s].
-Vec3 PairContacts::coupling(const PairContact& c, double h, const double* v) const {
+/// Velocity of a contact's point [m/s].
+template <class Real>
+Vec3 PairContacts::velocity_of(const PairContact& c, const Real* v) const {
   const std::size_t n = model_.sphere_count(), a = std::size_t(c.a), b = std::size_t(c.b);
-  const Vec3 u = c.weight_a * Vec3{v[a], v[n + a], v[2 * n + a]} +
-                 c.weight_b * Vec3{v[b], v[n + b], v[2 * n + b]};
+  return c.weight_a * Vec3{v[a], v[n + a], v[2 * n + a]} + c.weight_b * Vec3{v[b], v[n + b], v[2 * n + b]};
+}
+
+/// The matrix of one contact times its point's velocity `u` [kg m/s].
+Vec3 PairContacts::coupling(const PairContact& c, double h, Vec3 u) const {
   const double across = h * c.drag, along = h * h * c.k - across;
   return along * dot(c.axis, u) * c.axis + across * u;
 }
 
-void PairContacts::apply(double h, const double* v, double* result) const {
+template <class Real>
+double PairContacts::apply(double h, const Real* v, Real* result) const {
   const std::size_t n = model_.sphere_count();
+  double energy = 0;
   for (const PairContact& c : contacts_) {
-    const Vec3 q = coupling(c, h, v);
+    const Vec3 u = velocity_of(c, v), q = coupling(c, h, u);
     const auto a = std::size_t(c.a), b = std::size_t(c.b);
     const Vec3 qa = c.weight_a * q, qb = c.weight_b * q;
-    result[a] += qa.x, result[n + a] += qa.y, result[2 * n + a] += qa.z;
-    result[b] += qb.x, result[n + b] += qb.y, result[2 * n + b] += qb.z;
+    result[a] += Real(qa.x), result[n + a] += Real(qa.y), result[2 * n + a] += Real(qa.z);
+    result[b] += Real(qb.x), result[n + b] += Real(qb.y), result[2 * n + b] += Real(qb.z);
+    energy += dot(u, q);
   }
+  return energy;
 }
+template double PairContacts::apply(double h, const float* v, float* result) const;
+template double PairContacts::apply(double h, const double* v, double* result) const;
 
 bool PairContacts::pulls(const PairContact& c, double h, const Coordinates& v) const {
-  return c.only_pushes && dot(c.axis, c.force - coupling(c, h, v.data()) / h) < 0;
+  return c.only_pushes && dot(c.axis, c.force - coupling(c, h, velocity_of(c, v.data())) / h) < 0;
 }
 
 bool PairContacts::has_pulling(double h, const Coordinates& v) const {
@@ -103,7 +113,7 @@ void PairContacts::drop_pulling(double h, const Coordinates& v) {
 Vec3 PairContacts::force_on_tool(double h, const Coordinates& v) const {
   Vec3 force;
   for (const PairContact& c : contacts_)
-    if (c.is_tool) force += is_explicit_ ? -c.acting : coupling(c, h, v.data()) / h - c.force;
+    if (c.is_tool) force += is_explicit_ ? -c.acting : coupling(c, h, velocity_of(c, v.data())) / h - c.force;
   return force;
 }
 

@@ -47,8 +47,10 @@ class PairContacts {
   /// contact after the other, each solved implicitly. Spheres do not move along `held_axes`.
   void push_apart(double h, std::span<const std::uint8_t> held_axes, Coordinates& velocity);
 
-  /// result += coupling of a step of `h` [s] times `v`.
-  void apply(double h, const double* v, double* result) const;
+  /// result += coupling of a step of `h` [s] times `v`, in the precision of `v`, float or double;
+  /// returns v . coupling . v.
+  template <class Real>
+  double apply(double h, const Real* v, Real* result) const;
 
   /// Whether a contact would pull after a step of `h` [s] with velocity `v` [m/s].
   bool has_pulling(double h, const Coordinates& v) const;
@@ -61,7 +63,9 @@ class PairContacts {
   std::int32_t tool_count() const;
 
  private:
-  Vec3 coupling(const PairContact& contact, double h, const double* v) const;
+  template <class Real>
+  Vec3 velocity_of(const PairContact& contact, const Real* v) const;
+  Vec3 coupling(const PairContact& contact, double h, Vec3 u) const;
   bool pulls(const PairContact& contact, double h, const Coordinates& v) const;
 
   const Model& model_;

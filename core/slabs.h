@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "core/model.h"
@@ -21,23 +20,6 @@ class Slabs {
 
  private:
   std::vector<std::int32_t> begin_;  ///< (slab_count + 1)
-};
-
-/// Work on elements, which write to all their spheres, in steps within which no two tasks write to the same sphere.
-/// First what lies within one slab, then what joins slabs 0-1, 2-3 ..., then 1-2, 3-4 ..., then the rest in one task.
-class Schedule {
- public:
-  static constexpr int kSteps = 4;
-
-  explicit Schedule(const Slabs& slabs);
-
-  /// Where an element belongs whose spheres lie between these slabs: step and task.
-  std::pair<int, int> place(int lowest_slab, int highest_slab) const;
-
-  int task_count(int step) const { return task_count_[step]; }
-
- private:
-  int task_count_[kSteps];
 };
 
 }  // namespace ctpm

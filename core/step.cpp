@@ -29,11 +29,6 @@ constexpr double kFastest = 1e4;
 /// Settling ends when no sphere is faster than this [m/s].
 constexpr double kAtRest = 1e-5;
 
-bool has_scalpel(const Model& model) {
-  return std::any_of(model.tools.begin(), model.tools.end(),
-                     [](const Tool& tool) { return tool.kind == ToolKind::scalpel; });
-}
-
 bool is_usable(const Model& model, const Inputs& inputs) {
   if (inputs.tool < -1 || inputs.tool >= std::int32_t(model.tools.size())) return false;
   const Quat q = inputs.world_from_tool;
@@ -66,16 +61,16 @@ struct Stepper::Workspace {
         kernels(kernels_for(options.instruction_set)),
         team(options.threads),
         elements(m, team, options.instruction_set),
-        contact(m),
+        contact(m, kernels),
         blade(m),
         lips(m),
-        pairs(m, has_scalpel(m) ? blade.most() + lips.most() : 0),
+        pairs(m, m.has_scalpel() ? blade.most() + lips.most() : 0),
         pieces(m),
         held_axes(m.held_axes),
         velocity(3 * m.sphere_count()) {
-    if (has_scalpel(m)) near.emplace(m), crossings.reserve(m.edges.size() + m.tpms.size()), pieces.reserve();
+    if (m.has_scalpel()) near.emplace(m), crossings.reserve(m.edges.size() + m.tpms.size()), pieces.reserve();
     if (choice.integrator == Integrator::symplectic_euler)
-      explicit_solver.emplace(m, elements.slabs(), team);
+      explicit_solver.emplace(m, elements.slabs());
     else
       implicit_solver.emplace(m, elements.slabs(), team, kernels);
   }

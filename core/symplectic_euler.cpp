@@ -4,28 +4,31 @@
 
 namespace ctpm {
 
+SymplecticEuler::SymplecticEuler(const Model& model, const Slabs& slabs)
+    : model_(model), slabs_(slabs), held_(model, slabs), force_(3 * model.sphere_count()) {
+  for (const double mass : model.mass) per_mass_.push_back(1 / mass);
+}
+
 void SymplecticEuler::solve(Elements& elements, const State& state, Outside& outside, Coordinates& velocity) {
   const std::size_t n = model_.sphere_count();
-  const auto for_each_slab = [&](auto&& part) {
-    team_.for_each(slabs_.count(),
-                   [&](int slab) { part(std::size_t(slabs_.begin(slab)), std::size_t(slabs_.end(slab))); });
+  const double* old[3] = {state.velocity.x.data(), state.velocity.y.data(), state.velocity.z.data()};
+  const auto start = [&](int slab) {
+    start_force(model_, outside, std::size_t(slabs_.begin(slab)), std::size_t(slabs_.end(slab)), force_);
   };
-  for_each_slab([&](std::size_t begin, std::size_t end) { set_weight(model_, begin, end, force_); });
-  add_loads(model_, outside, force_);
-  elements.add_forces(state, force_);
-  for_each_slab([&](std::size_t begin, std::size_t end) {
-    find_momentum(model_, state, outside.h, force_, begin, end, momentum_);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (std::size_t i = begin; i < end; ++i)
-        velocity[axis * n + i] = outside.is_held(i, axis) ? 0.0 : momentum_[axis * n + i] / model_.mass[i];
-  });
+  const auto accelerate = [&](int slab) {
+    const double h = outside.h, *per_mass = per_mass_.data();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double *force = &force_[axis * n], *v = old[axis];
+      double* __restrict out = &velocity[axis * n];
+      for (auto i = std::size_t(slabs_.begin(slab)); i < std::size_t(slabs_.end(slab)); ++i)
+        out[i] = v[i] + h * per_mass[i] * force[i];
+    }
+    held_.stop(outside, slab, velocity);
+  };
+  elements.add_forces(state, force_, start, accelerate);
   if constexpr (kOnlySprings) return;
-  outside.contact.push_apart(outside.h, momentum_, velocity);
+  outside.contact.push_apart(outside.h, velocity);
   outside.pairs.push_apart(outside.h, outside.held_axes, velocity);
-  if (outside.pinned < 0) return;
-  const auto i = std::size_t(outside.pinned);
-  const Vec3 hand = outside.pin_velocity;
-  velocity[i] = hand.x, velocity[n + i] = hand.y, velocity[2 * n + i] = hand.z;
 }
 
 Vec3 SymplecticEuler::force_on_pin(const State& state, const Outside& outside) const {

@@ -10,8 +10,7 @@ namespace ctpm {
 /// stable_step_bound() (integrator.h).
 class SymplecticEuler {
  public:
-  SymplecticEuler(const Model& model, const Slabs& slabs, Team& team)
-      : model_(model), slabs_(slabs), team_(team), force_(3 * model.sphere_count()), momentum_(3 * model.sphere_count()) {}
+  SymplecticEuler(const Model& model, const Slabs& slabs);
 
   /// `velocity` [m/s] at the end of the substep (3 x sphere_count); contacts that would pull are dropped.
   void solve(Elements& elements, const State& state, Outside& outside, Coordinates& velocity);
@@ -22,8 +21,9 @@ class SymplecticEuler {
  private:
   const Model& model_;
   const Slabs& slabs_;
-  Team& team_;
-  Coordinates force_, momentum_;
+  HeldSpheres held_;
+  std::vector<double> per_mass_;  ///< 1 / mass [1/kg] (sphere_count)
+  Coordinates force_;
 };
 
 }  // namespace ctpm

@@ -21,12 +21,25 @@ inline constexpr std::int32_t kBatch = 64;
 /// What gives an axial element its tension.
 enum class AxialLaw : std::int32_t { spring, spring_and_dashpot, two_sphere_tpm };
 
-/// Axial elements of one law whose two ends both advance by one sphere, so that loops need no index gathers.
+/// Where loops over one slab's elements add: rows of the slab's own spheres. They lie apart from those of other slabs,
+/// since processors that write to neighbouring memory wait for each other.
+template <class Real>
+struct SlabTarget {
+  Real* data;
+  std::int32_t begin;   ///< first sphere of the slab
+  std::size_t stride;   ///< from row to row
+};
+
+/// Axial elements of one law whose two ends both advance by one sphere from place to place, so that loops need no index
+/// gathers. Where a lattice row leaves out a few, places without an element (k = 0) bridge the gap. An element between two
+/// slabs has a place for each of them, which adds to that slab's spheres only, so that slabs never wait for each other.
 struct AxialBatch {
   std::int32_t count;       ///< in [1, kBatch]
-  std::int32_t first;       ///< element
+  std::int32_t place;       ///< first place
   std::int32_t a, b;        ///< ends of the first element
   std::int32_t parameters;  ///< where its rows of `count` parameters begin: rest length, k, c; or rest length, K2, K1, v1
+  std::int32_t tpm;         ///< first two-sphere TPM, of a batch of those
+  bool adds_a, adds_b;      ///< whether ends a, b are the slab's own
   AxialLaw law;
 };
 
@@ -36,75 +49,96 @@ struct AxialArrays {
   const double *x, *y, *z, *vx, *vy, *vz;  ///< (sphere_count)
   const double* parameters;
   const double* softness;     ///< (sphere_count)
-  const std::int32_t* third;  ///< (element_count)
-  const std::uint8_t *edge_severed, *tpm_severed;
-  const double* kelvin_elongation;  ///< (tpm_count)
-  std::int32_t edge_count;
-  double* force;   ///< (3 x sphere_count)
-  double* blocks;  ///< (6 x sphere_count)
+  const std::int32_t* third;  ///< (place_count)
+  const std::int32_t* edge;   ///< edge of each place, any where there is none (place_count)
+  const std::uint8_t *edge_severed, *tpm_severed;  ///< (edge_count), (tpm_count)
+  const double* kelvin_elongation;                 ///< (tpm_count)
+  SlabTarget<double> force, blocks;  ///< three and six rows
   double h;
-  double *root_x, *root_y, *root_z, *across;  ///< linearised coupling (element_count)
+  float *root_x, *root_y, *root_z, *across;  ///< linearised coupling (place_count)
 };
 
 /// Lines of three spheres whose middle is drawn towards the middle of its ends: constraints and angle springs.
+/// As for axial elements, a line whose spheres are in several slabs has a place for each of them.
 struct LineBatch {
   std::int32_t count;    ///< in [1, kBatch]
-  std::int32_t first;    ///< line
+  std::int32_t place;    ///< first place
   std::int32_t a, c, e;  ///< spheres of the first line; a is -1 if the lines' spheres do not all advance by one
+  bool adds_a, adds_c, adds_e;  ///< whether spheres a, c, e are the slab's own
 };
 
 struct LineArrays {
   std::size_t spheres;
   const double *x, *y, *z;          ///< (sphere_count)
-  const std::int32_t *a, *c, *e;    ///< (line_count)
-  const double* k;                  ///< (line_count)
+  const std::int32_t *a, *c, *e;    ///< (place_count)
+  const double* k;                  ///< (place_count)
+  const std::int32_t* line;         ///< line of each place (place_count)
   const std::uint8_t* severed;      ///< (line_count) or null
   bool is_constraint;               ///< Eq. 2; if not, an angle spring
   double* softness;                 ///< (sphere_count) or null
   const double* mass;               ///< (sphere_count)
-  double* force;                    ///< (3 x sphere_count)
-  double* blocks;                   ///< (6 x sphere_count)
+  SlabTarget<double> force, blocks; ///< three and six rows
   double h;
-  double *ux, *uy, *uz, *half;      ///< u and |E - A| / 2 (line_count)
-  double *along_x, *along_y, *along_z, *isotropic;  ///< linearised coupling (line_count)
+  double *ux, *uy, *uz, *half;      ///< u and |E - A| / 2 (place_count)
+  float *along_x, *along_y, *along_z, *isotropic;  ///< linearised coupling (place_count)
 };
 
 /// What the solver's loops read and write; vectors are (3 x sphere_count), `inverse` is (6 x sphere_count).
+template <class Real>
 struct SolverArrays {
   std::size_t spheres;
-  const double* mass;  ///< (sphere_count)
-  const double* inverse;
-  double *solution, *residual, *preconditioned, *direction, *product;
+  const Real* mass;  ///< (sphere_count)
+  Real* inverse;
+  Real *solution, *residual, *preconditioned, *direction, *product;
+};
+
+/// The loops of an iterative solve with vectors of Real, which is float or double. Ranges are of spheres.
+template <class Real>
+struct SolverKernels {
+  void (*apply_axial)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last, const Real* v,
+                      SlabTarget<Real> result);
+  void (*apply_line)(const LineArrays&, const LineBatch&, const Real* v, SlabTarget<Real> result);
+  /// Inverts the symmetric 3x3 blocks of spheres [begin, end).
+  void (*invert_blocks)(std::size_t spheres, const double* blocks, Real* inverse, std::size_t begin, std::size_t end);
+  /// residual = scale * `first`, solution = 0, direction = 0; returns residual . preconditioned.
+  double (*begin_solve)(const SolverArrays<Real>&, const double* first, double scale, std::size_t begin, std::size_t end);
+  /// direction = preconditioned + turn * direction, product = mass * direction.
+  void (*turn)(const SolverArrays<Real>&, Real turn, std::size_t begin, std::size_t end);
+  double (*curvature)(const SolverArrays<Real>&, std::size_t begin, std::size_t end);  ///< direction . product
+  /// Goes `step` along the direction; returns residual . preconditioned.
+  double (*descend)(const SolverArrays<Real>&, Real step, std::size_t begin, std::size_t end);
 };
 
 /// The inner loops, compiled once for each instruction set. Ranges are of batches or of spheres.
 struct Kernels {
   void (*add_axial_forces)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last);
   void (*linearise_axial)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last);
-  void (*apply_axial)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last, const double* v,
-                      double* result);
 
   /// u and half length of every line, and the softness of the middle spheres (Eq. 8).
   void (*measure_line)(const LineArrays&, const LineBatch&);
   void (*add_line_forces)(const LineArrays&, const LineBatch&);
   /// False: the coupling is too small to matter.
   bool (*linearise_line)(const LineArrays&, const LineBatch&);
-  void (*apply_line)(const LineArrays&, const LineBatch&, const double* v, double* result);
 
-  /// Inverts the symmetric 3x3 blocks of spheres [begin, end).
-  void (*invert_blocks)(std::size_t spheres, const double* blocks, double* inverse, std::size_t begin, std::size_t end);
-  /// residual = b - product, preconditioned, direction = 0; returns residual . preconditioned.
-  double (*begin_solve)(const SolverArrays&, const double* b, std::size_t begin, std::size_t end);
-  double (*curvature)(const SolverArrays&, std::size_t begin, std::size_t end);  ///< direction . product
-  /// Goes `step` along the direction; returns residual . preconditioned.
-  double (*descend)(const SolverArrays&, double step, std::size_t begin, std::size_t end);
-  /// direction = preconditioned + turn * direction, product = mass * direction.
-  void (*turn)(const SolverArrays&, double turn, std::size_t begin, std::size_t end);
-  /// product = mass * v.
-  void (*multiply_mass)(const SolverArrays&, const double* v, std::size_t begin, std::size_t end);
+  SolverKernels<float> single;
+  SolverKernels<double> full;
+  /// product = mass * v; returns v . product.
+  double (*multiply_mass)(std::size_t spheres, const double* mass, const double* v, double* product, std::size_t begin,
+                          std::size_t end);
+  /// product = b - product; returns product . product.
+  double (*residual_from)(std::size_t spheres, const double* b, double* product, std::size_t begin, std::size_t end);
+  /// Smallest squared distance of spheres [begin, end) from `centre`, infinity without spheres.
+  double (*nearest_squared)(const double* x, const double* y, const double* z, const double* centre, std::size_t begin,
+                            std::size_t end);
   /// Largest squared speed of velocities v (3 x sphere_count), infinity if one is not a number.
   double (*fastest_squared)(std::size_t spheres, const double* v, std::size_t begin, std::size_t end);
 };
+
+template <class Real>
+const SolverKernels<Real>& solver_kernels(const Kernels& kernels) {
+  if constexpr (sizeof(Real) == sizeof(float)) return kernels.single;
+  else return kernels.full;
+}
 
 /// The loops for a set that this machine has; the nearest narrower one if it has not.
 const Kernels& kernels_for(InstructionSet set);
