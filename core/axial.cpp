@@ -111,6 +111,7 @@ AxialElements::AxialElements(const Model& model, const Slabs& slabs, const Kerne
                                              adds_b, is_spring ? AxialLaw::spring : kind->law});
       add_places(*kind, run);
     }
+    of_slab_[std::size_t(slab)].shrink_to_fit();
   }
 }
 

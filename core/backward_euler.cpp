@@ -37,7 +37,8 @@ void BackwardEuler::solve(Elements& elements, const State& state, Outside& outsi
     const auto begin = std::size_t(slabs_.begin(slab)), end = std::size_t(slabs_.end(slab));
     for (std::size_t axis = 0; axis < 3; ++axis) std::copy(old[axis] + begin, old[axis] + end, &velocity[axis * n + begin]);
     held_.stop(outside, slab, velocity);
-    start_force(model_, outside, begin, end, force_);
+    set_weight(model_, begin, end, force_);
+    add_loads(model_, outside, begin, end, force_);
     for (std::size_t k = 0; k < 6; ++k) {
       const bool is_diagonal = k == 0 || k == 3 || k == 5;
       for (std::size_t i = begin; i < end; ++i) blocks_[k * n + i] = is_diagonal ? model_.mass[i] : 0.0;

@@ -21,6 +21,7 @@ Elements::Elements(const Model& model, Team& team, InstructionSet set)
       workbenches_(std::size_t(slabs_.count())) {}
 
 void Elements::make_room(std::size_t full_rows, std::size_t single_rows) {
+  if (slabs_.count() == 1) return;
   for (int slab = 0; slab < slabs_.count(); ++slab) {
     const auto size = std::size_t(slabs_.end(slab) - slabs_.begin(slab));
     Workbench& workbench = workbenches_[std::size_t(slab)];
@@ -30,22 +31,24 @@ void Elements::make_room(std::size_t full_rows, std::size_t single_rows) {
 }
 
 template <class Real>
-SlabTarget<Real> Elements::clean_rows(int slab, std::size_t rows) const {
+SlabTarget<Real> Elements::target_for(int slab, std::size_t rows, Real* all) const {
   const auto size = std::size_t(slabs_.end(slab) - slabs_.begin(slab));
+  if (slabs_.count() == 1) return {all, 0, size};
   Workbench& workbench = workbenches_[std::size_t(slab)];
   Real* room;
   if constexpr (std::is_same_v<Real, float>)
     room = workbench.single.data();
   else
-    room = workbench.full.data();
+    room = workbench.full.data() + (rows == 6 ? 3 * size : 0);
   std::fill_n(room, rows * size, Real(0));
   return {room, slabs_.begin(slab), size};
 }
-template SlabTarget<float> Elements::clean_rows(int slab, std::size_t rows) const;
-template SlabTarget<double> Elements::clean_rows(int slab, std::size_t rows) const;
+template SlabTarget<float> Elements::target_for(int slab, std::size_t rows, float* all) const;
+template SlabTarget<double> Elements::target_for(int slab, std::size_t rows, double* all) const;
 
 template <class Real>
-void Elements::add_rows(const SlabTarget<Real>& own, std::size_t rows, Real* all) const {
+void Elements::bring(const SlabTarget<Real>& own, std::size_t rows, Real* all) const {
+  if (slabs_.count() == 1) return;
   const auto spheres = std::size_t(slabs_.end(slabs_.count() - 1));
   for (std::size_t row = 0; row < rows; ++row) {
     const Real* __restrict from = own.data + row * own.stride;
@@ -53,8 +56,8 @@ void Elements::add_rows(const SlabTarget<Real>& own, std::size_t rows, Real* all
     for (std::size_t i = 0; i < own.stride; ++i) to[i] += from[i];
   }
 }
-template void Elements::add_rows(const SlabTarget<float>& own, std::size_t rows, float* all) const;
-template void Elements::add_rows(const SlabTarget<double>& own, std::size_t rows, double* all) const;
+template void Elements::bring(const SlabTarget<float>& own, std::size_t rows, float* all) const;
+template void Elements::bring(const SlabTarget<double>& own, std::size_t rows, double* all) const;
 
 Elements::Arrays Elements::arrays(const State& state) {
   double* softness = softness_.empty() ? nullptr : softness_.data();
@@ -75,14 +78,14 @@ void Elements::add_forces(const State& state, Coordinates& force) {
 }
 
 void Elements::add_forces_of(int slab, Arrays arrays, Coordinates& force) {
-  const SlabTarget<double> own = clean_rows<double>(slab, 3);
+  const SlabTarget<double> own = target_for(slab, 3, force.data());
   arrays.constraints.force = arrays.angles.force = arrays.axial.force = own;
   if constexpr (!kOnlySprings) {
     constraints_.add_forces(arrays.constraints, slab);
     angles_.add_forces(arrays.angles, slab);
   }
   axial_.add_forces(arrays.axial, slab);
-  add_rows(own, 3, force.data());
+  bring(own, 3, force.data());
 }
 
 void Elements::prepare_linearise() {
@@ -91,8 +94,7 @@ void Elements::prepare_linearise() {
 }
 
 void Elements::linearise_of(int slab, Arrays arrays, double h, Coordinates& force, DiagonalBlocks& blocks) {
-  const SlabTarget<double> own = clean_rows<double>(slab, 9);
-  const SlabTarget<double> own_blocks{own.data + 3 * own.stride, own.begin, own.stride};
+  const SlabTarget<double> own = target_for(slab, 3, force.data()), own_blocks = target_for(slab, 6, blocks.data());
   arrays.constraints.h = arrays.angles.h = arrays.axial.h = h;
   arrays.constraints.force = arrays.angles.force = arrays.axial.force = own;
   arrays.constraints.blocks = arrays.angles.blocks = arrays.axial.blocks = own_blocks;
@@ -101,8 +103,7 @@ void Elements::linearise_of(int slab, Arrays arrays, double h, Coordinates& forc
     angles_.linearise(arrays.angles, slab);
   }
   axial_.linearise(arrays.axial, slab);
-  add_rows(own, 3, force.data());
-  add_rows(own_blocks, 6, blocks.data());
+  bring(own, 3, force.data()), bring(own_blocks, 6, blocks.data());
 }
 
 void Elements::advance_kelvin(double h, State& state) const {

@@ -44,10 +44,10 @@ class Elements {
   const Slabs& slabs() const { return slabs_; }
 
  private:
-  /// Room for what one slab's elements add, before it goes to where all spheres are.
+  /// Room for what one slab's elements add, before it goes to where all spheres are; with a single slab none is needed.
   struct Workbench {
-    std::vector<double> full;
-    std::vector<float> single;
+    std::vector<double> full;   ///< three rows of forces, six of blocks
+    std::vector<float> single;  ///< three rows
   };
 
   /// What the loops of one call read and write.
@@ -64,13 +64,13 @@ class Elements {
 
   void make_room(std::size_t full_rows, std::size_t single_rows);
 
-  /// Rows for a slab to add to, all 0.
+  /// Where a slab adds three rows (of a vector) or six (of blocks) that are meant for `all`  (rows x sphere_count).
   template <class Real>
-  SlabTarget<Real> clean_rows(int slab, std::size_t rows) const;
+  SlabTarget<Real> target_for(int slab, std::size_t rows, Real* all) const;
 
-  /// Adds a slab's rows to `all`  (rows x sphere_count).
+  /// Adds what a slab has gathered to `all`.
   template <class Real>
-  void add_rows(const SlabTarget<Real>& own, std::size_t rows, Real* all) const;
+  void bring(const SlabTarget<Real>& own, std::size_t rows, Real* all) const;
 
   Team& team_;
   Slabs slabs_;
@@ -99,13 +99,13 @@ void Elements::linearise(const State& state, double h, Coordinates& force, Diago
 template <class Real, class After>
 void Elements::apply(const Real* v, Real* result, After&& after) const {
   team_.for_each(slabs_.count(), [&](int slab) {
-    const SlabTarget<Real> own = clean_rows<Real>(slab, 3);
+    const SlabTarget<Real> own = target_for(slab, 3, result);
     if constexpr (!kOnlySprings) {
       constraints_.apply(slab, v, own);
       angles_.apply(slab, v, own);
     }
     axial_.apply(slab, v, own);
-    add_rows(own, 3, result);
+    bring(own, 3, result);
     after(slab);
   });
 }

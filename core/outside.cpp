@@ -19,7 +19,7 @@ void HeldSpheres::stop(const Outside& outside, int slab, Coordinates& velocity) 
   velocity[i] = hand.x, velocity[n + i] = hand.y, velocity[2 * n + i] = hand.z;
 }
 
-void start_force(const Model& model, const Outside& outside, std::size_t begin, std::size_t end, Coordinates& force) {
+void set_weight(const Model& model, std::size_t begin, std::size_t end, Coordinates& force) {
   const std::size_t n = model.sphere_count();
   const double gravity[3] = {model.gravity.x, model.gravity.y, model.gravity.z};
   const double* mass = model.mass.data();
@@ -27,7 +27,11 @@ void start_force(const Model& model, const Outside& outside, std::size_t begin, 
     double* __restrict out = &force[axis * n];
     for (std::size_t i = begin; i < end; ++i) out[i] = mass[i] * gravity[axis];
   }
+}
+
+void add_loads(const Model& model, const Outside& outside, std::size_t begin, std::size_t end, Coordinates& force) {
   if (!outside.has_loads) return;
+  const std::size_t n = model.sphere_count();
   const Loads& loads = model.loads;
   for (std::size_t l = 0; l < loads.size(); ++l) {
     const auto i = std::size_t(loads.sphere[l]);

@@ -37,8 +37,11 @@ class HeldSpheres {
   std::vector<std::vector<std::int32_t>> of_slab_;
 };
 
-/// Writes weight and loads, while they act, of spheres [begin, end) into `force` [N]  (3 x sphere_count).
-void start_force(const Model& model, const Outside& outside, std::size_t begin, std::size_t end, Coordinates& force);
+/// Writes the weight of spheres [begin, end) into `force` [N]  (3 x sphere_count).
+void set_weight(const Model& model, std::size_t begin, std::size_t end, Coordinates& force);
+
+/// Adds loads, while they act, of spheres [begin, end) to `force` [N].
+void add_loads(const Model& model, const Outside& outside, std::size_t begin, std::size_t end, Coordinates& force);
 
 /// momentum = mass * velocity + h * force [kg m/s] of spheres [begin, end)  (3 x sphere_count).
 void find_momentum(const Model& model, const State& state, double h, const Coordinates& force, std::size_t begin,

@@ -6,6 +6,7 @@ namespace ctpm {
 
 SymplecticEuler::SymplecticEuler(const Model& model, const Slabs& slabs)
     : model_(model), slabs_(slabs), held_(model, slabs), force_(3 * model.sphere_count()) {
+  per_mass_.reserve(model.sphere_count());
   for (const double mass : model.mass) per_mass_.push_back(1 / mass);
 }
 
@@ -13,7 +14,9 @@ void SymplecticEuler::solve(Elements& elements, const State& state, Outside& out
   const std::size_t n = model_.sphere_count();
   const double* old[3] = {state.velocity.x.data(), state.velocity.y.data(), state.velocity.z.data()};
   const auto start = [&](int slab) {
-    start_force(model_, outside, std::size_t(slabs_.begin(slab)), std::size_t(slabs_.end(slab)), force_);
+    const auto begin = std::size_t(slabs_.begin(slab)), end = std::size_t(slabs_.end(slab));
+    set_weight(model_, begin, end, force_);
+    add_loads(model_, outside, begin, end, force_);
   };
   const auto accelerate = [&](int slab) {
     const double h = outside.h, *per_mass = per_mass_.data();

@@ -20,13 +20,13 @@ struct Golden {
 };
 
 constexpr Golden kGolden[] = {
-    {Structure::mass_spring, Integrator::automatic, {0x9ecbfff087a726db, 0x2695dc2b34839dfe, 0xea028efb160903b7, 0x6fa319b59304f018}},
-    {Structure::angle_mass_spring, Integrator::automatic, {0x200766316f785d65, 0xf59f93f12609fdaf, 0x4e22efbdf0bcdb92, 0x797ba80c49f59c54}},
-    {Structure::tpm, Integrator::automatic, {0x3d241f525b19fef5, 0x82d052459cb01235, 0x13edb384703b3833, 0x82603d49f31697c8}},
-    {Structure::ctpm, Integrator::automatic, {0xc44506146e8361ac, 0xe3b558cc999ce3a3, 0xdafa836395b50fec, 0xf36317961f699193}},
-    {Structure::tpm, Integrator::backward_euler, {0x1691f751ab81ef95, 0xa888ab576848b857, 0xc6cba6c009078826, 0x9f16e4ac1e501c49}},
-    {Structure::angle_mass_spring, Integrator::backward_euler, {0x1f35cc5560467d14, 0x541047df50a13e68, 0x2169798658f06bf6, 0x3d396a0836d35700}},
-    {Structure::ctpm, Integrator::extrapolated_euler, {0xcb76cb1b726d4353, 0x0dc3605fab324f1a, 0xcf455bd96b1e44cd, 0xd6b173a7bfaa0a25}},
+    {Structure::mass_spring, Integrator::automatic, {0xefee6ee3e3c82c33, 0xcb6ef3f14a3b1100, 0x7495e99c091d5c25, 0x35fb3c8ca2adad62}},
+    {Structure::angle_mass_spring, Integrator::automatic, {0x5fe471d4eec34656, 0x4acd7e036ec4f538, 0x6bb9f230ce2f27aa, 0x6ef5bdddbafd6cf0}},
+    {Structure::tpm, Integrator::automatic, {0x0d8961a1427bff72, 0x5b46da4ab226eaee, 0x14ad5411472d381a, 0xd3bdf3ac746f8969}},
+    {Structure::ctpm, Integrator::automatic, {0x0f05f2cae2d5becb, 0xa08711354d919cb7, 0x2210cd74c42569f9, 0x207e28ddaffd20f9}},
+    {Structure::tpm, Integrator::backward_euler, {0xd58c913a3e35caa8, 0x37c19f6b07503b9b, 0x813c582609345124, 0xd5a04ea8985977a6}},
+    {Structure::angle_mass_spring, Integrator::backward_euler, {0x9b88eb6b869a77f3, 0x22825923ef28dec9, 0x7735b62b909da568, 0x20ea9837deaa3594}},
+    {Structure::ctpm, Integrator::extrapolated_euler, {0x2baaed97f1ff960d, 0x04d613eb611ff8f1, 0x614e174f2e4af83c, 0xfc6ea296cd3cbf87}},
 };
 
 TEST(Golden, ASmallSessionGivesTheSameBitsInEveryBuild) {

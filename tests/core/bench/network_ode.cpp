@@ -124,7 +124,7 @@ void NetworkOde::take_blocks(double time, double gamma, const double* y) {
   for (std::size_t k = 0; k < 6; ++k)
     for (std::size_t i = 0; i < spheres_; ++i)
       blocks_[k * spheres_ + i] = k == 0 || k == 3 || k == 5 ? model_.mass[i] : 0.0;
-  elements_.linearise(state_, gamma, force_, blocks_);
+  elements_.linearise(state_, gamma, force_, blocks_, [](int) {});
   for_each_touched(time, [&](const Contact& contact, Vec3) {
     const Vec3 n = contact.normal;
     const double across = gamma * contact.drag, along = gamma * gamma * model_.contact_k - across;
@@ -132,7 +132,7 @@ void NetworkOde::take_blocks(double time, double gamma, const double* y) {
                            along * n.y * n.y + across, along * n.y * n.z, along * n.z * n.z + across};
     for (std::size_t k = 0; k < 6; ++k) blocks_[k * spheres_ + std::size_t(contact.sphere)] += own[k];
   });
-  kernels_for(best_instruction_set()).invert_blocks(spheres_, blocks_.data(), inverse_.data(), 0, spheres_);
+  kernels_for(best_instruction_set()).full.invert_blocks(spheres_, blocks_.data(), inverse_.data(), 0, spheres_);
 }
 
 void NetworkOde::precondition(double gamma, const double* r, double* z) const {
