@@ -7,11 +7,12 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Bovine liver: 164 J/m^2 (Gokgol, Basdogan & Canadinc, Med. Eng. Phys. 34, 2012). None is published for
-/// kidney, which takes the liver's. Skin: 1700 J/m^2 (Pereira, Lucas & Teaford, J. Biomech. 30, 1997, rat).
+/// Bovine liver: 164 J/m^2 by needles (Gokgol, Basdogan & Canadinc, Med. Eng. Phys. 34, 2012); pig liver by blades 187 to
+/// 225, by needles in the living 76 to 185 (Liu et al., Chin. J. Mech. Eng. 35, 2022, Table 2). Kidney: none is
+/// published; the liver's, an estimate. Skin: 1700 J/m^2 (Pereira, Lucas & Teaford, J. Biomech. 30, 1997, rat, by scissors).
 constexpr double kOrganToughness = 164, kSkinToughness = 1700;
 /// Dynamic friction on a needle in bovine liver, 10.57 N per metre of a 1.65 mm wide needle (Okamura, Simone &
-/// O'Leary, IEEE TBME 51, 2004), over its circumference.
+/// O'Leary, IEEE TBME 51, 2004), over its circumference; for all organs, an estimate.
 constexpr double kBladeFriction = 2040;
 
 /// One row of the paper's section 5.1, in its own numbers: r and R [mm], K1, K2, K' [kPa/mm], v1.
