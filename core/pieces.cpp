@@ -15,20 +15,35 @@ std::int32_t Pieces::root(std::int32_t sphere) {
   return top;
 }
 
+/// Whether two pieces became one.
+bool Pieces::join(std::int32_t p, std::int32_t q) {
+  const std::int32_t a = root(p), b = root(q);
+  if (a != b) piece_[std::size_t(std::max(a, b))] = std::min(a, b);
+  return a != b;
+}
+
 std::int32_t Pieces::find(const State& state) {
   auto count = std::int32_t(model_.sphere_count());
   piece_.resize(model_.sphere_count());
   for (std::int32_t i = 0; i < count; ++i) piece_[std::size_t(i)] = i;
-  const auto join = [&](const auto& elements, const std::vector<std::uint8_t>& severed) {
-    for (std::size_t i = 0; i < elements.size(); ++i) {
-      if (!severed.empty() && severed[i]) continue;
-      const std::int32_t a = root(elements.a[i]), b = root(elements.b[i]);
-      if (a != b) piece_[std::size_t(std::max(a, b))] = std::min(a, b), --count;
-    }
+  const auto join_living = [&](const auto& elements, const std::vector<std::uint8_t>& severed) {
+    for (std::size_t i = 0; i < elements.size(); ++i)
+      if ((severed.empty() || !severed[i]) && join(elements.a[i], elements.b[i])) --count;
   };
-  join(model_.edges, state.edge_severed);
-  join(model_.tpms, state.tpm_severed);
+  join_living(model_.edges, state.edge_severed);
+  join_living(model_.tpms, state.tpm_severed);
   for (std::size_t i = 0; i < piece_.size(); ++i) piece_[i] = root(std::int32_t(i));
+  return count;
+}
+
+std::int32_t Pieces::rejoin(std::span<const Crossing> crossings) {
+  std::int32_t count = 0;
+  const std::size_t edges = model_.edges.size();
+  for (const Crossing& crossing : crossings) {
+    const auto e = std::size_t(crossing.element);
+    count += e < edges ? join(model_.edges.a[e], model_.edges.b[e])
+                       : join(model_.tpms.a[e - edges], model_.tpms.b[e - edges]);
+  }
   return count;
 }
 

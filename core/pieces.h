@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "core/cutting.h"
 #include "core/model.h"
 #include "core/state.h"
 
@@ -19,11 +21,17 @@ class Pieces {
   /// Finds the pieces of `state` and returns how many there are.
   std::int32_t find(const State& state);
 
+  /// Joins what the elements of `crossings` held together, and returns how many pieces fewer that makes:
+  /// those that came loose when they were severed, if find() came after it.
+  std::int32_t rejoin(std::span<const Crossing> crossings);
+
   /// Of each sphere, as found last: the first sphere of its piece (sphere_count).
   const std::vector<std::int32_t>& piece() const { return piece_; }
 
  private:
   std::int32_t root(std::int32_t sphere);
+  bool join(std::int32_t p, std::int32_t q);
+
   const Model& model_;
   std::vector<std::int32_t> piece_;
 };

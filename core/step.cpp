@@ -278,7 +278,7 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
                                                 work.crossings);
   }
   work.report_tool(state, report);
-  if (report.severed > 0) report.came_loose = work.pieces.find(state) - work.pieces.find(work.backup);
+  if (report.severed > 0) (void)work.pieces.find(state), report.came_loose = work.pieces.rejoin(work.crossings);
   state.last_inputs = inputs;
   ++state.tick;
   return report;
