@@ -322,7 +322,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(int width, int height, SceneV
   return std::unique_ptr<Renderer>(new Renderer(std::move(parts)));
 }
 
-const Frame& Renderer::draw(const State& state, const DrawOptions& options) {
+Frame Renderer::draw(const State& state, const DrawOptions& options) {
   Parts& p = *parts_;
   p.context->make_current();
   const Gl& gl = p.gl();
@@ -341,7 +341,7 @@ const Frame& Renderer::draw(const State& state, const DrawOptions& options) {
   gl.Flush();  // the driver's threads draw while this one does what is behind
   p.draw_behind(options);
   p.read_frame();
-  return p.frame;
+  return std::move(p.frame);
 }
 
 }  // namespace ctpm

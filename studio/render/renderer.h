@@ -19,8 +19,8 @@ class Renderer {
   static Result<std::unique_ptr<Renderer>> create(int width, int height, SceneView scene);
   ~Renderer();
 
-  /// The picture of a state; valid until the next call.
-  const Frame& draw(const State& state, const DrawOptions& options);
+  /// The picture of a state.
+  Frame draw(const State& state, const DrawOptions& options);
 
   const SceneView& scene() const;
 

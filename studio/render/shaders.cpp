@@ -70,9 +70,9 @@ uniform float wetness;
 struct Smooth {
   vec3 body;                // light out of the tissue
   vec3 key_side, eye_side;  // parts of the ways to key light and eye along the surface
-  vec4 turn;    // normal towards eye and key light; share that body gains by a turn to the key; film's strength
-  vec4 mirror;  // the mirrored way towards key and rim; normal towards rim; 1 / length of key_light + way to eye
-  float film;   // what the wet film mirrors of the room, without key and rim, in kFilm
+  vec4 turn;                // normal towards eye and key light; share that body gains by a turn to the key; film's strength
+  vec3 mirror;              // the mirrored way towards key and rim; normal towards rim
+  float film;               // what the wet film mirrors of the room, without key and rim, in kFilm
 };
 const vec3 kFilm = vec3(0.86, 0.95, 1.06);
 Smooth smooth_light(vec3 p, vec3 n, vec3 base, float shade, float mirror) {
@@ -88,8 +88,11 @@ Smooth smooth_light(vec3 p, vec3 n, vec3 base, float shade, float mirror) {
   s.film = strength * dot(soft_room(r), vec3(0.35));
   s.key_side = key_light - key * n, s.eye_side = v - facing * n;
   s.turn = vec4(facing, key, dot(base * gain, kLuma) / dot(s.body, kLuma), strength);
-  s.mirror = vec4(dot(r, key_light), dot(r, rim_light), dot(n, rim_light),
-                  inversesqrt(max(2.0 + 2.0 * dot(key_light, v), 0.01)));
+  s.mirror = vec3(dot(r, key_light), dot(r, rim_light), dot(n, rim_light));
+  // A broad highlight. Its half vector is key_light + v; what remains is the square of its cosine.
+  float spot2 = max(key + facing, 0.0) * max(key + facing, 0.0) / max(2.0 + 2.0 * dot(key_light, v), 0.01);
+  float spot4 = spot2 * spot2, spot8 = spot4 * spot4;
+  s.body += vec3(0.10, 0.095, 0.09) * (strength * spot8 * spot8 * spot8);
   return s;
 }
 )";
@@ -106,8 +109,8 @@ out vec3 p, q;
 out vec3 n, base;
 out float shadow;
 #else
-out Smooth slow;
-out float lip;
+noperspective out Smooth slow;
+noperspective out float lip;
 #endif
 void main() {
   float hollow = crevice_stain_lip.x, stain = crevice_stain_lip.y;
@@ -152,8 +155,8 @@ in float shadow;
 uniform int is_wall;
 uniform mat4 clip_from_world;
 #else
-in Smooth slow;
-in float lip;
+noperspective in Smooth slow;
+noperspective in float lip;
 uniform vec3 lip_tint;
 #endif
 uniform vec3 cutaway_point, cutaway_normal;
@@ -196,9 +199,6 @@ void main() {
   float mirrored_key = slow.mirror.x + 1.1 * (to_eye * slow.turn.y + slow.turn.x * to_key);
   float mirrored_rim = slow.mirror.y + 1.1 * to_eye * slow.mirror.z;
   c += fresnel(facing) * (kFilm * slow.film + slow.turn.w * (key_in_room(mirrored_key) + rim_in_room(mirrored_rim)));
-  float broad_spot = max(slow.turn.y + to_key + facing, 0.0) * slow.mirror.w;
-  float spot2 = broad_spot * broad_spot, spot4 = spot2 * spot2, spot8 = spot4 * spot4;
-  c += vec3(0.10, 0.095, 0.09) * (slow.turn.w * spot8 * spot8 * spot8);
 #ifdef GLASSY
   float edge = 1.0 - clamp(facing, 0.0, 1.0), cover = mix(0.16, 0.85, edge * edge);
   colour = vec4(cover * to_srgb(c), cover);
