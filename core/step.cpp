@@ -36,6 +36,20 @@ bool is_usable(const Model& model, const Inputs& inputs) {
   return inputs.tool == -1 || (is_finite(inputs.position) && std::abs(length_squared - 1) < 1e-3);
 }
 
+/// Two approximations of a velocity that differ by more than this share are not yet near their limit: extrapolated they
+/// would go beyond it, and gain energy.
+constexpr double kFarApart = 0.1;
+
+/// Whether the kinetic energy of the difference of two velocities is small against that of the second.
+bool are_close(const Model& model, const Vec3Array& sooner, const Vec3Array& later) {
+  double apart = 0, moving = 0;
+  for (std::size_t i = 0; i < model.sphere_count(); ++i) {
+    const Vec3 v = later[i], difference = v - sooner[i];
+    apart += model.mass[i] * dot(difference, difference), moving += model.mass[i] * dot(v, v);
+  }
+  return apart <= kFarApart * kFarApart * moving;
+}
+
 /// later + (later - sooner): the limit of two approximations, the second with half the first one's error.
 void extrapolate(const std::vector<double>& sooner, std::vector<double>& later) {
   for (std::size_t i = 0; i < later.size(); ++i) later[i] += later[i] - sooner[i];
@@ -203,7 +217,8 @@ bool Stepper::Workspace::advance(State& state, const Grip& grip, double h, doubl
 }
 
 /// As above, second order: one step of `h` and two of half of it have an error of h and of h/2; their
-/// extrapolation to 0 has none of first order (Deuflhard, "Recent progress in extrapolation methods", 1985).
+/// extrapolation to 0 has none of first order (Deuflhard, "Recent progress in extrapolation methods", 1985). Where the two
+/// are far apart, the second one is kept as it is.
 bool Stepper::Workspace::advance_extrapolated(State& state, const Grip& grip, double h, double share, double time,
                                               StepReport& report) {
   const double half = 0.5 * h, half_share = 0.5 * h / model.tick;
@@ -212,6 +227,7 @@ bool Stepper::Workspace::advance_extrapolated(State& state, const Grip& grip, do
   const Vec3 coarse_force = report.tool_force;
   if (!advance(state, grip, half, share - half_share, time - half, report)) return false;
   if (!advance(state, grip, half, share, time, report)) return false;
+  if (!are_close(model, coarse.velocity, state.velocity)) return true;
   extrapolate(coarse.position.x, state.position.x), extrapolate(coarse.velocity.x, state.velocity.x);
   extrapolate(coarse.position.y, state.position.y), extrapolate(coarse.velocity.y, state.velocity.y);
   extrapolate(coarse.position.z, state.position.z), extrapolate(coarse.velocity.z, state.velocity.z);
