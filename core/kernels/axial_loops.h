@@ -27,7 +27,7 @@ void find_directions(const AxialArrays& m, const AxialBatch& batch, Directions& 
 bool find_factors(const AxialArrays& m, const AxialBatch& batch, double* __restrict factor) {
   const std::uint8_t* severed =
       batch.law == AxialLaw::two_sphere_tpm ? m.tpm_severed : m.edge_severed;
-  if (m.softness == nullptr && severed == nullptr) return false;
+  if (kOnlySprings || (m.softness == nullptr && severed == nullptr)) return false;
   if (m.softness != nullptr) {
     const double *sa = m.softness + batch.a, *sb = m.softness + batch.b, *all = m.softness;
     const int32_t* third = m.third + batch.place;
@@ -81,6 +81,10 @@ void add_axial_forces_of(const AxialArrays& m, const AxialBatch& batch) {
 
 template <bool kHasFactors>
 void add_axial_forces_with(const AxialArrays& m, const AxialBatch* first, const AxialBatch* last) {
+  if constexpr (kOnlySprings) {
+    for (; first != last; ++first) add_axial_forces_of<AxialLaw::spring, false>(m, *first);
+    return;
+  }
   for (; first != last; ++first) switch (first->law) {
       case AxialLaw::spring: add_axial_forces_of<AxialLaw::spring, kHasFactors>(m, *first); break;
       case AxialLaw::spring_and_dashpot: add_axial_forces_of<AxialLaw::spring_and_dashpot, kHasFactors>(m, *first); break;
@@ -89,7 +93,7 @@ void add_axial_forces_with(const AxialArrays& m, const AxialBatch* first, const 
 }
 
 void add_axial_forces(const AxialArrays& m, const AxialBatch* first, const AxialBatch* last) {
-  if (m.softness != nullptr || m.edge_severed != nullptr || m.tpm_severed != nullptr)
+  if (!kOnlySprings && (m.softness != nullptr || m.edge_severed != nullptr || m.tpm_severed != nullptr))
     add_axial_forces_with<true>(m, first, last);
   else
     add_axial_forces_with<false>(m, first, last);
@@ -101,7 +105,7 @@ void find_tension(const AxialArrays& m, const AxialBatch& batch, const double* l
   const int32_t n = batch.count;
   const double h = m.h;
   const double *rest = m.parameters + batch.parameters, *k = rest + n, *c = k + n;
-  if (batch.law == AxialLaw::two_sphere_tpm) {
+  if (!kOnlySprings && batch.law == AxialLaw::two_sphere_tpm) {
     const double *spring = k, *unit = c, *viscosity = c + n;
     const double* kelvin = m.kelvin_elongation + batch.tpm;
     // The implicit step of c z' + k1 z = k2 (x - z) is solved for z, which leaves a spring with an offset.
@@ -112,7 +116,7 @@ void find_tension(const AxialArrays& m, const AxialBatch& batch, const double* l
       tension[i] = stiffness * (length[i] - rest[i]) - spring[i] * damping * kelvin[i] / sum;
       coupling[i] = h * h * stiffness;
     }
-  } else if (batch.law == AxialLaw::spring_and_dashpot) {
+  } else if (!kOnlySprings && batch.law == AxialLaw::spring_and_dashpot) {
     CTPM_INDEPENDENT
     for (int32_t i = 0; i < n; ++i)
       tension[i] = k[i] * (length[i] - rest[i]), coupling[i] = h * (h * k[i] + c[i]);

@@ -3,6 +3,7 @@
 // set, the linker could pick it for code that runs everywhere.
 
 #include "core/kernels/kernels.h"
+#include "core/only_springs.h"
 
 // The passes of the next loop do not depend on each other, whatever the compiler can prove about its pointers.
 #undef CTPM_INDEPENDENT
