@@ -109,8 +109,8 @@ out vec3 p, q;
 out vec3 n, base;
 out float shadow;
 #else
-noperspective out Smooth slow;
-noperspective out float lip;
+out Smooth slow;
+out float lip;
 #endif
 void main() {
   float hollow = crevice_stain_lip.x, stain = crevice_stain_lip.y;
@@ -155,8 +155,8 @@ in float shadow;
 uniform int is_wall;
 uniform mat4 clip_from_world;
 #else
-noperspective in Smooth slow;
-noperspective in float lip;
+in Smooth slow;
+in float lip;
 uniform vec3 lip_tint;
 #endif
 uniform vec3 cutaway_point, cutaway_normal;

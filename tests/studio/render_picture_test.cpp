@@ -149,6 +149,24 @@ TEST(Picture, ViewsDiffer) {
   EXPECT_GT(changed_both, 1000);
 }
 
+TEST(Picture, TrianglesThatReachOutOfItAreLitAsAllOthers) {
+  for (const int rows : {6, 12, 40}) {  // large triangles and small ones
+    const auto scene = make_blob_scene(0.004, rows);
+    auto renderer = make_renderer(*scene);
+    for (const double zoom : {0.15, 0.3, 0.6})
+      for (const double aside : {-0.03, 0.0, 0.03}) {
+        DrawOptions options;
+        options.camera = default_camera(scene->view);
+        options.camera.fov_deg *= zoom;
+        options.camera.eye.x += aside, options.camera.target.x += aside;
+        const Frame picture = renderer->draw(rest_state(scene->model), options);
+        int black = 0;
+        for (std::size_t i = 0; i < picture.rgb.size(); i += 3) black += picture.rgb[i] < 25;
+        EXPECT_EQ(black, 0) << rows << " rows, " << zoom << " of the view, " << aside << " m aside";
+      }
+  }
+}
+
 TEST(Picture, BadSizeOrSceneIsAnErrorNotAPicture) {
   const auto scene = make_blob_scene(0.004, 12);
   for (const auto& [width, height] : {std::pair{0, 100}, {100, -1}, {100, 100000}}) {
