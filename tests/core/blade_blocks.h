@@ -57,6 +57,22 @@ inline Vec3 momentum(const Model& model, const State& state) {
   return sum;
 }
 
+/// What it costs to open the plane with this normal at the elements that are severed [J].
+inline double fracture_energy(const Model& model, const State& state, Vec3 normal) {
+  double sum = 0;
+  const auto add = [&](const auto& elements, const std::vector<std::uint8_t>& severed,
+                       const std::vector<double>& energy) {
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      const Vec3 d =
+          model.rest_position[std::size_t(elements.b[e])] - model.rest_position[std::size_t(elements.a[e])];
+      if (severed[e]) sum += energy[e] * std::abs(dot(normal, d)) / norm(d);
+    }
+  };
+  add(model.edges, state.edge_severed, model.cut_resistance.edge_energy);
+  add(model.tpms, state.tpm_severed, model.cut_resistance.tpm_energy);
+  return sum;
+}
+
 /// What the hand does along its way through a held block, and what the elements that were severed cost.
 struct Work {
   double by_hand = 0, of_fracture = 0;
@@ -75,17 +91,8 @@ inline Work cut_through(const Model& model, double per_tick, Vec3 start, Vec3 wa
     if (i > 0) work.by_hand -= per_tick * dot(report.tool_force, direction);
     EXPECT_LE(dot(report.tool_force, direction), 0) << "the blade is never drawn in";
   }
-  const Vec3 across = cross(direction, {0, 0, 1}), normal = across / norm(across);
-  const auto add = [&](const auto& elements, const std::vector<std::uint8_t>& severed,
-                       const std::vector<double>& energy) {
-    for (std::size_t e = 0; e < elements.size(); ++e) {
-      const Vec3 d =
-          model.rest_position[std::size_t(elements.b[e])] - model.rest_position[std::size_t(elements.a[e])];
-      if (severed[e]) work.of_fracture += energy[e] * std::abs(dot(normal, d)) / norm(d);
-    }
-  };
-  add(model.edges, work.state.edge_severed, model.cut_resistance.edge_energy);
-  add(model.tpms, work.state.tpm_severed, model.cut_resistance.tpm_energy);
+  const Vec3 across = cross(direction, {0, 0, 1});
+  work.of_fracture = fracture_energy(model, work.state, across / norm(across));
   return work;
 }
 

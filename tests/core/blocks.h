@@ -22,27 +22,27 @@ inline Material liver_material() {
   return m;
 }
 
-/// An organ of ni x nj x nk spheres, r = 4 mm, spacing 12 mm, centred on the z axis, standing on z = 0.
-inline FilledOrgan make_block(int ni, int nj, int nk) {
+/// An organ of ni x nj x nk spheres, three radii apart, centred on the z axis, standing on z = 0.
+inline FilledOrgan make_block(int ni, int nj, int nk, double spacing = 0.012) {
   FilledOrgan organ;
-  organ.sphere_radius = 0.004;
-  organ.spacing = 0.012;
+  organ.sphere_radius = spacing / 3;
+  organ.spacing = spacing;
   for (int k = 0; k < nk; ++k)
     for (int j = 0; j < nj; ++j)
       for (int i = 0; i < ni; ++i) {
         organ.cell.push_back({i, j, k});
-        organ.centre.push_back({0.012 * (i - 0.5 * (ni - 1)), 0.012 * (j - 0.5 * (nj - 1)), 0.012 * k});
+        organ.centre.push_back({spacing * (i - 0.5 * (ni - 1)), spacing * (j - 0.5 * (nj - 1)), spacing * k});
         const int rim = std::min({i, ni - 1 - i, j, nj - 1 - j, k, nk - 1 - k});
         organ.layer.push_back(1 + rim);
-        organ.depth.push_back(0.006 + 0.012 * rim);
+        organ.depth.push_back(spacing / 2 + spacing * rim);
       }
   return organ;
 }
 
 /// A Model of one block whose lowest spheres are anchored.
 inline Model make_block_model(int ni, int nj, int nk, Structure structure = Structure::ctpm,
-                              Material material = liver_material()) {
-  const FilledOrgan organ = make_block(ni, nj, nk);
+                              Material material = liver_material(), double spacing = 0.012) {
+  const FilledOrgan organ = make_block(ni, nj, nk, spacing);
   OrganSettings settings;
   settings.name = "block";
   settings.structure = structure;
