@@ -49,6 +49,14 @@ class Font {
     return text + "...";
   }
 
+  /// The text, or as much of its beginning and end as fits: names of a pair differ at their end.
+  std::string shortened_inside(const std::string& text, int limit) {
+    std::string shown = text;
+    for (std::size_t kept = text.size(); kept > 0 && width(shown) > limit; --kept)
+      shown = text.substr(0, (kept - 1) / 2) + "..." + text.substr(text.size() - kept / 2);
+    return shown;
+  }
+
   void write(cv::Mat& rgb, int x, int y, const std::string& text, const Ink& ink) {
     for (const char c : text) {
       const Glyph& g = glyph(c);
@@ -188,7 +196,7 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
     y += px(38);
   }
   const std::array<std::pair<std::string, std::string>, 7> facts{
-      {{"session", small.shortened(data.session, px(195))},
+      {{"session", small.shortened_inside(data.session, px(195))},
        {"model", small.shortened(data.model, px(195))},
        {data.is_over ? "ended" : "time", fixed(data.time, 3) + " s"},
        {"tick", std::to_string(data.tick)},

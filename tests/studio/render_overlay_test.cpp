@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/studio/glyph_reader.h"
@@ -91,6 +92,24 @@ TEST(Overlay, ItsNumbersAreReadBackFromThePicture) {
   EXPECT_EQ(reader.read_after(frame, "loose"), "2 pieces");
   EXPECT_EQ(reader.read_after(frame, "session"), "expert-2");
   EXPECT_EQ(reader.read_after(frame, "model"), "CTPM");
+}
+
+TEST(Overlay, LongNamesOfAPairCanBeToldApart) {
+  const auto shown = [](const std::string& session, int width) {
+    OverlayData data = full_data();
+    data.session = session;
+    const auto texts = Overlay(width, 720).layout(data);
+    const auto label =
+        std::find_if(texts.begin(), texts.end(), [](const auto& t) { return t.text == "session"; });
+    return label == texts.end() ? "" : (label + 1)->text;
+  };
+  for (const int width : {1280, 640}) {
+    EXPECT_EQ(shown("expert", width), "expert");
+    const std::string expert = shown("kidney-cut-expert", width), clumsy = shown("kidney-cut-clumsy", width);
+    EXPECT_TRUE(expert.starts_with("kidn") && expert.ends_with("pert")) << expert;
+    EXPECT_NE(expert, clumsy);
+    EXPECT_LT(shown(std::string(200, 'W'), width).size(), 20u);
+  }
 }
 
 TEST(Overlay, ShowsOnlyWhatThereIs) {
