@@ -5,9 +5,9 @@
 #include <cstring>
 
 #include "core/fields.h"
-#include "importers/surface_index.h"
 #include "recordings/replay.h"
 #include "recordings/state_hash.h"
+#include "studio/film/cut_depth.h"
 
 namespace ctpm {
 namespace {
@@ -200,19 +200,11 @@ Vec3 rest_middle(const Model& model, std::size_t element) {
 }
 
 std::optional<double> cut_depth(const SessionTrack& track, const SessionStart& start) {
-  std::optional<double> deepest;
-  std::vector<SurfaceIndex> surfaces;
-  for (const Surface& surface : start.surfaces)
-    if (!surface.triangle.empty()) surfaces.emplace_back(surface.vertex, surface.triangle);
+  CutDepth depth(start.model, start.surfaces);
   const std::size_t axial_count = ElementPlaces(start.model).constraints;
-  for (std::size_t i = 0; i < axial_count && !surfaces.empty(); ++i) {
-    if (track.severed_at[i] < 0) continue;
-    double nearest2 = INFINITY;
-    for (const SurfaceIndex& surface : surfaces)
-      nearest2 = std::min(nearest2, surface.nearest(rest_middle(start.model, i)).squared_distance);
-    deepest = std::max(deepest.value_or(0), std::sqrt(nearest2));
-  }
-  return deepest;
+  for (std::size_t i = 0; i < axial_count; ++i)
+    if (track.severed_at[i] >= 0) depth.add(i);
+  return depth.deepest();
 }
 
 }  // namespace ctpm

@@ -37,7 +37,8 @@ SessionFilm::SessionFilm(SessionReader& reader, SceneSpec scene, const TickRange
       scene_(std::move(scene)),
       range_(range),
       allow_diverged_(allow_diverged),
-      cursor_(std::move(cursor)) {}
+      cursor_(std::move(cursor)),
+      cut_depth_(reader.start().model, reader.start().surfaces) {}
 
 Result<std::unique_ptr<SessionFilm>> SessionFilm::create(SessionReader& reader, const TickRange& range,
                                                          bool allow_diverged) {
@@ -127,6 +128,15 @@ Error SessionFilm::differs() const {
           "ctpm verify names what differs; --allow-diverged exports all the same and says so on every frame"};
 }
 
+/// With a blade in the hand, and when it was put away after a cut, the depth is that of the cut.
+void SessionFilm::show_cut_depth() {
+  cut_depth_.add(cursor_.state());
+  const std::int32_t tool = cursor_.state().last_inputs.tool;
+  overlay_.is_blade = tool < 0 ? cut_depth_.deepest().has_value()
+                               : model().tools[std::size_t(tool)].kind == ToolKind::scalpel;
+  if (overlay_.is_blade) overlay_.depth = cut_depth_.deepest().value_or(0);
+}
+
 Result<Shot> SessionFilm::shoot(std::int64_t tick) {
   while (cursor_.tick() < tick) {
     const Result<bool> went_on = cursor_.step();
@@ -135,6 +145,7 @@ Result<Shot> SessionFilm::shoot(std::int64_t tick) {
     take_tick();
     if (!is_same() && !allow_diverged_) return differs();
   }
+  show_cut_depth();
   overlay_.verdict = verdict();
   overlay_.verdict_tone = is_same() ? VerdictTone::good : VerdictTone::bad;
   return Shot{cursor_.state(), overlay_, moments()};

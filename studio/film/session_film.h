@@ -11,6 +11,7 @@
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
 #include "scenes/scene_spec.h"
+#include "studio/film/cut_depth.h"
 #include "studio/render/overlay.h"
 #include "studio/session/time_range.h"
 
@@ -52,6 +53,7 @@ class SessionFilm {
   Result<Done> begin();
   void take_tick();
   void keep_inputs(const Inputs& inputs);
+  void show_cut_depth();
   std::vector<Inputs> moments() const;
   Error differs() const;
   std::string verdict() const;
@@ -62,6 +64,7 @@ class SessionFilm {
   bool allow_diverged_;
   ReplayCursor cursor_;
   OverlayData overlay_;
+  CutDepth cut_depth_;
   std::int64_t plot_every_ = 1;   ///< ticks between two points of the force plot
   std::size_t moment_every_ = 1;  ///< ticks between two moments of a following camera
   std::deque<Inputs> inputs_;     ///< of the last ticks, as many as these moments need

@@ -135,7 +135,9 @@ double round_up(double value) {
   return 10 * decade;
 }
 
-bool is_too_deep(const OverlayData& data) { return data.damage_depth > 0 && data.depth > data.damage_depth; }
+bool is_too_deep(const OverlayData& data) {
+  return !data.is_blade && data.damage_depth > 0 && data.depth > data.damage_depth;
+}
 bool is_too_strong(const OverlayData& data) {
   return data.damage_force > 0 && data.force > data.damage_force;
 }
@@ -201,7 +203,7 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
        {data.is_over ? "ended" : "time", fixed(data.time, 3) + " s"},
        {"tick", std::to_string(data.tick)},
        {"force", fixed(data.force, 3) + " N"},
-       {"depth", fixed(1000 * data.depth, 2) + " mm"},
+       {data.is_blade ? "cut depth" : "depth", fixed(1000 * data.depth, 2) + " mm"},
        {"loose",
         data.loose == 0 ? "" : std::to_string(data.loose) + (data.loose == 1 ? " piece" : " pieces")}}};
   for (const auto& [name, value] : facts) {

@@ -20,14 +20,15 @@ enum class VerdictTone { none, good, bad };
 
 /// What the overlay says. Texts that are empty are left out; long ones are shortened with an ellipsis.
 struct OverlayData {
-  std::string title;    ///< of the scene
-  std::string model;    ///< structure of the tissue: "CTPM"
-  std::string session;  ///< which recording it is, where there may be several
-  double time = 0;    ///< [s]
+  std::string title;     ///< of the scene
+  std::string model;     ///< structure of the tissue: "CTPM"
+  std::string session;   ///< which recording it is, where there may be several
+  double time = 0;       ///< [s]
   bool is_over = false;  ///< the session has ended at `time`
   std::int64_t tick = 0;
   double force = 0;         ///< magnitude on the tool [N]
-  double depth = 0;         ///< of the touched tissue [m]
+  double depth = 0;         ///< of the touched tissue, or of the cut [m]
+  bool is_blade = false;    ///< the depth is that of the cut, which has no limit
   std::int64_t loose = 0;   ///< pieces of tissue that came loose; 0 is not shown
   double damage_depth = 0;  ///< depth beyond which the tissue is damaged [m]; 0: no limit
   double damage_force = 0;  ///< force beyond which it is [N]; 0: no limit

@@ -129,6 +129,23 @@ TEST_F(Export, TheVideoShowsTheNumbersOfTheReplay) {
   EXPECT_NEAR(std::atof(reader.read_after(*frame, "depth").c_str()), cell("depth_mm"), 0.005 + 1e-9);
 }
 
+TEST_F(Export, TheVideoOfACutShowsItsDepthWhetherOrNotTheCutIsShown) {
+  const std::string session = std::string(CTPM_SOURCE_DIR) + "/recordings/shipped/kidney-cut-expert.ctpm";
+  const render_test::GlyphReader reader(1280, 720);
+  const auto depth_at = [&](const std::string& from, const std::string& to) {
+    const auto exported =
+        run_ctpm({"export", session, "-o", "at-" + to + "/", "--fps", "10", "--from-s", from, "--to-s", to},
+                 folder_.path());
+    EXPECT_EQ(exported.code, 0) << exported.err;
+    return reader.read_after(picture("at-" + to, 1), "cut depth");
+  };
+  EXPECT_EQ(depth_at("1.3", "1.4"), "0.00 mm") << "the blade is in the hand, nothing is severed";
+  const double deepest = std::atof(depth_at("3.5", "3.6").c_str());
+  EXPECT_GT(deepest, 5);
+  EXPECT_LT(deepest, 20) << "half the thickness";
+  EXPECT_EQ(std::atof(depth_at("5.2", "5.3").c_str()), deepest) << "put away long ago";
+}
+
 TEST_F(Export, ThePixelsAreTheSameAtAnyNumberOfThreads) {
   std::string first;
   for (const char* threads : {"0", "1", "2", "5"}) {

@@ -124,6 +124,11 @@ TEST(Overlay, ShowsOnlyWhatThereIs) {
   EXPECT_FALSE(says("DAMAGE"));
   data.depth = 0.0121;
   EXPECT_TRUE(says("DAMAGE"));
+  data.is_blade = true;  // a cut is no damage
+  EXPECT_FALSE(says("DAMAGE"));
+  EXPECT_TRUE(says("cut depth"));
+  data.is_blade = false;
+  EXPECT_FALSE(says("cut depth"));
   data.damage_depth = 0;  // a scene without a limit
   EXPECT_FALSE(says("DAMAGE"));
   data.damage_force = 1.2;

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/model.h"
+#include "core/organ.h"
+#include "core/state.h"
+#include "importers/surface_index.h"
+
+namespace ctpm {
+
+/// How deep a cut goes: how far below the organs' surfaces the deepest severed edge lay at rest.
+class CutDepth {
+ public:
+  /// `surfaces` at rest. `model` must outlive this.
+  CutDepth(const Model& model, const std::vector<Surface>& surfaces);
+
+  /// Adds what a later State of one session has lost.
+  void add(const State& state);
+
+  /// Adds one edge, or a two-sphere TPM, which is counted behind the edges.
+  void add(std::size_t element);
+
+  /// [m]. Nothing if nothing was severed or there are no surfaces.
+  std::optional<double> deepest() const { return deepest_; }
+
+ private:
+  const Model& model_;
+  std::vector<SurfaceIndex> surfaces_;
+  std::vector<bool> is_added_;  ///< (edge_count + tpm_count)
+  std::optional<double> deepest_;
+};
+
+}  // namespace ctpm
