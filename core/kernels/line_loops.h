@@ -146,14 +146,20 @@ void find_lambda(const LineArrays& m, const LineBatch& batch, double* __restrict
   }
 }
 
-void add_line_forces(const LineArrays& m, const LineBatch& batch) {
-  const int32_t n = batch.count;
-  alignas(64) double stiffness[kBatch], lambda[kBatch], q[3][kBatch];
-  find_lambda(m, batch, stiffness, lambda);
+/// -lambda u on the middle spheres, half of the opposite on the ends.
+void add_pull(const LineArrays& m, const LineBatch& batch, const double* lambda) {
+  alignas(64) double q[3][kBatch];
   const double *ux = m.ux + batch.place, *uy = m.uy + batch.place, *uz = m.uz + batch.place;
   CTPM_INDEPENDENT
-  for (int32_t i = 0; i < n; ++i) q[0][i] = -lambda[i] * ux[i], q[1][i] = -lambda[i] * uy[i], q[2][i] = -lambda[i] * uz[i];
+  for (int32_t i = 0; i < batch.count; ++i)
+    q[0][i] = -lambda[i] * ux[i], q[1][i] = -lambda[i] * uy[i], q[2][i] = -lambda[i] * uz[i];
   scatter_line(m, batch, m.force, q);
+}
+
+void add_line_forces(const LineArrays& m, const LineBatch& batch) {
+  alignas(64) double stiffness[kBatch], lambda[kBatch];
+  find_lambda(m, batch, stiffness, lambda);
+  add_pull(m, batch, lambda);
 }
 
 /// d(lambda u)/du = lambda I + 2 k' cos sin^2 along u; the softening is held, which keeps it positive definite.
@@ -186,13 +192,9 @@ void find_coupling(const LineArrays& m, const LineBatch& batch, const double* st
 
 bool linearise_line(const LineArrays& m, const LineBatch& batch) {
   const int32_t n = batch.count;
-  alignas(64) double stiffness[kBatch], lambda[kBatch], q[6][kBatch];
+  alignas(64) double stiffness[kBatch], lambda[kBatch], q[6][kBatch], kept[4][kBatch];
   find_lambda(m, batch, stiffness, lambda);
-  const double *ux = m.ux + batch.place, *uy = m.uy + batch.place, *uz = m.uz + batch.place;
-  CTPM_INDEPENDENT
-  for (int32_t i = 0; i < n; ++i) q[0][i] = -lambda[i] * ux[i], q[1][i] = -lambda[i] * uy[i], q[2][i] = -lambda[i] * uz[i];
-  scatter_line(m, batch, m.force, q);
-  alignas(64) double kept[4][kBatch];
+  add_pull(m, batch, lambda);
   find_coupling(m, batch, stiffness, lambda, kept);
   float* const coupling_of[4] = {m.along_x, m.along_y, m.along_z, m.isotropic};
   for (int32_t k = 0; k < 4; ++k) convert(kept[k], coupling_of[k] + batch.place, n);
