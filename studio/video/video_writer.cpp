@@ -3,7 +3,9 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
@@ -51,6 +53,15 @@ fs::path picture_path(const std::string& folder, std::int64_t index) {
   char name[32];
   std::snprintf(name, sizeof name, "%06lld.png", (long long)index);
   return fs::path(folder) / name;
+}
+
+/// Why no file of this name can be made, as `errno` says it; 0: it can. A path that cannot be written is no
+/// missing codec.
+int cannot_write(const std::string& path) {
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  if (!file) return errno;
+  std::fclose(file);
+  return 0;
 }
 
 /// What was found must be what was written.
@@ -102,6 +113,8 @@ Result<Done> VideoWriter::Parts::open_first(std::size_t asked_for) {
     path = stem + (i == asked_for && format.is_pictures() ? "" : format.written);
     part = stem + ".part" + std::to_string(getpid()) + (format.is_pictures() ? "" : format.ending);
     if (format.is_pictures()) return open_pictures();
+    if (const int failed = cannot_write(part); failed != 0)
+      return Error{path, std::string("cannot be written: ") + std::strerror(failed), ""};
     if (open(format)) return Done{};
   }
   return Error{path, "no format can be written", ""};
@@ -184,9 +197,13 @@ Result<VideoFacts> VideoWriter::Parts::check_pictures() const {
 
 Errors VideoWriter::check(const std::string& path, int width, int height, double fps) {
   Errors errors;
-  if (format_asked_for(path) == formats().size())
+  std::error_code failed;
+  const std::size_t asked_for = format_asked_for(path);
+  if (asked_for == formats().size())
     errors.push_back(
         {path, "a video's name must end in .mp4 or .avi, or in / for a folder of PNG pictures", ""});
+  else if (!formats()[asked_for].is_pictures() && fs::is_directory(path, failed))
+    errors.push_back({path, "is a folder", "give another name"});
   const auto is_good = [](int n) { return n > 0 && n <= 8192 && n % 2 == 0; };
   if (!is_good(width) || !is_good(height))
     errors.push_back({path,
@@ -198,7 +215,6 @@ Errors VideoWriter::check(const std::string& path, int width, int height, double
   const fs::path parent =
       fs::path(path.ends_with('/') ? path.substr(0, path.size() - 1) : path).parent_path();
   const fs::path folder = parent.empty() ? fs::path(".") : parent;
-  std::error_code failed;
   if (!fs::is_directory(folder, failed))
     errors.push_back({path, "the folder " + folder.string() + " does not exist", "make it first"});
   else if (access(folder.c_str(), W_OK) != 0)

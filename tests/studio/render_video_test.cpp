@@ -106,7 +106,17 @@ TEST_F(Video, BadRequestsAreAllNamedAtOnce) {
   EXPECT_EQ(bad.errors().size(), 4u);  // ending, size, rate, folder
   EXPECT_FALSE(VideoWriter::create(path("a.mp4"), 0, 0, 30));
   EXPECT_FALSE(VideoWriter::create(path("a.mp4"), 320, 181, 30));
-  EXPECT_FALSE(VideoWriter::create("/proc/a.mp4", 320, 180, 30)) << "a folder that takes no files";
+  for (const char* taken_nowhere : {"/proc/a.mp4", "/proc/a.avi", "/proc/a/"}) {
+    const auto refused = VideoWriter::create(taken_nowhere, 320, 180, 30);
+    ASSERT_FALSE(refused) << taken_nowhere;
+    EXPECT_TRUE(refused.errors()[0].where.starts_with("/proc/a")) << refused.errors()[0].where;
+    EXPECT_EQ(refused.errors()[0].where.find("frames"), std::string::npos) << "no missing codec";
+  }
+  std::filesystem::create_directory(path("b.mp4"));
+  const auto folder = VideoWriter::create(path("b.mp4"), 320, 180, 30);
+  ASSERT_FALSE(folder);
+  EXPECT_EQ(folder.errors()[0].message, "is a folder");
+  std::filesystem::remove(path("b.mp4"));
   EXPECT_EQ(file_count(), 0);
 }
 
