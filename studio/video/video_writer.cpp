@@ -150,7 +150,12 @@ void VideoWriter::Parts::discard() {
 }
 
 Result<Done> VideoWriter::Parts::put(const Frame& frame) {
-  if (format.is_pictures()) return write_png(picture_path(part, frames + 1).string(), frame);
+  if (format.is_pictures()) {
+    const Result<Done> written = write_png(picture_path(part, frames + 1).string(), frame);
+    if (written) return written;
+    return Error{picture_path(path, frames + 1).string(), written.errors()[0].message,
+                 "check the free space"};
+  }
   try {
     const cv::Mat rgb(frame.height, frame.width, CV_8UC3, const_cast<std::uint8_t*>(frame.rgb.data()));
     cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
@@ -165,8 +170,9 @@ Result<Done> VideoWriter::Parts::put(const Frame& frame) {
 Result<VideoFacts> VideoWriter::Parts::check_file() const {
   VideoFacts facts{path, format.codec, note, 0, 0, 0, 0, 0};
   try {
-    cv::VideoCapture reader(part);
-    if (!reader.isOpened()) return Error{path, "the video that was written cannot be opened again", ""};
+    cv::VideoCapture reader(part, format.backend);
+    if (!reader.isOpened())
+      return Error{path, "the video that was written cannot be opened again", "check the free space"};
     facts.width = int(reader.get(cv::CAP_PROP_FRAME_WIDTH)),
     facts.height = int(reader.get(cv::CAP_PROP_FRAME_HEIGHT));
     facts.fps = reader.get(cv::CAP_PROP_FPS);
