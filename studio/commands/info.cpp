@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <ctime>
 #include <memory>
 #include <string>
@@ -140,8 +141,10 @@ int run_info(const InfoArguments& arguments) {
   if (!reader) return print_errors(reader.errors());
   const Result<SessionStatistics> statistics = reader->statistics();
   if (!statistics) return print_errors(statistics.errors());
-  const Result<std::vector<Event>> events = reader->events();
+  Result<std::vector<Event>> events = reader->events();
   if (!events) return print_errors(events.errors());
+  // That something has ended is known, and recorded, only a while later.
+  std::ranges::stable_sort(*events, {}, &Event::tick);
   (arguments.json ? print_json : print_text)(*reader, *statistics, *events);
   return exit_good;
 }

@@ -163,6 +163,24 @@ TEST(OtherPhysics, ASessionStillOpensAndGivesItsDataAndTheVerdictNamesBothBuilds
   EXPECT_EQ(rows[120].at("same_as_recorded"), "0");
 }
 
+TEST(Info, ListsEventsInOrderOfTime) {
+  const TemporaryFolder folder;
+  const SessionStart start = testing::small_start();
+  auto writer = SessionWriter::create((folder.path() / "a.ctpm").string(), start, {.wait_when_full = true});
+  testing::live(start, 300, [&](const State& after, const TickRecord& record) {
+    writer->append(after, record);
+    if (after.tick == 200) writer->event(200, EventKind::cut, "later");
+    if (after.tick == 250) writer->event(150, EventKind::contact_ends, "seen late");
+  });
+  ASSERT_TRUE(writer->finish());
+  for (const char* json : {"", "--json"}) {
+    const auto info = run_ctpm(*json ? std::vector<std::string>{"info", "a.ctpm", json}
+                                     : std::vector<std::string>{"info", "a.ctpm"},
+                               folder.path());
+    EXPECT_LT(info.out.find("seen late"), info.out.find("later")) << info.out;
+  }
+}
+
 TEST(OldFiles, TheProgramListsAndExportsThem) {
   const TemporaryFolder folder;
   for (const auto& entry : fs::directory_iterator(std::string(CTPM_SOURCE_DIR) + "/tests/recordings/old")) {
