@@ -62,13 +62,22 @@ double unit_of(ElementQuantity quantity) {
 Cutaway find_cutaway(const std::string& text, const SceneView& scene, Vec3 eye, Errors& errors) {
   if (text.empty()) return {};
   Vec3 axis{text[0] == 'x' ? 1.0 : 0.0, text[0] == 'y' ? 1.0 : 0.0, text[0] == 'z' ? 1.0 : 0.0};
-  double place = dot(rest_bounds(scene).centre(), axis);
+  const Bounds bounds = rest_bounds(scene);
+  double place = dot(bounds.centre(), axis);
   char* end = nullptr;
   if (text.size() > 2 && text[1] == '=') place = 1e-3 * std::strtod(text.c_str() + 2, &end);
   const bool is_read = text.size() == 1 || (end && *end == 0 && std::isfinite(place));
   if (axis == Vec3{} || !is_read) {
     errors.push_back({"--cutaway", "got '" + text + "', must be x, y or z, or one of them and a place in mm",
                       "for example y=12.5"});
+    return {};
+  }
+  const double least = dot(bounds.min, axis), most = dot(bounds.max, axis);
+  if (place < least || place > most) {
+    errors.push_back({"--cutaway",
+                      "got '" + text + "', the organs lie between " + fixed(1e3 * least, 1) + " and " +
+                          fixed(1e3 * most, 1) + " mm",
+                      ""});
     return {};
   }
   if (dot(eye, axis) < place) axis = -axis, place = -place;

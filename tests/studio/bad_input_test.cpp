@@ -185,6 +185,8 @@ TEST_F(BadInput, ExportOptionsOutOfRange) {
   refuse({"export", "a.ctpm", "-o", "a.mp4", "--view", "spheres", "--by", "force"}, {"give --view elements"});
   refuse({"preview", kShipped + "skin.json", "-o", "a.png", "--view", "inside", "--cutaway", "y=deep"},
          {"--view", "--cutaway: error: got 'y=deep'"});
+  refuse({"preview", kShipped + "skin.json", "-o", "a.png", "--cutaway", "y=9999"},
+         {"--cutaway: error: got 'y=9999', the organs lie between -"});
 }
 
 TEST_F(BadInput, ModuliRadiiSpacingsAndViscositiesThatCannotBeAreAllNamedWithTheirPlaces) {
