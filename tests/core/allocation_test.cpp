@@ -1,46 +1,19 @@
 // A tick must not ask for memory: the allocator may take long, and a haptic device does not wait.
 
 #include <gtest/gtest.h>
-#include <malloc.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
 #include <set>
 #include <string>
 
 #include "core/fields.h"
 #include "core/step.h"
 #include "tests/core/blocks.h"
-
-namespace {
-
-std::atomic<long> allocations{0}, live_bytes{0};
-
-void* allocate(std::size_t size) {
-  ++allocations;
-  void* memory = std::malloc(size == 0 ? 1 : size);
-  if (memory == nullptr) throw std::bad_alloc();
-  live_bytes += long(malloc_usable_size(memory));
-  return memory;
-}
-
-void release(void* memory) {
-  live_bytes -= long(malloc_usable_size(memory));
-  std::free(memory);
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) { return allocate(size); }
-void* operator new[](std::size_t size) { return allocate(size); }
-void operator delete(void* memory) noexcept { release(memory); }
-void operator delete[](void* memory) noexcept { release(memory); }
-void operator delete(void* memory, std::size_t) noexcept { release(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { release(memory); }
+#include "tests/core/counting_allocator.h"
 
 namespace ctpm {
 namespace {
+
+using testing::allocations, testing::live_bytes;
 
 class EveryIntegrator : public ::testing::TestWithParam<Integrator> {};
 

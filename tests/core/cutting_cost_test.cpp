@@ -2,32 +2,20 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
-
 #include "core/step.h"
 #include "tests/core/blocks.h"
-
-namespace {
-std::size_t allocations = 0;
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { operator delete(memory); }
+#include "tests/core/counting_allocator.h"
 
 namespace ctpm {
 namespace {
 
-std::size_t allocations_of_ticks(const Model& model, const std::vector<Inputs>& inputs) {
+using testing::allocations;
+
+long allocations_of_ticks(const Model& model, const std::vector<Inputs>& inputs) {
   Stepper stepper(model);
   State state = rest_state(model);
   (void)stepper.step(state, inputs[0]);  // scratch that is as large as State takes its room here
-  const std::size_t before = allocations;
+  const long before = allocations;
   for (const Inputs& each : inputs) (void)stepper.step(state, each);
   return allocations - before;
 }
@@ -47,16 +35,16 @@ TEST(CuttingCost, WithoutABladeNothingIsKeptForOne) {
               state.angle_severed.empty() && state.edge_crossing.empty() && state.tpm_crossing.empty() &&
               state.blade_trail.x.empty());
   EXPECT_FALSE(model.cut_resistance.any()) << "the tissue has no toughness";
-  const std::size_t before = allocations;
+  const long before = allocations;
   { const Stepper stepper(model); }
-  const std::size_t without = allocations - before;
+  const long without = allocations - before;
   // The same network with a blade needs more room, so the comparison can fail.
   model.tools = {testing::scalpel(0.1)};
   Material tough = testing::liver_material();
   tough.fracture_toughness = 100;
   Model blade = testing::make_block_model(5, 5, 4, Structure::ctpm, tough);
   blade.tools = model.tools;
-  const std::size_t before_blade = allocations;
+  const long before_blade = allocations;
   { const Stepper stepper(blade); }
   EXPECT_GT(allocations - before_blade, without);
 }
@@ -67,9 +55,9 @@ TEST(CuttingCost, TicksDoNotAllocateNotEvenWhileTheyCut) {
   Model model = testing::make_block_model(6, 5, 4, Structure::ctpm, tough);
   model.tools = {testing::scalpel(0.1)};
   model.lip_k = model.edges.k[0];
-  EXPECT_EQ(allocations_of_ticks(model, way_through({0.0002, -0.05, -0.03}, {0.0002, 0.05, -0.03})), 0u);
+  EXPECT_EQ(allocations_of_ticks(model, way_through({0.0002, -0.05, -0.03}, {0.0002, 0.05, -0.03})), 0);
   model.tools = {testing::ball(0.006)}, model.cut_resistance = {}, model.lip_k = 0;
-  EXPECT_EQ(allocations_of_ticks(model, way_through({0, 0, 0.05}, {0, 0, 0.03})), 0u);
+  EXPECT_EQ(allocations_of_ticks(model, way_through({0, 0, 0.05}, {0, 0, 0.03})), 0);
 }
 
 }  // namespace
