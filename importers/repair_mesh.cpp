@@ -265,7 +265,7 @@ class Repair {
   }
 
   static bool is_flat(const Soup& piece) {
-    const Box box = bounding_box(piece);
+    const BoundingBox box = bounding_box(piece);
     const double volume = std::abs(signed_volume(piece.vertex, piece.triangle, box.centre()));
     return !(volume > kFlat * std::pow(box.diagonal(), 3));
   }
@@ -289,7 +289,7 @@ class Repair {
   }
 
   Result<CheckedMesh> finish() {
-    const Box box = bounding_box(soup_);
+    const BoundingBox box = bounding_box(soup_);
     out_.box_least = box.least, out_.box_most = box.most;
     out_.volume = signed_volume(soup_.vertex, soup_.triangle, box.centre());
     out_.area = surface_area(soup_.vertex, soup_.triangle);

@@ -136,8 +136,8 @@ std::vector<std::pair<Edge, std::int32_t>> sorted_edges(const std::vector<Triang
   return edges;
 }
 
-Box bounding_box(const Soup& soup) {
-  Box box;
+BoundingBox bounding_box(const Soup& soup) {
+  BoundingBox box;
   bool is_first = true;
   for (const Triangle& triangle : soup.triangle)
     for (const std::int32_t v : triangle) {

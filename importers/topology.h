@@ -15,14 +15,14 @@ struct Soup {
   std::vector<Triangle> triangle;
 };
 
-struct Box {
+struct BoundingBox {
   Vec3 least, most;
   Vec3 centre() const { return 0.5 * (least + most); }
   double diagonal() const { return norm(most - least); }
 };
 
 /// Bounding box of the vertices that triangles use; a point at 0 if there are none.
-Box bounding_box(const Soup& soup);
+BoundingBox bounding_box(const Soup& soup);
 
 /// One vertex per position: vertices in the very same place (distance 0) or within `distance` of an earlier
 /// one become that one. Returns how many vertices went. Vertices that no triangle uses go too, uncounted.

@@ -1,6 +1,7 @@
 // Proves the folder rules of the project from its own #include lines: studio -> {recordings, scenes,
 // importers} -> core, siblings never include each other, and a package's headers are seen by its owner alone,
-// also through other headers.
+// also through other headers. And that no two types of the program have the same name: the linker would take either
+// one's constructors for both.
 //   layering SOURCE_DIR       prints one line `file:line: error: ...` per broken rule; exit code 1 if there
 //   is any
 
@@ -68,8 +69,12 @@ class Sources {
     for (const auto& [folder, allowed] : kMayInclude)
       for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder))
         if (const fs::path ending = entry.path().extension();
-            ending == ".h" || ending == ".cpp" || ending == ".inl")
-          files_[fs::relative(entry.path(), root).generic_string()] = read_includes(entry.path());
+            ending == ".h" || ending == ".cpp" || ending == ".inl") {
+          const std::string file = fs::relative(entry.path(), root).generic_string();
+          files_[file] = read_includes(entry.path());
+          // A program of its own.
+          if (!file.starts_with("importers/make_organs/")) add_types(entry.path(), file);
+        }
   }
 
   std::size_t size() const { return files_.size(); }
@@ -82,10 +87,38 @@ class Sources {
         std::set<std::string> seen;
         broken += check_packages(file, include, include.path, seen);
       }
+    for (const auto& [name, places] : types_)
+      if (places.size() > 1) {
+        for (const auto& [file, line] : places)
+          std::printf("%s:%d: error: %s is defined in %zu files\n", file.c_str(), line, name.c_str(), places.size());
+        ++broken;
+      }
     return broken;
   }
 
  private:
+  /// Types that are defined at the beginning of a line, outside of unnamed namespaces.
+  void add_types(const fs::path& path, const std::string& file) {
+    static const std::regex space(R"(^(?:inline )?namespace ([\w:]*) ?\{)"),
+        type(R"(^(?:struct|class|union|enum class|enum) (\w+)(?: final)?(?: :[^:].*)?\s*\{)");
+    std::ifstream in(path);
+    std::string text;
+    std::vector<std::string> spaces;
+    for (int line = 1; std::getline(in, text); ++line) {
+      std::smatch match;
+      if (std::regex_search(text, match, space)) {
+        spaces.push_back(match[1]);
+      } else if (text.starts_with("}  // namespace")) {
+        if (!spaces.empty()) spaces.pop_back();
+      } else if (std::regex_search(text, match, type)) {
+        if (std::find(spaces.begin(), spaces.end(), "") != spaces.end()) continue;
+        std::string name;
+        for (const std::string& part : spaces) name += part + "::";
+        types_[name + match[1].str()].emplace(file, line);
+      }
+    }
+  }
+
   static int report(const std::string& file, const Include& include, const std::string& why) {
     std::printf("%s:%d: error: includes %s: %s\n", file.c_str(), include.line, include.path.c_str(),
                 why.c_str());
@@ -115,6 +148,7 @@ class Sources {
   }
 
   std::map<std::string, std::vector<Include>> files_;
+  std::map<std::string, std::map<std::string, int>> types_;  ///< file and line of each definition, by the type's full name
 };
 
 }  // namespace

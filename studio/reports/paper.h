@@ -106,13 +106,13 @@ Result<PaperResults> run_paper_experiments(
 Result<Done> write_paper_report(const std::string& folder, const PaperResults& results);
 
 /// How a sphere moves under a load that stays.
-struct Motion {
+struct StepResponse {
   double rest = 0;           ///< where it comes to [same unit as the values]: mean of the last quarter
   double overshoot = 0;      ///< largest value beyond rest [share of rest]
   int reversals = 0;         ///< turns that swing back by more than 0.1 % of rest
   double settling_time = 0;  ///< after which it stays within 5 % of rest [s]
 };
-Motion motion_of(const Series& series);
+StepResponse step_response_of(const Series& series);
 
 /// All claims as one table, for the page, results.json and results.csv.
 Table claims_table(const std::vector<Claim>& claims);

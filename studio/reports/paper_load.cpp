@@ -95,9 +95,9 @@ void add_runs(Experiment& experiment, const std::vector<LoadRun>& runs, const st
   others.series[0].colour = 2, others.series[1].colour = 4, others.series[2].colour = 0;
   section.plots.push_back(compared), section.plots.push_back(others);
   Table table = motion_layout("0.13 N, load " + how);
-  std::vector<Motion> motions;
+  std::vector<StepResponse> motions;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const Motion& m = motions.emplace_back(motion_of(runs[i].depth));
+    const StepResponse& m = motions.emplace_back(step_response_of(runs[i].depth));
     table.rows.push_back({std::string(kVariants[i].name), std::string(kVariants[i].reading), m.rest,
                           100 * m.overshoot, std::int64_t(m.reversals), m.settling_time, runs[i].integrator});
   }
@@ -153,7 +153,7 @@ Result<Press> press_and_leave(Model model, const std::string& name, State state,
 
 /// Adds the pictures of one state, one camera each.
 Result<Done> add_shot(Section& section, const LoadedScene& scene, const std::vector<FilledOrgan>& organs,
-                      const Camera& camera, const Shot& shot) {
+                      const Camera& camera, const PaperShot& shot) {
   Result<std::vector<Picture>> pictures =
       draw_shots(scene.scene.spec, organs, scene.built.model, camera, {shot});
   if (!pictures) return pictures.errors();
@@ -186,8 +186,8 @@ Result<Done> add_block_pictures(Section& section, const LoadedScene& scene) {
     const std::string
         what = "Fig. 9, " + full_name(kVariants[i]) + ": ",
         when = " 20 ms after a ball that was 12 mm deep is taken away, displacements drawn twice as large";
-    const Shot surface{.state = press->after, .caption = what + "surface" + when + ".", .exaggeration = 2};
-    const Shot inside{.state = press->after,
+    const PaperShot surface{.state = press->after, .caption = what + "surface" + when + ".", .exaggeration = 2};
+    const PaperShot inside{.state = press->after,
                       .caption = what + "inside" + when + "; the half before the middle is left out.",
                       .is_inside = true,
                       .exaggeration = 2,
@@ -213,13 +213,13 @@ Result<Done> add_liver_pictures(Section& section, const std::string& scenes) {
     if (!press) return press.errors();
     const std::string what = "Fig. 10, " + full_name(kVariants[i]) + ": the liver ";
     const Camera camera{fitted->place + Vec3{-0.03, -0.13, 0.075}, fitted->place, {0, 0, 1}, 32};
-    const Shot under{.state = press->under,
+    const PaperShot under{.state = press->under,
                      .caption = what + "with a ball " + fixed(press->depth, 1) + " mm deep.",
                      .show_tool = true},
         after{.state = press->after,
               .caption = what + "20 ms after the ball is taken away, displacements drawn 3 times as large.",
               .exaggeration = 3};
-    for (const Shot& shot : {under, after})
+    for (const PaperShot& shot : {under, after})
       if (const Result<Done> added = add_shot(section, *scene, scene->organs, camera, shot); !added)
         return added;
   }
@@ -228,8 +228,8 @@ Result<Done> add_liver_pictures(Section& section, const std::string& scenes) {
 
 }  // namespace
 
-Motion motion_of(const Series& series) {
-  Motion motion;
+StepResponse step_response_of(const Series& series) {
+  StepResponse motion;
   const std::vector<double>& y = series.y;
   const std::size_t tail = y.size() * 3 / 4;
   for (std::size_t i = tail; i < y.size(); ++i) motion.rest += y[i] / double(y.size() - tail);

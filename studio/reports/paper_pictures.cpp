@@ -60,12 +60,12 @@ void add_box_surface(FilledOrgan& block, int steps) {
 
 Result<std::vector<Picture>> draw_shots(const SceneSpec& scene, const std::vector<FilledOrgan>& organs,
                                         const Model& model, const Camera& camera,
-                                        const std::vector<Shot>& shots) {
+                                        const std::vector<PaperShot>& shots) {
   SceneView view = view_of(scene, model, surfaces_of(organs));
   Result<std::unique_ptr<Renderer>> renderer = Renderer::create(kWidth, kHeight, std::move(view));
   if (!renderer) return renderer.errors();
   std::vector<Picture> pictures;
-  for (const Shot& shot : shots) {
+  for (const PaperShot& shot : shots) {
     State state = shot.state;
     for (std::size_t i = 0; i < model.sphere_count(); ++i)
       state.position.set(

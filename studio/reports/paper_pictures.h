@@ -13,7 +13,7 @@ namespace ctpm {
 void add_box_surface(FilledOrgan& block, int steps);
 
 /// What is drawn of a state.
-struct Shot {
+struct PaperShot {
   State state = {};
   std::string caption = {};
   bool is_inside = false;  ///< the spheres instead of the surface
@@ -25,6 +25,6 @@ struct Shot {
 /// Pictures of several states of one Model, all through one camera. Errors: those of the renderer.
 Result<std::vector<Picture>> draw_shots(const SceneSpec& scene, const std::vector<FilledOrgan>& organs,
                                         const Model& model, const Camera& camera,
-                                        const std::vector<Shot>& shots);
+                                        const std::vector<PaperShot>& shots);
 
 }  // namespace ctpm

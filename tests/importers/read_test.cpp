@@ -55,7 +55,7 @@ TEST(ReadMesh, EveryFormatGivesTheSameMesh) {
     EXPECT_NEAR(read->unit_in_metres, file.said_unit, 1e-7);
     const double scale = file.scale;
     EXPECT_NEAR(signed_volume(read->vertex, read->triangle, {}), volume * std::pow(scale, 3), 1e-5 * volume);
-    const Box box = bounding_box({read->vertex, read->triangle}),
+    const BoundingBox box = bounding_box({read->vertex, read->triangle}),
               wanted = bounding_box({mesh.vertex, mesh.triangle});
     EXPECT_LT(norm(box.least - scale * wanted.least), kFloat);
     EXPECT_LT(norm(box.most - scale * wanted.most), kFloat);

@@ -125,7 +125,7 @@ TEST(Paper, MotionOfADampedSwingIsFound) {
     const double t = 1e-3 * i;
     swing.x.push_back(t), swing.y.push_back(1 - std::exp(-3 * t) * std::cos(2 * 3.14159265358979 * 5 * t));
   }
-  const Motion motion = motion_of(swing);
+  const StepResponse motion = step_response_of(swing);
   EXPECT_NEAR(motion.rest, 1, 1e-4);
   EXPECT_NEAR(motion.overshoot, std::exp(-0.3), 0.02);  // at half a period
   EXPECT_NEAR(motion.settling_time, 1.0, 0.1);          // exp(-3 t) = 0.05

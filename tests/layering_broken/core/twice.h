@@ -1,0 +1,7 @@
+namespace ctpm {
+
+struct Twice {
+  int of_core = 0;
+};
+
+}  // namespace ctpm
