@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "studio/render/cut_plane.h"
@@ -17,17 +18,23 @@ using Triangle = std::array<Index, 3>;
 
 constexpr double kPlaneReach = 2.4;    // in spacings: crossings that tell where the cut is at a place
 constexpr double kFarthestHome = 1.8;  // in spacings
+constexpr double kRindEnds = 2.0;      // in layers: in the middle of the second
 
 }  // namespace
 
 struct CutSurface::Parts {
   Parts(const Model& model, std::size_t organ, const Surface& uncut)
-      : links(model, organ), whole(uncut), out(links) {
+      : links(model, organ),
+        is_layered(model.organs[organ].layer_count > 1),
+        layer(std::span(model.layer).subspan(std::size_t(model.organs[organ].first))),
+        whole(uncut),
+        out(links) {
     bind_homes();
   }
 
   void bind_homes();
   void rebuild();
+  void find_rind();
 
   Index home_on_own_side(std::size_t vertex);
   void add_whole_vertices();
@@ -38,11 +45,14 @@ struct CutSurface::Parts {
   void split_triangle(const Triangle& t);
 
   LatticeLinks links;
+  const bool is_layered;
+  std::span<const std::int32_t> layer;  ///< of the organ's spheres
   Surface whole;
   std::vector<Index> nearest;  ///< sphere to each vertex of `whole`
   CutVertices out;
   std::size_t outer_triangles = 0, outer_vertices = 0;
   std::vector<std::uint8_t> is_lip;
+  std::vector<float> rind;
 
   // Working memory of rebuild().
   std::vector<std::uint8_t> is_near_cut;  ///< of the whole surface's vertices
@@ -182,8 +192,20 @@ void CutSurface::Parts::split_triangle(const Triangle& t) {
   }
 }
 
+void CutSurface::Parts::find_rind() {
+  const SurfaceBinding& b = out.surface().binding;
+  rind.assign(out.surface().vertex.size(), 0.0f);
+  if (!is_layered) return;
+  for (std::size_t v = outer_vertices; v < rind.size(); ++v) {
+    double at = 0;
+    for (std::size_t e = std::size_t(b.first[v]); e < std::size_t(b.first[v + 1]); ++e)
+      at += b.weight[e] * layer[std::size_t(b.sphere[e])];
+    rind[v] = float(std::clamp((kRindEnds - at) / (kRindEnds - 1), 0.0, 1.0));
+  }
+}
+
 void CutSurface::Parts::rebuild() {
-  is_lip.clear();
+  is_lip.clear(), rind.clear();
   if (!links.anything_cut()) {
     out.surface() = whole, outer_triangles = whole.triangle.size(), outer_vertices = whole.vertex.size();
     return;
@@ -195,6 +217,7 @@ void CutSurface::Parts::rebuild() {
   is_lip.assign(outer_vertices, 0);
   for (const Lip& lip : split.lips) is_lip[std::size_t(lip.from)] = is_lip[std::size_t(lip.to)] = 1;
   add_cut_wall(out, split);
+  find_rind();
 }
 
 CutSurface::CutSurface(const Model& model, std::size_t organ, const Surface& whole)
@@ -211,6 +234,7 @@ bool CutSurface::update(const State& state) {
 const Surface& CutSurface::surface() const { return parts_->out.surface(); }
 std::size_t CutSurface::outer_triangle_count() const { return parts_->outer_triangles; }
 const std::vector<std::uint8_t>& CutSurface::is_lip() const { return parts_->is_lip; }
+const std::vector<float>& CutSurface::rind() const { return parts_->rind; }
 std::size_t CutSurface::outer_vertex_count() const { return parts_->outer_vertices; }
 
 }  // namespace ctpm

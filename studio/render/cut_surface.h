@@ -34,6 +34,10 @@ class CutSurface {
   /// without a cut)
   const std::vector<std::uint8_t>& is_lip() const;
 
+  /// How much a vertex of the wall belongs to the outermost layer: 1 in it, 0 in the second and below. 0 for
+  /// outer vertices, and in organs of one layer                     (vertex_count, or empty without a cut)
+  const std::vector<float>& rind() const;
+
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;

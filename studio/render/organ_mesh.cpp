@@ -7,10 +7,13 @@
 
 namespace ctpm {
 
-void OrganMesh::set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip) {
+void OrganMesh::set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip,
+                            const std::vector<float>& rind) {
   constexpr double kStainsPerMetre = 72;
   lip_.assign(is_lip.begin(), is_lip.end());
   lip_.resize(surface.vertex.size(), 0.0f);
+  rind_ = rind;
+  rind_.resize(surface.vertex.size(), 0.0f);
   // While a cut grows, most vertices stay.
   stain_.resize(surface.vertex.size()), stained_.resize(surface.vertex.size(), Vec3{INFINITY, 0, 0});
   for (std::size_t v = 0; v < stain_.size(); ++v)
@@ -52,7 +55,7 @@ void OrganMesh::update(const Surface& surface, const State& state, std::int32_t 
     to[0] = float(p.x), to[1] = float(p.y), to[2] = float(p.z), to[3] = float(n.x), to[4] = float(n.y),
     to[5] = float(n.z);
     to[6] = float(q.x), to[7] = float(q.y), to[8] = float(q.z), to[9] = crevice_[v] * per_neighbour_[v],
-    to[10] = stain_[v], to[11] = lip_[v];
+    to[10] = stain_[v], to[11] = lip_[v], to[12] = rind_[v];
   }
 }
 

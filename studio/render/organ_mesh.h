@@ -9,15 +9,16 @@
 namespace ctpm {
 
 /// Floats of one vertex as the organ shader reads them: position, normal, rest position [m], crevice, stain,
-/// lip.
-constexpr int kOrganVertexFloats = 12;
+/// lip, rind.
+constexpr int kOrganVertexFloats = 13;
 
 /// The moving vertices of one surface, made new for every picture.
 class OrganMesh {
  public:
   /// Takes over a surface whose vertices or triangles changed. `is_lip`: 1 where a vertex lies on the lip of
-  /// a cut.
-  void set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip);
+  /// a cut. `rind`: as CutSurface says.
+  void set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip,
+                   const std::vector<float>& rind);
 
   /// Deforms the surface that was set and fills vertices(). `first_sphere`: of the organ, in the State.
   void update(const Surface& surface, const State& state, std::int32_t first_sphere);
@@ -30,7 +31,7 @@ class OrganMesh {
  private:
   std::vector<Vec3> position_, normal_;
   std::vector<Vec3> stained_;  ///< rest position of which stain_ is [m]
-  std::vector<float> crevice_, per_neighbour_, stain_, lip_;
+  std::vector<float> crevice_, per_neighbour_, stain_, lip_, rind_;
   std::vector<float> data_;
 };
 

@@ -3,6 +3,19 @@
 #include <algorithm>
 
 namespace ctpm {
+namespace {
+
+/// Of the outermost layer where it is cut, as light: the lighter of the organ's colours, paler as fibrous
+/// tissue is.
+Vec3 rind_colour(const OrganLook& look) {
+  constexpr double kPale = 0.08;
+  const Vec3 outer = linear(look.outer), inner = linear(look.inner);
+  const Vec3 lighter{std::max(outer.x, inner.x), std::max(outer.y, inner.y), std::max(outer.z, inner.z)};
+  const double brightest = std::max({lighter.x, lighter.y, lighter.z});
+  return (1 - kPale) * lighter + kPale * Vec3{brightest, brightest, brightest};
+}
+
+}  // namespace
 
 Result<Done> OrganPainter::create(const Gl& gl, const SceneView& scene) {
   for (const OrganPass pass : {OrganPass::outside, OrganPass::inside, OrganPass::glassy})
@@ -17,7 +30,7 @@ Result<Done> OrganPainter::create(const Gl& gl, const SceneView& scene) {
     VertexArray& array = organs_.back().array;
     array.create(gl);
     array.attribute(gl, 0, 3, 0, kOrganVertexFloats), array.attribute(gl, 1, 3, 3, kOrganVertexFloats);
-    array.attribute(gl, 2, 3, 6, kOrganVertexFloats), array.attribute(gl, 3, 3, 9, kOrganVertexFloats);
+    array.attribute(gl, 2, 3, 6, kOrganVertexFloats), array.attribute(gl, 3, 4, 9, kOrganVertexFloats);
   }
   return Done{};
 }
@@ -27,7 +40,7 @@ void OrganPainter::update(const Gl& gl, const SceneView& scene, const State& sta
     Organ& organ = organs_[i];
     const bool changed = organ.cut.update(state);
     const Surface& surface = organ.cut.surface();
-    if (changed || !organ.is_set) organ.mesh.set_surface(surface, organ.cut.is_lip());
+    if (changed || !organ.is_set) organ.mesh.set_surface(surface, organ.cut.is_lip(), organ.cut.rind());
     organ.is_set = true;
     organ.mesh.update(surface, state, scene.model->organs[i].first);
     organ.array.set_stream(gl, organ.mesh.vertices());
@@ -48,6 +61,7 @@ void OrganPainter::set_look(const Program& program, const OrganLook& look, const
   program.use();
   const Vec3 outer = linear(look.outer), inner = linear(look.inner);
   program.set("outer_colour", outer), program.set("inner_colour", inner);
+  program.set("rind_colour", rind_colour(look));
   // Towards a dark inside, as if paint were mixed before it is lit.
   const auto tint = [](double in, double out) { return 0.55 * in / std::max(out, 0.01); };
   program.set("lip_tint", Vec3{tint(inner.x, outer.x), tint(inner.y, outer.y), tint(inner.z, outer.z)});

@@ -101,9 +101,9 @@ const char* const kOrganVertex = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 rest;
-layout(location = 3) in vec3 crevice_stain_lip;
+layout(location = 3) in vec4 crevice_stain_lip_rind;
 uniform mat4 clip_from_world;
-uniform vec3 outer_colour, inner_colour;
+uniform vec3 outer_colour, inner_colour, rind_colour;
 out vec3 p, q;
 #ifdef INSIDE
 out vec3 n, base;
@@ -113,19 +113,19 @@ out Smooth slow;
 out float lip;
 #endif
 void main() {
-  float hollow = crevice_stain_lip.x, stain = crevice_stain_lip.y;
+  float hollow = crevice_stain_lip_rind.x, stain = crevice_stain_lip_rind.y;
   float shade = tool_shade(position, normal) * ground_shade(position, normal) *
                 clamp(1.0 + 1.6 * min(hollow, 0.0), 0.35, 1.0);
   p = position; q = bend(rest);
 #ifdef INSIDE
   n = normal; shadow = shade;
-  base = inner_colour * (1.0 + 0.16 * stain);
+  base = mix(inner_colour, rind_colour, crevice_stain_lip_rind.w) * (1.0 + 0.16 * stain);
 #else
   vec3 base = outer_colour * (1.0 + 0.20 * stain);
   base = mix(base, base * vec3(1.12, 0.86, 0.80), clamp(stain, 0.0, 1.0));
   base *= 1.0 + 0.6 * clamp(hollow, 0.0, 0.3);
   slow = smooth_light(position, normal, base, shade, 1.0);
-  lip = crevice_stain_lip.z;
+  lip = crevice_stain_lip_rind.z;
 #endif
   gl_Position = clip_from_world * vec4(position, 1.0);
 }

@@ -250,8 +250,8 @@ TEST(CutSurface, NormalsAndColourContinueOverTheClosedCut) {
   ASSERT_TRUE(cut_surface.update(state));
   const Surface &whole = scene->view.surfaces[0], &surface = cut_surface.surface();
   OrganMesh uncut, mesh;
-  uncut.set_surface(whole, {}), uncut.update(whole, rest, 0);
-  mesh.set_surface(surface, cut_surface.is_lip()), mesh.update(surface, state, 0);
+  uncut.set_surface(whole, {}, {}), uncut.update(whole, rest, 0);
+  mesh.set_surface(surface, cut_surface.is_lip(), cut_surface.rind()), mesh.update(surface, state, 0);
   const auto normal = [](const OrganMesh& m, std::size_t v) {
     const float* f = &m.vertices()[v * kOrganVertexFloats];
     return Vec3{f[3], f[4], f[5]};
@@ -372,6 +372,58 @@ TEST(CutPicture, OpensShowsItsWallAndNoBackground) {
     EXPECT_EQ(green(before), 0);
     EXPECT_GT(green(after), 300);
     EXPECT_EQ(holes(after, backdrop), 0);
+  }
+}
+
+/// The wall of a full cut in the plane x = 0, seen straight on; the other half is out of sight.
+Frame picture_of_wall(const TestScene& scene, const OrganLook& look, const DrawOptions& options) {
+  SceneView view = scene.view;
+  view.looks = {look};
+  auto made = Renderer::create(480, 360, view);
+  EXPECT_TRUE(made);
+  State state = cut_along_y(scene.model, 0, 0.1, -0.1);
+  spread(state, scene.model, [](Vec3 p) { return p.x > 0 ? Vec3{0, 0, -1} : Vec3{}; });
+  return (*made)->draw(state, options);
+}
+
+TEST(CutPicture, ItsWallIsPalerInTheOutermostLayer) {
+  const auto layered = make_blob_scene(0.002, 60), plain = make_blob_scene(0.002, 60);
+  ASSERT_GT(layered->model.organs[0].layer_count, 3);
+  plain->model.organs[0].layer_count = 1;
+  std::fill(plain->model.layer.begin(), plain->model.layer.end(), 1);
+  DrawOptions options;
+  options.camera = fit_camera(rest_bounds(layered->view), {-1, 0, 0}, {0, 0, 1});
+  options.show_ground = false;
+  for (const char* organ : {"liver", "kidney", "skin"}) {
+    OrganLook look = look_of(organ), other = look;
+    look.wetness = other.wetness = 0, other.outer = {0.2, 0.9, 0.9};
+    const Frame layers = picture_of_wall(*layered, look, options),
+                one = picture_of_wall(*plain, look, options),
+                recoloured = picture_of_wall(*plain, other, options);
+    std::array<double, 2> paler{};  // green over red that the layers add: near the surface, deep inside
+    std::array<int, 2> pixels{};
+    for (double y = -0.045; y < 0.045; y += 0.0005)
+      for (double z = -0.03; z < 0.03; z += 0.0005) {
+        const double depth = -blob({0, y, z});
+        const bool is_near = depth > 0.001 && depth < 0.003;
+        const bool is_deep = depth > 0.021;
+        if (!is_near && !is_deep) continue;
+        const Pixel at = project(options.camera, layers.width, layers.height, {0, y, z});
+        const std::size_t i = 3 * (std::size_t(at.y) * std::size_t(layers.width) + std::size_t(at.x));
+        const auto green = [i](const Frame& f) { return f.rgb[i + 1] / double(f.rgb[i]); };
+        paler[is_deep] += green(layers) - green(one), ++pixels[is_deep];
+        for (std::size_t c = 0; c < 3; ++c) {
+          EXPECT_NEAR(one.rgb[i + c], recoloured.rgb[i + c], 1)
+              << organ << ": one layer has the inner colour";
+          if (is_deep)
+            EXPECT_NEAR(layers.rgb[i + c], one.rgb[i + c], 1) << organ << ": and so has the inside";
+          else
+            EXPECT_GE(layers.rgb[i + c] + 1, one.rgb[i + c]) << organ << ": no channel is darker";
+        }
+      }
+    ASSERT_GT(std::min(pixels[0], pixels[1]), 500);
+    EXPECT_GT(paler[0] / pixels[0], 0.05) << organ;
+    EXPECT_LT(std::abs(paler[1] / pixels[1]), 0.002) << organ;
   }
 }
 
