@@ -7,7 +7,7 @@
 #include "core/fields.h"
 #include "recordings/replay.h"
 #include "recordings/state_hash.h"
-#include "studio/film/cut_depth.h"
+#include "studio/session/cut_depth.h"
 
 namespace ctpm {
 namespace {

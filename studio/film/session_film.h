@@ -11,8 +11,8 @@
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
 #include "scenes/scene_spec.h"
-#include "studio/film/cut_depth.h"
 #include "studio/render/overlay.h"
+#include "studio/session/cut_depth.h"
 #include "studio/session/time_range.h"
 
 namespace ctpm {

@@ -1,4 +1,4 @@
-#include "studio/film/cut_depth.h"
+#include "studio/session/cut_depth.h"
 
 #include <algorithm>
 #include <cmath>
