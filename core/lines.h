@@ -25,8 +25,8 @@ class LineElements {
   /// softening.
   LineArrays arrays(const State& state, double* softness);
 
-  /// u of every line of a slab, and from its tilt the softness of the slab's own middle spheres: the least of all lines
-  /// centred on them (Eq. 8).
+  /// Of lines whose middle sphere is the slab's own, lambda and the sphere's softness: the least of all lines centred on
+  /// it (Eq. 8).
   void measure(const LineArrays& m, int slab) const;
 
   /// Adds the forces [N] of one slab's lines to `m.force`. measure() of all slabs comes first.
@@ -58,7 +58,7 @@ class LineElements {
   std::vector<LineBatch> batches_;
   std::vector<Range> of_slab_;                   ///< (slab_count)
   std::vector<std::uint8_t> matters_;            ///< of each batch, whether its coupling does
-  std::vector<double> offset_[3], half_length_;  ///< u and |E - A| / 2 [m] (place_count)
+  std::vector<double> lambda_;                   ///< without softness [N/m] (place_count)
   std::vector<float> along_[3], isotropic_;      ///< coupling: along u its root [kg^1/2], and in all directions [kg]
 };
 

@@ -58,12 +58,16 @@ struct AxialArrays {
   float *root_x, *root_y, *root_z, *across;  ///< linearised coupling (place_count)
 };
 
-/// Lines of three spheres whose middle is drawn towards the middle of its ends: constraints and angle springs.
-/// As for axial elements, a line whose spheres are in several slabs has a place for each of them.
+/// Lines of three spheres whose middle is drawn towards the middle of its ends: constraints and angle springs. If the
+/// spheres all advance by one from line to line, the lines are a row: it ends before its three rows of spheres overlap,
+/// and may have places without a line (k = 0) behind the last, so that it fills whole vectors. Lines whose spheres are in
+/// several slabs are in a batch of each of them, which adds to that slab's spheres only; all have the same places, which
+/// the slab of the middle spheres writes.
 struct LineBatch {
-  std::int32_t count;    ///< in [1, kBatch]
-  std::int32_t place;    ///< first place
-  std::int32_t a, c, e;  ///< spheres of the first line; a is -1 if the lines' spheres do not all advance by one
+  std::int32_t count;           ///< lines, in [1, kBatch]
+  std::int32_t places;          ///< in [count, kBatch]; `count` if not a row
+  std::int32_t place;           ///< first place
+  std::int32_t a, c, e;         ///< spheres of the first line; a is -1 if not a row
   bool adds_a, adds_c, adds_e;  ///< whether spheres a, c, e are the slab's own
 };
 
@@ -79,7 +83,7 @@ struct LineArrays {
   const double* mass;               ///< (sphere_count)
   SlabTarget<double> force, blocks; ///< three and six rows
   double h;
-  double *ux, *uy, *uz, *half;      ///< u and |E - A| / 2 (place_count)
+  double* lambda;                   ///< of Eq. 2 without Eq. 8, or k of an angle spring [N/m] (place_count)
   float *along_x, *along_y, *along_z, *isotropic;  ///< linearised coupling (place_count)
 };
 
@@ -114,7 +118,7 @@ struct Kernels {
   void (*add_axial_forces)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last);
   void (*linearise_axial)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last);
 
-  /// u and half length of every line, and the softness of the middle spheres (Eq. 8).
+  /// lambda of lines whose middle spheres are the slab's own, and those spheres' softness (Eq. 8).
   void (*measure_line)(const LineArrays&, const LineBatch&);
   void (*add_line_forces)(const LineArrays&, const LineBatch&);
   /// False: the coupling is too small to matter.

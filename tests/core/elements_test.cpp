@@ -171,6 +171,18 @@ TEST(Constraint, AStraightStretchedLineHasNone) {
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(norm(force[i]), 0);
 }
 
+TEST(Constraint, PullsWithTwiceKWhereItsEndsMeetAndNotAtAllWhereItIsAPoint) {
+  Line line(0.01);
+  line.model.edges.k.assign(line.model.edges.size(), 0);
+  line.model.has_softening = false, line.model.edges.third = {};
+  line.state.position.x.assign(5, 0);
+  const Vec3Array force = internal_forces(line.model, line.state);
+  EXPECT_NEAR(force.z[2], -2 * line.model.constraints.k.at(0) * 0.01, 1e-12);
+  line.state.position.z[2] = line.state.position.z[0];
+  const Vec3Array none = internal_forces(line.model, line.state);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(norm(none[i]), 0);
+}
+
 TEST(Softening, HalvesATripleAt45Degrees) {
   Line line(0.024);  // tan(theta) = 1
   const double soft = internal_forces(line.model, line.state).x[1];
