@@ -157,13 +157,36 @@ void AxialElements::apply(int slab, const Real* v, SlabTarget<Real> result) cons
 template void AxialElements::apply(int slab, const float* v, SlabTarget<float> result) const;
 template void AxialElements::apply(int slab, const double* v, SlabTarget<double> result) const;
 
-void AxialElements::advance_kelvin(double h, State& state, std::size_t first, std::size_t last) const {
+/// The implicit step of c z' = k2 (x - z) - k1 z of `h` [s] to a moment at which the TPM is x longer than at rest.
+double AxialElements::kelvin_after(double h, const State& state, std::size_t t) const {
   const TwoSphereTpms& m = model_.tpms;
+  const double x = distance(state.position, m.a[t], m.b[t]) - m.rest_length[t];
+  const double damping = m.kelvin_c[t] / h;
+  return (damping * state.kelvin_elongation[t] + m.spring_k[t] * x) / (m.spring_k[t] + m.kelvin_k[t] + damping);
+}
+
+/// Part of a step of `h` [s] after which a TPM's elongation acts: half of it, as the midpoint rule has it, or so much more
+/// that no step overshoots the limit.
+double AxialElements::acting_part(double h, std::size_t t) const {
+  const TwoSphereTpms& m = model_.tpms;
+  return std::max(0.5, 1 - m.kelvin_c[t] / (h * (m.spring_k[t] + m.kelvin_k[t])));
+}
+
+void AxialElements::find_kelvin(double h, const State& state, std::vector<double>& after, std::size_t first,
+                                std::size_t last) const {
+  for (std::size_t t = first; t < last; ++t) after[t] = kelvin_after(h, state, t);
+}
+
+void AxialElements::find_acting_kelvin(double h, const State& state, std::vector<double>& acting, std::size_t first,
+                                       std::size_t last) const {
+  for (std::size_t t = first; t < last; ++t) acting[t] = kelvin_after(acting_part(h, t) * h, state, t);
+}
+
+void AxialElements::finish_kelvin(double h, const std::vector<double>& acting, State& state, std::size_t first,
+                                  std::size_t last) const {
   for (std::size_t t = first; t < last; ++t) {
-    const double x = distance(state.position, m.a[t], m.b[t]) - m.rest_length[t];
-    const double damping = m.kelvin_c[t] / h;
-    state.kelvin_elongation[t] = (damping * state.kelvin_elongation[t] + m.spring_k[t] * x) /
-                                 (m.spring_k[t] + m.kelvin_k[t] + damping);
+    double& z = state.kelvin_elongation[t];
+    z += (acting[t] - z) / acting_part(h, t);
   }
 }
 

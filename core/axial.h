@@ -39,11 +39,16 @@ class AxialElements {
   template <class Real>
   void apply(int slab, const Real* v, SlabTarget<Real> result) const;
 
-  /// Advances the Kelvin elongations of two-sphere TPMs [first, last) to the end of a step of `h` [s] that moved to
-  /// State::position.
-  void advance_kelvin(double h, State& state, std::size_t first, std::size_t last) const;
+  /// As Elements::find_kelvin(), find_acting_kelvin() and finish_kelvin(), of two-sphere TPMs [first, last).
+  void find_kelvin(double h, const State& state, std::vector<double>& after, std::size_t first, std::size_t last) const;
+  void find_acting_kelvin(double h, const State& state, std::vector<double>& acting, std::size_t first,
+                          std::size_t last) const;
+  void finish_kelvin(double h, const std::vector<double>& acting, State& state, std::size_t first, std::size_t last) const;
 
  private:
+  double kelvin_after(double h, const State& state, std::size_t t) const;
+  double acting_part(double h, std::size_t t) const;
+
   using Batches = std::vector<AxialBatch>;
 
   const Model& model_;

@@ -1,31 +1,49 @@
 #pragma once
 
-#include "core/linear_solver.h"
+#include <optional>
+
 #include "core/elements.h"
+#include "core/linear_solver.h"
 #include "core/outside.h"
 #include "core/step.h"
 
 namespace ctpm {
 
-/// Backward Euler, linearised once: one substep solves
-///   (M + h C + h^2 K) v' = M v + h (f_elastic(x) + f_contact(x) + M g),  x' = x + h v'.
-/// First order, L-stable: as stiff a dashpot as one likes. Baraff & Witkin, "Large steps in cloth simulation"
-/// (1998), with what would make the matrix indefinite left out of it.
+/// Backward Euler, linearised once: one substep solves M (v' - v) = h f(x + h v', v'), x' = x + h v', by one step of
+/// Newton's method: (M + h C + h^2 K) dv = its residual. First order, L-stable: as stiff a dashpot as one likes. Baraff &
+/// Witkin, "Large steps in cloth simulation" (1998), with what would make the matrix indefinite left out of it.
 class BackwardEuler {
  public:
   BackwardEuler(const Model& model, const Slabs& slabs, Team& team, const Kernels& kernels);
 
-  /// `velocity` [m/s] at the end of the substep (3 x sphere_count); contacts that would pull are dropped.
-  /// Iterations and residual go into `report`.
+  /// `velocity` [m/s] at the end of the substep that begins with State (3 x sphere_count), linearised about spheres that
+  /// rest; contacts that would pull are dropped. Force on the tool, iterations and residual go into `report`.
   void solve(Elements& elements, const State& state, Outside& outside, Coordinates& velocity, StepReport& report);
 
-  /// What the tissue did to the pin in the substep just solved [N].
-  Vec3 force_on_pin(const Elements& elements, const State& state, const Outside& outside,
-                    const Coordinates& velocity);
+  /// As above, linearised about a guess of the end: State::velocity is that guess, State::position and
+  /// State::kelvin_elongation are where it leads, `before` is the velocity [m/s] at the start. With `keeps_matrix` the
+  /// tissue's part of the matrix is still that of the last solve, which must have been of the same length.
+  void solve_near(Elements& elements, const State& state, const Vec3Array& before, bool keeps_matrix, Outside& outside,
+                  Coordinates& velocity, StepReport& report);
+
+  /// Which part of the kinetic energy at the end the guess of the last solve() missed.
+  double unforeseen(const Coordinates& velocity);
 
  private:
-  SolverOutcome solve_round(const Elements& elements, const State& state, const Outside& outside,
-                        Coordinates& velocity);
+  /// What a substep is solved from.
+  struct Beginning {
+    const Vec3Array& before;             ///< velocity at its start
+    const Vec3Array* guess;              ///< of that at its end; null: none
+    std::optional<double> guess_energy;  ///< LinearSolver::energy_of() it
+  };
+
+  void begin(const State& state, const Outside& outside, int slab, Coordinates& velocity);
+  void begin_blocks(int slab);
+  void solve_contacts(const Elements& elements, const Beginning& beginning, Outside& outside, Coordinates& change,
+                      StepReport& report);
+  SolverOutcome solve_round(const Elements& elements, const Outside& outside, std::optional<double> energy,
+                            Coordinates& change);
+  Vec3 force_on_pin(const Elements& elements, Vec3 before, const Outside& outside, const Coordinates& change);
 
   const Model& model_;
   const Slabs& slabs_;
@@ -34,6 +52,7 @@ class BackwardEuler {
   LinearSolver solver_;
   SolverLimits limits_;
   Coordinates force_, momentum_;
+  Coordinates change_;  ///< from the last guess; empty until there is one
   DiagonalBlocks blocks_;
 };
 

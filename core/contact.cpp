@@ -14,25 +14,30 @@ constexpr std::size_t kLookedAtOnce = 128;
 
 }  // namespace
 
+double contact_damping(double k, double mass, double penetration) {
+  return std::min(kContactDamping * k * penetration, 2 * std::sqrt(k * mass));
+}
+
 BallContact::BallContact(const Model& model, const Kernels& kernels) : model_(model), kernels_(kernels) {
   const auto presses = [](const Tool& tool) { return tool.kind == ToolKind::ball; };
   if (std::any_of(model.tools.begin(), model.tools.end(), presses)) contacts_.reserve(model.sphere_count());
   for (const double radius : model.contact_radius) largest_radius_ = std::max(largest_radius_, radius);
 }
 
-void BallContact::find(const State& state, Vec3 centre, double radius, Vec3 velocity) {
-  contacts_.clear();
+void BallContact::find(const State& state, Vec3 centre, double radius, Vec3 velocity, bool is_guess) {
+  clear();
   velocity_ = velocity;
   const double farthest = (radius + largest_radius_) * (radius + largest_radius_), at[3] = {centre.x, centre.y, centre.z};
   for (std::size_t begin = 0; begin < state.position.size(); begin += kLookedAtOnce) {
     const std::size_t end = std::min(begin + kLookedAtOnce, state.position.size());
     const double nearest = kernels_.nearest_squared(state.position.x.data(), state.position.y.data(),
                                                     state.position.z.data(), at, begin, end);
-    if (nearest < farthest) find_among(state, centre, radius, begin, end);
+    if (nearest < farthest) find_among(state, centre, radius, is_guess, begin, end);
   }
 }
 
-void BallContact::find_among(const State& state, Vec3 centre, double radius, std::size_t begin, std::size_t end) {
+void BallContact::find_among(const State& state, Vec3 centre, double radius, bool is_guess, std::size_t begin,
+                             std::size_t end) {
   const Vec3 velocity = velocity_;
   for (std::size_t i = begin; i < end; ++i) {
     if (model_.held_axes[i] == kAnchored) continue;
@@ -50,7 +55,10 @@ void BallContact::find_among(const State& state, Vec3 centre, double radius, std
     const double stick = kStickTime * model_.contact_k,
                  limit = model_.contact_friction * model_.contact_k * penetration;
     const double drag = model_.contact_friction > 0 ? (speed * stick > limit ? limit / speed : stick) : 0.0;
-    contacts_.push_back({std::int32_t(i), normal, penetration, drag, {}});
+    const Vec3 from = is_guess ? slip : -velocity;
+    const double towards = dot(from, normal), damping = contact_damping(model_.contact_k, model_.mass[i], penetration);
+    contacts_.push_back({std::int32_t(i), normal, penetration, damping, drag,
+                         std::clamp(-towards, -reach / model_.tick, penetration / model_.tick), from - towards * normal});
   }
 }
 
@@ -61,10 +69,10 @@ void BallContact::linearise(double h, Coordinates& force, DiagonalBlocks& blocks
     for (std::size_t k = 0; k < 3; ++k) contact.without[k] = force[k * spheres + i];
     for (std::size_t k = 0; k < 6; ++k) contact.without[3 + k] = blocks[k * spheres + i];
     const Vec3 n = contact.normal;
-    const Vec3 push =
-        model_.contact_k * contact.penetration * n + contact.drag * (velocity_ - dot(velocity_, n) * n);
+    const Vec3 push = (model_.contact_k * contact.penetration + contact.damping * contact.approach) * n -
+                      contact.drag * contact.slip;
     force[i] += push.x, force[spheres + i] += push.y, force[2 * spheres + i] += push.z;
-    const double across = h * contact.drag, along = h * h * model_.contact_k - across;
+    const double across = h * contact.drag, along = coupling_along(contact, h) - across;
     double* block = &blocks[i];
     block[0] += along * n.x * n.x + across, block[spheres] += along * n.x * n.y,
         block[2 * spheres] += along * n.x * n.z;
@@ -82,20 +90,41 @@ void BallContact::undo_linearise(Coordinates& force, DiagonalBlocks& blocks) con
   }
 }
 
-void BallContact::push_apart(double h, Coordinates& velocity) {
+/// Shares of the velocities after and before a step in what acts in its middle. A quarter of each in the penetration
+/// (Newmark's average acceleration) and a half in the damping are of second order; of what the step is too long to follow
+/// (`k`, `c`: stiffness and damping of the step against the mass) the velocity after it has more, so that it does not ring.
+struct BallContact::Shares {
+  double after = 0.25, before = 0.25, damped_after = 0.5, damped_before = 0.5;
+
+  Shares(double k, double c) {
+    if (k > 4) before = 1 / k, after = 1 - 3 * before;
+    if (c > 2) damped_before = 1 / c, damped_after = 1 - damped_before;
+  }
+};
+
+void BallContact::push_apart(double h, const Vec3Array& before, Coordinates& velocity) {
   const std::size_t spheres = model_.sphere_count();
-  std::erase_if(contacts_, [&](const Contact& contact) {
+  const double k = model_.contact_k, stick = model_.contact_friction > 0 ? kStickTime * k : 0.0;
+  std::erase_if(contacts_, [&](Contact& contact) {
     const auto i = std::size_t(contact.sphere);
-    const double mass = model_.mass[i], k = model_.contact_k;
-    const Vec3 n = contact.normal, free = mass * Vec3{velocity[i], velocity[spheres + i], velocity[2 * spheres + i]};
-    const double along = (dot(n, free) + h * k * contact.penetration) / (mass + h * h * k);
-    if (contact.penetration < h * along) return true;
-    const Vec3 across = (free - dot(n, free) * n + h * contact.drag * (velocity_ - dot(velocity_, n) * n)) /
-                        (mass + h * contact.drag);
-    const Vec3 pushed = along * n + across;
-    velocity[i] = pushed.x, velocity[spheres + i] = pushed.y, velocity[2 * spheres + i] = pushed.z;
+    const double mass = model_.mass[i];
+    const double damping = contact.damping;
+    const Shares share(h * h * k / mass, h * damping / mass);
+    const Vec3 n = contact.normal, change = Vec3{velocity[i], velocity[spheres + i], velocity[2 * spheres + i]} - before[i];
+    const double old = -contact.approach, free = mass * (old + dot(n, change));
+    const double push = k * (contact.penetration + h * share.before * old) - damping * share.damped_before * old;
+    const double along = (free + h * push) / (mass + h * (h * k * share.after + damping * share.damped_after));
+    const double pressure = (mass * along - free) / h;
+    if (pressure < 0) return true;
+    const Vec3 across = mass * (contact.slip + change - dot(n, change) * n);
+    const double limit = model_.contact_friction * pressure, size = norm(across);
+    const bool sticks = stick * size <= (mass + h * stick) * limit;
+    contact.acting = pressure * n - (sticks ? stick / (mass + h * stick) : limit / size) * across;
+    const Vec3 kick = h / mass * contact.acting;
+    velocity[i] += kick.x, velocity[spheres + i] += kick.y, velocity[2 * spheres + i] += kick.z;
     return false;
   });
+  is_explicit_ = true;
 }
 
 template <class Real>
@@ -105,7 +134,7 @@ double BallContact::apply(double h, const Real* v, Real* result) const {
   for (const Contact& contact : contacts_) {
     const auto i = std::size_t(contact.sphere);
     const Vec3 n = contact.normal, u{v[i], v[spheres + i], v[2 * spheres + i]};
-    const double across = h * contact.drag, along = h * h * model_.contact_k - across;
+    const double across = h * contact.drag, along = coupling_along(contact, h) - across;
     const Vec3 q = along * dot(n, u) * n + across * u;
     result[i] += Real(q.x), result[spheres + i] += Real(q.y), result[2 * spheres + i] += Real(q.z);
     energy += dot(u, q);
@@ -115,14 +144,19 @@ double BallContact::apply(double h, const Real* v, Real* result) const {
 template double BallContact::apply(double h, const float* v, float* result) const;
 template double BallContact::apply(double h, const double* v, double* result) const;
 
-Vec3 BallContact::relative_velocity(const Contact& contact, const Coordinates& v) const {
+Vec3 BallContact::change_of(const Contact& contact, const Coordinates& v) const {
   const std::size_t spheres = model_.sphere_count(), i = std::size_t(contact.sphere);
-  return Vec3{v[i], v[spheres + i], v[2 * spheres + i]} - velocity_;
+  return {v[i], v[spheres + i], v[2 * spheres + i]};
+}
+
+/// What the normal part of a velocity is multiplied by in the matrix of a step of `h` [kg].
+double BallContact::coupling_along(const Contact& contact, double h) const {
+  return h * (h * model_.contact_k + contact.damping);
 }
 
 double BallContact::pressure(const Contact& contact, double h, const Coordinates& v) const {
-  const Vec3 absolute = relative_velocity(contact, v) + velocity_;
-  return model_.contact_k * (contact.penetration - h * dot(contact.normal, absolute));
+  return model_.contact_k * contact.penetration + contact.damping * contact.approach -
+         coupling_along(contact, h) / h * dot(contact.normal, change_of(contact, v));
 }
 
 bool BallContact::has_pulling(double h, const Coordinates& v) const {
@@ -137,8 +171,12 @@ void BallContact::drop_pulling(double h, const Coordinates& v) {
 Vec3 BallContact::force_on_tool(double h, const Coordinates& v) const {
   Vec3 force;
   for (const Contact& contact : contacts_) {
-    const Vec3 n = contact.normal, slip = relative_velocity(contact, v);
-    force += contact.drag * (slip - dot(slip, n) * n) - std::max(pressure(contact, h, v), 0.0) * n;
+    if (is_explicit_) {
+      force -= contact.acting;
+      continue;
+    }
+    const Vec3 n = contact.normal, change = change_of(contact, v), slip = contact.slip + change - dot(change, n) * n;
+    force += contact.drag * slip - std::max(pressure(contact, h, v), 0.0) * n;
   }
   return force;
 }

@@ -93,9 +93,11 @@ void Elements::prepare_linearise() {
   make_room(9, 3);
 }
 
-void Elements::linearise_of(int slab, Arrays arrays, double h, Coordinates& force, DiagonalBlocks& blocks) {
+void Elements::linearise_of(int slab, Arrays arrays, double h, bool with_dashpots, Coordinates& force,
+                            DiagonalBlocks& blocks) {
   const SlabTarget<double> own = target_for(slab, 3, force.data()), own_blocks = target_for(slab, 6, blocks.data());
   arrays.constraints.h = arrays.angles.h = arrays.axial.h = h;
+  arrays.axial.with_dashpots = with_dashpots;
   arrays.constraints.force = arrays.angles.force = arrays.axial.force = own;
   arrays.constraints.blocks = arrays.angles.blocks = arrays.axial.blocks = own_blocks;
   if constexpr (!kOnlySprings) {
@@ -106,12 +108,25 @@ void Elements::linearise_of(int slab, Arrays arrays, double h, Coordinates& forc
   bring(own, 3, force.data()), bring(own_blocks, 6, blocks.data());
 }
 
-void Elements::advance_kelvin(double h, State& state) const {
+template <class Part>
+void Elements::for_tpms(const State& state, Part&& part) const {
   const std::size_t tpms = state.kelvin_elongation.size(), parts = std::size_t(slabs_.count());
   if (kOnlySprings || tpms == 0) return;
-  team_.for_each(slabs_.count(), [&](int part) {
-    axial_.advance_kelvin(h, state, tpms * std::size_t(part) / parts, tpms * std::size_t(part + 1) / parts);
+  team_.for_each(slabs_.count(), [&](int slab) {
+    part(tpms * std::size_t(slab) / parts, tpms * std::size_t(slab + 1) / parts);
   });
+}
+
+void Elements::find_kelvin(double h, const State& state, std::vector<double>& after) const {
+  for_tpms(state, [&](std::size_t first, std::size_t last) { axial_.find_kelvin(h, state, after, first, last); });
+}
+
+void Elements::find_acting_kelvin(double h, const State& state, std::vector<double>& acting) const {
+  for_tpms(state, [&](std::size_t first, std::size_t last) { axial_.find_acting_kelvin(h, state, acting, first, last); });
+}
+
+void Elements::finish_kelvin(double h, const std::vector<double>& acting, State& state) const {
+  for_tpms(state, [&](std::size_t first, std::size_t last) { axial_.finish_kelvin(h, acting, state, first, last); });
 }
 
 }  // namespace ctpm

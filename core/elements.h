@@ -27,23 +27,37 @@ class Elements {
   template <class Before, class After>
   void add_forces(const State& state, Coordinates& force, Before&& before, After&& after);
 
-  /// Adds the elastic forces [N] to `force` and the diagonal of h^2 K + h C [kg] to `blocks`, for a step of `h`
-  /// [s]; before(slab) is called ahead of what is added to a slab's spheres. The dashpots' forces are left to the matrix.
+  /// Adds the elastic forces [N] to `force` and the diagonal of h^2 K + h C [kg] to `blocks`, for a step of `h` [s], at the
+  /// end of which two-sphere TPMs are meant; before(slab) is called ahead of what is added to a slab's spheres. The
+  /// dashpots' forces are left to the matrix unless `with_dashpots`.
   template <class Before>
-  void linearise(const State& state, double h, Coordinates& force, DiagonalBlocks& blocks, Before&& before);
+  void linearise(const State& state, double h, bool with_dashpots, Coordinates& force, DiagonalBlocks& blocks,
+                 Before&& before);
 
   /// result += (h^2 K + h C) v as of the last linearise(), in the precision of `v`, float or double  (3 x sphere_count
   /// each). `after(slab)` is called for each slab when its part of `result` is done.
   template <class Real, class After>
   void apply(const Real* v, Real* result, After&& after) const;
 
-  /// Brings the Kelvin elongations of the two-sphere TPMs to the end of a step of `h` [s] that moved to
-  /// State::position.
-  void advance_kelvin(double h, State& state) const;
+  /// Kelvin elongations of the two-sphere TPMs [m] at the end of a step of `h` [s] from State::kelvin_elongation that has
+  /// moved to State::position; first order  (tpm_count).
+  void find_kelvin(double h, const State& state, std::vector<double>& after) const;
+  void advance_kelvin(double h, State& state) const { find_kelvin(h, state, state.kelvin_elongation); }
+
+  /// Kelvin elongations [m] that act in a step of `h` [s] in whose middle the spheres are at State::position; second order
+  /// where the step resolves them  (tpm_count).
+  void find_acting_kelvin(double h, const State& state, std::vector<double>& acting) const;
+
+  /// Brings the Kelvin elongations to the end of that step.
+  void finish_kelvin(double h, const std::vector<double>& acting, State& state) const;
 
   const Slabs& slabs() const { return slabs_; }
 
  private:
+  /// Calls part(first, last) for ranges of two-sphere TPMs, in parallel.
+  template <class Part>
+  void for_tpms(const State& state, Part&& part) const;
+
   /// Room for what one slab's elements add, before it goes to where all spheres are; with a single slab none is needed.
   struct Workbench {
     std::vector<double> full;   ///< three rows of forces, six of blocks
@@ -60,7 +74,8 @@ class Elements {
   void measure(const Arrays& arrays);
   void add_forces_of(int slab, Arrays arrays, Coordinates& force);
   void prepare_linearise();
-  void linearise_of(int slab, Arrays arrays, double h, Coordinates& force, DiagonalBlocks& blocks);
+  void linearise_of(int slab, Arrays arrays, double h, bool with_dashpots, Coordinates& force,
+                    DiagonalBlocks& blocks);
 
   void make_room(std::size_t full_rows, std::size_t single_rows);
 
@@ -89,11 +104,12 @@ void Elements::add_forces(const State& state, Coordinates& force, Before&& befor
 }
 
 template <class Before>
-void Elements::linearise(const State& state, double h, Coordinates& force, DiagonalBlocks& blocks, Before&& before) {
+void Elements::linearise(const State& state, double h, bool with_dashpots, Coordinates& force, DiagonalBlocks& blocks,
+                         Before&& before) {
   prepare_linearise();
   const Arrays all = arrays(state);
   measure(all);
-  team_.for_each(slabs_.count(), [&](int slab) { before(slab), linearise_of(slab, all, h, force, blocks); });
+  team_.for_each(slabs_.count(), [&](int slab) { before(slab), linearise_of(slab, all, h, with_dashpots, force, blocks); });
 }
 
 template <class Real, class After>

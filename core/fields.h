@@ -35,6 +35,7 @@ void for_each_field(State_& s, Visit&& visit) {
   visit("edge_crossing", s.edge_crossing);
   visit("tpm_crossing", s.tpm_crossing);
   visit_points("blade_trail.x", "blade_trail.y", "blade_trail.z", s.blade_trail, visit);
+  visit_points("acceleration.x", "acceleration.y", "acceleration.z", s.acceleration, visit);
 }
 
 template <class Tool_, class Visit>

@@ -76,14 +76,14 @@ IntegratorChoice choose_integrator(const Model& model) {
   const double longest = stable_step_bound(model);
   const SolverSettings& solver = model.solver;
   IntegratorChoice choice{solver.integrator, solver.substeps, true, "the scene asks for it"};
-  if (solver.integrator == Integrator::symplectic_euler && model.tick / solver.substeps > longest) {
+  if (solver.integrator == Integrator::leapfrog && model.tick / solver.substeps > longest) {
     choice.holds = false;
     choice.reason = with_milliseconds("the scene asks for it, but it only holds for substeps up to %.3g ms", longest);
   }
   if (solver.integrator != Integrator::automatic) return choice;
   const double needed = std::max(std::ceil(model.tick / (kSafety * longest)), double(solver.substeps));
   if (needed <= kMostExplicitSubsteps || needed <= solver.substeps) {
-    choice.integrator = Integrator::symplectic_euler;
+    choice.integrator = Integrator::leapfrog;
     choice.substeps = std::int32_t(needed);
     choice.reason = with_milliseconds("nothing in the scene is too stiff for an explicit step of up to %.3g ms", longest);
   } else {
@@ -96,9 +96,9 @@ IntegratorChoice choose_integrator(const Model& model) {
 const char* name_of(Integrator integrator) {
   switch (integrator) {
     case Integrator::automatic: return "auto";
-    case Integrator::symplectic_euler: return "symplectic-euler";
+    case Integrator::leapfrog: return "leapfrog";
     case Integrator::backward_euler: return "backward-euler";
-    case Integrator::extrapolated_euler: return "extrapolated-euler";
+    case Integrator::sdirk2: return "sdirk2";
   }
   return "unknown";
 }

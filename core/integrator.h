@@ -6,7 +6,7 @@
 
 namespace ctpm {
 
-/// Longest step [s] for which symplectic Euler is proven to hold, or infinity if nothing is stiff.
+/// Longest step [s] for which leapfrog is proven to hold, or infinity if nothing is stiff.
 ///
 /// A linear system M x'' + C x' + K x = 0 stays bounded while h^2 k + 2 h c < 4 for the largest k of M^-1 K and c of
 /// M^-1 C together. Each element's share in both is bounded by what it does to its own spheres, whatever the shape the
@@ -25,8 +25,8 @@ struct IntegratorChoice {
   std::string reason;  ///< one sentence
 };
 
-/// Follows SolverSettings::integrator; `automatic` is decided from the Model alone: symplectic Euler where few substeps
-/// hold it, backward Euler where not.
+/// Follows SolverSettings::integrator; `automatic` is decided from the Model alone: leapfrog where few substeps hold it,
+/// backward Euler where not.
 IntegratorChoice choose_integrator(const Model& model);
 
 /// Name of an integrator in scenes and reports.

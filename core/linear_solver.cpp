@@ -30,6 +30,12 @@ LinearSolver::LinearSolver(const Model& model, const Slabs& slabs, Team& team, c
     if (model.held_axes[i] != 0) held_.push_back(std::int32_t(i));
 }
 
+double LinearSolver::energy_of(const Coordinates& v) {
+  return sum_over_slabs(slabs_, team_, parts_, [&](std::size_t begin, std::size_t end) {
+    return kernels_.multiply_mass(model_.sphere_count(), model_.mass.data(), v.data(), residual_.data(), begin, end);
+  });
+}
+
 void LinearSolver::set_blocks(const DiagonalBlocks& blocks, std::int32_t pinned) {
   std::visit([&](auto& gradient) { set_blocks_of(gradient, blocks, pinned); }, gradient_);
 }

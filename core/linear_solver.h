@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -40,10 +41,14 @@ class LinearSolver {
   /// the first guess: their rows are left out of the system.
   void set_blocks(const DiagonalBlocks& blocks, std::int32_t pinned);
 
-  /// `x` is the first guess and the result. `add_coupling` as for ConjugateGradient, for vectors of float and of
-  /// double.
+  /// `x` is the first guess and the result. If it is all zero, since it is a change of a velocity, `guess_energy` is
+  /// energy_of() that. `add_coupling` as for ConjugateGradient, for vectors of float and of double.
   template <class AddCoupling>
-  SolverOutcome solve(const Coordinates& b, Coordinates& x, const SolverLimits& limits, AddCoupling&& add_coupling);
+  SolverOutcome solve(const Coordinates& b, Coordinates& x, std::optional<double> guess_energy,
+                      const SolverLimits& limits, AddCoupling&& add_coupling);
+
+  /// v . M v [J], twice the kinetic energy of velocity `v` [m/s].
+  double energy_of(const Coordinates& v);
 
  private:
   template <class Real>
@@ -64,18 +69,20 @@ class LinearSolver {
 };
 
 template <class AddCoupling>
-SolverOutcome LinearSolver::solve(const Coordinates& b, Coordinates& x, const SolverLimits& limits,
-                                  AddCoupling&& add_coupling) {
+SolverOutcome LinearSolver::solve(const Coordinates& b, Coordinates& x, std::optional<double> guess_energy,
+                                  const SolverLimits& limits, AddCoupling&& add_coupling) {
   const std::size_t n = model_.sphere_count();
   SolverOutcome outcome;
   std::int32_t left = limits.max_iterations;
   double first_energy = 0, enough = 0;
   std::visit([&]<class Real>(ConjugateGradient<Real>& gradient) {
     for (bool is_first = true;; is_first = false) {
-      const double kinetic = sum_over_slabs(slabs_, team_, parts_, [&](std::size_t begin, std::size_t end) {
-        return kernels_.multiply_mass(n, model_.mass.data(), x.data(), residual_.data(), begin, end);
-      });
-      add_coupling(static_cast<const double*>(x.data()), residual_.data(), [](int) {});
+      const bool is_zero = is_first && guess_energy.has_value();
+      const double kinetic = is_zero ? *guess_energy : energy_of(x);
+      if (is_zero)
+        std::fill(residual_.begin(), residual_.end(), 0.0);
+      else
+        add_coupling(static_cast<const double*>(x.data()), residual_.data(), [](int) {});
       const double squared = sum_over_slabs(slabs_, team_, parts_, [&](std::size_t begin, std::size_t end) {
         return kernels_.residual_from(n, b.data(), residual_.data(), begin, end);
       });

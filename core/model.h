@@ -102,9 +102,9 @@ struct OrganRange {
 /// How the positions follow from the forces (scene key `solver.integrator`).
 enum class Integrator : std::int32_t {
   automatic = 0,           ///< chosen from the Model alone, see integrator.h
-  symplectic_euler = 1,    ///< explicit, first order
+  leapfrog = 1,        ///< explicit, second order (position Verlet)
   backward_euler = 2,      ///< implicit, first order, L-stable
-  extrapolated_euler = 3,  ///< implicit, second order, L-stable: backward Euler with step h and twice h/2, extrapolated
+  sdirk2 = 3,          ///< implicit, second order, L-stable: two stages of backward Euler (Alexander 1977)
 };
 
 /// How a tick is solved; all limits are counts or residuals, never times.

@@ -1,5 +1,7 @@
 #include "core/outside.h"
 
+#include <utility>
+
 namespace ctpm {
 
 HeldSpheres::HeldSpheres(const Model& model, const Slabs& slabs)
@@ -36,22 +38,25 @@ void add_loads(const Model& model, const Outside& outside, std::size_t begin, st
   for (std::size_t l = 0; l < loads.size(); ++l) {
     const auto i = std::size_t(loads.sphere[l]);
     if (i < begin || i >= end) continue;
-    const double since = outside.end_time - loads.start[l];
+    const double since = outside.time - loads.start[l];
     const double share = since <= 0 ? 0.0 : (since >= loads.ramp[l] ? 1.0 : since / loads.ramp[l]);
     const Vec3 pull = share * loads.force[l];
     force[i] += pull.x, force[n + i] += pull.y, force[2 * n + i] += pull.z;
   }
 }
 
-void find_momentum(const Model& model, const State& state, double h, const Coordinates& force, std::size_t begin,
-                   std::size_t end, Coordinates& momentum) {
+void find_momentum(const Model& model, const Vec3Array& velocity, const Vec3Array* guess, double h,
+                   const Coordinates& force, std::size_t begin, std::size_t end, Coordinates& momentum) {
   const std::size_t n = model.sphere_count();
-  const double* velocity[3] = {state.velocity.x.data(), state.velocity.y.data(), state.velocity.z.data()};
   const double* mass = model.mass.data();
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double *f = &force[axis * n], *v = velocity[axis];
-    double* __restrict out = &momentum[axis * n];
-    for (std::size_t i = begin; i < end; ++i) out[i] = mass[i] * v[i] + h * f[i];
+  for (const auto& [axis, of] : {std::pair{0, &Vec3Array::x}, {1, &Vec3Array::y}, {2, &Vec3Array::z}}) {
+    const double *f = &force[std::size_t(axis) * n], *v = (velocity.*of).data();
+    const double* from = guess != nullptr ? (guess->*of).data() : nullptr;
+    double* __restrict out = &momentum[std::size_t(axis) * n];
+    if (from == nullptr)
+      for (std::size_t i = begin; i < end; ++i) out[i] = mass[i] * v[i] + h * f[i];
+    else
+      for (std::size_t i = begin; i < end; ++i) out[i] = mass[i] * (v[i] - from[i]) + h * f[i];
   }
 }
 

@@ -4,6 +4,13 @@
 
 namespace ctpm {
 
+void PairContacts::start_from(const Vec3Array& velocity) {
+  for (PairContact& c : contacts_) {
+    const Vec3 u = c.weight_a * velocity[std::size_t(c.a)] + c.weight_b * velocity[std::size_t(c.b)];
+    c.force -= c.drag * (u - dot(c.axis, u) * c.axis);
+  }
+}
+
 void PairContacts::linearise(double h, Coordinates& force, DiagonalBlocks& blocks) {
   const std::size_t n = model_.sphere_count();
   for (PairContact& c : contacts_) {

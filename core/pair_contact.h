@@ -36,6 +36,9 @@ class PairContacts {
   void clear() { contacts_.clear(), is_explicit_ = false; }
   std::size_t count() const { return contacts_.size(); }
 
+  /// To be solved for changes of `velocity` [m/s], not from rest.
+  void start_from(const Vec3Array& velocity);
+
   /// Adds contact forces [N] and linearisation for a step of `h` [s].
   void linearise(double h, Coordinates& force, DiagonalBlocks& blocks);
 

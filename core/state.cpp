@@ -6,6 +6,7 @@ State rest_state(const Model& model) {
   State state;
   state.position = model.rest_position;
   state.velocity = Vec3Array(model.sphere_count());
+  if (model.solver.integrator == Integrator::sdirk2) state.acceleration.resize(model.sphere_count());
   state.kelvin_elongation.assign(model.tpms.size(), 0.0);
   if (model.has_scalpel()) {
     state.edge_severed.assign(model.edges.size(), 0);

@@ -14,6 +14,7 @@ struct State {
   std::int64_t tick = 0;                   ///< ticks done
   Vec3Array position;                      ///< [m]                                     (sphere_count)
   Vec3Array velocity;                      ///< [m/s]                                   (sphere_count)
+  Vec3Array acceleration;                  ///< [m/s^2], from which sdirk2 guesses; empty for other integrators (sphere_count)
   std::vector<double> kelvin_elongation;   ///< internal variable of two-sphere TPMs [m] (tpm_count)
   std::vector<std::uint8_t> edge_severed;  ///< 1: severed; empty if the scene has no scalpel  (edge_count)
   std::vector<std::uint8_t> tpm_severed;   ///< as above                                       (tpm_count)

@@ -27,7 +27,8 @@ struct Hasher {
   /// Arrays that came into State after the first sessions were recorded: while empty they do not count, so
   /// that the hashes of those sessions stay what they were.
   static bool is_newer(std::string_view name) {
-    return name == "edge_crossing" || name == "tpm_crossing" || name.starts_with("blade_trail");
+    return name == "edge_crossing" || name == "tpm_crossing" || name.starts_with("blade_trail") ||
+           name.starts_with("acceleration");
   }
 
   template <class T>

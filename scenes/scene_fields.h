@@ -39,9 +39,9 @@ inline std::span<const Choice<ToolKind>> choices_of(ToolKind) {
 
 inline std::span<const Choice<Integrator>> choices_of(Integrator) {
   static constexpr Choice<Integrator> choices[] = {{"auto", Integrator::automatic},
-                                                   {"symplectic-euler", Integrator::symplectic_euler},
+                                                   {"leapfrog", Integrator::leapfrog},
                                                    {"backward-euler", Integrator::backward_euler},
-                                                   {"extrapolated-euler", Integrator::extrapolated_euler}};
+                                                   {"sdirk2", Integrator::sdirk2}};
   return choices;
 }
 
@@ -279,8 +279,8 @@ inline RecordInfo info_of(const SolverSpec&) { return {"solver", "How a tick is 
 template <class V>
 void describe_fields(V& v, SolverSpec& solver) {
   v.choice(Key{"integrator",
-               "`symplectic-euler` is explicit, `backward-euler` implicit, `extrapolated-euler` implicit and of second "
-               "order; `auto` takes the cheapest that holds the scene's stiffness, and `ctpm plan` says which and why.",
+               "`leapfrog` is explicit and of second order, `backward-euler` implicit and of first, `sdirk2` implicit and of "
+               "second; `auto` takes the cheapest that holds the scene's stiffness, and `ctpm plan` says which and why.",
                false},
            solver.integrator);
   v.number(Key{"tolerance", "Relative residual at which the solve of a tick stops.", false, "1e-4"},

@@ -99,11 +99,11 @@ void add_axial_forces(const AxialArrays& m, const AxialBatch* first, const Axial
     add_axial_forces_with<false>(m, first, last);
 }
 
-/// Elastic tension [N] and axial coupling [kg] that act in a step of h.
-void find_tension(const AxialArrays& m, const AxialBatch& batch, const double* length, double* __restrict tension,
+/// Tension [N] and axial coupling [kg] that act in a step of h.
+void find_tension(const AxialArrays& m, const AxialBatch& batch, const Directions& d, double* __restrict tension,
                   double* __restrict coupling) {
   const int32_t n = batch.count;
-  const double h = m.h;
+  const double h = m.h, *length = d.length;
   const double *rest = m.parameters + batch.parameters, *k = rest + n, *c = k + n;
   if (!kOnlySprings && batch.law == AxialLaw::two_sphere_tpm) {
     const double *spring = k, *unit = c, *viscosity = c + n;
@@ -120,6 +120,12 @@ void find_tension(const AxialArrays& m, const AxialBatch& batch, const double* l
     CTPM_INDEPENDENT
     for (int32_t i = 0; i < n; ++i)
       tension[i] = k[i] * (length[i] - rest[i]), coupling[i] = h * (h * k[i] + c[i]);
+    if (!m.with_dashpots) return;
+    const double *vxa = m.vx + batch.a, *vya = m.vy + batch.a, *vza = m.vz + batch.a;
+    const double *vxb = m.vx + batch.b, *vyb = m.vy + batch.b, *vzb = m.vz + batch.b;
+    CTPM_INDEPENDENT
+    for (int32_t i = 0; i < n; ++i)
+      tension[i] += c[i] * (d.x[i] * (vxb[i] - vxa[i]) + d.y[i] * (vyb[i] - vya[i]) + d.z[i] * (vzb[i] - vza[i]));
   } else {
     CTPM_INDEPENDENT
     for (int32_t i = 0; i < n; ++i) tension[i] = k[i] * (length[i] - rest[i]), coupling[i] = h * h * k[i];
@@ -131,7 +137,7 @@ void linearise_axial_of(const AxialArrays& m, const AxialBatch& batch) {
   Directions d;
   find_directions(m, batch, d);
   alignas(64) double tension[kBatch], coupling[kBatch], factor[kBatch];
-  find_tension(m, batch, d.length, tension, coupling);
+  find_tension(m, batch, d, tension, coupling);
   if (find_factors(m, batch, factor))
     CTPM_INDEPENDENT
     for (int32_t i = 0; i < n; ++i) tension[i] *= factor[i], coupling[i] *= factor[i];

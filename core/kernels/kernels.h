@@ -55,6 +55,7 @@ struct AxialArrays {
   const double* kelvin_elongation;                 ///< (tpm_count)
   SlabTarget<double> force, blocks;  ///< three and six rows
   double h;
+  bool with_dashpots;  ///< a linearisation's force has those of the dashpots
   float *root_x, *root_y, *root_z, *across;  ///< linearised coupling (place_count)
 };
 

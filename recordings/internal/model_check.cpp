@@ -224,7 +224,7 @@ Errors check_model(const Model& model) {
                 "solver.max_iterations", "must be in [1, " + std::to_string(max_iterations) + "]");
   check.require(solver.substeps >= 1 && solver.substeps <= max_substeps, "solver.substeps",
                 "must be in [1, " + std::to_string(max_substeps) + "]");
-  check.require(solver.integrator >= Integrator::automatic && solver.integrator <= Integrator::extrapolated_euler,
+  check.require(solver.integrator >= Integrator::automatic && solver.integrator <= Integrator::sdirk2,
                 "solver.integrator", "is of an unknown kind");
   return check.take();
 }
@@ -254,6 +254,9 @@ Errors check_state(const Model& model, const State& state) {
   check.length("tpm_crossing", state.tpm_crossing, cuts ? model.tpms.size() : 0, true);
   const Vec3Array& trail = state.blade_trail;
   if (!trail.x.empty() || !trail.y.empty() || !trail.z.empty()) check.points("blade_trail", state.blade_trail, 2);
+  const Vec3Array& acceleration = state.acceleration;
+  if (!acceleration.x.empty() || !acceleration.y.empty() || !acceleration.z.empty())
+    check.points("acceleration", acceleration, model.sphere_count());
   const auto tools = static_cast<std::int32_t>(model.tools.size());
   check.require(state.last_inputs.tool >= -1 && state.last_inputs.tool < tools, "last_inputs.tool",
                 "is not a tool of the model");

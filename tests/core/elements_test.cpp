@@ -193,6 +193,28 @@ TEST(Softening, HalvesATripleAt45Degrees) {
   EXPECT_NEAR(soft, hard / 2, 1e-12);
 }
 
+TEST(Softening, DoesWorkInAClosedCycle) {
+  // E moves out while the line is straight, C tilts, E comes back while all is soft, C comes back.
+  Line line(0);
+  line.model.constraints.k.assign(line.model.constraints.k.size(), 0);  // springs alone have an energy
+  double work = 0;
+  const auto move = [&](std::size_t sphere, Vec3 way) {
+    constexpr int kSteps = 200;
+    for (int i = 0; i < kSteps; ++i) {
+      line.state.position.add(sphere, 0.5 / kSteps * way);
+      work += dot(internal_forces(line.model, line.state)[sphere], way) / kSteps;
+      line.state.position.add(sphere, 0.5 / kSteps * way);
+    }
+  };
+  const Vec3 out{0.006, 0, 0}, down{0, 0, 0.012};
+  move(4, out), move(2, down), move(4, -out), move(2, -down);
+  const double stored = 0.5 * line.model.edges.k[0] * 0.006 * 0.006;
+  EXPECT_GT(std::abs(work), 0.01 * stored);
+  line.model.has_softening = false, work = 0;
+  move(4, out), move(2, down), move(4, -out), move(2, -down);
+  EXPECT_LT(std::abs(work), 0.005 * stored);
+}
+
 TEST(Softening, StaysFiniteAt90Degrees) {
   Line line(0.01);
   for (const std::size_t i : {0u, 1u, 3u, 4u}) line.state.position.set(i, {0, 0, 0});

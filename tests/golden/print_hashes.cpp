@@ -21,7 +21,7 @@ constexpr Session kSessions[] = {
     {"angle-mass-spring", 6, 5, 5, 400, Structure::angle_mass_spring, Integrator::backward_euler},
     {"tpm", 6, 5, 5, 400, Structure::tpm, Integrator::automatic},
     {"ctpm", 6, 5, 5, 400, Structure::ctpm, Integrator::automatic},
-    {"ctpm, second order", 6, 5, 5, 400, Structure::ctpm, Integrator::extrapolated_euler},
+    {"ctpm, second order", 6, 5, 5, 400, Structure::ctpm, Integrator::sdirk2},
     {"ctpm in slabs", 13, 12, 12, 40, Structure::ctpm, Integrator::automatic},
     {"mass-spring in slabs", 13, 12, 12, 40, Structure::mass_spring, Integrator::automatic},
 };

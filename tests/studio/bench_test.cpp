@@ -68,7 +68,7 @@ TEST(BenchCommand, ShowsErrorAgainstRunTimeOfAScene) {
   EXPECT_NE(outcome.out.find("on this machine"), std::string::npos) << outcome.out;
   const std::string csv = slurp(folder.path() / "out/results.csv");
   EXPECT_NE(csv.find("backward-euler,4"), std::string::npos) << csv;
-  EXPECT_NE(csv.find("extrapolated-euler,2"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("sdirk2,2"), std::string::npos) << csv;
   EXPECT_NE(csv.find(",front"), std::string::npos) << csv;
   const std::string page = slurp(folder.path() / "out/report.html");
   EXPECT_NE(page.find("Pareto front"), std::string::npos);

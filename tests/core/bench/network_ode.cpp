@@ -89,7 +89,7 @@ void NetworkOde::for_each_touched(double time, Touch&& touch) const {
     const Vec3 slip = past - dot(past, normal) * normal;
     const double speed = norm(slip), stick = kStickTime * k, limit = friction * k * penetration;
     const double drag = friction > 0 ? (speed * stick > limit ? limit / speed : stick) : 0.0;
-    touch(Contact{std::int32_t(i), normal, penetration, drag, {}}, slip);
+    touch(Contact{std::int32_t(i), normal, penetration, contact_damping(k, model_.mass[i], penetration), drag, -dot(past, normal), slip}, slip);
   }
 }
 
@@ -99,7 +99,8 @@ void NetworkOde::derive(double time, const double* y, double* derivative) {
   elements_.add_forces(state_, force_);
   add_loads(time);
   for_each_touched(time, [&](const Contact& contact, Vec3 slip) {
-    const Vec3 push = model_.contact_k * contact.penetration * contact.normal - contact.drag * slip;
+    const Vec3 push = std::max(0.0, model_.contact_k * contact.penetration + contact.damping * contact.approach) * contact.normal -
+                      contact.drag * slip;
     const auto i = std::size_t(contact.sphere);
     force_[i] += push.x, force_[spheres_ + i] += push.y, force_[2 * spheres_ + i] += push.z;
   });
@@ -124,10 +125,10 @@ void NetworkOde::take_blocks(double time, double gamma, const double* y) {
   for (std::size_t k = 0; k < 6; ++k)
     for (std::size_t i = 0; i < spheres_; ++i)
       blocks_[k * spheres_ + i] = k == 0 || k == 3 || k == 5 ? model_.mass[i] : 0.0;
-  elements_.linearise(state_, gamma, force_, blocks_, [](int) {});
+  elements_.linearise(state_, gamma, false, force_, blocks_, [](int) {});
   for_each_touched(time, [&](const Contact& contact, Vec3) {
     const Vec3 n = contact.normal;
-    const double across = gamma * contact.drag, along = gamma * gamma * model_.contact_k - across;
+    const double across = gamma * contact.drag, along = gamma * (gamma * model_.contact_k + contact.damping) - across;
     const double own[6] = {along * n.x * n.x + across, along * n.x * n.y, along * n.x * n.z,
                            along * n.y * n.y + across, along * n.y * n.z, along * n.z * n.z + across};
     for (std::size_t k = 0; k < 6; ++k) blocks_[k * spheres_ + std::size_t(contact.sphere)] += own[k];

@@ -1,16 +1,17 @@
-#include "core/symplectic_euler.h"
+#include "core/leapfrog.h"
 
 #include "core/only_springs.h"
 
 namespace ctpm {
 
-SymplecticEuler::SymplecticEuler(const Model& model, const Slabs& slabs)
+Leapfrog::Leapfrog(const Model& model, const Slabs& slabs)
     : model_(model), slabs_(slabs), held_(model, slabs), force_(3 * model.sphere_count()) {
   per_mass_.reserve(model.sphere_count());
   for (const double mass : model.mass) per_mass_.push_back(1 / mass);
 }
 
-void SymplecticEuler::solve(Elements& elements, const State& state, Outside& outside, Coordinates& velocity) {
+void Leapfrog::solve(Elements& elements, const State& state, Outside& outside, Coordinates& velocity,
+                     StepReport& report) {
   const std::size_t n = model_.sphere_count();
   const double* old[3] = {state.velocity.x.data(), state.velocity.y.data(), state.velocity.z.data()};
   const auto start = [&](int slab) {
@@ -30,15 +31,13 @@ void SymplecticEuler::solve(Elements& elements, const State& state, Outside& out
   };
   elements.add_forces(state, force_, start, accelerate);
   if constexpr (kOnlySprings) return;
-  outside.contact.push_apart(outside.h, velocity);
+  outside.contact.push_apart(outside.h, state.velocity, velocity);
   outside.pairs.push_apart(outside.h, outside.held_axes, velocity);
-}
-
-Vec3 SymplecticEuler::force_on_pin(const State& state, const Outside& outside) const {
-  const std::size_t n = model_.sphere_count();
+  report.tool_force = outside.contact.force_on_tool(outside.h, velocity) + outside.pairs.force_on_tool(outside.h, velocity);
+  if (outside.pinned < 0) return;
   const auto i = std::size_t(outside.pinned);
   const Vec3 own{force_[i], force_[n + i], force_[2 * n + i]};
-  return own + model_.mass[i] * (state.velocity[i] - outside.pin_velocity) / outside.h;
+  report.tool_force = own + model_.mass[i] * (outside.velocity_before_pin - outside.pin_velocity) / outside.h;
 }
 
 }  // namespace ctpm

@@ -1,0 +1,119 @@
+#include "core/contact.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/step.h"
+#include "tests/core/blocks.h"
+
+namespace ctpm {
+namespace {
+
+using testing::ball;
+using testing::make_block_model;
+
+Inputs tool_at(Vec3 position) {
+  Inputs inputs;
+  inputs.tool = 0, inputs.position = position;
+  return inputs;
+}
+
+/// One sphere that nothing holds.
+Model make_free_sphere(Integrator integrator, double tick) {
+  Model model = make_block_model(1, 1, 1, Structure::mass_spring);
+  model.held_axes = {0};
+  model.solver.integrator = integrator, model.tick = tick;
+  model.solver.tolerance = 1e-10, model.solver.velocity_floor = 1e-12;
+  return model;
+}
+
+class AContact : public ::testing::TestWithParam<Integrator> {};
+
+TEST_P(AContact, TakesHuntAndCrossleysShareOfTheBounce) {
+  Model model = make_free_sphere(GetParam(), 1e-5);
+  model.contact_friction = 0, model.tools = {ball(0.02)};
+  const double in = 0.03, gap = 1e-5;
+  State state = rest_state(model);
+  state.velocity.set(0, {0, 0, in});
+  const Inputs still = tool_at({0, 0, 0.02 + model.contact_radius[0] + gap});
+  Stepper stepper(model);
+  for (int i = 0; i < 500; ++i) ASSERT_EQ(stepper.step(state, still).status, StepStatus::ok);
+  // m v dv = -k p (1 + c p') dp from first to last touch: x - ln(1 + x) = -y - ln(1 - y) of both speeds times c.
+  const double x = kContactDamping * in, y = -kContactDamping * state.velocity.z[0];
+  EXPECT_LT(state.velocity.z[0], 0);
+  EXPECT_NEAR(-y - std::log(1 - y), x - std::log(1 + x), 0.05);
+}
+
+TEST_P(AContact, SlidesUnderCoulombsLawAndThenSticks) {
+  // Under so large a ball the way is straight.
+  Model model = make_free_sphere(GetParam(), 2e-5);
+  const double radius = 100, press = 0.05, speed = 0.02;
+  model.tools = {ball(radius)};
+  model.loads.sphere = {0}, model.loads.force.push_back({0, 0, press});
+  model.loads.start = {0}, model.loads.ramp = {0};
+  State state = rest_state(model);
+  state.position.z[0] = press / model.contact_k;
+  state.velocity.set(0, {speed, 0, 0});
+  const Inputs still = tool_at({0, 0, radius + model.contact_radius[0]});
+  Stepper stepper(model);
+  const double slowing = model.contact_friction * press / model.mass[0], stops = speed / slowing;
+  ASSERT_GT(stops, 20 * model.tick);
+  while ((double(state.tick) + 1) * model.tick < 0.9 * stops) {
+    const StepReport report = stepper.step(state, still);
+    ASSERT_EQ(report.status, StepStatus::ok);
+    EXPECT_NEAR(state.velocity.x[0], speed - slowing * double(state.tick) * model.tick, 0.02 * speed);
+    EXPECT_NEAR(report.tool_force.x, model.contact_friction * press, 0.05 * press);
+  }
+  for (int i = 0; i < 5000; ++i) ASSERT_EQ(stepper.step(state, still).status, StepStatus::ok);
+  EXPECT_NEAR(state.velocity.x[0], 0, 1e-3 * speed);
+  EXPECT_NEAR(state.position.x[0], 0.5 * speed * stops, 0.05 * speed * stops);
+}
+
+INSTANTIATE_TEST_SUITE_P(Under, AContact,
+                         ::testing::Values(Integrator::leapfrog, Integrator::backward_euler, Integrator::sdirk2));
+
+/// Where a block's spheres are while a ball presses one of them, without friction; it touches from the start, since a
+/// contact that begins within a step has a kink there.
+Vec3Array press(Structure structure, Integrator integrator, double tick) {
+  Material material = testing::liver_material();
+  material.stiffness_scale = 0.3;
+  Model model = make_block_model(4, 4, 4, structure, material);
+  model.contact_friction = 0, model.tools = {ball(0.004)}, model.tick = tick;
+  model.solver.integrator = integrator, model.solver.tolerance = 1e-10, model.solver.velocity_floor = 1e-14;
+  Stepper stepper(model);
+  State state = rest_state(model);
+  const double touch = 0.012 * 3 + 0.004 + model.contact_radius.back(), duration = 0.016;
+  const auto hand = [&](double time) {
+    const double share = time / duration;
+    return tool_at({0.0065, 0.0055, touch - 2e-4 - 0.001 * share * share * (3 - 2 * share)});
+  };
+  state.last_inputs = hand(0);
+  while (double(state.tick) * tick < duration - 0.5 * tick)
+    EXPECT_EQ(stepper.step(state, hand(double(state.tick + 1) * tick)).status, StepStatus::ok);
+  return state.position;
+}
+
+double distance(const Vec3Array& a, const Vec3Array& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += dot(a[i] - b[i], a[i] - b[i]);
+  return std::sqrt(sum);
+}
+
+class APress : public ::testing::TestWithParam<std::pair<Integrator, Structure>> {};
+
+TEST_P(APress, IsOfSecondOrder) {
+  const auto [integrator, structure] = GetParam();
+  const Vec3Array reference = press(structure, integrator, 2.5e-5);
+  const double coarse = distance(press(structure, integrator, 4e-4), reference),
+               fine = distance(press(structure, integrator, 1e-4), reference);
+  EXPECT_GT(fine, 0);
+  EXPECT_GT(0.5 * std::log2(coarse / fine), 1.7) << coarse << " and " << fine << " m";
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, APress,
+                         ::testing::Values(std::pair{Integrator::leapfrog, Structure::mass_spring},
+                                           std::pair{Integrator::sdirk2, Structure::ctpm}));
+
+}  // namespace
+}  // namespace ctpm
