@@ -114,7 +114,7 @@ double measure_tick(const Model& model) {
 std::string solver_of(const Model& model, const IntegratorChoice& choice) {
   std::string words = name_of(choice.integrator);
   if (choice.substeps > 1) words += ", " + std::to_string(choice.substeps) + " substeps a tick";
-  if (choice.integrator == Integrator::symplectic_euler) return words;
+  if (choice.integrator == Integrator::leapfrog) return words;
   char limits[96];
   std::snprintf(limits, sizeof limits, ", conjugate gradients to a residual of %g, at most %d iterations",
                 model.solver.tolerance, model.solver.max_iterations);

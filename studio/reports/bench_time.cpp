@@ -48,7 +48,7 @@ struct Point {
 std::string name_of_setting(const Setting& s) {
   std::string name = std::string(name_of(s.integrator)) + ", " + std::to_string(s.substeps) +
                      (s.substeps == 1 ? " substep" : " substeps");
-  if (s.integrator != Integrator::symplectic_euler) name += ", tolerance " + short_number(s.tolerance);
+  if (s.integrator != Integrator::leapfrog) name += ", tolerance " + short_number(s.tolerance);
   return name;
 }
 
@@ -199,14 +199,14 @@ std::vector<Setting> settings_for(const Model& model, bool is_quick) {
   std::vector<Setting> settings;
   const double needed = std::max(1.0, std::ceil(model.tick / (0.9 * stable_step_bound(model))));
   for (double n = needed; n <= std::min(kMostSubsteps, 4 * needed); n *= 2)
-    settings.push_back({Integrator::symplectic_euler, std::int32_t(n), 1e-4});
+    settings.push_back({Integrator::leapfrog, std::int32_t(n), 1e-4});
   const std::vector<double> tolerances =
       is_quick ? std::vector{1e-2, 1e-5} : std::vector{1e-1, 1e-2, 1e-4, 1e-6};
   for (const double tolerance : tolerances) {
     for (std::int32_t n = 1; n <= (is_quick ? 4 : 16); n *= 2)
       settings.push_back({Integrator::backward_euler, n, tolerance});
     for (std::int32_t n = 1; n <= (is_quick ? 2 : 4); n *= 2)
-      settings.push_back({Integrator::extrapolated_euler, n, tolerance});
+      settings.push_back({Integrator::sdirk2, n, tolerance});
   }
   return settings;
 }
@@ -231,13 +231,13 @@ Plot diagram(const std::string& title, const std::vector<Point>& points, double 
   plot.is_log_x = plot.is_log_y = true;
   for (const Point& p : points) {
     std::string name = name_of(p.setting.integrator);
-    if (p.setting.integrator != Integrator::symplectic_euler) name += " " + short_number(p.setting.tolerance);
+    if (p.setting.integrator != Integrator::leapfrog) name += " " + short_number(p.setting.tolerance);
     auto it =
         std::find_if(plot.series.begin(), plot.series.end(), [&](const Series& s) { return s.name == name; });
     if (it == plot.series.end()) {
       Series series{.name = name};
-      series.stroke = p.setting.integrator == Integrator::extrapolated_euler ? Stroke::dashed : Stroke::line;
-      series.colour = p.setting.integrator == Integrator::symplectic_euler
+      series.stroke = p.setting.integrator == Integrator::sdirk2 ? Stroke::dashed : Stroke::line;
+      series.colour = p.setting.integrator == Integrator::leapfrog
                           ? 6
                           : int(-std::log10(p.setting.tolerance)) % 6;
       it = plot.series.insert(plot.series.end(), series);
@@ -262,7 +262,7 @@ Table orders(const std::vector<Point>& points, double gap) {
       "tolerance";
   table.columns = {{"integrator", "integrator"}, {"position", "in position", 3}, {"force", "in force", 3}};
   for (const Integrator integrator :
-       {Integrator::symplectic_euler, Integrator::backward_euler, Integrator::extrapolated_euler}) {
+       {Integrator::leapfrog, Integrator::backward_euler, Integrator::sdirk2}) {
     std::vector<const Point*> own;
     double tightest = 1;
     for (const Point& p : points)
@@ -280,12 +280,12 @@ Table orders(const std::vector<Point>& points, double gap) {
   return table;
 }
 
-/// Order of extrapolated Euler in position where a pin moves what the ball presses, between 2 and 4 substeps.
+/// Order of SDIRK2 in position where a pin moves what the ball presses, between 2 and 4 substeps.
 double order_without_contact(const TimeJob& job, std::int32_t fine) {
   Model model = job.model;
   const BenchMotion motion = move_the_top(model);
   const auto run = [&](std::int32_t substeps) {
-    const Setting setting{Integrator::extrapolated_euler, substeps, kReferenceTolerance};
+    const Setting setting{Integrator::sdirk2, substeps, kReferenceTolerance};
     return run_motion(with_setting(model, setting), motion);
   };
   const BenchRun reference = run(fine);
@@ -326,7 +326,7 @@ BenchStudy study(const TimeJob& job, const BenchOptions& options, const std::fun
   const std::int32_t fine = options.is_quick ? 8 : 16;
   const auto reference_run = [&](std::int32_t substeps) {
     return run_motion(
-        with_setting(job.model, {Integrator::extrapolated_euler, substeps, kReferenceTolerance}), job.motion);
+        with_setting(job.model, {Integrator::sdirk2, substeps, kReferenceTolerance}), job.motion);
   };
   std::future<BenchRun> other = std::async(std::launch::async, [&] { return reference_run(fine / 2); });
   const BenchRun reference = reference_run(fine), halved = other.get();
@@ -351,8 +351,7 @@ BenchStudy study(const TimeJob& job, const BenchOptions& options, const std::fun
       std::to_string(job.model.sphere_count()) + " spheres, " + std::to_string(job.motion.ticks) +
           " ticks of " + short_number(1e3 * job.model.tick) +
           " ms, no gravity. Errors are relative differences in L2 over the whole "
-          "trajectory, of displacements and of the force on the tool, from a reference: extrapolated Euler "
-          "with " +
+          "trajectory, of displacements and of the force on the tool, from a reference: sdirk2 with " +
           std::to_string(fine) + " substeps and tolerance " + short_number(kReferenceTolerance) +
           ". The reference itself "
           "differs from the run with half as many substeps by " +
@@ -363,10 +362,10 @@ BenchStudy study(const TimeJob& job, const BenchOptions& options, const std::fun
   study.section.paragraphs.push_back(study.sentences[0]);
   study.section.tables = {orders(points, position_gap)};
   if (job.is_pressed) {
-    study.section.tables[0].rows.push_back({std::string("extrapolated-euler, without contact"),
+    study.section.tables[0].rows.push_back({std::string("sdirk2, without contact"),
                                             order_without_contact(job, fine), Cell()});
     study.section.paragraphs.push_back(
-        "Extrapolated Euler is of second order where the motion is smooth and the steps resolve it. In the last row "
+        "SDIRK2 is of second order where the motion is smooth and the steps resolve it. In the last row "
         "of the table of orders a pin moves the pressed sphere along the ball's way: where that is 2 and the row above "
         "is less, contacts that begin and end within steps cost the difference, since the force has a kink there.");
   }

@@ -270,7 +270,7 @@ Result<Experiment> run_load(const std::string& scenes, bool with_pictures) {
       "11. "
       "A reversal counts when the sphere swings back by more than 0.1 % of its depth at rest. Steps are 0.1 "
       "ms "
-      "or shorter; each Model's integrator stands in the table: symplectic Euler damps nothing, backward "
+      "or shorter; each Model's integrator stands in the table: leapfrog damps nothing, backward "
       "Euler "
       "damps fast oscillations a little itself.",
       "The pictures show both models just after a ball is taken away, when they differ most: mass-spring has "
