@@ -21,6 +21,7 @@ BackwardEuler::BackwardEuler(const Model& model, const Slabs& slabs, Team& team,
       solver_(model, slabs, team, kernels),
       force_(3 * model.sphere_count()),
       momentum_(3 * model.sphere_count()),
+      change_(model.solver.integrator == Integrator::sdirk2 ? 3 * model.sphere_count() : 0),
       blocks_(6 * model.sphere_count()) {
   double total_mass = 0;
   for (const double mass : model.mass) total_mass += mass;
@@ -43,15 +44,20 @@ void BackwardEuler::solve_near(Elements& elements, const State& state, const Vec
   else
     elements.linearise(state, outside.h, true, force_, blocks_,
                        [&](int slab) { begin(state, outside, slab, velocity), begin_blocks(slab); });
-  change_.assign(velocity.size(), 0.0);
+  std::fill(change_.begin(), change_.end(), 0.0);
   solve_contacts(elements, {before, &state.velocity, solver_.energy_of(velocity)}, outside, change_, report);
   outside.pairs.undo_linearise(force_, blocks_);
   outside.contact.undo_linearise(force_, blocks_);
   for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] += change_[i];
 }
 
-double BackwardEuler::unforeseen(const Coordinates& velocity) {
-  const double energy = solver_.energy_of(velocity);
+double BackwardEuler::unforeseen(const Coordinates& velocity, std::int32_t pinned) {
+  const std::size_t n = model_.sphere_count();
+  double energy = solver_.energy_of(velocity);
+  if (const auto i = std::size_t(pinned); pinned >= 0) {
+    const Vec3 own{velocity[i], velocity[n + i], velocity[2 * n + i]};
+    energy -= model_.mass[i] * dot(own, own);
+  }
   return energy > 0 ? solver_.energy_of(change_) / energy : 0.0;
 }
 

@@ -26,8 +26,9 @@ class BackwardEuler {
   void solve_near(Elements& elements, const State& state, const Vec3Array& before, bool keeps_matrix, Outside& outside,
                   Coordinates& velocity, StepReport& report);
 
-  /// Which part of the kinetic energy at the end the guess of the last solve() missed.
-  double unforeseen(const Coordinates& velocity);
+  /// Which part of the kinetic energy that `velocity` has at the end the guess of the last solve_near() missed; `pinned`, a
+  /// sphere that does not count.
+  double unforeseen(const Coordinates& velocity, std::int32_t pinned);
 
  private:
   /// What a substep is solved from.
@@ -52,7 +53,7 @@ class BackwardEuler {
   LinearSolver solver_;
   SolverLimits limits_;
   Coordinates force_, momentum_;
-  Coordinates change_;  ///< from the last guess; empty until there is one
+  Coordinates change_;  ///< from the last guess; empty for other integrators than SDIRK2
   DiagonalBlocks blocks_;
 };
 

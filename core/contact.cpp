@@ -24,7 +24,8 @@ BallContact::BallContact(const Model& model, const Kernels& kernels) : model_(mo
   for (const double radius : model.contact_radius) largest_radius_ = std::max(largest_radius_, radius);
 }
 
-void BallContact::find(const State& state, Vec3 centre, double radius, Vec3 velocity, bool is_guess) {
+void BallContact::find(const State& state, Vec3 centre, double radius, Vec3 velocity, double h,
+                       bool from_velocity) {
   clear();
   velocity_ = velocity;
   const double farthest = (radius + largest_radius_) * (radius + largest_radius_), at[3] = {centre.x, centre.y, centre.z};
@@ -32,12 +33,12 @@ void BallContact::find(const State& state, Vec3 centre, double radius, Vec3 velo
     const std::size_t end = std::min(begin + kLookedAtOnce, state.position.size());
     const double nearest = kernels_.nearest_squared(state.position.x.data(), state.position.y.data(),
                                                     state.position.z.data(), at, begin, end);
-    if (nearest < farthest) find_among(state, centre, radius, is_guess, begin, end);
+    if (nearest < farthest) find_among(state, centre, radius, h, from_velocity, begin, end);
   }
 }
 
-void BallContact::find_among(const State& state, Vec3 centre, double radius, bool is_guess, std::size_t begin,
-                             std::size_t end) {
+void BallContact::find_among(const State& state, Vec3 centre, double radius, double h, bool from_velocity,
+                             std::size_t begin, std::size_t end) {
   const Vec3 velocity = velocity_;
   for (std::size_t i = begin; i < end; ++i) {
     if (model_.held_axes[i] == kAnchored) continue;
@@ -55,10 +56,10 @@ void BallContact::find_among(const State& state, Vec3 centre, double radius, boo
     const double stick = kStickTime * model_.contact_k,
                  limit = model_.contact_friction * model_.contact_k * penetration;
     const double drag = model_.contact_friction > 0 ? (speed * stick > limit ? limit / speed : stick) : 0.0;
-    const Vec3 from = is_guess ? slip : -velocity;
+    const Vec3 from = from_velocity ? slip : -velocity;
     const double towards = dot(from, normal), damping = contact_damping(model_.contact_k, model_.mass[i], penetration);
     contacts_.push_back({std::int32_t(i), normal, penetration, damping, drag,
-                         std::clamp(-towards, -reach / model_.tick, penetration / model_.tick), from - towards * normal});
+                         std::clamp(-towards, -reach / h, penetration / h), from - towards * normal});
   }
 }
 
@@ -90,26 +91,20 @@ void BallContact::undo_linearise(Coordinates& force, DiagonalBlocks& blocks) con
   }
 }
 
-/// Shares of the velocities after and before a step in what acts in its middle. A quarter of each in the penetration
-/// (Newmark's average acceleration) and a half in the damping are of second order; of what the step is too long to follow
-/// (`k`, `c`: stiffness and damping of the step against the mass) the velocity after it has more, so that it does not ring.
-struct BallContact::Shares {
-  double after = 0.25, before = 0.25, damped_after = 0.5, damped_before = 0.5;
+ContactShares::ContactShares(double k, double c) {
+  if (k > 4) before = 1 / k, after = 1 - 3 * before;
+  if (c > 2) damped_before = 1 / c, damped_after = 1 - damped_before;
+}
 
-  Shares(double k, double c) {
-    if (k > 4) before = 1 / k, after = 1 - 3 * before;
-    if (c > 2) damped_before = 1 / c, damped_after = 1 - damped_before;
-  }
-};
-
-void BallContact::push_apart(double h, const Vec3Array& before, Coordinates& velocity) {
+void BallContact::push_apart(double h, std::span<const std::uint8_t> held_axes, const Vec3Array& before,
+                             Coordinates& velocity) {
   const std::size_t spheres = model_.sphere_count();
   const double k = model_.contact_k, stick = model_.contact_friction > 0 ? kStickTime * k : 0.0;
   std::erase_if(contacts_, [&](Contact& contact) {
     const auto i = std::size_t(contact.sphere);
     const double mass = model_.mass[i];
     const double damping = contact.damping;
-    const Shares share(h * h * k / mass, h * damping / mass);
+    const ContactShares share(h * h * k / mass, h * damping / mass);
     const Vec3 n = contact.normal, change = Vec3{velocity[i], velocity[spheres + i], velocity[2 * spheres + i]} - before[i];
     const double old = -contact.approach, free = mass * (old + dot(n, change));
     const double push = k * (contact.penetration + h * share.before * old) - damping * share.damped_before * old;
@@ -120,8 +115,9 @@ void BallContact::push_apart(double h, const Vec3Array& before, Coordinates& vel
     const double limit = model_.contact_friction * pressure, size = norm(across);
     const bool sticks = stick * size <= (mass + h * stick) * limit;
     contact.acting = pressure * n - (sticks ? stick / (mass + h * stick) : limit / size) * across;
-    const Vec3 kick = h / mass * contact.acting;
-    velocity[i] += kick.x, velocity[spheres + i] += kick.y, velocity[2 * spheres + i] += kick.z;
+    const double kick[3] = {contact.acting.x, contact.acting.y, contact.acting.z};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if ((held_axes[i] >> axis & 1) == 0) velocity[axis * spheres + i] += h / mass * kick[axis];
     return false;
   });
   is_explicit_ = true;

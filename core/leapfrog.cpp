@@ -31,8 +31,8 @@ void Leapfrog::solve(Elements& elements, const State& state, Outside& outside, C
   };
   elements.add_forces(state, force_, start, accelerate);
   if constexpr (kOnlySprings) return;
-  outside.contact.push_apart(outside.h, state.velocity, velocity);
-  outside.pairs.push_apart(outside.h, outside.held_axes, velocity);
+  outside.contact.push_apart(outside.h, outside.held_axes, state.velocity, velocity);
+  outside.pairs.push_apart(outside.h, outside.held_axes, state.velocity, velocity);
   report.tool_force = outside.contact.force_on_tool(outside.h, velocity) + outside.pairs.force_on_tool(outside.h, velocity);
   if (outside.pinned < 0) return;
   const auto i = std::size_t(outside.pinned);

@@ -9,7 +9,7 @@ namespace ctpm {
 /// The kick of a leapfrog step (position Verlet): half of the way is gone with the old velocity, v' = v + h M^-1 f there,
 /// and the other half follows with the new one. Second order for one evaluation of the forces (Leimkuhler & Reich,
 /// "Simulating Hamiltonian dynamics", 2004, ch. 4), of first order in the dashpots, which see the old velocity. Explicit in
-/// the elements and implicit in each contact by itself, which couples no two spheres. Holds for steps up to
+/// the elements, implicit in each contact by itself, one after the other. Holds for steps up to
 /// stable_step_bound() (integrator.h).
 class Leapfrog {
  public:

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/contact.h"
+
 namespace ctpm {
 
 void PairContacts::start_from(const Vec3Array& velocity) {
@@ -43,7 +45,8 @@ void PairContacts::undo_linearise(Coordinates& force, DiagonalBlocks& blocks) co
     restore(c->b, &c->without[9]), restore(c->a, &c->without[0]);
 }
 
-void PairContacts::push_apart(double h, std::span<const std::uint8_t> held_axes, Coordinates& velocity) {
+void PairContacts::push_apart(double h, std::span<const std::uint8_t> held_axes, const Vec3Array& before,
+                              Coordinates& velocity) {
   const std::size_t n = model_.sphere_count();
   const auto inverse_mass = [&](std::int32_t sphere) {
     const auto i = std::size_t(sphere);
@@ -62,10 +65,13 @@ void PairContacts::push_apart(double h, std::span<const std::uint8_t> held_axes,
   for (PairContact& c : contacts_) {
     const double per_a = inverse_mass(c.a), per_b = inverse_mass(c.b);
     const double ease = c.weight_a * c.weight_a * per_a + c.weight_b * c.weight_b * per_b;
-    const double across = h * c.drag, along = h * h * c.k;
-    const Vec3 u = c.weight_a * velocity_of(c.a) + c.weight_b * velocity_of(c.b);
-    const Vec3 wanted = h * c.force - across * u - (along - across) * dot(c.axis, u) * c.axis;
-    const double wanted_along = dot(wanted, c.axis), given_along = wanted_along / (1 + ease * along);
+    const double across = h * c.drag, k = h * h * c.k;
+    const ContactShares share(ease * k, 0);
+    const Vec3 u = c.weight_a * velocity_of(c.a) + c.weight_b * velocity_of(c.b),
+               old = c.weight_a * before[std::size_t(c.a)] + c.weight_b * before[std::size_t(c.b)];
+    const double moved = share.after * dot(c.axis, u) - share.before * dot(c.axis, old);
+    const Vec3 wanted = h * c.force - across * (u - dot(c.axis, u) * c.axis) - k * moved * c.axis;
+    const double wanted_along = dot(wanted, c.axis), given_along = wanted_along / (1 + ease * k * share.after);
     c.acting = {};
     if (c.only_pushes && given_along < 0) continue;
     const Vec3 impulse = (wanted - wanted_along * c.axis) / (1 + ease * across) + given_along * c.axis;

@@ -46,9 +46,10 @@ class PairContacts {
   /// taken back before.
   void undo_linearise(Coordinates& force, DiagonalBlocks& blocks) const;
 
-  /// After an explicit step of `h` [s] without these contacts: changes the `velocity` [m/s] of their spheres, one
-  /// contact after the other, each solved implicitly. Spheres do not move along `held_axes`.
-  void push_apart(double h, std::span<const std::uint8_t> held_axes, Coordinates& velocity);
+  /// After an explicit step of `h` [s] without these contacts, found in its middle: changes the `velocity` [m/s] of their
+  /// spheres, one contact after the other, each solved implicitly. `before`: velocity [m/s] at the start. Spheres do not
+  /// move along `held_axes`.
+  void push_apart(double h, std::span<const std::uint8_t> held_axes, const Vec3Array& before, Coordinates& velocity);
 
   /// result += coupling of a step of `h` [s] times `v`, in the precision of `v`, float or double;
   /// returns v . coupling . v.

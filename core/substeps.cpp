@@ -112,14 +112,16 @@ void Stepper::Workspace::find_pairs(const State& state, const Grip& grip) {
   if (lips.is_wanted()) lips.find(state, pairs);
 }
 
-/// What the tool and the lips of cuts touch, with the hand at `share` of its way; to be solved from State::velocity if
-/// `is_guess`, else from rest.
-void Stepper::Workspace::find_contacts(const State& state, const Grip& grip, double share, bool is_guess) {
+/// What the tool and the lips of cuts touch in a step of `h` [s], with the hand at `share` of its way. Implicit solves
+/// start from State::velocity if that `is_guess`, else from rest; explicit ones go on from it.
+void Stepper::Workspace::find_contacts(const State& state, const Grip& grip, double h, double share,
+                                       bool is_guess) {
   contact.clear();
   find_pairs(state, grip);
   if (is_guess) pairs.start_from(state.velocity);
   if (!kOnlySprings && grip.is(ToolKind::ball))
-    contact.find(state, grip.at(share), grip.tool->radius, (grip.to - grip.from) / model.tick, is_guess || explicit_solver);
+    contact.find(state, grip.at(share), grip.tool->radius, (grip.to - grip.from) / model.tick, h,
+                 is_guess || choice.integrator == Integrator::leapfrog);
 }
 
 /// One substep. False: it must be refused.
@@ -145,7 +147,7 @@ bool Stepper::Workspace::leap(State& state, const Grip& grip, const Substep& par
   std::swap(state.position, other.position);
   elements.find_acting_kelvin(part.h, state, other.kelvin_elongation);
   std::swap(state.kelvin_elongation, other.kelvin_elongation);
-  find_contacts(state, grip, part.share - half / model.tick, false);
+  find_contacts(state, grip, part.h, part.share - half / model.tick, false);
   explicit_solver->solve(elements, state, outside, velocity, report);
   std::swap(state.kelvin_elongation, other.kelvin_elongation);
   if (!check(report)) {
@@ -162,7 +164,7 @@ bool Stepper::Workspace::leap(State& state, const Grip& grip, const Substep& par
 bool Stepper::Workspace::euler(State& state, const Grip& grip, const Substep& part, StepReport& report) {
   Outside outside{part.h, part.time, has_loads, contact, pairs, held_axes, pinned};
   if (pinned >= 0) outside.pin_velocity = (grip.at(part.share) - state.position[std::size_t(pinned)]) / part.h;
-  find_contacts(state, grip, part.share, false);
+  find_contacts(state, grip, part.h, part.share, false);
   implicit_solver->solve(elements, state, outside, velocity, report);
   if (!check(report)) return false;
   go_on(state, part.h);
@@ -183,7 +185,7 @@ bool Stepper::Workspace::stage(State& state, const Grip& grip, const Substep& pa
   // The matrix has what the Kelvin elongations do in the step; without a new one they must have done it before.
   if (is_second) elements.find_kelvin(part.h, state, other.kelvin_elongation);
   if (is_second) std::swap(state.kelvin_elongation, other.kelvin_elongation);
-  find_contacts(state, grip, part.share, true);
+  find_contacts(state, grip, part.h, part.share, true);
   implicit_solver->solve_near(elements, state, other.velocity, is_second, outside, velocity, report);
   if (is_second) std::swap(state.kelvin_elongation, other.kelvin_elongation);
   std::swap(state.position, other.position);
@@ -200,9 +202,11 @@ bool Stepper::Workspace::sdirk(State& state, const Grip& grip, const Substep& pa
   start.position = state.position, start.velocity = state.velocity, start.kelvin_elongation = state.kelvin_elongation;
   if (state.acceleration.size() == 0) state.acceleration.resize(model.sphere_count());
   const StepStatus before = report.status;
-  const double h = kStage * part.h, limit = kFarAhead * shortest_element / part.h;
-  if (fastest_squared(state.velocity) <= limit * limit && two_stages(state, grip, part, h, report) &&
-      implicit_solver->unforeseen(velocity) <= kUnforeseen) {
+  const double h = kStage * part.h, limit = kFarAhead * shortest_element;
+  const double jump = pinned >= 0 ? norm(grip.at(part.share) - state.position[std::size_t(pinned)]) : 0.0;
+  const bool is_near = jump <= limit && fastest_squared(state.velocity) * part.h * part.h <= limit * limit;
+  if (is_near && two_stages(state, grip, part, h, report) &&
+      implicit_solver->unforeseen(velocity, pinned) <= kUnforeseen) {
     find_slope(other.velocity, state.velocity, h, state.acceleration);
     return true;
   }

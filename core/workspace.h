@@ -40,7 +40,7 @@ struct Substep {
   double share;  ///< of the hand's way done at its end
 };
 
-/// What changes of a State while nothing is cut.
+/// How a State moves.
 struct Motion {
   Vec3Array position, velocity;           ///< [m], [m/s] (sphere_count)
   std::vector<double> kelvin_elongation;  ///< [m] (tpm_count)
@@ -68,13 +68,14 @@ struct Stepper::Workspace {
       explicit_solver.emplace(m, elements.slabs());
     else
       implicit_solver.emplace(m, elements.slabs(), team, kernels);
-    other.position.resize(m.sphere_count()), other.velocity.resize(m.sphere_count());
-    other.kelvin_elongation.resize(m.tpms.size());
+    if (choice.integrator == Integrator::backward_euler) return;
+    other.position.resize(m.sphere_count()), other.kelvin_elongation.resize(m.tpms.size());
+    if (choice.integrator == Integrator::sdirk2) other.velocity.resize(m.sphere_count()), start = other;
   }
 
   void sweep(State& state, const Inputs& last, const Inputs& inputs, Grip& grip, StepReport& report);
   void find_pairs(const State& state, const Grip& grip);
-  void find_contacts(const State& state, const Grip& grip, double share, bool is_guess);
+  void find_contacts(const State& state, const Grip& grip, double h, double share, bool is_guess);
   bool advance(State& state, const Grip& grip, const Substep& part, StepReport& report);
   bool leap(State& state, const Grip& grip, const Substep& part, StepReport& report);
   bool euler(State& state, const Grip& grip, const Substep& part, StepReport& report);

@@ -70,6 +70,35 @@ TEST_P(AContact, SlidesUnderCoulombsLawAndThenSticks) {
   EXPECT_NEAR(state.position.x[0], 0.5 * speed * stops, 0.05 * speed * stops);
 }
 
+TEST_P(AContact, IsTheSameInSubstepsAsInTicks) {
+  const auto press = [&](int substeps) {
+    Model model = make_free_sphere(GetParam(), 4e-4 / (5 - substeps));
+    model.tools = {ball(0.02)}, model.solver.substeps = substeps;
+    State state = rest_state(model);
+    Stepper stepper(model);
+    const auto hand = [&](double time) { return tool_at({0, 0.001, 0.0199 + model.contact_radius[0] - 0.05 * time}); };
+    state.last_inputs = hand(0);
+    while (double(state.tick) * model.tick < 0.004 - 0.5 * model.tick)
+      EXPECT_EQ(stepper.step(state, hand(double(state.tick + 1) * model.tick)).status, StepStatus::ok);
+    return state;
+  };
+  const State in_ticks = press(1), in_substeps = press(4);
+  EXPECT_NEAR(norm(in_substeps.position[0] - in_ticks.position[0]), 0, 1e-12);
+  EXPECT_NEAR(norm(in_substeps.velocity[0] - in_ticks.velocity[0]), 0, 1e-9);
+  EXPECT_GT(norm(in_ticks.velocity[0]), 1e-3);
+}
+
+TEST_P(AContact, DoesNotMoveASphereOffItsGuide) {
+  Model model = make_free_sphere(GetParam(), 1e-4);
+  model.held_axes = {1}, model.tools = {ball(0.02)};
+  State state = rest_state(model);
+  Stepper stepper(model);
+  for (int i = 0; i < 20; ++i)
+    ASSERT_EQ(stepper.step(state, tool_at({0.005, 0, 0.019 + model.contact_radius[0] - 5e-6 * i})).status, StepStatus::ok);
+  EXPECT_EQ(state.position.x[0], model.rest_position.x[0]);
+  EXPECT_LT(state.position.z[0], model.rest_position.z[0]);
+}
+
 INSTANTIATE_TEST_SUITE_P(Under, AContact,
                          ::testing::Values(Integrator::leapfrog, Integrator::backward_euler, Integrator::sdirk2));
 

@@ -89,7 +89,8 @@ void NetworkOde::for_each_touched(double time, Touch&& touch) const {
     const Vec3 slip = past - dot(past, normal) * normal;
     const double speed = norm(slip), stick = kStickTime * k, limit = friction * k * penetration;
     const double drag = friction > 0 ? (speed * stick > limit ? limit / speed : stick) : 0.0;
-    touch(Contact{std::int32_t(i), normal, penetration, contact_damping(k, model_.mass[i], penetration), drag, -dot(past, normal), slip}, slip);
+    const double damping = contact_damping(k, model_.mass[i], penetration);
+    touch(Contact{std::int32_t(i), normal, penetration, damping, drag, -dot(past, normal), slip}, slip);
   }
 }
 
@@ -99,8 +100,8 @@ void NetworkOde::derive(double time, const double* y, double* derivative) {
   elements_.add_forces(state_, force_);
   add_loads(time);
   for_each_touched(time, [&](const Contact& contact, Vec3 slip) {
-    const Vec3 push = std::max(0.0, model_.contact_k * contact.penetration + contact.damping * contact.approach) * contact.normal -
-                      contact.drag * slip;
+    const double pressure = model_.contact_k * contact.penetration + contact.damping * contact.approach;
+    const Vec3 push = std::max(0.0, pressure) * contact.normal - contact.drag * slip;
     const auto i = std::size_t(contact.sphere);
     force_[i] += push.x, force_[spheres_ + i] += push.y, force_[2 * spheres_ + i] += push.z;
   });
