@@ -20,13 +20,13 @@ struct Golden {
 };
 
 constexpr Golden kGolden[] = {
-    {Structure::mass_spring, Integrator::automatic, {0xefee6ee3e3c82c33, 0xcb6ef3f14a3b1100, 0x7495e99c091d5c25, 0x35fb3c8ca2adad62}},
-    {Structure::angle_mass_spring, Integrator::automatic, {0x5fe471d4eec34656, 0x4acd7e036ec4f538, 0x6bb9f230ce2f27aa, 0x6ef5bdddbafd6cf0}},
-    {Structure::tpm, Integrator::automatic, {0x0d8961a1427bff72, 0x5b46da4ab226eaee, 0x14ad5411472d381a, 0xd3bdf3ac746f8969}},
-    {Structure::ctpm, Integrator::automatic, {0x0f05f2cae2d5becb, 0xa08711354d919cb7, 0x2210cd74c42569f9, 0x207e28ddaffd20f9}},
-    {Structure::tpm, Integrator::backward_euler, {0xd58c913a3e35caa8, 0x37c19f6b07503b9b, 0x813c582609345124, 0xd5a04ea8985977a6}},
-    {Structure::angle_mass_spring, Integrator::backward_euler, {0x9b88eb6b869a77f3, 0x22825923ef28dec9, 0x7735b62b909da568, 0x20ea9837deaa3594}},
-    {Structure::ctpm, Integrator::sdirk2, {0x2baaed97f1ff960d, 0x04d613eb611ff8f1, 0xf76240c4df9d0d5e, 0x750d056e83897034}},
+    {Structure::mass_spring, Integrator::automatic, {0x7c96b7993d60c022, 0xfcc4f6bea918f09f, 0xf283bf520b9f1e0a, 0xb0146e4b8ed3da18}},
+    {Structure::angle_mass_spring, Integrator::automatic, {0xb18dbafb7d437b52, 0xf28faf555c5c158d, 0xcf079b7375057978, 0x64583bcc47b24d77}},
+    {Structure::tpm, Integrator::automatic, {0xd347e40c40ff7148, 0xff44cab95faa28dc, 0x7a63ebabf794d050, 0x549fcb6ce29336cf}},
+    {Structure::ctpm, Integrator::automatic, {0x3e90aa2e11c19b2e, 0xd83df21fd674c7b8, 0x948e0d1e93f7e6f5, 0x3b779fddf71defbe}},
+    {Structure::tpm, Integrator::backward_euler, {0xd97a197b4c964605, 0xc64f7525b3e10cf3, 0x3443c0aca3e30f43, 0x1fde09adba296da2}},
+    {Structure::angle_mass_spring, Integrator::backward_euler, {0xf5919dbdab53380b, 0x0e3c50109635f1c6, 0xda825766f8b4c1a0, 0xc93f3e1528470aae}},
+    {Structure::ctpm, Integrator::sdirk2, {0xa69b9bccb276d109, 0x2ead0f2ddf41feb6, 0x947e356513d79098, 0x53c5f0a17c6acacc}},
 };
 
 TEST(Golden, ASmallSessionGivesTheSameBitsInEveryBuild) {
