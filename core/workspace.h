@@ -41,7 +41,7 @@ struct Substep {
 };
 
 /// How a State moves.
-struct Motion {
+struct Kinematics {
   Vec3Array position, velocity;           ///< [m], [m/s] (sphere_count)
   std::vector<double> kelvin_elongation;  ///< [m] (tpm_count)
 };
@@ -109,8 +109,8 @@ struct Stepper::Workspace {
   double shortest_element = std::numeric_limits<double>::infinity();  ///< at rest [m]
   Vec3Array before;  ///< positions before the substep, for what moves through a blade
   State backup;      ///< State before the tick, in case it has to be refused
-  Motion start;      ///< of a substep in stages
-  Motion other;      ///< what State was, or is to be, while it is in the middle of a substep or at a guess of its end
+  Kinematics start;  ///< of a substep in stages
+  Kinematics other;  ///< what State was, or is to be, while it is in the middle of a substep or at a guess of its end
 };
 
 }  // namespace ctpm

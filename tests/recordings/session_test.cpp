@@ -368,7 +368,7 @@ TEST(StateHash, DependsOnEveryFieldAndEveryBit) {
     }
     ++fields;
   });
-  EXPECT_EQ(fields, 21);
+  EXPECT_EQ(fields, 24);
   EXPECT_EQ(state_hash(state), before);
 }
 
