@@ -20,9 +20,9 @@ class BackwardEuler {
   /// rest; contacts that would pull are dropped. Force on the tool, iterations and residual go into `report`.
   void solve(Elements& elements, const State& state, Outside& outside, Coordinates& velocity, StepReport& report);
 
-  /// As above, linearised about a guess of the end: State::velocity is that guess, State::position and
-  /// State::kelvin_elongation are where it leads, `before` is the velocity [m/s] at the start. With `keeps_matrix` the
-  /// tissue's part of the matrix is still that of the last solve, which must have been of the same length.
+  /// As above, linearised about a guess of the end: State::velocity is that guess, State::position where it leads, `before`
+  /// the velocity [m/s] at the start. With `keeps_matrix` the tissue's part of the matrix is still that of the last solve,
+  /// which must have been of the same length, and State::kelvin_elongation is that of the end too.
   void solve_near(Elements& elements, const State& state, const Vec3Array& before, bool keeps_matrix, Outside& outside,
                   Coordinates& velocity, StepReport& report);
 

@@ -102,8 +102,7 @@ void BallContact::push_apart(double h, std::span<const std::uint8_t> held_axes, 
   const double k = model_.contact_k, stick = model_.contact_friction > 0 ? kStickTime * k : 0.0;
   std::erase_if(contacts_, [&](Contact& contact) {
     const auto i = std::size_t(contact.sphere);
-    const double mass = model_.mass[i];
-    const double damping = contact.damping;
+    const double mass = model_.mass[i], damping = contact.damping;
     const ContactShares share(h * h * k / mass, h * damping / mass);
     const Vec3 n = contact.normal, change = Vec3{velocity[i], velocity[spheres + i], velocity[2 * spheres + i]} - before[i];
     const double old = -contact.approach, free = mass * (old + dot(n, change));

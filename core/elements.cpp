@@ -9,6 +9,10 @@ namespace {
 /// Numbers between the rows of one slab and those of the next: more than a processor reads ahead.
 constexpr std::size_t kApart = 256;
 
+/// Slabs of more spheres add forces to where those of all spheres are: bringing them there would cost more than the few
+/// places that threads then share.
+constexpr std::int32_t kThick = 4096;
+
 }  // namespace
 
 Elements::Elements(const Model& model, Team& team, InstructionSet set)
@@ -78,14 +82,17 @@ void Elements::add_forces(const State& state, Coordinates& force) {
 }
 
 void Elements::add_forces_of(int slab, Arrays arrays, Coordinates& force) {
-  const SlabTarget<double> own = target_for(slab, 3, force.data());
+  const std::int32_t begin = slabs_.begin(slab);
+  const bool is_thick = slabs_.end(slab) - begin > kThick;
+  const SlabTarget<double> own = is_thick ? SlabTarget<double>{force.data() + begin, begin, force.size() / 3}
+                                          : target_for(slab, 3, force.data());
   arrays.constraints.force = arrays.angles.force = arrays.axial.force = own;
   if constexpr (!kOnlySprings) {
     constraints_.add_forces(arrays.constraints, slab);
     angles_.add_forces(arrays.angles, slab);
   }
   axial_.add_forces(arrays.axial, slab);
-  bring(own, 3, force.data());
+  if (!is_thick) bring(own, 3, force.data());
 }
 
 void Elements::prepare_linearise() {
