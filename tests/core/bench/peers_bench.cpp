@@ -204,8 +204,8 @@ void add_all(Case& c) {
       return run_core(c, integrator, steps, tolerance);
     });
   };
-  for (const double tolerance : {1e-2, 1e-3, 1e-4})
-    for (const int steps : {1, 2, 5, 10, 20, 40}) add_core(Integrator::sdirk2, steps, tolerance);
+  for (const double tolerance : {1e-2, 3e-3, 1e-3})
+    for (const int steps : {1, 2, 3, 5, 7, 10, 14, 20, 40}) add_core(Integrator::sdirk2, steps, tolerance);
   for (const double tolerance : {1e-2, 1e-4})
     for (const int steps : {5, 20, 80}) add_core(Integrator::backward_euler, steps, tolerance);
   const double longest = stable_step_bound(c.model);
