@@ -99,6 +99,10 @@ AxialElements::AxialElements(const Model& model, const Slabs& slabs, const Kerne
       {tpms.a, tpms.b, {&tpms.rest_length, &tpms.spring_k, &tpms.kelvin_k, &tpms.kelvin_c}, AxialLaw::two_sphere_tpm}};
   for (const Kind& kind : kinds)
     for (std::size_t i = 0; i < kind.a.size(); i = runs.back().second.last) runs.emplace_back(&kind, find_run(kind, i, slabs));
+  // All directions of a row together, so that its spheres are at hand for all of them.
+  std::stable_sort(runs.begin(), runs.end(), [](const auto& r, const auto& s) {
+    return r.first->a[r.second.first] < s.first->a[s.second.first];
+  });
   for (int slab = 0; slab < slabs.count(); ++slab) {
     for (const auto& [kind, run] : runs) {
       const std::int32_t a = kind->a[run.first], b = kind->b[run.first];
