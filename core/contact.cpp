@@ -111,7 +111,7 @@ void BallContact::push_apart(double h, std::span<const std::uint8_t> held_axes, 
     const double pressure = (mass * along - free) / h;
     if (pressure < 0) return true;
     const Vec3 across = mass * (contact.slip + change - dot(n, change) * n);
-    const double limit = model_.contact_friction * pressure, size = norm(across);
+    const double limit = model_.contact_friction * k * contact.penetration, size = norm(across);
     const bool sticks = stick * size <= (mass + h * stick) * limit;
     contact.acting = pressure * n - (sticks ? stick / (mass + h * stick) : limit / size) * across;
     const double kick[3] = {contact.acting.x, contact.acting.y, contact.acting.z};

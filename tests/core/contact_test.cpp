@@ -144,5 +144,27 @@ INSTANTIATE_TEST_SUITE_P(Of, APress,
                          ::testing::Values(std::pair{Integrator::leapfrog, Structure::mass_spring},
                                            std::pair{Integrator::sdirk2, Structure::ctpm}));
 
+TEST(Contact, HasOneLawUnderEveryIntegrator) {
+  // A ball runs into a block at 100 mm/s and slides on it; in short steps all must see the same.
+  const auto press = [](Integrator integrator) {
+    Material material = testing::liver_material();
+    material.viscosity = 5e3, material.stiffness_scale = 0.3;
+    Model model = make_block_model(4, 4, 4, Structure::ctpm, material);
+    model.tools = {ball(0.006)}, model.solver.integrator = integrator, model.solver.substeps = 16;
+    State state = rest_state(model);
+    Stepper stepper(model);
+    const double touch = 0.036 + 0.006 + model.contact_radius.back();
+    const auto hand = [&](double time) { return tool_at({0.007, 0.004 + 0.05 * time, touch - 0.1 * time}); };
+    state.last_inputs = hand(0);
+    while (state.tick < 60)
+      EXPECT_EQ(stepper.step(state, hand(double(state.tick + 1) * model.tick)).status, StepStatus::ok);
+    return state.position;
+  };
+  const Vec3Array reference = press(Integrator::sdirk2), rest = make_block_model(4, 4, 4).rest_position;
+  const double moved = distance(reference, rest);
+  EXPECT_LT(distance(press(Integrator::leapfrog), reference), 1e-3 * moved);
+  EXPECT_LT(distance(press(Integrator::backward_euler), reference), 2e-2 * moved);
+}
+
 }  // namespace
 }  // namespace ctpm
