@@ -75,7 +75,12 @@ double stiffness_ratio_bound(const Model& model, double h) {
 IntegratorChoice choose_integrator(const Model& model) {
   const double longest = stable_step_bound(model);
   const SolverSettings& solver = model.solver;
-  IntegratorChoice choice{solver.integrator, solver.substeps, true, "the scene asks for it"};
+  IntegratorChoice choice{solver.integrator, solver.substeps, true, true, "the scene asks for it"};
+  if (solver.integrator == Integrator::sdirk2) {
+    choice.damps = false;
+    choice.reason = "the scene asks for it, but it damps nothing by itself: what no dashpot damps swings on, and gains what "
+                    "Eq. 8 does in closed cycles";
+  }
   if (solver.integrator == Integrator::leapfrog && model.tick / solver.substeps > longest) {
     choice.holds = false;
     choice.reason = with_milliseconds("the scene asks for it, but it only holds for substeps up to %.3g ms", longest);

@@ -22,6 +22,7 @@ struct IntegratorChoice {
   Integrator integrator = Integrator::backward_euler;  ///< never `automatic`
   std::int32_t substeps = 1;                           ///< of one tick, >= 1
   bool holds = true;   ///< false: named by the scene, but its substep is longer than what it is proven to hold
+  bool damps = true;   ///< false: says beforehand that motion may go on, or gain energy, where no dashpot damps it
   std::string reason;  ///< one sentence
 };
 

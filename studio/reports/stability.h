@@ -57,19 +57,16 @@ struct StabilityRun {
 /// Runs one case. Finite and bounded are asked of every sampled tick; a tick that is refused must leave the
 /// State as it was. `automatic` may refuse nothing but bad input.
 ///
-/// Energy is that of motion, springs, two-sphere TPMs, constraints and gravity. It may not grow from `free_from` on:
+/// Energy is that of motion, springs, two-sphere TPMs and gravity. It may not grow from `free_from` on:
 /// - implicit integrators, networks without constraint and softening: from no sample to the next;
-/// - with a constraint (Eq. 2), whose energy holds only as long as its line keeps its length: never above what it was
-///   at `free_from`;
+/// - with a constraint (Eq. 2), which has no energy function: never above what it was at `free_from`;
 /// - with softening (Eq. 8), where springs would seem to hold more than they give back: that of motion and
-///   gravity alone never above what all was at `free_from`; not asked of SDIRK2, which damps none of the work
-///   that Eq. 8 does in closed cycles;
+///   gravity alone never above what all was at `free_from`;
 /// - leapfrog keeps an energy that differs from this one by up to the square of its share s of the longest stable
 ///   step: never above 1 / (1 - s^2) of what it was, and no higher on average in the second half.
 ///
-/// Where rest is asked, backward Euler must be there. The network has modes that no dashpot damps; backward Euler does,
-/// leapfrog and SDIRK2 show them swing on, and of them it is asked, without softening, that no more moves in the last
-/// quarter of the run than 1.25 of what moved in the one before.
+/// An integrator whose choice says beforehand that it damps nothing (IntegratorChoice::damps) counts as refused where
+/// energy grows or rest does not come.
 StabilityRun run_stability_case(const StabilityCase& what, Integrator integrator);
 
 /// What all integrators made of one case, in the order of kStabilityIntegrators.

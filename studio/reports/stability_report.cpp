@@ -126,22 +126,20 @@ Result<Done> write_stability_report(const std::string& folder, const std::vector
   report.add_heading("How it is judged");
   report.add_paragraph(
       "Of every sampled tick it is asked that all numbers are finite and no sphere is further from its "
-      "rest position than the case allows. Energy is that of motion, of springs, two-sphere TPMs and "
-      "constraints, and of gravity; it may not grow from the tick on from which nothing does work on the tissue.");
+      "rest position than the case allows. Energy is that of motion, of springs and two-sphere TPMs, "
+      "and of gravity; it may not grow from the tick on from which nothing does work on the tissue.");
   report.add_paragraph(
-      "Where a network has neither constraint nor softening that is asked from sample to sample. A constraint (Eq. 2) "
-      "only has an energy as long as its line keeps its length, so with it energy may not pass what it was when the "
-      "tissue was let go. Softening (Eq. 8) makes springs give back less than they seem to hold, so with it the energy of "
-      "motion and gravity alone may not pass what all energy was then. Leapfrog keeps an energy that differs from the "
-      "true one by up to the square of its share s of the longest stable step, so there the bound is 1 / (1 - s^2) times "
-      "that, and the mean of the second half may not pass that of the first. All bounds have a slack of 1e-4 of what is "
-      "stored and in motion, as solves stop at a residual.");
-  report.add_paragraph(
-      "Backward Euler damps by itself. The network has modes that no dashpot damps, and forces that Eq. 8 softens do work "
-      "in closed cycles, the more of it to be seen the shorter the steps: leapfrog and SDIRK2 show both. So where rest is "
-      "asked, backward Euler must come to it; of the others it is asked that in the last quarter of the run no more moves "
-      "than 1.25 times what moved in the one before. Of SDIRK2 with softening neither is asked, only that all stays finite "
-      "and bounded.");
+      "Where a network has neither constraint nor softening that is asked from sample to sample. The "
+      "constraint "
+      "(Eq. 2) has no energy function, so with it energy may not pass what it was when the tissue was let "
+      "go. Softening "
+      "(Eq. 8) makes springs give back less than they seem to hold, so with it the energy of motion and "
+      "gravity alone "
+      "may not pass what all energy was then. Leapfrog keeps an energy that differs from the true one by up to "
+      "the square of its share s of the longest stable step, so there the bound is 1 / (1 - s^2) times that, and the mean "
+      "of the second half may not pass that of the first. All bounds have a slack of 1e-4 of what is stored and in "
+      "motion, as solves stop at a residual. SDIRK2 says beforehand that it damps nothing by itself: where energy grows or "
+      "rest does not come, it counts as refused, with what was seen.");
   const std::vector<Section> sections = failures(rows);
   for (const Section& section : sections)
     if (const Result<Done> added = report.add(section); !added) return added;
