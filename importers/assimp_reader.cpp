@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "core/vec3.h"
+#include "core/model/vec3.h"
 #include "importers/wire.h"
 
 namespace ctpm {
@@ -56,8 +56,8 @@ void append(const aiMesh& mesh, const aiMatrix4x4t<double>& world_from_mesh, Col
 void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4t<double>& world_from_parent,
              const std::string& part, Collected& out) {
   const aiMatrix4x4& m = node.mTransformation;
-  const aiMatrix4x4t<double> parent_from_node(m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2,
-                                              m.c3, m.c4, m.d1, m.d2, m.d3, m.d4);
+  const aiMatrix4x4t<double> parent_from_node(m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4,
+                                              m.d1, m.d2, m.d3, m.d4);
   const aiMatrix4x4t<double> world_from_node = world_from_parent * parent_from_node;
   for (unsigned i = 0; i < node.mNumMeshes; ++i) {
     if (node.mMeshes[i] >= scene.mNumMeshes) continue;
@@ -67,14 +67,12 @@ void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4t<double
     const bool is_wanted = part.empty() || part == name || part == node.mName.C_Str();
     if (is_wanted) append(mesh, world_from_node, out);
   }
-  for (unsigned i = 0; i < node.mNumChildren; ++i)
-    collect(scene, *node.mChildren[i], world_from_node, part, out);
+  for (unsigned i = 0; i < node.mNumChildren; ++i) collect(scene, *node.mChildren[i], world_from_node, part, out);
 }
 
 std::string suffix_of(const std::string& path) {
   std::string suffix = std::filesystem::path(path).extension().string();
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return char(std::tolower(c)); });
   return suffix;
 }
 
@@ -117,8 +115,8 @@ void send_mesh_file(const std::string& path, const std::string& part, const Send
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* scene = importer.ReadFile(
-      path, aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_SortByPType);
+  const aiScene* scene =
+      importer.ReadFile(path, aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_SortByPType);
   const std::string trouble = importer.GetErrorString();
   if (scene == nullptr && trouble.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
   if (scene == nullptr && !means_no_triangles(trouble)) return send_failure(send, trouble);

@@ -10,8 +10,7 @@ PolygonSoup::PolygonSoup(const Soup& soup) {
   points.reserve(soup.vertex.size());
   for (const Vec3& p : soup.vertex) points.emplace_back(p.x, p.y, p.z);
   polygons.reserve(soup.triangle.size());
-  for (const Triangle& t : soup.triangle)
-    polygons.push_back({std::size_t(t[0]), std::size_t(t[1]), std::size_t(t[2])});
+  for (const Triangle& t : soup.triangle) polygons.push_back({std::size_t(t[0]), std::size_t(t[1]), std::size_t(t[2])});
 }
 
 Mesh to_mesh(const PolygonSoup& soup) {
@@ -33,8 +32,7 @@ Soup to_soup(const Mesh& mesh) {
   for (const auto f : mesh.faces()) {
     Triangle triangle{};
     int c = 0;
-    for (const auto v : mesh.vertices_around_face(mesh.halfedge(f)))
-      triangle[c++ % 3] = index[std::size_t(v)];
+    for (const auto v : mesh.vertices_around_face(mesh.halfedge(f))) triangle[c++ % 3] = index[std::size_t(v)];
     soup.triangle.push_back(triangle);
   }
   return soup;

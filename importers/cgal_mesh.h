@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/vec3.h"
+#include "core/model/vec3.h"
 #include "importers/topology.h"
 
 namespace ctpm::cgal {

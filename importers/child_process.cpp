@@ -40,8 +40,7 @@ std::int64_t address_space() {
 void set_limit(int resource, std::int64_t value) {
   rlimit old{};
   getrlimit(static_cast<__rlimit_resource_t>(resource), &old);
-  const rlim_t wanted =
-      old.rlim_max == RLIM_INFINITY ? rlim_t(value) : std::min<rlim_t>(rlim_t(value), old.rlim_max);
+  const rlim_t wanted = old.rlim_max == RLIM_INFINITY ? rlim_t(value) : std::min<rlim_t>(rlim_t(value), old.rlim_max);
   const rlimit limit{wanted, wanted};
   setrlimit(static_cast<__rlimit_resource_t>(resource), &limit);
 }

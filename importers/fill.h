@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/organ.h"
-#include "core/result.h"
+#include "core/model/organ.h"
+#include "core/model/result.h"
 #include "importers/mesh.h"
 
 namespace ctpm {
@@ -15,8 +15,8 @@ struct FillOptions {
   double gap = -1;                        ///< between neighbours' surfaces [m], >= 0; negative: r
   bool keep_islands = false;              ///< keep spheres that are not joined to the largest network
   std::int64_t most_spheres = 2'000'000;  ///< more are refused before memory is spent on them, > 0
-  std::int64_t most_triangles = 0;  ///< of the drawn surface, which is coarsened if it has more; 0: never
-  int threads = 2;                  ///< >= 1; the result does not depend on it
+  std::int64_t most_triangles = 0;        ///< of the drawn surface, which is coarsened if it has more; 0: never
+  int threads = 2;                        ///< >= 1; the result does not depend on it
   Progress progress;
 };
 

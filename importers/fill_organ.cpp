@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/surface.h"
+#include "core/surface/surface.h"
 #include "importers/coarsen.h"
 #include "importers/fill.h"
 #include "importers/lattice.h"
@@ -18,10 +18,9 @@
 namespace ctpm {
 namespace {
 
-constexpr double kOnSurface = 1e-6;  // of the spacing: a centre this near to the surface is not inside
-constexpr double kMostRows = 1e7;    // of the lattice; a bound on memory
-constexpr double kThinInSpacings =
-    2.0;  // farther than this from every sphere, a surface point is over a thin part
+constexpr double kOnSurface = 1e-6;      // of the spacing: a centre this near to the surface is not inside
+constexpr double kMostRows = 1e7;        // of the lattice; a bound on memory
+constexpr double kThinInSpacings = 2.0;  // farther than this from every sphere, a surface point is over a thin part
 
 constexpr std::int64_t kFewestTriangles = 100;  // of a coarsened surface that still looks like its organ
 
@@ -32,8 +31,7 @@ void in_pieces(std::size_t count, int threads, const Work& work) {
   constexpr std::size_t kPiece = 2048;
   std::atomic<std::size_t> next{0};
   const auto run = [&] {
-    for (std::size_t begin; (begin = next.fetch_add(kPiece)) < count;)
-      work(begin, std::min(begin + kPiece, count));
+    for (std::size_t begin; (begin = next.fetch_add(kPiece)) < count;) work(begin, std::min(begin + kPiece, count));
   };
   std::vector<std::future<void>> others;
   for (int t = 1; t < threads && std::size_t(t) * kPiece < count; ++t)
@@ -52,8 +50,8 @@ Errors check(const CheckedMesh& mesh, const FillOptions& options) {
     errors.push_back({"", "at least one thread is needed, got " + std::to_string(options.threads), ""});
   if (options.most_triangles != 0 && options.most_triangles < kFewestTriangles)
     errors.push_back({"",
-                      "a drawn surface needs at least " + std::to_string(kFewestTriangles) +
-                          " triangles, got " + std::to_string(options.most_triangles),
+                      "a drawn surface needs at least " + std::to_string(kFewestTriangles) + " triangles, got " +
+                          std::to_string(options.most_triangles),
                       ""});
   if (options.most_spheres < 1) errors.push_back({"", "at least one sphere must be allowed", ""});
   CTPM_CHECK(!mesh.triangle.empty() && mesh.volume > 0, "filling needs a checked mesh");
@@ -70,21 +68,19 @@ Result<Lattice> lay_lattice(const CheckedMesh& mesh, double spacing, const FillO
   if (expected > 1.2 * double(options.most_spheres) || ny * nz > kMostRows || std::max({nx, ny, nz}) > 1e6) {
     char count[32];
     std::snprintf(count, sizeof count, "%.3g", expected);
-    return Error{"",
-                 "about " + std::string(count) + " spheres " + mm_text(spacing) +
-                     " apart would be needed; at most " + std::to_string(options.most_spheres) +
-                     " are allowed",
-                 "take a larger sphere radius, or check the unit of the mesh: it is " +
-                     mm_text(norm(extent)) + " across"};
+    return Error{
+        "",
+        "about " + std::string(count) + " spheres " + mm_text(spacing) + " apart would be needed; at most " +
+            std::to_string(options.most_spheres) + " are allowed",
+        "take a larger sphere radius, or check the unit of the mesh: it is " + mm_text(norm(extent)) + " across"};
   }
-  return Lattice{0.5 * (mesh.box_least + mesh.box_most),
-                 spacing,
-                 {std::int32_t(nx), std::int32_t(ny), std::int32_t(nz)}};
+  return Lattice{
+      0.5 * (mesh.box_least + mesh.box_most), spacing, {std::int32_t(nx), std::int32_t(ny), std::int32_t(nz)}};
 }
 
 /// Depth of every cell's centre below the surface [m].
-std::vector<double> find_depths(const SurfaceIndex& index, const Lattice& lattice,
-                                const std::vector<Cell>& cell, int threads) {
+std::vector<double> find_depths(const SurfaceIndex& index, const Lattice& lattice, const std::vector<Cell>& cell,
+                                int threads) {
   std::vector<double> depth(cell.size());
   in_pieces(cell.size(), threads, [&](std::size_t begin, std::size_t end) {
     // Neighbours in a row have near triangles in common.
@@ -141,12 +137,11 @@ Islands find_islands(const CellLookup& lookup, const std::vector<Cell>& cell) {
 }
 
 /// Drops all islands but the largest (the first of equal ones), or only says that they are there.
-void treat_islands(const Lattice& lattice, std::vector<Cell>& cell, std::vector<double>& depth,
-                   bool keeps_islands, std::vector<Finding>& findings) {
+void treat_islands(const Lattice& lattice, std::vector<Cell>& cell, std::vector<double>& depth, bool keeps_islands,
+                   std::vector<Finding>& findings) {
   const Islands islands = find_islands(CellLookup(lattice, cell), cell);
   if (islands.size.size() < 2) return;
-  const auto largest =
-      std::int32_t(std::max_element(islands.size.begin(), islands.size.end()) - islands.size.begin());
+  const auto largest = std::int32_t(std::max_element(islands.size.begin(), islands.size.end()) - islands.size.begin());
   const std::int64_t loose = std::int64_t(cell.size()) - islands.size[std::size_t(largest)];
   Finding finding;
   finding.code = "island";
@@ -205,8 +200,7 @@ void measure_surface(const CellLookup& lookup, const CheckedMesh& mesh, double s
                      FillReport& report) {
   std::vector<double> distance(mesh.vertex.size());
   in_pieces(distance.size(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v)
-      distance[v] = std::sqrt(lookup.nearest_squared_distance(mesh.vertex[v]));
+    for (std::size_t v = begin; v < end; ++v) distance[v] = std::sqrt(lookup.nearest_squared_distance(mesh.vertex[v]));
   });
   const auto worst = std::max_element(distance.begin(), distance.end());
   report.largest_distance = *worst;
@@ -216,11 +210,10 @@ void measure_surface(const CellLookup& lookup, const CheckedMesh& mesh, double s
   const std::int64_t thin = count_groups(mesh.triangle, is_thin);
   if (thin == 0) return;
   const Vec3 place = mesh.vertex[std::size_t(worst - distance.begin())];
-  report.findings.push_back(
-      {"thin", thin, place,
-       counted(thin, "part") + " of the surface too thin for a sphere, the farthest point " +
-           mm_text(*worst) + " from one, at " + place_text(place),
-       "none", "what is thin follows the nearest spheres; a smaller sphere radius fills it"});
+  report.findings.push_back({"thin", thin, place,
+                             counted(thin, "part") + " of the surface too thin for a sphere, the farthest point " +
+                                 mm_text(*worst) + " from one, at " + place_text(place),
+                             "none", "what is thin follows the nearest spheres; a smaller sphere radius fills it"});
 }
 
 /// The surface that is drawn: the mesh, or a coarser one if that was asked for.
@@ -266,9 +259,8 @@ void note_flat(const FilledOrgan& organ, std::vector<Finding>& findings) {
   if (count == 0) return;
   const Vec3 place = organ.surface.vertex[worst];
   findings.push_back({"flat", count, place,
-                      counted(count, "surface vertex") +
-                          " beside a single sheet or row of spheres, drawn up to " + mm_text(off(worst)) +
-                          " off their place, the worst at " + place_text(place),
+                      counted(count, "surface vertex") + " beside a single sheet or row of spheres, drawn up to " +
+                          mm_text(off(worst)) + " off their place, the worst at " + place_text(place),
                       "none", "a smaller sphere radius gives the organ more than one sphere there"});
 }
 
@@ -297,8 +289,8 @@ Result<Filling> fill_organ(const CheckedMesh& mesh, const FillOptions& options) 
                  "take a smaller sphere radius, or check the unit of the mesh"};
   if (std::int64_t(cell.size()) > options.most_spheres)
     return Error{"",
-                 std::to_string(cell.size()) + " spheres fit, but at most " +
-                     std::to_string(options.most_spheres) + " are allowed",
+                 std::to_string(cell.size()) + " spheres fit, but at most " + std::to_string(options.most_spheres) +
+                     " are allowed",
                  "take a larger sphere radius, or check the unit of the mesh"};
 
   Filling filling;
@@ -328,8 +320,7 @@ Result<Filling> fill_organ(const CheckedMesh& mesh, const FillOptions& options) 
 } catch (const std::bad_alloc&) {
   return Error{"", "filling needs more memory than there is", "take a larger sphere radius"};
 } catch (const std::exception& trouble) {
-  return Error{"", std::string("cannot be filled: ") + trouble.what(),
-               "leave the drawn surface as fine as it is"};
+  return Error{"", std::string("cannot be filled: ") + trouble.what(), "leave the drawn surface as fine as it is"};
 }
 
 }  // namespace ctpm

@@ -40,8 +40,8 @@ void note_unit(const UnitChoice& unit, double diagonal, UsualSize usual, std::ve
                         1,
                         {},
                         "the file does not say its unit",
-                        "taken as " + unit_name(unit.in_metres) + ", which makes the organ " +
-                            mm_text(diagonal) + " across (usual: " + range_text(usual) + ")",
+                        "taken as " + unit_name(unit.in_metres) + ", which makes the organ " + mm_text(diagonal) +
+                            " across (usual: " + range_text(usual) + ")",
                         "give the unit if that is wrong"});
   // The guess saw all that the file holds; what is said is about what was kept of it.
   if (diagonal < usual.least || diagonal > usual.most)

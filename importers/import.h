@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/organ.h"
-#include "core/result.h"
+#include "core/model/organ.h"
+#include "core/model/result.h"
 #include "importers/fill.h"
 #include "importers/mesh.h"
 
@@ -14,19 +14,18 @@ namespace ctpm {
 /// How a mesh file becomes an organ.
 struct ImportOptions {
   std::optional<double>
-      unit_in_metres;      ///< length of one unit of the file [m], > 0; unset: from the file, else guessed
-  UsualSize usual_size;    ///< of this kind of organ, to guess the unit with
-  std::string part;        ///< name of the mesh to take; empty: all, joined
-  bool all_parts = false;  ///< keep every closed part, not only the largest
-  std::optional<double>
-      largest_hole;              ///< holes up to this diameter are filled [m]; unset: a tenth of the diagonal
-  double sphere_radius = 0.004;  ///< r [m], > 0
-  double gap = -1;               ///< between neighbours' surfaces [m], >= 0; negative: r
+      unit_in_metres;                  ///< length of one unit of the file [m], > 0; unset: from the file, else guessed
+  UsualSize usual_size;                ///< of this kind of organ, to guess the unit with
+  std::string part;                    ///< name of the mesh to take; empty: all, joined
+  bool all_parts = false;              ///< keep every closed part, not only the largest
+  std::optional<double> largest_hole;  ///< holes up to this diameter are filled [m]; unset: a tenth of the diagonal
+  double sphere_radius = 0.004;        ///< r [m], > 0
+  double gap = -1;                     ///< between neighbours' surfaces [m], >= 0; negative: r
   std::int64_t most_spheres = 2'000'000;  ///< more are refused
-  std::int64_t most_triangles = 0;  ///< of the drawn surface, which is coarsened if it has more; 0: never
-  int threads = 2;                  ///< >= 1; the result does not depend on it
-  double time_limit_s = 120;        ///< for reading the file [s]
-  Progress progress;                ///< told the stage and the fraction of the whole import, never falling
+  std::int64_t most_triangles = 0;        ///< of the drawn surface, which is coarsened if it has more; 0: never
+  int threads = 2;                        ///< >= 1; the result does not depend on it
+  double time_limit_s = 120;              ///< for reading the file [s]
+  Progress progress;                      ///< told the stage and the fraction of the whole import, never falling
 };
 
 /// What was found in the file, what was done about it, and what came out.

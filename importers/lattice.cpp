@@ -6,8 +6,7 @@
 
 namespace ctpm {
 
-CellLookup::CellLookup(const Lattice& lattice, const std::vector<Cell>& cell)
-    : lattice_(lattice), cell_(cell) {
+CellLookup::CellLookup(const Lattice& lattice, const std::vector<Cell>& cell) : lattice_(lattice), cell_(cell) {
   first_.assign(std::size_t(lattice.row_count()) + 1, 0);
   for (const Cell& c : cell) ++first_[std::size_t(lattice.row_of(c)) + 1];
   for (std::size_t row = 1; row < first_.size(); ++row) first_[row] += first_[row - 1];
@@ -18,8 +17,7 @@ std::int32_t CellLookup::find(const Cell& wanted) const {
     if (wanted[axis] < 0 || wanted[axis] >= lattice_.count[axis]) return -1;
   const std::size_t row = std::size_t(lattice_.row_of(wanted));
   const auto begin = cell_.begin() + first_[row], end = cell_.begin() + first_[row + 1];
-  const auto it =
-      std::lower_bound(begin, end, wanted[0], [](const Cell& c, std::int32_t i) { return c[0] < i; });
+  const auto it = std::lower_bound(begin, end, wanted[0], [](const Cell& c, std::int32_t i) { return c[0] < i; });
   return it != end && (*it)[0] == wanted[0] ? std::int32_t(it - cell_.begin()) : -1;
 }
 

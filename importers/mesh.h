@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
-#include "core/vec3.h"
+#include "core/model/result.h"
+#include "core/model/vec3.h"
 
 namespace ctpm {
 
@@ -24,16 +24,15 @@ struct RawMesh {
   std::string path;                ///< the file
   std::string format;              ///< its suffix in lower case, without the dot
   std::vector<std::string> parts;  ///< names of all meshes in the file, in its order, each once
-  std::vector<Vec3> vertex;  ///< finite, in the file's unit                                 (vertex_count)
+  std::vector<Vec3> vertex;        ///< finite, in the file's unit                                 (vertex_count)
   std::vector<Triangle> triangle;  ///< indices in range (triangle_count)
   double unit_in_metres = 0;       ///< length of one unit [m] if the format says it; 0: it does not
 };
 
 struct ReadOptions {
-  std::string part;           ///< name of the mesh to take; empty: all, joined
-  double time_limit_s = 120;  ///< the reader is stopped after this long [s], > 0
-  std::int64_t memory_limit_mib =
-      4096;  ///< the reader may use this much beside the program's own memory [MiB], > 0
+  std::string part;                      ///< name of the mesh to take; empty: all, joined
+  double time_limit_s = 120;             ///< the reader is stopped after this long [s], > 0
+  std::int64_t memory_limit_mib = 4096;  ///< the reader may use this much beside the program's own memory [MiB], > 0
 };
 
 /// Reads a mesh file in a child process with limits, so a crash or a hang of the reader is an error of this
@@ -108,15 +107,13 @@ struct RepairOptions {
 /// Welds, drops what is doubled or degenerate, splits what is not manifold, orients, stitches, fills small
 /// holes and keeps the largest part. Errors: a hole above the limit or one that cannot be filled (size and
 /// place), nothing that bounds a volume.
-Result<CheckedMesh> repair_mesh(const RawMesh& mesh, double unit_in_metres,
-                                const RepairOptions& options = {});
+Result<CheckedMesh> repair_mesh(const RawMesh& mesh, double unit_in_metres, const RepairOptions& options = {});
 
 /// The mesh as OBJ text in millimetres with six decimals, so the same mesh always gives the same bytes.
 std::string to_obj(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle);
 
 /// Writes to_obj() to a file under a temporary name and renames it when it is whole. Error: cannot be
 /// written.
-Result<Done> write_obj(const std::string& path, const std::vector<Vec3>& vertex,
-                       const std::vector<Triangle>& triangle);
+Result<Done> write_obj(const std::string& path, const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle);
 
 }  // namespace ctpm

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/vec3.h"
+#include "core/model/vec3.h"
 #include "importers/topology.h"
 
 namespace ctpm {

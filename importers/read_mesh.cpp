@@ -13,14 +13,12 @@
 namespace ctpm {
 namespace {
 
-constexpr const char* kKnownFormats =
-    "OBJ, STL, PLY, OFF, glTF, GLB, 3DS, DAE and FBX files are read, among others";
+constexpr const char* kKnownFormats = "OBJ, STL, PLY, OFF, glTF, GLB, 3DS, DAE and FBX files are read, among others";
 
 std::string suffix_of(const std::string& path) {
   std::string suffix = std::filesystem::path(path).extension().string();
   if (!suffix.empty()) suffix.erase(0, 1);
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return char(std::tolower(c)); });
   return suffix;
 }
 
@@ -29,8 +27,7 @@ Errors check_file(const std::string& path) {
   std::error_code trouble;
   const auto status = std::filesystem::status(path, trouble);
   if (!std::filesystem::exists(status)) return {{path, "no such file", "check the path"}};
-  if (std::filesystem::is_directory(status))
-    return {{path, "is a folder, not a mesh file", "name a file in it"}};
+  if (std::filesystem::is_directory(status)) return {{path, "is a folder, not a mesh file", "name a file in it"}};
   if (!std::filesystem::is_regular_file(status)) return {{path, "is not a regular file", ""}};
   const auto size = std::filesystem::file_size(path, trouble);
   if (trouble) return {{path, "cannot be read: " + trouble.message(), ""}};
@@ -41,8 +38,7 @@ Errors check_file(const std::string& path) {
 std::string listed(const std::vector<std::string>& names) {
   constexpr std::size_t kMostShown = 40;
   std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kMostShown); ++i)
-    text += (i ? ", " : "") + ('"' + names[i] + '"');
+  for (std::size_t i = 0; i < std::min(names.size(), kMostShown); ++i) text += (i ? ", " : "") + ('"' + names[i] + '"');
   if (names.size() > kMostShown) text += " and " + std::to_string(names.size() - kMostShown) + " more";
   return text;
 }
@@ -99,8 +95,7 @@ Result<RawMesh> read_mesh(const std::string& path, const ReadOptions& options) {
   limits.time_s = options.time_limit_s;
   limits.memory_mib = options.memory_limit_mib;
   limits.output_mib = options.memory_limit_mib;
-  const ChildResult child =
-      run_in_child(limits, [&](const Send& send) { send_mesh_file(path, options.part, send); });
+  const ChildResult child = run_in_child(limits, [&](const Send& send) { send_mesh_file(path, options.part, send); });
   if (!child.is_whole)
     return Error{path, "the reader " + child.trouble,
                  "the file may be damaged; try to open it elsewhere and export it again"};

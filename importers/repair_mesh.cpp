@@ -13,8 +13,7 @@
 namespace ctpm {
 namespace {
 
-constexpr double kCutShare =
-    0.25;  // of the diagonal: so wide a place may be cut out where the mesh crosses itself
+constexpr double kCutShare = 0.25;     // of the diagonal: so wide a place may be cut out where the mesh crosses itself
 constexpr double kHoleShare = 0.1;     // of the diagonal: holes up to this are filled by default
 constexpr double kCrackShare = 1e-3;   // of the diagonal: cracks up to this wide are closed at T-junctions
 constexpr double kFlat = 1e-9;         // a volume below this share of the diagonal cubed bounds nothing
@@ -62,8 +61,7 @@ std::vector<Soup> split_parts(const Soup& soup) {
   }
   std::vector<std::size_t> order(pieces.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return volume[a] > volume[b]; });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return volume[a] > volume[b]; });
   std::vector<Soup> sorted;
   for (const std::size_t p : order) sorted.push_back(std::move(pieces[p]));
   return sorted;
@@ -78,8 +76,7 @@ void append(Soup& to, const Soup& piece) {
 /// One repair: the soup on its way to a closed mesh, and what was found so far.
 class Repair {
  public:
-  Repair(const RawMesh& mesh, double unit, const RepairOptions& options)
-      : path_(mesh.path), options_(options) {
+  Repair(const RawMesh& mesh, double unit, const RepairOptions& options) : path_(mesh.path), options_(options) {
     soup_.triangle = mesh.triangle;
     soup_.vertex.reserve(mesh.vertex.size());
     for (const Vec3& p : mesh.vertex) soup_.vertex.push_back(unit * p);
@@ -88,8 +85,7 @@ class Repair {
 
   Result<CheckedMesh> run() {
     clean();
-    if (soup_.triangle.empty())
-      return Error{path_, "holds only triangles without area", "export the surface again"};
+    if (soup_.triangle.empty()) return Error{path_, "holds only triangles without area", "export the surface again"};
     tell("looking for cracks and walls", 0.1);
     close_cracks();
     drop_inner_walls();
@@ -118,12 +114,7 @@ class Repair {
     if (const std::int64_t n = drop_collapsed(soup_); n > 0)
       note({"degenerate", n, {}, counted(n, "triangle") + " with two corners in one place", "dropped", ""});
     if (const std::int64_t n = drop_duplicates(soup_); n > 0)
-      note({"duplicate",
-            n,
-            {},
-            counted(n, "triangle") + " that another triangle covers exactly",
-            "dropped",
-            ""});
+      note({"duplicate", n, {}, counted(n, "triangle") + " that another triangle covers exactly", "dropped", ""});
   }
 
   void close_cracks() {
@@ -140,8 +131,7 @@ class Repair {
     const std::vector<std::int32_t> walls = find_inner_walls(soup_);
     if (walls.empty()) return;
     Vec3 place;
-    for (const std::int32_t v : soup_.triangle[std::size_t(walls[0])])
-      place += soup_.vertex[std::size_t(v)] / 3;
+    for (const std::int32_t v : soup_.triangle[std::size_t(walls[0])]) place += soup_.vertex[std::size_t(v)] / 3;
     note({"inner_wall", std::int64_t(walls.size()), place,
           counted(std::int64_t(walls.size()), "triangle") + " of walls inside the mesh, the first at " +
               place_text(place),
@@ -204,13 +194,11 @@ class Repair {
     if (kept_parts == 0 || (!options_.all_parts && !open.empty())) return open;
     if (!filled.empty())
       note({"hole", std::int64_t(filled.size()), widest(filled).centre,
-            counted(std::int64_t(filled.size()), "hole") + ", the widest " + hole_text(widest(filled)),
-            "filled", ""});
+            counted(std::int64_t(filled.size()), "hole") + ", the widest " + hole_text(widest(filled)), "filled", ""});
     if (dropped > 0) {
       drop.code = "other_part", drop.count = dropped;
-      drop.found = counted(dropped, "part") + " beside the " + (kept_parts == 1 ? "largest" : "closed ones") +
-                   " (" + counted(dropped_triangles, "triangle") + ", the largest at " +
-                   place_text(*drop.place) + ")";
+      drop.found = counted(dropped, "part") + " beside the " + (kept_parts == 1 ? "largest" : "closed ones") + " (" +
+                   counted(dropped_triangles, "triangle") + ", the largest at " + place_text(*drop.place) + ")";
       drop.done = "dropped";
       if (!open.empty()) drop.remains = open[0].message;
       note(drop);
@@ -232,8 +220,8 @@ class Repair {
     Finding finding{"self_intersection",
                     std::int64_t(crossing.size()),
                     place,
-                    counted(std::int64_t(crossing.size()), "triangle") +
-                        " passing through others, the first at " + place_text(place),
+                    counted(std::int64_t(crossing.size()), "triangle") + " passing through others, the first at " +
+                        place_text(place),
                     "none",
                     "the organ is filled wherever the surface is around it at least once"};
     const double widest = kCutShare * diagonal_;
@@ -254,9 +242,7 @@ class Repair {
         errors.push_back({path_, "open beyond repair: a hole " + hole_text(sorted[i]) + " " + ending, hint});
       if (sorted.size() > kMostShown)
         errors.push_back(
-            {path_,
-             "open beyond repair: " + counted(std::int64_t(sorted.size() - kMostShown), "hole") + " more",
-             ""});
+            {path_, "open beyond repair: " + counted(std::int64_t(sorted.size() - kMostShown), "hole") + " more", ""});
     };
     say(closing.too_large, "is wider than the " + mm_text(largest_hole) + " that may be filled",
         "close it in a mesh editor, or allow wider holes");
@@ -280,12 +266,7 @@ class Repair {
     if (turned.turned > 0 && turned.kept == 0)
       note({"inside_out", turned.turned, {}, "the mesh is inside out", "turned", ""});
     else if (turned.turned > 0)
-      note({"flipped",
-            turned.turned,
-            {},
-            counted(turned.turned, "triangle") + " facing the wrong way",
-            "turned",
-            ""});
+      note({"flipped", turned.turned, {}, counted(turned.turned, "triangle") + " facing the wrong way", "turned", ""});
   }
 
   Result<CheckedMesh> finish() {
@@ -297,10 +278,9 @@ class Repair {
     out_.vertex = std::move(soup_.vertex);
     out_.triangle = std::move(soup_.triangle);
     if (out_.after.open_edges > 0 || out_.after.non_manifold_edges > 0 || !(out_.volume > 0))
-      return Error{
-          path_,
-          "open beyond repair: " + counted(out_.after.open_edges, "edge") + " still open after all repairs",
-          "repair it in a mesh editor"};
+      return Error{path_,
+                   "open beyond repair: " + counted(out_.after.open_edges, "edge") + " still open after all repairs",
+                   "repair it in a mesh editor"};
     tell("done", 1.0);
     return std::move(out_);
   }
@@ -325,8 +305,7 @@ Result<CheckedMesh> repair_mesh(const RawMesh& mesh, double unit_in_metres, cons
   try {
     return Repair(mesh, unit_in_metres, options).run();
   } catch (const std::exception& trouble) {
-    return Error{mesh.path, std::string("cannot be repaired: ") + trouble.what(),
-                 "repair it in a mesh editor"};
+    return Error{mesh.path, std::string("cannot be repaired: ") + trouble.what(), "repair it in a mesh editor"};
   }
 }
 

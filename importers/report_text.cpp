@@ -30,15 +30,14 @@ std::string source_text(UnitSource source) {
 }
 
 std::string counts_line(const char* when, const MeshCounts& c) {
-  return formatted("  %-8s %lld vertices, %lld triangles, %s, %s, %s\n", when,
-                   static_cast<long long>(c.vertices), static_cast<long long>(c.triangles),
-                   counted(c.parts, "part").c_str(), counted(c.open_edges, "open edge").c_str(),
+  return formatted("  %-8s %lld vertices, %lld triangles, %s, %s, %s\n", when, static_cast<long long>(c.vertices),
+                   static_cast<long long>(c.triangles), counted(c.parts, "part").c_str(),
+                   counted(c.open_edges, "open edge").c_str(),
                    counted(c.non_manifold_edges, "non-manifold edge").c_str());
 }
 
 std::string finding_lines(const Finding& finding) {
-  std::string text =
-      "  - " + finding.found + ": " + (finding.done == "none" ? "left as it is" : finding.done) + "\n";
+  std::string text = "  - " + finding.found + ": " + (finding.done == "none" ? "left as it is" : finding.done) + "\n";
   if (!finding.remains.empty()) text += "    note: " + finding.remains + "\n";
   return text;
 }

@@ -35,8 +35,8 @@ double height_over(Vec3 a, Vec3 b, Vec3 c, double y, double z) {
 /// Calls `on_crossing(row, crossing)` for every line of the lattice that passes a triangle, triangle by
 /// triangle.
 template <class OnCrossing>
-void for_each_crossing(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle,
-                       const Lattice& lattice, const OnCrossing& on_crossing) {
+void for_each_crossing(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle, const Lattice& lattice,
+                       const OnCrossing& on_crossing) {
   const Vec3 origin = lattice.at({0, 0, 0});
   const auto first_row = [&](double least, double from, int axis) {
     return std::int32_t(
@@ -53,11 +53,9 @@ void for_each_crossing(const std::vector<Vec3>& vertex, const std::vector<Triang
     for (std::int32_t k = first_row(std::min({a.z, b.z, c.z}), origin.z, 2); k <= k_end; ++k)
       for (std::int32_t j = first_row(std::min({a.y, b.y, c.y}), origin.y, 1); j <= j_end; ++j) {
         const Vec3 line = lattice.at({0, j, k});
-        const int turns =
-            passes(a, b, line.y, line.z) + passes(b, c, line.y, line.z) + passes(c, a, line.y, line.z);
+        const int turns = passes(a, b, line.y, line.z) + passes(b, c, line.y, line.z) + passes(c, a, line.y, line.z);
         // Counter-clockwise seen from +x means that the outside is towards +x.
-        if (turns != 0)
-          on_crossing(lattice.row_of({0, j, k}), Crossing{height_over(a, b, c, line.y, line.z), -turns});
+        if (turns != 0) on_crossing(lattice.row_of({0, j, k}), Crossing{height_over(a, b, c, line.y, line.z), -turns});
       }
   }
 }
@@ -68,8 +66,7 @@ std::vector<Cell> cells_inside(const std::vector<Vec3>& vertex, const std::vecto
                                const Lattice& lattice) {
   // Crossings of each row, side by side: count, then place.
   std::vector<std::int64_t> first(std::size_t(lattice.row_count()) + 1, 0);
-  for_each_crossing(vertex, triangle, lattice,
-                    [&](std::int64_t row, Crossing) { ++first[std::size_t(row) + 1]; });
+  for_each_crossing(vertex, triangle, lattice, [&](std::int64_t row, Crossing) { ++first[std::size_t(row) + 1]; });
   for (std::size_t row = 1; row < first.size(); ++row) first[row] += first[row - 1];
   std::vector<Crossing> crossings(std::size_t(first.back()));
   std::vector<std::int64_t> next(first.begin(), first.end() - 1);
@@ -83,9 +80,8 @@ std::vector<Cell> cells_inside(const std::vector<Vec3>& vertex, const std::vecto
       const std::size_t row = std::size_t(lattice.row_of({0, j, k}));
       const auto begin = crossings.begin() + first[row], end = crossings.begin() + first[row + 1];
       if (begin == end) continue;
-      std::sort(begin, end, [](const Crossing& a, const Crossing& b) {
-        return a.x != b.x ? a.x < b.x : a.enters < b.enters;
-      });
+      std::sort(begin, end,
+                [](const Crossing& a, const Crossing& b) { return a.x != b.x ? a.x < b.x : a.enters < b.enters; });
       std::int32_t winding = 0;
       auto crossing = begin;
       for (std::int32_t i = 0; i < lattice.count[0]; ++i) {

@@ -46,13 +46,11 @@ class RimGrid {
  public:
   RimGrid(const Soup& soup, const Edges& rim, double distance) : soup_(soup) {
     std::vector<double> lengths;
-    for (const auto& [edge, triangle] : rim)
-      lengths.push_back(norm(at(second_end(edge)) - at(first_end(edge))));
+    for (const auto& [edge, triangle] : rim) lengths.push_back(norm(at(second_end(edge)) - at(first_end(edge))));
     std::nth_element(lengths.begin(), lengths.begin() + std::ptrdiff_t(lengths.size() / 2), lengths.end());
     size_ = std::max(lengths[lengths.size() / 2], distance);
     std::vector<std::int32_t> vertices;
-    for (const auto& [edge, triangle] : rim)
-      vertices.push_back(first_end(edge)), vertices.push_back(second_end(edge));
+    for (const auto& [edge, triangle] : rim) vertices.push_back(first_end(edge)), vertices.push_back(second_end(edge));
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     for (const std::int32_t v : vertices) cells_[cell_of(at(v))].push_back(v);
@@ -172,9 +170,7 @@ class Outside {
       for (int c = 0; c < 3; ++c) see(next(facet, c));
     }
   }
-  bool is_seen(std::int32_t t) const {
-    return is_seen_[2 * std::size_t(t)] || is_seen_[2 * std::size_t(t) + 1];
-  }
+  bool is_seen(std::int32_t t) const { return is_seen_[2 * std::size_t(t)] || is_seen_[2 * std::size_t(t) + 1]; }
 
  private:
   Vec3 at(std::int32_t v) const { return soup_.vertex[std::size_t(v)]; }

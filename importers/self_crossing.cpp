@@ -94,15 +94,12 @@ bool only_touch(Corners a, Corners b) {
   return false;
 }
 
-double volume_of(const Soup& soup) {
-  return signed_volume(soup.vertex, soup.triangle, bounding_box(soup).centre());
-}
+double volume_of(const Soup& soup) { return signed_volume(soup.vertex, soup.triangle, bounding_box(soup).centre()); }
 
 bool is_as_good(const Soup& mended, const Soup& soup) {
   const MeshCounts counts = count_mesh(mended.vertex, mended.triangle);
   return counts.open_edges == 0 && counts.non_manifold_edges == 0 && counts.parts == 1 &&
-         euler_number(mended) == euler_number(soup) &&
-         std::abs(volume_of(mended) / volume_of(soup) - 1) <= kMostChange;
+         euler_number(mended) == euler_number(soup) && std::abs(volume_of(mended) / volume_of(soup) - 1) <= kMostChange;
 }
 
 }  // namespace
@@ -131,8 +128,7 @@ std::int64_t cut_crossing(Soup& soup, const std::vector<std::int32_t>& crossing,
     if (!mended) return 0;
     const Closing closing = fill_holes(*mended, largest_hole);
     if (!closing.too_large.empty()) return 0;  // more rings only make it larger
-    if (!closing.unfillable.empty() || !is_as_good(*mended, soup) || !find_crossing(*mended).empty())
-      continue;
+    if (!closing.unfillable.empty() || !is_as_good(*mended, soup) || !find_crossing(*mended).empty()) continue;
     soup = std::move(*mended);
     drop_unused(soup);
     return std::count(is_cut.begin(), is_cut.end(), 1);

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/result.h"
+#include "core/model/result.h"
 
 namespace ctpm {
 namespace {
@@ -214,9 +214,7 @@ SurfaceIndex::Lanes SurfaceIndex::squared_distances(const Block& block, Vec3 poi
   const PairOfVec3 p{point.x + zero, point.y + zero, point.z + zero};
   Lanes result;
   for (std::size_t n = 0; n < std::size_t(kLanes); n += kPair) {
-    const auto at = [n](const LanesOfVec3& v) {
-      return PairOfVec3{load(&v.x[n]), load(&v.y[n]), load(&v.z[n])};
-    };
+    const auto at = [n](const LanesOfVec3& v) { return PairOfVec3{load(&v.x[n]), load(&v.y[n]), load(&v.z[n])}; };
     const PairOfVec3 a = at(block.a), b = at(block.b), c = at(block.c), normal = at(block.normal);
     const PairOfVec3 ab = b - a, bc = c - b, ca = a - c, ap = p - a, bp = p - b, cp = p - c;
     const auto to_edge = [&](const PairOfVec3& edge, const PairOfVec3& from_start, const Lanes& inverse) {
@@ -293,8 +291,7 @@ SurfaceIndex::Nearest SurfaceIndex::nearest(Vec3 point, std::int32_t guess) cons
       if (!(distance[n] < best.squared_distance)) continue;
       // The nearest child comes off the stack first.
       std::size_t place = height++;
-      for (; place > first && stack[place - 1].distance < distance[n]; --place)
-        stack[place] = stack[place - 1];
+      for (; place > first && stack[place - 1].distance < distance[n]; --place) stack[place] = stack[place - 1];
       stack[place] = {node.child[n], distance[n]};
     }
   }

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/vec3.h"
+#include "core/model/vec3.h"
 #include "importers/mesh.h"
 
 namespace ctpm {

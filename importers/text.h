@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/vec3.h"
+#include "core/model/vec3.h"
 
 namespace ctpm {
 

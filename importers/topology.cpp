@@ -42,8 +42,7 @@ class Sets {
  public:
   explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
   std::int32_t root(std::int32_t i) {
-    while (parent_[std::size_t(i)] != i)
-      i = parent_[std::size_t(i)] = parent_[std::size_t(parent_[std::size_t(i)])];
+    while (parent_[std::size_t(i)] != i) i = parent_[std::size_t(i)] = parent_[std::size_t(parent_[std::size_t(i)])];
     return i;
   }
   void join(std::int32_t a, std::int32_t b) {
@@ -130,8 +129,7 @@ std::vector<std::pair<Edge, std::int32_t>> sorted_edges(const std::vector<Triang
   std::vector<std::pair<Edge, std::int32_t>> edges;
   edges.reserve(3 * triangle.size());
   for (std::size_t t = 0; t < triangle.size(); ++t)
-    for (int c = 0; c < 3; ++c)
-      edges.emplace_back(edge_of(triangle[t][c], triangle[t][(c + 1) % 3]), std::int32_t(t));
+    for (int c = 0; c < 3; ++c) edges.emplace_back(edge_of(triangle[t][c], triangle[t][(c + 1) % 3]), std::int32_t(t));
   std::sort(edges.begin(), edges.end());
   return edges;
 }
@@ -166,8 +164,8 @@ std::int64_t weld(Soup& soup, double distance) {
 }
 
 std::int64_t drop_collapsed(Soup& soup) {
-  return std::int64_t(std::erase_if(
-      soup.triangle, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }));
+  return std::int64_t(
+      std::erase_if(soup.triangle, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }));
 }
 
 std::int64_t drop_duplicates(Soup& soup) {
@@ -198,12 +196,10 @@ std::vector<std::int32_t> find_pinched(const Soup& soup) {
   for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
   std::vector<std::int32_t> next(first.begin(), first.end() - 1), around(3 * soup.triangle.size());
   for (std::size_t t = 0; t < soup.triangle.size(); ++t)
-    for (const std::int32_t v : soup.triangle[t])
-      around[std::size_t(next[std::size_t(v)]++)] = std::int32_t(t);
+    for (const std::int32_t v : soup.triangle[t]) around[std::size_t(next[std::size_t(v)]++)] = std::int32_t(t);
 
   std::vector<std::int32_t> pinched;
-  std::vector<std::pair<std::int32_t, std::int32_t>>
-      spokes;  // the other end of an edge, and its triangle's rank here
+  std::vector<std::pair<std::int32_t, std::int32_t>> spokes;  // the other end of an edge, and its triangle's rank here
   for (std::size_t v = 0; v < soup.vertex.size(); ++v) {
     const std::int32_t count = first[v + 1] - first[v];
     spokes.clear();
@@ -214,8 +210,7 @@ std::vector<std::int32_t> find_pinched(const Soup& soup) {
     Sets fans(static_cast<std::size_t>(count));
     std::int32_t fan_count = count;
     for (std::size_t s = 1; s < spokes.size(); ++s) {
-      if (spokes[s].first != spokes[s - 1].first ||
-          fans.root(spokes[s].second) == fans.root(spokes[s - 1].second))
+      if (spokes[s].first != spokes[s - 1].first || fans.root(spokes[s].second) == fans.root(spokes[s - 1].second))
         continue;
       fans.join(spokes[s].second, spokes[s - 1].second);
       --fan_count;
@@ -229,8 +224,7 @@ std::vector<Vec3> find_non_manifold_edges(const Soup& soup) {
   std::vector<Vec3> middles;
   const auto edges = sorted_edges(soup.triangle);
   for (std::size_t e = 2; e < edges.size(); ++e) {
-    const bool is_third =
-        edges[e].first == edges[e - 2].first && (e < 3 || edges[e].first != edges[e - 3].first);
+    const bool is_third = edges[e].first == edges[e - 2].first && (e < 3 || edges[e].first != edges[e - 3].first);
     if (!is_third) continue;
     const auto end = [&](std::uint64_t v) { return soup.vertex[std::size_t(v & 0xFFFFFFFFu)]; };
     middles.push_back(0.5 * (end(edges[e].first >> 32) + end(edges[e].first)));
@@ -303,8 +297,7 @@ double surface_area(const std::vector<Vec3>& vertex, const std::vector<Triangle>
 Turned count_turned(const Soup& before, const Soup& after) {
   std::unordered_map<std::array<std::int64_t, 3>, std::int32_t, CellHash> vertex_at;
   vertex_at.reserve(before.vertex.size());
-  for (std::size_t v = 0; v < before.vertex.size(); ++v)
-    vertex_at.emplace(bits_of(before.vertex[v]), std::int32_t(v));
+  for (std::size_t v = 0; v < before.vertex.size(); ++v) vertex_at.emplace(bits_of(before.vertex[v]), std::int32_t(v));
   std::vector<Triangle> old_triangles;
   old_triangles.reserve(before.triangle.size());
   for (const Triangle& t : before.triangle) old_triangles.push_back(rotated(t));

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "recordings/internal/field_codec.h"
 #include "recordings/internal/schema.h"
 #include "recordings/internal/session_store.h"
@@ -119,9 +119,8 @@ void salvage_ticks(SessionStore& store, Salvage& salvage, RecoverReport& report)
     at = (*later)->first - 1;
   }
   if (salvage.finish && salvage.finish->ticks != next)
-    report.losses.push_back("ticks " + std::to_string(next) + " to " +
-                            std::to_string(salvage.finish->ticks - 1) + " of " +
-                            std::to_string(salvage.finish->ticks));
+    report.losses.push_back("ticks " + std::to_string(next) + " to " + std::to_string(salvage.finish->ticks - 1) +
+                            " of " + std::to_string(salvage.finish->ticks));
 }
 
 void salvage_keyframes(SessionStore& store, Salvage& salvage, RecoverReport& report) {
@@ -159,13 +158,12 @@ void salvage_events(SessionStore& store, Salvage& salvage, RecoverReport& report
   }
   report.events_saved = static_cast<std::int64_t>(salvage.events.size());
   if (salvage.finish && read != salvage.finish->events)
-    report.losses.push_back("events: " + std::to_string(read) + " of " +
-                            std::to_string(salvage.finish->events) + " are left");
+    report.losses.push_back("events: " + std::to_string(read) + " of " + std::to_string(salvage.finish->events) +
+                            " are left");
 }
 
 /// Writes the salvage as a new session with an identity of its own that names the old one.
-Result<Done> write_salvage(const std::string& out, Salvage& salvage, SessionStore& from,
-                           const RecoverReport& report) {
+Result<Done> write_salvage(const std::string& out, Salvage& salvage, SessionStore& from, const RecoverReport& report) {
   SessionIdentity identity = new_identity(salvage.start.build_fingerprint);
   identity.created_unix_s = from.identity().created_unix_s;
   salvage.start.metadata["recovered_from"] = from.identity().id;
@@ -182,8 +180,8 @@ Result<Done> write_salvage(const std::string& out, Salvage& salvage, SessionStor
     const auto count = static_cast<std::int64_t>(records.size());
     Bytes content;
     put_records(content, records);
-    if (auto r = tables->insert_chunk(next, count,
-                                      pack(chunk_name(next, count), content, identity.seed, recover_level));
+    if (auto r =
+            tables->insert_chunk(next, count, pack(chunk_name(next, count), content, identity.seed, recover_level));
         !r)
       return r;
     for (const TickRecord& record : records) counter.add(record);
@@ -194,9 +192,7 @@ Result<Done> write_salvage(const std::string& out, Salvage& salvage, SessionStor
     if (!keyframe) return keyframe.errors();
     Bytes content;
     put_fields(content, (*keyframe)->state);
-    if (auto r =
-            tables->insert_keyframe(tick, pack(keyframe_name(tick), content, identity.seed, recover_level));
-        !r)
+    if (auto r = tables->insert_keyframe(tick, pack(keyframe_name(tick), content, identity.seed, recover_level)); !r)
       return r;
     counter.add_keyframe();
   }
@@ -204,9 +200,7 @@ Result<Done> write_salvage(const std::string& out, Salvage& salvage, SessionStor
     Bytes content;
     put_field_set(content, [&](FieldWriter& writer) { writer("events", salvage.events); });
     const auto count = static_cast<std::int64_t>(salvage.events.size());
-    if (auto r = tables->insert_events(0, count,
-                                       pack(event_name(0, count), content, identity.seed, recover_level));
-        !r)
+    if (auto r = tables->insert_events(0, count, pack(event_name(0, count), content, identity.seed, recover_level)); !r)
       return r;
     for (const Event& event : salvage.events) counter.add(event);
   }
@@ -216,9 +210,7 @@ Result<Done> write_salvage(const std::string& out, Salvage& salvage, SessionStor
     statistics.values = salvage.finish->values;
     Bytes content;
     put_finish(content, statistics);
-    if (auto r =
-            tables->insert_part("finish", pack(part_name("finish"), content, identity.seed, recover_level));
-        !r)
+    if (auto r = tables->insert_part("finish", pack(part_name("finish"), content, identity.seed, recover_level)); !r)
       return r;
   }
   if (auto r = tables->commit(); !r) return r;

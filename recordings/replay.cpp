@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "recordings/state_hash.h"
 
 namespace ctpm {
@@ -53,9 +53,8 @@ Result<Keyframe> ReplayCursor::Impl::keyframe_for(std::int64_t target) {
 Result<Done> ReplayCursor::seek(std::int64_t tick) {
   Impl& impl = *impl_;
   if (tick < 0 || tick > impl.reader.tick_count())
-    return Error{
-        impl.reader.path(),
-        "has no tick " + std::to_string(tick) + ", it has " + std::to_string(impl.reader.tick_count()), ""};
+    return Error{impl.reader.path(),
+                 "has no tick " + std::to_string(tick) + ", it has " + std::to_string(impl.reader.tick_count()), ""};
   auto keyframe = impl.keyframe_for(tick);
   if (!keyframe) return keyframe.errors();
   if (tick < impl.tick || keyframe->tick > impl.tick) {
@@ -72,8 +71,8 @@ Result<bool> ReplayCursor::step() {
   Impl& impl = *impl_;
   const std::int64_t count = impl.reader.tick_count();
   if (impl.tick >= count) return false;
-  const bool is_ahead = impl.tick >= impl.ahead_first &&
-                        impl.tick < impl.ahead_first + static_cast<std::int64_t>(impl.ahead.size());
+  const bool is_ahead =
+      impl.tick >= impl.ahead_first && impl.tick < impl.ahead_first + static_cast<std::int64_t>(impl.ahead.size());
   if (!is_ahead) {
     auto records = impl.reader.ticks(impl.tick, std::min(impl.tick + read_ahead, count));
     // Damage further ahead does not concern this tick.
@@ -100,8 +99,7 @@ Result<SessionStart> continue_session(SessionReader& parent, std::int64_t tick) 
   if (!cursor) return cursor.errors();
   if (auto r = cursor->seek(tick); !r) return r.errors();
   if (!cursor->same_so_far())
-    return Error{parent.path(), "does not replay to tick " + std::to_string(tick) + " as it was recorded",
-                 "verify it"};
+    return Error{parent.path(), "does not replay to tick " + std::to_string(tick) + " as it was recorded", "verify it"};
   SessionStart start = parent.start();
   start.initial_state = cursor->state();
   start.metadata[parent_session_key] = parent.session_id();

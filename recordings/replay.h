@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "core/result.h"
+#include "core/model/result.h"
 #include "recordings/session_reader.h"
 
 namespace ctpm {
@@ -48,8 +48,7 @@ struct VerifyOptions {
   std::int64_t from = 0;  ///< first tick that is compared; simulation begins at the keyframe at or before it
   std::int64_t to = -1;   ///< tick after the last one; -1: the end
   int threads = 1;        ///< >= 1; the verdict does not depend on it
-  std::function<void(std::int64_t done, std::int64_t total)> progress =
-      {};  ///< called now and then; may be empty
+  std::function<void(std::int64_t done, std::int64_t total)> progress = {};  ///< called now and then; may be empty
 };
 
 /// Whether simulating again gives what was recorded.
@@ -57,12 +56,12 @@ struct Verdict {
   bool same = true;
   std::int64_t ticks_compared = 0;
   std::int64_t ticks_different = 0;
-  std::int64_t first_tick = -1;  ///< first tick whose outcome differs; -1: none
-  std::string first_quantity;    ///< what differed there: `state_hash`, `tool_force.x`, `depth`, `status` ...
-  std::int64_t located_tick = -1;  ///< where `quantity` was compared: the first keyframe at or after the
-                                   ///< difference; -1: there is none
-  std::string quantity;            ///< field of the State, or as first_quantity if there is no later keyframe
-  std::int32_t index = -1;  ///< sphere or element of it with the largest difference; -1: a single value
+  std::int64_t first_tick = -1;       ///< first tick whose outcome differs; -1: none
+  std::string first_quantity;         ///< what differed there: `state_hash`, `tool_force.x`, `depth`, `status` ...
+  std::int64_t located_tick = -1;     ///< where `quantity` was compared: the first keyframe at or after the
+                                      ///< difference; -1: there is none
+  std::string quantity;               ///< field of the State, or as first_quantity if there is no later keyframe
+  std::int32_t index = -1;            ///< sphere or element of it with the largest difference; -1: a single value
   double recorded = 0, replayed = 0;  ///< the two values, in the quantity's unit
   double difference = 0;              ///< |replayed - recorded|
 };

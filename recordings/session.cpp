@@ -2,8 +2,8 @@
 
 namespace ctpm {
 
-TickRecord make_record(const Inputs& inputs, const StepReport& report, double tick_time_s,
-                       std::uint64_t state_hash, double input_age_s) {
+TickRecord make_record(const Inputs& inputs, const StepReport& report, double tick_time_s, std::uint64_t state_hash,
+                       double input_age_s) {
   TickRecord record;
   record.inputs = inputs;
   record.tool_force = report.tool_force;

@@ -6,29 +6,28 @@
 #include <utility>
 #include <vector>
 
-#include "core/inputs.h"
-#include "core/model.h"
-#include "core/organ.h"
-#include "core/state.h"
-#include "core/step.h"
-#include "core/vec3.h"
+#include "core/model/inputs.h"
+#include "core/model/model.h"
+#include "core/model/organ.h"
+#include "core/model/state.h"
+#include "core/model/vec3.h"
+#include "core/stepping/step.h"
 
 namespace ctpm {
 
 /// Everything that is known before the first tick. FORMAT.md section 4.
 struct SessionStart {
-  std::string scene_text;         ///< the scene as it was read; opaque bytes here
-  std::string look;               ///< organ colours and names for whoever draws; opaque bytes here
-  Model model;                    ///< the built network
-  std::vector<Surface> surfaces;  ///< one per organ of the model, or none at all
-  State initial_state;            ///< before tick 0
-  std::string build_fingerprint;  ///< names the build of the program that records
+  std::string scene_text;                       ///< the scene as it was read; opaque bytes here
+  std::string look;                             ///< organ colours and names for whoever draws; opaque bytes here
+  Model model;                                  ///< the built network
+  std::vector<Surface> surfaces;                ///< one per organ of the model, or none at all
+  State initial_state;                          ///< before tick 0
+  std::string build_fingerprint;                ///< names the build of the program that records
   std::map<std::string, std::string> metadata;  ///< free; see also parent_session_key
 };
 
 /// Metadata of a session that goes on from a moment of another one.
-inline constexpr const char* parent_session_key =
-    "parent_session";  ///< SessionReader::session_id of the parent
+inline constexpr const char* parent_session_key = "parent_session";  ///< SessionReader::session_id of the parent
 inline constexpr const char* parent_tick_key =
     "parent_tick";  ///< decimal: it starts from the State before this tick of the parent
 
@@ -50,8 +49,8 @@ struct TickRecord {
 };
 
 /// The record of a tick that was just done.
-TickRecord make_record(const Inputs& inputs, const StepReport& report, double tick_time_s,
-                       std::uint64_t state_hash, double input_age_s = 0);
+TickRecord make_record(const Inputs& inputs, const StepReport& report, double tick_time_s, std::uint64_t state_hash,
+                       double input_age_s = 0);
 
 enum class EventKind : std::int32_t {
   contact_begins = 1,

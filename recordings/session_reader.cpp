@@ -106,16 +106,15 @@ Result<Done> SessionReader::Impl::load_chunk(std::int64_t tick) {
   if (tick >= cached.first && tick < cached.end()) return Done{};
   auto chunk = store.chunk_at(tick);
   if (!chunk) return chunk.errors();
-  if (!*chunk || (*chunk)->end() <= tick)
-    return error("the chunk of tick " + std::to_string(tick) + " is missing");
+  if (!*chunk || (*chunk)->end() <= tick) return error("the chunk of tick " + std::to_string(tick) + " is missing");
   cached = std::move(**chunk);
   return Done{};
 }
 
 Result<std::vector<TickRecord>> SessionReader::ticks(std::int64_t from, std::int64_t to) {
   if (from < 0 || to < from || to > tick_count())
-    return impl_->error("ticks " + std::to_string(from) + " to " + std::to_string(to) +
-                        " are asked for, it has " + std::to_string(tick_count()));
+    return impl_->error("ticks " + std::to_string(from) + " to " + std::to_string(to) + " are asked for, it has " +
+                        std::to_string(tick_count()));
   std::vector<TickRecord> records;
   for (std::int64_t tick = from; tick < to;) {
     if (auto r = impl_->load_chunk(tick); !r) return r.errors();
@@ -144,8 +143,7 @@ Result<std::vector<Event>> SessionReader::events() {
     const auto next = static_cast<std::int64_t>(events.size());
     auto run = impl_->store.events_at(next);
     if (!run) return run.errors();
-    if (!*run || (*run)->first != next)
-      return impl_->error("the run of event " + std::to_string(next) + " is missing");
+    if (!*run || (*run)->first != next) return impl_->error("the run of event " + std::to_string(next) + " is missing");
     for (Event& event : (*run)->items) events.push_back(std::move(event));
   }
   return events;
@@ -200,8 +198,8 @@ Result<Done> SessionReader::check_all() {
   }
   const auto keyframes = static_cast<std::int64_t>(keyframe_keys->size()) - 1;
   if (impl_->finish && impl_->finish->keyframes != keyframes)
-    errors.push_back(impl_->error(std::to_string(keyframes) + " of " +
-                                  std::to_string(impl_->finish->keyframes) + " keyframes are left"));
+    errors.push_back(impl_->error(std::to_string(keyframes) + " of " + std::to_string(impl_->finish->keyframes) +
+                                  " keyframes are left"));
 
   if (const auto all_events = events(); !all_events) note(all_events.errors());
   if (!errors.empty()) return errors;

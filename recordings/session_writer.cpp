@@ -111,8 +111,7 @@ SessionWriter::~SessionWriter() = default;
 
 Result<SessionWriter> SessionWriter::create(const std::string& path, const SessionStart& start,
                                             const WriterOptions& options) {
-  CTPM_CHECK(options.keyframe_ticks >= 1 && options.queue_ticks >= 2 * chunk_ticks,
-             "WriterOptions out of range");
+  CTPM_CHECK(options.keyframe_ticks >= 1 && options.queue_ticks >= 2 * chunk_ticks, "WriterOptions out of range");
   CTPM_CHECK(options.compression_level >= 1 && options.compression_level <= 19, "WriterOptions out of range");
   Errors errors = check_model(start.model);
   if (errors.empty()) errors = check_state(start.model, start.initial_state);
@@ -122,8 +121,7 @@ Result<SessionWriter> SessionWriter::create(const std::string& path, const Sessi
   auto impl = std::make_unique<Impl>(start, options);
   impl->path = path;
   impl->identity = new_identity(start.build_fingerprint);
-  if (auto r = create_session_file(path, start, impl->identity, options.overwrite, options.compression_level);
-      !r)
+  if (auto r = create_session_file(path, start, impl->identity, options.overwrite, options.compression_level); !r)
     return r.errors();
   if (auto r = impl->begin(); !r) {
     impl.reset();
@@ -207,10 +205,10 @@ Result<SessionStatistics> SessionWriter::finish(const std::vector<NamedValue>& v
   statistics.values = values;
   const WriterStatus now = status();
   if (now.lost > 0)
-    return Error{impl.path,
-                 std::to_string(now.lost) + " of " + std::to_string(now.appended) +
-                     " ticks were not recorded: " + now.error,
-                 "the file holds the session up to tick " + std::to_string(now.committed)};
+    return Error{
+        impl.path,
+        std::to_string(now.lost) + " of " + std::to_string(now.appended) + " ticks were not recorded: " + now.error,
+        "the file holds the session up to tick " + std::to_string(now.committed)};
   if (!now.error.empty())
     return Error{impl.path, now.error, "all ticks are recorded, but the session is not marked as ended"};
 
@@ -310,8 +308,8 @@ void SessionWriter::Impl::gather_ticks(bool all) {
   const std::size_t waiting = records.waiting();
   if (waiting == 0) return;
   if (!waiting_seen) oldest_seen = Clock::now(), waiting_seen = true;
-  const bool old = std::chrono::duration<double>(Clock::now() - oldest_seen).count() >=
-                   chunk_age - 2e-3 * poll_interval.count();
+  const bool old =
+      std::chrono::duration<double>(Clock::now() - oldest_seen).count() >= chunk_age - 2e-3 * poll_interval.count();
   std::size_t taken = 0;
   for (std::size_t chunk = 0; chunk < chunks_per_commit && taken < waiting; ++chunk) {
     const std::size_t count = std::min<std::size_t>(chunk_ticks, waiting - taken);
@@ -361,8 +359,7 @@ Result<Done> SessionWriter::Impl::write_rows() {
   for (const Row& row : rows) {
     Result<Done> written = Done{};
     if (row.kind == Row::Kind::chunk) written = tables.insert_chunk(row.first, row.count, row.block);
-    if (row.kind == Row::Kind::keyframe)
-      written = tables.insert_keyframe(row.first, row.block), ++keyframe_count;
+    if (row.kind == Row::Kind::keyframe) written = tables.insert_keyframe(row.first, row.block), ++keyframe_count;
     if (row.kind == Row::Kind::events) written = tables.insert_events(row.first, row.count, row.block);
     if (!written) return written;
   }
@@ -387,8 +384,7 @@ void SessionWriter::Impl::sync_until_stopped() {
     if (!sync_wanted) return;
     sync_wanted = false;
     lock.unlock();
-    if (::fdatasync(log_file) != 0)
-      set_error(std::string("the disk did not confirm: ") + std::strerror(errno));
+    if (::fdatasync(log_file) != 0) set_error(std::string("the disk did not confirm: ") + std::strerror(errno));
     lock.lock();
   }
 }

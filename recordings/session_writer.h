@@ -5,17 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
+#include "core/model/result.h"
 #include "recordings/session.h"
 
 namespace ctpm {
 
 struct WriterOptions {
-  bool overwrite = false;  ///< replace a file of that name; otherwise it is an error
-  bool wait_when_full =
-      false;  ///< append() waits for the disk instead of losing ticks: for runs that are not live
-  std::int32_t keyframe_ticks =
-      1000;  ///< ticks between two keyframes, >= 1: seeking costs at most so many steps
+  bool overwrite = false;       ///< replace a file of that name; otherwise it is an error
+  bool wait_when_full = false;  ///< append() waits for the disk instead of losing ticks: for runs that are not live
+  std::int32_t keyframe_ticks = 1000;  ///< ticks between two keyframes, >= 1: seeking costs at most so many steps
   std::int32_t queue_ticks = 1 << 16;  ///< ticks that can wait for a slow disk before they are lost, >= 200
   int compression_level = 3;           ///< zstd, in [1, 19]
 };
@@ -25,7 +23,7 @@ struct WriterStatus {
   std::string error;           ///< first error since the last success, kept for good once ticks were lost
   std::int64_t appended = 0;   ///< ticks given to append()
   std::int64_t committed = 0;  ///< ticks that survive kill -9
-  std::int64_t lost = 0;  ///< ticks that were not recorded: the queue was full or the disk failed to the end
+  std::int64_t lost = 0;       ///< ticks that were not recorded: the queue was full or the disk failed to the end
 };
 
 /// Records one session. append() and event() belong to one thread, the tick's; they never wait for the disk

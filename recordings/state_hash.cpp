@@ -6,13 +6,12 @@
 #define XXH_STATIC_LINKING_ONLY  // the hash state lives on the stack
 #include <xxhash.h>
 
-#include "core/fields.h"
+#include "core/model/fields.h"
 
 namespace ctpm {
 namespace {
 
-static_assert(std::endian::native == std::endian::little,
-              "values are hashed and stored as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "values are hashed and stored as they lie in memory");
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Quat) == 4 * sizeof(double), "no padding");
 
 struct Hasher {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/state.h"
+#include "core/model/state.h"
 
 namespace ctpm {
 

@@ -8,8 +8,8 @@
 #include <sstream>
 #include <thread>
 
-#include "core/fields.h"
-#include "core/step.h"
+#include "core/model/fields.h"
+#include "core/stepping/step.h"
 #include "recordings/replay.h"
 #include "recordings/state_hash.h"
 
@@ -22,9 +22,7 @@ constexpr std::int64_t progress_interval = 500;  // ticks
 struct Pair {
   std::string name;
   double recorded, replayed;
-  bool same() const {
-    return std::bit_cast<std::uint64_t>(recorded) == std::bit_cast<std::uint64_t>(replayed);
-  }
+  bool same() const { return std::bit_cast<std::uint64_t>(recorded) == std::bit_cast<std::uint64_t>(replayed); }
   double difference() const {
     if (same()) return 0;
     const double d = std::abs(replayed - recorded);
@@ -87,8 +85,7 @@ bool locate(const State& recorded, const State& replayed, Verdict& verdict) {
       group = group_of(pair.name);
       verdict.quantity = pair.name;
       verdict.index = before[f].is_array ? static_cast<std::int32_t>(i) : -1;
-      verdict.recorded = pair.recorded, verdict.replayed = pair.replayed,
-      verdict.difference = pair.difference();
+      verdict.recorded = pair.recorded, verdict.replayed = pair.replayed, verdict.difference = pair.difference();
     }
   }
   return !group.empty();
@@ -105,8 +102,7 @@ void note_difference(std::int64_t tick, bool same_hash, const std::vector<Pair>&
   verdict.quantity = verdict.first_quantity;
   if (number == pairs.end()) return;
   verdict.quantity = number->name;
-  verdict.recorded = number->recorded, verdict.replayed = number->replayed,
-  verdict.difference = number->difference();
+  verdict.recorded = number->recorded, verdict.replayed = number->replayed, verdict.difference = number->difference();
 }
 
 /// Compares at a keyframe: it must be the state that its tick's hash proves, and after a difference it says
@@ -116,9 +112,8 @@ Result<Done> compare_keyframe(SessionReader& reader, const ReplayCursor& cursor,
   if (!keyframe) return keyframe.errors();
   if (keyframe->tick != cursor.tick()) return Done{};
   if (state_hash(keyframe->state) != cursor.record().state_hash)
-    return Error{
-        reader.path(),
-        "keyframe " + std::to_string(keyframe->tick) + ": is not the state whose hash its tick recorded", ""};
+    return Error{reader.path(),
+                 "keyframe " + std::to_string(keyframe->tick) + ": is not the state whose hash its tick recorded", ""};
   if (verdict.same || verdict.located_tick >= 0) return Done{};
   Verdict located = verdict;
   located.difference = 0;
@@ -162,8 +157,7 @@ Result<Verdict> verify_stretch(SessionReader& reader, ReplayCursor& cursor, cons
     if (!stepped) return stepped.errors();
     const bool same_hash = state_hash(cursor.state()) == cursor.record().state_hash;
     const std::vector<Pair> pairs = outcomes(cursor.record(), cursor.report());
-    const bool same =
-        same_hash && std::all_of(pairs.begin(), pairs.end(), [](const Pair& p) { return p.same(); });
+    const bool same = same_hash && std::all_of(pairs.begin(), pairs.end(), [](const Pair& p) { return p.same(); });
     if (!same) note_difference(tick, same_hash, pairs, verdict);
     ++verdict.ticks_compared;
     if (cursor.tick() - told < progress_interval && cursor.tick() < stretch.to) continue;
@@ -278,8 +272,7 @@ std::string to_string(const Verdict& verdict) {
     text << "; " << verdict.quantity;
     if (verdict.index >= 0) text << "[" << verdict.index << "]";
     if (verdict.located_tick >= 0) text << " at keyframe " << verdict.located_tick;
-    text << " was " << verdict.recorded << ", is " << verdict.replayed << ", difference "
-         << verdict.difference;
+    text << " was " << verdict.recorded << ", is " << verdict.replayed << ", difference " << verdict.difference;
   }
   return text.str();
 }

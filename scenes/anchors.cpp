@@ -23,12 +23,11 @@ double height(Vec3 p, Vec3 gravity) {
 bool is_in(const AnchorSpec& anchor, Vec3 p, Vec3 gravity, double lowest) {
   if (anchor.lowest) return height(p, gravity) <= lowest + *anchor.lowest + kBorder;
   if (anchor.sphere) return norm(p - anchor.sphere->centre) <= anchor.sphere->radius + kBorder;
-  if (anchor.plane)
-    return dot(p - anchor.plane->point, anchor.plane->normal) <= kBorder * norm(anchor.plane->normal);
+  if (anchor.plane) return dot(p - anchor.plane->point, anchor.plane->normal) <= kBorder * norm(anchor.plane->normal);
   if (!anchor.box) return false;
   const Vec3 low = anchor.box->min, high = anchor.box->max;
-  return p.x >= low.x - kBorder && p.y >= low.y - kBorder && p.z >= low.z - kBorder &&
-         p.x <= high.x + kBorder && p.y <= high.y + kBorder && p.z <= high.z + kBorder;
+  return p.x >= low.x - kBorder && p.y >= low.y - kBorder && p.z >= low.z - kBorder && p.x <= high.x + kBorder &&
+         p.y <= high.y + kBorder && p.z <= high.z + kBorder;
 }
 
 std::string extent_of(const FilledOrgan& organ) {
@@ -38,16 +37,15 @@ std::string extent_of(const FilledOrgan& organ) {
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
   char text[160];
-  std::snprintf(text, sizeof text, "its spheres lie from %.1f, %.1f, %.1f to %.1f, %.1f, %.1f mm",
-                low.x * 1e3, low.y * 1e3, low.z * 1e3, high.x * 1e3, high.y * 1e3, high.z * 1e3);
+  std::snprintf(text, sizeof text, "its spheres lie from %.1f, %.1f, %.1f to %.1f, %.1f, %.1f mm", low.x * 1e3,
+                low.y * 1e3, low.z * 1e3, high.x * 1e3, high.y * 1e3, high.z * 1e3);
   return text;
 }
 
 }  // namespace
 
-Result<std::vector<std::int32_t>> select_anchored(const FilledOrgan& organ,
-                                                  const std::vector<AnchorSpec>& anchors, Vec3 gravity,
-                                                  const std::string& where,
+Result<std::vector<std::int32_t>> select_anchored(const FilledOrgan& organ, const std::vector<AnchorSpec>& anchors,
+                                                  Vec3 gravity, const std::string& where,
                                                   std::vector<std::int32_t>* counts) {
   if (organ.centre.empty()) return Error{where, "the organ has no spheres", ""};
   double lowest = height(organ.centre.front(), gravity);
@@ -69,12 +67,11 @@ Result<std::vector<std::int32_t>> select_anchored(const FilledOrgan& organ,
 }
 
 Result<AnchorSpec> parse_anchor(const std::string& text) {
-  const Error error{
-      "--anchor",
-      "got '" + text +
-          "', must be lowest:HEIGHT, box:X0,Y0,Z0,X1,Y1,Z1, sphere:X,Y,Z,R or plane:X,Y,Z,NX,NY,NZ, "
-          "with all lengths in mm",
-      ""};
+  const Error error{"--anchor",
+                    "got '" + text +
+                        "', must be lowest:HEIGHT, box:X0,Y0,Z0,X1,Y1,Z1, sphere:X,Y,Z,R or plane:X,Y,Z,NX,NY,NZ, "
+                        "with all lengths in mm",
+                    ""};
   const auto colon = text.find(':');
   if (colon == std::string::npos) return error;
   std::vector<std::string_view> raw;

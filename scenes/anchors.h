@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/organ.h"
-#include "core/result.h"
+#include "core/model/organ.h"
+#include "core/model/result.h"
 #include "scenes/scene_spec.h"
 
 namespace ctpm {
@@ -13,9 +13,8 @@ namespace ctpm {
 /// Spheres of the organ that any of its anchors holds, by index within the organ, ascending. `counts` gets
 /// how many each anchor catches. Errors: an anchor that catches none, at its place `where`/anchors/I, with
 /// the organ's extent.
-Result<std::vector<std::int32_t>> select_anchored(const FilledOrgan& organ,
-                                                  const std::vector<AnchorSpec>& anchors, Vec3 gravity,
-                                                  const std::string& where,
+Result<std::vector<std::int32_t>> select_anchored(const FilledOrgan& organ, const std::vector<AnchorSpec>& anchors,
+                                                  Vec3 gravity, const std::string& where,
                                                   std::vector<std::int32_t>* counts = nullptr);
 
 /// Reads an anchor as a command line gives it, in mm: `lowest:HEIGHT`, `box:X0,Y0,Z0,X1,Y1,Z1`,

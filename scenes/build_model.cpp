@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/integrator.h"
-#include "core/network.h"
+#include "core/network/network.h"
+#include "core/stepping/integrator.h"
 #include "scenes/anchors.h"
 #include "scenes/presets.h"
 
@@ -37,8 +37,8 @@ std::string in_millimetres(double length) {
 
 /// The layers' materials. Adds an error for each layer that holds no sphere, or ends deeper than the deepest
 /// sphere.
-std::vector<LayerMaterial> layers_of(const OrganSpec& spec, const FilledOrgan& organ,
-                                     const std::string& where, Errors& errors) {
+std::vector<LayerMaterial> layers_of(const OrganSpec& spec, const FilledOrgan& organ, const std::string& where,
+                                     Errors& errors) {
   std::vector<LayerMaterial> layers;
   if (spec.layers.empty() || organ.depth.empty()) return layers;
   const auto [least, most] = std::minmax_element(organ.depth.begin(), organ.depth.end());
@@ -54,8 +54,7 @@ std::vector<LayerMaterial> layers_of(const OrganSpec& spec, const FilledOrgan& o
       errors.push_back({at, "got " + in_millimetres(end) + ", which is deeper than the organ", depths});
     else if (!holds_any)
       errors.push_back(
-          {at, "the layer from " + in_millimetres(begin) + " to " + in_millimetres(end) + " holds no sphere",
-           depths});
+          {at, "the layer from " + in_millimetres(begin) + " to " + in_millimetres(end) + " holds no sphere", depths});
     layers.push_back({end, resolve_material(spec.layers[i].material).material});
     begin = end;
   }
@@ -94,8 +93,8 @@ void add_tools(Model& model, const SceneSpec& scene) {
     if (spec.holds) tool.sphere = nearest_sphere(model, *spec.holds);
     model.tools.push_back(tool);
   }
-  const bool presses = std::any_of(scene.tools.begin(), scene.tools.end(),
-                                   [](const ToolSpec& t) { return t.kind == ToolKind::ball; });
+  const bool presses =
+      std::any_of(scene.tools.begin(), scene.tools.end(), [](const ToolSpec& t) { return t.kind == ToolKind::ball; });
   if (!presses) return;
   model.contact_k = scene.contact_stiffness.value_or(kContactOverEdge * stiffest_edge(model));
   model.contact_friction = scene.contact_friction;
@@ -160,8 +159,7 @@ Result<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrg
     settings.damage_depth = spec.damage_depth, settings.guides = guides_of(spec, organs[i]);
     const std::size_t errors_before = errors.size();
     settings.layers = layers_of(spec, organs[i], where, errors);
-    Result<std::vector<std::int32_t>> anchored =
-        select_anchored(organs[i], spec.anchors, scene.gravity, where);
+    Result<std::vector<std::int32_t>> anchored = select_anchored(organs[i], spec.anchors, scene.gravity, where);
     if (!anchored) {
       errors.insert(errors.end(), anchored.errors().begin(), anchored.errors().end());
       continue;

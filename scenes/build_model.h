@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "core/model.h"
-#include "core/organ.h"
-#include "core/result.h"
+#include "core/model/model.h"
+#include "core/model/organ.h"
+#include "core/model/result.h"
 #include "scenes/scene_spec.h"
 
 namespace ctpm {
@@ -15,7 +15,7 @@ namespace ctpm {
 struct BuiltScene {
   Model model;
   std::vector<std::int32_t> anchored_count;  ///< spheres that each organ's anchors hold         (organ_count)
-  std::vector<std::int32_t> probe_sphere;  ///< sphere of each probe                            (probe_count)
+  std::vector<std::int32_t> probe_sphere;    ///< sphere of each probe                            (probe_count)
 };
 
 /// The spheres of an organ that is given as a rig instead of by a mesh. It has no surface to draw.

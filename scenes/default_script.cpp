@@ -31,8 +31,7 @@ class Top {
   Top(const FilledOrgan& organ, const Table& table) : reach_(0.8 * organ.spacing) {
     for (const Vec3& vertex : organ.surface.vertex) points_.push_back(table.to_table(vertex));
     if (points_.empty())
-      for (const Vec3& centre : organ.centre)
-        points_.push_back(table.to_table(centre) + Vec3{0, 0, organ.spacing / 2});
+      for (const Vec3& centre : organ.centre) points_.push_back(table.to_table(centre) + Vec3{0, 0, organ.spacing / 2});
     least_ = most_ = points_.front();
     for (const Vec3& p : points_) {
       least_ = {std::min(least_.x, p.x), std::min(least_.y, p.y), std::min(least_.z, p.z)};
@@ -48,8 +47,7 @@ class Top {
   }
   /// Whether there is tissue below the place.
   bool is_over(double x, double y) const {
-    return std::any_of(points_.begin(), points_.end(),
-                       [&](Vec3 p) { return std::hypot(p.x - x, p.y - y) < reach_; });
+    return std::any_of(points_.begin(), points_.end(), [&](Vec3 p) { return std::hypot(p.x - x, p.y - y) < reach_; });
   }
   /// The place with the share `u` of the extent along x, on the ridge: where the top is highest across, or in
   /// the middle of a flat top.
@@ -75,9 +73,7 @@ class Top {
 
 /// To a tenth of a millimetre, so that an author can read the script.
 double whole_tenths(double length) { return std::round(length * 1e4) / 1e4 + 0.0; }
-Vec3 whole_tenths(Vec3 p) {
-  return {whole_tenths(p.x), whole_tenths(p.y), whole_tenths(p.z)};
-}
+Vec3 whole_tenths(Vec3 p) { return {whole_tenths(p.x), whole_tenths(p.y), whole_tenths(p.z)}; }
 
 ScriptStep take(const std::string& tool, Vec3 at, Vec3 pointing) {
   ScriptStep step;
@@ -97,8 +93,7 @@ ScriptStep put_away() {
 }
 
 /// A ball comes down on `place`, presses `depth` beyond it, stays for `hold` seconds and leaves.
-void add_press(Script& script, const ToolSpec& ball, const Table& table, Vec3 place, double depth,
-               double hold) {
+void add_press(Script& script, const ToolSpec& ball, const Table& table, Vec3 place, double depth, double hold) {
   const double clear = 0.010, radius = ball.radius.value_or(0);
   const Vec3 down = table.to_world({0, 0, -1});
   script.steps.push_back(take(ball.name, table.to_world(place + Vec3{0, 0, radius + clear}), down));
@@ -108,8 +103,8 @@ void add_press(Script& script, const ToolSpec& ball, const Table& table, Vec3 pl
   script.steps.insert(script.steps.end(), {press, wait(hold), release, wait(0.3), put_away()});
 }
 
-/// Ways of a blade's tip over the top that stay in the tissue: from `first` towards the viewer, or along the organ. Of the
-/// two the one that has more tissue under it; `length` long, `depth` below the top.
+/// Ways of a blade's tip over the top that stay in the tissue: from `first` towards the viewer, or along the organ. Of
+/// the two the one that has more tissue under it; `length` long, `depth` below the top.
 std::vector<Vec3> cut_path(const Top& top, Vec3 first, double length, double depth) {
   constexpr int kPoints = 5;
   std::vector<Vec3> best;
@@ -137,7 +132,8 @@ void add_cut(Script& script, const ToolSpec& scalpel, const Table& table, const 
   for (const Vec3& tip : path) cut.cut->path.push_back(whole_tenths(table.to_world(tip)));
   script.steps.push_back(take(scalpel.name, table.to_world(path.front() + clear), down));
   const Vec3 way = path.back() - path.front();
-  if (way.x != 0 || way.y != 0) script.steps.back().take->facing = whole_tenths(table.to_world(Vec3{way.x, way.y, 0} / norm(way)));
+  if (way.x != 0 || way.y != 0)
+    script.steps.back().take->facing = whole_tenths(table.to_world(Vec3{way.x, way.y, 0} / norm(way)));
   leave.move = ScriptStep::Move{whole_tenths(table.to_world(path.back() + clear)), 0.080};
   script.steps.insert(script.steps.end(), {cut, wait(0.2), leave, wait(0.2), put_away(), wait(0.5)});
 }
@@ -165,12 +161,12 @@ Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organ
     return ridge;
   };
   const auto first_of = [&](ToolKind kind) {
-    return std::find_if(scene.tools.begin(), scene.tools.end(),
-                        [&](const ToolSpec& t) { return t.kind == kind; });
+    return std::find_if(scene.tools.begin(), scene.tools.end(), [&](const ToolSpec& t) { return t.kind == kind; });
   };
   const auto ball = first_of(ToolKind::ball), scalpel = first_of(ToolKind::scalpel), none = scene.tools.end();
   if (ball != none) add_press(script, *ball, table, seen(0.35, 0.12), depth, 0.5);
-  if (scalpel != none) add_cut(script, *scalpel, table, cut_path(top, seen(0.42, 0.0), cut_length, cut_depth), cut_depth);
+  if (scalpel != none)
+    add_cut(script, *scalpel, table, cut_path(top, seen(0.42, 0.0), cut_length, cut_depth), cut_depth);
   // Pressing beside the cut opens it.
   if (ball != none && scalpel != none) add_press(script, *ball, table, seen(0.50, 0.18), 1.6 * depth, 1.0);
   if (script.steps.empty()) script.steps.push_back(wait(1));

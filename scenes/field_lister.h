@@ -7,8 +7,8 @@
 #include <typeinfo>
 #include <vector>
 
-#include "core/result.h"
-#include "core/vec3.h"
+#include "core/model/result.h"
+#include "core/model/vec3.h"
 #include "scenes/field_table.h"
 #include "scenes/json_text.h"
 
@@ -48,9 +48,7 @@ class FieldLister {
     return records;
   }
 
-  void constant(const Key& key, const char* value) {
-    row(key, FieldKind::constant).words = {in_quotes(value)};
-  }
+  void constant(const Key& key, const char* value) { row(key, FieldKind::constant).words = {in_quotes(value)}; }
   void constant(const Key& key, int value) { row(key, FieldKind::constant).words = {std::to_string(value)}; }
   void text(const Key& key, const std::string&) { row(key, FieldKind::text); }
   void preset(const Key& key, const std::string&) { row(key, FieldKind::preset); }
@@ -69,15 +67,14 @@ class FieldLister {
   void flag(const Key& key, bool value) { row(key, FieldKind::flag).standard = value ? "true" : "false"; }
   void flag(const Key& key, const std::optional<bool>&) { row(key, FieldKind::flag); }
   void point(const Key& key, const Vec3& p, const Unit& unit, const Range& range) {
-    numeric(key, FieldKind::point, unit, range).standard = "[" + double_to_decimal(p.x, unit.exponent) +
-                                                           ", " + double_to_decimal(p.y, unit.exponent) +
-                                                           ", " + double_to_decimal(p.z, unit.exponent) + "]";
+    numeric(key, FieldKind::point, unit, range).standard = "[" + double_to_decimal(p.x, unit.exponent) + ", " +
+                                                           double_to_decimal(p.y, unit.exponent) + ", " +
+                                                           double_to_decimal(p.z, unit.exponent) + "]";
   }
   void point(const Key& key, const std::optional<Vec3>&, const Unit& unit, const Range& range) {
     numeric(key, FieldKind::point, unit, range);
   }
-  void points(const Key& key, const std::vector<Vec3>&, const Unit& unit, const Range& range,
-              std::size_t least) {
+  void points(const Key& key, const std::vector<Vec3>&, const Unit& unit, const Range& range, std::size_t least) {
     numeric(key, FieldKind::points, unit, range).least = least;
   }
   template <class E>

@@ -32,15 +32,13 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 /// The key without the unit at its end: "spring_kpa_per_mm" -> "spring".
 std::string without_unit(std::string_view key) {
-  static constexpr std::string_view parts[] = {"mm",  "cm",  "um",  "m",   "km",  "in",  "inch", "kpa",
-                                               "pa",  "mpa", "s",   "ms",  "us",  "n",   "mn",   "kn",
-                                               "kg",  "g",   "m3",  "mm3", "mm2", "m2",  "s2",   "deg",
-                                               "rad", "per", "cm3", "hz",  "sec", "pas", "min"};
+  static constexpr std::string_view parts[] = {
+      "mm", "cm", "um", "m",   "km",  "in", "inch", "kpa", "pa",  "mpa", "s",   "ms", "us",  "n",   "mn", "kn",
+      "kg", "g",  "m3", "mm3", "mm2", "m2", "s2",   "deg", "rad", "per", "cm3", "hz", "sec", "pas", "min"};
   for (;;) {
     const auto mark = key.rfind('_');
     if (mark == std::string_view::npos) return std::string(key);
-    if (std::find(std::begin(parts), std::end(parts), key.substr(mark + 1)) == std::end(parts))
-      return std::string(key);
+    if (std::find(std::begin(parts), std::end(parts), key.substr(mark + 1)) == std::end(parts)) return std::string(key);
     key = key.substr(0, mark);
   }
 }
@@ -83,15 +81,13 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
 
 Problems::Problem Problems::make(const std::string& pointer, Place place, const std::string& message,
                                  const std::string& hint) const {
-  const std::string where =
-      file_name_ + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
+  const std::string where = file_name_ + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
   return {pointer, place, Error{where, (pointer.empty() ? "/" : pointer) + ": " + message, hint}};
 }
 
 bool Problems::is_full() const { return problem_count_ > kMostProblems; }
 
-void Problems::add(const std::string& pointer, Place place, const std::string& message,
-                   const std::string& hint) {
+void Problems::add(const std::string& pointer, Place place, const std::string& message, const std::string& hint) {
   ++problem_count_;
   if (!is_full()) problems_.push_back(make(pointer, place, message, hint));
 }
@@ -141,9 +137,8 @@ Errors Problems::errors() const {
     if (!items_with_cause.contains(top_item(rule.pointer))) all.push_back(rule);
   Errors errors = in_order(std::move(all));
   if (is_full())
-    errors.push_back({file_name_,
-                      std::to_string(problem_count_ - problems_.size()) + " more problems are not listed",
-                      ""});
+    errors.push_back(
+        {file_name_, std::to_string(problem_count_ - problems_.size()) + " more problems are not listed", ""});
   return errors;
 }
 
@@ -169,8 +164,7 @@ const JsonNode* FieldReader::take_list(const Key& key, std::size_t least) {
     return nullptr;
   }
   if (node->children.size() < least) {
-    problems_.add(pointer, node->place,
-                  "got " + describe(*node) + ", must have at least " + std::to_string(least));
+    problems_.add(pointer, node->place, "got " + describe(*node) + ", must have at least " + std::to_string(least));
   }
   return node;
 }
@@ -204,12 +198,11 @@ void FieldReader::text(const Key& key, std::string& value) {
   }
 }
 
-bool FieldReader::read_number(const JsonNode& node, const std::string& pointer, const Unit& unit,
-                              const Range& range, double& value) {
+bool FieldReader::read_number(const JsonNode& node, const std::string& pointer, const Unit& unit, const Range& range,
+                              double& value) {
   const std::string of_unit = unit.name[0] == '\0' ? "" : std::string(" ") + unit.name;
   if (node.kind != JsonKind::number) {
-    problems_.add(pointer, node.place,
-                  "got " + describe(node) + ", must be a number in " + to_string(range) + of_unit);
+    problems_.add(pointer, node.place, "got " + describe(node) + ", must be a number in " + to_string(range) + of_unit);
     return false;
   }
   if (!range.contains(decimal_to_double(node.raw, 0))) {
@@ -221,8 +214,7 @@ bool FieldReader::read_number(const JsonNode& node, const std::string& pointer, 
 }
 
 void FieldReader::number(const Key& key, double& value, const Unit& unit, const Range& range) {
-  if (const JsonNode* node = take(key))
-    read_number(*node, child_pointer(pointer_, key.name), unit, range, value);
+  if (const JsonNode* node = take(key)) read_number(*node, child_pointer(pointer_, key.name), unit, range, value);
 }
 
 void FieldReader::number(const Key& key, std::optional<double>& value, const Unit& unit, const Range& range) {
@@ -235,8 +227,7 @@ bool FieldReader::read_integer(const JsonNode& node, const std::string& pointer,
                                std::int32_t& value) {
   const bool is_whole = node.kind == JsonKind::number && node.raw.find_first_of(".eE") == std::string::npos;
   if (!is_whole) {
-    problems_.add(pointer, node.place,
-                  "got " + describe(node) + ", must be a whole number in " + to_string(range));
+    problems_.add(pointer, node.place, "got " + describe(node) + ", must be a whole number in " + to_string(range));
     return false;
   }
   if (!range.contains(decimal_to_double(node.raw, 0))) {
@@ -257,8 +248,8 @@ void FieldReader::integer(const Key& key, std::optional<std::int32_t>& value, co
   if (node != nullptr && read_integer(*node, child_pointer(pointer_, key.name), range, got)) value = got;
 }
 
-bool FieldReader::read_point(const JsonNode& node, const std::string& pointer, const Unit& unit,
-                             const Range& range, Vec3& value) {
+bool FieldReader::read_point(const JsonNode& node, const std::string& pointer, const Unit& unit, const Range& range,
+                             Vec3& value) {
   if (node.kind != JsonKind::list || node.children.size() != 3) {
     problems_.add(pointer, node.place, "got " + describe(node) + ", must be a list of 3 numbers");
     return false;
@@ -284,13 +275,11 @@ void FieldReader::flag(const Key& key, std::optional<bool>& value) {
   if (node->kind == JsonKind::boolean)
     value = node->raw == "true";
   else
-    problems_.add(child_pointer(pointer_, key.name), node->place,
-                  "got " + describe(*node) + ", must be true or false");
+    problems_.add(child_pointer(pointer_, key.name), node->place, "got " + describe(*node) + ", must be true or false");
 }
 
 void FieldReader::point(const Key& key, Vec3& value, const Unit& unit, const Range& range) {
-  if (const JsonNode* node = take(key))
-    read_point(*node, child_pointer(pointer_, key.name), unit, range, value);
+  if (const JsonNode* node = take(key)) read_point(*node, child_pointer(pointer_, key.name), unit, range, value);
 }
 
 void FieldReader::point(const Key& key, std::optional<Vec3>& value, const Unit& unit, const Range& range) {
@@ -340,8 +329,7 @@ void FieldReader::report_unknown(std::size_t member, const std::vector<std::stri
   if (hint.empty()) {
     for (const std::string& name : names) hint += (hint.empty() ? "known here: " : ", ") + name;
   }
-  problems_.add(child_pointer(pointer_, key), object_.key_places[member], "unknown key " + in_quotes(key),
-                hint);
+  problems_.add(child_pointer(pointer_, key), object_.key_places[member], "unknown key " + in_quotes(key), hint);
 }
 
 void FieldReader::finish() {
@@ -368,9 +356,8 @@ void FieldReader::finish() {
   if (needs_exactly_one_ && written.size() != 1) {
     std::string allowed;
     for (const std::string& name : names) allowed += (allowed.empty() ? "" : ", ") + name;
-    problems_.add(
-        pointer_, object_.place,
-        "got " + std::to_string(written.size()) + " of the keys, must have exactly one of " + allowed);
+    problems_.add(pointer_, object_.place,
+                  "got " + std::to_string(written.size()) + " of the keys, must have exactly one of " + allowed);
   }
 }
 

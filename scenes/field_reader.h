@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/result.h"
-#include "core/vec3.h"
+#include "core/model/result.h"
+#include "core/model/vec3.h"
 #include "scenes/field_table.h"
 #include "scenes/json_text.h"
 
@@ -29,8 +29,7 @@ class Problems {
   /// As add_rule, but a scene with it still runs.
   void add_warning(const std::string& pointer, const std::string& message, const std::string& hint = "");
 
-  Errors errors()
-      const;  ///< in the order of the text; of very many the first 1000 and the number of the others
+  Errors errors() const;    ///< in the order of the text; of very many the first 1000 and the number of the others
   bool is_full() const;     ///< further problems are only counted
   Errors warnings() const;  ///< in the order of the text
 
@@ -40,8 +39,7 @@ class Problems {
     Place place;
     Error error;
   };
-  Problem make(const std::string& pointer, Place place, const std::string& message,
-               const std::string& hint) const;
+  Problem make(const std::string& pointer, Place place, const std::string& message, const std::string& hint) const;
   Place find(const std::string& pointer) const;
   static Errors in_order(std::vector<Problem> problems);
 
@@ -76,8 +74,7 @@ class FieldReader {
   void integer(const Key& key, std::optional<std::int32_t>& value, const Range& range);
   void point(const Key& key, Vec3& value, const Unit& unit, const Range& range);
   void point(const Key& key, std::optional<Vec3>& value, const Unit& unit, const Range& range);
-  void points(const Key& key, std::vector<Vec3>& value, const Unit& unit, const Range& range,
-              std::size_t least);
+  void points(const Key& key, std::vector<Vec3>& value, const Unit& unit, const Range& range, std::size_t least);
 
   template <class E>
   void choice(const Key& key, E& value) {
@@ -88,8 +85,7 @@ class FieldReader {
   }
   template <class T>
   void record(const Key& key, T& value) {
-    if (const JsonNode* node = take(key))
-      read_record(*node, child_pointer(pointer_, key.name), problems_, value);
+    if (const JsonNode* node = take(key)) read_record(*node, child_pointer(pointer_, key.name), problems_, value);
   }
   template <class T>
   void record(const Key& key, std::optional<T>& value) {
@@ -130,10 +126,8 @@ class FieldReader {
   int read_choice(const Key& key, const std::vector<std::string>& names);
   bool read_number(const JsonNode& node, const std::string& pointer, const Unit& unit, const Range& range,
                    double& value);
-  bool read_point(const JsonNode& node, const std::string& pointer, const Unit& unit, const Range& range,
-                  Vec3& value);
-  bool read_integer(const JsonNode& node, const std::string& pointer, const Range& range,
-                    std::int32_t& value);
+  bool read_point(const JsonNode& node, const std::string& pointer, const Unit& unit, const Range& range, Vec3& value);
+  bool read_integer(const JsonNode& node, const std::string& pointer, const Range& range, std::int32_t& value);
   void report_unknown(std::size_t member, const std::vector<std::string>& names);
 
   struct KnownKey {

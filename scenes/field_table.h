@@ -36,9 +36,7 @@ struct Range {
   double low, high;
   bool is_low_open = false, is_high_open = false;
 
-  bool contains(double x) const {
-    return (is_low_open ? x > low : x >= low) && (is_high_open ? x < high : x <= high);
-  }
+  bool contains(double x) const { return (is_low_open ? x > low : x >= low) && (is_high_open ? x < high : x <= high); }
 };
 constexpr Range within(double low, double high) { return {low, high, false, false}; }
 constexpr Range above(double low, double high) { return {low, high, true, false}; }

@@ -10,8 +10,7 @@ std::string bracketed(const std::vector<std::string>& items, char open, char clo
   std::string line(1, open);
   for (std::size_t i = 0; i < items.size(); ++i) line += (i > 0 ? ", " : "") + items[i];
   line += close;
-  if (line.size() + std::size_t(2 * depth) <= kLineLength && line.find('\n') == std::string::npos &&
-      depth > 0)
+  if (line.size() + std::size_t(2 * depth) <= kLineLength && line.find('\n') == std::string::npos && depth > 0)
     return line;
   std::string block(1, open);
   for (std::size_t i = 0; i < items.size(); ++i)

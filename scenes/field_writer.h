@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/vec3.h"
+#include "core/model/vec3.h"
 #include "scenes/field_table.h"
 #include "scenes/json_text.h"
 
@@ -83,9 +83,7 @@ class FieldWriter {
   }
 
  private:
-  void member(const Key& key, const std::string& value) {
-    members_.push_back(in_quotes(key.name) + ": " + value);
-  }
+  void member(const Key& key, const std::string& value) { members_.push_back(in_quotes(key.name) + ": " + value); }
   static std::string point_text(const Vec3& p, const Unit& unit) {
     return "[" + double_to_decimal(p.x, unit.exponent) + ", " + double_to_decimal(p.y, unit.exponent) + ", " +
            double_to_decimal(p.z, unit.exponent) + "]";

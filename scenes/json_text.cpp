@@ -26,8 +26,7 @@ class GrammarCheck : public nlohmann::json_sax<nlohmann::json> {
   bool end_object() override { return --depth_, true; }
   bool start_array(std::size_t) override { return ++depth_ <= max_depth; }
   bool end_array() override { return --depth_, true; }
-  bool parse_error(std::size_t position, const std::string&,
-                   const nlohmann::detail::exception& problem) override {
+  bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& problem) override {
     // `position` is behind the first character that does not fit; the token before it may begin long before.
     offset = position == 0 ? 0 : position - 1;
     message = problem.what();
@@ -105,13 +104,11 @@ class Walker {
     return c;
   }
   void skip_space() {
-    while (next_ < text_.size() && std::string_view(" \t\r\n").find(text_[next_]) != std::string_view::npos)
-      take();
+    while (next_ < text_.size() && std::string_view(" \t\r\n").find(text_[next_]) != std::string_view::npos) take();
   }
   std::string scalar() {
     std::string raw;
-    while (next_ < text_.size() &&
-           std::string_view(" \t\r\n,]}").find(text_[next_]) == std::string_view::npos) {
+    while (next_ < text_.size() && std::string_view(" \t\r\n,]}").find(text_[next_]) == std::string_view::npos) {
       raw += take();
     }
     return raw;
@@ -274,8 +271,7 @@ std::string double_to_decimal(double value, int exponent) {
     return result + "e" + std::to_string(power);
   }
   if (power < 0) return result + "0." + std::string(static_cast<std::size_t>(-power - 1), '0') + digits;
-  if (count <= power + 1)
-    return result + digits + std::string(static_cast<std::size_t>(power + 1 - count), '0');
+  if (count <= power + 1) return result + digits + std::string(static_cast<std::size_t>(power + 1 - count), '0');
   const auto whole = static_cast<std::size_t>(power + 1);
   return result + digits.substr(0, whole) + "." + digits.substr(whole);
 }

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/result.h"
+#include "core/model/result.h"
 
 // JSON text as a tree that knows the place and the spelling of everything in it. Internal to scenes.
 namespace ctpm {
@@ -21,10 +21,8 @@ struct JsonNode {
   Place place;       ///< of the value's first character
   std::string raw;   ///< a scalar as it is written; numbers are converted from this text, not from a double
   std::string text;  ///< a text without quotes and escapes
-  std::vector<std::string>
-      keys;  ///< of an object, in the order of the text, repeated ones included (child_count)
-  std::vector<Place>
-      key_places;  ///<                                                               (child_count)
+  std::vector<std::string> keys;   ///< of an object, in the order of the text, repeated ones included (child_count)
+  std::vector<Place> key_places;   ///<                                                               (child_count)
   std::vector<JsonNode> children;  ///< of a list or an object (child_count)
 
   /// The first member of that name; null if there is none.

@@ -7,9 +7,10 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Bovine liver: 164 J/m^2 by needles (Gokgol, Basdogan & Canadinc, Med. Eng. Phys. 34, 2012); pig liver by blades 187 to
-/// 225, by needles in the living 76 to 185 (Liu et al., Chin. J. Mech. Eng. 35, 2022, Table 2). Kidney: none is
-/// published; the liver's, an estimate. Skin: 1700 J/m^2 (Pereira, Lucas & Teaford, J. Biomech. 30, 1997, rat, by scissors).
+/// Bovine liver: 164 J/m^2 by needles (Gokgol, Basdogan & Canadinc, Med. Eng. Phys. 34, 2012); pig liver by blades 187
+/// to 225, by needles in the living 76 to 185 (Liu et al., Chin. J. Mech. Eng. 35, 2022, Table 2). Kidney: none is
+/// published; the liver's, an estimate. Skin: 1700 J/m^2 (Pereira, Lucas & Teaford, J. Biomech. 30, 1997, rat, by
+/// scissors).
 constexpr double kOrganToughness = 164, kSkinToughness = 1700;
 /// Dynamic friction on a needle in bovine liver, 10.57 N per metre of a 1.65 mm wide needle (Okamura, Simone &
 /// O'Leary, IEEE TBME 51, 2004), over its circumference; for all organs, an estimate.
@@ -21,8 +22,7 @@ constexpr MaterialPreset row(const char* name, const char* organ, double r, doub
                              double most, double damage, const char* source) {
   MaterialPreset preset{name, organ, r * 1e-3, ball * 1e-3, {}, least, most, damage, source};
   Material& m = preset.material;
-  m.kelvin = k1 * 1e6, m.spring = k2 * 1e6, m.constraint = constraint * 1e6,
-  m.viscosity = viscosity_kpa_s_per_mm * 1e6;
+  m.kelvin = k1 * 1e6, m.spring = k2 * 1e6, m.constraint = constraint * 1e6, m.viscosity = viscosity_kpa_s_per_mm * 1e6;
   m.density = 1060;
   m.calibration_area = kPi * (ball * 1e-3) * (ball * 1e-3);
   m.calibration_spacing = 3 * r * 1e-3;
@@ -32,8 +32,7 @@ constexpr MaterialPreset row(const char* name, const char* organ, double r, doub
 
 constexpr const char* kSlow =
     "Bao & Wu, section 5.1; viscosity read in kPa s/mm, which gives the creep of their Figs. 7 and 8";
-constexpr const char* kPrinted =
-    "Bao & Wu, section 5.1; viscosity as printed, in Pa s (per mm, like the moduli)";
+constexpr const char* kPrinted = "Bao & Wu, section 5.1; viscosity as printed, in Pa s (per mm, like the moduli)";
 
 constexpr std::array<MaterialPreset, 6> kPresets{
     row("liver", "liver", 4, 2.0, 15, 15, 20, 5, kOrganToughness, 0.08, 0.40, 0.012, kSlow),

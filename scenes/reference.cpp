@@ -61,8 +61,8 @@ std::string table_of(const RecordRow& record) {
   if (record.has_exactly_one) text += " Exactly one of these keys.";
   text += "\n\n| key | value | if not written | meaning |\n| --- | --- | --- | --- |\n";
   for (const FieldRow& row : record.fields)
-    text += "| " + in_code(row.key.name) + " | " + value_of(row) + " | " + otherwise_of(row) + " | " +
-            row.key.meaning + " |\n";
+    text += "| " + in_code(row.key.name) + " | " + value_of(row) + " | " + otherwise_of(row) + " | " + row.key.meaning +
+            " |\n";
   return text;
 }
 

@@ -48,14 +48,12 @@ inline std::span<const Choice<Integrator>> choices_of(Integrator) {
 inline constexpr Range any_coordinate_mm = within(-100000, 100000);
 inline constexpr Range any_direction = within(-1e6, 1e6);
 
-inline RecordInfo info_of(const FillSpec&) {
-  return {"fill", "How the organ's inside is filled with spheres."};
-}
+inline RecordInfo info_of(const FillSpec&) { return {"fill", "How the organ's inside is filled with spheres."}; }
 template <class V>
 void describe_fields(V& v, FillSpec& fill) {
   v.number(Key{"radius_mm", "Radius r of every sphere."}, fill.radius, units::millimetre, within(0.01, 100));
-  v.number(Key{"gap_mm", "Gap from surface to surface; the spacing is 2 r + gap."}, fill.gap,
-           units::millimetre, within(0, 100));
+  v.number(Key{"gap_mm", "Gap from surface to surface; the spacing is 2 r + gap."}, fill.gap, units::millimetre,
+           within(0, 100));
 }
 
 inline RecordInfo info_of(const FittedForSpec&) {
@@ -68,46 +66,43 @@ template <class V>
 void describe_fields(V& v, FittedForSpec& fitted) {
   v.point(required("place_mm", "Where the pressed sphere is at rest."), fitted.place, units::millimetre,
           any_coordinate_mm);
-  v.number(required("ball_radius_mm", "Radius of the ball that pressed it."), fitted.ball_radius,
-           units::millimetre, within(0.01, 1000));
-  v.number(required("sphere_radius_mm", "Radius of the organ's spheres."), fitted.sphere_radius,
-           units::millimetre, within(0.01, 100));
+  v.number(required("ball_radius_mm", "Radius of the ball that pressed it."), fitted.ball_radius, units::millimetre,
+           within(0.01, 1000));
+  v.number(required("sphere_radius_mm", "Radius of the organ's spheres."), fitted.sphere_radius, units::millimetre,
+           within(0.01, 100));
   v.number(required("depth_mm", "Depth of the sphere below its rest."), fitted.depth, units::millimetre,
            above(0, 1000));
-  v.number(required("force_n", "Force on the ball at that depth."), fitted.force, units::newton,
-           above(0, 1e6));
+  v.number(required("force_n", "Force on the ball at that depth."), fitted.force, units::newton, above(0, 1e6));
 }
 
 inline RecordInfo info_of(const MaterialSpec&) {
-  return {
-      "material",
-      "A preset, single values in place of the preset's, or every value without a preset. An edge of spacing "
-      "s has the "
-      "stiffness K S0 (s / s_cal), S0 = pi R^2, with the ball R and the spacing s_cal of the calibration."};
+  return {"material",
+          "A preset, single values in place of the preset's, or every value without a preset. An edge of spacing "
+          "s has the "
+          "stiffness K S0 (s / s_cal), S0 = pi R^2, with the ball R and the spacing s_cal of the calibration."};
 }
 template <class V>
 void describe_fields(V& v, MaterialSpec& material) {
   constexpr Unit modulus = units::kilopascal_per_millimetre;
   v.preset(Key{"preset", "Name of a shipped material.", false, "none; then every modulus must be given"},
            material.preset);
-  v.number(Key{"spring_kpa_per_mm", "Modulus K2 of the spring.", false, "the preset's"}, material.spring,
-           modulus, within(1e-6, 1e6));
-  v.number(Key{"kelvin_kpa_per_mm", "Modulus K1 of the Kelvin unit.", false, "the preset's"}, material.kelvin,
-           modulus, within(1e-6, 1e6));
-  v.number(Key{"constraint_kpa_per_mm", "Modulus K' of the constraint, at least K1 K2 / (K1 + K2).", false,
-               "the preset's"},
-           material.constraint, modulus, within(1e-6, 1e6));
-  v.number(Key{"viscosity_kpa_s_per_mm", "Viscosity v1 of the Kelvin unit.", false, "the preset's"},
-           material.viscosity, units::kilopascal_second_per_millimetre, within(0, 1e6));
+  v.number(Key{"spring_kpa_per_mm", "Modulus K2 of the spring.", false, "the preset's"}, material.spring, modulus,
+           within(1e-6, 1e6));
+  v.number(Key{"kelvin_kpa_per_mm", "Modulus K1 of the Kelvin unit.", false, "the preset's"}, material.kelvin, modulus,
+           within(1e-6, 1e6));
+  v.number(
+      Key{"constraint_kpa_per_mm", "Modulus K' of the constraint, at least K1 K2 / (K1 + K2).", false, "the preset's"},
+      material.constraint, modulus, within(1e-6, 1e6));
+  v.number(Key{"viscosity_kpa_s_per_mm", "Viscosity v1 of the Kelvin unit.", false, "the preset's"}, material.viscosity,
+           units::kilopascal_second_per_millimetre, within(0, 1e6));
   v.number(Key{"density_kg_per_m3", "Mass per volume.", false, "the preset's, else 1060"}, material.density,
            units::kilogram_per_metre3, within(1, 30000));
   v.number(Key{"stiffness_scale", "Multiplies every stiffness and damping.", false, "the preset's, else 1"},
            material.stiffness_scale, units::none, within(1e-6, 1e6));
-  v.number(Key{"calibration_ball_radius_mm", "Radius R of the ball that the moduli were measured with.",
-               false, "the preset's"},
-           material.calibration_ball, units::millimetre, within(0.01, 1000));
-  v.number(Key{"calibration_spacing_mm", "Spacing of the spheres that the moduli belong to.", false,
+  v.number(Key{"calibration_ball_radius_mm", "Radius R of the ball that the moduli were measured with.", false,
                "the preset's"},
+           material.calibration_ball, units::millimetre, within(0.01, 1000));
+  v.number(Key{"calibration_spacing_mm", "Spacing of the spheres that the moduli belong to.", false, "the preset's"},
            material.calibration_spacing, units::millimetre, within(0.01, 1000));
   v.number(Key{"prestrain",
                "Strain of the tissue in the body: elements without force are shorter by this part; a capsule that "
@@ -118,19 +113,17 @@ void describe_fields(V& v, MaterialSpec& material) {
                "Energy J_c with which a blade opens a unit of area; 0: it cuts without resistance.", false,
                "the preset's, else 0"},
            material.fracture_toughness, units::joule_per_metre2, within(0, 1e6));
-  v.number(Key{"blade_friction_kpa", "Shear stress on each flank of a blade that moves.", false,
-               "the preset's, else 0"},
-           material.blade_friction, units::kilopascal, within(0, 1e4));
+  v.number(
+      Key{"blade_friction_kpa", "Shear stress on each flank of a blade that moves.", false, "the preset's, else 0"},
+      material.blade_friction, units::kilopascal, within(0, 1e4));
   v.record(Key{"fitted_for", "What the stiffness scale was fitted for."}, material.fitted_for);
 }
 
 inline RecordInfo info_of(const BoxRegion&) { return {"box", "A box along the axes, its sides included."}; }
 template <class V>
 void describe_fields(V& v, BoxRegion& box) {
-  v.point(required("min_mm", "Corner with the smallest coordinates."), box.min, units::millimetre,
-          any_coordinate_mm);
-  v.point(required("max_mm", "Corner with the largest coordinates."), box.max, units::millimetre,
-          any_coordinate_mm);
+  v.point(required("min_mm", "Corner with the smallest coordinates."), box.min, units::millimetre, any_coordinate_mm);
+  v.point(required("max_mm", "Corner with the largest coordinates."), box.max, units::millimetre, any_coordinate_mm);
 }
 
 inline RecordInfo info_of(const SphereRegion&) { return {"sphere", "A ball-shaped region."}; }
@@ -140,14 +133,12 @@ void describe_fields(V& v, SphereRegion& sphere) {
   v.number(required("radius_mm", "Its radius."), sphere.radius, units::millimetre, above(0, 100000));
 }
 
-inline RecordInfo info_of(const PlaneRegion&) {
-  return {"plane", "Everything behind a plane, the plane included."};
-}
+inline RecordInfo info_of(const PlaneRegion&) { return {"plane", "Everything behind a plane, the plane included."}; }
 template <class V>
 void describe_fields(V& v, PlaneRegion& plane) {
   v.point(required("point_mm", "A point of the plane."), plane.point, units::millimetre, any_coordinate_mm);
-  v.point(required("normal", "Points to the side that stays free; any length but zero."), plane.normal,
-          units::none, any_direction);
+  v.point(required("normal", "Points to the side that stays free; any length but zero."), plane.normal, units::none,
+          any_direction);
 }
 
 inline RecordInfo info_of(const AnchorSpec&) {
@@ -163,13 +154,10 @@ void describe_fields(V& v, AnchorSpec& anchor) {
   v.exactly_one();
 }
 
-inline RecordInfo info_of(const GuideSpec&) {
-  return {"guide", "A sphere that runs on a rail or in a plane."};
-}
+inline RecordInfo info_of(const GuideSpec&) { return {"guide", "A sphere that runs on a rail or in a plane."}; }
 template <class V>
 void describe_fields(V& v, GuideSpec& guide) {
-  v.point(required("cell", "Lattice coordinates of the sphere."), guide.cell, units::none,
-          within(-1000, 1000));
+  v.point(required("cell", "Lattice coordinates of the sphere."), guide.cell, units::none, within(-1000, 1000));
   v.text(required("axes", "Axes along which it may not move: letters of xyz."), guide.axes);
 }
 
@@ -178,10 +166,9 @@ inline RecordInfo info_of(const RigSpec&) {
 }
 template <class V>
 void describe_fields(V& v, RigSpec& rig) {
-  v.points(Key{"cells", "Lattice coordinates of the spheres, whole numbers; cell 0, 0, 0 is at the origin."},
-           rig.cells, units::none, within(-1000, 1000), 0);
-  v.point(Key{"block",
-              "Spheres along x, y and z of a full block, centred over the origin and standing on z = 0."},
+  v.points(Key{"cells", "Lattice coordinates of the spheres, whole numbers; cell 0, 0, 0 is at the origin."}, rig.cells,
+           units::none, within(-1000, 1000), 0);
+  v.point(Key{"block", "Spheres along x, y and z of a full block, centred over the origin and standing on z = 0."},
           rig.block, units::none, within(1, 200));
   v.list(Key{"guides", "Spheres that may not leave some axes."}, rig.guides, 0);
 }
@@ -194,15 +181,12 @@ inline RecordInfo info_of(const LayerSpec&) {
 }
 template <class V>
 void describe_fields(V& v, LayerSpec& layer) {
-  v.number(required("to_depth_mm",
-                    "Depth at which it ends; more than that of the layer above, and within the organ."),
+  v.number(required("to_depth_mm", "Depth at which it ends; more than that of the layer above, and within the organ."),
            layer.to_depth, units::millimetre, above(0, 1000));
   v.record(required("material", "Its tissue."), layer.material);
 }
 
-inline RecordInfo info_of(const OrganSpec&) {
-  return {"organ", "One piece of tissue, from a closed mesh, or a rig."};
-}
+inline RecordInfo info_of(const OrganSpec&) { return {"organ", "One piece of tissue, from a closed mesh, or a rig."}; }
 template <class V>
 void describe_fields(V& v, OrganSpec& organ) {
   v.text(required("name", "How the organ is called; no two alike."), organ.name);
@@ -213,27 +197,24 @@ void describe_fields(V& v, OrganSpec& organ) {
   v.record(Key{"rig", "Spheres given one by one, in place of a mesh."}, organ.rig);
   v.choice(Key{"mesh_unit", "Unit of the mesh file's coordinates."}, organ.mesh_unit);
   v.flag(Key{"all_parts", "Keep every closed part of the mesh, not only the largest."}, organ.all_parts);
-  v.integer(Key{"most_triangles", "The drawn surface is made coarser if it has more; the spheres stay the same.",
-                false, "as many as the mesh has"},
+  v.integer(Key{"most_triangles", "The drawn surface is made coarser if it has more; the spheres stay the same.", false,
+                "as many as the mesh has"},
             organ.most_triangles, within(100, 10000000));
   v.choice(Key{"model", "Which structure joins the spheres."}, organ.model);
   v.choice(Key{"lattice", "Which neighbours are joined; cubic-6 has no shear stiffness and is for rigs."},
            organ.lattice);
-  v.flag(Key{"softening",
-             "Forces of triples and constraints are divided by 1 + tan(theta), Eq. 8; for model ctpm."},
+  v.flag(Key{"softening", "Forces of triples and constraints are divided by 1 + tan(theta), Eq. 8; for model ctpm."},
          organ.softening);
   v.record(Key{"fill", "The spheres."}, organ.fill);
   v.record(required("material", "The tissue, below the last layer."), organ.material);
-  v.list(Key{"layers", "Layers of other tissue that follow the surface, outermost first.", false, "none"},
-         organ.layers, 0);
+  v.list(Key{"layers", "Layers of other tissue that follow the surface, outermost first.", false, "none"}, organ.layers,
+         0);
   v.list(Key{"anchors", "Regions that never move."}, organ.anchors, 0);
-  v.number(
-      Key{"damage_depth_mm", "Depth of pressing beyond which the tissue counts as damaged; 0: no limit."},
-      organ.damage_depth, units::millimetre, within(0, 1000));
+  v.number(Key{"damage_depth_mm", "Depth of pressing beyond which the tissue counts as damaged; 0: no limit."},
+           organ.damage_depth, units::millimetre, within(0, 1000));
   v.number(Key{"damage_force_n", "Force on a tool beyond which the tissue counts as damaged; 0: no limit."},
            organ.damage_force, units::newton, within(0, 1e6));
-  v.point(Key{"surface_color", "Red, green and blue of the outside."}, organ.surface_color, units::none,
-          within(0, 1));
+  v.point(Key{"surface_color", "Red, green and blue of the outside."}, organ.surface_color, units::none, within(0, 1));
   v.point(Key{"inner_color", "Red, green and blue of cut faces and spheres."}, organ.inner_color, units::none,
           within(0, 1));
 }
@@ -248,9 +229,9 @@ void describe_fields(V& v, ToolSpec& tool) {
            tool.kind);
   v.number(Key{"radius_mm", "Radius of a ball; needed by a ball, not allowed for others."}, tool.radius,
            units::millimetre, within(0.01, 200));
-  v.number(Key{"blade_length_mm",
-               "Length of a scalpel's edge from its tip; needed by a scalpel, not allowed for others."},
-           tool.blade_length, units::millimetre, within(0.01, 500));
+  v.number(
+      Key{"blade_length_mm", "Length of a scalpel's edge from its tip; needed by a scalpel, not allowed for others."},
+      tool.blade_length, units::millimetre, within(0.01, 500));
   v.point(Key{"holds_mm", "A pin holds the sphere nearest to here; needed by a pin, not allowed for others."},
           tool.holds, units::millimetre, any_coordinate_mm);
 }
@@ -262,8 +243,7 @@ void describe_fields(V& v, LoadSpec& load) {
           any_coordinate_mm);
   v.point(required("force_n", "Its full size."), load.force, units::newton, within(-1e6, 1e6));
   v.number(Key{"start_s", "When it begins."}, load.start, units::second, within(0, 1e6));
-  v.number(Key{"ramp_s", "Time in which it rises to its full size."}, load.ramp, units::second,
-           within(0, 1e6));
+  v.number(Key{"ramp_s", "Time in which it rises to its full size."}, load.ramp, units::second, within(0, 1e6));
 }
 
 inline RecordInfo info_of(const ProbeSpec&) {
@@ -278,18 +258,21 @@ void describe_fields(V& v, ProbeSpec& probe) {
 inline RecordInfo info_of(const SolverSpec&) { return {"solver", "How a tick is solved."}; }
 template <class V>
 void describe_fields(V& v, SolverSpec& solver) {
-  v.choice(Key{"integrator",
-               "`leapfrog` is explicit and of second order, `backward-euler` implicit and of first, `sdirk2` implicit and of "
-               "second; `auto` takes the cheapest that holds the scene's stiffness, and `ctpm plan` says which and why.",
-               false},
-           solver.integrator);
-  v.number(Key{"tolerance", "Relative residual at which the solve of a tick stops.", false, "1e-4"},
-           solver.tolerance, units::none, between(0, 1));
+  v.choice(
+      Key{"integrator",
+          "`leapfrog` is explicit and of second order, `backward-euler` implicit and of first, `sdirk2` implicit and "
+          "of "
+          "second; `auto` takes the cheapest that holds the scene's stiffness, and `ctpm plan` says which and why.",
+          false},
+      solver.integrator);
+  v.number(Key{"tolerance", "Relative residual at which the solve of a tick stops.", false, "1e-4"}, solver.tolerance,
+           units::none, between(0, 1));
   v.number(Key{"velocity_floor_mm_per_s", "Residuals below this velocity count as solved.", false, "0.001"},
            solver.velocity_floor, units::millimetre_per_second, above(0, 1000));
   v.integer(Key{"max_iterations", "Most iterations of one solve.", false, "200"}, solver.max_iterations,
             within(1, 100000));
-  v.integer(Key{"substeps", "Equal parts of a tick; `auto` may take more.", false, "1"}, solver.substeps, within(1, 1000));
+  v.integer(Key{"substeps", "Equal parts of a tick; `auto` may take more.", false, "1"}, solver.substeps,
+            within(1, 1000));
 }
 
 inline RecordInfo info_of(const CameraSpec&) { return {"camera", "A view for pictures and videos."}; }
@@ -300,8 +283,8 @@ void describe_fields(V& v, CameraSpec& camera) {
   v.point(required("target_mm", "What it looks at."), camera.target, units::millimetre, any_coordinate_mm);
   v.point(Key{"up", "Direction that is up in the picture; any length but zero."}, camera.up, units::none,
           any_direction);
-  v.number(Key{"field_of_view_deg", "Angle from the lower to the upper edge of the picture."},
-           camera.field_of_view, units::degree, within(1, 150));
+  v.number(Key{"field_of_view_deg", "Angle from the lower to the upper edge of the picture."}, camera.field_of_view,
+           units::degree, within(1, 150));
 }
 
 inline RecordInfo info_of(const SceneSpec&) { return {"scene", "The whole file."}; }
@@ -313,17 +296,16 @@ void describe_fields(V& v, SceneSpec& scene) {
   v.point(Key{"gravity_m_per_s2", "Acceleration of free fall; all zero: no gravity."}, scene.gravity,
           units::metre_per_second2, within(-1000, 1000));
   v.number(Key{"tick_s", "Length of a tick."}, scene.tick, units::second, within(1e-6, 0.1));
-  v.number(Key{"settle_s", "Longest time in which the scene comes to rest before its first tick."},
-           scene.settle, units::second, within(0, 60));
+  v.number(Key{"settle_s", "Longest time in which the scene comes to rest before its first tick."}, scene.settle,
+           units::second, within(0, 60));
   v.list(required("organs", "The tissue."), scene.organs, 1);
   v.list(Key{"tools", "The tools."}, scene.tools, 0);
-  v.number(Key{"contact_stiffness_n_per_m", "Stiffness of a tool against one sphere.", false,
-               "20 times the stiffest edge"},
-           scene.contact_stiffness, units::newton_per_metre, within(1e-6, 1e12));
-  v.number(Key{"contact_friction", "Coulomb coefficient between tool and tissue."}, scene.contact_friction,
-           units::none, within(0, 10));
-  v.flag(Key{"lips_meet", "The two sides of a cut meet again without passing through each other."},
-         scene.lips_meet);
+  v.number(
+      Key{"contact_stiffness_n_per_m", "Stiffness of a tool against one sphere.", false, "20 times the stiffest edge"},
+      scene.contact_stiffness, units::newton_per_metre, within(1e-6, 1e12));
+  v.number(Key{"contact_friction", "Coulomb coefficient between tool and tissue."}, scene.contact_friction, units::none,
+           within(0, 10));
+  v.flag(Key{"lips_meet", "The two sides of a cut meet again without passing through each other."}, scene.lips_meet);
   v.list(Key{"loads", "Forces from outside."}, scene.loads, 0);
   v.list(Key{"probes", "Points whose way is written down."}, scene.probes, 0);
   v.record(Key{"solver", "How a tick is solved."}, scene.solver);

@@ -21,9 +21,7 @@ namespace fs = std::filesystem;
 
 bool is_whole(Vec3 v) { return std::floor(v.x) == v.x && std::floor(v.y) == v.y && std::floor(v.z) == v.z; }
 
-std::string item(const char* list, std::size_t index) {
-  return std::string("/") + list + "/" + std::to_string(index);
-}
+std::string item(const char* list, std::size_t index) { return std::string("/") + list + "/" + std::to_string(index); }
 
 /// Names within one list must differ.
 template <class T>
@@ -31,12 +29,10 @@ void check_names(Problems& problems, const char* list, const std::vector<T>& ite
   std::set<std::string> seen;
   for (std::size_t i = 0; i < items.size(); ++i)
     if (!items[i].name.empty() && !seen.insert(items[i].name).second)
-      problems.add_rule(item(list, i) + "/name",
-                        "got " + in_quotes(items[i].name) + ", which is taken already");
+      problems.add_rule(item(list, i) + "/name", "got " + in_quotes(items[i].name) + ", which is taken already");
 }
 
-void check_material(Problems& problems, const std::string& at, const MaterialSpec& spec,
-                    Structure structure) {
+void check_material(Problems& problems, const std::string& at, const MaterialSpec& spec, Structure structure) {
   if (!spec.preset.empty() && find_preset(spec.preset) == nullptr) {
     const std::string nearest = nearest_word(spec.preset, preset_names());
     std::string known;
@@ -47,15 +43,13 @@ void check_material(Problems& problems, const std::string& at, const MaterialSpe
   }
   const ResolvedMaterial resolved = resolve_material(spec);
   for (const std::string& key : resolved.missing)
-    problems.add_rule(at,
-                      "the key " + in_quotes(key) + " is missing, and there is no preset to take it from");
+    problems.add_rule(at, "the key " + in_quotes(key) + " is missing, and there is no preset to take it from");
   const Material& m = resolved.material;
   const double p2 = m.spring > 0 && m.kelvin > 0 ? m.kelvin * m.spring / (m.kelvin + m.spring) : 0;
   if (resolved.missing.empty() && structure == Structure::ctpm && m.constraint < p2)
-    problems.add_rule(at + "/constraint_kpa_per_mm",
-                      "got " + double_to_decimal(m.constraint, 6) +
-                          " kPa/mm, must be at least K1 K2 / (K1 + K2) = " + double_to_decimal(p2, 6) +
-                          ", which the triples already give");
+    problems.add_rule(at + "/constraint_kpa_per_mm", "got " + double_to_decimal(m.constraint, 6) +
+                                                         " kPa/mm, must be at least K1 K2 / (K1 + K2) = " +
+                                                         double_to_decimal(p2, 6) + ", which the triples already give");
 }
 
 void check_layers(Problems& problems, const std::string& at, const OrganSpec& organ) {
@@ -63,24 +57,21 @@ void check_layers(Problems& problems, const std::string& at, const OrganSpec& or
     const std::string where = at + "/layers/" + std::to_string(i);
     check_material(problems, where + "/material", organ.layers[i].material, organ.model);
     if (i > 0 && !(organ.layers[i].to_depth > organ.layers[i - 1].to_depth))
-      problems.add_rule(where + "/to_depth_mm", "got " + double_to_decimal(organ.layers[i].to_depth, -3) +
-                                                    ", must be more than the " +
-                                                    double_to_decimal(organ.layers[i - 1].to_depth, -3) +
-                                                    " mm at which the layer above ends");
+      problems.add_rule(where + "/to_depth_mm",
+                        "got " + double_to_decimal(organ.layers[i].to_depth, -3) + ", must be more than the " +
+                            double_to_decimal(organ.layers[i - 1].to_depth, -3) + " mm at which the layer above ends");
   }
 }
 
 void check_rig(Problems& problems, const std::string& at, const RigSpec& rig) {
-  if (rig.cells.empty() == !rig.block)
-    problems.add_rule(at + "/rig", "must have exactly one of cells, block");
+  if (rig.cells.empty() == !rig.block) problems.add_rule(at + "/rig", "must have exactly one of cells, block");
   const char* too_few = "got one sphere, a rig needs at least two that are neighbours";
   std::set<std::array<double, 3>> cells;
   for (std::size_t i = 0; i < rig.cells.size(); ++i) {
     const Vec3 cell = rig.cells[i];
     const std::string where = at + "/rig/cells/" + std::to_string(i);
     if (!is_whole(cell)) problems.add_rule(where, "must be whole numbers");
-    if (!cells.insert({cell.x, cell.y, cell.z}).second)
-      problems.add_rule(where, "the cell is given more than once");
+    if (!cells.insert({cell.x, cell.y, cell.z}).second) problems.add_rule(where, "the cell is given more than once");
   }
   if (rig.cells.size() == 1) problems.add_rule(at + "/rig/cells", too_few);
   if (rig.block && !is_whole(*rig.block)) problems.add_rule(at + "/rig/block", "must be whole numbers");
@@ -88,8 +79,7 @@ void check_rig(Problems& problems, const std::string& at, const RigSpec& rig) {
   const auto is_cell = [&](Vec3 cell) {
     if (!rig.block) return cells.contains({cell.x, cell.y, cell.z});
     const auto is_in = [](double i, double count) { return i >= 0 && i < count; };
-    return is_whole(cell) && is_in(cell.x, rig.block->x) && is_in(cell.y, rig.block->y) &&
-           is_in(cell.z, rig.block->z);
+    return is_whole(cell) && is_in(cell.x, rig.block->x) && is_in(cell.y, rig.block->y) && is_in(cell.z, rig.block->z);
   };
   for (std::size_t i = 0; i < rig.guides.size(); ++i) {
     const GuideSpec& guide = rig.guides[i];
@@ -114,8 +104,7 @@ void check_organ(Problems& problems, std::size_t index, const OrganSpec& organ) 
                         anchor.box->min.z <= anchor.box->max.z))
       problems.add_rule(where + "/box", "min_mm must not be above max_mm in any coordinate");
   }
-  if (organ.lattice == LatticeKind::cubic_6 && organ.model != Structure::angle_mass_spring &&
-      !organ.mesh.empty())
+  if (organ.lattice == LatticeKind::cubic_6 && organ.model != Structure::angle_mass_spring && !organ.mesh.empty())
     problems.add_warning(at + "/lattice",
                          "cubic-6 has elements along the axes only and no shear stiffness at all: the organ "
                          "will fold up under a probe",
@@ -137,11 +126,10 @@ void check_tool(Problems& problems, std::size_t index, const ToolSpec& tool) {
 
 void check_camera(Problems& problems, std::size_t index, const CameraSpec& camera) {
   const std::string at = item("cameras", index);
-  if (camera.eye == camera.target)
-    problems.add_rule(at + "/target_mm", "must not be the same point as eye_mm");
+  if (camera.eye == camera.target) problems.add_rule(at + "/target_mm", "must not be the same point as eye_mm");
   check_direction(problems, at + "/up", camera.up);
-  if (norm(camera.up) > 0 && norm(cross(camera.up, camera.target - camera.eye)) <
-                                 1e-6 * norm(camera.up) * norm(camera.target - camera.eye))
+  if (norm(camera.up) > 0 &&
+      norm(cross(camera.up, camera.target - camera.eye)) < 1e-6 * norm(camera.up) * norm(camera.target - camera.eye))
     problems.add_rule(at + "/up", "must not point along the line of sight");
 }
 
@@ -208,9 +196,8 @@ Result<SceneText> load_scene(const std::string& path, const LoadOptions& options
   std::ostringstream text;
   text << in.rdbuf();
   if (!in) return Error{path, std::string("cannot be read: ") + std::strerror(errno), ""};
-  return read_with(text.str(), path, [&](Problems& problems, const SceneSpec& scene) {
-    check_files(problems, scene, path, options);
-  });
+  return read_with(text.str(), path,
+                   [&](Problems& problems, const SceneSpec& scene) { check_files(problems, scene, path, options); });
 }
 
 std::string mesh_path(const std::string& scene_path, const OrganSpec& organ) {

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/result.h"
+#include "core/model/result.h"
 #include "scenes/scene_spec.h"
 
 namespace ctpm {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/model.h"
-#include "core/network.h"
-#include "core/vec3.h"
+#include "core/model/model.h"
+#include "core/model/vec3.h"
+#include "core/network/network.h"
 
 // A scene as its author wrote it, in SI units. Keys, units, ranges and sentences of the text form stand in
 // one table (scene_fields.h); FORMAT.md is made from it. An unset optional means: not written, decided
@@ -88,8 +88,7 @@ struct PlaneRegion {
 
 /// A region whose spheres never move. Exactly one member is set.
 struct AnchorSpec {
-  std::optional<double>
-      lowest;  ///< centres at most this far above the organ's lowest centre, against gravity [m]
+  std::optional<double> lowest;  ///< centres at most this far above the organ's lowest centre, against gravity [m]
   std::optional<BoxRegion> box;
   std::optional<SphereRegion> sphere;
   std::optional<PlaneRegion> plane;
@@ -202,7 +201,7 @@ struct SceneSpec {
   std::vector<ToolSpec> tools;
   std::optional<double> contact_stiffness;  ///< of a tool against one sphere [N/m]
   double contact_friction = 0.3;            ///< Coulomb coefficient between tool and tissue
-  bool lips_meet = false;  ///< the two sides of a cut meet again without passing through each other
+  bool lips_meet = false;                   ///< the two sides of a cut meet again without passing through each other
   std::vector<LoadSpec> loads;
   std::vector<ProbeSpec> probes;
   SolverSpec solver;

@@ -87,8 +87,7 @@ Json object_of(const RecordRow& record) {
 std::string schema_of(const std::vector<RecordRow>& records, const std::string& title) {
   Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", title}};
   schema.update(object_of(records.front()));
-  for (std::size_t i = 1; i < records.size(); ++i)
-    schema["$defs"][records[i].info.name] = object_of(records[i]);
+  for (std::size_t i = 1; i < records.size(); ++i) schema["$defs"][records[i].info.name] = object_of(records[i]);
   return schema.dump(2) + "\n";
 }
 

@@ -55,7 +55,8 @@ Quat orientation_of(Vec3 pointing) {
   return {w / length, to.y / length, -to.x / length, 0};
 }
 
-/// `orientation` with a turn about the tool's own axis before it, so that the tool's +x looks to `facing` as well as it can.
+/// `orientation` with a turn about the tool's own axis before it, so that the tool's +x looks to `facing` as well as it
+/// can.
 Quat facing(Quat orientation, Vec3 facing) {
   const Vec3 local = rotate({orientation.w, -orientation.x, -orientation.y, -orientation.z}, facing);
   const double length = std::sqrt(local.x * local.x + local.y * local.y);
@@ -71,9 +72,7 @@ Quat facing(Quat orientation, Vec3 facing) {
 /// the last.
 double eased(double t) {
   constexpr double kRamp = 0.2;
-  const auto risen = [](double u) {
-    return u * u * u * (1 - 0.5 * u);
-  };  // integral of 3 u^2 - 2 u^3, 1/2 at u = 1
+  const auto risen = [](double u) { return u * u * u * (1 - 0.5 * u); };  // integral of 3 u^2 - 2 u^3, 1/2 at u = 1
   const double whole = 1 - kRamp;
   if (t < kRamp) return kRamp * risen(t / kRamp) / whole;
   if (t > 1 - kRamp) return 1 - kRamp * risen((1 - t) / kRamp) / whole;

@@ -8,19 +8,19 @@
 #include <string_view>
 #include <vector>
 
-#include "core/inputs.h"
-#include "core/model.h"
-#include "core/organ.h"
-#include "core/result.h"
+#include "core/model/inputs.h"
+#include "core/model/model.h"
+#include "core/model/organ.h"
+#include "core/model/result.h"
 #include "scenes/scene_spec.h"
 
 namespace ctpm {
 
 /// A tool appears in the hand.
 struct TakeStep {
-  std::string tool;         ///< name of a tool of the scene
-  Vec3 at;                  ///< where its frame's origin appears [m]
-  Vec3 pointing{0, 0, -1};  ///< direction from handle to tip; any length but zero
+  std::string tool;            ///< name of a tool of the scene
+  Vec3 at;                     ///< where its frame's origin appears [m]
+  Vec3 pointing{0, 0, -1};     ///< direction from handle to tip; any length but zero
   std::optional<Vec3> facing;  ///< where the tool's +x looks, a blade's cutting side; not along `pointing`
   friend bool operator==(const TakeStep&, const TakeStep&) = default;
 };
@@ -34,9 +34,9 @@ struct MoveStep {
 
 /// It moves into the tissue.
 struct PressStep {
-  double distance = 0;       ///< at most [m]
-  Vec3 direction{0, 0, -1};  ///< any length but zero
-  double speed = 0;          ///< [m/s]
+  double distance = 0;                ///< at most [m]
+  Vec3 direction{0, 0, -1};           ///< any length but zero
+  double speed = 0;                   ///< [m/s]
   std::optional<double> until_force;  ///< ends as soon as the tissue pushes back with so much [N]
   friend bool operator==(const PressStep&, const PressStep&) = default;
 };
@@ -51,8 +51,8 @@ struct ReleaseStep {
 
 /// Its tip moves along a path.
 struct CutStep {
-  std::vector<Vec3> path;  ///< of the tip, from where it is [m]
-  double speed = 0;        ///< [m/s]
+  std::vector<Vec3> path;      ///< of the tip, from where it is [m]
+  double speed = 0;            ///< [m/s]
   std::optional<bool> smooth;  ///< along one curve through the points; otherwise straight, at rest at each
   friend bool operator==(const CutStep&, const CutStep&) = default;
 };
@@ -128,7 +128,8 @@ class ScriptPlayer {
     double until_force = 0;       ///< [N]; 0: none
   };
   void plan(std::size_t first_step, std::int32_t tool, Quat orientation, Vec3 hand);
-  Stretch& add_stretch(std::size_t step, std::int32_t tool, Quat orientation, std::vector<Vec3> points, double duration);
+  Stretch& add_stretch(std::size_t step, std::int32_t tool, Quat orientation, std::vector<Vec3> points,
+                       double duration);
   const Stretch& stretch_at(std::int64_t tick) const;
 
   Script script_;

@@ -19,22 +19,20 @@ inline RecordInfo info_of(const ScriptStep::Take&) { return {"take", "A tool app
 template <class V>
 void describe_fields(V& v, ScriptStep::Take& take) {
   v.text(required("tool", "Name of a tool of the scene."), take.tool);
-  v.point(required("at_mm", "Where its origin appears: a ball's centre, a blade's tip."), take.at,
-          units::millimetre, script_ranges::coordinate_mm);
+  v.point(required("at_mm", "Where its origin appears: a ball's centre, a blade's tip."), take.at, units::millimetre,
+          script_ranges::coordinate_mm);
   v.point(Key{"pointing", "Direction from handle to tip; any length but zero."}, take.pointing, units::none,
           script_ranges::direction);
   v.point(Key{"facing", "Where a blade's cutting side looks; not along pointing.", false, "the shortest turn decides"},
           take.facing, units::none, script_ranges::direction);
 }
 
-inline RecordInfo info_of(const ScriptStep::Move&) {
-  return {"move", "The tool moves along a straight line."};
-}
+inline RecordInfo info_of(const ScriptStep::Move&) { return {"move", "The tool moves along a straight line."}; }
 template <class V>
 void describe_fields(V& v, ScriptStep::Move& move) {
   v.point(required("to_mm", "Where to."), move.to, units::millimetre, script_ranges::coordinate_mm);
-  v.number(required("speed_mm_per_s", "Speed between the slower start and end of each straight piece."),
-           move.speed, units::millimetre_per_second, script_ranges::speed_mm_per_s);
+  v.number(required("speed_mm_per_s", "Speed between the slower start and end of each straight piece."), move.speed,
+           units::millimetre_per_second, script_ranges::speed_mm_per_s);
 }
 
 inline RecordInfo info_of(const ScriptStep::Press&) {
@@ -47,10 +45,9 @@ void describe_fields(V& v, ScriptStep::Press& press) {
   v.number(Key{"until_force_n", "Ends where the tissue pushes back with so much against the direction.", false,
                "the whole distance"},
            press.until_force, units::newton, above(0, 1000));
-  v.point(Key{"direction", "Which way; any length but zero."}, press.direction, units::none,
-          script_ranges::direction);
-  v.number(required("speed_mm_per_s", "Speed between the slower start and end of each straight piece."),
-           press.speed, units::millimetre_per_second, script_ranges::speed_mm_per_s);
+  v.point(Key{"direction", "Which way; any length but zero."}, press.direction, units::none, script_ranges::direction);
+  v.number(required("speed_mm_per_s", "Speed between the slower start and end of each straight piece."), press.speed,
+           units::millimetre_per_second, script_ranges::speed_mm_per_s);
 }
 
 inline RecordInfo info_of(const ScriptStep::Release&) {
@@ -61,13 +58,11 @@ void describe_fields(V& v, ScriptStep::Release& release) {
   v.number(required("distance_mm", "How far."), release.distance, units::millimetre, above(0, 1000));
   v.point(Key{"direction", "Where it leaves to; any length but zero."}, release.direction, units::none,
           script_ranges::direction);
-  v.number(required("speed_mm_per_s", "Speed between the slower start and end of each straight piece."),
-           release.speed, units::millimetre_per_second, script_ranges::speed_mm_per_s);
+  v.number(required("speed_mm_per_s", "Speed between the slower start and end of each straight piece."), release.speed,
+           units::millimetre_per_second, script_ranges::speed_mm_per_s);
 }
 
-inline RecordInfo info_of(const ScriptStep::Cut&) {
-  return {"cut", "The tip moves along a path of points."};
-}
+inline RecordInfo info_of(const ScriptStep::Cut&) { return {"cut", "The tip moves along a path of points."}; }
 template <class V>
 void describe_fields(V& v, ScriptStep::Cut& cut) {
   v.points(required("path_mm", "Points that the tip passes, from where it is."), cut.path, units::millimetre,
@@ -75,8 +70,8 @@ void describe_fields(V& v, ScriptStep::Cut& cut) {
   v.flag(Key{"smooth", "Along one smooth curve through the points, without a rest at any.", false,
              "straight from point to point, with a moment of rest at each"},
          cut.smooth);
-  v.number(required("speed_mm_per_s", "Speed between the slower start and end of each straight piece."),
-           cut.speed, units::millimetre_per_second, script_ranges::speed_mm_per_s);
+  v.number(required("speed_mm_per_s", "Speed between the slower start and end of each straight piece."), cut.speed,
+           units::millimetre_per_second, script_ranges::speed_mm_per_s);
 }
 
 inline RecordInfo info_of(const ScriptStep&) { return {"step", "One thing that the hand does."}; }

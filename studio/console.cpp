@@ -25,8 +25,8 @@ void ProgressLine::show(std::int64_t done, std::int64_t total) {
   if (!is_terminal_ || total <= 0 || done <= 0 || now - last_ < std::chrono::milliseconds(200)) return;
   last_ = now;
   const double spent = std::chrono::duration<double>(now - start_).count();
-  std::fprintf(stderr, "\r\033[K%s: %3.0f %%, %.0f s left", what_.c_str(),
-               100.0 * double(done) / double(total), spent * double(total - done) / double(done));
+  std::fprintf(stderr, "\r\033[K%s: %3.0f %%, %.0f s left", what_.c_str(), 100.0 * double(done) / double(total),
+               spent * double(total - done) / double(done));
 }
 
 std::string fixed(double value, int digits) {

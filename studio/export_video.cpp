@@ -22,8 +22,7 @@ void append(Errors& errors, const Errors& more) { errors.insert(errors.end(), mo
 Errors check_options(const std::string& path, const ExportOptions& options) {
   Errors errors;
   const bool is_good_rate = options.fps >= 1 && options.fps <= 240;
-  if (!is_good_rate)
-    errors.push_back({"--fps", "got " + fixed(options.fps, 3) + ", must be in [1, 240]", ""});
+  if (!is_good_rate) errors.push_back({"--fps", "got " + fixed(options.fps, 3) + ", must be in [1, 240]", ""});
   if (!(options.speed >= 0.001 && options.speed <= 1000))
     errors.push_back({"--speed", "got " + fixed(options.speed, 3) + ", must be in [0.001, 1000]", ""});
   append(errors, VideoWriter::check(path, options.size.width, options.size.height,
@@ -32,8 +31,7 @@ Errors check_options(const std::string& path, const ExportOptions& options) {
 }
 
 /// The ticks of each session that are shown: the same time of all, as far as they go.
-Result<std::vector<TickRange>> find_ranges(const std::vector<SessionReader*>& sessions,
-                                           const TimeRange& range) {
+Result<std::vector<TickRange>> find_ranges(const std::vector<SessionReader*>& sessions, const TimeRange& range) {
   const auto longer = [](const SessionReader* a, const SessionReader* b) {
     return double(a->tick_count()) * a->start().model.tick < double(b->tick_count()) * b->start().model.tick;
   };
@@ -76,8 +74,7 @@ struct Reel {
   }
 };
 
-Result<Reel> make_reel(SessionReader& session, const TickRange& range, int width,
-                       const ExportOptions& options) {
+Result<Reel> make_reel(SessionReader& session, const TickRange& range, int width, const ExportOptions& options) {
   Reel reel;
   Result<std::unique_ptr<SessionFilm>> film = SessionFilm::create(session, range, options.allow_diverged);
   if (!film) return film.errors();

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
+#include "core/model/result.h"
 #include "recordings/session_reader.h"
 #include "studio/film/look.h"
 #include "studio/film/pipeline.h"

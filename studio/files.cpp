@@ -38,8 +38,7 @@ Result<Done> check_writable(const std::string& path) {
   if (!fs::is_directory(folder, ignored))
     return Error{path, "the folder " + folder + " does not exist", "create it first"};
   if (fs::is_directory(path, ignored)) return Error{path, "is a folder, not a file", ""};
-  if (access(folder.c_str(), W_OK) != 0)
-    return Error{path, "the folder " + folder + " cannot be written", ""};
+  if (access(folder.c_str(), W_OK) != 0) return Error{path, "the folder " + folder + " cannot be written", ""};
   return Done{};
 }
 

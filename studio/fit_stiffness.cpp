@@ -6,11 +6,11 @@
 #include <set>
 #include <tuple>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "scenes/build_model.h"
 #include "scenes/presets.h"
 #include "studio/console.h"
-#include "studio/reports/paper.h"
+#include "studio/paper/paper.h"
 
 namespace ctpm {
 namespace {
@@ -61,14 +61,12 @@ std::optional<std::vector<double>> press(const Model& model, std::int32_t sphere
   State state = rest_state(model);
   std::vector<double> forces;
   double last_depth = 0, last_force = 0;
-  for (double way = 0; way < kFitDepth + kLongestWay && forces.size() < std::size(kDepths);
-       way += speed * model.tick) {
+  for (double way = 0; way < kFitDepth + kLongestWay && forces.size() < std::size(kDepths); way += speed * model.tick) {
     Inputs inputs;
     inputs.tool = 0, inputs.position = touch - way * up;
     const StepReport report = stepper.step(state, inputs);
     if (report.status != StepStatus::ok) return std::nullopt;
-    const double depth = dot(model.rest_position[c] - state.position[c], up),
-                 force = dot(report.tool_force, up);
+    const double depth = dot(model.rest_position[c] - state.position[c], up), force = dot(report.tool_force, up);
     // Between two ticks the force rises in proportion.
     while (forces.size() < std::size(kDepths) && depth >= kDepths[forces.size()]) {
       const double share = (kDepths[forces.size()] - last_depth) / (depth - last_depth);
@@ -86,8 +84,7 @@ std::vector<int> neighbours_across(const FilledOrgan& filled, Vec3 up) {
   const std::set<std::array<std::int32_t, 3>> cells(filled.cell.begin(), filled.cell.end());
   const double along[3] = {up.x, up.y, up.z};
   const auto up_axis = std::size_t(
-      std::max_element(along, along + 3, [](double p, double q) { return std::abs(p) < std::abs(q); }) -
-      along);
+      std::max_element(along, along + 3, [](double p, double q) { return std::abs(p) < std::abs(q); }) - along);
   std::vector<int> counts;
   for (const std::array<std::int32_t, 3>& cell : filled.cell) {
     int count = 0;
@@ -118,18 +115,16 @@ std::vector<std::int32_t> top_spheres(const Model& model, const FilledOrgan& fil
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
     if (filled.layer[i] == 1 && model.held_axes[i] == 0) spheres.push_back(std::int32_t(i));
   if (spheres.empty()) return spheres;
-  const long top = level(*std::max_element(
-      spheres.begin(), spheres.end(), [&](std::int32_t p, std::int32_t q) { return level(p) < level(q); }));
+  const long top = level(*std::max_element(spheres.begin(), spheres.end(),
+                                           [&](std::int32_t p, std::int32_t q) { return level(p) < level(q); }));
   const std::vector<int> neighbours = neighbours_across(filled, up);
   // Near the top: within two spacings.
-  std::erase_if(spheres,
-                [&](std::int32_t i) { return level(i) < top - 4 || neighbours[std::size_t(i)] < 0; });
+  std::erase_if(spheres, [&](std::int32_t i) { return level(i) < top - 4 || neighbours[std::size_t(i)] < 0; });
   const auto order = [&](std::int32_t i) {
     const Vec3 apart = model.rest_position[std::size_t(i)] - middle;
     return std::tuple(-neighbours[std::size_t(i)], -level(i), norm(apart - dot(apart, up) * up));
   };
-  std::stable_sort(spheres.begin(), spheres.end(),
-                   [&](std::int32_t p, std::int32_t q) { return order(p) < order(q); });
+  std::stable_sort(spheres.begin(), spheres.end(), [&](std::int32_t p, std::int32_t q) { return order(p) < order(q); });
   spheres.resize(std::min(spheres.size(), kMostTries));
   return spheres;
 }
@@ -172,8 +167,8 @@ Result<StiffnessFit> fit_stiffness(const SceneSpec& scene, std::size_t organ, co
     return fit;
   }
   return Error{where,
-               "the ball of " + fixed(site.ball_radius, 1) + " mm slips off each of " +
-                   std::to_string(tries.size()) + " spheres at the top before it is 12 mm deep",
+               "the ball of " + fixed(site.ball_radius, 1) + " mm slips off each of " + std::to_string(tries.size()) +
+                   " spheres at the top before it is 12 mm deep",
                "the organ may be too thin or its spheres too small"};
 }
 
@@ -181,13 +176,11 @@ void apply_fit(OrganSpec& organ, const StiffnessFit& fit) {
   // Six digits say more than the fit knows, and stay readable in a scene.
   const auto rounded = [](double value) { return std::stod(short_number(value, 6)); };
   for (LayerSpec& layer : organ.layers)
-    layer.material.stiffness_scale =
-        rounded(fit.factor * resolve_material(layer.material).material.stiffness_scale);
+    layer.material.stiffness_scale = rounded(fit.factor * resolve_material(layer.material).material.stiffness_scale);
   organ.material.stiffness_scale = rounded(fit.scale);
   FittedForSpec fitted = fit.fitted_for;
   const auto to_micrometre = [](double length) { return std::round(length * 1e6) / 1e6; };
-  fitted.place = {to_micrometre(fitted.place.x), to_micrometre(fitted.place.y),
-                  to_micrometre(fitted.place.z)};
+  fitted.place = {to_micrometre(fitted.place.x), to_micrometre(fitted.place.y), to_micrometre(fitted.place.z)};
   fitted.force = rounded(fitted.force);
   organ.material.fitted_for = fitted;
 }

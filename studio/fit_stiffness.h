@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "core/organ.h"
-#include "core/result.h"
+#include "core/model/organ.h"
+#include "core/model/result.h"
 #include "scenes/scene_spec.h"
 
 namespace ctpm {

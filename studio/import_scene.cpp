@@ -27,7 +27,8 @@ Result<const MaterialPreset*> choose_preset(const ImportRequest& request) {
     if (request.organ == preset.name) return &preset;
     known += (known.empty() ? "" : ", ") + std::string(preset.name);
   }
-  if (!request.organ.empty()) return Error{"--organ", "there is no preset '" + request.organ + "'", "presets: " + known};
+  if (!request.organ.empty())
+    return Error{"--organ", "there is no preset '" + request.organ + "'", "presets: " + known};
   const std::string name = fs::path(request.mesh).stem().string();
   for (const MaterialPreset& preset : material_presets())
     if (name.find(preset.organ) != std::string::npos) return &preset;
@@ -41,7 +42,9 @@ CameraSpec front_camera(const FilledOrgan& organ) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
-  const auto whole_mm = [](Vec3 p) { return Vec3{std::round(p.x * 1e3) * 1e-3, std::round(p.y * 1e3) * 1e-3, std::round(p.z * 1e3) * 1e-3}; };
+  const auto whole_mm = [](Vec3 p) {
+    return Vec3{std::round(p.x * 1e3) * 1e-3, std::round(p.y * 1e3) * 1e-3, std::round(p.z * 1e3) * 1e-3};
+  };
   const double size = norm(high - low);
   CameraSpec camera;
   camera.name = "front";
@@ -53,12 +56,13 @@ CameraSpec front_camera(const FilledOrgan& organ) {
 }
 
 double extent_z(const FilledOrgan& organ) {
-  const auto [low, high] = std::minmax_element(organ.centre.begin(), organ.centre.end(), [](Vec3 a, Vec3 b) { return a.z < b.z; });
+  const auto [low, high] =
+      std::minmax_element(organ.centre.begin(), organ.centre.end(), [](Vec3 a, Vec3 b) { return a.z < b.z; });
   return high->z - low->z;
 }
 
-/// Height [m] above the lowest sphere within which lies an eighth of all spheres, at least: an organ that stands on less
-/// would fall over while it settles.
+/// Height [m] above the lowest sphere within which lies an eighth of all spheres, at least: an organ that stands on
+/// less would fall over while it settles.
 double footing_height(const FilledOrgan& organ) {
   std::vector<double> heights;
   for (const Vec3& centre : organ.centre) heights.push_back(centre.z);
@@ -66,7 +70,8 @@ double footing_height(const FilledOrgan& organ) {
   return std::ceil(1e3 * (heights[(heights.size() - 1) / 8] - heights.front()) + 0.5) / 1e3;
 }
 
-SceneSpec make_scene(const ImportRequest& request, const MaterialPreset& preset, const FilledOrgan& organ, const std::string& name) {
+SceneSpec make_scene(const ImportRequest& request, const MaterialPreset& preset, const FilledOrgan& organ,
+                     const std::string& name) {
   SceneSpec scene;
   scene.name = name;
   OrganSpec spec;
@@ -100,7 +105,8 @@ SceneSpec make_scene(const ImportRequest& request, const MaterialPreset& preset,
 /// Fits the organ's stiffness and stores it in the scene; an organ that cannot be fitted keeps the preset's moduli.
 void fit_scene(SceneSpec& scene, const FilledOrgan& organ, ImportOutcome& outcome) {
   if (organ.centre.size() > kMostFittedSpheres) {
-    outcome.fit_problem = "with " + std::to_string(organ.centre.size()) + " spheres it takes long; run ctpm fit " + outcome.scene_file + " --write";
+    outcome.fit_problem = "with " + std::to_string(organ.centre.size()) + " spheres it takes long; run ctpm fit " +
+                          outcome.scene_file + " --write";
     return;
   }
   const Result<StiffnessFit> fit = fit_stiffness(scene, 0, organ);
@@ -117,7 +123,8 @@ void fit_scene(SceneSpec& scene, const FilledOrgan& organ, ImportOutcome& outcom
 Result<ImportOutcome> import_scene(const ImportRequest& request) {
   const Result<const MaterialPreset*> preset = choose_preset(request);
   if (!preset) return preset.errors();
-  if (fs::path(request.scene).extension() != ".json") return Error{request.scene, "a scene's name must end in .json", ""};
+  if (fs::path(request.scene).extension() != ".json")
+    return Error{request.scene, "a scene's name must end in .json", ""};
   if (const Result<Done> writable = check_writable(request.scene); !writable) return writable.errors();
   const fs::path folder = fs::path(request.scene).parent_path();
   const std::string name = fs::path(request.scene).stem().string();
@@ -127,7 +134,8 @@ Result<ImportOutcome> import_scene(const ImportRequest& request) {
   outcome.script_file = (folder / (name + ".script.json")).string();
   std::error_code ignored;
   if (fs::equivalent(outcome.mesh_file, request.mesh, ignored))
-    return Error{outcome.mesh_file, "the repaired mesh would replace the mesh that is imported", "give the scene another name or folder"};
+    return Error{outcome.mesh_file, "the repaired mesh would replace the mesh that is imported",
+                 "give the scene another name or folder"};
 
   ImportOptions options;
   options.unit_in_metres = request.unit_in_metres;
@@ -144,15 +152,19 @@ Result<ImportOutcome> import_scene(const ImportRequest& request) {
 
   const std::vector<FilledOrgan> organs{std::move(imported->organ)};
   SceneSpec scene = make_scene(request, **preset, organs.front(), name);
-  const Result<std::vector<std::int32_t>> anchored = select_anchored(organs.front(), scene.organs[0].anchors, scene.gravity, request.mesh);
+  const Result<std::vector<std::int32_t>> anchored =
+      select_anchored(organs.front(), scene.organs[0].anchors, scene.gravity, request.mesh);
   if (!anchored) return anchored.errors();
   outcome.anchored = anchored->size();
   fit_scene(scene, organs.front(), outcome);
   const CheckedMesh& mesh = imported->mesh;
-  if (const Result<Done> written = write_obj(outcome.mesh_file, mesh.vertex, mesh.triangle); !written) return written.errors();
+  if (const Result<Done> written = write_obj(outcome.mesh_file, mesh.vertex, mesh.triangle); !written)
+    return written.errors();
   const Script script = default_script(scene, organs);
-  if (const Result<Done> written = write_text_file(outcome.script_file, write_script(script)); !written) return written.errors();
-  if (const Result<Done> written = write_text_file(request.scene, write_scene(scene)); !written) return written.errors();
+  if (const Result<Done> written = write_text_file(outcome.script_file, write_script(script)); !written)
+    return written.errors();
+  if (const Result<Done> written = write_text_file(request.scene, write_scene(scene)); !written)
+    return written.errors();
   return outcome;
 }
 

@@ -36,7 +36,8 @@ Result<LoadedScene> load_whole_scene(const std::string& path, const LoadOptions&
   Result<SceneText> scene = load_scene(path, options);
   if (!scene) return scene.errors();
   for (const Error& warning : scene->warnings)
-    print_remark(warning.where + ": warning: " + warning.message + (warning.hint.empty() ? "" : " (" + warning.hint + ")"));
+    print_remark(warning.where + ": warning: " + warning.message +
+                 (warning.hint.empty() ? "" : " (" + warning.hint + ")"));
   LoadedScene loaded;
   loaded.path = path;
   loaded.scene = std::move(*scene);
@@ -98,11 +99,13 @@ Result<Camera> find_camera(const SceneSpec& scene, const SceneView& view, const 
     if (name.empty() || camera.name == name) {
       // Cameras are set up for 16:9; in a narrower picture they step back so that the sides stay in sight.
       const double back = std::max(1.0, 16.0 / 9 / aspect);
-      return Camera{camera.target + back * (camera.eye - camera.target), camera.target, camera.up, camera.field_of_view};
+      return Camera{camera.target + back * (camera.eye - camera.target), camera.target, camera.up,
+                    camera.field_of_view};
     }
     known += (known.empty() ? "" : ", ") + camera.name;
   }
-  return Error{"--camera", "the scene has no camera '" + name + "'", "there are: fitted, follow" + (known.empty() ? "" : ", " + known)};
+  return Error{"--camera", "the scene has no camera '" + name + "'",
+               "there are: fitted, follow" + (known.empty() ? "" : ", " + known)};
 }
 
 }  // namespace ctpm

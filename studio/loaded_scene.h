@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "core/model.h"
-#include "core/organ.h"
-#include "core/result.h"
+#include "core/model/model.h"
+#include "core/model/organ.h"
+#include "core/model/result.h"
 #include "importers/import.h"
 #include "scenes/build_model.h"
 #include "scenes/scene_file.h"

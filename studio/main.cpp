@@ -10,17 +10,18 @@ int main(int argc, char** argv) {
   using namespace ctpm;
   std::setlocale(LC_ALL, "C");  // numbers are written and read with a point, wherever the program runs
 
-  CLI::App program{"ctpm: a studio for soft-tissue scenes.\n"
-                   "Authors import organ meshes, trainees record and replay sessions, reviewers export videos.",
-                   "ctpm"};
+  CLI::App program{
+      "ctpm: a studio for soft-tissue scenes.\n"
+      "Authors import organ meshes, trainees record and replay sessions, reviewers export videos.",
+      "ctpm"};
   program.set_version_flag("--version", CTPM_VERSION);
   program.require_subcommand(1);
   program.failure_message(CLI::FailureMessage::simple);
-  const std::vector<Command> commands{add_import(program), add_check(program),  add_plan(program),   add_preview(program),
-                                      add_record(program), add_replay(program), add_verify(program), add_info(program),
-                                      add_recover(program), add_export(program), add_demo(program),
-                                      add_fit(program),     add_paper(program),  add_compare(program),
-                                      add_stability(program), add_bench(program)};
+  const std::vector<Command> commands{
+      add_import(program),  add_check(program),   add_plan(program),      add_preview(program),
+      add_record(program),  add_replay(program),  add_verify(program),    add_info(program),
+      add_recover(program), add_export(program),  add_demo(program),      add_fit(program),
+      add_paper(program),   add_compare(program), add_stability(program), add_bench(program)};
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

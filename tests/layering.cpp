@@ -68,8 +68,7 @@ class Sources {
   explicit Sources(const fs::path& root) {
     for (const auto& [folder, allowed] : kMayInclude)
       for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder))
-        if (const fs::path ending = entry.path().extension();
-            ending == ".h" || ending == ".cpp" || ending == ".inl") {
+        if (const fs::path ending = entry.path().extension(); ending == ".h" || ending == ".cpp" || ending == ".inl") {
           const std::string file = fs::relative(entry.path(), root).generic_string();
           files_[file] = read_includes(entry.path());
           // A program of its own.
@@ -120,8 +119,7 @@ class Sources {
   }
 
   static int report(const std::string& file, const Include& include, const std::string& why) {
-    std::printf("%s:%d: error: includes %s: %s\n", file.c_str(), include.line, include.path.c_str(),
-                why.c_str());
+    std::printf("%s:%d: error: includes %s: %s\n", file.c_str(), include.line, include.path.c_str(), why.c_str());
     return 1;
   }
 
@@ -148,7 +146,8 @@ class Sources {
   }
 
   std::map<std::string, std::vector<Include>> files_;
-  std::map<std::string, std::map<std::string, int>> types_;  ///< file and line of each definition, by the type's full name
+  std::map<std::string, std::map<std::string, int>>
+      types_;  ///< file and line of each definition, by the type's full name
 };
 
 }  // namespace

@@ -19,12 +19,12 @@ void print(const Errors& errors) {
 }
 
 void print(const OrganShape& shape, const OrganMesh& mesh, const MeshFacts& facts) {
-  std::printf("%s: %zu vertices, %zu triangles, %.1f ml, %.0f mm2\n", shape.name.c_str(),
-              mesh.vertex_mm.size(), mesh.triangle.size(), facts.volume_ml, facts.area_mm2);
+  std::printf("%s: %zu vertices, %zu triangles, %.1f ml, %.0f mm2\n", shape.name.c_str(), mesh.vertex_mm.size(),
+              mesh.triangle.size(), facts.volume_ml, facts.area_mm2);
   std::printf("  box x [%.3f, %.3f] y [%.3f, %.3f] z [%.3f, %.3f] mm\n", facts.low_mm.x, facts.high_mm.x,
               facts.low_mm.y, facts.high_mm.y, facts.low_mm.z, facts.high_mm.z);
-  std::printf("  smallest angle %.1f deg, edges %.2f to %.2f mm\n", facts.least_angle_deg,
-              facts.least_edge_mm, facts.greatest_edge_mm);
+  std::printf("  smallest angle %.1f deg, edges %.2f to %.2f mm\n", facts.least_angle_deg, facts.least_edge_mm,
+              facts.greatest_edge_mm);
 }
 
 /// Makes, checks and writes one organ; false when something is wrong, which has then been said.
@@ -45,8 +45,7 @@ int make_organs(const std::string& folder, const std::vector<std::string>& wante
     return wanted.empty() || std::find(wanted.begin(), wanted.end(), shape.name) != wanted.end();
   };
   for (const std::string& name : wanted) {
-    if (std::any_of(shapes.begin(), shapes.end(), [&](const auto& shape) { return shape.name == name; }))
-      continue;
+    if (std::any_of(shapes.begin(), shapes.end(), [&](const auto& shape) { return shape.name == name; })) continue;
     std::fprintf(stderr, "make_organs: error: no organ is called '%s'\n", name.c_str());
     return 2;
   }

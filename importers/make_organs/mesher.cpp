@@ -29,8 +29,7 @@ namespace pmp = CGAL::Polygon_mesh_processing;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
-constexpr unsigned kSeed =
-    20;  // of the mesher's first points; any value will do, a change moves all vertices
+constexpr unsigned kSeed = 20;           // of the mesher's first points; any value will do, a change moves all vertices
 constexpr double kLeastAngleDeg = 15.0;  // below it fillers and renderers get bad normals
 constexpr double kSizeTolerance = 0.03;  // the sizes are round figures of life, not measurements
 
@@ -40,9 +39,7 @@ Kernel::Point_3 to_point(Vec3 v) { return {v.x, v.y, v.z}; }
 /// Gradient of the shape by central differences.
 Vec3 gradient(const OrganShape& shape, Vec3 p) {
   constexpr double h = 1e-4;  // [mm]; far below the finest detail, far above rounding
-  const auto slope = [&](Vec3 step) {
-    return (shape.distance_mm(p + step) - shape.distance_mm(p - step)) / (2.0 * h);
-  };
+  const auto slope = [&](Vec3 step) { return (shape.distance_mm(p + step) - shape.distance_mm(p - step)) / (2.0 * h); };
   return {slope({h, 0, 0}), slope({0, h, 0}), slope({0, 0, h})};
 }
 
@@ -66,9 +63,8 @@ Mesh refine_surface(const OrganShape& shape) {
   const auto level = [&shape](const Kernel::Point_3& p) { return shape.distance_mm(to_vec3(p)); };
   const Kernel::Sphere_3 bound(to_point(shape.inside_mm), shape.reach_mm * shape.reach_mm);
   CGAL::Random random(kSeed);
-  const auto domain =
-      Domain::create_implicit_mesh_domain(named::function = level, named::bounding_object = bound,
-                                          named::p_rng = &random, named::relative_error_bound = 1e-6);
+  const auto domain = Domain::create_implicit_mesh_domain(named::function = level, named::bounding_object = bound,
+                                                          named::p_rng = &random, named::relative_error_bound = 1e-6);
   const Criteria criteria(named::facet_angle = 28.0, named::facet_size = 0.4 * shape.edge_mm,
                           named::facet_distance = 0.05 * shape.edge_mm);
   const auto complex = CGAL::make_mesh_3<CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>>(
@@ -145,8 +141,8 @@ void measure_triangles(const OrganMesh& mesh, MeshFacts& facts) {
 }
 
 std::string out_of(const char* what, double got, OrganShape::Range range) {
-  return std::string(what) + " is " + std::to_string(got) + ", must be in [" + std::to_string(range.low) +
-         ", " + std::to_string(range.high) + "]";
+  return std::string(what) + " is " + std::to_string(got) + ", must be in [" + std::to_string(range.low) + ", " +
+         std::to_string(range.high) + "]";
 }
 
 }  // namespace
@@ -159,8 +155,7 @@ Result<OrganMesh> mesh_shape(const OrganShape& shape) {
 
   OrganMesh plain = plain_mesh(mesh);
   const Vec3 shift = resting_shift(plain.vertex_mm);
-  for (Vec3& v : plain.vertex_mm)
-    v = {rounded(v.x + shift.x), rounded(v.y + shift.y), rounded(v.z + shift.z)};
+  for (Vec3& v : plain.vertex_mm) v = {rounded(v.x + shift.x), rounded(v.y + shift.y), rounded(v.z + shift.z)};
   return plain;
 }
 

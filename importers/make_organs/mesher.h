@@ -4,17 +4,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/result.h"
-#include "core/vec3.h"
+#include "core/model/result.h"
+#include "core/model/vec3.h"
 #include "importers/make_organs/shapes.h"
 
 namespace ctpm {
 
 /// A triangle mesh with coordinates in [mm], exactly as they stand in the file (three decimals).
 struct OrganMesh {
-  std::vector<Vec3> vertex_mm;  ///< (vertex_count)
-  std::vector<std::array<std::int32_t, 3>>
-      triangle;  ///< counter-clockwise seen from outside (triangle_count)
+  std::vector<Vec3> vertex_mm;                        ///< (vertex_count)
+  std::vector<std::array<std::int32_t, 3>> triangle;  ///< counter-clockwise seen from outside (triangle_count)
 };
 
 /// What was measured on a mesh.

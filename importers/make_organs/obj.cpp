@@ -5,17 +5,14 @@
 namespace ctpm {
 
 Result<Done> write_obj(const std::filesystem::path& path, const OrganMesh& mesh, const OrganShape& shape) {
-  const auto failed = [&] {
-    return Error{path.string(), "cannot be written", "check the folder and the space left"};
-  };
+  const auto failed = [&] { return Error{path.string(), "cannot be written", "check the folder and the space left"}; };
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (!file) return failed();
 
   std::fprintf(file, "# %s\n# Made by make_organs, a program of ctpm, from an implicit shape.\n",
                shape.description.c_str());
-  std::fprintf(
-      file,
-      "# Unit: mm. z is up, the lowest point at z = 0, the middle of the bounding box over the origin.\n");
+  std::fprintf(file,
+               "# Unit: mm. z is up, the lowest point at z = 0, the middle of the bounding box over the origin.\n");
   std::fprintf(file, "# %zu vertices, %zu triangles, closed, counter-clockwise seen from outside.\n",
                mesh.vertex_mm.size(), mesh.triangle.size());
   std::fprintf(file, "# SPDX-License-Identifier: GPL-3.0-or-later\n");

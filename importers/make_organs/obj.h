@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "core/result.h"
+#include "core/model/result.h"
 #include "importers/make_organs/mesher.h"
 #include "importers/make_organs/shapes.h"
 

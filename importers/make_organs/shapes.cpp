@@ -70,9 +70,8 @@ double skin(Vec3 p) {
 
 std::vector<OrganShape> organ_shapes() {
   return {{.name = "liver",
-           .description =
-               "Human liver, about life size, lying on its underside; x runs from the patient's right (-) "
-               "to the left (+), the thin front edge faces -y.",
+           .description = "Human liver, about life size, lying on its underside; x runs from the patient's right (-) "
+                          "to the left (+), the thin front edge faces -y.",
            .distance_mm = liver,
            .inside_mm = {-40, 5, 40},
            .reach_mm = 220,
@@ -81,9 +80,8 @@ std::vector<OrganShape> organ_shapes() {
            .volume_ml = {1000, 1500},
            .size_mm = {220, 150, 90}},
           {.name = "kidney",
-           .description =
-               "Human kidney, about life size, lying flat; x runs from the upper pole (-) to the lower "
-               "(+), the hilum faces +y.",
+           .description = "Human kidney, about life size, lying flat; x runs from the upper pole (-) to the lower "
+                          "(+), the hilum faces +y.",
            .distance_mm = kidney,
            .inside_mm = {0, -5, 0},
            .reach_mm = 90,

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/vec3.h"
+#include "core/model/vec3.h"
 
 namespace ctpm {
 

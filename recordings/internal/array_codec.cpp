@@ -39,8 +39,7 @@ template <class U>
 int best_order(std::span<const U> values) {
   std::array<std::uint64_t, order_count> bits{};
   for (int order = 0; order < order_count; ++order) {
-    for (std::size_t i = order; i < values.size(); ++i)
-      bits[order] += std::bit_width(coded(&values[i], order));
+    for (std::size_t i = order; i < values.size(); ++i) bits[order] += std::bit_width(coded(&values[i], order));
     bits[order] += 8 * sizeof(U) * std::min<std::size_t>(order, values.size());
   }
   return static_cast<int>(std::min_element(bits.begin(), bits.end()) - bits.begin());

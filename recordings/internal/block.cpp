@@ -44,21 +44,18 @@ Block pack(const std::string& name, ByteView content, std::uint64_t seed, int le
 
 Result<Bytes> unpack(const std::string& name, std::int64_t size, std::int64_t checksum, ByteView data,
                      std::uint64_t seed, std::uint64_t max_size) {
-  if (checksum != checksum_of(name, size, data, seed))
-    return Error{"", name + ": the checksum does not match", ""};
+  if (checksum != checksum_of(name, size, data, seed)) return Error{"", name + ": the checksum does not match", ""};
   if (size < 0 || static_cast<std::uint64_t>(size) > max_size)
-    return Error{"",
-                 name + ": states " + std::to_string(size) + " bytes, at most " + std::to_string(max_size) +
-                     " are allowed",
-                 ""};
+    return Error{
+        "", name + ": states " + std::to_string(size) + " bytes, at most " + std::to_string(max_size) + " are allowed",
+        ""};
   if (ZSTD_getFrameContentSize(data.data(), data.size()) != static_cast<unsigned long long>(size))
     return Error{"", name + ": states another size than its compressed data", ""};
   Bytes content(static_cast<std::size_t>(size));
   const std::size_t got = ZSTD_decompress(content.data(), content.size(), data.data(), data.size());
   if (ZSTD_isError(got) || got != content.size())
-    return Error{
-        "", name + ": cannot be decompressed: " + (ZSTD_isError(got) ? ZSTD_getErrorName(got) : "too short"),
-        ""};
+    return Error{"", name + ": cannot be decompressed: " + (ZSTD_isError(got) ? ZSTD_getErrorName(got) : "too short"),
+                 ""};
   return content;
 }
 

@@ -3,15 +3,14 @@
 #include <cstdint>
 #include <string>
 
-#include "core/result.h"
+#include "core/model/result.h"
 #include "recordings/internal/bytes.h"
 
 namespace ctpm::session_file {
 
-inline constexpr std::uint64_t max_part_size = 1ull
-                                               << 30;  ///< of a part or a keyframe before compression [bytes]
-inline constexpr std::uint64_t max_chunk_size =
-    64ull << 20;  ///< of a chunk or a run of events before compression [bytes]
+inline constexpr std::uint64_t max_part_size = 1ull << 30;  ///< of a part or a keyframe before compression [bytes]
+inline constexpr std::uint64_t max_chunk_size = 64ull
+                                                << 20;  ///< of a chunk or a run of events before compression [bytes]
 
 /// A compressed, checked payload. FORMAT.md section 2.
 struct Block {

@@ -14,8 +14,7 @@ namespace ctpm::session_file {
 using Bytes = std::vector<std::uint8_t>;
 using ByteView = std::span<const std::uint8_t>;
 
-static_assert(std::endian::native == std::endian::little,
-              "session files are written as values lie in memory");
+static_assert(std::endian::native == std::endian::little, "session files are written as values lie in memory");
 
 inline void put_raw(Bytes& out, const void* data, std::size_t size) {
   const std::size_t place = out.size();

@@ -60,8 +60,8 @@ void defend(sqlite3* connection, bool salvage) {
   sqlite3_limit(connection, SQLITE_LIMIT_LENGTH, 1 << 30);
   sqlite3_limit(connection, SQLITE_LIMIT_SQL_LENGTH, 10000);
   sqlite3_limit(connection, SQLITE_LIMIT_ATTACHED, 0);
-  sqlite3_exec(connection, "PRAGMA cell_size_check=ON; PRAGMA query_only=ON; PRAGMA mmap_size=0;", nullptr,
-               nullptr, nullptr);
+  sqlite3_exec(connection, "PRAGMA cell_size_check=ON; PRAGMA query_only=ON; PRAGMA mmap_size=0;", nullptr, nullptr,
+               nullptr);
 }
 
 }  // namespace
@@ -92,9 +92,7 @@ Statement::Outcome Statement::step() {
 }
 void Statement::reset() { sqlite3_reset(statement_); }
 
-bool Statement::is_integer(int column) const {
-  return sqlite3_column_type(statement_, column) == SQLITE_INTEGER;
-}
+bool Statement::is_integer(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_INTEGER; }
 bool Statement::is_text(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_TEXT; }
 bool Statement::is_blob(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_BLOB; }
 std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(statement_, column); }
@@ -154,8 +152,8 @@ Result<Done> Database::run(const std::string& sql) {
 
 Result<Statement> Database::prepare(const std::string& sql) {
   Statement statement;
-  if (sqlite3_prepare_v3(connection_, sql.c_str(), -1, SQLITE_PREPARE_PERSISTENT, &statement.statement_,
-                         nullptr) != SQLITE_OK)
+  if (sqlite3_prepare_v3(connection_, sql.c_str(), -1, SQLITE_PREPARE_PERSISTENT, &statement.statement_, nullptr) !=
+      SQLITE_OK)
     return Error{path_, problem(), ""};
   return statement;
 }

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "core/result.h"
+#include "core/model/result.h"
 #include "recordings/internal/bytes.h"
 
 struct sqlite3;

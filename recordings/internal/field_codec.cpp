@@ -43,8 +43,7 @@ FieldSet::FieldSet(ByteReader& in, std::string& problem) {
 }
 
 FieldView* FieldSet::find(std::string_view name) {
-  const auto found =
-      std::find_if(fields_.begin(), fields_.end(), [&](const FieldView& f) { return f.name == name; });
+  const auto found = std::find_if(fields_.begin(), fields_.end(), [&](const FieldView& f) { return f.name == name; });
   return found == fields_.end() ? nullptr : &*found;
 }
 

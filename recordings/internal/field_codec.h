@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "core/fields.h"
+#include "core/model/fields.h"
 #include "recordings/internal/array_codec.h"
 #include "recordings/internal/bytes.h"
 #include "recordings/session.h"
@@ -35,16 +35,7 @@ void for_each_field(E& e, Visit&& visit) {
   visit("values", e.values);
 }
 
-enum class FieldType : std::uint8_t {
-  u8 = 1,
-  i32 = 2,
-  u32 = 3,
-  i64 = 4,
-  u64 = 5,
-  f64 = 6,
-  text = 7,
-  list = 8
-};
+enum class FieldType : std::uint8_t { u8 = 1, i32 = 2, u32 = 3, i64 = 4, u64 = 5, f64 = 6, text = 7, list = 8 };
 
 /// Bytes of one value; 0 for texts and lists.
 std::size_t width_of(FieldType type);
@@ -79,9 +70,8 @@ constexpr std::size_t numbers_in() {
 }
 
 template <class T>
-using BitsOf =
-    std::conditional_t<sizeof(T) / numbers_in<T>() == 1, std::uint8_t,
-                       std::conditional_t<sizeof(T) / numbers_in<T>() == 4, std::uint32_t, std::uint64_t>>;
+using BitsOf = std::conditional_t<sizeof(T) / numbers_in<T>() == 1, std::uint8_t,
+                                  std::conditional_t<sizeof(T) / numbers_in<T>() == 4, std::uint32_t, std::uint64_t>>;
 
 template <class S>
 concept Structure_ = requires(S& s) {
@@ -232,8 +222,7 @@ class FieldReader {
       std::vector<BitsOf<T>> bits;
       if (!numbers(*field, bits)) return;
       values.resize(bits.size() / numbers_in<T>());
-      if (!bits.empty())
-        std::memcpy(static_cast<void*>(values.data()), bits.data(), bits.size() * sizeof bits[0]);
+      if (!bits.empty()) std::memcpy(static_cast<void*>(values.data()), bits.data(), bits.size() * sizeof bits[0]);
     }
   }
 
@@ -289,8 +278,7 @@ void get_fields(ByteReader& in, S& structure, std::string& problem) {
   FieldReader reader(set, in.budget(), problem);
   if (problem.empty()) for_each_field(structure, reader);
   for (const FieldView& field : set.fields())
-    if (problem.empty() && !field.used)
-      problem = "unknown field " + field.name + ", written by a newer program";
+    if (problem.empty() && !field.used) problem = "unknown field " + field.name + ", written by a newer program";
   if (problem.empty() && !in.at_end()) problem = "bytes are left over";
 }
 

@@ -24,11 +24,9 @@ class Checker {
   }
 
   template <class T>
-  bool length(const std::string& name, const std::vector<T>& values, std::size_t expected,
-              bool may_be_empty = false) {
+  bool length(const std::string& name, const std::vector<T>& values, std::size_t expected, bool may_be_empty = false) {
     const bool good = values.size() == expected || (may_be_empty && values.empty());
-    require(good, name,
-            "has " + std::to_string(values.size()) + " entries, expected " + std::to_string(expected));
+    require(good, name, "has " + std::to_string(values.size()) + " entries, expected " + std::to_string(expected));
     return good;
   }
 
@@ -170,11 +168,11 @@ void check_organs(Checker& check, const Model& model) {
   for (std::size_t i = 0; i < model.organs.size(); ++i) {
     const OrganRange& organ = model.organs[i];
     const std::string name = "organs" + place(i);
-    check.require(organ.first >= 0 && organ.count >= 0 && std::int64_t{organ.first} + organ.count <= spheres,
-                  name, "is not a range of spheres");
-    check.require(std::isfinite(organ.sphere_radius) && std::isfinite(organ.spacing) &&
-                      std::isfinite(organ.damage_depth),
-                  name, "has a length that is not finite");
+    check.require(organ.first >= 0 && organ.count >= 0 && std::int64_t{organ.first} + organ.count <= spheres, name,
+                  "is not a range of spheres");
+    check.require(
+        std::isfinite(organ.sphere_radius) && std::isfinite(organ.spacing) && std::isfinite(organ.damage_depth), name,
+        "has a length that is not finite");
   }
 }
 
@@ -184,11 +182,11 @@ void check_tools(Checker& check, const Model& model) {
     const std::string name = "tools" + place(i);
     check.require(tool.kind >= ToolKind::ball && tool.kind <= ToolKind::pin, name, "is of an unknown kind");
     const std::int64_t lowest = tool.kind == ToolKind::pin ? 0 : -1;
-    check.require(tool.sphere >= lowest && tool.sphere < static_cast<std::int64_t>(model.sphere_count()),
-                  name, "holds a sphere that is not there");
-    check.require(std::isfinite(tool.radius) && tool.radius >= 0 && std::isfinite(tool.blade_length) &&
-                      tool.blade_length >= 0,
-                  name, "has a size that is not finite or below 0");
+    check.require(tool.sphere >= lowest && tool.sphere < static_cast<std::int64_t>(model.sphere_count()), name,
+                  "holds a sphere that is not there");
+    check.require(
+        std::isfinite(tool.radius) && tool.radius >= 0 && std::isfinite(tool.blade_length) && tool.blade_length >= 0,
+        name, "has a size that is not finite or below 0");
   }
 }
 
@@ -211,8 +209,7 @@ Errors check_model(const Model& model) {
   check_loads(check, model);
   check_tools(check, model);
   check_cut_resistance(check, model);
-  check.require(std::isfinite(model.contact_k) && model.contact_k >= 0, "contact_k",
-                "must be finite and not below 0");
+  check.require(std::isfinite(model.contact_k) && model.contact_k >= 0, "contact_k", "must be finite and not below 0");
   check.require(std::isfinite(model.contact_friction) && model.contact_friction >= 0, "contact_friction",
                 "must be finite and not below 0");
 
@@ -220,8 +217,8 @@ Errors check_model(const Model& model) {
   check.require(solver.tolerance > 0 && solver.tolerance < 1, "solver.tolerance", "must be in (0, 1)");
   check.require(std::isfinite(solver.velocity_floor) && solver.velocity_floor > 0, "solver.velocity_floor",
                 "must be above 0");
-  check.require(solver.max_iterations >= 1 && solver.max_iterations <= max_iterations,
-                "solver.max_iterations", "must be in [1, " + std::to_string(max_iterations) + "]");
+  check.require(solver.max_iterations >= 1 && solver.max_iterations <= max_iterations, "solver.max_iterations",
+                "must be in [1, " + std::to_string(max_iterations) + "]");
   check.require(solver.substeps >= 1 && solver.substeps <= max_substeps, "solver.substeps",
                 "must be in [1, " + std::to_string(max_substeps) + "]");
   check.require(solver.integrator >= Integrator::automatic && solver.integrator <= Integrator::sdirk2,
@@ -237,10 +234,10 @@ Errors check_state(const Model& model, const State& state) {
   check.finite("kelvin_elongation", state.kelvin_elongation);
 
   // The sets of severed elements are there together or not at all.
-  const bool cuts = !state.edge_severed.empty() || !state.tpm_severed.empty() ||
-                    !state.constraint_severed.empty() || !state.angle_severed.empty() ||
-                    std::any_of(model.tools.begin(), model.tools.end(),
-                                [](const Tool& t) { return t.kind == ToolKind::scalpel; });
+  const bool cuts =
+      !state.edge_severed.empty() || !state.tpm_severed.empty() || !state.constraint_severed.empty() ||
+      !state.angle_severed.empty() ||
+      std::any_of(model.tools.begin(), model.tools.end(), [](const Tool& t) { return t.kind == ToolKind::scalpel; });
   check.length("edge_severed", state.edge_severed, cuts ? model.edges.size() : 0);
   check.flags("edge_severed", state.edge_severed);
   check.length("tpm_severed", state.tpm_severed, cuts ? model.tpms.size() : 0);
@@ -266,9 +263,9 @@ Errors check_state(const Model& model, const State& state) {
 Errors check_surfaces(const Model& model, const std::vector<Surface>& surfaces) {
   Checker check("surfaces");
   if (!surfaces.empty() && surfaces.size() != model.organs.size())
-    check.require(false, "list",
-                  "has " + std::to_string(surfaces.size()) + " entries for " +
-                      std::to_string(model.organs.size()) + " organs");
+    check.require(
+        false, "list",
+        "has " + std::to_string(surfaces.size()) + " entries for " + std::to_string(model.organs.size()) + " organs");
   for (std::size_t i = 0; i < std::min(surfaces.size(), model.organs.size()); ++i) {
     const Surface& surface = surfaces[i];
     const std::string name = place(i) + ".";
@@ -279,8 +276,7 @@ Errors check_surfaces(const Model& model, const std::vector<Surface>& surfaces) 
         break;
       }
     std::vector<std::int32_t> corners;
-    for (const auto& triangle : surface.triangle)
-      corners.insert(corners.end(), triangle.begin(), triangle.end());
+    for (const auto& triangle : surface.triangle) corners.insert(corners.end(), triangle.begin(), triangle.end());
     check.indices(name + "triangle", corners, 0, vertices);
 
     const SurfaceBinding& binding = surface.binding;
@@ -288,8 +284,7 @@ Errors check_surfaces(const Model& model, const std::vector<Surface>& surfaces) 
     check.indices(name + "binding.sphere", binding.sphere, 0, model.organs[i].count);
     check.length(name + "binding.weight", binding.weight, binding.sphere.size());
     check.finite(name + "binding.weight", binding.weight);
-    if (check.length(name + "binding.first", binding.first, surface.vertex.size() + 1,
-                     surface.vertex.empty()) &&
+    if (check.length(name + "binding.first", binding.first, surface.vertex.size() + 1, surface.vertex.empty()) &&
         !binding.first.empty()) {
       check.indices(name + "binding.first", binding.first, 0, entries + 1);
       check.require(binding.first.front() == 0 && binding.first.back() == entries &&

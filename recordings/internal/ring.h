@@ -16,21 +16,16 @@ class Ring {
   /// Producer: the slot to fill, or none if the ring is full. push() hands it over.
   T* free_slot() {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
-    return tail - head_.load(std::memory_order_acquire) < slots_.size() ? &slots_[tail % slots_.size()]
-                                                                        : nullptr;
+    return tail - head_.load(std::memory_order_acquire) < slots_.size() ? &slots_[tail % slots_.size()] : nullptr;
   }
   void push() { tail_.store(tail_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
 
   /// Consumer: how many wait, the i-th of them, and giving the first `count` slots back.
-  std::size_t waiting() const {
-    return tail_.load(std::memory_order_acquire) - head_.load(std::memory_order_relaxed);
-  }
+  std::size_t waiting() const { return tail_.load(std::memory_order_acquire) - head_.load(std::memory_order_relaxed); }
   const T& waiting_at(std::size_t i) const {
     return slots_[(head_.load(std::memory_order_relaxed) + i) % slots_.size()];
   }
-  void pop(std::size_t count) {
-    head_.store(head_.load(std::memory_order_relaxed) + count, std::memory_order_release);
-  }
+  void pop(std::size_t count) { head_.store(head_.load(std::memory_order_relaxed) + count, std::memory_order_release); }
 
  private:
   std::vector<T> slots_;

@@ -64,8 +64,7 @@ Result<Done> check_place(const std::string& path, bool overwrite) {
     return Error{path, "the folder " + folder_of(path) + " does not exist", "create it first"};
   if (::access(folder_of(path).c_str(), W_OK) != 0)
     return Error{path, "the folder " + folder_of(path) + " cannot be written", ""};
-  if (::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode))
-    return Error{path, "is not a regular file", ""};
+  if (::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode)) return Error{path, "is not a regular file", ""};
   if (overwrite) return Done{};
   if (exists(path)) return Error{path, "exists already", "choose another name, or allow it to be replaced"};
   if (exists(path + "-wal"))
@@ -153,8 +152,7 @@ SessionIdentity new_identity(const std::string& build) {
   identity.id = text;
   identity.seed = random[2];
   identity.build = build;
-  identity.created_unix_s =
-      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  identity.created_unix_s = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   return identity;
 }
 
@@ -185,8 +183,8 @@ Result<SessionTables> SessionTables::open_for_writing(const std::string& path) {
   if (!database) return database.errors();
   SessionTables tables;
   tables.database_ = std::move(*database);
-  if (auto r = tables.database_.run(
-          "PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL; PRAGMA wal_autocheckpoint=1024;");
+  if (auto r =
+          tables.database_.run("PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL; PRAGMA wal_autocheckpoint=1024;");
       !r)
     return r.errors();
   if (auto r = tables.prepare(); !r) return r.errors();
@@ -231,8 +229,8 @@ Result<Done> SessionTables::close() {
   return database_.close();
 }
 
-Result<Done> create_session_file(const std::string& path, const SessionStart& start,
-                                 const SessionIdentity& identity, bool overwrite, int level) {
+Result<Done> create_session_file(const std::string& path, const SessionStart& start, const SessionIdentity& identity,
+                                 bool overwrite, int level) {
   if (auto r = check_place(path, overwrite); !r) return r;
   const std::string temporary = path + "." + identity.id.substr(0, 8) + ".part";
   const auto write = [&]() -> Result<Done> {
@@ -246,8 +244,7 @@ Result<Done> create_session_file(const std::string& path, const SessionStart& st
       const std::uint64_t seed = std::strcmp(part.name, "session") == 0 ? 0 : identity.seed;
       if (part.content.size() > max_part_size)
         return Error{path, part_name(part.name) + " is larger than a session file may hold", ""};
-      if (auto r = tables.insert_part(part.name, pack(part_name(part.name), part.content, seed, level)); !r)
-        return r;
+      if (auto r = tables.insert_part(part.name, pack(part_name(part.name), part.content, seed, level)); !r) return r;
     }
     Bytes state;
     put_fields(state, start.initial_state);

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/result.h"
+#include "core/model/result.h"
 #include "recordings/internal/block.h"
 #include "recordings/internal/database.h"
 #include "recordings/session.h"
@@ -38,8 +38,8 @@ std::string event_name(std::int64_t first, std::int64_t count);
 
 /// Makes a complete session file without ticks at `path`, through a file beside it that is synced and
 /// renamed. Nothing is left behind after an error. `overwrite`: replace what is there.
-Result<Done> create_session_file(const std::string& path, const SessionStart& start,
-                                 const SessionIdentity& identity, bool overwrite, int level);
+Result<Done> create_session_file(const std::string& path, const SessionStart& start, const SessionIdentity& identity,
+                                 bool overwrite, int level);
 
 /// Writes a copy of the session file `damaged` to `repaired` whose first page is that of a new file: the
 /// header and the list of tables, which are the same in every session of this version. Takes the log along.
@@ -66,8 +66,7 @@ class SessionTables {
   Result<Done> close();
 
  private:
-  friend Result<Done> create_session_file(const std::string&, const SessionStart&, const SessionIdentity&,
-                                          bool, int);
+  friend Result<Done> create_session_file(const std::string&, const SessionStart&, const SessionIdentity&, bool, int);
   Result<Done> prepare();
   Result<Done> insert(Statement& statement, int bound, const Block& block);
 

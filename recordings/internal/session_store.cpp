@@ -27,8 +27,7 @@ Errors at_file(const std::string& path, const Errors& errors) {
 }
 
 std::uint32_t big_endian(const std::uint8_t* bytes) {
-  return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 | std::uint32_t{bytes[2]} << 8 |
-         bytes[3];
+  return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 | std::uint32_t{bytes[2]} << 8 | bytes[3];
 }
 
 /// Says plainly what is not a session, before SQLite sees it.
@@ -43,8 +42,7 @@ Result<Done> check_file(const std::string& path, bool salvage) {
   const bool known = ::fstat(file, &info) == 0;
   const ssize_t got = known && S_ISREG(info.st_mode) ? ::pread(file, header, sizeof header, 0) : -1;
   ::close(file);
-  if (!known || !S_ISREG(info.st_mode))
-    return Error{path, "is not a session file: it is not a regular file", ""};
+  if (!known || !S_ISREG(info.st_mode)) return Error{path, "is not a session file: it is not a regular file", ""};
   if (got == 0) return Error{path, "is not a session file: it is empty", ""};
   static constexpr char magic[16] = "SQLite format 3";
   if (got < 16 || std::memcmp(header, magic, sizeof magic) != 0)
@@ -57,18 +55,15 @@ Result<Done> check_file(const std::string& path, bool salvage) {
   const bool valid = big_endian(header + 24) == big_endian(header + 92);
   if (!salvage && valid && static_cast<std::uint64_t>(info.st_size) < stated &&
       ::access((path + "-wal").c_str(), F_OK) != 0)
-    return Error{
-        path,
-        "is cut short: " + std::to_string(info.st_size) + " of " + std::to_string(stated) + " bytes are left",
-        "try to recover it"};
+    return Error{path,
+                 "is cut short: " + std::to_string(info.st_size) + " of " + std::to_string(stated) + " bytes are left",
+                 "try to recover it"};
   return Done{};
 }
 
 }  // namespace
 
-Error SessionStore::database_error(const std::string& what) const {
-  return error(what + ": " + database_.problem());
-}
+Error SessionStore::database_error(const std::string& what) const { return error(what + ": " + database_.problem()); }
 
 Result<SessionStore> SessionStore::open(const std::string& path, bool salvage) {
   if (auto r = check_file(path, salvage); !r) return r.errors();
@@ -86,14 +81,12 @@ Result<SessionStore> SessionStore::open(const std::string& path, bool salvage) {
 Result<Done> SessionStore::check_header(bool salvage) {
   const auto number = [&](const char* pragma) -> Result<std::int64_t> {
     auto statement = database_.prepare(pragma);
-    if (!statement || statement->step() != Statement::Outcome::row)
-      return database_error("is damaged at its header");
+    if (!statement || statement->step() != Statement::Outcome::row) return database_error("is damaged at its header");
     return statement->integer(0);
   };
   const auto application = number("PRAGMA application_id");
   if (!application) return application.errors();
-  if (*application != application_id && !salvage)
-    return error("is not a session file: it is another SQLite database");
+  if (*application != application_id && !salvage) return error("is not a session file: it is another SQLite database");
   const auto version = number("PRAGMA user_version");
   if (!version) return version.errors();
   version_ = static_cast<int>(*version);
@@ -137,13 +130,11 @@ Result<Done> SessionStore::prepare() {
       !r)
     return r;
   if (auto r =
-          one(keyframe_,
-              "SELECT tick, size, checksum, data FROM keyframe WHERE tick <= ?1 ORDER BY tick DESC LIMIT 1");
+          one(keyframe_, "SELECT tick, size, checksum, data FROM keyframe WHERE tick <= ?1 ORDER BY tick DESC LIMIT 1");
       !r)
     return r;
-  return one(
-      event_,
-      "SELECT first, count, size, checksum, data FROM event WHERE first <= ?1 ORDER BY first DESC LIMIT 1");
+  return one(event_,
+             "SELECT first, count, size, checksum, data FROM event WHERE first <= ?1 ORDER BY first DESC LIMIT 1");
 }
 
 Result<std::optional<Bytes>> SessionStore::part_if_there(const std::string& name) {
@@ -152,11 +143,9 @@ Result<std::optional<Bytes>> SessionStore::part_if_there(const std::string& name
   const Statement::Outcome outcome = part_.step();
   if (outcome == Statement::Outcome::failed) return database_error(part_name(name) + " cannot be read");
   if (outcome == Statement::Outcome::done) return std::optional<Bytes>{};
-  if (!part_.is_integer(0) || !part_.is_integer(1) || !part_.is_blob(2))
-    return error(part_name(name) + ": is damaged");
+  if (!part_.is_integer(0) || !part_.is_integer(1) || !part_.is_blob(2)) return error(part_name(name) + ": is damaged");
   const std::uint64_t seed = name == "session" ? 0 : identity_.seed;
-  auto content =
-      unpack(part_name(name), part_.integer(0), part_.integer(1), part_.blob(2), seed, max_part_size);
+  auto content = unpack(part_name(name), part_.integer(0), part_.integer(1), part_.blob(2), seed, max_part_size);
   if (!content) return error(content.errors().front().message);
   return std::optional<Bytes>(std::move(*content));
 }
@@ -219,8 +208,7 @@ Result<std::vector<Surface>> SessionStore::surfaces(const Model& model) {
     reader("surfaces", surfaces);
   });
   if (!decoded) return decoded.errors();
-  if (const Errors errors = check_surfaces(model, surfaces); !errors.empty())
-    return at_file(database_.path(), errors);
+  if (const Errors errors = check_surfaces(model, surfaces); !errors.empty()) return at_file(database_.path(), errors);
   return surfaces;
 }
 
@@ -269,9 +257,8 @@ Result<Done> SessionStore::read_columns() {
 }
 
 /// Steps a bound statement once and proves the block of its row; none if there is no row.
-Result<std::optional<Bytes>> SessionStore::block_of(Statement& statement, const std::string& what,
-                                                    bool has_count, std::uint64_t max_size,
-                                                    std::int64_t& first, std::int64_t& count) {
+Result<std::optional<Bytes>> SessionStore::block_of(Statement& statement, const std::string& what, bool has_count,
+                                                    std::uint64_t max_size, std::int64_t& first, std::int64_t& count) {
   const Statement::Outcome outcome = statement.step();
   if (outcome == Statement::Outcome::failed) return database_error(what + " cannot be read");
   if (outcome == Statement::Outcome::done) return std::optional<Bytes>{};
@@ -281,10 +268,10 @@ Result<std::optional<Bytes>> SessionStore::block_of(Statement& statement, const 
   if (!statement.is_blob(3 + shift)) return error(what + ": is damaged");
   first = statement.integer(0);
   count = has_count ? statement.integer(1) : 1;
-  const std::string name = has_count ? what + " " + std::to_string(first) + " " + std::to_string(count)
-                                     : what + " " + std::to_string(first);
-  auto content = unpack(name, statement.integer(1 + shift), statement.integer(2 + shift),
-                        statement.blob(3 + shift), identity_.seed, max_size);
+  const std::string name =
+      has_count ? what + " " + std::to_string(first) + " " + std::to_string(count) : what + " " + std::to_string(first);
+  auto content = unpack(name, statement.integer(1 + shift), statement.integer(2 + shift), statement.blob(3 + shift),
+                        identity_.seed, max_size);
   if (!content) return error(content.errors().front().message);
   return std::optional<Bytes>(std::move(*content));
 }
@@ -311,14 +298,13 @@ Result<std::optional<Run<Event>>> SessionStore::events_at(std::int64_t at) {
   if (!content) return content.errors();
   if (!*content) return std::optional<Run<Event>>{};
   Run<Event> run{first, {}};
-  const auto decoded =
-      decode_fields(event_name(first, count), **content, [&](ByteReader& in, std::string& problem) {
-        FieldSet set(in, problem);
-        FieldReader reader(set, in.budget(), problem);
-        reader("events", run.items);
-        if (problem.empty() && static_cast<std::int64_t>(run.items.size()) != count)
-          problem = "holds another number of events";
-      });
+  const auto decoded = decode_fields(event_name(first, count), **content, [&](ByteReader& in, std::string& problem) {
+    FieldSet set(in, problem);
+    FieldReader reader(set, in.budget(), problem);
+    reader("events", run.items);
+    if (problem.empty() && static_cast<std::int64_t>(run.items.size()) != count)
+      problem = "holds another number of events";
+  });
   if (!decoded) return decoded.errors();
   if (first < 0 || count < 1) return error(event_name(first, count) + ": has an impossible place");
   return std::optional(std::move(run));
@@ -333,9 +319,9 @@ Result<std::optional<Keyframe>> SessionStore::keyframe_at(std::int64_t at, const
   if (!*content) return std::optional<Keyframe>{};
   Keyframe keyframe;
   keyframe.tick = tick;
-  const auto decoded =
-      decode_fields(keyframe_name(tick), **content,
-                    [&](ByteReader& in, std::string& problem) { get_fields(in, keyframe.state, problem); });
+  const auto decoded = decode_fields(keyframe_name(tick), **content, [&](ByteReader& in, std::string& problem) {
+    get_fields(in, keyframe.state, problem);
+  });
   if (!decoded) return decoded.errors();
   if (tick < 0) return error(keyframe_name(tick) + ": has an impossible place");
   if (const Errors errors = check_state(model, keyframe.state); !errors.empty()) {
@@ -347,8 +333,8 @@ Result<std::optional<Keyframe>> SessionStore::keyframe_at(std::int64_t at, const
 }
 
 Result<std::vector<std::int64_t>> SessionStore::keys(const std::string& table) {
-  auto statement = database_.prepare("SELECT " + std::string(table == "keyframe" ? "tick" : "first") +
-                                     " FROM " + table + " ORDER BY 1");
+  auto statement = database_.prepare("SELECT " + std::string(table == "keyframe" ? "tick" : "first") + " FROM " +
+                                     table + " ORDER BY 1");
   if (!statement) return statement.errors();
   std::vector<std::int64_t> keys;
   Statement::Outcome outcome;

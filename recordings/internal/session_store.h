@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
+#include "core/model/result.h"
 #include "recordings/internal/session_database.h"
 #include "recordings/internal/tick_codec.h"
 #include "recordings/session.h"

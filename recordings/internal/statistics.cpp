@@ -12,8 +12,8 @@ namespace {
 double percentile(std::vector<float>& values, double part) {
   if (values.empty()) return 0;
   const double rank = std::ceil(part * static_cast<double>(values.size()));
-  const auto place = values.begin() +
-                     std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(rank) - 1, 0, values.size() - 1);
+  const auto place =
+      values.begin() + std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(rank) - 1, 0, values.size() - 1);
   std::nth_element(values.begin(), place, values.end());
   return *place;
 }

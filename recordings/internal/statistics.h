@@ -8,7 +8,8 @@
 
 namespace ctpm::session_file {
 
-/// Adds up a session while its ticks and events go by. Four bytes per tick and measured time, so that percentiles are exact.
+/// Adds up a session while its ticks and events go by. Four bytes per tick and measured time, so that percentiles are
+/// exact.
 class StatisticsCounter {
  public:
   void add(const TickRecord& record);

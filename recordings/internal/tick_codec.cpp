@@ -118,8 +118,7 @@ Result<RecordDecoder> RecordDecoder::create(const std::string& text) {
     });
     const std::size_t index = found - columns.begin();
     if (found == columns.end())
-      return Error{
-          "", "part columns: unknown column '" + line.substr(0, 40) + "', written by a newer program", ""};
+      return Error{"", "part columns: unknown column '" + line.substr(0, 40) + "', written by a newer program", ""};
     if (std::count(decoder.columns_.begin(), decoder.columns_.end(), index) > 0)
       return Error{"", "part columns: column '" + line + "' stands twice", ""};
     decoder.columns_.push_back(index);

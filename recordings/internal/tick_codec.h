@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
+#include "core/model/result.h"
 #include "recordings/internal/bytes.h"
 #include "recordings/internal/field_codec.h"
 #include "recordings/session.h"

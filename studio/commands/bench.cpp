@@ -1,9 +1,9 @@
 #include <memory>
 #include <string>
 
+#include "studio/bench/bench.h"
 #include "studio/commands/command.h"
 #include "studio/console.h"
-#include "studio/reports/bench.h"
 
 namespace ctpm {
 namespace {
@@ -27,8 +27,7 @@ Result<std::vector<BenchStudy>> run_studies(const BenchOptions& options) {
   }
   if (!options.scenes.empty()) return studies;
   for (const auto& [title, run] :
-       {std::pair{"sphere radius", &run_bench_space},
-                                  std::pair{"structure", &run_bench_structure}}) {
+       {std::pair{"sphere radius", &run_bench_space}, std::pair{"structure", &run_bench_structure}}) {
     ProgressLine progress(title);
     Result<BenchStudy> study = run(options, line(progress));
     if (!study) return study.errors();
@@ -38,8 +37,7 @@ Result<std::vector<BenchStudy>> run_studies(const BenchOptions& options) {
 }
 
 int run_bench(const BenchArguments& arguments) {
-  if (const Result<Done> ready = prepare_folder(arguments.folder); !ready)
-    return print_errors(ready.errors());
+  if (const Result<Done> ready = prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
   const Result<std::vector<BenchStudy>> studies = run_studies(arguments.options);
   if (!studies) return print_errors(studies.errors());
   if (const Result<Done> written = write_bench_report(arguments.folder, *studies); !written)
@@ -66,8 +64,7 @@ Command add_bench(CLI::App& program) {
                   "Folder for report.html, results.json and results.csv; made if missing")
       ->required();
   app->add_option("--scenes", arguments->options.shipped, "Folder of the shipped scenes");
-  app->add_flag("--quick", arguments->options.is_quick,
-                "Coarser fillings and fewer settings, for a first look");
+  app->add_flag("--quick", arguments->options.is_quick, "Coarser fillings and fewer settings, for a first look");
   return {app, [arguments] { return run_bench(*arguments); }};
 }
 

@@ -25,8 +25,7 @@ int run_compare(const CompareArguments& arguments) {
   for (const auto* session : {&expert, &trainee})
     if (!*session) errors.insert(errors.end(), session->errors().begin(), session->errors().end());
   if (!errors.empty()) return print_errors(errors);
-  if (const Result<Done> same = check_same_scene(*expert, *trainee); !same)
-    return print_errors(same.errors());
+  if (const Result<Done> same = check_same_scene(*expert, *trainee); !same) return print_errors(same.errors());
   const Result<SessionTrack> expert_track = read_track(*expert);
   const Result<SessionTrack> trainee_track = read_track(*trainee);
   for (const auto* track : {&expert_track, &trainee_track})
@@ -34,8 +33,7 @@ int run_compare(const CompareArguments& arguments) {
   if (!errors.empty()) return print_errors(errors);
   // Only now, so that sessions that are refused leave no folder behind.
   if (!arguments.folder.empty())
-    if (const Result<Done> ready = prepare_folder(arguments.folder); !ready)
-      return print_errors(ready.errors());
+    if (const Result<Done> ready = prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
 
   CompareOptions options;
   if (arguments.has_force_limit) options.force_limit = arguments.force_limit_n;
@@ -58,13 +56,12 @@ int run_compare(const CompareArguments& arguments) {
 
 Command add_compare(CLI::App& program) {
   auto arguments = std::make_shared<CompareArguments>();
-  CLI::App* app = program.add_subcommand(
-      "compare", "Measures a trainee's session against an expert's of the same scene.");
+  CLI::App* app =
+      program.add_subcommand("compare", "Measures a trainee's session against an expert's of the same scene.");
   app->footer("Example: ctpm compare expert.ctpm trainee.ctpm -o out/compare");
   app->add_option("expert", arguments->expert, "Session file of the expert (.ctpm)")->required();
   app->add_option("trainee", arguments->trainee, "Session file of the trainee (.ctpm)")->required();
-  app->add_option("-o,--output", arguments->folder,
-                  "Folder for report.html and results.json; made if missing");
+  app->add_option("-o,--output", arguments->folder, "Folder for report.html and results.json; made if missing");
   const CLI::Option* limit =
       app->add_option("--force-limit", arguments->force_limit_n,
                       "Force that should not be passed [N]; if not given the scene's, or the expert's peak");

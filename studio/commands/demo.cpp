@@ -46,17 +46,14 @@ int run_in_new_process(const std::vector<std::string>& arguments) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : exit_bad_input;
 }
 
-void say_step(int number, const std::string& what) {
-  print_remark("[" + std::to_string(number) + "/5] " + what);
-}
+void say_step(int number, const std::string& what) { print_remark("[" + std::to_string(number) + "/5] " + what); }
 
 int run_demo(const DemoArguments& arguments) {
   const fs::path folder = arguments.folder;
   std::error_code failure;
   fs::create_directories(folder, failure);
   if (failure) return print_errors({{arguments.folder, "cannot be made: " + failure.message(), ""}});
-  const std::string scene_file = (folder / "liver.json").string(),
-                    session_file = (folder / "demo.ctpm").string(),
+  const std::string scene_file = (folder / "liver.json").string(), session_file = (folder / "demo.ctpm").string(),
                     video_file = (folder / "demo.mp4").string();
   const auto start = std::chrono::steady_clock::now();
 
@@ -77,8 +74,7 @@ int run_demo(const DemoArguments& arguments) {
   Result<RecordOutcome> recorded = [&] {
     ProgressLine progress("recording");
     options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
-    return record_script(*scene, default_script(scene->scene.spec, scene->organs), session_file, true,
-                         options);
+    return record_script(*scene, default_script(scene->scene.spec, scene->organs), session_file, true, options);
   }();
   if (!recorded) return print_errors(recorded.errors());
   if (stop.came()) return print_errors({{session_file, "stopped", ""}});
@@ -121,8 +117,8 @@ int run_demo(const DemoArguments& arguments) {
 
 Command add_demo(CLI::App& program) {
   auto arguments = std::make_shared<DemoArguments>();
-  CLI::App* app = program.add_subcommand(
-      "demo", "The main job, start to end: mesh, scene, session, verified replay, video.");
+  CLI::App* app =
+      program.add_subcommand("demo", "The main job, start to end: mesh, scene, session, verified replay, video.");
   app->footer("Example: ctpm demo");
   app->add_option("-o,--output", arguments->folder, "Folder for what it makes")->capture_default_str();
   return {app, [arguments] { return run_demo(*arguments); }};

@@ -23,8 +23,7 @@ void print_outcome(const ExportOutcome& outcome) {
   std::printf("%s: %lld frames, %dx%d, %g frames/s, %s, %.1f MB; replay %s\n", video.path.c_str(),
               (long long)video.frames, video.width, video.height, video.fps, video.codec.c_str(),
               double(video.bytes) / 1e6,
-              outcome.same_as_recorded() ? "same as recorded"
-                                         : "DIFFERS from what was recorded; every frame says so");
+              outcome.same_as_recorded() ? "same as recorded" : "DIFFERS from what was recorded; every frame says so");
   const StageTimes& times = outcome.times;
   const auto share = [&](double part) { return fixed(100 * part / times.work(), 0) + " %"; };
   print_remark("exported in " + fixed(times.elapsed, 1) + " s, " +

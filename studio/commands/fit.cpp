@@ -33,10 +33,8 @@ void print_fit(const OrganSpec& organ, const StiffnessFit& fit) {
               1e3 * f.ball_radius, 1e3 * f.sphere_radius, 1e3 * f.place.x, 1e3 * f.place.y, 1e3 * f.place.z);
   std::printf("depth [mm]   force [N]   Table 1, CTPM [N]   error [%%]\n");
   for (const FitRow& row : fit.rows)
-    std::printf("%10.0f %11.4f %19.4f %11.1f\n", 1e3 * row.depth, row.force, row.closed_form,
-                100 * row.error());
-  std::printf(
-      "\nThe scale is fitted at 12 mm only; the other depths show how the shape of the curve differs.\n");
+    std::printf("%10.0f %11.4f %19.4f %11.1f\n", 1e3 * row.depth, row.force, row.closed_form, 100 * row.error());
+  std::printf("\nThe scale is fitted at 12 mm only; the other depths show how the shape of the curve differs.\n");
 }
 
 int run_fit(const FitArguments& arguments) {
@@ -67,8 +65,7 @@ int run_fit(const FitArguments& arguments) {
 
 Command add_fit(CLI::App& program) {
   auto arguments = std::make_shared<FitArguments>();
-  CLI::App* app =
-      program.add_subcommand("fit", "Fits an organ's stiffness: the paper's ball at 12 mm meets Table 1.");
+  CLI::App* app = program.add_subcommand("fit", "Fits an organ's stiffness: the paper's ball at 12 mm meets Table 1.");
   app->footer("Example: ctpm fit my/liver.json --write");
   app->add_option("scene", arguments->scene, "Scene file (.json)")->required();
   app->add_option("--organ", arguments->organ, "Name of the organ; the first if not given");

@@ -44,7 +44,8 @@ Errors complete(ImportArguments& a) {
   else if (a.largest_hole_mm)
     a.request.largest_hole = 1e-3 * *a.largest_hole_mm;
   if (a.most_triangles && !(*a.most_triangles >= 100 && *a.most_triangles <= 10'000'000))
-    errors.push_back({"--most-triangles", "got " + std::to_string(*a.most_triangles) + ", must be in [100, 10000000]", ""});
+    errors.push_back(
+        {"--most-triangles", "got " + std::to_string(*a.most_triangles) + ", must be in [100, 10000000]", ""});
   else if (a.most_triangles)
     a.request.most_triangles = std::int32_t(*a.most_triangles);
   for (const std::string& text : a.anchors) {
@@ -78,7 +79,8 @@ std::string report_json(const ImportReport& r, const ImportOutcome& outcome) {
   json.key("filling").begin_object().member("radius_mm", r.sphere_radius * 1e3).member("spacing_mm", r.spacing * 1e3);
   json.member("surface_triangles", r.fill.surface_triangles);
   json.member("spheres", r.fill.spheres).member("edges", r.fill.edges).member("volume_ml", r.fill.filled_volume * 1e6);
-  json.member("largest_distance_mm", r.fill.largest_distance * 1e3).member("mean_distance_mm", r.fill.mean_distance * 1e3);
+  json.member("largest_distance_mm", r.fill.largest_distance * 1e3)
+      .member("mean_distance_mm", r.fill.mean_distance * 1e3);
   json.member("anchored", outcome.anchored);
   if (outcome.stiffness_scale) json.member("stiffness_scale", *outcome.stiffness_scale);
   json.key("spheres_per_layer").begin_list();
@@ -104,22 +106,27 @@ void suggest_radius(const ImportReport& report) {
 int run_import(ImportArguments& arguments) {
   if (const Errors errors = complete(arguments); !errors.empty()) return print_errors(errors);
   ProgressLine progress("importing");
-  arguments.request.progress = [&](const std::string&, double fraction) { progress.show(std::int64_t(1000 * fraction), 1000); };
+  arguments.request.progress = [&](const std::string&, double fraction) {
+    progress.show(std::int64_t(1000 * fraction), 1000);
+  };
   const Result<ImportOutcome> outcome = import_scene(arguments.request);
   if (!outcome) return print_errors(outcome.errors());
   if (!arguments.report.empty())
-    if (const Result<Done> written = write_text_file(arguments.report, report_json(outcome->report, *outcome)); !written)
+    if (const Result<Done> written = write_text_file(arguments.report, report_json(outcome->report, *outcome));
+        !written)
       return print_errors(written.errors());
   std::printf("%s", to_text(outcome->report).c_str());
   std::printf("anchored: %zu spheres never move\n", outcome->anchored);
   if (outcome->stiffness_scale)
-    std::printf("stiffness_scale: %.6g, fitted so that the paper's ball meets its Table 1 at 12 mm\n", *outcome->stiffness_scale);
+    std::printf("stiffness_scale: %.6g, fitted so that the paper's ball meets its Table 1 at 12 mm\n",
+                *outcome->stiffness_scale);
   else
     std::printf("stiffness_scale: not fitted, the preset's moduli stay: %s\n", outcome->fit_problem.c_str());
   suggest_radius(outcome->report);
   const std::string scene = arguments.request.scene, stem = scene.substr(0, scene.size() - 5);
   std::printf("written: %s, %s, %s\n", scene.c_str(), outcome->mesh_file.c_str(), outcome->script_file.c_str());
-  std::printf("next: ctpm record %s --script %s -o %s.ctpm\n", scene.c_str(), outcome->script_file.c_str(), stem.c_str());
+  std::printf("next: ctpm record %s --script %s -o %s.ctpm\n", scene.c_str(), outcome->script_file.c_str(),
+              stem.c_str());
   return exit_good;
 }
 
@@ -127,7 +134,8 @@ int run_import(ImportArguments& arguments) {
 
 Command add_import(CLI::App& program) {
   auto arguments = std::make_shared<ImportArguments>();
-  CLI::App* app = program.add_subcommand("import", "Checks, repairs and fills a mesh, and writes a scene that runs as it is.");
+  CLI::App* app =
+      program.add_subcommand("import", "Checks, repairs and fills a mesh, and writes a scene that runs as it is.");
   app->footer("Example: ctpm import liver.stl --organ liver --unit mm -o my/liver.json");
   app->add_option("mesh", arguments->request.mesh, "Mesh file (OBJ, STL, PLY, OFF, glTF, ...)")->required();
   app->add_option("-o,--output", arguments->request.scene, "Scene file to write (.json)")->required();
@@ -141,7 +149,8 @@ Command add_import(CLI::App& program) {
                   "Holes up to this diameter are filled; a tenth of the mesh's diagonal if not given");
   app->add_option("--most-triangles", arguments->most_triangles,
                   "Draw a coarser surface if the mesh has more triangles; the spheres stay the same");
-  app->add_option("--anchor", arguments->anchors, "What never moves: lowest:MM, box:..., sphere:..., plane:... (repeatable)");
+  app->add_option("--anchor", arguments->anchors,
+                  "What never moves: lowest:MM, box:..., sphere:..., plane:... (repeatable)");
   app->add_option("--report", arguments->report, "Write the report as JSON");
   return {app, [arguments] { return run_import(*arguments); }};
 }

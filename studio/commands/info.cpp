@@ -51,9 +51,7 @@ const char* kind_name(EventKind kind) {
 void print_json(SessionReader& reader, const SessionStatistics& s, const std::vector<Event>& events) {
   const Model& model = reader.start().model;
   JsonWriter json;
-  json.begin_object()
-      .member("session_id", reader.session_id())
-      .member("format_version", reader.format_version());
+  json.begin_object().member("session_id", reader.session_id()).member("format_version", reader.format_version());
   json.member("created_utc", utc(reader.created_unix_s())).member("ended_cleanly", reader.ended_cleanly());
   json.member("build", reader.start().build_fingerprint)
       .member("tick_s", model.tick)
@@ -77,10 +75,7 @@ void print_json(SessionReader& reader, const SessionStatistics& s, const std::ve
   for (const auto& [key, value] : reader.start().metadata) json.member(key, value);
   json.end_object().key("events").begin_list();
   for (const Event& event : events) {
-    json.begin_object()
-        .member("tick", event.tick)
-        .member("kind", kind_name(event.kind))
-        .member("text", event.text);
+    json.begin_object().member("tick", event.tick).member("kind", kind_name(event.kind)).member("text", event.text);
     json.key("values").begin_list();
     for (const double value : event.values) json.value(value);
     json.end_list().end_object();
@@ -114,8 +109,8 @@ void print_events(const std::vector<Event>& events, double tick) {
 
 void print_text(SessionReader& reader, const SessionStatistics& s, const std::vector<Event>& events) {
   const Model& model = reader.start().model;
-  std::printf("session    %s, recorded %s%s\n", reader.session_id().c_str(),
-              utc(reader.created_unix_s()).c_str(), reader.ended_cleanly() ? "" : ", without a clean end");
+  std::printf("session    %s, recorded %s%s\n", reader.session_id().c_str(), utc(reader.created_unix_s()).c_str(),
+              reader.ended_cleanly() ? "" : ", without a clean end");
   std::printf("build      %s\n", reader.start().build_fingerprint.c_str());
   print_origin(reader);
   std::printf("duration   %.3f s, %lld ticks of %g ms\n", double(reader.tick_count()) * model.tick,
@@ -124,15 +119,14 @@ void print_text(SessionReader& reader, const SessionStatistics& s, const std::ve
     std::printf("organ      %s: %d spheres in %d layers, radius %g mm, spacing %g mm\n", organ.name.c_str(),
                 organ.count, organ.layer_count, organ.sphere_radius * 1e3, organ.spacing * 1e3);
   std::printf("network    %zu spheres, %zu elements\n", model.sphere_count(), model.element_count());
-  std::printf("tick time  p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms; %lld late\n",
-              s.tick_time_p50 * 1e3, s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3,
-              (long long)s.late_ticks);
+  std::printf("tick time  p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms; %lld late\n", s.tick_time_p50 * 1e3,
+              s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3, (long long)s.late_ticks);
   if (s.input_age_max > 0)
     std::printf("input age  p50 %.3f ms, p99 %.3f ms, max %.3f ms\n", s.input_age_p50 * 1e3, s.input_age_p99 * 1e3,
                 s.input_age_max * 1e3);
   for (const auto& [name, value] : s.values) std::printf("value      %s = %g\n", name.c_str(), value);
-  std::printf("at most    %.3f N, %.2f mm deep; %lld elements severed, %lld pieces came loose\n", s.max_force, s.max_depth * 1e3,
-              (long long)s.severed, (long long)pieces_came_loose(events, reader.tick_count()));
+  std::printf("at most    %.3f N, %.2f mm deep; %lld elements severed, %lld pieces came loose\n", s.max_force,
+              s.max_depth * 1e3, (long long)s.severed, (long long)pieces_came_loose(events, reader.tick_count()));
   print_events(events, model.tick);
 }
 

@@ -3,7 +3,7 @@
 
 #include "studio/commands/command.h"
 #include "studio/console.h"
-#include "studio/reports/paper.h"
+#include "studio/paper/paper.h"
 
 namespace ctpm {
 namespace {
@@ -13,8 +13,7 @@ struct PaperArguments {
 };
 
 int run_paper(const PaperArguments& arguments) {
-  if (const Result<Done> ready = prepare_folder(arguments.folder); !ready)
-    return print_errors(ready.errors());
+  if (const Result<Done> ready = prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
   Result<PaperResults> results = [&] {
     ProgressLine progress("running the paper's experiments");
     return run_paper_experiments(arguments.scenes,
@@ -28,11 +27,11 @@ int run_paper(const PaperArguments& arguments) {
     const ReportVerdict verdict = claim.verdict();
     ++(verdict == ReportVerdict::met ? met : verdict == ReportVerdict::missed ? missed : shown);
     if (verdict == ReportVerdict::missed)
-      std::printf("missed: %s, %s %s %s: %s\n", claim.experiment.c_str(), claim.organ.c_str(),
-                  claim.structure.c_str(), claim.viscosity.c_str(), claim.quantity.c_str());
+      std::printf("missed: %s, %s %s %s: %s\n", claim.experiment.c_str(), claim.organ.c_str(), claim.structure.c_str(),
+                  claim.viscosity.c_str(), claim.quantity.c_str());
   }
-  std::printf("%d figures must hold: %d do, %d do not; %d more are shown as they are\n", met + missed, met,
-              missed, shown);
+  std::printf("%d figures must hold: %d do, %d do not; %d more are shown as they are\n", met + missed, met, missed,
+              shown);
   std::printf("written: %s/report.html, results.json, results.csv\n", arguments.folder.c_str());
   return missed == 0 ? exit_good : exit_bad_verdict;
 }

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/fields.h"
-#include "core/step.h"
+#include "core/model/fields.h"
+#include "core/stepping/step.h"
 #include "studio/commands/command.h"
 #include "studio/console.h"
 #include "studio/json_writer.h"
@@ -55,36 +55,30 @@ std::vector<Feature> features_of(const SceneSpec& scene, const Model& m, const S
     return count > 0 ? std::to_string(count) + " " + what : std::string(none);
   };
   const bool cuts = has_tool(ToolKind::scalpel),
-             limits = std::any_of(scene.organs.begin(), scene.organs.end(), [](const OrganSpec& organ) {
+             limits = std::any_of(scene.organs.begin(), scene.organs.end(), [](const OrganSpec&organ) {
                return organ.damage_depth > 0 || organ.damage_force > 0;
              });
   const std::size_t edges = bytes_of_fields(m, "edges.") - bytes_of(m.edges.c) - bytes_of(m.edges.third);
   return {
       {"spheres", true, std::to_string(m.sphere_count()) + " spheres",
-       bytes_of_fields(m, "rest_position") + bytes_of(m.mass) + bytes_of(m.held_axes) +
-           bytes_of(m.contact_radius) + bytes_of(m.layer) + bytes_of_fields(s, "position") +
-           bytes_of_fields(s, "velocity")},
+       bytes_of_fields(m, "rest_position") + bytes_of(m.mass) + bytes_of(m.held_axes) + bytes_of(m.contact_radius) +
+           bytes_of(m.layer) + bytes_of_fields(s, "position") + bytes_of_fields(s, "velocity")},
       {"springs and Kelvin units", m.edges.size() > 0, counted(m.edges.size(), "edges", "no edges"), edges},
-      {"viscosity", !m.edges.c.empty(),
-       m.edges.c.empty() ? "no edge has a dashpot" : "the material is viscous", bytes_of(m.edges.c)},
+      {"viscosity", !m.edges.c.empty(), m.edges.c.empty() ? "no edge has a dashpot" : "the material is viscous",
+       bytes_of(m.edges.c)},
       {"two-sphere TPMs", m.tpms.size() > 0,
        counted(m.tpms.size(), "with one internal variable each", "no line has an edge left over"),
        bytes_of_fields(m, "tpms.") + bytes_of(s.kelvin_elongation)},
-      {"constraint", m.constraints.size() > 0,
-       counted(m.constraints.size(), "five-sphere lines", "the model has none"),
+      {"constraint", m.constraints.size() > 0, counted(m.constraints.size(), "five-sphere lines", "the model has none"),
        bytes_of_fields(m, "constraints.")},
       {"softening", m.has_softening,
        m.has_softening ? "forces are divided by 1 + tan(theta)" : "no element tilts or it is switched off",
        bytes_of(m.edges.third)},
-      {"angle springs", m.angle_springs.size() > 0,
-       counted(m.angle_springs.size(), "springs", "the model has none"),
+      {"angle springs", m.angle_springs.size() > 0, counted(m.angle_springs.size(), "springs", "the model has none"),
        bytes_of_fields(m, "angle_springs.")},
-      {"gravity", !(m.gravity == Vec3{}),
-       m.gravity == Vec3{} ? "the scene has none" : "the scene asks for it", 0},
-      {"ball contact", has_tool(ToolKind::ball),
-       has_tool(ToolKind::ball) ? "a tool presses" : "no tool presses", 0},
-      {"pin", has_tool(ToolKind::pin),
-       has_tool(ToolKind::pin) ? "a tool holds a sphere" : "no tool holds a sphere", 0},
+      {"gravity", !(m.gravity == Vec3{}), m.gravity == Vec3{} ? "the scene has none" : "the scene asks for it", 0},
+      {"ball contact", has_tool(ToolKind::ball), has_tool(ToolKind::ball) ? "a tool presses" : "no tool presses", 0},
+      {"pin", has_tool(ToolKind::pin), has_tool(ToolKind::pin) ? "a tool holds a sphere" : "no tool holds a sphere", 0},
       {"cutting", cuts, cuts ? "a tool cuts" : "no tool cuts",
        bytes_of_fields(s, "edge_severed") + bytes_of_fields(s, "tpm_severed") +
            bytes_of_fields(s, "constraint_severed") + bytes_of_fields(s, "angle_severed")},
@@ -103,8 +97,7 @@ double measure_tick(const Model& model) {
   for (int i = 0; i < kWarmUp + kMeasured; ++i) {
     const auto start = std::chrono::steady_clock::now();
     (void)stepper.step(state, {});
-    if (i >= kWarmUp)
-      times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    if (i >= kWarmUp) times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
   std::nth_element(times.begin(), times.begin() + kMeasured / 2, times.end());
   return times[kMeasured / 2];
@@ -155,14 +148,13 @@ int run_plan(const PlanArguments& arguments) {
     for (const Feature& f : features)
       if (f.is_in == is_in)
         std::printf("  %-26s %10s  %s\n", f.name.c_str(),
-                    f.bytes > 0 ? (std::to_string((f.bytes + 1023) / 1024) + " KiB").c_str() : "",
-                    f.why.c_str());
+                    f.bytes > 0 ? (std::to_string((f.bytes + 1023) / 1024) + " KiB").c_str() : "", f.why.c_str());
   }
   std::printf("memory: %.1f KiB, %zu bytes a sphere\n", double(total) / 1024,
               total / std::max<std::size_t>(1, model.sphere_count()));
   std::printf("solver: %s\n        because %s\n", solver.c_str(), choice.reason.c_str());
-  std::printf("time: %.3f ms a tick of %g ms at rest, measured now on this machine (median of 41)\n",
-              tick * 1e3, model.tick * 1e3);
+  std::printf("time: %.3f ms a tick of %g ms at rest, measured now on this machine (median of 41)\n", tick * 1e3,
+              model.tick * 1e3);
   return exit_good;
 }
 
@@ -170,8 +162,8 @@ int run_plan(const PlanArguments& arguments) {
 
 Command add_plan(CLI::App& program) {
   auto arguments = std::make_shared<PlanArguments>();
-  CLI::App* app = program.add_subcommand(
-      "plan", "Says what a scene needs and what is left out, memory, time and solver.");
+  CLI::App* app =
+      program.add_subcommand("plan", "Says what a scene needs and what is left out, memory, time and solver.");
   app->footer("Example: ctpm plan scenes/liver.json");
   app->add_option("scene", arguments->scene, "Scene file (.json)")->required();
   app->add_flag("--json", arguments->json, "Print JSON");

@@ -1,7 +1,7 @@
 #include <memory>
 #include <string>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "studio/commands/command.h"
 #include "studio/console.h"
 #include "studio/files.h"
@@ -24,16 +24,14 @@ struct PreviewArguments {
 int run_preview(const PreviewArguments& arguments) {
   const Result<PictureSize> size = parse_picture_size(arguments.size);
   if (!size) return print_errors(size.errors());
-  if (const Result<Done> writable = check_writable(arguments.output); !writable)
-    return print_errors(writable.errors());
+  if (const Result<Done> writable = check_writable(arguments.output); !writable) return print_errors(writable.errors());
   const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
   if (!scene) return print_errors(scene.errors());
   // With --spheres the surface stands on the left half and the layered spheres on the right.
   const int width = arguments.spheres ? size->width / 2 : size->width;
   const Model& model = scene->built.model;
   SceneView view = view_of(scene->scene.spec, model, surfaces_of(scene->organs));
-  const Result<Look> look =
-      find_look(arguments.look, scene->scene.spec, view, double(width) / size->height);
+  const Result<Look> look = find_look(arguments.look, scene->scene.spec, view, double(width) / size->height);
   if (!look) return print_errors(look.errors());
   Result<std::unique_ptr<Renderer>> renderer = Renderer::create(width, size->height, std::move(view));
   if (!renderer) return print_errors(renderer.errors());

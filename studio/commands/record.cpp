@@ -88,14 +88,11 @@ int print_outcome(const std::string& path, const Model& model, const RecordOutco
   if (was_refused)
     print_remark(path + ": error: the simulation was refused at tick " + std::to_string(outcome.run.ticks) +
                  ", sphere " + std::to_string(outcome.run.worst_sphere) + "; what came before is saved");
-  if (!outcome.run.fault.empty())
-    print_remark(path + ": error: " + outcome.run.fault + "; what came before is saved");
+  if (!outcome.run.fault.empty()) print_remark(path + ": error: " + outcome.run.fault + "; what came before is saved");
   std::printf("%s: %.3f s in %lld ticks, at most %.3f N and %.2f mm deep, %lld elements severed\n", path.c_str(),
-              double(s.ticks) * model.tick, (long long)s.ticks, s.max_force, s.max_depth * 1e3,
-              (long long)s.severed);
+              double(s.ticks) * model.tick, (long long)s.ticks, s.max_force, s.max_depth * 1e3, (long long)s.severed);
   std::printf("tick time p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms, %lld late\n", s.tick_time_p50 * 1e3,
-              s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3,
-              (long long)outcome.run.late_ticks);
+              s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3, (long long)outcome.run.late_ticks);
   if (s.input_age_max > 0)
     std::printf("input age p50 %.3f ms, p99 %.3f ms, max %.3f ms\n", s.input_age_p50 * 1e3, s.input_age_p99 * 1e3,
                 s.input_age_max * 1e3);
@@ -142,8 +139,10 @@ void add_device_options(CLI::App& app, DeviceRequest& device) {
   };
   add("--igtl", device.address, "Takes what the hand does from an OpenIGTLink server, HOST:PORT");
   add("--igtl-listen", device.listen_port, "Waits on this port for an OpenIGTLink client; 0: any that is free");
-  add("--igtl-bind", device.interface, "Address of this machine to listen on; others than this machine's own let in "
-      "whoever can reach it")->capture_default_str();
+  add("--igtl-bind", device.interface,
+      "Address of this machine to listen on; others than this machine's own let in "
+      "whoever can reach it")
+      ->capture_default_str();
   add("--igtl-name", device.name, "Takes poses of the device of this name alone");
   add("--device-tool", device.tool, "Tool in the hand; the scene's first if not given");
   add("--device-button", device.buttons, "BUTTON=TOOL: while the button is pressed, this tool is; none after =");

@@ -33,9 +33,9 @@ std::string csv_row(const Model& model, const ReplayCursor& cursor) {
   char row[512];
   std::snprintf(row, sizeof row,
                 "%lld,%.6f,%s,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%u,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%d,%d\n",
-                (long long)(cursor.tick() - 1), double(cursor.tick() - 1) * model.tick, tool.c_str(),
-                p.x * 1e3, p.y * 1e3, p.z * 1e3, q.w, q.x, q.y, q.z, in.buttons, f.x, f.y, f.z, norm(f),
-                report.depth * 1e3, report.contacts, report.severed, cursor.same_so_far() ? 1 : 0);
+                (long long)(cursor.tick() - 1), double(cursor.tick() - 1) * model.tick, tool.c_str(), p.x * 1e3,
+                p.y * 1e3, p.z * 1e3, q.w, q.x, q.y, q.z, in.buttons, f.x, f.y, f.z, norm(f), report.depth * 1e3,
+                report.contacts, report.severed, cursor.same_so_far() ? 1 : 0);
   return row;
 }
 
@@ -46,8 +46,7 @@ int run_replay(const ReplayArguments& arguments) {
   const Result<TickRange> range = arguments.range.in_ticks(arguments.file, model.tick, reader->tick_count());
   if (!range) return print_errors(range.errors());
   if (!arguments.csv.empty())
-    if (const Result<Done> writable = check_writable(arguments.csv); !writable)
-      return print_errors(writable.errors());
+    if (const Result<Done> writable = check_writable(arguments.csv); !writable) return print_errors(writable.errors());
 
   Result<ReplayCursor> cursor = ReplayCursor::create(*reader);
   if (!cursor) return print_errors(cursor.errors());
@@ -68,8 +67,8 @@ int run_replay(const ReplayArguments& arguments) {
       return print_errors(written.errors());
   std::printf("%s: %lld ticks replayed, at most %.3f N and %.2f mm deep, %s%s%s\n", arguments.file.c_str(),
               (long long)(range->to - range->from), most_force, most_depth * 1e3,
-              cursor->same_so_far() ? "as recorded" : "NOT as recorded",
-              arguments.csv.empty() ? "" : "; written to ", arguments.csv.c_str());
+              cursor->same_so_far() ? "as recorded" : "NOT as recorded", arguments.csv.empty() ? "" : "; written to ",
+              arguments.csv.c_str());
   return cursor->same_so_far() ? exit_good : exit_bad_verdict;
 }
 
@@ -77,8 +76,8 @@ int run_replay(const ReplayArguments& arguments) {
 
 Command add_replay(CLI::App& program) {
   auto arguments = std::make_shared<ReplayArguments>();
-  CLI::App* app = program.add_subcommand(
-      "replay", "Simulates a session again; writes what happened in each tick as CSV.");
+  CLI::App* app =
+      program.add_subcommand("replay", "Simulates a session again; writes what happened in each tick as CSV.");
   app->footer("Example: ctpm replay out/demo.ctpm --from-s 1 --to-s 3 --csv out/demo.csv");
   app->add_option("session", arguments->file, "Session file (.ctpm)")->required();
   add_time_range(*app, arguments->range);

@@ -5,7 +5,7 @@
 #include "studio/commands/command.h"
 #include "studio/console.h"
 #include "studio/reports/report.h"
-#include "studio/reports/stability.h"
+#include "studio/stability/stability.h"
 
 namespace ctpm {
 namespace {
@@ -22,8 +22,7 @@ Result<std::vector<StabilityCase>> chosen_cases(const StabilityArguments& argume
   if (arguments.keys.empty()) return all;
   Errors errors;
   for (const std::string& key : arguments.keys) {
-    const auto it =
-        std::find_if(all.begin(), all.end(), [&](const StabilityCase& c) { return c.key == key; });
+    const auto it = std::find_if(all.begin(), all.end(), [&](const StabilityCase& c) { return c.key == key; });
     if (it != all.end())
       chosen.push_back(*it);
     else
@@ -39,19 +38,17 @@ void print_runs(const std::vector<StabilityRow>& rows) {
     for (const StabilityRun& run : row.runs) {
       ++counts[int(run.verdict)];
       if (run.verdict == ReportVerdict::missed)
-        std::printf("missed: %s under %s: %s\n", row.what->title.c_str(), name_of(run.asked),
-                    run.reason.c_str());
+        std::printf("missed: %s under %s: %s\n", row.what->title.c_str(), name_of(run.asked), run.reason.c_str());
     }
-  std::printf("%zu cases, %zu integrators: %lld runs hold, %lld were refused beforehand, %lld fail\n",
-              rows.size(), std::size(kStabilityIntegrators), (long long)counts[int(ReportVerdict::met)],
+  std::printf("%zu cases, %zu integrators: %lld runs hold, %lld were refused beforehand, %lld fail\n", rows.size(),
+              std::size(kStabilityIntegrators), (long long)counts[int(ReportVerdict::met)],
               (long long)counts[int(ReportVerdict::refused)], (long long)counts[int(ReportVerdict::missed)]);
 }
 
 int run_stability_command(const StabilityArguments& arguments) {
   const Result<std::vector<StabilityCase>> cases = chosen_cases(arguments);
   if (!cases) return print_errors(cases.errors());
-  if (const Result<Done> ready = prepare_folder(arguments.folder); !ready)
-    return print_errors(ready.errors());
+  if (const Result<Done> ready = prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
   const std::vector<StabilityRow> rows = [&] {
     ProgressLine progress("running the stability cases");
     return run_stability(*cases, [&](std::int64_t done, std::int64_t total) { progress.show(done, total); });
@@ -67,8 +64,8 @@ int run_stability_command(const StabilityArguments& arguments) {
 
 Command add_stability(CLI::App& program) {
   auto arguments = std::make_shared<StabilityArguments>();
-  CLI::App* app = program.add_subcommand(
-      "stability", "Runs stiff and extreme cases under every integrator and says what holds.");
+  CLI::App* app =
+      program.add_subcommand("stability", "Runs stiff and extreme cases under every integrator and says what holds.");
   app->footer(
       "Example: ctpm stability -o out/stability\n"
       "Exit code 1 if the integrator that auto chooses fails any case.");

@@ -19,8 +19,8 @@ struct VerifyArguments {
 /// Prints the verdict; a difference between builds explains itself.
 void print_verdict(const SessionReader& session, const Verdict& verdict, double seconds) {
   const double lived = double(verdict.ticks_compared) * session.start().model.tick;
-  std::printf("%s: %s; %.1f times as fast as it was lived\n", session.path().c_str(),
-              to_string(verdict).c_str(), lived / std::max(seconds, 1e-9));
+  std::printf("%s: %s; %.1f times as fast as it was lived\n", session.path().c_str(), to_string(verdict).c_str(),
+              lived / std::max(seconds, 1e-9));
   if (verdict.same) return;
   std::printf("recorded by: %s\nreplayed by: %s\n", session.start().build_fingerprint.c_str(),
               build_fingerprint().c_str());
@@ -42,8 +42,7 @@ int run_verify(const VerifyArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const Result<Verdict> verdict = verify_session(*reader, options);
   if (!verdict) return print_errors(verdict.errors());
-  print_verdict(*reader, *verdict,
-                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  print_verdict(*reader, *verdict, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return verdict->same ? exit_good : exit_bad_verdict;
 }
 
@@ -51,8 +50,7 @@ int run_verify(const VerifyArguments& arguments) {
 
 Command add_verify(CLI::App& program) {
   auto arguments = std::make_shared<VerifyArguments>();
-  CLI::App* app =
-      program.add_subcommand("verify", "Replays a session without pictures and compares every state hash.");
+  CLI::App* app = program.add_subcommand("verify", "Replays a session without pictures and compares every state hash.");
   app->footer("Example: ctpm verify out/demo.ctpm");
   app->add_option("session", arguments->file, "Session file (.ctpm)")->required();
   app->add_option("--threads", arguments->threads, "Parts between keyframes that are replayed side by side")

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/result.h"
+#include "core/model/result.h"
 
 namespace ctpm {
 namespace {
@@ -21,8 +21,7 @@ struct Row {
 /// Rows of the band around the diagonal; neighbours always overlap, so that a way leads through.
 std::vector<Row> band_rows(std::size_t rows, std::size_t columns, double band) {
   const double slope = rows > 1 ? double(columns - 1) / double(rows - 1) : 0;
-  const double half =
-      rows > 1 ? std::max(band * double(std::max(rows, columns)), slope + 1) : double(columns);
+  const double half = rows > 1 ? std::max(band * double(std::max(rows, columns)), slope + 1) : double(columns);
   std::vector<Row> result;
   for (std::size_t i = 0; i < rows; ++i) {
     const double middle = slope * double(i);
@@ -70,8 +69,7 @@ Alignment align_paths(std::span<const Vec3> a, std::span<const Vec3> b, double b
     if (step != From::a_only) --j;
   }
   std::reverse(alignment.pairs.begin(), alignment.pairs.end());
-  for (const AlignedPair& pair : alignment.pairs)
-    alignment.largest = std::max(alignment.largest, pair.distance);
+  for (const AlignedPair& pair : alignment.pairs) alignment.largest = std::max(alignment.largest, pair.distance);
   return alignment;
 }
 

@@ -11,26 +11,23 @@ constexpr double kMillimetres = 1e3;
 constexpr std::size_t kCurvePoints = 1200;  // of a curve over time: more than a screen shows
 constexpr int kExpertColour = 0, kTraineeColour = 1, kNeutralColour = 6;
 constexpr int kPlaneWidth = 520, kPlaneHeight = 400;
-constexpr double kPlaneAspect =
-    double(kPlaneWidth - 76) / (kPlaneHeight - 76);  // of what lies within the axes
+constexpr double kPlaneAspect = double(kPlaneWidth - 76) / (kPlaneHeight - 76);  // of what lies within the axes
 
 /// The largest of each run of values, so that no peak is lost, over time.
-Series curve(const std::string& name, const SessionTrack& track, const std::vector<double>& value,
-             double scale, int colour) {
+Series curve(const std::string& name, const SessionTrack& track, const std::vector<double>& value, double scale,
+             int colour) {
   Series series{.name = name, .colour = colour};
   const std::size_t step = std::max<std::size_t>(1, value.size() / kCurvePoints);
   for (std::size_t i = 0; i < value.size(); i += step) {
     const auto first = value.begin() + std::ptrdiff_t(i);
     series.x.push_back(track.seconds(i));
-    series.y.push_back(scale *
-                       *std::max_element(first, first + std::ptrdiff_t(std::min(step, value.size() - i))));
+    series.y.push_back(scale * *std::max_element(first, first + std::ptrdiff_t(std::min(step, value.size() - i))));
   }
   return series;
 }
 
 Series level(const std::string& name, double from, double to, double value) {
-  return {
-      .name = name, .x = {from, to}, .y = {value, value}, .stroke = Stroke::dashed, .colour = kNeutralColour};
+  return {.name = name, .x = {from, to}, .y = {value, value}, .stroke = Stroke::dashed, .colour = kNeutralColour};
 }
 
 /// A plane through the scene: from above, or from the side with z up.
@@ -67,8 +64,7 @@ void set_equal_scales(Plot& plot) {
 }
 
 /// A path as lines of the plane, one series for each stroke: the tool does not fly between two.
-void add_path(Plot& plot, const std::string& name, const SessionTrack& track, const Plane& plane,
-              int colour) {
+void add_path(Plot& plot, const std::string& name, const SessionTrack& track, const Plane& plane, int colour) {
   const std::size_t step = std::max<std::size_t>(1, track.tick_count() / (2 * kCurvePoints));
   bool is_first = true;
   for (const Spell& stroke : track.strokes) {
@@ -91,8 +87,8 @@ Plot deviation_plot(const Comparison& comparison) {
     series.x.push_back(comparison.trainee_time[pair.b]);
     series.y.push_back(kMillimetres * pair.distance);
   }
-  plot.series = {series, level("half a sphere spacing", 0, comparison.trainee_time.back(),
-                               kMillimetres * comparison.path_limit)};
+  plot.series = {
+      series, level("half a sphere spacing", 0, comparison.trainee_time.back(), kMillimetres * comparison.path_limit)};
   return plot;
 }
 
@@ -129,9 +125,8 @@ std::vector<Plot> plots_over_time(const ComparedSessions& compared) {
 std::vector<Plot> plots_of_paths(const ComparedSessions& compared) {
   std::vector<Plot> plots;
   for (const Plane& plane : kPlanes) {
-    Plot plot{.title = std::string("Path of the tool, ") + plane.title,
-              .x_title = plane.x_title,
-              .y_title = plane.y_title};
+    Plot plot{
+        .title = std::string("Path of the tool, ") + plane.title, .x_title = plane.x_title, .y_title = plane.y_title};
     add_path(plot, "expert", compared.expert, plane, kExpertColour);
     add_path(plot, "trainee", compared.trainee, plane, kTraineeColour);
     set_equal_scales(plot);
@@ -148,22 +143,19 @@ std::vector<Plot> plots_of_cut(const ComparedSessions& compared) {
   const std::size_t axial_count = ElementPlaces(scene.model).constraints;
   for (std::size_t i = 0; i < axial_count; ++i) {
     const bool in_a = expert.severed_at[i] >= 0, in_b = trainee.severed_at[i] >= 0;
-    if (in_a || in_b)
-      (in_a && in_b ? both : in_a ? expert_only : trainee_only).push_back(rest_middle(scene.model, i));
+    if (in_a || in_b) (in_a && in_b ? both : in_a ? expert_only : trainee_only).push_back(rest_middle(scene.model, i));
   }
   std::vector<Plot> plots;
   if (both.empty() && expert_only.empty() && trainee_only.empty()) return plots;
   for (const Plane& plane : kPlanes) {
-    Plot plot{
-        .title = std::string("Cut, ") + plane.title, .x_title = plane.x_title, .y_title = plane.y_title};
+    Plot plot{.title = std::string("Cut, ") + plane.title, .x_title = plane.x_title, .y_title = plane.y_title};
     for (const Path& path : cut_paths(expert))
       plot.series.push_back(in_plane("", path, plane, Stroke::line, kExpertColour));
     for (const Path& path : cut_paths(trainee))
       plot.series.push_back(in_plane("", path, plane, Stroke::line, kTraineeColour));
     plot.series.push_back(in_plane("severed by both", both, plane, Stroke::marks, 2));
     plot.series.push_back(in_plane("by the expert only", expert_only, plane, Stroke::crosses, kExpertColour));
-    plot.series.push_back(
-        in_plane("by the trainee only", trainee_only, plane, Stroke::crosses, kTraineeColour));
+    plot.series.push_back(in_plane("by the trainee only", trainee_only, plane, Stroke::crosses, kTraineeColour));
     plot.caption = "Marks: severed elements at rest. Lines: the blade's tip while it severs.";
     set_equal_scales(plot);
     plots.push_back(plot);

@@ -26,21 +26,16 @@ Cell cell_of(std::optional<double> value) { return value ? Cell(*value) : Cell()
 
 Table measures_table(const Comparison& comparison) {
   Table table;
-  table.columns = {{"key", "key"},
-                   {"measure", "measure"},
-                   {"expert", "expert"},
-                   {"trainee", "trainee"},
-                   {"unit", "unit"},
-                   {"better_is", "better is"},
-                   {"trainee_is", "trainee is"},
-                   {"meaning", "what it is"},
-                   {"source", "source"}};
+  table.columns = {
+      {"key", "key"},      {"measure", "measure"},     {"expert", "expert"},         {"trainee", "trainee"},
+      {"unit", "unit"},    {"better_is", "better is"}, {"trainee_is", "trainee is"}, {"meaning", "what it is"},
+      {"source", "source"}};
   for (const MeasuredValue& value : comparison.values) {
     const Measure& m = *value.measure;
-    table.rows.push_back({std::string(m.key), std::string(m.title), cell_of(value.expert),
-                          cell_of(value.trainee), std::string(m.unit), std::string(to_word(m.direction)),
-                          value.note.empty() ? standing_of(value) : "no value: " + value.note,
-                          std::string(m.meaning), std::string(m.source)});
+    table.rows.push_back({std::string(m.key), std::string(m.title), cell_of(value.expert), cell_of(value.trainee),
+                          std::string(m.unit), std::string(to_word(m.direction)),
+                          value.note.empty() ? standing_of(value) : "no value: " + value.note, std::string(m.meaning),
+                          std::string(m.source)});
   }
   return table;
 }
@@ -51,9 +46,9 @@ Table moments_table(const Comparison& comparison) {
       {"worst_s", "worst at [s]"}, {"from_s", "from [s]"}, {"to_s", "to [s]"}, {"what", "what"},
       {"value", "value"},          {"limit", "limit"},     {"unit", "unit"},   {"severity", "severity", 3}};
   for (const Moment& moment : comparison.moments)
-    table.rows.push_back({moment.worst_s, moment.from_s, moment.to_s, std::string(to_word(moment.kind)),
-                          moment.value, moment.kind == MomentKind::stray_cut ? Cell() : Cell(moment.limit),
-                          std::string(moment.unit), moment.severity});
+    table.rows.push_back({moment.worst_s, moment.from_s, moment.to_s, std::string(to_word(moment.kind)), moment.value,
+                          moment.kind == MomentKind::stray_cut ? Cell() : Cell(moment.limit), std::string(moment.unit),
+                          moment.severity});
   table.caption =
       "Times are those of the trainee's session. What harms the tissue comes first. Severity is how far the "
       "worst value is "
@@ -74,8 +69,7 @@ Table with_columns(const Table& table, const std::vector<std::string>& keys) {
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
       if (table.columns[i].key != key) continue;
       result.columns.push_back(table.columns[i]);
-      for (std::size_t row = 0; row < table.rows.size(); ++row)
-        result.rows[row].push_back(table.rows[row][i]);
+      for (std::size_t row = 0; row < table.rows.size(); ++row) result.rows[row].push_back(table.rows[row][i]);
     }
   return result;
 }
@@ -84,11 +78,9 @@ std::string number(std::optional<double> value) { return value ? short_number(*v
 
 std::string describe(const Moment& moment) {
   char text[200];
-  const std::string limit =
-      moment.kind == MomentKind::stray_cut ? "" : ", limit " + short_number(moment.limit);
-  std::snprintf(text, sizeof text, "%7.2f s  %s: %s %s%s, from %.2f s to %.2f s", moment.worst_s,
-                to_word(moment.kind), short_number(moment.value).c_str(), moment.unit, limit.c_str(),
-                moment.from_s, moment.to_s);
+  const std::string limit = moment.kind == MomentKind::stray_cut ? "" : ", limit " + short_number(moment.limit);
+  std::snprintf(text, sizeof text, "%7.2f s  %s: %s %s%s, from %.2f s to %.2f s", moment.worst_s, to_word(moment.kind),
+                short_number(moment.value).c_str(), moment.unit, limit.c_str(), moment.from_s, moment.to_s);
   return text;
 }
 
@@ -116,8 +108,7 @@ std::vector<std::string> remarks_of(const ComparedSessions& compared) {
   const auto& [expert, trainee, scene, comparison] = compared;
   std::vector<std::string> remarks;
   if (expert.initial_state != trainee.initial_state)
-    remarks.push_back(
-        "the sessions begin from different states of the tissue: one goes on from a moment of another");
+    remarks.push_back("the sessions begin from different states of the tissue: one goes on from a moment of another");
   for (const SessionTrack* track : {&expert, &trainee}) {
     if (!track->has_end) remarks.push_back(track->path + " has no clean end: what is there is measured");
     if (!track->replays)
@@ -145,8 +136,7 @@ std::string comparison_text(const ComparedSessions& compared) {
     row.erase(row.find_last_not_of(' ') + 1);
     text += row + "\n";
   }
-  text += comparison.moments.empty() ? "no moment goes beyond a limit\n"
-                                     : "worst moments of the trainee's session:\n";
+  text += comparison.moments.empty() ? "no moment goes beyond a limit\n" : "worst moments of the trainee's session:\n";
   for (std::size_t i = 0; i < std::min(kMomentsOnConsole, comparison.moments.size()); ++i)
     text += describe(comparison.moments[i]) + "\n";
   if (comparison.moments.size() > kMomentsOnConsole)
@@ -167,8 +157,7 @@ std::string comparison_json(const ComparedSessions& compared) {
   write_session(json, "expert", compared.expert);
   write_session(json, "trainee", compared.trainee);
   if (comparison.force_limit)
-    json.member("force_limit_n", *comparison.force_limit)
-        .member("force_limit_from", comparison.force_limit_from);
+    json.member("force_limit_n", *comparison.force_limit).member("force_limit_from", comparison.force_limit_from);
   if (comparison.damage_depth > 0) json.member("damage_depth_mm", 1e3 * comparison.damage_depth);
   json.member("alignment_band", kAlignmentBand);
   json.key("measures");
@@ -183,8 +172,7 @@ std::string comparison_json(const ComparedSessions& compared) {
 
 Result<Done> write_comparison(const std::string& folder, const ComparedSessions& compared) {
   const Comparison& comparison = compared.comparison;
-  const std::string scene =
-      compared.expert.scene_name.empty() ? "" : "Scene " + compared.expert.scene_name + ". ";
+  const std::string scene = compared.expert.scene_name.empty() ? "" : "Scene " + compared.expert.scene_name + ". ";
   Report report("A trainee's session beside an expert's",
                 scene + "Expert: " + compared.expert.path + ". Trainee: " + compared.trainee.path + ".");
   for (const std::string& remark : remarks_of(compared)) report.add_verdict(false, remark);
@@ -196,8 +184,8 @@ Result<Done> write_comparison(const std::string& folder, const ComparedSessions&
     report.add_paragraph("To see the worst: " + export_command(compared.trainee, comparison.moments.front()));
   }
   report.add_heading("Measures");
-  report.add_table(with_columns(measures_table(comparison),
-                                {"measure", "expert", "trainee", "unit", "better_is", "trainee_is"}));
+  report.add_table(
+      with_columns(measures_table(comparison), {"measure", "expert", "trainee", "unit", "better_is", "trainee_is"}));
   report.add_heading("Force and depth");
   if (const std::vector<Plot> plots = plots_over_time(compared); !plots.empty())
     report.add_plots(plots);

@@ -74,30 +74,21 @@ constexpr Measure kJerk{"log_dimensionless_jerk",
                         "of the tip's path in each movement between two pauses; larger is smoother",
                         kBalasubramanian};
 constexpr Measure kIdle{
-    "idle_time_s", "idle time", "s", lower, "a tool in the hand, slower than 5 mm/s for at least 0.3 s",
-    kDAngelo};
-constexpr Measure kPeakForce{
-    "peak_force_n", "peak force", "N", lower, "largest force between tool and tissue", kHoreman};
-constexpr Measure kMeanForce{
-    "mean_force_n", "mean force", "N", lower, "over the time in which there is a force", kHoreman};
-constexpr Measure kTimeAbove{"time_above_force_limit_s",
-                             "time above the force limit",
-                             "s",
-                             lower,
-                             "with a force above the limit",
-                             kTrejos};
+    "idle_time_s", "idle time", "s", lower, "a tool in the hand, slower than 5 mm/s for at least 0.3 s", kDAngelo};
+constexpr Measure kPeakForce{"peak_force_n", "peak force", "N", lower, "largest force between tool and tissue",
+                             kHoreman};
+constexpr Measure kMeanForce{"mean_force_n", "mean force", "N", lower, "over the time in which there is a force",
+                             kHoreman};
+constexpr Measure kTimeAbove{
+    "time_above_force_limit_s", "time above the force limit", "s", lower, "with a force above the limit", kTrejos};
 constexpr Measure kImpulseAbove{"impulse_above_force_limit_n_s",
                                 "impulse above the force limit",
                                 "N s",
                                 lower,
                                 "integral over time of what is above the limit",
                                 kTrejos};
-constexpr Measure kDepth{"largest_depth_mm",
-                         "largest depth",
-                         "mm",
-                         nearer,
-                         "how far the tool pushes the tissue from rest",
-                         kNetwork};
+constexpr Measure kDepth{
+    "largest_depth_mm", "largest depth", "mm", nearer, "how far the tool pushes the tissue from rest", kNetwork};
 constexpr Measure kBeyondDamage{"time_beyond_damage_depth_s",
                                 "time beyond the damage depth",
                                 "s",
@@ -138,12 +129,9 @@ constexpr Measure kCutHausdorff{"cut_path_hausdorff_mm",
                                 lower,
                                 "the farthest that a point of either path is from the other",
                                 kHuttenlocher};
-constexpr Measure kCutDepth{"cut_depth_mm",
-                            "depth of the cut",
-                            "mm",
-                            nearer,
-                            "of the deepest severed edge below the surface, at rest",
-                            kNetwork};
+constexpr Measure kCutDepth{
+    "cut_depth_mm", "depth of the cut", "mm", nearer, "of the deepest severed edge below the surface, at rest",
+    kNetwork};
 constexpr Measure kAlignedMean{"aligned_deviation_mean_mm",
                                "mean deviation of the aligned paths",
                                "mm",
@@ -236,8 +224,8 @@ double completion_time(const SessionTrack& track) {
 }
 
 double time_beyond(const SessionTrack& track, double depth) {
-  return track.seconds(std::size_t(
-      std::count_if(track.depth.begin(), track.depth.end(), [&](double d) { return d > depth; })));
+  return track.seconds(
+      std::size_t(std::count_if(track.depth.begin(), track.depth.end(), [&](double d) { return d > depth; })));
 }
 
 /// The tool's places that are aligned: points of all strokes, fewer a second in a long session.
@@ -271,8 +259,7 @@ void add_force(Comparison& comparison, const SessionTrack& expert, const Session
     comparison.values.push_back({&kImpulseAbove, a.impulse_above, b.impulse_above});
   } else {
     for (const Measure* measure : {&kTimeAbove, &kImpulseAbove})
-      comparison.values.push_back(
-          {.measure = measure, .note = "no limit: the expert met no force, and none is given"});
+      comparison.values.push_back({.measure = measure, .note = "no limit: the expert met no force, and none is given"});
   }
 }
 
@@ -282,8 +269,8 @@ void add_depth(Comparison& comparison, const SessionTrack& expert, const Session
   };
   comparison.values.push_back({&kDepth, deepest(expert), deepest(trainee)});
   if (comparison.damage_depth > 0)
-    comparison.values.push_back({&kBeyondDamage, time_beyond(expert, comparison.damage_depth),
-                                 time_beyond(trainee, comparison.damage_depth)});
+    comparison.values.push_back(
+        {&kBeyondDamage, time_beyond(expert, comparison.damage_depth), time_beyond(trainee, comparison.damage_depth)});
   else
     comparison.values.push_back({.measure = &kBeyondDamage, .note = "no organ has a damage limit"});
 }
@@ -308,10 +295,8 @@ void add_cut(Comparison& comparison, const SessionTrack& expert, const SessionTr
   const std::optional<double> depth_a = millimetres(cut_depth(expert, scene)),
                               depth_b = millimetres(cut_depth(trainee, scene));
   if (expert.cuts.empty() || trainee.cuts.empty()) {
-    const std::string note =
-        std::string("the ") + (expert.cuts.empty() ? "expert" : "trainee") + " did not cut";
-    for (const Measure* measure : {&kCutMean, &kCutHausdorff})
-      values.push_back({.measure = measure, .note = note});
+    const std::string note = std::string("the ") + (expert.cuts.empty() ? "expert" : "trainee") + " did not cut";
+    for (const Measure* measure : {&kCutMean, &kCutHausdorff}) values.push_back({.measure = measure, .note = note});
   } else {
     const PathDistance distance = distance_between(cut_paths(expert), cut_paths(trainee), kCutPathSpacing);
     values.push_back({.measure = &kCutMean, .trainee = kMillimetres * distance.mean});
@@ -337,8 +322,8 @@ const char* to_word(Direction direction) {
   return direction == lower ? "lower" : direction == higher ? "higher" : "as the expert";
 }
 
-Comparison compare_sessions(const SessionTrack& expert, const SessionTrack& trainee,
-                            const SessionStart& scene, const CompareOptions& options) {
+Comparison compare_sessions(const SessionTrack& expert, const SessionTrack& trainee, const SessionStart& scene,
+                            const CompareOptions& options) {
   Comparison comparison;
   set_force_limit(comparison, expert, options);
   for (const OrganRange& organ : scene.model.organs) {
@@ -355,10 +340,8 @@ Comparison compare_sessions(const SessionTrack& expert, const SessionTrack& trai
   collect_path(expert, comparison.expert_path, comparison.expert_time);
   collect_path(trainee, comparison.trainee_path, comparison.trainee_time);
   comparison.alignment = align_paths(comparison.expert_path, comparison.trainee_path);
-  comparison.values.push_back(
-      {.measure = &kAlignedMean, .trainee = kMillimetres * comparison.alignment.mean});
-  comparison.values.push_back(
-      {.measure = &kAlignedLargest, .trainee = kMillimetres * comparison.alignment.largest});
+  comparison.values.push_back({.measure = &kAlignedMean, .trainee = kMillimetres * comparison.alignment.mean});
+  comparison.values.push_back({.measure = &kAlignedLargest, .trainee = kMillimetres * comparison.alignment.largest});
   comparison.moments = worst_moments(comparison, expert, trainee);
   return comparison;
 }

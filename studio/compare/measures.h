@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
+#include "core/model/result.h"
 #include "studio/compare/alignment.h"
 #include "studio/compare/session_track.h"
 
@@ -33,9 +33,8 @@ struct Measure {
 /// A measure of both sessions, or of the trainee's against the expert's.
 struct MeasuredValue {
   const Measure* measure = nullptr;
-  std::optional<double> expert = {},
-                        trainee = {};  ///< in the measure's unit; expert unset for measures of the pair
-  std::string note = {};               ///< why there is no value; empty if there is one
+  std::optional<double> expert = {}, trainee = {};  ///< in the measure's unit; expert unset for measures of the pair
+  std::string note = {};                            ///< why there is no value; empty if there is one
 };
 
 enum class MomentKind { force, depth, deviation, pause, stray_cut };
@@ -72,7 +71,7 @@ struct Comparison {
 };
 
 /// Measures a trainee's session against an expert's of the same scene (check_same_scene).
-Comparison compare_sessions(const SessionTrack& expert, const SessionTrack& trainee,
-                            const SessionStart& scene, const CompareOptions& options = {});
+Comparison compare_sessions(const SessionTrack& expert, const SessionTrack& trainee, const SessionStart& scene,
+                            const CompareOptions& options = {});
 
 }  // namespace ctpm

@@ -14,18 +14,16 @@ constexpr double kPauseAllowed = 1;  // [s]
 constexpr double kMillimetres = 1e3;
 
 /// One moment for each run of values above `limit`; `time[i]` is when `value[i]` was.
-std::vector<Moment> moments_above(MomentKind kind, const std::vector<double>& value,
-                                  const std::vector<double>& time, double limit, std::size_t gap,
-                                  double scale, const char* unit) {
+std::vector<Moment> moments_above(MomentKind kind, const std::vector<double>& value, const std::vector<double>& time,
+                                  double limit, std::size_t gap, double scale, const char* unit) {
   std::vector<bool> is_above;
   for (const double v : value) is_above.push_back(v > limit);
   std::vector<Moment> moments;
   for (const Spell& spell : spells_of(is_above, 1, gap)) {
-    const auto worst = std::max_element(value.begin() + std::ptrdiff_t(spell.first),
-                                        value.begin() + std::ptrdiff_t(spell.last));
-    moments.push_back({kind, time[spell.first], time[spell.last - 1],
-                       time[std::size_t(worst - value.begin())], scale * *worst, scale * limit, unit,
-                       *worst / limit - 1});
+    const auto worst =
+        std::max_element(value.begin() + std::ptrdiff_t(spell.first), value.begin() + std::ptrdiff_t(spell.last));
+    moments.push_back({kind, time[spell.first], time[spell.last - 1], time[std::size_t(worst - value.begin())],
+                       scale * *worst, scale * limit, unit, *worst / limit - 1});
   }
   return moments;
 }
@@ -67,15 +65,15 @@ std::vector<Moment> long_pauses(const SessionTrack& expert, const SessionTrack& 
   for (const Pause& pause : pauses_of(trainee)) {
     const double length = pause.to_s - pause.from_s;
     if (length > allowed)
-      moments.push_back({MomentKind::pause, pause.from_s, pause.to_s, pause.from_s, length, allowed, "s",
-                         length / allowed - 1});
+      moments.push_back(
+          {MomentKind::pause, pause.from_s, pause.to_s, pause.from_s, length, allowed, "s", length / allowed - 1});
   }
   return moments;
 }
 
 std::vector<Moment> stray_cuts(const SessionTrack& expert, const SessionTrack& trainee) {
-  const auto by_expert = std::count_if(expert.severed_at.begin(), expert.severed_at.end(),
-                                       [](std::int64_t tick) { return tick >= 0; });
+  const auto by_expert =
+      std::count_if(expert.severed_at.begin(), expert.severed_at.end(), [](std::int64_t tick) { return tick >= 0; });
   std::vector<Moment> moments;
   for (const Spell& cut : trainee.cuts) {
     std::vector<std::int64_t> ticks;  // of elements that the expert left whole
@@ -87,9 +85,9 @@ std::vector<Moment> stray_cuts(const SessionTrack& expert, const SessionTrack& t
     if (ticks.empty()) continue;
     const auto [first, last] = std::minmax_element(ticks.begin(), ticks.end());
     const double count = double(ticks.size());
-    moments.push_back({MomentKind::stray_cut, trainee.seconds(std::size_t(*first)),
-                       trainee.seconds(std::size_t(*last)), trainee.seconds(std::size_t(*first)), count, 0,
-                       "elements", count / std::max(1.0, double(by_expert))});
+    moments.push_back({MomentKind::stray_cut, trainee.seconds(std::size_t(*first)), trainee.seconds(std::size_t(*last)),
+                       trainee.seconds(std::size_t(*first)), count, 0, "elements",
+                       count / std::max(1.0, double(by_expert))});
   }
   return moments;
 }
@@ -137,11 +135,10 @@ std::vector<Moment> worst_moments(const Comparison& comparison, const SessionTra
   const auto gap = std::size_t(std::llround(kSameMoment / trainee.tick));
   std::vector<Moment> moments;
   if (comparison.force_limit)
-    append(moments,
-           moments_above(MomentKind::force, trainee.force, time, *comparison.force_limit, gap, 1, "N"));
+    append(moments, moments_above(MomentKind::force, trainee.force, time, *comparison.force_limit, gap, 1, "N"));
   if (comparison.damage_depth > 0)
-    append(moments, moments_above(MomentKind::depth, trainee.depth, time, comparison.damage_depth, gap,
-                                  kMillimetres, "mm"));
+    append(moments,
+           moments_above(MomentKind::depth, trainee.depth, time, comparison.damage_depth, gap, kMillimetres, "mm"));
   append(moments, deviations(comparison));
   append(moments, long_pauses(expert, trainee));
   append(moments, stray_cuts(expert, trainee));

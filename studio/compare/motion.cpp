@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "core/result.h"
+#include "core/model/result.h"
 
 namespace ctpm {
 namespace {
@@ -43,8 +43,7 @@ double path_length(std::span<const Vec3> path) {
 std::optional<double> economy_of_motion(std::span<const Vec3> path, std::span<const std::size_t> stations) {
   if (stations.size() < 2) return std::nullopt;
   double straight = 0;
-  for (std::size_t i = 1; i < stations.size(); ++i)
-    straight += norm(path[stations[i]] - path[stations[i - 1]]);
+  for (std::size_t i = 1; i < stations.size(); ++i) straight += norm(path[stations[i]] - path[stations[i - 1]]);
   const double gone = path_length(path.subspan(stations.front(), stations.back() - stations.front() + 1));
   if (!(gone > 0)) return std::nullopt;
   return straight / gone;
@@ -72,8 +71,7 @@ std::optional<double> spectral_arc_length(std::span<const double> speed, double 
   while (amplitude[last] < kSpectralAmplitude) --last;
   if (last == 0) return std::nullopt;
   double length = 0;
-  for (std::size_t i = 1; i <= last; ++i)
-    length += std::hypot(1.0 / double(last), amplitude[i] - amplitude[i - 1]);
+  for (std::size_t i = 1; i <= last; ++i) length += std::hypot(1.0 / double(last), amplitude[i] - amplitude[i - 1]);
   return -length;
 }
 
@@ -83,8 +81,7 @@ std::optional<double> log_dimensionless_jerk(std::span<const Vec3> path, double 
   const double peak = *std::max_element(speed.begin(), speed.end());
   double mean_square = 0;
   for (std::size_t i = 3; i < path.size(); ++i) {
-    const Vec3 jerk =
-        (rate_hz * rate_hz * rate_hz) * (path[i] - 3 * path[i - 1] + 3 * path[i - 2] - path[i - 3]);
+    const Vec3 jerk = (rate_hz * rate_hz * rate_hz) * (path[i] - 3 * path[i - 1] + 3 * path[i - 2] - path[i - 3]);
     mean_square += dot(jerk, jerk) / double(path.size() - 3);
   }
   if (!(peak > 0) || !(mean_square > 0)) return std::nullopt;

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/vec3.h"
+#include "core/model/vec3.h"
 
 namespace ctpm {
 
@@ -25,10 +25,9 @@ std::optional<double> economy_of_motion(std::span<const Vec3> path, std::span<co
 std::vector<double> speed_along(std::span<const Vec3> path, double rate_hz);
 
 /// Constants of the spectral arc length as they were published.
-inline constexpr int kSpectralPadding = 4;     ///< zeros up to 2^4 times the next power of two
-inline constexpr double kSpectralCutoff = 10;  ///< largest frequency [Hz]
-inline constexpr double kSpectralAmplitude =
-    0.05;  ///< share of the largest amplitude below which the tail is cut
+inline constexpr int kSpectralPadding = 4;          ///< zeros up to 2^4 times the next power of two
+inline constexpr double kSpectralCutoff = 10;       ///< largest frequency [Hz]
+inline constexpr double kSpectralAmplitude = 0.05;  ///< share of the largest amplitude below which the tail is cut
 
 /// Smoothness as spectral arc length (SPARC), dimensionless and negative: the nearer to 0 the smoother.
 /// Balasubramanian, Melendez-Calderon, Roby-Brami and Burdet 2015. Nothing for fewer than 4 values or a hand

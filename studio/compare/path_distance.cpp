@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/result.h"
+#include "core/model/result.h"
 
 namespace ctpm {
 namespace {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "core/vec3.h"
+#include "core/model/vec3.h"
 
 namespace ctpm {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/fields.h"
+#include "core/model/fields.h"
 #include "recordings/replay.h"
 #include "recordings/state_hash.h"
 #include "studio/session/cut_depth.h"
@@ -18,8 +18,7 @@ constexpr double kCutSpacings = 3;          // a tip that goes further without s
 /// The severed flags of a State in the order of ElementPlaces.
 std::vector<std::uint8_t> severed_flags(const State& state) {
   std::vector<std::uint8_t> flags;
-  for (const auto* kind :
-       {&state.edge_severed, &state.tpm_severed, &state.constraint_severed, &state.angle_severed})
+  for (const auto* kind : {&state.edge_severed, &state.tpm_severed, &state.constraint_severed, &state.angle_severed})
     flags.insert(flags.end(), kind->begin(), kind->end());
   return flags;
 }
@@ -89,20 +88,17 @@ struct FieldBytes {
       fields.emplace_back(prefix + std::string(name), value);
     } else {
       static_assert(std::is_trivially_copyable_v<T>);
-      fields.emplace_back(prefix + std::string(name),
-                          std::string(reinterpret_cast<const char*>(&value), sizeof value));
+      fields.emplace_back(prefix + std::string(name), std::string(reinterpret_cast<const char*>(&value), sizeof value));
     }
   }
   template <class T>
   void operator()(std::string_view name, const std::vector<T>& values) {
     if constexpr (std::is_arithmetic_v<T>) {
-      fields.emplace_back(
-          prefix + std::string(name),
-          std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)));
+      fields.emplace_back(prefix + std::string(name),
+                          std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)));
     } else {
       for (std::size_t i = 0; i < values.size(); ++i)
-        for_each_field(values[i],
-                       FieldBytes{fields, prefix + std::string(name) + "[" + std::to_string(i) + "]."});
+        for_each_field(values[i], FieldBytes{fields, prefix + std::string(name) + "[" + std::to_string(i) + "]."});
     }
   }
 };
@@ -114,13 +110,10 @@ std::string difference_in_words(const Model& a, const Model& b) {
     for (const auto& thing : things) names += (names.empty() ? "" : ", ") + thing.name;
     return names.empty() ? std::string("none") : names;
   };
-  if (list(a.organs) != list(b.organs))
-    return "its organs are " + list(b.organs) + " instead of " + list(a.organs);
+  if (list(a.organs) != list(b.organs)) return "its organs are " + list(b.organs) + " instead of " + list(a.organs);
   if (a.sphere_count() != b.sphere_count())
-    return "it has " + std::to_string(b.sphere_count()) + " spheres instead of " +
-           std::to_string(a.sphere_count());
-  if (list(a.tools) != list(b.tools))
-    return "its tools are " + list(b.tools) + " instead of " + list(a.tools);
+    return "it has " + std::to_string(b.sphere_count()) + " spheres instead of " + std::to_string(a.sphere_count());
+  if (list(a.tools) != list(b.tools)) return "its tools are " + list(b.tools) + " instead of " + list(a.tools);
   return "";
 }
 
@@ -168,8 +161,7 @@ Result<Done> check_same_scene(const SessionReader& expert, const SessionReader& 
     std::vector<std::pair<std::string, std::string>> fields_a, fields_b;
     for_each_field(a, FieldBytes{fields_a});
     for_each_field(b, FieldBytes{fields_b});
-    const auto [in_a, in_b] =
-        std::mismatch(fields_a.begin(), fields_a.end(), fields_b.begin(), fields_b.end());
+    const auto [in_a, in_b] = std::mismatch(fields_a.begin(), fields_a.end(), fields_b.begin(), fields_b.end());
     if (in_a == fields_a.end() && in_b == fields_b.end()) return Done{};
     reason = "its network differs in " + (in_a != fields_a.end() ? in_a->first : in_b->first);
   }
@@ -180,8 +172,7 @@ Result<Done> check_same_scene(const SessionReader& expert, const SessionReader& 
 std::vector<Path> cut_paths(const SessionTrack& track) {
   std::vector<Path> paths;
   for (const Spell& cut : track.cuts)
-    paths.emplace_back(track.tip.begin() + std::ptrdiff_t(cut.first),
-                       track.tip.begin() + std::ptrdiff_t(cut.last));
+    paths.emplace_back(track.tip.begin() + std::ptrdiff_t(cut.first), track.tip.begin() + std::ptrdiff_t(cut.last));
   return paths;
 }
 
@@ -194,8 +185,7 @@ Vec3 rest_middle(const Model& model, std::size_t element) {
   if (element < places.tpms) return middle(model.edges.a[element], model.edges.b[element]);
   if (element < places.constraints)
     return middle(model.tpms.a[element - places.tpms], model.tpms.b[element - places.tpms]);
-  if (element < places.angle_springs)
-    return rest[std::size_t(model.constraints.c[element - places.constraints])];
+  if (element < places.angle_springs) return rest[std::size_t(model.constraints.c[element - places.constraints])];
   return rest[std::size_t(model.angle_springs.b[element - places.angle_springs])];
 }
 

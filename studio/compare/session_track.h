@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/model.h"
-#include "core/result.h"
-#include "core/vec3.h"
+#include "core/model/model.h"
+#include "core/model/result.h"
+#include "core/model/vec3.h"
 #include "recordings/session_reader.h"
 #include "studio/compare/motion.h"
 #include "studio/compare/path_distance.h"
@@ -24,20 +24,18 @@ struct ElementPlaces {
 /// What was done in a session, tick by tick, as it was recorded.
 struct SessionTrack {
   std::string path, session_id, scene_name;
-  double tick = 0;                    ///< [s]
-  std::vector<std::int32_t> tool;     ///< in the hand; -1: none                              (tick_count)
-  std::vector<Vec3> tip;              ///< of the tool: a ball's centre, a blade's tip [m]     (tick_count)
-  std::vector<double> force;          ///< of the tissue on the tool, its size [N]             (tick_count)
-  std::vector<double> depth;          ///< [m]                                                (tick_count)
-  std::vector<std::int32_t> severed;  ///< elements severed in the tick                       (tick_count)
-  std::vector<Spell> strokes;         ///< ticks from taking a tool to putting it away
-  std::vector<Spell> cuts;            ///< ticks from the first to the last severed element of each cut
-  std::vector<std::int64_t>
-      severed_at;  ///< tick in which each element was severed; -1: never  (ElementPlaces::count)
-  std::uint64_t initial_state = 0;  ///< hash of the State before the first tick
+  double tick = 0;                       ///< [s]
+  std::vector<std::int32_t> tool;        ///< in the hand; -1: none                              (tick_count)
+  std::vector<Vec3> tip;                 ///< of the tool: a ball's centre, a blade's tip [m]     (tick_count)
+  std::vector<double> force;             ///< of the tissue on the tool, its size [N]             (tick_count)
+  std::vector<double> depth;             ///< [m]                                                (tick_count)
+  std::vector<std::int32_t> severed;     ///< elements severed in the tick                       (tick_count)
+  std::vector<Spell> strokes;            ///< ticks from taking a tool to putting it away
+  std::vector<Spell> cuts;               ///< ticks from the first to the last severed element of each cut
+  std::vector<std::int64_t> severed_at;  ///< tick in which each element was severed; -1: never  (ElementPlaces::count)
+  std::uint64_t initial_state = 0;       ///< hash of the State before the first tick
   bool has_end = true;  ///< false: it was cut off, or is still being recorded, and this is what is there
-  bool replays =
-      true;  ///< simulating the cuts again gave what was recorded; false: severed_at is what came out
+  bool replays = true;  ///< simulating the cuts again gave what was recorded; false: severed_at is what came out
 
   std::size_t tick_count() const { return tool.size(); }
   double seconds(std::size_t ticks) const { return double(ticks) * tick; }

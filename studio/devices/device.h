@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/vec3.h"
+#include "core/model/vec3.h"
 
 namespace ctpm {
 

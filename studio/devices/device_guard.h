@@ -33,7 +33,7 @@ class DeviceGuard {
   double pose_arrival() const { return arrival_; }    ///< when it came [s]
   double pose_interval() const { return interval_; }  ///< from the good one before to it [s]; 0 for the first
   std::uint32_t buttons() const { return buttons_; }
-  bool is_held() const { return !faults_.empty(); }   ///< a fault goes on, or is just over
+  bool is_held() const { return !faults_.empty(); }  ///< a fault goes on, or is just over
 
   /// Why the device is given up; empty as long as it is not.
   const std::string& verdict() const { return verdict_; }
@@ -41,10 +41,10 @@ class DeviceGuard {
   std::vector<SourceEvent> take_events();
 
   struct Counts {
-    std::int64_t samples = 0;   ///< poses that came
-    std::int64_t refused = 0;   ///< of them, not believed
-    std::int64_t unread = 0;    ///< messages that could not be read
-    double longest_gap = 0;     ///< between two good samples [s]
+    std::int64_t samples = 0;  ///< poses that came
+    std::int64_t refused = 0;  ///< of them, not believed
+    std::int64_t unread = 0;   ///< messages that could not be read
+    double longest_gap = 0;    ///< between two good samples [s]
   };
   const Counts& counts() const { return counts_; }
 

@@ -15,11 +15,11 @@ struct ButtonTool {
 
 /// How a device's frame lies in the scene, and which tool its instrument is.
 struct DeviceMap {
-  double scale = 1;            ///< scene metres for a metre of the hand, > 0
-  Quat scene_from_device;      ///< unit length
-  Vec3 offset;                 ///< where the device's origin lies in the scene [m]
-  Vec3 tip{0, 0, -1};          ///< from handle to tip in the instrument's own frame; unit length
-  std::int32_t tool = -1;      ///< without a button; -1: none
+  double scale = 1;                      ///< scene metres for a metre of the hand, > 0
+  Quat scene_from_device;                ///< unit length
+  Vec3 offset;                           ///< where the device's origin lies in the scene [m]
+  Vec3 tip{0, 0, -1};                    ///< from handle to tip in the instrument's own frame; unit length
+  std::int32_t tool = -1;                ///< without a button; -1: none
   std::vector<ButtonTool> button_tools;  ///< the first whose button is pressed counts
 
   /// The tool frame in the scene; its -z points where the instrument's tip does.

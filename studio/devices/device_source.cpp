@@ -50,9 +50,8 @@ void DeviceSource::aim(double now) {
   to_ = settings_.map.to_scene(guard_.pose());
   from_ = hand_.value_or(to_);
   const double at_most = settings_.guard.most_speed * settings_.map.scale;
-  const double duration =
-      std::max(std::min(guard_.pose_interval(), kMostInterval) - (now - guard_.pose_arrival()),
-               norm(to_.position - from_.position) / at_most);
+  const double duration = std::max(std::min(guard_.pose_interval(), kMostInterval) - (now - guard_.pose_arrival()),
+                                   norm(to_.position - from_.position) / at_most);
   ticks_whole_ = ticks_left_ = std::max<std::int64_t>(1, std::llround(duration / tick_));
 }
 

@@ -29,8 +29,7 @@ class DeviceSource : public InputSource {
   using Clock = std::function<double()>;
 
   /// `tick` [s]. `clock` is the one of the reports' arrival.
-  DeviceSource(std::unique_ptr<Device> device, const DeviceSettings& settings, double tick,
-               Clock clock = device_clock);
+  DeviceSource(std::unique_ptr<Device> device, const DeviceSettings& settings, double tick, Clock clock = device_clock);
 
   /// Waits until the device has told where it is. False if `should_stop` said so before.
   bool wait_for_first_pose(const std::function<bool()>& should_stop);
@@ -54,11 +53,11 @@ class DeviceSource : public InputSource {
   VirtualCoupling coupling_;
   PassiveForce passive_;
   std::int32_t tool_ = -1;
-  std::optional<Pose> hand_;   ///< in the scene, as the coupling sees it
-  Pose from_, to_;             ///< the way on which the hand is
+  std::optional<Pose> hand_;     ///< in the scene, as the coupling sees it
+  Pose from_, to_;               ///< the way on which the hand is
   std::int64_t ticks_left_ = 0;  ///< of that way
   std::int64_t ticks_whole_ = 1;
-  bool saw_fault_ = false;     ///< a report of this tick was refused
+  bool saw_fault_ = false;  ///< a report of this tick was refused
   double age_ = 0;
   std::int64_t forces_ = 0;
 };

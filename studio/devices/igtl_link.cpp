@@ -18,10 +18,10 @@
 namespace ctpm {
 namespace {
 
-constexpr double kConnectTimeout = 3;        // [s]
-constexpr int kCallAgainAfter = 200;         // [ms]
-constexpr std::size_t kReports = 4096;       // that can wait for the tick's thread: seconds of a fast device
-constexpr std::size_t kForces = 64;          // that can wait for this one
+constexpr double kConnectTimeout = 3;   // [s]
+constexpr int kCallAgainAfter = 200;    // [ms]
+constexpr std::size_t kReports = 4096;  // that can wait for the tick's thread: seconds of a fast device
+constexpr std::size_t kForces = 64;     // that can wait for this one
 
 }  // namespace
 
@@ -119,9 +119,8 @@ void IgtlLink::Impl::run() {
   while (!stopping) {
     const short wanted = short(POLLIN | (unsent.empty() ? 0 : POLLOUT));
     // A number below 0 is not looked at.
-    std::array<pollfd, 3> waiting{{{wake.number(), POLLIN, 0},
-                                   {listener.number(), POLLIN, 0},
-                                   {connection.number(), wanted, 0}}};
+    std::array<pollfd, 3> waiting{
+        {{wake.number(), POLLIN, 0}, {listener.number(), POLLIN, 0}, {connection.number(), wanted, 0}}};
     const bool calls_again = !settings.listens && !connection;
     if (::poll(waiting.data(), waiting.size(), calls_again ? kCallAgainAfter : -1) < 0) continue;
     if (calls_again && waiting[0].revents == 0)

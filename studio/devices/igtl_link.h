@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "core/result.h"
+#include "core/model/result.h"
 #include "studio/devices/device.h"
 
 namespace ctpm {

@@ -47,8 +47,8 @@ std::string_view text_of(const char (&text)[size]) {
   return {text, strnlen(text, size)};
 }
 
-/// What a message says, between the further header and the metadata that protocol version 3 puts around it. None if their
-/// sizes do not fit.
+/// What a message says, between the further header and the metadata that protocol version 3 puts around it. None if
+/// their sizes do not fit.
 std::optional<std::span<const std::uint8_t>> content_of(std::span<const std::uint8_t> body, int version) {
   if (version < 2) return body;
   constexpr std::size_t kFurtherHeader = 12;
@@ -62,8 +62,8 @@ std::optional<std::span<const std::uint8_t>> content_of(std::span<const std::uin
 
 constexpr double kMillimetre = 1e-3;
 
-/// The rotation with the columns `x`, `y`, `z`; of length 0 if they are no rotation. Shepperd, "Quaternion from rotation
-/// matrix" (1978): from the largest of the four, so that nothing cancels.
+/// The rotation with the columns `x`, `y`, `z`; of length 0 if they are no rotation. Shepperd, "Quaternion from
+/// rotation matrix" (1978): from the largest of the four, so that nothing cancels.
 Quat rotation_of(Vec3 x, Vec3 y, Vec3 z) {
   constexpr double kTolerance = 0.02;  // single precision, and trackers that round
   const double off = std::max({std::abs(norm(x) - 1), std::abs(norm(y) - 1), norm(cross(x, y) - z)});

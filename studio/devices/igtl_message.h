@@ -24,16 +24,16 @@ class IgtlStream {
   /// Poses of other devices than `device_name` are skipped; empty: all are taken.
   explicit IgtlStream(std::string device_name) : device_name_(std::move(device_name)) {}
 
-  /// Takes the next bytes, cut in any way, at the time `now` [s]. False if they cannot be OpenIGTLink; the connection is
-  /// of no use then.
+  /// Takes the next bytes, cut in any way, at the time `now` [s]. False if they cannot be OpenIGTLink; the connection
+  /// is of no use then.
   bool take(std::span<const std::uint8_t> bytes, double now, const Tell& tell);
 
   /// Forgets a message that was begun: a new connection begins.
   void begin_again();
 
   static constexpr std::size_t kHeaderSize = 58;
-  static constexpr std::size_t kMostBody = 4096;               ///< of a message that is read: a pose with its metadata
-  static constexpr std::uint64_t kMostSkipped = 1ull << 32;    ///< beyond it nobody means it [bytes]
+  static constexpr std::size_t kMostBody = 4096;             ///< of a message that is read: a pose with its metadata
+  static constexpr std::uint64_t kMostSkipped = 1ull << 32;  ///< beyond it nobody means it [bytes]
 
  private:
   enum class Kind { transform, position, sensor };

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/inputs.h"
-#include "core/model.h"
-#include "core/result.h"
+#include "core/model/inputs.h"
+#include "core/model/model.h"
+#include "core/model/result.h"
 
 namespace ctpm {
 
@@ -19,8 +19,8 @@ struct MotionSample {
 
 /// A hand's motion as it was measured, at any rate.
 struct Motion {
-  std::vector<MotionSample> samples;         ///< at least one
-  std::vector<std::string> unused_columns;   ///< names of columns that say nothing about the hand
+  std::vector<MotionSample> samples;        ///< at least one
+  std::vector<std::string> unused_columns;  ///< names of columns that say nothing about the hand
 };
 
 /// Reads a table of a motion (CSV: values separated by commas, the names of the columns in the first row, in any

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/vec3.h"
+#include "core/model/vec3.h"
 
-// Rotations of devices. What is worked out here enters a session as a recorded input, so transcendental functions may be
-// used.
+// Rotations of devices. What is worked out here enters a session as a recorded input, so transcendental functions may
+// be used.
 namespace ctpm {
 
 inline double dot(Quat a, Quat b) { return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z; }

@@ -5,10 +5,10 @@
 #include <string>
 #include <utility>
 
-#include "core/result.h"
+#include "core/model/result.h"
 
-// TCP as far as a device needs it. The classes of OpenIGTLink are not used for this: they listen on every interface of the
-// machine and cannot be woken.
+// TCP as far as a device needs it. The classes of OpenIGTLink are not used for this: they listen on every interface of
+// the machine and cannot be woken.
 namespace ctpm {
 
 /// A file descriptor that is closed with its owner.

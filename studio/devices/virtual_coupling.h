@@ -1,20 +1,20 @@
 #pragma once
 
-#include "core/vec3.h"
+#include "core/model/vec3.h"
 #include "studio/devices/device.h"
 
 namespace ctpm {
 
 struct CouplingSettings {
-  double stiffness = 1000;   ///< of the spring between hand and tool [N/m], > 0
-  double mass = 0.05;        ///< of the tool's stand-in [kg], > 0: high enough to be steady on stiff tissue
-  double most_force = 20;    ///< with which the spring pulls the tool [N], > 0
-  double turn_time = 5e-3;   ///< in which the tool follows a turn of the hand [s], > 0
-  double most_turn = 10;     ///< speed at which it turns at most [rad/s], > 0
+  double stiffness = 1000;  ///< of the spring between hand and tool [N/m], > 0
+  double mass = 0.05;       ///< of the tool's stand-in [kg], > 0: high enough to be steady on stiff tissue
+  double most_force = 20;   ///< with which the spring pulls the tool [N], > 0
+  double turn_time = 5e-3;  ///< in which the tool follows a turn of the hand [s], > 0
+  double most_turn = 10;    ///< speed at which it turns at most [rad/s], > 0
 };
 
-/// A spring and a damper between the hand and the tool, after Colgate, Stanley & Brown, "Issues in the haptic display of
-/// tool use" (1995). The tool is a mass at the end of the spring that also feels the tissue; where it goes is what
+/// A spring and a damper between the hand and the tool, after Colgate, Stanley & Brown, "Issues in the haptic display
+/// of tool use" (1995). The tool is a mass at the end of the spring that also feels the tissue; where it goes is what
 /// enters the simulation and is recorded. A hand that jumps pulls the tool after it with a bounded force.
 class VirtualCoupling {
  public:
@@ -41,11 +41,11 @@ class VirtualCoupling {
   Vec3 tool_force_;
 };
 
-/// Keeps a force that is sent to a hand bounded and passive: an account holds the work that the hand has done against the
-/// forces sent so far, and no force may take more out of it than there is. After Hannaford & Ryu, "Time-domain passivity
-/// control of haptic interfaces" (2002); where they add damping afterwards, here the force is made smaller beforehand.
-/// It holds for a hand whose change of way grows by less than half from one sample to the next; one that turns quicker is
-/// ahead by one sample, and pays before it is pushed again.
+/// Keeps a force that is sent to a hand bounded and passive: an account holds the work that the hand has done against
+/// the forces sent so far, and no force may take more out of it than there is. After Hannaford & Ryu, "Time-domain
+/// passivity control of haptic interfaces" (2002); where they add damping afterwards, here the force is made smaller
+/// beforehand. It holds for a hand whose change of way grows by less than half from one sample to the next; one that
+/// turns quicker is ahead by one sample, and pays before it is pushed again.
 class PassiveForce {
  public:
   /// `most_force` [N], > 0.
@@ -61,8 +61,8 @@ class PassiveForce {
   double account() const { return account_; }  ///< work of the hand that has not come back to it [J]
 
  private:
-  static constexpr double kLoan = 1e-6;      ///< without it nothing could begin: 1 N over 1 um [J]
-  static constexpr double kMoreTurn = 1.5;   ///< how much more a hand turns in its way than it did last
+  static constexpr double kLoan = 1e-6;     ///< without it nothing could begin: 1 N over 1 um [J]
+  static constexpr double kMoreTurn = 1.5;  ///< how much more a hand turns in its way than it did last
 
   double most_force_;
   bool has_position_ = false;

@@ -16,10 +16,8 @@ namespace {
 template <class T>
 using Choices = std::array<std::pair<const char*, T>, 4>;
 
-constexpr Choices<View> kViews{{{"surface", View::surface},
-                                {"spheres", View::spheres},
-                                {"both", View::both},
-                                {"elements", View::elements}}};
+constexpr Choices<View> kViews{
+    {{"surface", View::surface}, {"spheres", View::spheres}, {"both", View::both}, {"elements", View::elements}}};
 
 std::optional<View> find_view(const std::string& name, Errors& errors) {
   for (const auto& [known, view] : kViews)
@@ -68,16 +66,16 @@ Cutaway find_cutaway(const std::string& text, const SceneView& scene, Vec3 eye, 
   if (text.size() > 2 && text[1] == '=') place = 1e-3 * std::strtod(text.c_str() + 2, &end);
   const bool is_read = text.size() == 1 || (end && *end == 0 && std::isfinite(place));
   if (axis == Vec3{} || !is_read) {
-    errors.push_back({"--cutaway", "got '" + text + "', must be x, y or z, or one of them and a place in mm",
-                      "for example y=12.5"});
+    errors.push_back(
+        {"--cutaway", "got '" + text + "', must be x, y or z, or one of them and a place in mm", "for example y=12.5"});
     return {};
   }
   const double least = dot(bounds.min, axis), most = dot(bounds.max, axis);
   if (place < least || place > most) {
-    errors.push_back({"--cutaway",
-                      "got '" + text + "', the organs lie between " + fixed(1e3 * least, 1) + " and " +
-                          fixed(1e3 * most, 1) + " mm",
-                      ""});
+    errors.push_back(
+        {"--cutaway",
+         "got '" + text + "', the organs lie between " + fixed(1e3 * least, 1) + " and " + fixed(1e3 * most, 1) + " mm",
+         ""});
     return {};
   }
   if (dot(eye, axis) < place) axis = -axis, place = -place;
@@ -88,11 +86,9 @@ Cutaway find_cutaway(const std::string& text, const SceneView& scene, Vec3 eye, 
 
 void add_look(CLI::App& app, LookRequest& request) {
   app.add_option("--view", request.view, "surface, spheres, both or elements")->capture_default_str();
-  app.add_option("--by", request.by,
-                 "What colours show: layer of spheres; stretch, tilt or force of elements");
+  app.add_option("--by", request.by, "What colours show: layer of spheres; stretch, tilt or force of elements");
   app.add_option("--full-scale", request.full_scale, "Value of the last colour of elements [%, deg or N]");
-  app.add_option("--cutaway", request.cutaway,
-                 "Leave out what is before a plane across x, y or z: y, or y=12.5 in mm");
+  app.add_option("--cutaway", request.cutaway, "Leave out what is before a plane across x, y or z: y, or y=12.5 in mm");
   app.add_option("--camera", request.camera,
                  "A camera of the scene, fitted, or follow the tool; its first one, else fitted");
 }
@@ -103,8 +99,7 @@ DrawOptions Look::at(const SceneView& scene, std::span<const Inputs> moments) co
   return options;
 }
 
-Result<Look> find_look(const LookRequest& request, const SceneSpec& scene, const SceneView& view,
-                       double aspect) {
+Result<Look> find_look(const LookRequest& request, const SceneSpec& scene, const SceneView& view, double aspect) {
   Errors errors;
   Look look;
   if (const std::optional<View> found = find_view(request.view, errors)) {

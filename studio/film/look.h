@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "core/result.h"
+#include "core/model/result.h"
 #include "scenes/scene_spec.h"
 #include "studio/render/scene_view.h"
 
@@ -16,7 +16,7 @@ struct LookRequest {
   std::string by;                ///< what colours show: layer of spheres; stretch, tilt or force of elements
   double full_scale = 0;         ///< value of the last colour, in the legend's unit; 0: a usual one
   std::string cutaway;           ///< x, y or z, or that and a place: y=12.5 [mm]; empty: nothing is left out
-  std::string camera;  ///< a camera of the scene, `fitted` or `follow`; empty: the scene's first, else fitted
+  std::string camera;            ///< a camera of the scene, `fitted` or `follow`; empty: the scene's first, else fitted
 };
 
 /// Adds --view, --by, --full-scale, --cutaway and --camera.
@@ -34,7 +34,6 @@ struct Look {
 
 /// Finds what the request names. Errors: an unknown view, colour or camera, with those there are; colours
 /// that the view does not have; a cutaway that is none. All of them at once.
-Result<Look> find_look(const LookRequest& request, const SceneSpec& scene, const SceneView& view,
-                       double aspect);
+Result<Look> find_look(const LookRequest& request, const SceneSpec& scene, const SceneView& view, double aspect);
 
 }  // namespace ctpm

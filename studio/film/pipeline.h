@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/result.h"
+#include "core/model/result.h"
 #include "studio/film/session_film.h"
 #include "studio/render/frame.h"
 

@@ -69,16 +69,14 @@ Result<Done> SessionFilm::begin() {
   plot_every_ = std::max<std::int64_t>(1, std::llround(overlay_.plot_span / model.tick) / kPlotPoints);
   moment_every_ = std::size_t(std::max(1ll, std::llround(kFollowedEvery / model.tick)));
   // Plot and camera begin with what was before.
-  const std::int64_t needed =
-      std::max(kPlotPoints * plot_every_, std::int64_t(kFollowedMoments * moment_every_));
+  const std::int64_t needed = std::max(kPlotPoints * plot_every_, std::int64_t(kFollowedMoments * moment_every_));
   const std::int64_t before = std::max<std::int64_t>(0, range_.from - needed);
   const Result<std::vector<TickRecord>> earlier = reader_.ticks(before, range_.from);
   if (!earlier) return earlier.errors();
   for (std::int64_t tick = before + 1; tick <= range_.from; ++tick) {
     const TickRecord& record = (*earlier)[std::size_t(tick - before - 1)];
     keep_inputs(record.inputs);
-    if (tick % plot_every_ == 0)
-      overlay_.history.push_back({double(tick) * model.tick, norm(record.tool_force)});
+    if (tick % plot_every_ == 0) overlay_.history.push_back({double(tick) * model.tick, norm(record.tool_force)});
   }
   const Result<std::vector<Event>> events = reader_.events();
   if (!events) return events.errors();
@@ -116,9 +114,9 @@ std::vector<Inputs> SessionFilm::moments() const {
 }
 
 std::string SessionFilm::verdict() const {
-  return is_same() ? "replay same as recorded"
-                   : "REPLAY DIFFERS from the recording since " +
-                         fixed(double(first_different_) * model().tick, 3) + " s";
+  return is_same()
+             ? "replay same as recorded"
+             : "REPLAY DIFFERS from the recording since " + fixed(double(first_different_) * model().tick, 3) + " s";
 }
 
 Error SessionFilm::differs() const {
@@ -132,8 +130,8 @@ Error SessionFilm::differs() const {
 void SessionFilm::show_cut_depth() {
   cut_depth_.add(cursor_.state());
   const std::int32_t tool = cursor_.state().last_inputs.tool;
-  overlay_.is_blade = tool < 0 ? cut_depth_.deepest().has_value()
-                               : model().tools[std::size_t(tool)].kind == ToolKind::scalpel;
+  overlay_.is_blade =
+      tool < 0 ? cut_depth_.deepest().has_value() : model().tools[std::size_t(tool)].kind == ToolKind::scalpel;
   if (overlay_.is_blade) overlay_.depth = cut_depth_.deepest().value_or(0);
 }
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
-#include "core/state.h"
+#include "core/model/result.h"
+#include "core/model/state.h"
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
 #include "scenes/scene_spec.h"
@@ -48,8 +48,7 @@ class SessionFilm {
   bool is_same() const { return first_different_ < 0; }
 
  private:
-  SessionFilm(SessionReader& reader, SceneSpec scene, const TickRange& range, bool allow_diverged,
-              ReplayCursor cursor);
+  SessionFilm(SessionReader& reader, SceneSpec scene, const TickRange& range, bool allow_diverged, ReplayCursor cursor);
   Result<Done> begin();
   void take_tick();
   void keep_inputs(const Inputs& inputs);

@@ -38,8 +38,7 @@ Result<Done> write_session(JsonWriter& json, const SidecarSession& session) {
   const double tick = film.model().tick;
   json.begin_object().member("file", std::filesystem::path(reader.path()).filename().string());
   json.member("session_id", reader.session_id()).member("file_xxh3", hash_text(*hash));
-  json.member("format_version", reader.format_version())
-      .member("recorded_by", reader.start().build_fingerprint);
+  json.member("format_version", reader.format_version()).member("recorded_by", reader.start().build_fingerprint);
   json.member("scene", film.scene().name).member("model", structure_name(film.scene()));
   json.member("verdict", film.is_same() ? "same" : "different");
   json.key("first_different_tick");
@@ -53,8 +52,7 @@ Result<Done> write_session(JsonWriter& json, const SidecarSession& session) {
   const DrawOptions& draw = session.look->draw;
   json.key("camera").begin_object().member("name", session.look->camera);
   json.member("follows_tool", session.look->follows);
-  write_point(json, "eye_mm", draw.camera.eye, 1000),
-      write_point(json, "target_mm", draw.camera.target, 1000);
+  write_point(json, "eye_mm", draw.camera.eye, 1000), write_point(json, "target_mm", draw.camera.target, 1000);
   json.member("field_of_view_deg", draw.camera.fov_deg).end_object();
   if (draw.cutaway.is_on()) {
     json.key("cutaway").begin_object();
@@ -79,9 +77,7 @@ Result<std::string> sidecar_text(const std::vector<SidecarSession>& sessions, co
   json.member("speed", facts.speed).member("view", name_of(sessions.at(0).look->draw.view));
   const Legend legend = legend_of(sessions[0].film->model(), sessions[0].look->draw);
   if (!legend.title.empty())
-    json.member("colours", legend.title)
-        .member("first_colour", legend.low)
-        .member("last_colour", legend.high);
+    json.member("colours", legend.title).member("first_colour", legend.low).member("last_colour", legend.high);
   json.end_object();
   json.key("sessions").begin_list();
   for (const SidecarSession& session : sessions)

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
+#include "core/model/result.h"
 #include "studio/film/look.h"
 #include "studio/film/pipeline.h"
 #include "studio/film/session_film.h"

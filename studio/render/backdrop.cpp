@@ -25,8 +25,8 @@ Frame make_backdrop(int width, int height) {
       const double wave = 52.9829189 * std::fmod(0.06711056 * column + 0.00583715 * row, 1.0);
       const double dither = wave - std::floor(wave) - 0.5;
       for (std::size_t c = 0; c < 3; ++c)
-        frame.rgb[at++] = std::uint8_t(std::lround(
-            std::clamp(255 * lift * (kNear[c] + away * (kFar[c] - kNear[c])) + dither, 0.0, 255.0)));
+        frame.rgb[at++] = std::uint8_t(
+            std::lround(std::clamp(255 * lift * (kNear[c] + away * (kFar[c] - kNear[c])) + dither, 0.0, 255.0)));
     }
   return frame;
 }

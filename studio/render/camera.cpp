@@ -48,8 +48,8 @@ Camera fit_camera(std::span<const Vec3> points, Vec3 direction, Vec3 up, double 
   for (const Vec3& point : points) {
     const Vec3 p = point - camera.target;
     const double towards = dot(p, axes.back);
-    distance = std::max({distance, towards + std::abs(dot(p, axes.right)) / tan_right,
-                         towards + std::abs(dot(p, axes.up)) / tan_up});
+    distance = std::max(
+        {distance, towards + std::abs(dot(p, axes.right)) / tan_right, towards + std::abs(dot(p, axes.up)) / tan_up});
   }
   camera.eye = camera.target + distance * axes.back;
   return camera;
@@ -93,21 +93,7 @@ Mat4 view_matrix(const Camera& camera) {
 
 Mat4 projection_matrix(const Camera& camera, double aspect, double near, double far) {
   const double f = 1 / std::tan(camera.fov_deg / 2 * kRadiansPerDegree);
-  return {f / aspect,
-          0,
-          0,
-          0,
-          0,
-          f,
-          0,
-          0,
-          0,
-          0,
-          (far + near) / (near - far),
-          -1,
-          0,
-          0,
-          2 * far * near / (near - far),
+  return {f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far),
           0};
 }
 

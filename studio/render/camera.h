@@ -3,7 +3,7 @@
 #include <array>
 #include <span>
 
-#include "core/vec3.h"
+#include "core/model/vec3.h"
 
 namespace ctpm {
 
@@ -28,12 +28,10 @@ Bounds bounds_of(std::span<const Vec3> points);
 
 /// A camera that looks along `direction` and has the whole box in sight, with a margin. `aspect` = width /
 /// height.
-Camera fit_camera(const Bounds& bounds, Vec3 direction, Vec3 up, double fov_deg = 32,
-                  double aspect = 16.0 / 9);
+Camera fit_camera(const Bounds& bounds, Vec3 direction, Vec3 up, double fov_deg = 32, double aspect = 16.0 / 9);
 
 /// As above, with all the points in sight: closer than their box allows.
-Camera fit_camera(std::span<const Vec3> points, Vec3 direction, Vec3 up, double fov_deg = 32,
-                  double aspect = 16.0 / 9);
+Camera fit_camera(std::span<const Vec3> points, Vec3 direction, Vec3 up, double fov_deg = 32, double aspect = 16.0 / 9);
 
 /// Column-major 4 x 4 matrix.
 using Mat4 = std::array<double, 16>;

@@ -100,8 +100,7 @@ void CutSurface::Parts::add_whole_vertices() {
     const auto spheres = std::span(b.sphere).subspan(first, count);
     is_near_cut[v] = std::any_of(spheres.begin(), spheres.end(), [&](Index s) { return links.is_cut(s); });
     const Index home = is_near_cut[v] ? home_on_own_side(v) : nearest[v];
-    if (is_near_cut[v] &&
-        std::any_of(spheres.begin(), spheres.end(), [&](Index s) { return out.loses(home, s); }))
+    if (is_near_cut[v] && std::any_of(spheres.begin(), spheres.end(), [&](Index s) { return out.loses(home, s); }))
       out.add(whole.vertex[v], home);
     else
       out.add(whole.vertex[v], home, spheres, std::span(b.weight).subspan(first, count));
@@ -150,8 +149,7 @@ Index CutSurface::Parts::end_of_cut(Index a, Index b, Index c) {
       fit_plane(out.crossings_around(out.home(a)), straight, kPlaneReach * links.spacing());
   if (cut && cut->height(pa) != cut->height(pb)) {
     const double shift = cut->height(straight) / (cut->height(pa) - cut->height(pb));
-    const double kept =
-        std::clamp(shift, std::min(0.0, kInside - weight_b), std::max(0.0, weight_a - kInside));
+    const double kept = std::clamp(shift, std::min(0.0, kInside - weight_b), std::max(0.0, weight_a - kInside));
     weight_a -= kept, weight_b += kept;
   }
   return out.add(weight_a * pa + weight_b * pb + kInto * pc, out.home(c));

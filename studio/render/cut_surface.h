@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "core/model.h"
-#include "core/organ.h"
-#include "core/state.h"
+#include "core/model/model.h"
+#include "core/model/organ.h"
+#include "core/model/state.h"
 
 namespace ctpm {
 

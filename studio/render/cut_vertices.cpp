@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/surface.h"
+#include "core/surface/surface.h"
 
 namespace ctpm {
 namespace {
@@ -25,14 +25,11 @@ void CutVertices::clear() {
 
 const LatticeLinks::Sight& CutVertices::sight(Index sphere) {
   const auto found = sights_.find(sphere);
-  return found != sights_.end() ? found->second
-                                : sights_.emplace(sphere, links_.sight_from(sphere)).first->second;
+  return found != sights_.end() ? found->second : sights_.emplace(sphere, links_.sight_from(sphere)).first->second;
 }
 
 bool CutVertices::sees(Index sphere, Index other) { return holds(sight(sphere).seen, other); }
-bool CutVertices::loses(Index sphere, Index other) {
-  return sphere != other && holds(sight(sphere).lost, other);
-}
+bool CutVertices::loses(Index sphere, Index other) { return sphere != other && holds(sight(sphere).lost, other); }
 
 const std::vector<CutPoint>& CutVertices::crossings_around(Index sphere) {
   const auto found = crossings_.find(sphere);
@@ -58,8 +55,7 @@ void CutVertices::follow(Vec3 rest, Index home) {
   std::nth_element(near_.begin(), last_of_fewest, near_.end());
   std::vector<Vec3> centres;
   std::vector<double> weights;
-  for (double reach = std::max(kReachInSpacings * links_.spacing(), 1.05 * last_of_fewest->first);;
-       reach *= kWiden) {
+  for (double reach = std::max(kReachInSpacings * links_.spacing(), 1.05 * last_of_fewest->first);; reach *= kWiden) {
     // Only what is within reach is sorted, nearest first.
     const auto known = near_.begin() + std::ptrdiff_t(centres.size());
     const auto within = std::partition(known, near_.end(), [&](const auto& n) { return n.first < reach; });

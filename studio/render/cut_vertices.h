@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/organ.h"
+#include "core/model/organ.h"
 #include "studio/render/cut_plane.h"
 #include "studio/render/lattice_links.h"
 

@@ -92,8 +92,7 @@ Corner CutWall::make_corner(Cell cube) const {
         std::replace(corner.piece.begin(), corner.piece.end(), std::max(a, b), std::min(a, b));
       }
     }
-  corner.rest =
-      severed ? corner.rest / double(severed) : links_.place(cube[0] + 0.5, cube[1] + 0.5, cube[2] + 0.5);
+  corner.rest = severed ? corner.rest / double(severed) : links_.place(cube[0] + 0.5, cube[1] + 0.5, cube[2] + 0.5);
   return corner;
 }
 
@@ -187,8 +186,7 @@ std::optional<Index> CutWall::piece_seen_by(const Corner& corner, Index home) {
   for (std::size_t i = 0; i < corner.spheres.size(); ++i)
     if (vertices_.sees(home, corner.spheres[i])) ++seen[corner.piece[i]];
   if (seen.empty()) return std::nullopt;
-  return std::max_element(seen.begin(), seen.end(),
-                          [](const auto& a, const auto& b) { return a.second < b.second; })
+  return std::max_element(seen.begin(), seen.end(), [](const auto& a, const auto& b) { return a.second < b.second; })
       ->first;
 }
 

@@ -13,9 +13,7 @@ constexpr int kBackdropLuma = 160;  // what shows where nothing was drawn, in [0
 constexpr int kLeastContrast = 26;  // below it a step is no edge
 constexpr float kReach = 8;         // longest way along an edge [pixels]
 
-int luma_of(const std::uint8_t* p) {
-  return (77 * p[0] + 150 * p[1] + 29 * p[2] + kBackdropLuma * (255 - p[3])) >> 8;
-}
+int luma_of(const std::uint8_t* p) { return (77 * p[0] + 150 * p[1] + 29 * p[2] + kBackdropLuma * (255 - p[3])) >> 8; }
 
 /// Brightness of every pixel. Whole words through plain pointers, so that the compiler makes several at a
 /// time.
@@ -27,8 +25,7 @@ void find_luma(const std::vector<std::uint8_t>& rgba, std::vector<std::uint8_t>&
   for (std::size_t i = 0; i < count; ++i) {
     std::uint32_t word;
     std::memcpy(&word, from + 4 * i, 4);
-    const std::uint32_t red = word & 255, green = (word >> 8) & 255, blue = (word >> 16) & 255,
-                        alpha = word >> 24;
+    const std::uint32_t red = word & 255, green = (word >> 8) & 255, blue = (word >> 16) & 255, alpha = word >> 24;
     to[i] = std::uint8_t((77 * red + 150 * green + 29 * blue + kBackdropLuma * (255 - alpha)) >> 8);
   }
 }
@@ -37,10 +34,10 @@ void find_luma(const std::vector<std::uint8_t>& rgba, std::vector<std::uint8_t>&
 void find_edges(const std::uint8_t* row, int width, std::uint8_t* is_edge) {
   const std::uint8_t *above = row - width, *below = row + width;
   for (int x = 1; x + 1 < width; ++x) {
-    const std::uint8_t low = std::min(
-        std::min(std::min(above[x - 1], above[x + 1]), std::min(below[x - 1], below[x + 1])), row[x]);
-    const std::uint8_t high = std::max(
-        std::max(std::max(above[x - 1], above[x + 1]), std::max(below[x - 1], below[x + 1])), row[x]);
+    const std::uint8_t low =
+        std::min(std::min(std::min(above[x - 1], above[x + 1]), std::min(below[x - 1], below[x + 1])), row[x]);
+    const std::uint8_t high =
+        std::max(std::max(std::max(above[x - 1], above[x + 1]), std::max(below[x - 1], below[x + 1])), row[x]);
     is_edge[x] = std::uint8_t(high - low) >= kLeastContrast;
   }
 }
@@ -65,14 +62,13 @@ int next_edge(const std::vector<std::uint8_t>& is_edge, int x, int end) {
 }
 
 /// The colour of an edge pixel: the mean of places along the edge.
-std::array<std::uint8_t, 4> along_edge(const std::vector<std::uint8_t>& rgba, const std::uint8_t* m,
-                                       int width, int height, int x, int y) {
+std::array<std::uint8_t, 4> along_edge(const std::vector<std::uint8_t>& rgba, const std::uint8_t* m, int width,
+                                       int height, int x, int y) {
   const int nw = m[-width - 1], ne = m[-width + 1], sw = m[width - 1], se = m[width + 1];
   const int low = std::min({int(*m), nw, ne, sw, se}), high = std::max({int(*m), nw, ne, sw, se});
   // Along the edge is across the steepest change.
   float dx = float(-(nw + ne) + (sw + se)), dy = float((nw + sw) - (ne + se));
-  const float scale =
-      1 / (std::min(std::abs(dx), std::abs(dy)) + std::max(float(nw + ne + sw + se) / 32, 2.0f));
+  const float scale = 1 / (std::min(std::abs(dx), std::abs(dy)) + std::max(float(nw + ne + sw + se) / 32, 2.0f));
   dx = std::clamp(dx * scale, -kReach, kReach), dy = std::clamp(dy * scale, -kReach, kReach);
   const auto at = [&](float way) {
     return between(rgba.data(), width, height, float(x) + way * dx, float(y) + way * dy);
@@ -98,8 +94,8 @@ void EdgeSmoother::smooth(std::vector<std::uint8_t>& rgba, int width, int height
     const std::uint8_t* row = luma_.data() + std::ptrdiff_t(y) * width;
     find_edges(row, width, is_edge_.data());
     for (int x = next_edge(is_edge_, 1, width - 1); x < width - 1; x = next_edge(is_edge_, x + 1, width - 1))
-      smoothed_.push_back({std::size_t(y) * std::size_t(width) + std::size_t(x),
-                           along_edge(rgba, row + x, width, height, x, y)});
+      smoothed_.push_back(
+          {std::size_t(y) * std::size_t(width) + std::size_t(x), along_edge(rgba, row + x, width, height, x, y)});
   }
   // Written once all are known, for each is made from the picture as it was.
   for (const Smoothed& s : smoothed_) std::copy_n(s.rgba.data(), 4, &rgba[4 * s.pixel]);

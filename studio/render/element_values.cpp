@@ -6,9 +6,7 @@
 namespace ctpm {
 namespace {
 
-bool is_severed(const std::vector<std::uint8_t>& severed, std::size_t i) {
-  return i < severed.size() && severed[i];
-}
+bool is_severed(const std::vector<std::uint8_t>& severed, std::size_t i) { return i < severed.size() && severed[i]; }
 
 /// tan theta of one five-sphere line.
 double tan_tilt(const Constraints& lines, const State& state, std::size_t i) {
@@ -24,8 +22,7 @@ std::vector<double> tilt_of_spheres(const Model& model, const State& state) {
   if (!model.has_softening) return tilt;
   for (std::size_t i = 0; i < model.constraints.size(); ++i) {
     double& largest = tilt[std::size_t(model.constraints.c[i])];
-    if (!is_severed(state.constraint_severed, i))
-      largest = std::max(largest, tan_tilt(model.constraints, state, i));
+    if (!is_severed(state.constraint_severed, i)) largest = std::max(largest, tan_tilt(model.constraints, state, i));
   }
   return tilt;
 }
@@ -38,8 +35,7 @@ struct Gauge {
 Gauge gauge(const State& state, std::int32_t a, std::int32_t b) {
   const Vec3 d = state.position[std::size_t(b)] - state.position[std::size_t(a)];
   const double length = norm(d);
-  return {length,
-          length > 0 ? dot(state.velocity[std::size_t(b)] - state.velocity[std::size_t(a)], d) / length : 0};
+  return {length, length > 0 ? dot(state.velocity[std::size_t(b)] - state.velocity[std::size_t(a)], d) / length : 0};
 }
 
 }  // namespace
@@ -67,8 +63,7 @@ void measure_elements(const Model& model, const State& state, ElementQuantity qu
     double value = (length - edges.rest_length[i]) / edges.rest_length[i];
     if (quantity == ElementQuantity::force) {
       double worst = std::max(tilt[std::size_t(edges.a[i])], tilt[std::size_t(edges.b[i])]);
-      if (i < edges.third.size() && edges.third[i] >= 0)
-        worst = std::max(worst, tilt[std::size_t(edges.third[i])]);
+      if (i < edges.third.size() && edges.third[i] >= 0) worst = std::max(worst, tilt[std::size_t(edges.third[i])]);
       const double damping = edges.c.empty() ? 0 : edges.c[i] * rate;
       value = std::abs(edges.k[i] * (length - edges.rest_length[i]) + damping) / (1 + worst);
     }

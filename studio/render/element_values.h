@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/model.h"
-#include "core/state.h"
+#include "core/model/model.h"
+#include "core/model/state.h"
 #include "studio/render/scene_view.h"
 
 namespace ctpm {

@@ -52,8 +52,7 @@ Result<Done> write_png(const std::string& path, const Frame& frame) {
   if (!written || failed) {
     if (failed) reason = failed.message();
     std::filesystem::remove(part, failed);
-    return Error{path, "the picture could not be written: " + reason,
-                 "check that the folder exists and is writable"};
+    return Error{path, "the picture could not be written: " + reason, "check that the folder exists and is writable"};
   }
   return Done{};
 }

@@ -4,15 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
+#include "core/model/result.h"
 
 namespace ctpm {
 
 /// One picture.
 struct Frame {
-  int width = 0, height = 0;  ///< [pixels]
-  std::vector<std::uint8_t>
-      rgb;  ///< sRGB, row by row, top row first                      (height x width x 3)
+  int width = 0, height = 0;      ///< [pixels]
+  std::vector<std::uint8_t> rgb;  ///< sRGB, row by row, top row first                      (height x width x 3)
 
   friend bool operator==(const Frame&, const Frame&) = default;
 };

@@ -20,8 +20,7 @@ Result<std::unique_ptr<GlContext>> GlContext::create() {
   context->context_ = OSMesaCreateContextAttribs(attributes, nullptr);
   const Error missing{"OpenGL", "OSMesa gives no OpenGL 3.3 core context", "install libosmesa6 22 or newer"};
   if (!context->context_) return missing;
-  if (!OSMesaMakeCurrent(static_cast<OSMesaContext>(context->context_), context->pixels_, GL_UNSIGNED_BYTE,
-                         16, 16))
+  if (!OSMesaMakeCurrent(static_cast<OSMesaContext>(context->context_), context->pixels_, GL_UNSIGNED_BYTE, 16, 16))
     return missing;
   Errors errors;
 #define CTPM_GL_FETCH(type, name)                                               \

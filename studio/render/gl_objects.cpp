@@ -57,8 +57,7 @@ void VertexArray::create(const Gl& gl) {
   gl.BindBuffer(GL_ARRAY_BUFFER, stream), gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices);
 }
 
-void VertexArray::attribute(const Gl& gl, GLuint slot, int floats, int offset, int stride,
-                            GLuint divisor) const {
+void VertexArray::attribute(const Gl& gl, GLuint slot, int floats, int offset, int stride, GLuint divisor) const {
   gl.BindVertexArray(id), gl.BindBuffer(GL_ARRAY_BUFFER, stream);
   gl.EnableVertexAttribArray(slot);
   const std::size_t bytes = std::size_t(offset) * sizeof(float);
@@ -94,8 +93,7 @@ Result<Done> PictureTarget::create(const Gl& gl, int w, int h) {
   };
   attach(colour, GL_RGBA8, GL_COLOR_ATTACHMENT0), attach(depth, GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT);
   if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE || gl.GetError() != GL_NO_ERROR)
-    return Error{"OpenGL",
-                 "no picture of " + std::to_string(w) + "x" + std::to_string(h) + " can be drawn to",
+    return Error{"OpenGL", "no picture of " + std::to_string(w) + "x" + std::to_string(h) + " can be drawn to",
                  "ask for a smaller picture"};
   return Done{};
 }

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
-#include "core/vec3.h"
+#include "core/model/result.h"
+#include "core/model/vec3.h"
 #include "studio/render/camera.h"
 #include "studio/render/gl_context.h"
 
@@ -24,9 +24,7 @@ class Program {
   GLuint id() const { return id_; }
   void set(const char* name, int value) const { gl_->Uniform1i(place(name), value); }
   void set(const char* name, double value) const { gl_->Uniform1f(place(name), float(value)); }
-  void set(const char* name, Vec3 v) const {
-    gl_->Uniform3f(place(name), float(v.x), float(v.y), float(v.z));
-  }
+  void set(const char* name, Vec3 v) const { gl_->Uniform3f(place(name), float(v.x), float(v.y), float(v.z)); }
   void set(const char* name, Vec3 v, double w) const {
     gl_->Uniform4f(place(name), float(v.x), float(v.y), float(v.z), float(w));
   }

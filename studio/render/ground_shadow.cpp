@@ -46,8 +46,7 @@ void GroundShadow::add(const Surface& surface, std::span<const Vec3> position, s
       add_point(a + (b + c) / 3.0);
       continue;
     }
-    const int parts =
-        std::min(int(std::sqrt(longest) / texel) + 1, 64);  // points no further apart than a texel
+    const int parts = std::min(int(std::sqrt(longest) / texel) + 1, 64);  // points no further apart than a texel
     for (int u = 0; u <= parts; ++u)
       for (int v = 0; u + v <= parts; ++v) add_point(a + (double(u) / parts) * b + (double(v) / parts) * c);
   }
@@ -88,8 +87,7 @@ void GroundShadow::find_darkness() {
     touched_[i] = 1 / (1 + h * (1 + h));
   }
   blur(touched_, narrow_, 1.6), blur(narrow_, wide_, 6.5);
-  for (std::size_t i = 0; i < kTexels; ++i)
-    wide_[i] = std::min(kDarkest, kContact * narrow_[i] + kRoom * wide_[i]);
+  for (std::size_t i = 0; i < kTexels; ++i) wide_[i] = std::min(kDarkest, kContact * narrow_[i] + kRoom * wide_[i]);
 }
 
 /// Between texels, at a place in texels; nothing outside.
@@ -109,19 +107,14 @@ GroundShadow::KnotRange GroundShadow::find_range(const Frame& frame, const Mat4&
   for (const double u : {-1.0, 1.0})
     for (const double v : {-1.0, 1.0}) {
       const Vec3 p = centre_ + u * half_x_ + v * half_y_;
-      const auto row = [&](std::size_t r) {
-        return m[r] * p.x + m[4 + r] * p.y + m[8 + r] * p.z + m[12 + r];
-      };
+      const auto row = [&](std::size_t r) { return m[r] * p.x + m[4 + r] * p.y + m[8 + r] * p.z + m[12 + r]; };
       const double w = row(3);
       if (w <= 0) return all;  // a corner is behind the eye
       left = std::min(left, row(0) / w), right = std::max(right, row(0) / w);
       low = std::min(low, row(1) / w), high = std::max(high, row(1) / w);
     }
-  const auto knot = [](double clip, int size) {
-    return int((0.5 + 0.5 * std::clamp(clip, -1.0, 1.0)) * size / kStep);
-  };
-  return {knot(left, frame.width), knot(-high, frame.height),
-          std::min(all.right, knot(right, frame.width) + 2),
+  const auto knot = [](double clip, int size) { return int((0.5 + 0.5 * std::clamp(clip, -1.0, 1.0)) * size / kStep); };
+  return {knot(left, frame.width), knot(-high, frame.height), std::min(all.right, knot(right, frame.width) + 2),
           std::min(all.bottom, knot(-low, frame.height) + 2)};
 }
 

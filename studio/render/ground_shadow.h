@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/organ.h"
+#include "core/model/organ.h"
 #include "studio/render/camera.h"
 #include "studio/render/frame.h"
 
@@ -44,10 +44,10 @@ class GroundShadow {
   void darken_row(Frame& frame, const KnotRange& range, int y);
   void find_knots(const Frame& frame, const Mat4& clip_from_world, const KnotRange& range);
 
-  std::vector<float> lowest_;  ///< height of what stands there [reaches] (kSize x kSize)
+  std::vector<float> lowest_;                          ///< height of what stands there [reaches] (kSize x kSize)
   std::vector<float> touched_, narrow_, wide_, swap_;  ///< (kSize x kSize)
-  std::vector<float> knots_;          ///< darkness at every few pixels of a part of the picture
-  std::vector<std::uint16_t> light_;  ///< of a row, 65535: all; for each part of a colour
+  std::vector<float> knots_;                           ///< darkness at every few pixels of a part of the picture
+  std::vector<std::uint16_t> light_;                   ///< of a row, 65535: all; for each part of a colour
 };
 
 }  // namespace ctpm

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/cutting.h"
-#include "core/result.h"
+#include "core/cutting/cutting.h"
+#include "core/model/result.h"
 
 namespace ctpm {
 namespace {
@@ -46,16 +46,14 @@ const std::array<LatticeLinks::Cell, LatticeLinks::kSteps>& LatticeLinks::steps(
 LatticeLinks::LatticeLinks(const Model& model, std::size_t organ) {
   const OrganRange& range = model.organs[organ];
   first_ = range.first, spacing_ = range.spacing;
-  for (std::int32_t i = 0; i < range.count; ++i)
-    rest_.push_back(model.rest_position[std::size_t(first_ + i)]);
+  for (std::int32_t i = 0; i < range.count; ++i) rest_.push_back(model.rest_position[std::size_t(first_ + i)]);
   find_axes(model, organ);
 
   // Cells, and the dense box that finds a sphere by its cell.
   const double per_cell = 1 / (spacing_ * spacing_);
   for (const Vec3& p : rest_) {
     const Vec3 d = p - origin_;
-    cell_.push_back({int(std::lround(dot(d, axis_[0]) * per_cell)),
-                     int(std::lround(dot(d, axis_[1]) * per_cell)),
+    cell_.push_back({int(std::lround(dot(d, axis_[0]) * per_cell)), int(std::lround(dot(d, axis_[1]) * per_cell)),
                      int(std::lround(dot(d, axis_[2]) * per_cell))});
   }
   Cell high{};
@@ -67,8 +65,8 @@ LatticeLinks::LatticeLinks(const Model& model, std::size_t organ) {
   for (std::size_t c = 0; c < 3; ++c) extent_[c] = high[c] - low_[c] + 1;
   sphere_at_.assign(std::size_t(extent_[0]) * std::size_t(extent_[1]) * std::size_t(extent_[2]), -1);
   for (std::size_t i = 0; i < cell_.size(); ++i)
-    sphere_at_[std::size_t(((cell_[i][2] - low_[2]) * extent_[1] + cell_[i][1] - low_[1]) * extent_[0] +
-                           cell_[i][0] - low_[0])] = std::int32_t(i);
+    sphere_at_[std::size_t(((cell_[i][2] - low_[2]) * extent_[1] + cell_[i][1] - low_[1]) * extent_[0] + cell_[i][0] -
+                           low_[0])] = std::int32_t(i);
 
   // Neighbours, and the elements that join them.
   neighbour_.assign(rest_.size() * kSteps, -1), link_.assign(rest_.size() * kSteps, Link::none);
@@ -78,8 +76,7 @@ LatticeLinks::LatticeLinks(const Model& model, std::size_t organ) {
       const Cell c = cell(i), d = steps()[std::size_t(s)];
       neighbour_[index(i, s)] = at({c[0] + d[0], c[1] + d[1], c[2] + d[2]});
     }
-  for (std::size_t e = 0; e < model.edges.size(); ++e)
-    add_element(model.edges.a[e], model.edges.b[e], std::int32_t(e));
+  for (std::size_t e = 0; e < model.edges.size(); ++e) add_element(model.edges.a[e], model.edges.b[e], std::int32_t(e));
   for (std::size_t t = 0; t < model.tpms.size(); ++t)
     add_element(model.tpms.a[t], model.tpms.b[t], std::int32_t(model.edges.size() + t));
   severed_.assign(elements_.size(), 0), passed_.assign(elements_.size(), 0), cut_.assign(rest_.size(), 0);
@@ -90,8 +87,7 @@ void LatticeLinks::find_axes(const Model& model, std::size_t organ) {
   origin_ = rest_.empty() ? Vec3{} : rest_[0];
   int found = 0;
   const auto look_at = [&](std::int32_t a, std::int32_t b) {
-    if (found == 2 || a < first_ || a >= first_ + range.count || b < first_ || b >= first_ + range.count)
-      return;
+    if (found == 2 || a < first_ || a >= first_ + range.count || b < first_ || b >= first_ + range.count) return;
     const Vec3 d = model.rest_position[std::size_t(b)] - model.rest_position[std::size_t(a)];
     if (std::abs(norm(d) - spacing_) > 0.05 * spacing_) return;
     if (found == 1 && std::abs(dot(d, axis_[0])) > 0.1 * spacing_ * spacing_) return;
@@ -110,8 +106,7 @@ void LatticeLinks::find_axes(const Model& model, std::size_t organ) {
 
 void LatticeLinks::add_element(std::int32_t a, std::int32_t b, std::int32_t source) {
   a -= first_, b -= first_;
-  if (a < 0 || a >= count() || b < 0 || b >= count() ||
-      norm(rest(b) - rest(a)) > kLongestLinkInSpacings * spacing_)
+  if (a < 0 || a >= count() || b < 0 || b >= count() || norm(rest(b) - rest(a)) > kLongestLinkInSpacings * spacing_)
     return;
   for (int s = 0; s < kSteps; ++s)
     if (neighbour(a, s) == b) {
@@ -124,17 +119,17 @@ void LatticeLinks::add_element(std::int32_t a, std::int32_t b, std::int32_t sour
 std::int32_t LatticeLinks::at(Cell cell) const {
   for (std::size_t c = 0; c < 3; ++c)
     if (cell[c] < low_[c] || cell[c] >= low_[c] + extent_[c]) return -1;
-  return sphere_at_[std::size_t(((cell[2] - low_[2]) * extent_[1] + cell[1] - low_[1]) * extent_[0] +
-                                cell[0] - low_[0])];
+  return sphere_at_[std::size_t(((cell[2] - low_[2]) * extent_[1] + cell[1] - low_[1]) * extent_[0] + cell[0] -
+                                low_[0])];
 }
 
 bool LatticeLinks::update(const State& state) {
   bool changed = false;
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     const std::size_t source = std::size_t(elements_[e].source), edges = state.edge_severed.size();
-    const bool severed =
-        source < edges ? state.edge_severed[source] != 0
-                       : source - edges < state.tpm_severed.size() && state.tpm_severed[source - edges] != 0;
+    const bool severed = source < edges
+                             ? state.edge_severed[source] != 0
+                             : source - edges < state.tpm_severed.size() && state.tpm_severed[source - edges] != 0;
     const std::vector<std::uint8_t>& crossing = source < edges ? state.edge_crossing : state.tpm_crossing;
     const std::size_t place = source < edges ? source : source - edges;
     const std::uint8_t passed = severed && place < crossing.size() ? crossing[place] : std::uint8_t(0);
@@ -167,8 +162,7 @@ std::vector<std::array<std::int32_t, 2>> LatticeLinks::hops_from(std::int32_t ho
     for (int s = 0; s < kSteps; ++s) {
       const std::int32_t other = neighbour(sphere, s);
       const Link link = link_[index(sphere, s)];
-      if (link == Link::none || (link == Link::severed && !over_severed) || seen[std::size_t(other)])
-        continue;
+      if (link == Link::none || (link == Link::severed && !over_severed) || seen[std::size_t(other)]) continue;
       seen[std::size_t(other)] = 1;
       reached.push_back({other, hops + 1});
     }

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/model.h"
-#include "core/state.h"
+#include "core/model/model.h"
+#include "core/model/state.h"
 
 namespace ctpm {
 
@@ -32,9 +32,7 @@ class LatticeLinks {
   Cell cell(std::int32_t sphere) const { return cell_[std::size_t(sphere)]; }
 
   /// Rest position [m] of a place given in cells, whole or between.
-  Vec3 place(double i, double j, double k) const {
-    return origin_ + i * axis_[0] + j * axis_[1] + k * axis_[2];
-  }
+  Vec3 place(double i, double j, double k) const { return origin_ + i * axis_[0] + j * axis_[1] + k * axis_[2]; }
 
   /// Sphere in a cell, or -1.
   std::int32_t at(Cell cell) const;
@@ -56,10 +54,8 @@ class LatticeLinks {
 
   /// What a sphere sees of its neighbourhood, in the order of the spheres' index.
   struct Sight {
-    std::vector<std::int32_t>
-        seen;  ///< reached over joined links in as few hops as before anything was severed
-    std::vector<std::int32_t>
-        lost;  ///< reached before, and now not at all or only by a detour around a cut's end
+    std::vector<std::int32_t> seen;  ///< reached over joined links in as few hops as before anything was severed
+    std::vector<std::int32_t> lost;  ///< reached before, and now not at all or only by a detour around a cut's end
   };
 
   /// What `home` sees, itself included. The two sides of a cut do not see each other, though they meet beyond
@@ -74,9 +70,7 @@ class LatticeLinks {
     std::int32_t source;  ///< index into edges or, beyond those, into TPMs
   };
 
-  std::size_t index(std::int32_t sphere, int step) const {
-    return std::size_t(sphere) * kSteps + std::size_t(step);
-  }
+  std::size_t index(std::int32_t sphere, int step) const { return std::size_t(sphere) * kSteps + std::size_t(step); }
   void find_axes(const Model& model, std::size_t organ);
   void add_element(std::int32_t a, std::int32_t b, std::int32_t source);
   std::vector<std::array<std::int32_t, 2>> hops_from(std::int32_t home, bool over_severed) const;

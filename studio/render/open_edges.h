@@ -15,7 +15,8 @@ class OpenEdges {
 
   bool none() const { return count_.empty(); }
 
-  /// Takes them all and returns the loops among them, in which no vertex comes twice; each loop's last vertex is joined to its first.
+  /// Takes them all and returns the loops among them, in which no vertex comes twice; each loop's last vertex is joined
+  /// to its first.
   std::vector<std::vector<std::int32_t>> take_loops();
 
  private:

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/surface.h"
+#include "core/surface/surface.h"
 #include "studio/render/noise.h"
 
 namespace ctpm {

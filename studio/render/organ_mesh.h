@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/organ.h"
-#include "core/state.h"
+#include "core/model/organ.h"
+#include "core/model/state.h"
 
 namespace ctpm {
 
@@ -17,8 +17,7 @@ class OrganMesh {
  public:
   /// Takes over a surface whose vertices or triangles changed. `is_lip`: 1 where a vertex lies on the lip of
   /// a cut. `rind`: as CutSurface says.
-  void set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip,
-                   const std::vector<float>& rind);
+  void set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip, const std::vector<float>& rind);
 
   /// Deforms the surface that was set and fills vertices(). `first_sphere`: of the organ, in the State.
   void update(const Surface& surface, const State& state, std::int32_t first_sphere);

@@ -76,8 +76,8 @@ class Font {
     const int pad = height_ / 4, advance = int(std::lround(double(size.width) / kOversample));
     cv::Mat large(kOversample * (height_ + height_ / 2 + 2 * pad), kOversample * (advance + 2 * pad), CV_8U,
                   cv::Scalar(0));
-    cv::putText(large, text, {kOversample * pad, kOversample * (pad + height_)}, kFont, scale_,
-                cv::Scalar(255), thickness, cv::LINE_AA);
+    cv::putText(large, text, {kOversample * pad, kOversample * (pad + height_)}, kFont, scale_, cv::Scalar(255),
+                thickness, cv::LINE_AA);
     Glyph g{{}, advance};
     cv::resize(large, g.mask, {large.cols / kOversample, large.rows / kOversample}, 0, 0, cv::INTER_AREA);
     return glyphs_.emplace(c, g).first->second;
@@ -107,8 +107,7 @@ void draw_panel(cv::Mat& rgb, const PixelBox& box, const Ink& tint, int opacity,
     const int left = std::max(0, box.x + inset), right = std::min(rgb.cols, box.x + box.width - inset);
     std::uint8_t* to = rgb.ptr<std::uint8_t>(y) + 3 * left;
     for (int x = left; x < right; ++x, to += 3)
-      for (int k = 0; k < 3; ++k)
-        to[k] = std::uint8_t((to[k] * (256 - opacity) + tint[std::size_t(k)] * opacity) >> 8);
+      for (int k = 0; k < 3; ++k) to[k] = std::uint8_t((to[k] * (256 - opacity) + tint[std::size_t(k)] * opacity) >> 8);
   }
 }
 
@@ -138,9 +137,7 @@ double round_up(double value) {
 bool is_too_deep(const OverlayData& data) {
   return !data.is_blade && data.damage_depth > 0 && data.depth > data.damage_depth;
 }
-bool is_too_strong(const OverlayData& data) {
-  return data.damage_force > 0 && data.force > data.damage_force;
-}
+bool is_too_strong(const OverlayData& data) { return data.damage_force > 0 && data.force > data.damage_force; }
 
 /// What is beyond its limit; empty if nothing is.
 std::string damage_text(const OverlayData& data) {
@@ -148,8 +145,7 @@ std::string damage_text(const OverlayData& data) {
   if (is_too_deep(data))
     text += " " + fixed(1000 * data.depth, 1) + " mm, limit " + fixed(1000 * data.damage_depth, 1) + " mm";
   if (is_too_strong(data))
-    text += (text.empty() ? " " : "; ") + fixed(data.force, 2) + " N, limit " + fixed(data.damage_force, 2) +
-            " N";
+    text += (text.empty() ? " " : "; ") + fixed(data.force, 2) + " N, limit " + fixed(data.damage_force, 2) + " N";
   return text.empty() ? text : "TISSUE DAMAGE:" + text;
 }
 
@@ -204,8 +200,7 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
        {"tick", std::to_string(data.tick)},
        {"force", fixed(data.force, 3) + " N"},
        {data.is_blade ? "cut depth" : "depth", fixed(1000 * data.depth, 2) + " mm"},
-       {"loose",
-        data.loose == 0 ? "" : std::to_string(data.loose) + (data.loose == 1 ? " piece" : " pieces")}}};
+       {"loose", data.loose == 0 ? "" : std::to_string(data.loose) + (data.loose == 1 ? " piece" : " pieces")}}};
   for (const auto& [name, value] : facts) {
     if (value.empty()) continue;
     plan.lines.push_back(line(small, name, x, y, kGrey));
@@ -257,8 +252,7 @@ void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
     plan.verdict = banner(data.verdict, is_narrow ? plan.facts.y + plan.facts.height + px(10) : margin, ink);
   }
   if (const std::string text = damage_text(data); !text.empty())
-    plan.warning =
-        banner(text, is_narrow ? height - margin - px(160) - px(10) - h : height - margin - h, kWhite);
+    plan.warning = banner(text, is_narrow ? height - margin - px(160) - px(10) - h : height - margin - h, kWhite);
 }
 
 /// Bottom right, above where the warning may come.
@@ -279,8 +273,8 @@ void Overlay::Parts::draw_bar(cv::Mat& rgb, const Legend& legend, const PixelBox
   const int count = int(legend.colours.size());
   for (int x = 0; x < bar.width && count > 0; ++x) {
     // Single values fill their field; a range runs from the first to the last colour.
-    const double place = legend.is_stepped ? double(x * count / bar.width)
-                                           : double(x) * (count - 1) / std::max(bar.width - 1, 1);
+    const double place =
+        legend.is_stepped ? double(x * count / bar.width) : double(x) * (count - 1) / std::max(bar.width - 1, 1);
     const int low = std::min(int(place), count - 1), high = std::min(low + 1, count - 1);
     cv::Vec3b colour;
     for (int c = 0; c < 3; ++c) {
@@ -314,10 +308,10 @@ void Overlay::Parts::draw_curve(cv::Mat& rgb, const OverlayData& data, const Pla
     if (p.time >= data.time - data.plot_span && p.time <= data.time)
       points.push_back(at(p.time, std::max(p.force, 0.0)));
   if (points.empty()) return;
-  cv::polylines(rgb, points, false, cv::Scalar(kAmber[0], kAmber[1], kAmber[2]), std::max(1, px(2)),
-                cv::LINE_AA, kShift);
-  cv::circle(rgb, points.back(), std::max(1, px(4)) << kShift, cv::Scalar(255, 225, 160), cv::FILLED,
-             cv::LINE_AA, kShift);
+  cv::polylines(rgb, points, false, cv::Scalar(kAmber[0], kAmber[1], kAmber[2]), std::max(1, px(2)), cv::LINE_AA,
+                kShift);
+  cv::circle(rgb, points.back(), std::max(1, px(4)) << kShift, cv::Scalar(255, 225, 160), cv::FILLED, cv::LINE_AA,
+             kShift);
 }
 
 Overlay::Overlay(int width, int height) : parts_(std::make_unique<Parts>(width, height)) {}

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <string>
 
-#include "core/result.h"
+#include "core/model/result.h"
 
 namespace ctpm {
 

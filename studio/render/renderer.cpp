@@ -28,8 +28,7 @@ Mat4 rigid(Quat turn, Vec3 origin) {
 /// Grows a rectangle around projected points.
 class Footprint {
  public:
-  Footprint(const Mat4& clip_from_world, int width, int height)
-      : m_(clip_from_world), width_(width), height_(height) {}
+  Footprint(const Mat4& clip_from_world, int width, int height) : m_(clip_from_world), width_(width), height_(height) {}
 
   void add(Vec3 p) {
     const double w = m_[3] * p.x + m_[7] * p.y + m_[11] * p.z + m_[15];
@@ -39,8 +38,7 @@ class Footprint {
     }
     const double x = (m_[0] * p.x + m_[4] * p.y + m_[8] * p.z + m_[12]) / w;
     const double y = (m_[1] * p.x + m_[5] * p.y + m_[9] * p.z + m_[13]) / w;
-    left_ = std::min(left_, x), right_ = std::max(right_, x), bottom_ = std::min(bottom_, y),
-    top_ = std::max(top_, y);
+    left_ = std::min(left_, x), right_ = std::max(right_, x), bottom_ = std::min(bottom_, y), top_ = std::max(top_, y);
   }
 
   /// The pixels that the points and a border around them cover; may be empty.
@@ -157,8 +155,7 @@ void Renderer::Parts::place_ground() {
 Mat4 Renderer::Parts::clip_from_world(const Camera& camera) const {
   const double away = norm(camera.eye - ground_centre);
   const double near = std::max(away - 3 * size, 0.02 * size), far = away + 3 * size;
-  return product(projection_matrix(camera, double(frame.width) / frame.height, near, far),
-                 view_matrix(camera));
+  return product(projection_matrix(camera, double(frame.width) / frame.height, near, far), view_matrix(camera));
 }
 
 const Tool* Renderer::Parts::held_tool(const State& state, const DrawOptions& options) const {
@@ -183,8 +180,7 @@ PixelRect Renderer::Parts::footprint(const State& state, const DrawOptions& opti
   if (held_tool(state, options)) {
     const std::vector<float>& v = tool_meshes[std::size_t(state.last_inputs.tool)].vertex;
     for (std::size_t i = 0; i < v.size(); i += 7)
-      print.add(state.last_inputs.position +
-                rotate(state.last_inputs.world_from_tool, {v[i], v[i + 1], v[i + 2]}));
+      print.add(state.last_inputs.position + rotate(state.last_inputs.world_from_tool, {v[i], v[i + 1], v[i + 2]}));
   }
   return print.pixels();
 }
@@ -203,8 +199,7 @@ void Renderer::Parts::set_light(const Program& program, const State& state, cons
   const Vec3 tip = state.last_inputs.position;
   const bool cuts = held && held->kind == ToolKind::scalpel;
   program.set("tool_tip", tip);
-  program.set("tool_heel",
-              cuts ? tip + rotate(state.last_inputs.world_from_tool, {0, 0, held->blade_length}) : tip);
+  program.set("tool_heel", cuts ? tip + rotate(state.last_inputs.world_from_tool, {0, 0, held->blade_length}) : tip);
   program.set("tool_radius", !held ? 0.0 : cuts ? 0.06 * held->blade_length : held->radius);
 }
 
@@ -216,13 +211,11 @@ void Renderer::Parts::draw_spheres(const State& state, const DrawOptions& option
       const Vec3 p = state.position[std::size_t(i)],
                  c = linear(layer_colour(scene.model->layer[std::size_t(i)], range.layer_count));
       if (options.cutaway.leaves_out(p)) continue;
-      for (const double x : {p.x, p.y, p.z, range.sphere_radius, c.x, c.y, c.z})
-        instances.push_back(float(x));
+      for (const double x : {p.x, p.y, p.z, range.sphere_radius, c.x, c.y, c.z}) instances.push_back(float(x));
     }
   spheres.set_stream(g, instances);
   set_light(sphere, state, options);
-  g.BindVertexArray(spheres.id),
-      g.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(instances.size() / 7));
+  g.BindVertexArray(spheres.id), g.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(instances.size() / 7));
 }
 
 void Renderer::Parts::draw_elements(const State& state, const DrawOptions& options) {
@@ -250,8 +243,7 @@ void Renderer::Parts::draw_tool(const State& state, const DrawOptions& options) 
   const VertexArray& array = tools[std::size_t(state.last_inputs.tool)];
   set_light(tool, state, options);
   tool.set("world_from_tool", rigid(state.last_inputs.world_from_tool, state.last_inputs.position));
-  gl().BindVertexArray(array.id),
-      gl().DrawElements(GL_TRIANGLES, array.index_count, GL_UNSIGNED_INT, nullptr);
+  gl().BindVertexArray(array.id), gl().DrawElements(GL_TRIANGLES, array.index_count, GL_UNSIGNED_INT, nullptr);
 }
 
 /// The backdrop and the ground's shadow.
@@ -300,9 +292,9 @@ std::string Renderer::opengl() const {
 Result<std::unique_ptr<Renderer>> Renderer::create(int width, int height, SceneView scene) {
   Errors errors;
   if (width < 16 || width > 8192 || height < 16 || height > 8192)
-    errors.push_back(
-        {"picture size",
-         "got " + std::to_string(width) + "x" + std::to_string(height) + ", each must be in [16, 8192]", ""});
+    errors.push_back({"picture size",
+                      "got " + std::to_string(width) + "x" + std::to_string(height) + ", each must be in [16, 8192]",
+                      ""});
   if (!scene.model || scene.model->organs.size() != scene.surfaces.size())
     errors.push_back({"scene", "a picture needs a model and one surface for each of its organs", ""});
   if (!errors.empty()) return errors;

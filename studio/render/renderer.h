@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "core/result.h"
-#include "core/state.h"
+#include "core/model/result.h"
+#include "core/model/state.h"
 #include "studio/render/frame.h"
 #include "studio/render/scene_view.h"
 

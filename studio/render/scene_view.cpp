@@ -48,9 +48,8 @@ double nearness(const Bounds& organs, const Inputs& inputs) {
   if (inputs.tool < 0) return 0;
   const Vec3 p = inputs.position;
   const auto beyond = [](double low, double high, double x) { return std::max({low - x, x - high, 0.0}); };
-  const double away =
-      norm(Vec3{beyond(organs.min.x, organs.max.x, p.x), beyond(organs.min.y, organs.max.y, p.y),
-                beyond(organs.min.z, organs.max.z, p.z)});
+  const double away = norm(Vec3{beyond(organs.min.x, organs.max.x, p.x), beyond(organs.min.y, organs.max.y, p.y),
+                                beyond(organs.min.z, organs.max.z, p.z)});
   const double t = std::clamp(1 - away / (0.35 * organs.diagonal()), 0.0, 1.0);
   return t * t * (3 - 2 * t);
 }
@@ -98,8 +97,7 @@ Colour quantity_colour(ElementQuantity quantity, double value) {
       {0.10, 0.25, 0.75}, {0.35, 0.60, 0.90}, {0.80, 0.80, 0.80}, {0.95, 0.55, 0.35}, {0.75, 0.10, 0.12}};
   static constexpr Colour kOneWay[] = {
       {0.16, 0.17, 0.42}, {0.16, 0.42, 0.60}, {0.25, 0.66, 0.52}, {0.75, 0.82, 0.32}, {1.00, 0.92, 0.45}};
-  return quantity == ElementQuantity::stretch ? on_ladder(kBothWays, 0.5 + 0.5 * value)
-                                              : on_ladder(kOneWay, value);
+  return quantity == ElementQuantity::stretch ? on_ladder(kBothWays, 0.5 + 0.5 * value) : on_ladder(kOneWay, value);
 }
 
 Colour layer_colour(int layer, int layer_count) {

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/model.h"
-#include "core/organ.h"
-#include "core/state.h"
+#include "core/model/model.h"
+#include "core/model/organ.h"
+#include "core/model/state.h"
 #include "studio/render/camera.h"
 
 namespace ctpm {

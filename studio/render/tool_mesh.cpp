@@ -19,9 +19,7 @@ class Builder {
     return std::uint32_t(mesh.vertex.size() / 7 - 1);
   }
 
-  void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    mesh.index.insert(mesh.index.end(), {a, b, c});
-  }
+  void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) { mesh.index.insert(mesh.index.end(), {a, b, c}); }
 
   /// A body of revolution around z through the profile (radius, z), bottom to top; the ends are closed by
   /// radius 0. `flat` scales y.
@@ -35,8 +33,7 @@ class Builder {
       for (int k = 0; k <= kAround; ++k) {
         const double angle = 2 * std::numbers::pi * k / kAround, c = std::cos(angle), s = std::sin(angle);
         const Vec3 n{dz / length * c, dz / length * s / flat, -dr / length};
-        row.push_back(
-            vertex({profile[i][0] * c, flat * profile[i][0] * s, profile[i][1]}, n / norm(n), part));
+        row.push_back(vertex({profile[i][0] * c, flat * profile[i][0] * s, profile[i][1]}, n / norm(n), part));
       }
       for (std::size_t k = 0; i && k < std::size_t(kAround); ++k)
         triangle(last[k], last[k + 1], row[k + 1]), triangle(last[k], row[k + 1], row[k]);
@@ -106,8 +103,7 @@ ToolMesh make_scalpel(double length) {
                 {0.9 * grip, top},
                 {0, top + 0.002}},
                ToolPart::handle, 0.45);
-  for (std::size_t i = begin; i < builder.mesh.vertex.size(); i += 7)
-    builder.mesh.vertex[i] -= float(0.5 * width);
+  for (std::size_t i = begin; i < builder.mesh.vertex.size(); i += 7) builder.mesh.vertex[i] -= float(0.5 * width);
   return builder.mesh;
 }
 

@@ -46,8 +46,7 @@ class Axis {
     double step = power;
     for (const double factor : {2.0, 5.0, 10.0})
       if (step < rough * (1 - 1e-9)) step = factor * power;
-    for (double i = std::ceil(low_ / step - 1e-6); i * step <= high_ + 1e-6 * step; ++i)
-      ticks.push_back(i * step);
+    for (double i = std::ceil(low_ / step - 1e-6); i * step <= high_ + 1e-6 * step; ++i) ticks.push_back(i * step);
     return ticks;
   }
 
@@ -73,31 +72,28 @@ Range range_of(const Plot& plot, bool is_y) {
     for (const Band& band : plot.bands) range.take(band.low), range.take(band.high);
   if (range.is_empty()) range = {is_log ? 1.0 : 0.0, is_log ? 10.0 : 1.0};
   if (is_log)
-    return {std::pow(10.0, std::floor(std::log10(range.low))),
-            std::pow(10.0, std::ceil(std::log10(range.high)))};
+    return {std::pow(10.0, std::floor(std::log10(range.low))), std::pow(10.0, std::ceil(std::log10(range.high)))};
   const double size = std::max(range.high - range.low, 1e-12 * std::max(1.0, std::abs(range.high)));
   // Places in a plane need air on both sides, curves over time do not.
-  const bool has_places = std::any_of(plot.series.begin(), plot.series.end(),
-                                      [](const Series& s) { return s.stroke == Stroke::path; });
+  const bool has_places =
+      std::any_of(plot.series.begin(), plot.series.end(), [](const Series& s) { return s.stroke == Stroke::path; });
   if (!is_y && !has_places) return {range.low >= 0 && range.low < 0.1 * size ? 0.0 : range.low, range.high};
   const bool from_zero = !has_places && range.low >= 0 && range.low < 0.4 * size;
   return {from_zero ? 0.0 : range.low - 0.06 * size, range.high + 0.06 * size};
 }
 
-void add_text(std::string& svg, double x, double y, const char* anchor, const char* kind,
-              const std::string& text, const std::string& more = "") {
-  svg += "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" text-anchor=\"" + anchor + "\" class=\"" +
-         kind + "\"" + more + ">" + escape_html(text) + "</text>\n";
+void add_text(std::string& svg, double x, double y, const char* anchor, const char* kind, const std::string& text,
+              const std::string& more = "") {
+  svg += "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" text-anchor=\"" + anchor + "\" class=\"" + kind + "\"" +
+         more + ">" + escape_html(text) + "</text>\n";
 }
 
 void add_line(std::string& svg, double x1, double y1, double x2, double y2, const char* kind) {
-  svg += "<line x1=\"" + number(x1) + "\" y1=\"" + number(y1) + "\" x2=\"" + number(x2) + "\" y2=\"" +
-         number(y2) + "\" class=\"" + kind + "\"/>\n";
+  svg += "<line x1=\"" + number(x1) + "\" y1=\"" + number(y1) + "\" x2=\"" + number(x2) + "\" y2=\"" + number(y2) +
+         "\" class=\"" + kind + "\"/>\n";
 }
 
-bool has_marks_only(const Series& series) {
-  return series.stroke == Stroke::marks || series.stroke == Stroke::crosses;
-}
+bool has_marks_only(const Series& series) { return series.stroke == Stroke::marks || series.stroke == Stroke::crosses; }
 
 /// A drawing of one plot while it is made.
 struct Drawing {
@@ -124,35 +120,32 @@ struct Drawing {
 
   void add_bands() {
     for (const Band& band : plot.bands)
-      svg += "<rect x=\"" + number(left) + "\" y=\"" + number(y.at(band.high)) + "\" width=\"" +
-             number(right - left) + "\" height=\"" + number(y.at(band.low) - y.at(band.high)) + "\" fill=\"" +
-             colour(band.colour) + "\" fill-opacity=\"0.15\"/>\n";
+      svg += "<rect x=\"" + number(left) + "\" y=\"" + number(y.at(band.high)) + "\" width=\"" + number(right - left) +
+             "\" height=\"" + number(y.at(band.low) - y.at(band.high)) + "\" fill=\"" + colour(band.colour) +
+             "\" fill-opacity=\"0.15\"/>\n";
   }
 
   void add_mark(double px, double py, double radius, const char* ink, bool is_filled) {
-    svg += "<circle cx=\"" + number(px) + "\" cy=\"" + number(py) + "\" r=\"" + number(radius) +
-           "\" stroke=\"" + ink + "\" stroke-width=\"1.4\" fill=\"" + (is_filled ? ink : "white") + "\"/>\n";
+    svg += "<circle cx=\"" + number(px) + "\" cy=\"" + number(py) + "\" r=\"" + number(radius) + "\" stroke=\"" + ink +
+           "\" stroke-width=\"1.4\" fill=\"" + (is_filled ? ink : "white") + "\"/>\n";
   }
 
   void add_cross(double px, double py, const char* ink) {
     for (const double slope : {-1.0, 1.0})
-      svg += "<line x1=\"" + number(px - 4) + "\" y1=\"" + number(py - 4 * slope) + "\" x2=\"" +
-             number(px + 4) + "\" y2=\"" + number(py + 4 * slope) + "\" stroke=\"" + ink +
-             "\" stroke-width=\"1.6\"/>\n";
+      svg += "<line x1=\"" + number(px - 4) + "\" y1=\"" + number(py - 4 * slope) + "\" x2=\"" + number(px + 4) +
+             "\" y2=\"" + number(py + 4 * slope) + "\" stroke=\"" + ink + "\" stroke-width=\"1.6\"/>\n";
   }
 
   void add_series(const Series& series, const char* ink) {
     std::string points;
     std::vector<std::pair<double, double>> places;
     for (std::size_t i = 0; i < series.x.size(); ++i)
-      if (x.can_show(series.x[i]) && y.can_show(series.y[i]))
-        places.emplace_back(x.at(series.x[i]), y.at(series.y[i]));
+      if (x.can_show(series.x[i]) && y.can_show(series.y[i])) places.emplace_back(x.at(series.x[i]), y.at(series.y[i]));
     for (const auto& [px, py] : places) points += number(px) + "," + number(py) + " ";
     if (!has_marks_only(series))
-      svg += "<polyline fill=\"none\" stroke=\"" + std::string(ink) +
-             "\" stroke-linejoin=\"round\" stroke-width=\"" + (series.stroke == Stroke::path ? "1" : "1.8") +
-             "\"" + (series.stroke == Stroke::dashed ? " stroke-dasharray=\"6 4\"" : "") + " points=\"" +
-             points + "\"/>\n";
+      svg += "<polyline fill=\"none\" stroke=\"" + std::string(ink) + "\" stroke-linejoin=\"round\" stroke-width=\"" +
+             (series.stroke == Stroke::path ? "1" : "1.8") + "\"" +
+             (series.stroke == Stroke::dashed ? " stroke-dasharray=\"6 4\"" : "") + " points=\"" + points + "\"/>\n";
     if (series.stroke == Stroke::crosses)
       for (const auto& [px, py] : places) add_cross(px, py, ink);
     if (series.stroke == Stroke::marks || series.stroke == Stroke::path)
@@ -165,8 +158,7 @@ struct Drawing {
   void add_legend(const std::vector<const char*>& inks) {
     int entry = 0;
     const auto place = [&] {
-      const double px = left + (entry % 2) * 0.5 * (right - left),
-                   py = bottom + 54 + kLegendRow * (entry / 2);
+      const double px = left + (entry % 2) * 0.5 * (right - left), py = bottom + 54 + kLegendRow * (entry / 2);
       ++entry;
       return std::pair{px, py};
     };
@@ -179,8 +171,8 @@ struct Drawing {
       else if (s.stroke == Stroke::marks)
         add_mark(px + 11, py - 4, 3, inks[i], false);
       else
-        svg += "<line x1=\"" + number(px) + "\" y1=\"" + number(py - 4) + "\" x2=\"" + number(px + 22) +
-               "\" y2=\"" + number(py - 4) + "\" stroke=\"" + inks[i] + "\" stroke-width=\"2\"" +
+        svg += "<line x1=\"" + number(px) + "\" y1=\"" + number(py - 4) + "\" x2=\"" + number(px + 22) + "\" y2=\"" +
+               number(py - 4) + "\" stroke=\"" + inks[i] + "\" stroke-width=\"2\"" +
                (s.stroke == Stroke::dashed ? " stroke-dasharray=\"6 4\"" : "") + "/>\n";
       if (s.stroke == Stroke::path) add_mark(px + 11, py - 4, 3, inks[i], true);
       add_text(svg, px + 28, py, "start", "legend", s.name);
@@ -188,8 +180,8 @@ struct Drawing {
     for (const Band& band : plot.bands) {
       if (band.name.empty()) continue;
       const auto [px, py] = place();
-      svg += "<rect x=\"" + number(px) + "\" y=\"" + number(py - 10) +
-             "\" width=\"22\" height=\"11\" fill=\"" + colour(band.colour) + "\" fill-opacity=\"0.25\"/>\n";
+      svg += "<rect x=\"" + number(px) + "\" y=\"" + number(py - 10) + "\" width=\"22\" height=\"11\" fill=\"" +
+             colour(band.colour) + "\" fill-opacity=\"0.25\"/>\n";
       add_text(svg, px + 28, py, "start", "legend", band.name);
     }
   }
@@ -272,15 +264,14 @@ std::string to_svg(const Plot& plot) {
                   ""};
   std::string& svg = drawing.svg;
   // Names of clips must differ within a page; the title and size of a plot make one.
-  const std::string clip = "c" + std::to_string(std::hash<std::string>{}(plot.title + plot.y_title +
-                                                                         std::to_string(plot.series.size())) %
-                                                1000000007);
+  const std::string clip =
+      "c" + std::to_string(std::hash<std::string>{}(plot.title + plot.y_title + std::to_string(plot.series.size())) %
+                           1000000007);
   svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + std::to_string(plot.width) + " " +
         std::to_string(whole_height) + "\" width=\"" + std::to_string(plot.width) + "\" height=\"" +
         std::to_string(whole_height) + "\" role=\"img\">\n<title>" + escape_html(plot.title) + "</title>\n";
-  svg += "<clipPath id=\"" + clip + "\"><rect x=\"" + number(left) + "\" y=\"" + number(top - 5) +
-         "\" width=\"" + number(right - left + 5) + "\" height=\"" + number(bottom - top + 10) +
-         "\"/></clipPath>\n";
+  svg += "<clipPath id=\"" + clip + "\"><rect x=\"" + number(left) + "\" y=\"" + number(top - 5) + "\" width=\"" +
+         number(right - left + 5) + "\" height=\"" + number(bottom - top + 10) + "\"/></clipPath>\n";
   drawing.add_axes();
   svg += "<g clip-path=\"url(#" + clip + ")\">\n";
   drawing.add_bands();

@@ -58,8 +58,7 @@ std::string figure(const std::string& content, const std::string& caption) {
 
 }  // namespace
 
-Report::Report(std::string title, std::string subtitle)
-    : title_(std::move(title)), subtitle_(std::move(subtitle)) {}
+Report::Report(std::string title, std::string subtitle) : title_(std::move(title)), subtitle_(std::move(subtitle)) {}
 
 Result<Done> Report::add(const Section& section) {
   add_heading(section.title);
@@ -74,8 +73,7 @@ Result<Done> Report::add(const Section& section) {
 void Report::add_heading(const std::string& text) { body_ += "<h2>" + escape_html(text) + "</h2>\n"; }
 void Report::add_paragraph(const std::string& text) { body_ += "<p>" + escape_html(text) + "</p>\n"; }
 void Report::add_verdict(bool is_good, const std::string& text) {
-  body_ +=
-      std::string("<p class=\"verdict ") + (is_good ? "good" : "bad") + "\">" + escape_html(text) + "</p>\n";
+  body_ += std::string("<p class=\"verdict ") + (is_good ? "good" : "bad") + "\">" + escape_html(text) + "</p>\n";
 }
 void Report::add_table(const Table& table) { body_ += to_html(table); }
 
@@ -90,8 +88,7 @@ Result<Done> Report::add_pictures(const std::vector<Picture>& pictures) {
   for (const Picture& picture : pictures) {
     const Result<std::string> data = to_data_uri(picture.frame);
     if (!data) return data.errors();
-    row +=
-        figure("<img alt=\"" + escape_html(picture.caption) + "\" src=\"" + *data + "\"/>", picture.caption);
+    row += figure("<img alt=\"" + escape_html(picture.caption) + "\" src=\"" + *data + "\"/>", picture.caption);
   }
   body_ += "<div class=\"row\">\n" + row + "</div>\n";
   return Done{};
@@ -100,15 +97,13 @@ Result<Done> Report::add_pictures(const std::vector<Picture>& pictures) {
 std::string Report::html() const {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"/><meta name=\"viewport\" "
          "content=\"width=device-width\"/><title>" +
-         escape_html(title_) + "</title><style>" + kStyle + "</style></head>\n<body>\n<h1>" +
-         escape_html(title_) + "</h1>\n<p class=\"subtitle\">" + escape_html(subtitle_) + "</p>\n" + body_ +
-         "</body>\n</html>\n";
+         escape_html(title_) + "</title><style>" + kStyle + "</style></head>\n<body>\n<h1>" + escape_html(title_) +
+         "</h1>\n<p class=\"subtitle\">" + escape_html(subtitle_) + "</p>\n" + body_ + "</body>\n</html>\n";
 }
 
 Result<std::string> to_data_uri(const Frame& frame) {
   if (frame.width <= 0 || frame.height <= 0) return Error{"picture", "is empty", ""};
-  CTPM_CHECK(frame.rgb.size() == std::size_t(frame.width) * std::size_t(frame.height) * 3,
-             "three bytes a pixel");
+  CTPM_CHECK(frame.rgb.size() == std::size_t(frame.width) * std::size_t(frame.height) * 3, "three bytes a pixel");
   cv::Mat bgr(frame.height, frame.width, CV_8UC3);
   for (std::size_t i = 0; i < frame.rgb.size(); ++i) bgr.data[i] = frame.rgb[i / 3 * 3 + (2 - i % 3)];
   std::vector<unsigned char> png;
@@ -130,8 +125,7 @@ Result<Done> prepare_folder(const std::string& folder) {
 Result<Done> write_report(const std::string& folder, const std::vector<ReportFile>& files) {
   if (Result<Done> ready = prepare_folder(folder); !ready) return ready;
   for (const ReportFile& file : files)
-    if (Result<Done> written =
-            write_text_file((std::filesystem::path(folder) / file.name).string(), file.text);
+    if (Result<Done> written = write_text_file((std::filesystem::path(folder) / file.name).string(), file.text);
         !written)
       return written;
   return Done{};

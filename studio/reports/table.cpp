@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "core/result.h"
+#include "core/model/result.h"
 #include "studio/reports/plot.h"
 
 namespace ctpm {
@@ -21,8 +21,7 @@ std::string html_cell(const Cell& cell, int digits) {
   if (const auto* count = std::get_if<std::int64_t>(&cell))
     return "<td class=\"n\">" + std::to_string(*count) + "</td>";
   if (const auto* verdict = std::get_if<ReportVerdict>(&cell))
-    return std::string("<td><span class=\"v ") + to_word(*verdict) + "\">" + to_word(*verdict) +
-           "</span></td>";
+    return std::string("<td><span class=\"v ") + to_word(*verdict) + "\">" + to_word(*verdict) + "</span></td>";
   return "<td></td>";
 }
 
@@ -42,8 +41,7 @@ std::string csv_cell(const Cell& cell) {
 }
 
 void check_shape(const Table& table) {
-  for (const auto& row : table.rows)
-    CTPM_CHECK(row.size() == table.columns.size(), "one cell for each column");
+  for (const auto& row : table.rows) CTPM_CHECK(row.size() == table.columns.size(), "one cell for each column");
 }
 
 }  // namespace
@@ -82,8 +80,7 @@ std::string to_html(const Table& table) {
 std::string to_csv(const Table& table) {
   check_shape(table);
   std::string csv;
-  for (std::size_t i = 0; i < table.columns.size(); ++i)
-    csv += (i ? "," : "") + csv_text(table.columns[i].key);
+  for (std::size_t i = 0; i < table.columns.size(); ++i) csv += (i ? "," : "") + csv_text(table.columns[i].key);
   csv += "\n";
   for (const auto& row : table.rows) {
     for (std::size_t i = 0; i < row.size(); ++i) csv += (i ? "," : "") + csv_cell(row[i]);

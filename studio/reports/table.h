@@ -11,9 +11,9 @@ namespace ctpm {
 
 /// What became of something that must hold.
 enum class ReportVerdict {
-  met,     ///< holds
-  missed,  ///< must hold and does not
-  shown,   ///< does not agree and need not; it is shown as it is
+  met,      ///< holds
+  missed,   ///< must hold and does not
+  shown,    ///< does not agree and need not; it is shown as it is
   refused,  ///< was refused beforehand, as it may be
 };
 

@@ -27,8 +27,7 @@ void CutDepth::add(std::size_t element) {
   const Vec3 middle = is_edge ? 0.5 * (rest(model_.edges.a[i]) + rest(model_.edges.b[i]))
                               : 0.5 * (rest(model_.tpms.a[i]) + rest(model_.tpms.b[i]));
   double nearest2 = INFINITY;
-  for (const SurfaceIndex& surface : surfaces_)
-    nearest2 = std::min(nearest2, surface.nearest(middle).squared_distance);
+  for (const SurfaceIndex& surface : surfaces_) nearest2 = std::min(nearest2, surface.nearest(middle).squared_distance);
   deepest_ = std::max(deepest_.value_or(0), std::sqrt(nearest2));
 }
 

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/model.h"
-#include "core/organ.h"
-#include "core/state.h"
+#include "core/model/model.h"
+#include "core/model/organ.h"
+#include "core/model/state.h"
 #include "importers/surface_index.h"
 
 namespace ctpm {

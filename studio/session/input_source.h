@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/inputs.h"
-#include "core/step.h"
+#include "core/model/inputs.h"
+#include "core/stepping/step.h"
 #include "recordings/session.h"
 
 namespace ctpm {

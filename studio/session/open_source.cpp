@@ -103,8 +103,8 @@ Result<DeviceMap> map_of(const DeviceRequest& request, const Model& model) {
   for (const std::string& entry : request.buttons) {
     const std::size_t equals = entry.find('=');
     const std::string tool = entry.substr(equals + 1);
-    map.button_tools.push_back({*whole_number(entry.substr(0, equals), 0, 31),
-                                tool.empty() ? -1 : find("--device-button", tool)});
+    map.button_tools.push_back(
+        {*whole_number(entry.substr(0, equals), 0, 31), tool.empty() ? -1 : find("--device-button", tool)});
   }
   if (!errors.empty()) return errors;
   return map;
@@ -171,8 +171,8 @@ Errors check_device(const DeviceRequest& request) {
   need(is_within(request.scale, 1e-3, 1e3), "--device-scale", "must be in [0.001, 1000]");
   need(are_finite(request.offset_mm), "--device-offset-mm", "must be in [-1e6, 1e6]");
   need(are_finite(request.rotation) &&
-           (request.rotation.empty() || length_of({request.rotation[0], request.rotation[1], request.rotation[2],
-                                                   request.rotation[3]}) > 1e-3),
+           (request.rotation.empty() ||
+            length_of({request.rotation[0], request.rotation[1], request.rotation[2], request.rotation[3]}) > 1e-3),
        "--device-rotation", "must be a quaternion w x y z of any length but zero");
   need(are_finite(request.tip) && (request.tip.empty() || norm(vector_of(request.tip)) > 1e-3), "--device-tip",
        "must be a direction of any length but zero");

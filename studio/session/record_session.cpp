@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
 #include "recordings/session_writer.h"
@@ -44,8 +44,8 @@ Result<SessionStart> continue_session_at(const std::string& file, double at_s) {
   if (!parent) return parent.errors();
   const double tick = parent->start().model.tick, end_s = double(parent->tick_count()) * tick;
   if (!(at_s >= 0 && at_s <= end_s + 0.5 * tick))
-    return Error{"--at",
-                 "got " + fixed(at_s, 3) + ", must be in [0, " + fixed(end_s, 3) + "] s: so long lasts " + file, ""};
+    return Error{"--at", "got " + fixed(at_s, 3) + ", must be in [0, " + fixed(end_s, 3) + "] s: so long lasts " + file,
+                 ""};
   Result<SessionStart> start =
       continue_session(*parent, std::min<std::int64_t>(std::llround(at_s / tick), parent->tick_count()));
   if (!start) return start.errors();

@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "core/result.h"
+#include "core/model/result.h"
 #include "recordings/session.h"
 #include "scenes/script.h"
 #include "studio/loaded_scene.h"

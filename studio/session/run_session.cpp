@@ -5,7 +5,7 @@
 #include <thread>
 #include <utility>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "recordings/state_hash.h"
 
 namespace ctpm {
@@ -13,9 +13,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// Notes what a reviewer wants to find again: the moments at which something begins or ends.
 class EventWatch {
@@ -30,13 +28,11 @@ class EventWatch {
   void look(std::int64_t tick, const StepReport& report) {
     if (begins(contact_, tick, report.contacts > 0))
       writer_.event(tick, EventKind::contact_begins, "tool touches the tissue");
-    if (ends(contact_, tick))
-      writer_.event(contact_.last_tick, EventKind::contact_ends, "tool leaves the tissue");
+    if (ends(contact_, tick)) writer_.event(contact_.last_tick, EventKind::contact_ends, "tool leaves the tissue");
     if (begins(cut_, tick, report.severed > 0))
       writer_.event(tick, EventKind::cut, "blade begins to sever; value: elements", {double(report.severed)});
     ends(cut_, tick);
-    if (report.came_loose > 0)
-      writer_.event(tick, EventKind::cut, piece_came_loose, {double(report.came_loose)});
+    if (report.came_loose > 0) writer_.event(tick, EventKind::cut, piece_came_loose, {double(report.came_loose)});
     if (begins(too_deep_, tick, most_depth_ > 0 && report.depth > most_depth_))
       writer_.event(tick, EventKind::damage, "depth passes the damage limit; values: depth and limit in m",
                     {report.depth, most_depth_});
@@ -79,8 +75,7 @@ class EventWatch {
 std::int64_t pieces_came_loose(const std::vector<Event>& events, std::int64_t end) {
   double pieces = 0;
   for (const Event& event : events)
-    if (event.tick < end && event.kind == EventKind::cut && event.text == piece_came_loose &&
-        !event.values.empty())
+    if (event.tick < end && event.kind == EventKind::cut && event.text == piece_came_loose && !event.values.empty())
       pieces += event.values[0];
   return std::int64_t(pieces);
 }
@@ -96,8 +91,7 @@ RunOutcome run_session(const Model& model, State& state, InputSource& source, Se
   EventWatch watch(model, options.damage_force, writer);
   RunOutcome outcome;
   StepReport report;
-  const auto tick_length =
-      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(model.tick));
+  const auto tick_length = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(model.tick));
   Clock::time_point deadline = Clock::now();
   for (std::int64_t tick = 0; options.most_ticks == 0 || tick < options.most_ticks; ++tick) {
     if (options.should_stop && options.should_stop()) break;
@@ -111,8 +105,7 @@ RunOutcome run_session(const Model& model, State& state, InputSource& source, Se
     const double tick_time = seconds_since(start);
     outcome.status = report.status, outcome.worst_sphere = report.worst_sphere;
     if (is_refused(report.status)) {
-      writer.event(tick, EventKind::note, "the step was refused; value: sphere",
-                   {double(report.worst_sphere)});
+      writer.event(tick, EventKind::note, "the step was refused; value: sphere", {double(report.worst_sphere)});
       break;
     }
     writer.append(state, make_record(*inputs, report, tick_time, state_hash(state), source.input_age()));
@@ -120,8 +113,7 @@ RunOutcome run_session(const Model& model, State& state, InputSource& source, Se
     deadline += tick_length;
     if (options.in_real_time && Clock::now() > deadline) {
       ++outcome.late_ticks;
-      writer.event(tick, EventKind::late_tick, "tick ended late; value: by how much in s",
-                   {seconds_since(deadline)});
+      writer.event(tick, EventKind::late_tick, "tick ended late; value: by how much in s", {seconds_since(deadline)});
       deadline = Clock::now();  // a late tick does not make the next ones hurry
     }
     ++outcome.ticks;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/model.h"
-#include "core/state.h"
+#include "core/model/model.h"
+#include "core/model/state.h"
 #include "recordings/session_writer.h"
 #include "studio/session/input_source.h"
 
@@ -19,8 +19,7 @@ inline constexpr const char* piece_came_loose = "a piece comes loose; value: pie
 std::int64_t pieces_came_loose(const std::vector<Event>& events, std::int64_t end);
 
 struct RunOptions {
-  bool in_real_time =
-      true;  ///< ticks start on absolute deadlines of the wall clock; else one after the other
+  bool in_real_time = true;     ///< ticks start on absolute deadlines of the wall clock; else one after the other
   double damage_force = 0;      ///< force on the tool beyond which a damage event is noted [N]; 0: no limit
   std::int64_t most_ticks = 0;  ///< the session ends after so many; 0: when the source ends
   int threads = 1;              ///< that share a tick, >= 1; they change no bit of it

@@ -28,8 +28,8 @@ class ScriptSource : public InputSource {
     if (end == PressEnd::at_force)
       events_.push_back({EventKind::note, "press reaches its force; value: force in N", {norm(force)}});
     if (end == PressEnd::at_depth)
-      events_.push_back({EventKind::note, "press gives up at its depth, short of its force; value: force in N",
-                         {norm(force)}});
+      events_.push_back(
+          {EventKind::note, "press gives up at its depth, short of its force; value: force in N", {norm(force)}});
   }
 
   ScriptPlayer player_;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "core/result.h"
+#include "core/model/result.h"
 
 namespace ctpm {
 
@@ -28,8 +28,7 @@ struct TimeRange {
       return Error{where, "--from-s: got " + std::to_string(from_s) + ", " + is_long, ""};
     if (!(last_s > from_s) && tick_count > 0)
       return Error{where, "--to-s: got " + std::to_string(last_s) + ", must be after --from-s", ""};
-    if (last_s > end_s + 0.5 * tick)
-      return Error{where, "--to-s: got " + std::to_string(last_s) + ", " + is_long, ""};
+    if (last_s > end_s + 0.5 * tick) return Error{where, "--to-s: got " + std::to_string(last_s) + ", " + is_long, ""};
     return TickRange{std::llround(from_s / tick), std::llround(last_s / tick)};
   }
 };

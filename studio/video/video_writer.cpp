@@ -34,8 +34,8 @@ struct Format {
 const std::array<Format, 3>& formats() {
   static const std::array<Format, 3> all{{
       {cv::VideoWriter::fourcc('a', 'v', 'c', '1'), cv::CAP_FFMPEG, "H.264", "H.264", ".mp4", ".mp4"},
-      {cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), cv::CAP_OPENCV_MJPEG, "Motion JPEG", "Motion JPEG in AVI",
-       ".avi", ".avi"},
+      {cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), cv::CAP_OPENCV_MJPEG, "Motion JPEG", "Motion JPEG in AVI", ".avi",
+       ".avi"},
       {0, 0, "PNG", "a folder of PNG pictures", "/", "-frames"},
   }};
   return all;
@@ -68,14 +68,13 @@ int cannot_write(const std::string& path) {
 Errors differences(const VideoFacts& facts, std::int64_t frames, int width, int height) {
   Errors errors;
   if (facts.frames != frames)
-    errors.push_back({facts.path,
-                      std::to_string(frames) + " frames were written, " + std::to_string(facts.frames) +
-                          " are in the file",
-                      "check the free space"});
-  if (facts.width != width || facts.height != height)
     errors.push_back(
         {facts.path,
-         "the video has the size " + std::to_string(facts.width) + "x" + std::to_string(facts.height), ""});
+         std::to_string(frames) + " frames were written, " + std::to_string(facts.frames) + " are in the file",
+         "check the free space"});
+  if (facts.width != width || facts.height != height)
+    errors.push_back(
+        {facts.path, "the video has the size " + std::to_string(facts.width) + "x" + std::to_string(facts.height), ""});
   return errors;
 }
 
@@ -136,8 +135,7 @@ bool VideoWriter::Parts::open(const Format& wanted) {
 Result<Done> VideoWriter::Parts::open_pictures() {
   std::error_code failed;
   if (fs::exists(path, failed))
-    return Error{path, "exists already; pictures are not mixed with what is there",
-                 "remove it or give another name"};
+    return Error{path, "exists already; pictures are not mixed with what is there", "remove it or give another name"};
   fs::create_directory(part, failed);
   if (failed) return Error{path, "the folder cannot be made: " + failed.message(), ""};
   return Done{};
@@ -153,8 +151,7 @@ Result<Done> VideoWriter::Parts::put(const Frame& frame) {
   if (format.is_pictures()) {
     const Result<Done> written = write_png(picture_path(part, frames + 1).string(), frame);
     if (written) return written;
-    return Error{picture_path(path, frames + 1).string(), written.errors()[0].message,
-                 "check the free space"};
+    return Error{picture_path(path, frames + 1).string(), written.errors()[0].message, "check the free space"};
   }
   try {
     const cv::Mat rgb(frame.height, frame.width, CV_8UC3, const_cast<std::uint8_t*>(frame.rgb.data()));
@@ -173,8 +170,7 @@ Result<VideoFacts> VideoWriter::Parts::check_file() const {
     cv::VideoCapture reader(part, format.backend);
     if (!reader.isOpened())
       return Error{path, "the video that was written cannot be opened again", "check the free space"};
-    facts.width = int(reader.get(cv::CAP_PROP_FRAME_WIDTH)),
-    facts.height = int(reader.get(cv::CAP_PROP_FRAME_HEIGHT));
+    facts.width = int(reader.get(cv::CAP_PROP_FRAME_WIDTH)), facts.height = int(reader.get(cv::CAP_PROP_FRAME_HEIGHT));
     facts.fps = reader.get(cv::CAP_PROP_FPS);
     while (reader.grab()) ++facts.frames;
   } catch (const cv::Exception& problem) {
@@ -206,8 +202,7 @@ Errors VideoWriter::check(const std::string& path, int width, int height, double
   std::error_code failed;
   const std::size_t asked_for = format_asked_for(path);
   if (asked_for == formats().size())
-    errors.push_back(
-        {path, "a video's name must end in .mp4 or .avi, or in / for a folder of PNG pictures", ""});
+    errors.push_back({path, "a video's name must end in .mp4 or .avi, or in / for a folder of PNG pictures", ""});
   else if (!formats()[asked_for].is_pictures() && fs::is_directory(path, failed))
     errors.push_back({path, "is a folder", "give another name"});
   const auto is_good = [](int n) { return n > 0 && n <= 8192 && n % 2 == 0; };
@@ -218,8 +213,7 @@ Errors VideoWriter::check(const std::string& path, int width, int height, double
                       ""});
   if (!(fps >= 1 && fps <= 240))
     errors.push_back({path, "got " + std::to_string(fps) + " frames/s, must be in [1, 240]", ""});
-  const fs::path parent =
-      fs::path(path.ends_with('/') ? path.substr(0, path.size() - 1) : path).parent_path();
+  const fs::path parent = fs::path(path.ends_with('/') ? path.substr(0, path.size() - 1) : path).parent_path();
   const fs::path folder = parent.empty() ? fs::path(".") : parent;
   if (!fs::is_directory(folder, failed))
     errors.push_back({path, "the folder " + folder.string() + " does not exist", "make it first"});
@@ -236,8 +230,7 @@ VideoWriter::~VideoWriter() {
   if (!parts_->is_finished) parts_->discard();
 }
 
-Result<std::unique_ptr<VideoWriter>> VideoWriter::create(const std::string& path, int width, int height,
-                                                         double fps) {
+Result<std::unique_ptr<VideoWriter>> VideoWriter::create(const std::string& path, int width, int height, double fps) {
   if (Errors errors = check(path, width, height, fps); !errors.empty()) return errors;
   auto parts = std::make_unique<Parts>();
   const std::size_t asked_for = format_asked_for(path);
@@ -274,8 +267,7 @@ Result<VideoFacts> VideoWriter::finish() {
     if (Errors errors = differences(*facts, p.frames, p.width, p.height); !errors.empty()) facts = errors;
   std::error_code failed;
   if (facts) fs::rename(p.part, p.path, failed);
-  if (facts && failed)
-    facts = Error{p.path, "the video could not be given its name: " + failed.message(), ""};
+  if (facts && failed) facts = Error{p.path, "the video could not be given its name: " + failed.message(), ""};
   if (!facts) p.discard();
   return facts;
 }

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "core/result.h"
+#include "core/model/result.h"
 #include "studio/render/frame.h"
 
 namespace ctpm {
@@ -31,8 +31,7 @@ class VideoWriter {
  public:
   /// Errors: another ending, a size that is not positive and even or beyond 8192, a frame rate outside
   /// [1, 240], a folder that cannot be written, a folder of pictures that exists already.
-  static Result<std::unique_ptr<VideoWriter>> create(const std::string& path, int width, int height,
-                                                     double fps);
+  static Result<std::unique_ptr<VideoWriter>> create(const std::string& path, int width, int height, double fps);
   /// What create() would refuse of its arguments, without making anything.
   static Errors check(const std::string& path, int width, int height, double fps);
   ~VideoWriter();

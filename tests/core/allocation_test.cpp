@@ -5,8 +5,8 @@
 #include <set>
 #include <string>
 
-#include "core/fields.h"
-#include "core/step.h"
+#include "core/model/fields.h"
+#include "core/stepping/step.h"
 #include "tests/core/blocks.h"
 #include "tests/core/counting_allocator.h"
 
@@ -46,8 +46,7 @@ TEST_P(EveryIntegrator, AllocatesNothingAfterTheFirstTick) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryIntegrator,
-                         ::testing::Values(Integrator::leapfrog, Integrator::backward_euler,
-                                           Integrator::sdirk2));
+                         ::testing::Values(Integrator::leapfrog, Integrator::backward_euler, Integrator::sdirk2));
 
 Model springs_only() {
   Material material = testing::liver_material();

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "tests/core/blocks.h"
 
 namespace ctpm::testing {
@@ -18,8 +18,7 @@ inline Material resisting(double toughness = kToughness, double friction = 0) {
 }
 
 /// A block with a blade longer than the block is high.
-inline Model block_with_blade(int ni, int nj, int nk, const Material& material,
-                              Structure structure = Structure::ctpm) {
+inline Model block_with_blade(int ni, int nj, int nk, const Material& material, Structure structure = Structure::ctpm) {
   Model model = make_block_model(ni, nj, nk, structure, material);
   model.tools = {scalpel(0.2)};
   model.solver.tolerance = 1e-11, model.solver.velocity_floor = 1e-14, model.solver.max_iterations = 2000;
@@ -63,8 +62,7 @@ inline double fracture_energy(const Model& model, const State& state, Vec3 norma
   const auto add = [&](const auto& elements, const std::vector<std::uint8_t>& severed,
                        const std::vector<double>& energy) {
     for (std::size_t e = 0; e < elements.size(); ++e) {
-      const Vec3 d =
-          model.rest_position[std::size_t(elements.b[e])] - model.rest_position[std::size_t(elements.a[e])];
+      const Vec3 d = model.rest_position[std::size_t(elements.b[e])] - model.rest_position[std::size_t(elements.a[e])];
       if (severed[e]) sum += energy[e] * std::abs(dot(normal, d)) / norm(d);
     }
   };
@@ -86,8 +84,7 @@ inline Work cut_through(const Model& model, double per_tick, Vec3 start, Vec3 wa
   const Vec3 direction = way / norm(way);
   const int ticks = int(std::ceil(norm(way) / per_tick));
   for (int i = 0; i <= ticks; ++i) {
-    const StepReport report =
-        stepper.step(work.state, blade_at(start + std::min(i * per_tick, norm(way)) * direction));
+    const StepReport report = stepper.step(work.state, blade_at(start + std::min(i * per_tick, norm(way)) * direction));
     if (i > 0) work.by_hand -= per_tick * dot(report.tool_force, direction);
     EXPECT_LE(dot(report.tool_force, direction), 0) << "the blade is never drawn in";
   }

@@ -1,8 +1,8 @@
 // What a blade feels.
 
-#include "core/blade_force.h"
+#include "core/contact/blade_force.h"
 
-#include "core/forces.h"
+#include "core/elements/forces.h"
 #include "tests/core/blade_blocks.h"
 
 namespace ctpm {
@@ -36,11 +36,10 @@ TEST(BladeForce, EveryPlaneOpensItsOwnAreaWhicheverWayItLies) {
       const auto add = [&](const auto& elements, const std::vector<double>& energy) {
         for (std::size_t e = 0; e < elements.size(); ++e) {
           if (elements.a[e] != middle && elements.b[e] != middle) continue;
-          const Vec3 d = model.rest_position[std::size_t(elements.b[e])] -
-                         model.rest_position[std::size_t(elements.a[e])];
+          const Vec3 d =
+              model.rest_position[std::size_t(elements.b[e])] - model.rest_position[std::size_t(elements.a[e])];
           // Each direction leaves a sphere twice, and a volume s^3 has one element of each.
-          opened += 0.5 * energy[e] * std::abs(dot(n, d)) / norm(d) * std::abs(dot(n, d)) /
-                    std::pow(block.spacing, 3);
+          opened += 0.5 * energy[e] * std::abs(dot(n, d)) / norm(d) * std::abs(dot(n, d)) / std::pow(block.spacing, 3);
         }
       };
       add(model.edges, model.cut_resistance.edge_energy);
@@ -146,8 +145,7 @@ TEST(BladeForce, ARestingBladeGoesOnHoldingTheTissueBack) {
   State state = rest_state(model);
   StepReport report;
   double y = -0.06;
-  for (; y < 0 && report.tool_force.y > -1; y += 5e-5)
-    report = stepper.step(state, blade_at({0.0002, y, -0.05}));
+  for (; y < 0 && report.tool_force.y > -1; y += 5e-5) report = stepper.step(state, blade_at({0.0002, y, -0.05}));
   ASSERT_LT(y, 0);
   for (int i = 0; i < 50; ++i) {
     // The hand trembles by 20 micrometres and the force does not jump.
@@ -234,8 +232,7 @@ TEST(BladeForce, WhatTensionHasStoredOpensTheCutWithTheHand) {
   add(model.edges, state.edge_severed, model.cut_resistance.edge_energy,
       [&](std::size_t e) { return model.edges.k[e]; });
   add(model.tpms, state.tpm_severed, model.cut_resistance.tpm_energy, [&](std::size_t t) {
-    return model.tpms.spring_k[t] * model.tpms.kelvin_k[t] /
-           (model.tpms.spring_k[t] + model.tpms.kelvin_k[t]);
+    return model.tpms.spring_k[t] * model.tpms.kelvin_k[t] / (model.tpms.spring_k[t] + model.tpms.kelvin_k[t]);
   });
   EXPECT_GT(stored, 0.05 * opened);
   EXPECT_NEAR(by_hand, opened - stored, 1e-3 * opened) << "F ds = J_c dA - dE";

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/model.h"
-#include "core/network.h"
-#include "core/organ.h"
-#include "core/state.h"
+#include "core/model/model.h"
+#include "core/model/organ.h"
+#include "core/model/state.h"
+#include "core/network/network.h"
 
 namespace ctpm::testing {
 

@@ -1,10 +1,10 @@
-#include "core/contact.h"
+#include "core/contact/contact.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "tests/core/blocks.h"
 
 namespace ctpm {
@@ -94,7 +94,8 @@ TEST_P(AContact, DoesNotMoveASphereOffItsGuide) {
   State state = rest_state(model);
   Stepper stepper(model);
   for (int i = 0; i < 20; ++i)
-    ASSERT_EQ(stepper.step(state, tool_at({0.005, 0, 0.019 + model.contact_radius[0] - 5e-6 * i})).status, StepStatus::ok);
+    ASSERT_EQ(stepper.step(state, tool_at({0.005, 0, 0.019 + model.contact_radius[0] - 5e-6 * i})).status,
+              StepStatus::ok);
   EXPECT_EQ(state.position.x[0], model.rest_position.x[0]);
   EXPECT_LT(state.position.z[0], model.rest_position.z[0]);
 }

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "tests/core/blocks.h"
 
 namespace ctpm {
@@ -63,8 +63,7 @@ TEST(Cubic18, IsASolidOfYoungsModulus2500OverSpacingAndPoissonRatioOneQuarter) {
   const double k = m.spring * edge_area(m, 0.012), young = 2.5 * k / 0.012;
   EXPECT_NEAR(limit(small.young, large.young), young, 0.02 * young)
       << small.young / young << " " << large.young / young;
-  EXPECT_NEAR(limit(small.poisson, large.poisson), 0.25, 0.02 * 0.25)
-      << small.poisson << " " << large.poisson;
+  EXPECT_NEAR(limit(small.poisson, large.poisson), 0.25, 0.02 * 0.25) << small.poisson << " " << large.poisson;
 }
 
 }  // namespace

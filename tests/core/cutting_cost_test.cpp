@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "tests/core/blocks.h"
 #include "tests/core/counting_allocator.h"
 

@@ -1,9 +1,9 @@
 // What a blade severs, and what is left.
 
-#include "core/cutting.h"
+#include "core/cutting/cutting.h"
 
-#include "core/forces.h"
-#include "core/pieces.h"
+#include "core/cutting/pieces.h"
+#include "core/elements/forces.h"
 #include "tests/core/blade_blocks.h"
 
 namespace ctpm {
@@ -27,10 +27,9 @@ TEST(Severing, ConservesMomentumAndNeverAddsEnergy) {
     shake(state, 0.002, 0.5);
     const State before = state;
     std::vector<Crossing> crossings;
-    EXPECT_GT(
-        sever_swept_by_blade(model, NearElements(model), {{0.0002, -0.06, -0.05}, {0.0002, -0.06, 0.15}},
-                             {{0.0032, 0.01, -0.05}, {0.0012, 0.02, 0.15}}, state.position, state, crossings),
-        0);
+    EXPECT_GT(sever_swept_by_blade(model, NearElements(model), {{0.0002, -0.06, -0.05}, {0.0002, -0.06, 0.15}},
+                                   {{0.0032, 0.01, -0.05}, {0.0012, 0.02, 0.15}}, state.position, state, crossings),
+              0);
     EXPECT_EQ(state.velocity, before.velocity);
     EXPECT_EQ(state.position, before.position);
     EXPECT_LE(elastic_energy(model, state), elastic_energy(model, before));
@@ -48,8 +47,7 @@ TEST(Severing, IsTheSameAtEverySpeedThroughAHeldOrgan) {
       const Model model = held_block(ni, nj, nk);
       State slow;
       for (const double per_tick : {5e-5, 7e-4, 0.013, 0.2}) {
-        State state =
-            cut_through(model, per_tick, Vec3{0.0002, -0.06, -0.05} - 0.5 * Vec3{way.x, 0, 0}, way).state;
+        State state = cut_through(model, per_tick, Vec3{0.0002, -0.06, -0.05} - 0.5 * Vec3{way.x, 0, 0}, way).state;
         if (slow.edge_severed.empty()) {
           slow = state;
           continue;
@@ -58,8 +56,7 @@ TEST(Severing, IsTheSameAtEverySpeedThroughAHeldOrgan) {
         EXPECT_EQ(state.tpm_severed, slow.tpm_severed);
         EXPECT_EQ(state.constraint_severed, slow.constraint_severed);
         for (std::size_t e = 0; e < state.edge_crossing.size(); ++e)
-          EXPECT_NEAR(crossing_of(state.edge_crossing[e]), crossing_of(slow.edge_crossing[e]),
-                      1.01 * kCrossingUnit);
+          EXPECT_NEAR(crossing_of(state.edge_crossing[e]), crossing_of(slow.edge_crossing[e]), 1.01 * kCrossingUnit);
       }
       const auto severed = std::count(slow.edge_severed.begin(), slow.edge_severed.end(), 1) +
                            std::count(slow.tpm_severed.begin(), slow.tpm_severed.end(), 1);
@@ -115,8 +112,7 @@ TEST(Severing, LooksOnlyNearTheBladeAndMissesNothing) {
         to{from.tip + 0.01 * noise.next_vec3(), from.heel + 0.01 * noise.next_vec3()};
     State whole = tissue, part = tissue;
     Vec3Array moved = tissue.position;
-    for (std::size_t i = 0; i < moved.size(); ++i)
-      moved.add(i, (trial % 4 == 0 ? 0.02 : 0.001) * noise.next_vec3());
+    for (std::size_t i = 0; i < moved.size(); ++i) moved.add(i, (trial % 4 == 0 ? 0.02 : 0.001) * noise.next_vec3());
     std::vector<Crossing> of_whole, of_part;
     near.find(tissue.position, Box(from.tip, from.heel, to.tip, to.heel));
     looked_at += near.elements().size(), all += model.edges.size() + model.tpms.size();
@@ -197,16 +193,14 @@ TEST(Severing, WhatIsLeftOfATripleIsItsOtherEdgeAsStiffAsBefore) {
   ASSERT_EQ(model.constraints.size(), 1u);
   const auto edge_between = [&](std::int32_t p, std::int32_t q) {
     for (std::size_t e = 0; e < 4; ++e)
-      if (std::min(model.edges.a[e], model.edges.b[e]) == p &&
-          std::max(model.edges.a[e], model.edges.b[e]) == q)
+      if (std::min(model.edges.a[e], model.edges.b[e]) == p && std::max(model.edges.a[e], model.edges.b[e]) == q)
         return e;
     return std::size_t(4);
   };
   const double left = model.edges.k[edge_between(0, 1)], right = model.edges.k[edge_between(1, 2)];
   EXPECT_NE(left, right) << "a triple is a spring and a Kelvin unit";
   // The left edge of the triple 0-1-2 is severed: only the right one is felt, and the other way round.
-  const Vec3Array without_left = forces_after_cut(model, -0.018),
-                  without_right = forces_after_cut(model, -0.006);
+  const Vec3Array without_left = forces_after_cut(model, -0.018), without_right = forces_after_cut(model, -0.006);
   EXPECT_EQ(without_left.x[0], 0);
   EXPECT_NEAR(without_left.x[1], -0.001 * right, 1e-9 * right);
   EXPECT_NEAR(without_left.x[2], 0.001 * right, 1e-9 * right);
@@ -225,8 +219,7 @@ TEST(Pieces, AreCountedAsTheyComeLoose) {
   const auto sweep = [&](Vec3 from, Vec3 to) {
     Inputs away;
     (void)stepper.step(state, away);  // the blade is put away and taken again
-    for (int i = 0; i <= 50; ++i)
-      loose += stepper.step(state, blade_at(from + i / 50.0 * (to - from))).came_loose;
+    for (int i = 0; i <= 50; ++i) loose += stepper.step(state, blade_at(from + i / 50.0 * (to - from))).came_loose;
   };
   sweep({0.0002, -0.06, -0.05}, {0.0002, 0.005, -0.05});  // not through
   EXPECT_EQ(loose, 0);

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/forces.h"
-#include "core/state.h"
+#include "core/elements/forces.h"
+#include "core/model/state.h"
 #include "tests/core/blocks.h"
 
 namespace ctpm {
@@ -69,8 +69,7 @@ TEST_P(EveryStructure, TurnsWithTheBody) {
   for (std::size_t i = 0; i < state.position.size(); ++i)
     turned.position.set(i, turn(state.position[i])), turned.velocity.set(i, turn(state.velocity[i]));
   const Vec3Array force = internal_forces(model, state), turned_force = internal_forces(model, turned);
-  for (std::size_t i = 0; i < force.size(); ++i)
-    ASSERT_NEAR(norm(turned_force[i] - turn(force[i])), 0, kRounding);
+  for (std::size_t i = 0; i < force.size(); ++i) ASSERT_NEAR(norm(turned_force[i] - turn(force[i])), 0, kRounding);
 }
 
 TEST_P(EveryStructure, StaysFiniteWhenSpheresCoincide) {
@@ -82,8 +81,8 @@ TEST_P(EveryStructure, StaysFiniteWhenSpheresCoincide) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, EveryStructure,
-                         ::testing::Values(Structure::mass_spring, Structure::angle_mass_spring,
-                                           Structure::tpm, Structure::ctpm));
+                         ::testing::Values(Structure::mass_spring, Structure::angle_mass_spring, Structure::tpm,
+                                           Structure::ctpm));
 
 TEST(EdgesAndAngleSprings, AreTheGradientOfTheirEnergy) {
   const Model model = make_block_model(4, 4, 4, Structure::angle_mass_spring);
@@ -314,8 +313,8 @@ TEST_P(EveryLayeredStructure, LayersOfOneMaterialAreTheOrganWithoutLayers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, EveryLayeredStructure,
-                         ::testing::Values(Structure::mass_spring, Structure::angle_mass_spring,
-                                           Structure::tpm, Structure::ctpm));
+                         ::testing::Values(Structure::mass_spring, Structure::angle_mass_spring, Structure::tpm,
+                                           Structure::ctpm));
 
 TEST(Layers, EdgesAndAngleSpringsAreTheGradientOfTheirEnergy) {
   const Model model = *make_layered_model(4, 4, 4, Structure::angle_mass_spring, {capsule()});
@@ -372,8 +371,7 @@ TEST(Layers, ASphereHasTheMassOfItsOwnLayer) {
 TEST(Layers, OutOfOrderOrWithABadModulusAreRefusedByNumber) {
   LayerMaterial bad = capsule(0.020);
   bad.material.kelvin = -1;
-  const Result<Model> model =
-      make_layered_model(3, 3, 3, Structure::ctpm, {capsule(0.012), capsule(0.012), bad});
+  const Result<Model> model = make_layered_model(3, 3, 3, Structure::ctpm, {capsule(0.012), capsule(0.012), bad});
   ASSERT_FALSE(model);
   EXPECT_EQ(model.errors()[0].where, "organ block, layer 1");
   EXPECT_NE(model.errors()[0].message.find("must be more than 0.012"), std::string::npos);

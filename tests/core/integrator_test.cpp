@@ -1,12 +1,12 @@
-#include "core/integrator.h"
+#include "core/stepping/integrator.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
-#include "core/forces.h"
-#include "core/step.h"
+#include "core/elements/forces.h"
+#include "core/stepping/step.h"
 #include "tests/core/blocks.h"
 
 namespace ctpm {
@@ -80,8 +80,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Order{Integrator::backward_euler, Structure::tpm, 1},
                       Order{Integrator::backward_euler, Structure::ctpm, 1},
                       Order{Integrator::sdirk2, Structure::mass_spring, 2},
-                      Order{Integrator::sdirk2, Structure::tpm, 2},
-                      Order{Integrator::sdirk2, Structure::ctpm, 2}));
+                      Order{Integrator::sdirk2, Structure::tpm, 2}, Order{Integrator::sdirk2, Structure::ctpm, 2}));
 
 class ImplicitIntegrator : public ::testing::TestWithParam<Integrator> {};
 
@@ -100,8 +99,7 @@ TEST_P(ImplicitIntegrator, IsLStable) {
   EXPECT_LT(distance(state, rest_state(model)), 0.02 * first);
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, ImplicitIntegrator,
-                         ::testing::Values(Integrator::backward_euler, Integrator::sdirk2));
+INSTANTIATE_TEST_SUITE_P(Both, ImplicitIntegrator, ::testing::Values(Integrator::backward_euler, Integrator::sdirk2));
 
 /// Two free spheres and one spring, whose frequency is sqrt(2 k / m).
 Model make_pair() {
@@ -161,7 +159,8 @@ TEST(Sdirk2, TakesBackwardEulerWhereItsStepIsTooLongForTheMotion) {
     EXPECT_EQ(by_sdirk.velocity, by_euler.velocity) << speed;
     EXPECT_EQ(by_sdirk.kelvin_elongation, by_euler.kelvin_elongation) << speed;
   }
-  EXPECT_NE(after_a_tick(Integrator::sdirk2, 0).position, rest_state(make_smooth_block(Structure::tpm, 1e-3, Integrator::sdirk2)).position);
+  EXPECT_NE(after_a_tick(Integrator::sdirk2, 0).position,
+            rest_state(make_smooth_block(Structure::tpm, 1e-3, Integrator::sdirk2)).position);
 }
 
 TEST(Leapfrog, ALoadThatStartsAtOnceIsOfSecondOrder) {

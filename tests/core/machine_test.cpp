@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "core/slabs.h"
-#include "core/step.h"
-#include "core/team.h"
+#include "core/parallel/slabs.h"
+#include "core/parallel/team.h"
+#include "core/stepping/step.h"
 #include "tests/core/blocks.h"
 
 namespace ctpm {
@@ -40,7 +40,8 @@ State run(const Model& model, const StepperOptions& options) {
   for (int tick = 0; tick < 24; ++tick) {
     Inputs inputs;
     inputs.tool = tick < 14 ? 0 : 1;
-    inputs.position = tick < 14 ? Vec3{0.003, 0.001, 0.158 - 0.0005 * tick} : Vec3{0.0007, -0.1 + 0.008 * (tick - 14), 0.1};
+    inputs.position =
+        tick < 14 ? Vec3{0.003, 0.001, 0.158 - 0.0005 * tick} : Vec3{0.0007, -0.1 + 0.008 * (tick - 14), 0.1};
     EXPECT_LE(stepper.step(state, inputs).status, StepStatus::not_converged);
   }
   return state;
@@ -83,7 +84,8 @@ INSTANTIATE_TEST_SUITE_P(Machines, EveryMachine,
                                            Machine{InstructionSet::avx2, 1}, Machine{InstructionSet::avx2, 2},
                                            Machine{InstructionSet::avx512, 1}, Machine{InstructionSet::avx512, 3}),
                          [](const auto& of) {
-                           return std::string(name_of(of.param.set)) + "With" + std::to_string(of.param.threads) + "Threads";
+                           return std::string(name_of(of.param.set)) + "With" + std::to_string(of.param.threads) +
+                                  "Threads";
                          });
 
 TEST(Slabs, DependOnTheModelAlone) {

@@ -6,8 +6,8 @@
 #include <array>
 #include <string>
 
-#include "core/forces.h"
-#include "core/step.h"
+#include "core/elements/forces.h"
+#include "core/stepping/step.h"
 #include "tests/core/blocks.h"
 
 namespace ctpm {
@@ -84,8 +84,7 @@ TEST_P(MirroredStructure, MirroredInputsGiveMirroredSteps) {
   };
   State begin = rest_state(model);
   testing::shake(begin, 0.001, 0.05);
-  for (std::size_t i = 0; i < 30; ++i)
-    begin.position.set(i, model.rest_position[i]), begin.velocity.set(i, {});
+  for (std::size_t i = 0; i < 30; ++i) begin.position.set(i, model.rest_position[i]), begin.velocity.set(i, {});
   const auto [state, report] = run(model, begin, [](Vec3 p) { return p; });
   ASSERT_GT(report.contacts, 0);
   for (const Mirror mirror : {Mirror{0}, Mirror{1}, Mirror{2}}) {
@@ -110,16 +109,15 @@ TEST_P(MirroredStructure, ABlockThatIsItsOwnMirrorImageIsPushedBackMirrored) {
   State state = rest_state(model), other = state;
   testing::shake(state, 0.004, 0.1);
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
-    other.position.set(across(i), mirror(state.position[i])),
-        other.velocity.set(across(i), mirror(state.velocity[i]));
+    other.position.set(across(i), mirror(state.position[i])), other.velocity.set(across(i), mirror(state.velocity[i]));
   const Vec3Array force = internal_forces(model, state), other_force = internal_forces(model, other);
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
     ASSERT_NEAR(norm(other_force[across(i)] - mirror(force[i])), 0, kRounding) << "sphere " << i;
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, MirroredStructure,
-                         ::testing::Values(Structure::mass_spring, Structure::angle_mass_spring,
-                                           Structure::tpm, Structure::ctpm));
+                         ::testing::Values(Structure::mass_spring, Structure::angle_mass_spring, Structure::tpm,
+                                           Structure::ctpm));
 
 }  // namespace
 }  // namespace ctpm

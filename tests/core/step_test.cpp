@@ -1,4 +1,4 @@
-#include "core/step.h"
+#include "core/stepping/step.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cstring>
 #include <string_view>
 
-#include "core/fields.h"
-#include "core/forces.h"
+#include "core/elements/forces.h"
+#include "core/model/fields.h"
 #include "tests/core/blocks.h"
 
 namespace ctpm {
@@ -64,8 +64,7 @@ TEST(Step, EnergyOfAShakenBlockOnlyFalls) {
   Stepper stepper(model);
   State state = rest_state(model);
   shake(state, 0.001, 0.05);
-  for (std::size_t i = 0; i < 25; ++i)
-    state.position.set(i, model.rest_position[i]), state.velocity.set(i, {});
+  for (std::size_t i = 0; i < 25; ++i) state.position.set(i, model.rest_position[i]), state.velocity.set(i, {});
   const auto energy = [&] {
     double sum = elastic_energy(model, state);
     for (std::size_t i = 0; i < model.sphere_count(); ++i)
@@ -226,8 +225,7 @@ TEST(Cutting, AFullCutSeparatesTheBlockExactly) {
   State state = rest_state(model);
   // The blade hangs from above the block to below it and passes between the third and the fourth plane in x.
   std::int32_t severed = 0;
-  for (int i = 0; i < 100; ++i)
-    severed += stepper.step(state, tool_at({0.0001, -0.05 + 0.001 * i, -0.05})).severed;
+  for (int i = 0; i < 100; ++i) severed += stepper.step(state, tool_at({0.0001, -0.05 + 0.001 * i, -0.05})).severed;
   EXPECT_GT(severed, 0);
   for (std::size_t e = 0; e < model.edges.size(); ++e) {
     const bool crosses = (model.rest_position.x[std::size_t(model.edges.a[e])] < 0) !=
@@ -242,8 +240,7 @@ TEST(Cutting, IsExactHoweverFastTheBladeMoves) {
     model.tools = {scalpel(0.2)};
     Stepper stepper(model);
     State state = rest_state(model);
-    for (int i = 0; i < ticks; ++i)
-      (void)stepper.step(state, tool_at({0.0001, -0.05 + 0.1 * i / (ticks - 1), -0.05}));
+    for (int i = 0; i < ticks; ++i) (void)stepper.step(state, tool_at({0.0001, -0.05 + 0.1 * i / (ticks - 1), -0.05}));
     for (std::size_t e = 0; e < model.edges.size(); ++e) {
       const bool crosses = (model.rest_position.x[std::size_t(model.edges.a[e])] < 0) !=
                            (model.rest_position.x[std::size_t(model.edges.b[e])] < 0);

@@ -16,7 +16,7 @@ build() {
     -DEIGEN_MPL2_ONLY -DXXH_INLINE_ALL -I"$source" -I/usr/include/eigen3 -I"$work/headers")
   local objects=()
   mkdir -p "$out"
-  for file in "$source"/core/*.cpp "$source"/core/kernels/*.cpp "$source"/recordings/state_hash.cpp \
+  for file in "$source"/core/*/*.cpp "$source"/core/elements/kernels/*.cpp "$source"/recordings/state_hash.cpp \
       "$source"/tests/golden/print_hashes.cpp; do
     name=$(basename "$file" .cpp)
     local own=()

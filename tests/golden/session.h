@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "recordings/state_hash.h"
 #include "tests/core/blocks.h"
 

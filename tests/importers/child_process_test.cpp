@@ -59,8 +59,7 @@ TEST(Child, CrashIsTroubleOfTheChildAlone) {
 
 TEST(Child, SleepingChildIsKilledInTime) {
   ChildResult child;
-  const double seconds =
-      seconds_of([&] { child = run_in_child(short_limits(), [](const Send&) { pause(); }); });
+  const double seconds = seconds_of([&] { child = run_in_child(short_limits(), [](const Send&) { pause(); }); });
   EXPECT_EQ(child.trouble, "took longer than 0.3 s");
   EXPECT_LT(seconds, 2.0);
 }

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <set>
 
-#include "core/surface.h"
+#include "core/surface/surface.h"
 #include "importers/topology.h"
 #include "zoo.h"
 
@@ -48,14 +48,10 @@ void expect_sound(const Filling& filling) {
   ASSERT_TRUE(organ.cell.size() == count && organ.layer.size() == count && organ.depth.size() == count);
   EXPECT_EQ(filling.report.spheres, std::int64_t(count));
   EXPECT_NEAR(filling.report.filled_volume, double(count) * std::pow(organ.spacing, 3), 1e-12);
-  const auto key = [&](std::size_t n) {
-    return std::array{organ.cell[n][2], organ.cell[n][1], organ.cell[n][0]};
-  };
-  for (std::size_t n = 1; n < count; ++n)
-    ASSERT_LT(key(n - 1), key(n)) << "sorted by k, j, i, each cell once";
+  const auto key = [&](std::size_t n) { return std::array{organ.cell[n][2], organ.cell[n][1], organ.cell[n][0]}; };
+  for (std::size_t n = 1; n < count; ++n) ASSERT_LT(key(n - 1), key(n)) << "sorted by k, j, i, each cell once";
   for (std::size_t n = 0; n < count; ++n) {
-    const Vec3 offset{double(organ.cell[n][0] - organ.cell[0][0]),
-                      double(organ.cell[n][1] - organ.cell[0][1]),
+    const Vec3 offset{double(organ.cell[n][0] - organ.cell[0][0]), double(organ.cell[n][1] - organ.cell[0][1]),
                       double(organ.cell[n][2] - organ.cell[0][2])};
     ASSERT_LT(norm(organ.centre[n] - organ.centre[0] - organ.spacing * offset), 1e-9 * organ.spacing);
     ASSERT_GT(organ.depth[n], 0);
@@ -98,8 +94,7 @@ Network network_of(const FilledOrgan& organ) {
       for (int j = -1; j <= 1; ++j)
         for (int k = -1; k <= 1; ++k) {
           const int steps = i * i + j * j + k * k;
-          const auto it =
-              steps == 1 || steps == 2 ? at.find({cell[0] + i, cell[1] + j, cell[2] + k}) : at.end();
+          const auto it = steps == 1 || steps == 2 ? at.find({cell[0] + i, cell[1] + j, cell[2] + k}) : at.end();
           if (it == at.end() || it->second < n) continue;
           ++network.edges;
           if (top(n) != top(it->second)) --network.networks, root[top(n)] = top(it->second);
@@ -118,8 +113,7 @@ double distance_to_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
   if (vc <= 0 && d1 >= 0 && d3 <= 0) return norm(ap - d1 / (d1 - d3) * ab);
   if (vb <= 0 && d2 >= 0 && d6 <= 0) return norm(ap - d2 / (d2 - d6) * ac);
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-    return norm(bp - (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b));
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return norm(bp - (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b));
   const double sum = va + vb + vc;
   return norm(ap - vb / sum * ab - vc / sum * ac);
 }
@@ -134,8 +128,7 @@ TEST(Fill, CubeHasTheSpheresAndLayersThatGeometrySays) {
   EXPECT_EQ(summary(filling.report.findings), "");
   for (std::size_t n = 0; n < filling.organ.centre.size(); ++n) {
     const Vec3 p = filling.organ.centre[n];
-    EXPECT_NEAR(filling.organ.depth[n], 0.05 - std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}),
-                1e-12);
+    EXPECT_NEAR(filling.organ.depth[n], 0.05 - std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}), 1e-12);
   }
   // The corners are the farthest: half a cell's diagonal from the nearest centre.
   EXPECT_NEAR(filling.report.largest_distance, 0.005 * std::sqrt(3.0), 1e-12);
@@ -183,9 +176,8 @@ TEST(Fill, DepthIsTheExactDistance) {
   for (std::size_t n = 0; n < filling.organ.centre.size(); ++n) {
     double least = 1;
     for (const Triangle& t : mesh.triangle)
-      least = std::min(least,
-                       distance_to_triangle(filling.organ.centre[n], mesh.vertex[std::size_t(t[0])],
-                                            mesh.vertex[std::size_t(t[1])], mesh.vertex[std::size_t(t[2])]));
+      least = std::min(least, distance_to_triangle(filling.organ.centre[n], mesh.vertex[std::size_t(t[0])],
+                                                   mesh.vertex[std::size_t(t[1])], mesh.vertex[std::size_t(t[2])]));
     ASSERT_NEAR(filling.organ.depth[n], least, 1e-12);
   }
 }
@@ -201,15 +193,14 @@ TEST(Fill, InsideIsWhereTheSolidAngleIsFull) {
   for (int i = -1; i < 22; ++i)
     for (int j = -1; j < 22; ++j)
       for (int k = -1; k < 8; ++k) {
-        const Vec3 p = some_centre + spacing * Vec3{double(i - some_cell[0]), double(j - some_cell[1]),
-                                                    double(k - some_cell[2])};
+        const Vec3 p =
+            some_centre + spacing * Vec3{double(i - some_cell[0]), double(j - some_cell[1]), double(k - some_cell[2])};
         double angle = 0;
         for (const Triangle& t : mesh.triangle) {
           const Vec3 a = mesh.vertex[std::size_t(t[0])] - p, b = mesh.vertex[std::size_t(t[1])] - p,
                      c = mesh.vertex[std::size_t(t[2])] - p;
           const double la = norm(a), lb = norm(b), lc = norm(c);
-          angle += 2 * std::atan2(dot(a, cross(b, c)),
-                                  la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+          angle += 2 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
         }
         ASSERT_EQ(inside.contains({i, j, k}), angle > 2 * std::numbers::pi) << i << " " << j << " " << k;
       }
@@ -251,10 +242,8 @@ TEST(Fill, QuarterTurnTurnsTheSpheres) {
     const FilledOrgan turned = filled(checked(zoo::moved(dyadic(), turn)), dyadic_options()).organ;
     const auto key = [](Vec3 p) { return std::array{p.x + 0.0, p.y + 0.0, p.z + 0.0}; };
     std::map<std::array<double, 3>, double> wanted, got;
-    for (std::size_t n = 0; n < plain.centre.size(); ++n)
-      wanted.emplace(key(turn(plain.centre[n])), plain.depth[n]);
-    for (std::size_t n = 0; n < turned.centre.size(); ++n)
-      got.emplace(key(turned.centre[n]), turned.depth[n]);
+    for (std::size_t n = 0; n < plain.centre.size(); ++n) wanted.emplace(key(turn(plain.centre[n])), plain.depth[n]);
+    for (std::size_t n = 0; n < turned.centre.size(); ++n) got.emplace(key(turned.centre[n]), turned.depth[n]);
     ASSERT_EQ(wanted.size(), got.size());
     for (auto a = wanted.begin(), b = got.begin(); a != wanted.end(); ++a, ++b) {
       ASSERT_EQ(a->first, b->first);
@@ -365,8 +354,7 @@ TEST(Fill, SingleSheetOfSpheresIsTold) {
   std::vector<Vec3> drawn;
   deform_surface(filling.organ.surface, rest, 0, drawn);
   for (const Vec3& p : drawn) ASSERT_NEAR(p.z, 0, 1e-12) << "all of it lies in the sheet";
-  EXPECT_EQ(find(filled(checked(zoo::box({0.1, 0.1, 0.02}, 5)), spaced(0.01)).report.findings, "flat"),
-            nullptr);
+  EXPECT_EQ(find(filled(checked(zoo::box({0.1, 0.1, 0.02}, 5)), spaced(0.01)).report.findings, "flat"), nullptr);
 }
 
 TEST(Fill, WhatCannotBeFilledIsRefused) {
@@ -410,8 +398,7 @@ TEST(Fill, SurfaceFollowsRigidMotionExactly) {
   deform_surface(organ.surface, rest, 0, vertex);
   for (std::size_t v = 0; v < vertex.size(); ++v) ASSERT_LT(norm(vertex[v] - organ.surface.vertex[v]), 1e-9);
   deform_surface(organ.surface, positions, 0, vertex);
-  for (std::size_t v = 0; v < vertex.size(); ++v)
-    ASSERT_LT(norm(vertex[v] - move(organ.surface.vertex[v])), 1e-9);
+  for (std::size_t v = 0; v < vertex.size(); ++v) ASSERT_LT(norm(vertex[v] - move(organ.surface.vertex[v])), 1e-9);
 }
 
 }  // namespace

@@ -122,8 +122,7 @@ TEST_P(Fuzz, DamagedFilesEndAsAMeshOrAsAnError) {
     options.memory_limit_mib = 512;
     const auto start = std::chrono::steady_clock::now();
     const Result<RawMesh> read = read_mesh(path, options);
-    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
-              kLimit + kSlack);
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), kLimit + kSlack);
     if (!read) {
       ASSERT_FALSE(read.errors().empty());
       EXPECT_EQ(read.errors()[0].where, path);
@@ -151,12 +150,11 @@ TEST_P(Fuzz, DamagedFilesEndAsAMeshOrAsAnError) {
   RecordProperty("accepted", accepted);
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryFormat, Fuzz, ::testing::Range<std::size_t>(0, samples().size()),
-                         [](const auto& info) {
-                           std::string name = samples()[info.param].name;
-                           std::replace(name.begin(), name.end(), '.', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(EveryFormat, Fuzz, ::testing::Range<std::size_t>(0, samples().size()), [](const auto& info) {
+  std::string name = samples()[info.param].name;
+  std::replace(name.begin(), name.end(), '.', '_');
+  return name;
+});
 
 /// A mesh with several random faults, from a vertex out of place to triangles that join what is far apart.
 RawMesh damaged(RawMesh mesh, std::mt19937& random) {
@@ -223,8 +221,7 @@ TEST(FuzzRepair, DamagedMeshesComeOutSoundOrAreRefused) {
 
 TEST(FuzzSamples, AreWholeBeforeTheyAreDamaged) {
   const zoo::Folder folder;
-  for (const Sample& sample : samples())
-    EXPECT_TRUE(read_mesh(folder.write(sample.name, sample.bytes))) << sample.name;
+  for (const Sample& sample : samples()) EXPECT_TRUE(read_mesh(folder.write(sample.name, sample.bytes))) << sample.name;
 }
 
 }  // namespace

@@ -22,9 +22,8 @@ TEST(Import, ShippedOrgansAreSoundAndHaveTheirVolume) {
     std::int64_t triangles;
     Vec3 size_mm;
   };
-  for (const Organ& organ :
-       {Organ{"liver", 1255, 5598, {223, 151, 90}}, Organ{"kidney", 163, 3210, {110, 59, 45}},
-        Organ{"skin", 383, 3214, {120, 120, 30}}}) {
+  for (const Organ& organ : {Organ{"liver", 1255, 5598, {223, 151, 90}}, Organ{"kidney", 163, 3210, {110, 59, 45}},
+                             Organ{"skin", 383, 3214, {120, 120, 30}}}) {
     SCOPED_TRACE(organ.name);
     ImportOptions options;
     options.unit_in_metres = 0.001;
@@ -72,10 +71,9 @@ TEST(Import, UnusualSizeIsTold) {
 
 TEST(Import, UnitOfTheFileIsTaken) {
   const zoo::Folder folder;
-  for (const auto& [name, bytes] :
-       {std::pair<const char*, std::string>{"cm.dae", zoo::to_dae(zoo::sphere(6, 3), 0.01)},
-        {"m.glb", zoo::to_glb(zoo::sphere(0.06, 3))},
-        {"cm.fbx", zoo::to_fbx(zoo::sphere(6, 3), 1)}}) {
+  for (const auto& [name, bytes] : {std::pair<const char*, std::string>{"cm.dae", zoo::to_dae(zoo::sphere(6, 3), 0.01)},
+                                    {"m.glb", zoo::to_glb(zoo::sphere(0.06, 3))},
+                                    {"cm.fbx", zoo::to_fbx(zoo::sphere(6, 3), 1)}}) {
     SCOPED_TRACE(name);
     const Result<ImportedOrgan> imported = import_organ(folder.write(name, bytes));
     ASSERT_TRUE(imported) << text_of(imported.errors());

@@ -56,7 +56,7 @@ TEST(ReadMesh, EveryFormatGivesTheSameMesh) {
     const double scale = file.scale;
     EXPECT_NEAR(signed_volume(read->vertex, read->triangle, {}), volume * std::pow(scale, 3), 1e-5 * volume);
     const BoundingBox box = bounding_box({read->vertex, read->triangle}),
-              wanted = bounding_box({mesh.vertex, mesh.triangle});
+                      wanted = bounding_box({mesh.vertex, mesh.triangle});
     EXPECT_LT(norm(box.least - scale * wanted.least), kFloat);
     EXPECT_LT(norm(box.most - scale * wanted.most), kFloat);
   }
@@ -115,15 +115,14 @@ TEST(ReadMesh, RefusesWhatIsNoMeshAndSaysWhy) {
   std::string nan = zoo::to_binary_stl(zoo::sphere(1, 1));
   const float not_a_number = std::numeric_limits<float>::quiet_NaN();
   nan.replace(84 + 12, 4, reinterpret_cast<const char*>(&not_a_number), 4);
-  for (const Bad& bad :
-       std::vector<Bad>{{"empty.obj", "", "is empty"},
-                        {"noise.obj", "hello, I am a letter to a surgeon\n", "no triangles"},
-                        {"noise.stl", std::string(300, '\xEE'), "not a mesh that can be read"},
-                        {"noise.glb", "glTF but not really", "not a mesh that can be read"},
-                        {"points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\np 1 2 3\n", "no triangles"},
-                        {"organ.docx", "word", "not a mesh that can be read"},
-                        {"organ", "v 0 0 0\n", "not a mesh that can be read"},
-                        {"nan.stl", nan, "not finite"}}) {
+  for (const Bad& bad : std::vector<Bad>{{"empty.obj", "", "is empty"},
+                                         {"noise.obj", "hello, I am a letter to a surgeon\n", "no triangles"},
+                                         {"noise.stl", std::string(300, '\xEE'), "not a mesh that can be read"},
+                                         {"noise.glb", "glTF but not really", "not a mesh that can be read"},
+                                         {"points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\np 1 2 3\n", "no triangles"},
+                                         {"organ.docx", "word", "not a mesh that can be read"},
+                                         {"organ", "v 0 0 0\n", "not a mesh that can be read"},
+                                         {"nan.stl", nan, "not finite"}}) {
     SCOPED_TRACE(bad.name);
     const std::string path = folder.write(bad.name, bad.bytes);
     const Result<RawMesh> read = read_mesh(path);
@@ -136,8 +135,7 @@ TEST(ReadMesh, RefusesWhatIsNoMeshAndSaysWhy) {
 
 TEST(ReadMesh, RefusesNanTextVertices) {
   const zoo::Folder folder;
-  const std::string path =
-      folder.write("nan.obj", "v 0 0 0\nv 1 0 0\nv nan 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n");
+  const std::string path = folder.write("nan.obj", "v 0 0 0\nv 1 0 0\nv nan 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n");
   const Result<RawMesh> read = read_mesh(path);
   ASSERT_FALSE(read) << "a vertex that is not a number became " << read->vertex[2].x;
   EXPECT_NE(read.errors()[0].message.find("not finite"), std::string::npos) << text_of(read.errors());

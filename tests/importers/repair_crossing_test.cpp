@@ -16,8 +16,7 @@ using zoo::summary;
 using zoo::text_of;
 
 TEST(Crossing, SoundMeshesHaveNone) {
-  for (const RawMesh& raw :
-       {zoo::sphere(0.05, 3), zoo::torus(0.05, 0.02, 48, 24), zoo::box({0.1, 0.1, 0.02}, 4)})
+  for (const RawMesh& raw : {zoo::sphere(0.05, 3), zoo::torus(0.05, 0.02, 48, 24), zoo::box({0.1, 0.1, 0.02}, 4)})
     EXPECT_TRUE(find_crossing({raw.vertex, raw.triangle}).empty());
 }
 
@@ -71,13 +70,12 @@ TEST(Crossing, OverlappingPartsAreFilledOnce) {
   ASSERT_TRUE(filling) << text_of(filling.errors());
   std::int64_t expected = 0;
   const double s = filling->organ.spacing;
-  for (const Vec3& p : filling->organ.centre)
-    expected += norm(p) < 0.05 + s || norm(p - Vec3{0.05, 0, 0}) < 0.03 + s;
+  for (const Vec3& p : filling->organ.centre) expected += norm(p) < 0.05 + s || norm(p - Vec3{0.05, 0, 0}) < 0.03 + s;
   EXPECT_EQ(filling->report.spheres, expected);
   // Two balls less their common lens (Weisstein, Sphere-Sphere Intersection).
   const double R = 0.05, r = 0.03, d = 0.05, pi = std::acos(-1.0);
-  const double lens = pi * std::pow(R + r - d, 2) *
-                      (d * d + 2 * d * r - 3 * r * r + 2 * d * R + 6 * r * R - 3 * R * R) / (12 * d);
+  const double lens =
+      pi * std::pow(R + r - d, 2) * (d * d + 2 * d * r - 3 * r * r + 2 * d * R + 6 * r * R - 3 * R * R) / (12 * d);
   const double both = 4 * pi / 3 * (R * R * R + r * r * r) - lens;
   EXPECT_NEAR(filling->report.filled_volume, both, 0.02 * both);
 }

@@ -146,9 +146,7 @@ TEST(InnerWalls, AreFoundHoweverTheTrianglesFaceAndBesideAHole) {
 }
 
 TEST(InnerWalls, SoundMeshesCavitiesAndFinsHaveNone) {
-  const auto walls_of = [](const RawMesh& raw) {
-    return find_inner_walls({raw.vertex, raw.triangle}).size();
-  };
+  const auto walls_of = [](const RawMesh& raw) { return find_inner_walls({raw.vertex, raw.triangle}).size(); };
   EXPECT_EQ(walls_of(zoo::torus(0.05, 0.02, 48, 24)), 0u);
   EXPECT_EQ(walls_of(zoo::both(zoo::sphere(0.05, 3), zoo::sphere(0.02, 2))), 0u);
   RawMesh fin = zoo::sphere(0.05, 3);

@@ -63,8 +63,7 @@ TEST(Repair, UnweldedSoupIsWelded) {
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);
   EXPECT_EQ(mesh->vertex.size(), ball().vertex.size());
-  EXPECT_EQ(summary(mesh->findings),
-            "unwelded x " + std::to_string(raw.vertex.size() - ball().vertex.size()));
+  EXPECT_EQ(summary(mesh->findings), "unwelded x " + std::to_string(raw.vertex.size() - ball().vertex.size()));
   EXPECT_EQ(mesh->before.parts, std::int64_t(raw.triangle.size()));
   EXPECT_EQ(mesh->after.parts, 1);
 }
@@ -133,10 +132,10 @@ TEST(Repair, HugeHoleIsRefusedWithSizeAndPlace) {
   // The cap's rim lies near z = 30 mm, where the ball is 80 mm wide.
   double width = 0, z_shown = 0, x_shown = 0, y_shown = 0;
   int edges = 0;
-  ASSERT_EQ(std::sscanf(error.message.c_str(),
-                        "open beyond repair: a hole %lf mm wide (%d edges) at (%lf, %lf, %lf) mm", &width,
-                        &edges, &x_shown, &y_shown, &z_shown),
-            5)
+  ASSERT_EQ(
+      std::sscanf(error.message.c_str(), "open beyond repair: a hole %lf mm wide (%d edges) at (%lf, %lf, %lf) mm",
+                  &width, &edges, &x_shown, &y_shown, &z_shown),
+      5)
       << error.message;
   EXPECT_NEAR(width, 80, 4);
   EXPECT_NEAR(z_shown, 30, 3);
@@ -212,8 +211,7 @@ TEST(Repair, ManyCrumbsCostNoMoreThanTheirTriangles) {
     const std::int32_t first = std::int32_t(raw.vertex.size());
     for (const Vec3& p : crumb.vertex)
       raw.vertex.push_back(p + 0.002 * Vec3{50.0 + n % 22, double(n / 22 % 22), double(n / 484)});
-    for (const Triangle& t : crumb.triangle)
-      raw.triangle.push_back({t[0] + first, t[1] + first, t[2] + first});
+    for (const Triangle& t : crumb.triangle) raw.triangle.push_back({t[0] + first, t[1] + first, t[2] + first});
   }
   const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
@@ -276,8 +274,7 @@ TEST(Repair, CubesThatShareAnEdgeAreParted) {
 }
 
 TEST(Repair, CubesThatShareACornerAreParted) {
-  const RawMesh raw =
-      zoo::both(zoo::box({0.1, 0.1, 0.1}), zoo::box({0.05, 0.05, 0.05}, 1, {0.075, 0.075, 0.075}));
+  const RawMesh raw = zoo::both(zoo::box({0.1, 0.1, 0.1}), zoo::box({0.05, 0.05, 0.05}, 1, {0.075, 0.075, 0.075}));
   const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);

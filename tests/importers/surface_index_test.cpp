@@ -41,8 +41,8 @@ Heap heap_of_triangles(std::size_t count, std::mt19937& random) {
 double distance_one_by_one(const Heap& heap, Vec3 p) {
   double least = std::numeric_limits<double>::infinity();
   for (const Triangle& t : heap.triangle)
-    least = std::min(least, squared_distance(p, heap.vertex[std::size_t(t[0])],
-                                             heap.vertex[std::size_t(t[1])], heap.vertex[std::size_t(t[2])]));
+    least = std::min(least, squared_distance(p, heap.vertex[std::size_t(t[0])], heap.vertex[std::size_t(t[1])],
+                                             heap.vertex[std::size_t(t[2])]));
   return std::sqrt(least);
 }
 

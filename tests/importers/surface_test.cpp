@@ -30,8 +30,7 @@ TEST(Coarsen, KeepsTheShapeClosed) {
 
 TEST(Coarsen, GivesTheSameEveryTime) {
   const RawMesh fine = zoo::sphere(0.05, 4);
-  const Soup one = coarsen({fine.vertex, fine.triangle}, 500),
-             two = coarsen({fine.vertex, fine.triangle}, 500);
+  const Soup one = coarsen({fine.vertex, fine.triangle}, 500), two = coarsen({fine.vertex, fine.triangle}, 500);
   EXPECT_EQ(one.vertex, two.vertex);
   EXPECT_EQ(one.triangle, two.triangle);
 }
@@ -64,9 +63,8 @@ TEST(SurfaceIndex, FindsTheNearestWhateverTheGuess) {
     const Vec3 p{0.08 * std::sin(n * 1.7), 0.08 * std::sin(n * 2.3), 0.04 * std::sin(n * 3.1)};
     double least = 1;
     for (const Triangle& t : mesh.triangle)
-      least =
-          std::min(least, squared_distance(p, mesh.vertex[std::size_t(t[0])], mesh.vertex[std::size_t(t[1])],
-                                           mesh.vertex[std::size_t(t[2])]));
+      least = std::min(least, squared_distance(p, mesh.vertex[std::size_t(t[0])], mesh.vertex[std::size_t(t[1])],
+                                               mesh.vertex[std::size_t(t[2])]));
     // The index rounds otherwise than squared_distance() does, on lengths of a tenth; a guess never changes a bit.
     constexpr double kRounding = 1e-16;
     const double found = index.nearest(p).squared_distance;

@@ -15,10 +15,9 @@ RawMesh named() {
   return mesh;
 }
 
-std::int32_t middle_vertex(RawMesh& mesh, std::map<std::array<std::int32_t, 2>, std::int32_t>& known,
-                           std::int32_t a, std::int32_t b) {
-  const auto [it, is_new] =
-      known.emplace(std::array{std::min(a, b), std::max(a, b)}, std::int32_t(mesh.vertex.size()));
+std::int32_t middle_vertex(RawMesh& mesh, std::map<std::array<std::int32_t, 2>, std::int32_t>& known, std::int32_t a,
+                           std::int32_t b) {
+  const auto [it, is_new] = known.emplace(std::array{std::min(a, b), std::max(a, b)}, std::int32_t(mesh.vertex.size()));
   if (is_new) {
     const Vec3 p = mesh.vertex[std::size_t(a)] + mesh.vertex[std::size_t(b)];
     mesh.vertex.push_back(p / norm(p));
@@ -53,8 +52,7 @@ RawMesh sphere(double radius, int cuts, Vec3 centre) {
     for (const auto& [a, b, c] : mesh.triangle) {
       const std::int32_t ab = middle_vertex(mesh, known, a, b), bc = middle_vertex(mesh, known, b, c),
                          ca = middle_vertex(mesh, known, c, a);
-      for (const Triangle& t : {Triangle{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}})
-        finer.push_back(t);
+      for (const Triangle& t : {Triangle{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}}) finer.push_back(t);
     }
     mesh.triangle = std::move(finer);
   }
@@ -83,9 +81,7 @@ RawMesh box(Vec3 size, int cuts, Vec3 centre) {
   std::map<std::array<int, 3>, std::int32_t> known;
   const auto at = [&](std::array<int, 3> grid) {
     const auto [it, is_new] = known.emplace(grid, std::int32_t(mesh.vertex.size()));
-    const auto along = [&](int axis, double length) {
-      return length * (double(grid[std::size_t(axis)]) / cuts - 0.5);
-    };
+    const auto along = [&](int axis, double length) { return length * (double(grid[std::size_t(axis)]) / cuts - 0.5); };
     if (is_new) mesh.vertex.push_back(centre + Vec3{along(0, size.x), along(1, size.y), along(2, size.z)});
     return it->second;
   };
@@ -99,8 +95,7 @@ RawMesh box(Vec3 size, int cuts, Vec3 centre) {
             grid[std::size_t(axis + 1) % 3] = u, grid[std::size_t(axis + 2) % 3] = v;
             return at(grid);
           };
-          const std::int32_t a = corner(i, j), b = corner(i + 1, j), c = corner(i + 1, j + 1),
-                             d = corner(i, j + 1);
+          const std::int32_t a = corner(i, j), b = corner(i + 1, j), c = corner(i + 1, j + 1), d = corner(i, j + 1);
           mesh.triangle.push_back(is_far ? Triangle{a, b, c} : Triangle{a, c, b});
           mesh.triangle.push_back(is_far ? Triangle{a, c, d} : Triangle{a, d, c});
         }
@@ -131,16 +126,13 @@ RawMesh unwelded(const RawMesh& mesh) {
 }
 
 RawMesh flipped(RawMesh mesh, std::size_t every) {
-  for (std::size_t t = 0; t < mesh.triangle.size(); t += every)
-    std::swap(mesh.triangle[t][1], mesh.triangle[t][2]);
+  for (std::size_t t = 0; t < mesh.triangle.size(); t += every) std::swap(mesh.triangle[t][1], mesh.triangle[t][2]);
   return mesh;
 }
 
 RawMesh without(RawMesh mesh, const std::function<bool(Vec3)>& goes) {
   std::erase_if(mesh.triangle, [&](const Triangle& t) {
-    return goes(
-        (mesh.vertex[std::size_t(t[0])] + mesh.vertex[std::size_t(t[1])] + mesh.vertex[std::size_t(t[2])]) /
-        3);
+    return goes((mesh.vertex[std::size_t(t[0])] + mesh.vertex[std::size_t(t[1])] + mesh.vertex[std::size_t(t[2])]) / 3);
   });
   return mesh;
 }
@@ -153,8 +145,7 @@ const Finding* find(const std::vector<Finding>& findings, const std::string& cod
 
 std::string summary(const std::vector<Finding>& findings) {
   std::string text;
-  for (const Finding& f : findings)
-    text += (text.empty() ? "" : ", ") + f.code + " x " + std::to_string(f.count);
+  for (const Finding& f : findings) text += (text.empty() ? "" : ", ") + f.code + " x " + std::to_string(f.count);
   return text;
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/vec3.h"
+#include "core/model/vec3.h"
 #include "importers/mesh.h"
 
 namespace ctpm::zoo {

@@ -33,10 +33,8 @@ std::string base64(const std::string& bytes) {
   std::string text;
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     std::uint32_t group = 0;
-    for (std::size_t n = 0; n < 3; ++n)
-      group = group << 8 | (i + n < bytes.size() ? std::uint8_t(bytes[i + n]) : 0u);
-    for (std::size_t n = 0; n < 4; ++n)
-      text += i + n > bytes.size() ? '=' : kDigits[group >> (18 - 6 * n) & 63];
+    for (std::size_t n = 0; n < 3; ++n) group = group << 8 | (i + n < bytes.size() ? std::uint8_t(bytes[i + n]) : 0u);
+    for (std::size_t n = 0; n < 4; ++n) text += i + n > bytes.size() ? '=' : kDigits[group >> (18 - 6 * n) & 63];
   }
   return text;
 }
@@ -55,13 +53,11 @@ std::string gltf_json(const RawMesh& mesh, double scale, const std::string& uri)
   text += line(R"("nodes":[{"mesh":0,"name":"organ","scale":[%.9g,%.9g,%.9g]}],)", scale, scale, scale);
   text += R"("meshes":[{"name":"organ","primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)";
   text += line(R"("buffers":[{"byteLength":%zu)", points + indices) + uri + "}],";
-  text +=
-      line(R"("bufferViews":[{"buffer":0,"byteLength":%zu},{"buffer":0,"byteOffset":%zu,"byteLength":%zu}],)",
-           points, points, indices);
-  text += line(R"("accessors":[{"bufferView":0,"componentType":5126,"count":%zu,"type":"VEC3"},)",
-               mesh.vertex.size());
-  return text + line(R"({"bufferView":1,"componentType":5125,"count":%zu,"type":"SCALAR"}]})",
-                     3 * mesh.triangle.size());
+  text += line(R"("bufferViews":[{"buffer":0,"byteLength":%zu},{"buffer":0,"byteOffset":%zu,"byteLength":%zu}],)",
+               points, points, indices);
+  text += line(R"("accessors":[{"bufferView":0,"componentType":5126,"count":%zu,"type":"VEC3"},)", mesh.vertex.size());
+  return text +
+         line(R"({"bufferView":1,"componentType":5125,"count":%zu,"type":"SCALAR"}]})", 3 * mesh.triangle.size());
 }
 
 /// A block of a 3DS file: id, length with its head, content.
@@ -172,14 +168,12 @@ std::string to_dae(const RawMesh& mesh, double unit_in_metres) {
   return R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset>)" +
          line(R"(<unit name="u" meter="%.9g"/><up_axis>Z_UP</up_axis></asset>)", unit_in_metres) +
          R"(<library_geometries><geometry id="g" name="organ"><mesh><source id="p">)" +
-         line(R"(<float_array id="a" count="%zu">)", 3 * count) + points +
-         "</float_array><technique_common>" +
+         line(R"(<float_array id="a" count="%zu">)", 3 * count) + points + "</float_array><technique_common>" +
          line(R"(<accessor source="#a" count="%zu" stride="3">)", count) +
          R"(<param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor>)" +
          R"(</technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>)" +
          line(R"(<triangles count="%zu">)", mesh.triangle.size()) +
-         R"(<input semantic="VERTEX" source="#v" offset="0"/><p>)" + indices +
-         "</p></triangles></mesh></geometry>" +
+         R"(<input semantic="VERTEX" source="#v" offset="0"/><p>)" + indices + "</p></triangles></mesh></geometry>" +
          R"(</library_geometries><library_visual_scenes><visual_scene id="s"><node id="n" name="organ">)" +
          R"(<instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>)" +
          R"(<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
@@ -187,14 +181,12 @@ std::string to_dae(const RawMesh& mesh, double unit_in_metres) {
 
 std::string to_fbx(const RawMesh& mesh, double unit_in_centimetres) {
   std::string points, indices;
-  for (const Vec3& p : mesh.vertex)
-    points += line("%s%.9g,%.9g,%.9g", points.empty() ? "" : ",", p.x, p.y, p.z);
+  for (const Vec3& p : mesh.vertex) points += line("%s%.9g,%.9g,%.9g", points.empty() ? "" : ",", p.x, p.y, p.z);
   for (const Triangle& t : mesh.triangle)
     indices += line("%s%d,%d,%d", indices.empty() ? "" : ",", t[0], t[1], -t[2] - 1);
   return "; FBX 7.4.0 project file\nFBXHeaderExtension:  {\n\tFBXHeaderVersion: 1003\n\tFBXVersion: 7400\n}\n"
          "GlobalSettings:  {\n\tVersion: 1000\n\tProperties70:  {\n" +
-         line("\t\tP: \"UnitScaleFactor\", \"double\", \"Number\", \"\",%.9g\n\t}\n}\n",
-              unit_in_centimetres) +
+         line("\t\tP: \"UnitScaleFactor\", \"double\", \"Number\", \"\",%.9g\n\t}\n}\n", unit_in_centimetres) +
          "Objects:  {\n\tGeometry: 1001, \"Geometry::organ\", \"Mesh\" {\n" +
          line("\t\tVertices: *%zu {\n\t\t\ta: ", 3 * mesh.vertex.size()) + points +
          line("\n\t\t}\n\t\tPolygonVertexIndex: *%zu {\n\t\t\ta: ", 3 * mesh.triangle.size()) + indices +
@@ -210,8 +202,7 @@ std::string to_3ds(const RawMesh& mesh) {
   put(faces, std::uint16_t(mesh.triangle.size()));
   for (const Triangle& t : mesh.triangle)
     put(faces, std::uint16_t(t[0]), std::uint16_t(t[1]), std::uint16_t(t[2]), std::uint16_t(0));
-  const std::string object =
-      std::string("organ\0", 6) + block(0x4100, block(0x4110, points) + block(0x4120, faces));
+  const std::string object = std::string("organ\0", 6) + block(0x4100, block(0x4110, points) + block(0x4120, faces));
   return block(0x4D4D, block(0x3D3D, block(0x4000, object)));
 }
 

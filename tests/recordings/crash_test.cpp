@@ -64,8 +64,7 @@ TEST(FullDisk, IsToldByStatusAndByTheEndAndWhatFitsIsGood) {
     if (ended) return 4;
     const WriterStatus status = writer->status();
     if (status.lost <= 0 || status.committed + status.lost != status.appended) return 5;
-    if (ended.errors()[0].where != path ||
-        ended.errors()[0].message.find("were not recorded") == std::string::npos)
+    if (ended.errors()[0].where != path || ended.errors()[0].message.find("were not recorded") == std::string::npos)
       return 6;
     return 0;
   });

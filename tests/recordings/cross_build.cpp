@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <string>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "recordings/replay.h"
 #include "recordings/session_writer.h"
 #include "recordings/state_hash.h"

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <set>
 
-#include "core/fields.h"
+#include "core/model/fields.h"
 #include "recordings/recover.h"
 #include "recordings/replay.h"
 #include "tests/recordings/sessions.h"
@@ -90,8 +90,8 @@ Finding expect_error_or_truth(const std::string& path, const Truth& truth, const
     const std::int64_t to = std::min(from + 50, known);
     const auto records = reader->ticks(from, to);
     if (records) {
-      EXPECT_TRUE(std::equal(records->begin(), records->end(), truth.records.begin() + from,
-                             truth.records.begin() + to))
+      EXPECT_TRUE(
+          std::equal(records->begin(), records->end(), truth.records.begin() + from, truth.records.begin() + to))
           << what;
     } else {
       complain(records.errors());
@@ -175,8 +175,8 @@ void flip_each(const std::set<std::size_t>& places, bool must_be_found) {
   for (const std::size_t place : places) {
     const int bit = static_cast<int>(place * 5 % 8);
     put(place, static_cast<char>(whole.bytes[place] ^ (1 << bit)));
-    const Finding finding = expect_error_or_truth(
-        path, whole.truth, "byte " + std::to_string(place) + " bit " + std::to_string(bit));
+    const Finding finding =
+        expect_error_or_truth(path, whole.truth, "byte " + std::to_string(place) + " bit " + std::to_string(bit));
     EXPECT_TRUE(finding.complained || !must_be_found) << "byte " << place;
     put(place, whole.bytes[place]);
     if (::testing::Test::HasFailure()) return;
@@ -198,8 +198,7 @@ TEST(Damage, AFlippedBitInAnyBlockIsFound) {
 
 /// Writes the file with one byte changed, at the first place where that makes `message` appear in what
 /// check_all() says. Returns all that it says; empty if there is no such place.
-std::string damage_until(const std::string& path, const std::vector<char>& bytes,
-                         const std::string& message) {
+std::string damage_until(const std::string& path, const std::vector<char>& bytes, const std::string& message) {
   for (std::size_t place = 4096; place < bytes.size(); place += 61) {
     std::vector<char> damaged = bytes;
     damaged[place] = static_cast<char>(damaged[place] ^ 0x10);
@@ -278,8 +277,7 @@ TEST(Damage, ANewerVersionIsRefusedWithBothNumbers) {
 TEST(Damage, APowerCutInTheLogLosesOnlyTheEnd) {
   const Folder folder;
   const SessionStart start = small_start(3, 2, 2);
-  auto writer =
-      SessionWriter::create(folder / "live.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 200});
+  auto writer = SessionWriter::create(folder / "live.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 200});
   ASSERT_TRUE(writer);
   const Lived lived = live(start, 600, [&](const State& after, const TickRecord& record) {
     writer->append(after, record);
@@ -314,11 +312,10 @@ TEST(Damage, ALogOfAnotherSessionIsNotMixedIn) {
   for (int i = 0; i < 2; ++i) {
     auto writer = SessionWriter::create(folder / std::to_string(i), start, {.wait_when_full = true});
     ASSERT_TRUE(writer);
-    const Lived lived = live(
-        start, 300, [&](const State& after, const TickRecord& record) { writer->append(after, record); });
+    const Lived lived =
+        live(start, 300, [&](const State& after, const TickRecord& record) { writer->append(after, record); });
     while (writer->status().committed < 300) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    files[i] = read_bytes(folder / std::to_string(i)),
-    logs[i] = read_bytes(folder / (std::to_string(i) + "-wal"));
+    files[i] = read_bytes(folder / std::to_string(i)), logs[i] = read_bytes(folder / (std::to_string(i) + "-wal"));
     if (i == 0) truth = truth_of(folder / "0", start, lived);
   }
   write_bytes(folder / "a.ctpm", files[0]);
@@ -361,8 +358,8 @@ TEST(Recover, ADamagedChunkIsNamedAndWhatIsBeforeItSaved) {
   ASSERT_TRUE(reader);
   EXPECT_FALSE(reader->ended_cleanly());
   ASSERT_EQ(reader->tick_count(), 300);
-  EXPECT_TRUE(std::equal(whole.truth.records.begin(), whole.truth.records.begin() + 300,
-                         reader->ticks(0, 300)->begin()));
+  EXPECT_TRUE(
+      std::equal(whole.truth.records.begin(), whole.truth.records.begin() + 300, reader->ticks(0, 300)->begin()));
 }
 
 TEST(Recover, AFileCutShortGivesItsBeginning) {
@@ -371,8 +368,8 @@ TEST(Recover, AFileCutShortGivesItsBeginning) {
   std::int64_t most = 0;
   for (const int percent : {40, 60, 70, 80, 90, 97}) {
     const std::string path = folder / (std::to_string(percent) + ".ctpm");
-    write_bytes(path, {whole.bytes.begin(), whole.bytes.begin() + static_cast<std::ptrdiff_t>(
-                                                                      whole.bytes.size() * percent / 100)});
+    write_bytes(path, {whole.bytes.begin(),
+                       whole.bytes.begin() + static_cast<std::ptrdiff_t>(whole.bytes.size() * percent / 100)});
     EXPECT_FALSE(SessionReader::open(path));
     const auto report = recover_session(path, folder / "out.ctpm");
     if (!report) {

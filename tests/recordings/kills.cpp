@@ -91,8 +91,7 @@ void kill_together(std::span<Shared* const> memory, const SessionStart& start, s
   }
   std::vector<Victim*> in_order;
   for (Victim& victim : victims) in_order.push_back(&victim);
-  std::sort(in_order.begin(), in_order.end(),
-            [](const Victim* a, const Victim* b) { return a->dies_at < b->dies_at; });
+  std::sort(in_order.begin(), in_order.end(), [](const Victim* a, const Victim* b) { return a->dies_at < b->dies_at; });
   for (Victim* victim : in_order) {
     std::this_thread::sleep_until(victim->dies_at);
     victim->killed_at_ns = now_ns();
@@ -112,8 +111,7 @@ void kill_recorders(int count) {
   constexpr int together = 2;
   const SessionStart start = small_start(3, 2, 2);
   std::mt19937 random(12345);
-  void* memory =
-      ::mmap(nullptr, together * sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  void* memory = ::mmap(nullptr, together * sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   ASSERT_NE(memory, MAP_FAILED);
   std::vector<Shared*> places;
   for (int i = 0; i < together; ++i) places.push_back(static_cast<Shared*>(memory) + i);

@@ -6,7 +6,7 @@
 #include <limits>
 #include <thread>
 
-#include "core/fields.h"
+#include "core/model/fields.h"
 #include "tests/recordings/sessions.h"
 
 namespace ctpm {
@@ -83,12 +83,10 @@ TEST(Session, AnyRangeOfTicksIsTheSameAsThatPartOfTheWhole) {
   const Lived lived = record_session(folder / "a.ctpm", small_start(), 555);
   auto reader = SessionReader::open(folder / "a.ctpm");
   ASSERT_TRUE(reader);
-  for (const auto& [from, to] :
-       {std::pair{0, 0}, {0, 1}, {99, 101}, {100, 200}, {37, 555}, {554, 555}, {555, 555}}) {
+  for (const auto& [from, to] : {std::pair{0, 0}, {0, 1}, {99, 101}, {100, 200}, {37, 555}, {554, 555}, {555, 555}}) {
     const auto records = reader->ticks(from, to);
     ASSERT_TRUE(records);
-    EXPECT_TRUE(std::equal(records->begin(), records->end(), lived.records.begin() + from,
-                           lived.records.begin() + to))
+    EXPECT_TRUE(std::equal(records->begin(), records->end(), lived.records.begin() + from, lived.records.begin() + to))
         << from;
   }
   for (const auto& [from, to] : {std::pair{-1, 1}, {5, 4}, {0, 556}}) EXPECT_FALSE(reader->ticks(from, to));
@@ -98,8 +96,7 @@ TEST(Session, KeyframesHoldTheStateBeforeTheirTick) {
   const Folder folder;
   const SessionStart start = small_start();
   std::vector<State> states{start.initial_state};
-  auto writer =
-      SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 100});
+  auto writer = SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 100});
   ASSERT_TRUE(writer);
   live(start, 450, [&](const State& after, const TickRecord& record) {
     states.push_back(after);
@@ -130,10 +127,8 @@ TEST(Session, EventsAndStatisticsComeBack) {
   const Lived lived = live(start, 1000, [&](const State& after, const TickRecord& record) {
     writer->append(after, record);
     if (after.tick % 10 != 0) return;
-    given.push_back({after.tick - 1,
-                     after.tick % 20 == 0 ? EventKind::late_tick : EventKind::contact_begins,
-                     "event",
-                     {1.5, -2}});
+    given.push_back(
+        {after.tick - 1, after.tick % 20 == 0 ? EventKind::late_tick : EventKind::contact_begins, "event", {1.5, -2}});
     writer->event(given.back().tick, given.back().kind, given.back().text, given.back().values);
   });
   const auto written = writer->finish({{"input_age_p99_s", 0.25}});
@@ -178,8 +173,7 @@ TEST(Session, EveryBitPatternOfARecordSurvives) {
   const Folder folder;
   const SessionStart start = small_start();
   const double strange[] = {
-      0.0,      -0.0, std::nan("7"), -std::nan("1"), std::numeric_limits<double>::infinity(), 5e-324,
-      -1.7e308, 1.0};
+      0.0, -0.0, std::nan("7"), -std::nan("1"), std::numeric_limits<double>::infinity(), 5e-324, -1.7e308, 1.0};
   std::vector<TickRecord> given;
   Noise noise;
   for (int i = 0; i < 777; ++i) {
@@ -206,9 +200,7 @@ TEST(Session, EveryBitPatternOfARecordSurvives) {
   ASSERT_TRUE(got);
   for (int i = 0; i < 777; ++i) {
     EXPECT_EQ(std::memcmp(&given[i].inputs.position, &(*got)[i].inputs.position, sizeof(Vec3)), 0) << i;
-    EXPECT_EQ(std::memcmp(&given[i].inputs.world_from_tool, &(*got)[i].inputs.world_from_tool, sizeof(Quat)),
-              0)
-        << i;
+    EXPECT_EQ(std::memcmp(&given[i].inputs.world_from_tool, &(*got)[i].inputs.world_from_tool, sizeof(Quat)), 0) << i;
     EXPECT_EQ(std::memcmp(&given[i].tool_force, &(*got)[i].tool_force, sizeof(Vec3)), 0) << i;
     EXPECT_EQ(std::memcmp(&given[i].depth, &(*got)[i].depth, sizeof(double)), 0) << i;
     EXPECT_EQ(given[i].inputs.tool, (*got)[i].inputs.tool);
@@ -285,8 +277,7 @@ TEST(Session, ASessionThatIsDroppedIsSavedButHasNoEnd) {
   {
     auto writer = SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true});
     ASSERT_TRUE(writer);
-    lived = live(start, 333,
-                 [&](const State& after, const TickRecord& record) { writer->append(after, record); });
+    lived = live(start, 333, [&](const State& after, const TickRecord& record) { writer->append(after, record); });
   }
   auto reader = SessionReader::open(folder / "a.ctpm");
   ASSERT_TRUE(reader) << text_of(reader.errors());

@@ -12,8 +12,8 @@
 #include <thread>
 #include <vector>
 
-#include "core/step.h"
-#include "core/surface.h"
+#include "core/stepping/step.h"
+#include "core/surface/surface.h"
 #include "recordings/session_reader.h"
 #include "recordings/session_writer.h"
 #include "recordings/state_hash.h"
@@ -131,8 +131,7 @@ inline Lived record_session(const std::string& path, const SessionStart& start, 
   CTPM_CHECK(bool(writer), "a test's session can be created");
   const Lived lived = live(start, ticks, [&](const State& after, const TickRecord& record) {
     writer->append(after, record);
-    if (record.severed > 0)
-      writer->event(after.tick - 1, EventKind::cut, "severed", {double(record.severed)});
+    if (record.severed > 0) writer->event(after.tick - 1, EventKind::cut, "severed", {double(record.severed)});
   });
   CTPM_CHECK(bool(writer->finish({{"input_age_p50_s", 0.0005}})), "a test's session can be finished");
   return lived;

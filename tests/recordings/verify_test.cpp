@@ -47,8 +47,8 @@ TEST(Verify, NamesTheFirstTickTheSphereTheQuantityAndTheSize) {
   constexpr std::int32_t wrong_sphere = 21;
   constexpr double push = 1e-5;  // [m]
   // The recorded session is pushed at one sphere behind the recording's back; the replay is not.
-  auto writer = SessionWriter::create(folder / "a.ctpm", start,
-                                      {.wait_when_full = true, .keyframe_ticks = wrong_tick + 1});
+  auto writer =
+      SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true, .keyframe_ticks = wrong_tick + 1});
   ASSERT_TRUE(writer);
   State state = start.initial_state;
   Stepper stepper(start.model);
@@ -101,8 +101,7 @@ TEST(Verify, AForceThatDiffersAloneIsNamed) {
 TEST(Verify, AKeyframeThatIsNotItsTicksStateIsAnError) {
   const Folder folder;
   const SessionStart start = small_start();
-  auto writer =
-      SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 50});
+  auto writer = SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 50});
   ASSERT_TRUE(writer);
   live(start, 120, [&](State after, const TickRecord& record) {
     if (after.tick == 100) after.velocity.x[3] += 1;
@@ -132,8 +131,7 @@ TEST(Verify, ASessionWithoutTicksIsTheSame) {
 TEST(Verify, TheVerdictDoesNotDependOnTheThreads) {
   const Folder folder;
   const SessionStart start = small_start();
-  auto writer =
-      SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 50});
+  auto writer = SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 50});
   ASSERT_TRUE(writer);
   live(start, 620, [&](const State& after, TickRecord record) {
     if (after.tick == 320 || after.tick == 520) record.depth += 1;
@@ -145,8 +143,7 @@ TEST(Verify, TheVerdictDoesNotDependOnTheThreads) {
   for (const int threads : {1, 2, 3, 64}) {
     std::int64_t done = 0;
     const auto verdict = verify_session(
-        *reader,
-        {.from = 7, .threads = threads, .progress = [&](std::int64_t d, std::int64_t) { done = d; }});
+        *reader, {.from = 7, .threads = threads, .progress = [&](std::int64_t d, std::int64_t) { done = d; }});
     ASSERT_TRUE(verdict) << text_of(verdict.errors());
     EXPECT_EQ(verdict->first_tick, 319);
     EXPECT_EQ(verdict->first_quantity, "depth");
@@ -193,8 +190,7 @@ TEST(Replay, SeekingGivesTheSameStateAsWalking) {
   const Folder folder;
   const SessionStart start = small_start();
   std::vector<std::uint64_t> hashes{state_hash(start.initial_state)};
-  auto writer =
-      SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 100});
+  auto writer = SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 100});
   ASSERT_TRUE(writer);
   live(start, 600, [&](const State& after, const TickRecord& record) {
     hashes.push_back(record.state_hash);
@@ -223,8 +219,7 @@ TEST(Replay, SeekingGivesTheSameStateAsWalking) {
 TEST(Verify, ATickWhoseInputWasRefusedIsReplayedAsSuch) {
   const Folder folder;
   const SessionStart start = small_start();
-  auto writer =
-      SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 20});
+  auto writer = SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 20});
   ASSERT_TRUE(writer);
   State state = start.initial_state;
   Stepper stepper(start.model);

@@ -79,8 +79,8 @@ TEST(Anchors, APlaneHoldsWhatIsBehindItAndOnIt) {
 TEST(Anchors, ASphereInTwoRegionsIsHeldOnceAndCountedInBoth) {
   const FilledOrgan organ = block();
   std::vector<std::int32_t> counts;
-  const Result<std::vector<std::int32_t>> selected = select_anchored(
-      organ, {anchor_of("lowest:0"), anchor_of("plane:-24,0,0,1,0,0")}, kDown, "/organs/0", &counts);
+  const Result<std::vector<std::int32_t>> selected =
+      select_anchored(organ, {anchor_of("lowest:0"), anchor_of("plane:-24,0,0,1,0,0")}, kDown, "/organs/0", &counts);
   ASSERT_TRUE(selected);
   EXPECT_EQ(counts, (std::vector<std::int32_t>{15, 12}));
   EXPECT_EQ(selected->size(), 15u + 12 - 3);
@@ -88,9 +88,9 @@ TEST(Anchors, ASphereInTwoRegionsIsHeldOnceAndCountedInBoth) {
 }
 
 TEST(Anchors, EachThatCatchesNothingIsAnErrorWithTheOrgansExtent) {
-  const Result<std::vector<std::int32_t>> selected = select_anchored(
-      block(), {anchor_of("sphere:0,0,500,10"), anchor_of("lowest:0"), anchor_of("box:1,1,1,2,2,2")}, kDown,
-      "/organs/3");
+  const Result<std::vector<std::int32_t>> selected =
+      select_anchored(block(), {anchor_of("sphere:0,0,500,10"), anchor_of("lowest:0"), anchor_of("box:1,1,1,2,2,2")},
+                      kDown, "/organs/3");
   ASSERT_FALSE(selected);
   ASSERT_EQ(selected.errors().size(), 2u);
   EXPECT_EQ(to_string(selected.errors()[0]),
@@ -107,8 +107,7 @@ TEST(Anchors, AnOrganWithoutSpheresIsAnError) {
 
 TEST(ParseAnchor, ReadsEveryKindInMillimetres) {
   EXPECT_EQ(anchor_of("lowest:4.1").lowest, 0.0041);
-  EXPECT_EQ(anchor_of("box:1,-2,3.5,4,5e1,6").box,
-            (BoxRegion{{0.001, -0.002, 0.0035}, {0.004, 0.05, 0.006}}));
+  EXPECT_EQ(anchor_of("box:1,-2,3.5,4,5e1,6").box, (BoxRegion{{0.001, -0.002, 0.0035}, {0.004, 0.05, 0.006}}));
   EXPECT_EQ(anchor_of("sphere:1,2,3,4").sphere, (SphereRegion{{0.001, 0.002, 0.003}, 0.004}));
   EXPECT_EQ(anchor_of("plane:1,2,3,0,0,-2").plane, (PlaneRegion{{0.001, 0.002, 0.003}, {0, 0, -2}}));
 }
@@ -116,8 +115,7 @@ TEST(ParseAnchor, ReadsEveryKindInMillimetres) {
 TEST(ParseAnchor, SetsOneRegionOnly) {
   for (const std::string text : {"lowest:4", "box:0,0,0,1,1,1", "sphere:1,2,3,4", "plane:1,2,3,0,0,1"}) {
     const AnchorSpec anchor = anchor_of(text);
-    EXPECT_EQ(anchor.lowest.has_value() + anchor.box.has_value() + anchor.sphere.has_value() +
-                  anchor.plane.has_value(),
+    EXPECT_EQ(anchor.lowest.has_value() + anchor.box.has_value() + anchor.sphere.has_value() + anchor.plane.has_value(),
               1);
   }
 }

@@ -10,8 +10,8 @@ namespace {
 
 /// A scene with one organ, whose keys stand in line 2 from column 1 on, and more keys in line 3.
 std::string scene_with(const std::string& organ_keys, const std::string& more = "") {
-  return "{\"format\": \"ctpm-scene\", \"version\": 1, \"name\": \"t\", \"organs\": [{\"name\": \"a\",\n" +
-         organ_keys + "}]\n" + more + "}\n";
+  return "{\"format\": \"ctpm-scene\", \"version\": 1, \"name\": \"t\", \"organs\": [{\"name\": \"a\",\n" + organ_keys +
+         "}]\n" + more + "}\n";
 }
 std::string errors_of(const std::string& text) {
   const Result<SceneText> scene = read_scene(text, "t.json");
@@ -51,8 +51,7 @@ const Field kFields[] = {
 
 TEST(BadInput, ANumberOutOfRangeIsRefusedWhereItStands) {
   for (const Field& field : kFields) {
-    const std::string place =
-        "t.json:2:" + std::to_string(field.before.size() + 1) + ": error: " + field.pointer;
+    const std::string place = "t.json:2:" + std::to_string(field.before.size() + 1) + ": error: " + field.pointer;
     std::vector<std::string> numbers{"-1", "-1e-300", "1e300", "123456789"};
     const bool may_be_zero = std::string(field.range).starts_with("[0, ");
     if (!may_be_zero) numbers.insert(numbers.end(), {"0", "-0.0", "1e-300"});
@@ -65,12 +64,11 @@ TEST(BadInput, ANumberOutOfRangeIsRefusedWhereItStands) {
 TEST(BadInput, WhatIsNotANumberIsRefusedWhereItStands) {
   for (const Field& field : kFields) {
     const std::string place = "t.json:2:" + std::to_string(field.before.size() + 1) + ": error: ";
-    for (const auto& [value, got] :
-         std::vector<std::pair<std::string, std::string>>{{"\"nan\"", "the text \"nan\""},
-                                                          {"null", "null"},
-                                                          {"true", "true"},
-                                                          {"[4]", "a list of 1"},
-                                                          {"{}", "an object"}})
+    for (const auto& [value, got] : std::vector<std::pair<std::string, std::string>>{{"\"nan\"", "the text \"nan\""},
+                                                                                     {"null", "null"},
+                                                                                     {"true", "true"},
+                                                                                     {"[4]", "a list of 1"},
+                                                                                     {"{}", "an object"}})
       EXPECT_EQ(errors_of(scene_with(field.before + value + field.after)),
                 place + field.pointer + ": got " + got + ", must be a number in " + field.range + "\n");
     // These are not JSON at all.
@@ -95,8 +93,7 @@ TEST(BadInput, AMaterialWithoutPresetNamesEveryModulusThatIsMissing) {
   const std::string all = errors_of(scene_with(kMesh + R"("material": {"spring_kpa_per_mm": 15})"));
   for (const std::string key : {"kelvin_kpa_per_mm", "constraint_kpa_per_mm", "viscosity_kpa_s_per_mm",
                                 "calibration_ball_radius_mm", "calibration_spacing_mm"})
-    EXPECT_NE(all.find("t.json:2:30: error: /organs/0/material: the key \"" + key + "\" is missing"),
-              std::string::npos)
+    EXPECT_NE(all.find("t.json:2:30: error: /organs/0/material: the key \"" + key + "\" is missing"), std::string::npos)
         << all;
 }
 
@@ -135,8 +132,7 @@ TEST(BadInput, ARigWithTooFewSpheresIsRefused) {
             "t.json:2:18: error: /organs/0/rig/cells: " + message);
   EXPECT_EQ(errors_of(scene_with(R"("rig": {"block": [1, 1, 1]}, )" + kLiver)),
             "t.json:2:18: error: /organs/0/rig/block: " + message);
-  for (const std::string rig :
-       {"{}", "{\"cells\": []}", R"({"block": [2, 2, 2], "cells": [[0, 0, 0], [1, 0, 0]]})"})
+  for (const std::string rig : {"{}", "{\"cells\": []}", R"({"block": [2, 2, 2], "cells": [[0, 0, 0], [1, 0, 0]]})"})
     EXPECT_EQ(errors_of(scene_with(R"("rig": )" + rig + ", " + kLiver)),
               "t.json:2:8: error: /organs/0/rig: must have exactly one of cells, block\n");
   EXPECT_NE(errors_of(scene_with(R"("rig": {"block": [0, 3, 3]}, )" + kLiver)).find("/organs/0/rig/block"),
@@ -163,8 +159,7 @@ TEST(BadInput, GuidesNameSpheresOfTheRigAndAxes) {
 }
 
 TEST(BadInput, AnOrganIsEitherAMeshOrARig) {
-  EXPECT_NE(errors_of(scene_with(kLiver)).find("/organs/0: must have exactly one of mesh, rig"),
-            std::string::npos);
+  EXPECT_NE(errors_of(scene_with(kLiver)).find("/organs/0: must have exactly one of mesh, rig"), std::string::npos);
   EXPECT_NE(errors_of(scene_with(kMesh + R"("rig": {"block": [2, 2, 2]}, )" + kLiver))
                 .find("/organs/0: must have exactly one of mesh, rig"),
             std::string::npos);
@@ -180,9 +175,8 @@ TEST(BadInput, AnAnchorHasExactlyOneRegionThatCanHoldSomething) {
             "t.json:2:13: error: /organs/0/anchors/0: got 2 of the keys, " + one);
   EXPECT_EQ(anchors(R"({"plane": {"normal": [0, 0, 0], "point_mm": [0, 0, 0]}})"),
             "t.json:2:34: error: /organs/0/anchors/0/plane/normal: must not be zero, or shorter than 1e-9\n");
-  EXPECT_EQ(
-      anchors(R"({"box": {"min_mm": [0, 0, 3], "max_mm": [1, 1, 2]}})"),
-      "t.json:2:21: error: /organs/0/anchors/0/box: min_mm must not be above max_mm in any coordinate\n");
+  EXPECT_EQ(anchors(R"({"box": {"min_mm": [0, 0, 3], "max_mm": [1, 1, 2]}})"),
+            "t.json:2:21: error: /organs/0/anchors/0/box: min_mm must not be above max_mm in any coordinate\n");
 }
 
 TEST(BadInput, AToolHasTheKeysOfItsKind) {
@@ -201,25 +195,23 @@ TEST(BadInput, AToolHasTheKeysOfItsKind) {
 }
 
 TEST(BadInput, NamesAreTakenOnce) {
-  EXPECT_EQ(errors_of(scene_with(
-                kMesh + kLiver,
-                R"(, "probes": [{"name": "p", "at_mm": [0, 0, 0]}, {"name": "p", "at_mm": [1, 0, 0]}])")),
-            "t.json:3:58: error: /probes/1/name: got \"p\", which is taken already\n");
+  EXPECT_EQ(
+      errors_of(scene_with(kMesh + kLiver,
+                           R"(, "probes": [{"name": "p", "at_mm": [0, 0, 0]}, {"name": "p", "at_mm": [1, 0, 0]}])")),
+      "t.json:3:58: error: /probes/1/name: got \"p\", which is taken already\n");
 }
 
 TEST(BadInput, ACameraLooksSomewhereWithItsUpAcross) {
   const auto camera = [](const std::string& text) {
     return errors_of(scene_with(kMesh + kLiver, ", \"cameras\": [{\"name\": \"c\", " + text + "}]"));
   };
-  EXPECT_NE(
-      camera(R"("eye_mm": [1, 2, 3], "target_mm": [1, 2, 3])").find("must not be the same point as eye_mm"),
-      std::string::npos);
-  EXPECT_NE(
-      camera(R"("eye_mm": [0, 0, 9], "target_mm": [0, 0, 3])").find("must not point along the line of sight"),
-      std::string::npos);
-  EXPECT_NE(camera(R"("eye_mm": [0, 9, 9], "target_mm": [0, 0, 3], "up": [0, 0, 0])")
-                .find("/cameras/0/up: must not be zero"),
+  EXPECT_NE(camera(R"("eye_mm": [1, 2, 3], "target_mm": [1, 2, 3])").find("must not be the same point as eye_mm"),
             std::string::npos);
+  EXPECT_NE(camera(R"("eye_mm": [0, 0, 9], "target_mm": [0, 0, 3])").find("must not point along the line of sight"),
+            std::string::npos);
+  EXPECT_NE(
+      camera(R"("eye_mm": [0, 9, 9], "target_mm": [0, 0, 3], "up": [0, 0, 0])").find("/cameras/0/up: must not be zero"),
+      std::string::npos);
 }
 
 TEST(BadInput, AKeyThatIsGivenTwiceNamesTheFirstLine) {
@@ -228,12 +220,11 @@ TEST(BadInput, AKeyThatIsGivenTwiceNamesTheFirstLine) {
 }
 
 TEST(BadInput, AnOldOrForeignFileIsRefused) {
-  EXPECT_NE(errors_of(R"({"format": "other", "version": 1})")
-                .find("/format: got the text \"other\", must be \"ctpm-scene\""),
-            std::string::npos);
   EXPECT_NE(
-      errors_of(R"({"format": "ctpm-scene", "version": 2})").find("/version: got the number 2, must be 1"),
+      errors_of(R"({"format": "other", "version": 1})").find("/format: got the text \"other\", must be \"ctpm-scene\""),
       std::string::npos);
+  EXPECT_NE(errors_of(R"({"format": "ctpm-scene", "version": 2})").find("/version: got the number 2, must be 1"),
+            std::string::npos);
   EXPECT_EQ(errors_of("[]"), "t.json:1:1: error: /: got a list of 0, must be an object\n");
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include "core/network.h"
+#include "core/network/network.h"
 #include "scenes/presets.h"
 #include "scenes/scene_file.h"
 
@@ -64,8 +64,7 @@ TEST(FillRig, ABlockIsCentredOverTheOriginWithLayersFromItsFaces) {
 
 TEST(BuildModel, LoadsActOnTheNearestSphereWithTheirTimes) {
   const BuiltScene built = build(block_scene(
-      "",
-      R"(, "loads": [{"at_mm": [1, -1, 30], "force_n": [0.1, 0, -0.13], "start_s": 0.5, "ramp_s": 0.25}])"));
+      "", R"(, "loads": [{"at_mm": [1, -1, 30], "force_n": [0.1, 0, -0.13], "start_s": 0.5, "ramp_s": 0.25}])"));
   const Loads& loads = built.model.loads;
   ASSERT_EQ(loads.size(), 1u);
   EXPECT_EQ(built.model.rest_position[std::size_t(loads.sphere[0])], (Vec3{0, 0, 0.024}));
@@ -75,8 +74,8 @@ TEST(BuildModel, LoadsActOnTheNearestSphereWithTheirTimes) {
 }
 
 TEST(BuildModel, ProbesAndPinsTakeTheNearestSphereTheFirstOfSeveral) {
-  const BuiltScene built = build(
-      block_scene("", R"(, "probes": [{"name": "p", "at_mm": [12, 12, 0]}, {"name": "q", "at_mm": [6, 0, 0]}],
+  const BuiltScene built =
+      build(block_scene("", R"(, "probes": [{"name": "p", "at_mm": [12, 12, 0]}, {"name": "q", "at_mm": [6, 0, 0]}],
       "tools": [{"name": "pin", "kind": "pin", "holds_mm": [-13, 0, 25]}])"));
   ASSERT_EQ(built.probe_sphere.size(), 2u);
   EXPECT_EQ(built.probe_sphere[0], 8);
@@ -109,9 +108,9 @@ TEST(BuildModel, SolverSettingsAreTheScenesOrElseThoseOfTheCore) {
   EXPECT_EQ(plain.model.solver.velocity_floor, standard.velocity_floor);
   EXPECT_EQ(plain.model.solver.max_iterations, standard.max_iterations);
   EXPECT_EQ(plain.model.solver.substeps, standard.substeps);
-  const BuiltScene own = build(block_scene(
-      "",
-      R"(, "solver": {"tolerance": 1e-7, "velocity_floor_mm_per_s": 2, "max_iterations": 77, "substeps": 3},
+  const BuiltScene own = build(
+      block_scene("",
+                  R"(, "solver": {"tolerance": 1e-7, "velocity_floor_mm_per_s": 2, "max_iterations": 77, "substeps": 3},
       "tick_s": 0.002, "gravity_m_per_s2": [1, 2, 3])"));
   EXPECT_EQ(own.model.solver.tolerance, 1e-7);
   EXPECT_EQ(own.model.solver.velocity_floor, 0.002);
@@ -213,8 +212,7 @@ TEST(BuildModel, AMaterialThatTheNetworkRefusesIsPlacedAtItsOrgan) {
   std::string all;
   for (const Error& error : errors) all += to_string(error) + "\n";
   EXPECT_NE(all.find("/organs/0: error: organ block: spring modulus K2: got -1"), std::string::npos) << all;
-  EXPECT_NE(all.find("/organs/0: error: organ block, layer 0: Kelvin modulus K1: got -1"), std::string::npos)
-      << all;
+  EXPECT_NE(all.find("/organs/0: error: organ block, layer 0: Kelvin modulus K1: got -1"), std::string::npos) << all;
 }
 
 TEST(BuildModel, RefusesAnExplicitIntegratorThatCannotHoldItsStep) {

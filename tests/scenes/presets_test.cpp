@@ -56,8 +56,7 @@ TEST(Presets, CreepOverSecondsInOneReadingAndInMicrosecondsInTheOther) {
 TEST(Presets, OnlyTheLiverHasAKnownDamageDepth) {
   EXPECT_EQ(find_preset("liver")->damage_depth, 0.012);
   EXPECT_EQ(find_preset("liver-pa-s")->damage_depth, 0.012);
-  for (const char* name : {"kidney", "skin", "kidney-pa-s", "skin-pa-s"})
-    EXPECT_EQ(find_preset(name)->damage_depth, 0);
+  for (const char* name : {"kidney", "skin", "kidney-pa-s", "skin-pa-s"}) EXPECT_EQ(find_preset(name)->damage_depth, 0);
 }
 
 TEST(Presets, EachIsFoundByItsNameAndNoOtherIs) {
@@ -83,8 +82,8 @@ TEST(ResolveMaterial, WithoutAPresetNamesWhatIsMissing) {
   MaterialSpec spec;
   spec.spring = 1e6, spec.kelvin = 1e6;
   EXPECT_EQ(resolve_material(spec).missing,
-            (std::vector<std::string>{"constraint_kpa_per_mm", "viscosity_kpa_s_per_mm",
-                                      "calibration_ball_radius_mm", "calibration_spacing_mm"}));
+            (std::vector<std::string>{"constraint_kpa_per_mm", "viscosity_kpa_s_per_mm", "calibration_ball_radius_mm",
+                                      "calibration_spacing_mm"}));
   spec.constraint = 1e6, spec.viscosity = 0, spec.calibration_ball = 0.002, spec.calibration_spacing = 0.012;
   const ResolvedMaterial whole = resolve_material(spec);
   EXPECT_TRUE(whole.missing.empty());

@@ -62,8 +62,8 @@ TEST(SceneFile, AKeyWithTheWrongUnitNamesTheRightOne) {
 }
 
 TEST(SceneFile, AllErrorsComeInOneRunInTheOrderOfTheText) {
-  const std::string all = error_of(
-      scene_with("\"material\": {\"preset\": \"lever\"}", ", \"tick_s\": 5, \"gravity_m_per_s2\": [0, 0]"));
+  const std::string all =
+      error_of(scene_with("\"material\": {\"preset\": \"lever\"}", ", \"tick_s\": 5, \"gravity_m_per_s2\": [0, 0]"));
   EXPECT_NE(all.find("/tick_s"), std::string::npos);
   EXPECT_NE(all.find("/gravity_m_per_s2"), std::string::npos);
   EXPECT_NE(all.find("did you mean \"liver\"?"), std::string::npos);

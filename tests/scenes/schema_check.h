@@ -47,14 +47,13 @@ class SchemaCheck {
 
   std::string problem(const JsonNode& schema, const JsonNode& value, const std::string& at) const {
     for (std::size_t i = 0; i < schema.keys.size(); ++i)
-      if (const std::string found = problem_with(schema.keys[i], schema.children[i], schema, value, at);
-          !found.empty())
+      if (const std::string found = problem_with(schema.keys[i], schema.children[i], schema, value, at); !found.empty())
         return found;
     return "";
   }
 
-  std::string problem_with(const std::string& word, const JsonNode& rule, const JsonNode& schema,
-                           const JsonNode& value, const std::string& at) const {
+  std::string problem_with(const std::string& word, const JsonNode& rule, const JsonNode& schema, const JsonNode& value,
+                           const std::string& at) const {
     const auto unless = [&](bool fits) { return fits ? "" : at + ": " + word; };
     const bool is_number = value.kind == JsonKind::number, is_list = value.kind == JsonKind::list;
     const double count = double(value.children.size());

@@ -25,14 +25,12 @@ std::string content_of(const std::string& name) { return content_of_file(folder(
 void expect_checked_in(const std::string& name, const std::string& text) {
   if (std::getenv("CTPM_REFRESH") != nullptr) std::ofstream(folder() + name, std::ios::binary) << text;
   EXPECT_TRUE(content_of(name) == text)
-      << "scenes/" << name
-      << " is not what the tables give; run this test with CTPM_REFRESH=1 and commit the file";
+      << "scenes/" << name << " is not what the tables give; run this test with CTPM_REFRESH=1 and commit the file";
 }
 
 /// The file with the tables between its markers replaced.
 std::string with_tables(const std::string& name, const std::string& tables) {
-  const std::string text = content_of(name), begin = "<!-- generated: begin -->\n",
-                    end = "<!-- generated: end -->\n";
+  const std::string text = content_of(name), begin = "<!-- generated: begin -->\n", end = "<!-- generated: end -->\n";
   const auto from = text.find(begin), to = text.find(end);
   if (from == std::string::npos || to == std::string::npos) return "the markers are missing";
   return text.substr(0, from + begin.size()) + "\n" + tables + "\n" + text.substr(to);
@@ -75,27 +73,26 @@ TEST(SceneSchema, AcceptsTheShippedScenesAndEverythingThatIsWritten) {
 }
 
 std::string organ_with(const std::string& keys) {
-  return R"({"format": "ctpm-scene", "version": 1, "name": "s", "organs": [{"name": "a", "mesh": "a.obj", )" +
-         keys + "}]}";
+  return R"({"format": "ctpm-scene", "version": 1, "name": "s", "organs": [{"name": "a", "mesh": "a.obj", )" + keys +
+         "}]}";
 }
 
 TEST(SceneSchema, RefusesWhatTheReaderRefuses) {
   const SchemaCheck schema(scene_schema());
   const std::string liver = R"("material": {"preset": "liver"})";
   ASSERT_EQ(schema.problem_of(organ_with(liver)), "");
-  for (
-      const std::string keys :
-      {R"("mesh": "a.obj")", R"("material": {"preset": "spleen"})", R"("material": [])",
-       R"("material": {"spring_kpa_per_mm": 0})", R"("material": {"preset": "liver"}, "modle": "ctpm")",
-       R"("material": {"preset": "liver"}, "model": "cptm")",
-       R"("material": {"preset": "liver"}, "fill": {"radius_mm": 101})",
-       R"("material": {"preset": "liver"}, "fill": {"radius_mm": "4"})",
-       R"("material": {"preset": "liver"}, "softening": 1)",
-       R"("material": {"preset": "liver"}, "surface_color": [0, 0])",
-       R"("material": {"preset": "liver"}, "surface_color": [0, 0, 1.5])",
-       R"("material": {"preset": "liver"}, "anchors": [{}])",
-       R"("material": {"preset": "liver"}, "anchors": {"lowest_mm": 1})",
-       R"("material": {"preset": "liver"}, "anchors": [{"sphere": {"centre_mm": [0, 0, 0], "radius_mm": 0}}])"}) {
+  for (const std::string keys :
+       {R"("mesh": "a.obj")", R"("material": {"preset": "spleen"})", R"("material": [])",
+        R"("material": {"spring_kpa_per_mm": 0})", R"("material": {"preset": "liver"}, "modle": "ctpm")",
+        R"("material": {"preset": "liver"}, "model": "cptm")",
+        R"("material": {"preset": "liver"}, "fill": {"radius_mm": 101})",
+        R"("material": {"preset": "liver"}, "fill": {"radius_mm": "4"})",
+        R"("material": {"preset": "liver"}, "softening": 1)",
+        R"("material": {"preset": "liver"}, "surface_color": [0, 0])",
+        R"("material": {"preset": "liver"}, "surface_color": [0, 0, 1.5])",
+        R"("material": {"preset": "liver"}, "anchors": [{}])",
+        R"("material": {"preset": "liver"}, "anchors": {"lowest_mm": 1})",
+        R"("material": {"preset": "liver"}, "anchors": [{"sphere": {"centre_mm": [0, 0, 0], "radius_mm": 0}}])"}) {
     EXPECT_NE(schema.problem_of(organ_with(keys)), "") << keys;
     EXPECT_FALSE(read_scene(organ_with(keys), "s.json")) << keys;
   }
@@ -108,9 +105,9 @@ TEST(ScriptSchema, RefusesWhatTheReaderRefuses) {
     return R"({"format": "ctpm-script", "version": 1, "steps": [)" + step + "]}";
   };
   ASSERT_EQ(schema.problem_of(script(R"({"wait_s": 1})")), "");
-  for (const std::string step : {R"({})", R"({"wait_s": 1, "put_away": true})", R"({"wait_s": -1})",
-                                 R"({"put_away": 1})", R"({"sleep": 1})", R"({"take": {"tool": "ball"}})",
-                                 R"({"take": {"tool": "ball", "at_mm": [0, 0, 0], "speed": 1}})"}) {
+  for (const std::string step :
+       {R"({})", R"({"wait_s": 1, "put_away": true})", R"({"wait_s": -1})", R"({"put_away": 1})", R"({"sleep": 1})",
+        R"({"take": {"tool": "ball"}})", R"({"take": {"tool": "ball", "at_mm": [0, 0, 0], "speed": 1}})"}) {
     EXPECT_NE(schema.problem_of(script(step)), "") << step;
     EXPECT_FALSE(read_script(script(step), "s.json", {"ball"})) << step;
   }

@@ -49,9 +49,8 @@ Script read_good(const std::string& steps) {
 }
 
 TEST(ReadScript, AToolThatTheSceneDoesNotHaveIsNamedWithThoseItHas) {
-  EXPECT_EQ(
-      errors_of(script_of(R"({"take": {"tool": "spoon", "at_mm": [0, 0, 50]}})")),
-      "s.json:2:19: error: /steps/0/take/tool: the scene has no tool \"spoon\" (its tools: ball, scalpel)\n");
+  EXPECT_EQ(errors_of(script_of(R"({"take": {"tool": "spoon", "at_mm": [0, 0, 50]}})")),
+            "s.json:2:19: error: /steps/0/take/tool: the scene has no tool \"spoon\" (its tools: ball, scalpel)\n");
 }
 
 TEST(ReadScript, AStepBeforeAnyToolIsTakenHasNoHand) {
@@ -59,8 +58,7 @@ TEST(ReadScript, AStepBeforeAnyToolIsTakenHasNoHand) {
                                  R"({"press": {"distance_mm": 5, "speed_mm_per_s": 10}})",
                                  R"({"release": {"distance_mm": 5, "speed_mm_per_s": 10}})",
                                  R"({"cut": {"path_mm": [[0, 0, 0]], "speed_mm_per_s": 10}})"}) {
-    const std::string expected =
-        "s.json:2:1: error: /steps/0: there is no tool in the hand here (take one first)\n";
+    const std::string expected = "s.json:2:1: error: /steps/0: there is no tool in the hand here (take one first)\n";
     EXPECT_EQ(errors_of(script_of(step)), expected);
     EXPECT_NE(errors_of(script_of(kTake + ",\n{\"put_away\": true},\n" + step))
                   .find("s.json:4:1: error: /steps/2: there is no tool"),
@@ -85,16 +83,14 @@ TEST(ReadScript, AnUnknownKeyIsPlacedAndTheNearestNamed) {
                      "the unit is part of it)"),
             std::string::npos)
       << all;
-  EXPECT_NE(all.find("s.json:2:10: error: /steps/0/take: the key \"at_mm\" is missing"), std::string::npos)
-      << all;
+  EXPECT_NE(all.find("s.json:2:10: error: /steps/0/take: the key \"at_mm\" is missing"), std::string::npos) << all;
 }
 
 TEST(ReadScript, ADirectionWithoutLengthIsRefusedWhereItStands) {
   for (const std::string zero : {"[0, 0, 0]", "[0, -0.0, 1e-170]", "[1e-320, 0, 0]"}) {
     const std::string message = "must not be zero, or shorter than 1e-9\n";
-    EXPECT_EQ(
-        errors_of(script_of(R"({"take": {"tool": "ball", "at_mm": [0, 0, 5], "pointing": )" + zero + "}}")),
-        "s.json:2:59: error: /steps/0/take/pointing: " + message);
+    EXPECT_EQ(errors_of(script_of(R"({"take": {"tool": "ball", "at_mm": [0, 0, 5], "pointing": )" + zero + "}}")),
+              "s.json:2:59: error: /steps/0/take/pointing: " + message);
     EXPECT_EQ(errors_of(script_of(kTake + ",\n{\"press\": {\"direction\": " + zero +
                                   R"(, "distance_mm": 5, "speed_mm_per_s": 10}})")),
               "s.json:3:25: error: /steps/1/press/direction: " + message);
@@ -106,10 +102,8 @@ TEST(ReadScript, ADirectionWithoutLengthIsRefusedWhereItStands) {
 
 TEST(ReadScript, ASpeedOutOfRangeIsRefusedWhereItStands) {
   for (const std::string speed : {"0", "-5", "1e-300", "10001", "1e300"}) {
-    EXPECT_EQ(errors_of(script_of(kTake + ",\n{\"move\": {\"speed_mm_per_s\": " + speed +
-                                  R"(, "to_mm": [0, 0, 0]}})")),
-              "s.json:3:29: error: /steps/1/move/speed_mm_per_s: got " + speed +
-                  ", must be in [0.001, 10000] mm/s\n");
+    EXPECT_EQ(errors_of(script_of(kTake + ",\n{\"move\": {\"speed_mm_per_s\": " + speed + R"(, "to_mm": [0, 0, 0]}})")),
+              "s.json:3:29: error: /steps/1/move/speed_mm_per_s: got " + speed + ", must be in [0.001, 10000] mm/s\n");
   }
   EXPECT_NE(errors_of(script_of(kTake + ",\n" + R"({"cut": {"speed_mm_per_s": "fast", "path_mm": []}})"))
                 .find("got the text \"fast\", must be a number"),
@@ -117,16 +111,14 @@ TEST(ReadScript, ASpeedOutOfRangeIsRefusedWhereItStands) {
 }
 
 TEST(ReadScript, AScriptWithoutStepsOrAPathWithoutPointsIsRefused) {
-  EXPECT_NE(errors_of(script_of("")).find("/steps: got a list of 0, must have at least 1"),
-            std::string::npos);
+  EXPECT_NE(errors_of(script_of("")).find("/steps: got a list of 0, must have at least 1"), std::string::npos);
   EXPECT_NE(errors_of(script_of(kTake + R"(, {"cut": {"speed_mm_per_s": 5, "path_mm": []}})"))
                 .find("/path_mm: got a list of 0, must have at least 1"),
             std::string::npos);
 }
 
 TEST(ReadScript, PuttingAwayIsAlwaysTrue) {
-  EXPECT_EQ(errors_of(script_of(R"({"put_away": false})")),
-            "s.json:2:14: error: /steps/0/put_away: must be true\n");
+  EXPECT_EQ(errors_of(script_of(R"({"put_away": false})")), "s.json:2:14: error: /steps/0/put_away: must be true\n");
 }
 
 /// Every kind of step, in numbers that are not exact in binary.
@@ -242,9 +234,9 @@ TEST(ScriptPlayer, TurnsMinusZOntoPointing) {
   // To a few roundings, next to straight up as well, where the shortest turn loses its axis.
   constexpr double kRounding = 1e-15;
   for (const Vec3 pointing :
-       {Vec3{0, 0, -1}, Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{0, -3, 0}, Vec3{1, 2, -3}, Vec3{-1, 5, 4},
-        Vec3{1e-4, 0, 1}, Vec3{0, -1e-6, 1}, Vec3{3e-9, 4e-9, 1}, Vec3{1e-30, 0, 1}, Vec3{1e-130, 0, 1},
-        Vec3{1e-5, 1e-5, -1}, Vec3{2e-9, 0, 0}, Vec3{0, 0, 1e6}}) {
+       {Vec3{0, 0, -1}, Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{0, -3, 0}, Vec3{1, 2, -3}, Vec3{-1, 5, 4}, Vec3{1e-4, 0, 1},
+        Vec3{0, -1e-6, 1}, Vec3{3e-9, 4e-9, 1}, Vec3{1e-30, 0, 1}, Vec3{1e-130, 0, 1}, Vec3{1e-5, 1e-5, -1},
+        Vec3{2e-9, 0, 0}, Vec3{0, 0, 1e6}}) {
     Script script;
     script.steps.emplace_back().take = ScriptStep::Take{"ball", {}, pointing, {}};
     const Quat q = ScriptPlayer(script, tools_of_model(), kTick).at(0).world_from_tool;
@@ -324,7 +316,8 @@ TEST(ScriptPlayer, APressToAForceThatNeverComesGivesUpAtItsDepth) {
 }
 
 TEST(ReadScript, AForceToPressToMustBeAPositiveNumber) {
-  EXPECT_EQ(errors_of(script_of(kTake + ",\n" + R"({"press": {"until_force_n": 0, "distance_mm": 5, "speed_mm_per_s": 10}})")),
+  EXPECT_EQ(errors_of(script_of(kTake + ",\n" +
+                                R"({"press": {"until_force_n": 0, "distance_mm": 5, "speed_mm_per_s": 10}})")),
             "s.json:3:29: error: /steps/1/press/until_force_n: got 0, must be in (0, 1000] N\n");
   EXPECT_NE(errors_of(script_of(kTake + R"(, {"press": {"until_force_n": 1, "speed_mm_per_s": 10}})"))
                 .find("the key \"distance_mm\" is missing"),
@@ -349,8 +342,8 @@ TEST(ScriptPlayer, ASmoothCutPassesItsPointsWithoutARestOrACorner) {
     EXPECT_GT(dot(before, after), 0.97 * norm(before) * norm(after)) << "no corner, tick " << i;
   }
   // Without it there is a corner of a right angle, and a rest.
-  const std::vector<Vec3> straight = way_in_hand(
-      ScriptPlayer(read_good(kTake + R"(, {"cut": {)" + path + "}}"), tools_of_model(), kTick));
+  const std::vector<Vec3> straight =
+      way_in_hand(ScriptPlayer(read_good(kTake + R"(, {"cut": {)" + path + "}}"), tools_of_model(), kTick));
   double slowest = 1;
   for (std::size_t i = straight.size() / 5; i < straight.size() * 4 / 5; ++i)
     slowest = std::min(slowest, norm(straight[i] - straight[i - 1]) / kTick);
@@ -360,8 +353,9 @@ TEST(ScriptPlayer, ASmoothCutPassesItsPointsWithoutARestOrACorner) {
 TEST(ScriptPlayer, ASmoothCutOfPointsThatCoincideOrOfOneIsAStraightWay) {
   for (const std::string path : {"[[0, 0, 40]]", "[[0, 0, 50], [0, 0, 50], [0, 0, 40], [0, 0, 40]]",
                                  "[[1e-300, 0, 50], [0, 0, 50], [0, 0, 40]]"}) {
-    const ScriptPlayer player(read_good(kTake + R"(, {"cut": {"smooth": true, "speed_mm_per_s": 20, "path_mm": )" + path + "}}"),
-                              tools_of_model(), kTick);
+    const ScriptPlayer player(
+        read_good(kTake + R"(, {"cut": {"smooth": true, "speed_mm_per_s": 20, "path_mm": )" + path + "}}"),
+        tools_of_model(), kTick);
     for (const Vec3& p : way_in_hand(player)) {
       ASSERT_TRUE(is_finite(p)) << path;
       EXPECT_NEAR(p.x, 0, 1e-12);

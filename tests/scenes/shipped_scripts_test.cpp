@@ -17,8 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 const fs::path kScenes = fs::path(CTPM_SOURCE_DIR) / "scenes";
-constexpr double kTick = 1e-3;     // [s]
-constexpr double kTouch = 0.5e-3;  // a ball may appear this deep in a surface that it is meant to touch [m]
+constexpr double kTick = 1e-3;         // [s]
+constexpr double kTouch = 0.5e-3;      // a ball may appear this deep in a surface that it is meant to touch [m]
 constexpr double kWorthSeeing = 3e-3;  // a press or a cut that is less deep shows nothing [m]
 
 std::string read_whole(const fs::path& path) {
@@ -104,8 +104,7 @@ double depth_of(const Shipped& shipped, const Inputs& inputs) {
 
 TEST(ShippedScripts, EachSceneHasOne) {
   std::vector<std::string> names;
-  for (const Shipped& shipped : shipped_scripts())
-    names.push_back(scene_of(shipped.name));
+  for (const Shipped& shipped : shipped_scripts()) names.push_back(scene_of(shipped.name));
   for (const std::string scene : {"liver", "kidney", "skin", "incision", "two-organs"})
     EXPECT_NE(std::find(names.begin(), names.end(), scene), names.end()) << scene;
 }

@@ -39,8 +39,7 @@ class BadInput : public ::testing::Test {
 
   /// A scene that would be good, with one thing replaced.
   std::string scene_with(const std::string& from, const std::string& to) {
-    fs::copy_file(kShipped + "organs/skin.obj", folder_.path() / "skin.obj",
-                  fs::copy_options::overwrite_existing);
+    fs::copy_file(kShipped + "organs/skin.obj", folder_.path() / "skin.obj", fs::copy_options::overwrite_existing);
     std::string text = testing::slurp(kShipped + "skin.json");
     text.replace(text.find("organs/skin.obj"), 15, "skin.obj");
     const auto at = text.find(from);
@@ -59,8 +58,7 @@ TEST_F(BadInput, NoCommandAndUnknownCommandsAndOptions) {
 }
 
 TEST_F(BadInput, AMeshThatDoesNotExist) {
-  refuse({"import", "nowhere.obj", "--organ", "liver", "-o", "a.json"},
-         {"nowhere.obj: error:", "no such file"});
+  refuse({"import", "nowhere.obj", "--organ", "liver", "-o", "a.json"}, {"nowhere.obj: error:", "no such file"});
 }
 
 TEST_F(BadInput, AMeshThatIsEmptyOrNotAMesh) {
@@ -82,8 +80,8 @@ TEST_F(BadInput, AMeshThatIsOpenBeyondRepair) {
 }
 
 TEST_F(BadInput, AnImportWithBadOptionsNamesThemAll) {
-  refuse({"import", kShipped + "organs/liver.obj", "--unit", "ell", "--radius-mm", "-1", "--anchor", "lowest",
-          "-o", "a.json"},
+  refuse({"import", kShipped + "organs/liver.obj", "--unit", "ell", "--radius-mm", "-1", "--anchor", "lowest", "-o",
+          "a.json"},
          {"--unit: error: got 'ell'", "--radius-mm: error: got -1", "--anchor: error: got 'lowest'"});
   refuse({"import", kShipped + "organs/liver.obj", "--organ", "lung", "-o", "a.json"},
          {"there is no preset 'lung'", "liver, kidney, skin"});
@@ -99,8 +97,7 @@ TEST_F(BadInput, ASceneWithASyntaxError) {
 TEST_F(BadInput, ASceneWithAnUnknownKeyAWrongUnitAndAWrongValueNamesThemAll) {
   write("a.json", scene_with("\"fill\": { \"radius_mm\": 7, \"gap_mm\": 7 }",
                              "\"fill\": { \"radius_cm\": 0.7, \"gap_mm\": -7 },\n\"modle\": \"ctpm\""));
-  refuse({"check", "a.json"},
-         {"the key is \"radius_mm\"", "/organs/0/fill/gap_mm: got -7", "did you mean \"model\"?"});
+  refuse({"check", "a.json"}, {"the key is \"radius_mm\"", "/organs/0/fill/gap_mm: got -7", "did you mean \"model\"?"});
 }
 
 TEST_F(BadInput, ASceneWhoseMeshIsMissing) {
@@ -124,17 +121,16 @@ TEST_F(BadInput, AScriptWithAnUnknownTool) {
 TEST_F(BadInput, ASessionThatDoesNotExistOrIsNone) {
   refuse({"verify", "nowhere.ctpm"}, {"nowhere.ctpm: error:"});
   write("letter.ctpm", "Dear Sir or Madam,\n");
-  for (const char* command : {"verify", "info", "replay"})
-    refuse({command, "letter.ctpm"}, {"letter.ctpm: error:"});
+  for (const char* command : {"verify", "info", "replay"}) refuse({command, "letter.ctpm"}, {"letter.ctpm: error:"});
   refuse({"export", "letter.ctpm", "-o", "a.mp4"}, {"letter.ctpm: error:"});
   refuse({"recover", "letter.ctpm", "-o", "b.ctpm"}, {"letter.ctpm"});
 }
 
 TEST_F(BadInput, ASessionThatIsCutShort) {
-  ASSERT_EQ(run_ctpm({"record", kShipped + "skin.json", "-o", "whole.ctpm", "--fast", "--duration-s", "1"},
-                     folder_.path())
-                .code,
-            0);
+  ASSERT_EQ(
+      run_ctpm({"record", kShipped + "skin.json", "-o", "whole.ctpm", "--fast", "--duration-s", "1"}, folder_.path())
+          .code,
+      0);
   const std::string whole = testing::slurp(folder_.path() / "whole.ctpm");
   for (const double share : {0.02, 0.3, 0.7}) {
     write("short.ctpm", whole.substr(0, std::size_t(share * double(whole.size()))));
@@ -143,10 +139,10 @@ TEST_F(BadInput, ASessionThatIsCutShort) {
 }
 
 TEST_F(BadInput, AnOutputFolderThatDoesNotExist) {
-  ASSERT_EQ(run_ctpm({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"},
-                     folder_.path())
-                .code,
-            0);
+  ASSERT_EQ(
+      run_ctpm({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"}, folder_.path())
+          .code,
+      0);
   refuse({"import", kShipped + "organs/liver.obj", "-o", "no/such/a.json"}, {"no/such"});
   refuse({"record", kShipped + "skin.json", "-o", "no/such/a.ctpm"}, {"no/such"});
   refuse({"preview", kShipped + "skin.json", "-o", "no/such/a.png"}, {"no/such"});
@@ -158,30 +154,28 @@ TEST_F(BadInput, AnOutputThatExistsIsNotOverwrittenUnlessAsked) {
   write("a.ctpm", "precious");
   refuse({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"}, {"a.ctpm"});
   EXPECT_EQ(testing::slurp(folder_.path() / "a.ctpm"), "precious");
-  EXPECT_EQ(run_ctpm({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1",
-                      "--overwrite"},
+  EXPECT_EQ(run_ctpm({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1", "--overwrite"},
                      folder_.path())
                 .code,
             0);
 }
 
 TEST_F(BadInput, ExportOptionsOutOfRange) {
-  ASSERT_EQ(run_ctpm({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"},
-                     folder_.path())
-                .code,
-            0);
+  ASSERT_EQ(
+      run_ctpm({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"}, folder_.path())
+          .code,
+      0);
   refuse({"export", "a.ctpm", "-o", "a.mp4", "--size", "big"}, {"--size", "1280x720"});
   refuse({"export", "a.ctpm", "-o", "a.mp4", "--fps", "0"}, {"--fps"});
   refuse({"export", "a.ctpm", "-o", "a.mp4", "--camera", "moon"}, {"no camera 'moon'", "front"});
   refuse({"export", "a.ctpm", "-o", "a.mp4", "--from-s", "9"}, {"--from-s"});
   refuse({"export", "a.ctpm", "-o", "a.mov"}, {"a.mov"});
   refuse({"export", "a.ctpm", "-o", "a.mp4", "--beside", "nowhere.ctpm"}, {"nowhere.ctpm: error:"});
-  refuse({"export", "a.ctpm", "-o", "a.mov", "--fps", "999", "--speed", "0", "--to-s", "7", "--view",
-          "inside", "--cutaway", "w=1", "--camera", "moon"},
+  refuse({"export", "a.ctpm", "-o", "a.mov", "--fps", "999", "--speed", "0", "--to-s", "7", "--view", "inside",
+          "--cutaway", "w=1", "--camera", "moon"},
          {"a.mov", "--fps", "--speed", "--to-s", "--view: error: got 'inside'", "--cutaway: error: got 'w=1'",
           "no camera 'moon'"});
-  refuse({"export", "a.ctpm", "-o", "a.mp4", "--view", "elements", "--by", "layer"},
-         {"stretch, tilt or force"});
+  refuse({"export", "a.ctpm", "-o", "a.mp4", "--view", "elements", "--by", "layer"}, {"stretch, tilt or force"});
   refuse({"export", "a.ctpm", "-o", "a.mp4", "--view", "spheres", "--by", "force"}, {"give --view elements"});
   refuse({"preview", kShipped + "skin.json", "-o", "a.png", "--view", "inside", "--cutaway", "y=deep"},
          {"--view", "--cutaway: error: got 'y=deep'"});
@@ -191,11 +185,10 @@ TEST_F(BadInput, ExportOptionsOutOfRange) {
 
 TEST_F(BadInput, ModuliRadiiSpacingsAndViscositiesThatCannotBeAreAllNamedWithTheirPlaces) {
   const std::string preset = "\"preset\": \"skin\"", fill = "\"radius_mm\": 7, \"gap_mm\": 7";
-  write(
-      "a.json",
-      scene_with(preset, preset + ",\n\"spring_kpa_per_mm\": 0,\n\"kelvin_kpa_per_mm\": -15,\n"
-                                  "\"constraint_kpa_per_mm\": 1e300,\n\"viscosity_kpa_s_per_mm\": \"nan\",\n"
-                                  "\"calibration_spacing_mm\": 0"));
+  write("a.json",
+        scene_with(preset, preset + ",\n\"spring_kpa_per_mm\": 0,\n\"kelvin_kpa_per_mm\": -15,\n"
+                                    "\"constraint_kpa_per_mm\": 1e300,\n\"viscosity_kpa_s_per_mm\": \"nan\",\n"
+                                    "\"calibration_spacing_mm\": 0"));
   refuse({"check", "a.json"},
          {"a.json:13:22: error: /organs/0/material/spring_kpa_per_mm: got 0, must be in",
           "a.json:14:22: error: /organs/0/material/kelvin_kpa_per_mm: got -15, must be in",
@@ -205,17 +198,15 @@ TEST_F(BadInput, ModuliRadiiSpacingsAndViscositiesThatCannotBeAreAllNamedWithThe
           "a.json:17:27: error: /organs/0/material/calibration_spacing_mm: got 0, must be in"});
   write("a.json", scene_with(preset, preset + ", \"viscosity_kpa_s_per_mm\": NaN"));
   refuse({"check", "a.json"}, {"a.json:12:53: error: syntax error"});
-  for (const auto& [value, message] :
-       {std::pair<std::string, std::string>{"0", "got 0, must be in [0.01, 100] mm"},
-        {"-7", "got -7, must be in [0.01, 100] mm"},
-        {"1e9", "got 1e9, must be in [0.01, 100] mm"},
-        {"1e999", "too large for a double"}}) {
+  for (const auto& [value, message] : {std::pair<std::string, std::string>{"0", "got 0, must be in [0.01, 100] mm"},
+                                       {"-7", "got -7, must be in [0.01, 100] mm"},
+                                       {"1e9", "got 1e9, must be in [0.01, 100] mm"},
+                                       {"1e999", "too large for a double"}}) {
     write("a.json", scene_with(fill, "\"radius_mm\": " + value + ", \"gap_mm\": 7"));
     refuse({"record", "a.json", "-o", "a.ctpm", "--fast"}, {"a.json:10:", message});
   }
   write("a.json", scene_with(fill, "\"radius_mm\": 90, \"gap_mm\": 90"));
-  refuse({"check", "a.json"},
-         {"a.json: /organs/0: error: no two of its 1 spheres are neighbours", "smaller spheres"});
+  refuse({"check", "a.json"}, {"a.json: /organs/0: error: no two of its 1 spheres are neighbours", "smaller spheres"});
 }
 
 TEST_F(BadInput, APresetThatDoesNotExist) {
@@ -227,8 +218,8 @@ TEST_F(BadInput, ALayerThatIsDeeperThanTheOrgan) {
   write("a.json", scene_with("\"anchors\"",
                              "\"layers\": [{\"to_depth_mm\": 400, \"material\": {\"preset\": "
                              "\"kidney\"}}],\n\"anchors\""));
-  refuse({"check", "a.json"}, {"a.json: /organs/0/layers/0/to_depth_mm", "got 400 mm",
-                               "deeper than the organ", "its spheres lie"});
+  refuse({"check", "a.json"},
+         {"a.json: /organs/0/layers/0/to_depth_mm", "got 400 mm", "deeper than the organ", "its spheres lie"});
 }
 
 TEST_F(BadInput, ARigWithTooFewSpheres) {
@@ -259,9 +250,8 @@ TEST_F(BadInput, AnExperimentOfThePaperWhoseRigHasTooFewSpheresOrNoLoad) {
              "\"loads\": [{ \"at_mm\": [0, 0, 72], \"force_n\": [0, 0, -0.13], \"ramp_s\": 0.082 }],", "");
   const auto outcome = run_ctpm({"paper", "--scenes", "scenes", "-o", "out"}, folder_.path());
   EXPECT_EQ(outcome.code, 2);
-  for (const char* part :
-       {"rig-skin.json: error: /organs/0/rig/cells: got 5 spheres, the rig of Fig. 3 has 7",
-        "block-liver.json: error: /loads: the experiment needs one"})
+  for (const char* part : {"rig-skin.json: error: /organs/0/rig/cells: got 5 spheres, the rig of Fig. 3 has 7",
+                           "block-liver.json: error: /loads: the experiment needs one"})
     EXPECT_NE(outcome.err.find(part), std::string::npos) << part << " is not in: " << outcome.err;
   EXPECT_TRUE(fs::is_empty(folder_.path() / "out"));
 }

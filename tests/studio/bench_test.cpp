@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "studio/reports/bench.h"
+#include "studio/bench/bench.h"
 #include "tests/studio/run_program.h"
 
 namespace ctpm {

@@ -73,8 +73,7 @@ TEST(Motion, SpectralArcLengthOfLeastJerkIsThatOfItsSpectrum) {
   // The tail is cut at one of the frequencies that a transform has, 0.05 Hz apart here.
   constexpr double kOneFrequencyMore = 0.01;
   for (const double rate : {100.0, 1000.0})
-    EXPECT_NEAR(*spectral_arc_length(speed_along(least_jerk_path(rate), rate), rate), -length,
-                kOneFrequencyMore)
+    EXPECT_NEAR(*spectral_arc_length(speed_along(least_jerk_path(rate), rate), rate), -length, kOneFrequencyMore)
         << rate;
 }
 
@@ -90,8 +89,8 @@ TEST(Motion, SmoothnessDependsNeitherOnSizeNorOnDuration) {
   for (Vec3& p : large) p = 7 * p;
   EXPECT_NEAR(*log_dimensionless_jerk(large, 100), *log_dimensionless_jerk(path, 100), 1e-9);
   EXPECT_NEAR(*log_dimensionless_jerk(path, 20), *log_dimensionless_jerk(path, 100), 1e-9);
-  EXPECT_NEAR(*spectral_arc_length(speed_along(large, 100), 100),
-              *spectral_arc_length(speed_along(path, 100), 100), 1e-9);
+  EXPECT_NEAR(*spectral_arc_length(speed_along(large, 100), 100), *spectral_arc_length(speed_along(path, 100), 100),
+              1e-9);
 }
 
 TEST(Motion, TremorIsLessSmooth) {

@@ -41,10 +41,8 @@ class Compare : public ::testing::Test {
     return run_ctpm(command, folder_.path());
   }
 
-  const std::string press_ = kShipped + "/liver-press-expert.ctpm",
-                    hard_press_ = kShipped + "/liver-press-clumsy.ctpm";
-  const std::string cut_ = kShipped + "/kidney-cut-expert.ctpm",
-                    clumsy_cut_ = kShipped + "/kidney-cut-clumsy.ctpm";
+  const std::string press_ = kShipped + "/liver-press-expert.ctpm", hard_press_ = kShipped + "/liver-press-clumsy.ctpm";
+  const std::string cut_ = kShipped + "/kidney-cut-expert.ctpm", clumsy_cut_ = kShipped + "/kidney-cut-clumsy.ctpm";
   const testing::TemporaryFolder folder_;
 };
 
@@ -122,8 +120,8 @@ TEST_F(Compare, NamesTheCommandThatShowsTheWorstMoment) {
 
 TEST_F(Compare, ASessionThatGoesOnFromAnotherIsMeasuredWithAWarning) {
   const std::string script = kScenes + "/scripts/kidney-cut-expert.json";
-  const auto recorded = run_ctpm({"record", "--continue", clumsy_cut_, "--at", "6", "--script", script, "-o",
-                                  "on.ctpm", "--fast", "--duration-s", "2"},
+  const auto recorded = run_ctpm({"record", "--continue", clumsy_cut_, "--at", "6", "--script", script, "-o", "on.ctpm",
+                                  "--fast", "--duration-s", "2"},
                                  folder_.path());
   ASSERT_EQ(recorded.code, 0) << recorded.err;
   const auto compared = compare(cut_, "on.ctpm", {"--json"});
@@ -148,8 +146,8 @@ TEST_F(Compare, SessionsOfDifferentScenesAreRefusedWithTheReason) {
   fs::create_directory(folder_.path() / "organs");
   fs::copy_file(kScenes + "/organs/kidney.obj", folder_.path() / "organs/kidney.obj");
   std::ofstream(folder_.path() / "soft.json") << scene;
-  const auto recorded = run_ctpm({"record", "soft.json", "-o", "soft.ctpm", "--fast", "--duration-s", "0.2",
-                                  "--script", kScenes + "/scripts/kidney-cut-expert.json"},
+  const auto recorded = run_ctpm({"record", "soft.json", "-o", "soft.ctpm", "--fast", "--duration-s", "0.2", "--script",
+                                  kScenes + "/scripts/kidney-cut-expert.json"},
                                  folder_.path());
   ASSERT_EQ(recorded.code, 0) << recorded.err;
   const auto softer = compare(cut_, "soft.ctpm");

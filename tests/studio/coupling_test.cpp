@@ -10,16 +10,16 @@
 #include <numbers>
 #include <vector>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "studio/devices/rotation.h"
 #include "tests/core/blocks.h"
 
 namespace ctpm {
 namespace {
 
-constexpr double kTick = 1e-3;     // [s]
-constexpr double kMostForce = 3;   // [N]
-constexpr double kLoan = 1e-6;     // with which PassiveForce begins [J]
+constexpr double kTick = 1e-3;    // [s]
+constexpr double kMostForce = 3;  // [N]
+constexpr double kLoan = 1e-6;    // with which PassiveForce begins [J]
 
 /// A block of `stiffness` times the paper's liver under a ball.
 Model block_of(double stiffness) {

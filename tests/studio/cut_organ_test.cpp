@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "scenes/script.h"
 #include "studio/loaded_scene.h"
 

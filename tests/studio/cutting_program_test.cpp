@@ -46,13 +46,13 @@ TEST(CuttingSession, TellsTheForceAndThePieceThatComesLoose) {
 
   // The video says so too, whether or not the moment itself is shown.
   for (const char* from : {"0", "1.1"}) {
-    const auto exported =
-        run_ctpm({"export", "cut.ctpm", "-o", "cut.avi", "--size", "320x180", "--fps", "5", "--from-s", from}, folder.path());
+    const auto exported = run_ctpm(
+        {"export", "cut.ctpm", "-o", "cut.avi", "--size", "320x180", "--fps", "5", "--from-s", from}, folder.path());
     ASSERT_EQ(exported.code, 0) << exported.err;
     EXPECT_TRUE(holds(testing::slurp(folder.path() / "cut.avi.json"), "\"pieces_came_loose\": 1")) << from;
   }
-  const auto before =
-      run_ctpm({"export", "cut.ctpm", "-o", "before.avi", "--size", "320x180", "--fps", "5", "--to-s", "0.4"}, folder.path());
+  const auto before = run_ctpm(
+      {"export", "cut.ctpm", "-o", "before.avi", "--size", "320x180", "--fps", "5", "--to-s", "0.4"}, folder.path());
   ASSERT_EQ(before.code, 0) << before.err;
   EXPECT_TRUE(holds(testing::slurp(folder.path() / "before.avi.json"), "\"pieces_came_loose\": 0"));
 
@@ -74,7 +74,7 @@ TEST(CuttingSession, TellsTheForceAndThePieceThatComesLoose) {
   EXPECT_EQ(force.front(), 0);
   EXPECT_EQ(force.back(), 0);
   const double most = *std::max_element(force.begin(), force.end());
-  EXPECT_GT(most, 1);   // 164 J/m^2 times 36 mm is 6 N
+  EXPECT_GT(most, 1);  // 164 J/m^2 times 36 mm is 6 N
   EXPECT_LT(most, 40);
 }
 

@@ -1,4 +1,5 @@
-// A device as a source, told step by step by the test: what is believed, held, noted and sent back. No network, no clock.
+// A device as a source, told step by step by the test: what is believed, held, noted and sent back. No network, no
+// clock.
 
 #include "studio/devices/device_source.h"
 
@@ -158,7 +159,8 @@ TEST_F(DeviceSession, WhatIsNotFiniteOrNoRotationIsNotBelieved) {
   ASSERT_TRUE(inputs);
   EXPECT_NEAR(norm(inputs->position - kHome), 0, 1e-12);
   EXPECT_EQ(device_->forces.back(), Vec3{});  // nobody knows where the hand is
-  EXPECT_EQ(story(), "lost: pose is not finite; the pose is held\nlost: orientation is no rotation; the pose is held\n");
+  EXPECT_EQ(story(),
+            "lost: pose is not finite; the pose is held\nlost: orientation is no rotation; the pose is held\n");
   hold(kHome, 200);
   EXPECT_EQ(events_.back().kind, EventKind::device_back);
   EXPECT_EQ(events_.back().values.at(1), 4);  // samples refused

@@ -20,8 +20,8 @@ double number_of(const std::string& json, const std::string& key) {
 
 /// Records a shipped script and exports it at 1280x720 with 30 frames a second; prints one line.
 bool measure(const TemporaryFolder& folder, const std::string& scene, const std::string& script) {
-  if (run_ctpm({"record", kScenes + scene + ".json", "--script", kScenes + "scripts/" + script + ".json",
-                "-o", script + ".ctpm", "--fast"},
+  if (run_ctpm({"record", kScenes + scene + ".json", "--script", kScenes + "scripts/" + script + ".json", "-o",
+                script + ".ctpm", "--fast"},
                folder.path())
           .code != 0)
     return false;
@@ -40,13 +40,10 @@ bool measure(const TemporaryFolder& folder, const std::string& scene, const std:
 
 int run_all() {
   const TemporaryFolder folder;
-  std::printf("%u processors\n%-12s %7s %9s %11s %9s %9s %9s %9s\n", std::thread::hardware_concurrency(),
-              "session", "video s", "real time", "CPU s per s", "simul. %", "render. %", "encod. %", "MiB");
-  for (const auto& [scene, script] :
-       std::vector<std::pair<std::string, std::string>>{{"liver", "liver-press"},
-                                                        {"liver", "liver-cut"},
-                                                        {"kidney", "kidney-cut"},
-                                                        {"skin", "skin-press"}})
+  std::printf("%u processors\n%-12s %7s %9s %11s %9s %9s %9s %9s\n", std::thread::hardware_concurrency(), "session",
+              "video s", "real time", "CPU s per s", "simul. %", "render. %", "encod. %", "MiB");
+  for (const auto& [scene, script] : std::vector<std::pair<std::string, std::string>>{
+           {"liver", "liver-press"}, {"liver", "liver-cut"}, {"kidney", "kidney-cut"}, {"skin", "skin-press"}})
     if (!measure(folder, scene, script)) return std::fprintf(stderr, "%s failed\n", script.c_str()), 1;
   return 0;
 }

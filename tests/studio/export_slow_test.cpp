@@ -19,8 +19,8 @@ TEST(ExportSlow, TenMinutesTakeNoMoreMemoryThanTwentySeconds) {
              {"take": {"tool": "ball", "at_mm": [10, 10, 43]}},
              {"press": {"distance_mm": 11, "speed_mm_per_s": 20}},
              {"wait_s": 600}]})";
-  const auto recorded = run_ctpm({"record", std::string(CTPM_SOURCE_DIR) + "/scenes/skin.json", "--script",
-                                  "long.json", "-o", "long.ctpm", "--fast"},
+  const auto recorded = run_ctpm({"record", std::string(CTPM_SOURCE_DIR) + "/scenes/skin.json", "--script", "long.json",
+                                  "-o", "long.ctpm", "--fast"},
                                  folder.path());
   ASSERT_EQ(recorded.code, 0) << recorded.err;
   const auto memory_to = [&](const char* end) {

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "recordings/byte_hash.h"
 #include "recordings/session_reader.h"
 #include "recordings/session_writer.h"
@@ -40,9 +40,9 @@ class Export : public ::testing::Test {
   void SetUp() override { record("press.ctpm", "1.2"); }
 
   void record(const std::string& name, const std::string& seconds) {
-    const auto recorded = run_ctpm({"record", std::string(CTPM_SOURCE_DIR) + "/scenes/skin.json", "-o", name,
-                                    "--fast", "--duration-s", seconds},
-                                   folder_.path());
+    const auto recorded = run_ctpm(
+        {"record", std::string(CTPM_SOURCE_DIR) + "/scenes/skin.json", "-o", name, "--fast", "--duration-s", seconds},
+        folder_.path());
     ASSERT_EQ(recorded.code, 0) << recorded.err;
   }
 
@@ -85,8 +85,7 @@ TEST_F(Export, TheSidecarSaysWhatTheVideoShows) {
   const auto reader = SessionReader::open((folder_.path() / "press.ctpm").string());
   ASSERT_TRUE(reader);
   EXPECT_EQ(value_of(json, "session_id"), "\"" + reader->session_id() + "\"");
-  EXPECT_EQ(value_of(json, "file_xxh3"),
-            "\"" + hash_text(*file_hash((folder_.path() / "press.ctpm").string())) + "\"");
+  EXPECT_EQ(value_of(json, "file_xxh3"), "\"" + hash_text(*file_hash((folder_.path() / "press.ctpm").string())) + "\"");
   EXPECT_EQ(value_of(json, "verdict"), "\"same\"");
   EXPECT_EQ(value_of(json, "frames"), "36");
   EXPECT_EQ(value_of(json, "codec"), "\"H.264\"");
@@ -94,8 +93,8 @@ TEST_F(Export, TheSidecarSaysWhatTheVideoShows) {
   EXPECT_EQ(value_of(json, "first_tick") + " " + value_of(json, "last_tick"), "200 800");
   EXPECT_EQ(value_of(json, "speed"), "0.5");
   EXPECT_NE(value_of(json, "drawing").find("llvmpipe"), std::string::npos);
-  for (const char* key : {"name", "eye_mm", "program", "elapsed_s", "simulation_s", "rendering_s",
-                          "encoding_s", "recorded_by", "pixels_xxh3", "bytes"})
+  for (const char* key : {"name", "eye_mm", "program", "elapsed_s", "simulation_s", "rendering_s", "encoding_s",
+                          "recorded_by", "pixels_xxh3", "bytes"})
     EXPECT_NE(value_of(json, key).front(), '(') << key;
 }
 
@@ -114,8 +113,7 @@ TEST_F(Export, TheVideoShowsTheNumbersOfTheReplay) {
   const std::string last = table.substr(table.rfind('\n', table.size() - 2) + 1);
   const std::string header = table.substr(0, table.find('\n'));
   const auto cell = [&](const std::string& name) {
-    const auto column =
-        std::count(header.begin(), header.begin() + std::ptrdiff_t(header.find("," + name) + 1), ',');
+    const auto column = std::count(header.begin(), header.begin() + std::ptrdiff_t(header.find("," + name) + 1), ',');
     std::istringstream cells(last);
     std::string text;
     for (std::ptrdiff_t i = 0; i <= column; ++i) std::getline(cells, text, ',');
@@ -133,9 +131,8 @@ TEST_F(Export, TheVideoOfACutShowsItsDepthWhetherOrNotTheCutIsShown) {
   const std::string session = std::string(CTPM_SOURCE_DIR) + "/recordings/shipped/kidney-cut-expert.ctpm";
   const render_test::GlyphReader reader(1280, 720);
   const auto depth_at = [&](const std::string& from, const std::string& to) {
-    const auto exported =
-        run_ctpm({"export", session, "-o", "at-" + to + "/", "--fps", "10", "--from-s", from, "--to-s", to},
-                 folder_.path());
+    const auto exported = run_ctpm(
+        {"export", session, "-o", "at-" + to + "/", "--fps", "10", "--from-s", from, "--to-s", to}, folder_.path());
     EXPECT_EQ(exported.code, 0) << exported.err;
     return reader.read_after(picture("at-" + to, 1), "cut depth");
   };
@@ -189,8 +186,8 @@ TEST_F(Export, AMissingCodecIsReplacedAndThatIsSaidAloud) {
 
 TEST_F(Export, CtrlCLeavesNothingBehind) {
   for (const char* output : {"a.mp4", "frames/"}) {
-    const auto stopped = run({"timeout", "--preserve-status", "-s", "INT", "1", CTPM_PROGRAM, "export",
-                              "press.ctpm", "-o", output, "--speed", "0.002"},
+    const auto stopped = run({"timeout", "--preserve-status", "-s", "INT", "1", CTPM_PROGRAM, "export", "press.ctpm",
+                              "-o", output, "--speed", "0.002"},
                              folder_.path());
     EXPECT_EQ(stopped.code, 2);
     EXPECT_TRUE(holds(stopped.err, "stopped before the end; no video was written")) << stopped.err;
@@ -200,8 +197,8 @@ TEST_F(Export, CtrlCLeavesNothingBehind) {
 
 TEST_F(Export, BesideSaysThatASessionHasEnded) {
   record("short.ctpm", "0.6");
-  const auto both = run_ctpm({"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--from-s",
-                              "0.5", "--to-s", "0.8", "--speed", "3"},
+  const auto both = run_ctpm({"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--from-s", "0.5",
+                              "--to-s", "0.8", "--speed", "3"},
                              folder_.path());
   ASSERT_EQ(both.code, 0) << both.err;
   Frame half = picture("both", 3);  // 0.8 s
@@ -216,8 +213,8 @@ TEST_F(Export, BesideSaysThatASessionHasEnded) {
 
 TEST_F(Export, BesideShowsTwoSessionsInStep) {
   record("short.ctpm", "0.6");
-  const auto both = run_ctpm(
-      {"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--size", "640x180"}, folder_.path());
+  const auto both =
+      run_ctpm({"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--size", "640x180"}, folder_.path());
   ASSERT_EQ(both.code, 0) << both.err;
   EXPECT_EQ(picture("both", 36).width, 640);
   // The same script on both sides: apart from the names the halves are alike, until one of them is over.
@@ -261,14 +258,13 @@ TEST_F(Export, ASessionThatDiffersIsRefusedOrMarkedOnEveryFrame) {
   falsify((folder_.path() / "press.ctpm").string(), (folder_.path() / "false.ctpm").string(), 700);
   const auto refused = run_ctpm({"export", "false.ctpm", "-o", "a.mp4", "--size", "640x360"}, folder_.path());
   EXPECT_EQ(refused.code, 2);
-  EXPECT_TRUE(holds(refused.err, "differs from the recording since 0.700 s; no video was written"))
-      << refused.err;
+  EXPECT_TRUE(holds(refused.err, "differs from the recording since 0.700 s; no video was written")) << refused.err;
   EXPECT_EQ(folder_.list(), "false.ctpm press.ctpm");
   const auto before =
       run_ctpm({"export", "false.ctpm", "-o", "a.mp4", "--size", "640x360", "--to-s", "0.5"}, folder_.path());
   EXPECT_EQ(before.code, 0) << "nothing differs before: " << before.err;
-  const auto marked = run_ctpm(
-      {"export", "false.ctpm", "-o", "marked/", "--size", "640x360", "--allow-diverged"}, folder_.path());
+  const auto marked =
+      run_ctpm({"export", "false.ctpm", "-o", "marked/", "--size", "640x360", "--allow-diverged"}, folder_.path());
   EXPECT_EQ(marked.code, 1) << marked.err;
   EXPECT_TRUE(holds(marked.out, "DIFFERS")) << marked.out;
   EXPECT_EQ(value_of(sidecar("marked"), "verdict"), "\"different\"");
@@ -308,8 +304,7 @@ TEST_F(Export, EveryViewShowsSomethingElse) {
     const auto exported = export_to("a/", options);
     ASSERT_EQ(exported.code, 0) << exported.err;
     seen.push_back(picture("a", 1));
-    for (std::size_t i = 0; i + 1 < seen.size(); ++i)
-      EXPECT_NE(seen[i], seen.back()) << i << " " << seen.size();
+    for (std::size_t i = 0; i + 1 < seen.size(); ++i) EXPECT_NE(seen[i], seen.back()) << i << " " << seen.size();
   }
 }
 

@@ -25,8 +25,7 @@ class GlyphReader {
       for (const PlacedText& text : overlay.layout(data)) {
         if (text.text != data.session) continue;
         const int space = space_width(width, height);
-        glyphs_[c] =
-            patch(frame, text.box.x + space, text.box.y, text.box.width - 2 * space, text.box.height);
+        glyphs_[c] = patch(frame, text.box.x + space, text.box.y, text.box.width - 2 * space, text.box.height);
       }
     }
   }
@@ -43,8 +42,7 @@ class GlyphReader {
     int at_x = -1, at_y = -1;
     for (int y = 0; y + word.height < frame.height / 2; ++y)
       for (int left = 0; left < frame.width / 16; ++left)
-        if (const double match = similarity(frame, left, y, word); match > best)
-          best = match, at_x = left, at_y = y;
+        if (const double match = similarity(frame, left, y, word); match > best) best = match, at_x = left, at_y = y;
     return at_x < 0 ? "" : read_line(frame, at_x + word.width, at_y);
   }
 

@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/vec3.h"
+#include "core/model/vec3.h"
 
 namespace ctpm::testing {
 

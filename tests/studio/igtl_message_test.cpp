@@ -1,15 +1,16 @@
-// Bytes from a network: what OpenIGTLink packs is read, however it is cut; anything else is refused and takes no memory.
+// Bytes from a network: what OpenIGTLink packs is read, however it is cut; anything else is refused and takes no
+// memory.
 
 #include "studio/devices/igtl_message.h"
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstring>
-#include <limits>
 #include <openigtlink/igtlPositionMessage.h>
 #include <openigtlink/igtlStringMessage.h>
 #include <openigtlink/igtl_util.h>
+#include <cmath>
+#include <cstring>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -112,8 +113,9 @@ TEST(IgtlStream, PositionsAreReadWithAllThreeKindsOfOrientation) {
   position->SetQuaternion(0.6f, 0, 0, 0.8f);
   const std::string whole = bytes_of(*position), body = whole.substr(IgtlStream::kHeaderSize);
   // The shorter ones by hand: OpenIGTLink 1.11 writes past the end of its own buffer when it packs them.
-  for (const std::string& bytes : {whole, message(1, "QTRANS", 28, body), message(1, "POSITION", 24, body.substr(0, 24)),
-                                   message(1, "POSITION", 12, body.substr(0, 12))}) {
+  for (const std::string& bytes :
+       {whole, message(1, "QTRANS", 28, body), message(1, "POSITION", 24, body.substr(0, 24)),
+        message(1, "POSITION", 12, body.substr(0, 12))}) {
     const Heard heard = hear(bytes);
     ASSERT_EQ(heard.reports.size(), 1u);
     EXPECT_EQ(heard.reports[0].news, DeviceNews::pose) << heard.reports[0].text;
@@ -141,8 +143,9 @@ TEST(IgtlStream, AMessageOfProtocolVersion3IsReadAroundItsFurtherHeaderAndMetada
   EXPECT_EQ(heard.reports[0].news, DeviceNews::pose) << heard.reports[0].text;
   EXPECT_NEAR(norm(heard.reports[0].pose.position - Vec3{0.004, 0.005, 0.006}), 0, 1e-9);
   // Sizes that do not fit.
-  for (const std::string& bad : {wire(11, 2) + further.substr(2), wire(12, 2) + wire(6, 2) + wire(0xffffffff, 4) + wire(0, 4),
-                                 wire(65535, 2) + further.substr(2), std::string("abc")}) {
+  for (const std::string& bad :
+       {wire(11, 2) + further.substr(2), wire(12, 2) + wire(6, 2) + wire(0xffffffff, 4) + wire(0, 4),
+        wire(65535, 2) + further.substr(2), std::string("abc")}) {
     const Heard refused = hear(message(2, "TRANSFORM", bad.size() + pose.size(), bad + pose));
     ASSERT_EQ(refused.reports.size(), 1u);
     EXPECT_EQ(refused.reports[0].news, DeviceNews::bad_message);
@@ -178,11 +181,10 @@ TEST(IgtlStream, AWrongChecksumOrSizeCostsOneMessageAndNotTheNext) {
   std::string broken = transform_bytes({1, 2, 3});
   broken[80] = char(broken[80] ^ 1);
   const std::string good = transform_bytes({4, 5, 6});
-  for (const std::string& bad : {broken, message(1, "TRANSFORM", 47, std::string(47, '\0')),
-                                 message(1, "TRANSFORM", 5000, std::string(5000, '\0')),
-                                 message(1, "POSITION", 13, std::string(13, '\0')),
-                                 message(1, "SENSOR", 3, std::string(3, '\0')),
-                                 message(1, "SENSOR", 20, std::string(20, '\xff'))}) {
+  for (const std::string& bad :
+       {broken, message(1, "TRANSFORM", 47, std::string(47, '\0')),
+        message(1, "TRANSFORM", 5000, std::string(5000, '\0')), message(1, "POSITION", 13, std::string(13, '\0')),
+        message(1, "SENSOR", 3, std::string(3, '\0')), message(1, "SENSOR", 20, std::string(20, '\xff'))}) {
     const Heard heard = hear(bad + good, 64);
     EXPECT_TRUE(heard.is_good);
     ASSERT_EQ(heard.reports.size(), 2u);

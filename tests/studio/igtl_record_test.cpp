@@ -1,4 +1,5 @@
-// `ctpm record` with a device, from outside: the device's side is OpenIGTLink's own classes. Nothing is asserted about time.
+// `ctpm record` with a device, from outside: the device's side is OpenIGTLink's own classes. Nothing is asserted about
+// time.
 
 #include <gtest/gtest.h>
 #include <openigtlink/igtlServerSocket.h>
@@ -37,8 +38,8 @@ class IgtlRecord : public ::testing::Test {
       {"name": "scalpel", "kind": "scalpel", "blade_length_mm": 30}]})";
   }
   std::vector<std::string> listening(std::vector<std::string> more = {}) const {
-    std::vector<std::string> arguments{"record", "block.json", "-o", "a.ctpm", "--igtl-listen", "0",
-                                       "--device-offset-mm", "0", "0", "30"};
+    std::vector<std::string> arguments{"record", "block.json",         "-o", "a.ctpm", "--igtl-listen",
+                                       "0",      "--device-offset-mm", "0",  "0",      "30"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
@@ -90,8 +91,9 @@ class IgtlRecord : public ::testing::Test {
     // A device that leaves for good ends the session; that it was lost is said, and everything is saved.
     const ProgramOutcome outcome = program.outcome();
     EXPECT_EQ(outcome.code, 1) << outcome.err;
-    EXPECT_TRUE(holds(outcome.err, "a.ctpm: error: the device was lost: nothing usable came for 2.0 s (it hung up); "
-                                   "what came before is saved"))
+    EXPECT_TRUE(holds(outcome.err,
+                      "a.ctpm: error: the device was lost: nothing usable came for 2.0 s (it hung up); "
+                      "what came before is saved"))
         << outcome.err;
     EXPECT_TRUE(holds(outcome.out, "input age p50")) << outcome.out;
 
@@ -168,8 +170,9 @@ TEST_F(IgtlRecord, EveryFaultIsHeldAndNotedAndTheSessionGoesOnToACleanEnd) {
   EXPECT_TRUE(holds(info, "\"ended_cleanly\": true"));
   std::size_t at = 0;
   for (const std::string fault :
-       {"pose is not finite", "jumps farther than a hand moves", "time goes backwards", "a message with a wrong checksum",
-        "nothing usable comes", "what it sends is not OpenIGTLink", "it hung up", "what it sends is not OpenIGTLink"}) {
+       {"pose is not finite", "jumps farther than a hand moves", "time goes backwards",
+        "a message with a wrong checksum", "nothing usable comes", "what it sends is not OpenIGTLink", "it hung up",
+        "what it sends is not OpenIGTLink"}) {
     const std::size_t lost = info.find("\"" + fault + "; the pose is held\"", at);
     ASSERT_NE(lost, std::string::npos) << fault << " is not, or not in its place, in " << info;
     at = info.find("\"device back\"", lost);
@@ -223,11 +226,10 @@ TEST_F(IgtlRecord, APortInUseAndANobodyAreToldAtOnceAndNothingIsWritten) {
 }
 
 TEST_F(IgtlRecord, WhatIsWrongWithADevicesOptionsIsToldAtOnce) {
-  const ProgramOutcome outcome =
-      run_ctpm(listening({"--igtl", "nowhere", "--fast", "--device-button", "40=ball", "--device-scale", "0",
-                          "--device-rotation", "0", "0", "0", "0", "--device-tip", "0", "nan", "0", "--device-timeout-s",
-                          "0"}),
-               folder_.path());
+  const ProgramOutcome outcome = run_ctpm(
+      listening({"--igtl", "nowhere", "--fast", "--device-button", "40=ball", "--device-scale", "0",
+                 "--device-rotation", "0", "0", "0", "0", "--device-tip", "0", "nan", "0", "--device-timeout-s", "0"}),
+      folder_.path());
   EXPECT_EQ(outcome.code, 2);
   for (const std::string part :
        {"takes one of --script", "--fast: error: a device is followed in real time",

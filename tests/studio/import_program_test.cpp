@@ -73,9 +73,7 @@ TEST_F(ImportProgram, AllPartsAreInTheSceneAsWell) {
   const auto one = run_ctpm({"check", "scene.json"}, folder_.path());
   ASSERT_EQ(import("two.obj", {"--unit", "mm", "--all-parts"}).code, 0);
   const auto both = run_ctpm({"check", "scene.json"}, folder_.path());
-  const auto spheres = [](const std::string& text) {
-    return std::stoi(text.substr(text.find("good, ") + 6));
-  };
+  const auto spheres = [](const std::string& text) { return std::stoi(text.substr(text.find("good, ") + 6)); };
   EXPECT_EQ(spheres(both.out), 2 * spheres(one.out)) << one.out << both.out;
 }
 

@@ -54,8 +54,7 @@ TEST(Launcher, NeverInstallsWhenItIsForbidden) {
   machine.add_program("apt-get", "echo called > " + (machine.folder().path() / "apt-was-called").string());
   const auto outcome = machine.launch("1");
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.err.find("CTPM_NO_INSTALL=1 is set and these packages are missing: g++ cmake"),
-            std::string::npos)
+  EXPECT_NE(outcome.err.find("CTPM_NO_INSTALL=1 is set and these packages are missing: g++ cmake"), std::string::npos)
       << outcome.err;
   EXPECT_EQ(machine.folder().list(), "bin");
 }

@@ -37,9 +37,8 @@ void do_main_job(const TemporaryFolder& folder, const std::string& mesh,
   EXPECT_EQ(preview.code, 0) << preview.err;
   EXPECT_GT(fs::file_size(folder.path() / "organ.png"), 10000u);
 
-  const auto recorded =
-      run_ctpm({"record", "organ.json", "--script", "organ.script.json", "-o", "session.ctpm", "--fast"},
-               folder.path());
+  const auto recorded = run_ctpm(
+      {"record", "organ.json", "--script", "organ.script.json", "-o", "session.ctpm", "--fast"}, folder.path());
   ASSERT_EQ(recorded.code, 0) << recorded.err;
   EXPECT_FALSE(holds(recorded.out, " 0 elements severed")) << recorded.out;
   const auto verified = run_ctpm({"verify", "session.ctpm"}, folder.path());
@@ -48,15 +47,15 @@ void do_main_job(const TemporaryFolder& folder, const std::string& mesh,
   const auto info = run_ctpm({"info", "session.ctpm"}, folder.path());
   EXPECT_EQ(info.code, 0) << info.err;
   EXPECT_TRUE(holds(info.out, "cut")) << info.out;
-  const auto replayed = run_ctpm(
-      {"replay", "session.ctpm", "--from-s", "0.5", "--to-s", "0.6", "--csv", "session.csv"}, folder.path());
+  const auto replayed =
+      run_ctpm({"replay", "session.ctpm", "--from-s", "0.5", "--to-s", "0.6", "--csv", "session.csv"}, folder.path());
   EXPECT_EQ(replayed.code, 0) << replayed.err;
   const std::string csv = testing::slurp(folder.path() / "session.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 101);  // a header and 100 ticks
 
-  const auto exported = run_ctpm({"export", "session.ctpm", "-o", "session.mp4", "--size", "320x180",
-                                  "--from-s", "0.5", "--to-s", "1.5"},
-                                 folder.path());
+  const auto exported =
+      run_ctpm({"export", "session.ctpm", "-o", "session.mp4", "--size", "320x180", "--from-s", "0.5", "--to-s", "1.5"},
+               folder.path());
   ASSERT_EQ(exported.code, 0) << exported.err;
   EXPECT_TRUE(holds(exported.out, "30 frames, 320x180, 30 frames/s, H.264")) << exported.out;
   EXPECT_TRUE(fs::exists(folder.path() / "session.mp4.json"));
@@ -86,8 +85,7 @@ TEST(MainJob, TheSameScriptRecordsTheSameSessionTwice) {
   std::string tables[2];
   for (int i = 0; i < 2; ++i) {
     const std::string session = std::to_string(i) + ".ctpm", table = std::to_string(i) + ".csv";
-    ASSERT_EQ(run_ctpm({"record", scene, "-o", session, "--fast", "--duration-s", "1.2"}, folder.path()).code,
-              0);
+    ASSERT_EQ(run_ctpm({"record", scene, "-o", session, "--fast", "--duration-s", "1.2"}, folder.path()).code, 0);
     ASSERT_EQ(run_ctpm({"replay", session, "--csv", table}, folder.path()).code, 0);
     tables[i] = testing::slurp(folder.path() / table);
   }

@@ -38,8 +38,8 @@ Motion read_good(const std::string& text) {
 const std::string kHeader = "time_s,tool_x_mm,tool_y_mm,tool_z_mm,tool_qw,tool_qx,tool_qy,tool_qz,buttons,tool\n";
 
 TEST(ReadMotion, ColumnsMayStandInAnyOrderAndOthersAreNamedAsUnused) {
-  const Motion motion =
-      read_good("\xEF\xBB\xBFtool_z_mm, force_n ,time_s,tool_y_mm,\"tool_x_mm\"\r\n3, 0.5 ,10.5,2,1\r\n\r\n6,0,11,5,4\n");
+  const Motion motion = read_good(
+      "\xEF\xBB\xBFtool_z_mm, force_n ,time_s,tool_y_mm,\"tool_x_mm\"\r\n3, 0.5 ,10.5,2,1\r\n\r\n6,0,11,5,4\n");
   ASSERT_EQ(motion.samples.size(), 2u);
   EXPECT_EQ(motion.samples[0].time, 10.5);
   EXPECT_EQ(motion.samples[0].inputs.position, (Vec3{0.001, 0.002, 0.003}));
@@ -108,7 +108,8 @@ TEST(ReadMotion, OfVeryManyErrorsTheFirstHundredAreToldAndTheOthersCounted) {
 
 TEST(ReadMotion, NoCutOrChangedFileDoesAnythingButReadOrRefuse) {
   const std::string whole = kHeader + "0,1.5,2,3,0,1,0,0,5,scalpel\n0.01,1,2,3,1,0,0,0,0,\n";
-  for (std::size_t length = 0; length < whole.size(); ++length) (void)read_motion(whole.substr(0, length), "m.csv", tools());
+  for (std::size_t length = 0; length < whole.size(); ++length)
+    (void)read_motion(whole.substr(0, length), "m.csv", tools());
   for (std::size_t i = 0; i < whole.size(); ++i)
     for (const int change : {1, 2, 4, 8, 16, 32, 64, 128}) {
       std::string changed = whole;

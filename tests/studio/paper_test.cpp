@@ -10,10 +10,10 @@
 #include <sstream>
 #include <vector>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "scenes/presets.h"
 #include "studio/fit_stiffness.h"
-#include "studio/reports/paper.h"
+#include "studio/paper/paper.h"
 
 namespace ctpm {
 namespace {
@@ -91,8 +91,8 @@ TEST_P(EveryModel, FilledWithRAndHalfAndQuarterConvergesWithOrderOne) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Paper, EveryModel,
-                         ::testing::Values(Structure::mass_spring, Structure::angle_mass_spring,
-                                           Structure::tpm, Structure::ctpm));
+                         ::testing::Values(Structure::mass_spring, Structure::angle_mass_spring, Structure::tpm,
+                                           Structure::ctpm));
 
 TEST(Paper, ARefinementKnowsItsOrderAndItsLimit) {
   const Refinement first{{{4, 1, 1.8}, {2, 8, 1.9}, {1, 64, 1.95}}};  // 2 - 0.05 r
@@ -104,12 +104,7 @@ TEST(Paper, ARefinementKnowsItsOrderAndItsLimit) {
 }
 
 TEST(Paper, AClaimBeyondItsBoundIsMissed) {
-  Claim claim{.experiment = "x",
-              .organ = "x",
-              .structure = "x",
-              .quantity = "x",
-              .closed_form = 1.0,
-              .network = 1.02};
+  Claim claim{.experiment = "x", .organ = "x", .structure = "x", .quantity = "x", .closed_form = 1.0, .network = 1.02};
   EXPECT_EQ(claim.verdict(), ReportVerdict::shown);
   claim.closed_form_bound = 0.01;
   EXPECT_EQ(claim.verdict(), ReportVerdict::missed);
@@ -165,9 +160,8 @@ double force_at_four_millimetres(const LoadedScene& scene, const std::function<v
   State state = rest_state(model);
   StepReport report;
   for (int tick = 0; tick <= 1000; ++tick) {
-    inputs.position =
-        model.rest_position[c] +
-        Vec3{0, 0, model.tools[0].radius + model.contact_radius[c] - 4e-3 * std::min(1.0, tick / 400.0)};
+    inputs.position = model.rest_position[c] +
+                      Vec3{0, 0, model.tools[0].radius + model.contact_radius[c] - 4e-3 * std::min(1.0, tick / 400.0)};
     report = stepper.step(state, inputs);
   }
   return report.tool_force.z;

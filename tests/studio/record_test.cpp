@@ -77,7 +77,8 @@ TEST_F(Record, AMotionAtAnyRateIsSampledEveryTick) {
 TEST_F(Record, APressToAForceStopsAtItAndOneThatCannotReachItSaysSo) {
   const auto script = [](const std::string& force) {
     return R"({"format": "ctpm-script", "version": 1, "steps": [{"take": {"tool": "ball", "at_mm": [0, 0, 28]}},
-      {"press": {"distance_mm": 9, "speed_mm_per_s": 10, "until_force_n": )" + force + "}}, {\"wait_s\": 0.2}]}";
+      {"press": {"distance_mm": 9, "speed_mm_per_s": 10, "until_force_n": )" +
+           force + "}}, {\"wait_s\": 0.2}]}";
   };
   write("some.json", script("0.2")), write("much.json", script("500"));
   ctpm({"record", "block.json", "--script", "some.json", "-o", "some.ctpm", "--fast"});
@@ -122,8 +123,8 @@ TEST_F(Record, WhatDoesNotFitTogetherIsToldAtOnceAndNothingIsWritten) {
   };
   refused({"-o", "x.ctpm"}, {"needs either a scene or --continue"});
   refused({"block.json", "--continue", "a.ctpm", "--script", "s", "--motion", "m", "-o", "no/x.ctpm"},
-          {"needs either a scene or --continue", "--continue: error: needs --at", "takes one of --script, --motion, --igtl, --igtl-listen",
-           "no/x.ctpm: error:"});
+          {"needs either a scene or --continue", "--continue: error: needs --at",
+           "takes one of --script, --motion, --igtl, --igtl-listen", "no/x.ctpm: error:"});
   refused({"--continue", "a.ctpm", "--at", "1", "-o", "x.ctpm"}, {"--continue: error: needs a source"});
   refused({"block.json", "--at", "1", "-o", "x.ctpm"}, {"--at: error:"});
   refused({"--continue", "nowhere.ctpm", "--at", "1", "--script", "press.json", "-o", "x.ctpm"},

@@ -35,7 +35,13 @@ void picture_with_overlay(benchmark::State& run) {
     benchmark::DoNotOptimize(frame.rgb.data());
   }
 }
-BENCHMARK(picture_with_overlay)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime()->ArgName("cut");
+BENCHMARK(picture_with_overlay)
+    ->Arg(0)
+    ->Arg(1)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->ArgName("cut");
 
 /// The parts of a frame: the picture without its overlay, and the overlay.
 void picture_alone(benchmark::State& run) {
@@ -60,8 +66,7 @@ void picture_while_cutting(benchmark::State& run) {
   Bench bench;
   bool whole = false;
   for (auto _ : run) {
-    benchmark::DoNotOptimize(
-        bench.renderer->draw(whole ? bench.rest : bench.severed, bench.options).rgb.data());
+    benchmark::DoNotOptimize(bench.renderer->draw(whole ? bench.rest : bench.severed, bench.options).rgb.data());
     whole = !whole;
   }
 }

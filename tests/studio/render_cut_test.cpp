@@ -3,7 +3,7 @@
 #include <array>
 #include <filesystem>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "studio/render/cut_surface.h"
 #include "studio/render/open_edges.h"
 #include "studio/render/organ_mesh.h"
@@ -68,8 +68,7 @@ double worst_stretch(const CutSurface& cut_surface, const State& state) {
   for (const auto& t : surface.triangle)
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t a = std::size_t(t[i]), b = std::size_t(t[(i + 1) % 3]);
-      worst =
-          std::max(worst, std::abs(norm(moved[a] - moved[b]) - norm(surface.vertex[a] - surface.vertex[b])));
+      worst = std::max(worst, std::abs(norm(moved[a] - moved[b]) - norm(surface.vertex[a] - surface.vertex[b])));
     }
   return worst;
 }
@@ -304,7 +303,8 @@ TEST(CutPicture, AClosedCutIsALineAndChangesNothingElse) {
   int darker = 0, worst = 0;
   for (std::size_t i = 0; i < near_lip.size(); ++i) {
     int change = 0;
-    for (std::size_t c = 0; c < 3; ++c) change = std::max(change, std::abs(whole.rgb[3 * i + c] - closed.rgb[3 * i + c]));
+    for (std::size_t c = 0; c < 3; ++c)
+      change = std::max(change, std::abs(whole.rgb[3 * i + c] - closed.rgb[3 * i + c]));
     if (near_lip[i])
       darker += closed.rgb[3 * i] + 12 < whole.rgb[3 * i];
     else
@@ -351,8 +351,7 @@ TEST(CutPicture, OpensShowsItsWallAndNoBackground) {
   State state = cut_along_y(scene->model, 0.0, 0.02, -0.005);
   // Open it by up to 8 mm at the top, tapering to its bottom and its end.
   spread(state, scene->model, [](Vec3 p) {
-    const double open =
-        std::clamp((p.z + 0.005) / 0.03, 0.0, 1.0) * std::clamp((0.02 - p.y) / 0.04, 0.0, 1.0);
+    const double open = std::clamp((p.z + 0.005) / 0.03, 0.0, 1.0) * std::clamp((0.02 - p.y) / 0.04, 0.0, 1.0);
     return Vec3{(p.x > 0 ? 0.004 : -0.004) * open, 0, 0};
   });
   for (const Vec3 direction : {Vec3{0.1, 0.35, -1}, Vec3{0, 0.8, -1}}) {
@@ -397,8 +396,7 @@ TEST(CutPicture, ItsWallIsPalerInTheOutermostLayer) {
   for (const char* organ : {"liver", "kidney", "skin"}) {
     OrganLook look = look_of(organ), other = look;
     look.wetness = other.wetness = 0, other.outer = {0.2, 0.9, 0.9};
-    const Frame layers = picture_of_wall(*layered, look, options),
-                one = picture_of_wall(*plain, look, options),
+    const Frame layers = picture_of_wall(*layered, look, options), one = picture_of_wall(*plain, look, options),
                 recoloured = picture_of_wall(*plain, other, options);
     std::array<double, 2> paler{};  // green over red that the layers add: near the surface, deep inside
     std::array<int, 2> pixels{};
@@ -413,8 +411,7 @@ TEST(CutPicture, ItsWallIsPalerInTheOutermostLayer) {
         const auto green = [i](const Frame& f) { return f.rgb[i + 1] / double(f.rgb[i]); };
         paler[is_deep] += green(layers) - green(one), ++pixels[is_deep];
         for (std::size_t c = 0; c < 3; ++c) {
-          EXPECT_NEAR(one.rgb[i + c], recoloured.rgb[i + c], 1)
-              << organ << ": one layer has the inner colour";
+          EXPECT_NEAR(one.rgb[i + c], recoloured.rgb[i + c], 1) << organ << ": one layer has the inner colour";
           if (is_deep)
             EXPECT_NEAR(layers.rgb[i + c], one.rgb[i + c], 1) << organ << ": and so has the inside";
           else
@@ -475,8 +472,8 @@ double gape(const Model& model, const State& state) {
   for (std::size_t e = 0; e < model.edges.size(); ++e) {
     const auto a = std::size_t(model.edges.a[e]), b = std::size_t(model.edges.b[e]);
     if (state.edge_severed[e] && model.layer[a] == 1 && model.layer[b] == 1)
-      most = std::max(most, norm(state.position[a] - state.position[b]) -
-                                norm(model.rest_position[a] - model.rest_position[b]));
+      most = std::max(
+          most, norm(state.position[a] - state.position[b]) - norm(model.rest_position[a] - model.rest_position[b]));
   }
   return most;
 }

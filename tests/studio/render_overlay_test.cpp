@@ -51,8 +51,7 @@ TEST(Overlay, EveryTextLeavesInkInItsPlace) {
     int least = 255, most = 0;
     for (int y = text.box.y; y < text.box.y + text.box.height; ++y)
       for (int x = text.box.x; x < text.box.x + text.box.width; ++x) {
-        const int red = frame.rgb[std::size_t(y * 1280 + x) * 3],
-                  green = frame.rgb[std::size_t(y * 1280 + x) * 3 + 1];
+        const int red = frame.rgb[std::size_t(y * 1280 + x) * 3], green = frame.rgb[std::size_t(y * 1280 + x) * 3 + 1];
         least = std::min(least, std::max(red, green)), most = std::max(most, std::max(red, green));
       }
     EXPECT_GT(most - least, 60) << text.text;  // white on the red warning is the faintest
@@ -81,8 +80,7 @@ TEST(Overlay, ItsNumbersAreReadBackFromThePicture) {
   // Behind it a picture with much detail: stripes and blots.
   Frame frame = blank_frame(1280, 720, 0, 0, 0);
   for (std::size_t i = 0; i < frame.rgb.size(); ++i)
-    frame.rgb[i] =
-        std::uint8_t(125 + 60 * std::sin(double(i % 3840) * 0.09) * std::cos(double(i / 3840) * 0.31));
+    frame.rgb[i] = std::uint8_t(125 + 60 * std::sin(double(i % 3840) * 0.09) * std::cos(double(i / 3840) * 0.31));
   EXPECT_EQ(reader.read_after(frame, "time"), "") << "nothing is written yet";
   overlay.draw(frame, data);
   EXPECT_EQ(reader.read_after(frame, "time"), "12.345 s");
@@ -99,8 +97,7 @@ TEST(Overlay, LongNamesOfAPairCanBeToldApart) {
     OverlayData data = full_data();
     data.session = session;
     const auto texts = Overlay(width, 720).layout(data);
-    const auto label =
-        std::find_if(texts.begin(), texts.end(), [](const auto& t) { return t.text == "session"; });
+    const auto label = std::find_if(texts.begin(), texts.end(), [](const auto& t) { return t.text == "session"; });
     return label == texts.end() ? "" : (label + 1)->text;
   };
   for (const int width : {1280, 640}) {

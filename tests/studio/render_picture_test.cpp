@@ -17,8 +17,7 @@ std::unique_ptr<Renderer> make_renderer(const TestScene& scene) {
 
 int difference(const Frame& a, const Frame& b, std::size_t pixel) {
   int worst = 0;
-  for (std::size_t c = 0; c < 3; ++c)
-    worst = std::max(worst, std::abs(a.rgb[3 * pixel + c] - b.rgb[3 * pixel + c]));
+  for (std::size_t c = 0; c < 3; ++c) worst = std::max(worst, std::abs(a.rgb[3 * pixel + c] - b.rgb[3 * pixel + c]));
   return worst;
 }
 
@@ -27,12 +26,9 @@ std::vector<bool> projected_mask(const Surface& surface, const Camera& camera) {
   std::vector<bool> mask(kWidth * kHeight);
   for (const auto& t : surface.triangle) {
     Pixel p[3];
-    for (std::size_t i = 0; i < 3; ++i)
-      p[i] = project(camera, kWidth, kHeight, surface.vertex[std::size_t(t[i])]);
-    const int top = int(std::min({p[0].y, p[1].y, p[2].y})),
-              bottom = int(std::max({p[0].y, p[1].y, p[2].y})) + 1;
-    const int left = int(std::min({p[0].x, p[1].x, p[2].x})),
-              right = int(std::max({p[0].x, p[1].x, p[2].x})) + 1;
+    for (std::size_t i = 0; i < 3; ++i) p[i] = project(camera, kWidth, kHeight, surface.vertex[std::size_t(t[i])]);
+    const int top = int(std::min({p[0].y, p[1].y, p[2].y})), bottom = int(std::max({p[0].y, p[1].y, p[2].y})) + 1;
+    const int left = int(std::min({p[0].x, p[1].x, p[2].x})), right = int(std::max({p[0].x, p[1].x, p[2].x})) + 1;
     for (int y = std::max(top, 0); y < std::min(bottom, kHeight); ++y)
       for (int x = std::max(left, 0); x < std::min(right, kWidth); ++x) {
         double turn[3];
@@ -92,8 +88,7 @@ TEST(Picture, ShowsTheToolWhereItIs) {
   auto renderer = make_renderer(*scene);
   DrawOptions options;
   options.camera = default_camera(scene->view);
-  options.camera.eye =
-      options.camera.eye + 0.8 * (options.camera.eye - options.camera.target);  // room for the tool
+  options.camera.eye = options.camera.eye + 0.8 * (options.camera.eye - options.camera.target);  // room for the tool
   State state = rest_state(scene->model);
   const Frame without = renderer->draw(state, options);
   for (const std::int32_t tool : {0, 1}) {
@@ -143,8 +138,7 @@ TEST(Picture, ViewsDiffer) {
   const Frame both = renderer->draw(state, options);
   int changed_spheres = 0, changed_both = 0;
   for (std::size_t i = 0; i < kWidth * kHeight; ++i)
-    changed_spheres += difference(surface, spheres, i) > 30,
-        changed_both += difference(spheres, both, i) > 10;
+    changed_spheres += difference(surface, spheres, i) > 30, changed_both += difference(spheres, both, i) > 10;
   EXPECT_GT(changed_spheres, 1000);
   EXPECT_GT(changed_both, 1000);
 }

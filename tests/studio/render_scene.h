@@ -8,10 +8,10 @@
 #include <map>
 #include <numbers>
 
-#include "core/cutting.h"
-#include "core/network.h"
-#include "core/state.h"
-#include "core/surface.h"
+#include "core/cutting/cutting.h"
+#include "core/model/state.h"
+#include "core/network/network.h"
+#include "core/surface/surface.h"
 #include "studio/render/renderer.h"
 
 namespace ctpm::render_test {
@@ -21,10 +21,8 @@ using Shape = std::function<double(Vec3)>;
 
 /// An ellipsoid with a broad dent, so that it is neither convex nor symmetric. About 13 x 9 x 6 cm.
 inline double blob(Vec3 p) {
-  const double q =
-      std::sqrt(p.x * p.x / (0.065 * 0.065) + p.y * p.y / (0.045 * 0.045) + p.z * p.z / (0.03 * 0.03));
-  const double dent =
-      0.15 * std::exp(-(p.x - 0.02) * (p.x - 0.02) / 2e-4 - (p.y + 0.04) * (p.y + 0.04) / 4e-4);
+  const double q = std::sqrt(p.x * p.x / (0.065 * 0.065) + p.y * p.y / (0.045 * 0.045) + p.z * p.z / (0.03 * 0.03));
+  const double dent = 0.15 * std::exp(-(p.x - 0.02) * (p.x - 0.02) / 2e-4 - (p.y + 0.04) * (p.y + 0.04) / 4e-4);
   return (q - 1 + dent) * 0.04;
 }
 
@@ -34,8 +32,7 @@ inline Surface star_surface(const Shape& shape, int rows) {
   const int columns = 2 * rows;
   const auto on_shape = [&](Vec3 direction) {
     double low = 0, high = 0.2;
-    for (int i = 0; i < 50; ++i)
-      (shape(0.5 * (low + high) * direction) < 0 ? low : high) = 0.5 * (low + high);
+    for (int i = 0; i < 50; ++i) (shape(0.5 * (low + high) * direction) < 0 ? low : high) = 0.5 * (low + high);
     return low * direction;
   };
   surface.vertex.push_back(on_shape({0, 0, -1}));

@@ -14,9 +14,7 @@ namespace fs = std::filesystem;
 
 class Video : public testing::Test {
  protected:
-  Video() : folder_(testing::TempDir() + "/video_" + std::to_string(::getpid())) {
-    fs::create_directories(folder_);
-  }
+  Video() : folder_(testing::TempDir() + "/video_" + std::to_string(::getpid())) { fs::create_directories(folder_); }
   ~Video() override { fs::remove_all(folder_); }
 
   std::string path(const std::string& name) const { return folder_ + "/" + name; }

@@ -41,8 +41,7 @@ TEST(ElementValues, SeveredElementsAreNotShown) {
   measure_elements(scene->model, state, ElementQuantity::stretch, rest);
   EXPECT_LT(rest.size(), whole.size());
   for (const ElementValue& e : rest)
-    EXPECT_GT(scene->model.rest_position[std::size_t(e.a)].x * scene->model.rest_position[std::size_t(e.b)].x,
-              0);
+    EXPECT_GT(scene->model.rest_position[std::size_t(e.a)].x * scene->model.rest_position[std::size_t(e.b)].x, 0);
 }
 
 TEST(View, CutawayShowsASolidSectionAndNothingBeyondIt) {

@@ -64,10 +64,9 @@ TEST(ShippedSessions, AMinuteTakesLessThan4Megabytes) {
   for (const fs::path& path : shipped_sessions()) {
     const std::string name = path.stem().string(), scene = name.substr(0, name.find('-'));
     if (!start_mb.contains(scene)) {
-      const auto recorded =
-          run_ctpm({"record", kScenes + "/" + scene + ".json", "-o", scene + ".ctpm", "--fast", "--script",
-                    kScenes + "/scripts/" + name + ".json", "--duration-s", "0.001"},
-                   folder.path());
+      const auto recorded = run_ctpm({"record", kScenes + "/" + scene + ".json", "-o", scene + ".ctpm", "--fast",
+                                      "--script", kScenes + "/scripts/" + name + ".json", "--duration-s", "0.001"},
+                                     folder.path());
       ASSERT_EQ(recorded.code, 0) << recorded.err;
       start_mb[scene] = double(fs::file_size(folder.path() / (scene + ".ctpm"))) / 1e6;
     }
@@ -106,9 +105,7 @@ std::vector<std::map<std::string, std::string>> read_csv(const fs::path& path) {
 
 TEST(ReplayCsv, HasTimeToolForceAndDepthOfEachTick) {
   const TemporaryFolder folder;
-  ASSERT_EQ(
-      run_ctpm({"replay", kPress, "--from-s", "1", "--to-s", "2.5", "--csv", "a.csv"}, folder.path()).code,
-      0);
+  ASSERT_EQ(run_ctpm({"replay", kPress, "--from-s", "1", "--to-s", "2.5", "--csv", "a.csv"}, folder.path()).code, 0);
   const auto rows = read_csv(folder.path() / "a.csv");
   ASSERT_EQ(rows.size(), 1500u);
   double most_force = 0, most_depth = 0;
@@ -120,13 +117,11 @@ TEST(ReplayCsv, HasTimeToolForceAndDepthOfEachTick) {
     EXPECT_EQ(number("tool_x_mm"), -45);  // the script presses straight down there
     EXPECT_EQ(number("tool_y_mm"), 30);
     EXPECT_EQ(number("tool_qw"), 1);
-    EXPECT_NEAR(number("force_n"), std::hypot(number("force_x_n"), number("force_y_n"), number("force_z_n")),
-                1e-6);
+    EXPECT_NEAR(number("force_n"), std::hypot(number("force_x_n"), number("force_y_n"), number("force_z_n")), 1e-6);
     EXPECT_EQ(number("force_n") > 0, number("contacts") > 0) << i;
     EXPECT_EQ(number("severed"), 0);
     EXPECT_EQ(number("same_as_recorded"), 1);
-    most_force = std::max(most_force, number("force_n")),
-    most_depth = std::max(most_depth, number("depth_mm"));
+    most_force = std::max(most_force, number("force_n")), most_depth = std::max(most_depth, number("depth_mm"));
   }
   EXPECT_GT(most_force, 0.5);
   EXPECT_GT(most_depth, 5);
@@ -174,9 +169,9 @@ TEST(Info, ListsEventsInOrderOfTime) {
   });
   ASSERT_TRUE(writer->finish());
   for (const char* json : {"", "--json"}) {
-    const auto info = run_ctpm(*json ? std::vector<std::string>{"info", "a.ctpm", json}
-                                     : std::vector<std::string>{"info", "a.ctpm"},
-                               folder.path());
+    const auto info =
+        run_ctpm(*json ? std::vector<std::string>{"info", "a.ctpm", json} : std::vector<std::string>{"info", "a.ctpm"},
+                 folder.path());
     EXPECT_LT(info.out.find("seen late"), info.out.find("later")) << info.out;
   }
 }
@@ -229,8 +224,7 @@ TEST(RecoverProgram, SavesTheBeginningOfAFileThatWasCutShort) {
   for (const int percent : {97, 90}) {
     const std::string name = std::to_string(percent) + ".ctpm", saved = "saved-" + name;
     const std::string whole = slurp(kPress);
-    std::ofstream(folder.path() / name, std::ios::binary)
-        << whole.substr(0, whole.size() * std::size_t(percent) / 100);
+    std::ofstream(folder.path() / name, std::ios::binary) << whole.substr(0, whole.size() * std::size_t(percent) / 100);
     EXPECT_EQ(run_ctpm({"verify", name}, folder.path()).code, 2);
     const auto recovered = run_ctpm({"recover", name, "-o", saved}, folder.path());
     EXPECT_EQ(recovered.code, 3) << recovered.out << recovered.err;
@@ -260,8 +254,7 @@ TEST(KilledProgram, LeavesASessionThatIsSaidToBeUnfinishedAndCanBeRecovered) {
   EXPECT_TRUE(holds(verified.err, "no clean end")) << verified.err;
   const auto compared = run_ctpm({"compare", "a.ctpm", "a.ctpm"}, folder.path());
   EXPECT_EQ(compared.code, 0) << compared.err;
-  EXPECT_TRUE(holds(compared.err, "warning: a.ctpm has no clean end: what is there is measured"))
-      << compared.err;
+  EXPECT_TRUE(holds(compared.err, "warning: a.ctpm has no clean end: what is there is measured")) << compared.err;
   const auto recovered = run_ctpm({"recover", "a.ctpm", "-o", "b.ctpm"}, folder.path());
   EXPECT_EQ(recovered.code, 3) << recovered.out << recovered.err;
   EXPECT_TRUE(holds(recovered.out, "lost: the session was cut off")) << recovered.out;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "studio/reports/stability.h"
+#include "studio/stability/stability.h"
 #include "tests/studio/run_program.h"
 
 namespace ctpm {
@@ -17,8 +17,7 @@ using testing::TemporaryFolder;
 
 StabilityCase case_named(const std::string& key) {
   const std::vector<StabilityCase> cases = stability_cases(true);
-  const auto it =
-      std::find_if(cases.begin(), cases.end(), [&](const StabilityCase& c) { return c.key == key; });
+  const auto it = std::find_if(cases.begin(), cases.end(), [&](const StabilityCase& c) { return c.key == key; });
   EXPECT_NE(it, cases.end()) << key;
   return *it;
 }
@@ -98,8 +97,7 @@ TEST(Stability, KeysNameOneCaseEach) {
 TEST(StabilityCommand, WritesAReportOfTheCasesThatAreAskedFor) {
   const TemporaryFolder folder;
   const ProgramOutcome outcome = run_ctpm(
-      {"stability", "-o", "out", "--quick", "--case", "single", "--case", "empty", "--case", "chain"},
-      folder.path());
+      {"stability", "-o", "out", "--quick", "--case", "single", "--case", "empty", "--case", "chain"}, folder.path());
   EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
   EXPECT_NE(outcome.out.find("3 cases, 4 integrators"), std::string::npos) << outcome.out;
   const std::string csv = slurp(folder.path() / "out/results.csv");

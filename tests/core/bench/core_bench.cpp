@@ -9,9 +9,9 @@
 #include <chrono>
 #include <cmath>
 
-#include "core/elements.h"
-#include "core/fields.h"
-#include "core/step.h"
+#include "core/elements/elements.h"
+#include "core/model/fields.h"
+#include "core/stepping/step.h"
 #include "tests/core/blocks.h"
 
 namespace ctpm {
@@ -33,9 +33,8 @@ std::size_t axial_count(const Model& model) { return model.edges.size() + model.
 
 void report(benchmark::State& run, const Model& model) {
   run.counters["spheres"] = double(model.sphere_count());
-  run.counters["per_spring"] = benchmark::Counter(double(axial_count(model)),
-                                                     benchmark::Counter::kIsIterationInvariantRate |
-                                                         benchmark::Counter::kInvert);
+  run.counters["per_spring"] = benchmark::Counter(
+      double(axial_count(model)), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 void forces(benchmark::State& run, Structure structure, double viscosity) {
@@ -113,13 +112,29 @@ void memory(benchmark::State& run, Structure structure, double viscosity) {
 constexpr double kPascal = 5e3, kKilopascal = 5e6;  // v1 of the liver in both readings [Pa s/m]
 
 BENCHMARK(streaming)->Arg(1000)->Arg(10000)->Arg(100000);
-BENCHMARK_CAPTURE(forces, springs, Structure::mass_spring, 0.0)->ArgsProduct({{1000, 10000, 100000}, {1, 2}})->UseRealTime();
-BENCHMARK_CAPTURE(forces, two_sphere_tpms, Structure::tpm, kPascal)->ArgsProduct({{1000, 10000, 100000}, {1, 2}})->UseRealTime();
+BENCHMARK_CAPTURE(forces, springs, Structure::mass_spring, 0.0)
+    ->ArgsProduct({{1000, 10000, 100000}, {1, 2}})
+    ->UseRealTime();
+BENCHMARK_CAPTURE(forces, two_sphere_tpms, Structure::tpm, kPascal)
+    ->ArgsProduct({{1000, 10000, 100000}, {1, 2}})
+    ->UseRealTime();
 BENCHMARK_CAPTURE(forces, ctpm, Structure::ctpm, kPascal)->ArgsProduct({{1000, 10000, 100000}, {1, 2}})->UseRealTime();
-BENCHMARK_CAPTURE(ticks, stiff_liver, kKilopascal, as_scenes())->ArgsProduct({{729, 4913}, {1, 2}})->Iterations(500)->UseRealTime();
-BENCHMARK_CAPTURE(ticks, stiff_liver_to_1e_3, kKilopascal, at_residual(1e-3))->ArgsProduct({{729, 5832}, {1, 2}})->Iterations(500)->UseRealTime();
-BENCHMARK_CAPTURE(ticks, stiff_liver_to_1e_6, kKilopascal, at_residual(1e-6))->ArgsProduct({{729, 5832}, {1, 2}})->Iterations(500)->UseRealTime();
-BENCHMARK_CAPTURE(ticks, liver_not_stiff, kPascal, as_scenes())->ArgsProduct({{4913, 29791}, {1, 2}})->Iterations(500)->UseRealTime();
+BENCHMARK_CAPTURE(ticks, stiff_liver, kKilopascal, as_scenes())
+    ->ArgsProduct({{729, 4913}, {1, 2}})
+    ->Iterations(500)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(ticks, stiff_liver_to_1e_3, kKilopascal, at_residual(1e-3))
+    ->ArgsProduct({{729, 5832}, {1, 2}})
+    ->Iterations(500)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(ticks, stiff_liver_to_1e_6, kKilopascal, at_residual(1e-6))
+    ->ArgsProduct({{729, 5832}, {1, 2}})
+    ->Iterations(500)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(ticks, liver_not_stiff, kPascal, as_scenes())
+    ->ArgsProduct({{4913, 29791}, {1, 2}})
+    ->Iterations(500)
+    ->UseRealTime();
 BENCHMARK_CAPTURE(memory, springs, Structure::mass_spring, 0.0)->Arg(5000);
 BENCHMARK_CAPTURE(memory, ctpm, Structure::ctpm, kKilopascal)->Arg(5000);
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/contact.h"
-#include "core/outside.h"
+#include "core/contact/contact.h"
+#include "core/stepping/outside.h"
 
 namespace ctpm::testing {
 

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "core/elements.h"
-#include "core/model.h"
-#include "core/state.h"
+#include "core/elements/elements.h"
+#include "core/model/model.h"
+#include "core/model/state.h"
 
 namespace ctpm::testing {
 

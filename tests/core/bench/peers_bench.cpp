@@ -18,7 +18,7 @@
 #include <optional>
 #include <string>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "tests/core/bench/sundials_runs.h"
 #include "tests/core/blocks.h"
 
@@ -114,8 +114,7 @@ Run run_core(const Case& c, Integrator integrator, int steps_per_sample, double 
     for (int k = 0; k < steps_per_sample; ++k) {
       const double start = processor_time();
       Inputs inputs;
-      if (!model.tools.empty())
-        inputs.tool = 0, inputs.position = c.press.centre(double(state.tick + 1) * model.tick);
+      if (!model.tools.empty()) inputs.tool = 0, inputs.position = c.press.centre(double(state.tick + 1) * model.tick);
       const StepReport report = stepper.step(state, inputs);
       run.seconds += processor_time() - start;
       if (is_refused(report.status)) return run;
@@ -149,8 +148,7 @@ void measure(benchmark::State& bench, Case& c, Family family, const Solve& solve
 /// never has.
 std::optional<double> time_at_error(std::vector<Point> points, Family family, double wanted) {
   std::erase_if(points, [&](const Point& p) { return p.family != family; });
-  std::sort(points.begin(), points.end(),
-            [](const Point& a, const Point& b) { return a.seconds < b.seconds; });
+  std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.seconds < b.seconds; });
   const Point* before = nullptr;
   for (const Point& p : points) {
     if (before != nullptr && p.error >= before->error) continue;
@@ -172,9 +170,8 @@ void print_ratios(const Case& c) {
   std::printf("%s", c.name.c_str());
   if (std::isfinite(check)) std::printf(", reference and ARKODE apart by %.1e", check);
   std::printf("\n");
-  const std::pair<Family, const char*> others[] = {{Family::cvode, "CVODE"},
-                                                   {Family::cvode_preconditioned, "CVODE preconditioned"},
-                                                   {Family::arkode, "ARKODE"}};
+  const std::pair<Family, const char*> others[] = {
+      {Family::cvode, "CVODE"}, {Family::cvode_preconditioned, "CVODE preconditioned"}, {Family::arkode, "ARKODE"}};
   for (const double error : kErrors) {
     const std::optional<double> core = time_at_error(c.points, Family::core, error);
     if (!core) continue;
@@ -200,9 +197,8 @@ void add_all(Case& c) {
   const auto add_core = [&](Integrator integrator, int steps, double tolerance) {
     std::snprintf(name, sizeof name, "core/%s/h_us:%g/tolerance:%g", name_of(integrator),
                   1e6 * kSamples.interval / steps, tolerance);
-    add(c, Family::core, name, [&c, integrator, steps, tolerance](NetworkOde&) {
-      return run_core(c, integrator, steps, tolerance);
-    });
+    add(c, Family::core, name,
+        [&c, integrator, steps, tolerance](NetworkOde&) { return run_core(c, integrator, steps, tolerance); });
   };
   for (const double tolerance : {1e-2, 3e-3, 1e-3})
     for (const int steps : {1, 2, 3, 5, 7, 10, 14, 20, 40}) add_core(Integrator::sdirk2, steps, tolerance);

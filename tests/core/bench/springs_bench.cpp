@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "core/step.h"
+#include "core/stepping/step.h"
 #include "tests/core/blocks.h"
 
 namespace {

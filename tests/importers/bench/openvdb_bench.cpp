@@ -27,8 +27,8 @@ void openvdb_mesh_to_volume(benchmark::State& state) {
   for (auto _ : state) {
     openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> adapter(points, triangles);
     const auto transform = openvdb::math::Transform::createLinearTransform(1.0);
-    const auto grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(adapter, *transform, 1.0f,
-                                                                       std::numeric_limits<float>::max());
+    const auto grid =
+        openvdb::tools::meshToVolume<openvdb::FloatGrid>(adapter, *transform, 1.0f, std::numeric_limits<float>::max());
     inside = 0;
     for (auto value = grid->cbeginValueOn(); value; ++value)
       inside += *value < 0 ? std::int64_t(value.getVoxelCount()) : 0;

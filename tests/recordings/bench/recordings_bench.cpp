@@ -93,8 +93,7 @@ void FileSize1000Spheres(benchmark::State& state) {
     auto empty = SessionWriter::create(folder / "empty.ctpm", start, options);
     if (!empty || !empty->finish()) return state.SkipWithError("not recorded");
     auto writer = SessionWriter::create(folder / "a.ctpm", start, options);
-    auto bare = SessionWriter::create(folder / "bare.ctpm", start,
-                                      {.wait_when_full = true, .keyframe_ticks = 1 << 30});
+    auto bare = SessionWriter::create(folder / "bare.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 1 << 30});
     live(start, session_ticks, [&](const State& after, const TickRecord& record) {
       writer->append(after, record);
       bare->append(after, record);
@@ -116,8 +115,7 @@ const std::string& one_hour() {
   static const Folder folder;
   static const std::string path = [] {
     const std::string name = folder / "hour.ctpm";
-    auto writer =
-        SessionWriter::create(name, block_start(), {.wait_when_full = true, .queue_ticks = 1 << 18});
+    auto writer = SessionWriter::create(name, block_start(), {.wait_when_full = true, .queue_ticks = 1 << 18});
     const Lived& lived = lived_block();
     for (std::int64_t tick = 0; tick < 60 * ticks_per_minute; ++tick)
       writer->append(lived.last, lived.records[static_cast<std::size_t>(tick) % lived.records.size()]);
@@ -170,8 +168,7 @@ void SeekInTenMinutes(benchmark::State& state) {
     keyframe = (keyframe + 131) % (reader->tick_count() / options.keyframe_ticks);
     const auto begin = std::chrono::steady_clock::now();
     if (!cursor->seek((keyframe + 1) * options.keyframe_ticks - 1)) return state.SkipWithError("not found");
-    longest =
-        std::max(longest, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    longest = std::max(longest, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   }
   state.counters["longest_s"] = longest;
 }

@@ -1,0 +1,103 @@
+#include "core/contact/lips.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ctpm {
+namespace {
+
+/// How fast the contact stiffens, per spacing of penetration.
+constexpr double kStiffening = 8;
+
+bool is_severed(const Model& model, const State& state, std::size_t element) {
+  const std::size_t edges = model.edges.size();
+  return element < edges ? state.edge_severed[element] != 0 : state.tpm_severed[element - edges] != 0;
+}
+
+}  // namespace
+
+LipContact::LipContact(const Model& model) : model_(model) {
+  if (!is_wanted()) return;
+  const std::size_t n = model.sphere_count(), edges = model.edges.size(), all = edges + model.tpms.size();
+  const auto ends = [&](std::size_t e) {
+    return e < edges ? std::pair(model.edges.a[e], model.edges.b[e])
+                     : std::pair(model.tpms.a[e - edges], model.tpms.b[e - edges]);
+  };
+  first_.assign(n + 1, 0);
+  for (std::size_t e = 0; e < all; ++e)
+    ++first_[std::size_t(ends(e).first) + 1], ++first_[std::size_t(ends(e).second) + 1];
+  for (std::size_t i = 0; i < n; ++i) first_[i + 1] += first_[i];
+  joins_.resize(2 * all);
+  std::vector<std::int32_t> next(first_.begin(), first_.end() - 1);
+  for (std::size_t e = 0; e < all; ++e) {
+    const auto [a, b] = ends(e);
+    joins_[std::size_t(next[std::size_t(a)]++)] = {b, std::int32_t(e)};
+    joins_[std::size_t(next[std::size_t(b)]++)] = {a, std::int32_t(e)};
+  }
+  spacing_.assign(n, 0), organ_.assign(n, -1);
+  for (std::size_t o = 0; o < model.organs.size(); ++o)
+    for (std::int32_t i = 0; i < model.organs[o].count; ++i) {
+      const auto sphere = std::size_t(model.organs[o].first + i);
+      spacing_[sphere] = model.organs[o].spacing, organ_[sphere] = std::int32_t(o);
+    }
+  is_lip_.assign(n, 0);
+  lips_.reserve(n);
+}
+
+/// The spheres beside a cut, sorted along x; equal places by index, so that the order is always the same.
+void LipContact::gather(const State& state) {
+  std::fill(is_lip_.begin(), is_lip_.end(), std::uint8_t(0));
+  const auto mark = [&](const auto& elements, const std::vector<std::uint8_t>& severed) {
+    for (std::size_t i = 0; i < severed.size(); ++i)
+      if (severed[i]) is_lip_[std::size_t(elements.a[i])] = is_lip_[std::size_t(elements.b[i])] = 1;
+  };
+  mark(model_.edges, state.edge_severed), mark(model_.tpms, state.tpm_severed);
+  lips_.clear();
+  for (std::size_t i = 0; i < is_lip_.size(); ++i)
+    if (is_lip_[i]) lips_.push_back({state.position.x[i], std::int32_t(i)});
+  std::sort(lips_.begin(), lips_.end(),
+            [](const Place& p, const Place& q) { return p.x != q.x ? p.x < q.x : p.sphere < q.sphere; });
+}
+
+bool LipContact::are_joined(const State& state, std::int32_t a, std::int32_t b) const {
+  for (std::int32_t i = first_[std::size_t(a)]; i < first_[std::size_t(a) + 1]; ++i) {
+    const Join join = joins_[std::size_t(i)];
+    if (join.other == b && !is_severed(model_, state, std::size_t(join.element))) return true;
+  }
+  return false;
+}
+
+void LipContact::add_pair(const State& state, std::int32_t a, std::int32_t b, PairContacts& contacts) const {
+  const Vec3 apart = state.position[std::size_t(b)] - state.position[std::size_t(a)];
+  const double spacing = spacing_[std::size_t(a)], squared = dot(apart, apart);
+  if (squared >= spacing * spacing || squared == 0 || are_joined(state, a, b)) return;
+  const double distance = std::sqrt(squared), p = spacing - distance;
+  const double grown = kStiffening * p / spacing, k = model_.lip_k * (1 + 3 * grown * grown);
+  const Vec3 axis = apart / distance;
+  contacts.add({.a = a,
+                .b = b,
+                .weight_a = -1,
+                .weight_b = 1,
+                .axis = axis,
+                .force = model_.lip_k * p * (1 + grown * grown) * axis,
+                .k = k,
+                .only_pushes = true});
+}
+
+void LipContact::find(const State& state, PairContacts& contacts) {
+  if (state.edge_severed.empty() && state.tpm_severed.empty()) return;
+  gather(state);
+  std::size_t added = 0;
+  for (std::size_t i = 0; i < lips_.size(); ++i)
+    for (std::size_t j = i + 1; j < lips_.size(); ++j) {
+      const auto a = lips_[i].sphere, b = lips_[j].sphere;
+      if (lips_[j].x - lips_[i].x >= spacing_[std::size_t(a)]) break;
+      if (organ_[std::size_t(a)] != organ_[std::size_t(b)]) continue;
+      if (added == most()) return;
+      const std::size_t before = contacts.count();
+      add_pair(state, std::min(a, b), std::max(a, b), contacts);
+      added += contacts.count() - before;
+    }
+}
+
+}  // namespace ctpm

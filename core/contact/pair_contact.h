@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/elements/axial.h"
+#include "core/model/model.h"
+
+namespace ctpm {
+
+/// A force on a point that two spheres carry, x = weight_a x_a + weight_b x_b: a spring along an axis, and drag
+/// across it. A point of an element has weights that sum to 1; a pair that keeps its distance has -1 and 1,
+/// so that its forces are opposite.
+struct PairContact {
+  std::int32_t a = -1, b = -1;
+  double weight_a = 0, weight_b = 0;
+  Vec3 axis{};               ///< unit vector
+  Vec3 force{};              ///< on the point while it rests [N]
+  double k = 0;              ///< by which the force along the axis falls as the point moves along it [N/m], >= 0
+  double drag = 0;           ///< across the axis [N s/m], >= 0
+  bool only_pushes = false;  ///< ends when it would pull the point against the axis
+  bool is_tool = false;      ///< a tool bears the opposite force
+  Vec3 acting{};             ///< force on the point in an explicit step [N]
+  std::array<double, 18> without{};  ///< force and block of both spheres before the contact was added
+};
+
+/// All pair contacts of a substep, solved implicitly like the tissue.
+class PairContacts {
+ public:
+  /// Room for `most` contacts, so that a tick never allocates.
+  PairContacts(const Model& model, std::size_t most) : model_(model) { contacts_.reserve(most); }
+
+  void add(const PairContact& contact) { contacts_.push_back(contact); }
+  void clear() { contacts_.clear(), is_explicit_ = false; }
+  std::size_t count() const { return contacts_.size(); }
+
+  /// To be solved for changes of `velocity` [m/s], not from rest.
+  void start_from(const Vec3Array& velocity);
+
+  /// Adds contact forces [N] and linearisation for a step of `h` [s].
+  void linearise(double h, Coordinates& force, DiagonalBlocks& blocks);
+
+  /// Takes back to the bit what the last linearise() added; what was added to the same arrays later must have been
+  /// taken back before.
+  void undo_linearise(Coordinates& force, DiagonalBlocks& blocks) const;
+
+  /// After an explicit step of `h` [s] without these contacts, found in its middle: changes the `velocity` [m/s] of
+  /// their spheres, one contact after the other, each solved implicitly. `before`: velocity [m/s] at the start. Spheres
+  /// do not move along `held_axes`.
+  void push_apart(double h, std::span<const std::uint8_t> held_axes, const Vec3Array& before, Coordinates& velocity);
+
+  /// result += coupling of a step of `h` [s] times `v`, in the precision of `v`, float or double;
+  /// returns v . coupling . v.
+  template <class Real>
+  double apply(double h, const Real* v, Real* result) const;
+
+  /// Whether a contact would pull after a step of `h` [s] with velocity `v` [m/s].
+  bool has_pulling(double h, const Coordinates& v) const;
+
+  /// Removes the contacts that would.
+  void drop_pulling(double h, const Coordinates& v);
+
+  /// Force on the tool [N] after the step, and how many contacts it has.
+  Vec3 force_on_tool(double h, const Coordinates& v) const;
+  std::int32_t tool_count() const;
+
+ private:
+  template <class Real>
+  Vec3 velocity_of(const PairContact& contact, const Real* v) const;
+  Vec3 coupling(const PairContact& contact, double h, Vec3 u) const;
+  bool pulls(const PairContact& contact, double h, const Coordinates& v) const;
+
+  const Model& model_;
+  bool is_explicit_ = false;  ///< push_apart() has solved them
+  std::vector<PairContact> contacts_;
+};
+
+}  // namespace ctpm

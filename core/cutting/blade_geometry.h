@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+
+#include "core/model/vec3.h"
+
+namespace ctpm {
+
+/// Where a segment p-q meets what an edge sweeps that goes from `from`-`to` to `from2`-`to2`: the triangles
+/// (from, to, from2) and (to, to2, from2).
+struct SweepHit {
+  double along;   ///< of the segment, 0 at p to 1 at q
+  double across;  ///< of the edge, 0 at `from` to 1 at `to`
+  double share;   ///< of the edge's way, 0 to 1
+};
+
+/// Touching an edge or corner of a triangle counts; a segment in its plane does not.
+std::optional<SweepHit> meet_sweep(Vec3 p, Vec3 q, Vec3 from, Vec3 to, Vec3 from2, Vec3 to2);
+
+/// An axis-parallel box around points.
+struct Box {
+  Vec3 low, high;
+
+  explicit Box(Vec3 p) : low(p), high(p) {}
+  template <class... Points>
+  explicit Box(Vec3 first, Points... others) : low(first), high(first) {
+    (add(others), ...);
+  }
+  void add(Vec3 p) {
+    low = {p.x < low.x ? p.x : low.x, p.y < low.y ? p.y : low.y, p.z < low.z ? p.z : low.z};
+    high = {p.x > high.x ? p.x : high.x, p.y > high.y ? p.y : high.y, p.z > high.z ? p.z : high.z};
+  }
+  Box grown(double by) const { return Box(low - Vec3{by, by, by}, high + Vec3{by, by, by}); }
+  bool meets(const Box& other) const {
+    return low.x <= other.high.x && other.low.x <= high.x && low.y <= other.high.y && other.low.y <= high.y &&
+           low.z <= other.high.z && other.low.z <= high.z;
+  }
+};
+
+}  // namespace ctpm

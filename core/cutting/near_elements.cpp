@@ -1,0 +1,52 @@
+#include "core/cutting/near_elements.h"
+
+#include <cmath>
+#include <numeric>
+
+namespace ctpm {
+
+NearElements::NearElements(const Model& model)
+    : model_(model),
+      found_at_(model.sphere_count()),
+      outside_(model.sphere_count()),
+      near_(model.edges.size() + model.tpms.size()) {
+  take_all();
+}
+
+void NearElements::take_all() {
+  count_ = near_.size();
+  std::iota(near_.begin(), near_.end(), 0);
+}
+
+void NearElements::find(const Vec3Array& position, const Box& box) {
+  found_at_ = position;
+  outside_.assign(position.size(), 0);
+  const auto mark = [&](const std::vector<double>& x, double low, double high, int side) {
+    for (std::size_t i = 0; i < x.size(); ++i)
+      outside_[i] = std::uint8_t(outside_[i] | (int(x[i] < low) | int(x[i] > high) << 1) << side);
+  };
+  mark(position.x, box.low.x - kMargin, box.high.x + kMargin, 0);
+  mark(position.y, box.low.y - kMargin, box.high.y + kMargin, 2);
+  mark(position.z, box.low.z - kMargin, box.high.z + kMargin, 4);
+  count_ = 0;
+  // Written always and kept sometimes: a branch here would be guessed wrong at every row of the lattice.
+  const auto keep = [&](const auto& elements, std::size_t first) {
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      near_[count_] = std::int32_t(first + i);
+      count_ += (outside_[std::size_t(elements.a[i])] & outside_[std::size_t(elements.b[i])]) == 0;
+    }
+  };
+  keep(model_.edges, 0), keep(model_.tpms, model_.edges.size());
+}
+
+void NearElements::follow(const Vec3Array& position) {
+  if (count_ == near_.size()) return;
+  const auto moved = [](const std::vector<double>& x, const std::vector<double>& from) {
+    int any = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) any |= !(std::abs(x[i] - from[i]) <= kMargin);
+    return any != 0;
+  };
+  if (moved(position.x, found_at_.x) || moved(position.y, found_at_.y) || moved(position.z, found_at_.z)) take_all();
+}
+
+}  // namespace ctpm

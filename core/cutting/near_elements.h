@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/cutting/blade_geometry.h"
+#include "core/model/model.h"
+
+namespace ctpm {
+
+/// The axial elements near a blade, so that a tick looks at these only: what is not here cannot meet it.
+class NearElements {
+ public:
+  /// Holds all elements until find().
+  explicit NearElements(const Model& model);
+
+  /// Keeps the elements that a blade within `box` can meet while no sphere moves farther than kMargin from
+  /// `position`.
+  void find(const Vec3Array& position, const Box& box);
+
+  /// Takes all elements if a sphere is farther than kMargin from where it was at find().
+  void follow(const Vec3Array& position);
+
+  /// Ascending: edges, then the edges' count plus two-sphere TPMs.
+  std::span<const std::int32_t> elements() const { return {near_.data(), count_}; }
+
+ private:
+  static constexpr double kMargin = 2e-3;  ///< [m]; in a tick of 1 ms, a sphere at 2 m/s
+
+  void take_all();
+
+  const Model& model_;
+  Vec3Array found_at_;                 ///< (sphere_count)
+  std::vector<std::uint8_t> outside_;  ///< of which sides of the box a sphere is, a bit for each (sphere_count)
+  std::vector<std::int32_t> near_;     ///< room for all elements; the first count_ are near
+  std::size_t count_ = 0;
+};
+
+}  // namespace ctpm

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/elements/kernels/kernels.h"
+#include "core/model/model.h"
+#include "core/model/state.h"
+#include "core/parallel/slabs.h"
+
+namespace ctpm {
+
+/// Three coordinates of all spheres in one array: x of all, then y, then z  (3 x sphere_count).
+using Coordinates = std::vector<double>;
+
+/// Symmetric 3x3 blocks, one a sphere, as six arrays: xx, xy, xz, yy, yz, zz  (6 x sphere_count).
+using DiagonalBlocks = std::vector<double>;
+
+/// All axial elements of a Model, edges first, then two-sphere TPMs, as batches for the inner loops (AxialBatch).
+/// Batches with the same parameters share one copy of them, so a tissue of one material streams none from memory.
+class AxialElements {
+ public:
+  AxialElements(const Model& model, const Slabs& slabs, const Kernels& kernels);
+
+  /// What the loops of one call read and write; `softness` as in Elements, null without it.
+  AxialArrays arrays(const State& state, const double* softness) const;
+
+  /// Adds the forces of this moment [N] of one slab's elements to `m.force`.
+  void add_forces(const AxialArrays& m, int slab) const;
+
+  /// Makes room for the coupling; before the first linearise().
+  void prepare_linearise();
+
+  /// Adds the elastic forces [N] to `m.force` and the diagonal of h^2 K + h C [kg] to `m.blocks`, and keeps the
+  /// coupling for apply().
+  void linearise(AxialArrays m, int slab);
+
+  /// result += coupling times `v`, in the precision of `v`, float or double.
+  template <class Real>
+  void apply(int slab, const Real* v, SlabTarget<Real> result) const;
+
+  /// As Elements::find_kelvin(), find_acting_kelvin() and finish_kelvin(), of two-sphere TPMs [first, last).
+  void find_kelvin(double h, const State& state, std::vector<double>& after, std::size_t first, std::size_t last) const;
+  void find_acting_kelvin(double h, const State& state, std::vector<double>& acting, std::size_t first,
+                          std::size_t last) const;
+  void finish_kelvin(double h, const std::vector<double>& acting, State& state, std::size_t first,
+                     std::size_t last) const;
+
+ private:
+  double kelvin_after(double h, const State& state, std::size_t t) const;
+  double acting_part(double h, std::size_t t) const;
+
+  using Batches = std::vector<AxialBatch>;
+
+  const Model& model_;
+  const Kernels& kernels_;
+  std::vector<Batches> of_slab_;  ///< whose spheres they add to
+  std::vector<double> parameters_;
+  std::vector<std::int32_t> third_;  ///< like Edges::third, with the own first sphere where there is none; empty
+                                     ///< without softening (place_count)
+  std::vector<std::int32_t> edge_;   ///< AxialArrays::edge; empty without a scalpel (place_count)
+  std::size_t place_count_ = 0;
+  std::vector<float> root_[3];  ///< direction times the root of the axial coupling [kg^1/2]; empty until needed
+  std::vector<float> across_;   ///< coupling across the direction: h^2 tension / length [kg], >= 0
+};
+
+}  // namespace ctpm

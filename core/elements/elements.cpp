@@ -1,0 +1,140 @@
+#include "core/elements/elements.h"
+
+#include <algorithm>
+#include <type_traits>
+
+namespace ctpm {
+namespace {
+
+/// Numbers between the rows of one slab and those of the next: more than a processor reads ahead.
+constexpr std::size_t kApart = 256;
+
+/// Slabs of more spheres add forces to where those of all spheres are: bringing them there would cost more than the few
+/// places that threads then share.
+constexpr std::int32_t kThick = 4096;
+
+}  // namespace
+
+Elements::Elements(const Model& model, Team& team, InstructionSet set)
+    : team_(team),
+      slabs_(model.sphere_count()),
+      axial_(model, slabs_, kernels_for(set)),
+      constraints_(model, model.constraints, slabs_, kernels_for(set)),
+      angles_(model, model.angle_springs, slabs_, kernels_for(set)),
+      softness_(model.has_softening ? model.sphere_count() : 0),
+      workbenches_(std::size_t(slabs_.count())) {}
+
+void Elements::make_room(std::size_t full_rows, std::size_t single_rows) {
+  if (slabs_.count() == 1) return;
+  for (int slab = 0; slab < slabs_.count(); ++slab) {
+    const auto size = std::size_t(slabs_.end(slab) - slabs_.begin(slab));
+    Workbench& workbench = workbenches_[std::size_t(slab)];
+    if (workbench.full.size() < full_rows * size) workbench.full.resize(full_rows * size + kApart);
+    if (workbench.single.size() < single_rows * size) workbench.single.resize(single_rows * size + kApart);
+  }
+}
+
+template <class Real>
+SlabTarget<Real> Elements::target_for(int slab, std::size_t rows, Real* all) const {
+  const auto size = std::size_t(slabs_.end(slab) - slabs_.begin(slab));
+  if (slabs_.count() == 1) return {all, 0, size};
+  Workbench& workbench = workbenches_[std::size_t(slab)];
+  Real* room;
+  if constexpr (std::is_same_v<Real, float>)
+    room = workbench.single.data();
+  else
+    room = workbench.full.data() + (rows == 6 ? 3 * size : 0);
+  std::fill_n(room, rows * size, Real(0));
+  return {room, slabs_.begin(slab), size};
+}
+template SlabTarget<float> Elements::target_for(int slab, std::size_t rows, float* all) const;
+template SlabTarget<double> Elements::target_for(int slab, std::size_t rows, double* all) const;
+
+template <class Real>
+void Elements::bring(const SlabTarget<Real>& own, std::size_t rows, Real* all) const {
+  if (slabs_.count() == 1) return;
+  const auto spheres = std::size_t(slabs_.end(slabs_.count() - 1));
+  for (std::size_t row = 0; row < rows; ++row) {
+    const Real* __restrict from = own.data + row * own.stride;
+    Real* __restrict to = all + row * spheres + own.begin;
+    for (std::size_t i = 0; i < own.stride; ++i) to[i] += from[i];
+  }
+}
+template void Elements::bring(const SlabTarget<float>& own, std::size_t rows, float* all) const;
+template void Elements::bring(const SlabTarget<double>& own, std::size_t rows, double* all) const;
+
+Elements::Arrays Elements::arrays(const State& state) {
+  double* softness = softness_.empty() ? nullptr : softness_.data();
+  return {constraints_.arrays(state, softness), angles_.arrays(state, nullptr), axial_.arrays(state, softness)};
+}
+
+void Elements::measure(const Arrays& arrays) {
+  if (kOnlySprings || (constraints_.empty() && angles_.empty())) return;
+  team_.for_each(slabs_.count(), [&](int slab) {
+    if (!softness_.empty()) std::fill(&softness_[0] + slabs_.begin(slab), &softness_[0] + slabs_.end(slab), 1.0);
+    constraints_.measure(arrays.constraints, slab);
+    angles_.measure(arrays.angles, slab);
+  });
+}
+
+void Elements::add_forces(const State& state, Coordinates& force) {
+  add_forces(
+      state, force, [](int) {}, [](int) {});
+}
+
+void Elements::add_forces_of(int slab, Arrays arrays, Coordinates& force) {
+  const std::int32_t begin = slabs_.begin(slab);
+  const bool is_thick = slabs_.end(slab) - begin > kThick;
+  const SlabTarget<double> own =
+      is_thick ? SlabTarget<double>{force.data() + begin, begin, force.size() / 3} : target_for(slab, 3, force.data());
+  arrays.constraints.force = arrays.angles.force = arrays.axial.force = own;
+  if constexpr (!kOnlySprings) {
+    constraints_.add_forces(arrays.constraints, slab);
+    angles_.add_forces(arrays.angles, slab);
+  }
+  axial_.add_forces(arrays.axial, slab);
+  if (!is_thick) bring(own, 3, force.data());
+}
+
+void Elements::prepare_linearise() {
+  constraints_.prepare_linearise(), angles_.prepare_linearise(), axial_.prepare_linearise();
+  make_room(9, 3);
+}
+
+void Elements::linearise_of(int slab, Arrays arrays, double h, bool with_dashpots, Coordinates& force,
+                            DiagonalBlocks& blocks) {
+  const SlabTarget<double> own = target_for(slab, 3, force.data()), own_blocks = target_for(slab, 6, blocks.data());
+  arrays.constraints.h = arrays.angles.h = arrays.axial.h = h;
+  arrays.axial.with_dashpots = with_dashpots;
+  arrays.constraints.force = arrays.angles.force = arrays.axial.force = own;
+  arrays.constraints.blocks = arrays.angles.blocks = arrays.axial.blocks = own_blocks;
+  if constexpr (!kOnlySprings) {
+    constraints_.linearise(arrays.constraints, slab);
+    angles_.linearise(arrays.angles, slab);
+  }
+  axial_.linearise(arrays.axial, slab);
+  bring(own, 3, force.data()), bring(own_blocks, 6, blocks.data());
+}
+
+template <class Part>
+void Elements::for_tpms(const State& state, Part&& part) const {
+  const std::size_t tpms = state.kelvin_elongation.size(), parts = std::size_t(slabs_.count());
+  if (kOnlySprings || tpms == 0) return;
+  team_.for_each(slabs_.count(),
+                 [&](int slab) { part(tpms * std::size_t(slab) / parts, tpms * std::size_t(slab + 1) / parts); });
+}
+
+void Elements::find_kelvin(double h, const State& state, std::vector<double>& after) const {
+  for_tpms(state, [&](std::size_t first, std::size_t last) { axial_.find_kelvin(h, state, after, first, last); });
+}
+
+void Elements::find_acting_kelvin(double h, const State& state, std::vector<double>& acting) const {
+  for_tpms(state,
+           [&](std::size_t first, std::size_t last) { axial_.find_acting_kelvin(h, state, acting, first, last); });
+}
+
+void Elements::finish_kelvin(double h, const std::vector<double>& acting, State& state) const {
+  for_tpms(state, [&](std::size_t first, std::size_t last) { axial_.finish_kelvin(h, acting, state, first, last); });
+}
+
+}  // namespace ctpm

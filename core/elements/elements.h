@@ -1,0 +1,129 @@
+#pragma once
+
+#include <vector>
+
+#include "core/elements/axial.h"
+#include "core/elements/kernels/kernels.h"
+#include "core/elements/lines.h"
+#include "core/elements/only_springs.h"
+#include "core/model/model.h"
+#include "core/model/state.h"
+#include "core/parallel/slabs.h"
+#include "core/parallel/team.h"
+
+namespace ctpm {
+
+/// All elements of a Model together: their forces, and their linearisation for an implicit step.
+class Elements {
+ public:
+  /// `model` and `team` must outlive the Elements.
+  Elements(const Model& model, Team& team, InstructionSet set = best_instruction_set());
+
+  /// Adds the forces of this moment [N] to `force`: springs, dashpots at State::velocity, two-sphere TPMs at
+  /// their present Kelvin elongation, constraints, softening (Eqs. 1-8)  (3 x sphere_count).
+  void add_forces(const State& state, Coordinates& force);
+
+  /// As above, with before(slab) ahead of what is added to a slab's spheres and after(slab) behind it.
+  template <class Before, class After>
+  void add_forces(const State& state, Coordinates& force, Before&& before, After&& after);
+
+  /// Adds the elastic forces [N] to `force` and the diagonal of h^2 K + h C [kg] to `blocks`, for a step of `h` [s], at
+  /// the end of which two-sphere TPMs are meant; before(slab) is called ahead of what is added to a slab's spheres. The
+  /// dashpots' forces are left to the matrix unless `with_dashpots`.
+  template <class Before>
+  void linearise(const State& state, double h, bool with_dashpots, Coordinates& force, DiagonalBlocks& blocks,
+                 Before&& before);
+
+  /// result += (h^2 K + h C) v as of the last linearise(), in the precision of `v`, float or double  (3 x sphere_count
+  /// each). `after(slab)` is called for each slab when its part of `result` is done.
+  template <class Real, class After>
+  void apply(const Real* v, Real* result, After&& after) const;
+
+  /// Kelvin elongations of the two-sphere TPMs [m] at the end of a step of `h` [s] from State::kelvin_elongation that
+  /// has moved to State::position; first order  (tpm_count).
+  void find_kelvin(double h, const State& state, std::vector<double>& after) const;
+  void advance_kelvin(double h, State& state) const { find_kelvin(h, state, state.kelvin_elongation); }
+
+  /// Kelvin elongations [m] that act in a step of `h` [s] in whose middle the spheres are at State::position; second
+  /// order where the step resolves them  (tpm_count).
+  void find_acting_kelvin(double h, const State& state, std::vector<double>& acting) const;
+
+  /// Brings the Kelvin elongations to the end of that step.
+  void finish_kelvin(double h, const std::vector<double>& acting, State& state) const;
+
+  const Slabs& slabs() const { return slabs_; }
+
+ private:
+  /// Calls part(first, last) for ranges of two-sphere TPMs, in parallel.
+  template <class Part>
+  void for_tpms(const State& state, Part&& part) const;
+
+  /// Room for what one slab's elements add, before it goes to where all spheres are; with a single slab none is needed.
+  struct Workbench {
+    std::vector<double> full;   ///< three rows of forces, six of blocks
+    std::vector<float> single;  ///< three rows
+  };
+
+  /// What the loops of one call read and write.
+  struct Arrays {
+    LineArrays constraints, angles;
+    AxialArrays axial;
+  };
+
+  Arrays arrays(const State& state);
+  void measure(const Arrays& arrays);
+  void add_forces_of(int slab, Arrays arrays, Coordinates& force);
+  void prepare_linearise();
+  void linearise_of(int slab, Arrays arrays, double h, bool with_dashpots, Coordinates& force, DiagonalBlocks& blocks);
+
+  void make_room(std::size_t full_rows, std::size_t single_rows);
+
+  /// Where a slab adds three rows (of a vector) or six (of blocks) that are meant for `all`  (rows x sphere_count).
+  template <class Real>
+  SlabTarget<Real> target_for(int slab, std::size_t rows, Real* all) const;
+
+  /// Adds what a slab has gathered to `all`.
+  template <class Real>
+  void bring(const SlabTarget<Real>& own, std::size_t rows, Real* all) const;
+
+  Team& team_;
+  Slabs slabs_;
+  AxialElements axial_;
+  LineElements constraints_, angles_;
+  std::vector<double> softness_;  ///< 1 / (1 + tan theta) of each sphere; empty without softening (sphere_count)
+  mutable std::vector<Workbench> workbenches_;  ///< (slab_count)
+};
+
+template <class Before, class After>
+void Elements::add_forces(const State& state, Coordinates& force, Before&& before, After&& after) {
+  make_room(3, 0);
+  const Arrays all = arrays(state);
+  measure(all);
+  team_.for_each(slabs_.count(), [&](int slab) { before(slab), add_forces_of(slab, all, force), after(slab); });
+}
+
+template <class Before>
+void Elements::linearise(const State& state, double h, bool with_dashpots, Coordinates& force, DiagonalBlocks& blocks,
+                         Before&& before) {
+  prepare_linearise();
+  const Arrays all = arrays(state);
+  measure(all);
+  team_.for_each(slabs_.count(),
+                 [&](int slab) { before(slab), linearise_of(slab, all, h, with_dashpots, force, blocks); });
+}
+
+template <class Real, class After>
+void Elements::apply(const Real* v, Real* result, After&& after) const {
+  team_.for_each(slabs_.count(), [&](int slab) {
+    const SlabTarget<Real> own = target_for(slab, 3, result);
+    if constexpr (!kOnlySprings) {
+      constraints_.apply(slab, v, own);
+      angles_.apply(slab, v, own);
+    }
+    axial_.apply(slab, v, own);
+    bring(own, 3, result);
+    after(slab);
+  });
+}
+
+}  // namespace ctpm

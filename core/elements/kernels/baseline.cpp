@@ -1,0 +1,2 @@
+#define CTPM_KERNELS baseline
+#include "core/elements/kernels/loops.h"

@@ -1,0 +1,156 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace ctpm {
+
+/// Vector instructions that the inner loops may use. All give the same bits: every lane does what scalar code does, in
+/// the same order, and nothing is contracted.
+enum class InstructionSet : std::int32_t { baseline = 0, avx2 = 1, avx512 = 2 };
+
+/// The widest that this machine has.
+InstructionSet best_instruction_set();
+
+/// "baseline", "avx2", "avx512".
+const char* name_of(InstructionSet set);
+
+/// Most elements of a batch; what a loop keeps of a batch stays in the first cache.
+inline constexpr std::int32_t kBatch = 64;
+
+/// What gives an axial element its tension.
+enum class AxialLaw : std::int32_t { spring, spring_and_dashpot, two_sphere_tpm };
+
+/// Where loops over one slab's elements add: rows of the slab's own spheres. They lie apart from those of other slabs,
+/// since processors that write to neighbouring memory wait for each other.
+template <class Real>
+struct SlabTarget {
+  Real* data;
+  std::int32_t begin;  ///< first sphere of the slab
+  std::size_t stride;  ///< from row to row
+};
+
+/// Axial elements of one law whose two ends both advance by one sphere from place to place, so that loops need no index
+/// gathers. Where a lattice row leaves out a few, places without an element (k = 0) bridge the gap. An element between
+/// two slabs has a place for each of them, which adds to that slab's spheres only, so that slabs never wait for each
+/// other.
+struct AxialBatch {
+  std::int32_t count;  ///< in [1, kBatch]
+  std::int32_t place;  ///< first place
+  std::int32_t a, b;   ///< ends of the first element
+  std::int32_t
+      parameters;       ///< where its rows of `count` parameters begin: rest length, k, c; or rest length, K2, K1, v1
+  std::int32_t tpm;     ///< first two-sphere TPM, of a batch of those
+  bool adds_a, adds_b;  ///< whether ends a, b are the slab's own
+  AxialLaw law;
+};
+
+/// What the axial loops read and write. Pointers are null where the Model has no such thing.
+struct AxialArrays {
+  std::size_t spheres;
+  const double *x, *y, *z, *vx, *vy, *vz;  ///< (sphere_count)
+  const double* parameters;
+  const double* softness;                          ///< (sphere_count)
+  const std::int32_t* third;                       ///< (place_count)
+  const std::int32_t* edge;                        ///< edge of each place, any where there is none (place_count)
+  const std::uint8_t *edge_severed, *tpm_severed;  ///< (edge_count), (tpm_count)
+  const double* kelvin_elongation;                 ///< (tpm_count)
+  SlabTarget<double> force, blocks;                ///< three and six rows
+  double h;
+  bool with_dashpots;                        ///< a linearisation's force has those of the dashpots
+  float *root_x, *root_y, *root_z, *across;  ///< linearised coupling (place_count)
+};
+
+/// Lines of three spheres whose middle is drawn towards the middle of its ends: constraints and angle springs. If the
+/// spheres all advance by one from line to line, the lines are a row: it ends before its three rows of spheres overlap,
+/// and may have places without a line (k = 0) behind the last, so that it fills whole vectors. Lines whose spheres are
+/// in several slabs are in a batch of each of them, which adds to that slab's spheres only; all have the same places,
+/// which the slab of the middle spheres writes.
+struct LineBatch {
+  std::int32_t count;           ///< lines, in [1, kBatch]
+  std::int32_t places;          ///< in [count, kBatch]; `count` if not a row
+  std::int32_t place;           ///< first place
+  std::int32_t a, c, e;         ///< spheres of the first line; a is -1 if not a row
+  bool adds_a, adds_c, adds_e;  ///< whether spheres a, c, e are the slab's own
+};
+
+struct LineArrays {
+  std::size_t spheres;
+  const double *x, *y, *z;           ///< (sphere_count)
+  const std::int32_t *a, *c, *e;     ///< (place_count)
+  const double* k;                   ///< (place_count)
+  const std::int32_t* line;          ///< line of each place (place_count)
+  const std::uint8_t* severed;       ///< (line_count) or null
+  bool is_constraint;                ///< Eq. 2; if not, an angle spring
+  double* softness;                  ///< (sphere_count) or null
+  const double* mass;                ///< (sphere_count)
+  SlabTarget<double> force, blocks;  ///< three and six rows
+  double h;
+  double* lambda;  ///< of Eq. 2 without Eq. 8, or k of an angle spring [N/m] (place_count)
+  float *along_x, *along_y, *along_z, *isotropic;  ///< linearised coupling (place_count)
+};
+
+/// What the solver's loops read and write; vectors are (3 x sphere_count), `inverse` is (6 x sphere_count).
+template <class Real>
+struct SolverArrays {
+  std::size_t spheres;
+  const Real* mass;  ///< (sphere_count)
+  Real* inverse;
+  Real *solution, *residual, *preconditioned, *direction, *product;
+};
+
+/// The loops of an iterative solve with vectors of Real, which is float or double. Ranges are of spheres.
+template <class Real>
+struct SolverKernels {
+  void (*apply_axial)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last, const Real* v,
+                      SlabTarget<Real> result);
+  void (*apply_line)(const LineArrays&, const LineBatch&, const Real* v, SlabTarget<Real> result);
+  /// Inverts the symmetric 3x3 blocks of spheres [begin, end).
+  void (*invert_blocks)(std::size_t spheres, const double* blocks, Real* inverse, std::size_t begin, std::size_t end);
+  /// residual = scale * `first`, solution = 0, direction = 0; returns residual . preconditioned.
+  double (*begin_solve)(const SolverArrays<Real>&, const double* first, double scale, std::size_t begin,
+                        std::size_t end);
+  /// direction = preconditioned + turn * direction, product = mass * direction.
+  void (*turn)(const SolverArrays<Real>&, Real turn, std::size_t begin, std::size_t end);
+  double (*curvature)(const SolverArrays<Real>&, std::size_t begin, std::size_t end);  ///< direction . product
+  /// Goes `step` along the direction; returns residual . preconditioned.
+  double (*descend)(const SolverArrays<Real>&, Real step, std::size_t begin, std::size_t end);
+};
+
+/// The inner loops, compiled once for each instruction set. Ranges are of batches or of spheres.
+struct Kernels {
+  void (*add_axial_forces)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last);
+  void (*linearise_axial)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last);
+
+  /// lambda of lines whose middle spheres are the slab's own, and those spheres' softness (Eq. 8).
+  void (*measure_line)(const LineArrays&, const LineBatch&);
+  void (*add_line_forces)(const LineArrays&, const LineBatch&);
+  /// False: the coupling is too small to matter.
+  bool (*linearise_line)(const LineArrays&, const LineBatch&);
+
+  SolverKernels<float> single;
+  SolverKernels<double> full;
+  /// product = mass * v; returns v . product.
+  double (*multiply_mass)(std::size_t spheres, const double* mass, const double* v, double* product, std::size_t begin,
+                          std::size_t end);
+  /// product = b - product; returns product . product.
+  double (*residual_from)(std::size_t spheres, const double* b, double* product, std::size_t begin, std::size_t end);
+  /// Smallest squared distance of spheres [begin, end) from `centre`, infinity without spheres.
+  double (*nearest_squared)(const double* x, const double* y, const double* z, const double* centre, std::size_t begin,
+                            std::size_t end);
+  /// Largest squared speed of velocities v (3 x sphere_count), infinity if one is not a number.
+  double (*fastest_squared)(std::size_t spheres, const double* v, std::size_t begin, std::size_t end);
+};
+
+template <class Real>
+const SolverKernels<Real>& solver_kernels(const Kernels& kernels) {
+  if constexpr (sizeof(Real) == sizeof(float))
+    return kernels.single;
+  else
+    return kernels.full;
+}
+
+/// The loops for a set that this machine has; the nearest narrower one if it has not.
+const Kernels& kernels_for(InstructionSet set);
+
+}  // namespace ctpm

@@ -1,0 +1,105 @@
+// The inner loops, included once per instruction set with CTPM_KERNELS naming the namespace. No pragma once: it is
+// meant to be included several times. Nothing here may be an inline function of a header: compiled for a wider
+// instruction set, the linker could pick it for code that runs everywhere.
+
+#include "core/elements/kernels/kernels.h"
+#include "core/elements/only_springs.h"
+
+// The passes of the next loop do not depend on each other, whatever the compiler can prove about its pointers.
+#undef CTPM_INDEPENDENT
+#ifdef __clang__
+#define CTPM_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define CTPM_INDEPENDENT _Pragma("GCC ivdep")
+#endif
+
+namespace ctpm::CTPM_KERNELS {
+namespace {
+
+using std::int32_t;
+using std::size_t;
+
+/// Below this length [m] an element has no direction and gives no force.
+constexpr double kShortest = 1e-12;
+
+double smaller(double a, double b) { return b < a ? b : a; }
+double larger(double a, double b) { return b > a ? b : a; }
+double root_of(double a) { return __builtin_sqrt(a); }
+
+/// A batch's numbers in another precision: apart from what computes them, since loops that mix precisions are only
+/// vectorised for the wider count of the narrower one.
+template <class From, class To>
+void convert(const From* __restrict from, To* __restrict to, int32_t count) {
+  CTPM_INDEPENDENT
+  for (int32_t i = 0; i < count; ++i) to[i] = To(from[i]);
+}
+
+/// A batch's linearised coupling: the root of what acts along one direction, and what acts in all. It is kept in single
+/// precision, which is far closer than a linearisation is.
+template <class Real>
+struct Coupling {
+  const Real *x, *y, *z, *all;
+  alignas(64) Real converted[4][kBatch];
+
+  void find(const float* along_x, const float* along_y, const float* along_z, const float* in_all, int32_t first,
+            int32_t count) {
+    const float* const kept[4] = {along_x + first, along_y + first, along_z + first, in_all + first};
+    if constexpr (sizeof(Real) == sizeof(float)) {
+      x = kept[0], y = kept[1], z = kept[2], all = kept[3];
+    } else {
+      for (int32_t k = 0; k < 4; ++k) convert(kept[k], converted[k], count);
+      x = converted[0], y = converted[1], z = converted[2], all = converted[3];
+    }
+  }
+};
+
+/// target += q for all three coordinates of a row of spheres from `sphere` on.
+template <class Real>
+void add_to(const SlabTarget<Real>& target, int32_t sphere, int32_t count, const Real* __restrict qx,
+            const Real* __restrict qy, const Real* __restrict qz) {
+  Real *__restrict x = target.data + (sphere - target.begin), *__restrict y = x + target.stride,
+       *__restrict z = y + target.stride;
+  CTPM_INDEPENDENT
+  for (int32_t i = 0; i < count; ++i) x[i] += qx[i], y[i] += qy[i], z[i] += qz[i];
+}
+
+template <class Real>
+void subtract_from(const SlabTarget<Real>& target, int32_t sphere, int32_t count, const Real* __restrict qx,
+                   const Real* __restrict qy, const Real* __restrict qz) {
+  Real *__restrict x = target.data + (sphere - target.begin), *__restrict y = x + target.stride,
+       *__restrict z = y + target.stride;
+  CTPM_INDEPENDENT
+  for (int32_t i = 0; i < count; ++i) x[i] -= qx[i], y[i] -= qy[i], z[i] -= qz[i];
+}
+
+/// blocks += q for a row of spheres.
+void add_to_blocks(const SlabTarget<double>& blocks, int32_t sphere, int32_t count,
+                   const double (*__restrict q)[kBatch]) {
+  const size_t stride = blocks.stride;
+  double *xx = blocks.data + (sphere - blocks.begin), *xy = xx + stride, *xz = xy + stride, *yy = xz + stride,
+         *yz = yy + stride, *zz = yz + stride;
+  CTPM_INDEPENDENT
+  for (int32_t i = 0; i < count; ++i) {
+    xx[i] += q[0][i], xy[i] += q[1][i], xz[i] += q[2][i];
+    yy[i] += q[3][i], yz[i] += q[4][i], zz[i] += q[5][i];
+  }
+}
+
+}  // namespace
+}  // namespace ctpm::CTPM_KERNELS
+
+#include "core/elements/kernels/axial_loops.h"
+#include "core/elements/kernels/line_loops.h"
+#include "core/elements/kernels/solver_loops.h"
+
+namespace ctpm::CTPM_KERNELS {
+
+template <class Real>
+constexpr SolverKernels<Real> solver{apply_axial<Real>, apply_line<Real>, invert_blocks<Real>, begin_solve<Real>,
+                                     turn<Real>,        curvature<Real>,  descend<Real>};
+
+extern const Kernels kernels;
+const Kernels kernels{add_axial_forces, linearise_axial, measure_line,  add_line_forces, linearise_line, solver<float>,
+                      solver<double>,   multiply_mass,   residual_from, nearest_squared, fastest_squared};
+
+}  // namespace ctpm::CTPM_KERNELS

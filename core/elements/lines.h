@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/elements/axial.h"
+#include "core/elements/kernels/kernels.h"
+#include "core/model/model.h"
+#include "core/model/state.h"
+#include "core/parallel/slabs.h"
+
+namespace ctpm {
+
+/// Elements that draw the middle sphere of a lattice line towards the middle of its ends, u = C - (A + E) / 2: the
+/// constraints of five-sphere lines (Eqs. 2, 5), whose stiffness grows with the tilt, or the angle springs of Fig. 1b,
+/// whose stiffness is constant.
+class LineElements {
+ public:
+  LineElements(const Model& model, const Constraints& constraints, const Slabs& slabs, const Kernels& kernels);
+  LineElements(const Model& model, const AngleSprings& angle_springs, const Slabs& slabs, const Kernels& kernels);
+
+  bool empty() const { return k_.empty(); }
+
+  /// What the loops of one call read and write. `softness` [1] = 1 / (1 + tan theta) of each sphere, null without
+  /// softening.
+  LineArrays arrays(const State& state, double* softness);
+
+  /// Of lines whose middle sphere is the slab's own, lambda and the sphere's softness: the least of all lines centred
+  /// on it (Eq. 8).
+  void measure(const LineArrays& m, int slab) const;
+
+  /// Adds the forces [N] of one slab's lines to `m.force`. measure() of all slabs comes first.
+  void add_forces(const LineArrays& m, int slab) const;
+
+  /// Adds the forces to `m.force` and the diagonal of h^2 K [kg] to `m.blocks`, and keeps the coupling for apply().
+  void linearise(LineArrays m, int slab);
+  void prepare_linearise();
+
+  /// result += coupling times `v`, in the precision of `v`, float or double.
+  template <class Real>
+  void apply(int slab, const Real* v, SlabTarget<Real> result) const;
+
+ private:
+  /// Batches [first, last) are one slab's.
+  struct Range {
+    std::size_t first, last;
+  };
+
+  LineElements(const Model& model, bool is_constraint, const std::vector<std::int32_t>& first,
+               const std::vector<std::int32_t>& middle, const std::vector<std::int32_t>& last,
+               const std::vector<double>& k, const Slabs& slabs, const Kernels& kernels);
+
+  const Model& model_;
+  const Kernels& kernels_;
+  bool is_constraint_;
+  std::vector<std::int32_t> first_, middle_, last_, line_;  ///< spheres and line of each place (place_count)
+  std::vector<double> k_;                                   ///< (place_count)
+  std::vector<LineBatch> batches_;
+  std::vector<Range> of_slab_;               ///< (slab_count)
+  std::vector<std::uint8_t> matters_;        ///< of each batch, whether its coupling does
+  std::vector<double> lambda_;               ///< without softness [N/m] (place_count)
+  std::vector<float> along_[3], isotropic_;  ///< coupling: along u its root [kg^1/2], and in all directions [kg]
+};
+
+}  // namespace ctpm

@@ -1,2 +1,0 @@
-#define CTPM_KERNELS avx2
-#include "core/kernels/loops.h"

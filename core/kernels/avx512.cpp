@@ -1,2 +1,0 @@
-#define CTPM_KERNELS avx512
-#include "core/kernels/loops.h"

@@ -1,2 +1,0 @@
-#define CTPM_KERNELS baseline
-#include "core/kernels/loops.h"

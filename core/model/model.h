@@ -1,0 +1,157 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/model/vec3.h"
+
+namespace ctpm {
+
+/// Axial elements between two spheres: springs (no dashpot) and Kelvin units (spring parallel to dashpot).
+/// The two elements of a triple A-B-C (spring A-B, Kelvin unit B-C; Eqs. 3, 4, 6) are two edges that know
+/// each other.
+struct Edges {
+  std::vector<std::int32_t> a, b;   ///< end spheres, a != b (edge_count)
+  std::vector<double> rest_length;  ///< [m], > 0 (edge_count)
+  std::vector<double> k;            ///< stiffness [N/m], > 0                                          (edge_count)
+  std::vector<double> c;            ///< damping [N s/m], >= 0; empty if the scene has no viscosity    (edge_count)
+  std::vector<std::int32_t> third;  ///< third sphere of the edge's triple, whose tilt counts too; -1 if it
+                                    ///< has none; empty if the scene has no softening (edge_count)
+  std::size_t size() const { return a.size(); }
+};
+
+/// Two-sphere TPMs: K2 in series with the Kelvin unit K1 parallel v1 inside one edge, with one internal
+/// variable (the Kelvin elongation, in State). Used where a lattice line has an edge left over, and for the
+/// whole model `tpm`.
+struct TwoSphereTpms {
+  std::vector<std::int32_t> a, b;   ///< end spheres                       (tpm_count)
+  std::vector<double> rest_length;  ///< [m], > 0                          (tpm_count)
+  std::vector<double> spring_k;     ///< K2 part [N/m], > 0                (tpm_count)
+  std::vector<double> kelvin_k;     ///< K1 part [N/m], > 0                (tpm_count)
+  std::vector<double> kelvin_c;     ///< v1 part [N s/m], >= 0             (tpm_count)
+  std::size_t size() const { return a.size(); }
+};
+
+/// Constraints of five-sphere lines A B C D E (Eqs. 2, 5): force on C is -2 k' (1 - cos theta) u, u = C - (A
+/// + E) / 2, tan theta = |u| / (|E - A| / 2), and half of the opposite on A and on E.
+struct Constraints {
+  std::vector<std::int32_t> a, c, e;  ///< end, centre, end sphere (constraint_count)
+  std::vector<double> k;              ///< k' = (K' - P2) times the calibrated area [N/m]     (constraint_count)
+  std::vector<std::int32_t> edge[4];  ///< edges A-B, B-C, C-D, D-E that carry the line; severing one ends it
+  std::size_t size() const { return a.size(); }
+};
+
+/// Springs that resist the angle at the middle one of three collinear neighbours A B C (Fig. 1b): force on B
+/// is -k (B - (A + C) / 2), and half of the opposite on A and on C.
+struct AngleSprings {
+  std::vector<std::int32_t> a, b, c;  ///< end, middle, end sphere (angle_count)
+  std::vector<double> k;              ///< [N/m], > 0                                                   (angle_count)
+  std::vector<std::int32_t> edge[2];  ///< edges A-B and B-C; severing one ends it (angle_count)
+  std::size_t size() const { return a.size(); }
+};
+
+/// What a blade has to overcome at each axial element. An element stands for an area of tissue across it, so
+/// that the areas of all elements that a plane crosses add up to the plane's area, whichever way it lies.
+/// Empty if the scene has no scalpel or no tissue resists.
+struct CutResistance {
+  std::vector<double> edge_energy, tpm_energy;      ///< fracture toughness J_c times area [J], >= 0
+  std::vector<double> edge_friction, tpm_friction;  ///< of the blade's two flanks, stress times area [N], >= 0
+  bool any() const { return !edge_energy.empty() || !tpm_energy.empty(); }
+};
+
+enum class ToolKind : std::int32_t {
+  ball = 0,     ///< rigid ball that presses
+  scalpel = 1,  ///< blade edge that severs what it sweeps
+  pin = 2,      ///< holds one sphere exactly where the hand is: the paper's pressed sphere C
+};
+
+/// A tool that the session's input can hold. The tool frame's origin is the ball's centre or the blade's tip.
+struct Tool {
+  std::string name;
+  ToolKind kind = ToolKind::ball;
+  double radius = 0;         ///< of a ball [m], > 0; 0 for a scalpel
+  double blade_length = 0;   ///< of a scalpel's edge, from the tip along the tool's +z axis [m], > 0; 0 for a ball
+  std::int32_t sphere = -1;  ///< that a pin holds; -1 for the others
+};
+
+/// Forces that act on spheres from outside: each rises from 0 at `start` to its full size within `ramp`, and
+/// stays.
+struct Loads {
+  std::vector<std::int32_t> sphere;  ///< (load_count)
+  Vec3Array force;                   ///< full size [N]                 (load_count)
+  std::vector<double> start, ramp;   ///< [s], >= 0                     (load_count)
+  std::size_t size() const { return sphere.size(); }
+};
+
+/// Model::held_axes of a sphere that never moves.
+inline constexpr std::uint8_t kAnchored = 7;
+
+/// A range of spheres that were filled into one organ.
+struct OrganRange {
+  std::string name;
+  std::int32_t first = 0, count = 0;  ///< spheres [first, first + count)
+  double sphere_radius = 0;           ///< r [m]
+  double spacing = 0;                 ///< s [m]
+  double damage_depth = 0;            ///< depth beyond which the tissue is damaged [m]; 0: no limit
+  std::int32_t layer_count = 0;
+};
+
+/// How the positions follow from the forces (scene key `solver.integrator`).
+enum class Integrator : std::int32_t {
+  automatic = 0,       ///< chosen from the Model alone, see integrator.h
+  leapfrog = 1,        ///< explicit, second order (position Verlet)
+  backward_euler = 2,  ///< implicit, first order, L-stable
+  sdirk2 = 3,          ///< implicit, second order, L-stable: two stages of backward Euler (Alexander 1977)
+};
+
+/// How a tick is solved; all limits are counts or residuals, never times.
+struct SolverSettings {
+  double tolerance = 1e-4;  ///< residual at which the implicit solve stops, against that of its first guess (of the
+                            ///< velocity), so that it does not depend on how fast the body moves; in (0, 1)
+  double velocity_floor = 1e-6;       ///< residuals below this velocity [m/s] count as solved, > 0
+  std::int32_t max_iterations = 200;  ///< of one solve, >= 1
+  std::int32_t substeps = 1;          ///< equal parts of a tick, >= 1; `automatic` may take more
+  Integrator integrator = Integrator::automatic;
+};
+
+/// Everything about a scene that never changes while it runs. Features that the scene does not have are empty
+/// arrays.
+struct Model {
+  double tick = 1e-3;  ///< length of a tick [s], > 0
+  Vec3 gravity;        ///< [m/s^2]; zero: no gravity
+
+  Vec3Array rest_position;              ///< [m]                                                     (sphere_count)
+  std::vector<double> mass;             ///< [kg], > 0                                               (sphere_count)
+  std::vector<std::uint8_t> held_axes;  ///< bit 0: x never changes, bit 1: y, bit 2: z; 7: anchored  (sphere_count)
+  std::vector<double> contact_radius;   ///< distance at which a tool touches the sphere [m], > 0    (sphere_count)
+  std::vector<std::int32_t> layer;      ///< 1 = outermost (sphere_count)
+  std::vector<OrganRange> organs;
+
+  Edges edges;
+  TwoSphereTpms tpms;
+  Constraints constraints;
+  AngleSprings angle_springs;
+  bool has_softening = false;  ///< Eq. 8: forces are divided by 1 + tan theta
+
+  Loads loads;
+
+  std::vector<Tool> tools;
+  double contact_k = 0;  ///< stiffness of a tool's contact with one sphere [N/m], > 0 if there are tools that press
+  double contact_friction = 0;  ///< Coulomb coefficient between tool and tissue, >= 0
+
+  SolverSettings solver;
+
+  CutResistance cut_resistance;
+  double lip_k = 0;  ///< stiffness with which the sides of a cut meet again, sphere to sphere [N/m]; 0: they
+                     ///< do not, and pass through each other
+
+  std::size_t sphere_count() const { return mass.size(); }
+  bool has_scalpel() const {
+    return std::any_of(tools.begin(), tools.end(), [](const Tool& tool) { return tool.kind == ToolKind::scalpel; });
+  }
+  std::size_t element_count() const { return edges.size() + tpms.size() + constraints.size() + angle_springs.size(); }
+};
+
+}  // namespace ctpm

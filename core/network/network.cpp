@@ -1,0 +1,368 @@
+#include "core/network/network.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <string>
+
+namespace ctpm {
+namespace {
+
+using Cell = std::array<std::int32_t, 3>;
+
+// Lattice directions, each with its first non-zero component in the order k, j, i positive, so that an edge's
+// second sphere always comes later in the (k, j, i) order than its first.
+constexpr std::array<Cell, 3> kAxisDirections{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+constexpr std::array<Cell, 6> kDiagonalDirections{
+    {{1, 1, 0}, {-1, 1, 0}, {1, 0, 1}, {-1, 0, 1}, {0, 1, 1}, {0, -1, 1}}};
+
+constexpr double kFewestPascalPerMetre = 1e-6;
+constexpr double kMostPascalPerMetre = 1e15;
+
+Cell operator+(Cell a, Cell b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+Cell operator-(Cell a, Cell b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+
+double length_of(Cell direction, double spacing) {
+  const int steps = std::abs(direction[0]) + std::abs(direction[1]) + std::abs(direction[2]);
+  return steps == 1 ? spacing : spacing * std::sqrt(double(steps));
+}
+
+double series(double k1, double k2) { return k1 * k2 / (k1 + k2); }
+
+void check_positive(Errors& errors, const std::string& where, const char* what, double value) {
+  if (!(value >= kFewestPascalPerMetre && value <= kMostPascalPerMetre))
+    errors.push_back(
+        {where, std::string(what) + ": got " + std::to_string(value) + " Pa/m, must be in [1e-6, 1e15]", ""});
+}
+
+void check_material(Errors& errors, const std::string& where, const Material& m, Structure structure) {
+  check_positive(errors, where, "spring modulus K2", m.spring);
+  check_positive(errors, where, "Kelvin modulus K1", m.kelvin);
+  if (structure == Structure::ctpm && !(m.constraint >= series(m.kelvin, m.spring)))
+    errors.push_back({where,
+                      "constraint modulus K': got " + std::to_string(m.constraint) +
+                          " Pa/m, must be at least K1 K2 / (K1 + K2), which the triples already give",
+                      ""});
+  if (!(m.viscosity >= 0) || !std::isfinite(m.viscosity))
+    errors.push_back({where, "viscosity v1: got " + std::to_string(m.viscosity) + " Pa s/m, must be 0 or more", ""});
+  if (!(m.prestrain >= 0 && m.prestrain <= 0.5))
+    errors.push_back({where, "prestrain: got " + std::to_string(m.prestrain) + ", must be in [0, 0.5]", ""});
+  if (!(m.fracture_toughness >= 0 && std::isfinite(m.fracture_toughness) && m.blade_friction >= 0 &&
+        std::isfinite(m.blade_friction)))
+    errors.push_back({where, "fracture toughness and blade friction must be 0 or more", ""});
+  if (!(m.density > 0 && m.stiffness_scale > 0 && m.calibration_area > 0 && m.calibration_spacing > 0))
+    errors.push_back({where, "density, stiffness scale, calibration area and spacing must all be more than 0", ""});
+}
+
+Errors check_organ(const FilledOrgan& organ, const OrganSettings& settings) {
+  Errors errors;
+  const std::string where = "organ " + settings.name;
+  if (organ.centre.empty()) errors.push_back({where, "has no spheres", "fill it with smaller spheres"});
+  double above = 0;
+  for (std::size_t i = 0; i < settings.layers.size(); ++i) {
+    const LayerMaterial& layer = settings.layers[i];
+    const std::string where_layer = where + ", layer " + std::to_string(i);
+    if (!(layer.to_depth > above))
+      errors.push_back({where_layer,
+                        "ends at a depth of " + std::to_string(layer.to_depth) + " m, must be more than " +
+                            std::to_string(above) + " m, where it begins",
+                        ""});
+    above = layer.to_depth;
+    check_material(errors, where_layer, layer.material, settings.structure);
+  }
+  check_material(errors, where, settings.material, settings.structure);
+  const auto check_sphere = [&](const char* what, std::int32_t sphere) {
+    if (sphere < 0 || std::size_t(sphere) >= organ.centre.size())
+      errors.push_back({where, std::string(what) + " sphere " + std::to_string(sphere) + " does not exist", ""});
+  };
+  for (const std::int32_t sphere : settings.anchored) check_sphere("anchored", sphere);
+  for (const OrganSettings::Guide& guide : settings.guides) check_sphere("guided", guide.sphere);
+  return errors;
+}
+
+const Material& material_of(const FilledOrgan& organ, const OrganSettings& settings, std::size_t sphere) {
+  for (const LayerMaterial& layer : settings.layers)
+    if (layer.to_depth > organ.depth[sphere]) return layer.material;
+  return settings.material;
+}
+
+/// Stiffness, damping and prestrain that one sphere's material gives to elements.
+struct Stiffness {
+  double spring_k, kelvin_k, kelvin_c, constraint_k;
+  double rest_part;  ///< rest length over the length in the lattice
+};
+
+Stiffness stiffness_of(const Material& m, double spacing) {
+  const double area = edge_area(m, spacing);
+  // The triples beside C stretch when C dips and add their own 2 P2 (1 - cos theta) u; K' counts both.
+  return {m.spring * area, m.kelvin * area, m.viscosity * area, (m.constraint - series(m.kelvin, m.spring)) * area,
+          1 - m.prestrain};
+}
+
+/// Builds the elements of one organ line by line, then brings the edges into the order in which they are
+/// computed.
+class LineTiler {
+ public:
+  LineTiler(Model& model, const FilledOrgan& organ, const OrganSettings& settings, std::int32_t first_sphere)
+      : model_(model), organ_(organ), settings_(settings), first_sphere_(first_sphere) {
+    for (std::size_t i = 0; i < organ.cell.size(); ++i) sphere_at_.emplace(organ.cell[i], std::int32_t(i));
+    for (std::size_t i = 0; i < organ.cell.size(); ++i)
+      stiffness_.push_back(stiffness_of(material_of(organ, settings, i), organ.spacing));
+  }
+
+  void tile(Cell direction) {
+    for (const Cell& start : organ_.cell) {
+      if (sphere_at_.contains(start - direction) || !sphere_at_.contains(start + direction)) continue;
+      std::vector<std::int32_t> run;
+      for (Cell cell = start;; cell = cell + direction) {
+        const auto it = sphere_at_.find(cell);
+        if (it == sphere_at_.end()) break;
+        run.push_back(it->second + first_sphere_);
+      }
+      tile_run(run, length_of(direction, organ_.spacing));
+    }
+    flush_direction();
+  }
+
+ private:
+  struct Edge {
+    std::int32_t a, b, third;
+    double rest_length, k, c;
+    std::int32_t line_number;  ///< position in the order of tiling, by which constraints know their edges
+  };
+  struct Tpm {
+    std::int32_t a, b;
+    double rest_length;
+    Stiffness stiffness;
+  };
+  struct Angle {
+    std::int32_t a, middle, c, line_number;
+    double k;
+  };
+  struct Constraint {
+    std::int32_t a, middle, e;
+    double k;
+    std::array<std::int32_t, 4> line_number;
+  };
+
+  /// Mean over `count` spheres of a run, exactly that of one if all are equal.
+  Stiffness mean_over(const std::vector<std::int32_t>& run, std::size_t first, std::size_t count) const {
+    const auto of = [&](std::size_t i) -> const Stiffness& {
+      return stiffness_[std::size_t(run[first + i] - first_sphere_)];
+    };
+    const auto mean = [&](double Stiffness::*value) {
+      double sum = 0;
+      for (std::size_t i = 1; i < count; ++i) sum += of(i).*value - of(0).*value;
+      return of(0).*value + sum / double(count);
+    };
+    return {mean(&Stiffness::spring_k), mean(&Stiffness::kelvin_k), mean(&Stiffness::kelvin_c),
+            mean(&Stiffness::constraint_k), mean(&Stiffness::rest_part)};
+  }
+
+  /// Of a spring of which two in series are as stiff as one slow triple.
+  static double single_spring(const Stiffness& s) { return 2 * series(s.kelvin_k, s.spring_k); }
+
+  void tile_run(const std::vector<std::int32_t>& run, double rest_length) {
+    switch (settings_.structure) {
+      case Structure::mass_spring:
+        tile_springs(run, rest_length);
+        break;
+      case Structure::angle_mass_spring:
+        for (std::size_t i = 0; i + 2 < run.size(); ++i)
+          angles_.push_back({run[i], run[i + 1], run[i + 2], next_line_number_ + std::int32_t(i),
+                             single_spring(mean_over(run, i, 3))});
+        tile_springs(run, rest_length);
+        break;
+      case Structure::tpm:
+        for (std::size_t i = 0; i + 1 < run.size(); ++i) add_tpm(run, i, rest_length);
+        break;
+      case Structure::ctpm:
+        tile_triples(run, rest_length);
+        break;
+    }
+  }
+
+  void tile_springs(const std::vector<std::int32_t>& run, double rest_length) {
+    for (std::size_t i = 0; i + 1 < run.size(); ++i) {
+      const Stiffness s = mean_over(run, i, 2);
+      add_edge(run[i], run[i + 1], -1, s.rest_part * rest_length, single_spring(s), 0);
+    }
+  }
+
+  /// Triples A-B-C, C-B-A, A-B-C ... that share ends; where two share C, the five spheres carry a constraint.
+  void tile_triples(const std::vector<std::int32_t>& run, double rest_length) {
+    const std::size_t triple_count = (run.size() - 1) / 2;
+    for (std::size_t t = 0; t < triple_count; ++t) {
+      const std::int32_t p = run[2 * t], q = run[2 * t + 1], r = run[2 * t + 2];
+      const bool starts_at_a = t % 2 == 0;
+      const std::int32_t line_number = next_line_number_;
+      const Stiffness s = mean_over(run, 2 * t, 3);
+      const double length = s.rest_part * rest_length;
+      if (starts_at_a) {
+        add_edge(p, q, r, length, s.spring_k, 0);
+        add_edge(q, r, p, length, s.kelvin_k, s.kelvin_c);
+      } else {
+        add_edge(p, q, r, length, s.kelvin_k, s.kelvin_c);
+        add_edge(q, r, p, length, s.spring_k, 0);
+        constraints_.push_back({run[2 * t - 2],
+                                p,
+                                r,
+                                mean_over(run, 2 * t - 2, 5).constraint_k,
+                                {line_number - 2, line_number - 1, line_number, line_number + 1}});
+      }
+    }
+    if (run.size() % 2 == 0) add_tpm(run, run.size() - 2, rest_length);
+  }
+
+  void add_edge(std::int32_t a, std::int32_t b, std::int32_t third, double rest_length, double k, double c) {
+    edges_.push_back({a, b, third, rest_length, k, c, next_line_number_++});
+  }
+
+  void add_tpm(const std::vector<std::int32_t>& run, std::size_t first, double rest_length) {
+    const Stiffness s = mean_over(run, first, 2);
+    tpms_.push_back({run[first], run[first + 1], s.rest_part * rest_length, s});
+  }
+
+  /// Moves one direction's elements into the Model, sorted by their first sphere: along a lattice row both
+  /// ends then advance by one from edge to edge, and the element loops run without index gathers.
+  void flush_direction() {
+    const auto by_first = [](const auto& p, const auto& q) { return p.a < q.a; };
+    std::stable_sort(edges_.begin(), edges_.end(), by_first);
+    std::stable_sort(tpms_.begin(), tpms_.end(), by_first);
+    const auto by_middle = [](const auto& p, const auto& q) { return p.middle < q.middle; };
+    std::stable_sort(constraints_.begin(), constraints_.end(), by_middle);
+    std::stable_sort(angles_.begin(), angles_.end(), by_middle);
+    std::vector<std::int32_t> edge_of_line_number(std::size_t(next_line_number_), -1);
+    Edges& edges = model_.edges;
+    for (const Edge& e : edges_) {
+      edge_of_line_number[std::size_t(e.line_number)] = std::int32_t(edges.size());
+      edges.a.push_back(e.a), edges.b.push_back(e.b), edges.rest_length.push_back(e.rest_length);
+      edges.k.push_back(e.k), edges.c.push_back(e.c), edges.third.push_back(e.third);
+    }
+    for (const Tpm& e : tpms_) {
+      TwoSphereTpms& tpms = model_.tpms;
+      const Stiffness& s = e.stiffness;
+      tpms.a.push_back(e.a), tpms.b.push_back(e.b), tpms.rest_length.push_back(e.rest_length);
+      tpms.spring_k.push_back(s.spring_k), tpms.kelvin_k.push_back(s.kelvin_k), tpms.kelvin_c.push_back(s.kelvin_c);
+    }
+    for (const Constraint& c : constraints_) {
+      Constraints& all = model_.constraints;
+      all.a.push_back(c.a), all.c.push_back(c.middle), all.e.push_back(c.e), all.k.push_back(c.k);
+      for (std::size_t i = 0; i < 4; ++i) all.edge[i].push_back(edge_of_line_number[std::size_t(c.line_number[i])]);
+    }
+    for (const Angle& angle : angles_) {
+      AngleSprings& all = model_.angle_springs;
+      all.a.push_back(angle.a), all.b.push_back(angle.middle), all.c.push_back(angle.c);
+      all.k.push_back(angle.k);
+      for (std::size_t i = 0; i < 2; ++i)
+        all.edge[i].push_back(edge_of_line_number[std::size_t(angle.line_number) + i]);
+    }
+    edges_.clear(), tpms_.clear(), constraints_.clear(), angles_.clear();
+    next_line_number_ = 0;
+  }
+
+  Model& model_;
+  const FilledOrgan& organ_;
+  const OrganSettings& settings_;
+  std::int32_t first_sphere_;
+  std::map<Cell, std::int32_t> sphere_at_;
+  std::vector<Stiffness> stiffness_;  // (sphere_count)
+  std::vector<Edge> edges_;
+  std::vector<Tpm> tpms_;
+  std::vector<Constraint> constraints_;
+  std::vector<Angle> angles_;
+  std::int32_t next_line_number_ = 0;
+};
+
+/// How far from its centre a tool touches a sphere: as far as the surface is for the outermost layer, so that
+/// the tool meets the surface one sees, and the sphere's own radius further in.
+double contact_radius_of(const FilledOrgan& organ, std::size_t sphere) {
+  if (organ.layer[sphere] != 1) return organ.sphere_radius;
+  return std::clamp(organ.depth[sphere], organ.sphere_radius, organ.spacing);
+}
+
+void add_spheres(Model& model, const FilledOrgan& organ, const OrganSettings& settings) {
+  const std::size_t first = model.sphere_count();
+  for (std::size_t i = 0; i < organ.centre.size(); ++i) {
+    model.rest_position.push_back(organ.centre[i]);
+    model.contact_radius.push_back(contact_radius_of(organ, i));
+    model.layer.push_back(organ.layer[i]);
+    model.mass.push_back(material_of(organ, settings, i).density * organ.spacing * organ.spacing * organ.spacing);
+  }
+  model.held_axes.resize(first + organ.centre.size(), 0);
+  for (const OrganSettings::Guide& guide : settings.guides)
+    model.held_axes[first + std::size_t(guide.sphere)] = guide.axes;
+  for (const std::int32_t sphere : settings.anchored) model.held_axes[first + std::size_t(sphere)] = kAnchored;
+  const int layers = *std::max_element(organ.layer.begin(), organ.layer.end());
+  model.organs.push_back({settings.name, std::int32_t(first), std::int32_t(organ.centre.size()), organ.sphere_radius,
+                          organ.spacing, settings.damage_depth, layers});
+}
+
+/// Area that an element stands for when a cut crosses it at right angles [m^2]. A plane with the unit normal
+/// n crosses |n . D| / s^3 elements of the direction D per area; with this area times |n . D| / |D| for each,
+/// they sum to 1 for every n, since the squared components of all directions add up to a multiple of |n|^2.
+double crossed_area(LatticeKind lattice, double spacing) {
+  return spacing * spacing / (lattice == LatticeKind::cubic_18 ? 1 + 2 * std::sqrt(2.0) : 1);
+}
+
+/// What the elements of an organ, from `first_edge` and `first_tpm` on, set against a blade.
+void add_cut_resistance(Model& model, const FilledOrgan& organ, const OrganSettings& settings, std::size_t first_edge,
+                        std::size_t first_tpm) {
+  CutResistance& cut = model.cut_resistance;
+  const double area = crossed_area(settings.lattice, organ.spacing);
+  const auto first_sphere = std::size_t(model.organs.back().first);
+  const auto add = [&](const auto& elements, std::size_t first, std::vector<double>& energy,
+                       std::vector<double>& friction) {
+    energy.resize(first, 0.0), friction.resize(first, 0.0);
+    for (std::size_t e = first; e < elements.size(); ++e) {
+      const Material& a = material_of(organ, settings, std::size_t(elements.a[e]) - first_sphere);
+      const Material& b = material_of(organ, settings, std::size_t(elements.b[e]) - first_sphere);
+      energy.push_back(area * 0.5 * (a.fracture_toughness + b.fracture_toughness));
+      friction.push_back(2 * area * 0.5 * (a.blade_friction + b.blade_friction));  // two flanks
+    }
+  };
+  add(model.edges, first_edge, cut.edge_energy, cut.edge_friction);
+  add(model.tpms, first_tpm, cut.tpm_energy, cut.tpm_friction);
+}
+
+/// Gives back the arrays of features that no element uses.
+void leave_out_unused(Model& model) {
+  Edges& edges = model.edges;
+  if (std::all_of(edges.c.begin(), edges.c.end(), [](double c) { return c == 0; })) edges.c = {};
+  if (!model.has_softening) edges.third = {};
+  CutResistance& cut = model.cut_resistance;
+  const auto is_zero = [](const std::vector<double>& values) {
+    return std::all_of(values.begin(), values.end(), [](double v) { return v == 0; });
+  };
+  if (is_zero(cut.edge_energy) && is_zero(cut.tpm_energy) && is_zero(cut.edge_friction) && is_zero(cut.tpm_friction))
+    cut = {};
+}
+
+}  // namespace
+
+double edge_area(const Material& material, double spacing) {
+  return material.calibration_area * (spacing / material.calibration_spacing) * material.stiffness_scale;
+}
+
+Result<Done> add_organ(Model& model, const FilledOrgan& organ, const OrganSettings& settings) {
+  if (Errors errors = check_organ(organ, settings); !errors.empty()) return errors;
+  // Arrays left out by an earlier organ come back while this one is added.
+  model.edges.c.resize(model.edges.size(), 0.0);
+  model.edges.third.resize(model.edges.size(), -1);
+  const auto first_sphere = std::int32_t(model.sphere_count());
+  const std::size_t first_edge = model.edges.size(), first_tpm = model.tpms.size();
+  add_spheres(model, organ, settings);
+  LineTiler tiler(model, organ, settings, first_sphere);
+  for (const Cell& direction : kAxisDirections) tiler.tile(direction);
+  if (settings.lattice == LatticeKind::cubic_18)
+    for (const Cell& direction : kDiagonalDirections) tiler.tile(direction);
+  const bool softens = settings.structure == Structure::ctpm && settings.has_softening && model.constraints.size() > 0;
+  model.has_softening = model.has_softening || softens;
+  add_cut_resistance(model, organ, settings, first_edge, first_tpm);
+  leave_out_unused(model);
+  return Done{};
+}
+
+}  // namespace ctpm

@@ -1,0 +1,76 @@
+#include "core/solver/linear_solver.h"
+
+#include "core/stepping/integrator.h"
+
+namespace ctpm {
+namespace {
+
+/// Stiffest part of A against the mass up to which float keeps soft motions apart from stiff ones.
+constexpr double kStiffestForFloat = 1e4;
+
+std::variant<ConjugateGradient<float>, ConjugateGradient<double>> gradient_for(const Model& model, const Slabs& slabs,
+                                                                               Team& team, const Kernels& kernels) {
+  const double h = model.tick / model.solver.substeps;
+  if (stiffness_ratio_bound(model, h) <= kStiffestForFloat)
+    return ConjugateGradient<float>(model.mass, slabs, team, kernels);
+  return ConjugateGradient<double>(model.mass, slabs, team, kernels);
+}
+
+}  // namespace
+
+LinearSolver::LinearSolver(const Model& model, const Slabs& slabs, Team& team, const Kernels& kernels)
+    : model_(model),
+      slabs_(slabs),
+      team_(team),
+      kernels_(kernels),
+      residual_(3 * model.sphere_count()),
+      parts_(std::size_t(slabs.count())),
+      gradient_(gradient_for(model, slabs, team, kernels)) {
+  for (std::size_t i = 0; i < model.sphere_count(); ++i)
+    if (model.held_axes[i] != 0) held_.push_back(std::int32_t(i));
+}
+
+double LinearSolver::energy_of(const Coordinates& v) {
+  return sum_over_slabs(slabs_, team_, parts_, [&](std::size_t begin, std::size_t end) {
+    return kernels_.multiply_mass(model_.sphere_count(), model_.mass.data(), v.data(), residual_.data(), begin, end);
+  });
+}
+
+void LinearSolver::set_blocks(const DiagonalBlocks& blocks, std::int32_t pinned) {
+  std::visit([&](auto& gradient) { set_blocks_of(gradient, blocks, pinned); }, gradient_);
+}
+
+template <class Real>
+void LinearSolver::set_blocks_of(ConjugateGradient<Real>& gradient, const DiagonalBlocks& blocks, std::int32_t pinned) {
+  const std::size_t n = model_.sphere_count();
+  const SolverKernels<Real>& kernels = solver_kernels<Real>(kernels_);
+  std::vector<Real>& inverse = gradient.inverse();
+  team_.for_each(slabs_.count(), [&](int slab) {
+    kernels.invert_blocks(n, blocks.data(), inverse.data(), std::size_t(slabs_.begin(slab)),
+                          std::size_t(slabs_.end(slab)));
+  });
+  const auto hold = [&](std::size_t sphere, std::uint8_t axes) {
+    constexpr std::uint8_t kAxes[6] = {1, 3, 5, 2, 6, 4};  // which axes xx, xy, xz, yy, yz, zz belong to
+    for (std::size_t k = 0; k < 6; ++k)
+      if ((kAxes[k] & axes) != 0) inverse[k * n + sphere] = 0;
+  };
+  for (const std::int32_t sphere : held_) {
+    const auto i = std::size_t(sphere);
+    if (model_.held_axes[i] != kAnchored) {
+      // What is left free is inverted by itself.
+      double own[6];
+      Real free[6];
+      for (std::size_t k = 0; k < 6; ++k) own[k] = blocks[k * n + i];
+      const auto is_held = [&](int axis) { return (model_.held_axes[i] >> axis & 1) != 0; };
+      if (is_held(0) || is_held(1)) own[1] = 0;
+      if (is_held(0) || is_held(2)) own[2] = 0;
+      if (is_held(1) || is_held(2)) own[4] = 0;
+      kernels.invert_blocks(1, own, free, 0, 1);
+      for (std::size_t k = 0; k < 6; ++k) inverse[k * n + i] = free[k];
+    }
+    hold(i, model_.held_axes[i]);
+  }
+  if (pinned >= 0) hold(std::size_t(pinned), kAnchored);
+}
+
+}  // namespace ctpm

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "core/elements/axial.h"
+#include "core/model/model.h"
+#include "core/parallel/slabs.h"
+#include "core/parallel/team.h"
+#include "core/solver/conjugate_gradient.h"
+
+namespace ctpm {
+
+/// When a solve may stop. Norms are of the preconditioned residual, whose square is an energy.
+struct SolverLimits {
+  double relative = 1e-4;  ///< residual against that of the first guess, or against the root of the first guess's
+                           ///< kinetic energy x M x where that is less: dashpots that are far stiffer than the mass
+                           ///< make the first residual so large that soft motions would be left unsolved
+  double absolute = 0;     ///< residual that counts as solved anyway
+  std::int32_t max_iterations = 200;
+};
+
+struct SolverOutcome {
+  std::int32_t iterations = 0;
+  double residual = 0;  ///< relative to that of the first guess
+  bool converged = false;
+};
+
+/// Solves A x = b with A = mass + coupling, symmetric and positive definite, in rounds: the residual in double, a
+/// correction by conjugate gradients in float, where the Model is soft enough for that, or in double (iterative
+/// refinement: Higham, "Accuracy and stability of numerical algorithms", 2002, ch. 12). Mostly one round is enough.
+class LinearSolver {
+ public:
+  LinearSolver(const Model& model, const Slabs& slabs, Team& team, const Kernels& kernels);
+
+  /// Takes the diagonal blocks of A. Coordinates that are held, as in Model::held_axes, and the sphere `pinned` stay at
+  /// the first guess: their rows are left out of the system.
+  void set_blocks(const DiagonalBlocks& blocks, std::int32_t pinned);
+
+  /// `x` is the first guess and the result. If it is all zero, since it is a change of a velocity, `guess_energy` is
+  /// energy_of() that. `add_coupling` as for ConjugateGradient, for vectors of float and of double.
+  template <class AddCoupling>
+  SolverOutcome solve(const Coordinates& b, Coordinates& x, std::optional<double> guess_energy,
+                      const SolverLimits& limits, AddCoupling&& add_coupling);
+
+  /// v . M v [J], twice the kinetic energy of velocity `v` [m/s].
+  double energy_of(const Coordinates& v);
+
+ private:
+  template <class Real>
+  void set_blocks_of(ConjugateGradient<Real>& gradient, const DiagonalBlocks& blocks, std::int32_t pinned);
+
+  /// What a round with vectors of Real may gain [energy]; more would be noise.
+  template <class Real>
+  static constexpr double kGain = sizeof(Real) == sizeof(float) ? 1e-10 : 0.0;
+
+  const Model& model_;
+  const Slabs& slabs_;
+  Team& team_;
+  const Kernels& kernels_;
+  std::vector<std::int32_t> held_;  ///< spheres of which an axis or more is held
+  Coordinates residual_;
+  std::vector<double> parts_;  ///< of a sum (slab_count)
+  std::variant<ConjugateGradient<float>, ConjugateGradient<double>> gradient_;
+};
+
+template <class AddCoupling>
+SolverOutcome LinearSolver::solve(const Coordinates& b, Coordinates& x, std::optional<double> guess_energy,
+                                  const SolverLimits& limits, AddCoupling&& add_coupling) {
+  const std::size_t n = model_.sphere_count();
+  SolverOutcome outcome;
+  std::int32_t left = limits.max_iterations;
+  double first_energy = 0, enough = 0;
+  std::visit(
+      [&]<class Real>(ConjugateGradient<Real>& gradient) {
+        for (bool is_first = true;; is_first = false) {
+          const bool is_zero = is_first && guess_energy.has_value();
+          const double kinetic = is_zero ? *guess_energy : energy_of(x);
+          if (is_zero)
+            std::fill(residual_.begin(), residual_.end(), 0.0);
+          else
+            add_coupling(static_cast<const double*>(x.data()), residual_.data(), [](int) {});
+          const double squared = sum_over_slabs(slabs_, team_, parts_, [&](std::size_t begin, std::size_t end) {
+            return kernels_.residual_from(n, b.data(), residual_.data(), begin, end);
+          });
+          const double scale = squared > 0 ? 1 / std::sqrt(squared) : 1.0;
+          const double energy = gradient.begin(residual_, scale), unit = scale * scale;
+          if (is_first) {
+            first_energy = energy / unit;
+            enough = std::max(std::min(first_energy, kinetic) * limits.relative * limits.relative,
+                              limits.absolute * limits.absolute);
+          }
+          const std::int32_t before = left;
+          const double reached = gradient.descend(std::max(enough * unit, energy * kGain<Real>), left, add_coupling);
+          if (left != before) gradient.add_to(x);
+          outcome.converged = reached <= enough * unit;
+          outcome.residual = first_energy > 0 ? std::sqrt(reached / unit / first_energy) : 0.0;
+          if (outcome.converged || left == before || left == 0) break;
+        }
+      },
+      gradient_);
+  outcome.iterations = limits.max_iterations - left;
+  return outcome;
+}
+
+}  // namespace ctpm

@@ -1,0 +1,118 @@
+#include "core/stepping/integrator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <vector>
+
+namespace ctpm {
+namespace {
+
+/// Substeps up to which the explicit step costs less than an implicit solve.
+constexpr std::int32_t kMostExplicitSubsteps = 4;
+
+/// `automatic` keeps this share of the proven step.
+constexpr double kSafety = 0.9;
+
+/// Per sphere: what bounds its stiffness and its damping, each divided by its mass.
+struct Bound {
+  std::vector<double> stiffness, damping;  ///< [1/s^2], [1/s]  (sphere_count)
+};
+
+Bound bound_of(const Model& model) {
+  Bound bound{std::vector<double>(model.sphere_count()), std::vector<double>(model.sphere_count())};
+  const auto add = [&](std::int32_t sphere, double k, double c) {
+    const auto i = std::size_t(sphere);
+    bound.stiffness[i] += k / model.mass[i], bound.damping[i] += c / model.mass[i];
+  };
+  const Edges& edges = model.edges;
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    for (const std::int32_t end : {edges.a[e], edges.b[e]})
+      add(end, 2 * edges.k[e], edges.c.empty() ? 0.0 : 2 * edges.c[e]);
+  // The Kelvin elongation follows implicitly, so only the series spring meets the spheres.
+  const TwoSphereTpms& tpms = model.tpms;
+  for (std::size_t t = 0; t < tpms.size(); ++t)
+    for (const std::int32_t end : {tpms.a[t], tpms.b[t]}) add(end, 2 * tpms.spring_k[t], 0);
+  const Constraints& lines = model.constraints;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    for (const std::int32_t sphere : {lines.a[i], lines.c[i], lines.e[i]}) add(sphere, 3 * lines.k[i], 0);
+  const AngleSprings& angles = model.angle_springs;
+  for (std::size_t i = 0; i < angles.size(); ++i)
+    for (const std::int32_t sphere : {angles.a[i], angles.b[i], angles.c[i]}) add(sphere, 1.5 * angles.k[i], 0);
+  return bound;
+}
+
+std::string with_milliseconds(const char* format, double seconds) {
+  char text[256];
+  std::snprintf(text, sizeof text, format, seconds * 1e3);
+  return text;
+}
+
+}  // namespace
+
+double stable_step_bound(const Model& model) {
+  const Bound bound = bound_of(model);
+  double longest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < model.sphere_count(); ++i) {
+    if (model.held_axes[i] == kAnchored) continue;
+    const double k = bound.stiffness[i], c = bound.damping[i];
+    // The positive root of h^2 k + 2 h c = 4, written so that nothing cancels.
+    const double root = c + std::sqrt(c * c + 4 * k);
+    if (root > 0) longest = std::min(longest, 4 / root);
+  }
+  return longest;
+}
+
+double stiffness_ratio_bound(const Model& model, double h) {
+  const Bound bound = bound_of(model);
+  double ratio = 0;
+  for (std::size_t i = 0; i < model.sphere_count(); ++i)
+    if (model.held_axes[i] != kAnchored) ratio = std::max(ratio, h * (h * bound.stiffness[i] + bound.damping[i]));
+  return ratio;
+}
+
+IntegratorChoice choose_integrator(const Model& model) {
+  const double longest = stable_step_bound(model);
+  const SolverSettings& solver = model.solver;
+  IntegratorChoice choice{solver.integrator, solver.substeps, true, true, "the scene asks for it"};
+  if (solver.integrator == Integrator::sdirk2) {
+    choice.damps = false;
+    choice.reason =
+        "the scene asks for it, but it damps nothing by itself: what no dashpot damps swings on, and gains what "
+        "Eq. 8 does in closed cycles";
+  }
+  if (solver.integrator == Integrator::leapfrog && model.tick / solver.substeps > longest) {
+    choice.holds = false;
+    choice.reason = with_milliseconds("the scene asks for it, but it only holds for substeps up to %.3g ms", longest);
+  }
+  if (solver.integrator != Integrator::automatic) return choice;
+  const double needed = std::max(std::ceil(model.tick / (kSafety * longest)), double(solver.substeps));
+  if (needed <= kMostExplicitSubsteps || needed <= solver.substeps) {
+    choice.integrator = Integrator::leapfrog;
+    choice.substeps = std::int32_t(needed);
+    choice.reason =
+        with_milliseconds("nothing in the scene is too stiff for an explicit step of up to %.3g ms", longest);
+  } else {
+    choice.integrator = Integrator::backward_euler;
+    choice.reason =
+        with_milliseconds("the scene is stiff: an explicit step would have to be shorter than %.3g ms", longest);
+  }
+  return choice;
+}
+
+const char* name_of(Integrator integrator) {
+  switch (integrator) {
+    case Integrator::automatic:
+      return "auto";
+    case Integrator::leapfrog:
+      return "leapfrog";
+    case Integrator::backward_euler:
+      return "backward-euler";
+    case Integrator::sdirk2:
+      return "sdirk2";
+  }
+  return "unknown";
+}
+
+}  // namespace ctpm

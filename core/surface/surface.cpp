@@ -1,0 +1,206 @@
+#include "core/surface/surface.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <future>
+#include <limits>
+
+#include "core/model/result.h"
+
+namespace ctpm {
+namespace {
+
+constexpr double kReachInSpacings = 2.2;
+constexpr std::size_t kFewestFollowed = 8;
+
+/// C1 bump that falls from 1 at the point to 0 at the reach.
+double kernel(double distance, double reach) {
+  const double q = distance / reach;
+  return q >= 1 ? 0.0 : (1 - q * q) * (1 - q * q);
+}
+
+/// A sphere and how far it is from the point in question.
+struct Candidate {
+  double distance;
+  std::int32_t sphere;
+  friend bool operator<(const Candidate& a, const Candidate& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.sphere < b.sphere;
+  }
+};
+
+/// Spheres by lattice row, so that neighbours of a point are found without looking at all spheres.
+class CellIndex {
+ public:
+  explicit CellIndex(const FilledOrgan& organ) : organ_(organ), least_(organ.cell[0]), most_(organ.cell[0]) {
+    origin_ = organ.centre[0] -
+              organ.spacing * Vec3{double(organ.cell[0][0]), double(organ.cell[0][1]), double(organ.cell[0][2])};
+    for (const auto& c : organ.cell)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        least_[axis] = std::min(least_[axis], c[axis]), most_[axis] = std::max(most_[axis], c[axis]);
+    // Spheres of a row side by side, in the order of i.
+    first_.assign(std::size_t(rows(1)) * std::size_t(rows(2)) + 1, 0);
+    for (const auto& c : organ.cell) ++first_[row_of(c[1], c[2]) + 1];
+    for (std::size_t row = 1; row < first_.size(); ++row) first_[row] += first_[row - 1];
+    in_row_.resize(organ.cell.size());
+    std::vector<std::int32_t> next(first_.begin(), first_.end() - 1);
+    for (std::size_t n = 0; n < organ.cell.size(); ++n)
+      in_row_[std::size_t(next[row_of(organ.cell[n][1], organ.cell[n][2])]++)] = {organ.cell[n][0], std::int32_t(n)};
+    for (std::size_t row = 0; row + 1 < first_.size(); ++row)
+      std::sort(in_row_.begin() + first_[row], in_row_.begin() + first_[row + 1],
+                [](const Entry& a, const Entry& b) { return a.i < b.i; });
+  }
+
+  /// Spheres within `rings` lattice cells of the point that are nearer than `reach`.
+  void near(Vec3 point, int rings, double reach, std::vector<Candidate>& found) const {
+    found.clear();
+    const Vec3 q = (point - origin_) / organ_.spacing;
+    const std::array<int, 3> centre{int(std::floor(q.x + 0.5)), int(std::floor(q.y + 0.5)), int(std::floor(q.z + 0.5))};
+    const auto from = [&](std::size_t axis) { return std::max(centre[axis] - rings, least_[axis]); };
+    const auto to = [&](std::size_t axis) { return std::min(centre[axis] + rings, most_[axis]); };
+    for (int k = from(2); k <= to(2); ++k)
+      for (int j = from(1); j <= to(1); ++j) {
+        const std::size_t row = row_of(j, k);
+        const auto end = in_row_.begin() + first_[row + 1];
+        auto entry = std::lower_bound(in_row_.begin() + first_[row], end, from(0),
+                                      [](const Entry& e, int i) { return e.i < i; });
+        for (; entry != end && entry->i <= to(0); ++entry)
+          if (const double d = norm(organ_.centre[std::size_t(entry->sphere)] - point); d < reach)
+            found.push_back({d, entry->sphere});
+      }
+  }
+
+ private:
+  struct Entry {
+    std::int32_t i, sphere;
+  };
+  std::int64_t rows(std::size_t axis) const { return std::int64_t(most_[axis]) - least_[axis] + 1; }
+  std::size_t row_of(std::int32_t j, std::int32_t k) const {
+    return std::size_t((k - least_[2]) * rows(1) + (j - least_[1]));
+  }
+
+  const FilledOrgan& organ_;
+  Vec3 origin_;
+  std::array<std::int32_t, 3> least_, most_;
+  std::vector<std::int32_t> first_;  // where a row begins in `in_row_`
+  std::vector<Entry> in_row_;
+};
+
+/// The spheres that a vertex follows: all within reach, or the nearest few where the reach catches too few.
+void find_followed(const FilledOrgan& organ, const CellIndex& index, Vec3 point, std::vector<Candidate>& found,
+                   double& reach) {
+  // The nearest few may lie just within the reach and stretch it by this much.
+  constexpr double kStretch = 1.05;
+  const double usual = kReachInSpacings * organ.spacing;
+  const std::size_t fewest = std::min(organ.centre.size(), kFewestFollowed);
+  int rings = int(std::ceil(kReachInSpacings)) + 1;
+  index.near(point, rings, kStretch * usual, found);
+  if (found.size() < fewest || std::size_t(std::count_if(found.begin(), found.end(), [&](const Candidate& c) {
+                                 return c.distance < usual;
+                               })) < fewest) {
+    found.clear();
+    for (; found.size() < fewest; rings *= 2) index.near(point, rings, std::numeric_limits<double>::infinity(), found);
+  }
+  std::sort(found.begin(), found.end());
+  reach = std::max(usual, kStretch * found[fewest - 1].distance);
+  std::size_t count = fewest;
+  while (count < found.size() && found[count].distance < reach) ++count;
+  found.resize(count);
+}
+
+/// Bindings of a run of vertices; `binding.first` begins at 0.
+void bind_run(const FilledOrgan& organ, const CellIndex& index, std::size_t begin, std::size_t end,
+              SurfaceBinding& binding) {
+  std::vector<Candidate> followed;
+  std::vector<Vec3> centres;
+  for (std::size_t v = begin; v < end; ++v) {
+    const Vec3 vertex = organ.surface.vertex[v];
+    double reach = 0;
+    find_followed(organ, index, vertex, followed, reach);
+    centres.clear();
+    for (const Candidate& c : followed) {
+      centres.push_back(organ.centre[std::size_t(c.sphere)]);
+      binding.sphere.push_back(c.sphere);
+    }
+    const std::vector<double> weights = follow_weights(vertex, centres, reach);
+    binding.weight.insert(binding.weight.end(), weights.begin(), weights.end());
+    binding.first.push_back(std::int32_t(binding.sphere.size()));
+  }
+}
+
+}  // namespace
+
+std::vector<double> follow_weights(Vec3 point, std::span<const Vec3> candidates, double radius) {
+  CTPM_CHECK(!candidates.empty() && radius > 0, "a point needs something to follow");
+  std::vector<double> weight(candidates.size());
+  double total = 0;
+  for (std::size_t i = 0; i < candidates.size(); ++i) total += weight[i] = kernel(norm(candidates[i] - point), radius);
+  if (total <= 0) {
+    // Nothing in reach: follow the nearest alone.
+    std::size_t nearest = 0;
+    for (std::size_t i = 1; i < candidates.size(); ++i)
+      if (norm(candidates[i] - point) < norm(candidates[nearest] - point)) nearest = i;
+    std::fill(weight.begin(), weight.end(), 0.0);
+    weight[nearest] = 1;
+    return weight;
+  }
+  // Moments of the kernel in the basis (1, p - point), lengths in units of the radius.
+  Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
+  const auto basis = [&](std::size_t i) {
+    const Vec3 d = (candidates[i] - point) / radius;
+    return Eigen::Vector4d(1, d.x, d.y, d.z);
+  };
+  for (std::size_t i = 0; i < candidates.size(); ++i) moments += weight[i] / total * basis(i) * basis(i).transpose();
+  const Eigen::FullPivLU<Eigen::Matrix4d> lu(moments);
+  constexpr double kSpansSpace = 1e-4;  // smallest pivot against the largest; below it the weights would explode
+  const bool spans_space = std::abs(lu.matrixLU()(3, 3)) > kSpansSpace * std::abs(lu.matrixLU()(0, 0));
+  const Eigen::Vector4d correction =
+      spans_space ? Eigen::Vector4d(lu.solve(Eigen::Vector4d::UnitX())) : Eigen::Vector4d::UnitX();
+  for (std::size_t i = 0; i < candidates.size(); ++i) weight[i] *= correction.dot(basis(i)) / total;
+  return weight;
+}
+
+void bind_surface(FilledOrgan& organ, int threads) {
+  CTPM_CHECK(!organ.centre.empty(), "binding needs spheres");
+  const CellIndex index(organ);
+  // Runs of equal length whatever the threads, each thread takes the next one that is free.
+  constexpr std::size_t kRun = 4096;
+  const std::size_t vertex_count = organ.surface.vertex.size(), run_count = (vertex_count + kRun - 1) / kRun;
+  std::vector<SurfaceBinding> runs(run_count);
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t run; (run = next.fetch_add(1)) < run_count;)
+      bind_run(organ, index, run * kRun, std::min((run + 1) * kRun, vertex_count), runs[run]);
+  };
+  std::vector<std::future<void>> others;
+  for (int t = 1; t < threads && std::size_t(t) < run_count; ++t)
+    others.push_back(std::async(std::launch::async, work));
+  work();
+  for (auto& other : others) other.get();
+
+  SurfaceBinding& binding = organ.surface.binding;
+  binding = {};
+  binding.first.push_back(0);
+  for (SurfaceBinding& run : runs) {
+    const std::int32_t start = std::int32_t(binding.sphere.size());
+    for (const std::int32_t end : run.first) binding.first.push_back(start + end);
+    binding.sphere.insert(binding.sphere.end(), run.sphere.begin(), run.sphere.end());
+    binding.weight.insert(binding.weight.end(), run.weight.begin(), run.weight.end());
+    run = {};
+  }
+}
+
+void deform_surface(const Surface& surface, const Vec3Array& position, std::int32_t first_sphere,
+                    std::vector<Vec3>& vertex) {
+  const SurfaceBinding& binding = surface.binding;
+  vertex.assign(surface.vertex.size(), Vec3{});
+  for (std::size_t v = 0; v < vertex.size(); ++v)
+    for (std::int32_t entry = binding.first[v]; entry < binding.first[v + 1]; ++entry)
+      vertex[v] +=
+          binding.weight[std::size_t(entry)] * position[std::size_t(first_sphere + binding.sphere[std::size_t(entry)])];
+}
+
+}  // namespace ctpm

@@ -1,0 +1,94 @@
+// What every study of the benchmark needs: timed runs, errors, percentiles, the Pareto front.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "core/stepping/step.h"
+#include "studio/bench/bench.h"
+
+namespace ctpm {
+
+BenchRun run_motion(const Model& model, const BenchMotion& motion) {
+  using Clock = std::chrono::steady_clock;
+  BenchRun run;
+  Stepper stepper(model);
+  State state = rest_state(model);
+  for (std::int64_t tick = 0; tick < motion.ticks; ++tick) {
+    const Inputs inputs = motion.hand(tick);
+    const Clock::time_point start = Clock::now();
+    const StepReport report = stepper.step(state, inputs);
+    run.seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+    if (report.status == StepStatus::not_converged) {
+      ++run.unconverged;
+    } else if (report.status != StepStatus::ok) {
+      run.status = report.status;
+      return run;
+    }
+    run.position.push_back(state.position), run.force.push_back(report.tool_force);
+  }
+  return run;
+}
+
+double position_error(const BenchRun& run, const BenchRun& reference, const Vec3Array& rest) {
+  double off = 0, size = 0;
+  for (std::size_t t = 0; t < std::min(run.position.size(), reference.position.size()); ++t)
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      const Vec3 apart = run.position[t][i] - reference.position[t][i], way = reference.position[t][i] - rest[i];
+      off += dot(apart, apart), size += dot(way, way);
+    }
+  return size > 0 ? std::sqrt(off / size) : 0;
+}
+
+double force_error(const BenchRun& run, const BenchRun& reference) {
+  double off = 0, size = 0;
+  for (std::size_t t = 0; t < std::min(run.force.size(), reference.force.size()); ++t) {
+    const Vec3 apart = run.force[t] - reference.force[t];
+    off += dot(apart, apart), size += dot(reference.force[t], reference.force[t]);
+  }
+  return size > 0 ? std::sqrt(off / size) : 0;
+}
+
+double percentile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  const double rank = std::ceil(share * double(values.size()));
+  return values[std::size_t(std::clamp(rank, 1.0, double(values.size()))) - 1];
+}
+
+std::vector<std::size_t> pareto_front(const std::vector<double>& cost, const std::vector<double>& error) {
+  std::vector<std::size_t> order(cost.size()), front;
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return cost[a] != cost[b] ? cost[a] < cost[b] : error[a] < error[b];
+  });
+  double least = INFINITY;
+  for (const std::size_t i : order)
+    if (error[i] < least) least = error[i], front.push_back(i);
+  return front;
+}
+
+Table bench_layout() {
+  Table table;
+  table.columns = {{"study", "study"},
+                   {"scene", "scene"},
+                   {"model", "model"},
+                   {"integrator", "integrator"},
+                   {"substeps", "substeps"},
+                   {"tolerance", "tolerance", 2},
+                   {"radius_mm", "r [mm]", 3},
+                   {"layers", "layers"},
+                   {"spheres", "spheres"},
+                   {"position_error", "error in position", 3},
+                   {"force_error", "error in force", 3},
+                   {"run_time_s_per_s", "run time [s per s]", 3},
+                   {"tick_p50_ms", "tick p50 [ms]", 3},
+                   {"tick_p99_ms", "p99 [ms]", 3},
+                   {"tick_p999_ms", "p99.9 [ms]", 3},
+                   {"unconverged_ticks", "ticks not converged"},
+                   {"front", "Pareto front"}};
+  return table;
+}
+
+}  // namespace ctpm

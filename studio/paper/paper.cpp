@@ -1,0 +1,173 @@
+#include "studio/paper/paper.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <numbers>
+
+#include "scenes/presets.h"
+
+namespace ctpm {
+namespace {
+
+/// Printed numbers that are this close [share] are called agreeing where nothing must hold.
+constexpr double kAgrees = 0.10;
+
+double share(const std::optional<double>& got, const std::optional<double>& wanted) {
+  return got && wanted && *wanted != 0 ? *got / *wanted - 1 : std::nan("");
+}
+
+Cell cell(const std::optional<double>& value) { return value ? Cell(*value) : Cell(); }
+Cell percent(double value) { return std::isfinite(value) ? Cell(100 * value) : Cell(); }
+
+}  // namespace
+
+double Claim::error_to_closed_form() const {
+  return closed_form_error ? *closed_form_error : share(network, closed_form);
+}
+double Claim::error_to_paper() const { return share(network, paper); }
+
+ReportVerdict Claim::verdict() const {
+  bool is_met = true;
+  // Written so that an error that is not a number counts as missed.
+  if (closed_form_bound) is_met = is_met && std::abs(error_to_closed_form()) <= *closed_form_bound;
+  if (paper_bound) is_met = is_met && std::abs(error_to_paper()) <= *paper_bound;
+  if (holds) is_met = is_met && *holds;
+  if (!is_met) return ReportVerdict::missed;
+  return closed_form_bound || paper_bound || holds ? ReportVerdict::met : ReportVerdict::shown;
+}
+
+Table claims_table(const std::vector<Claim>& claims) {
+  Table table;
+  table.columns = {{"experiment", "experiment"},
+                   {"organ", "organ"},
+                   {"model", "model"},
+                   {"viscosity", "viscosity"},
+                   {"quantity", "quantity"},
+                   {"paper", "paper"},
+                   {"closed_form", "closed form"},
+                   {"network", "network"},
+                   {"error_to_closed_form_percent", "error to closed form [%]", 2},
+                   {"bound_percent", "bound [%]", 3},
+                   {"error_to_paper_percent", "error to paper [%]", 2},
+                   {"paper_bound_percent", "bound [%]", 3},
+                   {"verdict", "must hold"},
+                   {"paper_verdict", "paper"},
+                   {"note", "note"}};
+  for (const Claim& c : claims) {
+    const double off = c.error_to_paper();
+    const char* agrees = !std::isfinite(off)                                ? ""
+                         : std::abs(off) <= c.paper_bound.value_or(kAgrees) ? "agrees"
+                                                                            : "differs";
+    table.rows.push_back({c.experiment, c.organ, c.structure, c.viscosity, c.quantity, cell(c.paper),
+                          cell(c.closed_form), cell(c.network), percent(c.error_to_closed_form()),
+                          c.closed_form_bound ? percent(*c.closed_form_bound) : Cell(), percent(off),
+                          c.paper_bound ? percent(*c.paper_bound) : Cell(), c.verdict(), std::string(agrees), c.note});
+  }
+  return table;
+}
+
+std::string full_name(const Variant& variant) {
+  return variant.name + (*variant.reading ? std::string(", ") + variant.reading : "");
+}
+
+void use_variant(SceneSpec& scene, const Variant& variant) {
+  scene.organs[0].model = variant.structure;
+  if (!variant.is_pa_s) return;
+  scene.organs[0].material.preset += "-pa-s";
+  for (LayerSpec& layer : scene.organs[0].layers) layer.material.preset += "-pa-s";
+}
+
+Site site_of(const OrganSpec& organ) {
+  const Material m = resolve_material(organ.material).material;
+  Site site;
+  site.spring = m.spring * 1e-6, site.kelvin = m.kelvin * 1e-6, site.constraint = m.constraint * 1e-6;
+  site.viscosity = m.viscosity * 1e-6;
+  site.arm = 2e3 * m.calibration_spacing;
+  site.ball_radius = 1e3 * std::sqrt(m.calibration_area / std::numbers::pi);
+  return site;
+}
+
+namespace {
+
+/// What an experiment uses of a scene; the others take nothing for granted.
+struct Need {
+  const char* name;
+  std::size_t cells, loads, probes, tools;
+};
+constexpr Need kNeeds[] = {{"paper/rig-skin.json", 7, 0, 0, 1},
+                           {"paper/rig-kidney.json", 7, 0, 0, 1},
+                           {"paper/rig-liver.json", 7, 0, 0, 1},
+                           {"paper/creep-liver.json", 7, 1, 1, 0},
+                           {"paper/block-liver.json", 0, 1, 1, 1},
+                           {"paper/convergence-liver.json", 0, 0, 0, 0},
+                           {"liver.json", 0, 0, 0, 1},
+                           {"incision.json", 0, 0, 4, 1}};
+
+}  // namespace
+
+Result<LoadedScene> load_experiment(const std::string& scenes, const std::string& name) {
+  Result<LoadedScene> scene = load_whole_scene(scenes + "/" + name);
+  if (!scene) return scene;
+  const auto need = std::find_if(std::begin(kNeeds), std::end(kNeeds), [&](const Need& n) { return n.name == name; });
+  CTPM_CHECK(need != std::end(kNeeds), "every experiment says what it needs");
+  const SceneSpec& spec = scene->scene.spec;
+  Errors errors;
+  const std::size_t cells = spec.organs[0].rig ? spec.organs[0].rig->cells.size() : 0;
+  if (cells < need->cells)
+    errors.push_back({scene->path,
+                      "/organs/0/rig/cells: got " + std::to_string(cells) +
+                          " spheres, the rig of Fig. 3 has 7: A to E on a line, and two below C",
+                      ""});
+  const auto check = [&](const char* key, std::size_t got, std::size_t wanted) {
+    if (got < wanted) errors.push_back({scene->path, std::string("/") + key + ": the experiment needs one", ""});
+  };
+  check("loads", spec.loads.size(), need->loads), check("probes", spec.probes.size(), need->probes),
+      check("tools", spec.tools.size(), need->tools);
+  if (!errors.empty()) return errors;
+  return scene;
+}
+
+Errors check_experiments(const std::string& scenes) {
+  Errors errors;
+  for (const Need& need : kNeeds)
+    if (const Result<LoadedScene> scene = load_experiment(scenes, need.name); !scene)
+      errors.insert(errors.end(), scene.errors().begin(), scene.errors().end());
+  return errors;
+}
+
+Result<BuiltScene> build_changed(const LoadedScene& scene, const std::function<void(SceneSpec&)>& change) {
+  SceneSpec spec = scene.scene.spec;
+  change(spec);
+  return build_model(spec, scene.organs);
+}
+
+const std::vector<PrintedRow>& printed_table(const std::string& organ) {
+  static const std::map<std::string, std::vector<PrintedRow>> kPrinted{{"skin",
+                                                                        {{2, 0.37, 1.6, 1.7},
+                                                                         {4, 1.47, 3.9, 3.6},
+                                                                         {6, 3.3, 6.1, 5.7},
+                                                                         {8, 5.8, 9.2, 7.7},
+                                                                         {10, 8.9, 12.3, 9.9},
+                                                                         {12, 12.6, 15.8, 12.3}}},
+                                                                       {"kidney",
+                                                                        {{2, 0.73, 0.42, 0.37},
+                                                                         {4, 2.9, 0.8, 0.7},
+                                                                         {6, 6.3, 1.5, 1.2},
+                                                                         {8, 10.8, 2.2, 1.7},
+                                                                         {10, 16.3, 3.2, 2.3},
+                                                                         {12, 22.4, 4.5, 3.0}}},
+                                                                       {"liver",
+                                                                        {{2, 0.14, 0.19, 0.17},
+                                                                         {4, 0.54, 0.4, 0.25},
+                                                                         {6, 1.2, 0.66, 0.38},
+                                                                         {8, 2.1, 0.96, 0.62},
+                                                                         {10, 3.1, 1.3, 0.84},
+                                                                         {12, 4.2, 1.8, 1.1}}}};
+  const auto it = kPrinted.find(organ);
+  CTPM_CHECK(it != kPrinted.end(), "the paper has skin, kidney and liver");
+  return it->second;
+}
+
+}  // namespace ctpm

@@ -1,0 +1,143 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/model/result.h"
+#include "scenes/scene_spec.h"
+#include "studio/loaded_scene.h"
+#include "studio/paper/closed_forms.h"
+#include "studio/reports/report.h"
+
+// The experiments of Bao & Wu, run on the sphere network. Each takes the folder of the shipped scenes, runs
+// scenes of it, and compares what the network gives with the closed forms and with what the paper prints.
+namespace ctpm {
+
+/// One number that three sides may know: the paper as printed, the closed form, the network.
+struct Claim {
+  std::string experiment;  ///< "table-1", "relaxation", ...
+  std::string organ;
+  std::string structure;       ///< "CTPM", "TPM", "mass-spring"
+  std::string viscosity = {};  ///< reading of the viscosity: "kPa s", "Pa s"; empty: it does not matter
+  std::string quantity;        ///< with its unit: "force at 4 mm [N]"
+  std::optional<double> paper = {}, closed_form = {}, network = {};
+  std::optional<double> closed_form_error = {};  ///< of the network [share]; unset: the difference of both values
+  std::optional<double> closed_form_bound = {};  ///< [share]; unset: nothing must hold
+  std::optional<double> paper_bound = {};        ///< [share]; unset: nothing must hold
+  std::optional<bool> holds = {};  ///< of what is asked of the network alone: whether it is so; unset: nothing is asked
+  std::string note = {};
+
+  double error_to_closed_form() const;  ///< [share]; NaN if one side is unknown
+  double error_to_paper() const;        ///< [share]; NaN if one side is unknown
+  ReportVerdict verdict()
+      const;  ///< missed if a bound is passed or something asked is not so; shown if nothing must hold
+};
+
+/// One of the models that an experiment compares.
+struct Variant {
+  const char* name;
+  Structure structure;
+  bool is_pa_s;         ///< viscosity as printed, in Pa s/mm
+  const char* reading;  ///< the viscosity's, as a reader is told; empty: the model has none
+};
+/// "CTPM, kPa s".
+std::string full_name(const Variant& variant);
+/// Gives the scene's first organ the variant's structure and viscosity.
+void use_variant(SceneSpec& scene, const Variant& variant);
+
+/// What one experiment gave.
+struct Experiment {
+  Section section;
+  std::vector<Claim> claims;
+};
+
+/// Table 1, Figs. 5 and 6: C of the rig pressed to 2, 4, ... 12 mm and held, three organs, TPM and CTPM.
+Result<Experiment> run_table_1(const std::string& scenes);
+
+/// Fig. 7: C of the rig pressed at 2 mm/s to 4 mm and held; three organs, both readings of the viscosity.
+Result<Experiment> run_relaxation(const std::string& scenes);
+
+/// Fig. 8: 0.196 N and 0.98 N on C of the liver's rig for 33 s, both readings of the viscosity.
+Result<Experiment> run_creep(const std::string& scenes);
+
+/// Figs. 9 to 11: 0.13 N on one surface sphere of a liver block, four structures, both readings of the
+/// viscosity. Without `with_pictures` nothing is drawn.
+Result<Experiment> run_load(const std::string& scenes, bool with_pictures);
+
+/// Figs. 12 to 14: a kidney is cut and four points beside the cut are followed from 1 s to 8 s after it.
+Result<Experiment> run_cut(const std::string& scenes, bool with_pictures);
+
+/// One filling of an organ.
+struct SagOfFilling {
+  double radius = 0;  ///< of its spheres [mm]
+  std::size_t spheres = 0;
+  double sag = 0;  ///< mean depth by which they have sunk under gravity, at rest [mm]
+};
+/// The same organ filled with r, r/2 and r/4.
+struct Refinement {
+  std::vector<SagOfFilling> fillings = {};
+
+  double shrinkage() const;  ///< second change over first, without sign; below 1: it converges
+  double order() const;      ///< observed order of convergence, from the shrinkage
+  double limit() const;      ///< sag that the three point to [mm] (Richardson)
+};
+/// Fills the scene's organ three times and lets it come to rest. Errors: those of the mesh; no rest is found.
+Result<Refinement> refine(const LoadedScene& scene, const Variant& variant);
+
+/// The same organ with finer and finer fillings: a block in all four structures, and the shipped liver.
+Result<Experiment> run_convergence(const std::string& scenes);
+
+/// All experiments, in the paper's order.
+struct PaperResults {
+  std::vector<Section> sections;
+  std::vector<Claim> claims;
+};
+/// Runs them all, the long ones with two threads. Errors: those of the scenes; a run that diverged.
+Result<PaperResults> run_paper_experiments(const std::string& scenes,
+                                           const std::function<void(std::int64_t done, std::int64_t total)>& progress);
+
+/// Writes report.html, results.json (all claims, and the points of every plot) and results.csv (all claims)
+/// into a folder.
+Result<Done> write_paper_report(const std::string& folder, const PaperResults& results);
+
+/// How a sphere moves under a load that stays.
+struct StepResponse {
+  double rest = 0;           ///< where it comes to [same unit as the values]: mean of the last quarter
+  double overshoot = 0;      ///< largest value beyond rest [share of rest]
+  int reversals = 0;         ///< turns that swing back by more than 0.1 % of rest
+  double settling_time = 0;  ///< after which it stays within 5 % of rest [s]
+};
+StepResponse step_response_of(const Series& series);
+
+/// All claims as one table, for the page, results.json and results.csv.
+Table claims_table(const std::vector<Claim>& claims);
+
+/// The site of the closed forms that an organ's material and filling are.
+Site site_of(const OrganSpec& organ);
+
+/// Loads a scene of an experiment by its path within the folder of the shipped scenes. Errors: those of the
+/// scene; too few spheres for the rig of Fig. 3; no load, probe or tool where the experiment uses one.
+Result<LoadedScene> load_experiment(const std::string& scenes, const std::string& name);
+
+/// What is wrong with the scenes of all experiments together; empty: nothing.
+Errors check_experiments(const std::string& scenes);
+
+/// The loaded scene built again after `change`; its meshes are not read again.
+Result<BuiltScene> build_changed(const LoadedScene& scene, const std::function<void(SceneSpec&)>& change);
+
+/// What the paper prints in its Table 1.
+struct PrintedRow {
+  double depth;              ///< [mm]
+  double lambda, tpm, ctpm;  ///< [kPa/mm], [N], [N]
+};
+/// The six rows of an organ: "skin", "kidney" or "liver".
+const std::vector<PrintedRow>& printed_table(const std::string& organ);
+
+/// Force at rest at each depth of a rig whose pin holds C [N]: pressed on at 10 mm/s from depth to depth and held at
+/// each until the spheres beside C, which nothing but the step damps, have stopped swinging. Error: a step that failed.
+Result<std::vector<double>> press_rig(const Model& model, const std::string& name, const std::vector<PrintedRow>& rows);
+
+}  // namespace ctpm

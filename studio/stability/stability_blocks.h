@@ -1,0 +1,33 @@
+#pragma once
+
+#include "scenes/scene_spec.h"
+#include "studio/stability/stability.h"
+
+/// What the stability cases are built of: blocks of liver, a ball that presses them.
+namespace ctpm::stability {
+
+constexpr double kGravity = 9.81;      ///< [m/s^2]
+constexpr double kSpacing = 12e-3;     ///< of every block [m]
+constexpr double kBallRadius = 10e-3;  ///< [m]
+constexpr std::int32_t kBall = 0, kScalpel = 1;
+
+/// A block of nx x ny x nz spheres with the moduli of the paper's liver, its lowest spheres anchored, without
+/// gravity.
+SceneSpec block(double nx, double ny, double nz);
+
+/// The Model of a scene of rigs, which must be valid.
+Model build(const SceneSpec& scene);
+
+Inputs ball_at(Vec3 place);
+
+/// Where the ball touches the middle of a block that is `nz` spheres high.
+Vec3 touch(double nz);
+
+/// The ball presses a block `depth` [m] deep, holds, and leaves, each within `stretch` ticks; then the hand
+/// is empty.
+std::function<Inputs(std::int64_t)> press(Vec3 from, double depth, std::int64_t stretch);
+
+/// A block that is pressed 6 mm deep, let go, and comes back as far as its tissue lets it.
+StabilityCase pressed(const std::string& key, const std::string& title, const SceneSpec& scene, double seconds);
+
+}  // namespace ctpm::stability

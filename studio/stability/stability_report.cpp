@@ -1,0 +1,153 @@
+// The page about the stability cases: what held, what was refused, and what each failing run looked like.
+
+#include "studio/reports/report.h"
+#include "studio/stability/stability.h"
+
+namespace ctpm {
+namespace {
+
+/// All runs, one a row, for programs.
+Table runs_table(const std::vector<StabilityRow>& rows) {
+  Table table;
+  table.columns = {{"case", "case"},
+                   {"title", "what"},
+                   {"integrator", "integrator"},
+                   {"used", "used"},
+                   {"substeps", "substeps"},
+                   {"verdict", "verdict"},
+                   {"reason", "reason"},
+                   {"ticks", "ticks done"},
+                   {"unconverged_ticks", "ticks not converged"},
+                   {"reach_mm", "furthest [mm]"},
+                   {"end_speed_mm_per_s", "fastest at the end [mm/s]"},
+                   {"expectation", "what must hold"}};
+  for (const StabilityRow& row : rows)
+    for (const StabilityRun& run : row.runs)
+      table.rows.push_back({row.what->key, row.what->title, std::string(name_of(run.asked)),
+                            std::string(name_of(run.used)), std::int64_t(run.substeps), run.verdict, run.reason,
+                            run.ticks, run.unconverged, 1e3 * run.reach, 1e3 * run.end_speed, row.what->expectation});
+  return table;
+}
+
+/// One row a case: the verdict under each integrator.
+Table overview(const std::vector<StabilityRow>& rows) {
+  Table table;
+  table.columns = {{"title", "case"}, {"used", "auto takes"}};
+  for (const Integrator integrator : kStabilityIntegrators)
+    table.columns.push_back({name_of(integrator), name_of(integrator)});
+  table.columns.push_back({"reach", "furthest under auto [mm]", 3});
+  table.columns.push_back({"expectation", "what must hold"});
+  for (const StabilityRow& row : rows) {
+    const StabilityRun& automatic = row.runs[0];
+    std::string used = name_of(automatic.used);
+    if (automatic.substeps > 1) used += ", " + std::to_string(automatic.substeps) + " substeps";
+    std::vector<Cell> cells;
+    cells.emplace_back(row.what->title), cells.emplace_back(used);
+    for (const StabilityRun& run : row.runs) cells.emplace_back(run.verdict);
+    cells.emplace_back(1e3 * automatic.reach), cells.emplace_back(row.what->expectation);
+    table.rows.push_back(cells);
+  }
+  table.caption =
+      "met: all holds. refused: the integrator that was named said before or at the first bad tick "
+      "that it cannot, and left the State as it was. missed: something does not hold, see below.";
+  return table;
+}
+
+/// Why runs were refused, one line for each reason and integrator.
+Table refusals(const std::vector<StabilityRow>& rows) {
+  Table table;
+  table.title = "Refused, and why";
+  table.columns = {{"title", "case"}, {"integrator", "integrator"}, {"ticks", "after ticks"}, {"reason", "reason"}};
+  for (const StabilityRow& row : rows)
+    for (const StabilityRun& run : row.runs)
+      if (run.verdict == ReportVerdict::refused)
+        table.rows.push_back({row.what->title, std::string(name_of(run.asked)), run.ticks, run.reason});
+  return table;
+}
+
+std::vector<Plot> plots_of(const StabilityRun& run) {
+  Plot distance{.title = "furthest sphere", .x_title = "time [s]", .y_title = "distance from rest [mm]"};
+  Plot energy{.title = "energy", .x_title = "time [s]", .y_title = "of motion, springs and gravity [J]"};
+  distance.series.push_back(run.distance), energy.series.push_back(run.energy);
+  distance.height = energy.height = 260;
+  return {distance, energy};
+}
+
+/// The runs that did not hold, those of `auto` first.
+std::vector<Section> failures(const std::vector<StabilityRow>& rows) {
+  std::vector<Section> sections;
+  for (const bool is_automatic : {true, false})
+    for (const StabilityRow& row : rows)
+      for (const StabilityRun& run : row.runs) {
+        if (run.verdict != ReportVerdict::missed || (run.asked == Integrator::automatic) != is_automatic) continue;
+        Section section;
+        section.key = row.what->key + "/" + name_of(run.asked);
+        section.title = std::string("Missed under ") + name_of(run.asked) + ": " + row.what->title;
+        section.paragraphs = {"Must hold: " + row.what->expectation + ".", "Does not: " + run.reason + "."};
+        section.plots = plots_of(run);
+        sections.push_back(section);
+      }
+  return sections;
+}
+
+std::string results_json(const std::vector<StabilityRow>& rows, const std::vector<Section>& failed) {
+  JsonWriter json;
+  json.begin_object()
+      .member("format", "ctpm-stability-results")
+      .member("version", 1)
+      .member("program_version", CTPM_VERSION)
+      .member("cases", rows.size())
+      .member("failures_under_auto", count_failures(rows));
+  json.key("runs");
+  write_rows(json, runs_table(rows));
+  json.key("missed").begin_list();
+  for (const Section& section : failed) {
+    json.begin_object().member("key", std::string_view(section.key)).key("plots").begin_list();
+    for (const Plot& plot : section.plots) write_points(json, plot);
+    json.end_list().end_object();
+  }
+  return json.end_list().end_object().text();
+}
+
+}  // namespace
+
+Result<Done> write_stability_report(const std::string& folder, const std::vector<StabilityRow>& rows) {
+  Report report("Stability on stiff and extreme cases",
+                "Each case is a small scene of liver tissue (r = 4 mm, the paper's moduli, viscosity in kPa "
+                "s, ticks of "
+                "1 ms where nothing else is said) that is driven to an extreme, run under every integrator.");
+  const std::int64_t failed = count_failures(rows);
+  report.add_verdict(failed == 0, failed == 0 ? "auto holds all " + std::to_string(rows.size()) + " cases."
+                                              : "auto fails " + std::to_string(failed) + " of " +
+                                                    std::to_string(rows.size()) + " cases.");
+  report.add_table(overview(rows));
+  report.add_heading("How it is judged");
+  report.add_paragraph(
+      "Of every sampled tick it is asked that all numbers are finite and no sphere is further from its "
+      "rest position than the case allows. Energy is that of motion, of springs and two-sphere TPMs, "
+      "and of gravity; it may not grow from the tick on from which nothing does work on the tissue.");
+  report.add_paragraph(
+      "Where a network has neither constraint nor softening that is asked from sample to sample. The "
+      "constraint "
+      "(Eq. 2) has no energy function, so with it energy may not pass what it was when the tissue was let "
+      "go. Softening "
+      "(Eq. 8) makes springs give back less than they seem to hold, so with it the energy of motion and "
+      "gravity alone "
+      "may not pass what all energy was then. Leapfrog keeps an energy that differs from the true one by up to "
+      "the square of its share s of the longest stable step, so there the bound is 1 / (1 - s^2) times that, and the "
+      "mean "
+      "of the second half may not pass that of the first. All bounds have a slack of 1e-4 of what is stored and in "
+      "motion, as solves stop at a residual. SDIRK2 says beforehand that it damps nothing by itself: where energy "
+      "grows or "
+      "rest does not come, it counts as refused, with what was seen.");
+  const std::vector<Section> sections = failures(rows);
+  for (const Section& section : sections)
+    if (const Result<Done> added = report.add(section); !added) return added;
+  const Table refused = refusals(rows);
+  if (!refused.rows.empty()) report.add_heading("Refusals"), report.add_table(refused);
+  return write_report(folder, {{"results.json", results_json(rows, sections)},
+                               {"results.csv", to_csv(runs_table(rows))},
+                               {"report.html", report.html()}});
+}
+
+}  // namespace ctpm
