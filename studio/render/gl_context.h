@@ -79,8 +79,7 @@ class GlContext {
  private:
   GlContext() = default;
   void* context_ = nullptr;
-  alignas(16) unsigned char pixels_[16 * 16 * 4] =
-      {};  ///< OSMesa wants a buffer; pictures go to framebuffer objects
+  alignas(16) unsigned char pixels_[16 * 16 * 4] = {};  ///< OSMesa wants a buffer; pictures go to framebuffer objects
   Gl gl_;
 };
 
