@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "core/result.h"
+#include "core/model/result.h"
 
 namespace ctpm {
 
