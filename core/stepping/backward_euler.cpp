@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/elements/only_springs.h"
+#include "core/stepping/integrator.h"
 
 namespace ctpm {
 namespace {
@@ -18,7 +19,7 @@ BackwardEuler::BackwardEuler(const Model& model, const Slabs& slabs, Team& team,
       slabs_(slabs),
       team_(team),
       held_(model, slabs),
-      solver_(model, slabs, team, kernels),
+      solver_(model, slabs, team, kernels, stiffness_ratio_bound(model, model.tick / model.solver.substeps)),
       force_(3 * model.sphere_count()),
       momentum_(3 * model.sphere_count()),
       change_(model.solver.integrator == Integrator::sdirk2 ? 3 * model.sphere_count() : 0),

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "studio/commands/command.h"
-#include "studio/console.h"
-#include "studio/loaded_scene.h"
+#include "studio/commands/console.h"
+#include "studio/loading/loaded_scene.h"
 
 namespace ctpm {
 namespace {
@@ -17,7 +17,7 @@ struct CheckArguments {
 int run_check(const CheckArguments& arguments) {
   int code = exit_good;
   for (const std::string& path : arguments.scenes) {
-    const Result<LoadedScene> scene = load_whole_scene(path, arguments.load);
+    const Result<LoadedScene> scene = load_whole_scene(path, arguments.load, {}, print_warning);
     if (!scene) {
       code = print_errors(scene.errors());
       continue;

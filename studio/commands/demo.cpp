@@ -9,14 +9,15 @@
 #include <vector>
 
 #include "recordings/session_reader.h"
+#include "studio/authoring/import_scene.h"
 #include "studio/commands/command.h"
-#include "studio/console.h"
-#include "studio/export_video.h"
-#include "studio/files.h"
-#include "studio/import_scene.h"
-#include "studio/loaded_scene.h"
+#include "studio/commands/console.h"
+#include "studio/commands/stop_signal.h"
+#include "studio/film/export_video.h"
+#include "studio/loading/loaded_scene.h"
+#include "studio/output/files.h"
+#include "studio/output/number_text.h"
 #include "studio/session/record_session.h"
-#include "studio/session/stop_signal.h"
 
 namespace ctpm {
 namespace {
@@ -66,7 +67,7 @@ int run_demo(const DemoArguments& arguments) {
   if (!imported) return print_errors(imported.errors());
 
   say_step(2, "recording a session at 1000 ticks a second: a ball presses and lets go, then a scalpel cuts");
-  const Result<LoadedScene> scene = load_whole_scene(scene_file);
+  const Result<LoadedScene> scene = load_whole_scene(scene_file, {}, {}, print_warning);
   if (!scene) return print_errors(scene.errors());
   const StopSignal stop;
   RunOptions options;

@@ -3,13 +3,15 @@
 
 #include "core/stepping/step.h"
 #include "studio/commands/command.h"
-#include "studio/console.h"
-#include "studio/files.h"
-#include "studio/film/look.h"
-#include "studio/loaded_scene.h"
+#include "studio/commands/console.h"
+#include "studio/commands/flags.h"
+#include "studio/loading/loaded_scene.h"
+#include "studio/output/files.h"
 #include "studio/render/frame.h"
 #include "studio/render/picture_size.h"
 #include "studio/render/renderer.h"
+#include "studio/views/look.h"
+#include "studio/views/view_of_scene.h"
 
 namespace ctpm {
 namespace {
@@ -25,7 +27,7 @@ int run_preview(const PreviewArguments& arguments) {
   const Result<PictureSize> size = parse_picture_size(arguments.size);
   if (!size) return print_errors(size.errors());
   if (const Result<Done> writable = check_writable(arguments.output); !writable) return print_errors(writable.errors());
-  const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
+  const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load, {}, print_warning);
   if (!scene) return print_errors(scene.errors());
   // With --spheres the surface stands on the left half and the layered spheres on the right.
   const int width = arguments.spheres ? size->width / 2 : size->width;

@@ -5,7 +5,7 @@
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
 #include "studio/commands/command.h"
-#include "studio/console.h"
+#include "studio/commands/console.h"
 #include "studio/session/record_session.h"
 
 namespace ctpm {

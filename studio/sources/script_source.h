@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "scenes/script.h"
+#include "studio/sources/input_source.h"
+
+namespace ctpm {
+
+/// A script as the source of a session.
+class ScriptSource : public InputSource {
+ public:
+  explicit ScriptSource(ScriptPlayer player) : player_(std::move(player)) {}
+
+  std::optional<Inputs> next(std::int64_t tick, const StepReport& last) override {
+    if (tick > 0) feel(tick - 1, last.tool_force);
+    if (tick >= player_.tick_count()) return std::nullopt;
+    return player_.at(tick);
+  }
+  std::int64_t tick_count() const override { return player_.tick_count(); }
+  std::vector<SourceEvent> take_events() override { return std::exchange(events_, {}); }
+
+ private:
+  void feel(std::int64_t tick, Vec3 force) {
+    const PressEnd end = player_.feel(tick, force);
+    if (end == PressEnd::at_force)
+      events_.push_back({EventKind::note, "press reaches its force; value: force in N", {norm(force)}});
+    if (end == PressEnd::at_depth)
+      events_.push_back(
+          {EventKind::note, "press gives up at its depth, short of its force; value: force in N", {norm(force)}});
+  }
+
+  ScriptPlayer player_;
+  std::vector<SourceEvent> events_;
+};
+
+}  // namespace ctpm
