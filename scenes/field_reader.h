@@ -8,7 +8,7 @@
 
 #include "core/model/result.h"
 #include "core/model/vec3.h"
-#include "scenes/field_table.h"
+#include "scenes/key_types.h"
 #include "scenes/json_text.h"
 
 // The visitor that reads: text -> struct, with every problem and its place. Internal to scenes.

@@ -12,7 +12,7 @@
 #include "scenes/field_reader.h"
 #include "scenes/field_writer.h"
 #include "scenes/presets.h"
-#include "scenes/scene_fields.h"
+#include "scenes/scene_keys.h"
 
 namespace ctpm {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/network/network.h"
 
 // A scene as its author wrote it, in SI units. Keys, units, ranges and sentences of the text form stand in
-// one table (scene_fields.h); FORMAT.md is made from it. An unset optional means: not written, decided
+// one table (scene_keys.h); FORMAT.md is made from it. An unset optional means: not written, decided
 // elsewhere.
 namespace ctpm {
 

@@ -8,7 +8,7 @@
 
 #include "scenes/field_reader.h"
 #include "scenes/field_writer.h"
-#include "scenes/script_fields.h"
+#include "scenes/script_keys.h"
 
 namespace ctpm {
 namespace {

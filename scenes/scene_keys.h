@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "scenes/field_table.h"
+#include "scenes/key_types.h"
 #include "scenes/scene_spec.h"
 
 // The one table of the scene format: key, type, unit, range, sentence of every field; defaults are those of

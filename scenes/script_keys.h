@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scenes/field_table.h"
+#include "scenes/key_types.h"
 #include "scenes/script.h"
 
 // The one table of the script format. Internal to scenes.
