@@ -200,7 +200,7 @@ void describe_fields(V& v, OrganSpec& organ) {
   v.integer(Key{"most_triangles", "The drawn surface is made coarser if it has more; the spheres stay the same.", false,
                 "as many as the mesh has"},
             organ.most_triangles, within(100, 10000000));
-  v.choice(Key{"model", "Which structure joins the spheres."}, organ.model);
+  v.choice(Key{"model", "Which structure joins the spheres."}, organ.structure);
   v.choice(Key{"lattice", "Which neighbours are joined; cubic-6 has no shear stiffness and is for rigs."},
            organ.lattice);
   v.flag(Key{"softening", "Forces of triples and constraints are divided by 1 + tan(theta), Eq. 8; for model ctpm."},

@@ -11,6 +11,12 @@ int print_errors(const Errors& errors) {
   return exit_bad_input;
 }
 
+void print_warnings(const Errors& warnings) {
+  for (const Error& warning : warnings)
+    print_remark(warning.where + ": warning: " + warning.message +
+                 (warning.hint.empty() ? "" : " (" + warning.hint + ")"));
+}
+
 void print_remark(const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); }
 
 ProgressLine::ProgressLine(std::string what)

@@ -19,6 +19,9 @@ enum ExitCode : int {
 /// Prints every error to stderr, one a line, and returns exit_bad_input.
 int print_errors(const Errors& errors);
 
+/// Prints every warning of a scene to stderr, one a line.
+void print_warnings(const Errors& warnings);
+
 /// Prints a line to stderr: progress and remarks; results go to stdout.
 void print_remark(const std::string& text);
 

@@ -26,8 +26,9 @@ struct LoadedScene {
 /// Fills one organ of a scene: its mesh, or its rig. Errors: those of the mesh.
 Result<ImportedOrgan> fill_of(const std::string& scene_path, const OrganSpec& organ);
 
-/// Reads, imports and builds; `change` may alter what was read before anything is made of it. Warnings go to stderr.
-/// Errors: those of the scene, its meshes and its anchors, with places.
+/// Reads, imports and builds; `change` may alter what was read before anything is made of it. Prints nothing: the
+/// warnings are in LoadedScene::scene. Errors: those of the scene, its meshes and its Model, all at once with their
+/// places.
 Result<LoadedScene> load_whole_scene(const std::string& path, const LoadOptions& options = {},
                                      const std::function<void(SceneSpec&)>& change = {});
 

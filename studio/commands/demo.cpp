@@ -68,6 +68,7 @@ int run_demo(const DemoArguments& arguments) {
   say_step(2, "recording a session at 1000 ticks a second: a ball presses and lets go, then a scalpel cuts");
   const Result<LoadedScene> scene = load_whole_scene(scene_file);
   if (!scene) return print_errors(scene.errors());
+  print_warnings(scene->scene.warnings);
   const StopSignal stop;
   RunOptions options;
   options.should_stop = [&] { return stop.came(); };
