@@ -19,7 +19,7 @@ struct BenchOptions {
   std::vector<std::string> scenes;  ///< scene files for the study in time; empty: the shipped ones
   std::string shipped;              ///< folder of the shipped scenes
   bool is_quick = false;            ///< coarser fillings, fewer settings: for a first look
-  TakeWarning take_warning;         ///< gets the warnings of `scenes`
+  std::function<void(const Errors& warnings)> take_warnings;  ///< gets those of `scenes`
 };
 
 /// What a study found: a section for the page, rows for programs, sentences that say what follows.

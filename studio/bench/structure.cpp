@@ -48,7 +48,7 @@ Result<OrganResult> press_organ(const std::string& shipped, const std::string& o
       {.name = "paper's Table 1, CTPM", .x = depths, .y = paper, .stroke = Stroke::crosses, .colour = 6});
   for (const Kind& kind : kKinds) {
     const Result<BuiltScene> built =
-        build_changed(*scene, [&](SceneSpec& spec) { spec.organs[0].model = kind.structure; });
+        build_changed(*scene, [&](SceneSpec& spec) { spec.organs[0].structure = kind.structure; });
     if (!built) return built.errors();
     const auto start = std::chrono::steady_clock::now();
     const Result<std::vector<double>> force = press_rig(built->model, scene->path, printed);

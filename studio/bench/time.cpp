@@ -140,13 +140,14 @@ struct Deed {
 
 /// Gravity is left out, so that every run starts from the same rest.
 Result<TimeJob> make_job(const std::string& path, const std::string& title, const Deed& deed,
-                         const std::function<void(SceneSpec&)>& change, const TakeWarning& take_warning = {}) {
+                         const std::function<void(SceneSpec&)>& change, const BenchOptions& options = {}) {
   const auto prepare = [&](SceneSpec& spec) {
     spec.gravity = {}, spec.loads.clear();
     change(spec);
   };
-  const Result<LoadedScene> scene = load_whole_scene(path, {}, prepare, take_warning);
+  const Result<LoadedScene> scene = load_whole_scene(path, {}, prepare);
   if (!scene) return scene.errors();
+  if (options.take_warnings) options.take_warnings(scene->scene.warnings);
   TimeJob job{title, scene->built.model, {}, deed.kind == ToolKind::ball};
   const std::int32_t tool = first_tool(job.model, deed.kind);
   if (tool < 0)
@@ -167,7 +168,7 @@ Result<std::vector<TimeJob>> make_jobs(const BenchOptions& options) {
   const std::string liver = shipped("liver"), title = "liver, press and release";
   for (const std::string& path : options.scenes)
     made.push_back(make_job(
-        path, path + ", press and release", press, [](SceneSpec&) {}, options.take_warning));
+        path, path + ", press and release", press, [](SceneSpec&) {}, options));
   if (options.scenes.empty()) {
     made.push_back(make_job(liver, title + ", viscosity in kPa s", press, coarse));
     if (!options.is_quick) {

@@ -17,11 +17,12 @@ struct CheckArguments {
 int run_check(const CheckArguments& arguments) {
   int code = exit_good;
   for (const std::string& path : arguments.scenes) {
-    const Result<LoadedScene> scene = load_whole_scene(path, arguments.load, {}, print_warning);
+    const Result<LoadedScene> scene = load_whole_scene(path, arguments.load);
     if (!scene) {
       code = print_errors(scene.errors());
       continue;
     }
+    print_warnings(scene->scene.warnings);
     std::printf("%s: good, %zu spheres, %zu elements\n", path.c_str(), scene->built.model.sphere_count(),
                 scene->built.model.element_count());
   }

@@ -14,9 +14,10 @@ int print_errors(const Errors& errors) {
   return exit_bad_input;
 }
 
-void print_warning(const Error& warning) {
-  print_remark(warning.where + ": warning: " + warning.message +
-               (warning.hint.empty() ? "" : " (" + warning.hint + ")"));
+void print_warnings(const Errors& warnings) {
+  for (const Error& warning : warnings)
+    print_remark(warning.where + ": warning: " + warning.message +
+                 (warning.hint.empty() ? "" : " (" + warning.hint + ")"));
 }
 
 void print_remark(const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); }

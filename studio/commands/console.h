@@ -19,8 +19,8 @@ enum ExitCode : int {
 /// Prints every error to stderr, one a line, with the flags in place of option names; returns exit_bad_input.
 int print_errors(const Errors& errors);
 
-/// Prints `PLACE: warning: MESSAGE (HINT)` to stderr.
-void print_warning(const Error& warning);
+/// Prints every warning of a scene to stderr, one a line.
+void print_warnings(const Errors& warnings);
 
 /// Prints a line to stderr: progress and remarks; results go to stdout.
 void print_remark(const std::string& text);

@@ -67,8 +67,9 @@ int run_demo(const DemoArguments& arguments) {
   if (!imported) return print_errors(imported.errors());
 
   say_step(2, "recording a session at 1000 ticks a second: a ball presses and lets go, then a scalpel cuts");
-  const Result<LoadedScene> scene = load_whole_scene(scene_file, {}, {}, print_warning);
+  const Result<LoadedScene> scene = load_whole_scene(scene_file);
   if (!scene) return print_errors(scene.errors());
+  print_warnings(scene->scene.warnings);
   const StopSignal stop;
   RunOptions options;
   options.should_stop = [&] { return stop.came(); };

@@ -38,8 +38,9 @@ void print_fit(const OrganSpec& organ, const StiffnessFit& fit) {
 }
 
 int run_fit(const FitArguments& arguments) {
-  const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load, {}, print_warning);
+  const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
   if (!scene) return print_errors(scene.errors());
+  print_warnings(scene->scene.warnings);
   SceneSpec spec = scene->scene.spec;
   const Result<std::size_t> organ = find_organ(spec, arguments.organ);
   if (!organ) return print_errors(organ.errors());

@@ -115,8 +115,9 @@ std::string solver_of(const Model& model, const IntegratorChoice& choice) {
 }
 
 int run_plan(const PlanArguments& arguments) {
-  const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load, {}, print_warning);
+  const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
   if (!scene) return print_errors(scene.errors());
+  print_warnings(scene->scene.warnings);
   const Model& model = scene->built.model;
   const std::vector<Feature> features = features_of(scene->scene.spec, model, rest_state(model));
   std::size_t total = 0;

@@ -27,8 +27,9 @@ int run_preview(const PreviewArguments& arguments) {
   const Result<PictureSize> size = parse_picture_size(arguments.size);
   if (!size) return print_errors(size.errors());
   if (const Result<Done> writable = check_writable(arguments.output); !writable) return print_errors(writable.errors());
-  const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load, {}, print_warning);
+  const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
   if (!scene) return print_errors(scene.errors());
+  print_warnings(scene->scene.warnings);
   // With --spheres the surface stands on the left half and the layered spheres on the right.
   const int width = arguments.spheres ? size->width / 2 : size->width;
   const Model& model = scene->built.model;

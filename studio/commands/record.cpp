@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
@@ -56,6 +57,20 @@ struct Beginning {
   std::optional<Script> script;
 };
 
+/// What is wrong with the script, if one is given, for a scene that cannot be built: its errors are told together with
+/// those of the scene.
+Errors errors_of_script(const RecordArguments& arguments) {
+  if (arguments.source.script.empty()) return {};
+  const Result<SceneDraft> draft = load_draft(arguments.scene, arguments.load);
+  const Result<std::string> text = read_text_file(arguments.source.script);
+  if (!text) return text.errors();
+  if (!draft || !draft->problems.is_good("/tools")) return {};
+  std::vector<std::string> tools;
+  for (const ToolSpec& tool : draft->scene.spec.tools) tools.push_back(tool.name);
+  const Result<Script> script = read_script(*text, arguments.source.script, tools);
+  return script ? Errors{} : script.errors();
+}
+
 Result<Beginning> begin(const RecordArguments& arguments) {
   Beginning beginning;
   if (!arguments.parent.empty()) {
@@ -64,8 +79,13 @@ Result<Beginning> begin(const RecordArguments& arguments) {
     beginning.start = std::move(*start);
     return beginning;
   }
-  const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load, {}, print_warning);
-  if (!scene) return scene.errors();
+  const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
+  if (!scene) {
+    Errors errors = scene.errors();
+    for (Error& error : errors_of_script(arguments)) errors.push_back(std::move(error));
+    return errors;
+  }
+  print_warnings(scene->scene.warnings);
   beginning.start = start_session(*scene);
   if (count_of(arguments.source) == 0) beginning.script = default_script(scene->scene.spec, scene->organs);
   return beginning;

@@ -19,7 +19,7 @@ constexpr std::int64_t kPlotPoints = 600;  ///< most points of the running force
 
 std::string structure_name(const SceneSpec& scene) {
   if (scene.organs.empty()) return "";
-  switch (scene.organs.front().model) {
+  switch (scene.organs.front().structure) {
     case Structure::mass_spring:
       return "mass-spring";
     case Structure::angle_mass_spring:

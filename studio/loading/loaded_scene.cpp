@@ -1,5 +1,8 @@
 #include "studio/loading/loaded_scene.h"
 
+#include <algorithm>
+#include <optional>
+
 #include "scenes/presets.h"
 
 namespace ctpm {
@@ -17,6 +20,13 @@ ImportOptions import_options_of(const OrganSpec& organ) {
   return options;
 }
 
+/// The errors of an organ's mesh, at the place where the scene names it.
+void add_mesh_errors(Problems& problems, std::size_t organ, const Errors& errors) {
+  const std::string at = "/organs/" + std::to_string(organ) + "/mesh";
+  for (const Error& error : errors)
+    problems.add(at, (error.where.empty() ? "" : error.where + ": ") + error.message, error.hint, at);
+}
+
 }  // namespace
 
 Result<ImportedOrgan> fill_of(const std::string& scene_path, const OrganSpec& organ) {
@@ -29,35 +39,29 @@ Result<ImportedOrgan> fill_of(const std::string& scene_path, const OrganSpec& or
 }
 
 Result<LoadedScene> load_whole_scene(const std::string& path, const LoadOptions& options,
-                                     const std::function<void(SceneSpec&)>& change, const TakeWarning& take_warning) {
-  Result<SceneText> scene = load_scene(path, options);
-  if (!scene) return scene.errors();
-  if (take_warning)
-    for (const Error& warning : scene->warnings) take_warning(warning);
+                                     const std::function<void(SceneSpec&)>& change) {
+  Result<SceneDraft> draft = load_draft(path, options);
+  if (!draft) return draft.errors();
+  auto& [scene, problems] = *draft;
+  if (change && problems.is_empty()) change(scene.spec);
   LoadedScene loaded;
   loaded.path = path;
-  loaded.scene = std::move(*scene);
-  if (change) change(loaded.scene.spec);
-  Errors errors;
-  for (const OrganSpec& organ : loaded.scene.spec.organs) {
-    Result<ImportedOrgan> imported = fill_of(path, organ);
-    if (!imported) {
-      errors.insert(errors.end(), imported.errors().begin(), imported.errors().end());
-      continue;
+  for (std::size_t i = 0; i < scene.spec.organs.size(); ++i) {
+    ImportedOrgan filled;
+    if (can_be_filled(problems, i)) {
+      Result<ImportedOrgan> imported = fill_of(path, scene.spec.organs[i]);
+      if (imported)
+        filled = *std::move(imported);
+      else
+        add_mesh_errors(problems, i, imported.errors());
     }
-    loaded.organs.push_back(std::move(imported->organ));
-    loaded.reports.push_back(std::move(imported->report));
+    loaded.organs.push_back(std::move(filled.organ));
+    loaded.reports.push_back(std::move(filled.report));
   }
-  if (!errors.empty()) return errors;
-  Result<BuiltScene> built = build_model(loaded.scene.spec, loaded.organs);
-  if (!built) {
-    for (Error error : built.errors()) {
-      error.where = path + ": " + error.where;
-      errors.push_back(error);
-    }
-    return errors;
-  }
-  loaded.built = std::move(*built);
+  std::optional<BuiltScene> built = build_model(scene.spec, loaded.organs, problems);
+  if (!built) return problems.errors();
+  loaded.built = *std::move(built);
+  loaded.scene = std::move(scene);
   return loaded;
 }
 

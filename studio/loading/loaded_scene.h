@@ -25,15 +25,10 @@ struct LoadedScene {
 /// Fills one organ of a scene: its mesh, or its rig. Errors: those of the mesh.
 Result<ImportedOrgan> fill_of(const std::string& scene_path, const OrganSpec& organ);
 
-/// Takes a warning about a scene that is usable all the same.
-using TakeWarning = std::function<void(const Error& warning)>;
-
 /// Reads a scene, imports its meshes and builds its Model. `change` may alter the scene between reading and importing.
-/// `take_warning` gets the warnings of the scene's text, also if a later stage fails. Errors: those of the scene, its
-/// meshes and its anchors, with places.
+/// Warnings are in LoadedScene::scene. Errors: those of the scene, its meshes and its Model, all at once, with places.
 Result<LoadedScene> load_whole_scene(const std::string& path, const LoadOptions& options = {},
-                                     const std::function<void(SceneSpec&)>& change = {},
-                                     const TakeWarning& take_warning = {});
+                                     const std::function<void(SceneSpec&)>& change = {});
 
 /// The Model of a loaded scene after `change`; the meshes are not read again. Errors: those of build_model().
 Result<BuiltScene> build_changed(const LoadedScene& scene, const std::function<void(SceneSpec&)>& change);

@@ -73,7 +73,7 @@ std::string full_name(const Variant& variant) {
 }
 
 void use_variant(SceneSpec& scene, const Variant& variant) {
-  scene.organs[0].model = variant.structure;
+  scene.organs[0].structure = variant.structure;
   if (!variant.is_pa_s) return;
   scene.organs[0].material.preset += "-pa-s";
   for (LayerSpec& layer : scene.organs[0].layers) layer.material.preset += "-pa-s";
@@ -106,12 +106,12 @@ Result<LoadedScene> load_experiment(const std::string& scenes, const std::string
   Errors errors;
   const std::size_t cells = spec.organs[0].rig ? spec.organs[0].rig->cells.size() : 0;
   if (cells < need->cells)
-    errors.push_back({scene->path,
-                      "/organs/0/rig/cells: got " + std::to_string(cells) +
-                          " spheres, the rig of Fig. 3 has 7: A to E on a line, and two below C",
-                      ""});
+    errors.push_back(scene->scene.places.error_at(
+        "/organs/0/rig/cells",
+        "got " + std::to_string(cells) + " spheres, the rig of Fig. 3 has 7: A to E on a line, and two below C"));
   const auto check = [&](const char* key, std::size_t got, std::size_t wanted) {
-    if (got < wanted) errors.push_back({scene->path, std::string("/") + key + ": the experiment needs one", ""});
+    if (got < wanted)
+      errors.push_back(scene->scene.places.error_at(std::string("/") + key, "the experiment needs one"));
   };
   check("loads", spec.loads.size(), need->loads), check("probes", spec.probes.size(), need->probes),
       check("tools", spec.tools.size(), need->tools);

@@ -214,7 +214,7 @@ void add_swings(std::vector<StabilityCase>& cases) {
         Kind{Structure::ctpm, true, 0, "ctpm without viscosity"}}) {
     SceneSpec scene = block(5, 5, 5);
     OrganSpec& organ = scene.organs[0];
-    organ.model = kind.structure, organ.softening = kind.has_softening, organ.material.viscosity = kind.viscosity;
+    organ.structure = kind.structure, organ.softening = kind.has_softening, organ.material.viscosity = kind.viscosity;
     std::string key = std::string("swing-") + kind.name;
     for (char& c : key) c = c == ' ' ? '-' : c;
     cases.push_back({.key = key,

@@ -235,7 +235,7 @@ TEST(BadInput, OfVeryManyProblemsTheFirstAreListedAndTheOthersCounted) {
   ASSERT_FALSE(scene);
   ASSERT_EQ(scene.errors().size(), 1001u);
   EXPECT_EQ(to_string(scene.errors().front()).find("t.json:2:1: error: /organs/0/key0: unknown key"), 0u);
-  EXPECT_EQ(to_string(scene.errors().back()), "t.json: error: 4000 more problems are not listed");
+  EXPECT_EQ(to_string(scene.errors().back()), "t.json: error: 4000 more errors are not listed (mend these first)");
 }
 
 }  // namespace

@@ -200,8 +200,8 @@ TEST(BuildModel, EveryProblemOfEveryOrganIsReportedAtItsOrgan) {
   ASSERT_EQ(errors.size(), 2u);
   EXPECT_EQ(errors[0].where, "/organs/0/anchors/0");
   EXPECT_EQ(to_string(errors[1]),
-            "/organs/1: error: no two of its 3 spheres are neighbours, so nothing joins them (fill it with "
-            "smaller spheres)");
+            "/organs/1/rig/cells: error: no two of the 3 spheres are neighbours, so nothing joins them (neighbours "
+            "differ by 1 along one axis or two)");
 }
 
 TEST(BuildModel, AMaterialThatTheNetworkRefusesIsPlacedAtItsOrgan) {

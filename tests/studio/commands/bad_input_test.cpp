@@ -86,7 +86,7 @@ TEST_F(BadInput, AnImportWithBadOptionsNamesThemAll) {
   refuse({"import", kShipped + "organs/liver.obj", "--organ", "lung", "-o", "a.json"},
          {"there is no preset 'lung'", "liver, kidney, skin"});
   refuse({"import", kShipped + "organs/liver.obj", "--anchor", "sphere:900,900,900,5", "-o", "a.json"},
-         {"catches no sphere"});
+         {"holds no sphere"});
 }
 
 TEST_F(BadInput, ASceneWithASyntaxError) {
@@ -108,6 +108,44 @@ TEST_F(BadInput, ASceneWhoseMeshIsMissing) {
 TEST_F(BadInput, ASceneWhoseMeshLeavesItsFolder) {
   write("a.json", scene_with("skin.obj", "../skin.obj"));
   refuse({"check", "a.json"}, {"leaves the scene's folder"});
+}
+
+/// Two organs in lines 2 and 3, and more keys in line 4.
+std::string two_organs(const std::string& first, const std::string& second, const std::string& more) {
+  return "{\"format\": \"ctpm-scene\", \"version\": 1, \"name\": \"t\", \"organs\": [\n{\"name\": \"a\", " + first +
+         "\"material\": {\"preset\": \"skin\"}},\n{\"name\": \"b\", " + second +
+         "\"material\": {\"preset\": \"skin\"}}],\n" + more + "}\n";
+}
+const std::string kRig = R"("rig": {"block": [3, 3, 3]}, )";
+const std::string kFarAnchor = R"("anchors": [{"box": {"min_mm": [900, 0, 0], "max_mm": [901, 1, 1]}}], )";
+const std::string kAnchorError = "a.json:3:27: error: /organs/1/anchors/0: holds no sphere (its spheres lie from";
+
+TEST_F(BadInput, AMissingMeshARangeErrorAndAnAnchorAreReportedTogether) {
+  write("a.json", two_organs(R"("mesh": "no.obj", )", kFarAnchor + kRig, R"("tick_s": 5)"));
+  refuse({"check", "a.json"}, {"a.json:2:23: error: /organs/0/mesh: there is no file \"no.obj\"", kAnchorError,
+                               "a.json:4:11: error: /tick_s: got 5, must be in"});
+}
+
+TEST_F(BadInput, AMeshThatIsNoneIsRefusedWhereTheSceneNamesIt) {
+  write("letter.obj", "Dear Sir or Madam,\n");
+  write("a.json", two_organs(R"("mesh": "letter.obj", )", kFarAnchor + kRig, R"("tick_s": 0.001)"));
+  refuse({"check", "a.json"}, {"a.json:2:23: error: /organs/0/mesh: letter.obj: ", kAnchorError});
+}
+
+TEST_F(BadInput, AnUnstableIntegratorIsRefusedWhereItStands) {
+  write("a.json", two_organs(kRig, kRig, R"("solver": {"integrator": "leapfrog"}, "contact_friction": -1)"));
+  refuse({"check", "a.json"},
+         {"a.json:4:26: error: /solver/integrator: leapfrog", "a.json:4:58: error: /contact_friction"});
+}
+
+TEST_F(BadInput, ASceneAndItsScriptAreRefusedTogether) {
+  write("a.json",
+        two_organs(kRig, kFarAnchor + kRig, R"("tools": [{"name": "ball", "kind": "ball", "radius_mm": 5}])"));
+  write("s.json",
+        "{\"format\": \"ctpm-script\", \"version\": 1, \"steps\": [\n{\"take\": {\"tool\": \"saw\", \"at_mm\": "
+        "[0, 0, 0]}}]}");
+  refuse({"record", "a.json", "--script", "s.json", "-o", "a.ctpm"},
+         {kAnchorError, "s.json:2:19: error: /steps/0/take/tool: the scene has no tool \"saw\" (its tools: ball)"});
 }
 
 TEST_F(BadInput, AScriptWithAnUnknownTool) {
@@ -206,7 +244,8 @@ TEST_F(BadInput, ModuliRadiiSpacingsAndViscositiesThatCannotBeAreAllNamedWithThe
     refuse({"record", "a.json", "-o", "a.ctpm", "--fast"}, {"a.json:10:", message});
   }
   write("a.json", scene_with(fill, "\"radius_mm\": 90, \"gap_mm\": 90"));
-  refuse({"check", "a.json"}, {"a.json: /organs/0: error: no two of its 1 spheres are neighbours", "smaller spheres"});
+  refuse({"check", "a.json"},
+         {"a.json:10:13: error: /organs/0/fill: no two of the 1 spheres are neighbours", "smaller radius_mm"});
 }
 
 TEST_F(BadInput, APresetThatDoesNotExist) {
@@ -218,8 +257,8 @@ TEST_F(BadInput, ALayerThatIsDeeperThanTheOrgan) {
   write("a.json", scene_with("\"anchors\"",
                              "\"layers\": [{\"to_depth_mm\": 400, \"material\": {\"preset\": "
                              "\"kidney\"}}],\n\"anchors\""));
-  refuse({"check", "a.json"},
-         {"a.json: /organs/0/layers/0/to_depth_mm", "got 400 mm", "deeper than the organ", "its spheres lie"});
+  refuse({"check", "a.json"}, {"a.json:13:29: error: /organs/0/layers/0/to_depth_mm: got 400 mm",
+                               "deeper than the organ", "its spheres lie"});
 }
 
 TEST_F(BadInput, ARigWithTooFewSpheres) {
@@ -231,7 +270,7 @@ TEST_F(BadInput, ARigWithTooFewSpheres) {
   write("a.json", rig_of("[0, 0, 0]"));
   refuse({"check", "a.json"}, {"a.json:2:", "/organs/0/rig/cells", "at least two"});
   write("a.json", rig_of("[0, 0, 0], [5, 0, 0]"));
-  refuse({"check", "a.json"}, {"a.json", "/organs/0", "no two of its 2 spheres are neighbours"});
+  refuse({"check", "a.json"}, {"a.json:2:17: error: /organs/0/rig/cells: no two of the 2 spheres are neighbours"});
 }
 
 TEST_F(BadInput, AnExperimentOfThePaperWhoseRigHasTooFewSpheresOrNoLoad) {
@@ -250,8 +289,8 @@ TEST_F(BadInput, AnExperimentOfThePaperWhoseRigHasTooFewSpheresOrNoLoad) {
              "\"loads\": [{ \"at_mm\": [0, 0, 72], \"force_n\": [0, 0, -0.13], \"ramp_s\": 0.082 }],", "");
   const auto outcome = run_ctpm({"paper", "--scenes", "scenes", "-o", "out"}, folder_.path());
   EXPECT_EQ(outcome.code, 2);
-  for (const char* part : {"rig-skin.json: error: /organs/0/rig/cells: got 5 spheres, the rig of Fig. 3 has 7",
-                           "block-liver.json: error: /loads: the experiment needs one"})
+  for (const char* part : {"/organs/0/rig/cells: got 5 spheres, the rig of Fig. 3 has 7",
+                           "block-liver.json:1:1: error: /loads: the experiment needs one"})
     EXPECT_NE(outcome.err.find(part), std::string::npos) << part << " is not in: " << outcome.err;
   EXPECT_TRUE(fs::is_empty(folder_.path() / "out"));
 }

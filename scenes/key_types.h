@@ -3,9 +3,8 @@
 #include <limits>
 #include <string>
 
-// The words in which a table of fields is written. A table is a function `describe_fields(visitor, object)`
-// per struct; the reader, the writer, the JSON Schema and the documentation are visitors of it. Internal to
-// scenes.
+// Types of the tables in scene_keys.h and script_keys.h. A table has one function `describe_fields(visitor, object)`
+// per struct; the reader, the writer, the JSON Schema and the documentation are its visitors. Internal to scenes.
 namespace ctpm {
 
 /// A unit of the text form. SI value = value in the text times 10^exponent.

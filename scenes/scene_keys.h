@@ -2,11 +2,12 @@
 
 #include <span>
 
-#include "scenes/field_table.h"
+#include "scenes/key_types.h"
 #include "scenes/scene_spec.h"
 
-// The one table of the scene format: key, type, unit, range, sentence of every field; defaults are those of
-// the structs in scene_spec.h. Internal to scenes; FORMAT.md and scene.schema.json are made from it.
+// Every key of a scene with its type, unit, range and sentence. A key gets its range here and nowhere else. Defaults
+// are those of the structs in scene_spec.h. The reader, the writer, FORMAT.md and scene.schema.json use this table.
+// Internal to scenes.
 namespace ctpm {
 
 inline constexpr const char* scene_format_name = "ctpm-scene";
@@ -57,29 +58,29 @@ void describe_fields(V& v, FillSpec& fill) {
 }
 
 inline RecordInfo info_of(const FittedForSpec&) {
-  return {"fitted_for",
-          "What the stiffness scale was fitted for, as `ctpm fit` stores it: a ball pressed one sphere so deep "
-          "and met this "
-          "force. It changes nothing."};
+  return {
+      "fitted_for",
+      "The press that the stiffness scale was fitted to, as `ctpm fit` stores it: a ball presses one sphere to this "
+      "depth and feels this force. For information only."};
 }
 template <class V>
 void describe_fields(V& v, FittedForSpec& fitted) {
-  v.point(required("place_mm", "Where the pressed sphere is at rest."), fitted.place, units::millimetre,
+  v.point(required("place_mm", "Rest position of the pressed sphere."), fitted.place, units::millimetre,
           any_coordinate_mm);
   v.number(required("ball_radius_mm", "Radius of the ball that pressed it."), fitted.ball_radius, units::millimetre,
            within(0.01, 1000));
   v.number(required("sphere_radius_mm", "Radius of the organ's spheres."), fitted.sphere_radius, units::millimetre,
            within(0.01, 100));
-  v.number(required("depth_mm", "Depth of the sphere below its rest."), fitted.depth, units::millimetre,
+  v.number(required("depth_mm", "Depth of the sphere below its rest position."), fitted.depth, units::millimetre,
            above(0, 1000));
   v.number(required("force_n", "Force on the ball at that depth."), fitted.force, units::newton, above(0, 1e6));
 }
 
 inline RecordInfo info_of(const MaterialSpec&) {
-  return {"material",
-          "A preset, single values in place of the preset's, or every value without a preset. An edge of spacing "
-          "s has the "
-          "stiffness K S0 (s / s_cal), S0 = pi R^2, with the ball R and the spacing s_cal of the calibration."};
+  return {
+      "material",
+      "A preset; or a preset of which some values are replaced; or every value without a preset. An edge of spacing "
+      "s has the stiffness K S0 (s / s_cal), S0 = pi R^2, with the ball R and the spacing s_cal of the calibration."};
 }
 template <class V>
 void describe_fields(V& v, MaterialSpec& material) {
@@ -105,21 +106,20 @@ void describe_fields(V& v, MaterialSpec& material) {
   v.number(Key{"calibration_spacing_mm", "Spacing of the spheres that the moduli belong to.", false, "the preset's"},
            material.calibration_spacing, units::millimetre, within(0.01, 1000));
   v.number(Key{"prestrain",
-               "Strain of the tissue in the body: elements without force are shorter by this part; a capsule that "
-               "has more than what it covers makes a cut gape.",
+               "In-situ strain: an element's length without force is shorter by this fraction than its length in the "
+               "lattice. A capsule with more prestrain than the tissue below it makes a cut gape.",
                false, "0"},
            material.prestrain, units::none, within(0, 0.5));
-  v.number(Key{"fracture_toughness_j_per_m2",
-               "Energy J_c with which a blade opens a unit of area; 0: it cuts without resistance.", false,
-               "the preset's, else 0"},
-           material.fracture_toughness, units::joule_per_metre2, within(0, 1e6));
   v.number(
-      Key{"blade_friction_kpa", "Shear stress on each flank of a blade that moves.", false, "the preset's, else 0"},
-      material.blade_friction, units::kilopascal, within(0, 1e4));
-  v.record(Key{"fitted_for", "What the stiffness scale was fitted for."}, material.fitted_for);
+      Key{"fracture_toughness_j_per_m2", "Fracture energy J_c of a cut per area; 0: a blade cuts without resistance.",
+          false, "the preset's, else 0"},
+      material.fracture_toughness, units::joule_per_metre2, within(0, 1e6));
+  v.number(Key{"blade_friction_kpa", "Shear stress on each flank of a moving blade.", false, "the preset's, else 0"},
+           material.blade_friction, units::kilopascal, within(0, 1e4));
+  v.record(Key{"fitted_for", "The press that the stiffness scale was fitted to."}, material.fitted_for);
 }
 
-inline RecordInfo info_of(const BoxRegion&) { return {"box", "A box along the axes, its sides included."}; }
+inline RecordInfo info_of(const BoxRegion&) { return {"box", "An axis-aligned box; its faces belong to it."}; }
 template <class V>
 void describe_fields(V& v, BoxRegion& box) {
   v.point(required("min_mm", "Corner with the smallest coordinates."), box.min, units::millimetre, any_coordinate_mm);
@@ -133,16 +133,18 @@ void describe_fields(V& v, SphereRegion& sphere) {
   v.number(required("radius_mm", "Its radius."), sphere.radius, units::millimetre, above(0, 100000));
 }
 
-inline RecordInfo info_of(const PlaneRegion&) { return {"plane", "Everything behind a plane, the plane included."}; }
+inline RecordInfo info_of(const PlaneRegion&) {
+  return {"plane", "The half-space behind a plane; the plane belongs to it."};
+}
 template <class V>
 void describe_fields(V& v, PlaneRegion& plane) {
   v.point(required("point_mm", "A point of the plane."), plane.point, units::millimetre, any_coordinate_mm);
-  v.point(required("normal", "Points to the side that stays free; any length but zero."), plane.normal, units::none,
-          any_direction);
+  v.point(required("normal", "Normal towards the side that stays free; any length but zero."), plane.normal,
+          units::none, any_direction);
 }
 
 inline RecordInfo info_of(const AnchorSpec&) {
-  return {"anchor", "A region at rest whose spheres never move: those with their centre in it."};
+  return {"anchor", "A region whose spheres never move: those whose rest centre lies in it."};
 }
 template <class V>
 void describe_fields(V& v, AnchorSpec& anchor) {
@@ -154,7 +156,9 @@ void describe_fields(V& v, AnchorSpec& anchor) {
   v.exactly_one();
 }
 
-inline RecordInfo info_of(const GuideSpec&) { return {"guide", "A sphere that runs on a rail or in a plane."}; }
+inline RecordInfo info_of(const GuideSpec&) {
+  return {"guide", "A sphere that moves only along a line or in a plane."};
+}
 template <class V>
 void describe_fields(V& v, GuideSpec& guide) {
   v.point(required("cell", "Lattice coordinates of the sphere."), guide.cell, units::none, within(-1000, 1000));
@@ -170,14 +174,13 @@ void describe_fields(V& v, RigSpec& rig) {
            units::none, within(-1000, 1000), 0);
   v.point(Key{"block", "Spheres along x, y and z of a full block, centred over the origin and standing on z = 0."},
           rig.block, units::none, within(1, 200));
-  v.list(Key{"guides", "Spheres that may not leave some axes."}, rig.guides, 0);
+  v.list(Key{"guides", "Spheres that do not move along some axes."}, rig.guides, 0);
 }
 
 inline RecordInfo info_of(const LayerSpec&) {
   return {"layer",
-          "Tissue down to a depth below the surface, over what lies below. A sphere belongs to the first "
-          "layer that ends below "
-          "its centre; elements between spheres of different layers have the mean of their values."};
+          "Tissue from the layer above, or the surface, down to a depth. A sphere belongs to the first layer that ends "
+          "below its centre. Elements between spheres of different layers have the mean of their values."};
 }
 template <class V>
 void describe_fields(V& v, LayerSpec& layer) {
@@ -189,7 +192,7 @@ void describe_fields(V& v, LayerSpec& layer) {
 inline RecordInfo info_of(const OrganSpec&) { return {"organ", "One piece of tissue, from a closed mesh, or a rig."}; }
 template <class V>
 void describe_fields(V& v, OrganSpec& organ) {
-  v.text(required("name", "How the organ is called; no two alike."), organ.name);
+  v.text(required("name", "Name of the organ, unique in the scene."), organ.name);
   v.text(Key{"mesh",
              "Path of the mesh file from the scene's folder; it may not leave that folder unless the user "
              "allows it."},
@@ -200,8 +203,8 @@ void describe_fields(V& v, OrganSpec& organ) {
   v.integer(Key{"most_triangles", "The drawn surface is made coarser if it has more; the spheres stay the same.", false,
                 "as many as the mesh has"},
             organ.most_triangles, within(100, 10000000));
-  v.choice(Key{"model", "Which structure joins the spheres."}, organ.model);
-  v.choice(Key{"lattice", "Which neighbours are joined; cubic-6 has no shear stiffness and is for rigs."},
+  v.choice(Key{"model", "Structure that joins the spheres."}, organ.structure);
+  v.choice(Key{"lattice", "Neighbours that are joined; cubic-6 has no shear stiffness and is for rigs."},
            organ.lattice);
   v.flag(Key{"softening", "Forces of triples and constraints are divided by 1 + tan(theta), Eq. 8; for model ctpm."},
          organ.softening);
@@ -209,8 +212,8 @@ void describe_fields(V& v, OrganSpec& organ) {
   v.record(required("material", "The tissue, below the last layer."), organ.material);
   v.list(Key{"layers", "Layers of other tissue that follow the surface, outermost first.", false, "none"}, organ.layers,
          0);
-  v.list(Key{"anchors", "Regions that never move."}, organ.anchors, 0);
-  v.number(Key{"damage_depth_mm", "Depth of pressing beyond which the tissue counts as damaged; 0: no limit."},
+  v.list(Key{"anchors", "Regions whose spheres never move."}, organ.anchors, 0);
+  v.number(Key{"damage_depth_mm", "Indentation depth beyond which the tissue counts as damaged; 0: no limit."},
            organ.damage_depth, units::millimetre, within(0, 1000));
   v.number(Key{"damage_force_n", "Force on a tool beyond which the tissue counts as damaged; 0: no limit."},
            organ.damage_force, units::newton, within(0, 1e6));
@@ -222,7 +225,7 @@ void describe_fields(V& v, OrganSpec& organ) {
 inline RecordInfo info_of(const ToolSpec&) { return {"tool", "A tool that the hand or a script can hold."}; }
 template <class V>
 void describe_fields(V& v, ToolSpec& tool) {
-  v.text(required("name", "How scripts and recordings call it; no two alike."), tool.name);
+  v.text(required("name", "Name of the tool in scripts and recordings, unique in the scene."), tool.name);
   v.choice(required("kind",
                     "A rigid ball presses; a scalpel severs what its blade sweeps; a pin holds one sphere "
                     "where the hand is."),
@@ -236,40 +239,40 @@ void describe_fields(V& v, ToolSpec& tool) {
           tool.holds, units::millimetre, any_coordinate_mm);
 }
 
-inline RecordInfo info_of(const LoadSpec&) { return {"load", "A force on one sphere from outside."}; }
+inline RecordInfo info_of(const LoadSpec&) { return {"load", "An external force on one sphere."}; }
 template <class V>
 void describe_fields(V& v, LoadSpec& load) {
-  v.point(required("at_mm", "It acts on the sphere nearest to here at rest."), load.at, units::millimetre,
-          any_coordinate_mm);
-  v.point(required("force_n", "Its full size."), load.force, units::newton, within(-1e6, 1e6));
-  v.number(Key{"start_s", "When it begins."}, load.start, units::second, within(0, 1e6));
-  v.number(Key{"ramp_s", "Time in which it rises to its full size."}, load.ramp, units::second, within(0, 1e6));
+  v.point(required("at_mm", "The force acts on the sphere whose rest position is nearest to this point."), load.at,
+          units::millimetre, any_coordinate_mm);
+  v.point(required("force_n", "The force after the ramp."), load.force, units::newton, within(-1e6, 1e6));
+  v.number(Key{"start_s", "Start of the ramp."}, load.start, units::second, within(0, 1e6));
+  v.number(Key{"ramp_s", "Time in which the force rises linearly from zero."}, load.ramp, units::second,
+           within(0, 1e6));
 }
 
 inline RecordInfo info_of(const ProbeSpec&) {
-  return {"probe", "A point whose way is written down: the sphere nearest to it at rest."};
+  return {"probe", "A point whose motion is recorded: that of the sphere whose rest position is nearest."};
 }
 template <class V>
 void describe_fields(V& v, ProbeSpec& probe) {
-  v.text(required("name", "How tables call it; no two alike."), probe.name);
-  v.point(required("at_mm", "Where it is at rest."), probe.at, units::millimetre, any_coordinate_mm);
+  v.text(required("name", "Name of the probe in tables, unique in the scene."), probe.name);
+  v.point(required("at_mm", "Rest position of the point."), probe.at, units::millimetre, any_coordinate_mm);
 }
 
-inline RecordInfo info_of(const SolverSpec&) { return {"solver", "How a tick is solved."}; }
+inline RecordInfo info_of(const SolverSpec&) { return {"solver", "Settings of the time integration."}; }
 template <class V>
 void describe_fields(V& v, SolverSpec& solver) {
-  v.choice(
-      Key{"integrator",
-          "`leapfrog` is explicit and of second order, `backward-euler` implicit and of first, `sdirk2` implicit and "
-          "of "
-          "second; `auto` takes the cheapest that holds the scene's stiffness, and `ctpm plan` says which and why.",
-          false},
-      solver.integrator);
+  v.choice(Key{"integrator",
+               "`leapfrog` is explicit and of second order, `backward-euler` implicit and of first, `sdirk2` implicit "
+               "and of "
+               "second; `auto` takes the cheapest that is stable for the scene, and `ctpm plan` says which and why.",
+               false},
+           solver.integrator);
   v.number(Key{"tolerance", "Relative residual at which the solve of a tick stops.", false, "1e-4"}, solver.tolerance,
            units::none, between(0, 1));
-  v.number(Key{"velocity_floor_mm_per_s", "Residuals below this velocity count as solved.", false, "0.001"},
+  v.number(Key{"velocity_floor_mm_per_s", "Absolute tolerance of the velocities.", false, "0.001"},
            solver.velocity_floor, units::millimetre_per_second, above(0, 1000));
-  v.integer(Key{"max_iterations", "Most iterations of one solve.", false, "200"}, solver.max_iterations,
+  v.integer(Key{"max_iterations", "Largest number of iterations of one solve.", false, "200"}, solver.max_iterations,
             within(1, 100000));
   v.integer(Key{"substeps", "Equal parts of a tick; `auto` may take more.", false, "1"}, solver.substeps,
             within(1, 1000));
@@ -278,11 +281,11 @@ void describe_fields(V& v, SolverSpec& solver) {
 inline RecordInfo info_of(const CameraSpec&) { return {"camera", "A view for pictures and videos."}; }
 template <class V>
 void describe_fields(V& v, CameraSpec& camera) {
-  v.text(required("name", "How commands call it; no two alike."), camera.name);
-  v.point(required("eye_mm", "Where the camera is."), camera.eye, units::millimetre, any_coordinate_mm);
-  v.point(required("target_mm", "What it looks at."), camera.target, units::millimetre, any_coordinate_mm);
-  v.point(Key{"up", "Direction that is up in the picture; any length but zero."}, camera.up, units::none,
-          any_direction);
+  v.text(required("name", "Name of the camera in commands, unique in the scene."), camera.name);
+  v.point(required("eye_mm", "Position of the camera."), camera.eye, units::millimetre, any_coordinate_mm);
+  v.point(required("target_mm", "Point that the camera looks at."), camera.target, units::millimetre,
+          any_coordinate_mm);
+  v.point(Key{"up", "Upward direction of the picture; any length but zero."}, camera.up, units::none, any_direction);
   v.number(Key{"field_of_view_deg", "Angle from the lower to the upper edge of the picture."}, camera.field_of_view,
            units::degree, within(1, 150));
 }
@@ -292,11 +295,11 @@ template <class V>
 void describe_fields(V& v, SceneSpec& scene) {
   v.constant(required("format", "Says that this is a scene."), scene_format_name);
   v.constant(required("version", "Version of the format."), scene_format_version);
-  v.text(required("name", "How the scene is called."), scene.name);
+  v.text(required("name", "Name of the scene."), scene.name);
   v.point(Key{"gravity_m_per_s2", "Acceleration of free fall; all zero: no gravity."}, scene.gravity,
           units::metre_per_second2, within(-1000, 1000));
   v.number(Key{"tick_s", "Length of a tick."}, scene.tick, units::second, within(1e-6, 0.1));
-  v.number(Key{"settle_s", "Longest time in which the scene comes to rest before its first tick."}, scene.settle,
+  v.number(Key{"settle_s", "Longest time for the scene to come to rest before its first tick."}, scene.settle,
            units::second, within(0, 60));
   v.list(required("organs", "The tissue."), scene.organs, 1);
   v.list(Key{"tools", "The tools."}, scene.tools, 0);
@@ -306,10 +309,10 @@ void describe_fields(V& v, SceneSpec& scene) {
   v.number(Key{"contact_friction", "Coulomb coefficient between tool and tissue."}, scene.contact_friction, units::none,
            within(0, 10));
   v.flag(Key{"lips_meet", "The two sides of a cut meet again without passing through each other."}, scene.lips_meet);
-  v.list(Key{"loads", "Forces from outside."}, scene.loads, 0);
-  v.list(Key{"probes", "Points whose way is written down."}, scene.probes, 0);
-  v.record(Key{"solver", "How a tick is solved."}, scene.solver);
-  v.list(Key{"cameras", "Views; the first is used unless another is asked for."}, scene.cameras, 0);
+  v.list(Key{"loads", "External forces."}, scene.loads, 0);
+  v.list(Key{"probes", "Points whose motion is recorded."}, scene.probes, 0);
+  v.record(Key{"solver", "Settings of the time integration."}, scene.solver);
+  v.list(Key{"cameras", "Views; commands use the first unless another is named."}, scene.cameras, 0);
 }
 
 }  // namespace ctpm

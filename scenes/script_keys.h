@@ -1,9 +1,9 @@
 #pragma once
 
-#include "scenes/field_table.h"
+#include "scenes/key_types.h"
 #include "scenes/script.h"
 
-// The one table of the script format. Internal to scenes.
+// Every key of a script with its type, unit, range and sentence, as scene_keys.h for scenes. Internal to scenes.
 namespace ctpm {
 
 inline constexpr const char* script_format_name = "ctpm-script";
@@ -23,15 +23,15 @@ void describe_fields(V& v, ScriptStep::Take& take) {
           script_ranges::coordinate_mm);
   v.point(Key{"pointing", "Direction from handle to tip; any length but zero."}, take.pointing, units::none,
           script_ranges::direction);
-  v.point(Key{"facing", "Where a blade's cutting side looks; not along pointing.", false, "the shortest turn decides"},
+  v.point(Key{"facing", "Direction of a blade's cutting side; not along pointing.", false, "the shortest turn decides"},
           take.facing, units::none, script_ranges::direction);
 }
 
 inline RecordInfo info_of(const ScriptStep::Move&) { return {"move", "The tool moves along a straight line."}; }
 template <class V>
 void describe_fields(V& v, ScriptStep::Move& move) {
-  v.point(required("to_mm", "Where to."), move.to, units::millimetre, script_ranges::coordinate_mm);
-  v.number(required("speed_mm_per_s", "Speed between the slower start and end of each straight piece."), move.speed,
+  v.point(required("to_mm", "End of the line."), move.to, units::millimetre, script_ranges::coordinate_mm);
+  v.number(required("speed_mm_per_s", "Speed of each straight piece after its start and before its end."), move.speed,
            units::millimetre_per_second, script_ranges::speed_mm_per_s);
 }
 
@@ -40,13 +40,14 @@ inline RecordInfo info_of(const ScriptStep::Press&) {
 }
 template <class V>
 void describe_fields(V& v, ScriptStep::Press& press) {
-  v.number(required("distance_mm", "How far; with until_force_n, how far at most: there it gives up."), press.distance,
+  v.number(required("distance_mm", "Length of the stroke; with until_force_n, its largest length."), press.distance,
            units::millimetre, above(0, 1000));
-  v.number(Key{"until_force_n", "Ends where the tissue pushes back with so much against the direction.", false,
+  v.number(Key{"until_force_n", "Ends when the tissue's reaction against the direction reaches this force.", false,
                "the whole distance"},
            press.until_force, units::newton, above(0, 1000));
-  v.point(Key{"direction", "Which way; any length but zero."}, press.direction, units::none, script_ranges::direction);
-  v.number(required("speed_mm_per_s", "Speed between the slower start and end of each straight piece."), press.speed,
+  v.point(Key{"direction", "Direction of the stroke; any length but zero."}, press.direction, units::none,
+          script_ranges::direction);
+  v.number(required("speed_mm_per_s", "Speed of each straight piece after its start and before its end."), press.speed,
            units::millimetre_per_second, script_ranges::speed_mm_per_s);
 }
 
@@ -55,11 +56,11 @@ inline RecordInfo info_of(const ScriptStep::Release&) {
 }
 template <class V>
 void describe_fields(V& v, ScriptStep::Release& release) {
-  v.number(required("distance_mm", "How far."), release.distance, units::millimetre, above(0, 1000));
-  v.point(Key{"direction", "Where it leaves to; any length but zero."}, release.direction, units::none,
+  v.number(required("distance_mm", "Length of the stroke."), release.distance, units::millimetre, above(0, 1000));
+  v.point(Key{"direction", "Direction of the stroke; any length but zero."}, release.direction, units::none,
           script_ranges::direction);
-  v.number(required("speed_mm_per_s", "Speed between the slower start and end of each straight piece."), release.speed,
-           units::millimetre_per_second, script_ranges::speed_mm_per_s);
+  v.number(required("speed_mm_per_s", "Speed of each straight piece after its start and before its end."),
+           release.speed, units::millimetre_per_second, script_ranges::speed_mm_per_s);
 }
 
 inline RecordInfo info_of(const ScriptStep::Cut&) { return {"cut", "The tip moves along a path of points."}; }
@@ -67,14 +68,14 @@ template <class V>
 void describe_fields(V& v, ScriptStep::Cut& cut) {
   v.points(required("path_mm", "Points that the tip passes, from where it is."), cut.path, units::millimetre,
            script_ranges::coordinate_mm, 1);
-  v.flag(Key{"smooth", "Along one smooth curve through the points, without a rest at any.", false,
-             "straight from point to point, with a moment of rest at each"},
+  v.flag(Key{"smooth", "Moves along one smooth curve through the points without stopping.", false,
+             "straight from point to point, with a stop at each"},
          cut.smooth);
-  v.number(required("speed_mm_per_s", "Speed between the slower start and end of each straight piece."), cut.speed,
+  v.number(required("speed_mm_per_s", "Speed of each straight piece after its start and before its end."), cut.speed,
            units::millimetre_per_second, script_ranges::speed_mm_per_s);
 }
 
-inline RecordInfo info_of(const ScriptStep&) { return {"step", "One thing that the hand does."}; }
+inline RecordInfo info_of(const ScriptStep&) { return {"step", "One action of the hand."}; }
 template <class V>
 void describe_fields(V& v, ScriptStep& step) {
   v.record(Key{"take", "Take a tool."}, step.take);
@@ -92,7 +93,7 @@ template <class V>
 void describe_fields(V& v, Script& script) {
   v.constant(required("format", "Says that this is a script."), script_format_name);
   v.constant(required("version", "Version of the format."), script_format_version);
-  v.list(required("steps", "What the hand does, one after the other."), script.steps, 1);
+  v.list(required("steps", "Steps in the order in which they run."), script.steps, 1);
 }
 
 }  // namespace ctpm
