@@ -41,27 +41,31 @@ class BladeForce {
   std::size_t most() const { return any() ? 2 * (model_.edges.size() + model_.tpms.size()) : 0; }
 
   /// Where find() looks, at the most.
-  Box around(const BladeMotion& motion) const;
+  Box around(const Tool& tool, const BladeMotion& motion) const;
 
   /// Adds what the blade, at the end of its motion, meets in `state`, of the elements that are `near`: those
   /// ahead, and lips on its flanks.
-  void find(const State& state, const NearElements& near, const BladeMotion& motion, PairContacts& contacts) const;
+  void find(const State& state, const NearElements& near, const Tool& tool, const BladeMotion& motion,
+            PairContacts& contacts) const;
 
   /// Adds the elements that were severed within the tick before they could resist to the end: their remaining
   /// energy over the blade's way in the tick.
-  void add_severed(const State& state, const BladeMotion& motion, std::span<const Crossing> crossings,
+  void add_severed(const State& state, const Tool& tool, const BladeMotion& motion, std::span<const Crossing> crossings,
                    PairContacts& contacts) const;
 
  private:
   struct Element;
   Element element(std::size_t index) const;
 
+  /// Distance ahead of the edge over which an element resists [m].
+  double reach(const Tool& tool) const;
+
   const Model& model_;
-  double reach_;  ///< way ahead of the edge over which an element resists [m]
+  double widest_spacing_ = 0;  ///< of all organs [m]
 };
 
-/// Tows `trail` (2) behind the ends of the blade at a distance of at most kTrail, and gives `motion` the
+/// Tows `trail` (2) behind the ends of the blade at a distance of at most Tool::trail_distance, and gives `motion` the
 /// heading that follows: hands tremble, and a heading must not.
-void tow(Vec3Array& trail, BladeMotion& motion);
+void tow(const Tool& tool, Vec3Array& trail, BladeMotion& motion);
 
 }  // namespace ctpm

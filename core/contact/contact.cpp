@@ -6,16 +6,19 @@
 namespace ctpm {
 namespace {
 
-/// While surfaces stick, drag is contact_k times this [s]: a sphere under a resting tool creeps over seconds.
-constexpr double kStickTime = 0.1;
-
 /// Spheres whose distance is looked at together before each is looked at by itself.
 constexpr std::size_t kLookedAtOnce = 128;
 
 }  // namespace
 
-double contact_damping(double k, double mass, double penetration) {
-  return std::min(kContactDamping * k * penetration, 2 * std::sqrt(k * mass));
+double contact_damping(double hunt_crossley, double k, double mass, double penetration) {
+  return std::min(hunt_crossley * k * penetration, 2 * std::sqrt(k * mass));
+}
+
+double contact_drag(const Model& model, double penetration, double speed) {
+  const double k = model.contact_k, stick = model.contact_stick_time * k,
+               limit = model.contact_friction * k * penetration;
+  return model.contact_friction > 0 ? (speed * stick > limit ? limit / speed : stick) : 0.0;
 }
 
 BallContact::BallContact(const Model& model, const Kernels& kernels) : model_(model), kernels_(kernels) {
@@ -53,11 +56,10 @@ void BallContact::find_among(const State& state, Vec3 centre, double radius, dou
     const double penetration = reach - distance;
     const Vec3 slip = state.velocity[i] - velocity;
     const double speed = norm(slip - dot(slip, normal) * normal);
-    const double stick = kStickTime * model_.contact_k,
-                 limit = model_.contact_friction * model_.contact_k * penetration;
-    const double drag = model_.contact_friction > 0 ? (speed * stick > limit ? limit / speed : stick) : 0.0;
+    const double drag = contact_drag(model_, penetration, speed);
     const Vec3 from = from_velocity ? slip : -velocity;
-    const double towards = dot(from, normal), damping = contact_damping(model_.contact_k, model_.mass[i], penetration);
+    const double towards = dot(from, normal),
+                 damping = contact_damping(model_.contact_damping, model_.contact_k, model_.mass[i], penetration);
     contacts_.push_back({std::int32_t(i), normal, penetration, damping, drag,
                          std::clamp(-towards, -reach / h, penetration / h), from - towards * normal});
   }
@@ -99,7 +101,7 @@ ContactShares::ContactShares(double k, double c) {
 void BallContact::push_apart(double h, std::span<const std::uint8_t> held_axes, const Vec3Array& before,
                              Coordinates& velocity) {
   const std::size_t spheres = model_.sphere_count();
-  const double k = model_.contact_k, stick = model_.contact_friction > 0 ? kStickTime * k : 0.0;
+  const double k = model_.contact_k, stick = model_.contact_friction > 0 ? model_.contact_stick_time * k : 0.0;
   std::erase_if(contacts_, [&](Contact& contact) {
     const auto i = std::size_t(contact.sphere);
     const double mass = model_.mass[i], damping = contact.damping;

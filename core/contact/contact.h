@@ -13,14 +13,14 @@
 
 namespace ctpm {
 
-/// Hunt & Crossley's damping ("Coefficient of restitution interpreted as damping in vibroimpact", 1975): a contact
-/// pushes with k p (1 + kContactDamping p') at penetration p [m], so that a sphere does not ring between the tool and
-/// its neighbours: of what meets at 30 mm/s a quarter of the energy is left [s/m]. It is never more than critical
-/// damping.
-inline constexpr double kContactDamping = 50;
+/// Damping along the normal [N s/m] of a contact of stiffness `k` [N/m] with a sphere of `mass` [kg] at `penetration`
+/// [m]. `hunt_crossley` [s/m] is c in the law k p (1 + c p') of Hunt & Crossley, "Coefficient of restitution
+/// interpreted as damping in vibroimpact" (1975). The result never exceeds critical damping.
+double contact_damping(double hunt_crossley, double k, double mass, double penetration);
 
-/// Damping of a contact of stiffness `k` [N/m] with a sphere of `mass` [kg] at `penetration` [m]  [N s/m].
-double contact_damping(double k, double mass, double penetration);
+/// Drag across the normal [N s/m] of a tool's contact at `penetration` [m] that slips at `speed` [m/s]: viscous while
+/// the surfaces stick, limited by Coulomb's law when they slip.
+double contact_drag(const Model& model, double penetration, double speed);
 
 /// Shares of the velocities after and before an explicit step in what acts in its middle. A quarter of each in a
 /// penetration (Newmark's average acceleration) and a half in damping are of second order; of what the step is too long

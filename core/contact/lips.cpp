@@ -6,9 +6,6 @@
 namespace ctpm {
 namespace {
 
-/// How fast the contact stiffens, per spacing of penetration.
-constexpr double kStiffening = 8;
-
 bool is_severed(const Model& model, const State& state, std::size_t element) {
   const std::size_t edges = model.edges.size();
   return element < edges ? state.edge_severed[element] != 0 : state.tpm_severed[element - edges] != 0;
@@ -72,7 +69,7 @@ void LipContact::add_pair(const State& state, std::int32_t a, std::int32_t b, Pa
   const double spacing = spacing_[std::size_t(a)], squared = dot(apart, apart);
   if (squared >= spacing * spacing || squared == 0 || are_joined(state, a, b)) return;
   const double distance = std::sqrt(squared), p = spacing - distance;
-  const double grown = kStiffening * p / spacing, k = model_.lip_k * (1 + 3 * grown * grown);
+  const double grown = model_.cut_face_stiffening * p / spacing, k = model_.lip_k * (1 + 3 * grown * grown);
   const Vec3 axis = apart / distance;
   contacts.add({.a = a,
                 .b = b,

@@ -12,8 +12,8 @@ namespace ctpm {
 /// Lets the two sides of a cut meet again without passing through each other: spheres with a severed element
 /// that are not joined by a living one keep a spacing apart. Only these spheres are looked at, sorted along x.
 ///
-/// The force between two centres at a distance d < s is lip_k p (1 + (8 p / s)^2), p = s - d: at first no
-/// stiffer than the severed elements were, so that severing compressed tissue adds no energy, then so stiff
+/// The force between two centres at a distance d < s is lip_k p (1 + (b p / s)^2), p = s - d, b = cut_face_stiffening:
+/// at first no stiffer than the severed elements were, so that severing compressed tissue adds no energy, then so stiff
 /// that nothing slips through.
 class LipContact {
  public:

@@ -27,9 +27,9 @@ void Stepper::Workspace::sweep(State& state, const Inputs& last, const Inputs& i
   if (!state.blade_trail.x.empty()) {
     if (state.last_inputs.tool != inputs.tool)
       state.blade_trail.set(0, grip.blade.to.tip), state.blade_trail.set(1, grip.blade.to.heel);
-    tow(state.blade_trail, grip.blade);
+    tow(*grip.tool, state.blade_trail, grip.blade);
   }
-  near->find(state.position, blade.around(grip.blade));
+  near->find(state.position, blade.around(*grip.tool, grip.blade));
   report.severed = sever_swept_by_blade(model, *near, grip.blade.from, grip.blade.to, state.position, state, crossings);
   grip.swept = crossings.size();
 }

@@ -106,8 +106,8 @@ void Stepper::Workspace::find_pairs(const State& state, const Grip& grip) {
   pairs.clear();
   if (grip.is(ToolKind::scalpel) && blade.any()) {
     near->follow(state.position);
-    blade.find(state, *near, grip.blade, pairs);
-    blade.add_severed(state, grip.blade, std::span(crossings).first(grip.swept), pairs);
+    blade.find(state, *near, *grip.tool, grip.blade, pairs);
+    blade.add_severed(state, *grip.tool, grip.blade, std::span(crossings).first(grip.swept), pairs);
   }
   if (lips.is_wanted()) lips.find(state, pairs);
 }

@@ -12,9 +12,6 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// As in contact.cpp.
-constexpr double kStickTime = 0.1;
-
 }  // namespace
 
 Vec3 Press::centre(double time) const {
@@ -79,7 +76,6 @@ template <class Touch>
 void NetworkOde::for_each_touched(double time, Touch&& touch) const {
   if (press_.radius == 0) return;
   const Vec3 centre = press_.centre(time), velocity = press_.velocity(time);
-  const double k = model_.contact_k, friction = model_.contact_friction;
   for (std::size_t i = 0; i < spheres_; ++i) {
     const Vec3 apart = state_.position[i] - centre;
     const double reach = press_.radius + model_.contact_radius[i], squared = dot(apart, apart);
@@ -87,9 +83,8 @@ void NetworkOde::for_each_touched(double time, Touch&& touch) const {
     const double distance = std::sqrt(squared), penetration = reach - distance;
     const Vec3 normal = apart / distance, past = state_.velocity[i] - velocity;
     const Vec3 slip = past - dot(past, normal) * normal;
-    const double speed = norm(slip), stick = kStickTime * k, limit = friction * k * penetration;
-    const double drag = friction > 0 ? (speed * stick > limit ? limit / speed : stick) : 0.0;
-    const double damping = contact_damping(k, model_.mass[i], penetration);
+    const double drag = contact_drag(model_, penetration, norm(slip));
+    const double damping = contact_damping(model_.contact_damping, model_.contact_k, model_.mass[i], penetration);
     touch(Contact{std::int32_t(i), normal, penetration, damping, drag, -dot(past, normal), slip}, slip);
   }
 }
