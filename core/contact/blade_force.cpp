@@ -63,7 +63,7 @@ Box BladeForce::around(const Tool& tool, const BladeMotion& motion) const {
       .grown(0.5 * reach + std::max(reach, tool.flank_height));
 }
 
-void BladeForce::find(const State& state, const NearElements& near, const Tool& tool, const BladeMotion& motion,
+void BladeForce::find(const StateView& state, const NearElements& near, const Tool& tool, const BladeMotion& motion,
                       PairContacts& contacts) const {
   const double reach = this->reach(tool);
   const Vec3 beyond = 0.5 * reach * unit(motion.to.heel - motion.to.tip);
@@ -121,7 +121,7 @@ void BladeForce::find(const State& state, const NearElements& near, const Tool& 
   }
 }
 
-void BladeForce::add_severed(const State& state, const Tool& tool, const BladeMotion& motion,
+void BladeForce::add_severed(const StateView& state, const Tool& tool, const BladeMotion& motion,
                              std::span<const Crossing> crossings, PairContacts& contacts) const {
   const double reach = this->reach(tool);
   for (const Crossing& crossing : crossings) {
@@ -144,17 +144,6 @@ void BladeForce::add_severed(const State& state, const Tool& tool, const BladeMo
                   .force = remaining / (length * length) * way,
                   .is_tool = true});
   }
-}
-
-void tow(const Tool& tool, Vec3Array& trail, BladeMotion& motion) {
-  const auto tow_one = [&](std::size_t i, Vec3 end) {
-    const Vec3 way = end - trail[i];
-    const double length = norm(way);
-    if (length <= tool.trail_distance) return way / tool.trail_distance;
-    trail.set(i, end - tool.trail_distance / length * way);
-    return way / length;
-  };
-  motion.heading_tip = tow_one(0, motion.to.tip), motion.heading_heel = tow_one(1, motion.to.heel);
 }
 
 }  // namespace ctpm

@@ -171,9 +171,10 @@ struct Model {
                                    ///< through
 
   std::size_t sphere_count() const { return mass.size(); }
-  bool has_scalpel() const {
-    return std::any_of(tools.begin(), tools.end(), [](const Tool& tool) { return tool.kind == ToolKind::scalpel; });
+  bool has_tool(ToolKind kind) const {
+    return std::any_of(tools.begin(), tools.end(), [kind](const Tool& tool) { return tool.kind == kind; });
   }
+  bool has_scalpel() const { return has_tool(ToolKind::scalpel); }
   std::size_t element_count() const { return edges.size() + tpms.size() + constraints.size() + angle_springs.size(); }
 };
 

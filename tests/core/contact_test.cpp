@@ -1,5 +1,3 @@
-#include "core/contact/contact.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
