@@ -144,7 +144,8 @@ void add_cutting(Model& model, const SceneSpec& scene) {
   if (!cuts)
     model.cut_resistance = {};
   else if (scene.lips_meet)
-    model.lip_k = softest_edge(model);
+    model.lip_k = softest_edge(model),
+    model.cut_face_stiffening = scene.cut_face_stiffening.value_or(model.cut_face_stiffening);
 }
 
 double stiffest_edge(const Model& model) {
@@ -159,6 +160,9 @@ void add_tools(Model& model, const SceneSpec& scene) {
     Tool tool;
     tool.name = spec.name, tool.kind = spec.kind;
     tool.radius = spec.radius.value_or(0), tool.blade_length = spec.blade_length.value_or(0);
+    tool.blade_reach = spec.blade_reach.value_or(tool.blade_reach);
+    tool.flank_height = spec.flank_height.value_or(tool.flank_height);
+    tool.blade_thickness = spec.blade_thickness.value_or(tool.blade_thickness);
     if (spec.holds) tool.sphere = nearest_sphere(model, *spec.holds);
     model.tools.push_back(tool);
   }
@@ -167,6 +171,8 @@ void add_tools(Model& model, const SceneSpec& scene) {
   if (!presses) return;
   model.contact_k = scene.contact_stiffness.value_or(kContactOverEdge * stiffest_edge(model));
   model.contact_friction = scene.contact_friction;
+  model.contact_damping = scene.contact_damping.value_or(model.contact_damping);
+  model.contact_stick_time = scene.contact_stick_time.value_or(model.contact_stick_time);
 }
 
 }  // namespace

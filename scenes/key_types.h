@@ -23,6 +23,7 @@ inline constexpr Unit newton{"n", "N", 0};
 inline constexpr Unit millimetre_per_second{"mm_per_s", "mm/s", -3};
 inline constexpr Unit metre_per_second2{"m_per_s2", "m/s^2", 0};
 inline constexpr Unit kilogram_per_metre3{"kg_per_m3", "kg/m^3", 0};
+inline constexpr Unit second_per_metre{"s_per_m", "s/m", 0};
 inline constexpr Unit newton_per_metre{"n_per_m", "N/m", 0};
 inline constexpr Unit kilopascal{"kpa", "kPa", 3};
 inline constexpr Unit joule_per_metre2{"j_per_m2", "J/m^2", 0};

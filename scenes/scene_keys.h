@@ -237,6 +237,20 @@ void describe_fields(V& v, ToolSpec& tool) {
       tool.blade_length, units::millimetre, within(0.01, 500));
   v.point(Key{"holds_mm", "A pin holds the sphere nearest to here; needed by a pin, not allowed for others."},
           tool.holds, units::millimetre, any_coordinate_mm);
+  v.number(Key{"blade_reach_mm",
+               "Least distance ahead of a scalpel's edge over which tissue resists; at least 0.75 spacings of the "
+               "widest organ are taken; not allowed for others.",
+               false, "9"},
+           tool.blade_reach, units::millimetre, within(0.01, 100));
+  v.number(Key{"flank_height_mm",
+               "Height of a scalpel's flanks behind the edge, along which cut faces rub; not allowed for others.",
+               false, "6"},
+           tool.flank_height, units::millimetre, within(0, 200));
+  v.number(Key{"blade_thickness_mm",
+               "Cut faces that have opened by this distance no longer touch a scalpel's flanks; not allowed for "
+               "others.",
+               false, "1"},
+           tool.blade_thickness, units::millimetre, within(0.01, 100));
 }
 
 inline RecordInfo info_of(const LoadSpec&) { return {"load", "An external force on one sphere."}; }
@@ -308,7 +322,22 @@ void describe_fields(V& v, SceneSpec& scene) {
       scene.contact_stiffness, units::newton_per_metre, within(1e-6, 1e12));
   v.number(Key{"contact_friction", "Coulomb coefficient between tool and tissue."}, scene.contact_friction, units::none,
            within(0, 10));
+  v.number(Key{"contact_damping_s_per_m",
+               "Hunt-Crossley damping c of a tool's contact: at a penetration p it pushes with k p (1 + c p'); with 50 "
+               "s/m an impact at 30 mm/s keeps 25 % of its kinetic energy.",
+               false, "50"},
+           scene.contact_damping, units::second_per_metre, within(0, 1e4));
+  v.number(Key{"contact_stick_time_s",
+               "While tool and tissue stick, the drag between them is the contact's stiffness times this time.", false,
+               "0.1"},
+           scene.contact_stick_time, units::second, within(0, 100));
   v.flag(Key{"lips_meet", "The two sides of a cut meet again without passing through each other."}, scene.lips_meet);
+  v.number(
+      Key{"cut_face_stiffening",
+          "With `lips_meet`: factor b by which the contact of cut faces stiffens, 1 + (b p / s)^2 at a penetration "
+          "p and a spacing s.",
+          false, "8"},
+      scene.cut_face_stiffening, units::none, within(0, 1000));
   v.list(Key{"loads", "External forces."}, scene.loads, 0);
   v.list(Key{"probes", "Points whose motion is recorded."}, scene.probes, 0);
   v.record(Key{"solver", "Settings of the time integration."}, scene.solver);

@@ -128,15 +128,20 @@ void check_organ(Problems& problems, std::size_t index, const OrganSpec& organ) 
 void check_tool(Problems& problems, std::size_t index, const ToolSpec& tool) {
   const std::string at = item("/tools", index);
   if (!problems.is_good(at + "/kind")) return;
+  const auto allow = [&](bool is_given, ToolKind kind, const std::string& key, const std::string& kind_name) {
+    if (tool.kind != kind && is_given) problems.add_rule(at + "/" + key, "only a " + kind_name + " has this key");
+  };
   const auto need = [&](bool is_given, ToolKind kind, const std::string& key, const std::string& kind_name) {
-    const std::string where = at + "/" + key;
     if (tool.kind == kind && !is_given)
-      problems.add_rule(at, "a " + kind_name + " needs the key " + in_quotes(key), "", where);
-    if (tool.kind != kind && is_given) problems.add_rule(where, "only a " + kind_name + " has this key");
+      problems.add_rule(at, "a " + kind_name + " needs the key " + in_quotes(key), "", at + "/" + key);
+    allow(is_given, kind, key, kind_name);
   };
   need(tool.radius.has_value(), ToolKind::ball, "radius_mm", "ball");
   need(tool.blade_length.has_value(), ToolKind::scalpel, "blade_length_mm", "scalpel");
   need(tool.holds.has_value(), ToolKind::pin, "holds_mm", "pin");
+  allow(tool.blade_reach.has_value(), ToolKind::scalpel, "blade_reach_mm", "scalpel");
+  allow(tool.flank_height.has_value(), ToolKind::scalpel, "flank_height_mm", "scalpel");
+  allow(tool.blade_thickness.has_value(), ToolKind::scalpel, "blade_thickness_mm", "scalpel");
 }
 
 void check_camera(Problems& problems, std::size_t index, const CameraSpec& camera) {

@@ -149,6 +149,10 @@ struct ToolSpec {
   std::optional<double> radius;        ///< of a ball [m]
   std::optional<double> blade_length;  ///< of a scalpel [m]
   std::optional<Vec3> holds;           ///< of a pin: it holds the sphere nearest to here at rest [m]
+  // Of a scalpel; unset ones are those of core's Tool.
+  std::optional<double> blade_reach{};      ///< least distance ahead of the edge over which tissue resists [m]
+  std::optional<double> flank_height{};     ///< [m]
+  std::optional<double> blade_thickness{};  ///< [m]
 
   friend bool operator==(const ToolSpec&, const ToolSpec&) = default;
 };
@@ -198,9 +202,12 @@ struct SceneSpec {
   double settle = 1.0;        ///< longest time for the scene to come to rest before the first tick [s]
   std::vector<OrganSpec> organs;
   std::vector<ToolSpec> tools;
-  std::optional<double> contact_stiffness;  ///< of a tool against one sphere [N/m]
-  double contact_friction = 0.3;            ///< Coulomb coefficient between tool and tissue
-  bool lips_meet = false;                   ///< the two sides of a cut meet again without passing through each other
+  std::optional<double> contact_stiffness;    ///< of a tool against one sphere [N/m]
+  double contact_friction = 0.3;              ///< Coulomb coefficient between tool and tissue
+  std::optional<double> contact_damping;      ///< Hunt-Crossley damping [s/m]; unset: that of core's Model
+  std::optional<double> contact_stick_time;   ///< [s]; unset: that of core's Model
+  std::optional<double> cut_face_stiffening;  ///< [1]; unset: that of core's Model
+  bool lips_meet = false;                     ///< the two sides of a cut meet again without passing through each other
   std::vector<LoadSpec> loads;
   std::vector<ProbeSpec> probes;
   SolverSpec solver;
