@@ -1,31 +1,29 @@
 #include "core/solver/linear_solver.h"
 
-#include "core/stepping/integrator.h"
-
 namespace ctpm {
 namespace {
 
-/// Stiffest part of A against the mass up to which float keeps soft motions apart from stiff ones.
+/// Stiffness ratio up to which float resolves soft motions beside stiff ones.
 constexpr double kStiffestForFloat = 1e4;
 
 std::variant<ConjugateGradient<float>, ConjugateGradient<double>> gradient_for(const Model& model, const Slabs& slabs,
-                                                                               Team& team, const Kernels& kernels) {
-  const double h = model.tick / model.solver.substeps;
-  if (stiffness_ratio_bound(model, h) <= kStiffestForFloat)
-    return ConjugateGradient<float>(model.mass, slabs, team, kernels);
+                                                                               Team& team, const Kernels& kernels,
+                                                                               double stiffness_ratio) {
+  if (stiffness_ratio <= kStiffestForFloat) return ConjugateGradient<float>(model.mass, slabs, team, kernels);
   return ConjugateGradient<double>(model.mass, slabs, team, kernels);
 }
 
 }  // namespace
 
-LinearSolver::LinearSolver(const Model& model, const Slabs& slabs, Team& team, const Kernels& kernels)
+LinearSolver::LinearSolver(const Model& model, const Slabs& slabs, Team& team, const Kernels& kernels,
+                           double stiffness_ratio)
     : model_(model),
       slabs_(slabs),
       team_(team),
       kernels_(kernels),
       residual_(3 * model.sphere_count()),
       parts_(std::size_t(slabs.count())),
-      gradient_(gradient_for(model, slabs, team, kernels)) {
+      gradient_(gradient_for(model, slabs, team, kernels, stiffness_ratio)) {
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
     if (model.held_axes[i] != 0) held_.push_back(std::int32_t(i));
 }
@@ -57,7 +55,7 @@ void LinearSolver::set_blocks_of(ConjugateGradient<Real>& gradient, const Diagon
   for (const std::int32_t sphere : held_) {
     const auto i = std::size_t(sphere);
     if (model_.held_axes[i] != kAnchored) {
-      // What is left free is inverted by itself.
+      // The block of the free axes is inverted by itself.
       double own[6];
       Real free[6];
       for (std::size_t k = 0; k < 6; ++k) own[k] = blocks[k * n + i];

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/stepping/integrator.h"
+
 namespace ctpm {
 namespace {
 
@@ -15,7 +17,8 @@ constexpr int kContactRounds = 4;
 ImplicitSolve::ImplicitSolve(const StepContext& context)
     : context_(context),
       held_(context.model, context.elements.slabs()),
-      solver_(context.model, context.elements.slabs(), context.team, context.kernels),
+      solver_(context.model, context.elements.slabs(), context.team, context.kernels,
+              stiffness_ratio_bound(context.model, context.model.tick / context.model.solver.substeps)),
       force_(3 * context.model.sphere_count()),
       momentum_(3 * context.model.sphere_count()),
       velocity_(3 * context.model.sphere_count()),
