@@ -15,7 +15,7 @@ constexpr std::size_t kLookedAtOnce = 128;
 
 BallContact::BallContact(const Model& model, const Kernels& kernels) : model_(model), kernels_(kernels) {
   const auto presses = [](const Tool& tool) { return tool.kind == ToolKind::ball; };
-  if (std::any_of(model.tools.begin(), model.tools.end(), presses)) touches_.reserve(model.sphere_count());
+  if (std::any_of(model.tools.begin(), model.tools.end(), presses)) contacts_.reserve(model.sphere_count());
   for (const double radius : model.contact_radius) largest_radius_ = std::max(largest_radius_, radius);
 }
 
@@ -43,7 +43,7 @@ void BallContact::find_among(const StateView& state, Vec3 centre, double radius,
     const double distance_squared = dot(apart, apart);
     if (distance_squared >= reach * reach) continue;
     const double distance = std::sqrt(distance_squared);
-    // A sphere whose centre the tool has reached is pushed the way the tool goes.
+    // A sphere whose centre coincides with the ball's is pushed in the direction in which the ball moves.
     const Vec3 fallback = norm(velocity) > 0 ? velocity / norm(velocity) : Vec3{0, 0, -1};
     const Vec3 normal = distance > 1e-9 * reach ? apart / distance : fallback;
     const double penetration = reach - distance;
@@ -53,22 +53,22 @@ void BallContact::find_among(const StateView& state, Vec3 centre, double radius,
     const Vec3 from = from_velocity ? slip : -velocity;
     const double towards = dot(from, normal),
                  damping = contact_damping(model_.contact_damping, model_.contact_k, model_.mass[i], penetration);
-    touches_.push_back({std::int32_t(i), normal, penetration, damping, drag,
-                        std::clamp(-towards, -reach / h, penetration / h), from - towards * normal});
+    contacts_.push_back({std::int32_t(i), normal, penetration, damping, drag,
+                         std::clamp(-towards, -reach / h, penetration / h), from - towards * normal});
   }
 }
 
 void BallContact::linearise(double h, Coordinates& force, DiagonalBlocks& blocks) {
   const std::size_t spheres = model_.sphere_count();
-  for (BallTouch& touch : touches_) {
-    const auto i = std::size_t(touch.sphere);
-    for (std::size_t k = 0; k < 3; ++k) touch.without[k] = force[k * spheres + i];
-    for (std::size_t k = 0; k < 6; ++k) touch.without[3 + k] = blocks[k * spheres + i];
-    const Vec3 n = touch.normal;
+  for (SphereContact& contact : contacts_) {
+    const auto i = std::size_t(contact.sphere);
+    for (std::size_t k = 0; k < 3; ++k) contact.without[k] = force[k * spheres + i];
+    for (std::size_t k = 0; k < 6; ++k) contact.without[3 + k] = blocks[k * spheres + i];
+    const Vec3 n = contact.normal;
     const Vec3 push =
-        (model_.contact_k * touch.penetration + touch.damping * touch.approach) * n - touch.drag * touch.slip;
+        (model_.contact_k * contact.penetration + contact.damping * contact.approach) * n - contact.drag * contact.slip;
     force[i] += push.x, force[spheres + i] += push.y, force[2 * spheres + i] += push.z;
-    const double across = h * touch.drag, along = coupling_along(touch, h) - across;
+    const double across = h * contact.drag, along = coupling_along(contact, h) - across;
     double* block = &blocks[i];
     block[0] += along * n.x * n.x + across, block[spheres] += along * n.x * n.y,
         block[2 * spheres] += along * n.x * n.z;
@@ -79,10 +79,10 @@ void BallContact::linearise(double h, Coordinates& force, DiagonalBlocks& blocks
 
 void BallContact::undo_linearise(Coordinates& force, DiagonalBlocks& blocks) const {
   const std::size_t spheres = model_.sphere_count();
-  for (const BallTouch& touch : touches_) {
-    const auto i = std::size_t(touch.sphere);
-    for (std::size_t k = 0; k < 3; ++k) force[k * spheres + i] = touch.without[k];
-    for (std::size_t k = 0; k < 6; ++k) blocks[k * spheres + i] = touch.without[3 + k];
+  for (const SphereContact& contact : contacts_) {
+    const auto i = std::size_t(contact.sphere);
+    for (std::size_t k = 0; k < 3; ++k) force[k * spheres + i] = contact.without[k];
+    for (std::size_t k = 0; k < 6; ++k) blocks[k * spheres + i] = contact.without[3 + k];
   }
 }
 
@@ -90,18 +90,18 @@ Vec3 BallContact::push_apart(double h, const Pin& pin, const Vec3Array& before, 
   const double k = model_.contact_k, stick = model_.contact_friction > 0 ? model_.contact_stick_time * k : 0.0;
   std::vector<double>* const axes[3] = {&velocity.x, &velocity.y, &velocity.z};
   Vec3 on_ball;
-  std::erase_if(touches_, [&](const BallTouch& touch) {
-    const auto i = std::size_t(touch.sphere);
-    const double mass = model_.mass[i], damping = touch.damping;
+  std::erase_if(contacts_, [&](const SphereContact& contact) {
+    const auto i = std::size_t(contact.sphere);
+    const double mass = model_.mass[i], damping = contact.damping;
     const ContactShares share(h * h * k / mass, h * damping / mass);
-    const Vec3 n = touch.normal, change = velocity[i] - before[i];
-    const double old = -touch.approach, free = mass * (old + dot(n, change));
-    const double push = k * (touch.penetration + h * share.before * old) - damping * share.damped_before * old;
+    const Vec3 n = contact.normal, change = velocity[i] - before[i];
+    const double old = -contact.approach, free = mass * (old + dot(n, change));
+    const double push = k * (contact.penetration + h * share.before * old) - damping * share.damped_before * old;
     const double along = (free + h * push) / (mass + h * (h * k * share.after + damping * share.damped_after));
     const double pressure = (mass * along - free) / h;
     if (pressure < 0) return true;
-    const Vec3 across = mass * (touch.slip + change - dot(n, change) * n);
-    const double limit = model_.contact_friction * k * touch.penetration, size = norm(across);
+    const Vec3 across = mass * (contact.slip + change - dot(n, change) * n);
+    const double limit = model_.contact_friction * k * contact.penetration, size = norm(across);
     const bool sticks = stick * size <= (mass + h * stick) * limit;
     const Vec3 acting = pressure * n - (sticks ? stick / (mass + h * stick) : limit / size) * across;
     const double kick[3] = {acting.x, acting.y, acting.z};
@@ -117,10 +117,10 @@ template <class Real>
 double BallContact::apply(double h, const Real* v, Real* result) const {
   const std::size_t spheres = model_.sphere_count();
   double energy = 0;
-  for (const BallTouch& touch : touches_) {
-    const auto i = std::size_t(touch.sphere);
-    const Vec3 n = touch.normal, u{v[i], v[spheres + i], v[2 * spheres + i]};
-    const double across = h * touch.drag, along = coupling_along(touch, h) - across;
+  for (const SphereContact& contact : contacts_) {
+    const auto i = std::size_t(contact.sphere);
+    const Vec3 n = contact.normal, u{v[i], v[spheres + i], v[2 * spheres + i]};
+    const double across = h * contact.drag, along = coupling_along(contact, h) - across;
     const Vec3 q = along * dot(n, u) * n + across * u;
     result[i] += Real(q.x), result[spheres + i] += Real(q.y), result[2 * spheres + i] += Real(q.z);
     energy += dot(u, q);
@@ -130,44 +130,44 @@ double BallContact::apply(double h, const Real* v, Real* result) const {
 template double BallContact::apply(double h, const float* v, float* result) const;
 template double BallContact::apply(double h, const double* v, double* result) const;
 
-Vec3 BallContact::change_of(const BallTouch& touch, const Coordinates& v) const {
-  const std::size_t spheres = model_.sphere_count(), i = std::size_t(touch.sphere);
+Vec3 BallContact::change_of(const SphereContact& contact, const Coordinates& v) const {
+  const std::size_t spheres = model_.sphere_count(), i = std::size_t(contact.sphere);
   return {v[i], v[spheres + i], v[2 * spheres + i]};
 }
 
 /// What the normal part of a velocity is multiplied by in the matrix of a step of `h` [kg].
-double BallContact::coupling_along(const BallTouch& touch, double h) const {
-  return h * (h * model_.contact_k + touch.damping);
+double BallContact::coupling_along(const SphereContact& contact, double h) const {
+  return h * (h * model_.contact_k + contact.damping);
 }
 
-double BallContact::pressure(const BallTouch& touch, double h, const Coordinates& v) const {
-  return model_.contact_k * touch.penetration + touch.damping * touch.approach -
-         coupling_along(touch, h) / h * dot(touch.normal, change_of(touch, v));
+double BallContact::pressure(const SphereContact& contact, double h, const Coordinates& v) const {
+  return model_.contact_k * contact.penetration + contact.damping * contact.approach -
+         coupling_along(contact, h) / h * dot(contact.normal, change_of(contact, v));
 }
 
 bool BallContact::has_pulling(double h, const Coordinates& v) const {
-  return std::any_of(touches_.begin(), touches_.end(),
-                     [&](const BallTouch& touch) { return pressure(touch, h, v) < 0; });
+  return std::any_of(contacts_.begin(), contacts_.end(),
+                     [&](const SphereContact& contact) { return pressure(contact, h, v) < 0; });
 }
 
 void BallContact::drop_pulling(double h, const Coordinates& v) {
-  std::erase_if(touches_, [&](const BallTouch& touch) { return pressure(touch, h, v) < 0; });
+  std::erase_if(contacts_, [&](const SphereContact& contact) { return pressure(contact, h, v) < 0; });
 }
 
 Vec3 BallContact::force_on_tool(double h, const Coordinates& v) const {
   Vec3 force;
-  for (const BallTouch& touch : touches_) {
-    const Vec3 n = touch.normal, change = change_of(touch, v), slip = touch.slip + change - dot(change, n) * n;
-    force += touch.drag * slip - std::max(pressure(touch, h, v), 0.0) * n;
+  for (const SphereContact& contact : contacts_) {
+    const Vec3 n = contact.normal, change = change_of(contact, v), slip = contact.slip + change - dot(change, n) * n;
+    force += contact.drag * slip - std::max(pressure(contact, h, v), 0.0) * n;
   }
   return force;
 }
 
 double BallContact::depth(const Vec3Array& position) const {
   double depth = 0;
-  for (const BallTouch& touch : touches_) {
-    const auto i = std::size_t(touch.sphere);
-    depth = std::max(depth, dot(touch.normal, position[i] - model_.rest_position[i]));
+  for (const SphereContact& contact : contacts_) {
+    const auto i = std::size_t(contact.sphere);
+    depth = std::max(depth, dot(contact.normal, position[i] - model_.rest_position[i]));
   }
   return depth;
 }

@@ -12,25 +12,29 @@
 
 namespace ctpm {
 
-/// One sphere that a tool presses: a penalty spring with damping along the line between the centres, and drag across it
-/// that is viscous while the surfaces stick and limited by Coulomb's law when they slip; both solved
-/// implicitly.
-struct BallTouch {
+/// Contact of a ball with one sphere: a penalty spring with damping along the line between the centres
+/// (contact_damping) and drag across it (contact_drag), both solved implicitly.
+struct SphereContact {
   std::int32_t sphere;
-  Vec3 normal;         ///< unit vector from the tool to the sphere
-  double penetration;  ///< of the sphere, as it was given, into the tool [m], > 0
+  Vec3 normal;         ///< unit vector from the ball to the sphere
+  double penetration;  ///< of the sphere into the ball where contacts were detected [m], > 0
   double damping;      ///< along the normal [N s/m], >= 0
   double drag;         ///< across the normal [N s/m], >= 0
-  double approach;     ///< with which a solve starts [m/s]: within what leads to the penetration or out of reach in a
-                       ///< step, however far the hand jumps
-  Vec3 slip;           ///< across the normal, of the velocity that a solve starts from, against the tool's [m/s]
+  double approach;     ///< speed of approach along the normal that a solve starts from [m/s]; limited to speeds that
+                       ///< lead to the penetration, or out of contact, in one step, however far the hand jumps
+  Vec3 slip;           ///< velocity across the normal that a solve starts from, relative to the ball [m/s]
   std::array<double, 9> without{};  ///< force and block of its sphere before the contact was added
 };
 
-/// Contacts of a rigid ball with spheres. Contacts (contacts.h) says in which order its functions are called.
+/// Contacts of a rigid ball with spheres; a part of Contacts (contacts.h), which alone calls it.
 class BallContact {
  public:
   BallContact(const Model& model, const Kernels& kernels);
+
+ private:
+  friend class Contacts;
+  friend class ContactSet;
+  friend class LinearisedContacts;
 
   /// Finds the spheres that a ball of `radius` [m] at `centre`, moving with `velocity` [m/s], overlaps in a step of `h`
   /// [s]. A solve starts from StateView::velocity if `from_velocity`, else from spheres that rest; velocities `v` below
@@ -66,21 +70,21 @@ class BallContact {
   /// Largest displacement from rest at `position` of a touched sphere along its contact [m], 0 without contact.
   double depth(const Vec3Array& position) const;
 
-  std::int32_t count() const { return std::int32_t(touches_.size()); }
-  void clear() { touches_.clear(); }
+  std::int32_t count() const { return std::int32_t(contacts_.size()); }
+  void clear() { contacts_.clear(); }
 
- private:
   void find_among(const StateView& state, Vec3 centre, double radius, double h, bool from_velocity, std::size_t begin,
                   std::size_t end);
-  Vec3 change_of(const BallTouch& touch, const Coordinates& v) const;
-  double coupling_along(const BallTouch& touch, double h) const;
-  double pressure(const BallTouch& touch, double h, const Coordinates& v) const;
+  Vec3 change_of(const SphereContact& contact, const Coordinates& v) const;
+  double coupling_along(const SphereContact& contact, double h) const;
+  double pressure(const SphereContact& contact, double h, const Coordinates& v) const;
 
   const Model& model_;
   const Kernels& kernels_;
-  double largest_radius_ = 0;       ///< of a sphere [m]
-  Vec3 velocity_;                   ///< of the tool [m/s]
-  std::vector<BallTouch> touches_;  ///< room for every sphere if the scene has a ball, so that a tick never allocates
+  double largest_radius_ = 0;  ///< of a sphere [m]
+  Vec3 velocity_;              ///< of the ball [m/s]
+  std::vector<SphereContact>
+      contacts_;  ///< room for every sphere if the scene has a ball, so that a tick never allocates
 };
 
 }  // namespace ctpm

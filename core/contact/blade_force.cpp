@@ -15,9 +15,9 @@ Vec3 unit(Vec3 v) {
 
 Vec3 between(Vec3 tip, Vec3 heel, double across) { return tip + across * (heel - tip); }
 
-/// Share of an element's resistance that a blade meets at the place `across` of an edge of `length`, which
-/// goes `beyond` the blade at both ends: it fades to 0 over twice `beyond`, so that tissue that slips past
-/// the tip lets go gently.
+/// Share of an element's resistance that a blade meets at `across` (0 to 1) of an edge of `length` that extends by
+/// `beyond` past the blade at both ends. It falls to 0 linearly over twice `beyond`, so that tissue that slips past the
+/// tip is released gently.
 double held_share(double across, double length, double beyond) {
   return std::clamp(std::min(across, 1 - across) * length / (2 * beyond), 0.0, 1.0);
 }
@@ -95,10 +95,10 @@ void BladeForce::find(const StateView& state, const NearElements& near, const To
                         .weight_a = 1 - hit->along,
                         .weight_b = hit->along,
                         .is_tool = true};
-    const Vec3 way = between(motion.to.tip - motion.from.tip, motion.to.heel - motion.from.heel, hit->across);
+    const Vec3 path = between(motion.to.tip - motion.from.tip, motion.to.heel - motion.from.heel, hit->across);
     if (severed) {
       const double on_flank = std::clamp(1 - (length - e.rest_length) / tool.blade_thickness, 0.0, 1.0);
-      const Vec3 blade = way / model_.tick;
+      const Vec3 blade = path / model_.tick;
       const Vec3 slip = blade - point_velocity;
       const double speed = norm(slip - dot(slip, normal) * normal);
       contact.axis = normal;
@@ -109,7 +109,7 @@ void BladeForce::find(const StateView& state, const NearElements& near, const To
       // Energy G p^2, p = 1 - distance / reach: the force is its growth over the tick's advance, 2 G p /
       // reach if that is short.
       const double energy = e.to_open(held * certainty, length), p = 1 - hit->share;
-      const double advance = std::max(0.0, dot(way, heading)) / reach, p_before = std::max(0.0, p - advance);
+      const double advance = std::max(0.0, dot(path, heading)) / reach, p_before = std::max(0.0, p - advance);
       const double entered = advance > p ? p / advance : 1.0;
       contact.axis = heading, contact.only_pushes = true;
       contact.k = 2 * energy / (reach * reach), contact.force = energy / reach * (p + p_before) * entered * heading;
@@ -126,11 +126,11 @@ void BladeForce::add_severed(const StateView& state, const Tool& tool, const Bla
   const double reach = this->reach(tool);
   for (const Crossing& crossing : crossings) {
     const Element e = element(std::size_t(crossing.element));
-    const Vec3 way = between(motion.to.tip - motion.from.tip, motion.to.heel - motion.from.heel, crossing.across);
-    const double length = norm(way), apart = norm(state.position[e.b] - state.position[e.a]);
+    const Vec3 path = between(motion.to.tip - motion.from.tip, motion.to.heel - motion.from.heel, crossing.across);
+    const double length = norm(path), apart = norm(state.position[e.b] - state.position[e.a]);
     if (length == 0 || apart == 0) continue;
     const Vec3 edge = between(motion.from.heel - motion.from.tip, motion.to.heel - motion.to.tip, crossing.share);
-    const double facing = std::abs(dot(unit(cross(edge, way)), state.position[e.b] - state.position[e.a])) / apart;
+    const double facing = std::abs(dot(unit(cross(edge, path)), state.position[e.b] - state.position[e.a])) / apart;
     const double resisted = std::max(0.0, 1 - crossing.share * length / reach);
     const double blade = norm(edge) + reach, across = (crossing.across * norm(edge) + 0.5 * reach) / blade;
     const double held = facing * held_share(across, blade, 0.5 * reach);
@@ -140,8 +140,8 @@ void BladeForce::add_severed(const StateView& state, const Tool& tool, const Bla
                   .b = std::int32_t(e.b),
                   .weight_a = 1 - crossing.along,
                   .weight_b = crossing.along,
-                  .axis = way / length,
-                  .force = remaining / (length * length) * way,
+                  .axis = path / length,
+                  .force = remaining / (length * length) * path,
                   .is_tool = true});
   }
 }

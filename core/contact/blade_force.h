@@ -10,23 +10,22 @@
 
 namespace ctpm {
 
-/// The law of cutting: the blade's force times its way, and the elastic energy E that severing sets free,
-/// open the cut and rub,
+/// The law of cutting. The work of the blade's force F along its path s, and the elastic energy E that severing
+/// releases, create the cut's area A and overcome friction:
 ///   F ds - dE = J_c dA + dW_friction
 /// (Atkins & Mai, "Elastic and plastic fracture", 1985; Mahvash & Hayward, "Haptic rendering of cutting: a
 /// fracture mechanics approach", Haptics-e 2 (3), 2001; Chanthasopeephan, Desai & Lau, Ann. Biomed. Eng. 31,
 /// 2003, for liver).
 ///
-/// Each element that lies ahead of the edge resists over the last stretch `reach` before it is severed, with
-/// a force that rises linearly from 0, so that the work up to the severing is J_c times the element's share
-/// of the area, less what tension has stored in the element; then it is gone. That is the rise before a cut,
-/// the saw-tooth while cutting and the release after it. Tissue that has moved onto the flanks, behind the
-/// edge, rubs along them with a constant stress. What the hand feels, the tissue feels with the opposite
-/// sign.
+/// Each element ahead of the edge resists over a distance Tool::blade_reach before it is severed. Its force rises
+/// linearly from 0, so that the work up to the severing is J_c times the element's share of the area, less the energy
+/// that tension has stored in it. After the severing the force is 0. This gives the rise before a cut, the saw-tooth
+/// while cutting and the release after it. Tissue on the flanks, behind the edge, rubs with a constant stress. Hand and
+/// tissue feel opposite forces.
 ///
-/// The force points against the way, so a blade that is also drawn along its edge needs less push (Atkins, Xu
-/// & Jeronimidis, J. Mater. Sci. 39, 2004). The hand does more than this work where it drags soft tissue
-/// along, which then loses energy in its Kelvin units.
+/// The force is opposite to the blade's motion, so a blade that is also drawn along its edge needs less push (Atkins,
+/// Xu & Jeronimidis, J. Mater. Sci. 39, 2004). The hand does more work than this where it drags soft tissue along,
+/// whose Kelvin units dissipate it.
 class BladeForce {
  public:
   explicit BladeForce(const Model& model);
@@ -37,7 +36,7 @@ class BladeForce {
   /// Most contacts that the functions below add in one substep.
   std::size_t capacity() const { return any() ? 2 * (model_.edges.size() + model_.tpms.size()) : 0; }
 
-  /// Where find() looks, at the most.
+  /// Box outside of which find() finds nothing.
   Box around(const Tool& tool, const BladeMotion& motion) const;
 
   /// Adds what the blade, at the end of its motion, meets in `state`, of the elements that are `near`: those
@@ -45,8 +44,8 @@ class BladeForce {
   void find(const StateView& state, const NearElements& near, const Tool& tool, const BladeMotion& motion,
             PairContacts& contacts) const;
 
-  /// Adds the elements that were severed within the tick before they could resist to the end: their remaining
-  /// energy over the blade's way in the tick.
+  /// Adds the elements that were severed in this tick before they had resisted over the whole reach: their remaining
+  /// energy, spread over the blade's path in the tick.
   void add_severed(const StateView& state, const Tool& tool, const BladeMotion& motion,
                    std::span<const Crossing> crossings, PairContacts& contacts) const;
 

@@ -25,17 +25,23 @@ struct PairContact {
   std::array<double, 18> without{};  ///< force and block of both spheres before the contact was added
 };
 
-/// All pair contacts of a step. Contacts (contacts.h) says in which order its functions are called.
+/// All pair contacts of a step. Detectors add contacts; the rest is called by Contacts (contacts.h) alone.
 class PairContacts {
  public:
   /// Room for `capacity` contacts, so that a tick never allocates.
   PairContacts(const Model& model, std::size_t capacity) : model_(model) { contacts_.reserve(capacity); }
 
   void add(const PairContact& contact) { contacts_.push_back(contact); }
-  void clear() { contacts_.clear(); }
   std::size_t count() const { return contacts_.size(); }
 
-  /// To be solved for changes of `velocity` [m/s], not from rest.
+ private:
+  friend class Contacts;
+  friend class ContactSet;
+  friend class LinearisedContacts;
+
+  void clear() { contacts_.clear(); }
+
+  /// Makes the contacts those of a solve for changes from `velocity` [m/s], not from rest; before linearise().
   void start_from(const Vec3Array& velocity);
 
   /// Adds contact forces [N] and linearisation for a step of `h` [s].
@@ -65,7 +71,6 @@ class PairContacts {
   Vec3 force_on_tool(double h, const Coordinates& v) const;
   std::int32_t tool_count() const;
 
- private:
   template <class Real>
   Vec3 velocity_of(const PairContact& contact, const Real* v) const;
   Vec3 coupling(const PairContact& contact, double h, Vec3 u) const;

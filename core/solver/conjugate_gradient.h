@@ -24,7 +24,7 @@ double sum_over_slabs(const Slabs& slabs, Team& team, std::vector<double>& parts
 }
 
 /// Conjugate gradients for A c = r from c = 0, with vectors of Real, preconditioned by each sphere's own 3x3 block
-/// (Saad, "Iterative methods for sparse linear systems", 2003, alg. 9.1). r is scaled, so that float has room for it.
+/// (Saad, "Iterative methods for sparse linear systems", 2003, alg. 9.1). r is scaled into the range of float.
 template <class Real>
 class ConjugateGradient {
  public:
@@ -36,9 +36,9 @@ class ConjugateGradient {
   /// Takes r = `scale` * `residual`; returns its energy r . (inverse blocks) r.
   double begin(const Coordinates& residual, double scale);
 
-  /// Goes on until the residual's energy is at most `enough` or `iterations` are used up; counts those down and returns
-  /// the energy. `add_coupling(in, out, after)` does out += coupling times in and calls after(slab) for each slab whose
-  /// part of out is done; what it adds later, it returns as in . addition.
+  /// Iterates until the residual's energy is at most `enough` or `iterations` are used up; decrements `iterations` and
+  /// returns the energy. `add_coupling(in, out, after)` does out += coupling times in and calls after(slab) for each
+  /// slab whose part of out is done; for what it adds to out after that, it returns in . addition.
   template <class AddCoupling>
   double descend(double enough, std::int32_t& iterations, AddCoupling&& add_coupling);
 
@@ -69,7 +69,7 @@ double ConjugateGradient<Real>::descend(double enough, std::int32_t& iterations,
       parts_[std::size_t(slab)] = kernels_.curvature(m, std::size_t(slabs_.begin(slab)), std::size_t(slabs_.end(slab)));
     });
     for (const double part : parts_) curvature += part;
-    if (!(curvature > 0)) break;  // not a number, or nothing left to gain
+    if (!(curvature > 0)) break;  // not a number, or converged to rounding
     const double step = energy_ / curvature;
     const double next = sum_over_slabs(slabs_, team_, parts_, [&](std::size_t begin, std::size_t end) {
       return kernels_.descend(m, Real(step), begin, end);

@@ -3,7 +3,7 @@
 namespace ctpm {
 namespace {
 
-/// Stiffest part of A against the mass up to which float keeps soft motions apart from stiff ones.
+/// Stiffness ratio up to which float resolves soft motions beside stiff ones.
 constexpr double kStiffestForFloat = 1e4;
 
 std::variant<ConjugateGradient<float>, ConjugateGradient<double>> gradient_for(const Model& model, const Slabs& slabs,
@@ -55,7 +55,7 @@ void LinearSolver::set_blocks_of(ConjugateGradient<Real>& gradient, const Diagon
   for (const std::int32_t sphere : held_) {
     const auto i = std::size_t(sphere);
     if (model_.held_axes[i] != kAnchored) {
-      // What is left free is inverted by itself.
+      // The block of the free axes is inverted by itself.
       double own[6];
       Real free[6];
       for (std::size_t k = 0; k < 6; ++k) own[k] = blocks[k * n + i];

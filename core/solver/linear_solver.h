@@ -32,10 +32,10 @@ struct SolverOutcome {
 
 /// Solves A x = b with A = mass + coupling, symmetric and positive definite, in rounds: the residual in double, a
 /// correction by conjugate gradients in float, where the Model is soft enough for that, or in double (iterative
-/// refinement: Higham, "Accuracy and stability of numerical algorithms", 2002, ch. 12). Mostly one round is enough.
+/// refinement: Higham, "Accuracy and stability of numerical algorithms", 2002, ch. 12). One round is mostly enough.
 class LinearSolver {
  public:
-  /// `stiffness_ratio` [1] bounds the largest eigenvalue of M^-1 (A - M).
+  /// `stiffness_ratio` bounds the largest eigenvalue of M^-1 (A - M) [1]: whether corrections are computed in float.
   LinearSolver(const Model& model, const Slabs& slabs, Team& team, const Kernels& kernels, double stiffness_ratio);
 
   /// Takes the diagonal blocks of A. Coordinates that are held, as in Model::held_axes, and the sphere `pinned` stay at
@@ -55,7 +55,7 @@ class LinearSolver {
   template <class Real>
   void set_blocks_of(ConjugateGradient<Real>& gradient, const DiagonalBlocks& blocks, std::int32_t pinned);
 
-  /// What a round with vectors of Real may gain [energy]; more would be noise.
+  /// Factor by which a round with vectors of Real may reduce the energy of the residual; less is lost in rounding.
   template <class Real>
   static constexpr double kGain = sizeof(Real) == sizeof(float) ? 1e-10 : 0.0;
 

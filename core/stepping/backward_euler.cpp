@@ -9,7 +9,7 @@ bool BackwardEuler::step(const State& from, const HeldTool& tool, const Substep&
   commit_velocity(context_.elements.slabs(), context_.team, velocity, from.position, part.h, to);
   if (!check_.passes(to.velocity, report)) return false;
   context_.elements.find_kelvin(part.h, {from, to.position, to.velocity, from.kelvin_elongation}, to.kelvin_elongation);
-  report.depth = contacts.depth(to.position), report.contacts = contacts.touched();
+  report_contacts(contacts, to.position, report);
   return true;
 }
 

@@ -39,7 +39,7 @@ bool Leapfrog::step(const State& from, const HeldTool& tool, const Substep& part
 
   elements.finish_kelvin(part.h, from.kelvin_elongation, to.kelvin_elongation);
   drift(slabs, context_.team, to.velocity, half, to.position);
-  report.depth = contacts.depth(to.position), report.contacts = contacts.touched();
+  report_contacts(contacts, to.position, report);
   return true;
 }
 

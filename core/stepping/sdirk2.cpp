@@ -116,7 +116,7 @@ bool Sdirk2::dirk_stage(const StateView& start, const HeldTool& tool, const Subs
   commit_velocity(slabs, context_.team, *stage_velocity_, start.position, part.h, to);
   if (!check_.passes(to.velocity, report)) return false;
   elements.find_kelvin(part.h, {start, to.position, to.velocity, start.kelvin_elongation}, to.kelvin_elongation);
-  report.depth = contacts.depth(to.position), report.contacts = contacts.touched();
+  report_contacts(contacts, to.position, report);
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include "core/elements/kernels/kernels.h"
 #include "core/model/model.h"
 #include "core/parallel/team.h"
+#include "core/stepping/step.h"
 
 namespace ctpm {
 
@@ -24,5 +25,10 @@ struct StepContext {
   Elements& elements;
   Contacts& contacts;
 };
+
+/// Reports what the tool touches at the end of a substep, with the spheres at `position` [m].
+inline void report_contacts(const ContactSet& contacts, const Vec3Array& position, StepReport& report) {
+  report.depth = contacts.depth(position), report.contacts = contacts.touched();
+}
 
 }  // namespace ctpm

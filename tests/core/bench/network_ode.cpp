@@ -85,7 +85,7 @@ void NetworkOde::for_each_touched(double time, Touch&& touch) const {
     const Vec3 slip = past - dot(past, normal) * normal;
     const double drag = contact_drag(model_, penetration, norm(slip));
     const double damping = contact_damping(model_.contact_damping, model_.contact_k, model_.mass[i], penetration);
-    touch(BallTouch{std::int32_t(i), normal, penetration, damping, drag, -dot(past, normal), slip}, slip);
+    touch(SphereContact{std::int32_t(i), normal, penetration, damping, drag, -dot(past, normal), slip}, slip);
   }
 }
 
@@ -94,7 +94,7 @@ void NetworkOde::derive(double time, const double* y, double* derivative) {
   set_weight(model_, 0, spheres_, force_);
   elements_.add_forces(state_, force_);
   add_loads(time);
-  for_each_touched(time, [&](const BallTouch& contact, Vec3 slip) {
+  for_each_touched(time, [&](const SphereContact& contact, Vec3 slip) {
     const double pressure = model_.contact_k * contact.penetration + contact.damping * contact.approach;
     const Vec3 push = std::max(0.0, pressure) * contact.normal - contact.drag * slip;
     const auto i = std::size_t(contact.sphere);
@@ -122,7 +122,7 @@ void NetworkOde::take_blocks(double time, double gamma, const double* y) {
     for (std::size_t i = 0; i < spheres_; ++i)
       blocks_[k * spheres_ + i] = k == 0 || k == 3 || k == 5 ? model_.mass[i] : 0.0;
   elements_.linearise(state_, gamma, false, force_, blocks_, [](int) {});
-  for_each_touched(time, [&](const BallTouch& contact, Vec3) {
+  for_each_touched(time, [&](const SphereContact& contact, Vec3) {
     const Vec3 n = contact.normal;
     const double across = gamma * contact.drag, along = gamma * (gamma * model_.contact_k + contact.damping) - across;
     const double own[6] = {along * n.x * n.x + across, along * n.x * n.y, along * n.x * n.z,
