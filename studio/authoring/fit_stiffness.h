@@ -18,23 +18,22 @@ struct FitRow {
   double error() const { return force / closed_form - 1; }  ///< [share]
 };
 
-/// What a fit came to.
+/// The result of a fit.
 struct StiffnessFit {
-  double factor = 1;         ///< by which every stiffness scale of the organ must be multiplied
-  double scale = 1;          ///< the organ's own stiffness scale after that
+  double factor = 1;         ///< multiply every stiffness scale of the organ by this [1], > 0
+  double scale = 1;          ///< stiffness scale of the organ's own material with the factor [1]
   FittedForSpec fitted_for;  ///< where and with what it was fitted; stored in the scene
   std::vector<FitRow> rows;  ///< at 2, 4, ... 12 mm, with the scale applied
 };
 
-/// Fits the stiffness scale of `organ`: the ball of its calibration presses an outermost sphere near the
-/// organ's top that lies among neighbours, along the line through its centre, so slowly that only the forces
-/// at rest count (no gravity, no viscosity), until the sphere is 12 mm deep. There the force must be the CTPM
-/// force of the paper's Table 1. Force is proportional to the scale, so one run gives it and a second one
-/// checks it; the other depths show the error of the shape. Errors: nothing at the top can move; the ball
-/// slips off every sphere that was tried; a run that diverged.
+/// Fits the stiffness scale of `organ`, so that the force at 12 mm is the CTPM force of the paper's Table 1. The ball
+/// of the calibration presses an outermost sphere near the top, without gravity and viscosity and so slowly that
+/// inertia does not count. Force is proportional to the scale: one run gives the scale, a second one checks it. The
+/// other depths show the error of the curve's shape. Errors: no sphere at the top can move; the ball slips off every
+/// sphere that was tried; a run diverged.
 Result<StiffnessFit> fit_stiffness(const SceneSpec& scene, std::size_t organ, const FilledOrgan& filled);
 
-/// Stores a fit in the scene: the scale, and what it was fitted for.
+/// Stores a fit in a scene's organ: its scale, and the place and ball for which it holds.
 void apply_fit(OrganSpec& organ, const StiffnessFit& fit);
 
 }  // namespace ctpm

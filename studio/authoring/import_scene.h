@@ -10,7 +10,7 @@
 
 namespace ctpm {
 
-/// What an author asks of an import.
+/// The options of an import.
 struct ImportRequest {
   std::string mesh;                      ///< mesh file
   std::string scene;                     ///< scene file to write (.json); mesh and script are written beside it
@@ -26,12 +26,13 @@ struct ImportRequest {
   Progress progress;
 };
 
+/// The files of an import, and what it found.
 struct ImportOutcome {
   ImportReport report;
-  std::string scene_file;                 ///< as asked
+  std::string scene_file;                 ///< ImportRequest::scene
   std::string mesh_file, script_file;     ///< written beside the scene
   std::optional<double> stiffness_scale;  ///< fitted and stored; unset: it could not be fitted
-  std::string fit_problem;                ///< why not
+  std::string fit_problem;                ///< why there is no fit
   bool can_be_fitted_later = false;       ///< the fit was left out only because it takes long
   std::size_t anchored = 0;               ///< spheres that never move
 };

@@ -12,16 +12,16 @@
 
 namespace ctpm {
 
-/// A device as a user describes it: texts are checked when it is opened.
+/// A device as a user describes it. check_device() checks it.
 struct DeviceRequest {
-  std::string address;                           ///< HOST:PORT to connect to
-  std::optional<int> listen_port;                ///< or a port to listen on; 0: any that is free
+  std::string address;                           ///< HOST:PORT to connect to; empty: none
+  std::optional<int> listen_port;                ///< port to listen on instead; 0: any free port
   std::string interface = "127.0.0.1";           ///< to listen on
-  std::string name;                              ///< of the device whose poses are taken; empty: all
-  std::string tool;                              ///< without a button; empty: the scene's first
-  std::vector<std::string> buttons;              ///< each BUTTON=TOOL; without a tool: none is in the hand
-  double scale = 1;                              ///< scene millimetres for a millimetre of the hand
-  std::vector<double> offset_mm, rotation, tip;  ///< three, four (w x y z) and three numbers; or none
+  std::string name;                              ///< takes only poses of the device of this name; empty: all poses
+  std::string tool;                              ///< tool without a button; empty: the scene's first
+  std::vector<std::string> buttons;              ///< each BUTTON=TOOL; BUTTON= alone: no tool
+  double scale = 1;                              ///< scene length over hand length [1], in [0.001, 1000]
+  std::vector<double> offset_mm, rotation, tip;  ///< 3, 4 (w x y z) and 3 numbers, or none
   double most_speed_mm_per_s = 1000, timeout_s = 5;
   double most_force_n = 3, stiffness_n_per_m = 1000;
 };
@@ -29,15 +29,15 @@ struct DeviceRequest {
 /// True if an address or a port is given.
 bool asks_for_device(const DeviceRequest& request);
 
-/// What is wrong with the description of the device by itself; without a device, nothing.
+/// Checks a description by itself, before the scene is known. Errors name the fields as "device.FIELD".
 Errors check_device(const DeviceRequest& request);
 
-/// A device that is connected, or for which is waited, before anybody knows the scene. Errors: nobody is there, the
-/// port is in use.
+/// A device that is connected or awaited; the scene is not known yet.
 struct OpenedDevice {
   std::unique_ptr<Device> device;  ///< none if none is asked for
   std::string place;               ///< "connected to ..." or "waiting on ..."
 };
+/// Connects or listens. Errors: no server answers; the port is in use.
 Result<OpenedDevice> open_device(const DeviceRequest& request);
 
 /// A device as the source of a session.

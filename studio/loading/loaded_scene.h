@@ -13,7 +13,7 @@
 
 namespace ctpm {
 
-/// A scene with everything that it names: its meshes read and filled, its Model built.
+/// A scene with its meshes read and filled and its Model built.
 struct LoadedScene {
   std::string path;
   SceneText scene;
@@ -36,8 +36,8 @@ Result<BuiltScene> build_changed(const LoadedScene& scene, const std::function<v
 /// The surfaces of the organs, in their order.
 std::vector<Surface> surfaces_of(const std::vector<FilledOrgan>& organs);
 
-/// The least force on a tool that damages an organ of the scene [N]; 0: no organ has a limit. That of the depth
-/// is in the Model (OrganRange::damage_depth).
+/// The smallest damage limit of the organs for the force on a tool [N]; 0 if no organ has one. The limits for depth are
+/// in the Model (OrganRange::damage_depth).
 double damage_force_of(const SceneSpec& scene);
 
 }  // namespace ctpm

@@ -5,10 +5,9 @@
 
 namespace ctpm {
 
-/// One contact site of the paper: the five-sphere line over one triple, in the paper's own units so that its
-/// table can be read beside it: moduli in kPa/mm (the paper prints kPa), viscosity in kPa s/mm, lengths in
-/// mm, stress in kPa. Everything in this module is Bao & Wu, section 3; the network is never computed from
-/// it, only compared with it.
+/// One contact site of the paper: a five-sphere line over one triple. Everything in this file is Bao & Wu, section 3,
+/// in the paper's units: moduli in kPa/mm (the paper prints kPa), viscosity in kPa s/mm, lengths in mm, stress in kPa.
+/// The network is compared with the closed forms and never computed from them.
 struct Site {
   double spring = 0;       ///< K2 [kPa/mm], > 0
   double kelvin = 0;       ///< K1 [kPa/mm], > 0

@@ -15,12 +15,13 @@ struct TickRange {
   std::int64_t from = 0, to = 0;
 };
 
-/// Part of a session as a user gives it.
+/// Part of a session [s].
 struct TimeRange {
   double from_s = 0;
   std::optional<double> to_s;  ///< unset: to the end
 
-  /// Errors: not within the session's `tick_count` ticks of `tick` [s], or empty.
+  /// The ticks of this part. `where` names the session, `tick` [s] is its tick. Errors: the part is empty or ends after
+  /// the session's `tick_count` ticks.
   Result<TickRange> in_ticks(const std::string& where, double tick, std::int64_t tick_count) const {
     const double end_s = double(tick_count) * tick, last_s = to_s.value_or(end_s);
     const std::string is_long = "the session lasts " + std::to_string(end_s) + " s";

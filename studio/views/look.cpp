@@ -37,11 +37,11 @@ ElementQuantity find_quantity(const std::string& by, View view, Errors& errors) 
   } else if (view == View::surface) {
     if (!by.empty())
       errors.push_back({option_name("look.by"), "the surface has its own colours",
-                        "choose spheres or elements for " + option_name("look.view")});
+                        "give " + option_name("look.view") + " spheres or " + option_name("look.view") + " elements"});
   } else if (!by.empty() && by != "layer") {
     errors.push_back({option_name("look.by"), "got '" + by + "', spheres are coloured by layer",
                       by == "stretch" || by == "tilt" || by == "force"
-                          ? "choose elements for " + option_name("look.view")
+                          ? "give " + option_name("look.view") + " elements"
                           : std::string()});
   }
   return ElementQuantity::stretch;

@@ -9,16 +9,16 @@
 
 namespace ctpm {
 
-/// What a user asks pictures to show, as written: unchecked.
+/// What a picture shall show, as the user wrote it; find_look() checks it.
 struct LookRequest {
   std::string view = "surface";  ///< surface, spheres, both or elements
-  std::string by;                ///< what colours show: layer of spheres; stretch, tilt or force of elements
-  double full_scale = 0;         ///< value of the last colour, in the legend's unit; 0: a usual one
-  std::string cutaway;           ///< x, y or z, or that and a place: y=12.5 [mm]; empty: nothing is left out
-  std::string camera;            ///< a camera of the scene, `fitted` or `follow`; empty: the scene's first, else fitted
+  std::string by;                ///< quantity of the colours: layer (spheres); stretch, tilt or force (elements)
+  double full_scale = 0;         ///< value of the last colour [%, deg or N as in the legend]; 0: the default
+  std::string cutaway;  ///< axis of the cutting plane, alone or with a position [mm]: y=12.5; empty: no cutaway
+  std::string camera;   ///< a camera of the scene, `fitted` or `follow`; empty: the scene's first, else fitted
 };
 
-/// What is drawn of one scene, and from where.
+/// The draw options and the camera of one scene.
 struct Look {
   DrawOptions draw;      ///< with the base camera
   bool follows = false;  ///< the camera follows the tool
@@ -28,8 +28,8 @@ struct Look {
   DrawOptions at(const SceneView& scene, std::span<const Inputs> moments) const;
 };
 
-/// Finds what the request names. Errors: an unknown view, colour or camera, with those there are; colours
-/// that the view does not have; a cutaway that is none. All of them at once.
+/// Checks a request against a scene. Errors, all at once: an unknown view, quantity or camera, with the known ones; a
+/// quantity that the view does not have; a cutaway outside the organs.
 Result<Look> find_look(const LookRequest& request, const SceneSpec& scene, const SceneView& view, double aspect);
 
 }  // namespace ctpm
