@@ -9,6 +9,7 @@
 #include "core/model/inputs.h"
 #include "core/model/model.h"
 #include "core/model/organ.h"
+#include "core/model/physics_revision.h"
 #include "core/model/state.h"
 #include "core/model/vec3.h"
 #include "core/stepping/step.h"
@@ -17,14 +18,20 @@ namespace ctpm {
 
 /// Everything that is known before the first tick. FORMAT.md section 4.
 struct SessionStart {
-  std::string scene_text;                       ///< the scene as it was read; opaque bytes here
-  std::string look;                             ///< organ colours and names for whoever draws; opaque bytes here
-  Model model;                                  ///< the built network
-  std::vector<Surface> surfaces;                ///< one per organ of the model, or none at all
-  State initial_state;                          ///< before tick 0
-  std::string build_fingerprint;                ///< names the build of the program that records
-  std::map<std::string, std::string> metadata;  ///< free; see also parent_session_key
+  std::string scene_text;                            ///< the scene as it was read; opaque bytes here
+  std::string look;                                  ///< organ colours and names for whoever draws; opaque bytes here
+  Model model;                                       ///< the built network
+  std::vector<Surface> surfaces;                     ///< one per organ of the model, or none at all
+  State initial_state;                               ///< before tick 0
+  std::string build_fingerprint;                     ///< names the build of the program that records
+  std::int32_t physics_revision = kPhysicsRevision;  ///< of the program that records; 0 in a session from before
+                                                     ///< revisions were stored
+  std::map<std::string, std::string> metadata;       ///< free; see also parent_session_key
 };
+
+/// What a reader must know before a session of the physics revision `recorded` is replayed; empty if this build
+/// computes the same revision, so that the replay has the same bits.
+std::string physics_remark(std::int32_t recorded);
 
 /// Metadata of a session that goes on from a moment of another one.
 inline constexpr const char* parent_session_key = "parent_session";  ///< SessionReader::session_id of the parent

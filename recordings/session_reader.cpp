@@ -57,6 +57,7 @@ Result<Done> SessionReader::Impl::read_start() {
   take(store.metadata(), start.metadata);
   take(store.finish(), finish);
   start.build_fingerprint = store.identity().build;
+  start.physics_revision = store.identity().physics_revision;
   Done columns;
   take(store.read_columns(), columns);
   const std::size_t before_model = errors.size();

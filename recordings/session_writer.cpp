@@ -120,7 +120,7 @@ Result<SessionWriter> SessionWriter::create(const std::string& path, const Sessi
 
   auto impl = std::make_unique<Impl>(start, options);
   impl->path = path;
-  impl->identity = new_identity(start.build_fingerprint);
+  impl->identity = new_identity(start);
   if (auto r = create_session_file(path, start, impl->identity, options.overwrite, options.compression_level); !r)
     return r.errors();
   if (auto r = impl->begin(); !r) {

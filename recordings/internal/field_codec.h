@@ -15,7 +15,7 @@
 
 namespace ctpm::session_file {
 
-/// Structures of the file that core does not know, in the manner of core/fields.h.
+/// Structures of the file that core does not know, in the manner of core/model/fields.h.
 template <class S, class Visit>
 requires std::is_same_v<std::remove_const_t<S>, Surface>
 void for_each_field(S& s, Visit&& visit) {

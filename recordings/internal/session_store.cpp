@@ -170,8 +170,10 @@ Result<Done> SessionStore::decode_fields(const std::string& name, const Bytes& c
 Result<Done> SessionStore::read_identity() {
   const auto content = part("session");
   if (!content) return content.errors();
-  return decode_fields("part session", *content,
-                       [&](ByteReader& in, std::string& problem) { get_fields(in, identity_, problem); });
+  return decode_fields("part session", *content, [&](ByteReader& in, std::string& problem) {
+    get_fields(in, identity_, problem);
+    if (problem.empty() && identity_.physics_revision < 0) problem = "physics_revision must not be below 0";
+  });
 }
 
 Result<std::string> SessionStore::scene() {

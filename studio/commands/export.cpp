@@ -5,6 +5,7 @@
 
 #include "recordings/session_reader.h"
 #include "studio/commands/command.h"
+#include "studio/commands/physics_warning.h"
 #include "studio/console.h"
 #include "studio/export_video.h"
 #include "studio/render/picture_size.h"
@@ -50,7 +51,7 @@ int run_export(ExportArguments& arguments) {
     errors.insert(errors.end(), size.errors().begin(), size.errors().end());
   if (!errors.empty()) return print_errors(errors);
   std::vector<SessionReader*> sessions;
-  for (SessionReader& reader : readers) sessions.push_back(&reader);
+  for (SessionReader& reader : readers) warn_of_physics(reader), sessions.push_back(&reader);
   const StopSignal stop;  // Ctrl-C ends the loop, and the unfinished file is removed on the way out
   arguments.options.should_stop = [&] { return stop.came(); };
   const Result<ExportOutcome> outcome = [&] {

@@ -53,7 +53,9 @@ void print_json(SessionReader& reader, const SessionStatistics& s, const std::ve
   JsonWriter json;
   json.begin_object().member("session_id", reader.session_id()).member("format_version", reader.format_version());
   json.member("created_utc", utc(reader.created_unix_s())).member("ended_cleanly", reader.ended_cleanly());
-  json.member("build", reader.start().build_fingerprint)
+  const std::int32_t revision = reader.start().physics_revision;
+  json.member("build", reader.start().build_fingerprint).member("physics_revision", revision);
+  json.member("physics_remark", physics_remark(revision))
       .member("tick_s", model.tick)
       .member("ticks", reader.tick_count());
   json.member("duration_s", double(reader.tick_count()) * model.tick).member("spheres", model.sphere_count());
@@ -107,11 +109,20 @@ void print_events(const std::vector<Event>& events, double tick) {
   if (count > kMostShown) std::printf("           and %lld more events\n", (long long)(count - kMostShown));
 }
 
+void print_physics(const SessionReader& reader) {
+  const std::int32_t revision = reader.start().physics_revision;
+  if (const std::string remark = physics_remark(revision); !remark.empty())
+    std::printf("physics    %s\n", remark.c_str());
+  else
+    std::printf("physics    revision %d, as this build computes it\n", revision);
+}
+
 void print_text(SessionReader& reader, const SessionStatistics& s, const std::vector<Event>& events) {
   const Model& model = reader.start().model;
   std::printf("session    %s, recorded %s%s\n", reader.session_id().c_str(), utc(reader.created_unix_s()).c_str(),
               reader.ended_cleanly() ? "" : ", without a clean end");
   std::printf("build      %s\n", reader.start().build_fingerprint.c_str());
+  print_physics(reader);
   print_origin(reader);
   std::printf("duration   %.3f s, %lld ticks of %g ms\n", double(reader.tick_count()) * model.tick,
               (long long)reader.tick_count(), model.tick * 1e3);

@@ -65,6 +65,7 @@ TEST(Session, WhatWasWrittenIsRead) {
   EXPECT_EQ(reader->start().look, start.look);
   EXPECT_EQ(reader->start().metadata, start.metadata);
   EXPECT_EQ(reader->start().build_fingerprint, start.build_fingerprint);
+  EXPECT_EQ(reader->start().physics_revision, kPhysicsRevision);
   EXPECT_TRUE(bytes_of(reader->start().model) == bytes_of(start.model));
   EXPECT_TRUE(bytes_of(reader->start().initial_state) == bytes_of(start.initial_state));
   ASSERT_EQ(reader->start().surfaces.size(), 1u);

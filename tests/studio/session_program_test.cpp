@@ -127,9 +127,10 @@ TEST(ReplayCsv, HasTimeToolForceAndDepthOfEachTick) {
   EXPECT_GT(most_depth, 5);
 }
 
-/// A session whose hashes and forces other physics made.
-void record_with_other_physics(const std::string& path) {
-  const SessionStart start = testing::small_start();
+/// A session that the physics `revision` made, with hashes of its own.
+void record_with_other_physics(const std::string& path, std::int32_t revision = kPhysicsRevision) {
+  SessionStart start = testing::small_start();
+  start.physics_revision = revision;
   auto writer = SessionWriter::create(path, start, {.wait_when_full = true});
   testing::live(start, 300, [&](const State& after, const TickRecord& record) {
     TickRecord other = record;
@@ -156,6 +157,29 @@ TEST(OtherPhysics, ASessionStillOpensAndGivesItsDataAndTheVerdictNamesBothBuilds
   ASSERT_EQ(rows.size(), 300u);
   EXPECT_EQ(rows[119].at("same_as_recorded"), "1");
   EXPECT_EQ(rows[120].at("same_as_recorded"), "0");
+}
+
+TEST(OtherPhysics, TheRevisionIsToldBeforeTheReplayAndWithTheResults) {
+  const TemporaryFolder folder;
+  const std::int32_t newer = kPhysicsRevision + 1;
+  record_with_other_physics((folder.path() / "newer.ctpm").string(), newer);
+  const std::string remark = "recorded with physics revision " + std::to_string(newer) + ", this build computes " +
+                             std::to_string(kPhysicsRevision) + "; replay will differ";
+  for (const char* command : {"verify", "replay"}) {
+    const auto told = run_ctpm({command, "newer.ctpm"}, folder.path());
+    EXPECT_EQ(told.code, 1);
+    EXPECT_TRUE(told.err.starts_with("newer.ctpm: warning: " + remark + "\n")) << told.err;
+  }
+  EXPECT_TRUE(holds(run_ctpm({"verify", "newer.ctpm"}, folder.path()).out, "ticks differ; " + remark));
+  EXPECT_TRUE(holds(run_ctpm({"info", "newer.ctpm"}, folder.path()).out, "physics    " + remark + "\n"));
+  const std::string json = run_ctpm({"info", "newer.ctpm", "--json"}, folder.path()).out;
+  EXPECT_TRUE(holds(json, "\"physics_revision\": " + std::to_string(newer) + ",")) << json;
+  EXPECT_TRUE(holds(json, "\"physics_remark\": \"" + remark + "\"")) << json;
+
+  record_with_other_physics((folder.path() / "old.ctpm").string(), 0);
+  EXPECT_TRUE(holds(run_ctpm({"verify", "old.ctpm"}, folder.path()).err, "before physics revisions were stored"));
+  record_with_other_physics((folder.path() / "same.ctpm").string());
+  EXPECT_FALSE(holds(run_ctpm({"verify", "same.ctpm"}, folder.path()).err, "warning"));
 }
 
 TEST(Info, ListsEventsInOrderOfTime) {
