@@ -13,6 +13,7 @@
 #include "core/model/state.h"
 #include "core/model/vec3.h"
 #include "core/stepping/step.h"
+#include "recordings/event.h"
 
 namespace ctpm {
 
@@ -58,27 +59,6 @@ struct TickRecord {
 /// The record of a tick that was just done.
 TickRecord make_record(const Inputs& inputs, const StepReport& report, double tick_time_s, std::uint64_t state_hash,
                        double input_age_s = 0);
-
-enum class EventKind : std::int32_t {
-  contact_begins = 1,
-  contact_ends = 2,
-  cut = 3,
-  damage = 4,
-  late_tick = 5,
-  device_lost = 6,
-  device_back = 7,
-  note = 8,
-};
-
-/// Something worth finding again.
-struct Event {
-  std::int64_t tick = 0;
-  EventKind kind = EventKind::note;
-  std::string text;
-  std::vector<double> values;  ///< numbers that belong to it; the text says which
-
-  friend bool operator==(const Event&, const Event&) = default;
-};
 
 /// The full State before tick `tick`.
 struct Keyframe {

@@ -99,6 +99,7 @@ const SessionStart& SessionReader::start() const { return impl_->start; }
 const std::string& SessionReader::session_id() const { return impl_->store.identity().id; }
 double SessionReader::created_unix_s() const { return impl_->store.identity().created_unix_s; }
 int SessionReader::format_version() const { return impl_->store.version(); }
+const std::vector<std::string>& SessionReader::remarks() const { return impl_->store.remarks(); }
 std::int64_t SessionReader::tick_count() const { return impl_->tick_count; }
 bool SessionReader::ended_cleanly() const { return impl_->finish.has_value(); }
 

@@ -100,6 +100,21 @@ void add_tools(Model& model, const SceneSpec& scene) {
   model.contact_friction = scene.contact_friction;
 }
 
+/// What the scene asks for; none: core chooses.
+std::optional<Integrator> integrator_of(IntegratorSpec spec) {
+  switch (spec) {
+    case IntegratorSpec::automatic:
+      break;
+    case IntegratorSpec::leapfrog:
+      return Integrator::leapfrog;
+    case IntegratorSpec::backward_euler:
+      return Integrator::backward_euler;
+    case IntegratorSpec::sdirk2:
+      return Integrator::sdirk2;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 FilledOrgan fill_rig(const OrganSpec& organ) {
@@ -191,10 +206,11 @@ Result<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrg
   model.solver.tolerance = scene.solver.tolerance.value_or(standard.tolerance);
   model.solver.velocity_floor = scene.solver.velocity_floor.value_or(standard.velocity_floor);
   model.solver.max_iterations = scene.solver.max_iterations.value_or(standard.max_iterations);
-  model.solver.integrator = scene.solver.integrator;
   model.solver.substeps = scene.solver.substeps.value_or(standard.substeps);
-  if (const IntegratorChoice choice = choose_integrator(model); !choice.holds)
-    return Errors{{"/solver/integrator", std::string(name_of(choice.integrator)) + ": " + choice.reason,
+  built.integrator = resolve_integrator(model, integrator_of(scene.solver.integrator));
+  if (!built.integrator.holds)
+    return Errors{{"/solver/integrator",
+                   std::string(name_of(built.integrator.integrator)) + ": " + built.integrator.reason,
                    "take `auto`, `backward-euler`, or more substeps"}};
   return built;
 }

@@ -50,7 +50,7 @@ struct Kinematics {
 struct Stepper::Workspace {
   Workspace(const Model& m, const StepperOptions& options)
       : model(m),
-        choice(choose_integrator(m)),
+        choice(check_integrator(m)),
         kernels(kernels_for(options.instruction_set)),
         team(options.threads),
         elements(m, team, options.instruction_set),

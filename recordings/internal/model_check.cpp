@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 namespace ctpm::session_file {
 namespace {
@@ -9,6 +10,11 @@ namespace {
 // A file must not be able to ask for a tick that never ends.
 constexpr std::int32_t max_iterations = 1'000'000;
 constexpr std::int32_t max_substeps = 10'000;
+
+template <class E>
+bool is_one_of(E value, std::initializer_list<E> known) {
+  return std::find(known.begin(), known.end(), value) != known.end();
+}
 
 /// "[i]", for the place in an array.
 std::string place(std::ptrdiff_t i) { return std::string("[").append(std::to_string(i)).append("]"); }
@@ -221,7 +227,7 @@ Errors check_model(const Model& model) {
                 "must be in [1, " + std::to_string(max_iterations) + "]");
   check.require(solver.substeps >= 1 && solver.substeps <= max_substeps, "solver.substeps",
                 "must be in [1, " + std::to_string(max_substeps) + "]");
-  check.require(solver.integrator >= Integrator::automatic && solver.integrator <= Integrator::sdirk2,
+  check.require(is_one_of(solver.integrator, {Integrator::backward_euler, Integrator::leapfrog, Integrator::sdirk2}),
                 "solver.integrator", "is of an unknown kind");
   return check.take();
 }

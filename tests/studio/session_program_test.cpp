@@ -11,7 +11,7 @@
 #include <string>
 #include <thread>
 
-#include "tests/recordings/sessions.h"
+#include "tests/recordings/legacy_files.h"
 #include "tests/studio/run_program.h"
 
 namespace ctpm {
@@ -182,21 +182,42 @@ TEST(OtherPhysics, TheRevisionIsToldBeforeTheReplayAndWithTheResults) {
   EXPECT_FALSE(holds(run_ctpm({"verify", "same.ctpm"}, folder.path()).err, "warning"));
 }
 
+TEST(OtherPhysics, ASessionOfARetiredIntegratorIsRefusedByNameByEveryCommand) {
+  const TemporaryFolder folder;
+  testing::write_with_integrator((folder.path() / "a.ctpm").string(), 1, 0);
+  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+           {"info", "a.ctpm"}, {"verify", "a.ctpm"}, {"replay", "a.ctpm"}, {"export", "a.ctpm", "-o", "a.avi"}}) {
+    const auto refused = run_ctpm(command, folder.path());
+    EXPECT_EQ(refused.code, 2) << command[0];
+    EXPECT_TRUE(
+        holds(refused.err, "a.ctpm: error: was recorded with symplectic Euler, which this program no longer has"))
+        << refused.err;
+  }
+}
+
+TEST(Info, SaysWhatAnOldSessionLeavesOpen) {
+  const TemporaryFolder folder;
+  testing::write_with_integrator((folder.path() / "a.ctpm").string(), 0, 0);
+  const auto info = run_ctpm({"info", "a.ctpm"}, folder.path());
+  EXPECT_EQ(info.code, 0) << info.err;
+  EXPECT_TRUE(holds(info.out, "note       the session does not store which integrator `auto` became")) << info.out;
+}
+
 TEST(Info, ListsEventsInOrderOfTime) {
   const TemporaryFolder folder;
   const SessionStart start = testing::small_start();
   auto writer = SessionWriter::create((folder.path() / "a.ctpm").string(), start, {.wait_when_full = true});
   testing::live(start, 300, [&](const State& after, const TickRecord& record) {
     writer->append(after, record);
-    if (after.tick == 200) writer->event(200, EventKind::cut, "later");
-    if (after.tick == 250) writer->event(150, EventKind::contact_ends, "seen late");
+    if (after.tick == 200) writer->event({.tick = 200, .text = "later"});
+    if (after.tick == 250) writer->event({.tick = 150, .kind = EventKind::contact_ends, .tool = 1});
   });
   ASSERT_TRUE(writer->finish());
   for (const char* json : {"", "--json"}) {
     const auto info =
         run_ctpm(*json ? std::vector<std::string>{"info", "a.ctpm", json} : std::vector<std::string>{"info", "a.ctpm"},
                  folder.path());
-    EXPECT_LT(info.out.find("seen late"), info.out.find("later")) << info.out;
+    EXPECT_LT(info.out.find("scalpel leaves the tissue"), info.out.find("later")) << info.out;
   }
 }
 
