@@ -60,7 +60,7 @@ Result<std::vector<std::int32_t>> select_anchored(const FilledOrgan& organ, cons
   Errors errors;
   for (std::size_t a = 0; a < anchors.size(); ++a)
     if (caught[a] == 0)
-      errors.push_back({where + "/anchors/" + std::to_string(a), "catches no sphere", extent_of(organ)});
+      errors.push_back({where + "/anchors/" + std::to_string(a), "holds no sphere", extent_of(organ)});
   if (!errors.empty()) return errors;
   if (counts != nullptr) *counts = caught;
   return selected;

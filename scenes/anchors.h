@@ -10,9 +10,9 @@
 
 namespace ctpm {
 
-/// Spheres of the organ that any of its anchors holds, by index within the organ, ascending. `counts` gets
-/// how many each anchor catches. Errors: an anchor that catches none, at its place `where`/anchors/I, with
-/// the organ's extent.
+/// Spheres of the organ that any of its anchors holds, by index within the organ, ascending. `counts` receives the
+/// number of spheres of each anchor. Errors: an anchor that holds no sphere, at `where`/anchors/I, with the organ's
+/// extent.
 Result<std::vector<std::int32_t>> select_anchored(const FilledOrgan& organ, const std::vector<AnchorSpec>& anchors,
                                                   Vec3 gravity, const std::string& where,
                                                   std::vector<std::int32_t>* counts = nullptr);

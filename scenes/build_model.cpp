@@ -35,30 +35,98 @@ std::string in_millimetres(double length) {
   return text;
 }
 
-/// The layers' materials. Adds an error for each layer that holds no sphere, or ends deeper than the deepest
-/// sphere.
-std::vector<LayerMaterial> layers_of(const OrganSpec& spec, const FilledOrgan& organ, const std::string& where,
-                                     Errors& errors) {
+/// Materials of the layers. Reports each layer that holds no sphere, or ends deeper than the deepest sphere.
+std::vector<LayerMaterial> layers_of(const OrganSpec& spec, const FilledOrgan& organ, const std::string& at,
+                                     Problems& problems) {
   std::vector<LayerMaterial> layers;
-  if (spec.layers.empty() || organ.depth.empty()) return layers;
+  if (spec.layers.empty()) return layers;
   const auto [least, most] = std::minmax_element(organ.depth.begin(), organ.depth.end());
   const std::string depths =
       "its spheres lie " + in_millimetres(*least) + " to " + in_millimetres(*most) + " below its surface";
   double begin = 0;
+  bool knows_begin = true;
   for (std::size_t i = 0; i < spec.layers.size(); ++i) {
     const double end = spec.layers[i].to_depth;
-    const std::string at = where + "/layers/" + std::to_string(i) + "/to_depth_mm";
+    const std::string where = at + "/layers/" + std::to_string(i) + "/to_depth_mm";
+    const bool knows_end = problems.is_good(where);
     const bool holds_any = std::any_of(organ.depth.begin(), organ.depth.end(),
                                        [&](double depth) { return depth >= begin && depth < end; });
     if (end > *most)
-      errors.push_back({at, "got " + in_millimetres(end) + ", which is deeper than the organ", depths});
-    else if (!holds_any)
-      errors.push_back(
-          {at, "the layer from " + in_millimetres(begin) + " to " + in_millimetres(end) + " holds no sphere", depths});
+      problems.add_rule(where, "got " + in_millimetres(end) + ", which is deeper than the organ", depths);
+    else if (knows_begin && !holds_any)
+      problems.add_rule(
+          where, "the layer from " + in_millimetres(begin) + " to " + in_millimetres(end) + " holds no sphere", depths);
     layers.push_back({end, resolve_material(spec.layers[i].material).material});
-    begin = end;
+    begin = end, knows_begin = knows_end;
   }
   return layers;
+}
+
+/// Spheres that the anchors hold. Reports each anchor that holds none.
+std::vector<std::int32_t> anchored_in(const FilledOrgan& organ, const std::vector<AnchorSpec>& anchors, Vec3 gravity,
+                                      const std::string& at, Problems& problems) {
+  const Result<std::vector<std::int32_t>> anchored = select_anchored(organ, anchors, gravity, at);
+  if (anchored) return *anchored;
+  for (const Error& error : anchored.errors()) problems.add_rule(error.where, error.message, error.hint);
+  return {};
+}
+
+/// Adds an organ's network to the Model. Reports what core refuses, and spheres of which no two are neighbours.
+void add_network(Model& model, const FilledOrgan& organ, const OrganSettings& settings, bool is_rig,
+                 const std::string& at, Problems& problems) {
+  const std::size_t elements_before = model.element_count();
+  if (const Result<Done> added = add_organ(model, organ, settings); !added) {
+    for (const Error& error : added.errors())
+      problems.add(at, error.where + ": " + error.message, error.hint, at + "/material");
+    return;
+  }
+  if (model.element_count() > elements_before || !problems.is_good(at + "/lattice")) return;
+  const std::string count = std::to_string(organ.centre.size());
+  problems.add_rule(at + (is_rig ? "/rig/cells" : "/fill"),
+                    "no two of the " + count + " spheres are neighbours, so nothing joins them",
+                    is_rig ? "neighbours differ by 1 along one axis or two" : "take a smaller radius_mm");
+}
+
+/// Settings with which the neighbours of an organ's spheres can be found though some of its values are refused.
+OrganSettings stand_in_for(const OrganSettings& refused) {
+  OrganSettings settings;
+  settings.name = refused.name, settings.structure = Structure::mass_spring, settings.lattice = refused.lattice;
+  settings.material = find_preset("liver")->material;
+  return settings;
+}
+
+/// Adds organ `index` of the scene to the Model. Reports its errors. False if the Model lacks the organ, or has a
+/// stand-in for it, because some value is refused.
+bool add_scene_organ(BuiltScene& built, const SceneSpec& scene, std::size_t index, const FilledOrgan& organ,
+                     Problems& problems) {
+  const OrganSpec& spec = scene.organs[index];
+  const std::string at = "/organs/" + std::to_string(index);
+  if (organ.centre.empty()) {
+    if (can_be_filled(problems, index))
+      problems.add_rule(at + (spec.rig ? "/rig" : "/mesh"), "the organ has no spheres", "take a smaller radius_mm");
+    return false;
+  }
+  OrganSettings settings;
+  settings.name = spec.name, settings.structure = spec.structure, settings.lattice = spec.lattice;
+  settings.has_softening = spec.softening, settings.material = resolve_material(spec.material).material;
+  settings.damage_depth = spec.damage_depth, settings.guides = guides_of(spec, organ);
+  settings.layers = layers_of(spec, organ, at, problems);
+  settings.anchored = anchored_in(organ, spec.anchors, scene.gravity, at, problems);
+  built.anchored_count.push_back(std::int32_t(settings.anchored.size()));
+  const auto is_good = [&] {
+    return can_be_filled(problems, index) &&
+           problems.are_good(at, {"rig", "model", "lattice", "softening", "material", "layers", "anchors"});
+  };
+  add_network(built.model, organ, is_good() ? settings : stand_in_for(settings), spec.rig.has_value(), at, problems);
+  return is_good();
+}
+
+void set_solver(Model& model, const SolverSpec& solver) {
+  const SolverSettings standard;
+  model.solver.tolerance = solver.tolerance.value_or(standard.tolerance);
+  model.solver.velocity_floor = solver.velocity_floor.value_or(standard.velocity_floor);
+  model.solver.max_iterations = solver.max_iterations.value_or(standard.max_iterations);
+  model.solver.substeps = solver.substeps.value_or(standard.substeps);
 }
 
 double softest_edge(const Model& model) {
@@ -75,7 +143,8 @@ void add_cutting(Model& model, const SceneSpec& scene) {
   if (!cuts)
     model.cut_resistance = {};
   else if (scene.lips_meet)
-    model.lip_k = softest_edge(model);
+    model.lip_k = softest_edge(model),
+    model.cut_face_stiffening = scene.cut_face_stiffening.value_or(model.cut_face_stiffening);
 }
 
 double stiffest_edge(const Model& model) {
@@ -90,6 +159,9 @@ void add_tools(Model& model, const SceneSpec& scene) {
     Tool tool;
     tool.name = spec.name, tool.kind = spec.kind;
     tool.radius = spec.radius.value_or(0), tool.blade_length = spec.blade_length.value_or(0);
+    tool.blade_reach = spec.blade_reach.value_or(tool.blade_reach);
+    tool.flank_height = spec.flank_height.value_or(tool.flank_height);
+    tool.blade_thickness = spec.blade_thickness.value_or(tool.blade_thickness);
     if (spec.holds) tool.sphere = nearest_sphere(model, *spec.holds);
     model.tools.push_back(tool);
   }
@@ -98,6 +170,8 @@ void add_tools(Model& model, const SceneSpec& scene) {
   if (!presses) return;
   model.contact_k = scene.contact_stiffness.value_or(kContactOverEdge * stiffest_edge(model));
   model.contact_friction = scene.contact_friction;
+  model.contact_damping = scene.contact_damping.value_or(model.contact_damping);
+  model.contact_stick_time = scene.contact_stick_time.value_or(model.contact_stick_time);
 }
 
 /// What the scene asks for; none: core chooses.
@@ -158,42 +232,22 @@ std::int32_t nearest_sphere(const Model& model, Vec3 point) {
   return nearest;
 }
 
-Result<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrgan> organs) {
+bool can_be_filled(const Problems& problems, std::size_t index) {
+  const std::string at = "/organs/" + std::to_string(index);
+  return problems.are_good(at, {"mesh", "mesh_unit", "all_parts", "most_triangles", "fill"}) &&
+         problems.are_good(at + "/rig", {"cells", "block"});
+}
+
+std::optional<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrgan> organs, Problems& problems) {
   CTPM_CHECK(organs.size() == scene.organs.size(), "one filled organ for each organ of the scene");
   BuiltScene built;
   Model& model = built.model;
   model.tick = scene.tick;
   model.gravity = scene.gravity;
-  Errors errors;
-  for (std::size_t i = 0; i < organs.size(); ++i) {
-    const OrganSpec& spec = scene.organs[i];
-    const std::string where = "/organs/" + std::to_string(i);
-    OrganSettings settings;
-    settings.name = spec.name, settings.structure = spec.model, settings.lattice = spec.lattice;
-    settings.has_softening = spec.softening, settings.material = resolve_material(spec.material).material;
-    settings.damage_depth = spec.damage_depth, settings.guides = guides_of(spec, organs[i]);
-    const std::size_t errors_before = errors.size();
-    settings.layers = layers_of(spec, organs[i], where, errors);
-    Result<std::vector<std::int32_t>> anchored = select_anchored(organs[i], spec.anchors, scene.gravity, where);
-    if (!anchored) {
-      errors.insert(errors.end(), anchored.errors().begin(), anchored.errors().end());
-      continue;
-    }
-    if (errors.size() > errors_before) continue;
-    built.anchored_count.push_back(std::int32_t(anchored->size()));
-    settings.anchored = std::move(*anchored);
-    const std::size_t elements_before = model.element_count();
-    if (Result<Done> added = add_organ(model, organs[i], settings); !added) {
-      for (const Error& error : added.errors())
-        errors.push_back({where, error.where + ": " + error.message, error.hint});
-    } else if (model.element_count() == elements_before) {
-      errors.push_back({where,
-                        "no two of its " + std::to_string(organs[i].centre.size()) +
-                            " spheres are neighbours, so nothing joins them",
-                        "fill it with smaller spheres"});
-    }
-  }
-  if (!errors.empty()) return errors;
+  bool has_all_organs = true;
+  for (std::size_t i = 0; i < organs.size(); ++i)
+    has_all_organs = add_scene_organ(built, scene, i, organs[i], problems) && has_all_organs;
+  if (!has_all_organs) return std::nullopt;
   add_tools(model, scene);
   add_cutting(model, scene);
   for (const LoadSpec& load : scene.loads) {
@@ -202,17 +256,23 @@ Result<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrg
     model.loads.start.push_back(load.start), model.loads.ramp.push_back(load.ramp);
   }
   for (const ProbeSpec& probe : scene.probes) built.probe_sphere.push_back(nearest_sphere(model, probe.at));
-  const SolverSettings standard;
-  model.solver.tolerance = scene.solver.tolerance.value_or(standard.tolerance);
-  model.solver.velocity_floor = scene.solver.velocity_floor.value_or(standard.velocity_floor);
-  model.solver.max_iterations = scene.solver.max_iterations.value_or(standard.max_iterations);
-  model.solver.substeps = scene.solver.substeps.value_or(standard.substeps);
-  built.integrator = resolve_integrator(model, integrator_of(scene.solver.integrator));
-  if (!built.integrator.holds)
-    return Errors{{"/solver/integrator",
-                   std::string(name_of(built.integrator.integrator)) + ": " + built.integrator.reason,
-                   "take `auto`, `backward-euler`, or more substeps"}};
+  set_solver(model, scene.solver);
+  if (problems.are_good("", {"tick_s", "solver"})) {
+    const IntegratorChoice& choice = built.integrator =
+        resolve_integrator(model, integrator_of(scene.solver.integrator));
+    if (!choice.holds)
+      problems.add_rule("/solver/integrator", std::string(name_of(choice.integrator)) + ": " + choice.reason,
+                        "take `auto`, `backward-euler`, or more substeps");
+  }
+  if (!problems.is_empty()) return std::nullopt;
   return built;
+}
+
+Result<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrgan> organs) {
+  Problems problems;
+  std::optional<BuiltScene> built = build_model(scene, organs, problems);
+  if (!built) return problems.errors();
+  return *std::move(built);
 }
 
 }  // namespace ctpm

@@ -9,8 +9,8 @@
 
 #include "core/model/result.h"
 #include "core/model/vec3.h"
-#include "scenes/field_table.h"
 #include "scenes/json_text.h"
+#include "scenes/key_types.h"
 
 // The visitor that lists: the tables as data, from which the JSON Schema and the documentation are made.
 // Internal to scenes.

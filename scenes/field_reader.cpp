@@ -1,16 +1,11 @@
 #include "scenes/field_reader.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
-#include <set>
 
 namespace ctpm {
 namespace {
-
-/// A text with more problems than anybody reads is not searched for hints and copies of them any more.
-constexpr std::size_t kMostProblems = 1000;
 
 std::string plain_number(double value) { return double_to_decimal(value, 0); }
 
@@ -43,12 +38,6 @@ std::string without_unit(std::string_view key) {
   }
 }
 
-std::string top_item(const std::string& pointer) {
-  const auto second = pointer.find('/', 1);
-  if (second == std::string::npos) return pointer;
-  return pointer.substr(0, pointer.find('/', second + 1));
-}
-
 /// The word in lower case with '-' and ' ' as '_'.
 std::string normal_form(std::string_view word) {
   std::string result(word);
@@ -77,78 +66,9 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
   return best_distance <= std::max<std::size_t>(2, normal.size() / 3) ? best : "";
 }
 
-// ---- Problems
-
-Problems::Problem Problems::make(const std::string& pointer, Place place, const std::string& message,
-                                 const std::string& hint) const {
-  const std::string where = file_name_ + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
-  return {pointer, place, Error{where, (pointer.empty() ? "/" : pointer) + ": " + message, hint}};
-}
-
-bool Problems::is_full() const { return problem_count_ > kMostProblems; }
-
-void Problems::add(const std::string& pointer, Place place, const std::string& message, const std::string& hint) {
-  ++problem_count_;
-  if (!is_full()) problems_.push_back(make(pointer, place, message, hint));
-}
-
-void Problems::add_rule(const std::string& pointer, const std::string& message, const std::string& hint) {
-  if (rules_.size() < kMostProblems) rules_.push_back(make(pointer, find(pointer), message, hint));
-}
-
-void Problems::add_warning(const std::string& pointer, const std::string& message, const std::string& hint) {
-  warnings_.push_back(make(pointer, find(pointer), message, hint));
-}
-
-Place Problems::find(const std::string& pointer) const {
-  const JsonNode* node = &root_;
-  std::size_t start = 0;
-  while (start < pointer.size()) {
-    const std::size_t end = std::min(pointer.find('/', start + 1), pointer.size());
-    const std::string part = pointer.substr(start + 1, end - start - 1);
-    const JsonNode* next = nullptr;
-    if (node->kind == JsonKind::object) {
-      next = node->find(part);
-    } else if (node->kind == JsonKind::list) {
-      std::size_t index = 0;
-      const auto parsed = std::from_chars(part.data(), part.data() + part.size(), index);
-      if (parsed.ec == std::errc() && index < node->children.size()) next = &node->children[index];
-    }
-    if (next == nullptr) break;  // not written: the object that would hold it is the place
-    node = next, start = end;
-  }
-  return node->place;
-}
-
-Errors Problems::in_order(std::vector<Problem> problems) {
-  std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) {
-    return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
-  });
-  Errors errors;
-  for (Problem& problem : problems) errors.push_back(std::move(problem.error));
-  return errors;
-}
-
-Errors Problems::errors() const {
-  std::vector<Problem> all = problems_;
-  std::set<std::string> items_with_cause;
-  for (const Problem& problem : problems_) items_with_cause.insert(top_item(problem.pointer));
-  for (const Problem& rule : rules_)
-    if (!items_with_cause.contains(top_item(rule.pointer))) all.push_back(rule);
-  Errors errors = in_order(std::move(all));
-  if (is_full())
-    errors.push_back(
-        {file_name_, std::to_string(problem_count_ - problems_.size()) + " more problems are not listed", ""});
-  return errors;
-}
-
-Errors Problems::warnings() const { return in_order(warnings_); }
-
 void check_direction(Problems& problems, const std::string& pointer, Vec3 direction) {
   if (norm(direction) < 1e-9) problems.add_rule(pointer, "must not be zero, or shorter than 1e-9");
 }
-
-// ---- FieldReader
 
 const JsonNode* FieldReader::take(const Key& key) {
   known_.push_back({key.name, key.is_required});
@@ -315,21 +235,26 @@ int FieldReader::read_choice(const Key& key, const std::vector<std::string>& nam
 
 void FieldReader::report_unknown(std::size_t member, const std::vector<std::string>& names) {
   const std::string& key = object_.keys[member];
-  if (problems_.is_full()) return problems_.add("", {}, "");  // only counted: searching for hints takes time
-  std::string hint;
+  const std::string pointer = child_pointer(pointer_, key);
+  if (problems_.is_full()) return problems_.add(pointer, {}, "");  // only counted: searching for hints takes time
+  std::string hint, meant;
   // The right name with the wrong unit, or with none.
   for (const std::string& name : names) {
-    if (hint.empty() && without_unit(name) == without_unit(normal_form(key))) {
+    if (meant.empty() && without_unit(name) == without_unit(normal_form(key))) {
+      meant = name;
       hint = "the key is " + in_quotes(name) + (without_unit(name) == name ? "" : ": the unit is part of it");
     }
   }
-  if (const std::string nearest = nearest_word(key, names); hint.empty() && !nearest.empty()) {
+  if (const std::string nearest = nearest_word(key, names); meant.empty() && !nearest.empty()) {
+    meant = nearest;
     hint = "did you mean " + in_quotes(nearest) + "?";
   }
-  if (hint.empty()) {
+  if (meant.empty()) {
     for (const std::string& name : names) hint += (hint.empty() ? "known here: " : ", ") + name;
   }
-  problems_.add(child_pointer(pointer_, key), object_.key_places[member], "unknown key " + in_quotes(key), hint);
+  // The key that was meant counts as refused, so that no later stage misses it.
+  problems_.add(pointer, object_.key_places[member], "unknown key " + in_quotes(key), hint,
+                meant.empty() ? pointer : child_pointer(pointer_, meant));
 }
 
 void FieldReader::finish() {
@@ -350,7 +275,8 @@ void FieldReader::finish() {
   }
   for (const KnownKey& known : known_) {
     if (known.is_required && object_.find(known.name) == nullptr) {
-      problems_.add(pointer_, object_.place, "the key " + in_quotes(known.name) + " is missing");
+      problems_.add(pointer_, object_.place, "the key " + in_quotes(known.name) + " is missing", "",
+                    child_pointer(pointer_, known.name));
     }
   }
   if (needs_exactly_one_ && written.size() != 1) {

@@ -8,46 +8,12 @@
 
 #include "core/model/result.h"
 #include "core/model/vec3.h"
-#include "scenes/field_table.h"
 #include "scenes/json_text.h"
+#include "scenes/key_types.h"
+#include "scenes/problems.h"
 
-// The visitor that reads: text -> struct, with every problem and its place. Internal to scenes.
+// The visitor that reads: text -> struct, and reports every error with its place. Internal to scenes.
 namespace ctpm {
-
-/// Collects everything that is wrong with one text.
-class Problems {
- public:
-  Problems(const JsonNode& root, std::string file_name) : root_(root), file_name_(std::move(file_name)) {}
-
-  /// A problem with the value at `place`; `pointer` is its JSON pointer.
-  void add(const std::string& pointer, Place place, const std::string& message, const std::string& hint = "");
-
-  /// A problem that only shows when values are read together; its place is looked up. Left out if the same
-  /// top-level item (`/organs/0`) already has a problem, which would be its cause.
-  void add_rule(const std::string& pointer, const std::string& message, const std::string& hint = "");
-
-  /// As add_rule, but a scene with it still runs.
-  void add_warning(const std::string& pointer, const std::string& message, const std::string& hint = "");
-
-  Errors errors() const;    ///< in the order of the text; of very many the first 1000 and the number of the others
-  bool is_full() const;     ///< further problems are only counted
-  Errors warnings() const;  ///< in the order of the text
-
- private:
-  struct Problem {
-    std::string pointer;
-    Place place;
-    Error error;
-  };
-  Problem make(const std::string& pointer, Place place, const std::string& message, const std::string& hint) const;
-  Place find(const std::string& pointer) const;
-  static Errors in_order(std::vector<Problem> problems);
-
-  const JsonNode& root_;
-  std::string file_name_;
-  std::vector<Problem> problems_, rules_, warnings_;
-  std::size_t problem_count_ = 0;  ///< of add()
-};
 
 /// Reports a direction that is too short to be one: below 1e-9, so that its length neither vanishes nor loses
 /// digits.

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/model/vec3.h"
-#include "scenes/field_table.h"
 #include "scenes/json_text.h"
+#include "scenes/key_types.h"
 
 // The visitor that writes: struct -> text, in the order of the table. Internal to scenes.
 namespace ctpm {

@@ -146,6 +146,28 @@ class Walker {
   Place place_;
 };
 
+/// Place of the bracket that opens one level too many.
+Place too_deep_place(std::string_view text) {
+  Place place;
+  int depth = 0;
+  bool is_in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (is_in_string) {
+      is_in_string = c != '"';
+      if (c == '\\') advance(place, text[i++]);
+    } else if (c == '"') {
+      is_in_string = true;
+    } else if (c == '{' || c == '[') {
+      if (++depth > max_depth) break;
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+    if (i < text.size()) advance(place, text[i]);
+  }
+  return place;
+}
+
 std::string shortened(const std::string& text) {
   constexpr std::size_t limit = 60;
   if (text.size() <= limit) return text;
@@ -187,9 +209,9 @@ Result<JsonNode> parse_json(std::string_view text, const std::string& file_name)
 
   GrammarCheck check;
   if (!nlohmann::json::sax_parse(text, &check)) {
-    if (check.message.empty()) {
-      return Error{file_name, "nested deeper than " + std::to_string(max_depth) + " levels", ""};
-    }
+    if (check.message.empty())
+      return Error{at(file_name, too_deep_place(text)), "nested deeper than " + std::to_string(max_depth) + " levels",
+                   ""};
     Place place;
     for (std::size_t i = 0; i < std::min(check.offset, text.size()); ++i) advance(place, text[i]);
     return Error{at(file_name, place), plain_message(check.message), ""};

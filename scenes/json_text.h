@@ -5,14 +5,10 @@
 #include <vector>
 
 #include "core/model/result.h"
+#include "scenes/text_places.h"
 
-// JSON text as a tree that knows the place and the spelling of everything in it. Internal to scenes.
+// JSON text as a tree that keeps the place and the spelling of each value. Internal to scenes.
 namespace ctpm {
-
-/// Line and column in a text, both from 1; a column is a character, not a byte.
-struct Place {
-  int line = 1, column = 1;
-};
 
 enum class JsonKind { null, boolean, number, text, list, object };
 

@@ -11,7 +11,7 @@
 
 namespace ctpm {
 
-/// A tissue of the paper (Bao & Wu, section 5.1), ready to use.
+/// A tissue of the paper (Bao & Wu, section 5.1).
 struct MaterialPreset {
   const char* name;         ///< as it is written in scenes
   const char* organ;        ///< "liver", "kidney" or "skin"
@@ -34,8 +34,8 @@ const MaterialPreset* find_preset(std::string_view name);
 /// Names of all presets, for messages.
 std::vector<std::string> preset_names();
 
-/// Moduli of a material: the preset's, with the spec's own values in their place. Errors: the names of values
-/// that are missing where there is no preset.
+/// Moduli of a material: the spec's own values, and the preset's for the others. `missing` names the values that
+/// neither gives.
 struct ResolvedMaterial {
   Material material;
   std::vector<std::string> missing;  ///< keys that must be written; empty if the material is whole

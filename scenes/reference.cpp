@@ -1,8 +1,8 @@
 #include "scenes/field_lister.h"
 #include "scenes/presets.h"
-#include "scenes/scene_fields.h"
+#include "scenes/scene_keys.h"
 #include "scenes/schema.h"
-#include "scenes/script_fields.h"
+#include "scenes/script_keys.h"
 
 // The documentation tables.
 namespace ctpm {

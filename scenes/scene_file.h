@@ -4,33 +4,47 @@
 #include <string_view>
 
 #include "core/model/result.h"
+#include "scenes/problems.h"
 #include "scenes/scene_spec.h"
+#include "scenes/text_places.h"
 
 namespace ctpm {
 
-/// A scene and what is odd about it though it runs.
+/// A scene that was read without an error.
 struct SceneText {
   SceneSpec spec;
-  std::string text;  ///< as it was read
-  Errors warnings;   ///< each with its place
+  std::string text;   ///< as it was read
+  TextPlaces places;  ///< `file:line:col` of each value, for whoever judges it later
+  Errors warnings;    ///< what is odd about the scene though it runs; each with its place
 };
 
-/// Reads scene text. Every problem is reported, each as `file:line:col` and a message that begins with the
-/// JSON pointer.
+/// A scene of which some values may be refused. Refused values keep their defaults; `problems` names them.
+struct SceneDraft {
+  SceneText scene;
+  Problems problems;
+};
+
+/// Reads scene text. Reports every error at once, each with `file:line:col` and a message that begins with the JSON
+/// pointer.
 Result<SceneText> read_scene(std::string_view text, const std::string& file_name);
 
 struct LoadOptions {
   bool allow_outside_paths = false;  ///< meshes may lie outside the scene's folder
 };
 
-/// Reads a scene file and checks that its meshes are there. Errors: those of read_scene; the file or a mesh
-/// is missing or lies outside the scene's folder.
+/// Reads a scene file and checks that its meshes exist. Errors: those of read_scene; the file or a mesh is missing; a
+/// mesh lies outside the scene's folder.
 Result<SceneText> load_scene(const std::string& path, const LoadOptions& options = {});
 
-/// Path of an organ's mesh as seen from where the program runs.
+/// As read_scene and load_scene, but these return what could be read together with its errors, so that later stages
+/// can add theirs. Errors: the file cannot be read, or is not JSON; then no value can be judged.
+Result<SceneDraft> read_draft(std::string_view text, const std::string& file_name);
+Result<SceneDraft> load_draft(const std::string& path, const LoadOptions& options = {});
+
+/// Path of an organ's mesh, relative to the program's working directory.
 std::string mesh_path(const std::string& scene_path, const OrganSpec& organ);
 
-/// Stable text of a scene; read_scene gives the same spec again.
+/// Text of a scene. The same spec gives the same text, and read_scene gives the same spec again.
 std::string write_scene(const SceneSpec& spec);
 
 }  // namespace ctpm

@@ -9,9 +9,8 @@
 #include "core/model/vec3.h"
 #include "core/network/network.h"
 
-// A scene as its author wrote it, in SI units. Keys, units, ranges and sentences of the text form stand in
-// one table (scene_fields.h); FORMAT.md is made from it. An unset optional means: not written, decided
-// elsewhere.
+// A scene as its author wrote it, in SI units. scene_keys.h holds the keys, units and ranges of the text form. An unset
+// optional means that the author did not write the key; the default is then chosen where the value is used.
 namespace ctpm {
 
 /// Unit in which a mesh file holds its coordinates.
@@ -41,7 +40,7 @@ struct FillSpec {
   friend bool operator==(const FillSpec&, const FillSpec&) = default;
 };
 
-/// What a stiffness scale was fitted for: a ball pressed one sphere so deep and met this force.
+/// The press that a stiffness scale was fitted to: a ball presses one sphere to a depth and feels a force.
 struct FittedForSpec {
   Vec3 place;                ///< of the pressed sphere at rest [m]
   double ball_radius = 0;    ///< [m]
@@ -66,7 +65,7 @@ struct MaterialSpec {
   std::optional<double> prestrain;            ///< in [0, 0.5]
   std::optional<double> fracture_toughness;   ///< J_c [J/m^2]
   std::optional<double> blade_friction;       ///< [Pa]
-  std::optional<FittedForSpec> fitted_for;    ///< what the stiffness scale was fitted for; says it, does nothing
+  std::optional<FittedForSpec> fitted_for;    ///< for information only
 
   friend bool operator==(const MaterialSpec&, const MaterialSpec&) = default;
 };
@@ -96,10 +95,10 @@ struct AnchorSpec {
   friend bool operator==(const AnchorSpec&, const AnchorSpec&) = default;
 };
 
-/// A sphere of a rig that runs on a rail or in a plane.
+/// A sphere of a rig that moves only along a line or in a plane.
 struct GuideSpec {
   Vec3 cell;         ///< lattice coordinates of the sphere, whole numbers
-  std::string axes;  ///< axes that it may not leave: letters of "xyz"
+  std::string axes;  ///< axes along which it does not move: letters of "xyz"
 
   friend bool operator==(const GuideSpec&, const GuideSpec&) = default;
 };
@@ -114,7 +113,7 @@ struct RigSpec {
   friend bool operator==(const RigSpec&, const RigSpec&) = default;
 };
 
-/// Tissue down to a depth, over what lies below: a capsule over a parenchyma.
+/// Tissue from the layer above, or the surface, down to a depth: a capsule over a parenchyma.
 struct LayerSpec {
   double to_depth = 0;  ///< the layer ends here, below the organ's surface [m]
   MaterialSpec material;
@@ -129,7 +128,7 @@ struct OrganSpec {
   LengthUnit mesh_unit = LengthUnit::millimetre;
   bool all_parts = false;                      ///< every closed part of the mesh, not only the largest
   std::optional<std::int32_t> most_triangles;  ///< of the drawn surface, which is made coarser if it has more
-  Structure model = Structure::ctpm;
+  Structure structure = Structure::ctpm;       ///< which elements join the spheres; the key is `model`
   LatticeKind lattice = LatticeKind::cubic_18;
   bool softening = true;  ///< Eq. 8
   FillSpec fill;
@@ -150,21 +149,25 @@ struct ToolSpec {
   std::optional<double> radius;        ///< of a ball [m]
   std::optional<double> blade_length;  ///< of a scalpel [m]
   std::optional<Vec3> holds;           ///< of a pin: it holds the sphere nearest to here at rest [m]
+  // Of a scalpel; unset ones are those of core's Tool.
+  std::optional<double> blade_reach{};      ///< least distance ahead of the edge over which tissue resists [m]
+  std::optional<double> flank_height{};     ///< [m]
+  std::optional<double> blade_thickness{};  ///< [m]
 
   friend bool operator==(const ToolSpec&, const ToolSpec&) = default;
 };
 
-/// A force on one sphere.
+/// An external force on one sphere.
 struct LoadSpec {
   Vec3 at;           ///< acts on the sphere nearest to here at rest [m]
   Vec3 force;        ///< [N]
   double start = 0;  ///< [s]
-  double ramp = 0;   ///< time in which it rises to its full size [s]
+  double ramp = 0;   ///< time in which it rises linearly from zero [s]
 
   friend bool operator==(const LoadSpec&, const LoadSpec&) = default;
 };
 
-/// A point that is followed: the sphere nearest to it at rest.
+/// A point whose motion is recorded: that of the sphere whose rest position is nearest.
 struct ProbeSpec {
   std::string name;
   Vec3 at;  ///< [m]
@@ -199,12 +202,15 @@ struct SceneSpec {
   std::string name;
   Vec3 gravity{0, 0, -9.81};  ///< [m/s^2]
   double tick = 1e-3;         ///< [s]
-  double settle = 1.0;        ///< time the scene is given to come to rest before the first tick [s]
+  double settle = 1.0;        ///< longest time for the scene to come to rest before the first tick [s]
   std::vector<OrganSpec> organs;
   std::vector<ToolSpec> tools;
-  std::optional<double> contact_stiffness;  ///< of a tool against one sphere [N/m]
-  double contact_friction = 0.3;            ///< Coulomb coefficient between tool and tissue
-  bool lips_meet = false;                   ///< the two sides of a cut meet again without passing through each other
+  std::optional<double> contact_stiffness;    ///< of a tool against one sphere [N/m]
+  double contact_friction = 0.3;              ///< Coulomb coefficient between tool and tissue
+  std::optional<double> contact_damping;      ///< Hunt-Crossley damping [s/m]; unset: that of core's Model
+  std::optional<double> contact_stick_time;   ///< [s]; unset: that of core's Model
+  std::optional<double> cut_face_stiffening;  ///< [1]; unset: that of core's Model
+  bool lips_meet = false;                     ///< the two sides of a cut meet again without passing through each other
   std::vector<LoadSpec> loads;
   std::vector<ProbeSpec> probes;
   SolverSpec solver;

@@ -4,8 +4,8 @@
 
 #include "scenes/field_lister.h"
 #include "scenes/presets.h"
-#include "scenes/scene_fields.h"
-#include "scenes/script_fields.h"
+#include "scenes/scene_keys.h"
+#include "scenes/script_keys.h"
 
 namespace ctpm {
 namespace {

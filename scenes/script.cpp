@@ -8,7 +8,7 @@
 
 #include "scenes/field_reader.h"
 #include "scenes/field_writer.h"
-#include "scenes/script_fields.h"
+#include "scenes/script_keys.h"
 
 namespace ctpm {
 namespace {
@@ -22,7 +22,8 @@ void check_tool(Problems& problems, const std::string& at, const ScriptStep::Tak
                       known.empty() ? "the scene has no tools" : "its tools: " + known);
   }
   check_direction(problems, at + "/take/pointing", take.pointing);
-  if (take.facing && norm(cross(*take.facing, take.pointing)) <= 1e-6 * norm(*take.facing) * norm(take.pointing))
+  if (take.facing && problems.is_good(at + "/take/pointing") &&
+      norm(cross(*take.facing, take.pointing)) <= 1e-6 * norm(*take.facing) * norm(take.pointing))
     problems.add_rule(at + "/take/facing", "must not be zero or along pointing");
 }
 
@@ -36,11 +37,14 @@ void check_steps(Problems& problems, const Script& script, const std::vector<std
       check_tool(problems, at, *step.take, tool_names);
     }
     if (step.put_away) has_tool = false;
+    // A step without a known key may be a misspelt take, so what follows it is not judged.
+    if (!(step.take || step.move || step.press || step.release || step.cut || step.wait || step.put_away))
+      has_tool = true;
     if (step.put_away == false) problems.add_rule(at + "/put_away", "must be true");
     if (step.press) check_direction(problems, at + "/press/direction", step.press->direction);
     if (step.release) check_direction(problems, at + "/release/direction", step.release->direction);
     if ((step.move || step.press || step.release || step.cut) && !has_tool)
-      problems.add_rule(at, "there is no tool in the hand here", "take one first");
+      problems.add(at, "there is no tool in the hand here", "take one first", at);
   }
 }
 
@@ -128,13 +132,14 @@ Vec3 way_of(const Stroke& stroke) {
 
 Result<Script> read_script(std::string_view text, const std::string& file_name,
                            const std::vector<std::string>& tool_names) {
-  const Result<JsonNode> root = parse_json(text, file_name);
-  if (!root) return root.errors();
+  Result<JsonNode> parsed = parse_json(text, file_name);
+  if (!parsed) return parsed.errors();
+  const auto root = std::make_shared<const JsonNode>(*std::move(parsed));
   Script script;
-  Problems problems(*root, file_name);
+  Problems problems(TextPlaces(root, file_name));
   FieldReader::read_record(*root, "", problems, script);
   check_steps(problems, script, tool_names);
-  if (Errors errors = problems.errors(); !errors.empty()) return errors;
+  if (!problems.is_empty()) return problems.errors();
   return script;
 }
 

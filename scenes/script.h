@@ -21,14 +21,14 @@ struct TakeStep {
   std::string tool;            ///< name of a tool of the scene
   Vec3 at;                     ///< where its frame's origin appears [m]
   Vec3 pointing{0, 0, -1};     ///< direction from handle to tip; any length but zero
-  std::optional<Vec3> facing;  ///< where the tool's +x looks, a blade's cutting side; not along `pointing`
+  std::optional<Vec3> facing;  ///< direction of the tool's +x, a blade's cutting side; not along `pointing`
   friend bool operator==(const TakeStep&, const TakeStep&) = default;
 };
 
 /// It moves along a straight line.
 struct MoveStep {
   Vec3 to;           ///< [m]
-  double speed = 0;  ///< along the way, once up to speed [m/s]
+  double speed = 0;  ///< between the ramps at start and end [m/s]
   friend bool operator==(const MoveStep&, const MoveStep&) = default;
 };
 
@@ -37,7 +37,7 @@ struct PressStep {
   double distance = 0;                ///< at most [m]
   Vec3 direction{0, 0, -1};           ///< any length but zero
   double speed = 0;                   ///< [m/s]
-  std::optional<double> until_force;  ///< ends as soon as the tissue pushes back with so much [N]
+  std::optional<double> until_force;  ///< ends when the tissue's reaction reaches it [N]
   friend bool operator==(const PressStep&, const PressStep&) = default;
 };
 
@@ -77,43 +77,44 @@ struct ScriptStep {
   friend bool operator==(const ScriptStep&, const ScriptStep&) = default;
 };
 
-/// What a hand does, as an author wrote it.
+/// A sequence of tool motions, as an author wrote it.
 struct Script {
   std::vector<ScriptStep> steps;
   friend bool operator==(const Script&, const Script&) = default;
 };
 
-/// Reads a script's text. Errors: as for scenes, all at once with their places; a tool that the scene does
-/// not have; a step that needs a tool before one was taken.
+/// Reads a script's text. Reports every error at once, each with `file:line:col`: those of the text and its values; a
+/// tool that the scene does not have; a step that moves a tool before one was taken.
 Result<Script> read_script(std::string_view text, const std::string& file_name,
                            const std::vector<std::string>& tool_names);
 
-/// Stable text of a script; read_script gives the same steps again.
+/// Text of a script. The same steps give the same text, and read_script gives the same steps again.
 std::string write_script(const Script& script);
 
 /// A script that presses the top of the first organ with the scene's first ball and cuts across it with its
-/// first scalpel, as far as the scene has them: something to see for any organ.
+/// first scalpel, if the scene has them.
 Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organs);
 
 /// How a press to a force ended.
 enum class PressEnd { none, at_force, at_depth };
 
-/// The inputs of a script, tick by tick. Each stretch starts and ends at rest: speed rises and falls along a
-/// cubic, and is the step's own in between; a press to a force stops where it reaches it. Free of transcendental
-/// functions, so the same everywhere.
+/// The inputs of a script, tick by tick. Each stretch starts and ends at rest: speed rises and falls along a cubic; in
+/// between it is the step's speed. A press to a force stops when the force is reached. Uses no transcendental function,
+/// so every machine gives the same inputs.
 class ScriptPlayer {
  public:
   /// `tick` [s]; the script's tools must be those of `tools`.
   ScriptPlayer(const Script& script, std::span<const Tool> tools, double tick);
 
-  /// Those known by now: presses to a force count with their whole distance until they have ended.
+  /// Ticks of the script as far as they are known: a press to a force counts with its largest length until it has
+  /// ended.
   std::int64_t tick_count() const;
 
-  /// A pure function of the tick and of what was felt before; after the end the last inputs stay.
+  /// A pure function of the tick and of the forces of earlier calls of feel(). After the end the last inputs stay.
   Inputs at(std::int64_t tick) const;
 
-  /// The tissue pushed the tool with `force` [N] in tick `tick`. If that ends a press to a force, the steps after it
-  /// go on from where the tool is. Without it presses go their whole distance.
+  /// Tells the player the tissue's `force` on the tool [N] in tick `tick`. If that ends a press to a force, the next
+  /// step starts where the tool is. Without these calls each press has its largest length.
   PressEnd feel(std::int64_t tick, Vec3 force);
 
  private:

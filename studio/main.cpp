@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "studio/commands/command.h"
-#include "studio/console.h"
+#include "studio/commands/console.h"
 
 int main(int argc, char** argv) {
   using namespace ctpm;

@@ -8,28 +8,6 @@
 namespace ctpm {
 namespace {
 
-/// Distance of the towed points behind the blade [m].
-constexpr double kTrail = 0.5e-3;
-
-/// Least way ahead of the edge over which an element resists [m], our choice. It must not shrink with the
-/// lattice: the thinner the rows that are loaded one by one, the farther soft tissue would be dragged along
-/// before it is cut.
-constexpr double kLeastReach = 9e-3;
-
-/// Where more is needed, in spacings of the widest lattice: rows lie half a spacing apart, so that the next
-/// one resists before one is severed; much more would be felt before the surface that one sees is touched.
-constexpr double kReachInSpacings = 0.75;
-
-/// How far the flanks reach behind the edge [m]: about the height of a surgical blade No. 10 (estimate).
-constexpr double kFlankHeight = 6e-3;
-
-/// Below this speed [m/s] friction falls to zero linearly, so that a resting blade creeps and does not
-/// chatter.
-constexpr double kSlowest = 1e-3;
-
-/// A lip that has moved so far away from the other [m] has left the flank.
-constexpr double kBladeThickness = 1e-3;
-
 Vec3 unit(Vec3 v) {
   const double length = norm(v);
   return length > 0 ? v / length : Vec3{};
@@ -58,8 +36,12 @@ struct BladeForce::Element {
   }
 };
 
-BladeForce::BladeForce(const Model& model) : model_(model), reach_(kLeastReach) {
-  for (const OrganRange& organ : model.organs) reach_ = std::max(reach_, kReachInSpacings * organ.spacing);
+BladeForce::BladeForce(const Model& model) : model_(model) {
+  for (const OrganRange& organ : model.organs) widest_spacing_ = std::max(widest_spacing_, organ.spacing);
+}
+
+double BladeForce::reach(const Tool& tool) const {
+  return std::max(tool.blade_reach, tool.blade_reach_spacings * widest_spacing_);
 }
 
 BladeForce::Element BladeForce::element(std::size_t index) const {
@@ -75,20 +57,22 @@ BladeForce::Element BladeForce::element(std::size_t index) const {
           cut.tpm_energy[t],      cut.tpm_friction[t]};
 }
 
-Box BladeForce::around(const BladeMotion& motion) const {
+Box BladeForce::around(const Tool& tool, const BladeMotion& motion) const {
+  const double reach = this->reach(tool);
   return Box(motion.from.tip, motion.from.heel, motion.to.tip, motion.to.heel)
-      .grown(0.5 * reach_ + std::max(reach_, kFlankHeight));
+      .grown(0.5 * reach + std::max(reach, tool.flank_height));
 }
 
-void BladeForce::find(const State& state, const NearElements& near, const BladeMotion& motion,
+void BladeForce::find(const StateView& state, const NearElements& near, const Tool& tool, const BladeMotion& motion,
                       PairContacts& contacts) const {
-  const Vec3 beyond = 0.5 * reach_ * unit(motion.to.heel - motion.to.tip);
+  const double reach = this->reach(tool);
+  const Vec3 beyond = 0.5 * reach * unit(motion.to.heel - motion.to.tip);
   const Vec3 tip = motion.to.tip - beyond, heel = motion.to.heel + beyond, ht = unit(motion.heading_tip),
              hh = unit(motion.heading_heel);
   const double certainty = std::max(norm(motion.heading_tip), norm(motion.heading_heel));
   if (certainty == 0) return;
-  const Vec3 tip_ahead = tip + reach_ * ht, heel_ahead = heel + reach_ * hh, tip_behind = tip - kFlankHeight * ht,
-             heel_behind = heel - kFlankHeight * hh;
+  const Vec3 tip_ahead = tip + reach * ht, heel_ahead = heel + reach * hh, tip_behind = tip - tool.flank_height * ht,
+             heel_behind = heel - tool.flank_height * hh;
   const Box ahead(tip, heel, tip_ahead, heel_ahead), behind(tip, heel, tip_behind, heel_behind);
   const std::size_t edges = model_.edges.size();
   for (const std::int32_t index : near.elements()) {
@@ -104,7 +88,7 @@ void BladeForce::find(const State& state, const NearElements& near, const BladeM
     const Vec3 normal = unit(cross(heel - tip, heading));
     const double length = norm(q - p);
     const double facing = length > 0 ? std::abs(dot(normal, q - p)) / length : 0.0;
-    const double held = facing * held_share(hit->across, norm(heel - tip), 0.5 * reach_);
+    const double held = facing * held_share(hit->across, norm(heel - tip), 0.5 * reach);
     const Vec3 point_velocity = (1 - hit->along) * state.velocity[e.a] + hit->along * state.velocity[e.b];
     PairContact contact{.a = std::int32_t(e.a),
                         .b = std::int32_t(e.b),
@@ -113,22 +97,22 @@ void BladeForce::find(const State& state, const NearElements& near, const BladeM
                         .is_tool = true};
     const Vec3 way = between(motion.to.tip - motion.from.tip, motion.to.heel - motion.from.heel, hit->across);
     if (severed) {
-      const double on_flank = std::clamp(1 - (length - e.rest_length) / kBladeThickness, 0.0, 1.0);
+      const double on_flank = std::clamp(1 - (length - e.rest_length) / tool.blade_thickness, 0.0, 1.0);
       const Vec3 blade = way / model_.tick;
       const Vec3 slip = blade - point_velocity;
       const double speed = norm(slip - dot(slip, normal) * normal);
       contact.axis = normal;
-      contact.drag = e.friction * held * on_flank / std::max(speed, kSlowest);
+      contact.drag = e.friction * held * on_flank / std::max(speed, tool.slowest_slip);
       contact.force = contact.drag * (blade - dot(blade, normal) * normal);
       if (contact.drag == 0) continue;
     } else {
       // Energy G p^2, p = 1 - distance / reach: the force is its growth over the tick's advance, 2 G p /
       // reach if that is short.
       const double energy = e.to_open(held * certainty, length), p = 1 - hit->share;
-      const double advance = std::max(0.0, dot(way, heading)) / reach_, p_before = std::max(0.0, p - advance);
+      const double advance = std::max(0.0, dot(way, heading)) / reach, p_before = std::max(0.0, p - advance);
       const double entered = advance > p ? p / advance : 1.0;
       contact.axis = heading, contact.only_pushes = true;
-      contact.k = 2 * energy / (reach_ * reach_), contact.force = energy / reach_ * (p + p_before) * entered * heading;
+      contact.k = 2 * energy / (reach * reach), contact.force = energy / reach * (p + p_before) * entered * heading;
       // What moves away faster than the blade follows would only be dropped again, at the price of a second
       // solve.
       if (dot(heading, contact.force - model_.tick * contact.k * point_velocity) <= 0) continue;
@@ -137,8 +121,9 @@ void BladeForce::find(const State& state, const NearElements& near, const BladeM
   }
 }
 
-void BladeForce::add_severed(const State& state, const BladeMotion& motion, std::span<const Crossing> crossings,
-                             PairContacts& contacts) const {
+void BladeForce::add_severed(const StateView& state, const Tool& tool, const BladeMotion& motion,
+                             std::span<const Crossing> crossings, PairContacts& contacts) const {
+  const double reach = this->reach(tool);
   for (const Crossing& crossing : crossings) {
     const Element e = element(std::size_t(crossing.element));
     const Vec3 way = between(motion.to.tip - motion.from.tip, motion.to.heel - motion.from.heel, crossing.across);
@@ -146,9 +131,9 @@ void BladeForce::add_severed(const State& state, const BladeMotion& motion, std:
     if (length == 0 || apart == 0) continue;
     const Vec3 edge = between(motion.from.heel - motion.from.tip, motion.to.heel - motion.to.tip, crossing.share);
     const double facing = std::abs(dot(unit(cross(edge, way)), state.position[e.b] - state.position[e.a])) / apart;
-    const double resisted = std::max(0.0, 1 - crossing.share * length / reach_);
-    const double blade = norm(edge) + reach_, across = (crossing.across * norm(edge) + 0.5 * reach_) / blade;
-    const double held = facing * held_share(across, blade, 0.5 * reach_);
+    const double resisted = std::max(0.0, 1 - crossing.share * length / reach);
+    const double blade = norm(edge) + reach, across = (crossing.across * norm(edge) + 0.5 * reach) / blade;
+    const double held = facing * held_share(across, blade, 0.5 * reach);
     const double remaining = e.to_open(held, apart) * (1 - resisted * resisted);
     if (remaining == 0) continue;
     contacts.add({.a = std::int32_t(e.a),
@@ -159,17 +144,6 @@ void BladeForce::add_severed(const State& state, const BladeMotion& motion, std:
                   .force = remaining / (length * length) * way,
                   .is_tool = true});
   }
-}
-
-void tow(Vec3Array& trail, BladeMotion& motion) {
-  const auto tow_one = [&](std::size_t i, Vec3 end) {
-    const Vec3 way = end - trail[i];
-    const double length = norm(way);
-    if (length <= kTrail) return way / kTrail;
-    trail.set(i, end - kTrail / length * way);
-    return way / length;
-  };
-  motion.heading_tip = tow_one(0, motion.to.tip), motion.heading_heel = tow_one(1, motion.to.heel);
 }
 
 }  // namespace ctpm

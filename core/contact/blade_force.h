@@ -2,16 +2,13 @@
 
 #include <span>
 
+#include "core/contact/blade_motion.h"
 #include "core/contact/pair_contact.h"
 #include "core/cutting/cutting.h"
+#include "core/cutting/near_elements.h"
+#include "core/model/state_view.h"
 
 namespace ctpm {
-
-/// How a blade moves in a tick.
-struct BladeMotion {
-  BladeEdge from, to;              ///< at the tick's start and end
-  Vec3 heading_tip, heading_heel;  ///< where its ends have been going, length 0 to 1
-};
 
 /// The law of cutting: the blade's force times its way, and the elastic energy E that severing sets free,
 /// open the cut and rub,
@@ -38,30 +35,30 @@ class BladeForce {
   bool any() const { return model_.cut_resistance.any(); }
 
   /// Most contacts that the functions below add in one substep.
-  std::size_t most() const { return any() ? 2 * (model_.edges.size() + model_.tpms.size()) : 0; }
+  std::size_t capacity() const { return any() ? 2 * (model_.edges.size() + model_.tpms.size()) : 0; }
 
   /// Where find() looks, at the most.
-  Box around(const BladeMotion& motion) const;
+  Box around(const Tool& tool, const BladeMotion& motion) const;
 
   /// Adds what the blade, at the end of its motion, meets in `state`, of the elements that are `near`: those
-  /// ahead, and lips on its flanks.
-  void find(const State& state, const NearElements& near, const BladeMotion& motion, PairContacts& contacts) const;
+  /// ahead of it, and cut faces on its flanks.
+  void find(const StateView& state, const NearElements& near, const Tool& tool, const BladeMotion& motion,
+            PairContacts& contacts) const;
 
   /// Adds the elements that were severed within the tick before they could resist to the end: their remaining
   /// energy over the blade's way in the tick.
-  void add_severed(const State& state, const BladeMotion& motion, std::span<const Crossing> crossings,
-                   PairContacts& contacts) const;
+  void add_severed(const StateView& state, const Tool& tool, const BladeMotion& motion,
+                   std::span<const Crossing> crossings, PairContacts& contacts) const;
 
  private:
   struct Element;
   Element element(std::size_t index) const;
 
-  const Model& model_;
-  double reach_;  ///< way ahead of the edge over which an element resists [m]
-};
+  /// Distance ahead of the edge over which an element resists [m].
+  double reach(const Tool& tool) const;
 
-/// Tows `trail` (2) behind the ends of the blade at a distance of at most kTrail, and gives `motion` the
-/// heading that follows: hands tremble, and a heading must not.
-void tow(Vec3Array& trail, BladeMotion& motion);
+  const Model& model_;
+  double widest_spacing_ = 0;  ///< of all organs [m]
+};
 
 }  // namespace ctpm

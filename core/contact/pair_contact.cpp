@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/contact/contact.h"
+#include "core/contact/contact_law.h"
 
 namespace ctpm {
 
@@ -45,40 +45,35 @@ void PairContacts::undo_linearise(Coordinates& force, DiagonalBlocks& blocks) co
     restore(c->b, &c->without[9]), restore(c->a, &c->without[0]);
 }
 
-void PairContacts::push_apart(double h, std::span<const std::uint8_t> held_axes, const Vec3Array& before,
-                              Coordinates& velocity) {
-  const std::size_t n = model_.sphere_count();
+Vec3 PairContacts::push_apart(double h, const Pin& pin, const Vec3Array& before, Vec3Array& velocity) {
+  std::vector<double>* const axes[3] = {&velocity.x, &velocity.y, &velocity.z};
   const auto inverse_mass = [&](std::int32_t sphere) {
     const auto i = std::size_t(sphere);
-    return held_axes[i] == kAnchored ? 0.0 : 1 / model_.mass[i];
-  };
-  const auto velocity_of = [&](std::int32_t sphere) {
-    const auto i = std::size_t(sphere);
-    return Vec3{velocity[i], velocity[n + i], velocity[2 * n + i]};
+    return pin.held_axes(model_, i) == kAnchored ? 0.0 : 1 / model_.mass[i];
   };
   const auto kick = [&](std::int32_t sphere, Vec3 change) {
     const auto i = std::size_t(sphere);
     const double parts[3] = {change.x, change.y, change.z};
     for (std::size_t axis = 0; axis < 3; ++axis)
-      if ((held_axes[i] >> axis & 1) == 0) velocity[axis * n + i] += parts[axis];
+      if ((pin.held_axes(model_, i) >> axis & 1) == 0) (*axes[axis])[i] += parts[axis];
   };
-  for (PairContact& c : contacts_) {
+  Vec3 on_tool;
+  for (const PairContact& c : contacts_) {
     const double per_a = inverse_mass(c.a), per_b = inverse_mass(c.b);
     const double ease = c.weight_a * c.weight_a * per_a + c.weight_b * c.weight_b * per_b;
     const double across = h * c.drag, k = h * h * c.k;
     const ContactShares share(ease * k, 0);
-    const Vec3 u = c.weight_a * velocity_of(c.a) + c.weight_b * velocity_of(c.b),
+    const Vec3 u = c.weight_a * velocity[std::size_t(c.a)] + c.weight_b * velocity[std::size_t(c.b)],
                old = c.weight_a * before[std::size_t(c.a)] + c.weight_b * before[std::size_t(c.b)];
     const double moved = share.after * dot(c.axis, u) - share.before * dot(c.axis, old);
     const Vec3 wanted = h * c.force - across * (u - dot(c.axis, u) * c.axis) - k * moved * c.axis;
     const double wanted_along = dot(wanted, c.axis), given_along = wanted_along / (1 + ease * k * share.after);
-    c.acting = {};
     if (c.only_pushes && given_along < 0) continue;
     const Vec3 impulse = (wanted - wanted_along * c.axis) / (1 + ease * across) + given_along * c.axis;
-    c.acting = impulse / h;
     kick(c.a, c.weight_a * per_a * impulse), kick(c.b, c.weight_b * per_b * impulse);
+    if (c.is_tool) on_tool -= impulse / h;
   }
-  is_explicit_ = true;
+  return on_tool;
 }
 
 /// Velocity of a contact's point [m/s].
@@ -126,7 +121,7 @@ void PairContacts::drop_pulling(double h, const Coordinates& v) {
 Vec3 PairContacts::force_on_tool(double h, const Coordinates& v) const {
   Vec3 force;
   for (const PairContact& c : contacts_)
-    if (c.is_tool) force += is_explicit_ ? -c.acting : coupling(c, h, velocity_of(c, v.data())) / h - c.force;
+    if (c.is_tool) force += coupling(c, h, velocity_of(c, v.data())) / h - c.force;
   return force;
 }
 

@@ -2,9 +2,9 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
+#include "core/contact/pin.h"
 #include "core/elements/axial.h"
 #include "core/model/model.h"
 
@@ -22,18 +22,17 @@ struct PairContact {
   double drag = 0;           ///< across the axis [N s/m], >= 0
   bool only_pushes = false;  ///< ends when it would pull the point against the axis
   bool is_tool = false;      ///< a tool bears the opposite force
-  Vec3 acting{};             ///< force on the point in an explicit step [N]
   std::array<double, 18> without{};  ///< force and block of both spheres before the contact was added
 };
 
-/// All pair contacts of a substep, solved implicitly like the tissue.
+/// All pair contacts of a step. Contacts (contacts.h) says in which order its functions are called.
 class PairContacts {
  public:
-  /// Room for `most` contacts, so that a tick never allocates.
-  PairContacts(const Model& model, std::size_t most) : model_(model) { contacts_.reserve(most); }
+  /// Room for `capacity` contacts, so that a tick never allocates.
+  PairContacts(const Model& model, std::size_t capacity) : model_(model) { contacts_.reserve(capacity); }
 
   void add(const PairContact& contact) { contacts_.push_back(contact); }
-  void clear() { contacts_.clear(), is_explicit_ = false; }
+  void clear() { contacts_.clear(); }
   std::size_t count() const { return contacts_.size(); }
 
   /// To be solved for changes of `velocity` [m/s], not from rest.
@@ -48,8 +47,8 @@ class PairContacts {
 
   /// After an explicit step of `h` [s] without these contacts, found in its middle: changes the `velocity` [m/s] of
   /// their spheres, one contact after the other, each solved implicitly. `before`: velocity [m/s] at the start. Spheres
-  /// do not move along `held_axes`.
-  void push_apart(double h, std::span<const std::uint8_t> held_axes, const Vec3Array& before, Coordinates& velocity);
+  /// do not move along held axes, nor does that of `pin`. Returns the force on the tool [N].
+  Vec3 push_apart(double h, const Pin& pin, const Vec3Array& before, Vec3Array& velocity);
 
   /// result += coupling of a step of `h` [s] times `v`, in the precision of `v`, float or double;
   /// returns v . coupling . v.
@@ -62,7 +61,7 @@ class PairContacts {
   /// Removes the contacts that would.
   void drop_pulling(double h, const Coordinates& v);
 
-  /// Force on the tool [N] after the step, and how many contacts it has.
+  /// Force on the tool [N] after an implicit step, and how many contacts it has.
   Vec3 force_on_tool(double h, const Coordinates& v) const;
   std::int32_t tool_count() const;
 
@@ -73,7 +72,6 @@ class PairContacts {
   bool pulls(const PairContact& contact, double h, const Coordinates& v) const;
 
   const Model& model_;
-  bool is_explicit_ = false;  ///< push_apart() has solved them
   std::vector<PairContact> contacts_;
 };
 

@@ -123,7 +123,7 @@ AxialElements::AxialElements(const Model& model, const Slabs& slabs, const Kerne
   }
 }
 
-AxialArrays AxialElements::arrays(const State& state, const double* softness) const {
+AxialArrays AxialElements::arrays(const StateView& state, const double* softness) const {
   const auto or_null = [](const auto& array) { return array.empty() ? nullptr : array.data(); };
   AxialArrays m{};
   m.spheres = state.position.size();
@@ -166,7 +166,7 @@ template void AxialElements::apply(int slab, const float* v, SlabTarget<float> r
 template void AxialElements::apply(int slab, const double* v, SlabTarget<double> result) const;
 
 /// The implicit step of c z' = k2 (x - z) - k1 z of `h` [s] to a moment at which the TPM is x longer than at rest.
-double AxialElements::kelvin_after(double h, const State& state, std::size_t t) const {
+double AxialElements::kelvin_after(double h, const StateView& state, std::size_t t) const {
   const TwoSphereTpms& m = model_.tpms;
   const double x = distance(state.position, m.a[t], m.b[t]) - m.rest_length[t];
   const double damping = m.kelvin_c[t] / h;
@@ -180,21 +180,21 @@ double AxialElements::acting_part(double h, std::size_t t) const {
   return std::max(0.5, 1 - m.kelvin_c[t] / (h * (m.spring_k[t] + m.kelvin_k[t])));
 }
 
-void AxialElements::find_kelvin(double h, const State& state, std::vector<double>& after, std::size_t first,
+void AxialElements::find_kelvin(double h, const StateView& state, std::vector<double>& after, std::size_t first,
                                 std::size_t last) const {
   for (std::size_t t = first; t < last; ++t) after[t] = kelvin_after(h, state, t);
 }
 
-void AxialElements::find_acting_kelvin(double h, const State& state, std::vector<double>& acting, std::size_t first,
+void AxialElements::find_acting_kelvin(double h, const StateView& state, std::vector<double>& acting, std::size_t first,
                                        std::size_t last) const {
   for (std::size_t t = first; t < last; ++t) acting[t] = kelvin_after(acting_part(h, t) * h, state, t);
 }
 
-void AxialElements::finish_kelvin(double h, const std::vector<double>& acting, State& state, std::size_t first,
-                                  std::size_t last) const {
+void AxialElements::finish_kelvin(double h, const std::vector<double>& before, std::vector<double>& kelvin,
+                                  std::size_t first, std::size_t last) const {
   for (std::size_t t = first; t < last; ++t) {
-    double& z = state.kelvin_elongation[t];
-    z += (acting[t] - z) / acting_part(h, t);
+    const double z = before[t];
+    kelvin[t] = z + (kelvin[t] - z) / acting_part(h, t);
   }
 }
 

@@ -5,7 +5,7 @@
 
 #include "core/elements/kernels/kernels.h"
 #include "core/model/model.h"
-#include "core/model/state.h"
+#include "core/model/state_view.h"
 #include "core/parallel/slabs.h"
 
 namespace ctpm {
@@ -23,7 +23,7 @@ class AxialElements {
   AxialElements(const Model& model, const Slabs& slabs, const Kernels& kernels);
 
   /// What the loops of one call read and write; `softness` as in Elements, null without it.
-  AxialArrays arrays(const State& state, const double* softness) const;
+  AxialArrays arrays(const StateView& state, const double* softness) const;
 
   /// Adds the forces of this moment [N] of one slab's elements to `m.force`.
   void add_forces(const AxialArrays& m, int slab) const;
@@ -40,14 +40,15 @@ class AxialElements {
   void apply(int slab, const Real* v, SlabTarget<Real> result) const;
 
   /// As Elements::find_kelvin(), find_acting_kelvin() and finish_kelvin(), of two-sphere TPMs [first, last).
-  void find_kelvin(double h, const State& state, std::vector<double>& after, std::size_t first, std::size_t last) const;
-  void find_acting_kelvin(double h, const State& state, std::vector<double>& acting, std::size_t first,
+  void find_kelvin(double h, const StateView& state, std::vector<double>& after, std::size_t first,
+                   std::size_t last) const;
+  void find_acting_kelvin(double h, const StateView& state, std::vector<double>& acting, std::size_t first,
                           std::size_t last) const;
-  void finish_kelvin(double h, const std::vector<double>& acting, State& state, std::size_t first,
+  void finish_kelvin(double h, const std::vector<double>& before, std::vector<double>& kelvin, std::size_t first,
                      std::size_t last) const;
 
  private:
-  double kelvin_after(double h, const State& state, std::size_t t) const;
+  double kelvin_after(double h, const StateView& state, std::size_t t) const;
   double acting_part(double h, std::size_t t) const;
 
   using Batches = std::vector<AxialBatch>;

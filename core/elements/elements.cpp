@@ -63,7 +63,7 @@ void Elements::bring(const SlabTarget<Real>& own, std::size_t rows, Real* all) c
 template void Elements::bring(const SlabTarget<float>& own, std::size_t rows, float* all) const;
 template void Elements::bring(const SlabTarget<double>& own, std::size_t rows, double* all) const;
 
-Elements::Arrays Elements::arrays(const State& state) {
+Elements::Arrays Elements::arrays(const StateView& state) {
   double* softness = softness_.empty() ? nullptr : softness_.data();
   return {constraints_.arrays(state, softness), angles_.arrays(state, nullptr), axial_.arrays(state, softness)};
 }
@@ -77,7 +77,7 @@ void Elements::measure(const Arrays& arrays) {
   });
 }
 
-void Elements::add_forces(const State& state, Coordinates& force) {
+void Elements::add_forces(const StateView& state, Coordinates& force) {
   add_forces(
       state, force, [](int) {}, [](int) {});
 }
@@ -117,24 +117,26 @@ void Elements::linearise_of(int slab, Arrays arrays, double h, bool with_dashpot
 }
 
 template <class Part>
-void Elements::for_tpms(const State& state, Part&& part) const {
-  const std::size_t tpms = state.kelvin_elongation.size(), parts = std::size_t(slabs_.count());
+void Elements::for_tpms(std::size_t tpms, Part&& part) const {
+  const std::size_t parts = std::size_t(slabs_.count());
   if (kOnlySprings || tpms == 0) return;
   team_.for_each(slabs_.count(),
                  [&](int slab) { part(tpms * std::size_t(slab) / parts, tpms * std::size_t(slab + 1) / parts); });
 }
 
-void Elements::find_kelvin(double h, const State& state, std::vector<double>& after) const {
-  for_tpms(state, [&](std::size_t first, std::size_t last) { axial_.find_kelvin(h, state, after, first, last); });
+void Elements::find_kelvin(double h, const StateView& state, std::vector<double>& after) const {
+  for_tpms(state.kelvin_elongation.size(),
+           [&](std::size_t first, std::size_t last) { axial_.find_kelvin(h, state, after, first, last); });
 }
 
-void Elements::find_acting_kelvin(double h, const State& state, std::vector<double>& acting) const {
-  for_tpms(state,
+void Elements::find_acting_kelvin(double h, const StateView& state, std::vector<double>& acting) const {
+  for_tpms(state.kelvin_elongation.size(),
            [&](std::size_t first, std::size_t last) { axial_.find_acting_kelvin(h, state, acting, first, last); });
 }
 
-void Elements::finish_kelvin(double h, const std::vector<double>& acting, State& state) const {
-  for_tpms(state, [&](std::size_t first, std::size_t last) { axial_.finish_kelvin(h, acting, state, first, last); });
+void Elements::finish_kelvin(double h, const std::vector<double>& before, std::vector<double>& kelvin) const {
+  for_tpms(kelvin.size(),
+           [&](std::size_t first, std::size_t last) { axial_.finish_kelvin(h, before, kelvin, first, last); });
 }
 
 }  // namespace ctpm

@@ -7,7 +7,7 @@
 #include "core/elements/lines.h"
 #include "core/elements/only_springs.h"
 #include "core/model/model.h"
-#include "core/model/state.h"
+#include "core/model/state_view.h"
 #include "core/parallel/slabs.h"
 #include "core/parallel/team.h"
 
@@ -19,19 +19,19 @@ class Elements {
   /// `model` and `team` must outlive the Elements.
   Elements(const Model& model, Team& team, InstructionSet set = best_instruction_set());
 
-  /// Adds the forces of this moment [N] to `force`: springs, dashpots at State::velocity, two-sphere TPMs at
+  /// Adds the forces of this moment [N] to `force`: springs, dashpots at StateView::velocity, two-sphere TPMs at
   /// their present Kelvin elongation, constraints, softening (Eqs. 1-8)  (3 x sphere_count).
-  void add_forces(const State& state, Coordinates& force);
+  void add_forces(const StateView& state, Coordinates& force);
 
   /// As above, with before(slab) ahead of what is added to a slab's spheres and after(slab) behind it.
   template <class Before, class After>
-  void add_forces(const State& state, Coordinates& force, Before&& before, After&& after);
+  void add_forces(const StateView& state, Coordinates& force, Before&& before, After&& after);
 
   /// Adds the elastic forces [N] to `force` and the diagonal of h^2 K + h C [kg] to `blocks`, for a step of `h` [s], at
   /// the end of which two-sphere TPMs are meant; before(slab) is called ahead of what is added to a slab's spheres. The
   /// dashpots' forces are left to the matrix unless `with_dashpots`.
   template <class Before>
-  void linearise(const State& state, double h, bool with_dashpots, Coordinates& force, DiagonalBlocks& blocks,
+  void linearise(const StateView& state, double h, bool with_dashpots, Coordinates& force, DiagonalBlocks& blocks,
                  Before&& before);
 
   /// result += (h^2 K + h C) v as of the last linearise(), in the precision of `v`, float or double  (3 x sphere_count
@@ -39,24 +39,24 @@ class Elements {
   template <class Real, class After>
   void apply(const Real* v, Real* result, After&& after) const;
 
-  /// Kelvin elongations of the two-sphere TPMs [m] at the end of a step of `h` [s] from State::kelvin_elongation that
-  /// has moved to State::position; first order  (tpm_count).
-  void find_kelvin(double h, const State& state, std::vector<double>& after) const;
-  void advance_kelvin(double h, State& state) const { find_kelvin(h, state, state.kelvin_elongation); }
+  /// Kelvin elongations of the two-sphere TPMs [m] at the end of a step of `h` [s] from StateView::kelvin_elongation
+  /// with the spheres at StateView::position at its end; first order  (tpm_count).
+  void find_kelvin(double h, const StateView& state, std::vector<double>& after) const;
 
-  /// Kelvin elongations [m] that act in a step of `h` [s] in whose middle the spheres are at State::position; second
-  /// order where the step resolves them  (tpm_count).
-  void find_acting_kelvin(double h, const State& state, std::vector<double>& acting) const;
+  /// Kelvin elongations [m] that act in a step of `h` [s] in whose middle the spheres are at StateView::position;
+  /// second order where the step resolves them  (tpm_count).
+  void find_acting_kelvin(double h, const StateView& state, std::vector<double>& acting) const;
 
-  /// Brings the Kelvin elongations to the end of that step.
-  void finish_kelvin(double h, const std::vector<double>& acting, State& state) const;
+  /// Kelvin elongations [m] at the end of that step, in place of those that act in it; `before`: at its start
+  /// (tpm_count).
+  void finish_kelvin(double h, const std::vector<double>& before, std::vector<double>& kelvin) const;
 
   const Slabs& slabs() const { return slabs_; }
 
  private:
   /// Calls part(first, last) for ranges of two-sphere TPMs, in parallel.
   template <class Part>
-  void for_tpms(const State& state, Part&& part) const;
+  void for_tpms(std::size_t tpms, Part&& part) const;
 
   /// Room for what one slab's elements add, before it goes to where all spheres are; with a single slab none is needed.
   struct Workbench {
@@ -70,7 +70,7 @@ class Elements {
     AxialArrays axial;
   };
 
-  Arrays arrays(const State& state);
+  Arrays arrays(const StateView& state);
   void measure(const Arrays& arrays);
   void add_forces_of(int slab, Arrays arrays, Coordinates& force);
   void prepare_linearise();
@@ -95,7 +95,7 @@ class Elements {
 };
 
 template <class Before, class After>
-void Elements::add_forces(const State& state, Coordinates& force, Before&& before, After&& after) {
+void Elements::add_forces(const StateView& state, Coordinates& force, Before&& before, After&& after) {
   make_room(3, 0);
   const Arrays all = arrays(state);
   measure(all);
@@ -103,8 +103,8 @@ void Elements::add_forces(const State& state, Coordinates& force, Before&& befor
 }
 
 template <class Before>
-void Elements::linearise(const State& state, double h, bool with_dashpots, Coordinates& force, DiagonalBlocks& blocks,
-                         Before&& before) {
+void Elements::linearise(const StateView& state, double h, bool with_dashpots, Coordinates& force,
+                         DiagonalBlocks& blocks, Before&& before) {
   prepare_linearise();
   const Arrays all = arrays(state);
   measure(all);

@@ -113,7 +113,7 @@ LineElements::LineElements(const Model& model, bool is_constraint, const std::ve
   lambda_.resize(k_.size());
 }
 
-LineArrays LineElements::arrays(const State& state, double* softness) {
+LineArrays LineElements::arrays(const StateView& state, double* softness) {
   const std::vector<std::uint8_t>& severed = is_constraint_ ? state.constraint_severed : state.angle_severed;
   LineArrays m{};
   m.spheres = state.position.size();

@@ -6,7 +6,7 @@
 #include "core/elements/axial.h"
 #include "core/elements/kernels/kernels.h"
 #include "core/model/model.h"
-#include "core/model/state.h"
+#include "core/model/state_view.h"
 #include "core/parallel/slabs.h"
 
 namespace ctpm {
@@ -23,7 +23,7 @@ class LineElements {
 
   /// What the loops of one call read and write. `softness` [1] = 1 / (1 + tan theta) of each sphere, null without
   /// softening.
-  LineArrays arrays(const State& state, double* softness);
+  LineArrays arrays(const StateView& state, double* softness);
 
   /// Of lines whose middle sphere is the slab's own, lambda and the sphere's softness: the least of all lines centred
   /// on it (Eq. 8).

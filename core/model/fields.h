@@ -46,6 +46,12 @@ void for_each_field(Tool_& t, Visit&& visit) {
   visit("radius", t.radius);
   visit("blade_length", t.blade_length);
   visit("sphere", t.sphere);
+  visit("trail_distance", t.trail_distance);
+  visit("blade_reach", t.blade_reach);
+  visit("blade_reach_spacings", t.blade_reach_spacings);
+  visit("flank_height", t.flank_height);
+  visit("blade_thickness", t.blade_thickness);
+  visit("slowest_slip", t.slowest_slip);
 }
 
 template <class Organ_, class Visit>
@@ -116,6 +122,9 @@ void for_each_field(Model_& m, Visit&& visit) {
   visit("cut_resistance.edge_friction", m.cut_resistance.edge_friction);
   visit("cut_resistance.tpm_friction", m.cut_resistance.tpm_friction);
   visit("lip_k", m.lip_k);
+  visit("contact_damping", m.contact_damping);
+  visit("contact_stick_time", m.contact_stick_time);
+  visit("cut_face_stiffening", m.cut_face_stiffening);
 }
 
 }  // namespace ctpm

@@ -74,6 +74,22 @@ struct Tool {
   double radius = 0;         ///< of a ball [m], > 0; 0 for a scalpel
   double blade_length = 0;   ///< of a scalpel's edge, from the tip along the tool's +z axis [m], > 0; 0 for a ball
   std::int32_t sphere = -1;  ///< that a pin holds; -1 for the others
+
+  // How a scalpel meets tissue; other tools do not use these.
+  double trail_distance = 0.5e-3;  ///< The heading points from points towed this far behind both ends of the blade
+                                   ///< [m], > 0; default: our choice, longer than a hand trembles
+  double blade_reach = 9e-3;  ///< Least distance ahead of the edge over which an element resists [m], > 0; default: our
+                              ///< choice. It must not shrink with the lattice: soft tissue would be dragged farther
+                              ///< along before it is cut.
+  double blade_reach_spacings = 0.75;  ///< The same in spacings of the widest lattice, where that is more [1], >= 0;
+                                       ///< default: rows lie half a spacing apart, so that the next one resists before
+                                       ///< one is severed
+  double flank_height = 6e-3;     ///< The flanks reach so far behind the edge [m], >= 0; default: about the height of a
+                                  ///< surgical blade No. 10 (estimate)
+  double blade_thickness = 1e-3;  ///< Cut faces that have opened this far do not touch the flanks [m], > 0; default:
+                                  ///< estimate
+  double slowest_slip = 1e-3;     ///< Friction of the flanks falls to 0 linearly below this speed [m/s], > 0; default:
+                                  ///< our choice, so that a resting blade creeps and does not chatter
 };
 
 /// Forces that act on spheres from outside: each rises from 0 at `start` to its full size within `ramp`, and
@@ -139,18 +155,26 @@ struct Model {
 
   std::vector<Tool> tools;
   double contact_k = 0;  ///< stiffness of a tool's contact with one sphere [N/m], > 0 if there are tools that press
-  double contact_friction = 0;  ///< Coulomb coefficient between tool and tissue, >= 0
+  double contact_friction = 0;      ///< Coulomb coefficient between tool and tissue, >= 0
+  double contact_damping = 50;      ///< Hunt-Crossley damping of a tool's contact [s/m], >= 0. Default: an impact at
+                                    ///< 30 mm/s keeps 25 % of its kinetic energy (our choice).
+  double contact_stick_time = 0.1;  ///< While surfaces stick, their drag is contact_k times this [s], >= 0. Default: a
+                                    ///< sphere under a resting tool creeps over seconds (our choice).
 
   SolverSettings solver;
 
   CutResistance cut_resistance;
-  double lip_k = 0;  ///< stiffness with which the sides of a cut meet again, sphere to sphere [N/m]; 0: they
-                     ///< do not, and pass through each other
+  double lip_k = 0;  ///< stiffness of the contact of the two faces of a cut, sphere to sphere [N/m]; 0: the faces
+                     ///< pass through each other
+  double cut_face_stiffening = 8;  ///< Growth of that stiffness with penetration: factor b in 1 + (b p / s)^2 at a
+                                   ///< penetration p and a spacing s [1], >= 0; default: our choice, nothing slips
+                                   ///< through
 
   std::size_t sphere_count() const { return mass.size(); }
-  bool has_scalpel() const {
-    return std::any_of(tools.begin(), tools.end(), [](const Tool& tool) { return tool.kind == ToolKind::scalpel; });
+  bool has_tool(ToolKind kind) const {
+    return std::any_of(tools.begin(), tools.end(), [kind](const Tool& tool) { return tool.kind == kind; });
   }
+  bool has_scalpel() const { return has_tool(ToolKind::scalpel); }
   std::size_t element_count() const { return edges.size() + tpms.size() + constraints.size() + angle_springs.size(); }
 };
 

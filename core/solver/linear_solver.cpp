@@ -1,7 +1,5 @@
 #include "core/solver/linear_solver.h"
 
-#include "core/stepping/integrator.h"
-
 namespace ctpm {
 namespace {
 
@@ -9,23 +7,23 @@ namespace {
 constexpr double kStiffestForFloat = 1e4;
 
 std::variant<ConjugateGradient<float>, ConjugateGradient<double>> gradient_for(const Model& model, const Slabs& slabs,
-                                                                               Team& team, const Kernels& kernels) {
-  const double h = model.tick / model.solver.substeps;
-  if (stiffness_ratio_bound(model, h) <= kStiffestForFloat)
-    return ConjugateGradient<float>(model.mass, slabs, team, kernels);
+                                                                               Team& team, const Kernels& kernels,
+                                                                               double stiffness_ratio) {
+  if (stiffness_ratio <= kStiffestForFloat) return ConjugateGradient<float>(model.mass, slabs, team, kernels);
   return ConjugateGradient<double>(model.mass, slabs, team, kernels);
 }
 
 }  // namespace
 
-LinearSolver::LinearSolver(const Model& model, const Slabs& slabs, Team& team, const Kernels& kernels)
+LinearSolver::LinearSolver(const Model& model, const Slabs& slabs, Team& team, const Kernels& kernels,
+                           double stiffness_ratio)
     : model_(model),
       slabs_(slabs),
       team_(team),
       kernels_(kernels),
       residual_(3 * model.sphere_count()),
       parts_(std::size_t(slabs.count())),
-      gradient_(gradient_for(model, slabs, team, kernels)) {
+      gradient_(gradient_for(model, slabs, team, kernels, stiffness_ratio)) {
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
     if (model.held_axes[i] != 0) held_.push_back(std::int32_t(i));
 }

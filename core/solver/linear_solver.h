@@ -35,7 +35,8 @@ struct SolverOutcome {
 /// refinement: Higham, "Accuracy and stability of numerical algorithms", 2002, ch. 12). Mostly one round is enough.
 class LinearSolver {
  public:
-  LinearSolver(const Model& model, const Slabs& slabs, Team& team, const Kernels& kernels);
+  /// `stiffness_ratio` [1] bounds the largest eigenvalue of M^-1 (A - M).
+  LinearSolver(const Model& model, const Slabs& slabs, Team& team, const Kernels& kernels, double stiffness_ratio);
 
   /// Takes the diagonal blocks of A. Coordinates that are held, as in Model::held_axes, and the sphere `pinned` stay at
   /// the first guess: their rows are left out of the system.

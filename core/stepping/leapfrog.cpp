@@ -1,44 +1,75 @@
 #include "core/stepping/leapfrog.h"
 
-#include "core/elements/only_springs.h"
+#include "core/stepping/external_loads.h"
 
 namespace ctpm {
 
-Leapfrog::Leapfrog(const Model& model, const Slabs& slabs)
-    : model_(model), slabs_(slabs), held_(model, slabs), force_(3 * model.sphere_count()) {
+Leapfrog::Leapfrog(const StepContext& context)
+    : context_(context),
+      held_(context.model, context.elements.slabs()),
+      check_(context),
+      force_(3 * context.model.sphere_count()) {
+  const Model& model = context.model;
   per_mass_.reserve(model.sphere_count());
   for (const double mass : model.mass) per_mass_.push_back(1 / mass);
+  if (model.has_tool(ToolKind::pin)) pinned_velocity_.resize(model.sphere_count());
 }
 
-void Leapfrog::solve(Elements& elements, const State& state, Outside& outside, Coordinates& velocity,
-                     StepReport& report) {
-  const std::size_t n = model_.sphere_count();
-  const double* old[3] = {state.velocity.x.data(), state.velocity.y.data(), state.velocity.z.data()};
-  const auto start = [&](int slab) {
-    const auto begin = std::size_t(slabs_.begin(slab)), end = std::size_t(slabs_.end(slab));
-    set_weight(model_, begin, end, force_);
-    add_loads(model_, outside, begin, end, force_);
-  };
+bool Leapfrog::step(const State& from, const HeldTool& tool, const Substep& part, Motion& to, StepReport& report) {
+  const Model& model = context_.model;
+  Elements& elements = context_.elements;
+  const Slabs& slabs = elements.slabs();
+  const double half = 0.5 * part.h;
+  const Pin pin = Contacts::pin(tool, from.position, part.share, part.h);
+  const Vec3Array& velocity = start_velocity(from, pin);
+  drift(slabs, context_.team, from.position, velocity, half, to.position);
+  elements.find_acting_kelvin(part.h, {from, to.position, velocity, from.kelvin_elongation}, to.kelvin_elongation);
+
+  const StateView middle(from, to.position, velocity, to.kelvin_elongation);
+  kick(middle, pin, part, to.velocity);
+  const ExplicitContacts contacts =
+      context_.contacts.push_apart(middle, tool, {part.h, part.share - half / model.tick, pin}, to.velocity);
+  report.tool_force = contacts.tool_force();
+  if (pin.is_held()) {
+    const std::size_t i = pin.index(), n = model.sphere_count();
+    const Vec3 own{force_[i], force_[n + i], force_[2 * n + i]};
+    report.tool_force = own + model.mass[i] * (from.velocity[i] - pin.velocity) / part.h;
+  }
+  if (!check_.passes(to.velocity, report)) return false;
+
+  elements.finish_kelvin(part.h, from.kelvin_elongation, to.kelvin_elongation);
+  drift(slabs, context_.team, to.velocity, half, to.position);
+  report.depth = contacts.depth(to.position), report.contacts = contacts.touched();
+  return true;
+}
+
+/// The velocity at the start, with the pin's sphere already moving to the hand.
+const Vec3Array& Leapfrog::start_velocity(const State& from, const Pin& pin) {
+  if (!pin.is_held()) return from.velocity;
+  pinned_velocity_ = from.velocity;
+  pinned_velocity_.set(pin.index(), pin.velocity);
+  return pinned_velocity_;
+}
+
+/// velocity = v + h M^-1 f, with v and f in the middle of the step; contacts come later.
+void Leapfrog::kick(const StateView& middle, const Pin& pin, const Substep& part, Vec3Array& velocity) {
+  const std::size_t n = context_.model.sphere_count();
+  const Slabs& slabs = context_.elements.slabs();
+  const ExternalLoads loads{context_.model, part.time - 0.5 * part.h, part.has_loads};
+  const double* old[3] = {middle.velocity.x.data(), middle.velocity.y.data(), middle.velocity.z.data()};
+  const std::array<double*, 3> next = {velocity.x.data(), velocity.y.data(), velocity.z.data()};
+  const auto start = [&](int slab) { loads.set(std::size_t(slabs.begin(slab)), std::size_t(slabs.end(slab)), force_); };
   const auto accelerate = [&](int slab) {
-    const double h = outside.h, *per_mass = per_mass_.data();
+    const double h = part.h, *per_mass = per_mass_.data();
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double *force = &force_[axis * n], *v = old[axis];
-      double* __restrict out = &velocity[axis * n];
-      for (auto i = std::size_t(slabs_.begin(slab)); i < std::size_t(slabs_.end(slab)); ++i)
+      double* __restrict out = next[axis];
+      for (auto i = std::size_t(slabs.begin(slab)); i < std::size_t(slabs.end(slab)); ++i)
         out[i] = v[i] + h * per_mass[i] * force[i];
     }
-    held_.stop(outside, slab, velocity);
+    held_.stop(pin, slab, next);
   };
-  elements.add_forces(state, force_, start, accelerate);
-  if constexpr (kOnlySprings) return;
-  outside.contact.push_apart(outside.h, outside.held_axes, state.velocity, velocity);
-  outside.pairs.push_apart(outside.h, outside.held_axes, state.velocity, velocity);
-  report.tool_force =
-      outside.contact.force_on_tool(outside.h, velocity) + outside.pairs.force_on_tool(outside.h, velocity);
-  if (outside.pinned < 0) return;
-  const auto i = std::size_t(outside.pinned);
-  const Vec3 own{force_[i], force_[n + i], force_[2 * n + i]};
-  report.tool_force = own + model_.mass[i] * (outside.velocity_before_pin - outside.pin_velocity) / outside.h;
+  context_.elements.add_forces(middle, force_, start, accelerate);
 }
 
 }  // namespace ctpm

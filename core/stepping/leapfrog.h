@@ -1,30 +1,35 @@
 #pragma once
 
-#include "core/elements/elements.h"
-#include "core/stepping/outside.h"
+#include "core/model/state.h"
+#include "core/stepping/held_spheres.h"
+#include "core/stepping/motion.h"
 #include "core/stepping/step.h"
+#include "core/stepping/substep.h"
+#include "core/stepping/velocity_check.h"
 
 namespace ctpm {
 
-/// The kick of a leapfrog step (position Verlet): half of the way is gone with the old velocity, v' = v + h M^-1 f
-/// there, and the other half follows with the new one. Second order for one evaluation of the forces (Leimkuhler &
-/// Reich, "Simulating Hamiltonian dynamics", 2004, ch. 4), of first order in the dashpots, which see the old velocity.
-/// Explicit in the elements, implicit in each contact by itself, one after the other. Holds for steps up to
-/// stable_step_bound() (integrator.h).
+/// Leapfrog (position Verlet). Half a step of drift with the old velocity, a kick v' = v + h M^-1 f there, and half a
+/// step of drift with the new velocity. Second order for one evaluation of the forces (Leimkuhler & Reich, "Simulating
+/// Hamiltonian dynamics", 2004, ch. 4); first order in the dashpots, which see the old velocity. Explicit in the
+/// elements, implicit in each contact by itself. Stable for steps up to stable_step_bound() (integrator.h).
 class Leapfrog {
  public:
-  Leapfrog(const Model& model, const Slabs& slabs);
+  explicit Leapfrog(const StepContext& context);
 
-  /// `velocity` [m/s] at the end of the step (3 x sphere_count) from a State in its middle, which has the velocity of
-  /// its start; contacts that would pull are dropped. The force on the tool goes into `report`.
-  void solve(Elements& elements, const State& state, Outside& outside, Coordinates& velocity, StepReport& report);
+  /// One substep from `from` into `to`. False: the step is refused, `report` says why, and `to` holds nothing useful.
+  bool step(const State& from, const HeldTool& tool, const Substep& part, Motion& to, StepReport& report);
 
  private:
-  const Model& model_;
-  const Slabs& slabs_;
+  const Vec3Array& start_velocity(const State& from, const Pin& pin);
+  void kick(const StateView& middle, const Pin& pin, const Substep& part, Vec3Array& velocity);
+
+  const StepContext& context_;
   HeldSpheres held_;
-  std::vector<double> per_mass_;  ///< 1 / mass [1/kg] (sphere_count)
-  Coordinates force_;
+  VelocityCheck check_;
+  std::vector<double> per_mass_;  ///< 1 / mass [1/kg]  (sphere_count)
+  Coordinates force_;             ///< [N]
+  Vec3Array pinned_velocity_;     ///< State's, with that of the pin; empty if the Model has no pin  (sphere_count)
 };
 
 }  // namespace ctpm

@@ -1,9 +1,18 @@
 #include "core/stepping/step.h"
 
 #include <cmath>
+#include <optional>
 #include <utility>
+#include <variant>
 
-#include "core/stepping/workspace.h"
+#include "core/contact/contacts.h"
+#include "core/stepping/backward_euler.h"
+#include "core/stepping/blade_sweep.h"
+#include "core/stepping/implicit_solve.h"
+#include "core/stepping/leapfrog.h"
+#include "core/stepping/motion.h"
+#include "core/stepping/sdirk2.h"
+#include "core/stepping/substep.h"
 
 namespace ctpm {
 namespace {
@@ -18,77 +27,114 @@ bool is_usable(const Model& model, const Inputs& inputs) {
   return inputs.tool == -1 || (is_finite(inputs.position) && std::abs(length_squared - 1) < 1e-3);
 }
 
+/// One type of integrator, constructed in place.
+using AnyIntegrator = std::variant<std::monostate, Leapfrog, BackwardEuler, Sdirk2>;
+
 }  // namespace
 
-/// A scalpel's way in this tick, and what it severs of the tissue as it rests.
-void Stepper::Workspace::sweep(State& state, const Inputs& last, const Inputs& inputs, Grip& grip, StepReport& report) {
-  crossings.clear();
-  grip.blade.from = blade_edge(*grip.tool, last), grip.blade.to = blade_edge(*grip.tool, inputs);
-  if (!state.blade_trail.x.empty()) {
-    if (state.last_inputs.tool != inputs.tool)
-      state.blade_trail.set(0, grip.blade.to.tip), state.blade_trail.set(1, grip.blade.to.heel);
-    tow(state.blade_trail, grip.blade);
+/// Kernels, integrator and scratch of one Model.
+struct Stepper::Parts {
+  Parts(const Model& m, const StepperOptions& options)
+      : model(m),
+        choice(check_integrator(m)),
+        kernels(kernels_for(options.instruction_set)),
+        team(options.threads),
+        elements(m, team, options.instruction_set),
+        contacts(m, kernels),
+        next(m) {
+    if (m.has_scalpel()) blade.emplace(m);
+    if (choice.integrator == Integrator::leapfrog) {
+      integrator.emplace<Leapfrog>(context);
+      return;
+    }
+    implicit_solve.emplace(context);
+    if (choice.integrator == Integrator::sdirk2)
+      integrator.emplace<Sdirk2>(context, *implicit_solve);
+    else
+      integrator.emplace<BackwardEuler>(context, *implicit_solve);
   }
-  near->find(state.position, blade.around(grip.blade));
-  report.severed = sever_swept_by_blade(model, *near, grip.blade.from, grip.blade.to, state.position, state, crossings);
-  grip.swept = crossings.size();
+
+  HeldTool hold(const Inputs& last, const Inputs& inputs) const;
+  bool advance(const State& from, const HeldTool& tool, const Substep& part, StepReport& report);
+  bool run_substeps(State& state, const HeldTool& tool, StepReport& report);
+
+  const Model& model;
+  IntegratorChoice choice;
+  const Kernels& kernels;
+  Team team;
+  Elements elements;
+  Contacts contacts;
+  StepContext context{model, kernels, team, elements, contacts};
+  std::optional<ImplicitSolve> implicit_solve;  ///< of implicit integrators
+  AnyIntegrator integrator;
+  std::optional<BladeSweep> blade;  ///< empty if the Model has no scalpel
+  Motion next;                      ///< to which a substep leads
+  State trial;                      ///< of a tick that changes more than once before it is taken
+  bool has_loads = true;
+};
+
+HeldTool Stepper::Parts::hold(const Inputs& last, const Inputs& inputs) const {
+  HeldTool tool;
+  tool.tool = inputs.tool >= 0 ? &model.tools[std::size_t(inputs.tool)] : nullptr;
+  tool.from = last.position, tool.to = inputs.position;
+  return tool;
 }
 
-/// What the hand feels after the last substep.
-void Stepper::Workspace::report_tool(const State& state, StepReport& report) const {
-  if (pinned >= 0) {
-    const auto i = std::size_t(pinned);
-    report.depth = norm(state.position[i] - model.rest_position[i]);
-    report.contacts = 1;
-    return;
+/// One substep into `next`. False: it must be refused.
+bool Stepper::Parts::advance(const State& from, const HeldTool& tool, const Substep& part, StepReport& report) {
+  return std::visit(
+      [&]<class Method>(Method& method) {
+        if constexpr (std::is_same_v<Method, std::monostate>)
+          return false;
+        else
+          return method.step(from, tool, part, next, report);
+      },
+      integrator);
+}
+
+/// All substeps of a tick. False: one was refused; `state` is then as before that one.
+bool Stepper::Parts::run_substeps(State& state, const HeldTool& tool, StepReport& report) {
+  const std::int32_t substeps = choice.substeps;
+  const double h = model.tick / substeps;
+  for (std::int32_t k = 1; k <= substeps; ++k) {
+    const double share = double(k) / substeps, time = (double(state.tick) + share) * model.tick;
+    if (!advance(state, tool, {h, time, share, has_loads}, report)) return false;
+    commit(next, state);
+    // The positions before are now in `next`.
+    if (tool.is(ToolKind::scalpel)) blade->sever_moved(tool, next.position, state, report);
   }
-  report.depth = contact.depth(state);
-  report.contacts = contact.count() + pairs.tool_count();
+  return true;
 }
 
 Stepper::Stepper(const Model& model, const StepperOptions& options)
-    : model_(model), work_(std::make_unique<Workspace>(model, options)) {}
+    : model_(model), parts_(std::make_unique<Parts>(model, options)) {}
 Stepper::~Stepper() = default;
 Stepper::Stepper(Stepper&&) noexcept = default;
 
-const IntegratorChoice& Stepper::integrator() const { return work_->choice; }
+const IntegratorChoice& Stepper::integrator() const { return parts_->choice; }
 
 StepReport Stepper::step(State& state, const Inputs& inputs) {
-  Workspace& work = *work_;
+  Parts& parts = *parts_;
   StepReport report;
   if (!is_usable(model_, inputs)) report.status = StepStatus::bad_input;
-  if (!work.choice.holds) report.status = StepStatus::too_long;
+  if (!parts.choice.holds) report.status = StepStatus::too_long;
   if (report.status != StepStatus::ok) return report;
-  // A tool that was not in the hand before has no way behind it.
+  // A tool that was not held before has not moved yet.
   const Inputs last = inputs.tool >= 0 && state.last_inputs.tool == inputs.tool ? state.last_inputs : inputs;
-  Grip grip;
-  grip.tool = inputs.tool >= 0 ? &model_.tools[std::size_t(inputs.tool)] : nullptr;
-  grip.from = last.position, grip.to = inputs.position;
-  const bool cuts = grip.is(ToolKind::scalpel);
-  // One uncut step is checked before State changes; all others may have to be taken back.
-  const bool keeps_backup = cuts || work.choice.integrator == Integrator::sdirk2 || work.choice.substeps > 1;
-  if (keeps_backup) work.backup = state;
-  if (cuts) work.sweep(state, last, inputs, grip, report);
-  work.held_axes = model_.held_axes;
-  work.pinned = grip.is(ToolKind::pin) ? grip.tool->sphere : -1;
-  if (work.pinned >= 0) work.held_axes[std::size_t(work.pinned)] = kAnchored;
-
-  const std::int32_t substeps = work.choice.substeps;
-  const double h = model_.tick / substeps;
-  for (std::int32_t k = 1; k <= substeps; ++k) {
-    const double share = double(k) / substeps, time = (double(state.tick) + share) * model_.tick;
-    if (cuts) work.before = state.position;
-    if (!work.advance(state, grip, {h, time, share}, report)) {
-      if (keeps_backup) std::swap(state, work.backup);
-      return report;
-    }
-    if (!cuts) continue;
-    work.near->follow(state.position);
-    report.severed += sever_moved_through_blade(model_, *work.near, grip.blade.to, work.before, state.position, state,
-                                                work.crossings);
+  HeldTool tool = parts.hold(last, inputs);
+  const bool cuts = tool.is(ToolKind::scalpel);
+  // An integrator leaves State as it is until its substep is taken. Ticks that change State more than once do that in
+  // `trial`.
+  const bool changes_once = !cuts && parts.choice.substeps == 1;
+  if (!changes_once) parts.trial = state;
+  State& current = changes_once ? state : parts.trial;
+  if (cuts) parts.blade->sweep(parts.contacts, last, inputs, tool, current, report);
+  if (!parts.run_substeps(current, tool, report)) {
+    report.depth = 0, report.contacts = 0;
+    return report;
   }
-  work.report_tool(state, report);
-  if (report.severed > 0) (void)work.pieces.find(state), report.came_loose = work.pieces.rejoin(work.crossings);
+  if (cuts) parts.blade->report_pieces(current, report);
+  if (!changes_once) std::swap(state, parts.trial);
   state.last_inputs = inputs;
   ++state.tick;
   return report;
@@ -97,7 +143,7 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
 StepReport Stepper::settle(State& state, std::int64_t ticks) {
   const std::int64_t start = state.tick;
   StepReport report;
-  work_->has_loads = false;
+  parts_->has_loads = false;
   for (std::int64_t i = 0; i < ticks; ++i) {
     report = step(state, Inputs{});
     if (is_refused(report.status)) break;
@@ -105,7 +151,7 @@ StepReport Stepper::settle(State& state, std::int64_t ticks) {
     if (norm(fastest) < kAtRest) break;
   }
   state.tick = start;
-  work_->has_loads = true;
+  parts_->has_loads = true;
   return report;
 }
 

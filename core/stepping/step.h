@@ -61,9 +61,9 @@ class Stepper {
   const IntegratorChoice& integrator() const;
 
  private:
-  struct Workspace;
+  struct Parts;
   const Model& model_;
-  std::unique_ptr<Workspace> work_;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace ctpm

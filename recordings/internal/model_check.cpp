@@ -59,6 +59,13 @@ class Checker {
         name, values, [](double v) { return std::isfinite(v) && v >= 0; }, "must be finite and not below 0");
   }
 
+  void not_negative(const std::string& name, double value) {
+    require(std::isfinite(value) && value >= 0, name, "must be finite and not below 0");
+  }
+  void positive(const std::string& name, double value) {
+    require(std::isfinite(value) && value > 0, name, "must be finite and above 0");
+  }
+
   void flags(const std::string& name, const std::vector<std::uint8_t>& values, int largest = 1) {
     each(
         name, values, [largest](std::uint8_t v) { return v <= largest; }, "has unknown bits");
@@ -166,7 +173,8 @@ void check_cut_resistance(Checker& check, const Model& model) {
   one("cut_resistance.tpm_energy", cut.tpm_energy, model.tpms.size());
   one("cut_resistance.edge_friction", cut.edge_friction, model.edges.size());
   one("cut_resistance.tpm_friction", cut.tpm_friction, model.tpms.size());
-  check.require(std::isfinite(model.lip_k) && model.lip_k >= 0, "lip_k", "must be finite and not below 0");
+  check.not_negative("lip_k", model.lip_k);
+  check.not_negative("cut_face_stiffening", model.cut_face_stiffening);
 }
 
 void check_organs(Checker& check, const Model& model) {
@@ -193,6 +201,13 @@ void check_tools(Checker& check, const Model& model) {
     check.require(
         std::isfinite(tool.radius) && tool.radius >= 0 && std::isfinite(tool.blade_length) && tool.blade_length >= 0,
         name, "has a size that is not finite or below 0");
+    // The law of the blade divides by these.
+    check.positive(name + ".trail_distance", tool.trail_distance);
+    check.positive(name + ".blade_reach", tool.blade_reach);
+    check.positive(name + ".blade_thickness", tool.blade_thickness);
+    check.positive(name + ".slowest_slip", tool.slowest_slip);
+    check.not_negative(name + ".blade_reach_spacings", tool.blade_reach_spacings);
+    check.not_negative(name + ".flank_height", tool.flank_height);
   }
 }
 
@@ -215,9 +230,10 @@ Errors check_model(const Model& model) {
   check_loads(check, model);
   check_tools(check, model);
   check_cut_resistance(check, model);
-  check.require(std::isfinite(model.contact_k) && model.contact_k >= 0, "contact_k", "must be finite and not below 0");
-  check.require(std::isfinite(model.contact_friction) && model.contact_friction >= 0, "contact_friction",
-                "must be finite and not below 0");
+  check.not_negative("contact_k", model.contact_k);
+  check.not_negative("contact_friction", model.contact_friction);
+  check.not_negative("contact_damping", model.contact_damping);
+  check.not_negative("contact_stick_time", model.contact_stick_time);
 
   const SolverSettings& solver = model.solver;
   check.require(solver.tolerance > 0 && solver.tolerance < 1, "solver.tolerance", "must be in (0, 1)");

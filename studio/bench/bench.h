@@ -9,7 +9,7 @@
 #include "core/model/state.h"
 #include "core/stepping/integrator.h"
 #include "core/stepping/step.h"
-#include "studio/loaded_scene.h"
+#include "studio/loading/loaded_scene.h"
 #include "studio/reports/report.h"
 
 // Error against run time, in time, space and structure.
@@ -19,6 +19,7 @@ struct BenchOptions {
   std::vector<std::string> scenes;  ///< scene files for the study in time; empty: the shipped ones
   std::string shipped;              ///< folder of the shipped scenes
   bool is_quick = false;            ///< coarser fillings, fewer settings: for a first look
+  std::function<void(const Errors& warnings)> take_warnings;  ///< gets those of `scenes`
 };
 
 /// What a study found: a section for the page, rows for programs, sentences that say what follows.

@@ -3,7 +3,7 @@
 
 #include "studio/bench/bench.h"
 #include "studio/commands/command.h"
-#include "studio/console.h"
+#include "studio/commands/console.h"
 
 namespace ctpm {
 namespace {
@@ -52,6 +52,7 @@ int run_bench(const BenchArguments& arguments) {
 
 Command add_bench(CLI::App& program) {
   auto arguments = std::make_shared<BenchArguments>();
+  arguments->options.take_warnings = print_warnings;
   arguments->options.shipped = std::string(CTPM_SOURCE_DIR) + "/scenes";
   CLI::App* app = program.add_subcommand(
       "bench", "Measures error against run time: integrators and steps, sphere radius, structure.");

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "studio/commands/command.h"
-#include "studio/console.h"
-#include "studio/loaded_scene.h"
+#include "studio/commands/console.h"
+#include "studio/loading/loaded_scene.h"
 
 namespace ctpm {
 namespace {
@@ -22,6 +22,7 @@ int run_check(const CheckArguments& arguments) {
       code = print_errors(scene.errors());
       continue;
     }
+    print_warnings(scene->scene.warnings);
     std::printf("%s: good, %zu spheres, %zu elements\n", path.c_str(), scene->built.model.sphere_count(),
                 scene->built.model.element_count());
   }

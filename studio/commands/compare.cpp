@@ -2,10 +2,11 @@
 #include <string>
 
 #include "studio/commands/command.h"
+#include "studio/commands/comparison_text.h"
+#include "studio/commands/console.h"
 #include "studio/commands/physics_warning.h"
-#include "studio/compare/comparison_report.h"
-#include "studio/console.h"
-#include "studio/loaded_scene.h"
+#include "studio/compare/report.h"
+#include "studio/loading/loaded_scene.h"
 #include "studio/reports/report.h"
 
 namespace ctpm {
@@ -45,11 +46,12 @@ int run_compare(const CompareArguments& arguments) {
     options.damage_force = damage_force_of(text->spec);
   const Comparison comparison = compare_sessions(*expert_track, *trainee_track, scene, options);
   const ComparedSessions compared{*expert_track, *trainee_track, scene, comparison};
+  const std::string to_see_worst = worst_moment_command(compared);
   if (!arguments.folder.empty())
-    if (const Result<Done> written = write_comparison(arguments.folder, compared); !written)
+    if (const Result<Done> written = write_comparison(arguments.folder, compared, to_see_worst); !written)
       return print_errors(written.errors());
   for (const std::string& remark : remarks_of(compared)) print_remark("warning: " + remark);
-  std::fputs((arguments.json ? comparison_json(compared) : comparison_text(compared)).c_str(), stdout);
+  std::fputs((arguments.json ? comparison_json(compared) : comparison_text(compared, to_see_worst)).c_str(), stdout);
   if (!arguments.folder.empty()) print_remark("written: " + arguments.folder + "/report.html, results.json");
   return exit_good;
 }

@@ -9,14 +9,15 @@
 #include <vector>
 
 #include "recordings/session_reader.h"
+#include "studio/authoring/import_scene.h"
 #include "studio/commands/command.h"
-#include "studio/console.h"
-#include "studio/export_video.h"
-#include "studio/files.h"
-#include "studio/import_scene.h"
-#include "studio/loaded_scene.h"
+#include "studio/commands/console.h"
+#include "studio/commands/stop_signal.h"
+#include "studio/film/export_video.h"
+#include "studio/loading/loaded_scene.h"
+#include "studio/output/files.h"
+#include "studio/output/number_text.h"
 #include "studio/session/record_session.h"
-#include "studio/session/stop_signal.h"
 
 namespace ctpm {
 namespace {
@@ -68,6 +69,7 @@ int run_demo(const DemoArguments& arguments) {
   say_step(2, "recording a session at 1000 ticks a second: a ball presses and lets go, then a scalpel cuts");
   const Result<LoadedScene> scene = load_whole_scene(scene_file);
   if (!scene) return print_errors(scene.errors());
+  print_warnings(scene->scene.warnings);
   const StopSignal stop;
   RunOptions options;
   options.should_stop = [&] { return stop.came(); };

@@ -5,11 +5,13 @@
 
 #include "recordings/session_reader.h"
 #include "studio/commands/command.h"
+#include "studio/commands/console.h"
+#include "studio/commands/flags.h"
 #include "studio/commands/physics_warning.h"
-#include "studio/console.h"
-#include "studio/export_video.h"
+#include "studio/commands/stop_signal.h"
+#include "studio/film/export_video.h"
+#include "studio/output/number_text.h"
 #include "studio/render/picture_size.h"
-#include "studio/session/stop_signal.h"
 
 namespace ctpm {
 namespace {

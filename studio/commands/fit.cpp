@@ -1,11 +1,11 @@
 #include <memory>
 #include <string>
 
+#include "studio/authoring/fit_stiffness.h"
 #include "studio/commands/command.h"
-#include "studio/console.h"
-#include "studio/files.h"
-#include "studio/fit_stiffness.h"
-#include "studio/loaded_scene.h"
+#include "studio/commands/console.h"
+#include "studio/loading/loaded_scene.h"
+#include "studio/output/files.h"
 
 namespace ctpm {
 namespace {
@@ -40,6 +40,7 @@ void print_fit(const OrganSpec& organ, const StiffnessFit& fit) {
 int run_fit(const FitArguments& arguments) {
   const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
   if (!scene) return print_errors(scene.errors());
+  print_warnings(scene->scene.warnings);
   SceneSpec spec = scene->scene.spec;
   const Result<std::size_t> organ = find_organ(spec, arguments.organ);
   if (!organ) return print_errors(organ.errors());

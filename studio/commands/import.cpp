@@ -6,11 +6,12 @@
 
 #include "importers/import.h"
 #include "scenes/anchors.h"
+#include "studio/authoring/import_scene.h"
 #include "studio/commands/command.h"
-#include "studio/console.h"
-#include "studio/files.h"
-#include "studio/import_scene.h"
-#include "studio/json_writer.h"
+#include "studio/commands/console.h"
+#include "studio/output/files.h"
+#include "studio/output/json_writer.h"
+#include "studio/output/number_text.h"
 
 namespace ctpm {
 namespace {
@@ -121,7 +122,8 @@ int run_import(ImportArguments& arguments) {
     std::printf("stiffness_scale: %.6g, fitted so that the paper's ball meets its Table 1 at 12 mm\n",
                 *outcome->stiffness_scale);
   else
-    std::printf("stiffness_scale: not fitted, the preset's moduli stay: %s\n", outcome->fit_problem.c_str());
+    std::printf("stiffness_scale: not fitted, the preset's moduli stay: %s%s\n", outcome->fit_problem.c_str(),
+                outcome->can_be_fitted_later ? ("; run ctpm fit " + outcome->scene_file + " --write").c_str() : "");
   suggest_radius(outcome->report);
   const std::string scene = arguments.request.scene, stem = scene.substr(0, scene.size() - 5);
   std::printf("written: %s, %s, %s\n", scene.c_str(), outcome->mesh_file.c_str(), outcome->script_file.c_str());

@@ -5,8 +5,8 @@
 
 #include "recordings/session_reader.h"
 #include "studio/commands/command.h"
-#include "studio/console.h"
-#include "studio/json_writer.h"
+#include "studio/commands/console.h"
+#include "studio/output/json_writer.h"
 
 namespace ctpm {
 namespace {

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "studio/commands/command.h"
-#include "studio/console.h"
+#include "studio/commands/console.h"
 #include "studio/paper/paper.h"
 
 namespace ctpm {

@@ -1,6 +1,6 @@
 #include "studio/commands/physics_warning.h"
 
-#include "studio/console.h"
+#include "studio/commands/console.h"
 
 namespace ctpm {
 

@@ -7,9 +7,9 @@
 #include "core/model/fields.h"
 #include "core/stepping/step.h"
 #include "studio/commands/command.h"
-#include "studio/console.h"
-#include "studio/json_writer.h"
-#include "studio/loaded_scene.h"
+#include "studio/commands/console.h"
+#include "studio/loading/loaded_scene.h"
+#include "studio/output/json_writer.h"
 
 namespace ctpm {
 namespace {
@@ -54,10 +54,10 @@ std::vector<Feature> features_of(const SceneSpec& scene, const Model& m, const S
   const auto counted = [](std::size_t count, const char* what, const char* none) {
     return count > 0 ? std::to_string(count) + " " + what : std::string(none);
   };
-  const bool cuts = has_tool(ToolKind::scalpel),
-             limits = std::any_of(scene.organs.begin(), scene.organs.end(), [](const OrganSpec&organ) {
-               return organ.damage_depth > 0 || organ.damage_force > 0;
-             });
+  const bool cuts = has_tool(ToolKind::scalpel);
+  const bool limits = std::any_of(scene.organs.begin(), scene.organs.end(), [](const OrganSpec& organ) {
+    return organ.damage_depth > 0 || organ.damage_force > 0;
+  });
   const std::size_t edges = bytes_of_fields(m, "edges.") - bytes_of(m.edges.c) - bytes_of(m.edges.third);
   return {
       {"spheres", true, std::to_string(m.sphere_count()) + " spheres",
@@ -117,6 +117,7 @@ std::string solver_of(const Model& model, const IntegratorChoice& choice) {
 int run_plan(const PlanArguments& arguments) {
   const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
   if (!scene) return print_errors(scene.errors());
+  print_warnings(scene->scene.warnings);
   const Model& model = scene->built.model;
   const std::vector<Feature> features = features_of(scene->scene.spec, model, rest_state(model));
   std::size_t total = 0;

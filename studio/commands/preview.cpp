@@ -3,13 +3,15 @@
 
 #include "core/stepping/step.h"
 #include "studio/commands/command.h"
-#include "studio/console.h"
-#include "studio/files.h"
-#include "studio/film/look.h"
-#include "studio/loaded_scene.h"
+#include "studio/commands/console.h"
+#include "studio/commands/flags.h"
+#include "studio/loading/loaded_scene.h"
+#include "studio/output/files.h"
 #include "studio/render/frame.h"
 #include "studio/render/picture_size.h"
 #include "studio/render/renderer.h"
+#include "studio/views/look.h"
+#include "studio/views/view_of_scene.h"
 
 namespace ctpm {
 namespace {
@@ -27,6 +29,7 @@ int run_preview(const PreviewArguments& arguments) {
   if (const Result<Done> writable = check_writable(arguments.output); !writable) return print_errors(writable.errors());
   const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
   if (!scene) return print_errors(scene.errors());
+  print_warnings(scene->scene.warnings);
   // With --spheres the surface stands on the left half and the layered spheres on the right.
   const int width = arguments.spheres ? size->width / 2 : size->width;
   const Model& model = scene->built.model;

@@ -3,15 +3,15 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "studio/commands/command.h"
-#include "studio/console.h"
-#include "studio/files.h"
-#include "studio/loaded_scene.h"
-#include "studio/session/open_source.h"
+#include "studio/commands/console.h"
+#include "studio/commands/record_source.h"
+#include "studio/commands/stop_signal.h"
+#include "studio/loading/loaded_scene.h"
+#include "studio/output/files.h"
 #include "studio/session/record_session.h"
-#include "studio/session/script_source.h"
-#include "studio/session/stop_signal.h"
 
 namespace ctpm {
 namespace {
@@ -36,11 +36,11 @@ Errors check(const RecordArguments& arguments) {
     errors.push_back({"--at", "is a moment of the session that --continue names", ""});
   if (!arguments.parent.empty() && !arguments.at_s)
     errors.push_back({"--continue", "needs --at, the moment from which to go on [s]", ""});
-  const std::string sources = source_names;
+  const std::string sources = source_flags;
   if (count_of(arguments.source) > 1) errors.push_back({"record", "takes one of " + sources, ""});
   if (!arguments.parent.empty() && count_of(arguments.source) == 0)
     errors.push_back({"--continue", "needs a source: one of " + sources, ""});
-  if (arguments.as_fast_as_possible && asks_for_device(arguments.source))
+  if (arguments.as_fast_as_possible && asks_for_device(arguments.source.device))
     errors.push_back({"--fast", "a device is followed in real time", ""});
   for (Error& error : check_device(arguments.source.device)) errors.push_back(std::move(error));
   std::error_code ignored;
@@ -57,6 +57,20 @@ struct Beginning {
   std::optional<Script> script;
 };
 
+/// What is wrong with the script, if one is given, for a scene that cannot be built: its errors are told together with
+/// those of the scene.
+Errors errors_of_script(const RecordArguments& arguments) {
+  if (arguments.source.script.empty()) return {};
+  const Result<SceneDraft> draft = load_draft(arguments.scene, arguments.load);
+  const Result<std::string> text = read_text_file(arguments.source.script);
+  if (!text) return text.errors();
+  if (!draft || !draft->problems.is_good("/tools")) return {};
+  std::vector<std::string> tools;
+  for (const ToolSpec& tool : draft->scene.spec.tools) tools.push_back(tool.name);
+  const Result<Script> script = read_script(*text, arguments.source.script, tools);
+  return script ? Errors{} : script.errors();
+}
+
 Result<Beginning> begin(const RecordArguments& arguments) {
   Beginning beginning;
   if (!arguments.parent.empty()) {
@@ -66,20 +80,15 @@ Result<Beginning> begin(const RecordArguments& arguments) {
     return beginning;
   }
   const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
-  if (!scene) return scene.errors();
+  if (!scene) {
+    Errors errors = scene.errors();
+    for (Error& error : errors_of_script(arguments)) errors.push_back(std::move(error));
+    return errors;
+  }
+  print_warnings(scene->scene.warnings);
   beginning.start = start_session(*scene);
   if (count_of(arguments.source) == 0) beginning.script = default_script(scene->scene.spec, scene->organs);
   return beginning;
-}
-
-Result<OpenedSource> open(const RecordArguments& arguments, OpenedDevice device, const Beginning& beginning) {
-  const Model& model = beginning.start.model;
-  if (!beginning.script) return open_source(arguments.source, std::move(device), model);
-  print_remark("no source is given: pressing and cutting at the top of the first organ");
-  OpenedSource opened;
-  opened.source = std::make_unique<ScriptSource>(ScriptPlayer(*beginning.script, model.tools, model.tick));
-  opened.metadata = {{"source", "script"}, {"script", write_script(*beginning.script)}};
-  return opened;
 }
 
 int print_outcome(const std::string& path, const Model& model, const RecordOutcome& outcome) {
@@ -110,7 +119,7 @@ int run_record(const RecordArguments& arguments) {
   Result<Beginning> beginning = begin(arguments);
   if (!beginning) return print_errors(beginning.errors());
   SessionStart& start = beginning->start;
-  const Result<OpenedSource> opened = open(arguments, std::move(*device), *beginning);
+  const Result<ReadySource> opened = open_source(arguments.source, std::move(*device), start.model, beginning->script);
   if (!opened) return print_errors(opened.errors());
   for (const auto& [key, value] : opened->metadata) start.metadata[key] = value;
   if (opened->device) {
@@ -133,33 +142,6 @@ int run_record(const RecordArguments& arguments) {
   return print_outcome(arguments.output, start.model, *outcome);
 }
 
-void add_device_options(CLI::App& app, DeviceRequest& device) {
-  const auto add = [&](const char* name, auto& value, const char* what) {
-    return app.add_option(name, value, what)->group("Devices (studio/devices/README.md)");
-  };
-  add("--igtl", device.address, "Takes what the hand does from an OpenIGTLink server, HOST:PORT");
-  add("--igtl-listen", device.listen_port, "Waits on this port for an OpenIGTLink client; 0: any that is free");
-  add("--igtl-bind", device.interface,
-      "Address of this machine to listen on; others than this machine's own let in "
-      "whoever can reach it")
-      ->capture_default_str();
-  add("--igtl-name", device.name, "Takes poses of the device of this name alone");
-  add("--device-tool", device.tool, "Tool in the hand; the scene's first if not given");
-  add("--device-button", device.buttons, "BUTTON=TOOL: while the button is pressed, this tool is; none after =");
-  add("--device-scale", device.scale, "Millimetres in the scene for one of the hand")->capture_default_str();
-  add("--device-offset-mm", device.offset_mm, "Where the device's origin lies in the scene: x y z")->expected(3);
-  add("--device-rotation", device.rotation, "How the device's frame is turned in the scene: w x y z")->expected(4);
-  add("--device-tip", device.tip, "Direction from handle to tip in the instrument's frame: x y z; 0 0 -1 if not given")
-      ->expected(3);
-  add("--device-force-n", device.most_force_n, "Largest force that is sent back")->capture_default_str();
-  add("--device-stiffness-n-per-m", device.stiffness_n_per_m, "Of the spring between hand and tool")
-      ->capture_default_str();
-  add("--device-speed-mm-per-s", device.most_speed_mm_per_s, "A hand that moves faster is taken for a jump")
-      ->capture_default_str();
-  add("--device-timeout-s", device.timeout_s, "Ends the session when nothing usable came for so long")
-      ->capture_default_str();
-}
-
 }  // namespace
 
 Command add_record(CLI::App& program) {
@@ -173,12 +155,7 @@ Command add_record(CLI::App& program) {
   app->add_option("--continue", arguments->parent, "Goes on from a moment of this session (.ctpm) instead");
   app->add_option("--at", arguments->at_s, "That moment [s]");
   app->add_option("-o,--output", arguments->output, "Session file (.ctpm)")->required();
-  app->add_option("--script", arguments->source.script,
-                  "What the hand does (.json); without any source, a press and a cut at the organ's top");
-  app->add_option("--motion", arguments->source.motion,
-                  "What a hand did (.csv): time_s, tool_x_mm, tool_y_mm, tool_z_mm, and tool_qw to tool_qz, "
-                  "buttons, tool; at any rate");
-  add_device_options(*app, arguments->source.device);
+  add_source(*app, arguments->source);
   app->add_option("--duration-s", arguments->duration_s, "Ends the session after so many seconds");
   app->add_flag("--overwrite", arguments->overwrite, "Replace an existing session file");
   app->add_flag("--fast", arguments->as_fast_as_possible, "Do not wait for the clock between ticks");

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "studio/commands/command.h"
-#include "studio/console.h"
+#include "studio/commands/console.h"
 
 namespace ctpm {
 namespace {

@@ -6,9 +6,10 @@
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
 #include "studio/commands/command.h"
+#include "studio/commands/console.h"
+#include "studio/commands/flags.h"
 #include "studio/commands/physics_warning.h"
-#include "studio/console.h"
-#include "studio/files.h"
+#include "studio/output/files.h"
 #include "studio/session/time_range.h"
 
 namespace ctpm {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "studio/commands/command.h"
-#include "studio/console.h"
+#include "studio/commands/console.h"
 #include "studio/reports/report.h"
 #include "studio/stability/stability.h"
 

@@ -5,8 +5,8 @@
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
 #include "studio/commands/command.h"
+#include "studio/commands/console.h"
 #include "studio/commands/physics_warning.h"
-#include "studio/console.h"
 #include "studio/version/version.h"
 
 namespace ctpm {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "studio/devices/rotation.h"
+#include "studio/sources/rotation.h"
 
 namespace ctpm {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "studio/devices/device.h"
-#include "studio/session/input_source.h"
+#include "studio/sources/input_source.h"
 
 namespace ctpm {
 

@@ -1,6 +1,6 @@
 #include "studio/devices/device_map.h"
 
-#include "studio/devices/rotation.h"
+#include "studio/sources/rotation.h"
 
 namespace ctpm {
 

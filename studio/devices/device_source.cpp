@@ -6,7 +6,7 @@
 #include <thread>
 #include <utility>
 
-#include "studio/devices/rotation.h"
+#include "studio/sources/rotation.h"
 
 namespace ctpm {
 

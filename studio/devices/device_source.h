@@ -11,7 +11,7 @@
 #include "studio/devices/device_guard.h"
 #include "studio/devices/device_map.h"
 #include "studio/devices/virtual_coupling.h"
-#include "studio/session/input_source.h"
+#include "studio/sources/input_source.h"
 
 namespace ctpm {
 

@@ -11,7 +11,7 @@
 #include <optional>
 #include <string_view>
 
-#include "studio/devices/rotation.h"
+#include "studio/sources/rotation.h"
 
 namespace ctpm {
 namespace {

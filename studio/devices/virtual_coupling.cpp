@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "studio/devices/rotation.h"
+#include "studio/sources/rotation.h"
 
 namespace ctpm {
 

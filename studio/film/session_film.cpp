@@ -5,8 +5,9 @@
 #include <filesystem>
 
 #include "scenes/scene_file.h"
-#include "studio/console.h"
-#include "studio/loaded_scene.h"
+#include "studio/loading/loaded_scene.h"
+#include "studio/output/number_text.h"
+#include "studio/output/option_name.h"
 #include "studio/session/run_session.h"
 
 namespace ctpm {
@@ -18,7 +19,7 @@ constexpr std::int64_t kPlotPoints = 600;  ///< most points of the running force
 
 std::string structure_name(const SceneSpec& scene) {
   if (scene.organs.empty()) return "";
-  switch (scene.organs.front().model) {
+  switch (scene.organs.front().structure) {
     case Structure::mass_spring:
       return "mass-spring";
     case Structure::angle_mass_spring:
@@ -123,7 +124,8 @@ Error SessionFilm::differs() const {
   return {reader_.path(),
           "the replay differs from the recording since " + fixed(double(first_different_) * model().tick, 3) +
               " s; no video was written",
-          "ctpm verify names what differs; --allow-diverged exports all the same and says so on every frame"};
+          "verify the session to see what differs; " + option_name("export.allow_diverged") +
+              " exports all the same and says so on every frame"};
 }
 
 /// With a blade in the hand, and when it was put away after a cut, the depth is that of the cut.

@@ -3,13 +3,13 @@
 #include <filesystem>
 
 #include "recordings/byte_hash.h"
-#include "studio/json_writer.h"
+#include "studio/output/json_writer.h"
 #include "studio/version/version.h"
 
 namespace ctpm {
 namespace {
 
-/// The word that `--view`, `--by` take.
+/// The name of a view in LookRequest::view.
 const char* name_of(View view) {
   switch (view) {
     case View::surface:

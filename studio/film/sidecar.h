@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "core/model/result.h"
-#include "studio/film/look.h"
 #include "studio/film/pipeline.h"
 #include "studio/film/session_film.h"
 #include "studio/video/video_writer.h"
+#include "studio/views/look.h"
 
 namespace ctpm {
 

@@ -73,20 +73,10 @@ std::string full_name(const Variant& variant) {
 }
 
 void use_variant(SceneSpec& scene, const Variant& variant) {
-  scene.organs[0].model = variant.structure;
+  scene.organs[0].structure = variant.structure;
   if (!variant.is_pa_s) return;
   scene.organs[0].material.preset += "-pa-s";
   for (LayerSpec& layer : scene.organs[0].layers) layer.material.preset += "-pa-s";
-}
-
-Site site_of(const OrganSpec& organ) {
-  const Material m = resolve_material(organ.material).material;
-  Site site;
-  site.spring = m.spring * 1e-6, site.kelvin = m.kelvin * 1e-6, site.constraint = m.constraint * 1e-6;
-  site.viscosity = m.viscosity * 1e-6;
-  site.arm = 2e3 * m.calibration_spacing;
-  site.ball_radius = 1e3 * std::sqrt(m.calibration_area / std::numbers::pi);
-  return site;
 }
 
 namespace {
@@ -116,12 +106,12 @@ Result<LoadedScene> load_experiment(const std::string& scenes, const std::string
   Errors errors;
   const std::size_t cells = spec.organs[0].rig ? spec.organs[0].rig->cells.size() : 0;
   if (cells < need->cells)
-    errors.push_back({scene->path,
-                      "/organs/0/rig/cells: got " + std::to_string(cells) +
-                          " spheres, the rig of Fig. 3 has 7: A to E on a line, and two below C",
-                      ""});
+    errors.push_back(scene->scene.places.error_at(
+        "/organs/0/rig/cells",
+        "got " + std::to_string(cells) + " spheres, the rig of Fig. 3 has 7: A to E on a line, and two below C"));
   const auto check = [&](const char* key, std::size_t got, std::size_t wanted) {
-    if (got < wanted) errors.push_back({scene->path, std::string("/") + key + ": the experiment needs one", ""});
+    if (got < wanted)
+      errors.push_back(scene->scene.places.error_at(std::string("/") + key, "the experiment needs one"));
   };
   check("loads", spec.loads.size(), need->loads), check("probes", spec.probes.size(), need->probes),
       check("tools", spec.tools.size(), need->tools);
@@ -135,39 +125,6 @@ Errors check_experiments(const std::string& scenes) {
     if (const Result<LoadedScene> scene = load_experiment(scenes, need.name); !scene)
       errors.insert(errors.end(), scene.errors().begin(), scene.errors().end());
   return errors;
-}
-
-Result<BuiltScene> build_changed(const LoadedScene& scene, const std::function<void(SceneSpec&)>& change) {
-  SceneSpec spec = scene.scene.spec;
-  change(spec);
-  return build_model(spec, scene.organs);
-}
-
-const std::vector<PrintedRow>& printed_table(const std::string& organ) {
-  static const std::map<std::string, std::vector<PrintedRow>> kPrinted{{"skin",
-                                                                        {{2, 0.37, 1.6, 1.7},
-                                                                         {4, 1.47, 3.9, 3.6},
-                                                                         {6, 3.3, 6.1, 5.7},
-                                                                         {8, 5.8, 9.2, 7.7},
-                                                                         {10, 8.9, 12.3, 9.9},
-                                                                         {12, 12.6, 15.8, 12.3}}},
-                                                                       {"kidney",
-                                                                        {{2, 0.73, 0.42, 0.37},
-                                                                         {4, 2.9, 0.8, 0.7},
-                                                                         {6, 6.3, 1.5, 1.2},
-                                                                         {8, 10.8, 2.2, 1.7},
-                                                                         {10, 16.3, 3.2, 2.3},
-                                                                         {12, 22.4, 4.5, 3.0}}},
-                                                                       {"liver",
-                                                                        {{2, 0.14, 0.19, 0.17},
-                                                                         {4, 0.54, 0.4, 0.25},
-                                                                         {6, 1.2, 0.66, 0.38},
-                                                                         {8, 2.1, 0.96, 0.62},
-                                                                         {10, 3.1, 1.3, 0.84},
-                                                                         {12, 4.2, 1.8, 1.1}}}};
-  const auto it = kPrinted.find(organ);
-  CTPM_CHECK(it != kPrinted.end(), "the paper has skin, kidney and liver");
-  return it->second;
 }
 
 }  // namespace ctpm

@@ -8,8 +8,7 @@
 
 #include "core/model/result.h"
 #include "scenes/scene_spec.h"
-#include "studio/loaded_scene.h"
-#include "studio/paper/closed_forms.h"
+#include "studio/loading/loaded_scene.h"
 #include "studio/reports/report.h"
 
 // The experiments of Bao & Wu, run on the sphere network. Each takes the folder of the shipped scenes, runs
@@ -115,29 +114,11 @@ StepResponse step_response_of(const Series& series);
 /// All claims as one table, for the page, results.json and results.csv.
 Table claims_table(const std::vector<Claim>& claims);
 
-/// The site of the closed forms that an organ's material and filling are.
-Site site_of(const OrganSpec& organ);
-
 /// Loads a scene of an experiment by its path within the folder of the shipped scenes. Errors: those of the
 /// scene; too few spheres for the rig of Fig. 3; no load, probe or tool where the experiment uses one.
 Result<LoadedScene> load_experiment(const std::string& scenes, const std::string& name);
 
 /// What is wrong with the scenes of all experiments together; empty: nothing.
 Errors check_experiments(const std::string& scenes);
-
-/// The loaded scene built again after `change`; its meshes are not read again.
-Result<BuiltScene> build_changed(const LoadedScene& scene, const std::function<void(SceneSpec&)>& change);
-
-/// What the paper prints in its Table 1.
-struct PrintedRow {
-  double depth;              ///< [mm]
-  double lambda, tpm, ctpm;  ///< [kPa/mm], [N], [N]
-};
-/// The six rows of an organ: "skin", "kidney" or "liver".
-const std::vector<PrintedRow>& printed_table(const std::string& organ);
-
-/// Force at rest at each depth of a rig whose pin holds C [N]: pressed on at 10 mm/s from depth to depth and held at
-/// each until the spheres beside C, which nothing but the step damps, have stopped swinging. Error: a step that failed.
-Result<std::vector<double>> press_rig(const Model& model, const std::string& name, const std::vector<PrintedRow>& rows);
 
 }  // namespace ctpm

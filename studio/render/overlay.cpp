@@ -1,4 +1,5 @@
 #include "studio/render/overlay.h"
+#include "studio/output/number_text.h"
 
 #include <algorithm>
 #include <array>
@@ -16,12 +17,6 @@ constexpr Ink kWhite{240, 243, 246}, kGrey{168, 178, 188}, kAmber{255, 190, 80},
     kGreen{96, 205, 140};
 constexpr int kFont = cv::FONT_HERSHEY_DUPLEX;
 constexpr int kOversample = 4;  // strokes are drawn this many times larger and averaged down
-
-std::string fixed(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
 
 /// The strokes of one character, ready to be blended.
 struct Glyph {

@@ -1,4 +1,5 @@
 #include "studio/reports/plot.h"
+#include "studio/output/number_text.h"
 
 #include <algorithm>
 #include <array>
@@ -241,12 +242,6 @@ std::string escape_html(const std::string& text) {
         out += c;
     }
   return out;
-}
-
-std::string short_number(double value, int significant) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*g", significant, std::abs(value) < 1e-300 ? 0.0 : value);
-  return text;
 }
 
 std::string to_svg(const Plot& plot) {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "studio/json_writer.h"
+#include "studio/output/json_writer.h"
 
 namespace ctpm {
 
@@ -54,8 +54,5 @@ void write_points(JsonWriter& json, const Plot& plot);
 
 /// Text as it may stand in HTML, SVG and attributes.
 std::string escape_html(const std::string& text);
-
-/// A number as a person writes it: few digits, no needless zeros.
-std::string short_number(double value, int significant = 4);
 
 }  // namespace ctpm

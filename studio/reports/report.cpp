@@ -4,7 +4,8 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "studio/files.h"
+#include "studio/output/files.h"
+#include "studio/output/option_name.h"
 
 namespace ctpm {
 namespace {
@@ -118,7 +119,9 @@ Result<std::string> to_data_uri(const Frame& frame) {
 Result<Done> prepare_folder(const std::string& folder) {
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
-  if (failure) return Error{folder, "cannot be made: " + failure.message(), "give another folder with -o"};
+  if (failure)
+    return Error{folder, "cannot be made: " + failure.message(),
+                 "give another folder with " + option_name("report.folder")};
   return check_writable((std::filesystem::path(folder) / "report.html").string());
 }
 

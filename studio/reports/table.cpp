@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "core/model/result.h"
+#include "studio/output/number_text.h"
 #include "studio/reports/plot.h"
 
 namespace ctpm {

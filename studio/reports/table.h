@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "studio/json_writer.h"
+#include "studio/output/json_writer.h"
 
 namespace ctpm {
 

@@ -8,8 +8,9 @@
 #include "recordings/session_reader.h"
 #include "recordings/session_writer.h"
 #include "scenes/scene_file.h"
-#include "studio/console.h"
-#include "studio/session/script_source.h"
+#include "studio/output/number_text.h"
+#include "studio/output/option_name.h"
+#include "studio/sources/script_source.h"
 #include "studio/version/version.h"
 
 namespace ctpm {
@@ -31,8 +32,8 @@ Result<SessionStart> continue_session_at(const std::string& file, double at_s) {
   if (!parent) return parent.errors();
   const double tick = parent->start().model.tick, end_s = double(parent->tick_count()) * tick;
   if (!(at_s >= 0 && at_s <= end_s + 0.5 * tick))
-    return Error{"--at", "got " + fixed(at_s, 3) + ", must be in [0, " + fixed(end_s, 3) + "] s: so long lasts " + file,
-                 ""};
+    return Error{option_name("continue.at_s"),
+                 "got " + fixed(at_s, 3) + ", must be in [0, " + fixed(end_s, 3) + "] s: so long lasts " + file, ""};
   Result<SessionStart> start =
       continue_session(*parent, std::min<std::int64_t>(std::llround(at_s / tick), parent->tick_count()));
   if (!start) return start.errors();

@@ -6,9 +6,9 @@
 #include "core/model/result.h"
 #include "recordings/session.h"
 #include "scenes/script.h"
-#include "studio/loaded_scene.h"
-#include "studio/session/input_source.h"
+#include "studio/loading/loaded_scene.h"
 #include "studio/session/run_session.h"
+#include "studio/sources/input_source.h"
 
 namespace ctpm {
 

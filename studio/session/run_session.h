@@ -8,7 +8,7 @@
 #include "core/model/model.h"
 #include "core/model/state.h"
 #include "recordings/session_writer.h"
-#include "studio/session/input_source.h"
+#include "studio/sources/input_source.h"
 
 namespace ctpm {
 

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
 
 #include "core/model/result.h"
+#include "studio/output/option_name.h"
 
 namespace ctpm {
 
@@ -25,17 +25,16 @@ struct TimeRange {
     const double end_s = double(tick_count) * tick, last_s = to_s.value_or(end_s);
     const std::string is_long = "the session lasts " + std::to_string(end_s) + " s";
     if (!(from_s >= 0 && from_s <= end_s))
-      return Error{where, "--from-s: got " + std::to_string(from_s) + ", " + is_long, ""};
+      return Error{where, option_name("time_range.from_s") + ": got " + std::to_string(from_s) + ", " + is_long, ""};
     if (!(last_s > from_s) && tick_count > 0)
-      return Error{where, "--to-s: got " + std::to_string(last_s) + ", must be after --from-s", ""};
-    if (last_s > end_s + 0.5 * tick) return Error{where, "--to-s: got " + std::to_string(last_s) + ", " + is_long, ""};
+      return Error{where,
+                   option_name("time_range.to_s") + ": got " + std::to_string(last_s) + ", must be after " +
+                       option_name("time_range.from_s"),
+                   ""};
+    if (last_s > end_s + 0.5 * tick)
+      return Error{where, option_name("time_range.to_s") + ": got " + std::to_string(last_s) + ", " + is_long, ""};
     return TickRange{std::llround(from_s / tick), std::llround(last_s / tick)};
   }
 };
-
-inline void add_time_range(CLI::App& app, TimeRange& range) {
-  app.add_option("--from-s", range.from_s, "Where to begin [s]");
-  app.add_option("--to-s", range.to_s, "Where to end [s]; the session's end if not given");
-}
 
 }  // namespace ctpm

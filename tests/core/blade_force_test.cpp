@@ -159,9 +159,10 @@ TEST(BladeForce, ARestingBladeGoesOnHoldingTheTissueBack) {
 }
 
 TEST(BladeForce, FlanksRubUntilTheBladeLeavesWhateverTheSpheres) {
-  for (const double spacing : {0.012, 0.006}) {
+  for (const auto& [spacing, flank_height] : {std::pair{0.012, 0.006}, {0.006, 0.006}, {0.006, 0.009}}) {
     Model model = clamped_block(spacing, resisting(0, kFriction));
     model.held_axes.assign(model.sphere_count(), kAnchored);
+    model.tools[0].flank_height = flank_height;
     Stepper stepper(model);
     State state = rest_state(model);
     double sum = 0;
@@ -173,13 +174,81 @@ TEST(BladeForce, FlanksRubUntilTheBladeLeavesWhateverTheSpheres) {
       EXPECT_LE(report.tool_force.y, 0);
       if (std::abs(y) < 0.018) sum -= report.tool_force.y, ++inside;
     }
-    // Two flanks, 6 mm high, along the 36 mm of the blade that are inside; spheres at the rim have fewer
-    // elements.
-    const double expected = 2 * kFriction * 0.006 * 0.036;
+    // Two flanks along the 36 mm of the blade that are inside; spheres at the rim have fewer elements.
+    const double expected = 2 * kFriction * flank_height * 0.036;
     EXPECT_LT(sum / inside, 1.05 * expected) << spacing;
     EXPECT_GT(sum / inside, 0.75 * expected) << spacing;
     EXPECT_EQ(norm(report.tool_force), 0);
   }
+}
+
+/// Force [N] on a blade that is drawn through a held block in ticks of `per_tick` [m], once it is half through and the
+/// right half of the block has moved to the right by `opened` [m].
+double friction_in_opened_cut(const Tool& blade, double opened, double per_tick) {
+  Model model = held_block(6, 5, 4, resisting(0, kFriction));
+  model.tools = {blade};
+  Stepper stepper(model);
+  State state = rest_state(model);
+  double y = -0.06;
+  for (; y < 0; y += 1e-3) (void)stepper.step(state, blade_at({0.0002, y, -0.05}));
+  for (std::size_t i = 0; i < model.sphere_count(); ++i)
+    if (state.position.x[i] > 0) state.position.x[i] += opened;
+  (void)stepper.step(state, blade_at({0.0002, y, -0.05}));
+  return -stepper.step(state, blade_at({0.0002, y + per_tick, -0.05})).tool_force.y;
+}
+
+TEST(BladeForce, CutFacesLeaveTheFlanksWhereTheyOpenWiderThanTheBlade) {
+  Tool blade = testing::scalpel(0.2);
+  const double closed = friction_in_opened_cut(blade, 0, 1e-3);
+  EXPECT_GT(closed, 0.1);
+  EXPECT_EQ(friction_in_opened_cut(blade, 0.003, 1e-3), 0) << "1 mm thick";
+  blade.blade_thickness = 0.03;
+  EXPECT_GT(friction_in_opened_cut(blade, 0.003, 1e-3), 0.8 * closed) << "30 mm thick";
+}
+
+TEST(BladeForce, FrictionFallsLinearlyBelowTheSlowestSlip) {
+  Tool blade = testing::scalpel(0.2);
+  const double full = friction_in_opened_cut(blade, 0, 1e-5);
+  EXPECT_GT(full, 0.1);
+  EXPECT_NEAR(friction_in_opened_cut(blade, 0, 2.5e-7), 0.25 * full, 0.01 * full) << "at 0.25 mm/s of 1 mm/s";
+  blade.slowest_slip = 1e-4;
+  EXPECT_NEAR(friction_in_opened_cut(blade, 0, 2.5e-7), full, 0.01 * full);
+}
+
+/// Where the tip of a blade with these dimensions is when a held block first resists it [m].
+double resistance_begins(const Tool& blade) {
+  Model model = held_block(6, 5, 4);
+  model.tools = {blade};
+  Stepper stepper(model);
+  State state = rest_state(model);
+  double y = -0.1;
+  while (y < 0 && stepper.step(state, blade_at({0.0002, y, -0.05})).tool_force.y == 0) y += 1e-4;
+  return y;
+}
+
+TEST(BladeForce, TissueResistsOverTheReachAheadOfTheEdge) {
+  Tool blade = testing::scalpel(0.2);
+  const double near = resistance_begins(blade);
+  blade.blade_reach = 0.02;
+  EXPECT_NEAR(near - resistance_begins(blade), 0.011, 2e-4);
+  blade.blade_reach = 1e-3;
+  EXPECT_NEAR(resistance_begins(blade), near, 2e-4) << "0.75 spacings of 12 mm are the least";
+  blade.blade_reach_spacings = 0.25;
+  EXPECT_NEAR(resistance_begins(blade) - near, 0.006, 2e-4);
+}
+
+TEST(BladeForce, GrowsWithTheHeadingUntilTheTrailIsTaut) {
+  const auto force_after = [](double trail_distance, double way) {
+    Model model = held_block(6, 5, 4);
+    model.tools[0].trail_distance = trail_distance;
+    Stepper stepper(model);
+    State state = rest_state(model);
+    (void)stepper.step(state, blade_at({0.0002, -0.03, -0.05}));
+    return norm(stepper.step(state, blade_at({0.0002, -0.03 + way, -0.05})).tool_force);
+  };
+  EXPECT_GT(force_after(0.5e-3, 1e-4), 0);
+  EXPECT_NEAR(force_after(0.5e-3, 1e-4), 2 * force_after(1e-3, 1e-4), 1e-9);
+  EXPECT_EQ(force_after(0.5e-3, 1e-3), force_after(1e-3, 1e-3)) << "both are taut";
 }
 
 TEST(BladeForce, SlicingAlongTheEdgeMakesPushingEasier) {

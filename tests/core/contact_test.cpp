@@ -1,5 +1,3 @@
-#include "core/contact/contact.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,19 +28,48 @@ Model make_free_sphere(Integrator integrator, double tick) {
 
 class AContact : public ::testing::TestWithParam<Integrator> {};
 
-TEST_P(AContact, TakesHuntAndCrossleysShareOfTheBounce) {
-  Model model = make_free_sphere(GetParam(), 1e-5);
-  model.contact_friction = 0, model.tools = {ball(0.02)};
-  const double in = 0.03, gap = 1e-5;
+/// Speed [m/s] at which a sphere that meets a resting ball at 30 mm/s leaves it again.
+double rebound(Integrator integrator, double damping) {
+  Model model = make_free_sphere(integrator, 2e-6);
+  model.contact_friction = 0, model.contact_damping = damping, model.tools = {ball(0.02)};
   State state = rest_state(model);
-  state.velocity.set(0, {0, 0, in});
-  const Inputs still = tool_at({0, 0, 0.02 + model.contact_radius[0] + gap});
+  state.velocity.set(0, {0, 0, 0.03});
+  const Inputs still = tool_at({0, 0, 0.02 + model.contact_radius[0] + 1e-5});
   Stepper stepper(model);
-  for (int i = 0; i < 500; ++i) ASSERT_EQ(stepper.step(state, still).status, StepStatus::ok);
-  // m v dv = -k p (1 + c p') dp from first to last touch: x - ln(1 + x) = -y - ln(1 - y) of both speeds times c.
-  const double x = kContactDamping * in, y = -kContactDamping * state.velocity.z[0];
-  EXPECT_LT(state.velocity.z[0], 0);
-  EXPECT_NEAR(-y - std::log(1 - y), x - std::log(1 + x), 0.05);
+  for (int i = 0; i < 2500; ++i) EXPECT_EQ(stepper.step(state, still).status, StepStatus::ok);
+  return -state.velocity.z[0];
+}
+
+TEST_P(AContact, BouncesByHuntAndCrossleysLawForEachDamping) {
+  const double standard = Model{}.contact_damping;
+  EXPECT_EQ(standard, 50);
+  for (const double damping : {0.4 * standard, standard, 2 * standard}) {
+    const double out = rebound(GetParam(), damping);
+    // m v dv = -k p (1 + c p') dp from first to last touch: x - ln(1 + x) = -y - ln(1 - y) of both speeds times c.
+    const double x = damping * 0.03, y = damping * out;
+    EXPECT_GT(out, 0);
+    EXPECT_NEAR(-y - std::log(1 - y), x - std::log(1 + x), 0.05) << damping << " s/m";
+  }
+  EXPECT_NEAR(std::pow(rebound(GetParam(), standard) / 0.03, 2), 0.25, 0.03);
+  EXPECT_NEAR(rebound(GetParam(), 0), 0.03, 3e-4) << "without damping nothing is lost";
+}
+
+TEST_P(AContact, CreepsUnderAStickingToolAsItsStickTimeSays) {
+  // The drag stick_time * k balances the load: the sphere creeps at load / (stick_time * k).
+  const double radius = 100, press = 0.05, push = 0.002;
+  for (const double stick_time : {0.05, 0.1, 0.4}) {
+    Model model = make_free_sphere(GetParam(), 1e-4);
+    model.tools = {ball(radius)}, model.contact_stick_time = stick_time;
+    model.loads.sphere = {0}, model.loads.force.push_back({push, 0, press});
+    model.loads.start = {0}, model.loads.ramp = {0};
+    State state = rest_state(model);
+    state.position.z[0] = press / model.contact_k;
+    Stepper stepper(model);
+    for (int i = 0; i < 200; ++i)
+      ASSERT_EQ(stepper.step(state, tool_at({0, 0, radius + model.contact_radius[0]})).status, StepStatus::ok);
+    const double creep = push / (stick_time * model.contact_k);
+    EXPECT_NEAR(state.velocity.x[0], creep, 1e-3 * creep) << stick_time << " s";
+  }
 }
 
 TEST_P(AContact, SlidesUnderCoulombsLawAndThenSticks) {

@@ -236,10 +236,10 @@ TEST(Pieces, AreCountedAsTheyComeLoose) {
 
 /// A block cut through in the middle, whose right half is pushed against the left one: the least distance
 /// that two spheres of its halves ever have [m].
-double gap_after_pushing(bool lips_meet, double sideways) {
+double gap_after_pushing(bool lips_meet, double sideways, double stiffening = Model{}.cut_face_stiffening) {
   Model model = block_with_blade(6, 4, 4, resisting(0));
   model.held_axes.assign(model.sphere_count(), 0);
-  model.lip_k = lips_meet ? model.edges.k[0] : 0;
+  model.lip_k = lips_meet ? model.edges.k[0] : 0, model.cut_face_stiffening = stiffening;
   for (std::size_t i = 0; i < model.sphere_count(); ++i) {
     if (i % 6 == 0) model.held_axes[i] = kAnchored;
     if (i % 6 != 5) continue;
@@ -260,13 +260,21 @@ double gap_after_pushing(bool lips_meet, double sideways) {
   return gap;
 }
 
-TEST(Lips, MeetAgainWithoutPassingThroughEachOther) {
+TEST(CutFaces, MeetAgainWithoutPassingThroughEachOther) {
   EXPECT_LT(gap_after_pushing(false, 0), 0.002);
   EXPECT_GT(gap_after_pushing(true, 0), 0.009);
   EXPECT_GT(gap_after_pushing(true, 0.03), 0.007);  // while they slide past each other
 }
 
-TEST(Lips, ConserveMomentum) {
+TEST(CutFaces, StayFartherApartTheMoreTheirContactStiffens) {
+  const double soft = gap_after_pushing(true, 0, 2), standard = gap_after_pushing(true, 0),
+               stiff = gap_after_pushing(true, 0, 16);
+  EXPECT_LT(soft + 2e-4, standard);
+  EXPECT_LT(standard + 2e-4, stiff);
+  EXPECT_LT(stiff, 0.012);
+}
+
+TEST(CutFaces, ConserveMomentum) {
   Model model = free_block(6, 4, 4, resisting(0));
   model.lip_k = model.edges.k[0];
   Stepper stepper(model);

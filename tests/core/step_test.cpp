@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "core/elements/forces.h"
 #include "core/model/fields.h"
@@ -158,6 +159,23 @@ TEST_P(EveryIntegrator, LeavesTheStateOfARefusedTickToTheBit) {
       EXPECT_EQ(stepper.step(state, pull(10)).status, StepStatus::diverged);
       EXPECT_EQ(bits_of(state), before) << substeps << " substeps, structure " << int(structure);
     }
+}
+
+TEST_P(EveryIntegrator, LeavesTheStateOfARefusedCutToTheBit) {
+  Model model = make_block_model(4, 4, 4, Structure::ctpm, soft_material());
+  model.solver.integrator = GetParam(), model.tools = {scalpel(0.1)};
+  Stepper stepper(model);
+  State state = rest_state(model);
+  const auto cut = [&](int i) { return tool_at({0.0003, -0.03 + 0.002 * i, -0.01}); };
+  for (int i = 0; i < 15; ++i) ASSERT_FALSE(is_refused(stepper.step(state, cut(i)).status));
+  const double good = std::exchange(state.velocity.y[40], NAN);
+  const std::uint64_t before = bits_of(state);
+  const StepReport refused = stepper.step(state, cut(20));
+  EXPECT_EQ(refused.status, StepStatus::diverged);
+  EXPECT_GT(refused.severed, 0) << "by a blade that was on its way";
+  EXPECT_EQ(bits_of(state), before);
+  state.velocity.y[40] = good;
+  EXPECT_EQ(stepper.step(state, cut(20)).severed, refused.severed);
 }
 
 INSTANTIATE_TEST_SUITE_P(Under, EveryIntegrator,

@@ -400,6 +400,15 @@ TEST(Session, AnErrorAtCreationLeavesNothingBehind) {
   EXPECT_EQ(refused.errors()[0].message, "edges.a[3] is 27, must be in [0, 27)");
   EXPECT_TRUE(folder.names().empty());
 
+  // What the law of the blade divides by, and what must not push outwards.
+  broken = small_start();
+  broken.model.tools.at(0).blade_thickness = 0, broken.model.contact_damping = -1;
+  const auto unlawful = SessionWriter::create(folder / "a.ctpm", broken);
+  ASSERT_FALSE(unlawful);
+  ASSERT_EQ(unlawful.errors().size(), 2u);
+  EXPECT_EQ(unlawful.errors()[0].message, "tools[0].blade_thickness must be finite and above 0");
+  EXPECT_EQ(unlawful.errors()[1].message, "contact_damping must be finite and not below 0");
+
   EXPECT_FALSE(SessionWriter::create(folder.path(), small_start()));
   EXPECT_FALSE(SessionWriter::create("/proc/a.ctpm", small_start()));
   EXPECT_FALSE(SessionWriter::create("", small_start()));

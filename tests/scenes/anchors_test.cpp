@@ -87,14 +87,14 @@ TEST(Anchors, ASphereInTwoRegionsIsHeldOnceAndCountedInBoth) {
   for (std::size_t i = 1; i < selected->size(); ++i) EXPECT_LT((*selected)[i - 1], (*selected)[i]);
 }
 
-TEST(Anchors, EachThatCatchesNothingIsAnErrorWithTheOrgansExtent) {
+TEST(Anchors, EachThatHoldsNoSphereIsAnErrorWithTheOrgansExtent) {
   const Result<std::vector<std::int32_t>> selected =
       select_anchored(block(), {anchor_of("sphere:0,0,500,10"), anchor_of("lowest:0"), anchor_of("box:1,1,1,2,2,2")},
                       kDown, "/organs/3");
   ASSERT_FALSE(selected);
   ASSERT_EQ(selected.errors().size(), 2u);
   EXPECT_EQ(to_string(selected.errors()[0]),
-            "/organs/3/anchors/0: error: catches no sphere (its spheres lie from -24.0, -12.0, 0.0 to 24.0, "
+            "/organs/3/anchors/0: error: holds no sphere (its spheres lie from -24.0, -12.0, 0.0 to 24.0, "
             "12.0, 36.0 mm)");
   EXPECT_EQ(selected.errors()[1].where, "/organs/3/anchors/2");
 }

@@ -187,6 +187,8 @@ TEST(BadInput, AToolHasTheKeysOfItsKind) {
             "t.json:3:13: error: /tools/0: a ball needs the key \"radius_mm\"\n");
   EXPECT_EQ(tools(R"({"name": "b", "kind": "ball", "radius_mm": 5, "blade_length_mm": 5})"),
             "t.json:3:78: error: /tools/0/blade_length_mm: only a scalpel has this key\n");
+  EXPECT_EQ(tools(R"({"name": "b", "kind": "ball", "radius_mm": 5, "flank_height_mm": 5})"),
+            "t.json:3:78: error: /tools/0/flank_height_mm: only a scalpel has this key\n");
   EXPECT_EQ(tools(R"({"name": "b", "kind": "pin"})"),
             "t.json:3:13: error: /tools/0: a pin needs the key \"holds_mm\"\n");
   EXPECT_EQ(tools(R"({"name": "b", "kind": "hook"})"),
@@ -235,7 +237,7 @@ TEST(BadInput, OfVeryManyProblemsTheFirstAreListedAndTheOthersCounted) {
   ASSERT_FALSE(scene);
   ASSERT_EQ(scene.errors().size(), 1001u);
   EXPECT_EQ(to_string(scene.errors().front()).find("t.json:2:1: error: /organs/0/key0: unknown key"), 0u);
-  EXPECT_EQ(to_string(scene.errors().back()), "t.json: error: 4000 more problems are not listed");
+  EXPECT_EQ(to_string(scene.errors().back()), "t.json: error: 4000 more errors are not listed (mend these first)");
 }
 
 }  // namespace

@@ -132,6 +132,30 @@ TEST(BuildModel, AToolIsTwentyTimesAsStiffAsTheStiffestEdgeUnlessTheSceneSaysMor
   EXPECT_EQ(own.model.tools.at(0).radius, 0.006);
 }
 
+TEST(BuildModel, TheLawsOfContactAreTheScenesOrElseThoseOfTheCore) {
+  const std::string kTools = R"(, "tools": [{"name": "ball", "kind": "ball", "radius_mm": 6},
+      {"name": "knife", "kind": "scalpel", "blade_length_mm": 50)";
+  const BuiltScene plain = build(block_scene("", kTools + R"(}], "lips_meet": true)"));
+  const Model standard;
+  EXPECT_EQ(plain.model.contact_damping, standard.contact_damping);
+  EXPECT_EQ(plain.model.contact_stick_time, standard.contact_stick_time);
+  EXPECT_EQ(plain.model.cut_face_stiffening, standard.cut_face_stiffening);
+  const Tool blade = plain.model.tools.at(1), other;
+  EXPECT_EQ(blade.blade_reach, other.blade_reach);
+  EXPECT_EQ(blade.flank_height, other.flank_height);
+  EXPECT_EQ(blade.blade_thickness, other.blade_thickness);
+
+  const BuiltScene own =
+      build(block_scene("", kTools + R"(, "blade_reach_mm": 4, "flank_height_mm": 7, "blade_thickness_mm": 0.25}],
+      "lips_meet": true, "contact_damping_s_per_m": 20, "contact_stick_time_s": 0.5, "cut_face_stiffening": 3)"));
+  EXPECT_EQ(own.model.contact_damping, 20);
+  EXPECT_EQ(own.model.contact_stick_time, 0.5);
+  EXPECT_EQ(own.model.cut_face_stiffening, 3);
+  EXPECT_EQ(own.model.tools.at(1).blade_reach, 0.004);
+  EXPECT_EQ(own.model.tools.at(1).flank_height, 0.007);
+  EXPECT_EQ(own.model.tools.at(1).blade_thickness, 0.00025);
+}
+
 TEST(BuildModel, TheOrgansKeysReachTheNetwork) {
   const BuiltScene ctpm = build(block_scene(R"(, "damage_depth_mm": 12)"));
   EXPECT_EQ(ctpm.model.organs.at(0).damage_depth, 0.012);
@@ -200,8 +224,8 @@ TEST(BuildModel, EveryProblemOfEveryOrganIsReportedAtItsOrgan) {
   ASSERT_EQ(errors.size(), 2u);
   EXPECT_EQ(errors[0].where, "/organs/0/anchors/0");
   EXPECT_EQ(to_string(errors[1]),
-            "/organs/1: error: no two of its 3 spheres are neighbours, so nothing joins them (fill it with "
-            "smaller spheres)");
+            "/organs/1/rig/cells: error: no two of the 3 spheres are neighbours, so nothing joins them (neighbours "
+            "differ by 1 along one axis or two)");
 }
 
 TEST(BuildModel, AMaterialThatTheNetworkRefusesIsPlacedAtItsOrgan) {

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "scenes/anchors.h"
+#include "scenes/build_model.h"
 #include "scenes/scene_file.h"
 #include "scenes/schema.h"
 #include "scenes/script.h"
@@ -45,8 +47,8 @@ const std::string kScene =
   {"name": "b\u00e9\n", "rig": {"cells": [[0, 0, 0], [1, 0, 0]], "guides": [{"cell": [0, 0, 0], "axes": "xy"}]}, "material": {"preset": "skin"}},
   {"name": "c", "rig": {"block": [3, 3, 3]}, "material": {"preset": "kidney-pa-s"}}],
  "tools": [{"name": "ball", "kind": "ball", "radius_mm": 6}, {"name": "pin", "kind": "pin", "holds_mm": [1, 2, 3]},
-   {"name": "knife", "kind": "scalpel", "blade_length_mm": 50}],
- "contact_stiffness_n_per_m": 500, "contact_friction": 0.2,
+   {"name": "knife", "kind": "scalpel", "blade_length_mm": 50, "blade_reach_mm": 8, "flank_height_mm": 5, "blade_thickness_mm": 2}],
+ "contact_stiffness_n_per_m": 500, "contact_friction": 0.2, "contact_damping_s_per_m": 40, "contact_stick_time_s": 0.2, "cut_face_stiffening": 5,
  "loads": [{"at_mm": [1, 2, 3], "force_n": [0, 0, 1], "start_s": 1, "ramp_s": 2}], "probes": [{"name": "p", "at_mm": [1, 2, 3]}],
  "solver": {"tolerance": 1e-5, "velocity_floor_mm_per_s": 1e-3, "max_iterations": 100, "substeps": 2},
  "cameras": [{"name": "front", "eye_mm": [1, 2, 3], "target_mm": [0, 0, 0], "up": [0, 0, 1], "field_of_view_deg": 30}]})";
@@ -142,6 +144,29 @@ TEST(Fuzz, DamagedScenesAreReadOrRefusedWithAPlace) {
   }
   EXPECT_GT(refused, kRounds / 2);
   EXPECT_LT(refused, kRounds);
+}
+
+TEST(Fuzz, DamagedScenesAreJudgedAsFarAsTheyAreGood) {
+  Chance chance(3);
+  std::string whole = kScene;
+  whole.erase(whole.find("\\n"), 2);
+  int placed = 0;
+  for (int round = 0; round < kRounds / 10; ++round) {
+    const std::string text = damaged(whole, chance);
+    Result<SceneDraft> draft = read_draft(text, "s.json");
+    if (!draft) continue;
+    std::vector<FilledOrgan> organs;
+    for (std::size_t i = 0; i < draft->scene.spec.organs.size(); ++i) {
+      const OrganSpec& organ = draft->scene.spec.organs[i];
+      const bool is_small = organ.rig && (!organ.rig->block || norm(*organ.rig->block) < 10);
+      organs.push_back(is_small && can_be_filled(draft->problems, i) ? fill_rig(organ) : FilledOrgan{});
+    }
+    const std::optional<BuiltScene> built = build_model(draft->scene.spec, organs, draft->problems);
+    ASSERT_EQ(built.has_value(), draft->problems.is_empty()) << text;
+    expect_placed(draft->problems.errors(), "s.json:", text);
+    placed += int(draft->problems.errors().size());
+  }
+  EXPECT_GT(placed, kRounds / 100);
 }
 
 TEST(Fuzz, DamagedScriptsAreReadAndPlayedOrRefusedWithAPlace) {

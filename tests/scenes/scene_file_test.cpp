@@ -143,7 +143,7 @@ TEST(BuildModel, ARigBecomesItsSpheresAndElements) {
   EXPECT_EQ(built->model.held_axes[1], 0);
 }
 
-TEST(BuildModel, AnAnchorThatCatchesNothingIsAnError) {
+TEST(BuildModel, AnAnchorThatHoldsNoSphereIsAnError) {
   const std::string text = R"({"format": "ctpm-scene", "version": 1, "name": "rig",
     "organs": [{"name": "rig", "rig": {"block": [3, 3, 3]}, "material": {"preset": "liver"},
                 "anchors": [{"sphere": {"centre_mm": [900,0,0], "radius_mm": 1}}]}]})";

@@ -138,8 +138,8 @@ struct Kernels {
   /// Smallest squared distance of spheres [begin, end) from `centre`, infinity without spheres.
   double (*nearest_squared)(const double* x, const double* y, const double* z, const double* centre, std::size_t begin,
                             std::size_t end);
-  /// Largest squared speed of velocities v (3 x sphere_count), infinity if one is not a number.
-  double (*fastest_squared)(std::size_t spheres, const double* v, std::size_t begin, std::size_t end);
+  /// Largest squared speed of spheres [begin, end) with velocities x, y, z, infinity if one is not a number.
+  double (*fastest_squared)(const double* x, const double* y, const double* z, std::size_t begin, std::size_t end);
 };
 
 template <class Real>

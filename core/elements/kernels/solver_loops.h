@@ -158,9 +158,8 @@ double nearest_squared(const double* x, const double* y, const double* z, const 
   return nearest;
 }
 
-double fastest_squared(size_t n, const double* v, size_t begin, size_t end) {
+double fastest_squared(const double* x, const double* y, const double* z, size_t begin, size_t end) {
   constexpr size_t kLanes = 8;
-  const double *x = v, *y = x + n, *z = y + n;
   double lane[kLanes] = {};
   int32_t lost = 0;
   for (size_t i = begin; i < end; i += kLanes) {

@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/contact/contact.h"
-#include "core/stepping/outside.h"
+#include "core/contact/ball_contact.h"
+#include "core/contact/contact_law.h"
 
 namespace ctpm::testing {
 
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-
-/// As in contact.cpp.
-constexpr double kStickTime = 0.1;
 
 }  // namespace
 
@@ -79,7 +76,6 @@ template <class Touch>
 void NetworkOde::for_each_touched(double time, Touch&& touch) const {
   if (press_.radius == 0) return;
   const Vec3 centre = press_.centre(time), velocity = press_.velocity(time);
-  const double k = model_.contact_k, friction = model_.contact_friction;
   for (std::size_t i = 0; i < spheres_; ++i) {
     const Vec3 apart = state_.position[i] - centre;
     const double reach = press_.radius + model_.contact_radius[i], squared = dot(apart, apart);
@@ -87,10 +83,9 @@ void NetworkOde::for_each_touched(double time, Touch&& touch) const {
     const double distance = std::sqrt(squared), penetration = reach - distance;
     const Vec3 normal = apart / distance, past = state_.velocity[i] - velocity;
     const Vec3 slip = past - dot(past, normal) * normal;
-    const double speed = norm(slip), stick = kStickTime * k, limit = friction * k * penetration;
-    const double drag = friction > 0 ? (speed * stick > limit ? limit / speed : stick) : 0.0;
-    const double damping = contact_damping(k, model_.mass[i], penetration);
-    touch(Contact{std::int32_t(i), normal, penetration, damping, drag, -dot(past, normal), slip}, slip);
+    const double drag = contact_drag(model_, penetration, norm(slip));
+    const double damping = contact_damping(model_.contact_damping, model_.contact_k, model_.mass[i], penetration);
+    touch(BallTouch{std::int32_t(i), normal, penetration, damping, drag, -dot(past, normal), slip}, slip);
   }
 }
 
@@ -99,7 +94,7 @@ void NetworkOde::derive(double time, const double* y, double* derivative) {
   set_weight(model_, 0, spheres_, force_);
   elements_.add_forces(state_, force_);
   add_loads(time);
-  for_each_touched(time, [&](const Contact& contact, Vec3 slip) {
+  for_each_touched(time, [&](const BallTouch& contact, Vec3 slip) {
     const double pressure = model_.contact_k * contact.penetration + contact.damping * contact.approach;
     const Vec3 push = std::max(0.0, pressure) * contact.normal - contact.drag * slip;
     const auto i = std::size_t(contact.sphere);
@@ -127,7 +122,7 @@ void NetworkOde::take_blocks(double time, double gamma, const double* y) {
     for (std::size_t i = 0; i < spheres_; ++i)
       blocks_[k * spheres_ + i] = k == 0 || k == 3 || k == 5 ? model_.mass[i] : 0.0;
   elements_.linearise(state_, gamma, false, force_, blocks_, [](int) {});
-  for_each_touched(time, [&](const Contact& contact, Vec3) {
+  for_each_touched(time, [&](const BallTouch& contact, Vec3) {
     const Vec3 n = contact.normal;
     const double across = gamma * contact.drag, along = gamma * (gamma * model_.contact_k + contact.damping) - across;
     const double own[6] = {along * n.x * n.x + across, along * n.x * n.y, along * n.x * n.z,

@@ -21,7 +21,7 @@ struct Press {
 
 /// The law that core integrates as y' = f(t, y) for any other integrator: y is displacement from the start,
 /// velocity, and Kelvin elongation. Elements are core's own; loads and the ball's contact are those of
-/// outside.h and contact.h at time t, which is what core's substeps come to as they get shorter.
+/// external_loads.h and ball_contact.h at time t, which is what core's substeps come to as they get shorter.
 class NetworkOde {
  public:
   /// `model` must outlive it; `start` is the State that y = start_values() stands for.

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/contact/pin.h"
+#include "core/elements/axial.h"
+#include "core/elements/kernels/kernels.h"
+#include "core/model/model.h"
+#include "core/model/state_view.h"
+
+namespace ctpm {
+
+/// One sphere that a tool presses: a penalty spring with damping along the line between the centres, and drag across it
+/// that is viscous while the surfaces stick and limited by Coulomb's law when they slip; both solved
+/// implicitly.
+struct BallTouch {
+  std::int32_t sphere;
+  Vec3 normal;         ///< unit vector from the tool to the sphere
+  double penetration;  ///< of the sphere, as it was given, into the tool [m], > 0
+  double damping;      ///< along the normal [N s/m], >= 0
+  double drag;         ///< across the normal [N s/m], >= 0
+  double approach;     ///< with which a solve starts [m/s]: within what leads to the penetration or out of reach in a
+                       ///< step, however far the hand jumps
+  Vec3 slip;           ///< across the normal, of the velocity that a solve starts from, against the tool's [m/s]
+  std::array<double, 9> without{};  ///< force and block of its sphere before the contact was added
+};
+
+/// Contacts of a rigid ball with spheres. Contacts (contacts.h) says in which order its functions are called.
+class BallContact {
+ public:
+  BallContact(const Model& model, const Kernels& kernels);
+
+  /// Finds the spheres that a ball of `radius` [m] at `centre`, moving with `velocity` [m/s], overlaps in a step of `h`
+  /// [s]. A solve starts from StateView::velocity if `from_velocity`, else from spheres that rest; velocities `v` below
+  /// are changes from there.
+  void find(const StateView& state, Vec3 centre, double radius, Vec3 velocity, double h, bool from_velocity);
+
+  /// Adds contact forces [N] and linearisation for a step of `h` [s].
+  void linearise(double h, Coordinates& force, DiagonalBlocks& blocks);
+
+  /// Takes back to the bit what the last linearise() added.
+  void undo_linearise(Coordinates& force, DiagonalBlocks& blocks) const;
+
+  /// After an explicit step of `h` [s] without contacts, found in its middle: changes the `velocity` [m/s] of the
+  /// touched spheres, each contact solved implicitly by itself, and drops contacts that would pull. `before`: velocity
+  /// [m/s] at the start. Spheres do not move along held axes, nor does that of `pin`. Returns the force on the ball
+  /// [N].
+  Vec3 push_apart(double h, const Pin& pin, const Vec3Array& before, Vec3Array& velocity);
+
+  /// result += coupling of a step of `h` [s] times `v`, in the precision of `v`, float or double;
+  /// returns v . coupling . v.
+  template <class Real>
+  double apply(double h, const Real* v, Real* result) const;
+
+  /// Whether a contact would pull its sphere after a step of `h` [s] with velocity `v` [m/s].
+  bool has_pulling(double h, const Coordinates& v) const;
+
+  /// Removes the contacts that would.
+  void drop_pulling(double h, const Coordinates& v);
+
+  /// Force on the ball [N] after an implicit step.
+  Vec3 force_on_tool(double h, const Coordinates& v) const;
+
+  /// Largest displacement from rest at `position` of a touched sphere along its contact [m], 0 without contact.
+  double depth(const Vec3Array& position) const;
+
+  std::int32_t count() const { return std::int32_t(touches_.size()); }
+  void clear() { touches_.clear(); }
+
+ private:
+  void find_among(const StateView& state, Vec3 centre, double radius, double h, bool from_velocity, std::size_t begin,
+                  std::size_t end);
+  Vec3 change_of(const BallTouch& touch, const Coordinates& v) const;
+  double coupling_along(const BallTouch& touch, double h) const;
+  double pressure(const BallTouch& touch, double h, const Coordinates& v) const;
+
+  const Model& model_;
+  const Kernels& kernels_;
+  double largest_radius_ = 0;       ///< of a sphere [m]
+  Vec3 velocity_;                   ///< of the tool [m/s]
+  std::vector<BallTouch> touches_;  ///< room for every sphere if the scene has a ball, so that a tick never allocates
+};
+
+}  // namespace ctpm

@@ -1,0 +1,162 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/contact/ball_contact.h"
+#include "core/contact/blade_force.h"
+#include "core/contact/cut_face_contact.h"
+#include "core/contact/held_tool.h"
+#include "core/contact/pair_contact.h"
+#include "core/contact/pin.h"
+#include "core/elements/axial.h"
+#include "core/elements/kernels/kernels.h"
+#include "core/model/model.h"
+#include "core/model/state_view.h"
+
+namespace ctpm {
+
+class Contacts;
+class ExplicitContacts;
+class ImplicitContacts;
+
+/// The step for which contacts are detected.
+struct ContactStep {
+  double h;      ///< length [s]
+  double share;  ///< of the tool's motion in the tick at which they are detected, 0 to 1
+  Pin pin;       ///< of this step
+};
+
+/// About which motion an implicit step is linearised; its velocities are changes from there.
+enum class Linearisation {
+  rest,      ///< spheres that rest
+  velocity,  ///< spheres that move with StateView::velocity
+};
+
+/// All contacts of a Model: a ball's, a blade's, a pin's, and those of the two faces of a cut with each other. It holds
+/// room for them, so that a tick never allocates. What a step may do with its contacts is in the sets that detection
+/// returns; a Contacts serves one set at a time, and a second detection before the first set has ended is a bug that
+/// aborts.
+class Contacts {
+ public:
+  /// `model` must outlive the Contacts.
+  Contacts(const Model& model, const Kernels& kernels);
+
+  /// Box that holds all that a blade can meet in this tick.
+  Box around(const HeldTool& tool) const { return blade_.around(*tool.tool, tool.blade); }
+
+  /// The pin's contact in a step of `h` [s] from `position` [m] to where the hand is at `share` of the tick.
+  static Pin pin(const HeldTool& tool, const Vec3Array& position, double share, double h);
+
+  /// Detects the contacts of an explicit step in its middle, and changes the `velocity` [m/s] that spheres have after
+  /// the step without contacts: each contact is solved implicitly by itself, one after the other; those that would pull
+  /// do not act.
+  [[nodiscard]] ExplicitContacts push_apart(const StateView& middle, const HeldTool& tool, const ContactStep& step,
+                                            Vec3Array& velocity);
+
+  /// Detects the contacts of an implicit step.
+  [[nodiscard]] ImplicitContacts detect(const StateView& state, const HeldTool& tool, const ContactStep& step,
+                                        Linearisation about);
+
+ private:
+  friend class ContactSet;
+  friend class ExplicitContacts;
+  friend class ImplicitContacts;
+  friend class LinearisedContacts;
+
+  void find_pairs(const StateView& state, const HeldTool& tool);
+  void find_ball(const StateView& state, const HeldTool& tool, const ContactStep& step, bool from_velocity);
+
+  const Model& model_;
+  BallContact ball_;
+  BladeForce blade_;
+  CutFaceContact cut_faces_;
+  PairContacts pairs_;          ///< of the blade and of cut faces
+  bool is_locked_ = false;      ///< a set is in use
+  bool is_linearised_ = false;  ///< the set is in a linear system
+};
+
+/// The contacts of one step, until it is destroyed. Move-only.
+class ContactSet {
+ public:
+  const ContactStep& step() const { return step_; }
+
+  /// Spheres that the tool touches; of a blade, elements before its edge or on its flanks.
+  std::int32_t touched() const;
+
+  /// Largest displacement from rest [m], at `position`, of a touched sphere along its contact; of a pin, of its sphere;
+  /// 0 without contact.
+  double depth(const Vec3Array& position) const;
+
+ protected:
+  ContactSet(Contacts& contacts, const ContactStep& step);
+
+  struct Unlock {
+    void operator()(Contacts* contacts) const { contacts->is_locked_ = false; }
+  };
+  std::unique_ptr<Contacts, Unlock> contacts_;
+  ContactStep step_;
+};
+
+/// Contacts that an explicit step has solved.
+class ExplicitContacts : public ContactSet {
+ public:
+  /// Force of the tissue on a ball or a blade [N].
+  Vec3 tool_force() const { return tool_force_; }
+
+ private:
+  friend class Contacts;
+  ExplicitContacts(Contacts& contacts, const ContactStep& step) : ContactSet(contacts, step) {}
+
+  Vec3 tool_force_;
+};
+
+/// Contacts in the linear system of an implicit step, until it is destroyed: what they added to the system is then
+/// taken back to the bit. Velocities `v` [m/s] are those that the system solves for  (3 x sphere_count).
+class LinearisedContacts {
+ public:
+  LinearisedContacts(const LinearisedContacts&) = delete;
+  LinearisedContacts& operator=(const LinearisedContacts&) = delete;
+  ~LinearisedContacts() { take_back(); }
+
+  /// result += coupling times `v`, in the precision of `v`, float or double; returns v . coupling . v.
+  template <class Real>
+  double apply(const Real* v, Real* result) const {
+    const double of_ball = contacts_.ball_.apply(h_, v, result);
+    return of_ball + contacts_.pairs_.apply(h_, v, result);
+  }
+
+  /// Whether a contact pulls after a step with velocity `v`.
+  bool pulls(const Coordinates& v) const;
+
+  /// Force of the tissue on a ball or a blade [N] after a step with velocity `v`.
+  Vec3 tool_force(const Coordinates& v) const;
+
+  /// Takes all contacts out of the system, and removes from the set those that pull after a step with velocity `v`.
+  void drop_pulling(const Coordinates& v) &&;
+
+ private:
+  friend class ImplicitContacts;
+  LinearisedContacts(Contacts& contacts, double h, Coordinates& force, DiagonalBlocks& blocks);
+  void take_back();
+
+  Contacts& contacts_;
+  double h_;
+  Coordinates& force_;
+  DiagonalBlocks& blocks_;
+  bool is_in_system_ = true;
+};
+
+/// Contacts of an implicit step.
+class ImplicitContacts : public ContactSet {
+ public:
+  /// Adds the contacts' forces [N] and the diagonal of their coupling to the system of the step, until the result is
+  /// destroyed; neither the system's diagonal nor its forces may be changed by others before that.
+  [[nodiscard]] LinearisedContacts linearise(Coordinates& force, DiagonalBlocks& blocks);
+
+ private:
+  friend class Contacts;
+  ImplicitContacts(Contacts& contacts, const ContactStep& step) : ContactSet(contacts, step) {}
+};
+
+}  // namespace ctpm

@@ -1,0 +1,100 @@
+#include "core/contact/cut_face_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ctpm {
+namespace {
+
+bool is_severed(const Model& model, const StateView& state, std::size_t element) {
+  const std::size_t edges = model.edges.size();
+  return element < edges ? state.edge_severed[element] != 0 : state.tpm_severed[element - edges] != 0;
+}
+
+}  // namespace
+
+CutFaceContact::CutFaceContact(const Model& model) : model_(model) {
+  if (!is_wanted()) return;
+  const std::size_t n = model.sphere_count(), edges = model.edges.size(), all = edges + model.tpms.size();
+  const auto ends = [&](std::size_t e) {
+    return e < edges ? std::pair(model.edges.a[e], model.edges.b[e])
+                     : std::pair(model.tpms.a[e - edges], model.tpms.b[e - edges]);
+  };
+  first_.assign(n + 1, 0);
+  for (std::size_t e = 0; e < all; ++e)
+    ++first_[std::size_t(ends(e).first) + 1], ++first_[std::size_t(ends(e).second) + 1];
+  for (std::size_t i = 0; i < n; ++i) first_[i + 1] += first_[i];
+  joins_.resize(2 * all);
+  std::vector<std::int32_t> next(first_.begin(), first_.end() - 1);
+  for (std::size_t e = 0; e < all; ++e) {
+    const auto [a, b] = ends(e);
+    joins_[std::size_t(next[std::size_t(a)]++)] = {b, std::int32_t(e)};
+    joins_[std::size_t(next[std::size_t(b)]++)] = {a, std::int32_t(e)};
+  }
+  spacing_.assign(n, 0), organ_.assign(n, -1);
+  for (std::size_t o = 0; o < model.organs.size(); ++o)
+    for (std::int32_t i = 0; i < model.organs[o].count; ++i) {
+      const auto sphere = std::size_t(model.organs[o].first + i);
+      spacing_[sphere] = model.organs[o].spacing, organ_[sphere] = std::int32_t(o);
+    }
+  is_on_face_.assign(n, 0);
+  on_faces_.reserve(n);
+}
+
+/// The spheres beside a cut, sorted along x; equal places by index, so that the order is always the same.
+void CutFaceContact::gather(const StateView& state) {
+  std::fill(is_on_face_.begin(), is_on_face_.end(), std::uint8_t(0));
+  const auto mark = [&](const auto& elements, const std::vector<std::uint8_t>& severed) {
+    for (std::size_t i = 0; i < severed.size(); ++i)
+      if (severed[i]) is_on_face_[std::size_t(elements.a[i])] = is_on_face_[std::size_t(elements.b[i])] = 1;
+  };
+  mark(model_.edges, state.edge_severed), mark(model_.tpms, state.tpm_severed);
+  on_faces_.clear();
+  for (std::size_t i = 0; i < is_on_face_.size(); ++i)
+    if (is_on_face_[i]) on_faces_.push_back({state.position.x[i], std::int32_t(i)});
+  std::sort(on_faces_.begin(), on_faces_.end(),
+            [](const Place& p, const Place& q) { return p.x != q.x ? p.x < q.x : p.sphere < q.sphere; });
+}
+
+bool CutFaceContact::are_joined(const StateView& state, std::int32_t a, std::int32_t b) const {
+  for (std::int32_t i = first_[std::size_t(a)]; i < first_[std::size_t(a) + 1]; ++i) {
+    const Join join = joins_[std::size_t(i)];
+    if (join.neighbour == b && !is_severed(model_, state, std::size_t(join.element))) return true;
+  }
+  return false;
+}
+
+void CutFaceContact::add_pair(const StateView& state, std::int32_t a, std::int32_t b, PairContacts& contacts) const {
+  const Vec3 apart = state.position[std::size_t(b)] - state.position[std::size_t(a)];
+  const double spacing = spacing_[std::size_t(a)], squared = dot(apart, apart);
+  if (squared >= spacing * spacing || squared == 0 || are_joined(state, a, b)) return;
+  const double distance = std::sqrt(squared), p = spacing - distance;
+  const double grown = model_.cut_face_stiffening * p / spacing, k = model_.lip_k * (1 + 3 * grown * grown);
+  const Vec3 axis = apart / distance;
+  contacts.add({.a = a,
+                .b = b,
+                .weight_a = -1,
+                .weight_b = 1,
+                .axis = axis,
+                .force = model_.lip_k * p * (1 + grown * grown) * axis,
+                .k = k,
+                .only_pushes = true});
+}
+
+void CutFaceContact::find(const StateView& state, PairContacts& contacts) {
+  if (state.edge_severed.empty() && state.tpm_severed.empty()) return;
+  gather(state);
+  std::size_t added = 0;
+  for (std::size_t i = 0; i < on_faces_.size(); ++i)
+    for (std::size_t j = i + 1; j < on_faces_.size(); ++j) {
+      const auto a = on_faces_[i].sphere, b = on_faces_[j].sphere;
+      if (on_faces_[j].x - on_faces_[i].x >= spacing_[std::size_t(a)]) break;
+      if (organ_[std::size_t(a)] != organ_[std::size_t(b)]) continue;
+      if (added == capacity()) return;
+      const std::size_t before = contacts.count();
+      add_pair(state, std::min(a, b), std::max(a, b), contacts);
+      added += contacts.count() - before;
+    }
+}
+
+}  // namespace ctpm

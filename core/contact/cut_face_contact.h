@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/contact/pair_contact.h"
+#include "core/model/state_view.h"
+
+namespace ctpm {
+
+/// Contact of the two faces of a cut, which meet again without passing through each other. Spheres with a severed
+/// element that no unsevered one joins keep a spacing apart. Only spheres on cut faces are looked at, sorted along x.
+///
+/// The force between two centres at a distance d < s is lip_k p (1 + (b p / s)^2), p = s - d, b = cut_face_stiffening:
+/// at first no stiffer than the severed elements were, so that severing compressed tissue adds no energy, then so stiff
+/// that nothing slips through.
+class CutFaceContact {
+ public:
+  /// Finds each sphere's elements, if `model.lip_k` > 0; otherwise keeps nothing, and find() is never needed.
+  explicit CutFaceContact(const Model& model);
+
+  bool is_wanted() const { return model_.lip_k > 0; }
+
+  /// Most contacts that find() adds.
+  std::size_t capacity() const { return is_wanted() ? kMostPerSphere * model_.sphere_count() : 0; }
+
+  /// Adds the contacts of `state`, in an order that depends on it alone.
+  void find(const StateView& state, PairContacts& contacts);
+
+ private:
+  static constexpr std::size_t kMostPerSphere = 13;  ///< spheres closer than a spacing, each pair once
+
+  void gather(const StateView& state);
+  bool are_joined(const StateView& state, std::int32_t a, std::int32_t b) const;
+  void add_pair(const StateView& state, std::int32_t a, std::int32_t b, PairContacts& contacts) const;
+
+  const Model& model_;
+  std::vector<std::int32_t> first_;  ///< of a sphere's entries in joins_ (sphere_count + 1)
+  struct Join {
+    std::int32_t neighbour, element;
+  };
+  std::vector<Join> joins_;
+  std::vector<double> spacing_;           ///< of a sphere's organ [m] (sphere_count)
+  std::vector<std::int32_t> organ_;       ///< (sphere_count)
+  std::vector<std::uint8_t> is_on_face_;  ///< sphere has a severed element (sphere_count)
+  struct Place {
+    double x;
+    std::int32_t sphere;
+  };
+  std::vector<Place> on_faces_;  ///< spheres on cut faces, in ascending x
+};
+
+}  // namespace ctpm

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "core/contact/contacts.h"
+#include "core/contact/held_tool.h"
+#include "core/cutting/cutting.h"
+#include "core/cutting/near_elements.h"
+#include "core/cutting/pieces.h"
+#include "core/model/inputs.h"
+#include "core/model/state.h"
+#include "core/stepping/step.h"
+
+namespace ctpm {
+
+/// What a scalpel severs in one tick, and the pieces that come loose.
+class BladeSweep {
+ public:
+  /// `model` must outlive the BladeSweep and have a scalpel.
+  explicit BladeSweep(const Model& model);
+
+  /// Moves the scalpel from `last` to `inputs` through the tissue as it rests, and severs what it sweeps. Gives `tool`
+  /// the blade's motion, the elements near it and those that it severed.
+  void sweep(const Contacts& contacts, const Inputs& last, const Inputs& inputs, HeldTool& tool, State& state,
+             StepReport& report);
+
+  /// Severs what has moved through the resting blade while positions went from `before` [m] to State's.
+  void sever_moved(const HeldTool& tool, const Vec3Array& before, State& state, StepReport& report);
+
+  /// Reports the pieces that came loose since sweep().
+  void report_pieces(const State& state, StepReport& report);
+
+ private:
+  const Model& model_;
+  NearElements near_;
+  std::vector<Crossing> crossings_;  ///< elements severed in this tick
+  Pieces pieces_;
+};
+
+}  // namespace ctpm

@@ -1,0 +1,139 @@
+#include "core/stepping/implicit_solve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/stepping/integrator.h"
+
+namespace ctpm {
+namespace {
+
+/// Rounds in which contacts that would pull are dropped and the step is solved again.
+constexpr int kContactRounds = 4;
+
+}  // namespace
+
+ImplicitSolve::ImplicitSolve(const StepContext& context)
+    : context_(context),
+      held_(context.model, context.elements.slabs()),
+      solver_(context.model, context.elements.slabs(), context.team, context.kernels,
+              stiffness_ratio_bound(context.model, context.model.tick / context.model.solver.substeps)),
+      force_(3 * context.model.sphere_count()),
+      momentum_(3 * context.model.sphere_count()),
+      velocity_(3 * context.model.sphere_count()),
+      blocks_(6 * context.model.sphere_count()) {
+  const Model& model = context.model;
+  double total_mass = 0;
+  for (const double mass : model.mass) total_mass += mass;
+  limits_.relative = model.solver.tolerance;
+  limits_.absolute = model.solver.velocity_floor * std::sqrt(total_mass);
+  limits_.max_iterations = model.solver.max_iterations;
+}
+
+const Coordinates& ImplicitSolve::solve(const StateView& start, const Substep& part, ImplicitContacts& contacts,
+                                        StepReport& report) {
+  const ExternalLoads loads{context_.model, part.time, part.has_loads};
+  context_.elements.linearise(start, part.h, false, force_, blocks_,
+                              [&](int slab) { begin(start, contacts.step().pin, loads, slab), begin_blocks(slab); });
+  solve_contacts({start.velocity}, contacts, velocity_, report);
+  return velocity_;
+}
+
+const Coordinates& ImplicitSolve::solve_near(const StateView& predicted, const Vec3Array& before, bool keeps_matrix,
+                                             const Substep& part, ImplicitContacts& contacts, Coordinates& change,
+                                             StepReport& report) {
+  const ExternalLoads loads{context_.model, part.time, part.has_loads};
+  const auto begin_slab = [&](int slab) { begin(predicted, contacts.step().pin, loads, slab); };
+  if (keeps_matrix)
+    context_.elements.add_forces(predicted, force_, begin_slab, [](int) {});
+  else
+    context_.elements.linearise(predicted, part.h, true, force_, blocks_,
+                                [&](int slab) { begin_slab(slab), begin_blocks(slab); });
+  std::fill(change.begin(), change.end(), 0.0);
+  solve_contacts({before, &predicted.velocity, energy_of(velocity_)}, contacts, change, report);
+  for (std::size_t i = 0; i < velocity_.size(); ++i) velocity_[i] += change[i];
+  return velocity_;
+}
+
+/// External forces, ahead of the tissue's, and the first guess of the velocity.
+void ImplicitSolve::begin(const StateView& state, const Pin& pin, const ExternalLoads& loads, int slab) {
+  const Slabs& slabs = context_.elements.slabs();
+  const auto first = std::size_t(slabs.begin(slab)), last = std::size_t(slabs.end(slab));
+  const std::size_t n = context_.model.sphere_count();
+  const double* now[3] = {state.velocity.x.data(), state.velocity.y.data(), state.velocity.z.data()};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    std::copy(now[axis] + first, now[axis] + last, &velocity_[axis * n + first]);
+  held_.stop(pin, slab, {&velocity_[0], &velocity_[n], &velocity_[2 * n]});
+  loads.set(first, last, force_);
+}
+
+/// The masses, ahead of the tissue's blocks.
+void ImplicitSolve::begin_blocks(int slab) {
+  const Slabs& slabs = context_.elements.slabs();
+  const Model& model = context_.model;
+  const auto first = std::size_t(slabs.begin(slab)), last = std::size_t(slabs.end(slab));
+  for (std::size_t k = 0; k < 6; ++k) {
+    const bool is_diagonal = k == 0 || k == 3 || k == 5;
+    for (std::size_t i = first; i < last; ++i)
+      blocks_[k * model.sphere_count() + i] = is_diagonal ? model.mass[i] : 0.0;
+  }
+}
+
+/// Solves until no contact pulls; `change` is the velocity itself, or its change from a prediction.
+void ImplicitSolve::solve_contacts(const Beginning& beginning, ImplicitContacts& contacts, Coordinates& change,
+                                   StepReport& report) {
+  const Slabs& slabs = context_.elements.slabs();
+  const ContactStep& step = contacts.step();
+  for (int round = 0;; ++round) {
+    LinearisedContacts linearised = contacts.linearise(force_, blocks_);
+    context_.team.for_each(slabs.count(), [&](int slab) { find_momentum(beginning, step.h, slab); });
+    solver_.set_blocks(blocks_, step.pin.sphere);
+    const SolverOutcome outcome =
+        solver_.solve(momentum_, change, round == 0 ? beginning.prediction_energy : std::nullopt, limits_,
+                      [&](const auto* in, auto* out, auto&& after) {
+                        context_.elements.apply(in, out, after);
+                        return linearised.apply(in, out);
+                      });
+    report.iterations += outcome.iterations;
+    report.residual = outcome.residual;
+    if (!outcome.converged) report.status = StepStatus::not_converged;
+    if (round < kContactRounds && linearised.pulls(change)) {
+      std::move(linearised).drop_pulling(change);
+      continue;
+    }
+    report.tool_force = step.pin.is_held() ? force_on_pin(beginning.before[step.pin.index()], step, change)
+                                           : linearised.tool_force(change);
+    return;
+  }
+}
+
+/// momentum = mass * (velocity - prediction) + h * force [kg m/s] of a slab's spheres.
+void ImplicitSolve::find_momentum(const Beginning& beginning, double h, int slab) {
+  const Slabs& slabs = context_.elements.slabs();
+  const std::size_t n = context_.model.sphere_count(), begin = std::size_t(slabs.begin(slab)),
+                    end = std::size_t(slabs.end(slab));
+  const double* mass = context_.model.mass.data();
+  for (const auto& [axis, of] : {std::pair{0, &Vec3Array::x}, {1, &Vec3Array::y}, {2, &Vec3Array::z}}) {
+    const double *f = &force_[std::size_t(axis) * n], *v = (beginning.before.*of).data();
+    const double* from = beginning.prediction != nullptr ? (beginning.prediction->*of).data() : nullptr;
+    double* __restrict out = &momentum_[std::size_t(axis) * n];
+    if (from == nullptr)
+      for (std::size_t i = begin; i < end; ++i) out[i] = mass[i] * v[i] + h * f[i];
+    else
+      for (std::size_t i = begin; i < end; ++i) out[i] = mass[i] * (v[i] - from[i]) + h * f[i];
+  }
+}
+
+/// The row of the balance of momentum of the pin's sphere, with the sign turned; `before` is its velocity at the start.
+Vec3 ImplicitSolve::force_on_pin(Vec3 before, const ContactStep& step, const Coordinates& change) {
+  const Model& model = context_.model;
+  const std::size_t n = model.sphere_count(), i = step.pin.index();
+  std::fill(momentum_.begin(), momentum_.end(), 0.0);
+  context_.elements.apply(static_cast<const double*>(change.data()), momentum_.data(), [](int) {});
+  const Vec3 coupling{momentum_[i], momentum_[n + i], momentum_[2 * n + i]},
+      own{force_[i], force_[n + i], force_[2 * n + i]};
+  return (model.mass[i] * (before - step.pin.velocity) - coupling) / step.h + own;
+}
+
+}  // namespace ctpm

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "core/elements/axial.h"
+#include "core/model/model.h"
+#include "core/model/state.h"
+#include "core/parallel/slabs.h"
+#include "core/parallel/team.h"
+
+namespace ctpm {
+
+/// The part of a State that an integrator advances.
+struct Motion {
+  /// Room for the spheres and two-sphere TPMs of `model`, without accelerations.
+  explicit Motion(const Model& model)
+      : position(model.sphere_count()), velocity(model.sphere_count()), kelvin_elongation(model.tpms.size()) {}
+
+  Vec3Array position, velocity;           ///< [m], [m/s]  (sphere_count)
+  Vec3Array acceleration;                 ///< [m/s^2]; empty for other integrators than SDIRK2  (sphere_count)
+  std::vector<double> kelvin_elongation;  ///< [m]  (tpm_count)
+};
+
+/// Takes `motion` into `state`; the arrays of `motion` are then those that `state` had. Never allocates.
+void commit(Motion& motion, State& state);
+
+/// to = position + h * velocity  (sphere_count); `to` must be another array than `position`.
+void drift(const Slabs& slabs, Team& team, const Vec3Array& position, const Vec3Array& velocity, double h,
+           Vec3Array& to);
+
+/// position += h * velocity  (sphere_count).
+void drift(const Slabs& slabs, Team& team, const Vec3Array& velocity, double h, Vec3Array& position);
+
+/// Gives `to` the `velocity` (3 x sphere_count) that was solved for, and the positions that it leads to from `position`
+/// in a step of `h` [s].
+void commit_velocity(const Slabs& slabs, Team& team, const Coordinates& velocity, const Vec3Array& position, double h,
+                     Motion& to);
+
+}  // namespace ctpm

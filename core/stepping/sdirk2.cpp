@@ -1,0 +1,136 @@
+#include "core/stepping/sdirk2.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace ctpm {
+namespace {
+
+/// Part of a step that each of Alexander's two stages (1977) takes: 1 - 1 / sqrt(2).
+constexpr double kStage = 0.29289321881345248;
+
+/// Falls back to backward Euler if a sphere moves farther in a step than 10 % of the shortest element.
+constexpr double kLongestMove = 0.1;
+
+/// Falls back to backward Euler if the predictor misses more than 1 % of the kinetic energy.
+constexpr double kLargestPredictorError = 0.01;
+
+/// to = from + factor * (to - from).
+void stretch(const std::vector<double>& from, double factor, std::vector<double>& to) {
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] = from[i] + factor * (to[i] - from[i]);
+}
+
+void stretch(const Vec3Array& from, double factor, Vec3Array& to) {
+  stretch(from.x, factor, to.x), stretch(from.y, factor, to.y), stretch(from.z, factor, to.z);
+}
+
+/// to = velocity + h * acceleration; without accelerations they are 0.
+void extrapolate(const Vec3Array& velocity, const Vec3Array& acceleration, double h, Vec3Array& to) {
+  const bool is_known = acceleration.size() > 0;
+  for (std::size_t i = 0; i < to.size(); ++i) to.set(i, velocity[i] + h * (is_known ? acceleration[i] : Vec3{}));
+}
+
+/// slope = (to - from) / h.
+void find_slope(const Vec3Array& from, const Vec3Array& to, double h, Vec3Array& slope) {
+  for (std::size_t i = 0; i < to.size(); ++i) slope.set(i, (to[i] - from[i]) / h);
+}
+
+double fastest_squared(const Vec3Array& velocity) {
+  double fastest = 0;
+  for (std::size_t i = 0; i < velocity.size(); ++i) fastest = std::max(fastest, dot(velocity[i], velocity[i]));
+  return fastest;
+}
+
+double shortest_element_of(const Model& model) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const auto* lengths : {&model.edges.rest_length, &model.tpms.rest_length})
+    for (const double length : *lengths) shortest = std::min(shortest, length);
+  return shortest;
+}
+
+}  // namespace
+
+Sdirk2::Sdirk2(const StepContext& context, ImplicitSolve& solve)
+    : context_(context),
+      solve_(solve),
+      fallback_(context, solve),
+      check_(context),
+      shortest_element_(shortest_element_of(context.model)),
+      predicted_(context.model),
+      second_start_(context.model),
+      change_(3 * context.model.sphere_count()) {}
+
+bool Sdirk2::step(const State& from, const HeldTool& tool, const Substep& part, Motion& to, StepReport& report) {
+  to.acceleration.resize(from.position.size());
+  const StepStatus before = report.status;
+  if (is_short(from, tool, part) && two_stages(from, tool, part, to, report) &&
+      predictor_error(stage_pin_) <= kLargestPredictorError) {
+    find_slope(second_start_.velocity, to.velocity, kStage * part.h, to.acceleration);
+    return true;
+  }
+  report.status = before;
+  if (!fallback_.step(from, tool, part, to, report)) return false;
+  find_slope(from.velocity, to.velocity, part.h, to.acceleration);
+  return true;
+}
+
+/// Whether no sphere moves farther in the step than a prediction is good for.
+bool Sdirk2::is_short(const State& from, const HeldTool& tool, const Substep& part) const {
+  const double limit = kLongestMove * shortest_element_;
+  const double jump =
+      tool.is(ToolKind::pin) ? norm(tool.at(part.share) - from.position[std::size_t(tool.tool->sphere)]) : 0.0;
+  return jump <= limit && fastest_squared(from.velocity) * part.h * part.h <= limit * limit;
+}
+
+bool Sdirk2::two_stages(const State& from, const HeldTool& tool, const Substep& part, Motion& to, StepReport& report) {
+  const double h = kStage * part.h, rest = part.h - h;
+  extrapolate(from.velocity, from.acceleration, h, predicted_.velocity);
+  const Substep first{h, part.time - rest, part.share - rest / context_.model.tick, part.has_loads};
+  if (!dirk_stage(from, tool, first, false, second_start_, report)) return false;
+  predicted_.velocity = second_start_.velocity;
+  stretch(from.velocity, part.h / h, predicted_.velocity);
+  stretch(from.position, rest / h, second_start_.position), stretch(from.velocity, rest / h, second_start_.velocity);
+  stretch(from.kelvin_elongation, rest / h, second_start_.kelvin_elongation);
+  const StateView start(from, second_start_.position, second_start_.velocity, second_start_.kelvin_elongation);
+  return dirk_stage(start, tool, {h, part.time, part.share, part.has_loads}, true, to, report);
+}
+
+/// One stage from `start` into `to`, linearised about where the velocity in predicted_ leads; the second stage takes
+/// the matrix of the first.
+bool Sdirk2::dirk_stage(const StateView& start, const HeldTool& tool, const Substep& part, bool is_second, Motion& to,
+                        StepReport& report) {
+  Elements& elements = context_.elements;
+  const Slabs& slabs = elements.slabs();
+  stage_pin_ = Contacts::pin(tool, start.position, part.share, part.h);
+  if (stage_pin_.is_held()) predicted_.velocity.set(stage_pin_.index(), stage_pin_.velocity);
+  drift(slabs, context_.team, start.position, predicted_.velocity, part.h, predicted_.position);
+  // A new matrix accounts for the change of the Kelvin elongations in the step; an old one must be given their end.
+  if (is_second)
+    elements.find_kelvin(part.h, {start, predicted_.position, predicted_.velocity, start.kelvin_elongation},
+                         predicted_.kelvin_elongation);
+  const std::vector<double>& kelvin = is_second ? predicted_.kelvin_elongation : start.kelvin_elongation;
+  const StateView predicted(start, predicted_.position, predicted_.velocity, kelvin);
+  ImplicitContacts contacts =
+      context_.contacts.detect(predicted, tool, {part.h, part.share, stage_pin_}, Linearisation::velocity);
+  stage_velocity_ = &solve_.solve_near(predicted, start.velocity, is_second, part, contacts, change_, report);
+  commit_velocity(slabs, context_.team, *stage_velocity_, start.position, part.h, to);
+  if (!check_.passes(to.velocity, report)) return false;
+  elements.find_kelvin(part.h, {start, to.position, to.velocity, start.kelvin_elongation}, to.kelvin_elongation);
+  report.depth = contacts.depth(to.position), report.contacts = contacts.touched();
+  return true;
+}
+
+/// Part of the kinetic energy at the end of the last stage that its prediction missed; the pin's sphere does not count.
+double Sdirk2::predictor_error(const Pin& pin) {
+  const std::size_t n = context_.model.sphere_count();
+  const Coordinates& velocity = *stage_velocity_;
+  double energy = solve_.energy_of(velocity);
+  if (pin.is_held()) {
+    const std::size_t i = pin.index();
+    const Vec3 own{velocity[i], velocity[n + i], velocity[2 * n + i]};
+    energy -= context_.model.mass[i] * dot(own, own);
+  }
+  return energy > 0 ? solve_.energy_of(change_) / energy : 0.0;
+}
+
+}  // namespace ctpm

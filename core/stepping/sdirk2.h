@@ -1,0 +1,43 @@
+#pragma once
+
+#include "core/model/state.h"
+#include "core/stepping/backward_euler.h"
+#include "core/stepping/implicit_solve.h"
+#include "core/stepping/motion.h"
+#include "core/stepping/step.h"
+#include "core/stepping/substep.h"
+#include "core/stepping/velocity_check.h"
+
+namespace ctpm {
+
+/// SDIRK2: L-stable, second order (Alexander, "Diagonally implicit Runge-Kutta methods for stiff O.D.E.'s", 1977). Two
+/// stages, each a shorter step of backward Euler, linearised about a prediction; the second starts where the first
+/// leads in the rest of the step. A step that is too long for the motion is done by backward Euler alone.
+class Sdirk2 {
+ public:
+  /// `context` and `solve` must outlive the integrator.
+  Sdirk2(const StepContext& context, ImplicitSolve& solve);
+
+  /// One substep from `from` into `to`. False: the step is refused, `report` says why, and `to` holds nothing useful.
+  bool step(const State& from, const HeldTool& tool, const Substep& part, Motion& to, StepReport& report);
+
+ private:
+  bool is_short(const State& from, const HeldTool& tool, const Substep& part) const;
+  bool two_stages(const State& from, const HeldTool& tool, const Substep& part, Motion& to, StepReport& report);
+  bool dirk_stage(const StateView& start, const HeldTool& tool, const Substep& part, bool is_second, Motion& to,
+                  StepReport& report);
+  double predictor_error(const Pin& pin);
+
+  const StepContext& context_;
+  ImplicitSolve& solve_;
+  BackwardEuler fallback_;
+  VelocityCheck check_;
+  double shortest_element_;                      ///< at rest [m]
+  Motion predicted_;                             ///< end of a stage
+  Motion second_start_;                          ///< end of the first stage, then start of the second
+  Coordinates change_;                           ///< of the last stage's velocity from its prediction [m/s]
+  const Coordinates* stage_velocity_ = nullptr;  ///< solution of the last stage
+  Pin stage_pin_;                                ///< of the last stage
+};
+
+}  // namespace ctpm

@@ -1,0 +1,347 @@
+#pragma once
+
+#include <span>
+
+#include "scenes/key_types.h"
+#include "scenes/scene_spec.h"
+
+// Every key of a scene with its type, unit, range and sentence. A key gets its range here and nowhere else. Defaults
+// are those of the structs in scene_spec.h. The reader, the writer, FORMAT.md and scene.schema.json use this table.
+// Internal to scenes.
+namespace ctpm {
+
+inline constexpr const char* scene_format_name = "ctpm-scene";
+inline constexpr int scene_format_version = 1;
+
+inline std::span<const Choice<LengthUnit>> choices_of(LengthUnit) {
+  static constexpr Choice<LengthUnit> choices[] = {{"mm", LengthUnit::millimetre},
+                                                   {"cm", LengthUnit::centimetre},
+                                                   {"m", LengthUnit::metre},
+                                                   {"in", LengthUnit::inch}};
+  return choices;
+}
+inline std::span<const Choice<Structure>> choices_of(Structure) {
+  static constexpr Choice<Structure> choices[] = {{"ctpm", Structure::ctpm},
+                                                  {"tpm", Structure::tpm},
+                                                  {"mass-spring", Structure::mass_spring},
+                                                  {"angle-mass-spring", Structure::angle_mass_spring}};
+  return choices;
+}
+inline std::span<const Choice<LatticeKind>> choices_of(LatticeKind) {
+  static constexpr Choice<LatticeKind> choices[] = {{"cubic-18", LatticeKind::cubic_18},
+                                                    {"cubic-6", LatticeKind::cubic_6}};
+  return choices;
+}
+inline std::span<const Choice<ToolKind>> choices_of(ToolKind) {
+  static constexpr Choice<ToolKind> choices[] = {
+      {"ball", ToolKind::ball}, {"scalpel", ToolKind::scalpel}, {"pin", ToolKind::pin}};
+  return choices;
+}
+
+inline std::span<const Choice<IntegratorSpec>> choices_of(IntegratorSpec) {
+  static constexpr Choice<IntegratorSpec> choices[] = {{"auto", IntegratorSpec::automatic},
+                                                       {"leapfrog", IntegratorSpec::leapfrog},
+                                                       {"backward-euler", IntegratorSpec::backward_euler},
+                                                       {"sdirk2", IntegratorSpec::sdirk2}};
+  return choices;
+}
+
+inline constexpr Range any_coordinate_mm = within(-100000, 100000);
+inline constexpr Range any_direction = within(-1e6, 1e6);
+
+inline RecordInfo info_of(const FillSpec&) { return {"fill", "How the organ's inside is filled with spheres."}; }
+template <class V>
+void describe_fields(V& v, FillSpec& fill) {
+  v.number(Key{"radius_mm", "Radius r of every sphere."}, fill.radius, units::millimetre, within(0.01, 100));
+  v.number(Key{"gap_mm", "Gap from surface to surface; the spacing is 2 r + gap."}, fill.gap, units::millimetre,
+           within(0, 100));
+}
+
+inline RecordInfo info_of(const FittedForSpec&) {
+  return {
+      "fitted_for",
+      "The press that the stiffness scale was fitted to, as `ctpm fit` stores it: a ball presses one sphere to this "
+      "depth and feels this force. For information only."};
+}
+template <class V>
+void describe_fields(V& v, FittedForSpec& fitted) {
+  v.point(required("place_mm", "Rest position of the pressed sphere."), fitted.place, units::millimetre,
+          any_coordinate_mm);
+  v.number(required("ball_radius_mm", "Radius of the ball that pressed it."), fitted.ball_radius, units::millimetre,
+           within(0.01, 1000));
+  v.number(required("sphere_radius_mm", "Radius of the organ's spheres."), fitted.sphere_radius, units::millimetre,
+           within(0.01, 100));
+  v.number(required("depth_mm", "Depth of the sphere below its rest position."), fitted.depth, units::millimetre,
+           above(0, 1000));
+  v.number(required("force_n", "Force on the ball at that depth."), fitted.force, units::newton, above(0, 1e6));
+}
+
+inline RecordInfo info_of(const MaterialSpec&) {
+  return {
+      "material",
+      "A preset; or a preset of which some values are replaced; or every value without a preset. An edge of spacing "
+      "s has the stiffness K S0 (s / s_cal), S0 = pi R^2, with the ball R and the spacing s_cal of the calibration."};
+}
+template <class V>
+void describe_fields(V& v, MaterialSpec& material) {
+  constexpr Unit modulus = units::kilopascal_per_millimetre;
+  v.preset(Key{"preset", "Name of a shipped material.", false, "none; then every modulus must be given"},
+           material.preset);
+  v.number(Key{"spring_kpa_per_mm", "Modulus K2 of the spring.", false, "the preset's"}, material.spring, modulus,
+           within(1e-6, 1e6));
+  v.number(Key{"kelvin_kpa_per_mm", "Modulus K1 of the Kelvin unit.", false, "the preset's"}, material.kelvin, modulus,
+           within(1e-6, 1e6));
+  v.number(
+      Key{"constraint_kpa_per_mm", "Modulus K' of the constraint, at least K1 K2 / (K1 + K2).", false, "the preset's"},
+      material.constraint, modulus, within(1e-6, 1e6));
+  v.number(Key{"viscosity_kpa_s_per_mm", "Viscosity v1 of the Kelvin unit.", false, "the preset's"}, material.viscosity,
+           units::kilopascal_second_per_millimetre, within(0, 1e6));
+  v.number(Key{"density_kg_per_m3", "Mass per volume.", false, "the preset's, else 1060"}, material.density,
+           units::kilogram_per_metre3, within(1, 30000));
+  v.number(Key{"stiffness_scale", "Multiplies every stiffness and damping.", false, "the preset's, else 1"},
+           material.stiffness_scale, units::none, within(1e-6, 1e6));
+  v.number(Key{"calibration_ball_radius_mm", "Radius R of the ball that the moduli were measured with.", false,
+               "the preset's"},
+           material.calibration_ball, units::millimetre, within(0.01, 1000));
+  v.number(Key{"calibration_spacing_mm", "Spacing of the spheres that the moduli belong to.", false, "the preset's"},
+           material.calibration_spacing, units::millimetre, within(0.01, 1000));
+  v.number(Key{"prestrain",
+               "In-situ strain: an element's length without force is shorter by this fraction than its length in the "
+               "lattice. A capsule with more prestrain than the tissue below it makes a cut gape.",
+               false, "0"},
+           material.prestrain, units::none, within(0, 0.5));
+  v.number(
+      Key{"fracture_toughness_j_per_m2", "Fracture energy J_c of a cut per area; 0: a blade cuts without resistance.",
+          false, "the preset's, else 0"},
+      material.fracture_toughness, units::joule_per_metre2, within(0, 1e6));
+  v.number(Key{"blade_friction_kpa", "Shear stress on each flank of a moving blade.", false, "the preset's, else 0"},
+           material.blade_friction, units::kilopascal, within(0, 1e4));
+  v.record(Key{"fitted_for", "The press that the stiffness scale was fitted to."}, material.fitted_for);
+}
+
+inline RecordInfo info_of(const BoxRegion&) { return {"box", "An axis-aligned box; its faces belong to it."}; }
+template <class V>
+void describe_fields(V& v, BoxRegion& box) {
+  v.point(required("min_mm", "Corner with the smallest coordinates."), box.min, units::millimetre, any_coordinate_mm);
+  v.point(required("max_mm", "Corner with the largest coordinates."), box.max, units::millimetre, any_coordinate_mm);
+}
+
+inline RecordInfo info_of(const SphereRegion&) { return {"sphere", "A ball-shaped region."}; }
+template <class V>
+void describe_fields(V& v, SphereRegion& sphere) {
+  v.point(required("centre_mm", "Its centre."), sphere.centre, units::millimetre, any_coordinate_mm);
+  v.number(required("radius_mm", "Its radius."), sphere.radius, units::millimetre, above(0, 100000));
+}
+
+inline RecordInfo info_of(const PlaneRegion&) {
+  return {"plane", "The half-space behind a plane; the plane belongs to it."};
+}
+template <class V>
+void describe_fields(V& v, PlaneRegion& plane) {
+  v.point(required("point_mm", "A point of the plane."), plane.point, units::millimetre, any_coordinate_mm);
+  v.point(required("normal", "Normal towards the side that stays free; any length but zero."), plane.normal,
+          units::none, any_direction);
+}
+
+inline RecordInfo info_of(const AnchorSpec&) {
+  return {"anchor", "A region whose spheres never move: those whose rest centre lies in it."};
+}
+template <class V>
+void describe_fields(V& v, AnchorSpec& anchor) {
+  v.number(Key{"lowest_mm", "Centres at most this far above the lowest one, against gravity."}, anchor.lowest,
+           units::millimetre, within(0, 100000));
+  v.record(Key{"box", "Centres in a box."}, anchor.box);
+  v.record(Key{"sphere", "Centres in a ball."}, anchor.sphere);
+  v.record(Key{"plane", "Centres behind a plane."}, anchor.plane);
+  v.exactly_one();
+}
+
+inline RecordInfo info_of(const GuideSpec&) {
+  return {"guide", "A sphere that moves only along a line or in a plane."};
+}
+template <class V>
+void describe_fields(V& v, GuideSpec& guide) {
+  v.point(required("cell", "Lattice coordinates of the sphere."), guide.cell, units::none, within(-1000, 1000));
+  v.text(required("axes", "Axes along which it may not move: letters of xyz."), guide.axes);
+}
+
+inline RecordInfo info_of(const RigSpec&) {
+  return {"rig", "Spheres given one by one or as a block, in place of a mesh. Give either cells or block."};
+}
+template <class V>
+void describe_fields(V& v, RigSpec& rig) {
+  v.points(Key{"cells", "Lattice coordinates of the spheres, whole numbers; cell 0, 0, 0 is at the origin."}, rig.cells,
+           units::none, within(-1000, 1000), 0);
+  v.point(Key{"block", "Spheres along x, y and z of a full block, centred over the origin and standing on z = 0."},
+          rig.block, units::none, within(1, 200));
+  v.list(Key{"guides", "Spheres that do not move along some axes."}, rig.guides, 0);
+}
+
+inline RecordInfo info_of(const LayerSpec&) {
+  return {"layer",
+          "Tissue from the layer above, or the surface, down to a depth. A sphere belongs to the first layer that ends "
+          "below its centre. Elements between spheres of different layers have the mean of their values."};
+}
+template <class V>
+void describe_fields(V& v, LayerSpec& layer) {
+  v.number(required("to_depth_mm", "Depth at which it ends; more than that of the layer above, and within the organ."),
+           layer.to_depth, units::millimetre, above(0, 1000));
+  v.record(required("material", "Its tissue."), layer.material);
+}
+
+inline RecordInfo info_of(const OrganSpec&) { return {"organ", "One piece of tissue, from a closed mesh, or a rig."}; }
+template <class V>
+void describe_fields(V& v, OrganSpec& organ) {
+  v.text(required("name", "Name of the organ, unique in the scene."), organ.name);
+  v.text(Key{"mesh",
+             "Path of the mesh file from the scene's folder; it may not leave that folder unless the user "
+             "allows it."},
+         organ.mesh);
+  v.record(Key{"rig", "Spheres given one by one, in place of a mesh."}, organ.rig);
+  v.choice(Key{"mesh_unit", "Unit of the mesh file's coordinates."}, organ.mesh_unit);
+  v.flag(Key{"all_parts", "Keep every closed part of the mesh, not only the largest."}, organ.all_parts);
+  v.integer(Key{"most_triangles", "The drawn surface is made coarser if it has more; the spheres stay the same.", false,
+                "as many as the mesh has"},
+            organ.most_triangles, within(100, 10000000));
+  v.choice(Key{"model", "Structure that joins the spheres."}, organ.structure);
+  v.choice(Key{"lattice", "Neighbours that are joined; cubic-6 has no shear stiffness and is for rigs."},
+           organ.lattice);
+  v.flag(Key{"softening", "Forces of triples and constraints are divided by 1 + tan(theta), Eq. 8; for model ctpm."},
+         organ.softening);
+  v.record(Key{"fill", "The spheres."}, organ.fill);
+  v.record(required("material", "The tissue, below the last layer."), organ.material);
+  v.list(Key{"layers", "Layers of other tissue that follow the surface, outermost first.", false, "none"}, organ.layers,
+         0);
+  v.list(Key{"anchors", "Regions whose spheres never move."}, organ.anchors, 0);
+  v.number(Key{"damage_depth_mm", "Indentation depth beyond which the tissue counts as damaged; 0: no limit."},
+           organ.damage_depth, units::millimetre, within(0, 1000));
+  v.number(Key{"damage_force_n", "Force on a tool beyond which the tissue counts as damaged; 0: no limit."},
+           organ.damage_force, units::newton, within(0, 1e6));
+  v.point(Key{"surface_color", "Red, green and blue of the outside."}, organ.surface_color, units::none, within(0, 1));
+  v.point(Key{"inner_color", "Red, green and blue of cut faces and spheres."}, organ.inner_color, units::none,
+          within(0, 1));
+}
+
+inline RecordInfo info_of(const ToolSpec&) { return {"tool", "A tool that the hand or a script can hold."}; }
+template <class V>
+void describe_fields(V& v, ToolSpec& tool) {
+  v.text(required("name", "Name of the tool in scripts and recordings, unique in the scene."), tool.name);
+  v.choice(required("kind",
+                    "A rigid ball presses; a scalpel severs what its blade sweeps; a pin holds one sphere "
+                    "where the hand is."),
+           tool.kind);
+  v.number(Key{"radius_mm", "Radius of a ball; needed by a ball, not allowed for others."}, tool.radius,
+           units::millimetre, within(0.01, 200));
+  v.number(
+      Key{"blade_length_mm", "Length of a scalpel's edge from its tip; needed by a scalpel, not allowed for others."},
+      tool.blade_length, units::millimetre, within(0.01, 500));
+  v.point(Key{"holds_mm", "A pin holds the sphere nearest to here; needed by a pin, not allowed for others."},
+          tool.holds, units::millimetre, any_coordinate_mm);
+  v.number(Key{"blade_reach_mm",
+               "Least distance ahead of a scalpel's edge over which tissue resists; at least 0.75 spacings of the "
+               "widest organ are taken; not allowed for others.",
+               false, "9"},
+           tool.blade_reach, units::millimetre, within(0.01, 100));
+  v.number(Key{"flank_height_mm",
+               "Height of a scalpel's flanks behind the edge, along which cut faces rub; not allowed for others.",
+               false, "6"},
+           tool.flank_height, units::millimetre, within(0, 200));
+  v.number(Key{"blade_thickness_mm",
+               "Cut faces that have opened by this distance no longer touch a scalpel's flanks; not allowed for "
+               "others.",
+               false, "1"},
+           tool.blade_thickness, units::millimetre, within(0.01, 100));
+}
+
+inline RecordInfo info_of(const LoadSpec&) { return {"load", "An external force on one sphere."}; }
+template <class V>
+void describe_fields(V& v, LoadSpec& load) {
+  v.point(required("at_mm", "The force acts on the sphere whose rest position is nearest to this point."), load.at,
+          units::millimetre, any_coordinate_mm);
+  v.point(required("force_n", "The force after the ramp."), load.force, units::newton, within(-1e6, 1e6));
+  v.number(Key{"start_s", "Start of the ramp."}, load.start, units::second, within(0, 1e6));
+  v.number(Key{"ramp_s", "Time in which the force rises linearly from zero."}, load.ramp, units::second,
+           within(0, 1e6));
+}
+
+inline RecordInfo info_of(const ProbeSpec&) {
+  return {"probe", "A point whose motion is recorded: that of the sphere whose rest position is nearest."};
+}
+template <class V>
+void describe_fields(V& v, ProbeSpec& probe) {
+  v.text(required("name", "Name of the probe in tables, unique in the scene."), probe.name);
+  v.point(required("at_mm", "Rest position of the point."), probe.at, units::millimetre, any_coordinate_mm);
+}
+
+inline RecordInfo info_of(const SolverSpec&) { return {"solver", "Settings of the time integration."}; }
+template <class V>
+void describe_fields(V& v, SolverSpec& solver) {
+  v.choice(Key{"integrator",
+               "`leapfrog` is explicit and of second order, `backward-euler` implicit and of first, `sdirk2` implicit "
+               "and of "
+               "second; `auto` takes the cheapest that is stable for the scene, and `ctpm plan` says which and why.",
+               false},
+           solver.integrator);
+  v.number(Key{"tolerance", "Relative residual at which the solve of a tick stops.", false, "1e-4"}, solver.tolerance,
+           units::none, between(0, 1));
+  v.number(Key{"velocity_floor_mm_per_s", "Absolute tolerance of the velocities.", false, "0.001"},
+           solver.velocity_floor, units::millimetre_per_second, above(0, 1000));
+  v.integer(Key{"max_iterations", "Largest number of iterations of one solve.", false, "200"}, solver.max_iterations,
+            within(1, 100000));
+  v.integer(Key{"substeps", "Equal parts of a tick; `auto` may take more.", false, "1"}, solver.substeps,
+            within(1, 1000));
+}
+
+inline RecordInfo info_of(const CameraSpec&) { return {"camera", "A view for pictures and videos."}; }
+template <class V>
+void describe_fields(V& v, CameraSpec& camera) {
+  v.text(required("name", "Name of the camera in commands, unique in the scene."), camera.name);
+  v.point(required("eye_mm", "Position of the camera."), camera.eye, units::millimetre, any_coordinate_mm);
+  v.point(required("target_mm", "Point that the camera looks at."), camera.target, units::millimetre,
+          any_coordinate_mm);
+  v.point(Key{"up", "Upward direction of the picture; any length but zero."}, camera.up, units::none, any_direction);
+  v.number(Key{"field_of_view_deg", "Angle from the lower to the upper edge of the picture."}, camera.field_of_view,
+           units::degree, within(1, 150));
+}
+
+inline RecordInfo info_of(const SceneSpec&) { return {"scene", "The whole file."}; }
+template <class V>
+void describe_fields(V& v, SceneSpec& scene) {
+  v.constant(required("format", "Says that this is a scene."), scene_format_name);
+  v.constant(required("version", "Version of the format."), scene_format_version);
+  v.text(required("name", "Name of the scene."), scene.name);
+  v.point(Key{"gravity_m_per_s2", "Acceleration of free fall; all zero: no gravity."}, scene.gravity,
+          units::metre_per_second2, within(-1000, 1000));
+  v.number(Key{"tick_s", "Length of a tick."}, scene.tick, units::second, within(1e-6, 0.1));
+  v.number(Key{"settle_s", "Longest time for the scene to come to rest before its first tick."}, scene.settle,
+           units::second, within(0, 60));
+  v.list(required("organs", "The tissue."), scene.organs, 1);
+  v.list(Key{"tools", "The tools."}, scene.tools, 0);
+  v.number(
+      Key{"contact_stiffness_n_per_m", "Stiffness of a tool against one sphere.", false, "20 times the stiffest edge"},
+      scene.contact_stiffness, units::newton_per_metre, within(1e-6, 1e12));
+  v.number(Key{"contact_friction", "Coulomb coefficient between tool and tissue."}, scene.contact_friction, units::none,
+           within(0, 10));
+  v.number(Key{"contact_damping_s_per_m",
+               "Hunt-Crossley damping c of a tool's contact: at a penetration p it pushes with k p (1 + c p'); with 50 "
+               "s/m an impact at 30 mm/s keeps 25 % of its kinetic energy.",
+               false, "50"},
+           scene.contact_damping, units::second_per_metre, within(0, 1e4));
+  v.number(Key{"contact_stick_time_s",
+               "While tool and tissue stick, the drag between them is the contact's stiffness times this time.", false,
+               "0.1"},
+           scene.contact_stick_time, units::second, within(0, 100));
+  v.flag(Key{"lips_meet", "The two sides of a cut meet again without passing through each other."}, scene.lips_meet);
+  v.number(
+      Key{"cut_face_stiffening",
+          "With `lips_meet`: factor b by which the contact of cut faces stiffens, 1 + (b p / s)^2 at a penetration "
+          "p and a spacing s.",
+          false, "8"},
+      scene.cut_face_stiffening, units::none, within(0, 1000));
+  v.list(Key{"loads", "External forces."}, scene.loads, 0);
+  v.list(Key{"probes", "Points whose motion is recorded."}, scene.probes, 0);
+  v.record(Key{"solver", "Settings of the time integration."}, scene.solver);
+  v.list(Key{"cameras", "Views; commands use the first unless another is named."}, scene.cameras, 0);
+}
+
+}  // namespace ctpm

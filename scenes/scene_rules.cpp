@@ -1,0 +1,168 @@
+#include "scenes/scene_rules.h"
+
+#include <array>
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "scenes/field_reader.h"
+#include "scenes/json_text.h"
+#include "scenes/presets.h"
+
+namespace ctpm {
+namespace {
+
+bool is_whole(Vec3 v) { return std::floor(v.x) == v.x && std::floor(v.y) == v.y && std::floor(v.z) == v.z; }
+
+std::string item(const std::string& list, std::size_t index) { return list + "/" + std::to_string(index); }
+
+/// Names within one list must differ.
+template <class T>
+void check_names(Problems& problems, const char* list, const std::vector<T>& items) {
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < items.size(); ++i)
+    if (!items[i].name.empty() && !seen.insert(items[i].name).second)
+      problems.add_rule(item(list, i) + "/name", "got " + in_quotes(items[i].name) + ", which is taken already");
+}
+
+void check_preset(Problems& problems, const std::string& at, const std::string& preset) {
+  if (preset.empty() || find_preset(preset) != nullptr) return;
+  const std::string nearest = nearest_word(preset, preset_names());
+  std::string known;
+  for (const std::string& name : preset_names()) known += (known.empty() ? "" : ", ") + name;
+  problems.add_rule(at + "/preset", "there is no preset " + in_quotes(preset),
+                    nearest.empty() ? "presets: " + known : "did you mean " + in_quotes(nearest) + "?");
+}
+
+/// `organ` is the pointer of the material's organ.
+void check_material(Problems& problems, const std::string& at, const MaterialSpec& spec, const std::string& organ,
+                    Structure structure) {
+  check_preset(problems, at, spec.preset);
+  if (!problems.is_good(at + "/preset")) return;
+  const ResolvedMaterial resolved = resolve_material(spec);
+  for (const std::string& key : resolved.missing)
+    problems.add_rule(at, "the key " + in_quotes(key) + " is missing, and there is no preset to take it from", "",
+                      at + "/" + key);
+  if (!problems.are_good(at, {"spring_kpa_per_mm", "kelvin_kpa_per_mm", "constraint_kpa_per_mm"}) ||
+      !problems.is_good(organ + "/model") || structure != Structure::ctpm)
+    return;
+  const Material& m = resolved.material;
+  const double p2 = m.kelvin * m.spring / (m.kelvin + m.spring);
+  if (m.constraint < p2)
+    problems.add_rule(at + "/constraint_kpa_per_mm", "got " + double_to_decimal(m.constraint, 6) +
+                                                         " kPa/mm, must be at least K1 K2 / (K1 + K2) = " +
+                                                         double_to_decimal(p2, 6) + ", which the triples already give");
+}
+
+void check_layers(Problems& problems, const std::string& at, const OrganSpec& organ) {
+  for (std::size_t i = 0; i < organ.layers.size(); ++i) {
+    const std::string where = item(at + "/layers", i);
+    check_material(problems, where + "/material", organ.layers[i].material, at, organ.structure);
+    if (i == 0 || !problems.is_good(item(at + "/layers", i - 1) + "/to_depth_mm")) continue;
+    if (!(organ.layers[i].to_depth > organ.layers[i - 1].to_depth))
+      problems.add_rule(where + "/to_depth_mm",
+                        "got " + double_to_decimal(organ.layers[i].to_depth, -3) + ", must be more than the " +
+                            double_to_decimal(organ.layers[i - 1].to_depth, -3) + " mm at which the layer above ends");
+  }
+}
+
+void check_guides(Problems& problems, const std::string& at, const RigSpec& rig,
+                  const std::set<std::array<double, 3>>& cells) {
+  const bool knows_cells = problems.are_good(at, {"cells", "block"});
+  const auto is_cell = [&](Vec3 cell) {
+    if (!rig.block) return cells.contains({cell.x, cell.y, cell.z});
+    const auto is_in = [](double i, double count) { return i >= 0 && i < count; };
+    return is_whole(cell) && is_in(cell.x, rig.block->x) && is_in(cell.y, rig.block->y) && is_in(cell.z, rig.block->z);
+  };
+  for (std::size_t i = 0; i < rig.guides.size(); ++i) {
+    const GuideSpec& guide = rig.guides[i];
+    const std::string where = item(at + "/guides", i);
+    if (guide.axes.find_first_not_of("xyz") != std::string::npos || guide.axes.size() > 3)
+      problems.add_rule(where + "/axes", "got " + in_quotes(guide.axes) + ", must be letters of xyz");
+    if (knows_cells && !is_cell(guide.cell)) problems.add_rule(where + "/cell", "is not one of the rig's cells");
+  }
+}
+
+void check_rig(Problems& problems, const std::string& at, const RigSpec& rig) {
+  if (problems.are_good(at, {"cells", "block"}) && rig.cells.empty() == !rig.block)
+    problems.add_rule(at, "must have exactly one of cells, block");
+  const char* too_few = "got one sphere, a rig needs at least two that are neighbours";
+  std::set<std::array<double, 3>> cells;
+  for (std::size_t i = 0; i < rig.cells.size(); ++i) {
+    const Vec3 cell = rig.cells[i];
+    const std::string where = item(at + "/cells", i);
+    if (!problems.is_good(where)) continue;
+    if (!is_whole(cell)) problems.add_rule(where, "must be whole numbers");
+    if (!cells.insert({cell.x, cell.y, cell.z}).second) problems.add_rule(where, "the cell is given more than once");
+  }
+  if (rig.cells.size() == 1) problems.add_rule(at + "/cells", too_few);
+  if (rig.block && !is_whole(*rig.block)) problems.add_rule(at + "/block", "must be whole numbers");
+  if (rig.block == Vec3{1, 1, 1}) problems.add_rule(at + "/block", too_few);
+  check_guides(problems, at, rig, cells);
+}
+
+void check_anchor(Problems& problems, const std::string& at, const AnchorSpec& anchor) {
+  if (anchor.plane) check_direction(problems, at + "/plane/normal", anchor.plane->normal);
+  if (anchor.box && !(anchor.box->min.x <= anchor.box->max.x && anchor.box->min.y <= anchor.box->max.y &&
+                      anchor.box->min.z <= anchor.box->max.z))
+    problems.add_rule(at + "/box", "min_mm must not be above max_mm in any coordinate");
+}
+
+void check_organ(Problems& problems, std::size_t index, const OrganSpec& organ) {
+  const std::string at = item("/organs", index);
+  if (problems.is_good(at + "/rig") && organ.mesh.empty() == !organ.rig)
+    problems.add_rule(at, "must have exactly one of mesh, rig", "", at + "/mesh");
+  if (organ.rig) check_rig(problems, at + "/rig", *organ.rig);
+  check_material(problems, at + "/material", organ.material, at, organ.structure);
+  check_layers(problems, at, organ);
+  for (std::size_t i = 0; i < organ.anchors.size(); ++i)
+    check_anchor(problems, item(at + "/anchors", i), organ.anchors[i]);
+  if (organ.lattice == LatticeKind::cubic_6 && organ.structure != Structure::angle_mass_spring && !organ.mesh.empty())
+    problems.add_warning(at + "/lattice",
+                         "cubic-6 joins neighbours along the axes only and has no shear stiffness: the organ folds up "
+                         "under a probe",
+                         "use cubic-18, or the model angle-mass-spring");
+}
+
+void check_tool(Problems& problems, std::size_t index, const ToolSpec& tool) {
+  const std::string at = item("/tools", index);
+  if (!problems.is_good(at + "/kind")) return;
+  const auto allow = [&](bool is_given, ToolKind kind, const std::string& key, const std::string& kind_name) {
+    if (tool.kind != kind && is_given) problems.add_rule(at + "/" + key, "only a " + kind_name + " has this key");
+  };
+  const auto need = [&](bool is_given, ToolKind kind, const std::string& key, const std::string& kind_name) {
+    if (tool.kind == kind && !is_given)
+      problems.add_rule(at, "a " + kind_name + " needs the key " + in_quotes(key), "", at + "/" + key);
+    allow(is_given, kind, key, kind_name);
+  };
+  need(tool.radius.has_value(), ToolKind::ball, "radius_mm", "ball");
+  need(tool.blade_length.has_value(), ToolKind::scalpel, "blade_length_mm", "scalpel");
+  need(tool.holds.has_value(), ToolKind::pin, "holds_mm", "pin");
+  allow(tool.blade_reach.has_value(), ToolKind::scalpel, "blade_reach_mm", "scalpel");
+  allow(tool.flank_height.has_value(), ToolKind::scalpel, "flank_height_mm", "scalpel");
+  allow(tool.blade_thickness.has_value(), ToolKind::scalpel, "blade_thickness_mm", "scalpel");
+}
+
+void check_camera(Problems& problems, std::size_t index, const CameraSpec& camera) {
+  const std::string at = item("/cameras", index);
+  check_direction(problems, at + "/up", camera.up);
+  if (!problems.are_good(at, {"eye_mm", "target_mm"})) return;
+  if (camera.eye == camera.target) problems.add_rule(at + "/target_mm", "must not be the same point as eye_mm");
+  if (norm(cross(camera.up, camera.target - camera.eye)) < 1e-6 * norm(camera.up) * norm(camera.target - camera.eye))
+    problems.add_rule(at + "/up", "must not point along the line of sight");
+}
+
+}  // namespace
+
+void check_rules(Problems& problems, const SceneSpec& scene) {
+  check_names(problems, "/organs", scene.organs);
+  check_names(problems, "/tools", scene.tools);
+  check_names(problems, "/cameras", scene.cameras);
+  check_names(problems, "/probes", scene.probes);
+  for (std::size_t i = 0; i < scene.organs.size(); ++i) check_organ(problems, i, scene.organs[i]);
+  for (std::size_t i = 0; i < scene.tools.size(); ++i) check_tool(problems, i, scene.tools[i]);
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i) check_camera(problems, i, scene.cameras[i]);
+}
+
+}  // namespace ctpm

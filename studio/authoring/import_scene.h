@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/model/result.h"
+#include "importers/import.h"
+#include "scenes/scene_spec.h"
+
+namespace ctpm {
+
+/// What an author asks of an import.
+struct ImportRequest {
+  std::string mesh;                      ///< mesh file
+  std::string scene;                     ///< scene file to write (.json); mesh and script are written beside it
+  std::string organ;                     ///< name of a material preset; empty: found in the mesh's file name
+  std::optional<double> unit_in_metres;  ///< unset: from the file, else guessed
+  std::optional<double> sphere_radius;   ///< [m]; unset: the preset's
+  std::optional<double> gap;             ///< [m]; unset: the radius
+  std::string part;
+  bool all_parts = false;
+  std::optional<double> largest_hole;  ///< holes up to this diameter are filled [m]; unset: a tenth of the diagonal
+  std::optional<std::int32_t> most_triangles;  ///< of the drawn surface; unset: as many as the mesh has
+  std::vector<AnchorSpec> anchors;             ///< empty: the lowest eighth of its spheres
+  Progress progress;
+};
+
+struct ImportOutcome {
+  ImportReport report;
+  std::string scene_file;                 ///< as asked
+  std::string mesh_file, script_file;     ///< written beside the scene
+  std::optional<double> stiffness_scale;  ///< fitted and stored; unset: it could not be fitted
+  std::string fit_problem;                ///< why not
+  bool can_be_fitted_later = false;       ///< the fit was left out only because it takes long
+  std::size_t anchored = 0;               ///< spheres that never move
+};
+
+/// Imports a mesh and writes a scene that runs as it is: `NAME.json` with its stiffness fitted, the repaired mesh
+/// `NAME.obj` in millimetres, and a script `NAME.script.json` that presses and cuts it. Errors: those of the import, an
+/// unknown organ, an anchor that catches nothing, a folder that cannot be written. The scene is written last, so it
+/// never names a missing file.
+Result<ImportOutcome> import_scene(const ImportRequest& request);
+
+}  // namespace ctpm

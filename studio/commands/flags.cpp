@@ -1,0 +1,60 @@
+#include "studio/commands/flags.h"
+
+#include <utility>
+
+namespace ctpm {
+namespace {
+
+/// Fields that libraries name in errors, and their flags.
+constexpr std::pair<std::string_view, const char*> kFlags[] = {
+    {"continue.at_s", "--at"},
+    {"device.address", "--igtl"},
+    {"device.buttons", "--device-button"},
+    {"device.listen_port", "--igtl-listen"},
+    {"device.most_force_n", "--device-force-n"},
+    {"device.most_speed_mm_per_s", "--device-speed-mm-per-s"},
+    {"device.offset_mm", "--device-offset-mm"},
+    {"device.rotation", "--device-rotation"},
+    {"device.scale", "--device-scale"},
+    {"device.stiffness_n_per_m", "--device-stiffness-n-per-m"},
+    {"device.timeout_s", "--device-timeout-s"},
+    {"device.tip", "--device-tip"},
+    {"device.tool", "--device-tool"},
+    {"export.allow_diverged", "--allow-diverged"},
+    {"export.fps", "--fps"},
+    {"export.speed", "--speed"},
+    {"import.organ", "--organ"},
+    {"look.by", "--by"},
+    {"look.camera", "--camera"},
+    {"look.cutaway", "--cutaway"},
+    {"look.full_scale", "--full-scale"},
+    {"look.view", "--view"},
+    {"picture.size", "--size"},
+    {"report.folder", "-o"},
+    {"time_range.from_s", "--from-s"},
+    {"time_range.to_s", "--to-s"},
+};
+
+}  // namespace
+
+std::string flag_of(std::string_view field) {
+  for (const auto& [known, flag] : kFlags)
+    if (field == known) return flag;
+  return std::string(field);
+}
+
+void add_look(CLI::App& app, LookRequest& request) {
+  app.add_option("--view", request.view, "surface, spheres, both or elements")->capture_default_str();
+  app.add_option("--by", request.by, "What colours show: layer of spheres; stretch, tilt or force of elements");
+  app.add_option("--full-scale", request.full_scale, "Value of the last colour of elements [%, deg or N]");
+  app.add_option("--cutaway", request.cutaway, "Leave out what is before a plane across x, y or z: y, or y=12.5 in mm");
+  app.add_option("--camera", request.camera,
+                 "A camera of the scene, fitted, or follow the tool; its first one, else fitted");
+}
+
+void add_time_range(CLI::App& app, TimeRange& range) {
+  app.add_option("--from-s", range.from_s, "Where to begin [s]");
+  app.add_option("--to-s", range.to_s, "Where to end [s]; the session's end if not given");
+}
+
+}  // namespace ctpm

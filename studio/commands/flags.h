@@ -1,0 +1,23 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <string_view>
+
+#include "studio/session/time_range.h"
+#include "studio/views/look.h"
+
+// The names of flags, as far as several commands or the errors of libraries share them.
+namespace ctpm {
+
+/// The flag that sets a field of an option struct: `--camera` for "look.camera". A field without a flag is returned
+/// unchanged.
+std::string flag_of(std::string_view field);
+
+/// Adds the flags of a look: view, colours, cutaway and camera.
+void add_look(CLI::App& app, LookRequest& request);
+
+/// Adds the flags of a time range.
+void add_time_range(CLI::App& app, TimeRange& range);
+
+}  // namespace ctpm

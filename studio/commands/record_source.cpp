@@ -1,0 +1,71 @@
+#include "studio/commands/record_source.h"
+
+#include <utility>
+
+#include "studio/commands/console.h"
+#include "studio/sources/open_file.h"
+
+namespace ctpm {
+namespace {
+
+void add_device_options(CLI::App& app, DeviceRequest& device) {
+  const auto add = [&](const char* name, auto& value, const char* what) {
+    return app.add_option(name, value, what)->group("Devices (studio/devices/README.md)");
+  };
+  add("--igtl", device.address, "Takes what the hand does from an OpenIGTLink server, HOST:PORT");
+  add("--igtl-listen", device.listen_port, "Waits on this port for an OpenIGTLink client; 0: any that is free");
+  add("--igtl-bind", device.interface,
+      "Address of this machine to listen on; others than this machine's own let in "
+      "whoever can reach it")
+      ->capture_default_str();
+  add("--igtl-name", device.name, "Takes poses of the device of this name alone");
+  add("--device-tool", device.tool, "Tool in the hand; the scene's first if not given");
+  add("--device-button", device.buttons, "BUTTON=TOOL: while the button is pressed, this tool is; none after =");
+  add("--device-scale", device.scale, "Millimetres in the scene for one of the hand")->capture_default_str();
+  add("--device-offset-mm", device.offset_mm, "Where the device's origin lies in the scene: x y z")->expected(3);
+  add("--device-rotation", device.rotation, "How the device's frame is turned in the scene: w x y z")->expected(4);
+  add("--device-tip", device.tip, "Direction from handle to tip in the instrument's frame: x y z; 0 0 -1 if not given")
+      ->expected(3);
+  add("--device-force-n", device.most_force_n, "Largest force that is sent back")->capture_default_str();
+  add("--device-stiffness-n-per-m", device.stiffness_n_per_m, "Of the spring between hand and tool")
+      ->capture_default_str();
+  add("--device-speed-mm-per-s", device.most_speed_mm_per_s, "A hand that moves faster is taken for a jump")
+      ->capture_default_str();
+  add("--device-timeout-s", device.timeout_s, "Ends the session when nothing usable came for so long")
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_source(CLI::App& app, SourceRequest& request) {
+  app.add_option("--script", request.script,
+                 "What the hand does (.json); without any source, a press and a cut at the organ's top");
+  app.add_option("--motion", request.motion,
+                 "What a hand did (.csv): time_s, tool_x_mm, tool_y_mm, tool_z_mm, and tool_qw to tool_qz, "
+                 "buttons, tool; at any rate");
+  add_device_options(app, request.device);
+}
+
+int count_of(const SourceRequest& request) {
+  return int(!request.script.empty()) + int(!request.motion.empty()) + int(!request.device.address.empty()) +
+         int(request.device.listen_port.has_value());
+}
+
+Result<ReadySource> open_source(const SourceRequest& request, OpenedDevice device, const Model& model,
+                                const std::optional<Script>& otherwise) {
+  if (device.device) {
+    Result<FollowedDevice> followed = follow_device(request.device, std::move(device.device), model);
+    if (!followed) return followed.errors();
+    DeviceSource* source = followed->source.get();
+    return ReadySource{std::move(followed->source), source, std::move(followed->metadata)};
+  }
+  if (otherwise) print_remark("no source is given: pressing and cutting at the top of the first organ");
+  Result<OpenedSource> opened = otherwise                ? play_script(*otherwise, model)
+                                : request.script.empty() ? open_motion(request.motion, model)
+                                                         : open_script(request.script, model);
+  if (!opened) return opened.errors();
+  for (const std::string& remark : opened->remarks) print_remark(remark);
+  return ReadySource{std::move(opened->source), nullptr, std::move(opened->metadata)};
+}
+
+}  // namespace ctpm

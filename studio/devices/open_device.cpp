@@ -1,0 +1,167 @@
+#include "studio/devices/open_device.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+#include <utility>
+
+#include "studio/devices/igtl_link.h"
+#include "studio/output/option_name.h"
+#include "studio/sources/rotation.h"
+
+namespace ctpm {
+namespace {
+
+/// A whole number in [low, high] that is all of `text`.
+std::optional<int> whole_number(std::string_view text, int low, int high) {
+  int value = 0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (problem != std::errc() || end != text.data() + text.size() || value < low || value > high) return std::nullopt;
+  return value;
+}
+
+struct Address {
+  std::string host;
+  int port;
+};
+
+/// HOST:PORT, with an IPv6 address in brackets.
+std::optional<Address> address_of(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos || colon == 0) return std::nullopt;
+  std::string host = text.substr(0, colon);
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+  const auto port = whole_number(std::string_view(text).substr(colon + 1), 1, 65535);
+  if (!port) return std::nullopt;
+  return Address{host, *port};
+}
+
+Result<std::int32_t> tool_index(const std::string& field, const std::string& name, const Model& model) {
+  std::string known;
+  for (std::size_t i = 0; i < model.tools.size(); ++i) {
+    if (model.tools[i].name == name) return std::int32_t(i);
+    known += (known.empty() ? "" : ", ") + model.tools[i].name;
+  }
+  return Error{option_name(field), "the scene has no tool '" + name + "'",
+               known.empty() ? "the scene has no tools" : "its tools: " + known};
+}
+
+Vec3 vector_of(const std::vector<double>& numbers) { return {numbers[0], numbers[1], numbers[2]}; }
+
+Result<DeviceMap> map_of(const DeviceRequest& request, const Model& model) {
+  DeviceMap map;
+  Errors errors;
+  const auto find = [&](const std::string& field, const std::string& name) {
+    const Result<std::int32_t> index = tool_index(field, name, model);
+    if (index) return *index;
+    errors.push_back(index.errors().front());
+    return std::int32_t(-1);
+  };
+  map.scale = request.scale;
+  if (!request.offset_mm.empty()) map.offset = 1e-3 * vector_of(request.offset_mm);
+  if (const auto& q = request.rotation; !q.empty()) map.scene_from_device = normalised({q[0], q[1], q[2], q[3]});
+  if (!request.tip.empty()) map.tip = vector_of(request.tip) / norm(vector_of(request.tip));
+  if (!request.tool.empty())
+    map.tool = find("device.tool", request.tool);
+  else if (model.tools.empty())
+    errors.push_back({option_name("device.tool"), "the scene has no tools", ""});
+  else
+    map.tool = 0;
+  for (const std::string& entry : request.buttons) {
+    const std::size_t equals = entry.find('=');
+    const std::string tool = entry.substr(equals + 1);
+    map.button_tools.push_back(
+        {*whole_number(entry.substr(0, equals), 0, 31), tool.empty() ? -1 : find("device.buttons", tool)});
+  }
+  if (!errors.empty()) return errors;
+  return map;
+}
+
+/// What a session remembers of how a device lay in its scene.
+std::string describe(const DeviceRequest& request, const DeviceMap& map) {
+  char text[512];
+  const Quat q = map.scene_from_device;
+  std::snprintf(text, sizeof text,
+                "scale %.9g, offset_mm %.9g %.9g %.9g, rotation %.9g %.9g %.9g %.9g, tip %.9g %.9g %.9g, "
+                "most_force_n %.9g, stiffness_n_per_m %.9g",
+                map.scale, map.offset.x * 1e3, map.offset.y * 1e3, map.offset.z * 1e3, q.w, q.x, q.y, q.z, map.tip.x,
+                map.tip.y, map.tip.z, request.most_force_n, request.stiffness_n_per_m);
+  return text;
+}
+
+}  // namespace
+
+bool asks_for_device(const DeviceRequest& request) {
+  return !request.address.empty() || request.listen_port.has_value();
+}
+
+Errors check_device(const DeviceRequest& request) {
+  Errors errors;
+  const auto need = [&](bool holds, const char* field, const std::string& message) {
+    if (!holds) errors.push_back({option_name(field), message, ""});
+  };
+  const auto are_finite = [](const std::vector<double>& numbers) {
+    return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::abs(x) <= 1e6; });
+  };
+  const auto is_within = [](double x, double low, double high) { return x >= low && x <= high; };
+  if (!request.address.empty())
+    need(address_of(request.address).has_value(), "device.address", "got '" + request.address + "', must be HOST:PORT");
+  if (request.listen_port)
+    need(is_within(*request.listen_port, 0, 65535), "device.listen_port", "must be a port in [0, 65535]");
+  for (const std::string& entry : request.buttons) {
+    const std::size_t equals = entry.find('=');
+    need(equals != std::string::npos && whole_number(entry.substr(0, equals), 0, 31), "device.buttons",
+         "got '" + entry + "', must be BUTTON=TOOL with a button in [0, 31]");
+  }
+  need(is_within(request.scale, 1e-3, 1e3), "device.scale", "must be in [0.001, 1000]");
+  need(are_finite(request.offset_mm), "device.offset_mm", "must be in [-1e6, 1e6]");
+  need(are_finite(request.rotation) &&
+           (request.rotation.empty() ||
+            length_of({request.rotation[0], request.rotation[1], request.rotation[2], request.rotation[3]}) > 1e-3),
+       "device.rotation", "must be a quaternion w x y z of any length but zero");
+  need(are_finite(request.tip) && (request.tip.empty() || norm(vector_of(request.tip)) > 1e-3), "device.tip",
+       "must be a direction of any length but zero");
+  need(is_within(request.most_speed_mm_per_s, 1, 1e5), "device.most_speed_mm_per_s", "must be in [1, 100000]");
+  need(is_within(request.timeout_s, 0.2, 1e5), "device.timeout_s", "must be in [0.2, 100000]");
+  need(is_within(request.most_force_n, 0.001, 1000), "device.most_force_n", "must be in [0.001, 1000]");
+  need(is_within(request.stiffness_n_per_m, 1, 1e5), "device.stiffness_n_per_m", "must be in [1, 100000]");
+  return errors;
+}
+
+Result<OpenedDevice> open_device(const DeviceRequest& request) {
+  IgtlSettings settings;
+  settings.device_name = request.name;
+  OpenedDevice opened;
+  if (request.listen_port) {
+    settings.listens = true, settings.host = request.interface, settings.port = *request.listen_port;
+  } else if (const auto address = address_of(request.address)) {
+    settings.host = address->host, settings.port = address->port;
+  } else {
+    return opened;
+  }
+  Result<std::unique_ptr<IgtlLink>> link = IgtlLink::open(settings);
+  if (!link) return link.errors();
+  opened.place = (settings.listens ? "waiting for a device on " : "connected; waiting for a pose from ") +
+                 settings.host + ":" + std::to_string((*link)->port());
+  opened.device = std::move(*link);
+  return opened;
+}
+
+Result<FollowedDevice> follow_device(const DeviceRequest& request, std::unique_ptr<Device> device, const Model& model) {
+  const Result<DeviceMap> map = map_of(request, model);
+  if (!map) return map.errors();
+  DeviceSettings settings;
+  settings.map = *map;
+  settings.guard.most_speed = 1e-3 * request.most_speed_mm_per_s;
+  settings.guard.give_up_after = request.timeout_s;
+  settings.coupling.stiffness = request.stiffness_n_per_m;
+  settings.most_force = request.most_force_n;
+  FollowedDevice followed;
+  followed.source = std::make_unique<DeviceSource>(std::move(device), settings, model.tick);
+  followed.metadata = {{"source", request.listen_port ? "igtl-listen" : "igtl"}, {"device", describe(request, *map)}};
+  return followed;
+}
+
+}  // namespace ctpm

@@ -1,0 +1,87 @@
+#include "studio/loading/loaded_scene.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "scenes/presets.h"
+
+namespace ctpm {
+namespace {
+
+ImportOptions import_options_of(const OrganSpec& organ) {
+  ImportOptions options;
+  options.unit_in_metres = metres_of(organ.mesh_unit);
+  if (const MaterialPreset* preset = find_preset(organ.material.preset))
+    options.usual_size = {preset->usual_size_least, preset->usual_size_most};
+  options.sphere_radius = organ.fill.radius;
+  options.gap = organ.fill.gap;
+  options.all_parts = organ.all_parts;
+  options.most_triangles = organ.most_triangles.value_or(0);
+  return options;
+}
+
+/// The errors of an organ's mesh, at the place where the scene names it.
+void add_mesh_errors(Problems& problems, std::size_t organ, const Errors& errors) {
+  const std::string at = "/organs/" + std::to_string(organ) + "/mesh";
+  for (const Error& error : errors)
+    problems.add(at, (error.where.empty() ? "" : error.where + ": ") + error.message, error.hint, at);
+}
+
+}  // namespace
+
+Result<ImportedOrgan> fill_of(const std::string& scene_path, const OrganSpec& organ) {
+  if (!organ.rig) return import_organ(mesh_path(scene_path, organ), import_options_of(organ));
+  // A rig has no mesh; its surface is empty and bound to nothing.
+  ImportedOrgan filled;
+  filled.organ = fill_rig(organ);
+  filled.organ.surface.binding.first = {0};
+  return filled;
+}
+
+Result<LoadedScene> load_whole_scene(const std::string& path, const LoadOptions& options,
+                                     const std::function<void(SceneSpec&)>& change) {
+  Result<SceneDraft> draft = load_draft(path, options);
+  if (!draft) return draft.errors();
+  auto& [scene, problems] = *draft;
+  if (change && problems.is_empty()) change(scene.spec);
+  LoadedScene loaded;
+  loaded.path = path;
+  for (std::size_t i = 0; i < scene.spec.organs.size(); ++i) {
+    ImportedOrgan filled;
+    if (can_be_filled(problems, i)) {
+      Result<ImportedOrgan> imported = fill_of(path, scene.spec.organs[i]);
+      if (imported)
+        filled = *std::move(imported);
+      else
+        add_mesh_errors(problems, i, imported.errors());
+    }
+    loaded.organs.push_back(std::move(filled.organ));
+    loaded.reports.push_back(std::move(filled.report));
+  }
+  std::optional<BuiltScene> built = build_model(scene.spec, loaded.organs, problems);
+  if (!built) return problems.errors();
+  loaded.built = *std::move(built);
+  loaded.scene = std::move(scene);
+  return loaded;
+}
+
+Result<BuiltScene> build_changed(const LoadedScene& scene, const std::function<void(SceneSpec&)>& change) {
+  SceneSpec spec = scene.scene.spec;
+  change(spec);
+  return build_model(spec, scene.organs);
+}
+
+std::vector<Surface> surfaces_of(const std::vector<FilledOrgan>& organs) {
+  std::vector<Surface> surfaces;
+  for (const FilledOrgan& organ : organs) surfaces.push_back(organ.surface);
+  return surfaces;
+}
+
+double damage_force_of(const SceneSpec& scene) {
+  double least = 0;
+  for (const OrganSpec& organ : scene.organs)
+    if (organ.damage_force > 0 && (least == 0 || organ.damage_force < least)) least = organ.damage_force;
+  return least;
+}
+
+}  // namespace ctpm

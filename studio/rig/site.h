@@ -1,0 +1,11 @@
+#pragma once
+
+#include "scenes/scene_spec.h"
+#include "studio/rig/closed_forms.h"
+
+namespace ctpm {
+
+/// The contact site of the closed forms with an organ's material, in the paper's units.
+Site site_of(const OrganSpec& organ);
+
+}  // namespace ctpm

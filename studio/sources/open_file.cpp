@@ -1,0 +1,43 @@
+#include "studio/sources/open_file.h"
+
+#include <utility>
+
+#include "studio/output/files.h"
+#include "studio/sources/motion_source.h"
+#include "studio/sources/script_source.h"
+
+namespace ctpm {
+
+OpenedSource play_script(const Script& script, const Model& model) {
+  OpenedSource opened;
+  opened.source = std::make_unique<ScriptSource>(ScriptPlayer(script, model.tools, model.tick));
+  opened.metadata = {{"source", "script"}, {"script", write_script(script)}};
+  return opened;
+}
+
+Result<OpenedSource> open_script(const std::string& file, const Model& model) {
+  const Result<std::string> text = read_text_file(file);
+  if (!text) return text.errors();
+  std::vector<std::string> tools;
+  for (const Tool& tool : model.tools) tools.push_back(tool.name);
+  const Result<Script> script = read_script(*text, file, tools);
+  if (!script) return script.errors();
+  return play_script(*script, model);
+}
+
+Result<OpenedSource> open_motion(const std::string& file, const Model& model) {
+  const Result<std::string> text = read_text_file(file);
+  if (!text) return text.errors();
+  Result<Motion> motion = read_motion(*text, file, model.tools);
+  if (!motion) return motion.errors();
+  std::string unused;
+  for (const std::string& name : motion->unused_columns) unused += (unused.empty() ? "" : ", ") + name;
+  OpenedSource opened;
+  if (!unused.empty())
+    opened.remarks.push_back(file + ": columns that say nothing about the hand are left out: " + unused);
+  opened.metadata = {{"source", "motion"}, {"motion_file", file}};
+  opened.source = std::make_unique<MotionSource>(std::move(*motion), model.tick);
+  return opened;
+}
+
+}  // namespace ctpm

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/model/model.h"
+#include "core/model/result.h"
+#include "scenes/script.h"
+#include "studio/sources/input_source.h"
+
+namespace ctpm {
+
+/// A source that is ready.
+struct OpenedSource {
+  std::unique_ptr<InputSource> source;
+  std::map<std::string, std::string> metadata;  ///< what the session stores about its source
+  std::vector<std::string> remarks;             ///< what the user should know; each a sentence with the file's name
+};
+
+/// A script as a source for `model`.
+OpenedSource play_script(const Script& script, const Model& model);
+
+/// The script in `file`. Errors: the file cannot be read; those of read_script(), with places.
+Result<OpenedSource> open_script(const std::string& file, const Model& model);
+
+/// The motion in `file`. Errors: the file cannot be read; those of read_motion(), with places. Remark: columns that are
+/// not used.
+Result<OpenedSource> open_motion(const std::string& file, const Model& model);
+
+}  // namespace ctpm

@@ -1,0 +1,145 @@
+#include "studio/views/look.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "studio/output/number_text.h"
+#include "studio/output/option_name.h"
+
+namespace ctpm {
+namespace {
+
+template <class T>
+using Choices = std::array<std::pair<const char*, T>, 4>;
+
+constexpr Choices<View> kViews{
+    {{"surface", View::surface}, {"spheres", View::spheres}, {"both", View::both}, {"elements", View::elements}}};
+
+std::optional<View> find_view(const std::string& name, Errors& errors) {
+  for (const auto& [known, view] : kViews)
+    if (name == known) return view;
+  errors.push_back({option_name("look.view"), "got '" + name + "', must be surface, spheres, both or elements", ""});
+  return std::nullopt;
+}
+
+/// The quantity that colours show; the view decides which there are.
+ElementQuantity find_quantity(const std::string& by, View view, Errors& errors) {
+  if (view == View::elements) {
+    if (by.empty() || by == "stretch") return ElementQuantity::stretch;
+    if (by == "tilt") return ElementQuantity::tilt;
+    if (by == "force") return ElementQuantity::force;
+    errors.push_back({option_name("look.by"), "got '" + by + "', elements are coloured by stretch, tilt or force", ""});
+  } else if (view == View::surface) {
+    if (!by.empty())
+      errors.push_back({option_name("look.by"), "the surface has its own colours",
+                        "choose spheres or elements for " + option_name("look.view")});
+  } else if (!by.empty() && by != "layer") {
+    errors.push_back({option_name("look.by"), "got '" + by + "', spheres are coloured by layer",
+                      by == "stretch" || by == "tilt" || by == "force"
+                          ? "choose elements for " + option_name("look.view")
+                          : std::string()});
+  }
+  return ElementQuantity::stretch;
+}
+
+/// The legend's unit in SI: %, degrees, N.
+double unit_of(ElementQuantity quantity) {
+  switch (quantity) {
+    case ElementQuantity::stretch:
+      return 0.01;
+    case ElementQuantity::tilt:
+      return std::numbers::pi / 180;
+    case ElementQuantity::force:
+      return 1;
+  }
+  return 1;
+}
+
+/// `x`, `y` or `z` through the scene's middle, or with a place; the side towards the eye is left out.
+Cutaway find_cutaway(const std::string& text, const SceneView& scene, Vec3 eye, Errors& errors) {
+  if (text.empty()) return {};
+  Vec3 axis{text[0] == 'x' ? 1.0 : 0.0, text[0] == 'y' ? 1.0 : 0.0, text[0] == 'z' ? 1.0 : 0.0};
+  const Bounds bounds = rest_bounds(scene);
+  double place = dot(bounds.centre(), axis);
+  char* end = nullptr;
+  if (text.size() > 2 && text[1] == '=') place = 1e-3 * std::strtod(text.c_str() + 2, &end);
+  const bool is_read = text.size() == 1 || (end && *end == 0 && std::isfinite(place));
+  if (axis == Vec3{} || !is_read) {
+    errors.push_back({option_name("look.cutaway"),
+                      "got '" + text + "', must be x, y or z, or one of them and a place in mm", "for example y=12.5"});
+    return {};
+  }
+  const double least = dot(bounds.min, axis), most = dot(bounds.max, axis);
+  if (place < least || place > most) {
+    errors.push_back(
+        {option_name("look.cutaway"),
+         "got '" + text + "', the organs lie between " + fixed(1e3 * least, 1) + " and " + fixed(1e3 * most, 1) + " mm",
+         ""});
+    return {};
+  }
+  if (dot(eye, axis) < place) axis = -axis, place = -place;
+  return {place * axis, axis};
+}
+
+/// The camera of that name; if the name is empty the scene's first, or one that has everything in sight.
+/// Error: no camera of that name, with the names there are.
+Result<Camera> find_camera(const SceneSpec& scene, const SceneView& view, const std::string& name, double aspect) {
+  if (name.empty() && scene.cameras.empty()) return default_camera(view, aspect);
+  std::string known;
+  for (const CameraSpec& camera : scene.cameras) {
+    if (name.empty() || camera.name == name) {
+      // Cameras are set up for 16:9; in a narrower picture they step back so that the sides stay in sight.
+      const double back = std::max(1.0, 16.0 / 9 / aspect);
+      return Camera{camera.target + back * (camera.eye - camera.target), camera.target, camera.up,
+                    camera.field_of_view};
+    }
+    known += (known.empty() ? "" : ", ") + camera.name;
+  }
+  return Error{option_name("look.camera"), "the scene has no camera '" + name + "'",
+               "there are: fitted, follow" + (known.empty() ? "" : ", " + known)};
+}
+
+}  // namespace
+
+DrawOptions Look::at(const SceneView& scene, std::span<const Inputs> moments) const {
+  DrawOptions options = draw;
+  if (follows) options.camera = following_camera(scene, draw.camera, moments);
+  return options;
+}
+
+Result<Look> find_look(const LookRequest& request, const SceneSpec& scene, const SceneView& view, double aspect) {
+  Errors errors;
+  Look look;
+  if (const std::optional<View> found = find_view(request.view, errors)) {
+    look.draw.view = *found;
+    look.draw.quantity = find_quantity(request.by, *found, errors);
+  }
+  if (!(request.full_scale >= 0 && std::isfinite(request.full_scale)))
+    errors.push_back(
+        {option_name("look.full_scale"), "got " + fixed(request.full_scale, 3) + ", must be more than 0", ""});
+  look.draw.full_scale = request.full_scale * unit_of(look.draw.quantity);
+  bool is_the_scenes = false;
+  for (const CameraSpec& camera : scene.cameras) is_the_scenes |= camera.name == request.camera;
+  look.camera = request.camera;
+  if (request.camera == "fitted" && !is_the_scenes) {
+    look.draw.camera = default_camera(view, aspect);
+  } else {
+    look.follows = request.camera == "follow" && !is_the_scenes;
+    const Result<Camera> camera = find_camera(scene, view, look.follows ? "" : request.camera, aspect);
+    if (camera)
+      look.draw.camera = *camera;
+    else
+      errors.insert(errors.end(), camera.errors().begin(), camera.errors().end());
+    if (look.camera.empty()) look.camera = scene.cameras.empty() ? "fitted" : scene.cameras.front().name;
+  }
+  look.draw.cutaway = find_cutaway(request.cutaway, view, look.draw.camera.eye, errors);
+  if (!errors.empty()) return errors;
+  return look;
+}
+
+}  // namespace ctpm

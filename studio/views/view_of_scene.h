@@ -1,0 +1,15 @@
+#pragma once
+
+#include <vector>
+
+#include "core/model/model.h"
+#include "core/model/organ.h"
+#include "scenes/scene_spec.h"
+#include "studio/render/scene_view.h"
+
+namespace ctpm {
+
+/// What the renderer draws of a scene: its surfaces in the organs' colours. `model` must outlive the view.
+SceneView view_of(const SceneSpec& scene, const Model& model, std::vector<Surface> surfaces);
+
+}  // namespace ctpm

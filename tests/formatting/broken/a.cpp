@@ -1,0 +1,3 @@
+// Not formatted.
+
+int  two_spaces = 0;

@@ -1,0 +1,2 @@
+#include "core/solver/b.h"
+#include "studio/render/x.h"

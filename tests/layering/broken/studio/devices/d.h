@@ -1,0 +1,2 @@
+#include <openigtlink/igtl_header.h>
+#include "studio/session/s.h"

@@ -1,0 +1,1 @@
+#include "studio/devices/d.h"

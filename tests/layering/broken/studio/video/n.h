@@ -1,0 +1,4 @@
+namespace ctpm::render {}  // namespace ctpm::render
+
+namespace ctpm::video::inside {}
+namespace ctpm::video_room {}

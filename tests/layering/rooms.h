@@ -1,0 +1,105 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace layering {
+
+/// A room is a folder with all its subfolders; studio's `main.cpp` is a room of its own.
+struct Room {
+  std::string path;                 ///< from the root of the repository
+  std::vector<std::string> before;  ///< rooms that it may include besides itself; each is declared before it
+  std::string name_space;           ///< of every file in it
+};
+
+/// A package, known by how its headers' paths begin, and the only rooms that may include it.
+struct Package {
+  std::string prefix;
+  std::vector<std::string> owners;
+};
+
+/// Every file declares its room's namespace. False until the rooms have their namespaces.
+constexpr bool kNamespacesAreRooms = false;
+
+constexpr int kMostLines = 500;  ///< of a source file
+
+/// All rooms of core in their order.
+inline const std::vector<std::string> kCore{"core/model",   "core/parallel", "core/network",
+                                            "core/surface", "core/elements", "core/cutting",
+                                            "core/contact", "core/solver",   "core/stepping"};
+
+inline std::vector<std::string> core_and(std::vector<std::string> more) {
+  more.insert(more.begin(), kCore.begin(), kCore.end());
+  return more;
+}
+
+/// The declared order.
+inline const std::vector<Room> kRooms{
+    {"core/model", {}, "ctpm"},
+    {"core/parallel", {"core/model"}, "ctpm::parallel"},
+    {"core/network", {"core/model"}, "ctpm::network"},
+    {"core/surface", {"core/model"}, "ctpm::surface"},
+    {"core/elements", {"core/model", "core/parallel"}, "ctpm::elements"},
+    {"core/cutting", {"core/model", "core/parallel", "core/elements"}, "ctpm::cutting"},
+    {"core/contact", {"core/model", "core/parallel", "core/elements", "core/cutting"}, "ctpm::contact"},
+    {"core/solver", {"core/model", "core/parallel", "core/elements"}, "ctpm::solver"},
+    {"core/stepping",
+     {"core/model", "core/parallel", "core/elements", "core/cutting", "core/contact", "core/solver"},
+     "ctpm::stepping"},
+    {"importers", core_and({}), "ctpm::importers"},
+    {"scenes", core_and({}), "ctpm::scenes"},
+    {"recordings", core_and({}), "ctpm::recordings"},
+    {"studio/output", core_and({}), "ctpm::output"},
+    {"studio/version", {}, "ctpm::version"},
+    {"studio/render", core_and({"studio/output"}), "ctpm::render"},
+    {"studio/video", core_and({"studio/render"}), "ctpm::video"},
+    {"studio/views", core_and({"scenes", "studio/output", "studio/render"}), "ctpm::views"},
+    {"studio/reports", core_and({"studio/output", "studio/render"}), "ctpm::reports"},
+    {"studio/rig", core_and({"scenes"}), "ctpm::rig"},
+    {"studio/loading", core_and({"scenes", "importers"}), "ctpm::loading"},
+    {"studio/sources", core_and({"scenes", "recordings", "studio/output"}), "ctpm::sources"},
+    {"studio/devices", core_and({"recordings", "studio/output", "studio/sources"}), "ctpm::devices"},
+    {"studio/session",
+     core_and(
+         {"scenes", "importers", "recordings", "studio/output", "studio/version", "studio/loading", "studio/sources"}),
+     "ctpm::session"},
+    {"studio/film",
+     core_and({"scenes", "recordings", "studio/output", "studio/version", "studio/render", "studio/video",
+               "studio/views", "studio/loading", "studio/session"}),
+     "ctpm::film"},
+    {"studio/compare", core_and({"recordings", "studio/output", "studio/reports", "studio/session"}), "ctpm::compare"},
+    {"studio/authoring", core_and({"scenes", "importers", "studio/output", "studio/render", "studio/rig"}),
+     "ctpm::authoring"},
+    {"studio/paper",
+     core_and({"scenes", "studio/output", "studio/render", "studio/views", "studio/reports", "studio/rig",
+               "studio/loading"}),
+     "ctpm::paper"},
+    {"studio/stability", core_and({"scenes", "recordings", "studio/output", "studio/reports"}), "ctpm::stability"},
+    {"studio/bench", core_and({"scenes", "studio/output", "studio/reports", "studio/rig", "studio/loading"}),
+     "ctpm::bench"},
+    {"studio/commands",
+     core_and({"scenes", "importers", "recordings", "studio/output", "studio/version", "studio/render", "studio/views",
+               "studio/reports", "studio/loading", "studio/sources", "studio/devices", "studio/session", "studio/film",
+               "studio/compare", "studio/authoring", "studio/paper", "studio/stability", "studio/bench"}),
+     "ctpm::commands"},
+    {"studio/main.cpp", {"core/model", "studio/commands"}, "ctpm"},
+};
+
+inline const std::vector<Package> kPackages{
+    {"Eigen/", {"core/surface", "studio/rig"}},
+    {"assimp/", {"importers"}},
+    {"CGAL/", {"importers"}},
+    {"boost/", {"importers"}},
+    {"nlohmann/", {"scenes"}},
+    {"sqlite3", {"recordings"}},
+    {"zstd", {"recordings"}},
+    {"xxhash", {"recordings"}},
+    {"CLI/", {"studio/commands", "studio/main.cpp"}},
+    {"GL/", {"studio/render"}},
+    {"opencv2/", {"studio/render", "studio/video", "studio/reports", "studio/compare"}},
+    {"openigtlink/", {"studio/devices"}},
+    {"gtest/", {}},
+    {"benchmark/", {}},
+};
+
+}  // namespace layering

@@ -1,1 +1,0 @@
-#include "studio/x.h"

@@ -1,0 +1,299 @@
+// Bad input of every kind, from outside: a clear message with its place, exit code 2, and nothing
+// half-written.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "tests/studio/commands/run_program.h"
+
+namespace ctpm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::run_ctpm;
+using testing::TemporaryFolder;
+
+const std::string kShipped = std::string(CTPM_SOURCE_DIR) + "/scenes/";
+
+class BadInput : public ::testing::Test {
+ protected:
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_.path() / name, std::ios::binary) << text;
+  }
+
+  /// The command must end with exit code 2, say all of `parts` on stderr, print nothing on stdout and leave
+  /// the folder.
+  void refuse(const std::vector<std::string>& arguments, const std::vector<std::string>& parts) {
+    const std::string before = folder_.list();
+    const auto outcome = run_ctpm(arguments, folder_.path());
+    EXPECT_EQ(outcome.code, 2) << outcome.out << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    for (const std::string& part : parts)
+      EXPECT_NE(outcome.err.find(part), std::string::npos) << "'" << part << "' is not in: " << outcome.err;
+    EXPECT_EQ(folder_.list(), before);
+  }
+
+  /// A scene that would be good, with one thing replaced.
+  std::string scene_with(const std::string& from, const std::string& to) {
+    fs::copy_file(kShipped + "organs/skin.obj", folder_.path() / "skin.obj", fs::copy_options::overwrite_existing);
+    std::string text = testing::slurp(kShipped + "skin.json");
+    text.replace(text.find("organs/skin.obj"), 15, "skin.obj");
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(BadInput, NoCommandAndUnknownCommandsAndOptions) {
+  EXPECT_EQ(run_ctpm({}, folder_.path()).code, 2);
+  EXPECT_EQ(run_ctpm({"fly"}, folder_.path()).code, 2);
+  EXPECT_EQ(run_ctpm({"verify", "--wings"}, folder_.path()).code, 2);
+  EXPECT_EQ(run_ctpm({"--help"}, folder_.path()).code, 0);
+}
+
+TEST_F(BadInput, AMeshThatDoesNotExist) {
+  refuse({"import", "nowhere.obj", "--organ", "liver", "-o", "a.json"}, {"nowhere.obj: error:", "no such file"});
+}
+
+TEST_F(BadInput, AMeshThatIsEmptyOrNotAMesh) {
+  write("empty.obj", "");
+  refuse({"import", "empty.obj", "--organ", "liver", "-o", "a.json"}, {"empty.obj: error:", "empty"});
+  write("letter.obj", "Dear Sir or Madam,\n");
+  refuse({"import", "letter.obj", "--organ", "liver", "-o", "a.json"}, {"letter.obj: error:"});
+  write("letter.stl", "Dear Sir or Madam,\n");
+  refuse({"import", "letter.stl", "--organ", "liver", "-o", "a.json"}, {"letter.stl: error:"});
+}
+
+TEST_F(BadInput, AMeshThatIsOpenBeyondRepair) {
+  // Five of a cube's six sides, 200 mm: the missing side is no small hole.
+  write("open.obj",
+        "v 0 0 0\nv 200 0 0\nv 200 200 0\nv 0 200 0\nv 0 0 200\nv 200 0 200\nv 200 200 200\nv 0 200 200\n"
+        "f 1 4 3\nf 1 3 2\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n");
+  refuse({"import", "open.obj", "--organ", "liver", "--unit", "mm", "-o", "a.json"},
+         {"open.obj: error:", "hole", "mm"});
+}
+
+TEST_F(BadInput, AnImportWithBadOptionsNamesThemAll) {
+  refuse({"import", kShipped + "organs/liver.obj", "--unit", "ell", "--radius-mm", "-1", "--anchor", "lowest", "-o",
+          "a.json"},
+         {"--unit: error: got 'ell'", "--radius-mm: error: got -1", "--anchor: error: got 'lowest'"});
+  refuse({"import", kShipped + "organs/liver.obj", "--organ", "lung", "-o", "a.json"},
+         {"there is no preset 'lung'", "liver, kidney, skin"});
+  refuse({"import", kShipped + "organs/liver.obj", "--anchor", "sphere:900,900,900,5", "-o", "a.json"},
+         {"holds no sphere"});
+}
+
+TEST_F(BadInput, ASceneWithASyntaxError) {
+  write("a.json", "{\n  \"format\": ctpm\n}\n");
+  refuse({"check", "a.json"}, {"a.json:2:13: error:"});
+}
+
+TEST_F(BadInput, ASceneWithAnUnknownKeyAWrongUnitAndAWrongValueNamesThemAll) {
+  write("a.json", scene_with("\"fill\": { \"radius_mm\": 7, \"gap_mm\": 7 }",
+                             "\"fill\": { \"radius_cm\": 0.7, \"gap_mm\": -7 },\n\"modle\": \"ctpm\""));
+  refuse({"check", "a.json"}, {"the key is \"radius_mm\"", "/organs/0/fill/gap_mm: got -7", "did you mean \"model\"?"});
+}
+
+TEST_F(BadInput, ASceneWhoseMeshIsMissing) {
+  write("a.json", scene_with("skin.obj", "bone.obj"));
+  refuse({"record", "a.json", "-o", "a.ctpm"}, {"a.json:", "/organs/0/mesh", "bone.obj"});
+}
+
+TEST_F(BadInput, ASceneWhoseMeshLeavesItsFolder) {
+  write("a.json", scene_with("skin.obj", "../skin.obj"));
+  refuse({"check", "a.json"}, {"leaves the scene's folder"});
+}
+
+/// Two organs in lines 2 and 3, and more keys in line 4.
+std::string two_organs(const std::string& first, const std::string& second, const std::string& more) {
+  return "{\"format\": \"ctpm-scene\", \"version\": 1, \"name\": \"t\", \"organs\": [\n{\"name\": \"a\", " + first +
+         "\"material\": {\"preset\": \"skin\"}},\n{\"name\": \"b\", " + second +
+         "\"material\": {\"preset\": \"skin\"}}],\n" + more + "}\n";
+}
+const std::string kRig = R"("rig": {"block": [3, 3, 3]}, )";
+const std::string kFarAnchor = R"("anchors": [{"box": {"min_mm": [900, 0, 0], "max_mm": [901, 1, 1]}}], )";
+const std::string kAnchorError = "a.json:3:27: error: /organs/1/anchors/0: holds no sphere (its spheres lie from";
+
+TEST_F(BadInput, AMissingMeshARangeErrorAndAnAnchorAreReportedTogether) {
+  write("a.json", two_organs(R"("mesh": "no.obj", )", kFarAnchor + kRig, R"("tick_s": 5)"));
+  refuse({"check", "a.json"}, {"a.json:2:23: error: /organs/0/mesh: there is no file \"no.obj\"", kAnchorError,
+                               "a.json:4:11: error: /tick_s: got 5, must be in"});
+}
+
+TEST_F(BadInput, AMeshThatIsNoneIsRefusedWhereTheSceneNamesIt) {
+  write("letter.obj", "Dear Sir or Madam,\n");
+  write("a.json", two_organs(R"("mesh": "letter.obj", )", kFarAnchor + kRig, R"("tick_s": 0.001)"));
+  refuse({"check", "a.json"}, {"a.json:2:23: error: /organs/0/mesh: letter.obj: ", kAnchorError});
+}
+
+TEST_F(BadInput, AnUnstableIntegratorIsRefusedWhereItStands) {
+  write("a.json", two_organs(kRig, kRig, R"("solver": {"integrator": "leapfrog"}, "contact_friction": -1)"));
+  refuse({"check", "a.json"},
+         {"a.json:4:26: error: /solver/integrator: leapfrog", "a.json:4:58: error: /contact_friction"});
+}
+
+TEST_F(BadInput, ASceneAndItsScriptAreRefusedTogether) {
+  write("a.json",
+        two_organs(kRig, kFarAnchor + kRig, R"("tools": [{"name": "ball", "kind": "ball", "radius_mm": 5}])"));
+  write("s.json",
+        "{\"format\": \"ctpm-script\", \"version\": 1, \"steps\": [\n{\"take\": {\"tool\": \"saw\", \"at_mm\": "
+        "[0, 0, 0]}}]}");
+  refuse({"record", "a.json", "--script", "s.json", "-o", "a.ctpm"},
+         {kAnchorError, "s.json:2:19: error: /steps/0/take/tool: the scene has no tool \"saw\" (its tools: ball)"});
+}
+
+TEST_F(BadInput, AScriptWithAnUnknownTool) {
+  write("s.json",
+        "{\"format\": \"ctpm-script\", \"version\": 1, \"steps\": [{\"take\": {\"tool\": \"saw\", \"at_mm\": "
+        "[0, 0, 0]}}]}");
+  refuse({"record", kShipped + "skin.json", "--script", "s.json", "-o", "a.ctpm"},
+         {"s.json:1:", "\"saw\"", "ball, scalpel"});
+}
+
+TEST_F(BadInput, ASessionThatDoesNotExistOrIsNone) {
+  refuse({"verify", "nowhere.ctpm"}, {"nowhere.ctpm: error:"});
+  write("letter.ctpm", "Dear Sir or Madam,\n");
+  for (const char* command : {"verify", "info", "replay"}) refuse({command, "letter.ctpm"}, {"letter.ctpm: error:"});
+  refuse({"export", "letter.ctpm", "-o", "a.mp4"}, {"letter.ctpm: error:"});
+  refuse({"recover", "letter.ctpm", "-o", "b.ctpm"}, {"letter.ctpm"});
+}
+
+TEST_F(BadInput, ASessionThatIsCutShort) {
+  ASSERT_EQ(
+      run_ctpm({"record", kShipped + "skin.json", "-o", "whole.ctpm", "--fast", "--duration-s", "1"}, folder_.path())
+          .code,
+      0);
+  const std::string whole = testing::slurp(folder_.path() / "whole.ctpm");
+  for (const double share : {0.02, 0.3, 0.7}) {
+    write("short.ctpm", whole.substr(0, std::size_t(share * double(whole.size()))));
+    refuse({"verify", "short.ctpm"}, {"short.ctpm"});
+  }
+}
+
+TEST_F(BadInput, AnOutputFolderThatDoesNotExist) {
+  ASSERT_EQ(
+      run_ctpm({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"}, folder_.path())
+          .code,
+      0);
+  refuse({"import", kShipped + "organs/liver.obj", "-o", "no/such/a.json"}, {"no/such"});
+  refuse({"record", kShipped + "skin.json", "-o", "no/such/a.ctpm"}, {"no/such"});
+  refuse({"preview", kShipped + "skin.json", "-o", "no/such/a.png"}, {"no/such"});
+  refuse({"export", "a.ctpm", "-o", "no/such/a.mp4"}, {"no/such"});
+  refuse({"replay", "a.ctpm", "--csv", "no/such/a.csv"}, {"no/such"});
+}
+
+TEST_F(BadInput, AnOutputThatExistsIsNotOverwrittenUnlessAsked) {
+  write("a.ctpm", "precious");
+  refuse({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"}, {"a.ctpm"});
+  EXPECT_EQ(testing::slurp(folder_.path() / "a.ctpm"), "precious");
+  EXPECT_EQ(run_ctpm({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1", "--overwrite"},
+                     folder_.path())
+                .code,
+            0);
+}
+
+TEST_F(BadInput, ExportOptionsOutOfRange) {
+  ASSERT_EQ(
+      run_ctpm({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"}, folder_.path())
+          .code,
+      0);
+  refuse({"export", "a.ctpm", "-o", "a.mp4", "--size", "big"}, {"--size", "1280x720"});
+  refuse({"export", "a.ctpm", "-o", "a.mp4", "--fps", "0"}, {"--fps"});
+  refuse({"export", "a.ctpm", "-o", "a.mp4", "--camera", "moon"}, {"no camera 'moon'", "front"});
+  refuse({"export", "a.ctpm", "-o", "a.mp4", "--from-s", "9"}, {"--from-s"});
+  refuse({"export", "a.ctpm", "-o", "a.mov"}, {"a.mov"});
+  refuse({"export", "a.ctpm", "-o", "a.mp4", "--beside", "nowhere.ctpm"}, {"nowhere.ctpm: error:"});
+  refuse({"export", "a.ctpm", "-o", "a.mov", "--fps", "999", "--speed", "0", "--to-s", "7", "--view", "inside",
+          "--cutaway", "w=1", "--camera", "moon"},
+         {"a.mov", "--fps", "--speed", "--to-s", "--view: error: got 'inside'", "--cutaway: error: got 'w=1'",
+          "no camera 'moon'"});
+  refuse({"export", "a.ctpm", "-o", "a.mp4", "--view", "elements", "--by", "layer"}, {"stretch, tilt or force"});
+  refuse({"export", "a.ctpm", "-o", "a.mp4", "--view", "spheres", "--by", "force"}, {"give --view elements"});
+  refuse({"preview", kShipped + "skin.json", "-o", "a.png", "--view", "inside", "--cutaway", "y=deep"},
+         {"--view", "--cutaway: error: got 'y=deep'"});
+  refuse({"preview", kShipped + "skin.json", "-o", "a.png", "--cutaway", "y=9999"},
+         {"--cutaway: error: got 'y=9999', the organs lie between -"});
+}
+
+TEST_F(BadInput, ModuliRadiiSpacingsAndViscositiesThatCannotBeAreAllNamedWithTheirPlaces) {
+  const std::string preset = "\"preset\": \"skin\"", fill = "\"radius_mm\": 7, \"gap_mm\": 7";
+  write("a.json",
+        scene_with(preset, preset + ",\n\"spring_kpa_per_mm\": 0,\n\"kelvin_kpa_per_mm\": -15,\n"
+                                    "\"constraint_kpa_per_mm\": 1e300,\n\"viscosity_kpa_s_per_mm\": \"nan\",\n"
+                                    "\"calibration_spacing_mm\": 0"));
+  refuse({"check", "a.json"},
+         {"a.json:13:22: error: /organs/0/material/spring_kpa_per_mm: got 0, must be in",
+          "a.json:14:22: error: /organs/0/material/kelvin_kpa_per_mm: got -15, must be in",
+          "a.json:15:26: error: /organs/0/material/constraint_kpa_per_mm: got 1e300, must be in",
+          "a.json:16:27: error: /organs/0/material/viscosity_kpa_s_per_mm: got the text \"nan\", must be a "
+          "number",
+          "a.json:17:27: error: /organs/0/material/calibration_spacing_mm: got 0, must be in"});
+  write("a.json", scene_with(preset, preset + ", \"viscosity_kpa_s_per_mm\": NaN"));
+  refuse({"check", "a.json"}, {"a.json:12:53: error: syntax error"});
+  for (const auto& [value, message] : {std::pair<std::string, std::string>{"0", "got 0, must be in [0.01, 100] mm"},
+                                       {"-7", "got -7, must be in [0.01, 100] mm"},
+                                       {"1e9", "got 1e9, must be in [0.01, 100] mm"},
+                                       {"1e999", "too large for a double"}}) {
+    write("a.json", scene_with(fill, "\"radius_mm\": " + value + ", \"gap_mm\": 7"));
+    refuse({"record", "a.json", "-o", "a.ctpm", "--fast"}, {"a.json:10:", message});
+  }
+  write("a.json", scene_with(fill, "\"radius_mm\": 90, \"gap_mm\": 90"));
+  refuse({"check", "a.json"},
+         {"a.json:10:13: error: /organs/0/fill: no two of the 1 spheres are neighbours", "smaller radius_mm"});
+}
+
+TEST_F(BadInput, APresetThatDoesNotExist) {
+  write("a.json", scene_with("\"preset\": \"skin\"", "\"preset\": \"skim\""));
+  refuse({"check", "a.json"}, {"a.json:", "/organs/0/material/preset", "\"skim\"", "did you mean \"skin\"?"});
+}
+
+TEST_F(BadInput, ALayerThatIsDeeperThanTheOrgan) {
+  write("a.json", scene_with("\"anchors\"",
+                             "\"layers\": [{\"to_depth_mm\": 400, \"material\": {\"preset\": "
+                             "\"kidney\"}}],\n\"anchors\""));
+  refuse({"check", "a.json"}, {"a.json:13:29: error: /organs/0/layers/0/to_depth_mm: got 400 mm",
+                               "deeper than the organ", "its spheres lie"});
+}
+
+TEST_F(BadInput, ARigWithTooFewSpheres) {
+  const auto rig_of = [](const std::string& cells) {
+    return "{\"format\": \"ctpm-scene\", \"version\": 1, \"name\": \"r\", \"organs\": [{\"name\": \"a\",\n"
+           "\"rig\": {\"cells\": [" +
+           cells + "]}, \"material\": {\"preset\": \"liver\"}}]}\n";
+  };
+  write("a.json", rig_of("[0, 0, 0]"));
+  refuse({"check", "a.json"}, {"a.json:2:", "/organs/0/rig/cells", "at least two"});
+  write("a.json", rig_of("[0, 0, 0], [5, 0, 0]"));
+  refuse({"check", "a.json"}, {"a.json:2:17: error: /organs/0/rig/cells: no two of the 2 spheres are neighbours"});
+}
+
+TEST_F(BadInput, AnExperimentOfThePaperWhoseRigHasTooFewSpheresOrNoLoad) {
+  const fs::path scenes = folder_.path() / "scenes";
+  fs::copy(kShipped, scenes, fs::copy_options::recursive);
+  const auto replace_in = [&](const std::string& name, const std::string& from, const std::string& to) {
+    std::string text = testing::slurp(scenes / name);
+    const auto at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    std::ofstream(scenes / name, std::ios::binary) << text.replace(at, from.size(), to);
+  };
+  replace_in("paper/rig-skin.json", ", [1, 0, 0], [2, 0, 0]]", "]");
+  replace_in("paper/rig-skin.json", ",\n          { \"cell\": [1, 0, 0], \"axes\": \"y\" }", "");
+  replace_in("paper/rig-skin.json", "{ \"sphere\": { \"centre_mm\": [42, 0, 0], \"radius_mm\": 1 } },", "");
+  replace_in("paper/block-liver.json",
+             "\"loads\": [{ \"at_mm\": [0, 0, 72], \"force_n\": [0, 0, -0.13], \"ramp_s\": 0.082 }],", "");
+  const auto outcome = run_ctpm({"paper", "--scenes", "scenes", "-o", "out"}, folder_.path());
+  EXPECT_EQ(outcome.code, 2);
+  for (const char* part : {"/organs/0/rig/cells: got 5 spheres, the rig of Fig. 3 has 7",
+                           "block-liver.json:1:1: error: /loads: the experiment needs one"})
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << part << " is not in: " << outcome.err;
+  EXPECT_TRUE(fs::is_empty(folder_.path() / "out"));
+}
+
+}  // namespace
+}  // namespace ctpm

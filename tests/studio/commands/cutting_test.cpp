@@ -1,0 +1,82 @@
+// A session with a scalpel, from outside: the force on the hand and the pieces that come loose.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "tests/studio/commands/run_program.h"
+
+namespace ctpm {
+namespace {
+
+using testing::run_ctpm;
+using testing::TemporaryFolder;
+
+bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+constexpr const char* kScene = R"({
+  "format": "ctpm-scene", "version": 1, "name": "bar", "gravity_m_per_s2": [0, 0, 0], "settle_s": 0,
+  "organs": [{ "name": "bar", "rig": { "block": [6, 3, 3] }, "material": { "preset": "liver" },
+               "anchors": [{ "box": { "min_mm": [-40, -40, -1], "max_mm": [-10, 40, 40] } },
+                           { "box": { "min_mm": [10, -40, -1], "max_mm": [40, 40, 40] } }] }],
+  "tools": [{ "name": "scalpel", "kind": "scalpel", "blade_length_mm": 60 }] })";
+constexpr const char* kScript = R"({
+  "format": "ctpm-script", "version": 1, "steps": [
+    { "take": { "tool": "scalpel", "at_mm": [0.2, -60, -15] } },
+    { "cut": { "path_mm": [[0.2, 60, -15]], "speed_mm_per_s": 100 } },
+    { "put_away": true }, { "wait_s": 0.2 }] })";
+
+TEST(CuttingSession, TellsTheForceAndThePieceThatComesLoose) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "bar.json") << kScene;
+  std::ofstream(folder.path() / "script.json") << kScript;
+  const auto recorded =
+      run_ctpm({"record", "bar.json", "--script", "script.json", "-o", "cut.ctpm", "--fast"}, folder.path());
+  ASSERT_EQ(recorded.code, 0) << recorded.err;
+  const auto verified = run_ctpm({"verify", "cut.ctpm"}, folder.path());
+  EXPECT_EQ(verified.code, 0) << verified.out;
+  const auto info = run_ctpm({"info", "cut.ctpm"}, folder.path());
+  EXPECT_TRUE(holds(info.out, "1 pieces came loose")) << info.out;
+  EXPECT_TRUE(holds(info.out, "piece came loose: pieces that came loose: 1")) << info.out;
+  const auto json = run_ctpm({"info", "cut.ctpm", "--json"}, folder.path());
+  EXPECT_TRUE(holds(json.out, "\"pieces_came_loose\": 1")) << json.out;
+
+  // The video says so too, whether or not the moment itself is shown.
+  for (const char* from : {"0", "1.1"}) {
+    const auto exported = run_ctpm(
+        {"export", "cut.ctpm", "-o", "cut.avi", "--size", "320x180", "--fps", "5", "--from-s", from}, folder.path());
+    ASSERT_EQ(exported.code, 0) << exported.err;
+    EXPECT_TRUE(holds(testing::slurp(folder.path() / "cut.avi.json"), "\"pieces_came_loose\": 1")) << from;
+  }
+  const auto before = run_ctpm(
+      {"export", "cut.ctpm", "-o", "before.avi", "--size", "320x180", "--fps", "5", "--to-s", "0.4"}, folder.path());
+  ASSERT_EQ(before.code, 0) << before.err;
+  EXPECT_TRUE(holds(testing::slurp(folder.path() / "before.avi.json"), "\"pieces_came_loose\": 0"));
+
+  // The force of the CSV: none before, newtons while it cuts, none after.
+  const auto replayed = run_ctpm({"replay", "cut.ctpm", "--csv", "cut.csv"}, folder.path());
+  ASSERT_EQ(replayed.code, 0) << replayed.err;
+  std::istringstream csv(testing::slurp(folder.path() / "cut.csv"));
+  std::vector<double> force;
+  std::size_t column = 0;
+  for (std::string line; std::getline(csv, line);) {
+    std::istringstream cells(line);
+    std::size_t c = 0;
+    for (std::string cell; std::getline(cells, cell, ','); ++c) {
+      if (cell == "force_n") column = c;
+      if (c == column && column > 0 && cell != "force_n") force.push_back(std::stod(cell));
+    }
+  }
+  ASSERT_GT(force.size(), 1000u);
+  EXPECT_EQ(force.front(), 0);
+  EXPECT_EQ(force.back(), 0);
+  const double most = *std::max_element(force.begin(), force.end());
+  EXPECT_GT(most, 1);  // 164 J/m^2 times 36 mm is 6 N
+  EXPECT_LT(most, 40);
+}
+
+}  // namespace
+}  // namespace ctpm

@@ -1,0 +1,102 @@
+// The import as an author meets it, from outside: dirty meshes of every kind become scenes that run, and the
+// report says what was found.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "tests/importers/zoo.h"
+#include "tests/studio/commands/run_program.h"
+
+namespace ctpm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::run_ctpm;
+using testing::TemporaryFolder;
+
+class ImportProgram : public ::testing::Test {
+ protected:
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_.path() / name, std::ios::binary) << text;
+  }
+  /// Imports a mesh of the folder as `scene.json` with `more` arguments; what the program said.
+  testing::ProgramOutcome import(const std::string& mesh, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"import", mesh,         "--organ",  "kidney",
+                                       "-o",     "scene.json", "--report", "report.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_ctpm(arguments, folder_.path());
+  }
+  std::string report() { return testing::slurp(folder_.path() / "report.json"); }
+
+  TemporaryFolder folder_;
+};
+
+/// An organ of kidney size, 90 x 60 x 50, in the unit that makes one of its millimetres `millimetre` long.
+RawMesh bean(double millimetre = 1, int cuts = 4) {
+  return zoo::moved(zoo::sphere(1, cuts), [=](Vec3 p) {
+    return millimetre * Vec3{45 * p.x, 30 * p.y + 8 * p.x * p.x, 25 * p.z};
+  });
+}
+
+void expect_says(const std::string& text, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts)
+    EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in:\n" << text;
+}
+
+TEST_F(ImportProgram, ACoarserSurfaceIsDrawnAroundTheSameSpheres) {
+  write("bean.obj", zoo::to_obj_text(bean()));
+  const auto fine = import("bean.obj", {"--unit", "mm"});
+  ASSERT_EQ(fine.code, 0) << fine.err;
+  expect_says(report(), {"\"surface_triangles\": 5120"});
+  expect_says(fine.out, {"drawn with 5120 triangles"});
+  const std::string fine_mesh = testing::slurp(folder_.path() / "scene.obj");
+  const auto coarse = import("bean.obj", {"--unit", "mm", "--most-triangles", "800"});
+  ASSERT_EQ(coarse.code, 0) << coarse.err;
+  expect_says(report(), {"\"surface_triangles\": 800", "\"code\": \"coarsened\""});
+  expect_says(coarse.out, {"drawn with 800 triangles"});
+  expect_says(testing::slurp(folder_.path() / "scene.json"), {"\"most_triangles\": 800"});
+  // The mesh beside the scene stays whole, so that the scene has the spheres of the mesh.
+  EXPECT_EQ(testing::slurp(folder_.path() / "scene.obj"), fine_mesh);
+  const auto spheres = [](const std::string& text) { return text.substr(text.find("filling: "), 30); };
+  EXPECT_EQ(spheres(fine.out), spheres(coarse.out));
+  EXPECT_EQ(run_ctpm({"check", "scene.json"}, folder_.path()).code, 0);
+}
+
+TEST_F(ImportProgram, AllPartsAreInTheSceneAsWell) {
+  const RawMesh two = zoo::both(bean(), zoo::moved(bean(), [](Vec3 p) { return p + Vec3{120, 0, 0}; }));
+  write("two.obj", zoo::to_obj_text(two));
+  ASSERT_EQ(import("two.obj", {"--unit", "mm"}).code, 0);
+  const auto one = run_ctpm({"check", "scene.json"}, folder_.path());
+  ASSERT_EQ(import("two.obj", {"--unit", "mm", "--all-parts"}).code, 0);
+  const auto both = run_ctpm({"check", "scene.json"}, folder_.path());
+  const auto spheres = [](const std::string& text) { return std::stoi(text.substr(text.find("good, ") + 6)); };
+  EXPECT_EQ(spheres(both.out), 2 * spheres(one.out)) << one.out << both.out;
+}
+
+TEST_F(ImportProgram, AHoleWiderThanUsualIsFilledWhenThatIsAskedFor) {
+  write("open.obj", zoo::to_obj_text(zoo::without(bean(1, 3), [](Vec3 p) { return p.x > 40; })));
+  const auto refused = import("open.obj", {"--unit", "mm"});
+  EXPECT_EQ(refused.code, 2);
+  expect_says(refused.err, {"open beyond repair: a hole", "allow wider holes"});
+  EXPECT_FALSE(fs::exists(folder_.path() / "scene.json"));
+  const auto filled = import("open.obj", {"--unit", "mm", "--largest-hole-mm", "60"});
+  EXPECT_EQ(filled.code, 0) << filled.err;
+  expect_says(filled.out, {"1 hole, the widest", "filled", "next: ctpm record scene.json"});
+  EXPECT_EQ(import("open.obj", {"--largest-hole-mm", "-1"}).code, 2);
+}
+
+TEST_F(ImportProgram, CrumbsFarAwayDoNotMakeTheOrganUnusuallyLarge) {
+  const RawMesh crumb = zoo::sphere(3, 1, {150, 0, 0});
+  write("crumb.obj", zoo::to_obj_text(zoo::both(bean(1, 3), crumb)));
+  const auto outcome = import("crumb.obj");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  expect_says(report(), {"\"code\": \"unit_guessed\"", "\"code\": \"other_part\""});
+  EXPECT_EQ(report().find("unusual_size"), std::string::npos) << outcome.out;
+}
+
+}  // namespace
+}  // namespace ctpm

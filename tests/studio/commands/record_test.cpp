@@ -1,0 +1,142 @@
+// `ctpm record` from outside: its sources, and going on from a moment of another session.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "tests/studio/commands/run_program.h"
+
+namespace ctpm {
+namespace {
+
+using testing::run_ctpm;
+using testing::slurp;
+using testing::TemporaryFolder;
+
+class Record : public ::testing::Test {
+ protected:
+  /// A block that takes no import and a moment to record; its uppermost spheres end at 16 mm.
+  Record() {
+    write("block.json", R"({"format": "ctpm-scene", "version": 1, "name": "block",
+      "settle_s": 0, "organs": [{"name": "block", "rig": {"block": [3, 3, 2]}, "material": {"preset": "liver"},
+      "anchors": [{"lowest_mm": 1}]}],
+      "tools": [{"name": "ball", "kind": "ball", "radius_mm": 8}]})");
+    write("press.json", R"({"format": "ctpm-script", "version": 1, "steps": [
+      {"take": {"tool": "ball", "at_mm": [0, 0, 25]}}, {"press": {"distance_mm": 5, "speed_mm_per_s": 10}},
+      {"wait_s": 0.5}, {"release": {"distance_mm": 10, "speed_mm_per_s": 20}}]})");
+  }
+  void write(const std::string& name, const std::string& text) { std::ofstream(folder_.path() / name) << text; }
+  std::string ctpm(const std::vector<std::string>& arguments, int code = 0) {
+    const auto outcome = run_ctpm(arguments, folder_.path());
+    EXPECT_EQ(outcome.code, code) << outcome.out << outcome.err;
+    return outcome.out + outcome.err;
+  }
+  static bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+  TemporaryFolder folder_;
+};
+
+/// Value of column `column` in the row of tick `tick` of a table.
+std::string cell(const std::string& table, int tick, int column) {
+  std::size_t at = 0;
+  for (int line = 0; line <= tick; ++line) at = table.find('\n', at) + 1;
+  for (int i = 0; i < column; ++i) at = table.find(',', at) + 1;
+  return table.substr(at, table.find_first_of(",\n", at) - at);
+}
+constexpr int kForceZ = 13;
+
+TEST_F(Record, ATableThatReplayWroteIsAMotionThatGivesTheSameForces) {
+  ctpm({"record", "block.json", "--script", "press.json", "-o", "a.ctpm", "--fast"});
+  ctpm({"replay", "a.ctpm", "--csv", "a.csv"});
+  const std::string said = ctpm({"record", "block.json", "--motion", "a.csv", "-o", "b.ctpm", "--fast"});
+  EXPECT_TRUE(holds(said, "left out: tick, force_x_n")) << said;
+  EXPECT_TRUE(holds(ctpm({"verify", "b.ctpm"}), "same"));
+  EXPECT_TRUE(holds(ctpm({"info", "b.ctpm"}), "source     motion"));
+  ctpm({"replay", "b.ctpm", "--csv", "b.csv"});
+  const std::string a = slurp(folder_.path() / "a.csv"), b = slurp(folder_.path() / "b.csv");
+  ASSERT_EQ(std::count(a.begin(), a.end(), '\n'), std::count(b.begin(), b.end(), '\n'));
+  const double pressed = std::stod(cell(a, 900, kForceZ));
+  EXPECT_GT(pressed, 0.1);
+  // The table holds nine digits of each position.
+  EXPECT_NEAR(std::stod(cell(b, 900, kForceZ)), pressed, 1e-5 * pressed);
+}
+
+TEST_F(Record, AMotionAtAnyRateIsSampledEveryTick) {
+  write("slow.csv", "time_s,tool_x_mm,tool_y_mm,tool_z_mm\n100,0,0,40\n100.35,0,0,22\n100.4,0,0,22\n");
+  ctpm({"record", "block.json", "--motion", "slow.csv", "-o", "a.ctpm", "--fast"});
+  ctpm({"replay", "a.ctpm", "--csv", "a.csv"});
+  const std::string table = slurp(folder_.path() / "a.csv");
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1 + 401);
+  constexpr int kToolZ = 5;
+  EXPECT_NEAR(std::stod(cell(table, 175, kToolZ)), 31, 1e-6);
+  EXPECT_NEAR(std::stod(cell(table, 380, kToolZ)), 22, 1e-6);
+}
+
+TEST_F(Record, APressToAForceStopsAtItAndOneThatCannotReachItSaysSo) {
+  const auto script = [](const std::string& force) {
+    return R"({"format": "ctpm-script", "version": 1, "steps": [{"take": {"tool": "ball", "at_mm": [0, 0, 28]}},
+      {"press": {"distance_mm": 9, "speed_mm_per_s": 10, "until_force_n": )" +
+           force + "}}, {\"wait_s\": 0.2}]}";
+  };
+  write("some.json", script("0.2")), write("much.json", script("500"));
+  ctpm({"record", "block.json", "--script", "some.json", "-o", "some.ctpm", "--fast"});
+  ctpm({"record", "block.json", "--script", "much.json", "-o", "much.ctpm", "--fast"});
+  EXPECT_TRUE(holds(ctpm({"info", "some.ctpm"}), "press reached its force: "));
+  EXPECT_TRUE(holds(ctpm({"info", "much.ctpm"}), "press gave up: "));
+  EXPECT_TRUE(holds(ctpm({"verify", "some.ctpm"}), "same"));
+  const std::string info = ctpm({"info", "some.ctpm", "--json"});
+  const double most = std::stod(info.substr(info.find("\"max_force_n\":") + 14));
+  EXPECT_GE(most, 0.2);
+  EXPECT_LT(most, 0.22);
+}
+
+TEST_F(Record, ASessionGoesOnFromAMomentOfAnotherAndRemembersIt) {
+  ctpm({"record", "block.json", "--script", "press.json", "-o", "a.ctpm", "--fast"});
+  write("hold.csv", "time_s,tool_x_mm,tool_y_mm,tool_z_mm\n0,0,0,20\n0.3,0,0,20\n");
+  ctpm({"record", "--continue", "a.ctpm", "--at", "0.7", "--motion", "hold.csv", "-o", "b.ctpm", "--fast"});
+  EXPECT_TRUE(holds(ctpm({"verify", "b.ctpm"}), "same"));
+  const std::string parent = ctpm({"info", "a.ctpm"}), child = ctpm({"info", "b.ctpm"});
+  EXPECT_FALSE(holds(parent, "parent"));
+  const std::string id = parent.substr(parent.find("session    ") + 11, 32);
+  EXPECT_TRUE(holds(child, "parent     " + id + ", from tick 700 on")) << child;
+  EXPECT_TRUE(holds(child, "source     motion")) << child;
+  // The ball rests where the parent's rested, in tissue that had crept for as long: so the force goes on as well.
+  ctpm({"replay", "a.ctpm", "--csv", "a.csv"});
+  ctpm({"replay", "b.ctpm", "--csv", "b.csv"});
+  const std::string a = slurp(folder_.path() / "a.csv"), b = slurp(folder_.path() / "b.csv");
+  EXPECT_GT(std::stod(cell(a, 710, kForceZ)), 0.1);
+  for (const int tick : {0, 10, 200}) EXPECT_EQ(cell(b, tick, kForceZ), cell(a, 700 + tick, kForceZ)) << tick;
+  // And so on: a child has children.
+  ctpm({"record", "--continue", "b.ctpm", "--at", "0.301", "--script", "press.json", "-o", "c.ctpm", "--fast"});
+  EXPECT_TRUE(holds(ctpm({"verify", "c.ctpm"}), "same"));
+}
+
+TEST_F(Record, WhatDoesNotFitTogetherIsToldAtOnceAndNothingIsWritten) {
+  const auto refused = [&](std::vector<std::string> arguments, const std::vector<std::string>& parts) {
+    const std::string before = folder_.list();
+    arguments.insert(arguments.begin(), "record");
+    const std::string said = ctpm(arguments, 2);
+    for (const std::string& part : parts) EXPECT_TRUE(holds(said, part)) << part << " is not in: " << said;
+    EXPECT_EQ(folder_.list(), before);
+  };
+  refused({"-o", "x.ctpm"}, {"needs either a scene or --continue"});
+  refused({"block.json", "--continue", "a.ctpm", "--script", "s", "--motion", "m", "-o", "no/x.ctpm"},
+          {"needs either a scene or --continue", "--continue: error: needs --at",
+           "takes one of --script, --motion, --igtl, --igtl-listen", "no/x.ctpm: error:"});
+  refused({"--continue", "a.ctpm", "--at", "1", "-o", "x.ctpm"}, {"--continue: error: needs a source"});
+  refused({"block.json", "--at", "1", "-o", "x.ctpm"}, {"--at: error:"});
+  refused({"--continue", "nowhere.ctpm", "--at", "1", "--script", "press.json", "-o", "x.ctpm"},
+          {"nowhere.ctpm: error:"});
+  refused({"block.json", "--motion", "nowhere.csv", "-o", "x.ctpm"}, {"nowhere.csv: error: does not exist"});
+  write("bad.csv", "time_s,tool_x_mm,tool_y_mm,tool_z_mm\n0,0,0,nan\n");
+  refused({"block.json", "--motion", "bad.csv", "-o", "x.ctpm"}, {"bad.csv:2:7: error: tool_z_mm: got 'nan'"});
+  ctpm({"record", "block.json", "--script", "press.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"});
+  for (const std::string at : {"0.2", "-1", "nan"})
+    refused({"--continue", "a.ctpm", "--at", at, "--script", "press.json", "-o", "x.ctpm"},
+            {"--at: error: got", "must be in [0, 0.100] s: so long lasts a.ctpm"});
+}
+
+}  // namespace
+}  // namespace ctpm

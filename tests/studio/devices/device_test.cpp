@@ -1,0 +1,292 @@
+// A device as a source, told step by step by the test: what is believed, held, noted and sent back. No network, no
+// clock.
+
+#include "studio/devices/device_source.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "studio/sources/rotation.h"
+
+namespace ctpm {
+namespace {
+
+constexpr double kTick = 1e-3;  // [s]
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+class ToldDevice : public Device {
+ public:
+  bool next(DeviceReport& report) override {
+    if (waiting.empty()) return false;
+    report = waiting.front();
+    waiting.pop_front();
+    return true;
+  }
+  void send_force(Vec3 force) override { forces.push_back(force); }
+
+  std::deque<DeviceReport> waiting;
+  std::vector<Vec3> forces;
+};
+
+class DeviceSession : public ::testing::Test {
+ protected:
+  DeviceSession() { start({}); }
+  void start(DeviceSettings settings) {
+    if (settings.map.tool < 0 && settings.map.button_tools.empty()) settings.map.tool = 0;
+    auto device = std::make_unique<ToldDevice>();
+    device_ = device.get();
+    source_ = std::make_unique<DeviceSource>(std::move(device), settings, kTick, [this] { return now_; });
+    events_.clear();
+    tell({0, 0, 0.05});
+  }
+  DeviceReport report(Vec3 position) const {
+    DeviceReport report;
+    report.arrival = now_, report.pose.position = position;
+    return report;
+  }
+  void tell(Vec3 position) { device_->waiting.push_back(report(position)); }
+  void tell(DeviceNews news, const char* text = "") {
+    DeviceReport told = report({});
+    told.news = news, told.text = text;
+    device_->waiting.push_back(told);
+  }
+  /// One tick; its events are kept.
+  std::optional<Inputs> tick(Vec3 tissue_force = {}) {
+    StepReport last;
+    last.tool_force = tissue_force;
+    const auto inputs = source_->next(0, last);
+    for (Event& event : source_->take_events()) events_.push_back(event);
+    now_ += kTick;
+    return inputs;
+  }
+  /// So many ticks, in each of which the device says that it is at `position`.
+  Inputs hold(Vec3 position, int ticks) {
+    std::optional<Inputs> inputs;
+    for (int i = 0; i < ticks; ++i) {
+      tell(position);
+      inputs = tick();
+    }
+    return inputs.value_or(Inputs{});
+  }
+  /// Ticks in which nothing comes.
+  Inputs be_silent(int ticks) {
+    std::optional<Inputs> inputs;
+    for (int i = 0; i < ticks; ++i) inputs = tick();
+    return inputs.value_or(Inputs{});
+  }
+  /// "lost: text" and "back", one a line.
+  std::string story() const {
+    std::string all;
+    for (const Event& event : events_)
+      all += (event.kind == EventKind::device_lost   ? "lost: " + describe(event, {})
+              : event.kind == EventKind::device_back ? std::string("back")
+                                                     : "note: " + event.text) +
+             "\n";
+    return all;
+  }
+
+  double now_ = 1000;
+  ToldDevice* device_ = nullptr;
+  std::unique_ptr<DeviceSource> source_;
+  std::vector<Event> events_;
+};
+
+const Vec3 kHome{0, 0, 0.05};
+
+TEST_F(DeviceSession, AGoodDeviceIsFollowedAndNothingIsNoted) {
+  const Inputs inputs = hold(kHome, 500);
+  EXPECT_EQ(inputs.tool, 0);
+  EXPECT_NEAR(norm(inputs.position - kHome), 0, 1e-12);
+  EXPECT_EQ(story(), "");
+  EXPECT_EQ(device_->forces.size(), 500u);  // one force for each sample
+  EXPECT_LE(source_->input_age(), kTick);
+}
+
+TEST_F(DeviceSession, AStallIsHeldAndNotedOnceAndItsEndAsWell) {
+  hold(kHome, 100);
+  const Inputs held = be_silent(500);
+  EXPECT_NEAR(norm(held.position - kHome), 0, 1e-12);
+  EXPECT_EQ(story(), "lost: nothing usable comes; the pose is held\n");
+  EXPECT_NEAR(source_->input_age(), 0.5, 2 * kTick);
+  hold(kHome, 300);
+  EXPECT_EQ(story(), "lost: nothing usable comes; the pose is held\nback\n");
+  EXPECT_NEAR(events_.back().held, 0.4, 2 * kTick);  // noted after 0.1 s, gone after 0.5 s
+}
+
+TEST_F(DeviceSession, ADeviceThatStaysAwayEndsTheSessionWithAReason) {
+  hold(kHome, 100);
+  tell(DeviceNews::lost, "it hung up");
+  int ticks = 0;
+  while (tick()) ++ticks;
+  EXPECT_NEAR(ticks, 5000, 3);
+  EXPECT_EQ(source_->fault(), "the device was lost: nothing usable came for 5.0 s (it hung up)");
+  EXPECT_EQ(story(), "lost: it hung up; the pose is held\nlost: nothing usable comes; the pose is held\n");
+}
+
+TEST_F(DeviceSession, ADeviceThatComesBackGoesOnFromThePoseThatWasHeldNoFasterThanAHandMoves) {
+  hold(kHome, 100);
+  tell(DeviceNews::lost, "it hung up");
+  be_silent(2000);
+  tell(DeviceNews::connected);
+  const Vec3 elsewhere = kHome + Vec3{0.3, 0, 0};
+  Vec3 before = kHome;
+  double fastest = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 at = hold(elsewhere, 1).position;
+    fastest = std::max(fastest, norm(at - before) / kTick);
+    before = at;
+  }
+  EXPECT_NEAR(norm(before - elsewhere), 0, 1e-6);
+  EXPECT_LT(fastest, 1.3 * GuardSettings().most_speed);  // the coupling swings a little
+  EXPECT_EQ(events_.back().kind, EventKind::device_back);
+  EXPECT_EQ(source_->fault(), "");
+}
+
+TEST_F(DeviceSession, WhatIsNotFiniteOrNoRotationIsNotBelieved) {
+  hold(kHome, 100);
+  for (const Vec3 bad : {Vec3{kNan, 0, 0}, Vec3{0, INFINITY, 0}}) tell(bad);
+  DeviceReport twisted = report(kHome);
+  twisted.pose.orientation = {0.1, 0.1, 0, 0};
+  device_->waiting.push_back(twisted);
+  twisted.pose.orientation = {kNan, 0, 0, 0};
+  device_->waiting.push_back(twisted);
+  const auto inputs = tick();
+  ASSERT_TRUE(inputs);
+  EXPECT_NEAR(norm(inputs->position - kHome), 0, 1e-12);
+  EXPECT_EQ(device_->forces.back(), Vec3{});  // nobody knows where the hand is
+  EXPECT_EQ(story(),
+            "lost: pose is not finite; the pose is held\nlost: orientation is no rotation; the pose is held\n");
+  hold(kHome, 200);
+  EXPECT_EQ(events_.back().kind, EventKind::device_back);
+  EXPECT_EQ(events_.back().refused_samples, 4);  // samples refused
+}
+
+TEST_F(DeviceSession, ATeleportIsHeldUntilAHandCouldHaveGoneThere) {
+  hold(kHome, 100);
+  const Vec3 far = kHome + Vec3{0.05, 0, 0};
+  // At 1 m/s it takes 49 ms to what is beyond the noise of 1 mm.
+  const Inputs held = hold(far, 45);
+  EXPECT_NEAR(norm(held.position - kHome), 0, 1e-9);
+  EXPECT_EQ(story(), "lost: jumps farther than a hand moves; the pose is held\n");
+  const Inputs there = hold(far, 600);
+  EXPECT_NEAR(norm(there.position - far), 0, 1e-6);
+  EXPECT_EQ(events_.back().kind, EventKind::device_back);
+  for (const Vec3& force : device_->forces) EXPECT_LE(norm(force), 3 * (1 + 1e-12));
+}
+
+TEST_F(DeviceSession, OneWildSampleMovesNothing) {
+  hold(kHome, 100);
+  tell(kHome + Vec3{0, 0, -0.05});
+  const auto during = tick();
+  const Inputs after = hold(kHome, 300);
+  EXPECT_NEAR(norm(during->position - kHome), 0, 1e-12);
+  EXPECT_NEAR(norm(after.position - kHome), 0, 1e-12);
+  EXPECT_EQ(story(), "lost: jumps farther than a hand moves; the pose is held\nback\n");
+}
+
+TEST_F(DeviceSession, ASampleFromThePastIsNotBelievedButANewConnectionMayHaveAnotherClock) {
+  const auto tell_at = [&](double device_time, Vec3 position) {
+    DeviceReport told = report(position);
+    told.device_time = device_time;
+    device_->waiting.push_back(told);
+  };
+  tell_at(50, kHome);
+  tick();
+  tell_at(49.9, kHome + Vec3{0.001, 0, 0});
+  tick();
+  EXPECT_EQ(story(), "lost: time goes backwards; the pose is held\n");
+  tell_at(50, kHome);  // the same moment again is no step back
+  tick();
+  tell(DeviceNews::lost, "it hung up");
+  tell(DeviceNews::connected);
+  tell_at(3, kHome);
+  tick();
+  EXPECT_EQ(story(), "lost: time goes backwards; the pose is held\nlost: it hung up; the pose is held\n");
+  const auto values = source_->statistics();
+  EXPECT_EQ(values.at(0), (NamedValue{"device_samples", 5}));
+  EXPECT_EQ(values.at(1), (NamedValue{"device_samples_refused", 1}));
+}
+
+TEST_F(DeviceSession, AFaultThatComesAndGoesIsNotedAFewTimesASecondAtMost) {
+  hold(kHome, 100);
+  for (int i = 0; i < 3000; ++i) {
+    tell(kHome);
+    if (i % 3 == 0) tell(Vec3{kNan, 0, 0});
+    if (i % 7 == 0) tell(DeviceNews::bad_message, "a message with a wrong checksum");
+    tick();
+  }
+  EXPECT_EQ(events_.size(), 2u) << story();
+}
+
+TEST_F(DeviceSession, ASecondDeviceIsNotedAndNothingElse) {
+  tell(DeviceNews::turned_away);
+  hold(kHome, 10);
+  EXPECT_EQ(story(), "note: a second device came and was turned away\n");
+}
+
+TEST_F(DeviceSession, ASlowDeviceGivesAnEvenMotion) {
+  // 50 samples a second of 100 mm/s, so 2 mm from one to the next: the tool must not go in leaps.
+  std::vector<Vec3> way;
+  for (int i = 0; i < 1000; ++i) {
+    if (i % 20 == 0) tell(kHome + i * kTick * Vec3{0.1, 0, 0});
+    way.push_back(tick()->position);
+  }
+  for (std::size_t i = 300; i < way.size(); ++i)
+    ASSERT_NEAR((way[i].x - way[i - 1].x) / kTick, 0.1, 0.01) << "tick " << i;
+  EXPECT_NEAR(way.back().x, (1 - 0.02) * 0.1, 0.001);  // one sample late
+}
+
+TEST_F(DeviceSession, TheDeviceLiesInTheSceneAsTheMapSays) {
+  DeviceSettings settings;
+  settings.map.scale = 0.5;
+  settings.map.offset = {0.1, 0.2, 0.3};
+  settings.map.scene_from_device = {std::sqrt(0.5), 0, 0, std::sqrt(0.5)};  // x of the device is y of the scene
+  settings.map.tip = {1, 0, 0};
+  start(settings);
+  const Inputs inputs = hold({0, 0, 0.05}, 1);
+  EXPECT_NEAR(norm(inputs.position - Vec3{0.1, 0.2, 0.325}), 0, 1e-12);
+  // The instrument's tip, its own +x, is where the tool's -z points: along the scene's y.
+  EXPECT_NEAR(norm(rotate(inputs.world_from_tool, {0, 0, -1}) - Vec3{0, 1, 0}), 0, 1e-12);
+  const Inputs moved = hold({0.002, 0, 0.05}, 500);
+  EXPECT_NEAR(norm(moved.position - Vec3{0.1, 0.201, 0.325}), 0, 1e-9);
+  // Tissue that pushes along the scene's y pushes the hand along the device's x. A hand that presses on.
+  for (int i = 0; i < 300; ++i) {
+    tell({0.002 - i * 1e-6, 0, 0.05});
+    tick({0, 0.8, 0});
+  }
+  EXPECT_NEAR(device_->forces.back().x, 0.8, 0.05);
+  EXPECT_NEAR(device_->forces.back().y, 0, 0.01);
+}
+
+TEST_F(DeviceSession, AButtonSelectsItsToolAndTheToolIsInTheHandAtOnce) {
+  DeviceSettings settings;
+  settings.map.tool = 0;
+  settings.map.button_tools = {{3, -1}, {0, 1}};
+  start(settings);
+  hold(kHome, 5);
+  const auto press = [&](std::uint32_t buttons) {
+    DeviceReport told = report({});
+    told.news = DeviceNews::buttons, told.buttons = buttons;
+    device_->waiting.push_back(told);
+    return hold(kHome, 1);
+  };
+  EXPECT_EQ(press(1).tool, 1);
+  EXPECT_EQ(press(1).buttons, 1u);
+  EXPECT_EQ(press(2).tool, 0);
+  EXPECT_EQ(press(8 + 1).tool, -1);  // the first that is named counts
+  EXPECT_NEAR(norm(press(0).position - kHome), 0, 1e-12);
+}
+
+TEST_F(DeviceSession, WhoeverStopsWaitingForADeviceIsHeard) {
+  DeviceSource source(std::make_unique<ToldDevice>(), {}, kTick, [] { return 0.0; });
+  int asked = 0;
+  EXPECT_FALSE(source.wait_for_first_pose([&] { return ++asked > 3; }));
+}
+
+}  // namespace
+}  // namespace ctpm

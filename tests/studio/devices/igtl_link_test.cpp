@@ -1,0 +1,90 @@
+// The connection and its thread, in one process with the device's side.
+
+#include "studio/devices/igtl_link.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/studio/devices/igtl_client.h"
+
+namespace ctpm {
+namespace {
+
+using testing::IgtlPeer;
+using testing::transform_bytes;
+
+std::unique_ptr<IgtlLink> listen() {
+  IgtlSettings settings;
+  settings.listens = true;
+  Result<std::unique_ptr<IgtlLink>> link = IgtlLink::open(settings);
+  CTPM_CHECK(bool(link), "a free port on this machine");
+  return std::move(*link);
+}
+
+/// The next report, for which it waits.
+DeviceReport next_of(IgtlLink& link) {
+  DeviceReport report;
+  for (int i = 0; i < 20000 && !link.next(report); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  return report;
+}
+
+TEST(IgtlLink, HandsOverEveryReportInItsOrderWhileForcesGoTheOtherWay) {
+  auto link = listen();
+  IgtlPeer peer = IgtlPeer::connect(link->port());
+  EXPECT_EQ(next_of(*link).news, DeviceNews::connected);
+  constexpr int kCount = 20000;
+  std::thread sender([&] {
+    for (int i = 0; i < kCount; ++i) {
+      peer.send(transform_bytes({double(i % 1000), 0, double(i / 1000)}));
+      if (i % 1000 == 999) std::this_thread::sleep_for(std::chrono::milliseconds(5));  // the queue holds 4096
+    }
+  });
+  double before = 0;
+  for (int i = 0; i < kCount; ++i) {
+    const DeviceReport report = next_of(*link);
+    ASSERT_EQ(report.news, DeviceNews::pose);
+    ASSERT_NEAR(report.pose.position.x, 1e-3 * (i % 1000), 1e-7) << i;
+    ASSERT_NEAR(report.pose.position.z, 1e-3 * (i / 1000), 1e-7) << i;
+    EXPECT_GE(report.arrival, before);
+    before = report.arrival;
+    link->send_force({0, 0, 1 + double(i)});
+  }
+  sender.join();
+  link.reset();
+  peer.wait_for_end();
+  // The newest in their order, some left out, and none at the end.
+  const std::vector<Vec3>& forces = peer.forces();
+  ASSERT_GT(forces.size(), 2u);
+  EXPECT_EQ(peer.wrong_messages(), 0);
+  for (std::size_t i = 1; i + 1 < forces.size(); ++i) EXPECT_GT(forces[i].z, forces[i - 1].z);
+  EXPECT_EQ(forces.back(), Vec3{});
+}
+
+TEST(IgtlLink, ADeviceThatTakesNoForcesHoldsUpNobody) {
+  auto link = listen();
+  igtl::ClientSocket::Pointer deaf = igtl::ClientSocket::New();
+  ASSERT_EQ(deaf->ConnectToServer("127.0.0.1", link->port()), 0);
+  EXPECT_EQ(next_of(*link).news, DeviceNews::connected);
+  for (int i = 0; i < 100000; ++i) link->send_force({1, 2, 3});  // ten times what the connection can hold
+  const std::string pose = transform_bytes({7, 0, 0});
+  deaf->Send(pose.data(), int(pose.size()));
+  EXPECT_NEAR(next_of(*link).pose.position.x, 0.007, 1e-9);
+}
+
+TEST(IgtlLink, WhoeverHangsUpIsReportedAndTheNextOneTaken) {
+  auto link = listen();
+  for (int i = 0; i < 5; ++i) {
+    {
+      IgtlPeer peer = IgtlPeer::connect(link->port());
+      EXPECT_EQ(next_of(*link).news, DeviceNews::connected);
+    }
+    EXPECT_EQ(next_of(*link).news, DeviceNews::lost);
+  }
+}
+
+}  // namespace
+}  // namespace ctpm

@@ -1,0 +1,312 @@
+// Videos from outside: what they hold, what their sidecar says, and what happens when something goes wrong.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+#include <string>
+
+#include "core/stepping/step.h"
+#include "recordings/byte_hash.h"
+#include "recordings/session_reader.h"
+#include "recordings/session_writer.h"
+#include "studio/render/frame.h"
+#include "tests/studio/commands/run_program.h"
+#include "tests/studio/render/glyph_reader.h"
+
+namespace ctpm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::run;
+using testing::run_ctpm;
+using testing::TemporaryFolder;
+
+bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// The value behind a key of a sidecar, as it is written.
+std::string value_of(const std::string& json, const std::string& key) {
+  const auto at = json.find("\"" + key + "\": ");
+  if (at == std::string::npos) return "(no " + key + ")";
+  const auto begin = at + key.size() + 4;
+  return json.substr(begin, json.find_first_of(",\n", begin) - begin);
+}
+
+/// A short session of the shipped skin: the ball comes down and presses.
+class Export : public ::testing::Test {
+ protected:
+  void SetUp() override { record("press.ctpm", "1.2"); }
+
+  void record(const std::string& name, const std::string& seconds) {
+    const auto recorded = run_ctpm(
+        {"record", std::string(CTPM_SOURCE_DIR) + "/scenes/skin.json", "-o", name, "--fast", "--duration-s", seconds},
+        folder_.path());
+    ASSERT_EQ(recorded.code, 0) << recorded.err;
+  }
+
+  /// Exports in a small size; `environment` are settings NAME=VALUE.
+  testing::ProgramOutcome export_to(const std::string& output, std::vector<std::string> options = {},
+                                    std::vector<std::string> environment = {}) {
+    std::vector<std::string> command{"env"};
+    command.insert(command.end(), environment.begin(), environment.end());
+    for (const char* argument : {CTPM_PROGRAM, "export", "press.ctpm", "--size", "320x180", "-o"})
+      command.push_back(argument);
+    command.push_back(output);
+    command.insert(command.end(), options.begin(), options.end());
+    return run(command, folder_.path());
+  }
+
+  std::string sidecar(const std::string& video) { return testing::slurp(folder_.path() / (video + ".json")); }
+  Frame picture(const std::string& folder, int index) {
+    char name[32];
+    std::snprintf(name, sizeof name, "%06d.png", index);
+    const auto read = read_picture((folder_.path() / folder / name).string());
+    EXPECT_TRUE(read) << folder << " " << index;
+    return read ? *read : Frame{};
+  }
+  std::string probe(const std::string& video) {
+    return run({"ffprobe", "-v", "error", "-count_frames", "-select_streams", "v:0", "-show_entries",
+                "stream=codec_name,width,height,r_frame_rate,nb_read_frames", "-of", "csv=p=0", video},
+               folder_.path())
+        .out;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Export, TheSidecarSaysWhatTheVideoShows) {
+  const auto exported = export_to("a.mp4", {"--from-s", "0.2", "--to-s", "0.8", "--speed", "0.5"});
+  ASSERT_EQ(exported.code, 0) << exported.err;
+  EXPECT_TRUE(holds(exported.err, "simulation") && holds(exported.err, "times real time")) << exported.err;
+  EXPECT_EQ(probe("a.mp4"), "h264,320,180,30/1,36\n");
+  const std::string json = sidecar("a.mp4");
+  const auto reader = SessionReader::open((folder_.path() / "press.ctpm").string());
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(value_of(json, "session_id"), "\"" + reader->session_id() + "\"");
+  EXPECT_EQ(value_of(json, "file_xxh3"), "\"" + hash_text(*file_hash((folder_.path() / "press.ctpm").string())) + "\"");
+  EXPECT_EQ(value_of(json, "verdict"), "\"same\"");
+  EXPECT_EQ(value_of(json, "frames"), "36");
+  EXPECT_EQ(value_of(json, "codec"), "\"H.264\"");
+  EXPECT_EQ(value_of(json, "width") + value_of(json, "height"), "320180");
+  EXPECT_EQ(value_of(json, "first_tick") + " " + value_of(json, "last_tick"), "200 800");
+  EXPECT_EQ(value_of(json, "speed"), "0.5");
+  EXPECT_NE(value_of(json, "drawing").find("llvmpipe"), std::string::npos);
+  for (const char* key : {"name", "eye_mm", "program", "elapsed_s", "simulation_s", "rendering_s", "encoding_s",
+                          "recorded_by", "pixels_xxh3", "bytes"})
+    EXPECT_NE(value_of(json, key).front(), '(') << key;
+}
+
+TEST_F(Export, TheVideoShowsTheNumbersOfTheReplay) {
+  const auto exported = run_ctpm({"export", "press.ctpm", "-o", "a.mp4", "--from-s", "0.9"}, folder_.path());
+  ASSERT_EQ(exported.code, 0) << exported.err;
+  const auto decoded =
+      run({"ffmpeg", "-v", "error", "-i", "a.mp4", "-vf", "select=eq(n\\,8)", "-frames:v", "1", "frame.png"},
+          folder_.path());
+  ASSERT_EQ(decoded.code, 0) << decoded.err;
+  const auto frame = read_picture((folder_.path() / "frame.png").string());
+  ASSERT_TRUE(frame);
+  ASSERT_EQ(run_ctpm({"replay", "press.ctpm", "--csv", "a.csv"}, folder_.path()).code, 0);
+  // Frame 8 shows the state after tick 1199: the last line of the table.
+  const std::string table = testing::slurp(folder_.path() / "a.csv");
+  const std::string last = table.substr(table.rfind('\n', table.size() - 2) + 1);
+  const std::string header = table.substr(0, table.find('\n'));
+  const auto cell = [&](const std::string& name) {
+    const auto column = std::count(header.begin(), header.begin() + std::ptrdiff_t(header.find("," + name) + 1), ',');
+    std::istringstream cells(last);
+    std::string text;
+    for (std::ptrdiff_t i = 0; i <= column; ++i) std::getline(cells, text, ',');
+    return std::stod(text);
+  };
+  const render_test::GlyphReader reader(1280, 720);
+  EXPECT_EQ(reader.read_after(*frame, "time"), "1.200 s");
+  const double force = cell("force_n");
+  EXPECT_GT(force, 0.1) << "the ball presses";
+  EXPECT_NEAR(std::atof(reader.read_after(*frame, "force").c_str()), force, 0.0005 + 1e-9);
+  EXPECT_NEAR(std::atof(reader.read_after(*frame, "depth").c_str()), cell("depth_mm"), 0.005 + 1e-9);
+}
+
+TEST_F(Export, TheVideoOfACutShowsItsDepthWhetherOrNotTheCutIsShown) {
+  const std::string session = std::string(CTPM_SOURCE_DIR) + "/recordings/shipped/kidney-cut-expert.ctpm";
+  const render_test::GlyphReader reader(1280, 720);
+  const auto depth_at = [&](const std::string& from, const std::string& to) {
+    const auto exported = run_ctpm(
+        {"export", session, "-o", "at-" + to + "/", "--fps", "10", "--from-s", from, "--to-s", to}, folder_.path());
+    EXPECT_EQ(exported.code, 0) << exported.err;
+    return reader.read_after(picture("at-" + to, 1), "cut depth");
+  };
+  EXPECT_EQ(depth_at("1.3", "1.4"), "0.00 mm") << "the blade is in the hand, nothing is severed";
+  const double deepest = std::atof(depth_at("3.5", "3.6").c_str());
+  EXPECT_GT(deepest, 5);
+  EXPECT_LT(deepest, 20) << "half the thickness";
+  EXPECT_EQ(std::atof(depth_at("5.2", "5.3").c_str()), deepest) << "put away long ago";
+}
+
+TEST_F(Export, ThePixelsAreTheSameAtAnyNumberOfThreads) {
+  std::string first;
+  for (const char* threads : {"0", "1", "2", "5"}) {
+    const auto exported =
+        export_to("a.mp4", {"--from-s", "0.5", "--to-s", "1"}, {std::string("LP_NUM_THREADS=") + threads});
+    ASSERT_EQ(exported.code, 0) << exported.err;
+    const std::string pixels = value_of(sidecar("a.mp4"), "pixels_xxh3");
+    EXPECT_EQ(pixels.size(), 18u) << pixels;
+    if (first.empty()) first = pixels;
+    EXPECT_EQ(pixels, first) << threads << " threads";
+  }
+  ASSERT_EQ(export_to("a.mp4", {"--from-s", "0.5", "--to-s", "1"}, {"taskset", "-c", "0"}).code, 0);
+  EXPECT_EQ(value_of(sidecar("a.mp4"), "pixels_xxh3"), first) << "one core";
+  ASSERT_EQ(export_to("a.mp4", {"--from-s", "0.5", "--to-s", "1.1"}).code, 0);
+  EXPECT_NE(value_of(sidecar("a.mp4"), "pixels_xxh3"), first) << "other pixels have another hash";
+}
+
+TEST_F(Export, APartShowsThePicturesThatTheWholeShowsThere) {
+  ASSERT_EQ(export_to("whole/", {"--camera", "follow"}).code, 0);
+  ASSERT_EQ(export_to("part/", {"--from-s", "0.9", "--camera", "follow"}).code, 0);
+  for (const int i : {1, 5, 9}) EXPECT_EQ(picture("part", i), picture("whole", 27 + i)) << i;
+  EXPECT_NE(picture("part", 1), picture("part", 9));
+}
+
+TEST_F(Export, AMissingCodecIsReplacedAndThatIsSaidAloud) {
+  const std::string no_ffmpeg = "OPENCV_VIDEOIO_PRIORITY_FFMPEG=0",
+                    no_motion_jpeg = "OPENCV_VIDEOIO_PRIORITY_CV_MJPEG=0";
+  const auto avi = export_to("a.mp4", {}, {no_ffmpeg});
+  EXPECT_EQ(avi.code, 0) << avi.err;
+  EXPECT_TRUE(holds(avi.err, "warning: H.264 is not available here: Motion JPEG in AVI")) << avi.err;
+  EXPECT_TRUE(holds(avi.out, "a.avi: 36 frames")) << avi.out;
+  EXPECT_EQ(probe("a.avi"), "mjpeg,320,180,30/1,36\n");
+  EXPECT_TRUE(holds(sidecar("a.avi"), "H.264 is not available here"));
+  const auto pictures = export_to("b.mp4", {}, {no_ffmpeg, no_motion_jpeg});
+  EXPECT_EQ(pictures.code, 0) << pictures.err;
+  EXPECT_TRUE(holds(pictures.err, "a folder of PNG pictures was written instead")) << pictures.err;
+  EXPECT_EQ(value_of(sidecar("b-frames"), "codec"), "\"PNG\"");
+  EXPECT_EQ(picture("b-frames", 36).width, 320);
+  EXPECT_EQ(folder_.list(), "a.avi a.avi.json b-frames b-frames.json press.ctpm");
+}
+
+TEST_F(Export, CtrlCLeavesNothingBehind) {
+  for (const char* output : {"a.mp4", "frames/"}) {
+    const auto stopped = run({"timeout", "--preserve-status", "-s", "INT", "1", CTPM_PROGRAM, "export", "press.ctpm",
+                              "-o", output, "--speed", "0.002"},
+                             folder_.path());
+    EXPECT_EQ(stopped.code, 2);
+    EXPECT_TRUE(holds(stopped.err, "stopped before the end; no video was written")) << stopped.err;
+    EXPECT_EQ(folder_.list(), "press.ctpm");
+  }
+}
+
+TEST_F(Export, BesideSaysThatASessionHasEnded) {
+  record("short.ctpm", "0.6");
+  const auto both = run_ctpm({"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--from-s", "0.5",
+                              "--to-s", "0.8", "--speed", "3"},
+                             folder_.path());
+  ASSERT_EQ(both.code, 0) << both.err;
+  Frame half = picture("both", 3);  // 0.8 s
+  for (int y = 0; y < 720; ++y)
+    std::copy_n(half.rgb.begin() + (y * 1280 + 640) * 3, 640 * 3, half.rgb.begin() + y * 640 * 3);
+  half.width = 640, half.rgb.resize(std::size_t(640 * 720 * 3));
+  const render_test::GlyphReader reader(640, 720);
+  EXPECT_EQ(reader.read_after(half, "ended"), "0.600 s");
+  EXPECT_EQ(reader.read_after(half, "time"), "");
+  EXPECT_EQ(reader.read_after(half, "session"), "short");
+}
+
+TEST_F(Export, BesideShowsTwoSessionsInStep) {
+  record("short.ctpm", "0.6");
+  const auto both =
+      run_ctpm({"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--size", "640x180"}, folder_.path());
+  ASSERT_EQ(both.code, 0) << both.err;
+  EXPECT_EQ(picture("both", 36).width, 640);
+  // The same script on both sides: apart from the names the halves are alike, until one of them is over.
+  const auto differing = [&](int index) {
+    const Frame frame = picture("both", index);
+    int count = 0;
+    for (int y = 0; y < 180; ++y)
+      for (int x = 160; x < 318; ++x) {
+        const std::uint8_t* left = &frame.rgb[std::size_t(y * 640 + x) * 3];
+        count += left[0] != left[3 * 320];
+      }
+    return count;
+  };
+  EXPECT_EQ(differing(15), 0);
+  EXPECT_GT(differing(36), 100);
+  const std::string json = sidecar("both");
+  EXPECT_TRUE(holds(json, "\"file\": \"press.ctpm\"") && holds(json, "\"file\": \"short.ctpm\"")) << json;
+  EXPECT_TRUE(holds(json, "\"last_tick\": 1200") && holds(json, "\"last_tick\": 600")) << json;
+}
+
+/// A copy of a session in which one tick's state hash is not what the simulation gives.
+void falsify(const std::string& from, const std::string& to, std::int64_t bad_tick) {
+  auto reader = SessionReader::open(from);
+  ASSERT_TRUE(reader);
+  auto writer = SessionWriter::create(to, reader->start());
+  ASSERT_TRUE(writer);
+  auto records = reader->ticks(0, reader->tick_count());
+  ASSERT_TRUE(records);
+  (*records)[std::size_t(bad_tick)].state_hash ^= 1;
+  // Simulated again, since the new file's keyframes must be what its ticks say.
+  Stepper stepper(reader->start().model);
+  State state = reader->start().initial_state;
+  for (const TickRecord& record : *records) {
+    ASSERT_EQ(stepper.step(state, record.inputs).status, StepStatus::ok);
+    writer->append(state, record);
+  }
+  ASSERT_TRUE(writer->finish());
+}
+
+TEST_F(Export, ASessionThatDiffersIsRefusedOrMarkedOnEveryFrame) {
+  falsify((folder_.path() / "press.ctpm").string(), (folder_.path() / "false.ctpm").string(), 700);
+  const auto refused = run_ctpm({"export", "false.ctpm", "-o", "a.mp4", "--size", "640x360"}, folder_.path());
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_TRUE(holds(refused.err, "differs from the recording since 0.700 s; no video was written")) << refused.err;
+  EXPECT_EQ(folder_.list(), "false.ctpm press.ctpm");
+  const auto before =
+      run_ctpm({"export", "false.ctpm", "-o", "a.mp4", "--size", "640x360", "--to-s", "0.5"}, folder_.path());
+  EXPECT_EQ(before.code, 0) << "nothing differs before: " << before.err;
+  const auto marked =
+      run_ctpm({"export", "false.ctpm", "-o", "marked/", "--size", "640x360", "--allow-diverged"}, folder_.path());
+  EXPECT_EQ(marked.code, 1) << marked.err;
+  EXPECT_TRUE(holds(marked.out, "DIFFERS")) << marked.out;
+  EXPECT_EQ(value_of(sidecar("marked"), "verdict"), "\"different\"");
+  EXPECT_EQ(value_of(sidecar("marked"), "first_different_tick"), "700");
+  // The banner at the top right is amber on dark in every frame, also before the difference.
+  for (int i = 1; i <= 36; ++i) {
+    const Frame frame = picture("marked", i);
+    int amber = 0;
+    for (int y = 8; y < 40; ++y)
+      for (int x = 320; x < 632; ++x) {
+        const std::uint8_t* p = &frame.rgb[std::size_t(y * 640 + x) * 3];
+        amber += p[0] > 140 && p[0] > p[2] + 60 && p[1] > p[2] + 30;
+      }
+    EXPECT_GT(amber, 150) << "frame " << i;
+  }
+}
+
+TEST_F(Export, EveryViewShowsSomethingElse) {
+  std::vector<Frame> seen;
+  const std::vector<std::vector<std::string>> looks{
+      {},
+      {"--view", "spheres"},
+      {"--view", "both"},
+      {"--view", "elements"},
+      {"--view", "elements", "--by", "tilt"},
+      {"--view", "elements", "--by", "force"},
+      {"--view", "elements", "--by", "force", "--full-scale", "0.5"},
+      {"--cutaway", "y"},
+      {"--cutaway", "y=5"},
+      {"--camera", "fitted"},
+      {"--camera", "follow"},
+  };
+  for (const auto& look : looks) {
+    std::vector<std::string> options = look;
+    options.insert(options.end(), {"--from-s", "1.1", "--to-s", "1.13"});
+    fs::remove_all(folder_.path() / "a");
+    const auto exported = export_to("a/", options);
+    ASSERT_EQ(exported.code, 0) << exported.err;
+    seen.push_back(picture("a", 1));
+    for (std::size_t i = 0; i + 1 < seen.size(); ++i) EXPECT_NE(seen[i], seen.back()) << i << " " << seen.size();
+  }
+}
+
+}  // namespace
+}  // namespace ctpm

@@ -1,0 +1,87 @@
+// Time of one picture. Run: build/release/tests/ctpm_render_benchmark
+#include <benchmark/benchmark.h>
+
+#include "studio/render/overlay.h"
+#include "studio/video/video_writer.h"
+#include "tests/studio/render/scene.h"
+
+namespace ctpm::render_test {
+namespace {
+
+/// A blob of 20,448 triangles, cut half through, with the scalpel in it.
+struct Bench {
+  std::unique_ptr<TestScene> scene = make_blob_scene(0.003, 72);
+  std::unique_ptr<Renderer> renderer = std::move(*Renderer::create(1280, 720, scene->view));
+  State rest = rest_state(scene->model), severed = rest;
+  DrawOptions options;
+  OverlayData data;
+
+  Bench() {
+    options.camera = default_camera(scene->view);
+    cut(scene->model, severed, {{0, -0.1, 0}, {0, -0.1, 0.1}}, {{0, 0.02, 0}, {0, 0.02, 0.1}});
+    severed.last_inputs.tool = 1, severed.last_inputs.position = {0, 0.02, 0};
+    data.title = "Liver", data.model = "CTPM", data.session = "liver-press", data.verdict = "replay same as recorded";
+    for (int i = 0; i < 600; ++i) data.history.push_back({i * 0.01, std::abs(std::sin(0.1 * i))});
+    data.time = 6;
+  }
+};
+
+void picture_with_overlay(benchmark::State& run) {
+  Bench bench;
+  Overlay overlay(1280, 720);
+  for (auto _ : run) {
+    Frame frame = bench.renderer->draw(run.range(0) ? bench.severed : bench.rest, bench.options);
+    overlay.draw(frame, bench.data);
+    benchmark::DoNotOptimize(frame.rgb.data());
+  }
+}
+BENCHMARK(picture_with_overlay)
+    ->Arg(0)
+    ->Arg(1)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->ArgName("cut");
+
+/// The parts of a frame: the picture without its overlay, and the overlay.
+void picture_alone(benchmark::State& run) {
+  Bench bench;
+  for (auto _ : run) benchmark::DoNotOptimize(bench.renderer->draw(bench.rest, bench.options).rgb.data());
+}
+BENCHMARK(picture_alone)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+void overlay_alone(benchmark::State& run) {
+  Bench bench;
+  Overlay overlay(1280, 720);
+  Frame frame = bench.renderer->draw(bench.rest, bench.options);
+  for (auto _ : run) {
+    overlay.draw(frame, bench.data);
+    benchmark::DoNotOptimize(frame.rgb.data());
+  }
+}
+BENCHMARK(overlay_alone)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+/// The split and the wall made new, as while a blade moves.
+void picture_while_cutting(benchmark::State& run) {
+  Bench bench;
+  bool whole = false;
+  for (auto _ : run) {
+    benchmark::DoNotOptimize(bench.renderer->draw(whole ? bench.rest : bench.severed, bench.options).rgb.data());
+    whole = !whole;
+  }
+}
+BENCHMARK(picture_while_cutting)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+void encoded_frame(benchmark::State& run) {
+  Bench bench;
+  const Frame frame = bench.renderer->draw(bench.rest, bench.options);
+  auto writer = VideoWriter::create("/tmp/ctpm_render_benchmark.mp4", 1280, 720, 30);
+  for (auto _ : run)
+    if (!(*writer)->add(frame)) run.SkipWithError("a frame could not be written");
+}
+BENCHMARK(encoded_frame)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+}  // namespace
+}  // namespace ctpm::render_test
+
+BENCHMARK_MAIN();

@@ -1,0 +1,277 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+
+#include "core/stepping/step.h"
+#include "studio/render/cut_surface.h"
+#include "studio/render/open_edges.h"
+#include "studio/render/organ_mesh.h"
+#include "tests/studio/render/scene.h"
+
+namespace ctpm::render_test {
+namespace {
+
+double area(const Surface& surface, std::size_t triangles) {
+  double sum = 0;
+  for (std::size_t i = 0; i < triangles; ++i) {
+    const auto& t = surface.triangle[i];
+    const Vec3 a = surface.vertex[std::size_t(t[0])], b = surface.vertex[std::size_t(t[1])],
+               c = surface.vertex[std::size_t(t[2])];
+    sum += 0.5 * norm(cross(b - a, c - a));
+  }
+  return sum;
+}
+
+TEST(CutSurface, WithoutACutIsTheWholeSurface) {
+  const auto scene = make_blob_scene();
+  CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
+  EXPECT_FALSE(cut_surface.update(rest_state(scene->model)));
+  EXPECT_EQ(cut_surface.surface().triangle, scene->view.surfaces[0].triangle);
+  const State severed = cut_along_y(scene->model, 0, 0.1, 0);
+  EXPECT_TRUE(cut_surface.update(severed));
+  EXPECT_FALSE(cut_surface.update(severed));
+  EXPECT_TRUE(cut_surface.update(rest_state(scene->model)));
+  EXPECT_EQ(cut_surface.surface().triangle, scene->view.surfaces[0].triangle);
+  EXPECT_EQ(cut_surface.outer_triangle_count(), scene->view.surfaces[0].triangle.size());
+}
+
+TEST(CutSurface, SplitTrianglesKeepTheWholeArea) {
+  const auto scene = make_blob_scene();
+  const double whole = area(scene->view.surfaces[0], scene->view.surfaces[0].triangle.size());
+  for (const double bottom : {-0.1, 0.0, 0.01}) {
+    CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
+    State state = cut_along_y(scene->model, 0.001, 0.02, bottom);
+    cut(scene->model, state, {{-0.1, 0, bottom}, {-0.1, 0.01, 0.1}},
+        {{0.1, 0, bottom}, {0.1, 0.01, 0.1}});  // a second cut, across
+    cut_surface.update(state);
+    EXPECT_GT(cut_surface.outer_triangle_count(), scene->view.surfaces[0].triangle.size());
+    EXPECT_GT(cut_surface.surface().triangle.size(), cut_surface.outer_triangle_count());
+    EXPECT_NEAR(area(cut_surface.surface(), cut_surface.outer_triangle_count()), whole, 1e-9 * whole);
+  }
+}
+
+/// The largest change of length of any edge of any triangle [m].
+double worst_stretch(const CutSurface& cut_surface, const State& state) {
+  std::vector<Vec3> moved;
+  const Surface& surface = cut_surface.surface();
+  deform_surface(surface, state.position, 0, moved);
+  double worst = 0;
+  for (const auto& t : surface.triangle)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t a = std::size_t(t[i]), b = std::size_t(t[(i + 1) % 3]);
+      worst = std::max(worst, std::abs(norm(moved[a] - moved[b]) - norm(surface.vertex[a] - surface.vertex[b])));
+    }
+  return worst;
+}
+
+TEST(CutSurface, PiecesOfAFullCutMoveApartWithoutStretchingATriangle) {
+  const auto scene = make_blob_scene();
+  for (const double lean : {0.0, 0.4, 1.0}) {  // the plane x = lean y
+    State state = rest_state(scene->model);
+    cut(scene->model, state, {{-0.1 * lean, -0.1, -0.1}, {-0.1 * lean, -0.1, 0.1}},
+        {{0.1 * lean, 0.1, -0.1}, {0.1 * lean, 0.1, 0.1}});
+    CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
+    ASSERT_TRUE(cut_surface.update(state));
+    spread(state, scene->model, [&](Vec3 p) { return p.x > lean * p.y ? Vec3{0.05, 0.01, 0} : Vec3{}; });
+    EXPECT_LT(worst_stretch(cut_surface, state), 1e-12) << "lean " << lean;  // rounding only
+  }
+}
+
+TEST(CutSurface, NothingSpansThePiecesWhereASideCutMeetsTheCut) {
+  const auto scene = make_blob_scene();
+  for (const double x : {0.0, 0.002, 0.0028, 0.0042})
+    for (const double y : {-0.01, 0.0, 0.013})
+      for (const double bottom : {0.018, 0.0}) {
+        State state = rest_state(scene->model);
+        cut(scene->model, state, {{x, -0.1, -0.1}, {x, -0.1, 0.1}}, {{x, 0.1, -0.1}, {x, 0.1, 0.1}});
+        cut(scene->model, state, {{x - 0.0001, y, bottom}, {x - 0.0001, y, 0.1}},
+            {{x + 0.009, y + 0.002, bottom}, {x + 0.009, y + 0.002, 0.1}});
+        CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
+        ASSERT_TRUE(cut_surface.update(state));
+        spread(state, scene->model, [&](Vec3 p) { return p.x > x ? Vec3{0.05, 0.01, 0} : Vec3{}; });
+        EXPECT_LT(worst_stretch(cut_surface, state), 1e-12) << "side cut at " << x << ", " << y << " to " << bottom;
+      }
+}
+
+/// A number for each vertex; those that have the same place and follow the same spheres have the same one: the wall
+/// has its own vertices along the lips.
+std::vector<std::int32_t> weld(const Surface& surface) {
+  using Key = std::pair<std::array<double, 3>, std::vector<double>>;
+  std::map<Key, std::int32_t> known;
+  std::vector<std::int32_t> welded;
+  const SurfaceBinding& b = surface.binding;
+  for (std::size_t v = 0; v < surface.vertex.size(); ++v) {
+    const Vec3 p = surface.vertex[v];
+    Key key{{p.x, p.y, p.z}, {}};
+    for (std::int32_t e = b.first[v]; e < b.first[v + 1]; ++e)
+      key.second.push_back(b.sphere[std::size_t(e)]), key.second.push_back(b.weight[std::size_t(e)]);
+    welded.push_back(known.try_emplace(key, std::int32_t(known.size())).first->second);
+  }
+  return welded;
+}
+
+int open_edges(const Surface& surface) {
+  const std::vector<std::int32_t> vertex = weld(surface);
+  OpenEdges open;
+  for (const auto& t : surface.triangle)
+    for (std::size_t i = 0; i < 3; ++i)
+      if (vertex[std::size_t(t[i])] != vertex[std::size_t(t[(i + 1) % 3])])
+        open.add(vertex[std::size_t(t[i])], vertex[std::size_t(t[(i + 1) % 3])]);
+  int count = 0;
+  for (const auto& loop : open.take_loops()) count += int(loop.size());
+  return count;
+}
+
+/// Ways of a blade: each entry is where its edge is, one after the other.
+using Way = std::vector<BladeEdge>;
+
+BladeEdge upright(double x, double y, double bottom) { return {{x, y, bottom}, {x, y, 0.1}}; }
+
+struct NamedWays {
+  const char* name;
+  std::vector<Way> ways;
+};
+
+std::vector<NamedWays> cuts_of_all_kinds() {
+  Way curved, waving;
+  for (int i = 0; i <= 40; ++i) {
+    const double a = std::numbers::pi * i / 40;
+    curved.push_back(upright(0.03 * std::cos(a), -0.02 + 0.03 * std::sin(a), 0.002));
+    waving.push_back(upright(-0.09 + 0.0045 * i, 0.004 * std::sin(8 * a), -0.1));
+  }
+  const Way across{upright(0.0013, -0.1, -0.1), upright(0.0013, 0.1, -0.1)};
+  const Way shallow{upright(0.0013, -0.1, 0.008), upright(0.0013, 0.1, 0.008)};
+  const Way partial{upright(-0.0021, -0.1, -0.004), upright(0.0043, 0.012, -0.004)};
+  const Way other{upright(-0.1, 0.0034, 0.003), upright(0.02, 0.0047, 0.003)};
+  const Way inside{upright(-0.02, 0.0, 0.006), upright(0.02, 0.003, 0.006)};
+  const Way flat{{{-0.1, -0.1, 0.011}, {-0.1, 0.1, 0.009}}, {{0.1, -0.1, 0.012}, {0.1, 0.1, 0.008}}};
+  return {{"full", {across}},
+          {"shallow", {shallow}},
+          {"partial", {partial}},
+          {"inside", {inside}},
+          {"repeated", {partial, partial, across}},
+          {"crossing", {partial, other}},
+          {"crossing, one full", {across, other}},
+          {"curved", {curved}},
+          {"waving", {waving}},
+          {"a slice off the top", {flat}},
+          {"all", {across, other, curved, waving, flat}}};
+}
+
+State cut_along(const Model& model, const std::vector<Way>& ways) {
+  State state = rest_state(model);
+  for (const Way& way : ways)
+    for (std::size_t i = 0; i + 1 < way.size(); ++i) cut(model, state, way[i], way[i + 1]);
+  return state;
+}
+
+/// A lens 8 mm thick, filled with one sheet of spheres.
+FilledOrgan lens_of_one_sheet() {
+  const Shape lens = [](Vec3 p) {
+    return (std::sqrt((p.x * p.x + p.y * p.y) / 0.0025 + p.z * p.z / 1.6e-5) - 1) * 0.004;
+  };
+  FilledOrgan organ;
+  organ.sphere_radius = 0.003, organ.spacing = 0.009, organ.surface = star_surface(lens, 40);
+  for (int j = -6; j < 6; ++j)
+    for (int i = -6; i < 6; ++i) {
+      const Vec3 p = organ.spacing * Vec3{i + 0.5, j + 0.5, 0};
+      if (lens(p) > -0.0008) continue;
+      organ.centre.push_back(p), organ.cell.push_back({i, j, 0});
+      organ.layer.push_back(1), organ.depth.push_back(-lens(p));
+    }
+  bind_surface(organ);
+  return organ;
+}
+
+TEST(CutSurface, IsWatertightWhateverTheCut) {
+  const auto thick = make_blob_scene(), fine = make_blob_scene(0.002, 60);
+  const auto thin = make_scene(lens_of_one_sheet());
+  int severed_scenes = 0;
+  for (const auto* scene : {thick.get(), fine.get(), thin.get()}) {
+    EXPECT_EQ(open_edges(scene->view.surfaces[0]), 0);
+    for (const NamedWays& kind : cuts_of_all_kinds()) {
+      const State state = cut_along(scene->model, kind.ways);
+      CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
+      if (!cut_surface.update(state)) continue;
+      ++severed_scenes;
+      EXPECT_EQ(open_edges(cut_surface.surface()), 0) << kind.name << ", " << scene->model.sphere_count() << " spheres";
+    }
+  }
+  EXPECT_GT(severed_scenes, 26);
+}
+
+TEST(CutSurface, WallAndLipsStandWhereTheBladePassed) {
+  const auto scene = make_blob_scene();
+  for (const double x : {-0.0035, -0.001, 0.0, 0.002, 0.004})
+    for (const double lean : {0.0, 0.3}) {
+      State state = rest_state(scene->model);
+      cut(scene->model, state, {{x - 0.1 * lean, -0.1, -0.1}, {x - 0.1 * lean, -0.1, 0.1}},
+          {{x + 0.1 * lean, 0.1, -0.1}, {x + 0.1 * lean, 0.1, 0.1}});
+      CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
+      ASSERT_TRUE(cut_surface.update(state));
+      const Surface& surface = cut_surface.surface();
+      std::vector<double> off;
+      const double scale = 1 / std::sqrt(1 + lean * lean);
+      for (std::size_t v = 0; v < surface.vertex.size(); ++v)
+        if (v >= cut_surface.outer_vertex_count() || cut_surface.is_lip()[v])
+          off.push_back(std::abs(surface.vertex[v].x - x - lean * surface.vertex[v].y) * scale);
+      std::sort(off.begin(), off.end());
+      // Spheres are 9 mm apart; where the blade passed is kept to 0.04 mm.
+      EXPECT_LT(off[off.size() / 2], 1e-4) << "half of them, at " << x << " leaning " << lean;
+      EXPECT_LT(off[off.size() * 95 / 100], 5e-4) << "nearly all, at " << x << " leaning " << lean;
+      EXPECT_LT(off.back(), 3e-3) << "all, at " << x << " leaning " << lean;
+    }
+}
+
+/// Outward normal of the blob at a place on it.
+Vec3 blob_normal(Vec3 p) {
+  constexpr double h = 1e-6;
+  const auto slope = [&](Vec3 d) { return blob(p + h * d) - blob(p - h * d); };
+  const Vec3 n{slope({1, 0, 0}), slope({0, 1, 0}), slope({0, 0, 1})};
+  return n / norm(n);
+}
+
+TEST(CutSurface, NormalsAndColourContinueOverTheClosedCut) {
+  const auto scene = make_blob_scene(0.003, 60);
+  const State rest = rest_state(scene->model);
+  State state = cut_along_y(scene->model, 0.001, 0.02, -0.005);
+  cut(scene->model, state, {{-0.1, 0, 0}, {-0.1, 0.01, 0.1}}, {{0.1, 0, 0}, {0.1, 0.01, 0.1}});
+  CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
+  ASSERT_TRUE(cut_surface.update(state));
+  const Surface &whole = scene->view.surfaces[0], &surface = cut_surface.surface();
+  OrganMesh uncut, mesh;
+  uncut.set_surface(whole, {}, {}), uncut.update(whole, rest, 0);
+  mesh.set_surface(surface, cut_surface.is_lip(), cut_surface.rind()), mesh.update(surface, state, 0);
+  const auto normal = [](const OrganMesh& m, std::size_t v) {
+    const float* f = &m.vertices()[v * kOrganVertexFloats];
+    return Vec3{f[3], f[4], f[5]};
+  };
+  const auto stain = [](const OrganMesh& m, std::size_t v) { return m.vertices()[v * kOrganVertexFloats + 10]; };
+  const auto degrees = [](Vec3 a, Vec3 b) { return std::asin(norm(cross(a, b))) * 180 / std::numbers::pi; };
+  double worst_uncut = 0, worst_kept = 0, worst_lip = 0;
+  std::map<std::array<double, 3>, std::pair<int, float>> lips;  // place -> how many copies, and their stain
+  for (std::size_t v = 0; v < cut_surface.outer_vertex_count(); ++v) {
+    if (v < whole.vertex.size()) {
+      worst_uncut = std::max(worst_uncut, degrees(normal(uncut, v), blob_normal(whole.vertex[v])));
+      worst_kept = std::max(worst_kept, degrees(normal(mesh, v), normal(uncut, v)));
+      EXPECT_EQ(stain(mesh, v), stain(uncut, v)) << v;
+    }
+    if (!cut_surface.is_lip()[v]) continue;
+    const Vec3 p = surface.vertex[v];
+    worst_lip = std::max(worst_lip, degrees(normal(mesh, v), blob_normal(p)));
+    auto& [copies, colour] = lips.try_emplace({p.x, p.y, p.z}, 0, stain(mesh, v)).first->second;
+    ++copies;
+    EXPECT_EQ(stain(mesh, v), colour) << "the other lip at the same place";
+  }
+  int paired = 0;
+  for (const auto& [place, copies] : lips) paired += copies.first >= 2;
+  EXPECT_GT(paired, 60);
+  // A lip has triangles on one side only. From triangle to triangle the surface turns by 3 to 6 degrees.
+  EXPECT_LT(worst_uncut, 1);
+  EXPECT_LT(worst_kept, 3) << "vertices beside the cut";
+  EXPECT_LT(worst_lip, 4) << "vertices on its lips";
+}
+
+}  // namespace
+}  // namespace ctpm::render_test

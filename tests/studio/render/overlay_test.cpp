@@ -1,0 +1,158 @@
+#include "studio/render/overlay.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/studio/render/glyph_reader.h"
+
+namespace ctpm {
+namespace {
+
+OverlayData full_data() {
+  OverlayData data;
+  data.title = "Liver", data.model = "CTPM", data.session = "press";
+  data.time = 12.345, data.tick = 12345, data.force = 1.234, data.depth = 0.0134, data.damage_depth = 0.012;
+  data.loose = 2;
+  data.verdict = "Replay identical: 12345 of 12345 ticks", data.verdict_tone = VerdictTone::good;
+  data.legend = {"stretch [%]", "-20", "+20", {{0.1, 0.2, 0.7}, {0.8, 0.8, 0.8}, {0.8, 0.1, 0.1}}, false};
+  for (int i = 0; i <= 12345; i += 5) data.history.push_back({i * 1e-3, 1 + std::sin(i * 0.003)});
+  return data;
+}
+
+TEST(Overlay, TextsNeitherOverlapNorLeaveThePicture) {
+  OverlayData long_winded = full_data();
+  long_winded.title = std::string(200, 'W'), long_winded.verdict = std::string(300, 'M');
+  long_winded.tick = 999999999, long_winded.time = 99999.999, long_winded.force = 12345.678;
+  for (const auto& [width, height] :
+       {std::pair{1280, 720}, {640, 360}, {1920, 1080}, {1080, 1080}, {854, 480}, {640, 720}, {360, 640}})
+    for (const OverlayData& data : {full_data(), long_winded}) {
+      Overlay overlay(width, height);
+      const auto texts = overlay.layout(data);
+      EXPECT_GT(texts.size(), 10u);
+      for (std::size_t i = 0; i < texts.size(); ++i) {
+        const PixelBox& box = texts[i].box;
+        EXPECT_TRUE(box.x >= 0 && box.y >= 0 && box.x + box.width <= width && box.y + box.height <= height)
+            << texts[i].text;
+        for (std::size_t j = 0; j < i; ++j)
+          EXPECT_FALSE(box.overlaps(texts[j].box))
+              << texts[i].text << " and " << texts[j].text << " at " << width << "x" << height;
+      }
+    }
+}
+
+TEST(Overlay, EveryTextLeavesInkInItsPlace) {
+  Overlay overlay(1280, 720);
+  const OverlayData data = full_data();
+  Frame frame = blank_frame(1280, 720, 120, 130, 140);
+  overlay.draw(frame, data);
+  for (const PlacedText& text : overlay.layout(data)) {
+    int least = 255, most = 0;
+    for (int y = text.box.y; y < text.box.y + text.box.height; ++y)
+      for (int x = text.box.x; x < text.box.x + text.box.width; ++x) {
+        const int red = frame.rgb[std::size_t(y * 1280 + x) * 3], green = frame.rgb[std::size_t(y * 1280 + x) * 3 + 1];
+        least = std::min(least, std::max(red, green)), most = std::max(most, std::max(red, green));
+      }
+    EXPECT_GT(most - least, 60) << text.text;  // white on the red warning is the faintest
+  }
+}
+
+TEST(Overlay, EveryTextStandsOnAPanel) {
+  for (const auto& [width, height] : {std::pair{1280, 720}, {640, 720}, {640, 360}}) {
+    Overlay overlay(width, height);
+    OverlayData data = full_data();
+    data.history = {{12, 0.04}};  // the plot's axis has its longest numbers
+    Frame frame = blank_frame(width, height, 255, 255, 255);
+    overlay.draw(frame, data);
+    for (const PlacedText& text : overlay.layout(data))
+      for (const int x : {text.box.x, text.box.x + text.box.width - 1})
+        for (const int y : {text.box.y, text.box.y + text.box.height - 1})
+          EXPECT_LT(frame.rgb[std::size_t(y * width + x) * 3 + 1], 200) << text.text << " " << width;
+  }
+}
+
+TEST(Overlay, ItsNumbersAreReadBackFromThePicture) {
+  const render_test::GlyphReader reader(1280, 720);
+  OverlayData data = full_data();
+  data.model = "CTPM", data.session = "expert-2";
+  Overlay overlay(1280, 720);
+  // Behind it a picture with much detail: stripes and blots.
+  Frame frame = blank_frame(1280, 720, 0, 0, 0);
+  for (std::size_t i = 0; i < frame.rgb.size(); ++i)
+    frame.rgb[i] = std::uint8_t(125 + 60 * std::sin(double(i % 3840) * 0.09) * std::cos(double(i / 3840) * 0.31));
+  EXPECT_EQ(reader.read_after(frame, "time"), "") << "nothing is written yet";
+  overlay.draw(frame, data);
+  EXPECT_EQ(reader.read_after(frame, "time"), "12.345 s");
+  EXPECT_EQ(reader.read_after(frame, "tick"), "12345");
+  EXPECT_EQ(reader.read_after(frame, "force"), "1.234 N");
+  EXPECT_EQ(reader.read_after(frame, "depth"), "13.40 mm");
+  EXPECT_EQ(reader.read_after(frame, "loose"), "2 pieces");
+  EXPECT_EQ(reader.read_after(frame, "session"), "expert-2");
+  EXPECT_EQ(reader.read_after(frame, "model"), "CTPM");
+}
+
+TEST(Overlay, LongNamesOfAPairCanBeToldApart) {
+  const auto shown = [](const std::string& session, int width) {
+    OverlayData data = full_data();
+    data.session = session;
+    const auto texts = Overlay(width, 720).layout(data);
+    const auto label = std::find_if(texts.begin(), texts.end(), [](const auto& t) { return t.text == "session"; });
+    return label == texts.end() ? "" : (label + 1)->text;
+  };
+  for (const int width : {1280, 640}) {
+    EXPECT_EQ(shown("expert", width), "expert");
+    const std::string expert = shown("kidney-cut-expert", width), clumsy = shown("kidney-cut-clumsy", width);
+    EXPECT_TRUE(expert.starts_with("kidn") && expert.ends_with("pert")) << expert;
+    EXPECT_NE(expert, clumsy);
+    EXPECT_LT(shown(std::string(200, 'W'), width).size(), 20u);
+  }
+}
+
+TEST(Overlay, ShowsOnlyWhatThereIs) {
+  Overlay overlay(1280, 720);
+  OverlayData data = full_data();
+  data.depth = 0.002;
+  const auto says = [&](const std::string& word) {
+    for (const PlacedText& text : overlay.layout(data))
+      if (text.text.find(word) != std::string::npos) return true;
+    return false;
+  };
+  EXPECT_FALSE(says("DAMAGE"));
+  data.depth = 0.0121;
+  EXPECT_TRUE(says("DAMAGE"));
+  data.is_blade = true;  // a cut is no damage
+  EXPECT_FALSE(says("DAMAGE"));
+  EXPECT_TRUE(says("cut depth"));
+  data.is_blade = false;
+  EXPECT_FALSE(says("cut depth"));
+  data.damage_depth = 0;  // a scene without a limit
+  EXPECT_FALSE(says("DAMAGE"));
+  data.damage_force = 1.2;
+  EXPECT_TRUE(says("DAMAGE: 1.23 N, limit 1.20 N"));
+  data.damage_force = 1.3;
+  EXPECT_FALSE(says("DAMAGE"));
+  EXPECT_TRUE(says("Replay identical"));
+  data.verdict.clear();
+  EXPECT_FALSE(says("Replay"));
+  EXPECT_TRUE(says("2 pieces"));
+  data.loose = 1;
+  EXPECT_TRUE(says("1 piece"));
+  data.loose = 0;
+  EXPECT_FALSE(says("loose") || says("piece"));
+  EXPECT_TRUE(says("12.345 s") && says("12345") && says("1.234 N") && says("12.10 mm"));
+}
+
+TEST(Overlay, SameDataGivesSamePixels) {
+  Overlay one(640, 360), other(640, 360);
+  Frame a = blank_frame(640, 360, 9, 9, 9), b = a, plain = a;
+  OverlayData earlier = full_data();
+  earlier.history.clear();
+  one.draw(plain, earlier);
+  one.draw(a, full_data()), other.draw(b, full_data());
+  EXPECT_EQ(a, b);
+  EXPECT_NE(a, plain);
+}
+
+}  // namespace
+}  // namespace ctpm

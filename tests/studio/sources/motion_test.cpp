@@ -1,0 +1,152 @@
+// Files of motion: what is read, how it is sampled, and every error by its place.
+
+#include "studio/sources/motion_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "studio/sources/rotation.h"
+
+namespace ctpm {
+namespace {
+
+std::vector<Tool> tools() {
+  std::vector<Tool> tools(2);
+  tools[0].name = "ball", tools[1].name = "scalpel";
+  return tools;
+}
+
+std::string errors_of(const std::string& text) {
+  const Result<Motion> motion = read_motion(text, "m.csv", tools());
+  if (motion) return "no error";
+  std::string all;
+  for (const Error& error : motion.errors()) all += to_string(error) + "\n";
+  return all;
+}
+
+Motion read_good(const std::string& text) {
+  Result<Motion> motion = read_motion(text, "m.csv", tools());
+  if (motion) return *motion;
+  ADD_FAILURE() << to_string(motion.errors().front());
+  return {};
+}
+
+const std::string kHeader = "time_s,tool_x_mm,tool_y_mm,tool_z_mm,tool_qw,tool_qx,tool_qy,tool_qz,buttons,tool\n";
+
+TEST(ReadMotion, ColumnsMayStandInAnyOrderAndOthersAreNamedAsUnused) {
+  const Motion motion = read_good(
+      "\xEF\xBB\xBFtool_z_mm, force_n ,time_s,tool_y_mm,\"tool_x_mm\"\r\n3, 0.5 ,10.5,2,1\r\n\r\n6,0,11,5,4\n");
+  ASSERT_EQ(motion.samples.size(), 2u);
+  EXPECT_EQ(motion.samples[0].time, 10.5);
+  EXPECT_EQ(motion.samples[0].inputs.position, (Vec3{0.001, 0.002, 0.003}));
+  EXPECT_EQ(motion.samples[1].inputs.position, (Vec3{0.004, 0.005, 0.006}));
+  EXPECT_EQ(motion.samples[0].inputs.tool, 0);  // the first tool, since no column names another
+  EXPECT_EQ(motion.samples[0].inputs.world_from_tool, Quat{});
+  EXPECT_EQ(motion.unused_columns, std::vector<std::string>{"force_n"});
+}
+
+TEST(ReadMotion, ToolsButtonsAndOrientationsAreRead) {
+  const Motion motion = read_good(kHeader + "0,0,0,0,0,0.99,0,0,5,scalpel\n1,0,0,0,1,0,0,0,0,\n");
+  EXPECT_EQ(motion.samples[0].inputs.tool, 1);
+  EXPECT_EQ(motion.samples[0].inputs.buttons, 5u);
+  EXPECT_EQ(motion.samples[0].inputs.world_from_tool, (Quat{0, 1, 0, 0}));  // brought to length 1
+  EXPECT_EQ(motion.samples[1].inputs.tool, -1);
+}
+
+TEST(ReadMotion, AllErrorsAreToldAtOnceWithLineAndColumn) {
+  EXPECT_EQ(errors_of("time_s,tool_x_mm,tool_y_mm,tool_z_mm\n"
+                      "0,1,2,3\n"
+                      "1,nan,2,3\n"
+                      "2,1, 2x,inf\n"
+                      "0.5,1,2,3\n"
+                      "-1,1,2,3\n"
+                      "3,1,2\n"
+                      "4,1,2,3,4\n"
+                      "5,1,2,\n"
+                      "6,1,2,999999\n"
+                      "0.5,1,2,3\n"),
+            "m.csv:3:3: error: tool_x_mm: got 'nan', must be a finite number\n"
+            "m.csv:4:6: error: tool_y_mm: got '2x', must be a finite number\n"
+            "m.csv:4:9: error: tool_z_mm: got 'inf', must be a finite number\n"
+            "m.csv:6:1: error: time_s: got -1, time must rise from row to row (it goes back here)\n"
+            "m.csv:7:1: error: got 3 values, must be 4, as many as names in the first row\n"
+            "m.csv:8:1: error: got 5 values, must be 4, as many as names in the first row\n"
+            "m.csv:9:7: error: tool_z_mm: got '', must be a finite number\n"
+            "m.csv:10:7: error: tool_z_mm: got 999999, is out of range\n"
+            "m.csv:11:1: error: time_s: got 0.5, time must rise from row to row (it stands still here)\n");
+}
+
+TEST(ReadMotion, AHeaderThatDoesNotFitIsRefusedWithEverythingThatIsWrong) {
+  EXPECT_EQ(errors_of("time,tool_x_mm,tool_x_mm,tool_qw\n0,1,2,3\n"),
+            "m.csv:1:16: error: the column tool_x_mm stands twice\n"
+            "m.csv:1:1: error: missing columns: time_s, tool_y_mm, tool_z_mm (the first row names the columns)\n"
+            "m.csv:1:1: error: an orientation needs all of tool_qw, tool_qx, tool_qy, tool_qz; 1 are there\n");
+  EXPECT_EQ(errors_of(""), "m.csv: error: is empty (the first row names the columns: time_s, tool_x_mm ...)\n");
+  EXPECT_EQ(errors_of("time_s,tool_x_mm,tool_y_mm,tool_z_mm\n"),
+            "m.csv:2:1: error: there is no row after the names of the columns\n");
+}
+
+TEST(ReadMotion, AnOrientationAButtonSetOrAToolThatIsNoneIsRefusedWhereItStands) {
+  EXPECT_EQ(errors_of(kHeader + "0,0,0,0,0.5,0.5,0,0,-1,saw\n"),
+            "m.csv:2:9: error: tool_qw, tool_qx, tool_qy, tool_qz: must have length 1\n"
+            "m.csv:2:21: error: buttons: got '-1', must be a whole number in [0, 4294967295]\n"
+            "m.csv:2:24: error: tool: the scene has no tool 'saw' (its tools: ball, scalpel)\n");
+}
+
+TEST(ReadMotion, OfVeryManyErrorsTheFirstHundredAreToldAndTheOthersCounted) {
+  std::string text = "time_s,tool_x_mm,tool_y_mm,tool_z_mm\n";
+  for (int i = 0; i < 250; ++i) text += "x,1,2,3\n";
+  const Result<Motion> motion = read_motion(text, "m.csv", tools());
+  ASSERT_FALSE(motion);
+  ASSERT_EQ(motion.errors().size(), 101u);
+  EXPECT_EQ(motion.errors().back().message, "and 150 more errors");
+}
+
+TEST(ReadMotion, NoCutOrChangedFileDoesAnythingButReadOrRefuse) {
+  const std::string whole = kHeader + "0,1.5,2,3,0,1,0,0,5,scalpel\n0.01,1,2,3,1,0,0,0,0,\n";
+  for (std::size_t length = 0; length < whole.size(); ++length)
+    (void)read_motion(whole.substr(0, length), "m.csv", tools());
+  for (std::size_t i = 0; i < whole.size(); ++i)
+    for (const int change : {1, 2, 4, 8, 16, 32, 64, 128}) {
+      std::string changed = whole;
+      changed[i] = char(changed[i] ^ change);
+      if (const Result<Motion> motion = read_motion(changed, "m.csv", tools()); motion)
+        for (const MotionSample& sample : motion->samples) {
+          EXPECT_TRUE(is_finite(sample.inputs.position));
+          EXPECT_NEAR(length_of(sample.inputs.world_from_tool), 1, 1e-12);
+        }
+    }
+}
+
+TEST(MotionAt, PositionsLieOnTheStraightLineAndTurnsAreEvenWhateverTheRate) {
+  // A quarter turn about z in 0.1 s, sampled at its ends alone.
+  const double half = std::sqrt(0.5);
+  Motion motion;
+  motion.samples = {{5.0, {0, {0, 0, 0}, {1, 0, 0, 0}, 1}}, {5.1, {1, {0.02, 0, -0.01}, {-half, 0, 0, -half}, 2}}};
+  EXPECT_EQ(motion_tick_count(motion, 1e-3), 101);
+  for (int tick = 0; tick < 100; ++tick) {
+    const Inputs inputs = motion_at(motion, tick * 1e-3);
+    EXPECT_NEAR(norm(inputs.position - tick / 100.0 * Vec3{0.02, 0, -0.01}), 0, 1e-12);
+    EXPECT_NEAR(angle_between(Quat{}, inputs.world_from_tool), tick / 100.0 * std::numbers::pi / 2, 1e-6) << tick;
+    EXPECT_EQ(inputs.tool, 0) << "tool and buttons are held until the next sample";
+    EXPECT_EQ(inputs.buttons, 1u);
+  }
+  EXPECT_EQ(motion_at(motion, 0.1).tool, 1);
+  EXPECT_EQ(motion_at(motion, 7), motion.samples.back().inputs);
+  EXPECT_EQ(motion_at(motion, -1), motion.samples.front().inputs);
+}
+
+TEST(MotionAt, AMotionSampledAtTheTicksIsTakenAsItIs) {
+  Motion motion;
+  for (int i = 0; i < 5000; ++i)
+    motion.samples.push_back({17 + i * 1e-3, {0, {std::sin(i * 0.7), std::cos(i * 1.3), i * 1e-3}, {1, 0, 0, 0}, 0}});
+  ASSERT_EQ(motion_tick_count(motion, 1e-3), 5000);
+  for (int i = 0; i < 5000; ++i) ASSERT_EQ(motion_at(motion, i * 1e-3), motion.samples[std::size_t(i)].inputs) << i;
+}
+
+}  // namespace
+}  // namespace ctpm
