@@ -163,7 +163,7 @@ TEST_P(EveryIntegrator, LeavesTheStateOfARefusedTickToTheBit) {
 
 TEST_P(EveryIntegrator, LeavesTheStateOfARefusedCutToTheBit) {
   Model model = make_block_model(4, 4, 4, Structure::ctpm, soft_material());
-  model.solver.integrator = GetParam(), model.tools = {scalpel(0.1)};
+  testing::use_integrator(model, GetParam()), model.tools = {scalpel(0.1)};
   Stepper stepper(model);
   State state = rest_state(model);
   const auto cut = [&](int i) { return tool_at({0.0003, -0.03 + 0.002 * i, -0.01}); };
