@@ -87,6 +87,7 @@ Result<Done> salvage_start(SessionStore& store, Salvage& salvage, RecoverReport&
   take(store.metadata(), salvage.start.metadata);
   take(store.finish(), salvage.finish);
   salvage.start.build_fingerprint = store.identity().build;
+  salvage.start.physics_revision = store.identity().physics_revision;
   return Done{};
 }
 
@@ -164,7 +165,7 @@ void salvage_events(SessionStore& store, Salvage& salvage, RecoverReport& report
 
 /// Writes the salvage as a new session with an identity of its own that names the old one.
 Result<Done> write_salvage(const std::string& out, Salvage& salvage, SessionStore& from, const RecoverReport& report) {
-  SessionIdentity identity = new_identity(salvage.start.build_fingerprint);
+  SessionIdentity identity = new_identity(salvage.start);
   identity.created_unix_s = from.identity().created_unix_s;
   salvage.start.metadata["recovered_from"] = from.identity().id;
   if (auto r = create_session_file(out, salvage.start, identity, false, recover_level); !r) return r;

@@ -98,9 +98,13 @@ Result<SessionStart> continue_session(SessionReader& parent, std::int64_t tick) 
   auto cursor = ReplayCursor::create(parent);
   if (!cursor) return cursor.errors();
   if (auto r = cursor->seek(tick); !r) return r.errors();
-  if (!cursor->same_so_far())
-    return Error{parent.path(), "does not replay to tick " + std::to_string(tick) + " as it was recorded", "verify it"};
+  if (!cursor->same_so_far()) {
+    const std::string remark = physics_remark(parent.start().physics_revision);
+    return Error{parent.path(), "does not replay to tick " + std::to_string(tick) + " as it was recorded",
+                 remark.empty() ? "verify it" : remark};
+  }
   SessionStart start = parent.start();
+  start.physics_revision = kPhysicsRevision;
   start.initial_state = cursor->state();
   start.metadata[parent_session_key] = parent.session_id();
   start.metadata[parent_tick_key] = std::to_string(tick);

@@ -54,6 +54,7 @@ struct VerifyOptions {
 /// Whether simulating again gives what was recorded.
 struct Verdict {
   bool same = true;
+  std::int32_t physics_revision = 0;  ///< that the session was recorded with; 0: from before revisions were stored
   std::int64_t ticks_compared = 0;
   std::int64_t ticks_different = 0;
   std::int64_t first_tick = -1;       ///< first tick whose outcome differs; -1: none

@@ -2,6 +2,15 @@
 
 namespace ctpm {
 
+std::string physics_remark(std::int32_t recorded) {
+  const std::string present = std::to_string(kPhysicsRevision);
+  if (recorded == kPhysicsRevision) return "";
+  if (recorded == 0)
+    return "recorded before physics revisions were stored, this build computes " + present + "; replay may differ";
+  return "recorded with physics revision " + std::to_string(recorded) + ", this build computes " + present +
+         "; replay will differ";
+}
+
 TickRecord make_record(const Inputs& inputs, const StepReport& report, double tick_time_s, std::uint64_t state_hash,
                        double input_age_s) {
   TickRecord record;

@@ -9,22 +9,30 @@
 #include "core/model/inputs.h"
 #include "core/model/model.h"
 #include "core/model/organ.h"
+#include "core/model/physics_revision.h"
 #include "core/model/state.h"
 #include "core/model/vec3.h"
 #include "core/stepping/step.h"
+#include "recordings/event.h"
 
 namespace ctpm {
 
 /// Everything that is known before the first tick. FORMAT.md section 4.
 struct SessionStart {
-  std::string scene_text;                       ///< the scene as it was read; opaque bytes here
-  std::string look;                             ///< organ colours and names for whoever draws; opaque bytes here
-  Model model;                                  ///< the built network
-  std::vector<Surface> surfaces;                ///< one per organ of the model, or none at all
-  State initial_state;                          ///< before tick 0
-  std::string build_fingerprint;                ///< names the build of the program that records
-  std::map<std::string, std::string> metadata;  ///< free; see also parent_session_key
+  std::string scene_text;                            ///< the scene as it was read; opaque bytes here
+  std::string look;                                  ///< organ colours and names for whoever draws; opaque bytes here
+  Model model;                                       ///< the built network
+  std::vector<Surface> surfaces;                     ///< one per organ of the model, or none at all
+  State initial_state;                               ///< before tick 0
+  std::string build_fingerprint;                     ///< names the build of the program that records
+  std::int32_t physics_revision = kPhysicsRevision;  ///< of the program that records; 0 in a session from before
+                                                     ///< revisions were stored
+  std::map<std::string, std::string> metadata;       ///< free; see also parent_session_key
 };
+
+/// What a reader must know before a session of the physics revision `recorded` is replayed; empty if this build
+/// computes the same revision, so that the replay has the same bits.
+std::string physics_remark(std::int32_t recorded);
 
 /// Metadata of a session that goes on from a moment of another one.
 inline constexpr const char* parent_session_key = "parent_session";  ///< SessionReader::session_id of the parent
@@ -51,27 +59,6 @@ struct TickRecord {
 /// The record of a tick that was just done.
 TickRecord make_record(const Inputs& inputs, const StepReport& report, double tick_time_s, std::uint64_t state_hash,
                        double input_age_s = 0);
-
-enum class EventKind : std::int32_t {
-  contact_begins = 1,
-  contact_ends = 2,
-  cut = 3,
-  damage = 4,
-  late_tick = 5,
-  device_lost = 6,
-  device_back = 7,
-  note = 8,
-};
-
-/// Something worth finding again.
-struct Event {
-  std::int64_t tick = 0;
-  EventKind kind = EventKind::note;
-  std::string text;
-  std::vector<double> values;  ///< numbers that belong to it; the text says which
-
-  friend bool operator==(const Event&, const Event&) = default;
-};
 
 /// The full State before tick `tick`.
 struct Keyframe {

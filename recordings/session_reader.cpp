@@ -57,6 +57,7 @@ Result<Done> SessionReader::Impl::read_start() {
   take(store.metadata(), start.metadata);
   take(store.finish(), finish);
   start.build_fingerprint = store.identity().build;
+  start.physics_revision = store.identity().physics_revision;
   Done columns;
   take(store.read_columns(), columns);
   const std::size_t before_model = errors.size();
@@ -98,6 +99,7 @@ const SessionStart& SessionReader::start() const { return impl_->start; }
 const std::string& SessionReader::session_id() const { return impl_->store.identity().id; }
 double SessionReader::created_unix_s() const { return impl_->store.identity().created_unix_s; }
 int SessionReader::format_version() const { return impl_->store.version(); }
+const std::vector<std::string>& SessionReader::remarks() const { return impl_->store.remarks(); }
 std::int64_t SessionReader::tick_count() const { return impl_->tick_count; }
 bool SessionReader::ended_cleanly() const { return impl_->finish.has_value(); }
 

@@ -30,7 +30,9 @@ class SessionReader {
   double created_unix_s() const;  ///< when recording began, seconds since 1970
   int format_version() const;
   std::int64_t tick_count() const;  ///< at the time of open()
-  bool ended_cleanly() const;       ///< false: cut off, or still being recorded
+  /// What this program decided where an old file leaves it open, one sentence each.
+  const std::vector<std::string>& remarks() const;
+  bool ended_cleanly() const;  ///< false: cut off, or still being recorded
 
   /// Records of the ticks [from, to). Errors: out of range, or a damaged or missing chunk, named.
   Result<std::vector<TickRecord>> ticks(std::int64_t from, std::int64_t to);

@@ -120,7 +120,7 @@ Result<SessionWriter> SessionWriter::create(const std::string& path, const Sessi
 
   auto impl = std::make_unique<Impl>(start, options);
   impl->path = path;
-  impl->identity = new_identity(start.build_fingerprint);
+  impl->identity = new_identity(start);
   if (auto r = create_session_file(path, start, impl->identity, options.overwrite, options.compression_level); !r)
     return r.errors();
   if (auto r = impl->begin(); !r) {
@@ -167,8 +167,8 @@ void SessionWriter::append(const State& after, const TickRecord& record) {
   if (!impl.own_events.empty()) impl.hand_over_events();
 }
 
-void SessionWriter::event(std::int64_t tick, EventKind kind, std::string text, std::vector<double> values) {
-  impl_->own_events.push_back({tick, kind, std::move(text), std::move(values)});
+void SessionWriter::event(Event event) {
+  impl_->own_events.push_back(std::move(event));
   impl_->hand_over_events();
 }
 

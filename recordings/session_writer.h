@@ -45,7 +45,7 @@ class SessionWriter {
   void append(const State& after, const TickRecord& record);
 
   /// Records an event of any tick.
-  void event(std::int64_t tick, EventKind kind, std::string text, std::vector<double> values = {});
+  void event(Event event);
 
   /// May be called from any thread.
   WriterStatus status() const;

@@ -256,7 +256,9 @@ Result<Verdict> verify_session(SessionReader& reader, const VerifyOptions& optio
   for (SessionReader& another : readers) running.emplace_back([&] { verify_next(another, work, progress); });
   verify_next(reader, work, progress);
   for (std::thread& thread : running) thread.join();
-  return merge(work.outcomes);
+  Result<Verdict> verdict = merge(work.outcomes);
+  if (verdict) verdict->physics_revision = reader.start().physics_revision;
+  return verdict;
 }
 
 std::string to_string(const Verdict& verdict) {
@@ -274,6 +276,7 @@ std::string to_string(const Verdict& verdict) {
     if (verdict.located_tick >= 0) text << " at keyframe " << verdict.located_tick;
     text << " was " << verdict.recorded << ", is " << verdict.replayed << ", difference " << verdict.difference;
   }
+  if (const std::string remark = physics_remark(verdict.physics_revision); !remark.empty()) text << "; " << remark;
   return text.str();
 }
 

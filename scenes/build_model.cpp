@@ -126,7 +126,6 @@ void set_solver(Model& model, const SolverSpec& solver) {
   model.solver.tolerance = solver.tolerance.value_or(standard.tolerance);
   model.solver.velocity_floor = solver.velocity_floor.value_or(standard.velocity_floor);
   model.solver.max_iterations = solver.max_iterations.value_or(standard.max_iterations);
-  model.solver.integrator = solver.integrator;
   model.solver.substeps = solver.substeps.value_or(standard.substeps);
 }
 
@@ -173,6 +172,21 @@ void add_tools(Model& model, const SceneSpec& scene) {
   model.contact_friction = scene.contact_friction;
   model.contact_damping = scene.contact_damping.value_or(model.contact_damping);
   model.contact_stick_time = scene.contact_stick_time.value_or(model.contact_stick_time);
+}
+
+/// What the scene asks for; none: core chooses.
+std::optional<Integrator> integrator_of(IntegratorSpec spec) {
+  switch (spec) {
+    case IntegratorSpec::automatic:
+      break;
+    case IntegratorSpec::leapfrog:
+      return Integrator::leapfrog;
+    case IntegratorSpec::backward_euler:
+      return Integrator::backward_euler;
+    case IntegratorSpec::sdirk2:
+      return Integrator::sdirk2;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -243,10 +257,13 @@ std::optional<BuiltScene> build_model(const SceneSpec& scene, std::span<const Fi
   }
   for (const ProbeSpec& probe : scene.probes) built.probe_sphere.push_back(nearest_sphere(model, probe.at));
   set_solver(model, scene.solver);
-  if (problems.are_good("", {"tick_s", "solver"}))
-    if (const IntegratorChoice choice = choose_integrator(model); !choice.holds)
+  if (problems.are_good("", {"tick_s", "solver"})) {
+    const IntegratorChoice& choice = built.integrator =
+        resolve_integrator(model, integrator_of(scene.solver.integrator));
+    if (!choice.holds)
       problems.add_rule("/solver/integrator", std::string(name_of(choice.integrator)) + ": " + choice.reason,
                         "take `auto`, `backward-euler`, or more substeps");
+  }
   if (!problems.is_empty()) return std::nullopt;
   return built;
 }

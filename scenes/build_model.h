@@ -9,6 +9,7 @@
 #include "core/model/model.h"
 #include "core/model/organ.h"
 #include "core/model/result.h"
+#include "core/stepping/integrator.h"
 #include "scenes/problems.h"
 #include "scenes/scene_spec.h"
 
@@ -19,6 +20,7 @@ struct BuiltScene {
   Model model;
   std::vector<std::int32_t> anchored_count;  ///< spheres that each organ's anchors hold         (organ_count)
   std::vector<std::int32_t> probe_sphere;    ///< sphere of each probe                            (probe_count)
+  IntegratorChoice integrator;               ///< of the Model, and why
 };
 
 /// The spheres of an organ that is given as a rig instead of by a mesh. It has no surface to draw.

@@ -38,11 +38,11 @@ inline std::span<const Choice<ToolKind>> choices_of(ToolKind) {
   return choices;
 }
 
-inline std::span<const Choice<Integrator>> choices_of(Integrator) {
-  static constexpr Choice<Integrator> choices[] = {{"auto", Integrator::automatic},
-                                                   {"leapfrog", Integrator::leapfrog},
-                                                   {"backward-euler", Integrator::backward_euler},
-                                                   {"sdirk2", Integrator::sdirk2}};
+inline std::span<const Choice<IntegratorSpec>> choices_of(IntegratorSpec) {
+  static constexpr Choice<IntegratorSpec> choices[] = {{"auto", IntegratorSpec::automatic},
+                                                       {"leapfrog", IntegratorSpec::leapfrog},
+                                                       {"backward-euler", IntegratorSpec::backward_euler},
+                                                       {"sdirk2", IntegratorSpec::sdirk2}};
   return choices;
 }
 

@@ -175,9 +175,12 @@ struct ProbeSpec {
   friend bool operator==(const ProbeSpec&, const ProbeSpec&) = default;
 };
 
+/// Scene key `solver.integrator`.
+enum class IntegratorSpec { automatic, leapfrog, backward_euler, sdirk2 };
+
 /// Solver settings that the scene asks for; unset ones are those of core's SolverSettings.
 struct SolverSpec {
-  Integrator integrator = Integrator::automatic;
+  IntegratorSpec integrator = IntegratorSpec::automatic;  ///< automatic: core decides when the Model is built
   std::optional<double> tolerance;
   std::optional<double> velocity_floor;  ///< [m/s]
   std::optional<std::int32_t> max_iterations;

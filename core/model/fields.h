@@ -2,129 +2,147 @@
 
 #include <string_view>
 
+#include "core/model/field_meaning.h"
 #include "core/model/model.h"
 #include "core/model/organ.h"
 #include "core/model/state.h"
 
 namespace ctpm {
 
-/// The one list of everything in a Model and a State. Storing, reading, hashing and comparing are all made
-/// from it. `visit(name, member)` is called for each member in a fixed order; members are arithmetic values,
-/// enums, Vec3, Quat, std::string, or vectors of numbers. A Vec3Array is visited as its three coordinates.
-/// Names are stored in session files: never rename one, append new ones.
-template <class Points, class Visit>
-void visit_points(std::string_view x, std::string_view y, std::string_view z, Points& points, Visit&& visit) {
-  visit(x, points.x), visit(y, points.y), visit(z, points.z);
+// The one list of everything in a Model and a State. Storing, reading, hashing, comparing and checking are all made
+// from it. `visit(name, member, meaning)`, or `visit(name, member)`, is called for each member in a fixed order;
+// members are arithmetic values, enums, Vec3, Quat, std::string, or vectors of numbers. A Vec3Array is visited as its
+// three coordinates. Names are stored in session files: never rename one, append new ones.
+
+/// Bounds of what a file may ask of one tick.
+inline constexpr std::int32_t kMostIterations = 1'000'000, kMostSubsteps = 10'000;
+
+template <class Points, class Give>
+void give_points(std::string_view x, std::string_view y, std::string_view z, Points& points,
+                 const FieldMeaning& meaning, const Give& give) {
+  give(x, points.x, meaning), give(y, points.y, meaning), give(z, points.z, meaning);
 }
 
 template <class State_, class Visit>
 requires std::is_same_v<std::remove_const_t<State_>, State>
 void for_each_field(State_& s, Visit&& visit) {
-  visit("tick", s.tick);
-  visit_points("position.x", "position.y", "position.z", s.position, visit);
-  visit_points("velocity.x", "velocity.y", "velocity.z", s.velocity, visit);
-  visit("kelvin_elongation", s.kelvin_elongation);
-  visit("edge_severed", s.edge_severed);
-  visit("tpm_severed", s.tpm_severed);
-  visit("constraint_severed", s.constraint_severed);
-  visit("angle_severed", s.angle_severed);
-  visit("last_inputs.tool", s.last_inputs.tool);
-  visit("last_inputs.position", s.last_inputs.position);
-  visit("last_inputs.world_from_tool", s.last_inputs.world_from_tool);
-  visit("last_inputs.buttons", s.last_inputs.buttons);
-  visit("edge_crossing", s.edge_crossing);
-  visit("tpm_crossing", s.tpm_crossing);
-  visit_points("blade_trail.x", "blade_trail.y", "blade_trail.z", s.blade_trail, visit);
-  visit_points("acceleration.x", "acceleration.y", "acceleration.z", s.acceleration, visit);
+  using namespace meaning;
+  const auto give = with_meaning(visit);
+  give("tick", s.tick, any);
+  give_points("position.x", "position.y", "position.z", s.position, finite.per(EntryOf::sphere), give);
+  give_points("velocity.x", "velocity.y", "velocity.z", s.velocity, finite.per(EntryOf::sphere), give);
+  give("kelvin_elongation", s.kelvin_elongation, finite.per(EntryOf::tpm));
+  give("edge_severed", s.edge_severed, bits(1).per(EntryOf::edge).or_empty());
+  give("tpm_severed", s.tpm_severed, bits(1).per(EntryOf::tpm).or_empty());
+  give("constraint_severed", s.constraint_severed, bits(1).per(EntryOf::constraint).or_empty());
+  give("angle_severed", s.angle_severed, bits(1).per(EntryOf::angle_spring).or_empty());
+  give("last_inputs.tool", s.last_inputs.tool, index(EntryOf::tool, -1));
+  give("last_inputs.position", s.last_inputs.position, any);
+  give("last_inputs.world_from_tool", s.last_inputs.world_from_tool, any);
+  give("last_inputs.buttons", s.last_inputs.buttons, any);
+  give("edge_crossing", s.edge_crossing, any.per(EntryOf::edge).or_empty());
+  give("tpm_crossing", s.tpm_crossing, any.per(EntryOf::tpm).or_empty());
+  give_points("blade_trail.x", "blade_trail.y", "blade_trail.z", s.blade_trail,
+              finite.per(EntryOf::blade_end).or_empty(), give);
+  give_points("acceleration.x", "acceleration.y", "acceleration.z", s.acceleration,
+              finite.per(EntryOf::sphere).or_empty(), give);
 }
 
 template <class Tool_, class Visit>
 requires std::is_same_v<std::remove_const_t<Tool_>, Tool>
 void for_each_field(Tool_& t, Visit&& visit) {
-  visit("name", t.name);
-  visit("kind", t.kind);
-  visit("radius", t.radius);
-  visit("blade_length", t.blade_length);
-  visit("sphere", t.sphere);
-  visit("trail_distance", t.trail_distance);
-  visit("blade_reach", t.blade_reach);
-  visit("blade_reach_spacings", t.blade_reach_spacings);
-  visit("flank_height", t.flank_height);
-  visit("blade_thickness", t.blade_thickness);
-  visit("slowest_slip", t.slowest_slip);
+  using namespace meaning;
+  const auto give = with_meaning(visit);
+  give("name", t.name, any);
+  give("kind", t.kind, one_of({ToolKind::ball, ToolKind::scalpel, ToolKind::pin}));
+  give("radius", t.radius, not_negative);
+  give("blade_length", t.blade_length, not_negative);
+  give("sphere", t.sphere, index(EntryOf::sphere, -1));
+  give("trail_distance", t.trail_distance, positive);
+  give("blade_reach", t.blade_reach, positive);
+  give("blade_reach_spacings", t.blade_reach_spacings, not_negative);
+  give("flank_height", t.flank_height, not_negative);
+  give("blade_thickness", t.blade_thickness, positive);
+  give("slowest_slip", t.slowest_slip, positive);
 }
 
 template <class Organ_, class Visit>
 requires std::is_same_v<std::remove_const_t<Organ_>, OrganRange>
 void for_each_field(Organ_& o, Visit&& visit) {
-  visit("name", o.name);
-  visit("first", o.first);
-  visit("count", o.count);
-  visit("sphere_radius", o.sphere_radius);
-  visit("spacing", o.spacing);
-  visit("damage_depth", o.damage_depth);
-  visit("layer_count", o.layer_count);
+  using namespace meaning;
+  const auto give = with_meaning(visit);
+  give("name", o.name, any);
+  give("first", o.first, any);
+  give("count", o.count, any);
+  give("sphere_radius", o.sphere_radius, finite);
+  give("spacing", o.spacing, finite);
+  give("damage_depth", o.damage_depth, finite);
+  give("layer_count", o.layer_count, any);
 }
 
 /// As above; `organs` and `tools` are vectors of structs, whose own fields are visited by for_each_field.
 template <class Model_, class Visit>
 requires std::is_same_v<std::remove_const_t<Model_>, Model>
 void for_each_field(Model_& m, Visit&& visit) {
-  visit("tick", m.tick);
-  visit("gravity", m.gravity);
-  visit_points("rest_position.x", "rest_position.y", "rest_position.z", m.rest_position, visit);
-  visit("mass", m.mass);
-  visit("held_axes", m.held_axes);
-  visit("contact_radius", m.contact_radius);
-  visit("layer", m.layer);
-  visit("organs", m.organs);
-  visit("edges.a", m.edges.a);
-  visit("edges.b", m.edges.b);
-  visit("edges.rest_length", m.edges.rest_length);
-  visit("edges.k", m.edges.k);
-  visit("edges.c", m.edges.c);
-  visit("edges.third", m.edges.third);
-  visit("tpms.a", m.tpms.a);
-  visit("tpms.b", m.tpms.b);
-  visit("tpms.rest_length", m.tpms.rest_length);
-  visit("tpms.spring_k", m.tpms.spring_k);
-  visit("tpms.kelvin_k", m.tpms.kelvin_k);
-  visit("tpms.kelvin_c", m.tpms.kelvin_c);
-  visit("constraints.a", m.constraints.a);
-  visit("constraints.c", m.constraints.c);
-  visit("constraints.e", m.constraints.e);
-  visit("constraints.k", m.constraints.k);
-  visit("constraints.edge0", m.constraints.edge[0]);
-  visit("constraints.edge1", m.constraints.edge[1]);
-  visit("constraints.edge2", m.constraints.edge[2]);
-  visit("constraints.edge3", m.constraints.edge[3]);
-  visit("angle_springs.a", m.angle_springs.a);
-  visit("angle_springs.b", m.angle_springs.b);
-  visit("angle_springs.c", m.angle_springs.c);
-  visit("angle_springs.k", m.angle_springs.k);
-  visit("angle_springs.edge0", m.angle_springs.edge[0]);
-  visit("angle_springs.edge1", m.angle_springs.edge[1]);
-  visit("has_softening", m.has_softening);
-  visit("loads.sphere", m.loads.sphere);
-  visit_points("loads.force.x", "loads.force.y", "loads.force.z", m.loads.force, visit);
-  visit("loads.start", m.loads.start);
-  visit("loads.ramp", m.loads.ramp);
-  visit("tools", m.tools);
-  visit("contact_k", m.contact_k);
-  visit("contact_friction", m.contact_friction);
-  visit("solver.tolerance", m.solver.tolerance);
-  visit("solver.velocity_floor", m.solver.velocity_floor);
-  visit("solver.max_iterations", m.solver.max_iterations);
-  visit("solver.substeps", m.solver.substeps);
-  visit("solver.integrator", m.solver.integrator);
-  visit("cut_resistance.edge_energy", m.cut_resistance.edge_energy);
-  visit("cut_resistance.tpm_energy", m.cut_resistance.tpm_energy);
-  visit("cut_resistance.edge_friction", m.cut_resistance.edge_friction);
-  visit("cut_resistance.tpm_friction", m.cut_resistance.tpm_friction);
-  visit("lip_k", m.lip_k);
-  visit("contact_damping", m.contact_damping);
-  visit("contact_stick_time", m.contact_stick_time);
-  visit("cut_face_stiffening", m.cut_face_stiffening);
+  using namespace meaning;
+  const auto give = with_meaning(visit);
+  give("tick", m.tick, positive);
+  give("gravity", m.gravity, finite);
+  give_points("rest_position.x", "rest_position.y", "rest_position.z", m.rest_position, finite.per(EntryOf::sphere),
+              give);
+  give("mass", m.mass, positive.per(EntryOf::sphere));
+  give("held_axes", m.held_axes, bits(kAnchored).per(EntryOf::sphere));
+  give("contact_radius", m.contact_radius, positive.per(EntryOf::sphere));
+  give("layer", m.layer, any.per(EntryOf::sphere));
+  give("organs", m.organs, any);
+  give("edges.a", m.edges.a, index(EntryOf::sphere).per(EntryOf::edge));
+  give("edges.b", m.edges.b, index(EntryOf::sphere).per(EntryOf::edge));
+  give("edges.rest_length", m.edges.rest_length, positive.per(EntryOf::edge));
+  give("edges.k", m.edges.k, positive.per(EntryOf::edge));
+  give("edges.c", m.edges.c, not_negative.per(EntryOf::edge).or_empty());
+  give("edges.third", m.edges.third, index(EntryOf::sphere, -1).per(EntryOf::edge).or_empty());
+  give("tpms.a", m.tpms.a, index(EntryOf::sphere).per(EntryOf::tpm));
+  give("tpms.b", m.tpms.b, index(EntryOf::sphere).per(EntryOf::tpm));
+  give("tpms.rest_length", m.tpms.rest_length, positive.per(EntryOf::tpm));
+  give("tpms.spring_k", m.tpms.spring_k, positive.per(EntryOf::tpm));
+  give("tpms.kelvin_k", m.tpms.kelvin_k, positive.per(EntryOf::tpm));
+  give("tpms.kelvin_c", m.tpms.kelvin_c, not_negative.per(EntryOf::tpm));
+  give("constraints.a", m.constraints.a, index(EntryOf::sphere).per(EntryOf::constraint));
+  give("constraints.c", m.constraints.c, index(EntryOf::sphere).per(EntryOf::constraint));
+  give("constraints.e", m.constraints.e, index(EntryOf::sphere).per(EntryOf::constraint));
+  give("constraints.k", m.constraints.k, finite.per(EntryOf::constraint));
+  give("constraints.edge0", m.constraints.edge[0], index(EntryOf::edge).per(EntryOf::constraint));
+  give("constraints.edge1", m.constraints.edge[1], index(EntryOf::edge).per(EntryOf::constraint));
+  give("constraints.edge2", m.constraints.edge[2], index(EntryOf::edge).per(EntryOf::constraint));
+  give("constraints.edge3", m.constraints.edge[3], index(EntryOf::edge).per(EntryOf::constraint));
+  give("angle_springs.a", m.angle_springs.a, index(EntryOf::sphere).per(EntryOf::angle_spring));
+  give("angle_springs.b", m.angle_springs.b, index(EntryOf::sphere).per(EntryOf::angle_spring));
+  give("angle_springs.c", m.angle_springs.c, index(EntryOf::sphere).per(EntryOf::angle_spring));
+  give("angle_springs.k", m.angle_springs.k, positive.per(EntryOf::angle_spring));
+  give("angle_springs.edge0", m.angle_springs.edge[0], index(EntryOf::edge).per(EntryOf::angle_spring));
+  give("angle_springs.edge1", m.angle_springs.edge[1], index(EntryOf::edge).per(EntryOf::angle_spring));
+  give("has_softening", m.has_softening, any);
+  give("loads.sphere", m.loads.sphere, index(EntryOf::sphere).per(EntryOf::load));
+  give_points("loads.force.x", "loads.force.y", "loads.force.z", m.loads.force, finite.per(EntryOf::load), give);
+  give("loads.start", m.loads.start, not_negative.per(EntryOf::load));
+  give("loads.ramp", m.loads.ramp, not_negative.per(EntryOf::load));
+  give("tools", m.tools, any);
+  give("contact_k", m.contact_k, not_negative);
+  give("contact_friction", m.contact_friction, not_negative);
+  give("solver.tolerance", m.solver.tolerance, between(0, 1));
+  give("solver.velocity_floor", m.solver.velocity_floor, positive);
+  give("solver.max_iterations", m.solver.max_iterations, within(1, kMostIterations));
+  give("solver.substeps", m.solver.substeps, within(1, kMostSubsteps));
+  give("solver.integrator", m.solver.integrator,
+       one_of({Integrator::backward_euler, Integrator::leapfrog, Integrator::sdirk2}));
+  give("cut_resistance.edge_energy", m.cut_resistance.edge_energy, not_negative.per(EntryOf::edge).or_empty());
+  give("cut_resistance.tpm_energy", m.cut_resistance.tpm_energy, not_negative.per(EntryOf::tpm).or_empty());
+  give("cut_resistance.edge_friction", m.cut_resistance.edge_friction, not_negative.per(EntryOf::edge).or_empty());
+  give("cut_resistance.tpm_friction", m.cut_resistance.tpm_friction, not_negative.per(EntryOf::tpm).or_empty());
+  give("lip_k", m.lip_k, not_negative);
+  give("contact_damping", m.contact_damping, not_negative);
+  give("contact_stick_time", m.contact_stick_time, not_negative);
+  give("cut_face_stiffening", m.cut_face_stiffening, not_negative);
 }
 
 }  // namespace ctpm

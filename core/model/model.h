@@ -114,22 +114,22 @@ struct OrganRange {
   std::int32_t layer_count = 0;
 };
 
-/// How the positions follow from the forces (scene key `solver.integrator`).
+/// How the positions follow from the forces. Session files store the numbers; 0 (automatic), 1 (symplectic Euler) and 3
+/// (extrapolated Euler) are retired and never used again.
 enum class Integrator : std::int32_t {
-  automatic = 0,       ///< chosen from the Model alone, see integrator.h
-  leapfrog = 1,        ///< explicit, second order (position Verlet)
   backward_euler = 2,  ///< implicit, first order, L-stable
-  sdirk2 = 3,          ///< implicit, second order, L-stable: two stages of backward Euler (Alexander 1977)
+  leapfrog = 4,        ///< explicit, second order (position Verlet)
+  sdirk2 = 5,          ///< implicit, second order, L-stable: two stages of backward Euler (Alexander 1977)
 };
 
 /// How a tick is solved; all limits are counts or residuals, never times.
 struct SolverSettings {
   double tolerance = 1e-4;  ///< residual at which the implicit solve stops, against that of its first guess (of the
                             ///< velocity), so that it does not depend on how fast the body moves; in (0, 1)
-  double velocity_floor = 1e-6;       ///< residuals below this velocity [m/s] count as solved, > 0
-  std::int32_t max_iterations = 200;  ///< of one solve, >= 1
-  std::int32_t substeps = 1;          ///< equal parts of a tick, >= 1; `automatic` may take more
-  Integrator integrator = Integrator::automatic;
+  double velocity_floor = 1e-6;                        ///< residuals below this velocity [m/s] count as solved, > 0
+  std::int32_t max_iterations = 200;                   ///< of one solve, >= 1
+  std::int32_t substeps = 1;                           ///< equal parts of a tick, >= 1
+  Integrator integrator = Integrator::backward_euler;  ///< see resolve_integrator()
 };
 
 /// Everything about a scene that never changes while it runs. Features that the scene does not have are empty

@@ -74,6 +74,16 @@ double stiffness_ratio_bound(const Model& model, double h) {
 
 IntegratorChoice choose_integrator(const Model& model) {
   const double longest = stable_step_bound(model);
+  const std::int32_t asked = model.solver.substeps;
+  const double needed = std::max(std::ceil(model.tick / (kSafety * longest)), double(asked));
+  if (needed <= kMostExplicitSubsteps || needed <= asked)
+    return {Integrator::leapfrog, std::int32_t(needed), true, true,
+            with_milliseconds("nothing in the scene is too stiff for an explicit step of up to %.3g ms", longest)};
+  return {Integrator::backward_euler, asked, true, true,
+          with_milliseconds("the scene is stiff: an explicit step would have to be shorter than %.3g ms", longest)};
+}
+
+IntegratorChoice check_integrator(const Model& model) {
   const SolverSettings& solver = model.solver;
   IntegratorChoice choice{solver.integrator, solver.substeps, true, true, "the scene asks for it"};
   if (solver.integrator == Integrator::sdirk2) {
@@ -82,29 +92,27 @@ IntegratorChoice choose_integrator(const Model& model) {
         "the scene asks for it, but it damps nothing by itself: what no dashpot damps swings on, and gains what "
         "Eq. 8 does in closed cycles";
   }
-  if (solver.integrator == Integrator::leapfrog && model.tick / solver.substeps > longest) {
+  if (solver.integrator != Integrator::leapfrog) return choice;
+  const double longest = stable_step_bound(model);
+  if (model.tick / solver.substeps > longest) {
     choice.holds = false;
     choice.reason = with_milliseconds("the scene asks for it, but it only holds for substeps up to %.3g ms", longest);
   }
-  if (solver.integrator != Integrator::automatic) return choice;
-  const double needed = std::max(std::ceil(model.tick / (kSafety * longest)), double(solver.substeps));
-  if (needed <= kMostExplicitSubsteps || needed <= solver.substeps) {
-    choice.integrator = Integrator::leapfrog;
-    choice.substeps = std::int32_t(needed);
-    choice.reason =
-        with_milliseconds("nothing in the scene is too stiff for an explicit step of up to %.3g ms", longest);
-  } else {
-    choice.integrator = Integrator::backward_euler;
-    choice.reason =
-        with_milliseconds("the scene is stiff: an explicit step would have to be shorter than %.3g ms", longest);
+  return choice;
+}
+
+IntegratorChoice resolve_integrator(Model& model, std::optional<Integrator> asked) {
+  if (asked) {
+    model.solver.integrator = *asked;
+    return check_integrator(model);
   }
+  const IntegratorChoice choice = choose_integrator(model);
+  model.solver.integrator = choice.integrator, model.solver.substeps = choice.substeps;
   return choice;
 }
 
 const char* name_of(Integrator integrator) {
   switch (integrator) {
-    case Integrator::automatic:
-      return "auto";
     case Integrator::leapfrog:
       return "leapfrog";
     case Integrator::backward_euler:
@@ -114,5 +122,7 @@ const char* name_of(Integrator integrator) {
   }
   return "unknown";
 }
+
+const char* name_of(std::optional<Integrator> asked) { return asked ? name_of(*asked) : "auto"; }
 
 }  // namespace ctpm

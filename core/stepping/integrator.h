@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/model/model.h"
@@ -19,18 +20,27 @@ double stiffness_ratio_bound(const Model& model, double h);
 
 /// How a Model is integrated, and why.
 struct IntegratorChoice {
-  Integrator integrator = Integrator::backward_euler;  ///< never `automatic`
-  std::int32_t substeps = 1;                           ///< of one tick, >= 1
-  bool holds = true;   ///< false: named by the scene, but its substep is longer than what it is proven to hold
-  bool damps = true;   ///< false: says beforehand that motion may go on, or gain energy, where no dashpot damps it
-  std::string reason;  ///< one sentence
+  Integrator integrator = Integrator::backward_euler;
+  std::int32_t substeps = 1;  ///< of one tick, >= 1
+  bool holds = true;          ///< false: the substep is longer than what the integrator is proven to hold
+  bool damps = true;          ///< false: the method adds no numerical damping; what no dashpot damps may go on or gain
+                              ///< energy
+  std::string reason;         ///< one sentence
 };
 
-/// Follows SolverSettings::integrator; `automatic` is decided from the Model alone: leapfrog where few substeps hold
-/// it, backward Euler where not.
+/// Chooses by the Model alone, whatever integrator it names: leapfrog where few substeps hold it, backward Euler where
+/// not. Takes at least SolverSettings::substeps.
 IntegratorChoice choose_integrator(const Model& model);
 
-/// Name of an integrator in scenes and reports.
+/// Whether the integrator and the substeps that the Model names hold its stiffness.
+IntegratorChoice check_integrator(const Model& model);
+
+/// Sets the Model's integrator and substeps: `asked` if it is given, which is then checked, or those that
+/// choose_integrator() gives. Call it last: its choice depends on the network, the masses, the tick and the substeps.
+IntegratorChoice resolve_integrator(Model& model, std::optional<Integrator> asked = std::nullopt);
+
+/// Name of an integrator in scenes and reports; "auto" if none is asked for.
 const char* name_of(Integrator integrator);
+const char* name_of(std::optional<Integrator> asked);
 
 }  // namespace ctpm

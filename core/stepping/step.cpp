@@ -36,7 +36,7 @@ using AnyIntegrator = std::variant<std::monostate, Leapfrog, BackwardEuler, Sdir
 struct Stepper::Parts {
   Parts(const Model& m, const StepperOptions& options)
       : model(m),
-        choice(choose_integrator(m)),
+        choice(check_integrator(m)),
         kernels(kernels_for(options.instruction_set)),
         team(options.threads),
         elements(m, team, options.instruction_set),

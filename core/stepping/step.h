@@ -16,7 +16,7 @@ enum class StepStatus : std::int32_t {
   not_converged = 1,  ///< the solve stopped at its count; State went on with what was reached
   bad_input = 2,      ///< the tool's pose is not finite or its index unknown; State is as before the step
   diverged = 3,       ///< a number became infinite or not a number; State is as before the step
-  too_long = 4,  ///< the explicit integrator that the scene names cannot hold steps of this length; State is as before
+  too_long = 4,       ///< the explicit integrator of the Model cannot hold steps of this length; State is as before
 };
 
 /// Whether a tick was not done, and State is as before it.
@@ -57,7 +57,7 @@ class Stepper {
   /// 0.
   StepReport settle(State& state, std::int64_t ticks);
 
-  /// What the Model's integrator is and why.
+  /// The Model's integrator, and whether it holds.
   const IntegratorChoice& integrator() const;
 
  private:

@@ -15,7 +15,7 @@
 
 namespace ctpm::session_file {
 
-/// Structures of the file that core does not know, in the manner of core/fields.h.
+/// Structures of the file that core does not know, in the manner of core/model/fields.h.
 template <class S, class Visit>
 requires std::is_same_v<std::remove_const_t<S>, Surface>
 void for_each_field(S& s, Visit&& visit) {
@@ -31,8 +31,10 @@ requires std::is_same_v<std::remove_const_t<E>, Event>
 void for_each_field(E& e, Visit&& visit) {
   visit("tick", e.tick);
   visit("kind", e.kind);
-  visit("text", e.text);
-  visit("values", e.values);
+  for_each_value(e, visit);
+  // Written where they say something, and read from every file.
+  if (!std::is_const_v<E> || !e.text.empty()) visit("text", e.text);
+  if (!std::is_const_v<E> || !e.values.empty()) visit("values", e.values);
 }
 
 enum class FieldType : std::uint8_t { u8 = 1, i32 = 2, u32 = 3, i64 = 4, u64 = 5, f64 = 6, text = 7, list = 8 };

@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+
+#include "core/model/fields.h"
 
 namespace ctpm::session_file {
 namespace {
 
-// A file must not be able to ask for a tick that never ends.
-constexpr std::int32_t max_iterations = 1'000'000;
-constexpr std::int32_t max_substeps = 10'000;
-
 /// "[i]", for the place in an array.
-std::string place(std::ptrdiff_t i) { return std::string("[").append(std::to_string(i)).append("]"); }
+std::string place(std::size_t i) { return std::string("[").append(std::to_string(i)).append("]"); }
 
 /// Collects problems; every check names the array it is about.
 class Checker {
@@ -23,256 +22,222 @@ class Checker {
     if (!good) errors_.push_back({where_, name + " " + what, ""});
   }
 
-  template <class T>
-  bool length(const std::string& name, const std::vector<T>& values, std::size_t expected, bool may_be_empty = false) {
-    const bool good = values.size() == expected || (may_be_empty && values.empty());
-    require(good, name, "has " + std::to_string(values.size()) + " entries, expected " + std::to_string(expected));
-    return good;
+  bool length(const std::string& name, std::size_t count, std::size_t expected) {
+    require(count == expected, name, "has " + std::to_string(count) + " entries, expected " + std::to_string(expected));
+    return count == expected;
   }
 
   void indices(const std::string& name, const std::vector<std::int32_t>& values, std::int64_t lowest,
                std::int64_t end) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (values[i] >= lowest && values[i] < end) continue;
-      return require(false, name + place(i),
-                     "is " + std::to_string(values[i]) + ", must be in [" + std::to_string(lowest) + ", " +
-                         std::to_string(end) + ")");
+      return require(false, name + place(i), "is " + std::to_string(values[i]) + ", must be " + span(lowest, end));
     }
   }
 
-  void finite(const std::string& name, const std::vector<double>& values) {
-    each(
-        name, values, [](double v) { return std::isfinite(v); }, "must be finite");
-  }
-  void positive(const std::string& name, const std::vector<double>& values) {
-    each(
-        name, values, [](double v) { return std::isfinite(v) && v > 0; }, "must be finite and above 0");
-  }
-  void not_negative(const std::string& name, const std::vector<double>& values) {
-    each(
-        name, values, [](double v) { return std::isfinite(v) && v >= 0; }, "must be finite and not below 0");
-  }
-
-  void not_negative(const std::string& name, double value) {
-    require(std::isfinite(value) && value >= 0, name, "must be finite and not below 0");
-  }
-  void positive(const std::string& name, double value) {
-    require(std::isfinite(value) && value > 0, name, "must be finite and above 0");
-  }
-
-  void flags(const std::string& name, const std::vector<std::uint8_t>& values, int largest = 1) {
-    each(
-        name, values, [largest](std::uint8_t v) { return v <= largest; }, "has unknown bits");
-  }
-
-  void points(const std::string& name, const Vec3Array& points, std::size_t expected) {
-    const auto one = [&](const char* axis, const std::vector<double>& values) {
-      length(name + axis, values, expected);
-      finite(name + axis, values);
-    };
-    one(".x", points.x), one(".y", points.y), one(".z", points.z);
+  static std::string span(std::int64_t lowest, std::int64_t end) {
+    return "in [" + std::to_string(lowest) + ", " + std::to_string(end) + ")";
   }
 
  private:
-  template <class T, class Good>
-  void each(const std::string& name, const std::vector<T>& values, Good good, const char* what) {
-    const auto bad = std::find_if_not(values.begin(), values.end(), good);
-    if (bad != values.end()) require(false, name + place(bad - values.begin()), what);
-  }
-
   std::string where_;
   Errors errors_;
 };
 
-/// Ends of elements: in range and not the same sphere.
+std::size_t count_of(const Model& model, EntryOf entry) {
+  switch (entry) {
+    case EntryOf::none:
+      break;
+    case EntryOf::sphere:
+      return model.sphere_count();
+    case EntryOf::edge:
+      return model.edges.size();
+    case EntryOf::tpm:
+      return model.tpms.size();
+    case EntryOf::constraint:
+      return model.constraints.size();
+    case EntryOf::angle_spring:
+      return model.angle_springs.size();
+    case EntryOf::load:
+      return model.loads.size();
+    case EntryOf::tool:
+      return model.tools.size();
+    case EntryOf::blade_end:
+      return 2;
+  }
+  return 0;
+}
+
+std::string shown(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.10g", number);
+  return text;
+}
+
+/// What a value of this meaning must be.
+std::string demand(const FieldMeaning& meaning) {
+  const std::string lowest = shown(meaning.lowest);
+  if (std::isfinite(meaning.highest))
+    return "must be in " + std::string(meaning.is_open ? "(" : "[") + lowest + ", " + shown(meaning.highest) +
+           (meaning.is_open ? ")" : "]");
+  if (!std::isfinite(meaning.lowest)) return "must be finite";
+  return "must be finite and " + std::string(meaning.is_open ? "above " : "not below ") + lowest;
+}
+
+/// Checks each field of a Model, of a State or of a structure in them against its meaning.
+class FieldCheck {
+ public:
+  FieldCheck(Checker& check, const Model& model, std::string prefix = "")
+      : check_(check), model_(model), prefix_(std::move(prefix)) {}
+
+  template <class T>
+  void operator()(std::string_view name, const T& value, const FieldMeaning& meaning) {
+    const std::string full = prefix_ + std::string(name);
+    if constexpr (std::is_same_v<T, Vec3>) {
+      for (const double number : {value.x, value.y, value.z})
+        if (!one(full, number, meaning)) return;
+    } else if constexpr (std::is_arithmetic_v<T>) {
+      one(full, value, meaning);
+    } else if constexpr (std::is_enum_v<T>) {
+      one(full, static_cast<std::underlying_type_t<T>>(value), meaning);
+    } else {
+      static_assert(std::is_same_v<T, Quat> || std::is_same_v<T, std::string>, "a kind of field without a check");
+      CTPM_CHECK(meaning.range == FieldMeaning::Range::any, "texts and orientations have no range");
+    }
+  }
+
+  template <class T>
+  void operator()(std::string_view name, const std::vector<T>& values, const FieldMeaning& meaning) {
+    const std::string full = prefix_ + std::string(name);
+    const bool is_left_out = meaning.may_be_empty && values.empty();
+    if (meaning.shape != EntryOf::none && !is_left_out)
+      check_.length(full, values.size(), count_of(model_, meaning.shape));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if constexpr (std::is_arithmetic_v<T>) {
+        if (is_good(values[i], meaning)) continue;
+        one(full + place(i), values[i], meaning);
+        return;
+      } else {
+        for_each_field(values[i], FieldCheck(check_, model_, full + place(i) + "."));
+      }
+    }
+  }
+
+ private:
+  template <class T>
+  bool is_good(T value, const FieldMeaning& meaning) const {
+    const auto number = static_cast<double>(value);
+    switch (meaning.range) {
+      case FieldMeaning::Range::any:
+        break;
+      case FieldMeaning::Range::number:
+        return std::isfinite(number) && (meaning.is_open ? number > meaning.lowest && number < meaning.highest
+                                                         : number >= meaning.lowest && number <= meaning.highest);
+      case FieldMeaning::Range::index:
+        return number >= meaning.lowest && number < static_cast<double>(count_of(model_, meaning.indexed));
+      case FieldMeaning::Range::bits:
+        return (static_cast<std::uint64_t>(value) & ~meaning.mask) == 0;
+      case FieldMeaning::Range::one_of:
+        return number >= 0 && number < 64 && (meaning.mask >> static_cast<int>(number) & 1) != 0;
+    }
+    return true;
+  }
+
+  template <class T>
+  bool one(const std::string& name, T value, const FieldMeaning& meaning) {
+    if (is_good(value, meaning)) return true;
+    switch (meaning.range) {
+      case FieldMeaning::Range::any:
+        break;
+      case FieldMeaning::Range::number:
+        check_.require(false, name, demand(meaning));
+        break;
+      case FieldMeaning::Range::index:
+        check_.require(false, name,
+                       "is " + shown(static_cast<double>(value)) + ", must be " +
+                           Checker::span(static_cast<std::int64_t>(meaning.lowest),
+                                         static_cast<std::int64_t>(count_of(model_, meaning.indexed))));
+        break;
+      case FieldMeaning::Range::bits:
+        check_.require(false, name, "has unknown bits");
+        break;
+      case FieldMeaning::Range::one_of:
+        check_.require(false, name, "is of an unknown kind");
+        break;
+    }
+    return false;
+  }
+
+  Checker& check_;
+  const Model& model_;
+  std::string prefix_;
+};
+
+/// An element must not join a sphere with itself.
 void check_ends(Checker& check, const std::string& name, const std::vector<std::int32_t>& a,
-                const std::vector<std::int32_t>& b, std::int64_t sphere_count) {
-  check.indices(name + ".a", a, 0, sphere_count);
-  if (check.length(name + ".b", b, a.size()))
-    for (std::size_t i = 0; i < a.size(); ++i)
-      if (a[i] == b[i]) return check.require(false, name + place(i), "joins a sphere with itself");
-  check.indices(name + ".b", b, 0, sphere_count);
+                const std::vector<std::int32_t>& b) {
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    if (a[i] == b[i]) return check.require(false, name + place(i), "joins a sphere with itself");
 }
 
-void check_elements(Checker& check, const Model& model) {
-  const auto spheres = static_cast<std::int64_t>(model.sphere_count());
-  const Edges& edges = model.edges;
-  check_ends(check, "edges", edges.a, edges.b, spheres);
-  check.length("edges.rest_length", edges.rest_length, edges.size());
-  check.positive("edges.rest_length", edges.rest_length);
-  check.length("edges.k", edges.k, edges.size());
-  check.positive("edges.k", edges.k);
-  check.length("edges.c", edges.c, edges.size(), true);
-  check.not_negative("edges.c", edges.c);
-  check.length("edges.third", edges.third, edges.size(), !model.has_softening);
-  check.indices("edges.third", edges.third, -1, spheres);
-
-  const TwoSphereTpms& tpms = model.tpms;
-  check_ends(check, "tpms", tpms.a, tpms.b, spheres);
-  check.length("tpms.rest_length", tpms.rest_length, tpms.size());
-  check.positive("tpms.rest_length", tpms.rest_length);
-  check.length("tpms.spring_k", tpms.spring_k, tpms.size());
-  check.positive("tpms.spring_k", tpms.spring_k);
-  check.length("tpms.kelvin_k", tpms.kelvin_k, tpms.size());
-  check.positive("tpms.kelvin_k", tpms.kelvin_k);
-  check.length("tpms.kelvin_c", tpms.kelvin_c, tpms.size());
-  check.not_negative("tpms.kelvin_c", tpms.kelvin_c);
-
-  const Constraints& constraints = model.constraints;
-  check.indices("constraints.a", constraints.a, 0, spheres);
-  check.length("constraints.c", constraints.c, constraints.size());
-  check.indices("constraints.c", constraints.c, 0, spheres);
-  check.length("constraints.e", constraints.e, constraints.size());
-  check.indices("constraints.e", constraints.e, 0, spheres);
-  check.length("constraints.k", constraints.k, constraints.size());
-  check.finite("constraints.k", constraints.k);
-  for (int i = 0; i < 4; ++i) {
-    const std::string name = "constraints.edge" + std::to_string(i);
-    check.length(name, constraints.edge[i], constraints.size());
-    check.indices(name, constraints.edge[i], 0, static_cast<std::int64_t>(edges.size()));
-  }
-
-  const AngleSprings& angles = model.angle_springs;
-  check.indices("angle_springs.a", angles.a, 0, spheres);
-  check.length("angle_springs.b", angles.b, angles.size());
-  check.indices("angle_springs.b", angles.b, 0, spheres);
-  check.length("angle_springs.c", angles.c, angles.size());
-  check.indices("angle_springs.c", angles.c, 0, spheres);
-  check.length("angle_springs.k", angles.k, angles.size());
-  check.positive("angle_springs.k", angles.k);
-  for (int i = 0; i < 2; ++i) {
-    const std::string name = "angle_springs.edge" + std::to_string(i);
-    check.length(name, angles.edge[i], angles.size());
-    check.indices(name, angles.edge[i], 0, static_cast<std::int64_t>(edges.size()));
-  }
-}
-
-void check_loads(Checker& check, const Model& model) {
-  const Loads& loads = model.loads;
-  check.indices("loads.sphere", loads.sphere, 0, static_cast<std::int64_t>(model.sphere_count()));
-  check.points("loads.force", loads.force, loads.size());
-  check.length("loads.start", loads.start, loads.size());
-  check.not_negative("loads.start", loads.start);
-  check.length("loads.ramp", loads.ramp, loads.size());
-  check.not_negative("loads.ramp", loads.ramp);
-}
-
+/// The arrays of a cut's resistance are there together or not at all.
 void check_cut_resistance(Checker& check, const Model& model) {
   const CutResistance& cut = model.cut_resistance;
-  const auto one = [&](const std::string& name, const std::vector<double>& values, std::size_t count) {
-    check.length(name, values, cut.any() ? count : 0);
-    check.not_negative(name, values);
+  const auto one = [&](const char* name, const std::vector<double>& values, std::size_t count) {
+    check.length(std::string("cut_resistance.") + name, values.size(), cut.any() ? count : 0);
   };
-  one("cut_resistance.edge_energy", cut.edge_energy, model.edges.size());
-  one("cut_resistance.tpm_energy", cut.tpm_energy, model.tpms.size());
-  one("cut_resistance.edge_friction", cut.edge_friction, model.edges.size());
-  one("cut_resistance.tpm_friction", cut.tpm_friction, model.tpms.size());
-  check.not_negative("lip_k", model.lip_k);
-  check.not_negative("cut_face_stiffening", model.cut_face_stiffening);
+  one("edge_energy", cut.edge_energy, model.edges.size());
+  one("tpm_energy", cut.tpm_energy, model.tpms.size());
+  one("edge_friction", cut.edge_friction, model.edges.size());
+  one("tpm_friction", cut.tpm_friction, model.tpms.size());
 }
 
 void check_organs(Checker& check, const Model& model) {
   const auto spheres = static_cast<std::int64_t>(model.sphere_count());
   for (std::size_t i = 0; i < model.organs.size(); ++i) {
     const OrganRange& organ = model.organs[i];
-    const std::string name = "organs" + place(i);
-    check.require(organ.first >= 0 && organ.count >= 0 && std::int64_t{organ.first} + organ.count <= spheres, name,
-                  "is not a range of spheres");
-    check.require(
-        std::isfinite(organ.sphere_radius) && std::isfinite(organ.spacing) && std::isfinite(organ.damage_depth), name,
-        "has a length that is not finite");
+    check.require(organ.first >= 0 && organ.count >= 0 && std::int64_t{organ.first} + organ.count <= spheres,
+                  "organs" + place(i), "is not a range of spheres");
   }
 }
 
-void check_tools(Checker& check, const Model& model) {
-  for (std::size_t i = 0; i < model.tools.size(); ++i) {
-    const Tool& tool = model.tools[i];
-    const std::string name = "tools" + place(i);
-    check.require(tool.kind >= ToolKind::ball && tool.kind <= ToolKind::pin, name, "is of an unknown kind");
-    const std::int64_t lowest = tool.kind == ToolKind::pin ? 0 : -1;
-    check.require(tool.sphere >= lowest && tool.sphere < static_cast<std::int64_t>(model.sphere_count()), name,
-                  "holds a sphere that is not there");
-    check.require(
-        std::isfinite(tool.radius) && tool.radius >= 0 && std::isfinite(tool.blade_length) && tool.blade_length >= 0,
-        name, "has a size that is not finite or below 0");
-    // The law of the blade divides by these.
-    check.positive(name + ".trail_distance", tool.trail_distance);
-    check.positive(name + ".blade_reach", tool.blade_reach);
-    check.positive(name + ".blade_thickness", tool.blade_thickness);
-    check.positive(name + ".slowest_slip", tool.slowest_slip);
-    check.not_negative(name + ".blade_reach_spacings", tool.blade_reach_spacings);
-    check.not_negative(name + ".flank_height", tool.flank_height);
-  }
+/// Coordinates of an array that may be left out are left out together.
+void check_together(Checker& check, const std::string& name, const Vec3Array& points) {
+  check.require(points.x.size() == points.y.size() && points.x.size() == points.z.size(), name,
+                "has coordinates of different lengths");
 }
 
 }  // namespace
 
 Errors check_model(const Model& model) {
   Checker check("model");
-  const std::size_t spheres = model.sphere_count();
-  check.require(std::isfinite(model.tick) && model.tick > 0, "tick", "must be finite and above 0");
-  check.require(is_finite(model.gravity), "gravity", "must be finite");
-  check.points("rest_position", model.rest_position, spheres);
-  check.positive("mass", model.mass);
-  check.length("held_axes", model.held_axes, spheres);
-  check.flags("held_axes", model.held_axes, kAnchored);
-  check.length("contact_radius", model.contact_radius, spheres);
-  check.positive("contact_radius", model.contact_radius);
-  check.length("layer", model.layer, spheres);
+  for_each_field(model, FieldCheck(check, model));
   check_organs(check, model);
-  check_elements(check, model);
-  check_loads(check, model);
-  check_tools(check, model);
+  check_ends(check, "edges", model.edges.a, model.edges.b);
+  check_ends(check, "tpms", model.tpms.a, model.tpms.b);
+  if (model.has_softening) check.length("edges.third", model.edges.third.size(), model.edges.size());
   check_cut_resistance(check, model);
-  check.not_negative("contact_k", model.contact_k);
-  check.not_negative("contact_friction", model.contact_friction);
-  check.not_negative("contact_damping", model.contact_damping);
-  check.not_negative("contact_stick_time", model.contact_stick_time);
-
-  const SolverSettings& solver = model.solver;
-  check.require(solver.tolerance > 0 && solver.tolerance < 1, "solver.tolerance", "must be in (0, 1)");
-  check.require(std::isfinite(solver.velocity_floor) && solver.velocity_floor > 0, "solver.velocity_floor",
-                "must be above 0");
-  check.require(solver.max_iterations >= 1 && solver.max_iterations <= max_iterations, "solver.max_iterations",
-                "must be in [1, " + std::to_string(max_iterations) + "]");
-  check.require(solver.substeps >= 1 && solver.substeps <= max_substeps, "solver.substeps",
-                "must be in [1, " + std::to_string(max_substeps) + "]");
-  check.require(solver.integrator >= Integrator::automatic && solver.integrator <= Integrator::sdirk2,
-                "solver.integrator", "is of an unknown kind");
+  for (std::size_t i = 0; i < model.tools.size(); ++i)
+    check.require(model.tools[i].kind != ToolKind::pin || model.tools[i].sphere >= 0, "tools" + place(i),
+                  "is a pin that holds no sphere");
   return check.take();
 }
 
 Errors check_state(const Model& model, const State& state) {
   Checker check("state");
-  check.points("position", state.position, model.sphere_count());
-  check.points("velocity", state.velocity, model.sphere_count());
-  check.length("kelvin_elongation", state.kelvin_elongation, model.tpms.size());
-  check.finite("kelvin_elongation", state.kelvin_elongation);
+  for_each_field(state, FieldCheck(check, model));
+  check_together(check, "blade_trail", state.blade_trail);
+  check_together(check, "acceleration", state.acceleration);
 
-  // The sets of severed elements are there together or not at all.
-  const bool cuts =
-      !state.edge_severed.empty() || !state.tpm_severed.empty() || !state.constraint_severed.empty() ||
-      !state.angle_severed.empty() ||
-      std::any_of(model.tools.begin(), model.tools.end(), [](const Tool& t) { return t.kind == ToolKind::scalpel; });
-  check.length("edge_severed", state.edge_severed, cuts ? model.edges.size() : 0);
-  check.flags("edge_severed", state.edge_severed);
-  check.length("tpm_severed", state.tpm_severed, cuts ? model.tpms.size() : 0);
-  check.flags("tpm_severed", state.tpm_severed);
-  check.length("constraint_severed", state.constraint_severed, cuts ? model.constraints.size() : 0);
-  check.flags("constraint_severed", state.constraint_severed);
-  check.length("angle_severed", state.angle_severed, cuts ? model.angle_springs.size() : 0);
-  check.flags("angle_severed", state.angle_severed);
-  // Older sessions do not say where the blade passed.
-  check.length("edge_crossing", state.edge_crossing, cuts ? model.edges.size() : 0, true);
-  check.length("tpm_crossing", state.tpm_crossing, cuts ? model.tpms.size() : 0, true);
-  const Vec3Array& trail = state.blade_trail;
-  if (!trail.x.empty() || !trail.y.empty() || !trail.z.empty()) check.points("blade_trail", state.blade_trail, 2);
-  const Vec3Array& acceleration = state.acceleration;
-  if (!acceleration.x.empty() || !acceleration.y.empty() || !acceleration.z.empty())
-    check.points("acceleration", acceleration, model.sphere_count());
-  const auto tools = static_cast<std::int32_t>(model.tools.size());
-  check.require(state.last_inputs.tool >= -1 && state.last_inputs.tool < tools, "last_inputs.tool",
-                "is not a tool of the model");
+  // The sets of severed elements are there together or not at all; older sessions do not say where the blade passed.
+  const bool cuts = !state.edge_severed.empty() || !state.tpm_severed.empty() || !state.constraint_severed.empty() ||
+                    !state.angle_severed.empty() || model.has_scalpel();
+  check.length("edge_severed", state.edge_severed.size(), cuts ? model.edges.size() : 0);
+  check.length("tpm_severed", state.tpm_severed.size(), cuts ? model.tpms.size() : 0);
+  check.length("constraint_severed", state.constraint_severed.size(), cuts ? model.constraints.size() : 0);
+  check.length("angle_severed", state.angle_severed.size(), cuts ? model.angle_springs.size() : 0);
+  check.require(cuts || (state.edge_crossing.empty() && state.tpm_crossing.empty()), "edge_crossing",
+                "and tpm_crossing must be empty where nothing is cut");
   return check.take();
 }
 
@@ -298,10 +263,11 @@ Errors check_surfaces(const Model& model, const std::vector<Surface>& surfaces) 
     const SurfaceBinding& binding = surface.binding;
     const auto entries = static_cast<std::int64_t>(binding.sphere.size());
     check.indices(name + "binding.sphere", binding.sphere, 0, model.organs[i].count);
-    check.length(name + "binding.weight", binding.weight, binding.sphere.size());
-    check.finite(name + "binding.weight", binding.weight);
-    if (check.length(name + "binding.first", binding.first, surface.vertex.size() + 1, surface.vertex.empty()) &&
-        !binding.first.empty()) {
+    check.length(name + "binding.weight", binding.weight.size(), binding.sphere.size());
+    check.require(std::all_of(binding.weight.begin(), binding.weight.end(), [](double w) { return std::isfinite(w); }),
+                  name + "binding.weight", "must be finite");
+    if (surface.vertex.empty() && binding.first.empty()) continue;
+    if (check.length(name + "binding.first", binding.first.size(), surface.vertex.size() + 1)) {
       check.indices(name + "binding.first", binding.first, 0, entries + 1);
       check.require(binding.first.front() == 0 && binding.first.back() == entries &&
                         std::is_sorted(binding.first.begin(), binding.first.end()),

@@ -9,7 +9,7 @@
 namespace ctpm::session_file {
 
 /// Whether a Model can be simulated without reading outside its arrays: lengths fit, indices are in range,
-/// numbers are finite and in the ranges that core/model.h states. All problems at once (the first of each
+/// numbers are finite and in the ranges that core/model/model.h states. All problems at once (the first of each
 /// array).
 Errors check_model(const Model& model);
 

@@ -141,7 +141,7 @@ Result<Done> copy_with_new_first_page(const std::string& damaged, const std::str
   return Done{};
 }
 
-SessionIdentity new_identity(const std::string& build) {
+SessionIdentity new_identity(const SessionStart& start) {
   SessionIdentity identity;
   std::uint64_t random[3] = {};
   CTPM_CHECK(::getrandom(random, sizeof random, 0) == static_cast<ssize_t>(sizeof random),
@@ -151,7 +151,8 @@ SessionIdentity new_identity(const std::string& build) {
                 static_cast<unsigned long long>(random[1]));
   identity.id = text;
   identity.seed = random[2];
-  identity.build = build;
+  identity.build = start.build_fingerprint;
+  identity.physics_revision = start.physics_revision;
   identity.created_unix_s = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   return identity;
 }

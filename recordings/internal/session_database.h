@@ -16,6 +16,7 @@ struct SessionIdentity {
   std::uint64_t seed = 0;  ///< of the checksums of all other blocks
   std::string build;       ///< build fingerprint
   double created_unix_s = 0;
+  std::int32_t physics_revision = 0;  ///< 0: recorded before revisions were stored
 };
 
 template <class S, class Visit>
@@ -25,10 +26,11 @@ void for_each_field(S& s, Visit&& visit) {
   visit("seed", s.seed);
   visit("build", s.build);
   visit("created_unix_s", s.created_unix_s);
+  visit("physics_revision", s.physics_revision);
 }
 
-/// A new identity: random, from the operating system.
-SessionIdentity new_identity(const std::string& build);
+/// A new identity of a session that begins with `start`: random, from the operating system.
+SessionIdentity new_identity(const SessionStart& start);
 
 /// What a block is called in its checksum and in messages.
 std::string part_name(const std::string& name);

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "recordings/internal/field_codec.h"
+#include "recordings/internal/legacy.h"
 #include "recordings/internal/model_check.h"
 #include "recordings/internal/schema.h"
 #include "recordings/internal/statistics.h"
@@ -170,8 +171,10 @@ Result<Done> SessionStore::decode_fields(const std::string& name, const Bytes& c
 Result<Done> SessionStore::read_identity() {
   const auto content = part("session");
   if (!content) return content.errors();
-  return decode_fields("part session", *content,
-                       [&](ByteReader& in, std::string& problem) { get_fields(in, identity_, problem); });
+  return decode_fields("part session", *content, [&](ByteReader& in, std::string& problem) {
+    get_fields(in, identity_, problem);
+    if (problem.empty() && identity_.physics_revision < 0) problem = "physics_revision must not be below 0";
+  });
 }
 
 Result<std::string> SessionStore::scene() {
@@ -194,6 +197,9 @@ Result<Model> SessionStore::model() {
                              [&](ByteReader& in, std::string& problem) { get_fields(in, model, problem); });
       !r)
     return r.errors();
+  remarks_.clear();
+  if (const auto updated = update_integrator(model, identity_.physics_revision, remarks_); !updated)
+    return Error{database_.path(), updated.errors().front().message, updated.errors().front().hint};
   if (const Errors errors = check_model(model); !errors.empty()) return at_file(database_.path(), errors);
   return model;
 }
@@ -302,6 +308,7 @@ Result<std::optional<Run<Event>>> SessionStore::events_at(std::int64_t at) {
     FieldSet set(in, problem);
     FieldReader reader(set, in.budget(), problem);
     reader("events", run.items);
+    for (Event& event : run.items) update_event(event);
     if (problem.empty() && static_cast<std::int64_t>(run.items.size()) != count)
       problem = "holds another number of events";
   });

@@ -36,7 +36,9 @@ class SessionStore {
 
   Result<std::string> scene();
   Result<std::string> look();
-  Result<Model> model();                                      ///< checked
+  Result<Model> model();  ///< brought up to date and checked
+  /// What model() decided where the file leaves it open, for people.
+  const std::vector<std::string>& remarks() const { return remarks_; }
   Result<std::vector<Surface>> surfaces(const Model& model);  ///< checked
   Result<std::map<std::string, std::string>> metadata();
   Result<std::optional<SessionStatistics>> finish();
@@ -67,6 +69,7 @@ class SessionStore {
   Statement part_, chunk_, keyframe_, event_;
   int version_ = 0;
   SessionIdentity identity_;
+  std::vector<std::string> remarks_;
   RecordDecoder decoder_;
 };
 

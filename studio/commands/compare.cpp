@@ -4,6 +4,7 @@
 #include "studio/commands/command.h"
 #include "studio/commands/comparison_text.h"
 #include "studio/commands/console.h"
+#include "studio/commands/physics_warning.h"
 #include "studio/compare/report.h"
 #include "studio/loading/loaded_scene.h"
 #include "studio/reports/report.h"
@@ -27,6 +28,7 @@ int run_compare(const CompareArguments& arguments) {
     if (!*session) errors.insert(errors.end(), session->errors().begin(), session->errors().end());
   if (!errors.empty()) return print_errors(errors);
   if (const Result<Done> same = check_same_scene(*expert, *trainee); !same) return print_errors(same.errors());
+  warn_of_physics(*expert), warn_of_physics(*trainee);
   const Result<SessionTrack> expert_track = read_track(*expert);
   const Result<SessionTrack> trainee_track = read_track(*trainee);
   for (const auto* track : {&expert_track, &trainee_track})

@@ -7,6 +7,7 @@
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 #include "studio/commands/flags.h"
+#include "studio/commands/physics_warning.h"
 #include "studio/commands/stop_signal.h"
 #include "studio/film/export_video.h"
 #include "studio/output/number_text.h"
@@ -52,7 +53,7 @@ int run_export(ExportArguments& arguments) {
     errors.insert(errors.end(), size.errors().begin(), size.errors().end());
   if (!errors.empty()) return print_errors(errors);
   std::vector<SessionReader*> sessions;
-  for (SessionReader& reader : readers) sessions.push_back(&reader);
+  for (SessionReader& reader : readers) warn_of_physics(reader), sessions.push_back(&reader);
   const StopSignal stop;  // Ctrl-C ends the loop, and the unfinished file is removed on the way out
   arguments.options.should_stop = [&] { return stop.came(); };
   const Result<ExportOutcome> outcome = [&] {

@@ -7,7 +7,6 @@
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 #include "studio/output/json_writer.h"
-#include "studio/session/run_session.h"
 
 namespace ctpm {
 namespace {
@@ -26,26 +25,16 @@ std::string utc(double unix_s) {
   return text;
 }
 
-const char* kind_name(EventKind kind) {
-  switch (kind) {
-    case EventKind::contact_begins:
-      return "contact begins";
-    case EventKind::contact_ends:
-      return "contact ends";
-    case EventKind::cut:
-      return "cut";
-    case EventKind::damage:
-      return "damage";
-    case EventKind::late_tick:
-      return "late tick";
-    case EventKind::device_lost:
-      return "device lost";
-    case EventKind::device_back:
-      return "device back";
-    case EventKind::note:
-      return "note";
+void write_event(JsonWriter& json, const Event& event, const Model& model) {
+  json.begin_object().member("tick", event.tick).member("kind", name_of(event.kind));
+  for_each_value(event, [&](const char* name, const auto& value) { json.member(name, value); });
+  json.member("text", describe(event, model));
+  if (!event.values.empty()) {
+    json.key("values").begin_list();
+    for (const double value : event.values) json.value(value);
+    json.end_list();
   }
-  return "unknown";
+  json.end_object();
 }
 
 void print_json(SessionReader& reader, const SessionStatistics& s, const std::vector<Event>& events) {
@@ -53,7 +42,9 @@ void print_json(SessionReader& reader, const SessionStatistics& s, const std::ve
   JsonWriter json;
   json.begin_object().member("session_id", reader.session_id()).member("format_version", reader.format_version());
   json.member("created_utc", utc(reader.created_unix_s())).member("ended_cleanly", reader.ended_cleanly());
-  json.member("build", reader.start().build_fingerprint)
+  const std::int32_t revision = reader.start().physics_revision;
+  json.member("build", reader.start().build_fingerprint).member("physics_revision", revision);
+  json.member("physics_remark", physics_remark(revision))
       .member("tick_s", model.tick)
       .member("ticks", reader.tick_count());
   json.member("duration_s", double(reader.tick_count()) * model.tick).member("spheres", model.sphere_count());
@@ -71,15 +62,12 @@ void print_json(SessionReader& reader, const SessionStatistics& s, const std::ve
   json.member("max_force_n", s.max_force).member("max_depth_m", s.max_depth);
   json.key("values").begin_object();
   for (const auto& [name, value] : s.values) json.member(name, value);
-  json.end_object().key("metadata").begin_object();
+  json.end_object().key("remarks").begin_list();
+  for (const std::string& remark : reader.remarks()) json.value(remark);
+  json.end_list().key("metadata").begin_object();
   for (const auto& [key, value] : reader.start().metadata) json.member(key, value);
   json.end_object().key("events").begin_list();
-  for (const Event& event : events) {
-    json.begin_object().member("tick", event.tick).member("kind", kind_name(event.kind)).member("text", event.text);
-    json.key("values").begin_list();
-    for (const double value : event.values) json.value(value);
-    json.end_list().end_object();
-  }
+  for (const Event& event : events) write_event(json, event, model);
   std::fputs(json.end_list().end_object().text().c_str(), stdout);
 }
 
@@ -97,14 +85,23 @@ void print_origin(const SessionReader& reader) {
 }
 
 /// The events, of late ticks only how many there are: on a busy machine they would hide the others.
-void print_events(const std::vector<Event>& events, double tick) {
+void print_events(const std::vector<Event>& events, const Model& model) {
   constexpr std::int64_t kMostShown = 20;
   std::int64_t count = 0;
   for (const Event& event : events) {
     if (event.kind == EventKind::late_tick || count++ >= kMostShown) continue;
-    std::printf("event      %8.3f s  %s: %s\n", double(event.tick) * tick, kind_name(event.kind), event.text.c_str());
+    std::printf("event      %8.3f s  %s: %s\n", double(event.tick) * model.tick, name_of(event.kind),
+                describe(event, model).c_str());
   }
   if (count > kMostShown) std::printf("           and %lld more events\n", (long long)(count - kMostShown));
+}
+
+void print_physics(const SessionReader& reader) {
+  const std::int32_t revision = reader.start().physics_revision;
+  if (const std::string remark = physics_remark(revision); !remark.empty())
+    std::printf("physics    %s\n", remark.c_str());
+  else
+    std::printf("physics    revision %d, as this build computes it\n", revision);
 }
 
 void print_text(SessionReader& reader, const SessionStatistics& s, const std::vector<Event>& events) {
@@ -112,6 +109,8 @@ void print_text(SessionReader& reader, const SessionStatistics& s, const std::ve
   std::printf("session    %s, recorded %s%s\n", reader.session_id().c_str(), utc(reader.created_unix_s()).c_str(),
               reader.ended_cleanly() ? "" : ", without a clean end");
   std::printf("build      %s\n", reader.start().build_fingerprint.c_str());
+  print_physics(reader);
+  for (const std::string& remark : reader.remarks()) std::printf("note       %s\n", remark.c_str());
   print_origin(reader);
   std::printf("duration   %.3f s, %lld ticks of %g ms\n", double(reader.tick_count()) * model.tick,
               (long long)reader.tick_count(), model.tick * 1e3);
@@ -127,7 +126,7 @@ void print_text(SessionReader& reader, const SessionStatistics& s, const std::ve
   for (const auto& [name, value] : s.values) std::printf("value      %s = %g\n", name.c_str(), value);
   std::printf("at most    %.3f N, %.2f mm deep; %lld elements severed, %lld pieces came loose\n", s.max_force,
               s.max_depth * 1e3, (long long)s.severed, (long long)pieces_came_loose(events, reader.tick_count()));
-  print_events(events, model.tick);
+  print_events(events, model);
 }
 
 int run_info(const InfoArguments& arguments) {

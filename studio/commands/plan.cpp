@@ -123,7 +123,7 @@ int run_plan(const PlanArguments& arguments) {
   std::size_t total = 0;
   for (const Feature& feature : features) total += feature.is_in ? feature.bytes : 0;
   const double tick = measure_tick(model);
-  const IntegratorChoice choice = choose_integrator(model);
+  const IntegratorChoice& choice = scene->built.integrator;
   const std::string solver = solver_of(model, choice);
   if (arguments.json) {
     JsonWriter json;

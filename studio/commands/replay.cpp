@@ -8,6 +8,7 @@
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 #include "studio/commands/flags.h"
+#include "studio/commands/physics_warning.h"
 #include "studio/output/files.h"
 #include "studio/session/time_range.h"
 
@@ -49,6 +50,7 @@ int run_replay(const ReplayArguments& arguments) {
   if (!arguments.csv.empty())
     if (const Result<Done> writable = check_writable(arguments.csv); !writable) return print_errors(writable.errors());
 
+  warn_of_physics(*reader);
   Result<ReplayCursor> cursor = ReplayCursor::create(*reader);
   if (!cursor) return print_errors(cursor.errors());
   if (const Result<Done> found = cursor->seek(range->from); !found) return print_errors(found.errors());

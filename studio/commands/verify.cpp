@@ -6,7 +6,8 @@
 #include "recordings/session_reader.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
-#include "studio/session/record_session.h"
+#include "studio/commands/physics_warning.h"
+#include "studio/version/version.h"
 
 namespace ctpm {
 namespace {
@@ -16,7 +17,7 @@ struct VerifyArguments {
   int threads = 1;
 };
 
-/// Prints the verdict; a difference between builds explains itself.
+/// Prints the verdict; where it is bad, who recorded and who replayed.
 void print_verdict(const SessionReader& session, const Verdict& verdict, double seconds) {
   const double lived = double(verdict.ticks_compared) * session.start().model.tick;
   std::printf("%s: %s; %.1f times as fast as it was lived\n", session.path().c_str(), to_string(verdict).c_str(),
@@ -24,10 +25,7 @@ void print_verdict(const SessionReader& session, const Verdict& verdict, double 
   if (verdict.same) return;
   std::printf("recorded by: %s\nreplayed by: %s\n", session.start().build_fingerprint.c_str(),
               build_fingerprint().c_str());
-  print_remark(
-      "a session replays to the bit only with the physics that recorded it: between builds of one version "
-      "that "
-      "is promised, between versions it is not");
+  print_remark("builds of one physics revision replay each other's sessions to the bit; builds of two need not");
 }
 
 int run_verify(const VerifyArguments& arguments) {
@@ -35,6 +33,7 @@ int run_verify(const VerifyArguments& arguments) {
   if (!reader) return print_errors(reader.errors());
   if (!reader->ended_cleanly())
     print_remark(arguments.file + ": warning: the session has no clean end; what is there is verified");
+  warn_of_physics(*reader);
   VerifyOptions options;
   options.threads = arguments.threads;
   ProgressLine progress("verifying");

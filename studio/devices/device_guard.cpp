@@ -40,7 +40,7 @@ bool DeviceGuard::take(const DeviceReport& report) {
       buttons_ = report.buttons;
       return false;
     case DeviceNews::turned_away:
-      events_.push_back({EventKind::note, "a second device came and was turned away", {}});
+      events_.push_back({.kind = EventKind::note, .text = "a second device came and was turned away"});
       return false;
     case DeviceNews::bad_message:
       ++counts_.unread;
@@ -74,9 +74,9 @@ void DeviceGuard::look(double now) {
   if (silence > settings_.give_up_after && verdict_.empty())
     verdict_ = "the device was lost: nothing usable came for " + seconds(silence) + " (" + faults_.front() + ")";
   if (!faults_.empty() && arrival_ > last_fault_ && now - last_fault_ > kQuiet) {
-    events_.push_back({EventKind::device_back,
-                       "device is back; values: for how long the pose was held in s, samples refused",
-                       {last_fault_ - spell_began_, double(counts_.refused - refused_before_spell_)}});
+    events_.push_back({.kind = EventKind::device_back,
+                       .held = last_fault_ - spell_began_,
+                       .refused_samples = counts_.refused - refused_before_spell_});
     faults_.clear();
   }
 }
@@ -86,9 +86,9 @@ void DeviceGuard::fault(const char* text, double now) {
   if (faults_.empty()) spell_began_ = now, refused_before_spell_ = counts_.refused;
   if (std::find(faults_.begin(), faults_.end(), text) != faults_.end()) return;
   faults_.push_back(text);
-  events_.push_back({EventKind::device_lost, std::string(text) + "; the pose is held", {}});
+  events_.push_back({.kind = EventKind::device_lost, .reason = text});
 }
 
-std::vector<SourceEvent> DeviceGuard::take_events() { return std::exchange(events_, {}); }
+std::vector<Event> DeviceGuard::take_events() { return std::exchange(events_, {}); }
 
 }  // namespace ctpm

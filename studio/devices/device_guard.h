@@ -38,7 +38,7 @@ class DeviceGuard {
   /// Why the device is given up; empty as long as it is not.
   const std::string& verdict() const { return verdict_; }
 
-  std::vector<SourceEvent> take_events();
+  std::vector<Event> take_events();
 
   struct Counts {
     std::int64_t samples = 0;  ///< poses that came
@@ -63,7 +63,7 @@ class DeviceGuard {
   double spell_began_ = 0, last_fault_ = 0;
   std::int64_t refused_before_spell_ = 0;
   std::string verdict_;
-  std::vector<SourceEvent> events_;
+  std::vector<Event> events_;
   Counts counts_;
 };
 

@@ -36,7 +36,7 @@ class DeviceSource : public InputSource {
 
   std::optional<Inputs> next(std::int64_t tick, const StepReport& last) override;
   double input_age() const override { return age_; }
-  std::vector<SourceEvent> take_events() override { return guard_.take_events(); }
+  std::vector<Event> take_events() override { return guard_.take_events(); }
   std::vector<NamedValue> statistics() const override;
   std::string fault() const override { return guard_.verdict(); }
 

@@ -4,7 +4,7 @@
 
 #include "recordings/byte_hash.h"
 #include "studio/output/json_writer.h"
-#include "studio/session/record_session.h"
+#include "studio/version/version.h"
 
 namespace ctpm {
 namespace {
@@ -39,6 +39,8 @@ Result<Done> write_session(JsonWriter& json, const SidecarSession& session) {
   json.begin_object().member("file", std::filesystem::path(reader.path()).filename().string());
   json.member("session_id", reader.session_id()).member("file_xxh3", hash_text(*hash));
   json.member("format_version", reader.format_version()).member("recorded_by", reader.start().build_fingerprint);
+  const std::int32_t revision = reader.start().physics_revision;
+  json.member("physics_revision", revision).member("physics_remark", physics_remark(revision));
   json.member("scene", film.scene().name).member("model", structure_name(film.scene()));
   json.member("verdict", film.is_same() ? "same" : "different");
   json.key("first_different_tick");
@@ -84,6 +86,7 @@ Result<std::string> sidecar_text(const std::vector<SidecarSession>& sessions, co
     if (const Result<Done> done = write_session(json, session); !done) return done.errors();
   json.end_list();
   json.key("made_by").begin_object().member("program", build_fingerprint());
+  json.member("physics_revision", kPhysicsRevision);
   json.member("drawing", facts.opengl).member("video", video_library()).end_object();
   const StageTimes& times = facts.times;
   json.key("times").begin_object().member("elapsed_s", times.elapsed);

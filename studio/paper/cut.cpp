@@ -47,6 +47,7 @@ Result<CutRun> run_kidney(const LoadedScene& scene, const Script& script, const 
   Stepper(model).settle(state, std::llround(3 / model.tick));
   // Small steps from here on: where they are implicit, a whole tick would damp what is to be seen.
   model.solver.substeps = kSubsteps;
+  resolve_integrator(model);
   Stepper stepper(model);
   run.integrator = name_of(stepper.integrator().integrator);
   const ScriptPlayer player(script, model.tools, model.tick);

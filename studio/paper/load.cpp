@@ -125,6 +125,7 @@ Result<Press> press_and_leave(Model model, const std::string& name, State state,
   constexpr double kSpeed = 0.1, kHold = 0.3;
   // An implicit step of a whole tick would damp what is to be seen.
   model.solver.substeps = 10;
+  resolve_integrator(model);
   const auto c = std::size_t(nearest_sphere(model, place));
   const Vec3 touch = state.position[c] + Vec3{0, 0, model.tools[0].radius + model.contact_radius[c]};
   const auto ticks_of = [&](double t) { return std::int64_t(std::lround(t / model.tick)); };

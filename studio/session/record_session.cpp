@@ -11,22 +11,9 @@
 #include "studio/output/number_text.h"
 #include "studio/output/option_name.h"
 #include "studio/sources/script_source.h"
+#include "studio/version/version.h"
 
 namespace ctpm {
-
-std::string build_fingerprint() {
-#ifdef __clang__
-  const std::string compiler = "clang " __clang_version__;
-#else
-  const std::string compiler = "g++ " __VERSION__;
-#endif
-#ifdef __OPTIMIZE__
-  const std::string kind = "optimised";
-#else
-  const std::string kind = "unoptimised";
-#endif
-  return std::string("ctpm ") + CTPM_VERSION + ", " + compiler + ", " + kind;
-}
 
 SessionStart start_session(const LoadedScene& scene) {
   SessionStart start;

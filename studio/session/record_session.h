@@ -33,7 +33,4 @@ Result<RecordOutcome> record_session(const SessionStart& start, InputSource& sou
 Result<RecordOutcome> record_script(const LoadedScene& scene, const Script& script, const std::string& path,
                                     bool overwrite, const RunOptions& options);
 
-/// Names the program's version, compiler and kind of build.
-std::string build_fingerprint();
-
 }  // namespace ctpm

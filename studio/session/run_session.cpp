@@ -19,29 +19,26 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 class EventWatch {
  public:
   EventWatch(const Model& model, double damage_force, SessionWriter& writer)
-      : writer_(writer), most_force_(damage_force) {
-    for (const OrganRange& organ : model.organs)
-      if (organ.damage_depth > 0 && (most_depth_ == 0 || organ.damage_depth < most_depth_))
-        most_depth_ = organ.damage_depth;
+      : writer_(writer), force_limit_(damage_force) {
+    for (std::size_t i = 0; i < model.organs.size(); ++i) {
+      const double limit = model.organs[i].damage_depth;
+      if (limit > 0 && (depth_limit_ == 0 || limit < depth_limit_)) depth_limit_ = limit, organ_ = std::int32_t(i);
+    }
   }
 
-  void look(std::int64_t tick, const StepReport& report) {
-    if (begins(contact_, tick, report.contacts > 0))
-      writer_.event(tick, EventKind::contact_begins, "tool touches the tissue");
-    if (ends(contact_, tick)) writer_.event(contact_.last_tick, EventKind::contact_ends, "tool leaves the tissue");
+  void look(std::int64_t tick, std::int32_t tool, const StepReport& report) {
+    if (begins(contact_, tick, report.contacts > 0)) {
+      tool_ = tool;
+      writer_.event({.tick = tick, .kind = EventKind::contact_begins, .tool = tool});
+    }
+    if (ends(contact_, tick))
+      writer_.event({.tick = contact_.last_tick, .kind = EventKind::contact_ends, .tool = tool_});
     if (begins(cut_, tick, report.severed > 0))
-      writer_.event(tick, EventKind::cut, "blade begins to sever; value: elements", {double(report.severed)});
+      writer_.event({.tick = tick, .kind = EventKind::cut, .tool = tool, .severed = report.severed});
     ends(cut_, tick);
-    if (report.came_loose > 0) writer_.event(tick, EventKind::cut, piece_came_loose, {double(report.came_loose)});
-    if (begins(too_deep_, tick, most_depth_ > 0 && report.depth > most_depth_))
-      writer_.event(tick, EventKind::damage, "depth passes the damage limit; values: depth and limit in m",
-                    {report.depth, most_depth_});
-    ends(too_deep_, tick);
-    const double force = norm(report.tool_force);
-    if (begins(too_strong_, tick, most_force_ > 0 && force > most_force_))
-      writer_.event(tick, EventKind::damage, "force passes the damage limit; values: force and limit in N",
-                    {force, most_force_});
-    ends(too_strong_, tick);
+    if (report.came_loose > 0)
+      writer_.event({.tick = tick, .kind = EventKind::piece_came_loose, .pieces = report.came_loose});
+    look_for_damage(tick, report);
   }
 
  private:
@@ -65,20 +62,28 @@ class EventWatch {
     return true;
   }
 
+  void look_for_damage(std::int64_t tick, const StepReport& report) {
+    if (begins(too_deep_, tick, depth_limit_ > 0 && report.depth > depth_limit_))
+      writer_.event({.tick = tick,
+                     .kind = EventKind::damage,
+                     .organ = organ_,
+                     .depth = report.depth,
+                     .depth_limit = depth_limit_});
+    ends(too_deep_, tick);
+    const double force = norm(report.tool_force);
+    if (begins(too_strong_, tick, force_limit_ > 0 && force > force_limit_))
+      writer_.event({.tick = tick, .kind = EventKind::damage, .force = force, .force_limit = force_limit_});
+    ends(too_strong_, tick);
+  }
+
   SessionWriter& writer_;
-  double most_depth_ = 0, most_force_ = 0;  // [m], [N]; 0: no limit
+  double depth_limit_ = 0, force_limit_ = 0;  // [m], [N]; 0: no limit
+  std::int32_t organ_ = -1;                   // whose depth limit it is
+  std::int32_t tool_ = -1;                    // of the contact that goes on
   Spell contact_, cut_, too_deep_, too_strong_;
 };
 
 }  // namespace
-
-std::int64_t pieces_came_loose(const std::vector<Event>& events, std::int64_t end) {
-  double pieces = 0;
-  for (const Event& event : events)
-    if (event.tick < end && event.kind == EventKind::cut && event.text == piece_came_loose && !event.values.empty())
-      pieces += event.values[0];
-  return std::int64_t(pieces);
-}
 
 int threads_for(const Model& model) {
   constexpr std::size_t kWorthSharing = 3000;  // spheres
@@ -97,23 +102,28 @@ RunOutcome run_session(const Model& model, State& state, InputSource& source, Se
     if (options.should_stop && options.should_stop()) break;
     if (options.in_real_time) std::this_thread::sleep_until(deadline);
     const std::optional<Inputs> inputs = source.next(tick, report);
-    for (SourceEvent& event : source.take_events())
-      writer.event(tick, event.kind, std::move(event.text), std::move(event.values));
+    for (Event& event : source.take_events()) {
+      event.tick = tick;
+      writer.event(std::move(event));
+    }
     if (!inputs) break;
     const Clock::time_point start = Clock::now();
     report = stepper.step(state, *inputs);
     const double tick_time = seconds_since(start);
     outcome.status = report.status, outcome.worst_sphere = report.worst_sphere;
     if (is_refused(report.status)) {
-      writer.event(tick, EventKind::note, "the step was refused; value: sphere", {double(report.worst_sphere)});
+      writer.event({.tick = tick,
+                    .kind = EventKind::step_refused,
+                    .status = std::int32_t(report.status),
+                    .sphere = report.worst_sphere});
       break;
     }
     writer.append(state, make_record(*inputs, report, tick_time, state_hash(state), source.input_age()));
-    watch.look(tick, report);
+    watch.look(tick, inputs->tool, report);
     deadline += tick_length;
     if (options.in_real_time && Clock::now() > deadline) {
       ++outcome.late_ticks;
-      writer.event(tick, EventKind::late_tick, "tick ended late; value: by how much in s", {seconds_since(deadline)});
+      writer.event({.tick = tick, .kind = EventKind::late_tick, .late = seconds_since(deadline)});
       deadline = Clock::now();  // a late tick does not make the next ones hurry
     }
     ++outcome.ticks;

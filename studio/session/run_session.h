@@ -12,12 +12,6 @@
 
 namespace ctpm {
 
-/// Text of the event (of kind `cut`) that notes pieces of tissue which came loose; its value is how many.
-inline constexpr const char* piece_came_loose = "a piece comes loose; value: pieces";
-
-/// Pieces of tissue that came loose in the ticks before `end`.
-std::int64_t pieces_came_loose(const std::vector<Event>& events, std::int64_t end);
-
 struct RunOptions {
   bool in_real_time = true;     ///< ticks start on absolute deadlines of the wall clock; else one after the other
   double damage_force = 0;      ///< force on the tool beyond which a damage event is noted [N]; 0: no limit

@@ -11,13 +11,6 @@
 
 namespace ctpm {
 
-/// Something that a source noticed and that belongs into the session.
-struct SourceEvent {
-  EventKind kind = EventKind::note;
-  std::string text;
-  std::vector<double> values;  ///< numbers that belong to it; the text says which
-};
-
 /// Where a session's inputs come from: a script, a file of motion, a device.
 class InputSource {
  public:
@@ -33,8 +26,8 @@ class InputSource {
   /// Age of the device's sample behind what next() gave last, at that moment [s]; 0 if there is no device.
   virtual double input_age() const { return 0; }
 
-  /// What was noticed since it was asked last; empty in nearly every tick.
-  virtual std::vector<SourceEvent> take_events() { return {}; }
+  /// What was noticed since it was asked last, without its tick; empty in nearly every tick.
+  virtual std::vector<Event> take_events() { return {}; }
 
   /// Numbers about the whole session, unit in the name; asked once, at its end.
   virtual std::vector<NamedValue> statistics() const { return {}; }

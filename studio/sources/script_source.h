@@ -20,20 +20,17 @@ class ScriptSource : public InputSource {
     return player_.at(tick);
   }
   std::int64_t tick_count() const override { return player_.tick_count(); }
-  std::vector<SourceEvent> take_events() override { return std::exchange(events_, {}); }
+  std::vector<Event> take_events() override { return std::exchange(events_, {}); }
 
  private:
   void feel(std::int64_t tick, Vec3 force) {
     const PressEnd end = player_.feel(tick, force);
-    if (end == PressEnd::at_force)
-      events_.push_back({EventKind::note, "press reaches its force; value: force in N", {norm(force)}});
-    if (end == PressEnd::at_depth)
-      events_.push_back(
-          {EventKind::note, "press gives up at its depth, short of its force; value: force in N", {norm(force)}});
+    if (end == PressEnd::at_force) events_.push_back({.kind = EventKind::press_reached_force, .force = norm(force)});
+    if (end == PressEnd::at_depth) events_.push_back({.kind = EventKind::press_gave_up, .force = norm(force)});
   }
 
   ScriptPlayer player_;
-  std::vector<SourceEvent> events_;
+  std::vector<Event> events_;
 };
 
 }  // namespace ctpm

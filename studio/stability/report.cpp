@@ -33,7 +33,7 @@ Table runs_table(const std::vector<StabilityRow>& rows) {
 Table overview(const std::vector<StabilityRow>& rows) {
   Table table;
   table.columns = {{"title", "case"}, {"used", "auto takes"}};
-  for (const Integrator integrator : kStabilityIntegrators)
+  for (const std::optional<Integrator> integrator : kStabilityIntegrators)
     table.columns.push_back({name_of(integrator), name_of(integrator)});
   table.columns.push_back({"reach", "furthest under auto [mm]", 3});
   table.columns.push_back({"expectation", "what must hold"});
@@ -79,7 +79,7 @@ std::vector<Section> failures(const std::vector<StabilityRow>& rows) {
   for (const bool is_automatic : {true, false})
     for (const StabilityRow& row : rows)
       for (const StabilityRun& run : row.runs) {
-        if (run.verdict != ReportVerdict::missed || (run.asked == Integrator::automatic) != is_automatic) continue;
+        if (run.verdict != ReportVerdict::missed || run.asked.has_value() == is_automatic) continue;
         Section section;
         section.key = row.what->key + "/" + name_of(run.asked);
         section.title = std::string("Missed under ") + name_of(run.asked) + ": " + row.what->title;

@@ -166,12 +166,12 @@ std::string at_tick(std::int64_t tick, double length) {
 
 }  // namespace
 
-StabilityRun run_stability_case(const StabilityCase& what, Integrator integrator) {
+StabilityRun run_stability_case(const StabilityCase& what, std::optional<Integrator> integrator) {
   StabilityRun run;
   Model model = what.build();
-  model.solver.integrator = run.asked = integrator;
+  run.asked = integrator;
+  const IntegratorChoice choice = resolve_integrator(model, integrator);
   Stepper stepper(model);
-  const IntegratorChoice choice = stepper.integrator();
   run.used = choice.integrator, run.substeps = choice.substeps;
   State state = rest_state(model);
   if (what.disturb) what.disturb(model, state);
@@ -192,7 +192,7 @@ StabilityRun run_stability_case(const StabilityCase& what, Integrator integrator
     else if (is_refused) {
       run.reason = at_tick(tick, model.tick) + ": " + to_words(report.status);
       if (report.status == StepStatus::too_long) run.reason = choice.reason;
-      if (integrator != Integrator::automatic) run.verdict = ReportVerdict::refused;
+      if (integrator) run.verdict = ReportVerdict::refused;
     } else if (is_bad_input) {
       run.reason = at_tick(tick, model.tick) + ": input that no hand gives was taken";
     } else {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,7 +44,8 @@ std::vector<StabilityCase> stability_cases(bool is_quick);
 
 /// What became of a case under one integrator.
 struct StabilityRun {
-  Integrator asked = Integrator::automatic, used = Integrator::automatic;
+  std::optional<Integrator> asked;  ///< none: the Model's own choice
+  Integrator used = Integrator::backward_euler;
   std::int32_t substeps = 1;
   ReportVerdict verdict = ReportVerdict::missed;  ///< met, missed or refused
   std::string reason;                             ///< why it was missed or refused; empty if met
@@ -55,7 +57,7 @@ struct StabilityRun {
 };
 
 /// Runs one case. Finite and bounded are asked of every sampled tick; a tick that is refused must leave the
-/// State as it was. `automatic` may refuse nothing but bad input.
+/// State as it was. No integrator asked: nothing but bad input may be refused.
 ///
 /// Energy is that of motion, springs, two-sphere TPMs and gravity. It may not grow from `free_from` on:
 /// - implicit integrators, networks without constraint and softening: from no sample to the next;
@@ -67,7 +69,7 @@ struct StabilityRun {
 ///
 /// An integrator whose choice says beforehand that it damps nothing (IntegratorChoice::damps) counts as refused where
 /// energy grows or rest does not come.
-StabilityRun run_stability_case(const StabilityCase& what, Integrator integrator);
+StabilityRun run_stability_case(const StabilityCase& what, std::optional<Integrator> integrator);
 
 /// What all integrators made of one case, in the order of kStabilityIntegrators.
 struct StabilityRow {
@@ -75,14 +77,14 @@ struct StabilityRow {
   std::vector<StabilityRun> runs;
 };
 
-inline constexpr Integrator kStabilityIntegrators[] = {Integrator::automatic, Integrator::leapfrog,
-                                                       Integrator::backward_euler, Integrator::sdirk2};
+inline constexpr std::optional<Integrator> kStabilityIntegrators[] = {std::nullopt, Integrator::leapfrog,
+                                                                      Integrator::backward_euler, Integrator::sdirk2};
 
 /// Runs all cases under all integrators, several at a time. `progress` is called from one thread at a time.
 std::vector<StabilityRow> run_stability(const std::vector<StabilityCase>& cases,
                                         const std::function<void(std::int64_t done, std::int64_t total)>& progress);
 
-/// Runs under `automatic` that did not hold.
+/// Runs under the Model's own choice that did not hold.
 std::int64_t count_failures(const std::vector<StabilityRow>& rows);
 
 /// Writes report.html, results.json and results.csv into a folder.

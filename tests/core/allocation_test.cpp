@@ -23,7 +23,7 @@ TEST_P(EveryIntegrator, AllocatesNothingAfterTheFirstTick) {
   for (const int threads : {1, 2}) {
     Model model = testing::make_block_model(12, 12, 12, Structure::ctpm, material);
     model.tools = {testing::ball(0.02), testing::scalpel(0.1)};
-    model.solver.integrator = GetParam();
+    testing::use_integrator(model, GetParam());
     Stepper stepper(model, {threads, best_instruction_set()});
     State state = rest_state(model);
     std::int32_t contacts = 0, severed = 0;
@@ -52,7 +52,7 @@ Model springs_only() {
   Material material = testing::liver_material();
   material.stiffness_scale = 0.29;
   Model model = testing::make_block_model(11, 11, 11, Structure::mass_spring, material);
-  model.solver.integrator = Integrator::leapfrog;
+  testing::use_integrator(model, Integrator::leapfrog);
   return model;
 }
 

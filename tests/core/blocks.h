@@ -8,6 +8,7 @@
 #include "core/model/organ.h"
 #include "core/model/state.h"
 #include "core/network/network.h"
+#include "core/stepping/integrator.h"
 
 namespace ctpm::testing {
 
@@ -53,7 +54,13 @@ inline Model make_block_model(int ni, int nj, int nk, Structure structure = Stru
   CTPM_CHECK(bool(added), "a test's own block is valid");
   model.contact_k = 20 * material.spring * edge_area(material, organ.spacing);
   model.contact_friction = 0.3;
+  resolve_integrator(model);
   return model;
+}
+
+/// Names the integrator, with one step a tick, in place of the one that make_block_model() chose.
+inline void use_integrator(Model& model, Integrator integrator) {
+  model.solver.integrator = integrator, model.solver.substeps = 1;
 }
 
 inline Tool ball(double radius) { return {"ball", ToolKind::ball, radius, 0}; }

@@ -21,7 +21,7 @@ Inputs tool_at(Vec3 position) {
 Model make_free_sphere(Integrator integrator, double tick) {
   Model model = make_block_model(1, 1, 1, Structure::mass_spring);
   model.held_axes = {0};
-  model.solver.integrator = integrator, model.tick = tick;
+  testing::use_integrator(model, integrator), model.tick = tick;
   model.solver.tolerance = 1e-10, model.solver.velocity_floor = 1e-12;
   return model;
 }
@@ -137,7 +137,7 @@ Vec3Array press(Structure structure, Integrator integrator, double tick) {
   material.stiffness_scale = 0.3;
   Model model = make_block_model(4, 4, 4, structure, material);
   model.contact_friction = 0, model.tools = {ball(0.004)}, model.tick = tick;
-  model.solver.integrator = integrator, model.solver.tolerance = 1e-10, model.solver.velocity_floor = 1e-14;
+  testing::use_integrator(model, integrator), model.solver.tolerance = 1e-10, model.solver.velocity_floor = 1e-14;
   Stepper stepper(model);
   State state = rest_state(model);
   const double touch = 0.012 * 3 + 0.004 + model.contact_radius.back(), duration = 0.016;
@@ -178,7 +178,7 @@ TEST(Contact, HasOneLawUnderEveryIntegrator) {
     Material material = testing::liver_material();
     material.viscosity = 5e3, material.stiffness_scale = 0.3;
     Model model = make_block_model(4, 4, 4, Structure::ctpm, material);
-    model.tools = {ball(0.006)}, model.solver.integrator = integrator, model.solver.substeps = 16;
+    model.tools = {ball(0.006)}, testing::use_integrator(model, integrator), model.solver.substeps = 16;
     State state = rest_state(model);
     Stepper stepper(model);
     const double touch = 0.036 + 0.006 + model.contact_radius.back();

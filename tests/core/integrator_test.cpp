@@ -22,7 +22,7 @@ Model make_smooth_block(Structure structure, double tick, Integrator integrator)
   material.viscosity = 5e4;
   Model model = make_block_model(3, 3, 3, structure, material);
   model.tick = tick;
-  model.solver.integrator = integrator;
+  testing::use_integrator(model, integrator);
   model.solver.tolerance = 1e-12;
   model.solver.velocity_floor = 1e-15;
   return model;
@@ -89,7 +89,7 @@ TEST_P(ImplicitIntegrator, IsLStable) {
   Material material = liver_material();
   material.spring *= 1e6, material.kelvin *= 1e6, material.constraint *= 1e6, material.viscosity = 0;
   Model model = make_block_model(3, 3, 3, Structure::ctpm, material);
-  model.solver.integrator = GetParam();
+  testing::use_integrator(model, GetParam());
   Stepper stepper(model);
   State state = rest_state(model);
   shake(state, 1e-6);
@@ -129,7 +129,7 @@ TEST(StableStepBound, LeapfrogHoldsUpToIt) {
 
 TEST(Leapfrog, RefusesStepsThatItCannotHoldAndLeavesTheState) {
   Model model = make_block_model(3, 3, 3);
-  model.solver.integrator = Integrator::leapfrog;
+  testing::use_integrator(model, Integrator::leapfrog);
   Stepper stepper(model);
   State state = rest_state(model);
   EXPECT_EQ(stepper.step(state, {}).status, StepStatus::too_long);
@@ -167,7 +167,7 @@ TEST(Leapfrog, ALoadThatStartsAtOnceIsOfSecondOrder) {
   const auto height = [](double tick) {
     Model model = make_block_model(2, 1, 1, Structure::mass_spring);
     model.held_axes = {kAnchored, 0}, model.tick = tick;
-    model.solver.integrator = Integrator::leapfrog;
+    testing::use_integrator(model, Integrator::leapfrog);
     model.loads.sphere = {1}, model.loads.force.push_back({0.02, 0, 0});
     model.loads.start = {0}, model.loads.ramp = {0};
     State state = rest_state(model);

@@ -30,7 +30,7 @@ Model make_model(Structure structure, Integrator integrator) {
   Model model = make_block_model(13, 12, 12, structure, material);
   model.gravity = {0, 0, -9.81};
   model.tools = {ball(0.02), scalpel(0.1)};
-  model.solver.integrator = integrator;
+  testing::use_integrator(model, integrator);
   return model;
 }
 

@@ -131,7 +131,7 @@ class EveryIntegrator : public ::testing::TestWithParam<Integrator> {};
 
 TEST_P(EveryIntegrator, GoesOnFromAnyStateOfAnyMoment) {
   Model model = make_block_model(5, 5, 5, Structure::ctpm, soft_material());
-  model.solver.integrator = GetParam();
+  testing::use_integrator(model, GetParam());
   model.tools = {ball(0.006), scalpel(0.05)};
   const auto inputs = [](int i) { return tool_at({-0.04 + 0.0008 * i, 0.0003, 0.03}, i < 60 ? 0 : 1); };
   Stepper stepper(model);
@@ -148,7 +148,7 @@ TEST_P(EveryIntegrator, LeavesTheStateOfARefusedTickToTheBit) {
   for (const int substeps : {1, 3})
     for (const Structure structure : {Structure::ctpm, Structure::tpm}) {
       Model model = make_block_model(4, 4, 4, structure, soft_material());
-      model.solver.integrator = GetParam(), model.solver.substeps = substeps;
+      testing::use_integrator(model, GetParam()), model.solver.substeps = substeps;
       model.tools = {Tool{"pin", ToolKind::pin, 0, 0, 60}};
       Stepper stepper(model);
       State state = rest_state(model);
@@ -163,7 +163,7 @@ TEST_P(EveryIntegrator, LeavesTheStateOfARefusedTickToTheBit) {
 
 TEST_P(EveryIntegrator, LeavesTheStateOfARefusedCutToTheBit) {
   Model model = make_block_model(4, 4, 4, Structure::ctpm, soft_material());
-  model.solver.integrator = GetParam(), model.tools = {scalpel(0.1)};
+  testing::use_integrator(model, GetParam()), model.tools = {scalpel(0.1)};
   Stepper stepper(model);
   State state = rest_state(model);
   const auto cut = [&](int i) { return tool_at({0.0003, -0.03 + 0.002 * i, -0.01}); };

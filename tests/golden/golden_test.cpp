@@ -1,61 +1,96 @@
-// One small session, pressed and cut, against golden hashes. This file is built twice, with core optimised
-// and not, and both programs must give the same bits; a change of the physics changes the hashes here,
-// knowingly.
+// One small session, pressed and cut, against golden hashes. This file is built twice, with core optimised and not, and
+// both programs must give the same bits. Hashes that change without a new physics revision fail here.
 
 #include <gtest/gtest.h>
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <string>
 
+#include "core/model/physics_revision.h"
+#include "tests/golden/golden_rows.h"
 #include "tests/golden/session.h"
 
 namespace ctpm {
 namespace {
 
-struct Golden {
+using testing::GoldenRevision;
+using testing::GoldenRow;
+using testing::kGoldenRevisions;
+
+struct Session {
+  const char* name;  ///< that of its row
   Structure structure;
-  Integrator integrator;
-  std::array<std::uint64_t, 4> hash;  ///< after 100, 200, 300 and 400 ticks
+  std::optional<Integrator> integrator;
 };
 
-constexpr Golden kGolden[] = {
-    {Structure::mass_spring,
-     Integrator::automatic,
-     {0x69e30ac3bd1ac37d, 0xce46bc4102e508b3, 0x79fdf055a0acd7bb, 0xd43b06cd3361466d}},
-    {Structure::angle_mass_spring,
-     Integrator::automatic,
-     {0x1abd2210e9380a41, 0xd8f25bf5440cb7a3, 0xece31d1faec28a0a, 0x93cb2f6293aa25ce}},
-    {Structure::tpm,
-     Integrator::automatic,
-     {0x09f48463866490a5, 0x0a6f151a19d7fc7f, 0xd6e4677e781d0d86, 0x9120df1aca025ccb}},
-    {Structure::ctpm,
-     Integrator::automatic,
-     {0xbb124eda2f240214, 0xd368910b9482f88b, 0x72c5d443a0f10c36, 0x692b097ae9cbefe8}},
-    {Structure::tpm,
-     Integrator::backward_euler,
-     {0xa96074b0379faad7, 0x968ca46685dd9aee, 0x9fb2298a133a8092, 0x65c1d447661e118b}},
-    {Structure::angle_mass_spring,
-     Integrator::backward_euler,
-     {0xc763299e0bb6a373, 0xbc618d074c9b15e5, 0x1a4a398489d302ca, 0xc784a38daa1aa437}},
-    {Structure::ctpm,
-     Integrator::sdirk2,
-     {0xab9834e13ef5e03a, 0x83d99c0f5e0da13c, 0x85d8915798f0e007, 0x0b5167087a7f4849}},
+constexpr Session kSessions[] = {
+    {"mass-spring, auto", Structure::mass_spring, std::nullopt},
+    {"angle-mass-spring, auto", Structure::angle_mass_spring, std::nullopt},
+    {"tpm, auto", Structure::tpm, std::nullopt},
+    {"ctpm, auto", Structure::ctpm, std::nullopt},
+    {"tpm, backward-euler", Structure::tpm, Integrator::backward_euler},
+    {"angle-mass-spring, backward-euler", Structure::angle_mass_spring, Integrator::backward_euler},
+    {"ctpm, sdirk2", Structure::ctpm, Integrator::sdirk2},
 };
+
+std::string to_text(const std::array<std::uint64_t, 4>& hash) {
+  char text[128];
+  std::snprintf(text, sizeof text, "{0x%016llx, 0x%016llx, 0x%016llx, 0x%016llx}", (unsigned long long)hash[0],
+                (unsigned long long)hash[1], (unsigned long long)hash[2], (unsigned long long)hash[3]);
+  return text;
+}
+
+/// The row of a session in a revision; null if it has none.
+const GoldenRow* find_row(const GoldenRevision& revision, std::string_view session) {
+  const auto is_it = [&](const GoldenRow& row) { return row.session == session; };
+  const auto row = std::find_if(revision.rows.begin(), revision.rows.end(), is_it);
+  return row == revision.rows.end() ? nullptr : &*row;
+}
 
 TEST(Golden, ASmallSessionGivesTheSameBitsInEveryBuild) {
-  for (const Golden& golden : kGolden) {
-    const testing::GoldenRun run = testing::run_golden(6, 5, 5, 400, golden.structure, golden.integrator);
+  const GoldenRevision& present = *std::rbegin(kGoldenRevisions);
+  ASSERT_EQ(present.revision, kPhysicsRevision) << "golden_rows.h needs the rows of the present physics revision";
+  EXPECT_EQ(present.rows.size(), std::size(kSessions));
+  for (const Session& session : kSessions) {
+    const GoldenRow* row = find_row(present, session.name);
+    ASSERT_NE(row, nullptr) << session.name;
+    const testing::GoldenRun run = testing::run_golden(6, 5, 5, 400, session.structure, session.integrator);
     EXPECT_TRUE(run.is_good);
     EXPECT_GT(run.severed, 0);
     EXPECT_GT(run.contacts, 0);
-    char actual[128];
-    std::snprintf(actual, sizeof actual, "{0x%016llx, 0x%016llx, 0x%016llx, 0x%016llx}",
-                  (unsigned long long)run.hash[0], (unsigned long long)run.hash[1], (unsigned long long)run.hash[2],
-                  (unsigned long long)run.hash[3]);
-    EXPECT_EQ(run.hash, golden.hash) << "structure " << int(golden.structure) << ", " << name_of(golden.integrator)
-                                     << " gave " << actual;
+    EXPECT_EQ(run.hash, row->hash) << session.name << " gave " << to_text(run.hash)
+                                   << ": raise kPhysicsRevision, append its rows to golden_rows.h and say in "
+                                      "recordings/FORMAT.md what changed and why";
   }
+}
+
+TEST(Golden, EachRevisionHasRowsOfItsOwn) {
+  std::int32_t expected = 1;
+  for (const GoldenRevision& revision : kGoldenRevisions) {
+    EXPECT_EQ(revision.revision, expected++);
+    EXPECT_FALSE(revision.rows.empty());
+  }
+  for (std::size_t i = 1; i < std::size(kGoldenRevisions); ++i) {
+    const auto changed = [&](const GoldenRow& row) {
+      const GoldenRow* before = find_row(kGoldenRevisions[i - 1], row.session);
+      return before == nullptr || before->hash != row.hash;
+    };
+    EXPECT_TRUE(std::any_of(kGoldenRevisions[i].rows.begin(), kGoldenRevisions[i].rows.end(), changed))
+        << "revision " << kGoldenRevisions[i].revision << " has the bits of the one before";
+  }
+}
+
+TEST(Golden, RowsOfOldRevisionsAreNeverEdited) {
+  std::uint64_t digest = 0;
+  for (const GoldenRevision& revision : kGoldenRevisions) {
+    digest = testing::golden_digest(digest, revision.rows);
+    EXPECT_EQ(revision.digest, digest) << "revision " << revision.revision << " gives 0x" << std::hex << digest;
+  }
+  GoldenRow edited = testing::kGoldenRevision1[0];
+  edited.hash[3] ^= 1;
+  EXPECT_NE(testing::golden_digest(0, {&edited, 1}), testing::golden_digest(0, {testing::kGoldenRevision1, 1}));
 }
 
 }  // namespace

@@ -13,17 +13,17 @@ struct Session {
   const char* name;
   int ni, nj, nk, ticks;
   Structure structure;
-  Integrator integrator;
+  std::optional<Integrator> integrator;
 };
 
 constexpr Session kSessions[] = {
-    {"mass-spring", 6, 5, 5, 400, Structure::mass_spring, Integrator::automatic},
+    {"mass-spring", 6, 5, 5, 400, Structure::mass_spring, std::nullopt},
     {"angle-mass-spring", 6, 5, 5, 400, Structure::angle_mass_spring, Integrator::backward_euler},
-    {"tpm", 6, 5, 5, 400, Structure::tpm, Integrator::automatic},
-    {"ctpm", 6, 5, 5, 400, Structure::ctpm, Integrator::automatic},
+    {"tpm", 6, 5, 5, 400, Structure::tpm, std::nullopt},
+    {"ctpm", 6, 5, 5, 400, Structure::ctpm, std::nullopt},
     {"ctpm, second order", 6, 5, 5, 400, Structure::ctpm, Integrator::sdirk2},
-    {"ctpm in slabs", 13, 12, 12, 40, Structure::ctpm, Integrator::automatic},
-    {"mass-spring in slabs", 13, 12, 12, 40, Structure::mass_spring, Integrator::automatic},
+    {"ctpm in slabs", 13, 12, 12, 40, Structure::ctpm, std::nullopt},
+    {"mass-spring in slabs", 13, 12, 12, 40, Structure::mass_spring, std::nullopt},
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/stepping/step.h"
@@ -31,12 +32,13 @@ struct GoldenRun {
 };
 
 /// `ticks` ticks, evenly taken from the whole session, of a block of ni x nj x nk spheres.
-inline GoldenRun run_golden(int ni, int nj, int nk, int ticks, Structure structure, Integrator integrator,
-                            const StepperOptions& options = {}) {
+inline GoldenRun run_golden(int ni, int nj, int nk, int ticks, Structure structure,
+                            std::optional<Integrator> integrator, const StepperOptions& options = {}) {
   Model model = make_block_model(ni, nj, nk, structure);
   model.gravity = {0, 0, -9.81};
-  model.solver.integrator = integrator;
   model.tools = {ball(0.006), scalpel(0.06)};
+  model.solver = {};
+  resolve_integrator(model, integrator);
   State state = rest_state(model);
   Stepper stepper(model, options);
   GoldenRun run;

@@ -24,7 +24,9 @@ int fail(const Errors& errors) {
 int record(const std::string& from, const std::string& to) {
   auto session = SessionReader::open(from);
   if (!session) return fail(session.errors());
-  auto writer = SessionWriter::create(to, session->start(), {.overwrite = true, .wait_when_full = true});
+  SessionStart start = session->start();
+  start.physics_revision = kPhysicsRevision;
+  auto writer = SessionWriter::create(to, start, {.overwrite = true, .wait_when_full = true});
   if (!writer) return fail(writer.errors());
   Stepper stepper(session->start().model);
   State state = session->start().initial_state;

@@ -176,7 +176,8 @@ TEST(Fuzz, RecordsAndEventsAreRefusedOrDecoded) {
   const auto decoder = RecordDecoder::create(column_text());
   ASSERT_TRUE(decoder);
   ASSERT_TRUE(decoder->decode(records, 100));
-  const Bytes event = bytes_of(Event{7, EventKind::cut, "severed", {1, 2, 3}});
+  const Bytes event = bytes_of(
+      Event{.tick = 7, .kind = EventKind::cut, .tool = 1, .severed = 3, .text = "severed", .values = {1, 2, 3}});
   Mutator mutate(4);
   int refused = 0, taken = 0;
   for (int i = 0; i < 6000; ++i) {

@@ -40,6 +40,7 @@ TEST(OldFiles, EachOpensAndGivesAllThatItHolds) {
     for (const std::int64_t tick : *keyframes) EXPECT_TRUE(reader->keyframe_at_or_before(tick));
     EXPECT_TRUE(reader->events());
     EXPECT_TRUE(reader->statistics());
+    EXPECT_EQ(reader->start().physics_revision, 0) << "recorded before revisions were stored";
     // It need not replay to the bit for ever, but a replay of it can always be asked for.
     const auto verdict = verify_session(*reader);
     ASSERT_TRUE(verdict) << text_of(verdict.errors());

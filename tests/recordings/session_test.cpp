@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <set>
 #include <thread>
 
 #include "core/model/fields.h"
@@ -65,6 +66,7 @@ TEST(Session, WhatWasWrittenIsRead) {
   EXPECT_EQ(reader->start().look, start.look);
   EXPECT_EQ(reader->start().metadata, start.metadata);
   EXPECT_EQ(reader->start().build_fingerprint, start.build_fingerprint);
+  EXPECT_EQ(reader->start().physics_revision, kPhysicsRevision);
   EXPECT_TRUE(bytes_of(reader->start().model) == bytes_of(start.model));
   EXPECT_TRUE(bytes_of(reader->start().initial_state) == bytes_of(start.initial_state));
   ASSERT_EQ(reader->start().surfaces.size(), 1u);
@@ -118,6 +120,82 @@ TEST(Session, KeyframesHoldTheStateBeforeTheirTick) {
   }
 }
 
+/// An event all of whose fields say something.
+Event full_event(std::int32_t kind) {
+  Event event;
+  event.kind = static_cast<EventKind>(kind);
+  event.tick = 3, event.tool = 1, event.severed = 4, event.organ = 0, event.pieces = 2, event.status = 3;
+  event.depth = 0.01, event.depth_limit = 0.008, event.force = 1.5, event.force_limit = 1.25, event.late = 1e-3;
+  event.reason = "it hung up", event.held = 0.4, event.refused_samples = 7, event.sphere = 5;
+  return event;
+}
+
+TEST(Session, AnEventStoresTheFieldsOfItsKindAndNoOthers) {
+  const Folder folder;
+  const SessionStart start = small_start();
+  auto writer = SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true});
+  ASSERT_TRUE(writer);
+  live(start, 5, [&](const State& after, const TickRecord& record) { writer->append(after, record); });
+  constexpr std::int32_t kUnknown = 40, kLast = 12;
+  for (std::int32_t kind = 1; kind <= kLast; ++kind) writer->event(full_event(kind));
+  writer->event(full_event(kUnknown));
+  ASSERT_TRUE(writer->finish());
+
+  auto reader = SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(reader);
+  const auto events = reader->events();
+  ASSERT_TRUE(events) << text_of(events.errors());
+  ASSERT_EQ(events->size(), 13u);
+  std::set<std::string> sentences;
+  for (std::int32_t kind = 1; kind <= kLast; ++kind) {
+    const Event& event = (*events)[static_cast<std::size_t>(kind - 1)];
+    Event expected{.tick = 3, .kind = static_cast<EventKind>(kind)};
+    const Event full = full_event(kind);
+    switch (expected.kind) {
+      case EventKind::contact_begins:
+      case EventKind::contact_ends:
+        expected.tool = full.tool;
+        break;
+      case EventKind::cut:
+        expected.tool = full.tool, expected.severed = full.severed;
+        break;
+      case EventKind::damage:
+        expected.organ = full.organ, expected.depth = full.depth, expected.depth_limit = full.depth_limit;
+        expected.force = full.force, expected.force_limit = full.force_limit;
+        break;
+      case EventKind::late_tick:
+        expected.late = full.late;
+        break;
+      case EventKind::device_lost:
+        expected.reason = full.reason;
+        break;
+      case EventKind::device_back:
+        expected.held = full.held, expected.refused_samples = full.refused_samples;
+        break;
+      case EventKind::note:
+        break;
+      case EventKind::piece_came_loose:
+        expected.pieces = full.pieces;
+        break;
+      case EventKind::press_reached_force:
+      case EventKind::press_gave_up:
+        expected.force = full.force;
+        break;
+      case EventKind::step_refused:
+        expected.status = full.status, expected.sphere = full.sphere;
+        break;
+    }
+    EXPECT_EQ(event, expected) << kind;
+    sentences.insert(describe(event, start.model));
+  }
+  EXPECT_EQ(sentences.size(), 12u) << "each kind has its own sentence, a note without text none";
+  EXPECT_EQ((*events)[12], full_event(kUnknown)) << "a kind that this program does not know keeps every field";
+  EXPECT_EQ(describe((*events)[0], start.model), "scalpel touches the tissue");
+  EXPECT_EQ(describe({.kind = EventKind::cut, .tool = 99}, start.model),
+            "tool 99 begins to sever; elements in the first tick: 0")
+      << "a hostile index is only a number";
+}
+
 TEST(Session, EventsAndStatisticsComeBack) {
   const Folder folder;
   const SessionStart start = small_start();
@@ -127,9 +205,11 @@ TEST(Session, EventsAndStatisticsComeBack) {
   const Lived lived = live(start, 1000, [&](const State& after, const TickRecord& record) {
     writer->append(after, record);
     if (after.tick % 10 != 0) return;
-    given.push_back(
-        {after.tick - 1, after.tick % 20 == 0 ? EventKind::late_tick : EventKind::contact_begins, "event", {1.5, -2}});
-    writer->event(given.back().tick, given.back().kind, given.back().text, given.back().values);
+    if (after.tick % 20 == 0)
+      given.push_back({.tick = after.tick - 1, .kind = EventKind::late_tick, .late = 1.5e-3});
+    else
+      given.push_back({.tick = after.tick - 1, .kind = EventKind::contact_begins, .tool = 1});
+    writer->event(given.back());
   });
   const auto written = writer->finish({{"input_age_p99_s", 0.25}});
   ASSERT_TRUE(written);

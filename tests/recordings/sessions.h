@@ -131,7 +131,9 @@ inline Lived record_session(const std::string& path, const SessionStart& start, 
   CTPM_CHECK(bool(writer), "a test's session can be created");
   const Lived lived = live(start, ticks, [&](const State& after, const TickRecord& record) {
     writer->append(after, record);
-    if (record.severed > 0) writer->event(after.tick - 1, EventKind::cut, "severed", {double(record.severed)});
+    if (record.severed > 0)
+      writer->event(
+          {.tick = after.tick - 1, .kind = EventKind::cut, .tool = record.inputs.tool, .severed = record.severed});
   });
   CTPM_CHECK(bool(writer->finish({{"input_age_p50_s", 0.0005}})), "a test's session can be finished");
   return lived;

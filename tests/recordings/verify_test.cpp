@@ -186,6 +186,39 @@ TEST(Replay, ASessionGoesOnFromAMomentOfAnother) {
   EXPECT_FALSE(continue_session(*reader, 501));
 }
 
+TEST(PhysicsRevision, IsThatOfTheRecordingUntilASessionGoesOn) {
+  const Folder folder;
+  SessionStart start = small_start();
+  start.physics_revision = kPhysicsRevision + 3;
+  record_session(folder / "a.ctpm", start, 50);
+  ASSERT_TRUE(recover_session(folder / "a.ctpm", folder / "saved.ctpm"));
+  for (const char* name : {"a.ctpm", "saved.ctpm"}) {
+    auto reader = SessionReader::open(folder / name);
+    ASSERT_TRUE(reader) << text_of(reader.errors());
+    EXPECT_EQ(reader->start().physics_revision, kPhysicsRevision + 3) << name;
+    const auto verdict = verify_session(*reader);
+    ASSERT_TRUE(verdict);
+    EXPECT_EQ(verdict->physics_revision, kPhysicsRevision + 3);
+    const auto further = continue_session(*reader, 20);
+    ASSERT_TRUE(further);
+    EXPECT_EQ(further->physics_revision, kPhysicsRevision) << "this build computes what comes after";
+  }
+}
+
+/// Every revision has its line in the table of FORMAT.md, and no line has no revision.
+TEST(PhysicsRevision, EachHasItsLineInTheFormat) {
+  std::ifstream in(CTPM_SOURCE_DIR "/recordings/FORMAT.md");
+  std::string line;
+  std::int32_t last = 0;
+  bool is_there = false;
+  while (std::getline(in, line)) {
+    is_there = is_there || line == "| physics revision | what changed, and why |";
+    if (is_there && line.starts_with("| " + std::to_string(last + 1) + " |")) ++last;
+  }
+  EXPECT_TRUE(is_there);
+  EXPECT_EQ(last, kPhysicsRevision);
+}
+
 TEST(Replay, SeekingGivesTheSameStateAsWalking) {
   const Folder folder;
   const SessionStart start = small_start();

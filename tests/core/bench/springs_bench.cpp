@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
   material.stiffness_scale = 0.29;
   Model model = testing::make_block_model(edge, edge, edge, Structure::mass_spring, material);
   model.gravity = {0, 0, -0.1};
-  model.solver.integrator = way == "explicit" ? Integrator::leapfrog : Integrator::backward_euler;
+  testing::use_integrator(model, way == "explicit" ? Integrator::leapfrog : Integrator::backward_euler);
   Stepper stepper(model);
   State state = rest_state(model);
   constexpr int kBatches = 40;

@@ -102,7 +102,7 @@ TEST(MainJob, AForceBeyondTheScenesLimitIsNotedInTheSession) {
       run_ctpm({"record", "skin.json", "-o", "skin.ctpm", "--fast", "--duration-s", "1.2"}, folder.path());
   ASSERT_EQ(recorded.code, 0) << recorded.err;
   const auto info = run_ctpm({"info", "skin.ctpm"}, folder.path());
-  EXPECT_TRUE(holds(info.out, "force passes the damage limit")) << info.out;
+  EXPECT_TRUE(holds(info.out, " N passes the damage limit of ")) << info.out;
 }
 
 }  // namespace

@@ -83,8 +83,8 @@ TEST_F(Record, APressToAForceStopsAtItAndOneThatCannotReachItSaysSo) {
   write("some.json", script("0.2")), write("much.json", script("500"));
   ctpm({"record", "block.json", "--script", "some.json", "-o", "some.ctpm", "--fast"});
   ctpm({"record", "block.json", "--script", "much.json", "-o", "much.ctpm", "--fast"});
-  EXPECT_TRUE(holds(ctpm({"info", "some.ctpm"}), "note: press reaches its force"));
-  EXPECT_TRUE(holds(ctpm({"info", "much.ctpm"}), "note: press gives up at its depth"));
+  EXPECT_TRUE(holds(ctpm({"info", "some.ctpm"}), "press reached its force: "));
+  EXPECT_TRUE(holds(ctpm({"info", "much.ctpm"}), "press gave up: "));
   EXPECT_TRUE(holds(ctpm({"verify", "some.ctpm"}), "same"));
   const std::string info = ctpm({"info", "some.ctpm", "--json"});
   const double most = std::stod(info.substr(info.find("\"max_force_n\":") + 14));

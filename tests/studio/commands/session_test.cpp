@@ -11,7 +11,7 @@
 #include <string>
 #include <thread>
 
-#include "tests/recordings/sessions.h"
+#include "tests/recordings/legacy_files.h"
 #include "tests/studio/commands/run_program.h"
 
 namespace ctpm {
@@ -127,9 +127,10 @@ TEST(ReplayCsv, HasTimeToolForceAndDepthOfEachTick) {
   EXPECT_GT(most_depth, 5);
 }
 
-/// A session whose hashes and forces other physics made.
-void record_with_other_physics(const std::string& path) {
-  const SessionStart start = testing::small_start();
+/// A session that the physics `revision` made, with hashes of its own.
+void record_with_other_physics(const std::string& path, std::int32_t revision = kPhysicsRevision) {
+  SessionStart start = testing::small_start();
+  start.physics_revision = revision;
   auto writer = SessionWriter::create(path, start, {.wait_when_full = true});
   testing::live(start, 300, [&](const State& after, const TickRecord& record) {
     TickRecord other = record;
@@ -158,21 +159,65 @@ TEST(OtherPhysics, ASessionStillOpensAndGivesItsDataAndTheVerdictNamesBothBuilds
   EXPECT_EQ(rows[120].at("same_as_recorded"), "0");
 }
 
+TEST(OtherPhysics, TheRevisionIsToldBeforeTheReplayAndWithTheResults) {
+  const TemporaryFolder folder;
+  const std::int32_t newer = kPhysicsRevision + 1;
+  record_with_other_physics((folder.path() / "newer.ctpm").string(), newer);
+  const std::string remark = "recorded with physics revision " + std::to_string(newer) + ", this build computes " +
+                             std::to_string(kPhysicsRevision) + "; replay will differ";
+  for (const char* command : {"verify", "replay"}) {
+    const auto told = run_ctpm({command, "newer.ctpm"}, folder.path());
+    EXPECT_EQ(told.code, 1);
+    EXPECT_TRUE(told.err.starts_with("newer.ctpm: warning: " + remark + "\n")) << told.err;
+  }
+  EXPECT_TRUE(holds(run_ctpm({"verify", "newer.ctpm"}, folder.path()).out, "ticks differ; " + remark));
+  EXPECT_TRUE(holds(run_ctpm({"info", "newer.ctpm"}, folder.path()).out, "physics    " + remark + "\n"));
+  const std::string json = run_ctpm({"info", "newer.ctpm", "--json"}, folder.path()).out;
+  EXPECT_TRUE(holds(json, "\"physics_revision\": " + std::to_string(newer) + ",")) << json;
+  EXPECT_TRUE(holds(json, "\"physics_remark\": \"" + remark + "\"")) << json;
+
+  record_with_other_physics((folder.path() / "old.ctpm").string(), 0);
+  EXPECT_TRUE(holds(run_ctpm({"verify", "old.ctpm"}, folder.path()).err, "before physics revisions were stored"));
+  record_with_other_physics((folder.path() / "same.ctpm").string());
+  EXPECT_FALSE(holds(run_ctpm({"verify", "same.ctpm"}, folder.path()).err, "warning"));
+}
+
+TEST(OtherPhysics, ASessionOfARetiredIntegratorIsRefusedByNameByEveryCommand) {
+  const TemporaryFolder folder;
+  testing::write_with_integrator((folder.path() / "a.ctpm").string(), 1, 0);
+  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+           {"info", "a.ctpm"}, {"verify", "a.ctpm"}, {"replay", "a.ctpm"}, {"export", "a.ctpm", "-o", "a.avi"}}) {
+    const auto refused = run_ctpm(command, folder.path());
+    EXPECT_EQ(refused.code, 2) << command[0];
+    EXPECT_TRUE(
+        holds(refused.err, "a.ctpm: error: was recorded with symplectic Euler, which this program no longer has"))
+        << refused.err;
+  }
+}
+
+TEST(Info, SaysWhatAnOldSessionLeavesOpen) {
+  const TemporaryFolder folder;
+  testing::write_with_integrator((folder.path() / "a.ctpm").string(), 0, 0);
+  const auto info = run_ctpm({"info", "a.ctpm"}, folder.path());
+  EXPECT_EQ(info.code, 0) << info.err;
+  EXPECT_TRUE(holds(info.out, "note       the session does not store which integrator `auto` became")) << info.out;
+}
+
 TEST(Info, ListsEventsInOrderOfTime) {
   const TemporaryFolder folder;
   const SessionStart start = testing::small_start();
   auto writer = SessionWriter::create((folder.path() / "a.ctpm").string(), start, {.wait_when_full = true});
   testing::live(start, 300, [&](const State& after, const TickRecord& record) {
     writer->append(after, record);
-    if (after.tick == 200) writer->event(200, EventKind::cut, "later");
-    if (after.tick == 250) writer->event(150, EventKind::contact_ends, "seen late");
+    if (after.tick == 200) writer->event({.tick = 200, .text = "later"});
+    if (after.tick == 250) writer->event({.tick = 150, .kind = EventKind::contact_ends, .tool = 1});
   });
   ASSERT_TRUE(writer->finish());
   for (const char* json : {"", "--json"}) {
     const auto info =
         run_ctpm(*json ? std::vector<std::string>{"info", "a.ctpm", json} : std::vector<std::string>{"info", "a.ctpm"},
                  folder.path());
-    EXPECT_LT(info.out.find("seen late"), info.out.find("later")) << info.out;
+    EXPECT_LT(info.out.find("scalpel leaves the tissue"), info.out.find("later")) << info.out;
   }
 }
 

@@ -60,7 +60,7 @@ class DeviceSession : public ::testing::Test {
     StepReport last;
     last.tool_force = tissue_force;
     const auto inputs = source_->next(0, last);
-    for (SourceEvent& event : source_->take_events()) events_.push_back(event);
+    for (Event& event : source_->take_events()) events_.push_back(event);
     now_ += kTick;
     return inputs;
   }
@@ -82,8 +82,8 @@ class DeviceSession : public ::testing::Test {
   /// "lost: text" and "back", one a line.
   std::string story() const {
     std::string all;
-    for (const SourceEvent& event : events_)
-      all += (event.kind == EventKind::device_lost   ? "lost: " + event.text
+    for (const Event& event : events_)
+      all += (event.kind == EventKind::device_lost   ? "lost: " + describe(event, {})
               : event.kind == EventKind::device_back ? std::string("back")
                                                      : "note: " + event.text) +
              "\n";
@@ -93,7 +93,7 @@ class DeviceSession : public ::testing::Test {
   double now_ = 1000;
   ToldDevice* device_ = nullptr;
   std::unique_ptr<DeviceSource> source_;
-  std::vector<SourceEvent> events_;
+  std::vector<Event> events_;
 };
 
 const Vec3 kHome{0, 0, 0.05};
@@ -115,7 +115,7 @@ TEST_F(DeviceSession, AStallIsHeldAndNotedOnceAndItsEndAsWell) {
   EXPECT_NEAR(source_->input_age(), 0.5, 2 * kTick);
   hold(kHome, 300);
   EXPECT_EQ(story(), "lost: nothing usable comes; the pose is held\nback\n");
-  EXPECT_NEAR(events_.back().values.at(0), 0.4, 2 * kTick);  // noted after 0.1 s, gone after 0.5 s
+  EXPECT_NEAR(events_.back().held, 0.4, 2 * kTick);  // noted after 0.1 s, gone after 0.5 s
 }
 
 TEST_F(DeviceSession, ADeviceThatStaysAwayEndsTheSessionWithAReason) {
@@ -163,7 +163,7 @@ TEST_F(DeviceSession, WhatIsNotFiniteOrNoRotationIsNotBelieved) {
             "lost: pose is not finite; the pose is held\nlost: orientation is no rotation; the pose is held\n");
   hold(kHome, 200);
   EXPECT_EQ(events_.back().kind, EventKind::device_back);
-  EXPECT_EQ(events_.back().values.at(1), 4);  // samples refused
+  EXPECT_EQ(events_.back().refused_samples, 4);  // samples refused
 }
 
 TEST_F(DeviceSession, ATeleportIsHeldUntilAHandCouldHaveGoneThere) {

@@ -58,6 +58,7 @@ Model make_rig(const Site& site, bool has_softening, double density = 1060) {
   model.tools = {pin};
   model.solver.tolerance = 1e-10;
   model.solver.velocity_floor = 1e-14;
+  resolve_integrator(model);
   return model;
 }
 

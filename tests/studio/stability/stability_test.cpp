@@ -23,7 +23,7 @@ StabilityCase case_named(const std::string& key) {
 }
 
 TEST(Stability, ACaseThatHoldsIsMet) {
-  const StabilityRun run = run_stability_case(case_named("stiffness-1"), Integrator::automatic);
+  const StabilityRun run = run_stability_case(case_named("stiffness-1"), std::nullopt);
   EXPECT_EQ(run.verdict, ReportVerdict::met) << run.reason;
   EXPECT_EQ(run.ticks, 1000);
   EXPECT_GT(run.reach, 4e-3);
@@ -33,7 +33,7 @@ TEST(Stability, ACaseThatHoldsIsMet) {
 TEST(Stability, ASphereThatLeavesItsBoundsIsMissed) {
   StabilityCase what = case_named("stiffness-1");
   what.reach = 2e-3;  // it is pressed 6 mm
-  const StabilityRun run = run_stability_case(what, Integrator::automatic);
+  const StabilityRun run = run_stability_case(what, std::nullopt);
   EXPECT_EQ(run.verdict, ReportVerdict::missed);
   EXPECT_NE(run.reason.find("more than 2 mm"), std::string::npos) << run.reason;
 }
@@ -41,7 +41,7 @@ TEST(Stability, ASphereThatLeavesItsBoundsIsMissed) {
 TEST(Stability, EnergyThatGrowsIsMissed) {
   StabilityCase what = case_named("stiffness-1");
   what.free_from = 0;  // the ball has not come yet, and will do work
-  const StabilityRun run = run_stability_case(what, Integrator::automatic);
+  const StabilityRun run = run_stability_case(what, std::nullopt);
   EXPECT_EQ(run.verdict, ReportVerdict::missed);
   EXPECT_NE(run.reason.find("energy grew"), std::string::npos) << run.reason;
 }
@@ -49,7 +49,7 @@ TEST(Stability, EnergyThatGrowsIsMissed) {
 TEST(Stability, WhatDoesNotComeToRestIsMissed) {
   StabilityCase what = case_named("swing-mass-spring");
   what.end_speed = 1e-3;  // springs without dashpots go on swinging
-  const StabilityRun run = run_stability_case(what, Integrator::automatic);
+  const StabilityRun run = run_stability_case(what, std::nullopt);
   EXPECT_EQ(run.verdict, ReportVerdict::missed);
   EXPECT_NE(run.reason.find("rest"), std::string::npos) << run.reason;
 }
@@ -64,7 +64,7 @@ TEST(Stability, WhatAnIntegratorSaysBeforehandItDoesNotDampIsRefused) {
 TEST(Stability, BadInputThatIsTakenIsMissed) {
   StabilityCase what = case_named("stiffness-1");
   what.is_bad_input = [](std::int64_t tick) { return tick == 7; };  // it is good
-  const StabilityRun run = run_stability_case(what, Integrator::automatic);
+  const StabilityRun run = run_stability_case(what, std::nullopt);
   EXPECT_EQ(run.verdict, ReportVerdict::missed);
   EXPECT_EQ(run.ticks, 7);
 }

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <string_view>
+#include <type_traits>
+
+namespace ctpm {
+
+/// What an array of a Model or a State has one entry of.
+enum class EntryOf : std::int32_t {
+  none,  ///< not an array, or an array of any length
+  sphere,
+  edge,
+  tpm,
+  constraint,
+  angle_spring,
+  load,
+  tool,
+  blade_end,  ///< tip and heel
+};
+
+/// Shape and range of one field of a Model or a State. Built from the constants below: `positive.per(EntryOf::sphere)`.
+struct FieldMeaning {
+  enum class Range : std::int32_t {
+    any,     ///< every bit pattern, NaN included
+    number,  ///< finite and between `lowest` and `highest`
+    index,   ///< of an `indexed` entry, not below `lowest`
+    bits,    ///< a set of bits within `mask`
+    one_of,  ///< a number whose bit is set in `mask`: an enumeration
+  };
+  Range range = Range::any;
+  double lowest = -std::numeric_limits<double>::infinity();
+  double highest = std::numeric_limits<double>::infinity();
+  bool is_open = false;  ///< lowest and highest do not belong to the range
+  EntryOf indexed = EntryOf::none;
+  std::uint64_t mask = 0;
+  EntryOf shape = EntryOf::none;
+  bool may_be_empty = false;  ///< the array is left out where the scene does not need it
+
+  constexpr FieldMeaning per(EntryOf entry) const {
+    FieldMeaning meaning = *this;
+    meaning.shape = entry;
+    return meaning;
+  }
+  constexpr FieldMeaning or_empty() const {
+    FieldMeaning meaning = *this;
+    meaning.may_be_empty = true;
+    return meaning;
+  }
+};
+
+namespace meaning {
+
+inline constexpr FieldMeaning any{};
+inline constexpr FieldMeaning finite{.range = FieldMeaning::Range::number};
+inline constexpr FieldMeaning positive{.range = FieldMeaning::Range::number, .lowest = 0, .is_open = true};
+inline constexpr FieldMeaning not_negative{.range = FieldMeaning::Range::number, .lowest = 0};
+
+/// In [lowest, highest].
+constexpr FieldMeaning within(double lowest, double highest) {
+  return {.range = FieldMeaning::Range::number, .lowest = lowest, .highest = highest};
+}
+/// In (lowest, highest).
+constexpr FieldMeaning between(double lowest, double highest) {
+  return {.range = FieldMeaning::Range::number, .lowest = lowest, .highest = highest, .is_open = true};
+}
+/// Index of an entry; -1, where `lowest` allows it: none.
+constexpr FieldMeaning index(EntryOf indexed, std::int32_t lowest = 0) {
+  return {.range = FieldMeaning::Range::index, .lowest = double(lowest), .indexed = indexed};
+}
+constexpr FieldMeaning bits(std::uint64_t mask) { return {.range = FieldMeaning::Range::bits, .mask = mask}; }
+template <class E>
+constexpr FieldMeaning one_of(std::initializer_list<E> known) {
+  FieldMeaning meaning{.range = FieldMeaning::Range::one_of};
+  for (const E value : known) meaning.mask |= std::uint64_t{1} << int(value);
+  return meaning;
+}
+
+}  // namespace meaning
+
+/// Calls `visit(name, member, meaning)`, or `visit(name, member)` where a visitor does not ask for the meaning.
+template <class Visit>
+auto with_meaning(Visit& visit) {
+  return [&visit](std::string_view name, auto& member, const FieldMeaning& meaning) {
+    if constexpr (std::is_invocable_v<Visit&, std::string_view, decltype(member), const FieldMeaning&>)
+      visit(name, member, meaning);
+    else
+      visit(name, member);
+  };
+}
+
+}  // namespace ctpm

@@ -1,0 +1,104 @@
+#include "recordings/event.h"
+
+#include <cstdio>
+
+namespace ctpm {
+namespace {
+
+/// `number` in the given format, which takes one double.
+std::string with_number(const char* format, double number) {
+  char text[160];
+  std::snprintf(text, sizeof text, format, number);
+  return text;
+}
+
+/// Name of a tool or an organ; `what` and the index if the Model has no such one.
+template <class Named>
+std::string name_in(const std::vector<Named>& all, std::int32_t index, const char* what) {
+  if (index >= 0 && index < static_cast<std::int32_t>(all.size())) return all[static_cast<std::size_t>(index)].name;
+  return std::string(what) + " " + std::to_string(index);
+}
+
+std::string describe_damage(const Event& event, const Model& model) {
+  if (event.force > 0)
+    return with_number("force of %.3g N", event.force) +
+           with_number(" passes the damage limit of %.3g N", event.force_limit);
+  return with_number("depth of %.3g mm", 1e3 * event.depth) +
+         with_number(" passes the damage limit of %.3g mm", 1e3 * event.depth_limit) + " of " +
+         name_in(model.organs, event.organ, "organ");
+}
+
+}  // namespace
+
+const char* name_of(EventKind kind) {
+  switch (kind) {
+    case EventKind::contact_begins:
+      return "contact begins";
+    case EventKind::contact_ends:
+      return "contact ends";
+    case EventKind::cut:
+      return "cut";
+    case EventKind::damage:
+      return "damage";
+    case EventKind::late_tick:
+      return "late tick";
+    case EventKind::device_lost:
+      return "device lost";
+    case EventKind::device_back:
+      return "device back";
+    case EventKind::note:
+      return "note";
+    case EventKind::piece_came_loose:
+      return "piece came loose";
+    case EventKind::press_reached_force:
+      return "press reached its force";
+    case EventKind::press_gave_up:
+      return "press gave up";
+    case EventKind::step_refused:
+      return "step refused";
+  }
+  return "unknown";
+}
+
+std::string describe(const Event& event, const Model& model) {
+  if (!event.text.empty()) return event.text;
+  switch (event.kind) {
+    case EventKind::contact_begins:
+      return name_in(model.tools, event.tool, "tool") + " touches the tissue";
+    case EventKind::contact_ends:
+      return name_in(model.tools, event.tool, "tool") + " leaves the tissue";
+    case EventKind::cut:
+      return name_in(model.tools, event.tool, "tool") +
+             " begins to sever; elements in the first tick: " + std::to_string(event.severed);
+    case EventKind::damage:
+      return describe_damage(event, model);
+    case EventKind::late_tick:
+      return with_number("tick ended %.3g ms late", 1e3 * event.late);
+    case EventKind::device_lost:
+      return event.reason + "; the pose is held";
+    case EventKind::device_back:
+      return with_number("device is back; the pose was held for %.3g s", event.held) +
+             ", samples refused: " + std::to_string(event.refused_samples);
+    case EventKind::note:
+      break;
+    case EventKind::piece_came_loose:
+      return "pieces that came loose: " + std::to_string(event.pieces);
+    case EventKind::press_reached_force:
+      return with_number("press reached its force at %.3g N", event.force);
+    case EventKind::press_gave_up:
+      return with_number("press gave up at its depth with %.3g N, short of its force", event.force);
+    case EventKind::step_refused:
+      return "the step was refused, status " + std::to_string(event.status) + ", worst sphere " +
+             std::to_string(event.sphere);
+  }
+  return "";
+}
+
+std::int64_t pieces_came_loose(const std::vector<Event>& events, std::int64_t end) {
+  std::int64_t pieces = 0;
+  for (const Event& event : events)
+    if (event.tick < end && event.kind == EventKind::piece_came_loose) pieces += event.pieces;
+  return pieces;
+}
+
+}  // namespace ctpm

@@ -1,0 +1,54 @@
+#include "recordings/internal/legacy.h"
+
+#include "core/stepping/integrator.h"
+#include "recordings/internal/model_check.h"
+
+namespace ctpm::session_file {
+namespace {
+constexpr std::int32_t automatic = 0;
+
+/// Sentence of events of the kind `cut` that were pieces; their one value is how many.
+constexpr const char* piece_sentence = "a piece comes loose; value: pieces";
+constexpr double most_pieces = 1e9;
+}  // namespace
+
+const char* retired_integrator(std::int32_t number) {
+  switch (number) {
+    case automatic:
+      return "automatic";
+    case 1:
+      return "symplectic Euler";
+    case 3:
+      return "extrapolated Euler";
+    default:
+      return nullptr;
+  }
+}
+
+Result<Done> update_integrator(Model& model, std::int32_t physics_revision, std::vector<std::string>& remarks) {
+  const auto stored = static_cast<std::int32_t>(model.solver.integrator);
+  const char* retired = retired_integrator(stored);
+  if (!retired) return Done{};
+  if (stored != automatic)
+    return Error{"", std::string("was recorded with ") + retired + ", which this program no longer has",
+                 "use the program that recorded it"};
+  if (physics_revision != 0) return Done{};  // refused as an unknown kind
+  // The choice reads the whole Model, so the Model is proven first.
+  model.solver.integrator = Integrator::backward_euler;
+  if (!check_model(model).empty()) return Done{};
+  const IntegratorChoice choice = resolve_integrator(model);
+  remarks.push_back("the session does not store which integrator `auto` became; this build takes " +
+                    std::string(name_of(choice.integrator)) + " with " + std::to_string(choice.substeps) +
+                    (choice.substeps == 1 ? " substep" : " substeps") + " a tick");
+  return Done{};
+}
+
+void update_event(Event& event) {
+  if (event.kind != EventKind::cut || event.text != piece_sentence || event.values.size() != 1) return;
+  const double pieces = event.values[0];
+  if (!(pieces >= 1 && pieces <= most_pieces)) return;
+  event.kind = EventKind::piece_came_loose;
+  event.pieces = static_cast<std::int32_t>(pieces);
+}
+
+}  // namespace ctpm::session_file

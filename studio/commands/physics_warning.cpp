@@ -1,0 +1,12 @@
+#include "studio/commands/physics_warning.h"
+
+#include "studio/commands/console.h"
+
+namespace ctpm {
+
+void warn_of_physics(const SessionReader& session) {
+  const std::string remark = physics_remark(session.start().physics_revision);
+  if (!remark.empty()) print_remark(session.path() + ": warning: " + remark);
+}
+
+}  // namespace ctpm

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace ctpm::testing {
+
+/// What one golden session came to under one physics revision.
+struct GoldenRow {
+  std::string_view session;           ///< structure and integrator as scenes name them; retired names stay
+  std::array<std::uint64_t, 4> hash;  ///< of State after 100, 200, 300 and 400 ticks
+};
+
+/// All golden sessions of one physics revision.
+struct GoldenRevision {
+  std::int32_t revision;
+  std::span<const GoldenRow> rows;
+  std::uint64_t digest;  ///< golden_digest() over this revision and all before it
+};
+
+// A new revision appends a table here. A table that is here is never edited: its digest, and those of all later
+// revisions, would no longer hold.
+
+inline constexpr GoldenRow kGoldenRevision1[] = {
+    {"mass-spring, auto", {0xefee6ee3e3c82c33, 0xcb6ef3f14a3b1100, 0x7495e99c091d5c25, 0x35fb3c8ca2adad62}},
+    {"angle-mass-spring, auto", {0x5fe471d4eec34656, 0x4acd7e036ec4f538, 0x6bb9f230ce2f27aa, 0x6ef5bdddbafd6cf0}},
+    {"tpm, auto", {0x0d8961a1427bff72, 0x5b46da4ab226eaee, 0x14ad5411472d381a, 0xd3bdf3ac746f8969}},
+    {"ctpm, auto", {0x0f05f2cae2d5becb, 0xa08711354d919cb7, 0x2210cd74c42569f9, 0x207e28ddaffd20f9}},
+    {"tpm, backward-euler", {0xd58c913a3e35caa8, 0x37c19f6b07503b9b, 0x813c582609345124, 0xd5a04ea8985977a6}},
+    {"angle-mass-spring, backward-euler",
+     {0x9b88eb6b869a77f3, 0x22825923ef28dec9, 0x7735b62b909da568, 0x20ea9837deaa3594}},
+    {"ctpm, extrapolated-euler", {0x2baaed97f1ff960d, 0x04d613eb611ff8f1, 0xf76240c4df9d0d5e, 0x750d056e83897034}},
+};
+
+inline constexpr GoldenRow kGoldenRevision2[] = {
+    {"mass-spring, auto", {0x69e30ac3bd1ac37d, 0xce46bc4102e508b3, 0x79fdf055a0acd7bb, 0xd43b06cd3361466d}},
+    {"angle-mass-spring, auto", {0x1abd2210e9380a41, 0xd8f25bf5440cb7a3, 0xece31d1faec28a0a, 0x93cb2f6293aa25ce}},
+    {"tpm, auto", {0x09f48463866490a5, 0x0a6f151a19d7fc7f, 0xd6e4677e781d0d86, 0x9120df1aca025ccb}},
+    {"ctpm, auto", {0xbb124eda2f240214, 0xd368910b9482f88b, 0x72c5d443a0f10c36, 0x692b097ae9cbefe8}},
+    {"tpm, backward-euler", {0xa96074b0379faad7, 0x968ca46685dd9aee, 0x9fb2298a133a8092, 0x65c1d447661e118b}},
+    {"angle-mass-spring, backward-euler",
+     {0xc763299e0bb6a373, 0xbc618d074c9b15e5, 0x1a4a398489d302ca, 0xc784a38daa1aa437}},
+    {"ctpm, sdirk2", {0xab9834e13ef5e03a, 0x83d99c0f5e0da13c, 0x85d8915798f0e007, 0x0b5167087a7f4849}},
+};
+
+inline constexpr GoldenRevision kGoldenRevisions[] = {
+    {1, kGoldenRevision1, 0x002bb904fcccbc09},
+    {2, kGoldenRevision2, 0xae5864e96412d500},
+};
+
+/// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.
+constexpr std::uint64_t golden_digest(std::uint64_t before, std::span<const GoldenRow> rows) {
+  std::uint64_t digest = before ^ 0xcbf29ce484222325;
+  const auto add = [&](std::uint8_t byte) { digest = (digest ^ byte) * 0x100000001b3; };
+  for (const GoldenRow& row : rows) {
+    for (const char letter : row.session) add(std::uint8_t(letter));
+    for (const std::uint64_t hash : row.hash)
+      for (int byte = 0; byte < 8; ++byte) add(std::uint8_t(hash >> (8 * byte)));
+  }
+  return digest;
+}
+
+}  // namespace ctpm::testing

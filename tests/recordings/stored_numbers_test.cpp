@@ -1,0 +1,165 @@
+// Numbers that session files store are for ever: each number that ever stood for something is listed here with what it
+// stood for. A number that gets another meaning, or a retired one that is used again, fails.
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+
+#include "core/stepping/step.h"
+#include "recordings/event.h"
+#include "recordings/internal/field_codec.h"
+#include "recordings/internal/legacy.h"
+
+namespace ctpm {
+namespace {
+
+using session_file::FieldType;
+using Numbers = std::map<int, std::string>;
+
+// One switch for each enumeration, without a default: a new enumerator does not compile until it is named here.
+
+const char* name_in_file(Integrator value) {
+  switch (value) {
+    case Integrator::backward_euler:
+      return "backward_euler";
+    case Integrator::leapfrog:
+      return "leapfrog";
+    case Integrator::sdirk2:
+      return "sdirk2";
+  }
+  return nullptr;
+}
+
+const char* name_in_file(ToolKind value) {
+  switch (value) {
+    case ToolKind::ball:
+      return "ball";
+    case ToolKind::scalpel:
+      return "scalpel";
+    case ToolKind::pin:
+      return "pin";
+  }
+  return nullptr;
+}
+
+const char* name_in_file(StepStatus value) {
+  switch (value) {
+    case StepStatus::ok:
+      return "ok";
+    case StepStatus::not_converged:
+      return "not_converged";
+    case StepStatus::bad_input:
+      return "bad_input";
+    case StepStatus::diverged:
+      return "diverged";
+    case StepStatus::too_long:
+      return "too_long";
+  }
+  return nullptr;
+}
+
+const char* name_in_file(EventKind value) {
+  switch (value) {
+    case EventKind::contact_begins:
+      return "contact_begins";
+    case EventKind::contact_ends:
+      return "contact_ends";
+    case EventKind::cut:
+      return "cut";
+    case EventKind::damage:
+      return "damage";
+    case EventKind::late_tick:
+      return "late_tick";
+    case EventKind::device_lost:
+      return "device_lost";
+    case EventKind::device_back:
+      return "device_back";
+    case EventKind::note:
+      return "note";
+    case EventKind::piece_came_loose:
+      return "piece_came_loose";
+    case EventKind::press_reached_force:
+      return "press_reached_force";
+    case EventKind::press_gave_up:
+      return "press_gave_up";
+    case EventKind::step_refused:
+      return "step_refused";
+  }
+  return nullptr;
+}
+
+const char* name_in_file(FieldType value) {
+  switch (value) {
+    case FieldType::u8:
+      return "u8";
+    case FieldType::i32:
+      return "i32";
+    case FieldType::u32:
+      return "u32";
+    case FieldType::i64:
+      return "i64";
+    case FieldType::u64:
+      return "u64";
+    case FieldType::f64:
+      return "f64";
+    case FieldType::text:
+      return "text";
+    case FieldType::list:
+      return "list";
+  }
+  return nullptr;
+}
+
+/// All numbers in [0, 255] that stand for something now.
+template <class E>
+Numbers numbers_of() {
+  Numbers numbers;
+  for (int number = 0; number < 256; ++number)
+    if (const char* name = name_in_file(static_cast<E>(number))) numbers[number] = name;
+  return numbers;
+}
+
+TEST(StoredNumbers, OfIntegratorsKeepTheirMeaning) {
+  EXPECT_EQ(numbers_of<Integrator>(), (Numbers{{2, "backward_euler"}, {4, "leapfrog"}, {5, "sdirk2"}}));
+  const Numbers retired{{0, "automatic"}, {1, "symplectic Euler"}, {3, "extrapolated Euler"}};
+  for (int number = 0; number < 256; ++number) {
+    const char* name = session_file::retired_integrator(number);
+    EXPECT_EQ(name != nullptr, retired.contains(number)) << number;
+    if (!name) continue;
+    EXPECT_EQ(name, retired.at(number));
+    EXPECT_EQ(name_in_file(static_cast<Integrator>(number)), nullptr) << number << " is used again";
+  }
+}
+
+TEST(StoredNumbers, OfToolsKeepTheirMeaning) {
+  EXPECT_EQ(numbers_of<ToolKind>(), (Numbers{{0, "ball"}, {1, "scalpel"}, {2, "pin"}}));
+}
+
+TEST(StoredNumbers, OfStepReportsKeepTheirMeaning) {
+  EXPECT_EQ(numbers_of<StepStatus>(),
+            (Numbers{{0, "ok"}, {1, "not_converged"}, {2, "bad_input"}, {3, "diverged"}, {4, "too_long"}}));
+}
+
+TEST(StoredNumbers, OfEventsKeepTheirMeaning) {
+  EXPECT_EQ(numbers_of<EventKind>(), (Numbers{{1, "contact_begins"},
+                                              {2, "contact_ends"},
+                                              {3, "cut"},
+                                              {4, "damage"},
+                                              {5, "late_tick"},
+                                              {6, "device_lost"},
+                                              {7, "device_back"},
+                                              {8, "note"},
+                                              {9, "piece_came_loose"},
+                                              {10, "press_reached_force"},
+                                              {11, "press_gave_up"},
+                                              {12, "step_refused"}}));
+}
+
+TEST(StoredNumbers, OfFieldTypesKeepTheirMeaning) {
+  EXPECT_EQ(numbers_of<FieldType>(),
+            (Numbers{{1, "u8"}, {2, "i32"}, {3, "u32"}, {4, "i64"}, {5, "u64"}, {6, "f64"}, {7, "text"}, {8, "list"}}));
+}
+
+}  // namespace
+}  // namespace ctpm
