@@ -61,10 +61,9 @@ std::vector<LayerMaterial> layers_of(const OrganSpec& spec, const FilledOrgan& o
   return layers;
 }
 
-double softest_edge(const Model& model) {
+double softest_spring(const Model& model) {
   double k = INFINITY;
-  for (const double edge : model.edges.k) k = std::min(k, edge);
-  for (const double spring : model.tpms.spring_k) k = std::min(k, spring);
+  for (const double spring : model.axial.k) k = std::min(k, spring);
   return k;
 }
 
@@ -75,13 +74,12 @@ void add_cutting(Model& model, const SceneSpec& scene) {
   if (!cuts)
     model.cut_resistance = {};
   else if (scene.lips_meet)
-    model.lip_k = softest_edge(model);
+    model.lip_k = softest_spring(model);
 }
 
-double stiffest_edge(const Model& model) {
+double stiffest_spring(const Model& model) {
   double k = 0;
-  for (const double edge : model.edges.k) k = std::max(k, edge);
-  for (const double spring : model.tpms.spring_k) k = std::max(k, spring);
+  for (const double spring : model.axial.k) k = std::max(k, spring);
   return k;
 }
 
@@ -96,7 +94,7 @@ void add_tools(Model& model, const SceneSpec& scene) {
   const bool presses =
       std::any_of(scene.tools.begin(), scene.tools.end(), [](const ToolSpec& t) { return t.kind == ToolKind::ball; });
   if (!presses) return;
-  model.contact_k = scene.contact_stiffness.value_or(kContactOverEdge * stiffest_edge(model));
+  model.contact_k = scene.contact_stiffness.value_or(kContactOverEdge * stiffest_spring(model));
   model.contact_friction = scene.contact_friction;
 }
 

@@ -38,7 +38,7 @@ class BladeForce {
   bool any() const { return model_.cut_resistance.any(); }
 
   /// Most contacts that the functions below add in one substep.
-  std::size_t most() const { return any() ? 2 * (model_.edges.size() + model_.tpms.size()) : 0; }
+  std::size_t most() const { return any() ? 2 * model_.axial.size() : 0; }
 
   /// Where find() looks, at the most.
   Box around(const BladeMotion& motion) const;

@@ -10,8 +10,9 @@ namespace ctpm {
 
 /// The one list of everything in a Model and a State. Storing, reading, hashing and comparing are all made
 /// from it. `visit(name, member)` is called for each member in a fixed order; members are arithmetic values,
-/// enums, Vec3, Quat, std::string, or vectors of numbers. A Vec3Array is visited as its three coordinates.
-/// Names are stored in session files: never rename one, append new ones.
+/// enums, Vec3, Quat, std::string, or vectors of numbers or enums. A Vec3Array is visited as its three coordinates.
+/// Names are stored in session files: never give one another meaning, append new ones. Names that earlier programs
+/// wrote are read in recordings/internal/legacy_fields.h.
 template <class Points, class Visit>
 void visit_points(std::string_view x, std::string_view y, std::string_view z, Points& points, Visit&& visit) {
   visit(x, points.x), visit(y, points.y), visit(z, points.z);
@@ -24,16 +25,14 @@ void for_each_field(State_& s, Visit&& visit) {
   visit_points("position.x", "position.y", "position.z", s.position, visit);
   visit_points("velocity.x", "velocity.y", "velocity.z", s.velocity, visit);
   visit("kelvin_elongation", s.kelvin_elongation);
-  visit("edge_severed", s.edge_severed);
-  visit("tpm_severed", s.tpm_severed);
+  visit("axial_severed", s.axial_severed);
   visit("constraint_severed", s.constraint_severed);
   visit("angle_severed", s.angle_severed);
   visit("last_inputs.tool", s.last_inputs.tool);
   visit("last_inputs.position", s.last_inputs.position);
   visit("last_inputs.world_from_tool", s.last_inputs.world_from_tool);
   visit("last_inputs.buttons", s.last_inputs.buttons);
-  visit("edge_crossing", s.edge_crossing);
-  visit("tpm_crossing", s.tpm_crossing);
+  visit("axial_crossing", s.axial_crossing);
   visit_points("blade_trail.x", "blade_trail.y", "blade_trail.z", s.blade_trail, visit);
   visit_points("acceleration.x", "acceleration.y", "acceleration.z", s.acceleration, visit);
 }
@@ -71,19 +70,17 @@ void for_each_field(Model_& m, Visit&& visit) {
   visit("held_axes", m.held_axes);
   visit("contact_radius", m.contact_radius);
   visit("layer", m.layer);
+  visit("cell.i", m.cell.i), visit("cell.j", m.cell.j), visit("cell.k", m.cell.k);
   visit("organs", m.organs);
-  visit("edges.a", m.edges.a);
-  visit("edges.b", m.edges.b);
-  visit("edges.rest_length", m.edges.rest_length);
-  visit("edges.k", m.edges.k);
-  visit("edges.c", m.edges.c);
-  visit("edges.third", m.edges.third);
-  visit("tpms.a", m.tpms.a);
-  visit("tpms.b", m.tpms.b);
-  visit("tpms.rest_length", m.tpms.rest_length);
-  visit("tpms.spring_k", m.tpms.spring_k);
-  visit("tpms.kelvin_k", m.tpms.kelvin_k);
-  visit("tpms.kelvin_c", m.tpms.kelvin_c);
+  visit("axial.a", m.axial.a);
+  visit("axial.b", m.axial.b);
+  visit("axial.law", m.axial.law);
+  visit("axial.rest_length", m.axial.rest_length);
+  visit("axial.k", m.axial.k);
+  visit("axial.c", m.axial.c);
+  visit("axial.kelvin_k", m.axial.kelvin_k);
+  visit("axial.internal", m.axial.internal);
+  visit("axial.third", m.axial.third);
   visit("constraints.a", m.constraints.a);
   visit("constraints.c", m.constraints.c);
   visit("constraints.e", m.constraints.e);
@@ -111,10 +108,8 @@ void for_each_field(Model_& m, Visit&& visit) {
   visit("solver.max_iterations", m.solver.max_iterations);
   visit("solver.substeps", m.solver.substeps);
   visit("solver.integrator", m.solver.integrator);
-  visit("cut_resistance.edge_energy", m.cut_resistance.edge_energy);
-  visit("cut_resistance.tpm_energy", m.cut_resistance.tpm_energy);
-  visit("cut_resistance.edge_friction", m.cut_resistance.edge_friction);
-  visit("cut_resistance.tpm_friction", m.cut_resistance.tpm_friction);
+  visit("cut_resistance.energy", m.cut_resistance.energy);
+  visit("cut_resistance.friction", m.cut_resistance.friction);
   visit("lip_k", m.lip_k);
 }
 

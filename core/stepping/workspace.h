@@ -43,7 +43,7 @@ struct Substep {
 /// How a State moves.
 struct Kinematics {
   Vec3Array position, velocity;           ///< [m], [m/s] (sphere_count)
-  std::vector<double> kelvin_elongation;  ///< [m] (tpm_count)
+  std::vector<double> kelvin_elongation;  ///< [m] (internal_count)
 };
 
 /// Kernels and scratch of one Model. A tick is done in step.cpp, its parts by each integrator in substeps.cpp.
@@ -61,15 +61,14 @@ struct Stepper::Workspace {
         pieces(m),
         held_axes(m.held_axes),
         velocity(3 * m.sphere_count()) {
-    for (const auto* lengths : {&m.edges.rest_length, &m.tpms.rest_length})
-      for (const double length : *lengths) shortest_element = std::min(shortest_element, length);
-    if (m.has_scalpel()) near.emplace(m), crossings.reserve(m.edges.size() + m.tpms.size()), pieces.reserve();
+    for (const double length : m.axial.rest_length) shortest_element = std::min(shortest_element, length);
+    if (m.has_scalpel()) near.emplace(m), crossings.reserve(m.axial.size()), pieces.reserve();
     if (choice.integrator == Integrator::leapfrog)
       explicit_solver.emplace(m, elements.slabs());
     else
       implicit_solver.emplace(m, elements.slabs(), team, kernels);
     if (choice.integrator == Integrator::backward_euler) return;
-    other.position.resize(m.sphere_count()), other.kelvin_elongation.resize(m.tpms.size());
+    other.position.resize(m.sphere_count()), other.kelvin_elongation.resize(m.axial.internal_count());
     if (choice.integrator == Integrator::sdirk2) other.velocity.resize(m.sphere_count()), start = other;
   }
 

@@ -87,30 +87,75 @@ void check_ends(Checker& check, const std::string& name, const std::vector<std::
   check.indices(name + ".b", b, 0, sphere_count);
 }
 
+/// Element by element: a known law, only the values that it has, and internal variables in State's order at the end.
+void check_laws(Checker& check, const AxialElements& axial) {
+  std::int32_t variables = 0;
+  for (std::size_t i = 0; i < axial.size(); ++i) {
+    const auto require = [&](bool good, const char* array, const char* what) {
+      if (!good) check.require(false, std::string("axial.") + array + place(std::ptrdiff_t(i)), what);
+      return good;
+    };
+    const AxialLaw law = axial.law[i];
+    const bool is_tpm = law == AxialLaw::two_sphere_tpm;
+    const double kelvin_k = axial.kelvin_k.empty() ? 0 : axial.kelvin_k[i];
+    const std::int32_t internal = axial.internal.empty() ? -1 : axial.internal[i];
+    if (!require(law >= AxialLaw::spring && law <= AxialLaw::two_sphere_tpm, "law", "is of an unknown kind") ||
+        !require(law != AxialLaw::spring || axial.damping(i) == 0, "c", "must be 0 of a spring") ||
+        !require(is_tpm ? kelvin_k > 0 : kelvin_k == 0, "kelvin_k",
+                 "must be above 0 of two-sphere TPMs, 0 of others") ||
+        !require(is_tpm || variables == 0, "law", "must not follow a two-sphere TPM") ||
+        !require(internal == (is_tpm ? variables : -1), "internal", "is not the next internal variable"))
+      return;
+    variables += is_tpm;
+  }
+}
+
+void check_axial(Checker& check, const Model& model) {
+  const auto spheres = static_cast<std::int64_t>(model.sphere_count());
+  const AxialElements& axial = model.axial;
+  const std::size_t count = axial.size();
+  check_ends(check, "axial", axial.a, axial.b, spheres);
+  check.length("axial.rest_length", axial.rest_length, count);
+  check.positive("axial.rest_length", axial.rest_length);
+  check.length("axial.k", axial.k, count);
+  check.positive("axial.k", axial.k);
+  check.not_negative("axial.c", axial.c);
+  check.not_negative("axial.kelvin_k", axial.kelvin_k);
+  check.length("axial.third", axial.third, count, !model.has_softening);
+  check.indices("axial.third", axial.third, -1, spheres);
+  const bool has_law = check.length("axial.law", axial.law, count),
+             has_c = check.length("axial.c", axial.c, count, true),
+             has_kelvin_k = check.length("axial.kelvin_k", axial.kelvin_k, count, true),
+             has_internal = check.length("axial.internal", axial.internal, count, true);
+  if (has_law && has_c && has_kelvin_k && has_internal) check_laws(check, axial);
+}
+
+/// Lattice cells: near enough to each other for a table of all cells of an organ.
+void check_cells(Checker& check, const Model& model) {
+  constexpr std::int32_t farthest = 1 << 20;
+  constexpr std::int64_t most = 1 << 26;
+  std::vector<std::int64_t> volume(model.organs.size(), 1);
+  const auto one = [&](const std::string& name, const std::vector<std::int32_t>& values) {
+    if (!check.length(name, values, model.sphere_count())) return;
+    check.indices(name, values, -farthest, farthest + 1);
+    for (std::size_t o = 0; o < model.organs.size(); ++o) {
+      const OrganRange& organ = model.organs[o];
+      if (organ.first < 0 || organ.count <= 0 || std::int64_t{organ.first} + organ.count > std::int64_t(values.size()))
+        continue;  // told by check_organs()
+      const auto begin = values.begin() + organ.first;
+      const auto [low, high] = std::minmax_element(begin, begin + organ.count);
+      volume[o] = std::min(volume[o] * (std::int64_t{*high} - *low + 1), 2 * most);
+    }
+  };
+  one("cell.i", model.cell.i), one("cell.j", model.cell.j), one("cell.k", model.cell.k);
+  for (std::size_t o = 0; o < volume.size(); ++o)
+    check.require(volume[o] <= most, "organs" + place(std::ptrdiff_t(o)), "spans more lattice cells than it can have");
+}
+
 void check_elements(Checker& check, const Model& model) {
   const auto spheres = static_cast<std::int64_t>(model.sphere_count());
-  const Edges& edges = model.edges;
-  check_ends(check, "edges", edges.a, edges.b, spheres);
-  check.length("edges.rest_length", edges.rest_length, edges.size());
-  check.positive("edges.rest_length", edges.rest_length);
-  check.length("edges.k", edges.k, edges.size());
-  check.positive("edges.k", edges.k);
-  check.length("edges.c", edges.c, edges.size(), true);
-  check.not_negative("edges.c", edges.c);
-  check.length("edges.third", edges.third, edges.size(), !model.has_softening);
-  check.indices("edges.third", edges.third, -1, spheres);
-
-  const TwoSphereTpms& tpms = model.tpms;
-  check_ends(check, "tpms", tpms.a, tpms.b, spheres);
-  check.length("tpms.rest_length", tpms.rest_length, tpms.size());
-  check.positive("tpms.rest_length", tpms.rest_length);
-  check.length("tpms.spring_k", tpms.spring_k, tpms.size());
-  check.positive("tpms.spring_k", tpms.spring_k);
-  check.length("tpms.kelvin_k", tpms.kelvin_k, tpms.size());
-  check.positive("tpms.kelvin_k", tpms.kelvin_k);
-  check.length("tpms.kelvin_c", tpms.kelvin_c, tpms.size());
-  check.not_negative("tpms.kelvin_c", tpms.kelvin_c);
-
+  const auto axial_count = static_cast<std::int64_t>(model.axial.size());
+  check_axial(check, model);
   const Constraints& constraints = model.constraints;
   check.indices("constraints.a", constraints.a, 0, spheres);
   check.length("constraints.c", constraints.c, constraints.size());
@@ -122,7 +167,7 @@ void check_elements(Checker& check, const Model& model) {
   for (int i = 0; i < 4; ++i) {
     const std::string name = "constraints.edge" + std::to_string(i);
     check.length(name, constraints.edge[i], constraints.size());
-    check.indices(name, constraints.edge[i], 0, static_cast<std::int64_t>(edges.size()));
+    check.indices(name, constraints.edge[i], 0, axial_count);
   }
 
   const AngleSprings& angles = model.angle_springs;
@@ -136,7 +181,7 @@ void check_elements(Checker& check, const Model& model) {
   for (int i = 0; i < 2; ++i) {
     const std::string name = "angle_springs.edge" + std::to_string(i);
     check.length(name, angles.edge[i], angles.size());
-    check.indices(name, angles.edge[i], 0, static_cast<std::int64_t>(edges.size()));
+    check.indices(name, angles.edge[i], 0, axial_count);
   }
 }
 
@@ -152,14 +197,12 @@ void check_loads(Checker& check, const Model& model) {
 
 void check_cut_resistance(Checker& check, const Model& model) {
   const CutResistance& cut = model.cut_resistance;
-  const auto one = [&](const std::string& name, const std::vector<double>& values, std::size_t count) {
-    check.length(name, values, cut.any() ? count : 0);
+  const auto one = [&](const std::string& name, const std::vector<double>& values) {
+    check.length(name, values, cut.any() ? model.axial.size() : 0);
     check.not_negative(name, values);
   };
-  one("cut_resistance.edge_energy", cut.edge_energy, model.edges.size());
-  one("cut_resistance.tpm_energy", cut.tpm_energy, model.tpms.size());
-  one("cut_resistance.edge_friction", cut.edge_friction, model.edges.size());
-  one("cut_resistance.tpm_friction", cut.tpm_friction, model.tpms.size());
+  one("cut_resistance.energy", cut.energy);
+  one("cut_resistance.friction", cut.friction);
   check.require(std::isfinite(model.lip_k) && model.lip_k >= 0, "lip_k", "must be finite and not below 0");
 }
 
@@ -205,6 +248,7 @@ Errors check_model(const Model& model) {
   check.positive("contact_radius", model.contact_radius);
   check.length("layer", model.layer, spheres);
   check_organs(check, model);
+  check_cells(check, model);
   check_elements(check, model);
   check_loads(check, model);
   check_tools(check, model);
@@ -230,25 +274,21 @@ Errors check_state(const Model& model, const State& state) {
   Checker check("state");
   check.points("position", state.position, model.sphere_count());
   check.points("velocity", state.velocity, model.sphere_count());
-  check.length("kelvin_elongation", state.kelvin_elongation, model.tpms.size());
+  check.length("kelvin_elongation", state.kelvin_elongation, model.axial.internal_count());
   check.finite("kelvin_elongation", state.kelvin_elongation);
 
   // The sets of severed elements are there together or not at all.
   const bool cuts =
-      !state.edge_severed.empty() || !state.tpm_severed.empty() || !state.constraint_severed.empty() ||
-      !state.angle_severed.empty() ||
+      !state.axial_severed.empty() || !state.constraint_severed.empty() || !state.angle_severed.empty() ||
       std::any_of(model.tools.begin(), model.tools.end(), [](const Tool& t) { return t.kind == ToolKind::scalpel; });
-  check.length("edge_severed", state.edge_severed, cuts ? model.edges.size() : 0);
-  check.flags("edge_severed", state.edge_severed);
-  check.length("tpm_severed", state.tpm_severed, cuts ? model.tpms.size() : 0);
-  check.flags("tpm_severed", state.tpm_severed);
+  check.length("axial_severed", state.axial_severed, cuts ? model.axial.size() : 0);
+  check.flags("axial_severed", state.axial_severed);
   check.length("constraint_severed", state.constraint_severed, cuts ? model.constraints.size() : 0);
   check.flags("constraint_severed", state.constraint_severed);
   check.length("angle_severed", state.angle_severed, cuts ? model.angle_springs.size() : 0);
   check.flags("angle_severed", state.angle_severed);
   // Older sessions do not say where the blade passed.
-  check.length("edge_crossing", state.edge_crossing, cuts ? model.edges.size() : 0, true);
-  check.length("tpm_crossing", state.tpm_crossing, cuts ? model.tpms.size() : 0, true);
+  check.length("axial_crossing", state.axial_crossing, cuts ? model.axial.size() : 0, true);
   const Vec3Array& trail = state.blade_trail;
   if (!trail.x.empty() || !trail.y.empty() || !trail.z.empty()) check.points("blade_trail", state.blade_trail, 2);
   const Vec3Array& acceleration = state.acceleration;
