@@ -1,5 +1,6 @@
 #include "recordings/state_hash.h"
 
+#include <algorithm>
 #include <bit>
 #include <type_traits>
 
@@ -16,6 +17,7 @@ static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Quat) == 4 * sizeof(d
 
 struct Hasher {
   XXH3_state_t& hash;
+  std::size_t internal_count;  ///< elements with an internal variable: the last ones of Model::axial
 
   template <class T>
   void operator()(std::string_view, const T& value) {
@@ -23,20 +25,31 @@ struct Hasher {
     XXH3_64bits_update(&hash, &value, sizeof value);
   }
 
-  /// Arrays that came into State after the first sessions were recorded: while empty they do not count, so
-  /// that the hashes of those sessions stay what they were.
-  static bool is_newer(std::string_view name) {
-    return name == "edge_crossing" || name == "tpm_crossing" || name.starts_with("blade_trail") ||
-           name.starts_with("acceleration");
-  }
-
   template <class T>
   void operator()(std::string_view name, const std::vector<T>& values) {
     static_assert(std::is_arithmetic_v<T>);
-    if (values.empty() && is_newer(name)) return;
-    const std::uint64_t count = values.size();
+    const std::size_t size = values.size();
+    if (!is_axial(name)) return array(name, values.data(), size);
+    const std::size_t last = std::min(internal_count, size);
+    array(name, values.data(), size - last), array(name, values.data() + (size - last), last);
+  }
+
+ private:
+  /// Arrays over the axial elements count as two, as they were two when the first sessions were recorded: elements
+  /// without an internal variable, and those with one.
+  static bool is_axial(std::string_view name) { return name == "axial_severed" || name == "axial_crossing"; }
+
+  /// Arrays that came into State after the first sessions were recorded: while empty they do not count, so
+  /// that the hashes of those sessions stay what they were.
+  static bool is_newer(std::string_view name) {
+    return name == "axial_crossing" || name.starts_with("blade_trail") || name.starts_with("acceleration");
+  }
+
+  template <class T>
+  void array(std::string_view name, const T* values, std::uint64_t count) {
+    if (count == 0 && is_newer(name)) return;
     XXH3_64bits_update(&hash, &count, sizeof count);
-    XXH3_64bits_update(&hash, values.data(), values.size() * sizeof(T));
+    XXH3_64bits_update(&hash, values, count * sizeof(T));
   }
 };
 
@@ -46,7 +59,7 @@ std::uint64_t state_hash(const State& state) {
   XXH3_state_t hash;
   XXH3_INITSTATE(&hash);
   XXH3_64bits_reset(&hash);
-  for_each_field(state, Hasher{hash});
+  for_each_field(state, Hasher{hash, state.kelvin_elongation.size()});
   return XXH3_64bits_digest(&hash);
 }
 

@@ -129,10 +129,9 @@ void set_solver(Model& model, const SolverSpec& solver) {
   model.solver.substeps = solver.substeps.value_or(standard.substeps);
 }
 
-double softest_edge(const Model& model) {
+double softest_spring(const Model& model) {
   double k = INFINITY;
-  for (const double edge : model.edges.k) k = std::min(k, edge);
-  for (const double spring : model.tpms.spring_k) k = std::min(k, spring);
+  for (const double spring : model.axial.k) k = std::min(k, spring);
   return k;
 }
 
@@ -143,14 +142,13 @@ void add_cutting(Model& model, const SceneSpec& scene) {
   if (!cuts)
     model.cut_resistance = {};
   else if (scene.lips_meet)
-    model.lip_k = softest_edge(model),
+    model.lip_k = softest_spring(model),
     model.cut_face_stiffening = scene.cut_face_stiffening.value_or(model.cut_face_stiffening);
 }
 
-double stiffest_edge(const Model& model) {
+double stiffest_spring(const Model& model) {
   double k = 0;
-  for (const double edge : model.edges.k) k = std::max(k, edge);
-  for (const double spring : model.tpms.spring_k) k = std::max(k, spring);
+  for (const double spring : model.axial.k) k = std::max(k, spring);
   return k;
 }
 
@@ -168,7 +166,7 @@ void add_tools(Model& model, const SceneSpec& scene) {
   const bool presses =
       std::any_of(scene.tools.begin(), scene.tools.end(), [](const ToolSpec& t) { return t.kind == ToolKind::ball; });
   if (!presses) return;
-  model.contact_k = scene.contact_stiffness.value_or(kContactOverEdge * stiffest_edge(model));
+  model.contact_k = scene.contact_stiffness.value_or(kContactOverEdge * stiffest_spring(model));
   model.contact_friction = scene.contact_friction;
   model.contact_damping = scene.contact_damping.value_or(model.contact_damping);
   model.contact_stick_time = scene.contact_stick_time.value_or(model.contact_stick_time);

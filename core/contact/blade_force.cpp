@@ -45,16 +45,9 @@ double BladeForce::reach(const Tool& tool) const {
 }
 
 BladeForce::Element BladeForce::element(std::size_t index) const {
-  const Edges& edges = model_.edges;
-  const CutResistance& cut = model_.cut_resistance;
-  if (index < edges.size())
-    return {std::size_t(edges.a[index]), std::size_t(edges.b[index]), edges.rest_length[index], edges.k[index],
-            cut.edge_energy[index],      cut.edge_friction[index]};
-  const std::size_t t = index - edges.size();
-  const TwoSphereTpms& tpms = model_.tpms;
-  const double k = tpms.spring_k[t] * tpms.kelvin_k[t] / (tpms.spring_k[t] + tpms.kelvin_k[t]);
-  return {std::size_t(tpms.a[t]), std::size_t(tpms.b[t]), tpms.rest_length[t], k,
-          cut.tpm_energy[t],      cut.tpm_friction[t]};
+  const AxialElements& axial = model_.axial;
+  return {std::size_t(axial.a[index]), std::size_t(axial.b[index]),         axial.rest_length[index],
+          axial.slow_k(index),         model_.cut_resistance.energy[index], model_.cut_resistance.friction[index]};
 }
 
 Box BladeForce::around(const Tool& tool, const BladeMotion& motion) const {
@@ -74,10 +67,9 @@ void BladeForce::find(const StateView& state, const NearElements& near, const To
   const Vec3 tip_ahead = tip + reach * ht, heel_ahead = heel + reach * hh, tip_behind = tip - tool.flank_height * ht,
              heel_behind = heel - tool.flank_height * hh;
   const Box ahead(tip, heel, tip_ahead, heel_ahead), behind(tip, heel, tip_behind, heel_behind);
-  const std::size_t edges = model_.edges.size();
   for (const std::int32_t index : near.elements()) {
     const auto i = std::size_t(index);
-    const bool severed = i < edges ? state.edge_severed[i] != 0 : state.tpm_severed[i - edges] != 0;
+    const bool severed = state.axial_severed[i] != 0;
     const Element e = element(i);
     const Vec3 p = state.position[e.a], q = state.position[e.b];
     if (!(severed ? behind : ahead).meets(Box(p, q))) continue;

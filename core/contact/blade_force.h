@@ -34,7 +34,7 @@ class BladeForce {
   bool any() const { return model_.cut_resistance.any(); }
 
   /// Most contacts that the functions below add in one substep.
-  std::size_t capacity() const { return any() ? 2 * (model_.edges.size() + model_.tpms.size()) : 0; }
+  std::size_t capacity() const { return any() ? 2 * model_.axial.size() : 0; }
 
   /// Box outside of which find() finds nothing.
   Box around(const Tool& tool, const BladeMotion& motion) const;

@@ -4,30 +4,20 @@
 #include <cmath>
 
 namespace ctpm {
-namespace {
-
-bool is_severed(const Model& model, const StateView& state, std::size_t element) {
-  const std::size_t edges = model.edges.size();
-  return element < edges ? state.edge_severed[element] != 0 : state.tpm_severed[element - edges] != 0;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 CutFaceContact::CutFaceContact(const Model& model) : model_(model) {
   if (!is_wanted()) return;
-  const std::size_t n = model.sphere_count(), edges = model.edges.size(), all = edges + model.tpms.size();
-  const auto ends = [&](std::size_t e) {
-    return e < edges ? std::pair(model.edges.a[e], model.edges.b[e])
-                     : std::pair(model.tpms.a[e - edges], model.tpms.b[e - edges]);
-  };
+  const AxialElements& axial = model.axial;
+  const std::size_t n = model.sphere_count();
   first_.assign(n + 1, 0);
-  for (std::size_t e = 0; e < all; ++e)
-    ++first_[std::size_t(ends(e).first) + 1], ++first_[std::size_t(ends(e).second) + 1];
+  for (std::size_t e = 0; e < axial.size(); ++e)
+    ++first_[std::size_t(axial.a[e]) + 1], ++first_[std::size_t(axial.b[e]) + 1];
   for (std::size_t i = 0; i < n; ++i) first_[i + 1] += first_[i];
-  joins_.resize(2 * all);
+  joins_.resize(2 * axial.size());
   std::vector<std::int32_t> next(first_.begin(), first_.end() - 1);
-  for (std::size_t e = 0; e < all; ++e) {
-    const auto [a, b] = ends(e);
+  for (std::size_t e = 0; e < axial.size(); ++e) {
+    const std::int32_t a = axial.a[e], b = axial.b[e];
     joins_[std::size_t(next[std::size_t(a)]++)] = {b, std::int32_t(e)};
     joins_[std::size_t(next[std::size_t(b)]++)] = {a, std::int32_t(e)};
   }
@@ -44,11 +34,9 @@ CutFaceContact::CutFaceContact(const Model& model) : model_(model) {
 /// The spheres beside a cut, sorted along x; equal places by index, so that the order is always the same.
 void CutFaceContact::gather(const StateView& state) {
   std::fill(is_on_face_.begin(), is_on_face_.end(), std::uint8_t(0));
-  const auto mark = [&](const auto& elements, const std::vector<std::uint8_t>& severed) {
-    for (std::size_t i = 0; i < severed.size(); ++i)
-      if (severed[i]) is_on_face_[std::size_t(elements.a[i])] = is_on_face_[std::size_t(elements.b[i])] = 1;
-  };
-  mark(model_.edges, state.edge_severed), mark(model_.tpms, state.tpm_severed);
+  const AxialElements& axial = model_.axial;
+  for (std::size_t i = 0; i < axial.size(); ++i)
+    if (state.axial_severed[i]) is_on_face_[std::size_t(axial.a[i])] = is_on_face_[std::size_t(axial.b[i])] = 1;
   on_faces_.clear();
   for (std::size_t i = 0; i < is_on_face_.size(); ++i)
     if (is_on_face_[i]) on_faces_.push_back({state.position.x[i], std::int32_t(i)});
@@ -59,7 +47,7 @@ void CutFaceContact::gather(const StateView& state) {
 bool CutFaceContact::are_joined(const StateView& state, std::int32_t a, std::int32_t b) const {
   for (std::int32_t i = first_[std::size_t(a)]; i < first_[std::size_t(a) + 1]; ++i) {
     const Join join = joins_[std::size_t(i)];
-    if (join.neighbour == b && !is_severed(model_, state, std::size_t(join.element))) return true;
+    if (join.neighbour == b && !state.axial_severed[std::size_t(join.element)]) return true;
   }
   return false;
 }
@@ -82,7 +70,7 @@ void CutFaceContact::add_pair(const StateView& state, std::int32_t a, std::int32
 }
 
 void CutFaceContact::find(const StateView& state, PairContacts& contacts) {
-  if (state.edge_severed.empty() && state.tpm_severed.empty()) return;
+  if (state.axial_severed.empty()) return;
   gather(state);
   std::size_t added = 0;
   for (std::size_t i = 0; i < on_faces_.size(); ++i)

@@ -8,35 +8,28 @@ namespace ctpm {
 namespace {
 
 /// Severs the live elements, of those that are `near`, that `meet(a, b)` says are crossed, then the
-/// constraints and angle springs that lost an edge.
+/// constraints and angle springs that lost an element.
 template <class Meet>
 std::int32_t sever(const Model& model, const NearElements& near, State& state, std::vector<Crossing>& crossings,
                    Meet&& meet) {
   std::int32_t count = 0;
-  const auto sever_axial = [&](const auto& elements, std::size_t i, std::int32_t element,
-                               std::vector<std::uint8_t>& severed, std::vector<std::uint8_t>& crossing) {
-    if (severed[i]) return;
-    std::optional<Crossing> crossed = meet(std::size_t(elements.a[i]), std::size_t(elements.b[i]));
-    if (!crossed) return;
-    severed[i] = 1, ++count;
-    if (!crossing.empty()) crossing[i] = stored_crossing(crossed->along);
-    crossed->element = element;
-    crossings.push_back(*crossed);
-  };
-  const std::size_t edges = model.edges.size();
+  const AxialElements& axial = model.axial;
   for (const std::int32_t element : near.elements()) {
     const auto i = std::size_t(element);
-    if (i < edges)
-      sever_axial(model.edges, i, element, state.edge_severed, state.edge_crossing);
-    else
-      sever_axial(model.tpms, i - edges, element, state.tpm_severed, state.tpm_crossing);
+    if (state.axial_severed[i]) continue;
+    std::optional<Crossing> crossed = meet(std::size_t(axial.a[i]), std::size_t(axial.b[i]));
+    if (!crossed) continue;
+    state.axial_severed[i] = 1, ++count;
+    if (!state.axial_crossing.empty()) state.axial_crossing[i] = stored_crossing(crossed->along);
+    crossed->element = element;
+    crossings.push_back(*crossed);
   }
   if (count == 0) return 0;
   const auto sever_lines = [&](const auto& lines, std::vector<std::uint8_t>& severed) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const bool lost = std::any_of(
           std::begin(lines.edge), std::end(lines.edge),
-          [&](const std::vector<std::int32_t>& edge) { return state.edge_severed[std::size_t(edge[i])] != 0; });
+          [&](const std::vector<std::int32_t>& edge) { return state.axial_severed[std::size_t(edge[i])] != 0; });
       if (lost && !severed[i]) severed[i] = 1, ++count;
     }
   };

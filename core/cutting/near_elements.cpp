@@ -6,10 +6,7 @@
 namespace ctpm {
 
 NearElements::NearElements(const Model& model)
-    : model_(model),
-      found_at_(model.sphere_count()),
-      outside_(model.sphere_count()),
-      near_(model.edges.size() + model.tpms.size()) {
+    : model_(model), found_at_(model.sphere_count()), outside_(model.sphere_count()), near_(model.axial.size()) {
   take_all();
 }
 
@@ -30,13 +27,11 @@ void NearElements::find(const Vec3Array& position, const Box& box) {
   mark(position.z, box.low.z - kMargin, box.high.z + kMargin, 4);
   count_ = 0;
   // Written always and kept sometimes: a branch here would be guessed wrong at every row of the lattice.
-  const auto keep = [&](const auto& elements, std::size_t first) {
-    for (std::size_t i = 0; i < elements.size(); ++i) {
-      near_[count_] = std::int32_t(first + i);
-      count_ += (outside_[std::size_t(elements.a[i])] & outside_[std::size_t(elements.b[i])]) == 0;
-    }
-  };
-  keep(model_.edges, 0), keep(model_.tpms, model_.edges.size());
+  const AxialElements& axial = model_.axial;
+  for (std::size_t i = 0; i < axial.size(); ++i) {
+    near_[count_] = std::int32_t(i);
+    count_ += (outside_[std::size_t(axial.a[i])] & outside_[std::size_t(axial.b[i])]) == 0;
+  }
 }
 
 void NearElements::follow(const Vec3Array& position) {

@@ -22,7 +22,7 @@ class NearElements {
   /// Takes all elements if a sphere is farther than kMargin from where it was at find().
   void follow(const Vec3Array& position);
 
-  /// Ascending: edges, then the edges' count plus two-sphere TPMs.
+  /// Rows of Model::axial, ascending.
   std::span<const std::int32_t> elements() const { return {near_.data(), count_}; }
 
  private:

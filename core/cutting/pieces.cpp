@@ -26,23 +26,19 @@ std::int32_t Pieces::find(const State& state) {
   auto count = std::int32_t(model_.sphere_count());
   piece_.resize(model_.sphere_count());
   for (std::int32_t i = 0; i < count; ++i) piece_[std::size_t(i)] = i;
-  const auto join_living = [&](const auto& elements, const std::vector<std::uint8_t>& severed) {
-    for (std::size_t i = 0; i < elements.size(); ++i)
-      if ((severed.empty() || !severed[i]) && join(elements.a[i], elements.b[i])) --count;
-  };
-  join_living(model_.edges, state.edge_severed);
-  join_living(model_.tpms, state.tpm_severed);
+  const AxialElements& axial = model_.axial;
+  const std::vector<std::uint8_t>& severed = state.axial_severed;
+  for (std::size_t i = 0; i < axial.size(); ++i)
+    if ((severed.empty() || !severed[i]) && join(axial.a[i], axial.b[i])) --count;
   for (std::size_t i = 0; i < piece_.size(); ++i) piece_[i] = root(std::int32_t(i));
   return count;
 }
 
 std::int32_t Pieces::rejoin(std::span<const Crossing> crossings) {
   std::int32_t count = 0;
-  const std::size_t edges = model_.edges.size();
   for (const Crossing& crossing : crossings) {
-    const auto e = std::size_t(crossing.element);
-    count += e < edges ? join(model_.edges.a[e], model_.edges.b[e])
-                       : join(model_.tpms.a[e - edges], model_.tpms.b[e - edges]);
+    const auto i = std::size_t(crossing.element);
+    count += join(model_.axial.a[i], model_.axial.b[i]);
   }
   return count;
 }

@@ -10,7 +10,7 @@
 
 namespace ctpm {
 
-/// The pieces that a scene's tissue has come to: spheres that unsevered edges and two-sphere TPMs join.
+/// The pieces that a scene's tissue has come to: spheres that unsevered axial elements join.
 class Pieces {
  public:
   explicit Pieces(const Model& model) : model_(model) {}

@@ -16,11 +16,11 @@ using Coordinates = std::vector<double>;
 /// Symmetric 3x3 blocks, one a sphere, as six arrays: xx, xy, xz, yy, yz, zz  (6 x sphere_count).
 using DiagonalBlocks = std::vector<double>;
 
-/// All axial elements of a Model, edges first, then two-sphere TPMs, as batches for the inner loops (AxialBatch).
-/// Batches with the same parameters share one copy of them, so a tissue of one material streams none from memory.
-class AxialElements {
+/// Forces of all axial elements of a Model, as batches for the inner loops (AxialBatch). Batches with the same
+/// parameters share one copy of them, so a tissue of one material streams none from memory.
+class AxialForces {
  public:
-  AxialElements(const Model& model, const Slabs& slabs, const Kernels& kernels);
+  AxialForces(const Model& model, const Slabs& slabs, const Kernels& kernels);
 
   /// What the loops of one call read and write; `softness` as in Elements, null without it.
   AxialArrays arrays(const StateView& state, const double* softness) const;
@@ -39,7 +39,7 @@ class AxialElements {
   template <class Real>
   void apply(int slab, const Real* v, SlabTarget<Real> result) const;
 
-  /// As Elements::find_kelvin(), find_acting_kelvin() and finish_kelvin(), of two-sphere TPMs [first, last).
+  /// As Elements::find_kelvin(), find_acting_kelvin() and finish_kelvin(), of internal variables [first, last).
   void find_kelvin(double h, const StateView& state, std::vector<double>& after, std::size_t first,
                    std::size_t last) const;
   void find_acting_kelvin(double h, const StateView& state, std::vector<double>& acting, std::size_t first,
@@ -48,8 +48,18 @@ class AxialElements {
                      std::size_t last) const;
 
  private:
-  double kelvin_after(double h, const StateView& state, std::size_t t) const;
-  double acting_part(double h, std::size_t t) const;
+  /// Elements that lie so that they can share a batch, and the places between them.
+  struct Run {
+    std::size_t first, last;            ///< rows of Model::axial [first, last)
+    std::vector<std::int32_t> element;  ///< row of each place; -1: none (place_count)
+    AxialLaw law;                       ///< of the batch
+  };
+
+  Run find_run(std::size_t first, const Slabs& slabs) const;
+  std::vector<double> parameters_of(const Run& run) const;
+  void add_places(const Run& run);
+  double kelvin_after(double h, const StateView& state, std::size_t variable) const;
+  double acting_part(double h, std::size_t variable) const;
 
   using Batches = std::vector<AxialBatch>;
 
@@ -57,9 +67,10 @@ class AxialElements {
   const Kernels& kernels_;
   std::vector<Batches> of_slab_;  ///< whose spheres they add to
   std::vector<double> parameters_;
-  std::vector<std::int32_t> third_;  ///< like Edges::third, with the own first sphere where there is none; empty
-                                     ///< without softening (place_count)
-  std::vector<std::int32_t> edge_;   ///< AxialArrays::edge; empty without a scalpel (place_count)
+  std::vector<std::int32_t> third_;        ///< like AxialElements::third, with the own first sphere where there is
+                                           ///< none; empty without softening (place_count)
+  std::vector<std::int32_t> element_;      ///< AxialArrays::element; empty without a scalpel (place_count)
+  std::vector<std::int32_t> of_internal_;  ///< row of Model::axial that has the internal variable (internal_count)
   std::size_t place_count_ = 0;
   std::vector<float> root_[3];  ///< direction times the root of the axial coupling [kg^1/2]; empty until needed
   std::vector<float> across_;   ///< coupling across the direction: h^2 tension / length [kg], >= 0

@@ -69,7 +69,7 @@ Elements::Arrays Elements::arrays(const StateView& state) {
 }
 
 void Elements::measure(const Arrays& arrays) {
-  if (kOnlySprings || (constraints_.empty() && angles_.empty())) return;
+  if (constraints_.empty() && angles_.empty()) return;
   team_.for_each(slabs_.count(), [&](int slab) {
     if (!softness_.empty()) std::fill(&softness_[0] + slabs_.begin(slab), &softness_[0] + slabs_.end(slab), 1.0);
     constraints_.measure(arrays.constraints, slab);
@@ -88,10 +88,8 @@ void Elements::add_forces_of(int slab, Arrays arrays, Coordinates& force) {
   const SlabTarget<double> own =
       is_thick ? SlabTarget<double>{force.data() + begin, begin, force.size() / 3} : target_for(slab, 3, force.data());
   arrays.constraints.force = arrays.angles.force = arrays.axial.force = own;
-  if constexpr (!kOnlySprings) {
-    constraints_.add_forces(arrays.constraints, slab);
-    angles_.add_forces(arrays.angles, slab);
-  }
+  constraints_.add_forces(arrays.constraints, slab);
+  angles_.add_forces(arrays.angles, slab);
   axial_.add_forces(arrays.axial, slab);
   if (!is_thick) bring(own, 3, force.data());
 }
@@ -108,35 +106,33 @@ void Elements::linearise_of(int slab, Arrays arrays, double h, bool with_dashpot
   arrays.axial.with_dashpots = with_dashpots;
   arrays.constraints.force = arrays.angles.force = arrays.axial.force = own;
   arrays.constraints.blocks = arrays.angles.blocks = arrays.axial.blocks = own_blocks;
-  if constexpr (!kOnlySprings) {
-    constraints_.linearise(arrays.constraints, slab);
-    angles_.linearise(arrays.angles, slab);
-  }
+  constraints_.linearise(arrays.constraints, slab);
+  angles_.linearise(arrays.angles, slab);
   axial_.linearise(arrays.axial, slab);
   bring(own, 3, force.data()), bring(own_blocks, 6, blocks.data());
 }
 
 template <class Part>
-void Elements::for_tpms(std::size_t tpms, Part&& part) const {
+void Elements::for_internal(std::size_t count, Part&& part) const {
   const std::size_t parts = std::size_t(slabs_.count());
-  if (kOnlySprings || tpms == 0) return;
+  if (count == 0) return;
   team_.for_each(slabs_.count(),
-                 [&](int slab) { part(tpms * std::size_t(slab) / parts, tpms * std::size_t(slab + 1) / parts); });
+                 [&](int slab) { part(count * std::size_t(slab) / parts, count * std::size_t(slab + 1) / parts); });
 }
 
 void Elements::find_kelvin(double h, const StateView& state, std::vector<double>& after) const {
-  for_tpms(state.kelvin_elongation.size(),
-           [&](std::size_t first, std::size_t last) { axial_.find_kelvin(h, state, after, first, last); });
+  for_internal(state.kelvin_elongation.size(),
+               [&](std::size_t first, std::size_t last) { axial_.find_kelvin(h, state, after, first, last); });
 }
 
 void Elements::find_acting_kelvin(double h, const StateView& state, std::vector<double>& acting) const {
-  for_tpms(state.kelvin_elongation.size(),
-           [&](std::size_t first, std::size_t last) { axial_.find_acting_kelvin(h, state, acting, first, last); });
+  for_internal(state.kelvin_elongation.size(),
+               [&](std::size_t first, std::size_t last) { axial_.find_acting_kelvin(h, state, acting, first, last); });
 }
 
 void Elements::finish_kelvin(double h, const std::vector<double>& before, std::vector<double>& kelvin) const {
-  for_tpms(kelvin.size(),
-           [&](std::size_t first, std::size_t last) { axial_.finish_kelvin(h, before, kelvin, first, last); });
+  for_internal(kelvin.size(),
+               [&](std::size_t first, std::size_t last) { axial_.finish_kelvin(h, before, kelvin, first, last); });
 }
 
 }  // namespace ctpm

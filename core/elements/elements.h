@@ -5,7 +5,6 @@
 #include "core/elements/axial.h"
 #include "core/elements/kernels/kernels.h"
 #include "core/elements/lines.h"
-#include "core/elements/only_springs.h"
 #include "core/model/model.h"
 #include "core/model/state_view.h"
 #include "core/parallel/slabs.h"
@@ -40,23 +39,23 @@ class Elements {
   void apply(const Real* v, Real* result, After&& after) const;
 
   /// Kelvin elongations of the two-sphere TPMs [m] at the end of a step of `h` [s] from StateView::kelvin_elongation
-  /// with the spheres at StateView::position at its end; first order  (tpm_count).
+  /// with the spheres at StateView::position at its end; first order  (internal_count).
   void find_kelvin(double h, const StateView& state, std::vector<double>& after) const;
 
   /// Kelvin elongations [m] that act in a step of `h` [s] in whose middle the spheres are at StateView::position;
-  /// second order where the step resolves them  (tpm_count).
+  /// second order where the step resolves them  (internal_count).
   void find_acting_kelvin(double h, const StateView& state, std::vector<double>& acting) const;
 
   /// Kelvin elongations [m] at the end of that step, in place of those that act in it; `before`: at its start
-  /// (tpm_count).
+  /// (internal_count).
   void finish_kelvin(double h, const std::vector<double>& before, std::vector<double>& kelvin) const;
 
   const Slabs& slabs() const { return slabs_; }
 
  private:
-  /// Calls part(first, last) for ranges of two-sphere TPMs, in parallel.
+  /// Calls part(first, last) for ranges of internal variables, in parallel.
   template <class Part>
-  void for_tpms(std::size_t tpms, Part&& part) const;
+  void for_internal(std::size_t count, Part&& part) const;
 
   /// Room for what one slab's elements add, before it goes to where all spheres are; with a single slab none is needed.
   struct Workbench {
@@ -88,7 +87,7 @@ class Elements {
 
   Team& team_;
   Slabs slabs_;
-  AxialElements axial_;
+  AxialForces axial_;
   LineElements constraints_, angles_;
   std::vector<double> softness_;  ///< 1 / (1 + tan theta) of each sphere; empty without softening (sphere_count)
   mutable std::vector<Workbench> workbenches_;  ///< (slab_count)
@@ -116,10 +115,8 @@ template <class Real, class After>
 void Elements::apply(const Real* v, Real* result, After&& after) const {
   team_.for_each(slabs_.count(), [&](int slab) {
     const SlabTarget<Real> own = target_for(slab, 3, result);
-    if constexpr (!kOnlySprings) {
-      constraints_.apply(slab, v, own);
-      angles_.apply(slab, v, own);
-    }
+    constraints_.apply(slab, v, own);
+    angles_.apply(slab, v, own);
     axial_.apply(slab, v, own);
     bring(own, 3, result);
     after(slab);

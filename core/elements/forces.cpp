@@ -20,10 +20,15 @@ double elastic_energy(const Model& model, const State& state) {
     return severed.empty() || severed[i] == 0;
   };
   double energy = 0;
-  const Edges& edges = model.edges;
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const double x = norm(at(edges.b[i]) - at(edges.a[i])) - edges.rest_length[i];
-    if (lives(state.edge_severed, i)) energy += 0.5 * edges.k[i] * x * x;
+  const AxialElements& axial = model.axial;
+  for (std::size_t i = 0; i < axial.size(); ++i) {
+    if (!lives(state.axial_severed, i)) continue;
+    double x = norm(at(axial.b[i]) - at(axial.a[i])) - axial.rest_length[i];
+    if (axial.law[i] == AxialLaw::two_sphere_tpm) {
+      const double z = state.kelvin_elongation[std::size_t(axial.internal[i])];
+      x -= z, energy += 0.5 * axial.kelvin_k[i] * z * z;
+    }
+    energy += 0.5 * axial.k[i] * x * x;
   }
   const AngleSprings& springs = model.angle_springs;
   for (std::size_t i = 0; i < springs.size(); ++i) {

@@ -12,8 +12,8 @@ namespace ctpm {
 enum class EntryOf : std::int32_t {
   none,  ///< not an array, or an array of any length
   sphere,
-  edge,
-  tpm,
+  axial,              ///< axial element
+  internal_variable,  ///< of a two-sphere TPM
   constraint,
   angle_spring,
   load,

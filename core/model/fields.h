@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string_view>
+#include <utility>
 
 #include "core/model/field_meaning.h"
 #include "core/model/model.h"
@@ -11,11 +12,15 @@ namespace ctpm {
 
 // The one list of everything in a Model and a State. Storing, reading, hashing, comparing and checking are all made
 // from it. `visit(name, member, meaning)`, or `visit(name, member)`, is called for each member in a fixed order;
-// members are arithmetic values, enums, Vec3, Quat, std::string, or vectors of numbers. A Vec3Array is visited as its
-// three coordinates. Names are stored in session files: never rename one, append new ones.
+// members are arithmetic values, enums, Vec3, Quat, std::string, or vectors of numbers or enums. A Vec3Array is visited
+// as its three coordinates. Names are stored in session files: never give one another meaning, append new ones. Names
+// that earlier programs wrote are read in recordings/internal/legacy_fields.h.
 
 /// Bounds of what a file may ask of one tick.
 inline constexpr std::int32_t kMostIterations = 1'000'000, kMostSubsteps = 10'000;
+
+/// Lattice coordinates are at most this far from 0: beyond what an organ has, within what 32 bits hold.
+inline constexpr std::int32_t kFarthestCell = 1 << 20;
 
 template <class Points, class Give>
 void give_points(std::string_view x, std::string_view y, std::string_view z, Points& points,
@@ -31,17 +36,15 @@ void for_each_field(State_& s, Visit&& visit) {
   give("tick", s.tick, any);
   give_points("position.x", "position.y", "position.z", s.position, finite.per(EntryOf::sphere), give);
   give_points("velocity.x", "velocity.y", "velocity.z", s.velocity, finite.per(EntryOf::sphere), give);
-  give("kelvin_elongation", s.kelvin_elongation, finite.per(EntryOf::tpm));
-  give("edge_severed", s.edge_severed, bits(1).per(EntryOf::edge).or_empty());
-  give("tpm_severed", s.tpm_severed, bits(1).per(EntryOf::tpm).or_empty());
+  give("kelvin_elongation", s.kelvin_elongation, finite.per(EntryOf::internal_variable));
+  give("axial_severed", s.axial_severed, bits(1).per(EntryOf::axial).or_empty());
   give("constraint_severed", s.constraint_severed, bits(1).per(EntryOf::constraint).or_empty());
   give("angle_severed", s.angle_severed, bits(1).per(EntryOf::angle_spring).or_empty());
   give("last_inputs.tool", s.last_inputs.tool, index(EntryOf::tool, -1));
   give("last_inputs.position", s.last_inputs.position, any);
   give("last_inputs.world_from_tool", s.last_inputs.world_from_tool, any);
   give("last_inputs.buttons", s.last_inputs.buttons, any);
-  give("edge_crossing", s.edge_crossing, any.per(EntryOf::edge).or_empty());
-  give("tpm_crossing", s.tpm_crossing, any.per(EntryOf::tpm).or_empty());
+  give("axial_crossing", s.axial_crossing, any.per(EntryOf::axial).or_empty());
   give_points("blade_trail.x", "blade_trail.y", "blade_trail.z", s.blade_trail,
               finite.per(EntryOf::blade_end).or_empty(), give);
   give_points("acceleration.x", "acceleration.y", "acceleration.z", s.acceleration,
@@ -94,33 +97,33 @@ void for_each_field(Model_& m, Visit&& visit) {
   give("held_axes", m.held_axes, bits(kAnchored).per(EntryOf::sphere));
   give("contact_radius", m.contact_radius, positive.per(EntryOf::sphere));
   give("layer", m.layer, any.per(EntryOf::sphere));
+  for (const auto& [name, coordinate] : {std::pair{"cell.i", &m.cell.i}, {"cell.j", &m.cell.j}, {"cell.k", &m.cell.k}})
+    give(name, *coordinate, within(-kFarthestCell, kFarthestCell).per(EntryOf::sphere));
   give("organs", m.organs, any);
-  give("edges.a", m.edges.a, index(EntryOf::sphere).per(EntryOf::edge));
-  give("edges.b", m.edges.b, index(EntryOf::sphere).per(EntryOf::edge));
-  give("edges.rest_length", m.edges.rest_length, positive.per(EntryOf::edge));
-  give("edges.k", m.edges.k, positive.per(EntryOf::edge));
-  give("edges.c", m.edges.c, not_negative.per(EntryOf::edge).or_empty());
-  give("edges.third", m.edges.third, index(EntryOf::sphere, -1).per(EntryOf::edge).or_empty());
-  give("tpms.a", m.tpms.a, index(EntryOf::sphere).per(EntryOf::tpm));
-  give("tpms.b", m.tpms.b, index(EntryOf::sphere).per(EntryOf::tpm));
-  give("tpms.rest_length", m.tpms.rest_length, positive.per(EntryOf::tpm));
-  give("tpms.spring_k", m.tpms.spring_k, positive.per(EntryOf::tpm));
-  give("tpms.kelvin_k", m.tpms.kelvin_k, positive.per(EntryOf::tpm));
-  give("tpms.kelvin_c", m.tpms.kelvin_c, not_negative.per(EntryOf::tpm));
+  give("axial.a", m.axial.a, index(EntryOf::sphere).per(EntryOf::axial));
+  give("axial.b", m.axial.b, index(EntryOf::sphere).per(EntryOf::axial));
+  give("axial.law", m.axial.law,
+       one_of({AxialLaw::spring, AxialLaw::kelvin_unit, AxialLaw::two_sphere_tpm}).per(EntryOf::axial));
+  give("axial.rest_length", m.axial.rest_length, positive.per(EntryOf::axial));
+  give("axial.k", m.axial.k, positive.per(EntryOf::axial));
+  give("axial.c", m.axial.c, not_negative.per(EntryOf::axial).or_empty());
+  give("axial.kelvin_k", m.axial.kelvin_k, not_negative.per(EntryOf::axial).or_empty());
+  give("axial.internal", m.axial.internal, index(EntryOf::internal_variable, -1).per(EntryOf::axial).or_empty());
+  give("axial.third", m.axial.third, index(EntryOf::sphere, -1).per(EntryOf::axial).or_empty());
   give("constraints.a", m.constraints.a, index(EntryOf::sphere).per(EntryOf::constraint));
   give("constraints.c", m.constraints.c, index(EntryOf::sphere).per(EntryOf::constraint));
   give("constraints.e", m.constraints.e, index(EntryOf::sphere).per(EntryOf::constraint));
   give("constraints.k", m.constraints.k, finite.per(EntryOf::constraint));
-  give("constraints.edge0", m.constraints.edge[0], index(EntryOf::edge).per(EntryOf::constraint));
-  give("constraints.edge1", m.constraints.edge[1], index(EntryOf::edge).per(EntryOf::constraint));
-  give("constraints.edge2", m.constraints.edge[2], index(EntryOf::edge).per(EntryOf::constraint));
-  give("constraints.edge3", m.constraints.edge[3], index(EntryOf::edge).per(EntryOf::constraint));
+  give("constraints.edge0", m.constraints.edge[0], index(EntryOf::axial).per(EntryOf::constraint));
+  give("constraints.edge1", m.constraints.edge[1], index(EntryOf::axial).per(EntryOf::constraint));
+  give("constraints.edge2", m.constraints.edge[2], index(EntryOf::axial).per(EntryOf::constraint));
+  give("constraints.edge3", m.constraints.edge[3], index(EntryOf::axial).per(EntryOf::constraint));
   give("angle_springs.a", m.angle_springs.a, index(EntryOf::sphere).per(EntryOf::angle_spring));
   give("angle_springs.b", m.angle_springs.b, index(EntryOf::sphere).per(EntryOf::angle_spring));
   give("angle_springs.c", m.angle_springs.c, index(EntryOf::sphere).per(EntryOf::angle_spring));
   give("angle_springs.k", m.angle_springs.k, positive.per(EntryOf::angle_spring));
-  give("angle_springs.edge0", m.angle_springs.edge[0], index(EntryOf::edge).per(EntryOf::angle_spring));
-  give("angle_springs.edge1", m.angle_springs.edge[1], index(EntryOf::edge).per(EntryOf::angle_spring));
+  give("angle_springs.edge0", m.angle_springs.edge[0], index(EntryOf::axial).per(EntryOf::angle_spring));
+  give("angle_springs.edge1", m.angle_springs.edge[1], index(EntryOf::axial).per(EntryOf::angle_spring));
   give("has_softening", m.has_softening, any);
   give("loads.sphere", m.loads.sphere, index(EntryOf::sphere).per(EntryOf::load));
   give_points("loads.force.x", "loads.force.y", "loads.force.z", m.loads.force, finite.per(EntryOf::load), give);
@@ -135,10 +138,8 @@ void for_each_field(Model_& m, Visit&& visit) {
   give("solver.substeps", m.solver.substeps, within(1, kMostSubsteps));
   give("solver.integrator", m.solver.integrator,
        one_of({Integrator::backward_euler, Integrator::leapfrog, Integrator::sdirk2}));
-  give("cut_resistance.edge_energy", m.cut_resistance.edge_energy, not_negative.per(EntryOf::edge).or_empty());
-  give("cut_resistance.tpm_energy", m.cut_resistance.tpm_energy, not_negative.per(EntryOf::tpm).or_empty());
-  give("cut_resistance.edge_friction", m.cut_resistance.edge_friction, not_negative.per(EntryOf::edge).or_empty());
-  give("cut_resistance.tpm_friction", m.cut_resistance.tpm_friction, not_negative.per(EntryOf::tpm).or_empty());
+  give("cut_resistance.energy", m.cut_resistance.energy, not_negative.per(EntryOf::axial).or_empty());
+  give("cut_resistance.friction", m.cut_resistance.friction, not_negative.per(EntryOf::axial).or_empty());
   give("lip_k", m.lip_k, not_negative);
   give("contact_damping", m.contact_damping, not_negative);
   give("contact_stick_time", m.contact_stick_time, not_negative);

@@ -1,37 +1,45 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "core/model/axial_law.h"
 #include "core/model/vec3.h"
 
 namespace ctpm {
 
-/// Axial elements between two spheres: springs (no dashpot) and Kelvin units (spring parallel to dashpot).
-/// The two elements of a triple A-B-C (spring A-B, Kelvin unit B-C; Eqs. 3, 4, 6) are two edges that know
-/// each other.
-struct Edges {
-  std::vector<std::int32_t> a, b;   ///< end spheres, a != b (edge_count)
-  std::vector<double> rest_length;  ///< [m], > 0 (edge_count)
-  std::vector<double> k;            ///< stiffness [N/m], > 0                                          (edge_count)
-  std::vector<double> c;            ///< damping [N s/m], >= 0; empty if the scene has no viscosity    (edge_count)
-  std::vector<std::int32_t> third;  ///< third sphere of the edge's triple, whose tilt counts too; -1 if it
-                                    ///< has none; empty if the scene has no softening (edge_count)
-  std::size_t size() const { return a.size(); }
-};
+/// Axial elements between two spheres, one table for all laws. Springs and Kelvin units come first, two-sphere TPMs
+/// last. The two elements of a triple A-B-C (spring A-B, Kelvin unit B-C; Eqs. 3, 4, 6) know each other by `third`;
+/// two-sphere TPMs stand where a lattice line has an element left over, and everywhere in the structure `tpm`.
+struct AxialElements {
+  std::vector<std::int32_t> a, b;      ///< end spheres, a != b                                         (axial_count)
+  std::vector<AxialLaw> law;           ///< how the force follows from the motion                       (axial_count)
+  std::vector<double> rest_length;     ///< [m], > 0                                                    (axial_count)
+  std::vector<double> k;               ///< stiffness of the spring [N/m], > 0                          (axial_count)
+  std::vector<double> c;               ///< damping [N s/m], >= 0, 0 of a spring; empty if all are 0    (axial_count)
+  std::vector<double> kelvin_k;        ///< stiffness of a two-sphere TPM's Kelvin unit [N/m], > 0, 0 of the others;
+                                       ///< empty without two-sphere TPMs                               (axial_count)
+  std::vector<std::int32_t> internal;  ///< index of a two-sphere TPM's internal variable in State::kelvin_elongation,
+                                       ///< -1 of the others; empty without two-sphere TPMs          (axial_count)
+  std::vector<std::int32_t> third;     ///< third sphere of the element's triple, whose tilt counts too; -1 if it has
+                                       ///< none; empty if the scene has no softening                (axial_count)
 
-/// Two-sphere TPMs: K2 in series with the Kelvin unit K1 parallel v1 inside one edge, with one internal
-/// variable (the Kelvin elongation, in State). Used where a lattice line has an edge left over, and for the
-/// whole model `tpm`.
-struct TwoSphereTpms {
-  std::vector<std::int32_t> a, b;   ///< end spheres                       (tpm_count)
-  std::vector<double> rest_length;  ///< [m], > 0                          (tpm_count)
-  std::vector<double> spring_k;     ///< K2 part [N/m], > 0                (tpm_count)
-  std::vector<double> kelvin_k;     ///< K1 part [N/m], > 0                (tpm_count)
-  std::vector<double> kelvin_c;     ///< v1 part [N s/m], >= 0             (tpm_count)
   std::size_t size() const { return a.size(); }
+
+  /// Two-sphere TPMs, each of which has one internal variable.
+  std::size_t internal_count() const {
+    return internal.empty() ? 0 : std::size_t(std::max<std::int64_t>(0, std::int64_t{internal.back()} + 1));
+  }
+
+  double damping(std::size_t i) const { return c.empty() ? 0 : c[i]; }
+
+  /// Stiffness once dashpots have come to rest [N/m].
+  double slow_k(std::size_t i) const {
+    return law[i] == AxialLaw::two_sphere_tpm ? k[i] * kelvin_k[i] / (k[i] + kelvin_k[i]) : k[i];
+  }
 };
 
 /// Constraints of five-sphere lines A B C D E (Eqs. 2, 5): force on C is -2 k' (1 - cos theta) u, u = C - (A
@@ -39,7 +47,7 @@ struct TwoSphereTpms {
 struct Constraints {
   std::vector<std::int32_t> a, c, e;  ///< end, centre, end sphere (constraint_count)
   std::vector<double> k;              ///< k' = (K' - P2) times the calibrated area [N/m]     (constraint_count)
-  std::vector<std::int32_t> edge[4];  ///< edges A-B, B-C, C-D, D-E that carry the line; severing one ends it
+  std::vector<std::int32_t> edge[4];  ///< axial elements A-B, B-C, C-D, D-E; severing one ends the constraint
   std::size_t size() const { return a.size(); }
 };
 
@@ -48,7 +56,7 @@ struct Constraints {
 struct AngleSprings {
   std::vector<std::int32_t> a, b, c;  ///< end, middle, end sphere (angle_count)
   std::vector<double> k;              ///< [N/m], > 0                                                   (angle_count)
-  std::vector<std::int32_t> edge[2];  ///< edges A-B and B-C; severing one ends it (angle_count)
+  std::vector<std::int32_t> edge[2];  ///< axial elements A-B and B-C; severing one ends the angle spring
   std::size_t size() const { return a.size(); }
 };
 
@@ -56,9 +64,9 @@ struct AngleSprings {
 /// that the areas of all elements that a plane crosses add up to the plane's area, whichever way it lies.
 /// Empty if the scene has no scalpel or no tissue resists.
 struct CutResistance {
-  std::vector<double> edge_energy, tpm_energy;      ///< fracture toughness J_c times area [J], >= 0
-  std::vector<double> edge_friction, tpm_friction;  ///< of the blade's two flanks, stress times area [N], >= 0
-  bool any() const { return !edge_energy.empty() || !tpm_energy.empty(); }
+  std::vector<double> energy;    ///< fracture toughness J_c times area [J], >= 0                    (axial_count)
+  std::vector<double> friction;  ///< of the blade's two flanks, stress times area [N], >= 0         (axial_count)
+  bool any() const { return !energy.empty(); }
 };
 
 enum class ToolKind : std::int32_t {
@@ -99,6 +107,20 @@ struct Loads {
   Vec3Array force;                   ///< full size [N]                 (load_count)
   std::vector<double> start, ramp;   ///< [s], >= 0                     (load_count)
   std::size_t size() const { return sphere.size(); }
+};
+
+/// Coordinates i, j, k in an organ's lattice, counted from the organ's first sphere.
+using LatticeCell = std::array<std::int32_t, 3>;
+
+/// Many cells, one array per coordinate.
+struct LatticeCells {
+  std::vector<std::int32_t> i, j, k;  ///< each (count)
+
+  std::size_t size() const { return i.size(); }
+  void push_back(LatticeCell cell) { i.push_back(cell[0]), j.push_back(cell[1]), k.push_back(cell[2]); }
+  LatticeCell operator[](std::size_t n) const { return {i[n], j[n], k[n]}; }
+
+  friend bool operator==(const LatticeCells&, const LatticeCells&) = default;
 };
 
 /// Model::held_axes of a sphere that never moves.
@@ -143,10 +165,10 @@ struct Model {
   std::vector<std::uint8_t> held_axes;  ///< bit 0: x never changes, bit 1: y, bit 2: z; 7: anchored  (sphere_count)
   std::vector<double> contact_radius;   ///< distance at which a tool touches the sphere [m], > 0    (sphere_count)
   std::vector<std::int32_t> layer;      ///< 1 = outermost (sphere_count)
+  LatticeCells cell;                    ///< in the lattice of the sphere's organ                    (sphere_count)
   std::vector<OrganRange> organs;
 
-  Edges edges;
-  TwoSphereTpms tpms;
+  AxialElements axial;
   Constraints constraints;
   AngleSprings angle_springs;
   bool has_softening = false;  ///< Eq. 8: forces are divided by 1 + tan theta
@@ -175,7 +197,7 @@ struct Model {
     return std::any_of(tools.begin(), tools.end(), [kind](const Tool& tool) { return tool.kind == kind; });
   }
   bool has_scalpel() const { return has_tool(ToolKind::scalpel); }
-  std::size_t element_count() const { return edges.size() + tpms.size() + constraints.size() + angle_springs.size(); }
+  std::size_t element_count() const { return axial.size() + constraints.size() + angle_springs.size(); }
 };
 
 }  // namespace ctpm

@@ -15,14 +15,12 @@ struct State {
   Vec3Array position;      ///< [m]                                     (sphere_count)
   Vec3Array velocity;      ///< [m/s]                                   (sphere_count)
   Vec3Array acceleration;  ///< [m/s^2], from which sdirk2 guesses; empty for other integrators (sphere_count)
-  std::vector<double> kelvin_elongation;         ///< internal variable of two-sphere TPMs [m] (tpm_count)
-  std::vector<std::uint8_t> edge_severed;        ///< 1: severed; empty if the scene has no scalpel  (edge_count)
-  std::vector<std::uint8_t> tpm_severed;         ///< as above                                       (tpm_count)
-  std::vector<std::uint8_t> constraint_severed;  ///< as above (constraint_count)
-  std::vector<std::uint8_t> angle_severed;       ///< as above                                       (angle_count)
-  std::vector<std::uint8_t> edge_crossing;       ///< where the blade passed a severed edge (stored_crossing); 0:
-                                                 ///< not severed; empty if the scene has no scalpel (edge_count)
-  std::vector<std::uint8_t> tpm_crossing;        ///< as above                                       (tpm_count)
+  std::vector<double> kelvin_elongation;         ///< internal variable of two-sphere TPMs [m]   (internal_count)
+  std::vector<std::uint8_t> axial_severed;       ///< 1: severed; empty if the scene has no scalpel (axial_count)
+  std::vector<std::uint8_t> constraint_severed;  ///< as above                                   (constraint_count)
+  std::vector<std::uint8_t> angle_severed;       ///< as above                                      (angle_count)
+  std::vector<std::uint8_t> axial_crossing;      ///< where the blade passed a severed element (stored_crossing); 0:
+                                                 ///< not severed; empty if the scene has no scalpel (axial_count)
   Vec3Array blade_trail;                         ///< points towed behind a blade's tip and heel, from which its
                                                  ///< heading is known [m]; empty if the scene has no scalpel (2)
   Inputs last_inputs;                            ///< of the tick before, where a blade's sweep begins

@@ -10,11 +10,10 @@ namespace ctpm {
 /// What elements and contacts read of a State at one moment of a step. It refers to the arrays of a State, or to others
 /// in their place: a step evaluates forces at moments that State does not reach.
 struct StateView {
-  const Vec3Array& position;                      ///< [m]    (sphere_count)
-  const Vec3Array& velocity;                      ///< [m/s]  (sphere_count)
-  const std::vector<double>& kelvin_elongation;   ///< [m]    (tpm_count)
-  const std::vector<std::uint8_t>& edge_severed;  ///< as State's, the others too
-  const std::vector<std::uint8_t>& tpm_severed;
+  const Vec3Array& position;                       ///< [m]    (sphere_count)
+  const Vec3Array& velocity;                       ///< [m/s]  (sphere_count)
+  const std::vector<double>& kelvin_elongation;    ///< [m]    (internal_count)
+  const std::vector<std::uint8_t>& axial_severed;  ///< as State's, the others too
   const std::vector<std::uint8_t>& constraint_severed;
   const std::vector<std::uint8_t>& angle_severed;
 
@@ -27,8 +26,7 @@ struct StateView {
       : position(position_),
         velocity(velocity_),
         kelvin_elongation(kelvin_elongation_),
-        edge_severed(state.edge_severed),
-        tpm_severed(state.tpm_severed),
+        axial_severed(state.axial_severed),
         constraint_severed(state.constraint_severed),
         angle_severed(state.angle_severed) {}
 };

@@ -6,11 +6,14 @@
 #include <cstddef>
 #include <map>
 #include <string>
+#include <utility>
+
+#include "core/network/axial_rows.h"
 
 namespace ctpm {
 namespace {
 
-using Cell = std::array<std::int32_t, 3>;
+using Cell = LatticeCell;
 
 // Lattice directions, each with its first non-zero component in the order k, j, i positive, so that an edge's
 // second sphere always comes later in the (k, j, i) order than its first.
@@ -101,8 +104,15 @@ Stiffness stiffness_of(const Material& m, double spacing) {
           1 - m.prestrain};
 }
 
-/// Builds the elements of one organ line by line, then brings the edges into the order in which they are
-/// computed.
+/// Area that an element stands for when a cut crosses it at right angles [m^2]. A plane with the unit normal
+/// n crosses |n . D| / s^3 elements of the direction D per area; with this area times |n . D| / |D| for each,
+/// they sum to 1 for every n, since the squared components of all directions add up to a multiple of |n|^2.
+double crossed_area(LatticeKind lattice, double spacing) {
+  return spacing * spacing / (lattice == LatticeKind::cubic_18 ? 1 + 2 * std::sqrt(2.0) : 1);
+}
+
+/// Builds the elements of one organ line by line, and brings those of a direction into the order in which they are
+/// computed. Springs and Kelvin units go to the end of Model::axial, two-sphere TPMs to `tpms`.
 class LineTiler {
  public:
   LineTiler(Model& model, const FilledOrgan& organ, const OrganSettings& settings, std::int32_t first_sphere)
@@ -126,16 +136,13 @@ class LineTiler {
     flush_direction();
   }
 
+  /// The organ's two-sphere TPMs, direction by direction.
+  const std::vector<AxialRow>& tpms() const { return tpms_; }
+
  private:
-  struct Edge {
-    std::int32_t a, b, third;
-    double rest_length, k, c;
-    std::int32_t line_number;  ///< position in the order of tiling, by which constraints know their edges
-  };
-  struct Tpm {
-    std::int32_t a, b;
-    double rest_length;
-    Stiffness stiffness;
+  struct Spring {
+    AxialRow row;
+    std::int32_t line_number;  ///< position in the order of tiling, by which constraints know their elements
   };
   struct Angle {
     std::int32_t a, middle, c, line_number;
@@ -187,7 +194,7 @@ class LineTiler {
   void tile_springs(const std::vector<std::int32_t>& run, double rest_length) {
     for (std::size_t i = 0; i + 1 < run.size(); ++i) {
       const Stiffness s = mean_over(run, i, 2);
-      add_edge(run[i], run[i + 1], -1, s.rest_part * rest_length, single_spring(s), 0);
+      add_spring(run[i], run[i + 1], -1, s.rest_part * rest_length, single_spring(s), 0);
     }
   }
 
@@ -201,11 +208,11 @@ class LineTiler {
       const Stiffness s = mean_over(run, 2 * t, 3);
       const double length = s.rest_part * rest_length;
       if (starts_at_a) {
-        add_edge(p, q, r, length, s.spring_k, 0);
-        add_edge(q, r, p, length, s.kelvin_k, s.kelvin_c);
+        add_spring(p, q, r, length, s.spring_k, 0);
+        add_spring(q, r, p, length, s.kelvin_k, s.kelvin_c);
       } else {
-        add_edge(p, q, r, length, s.kelvin_k, s.kelvin_c);
-        add_edge(q, r, p, length, s.spring_k, 0);
+        add_spring(p, q, r, length, s.kelvin_k, s.kelvin_c);
+        add_spring(q, r, p, length, s.spring_k, 0);
         constraints_.push_back({run[2 * t - 2],
                                 p,
                                 r,
@@ -216,50 +223,59 @@ class LineTiler {
     if (run.size() % 2 == 0) add_tpm(run, run.size() - 2, rest_length);
   }
 
-  void add_edge(std::int32_t a, std::int32_t b, std::int32_t third, double rest_length, double k, double c) {
-    edges_.push_back({a, b, third, rest_length, k, c, next_line_number_++});
+  /// A spring, or a Kelvin unit if it is damped.
+  void add_spring(std::int32_t a, std::int32_t b, std::int32_t third, double rest_length, double k, double c) {
+    const AxialLaw law = c > 0 ? AxialLaw::kelvin_unit : AxialLaw::spring;
+    const auto [energy, friction] = cut_resistance_of(a, b);
+    springs_.push_back({{a, b, law, rest_length, k, c, 0, third, energy, friction}, next_line_number_++});
   }
 
   void add_tpm(const std::vector<std::int32_t>& run, std::size_t first, double rest_length) {
     const Stiffness s = mean_over(run, first, 2);
-    tpms_.push_back({run[first], run[first + 1], s.rest_part * rest_length, s});
+    const std::int32_t a = run[first], b = run[first + 1];
+    const auto [energy, friction] = cut_resistance_of(a, b);
+    tpms_of_direction_.push_back({a, b, AxialLaw::two_sphere_tpm, s.rest_part * rest_length, s.spring_k, s.kelvin_c,
+                                  s.kelvin_k, -1, energy, friction});
+  }
+
+  /// What an element between two spheres sets against a blade: energy [J] and friction [N], as in CutResistance.
+  std::pair<double, double> cut_resistance_of(std::int32_t a, std::int32_t b) const {
+    const double area = crossed_area(settings_.lattice, organ_.spacing);
+    const Material& p = material_of(organ_, settings_, std::size_t(a - first_sphere_));
+    const Material& q = material_of(organ_, settings_, std::size_t(b - first_sphere_));
+    const double friction = 2 * area * 0.5 * (p.blade_friction + q.blade_friction);  // two flanks
+    return {area * 0.5 * (p.fracture_toughness + q.fracture_toughness), friction};
   }
 
   /// Moves one direction's elements into the Model, sorted by their first sphere: along a lattice row both
   /// ends then advance by one from edge to edge, and the element loops run without index gathers.
   void flush_direction() {
-    const auto by_first = [](const auto& p, const auto& q) { return p.a < q.a; };
-    std::stable_sort(edges_.begin(), edges_.end(), by_first);
-    std::stable_sort(tpms_.begin(), tpms_.end(), by_first);
+    std::stable_sort(springs_.begin(), springs_.end(),
+                     [](const Spring& p, const Spring& q) { return p.row.a < q.row.a; });
+    std::stable_sort(tpms_of_direction_.begin(), tpms_of_direction_.end(),
+                     [](const AxialRow& p, const AxialRow& q) { return p.a < q.a; });
     const auto by_middle = [](const auto& p, const auto& q) { return p.middle < q.middle; };
     std::stable_sort(constraints_.begin(), constraints_.end(), by_middle);
     std::stable_sort(angles_.begin(), angles_.end(), by_middle);
-    std::vector<std::int32_t> edge_of_line_number(std::size_t(next_line_number_), -1);
-    Edges& edges = model_.edges;
-    for (const Edge& e : edges_) {
-      edge_of_line_number[std::size_t(e.line_number)] = std::int32_t(edges.size());
-      edges.a.push_back(e.a), edges.b.push_back(e.b), edges.rest_length.push_back(e.rest_length);
-      edges.k.push_back(e.k), edges.c.push_back(e.c), edges.third.push_back(e.third);
+    std::vector<std::int32_t> element_of_line_number(std::size_t(next_line_number_), -1);
+    for (const Spring& spring : springs_) {
+      element_of_line_number[std::size_t(spring.line_number)] = std::int32_t(model_.axial.size());
+      append(model_, spring.row);
     }
-    for (const Tpm& e : tpms_) {
-      TwoSphereTpms& tpms = model_.tpms;
-      const Stiffness& s = e.stiffness;
-      tpms.a.push_back(e.a), tpms.b.push_back(e.b), tpms.rest_length.push_back(e.rest_length);
-      tpms.spring_k.push_back(s.spring_k), tpms.kelvin_k.push_back(s.kelvin_k), tpms.kelvin_c.push_back(s.kelvin_c);
-    }
+    tpms_.insert(tpms_.end(), tpms_of_direction_.begin(), tpms_of_direction_.end());
     for (const Constraint& c : constraints_) {
       Constraints& all = model_.constraints;
       all.a.push_back(c.a), all.c.push_back(c.middle), all.e.push_back(c.e), all.k.push_back(c.k);
-      for (std::size_t i = 0; i < 4; ++i) all.edge[i].push_back(edge_of_line_number[std::size_t(c.line_number[i])]);
+      for (std::size_t i = 0; i < 4; ++i) all.edge[i].push_back(element_of_line_number[std::size_t(c.line_number[i])]);
     }
     for (const Angle& angle : angles_) {
       AngleSprings& all = model_.angle_springs;
       all.a.push_back(angle.a), all.b.push_back(angle.middle), all.c.push_back(angle.c);
       all.k.push_back(angle.k);
       for (std::size_t i = 0; i < 2; ++i)
-        all.edge[i].push_back(edge_of_line_number[std::size_t(angle.line_number) + i]);
+        all.edge[i].push_back(element_of_line_number[std::size_t(angle.line_number) + i]);
     }
-    edges_.clear(), tpms_.clear(), constraints_.clear(), angles_.clear();
+    springs_.clear(), tpms_of_direction_.clear(), constraints_.clear(), angles_.clear();
     next_line_number_ = 0;
   }
 
@@ -268,9 +284,10 @@ class LineTiler {
   const OrganSettings& settings_;
   std::int32_t first_sphere_;
   std::map<Cell, std::int32_t> sphere_at_;
-  std::vector<Stiffness> stiffness_;  // (sphere_count)
-  std::vector<Edge> edges_;
-  std::vector<Tpm> tpms_;
+  std::vector<Stiffness> stiffness_;         // (sphere_count)
+  std::vector<Spring> springs_;              // of the direction
+  std::vector<AxialRow> tpms_of_direction_;  // of the direction
+  std::vector<AxialRow> tpms_;
   std::vector<Constraint> constraints_;
   std::vector<Angle> angles_;
   std::int32_t next_line_number_ = 0;
@@ -289,6 +306,7 @@ void add_spheres(Model& model, const FilledOrgan& organ, const OrganSettings& se
     model.rest_position.push_back(organ.centre[i]);
     model.contact_radius.push_back(contact_radius_of(organ, i));
     model.layer.push_back(organ.layer[i]);
+    model.cell.push_back(organ.cell[i] - organ.cell[0]);
     model.mass.push_back(material_of(organ, settings, i).density * organ.spacing * organ.spacing * organ.spacing);
   }
   model.held_axes.resize(first + organ.centre.size(), 0);
@@ -300,46 +318,6 @@ void add_spheres(Model& model, const FilledOrgan& organ, const OrganSettings& se
                           organ.spacing, settings.damage_depth, layers});
 }
 
-/// Area that an element stands for when a cut crosses it at right angles [m^2]. A plane with the unit normal
-/// n crosses |n . D| / s^3 elements of the direction D per area; with this area times |n . D| / |D| for each,
-/// they sum to 1 for every n, since the squared components of all directions add up to a multiple of |n|^2.
-double crossed_area(LatticeKind lattice, double spacing) {
-  return spacing * spacing / (lattice == LatticeKind::cubic_18 ? 1 + 2 * std::sqrt(2.0) : 1);
-}
-
-/// What the elements of an organ, from `first_edge` and `first_tpm` on, set against a blade.
-void add_cut_resistance(Model& model, const FilledOrgan& organ, const OrganSettings& settings, std::size_t first_edge,
-                        std::size_t first_tpm) {
-  CutResistance& cut = model.cut_resistance;
-  const double area = crossed_area(settings.lattice, organ.spacing);
-  const auto first_sphere = std::size_t(model.organs.back().first);
-  const auto add = [&](const auto& elements, std::size_t first, std::vector<double>& energy,
-                       std::vector<double>& friction) {
-    energy.resize(first, 0.0), friction.resize(first, 0.0);
-    for (std::size_t e = first; e < elements.size(); ++e) {
-      const Material& a = material_of(organ, settings, std::size_t(elements.a[e]) - first_sphere);
-      const Material& b = material_of(organ, settings, std::size_t(elements.b[e]) - first_sphere);
-      energy.push_back(area * 0.5 * (a.fracture_toughness + b.fracture_toughness));
-      friction.push_back(2 * area * 0.5 * (a.blade_friction + b.blade_friction));  // two flanks
-    }
-  };
-  add(model.edges, first_edge, cut.edge_energy, cut.edge_friction);
-  add(model.tpms, first_tpm, cut.tpm_energy, cut.tpm_friction);
-}
-
-/// Gives back the arrays of features that no element uses.
-void leave_out_unused(Model& model) {
-  Edges& edges = model.edges;
-  if (std::all_of(edges.c.begin(), edges.c.end(), [](double c) { return c == 0; })) edges.c = {};
-  if (!model.has_softening) edges.third = {};
-  CutResistance& cut = model.cut_resistance;
-  const auto is_zero = [](const std::vector<double>& values) {
-    return std::all_of(values.begin(), values.end(), [](double v) { return v == 0; });
-  };
-  if (is_zero(cut.edge_energy) && is_zero(cut.tpm_energy) && is_zero(cut.edge_friction) && is_zero(cut.tpm_friction))
-    cut = {};
-}
-
 }  // namespace
 
 double edge_area(const Material& material, double spacing) {
@@ -348,19 +326,18 @@ double edge_area(const Material& material, double spacing) {
 
 Result<Done> add_organ(Model& model, const FilledOrgan& organ, const OrganSettings& settings) {
   if (Errors errors = check_organ(organ, settings); !errors.empty()) return errors;
-  // Arrays left out by an earlier organ come back while this one is added.
-  model.edges.c.resize(model.edges.size(), 0.0);
-  model.edges.third.resize(model.edges.size(), -1);
+  bring_back_unused(model);
+  const std::vector<AxialRow> earlier_tpms = take_tpms(model);
   const auto first_sphere = std::int32_t(model.sphere_count());
-  const std::size_t first_edge = model.edges.size(), first_tpm = model.tpms.size();
   add_spheres(model, organ, settings);
   LineTiler tiler(model, organ, settings, first_sphere);
   for (const Cell& direction : kAxisDirections) tiler.tile(direction);
   if (settings.lattice == LatticeKind::cubic_18)
     for (const Cell& direction : kDiagonalDirections) tiler.tile(direction);
+  for (const AxialRow& tpm : earlier_tpms) append(model, tpm);
+  for (const AxialRow& tpm : tiler.tpms()) append(model, tpm);
   const bool softens = settings.structure == Structure::ctpm && settings.has_softening && model.constraints.size() > 0;
   model.has_softening = model.has_softening || softens;
-  add_cut_resistance(model, organ, settings, first_edge, first_tpm);
   leave_out_unused(model);
   return Done{};
 }

@@ -3,7 +3,7 @@
 namespace ctpm {
 
 BladeSweep::BladeSweep(const Model& model) : model_(model), near_(model), pieces_(model) {
-  crossings_.reserve(model.edges.size() + model.tpms.size());
+  crossings_.reserve(model.axial.size());
   pieces_.reserve();
 }
 

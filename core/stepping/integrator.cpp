@@ -26,14 +26,12 @@ Bound bound_of(const Model& model) {
     const auto i = std::size_t(sphere);
     bound.stiffness[i] += k / model.mass[i], bound.damping[i] += c / model.mass[i];
   };
-  const Edges& edges = model.edges;
-  for (std::size_t e = 0; e < edges.size(); ++e)
-    for (const std::int32_t end : {edges.a[e], edges.b[e]})
-      add(end, 2 * edges.k[e], edges.c.empty() ? 0.0 : 2 * edges.c[e]);
-  // The Kelvin elongation follows implicitly, so only the series spring meets the spheres.
-  const TwoSphereTpms& tpms = model.tpms;
-  for (std::size_t t = 0; t < tpms.size(); ++t)
-    for (const std::int32_t end : {tpms.a[t], tpms.b[t]}) add(end, 2 * tpms.spring_k[t], 0);
+  const AxialElements& axial = model.axial;
+  for (std::size_t i = 0; i < axial.size(); ++i) {
+    // The Kelvin elongation of a two-sphere TPM follows implicitly, so only its spring meets the spheres.
+    const double c = axial.law[i] == AxialLaw::two_sphere_tpm ? 0.0 : axial.damping(i);
+    for (const std::int32_t end : {axial.a[i], axial.b[i]}) add(end, 2 * axial.k[i], 2 * c);
+  }
   const Constraints& lines = model.constraints;
   for (std::size_t i = 0; i < lines.size(); ++i)
     for (const std::int32_t sphere : {lines.a[i], lines.c[i], lines.e[i]}) add(sphere, 3 * lines.k[i], 0);

@@ -14,7 +14,9 @@ namespace ctpm {
 struct Motion {
   /// Room for the spheres and two-sphere TPMs of `model`, without accelerations.
   explicit Motion(const Model& model)
-      : position(model.sphere_count()), velocity(model.sphere_count()), kelvin_elongation(model.tpms.size()) {}
+      : position(model.sphere_count()),
+        velocity(model.sphere_count()),
+        kelvin_elongation(model.axial.internal_count()) {}
 
   Vec3Array position, velocity;           ///< [m], [m/s]  (sphere_count)
   Vec3Array acceleration;                 ///< [m/s^2]; empty for other integrators than SDIRK2  (sphere_count)

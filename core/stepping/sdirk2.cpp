@@ -43,8 +43,7 @@ double fastest_squared(const Vec3Array& velocity) {
 
 double shortest_element_of(const Model& model) {
   double shortest = std::numeric_limits<double>::infinity();
-  for (const auto* lengths : {&model.edges.rest_length, &model.tpms.rest_length})
-    for (const double length : *lengths) shortest = std::min(shortest, length);
+  for (const double length : model.axial.rest_length) shortest = std::min(shortest, length);
   return shortest;
 }
 

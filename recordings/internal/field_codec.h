@@ -273,15 +273,22 @@ class FieldReader {
   std::string& problem_;
 };
 
-/// Fills `structure` from the field set at the reader; `problem` says what is wrong, empty if nothing is.
-template <class S>
-void get_fields(ByteReader& in, S& structure, std::string& problem) {
+/// Runs take(set, reader) over the field set at the reader; a field that it leaves is unknown. `problem` says what is
+/// wrong, empty if nothing is.
+template <class Take>
+void take_field_set(ByteReader& in, std::string& problem, Take&& take) {
   FieldSet set(in, problem);
   FieldReader reader(set, in.budget(), problem);
-  if (problem.empty()) for_each_field(structure, reader);
+  if (problem.empty()) take(set, reader);
   for (const FieldView& field : set.fields())
     if (problem.empty() && !field.used) problem = "unknown field " + field.name + ", written by a newer program";
   if (problem.empty() && !in.at_end()) problem = "bytes are left over";
+}
+
+/// Fills `structure` from the field set at the reader; `problem` says what is wrong, empty if nothing is.
+template <class S>
+void get_fields(ByteReader& in, S& structure, std::string& problem) {
+  take_field_set(in, problem, [&](FieldSet&, FieldReader& reader) { for_each_field(structure, reader); });
 }
 
 }  // namespace ctpm::session_file

@@ -50,10 +50,10 @@ std::size_t count_of(const Model& model, EntryOf entry) {
       break;
     case EntryOf::sphere:
       return model.sphere_count();
-    case EntryOf::edge:
-      return model.edges.size();
-    case EntryOf::tpm:
-      return model.tpms.size();
+    case EntryOf::axial:
+      return model.axial.size();
+    case EntryOf::internal_variable:
+      return model.axial.internal_count();
     case EntryOf::constraint:
       return model.constraints.size();
     case EntryOf::angle_spring:
@@ -113,7 +113,7 @@ class FieldCheck {
     if (meaning.shape != EntryOf::none && !is_left_out)
       check_.length(full, values.size(), count_of(model_, meaning.shape));
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if constexpr (std::is_arithmetic_v<T>) {
+      if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
         if (is_good(values[i], meaning)) continue;
         one(full + place(i), values[i], meaning);
         return;
@@ -180,16 +180,62 @@ void check_ends(Checker& check, const std::string& name, const std::vector<std::
     if (a[i] == b[i]) return check.require(false, name + place(i), "joins a sphere with itself");
 }
 
+/// Element by element: a known law, only the values that it has, and internal variables in State's order at the end.
+void check_laws(Checker& check, const AxialElements& axial) {
+  std::int32_t variables = 0;
+  for (std::size_t i = 0; i < axial.size(); ++i) {
+    const auto require = [&](bool good, const char* array, const char* what) {
+      if (!good) check.require(false, std::string("axial.") + array + place(i), what);
+      return good;
+    };
+    const AxialLaw law = axial.law[i];
+    const bool is_tpm = law == AxialLaw::two_sphere_tpm;
+    const double kelvin_k = axial.kelvin_k.empty() ? 0 : axial.kelvin_k[i];
+    const std::int32_t internal = axial.internal.empty() ? -1 : axial.internal[i];
+    if (!require(law != AxialLaw::spring || axial.damping(i) == 0, "c", "must be 0 of a spring") ||
+        !require(is_tpm ? kelvin_k > 0 : kelvin_k == 0, "kelvin_k",
+                 "must be above 0 of two-sphere TPMs, 0 of others") ||
+        !require(is_tpm || variables == 0, "law", "must not follow a two-sphere TPM") ||
+        !require(internal == (is_tpm ? variables : -1), "internal", "is not the next internal variable"))
+      return;
+    variables += is_tpm;
+  }
+}
+
+/// The relations between the arrays of axial elements.
+void check_axial(Checker& check, const Model& model) {
+  const AxialElements& axial = model.axial;
+  check_ends(check, "axial", axial.a, axial.b);
+  if (model.has_softening) check.length("axial.third", axial.third.size(), axial.size());
+  const auto fits = [&](const auto& values) { return values.empty() || values.size() == axial.size(); };
+  // Lengths were told by the walk over the fields.
+  if (axial.law.size() == axial.size() && fits(axial.c) && fits(axial.kelvin_k) && fits(axial.internal))
+    check_laws(check, axial);
+}
+
+/// Lattice cells of an organ lie near enough to each other for a table of all of them.
+void check_cells(Checker& check, const Model& model) {
+  constexpr std::int64_t most = 1 << 26;
+  for (std::size_t o = 0; o < model.organs.size(); ++o) {
+    const OrganRange& organ = model.organs[o];
+    std::int64_t volume = 1;
+    for (const auto* coordinate : {&model.cell.i, &model.cell.j, &model.cell.k}) {
+      if (organ.first < 0 || organ.count <= 0 || std::int64_t{organ.first} + organ.count > std::ssize(*coordinate))
+        continue;  // told by check_organs() and the walk over the fields
+      const auto begin = coordinate->begin() + organ.first;
+      const auto [low, high] = std::minmax_element(begin, begin + organ.count);
+      volume = std::min(volume * (std::int64_t{*high} - *low + 1), 2 * most);
+    }
+    check.require(volume <= most, "organs" + place(o), "spans more lattice cells than it can have");
+  }
+}
+
 /// The arrays of a cut's resistance are there together or not at all.
 void check_cut_resistance(Checker& check, const Model& model) {
   const CutResistance& cut = model.cut_resistance;
-  const auto one = [&](const char* name, const std::vector<double>& values, std::size_t count) {
-    check.length(std::string("cut_resistance.") + name, values.size(), cut.any() ? count : 0);
-  };
-  one("edge_energy", cut.edge_energy, model.edges.size());
-  one("tpm_energy", cut.tpm_energy, model.tpms.size());
-  one("edge_friction", cut.edge_friction, model.edges.size());
-  one("tpm_friction", cut.tpm_friction, model.tpms.size());
+  if (!cut.any()) return;
+  check.length("cut_resistance.energy", cut.energy.size(), model.axial.size());
+  check.length("cut_resistance.friction", cut.friction.size(), model.axial.size());
 }
 
 void check_organs(Checker& check, const Model& model) {
@@ -213,9 +259,8 @@ Errors check_model(const Model& model) {
   Checker check("model");
   for_each_field(model, FieldCheck(check, model));
   check_organs(check, model);
-  check_ends(check, "edges", model.edges.a, model.edges.b);
-  check_ends(check, "tpms", model.tpms.a, model.tpms.b);
-  if (model.has_softening) check.length("edges.third", model.edges.third.size(), model.edges.size());
+  check_cells(check, model);
+  check_axial(check, model);
   check_cut_resistance(check, model);
   for (std::size_t i = 0; i < model.tools.size(); ++i)
     check.require(model.tools[i].kind != ToolKind::pin || model.tools[i].sphere >= 0, "tools" + place(i),
@@ -230,14 +275,12 @@ Errors check_state(const Model& model, const State& state) {
   check_together(check, "acceleration", state.acceleration);
 
   // The sets of severed elements are there together or not at all; older sessions do not say where the blade passed.
-  const bool cuts = !state.edge_severed.empty() || !state.tpm_severed.empty() || !state.constraint_severed.empty() ||
-                    !state.angle_severed.empty() || model.has_scalpel();
-  check.length("edge_severed", state.edge_severed.size(), cuts ? model.edges.size() : 0);
-  check.length("tpm_severed", state.tpm_severed.size(), cuts ? model.tpms.size() : 0);
+  const bool cuts = !state.axial_severed.empty() || !state.constraint_severed.empty() || !state.angle_severed.empty() ||
+                    model.has_scalpel();
+  check.length("axial_severed", state.axial_severed.size(), cuts ? model.axial.size() : 0);
   check.length("constraint_severed", state.constraint_severed.size(), cuts ? model.constraints.size() : 0);
   check.length("angle_severed", state.angle_severed.size(), cuts ? model.angle_springs.size() : 0);
-  check.require(cuts || (state.edge_crossing.empty() && state.tpm_crossing.empty()), "edge_crossing",
-                "and tpm_crossing must be empty where nothing is cut");
+  check.require(cuts || state.axial_crossing.empty(), "axial_crossing", "must be empty where nothing is cut");
   return check.take();
 }
 

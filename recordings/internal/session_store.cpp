@@ -10,7 +10,8 @@
 #include <sstream>
 
 #include "recordings/internal/field_codec.h"
-#include "recordings/internal/legacy.h"
+#include "recordings/internal/legacy_values.h"
+#include "recordings/internal/legacy_fields.h"
 #include "recordings/internal/model_check.h"
 #include "recordings/internal/schema.h"
 #include "recordings/internal/statistics.h"
@@ -194,7 +195,7 @@ Result<Model> SessionStore::model() {
   if (!content) return content.errors();
   Model model;
   if (auto r = decode_fields("part model", *content,
-                             [&](ByteReader& in, std::string& problem) { get_fields(in, model, problem); });
+                             [&](ByteReader& in, std::string& problem) { get_model(in, model, problem); });
       !r)
     return r.errors();
   remarks_.clear();
@@ -327,7 +328,7 @@ Result<std::optional<Keyframe>> SessionStore::keyframe_at(std::int64_t at, const
   Keyframe keyframe;
   keyframe.tick = tick;
   const auto decoded = decode_fields(keyframe_name(tick), **content, [&](ByteReader& in, std::string& problem) {
-    get_fields(in, keyframe.state, problem);
+    get_state(in, keyframe.state, problem);
   });
   if (!decoded) return decoded.errors();
   if (tick < 0) return error(keyframe_name(tick) + ": has an impossible place");

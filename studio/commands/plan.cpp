@@ -58,30 +58,35 @@ std::vector<Feature> features_of(const SceneSpec& scene, const Model& m, const S
   const bool limits = std::any_of(scene.organs.begin(), scene.organs.end(), [](const OrganSpec& organ) {
     return organ.damage_depth > 0 || organ.damage_force > 0;
   });
-  const std::size_t edges = bytes_of_fields(m, "edges.") - bytes_of(m.edges.c) - bytes_of(m.edges.third);
+  const AxialElements& axial = m.axial;
+  const std::size_t tpms = axial.internal_count(), springs = axial.size() - tpms;
+  const std::size_t internal = bytes_of(axial.kelvin_k) + bytes_of(axial.internal) + bytes_of(s.kelvin_elongation);
+  const std::size_t of_axial = bytes_of_fields(m, "axial.") - bytes_of(axial.kelvin_k) - bytes_of(axial.internal) -
+                               bytes_of(axial.c) - bytes_of(axial.third);
   return {
       {"spheres", true, std::to_string(m.sphere_count()) + " spheres",
        bytes_of_fields(m, "rest_position") + bytes_of(m.mass) + bytes_of(m.held_axes) + bytes_of(m.contact_radius) +
-           bytes_of(m.layer) + bytes_of_fields(s, "position") + bytes_of_fields(s, "velocity")},
-      {"springs and Kelvin units", m.edges.size() > 0, counted(m.edges.size(), "edges", "no edges"), edges},
-      {"viscosity", !m.edges.c.empty(), m.edges.c.empty() ? "no edge has a dashpot" : "the material is viscous",
-       bytes_of(m.edges.c)},
-      {"two-sphere TPMs", m.tpms.size() > 0,
-       counted(m.tpms.size(), "with one internal variable each", "no line has an edge left over"),
-       bytes_of_fields(m, "tpms.") + bytes_of(s.kelvin_elongation)},
+           bytes_of(m.layer) + bytes_of_fields(m, "cell.") + bytes_of_fields(s, "position") +
+           bytes_of_fields(s, "velocity")},
+      {"springs and Kelvin units", springs > 0, counted(springs, "elements", "no elements"),
+       axial.size() > 0 ? of_axial * springs / axial.size() : 0},
+      {"viscosity", !axial.c.empty(), axial.c.empty() ? "no element has a dashpot" : "the material is viscous",
+       bytes_of(axial.c)},
+      {"two-sphere TPMs", tpms > 0,
+       counted(tpms, "with one internal variable each", "no line has an element left over"),
+       internal + (axial.size() > 0 ? of_axial * tpms / axial.size() : 0)},
       {"constraint", m.constraints.size() > 0, counted(m.constraints.size(), "five-sphere lines", "the model has none"),
        bytes_of_fields(m, "constraints.")},
       {"softening", m.has_softening,
        m.has_softening ? "forces are divided by 1 + tan(theta)" : "no element tilts or it is switched off",
-       bytes_of(m.edges.third)},
+       bytes_of(axial.third)},
       {"angle springs", m.angle_springs.size() > 0, counted(m.angle_springs.size(), "springs", "the model has none"),
        bytes_of_fields(m, "angle_springs.")},
       {"gravity", !(m.gravity == Vec3{}), m.gravity == Vec3{} ? "the scene has none" : "the scene asks for it", 0},
       {"ball contact", has_tool(ToolKind::ball), has_tool(ToolKind::ball) ? "a tool presses" : "no tool presses", 0},
       {"pin", has_tool(ToolKind::pin), has_tool(ToolKind::pin) ? "a tool holds a sphere" : "no tool holds a sphere", 0},
       {"cutting", cuts, cuts ? "a tool cuts" : "no tool cuts",
-       bytes_of_fields(s, "edge_severed") + bytes_of_fields(s, "tpm_severed") +
-           bytes_of_fields(s, "constraint_severed") + bytes_of_fields(s, "angle_severed")},
+       bytes_of_fields(s, "axial_") + bytes_of_fields(s, "constraint_severed") + bytes_of_fields(s, "angle_severed")},
       {"loads", m.loads.size() > 0, counted(m.loads.size(), "forces from outside", "no forces from outside"),
        bytes_of_fields(m, "loads.")},
       {"damage limit", limits, limits ? "an organ has a limit" : "no organ has a limit", 0},

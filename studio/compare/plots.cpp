@@ -139,7 +139,7 @@ std::vector<Plot> plots_of_paths(const ComparedSessions& compared) {
 std::vector<Plot> plots_of_cut(const ComparedSessions& compared) {
   const auto& [expert, trainee, scene, comparison] = compared;
   std::vector<Vec3> both, expert_only, trainee_only;
-  // Edges and two-sphere TPMs only: constraints and angle springs end with their edges.
+  // Axial elements only: constraints and angle springs end with them.
   const std::size_t axial_count = ElementPlaces(scene.model).constraints;
   for (std::size_t i = 0; i < axial_count; ++i) {
     const bool in_a = expert.severed_at[i] >= 0, in_b = trainee.severed_at[i] >= 0;

@@ -18,7 +18,7 @@ constexpr double kCutSpacings = 3;          // a tip that goes further without s
 /// The severed flags of a State in the order of ElementPlaces.
 std::vector<std::uint8_t> severed_flags(const State& state) {
   std::vector<std::uint8_t> flags;
-  for (const auto* kind : {&state.edge_severed, &state.tpm_severed, &state.constraint_severed, &state.angle_severed})
+  for (const auto* kind : {&state.axial_severed, &state.constraint_severed, &state.angle_severed})
     flags.insert(flags.end(), kind->begin(), kind->end());
   return flags;
 }
@@ -93,7 +93,7 @@ struct FieldBytes {
   }
   template <class T>
   void operator()(std::string_view name, const std::vector<T>& values) {
-    if constexpr (std::is_arithmetic_v<T>) {
+    if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
       fields.emplace_back(prefix + std::string(name),
                           std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)));
     } else {
@@ -120,8 +120,7 @@ std::string difference_in_words(const Model& a, const Model& b) {
 }  // namespace
 
 ElementPlaces::ElementPlaces(const Model& model)
-    : tpms(model.edges.size()),
-      constraints(tpms + model.tpms.size()),
+    : constraints(model.axial.size()),
       angle_springs(constraints + model.constraints.size()),
       count(angle_springs + model.angle_springs.size()) {}
 
@@ -182,9 +181,7 @@ Vec3 rest_middle(const Model& model, std::size_t element) {
   const auto middle = [&](std::int32_t a, std::int32_t b) {
     return 0.5 * (rest[std::size_t(a)] + rest[std::size_t(b)]);
   };
-  if (element < places.tpms) return middle(model.edges.a[element], model.edges.b[element]);
-  if (element < places.constraints)
-    return middle(model.tpms.a[element - places.tpms], model.tpms.b[element - places.tpms]);
+  if (element < places.constraints) return middle(model.axial.a[element], model.axial.b[element]);
   if (element < places.angle_springs) return rest[std::size_t(model.constraints.c[element - places.constraints])];
   return rest[std::size_t(model.angle_springs.b[element - places.angle_springs])];
 }

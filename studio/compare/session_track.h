@@ -14,10 +14,9 @@
 
 namespace ctpm {
 
-/// Places that the network's elements have in one list of all: edges, two-sphere TPMs, constraints, angle
-/// springs.
+/// Places that the network's elements have in one list of all: axial elements, constraints, angle springs.
 struct ElementPlaces {
-  std::size_t tpms, constraints, angle_springs, count;  ///< where each kind begins; edges begin at 0
+  std::size_t constraints, angle_springs, count;  ///< where each kind begins; axial elements begin at 0
   explicit ElementPlaces(const Model& model);
 };
 

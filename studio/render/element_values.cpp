@@ -27,15 +27,28 @@ std::vector<double> tilt_of_spheres(const Model& model, const State& state) {
   return tilt;
 }
 
-/// Length and its rate of change between two spheres.
-struct Gauge {
-  double length, rate;
-};
+Vec3 apart(const Model& model, const Vec3Array& of, std::size_t i) {
+  return of[std::size_t(model.axial.b[i])] - of[std::size_t(model.axial.a[i])];
+}
 
-Gauge gauge(const State& state, std::int32_t a, std::int32_t b) {
-  const Vec3 d = state.position[std::size_t(b)] - state.position[std::size_t(a)];
-  const double length = norm(d);
-  return {length, length > 0 ? dot(state.velocity[std::size_t(b)] - state.velocity[std::size_t(a)], d) / length : 0};
+/// How much longer an axial element is than at rest [m].
+double elongation(const Model& model, const State& state, std::size_t i) {
+  return norm(apart(model, state.position, i)) - model.axial.rest_length[i];
+}
+
+/// Size of the force of an axial element [N], softened by the largest tilt of its spheres (Eq. 8). A two-sphere TPM
+/// carries what its spring does.
+double axial_force(const Model& model, const State& state, const std::vector<double>& tilt, std::size_t i) {
+  const AxialElements& axial = model.axial;
+  double worst = std::max(tilt[std::size_t(axial.a[i])], tilt[std::size_t(axial.b[i])]);
+  if (i < axial.third.size() && axial.third[i] >= 0) worst = std::max(worst, tilt[std::size_t(axial.third[i])]);
+  double x = elongation(model, state, i), damping = 0;
+  if (axial.law[i] == AxialLaw::two_sphere_tpm) {
+    x -= state.kelvin_elongation[std::size_t(axial.internal[i])];
+  } else if (const Vec3 d = apart(model, state.position, i); norm(d) > 0) {
+    damping = axial.damping(i) * dot(apart(model, state.velocity, i), d) / norm(d);
+  }
+  return std::abs(axial.k[i] * x + damping) / (1 + worst);
 }
 
 }  // namespace
@@ -56,30 +69,12 @@ void measure_elements(const Model& model, const State& state, ElementQuantity qu
     return;
   }
   const std::vector<double> tilt = tilt_of_spheres(model, state);
-  const Edges& edges = model.edges;
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (is_severed(state.edge_severed, i)) continue;
-    const auto [length, rate] = gauge(state, edges.a[i], edges.b[i]);
-    double value = (length - edges.rest_length[i]) / edges.rest_length[i];
-    if (quantity == ElementQuantity::force) {
-      double worst = std::max(tilt[std::size_t(edges.a[i])], tilt[std::size_t(edges.b[i])]);
-      if (i < edges.third.size() && edges.third[i] >= 0) worst = std::max(worst, tilt[std::size_t(edges.third[i])]);
-      const double damping = edges.c.empty() ? 0 : edges.c[i] * rate;
-      value = std::abs(edges.k[i] * (length - edges.rest_length[i]) + damping) / (1 + worst);
-    }
-    values.push_back({edges.a[i], edges.b[i], value});
-  }
-  const TwoSphereTpms& tpms = model.tpms;
-  for (std::size_t i = 0; i < tpms.size(); ++i) {
-    if (is_severed(state.tpm_severed, i)) continue;
-    const double elongation = gauge(state, tpms.a[i], tpms.b[i]).length - tpms.rest_length[i];
-    double value = elongation / tpms.rest_length[i];
-    if (quantity == ElementQuantity::force) {
-      // In series: the spring carries what the whole carries.
-      const double worst = std::max(tilt[std::size_t(tpms.a[i])], tilt[std::size_t(tpms.b[i])]);
-      value = std::abs(tpms.spring_k[i] * (elongation - state.kelvin_elongation[i])) / (1 + worst);
-    }
-    values.push_back({tpms.a[i], tpms.b[i], value});
+  const AxialElements& axial = model.axial;
+  for (std::size_t i = 0; i < axial.size(); ++i) {
+    if (is_severed(state.axial_severed, i)) continue;
+    const double value = quantity == ElementQuantity::force ? axial_force(model, state, tilt, i)
+                                                            : elongation(model, state, i) / axial.rest_length[i];
+    values.push_back({axial.a[i], axial.b[i], value});
   }
 }
 

@@ -15,7 +15,7 @@ struct ElementValue {
   double value = 0;           ///< [1, rad or N]
 };
 
-/// The living elements and their values: edges and two-sphere TPMs for stretch and force, both halves of
+/// The living elements and their values: axial elements for stretch and force, both halves of
 /// every five-sphere line for tilt. Force counts springs, dashpots and softening at this very moment.
 void measure_elements(const Model& model, const State& state, ElementQuantity quantity,
                       std::vector<ElementValue>& values);

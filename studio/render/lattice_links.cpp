@@ -46,16 +46,25 @@ const std::array<LatticeLinks::Cell, LatticeLinks::kSteps>& LatticeLinks::steps(
 LatticeLinks::LatticeLinks(const Model& model, std::size_t organ) {
   const OrganRange& range = model.organs[organ];
   first_ = range.first, spacing_ = range.spacing;
-  for (std::int32_t i = 0; i < range.count; ++i) rest_.push_back(model.rest_position[std::size_t(first_ + i)]);
-  find_axes(model, organ);
+  for (std::int32_t i = first_; i < first_ + range.count; ++i)
+    rest_.push_back(model.rest_position[std::size_t(i)]), cell_.push_back(model.cell[std::size_t(i)]);
+  build_table();
+  find_axes();
 
-  // Cells, and the dense box that finds a sphere by its cell.
-  const double per_cell = 1 / (spacing_ * spacing_);
-  for (const Vec3& p : rest_) {
-    const Vec3 d = p - origin_;
-    cell_.push_back({int(std::lround(dot(d, axis_[0]) * per_cell)), int(std::lround(dot(d, axis_[1]) * per_cell)),
-                     int(std::lround(dot(d, axis_[2]) * per_cell))});
-  }
+  // Neighbours, and the elements that join them.
+  neighbour_.assign(rest_.size() * kSteps, -1), link_.assign(rest_.size() * kSteps, Link::none);
+  crossing_.assign(rest_.size() * kSteps, 0.5f);
+  for (std::int32_t i = 0; i < count(); ++i)
+    for (int s = 0; s < kSteps; ++s) {
+      const Cell c = cell(i), d = steps()[std::size_t(s)];
+      neighbour_[index(i, s)] = at({c[0] + d[0], c[1] + d[1], c[2] + d[2]});
+    }
+  for (std::size_t e = 0; e < model.axial.size(); ++e) add_element(model.axial.a[e], model.axial.b[e], std::int32_t(e));
+  severed_.assign(elements_.size(), 0), passed_.assign(elements_.size(), 0), cut_.assign(rest_.size(), 0);
+}
+
+/// The dense box that finds a sphere by its cell.
+void LatticeLinks::build_table() {
   Cell high{};
   for (std::size_t i = 0; i < cell_.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c) {
@@ -67,41 +76,32 @@ LatticeLinks::LatticeLinks(const Model& model, std::size_t organ) {
   for (std::size_t i = 0; i < cell_.size(); ++i)
     sphere_at_[std::size_t(((cell_[i][2] - low_[2]) * extent_[1] + cell_[i][1] - low_[1]) * extent_[0] + cell_[i][0] -
                            low_[0])] = std::int32_t(i);
-
-  // Neighbours, and the elements that join them.
-  neighbour_.assign(rest_.size() * kSteps, -1), link_.assign(rest_.size() * kSteps, Link::none);
-  crossing_.assign(rest_.size() * kSteps, 0.5f);
-  for (std::int32_t i = 0; i < count(); ++i)
-    for (int s = 0; s < kSteps; ++s) {
-      const Cell c = cell(i), d = steps()[std::size_t(s)];
-      neighbour_[index(i, s)] = at({c[0] + d[0], c[1] + d[1], c[2] + d[2]});
-    }
-  for (std::size_t e = 0; e < model.edges.size(); ++e) add_element(model.edges.a[e], model.edges.b[e], std::int32_t(e));
-  for (std::size_t t = 0; t < model.tpms.size(); ++t)
-    add_element(model.tpms.a[t], model.tpms.b[t], std::int32_t(model.edges.size() + t));
-  severed_.assign(elements_.size(), 0), passed_.assign(elements_.size(), 0), cut_.assign(rest_.size(), 0);
 }
 
-void LatticeLinks::find_axes(const Model& model, std::size_t organ) {
-  const OrganRange& range = model.organs[organ];
-  origin_ = rest_.empty() ? Vec3{} : rest_[0];
-  int found = 0;
-  const auto look_at = [&](std::int32_t a, std::int32_t b) {
-    if (found == 2 || a < first_ || a >= first_ + range.count || b < first_ || b >= first_ + range.count) return;
-    const Vec3 d = model.rest_position[std::size_t(b)] - model.rest_position[std::size_t(a)];
-    if (std::abs(norm(d) - spacing_) > 0.05 * spacing_) return;
-    if (found == 1 && std::abs(dot(d, axis_[0])) > 0.1 * spacing_ * spacing_) return;
-    axis_[found++] = spacing_ / norm(d) * d;
-  };
-  for (std::size_t e = 0; e < model.edges.size(); ++e) look_at(model.edges.a[e], model.edges.b[e]);
-  for (std::size_t t = 0; t < model.tpms.size(); ++t) look_at(model.tpms.a[t], model.tpms.b[t]);
-  if (found == 0) axis_[0] = {spacing_, 0, 0};
-  if (found < 2) {
-    const Vec3 other = std::abs(axis_[0].x) < 0.9 * spacing_ ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    const Vec3 across = cross(axis_[0], other);
-    axis_[1] = spacing_ / norm(across) * across;
+/// Each axis from the first two spheres that are neighbours along it. Where an organ is one sphere thick there are
+/// none, and the axis is across the others.
+void LatticeLinks::find_axes() {
+  bool found[3] = {};
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::int32_t i = 0; i < count() && !found[c]; ++i) {
+      Cell next = cell(i);
+      ++next[c];
+      const std::int32_t neighbour = at(next);
+      const Vec3 d = neighbour < 0 ? Vec3{} : rest(neighbour) - rest(i);
+      if (norm(d) > 0) axis_[c] = spacing_ / norm(d) * d, found[c] = true;
+    }
+  if (!found[0] && !found[1] && !found[2]) axis_[0] = {spacing_, 0, 0}, found[0] = true;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t next = (c + 1) % 3, last = (c + 2) % 3;
+    if (!found[c] || found[next] || found[last]) continue;
+    const Vec3 beside = std::abs(axis_[c].x) < 0.9 * spacing_ ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    const Vec3 across = cross(axis_[c], beside);
+    axis_[next] = spacing_ / norm(across) * across, found[next] = true;
   }
-  axis_[2] = cross(axis_[0], axis_[1]) / spacing_;
+  for (std::size_t c = 0; c < 3; ++c)
+    if (!found[c]) axis_[c] = cross(axis_[(c + 1) % 3], axis_[(c + 2) % 3]) / spacing_;
+  // The cell (0, 0, 0) is that of the organ's first sphere.
+  if (count() > 0) origin_ = rest(0);
 }
 
 void LatticeLinks::add_element(std::int32_t a, std::int32_t b, std::int32_t source) {
@@ -126,13 +126,10 @@ std::int32_t LatticeLinks::at(Cell cell) const {
 bool LatticeLinks::update(const State& state) {
   bool changed = false;
   for (std::size_t e = 0; e < elements_.size(); ++e) {
-    const std::size_t source = std::size_t(elements_[e].source), edges = state.edge_severed.size();
-    const bool severed = source < edges
-                             ? state.edge_severed[source] != 0
-                             : source - edges < state.tpm_severed.size() && state.tpm_severed[source - edges] != 0;
-    const std::vector<std::uint8_t>& crossing = source < edges ? state.edge_crossing : state.tpm_crossing;
-    const std::size_t place = source < edges ? source : source - edges;
-    const std::uint8_t passed = severed && place < crossing.size() ? crossing[place] : std::uint8_t(0);
+    const auto source = std::size_t(elements_[e].source);
+    const bool severed = source < state.axial_severed.size() && state.axial_severed[source] != 0;
+    const bool has_crossing = severed && source < state.axial_crossing.size();
+    const std::uint8_t passed = has_crossing ? state.axial_crossing[source] : std::uint8_t(0);
     changed = changed || severed != (severed_[e] != 0) || passed != passed_[e];
     severed_[e] = severed, passed_[e] = passed;
   }

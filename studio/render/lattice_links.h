@@ -9,23 +9,22 @@
 
 namespace ctpm {
 
-/// The lattice of one organ as found from its elements: who is joined to whom, and what has been severed.
+/// The lattice of one organ: who is joined to whom, and what has been severed.
 /// Spheres are counted within the organ.
 class LatticeLinks {
  public:
   /// Steps to the 18 neighbours: 6 along the axes first, then 12 along face diagonals.
   static constexpr int kSteps = 18;
-  using Cell = std::array<std::int32_t, 3>;
+  using Cell = LatticeCell;
   static const std::array<Cell, kSteps>& steps();
 
-  /// Finds the lattice of organ `organ` of the model. The axes are those of the organ's elements, so an organ
-  /// may be turned in its scene.
+  /// The lattice of organ `organ` of the model. An organ may be turned in its scene.
   LatticeLinks(const Model& model, std::size_t organ);
 
   /// Takes over what is severed. Returns whether anything changed since the last call.
   bool update(const State& state);
 
-  std::int32_t count() const { return std::int32_t(cell_.size()); }
+  std::int32_t count() const { return std::int32_t(rest_.size()); }
   std::int32_t first() const { return first_; }
   double spacing() const { return spacing_; }
   Vec3 rest(std::int32_t sphere) const { return rest_[std::size_t(sphere)]; }
@@ -67,18 +66,19 @@ class LatticeLinks {
   struct Element {
     std::int32_t sphere;  ///< one end
     std::int32_t step;    ///< towards the other end
-    std::int32_t source;  ///< index into edges or, beyond those, into TPMs
+    std::int32_t source;  ///< row of Model::axial
   };
 
   std::size_t index(std::int32_t sphere, int step) const { return std::size_t(sphere) * kSteps + std::size_t(step); }
-  void find_axes(const Model& model, std::size_t organ);
+  void build_table();
+  void find_axes();
   void add_element(std::int32_t a, std::int32_t b, std::int32_t source);
   std::vector<std::array<std::int32_t, 2>> hops_from(std::int32_t home, bool over_severed) const;
 
   std::int32_t first_ = 0;
   double spacing_ = 0;
   Vec3 origin_;
-  Vec3 axis_[3];  ///< one cell along each axis [m]
+  Vec3 axis_[3];  ///< one cell along each axis [m], from spheres in neighbouring cells
   std::vector<Vec3> rest_;
   std::vector<Cell> cell_;
   Cell low_{}, extent_{};

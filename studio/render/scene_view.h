@@ -63,9 +63,9 @@ enum class View {
 
 /// What the colour of an element shows.
 enum class ElementQuantity {
-  stretch,  ///< (length - rest length) / rest length of edges and two-sphere TPMs
+  stretch,  ///< (length - rest length) / rest length of axial elements
   tilt,     ///< theta of the five-sphere lines [rad]
-  force,    ///< size of the axial force of edges and two-sphere TPMs, softened (Eq. 8) [N]
+  force,    ///< size of the axial force of axial elements, softened (Eq. 8) [N]
 };
 
 /// Cuts everything away on one side of a plane, so that one looks inside.

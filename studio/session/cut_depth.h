@@ -11,7 +11,7 @@
 
 namespace ctpm {
 
-/// How deep a cut goes: how far below the organs' surfaces the deepest severed edge lay at rest.
+/// How deep a cut goes: how far below the organs' surfaces the deepest severed axial element lay at rest.
 class CutDepth {
  public:
   /// `surfaces` at rest. `model` must outlive this.
@@ -20,7 +20,7 @@ class CutDepth {
   /// Adds what a later State of one session has lost.
   void add(const State& state);
 
-  /// Adds one edge, or a two-sphere TPM, which is counted behind the edges.
+  /// Adds one axial element.
   void add(std::size_t element);
 
   /// [m]. Nothing if nothing was severed or there are no surfaces.
@@ -29,7 +29,7 @@ class CutDepth {
  private:
   const Model& model_;
   std::vector<SurfaceIndex> surfaces_;
-  std::vector<bool> is_added_;  ///< (edge_count + tpm_count)
+  std::vector<bool> is_added_;  ///< (axial_count)
   std::optional<double> deepest_;
 };
 

@@ -306,7 +306,7 @@ void add_holds(std::vector<StabilityCase>& cases) {
                    .free_from = 0});
 }
 
-/// Parts that no live edge joins.
+/// Parts that no live axial element joins.
 std::int64_t count_pieces(const Model& model, const State& state) {
   std::vector<std::size_t> parent(model.sphere_count());
   std::iota(parent.begin(), parent.end(), std::size_t(0));
@@ -314,10 +314,9 @@ std::int64_t count_pieces(const Model& model, const State& state) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
-  for (std::size_t e = 0; e < model.edges.size(); ++e)
-    if (!state.edge_severed[e]) parent[root(std::size_t(model.edges.a[e]))] = root(std::size_t(model.edges.b[e]));
-  for (std::size_t t = 0; t < model.tpms.size(); ++t)
-    if (!state.tpm_severed[t]) parent[root(std::size_t(model.tpms.a[t]))] = root(std::size_t(model.tpms.b[t]));
+  const AxialElements& axial = model.axial;
+  for (std::size_t e = 0; e < axial.size(); ++e)
+    if (!state.axial_severed[e]) parent[root(std::size_t(axial.a[e]))] = root(std::size_t(axial.b[e]));
   std::int64_t pieces = 0;
   for (std::size_t i = 0; i < parent.size(); ++i) pieces += root(i) == i;
   return pieces;

@@ -27,19 +27,6 @@ struct Energy {
   double total() const { return motion + stored + lift; }
 };
 
-/// Springs of two-sphere TPMs: K2 over what the Kelvin unit leaves it, K1 over the Kelvin elongation.
-double tpm_energy(const Model& model, const State& state) {
-  const TwoSphereTpms& tpms = model.tpms;
-  double energy = 0;
-  for (std::size_t t = 0; t < tpms.size(); ++t) {
-    if (!state.tpm_severed.empty() && state.tpm_severed[t]) continue;
-    const Vec3 apart = state.position[std::size_t(tpms.b[t])] - state.position[std::size_t(tpms.a[t])];
-    const double kelvin = state.kelvin_elongation[t], spring = norm(apart) - tpms.rest_length[t] - kelvin;
-    energy += 0.5 * tpms.spring_k[t] * spring * spring + 0.5 * tpms.kelvin_k[t] * kelvin * kelvin;
-  }
-  return energy;
-}
-
 Energy energy_of(const Model& model, const State& state) {
   Energy energy;
   for (std::size_t i = 0; i < model.sphere_count(); ++i) {
@@ -47,7 +34,7 @@ Energy energy_of(const Model& model, const State& state) {
     energy.motion += 0.5 * model.mass[i] * dot(v, v);
     energy.lift -= model.mass[i] * dot(model.gravity, state.position[i] - model.rest_position[i]);
   }
-  energy.stored = elastic_energy(model, state) + tpm_energy(model, state);
+  energy.stored = elastic_energy(model, state);
   return energy;
 }
 

@@ -75,16 +75,17 @@ TEST(SpringsOnly, ModelAndStateHaveNoArraysOfOtherFeatures) {
   };
   for_each_field(model, note), for_each_field(state, note);
   const std::set<std::string> expected{
-      "rest_position.x", "rest_position.y", "rest_position.z",   "mass",       "held_axes",  "contact_radius",
-      "layer",           "organs",          "edges.rest_length", "edges.a",    "edges.b",    "edges.k",
-      "position.x",      "position.y",      "position.z",        "velocity.x", "velocity.y", "velocity.z"};
+      "rest_position.x", "rest_position.y", "rest_position.z", "mass",      "held_axes",  "contact_radius",
+      "layer",           "cell.i",          "cell.j",          "cell.k",    "organs",     "axial.rest_length",
+      "axial.a",         "axial.b",         "axial.law",       "axial.k",   "position.x", "position.y",
+      "position.z",      "velocity.x",      "velocity.y",      "velocity.z"};
   EXPECT_EQ(filled, expected);
 }
 
-TEST(SpringsOnly, StepperHoldsPositionForceVelocityMassAndTheBatchesOfEdges) {
+TEST(SpringsOnly, StepperHoldsPositionForceVelocityMassAndTheBatchesOfElements) {
   const Model model = springs_only();
-  const long spheres = long(model.sphere_count()), edges = long(model.edges.size());
-  const long bound = spheres * (10 * 8 + 1) + edges * 4, bytes = stepper_bytes(model), room = bound - bytes;
+  const long spheres = long(model.sphere_count()), elements = long(model.axial.size());
+  const long bound = spheres * (10 * 8 + 1) + elements * 4, bytes = stepper_bytes(model), room = bound - bytes;
   EXPECT_GT(room, 0);
 
   // What each feature takes is more than what the bound leaves, so that it could not hide there.
@@ -96,7 +97,8 @@ TEST(SpringsOnly, StepperHoldsPositionForceVelocityMassAndTheBatchesOfEdges) {
   EXPECT_GT(taken_by([](Model& m) { m.tools = {testing::ball(0.01)}; }), room);
   EXPECT_GT(taken_by([](Model& m) { m.tools = {testing::scalpel(0.05)}; }), room);
   const auto dashpots = [](Model& m) {
-    for (std::size_t e = 0; e < m.edges.size(); ++e) m.edges.c.push_back(1e-9 * double(e));
+    for (std::size_t e = 0; e < m.axial.size(); ++e) m.axial.c.push_back(1e-9 * double(e));
+    m.axial.law.assign(m.axial.size(), AxialLaw::kelvin_unit);
   };
   EXPECT_GT(taken_by(dashpots), room);
   const auto constraints = [](Model& m) {
@@ -104,7 +106,7 @@ TEST(SpringsOnly, StepperHoldsPositionForceVelocityMassAndTheBatchesOfEdges) {
     for (double& k : m.constraints.k) k *= 1e-3;
   };
   EXPECT_GT(taken_by(constraints), room);
-  const auto softening = [](Model& m) { m.has_softening = true, m.edges.third.assign(m.edges.size(), -1); };
+  const auto softening = [](Model& m) { m.has_softening = true, m.axial.third.assign(m.axial.size(), -1); };
   EXPECT_GT(taken_by(softening), room);
 }
 

@@ -59,15 +59,11 @@ inline Vec3 momentum(const Model& model, const State& state) {
 /// What it costs to open the plane with this normal at the elements that are severed [J].
 inline double fracture_energy(const Model& model, const State& state, Vec3 normal) {
   double sum = 0;
-  const auto add = [&](const auto& elements, const std::vector<std::uint8_t>& severed,
-                       const std::vector<double>& energy) {
-    for (std::size_t e = 0; e < elements.size(); ++e) {
-      const Vec3 d = model.rest_position[std::size_t(elements.b[e])] - model.rest_position[std::size_t(elements.a[e])];
-      if (severed[e]) sum += energy[e] * std::abs(dot(normal, d)) / norm(d);
-    }
-  };
-  add(model.edges, state.edge_severed, model.cut_resistance.edge_energy);
-  add(model.tpms, state.tpm_severed, model.cut_resistance.tpm_energy);
+  const AxialElements& axial = model.axial;
+  for (std::size_t e = 0; e < axial.size(); ++e) {
+    const Vec3 d = model.rest_position[std::size_t(axial.b[e])] - model.rest_position[std::size_t(axial.a[e])];
+    if (state.axial_severed[e]) sum += model.cut_resistance.energy[e] * std::abs(dot(normal, d)) / norm(d);
+  }
   return sum;
 }
 

@@ -33,17 +33,14 @@ TEST(BladeForce, EveryPlaneOpensItsOwnAreaWhicheverWayItLies) {
     for (int trial = 0; trial < 50; ++trial) {
       const Vec3 wild = noise.next_vec3(), n = wild / norm(wild);
       double opened = 0;  // energy per area of a plane with the normal n, from the elements of one sphere
-      const auto add = [&](const auto& elements, const std::vector<double>& energy) {
-        for (std::size_t e = 0; e < elements.size(); ++e) {
-          if (elements.a[e] != middle && elements.b[e] != middle) continue;
-          const Vec3 d =
-              model.rest_position[std::size_t(elements.b[e])] - model.rest_position[std::size_t(elements.a[e])];
-          // Each direction leaves a sphere twice, and a volume s^3 has one element of each.
-          opened += 0.5 * energy[e] * std::abs(dot(n, d)) / norm(d) * std::abs(dot(n, d)) / std::pow(block.spacing, 3);
-        }
-      };
-      add(model.edges, model.cut_resistance.edge_energy);
-      add(model.tpms, model.cut_resistance.tpm_energy);
+      const AxialElements& axial = model.axial;
+      for (std::size_t e = 0; e < axial.size(); ++e) {
+        if (axial.a[e] != middle && axial.b[e] != middle) continue;
+        const Vec3 d = model.rest_position[std::size_t(axial.b[e])] - model.rest_position[std::size_t(axial.a[e])];
+        // Each direction leaves a sphere twice, and a volume s^3 has one element of each.
+        opened += 0.5 * model.cut_resistance.energy[e] * std::abs(dot(n, d)) / norm(d) * std::abs(dot(n, d)) /
+                  std::pow(block.spacing, 3);
+      }
       EXPECT_NEAR(opened, kToughness, 1e-9 * kToughness);
     }
   }
@@ -74,17 +71,17 @@ Model clamped_block(double spacing, const Material& material) {
 /// What Kelvin units turn into heat in a tick [J].
 double viscous_work(const Model& model, const State& before, const State& after) {
   double work = 0;
-  for (std::size_t e = 0; e < model.edges.size(); ++e) {
-    if (after.edge_severed[e]) continue;
-    const auto a = std::size_t(model.edges.a[e]), b = std::size_t(model.edges.b[e]);
+  const AxialElements& axial = model.axial;
+  for (std::size_t e = 0; e < axial.size(); ++e) {
+    if (after.axial_severed[e]) continue;
+    const auto a = std::size_t(axial.a[e]), b = std::size_t(axial.b[e]);
     const Vec3 d = before.position[b] - before.position[a];
-    const double rate = dot(after.velocity[b] - after.velocity[a], d) / norm(d);
-    work += model.tick * model.edges.c[e] * rate * rate;
-  }
-  for (std::size_t t = 0; t < model.tpms.size(); ++t) {
-    if (after.tpm_severed[t]) continue;
-    const double rate = (after.kelvin_elongation[t] - before.kelvin_elongation[t]) / model.tick;
-    work += model.tick * model.tpms.kelvin_c[t] * rate * rate;
+    double rate = dot(after.velocity[b] - after.velocity[a], d) / norm(d);
+    if (axial.law[e] == AxialLaw::two_sphere_tpm) {
+      const auto t = std::size_t(axial.internal[e]);
+      rate = (after.kelvin_elongation[t] - before.kelvin_elongation[t]) / model.tick;
+    }
+    work += model.tick * axial.c[e] * rate * rate;
   }
   return work;
 }
@@ -288,21 +285,16 @@ TEST(BladeForce, WhatTensionHasStoredOpensTheCutWithTheHand) {
   for (int i = 0; i < 1000; ++i)
     by_hand -= 1e-4 * stepper.step(state, blade_at({0.0002, -0.05 + 1e-4 * i, -0.05})).tool_force.y;
   double opened = 0, stored = 0;
-  const auto add = [&](const auto& elements, const std::vector<std::uint8_t>& severed,
-                       const std::vector<double>& energy, auto&& stiffness) {
-    for (std::size_t e = 0; e < elements.size(); ++e) {
-      const Vec3 d = state.position[std::size_t(elements.b[e])] - state.position[std::size_t(elements.a[e])];
-      if (!severed[e]) continue;
-      const double stretch = std::max(0.0, norm(d) - elements.rest_length[e]);
-      const double to_open = energy[e] * std::abs(d.x) / norm(d);
-      opened += to_open, stored += std::min(to_open, 0.5 * stiffness(e) * stretch * stretch);
-    }
-  };
-  add(model.edges, state.edge_severed, model.cut_resistance.edge_energy,
-      [&](std::size_t e) { return model.edges.k[e]; });
-  add(model.tpms, state.tpm_severed, model.cut_resistance.tpm_energy, [&](std::size_t t) {
-    return model.tpms.spring_k[t] * model.tpms.kelvin_k[t] / (model.tpms.spring_k[t] + model.tpms.kelvin_k[t]);
-  });
+  const AxialElements& axial = model.axial;
+  for (std::size_t e = 0; e < axial.size(); ++e) {
+    if (!state.axial_severed[e]) continue;
+    const Vec3 d = state.position[std::size_t(axial.b[e])] - state.position[std::size_t(axial.a[e])];
+    const bool is_tpm = axial.law[e] == AxialLaw::two_sphere_tpm;
+    const double k = is_tpm ? axial.k[e] * axial.kelvin_k[e] / (axial.k[e] + axial.kelvin_k[e]) : axial.k[e];
+    const double stretch = std::max(0.0, norm(d) - axial.rest_length[e]);
+    const double to_open = model.cut_resistance.energy[e] * std::abs(d.x) / norm(d);
+    opened += to_open, stored += std::min(to_open, 0.5 * k * stretch * stretch);
+  }
   EXPECT_GT(stored, 0.05 * opened);
   EXPECT_NEAR(by_hand, opened - stored, 1e-3 * opened) << "F ds = J_c dA - dE";
 }

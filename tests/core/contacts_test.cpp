@@ -19,7 +19,7 @@ class CutAndPressed : public ::testing::Test {
  protected:
   CutAndPressed() {
     model_.tools = {testing::scalpel(0.2), testing::ball(0.02)};
-    model_.lip_k = model_.edges.k[0], model_.contact_friction = 0.3;
+    model_.lip_k = model_.axial.k[0], model_.contact_friction = 0.3;
     state_ = rest_state(model_);
     Stepper stepper(model_);
     for (int i = 0; i < 100; ++i) (void)stepper.step(state_, testing::blade_at({0.0002, -0.05 + 0.001 * i, -0.05}));

@@ -31,9 +31,8 @@ TEST(CuttingCost, WithoutABladeNothingIsKeptForOne) {
   Model model = testing::make_block_model(5, 5, 4);
   model.tools = {testing::ball(0.006)};
   const State state = rest_state(model);
-  EXPECT_TRUE(state.edge_severed.empty() && state.tpm_severed.empty() && state.constraint_severed.empty() &&
-              state.angle_severed.empty() && state.edge_crossing.empty() && state.tpm_crossing.empty() &&
-              state.blade_trail.x.empty());
+  EXPECT_TRUE(state.axial_severed.empty() && state.constraint_severed.empty() && state.angle_severed.empty() &&
+              state.axial_crossing.empty() && state.blade_trail.x.empty());
   EXPECT_FALSE(model.cut_resistance.any()) << "the tissue has no toughness";
   const long before = allocations;
   { const Stepper stepper(model); }
@@ -54,7 +53,7 @@ TEST(CuttingCost, TicksDoNotAllocateNotEvenWhileTheyCut) {
   tough.fracture_toughness = 100, tough.blade_friction = 1000;
   Model model = testing::make_block_model(6, 5, 4, Structure::ctpm, tough);
   model.tools = {testing::scalpel(0.1)};
-  model.lip_k = model.edges.k[0];
+  model.lip_k = model.axial.k[0];
   EXPECT_EQ(allocations_of_ticks(model, way_through({0.0002, -0.05, -0.03}, {0.0002, 0.05, -0.03})), 0);
   model.tools = {testing::ball(0.006)}, model.cut_resistance = {}, model.lip_k = 0;
   EXPECT_EQ(allocations_of_ticks(model, way_through({0, 0, 0.05}, {0, 0, 0.03})), 0);

@@ -48,19 +48,16 @@ TEST(Severing, IsTheSameAtEverySpeedThroughAHeldOrgan) {
       State slow;
       for (const double per_tick : {5e-5, 7e-4, 0.013, 0.2}) {
         State state = cut_through(model, per_tick, Vec3{0.0002, -0.06, -0.05} - 0.5 * Vec3{way.x, 0, 0}, way).state;
-        if (slow.edge_severed.empty()) {
+        if (slow.axial_severed.empty()) {
           slow = state;
           continue;
         }
-        EXPECT_EQ(state.edge_severed, slow.edge_severed);
-        EXPECT_EQ(state.tpm_severed, slow.tpm_severed);
+        EXPECT_EQ(state.axial_severed, slow.axial_severed);
         EXPECT_EQ(state.constraint_severed, slow.constraint_severed);
-        for (std::size_t e = 0; e < state.edge_crossing.size(); ++e)
-          EXPECT_NEAR(crossing_of(state.edge_crossing[e]), crossing_of(slow.edge_crossing[e]), 1.01 * kCrossingUnit);
+        for (std::size_t e = 0; e < state.axial_crossing.size(); ++e)
+          EXPECT_NEAR(crossing_of(state.axial_crossing[e]), crossing_of(slow.axial_crossing[e]), 1.01 * kCrossingUnit);
       }
-      const auto severed = std::count(slow.edge_severed.begin(), slow.edge_severed.end(), 1) +
-                           std::count(slow.tpm_severed.begin(), slow.tpm_severed.end(), 1);
-      EXPECT_GT(severed, 0);
+      EXPECT_GT(std::count(slow.axial_severed.begin(), slow.axial_severed.end(), 1), 0);
     }
 }
 
@@ -69,14 +66,14 @@ TEST(Severing, RemembersWhereTheBladePassed) {
   const double x = 0.0031;
   const State state = cut_through(model, 3e-4, {x, -0.06, -0.05}, {0, 0.12, 0}).state;
   int severed = 0;
-  for (std::size_t e = 0; e < model.edges.size(); ++e) {
-    if (!state.edge_severed[e]) {
-      EXPECT_EQ(state.edge_crossing[e], 0);
+  for (std::size_t e = 0; e < model.axial.size(); ++e) {
+    if (!state.axial_severed[e]) {
+      EXPECT_EQ(state.axial_crossing[e], 0);
       continue;
     }
-    const double a = model.rest_position.x[std::size_t(model.edges.a[e])],
-                 b = model.rest_position.x[std::size_t(model.edges.b[e])];
-    EXPECT_NEAR(a + crossing_of(state.edge_crossing[e]) * (b - a), x, kCrossingUnit * 0.012);
+    const double a = model.rest_position.x[std::size_t(model.axial.a[e])],
+                 b = model.rest_position.x[std::size_t(model.axial.b[e])];
+    EXPECT_NEAR(a + crossing_of(state.axial_crossing[e]) * (b - a), x, kCrossingUnit * 0.012);
     ++severed;
   }
   EXPECT_GT(severed, 0);
@@ -88,13 +85,13 @@ TEST(Severing, ATripleThatLostOneEdgeKeepsTheOther) {
   // Every edge that the plane x = 0 does not cross lives, and every constraint that lost an edge is gone.
   for (std::size_t c = 0; c < model.constraints.size(); ++c) {
     bool lost = false;
-    for (const auto& edge : model.constraints.edge) lost = lost || state.edge_severed[std::size_t(edge[c])];
+    for (const auto& edge : model.constraints.edge) lost = lost || state.axial_severed[std::size_t(edge[c])];
     EXPECT_EQ(state.constraint_severed[c] != 0, lost);
   }
-  for (std::size_t e = 0; e < model.edges.size(); ++e) {
-    const double a = model.rest_position.x[std::size_t(model.edges.a[e])],
-                 b = model.rest_position.x[std::size_t(model.edges.b[e])];
-    EXPECT_EQ(state.edge_severed[e] != 0, (a < 0.0002) != (b < 0.0002));
+  for (std::size_t e = 0; e < model.axial.size(); ++e) {
+    const double a = model.rest_position.x[std::size_t(model.axial.a[e])],
+                 b = model.rest_position.x[std::size_t(model.axial.b[e])];
+    EXPECT_EQ(state.axial_severed[e] != 0, (a < 0.0002) != (b < 0.0002));
   }
 }
 
@@ -115,15 +112,14 @@ TEST(Severing, LooksOnlyNearTheBladeAndMissesNothing) {
     for (std::size_t i = 0; i < moved.size(); ++i) moved.add(i, (trial % 4 == 0 ? 0.02 : 0.001) * noise.next_vec3());
     std::vector<Crossing> of_whole, of_part;
     near.find(tissue.position, Box(from.tip, from.heel, to.tip, to.heel));
-    looked_at += near.elements().size(), all += model.edges.size() + model.tpms.size();
+    looked_at += near.elements().size(), all += model.axial.size();
     const NearElements everything(model);
     severed += sever_swept_by_blade(model, everything, from, to, tissue.position, whole, of_whole);
     (void)sever_swept_by_blade(model, near, from, to, tissue.position, part, of_part);
     near.follow(moved);
     severed += sever_moved_through_blade(model, everything, to, tissue.position, moved, whole, of_whole);
     (void)sever_moved_through_blade(model, near, to, tissue.position, moved, part, of_part);
-    EXPECT_EQ(whole.edge_crossing, part.edge_crossing) << trial;
-    EXPECT_EQ(whole.tpm_crossing, part.tpm_crossing) << trial;
+    EXPECT_EQ(whole.axial_crossing, part.axial_crossing) << trial;
     EXPECT_EQ(whole.constraint_severed, part.constraint_severed) << trial;
     EXPECT_EQ(of_whole.size(), of_part.size());
   }
@@ -157,10 +153,8 @@ TEST(Severing, FollowsACurveAndCutsAPlugOut) {
     State state = rest_state(model);
     Stepper stepper(model);
     EXPECT_GT(cut_around(stepper, state, {0.0002, 0.0003, -0.05}, 0.016, ticks_per_side), 0);
-    for (std::size_t e = 0; e < model.edges.size(); ++e)
-      EXPECT_EQ(state.edge_severed[e] != 0, is_inside(model.edges.a[e]) != is_inside(model.edges.b[e]));
-    for (std::size_t e = 0; e < model.tpms.size(); ++e)
-      EXPECT_EQ(state.tpm_severed[e] != 0, is_inside(model.tpms.a[e]) != is_inside(model.tpms.b[e]));
+    for (std::size_t e = 0; e < model.axial.size(); ++e)
+      EXPECT_EQ(state.axial_severed[e] != 0, is_inside(model.axial.a[e]) != is_inside(model.axial.b[e]));
     Pieces pieces(model);
     EXPECT_EQ(pieces.find(state), 2);
     for (std::int32_t i = 0; i < std::int32_t(model.sphere_count()); ++i)
@@ -189,15 +183,15 @@ TEST(Severing, WhatIsLeftOfATripleIsItsOtherEdgeAsStiffAsBefore) {
   Material material = testing::liver_material();
   material.kelvin = 2 * material.spring;
   const Model model = block_with_blade(5, 1, 1, material);
-  ASSERT_EQ(model.edges.size(), 4u);
+  ASSERT_EQ(model.axial.size(), 4u);
   ASSERT_EQ(model.constraints.size(), 1u);
   const auto edge_between = [&](std::int32_t p, std::int32_t q) {
     for (std::size_t e = 0; e < 4; ++e)
-      if (std::min(model.edges.a[e], model.edges.b[e]) == p && std::max(model.edges.a[e], model.edges.b[e]) == q)
+      if (std::min(model.axial.a[e], model.axial.b[e]) == p && std::max(model.axial.a[e], model.axial.b[e]) == q)
         return e;
     return std::size_t(4);
   };
-  const double left = model.edges.k[edge_between(0, 1)], right = model.edges.k[edge_between(1, 2)];
+  const double left = model.axial.k[edge_between(0, 1)], right = model.axial.k[edge_between(1, 2)];
   EXPECT_NE(left, right) << "a triple is a spring and a Kelvin unit";
   // The left edge of the triple 0-1-2 is severed: only the right one is felt, and the other way round.
   const Vec3Array without_left = forces_after_cut(model, -0.018), without_right = forces_after_cut(model, -0.006);
@@ -239,7 +233,7 @@ TEST(Pieces, AreCountedAsTheyComeLoose) {
 double gap_after_pushing(bool lips_meet, double sideways, double stiffening = Model{}.cut_face_stiffening) {
   Model model = block_with_blade(6, 4, 4, resisting(0));
   model.held_axes.assign(model.sphere_count(), 0);
-  model.lip_k = lips_meet ? model.edges.k[0] : 0, model.cut_face_stiffening = stiffening;
+  model.lip_k = lips_meet ? model.axial.k[0] : 0, model.cut_face_stiffening = stiffening;
   for (std::size_t i = 0; i < model.sphere_count(); ++i) {
     if (i % 6 == 0) model.held_axes[i] = kAnchored;
     if (i % 6 != 5) continue;
@@ -276,7 +270,7 @@ TEST(CutFaces, StayFartherApartTheMoreTheirContactStiffens) {
 
 TEST(CutFaces, ConserveMomentum) {
   Model model = free_block(6, 4, 4, resisting(0));
-  model.lip_k = model.edges.k[0];
+  model.lip_k = model.axial.k[0];
   Stepper stepper(model);
   State state = rest_state(model);
   for (int i = 0; i < 50; ++i) (void)stepper.step(state, blade_at({0.0002, -0.05 + 0.002 * i, -0.05}));

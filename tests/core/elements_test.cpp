@@ -116,12 +116,12 @@ TEST(TwoSphereTpm, ForcesAreTheGradientOfTheSeriesSpringWhileTheKelvinUnitRests)
   testing::Noise noise;
   for (double& elongation : state.kelvin_elongation) elongation = 5e-4 * noise.next();
   const auto energy = [&](const State& at) {
-    const TwoSphereTpms& tpms = model.tpms;
+    const AxialElements& axial = model.axial;
     double sum = 0;
-    for (std::size_t t = 0; t < tpms.size(); ++t) {
-      const double length = norm(at.position[std::size_t(tpms.b[t])] - at.position[std::size_t(tpms.a[t])]);
-      const double x = length - tpms.rest_length[t] - at.kelvin_elongation[t];
-      sum += 0.5 * tpms.spring_k[t] * x * x;
+    for (std::size_t i = 0; i < axial.size(); ++i) {
+      const double length = norm(at.position[std::size_t(axial.b[i])] - at.position[std::size_t(axial.a[i])]);
+      const double x = length - axial.rest_length[i] - at.kelvin_elongation[std::size_t(axial.internal[i])];
+      sum += 0.5 * axial.k[i] * x * x;
     }
     return sum;
   };
@@ -139,7 +139,7 @@ TEST(TwoSphereTpm, ForcesAreTheGradientOfTheSeriesSpringWhileTheKelvinUnitRests)
 TEST(Constraint, ForceOnCIsEquation2Over8) {
   for (const double tilt : {0.001, 0.004, 0.012, 0.024}) {
     Line line(tilt);
-    line.model.edges.k.assign(line.model.edges.size(), 0);  // the constraint alone
+    line.model.axial.k.assign(line.model.axial.size(), 0);  // the constraint alone
     const double arm = 0.024, k = line.model.constraints.k.at(0);
     const double cosine = arm / std::sqrt(arm * arm + tilt * tilt);
     const double expected = -2 * k * (1 - cosine) * tilt / (1 + tilt / arm);
@@ -152,7 +152,7 @@ TEST(Constraint, ForceOnCIsEquation2Over8) {
 
 TEST(Constraint, IsTheGradientOfItsEnergyWithoutSoftening) {
   Line line(0.007);
-  line.model.edges.k.assign(line.model.edges.size(), 0);
+  line.model.axial.k.assign(line.model.axial.size(), 0);
   // Integral of 2 k' (1 - h / sqrt(h^2 + u^2)) u du.
   const double k = line.model.constraints.k.at(0), h = 0.024;
   const auto energy = [&](double u) { return k * u * u - 2 * k * h * (std::sqrt(h * h + u * u) - h); };
@@ -165,15 +165,15 @@ TEST(Constraint, IsTheGradientOfItsEnergyWithoutSoftening) {
 TEST(Constraint, AStraightStretchedLineHasNone) {
   Line line(0);
   for (std::size_t i = 0; i < 5; ++i) line.state.position.x[i] *= 1.5;
-  line.model.edges.k.assign(line.model.edges.size(), 0);
+  line.model.axial.k.assign(line.model.axial.size(), 0);
   const Vec3Array force = internal_forces(line.model, line.state);
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(norm(force[i]), 0);
 }
 
 TEST(Constraint, PullsWithTwiceKWhereItsEndsMeetAndNotAtAllWhereItIsAPoint) {
   Line line(0.01);
-  line.model.edges.k.assign(line.model.edges.size(), 0);
-  line.model.has_softening = false, line.model.edges.third = {};
+  line.model.axial.k.assign(line.model.axial.size(), 0);
+  line.model.has_softening = false, line.model.axial.third = {};
   line.state.position.x.assign(5, 0);
   const Vec3Array force = internal_forces(line.model, line.state);
   EXPECT_NEAR(force.z[2], -2 * line.model.constraints.k.at(0) * 0.01, 1e-12);
@@ -186,7 +186,7 @@ TEST(Softening, HalvesATripleAt45Degrees) {
   Line line(0.024);  // tan(theta) = 1
   const double soft = internal_forces(line.model, line.state).x[1];
   line.model.has_softening = false;
-  line.model.edges.third = {};
+  line.model.axial.third = {};
   const double hard = internal_forces(line.model, line.state).x[1];
   ASSERT_NE(hard, 0);
   EXPECT_NEAR(soft, hard / 2, 1e-12);
@@ -207,7 +207,7 @@ TEST(Softening, DoesWorkInAClosedCycle) {
   };
   const Vec3 out{0.006, 0, 0}, down{0, 0, 0.012};
   move(4, out), move(2, down), move(4, -out), move(2, -down);
-  const double stored = 0.5 * line.model.edges.k[0] * 0.006 * 0.006;
+  const double stored = 0.5 * line.model.axial.k[0] * 0.006 * 0.006;
   EXPECT_GT(std::abs(work), 0.01 * stored);
   line.model.has_softening = false, work = 0;
   move(4, out), move(2, down), move(4, -out), move(2, -down);
@@ -223,29 +223,79 @@ TEST(Softening, StaysFiniteAt90Degrees) {
 
 TEST(Network, TilesARunIntoMirroredTriplesThatShareEnds) {
   const Model model = make_block_model(10, 1, 1);
-  ASSERT_EQ(model.edges.size(), 8u);
-  ASSERT_EQ(model.tpms.size(), 1u);  // nine edges: four triples and one left over
+  ASSERT_EQ(model.axial.size(), 9u);  // four triples and one element left over
   ASSERT_EQ(model.constraints.size(), 2u);
   const std::vector<bool> is_kelvin{false, true, true, false, false, true, true, false};
-  for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(model.edges.c[i] > 0, is_kelvin[i]) << "edge " << i;
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_EQ(model.axial.law[i], is_kelvin[i] ? AxialLaw::kelvin_unit : AxialLaw::spring) << "element " << i;
+    EXPECT_EQ(model.axial.c[i] > 0, is_kelvin[i]) << "element " << i;
+    EXPECT_EQ(model.axial.internal[i], -1);
+  }
   EXPECT_EQ(model.constraints.c, (std::vector<std::int32_t>{2, 6}));
   EXPECT_EQ(model.constraints.a, (std::vector<std::int32_t>{0, 4}));
   EXPECT_EQ(model.constraints.e, (std::vector<std::int32_t>{4, 8}));
-  EXPECT_EQ(model.tpms.a[0], 8);
+  EXPECT_EQ(model.axial.a[8], 8);
+  EXPECT_EQ(model.axial.law[8], AxialLaw::two_sphere_tpm);
+  EXPECT_EQ(model.axial.internal[8], 0);
+}
+
+TEST(Network, TwoSphereTpmsOfAllOrgansComeLast) {
+  Model model;
+  OrganSettings settings;
+  settings.material = testing::liver_material();
+  for (const double toughness : {100.0, 300.0}) {
+    settings.material.fracture_toughness = toughness;
+    ASSERT_TRUE(add_organ(model, testing::make_block(6, 4, 5), settings));
+  }
+  const AxialElements& axial = model.axial;
+  const std::size_t first_tpm = axial.size() - axial.internal_count();
+  ASSERT_GT(first_tpm, 0u);
+  ASSERT_GT(axial.internal_count(), 0u);
+  const auto is_second = [&](std::int32_t sphere) { return sphere >= model.organs[1].first; };
+  for (std::size_t i = 0; i < axial.size(); ++i) {
+    const bool is_tpm = axial.law[i] == AxialLaw::two_sphere_tpm;
+    EXPECT_EQ(is_tpm, i >= first_tpm) << "element " << i;
+    EXPECT_EQ(axial.internal[i], is_tpm ? std::int32_t(i - first_tpm) : -1);
+    EXPECT_EQ(is_second(axial.a[i]), is_second(axial.b[i]));
+    // Each keeps the resistance of its own organ.
+    const double per_toughness = model.cut_resistance.energy[i] / (is_second(axial.a[i]) ? 300 : 100);
+    EXPECT_NEAR(per_toughness, model.cut_resistance.energy[0] / 100, 1e-18);
+  }
+  for (std::size_t c = 0; c < model.constraints.size(); ++c) {
+    const Constraints& lines = model.constraints;
+    const auto element = [&](std::size_t n) { return std::size_t(lines.edge[n][c]); };
+    EXPECT_EQ(axial.a[element(0)], lines.a[c]);
+    EXPECT_EQ(axial.b[element(1)], lines.c[c]);
+    EXPECT_EQ(axial.a[element(2)], lines.c[c]);
+    EXPECT_EQ(axial.b[element(3)], lines.e[c]);
+  }
+}
+
+TEST(Network, SpheresKeepTheirCellsCountedFromTheOrgansFirst) {
+  FilledOrgan organ = testing::make_block(4, 3, 2);
+  for (auto& cell : organ.cell) cell = {cell[0] + 7, cell[1] - 5, cell[2] + 2};
+  Model model;
+  OrganSettings settings;
+  settings.material = testing::liver_material();
+  ASSERT_TRUE(add_organ(model, organ, settings));
+  ASSERT_TRUE(add_organ(model, organ, settings));
+  ASSERT_EQ(model.cell.size(), model.sphere_count());
+  for (std::int32_t i = 0; i < 48; ++i)
+    EXPECT_EQ(model.cell[std::size_t(i)], (LatticeCell{i % 4, i % 24 / 4 % 3, i % 24 / 12})) << "sphere " << i;
 }
 
 TEST(Network, InnerSpheresOfCubic18Have18Edges) {
   const Model model = make_block_model(5, 5, 5, Structure::mass_spring);
   std::vector<int> degree(model.sphere_count());
-  for (std::size_t i = 0; i < model.edges.size(); ++i)
-    ++degree[std::size_t(model.edges.a[i])], ++degree[std::size_t(model.edges.b[i])];
+  for (std::size_t i = 0; i < model.axial.size(); ++i)
+    ++degree[std::size_t(model.axial.a[i])], ++degree[std::size_t(model.axial.b[i])];
   EXPECT_EQ(degree[62], 18);  // the middle
   EXPECT_EQ(degree[0], 6);    // a corner: 3 axis and 3 diagonal neighbours
 }
 
 TEST(Network, StiffnessIsThePapersModulusTimesProbeArea) {
   const Model model = make_block_model(3, 1, 1);
-  EXPECT_NEAR(model.edges.k[0], 15e6 * 3.14159265358979 * 4e-6, 1e-9);  // 188.5 N/m
+  EXPECT_NEAR(model.axial.k[0], 15e6 * 3.14159265358979 * 4e-6, 1e-9);  // 188.5 N/m
   EXPECT_NEAR(model.mass[0], 1060 * 0.012 * 0.012 * 0.012, 1e-15);
 }
 
@@ -303,11 +353,10 @@ TEST_P(EveryLayeredStructure, LayersOfOneMaterialAreTheOrganWithoutLayers) {
   const Model plain = make_block_model(6, 5, 7, GetParam());
   const Model layered = *make_layered_model(6, 5, 7, GetParam(), {same, deeper});
   EXPECT_EQ(layered.mass, plain.mass);
-  EXPECT_EQ(layered.edges.k, plain.edges.k);
-  EXPECT_EQ(layered.edges.c, plain.edges.c);
-  EXPECT_EQ(layered.tpms.spring_k, plain.tpms.spring_k);
-  EXPECT_EQ(layered.tpms.kelvin_k, plain.tpms.kelvin_k);
-  EXPECT_EQ(layered.tpms.kelvin_c, plain.tpms.kelvin_c);
+  EXPECT_EQ(layered.axial.law, plain.axial.law);
+  EXPECT_EQ(layered.axial.k, plain.axial.k);
+  EXPECT_EQ(layered.axial.c, plain.axial.c);
+  EXPECT_EQ(layered.axial.kelvin_k, plain.axial.kelvin_k);
   EXPECT_EQ(layered.constraints.k, plain.constraints.k);
   EXPECT_EQ(layered.angle_springs.k, plain.angle_springs.k);
 }
@@ -337,20 +386,20 @@ TEST(Layers, AnElementHasTheMeanOfItsSpheres) {
   const Model model = *make_layered_model(5, 3, 3, Structure::ctpm, {capsule()});
   const std::int32_t a = 20;  // of the middle line
   std::size_t spring = 0, kelvin = 0, line = 0;
-  while (!(model.edges.a[spring] == a && model.edges.b[spring] == a + 1)) ++spring;
-  while (!(model.edges.a[kelvin] == a + 1 && model.edges.b[kelvin] == a + 2)) ++kelvin;
+  while (!(model.axial.a[spring] == a && model.axial.b[spring] == a + 1)) ++spring;
+  while (!(model.axial.a[kelvin] == a + 1 && model.axial.b[kelvin] == a + 2)) ++kelvin;
   while (!(model.constraints.a[line] == a && model.constraints.e[line] == a + 4)) ++line;
-  EXPECT_NEAR(model.edges.k[spring], value((82 + 15 + 15) / 3.0), 1e-9);
-  EXPECT_NEAR(model.edges.k[kelvin], value((58 + 15 + 15) / 3.0), 1e-9);
-  EXPECT_NEAR(model.edges.c[kelvin], value((3 + 5 + 5) / 3.0), 1e-9);
+  EXPECT_NEAR(model.axial.k[spring], value((82 + 15 + 15) / 3.0), 1e-9);
+  EXPECT_NEAR(model.axial.k[kelvin], value((58 + 15 + 15) / 3.0), 1e-9);
+  EXPECT_NEAR(model.axial.c[kelvin], value((3 + 5 + 5) / 3.0), 1e-9);
   const double capsule_p2 = 82.0 * 58 / (82 + 58);
   EXPECT_NEAR(model.constraints.k[line], value((2 * (164 - capsule_p2) + 3 * (20 - 7.5)) / 5), 1e-9);
 
   const Model tpm = *make_layered_model(5, 3, 3, Structure::tpm, {capsule()});
   std::size_t border = 0;
-  while (!(tpm.tpms.a[border] == a && tpm.tpms.b[border] == a + 1)) ++border;
-  EXPECT_NEAR(tpm.tpms.spring_k[border], value((82 + 15) / 2.0), 1e-9);
-  EXPECT_NEAR(tpm.tpms.kelvin_c[border], value((3 + 5) / 2.0), 1e-9);
+  while (!(tpm.axial.a[border] == a && tpm.axial.b[border] == a + 1)) ++border;
+  EXPECT_NEAR(tpm.axial.k[border], value((82 + 15) / 2.0), 1e-9);
+  EXPECT_NEAR(tpm.axial.c[border], value((3 + 5) / 2.0), 1e-9);
 }
 
 TEST(Layers, ASphereHasTheMassOfItsOwnLayer) {

@@ -110,7 +110,7 @@ Model make_pair() {
 
 TEST(StableStepBound, IsExactForOneSpring) {
   const Model model = make_pair();
-  const double frequency = std::sqrt(2 * model.edges.k[0] / model.mass[0]);
+  const double frequency = std::sqrt(2 * model.axial.k[0] / model.mass[0]);
   EXPECT_NEAR(stable_step_bound(model), 2 / frequency, 1e-12);
 }
 
@@ -173,7 +173,7 @@ TEST(Leapfrog, ALoadThatStartsAtOnceIsOfSecondOrder) {
     State state = rest_state(model);
     Stepper stepper(model);
     while (double(state.tick) * tick < 0.0159) EXPECT_EQ(stepper.step(state, {}).status, StepStatus::ok);
-    const double k = model.edges.k[0], angle = std::sqrt(k / model.mass[1]) * 0.016;
+    const double k = model.axial.k[0], angle = std::sqrt(k / model.mass[1]) * 0.016;
     return state.position.x[1] - model.rest_position.x[1] - 0.02 / k * (1 - std::cos(angle));
   };
   EXPECT_NEAR(std::log2(height(4e-4) / height(2e-4)), 2, 0.1);

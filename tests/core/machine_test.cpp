@@ -59,7 +59,7 @@ TEST_P(EveryMachine, GivesTheSameBits) {
     EXPECT_EQ(plain.velocity, other.velocity) << "structure " << int(structure);
     EXPECT_EQ(plain.kelvin_elongation, other.kelvin_elongation) << "structure " << int(structure);
     EXPECT_EQ(plain.acceleration, other.acceleration) << "structure " << int(structure);
-    EXPECT_EQ(plain.edge_severed, other.edge_severed) << "structure " << int(structure);
+    EXPECT_EQ(plain.axial_severed, other.axial_severed) << "structure " << int(structure);
     EXPECT_NE(plain.position, model.rest_position);
   }
 }

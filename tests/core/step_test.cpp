@@ -245,10 +245,10 @@ TEST(Cutting, AFullCutSeparatesTheBlockExactly) {
   std::int32_t severed = 0;
   for (int i = 0; i < 100; ++i) severed += stepper.step(state, tool_at({0.0001, -0.05 + 0.001 * i, -0.05})).severed;
   EXPECT_GT(severed, 0);
-  for (std::size_t e = 0; e < model.edges.size(); ++e) {
-    const bool crosses = (model.rest_position.x[std::size_t(model.edges.a[e])] < 0) !=
-                         (model.rest_position.x[std::size_t(model.edges.b[e])] < 0);
-    EXPECT_EQ(state.edge_severed[e] != 0, crosses) << "edge " << e;
+  for (std::size_t e = 0; e < model.axial.size(); ++e) {
+    const bool crosses = (model.rest_position.x[std::size_t(model.axial.a[e])] < 0) !=
+                         (model.rest_position.x[std::size_t(model.axial.b[e])] < 0);
+    EXPECT_EQ(state.axial_severed[e] != 0, crosses) << "edge " << e;
   }
 }
 
@@ -259,10 +259,10 @@ TEST(Cutting, IsExactHoweverFastTheBladeMoves) {
     Stepper stepper(model);
     State state = rest_state(model);
     for (int i = 0; i < ticks; ++i) (void)stepper.step(state, tool_at({0.0001, -0.05 + 0.1 * i / (ticks - 1), -0.05}));
-    for (std::size_t e = 0; e < model.edges.size(); ++e) {
-      const bool crosses = (model.rest_position.x[std::size_t(model.edges.a[e])] < 0) !=
-                           (model.rest_position.x[std::size_t(model.edges.b[e])] < 0);
-      EXPECT_EQ(state.edge_severed[e] != 0, crosses) << ticks << " ticks, edge " << e;
+    for (std::size_t e = 0; e < model.axial.size(); ++e) {
+      const bool crosses = (model.rest_position.x[std::size_t(model.axial.a[e])] < 0) !=
+                           (model.rest_position.x[std::size_t(model.axial.b[e])] < 0);
+      EXPECT_EQ(state.axial_severed[e] != 0, crosses) << ticks << " ticks, edge " << e;
     }
   }
 }

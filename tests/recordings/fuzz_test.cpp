@@ -6,8 +6,10 @@
 #include <random>
 
 #include "recordings/internal/field_codec.h"
+#include "recordings/internal/legacy_fields.h"
 #include "recordings/internal/model_check.h"
 #include "recordings/internal/tick_codec.h"
+#include "tests/recordings/earlier_fields.h"
 #include "tests/recordings/sessions.h"
 
 namespace ctpm {
@@ -84,13 +86,18 @@ Bytes bytes_of(const S& structure) {
   return bytes;
 }
 
-/// Decodes; empty if it was refused.
+/// Decodes as sessions are read; empty if it was refused.
 template <class S>
 std::optional<S> decoded(const Bytes& bytes) {
   S structure;
   std::string problem;
   ByteReader in(bytes, budget);
-  get_fields(in, structure, problem);
+  if constexpr (std::is_same_v<S, Model>)
+    get_model(in, structure, problem);
+  else if constexpr (std::is_same_v<S, State>)
+    get_state(in, structure, problem);
+  else
+    get_fields(in, structure, problem);
   if (!problem.empty()) return std::nullopt;
   return structure;
 }
@@ -102,9 +109,8 @@ SessionStart tiny_start() {
   return start;
 }
 
-TEST(Fuzz, AModelIsRefusedOrCanBeSimulated) {
-  const SessionStart start = tiny_start();
-  const Bytes whole = bytes_of(start.model);
+/// Damaged copies of a Model are refused or can be simulated.
+void expect_safe_models(const Bytes& whole) {
   ASSERT_TRUE(decoded<Model>(whole));
   Mutator mutate(1);
   int refused = 0, simulated = 0;
@@ -125,6 +131,10 @@ TEST(Fuzz, AModelIsRefusedOrCanBeSimulated) {
   EXPECT_GT(refused, 1000);
   EXPECT_GT(simulated, 100);
 }
+
+TEST(Fuzz, AModelIsRefusedOrCanBeSimulated) { expect_safe_models(bytes_of(tiny_start().model)); }
+
+TEST(Fuzz, AModelOfAnEarlierProgramIsRefusedOrCanBeSimulated) { expect_safe_models(earlier_bytes(tiny_start().model)); }
 
 TEST(Fuzz, AStateIsRefusedOrCanBeSimulated) {
   const SessionStart start = tiny_start();

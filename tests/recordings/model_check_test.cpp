@@ -24,8 +24,7 @@ Model rich_model() {
   model.loads.sphere = {4}, model.loads.start = {0}, model.loads.ramp = {0.1};
   model.loads.force = Vec3Array(1);
   CutResistance& cut = model.cut_resistance;
-  cut.edge_energy.assign(model.edges.size(), 1), cut.edge_friction.assign(model.edges.size(), 1);
-  cut.tpm_energy.assign(model.tpms.size(), 1), cut.tpm_friction.assign(model.tpms.size(), 1);
+  cut.energy.assign(model.axial.size(), 1), cut.friction.assign(model.axial.size(), 1);
   return model;
 }
 
@@ -118,8 +117,7 @@ TEST(ModelCheck, NoFieldOfAStateTakesNaNAnotherLengthOrAnIndexBeyondItsArray) {
   EXPECT_EQ(unnoticed(Harm::not_a_number, whole, notices).first, (std::set<std::string>{"last_inputs.position"}))
       << "only a tool's pose is looked at, and a refused one may be anything";
   EXPECT_EQ(unnoticed(Harm::another_length, whole, notices).first, std::set<std::string>{});
-  EXPECT_EQ(unnoticed(Harm::far_too_large, whole, notices).first,
-            (std::set<std::string>{"edge_crossing", "tpm_crossing"}))
+  EXPECT_EQ(unnoticed(Harm::far_too_large, whole, notices).first, (std::set<std::string>{"axial_crossing"}))
       << "every byte is a place on an element";
 }
 
@@ -135,20 +133,19 @@ TEST(ModelCheck, NamesTheFieldAndWhatItMustBe) {
       {"held_axes[1] has unknown bits", [](Model& m) { m.held_axes[1] = 8; }},
       {"contact_friction must be finite and not below 0", [](Model& m) { m.contact_friction = -0.1; }},
       {"gravity must be finite", [](Model& m) { m.gravity.z = -INFINITY; }},
-      {"edges.k[0] must be finite and above 0", [](Model& m) { m.edges.k[0] = -1; }},
+      {"axial.k[0] must be finite and above 0", [](Model& m) { m.axial.k[0] = -1; }},
       {"loads.ramp[0] must be finite and not below 0", [](Model& m) { m.loads.ramp[0] = -1e-9; }},
       {"constraints.edge3[0] is -1, must be in [0, ", [](Model& m) { m.constraints.edge[3][0] = -1; }},
       {"tools[0].radius must be finite and not below 0", [](Model& m) { m.tools[0].radius = -1; }},
       {"tools[2] is a pin that holds no sphere", [](Model& m) { m.tools[2].sphere = -1; }},
       {"tools[1].kind is of an unknown kind", [](Model& m) { m.tools[1].kind = static_cast<ToolKind>(3); }},
       {"organs[0] is not a range of spheres", [](Model& m) { ++m.organs[0].count; }},
-      {"edges[0] joins a sphere with itself", [](Model& m) { m.edges.b[0] = m.edges.a[0]; }},
+      {"axial[0] joins a sphere with itself", [](Model& m) { m.axial.b[0] = m.axial.a[0]; }},
       {"solver.tolerance must be in (0, 1)", [](Model& m) { m.solver.tolerance = 1; }},
       {"solver.max_iterations must be in [1, 1000000]", [](Model& m) { m.solver.max_iterations = 0; }},
       {"solver.substeps must be in [1, 10000]", [](Model& m) { m.solver.substeps = 10001; }},
       {"solver.integrator is of an unknown kind", [](Model& m) { m.solver.integrator = static_cast<Integrator>(3); }},
-      {"cut_resistance.edge_friction has 0 entries, expected ",
-       [](Model& m) { m.cut_resistance.edge_friction.clear(); }},
+      {"cut_resistance.friction has 0 entries, expected ", [](Model& m) { m.cut_resistance.friction.clear(); }},
   };
   for (const Case& one : cases) {
     Model model = rich_model();
@@ -158,7 +155,7 @@ TEST(ModelCheck, NamesTheFieldAndWhatItMustBe) {
     EXPECT_TRUE(errors[0].message.starts_with(one.message)) << errors[0].message << "\ninstead of " << one.message;
   }
   Model softening = rich_model();
-  softening.has_softening = true, softening.edges.third.clear();
+  softening.has_softening = true, softening.axial.third.clear();
   EXPECT_FALSE(check_model(softening).empty());
 }
 

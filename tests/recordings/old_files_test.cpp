@@ -18,6 +18,18 @@ std::string copy_of(const std::string& name, const Folder& folder) {
   return folder / name;
 }
 
+/// Elements join spheres whose cells are as far apart as they are, in spacings.
+void expect_cells_of_neighbours(const Model& model) {
+  ASSERT_FALSE(model.organs.empty());
+  for (std::size_t e = 0; e < model.axial.size(); ++e) {
+    const auto a = std::size_t(model.axial.a[e]), b = std::size_t(model.axial.b[e]);
+    const LatticeCell p = model.cell[a], q = model.cell[b];
+    const Vec3 cells{double(q[0] - p[0]), double(q[1] - p[1]), double(q[2] - p[2])};
+    const double distance = norm(model.rest_position[b] - model.rest_position[a]);
+    EXPECT_NEAR(norm(cells) * model.organs[0].spacing, distance, 1e-9) << "element " << e;
+  }
+}
+
 TEST(OldFiles, EachOpensAndGivesAllThatItHolds) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(kOld)) {
@@ -37,7 +49,14 @@ TEST(OldFiles, EachOpensAndGivesAllThatItHolds) {
     ASSERT_TRUE(ticks) << text_of(ticks.errors());
     const auto keyframes = reader->keyframe_ticks();
     ASSERT_TRUE(keyframes) << text_of(keyframes.errors());
-    for (const std::int64_t tick : *keyframes) EXPECT_TRUE(reader->keyframe_at_or_before(tick));
+    for (const std::int64_t tick : *keyframes) {
+      const auto keyframe = reader->keyframe_at_or_before(tick);
+      ASSERT_TRUE(keyframe) << text_of(keyframe.errors());
+      // The hash that the program of then gave.
+      if (tick == 0) continue;
+      EXPECT_EQ(state_hash(keyframe->state), (*ticks)[std::size_t(tick - 1)].state_hash) << tick;
+    }
+    expect_cells_of_neighbours(reader->start().model);
     EXPECT_TRUE(reader->events());
     EXPECT_TRUE(reader->statistics());
     EXPECT_EQ(reader->start().physics_revision, 0) << "recorded before revisions were stored";

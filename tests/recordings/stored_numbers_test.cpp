@@ -9,7 +9,7 @@
 #include "core/stepping/step.h"
 #include "recordings/event.h"
 #include "recordings/internal/field_codec.h"
-#include "recordings/internal/legacy.h"
+#include "recordings/internal/legacy_values.h"
 
 namespace ctpm {
 namespace {

@@ -160,13 +160,13 @@ TEST(BuildModel, TheOrgansKeysReachTheNetwork) {
   const BuiltScene ctpm = build(block_scene(R"(, "damage_depth_mm": 12)"));
   EXPECT_EQ(ctpm.model.organs.at(0).damage_depth, 0.012);
   EXPECT_EQ(ctpm.model.organs.at(0).name, "block");
-  EXPECT_GT(ctpm.model.edges.size(), 0u);
-  EXPECT_FALSE(ctpm.model.edges.c.empty());
+  EXPECT_GT(ctpm.model.axial.size(), 0u);
+  EXPECT_FALSE(ctpm.model.axial.c.empty());
   const BuiltScene springs = build(block_scene(R"(, "model": "mass-spring")"));
-  EXPECT_TRUE(springs.model.edges.c.empty());
-  EXPECT_EQ(build(block_scene(R"(, "model": "tpm")")).model.tpms.size(), springs.model.edges.size());
+  EXPECT_TRUE(springs.model.axial.c.empty());
+  EXPECT_EQ(build(block_scene(R"(, "model": "tpm")")).model.axial.internal_count(), springs.model.axial.size());
   EXPECT_GT(build(block_scene(R"(, "model": "angle-mass-spring")")).model.angle_springs.size(), 0u);
-  EXPECT_LT(build(block_scene(R"(, "lattice": "cubic-6")")).model.edges.size(), ctpm.model.edges.size());
+  EXPECT_LT(build(block_scene(R"(, "lattice": "cubic-6")")).model.axial.size(), ctpm.model.axial.size());
 }
 
 /// A block of 5 x 5 x 5 spheres, 6, 18 and 30 mm deep, with layers.
@@ -184,7 +184,7 @@ TEST(BuildModel, LayersHaveTheirOwnTissue) {
   EXPECT_NEAR(built.model.mass[31], 1100 * volume, 1e-15);
   EXPECT_NEAR(built.model.mass[62], 1060 * volume, 1e-15);
   // Along the block's first line all five spheres are skin.
-  EXPECT_NEAR(built.model.edges.k.at(0), 82e6 * edge_area(find_preset("skin")->material, 0.012), 1e-9);
+  EXPECT_NEAR(built.model.axial.k.at(0), 82e6 * edge_area(find_preset("skin")->material, 0.012), 1e-9);
 }
 
 TEST(BuildModel, ALayerDeeperThanTheOrganIsAnErrorAtItsPlace) {

@@ -136,7 +136,7 @@ TEST(BuildModel, ARigBecomesItsSpheresAndElements) {
   const Result<BuiltScene> built = build_model(scene->spec, organs);
   ASSERT_TRUE(built) << to_string(built.errors().front());
   EXPECT_EQ(built->model.sphere_count(), 5u);
-  EXPECT_EQ(built->model.edges.size(), 4u);
+  EXPECT_EQ(built->model.axial.size(), 4u);
   EXPECT_EQ(built->model.constraints.size(), 1u);
   EXPECT_EQ(built->model.tools[0].sphere, 2);
   EXPECT_EQ(built->model.held_axes[0], kAnchored);

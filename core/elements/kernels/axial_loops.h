@@ -24,8 +24,7 @@ void find_directions(const AxialArrays& m, const AxialBatch& batch, Directions& 
 /// What tension is multiplied by: Eq. 8's factor of a whole triple, from the largest tilt of its spheres, and nothing
 /// where the element is severed. False: by one everywhere, and `factor` is not written.
 bool find_factors(const AxialArrays& m, const AxialBatch& batch, double* __restrict factor) {
-  const std::uint8_t* severed = batch.law == AxialLaw::two_sphere_tpm ? m.tpm_severed : m.edge_severed;
-  if (kOnlySprings || (m.softness == nullptr && severed == nullptr)) return false;
+  if (m.softness == nullptr && m.severed == nullptr) return false;
   if (m.softness != nullptr) {
     const double *sa = m.softness + batch.a, *sb = m.softness + batch.b, *all = m.softness;
     const int32_t* third = m.third + batch.place;
@@ -35,14 +34,11 @@ bool find_factors(const AxialArrays& m, const AxialBatch& batch, double* __restr
     CTPM_INDEPENDENT
     for (int32_t i = 0; i < batch.count; ++i) factor[i] = 1;
   }
-  if (severed != nullptr && batch.law == AxialLaw::two_sphere_tpm) {
-    severed += batch.tpm;
+  if (m.severed != nullptr) {
+    const std::uint8_t* severed = m.severed;
+    const int32_t* element = m.element + batch.place;
     CTPM_INDEPENDENT
-    for (int32_t i = 0; i < batch.count; ++i) factor[i] = severed[i] != 0 ? 0.0 : factor[i];
-  } else if (severed != nullptr) {
-    const int32_t* edge = m.edge + batch.place;
-    CTPM_INDEPENDENT
-    for (int32_t i = 0; i < batch.count; ++i) factor[i] = severed[edge[i]] != 0 ? 0.0 : factor[i];
+    for (int32_t i = 0; i < batch.count; ++i) factor[i] = severed[element[i]] != 0 ? 0.0 : factor[i];
   }
   return true;
 }
@@ -55,7 +51,7 @@ void add_axial_forces_of(const AxialArrays& m, const AxialBatch& batch) {
   if (kHasFactors && !find_factors(m, batch, factor))
     for (int32_t i = 0; i < n; ++i) factor[i] = 1;
   const double *rest = m.parameters + batch.parameters, *k = rest + n, *c = k + n;
-  const double* kelvin = m.kelvin_elongation + (kLaw == AxialLaw::two_sphere_tpm ? batch.tpm : 0);
+  const double* kelvin = m.kelvin_elongation + (kLaw == AxialLaw::two_sphere_tpm ? batch.internal : 0);
   const double *xa = m.x + batch.a, *ya = m.y + batch.a, *za = m.z + batch.a;
   const double *xb = m.x + batch.b, *yb = m.y + batch.b, *zb = m.z + batch.b;
   const double *vxa = m.vx + batch.a, *vya = m.vy + batch.a, *vza = m.vz + batch.a;
@@ -67,7 +63,7 @@ void add_axial_forces_of(const AxialArrays& m, const AxialBatch& batch) {
     const double shrink = length > kShortest ? 1 / length : 0.0;
     double tension = k[i] * (length - rest[i]);
     if constexpr (kLaw == AxialLaw::two_sphere_tpm) tension = k[i] * (length - rest[i] - kelvin[i]);
-    if constexpr (kLaw == AxialLaw::spring_and_dashpot)
+    if constexpr (kLaw == AxialLaw::kelvin_unit)
       tension += c[i] * shrink * (dx * (vxb[i] - vxa[i]) + dy * (vyb[i] - vya[i]) + dz * (vzb[i] - vza[i]));
     if constexpr (kHasFactors) tension *= factor[i];
     const double pull = tension * shrink;
@@ -79,16 +75,12 @@ void add_axial_forces_of(const AxialArrays& m, const AxialBatch& batch) {
 
 template <bool kHasFactors>
 void add_axial_forces_with(const AxialArrays& m, const AxialBatch* first, const AxialBatch* last) {
-  if constexpr (kOnlySprings) {
-    for (; first != last; ++first) add_axial_forces_of<AxialLaw::spring, false>(m, *first);
-    return;
-  }
   for (; first != last; ++first) switch (first->law) {
       case AxialLaw::spring:
         add_axial_forces_of<AxialLaw::spring, kHasFactors>(m, *first);
         break;
-      case AxialLaw::spring_and_dashpot:
-        add_axial_forces_of<AxialLaw::spring_and_dashpot, kHasFactors>(m, *first);
+      case AxialLaw::kelvin_unit:
+        add_axial_forces_of<AxialLaw::kelvin_unit, kHasFactors>(m, *first);
         break;
       case AxialLaw::two_sphere_tpm:
         add_axial_forces_of<AxialLaw::two_sphere_tpm, kHasFactors>(m, *first);
@@ -97,7 +89,7 @@ void add_axial_forces_with(const AxialArrays& m, const AxialBatch* first, const 
 }
 
 void add_axial_forces(const AxialArrays& m, const AxialBatch* first, const AxialBatch* last) {
-  if (!kOnlySprings && (m.softness != nullptr || m.edge_severed != nullptr || m.tpm_severed != nullptr))
+  if (m.softness != nullptr || m.severed != nullptr)
     add_axial_forces_with<true>(m, first, last);
   else
     add_axial_forces_with<false>(m, first, last);
@@ -109,9 +101,9 @@ void find_tension(const AxialArrays& m, const AxialBatch& batch, const Direction
   const int32_t n = batch.count;
   const double h = m.h, *length = d.length;
   const double *rest = m.parameters + batch.parameters, *k = rest + n, *c = k + n;
-  if (!kOnlySprings && batch.law == AxialLaw::two_sphere_tpm) {
+  if (batch.law == AxialLaw::two_sphere_tpm) {
     const double *spring = k, *unit = c, *viscosity = c + n;
-    const double* kelvin = m.kelvin_elongation + batch.tpm;
+    const double* kelvin = m.kelvin_elongation + batch.internal;
     // The implicit step of c z' + k1 z = k2 (x - z) is solved for z, which leaves a spring with an offset.
     CTPM_INDEPENDENT
     for (int32_t i = 0; i < n; ++i) {
@@ -120,7 +112,7 @@ void find_tension(const AxialArrays& m, const AxialBatch& batch, const Direction
       tension[i] = stiffness * (length[i] - rest[i]) - spring[i] * damping * kelvin[i] / sum;
       coupling[i] = h * h * stiffness;
     }
-  } else if (!kOnlySprings && batch.law == AxialLaw::spring_and_dashpot) {
+  } else if (batch.law == AxialLaw::kelvin_unit) {
     CTPM_INDEPENDENT
     for (int32_t i = 0; i < n; ++i) tension[i] = k[i] * (length[i] - rest[i]), coupling[i] = h * (h * k[i] + c[i]);
     if (!m.with_dashpots) return;

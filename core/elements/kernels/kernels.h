@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/model/axial_law.h"
+
 namespace ctpm {
 
 /// Vector instructions that the inner loops may use. All give the same bits: every lane does what scalar code does, in
@@ -18,9 +20,6 @@ const char* name_of(InstructionSet set);
 /// Most elements of a batch; what a loop keeps of a batch stays in the first cache.
 inline constexpr std::int32_t kBatch = 64;
 
-/// What gives an axial element its tension.
-enum class AxialLaw : std::int32_t { spring, spring_and_dashpot, two_sphere_tpm };
-
 /// Where loops over one slab's elements add: rows of the slab's own spheres. They lie apart from those of other slabs,
 /// since processors that write to neighbouring memory wait for each other.
 template <class Real>
@@ -30,19 +29,18 @@ struct SlabTarget {
   std::size_t stride;  ///< from row to row
 };
 
-/// Axial elements of one law whose two ends both advance by one sphere from place to place, so that loops need no index
-/// gathers. Where a lattice row leaves out a few, places without an element (k = 0) bridge the gap. An element between
-/// two slabs has a place for each of them, which adds to that slab's spheres only, so that slabs never wait for each
-/// other.
+/// Axial elements of one law, or springs among Kelvin units (c = 0), whose two ends both advance by one sphere from
+/// place to place, so that loops need no index gathers. Where a lattice row leaves out a few, places without an element
+/// (k = 0) bridge the gap. An element between two slabs has a place for each of them, which adds to that slab's spheres
+/// only, so that slabs never wait for each other.
 struct AxialBatch {
-  std::int32_t count;  ///< in [1, kBatch]
-  std::int32_t place;  ///< first place
-  std::int32_t a, b;   ///< ends of the first element
-  std::int32_t
-      parameters;       ///< where its rows of `count` parameters begin: rest length, k, c; or rest length, K2, K1, v1
-  std::int32_t tpm;     ///< first two-sphere TPM, of a batch of those
-  bool adds_a, adds_b;  ///< whether ends a, b are the slab's own
-  AxialLaw law;
+  std::int32_t count;       ///< in [1, kBatch]
+  std::int32_t place;       ///< first place
+  std::int32_t a, b;        ///< ends of the first element
+  std::int32_t parameters;  ///< where its rows of `count` parameters begin: rest length, k; then c, or kelvin_k and c
+  std::int32_t internal;    ///< first internal variable, of a batch of two-sphere TPMs
+  bool adds_a, adds_b;      ///< whether ends a, b are the slab's own
+  AxialLaw law;             ///< chosen once: loops ask once for each batch
 };
 
 /// What the axial loops read and write. Pointers are null where the Model has no such thing.
@@ -50,12 +48,12 @@ struct AxialArrays {
   std::size_t spheres;
   const double *x, *y, *z, *vx, *vy, *vz;  ///< (sphere_count)
   const double* parameters;
-  const double* softness;                          ///< (sphere_count)
-  const std::int32_t* third;                       ///< (place_count)
-  const std::int32_t* edge;                        ///< edge of each place, any where there is none (place_count)
-  const std::uint8_t *edge_severed, *tpm_severed;  ///< (edge_count), (tpm_count)
-  const double* kelvin_elongation;                 ///< (tpm_count)
-  SlabTarget<double> force, blocks;                ///< three and six rows
+  const double* softness;            ///< (sphere_count)
+  const std::int32_t* third;         ///< (place_count)
+  const std::int32_t* element;       ///< row of Model::axial, any where a place has none (place_count)
+  const std::uint8_t* severed;       ///< (axial_count)
+  const double* kelvin_elongation;   ///< (internal_count)
+  SlabTarget<double> force, blocks;  ///< three and six rows
   double h;
   bool with_dashpots;                        ///< a linearisation's force has those of the dashpots
   float *root_x, *root_y, *root_z, *across;  ///< linearised coupling (place_count)

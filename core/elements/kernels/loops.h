@@ -3,7 +3,6 @@
 // instruction set, the linker could pick it for code that runs everywhere.
 
 #include "core/elements/kernels/kernels.h"
-#include "core/elements/only_springs.h"
 
 // The passes of the next loop do not depend on each other, whatever the compiler can prove about its pointers.
 #undef CTPM_INDEPENDENT

@@ -1,4 +1,5 @@
-// What a tick costs: forces and ticks of cubic blocks of liver, beside a loop that only streams the same bytes.
+// What a tick costs: forces and ticks of cubic blocks of liver, beside a plain loop over springs and a loop that only
+// streams the same bytes.
 //   ctpm_core_bench                 all of it
 //   ctpm_core_bench --benchmark_filter=Forces
 // "per_spring" is time by axial elements; compare within one run, since machines and their load differ.
@@ -29,12 +30,10 @@ Model make_model(std::int64_t spheres, Structure structure, double viscosity) {
   return model;
 }
 
-std::size_t axial_count(const Model& model) { return model.edges.size() + model.tpms.size(); }
-
 void report(benchmark::State& run, const Model& model) {
   run.counters["spheres"] = double(model.sphere_count());
   run.counters["per_spring"] = benchmark::Counter(
-      double(axial_count(model)), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+      double(model.axial.size()), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 void forces(benchmark::State& run, Structure structure, double viscosity) {
@@ -45,6 +44,32 @@ void forces(benchmark::State& run, Structure structure, double viscosity) {
   testing::shake(state, 1e-4, 1e-3);
   Coordinates force(3 * model.sphere_count());
   for (auto _ : run) elements.add_forces(state, force), benchmark::DoNotOptimize(force.data());
+  report(run, model);
+}
+
+/// The forces of springs by a loop that knows nothing else: no damping, cutting, softening, constraints or slabs. What
+/// forces/springs takes beyond it, features cost a scene that has none of them.
+void plain_springs(benchmark::State& run) {
+  const Model model = make_model(run.range(0), Structure::mass_spring, 0);
+  const AxialElements& axial = model.axial;
+  State state = rest_state(model);
+  testing::shake(state, 1e-4, 1e-3);
+  const double *x = state.position.x.data(), *y = state.position.y.data(), *z = state.position.z.data();
+  const std::size_t n = model.sphere_count();
+  Coordinates force(3 * n);
+  double *fx = force.data(), *fy = fx + n, *fz = fy + n;
+  for (auto _ : run) {
+    for (std::size_t i = 0; i < axial.size(); ++i) {
+      const auto a = std::size_t(axial.a[i]), b = std::size_t(axial.b[i]);
+      const double dx = x[b] - x[a], dy = y[b] - y[a], dz = z[b] - z[a];
+      const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
+      const double pull = axial.k[i] * (length - axial.rest_length[i]) / length;
+      fx[a] += pull * dx, fy[a] += pull * dy, fz[a] += pull * dz;
+      fx[b] -= pull * dx, fy[b] -= pull * dy, fz[b] -= pull * dz;
+    }
+    benchmark::DoNotOptimize(force.data());
+    benchmark::ClobberMemory();
+  }
   report(run, model);
 }
 
@@ -111,6 +136,7 @@ void memory(benchmark::State& run, Structure structure, double viscosity) {
 
 constexpr double kPascal = 5e3, kKilopascal = 5e6;  // v1 of the liver in both readings [Pa s/m]
 
+BENCHMARK(plain_springs)->Arg(1000)->Arg(10000)->Arg(100000);
 BENCHMARK(streaming)->Arg(1000)->Arg(10000)->Arg(100000);
 BENCHMARK_CAPTURE(forces, springs, Structure::mass_spring, 0.0)
     ->ArgsProduct({{1000, 10000, 100000}, {1, 2}})

@@ -108,11 +108,13 @@ void NetworkOde::derive(double time, const double* y, double* derivative) {
       way[i] = is_held ? 0.0 : v[i], speed[i] = is_held ? 0.0 : force_[axis * spheres_ + i] / model_.mass[i];
     }
   }
-  const TwoSphereTpms& tpms = model_.tpms;
-  for (std::size_t t = 0; t < tpms.size(); ++t) {
-    const Vec3 apart = state_.position[std::size_t(tpms.b[t])] - state_.position[std::size_t(tpms.a[t])];
-    const double x = norm(apart) - tpms.rest_length[t], z = state_.kelvin_elongation[t];
-    derivative[6 * spheres_ + t] = (tpms.spring_k[t] * (x - z) - tpms.kelvin_k[t] * z) / tpms.kelvin_c[t];
+  const AxialElements& axial = model_.axial;
+  const std::size_t tpms = axial.internal_count(), first = axial.size() - tpms;
+  for (std::size_t t = 0; t < tpms; ++t) {
+    const std::size_t i = first + t;
+    const Vec3 apart = state_.position[std::size_t(axial.b[i])] - state_.position[std::size_t(axial.a[i])];
+    const double x = norm(apart) - axial.rest_length[i], z = state_.kelvin_elongation[t];
+    derivative[6 * spheres_ + t] = (axial.k[i] * (x - z) - axial.kelvin_k[i] * z) / axial.c[i];
   }
 }
 
@@ -145,9 +147,10 @@ void NetworkOde::precondition(double gamma, const double* r, double* z) const {
       z[k * n + i] = r[k * n + i] + gamma * z[(3 + k) * n + i];
     }
   }
-  const TwoSphereTpms& tpms = model_.tpms;
-  for (std::size_t t = 0; t < tpms.size(); ++t)
-    z[6 * n + t] = r[6 * n + t] / (1 + gamma * (tpms.spring_k[t] + tpms.kelvin_k[t]) / tpms.kelvin_c[t]);
+  const AxialElements& axial = model_.axial;
+  const std::size_t tpms = axial.internal_count(), first = axial.size() - tpms;
+  for (std::size_t t = 0; t < tpms; ++t)
+    z[6 * n + t] = r[6 * n + t] / (1 + gamma * (axial.k[first + t] + axial.kelvin_k[first + t]) / axial.c[first + t]);
 }
 
 }  // namespace ctpm::testing

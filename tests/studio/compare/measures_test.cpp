@@ -205,7 +205,7 @@ TEST(SameScene, ADifferenceIsNamedAndLooksMayDiffer) {
   const SessionStart start = testing::small_start();
   SessionStart other_look = start, softer = start, larger = testing::small_start(3, 3, 4), other_tool = start;
   other_look.look = "block blue", other_look.scene_text = "{}";
-  softer.model.edges.k[7] *= 0.5;
+  softer.model.axial.k[7] *= 0.5;
   other_tool.model.tools[0].name = "fist";
   const SessionReader expert = opened("a.ctpm", start);
   EXPECT_TRUE(check_same_scene(expert, opened("b.ctpm", other_look)));
@@ -213,7 +213,7 @@ TEST(SameScene, ADifferenceIsNamedAndLooksMayDiffer) {
     const auto same = check_same_scene(expert, opened(name, trainee));
     return same ? std::string() : same.errors()[0].message;
   };
-  EXPECT_NE(reason("c.ctpm", softer).find("differs in edges.k"), std::string::npos);
+  EXPECT_NE(reason("c.ctpm", softer).find("differs in axial.k"), std::string::npos);
   EXPECT_NE(reason("d.ctpm", larger).find("36 spheres instead of 27"), std::string::npos);
   EXPECT_NE(reason("e.ctpm", other_tool).find("its tools are fist"), std::string::npos);
 }

@@ -152,7 +152,7 @@ TEST_F(Compare, SessionsOfDifferentScenesAreRefusedWithTheReason) {
   ASSERT_EQ(recorded.code, 0) << recorded.err;
   const auto softer = compare(cut_, "soft.ctpm");
   EXPECT_EQ(softer.code, 2);
-  EXPECT_TRUE(holds(softer.err, "its network differs in edges.k")) << softer.err;
+  EXPECT_TRUE(holds(softer.err, "its network differs in axial.k")) << softer.err;
 }
 
 TEST_F(Compare, DamagedAndMissingSessionsAreSaidSo) {

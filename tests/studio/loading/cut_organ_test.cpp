@@ -53,9 +53,10 @@ Lips cut_and_push(bool lips_meet) {
   Stepper stepper(model);
   State state = rest_state(model);
   stepper.settle(state, 1000);
-  const auto measure = [&](const auto& elements, const std::vector<std::uint8_t>& severed) {
+  const auto measure = [&] {
+    const AxialElements& elements = model.axial;
     for (std::size_t e = 0; e < elements.size(); ++e) {
-      if (!severed[e]) continue;
+      if (!state.axial_severed[e]) continue;
       const auto a = std::size_t(elements.a[e]), b = std::size_t(elements.b[e]);
       const Vec3 now = state.position[b] - state.position[a], rest = model.rest_position[b] - model.rest_position[a];
       lips.least_distance = std::min(lips.least_distance, norm(now) / model.organs[0].spacing);
@@ -67,7 +68,7 @@ Lips cut_and_push(bool lips_meet) {
     EXPECT_FALSE(is_refused(report.status)) << tick;
     lips.severed += report.severed;
     lips.along_at_end = INFINITY;
-    measure(model.edges, state.edge_severed), measure(model.tpms, state.tpm_severed);
+    measure();
     lips.least_along = std::min(lips.least_along, lips.along_at_end);
   }
   return lips;

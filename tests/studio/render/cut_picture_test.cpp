@@ -198,9 +198,9 @@ Stages cut_in_stages() {
 /// How far the outermost spheres across the cut are apart, at most, beyond their distance at rest [m].
 double gape(const Model& model, const State& state) {
   double most = 0;
-  for (std::size_t e = 0; e < model.edges.size(); ++e) {
-    const auto a = std::size_t(model.edges.a[e]), b = std::size_t(model.edges.b[e]);
-    if (state.edge_severed[e] && model.layer[a] == 1 && model.layer[b] == 1)
+  for (std::size_t e = 0; e < model.axial.size(); ++e) {
+    const auto a = std::size_t(model.axial.a[e]), b = std::size_t(model.axial.b[e]);
+    if (state.axial_severed[e] && model.layer[a] == 1 && model.layer[b] == 1)
       most = std::max(
           most, norm(state.position[a] - state.position[b]) - norm(model.rest_position[a] - model.rest_position[b]));
   }

@@ -21,15 +21,15 @@ TEST(ElementValues, AnEvenStretchIsThatOfEveryElement) {
     state.position.set(i, (1 + kStretch) * scene->model.rest_position[i]);
   std::vector<ElementValue> values;
   measure_elements(scene->model, state, ElementQuantity::stretch, values);
-  ASSERT_EQ(values.size(), scene->model.edges.size() + scene->model.tpms.size());
+  ASSERT_EQ(values.size(), scene->model.axial.size());
   for (const ElementValue& e : values) EXPECT_NEAR(e.value, kStretch, 1e-12);  // rounding only
   measure_elements(scene->model, state, ElementQuantity::tilt, values);
   ASSERT_EQ(values.size(), 2 * scene->model.constraints.size());
   for (const ElementValue& e : values) EXPECT_NEAR(e.value, 0, 1e-6);
   measure_elements(scene->model, state, ElementQuantity::force, values);
-  const Edges& edges = scene->model.edges;
-  for (std::size_t i = 0; i < edges.size(); ++i)
-    EXPECT_NEAR(values[i].value, edges.k[i] * kStretch * edges.rest_length[i], 1e-9 * edges.k[i]);
+  const AxialElements& axial = scene->model.axial;
+  for (std::size_t i = 0; i < axial.size(); ++i)
+    EXPECT_NEAR(values[i].value, axial.k[i] * kStretch * axial.rest_length[i], 1e-9 * axial.k[i]);
 }
 
 TEST(ElementValues, SeveredElementsAreNotShown) {

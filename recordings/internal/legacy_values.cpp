@@ -1,4 +1,4 @@
-#include "recordings/internal/legacy.h"
+#include "recordings/internal/legacy_values.h"
 
 #include "core/stepping/integrator.h"
 #include "recordings/internal/model_check.h"

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "core/model/model.h"
+
+namespace ctpm {
+
+/// One row of Model::axial and of Model::cut_resistance.
+struct AxialRow {
+  std::int32_t a, b;  ///< end spheres
+  AxialLaw law;
+  double rest_length;               ///< [m]
+  double k, c, kelvin_k;            ///< [N/m], [N s/m], [N/m]; 0 where the law has none
+  std::int32_t third;               ///< -1: none
+  double cut_energy, cut_friction;  ///< [J], [N]
+};
+
+/// Adds a row at the end of the table. All arrays of the table must be there, see bring_back_unused().
+void append(Model& model, const AxialRow& row);
+
+/// Removes the two-sphere TPMs from the end of the table and returns them: another organ's springs go before them.
+std::vector<AxialRow> take_tpms(Model& model);
+
+/// Gives the arrays of the table that leave_out_unused() left out their full length again.
+void bring_back_unused(Model& model);
+
+/// Empties the arrays of the table that no element uses.
+void leave_out_unused(Model& model);
+
+}  // namespace ctpm
