@@ -16,7 +16,7 @@
 #include "core/model/vec3.h"
 #include "importers/wire.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 namespace {
 
 /// All triangles of the wanted meshes, with the node transforms applied.
@@ -138,4 +138,4 @@ void send_mesh_file(const std::string& path, const std::string& part, const Send
   send(message.bytes.data(), message.bytes.size());
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -4,9 +4,9 @@
 
 #include "importers/child_process.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 /// Reads the file with assimp and sends it as one message (see wire.h). Meant for a child process.
 void send_mesh_file(const std::string& path, const std::string& part, const Send& send);
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace ctpm::cgal {
+namespace ctpm::importers::cgal {
 
 PolygonSoup::PolygonSoup(const Soup& soup) {
   points.reserve(soup.vertex.size());
@@ -38,4 +38,4 @@ Soup to_soup(const Mesh& mesh) {
   return soup;
 }
 
-}  // namespace ctpm::cgal
+}  // namespace ctpm::importers::cgal

@@ -10,7 +10,7 @@
 #include "core/model/vec3.h"
 #include "importers/topology.h"
 
-namespace ctpm::cgal {
+namespace ctpm::importers::cgal {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
@@ -32,4 +32,4 @@ Soup to_soup(const Mesh& mesh);
 
 inline Vec3 from_cgal(const Point& p) { return {p.x(), p.y(), p.z()}; }
 
-}  // namespace ctpm::cgal
+}  // namespace ctpm::importers::cgal

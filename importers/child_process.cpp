@@ -16,7 +16,7 @@
 #include <cstring>
 #include <fstream>
 
-namespace ctpm {
+namespace ctpm::importers {
 namespace {
 
 constexpr std::int64_t kMebibyte = 1024 * 1024;
@@ -169,4 +169,4 @@ ChildResult run_in_child(const ChildLimits& limits, const std::function<void(con
   return result;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-namespace ctpm {
+namespace ctpm::importers {
 
 struct ChildLimits {
   double time_s = 120;             ///< wall and processor time [s]
@@ -28,4 +28,4 @@ using Send = std::function<bool(const void* bytes, std::size_t count)>;
 /// over.
 ChildResult run_in_child(const ChildLimits& limits, const std::function<void(const Send&)>& work);
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

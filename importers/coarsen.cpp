@@ -6,7 +6,7 @@
 
 #include "importers/cgal_mesh.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 Soup coarsen(const Soup& soup, std::int64_t most_triangles) {
   namespace SMS = CGAL::Surface_mesh_simplification;
@@ -18,4 +18,4 @@ Soup coarsen(const Soup& soup, std::int64_t most_triangles) {
   return cgal::to_soup(mesh);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -8,7 +8,7 @@
 #include "core/model/result.h"
 #include "importers/mesh.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 struct FillOptions {
   double sphere_radius = 0.004;           ///< r [m], > 0
@@ -42,4 +42,4 @@ struct Filling {
 /// Layers count spacings of depth. Errors: options out of range, no sphere fits, more spheres than allowed.
 Result<Filling> fill_organ(const CheckedMesh& mesh, const FillOptions& options);
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -15,7 +15,7 @@
 #include "importers/text.h"
 #include "importers/topology.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 namespace {
 
 constexpr double kOnSurface = 1e-6;      // of the spacing: a centre this near to the surface is not inside
@@ -248,7 +248,7 @@ void note_flat(const FilledOrgan& organ, std::vector<Finding>& findings) {
   Vec3Array rest(organ.centre.size());
   for (std::size_t n = 0; n < organ.centre.size(); ++n) rest.set(n, organ.centre[n]);
   std::vector<Vec3> drawn;
-  deform_surface(organ.surface, rest, 0, drawn);
+  surface::deform_surface(organ.surface, rest, 0, drawn);
   std::int64_t count = 0;
   std::size_t worst = 0;
   const auto off = [&](std::size_t v) { return norm(drawn[v] - organ.surface.vertex[v]); };
@@ -313,7 +313,7 @@ Result<Filling> fill_organ(const CheckedMesh& mesh, const FillOptions& options) 
   organ.surface = take_surface(mesh, options.most_triangles, report.findings);
   report.surface_triangles = std::int64_t(organ.surface.triangle.size());
   tell("binding", 0.8);
-  bind_surface(organ, options.threads);
+  surface::bind_surface(organ, options.threads);
   note_flat(organ, report.findings);
   tell("done", 1);
   return filling;
@@ -323,4 +323,4 @@ Result<Filling> fill_organ(const CheckedMesh& mesh, const FillOptions& options) 
   return Error{"", std::string("cannot be filled: ") + trouble.what(), "leave the drawn surface as fine as it is"};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

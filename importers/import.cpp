@@ -4,7 +4,7 @@
 
 #include "importers/text.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 namespace {
 
 // What is done of an import after reading and after repairing, as it takes on meshes of a scanner.
@@ -114,4 +114,4 @@ Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions&
   return imported;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -9,7 +9,7 @@
 #include "importers/fill.h"
 #include "importers/mesh.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 /// How a mesh file becomes an organ.
 struct ImportOptions {
@@ -56,4 +56,4 @@ Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions&
 /// The report as lines of plain text for a reader who knows organs, not meshes.
 std::string to_text(const ImportReport& report);
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace ctpm {
+namespace ctpm::importers {
 
 CellLookup::CellLookup(const Lattice& lattice, const std::vector<Cell>& cell) : lattice_(lattice), cell_(cell) {
   first_.assign(std::size_t(lattice.row_count()) + 1, 0);
@@ -57,4 +57,4 @@ double CellLookup::nearest_squared_distance(Vec3 point) const {
   return best;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -6,7 +6,7 @@
 
 #include "core/model/vec3.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 using Cell = std::array<std::int32_t, 3>;  // i, j, k
 
@@ -47,4 +47,4 @@ class CellLookup {
 inline constexpr std::array<Cell, 9> kLaterNeighbours{
     {{1, 0, 0}, {-1, 1, 0}, {0, 1, 0}, {1, 1, 0}, {0, -1, 1}, {-1, 0, 1}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -10,7 +10,7 @@
 #include "core/model/result.h"
 #include "core/model/vec3.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 using Triangle = std::array<std::int32_t, 3>;
 
@@ -116,4 +116,4 @@ std::string to_obj(const std::vector<Vec3>& vertex, const std::vector<Triangle>&
 /// written.
 Result<Done> write_obj(const std::string& path, const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle);
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -13,7 +13,7 @@
 
 #include "importers/cgal_mesh.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 namespace {
 
 namespace PMP = CGAL::Polygon_mesh_processing;
@@ -79,4 +79,4 @@ void orient_parts(Soup& soup) {
   soup = to_soup(mesh);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -6,7 +6,7 @@
 #include "core/model/vec3.h"
 #include "importers/topology.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 /// A closed line of edges that have a triangle on one side only.
 struct Hole {
@@ -32,4 +32,4 @@ Closing fill_holes(Soup& soup, double largest_hole);
 /// inwards.
 void orient_parts(Soup& soup);
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -10,7 +10,7 @@
 #include "importers/topology.h"
 #include "importers/wire.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 namespace {
 
 constexpr const char* kKnownFormats = "OBJ, STL, PLY, OFF, glTF, GLB, 3DS, DAE and FBX files are read, among others";
@@ -127,4 +127,4 @@ Result<RawMesh> read_mesh(const std::string& path, const ReadOptions& options) {
   return mesh;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -10,7 +10,7 @@
 #include "importers/text.h"
 #include "importers/topology.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 namespace {
 
 constexpr double kCutShare = 0.25;     // of the diagonal: so wide a place may be cut out where the mesh crosses itself
@@ -309,4 +309,4 @@ Result<CheckedMesh> repair_mesh(const RawMesh& mesh, double unit_in_metres, cons
   }
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

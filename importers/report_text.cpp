@@ -4,7 +4,7 @@
 #include "importers/import.h"
 #include "importers/text.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 namespace {
 
 std::string formatted(const char* format, ...) __attribute__((format(printf, 1, 2)));
@@ -70,4 +70,4 @@ std::string to_text(const ImportReport& report) {
   return text;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

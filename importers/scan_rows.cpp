@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace ctpm {
+namespace ctpm::importers {
 namespace {
 
 /// Where a row's line passes the surface.
@@ -93,4 +93,4 @@ std::vector<Cell> cells_inside(const std::vector<Vec3>& vertex, const std::vecto
   return cells;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -5,7 +5,7 @@
 #include "importers/lattice.h"
 #include "importers/mesh.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 /// The cells whose centres lie inside a closed, outward surface (winding number above 0), sorted by (k, j,
 /// i). Each row of the lattice is one line that is cut with the surface. Whether a line hits a triangle is
@@ -14,4 +14,4 @@ namespace ctpm {
 std::vector<Cell> cells_inside(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle,
                                const Lattice& lattice);
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-namespace ctpm {
+namespace ctpm::importers {
 namespace {
 
 constexpr std::int64_t kMostLooks = 50'000'000;  // at rim vertices; a mesh that needs more is made to need it
@@ -279,4 +279,4 @@ std::vector<std::int32_t> find_inner_walls(const Soup& soup) {
   return walls;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -5,7 +5,7 @@
 
 #include "importers/topology.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 /// T-junctions: vertices on the rim of an opening that lie on another rim's edge, within `distance` [m], and
 /// are none of its ends. The edge's triangle is split there, so that both sides of the crack have the same
@@ -17,4 +17,4 @@ std::vector<Vec3> split_t_junctions(Soup& soup, double distance);
 /// of their index. The mesh is welded.
 std::vector<std::int32_t> find_inner_walls(const Soup& soup);
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

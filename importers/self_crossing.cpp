@@ -12,7 +12,7 @@
 #include "importers/cgal_mesh.h"
 #include "importers/mesh_surgery.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 namespace {
 
 constexpr int kMostRings = 4;  // of triangles around the crossing ones that may be cut out with them
@@ -136,4 +136,4 @@ std::int64_t cut_crossing(Soup& soup, const std::vector<std::int32_t>& crossing,
   return 0;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

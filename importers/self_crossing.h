@@ -5,7 +5,7 @@
 
 #include "importers/topology.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 /// Triangles of a manifold mesh that pass through others or lie on them, in the order of their index.
 /// Triangles that only share an edge or a corner are not meant.
@@ -17,4 +17,4 @@ std::vector<std::int32_t> find_crossing(const Soup& soup);
 /// it was.
 std::int64_t cut_crossing(Soup& soup, const std::vector<std::int32_t>& crossing, double largest_hole);
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -10,7 +10,7 @@
 
 #include "core/model/result.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 namespace {
 
 double coordinate(Vec3 p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
@@ -298,4 +298,4 @@ SurfaceIndex::Nearest SurfaceIndex::nearest(Vec3 point, std::int32_t guess) cons
   return best;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -7,7 +7,7 @@
 #include "core/model/vec3.h"
 #include "importers/mesh.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 /// A tree of boxes over triangles for exact distances. Never changes once built, so threads may share it.
 class SurfaceIndex {
@@ -67,4 +67,4 @@ class SurfaceIndex {
 /// Squared distance of a point from a triangle, edges and corners included.
 double squared_distance(Vec3 p, Vec3 a, Vec3 b, Vec3 c);
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

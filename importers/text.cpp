@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace ctpm {
+namespace ctpm::importers {
 namespace {
 
 /// Millimetres with four digits, at most a micrometre fine.
@@ -29,4 +29,4 @@ std::string counted(std::int64_t count, const std::string& noun) {
   return text + "s";
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

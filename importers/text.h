@@ -5,7 +5,7 @@
 
 #include "core/model/vec3.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 /// A length given in metres, in millimetres with at most four digits: "12.35 mm".
 std::string mm_text(double metres);
@@ -14,4 +14,4 @@ std::string place_text(Vec3 metres);
 /// "1 hole", "3 holes".
 std::string counted(std::int64_t count, const std::string& noun);
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <unordered_map>
 
-namespace ctpm {
+namespace ctpm::importers {
 namespace {
 
 using Edge = std::uint64_t;
@@ -324,4 +324,4 @@ Turned count_turned(const Soup& before, const Soup& after) {
   return count;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -7,7 +7,7 @@
 #include "core/model/vec3.h"
 #include "importers/mesh.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 /// Vertices and triangles, nothing promised about them.
 struct Soup {
@@ -67,4 +67,4 @@ struct Turned {
 };
 Turned count_turned(const Soup& before, const Soup& after);
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -5,7 +5,7 @@
 #include "importers/mesh.h"
 #include "importers/topology.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 namespace {
 
 constexpr double kInch = 0.0254;  // [m]
@@ -45,4 +45,4 @@ std::string unit_name(double in_metres) {
   return text;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

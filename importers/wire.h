@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace ctpm::wire {
+namespace ctpm::importers::wire {
 
 /// What the reading child sends: kind, then for `failed` a text; for `no_such_part` the parts; for `mesh` the
 /// parts, the unit [m], the vertices as x y z doubles and the triangles as three int32. Counts are uint64
@@ -66,4 +66,4 @@ class Reader {
   std::string_view rest_;
 };
 
-}  // namespace ctpm::wire
+}  // namespace ctpm::importers::wire

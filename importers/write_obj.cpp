@@ -7,7 +7,7 @@
 
 #include "importers/mesh.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 std::string to_obj(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle) {
   std::string text = "# unit: mm\n";
@@ -50,4 +50,4 @@ Result<Done> write_obj(const std::string& path, const std::vector<Vec3>& vertex,
   return Done{};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

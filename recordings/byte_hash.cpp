@@ -7,7 +7,7 @@
 #define XXH_STATIC_LINKING_ONLY  // the hash state is a member
 #include <xxhash.h>
 
-namespace ctpm {
+namespace ctpm::recordings {
 
 struct ByteHash::Parts {
   XXH3_state_t state;
@@ -40,4 +40,4 @@ Result<std::uint64_t> file_hash(const std::string& path) {
   return hash.value();
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::recordings

@@ -7,7 +7,7 @@
 
 #include "core/model/result.h"
 
-namespace ctpm {
+namespace ctpm::recordings {
 
 /// XXH3-64 of bytes that come one after another: proves that two things are the same.
 class ByteHash {
@@ -31,4 +31,4 @@ std::string hash_text(std::uint64_t hash);
 /// XXH3-64 of a file's bytes. Errors: it cannot be read.
 Result<std::uint64_t> file_hash(const std::string& path);
 
-}  // namespace ctpm
+}  // namespace ctpm::recordings

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-namespace ctpm {
+namespace ctpm::recordings {
 namespace {
 
 /// `number` in the given format, which takes one double.
@@ -101,4 +101,4 @@ std::int64_t pieces_came_loose(const std::vector<Event>& events, std::int64_t en
   return pieces;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::recordings

@@ -7,7 +7,7 @@
 
 #include "core/model/model.h"
 
-namespace ctpm {
+namespace ctpm::recordings {
 
 /// What happened. Session files store the numbers: one is never given another meaning.
 enum class EventKind : std::int32_t {
@@ -88,4 +88,4 @@ std::string describe(const Event& event, const Model& model);
 /// Pieces of tissue that came loose in the ticks before `end`.
 std::int64_t pieces_came_loose(const std::vector<Event>& events, std::int64_t end);
 
-}  // namespace ctpm
+}  // namespace ctpm::recordings

@@ -11,7 +11,7 @@
 #include "recordings/internal/statistics.h"
 #include "recordings/state_hash.h"
 
-namespace ctpm {
+namespace ctpm::recordings {
 
 using namespace session_file;
 
@@ -57,7 +57,7 @@ Result<State> initial_state(SessionStore& store, const Model& model, RecoverRepo
   if (!chunk || !*chunk || (*chunk)->first != 0 || (*chunk)->items.empty()) return lost;
   const TickRecord& record = (*chunk)->items.front();
   State state = rest_state(model);
-  Stepper(model).step(state, record.inputs);
+  stepping::Stepper(model).step(state, record.inputs);
   if (state_hash(state) != record.state_hash) return lost;
   report.repairs.push_back(
       "the initial state was damaged; the first tick proves that the session began at rest, so it is written "
@@ -261,4 +261,4 @@ Result<RecoverReport> recover_session(const std::string& in, const std::string& 
   return report;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::recordings

@@ -7,7 +7,7 @@
 #include "core/model/result.h"
 #include "recordings/replay.h"
 
-namespace ctpm {
+namespace ctpm::recordings {
 
 struct RecoverReport {
   bool complete = false;           ///< nothing was missing or damaged
@@ -25,4 +25,4 @@ struct RecoverReport {
 /// nothing is left behind then.
 Result<RecoverReport> recover_session(const std::string& in, const std::string& out);
 
-}  // namespace ctpm
+}  // namespace ctpm::recordings

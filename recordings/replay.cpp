@@ -5,7 +5,7 @@
 #include "core/stepping/step.h"
 #include "recordings/state_hash.h"
 
-namespace ctpm {
+namespace ctpm::recordings {
 
 namespace {
 constexpr std::int64_t read_ahead = 1000;  // ticks read at a time
@@ -16,13 +16,13 @@ struct ReplayCursor::Impl {
       : reader(reader_), stepper(reader_.start().model), state(reader_.start().initial_state) {}
 
   SessionReader& reader;
-  Stepper stepper;
+  stepping::Stepper stepper;
   State state;
   std::int64_t tick = 0;
   std::vector<TickRecord> ahead;
   std::int64_t ahead_first = 0;
   TickRecord record;
-  StepReport report;
+  stepping::StepReport report;
   bool same = true;
 
   Result<Keyframe> keyframe_for(std::int64_t target);
@@ -91,7 +91,7 @@ Result<bool> ReplayCursor::step() {
 std::int64_t ReplayCursor::tick() const { return impl_->tick; }
 const State& ReplayCursor::state() const { return impl_->state; }
 const TickRecord& ReplayCursor::record() const { return impl_->record; }
-const StepReport& ReplayCursor::report() const { return impl_->report; }
+const stepping::StepReport& ReplayCursor::report() const { return impl_->report; }
 bool ReplayCursor::same_so_far() const { return impl_->same; }
 
 Result<SessionStart> continue_session(SessionReader& parent, std::int64_t tick) {
@@ -111,4 +111,4 @@ Result<SessionStart> continue_session(SessionReader& parent, std::int64_t tick) 
   return start;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::recordings

@@ -8,7 +8,7 @@
 #include "core/model/result.h"
 #include "recordings/session_reader.h"
 
-namespace ctpm {
+namespace ctpm::recordings {
 
 /// Walks through a session by simulating it again from keyframes. Positions come from the simulation, never
 /// from the file.
@@ -29,9 +29,9 @@ class ReplayCursor {
 
   std::int64_t tick() const;  ///< ticks done: state() is the State before this tick
   const State& state() const;
-  const TickRecord& record() const;  ///< as recorded, of the tick done last
-  const StepReport& report() const;  ///< as simulated now, of the tick done last
-  bool same_so_far() const;          ///< every tick since the last keyframe used had the recorded hash
+  const TickRecord& record() const;            ///< as recorded, of the tick done last
+  const stepping::StepReport& report() const;  ///< as simulated now, of the tick done last
+  bool same_so_far() const;                    ///< every tick since the last keyframe used had the recorded hash
 
  private:
   struct Impl;
@@ -74,4 +74,4 @@ std::string to_string(const Verdict& verdict);
 /// is a verdict, not an error. Errors: the session is damaged, or the range is empty.
 Result<Verdict> verify_session(SessionReader& reader, const VerifyOptions& options = {});
 
-}  // namespace ctpm
+}  // namespace ctpm::recordings

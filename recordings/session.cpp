@@ -1,6 +1,6 @@
 #include "recordings/session.h"
 
-namespace ctpm {
+namespace ctpm::recordings {
 
 std::string physics_remark(std::int32_t recorded) {
   const std::string present = std::to_string(kPhysicsRevision);
@@ -11,8 +11,8 @@ std::string physics_remark(std::int32_t recorded) {
          "; replay will differ";
 }
 
-TickRecord make_record(const Inputs& inputs, const StepReport& report, double tick_time_s, std::uint64_t state_hash,
-                       double input_age_s) {
+TickRecord make_record(const Inputs& inputs, const stepping::StepReport& report, double tick_time_s,
+                       std::uint64_t state_hash, double input_age_s) {
   TickRecord record;
   record.inputs = inputs;
   record.tool_force = report.tool_force;
@@ -27,4 +27,4 @@ TickRecord make_record(const Inputs& inputs, const StepReport& report, double ti
   return record;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::recordings

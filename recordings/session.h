@@ -15,7 +15,7 @@
 #include "core/stepping/step.h"
 #include "recordings/event.h"
 
-namespace ctpm {
+namespace ctpm::recordings {
 
 /// Everything that is known before the first tick. FORMAT.md section 4.
 struct SessionStart {
@@ -57,8 +57,8 @@ struct TickRecord {
 };
 
 /// The record of a tick that was just done.
-TickRecord make_record(const Inputs& inputs, const StepReport& report, double tick_time_s, std::uint64_t state_hash,
-                       double input_age_s = 0);
+TickRecord make_record(const Inputs& inputs, const stepping::StepReport& report, double tick_time_s,
+                       std::uint64_t state_hash, double input_age_s = 0);
 
 /// The full State before tick `tick`.
 struct Keyframe {
@@ -88,4 +88,4 @@ struct SessionStatistics {
   std::vector<NamedValue> values;  ///< further numbers given to SessionWriter::finish, unit in the name
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::recordings

@@ -5,7 +5,7 @@
 #include "recordings/internal/session_store.h"
 #include "recordings/internal/statistics.h"
 
-namespace ctpm {
+namespace ctpm::recordings {
 
 using namespace session_file;
 
@@ -208,4 +208,4 @@ Result<Done> SessionReader::check_all() {
   return Done{};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::recordings

@@ -8,7 +8,7 @@
 #include "core/model/result.h"
 #include "recordings/session.h"
 
-namespace ctpm {
+namespace ctpm::recordings {
 
 /// Reads a session file, finished or not, also while it is being recorded. Nothing in the file is trusted:
 /// every block is proven by its checksum before it is decoded, and the Model, the States and the surfaces are
@@ -58,4 +58,4 @@ class SessionReader {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::recordings

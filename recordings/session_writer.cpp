@@ -19,7 +19,7 @@
 #include "recordings/internal/statistics.h"
 #include "recordings/internal/tick_codec.h"
 
-namespace ctpm {
+namespace ctpm::recordings {
 
 using namespace session_file;
 using Clock = std::chrono::steady_clock;
@@ -402,4 +402,4 @@ void SessionWriter::Impl::clear_error() {
   has_error = false;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::recordings

@@ -8,7 +8,7 @@
 #include "core/model/result.h"
 #include "recordings/session.h"
 
-namespace ctpm {
+namespace ctpm::recordings {
 
 struct WriterOptions {
   bool overwrite = false;       ///< replace a file of that name; otherwise it is an error
@@ -64,4 +64,4 @@ class SessionWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::recordings

@@ -9,7 +9,7 @@
 
 #include "core/model/fields.h"
 
-namespace ctpm {
+namespace ctpm::recordings {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "values are hashed and stored as they lie in memory");
@@ -63,4 +63,4 @@ std::uint64_t state_hash(const State& state) {
   return XXH3_64bits_digest(&hash);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::recordings

@@ -4,10 +4,10 @@
 
 #include "core/model/state.h"
 
-namespace ctpm {
+namespace ctpm::recordings {
 
 /// XXH3-64 over every field of the State, independent of padding and of the machine. FORMAT.md section 5.
 /// Never allocates. Two States with the same hash are equal to the bit, up to chance of 2^-64.
 std::uint64_t state_hash(const State& state);
 
-}  // namespace ctpm
+}  // namespace ctpm::recordings

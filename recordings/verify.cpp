@@ -13,7 +13,7 @@
 #include "recordings/replay.h"
 #include "recordings/state_hash.h"
 
-namespace ctpm {
+namespace ctpm::recordings {
 namespace {
 
 constexpr std::int64_t progress_interval = 500;  // ticks
@@ -31,7 +31,7 @@ struct Pair {
 };
 
 /// Everything that a tick reports, next to what the record says.
-std::vector<Pair> outcomes(const TickRecord& record, const StepReport& report) {
+std::vector<Pair> outcomes(const TickRecord& record, const stepping::StepReport& report) {
   return {{"tool_force.x", record.tool_force.x, report.tool_force.x},
           {"tool_force.y", record.tool_force.y, report.tool_force.y},
           {"tool_force.z", record.tool_force.z, report.tool_force.z},
@@ -280,4 +280,4 @@ std::string to_string(const Verdict& verdict) {
   return text.str();
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::recordings

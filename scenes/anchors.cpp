@@ -8,7 +8,7 @@
 
 #include "scenes/json_text.h"
 
-namespace ctpm {
+namespace ctpm::scenes {
 namespace {
 
 /// Centres on the border of a region are in it, whatever the rounding of millimetres to metres did.
@@ -104,4 +104,4 @@ Result<AnchorSpec> parse_anchor(const std::string& text) {
   return anchor;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

@@ -8,7 +8,7 @@
 #include "core/model/result.h"
 #include "scenes/scene_spec.h"
 
-namespace ctpm {
+namespace ctpm::scenes {
 
 /// Spheres of the organ that any of its anchors holds, by index within the organ, ascending. `counts` receives the
 /// number of spheres of each anchor. Errors: an anchor that holds no sphere, at `where`/anchors/I, with the organ's
@@ -22,4 +22,4 @@ Result<std::vector<std::int32_t>> select_anchored(const FilledOrgan& organ, cons
 /// and how it is written.
 Result<AnchorSpec> parse_anchor(const std::string& text);
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

@@ -9,14 +9,14 @@
 #include "scenes/anchors.h"
 #include "scenes/presets.h"
 
-namespace ctpm {
+namespace ctpm::scenes {
 namespace {
 
 /// A tool is so much stiffer than the stiffest edge of the tissue, unless the scene says otherwise.
 constexpr double kContactOverEdge = 20;
 
-std::vector<OrganSettings::Guide> guides_of(const OrganSpec& spec, const FilledOrgan& organ) {
-  std::vector<OrganSettings::Guide> guides;
+std::vector<network::OrganSettings::Guide> guides_of(const OrganSpec& spec, const FilledOrgan& organ) {
+  std::vector<network::OrganSettings::Guide> guides;
   if (!spec.rig) return guides;
   for (const GuideSpec& guide : spec.rig->guides) {
     const std::array<std::int32_t, 3> cell{std::int32_t(guide.cell.x), std::int32_t(guide.cell.y),
@@ -36,9 +36,9 @@ std::string in_millimetres(double length) {
 }
 
 /// Materials of the layers. Reports each layer that holds no sphere, or ends deeper than the deepest sphere.
-std::vector<LayerMaterial> layers_of(const OrganSpec& spec, const FilledOrgan& organ, const std::string& at,
-                                     Problems& problems) {
-  std::vector<LayerMaterial> layers;
+std::vector<network::LayerMaterial> layers_of(const OrganSpec& spec, const FilledOrgan& organ, const std::string& at,
+                                              Problems& problems) {
+  std::vector<network::LayerMaterial> layers;
   if (spec.layers.empty()) return layers;
   const auto [least, most] = std::minmax_element(organ.depth.begin(), organ.depth.end());
   const std::string depths =
@@ -72,10 +72,10 @@ std::vector<std::int32_t> anchored_in(const FilledOrgan& organ, const std::vecto
 }
 
 /// Adds an organ's network to the Model. Reports what core refuses, and spheres of which no two are neighbours.
-void add_network(Model& model, const FilledOrgan& organ, const OrganSettings& settings, bool is_rig,
+void add_network(Model& model, const FilledOrgan& organ, const network::OrganSettings& settings, bool is_rig,
                  const std::string& at, Problems& problems) {
   const std::size_t elements_before = model.element_count();
-  if (const Result<Done> added = add_organ(model, organ, settings); !added) {
+  if (const Result<Done> added = network::add_organ(model, organ, settings); !added) {
     for (const Error& error : added.errors())
       problems.add(at, error.where + ": " + error.message, error.hint, at + "/material");
     return;
@@ -88,9 +88,10 @@ void add_network(Model& model, const FilledOrgan& organ, const OrganSettings& se
 }
 
 /// Settings with which the neighbours of an organ's spheres can be found though some of its values are refused.
-OrganSettings stand_in_for(const OrganSettings& refused) {
-  OrganSettings settings;
-  settings.name = refused.name, settings.structure = Structure::mass_spring, settings.lattice = refused.lattice;
+network::OrganSettings stand_in_for(const network::OrganSettings& refused) {
+  network::OrganSettings settings;
+  settings.name = refused.name, settings.structure = network::Structure::mass_spring,
+  settings.lattice = refused.lattice;
   settings.material = find_preset("liver")->material;
   return settings;
 }
@@ -106,7 +107,7 @@ bool add_scene_organ(BuiltScene& built, const SceneSpec& scene, std::size_t inde
       problems.add_rule(at + (spec.rig ? "/rig" : "/mesh"), "the organ has no spheres", "take a smaller radius_mm");
     return false;
   }
-  OrganSettings settings;
+  network::OrganSettings settings;
   settings.name = spec.name, settings.structure = spec.structure, settings.lattice = spec.lattice;
   settings.has_softening = spec.softening, settings.material = resolve_material(spec.material).material;
   settings.damage_depth = spec.damage_depth, settings.guides = guides_of(spec, organ);
@@ -256,10 +257,10 @@ std::optional<BuiltScene> build_model(const SceneSpec& scene, std::span<const Fi
   for (const ProbeSpec& probe : scene.probes) built.probe_sphere.push_back(nearest_sphere(model, probe.at));
   set_solver(model, scene.solver);
   if (problems.are_good("", {"tick_s", "solver"})) {
-    const IntegratorChoice& choice = built.integrator =
-        resolve_integrator(model, integrator_of(scene.solver.integrator));
+    const stepping::IntegratorChoice& choice = built.integrator =
+        stepping::resolve_integrator(model, integrator_of(scene.solver.integrator));
     if (!choice.holds)
-      problems.add_rule("/solver/integrator", std::string(name_of(choice.integrator)) + ": " + choice.reason,
+      problems.add_rule("/solver/integrator", std::string(stepping::name_of(choice.integrator)) + ": " + choice.reason,
                         "take `auto`, `backward-euler`, or more substeps");
   }
   if (!problems.is_empty()) return std::nullopt;
@@ -273,4 +274,4 @@ Result<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrg
   return *std::move(built);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

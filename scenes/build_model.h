@@ -13,14 +13,14 @@
 #include "scenes/problems.h"
 #include "scenes/scene_spec.h"
 
-namespace ctpm {
+namespace ctpm::scenes {
 
 /// A Model, and where the scene's anchors and probes lie in it.
 struct BuiltScene {
   Model model;
   std::vector<std::int32_t> anchored_count;  ///< spheres that each organ's anchors hold         (organ_count)
   std::vector<std::int32_t> probe_sphere;    ///< sphere of each probe                            (probe_count)
-  IntegratorChoice integrator;               ///< of the Model, and why
+  stepping::IntegratorChoice integrator;     ///< of the Model, and why
 };
 
 /// The spheres of an organ that is given as a rig instead of by a mesh. It has no surface to draw.
@@ -42,4 +42,4 @@ bool can_be_filled(const Problems& problems, std::size_t index);
 /// The sphere nearest to `point` [m] at rest; the first of several.
 std::int32_t nearest_sphere(const Model& model, Vec3 point);
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

@@ -4,7 +4,7 @@
 
 #include "scenes/script.h"
 
-namespace ctpm {
+namespace ctpm::scenes {
 namespace {
 
 /// Everything in the plane across gravity and the height above it, so that any scene can be treated as lying
@@ -173,4 +173,4 @@ Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organ
   return script;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

@@ -14,7 +14,7 @@
 
 // The visitor that lists: the tables as data, from which the JSON Schema and the documentation are made.
 // Internal to scenes.
-namespace ctpm {
+namespace ctpm::scenes {
 
 enum class FieldKind { constant, text, preset, number, integer, flag, point, points, choice, record, list };
 
@@ -80,7 +80,7 @@ class FieldLister {
   template <class E>
   void choice(const Key& key, E value) {
     FieldRow& added = row(key, FieldKind::choice);
-    for (const auto& choice : choices_of(E{})) {
+    for (const auto& choice : choices_of<E>()) {
       added.words.push_back(in_quotes(choice.name));
       if (choice.value == value) added.standard = in_quotes(choice.name);
     }
@@ -135,4 +135,4 @@ class FieldLister {
   std::size_t index_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

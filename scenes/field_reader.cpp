@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-namespace ctpm {
+namespace ctpm::scenes {
 namespace {
 
 std::string plain_number(double value) { return double_to_decimal(value, 0); }
@@ -287,4 +287,4 @@ void FieldReader::finish() {
   }
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

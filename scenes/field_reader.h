@@ -13,7 +13,7 @@
 #include "scenes/problems.h"
 
 // The visitor that reads: text -> struct, and reports every error with its place. Internal to scenes.
-namespace ctpm {
+namespace ctpm::scenes {
 
 /// Reports a direction that is too short to be one: below 1e-9, so that its length neither vanishes nor loses
 /// digits.
@@ -45,9 +45,9 @@ class FieldReader {
   template <class E>
   void choice(const Key& key, E& value) {
     std::vector<std::string> names;
-    for (const auto& choice : choices_of(E{})) names.emplace_back(choice.name);
+    for (const auto& choice : choices_of<E>()) names.emplace_back(choice.name);
     if (const int found = read_choice(key, names); found >= 0)
-      value = choices_of(E{})[static_cast<std::size_t>(found)].value;
+      value = choices_of<E>()[static_cast<std::size_t>(found)].value;
   }
   template <class T>
   void record(const Key& key, T& value) {
@@ -107,4 +107,4 @@ class FieldReader {
   bool needs_exactly_one_ = false;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

@@ -1,6 +1,6 @@
 #include "scenes/field_writer.h"
 
-namespace ctpm {
+namespace ctpm::scenes {
 namespace {
 
 constexpr std::size_t kLineLength = 100;
@@ -26,4 +26,4 @@ std::string FieldWriter::list_text(const std::vector<std::string>& items) const 
   return bracketed(items, '[', ']', depth_ + 1);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

@@ -9,7 +9,7 @@
 #include "scenes/key_types.h"
 
 // The visitor that writes: struct -> text, in the order of the table. Internal to scenes.
-namespace ctpm {
+namespace ctpm::scenes {
 
 /// Writes the members of one object. Values that equal the struct's default are written all the same where
 /// they are plain, so that an author sees what can be changed; unset optional values, empty lists and empty
@@ -52,7 +52,7 @@ class FieldWriter {
   }
   template <class E>
   void choice(const Key& key, E value) {
-    for (const auto& choice : choices_of(E{}))
+    for (const auto& choice : choices_of<E>())
       if (choice.value == value) member(key, in_quotes(choice.name));
   }
   template <class T>
@@ -94,4 +94,4 @@ class FieldWriter {
   std::vector<std::string> members_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

@@ -6,7 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-namespace ctpm {
+namespace ctpm::scenes {
 namespace {
 
 constexpr int max_depth = 64;
@@ -298,4 +298,4 @@ std::string double_to_decimal(double value, int exponent) {
   return result + digits.substr(0, whole) + "." + digits.substr(whole);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

@@ -8,7 +8,7 @@
 #include "scenes/text_places.h"
 
 // JSON text as a tree that keeps the place and the spelling of each value. Internal to scenes.
-namespace ctpm {
+namespace ctpm::scenes {
 
 enum class JsonKind { null, boolean, number, text, list, object };
 
@@ -45,4 +45,4 @@ double decimal_to_double(std::string_view raw, int exponent);
 /// The shortest decimal that decimal_to_double(., exponent) turns into `value` again; `value` must be finite.
 std::string double_to_decimal(double value, int exponent);
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <string>
 
 // Types of the tables in scene_keys.h and script_keys.h. A table has one function `describe_fields(visitor, object)`
 // per struct; the reader, the writer, the JSON Schema and the documentation are its visitors. Internal to scenes.
-namespace ctpm {
+namespace ctpm::scenes {
 
 /// A unit of the text form. SI value = value in the text times 10^exponent.
 struct Unit {
@@ -66,4 +67,8 @@ struct Choice {
   E value;
 };
 
-}  // namespace ctpm
+/// The words that a key of enumeration E takes, in their documented order. scene_keys.h holds them.
+template <class E>
+std::span<const Choice<E>> choices_of();
+
+}  // namespace ctpm::scenes

@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace ctpm {
+namespace ctpm::scenes {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -21,7 +21,7 @@ constexpr MaterialPreset row(const char* name, const char* organ, double r, doub
                              double constraint, double viscosity_kpa_s_per_mm, double toughness, double least,
                              double most, double damage, const char* source) {
   MaterialPreset preset{name, organ, r * 1e-3, ball * 1e-3, {}, least, most, damage, source};
-  Material& m = preset.material;
+  network::Material& m = preset.material;
   m.kelvin = k1 * 1e6, m.spring = k2 * 1e6, m.constraint = constraint * 1e6, m.viscosity = viscosity_kpa_s_per_mm * 1e6;
   m.density = 1060;
   m.calibration_area = kPi * (ball * 1e-3) * (ball * 1e-3);
@@ -63,7 +63,7 @@ ResolvedMaterial resolve_material(const MaterialSpec& spec) {
   ResolvedMaterial resolved;
   const MaterialPreset* preset = find_preset(spec.preset);
   if (preset != nullptr) resolved.material = preset->material;
-  Material& m = resolved.material;
+  network::Material& m = resolved.material;
   const auto take = [&](const std::optional<double>& own, double& value, const char* key) {
     if (own)
       value = *own;
@@ -86,4 +86,4 @@ ResolvedMaterial resolve_material(const MaterialSpec& spec) {
   return resolved;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

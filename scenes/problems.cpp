@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace ctpm {
+namespace ctpm::scenes {
 namespace {
 
 /// Nobody reads more; a hostile text with more is not searched for hints any further.
@@ -72,4 +72,4 @@ Errors Problems::errors() const {
 
 Errors Problems::warnings() const { return in_order(warnings_); }
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

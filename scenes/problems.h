@@ -9,7 +9,7 @@
 #include "core/model/result.h"
 #include "scenes/text_places.h"
 
-namespace ctpm {
+namespace ctpm::scenes {
 
 /// Collects what every stage finds wrong with one scene or script: reading, rules between values, files, building.
 ///
@@ -67,4 +67,4 @@ class Problems {
   std::set<std::string> around_refused_;  ///< pointers of the objects and lists that hold them
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

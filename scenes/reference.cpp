@@ -5,7 +5,7 @@
 #include "scenes/script_keys.h"
 
 // The documentation tables.
-namespace ctpm {
+namespace ctpm::scenes {
 namespace {
 
 std::string in_code(const std::string& text) { return "`" + text + "`"; }
@@ -78,7 +78,7 @@ std::string preset_table() {
       "| preset | K2 | K1 | K' | v1 | ball R mm | spacing mm | source |\n| --- | --- | --- | --- | --- | --- "
       "| --- | --- |\n";
   for (const MaterialPreset& preset : material_presets()) {
-    const Material& m = preset.material;
+    const network::Material& m = preset.material;
     text += "| " + in_code(in_quotes(preset.name)) + " | ";
     for (const double value : {m.spring, m.kelvin, m.constraint, m.viscosity})
       text += double_to_decimal(value, 6) + " | ";
@@ -95,4 +95,4 @@ std::string scene_reference() { return tables_of(FieldLister::list_of<SceneSpec>
 
 std::string script_reference() { return tables_of(FieldLister::list_of<Script>()); }
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

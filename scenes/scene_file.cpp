@@ -13,7 +13,7 @@
 #include "scenes/scene_keys.h"
 #include "scenes/scene_rules.h"
 
-namespace ctpm {
+namespace ctpm::scenes {
 namespace {
 
 namespace fs = std::filesystem;
@@ -94,4 +94,4 @@ std::string write_scene(const SceneSpec& spec) {
   return FieldWriter::record_text(copy, 0) + "\n";
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

@@ -8,7 +8,7 @@
 #include "scenes/scene_spec.h"
 #include "scenes/text_places.h"
 
-namespace ctpm {
+namespace ctpm::scenes {
 
 /// A scene that was read without an error.
 struct SceneText {
@@ -47,4 +47,4 @@ std::string mesh_path(const std::string& scene_path, const OrganSpec& organ);
 /// Text of a scene. The same spec gives the same text, and read_scene gives the same spec again.
 std::string write_scene(const SceneSpec& spec);
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

@@ -8,37 +8,43 @@
 // Every key of a scene with its type, unit, range and sentence. A key gets its range here and nowhere else. Defaults
 // are those of the structs in scene_spec.h. The reader, the writer, FORMAT.md and scene.schema.json use this table.
 // Internal to scenes.
-namespace ctpm {
+namespace ctpm::scenes {
 
 inline constexpr const char* scene_format_name = "ctpm-scene";
 inline constexpr int scene_format_version = 1;
 
-inline std::span<const Choice<LengthUnit>> choices_of(LengthUnit) {
+template <>
+inline std::span<const Choice<LengthUnit>> choices_of<LengthUnit>() {
   static constexpr Choice<LengthUnit> choices[] = {{"mm", LengthUnit::millimetre},
                                                    {"cm", LengthUnit::centimetre},
                                                    {"m", LengthUnit::metre},
                                                    {"in", LengthUnit::inch}};
   return choices;
 }
-inline std::span<const Choice<Structure>> choices_of(Structure) {
-  static constexpr Choice<Structure> choices[] = {{"ctpm", Structure::ctpm},
-                                                  {"tpm", Structure::tpm},
-                                                  {"mass-spring", Structure::mass_spring},
-                                                  {"angle-mass-spring", Structure::angle_mass_spring}};
+template <>
+inline std::span<const Choice<network::Structure>> choices_of<network::Structure>() {
+  static constexpr Choice<network::Structure> choices[] = {
+      {"ctpm", network::Structure::ctpm},
+      {"tpm", network::Structure::tpm},
+      {"mass-spring", network::Structure::mass_spring},
+      {"angle-mass-spring", network::Structure::angle_mass_spring}};
   return choices;
 }
-inline std::span<const Choice<LatticeKind>> choices_of(LatticeKind) {
-  static constexpr Choice<LatticeKind> choices[] = {{"cubic-18", LatticeKind::cubic_18},
-                                                    {"cubic-6", LatticeKind::cubic_6}};
+template <>
+inline std::span<const Choice<network::LatticeKind>> choices_of<network::LatticeKind>() {
+  static constexpr Choice<network::LatticeKind> choices[] = {{"cubic-18", network::LatticeKind::cubic_18},
+                                                             {"cubic-6", network::LatticeKind::cubic_6}};
   return choices;
 }
-inline std::span<const Choice<ToolKind>> choices_of(ToolKind) {
+template <>
+inline std::span<const Choice<ToolKind>> choices_of<ToolKind>() {
   static constexpr Choice<ToolKind> choices[] = {
       {"ball", ToolKind::ball}, {"scalpel", ToolKind::scalpel}, {"pin", ToolKind::pin}};
   return choices;
 }
 
-inline std::span<const Choice<IntegratorSpec>> choices_of(IntegratorSpec) {
+template <>
+inline std::span<const Choice<IntegratorSpec>> choices_of<IntegratorSpec>() {
   static constexpr Choice<IntegratorSpec> choices[] = {{"auto", IntegratorSpec::automatic},
                                                        {"leapfrog", IntegratorSpec::leapfrog},
                                                        {"backward-euler", IntegratorSpec::backward_euler},
@@ -344,4 +350,4 @@ void describe_fields(V& v, SceneSpec& scene) {
   v.list(Key{"cameras", "Views; commands use the first unless another is named."}, scene.cameras, 0);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

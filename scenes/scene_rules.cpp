@@ -10,7 +10,7 @@
 #include "scenes/json_text.h"
 #include "scenes/presets.h"
 
-namespace ctpm {
+namespace ctpm::scenes {
 namespace {
 
 bool is_whole(Vec3 v) { return std::floor(v.x) == v.x && std::floor(v.y) == v.y && std::floor(v.z) == v.z; }
@@ -37,7 +37,7 @@ void check_preset(Problems& problems, const std::string& at, const std::string& 
 
 /// `organ` is the pointer of the material's organ.
 void check_material(Problems& problems, const std::string& at, const MaterialSpec& spec, const std::string& organ,
-                    Structure structure) {
+                    network::Structure structure) {
   check_preset(problems, at, spec.preset);
   if (!problems.is_good(at + "/preset")) return;
   const ResolvedMaterial resolved = resolve_material(spec);
@@ -45,9 +45,9 @@ void check_material(Problems& problems, const std::string& at, const MaterialSpe
     problems.add_rule(at, "the key " + in_quotes(key) + " is missing, and there is no preset to take it from", "",
                       at + "/" + key);
   if (!problems.are_good(at, {"spring_kpa_per_mm", "kelvin_kpa_per_mm", "constraint_kpa_per_mm"}) ||
-      !problems.is_good(organ + "/model") || structure != Structure::ctpm)
+      !problems.is_good(organ + "/model") || structure != network::Structure::ctpm)
     return;
-  const Material& m = resolved.material;
+  const network::Material& m = resolved.material;
   const double p2 = m.kelvin * m.spring / (m.kelvin + m.spring);
   if (m.constraint < p2)
     problems.add_rule(at + "/constraint_kpa_per_mm", "got " + double_to_decimal(m.constraint, 6) +
@@ -118,7 +118,8 @@ void check_organ(Problems& problems, std::size_t index, const OrganSpec& organ) 
   check_layers(problems, at, organ);
   for (std::size_t i = 0; i < organ.anchors.size(); ++i)
     check_anchor(problems, item(at + "/anchors", i), organ.anchors[i]);
-  if (organ.lattice == LatticeKind::cubic_6 && organ.structure != Structure::angle_mass_spring && !organ.mesh.empty())
+  if (organ.lattice == network::LatticeKind::cubic_6 && organ.structure != network::Structure::angle_mass_spring &&
+      !organ.mesh.empty())
     problems.add_warning(at + "/lattice",
                          "cubic-6 joins neighbours along the axes only and has no shear stiffness: the organ folds up "
                          "under a probe",
@@ -165,4 +166,4 @@ void check_rules(Problems& problems, const SceneSpec& scene) {
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) check_camera(problems, i, scene.cameras[i]);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

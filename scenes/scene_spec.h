@@ -11,7 +11,7 @@
 
 // A scene as its author wrote it, in SI units. scene_keys.h holds the keys, units and ranges of the text form. An unset
 // optional means that the author did not write the key; the default is then chosen where the value is used.
-namespace ctpm {
+namespace ctpm::scenes {
 
 /// Unit in which a mesh file holds its coordinates.
 enum class LengthUnit : std::int32_t { millimetre = 0, centimetre = 1, metre = 2, inch = 3 };
@@ -128,8 +128,8 @@ struct OrganSpec {
   LengthUnit mesh_unit = LengthUnit::millimetre;
   bool all_parts = false;                      ///< every closed part of the mesh, not only the largest
   std::optional<std::int32_t> most_triangles;  ///< of the drawn surface, which is made coarser if it has more
-  Structure structure = Structure::ctpm;       ///< which elements join the spheres; the key is `model`
-  LatticeKind lattice = LatticeKind::cubic_18;
+  network::Structure structure = network::Structure::ctpm;  ///< which elements join the spheres; the key is `model`
+  network::LatticeKind lattice = network::LatticeKind::cubic_18;
   bool softening = true;  ///< Eq. 8
   FillSpec fill;
   MaterialSpec material;          ///< below the last layer
@@ -219,4 +219,4 @@ struct SceneSpec {
   friend bool operator==(const SceneSpec&, const SceneSpec&) = default;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

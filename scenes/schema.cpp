@@ -7,7 +7,7 @@
 #include "scenes/scene_keys.h"
 #include "scenes/script_keys.h"
 
-namespace ctpm {
+namespace ctpm::scenes {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -103,4 +103,4 @@ std::string script_schema() {
                    std::string(script_format_name) + " " + std::to_string(script_format_version));
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace ctpm {
+namespace ctpm::scenes {
 
 /// JSON Schema (2020-12) of scene text and of script text: what an editor needs to complete and check them.
 /// It holds every key, type, range and default; rules between keys are checked by the reader alone. Checked
@@ -14,4 +14,4 @@ std::string script_schema();
 std::string scene_reference();
 std::string script_reference();
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

@@ -10,7 +10,7 @@
 #include "scenes/field_writer.h"
 #include "scenes/script_keys.h"
 
-namespace ctpm {
+namespace ctpm::scenes {
 namespace {
 
 void check_tool(Problems& problems, const std::string& at, const ScriptStep::Take& take,
@@ -249,4 +249,4 @@ PressEnd ScriptPlayer::feel(std::int64_t tick, Vec3 force) {
   return PressEnd::at_force;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

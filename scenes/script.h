@@ -14,7 +14,7 @@
 #include "core/model/result.h"
 #include "scenes/scene_spec.h"
 
-namespace ctpm {
+namespace ctpm::scenes {
 
 /// A tool appears in the hand.
 struct TakeStep {
@@ -139,4 +139,4 @@ class ScriptPlayer {
   std::vector<Stretch> stretches_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

@@ -4,7 +4,7 @@
 #include "scenes/script.h"
 
 // Every key of a script with its type, unit, range and sentence, as scene_keys.h for scenes. Internal to scenes.
-namespace ctpm {
+namespace ctpm::scenes {
 
 inline constexpr const char* script_format_name = "ctpm-script";
 inline constexpr int script_format_version = 1;
@@ -96,4 +96,4 @@ void describe_fields(V& v, Script& script) {
   v.list(required("steps", "Steps in the order in which they run."), script.steps, 1);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

@@ -5,7 +5,7 @@
 
 #include "scenes/json_text.h"
 
-namespace ctpm {
+namespace ctpm::scenes {
 namespace {
 
 /// The member of an object or list that `part` of a pointer names; null if there is none.
@@ -46,4 +46,4 @@ Error TextPlaces::error_at(const std::string& pointer, const std::string& messag
   return error_at(pointer, find(pointer), message, hint);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

@@ -6,7 +6,7 @@
 
 #include "core/model/result.h"
 
-namespace ctpm {
+namespace ctpm::scenes {
 
 struct JsonNode;
 
@@ -38,4 +38,4 @@ class TextPlaces {
   std::string file_name_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::scenes

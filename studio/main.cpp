@@ -7,7 +7,7 @@
 #include "studio/commands/console.h"
 
 int main(int argc, char** argv) {
-  using namespace ctpm;
+  using namespace ctpm::commands;
   std::setlocale(LC_ALL, "C");  // numbers are written and read with a point, wherever the program runs
 
   CLI::App program{

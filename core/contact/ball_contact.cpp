@@ -5,7 +5,7 @@
 
 #include "core/contact/contact_law.h"
 
-namespace ctpm {
+namespace ctpm::contact {
 namespace {
 
 /// Spheres whose distance is looked at together before each is looked at by itself.
@@ -13,7 +13,7 @@ constexpr std::size_t kLookedAtOnce = 128;
 
 }  // namespace
 
-BallContact::BallContact(const Model& model, const Kernels& kernels) : model_(model), kernels_(kernels) {
+BallContact::BallContact(const Model& model, const elements::Kernels& kernels) : model_(model), kernels_(kernels) {
   const auto presses = [](const Tool& tool) { return tool.kind == ToolKind::ball; };
   if (std::any_of(model.tools.begin(), model.tools.end(), presses)) contacts_.reserve(model.sphere_count());
   for (const double radius : model.contact_radius) largest_radius_ = std::max(largest_radius_, radius);
@@ -58,7 +58,7 @@ void BallContact::find_among(const StateView& state, Vec3 centre, double radius,
   }
 }
 
-void BallContact::linearise(double h, Coordinates& force, DiagonalBlocks& blocks) {
+void BallContact::linearise(double h, elements::Coordinates& force, elements::DiagonalBlocks& blocks) {
   const std::size_t spheres = model_.sphere_count();
   for (SphereContact& contact : contacts_) {
     const auto i = std::size_t(contact.sphere);
@@ -77,7 +77,7 @@ void BallContact::linearise(double h, Coordinates& force, DiagonalBlocks& blocks
   }
 }
 
-void BallContact::undo_linearise(Coordinates& force, DiagonalBlocks& blocks) const {
+void BallContact::undo_linearise(elements::Coordinates& force, elements::DiagonalBlocks& blocks) const {
   const std::size_t spheres = model_.sphere_count();
   for (const SphereContact& contact : contacts_) {
     const auto i = std::size_t(contact.sphere);
@@ -130,7 +130,7 @@ double BallContact::apply(double h, const Real* v, Real* result) const {
 template double BallContact::apply(double h, const float* v, float* result) const;
 template double BallContact::apply(double h, const double* v, double* result) const;
 
-Vec3 BallContact::change_of(const SphereContact& contact, const Coordinates& v) const {
+Vec3 BallContact::change_of(const SphereContact& contact, const elements::Coordinates& v) const {
   const std::size_t spheres = model_.sphere_count(), i = std::size_t(contact.sphere);
   return {v[i], v[spheres + i], v[2 * spheres + i]};
 }
@@ -140,21 +140,21 @@ double BallContact::coupling_along(const SphereContact& contact, double h) const
   return h * (h * model_.contact_k + contact.damping);
 }
 
-double BallContact::pressure(const SphereContact& contact, double h, const Coordinates& v) const {
+double BallContact::pressure(const SphereContact& contact, double h, const elements::Coordinates& v) const {
   return model_.contact_k * contact.penetration + contact.damping * contact.approach -
          coupling_along(contact, h) / h * dot(contact.normal, change_of(contact, v));
 }
 
-bool BallContact::has_pulling(double h, const Coordinates& v) const {
+bool BallContact::has_pulling(double h, const elements::Coordinates& v) const {
   return std::any_of(contacts_.begin(), contacts_.end(),
                      [&](const SphereContact& contact) { return pressure(contact, h, v) < 0; });
 }
 
-void BallContact::drop_pulling(double h, const Coordinates& v) {
+void BallContact::drop_pulling(double h, const elements::Coordinates& v) {
   std::erase_if(contacts_, [&](const SphereContact& contact) { return pressure(contact, h, v) < 0; });
 }
 
-Vec3 BallContact::force_on_tool(double h, const Coordinates& v) const {
+Vec3 BallContact::force_on_tool(double h, const elements::Coordinates& v) const {
   Vec3 force;
   for (const SphereContact& contact : contacts_) {
     const Vec3 n = contact.normal, change = change_of(contact, v), slip = contact.slip + change - dot(change, n) * n;
@@ -172,4 +172,4 @@ double BallContact::depth(const Vec3Array& position) const {
   return depth;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::contact

@@ -10,7 +10,7 @@
 #include "core/model/model.h"
 #include "core/model/state_view.h"
 
-namespace ctpm {
+namespace ctpm::contact {
 
 /// Contact of a ball with one sphere: a penalty spring with damping along the line between the centres
 /// (contact_damping) and drag across it (contact_drag), both solved implicitly.
@@ -29,7 +29,7 @@ struct SphereContact {
 /// Contacts of a rigid ball with spheres; a part of Contacts (contacts.h), which alone calls it.
 class BallContact {
  public:
-  BallContact(const Model& model, const Kernels& kernels);
+  BallContact(const Model& model, const elements::Kernels& kernels);
 
  private:
   friend class Contacts;
@@ -42,10 +42,10 @@ class BallContact {
   void find(const StateView& state, Vec3 centre, double radius, Vec3 velocity, double h, bool from_velocity);
 
   /// Adds contact forces [N] and linearisation for a step of `h` [s].
-  void linearise(double h, Coordinates& force, DiagonalBlocks& blocks);
+  void linearise(double h, elements::Coordinates& force, elements::DiagonalBlocks& blocks);
 
   /// Takes back to the bit what the last linearise() added.
-  void undo_linearise(Coordinates& force, DiagonalBlocks& blocks) const;
+  void undo_linearise(elements::Coordinates& force, elements::DiagonalBlocks& blocks) const;
 
   /// After an explicit step of `h` [s] without contacts, found in its middle: changes the `velocity` [m/s] of the
   /// touched spheres, each contact solved implicitly by itself, and drops contacts that would pull. `before`: velocity
@@ -59,13 +59,13 @@ class BallContact {
   double apply(double h, const Real* v, Real* result) const;
 
   /// Whether a contact would pull its sphere after a step of `h` [s] with velocity `v` [m/s].
-  bool has_pulling(double h, const Coordinates& v) const;
+  bool has_pulling(double h, const elements::Coordinates& v) const;
 
   /// Removes the contacts that would.
-  void drop_pulling(double h, const Coordinates& v);
+  void drop_pulling(double h, const elements::Coordinates& v);
 
   /// Force on the ball [N] after an implicit step.
-  Vec3 force_on_tool(double h, const Coordinates& v) const;
+  Vec3 force_on_tool(double h, const elements::Coordinates& v) const;
 
   /// Largest displacement from rest at `position` of a touched sphere along its contact [m], 0 without contact.
   double depth(const Vec3Array& position) const;
@@ -75,16 +75,16 @@ class BallContact {
 
   void find_among(const StateView& state, Vec3 centre, double radius, double h, bool from_velocity, std::size_t begin,
                   std::size_t end);
-  Vec3 change_of(const SphereContact& contact, const Coordinates& v) const;
+  Vec3 change_of(const SphereContact& contact, const elements::Coordinates& v) const;
   double coupling_along(const SphereContact& contact, double h) const;
-  double pressure(const SphereContact& contact, double h, const Coordinates& v) const;
+  double pressure(const SphereContact& contact, double h, const elements::Coordinates& v) const;
 
   const Model& model_;
-  const Kernels& kernels_;
+  const elements::Kernels& kernels_;
   double largest_radius_ = 0;  ///< of a sphere [m]
   Vec3 velocity_;              ///< of the ball [m/s]
   std::vector<SphereContact>
       contacts_;  ///< room for every sphere if the scene has a ball, so that a tick never allocates
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::contact

@@ -5,7 +5,7 @@
 
 #include "core/cutting/blade_geometry.h"
 
-namespace ctpm {
+namespace ctpm::contact {
 namespace {
 
 Vec3 unit(Vec3 v) {
@@ -50,14 +50,14 @@ BladeForce::Element BladeForce::element(std::size_t index) const {
           axial.slow_k(index),         model_.cut_resistance.energy[index], model_.cut_resistance.friction[index]};
 }
 
-Box BladeForce::around(const Tool& tool, const BladeMotion& motion) const {
+cutting::Box BladeForce::around(const Tool& tool, const BladeMotion& motion) const {
   const double reach = this->reach(tool);
-  return Box(motion.from.tip, motion.from.heel, motion.to.tip, motion.to.heel)
+  return cutting::Box(motion.from.tip, motion.from.heel, motion.to.tip, motion.to.heel)
       .grown(0.5 * reach + std::max(reach, tool.flank_height));
 }
 
-void BladeForce::find(const StateView& state, const NearElements& near, const Tool& tool, const BladeMotion& motion,
-                      PairContacts& contacts) const {
+void BladeForce::find(const StateView& state, const cutting::NearElements& near, const Tool& tool,
+                      const BladeMotion& motion, PairContacts& contacts) const {
   const double reach = this->reach(tool);
   const Vec3 beyond = 0.5 * reach * unit(motion.to.heel - motion.to.tip);
   const Vec3 tip = motion.to.tip - beyond, heel = motion.to.heel + beyond, ht = unit(motion.heading_tip),
@@ -66,15 +66,15 @@ void BladeForce::find(const StateView& state, const NearElements& near, const To
   if (certainty == 0) return;
   const Vec3 tip_ahead = tip + reach * ht, heel_ahead = heel + reach * hh, tip_behind = tip - tool.flank_height * ht,
              heel_behind = heel - tool.flank_height * hh;
-  const Box ahead(tip, heel, tip_ahead, heel_ahead), behind(tip, heel, tip_behind, heel_behind);
+  const cutting::Box ahead(tip, heel, tip_ahead, heel_ahead), behind(tip, heel, tip_behind, heel_behind);
   for (const std::int32_t index : near.elements()) {
     const auto i = std::size_t(index);
     const bool severed = state.axial_severed[i] != 0;
     const Element e = element(i);
     const Vec3 p = state.position[e.a], q = state.position[e.b];
-    if (!(severed ? behind : ahead).meets(Box(p, q))) continue;
-    const auto hit = severed ? meet_sweep(p, q, tip, heel, tip_behind, heel_behind)
-                             : meet_sweep(p, q, tip, heel, tip_ahead, heel_ahead);
+    if (!(severed ? behind : ahead).meets(cutting::Box(p, q))) continue;
+    const auto hit = severed ? cutting::meet_sweep(p, q, tip, heel, tip_behind, heel_behind)
+                             : cutting::meet_sweep(p, q, tip, heel, tip_ahead, heel_ahead);
     if (!hit) continue;
     const Vec3 heading = unit(between(ht, hh, hit->across));
     const Vec3 normal = unit(cross(heel - tip, heading));
@@ -114,9 +114,9 @@ void BladeForce::find(const StateView& state, const NearElements& near, const To
 }
 
 void BladeForce::add_severed(const StateView& state, const Tool& tool, const BladeMotion& motion,
-                             std::span<const Crossing> crossings, PairContacts& contacts) const {
+                             std::span<const cutting::Crossing> crossings, PairContacts& contacts) const {
   const double reach = this->reach(tool);
-  for (const Crossing& crossing : crossings) {
+  for (const cutting::Crossing& crossing : crossings) {
     const Element e = element(std::size_t(crossing.element));
     const Vec3 path = between(motion.to.tip - motion.from.tip, motion.to.heel - motion.from.heel, crossing.across);
     const double length = norm(path), apart = norm(state.position[e.b] - state.position[e.a]);
@@ -138,4 +138,4 @@ void BladeForce::add_severed(const StateView& state, const Tool& tool, const Bla
   }
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::contact

@@ -8,7 +8,7 @@
 #include "core/cutting/near_elements.h"
 #include "core/model/state_view.h"
 
-namespace ctpm {
+namespace ctpm::contact {
 
 /// The law of cutting. The work of the blade's force F along its path s, and the elastic energy E that severing
 /// releases, create the cut's area A and overcome friction:
@@ -37,17 +37,17 @@ class BladeForce {
   std::size_t capacity() const { return any() ? 2 * model_.axial.size() : 0; }
 
   /// Box outside of which find() finds nothing.
-  Box around(const Tool& tool, const BladeMotion& motion) const;
+  cutting::Box around(const Tool& tool, const BladeMotion& motion) const;
 
   /// Adds what the blade, at the end of its motion, meets in `state`, of the elements that are `near`: those
   /// ahead of it, and cut faces on its flanks.
-  void find(const StateView& state, const NearElements& near, const Tool& tool, const BladeMotion& motion,
+  void find(const StateView& state, const cutting::NearElements& near, const Tool& tool, const BladeMotion& motion,
             PairContacts& contacts) const;
 
   /// Adds the elements that were severed in this tick before they had resisted over the whole reach: their remaining
   /// energy, spread over the blade's path in the tick.
   void add_severed(const StateView& state, const Tool& tool, const BladeMotion& motion,
-                   std::span<const Crossing> crossings, PairContacts& contacts) const;
+                   std::span<const cutting::Crossing> crossings, PairContacts& contacts) const;
 
  private:
   struct Element;
@@ -60,4 +60,4 @@ class BladeForce {
   double widest_spacing_ = 0;  ///< of all organs [m]
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::contact

@@ -1,6 +1,6 @@
 #include "core/contact/blade_motion.h"
 
-namespace ctpm {
+namespace ctpm::contact {
 
 void tow(const Tool& tool, Vec3Array& trail, BladeMotion& motion) {
   const auto tow_one = [&](std::size_t i, Vec3 end) {
@@ -13,4 +13,4 @@ void tow(const Tool& tool, Vec3Array& trail, BladeMotion& motion) {
   motion.heading_tip = tow_one(0, motion.to.tip), motion.heading_heel = tow_one(1, motion.to.heel);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::contact

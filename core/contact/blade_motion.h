@@ -2,11 +2,11 @@
 
 #include "core/cutting/cutting.h"
 
-namespace ctpm {
+namespace ctpm::contact {
 
 /// The motion of a blade over one tick.
 struct BladeMotion {
-  BladeEdge from, to;              ///< at the tick's start and end
+  cutting::BladeEdge from, to;     ///< at the tick's start and end
   Vec3 heading_tip, heading_heel;  ///< direction in which its ends have moved lately, length 0 to 1
 };
 
@@ -14,4 +14,4 @@ struct BladeMotion {
 /// heading that follows: hands tremble, and a heading must not.
 void tow(const Tool& tool, Vec3Array& trail, BladeMotion& motion);
 
-}  // namespace ctpm
+}  // namespace ctpm::contact

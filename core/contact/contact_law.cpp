@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ctpm {
+namespace ctpm::contact {
 
 double contact_damping(double hunt_crossley, double k, double mass, double penetration) {
   return std::min(hunt_crossley * k * penetration, 2 * std::sqrt(k * mass));
@@ -20,4 +20,4 @@ ContactShares::ContactShares(double k, double c) {
   if (c > 2) damped_before = 1 / c, damped_after = 1 - damped_before;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::contact

@@ -2,7 +2,7 @@
 
 #include "core/model/model.h"
 
-namespace ctpm {
+namespace ctpm::contact {
 
 /// Damping along the normal [N s/m] of a contact of stiffness `k` [N/m] with a sphere of `mass` [kg] at `penetration`
 /// [m]. `hunt_crossley` [s/m] is c in the law k p (1 + c p') of Hunt & Crossley, "Coefficient of restitution
@@ -23,4 +23,4 @@ struct ContactShares {
   double after = 0.25, before = 0.25, damped_after = 0.5, damped_before = 0.5;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::contact

@@ -2,9 +2,9 @@
 
 #include "core/model/result.h"
 
-namespace ctpm {
+namespace ctpm::contact {
 
-Contacts::Contacts(const Model& model, const Kernels& kernels)
+Contacts::Contacts(const Model& model, const elements::Kernels& kernels)
     : model_(model),
       ball_(model, kernels),
       blade_(model),
@@ -70,11 +70,12 @@ double ContactSet::depth(const Vec3Array& position) const {
   return contacts_->ball_.depth(position);
 }
 
-LinearisedContacts ImplicitContacts::linearise(Coordinates& force, DiagonalBlocks& blocks) {
+LinearisedContacts ImplicitContacts::linearise(elements::Coordinates& force, elements::DiagonalBlocks& blocks) {
   return {*contacts_, step_.h, force, blocks};
 }
 
-LinearisedContacts::LinearisedContacts(Contacts& contacts, double h, Coordinates& force, DiagonalBlocks& blocks)
+LinearisedContacts::LinearisedContacts(Contacts& contacts, double h, elements::Coordinates& force,
+                                       elements::DiagonalBlocks& blocks)
     : contacts_(contacts), h_(h), force_(force), blocks_(blocks) {
   CTPM_CHECK(!contacts_.is_linearised_, "contacts are linearised while they are in a linear system");
   contacts_.is_linearised_ = true;
@@ -90,18 +91,18 @@ void LinearisedContacts::take_back() {
   is_in_system_ = contacts_.is_linearised_ = false;
 }
 
-bool LinearisedContacts::pulls(const Coordinates& v) const {
+bool LinearisedContacts::pulls(const elements::Coordinates& v) const {
   return contacts_.ball_.has_pulling(h_, v) || contacts_.pairs_.has_pulling(h_, v);
 }
 
-Vec3 LinearisedContacts::tool_force(const Coordinates& v) const {
+Vec3 LinearisedContacts::tool_force(const elements::Coordinates& v) const {
   return contacts_.ball_.force_on_tool(h_, v) + contacts_.pairs_.force_on_tool(h_, v);
 }
 
-void LinearisedContacts::drop_pulling(const Coordinates& v) && {
+void LinearisedContacts::drop_pulling(const elements::Coordinates& v) && {
   take_back();
   contacts_.ball_.drop_pulling(h_, v);
   contacts_.pairs_.drop_pulling(h_, v);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::contact

@@ -14,7 +14,7 @@
 #include "core/model/model.h"
 #include "core/model/state_view.h"
 
-namespace ctpm {
+namespace ctpm::contact {
 
 class Contacts;
 class ExplicitContacts;
@@ -40,10 +40,10 @@ enum class Linearisation {
 class Contacts {
  public:
   /// `model` must outlive the Contacts.
-  Contacts(const Model& model, const Kernels& kernels);
+  Contacts(const Model& model, const elements::Kernels& kernels);
 
   /// Box that holds all that a blade can meet in this tick.
-  Box around(const HeldTool& tool) const { return blade_.around(*tool.tool, tool.blade); }
+  cutting::Box around(const HeldTool& tool) const { return blade_.around(*tool.tool, tool.blade); }
 
   /// The pin's contact in a step of `h` [s] from `position` [m] to where the hand is at `share` of the tick.
   static Pin pin(const HeldTool& tool, const Vec3Array& position, double share, double h);
@@ -127,23 +127,23 @@ class LinearisedContacts {
   }
 
   /// Whether a contact pulls after a step with velocity `v`.
-  bool pulls(const Coordinates& v) const;
+  bool pulls(const elements::Coordinates& v) const;
 
   /// Force of the tissue on a ball or a blade [N] after a step with velocity `v`.
-  Vec3 tool_force(const Coordinates& v) const;
+  Vec3 tool_force(const elements::Coordinates& v) const;
 
   /// Takes all contacts out of the system, and removes from the set those that pull after a step with velocity `v`.
-  void drop_pulling(const Coordinates& v) &&;
+  void drop_pulling(const elements::Coordinates& v) &&;
 
  private:
   friend class ImplicitContacts;
-  LinearisedContacts(Contacts& contacts, double h, Coordinates& force, DiagonalBlocks& blocks);
+  LinearisedContacts(Contacts& contacts, double h, elements::Coordinates& force, elements::DiagonalBlocks& blocks);
   void take_back();
 
   Contacts& contacts_;
   double h_;
-  Coordinates& force_;
-  DiagonalBlocks& blocks_;
+  elements::Coordinates& force_;
+  elements::DiagonalBlocks& blocks_;
   bool is_in_system_ = true;
 };
 
@@ -152,11 +152,11 @@ class ImplicitContacts : public ContactSet {
  public:
   /// Adds the contacts' forces [N] and the diagonal of their coupling to the system of the step, until the result is
   /// destroyed; neither the system's diagonal nor its forces may be changed by others before that.
-  [[nodiscard]] LinearisedContacts linearise(Coordinates& force, DiagonalBlocks& blocks);
+  [[nodiscard]] LinearisedContacts linearise(elements::Coordinates& force, elements::DiagonalBlocks& blocks);
 
  private:
   friend class Contacts;
   ImplicitContacts(Contacts& contacts, const ContactStep& step) : ContactSet(contacts, step) {}
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::contact

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ctpm {
+namespace ctpm::contact {
 namespace {}  // namespace
 
 CutFaceContact::CutFaceContact(const Model& model) : model_(model) {
@@ -85,4 +85,4 @@ void CutFaceContact::find(const StateView& state, PairContacts& contacts) {
     }
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::contact

@@ -7,7 +7,7 @@
 #include "core/contact/pair_contact.h"
 #include "core/model/state_view.h"
 
-namespace ctpm {
+namespace ctpm::contact {
 
 /// Contact of the two faces of a cut, which meet again without passing through each other. Spheres with a severed
 /// element that no unsevered one joins keep a spacing apart. Only spheres on cut faces are looked at, sorted along x.
@@ -51,4 +51,4 @@ class CutFaceContact {
   std::vector<Place> on_faces_;  ///< spheres on cut faces, in ascending x
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::contact

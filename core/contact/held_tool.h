@@ -7,15 +7,15 @@
 #include "core/cutting/near_elements.h"
 #include "core/model/model.h"
 
-namespace ctpm {
+namespace ctpm::contact {
 
 /// The held tool and its motion over one tick.
 struct HeldTool {
-  const Tool* tool = nullptr;       ///< null: no tool is held
-  Vec3 from, to;                    ///< tool's origin at the start and the end of the tick [m]
-  BladeMotion blade;                ///< of a scalpel
-  NearElements* near = nullptr;     ///< elements that a scalpel can meet in this tick
-  std::span<const Crossing> swept;  ///< elements that a scalpel severed by its own motion in this tick
+  const Tool* tool = nullptr;                ///< null: no tool is held
+  Vec3 from, to;                             ///< tool's origin at the start and the end of the tick [m]
+  BladeMotion blade;                         ///< of a scalpel
+  cutting::NearElements* near = nullptr;     ///< elements that a scalpel can meet in this tick
+  std::span<const cutting::Crossing> swept;  ///< elements that a scalpel severed by its own motion in this tick
 
   /// Where the tool's origin is at `share` of the tick, 0 to 1 [m].
   Vec3 at(double share) const { return from + share * (to - from); }
@@ -23,4 +23,4 @@ struct HeldTool {
   bool is(ToolKind kind) const { return tool != nullptr && tool->kind == kind; }
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::contact

@@ -4,7 +4,7 @@
 
 #include "core/contact/contact_law.h"
 
-namespace ctpm {
+namespace ctpm::contact {
 
 void PairContacts::start_from(const Vec3Array& velocity) {
   for (PairContact& c : contacts_) {
@@ -13,7 +13,7 @@ void PairContacts::start_from(const Vec3Array& velocity) {
   }
 }
 
-void PairContacts::linearise(double h, Coordinates& force, DiagonalBlocks& blocks) {
+void PairContacts::linearise(double h, elements::Coordinates& force, elements::DiagonalBlocks& blocks) {
   const std::size_t n = model_.sphere_count();
   for (PairContact& c : contacts_) {
     const double across = h * c.drag, along = h * h * c.k - across;
@@ -33,7 +33,7 @@ void PairContacts::linearise(double h, Coordinates& force, DiagonalBlocks& block
   }
 }
 
-void PairContacts::undo_linearise(Coordinates& force, DiagonalBlocks& blocks) const {
+void PairContacts::undo_linearise(elements::Coordinates& force, elements::DiagonalBlocks& blocks) const {
   const std::size_t n = model_.sphere_count();
   const auto restore = [&](std::int32_t sphere, const double* without) {
     const auto i = std::size_t(sphere);
@@ -106,19 +106,19 @@ double PairContacts::apply(double h, const Real* v, Real* result) const {
 template double PairContacts::apply(double h, const float* v, float* result) const;
 template double PairContacts::apply(double h, const double* v, double* result) const;
 
-bool PairContacts::pulls(const PairContact& c, double h, const Coordinates& v) const {
+bool PairContacts::pulls(const PairContact& c, double h, const elements::Coordinates& v) const {
   return c.only_pushes && dot(c.axis, c.force - coupling(c, h, velocity_of(c, v.data())) / h) < 0;
 }
 
-bool PairContacts::has_pulling(double h, const Coordinates& v) const {
+bool PairContacts::has_pulling(double h, const elements::Coordinates& v) const {
   return std::any_of(contacts_.begin(), contacts_.end(), [&](const PairContact& c) { return pulls(c, h, v); });
 }
 
-void PairContacts::drop_pulling(double h, const Coordinates& v) {
+void PairContacts::drop_pulling(double h, const elements::Coordinates& v) {
   std::erase_if(contacts_, [&](const PairContact& c) { return pulls(c, h, v); });
 }
 
-Vec3 PairContacts::force_on_tool(double h, const Coordinates& v) const {
+Vec3 PairContacts::force_on_tool(double h, const elements::Coordinates& v) const {
   Vec3 force;
   for (const PairContact& c : contacts_)
     if (c.is_tool) force += coupling(c, h, velocity_of(c, v.data())) / h - c.force;
@@ -130,4 +130,4 @@ std::int32_t PairContacts::tool_count() const {
       std::count_if(contacts_.begin(), contacts_.end(), [](const PairContact& c) { return c.is_tool; }));
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::contact

@@ -8,7 +8,7 @@
 #include "core/elements/axial.h"
 #include "core/model/model.h"
 
-namespace ctpm {
+namespace ctpm::contact {
 
 /// A force on a point that two spheres carry, x = weight_a x_a + weight_b x_b: a spring along an axis, and drag
 /// across it. A point of an element has weights that sum to 1; a pair that keeps its distance has -1 and 1,
@@ -45,11 +45,11 @@ class PairContacts {
   void start_from(const Vec3Array& velocity);
 
   /// Adds contact forces [N] and linearisation for a step of `h` [s].
-  void linearise(double h, Coordinates& force, DiagonalBlocks& blocks);
+  void linearise(double h, elements::Coordinates& force, elements::DiagonalBlocks& blocks);
 
   /// Takes back to the bit what the last linearise() added; what was added to the same arrays later must have been
   /// taken back before.
-  void undo_linearise(Coordinates& force, DiagonalBlocks& blocks) const;
+  void undo_linearise(elements::Coordinates& force, elements::DiagonalBlocks& blocks) const;
 
   /// After an explicit step of `h` [s] without these contacts, found in its middle: changes the `velocity` [m/s] of
   /// their spheres, one contact after the other, each solved implicitly. `before`: velocity [m/s] at the start. Spheres
@@ -62,22 +62,22 @@ class PairContacts {
   double apply(double h, const Real* v, Real* result) const;
 
   /// Whether a contact would pull after a step of `h` [s] with velocity `v` [m/s].
-  bool has_pulling(double h, const Coordinates& v) const;
+  bool has_pulling(double h, const elements::Coordinates& v) const;
 
   /// Removes the contacts that would.
-  void drop_pulling(double h, const Coordinates& v);
+  void drop_pulling(double h, const elements::Coordinates& v);
 
   /// Force on the tool [N] after an implicit step, and how many contacts it has.
-  Vec3 force_on_tool(double h, const Coordinates& v) const;
+  Vec3 force_on_tool(double h, const elements::Coordinates& v) const;
   std::int32_t tool_count() const;
 
   template <class Real>
   Vec3 velocity_of(const PairContact& contact, const Real* v) const;
   Vec3 coupling(const PairContact& contact, double h, Vec3 u) const;
-  bool pulls(const PairContact& contact, double h, const Coordinates& v) const;
+  bool pulls(const PairContact& contact, double h, const elements::Coordinates& v) const;
 
   const Model& model_;
   std::vector<PairContact> contacts_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::contact

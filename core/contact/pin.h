@@ -5,7 +5,7 @@
 
 #include "core/model/model.h"
 
-namespace ctpm {
+namespace ctpm::contact {
 
 /// The contact of a pin in one step, a kinematic one: its sphere follows the hand exactly.
 struct Pin {
@@ -21,4 +21,4 @@ struct Pin {
   }
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::contact

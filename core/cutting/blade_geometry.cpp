@@ -1,6 +1,6 @@
 #include "core/cutting/blade_geometry.h"
 
-namespace ctpm {
+namespace ctpm::cutting {
 namespace {
 
 /// Six times the signed volume of the tetrahedron a b c d.
@@ -34,4 +34,4 @@ std::optional<SweepHit> meet_sweep(Vec3 p, Vec3 q, Vec3 from, Vec3 to, Vec3 from
   return std::nullopt;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::cutting

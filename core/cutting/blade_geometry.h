@@ -4,7 +4,7 @@
 
 #include "core/model/vec3.h"
 
-namespace ctpm {
+namespace ctpm::cutting {
 
 /// Where a segment p-q meets what an edge sweeps that goes from `from`-`to` to `from2`-`to2`: the triangles
 /// (from, to, from2) and (to, to2, from2).
@@ -37,4 +37,4 @@ struct Box {
   }
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::cutting

@@ -4,7 +4,7 @@
 
 #include "core/cutting/blade_geometry.h"
 
-namespace ctpm {
+namespace ctpm::cutting {
 namespace {
 
 /// Severs the live elements, of those that are `near`, that `meet(a, b)` says are crossed, then the
@@ -75,4 +75,4 @@ std::int32_t sever_moved_through_blade(const Model& model, const NearElements& n
   });
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::cutting

@@ -7,7 +7,7 @@
 #include "core/model/model.h"
 #include "core/model/state.h"
 
-namespace ctpm {
+namespace ctpm::cutting {
 
 /// The edge of a blade in the world.
 struct BladeEdge {
@@ -47,4 +47,4 @@ inline constexpr double kCrossingUnit = 1.0 / 254;
 std::uint8_t stored_crossing(double along);
 double crossing_of(std::uint8_t stored);
 
-}  // namespace ctpm
+}  // namespace ctpm::cutting

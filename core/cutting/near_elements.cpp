@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace ctpm {
+namespace ctpm::cutting {
 
 NearElements::NearElements(const Model& model)
     : model_(model), found_at_(model.sphere_count()), outside_(model.sphere_count()), near_(model.axial.size()) {
@@ -44,4 +44,4 @@ void NearElements::follow(const Vec3Array& position) {
   if (moved(position.x, found_at_.x) || moved(position.y, found_at_.y) || moved(position.z, found_at_.z)) take_all();
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::cutting

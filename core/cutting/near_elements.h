@@ -7,7 +7,7 @@
 #include "core/cutting/blade_geometry.h"
 #include "core/model/model.h"
 
-namespace ctpm {
+namespace ctpm::cutting {
 
 /// The axial elements near a blade, so that a tick looks at these only: what is not here cannot meet it.
 class NearElements {
@@ -37,4 +37,4 @@ class NearElements {
   std::size_t count_ = 0;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::cutting

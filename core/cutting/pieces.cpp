@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace ctpm {
+namespace ctpm::cutting {
 
 std::int32_t Pieces::root(std::int32_t sphere) {
   std::int32_t top = sphere;
@@ -43,4 +43,4 @@ std::int32_t Pieces::rejoin(std::span<const Crossing> crossings) {
   return count;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::cutting

@@ -8,7 +8,7 @@
 #include "core/model/model.h"
 #include "core/model/state.h"
 
-namespace ctpm {
+namespace ctpm::cutting {
 
 /// The pieces that a scene's tissue has come to: spheres that unsevered axial elements join.
 class Pieces {
@@ -36,4 +36,4 @@ class Pieces {
   std::vector<std::int32_t> piece_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::cutting

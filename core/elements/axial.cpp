@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-namespace ctpm {
+namespace ctpm::elements {
 namespace {
 
 double distance(const Vec3Array& p, std::int32_t a, std::int32_t b) {
@@ -37,7 +37,7 @@ bool can_share(AxialLaw p, AxialLaw q) { return (p == AxialLaw::two_sphere_tpm) 
 }  // namespace
 
 /// The longest run from row `first` on. A batch of springs of which one is a Kelvin unit is one of Kelvin units.
-AxialForces::Run AxialForces::find_run(std::size_t first, const Slabs& slabs) const {
+AxialForces::Run AxialForces::find_run(std::size_t first, const parallel::Slabs& slabs) const {
   const AxialElements& axial = model_.axial;
   const std::int32_t bridged = axial.law[first] == AxialLaw::two_sphere_tpm ? 1 : kBridged;
   Run run{first, first + 1, {std::int32_t(first)}, axial.law[first]};
@@ -80,7 +80,7 @@ void AxialForces::add_places(const Run& run) {
   place_count_ += run.element.size();
 }
 
-AxialForces::AxialForces(const Model& model, const Slabs& slabs, const Kernels& kernels)
+AxialForces::AxialForces(const Model& model, const parallel::Slabs& slabs, const Kernels& kernels)
     : model_(model), kernels_(kernels), of_slab_(std::size_t(slabs.count())) {
   const AxialElements& axial = model.axial;
   of_internal_.resize(axial.internal_count());
@@ -183,4 +183,4 @@ void AxialForces::finish_kelvin(double h, const std::vector<double>& before, std
   }
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::elements

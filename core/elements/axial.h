@@ -8,7 +8,7 @@
 #include "core/model/state_view.h"
 #include "core/parallel/slabs.h"
 
-namespace ctpm {
+namespace ctpm::elements {
 
 /// Three coordinates of all spheres in one array: x of all, then y, then z  (3 x sphere_count).
 using Coordinates = std::vector<double>;
@@ -20,7 +20,7 @@ using DiagonalBlocks = std::vector<double>;
 /// parameters share one copy of them, so a tissue of one material streams none from memory.
 class AxialForces {
  public:
-  AxialForces(const Model& model, const Slabs& slabs, const Kernels& kernels);
+  AxialForces(const Model& model, const parallel::Slabs& slabs, const Kernels& kernels);
 
   /// What the loops of one call read and write; `softness` as in Elements, null without it.
   AxialArrays arrays(const StateView& state, const double* softness) const;
@@ -55,7 +55,7 @@ class AxialForces {
     AxialLaw law;                       ///< of the batch
   };
 
-  Run find_run(std::size_t first, const Slabs& slabs) const;
+  Run find_run(std::size_t first, const parallel::Slabs& slabs) const;
   std::vector<double> parameters_of(const Run& run) const;
   void add_places(const Run& run);
   double kelvin_after(double h, const StateView& state, std::size_t variable) const;
@@ -76,4 +76,4 @@ class AxialForces {
   std::vector<float> across_;   ///< coupling across the direction: h^2 tension / length [kg], >= 0
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::elements

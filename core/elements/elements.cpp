@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <type_traits>
 
-namespace ctpm {
+namespace ctpm::elements {
 namespace {
 
 /// Numbers between the rows of one slab and those of the next: more than a processor reads ahead.
@@ -15,7 +15,7 @@ constexpr std::int32_t kThick = 4096;
 
 }  // namespace
 
-Elements::Elements(const Model& model, Team& team, InstructionSet set)
+Elements::Elements(const Model& model, parallel::Team& team, InstructionSet set)
     : team_(team),
       slabs_(model.sphere_count()),
       axial_(model, slabs_, kernels_for(set)),
@@ -135,4 +135,4 @@ void Elements::finish_kelvin(double h, const std::vector<double>& before, std::v
                [&](std::size_t first, std::size_t last) { axial_.finish_kelvin(h, before, kelvin, first, last); });
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::elements

@@ -10,13 +10,13 @@
 #include "core/parallel/slabs.h"
 #include "core/parallel/team.h"
 
-namespace ctpm {
+namespace ctpm::elements {
 
 /// All elements of a Model together: their forces, and their linearisation for an implicit step.
 class Elements {
  public:
   /// `model` and `team` must outlive the Elements.
-  Elements(const Model& model, Team& team, InstructionSet set = best_instruction_set());
+  Elements(const Model& model, parallel::Team& team, InstructionSet set = best_instruction_set());
 
   /// Adds the forces of this moment [N] to `force`: springs, dashpots at StateView::velocity, two-sphere TPMs at
   /// their present Kelvin elongation, constraints, softening (Eqs. 1-8)  (3 x sphere_count).
@@ -50,7 +50,7 @@ class Elements {
   /// (internal_count).
   void finish_kelvin(double h, const std::vector<double>& before, std::vector<double>& kelvin) const;
 
-  const Slabs& slabs() const { return slabs_; }
+  const parallel::Slabs& slabs() const { return slabs_; }
 
  private:
   /// Calls part(first, last) for ranges of internal variables, in parallel.
@@ -85,8 +85,8 @@ class Elements {
   template <class Real>
   void bring(const SlabTarget<Real>& own, std::size_t rows, Real* all) const;
 
-  Team& team_;
-  Slabs slabs_;
+  parallel::Team& team_;
+  parallel::Slabs slabs_;
   AxialForces axial_;
   LineElements constraints_, angles_;
   std::vector<double> softness_;  ///< 1 / (1 + tan theta) of each sphere; empty without softening (sphere_count)
@@ -123,4 +123,4 @@ void Elements::apply(const Real* v, Real* result, After&& after) const {
   });
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::elements

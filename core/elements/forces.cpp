@@ -2,12 +2,12 @@
 
 #include "core/elements/elements.h"
 
-namespace ctpm {
+namespace ctpm::elements {
 
 Vec3Array internal_forces(const Model& model, const State& state) {
   const std::size_t n = model.sphere_count();
   Coordinates sum(3 * n, 0.0);
-  Team alone(1);
+  parallel::Team alone(1);
   Elements(model, alone).add_forces(state, sum);
   Vec3Array force(n);
   for (std::size_t i = 0; i < n; ++i) force.set(i, {sum[i], sum[n + i], sum[2 * n + i]});
@@ -38,4 +38,4 @@ double elastic_energy(const Model& model, const State& state) {
   return energy;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::elements

@@ -3,7 +3,7 @@
 #include "core/model/model.h"
 #include "core/model/state.h"
 
-namespace ctpm {
+namespace ctpm::elements {
 
 /// Force of all elements on every sphere [N] at this very moment: springs, dashpots, two-sphere TPMs at their
 /// present Kelvin elongation, constraints, softening (Eqs. 1-8). No gravity, no tool  (sphere_count).
@@ -14,4 +14,4 @@ Vec3Array internal_forces(const Model& model, const State& state);
 /// either.
 double elastic_energy(const Model& model, const State& state);
 
-}  // namespace ctpm
+}  // namespace ctpm::elements

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <utility>
 
-namespace ctpm {
+namespace ctpm::elements {
 namespace {
 
 /// Shorter rows are gathered with their neighbours instead.
@@ -18,7 +18,7 @@ constexpr std::size_t kWidest = 8;
 class RowFinder {
  public:
   RowFinder(const std::vector<std::int32_t>& first, const std::vector<std::int32_t>& middle,
-            const std::vector<std::int32_t>& last, const Slabs& slabs)
+            const std::vector<std::int32_t>& last, const parallel::Slabs& slabs)
       : first_(first), middle_(middle), last_(last), slabs_(slabs) {}
 
   /// End of the batch from line `i` on: a row, or several that are too short.
@@ -65,20 +65,22 @@ class RowFinder {
   }
 
   const std::vector<std::int32_t>&first_, &middle_, &last_;
-  const Slabs& slabs_;
+  const parallel::Slabs& slabs_;
 };
 
 }  // namespace
 
-LineElements::LineElements(const Model& model, const Constraints& lines, const Slabs& slabs, const Kernels& kernels)
+LineElements::LineElements(const Model& model, const Constraints& lines, const parallel::Slabs& slabs,
+                           const Kernels& kernels)
     : LineElements(model, true, lines.a, lines.c, lines.e, lines.k, slabs, kernels) {}
 
-LineElements::LineElements(const Model& model, const AngleSprings& springs, const Slabs& slabs, const Kernels& kernels)
+LineElements::LineElements(const Model& model, const AngleSprings& springs, const parallel::Slabs& slabs,
+                           const Kernels& kernels)
     : LineElements(model, false, springs.a, springs.b, springs.c, springs.k, slabs, kernels) {}
 
 LineElements::LineElements(const Model& model, bool is_constraint, const std::vector<std::int32_t>& first,
                            const std::vector<std::int32_t>& middle, const std::vector<std::int32_t>& last,
-                           const std::vector<double>& k, const Slabs& slabs, const Kernels& kernels)
+                           const std::vector<double>& k, const parallel::Slabs& slabs, const Kernels& kernels)
     : model_(model), kernels_(kernels), is_constraint_(is_constraint) {
   const RowFinder rows(first, middle, last, slabs);
   std::vector<std::pair<std::size_t, std::size_t>> runs;  // lines of each batch
@@ -165,4 +167,4 @@ void LineElements::apply(int slab, const Real* v, SlabTarget<Real> result) const
 template void LineElements::apply(int slab, const float* v, SlabTarget<float> result) const;
 template void LineElements::apply(int slab, const double* v, SlabTarget<double> result) const;
 
-}  // namespace ctpm
+}  // namespace ctpm::elements

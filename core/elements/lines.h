@@ -9,15 +9,17 @@
 #include "core/model/state_view.h"
 #include "core/parallel/slabs.h"
 
-namespace ctpm {
+namespace ctpm::elements {
 
 /// Elements that draw the middle sphere of a lattice line towards the middle of its ends, u = C - (A + E) / 2: the
 /// constraints of five-sphere lines (Eqs. 2, 5), whose stiffness grows with the tilt, or the angle springs of Fig. 1b,
 /// whose stiffness is constant.
 class LineElements {
  public:
-  LineElements(const Model& model, const Constraints& constraints, const Slabs& slabs, const Kernels& kernels);
-  LineElements(const Model& model, const AngleSprings& angle_springs, const Slabs& slabs, const Kernels& kernels);
+  LineElements(const Model& model, const Constraints& constraints, const parallel::Slabs& slabs,
+               const Kernels& kernels);
+  LineElements(const Model& model, const AngleSprings& angle_springs, const parallel::Slabs& slabs,
+               const Kernels& kernels);
 
   bool empty() const { return k_.empty(); }
 
@@ -48,7 +50,7 @@ class LineElements {
 
   LineElements(const Model& model, bool is_constraint, const std::vector<std::int32_t>& first,
                const std::vector<std::int32_t>& middle, const std::vector<std::int32_t>& last,
-               const std::vector<double>& k, const Slabs& slabs, const Kernels& kernels);
+               const std::vector<double>& k, const parallel::Slabs& slabs, const Kernels& kernels);
 
   const Model& model_;
   const Kernels& kernels_;
@@ -62,4 +64,4 @@ class LineElements {
   std::vector<float> along_[3], isotropic_;  ///< coupling: along u its root [kg^1/2], and in all directions [kg]
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::elements

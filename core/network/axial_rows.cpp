@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace ctpm {
+namespace ctpm::network {
 namespace {
 
 /// Calls `change` for every array of the table.
@@ -58,4 +58,4 @@ void leave_out_unused(Model& model) {
   if (is_zero(cut.energy) && is_zero(cut.friction)) cut = {};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::network

@@ -4,7 +4,7 @@
 
 #include "core/model/model.h"
 
-namespace ctpm {
+namespace ctpm::network {
 
 /// One row of Model::axial and of Model::cut_resistance.
 struct AxialRow {
@@ -28,4 +28,4 @@ void bring_back_unused(Model& model);
 /// Empties the arrays of the table that no element uses.
 void leave_out_unused(Model& model);
 
-}  // namespace ctpm
+}  // namespace ctpm::network

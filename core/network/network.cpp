@@ -10,7 +10,7 @@
 
 #include "core/network/axial_rows.h"
 
-namespace ctpm {
+namespace ctpm::network {
 namespace {
 
 using Cell = LatticeCell;
@@ -342,4 +342,4 @@ Result<Done> add_organ(Model& model, const FilledOrgan& organ, const OrganSettin
   return Done{};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::network

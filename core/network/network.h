@@ -9,7 +9,7 @@
 #include "core/model/organ.h"
 #include "core/model/result.h"
 
-namespace ctpm {
+namespace ctpm::network {
 
 /// Which structure joins the spheres (scene key `model`).
 enum class Structure : std::int32_t {
@@ -78,4 +78,4 @@ double edge_area(const Material& material, double spacing);
 /// modulus out of range in any layer, layers out of order, an anchor that is not a sphere of the organ.
 Result<Done> add_organ(Model& model, const FilledOrgan& organ, const OrganSettings& settings);
 
-}  // namespace ctpm
+}  // namespace ctpm::network

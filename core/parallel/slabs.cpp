@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace ctpm {
+namespace ctpm::parallel {
 namespace {
 
 /// Fewer spheres than this are done before a second thread has woken up.
@@ -31,4 +31,4 @@ int Slabs::of(std::int32_t sphere) const {
   return int(std::upper_bound(begin_.begin() + 1, begin_.end() - 1, sphere) - (begin_.begin() + 1));
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::parallel

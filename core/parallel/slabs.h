@@ -5,7 +5,7 @@
 
 #include "core/model/model.h"
 
-namespace ctpm {
+namespace ctpm::parallel {
 
 /// Spheres in ranges of about equal size that follow their order, which is the lattice's. How many there are depends on
 /// the Model alone: sums go slab by slab, and so have the same shape on any number of threads.
@@ -22,4 +22,4 @@ class Slabs {
   std::vector<std::int32_t> begin_;  ///< (slab_count + 1)
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::parallel

@@ -1,6 +1,6 @@
 #include "core/parallel/team.h"
 
-namespace ctpm {
+namespace ctpm::parallel {
 namespace {
 
 /// How often a thread looks before it sleeps or gives way: some tens of microseconds, longer than the gaps within a
@@ -83,4 +83,4 @@ void Team::work() {
   }
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::parallel

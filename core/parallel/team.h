@@ -5,7 +5,7 @@
 #include <thread>
 #include <vector>
 
-namespace ctpm {
+namespace ctpm::parallel {
 
 /// A fixed set of threads that share numbered tasks. Which thread runs a task never changes what comes out, so results
 /// are the same for any number of threads. Between calls the threads first watch for work, then sleep; the caller does
@@ -48,4 +48,4 @@ class Team {
   alignas(64) std::atomic<int> undone_{0};           ///< tasks of the round that are not finished
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::parallel

@@ -1,13 +1,13 @@
 #include "core/solver/conjugate_gradient.h"
 
-namespace ctpm {
+namespace ctpm::solver {
 
 template <class Real>
-ConjugateGradient<Real>::ConjugateGradient(const std::vector<double>& mass, const Slabs& slabs, Team& team,
-                                           const Kernels& kernels)
+ConjugateGradient<Real>::ConjugateGradient(const std::vector<double>& mass, const parallel::Slabs& slabs,
+                                           parallel::Team& team, const elements::Kernels& kernels)
     : slabs_(slabs),
       team_(team),
-      kernels_(solver_kernels<Real>(kernels)),
+      kernels_(elements::solver_kernels<Real>(kernels)),
       mass_(mass.begin(), mass.end()),
       inverse_(6 * mass.size()),
       parts_(std::size_t(slabs.count())) {
@@ -16,14 +16,14 @@ ConjugateGradient<Real>::ConjugateGradient(const std::vector<double>& mass, cons
 }
 
 template <class Real>
-SolverArrays<Real> ConjugateGradient<Real>::arrays() {
+elements::SolverArrays<Real> ConjugateGradient<Real>::arrays() {
   return {mass_.size(),     mass_.data(),           inverse_.data(),   solution_.data(),
           residual_.data(), preconditioned_.data(), direction_.data(), product_.data()};
 }
 
 template <class Real>
-double ConjugateGradient<Real>::begin(const Coordinates& residual, double scale) {
-  const SolverArrays<Real> m = arrays();
+double ConjugateGradient<Real>::begin(const elements::Coordinates& residual, double scale) {
+  const elements::SolverArrays<Real> m = arrays();
   scale_ = scale;
   energy_ = sum_over_slabs(slabs_, team_, parts_, [&](std::size_t begin, std::size_t end) {
     return kernels_.begin_solve(m, residual.data(), scale, begin, end);
@@ -32,7 +32,7 @@ double ConjugateGradient<Real>::begin(const Coordinates& residual, double scale)
 }
 
 template <class Real>
-void ConjugateGradient<Real>::add_to(Coordinates& x) const {
+void ConjugateGradient<Real>::add_to(elements::Coordinates& x) const {
   const std::size_t n = mass_.size();
   const double factor = 1 / scale_;
   team_.for_each(slabs_.count(), [&](int slab) {
@@ -46,4 +46,4 @@ void ConjugateGradient<Real>::add_to(Coordinates& x) const {
 template class ConjugateGradient<float>;
 template class ConjugateGradient<double>;
 
-}  // namespace ctpm
+}  // namespace ctpm::solver

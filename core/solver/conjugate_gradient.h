@@ -9,12 +9,12 @@
 #include "core/parallel/slabs.h"
 #include "core/parallel/team.h"
 
-namespace ctpm {
+namespace ctpm::solver {
 
 /// sum over all slabs of part(begin, end), which get a range of spheres each. Sums go slab by slab, so they do not
 /// depend on the number of threads.
 template <class Part>
-double sum_over_slabs(const Slabs& slabs, Team& team, std::vector<double>& parts, Part&& part) {
+double sum_over_slabs(const parallel::Slabs& slabs, parallel::Team& team, std::vector<double>& parts, Part&& part) {
   team.for_each(slabs.count(), [&](int slab) {
     parts[std::size_t(slab)] = part(std::size_t(slabs.begin(slab)), std::size_t(slabs.end(slab)));
   });
@@ -28,13 +28,14 @@ double sum_over_slabs(const Slabs& slabs, Team& team, std::vector<double>& parts
 template <class Real>
 class ConjugateGradient {
  public:
-  ConjugateGradient(const std::vector<double>& mass, const Slabs& slabs, Team& team, const Kernels& kernels);
+  ConjugateGradient(const std::vector<double>& mass, const parallel::Slabs& slabs, parallel::Team& team,
+                    const elements::Kernels& kernels);
 
   /// Inverse blocks, to be filled before a solve; 0 along axes that are held  (6 x sphere_count).
   std::vector<Real>& inverse() { return inverse_; }
 
   /// Takes r = `scale` * `residual`; returns its energy r . (inverse blocks) r.
-  double begin(const Coordinates& residual, double scale);
+  double begin(const elements::Coordinates& residual, double scale);
 
   /// Iterates until the residual's energy is at most `enough` or `iterations` are used up; decrements `iterations` and
   /// returns the energy. `add_coupling(in, out, after)` does out += coupling times in and calls after(slab) for each
@@ -43,14 +44,14 @@ class ConjugateGradient {
   double descend(double enough, std::int32_t& iterations, AddCoupling&& add_coupling);
 
   /// x += c / scale.
-  void add_to(Coordinates& x) const;
+  void add_to(elements::Coordinates& x) const;
 
  private:
-  SolverArrays<Real> arrays();
+  elements::SolverArrays<Real> arrays();
 
-  const Slabs& slabs_;
-  Team& team_;
-  const SolverKernels<Real>& kernels_;
+  const parallel::Slabs& slabs_;
+  parallel::Team& team_;
+  const elements::SolverKernels<Real>& kernels_;
   std::vector<Real> mass_, inverse_, solution_, residual_, preconditioned_, direction_, product_;
   std::vector<double> parts_;  ///< of a sum (slab_count)
   double scale_ = 1, energy_ = 0;
@@ -59,7 +60,7 @@ class ConjugateGradient {
 template <class Real>
 template <class AddCoupling>
 double ConjugateGradient<Real>::descend(double enough, std::int32_t& iterations, AddCoupling&& add_coupling) {
-  const SolverArrays<Real> m = arrays();
+  const elements::SolverArrays<Real> m = arrays();
   double turn = 0;
   while (energy_ > enough && iterations > 0) {
     team_.for_each(slabs_.count(), [&](int slab) {
@@ -81,4 +82,4 @@ double ConjugateGradient<Real>::descend(double enough, std::int32_t& iterations,
   return energy_;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::solver

@@ -1,13 +1,15 @@
 #include "core/solver/linear_solver.h"
 
-namespace ctpm {
+namespace ctpm::solver {
 namespace {
 
 /// Stiffness ratio up to which float resolves soft motions beside stiff ones.
 constexpr double kStiffestForFloat = 1e4;
 
-std::variant<ConjugateGradient<float>, ConjugateGradient<double>> gradient_for(const Model& model, const Slabs& slabs,
-                                                                               Team& team, const Kernels& kernels,
+std::variant<ConjugateGradient<float>, ConjugateGradient<double>> gradient_for(const Model& model,
+                                                                               const parallel::Slabs& slabs,
+                                                                               parallel::Team& team,
+                                                                               const elements::Kernels& kernels,
                                                                                double stiffness_ratio) {
   if (stiffness_ratio <= kStiffestForFloat) return ConjugateGradient<float>(model.mass, slabs, team, kernels);
   return ConjugateGradient<double>(model.mass, slabs, team, kernels);
@@ -15,8 +17,8 @@ std::variant<ConjugateGradient<float>, ConjugateGradient<double>> gradient_for(c
 
 }  // namespace
 
-LinearSolver::LinearSolver(const Model& model, const Slabs& slabs, Team& team, const Kernels& kernels,
-                           double stiffness_ratio)
+LinearSolver::LinearSolver(const Model& model, const parallel::Slabs& slabs, parallel::Team& team,
+                           const elements::Kernels& kernels, double stiffness_ratio)
     : model_(model),
       slabs_(slabs),
       team_(team),
@@ -28,20 +30,21 @@ LinearSolver::LinearSolver(const Model& model, const Slabs& slabs, Team& team, c
     if (model.held_axes[i] != 0) held_.push_back(std::int32_t(i));
 }
 
-double LinearSolver::energy_of(const Coordinates& v) {
+double LinearSolver::energy_of(const elements::Coordinates& v) {
   return sum_over_slabs(slabs_, team_, parts_, [&](std::size_t begin, std::size_t end) {
     return kernels_.multiply_mass(model_.sphere_count(), model_.mass.data(), v.data(), residual_.data(), begin, end);
   });
 }
 
-void LinearSolver::set_blocks(const DiagonalBlocks& blocks, std::int32_t pinned) {
+void LinearSolver::set_blocks(const elements::DiagonalBlocks& blocks, std::int32_t pinned) {
   std::visit([&](auto& gradient) { set_blocks_of(gradient, blocks, pinned); }, gradient_);
 }
 
 template <class Real>
-void LinearSolver::set_blocks_of(ConjugateGradient<Real>& gradient, const DiagonalBlocks& blocks, std::int32_t pinned) {
+void LinearSolver::set_blocks_of(ConjugateGradient<Real>& gradient, const elements::DiagonalBlocks& blocks,
+                                 std::int32_t pinned) {
   const std::size_t n = model_.sphere_count();
-  const SolverKernels<Real>& kernels = solver_kernels<Real>(kernels_);
+  const elements::SolverKernels<Real>& kernels = elements::solver_kernels<Real>(kernels_);
   std::vector<Real>& inverse = gradient.inverse();
   team_.for_each(slabs_.count(), [&](int slab) {
     kernels.invert_blocks(n, blocks.data(), inverse.data(), std::size_t(slabs_.begin(slab)),
@@ -71,4 +74,4 @@ void LinearSolver::set_blocks_of(ConjugateGradient<Real>& gradient, const Diagon
   if (pinned >= 0) hold(std::size_t(pinned), kAnchored);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::solver

@@ -13,7 +13,7 @@
 #include "core/parallel/team.h"
 #include "core/solver/conjugate_gradient.h"
 
-namespace ctpm {
+namespace ctpm::solver {
 
 /// When a solve may stop. Norms are of the preconditioned residual, whose square is an energy.
 struct SolverLimits {
@@ -36,42 +36,44 @@ struct SolverOutcome {
 class LinearSolver {
  public:
   /// `stiffness_ratio` bounds the largest eigenvalue of M^-1 (A - M) [1]: whether corrections are computed in float.
-  LinearSolver(const Model& model, const Slabs& slabs, Team& team, const Kernels& kernels, double stiffness_ratio);
+  LinearSolver(const Model& model, const parallel::Slabs& slabs, parallel::Team& team, const elements::Kernels& kernels,
+               double stiffness_ratio);
 
   /// Takes the diagonal blocks of A. Coordinates that are held, as in Model::held_axes, and the sphere `pinned` stay at
   /// the first guess: their rows are left out of the system.
-  void set_blocks(const DiagonalBlocks& blocks, std::int32_t pinned);
+  void set_blocks(const elements::DiagonalBlocks& blocks, std::int32_t pinned);
 
   /// `x` is the first guess and the result. If it is all zero, since it is a change of a velocity, `guess_energy` is
   /// energy_of() that. `add_coupling` as for ConjugateGradient, for vectors of float and of double.
   template <class AddCoupling>
-  SolverOutcome solve(const Coordinates& b, Coordinates& x, std::optional<double> guess_energy,
+  SolverOutcome solve(const elements::Coordinates& b, elements::Coordinates& x, std::optional<double> guess_energy,
                       const SolverLimits& limits, AddCoupling&& add_coupling);
 
   /// v . M v [J], twice the kinetic energy of velocity `v` [m/s].
-  double energy_of(const Coordinates& v);
+  double energy_of(const elements::Coordinates& v);
 
  private:
   template <class Real>
-  void set_blocks_of(ConjugateGradient<Real>& gradient, const DiagonalBlocks& blocks, std::int32_t pinned);
+  void set_blocks_of(ConjugateGradient<Real>& gradient, const elements::DiagonalBlocks& blocks, std::int32_t pinned);
 
   /// Factor by which a round with vectors of Real may reduce the energy of the residual; less is lost in rounding.
   template <class Real>
   static constexpr double kGain = sizeof(Real) == sizeof(float) ? 1e-10 : 0.0;
 
   const Model& model_;
-  const Slabs& slabs_;
-  Team& team_;
-  const Kernels& kernels_;
+  const parallel::Slabs& slabs_;
+  parallel::Team& team_;
+  const elements::Kernels& kernels_;
   std::vector<std::int32_t> held_;  ///< spheres of which an axis or more is held
-  Coordinates residual_;
+  elements::Coordinates residual_;
   std::vector<double> parts_;  ///< of a sum (slab_count)
   std::variant<ConjugateGradient<float>, ConjugateGradient<double>> gradient_;
 };
 
 template <class AddCoupling>
-SolverOutcome LinearSolver::solve(const Coordinates& b, Coordinates& x, std::optional<double> guess_energy,
-                                  const SolverLimits& limits, AddCoupling&& add_coupling) {
+SolverOutcome LinearSolver::solve(const elements::Coordinates& b, elements::Coordinates& x,
+                                  std::optional<double> guess_energy, const SolverLimits& limits,
+                                  AddCoupling&& add_coupling) {
   const std::size_t n = model_.sphere_count();
   SolverOutcome outcome;
   std::int32_t left = limits.max_iterations;
@@ -108,4 +110,4 @@ SolverOutcome LinearSolver::solve(const Coordinates& b, Coordinates& x, std::opt
   return outcome;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::solver

@@ -7,7 +7,7 @@
 #include "core/stepping/substep.h"
 #include "core/stepping/velocity_check.h"
 
-namespace ctpm {
+namespace ctpm::stepping {
 
 /// Backward Euler: M (v' - v) = h f(x + h v', v'), x' = x + h v', linearised once (ImplicitSolve). First order,
 /// L-stable for dashpots of any stiffness.
@@ -17,7 +17,7 @@ class BackwardEuler {
   BackwardEuler(const StepContext& context, ImplicitSolve& solve) : context_(context), solve_(solve), check_(context) {}
 
   /// One substep from `from` into `to`. False: the step is refused, `report` says why, and `to` holds nothing useful.
-  bool step(const State& from, const HeldTool& tool, const Substep& part, Motion& to, StepReport& report);
+  bool step(const State& from, const contact::HeldTool& tool, const Substep& part, Motion& to, StepReport& report);
 
  private:
   const StepContext& context_;
@@ -25,4 +25,4 @@ class BackwardEuler {
   VelocityCheck check_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

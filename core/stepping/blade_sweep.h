@@ -11,7 +11,7 @@
 #include "core/model/state.h"
 #include "core/stepping/step.h"
 
-namespace ctpm {
+namespace ctpm::stepping {
 
 /// What a scalpel severs in one tick, and the pieces that come loose.
 class BladeSweep {
@@ -21,20 +21,20 @@ class BladeSweep {
 
   /// Moves the scalpel from `last` to `inputs` through the tissue as it rests, and severs what it sweeps. Gives `tool`
   /// the blade's motion, the elements near it and those that it severed.
-  void sweep(const Contacts& contacts, const Inputs& last, const Inputs& inputs, HeldTool& tool, State& state,
-             StepReport& report);
+  void sweep(const contact::Contacts& contacts, const Inputs& last, const Inputs& inputs, contact::HeldTool& tool,
+             State& state, StepReport& report);
 
   /// Severs what has moved through the resting blade while positions went from `before` [m] to State's.
-  void sever_moved(const HeldTool& tool, const Vec3Array& before, State& state, StepReport& report);
+  void sever_moved(const contact::HeldTool& tool, const Vec3Array& before, State& state, StepReport& report);
 
   /// Reports the pieces that came loose since sweep().
   void report_pieces(const State& state, StepReport& report);
 
  private:
   const Model& model_;
-  NearElements near_;
-  std::vector<Crossing> crossings_;  ///< elements severed in this tick
-  Pieces pieces_;
+  cutting::NearElements near_;
+  std::vector<cutting::Crossing> crossings_;  ///< elements severed in this tick
+  cutting::Pieces pieces_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

@@ -1,8 +1,8 @@
 #include "core/stepping/external_loads.h"
 
-namespace ctpm {
+namespace ctpm::stepping {
 
-void ExternalLoads::set(std::size_t begin, std::size_t end, Coordinates& force) const {
+void ExternalLoads::set(std::size_t begin, std::size_t end, elements::Coordinates& force) const {
   const std::size_t n = model.sphere_count();
   const double gravity[3] = {model.gravity.x, model.gravity.y, model.gravity.z};
   const double* mass = model.mass.data();
@@ -13,7 +13,7 @@ void ExternalLoads::set(std::size_t begin, std::size_t end, Coordinates& force) 
   if (has_loads) add_loads(begin, end, force);
 }
 
-void ExternalLoads::add_loads(std::size_t begin, std::size_t end, Coordinates& force) const {
+void ExternalLoads::add_loads(std::size_t begin, std::size_t end, elements::Coordinates& force) const {
   const std::size_t n = model.sphere_count();
   const Loads& loads = model.loads;
   for (std::size_t l = 0; l < loads.size(); ++l) {
@@ -26,4 +26,4 @@ void ExternalLoads::add_loads(std::size_t begin, std::size_t end, Coordinates& f
   }
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

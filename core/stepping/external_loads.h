@@ -3,7 +3,7 @@
 #include "core/elements/axial.h"
 #include "core/model/model.h"
 
-namespace ctpm {
+namespace ctpm::stepping {
 
 /// Forces on the spheres from outside the tissue: weight, and the Model's loads at one moment.
 struct ExternalLoads {
@@ -12,10 +12,10 @@ struct ExternalLoads {
   bool has_loads;  ///< Model::loads act; the weight always does
 
   /// Writes the forces on spheres [begin, end) into `force` [N]  (3 x sphere_count).
-  void set(std::size_t begin, std::size_t end, Coordinates& force) const;
+  void set(std::size_t begin, std::size_t end, elements::Coordinates& force) const;
 
  private:
-  void add_loads(std::size_t begin, std::size_t end, Coordinates& force) const;
+  void add_loads(std::size_t begin, std::size_t end, elements::Coordinates& force) const;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

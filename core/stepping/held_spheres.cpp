@@ -1,14 +1,14 @@
 #include "core/stepping/held_spheres.h"
 
-namespace ctpm {
+namespace ctpm::stepping {
 
-HeldSpheres::HeldSpheres(const Model& model, const Slabs& slabs)
+HeldSpheres::HeldSpheres(const Model& model, const parallel::Slabs& slabs)
     : model_(model), slabs_(slabs), of_slab_(std::size_t(slabs.count())) {
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
     if (model.held_axes[i] != 0) of_slab_[std::size_t(slabs.of(std::int32_t(i)))].push_back(std::int32_t(i));
 }
 
-void HeldSpheres::stop(const Pin& pin, int slab, std::array<double*, 3> velocity) const {
+void HeldSpheres::stop(const contact::Pin& pin, int slab, std::array<double*, 3> velocity) const {
   for (const std::int32_t sphere : of_slab_[std::size_t(slab)])
     for (std::size_t axis = 0; axis < 3; ++axis)
       if ((model_.held_axes[std::size_t(sphere)] >> axis & 1) != 0) velocity[axis][sphere] = 0;
@@ -17,4 +17,4 @@ void HeldSpheres::stop(const Pin& pin, int slab, std::array<double*, 3> velocity
   for (std::size_t axis = 0; axis < 3; ++axis) velocity[axis][pin.sphere] = hand[axis];
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

@@ -8,21 +8,21 @@
 #include "core/model/model.h"
 #include "core/parallel/slabs.h"
 
-namespace ctpm {
+namespace ctpm::stepping {
 
 /// Spheres that do not move along one axis or more.
 class HeldSpheres {
  public:
-  HeldSpheres(const Model& model, const Slabs& slabs);
+  HeldSpheres(const Model& model, const parallel::Slabs& slabs);
 
   /// Sets velocities along held axes of a slab's spheres to 0, and that of the pin's sphere to the pin's. `velocity`:
   /// x, y and z [m/s]  (sphere_count each).
-  void stop(const Pin& pin, int slab, std::array<double*, 3> velocity) const;
+  void stop(const contact::Pin& pin, int slab, std::array<double*, 3> velocity) const;
 
  private:
   const Model& model_;
-  const Slabs& slabs_;
+  const parallel::Slabs& slabs_;
   std::vector<std::vector<std::int32_t>> of_slab_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

@@ -6,7 +6,7 @@
 
 #include "core/stepping/integrator.h"
 
-namespace ctpm {
+namespace ctpm::stepping {
 namespace {
 
 /// Rounds in which contacts that would pull are dropped and the step is solved again.
@@ -31,8 +31,8 @@ ImplicitSolve::ImplicitSolve(const StepContext& context)
   limits_.max_iterations = model.solver.max_iterations;
 }
 
-const Coordinates& ImplicitSolve::solve(const StateView& start, const Substep& part, ImplicitContacts& contacts,
-                                        StepReport& report) {
+const elements::Coordinates& ImplicitSolve::solve(const StateView& start, const Substep& part,
+                                                  contact::ImplicitContacts& contacts, StepReport& report) {
   const ExternalLoads loads{context_.model, part.time, part.has_loads};
   context_.elements.linearise(start, part.h, false, force_, blocks_,
                               [&](int slab) { begin(start, contacts.step().pin, loads, slab), begin_blocks(slab); });
@@ -40,9 +40,10 @@ const Coordinates& ImplicitSolve::solve(const StateView& start, const Substep& p
   return velocity_;
 }
 
-const Coordinates& ImplicitSolve::solve_near(const StateView& predicted, const Vec3Array& before, bool keeps_matrix,
-                                             const Substep& part, ImplicitContacts& contacts, Coordinates& change,
-                                             StepReport& report) {
+const elements::Coordinates& ImplicitSolve::solve_near(const StateView& predicted, const Vec3Array& before,
+                                                       bool keeps_matrix, const Substep& part,
+                                                       contact::ImplicitContacts& contacts,
+                                                       elements::Coordinates& change, StepReport& report) {
   const ExternalLoads loads{context_.model, part.time, part.has_loads};
   const auto begin_slab = [&](int slab) { begin(predicted, contacts.step().pin, loads, slab); };
   if (keeps_matrix)
@@ -57,8 +58,8 @@ const Coordinates& ImplicitSolve::solve_near(const StateView& predicted, const V
 }
 
 /// External forces, ahead of the tissue's, and the first guess of the velocity.
-void ImplicitSolve::begin(const StateView& state, const Pin& pin, const ExternalLoads& loads, int slab) {
-  const Slabs& slabs = context_.elements.slabs();
+void ImplicitSolve::begin(const StateView& state, const contact::Pin& pin, const ExternalLoads& loads, int slab) {
+  const parallel::Slabs& slabs = context_.elements.slabs();
   const auto first = std::size_t(slabs.begin(slab)), last = std::size_t(slabs.end(slab));
   const std::size_t n = context_.model.sphere_count();
   const double* now[3] = {state.velocity.x.data(), state.velocity.y.data(), state.velocity.z.data()};
@@ -70,7 +71,7 @@ void ImplicitSolve::begin(const StateView& state, const Pin& pin, const External
 
 /// The masses, ahead of the tissue's blocks.
 void ImplicitSolve::begin_blocks(int slab) {
-  const Slabs& slabs = context_.elements.slabs();
+  const parallel::Slabs& slabs = context_.elements.slabs();
   const Model& model = context_.model;
   const auto first = std::size_t(slabs.begin(slab)), last = std::size_t(slabs.end(slab));
   for (std::size_t k = 0; k < 6; ++k) {
@@ -81,15 +82,15 @@ void ImplicitSolve::begin_blocks(int slab) {
 }
 
 /// Solves until no contact pulls; `change` is the velocity itself, or its change from a prediction.
-void ImplicitSolve::solve_contacts(const Beginning& beginning, ImplicitContacts& contacts, Coordinates& change,
-                                   StepReport& report) {
-  const Slabs& slabs = context_.elements.slabs();
-  const ContactStep& step = contacts.step();
+void ImplicitSolve::solve_contacts(const Beginning& beginning, contact::ImplicitContacts& contacts,
+                                   elements::Coordinates& change, StepReport& report) {
+  const parallel::Slabs& slabs = context_.elements.slabs();
+  const contact::ContactStep& step = contacts.step();
   for (int round = 0;; ++round) {
-    LinearisedContacts linearised = contacts.linearise(force_, blocks_);
+    contact::LinearisedContacts linearised = contacts.linearise(force_, blocks_);
     context_.team.for_each(slabs.count(), [&](int slab) { find_momentum(beginning, step.h, slab); });
     solver_.set_blocks(blocks_, step.pin.sphere);
-    const SolverOutcome outcome =
+    const solver::SolverOutcome outcome =
         solver_.solve(momentum_, change, round == 0 ? beginning.prediction_energy : std::nullopt, limits_,
                       [&](const auto* in, auto* out, auto&& after) {
                         context_.elements.apply(in, out, after);
@@ -110,7 +111,7 @@ void ImplicitSolve::solve_contacts(const Beginning& beginning, ImplicitContacts&
 
 /// momentum = mass * (velocity - prediction) + h * force [kg m/s] of a slab's spheres.
 void ImplicitSolve::find_momentum(const Beginning& beginning, double h, int slab) {
-  const Slabs& slabs = context_.elements.slabs();
+  const parallel::Slabs& slabs = context_.elements.slabs();
   const std::size_t n = context_.model.sphere_count(), begin = std::size_t(slabs.begin(slab)),
                     end = std::size_t(slabs.end(slab));
   const double* mass = context_.model.mass.data();
@@ -126,7 +127,7 @@ void ImplicitSolve::find_momentum(const Beginning& beginning, double h, int slab
 }
 
 /// The row of the balance of momentum of the pin's sphere, with the sign turned; `before` is its velocity at the start.
-Vec3 ImplicitSolve::force_on_pin(Vec3 before, const ContactStep& step, const Coordinates& change) {
+Vec3 ImplicitSolve::force_on_pin(Vec3 before, const contact::ContactStep& step, const elements::Coordinates& change) {
   const Model& model = context_.model;
   const std::size_t n = model.sphere_count(), i = step.pin.index();
   std::fill(momentum_.begin(), momentum_.end(), 0.0);
@@ -136,4 +137,4 @@ Vec3 ImplicitSolve::force_on_pin(Vec3 before, const ContactStep& step, const Coo
   return (model.mass[i] * (before - step.pin.velocity) - coupling) / step.h + own;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace ctpm {
+namespace ctpm::stepping {
 namespace {
 
 /// Substeps up to which the explicit step costs less than an implicit solve.
@@ -123,4 +123,4 @@ const char* name_of(Integrator integrator) {
 
 const char* name_of(std::optional<Integrator> asked) { return asked ? name_of(*asked) : "auto"; }
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

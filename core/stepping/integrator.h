@@ -5,7 +5,7 @@
 
 #include "core/model/model.h"
 
-namespace ctpm {
+namespace ctpm::stepping {
 
 /// Longest step [s] for which leapfrog is proven to hold, or infinity if nothing is stiff.
 ///
@@ -43,4 +43,4 @@ IntegratorChoice resolve_integrator(Model& model, std::optional<Integrator> aske
 const char* name_of(Integrator integrator);
 const char* name_of(std::optional<Integrator> asked);
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

@@ -2,7 +2,7 @@
 
 #include "core/stepping/external_loads.h"
 
-namespace ctpm {
+namespace ctpm::stepping {
 
 Leapfrog::Leapfrog(const StepContext& context)
     : context_(context),
@@ -15,19 +15,20 @@ Leapfrog::Leapfrog(const StepContext& context)
   if (model.has_tool(ToolKind::pin)) pinned_velocity_.resize(model.sphere_count());
 }
 
-bool Leapfrog::step(const State& from, const HeldTool& tool, const Substep& part, Motion& to, StepReport& report) {
+bool Leapfrog::step(const State& from, const contact::HeldTool& tool, const Substep& part, Motion& to,
+                    StepReport& report) {
   const Model& model = context_.model;
-  Elements& elements = context_.elements;
-  const Slabs& slabs = elements.slabs();
+  elements::Elements& elements = context_.elements;
+  const parallel::Slabs& slabs = elements.slabs();
   const double half = 0.5 * part.h;
-  const Pin pin = Contacts::pin(tool, from.position, part.share, part.h);
+  const contact::Pin pin = contact::Contacts::pin(tool, from.position, part.share, part.h);
   const Vec3Array& velocity = start_velocity(from, pin);
   drift(slabs, context_.team, from.position, velocity, half, to.position);
   elements.find_acting_kelvin(part.h, {from, to.position, velocity, from.kelvin_elongation}, to.kelvin_elongation);
 
   const StateView middle(from, to.position, velocity, to.kelvin_elongation);
   kick(middle, pin, part, to.velocity);
-  const ExplicitContacts contacts =
+  const contact::ExplicitContacts contacts =
       context_.contacts.push_apart(middle, tool, {part.h, part.share - half / model.tick, pin}, to.velocity);
   report.tool_force = contacts.tool_force();
   if (pin.is_held()) {
@@ -44,7 +45,7 @@ bool Leapfrog::step(const State& from, const HeldTool& tool, const Substep& part
 }
 
 /// The velocity at the start, with the pin's sphere already moving to the hand.
-const Vec3Array& Leapfrog::start_velocity(const State& from, const Pin& pin) {
+const Vec3Array& Leapfrog::start_velocity(const State& from, const contact::Pin& pin) {
   if (!pin.is_held()) return from.velocity;
   pinned_velocity_ = from.velocity;
   pinned_velocity_.set(pin.index(), pin.velocity);
@@ -52,9 +53,9 @@ const Vec3Array& Leapfrog::start_velocity(const State& from, const Pin& pin) {
 }
 
 /// velocity = v + h M^-1 f, with v and f in the middle of the step; contacts come later.
-void Leapfrog::kick(const StateView& middle, const Pin& pin, const Substep& part, Vec3Array& velocity) {
+void Leapfrog::kick(const StateView& middle, const contact::Pin& pin, const Substep& part, Vec3Array& velocity) {
   const std::size_t n = context_.model.sphere_count();
-  const Slabs& slabs = context_.elements.slabs();
+  const parallel::Slabs& slabs = context_.elements.slabs();
   const ExternalLoads loads{context_.model, part.time - 0.5 * part.h, part.has_loads};
   const double* old[3] = {middle.velocity.x.data(), middle.velocity.y.data(), middle.velocity.z.data()};
   const std::array<double*, 3> next = {velocity.x.data(), velocity.y.data(), velocity.z.data()};
@@ -72,4 +73,4 @@ void Leapfrog::kick(const StateView& middle, const Pin& pin, const Substep& part
   context_.elements.add_forces(middle, force_, start, accelerate);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

@@ -7,7 +7,7 @@
 #include "core/stepping/substep.h"
 #include "core/stepping/velocity_check.h"
 
-namespace ctpm {
+namespace ctpm::stepping {
 
 /// Leapfrog (position Verlet). Half a step of drift with the old velocity, a kick v' = v + h M^-1 f there, and half a
 /// step of drift with the new velocity. Second order for one evaluation of the forces (Leimkuhler & Reich, "Simulating
@@ -18,18 +18,18 @@ class Leapfrog {
   explicit Leapfrog(const StepContext& context);
 
   /// One substep from `from` into `to`. False: the step is refused, `report` says why, and `to` holds nothing useful.
-  bool step(const State& from, const HeldTool& tool, const Substep& part, Motion& to, StepReport& report);
+  bool step(const State& from, const contact::HeldTool& tool, const Substep& part, Motion& to, StepReport& report);
 
  private:
-  const Vec3Array& start_velocity(const State& from, const Pin& pin);
-  void kick(const StateView& middle, const Pin& pin, const Substep& part, Vec3Array& velocity);
+  const Vec3Array& start_velocity(const State& from, const contact::Pin& pin);
+  void kick(const StateView& middle, const contact::Pin& pin, const Substep& part, Vec3Array& velocity);
 
   const StepContext& context_;
   HeldSpheres held_;
   VelocityCheck check_;
   std::vector<double> per_mass_;  ///< 1 / mass [1/kg]  (sphere_count)
-  Coordinates force_;             ///< [N]
+  elements::Coordinates force_;   ///< [N]
   Vec3Array pinned_velocity_;     ///< State's, with that of the pin; empty if the Model has no pin  (sphere_count)
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

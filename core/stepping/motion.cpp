@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace ctpm {
+namespace ctpm::stepping {
 namespace {
 
 constexpr std::vector<double> Vec3Array::*kAxes[3] = {&Vec3Array::x, &Vec3Array::y, &Vec3Array::z};
@@ -15,8 +15,8 @@ void commit(Motion& motion, State& state) {
   if (motion.acceleration.size() > 0) std::swap(state.acceleration, motion.acceleration);
 }
 
-void drift(const Slabs& slabs, Team& team, const Vec3Array& position, const Vec3Array& velocity, double h,
-           Vec3Array& to) {
+void drift(const parallel::Slabs& slabs, parallel::Team& team, const Vec3Array& position, const Vec3Array& velocity,
+           double h, Vec3Array& to) {
   team.for_each(slabs.count(), [&](int slab) {
     for (const auto axis : kAxes) {
       const double *v = (velocity.*axis).data(), *p = (position.*axis).data();
@@ -26,7 +26,8 @@ void drift(const Slabs& slabs, Team& team, const Vec3Array& position, const Vec3
   });
 }
 
-void drift(const Slabs& slabs, Team& team, const Vec3Array& velocity, double h, Vec3Array& position) {
+void drift(const parallel::Slabs& slabs, parallel::Team& team, const Vec3Array& velocity, double h,
+           Vec3Array& position) {
   team.for_each(slabs.count(), [&](int slab) {
     for (const auto axis : kAxes) {
       const double* v = (velocity.*axis).data();
@@ -36,8 +37,8 @@ void drift(const Slabs& slabs, Team& team, const Vec3Array& velocity, double h, 
   });
 }
 
-void commit_velocity(const Slabs& slabs, Team& team, const Coordinates& velocity, const Vec3Array& position, double h,
-                     Motion& to) {
+void commit_velocity(const parallel::Slabs& slabs, parallel::Team& team, const elements::Coordinates& velocity,
+                     const Vec3Array& position, double h, Motion& to) {
   const std::size_t n = position.size();
   team.for_each(slabs.count(), [&](int slab) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -50,4 +51,4 @@ void commit_velocity(const Slabs& slabs, Team& team, const Coordinates& velocity
   });
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

@@ -8,7 +8,7 @@
 #include "core/parallel/slabs.h"
 #include "core/parallel/team.h"
 
-namespace ctpm {
+namespace ctpm::stepping {
 
 /// The part of a State that an integrator advances.
 struct Motion {
@@ -27,15 +27,16 @@ struct Motion {
 void commit(Motion& motion, State& state);
 
 /// to = position + h * velocity  (sphere_count); `to` must be another array than `position`.
-void drift(const Slabs& slabs, Team& team, const Vec3Array& position, const Vec3Array& velocity, double h,
-           Vec3Array& to);
+void drift(const parallel::Slabs& slabs, parallel::Team& team, const Vec3Array& position, const Vec3Array& velocity,
+           double h, Vec3Array& to);
 
 /// position += h * velocity  (sphere_count).
-void drift(const Slabs& slabs, Team& team, const Vec3Array& velocity, double h, Vec3Array& position);
+void drift(const parallel::Slabs& slabs, parallel::Team& team, const Vec3Array& velocity, double h,
+           Vec3Array& position);
 
 /// Gives `to` the `velocity` (3 x sphere_count) that was solved for, and the positions that it leads to from `position`
 /// in a step of `h` [s].
-void commit_velocity(const Slabs& slabs, Team& team, const Coordinates& velocity, const Vec3Array& position, double h,
-                     Motion& to);
+void commit_velocity(const parallel::Slabs& slabs, parallel::Team& team, const elements::Coordinates& velocity,
+                     const Vec3Array& position, double h, Motion& to);
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace ctpm {
+namespace ctpm::stepping {
 namespace {
 
 /// Part of a step that each of Alexander's two stages (1977) takes: 1 - 1 / sqrt(2).
@@ -59,7 +59,8 @@ Sdirk2::Sdirk2(const StepContext& context, ImplicitSolve& solve)
       second_start_(context.model),
       change_(3 * context.model.sphere_count()) {}
 
-bool Sdirk2::step(const State& from, const HeldTool& tool, const Substep& part, Motion& to, StepReport& report) {
+bool Sdirk2::step(const State& from, const contact::HeldTool& tool, const Substep& part, Motion& to,
+                  StepReport& report) {
   to.acceleration.resize(from.position.size());
   const StepStatus before = report.status;
   if (is_short(from, tool, part) && two_stages(from, tool, part, to, report) &&
@@ -74,14 +75,15 @@ bool Sdirk2::step(const State& from, const HeldTool& tool, const Substep& part, 
 }
 
 /// Whether no sphere moves farther in the step than a prediction is good for.
-bool Sdirk2::is_short(const State& from, const HeldTool& tool, const Substep& part) const {
+bool Sdirk2::is_short(const State& from, const contact::HeldTool& tool, const Substep& part) const {
   const double limit = kLongestMove * shortest_element_;
   const double jump =
       tool.is(ToolKind::pin) ? norm(tool.at(part.share) - from.position[std::size_t(tool.tool->sphere)]) : 0.0;
   return jump <= limit && fastest_squared(from.velocity) * part.h * part.h <= limit * limit;
 }
 
-bool Sdirk2::two_stages(const State& from, const HeldTool& tool, const Substep& part, Motion& to, StepReport& report) {
+bool Sdirk2::two_stages(const State& from, const contact::HeldTool& tool, const Substep& part, Motion& to,
+                        StepReport& report) {
   const double h = kStage * part.h, rest = part.h - h;
   extrapolate(from.velocity, from.acceleration, h, predicted_.velocity);
   const Substep first{h, part.time - rest, part.share - rest / context_.model.tick, part.has_loads};
@@ -96,11 +98,11 @@ bool Sdirk2::two_stages(const State& from, const HeldTool& tool, const Substep& 
 
 /// One stage from `start` into `to`, linearised about where the velocity in predicted_ leads; the second stage takes
 /// the matrix of the first.
-bool Sdirk2::dirk_stage(const StateView& start, const HeldTool& tool, const Substep& part, bool is_second, Motion& to,
-                        StepReport& report) {
-  Elements& elements = context_.elements;
-  const Slabs& slabs = elements.slabs();
-  stage_pin_ = Contacts::pin(tool, start.position, part.share, part.h);
+bool Sdirk2::dirk_stage(const StateView& start, const contact::HeldTool& tool, const Substep& part, bool is_second,
+                        Motion& to, StepReport& report) {
+  elements::Elements& elements = context_.elements;
+  const parallel::Slabs& slabs = elements.slabs();
+  stage_pin_ = contact::Contacts::pin(tool, start.position, part.share, part.h);
   if (stage_pin_.is_held()) predicted_.velocity.set(stage_pin_.index(), stage_pin_.velocity);
   drift(slabs, context_.team, start.position, predicted_.velocity, part.h, predicted_.position);
   // A new matrix accounts for the change of the Kelvin elongations in the step; an old one must be given their end.
@@ -109,8 +111,8 @@ bool Sdirk2::dirk_stage(const StateView& start, const HeldTool& tool, const Subs
                          predicted_.kelvin_elongation);
   const std::vector<double>& kelvin = is_second ? predicted_.kelvin_elongation : start.kelvin_elongation;
   const StateView predicted(start, predicted_.position, predicted_.velocity, kelvin);
-  ImplicitContacts contacts =
-      context_.contacts.detect(predicted, tool, {part.h, part.share, stage_pin_}, Linearisation::velocity);
+  contact::ImplicitContacts contacts =
+      context_.contacts.detect(predicted, tool, {part.h, part.share, stage_pin_}, contact::Linearisation::velocity);
   stage_velocity_ = &solve_.solve_near(predicted, start.velocity, is_second, part, contacts, change_, report);
   commit_velocity(slabs, context_.team, *stage_velocity_, start.position, part.h, to);
   if (!check_.passes(to.velocity, report)) return false;
@@ -120,9 +122,9 @@ bool Sdirk2::dirk_stage(const StateView& start, const HeldTool& tool, const Subs
 }
 
 /// Part of the kinetic energy at the end of the last stage that its prediction missed; the pin's sphere does not count.
-double Sdirk2::predictor_error(const Pin& pin) {
+double Sdirk2::predictor_error(const contact::Pin& pin) {
   const std::size_t n = context_.model.sphere_count();
-  const Coordinates& velocity = *stage_velocity_;
+  const elements::Coordinates& velocity = *stage_velocity_;
   double energy = solve_.energy_of(velocity);
   if (pin.is_held()) {
     const std::size_t i = pin.index();
@@ -132,4 +134,4 @@ double Sdirk2::predictor_error(const Pin& pin) {
   return energy > 0 ? solve_.energy_of(change_) / energy : 0.0;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

@@ -8,7 +8,7 @@
 #include "core/stepping/substep.h"
 #include "core/stepping/velocity_check.h"
 
-namespace ctpm {
+namespace ctpm::stepping {
 
 /// SDIRK2: L-stable, second order (Alexander, "Diagonally implicit Runge-Kutta methods for stiff O.D.E.'s", 1977). Two
 /// stages, each a shorter step of backward Euler, linearised about a prediction; the second starts where the first
@@ -19,25 +19,26 @@ class Sdirk2 {
   Sdirk2(const StepContext& context, ImplicitSolve& solve);
 
   /// One substep from `from` into `to`. False: the step is refused, `report` says why, and `to` holds nothing useful.
-  bool step(const State& from, const HeldTool& tool, const Substep& part, Motion& to, StepReport& report);
+  bool step(const State& from, const contact::HeldTool& tool, const Substep& part, Motion& to, StepReport& report);
 
  private:
-  bool is_short(const State& from, const HeldTool& tool, const Substep& part) const;
-  bool two_stages(const State& from, const HeldTool& tool, const Substep& part, Motion& to, StepReport& report);
-  bool dirk_stage(const StateView& start, const HeldTool& tool, const Substep& part, bool is_second, Motion& to,
+  bool is_short(const State& from, const contact::HeldTool& tool, const Substep& part) const;
+  bool two_stages(const State& from, const contact::HeldTool& tool, const Substep& part, Motion& to,
                   StepReport& report);
-  double predictor_error(const Pin& pin);
+  bool dirk_stage(const StateView& start, const contact::HeldTool& tool, const Substep& part, bool is_second,
+                  Motion& to, StepReport& report);
+  double predictor_error(const contact::Pin& pin);
 
   const StepContext& context_;
   ImplicitSolve& solve_;
   BackwardEuler fallback_;
   VelocityCheck check_;
-  double shortest_element_;                      ///< at rest [m]
-  Motion predicted_;                             ///< end of a stage
-  Motion second_start_;                          ///< end of the first stage, then start of the second
-  Coordinates change_;                           ///< of the last stage's velocity from its prediction [m/s]
-  const Coordinates* stage_velocity_ = nullptr;  ///< solution of the last stage
-  Pin stage_pin_;                                ///< of the last stage
+  double shortest_element_;                                ///< at rest [m]
+  Motion predicted_;                                       ///< end of a stage
+  Motion second_start_;                                    ///< end of the first stage, then start of the second
+  elements::Coordinates change_;                           ///< of the last stage's velocity from its prediction [m/s]
+  const elements::Coordinates* stage_velocity_ = nullptr;  ///< solution of the last stage
+  contact::Pin stage_pin_;                                 ///< of the last stage
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

@@ -14,7 +14,7 @@
 #include "core/stepping/sdirk2.h"
 #include "core/stepping/substep.h"
 
-namespace ctpm {
+namespace ctpm::stepping {
 namespace {
 
 /// Settling ends when no sphere is faster than this [m/s].
@@ -37,7 +37,7 @@ struct Stepper::Parts {
   Parts(const Model& m, const StepperOptions& options)
       : model(m),
         choice(check_integrator(m)),
-        kernels(kernels_for(options.instruction_set)),
+        kernels(elements::kernels_for(options.instruction_set)),
         team(options.threads),
         elements(m, team, options.instruction_set),
         contacts(m, kernels),
@@ -54,16 +54,16 @@ struct Stepper::Parts {
       integrator.emplace<BackwardEuler>(context, *implicit_solve);
   }
 
-  HeldTool hold(const Inputs& last, const Inputs& inputs) const;
-  bool advance(const State& from, const HeldTool& tool, const Substep& part, StepReport& report);
-  bool run_substeps(State& state, const HeldTool& tool, StepReport& report);
+  contact::HeldTool hold(const Inputs& last, const Inputs& inputs) const;
+  bool advance(const State& from, const contact::HeldTool& tool, const Substep& part, StepReport& report);
+  bool run_substeps(State& state, const contact::HeldTool& tool, StepReport& report);
 
   const Model& model;
   IntegratorChoice choice;
-  const Kernels& kernels;
-  Team team;
-  Elements elements;
-  Contacts contacts;
+  const elements::Kernels& kernels;
+  parallel::Team team;
+  elements::Elements elements;
+  contact::Contacts contacts;
   StepContext context{model, kernels, team, elements, contacts};
   std::optional<ImplicitSolve> implicit_solve;  ///< of implicit integrators
   AnyIntegrator integrator;
@@ -73,15 +73,16 @@ struct Stepper::Parts {
   bool has_loads = true;
 };
 
-HeldTool Stepper::Parts::hold(const Inputs& last, const Inputs& inputs) const {
-  HeldTool tool;
+contact::HeldTool Stepper::Parts::hold(const Inputs& last, const Inputs& inputs) const {
+  contact::HeldTool tool;
   tool.tool = inputs.tool >= 0 ? &model.tools[std::size_t(inputs.tool)] : nullptr;
   tool.from = last.position, tool.to = inputs.position;
   return tool;
 }
 
 /// One substep into `next`. False: it must be refused.
-bool Stepper::Parts::advance(const State& from, const HeldTool& tool, const Substep& part, StepReport& report) {
+bool Stepper::Parts::advance(const State& from, const contact::HeldTool& tool, const Substep& part,
+                             StepReport& report) {
   return std::visit(
       [&]<class Method>(Method& method) {
         if constexpr (std::is_same_v<Method, std::monostate>)
@@ -93,7 +94,7 @@ bool Stepper::Parts::advance(const State& from, const HeldTool& tool, const Subs
 }
 
 /// All substeps of a tick. False: one was refused; `state` is then as before that one.
-bool Stepper::Parts::run_substeps(State& state, const HeldTool& tool, StepReport& report) {
+bool Stepper::Parts::run_substeps(State& state, const contact::HeldTool& tool, StepReport& report) {
   const std::int32_t substeps = choice.substeps;
   const double h = model.tick / substeps;
   for (std::int32_t k = 1; k <= substeps; ++k) {
@@ -121,7 +122,7 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
   if (report.status != StepStatus::ok) return report;
   // A tool that was not held before has not moved yet.
   const Inputs last = inputs.tool >= 0 && state.last_inputs.tool == inputs.tool ? state.last_inputs : inputs;
-  HeldTool tool = parts.hold(last, inputs);
+  contact::HeldTool tool = parts.hold(last, inputs);
   const bool cuts = tool.is(ToolKind::scalpel);
   // An integrator leaves State as it is until its substep is taken. Ticks that change State more than once do that in
   // `trial`.
@@ -155,4 +156,4 @@ StepReport Stepper::settle(State& state, std::int64_t ticks) {
   return report;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

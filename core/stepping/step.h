@@ -9,7 +9,7 @@
 #include "core/model/state.h"
 #include "core/stepping/integrator.h"
 
-namespace ctpm {
+namespace ctpm::stepping {
 
 enum class StepStatus : std::int32_t {
   ok = 0,
@@ -38,7 +38,7 @@ struct StepReport {
 /// What a Stepper may use of the machine. None of it changes a bit of what comes out.
 struct StepperOptions {
   int threads = 1;  ///< >= 1; more only help from some thousand spheres on
-  InstructionSet instruction_set = best_instruction_set();
+  elements::InstructionSet instruction_set = elements::best_instruction_set();
 };
 
 /// Advances States of one Model. Holds the kernels chosen for the Model and their scratch memory, nothing
@@ -66,4 +66,4 @@ class Stepper {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

@@ -7,7 +7,7 @@
 #include "core/parallel/team.h"
 #include "core/stepping/step.h"
 
-namespace ctpm {
+namespace ctpm::stepping {
 
 /// A part of a tick.
 struct Substep {
@@ -20,15 +20,15 @@ struct Substep {
 /// What the integrator of one Model works with; all of it outlives the integrator.
 struct StepContext {
   const Model& model;
-  const Kernels& kernels;
-  Team& team;
-  Elements& elements;
-  Contacts& contacts;
+  const elements::Kernels& kernels;
+  parallel::Team& team;
+  elements::Elements& elements;
+  contact::Contacts& contacts;
 };
 
 /// Reports what the tool touches at the end of a substep, with the spheres at `position` [m].
-inline void report_contacts(const ContactSet& contacts, const Vec3Array& position, StepReport& report) {
+inline void report_contacts(const contact::ContactSet& contacts, const Vec3Array& position, StepReport& report) {
   report.depth = contacts.depth(position), report.contacts = contacts.touched();
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace ctpm {
+namespace ctpm::stepping {
 namespace {
 
 /// A sphere faster than this [m/s] has left every physical range.
@@ -14,7 +14,7 @@ VelocityCheck::VelocityCheck(const StepContext& context)
     : context_(context), fastest_of_slab_(std::size_t(context.elements.slabs().count())) {}
 
 bool VelocityCheck::passes(const Vec3Array& velocity, StepReport& report) {
-  const Slabs& slabs = context_.elements.slabs();
+  const parallel::Slabs& slabs = context_.elements.slabs();
   context_.team.for_each(slabs.count(), [&](int slab) {
     fastest_of_slab_[std::size_t(slab)] =
         context_.kernels.fastest_squared(velocity.x.data(), velocity.y.data(), velocity.z.data(),
@@ -34,4 +34,4 @@ bool VelocityCheck::passes(const Vec3Array& velocity, StepReport& report) {
   return false;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

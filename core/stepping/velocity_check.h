@@ -6,7 +6,7 @@
 #include "core/stepping/step.h"
 #include "core/stepping/substep.h"
 
-namespace ctpm {
+namespace ctpm::stepping {
 
 /// Refuses velocities that no tissue has.
 class VelocityCheck {
@@ -22,4 +22,4 @@ class VelocityCheck {
   std::vector<double> fastest_of_slab_;  ///< squared speed [m^2/s^2]  (slab_count)
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::stepping

@@ -11,7 +11,7 @@
 
 #include "core/model/result.h"
 
-namespace ctpm {
+namespace ctpm::surface {
 namespace {
 
 constexpr double kReachInSpacings = 2.2;
@@ -203,4 +203,4 @@ void deform_surface(const Surface& surface, const Vec3Array& position, std::int3
           binding.weight[std::size_t(entry)] * position[std::size_t(first_sphere + binding.sphere[std::size_t(entry)])];
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::surface

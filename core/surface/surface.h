@@ -7,7 +7,7 @@
 #include "core/model/organ.h"
 #include "core/model/vec3.h"
 
-namespace ctpm {
+namespace ctpm::surface {
 
 /// Weights with which one point follows nearby spheres: moving least squares with a linear basis, so every
 /// affine motion of the spheres is followed exactly. `radius` [m] is the reach of the smooth kernel; spheres
@@ -24,4 +24,4 @@ void bind_surface(FilledOrgan& organ, int threads = 1);
 void deform_surface(const Surface& surface, const Vec3Array& position, std::int32_t first_sphere,
                     std::vector<Vec3>& vertex);
 
-}  // namespace ctpm
+}  // namespace ctpm::surface

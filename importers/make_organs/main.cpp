@@ -12,10 +12,10 @@
 
 namespace {
 
-using namespace ctpm;
+using namespace ctpm::importers;
 
-void print(const Errors& errors) {
-  for (const Error& error : errors) std::fprintf(stderr, "%s\n", to_string(error).c_str());
+void print(const ctpm::Errors& errors) {
+  for (const ctpm::Error& error : errors) std::fprintf(stderr, "%s\n", to_string(error).c_str());
 }
 
 void print(const OrganShape& shape, const OrganMesh& mesh, const MeshFacts& facts) {

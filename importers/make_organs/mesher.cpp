@@ -21,7 +21,7 @@
 #include <string>
 #include <utility>
 
-namespace ctpm {
+namespace ctpm::importers {
 
 namespace {
 
@@ -203,4 +203,4 @@ Result<MeshFacts> check_mesh(const OrganMesh& plain, const OrganShape& shape) {
   return facts;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

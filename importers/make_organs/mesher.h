@@ -8,7 +8,7 @@
 #include "core/model/vec3.h"
 #include "importers/make_organs/shapes.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 /// A triangle mesh with coordinates in [mm], exactly as they stand in the file (three decimals).
 struct OrganMesh {
@@ -33,4 +33,4 @@ Result<OrganMesh> mesh_shape(const OrganShape& shape);
 /// triangle angle of 15 degrees or less, or a count, volume or size that is not what the shape asks for.
 Result<MeshFacts> check_mesh(const OrganMesh& mesh, const OrganShape& shape);
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

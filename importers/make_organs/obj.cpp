@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-namespace ctpm {
+namespace ctpm::importers {
 
 Result<Done> write_obj(const std::filesystem::path& path, const OrganMesh& mesh, const OrganShape& shape) {
   const auto failed = [&] { return Error{path.string(), "cannot be written", "check the folder and the space left"}; };
@@ -25,4 +25,4 @@ Result<Done> write_obj(const std::filesystem::path& path, const OrganMesh& mesh,
   return Done{};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

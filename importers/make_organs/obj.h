@@ -6,10 +6,10 @@
 #include "importers/make_organs/mesher.h"
 #include "importers/make_organs/shapes.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 /// Writes the mesh as a Wavefront OBJ file in [mm] with three decimals, headed by what it is, its maker and
 /// its licence. Error: the file cannot be written.
 Result<Done> write_obj(const std::filesystem::path& path, const OrganMesh& mesh, const OrganShape& shape);
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

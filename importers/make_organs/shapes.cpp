@@ -5,7 +5,7 @@
 
 #include "importers/make_organs/solids.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 namespace {
 
@@ -100,4 +100,4 @@ std::vector<OrganShape> organ_shapes() {
            .size_mm = {120, 120, 30}}};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -6,7 +6,7 @@
 
 #include "core/model/vec3.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 /// An organ as an implicit shape, and what its mesh must look like to be accepted. z is up and the organ lies
 /// with its lowest point near z = 0.
@@ -30,4 +30,4 @@ struct OrganShape {
 /// The liver, the kidney and the piece of skin.
 std::vector<OrganShape> organ_shapes();
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

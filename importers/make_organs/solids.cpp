@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace ctpm {
+namespace ctpm::importers {
 
 namespace {
 
@@ -73,4 +73,4 @@ Vec3 turn_z(Vec3 v, double degrees) {
   return {c * v.x - s * v.y, s * v.x + c * v.y, v.z};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -2,7 +2,7 @@
 
 #include "core/model/vec3.h"
 
-namespace ctpm {
+namespace ctpm::importers {
 
 // Solids as functions of a point: negative inside, positive outside, zero on the surface, and near the
 // surface close to the distance from it. All lengths are in [mm]. Formulas after I. Quilez, "Distance
@@ -38,4 +38,4 @@ Vec3 turn_x(Vec3 v, double degrees);
 Vec3 turn_y(Vec3 v, double degrees);
 Vec3 turn_z(Vec3 v, double degrees);
 
-}  // namespace ctpm
+}  // namespace ctpm::importers

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 namespace {
 
 constexpr int order_count = 3;
@@ -114,4 +114,4 @@ CTPM_ARRAY_CODEC(std::uint8_t)
 CTPM_ARRAY_CODEC(std::uint32_t)
 CTPM_ARRAY_CODEC(std::uint64_t)
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

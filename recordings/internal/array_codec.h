@@ -6,7 +6,7 @@
 
 #include "recordings/internal/bytes.h"
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 
 /// Writes an array as differences and byte planes, FORMAT.md section 3. U: uint8_t, uint32_t or uint64_t, the
 /// bits of the values.
@@ -21,4 +21,4 @@ void get_array(ByteReader& in, std::uint64_t count, std::vector<U>& values);
 /// Steps over an array of `count` values of `width` bytes and returns its bytes.
 ByteView skip_array(ByteReader& in, std::uint64_t count, std::size_t width);
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

@@ -6,7 +6,7 @@
 #define XXH_STATIC_LINKING_ONLY  // the hash state lives on the stack
 #include <xxhash.h>
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 namespace {
 
 std::int64_t checksum_of(const std::string& name, std::int64_t size, ByteView data, std::uint64_t seed) {
@@ -59,4 +59,4 @@ Result<Bytes> unpack(const std::string& name, std::int64_t size, std::int64_t ch
   return content;
 }
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

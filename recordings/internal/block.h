@@ -6,7 +6,7 @@
 #include "core/model/result.h"
 #include "recordings/internal/bytes.h"
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 
 inline constexpr std::uint64_t max_part_size = 1ull << 30;  ///< of a part or a keyframe before compression [bytes]
 inline constexpr std::uint64_t max_chunk_size = 64ull
@@ -27,4 +27,4 @@ Block pack(const std::string& name, ByteView content, std::uint64_t seed, int le
 Result<Bytes> unpack(const std::string& name, std::int64_t size, std::int64_t checksum, ByteView data,
                      std::uint64_t seed, std::uint64_t max_size);
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 
 using Bytes = std::vector<std::uint8_t>;
 using ByteView = std::span<const std::uint8_t>;
@@ -79,4 +79,4 @@ class ByteReader {
   bool failed_ = false;
 };
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

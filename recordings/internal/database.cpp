@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <utility>
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 namespace {
 
 /// `path` as a file URI with parameters.
@@ -182,4 +182,4 @@ bool Database::is_full() const {
 }
 bool Database::in_transaction() const { return connection_ && sqlite3_get_autocommit(connection_) == 0; }
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

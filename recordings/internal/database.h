@@ -10,7 +10,7 @@
 struct sqlite3;
 struct sqlite3_stmt;
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 
 class Database;
 
@@ -79,4 +79,4 @@ class Database {
                              ///< it is not
 };
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

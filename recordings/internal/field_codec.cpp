@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 
 std::size_t width_of(FieldType type) {
   switch (type) {
@@ -47,4 +47,4 @@ FieldView* FieldSet::find(std::string_view name) {
   return found == fields_.end() ? nullptr : &*found;
 }
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

@@ -13,7 +13,7 @@
 #include "recordings/internal/bytes.h"
 #include "recordings/session.h"
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 
 /// Structures of the file that core does not know, in the manner of core/model/fields.h.
 template <class S, class Visit>
@@ -291,4 +291,4 @@ void get_fields(ByteReader& in, S& structure, std::string& problem) {
   take_field_set(in, problem, [&](FieldSet&, FieldReader& reader) { for_each_field(structure, reader); });
 }
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

@@ -7,7 +7,7 @@
 
 #include "recordings/internal/field_codec.h"
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 namespace {
 
 /// Cells of a lattice that is no lattice end here: beyond what an organ has, within what an i32 holds.
@@ -189,4 +189,4 @@ void get_state(ByteReader& in, State& state, std::string& problem) {
   join_states(edge_crossing, tpm_crossing, tpm_count, "tpm_crossing", state.axial_crossing, problem);
 }
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

@@ -6,7 +6,7 @@
 #include "core/model/state.h"
 #include "recordings/internal/bytes.h"
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 
 /// Reads a Model from the field set at the reader, also one that an earlier program wrote (FORMAT.md section 4):
 /// - `edges` and `tpms`, two tables of axial elements, become Model::axial;
@@ -18,4 +18,4 @@ void get_model(ByteReader& in, Model& model, std::string& problem);
 /// State::axial_severed and State::axial_crossing.
 void get_state(ByteReader& in, State& state, std::string& problem);
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

@@ -3,7 +3,7 @@
 #include "core/stepping/integrator.h"
 #include "recordings/internal/model_check.h"
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 namespace {
 constexpr std::int32_t automatic = 0;
 
@@ -36,9 +36,9 @@ Result<Done> update_integrator(Model& model, std::int32_t physics_revision, std:
   // The choice reads the whole Model, so the Model is proven first.
   model.solver.integrator = Integrator::backward_euler;
   if (!check_model(model).empty()) return Done{};
-  const IntegratorChoice choice = resolve_integrator(model);
+  const stepping::IntegratorChoice choice = stepping::resolve_integrator(model);
   remarks.push_back("the session does not store which integrator `auto` became; this build takes " +
-                    std::string(name_of(choice.integrator)) + " with " + std::to_string(choice.substeps) +
+                    std::string(stepping::name_of(choice.integrator)) + " with " + std::to_string(choice.substeps) +
                     (choice.substeps == 1 ? " substep" : " substeps") + " a tick");
   return Done{};
 }
@@ -51,4 +51,4 @@ void update_event(Event& event) {
   event.pieces = static_cast<std::int32_t>(pieces);
 }
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

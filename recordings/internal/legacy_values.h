@@ -8,7 +8,7 @@
 #include "core/model/result.h"
 #include "recordings/event.h"
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 
 /// What a number of `solver.integrator` stood for before it was retired; null if it never was. Retired numbers are
 /// never used again.
@@ -23,4 +23,4 @@ Result<Done> update_integrator(Model& model, std::int32_t physics_revision, std:
 /// they are.
 void update_event(Event& event);
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

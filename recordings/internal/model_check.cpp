@@ -6,7 +6,7 @@
 
 #include "core/model/fields.h"
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 namespace {
 
 /// "[i]", for the place in an array.
@@ -320,4 +320,4 @@ Errors check_surfaces(const Model& model, const std::vector<Surface>& surfaces) 
   return check.take();
 }
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

@@ -6,7 +6,7 @@
 #include "core/model/result.h"
 #include "recordings/session.h"
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 
 /// Whether a Model can be simulated without reading outside its arrays: lengths fit, indices are in range,
 /// numbers are finite and in the ranges that core/model/model.h states. All problems at once (the first of each
@@ -19,4 +19,4 @@ Errors check_state(const Model& model, const State& state);
 /// Whether the surfaces are one per organ, or none, and can be drawn without reading outside their arrays.
 Errors check_surfaces(const Model& model, const std::vector<Surface>& surfaces);
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

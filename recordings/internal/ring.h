@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 
 /// A queue from one thread to one other that never locks and never allocates after it was made: the slots are
 /// filled and emptied in place.
@@ -33,4 +33,4 @@ class Ring {
   alignas(64) std::atomic<std::size_t> tail_{0};  // written by the producer only
 };
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

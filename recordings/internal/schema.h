@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 
 inline constexpr std::int64_t application_id = 0x4354504D;  ///< "CTPM"
 inline constexpr std::int64_t format_version = 1;
@@ -32,4 +32,4 @@ inline constexpr std::array<Table, 4> tables{{
      "checksum INTEGER NOT NULL, data BLOB NOT NULL)"},
 }};
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

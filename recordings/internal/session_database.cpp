@@ -16,7 +16,7 @@
 #include "recordings/internal/schema.h"
 #include "recordings/internal/tick_codec.h"
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 namespace {
 
 Error system_error(const std::string& path, const std::string& what) {
@@ -266,4 +266,4 @@ Result<Done> create_session_file(const std::string& path, const SessionStart& st
   return errors;
 }
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

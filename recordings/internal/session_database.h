@@ -8,7 +8,7 @@
 #include "recordings/internal/database.h"
 #include "recordings/session.h"
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 
 /// The part `session`.
 struct SessionIdentity {
@@ -76,4 +76,4 @@ class SessionTables {
   Statement part_, chunk_, keyframe_, event_;
 };
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

@@ -10,13 +10,13 @@
 #include <sstream>
 
 #include "recordings/internal/field_codec.h"
-#include "recordings/internal/legacy_values.h"
 #include "recordings/internal/legacy_fields.h"
+#include "recordings/internal/legacy_values.h"
 #include "recordings/internal/model_check.h"
 #include "recordings/internal/schema.h"
 #include "recordings/internal/statistics.h"
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 namespace {
 
 constexpr std::size_t sqlite_header_size = 100;  // [bytes]
@@ -351,4 +351,4 @@ Result<std::vector<std::int64_t>> SessionStore::keys(const std::string& table) {
   return keys;
 }
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

@@ -10,7 +10,7 @@
 #include "recordings/internal/tick_codec.h"
 #include "recordings/session.h"
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 
 /// A run of ticks or events as it lies in the file.
 template <class T>
@@ -73,4 +73,4 @@ class SessionStore {
   RecordDecoder decoder_;
 };
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

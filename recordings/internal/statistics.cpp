@@ -5,7 +5,7 @@
 
 #include "recordings/internal/field_codec.h"
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 namespace {
 
 /// Nearest rank: the smallest value that at least `part` of all values do not exceed.
@@ -59,4 +59,4 @@ void put_finish(Bytes& out, const SessionStatistics& statistics) {
   });
 }
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

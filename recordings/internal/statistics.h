@@ -6,7 +6,7 @@
 #include "recordings/internal/bytes.h"
 #include "recordings/session.h"
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 
 /// Adds up a session while its ticks and events go by. Four bytes per tick and measured time, so that percentiles are
 /// exact.
@@ -45,4 +45,4 @@ void for_each_field(S& s, Visit&& visit) {
 /// Writes the content of the part `finish`.
 void put_finish(Bytes& out, const SessionStatistics& statistics);
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

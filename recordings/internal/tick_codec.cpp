@@ -8,7 +8,7 @@
 
 #include "recordings/internal/block.h"
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 namespace {
 
 /// One column: where its bits are in a record.
@@ -147,4 +147,4 @@ Result<std::vector<TickRecord>> RecordDecoder::decode(ByteView content, std::int
   return records;
 }
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

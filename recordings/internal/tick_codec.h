@@ -9,7 +9,7 @@
 #include "recordings/internal/field_codec.h"
 #include "recordings/session.h"
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 
 /// Content of the part `columns`: what the chunks of this program hold.
 std::string column_text();
@@ -31,4 +31,4 @@ class RecordDecoder {
   std::vector<std::size_t> columns_;  ///< indices into the program's own list, in the file's order
 };
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file

@@ -12,7 +12,7 @@
 #include "studio/output/number_text.h"
 #include "studio/rig/site.h"
 
-namespace ctpm {
+namespace ctpm::authoring {
 namespace {
 
 constexpr double kDepths[] = {2e-3, 4e-3, 6e-3, 8e-3, 10e-3, 12e-3};  ///< of Table 1 [m]
@@ -28,25 +28,25 @@ constexpr std::size_t kMostTries = 8;
 constexpr double kFitBound = 0.002;
 constexpr int kMostRounds = 4;
 
-Vec3 up_in(const SceneSpec& scene) {
+Vec3 up_in(const scenes::SceneSpec& scene) {
   return norm(scene.gravity) > 0 ? -1.0 * scene.gravity / norm(scene.gravity) : Vec3{0, 0, 1};
 }
 
-void multiply_scale(MaterialSpec& material, double factor) {
-  material.stiffness_scale = factor * resolve_material(material).material.stiffness_scale;
+void multiply_scale(scenes::MaterialSpec& material, double factor) {
+  material.stiffness_scale = factor * scenes::resolve_material(material).material.stiffness_scale;
 }
 
 /// The scene with that organ alone, at rest for good: no gravity, no viscosity, the calibration's ball as its
 /// tool.
-SceneSpec slow_scene(const SceneSpec& scene, std::size_t organ, double factor) {
-  SceneSpec slow;
+scenes::SceneSpec slow_scene(const scenes::SceneSpec& scene, std::size_t organ, double factor) {
+  scenes::SceneSpec slow;
   slow.name = scene.name, slow.gravity = {}, slow.tick = 10e-3;
   slow.organs = {scene.organs[organ]};
-  OrganSpec& own = slow.organs[0];
+  scenes::OrganSpec& own = slow.organs[0];
   own.material.viscosity = 0, multiply_scale(own.material, factor);
-  for (LayerSpec& layer : own.layers) layer.material.viscosity = 0, multiply_scale(layer.material, factor);
-  ToolSpec ball;
-  ball.name = "ball", ball.kind = ToolKind::ball, ball.radius = 1e-3 * site_of(own).ball_radius;
+  for (scenes::LayerSpec& layer : own.layers) layer.material.viscosity = 0, multiply_scale(layer.material, factor);
+  scenes::ToolSpec ball;
+  ball.name = "ball", ball.kind = ToolKind::ball, ball.radius = 1e-3 * rig::site_of(own).ball_radius;
   slow.tools = {ball};
   slow.contact_friction = scene.contact_friction;
   slow.solver.tolerance = 1e-6, slow.solver.max_iterations = 2000;
@@ -57,15 +57,15 @@ SceneSpec slow_scene(const SceneSpec& scene, std::size_t organ, double factor) {
 std::optional<std::vector<double>> press(const Model& model, std::int32_t sphere, Vec3 up, double speed) {
   const auto c = std::size_t(sphere);
   const Vec3 touch = model.rest_position[c] + (model.tools[0].radius + model.contact_radius[c]) * up;
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   std::vector<double> forces;
   double last_depth = 0, last_force = 0;
   for (double way = 0; way < kFitDepth + kLongestWay && forces.size() < std::size(kDepths); way += speed * model.tick) {
     Inputs inputs;
     inputs.tool = 0, inputs.position = touch - way * up;
-    const StepReport report = stepper.step(state, inputs);
-    if (report.status != StepStatus::ok) return std::nullopt;
+    const stepping::StepReport report = stepper.step(state, inputs);
+    if (report.status != stepping::StepStatus::ok) return std::nullopt;
     const double depth = dot(model.rest_position[c] - state.position[c], up), force = dot(report.tool_force, up);
     // Between two ticks the force rises in proportion.
     while (forces.size() < std::size(kDepths) && depth >= kDepths[forces.size()]) {
@@ -131,16 +131,16 @@ std::vector<std::int32_t> top_spheres(const Model& model, const FilledOrgan& fil
 
 }  // namespace
 
-Result<StiffnessFit> fit_stiffness(const SceneSpec& scene, std::size_t organ, const FilledOrgan& filled) {
-  const OrganSpec& spec = scene.organs[organ];
+Result<StiffnessFit> fit_stiffness(const scenes::SceneSpec& scene, std::size_t organ, const FilledOrgan& filled) {
+  const scenes::OrganSpec& spec = scene.organs[organ];
   const std::string where = "organ " + spec.name;
   const std::vector<FilledOrgan> only{filled};
   const Vec3 up = up_in(scene);
-  const Site site = site_of(spec);
-  const double wanted = table_force(site, 1e3 * kFitDepth, true);
-  const auto build = [&](double factor) { return build_model(slow_scene(scene, organ, factor), only); };
+  const rig::Site site = rig::site_of(spec);
+  const double wanted = rig::table_force(site, 1e3 * kFitDepth, true);
+  const auto build = [&](double factor) { return scenes::build_model(slow_scene(scene, organ, factor), only); };
 
-  const Result<BuiltScene> first = build(1);
+  const Result<scenes::BuiltScene> first = build(1);
   if (!first) return first.errors();
   const std::vector<std::int32_t> tries = top_spheres(first->model, filled, up);
   if (tries.empty())
@@ -153,36 +153,37 @@ Result<StiffnessFit> fit_stiffness(const SceneSpec& scene, std::size_t organ, co
     // Only the spheres' mass does not grow with the scale; it hardly counts, and the next round has it.
     for (int round = 0; round < kMostRounds; ++round) {
       fit.factor *= wanted / forces->back();
-      const Result<BuiltScene> scaled = build(fit.factor);
+      const Result<scenes::BuiltScene> scaled = build(fit.factor);
       if (!scaled) return scaled.errors();
       forces = press(scaled->model, sphere, up, 10e-3);
       if (!forces || std::abs(forces->back() / wanted - 1) <= kFitBound) break;
     }
     if (!forces || std::abs(forces->back() / wanted - 1) > kFitBound) continue;
-    fit.scale = fit.factor * resolve_material(spec.material).material.stiffness_scale;
+    fit.scale = fit.factor * scenes::resolve_material(spec.material).material.stiffness_scale;
     fit.fitted_for = {first->model.rest_position[std::size_t(sphere)], first->model.tools[0].radius,
                       filled.sphere_radius, kFitDepth, forces->back()};
     for (std::size_t i = 0; i < std::size(kDepths); ++i)
-      fit.rows.push_back({kDepths[i], (*forces)[i], table_force(site, 1e3 * kDepths[i], true)});
+      fit.rows.push_back({kDepths[i], (*forces)[i], rig::table_force(site, 1e3 * kDepths[i], true)});
     return fit;
   }
   return Error{where,
-               "the ball of " + fixed(site.ball_radius, 1) + " mm slips off each of " + std::to_string(tries.size()) +
-                   " spheres at the top before it is 12 mm deep",
+               "the ball of " + output::fixed(site.ball_radius, 1) + " mm slips off each of " +
+                   std::to_string(tries.size()) + " spheres at the top before it is 12 mm deep",
                "the organ may be too thin or its spheres too small"};
 }
 
-void apply_fit(OrganSpec& organ, const StiffnessFit& fit) {
+void apply_fit(scenes::OrganSpec& organ, const StiffnessFit& fit) {
   // Six digits say more than the fit knows, and stay readable in a scene.
-  const auto rounded = [](double value) { return std::stod(short_number(value, 6)); };
-  for (LayerSpec& layer : organ.layers)
-    layer.material.stiffness_scale = rounded(fit.factor * resolve_material(layer.material).material.stiffness_scale);
+  const auto rounded = [](double value) { return std::stod(output::short_number(value, 6)); };
+  for (scenes::LayerSpec& layer : organ.layers)
+    layer.material.stiffness_scale =
+        rounded(fit.factor * scenes::resolve_material(layer.material).material.stiffness_scale);
   organ.material.stiffness_scale = rounded(fit.scale);
-  FittedForSpec fitted = fit.fitted_for;
+  scenes::FittedForSpec fitted = fit.fitted_for;
   const auto to_micrometre = [](double length) { return std::round(length * 1e6) / 1e6; };
   fitted.place = {to_micrometre(fitted.place.x), to_micrometre(fitted.place.y), to_micrometre(fitted.place.z)};
   fitted.force = rounded(fitted.force);
   organ.material.fitted_for = fitted;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::authoring

@@ -7,7 +7,7 @@
 #include "core/model/result.h"
 #include "scenes/scene_spec.h"
 
-namespace ctpm {
+namespace ctpm::authoring {
 
 /// One depth of the paper's Table 1.
 struct FitRow {
@@ -20,10 +20,10 @@ struct FitRow {
 
 /// The result of a fit.
 struct StiffnessFit {
-  double factor = 1;         ///< multiply every stiffness scale of the organ by this [1], > 0
-  double scale = 1;          ///< stiffness scale of the organ's own material with the factor [1]
-  FittedForSpec fitted_for;  ///< where and with what it was fitted; stored in the scene
-  std::vector<FitRow> rows;  ///< at 2, 4, ... 12 mm, with the scale applied
+  double factor = 1;                 ///< multiply every stiffness scale of the organ by this [1], > 0
+  double scale = 1;                  ///< stiffness scale of the organ's own material with the factor [1]
+  scenes::FittedForSpec fitted_for;  ///< where and with what it was fitted; stored in the scene
+  std::vector<FitRow> rows;          ///< at 2, 4, ... 12 mm, with the scale applied
 };
 
 /// Fits the stiffness scale of `organ`, so that the force at 12 mm is the CTPM force of the paper's Table 1. The ball
@@ -31,9 +31,9 @@ struct StiffnessFit {
 /// inertia does not count. Force is proportional to the scale: one run gives the scale, a second one checks it. The
 /// other depths show the error of the curve's shape. Errors: no sphere at the top can move; the ball slips off every
 /// sphere that was tried; a run diverged.
-Result<StiffnessFit> fit_stiffness(const SceneSpec& scene, std::size_t organ, const FilledOrgan& filled);
+Result<StiffnessFit> fit_stiffness(const scenes::SceneSpec& scene, std::size_t organ, const FilledOrgan& filled);
 
 /// Stores a fit in a scene's organ: its scale, and the place and ball for which it holds.
-void apply_fit(OrganSpec& organ, const StiffnessFit& fit);
+void apply_fit(scenes::OrganSpec& organ, const StiffnessFit& fit);
 
-}  // namespace ctpm
+}  // namespace ctpm::authoring

@@ -13,7 +13,7 @@
 #include "studio/output/option_name.h"
 #include "studio/render/scene_view.h"
 
-namespace ctpm {
+namespace ctpm::authoring {
 namespace {
 
 namespace fs = std::filesystem;
@@ -22,22 +22,24 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostFittedSpheres = 4000;
 
 /// The preset that was named, or the one whose organ's name stands in the mesh's file name.
-Result<const MaterialPreset*> choose_preset(const ImportRequest& request) {
+Result<const scenes::MaterialPreset*> choose_preset(const ImportRequest& request) {
   std::string known;
-  for (const MaterialPreset& preset : material_presets()) {
+  for (const scenes::MaterialPreset& preset : scenes::material_presets()) {
     if (request.organ == preset.name) return &preset;
     known += (known.empty() ? "" : ", ") + std::string(preset.name);
   }
   if (!request.organ.empty())
-    return Error{option_name("import.organ"), "there is no preset '" + request.organ + "'", "presets: " + known};
+    return Error{output::option_name("import.organ"), "there is no preset '" + request.organ + "'",
+                 "presets: " + known};
   const std::string name = fs::path(request.mesh).stem().string();
-  for (const MaterialPreset& preset : material_presets())
+  for (const scenes::MaterialPreset& preset : scenes::material_presets())
     if (name.find(preset.organ) != std::string::npos) return &preset;
-  return Error{option_name("import.organ"), "the file's name does not say which organ it is", "give one of " + known};
+  return Error{output::option_name("import.organ"), "the file's name does not say which organ it is",
+               "give one of " + known};
 }
 
 /// A camera that sees the organ from the front, a little from above.
-CameraSpec front_camera(const FilledOrgan& organ) {
+scenes::CameraSpec front_camera(const FilledOrgan& organ) {
   Vec3 low = organ.surface.vertex.front(), high = low;
   for (const Vec3& p : organ.surface.vertex) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
@@ -47,7 +49,7 @@ CameraSpec front_camera(const FilledOrgan& organ) {
     return Vec3{std::round(p.x * 1e3) * 1e-3, std::round(p.y * 1e3) * 1e-3, std::round(p.z * 1e3) * 1e-3};
   };
   const double size = norm(high - low);
-  CameraSpec camera;
+  scenes::CameraSpec camera;
   camera.name = "front";
   // The organ stands right of the middle, clear of the panels on the left.
   camera.target = whole_mm(0.5 * (low + high) + size * Vec3{-0.13, 0, 0});
@@ -71,11 +73,11 @@ double footing_height(const FilledOrgan& organ) {
   return std::ceil(1e3 * (heights[(heights.size() - 1) / 8] - heights.front()) + 0.5) / 1e3;
 }
 
-SceneSpec make_scene(const ImportRequest& request, const MaterialPreset& preset, const FilledOrgan& organ,
-                     const std::string& name) {
-  SceneSpec scene;
+scenes::SceneSpec make_scene(const ImportRequest& request, const scenes::MaterialPreset& preset,
+                             const FilledOrgan& organ, const std::string& name) {
+  scenes::SceneSpec scene;
   scene.name = name;
-  OrganSpec spec;
+  scenes::OrganSpec spec;
   spec.name = name;
   spec.mesh = name + ".obj";
   spec.all_parts = request.all_parts, spec.most_triangles = request.most_triangles;
@@ -83,18 +85,18 @@ SceneSpec make_scene(const ImportRequest& request, const MaterialPreset& preset,
   spec.fill.gap = organ.spacing - 2 * organ.sphere_radius;
   spec.material.preset = preset.name;
   spec.damage_depth = preset.damage_depth;
-  const OrganLook look = look_of(preset.organ);
+  const render::OrganLook look = render::look_of(preset.organ);
   spec.surface_color = {look.outer[0], look.outer[1], look.outer[2]};
   spec.inner_color = {look.inner[0], look.inner[1], look.inner[2]};
   spec.anchors = request.anchors;
   if (spec.anchors.empty()) {
-    AnchorSpec lowest;
+    scenes::AnchorSpec lowest;
     lowest.lowest = footing_height(organ);
     spec.anchors = {lowest};
   }
   scene.organs = {spec};
   // Tools in proportion to the organ: a ball of two spheres, a blade that reaches through.
-  ToolSpec ball, scalpel;
+  scenes::ToolSpec ball, scalpel;
   ball.name = "ball", ball.kind = ToolKind::ball, ball.radius = 2.5 * organ.sphere_radius;
   scalpel.name = "scalpel", scalpel.kind = ToolKind::scalpel;
   scalpel.blade_length = std::ceil(1e2 * std::max(0.04, 0.7 * extent_z(organ))) * 1e-2;
@@ -104,7 +106,7 @@ SceneSpec make_scene(const ImportRequest& request, const MaterialPreset& preset,
 }
 
 /// Fits the organ's stiffness and stores it in the scene; an organ that cannot be fitted keeps the preset's moduli.
-void fit_scene(SceneSpec& scene, const FilledOrgan& organ, ImportOutcome& outcome) {
+void fit_scene(scenes::SceneSpec& scene, const FilledOrgan& organ, ImportOutcome& outcome) {
   if (organ.centre.size() > kMostFittedSpheres) {
     outcome.fit_problem = "with " + std::to_string(organ.centre.size()) + " spheres it takes long";
     outcome.can_be_fitted_later = true;
@@ -122,11 +124,11 @@ void fit_scene(SceneSpec& scene, const FilledOrgan& organ, ImportOutcome& outcom
 }  // namespace
 
 Result<ImportOutcome> import_scene(const ImportRequest& request) {
-  const Result<const MaterialPreset*> preset = choose_preset(request);
+  const Result<const scenes::MaterialPreset*> preset = choose_preset(request);
   if (!preset) return preset.errors();
   if (fs::path(request.scene).extension() != ".json")
     return Error{request.scene, "a scene's name must end in .json", ""};
-  if (const Result<Done> writable = check_writable(request.scene); !writable) return writable.errors();
+  if (const Result<Done> writable = output::check_writable(request.scene); !writable) return writable.errors();
   const fs::path folder = fs::path(request.scene).parent_path();
   const std::string name = fs::path(request.scene).stem().string();
   ImportOutcome outcome;
@@ -138,7 +140,7 @@ Result<ImportOutcome> import_scene(const ImportRequest& request) {
     return Error{outcome.mesh_file, "the repaired mesh would replace the mesh that is imported",
                  "give the scene another name or folder"};
 
-  ImportOptions options;
+  importers::ImportOptions options;
   options.unit_in_metres = request.unit_in_metres;
   options.usual_size = {(*preset)->usual_size_least, (*preset)->usual_size_most};
   options.part = request.part, options.all_parts = request.all_parts;
@@ -147,26 +149,26 @@ Result<ImportOutcome> import_scene(const ImportRequest& request) {
   options.largest_hole = request.largest_hole;
   options.most_triangles = request.most_triangles.value_or(0);
   options.progress = request.progress;
-  Result<ImportedOrgan> imported = import_organ(request.mesh, options);
+  Result<importers::ImportedOrgan> imported = importers::import_organ(request.mesh, options);
   if (!imported) return imported.errors();
   outcome.report = imported->report;
 
   const std::vector<FilledOrgan> organs{std::move(imported->organ)};
-  SceneSpec scene = make_scene(request, **preset, organs.front(), name);
+  scenes::SceneSpec scene = make_scene(request, **preset, organs.front(), name);
   const Result<std::vector<std::int32_t>> anchored =
-      select_anchored(organs.front(), scene.organs[0].anchors, scene.gravity, request.mesh);
+      scenes::select_anchored(organs.front(), scene.organs[0].anchors, scene.gravity, request.mesh);
   if (!anchored) return anchored.errors();
   outcome.anchored = anchored->size();
   fit_scene(scene, organs.front(), outcome);
-  const CheckedMesh& mesh = imported->mesh;
-  if (const Result<Done> written = write_obj(outcome.mesh_file, mesh.vertex, mesh.triangle); !written)
+  const importers::CheckedMesh& mesh = imported->mesh;
+  if (const Result<Done> written = importers::write_obj(outcome.mesh_file, mesh.vertex, mesh.triangle); !written)
     return written.errors();
-  const Script script = default_script(scene, organs);
-  if (const Result<Done> written = write_text_file(outcome.script_file, write_script(script)); !written)
+  const scenes::Script script = scenes::default_script(scene, organs);
+  if (const Result<Done> written = output::write_text_file(outcome.script_file, scenes::write_script(script)); !written)
     return written.errors();
-  if (const Result<Done> written = write_text_file(request.scene, write_scene(scene)); !written)
+  if (const Result<Done> written = output::write_text_file(request.scene, scenes::write_scene(scene)); !written)
     return written.errors();
   return outcome;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::authoring

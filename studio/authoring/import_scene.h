@@ -8,7 +8,7 @@
 #include "importers/import.h"
 #include "scenes/scene_spec.h"
 
-namespace ctpm {
+namespace ctpm::authoring {
 
 /// The options of an import.
 struct ImportRequest {
@@ -22,13 +22,13 @@ struct ImportRequest {
   bool all_parts = false;
   std::optional<double> largest_hole;  ///< holes up to this diameter are filled [m]; unset: a tenth of the diagonal
   std::optional<std::int32_t> most_triangles;  ///< of the drawn surface; unset: as many as the mesh has
-  std::vector<AnchorSpec> anchors;             ///< empty: the lowest eighth of its spheres
-  Progress progress;
+  std::vector<scenes::AnchorSpec> anchors;     ///< empty: the lowest eighth of its spheres
+  importers::Progress progress;
 };
 
 /// The files of an import, and what it found.
 struct ImportOutcome {
-  ImportReport report;
+  importers::ImportReport report;
   std::string scene_file;                 ///< ImportRequest::scene
   std::string mesh_file, script_file;     ///< written beside the scene
   std::optional<double> stiffness_scale;  ///< fitted and stored; unset: it could not be fitted
@@ -43,4 +43,4 @@ struct ImportOutcome {
 /// never names a missing file.
 Result<ImportOutcome> import_scene(const ImportRequest& request);
 
-}  // namespace ctpm
+}  // namespace ctpm::authoring

@@ -13,7 +13,7 @@
 #include "studio/reports/report.h"
 
 // Error against run time, in time, space and structure.
-namespace ctpm {
+namespace ctpm::bench {
 
 struct BenchOptions {
   std::vector<std::string> scenes;  ///< scene files for the study in time; empty: the shipped ones
@@ -24,8 +24,8 @@ struct BenchOptions {
 
 /// What a study found: a section for the page, rows for programs, sentences that say what follows.
 struct BenchStudy {
-  Section section;
-  Table points;
+  reports::Section section;
+  reports::Table points;
   std::vector<std::string> sentences;
 };
 
@@ -52,11 +52,11 @@ struct BenchMotion {
 
 /// Positions and forces of a run, tick by tick, and how long each tick took.
 struct BenchRun {
-  std::vector<Vec3Array> position;     ///< [m]               (tick_count)
-  std::vector<Vec3> force;             ///< on the tool [N]   (tick_count)
-  std::vector<double> seconds;         ///< wall clock [s]    (tick_count)
-  std::int64_t unconverged = 0;        ///< ticks whose solve stopped at its count
-  StepStatus status = StepStatus::ok;  ///< that ended the run; `ok` if none did
+  std::vector<Vec3Array> position;                         ///< [m]               (tick_count)
+  std::vector<Vec3> force;                                 ///< on the tool [N]   (tick_count)
+  std::vector<double> seconds;                             ///< wall clock [s]    (tick_count)
+  std::int64_t unconverged = 0;                            ///< ticks whose solve stopped at its count
+  stepping::StepStatus status = stepping::StepStatus::ok;  ///< that ended the run; `ok` if none did
 };
 BenchRun run_motion(const Model& model, const BenchMotion& motion);
 
@@ -71,6 +71,6 @@ double percentile(std::vector<double> values, double share);
 std::vector<std::size_t> pareto_front(const std::vector<double>& cost, const std::vector<double>& error);
 
 /// Columns of results.csv, the same for every study; cells that a study does not have are empty.
-Table bench_layout();
+reports::Table bench_layout();
 
-}  // namespace ctpm
+}  // namespace ctpm::bench

@@ -7,7 +7,7 @@
 
 #include "studio/bench/bench.h"
 
-namespace ctpm {
+namespace ctpm::bench {
 namespace {
 
 /// The processor's name, or what the system calls its kind.
@@ -23,22 +23,22 @@ std::string machine() {
   return (uname(&system) == 0 ? std::string(system.machine) : std::string("unknown machine")) + threads;
 }
 
-Table all_points(const std::vector<BenchStudy>& studies) {
-  Table table = bench_layout();
+reports::Table all_points(const std::vector<BenchStudy>& studies) {
+  reports::Table table = bench_layout();
   for (const BenchStudy& study : studies)
     table.rows.insert(table.rows.end(), study.points.rows.begin(), study.points.rows.end());
   return table;
 }
 
 std::string results_json(const std::vector<BenchStudy>& studies) {
-  JsonWriter json;
+  output::JsonWriter json;
   json.begin_object()
       .member("format", "ctpm-bench-results")
       .member("version", 1)
       .member("program_version", CTPM_VERSION)
       .member("machine", std::string_view(machine()));
   json.key("points");
-  write_rows(json, all_points(studies));
+  reports::write_rows(json, all_points(studies));
   json.key("studies").begin_list();
   for (const BenchStudy& study : studies) {
     json.begin_object()
@@ -47,32 +47,32 @@ std::string results_json(const std::vector<BenchStudy>& studies) {
     json.key("sentences").begin_list();
     for (const std::string& sentence : study.sentences) json.value(std::string_view(sentence));
     json.end_list().key("tables").begin_list();
-    for (const Table& table : study.section.tables) {
+    for (const reports::Table& table : study.section.tables) {
       json.begin_object().member("title", std::string_view(table.title)).key("rows");
-      write_rows(json, table);
+      reports::write_rows(json, table);
       json.end_object();
     }
     json.end_list().key("plots").begin_list();
-    for (const Plot& plot : study.section.plots) write_points(json, plot);
+    for (const reports::Plot& plot : study.section.plots) reports::write_points(json, plot);
     json.end_list().end_object();
   }
   return json.end_list().end_object().text();
 }
 
 /// The settings on the Pareto front, as a reader needs them; results.csv has all.
-Table front_of(const BenchStudy& study) {
+reports::Table front_of(const BenchStudy& study) {
   static constexpr const char* kColumns[] = {"integrator",     "substeps",    "tolerance",
                                              "position_error", "force_error", "run_time_s_per_s",
                                              "tick_p50_ms",    "tick_p99_ms", "tick_p999_ms"};
-  Table table;
+  reports::Table table;
   table.title = "On the Pareto front of position";
   std::vector<std::size_t> kept;
   for (const char* key : kColumns)
     for (std::size_t i = 0; i < study.points.columns.size(); ++i)
       if (study.points.columns[i].key == key) kept.push_back(i), table.columns.push_back(study.points.columns[i]);
-  for (const std::vector<Cell>& row : study.points.rows) {
+  for (const std::vector<reports::Cell>& row : study.points.rows) {
     if (!std::holds_alternative<std::string>(row.back())) continue;
-    std::vector<Cell>& cells = table.rows.emplace_back();
+    std::vector<reports::Cell>& cells = table.rows.emplace_back();
     for (const std::size_t i : kept) cells.push_back(row[i]);
   }
   return table;
@@ -81,19 +81,19 @@ Table front_of(const BenchStudy& study) {
 }  // namespace
 
 Result<Done> write_bench_report(const std::string& folder, const std::vector<BenchStudy>& studies) {
-  Report report("Error against run time",
-                "Measured on " + machine() +
-                    ", one thread. Run times are wall clock: what else the machine did then is "
-                    "in them.");
+  reports::Report report("Error against run time",
+                         "Measured on " + machine() +
+                             ", one thread. Run times are wall clock: what else the machine did then is "
+                             "in them.");
   for (const BenchStudy& study : studies)
     for (const std::string& sentence : study.sentences) report.add_paragraph(sentence);
   for (const BenchStudy& study : studies) {
     if (const Result<Done> added = report.add(study.section); !added) return added;
     if (study.section.key == "time") report.add_table(front_of(study));
   }
-  return write_report(folder, {{"results.json", results_json(studies)},
-                               {"results.csv", to_csv(all_points(studies))},
-                               {"report.html", report.html()}});
+  return reports::write_report(folder, {{"results.json", results_json(studies)},
+                                        {"results.csv", reports::to_csv(all_points(studies))},
+                                        {"report.html", report.html()}});
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::bench

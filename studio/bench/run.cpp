@@ -8,21 +8,21 @@
 #include "core/stepping/step.h"
 #include "studio/bench/bench.h"
 
-namespace ctpm {
+namespace ctpm::bench {
 
 BenchRun run_motion(const Model& model, const BenchMotion& motion) {
   using Clock = std::chrono::steady_clock;
   BenchRun run;
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   for (std::int64_t tick = 0; tick < motion.ticks; ++tick) {
     const Inputs inputs = motion.hand(tick);
     const Clock::time_point start = Clock::now();
-    const StepReport report = stepper.step(state, inputs);
+    const stepping::StepReport report = stepper.step(state, inputs);
     run.seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
-    if (report.status == StepStatus::not_converged) {
+    if (report.status == stepping::StepStatus::not_converged) {
       ++run.unconverged;
-    } else if (report.status != StepStatus::ok) {
+    } else if (report.status != stepping::StepStatus::ok) {
       run.status = report.status;
       return run;
     }
@@ -69,8 +69,8 @@ std::vector<std::size_t> pareto_front(const std::vector<double>& cost, const std
   return front;
 }
 
-Table bench_layout() {
-  Table table;
+reports::Table bench_layout() {
+  reports::Table table;
   table.columns = {{"study", "study"},
                    {"scene", "scene"},
                    {"model", "model"},
@@ -91,4 +91,4 @@ Table bench_layout() {
   return table;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::bench

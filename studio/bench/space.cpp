@@ -7,7 +7,7 @@
 #include "studio/bench/bench.h"
 #include "studio/output/number_text.h"
 
-namespace ctpm {
+namespace ctpm::bench {
 namespace {
 
 struct PressedFilling {
@@ -47,7 +47,7 @@ double run_time_of(const BenchRun& run, double tick) {
 }
 
 Result<PressedFilling> fill_and_press(const std::string& path, double radius, double contact_stiffness) {
-  Result<LoadedScene> scene = load_whole_scene(path, {}, [&](SceneSpec& spec) {
+  Result<loading::LoadedScene> scene = loading::load_whole_scene(path, {}, [&](scenes::SceneSpec& spec) {
     spec.gravity = {}, spec.organs[0].fill.radius = spec.organs[0].fill.gap = radius;
     if (contact_stiffness > 0) spec.contact_stiffness = contact_stiffness;
   });
@@ -56,8 +56,8 @@ Result<PressedFilling> fill_and_press(const std::string& path, double radius, do
   const Surface& surface = scene->organs[0].surface;
   PressedFilling filling{radius, model.organs[0].layer_count, std::int64_t(model.sphere_count()), {}};
   filling.run = run_motion(model, press(surface, model.tools[0].radius, model.tick));
-  if (filling.run.status != StepStatus::ok)
-    return Error{path, "the press diverged at r = " + short_number(1e3 * radius) + " mm", ""};
+  if (filling.run.status != stepping::StepStatus::ok)
+    return Error{path, "the press diverged at r = " + output::short_number(1e3 * radius) + " mm", ""};
   for (Vec3Array& position : filling.run.position) position = surface_at(surface, position);
   return filling;
 }
@@ -66,7 +66,7 @@ Result<PressedFilling> fill_and_press(const std::string& path, double radius, do
 
 Result<BenchStudy> run_bench_space(const BenchOptions& options, const BenchProgress& progress) {
   const std::string path = options.shipped + "/kidney.json";
-  const Result<LoadedScene> shipped = load_whole_scene(path);
+  const Result<loading::LoadedScene> shipped = loading::load_whole_scene(path);
   if (!shipped) return shipped.errors();
   const double radius = shipped->scene.spec.organs[0].fill.radius, tick = shipped->built.model.tick;
   const Surface& surface = shipped->organs[0].surface;
@@ -84,11 +84,11 @@ Result<BenchStudy> run_bench_space(const BenchOptions& options, const BenchProgr
   for (const Vec3& v : surface.vertex) rest.push_back(v);
 
   BenchStudy study;
-  Section& section = study.section;
+  reports::Section& section = study.section;
   section.key = "space",
-  section.title = "Space: kidney, press, sphere radius down to " + short_number(1e3 * finest.radius) + " mm";
+  section.title = "Space: kidney, press, sphere radius down to " + output::short_number(1e3 * finest.radius) + " mm";
   study.points = bench_layout();
-  Table table;
+  reports::Table table;
   table.columns = {{"radius_mm", "r [mm]", 3},
                    {"layers", "layers"},
                    {"spheres", "spheres"},
@@ -96,21 +96,22 @@ Result<BenchStudy> run_bench_space(const BenchOptions& options, const BenchProgr
                    {"position_error", "error in position", 3},
                    {"force_error", "error in force", 3},
                    {"run_time_s_per_s", "run time [s per s]", 3}};
-  Plot work{.title = "against the finest", .x_title = "run time [s per simulated s]", .y_title = "relative L2 error"};
+  reports::Plot work{
+      .title = "against the finest", .x_title = "run time [s per simulated s]", .y_title = "relative L2 error"};
   work.is_log_x = work.is_log_y = true;
-  Plot convergence = work;
+  reports::Plot convergence = work;
   convergence.title = "over the radius", convergence.x_title = "sphere radius [mm]";
-  Series position{.name = "surface", .colour = 0}, force{.name = "force on the ball", .colour = 1};
-  Series position_r = position, force_r = force;
+  reports::Series position{.name = "surface", .colour = 0}, force{.name = "force on the ball", .colour = 1};
+  reports::Series position_r = position, force_r = force;
   std::vector<double> cost, errors;
   for (const PressedFilling& f : fillings) {
     const double run_time = run_time_of(f.run, tick), off = position_error(f.run, finest.run, rest),
                  force_off = force_error(f.run, finest.run);
     table.rows.push_back({1e3 * f.radius, f.layers, f.spheres, norm(f.run.force.back()), off, force_off, run_time});
-    study.points.rows.push_back({std::string("space"), std::string("kidney"), std::string("ctpm"), Cell(), Cell(),
-                                 Cell(), 1e3 * f.radius, f.layers, f.spheres, off, force_off, run_time,
-                                 1e3 * percentile(f.run.seconds, 0.5), 1e3 * percentile(f.run.seconds, 0.99),
-                                 1e3 * percentile(f.run.seconds, 0.999), f.run.unconverged, Cell()});
+    study.points.rows.push_back({std::string("space"), std::string("kidney"), std::string("ctpm"), reports::Cell(),
+                                 reports::Cell(), reports::Cell(), 1e3 * f.radius, f.layers, f.spheres, off, force_off,
+                                 run_time, 1e3 * percentile(f.run.seconds, 0.5), 1e3 * percentile(f.run.seconds, 0.99),
+                                 1e3 * percentile(f.run.seconds, 0.999), f.run.unconverged, reports::Cell()});
     if (&f == &finest) continue;
     position.x.push_back(run_time), position.y.push_back(off), force.x.push_back(run_time),
         force.y.push_back(force_off);
@@ -118,10 +119,10 @@ Result<BenchStudy> run_bench_space(const BenchOptions& options, const BenchProgr
     force_r.x.push_back(1e3 * f.radius), force_r.y.push_back(force_off);
     cost.push_back(run_time), errors.push_back(off);
   }
-  Series front{.name = "Pareto front (surface)", .stroke = Stroke::marks, .colour = 0};
+  reports::Series front{.name = "Pareto front (surface)", .stroke = reports::Stroke::marks, .colour = 0};
   for (const std::size_t i : pareto_front(cost, errors)) {
     front.x.push_back(cost[i]), front.y.push_back(errors[i]);
-    study.points.rows[i].back() = Cell(std::string("front"));
+    study.points.rows[i].back() = reports::Cell(std::string("front"));
   }
   work.series = {position, force, front}, convergence.series = {position_r, force_r};
   section.plots = {work, convergence}, section.tables = {table};
@@ -143,20 +144,21 @@ Result<BenchStudy> run_bench_space(const BenchOptions& options, const BenchProgr
       "finest filling, of the displacements of the drawn surface's vertices and of the force on the ball. "
       "The surface's "
       "error falls with order " +
-      short_number(order, 2) + " in the radius."};
+      output::short_number(order, 2) + " in the radius."};
   const auto& seconds = best < fillings.size() ? fillings[best].run.seconds : fillings[0].run.seconds;
   study.sentences = {best == fillings.size()
                          ? "kidney: no filling holds 1 kHz at p99 on this machine."
                          : "kidney: the finest filling that holds 1 kHz on this machine has r = " +
-                               short_number(1e3 * fillings[best].radius) + " mm (" +
+                               output::short_number(1e3 * fillings[best].radius) + " mm (" +
                                std::to_string(fillings[best].spheres) + " spheres): error " +
-                               short_number(100 * position_error(fillings[best].run, finest.run, rest), 2) +
-                               " % of the surface; ticks of " + short_number(1e3 * percentile(seconds, 0.5), 3) +
-                               " ms (p50), " + short_number(1e3 * percentile(seconds, 0.99), 3) + " ms (p99), " +
-                               short_number(1e3 * percentile(seconds, 0.999), 3) + " ms (p99.9, of " +
+                               output::short_number(100 * position_error(fillings[best].run, finest.run, rest), 2) +
+                               " % of the surface; ticks of " +
+                               output::short_number(1e3 * percentile(seconds, 0.5), 3) + " ms (p50), " +
+                               output::short_number(1e3 * percentile(seconds, 0.99), 3) + " ms (p99), " +
+                               output::short_number(1e3 * percentile(seconds, 0.999), 3) + " ms (p99.9, of " +
                                std::to_string(seconds.size()) + " ticks)."};
   section.paragraphs.push_back(study.sentences[0]);
   return study;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::bench

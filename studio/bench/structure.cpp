@@ -7,18 +7,18 @@
 #include "studio/rig/press_rig.h"
 #include "studio/rig/site.h"
 
-namespace ctpm {
+namespace ctpm::bench {
 namespace {
 
 struct Kind {
   const char* name;
-  Structure structure;
+  network::Structure structure;
   int colour;
 };
-constexpr Kind kKinds[] = {{"mass-spring", Structure::mass_spring, 1},
-                           {"angle-mass-spring", Structure::angle_mass_spring, 2},
-                           {"tpm", Structure::tpm, 4},
-                           {"ctpm", Structure::ctpm, 0}};
+constexpr Kind kKinds[] = {{"mass-spring", network::Structure::mass_spring, 1},
+                           {"angle-mass-spring", network::Structure::angle_mass_spring, 2},
+                           {"tpm", network::Structure::tpm, 4},
+                           {"ctpm", network::Structure::ctpm, 0}};
 
 /// Root mean square of `got` over `wanted` minus 1.
 double relative_error(const std::vector<double>& got, const std::vector<double>& wanted) {
@@ -28,39 +28,40 @@ double relative_error(const std::vector<double>& got, const std::vector<double>&
 }
 
 struct OrganResult {
-  Plot plot;
-  std::vector<std::vector<Cell>> rows, points;
+  reports::Plot plot;
+  std::vector<std::vector<reports::Cell>> rows, points;
 };
 
 Result<OrganResult> press_organ(const std::string& shipped, const std::string& organ) {
-  const Result<LoadedScene> scene = load_whole_scene(shipped + "/paper/rig-" + organ + ".json");
+  const Result<loading::LoadedScene> scene = loading::load_whole_scene(shipped + "/paper/rig-" + organ + ".json");
   if (!scene) return scene.errors();
-  const std::vector<PrintedRow>& printed = printed_table(organ);
-  const Site site = site_of(scene->scene.spec.organs[0]);
+  const std::vector<rig::PrintedRow>& printed = rig::printed_table(organ);
+  const rig::Site site = rig::site_of(scene->scene.spec.organs[0]);
   std::vector<double> depths, closed, paper;
-  for (const PrintedRow& row : printed)
-    depths.push_back(row.depth), closed.push_back(table_force(site, row.depth, true)), paper.push_back(row.ctpm);
+  for (const rig::PrintedRow& row : printed)
+    depths.push_back(row.depth), closed.push_back(rig::table_force(site, row.depth, true)), paper.push_back(row.ctpm);
   OrganResult result;
   result.plot = {.title = organ + ": force at rest", .x_title = "depth of C [mm]", .y_title = "force [N]"};
   result.plot.series.push_back(
-      {.name = "closed form, CTPM", .x = depths, .y = closed, .stroke = Stroke::dashed, .colour = 6});
+      {.name = "closed form, CTPM", .x = depths, .y = closed, .stroke = reports::Stroke::dashed, .colour = 6});
   result.plot.series.push_back(
-      {.name = "paper's Table 1, CTPM", .x = depths, .y = paper, .stroke = Stroke::crosses, .colour = 6});
+      {.name = "paper's Table 1, CTPM", .x = depths, .y = paper, .stroke = reports::Stroke::crosses, .colour = 6});
   for (const Kind& kind : kKinds) {
-    const Result<BuiltScene> built =
-        build_changed(*scene, [&](SceneSpec& spec) { spec.organs[0].structure = kind.structure; });
+    const Result<scenes::BuiltScene> built =
+        loading::build_changed(*scene, [&](scenes::SceneSpec& spec) { spec.organs[0].structure = kind.structure; });
     if (!built) return built.errors();
     const auto start = std::chrono::steady_clock::now();
-    const Result<std::vector<double>> force = press_rig(built->model, scene->path, printed);
+    const Result<std::vector<double>> force = rig::press_rig(built->model, scene->path, printed);
     if (!force) return force.errors();
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const double off_closed = relative_error(*force, closed), off_paper = relative_error(*force, paper);
     result.plot.series.push_back({.name = kind.name, .x = depths, .y = *force, .colour = kind.colour});
     result.rows.push_back({organ, std::string(kind.name), force->back(), closed.back(), paper.back(), 100 * off_closed,
                            100 * off_paper, seconds});
-    result.points.push_back({std::string("structure"), "rig " + organ, std::string(kind.name), Cell(), Cell(), Cell(),
-                             Cell(), Cell(), std::int64_t(built->model.sphere_count()), Cell(), off_closed, Cell(),
-                             Cell(), Cell(), Cell(), Cell(), Cell()});
+    result.points.push_back({std::string("structure"), "rig " + organ, std::string(kind.name), reports::Cell(),
+                             reports::Cell(), reports::Cell(), reports::Cell(), reports::Cell(),
+                             std::int64_t(built->model.sphere_count()), reports::Cell(), off_closed, reports::Cell(),
+                             reports::Cell(), reports::Cell(), reports::Cell(), reports::Cell(), reports::Cell()});
   }
   return result;
 }
@@ -69,10 +70,10 @@ Result<OrganResult> press_organ(const std::string& shipped, const std::string& o
 
 Result<BenchStudy> run_bench_structure(const BenchOptions& options, const BenchProgress& progress) {
   BenchStudy study;
-  Section& section = study.section;
+  reports::Section& section = study.section;
   section.key = "structure", section.title = "Structure: four models on the paper's rig";
   study.points = bench_layout();
-  Table table;
+  reports::Table table;
   table.columns = {{"organ", "organ"},
                    {"model", "model"},
                    {"force_12mm_n", "force at 12 mm [N]"},
@@ -104,4 +105,4 @@ Result<BenchStudy> run_bench_structure(const BenchOptions& options, const BenchP
   return study;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::bench

@@ -8,7 +8,7 @@
 #include "studio/bench/bench.h"
 #include "studio/output/number_text.h"
 
-namespace ctpm {
+namespace ctpm::bench {
 namespace {
 
 /// Sphere radius of the shipped organs in this study [m]: the reference takes tens of runs as fine as the
@@ -46,9 +46,9 @@ struct Point {
 };
 
 std::string name_of_setting(const Setting& s) {
-  std::string name = std::string(name_of(s.integrator)) + ", " + std::to_string(s.substeps) +
+  std::string name = std::string(stepping::name_of(s.integrator)) + ", " + std::to_string(s.substeps) +
                      (s.substeps == 1 ? " substep" : " substeps");
-  if (s.integrator != Integrator::leapfrog) name += ", tolerance " + short_number(s.tolerance);
+  if (s.integrator != Integrator::leapfrog) name += ", tolerance " + output::short_number(s.tolerance);
   return name;
 }
 
@@ -140,12 +140,12 @@ struct Deed {
 
 /// Gravity is left out, so that every run starts from the same rest.
 Result<TimeJob> make_job(const std::string& path, const std::string& title, const Deed& deed,
-                         const std::function<void(SceneSpec&)>& change, const BenchOptions& options = {}) {
-  const auto prepare = [&](SceneSpec& spec) {
+                         const std::function<void(scenes::SceneSpec&)>& change, const BenchOptions& options = {}) {
+  const auto prepare = [&](scenes::SceneSpec& spec) {
     spec.gravity = {}, spec.loads.clear();
     change(spec);
   };
-  const Result<LoadedScene> scene = load_whole_scene(path, {}, prepare);
+  const Result<loading::LoadedScene> scene = loading::load_whole_scene(path, {}, prepare);
   if (!scene) return scene.errors();
   if (options.take_warnings) options.take_warnings(scene->scene.warnings);
   TimeJob job{title, scene->built.model, {}, deed.kind == ToolKind::ball};
@@ -159,8 +159,9 @@ Result<TimeJob> make_job(const std::string& path, const std::string& title, cons
 
 Result<std::vector<TimeJob>> make_jobs(const BenchOptions& options) {
   std::vector<Result<TimeJob>> made;
-  const auto coarse = [&](SceneSpec& spec) {
-    for (OrganSpec& organ : spec.organs) organ.fill.radius = organ.fill.gap = options.is_quick ? kQuickRadius : kRadius;
+  const auto coarse = [&](scenes::SceneSpec& spec) {
+    for (scenes::OrganSpec& organ : spec.organs)
+      organ.fill.radius = organ.fill.gap = options.is_quick ? kQuickRadius : kRadius;
   };
   const Deed press{ToolKind::ball, press_the_top}, press_both{ToolKind::ball, press_between},
       cut{ToolKind::scalpel, cut_along_x};
@@ -168,14 +169,15 @@ Result<std::vector<TimeJob>> make_jobs(const BenchOptions& options) {
   const std::string liver = shipped("liver"), title = "liver, press and release";
   for (const std::string& path : options.scenes)
     made.push_back(make_job(
-        path, path + ", press and release", press, [](SceneSpec&) {}, options));
+        path, path + ", press and release", press, [](scenes::SceneSpec&) {}, options));
   if (options.scenes.empty()) {
     made.push_back(make_job(liver, title + ", viscosity in kPa s", press, coarse));
     if (!options.is_quick) {
-      made.push_back(make_job(liver, title + ", viscosity in Pa s", press,
-                              [&](SceneSpec& spec) { coarse(spec), spec.organs[0].material.preset += "-pa-s"; }));
-      made.push_back(make_job(liver, title + ", stiffness x 100", press, [&](SceneSpec& spec) {
-        MaterialSpec& m = spec.organs[0].material;
+      made.push_back(make_job(liver, title + ", viscosity in Pa s", press, [&](scenes::SceneSpec& spec) {
+        coarse(spec), spec.organs[0].material.preset += "-pa-s";
+      }));
+      made.push_back(make_job(liver, title + ", stiffness x 100", press, [&](scenes::SceneSpec& spec) {
+        scenes::MaterialSpec& m = spec.organs[0].material;
         coarse(spec), m.stiffness_scale = 100 * m.stiffness_scale.value_or(1);
       }));
       made.push_back(make_job(shipped("two-organs"), "liver and kidney, pressed together", press_both, coarse));
@@ -196,7 +198,7 @@ Result<std::vector<TimeJob>> make_jobs(const BenchOptions& options) {
 
 std::vector<Setting> settings_for(const Model& model, bool is_quick) {
   std::vector<Setting> settings;
-  const double needed = std::max(1.0, std::ceil(model.tick / (0.9 * stable_step_bound(model))));
+  const double needed = std::max(1.0, std::ceil(model.tick / (0.9 * stepping::stable_step_bound(model))));
   for (double n = needed; n <= std::min(kMostSubsteps, 4 * needed); n *= 2)
     settings.push_back({Integrator::leapfrog, std::int32_t(n), 1e-4});
   const std::vector<double> tolerances = is_quick ? std::vector{1e-2, 1e-5} : std::vector{1e-1, 1e-2, 1e-4, 1e-6};
@@ -222,22 +224,24 @@ Point measure(const TimeJob& job, const Setting& setting, const BenchRun& run, c
 }
 
 /// One line for each integrator and tolerance, along its substeps, and the front.
-Plot diagram(const std::string& title, const std::vector<Point>& points, double Point::*error, const char* what) {
-  Plot plot{.title = title, .x_title = "run time [s per simulated s]", .y_title = what};
+reports::Plot diagram(const std::string& title, const std::vector<Point>& points, double Point::*error,
+                      const char* what) {
+  reports::Plot plot{.title = title, .x_title = "run time [s per simulated s]", .y_title = what};
   plot.is_log_x = plot.is_log_y = true;
   for (const Point& p : points) {
-    std::string name = name_of(p.setting.integrator);
-    if (p.setting.integrator != Integrator::leapfrog) name += " " + short_number(p.setting.tolerance);
-    auto it = std::find_if(plot.series.begin(), plot.series.end(), [&](const Series& s) { return s.name == name; });
+    std::string name = stepping::name_of(p.setting.integrator);
+    if (p.setting.integrator != Integrator::leapfrog) name += " " + output::short_number(p.setting.tolerance);
+    auto it =
+        std::find_if(plot.series.begin(), plot.series.end(), [&](const reports::Series& s) { return s.name == name; });
     if (it == plot.series.end()) {
-      Series series{.name = name};
-      series.stroke = p.setting.integrator == Integrator::sdirk2 ? Stroke::dashed : Stroke::line;
+      reports::Series series{.name = name};
+      series.stroke = p.setting.integrator == Integrator::sdirk2 ? reports::Stroke::dashed : reports::Stroke::line;
       series.colour = p.setting.integrator == Integrator::leapfrog ? 6 : int(-std::log10(p.setting.tolerance)) % 6;
       it = plot.series.insert(plot.series.end(), series);
     }
     it->x.push_back(p.run_time), it->y.push_back(p.*error);
   }
-  Series front{.name = "Pareto front", .stroke = Stroke::marks, .colour = 1};
+  reports::Series front{.name = "Pareto front", .stroke = reports::Stroke::marks, .colour = 1};
   std::vector<double> cost, errors;
   for (const Point& p : points) cost.push_back(p.run_time), errors.push_back(p.*error);
   for (const std::size_t i : pareto_front(cost, errors)) front.x.push_back(cost[i]), front.y.push_back(errors[i]);
@@ -247,8 +251,8 @@ Plot diagram(const std::string& title, const std::vector<Point>& points, double 
 
 /// Slope of the error over the substeps at the tightest tolerance, between the two finest runs whose error
 /// the reference, off by up to `gap` itself, can tell.
-Table orders(const std::vector<Point>& points, double gap) {
-  Table table;
+reports::Table orders(const std::vector<Point>& points, double gap) {
+  reports::Table table;
   table.title =
       "Observed order, between the two finest steps that the reference tells apart, at the tightest "
       "tolerance";
@@ -264,7 +268,7 @@ Table orders(const std::vector<Point>& points, double gap) {
     if (own.size() < 2) continue;
     const Point &coarse = *own[own.size() - 2], &fine = *own.back();
     const double ratio = std::log(double(fine.setting.substeps) / coarse.setting.substeps);
-    table.rows.push_back({std::string(name_of(integrator)),
+    table.rows.push_back({std::string(stepping::name_of(integrator)),
                           std::log(coarse.position_error / fine.position_error) / ratio,
                           std::log(coarse.force_error / fine.force_error) / ratio});
   }
@@ -290,7 +294,7 @@ double order_without_contact(const TimeJob& job, std::int32_t fine) {
 std::string recommendation(const TimeJob& job, std::vector<Point> points) {
   const double tick = job.model.tick;
   const std::string rate =
-      short_number(1e-3 / tick) + " kHz with " + std::to_string(job.model.sphere_count()) + " spheres";
+      output::short_number(1e-3 / tick) + " kHz with " + std::to_string(job.model.sphere_count()) + " spheres";
   std::sort(points.begin(), points.end(),
             [](const Point& a, const Point& b) { return a.position_error < b.position_error; });
   for (const Point& p : points) {
@@ -304,10 +308,11 @@ std::string recommendation(const TimeJob& job, std::vector<Point> points) {
     const double p99 = percentile(seconds, 0.99);
     if (p99 > tick) continue;
     return job.title + ": the most accurate setting that holds " + rate + " on this machine is " +
-           name_of_setting(p.setting) + ": error " + short_number(100 * p.position_error, 2) + " % in position and " +
-           short_number(100 * p.force_error, 2) + " % in force; ticks of " +
-           short_number(1e3 * percentile(seconds, 0.5), 3) + " ms (p50), " + short_number(1e3 * p99, 3) +
-           " ms (p99), " + short_number(1e3 * percentile(seconds, 0.999), 3) + " ms (p99.9).";
+           name_of_setting(p.setting) + ": error " + output::short_number(100 * p.position_error, 2) +
+           " % in position and " + output::short_number(100 * p.force_error, 2) + " % in force; ticks of " +
+           output::short_number(1e3 * percentile(seconds, 0.5), 3) + " ms (p50), " +
+           output::short_number(1e3 * p99, 3) + " ms (p99), " +
+           output::short_number(1e3 * percentile(seconds, 0.999), 3) + " ms (p99.9).";
   }
   return job.title + ": no setting holds " + rate + " at p99 on this machine.";
 }
@@ -327,7 +332,7 @@ BenchStudy study(const TimeJob& job, const BenchOptions& options, const std::fun
   std::vector<Point> points;
   for (const Setting& setting : settings_for(job.model, options.is_quick)) {
     const BenchRun run = run_motion(with_setting(job.model, setting), job.motion);
-    if (run.status == StepStatus::ok) points.push_back(measure(job, setting, run, reference));
+    if (run.status == stepping::StepStatus::ok) points.push_back(measure(job, setting, run, reference));
   }
   std::vector<double> cost, errors;
   for (const Point& p : points) cost.push_back(p.run_time), errors.push_back(p.position_error);
@@ -339,13 +344,14 @@ BenchStudy study(const TimeJob& job, const BenchOptions& options, const std::fun
                          diagram("force", points, &Point::force_error, "relative L2 error in force")};
   study.section.paragraphs = {
       std::to_string(job.model.sphere_count()) + " spheres, " + std::to_string(job.motion.ticks) + " ticks of " +
-          short_number(1e3 * job.model.tick) +
+          output::short_number(1e3 * job.model.tick) +
           " ms, no gravity. Errors are relative differences in L2 over the whole "
           "trajectory, of displacements and of the force on the tool, from a reference: sdirk2 with " +
-          std::to_string(fine) + " substeps and tolerance " + short_number(kReferenceTolerance) +
+          std::to_string(fine) + " substeps and tolerance " + output::short_number(kReferenceTolerance) +
           ". The reference itself "
           "differs from the run with half as many substeps by " +
-          short_number(100 * position_gap, 2) + " % in position and " + short_number(100 * force_gap, 2) +
+          output::short_number(100 * position_gap, 2) + " % in position and " +
+          output::short_number(100 * force_gap, 2) +
           " % in force: an estimate of its own error, not a bound. Errors below that are not told apart.",
       "Numbers in the legend are tolerances; along a line the substeps double."};
   study.sentences = {recommendation(job, points)};
@@ -353,7 +359,7 @@ BenchStudy study(const TimeJob& job, const BenchOptions& options, const std::fun
   study.section.tables = {orders(points, position_gap)};
   if (job.is_pressed) {
     study.section.tables[0].rows.push_back(
-        {std::string("sdirk2, without contact"), order_without_contact(job, fine), Cell()});
+        {std::string("sdirk2, without contact"), order_without_contact(job, fine), reports::Cell()});
     study.section.paragraphs.push_back(
         "SDIRK2 is of second order where the motion is smooth and the steps resolve it. In the last row "
         "of the table of orders a pin moves the pressed sphere along the ball's way: where that is 2 and the row above "
@@ -361,11 +367,11 @@ BenchStudy study(const TimeJob& job, const BenchOptions& options, const std::fun
   }
   study.points = bench_layout();
   for (const Point& p : points)
-    study.points.rows.push_back({std::string("time"), job.title, Cell(), std::string(name_of(p.setting.integrator)),
-                                 std::int64_t(p.setting.substeps), p.setting.tolerance, Cell(), Cell(),
-                                 std::int64_t(job.model.sphere_count()), p.position_error, p.force_error, p.run_time,
-                                 1e3 * p.p50, 1e3 * p.p99, 1e3 * p.p999, p.unconverged,
-                                 p.is_on_front ? Cell(std::string("front")) : Cell()});
+    study.points.rows.push_back(
+        {std::string("time"), job.title, reports::Cell(), std::string(stepping::name_of(p.setting.integrator)),
+         std::int64_t(p.setting.substeps), p.setting.tolerance, reports::Cell(), reports::Cell(),
+         std::int64_t(job.model.sphere_count()), p.position_error, p.force_error, p.run_time, 1e3 * p.p50, 1e3 * p.p99,
+         1e3 * p.p999, p.unconverged, p.is_on_front ? reports::Cell(std::string("front")) : reports::Cell()});
   return study;
 }
 
@@ -381,4 +387,4 @@ Result<std::vector<BenchStudy>> run_bench_time(const BenchOptions& options, cons
   return studies;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::bench

@@ -5,31 +5,31 @@
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
 struct BenchArguments {
   std::string folder;
-  BenchOptions options;
+  bench::BenchOptions options;
 };
 
 /// All studies, each with its own progress. Scenes that are named are studied in time alone.
-Result<std::vector<BenchStudy>> run_studies(const BenchOptions& options) {
+Result<std::vector<bench::BenchStudy>> run_studies(const bench::BenchOptions& options) {
   const auto line = [](ProgressLine& progress) {
     return [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
   };
-  std::vector<BenchStudy> studies;
+  std::vector<bench::BenchStudy> studies;
   {
     ProgressLine progress("integrators, substeps and tolerances");
-    Result<std::vector<BenchStudy>> time = run_bench_time(options, line(progress));
+    Result<std::vector<bench::BenchStudy>> time = bench::run_bench_time(options, line(progress));
     if (!time) return time.errors();
     studies = std::move(*time);
   }
   if (!options.scenes.empty()) return studies;
   for (const auto& [title, run] :
-       {std::pair{"sphere radius", &run_bench_space}, std::pair{"structure", &run_bench_structure}}) {
+       {std::pair{"sphere radius", &bench::run_bench_space}, std::pair{"structure", &bench::run_bench_structure}}) {
     ProgressLine progress(title);
-    Result<BenchStudy> study = run(options, line(progress));
+    Result<bench::BenchStudy> study = run(options, line(progress));
     if (!study) return study.errors();
     studies.push_back(std::move(*study));
   }
@@ -37,12 +37,12 @@ Result<std::vector<BenchStudy>> run_studies(const BenchOptions& options) {
 }
 
 int run_bench(const BenchArguments& arguments) {
-  if (const Result<Done> ready = prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
-  const Result<std::vector<BenchStudy>> studies = run_studies(arguments.options);
+  if (const Result<Done> ready = reports::prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
+  const Result<std::vector<bench::BenchStudy>> studies = run_studies(arguments.options);
   if (!studies) return print_errors(studies.errors());
-  if (const Result<Done> written = write_bench_report(arguments.folder, *studies); !written)
+  if (const Result<Done> written = bench::write_bench_report(arguments.folder, *studies); !written)
     return print_errors(written.errors());
-  for (const BenchStudy& study : *studies)
+  for (const bench::BenchStudy& study : *studies)
     for (const std::string& sentence : study.sentences) std::printf("%s\n", sentence.c_str());
   std::printf("written: %s/report.html, results.json, results.csv\n", arguments.folder.c_str());
   return exit_good;
@@ -69,4 +69,4 @@ Command add_bench(CLI::App& program) {
   return {app, [arguments] { return run_bench(*arguments); }};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

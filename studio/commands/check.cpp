@@ -6,18 +6,18 @@
 #include "studio/commands/console.h"
 #include "studio/loading/loaded_scene.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
 struct CheckArguments {
   std::vector<std::string> scenes;
-  LoadOptions load;
+  scenes::LoadOptions load;
 };
 
 int run_check(const CheckArguments& arguments) {
   int code = exit_good;
   for (const std::string& path : arguments.scenes) {
-    const Result<LoadedScene> scene = load_whole_scene(path, arguments.load);
+    const Result<loading::LoadedScene> scene = loading::load_whole_scene(path, arguments.load);
     if (!scene) {
       code = print_errors(scene.errors());
       continue;
@@ -41,4 +41,4 @@ Command add_check(CLI::App& program) {
   return {app, [arguments] { return run_check(*arguments); }};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

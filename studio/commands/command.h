@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 
-namespace ctpm {
+namespace ctpm::commands {
 
 /// What runs a subcommand once its arguments are read; returns an ExitCode.
 using Run = std::function<int()>;
@@ -31,4 +31,4 @@ Command add_paper(CLI::App& program);
 Command add_bench(CLI::App& program);
 Command add_stability(CLI::App& program);
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

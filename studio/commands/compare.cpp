@@ -9,7 +9,7 @@
 #include "studio/loading/loaded_scene.h"
 #include "studio/reports/report.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
 struct CompareArguments {
@@ -21,37 +21,39 @@ struct CompareArguments {
 int run_compare(const CompareArguments& arguments) {
   if (arguments.has_force_limit && !(arguments.force_limit_n > 0))
     return print_errors({{"--force-limit", "must be above 0 N", ""}});
-  Result<SessionReader> expert = SessionReader::open(arguments.expert);
-  Result<SessionReader> trainee = SessionReader::open(arguments.trainee);
+  Result<recordings::SessionReader> expert = recordings::SessionReader::open(arguments.expert);
+  Result<recordings::SessionReader> trainee = recordings::SessionReader::open(arguments.trainee);
   Errors errors;
   for (const auto* session : {&expert, &trainee})
     if (!*session) errors.insert(errors.end(), session->errors().begin(), session->errors().end());
   if (!errors.empty()) return print_errors(errors);
-  if (const Result<Done> same = check_same_scene(*expert, *trainee); !same) return print_errors(same.errors());
+  if (const Result<Done> same = compare::check_same_scene(*expert, *trainee); !same) return print_errors(same.errors());
   warn_of_physics(*expert), warn_of_physics(*trainee);
-  const Result<SessionTrack> expert_track = read_track(*expert);
-  const Result<SessionTrack> trainee_track = read_track(*trainee);
+  const Result<compare::SessionTrack> expert_track = compare::read_track(*expert);
+  const Result<compare::SessionTrack> trainee_track = compare::read_track(*trainee);
   for (const auto* track : {&expert_track, &trainee_track})
     if (!*track) errors.insert(errors.end(), track->errors().begin(), track->errors().end());
   if (!errors.empty()) return print_errors(errors);
   // Only now, so that sessions that are refused leave no folder behind.
   if (!arguments.folder.empty())
-    if (const Result<Done> ready = prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
+    if (const Result<Done> ready = reports::prepare_folder(arguments.folder); !ready)
+      return print_errors(ready.errors());
 
-  CompareOptions options;
+  compare::CompareOptions options;
   if (arguments.has_force_limit) options.force_limit = arguments.force_limit_n;
-  const SessionStart& scene = expert->start();
+  const recordings::SessionStart& scene = expert->start();
   // A scene text of another version may not be readable any more; the limit is all that is asked of it.
-  if (const Result<SceneText> text = read_scene(scene.scene_text, arguments.expert); text)
-    options.damage_force = damage_force_of(text->spec);
-  const Comparison comparison = compare_sessions(*expert_track, *trainee_track, scene, options);
-  const ComparedSessions compared{*expert_track, *trainee_track, scene, comparison};
+  if (const Result<scenes::SceneText> text = scenes::read_scene(scene.scene_text, arguments.expert); text)
+    options.damage_force = loading::damage_force_of(text->spec);
+  const compare::Comparison comparison = compare::compare_sessions(*expert_track, *trainee_track, scene, options);
+  const compare::ComparedSessions compared{*expert_track, *trainee_track, scene, comparison};
   const std::string to_see_worst = worst_moment_command(compared);
   if (!arguments.folder.empty())
-    if (const Result<Done> written = write_comparison(arguments.folder, compared, to_see_worst); !written)
+    if (const Result<Done> written = compare::write_comparison(arguments.folder, compared, to_see_worst); !written)
       return print_errors(written.errors());
-  for (const std::string& remark : remarks_of(compared)) print_remark("warning: " + remark);
-  std::fputs((arguments.json ? comparison_json(compared) : comparison_text(compared, to_see_worst)).c_str(), stdout);
+  for (const std::string& remark : compare::remarks_of(compared)) print_remark("warning: " + remark);
+  std::fputs((arguments.json ? compare::comparison_json(compared) : comparison_text(compared, to_see_worst)).c_str(),
+             stdout);
   if (!arguments.folder.empty()) print_remark("written: " + arguments.folder + "/report.html, results.json");
   return exit_good;
 }
@@ -76,4 +78,4 @@ Command add_compare(CLI::App& program) {
           }};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

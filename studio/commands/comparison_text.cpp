@@ -6,35 +6,37 @@
 
 #include "studio/output/number_text.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
 constexpr std::size_t kMomentsOnConsole = 5;
 
-std::string number(std::optional<double> value) { return value ? short_number(*value) : "-"; }
+std::string number(std::optional<double> value) { return value ? output::short_number(*value) : "-"; }
 
-std::string describe(const Moment& moment) {
+std::string describe(const compare::Moment& moment) {
   char text[200];
-  const std::string limit = moment.kind == MomentKind::stray_cut ? "" : ", limit " + short_number(moment.limit);
-  std::snprintf(text, sizeof text, "%7.2f s  %s: %s %s%s, from %.2f s to %.2f s", moment.worst_s, to_word(moment.kind),
-                short_number(moment.value).c_str(), moment.unit, limit.c_str(), moment.from_s, moment.to_s);
+  const std::string limit =
+      moment.kind == compare::MomentKind::stray_cut ? "" : ", limit " + output::short_number(moment.limit);
+  std::snprintf(text, sizeof text, "%7.2f s  %s: %s %s%s, from %.2f s to %.2f s", moment.worst_s,
+                compare::to_word(moment.kind), output::short_number(moment.value).c_str(), moment.unit, limit.c_str(),
+                moment.from_s, moment.to_s);
   return text;
 }
 
 }  // namespace
 
-std::string comparison_text(const ComparedSessions& compared, const std::string& to_see_worst) {
-  const Comparison& comparison = compared.comparison;
+std::string comparison_text(const compare::ComparedSessions& compared, const std::string& to_see_worst) {
+  const compare::Comparison& comparison = compared.comparison;
   std::string text;
   char line[200];
   std::snprintf(line, sizeof line, "%-38s %10s %10s  %-4s %-13s %s\n", "measure", "expert", "trainee", "unit",
                 "better is", "trainee is");
   text += line;
-  for (const MeasuredValue& value : comparison.values) {
-    const std::string standing = value.note.empty() ? standing_of(value) : "(" + value.note + ")";
+  for (const compare::MeasuredValue& value : comparison.values) {
+    const std::string standing = value.note.empty() ? compare::standing_of(value) : "(" + value.note + ")";
     std::snprintf(line, sizeof line, "%-38s %10s %10s  %-4s %-13s %s", value.measure->title,
                   number(value.expert).c_str(), number(value.trainee).c_str(), value.measure->unit,
-                  to_word(value.measure->direction), standing.c_str());
+                  compare::to_word(value.measure->direction), standing.c_str());
     std::string row = line;
     row.erase(row.find_last_not_of(' ') + 1);
     text += row + "\n";
@@ -48,10 +50,10 @@ std::string comparison_text(const ComparedSessions& compared, const std::string&
   return text;
 }
 
-std::string worst_moment_command(const ComparedSessions& compared) {
+std::string worst_moment_command(const compare::ComparedSessions& compared) {
   if (compared.comparison.moments.empty()) return "";
-  const SessionTrack& trainee = compared.trainee;
-  const Moment& moment = compared.comparison.moments.front();
+  const compare::SessionTrack& trainee = compared.trainee;
+  const compare::Moment& moment = compared.comparison.moments.front();
   constexpr double kAround = 1;  // [s]
   char range[80];
   std::snprintf(range, sizeof range, "--from-s %.1f --to-s %.1f", std::max(0.0, moment.from_s - kAround),
@@ -59,4 +61,4 @@ std::string worst_moment_command(const ComparedSessions& compared) {
   return "ctpm export " + trainee.path + " -o worst.mp4 " + range;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

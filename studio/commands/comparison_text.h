@@ -4,12 +4,12 @@
 
 #include "studio/compare/report.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 
 /// The measures and the worst moments as lines for a terminal. `to_see_worst` stands under the moments, if any.
-std::string comparison_text(const ComparedSessions& compared, const std::string& to_see_worst);
+std::string comparison_text(const compare::ComparedSessions& compared, const std::string& to_see_worst);
 
 /// The command that shows the worst moment with one second before and after it; empty if no moment goes beyond a limit.
-std::string worst_moment_command(const ComparedSessions& compared);
+std::string worst_moment_command(const compare::ComparedSessions& compared);
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

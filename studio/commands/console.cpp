@@ -7,10 +7,11 @@
 #include "studio/commands/flags.h"
 #include "studio/output/option_name.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 
 int print_errors(const Errors& errors) {
-  for (const Error& error : name_options(errors, flag_of)) std::fprintf(stderr, "%s\n", to_string(error).c_str());
+  for (const Error& error : output::name_options(errors, flag_of))
+    std::fprintf(stderr, "%s\n", to_string(error).c_str());
   return exit_bad_input;
 }
 
@@ -38,4 +39,4 @@ void ProgressLine::show(std::int64_t done, std::int64_t total) {
                spent * double(total - done) / double(done));
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

@@ -6,7 +6,7 @@
 
 #include "core/model/result.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 
 /// What the program says to its caller.
 enum ExitCode : int {
@@ -43,4 +43,4 @@ class ProgressLine {
   Clock::time_point start_, last_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

@@ -19,7 +19,7 @@
 #include "studio/output/number_text.h"
 #include "studio/session/record_session.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
 namespace fs = std::filesystem;
@@ -59,24 +59,25 @@ int run_demo(const DemoArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
 
   say_step(1, "importing the shipped liver mesh and filling it with spheres");
-  ImportRequest request;
+  authoring::ImportRequest request;
   request.mesh = std::string(CTPM_SOURCE_DIR) + "/scenes/organs/liver.obj";
   request.scene = scene_file;
   request.unit_in_metres = 1e-3;
-  const Result<ImportOutcome> imported = import_scene(request);
+  const Result<authoring::ImportOutcome> imported = authoring::import_scene(request);
   if (!imported) return print_errors(imported.errors());
 
   say_step(2, "recording a session at 1000 ticks a second: a ball presses and lets go, then a scalpel cuts");
-  const Result<LoadedScene> scene = load_whole_scene(scene_file);
+  const Result<loading::LoadedScene> scene = loading::load_whole_scene(scene_file);
   if (!scene) return print_errors(scene.errors());
   print_warnings(scene->scene.warnings);
   const StopSignal stop;
-  RunOptions options;
+  session::RunOptions options;
   options.should_stop = [&] { return stop.came(); };
-  Result<RecordOutcome> recorded = [&] {
+  Result<session::RecordOutcome> recorded = [&] {
     ProgressLine progress("recording");
     options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
-    return record_script(*scene, default_script(scene->scene.spec, scene->organs), session_file, true, options);
+    return session::record_script(*scene, scenes::default_script(scene->scene.spec, scene->organs), session_file, true,
+                                  options);
   }();
   if (!recorded) return print_errors(recorded.errors());
   if (stop.came()) return print_errors({{session_file, "stopped", ""}});
@@ -86,21 +87,21 @@ int run_demo(const DemoArguments& arguments) {
   if (verified == exit_bad_input) return verified;
 
   say_step(4, "exporting the video");
-  Result<SessionReader> reader = SessionReader::open(session_file);
+  Result<recordings::SessionReader> reader = recordings::SessionReader::open(session_file);
   if (!reader) return print_errors(reader.errors());
-  ExportOptions exporting;
+  film::ExportOptions exporting;
   exporting.should_stop = options.should_stop;
-  const Result<ExportOutcome> exported = [&] {
+  const Result<film::ExportOutcome> exported = [&] {
     ProgressLine progress("exporting");
     exporting.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
-    return export_video({&*reader}, video_file, exporting);
+    return film::export_video({&*reader}, video_file, exporting);
   }();
   if (!exported) return print_errors(exported.errors());
 
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  say_step(5, "done in " + fixed(seconds, 1) + " s");
+  say_step(5, "done in " + output::fixed(seconds, 1) + " s");
   const Model& model = scene->built.model;
-  const SessionStatistics& s = recorded->statistics;
+  const recordings::SessionStatistics& s = recorded->statistics;
   std::printf("spheres         %zu in %d layers\n", model.sphere_count(), model.organs.front().layer_count);
   std::printf("elements        %zu, of which %lld severed\n", model.element_count(), (long long)s.severed);
   std::printf("tick time       p50 %.3f ms, p99 %.3f ms; %lld of %lld ticks late\n", s.tick_time_p50 * 1e3,
@@ -126,4 +127,4 @@ Command add_demo(CLI::App& program) {
   return {app, [arguments] { return run_demo(*arguments); }};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

@@ -13,53 +13,53 @@
 #include "studio/output/number_text.h"
 #include "studio/render/picture_size.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
 struct ExportArguments {
   std::string file, beside, output, size = "1280x720";
-  ExportOptions options;
+  film::ExportOptions options;
 };
 
-void print_outcome(const ExportOutcome& outcome) {
-  const VideoFacts& video = outcome.video;
+void print_outcome(const film::ExportOutcome& outcome) {
+  const video::VideoFacts& video = outcome.video;
   std::printf("%s: %lld frames, %dx%d, %g frames/s, %s, %.1f MB; replay %s\n", video.path.c_str(),
               (long long)video.frames, video.width, video.height, video.fps, video.codec.c_str(),
               double(video.bytes) / 1e6,
               outcome.same_as_recorded() ? "same as recorded" : "DIFFERS from what was recorded; every frame says so");
-  const StageTimes& times = outcome.times;
-  const auto share = [&](double part) { return fixed(100 * part / times.work(), 0) + " %"; };
-  print_remark("exported in " + fixed(times.elapsed, 1) + " s, " +
-               fixed(double(video.frames) / video.fps / times.elapsed, 2) + " times real time; of the work " +
+  const film::StageTimes& times = outcome.times;
+  const auto share = [&](double part) { return output::fixed(100 * part / times.work(), 0) + " %"; };
+  print_remark("exported in " + output::fixed(times.elapsed, 1) + " s, " +
+               output::fixed(double(video.frames) / video.fps / times.elapsed, 2) + " times real time; of the work " +
                share(times.simulation) + " simulation, " + share(times.rendering) + " rendering, " +
                share(times.encoding) + " encoding");
 }
 
 int run_export(ExportArguments& arguments) {
   Errors errors;
-  std::vector<SessionReader> readers;
+  std::vector<recordings::SessionReader> readers;
   for (const std::string& file : {arguments.file, arguments.beside}) {
     if (file.empty()) continue;
-    Result<SessionReader> reader = SessionReader::open(file);
+    Result<recordings::SessionReader> reader = recordings::SessionReader::open(file);
     if (reader)
       readers.push_back(std::move(*reader));
     else
       errors.insert(errors.end(), reader.errors().begin(), reader.errors().end());
   }
-  const Result<PictureSize> size = parse_picture_size(arguments.size);
+  const Result<render::PictureSize> size = render::parse_picture_size(arguments.size);
   if (size)
     arguments.options.size = *size;
   else
     errors.insert(errors.end(), size.errors().begin(), size.errors().end());
   if (!errors.empty()) return print_errors(errors);
-  std::vector<SessionReader*> sessions;
-  for (SessionReader& reader : readers) warn_of_physics(reader), sessions.push_back(&reader);
+  std::vector<recordings::SessionReader*> sessions;
+  for (recordings::SessionReader& reader : readers) warn_of_physics(reader), sessions.push_back(&reader);
   const StopSignal stop;  // Ctrl-C ends the loop, and the unfinished file is removed on the way out
   arguments.options.should_stop = [&] { return stop.came(); };
-  const Result<ExportOutcome> outcome = [&] {
+  const Result<film::ExportOutcome> outcome = [&] {
     ProgressLine progress("exporting");
     arguments.options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
-    return export_video(sessions, arguments.output, arguments.options);
+    return film::export_video(sessions, arguments.output, arguments.options);
   }();
   if (!outcome) return print_errors(outcome.errors());
   if (!outcome->video.note.empty()) print_remark("warning: " + outcome->video.note);
@@ -75,7 +75,7 @@ Command add_export(CLI::App& program) {
   app->footer(
       "Examples: ctpm export out/demo.ctpm -o out/demo.mp4 --from-s 4 --speed 0.5 --camera follow\n"
       "          ctpm export expert.ctpm --beside trainee.ctpm -o both.mp4 --view elements --by force");
-  ExportOptions& options = arguments->options;
+  film::ExportOptions& options = arguments->options;
   app->add_option("session", arguments->file, "Session file (.ctpm)")->required();
   app->add_option("-o,--output", arguments->output,
                   "Video: .mp4 (H.264), .avi (Motion JPEG), or a folder/ of PNG pictures")
@@ -91,4 +91,4 @@ Command add_export(CLI::App& program) {
   return {app, [arguments] { return run_export(*arguments); }};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

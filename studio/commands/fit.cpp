@@ -7,17 +7,17 @@
 #include "studio/loading/loaded_scene.h"
 #include "studio/output/files.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
 struct FitArguments {
   std::string scene, organ;
   bool write = false;
-  LoadOptions load;
+  scenes::LoadOptions load;
 };
 
 /// Index of the organ of that name; of the first if the name is empty.
-Result<std::size_t> find_organ(const SceneSpec& scene, const std::string& name) {
+Result<std::size_t> find_organ(const scenes::SceneSpec& scene, const std::string& name) {
   std::string known;
   for (std::size_t i = 0; i < scene.organs.size(); ++i) {
     if (name.empty() || scene.organs[i].name == name) return i;
@@ -26,28 +26,28 @@ Result<std::size_t> find_organ(const SceneSpec& scene, const std::string& name) 
   return Error{"--organ", "the scene has no organ '" + name + "'", "it has: " + known};
 }
 
-void print_fit(const OrganSpec& organ, const StiffnessFit& fit) {
-  const FittedForSpec& f = fit.fitted_for;
+void print_fit(const scenes::OrganSpec& organ, const authoring::StiffnessFit& fit) {
+  const scenes::FittedForSpec& f = fit.fitted_for;
   std::printf("%s: stiffness_scale %.6g\n", organ.name.c_str(), fit.scale);
   std::printf("fitted with a ball of %.2f mm on the sphere of %.2f mm at (%.2f, %.2f, %.2f) mm\n\n",
               1e3 * f.ball_radius, 1e3 * f.sphere_radius, 1e3 * f.place.x, 1e3 * f.place.y, 1e3 * f.place.z);
   std::printf("depth [mm]   force [N]   Table 1, CTPM [N]   error [%%]\n");
-  for (const FitRow& row : fit.rows)
+  for (const authoring::FitRow& row : fit.rows)
     std::printf("%10.0f %11.4f %19.4f %11.1f\n", 1e3 * row.depth, row.force, row.closed_form, 100 * row.error());
   std::printf("\nThe scale is fitted at 12 mm only; the other depths show how the shape of the curve differs.\n");
 }
 
 int run_fit(const FitArguments& arguments) {
-  const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
+  const Result<loading::LoadedScene> scene = loading::load_whole_scene(arguments.scene, arguments.load);
   if (!scene) return print_errors(scene.errors());
   print_warnings(scene->scene.warnings);
-  SceneSpec spec = scene->scene.spec;
+  scenes::SceneSpec spec = scene->scene.spec;
   const Result<std::size_t> organ = find_organ(spec, arguments.organ);
   if (!organ) return print_errors(organ.errors());
   if (arguments.write)
-    if (const Result<Done> writable = check_writable(arguments.scene); !writable)
+    if (const Result<Done> writable = output::check_writable(arguments.scene); !writable)
       return print_errors(writable.errors());
-  const Result<StiffnessFit> fit = fit_stiffness(spec, *organ, scene->organs[*organ]);
+  const Result<authoring::StiffnessFit> fit = authoring::fit_stiffness(spec, *organ, scene->organs[*organ]);
   if (!fit) {
     Errors errors = fit.errors();
     for (Error& error : errors) error.where = arguments.scene + ": " + error.where;
@@ -55,8 +55,8 @@ int run_fit(const FitArguments& arguments) {
   }
   print_fit(spec.organs[*organ], *fit);
   if (!arguments.write) return exit_good;
-  apply_fit(spec.organs[*organ], *fit);
-  if (const Result<Done> written = write_text_file(arguments.scene, write_scene(spec)); !written)
+  authoring::apply_fit(spec.organs[*organ], *fit);
+  if (const Result<Done> written = output::write_text_file(arguments.scene, scenes::write_scene(spec)); !written)
     return print_errors(written.errors());
   std::printf("written: %s\n", arguments.scene.c_str());
   return exit_good;
@@ -77,4 +77,4 @@ Command add_fit(CLI::App& program) {
   return {app, [arguments] { return run_fit(*arguments); }};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
 /// Fields that libraries name in errors, and their flags.
@@ -43,7 +43,7 @@ std::string flag_of(std::string_view field) {
   return std::string(field);
 }
 
-void add_look(CLI::App& app, LookRequest& request) {
+void add_look(CLI::App& app, views::LookRequest& request) {
   app.add_option("--view", request.view, "surface, spheres, both or elements")->capture_default_str();
   app.add_option("--by", request.by, "What colours show: layer of spheres; stretch, tilt or force of elements");
   app.add_option("--full-scale", request.full_scale, "Value of the last colour of elements [%, deg or N]");
@@ -52,9 +52,9 @@ void add_look(CLI::App& app, LookRequest& request) {
                  "A camera of the scene, fitted, or follow the tool; its first one, else fitted");
 }
 
-void add_time_range(CLI::App& app, TimeRange& range) {
+void add_time_range(CLI::App& app, session::TimeRange& range) {
   app.add_option("--from-s", range.from_s, "Where to begin [s]");
   app.add_option("--to-s", range.to_s, "Where to end [s]; the session's end if not given");
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

@@ -8,16 +8,16 @@
 #include "studio/views/look.h"
 
 // The names of flags, as far as several commands or the errors of libraries share them.
-namespace ctpm {
+namespace ctpm::commands {
 
 /// The flag that sets a field of an option struct: `--camera` for "look.camera". A field without a flag is returned
 /// unchanged.
 std::string flag_of(std::string_view field);
 
 /// Adds the flags of a look: view, colours, cutaway and camera.
-void add_look(CLI::App& app, LookRequest& request);
+void add_look(CLI::App& app, views::LookRequest& request);
 
 /// Adds the flags of a time range.
-void add_time_range(CLI::App& app, TimeRange& range);
+void add_time_range(CLI::App& app, session::TimeRange& range);
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

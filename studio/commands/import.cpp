@@ -13,11 +13,11 @@
 #include "studio/output/json_writer.h"
 #include "studio/output/number_text.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
 struct ImportArguments {
-  ImportRequest request;
+  authoring::ImportRequest request;
   std::string unit, report;
   std::optional<double> radius_mm, gap_mm, largest_hole_mm;
   std::optional<std::int64_t> most_triangles;
@@ -33,15 +33,16 @@ Errors complete(ImportArguments& a) {
   else if (!a.unit.empty())
     a.request.unit_in_metres = units.at(a.unit);
   if (a.radius_mm && !(*a.radius_mm > 0 && *a.radius_mm <= 100))
-    errors.push_back({"--radius-mm", "got " + fixed(*a.radius_mm, 3) + ", must be in (0, 100]", ""});
+    errors.push_back({"--radius-mm", "got " + output::fixed(*a.radius_mm, 3) + ", must be in (0, 100]", ""});
   else if (a.radius_mm)
     a.request.sphere_radius = 1e-3 * *a.radius_mm;
   if (a.gap_mm && !(*a.gap_mm >= 0 && *a.gap_mm <= 100))
-    errors.push_back({"--gap-mm", "got " + fixed(*a.gap_mm, 3) + ", must be in [0, 100]", ""});
+    errors.push_back({"--gap-mm", "got " + output::fixed(*a.gap_mm, 3) + ", must be in [0, 100]", ""});
   else if (a.gap_mm)
     a.request.gap = 1e-3 * *a.gap_mm;
   if (a.largest_hole_mm && !(*a.largest_hole_mm >= 0 && *a.largest_hole_mm <= 10000))
-    errors.push_back({"--largest-hole-mm", "got " + fixed(*a.largest_hole_mm, 3) + ", must be in [0, 10000]", ""});
+    errors.push_back(
+        {"--largest-hole-mm", "got " + output::fixed(*a.largest_hole_mm, 3) + ", must be in [0, 10000]", ""});
   else if (a.largest_hole_mm)
     a.request.largest_hole = 1e-3 * *a.largest_hole_mm;
   if (a.most_triangles && !(*a.most_triangles >= 100 && *a.most_triangles <= 10'000'000))
@@ -50,25 +51,28 @@ Errors complete(ImportArguments& a) {
   else if (a.most_triangles)
     a.request.most_triangles = std::int32_t(*a.most_triangles);
   for (const std::string& text : a.anchors) {
-    const Result<AnchorSpec> anchor = parse_anchor(text);
+    const Result<scenes::AnchorSpec> anchor = scenes::parse_anchor(text);
     if (anchor)
       a.request.anchors.push_back(*anchor);
     else
       errors.insert(errors.end(), anchor.errors().begin(), anchor.errors().end());
   }
   if (!a.report.empty())
-    if (const Result<Done> writable = check_writable(a.report); !writable)
+    if (const Result<Done> writable = output::check_writable(a.report); !writable)
       errors.insert(errors.end(), writable.errors().begin(), writable.errors().end());
   return errors;
 }
 
-void write_point(JsonWriter& json, const char* name, Vec3 p) {
+void write_point(output::JsonWriter& json, const char* name, Vec3 p) {
   json.key(name).begin_list().value(p.x * 1e3).value(p.y * 1e3).value(p.z * 1e3).end_list();
 }
 
-std::string report_json(const ImportReport& r, const ImportOutcome& outcome) {
-  JsonWriter json;
-  json.begin_object().member("mesh", r.path).member("format", r.format).member("unit", unit_name(r.unit.in_metres));
+std::string report_json(const importers::ImportReport& r, const authoring::ImportOutcome& outcome) {
+  output::JsonWriter json;
+  json.begin_object()
+      .member("mesh", r.path)
+      .member("format", r.format)
+      .member("unit", importers::unit_name(r.unit.in_metres));
   const char* sources[] = {"given", "file", "guessed"};
   json.member("unit_source", sources[int(r.unit.source)]).member("volume_ml", r.mesh_volume * 1e6);
   write_point(json, "box_least_mm", r.box_least), write_point(json, "box_most_mm", r.box_most);
@@ -87,7 +91,7 @@ std::string report_json(const ImportReport& r, const ImportOutcome& outcome) {
   json.key("spheres_per_layer").begin_list();
   for (const std::int64_t count : r.fill.spheres_per_layer) json.value(count);
   json.end_list().end_object().key("findings").begin_list();
-  for (const Finding& f : r.findings) {
+  for (const importers::Finding& f : r.findings) {
     json.begin_object().member("code", f.code).member("count", f.count);
     if (f.place) write_point(json, "place_mm", *f.place);
     json.member("found", f.found).member("done", f.done).member("remains", f.remains).end_object();
@@ -96,7 +100,7 @@ std::string report_json(const ImportReport& r, const ImportOutcome& outcome) {
 }
 
 /// Few spheres make a coarse organ; says which radius would give a livelier one.
-void suggest_radius(const ImportReport& report) {
+void suggest_radius(const importers::ImportReport& report) {
   constexpr double kFew = 200, kLively = 800;
   if (double(report.fill.spheres) >= kFew) return;
   const double radius = report.sphere_radius * 1e3 * std::cbrt(double(report.fill.spheres) / kLively);
@@ -110,13 +114,13 @@ int run_import(ImportArguments& arguments) {
   arguments.request.progress = [&](const std::string&, double fraction) {
     progress.show(std::int64_t(1000 * fraction), 1000);
   };
-  const Result<ImportOutcome> outcome = import_scene(arguments.request);
+  const Result<authoring::ImportOutcome> outcome = authoring::import_scene(arguments.request);
   if (!outcome) return print_errors(outcome.errors());
   if (!arguments.report.empty())
-    if (const Result<Done> written = write_text_file(arguments.report, report_json(outcome->report, *outcome));
+    if (const Result<Done> written = output::write_text_file(arguments.report, report_json(outcome->report, *outcome));
         !written)
       return print_errors(written.errors());
-  std::printf("%s", to_text(outcome->report).c_str());
+  std::printf("%s", importers::to_text(outcome->report).c_str());
   std::printf("anchored: %zu spheres never move\n", outcome->anchored);
   if (outcome->stiffness_scale)
     std::printf("stiffness_scale: %.6g, fitted so that the paper's ball meets its Table 1 at 12 mm\n",
@@ -157,4 +161,4 @@ Command add_import(CLI::App& program) {
   return {app, [arguments] { return run_import(*arguments); }};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

@@ -8,7 +8,7 @@
 #include "studio/commands/console.h"
 #include "studio/output/json_writer.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
 struct InfoArguments {
@@ -25,10 +25,10 @@ std::string utc(double unix_s) {
   return text;
 }
 
-void write_event(JsonWriter& json, const Event& event, const Model& model) {
-  json.begin_object().member("tick", event.tick).member("kind", name_of(event.kind));
-  for_each_value(event, [&](const char* name, const auto& value) { json.member(name, value); });
-  json.member("text", describe(event, model));
+void write_event(output::JsonWriter& json, const recordings::Event& event, const Model& model) {
+  json.begin_object().member("tick", event.tick).member("kind", recordings::name_of(event.kind));
+  recordings::for_each_value(event, [&](const char* name, const auto& value) { json.member(name, value); });
+  json.member("text", recordings::describe(event, model));
   if (!event.values.empty()) {
     json.key("values").begin_list();
     for (const double value : event.values) json.value(value);
@@ -37,21 +37,22 @@ void write_event(JsonWriter& json, const Event& event, const Model& model) {
   json.end_object();
 }
 
-void print_json(SessionReader& reader, const SessionStatistics& s, const std::vector<Event>& events) {
+void print_json(recordings::SessionReader& reader, const recordings::SessionStatistics& s,
+                const std::vector<recordings::Event>& events) {
   const Model& model = reader.start().model;
-  JsonWriter json;
+  output::JsonWriter json;
   json.begin_object().member("session_id", reader.session_id()).member("format_version", reader.format_version());
   json.member("created_utc", utc(reader.created_unix_s())).member("ended_cleanly", reader.ended_cleanly());
   const std::int32_t revision = reader.start().physics_revision;
   json.member("build", reader.start().build_fingerprint).member("physics_revision", revision);
-  json.member("physics_remark", physics_remark(revision))
+  json.member("physics_remark", recordings::physics_remark(revision))
       .member("tick_s", model.tick)
       .member("ticks", reader.tick_count());
   json.member("duration_s", double(reader.tick_count()) * model.tick).member("spheres", model.sphere_count());
   json.member("elements", model.element_count())
       .member("keyframes", s.keyframes)
       .member("severed", s.severed)
-      .member("pieces_came_loose", pieces_came_loose(events, reader.tick_count()));
+      .member("pieces_came_loose", recordings::pieces_came_loose(events, reader.tick_count()));
   json.member("late_ticks", s.late_ticks)
       .member("tick_time_p50_s", s.tick_time_p50)
       .member("tick_time_p99_s", s.tick_time_p99);
@@ -67,44 +68,46 @@ void print_json(SessionReader& reader, const SessionStatistics& s, const std::ve
   json.end_list().key("metadata").begin_object();
   for (const auto& [key, value] : reader.start().metadata) json.member(key, value);
   json.end_object().key("events").begin_list();
-  for (const Event& event : events) write_event(json, event, model);
+  for (const recordings::Event& event : events) write_event(json, event, model);
   std::fputs(json.end_list().end_object().text().c_str(), stdout);
 }
 
-std::string metadata_of(const SessionReader& reader, const char* key) {
+std::string metadata_of(const recordings::SessionReader& reader, const char* key) {
   const auto& metadata = reader.start().metadata;
   const auto it = metadata.find(key);
   return it == metadata.end() ? "" : it->second;
 }
 
-void print_origin(const SessionReader& reader) {
+void print_origin(const recordings::SessionReader& reader) {
   if (const std::string source = metadata_of(reader, "source"); !source.empty())
     std::printf("source     %s\n", source.c_str());
-  if (const std::string parent = metadata_of(reader, parent_session_key); !parent.empty())
-    std::printf("parent     %s, from tick %s on\n", parent.c_str(), metadata_of(reader, parent_tick_key).c_str());
+  if (const std::string parent = metadata_of(reader, recordings::parent_session_key); !parent.empty())
+    std::printf("parent     %s, from tick %s on\n", parent.c_str(),
+                metadata_of(reader, recordings::parent_tick_key).c_str());
 }
 
 /// The events, of late ticks only how many there are: on a busy machine they would hide the others.
-void print_events(const std::vector<Event>& events, const Model& model) {
+void print_events(const std::vector<recordings::Event>& events, const Model& model) {
   constexpr std::int64_t kMostShown = 20;
   std::int64_t count = 0;
-  for (const Event& event : events) {
-    if (event.kind == EventKind::late_tick || count++ >= kMostShown) continue;
-    std::printf("event      %8.3f s  %s: %s\n", double(event.tick) * model.tick, name_of(event.kind),
-                describe(event, model).c_str());
+  for (const recordings::Event& event : events) {
+    if (event.kind == recordings::EventKind::late_tick || count++ >= kMostShown) continue;
+    std::printf("event      %8.3f s  %s: %s\n", double(event.tick) * model.tick, recordings::name_of(event.kind),
+                recordings::describe(event, model).c_str());
   }
   if (count > kMostShown) std::printf("           and %lld more events\n", (long long)(count - kMostShown));
 }
 
-void print_physics(const SessionReader& reader) {
+void print_physics(const recordings::SessionReader& reader) {
   const std::int32_t revision = reader.start().physics_revision;
-  if (const std::string remark = physics_remark(revision); !remark.empty())
+  if (const std::string remark = recordings::physics_remark(revision); !remark.empty())
     std::printf("physics    %s\n", remark.c_str());
   else
     std::printf("physics    revision %d, as this build computes it\n", revision);
 }
 
-void print_text(SessionReader& reader, const SessionStatistics& s, const std::vector<Event>& events) {
+void print_text(recordings::SessionReader& reader, const recordings::SessionStatistics& s,
+                const std::vector<recordings::Event>& events) {
   const Model& model = reader.start().model;
   std::printf("session    %s, recorded %s%s\n", reader.session_id().c_str(), utc(reader.created_unix_s()).c_str(),
               reader.ended_cleanly() ? "" : ", without a clean end");
@@ -125,19 +128,20 @@ void print_text(SessionReader& reader, const SessionStatistics& s, const std::ve
                 s.input_age_max * 1e3);
   for (const auto& [name, value] : s.values) std::printf("value      %s = %g\n", name.c_str(), value);
   std::printf("at most    %.3f N, %.2f mm deep; %lld elements severed, %lld pieces came loose\n", s.max_force,
-              s.max_depth * 1e3, (long long)s.severed, (long long)pieces_came_loose(events, reader.tick_count()));
+              s.max_depth * 1e3, (long long)s.severed,
+              (long long)recordings::pieces_came_loose(events, reader.tick_count()));
   print_events(events, model);
 }
 
 int run_info(const InfoArguments& arguments) {
-  Result<SessionReader> reader = SessionReader::open(arguments.file);
+  Result<recordings::SessionReader> reader = recordings::SessionReader::open(arguments.file);
   if (!reader) return print_errors(reader.errors());
-  const Result<SessionStatistics> statistics = reader->statistics();
+  const Result<recordings::SessionStatistics> statistics = reader->statistics();
   if (!statistics) return print_errors(statistics.errors());
-  Result<std::vector<Event>> events = reader->events();
+  Result<std::vector<recordings::Event>> events = reader->events();
   if (!events) return print_errors(events.errors());
   // That something has ended is known, and recorded, only a while later.
-  std::ranges::stable_sort(*events, {}, &Event::tick);
+  std::ranges::stable_sort(*events, {}, &recordings::Event::tick);
   (arguments.json ? print_json : print_text)(*reader, *statistics, *events);
   return exit_good;
 }
@@ -153,4 +157,4 @@ Command add_info(CLI::App& program) {
   return {app, [arguments] { return run_info(*arguments); }};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

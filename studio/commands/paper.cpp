@@ -5,7 +5,7 @@
 #include "studio/commands/console.h"
 #include "studio/paper/paper.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
 struct PaperArguments {
@@ -13,20 +13,20 @@ struct PaperArguments {
 };
 
 int run_paper(const PaperArguments& arguments) {
-  if (const Result<Done> ready = prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
-  Result<PaperResults> results = [&] {
+  if (const Result<Done> ready = reports::prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
+  Result<paper::PaperResults> results = [&] {
     ProgressLine progress("running the paper's experiments");
-    return run_paper_experiments(arguments.scenes,
-                                 [&](std::int64_t done, std::int64_t total) { progress.show(done, total); });
+    return paper::run_paper_experiments(arguments.scenes,
+                                        [&](std::int64_t done, std::int64_t total) { progress.show(done, total); });
   }();
   if (!results) return print_errors(results.errors());
-  if (const Result<Done> written = write_paper_report(arguments.folder, *results); !written)
+  if (const Result<Done> written = paper::write_paper_report(arguments.folder, *results); !written)
     return print_errors(written.errors());
   int met = 0, missed = 0, shown = 0;
-  for (const Claim& claim : results->claims) {
-    const ReportVerdict verdict = claim.verdict();
-    ++(verdict == ReportVerdict::met ? met : verdict == ReportVerdict::missed ? missed : shown);
-    if (verdict == ReportVerdict::missed)
+  for (const paper::Claim& claim : results->claims) {
+    const reports::ReportVerdict verdict = claim.verdict();
+    ++(verdict == reports::ReportVerdict::met ? met : verdict == reports::ReportVerdict::missed ? missed : shown);
+    if (verdict == reports::ReportVerdict::missed)
       std::printf("missed: %s, %s %s %s: %s\n", claim.experiment.c_str(), claim.organ.c_str(), claim.structure.c_str(),
                   claim.viscosity.c_str(), claim.quantity.c_str());
   }
@@ -50,4 +50,4 @@ Command add_paper(CLI::App& program) {
   return {app, [arguments] { return run_paper(*arguments); }};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

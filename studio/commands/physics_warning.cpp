@@ -2,11 +2,11 @@
 
 #include "studio/commands/console.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 
-void warn_of_physics(const SessionReader& session) {
-  const std::string remark = physics_remark(session.start().physics_revision);
+void warn_of_physics(const recordings::SessionReader& session) {
+  const std::string remark = recordings::physics_remark(session.start().physics_revision);
   if (!remark.empty()) print_remark(session.path() + ": warning: " + remark);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

@@ -2,10 +2,10 @@
 
 #include "recordings/session_reader.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 
 /// Warns on stderr, before anything is simulated, that this build computes another physics revision than recorded
 /// `session`; silent if it computes the same.
-void warn_of_physics(const SessionReader& session);
+void warn_of_physics(const recordings::SessionReader& session);
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

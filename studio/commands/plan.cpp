@@ -11,13 +11,13 @@
 #include "studio/loading/loaded_scene.h"
 #include "studio/output/json_writer.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
 struct PlanArguments {
   std::string scene;
   bool json = false;
-  LoadOptions load;
+  scenes::LoadOptions load;
 };
 
 /// One thing that a scene may need.
@@ -47,7 +47,7 @@ std::size_t bytes_of_fields(const Owner& owner, std::string_view prefix) {
   return bytes;
 }
 
-std::vector<Feature> features_of(const SceneSpec& scene, const Model& m, const State& s) {
+std::vector<Feature> features_of(const scenes::SceneSpec& scene, const Model& m, const State& s) {
   const auto has_tool = [&](ToolKind kind) {
     return std::any_of(m.tools.begin(), m.tools.end(), [&](const Tool& tool) { return tool.kind == kind; });
   };
@@ -55,7 +55,7 @@ std::vector<Feature> features_of(const SceneSpec& scene, const Model& m, const S
     return count > 0 ? std::to_string(count) + " " + what : std::string(none);
   };
   const bool cuts = has_tool(ToolKind::scalpel);
-  const bool limits = std::any_of(scene.organs.begin(), scene.organs.end(), [](const OrganSpec& organ) {
+  const bool limits = std::any_of(scene.organs.begin(), scene.organs.end(), [](const scenes::OrganSpec& organ) {
     return organ.damage_depth > 0 || organ.damage_force > 0;
   });
   const AxialElements& axial = m.axial;
@@ -97,7 +97,7 @@ std::vector<Feature> features_of(const SceneSpec& scene, const Model& m, const S
 double measure_tick(const Model& model) {
   constexpr int kWarmUp = 20, kMeasured = 41;
   State state = rest_state(model);
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   std::vector<double> times;
   for (int i = 0; i < kWarmUp + kMeasured; ++i) {
     const auto start = std::chrono::steady_clock::now();
@@ -109,8 +109,8 @@ double measure_tick(const Model& model) {
 }
 
 /// How a tick is solved, in words.
-std::string solver_of(const Model& model, const IntegratorChoice& choice) {
-  std::string words = name_of(choice.integrator);
+std::string solver_of(const Model& model, const stepping::IntegratorChoice& choice) {
+  std::string words = stepping::name_of(choice.integrator);
   if (choice.substeps > 1) words += ", " + std::to_string(choice.substeps) + " substeps a tick";
   if (choice.integrator == Integrator::leapfrog) return words;
   char limits[96];
@@ -120,7 +120,7 @@ std::string solver_of(const Model& model, const IntegratorChoice& choice) {
 }
 
 int run_plan(const PlanArguments& arguments) {
-  const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
+  const Result<loading::LoadedScene> scene = loading::load_whole_scene(arguments.scene, arguments.load);
   if (!scene) return print_errors(scene.errors());
   print_warnings(scene->scene.warnings);
   const Model& model = scene->built.model;
@@ -128,10 +128,10 @@ int run_plan(const PlanArguments& arguments) {
   std::size_t total = 0;
   for (const Feature& feature : features) total += feature.is_in ? feature.bytes : 0;
   const double tick = measure_tick(model);
-  const IntegratorChoice& choice = scene->built.integrator;
+  const stepping::IntegratorChoice& choice = scene->built.integrator;
   const std::string solver = solver_of(model, choice);
   if (arguments.json) {
-    JsonWriter json;
+    output::JsonWriter json;
     json.begin_object().member("scene", arguments.scene).member("spheres", model.sphere_count());
     json.member("elements", model.element_count()).member("memory_bytes", total).member("tick_s", model.tick);
     json.member("measured_tick_time_s", tick)
@@ -178,4 +178,4 @@ Command add_plan(CLI::App& program) {
   return {app, [arguments] { return run_plan(*arguments); }};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

@@ -13,39 +13,41 @@
 #include "studio/views/look.h"
 #include "studio/views/view_of_scene.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
 struct PreviewArguments {
   std::string scene, output, size = "1280x720";
   bool spheres = false;
-  LookRequest look;
-  LoadOptions load;
+  views::LookRequest look;
+  scenes::LoadOptions load;
 };
 
 int run_preview(const PreviewArguments& arguments) {
-  const Result<PictureSize> size = parse_picture_size(arguments.size);
+  const Result<render::PictureSize> size = render::parse_picture_size(arguments.size);
   if (!size) return print_errors(size.errors());
-  if (const Result<Done> writable = check_writable(arguments.output); !writable) return print_errors(writable.errors());
-  const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
+  if (const Result<Done> writable = output::check_writable(arguments.output); !writable)
+    return print_errors(writable.errors());
+  const Result<loading::LoadedScene> scene = loading::load_whole_scene(arguments.scene, arguments.load);
   if (!scene) return print_errors(scene.errors());
   print_warnings(scene->scene.warnings);
   // With --spheres the surface stands on the left half and the layered spheres on the right.
   const int width = arguments.spheres ? size->width / 2 : size->width;
   const Model& model = scene->built.model;
-  SceneView view = view_of(scene->scene.spec, model, surfaces_of(scene->organs));
-  const Result<Look> look = find_look(arguments.look, scene->scene.spec, view, double(width) / size->height);
+  render::SceneView view = views::view_of(scene->scene.spec, model, loading::surfaces_of(scene->organs));
+  const Result<views::Look> look =
+      views::find_look(arguments.look, scene->scene.spec, view, double(width) / size->height);
   if (!look) return print_errors(look.errors());
-  Result<std::unique_ptr<Renderer>> renderer = Renderer::create(width, size->height, std::move(view));
+  Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(width, size->height, std::move(view));
   if (!renderer) return print_errors(renderer.errors());
   const State state = rest_state(model);
-  DrawOptions options = look->at((*renderer)->scene(), {&state.last_inputs, 1});
-  Frame picture = (*renderer)->draw(state, options);
+  render::DrawOptions options = look->at((*renderer)->scene(), {&state.last_inputs, 1});
+  render::Frame picture = (*renderer)->draw(state, options);
   if (arguments.spheres) {
-    options.view = View::spheres;
-    picture = join_beside(picture, (*renderer)->draw(state, options));
+    options.view = render::View::spheres;
+    picture = render::join_beside(picture, (*renderer)->draw(state, options));
   }
-  if (const Result<Done> written = write_png(arguments.output, picture); !written)
+  if (const Result<Done> written = render::write_png(arguments.output, picture); !written)
     return print_errors(written.errors());
   std::printf("%s: %dx%d\n", arguments.output.c_str(), picture.width, picture.height);
   return exit_good;
@@ -67,4 +69,4 @@ Command add_preview(CLI::App& program) {
   return {app, [arguments] { return run_preview(*arguments); }};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

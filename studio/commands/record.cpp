@@ -13,7 +13,7 @@
 #include "studio/output/files.h"
 #include "studio/session/record_session.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
 struct RecordArguments {
@@ -22,7 +22,7 @@ struct RecordArguments {
   SourceRequest source;
   double duration_s = 0;
   bool overwrite = false, as_fast_as_possible = false;
-  LoadOptions load;
+  scenes::LoadOptions load;
   int threads = 0;  ///< 0: as many as pay
 };
 
@@ -40,11 +40,11 @@ Errors check(const RecordArguments& arguments) {
   if (count_of(arguments.source) > 1) errors.push_back({"record", "takes one of " + sources, ""});
   if (!arguments.parent.empty() && count_of(arguments.source) == 0)
     errors.push_back({"--continue", "needs a source: one of " + sources, ""});
-  if (arguments.as_fast_as_possible && asks_for_device(arguments.source.device))
+  if (arguments.as_fast_as_possible && devices::asks_for_device(arguments.source.device))
     errors.push_back({"--fast", "a device is followed in real time", ""});
-  for (Error& error : check_device(arguments.source.device)) errors.push_back(std::move(error));
+  for (Error& error : devices::check_device(arguments.source.device)) errors.push_back(std::move(error));
   std::error_code ignored;
-  if (const Result<Done> writable = check_writable(arguments.output); !writable)
+  if (const Result<Done> writable = output::check_writable(arguments.output); !writable)
     errors.insert(errors.end(), writable.errors().begin(), writable.errors().end());
   else if (!arguments.overwrite && std::filesystem::exists(arguments.output, ignored))
     errors.push_back({arguments.output, "exists already", "--overwrite replaces it"});
@@ -53,47 +53,47 @@ Errors check(const RecordArguments& arguments) {
 
 /// A session's start, and the source that a user who names none gets: a press and a cut at the organ's top.
 struct Beginning {
-  SessionStart start;
-  std::optional<Script> script;
+  recordings::SessionStart start;
+  std::optional<scenes::Script> script;
 };
 
 /// What is wrong with the script, if one is given, for a scene that cannot be built: its errors are told together with
 /// those of the scene.
 Errors errors_of_script(const RecordArguments& arguments) {
   if (arguments.source.script.empty()) return {};
-  const Result<SceneDraft> draft = load_draft(arguments.scene, arguments.load);
-  const Result<std::string> text = read_text_file(arguments.source.script);
+  const Result<scenes::SceneDraft> draft = scenes::load_draft(arguments.scene, arguments.load);
+  const Result<std::string> text = output::read_text_file(arguments.source.script);
   if (!text) return text.errors();
   if (!draft || !draft->problems.is_good("/tools")) return {};
   std::vector<std::string> tools;
-  for (const ToolSpec& tool : draft->scene.spec.tools) tools.push_back(tool.name);
-  const Result<Script> script = read_script(*text, arguments.source.script, tools);
+  for (const scenes::ToolSpec& tool : draft->scene.spec.tools) tools.push_back(tool.name);
+  const Result<scenes::Script> script = scenes::read_script(*text, arguments.source.script, tools);
   return script ? Errors{} : script.errors();
 }
 
 Result<Beginning> begin(const RecordArguments& arguments) {
   Beginning beginning;
   if (!arguments.parent.empty()) {
-    Result<SessionStart> start = continue_session_at(arguments.parent, *arguments.at_s);
+    Result<recordings::SessionStart> start = session::continue_session_at(arguments.parent, *arguments.at_s);
     if (!start) return start.errors();
     beginning.start = std::move(*start);
     return beginning;
   }
-  const Result<LoadedScene> scene = load_whole_scene(arguments.scene, arguments.load);
+  const Result<loading::LoadedScene> scene = loading::load_whole_scene(arguments.scene, arguments.load);
   if (!scene) {
     Errors errors = scene.errors();
     for (Error& error : errors_of_script(arguments)) errors.push_back(std::move(error));
     return errors;
   }
   print_warnings(scene->scene.warnings);
-  beginning.start = start_session(*scene);
-  if (count_of(arguments.source) == 0) beginning.script = default_script(scene->scene.spec, scene->organs);
+  beginning.start = session::start_session(*scene);
+  if (count_of(arguments.source) == 0) beginning.script = scenes::default_script(scene->scene.spec, scene->organs);
   return beginning;
 }
 
-int print_outcome(const std::string& path, const Model& model, const RecordOutcome& outcome) {
-  const SessionStatistics& s = outcome.statistics;
-  const bool was_refused = is_refused(outcome.run.status);
+int print_outcome(const std::string& path, const Model& model, const session::RecordOutcome& outcome) {
+  const recordings::SessionStatistics& s = outcome.statistics;
+  const bool was_refused = stepping::is_refused(outcome.run.status);
   if (was_refused)
     print_remark(path + ": error: the simulation was refused at tick " + std::to_string(outcome.run.ticks) +
                  ", sphere " + std::to_string(outcome.run.worst_sphere) + "; what came before is saved");
@@ -113,12 +113,12 @@ int run_record(const RecordArguments& arguments) {
   const StopSignal stop;
   const auto should_stop = [&] { return stop.came(); };
   // First of all, so that a port that is in use is told at once, and a device finds somebody to talk to.
-  Result<OpenedDevice> device = open_device(arguments.source.device);
+  Result<devices::OpenedDevice> device = devices::open_device(arguments.source.device);
   if (!device) return print_errors(device.errors());
   const std::string place = device->place;
   Result<Beginning> beginning = begin(arguments);
   if (!beginning) return print_errors(beginning.errors());
-  SessionStart& start = beginning->start;
+  recordings::SessionStart& start = beginning->start;
   const Result<ReadySource> opened = open_source(arguments.source, std::move(*device), start.model, beginning->script);
   if (!opened) return print_errors(opened.errors());
   for (const auto& [key, value] : opened->metadata) start.metadata[key] = value;
@@ -128,15 +128,15 @@ int run_record(const RecordArguments& arguments) {
       return print_errors({{place, "stopped before a pose came; nothing was recorded", ""}});
   }
 
-  RunOptions options;
+  session::RunOptions options;
   options.in_real_time = !arguments.as_fast_as_possible;
   options.most_ticks = std::llround(arguments.duration_s / start.model.tick);
   options.should_stop = should_stop;
-  options.threads = arguments.threads > 0 ? arguments.threads : threads_for(start.model);
-  const Result<RecordOutcome> outcome = [&] {
+  options.threads = arguments.threads > 0 ? arguments.threads : session::threads_for(start.model);
+  const Result<session::RecordOutcome> outcome = [&] {
     ProgressLine progress("recording");
     options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
-    return record_session(start, *opened->source, arguments.output, arguments.overwrite, options);
+    return session::record_session(start, *opened->source, arguments.output, arguments.overwrite, options);
   }();
   if (!outcome) return print_errors(outcome.errors());
   return print_outcome(arguments.output, start.model, *outcome);
@@ -167,4 +167,4 @@ Command add_record(CLI::App& program) {
   return {app, [arguments] { return run_record(*arguments); }};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

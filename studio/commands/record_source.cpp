@@ -5,10 +5,10 @@
 #include "studio/commands/console.h"
 #include "studio/sources/open_file.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
-void add_device_options(CLI::App& app, DeviceRequest& device) {
+void add_device_options(CLI::App& app, devices::DeviceRequest& device) {
   const auto add = [&](const char* name, auto& value, const char* what) {
     return app.add_option(name, value, what)->group("Devices (studio/devices/README.md)");
   };
@@ -51,21 +51,21 @@ int count_of(const SourceRequest& request) {
          int(request.device.listen_port.has_value());
 }
 
-Result<ReadySource> open_source(const SourceRequest& request, OpenedDevice device, const Model& model,
-                                const std::optional<Script>& otherwise) {
+Result<ReadySource> open_source(const SourceRequest& request, devices::OpenedDevice device, const Model& model,
+                                const std::optional<scenes::Script>& otherwise) {
   if (device.device) {
-    Result<FollowedDevice> followed = follow_device(request.device, std::move(device.device), model);
+    Result<devices::FollowedDevice> followed = devices::follow_device(request.device, std::move(device.device), model);
     if (!followed) return followed.errors();
-    DeviceSource* source = followed->source.get();
+    devices::DeviceSource* source = followed->source.get();
     return ReadySource{std::move(followed->source), source, std::move(followed->metadata)};
   }
   if (otherwise) print_remark("no source is given: pressing and cutting at the top of the first organ");
-  Result<OpenedSource> opened = otherwise                ? play_script(*otherwise, model)
-                                : request.script.empty() ? open_motion(request.motion, model)
-                                                         : open_script(request.script, model);
+  Result<sources::OpenedSource> opened = otherwise                ? sources::play_script(*otherwise, model)
+                                         : request.script.empty() ? sources::open_motion(request.motion, model)
+                                                                  : sources::open_script(request.script, model);
   if (!opened) return opened.errors();
   for (const std::string& remark : opened->remarks) print_remark(remark);
   return ReadySource{std::move(opened->source), nullptr, std::move(opened->metadata)};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

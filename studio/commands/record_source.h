@@ -12,13 +12,13 @@
 #include "studio/devices/open_device.h"
 #include "studio/sources/input_source.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 
 /// The source that a user asks for: at most one of script, motion and device is set.
 struct SourceRequest {
   std::string script;  ///< file of a script
   std::string motion;  ///< file of a motion
-  DeviceRequest device;
+  devices::DeviceRequest device;
 };
 
 /// The flags of the sources, for messages.
@@ -32,14 +32,14 @@ int count_of(const SourceRequest& request);
 
 /// A source that is ready for a session.
 struct ReadySource {
-  std::unique_ptr<InputSource> source;
-  DeviceSource* device = nullptr;               ///< the source, if it is a device
+  std::unique_ptr<sources::InputSource> source;
+  devices::DeviceSource* device = nullptr;      ///< the source, if it is a device
   std::map<std::string, std::string> metadata;  ///< what the session stores about its source
 };
 
 /// Opens the one source that is asked for, or plays `otherwise` if none is. `device` is what open_device() gave. Prints
 /// remarks. Errors: those of the source's file, with places; tools that the scene does not have.
-Result<ReadySource> open_source(const SourceRequest& request, OpenedDevice device, const Model& model,
-                                const std::optional<Script>& otherwise);
+Result<ReadySource> open_source(const SourceRequest& request, devices::OpenedDevice device, const Model& model,
+                                const std::optional<scenes::Script>& otherwise);
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

@@ -5,7 +5,7 @@
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
 struct RecoverArguments {
@@ -13,13 +13,13 @@ struct RecoverArguments {
 };
 
 int run_recover(const RecoverArguments& arguments) {
-  const Result<RecoverReport> report = recover_session(arguments.in, arguments.out);
+  const Result<recordings::RecoverReport> report = recordings::recover_session(arguments.in, arguments.out);
   if (!report) return print_errors(report.errors());
   std::printf("%s: %lld ticks, %lld keyframes, %lld events saved\n", arguments.out.c_str(),
               (long long)report->ticks_saved, (long long)report->keyframes_saved, (long long)report->events_saved);
   for (const std::string& repair : report->repairs) std::printf("mended: %s\n", repair.c_str());
   for (const std::string& loss : report->losses) std::printf("lost: %s\n", loss.c_str());
-  std::printf("%s\n", to_string(report->verdict).c_str());
+  std::printf("%s\n", recordings::to_string(report->verdict).c_str());
   if (!report->verdict.same) return exit_bad_verdict;
   return report->complete ? exit_good : exit_partly_recovered;
 }
@@ -36,4 +36,4 @@ Command add_recover(CLI::App& program) {
   return {app, [arguments] { return run_recover(*arguments); }};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

@@ -12,12 +12,12 @@
 #include "studio/output/files.h"
 #include "studio/session/time_range.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
 struct ReplayArguments {
   std::string file, csv;
-  TimeRange range;
+  session::TimeRange range;
 };
 
 std::string csv_header() {
@@ -25,9 +25,9 @@ std::string csv_header() {
          "force_x_n,force_y_n,force_z_n,force_n,depth_mm,contacts,severed,same_as_recorded\n";
 }
 
-std::string csv_row(const Model& model, const ReplayCursor& cursor) {
-  const TickRecord& record = cursor.record();
-  const StepReport& report = cursor.report();
+std::string csv_row(const Model& model, const recordings::ReplayCursor& cursor) {
+  const recordings::TickRecord& record = cursor.record();
+  const stepping::StepReport& report = cursor.report();
   const Inputs& in = record.inputs;
   const std::string tool = in.tool >= 0 ? model.tools[std::size_t(in.tool)].name : "";
   const Vec3 p = in.position, f = report.tool_force;
@@ -42,16 +42,17 @@ std::string csv_row(const Model& model, const ReplayCursor& cursor) {
 }
 
 int run_replay(const ReplayArguments& arguments) {
-  Result<SessionReader> reader = SessionReader::open(arguments.file);
+  Result<recordings::SessionReader> reader = recordings::SessionReader::open(arguments.file);
   if (!reader) return print_errors(reader.errors());
   const Model& model = reader->start().model;
-  const Result<TickRange> range = arguments.range.in_ticks(arguments.file, model.tick, reader->tick_count());
+  const Result<session::TickRange> range = arguments.range.in_ticks(arguments.file, model.tick, reader->tick_count());
   if (!range) return print_errors(range.errors());
   if (!arguments.csv.empty())
-    if (const Result<Done> writable = check_writable(arguments.csv); !writable) return print_errors(writable.errors());
+    if (const Result<Done> writable = output::check_writable(arguments.csv); !writable)
+      return print_errors(writable.errors());
 
   warn_of_physics(*reader);
-  Result<ReplayCursor> cursor = ReplayCursor::create(*reader);
+  Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(*reader);
   if (!cursor) return print_errors(cursor.errors());
   if (const Result<Done> found = cursor->seek(range->from); !found) return print_errors(found.errors());
   ProgressLine progress("replaying");
@@ -66,7 +67,7 @@ int run_replay(const ReplayArguments& arguments) {
     progress.show(cursor->tick() - range->from, range->to - range->from);
   }
   if (!arguments.csv.empty())
-    if (const Result<Done> written = write_text_file(arguments.csv, rows); !written)
+    if (const Result<Done> written = output::write_text_file(arguments.csv, rows); !written)
       return print_errors(written.errors());
   std::printf("%s: %lld ticks replayed, at most %.3f N and %.2f mm deep, %s%s%s\n", arguments.file.c_str(),
               (long long)(range->to - range->from), most_force, most_depth * 1e3,
@@ -88,4 +89,4 @@ Command add_replay(CLI::App& program) {
   return {app, [arguments] { return run_replay(*arguments); }};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

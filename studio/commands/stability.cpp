@@ -7,7 +7,7 @@
 #include "studio/reports/report.h"
 #include "studio/stability/stability.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
 struct StabilityArguments {
@@ -17,12 +17,13 @@ struct StabilityArguments {
 };
 
 /// The cases whose keys are asked for; all if none are. Errors: keys that no case has.
-Result<std::vector<StabilityCase>> chosen_cases(const StabilityArguments& arguments) {
-  std::vector<StabilityCase> all = stability_cases(arguments.is_quick), chosen;
+Result<std::vector<stability::StabilityCase>> chosen_cases(const StabilityArguments& arguments) {
+  std::vector<stability::StabilityCase> all = stability::stability_cases(arguments.is_quick), chosen;
   if (arguments.keys.empty()) return all;
   Errors errors;
   for (const std::string& key : arguments.keys) {
-    const auto it = std::find_if(all.begin(), all.end(), [&](const StabilityCase& c) { return c.key == key; });
+    const auto it =
+        std::find_if(all.begin(), all.end(), [&](const stability::StabilityCase& c) { return c.key == key; });
     if (it != all.end())
       chosen.push_back(*it);
     else
@@ -32,32 +33,34 @@ Result<std::vector<StabilityCase>> chosen_cases(const StabilityArguments& argume
   return chosen;
 }
 
-void print_runs(const std::vector<StabilityRow>& rows) {
+void print_runs(const std::vector<stability::StabilityRow>& rows) {
   std::int64_t counts[4] = {0, 0, 0, 0};
-  for (const StabilityRow& row : rows)
-    for (const StabilityRun& run : row.runs) {
+  for (const stability::StabilityRow& row : rows)
+    for (const stability::StabilityRun& run : row.runs) {
       ++counts[int(run.verdict)];
-      if (run.verdict == ReportVerdict::missed)
-        std::printf("missed: %s under %s: %s\n", row.what->title.c_str(), name_of(run.asked), run.reason.c_str());
+      if (run.verdict == reports::ReportVerdict::missed)
+        std::printf("missed: %s under %s: %s\n", row.what->title.c_str(), stepping::name_of(run.asked),
+                    run.reason.c_str());
     }
   std::printf("%zu cases, %zu integrators: %lld runs hold, %lld were refused beforehand, %lld fail\n", rows.size(),
-              std::size(kStabilityIntegrators), (long long)counts[int(ReportVerdict::met)],
-              (long long)counts[int(ReportVerdict::refused)], (long long)counts[int(ReportVerdict::missed)]);
+              std::size(stability::kStabilityIntegrators), (long long)counts[int(reports::ReportVerdict::met)],
+              (long long)counts[int(reports::ReportVerdict::refused)],
+              (long long)counts[int(reports::ReportVerdict::missed)]);
 }
 
 int run_stability_command(const StabilityArguments& arguments) {
-  const Result<std::vector<StabilityCase>> cases = chosen_cases(arguments);
+  const Result<std::vector<stability::StabilityCase>> cases = chosen_cases(arguments);
   if (!cases) return print_errors(cases.errors());
-  if (const Result<Done> ready = prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
-  const std::vector<StabilityRow> rows = [&] {
+  if (const Result<Done> ready = reports::prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
+  const std::vector<stability::StabilityRow> rows = [&] {
     ProgressLine progress("running the stability cases");
-    return run_stability(*cases, [&](std::int64_t done, std::int64_t total) { progress.show(done, total); });
+    return stability::run_stability(*cases, [&](std::int64_t done, std::int64_t total) { progress.show(done, total); });
   }();
-  if (const Result<Done> written = write_stability_report(arguments.folder, rows); !written)
+  if (const Result<Done> written = stability::write_stability_report(arguments.folder, rows); !written)
     return print_errors(written.errors());
   print_runs(rows);
   std::printf("written: %s/report.html, results.json, results.csv\n", arguments.folder.c_str());
-  return count_failures(rows) == 0 ? exit_good : exit_bad_verdict;
+  return stability::count_failures(rows) == 0 ? exit_good : exit_bad_verdict;
 }
 
 }  // namespace
@@ -77,4 +80,4 @@ Command add_stability(CLI::App& program) {
   return {app, [arguments] { return run_stability_command(*arguments); }};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

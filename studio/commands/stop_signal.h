@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-namespace ctpm {
+namespace ctpm::commands {
 
 /// While it lives, Ctrl-C and SIGTERM ask for an orderly end instead of killing the program.
 class StopSignal {
@@ -32,4 +32,4 @@ class StopSignal {
   struct sigaction before_[2];
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

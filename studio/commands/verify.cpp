@@ -9,7 +9,7 @@
 #include "studio/commands/physics_warning.h"
 #include "studio/version/version.h"
 
-namespace ctpm {
+namespace ctpm::commands {
 namespace {
 
 struct VerifyArguments {
@@ -18,28 +18,28 @@ struct VerifyArguments {
 };
 
 /// Prints the verdict; where it is bad, who recorded and who replayed.
-void print_verdict(const SessionReader& session, const Verdict& verdict, double seconds) {
+void print_verdict(const recordings::SessionReader& session, const recordings::Verdict& verdict, double seconds) {
   const double lived = double(verdict.ticks_compared) * session.start().model.tick;
-  std::printf("%s: %s; %.1f times as fast as it was lived\n", session.path().c_str(), to_string(verdict).c_str(),
-              lived / std::max(seconds, 1e-9));
+  std::printf("%s: %s; %.1f times as fast as it was lived\n", session.path().c_str(),
+              recordings::to_string(verdict).c_str(), lived / std::max(seconds, 1e-9));
   if (verdict.same) return;
   std::printf("recorded by: %s\nreplayed by: %s\n", session.start().build_fingerprint.c_str(),
-              build_fingerprint().c_str());
+              version::build_fingerprint().c_str());
   print_remark("builds of one physics revision replay each other's sessions to the bit; builds of two need not");
 }
 
 int run_verify(const VerifyArguments& arguments) {
-  Result<SessionReader> reader = SessionReader::open(arguments.file);
+  Result<recordings::SessionReader> reader = recordings::SessionReader::open(arguments.file);
   if (!reader) return print_errors(reader.errors());
   if (!reader->ended_cleanly())
     print_remark(arguments.file + ": warning: the session has no clean end; what is there is verified");
   warn_of_physics(*reader);
-  VerifyOptions options;
+  recordings::VerifyOptions options;
   options.threads = arguments.threads;
   ProgressLine progress("verifying");
   options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
   const auto start = std::chrono::steady_clock::now();
-  const Result<Verdict> verdict = verify_session(*reader, options);
+  const Result<recordings::Verdict> verdict = recordings::verify_session(*reader, options);
   if (!verdict) return print_errors(verdict.errors());
   print_verdict(*reader, *verdict, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return verdict->same ? exit_good : exit_bad_verdict;
@@ -57,4 +57,4 @@ Command add_verify(CLI::App& program) {
   return {app, [arguments] { return run_verify(*arguments); }};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::commands

@@ -6,7 +6,7 @@
 
 #include "core/model/result.h"
 
-namespace ctpm {
+namespace ctpm::compare {
 namespace {
 
 /// Where the best way to a pair comes from.
@@ -73,4 +73,4 @@ Alignment align_paths(std::span<const Vec3> a, std::span<const Vec3> b, double b
   return alignment;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::compare

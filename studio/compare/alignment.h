@@ -6,7 +6,7 @@
 
 #include "core/model/vec3.h"
 
-namespace ctpm {
+namespace ctpm::compare {
 
 /// Points of two paths that belong together once differences of pace are taken out.
 struct AlignedPair {
@@ -29,4 +29,4 @@ inline constexpr double kAlignmentBand = 0.25;
 /// short. Neither path may be empty. Time and memory grow with the band's share of a.size() * b.size().
 Alignment align_paths(std::span<const Vec3> a, std::span<const Vec3> b, double band = kAlignmentBand);
 
-}  // namespace ctpm
+}  // namespace ctpm::compare

@@ -5,7 +5,7 @@
 
 #include "studio/compare/moments.h"
 
-namespace ctpm {
+namespace ctpm::compare {
 namespace {
 
 constexpr double kMillimetres = 1e3;
@@ -276,7 +276,7 @@ void add_depth(Comparison& comparison, const SessionTrack& expert, const Session
 }
 
 void add_cut(Comparison& comparison, const SessionTrack& expert, const SessionTrack& trainee,
-             const SessionStart& scene) {
+             const recordings::SessionStart& scene) {
   if (expert.cuts.empty() && trainee.cuts.empty()) return;
   double both = 0, expert_only = 0, trainee_only = 0;
   for (std::size_t i = 0; i < expert.severed_at.size(); ++i) {
@@ -322,8 +322,8 @@ const char* to_word(Direction direction) {
   return direction == lower ? "lower" : direction == higher ? "higher" : "as the expert";
 }
 
-Comparison compare_sessions(const SessionTrack& expert, const SessionTrack& trainee, const SessionStart& scene,
-                            const CompareOptions& options) {
+Comparison compare_sessions(const SessionTrack& expert, const SessionTrack& trainee,
+                            const recordings::SessionStart& scene, const CompareOptions& options) {
   Comparison comparison;
   set_force_limit(comparison, expert, options);
   for (const OrganRange& organ : scene.model.organs) {
@@ -346,4 +346,4 @@ Comparison compare_sessions(const SessionTrack& expert, const SessionTrack& trai
   return comparison;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::compare

@@ -8,7 +8,7 @@
 #include "studio/compare/alignment.h"
 #include "studio/compare/session_track.h"
 
-namespace ctpm {
+namespace ctpm::compare {
 
 /// Which of two values of a measure speaks for more skill.
 enum class Direction {
@@ -71,7 +71,7 @@ struct Comparison {
 };
 
 /// Measures a trainee's session against an expert's of the same scene (check_same_scene).
-Comparison compare_sessions(const SessionTrack& expert, const SessionTrack& trainee, const SessionStart& scene,
-                            const CompareOptions& options = {});
+Comparison compare_sessions(const SessionTrack& expert, const SessionTrack& trainee,
+                            const recordings::SessionStart& scene, const CompareOptions& options = {});
 
-}  // namespace ctpm
+}  // namespace ctpm::compare

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ctpm {
+namespace ctpm::compare {
 namespace {
 
 constexpr double kHandRate = 100;    // [Hz]
@@ -148,4 +148,4 @@ std::vector<Moment> worst_moments(const Comparison& comparison, const SessionTra
   return moments;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::compare

@@ -4,7 +4,7 @@
 
 #include "studio/compare/measures.h"
 
-namespace ctpm {
+namespace ctpm::compare {
 
 /// The motion of one stroke at the pace of a hand: places at 100 Hz, each the mean of its ticks, since what a
 /// hand does is slower than 20 Hz and what is faster is noise of a device.
@@ -23,4 +23,4 @@ HandMotion hand_motion(const SessionTrack& track, const Spell& stroke);
 std::vector<Moment> worst_moments(const Comparison& comparison, const SessionTrack& expert,
                                   const SessionTrack& trainee);
 
-}  // namespace ctpm
+}  // namespace ctpm::compare

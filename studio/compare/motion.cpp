@@ -6,7 +6,7 @@
 
 #include "core/model/result.h"
 
-namespace ctpm {
+namespace ctpm::compare {
 namespace {
 
 /// Amplitudes of `signal`, padded with zeros to `size`, at frequencies 0, 1, ..., `count` - 1 over `size`.
@@ -103,4 +103,4 @@ std::vector<Spell> spells_of(const std::vector<bool>& holds, std::size_t least, 
   return runs;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::compare

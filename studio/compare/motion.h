@@ -7,7 +7,7 @@
 
 #include "core/model/vec3.h"
 
-namespace ctpm {
+namespace ctpm::compare {
 
 /// The mean of each `count` neighbours, >= 1; what is left over at the end is dropped.
 std::vector<Vec3> mean_of_each(std::span<const Vec3> path, std::size_t count);
@@ -49,4 +49,4 @@ struct Spell {
 /// between them are one.
 std::vector<Spell> spells_of(const std::vector<bool>& holds, std::size_t least, std::size_t least_gap = 1);
 
-}  // namespace ctpm
+}  // namespace ctpm::compare

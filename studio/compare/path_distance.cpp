@@ -5,7 +5,7 @@
 
 #include "core/model/result.h"
 
-namespace ctpm {
+namespace ctpm::compare {
 namespace {
 
 double distance_from_segment(Vec3 point, Vec3 a, Vec3 b) {
@@ -60,4 +60,4 @@ PathDistance distance_between(std::span<const Path> a, std::span<const Path> b, 
   return {(there.sum + back.sum) / double(there.count + back.count), std::max(there.largest, back.largest)};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::compare

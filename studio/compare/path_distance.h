@@ -5,7 +5,7 @@
 
 #include "core/model/vec3.h"
 
-namespace ctpm {
+namespace ctpm::compare {
 
 /// A line through points.
 using Path = std::vector<Vec3>;
@@ -26,4 +26,4 @@ struct PathDistance {
 /// average symmetric distance: Heimann et al. 2009.
 PathDistance distance_between(std::span<const Path> a, std::span<const Path> b, double spacing);
 
-}  // namespace ctpm
+}  // namespace ctpm::compare

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-namespace ctpm {
+namespace ctpm::compare {
 namespace {
 
 constexpr double kMillimetres = 1e3;
@@ -14,9 +14,9 @@ constexpr int kPlaneWidth = 520, kPlaneHeight = 400;
 constexpr double kPlaneAspect = double(kPlaneWidth - 76) / (kPlaneHeight - 76);  // of what lies within the axes
 
 /// The largest of each run of values, so that no peak is lost, over time.
-Series curve(const std::string& name, const SessionTrack& track, const std::vector<double>& value, double scale,
-             int colour) {
-  Series series{.name = name, .colour = colour};
+reports::Series curve(const std::string& name, const SessionTrack& track, const std::vector<double>& value,
+                      double scale, int colour) {
+  reports::Series series{.name = name, .colour = colour};
   const std::size_t step = std::max<std::size_t>(1, value.size() / kCurvePoints);
   for (std::size_t i = 0; i < value.size(); i += step) {
     const auto first = value.begin() + std::ptrdiff_t(i);
@@ -26,8 +26,9 @@ Series curve(const std::string& name, const SessionTrack& track, const std::vect
   return series;
 }
 
-Series level(const std::string& name, double from, double to, double value) {
-  return {.name = name, .x = {from, to}, .y = {value, value}, .stroke = Stroke::dashed, .colour = kNeutralColour};
+reports::Series level(const std::string& name, double from, double to, double value) {
+  return {
+      .name = name, .x = {from, to}, .y = {value, value}, .stroke = reports::Stroke::dashed, .colour = kNeutralColour};
 }
 
 /// A plane through the scene: from above, or from the side with z up.
@@ -41,18 +42,18 @@ struct Plane {
 constexpr Plane kPlanes[]{{"from above", "x [mm]", "y [mm]", &Vec3::x, &Vec3::y},
                           {"from the side", "x [mm]", "z [mm]", &Vec3::x, &Vec3::z}};
 
-Series in_plane(const std::string& name, const std::vector<Vec3>& points, const Plane& plane, Stroke stroke,
-                int colour) {
-  Series series{.name = name, .stroke = stroke, .colour = colour};
+reports::Series in_plane(const std::string& name, const std::vector<Vec3>& points, const Plane& plane,
+                         reports::Stroke stroke, int colour) {
+  reports::Series series{.name = name, .stroke = stroke, .colour = colour};
   for (const Vec3& p : points)
     series.x.push_back(kMillimetres * p.*plane.x), series.y.push_back(kMillimetres * p.*plane.y);
   return series;
 }
 
 /// Ranges that show all points with the same scale along both axes.
-void set_equal_scales(Plot& plot) {
+void set_equal_scales(reports::Plot& plot) {
   double low[2]{INFINITY, INFINITY}, high[2]{-INFINITY, -INFINITY};
-  for (const Series& s : plot.series)
+  for (const reports::Series& s : plot.series)
     for (std::size_t i = 0; i < s.x.size(); ++i) {
       low[0] = std::min(low[0], s.x[i]), high[0] = std::max(high[0], s.x[i]);
       low[1] = std::min(low[1], s.y[i]), high[1] = std::max(high[1], s.y[i]);
@@ -64,25 +65,25 @@ void set_equal_scales(Plot& plot) {
 }
 
 /// A path as lines of the plane, one series for each stroke: the tool does not fly between two.
-void add_path(Plot& plot, const std::string& name, const SessionTrack& track, const Plane& plane, int colour) {
+void add_path(reports::Plot& plot, const std::string& name, const SessionTrack& track, const Plane& plane, int colour) {
   const std::size_t step = std::max<std::size_t>(1, track.tick_count() / (2 * kCurvePoints));
   bool is_first = true;
   for (const Spell& stroke : track.strokes) {
     std::vector<Vec3> points;
     for (std::size_t i = stroke.first; i < stroke.last; i += step) points.push_back(track.tip[i]);
-    plot.series.push_back(in_plane(is_first ? name : "", points, plane, Stroke::line, colour));
-    plot.series.push_back(in_plane("", {points.front()}, plane, Stroke::marks, colour));
+    plot.series.push_back(in_plane(is_first ? name : "", points, plane, reports::Stroke::line, colour));
+    plot.series.push_back(in_plane("", {points.front()}, plane, reports::Stroke::marks, colour));
     is_first = false;
   }
   plot.caption = "A circle is where a tool was taken.";
 }
 
-Plot deviation_plot(const Comparison& comparison) {
-  Plot plot{.title = "Distance from the expert's path, aligned in time",
-            .x_title = "time of the trainee [s]",
-            .y_title = "distance [mm]",
-            .caption = "Beyond the dashed line the tool can be at other spheres than the expert's was."};
-  Series series{.name = "trainee", .colour = kTraineeColour};
+reports::Plot deviation_plot(const Comparison& comparison) {
+  reports::Plot plot{.title = "Distance from the expert's path, aligned in time",
+                     .x_title = "time of the trainee [s]",
+                     .y_title = "distance [mm]",
+                     .caption = "Beyond the dashed line the tool can be at other spheres than the expert's was."};
+  reports::Series series{.name = "trainee", .colour = kTraineeColour};
   for (const AlignedPair& pair : comparison.alignment.pairs) {
     series.x.push_back(comparison.trainee_time[pair.b]);
     series.y.push_back(kMillimetres * pair.distance);
@@ -94,16 +95,16 @@ Plot deviation_plot(const Comparison& comparison) {
 
 }  // namespace
 
-std::vector<Plot> plots_over_time(const ComparedSessions& compared) {
+std::vector<reports::Plot> plots_over_time(const ComparedSessions& compared) {
   const auto& [expert, trainee, scene, comparison] = compared;
   const double end = std::max(expert.seconds(expert.tick_count()), trainee.seconds(trainee.tick_count()));
   const auto is_above_zero = [](double value) { return value > 0; };
   const auto has_any = [&](const std::vector<double>& a, const std::vector<double>& b) {
     return std::any_of(a.begin(), a.end(), is_above_zero) || std::any_of(b.begin(), b.end(), is_above_zero);
   };
-  std::vector<Plot> plots;
+  std::vector<reports::Plot> plots;
   if (has_any(expert.force, trainee.force)) {
-    Plot plot{.title = "Force on the tool", .x_title = "time [s]", .y_title = "force [N]"};
+    reports::Plot plot{.title = "Force on the tool", .x_title = "time [s]", .y_title = "force [N]"};
     plot.series = {curve("expert", expert, expert.force, 1, kExpertColour),
                    curve("trainee", trainee, trainee.force, 1, kTraineeColour)};
     if (comparison.force_limit)
@@ -112,7 +113,7 @@ std::vector<Plot> plots_over_time(const ComparedSessions& compared) {
     plots.push_back(plot);
   }
   if (has_any(expert.depth, trainee.depth)) {
-    Plot plot{.title = "Depth", .x_title = "time [s]", .y_title = "depth [mm]"};
+    reports::Plot plot{.title = "Depth", .x_title = "time [s]", .y_title = "depth [mm]"};
     plot.series = {curve("expert", expert, expert.depth, kMillimetres, kExpertColour),
                    curve("trainee", trainee, trainee.depth, kMillimetres, kTraineeColour)};
     if (comparison.damage_depth > 0)
@@ -122,10 +123,10 @@ std::vector<Plot> plots_over_time(const ComparedSessions& compared) {
   return plots;
 }
 
-std::vector<Plot> plots_of_paths(const ComparedSessions& compared) {
-  std::vector<Plot> plots;
+std::vector<reports::Plot> plots_of_paths(const ComparedSessions& compared) {
+  std::vector<reports::Plot> plots;
   for (const Plane& plane : kPlanes) {
-    Plot plot{
+    reports::Plot plot{
         .title = std::string("Path of the tool, ") + plane.title, .x_title = plane.x_title, .y_title = plane.y_title};
     add_path(plot, "expert", compared.expert, plane, kExpertColour);
     add_path(plot, "trainee", compared.trainee, plane, kTraineeColour);
@@ -136,7 +137,7 @@ std::vector<Plot> plots_of_paths(const ComparedSessions& compared) {
   return plots;
 }
 
-std::vector<Plot> plots_of_cut(const ComparedSessions& compared) {
+std::vector<reports::Plot> plots_of_cut(const ComparedSessions& compared) {
   const auto& [expert, trainee, scene, comparison] = compared;
   std::vector<Vec3> both, expert_only, trainee_only;
   // Axial elements only: constraints and angle springs end with them.
@@ -145,17 +146,18 @@ std::vector<Plot> plots_of_cut(const ComparedSessions& compared) {
     const bool in_a = expert.severed_at[i] >= 0, in_b = trainee.severed_at[i] >= 0;
     if (in_a || in_b) (in_a && in_b ? both : in_a ? expert_only : trainee_only).push_back(rest_middle(scene.model, i));
   }
-  std::vector<Plot> plots;
+  std::vector<reports::Plot> plots;
   if (both.empty() && expert_only.empty() && trainee_only.empty()) return plots;
   for (const Plane& plane : kPlanes) {
-    Plot plot{.title = std::string("Cut, ") + plane.title, .x_title = plane.x_title, .y_title = plane.y_title};
+    reports::Plot plot{.title = std::string("Cut, ") + plane.title, .x_title = plane.x_title, .y_title = plane.y_title};
     for (const Path& path : cut_paths(expert))
-      plot.series.push_back(in_plane("", path, plane, Stroke::line, kExpertColour));
+      plot.series.push_back(in_plane("", path, plane, reports::Stroke::line, kExpertColour));
     for (const Path& path : cut_paths(trainee))
-      plot.series.push_back(in_plane("", path, plane, Stroke::line, kTraineeColour));
-    plot.series.push_back(in_plane("severed by both", both, plane, Stroke::marks, 2));
-    plot.series.push_back(in_plane("by the expert only", expert_only, plane, Stroke::crosses, kExpertColour));
-    plot.series.push_back(in_plane("by the trainee only", trainee_only, plane, Stroke::crosses, kTraineeColour));
+      plot.series.push_back(in_plane("", path, plane, reports::Stroke::line, kTraineeColour));
+    plot.series.push_back(in_plane("severed by both", both, plane, reports::Stroke::marks, 2));
+    plot.series.push_back(in_plane("by the expert only", expert_only, plane, reports::Stroke::crosses, kExpertColour));
+    plot.series.push_back(
+        in_plane("by the trainee only", trainee_only, plane, reports::Stroke::crosses, kTraineeColour));
     plot.caption = "Marks: severed elements at rest. Lines: the blade's tip while it severs.";
     set_equal_scales(plot);
     plots.push_back(plot);
@@ -163,4 +165,4 @@ std::vector<Plot> plots_of_cut(const ComparedSessions& compared) {
   return plots;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::compare

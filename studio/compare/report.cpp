@@ -8,14 +8,14 @@
 #include "studio/output/number_text.h"
 #include "studio/reports/report.h"
 
-namespace ctpm {
+namespace ctpm::compare {
 namespace {
 
 constexpr double kSame = 0.01;  // values that differ by a smaller share are the same to a teacher
-Cell cell_of(std::optional<double> value) { return value ? Cell(*value) : Cell(); }
+reports::Cell cell_of(std::optional<double> value) { return value ? reports::Cell(*value) : reports::Cell(); }
 
-Table measures_table(const Comparison& comparison) {
-  Table table;
+reports::Table measures_table(const Comparison& comparison) {
+  reports::Table table;
   table.columns = {
       {"key", "key"},      {"measure", "measure"},     {"expert", "expert"},         {"trainee", "trainee"},
       {"unit", "unit"},    {"better_is", "better is"}, {"trainee_is", "trainee is"}, {"meaning", "what it is"},
@@ -30,15 +30,15 @@ Table measures_table(const Comparison& comparison) {
   return table;
 }
 
-Table moments_table(const Comparison& comparison) {
-  Table table;
+reports::Table moments_table(const Comparison& comparison) {
+  reports::Table table;
   table.columns = {
       {"worst_s", "worst at [s]"}, {"from_s", "from [s]"}, {"to_s", "to [s]"}, {"what", "what"},
       {"value", "value"},          {"limit", "limit"},     {"unit", "unit"},   {"severity", "severity", 3}};
   for (const Moment& moment : comparison.moments)
     table.rows.push_back({moment.worst_s, moment.from_s, moment.to_s, std::string(to_word(moment.kind)), moment.value,
-                          moment.kind == MomentKind::stray_cut ? Cell() : Cell(moment.limit), std::string(moment.unit),
-                          moment.severity});
+                          moment.kind == MomentKind::stray_cut ? reports::Cell() : reports::Cell(moment.limit),
+                          std::string(moment.unit), moment.severity});
   table.caption =
       "Times are those of the trainee's session. What harms the tissue comes first. Severity is how far the "
       "worst value is "
@@ -51,8 +51,8 @@ Table moments_table(const Comparison& comparison) {
 }
 
 /// The columns with these keys.
-Table with_columns(const Table& table, const std::vector<std::string>& keys) {
-  Table result;
+reports::Table with_columns(const reports::Table& table, const std::vector<std::string>& keys) {
+  reports::Table result;
   result.title = table.title, result.caption = table.caption;
   result.rows.resize(table.rows.size());
   for (const std::string& key : keys)
@@ -64,7 +64,7 @@ Table with_columns(const Table& table, const std::vector<std::string>& keys) {
   return result;
 }
 
-void write_session(JsonWriter& json, const char* key, const SessionTrack& track) {
+void write_session(output::JsonWriter& json, const char* key, const SessionTrack& track) {
   json.key(key).begin_object().member("file", std::string_view(track.path));
   json.member("session_id", std::string_view(track.session_id))
       .member("duration_s", track.seconds(track.tick_count()))
@@ -101,7 +101,7 @@ std::vector<std::string> remarks_of(const ComparedSessions& compared) {
 
 std::string comparison_json(const ComparedSessions& compared) {
   const Comparison& comparison = compared.comparison;
-  JsonWriter json;
+  output::JsonWriter json;
   json.begin_object()
       .member("format", "ctpm-comparison-results")
       .member("version", 1)
@@ -114,12 +114,12 @@ std::string comparison_json(const ComparedSessions& compared) {
   if (comparison.damage_depth > 0) json.member("damage_depth_mm", 1e3 * comparison.damage_depth);
   json.member("alignment_band", kAlignmentBand);
   json.key("measures");
-  write_rows(json, measures_table(comparison));
+  reports::write_rows(json, measures_table(comparison));
   json.key("moments");
-  write_rows(json, moments_table(comparison));
+  reports::write_rows(json, moments_table(comparison));
   json.key("plots").begin_list();
   for (const auto& plots : {plots_over_time(compared), plots_of_paths(compared), plots_of_cut(compared)})
-    for (const Plot& plot : plots) write_points(json, plot);
+    for (const reports::Plot& plot : plots) reports::write_points(json, plot);
   return json.end_list().end_object().text();
 }
 
@@ -127,8 +127,8 @@ Result<Done> write_comparison(const std::string& folder, const ComparedSessions&
                               const std::string& to_see_worst) {
   const Comparison& comparison = compared.comparison;
   const std::string scene = compared.expert.scene_name.empty() ? "" : "Scene " + compared.expert.scene_name + ". ";
-  Report report("A trainee's session beside an expert's",
-                scene + "Expert: " + compared.expert.path + ". Trainee: " + compared.trainee.path + ".");
+  reports::Report report("A trainee's session beside an expert's",
+                         scene + "Expert: " + compared.expert.path + ". Trainee: " + compared.trainee.path + ".");
   for (const std::string& remark : remarks_of(compared)) report.add_verdict(false, remark);
   report.add_heading("Worst moments first");
   if (comparison.moments.empty()) {
@@ -141,11 +141,11 @@ Result<Done> write_comparison(const std::string& folder, const ComparedSessions&
   report.add_table(
       with_columns(measures_table(comparison), {"measure", "expert", "trainee", "unit", "better_is", "trainee_is"}));
   report.add_heading("Force and depth");
-  if (const std::vector<Plot> plots = plots_over_time(compared); !plots.empty())
+  if (const std::vector<reports::Plot> plots = plots_over_time(compared); !plots.empty())
     report.add_plots(plots);
   else
     report.add_paragraph("No tool met a force.");
-  if (const std::vector<Plot> cut = plots_of_cut(compared); !cut.empty()) {
+  if (const std::vector<reports::Plot> cut = plots_of_cut(compared); !cut.empty()) {
     report.add_heading("The cut");
     report.add_plots(cut);
   }
@@ -153,12 +153,12 @@ Result<Done> write_comparison(const std::string& folder, const ComparedSessions&
   report.add_paragraph(
       "The paths are aligned by dynamic time warping: each point of one belongs to a point of the other, in "
       "order, at most " +
-      short_number(100 * kAlignmentBand) +
+      output::short_number(100 * kAlignmentBand) +
       " % of the longer session out of step, so that a slow hand is not taken for a wrong one.");
   report.add_plots(plots_of_paths(compared));
   report.add_heading("What the measures are");
   report.add_table(with_columns(measures_table(comparison), {"measure", "meaning", "source"}));
-  return write_report(folder, {{"report.html", report.html()}, {"results.json", comparison_json(compared)}});
+  return reports::write_report(folder, {{"report.html", report.html()}, {"results.json", comparison_json(compared)}});
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::compare

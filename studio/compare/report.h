@@ -6,13 +6,13 @@
 #include "core/model/result.h"
 #include "studio/compare/measures.h"
 
-namespace ctpm {
+namespace ctpm::compare {
 
 /// Two sessions and what came of comparing them; all must outlive the report.
 struct ComparedSessions {
   const SessionTrack& expert;
   const SessionTrack& trainee;
-  const SessionStart& scene;
+  const recordings::SessionStart& scene;
   const Comparison& comparison;
 };
 
@@ -31,4 +31,4 @@ std::string comparison_json(const ComparedSessions& compared);
 Result<Done> write_comparison(const std::string& folder, const ComparedSessions& compared,
                               const std::string& to_see_worst);
 
-}  // namespace ctpm
+}  // namespace ctpm::compare

@@ -9,7 +9,7 @@
 #include "recordings/state_hash.h"
 #include "studio/session/cut_depth.h"
 
-namespace ctpm {
+namespace ctpm::compare {
 namespace {
 
 constexpr std::int64_t kReadTicks = 10000;  // held in memory at a time
@@ -24,10 +24,10 @@ std::vector<std::uint8_t> severed_flags(const State& state) {
 }
 
 /// Simulates each cut again and notes when which element was severed.
-Result<Done> find_severed(SessionReader& session, SessionTrack& track) {
+Result<Done> find_severed(recordings::SessionReader& session, SessionTrack& track) {
   track.severed_at.assign(ElementPlaces(session.start().model).count, -1);
   if (track.cuts.empty()) return Done{};
-  Result<ReplayCursor> cursor = ReplayCursor::create(session);
+  Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(session);
   if (!cursor) return cursor.errors();
   for (const Spell& cut : track.cuts) {
     if (const Result<Done> found = cursor->seek(std::int64_t(cut.first)); !found) return found.errors();
@@ -124,20 +124,20 @@ ElementPlaces::ElementPlaces(const Model& model)
       angle_springs(constraints + model.constraints.size()),
       count(angle_springs + model.angle_springs.size()) {}
 
-Result<SessionTrack> read_track(SessionReader& session) {
+Result<SessionTrack> read_track(recordings::SessionReader& session) {
   if (const Result<Done> whole = session.check_all(); !whole) return whole.errors();
-  const SessionStart& start = session.start();
+  const recordings::SessionStart& start = session.start();
   SessionTrack track;
   track.path = session.path(), track.session_id = session.session_id(), track.tick = start.model.tick;
   track.has_end = session.ended_cleanly();
-  track.initial_state = state_hash(start.initial_state);
+  track.initial_state = recordings::state_hash(start.initial_state);
   if (const auto name = start.metadata.find("scene_name"); name != start.metadata.end())
     track.scene_name = name->second;
   const std::int64_t count = session.tick_count();
   for (std::int64_t from = 0; from < count; from += kReadTicks) {
     const auto records = session.ticks(from, std::min(from + kReadTicks, count));
     if (!records) return records.errors();
-    for (const TickRecord& record : *records) {
+    for (const recordings::TickRecord& record : *records) {
       track.tool.push_back(record.inputs.tool);
       track.tip.push_back(record.inputs.position);
       track.force.push_back(norm(record.tool_force));
@@ -152,7 +152,7 @@ Result<SessionTrack> read_track(SessionReader& session) {
   return track;
 }
 
-Result<Done> check_same_scene(const SessionReader& expert, const SessionReader& trainee) {
+Result<Done> check_same_scene(const recordings::SessionReader& expert, const recordings::SessionReader& trainee) {
   const Model& a = expert.start().model;
   const Model& b = trainee.start().model;
   std::string reason = difference_in_words(a, b);
@@ -186,12 +186,12 @@ Vec3 rest_middle(const Model& model, std::size_t element) {
   return rest[std::size_t(model.angle_springs.b[element - places.angle_springs])];
 }
 
-std::optional<double> cut_depth(const SessionTrack& track, const SessionStart& start) {
-  CutDepth depth(start.model, start.surfaces);
+std::optional<double> cut_depth(const SessionTrack& track, const recordings::SessionStart& start) {
+  session::CutDepth depth(start.model, start.surfaces);
   const std::size_t axial_count = ElementPlaces(start.model).constraints;
   for (std::size_t i = 0; i < axial_count; ++i)
     if (track.severed_at[i] >= 0) depth.add(i);
   return depth.deepest();
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::compare

@@ -12,7 +12,7 @@
 #include "studio/compare/motion.h"
 #include "studio/compare/path_distance.h"
 
-namespace ctpm {
+namespace ctpm::compare {
 
 /// Places that the network's elements have in one list of all: axial elements, constraints, angle springs.
 struct ElementPlaces {
@@ -42,11 +42,11 @@ struct SessionTrack {
 
 /// Reads a whole session and simulates its cuts again, from the keyframe before each. Errors: those of
 /// reading; a damaged block, named; no tool ever in the hand.
-Result<SessionTrack> read_track(SessionReader& session);
+Result<SessionTrack> read_track(recordings::SessionReader& session);
 
 /// An error with the reason if `trainee` is not of the scene of `expert`: another network, other tools, other
 /// physics. What does not act on the tissue (cameras, colours) may differ.
-Result<Done> check_same_scene(const SessionReader& expert, const SessionReader& trainee);
+Result<Done> check_same_scene(const recordings::SessionReader& expert, const recordings::SessionReader& trainee);
 
 /// The tip's paths while it cuts, one for each cut [m].
 std::vector<Path> cut_paths(const SessionTrack& track);
@@ -56,6 +56,6 @@ Vec3 rest_middle(const Model& model, std::size_t element);
 
 /// How far below the organs' surfaces the deepest severed edge lay at rest [m]. Nothing if nothing was
 /// severed or the session has no surfaces.
-std::optional<double> cut_depth(const SessionTrack& track, const SessionStart& start);
+std::optional<double> cut_depth(const SessionTrack& track, const recordings::SessionStart& start);
 
-}  // namespace ctpm
+}  // namespace ctpm::compare

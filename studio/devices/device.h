@@ -4,7 +4,7 @@
 
 #include "core/model/vec3.h"
 
-namespace ctpm {
+namespace ctpm::devices {
 
 /// Where a hand's instrument is and how it is turned.
 struct Pose {
@@ -48,4 +48,4 @@ class Device {
   virtual void send_force(Vec3 force) = 0;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::devices

@@ -7,7 +7,7 @@
 
 #include "studio/sources/rotation.h"
 
-namespace ctpm {
+namespace ctpm::devices {
 namespace {
 
 constexpr double kLengthTolerance = 0.1;  // of a quaternion
@@ -22,8 +22,9 @@ std::string seconds(double value) {
 
 /// What is wrong with a pose; null if it is believed.
 const char* DeviceGuard::problem_with(const DeviceReport& report) const {
-  if (!is_finite(report.pose.position) || !is_finite(report.pose.orientation)) return "pose is not finite";
-  if (!(std::abs(length_of(report.pose.orientation) - 1) <= kLengthTolerance)) return "orientation is no rotation";
+  if (!is_finite(report.pose.position) || !sources::is_finite(report.pose.orientation)) return "pose is not finite";
+  if (!(std::abs(sources::length_of(report.pose.orientation) - 1) <= kLengthTolerance))
+    return "orientation is no rotation";
   if (!has_pose_) return nullptr;
   if (report.device_time > 0 && report.device_time < device_time_) return "time goes backwards";
   const double reach = settings_.most_speed * (report.arrival - arrival_) + settings_.slack;
@@ -40,7 +41,7 @@ bool DeviceGuard::take(const DeviceReport& report) {
       buttons_ = report.buttons;
       return false;
     case DeviceNews::turned_away:
-      events_.push_back({.kind = EventKind::note, .text = "a second device came and was turned away"});
+      events_.push_back({.kind = recordings::EventKind::note, .text = "a second device came and was turned away"});
       return false;
     case DeviceNews::bad_message:
       ++counts_.unread;
@@ -61,7 +62,7 @@ bool DeviceGuard::take(const DeviceReport& report) {
   interval_ = has_pose_ ? std::max(0.0, report.arrival - arrival_) : 0;
   counts_.longest_gap = std::max(counts_.longest_gap, interval_);
   has_pose_ = true;
-  pose_ = {report.pose.position, normalised(report.pose.orientation)};
+  pose_ = {report.pose.position, sources::normalised(report.pose.orientation)};
   arrival_ = report.arrival;
   device_time_ = std::max(device_time_, report.device_time);
   return true;
@@ -74,7 +75,7 @@ void DeviceGuard::look(double now) {
   if (silence > settings_.give_up_after && verdict_.empty())
     verdict_ = "the device was lost: nothing usable came for " + seconds(silence) + " (" + faults_.front() + ")";
   if (!faults_.empty() && arrival_ > last_fault_ && now - last_fault_ > kQuiet) {
-    events_.push_back({.kind = EventKind::device_back,
+    events_.push_back({.kind = recordings::EventKind::device_back,
                        .held = last_fault_ - spell_began_,
                        .refused_samples = counts_.refused - refused_before_spell_});
     faults_.clear();
@@ -86,9 +87,9 @@ void DeviceGuard::fault(const char* text, double now) {
   if (faults_.empty()) spell_began_ = now, refused_before_spell_ = counts_.refused;
   if (std::find(faults_.begin(), faults_.end(), text) != faults_.end()) return;
   faults_.push_back(text);
-  events_.push_back({.kind = EventKind::device_lost, .reason = text});
+  events_.push_back({.kind = recordings::EventKind::device_lost, .reason = text});
 }
 
-std::vector<Event> DeviceGuard::take_events() { return std::exchange(events_, {}); }
+std::vector<recordings::Event> DeviceGuard::take_events() { return std::exchange(events_, {}); }
 
-}  // namespace ctpm
+}  // namespace ctpm::devices

@@ -7,7 +7,7 @@
 #include "studio/devices/device.h"
 #include "studio/sources/input_source.h"
 
-namespace ctpm {
+namespace ctpm::devices {
 
 struct GuardSettings {
   double most_speed = 1;     ///< of a hand [m/s]; farther than it reaches since the last good sample is a jump
@@ -38,7 +38,7 @@ class DeviceGuard {
   /// Why the device is given up; empty as long as it is not.
   const std::string& verdict() const { return verdict_; }
 
-  std::vector<Event> take_events();
+  std::vector<recordings::Event> take_events();
 
   struct Counts {
     std::int64_t samples = 0;  ///< poses that came
@@ -63,8 +63,8 @@ class DeviceGuard {
   double spell_began_ = 0, last_fault_ = 0;
   std::int64_t refused_before_spell_ = 0;
   std::string verdict_;
-  std::vector<Event> events_;
+  std::vector<recordings::Event> events_;
   Counts counts_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::devices

@@ -5,7 +5,7 @@
 
 #include "studio/devices/device.h"
 
-namespace ctpm {
+namespace ctpm::devices {
 
 /// A tool that is in the hand while a button is pressed.
 struct ButtonTool {
@@ -31,4 +31,4 @@ struct DeviceMap {
   std::int32_t tool_for(std::uint32_t buttons) const;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::devices

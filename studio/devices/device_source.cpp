@@ -8,7 +8,7 @@
 
 #include "studio/sources/rotation.h"
 
-namespace ctpm {
+namespace ctpm::devices {
 
 double device_clock() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -55,7 +55,7 @@ void DeviceSource::aim(double now) {
   ticks_whole_ = ticks_left_ = std::max<std::int64_t>(1, std::llround(duration / tick_));
 }
 
-std::optional<Inputs> DeviceSource::next(std::int64_t, const StepReport& last) {
+std::optional<Inputs> DeviceSource::next(std::int64_t, const stepping::StepReport& last) {
   const double now = clock_();
   const bool has_new_pose = take_reports();
   guard_.look(now);
@@ -64,7 +64,7 @@ std::optional<Inputs> DeviceSource::next(std::int64_t, const StepReport& last) {
   if (ticks_left_ > 0) {
     const double share = double(ticks_whole_ - --ticks_left_) / double(ticks_whole_);
     hand_ = Pose{from_.position + share * (to_.position - from_.position),
-                 turned_towards(from_.orientation, to_.orientation, share)};
+                 sources::turned_towards(from_.orientation, to_.orientation, share)};
   }
   // A tool that was just taken into the hand is where the hand is.
   const std::int32_t tool = settings_.map.tool_for(guard_.buttons());
@@ -96,7 +96,7 @@ void DeviceSource::send_force(bool has_new_pose) {
   ++forces_;
 }
 
-std::vector<NamedValue> DeviceSource::statistics() const {
+std::vector<recordings::NamedValue> DeviceSource::statistics() const {
   const DeviceGuard::Counts& counts = guard_.counts();
   return {{"device_samples", double(counts.samples)},
           {"device_samples_refused", double(counts.refused)},
@@ -105,4 +105,4 @@ std::vector<NamedValue> DeviceSource::statistics() const {
           {"device_longest_gap_s", counts.longest_gap}};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::devices

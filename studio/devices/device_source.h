@@ -13,7 +13,7 @@
 #include "studio/devices/virtual_coupling.h"
 #include "studio/sources/input_source.h"
 
-namespace ctpm {
+namespace ctpm::devices {
 
 struct DeviceSettings {
   DeviceMap map;
@@ -24,7 +24,7 @@ struct DeviceSettings {
 
 /// A device as the source of a session: its samples are checked, brought into the scene, spread over the ticks between
 /// them and followed by the tool through a virtual coupling, whose force goes back to the device.
-class DeviceSource : public InputSource {
+class DeviceSource : public sources::InputSource {
  public:
   using Clock = std::function<double()>;
 
@@ -34,10 +34,10 @@ class DeviceSource : public InputSource {
   /// Waits until the device has told where it is. False if `should_stop` said so before.
   bool wait_for_first_pose(const std::function<bool()>& should_stop);
 
-  std::optional<Inputs> next(std::int64_t tick, const StepReport& last) override;
+  std::optional<Inputs> next(std::int64_t tick, const stepping::StepReport& last) override;
   double input_age() const override { return age_; }
-  std::vector<Event> take_events() override { return guard_.take_events(); }
-  std::vector<NamedValue> statistics() const override;
+  std::vector<recordings::Event> take_events() override { return guard_.take_events(); }
+  std::vector<recordings::NamedValue> statistics() const override;
   std::string fault() const override { return guard_.verdict(); }
 
  private:
@@ -62,4 +62,4 @@ class DeviceSource : public InputSource {
   std::int64_t forces_ = 0;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::devices

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cstddef>
 
-namespace ctpm {
+namespace ctpm::devices {
 
 /// Hands values from one thread to another without a lock. One thread pushes, one pops; neither ever waits.
 template <class T, std::size_t capacity>
@@ -35,4 +35,4 @@ class HandOver {
   std::atomic<std::size_t> begin_{0}, end_{0};  ///< values popped and pushed so far
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::devices

@@ -15,7 +15,7 @@
 #include "studio/devices/igtl_message.h"
 #include "studio/devices/socket.h"
 
-namespace ctpm {
+namespace ctpm::devices {
 namespace {
 
 constexpr double kConnectTimeout = 3;   // [s]
@@ -156,7 +156,7 @@ void IgtlLink::Impl::read() {
 /// Sends what is left of a message. True if nothing is. A connection that is over is noticed by reading.
 bool IgtlLink::Impl::send_rest() {
   if (unsent.empty()) return true;
-  const int count = ctpm::send(connection, unsent);
+  const int count = devices::send(connection, unsent);
   unsent.erase(unsent.begin(), count < 0 ? unsent.end() : unsent.begin() + count);
   return unsent.empty();
 }
@@ -177,4 +177,4 @@ void IgtlLink::Impl::send_newest() {
   send_rest();
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::devices

@@ -7,7 +7,7 @@
 #include "core/model/result.h"
 #include "studio/devices/device.h"
 
-namespace ctpm {
+namespace ctpm::devices {
 
 struct IgtlSettings {
   bool listens = false;            ///< waits for a device to connect; else connects to one
@@ -40,4 +40,4 @@ class IgtlLink : public Device {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::devices

@@ -13,7 +13,7 @@
 
 #include "studio/sources/rotation.h"
 
-namespace ctpm {
+namespace ctpm::devices {
 namespace {
 
 static_assert(sizeof(igtl_header) == IgtlStream::kHeaderSize);
@@ -78,7 +78,7 @@ Quat rotation_of(Vec3 x, Vec3 y, Vec3 z) {
     q = {z.x - x.z, y.x + x.y, 1 + 2 * y.y - trace, z.y + y.z};
   else
     q = {x.y - y.x, z.x + x.z, z.y + y.z, 1 + 2 * z.z - trace};
-  return normalised(q);
+  return sources::normalised(q);
 }
 
 std::optional<Pose> pose_of_transform(std::span<const std::uint8_t> content) {
@@ -215,4 +215,4 @@ std::span<const std::uint8_t> IgtlForceMessage::pack(Vec3 force) {
           std::size_t(impl_->message->GetPackSize())};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::devices

@@ -11,7 +11,7 @@
 
 #include "studio/devices/device.h"
 
-namespace ctpm {
+namespace ctpm::devices {
 
 /// Cuts what comes over a connection into OpenIGTLink messages (protocol versions 1 to 3) and tells what they say:
 /// TRANSFORM, POSITION and QTRANS as poses, from millimetres to metres; SENSOR as buttons, its n-th value above 0.5
@@ -68,4 +68,4 @@ class IgtlForceMessage {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::devices

@@ -11,7 +11,7 @@
 #include "studio/output/option_name.h"
 #include "studio/sources/rotation.h"
 
-namespace ctpm {
+namespace ctpm::devices {
 namespace {
 
 /// A whole number in [low, high] that is all of `text`.
@@ -44,7 +44,7 @@ Result<std::int32_t> tool_index(const std::string& field, const std::string& nam
     if (model.tools[i].name == name) return std::int32_t(i);
     known += (known.empty() ? "" : ", ") + model.tools[i].name;
   }
-  return Error{option_name(field), "the scene has no tool '" + name + "'",
+  return Error{output::option_name(field), "the scene has no tool '" + name + "'",
                known.empty() ? "the scene has no tools" : "its tools: " + known};
 }
 
@@ -61,12 +61,13 @@ Result<DeviceMap> map_of(const DeviceRequest& request, const Model& model) {
   };
   map.scale = request.scale;
   if (!request.offset_mm.empty()) map.offset = 1e-3 * vector_of(request.offset_mm);
-  if (const auto& q = request.rotation; !q.empty()) map.scene_from_device = normalised({q[0], q[1], q[2], q[3]});
+  if (const auto& q = request.rotation; !q.empty())
+    map.scene_from_device = sources::normalised({q[0], q[1], q[2], q[3]});
   if (!request.tip.empty()) map.tip = vector_of(request.tip) / norm(vector_of(request.tip));
   if (!request.tool.empty())
     map.tool = find("device.tool", request.tool);
   else if (model.tools.empty())
-    errors.push_back({option_name("device.tool"), "the scene has no tools", ""});
+    errors.push_back({output::option_name("device.tool"), "the scene has no tools", ""});
   else
     map.tool = 0;
   for (const std::string& entry : request.buttons) {
@@ -100,7 +101,7 @@ bool asks_for_device(const DeviceRequest& request) {
 Errors check_device(const DeviceRequest& request) {
   Errors errors;
   const auto need = [&](bool holds, const char* field, const std::string& message) {
-    if (!holds) errors.push_back({option_name(field), message, ""});
+    if (!holds) errors.push_back({output::option_name(field), message, ""});
   };
   const auto are_finite = [](const std::vector<double>& numbers) {
     return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::abs(x) <= 1e6; });
@@ -118,8 +119,8 @@ Errors check_device(const DeviceRequest& request) {
   need(is_within(request.scale, 1e-3, 1e3), "device.scale", "must be in [0.001, 1000]");
   need(are_finite(request.offset_mm), "device.offset_mm", "must be in [-1e6, 1e6]");
   need(are_finite(request.rotation) &&
-           (request.rotation.empty() ||
-            length_of({request.rotation[0], request.rotation[1], request.rotation[2], request.rotation[3]}) > 1e-3),
+           (request.rotation.empty() || sources::length_of({request.rotation[0], request.rotation[1],
+                                                            request.rotation[2], request.rotation[3]}) > 1e-3),
        "device.rotation", "must be a quaternion w x y z of any length but zero");
   need(are_finite(request.tip) && (request.tip.empty() || norm(vector_of(request.tip)) > 1e-3), "device.tip",
        "must be a direction of any length but zero");
@@ -164,4 +165,4 @@ Result<FollowedDevice> follow_device(const DeviceRequest& request, std::unique_p
   return followed;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::devices

@@ -10,7 +10,7 @@
 #include "core/model/result.h"
 #include "studio/devices/device_source.h"
 
-namespace ctpm {
+namespace ctpm::devices {
 
 /// A device as a user describes it. check_device() checks it.
 struct DeviceRequest {
@@ -48,4 +48,4 @@ struct FollowedDevice {
 /// Follows `device` in the scene of `model`. Errors: tools that the scene does not have.
 Result<FollowedDevice> follow_device(const DeviceRequest& request, std::unique_ptr<Device> device, const Model& model);
 
-}  // namespace ctpm
+}  // namespace ctpm::devices

@@ -12,7 +12,7 @@
 #include <cstring>
 #include <memory>
 
-namespace ctpm {
+namespace ctpm::devices {
 namespace {
 
 using Addresses = std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>;
@@ -126,4 +126,4 @@ int send(const Descriptor& socket, std::span<const std::uint8_t> bytes) {
   return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR ? 0 : -1;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::devices

@@ -9,7 +9,7 @@
 
 // TCP as far as a device needs it. The classes of OpenIGTLink are not used for this: they listen on every interface of
 // the machine and cannot be woken.
-namespace ctpm {
+namespace ctpm::devices {
 
 /// A file descriptor that is closed with its owner.
 class Descriptor {
@@ -49,4 +49,4 @@ int receive(const Descriptor& socket, std::span<std::uint8_t> into);
 /// Bytes taken, -1 if the connection is over. Never waits.
 int send(const Descriptor& socket, std::span<const std::uint8_t> bytes);
 
-}  // namespace ctpm
+}  // namespace ctpm::devices

@@ -5,7 +5,7 @@
 
 #include "studio/sources/rotation.h"
 
-namespace ctpm {
+namespace ctpm::devices {
 
 VirtualCoupling::VirtualCoupling(const CouplingSettings& settings, double tick)
     : settings_(settings), tick_(tick), damping_(2 * std::sqrt(settings.stiffness * settings.mass)) {}
@@ -32,9 +32,9 @@ void VirtualCoupling::step(const Pose& hand, Vec3 tissue_force) {
   velocity_ = v;
   tool_.position = tool_.position + h * v;
 
-  const double angle = angle_between(tool_.orientation, hand.orientation);
+  const double angle = sources::angle_between(tool_.orientation, hand.orientation);
   const double turn = std::min(angle * h / (settings_.turn_time + h), settings_.most_turn * h);
-  if (angle > 0) tool_.orientation = turned_towards(tool_.orientation, hand.orientation, turn / angle);
+  if (angle > 0) tool_.orientation = sources::turned_towards(tool_.orientation, hand.orientation, turn / angle);
 }
 
 Vec3 PassiveForce::pass(Vec3 wanted, Vec3 position) {
@@ -52,4 +52,4 @@ Vec3 PassiveForce::pass(Vec3 wanted, Vec3 position) {
   return wanted;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::devices

@@ -3,7 +3,7 @@
 #include "core/model/vec3.h"
 #include "studio/devices/device.h"
 
-namespace ctpm {
+namespace ctpm::devices {
 
 struct CouplingSettings {
   double stiffness = 1000;  ///< of the spring between hand and tool [N/m], > 0
@@ -70,4 +70,4 @@ class PassiveForce {
   double account_ = 0;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::devices

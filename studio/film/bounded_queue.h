@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-namespace ctpm {
+namespace ctpm::film {
 
 /// Hands things from one thread to another, at most `capacity` of them waiting: whoever is ahead waits, so
 /// that memory stays the same however long the work.
@@ -59,4 +59,4 @@ class BoundedQueue {
   bool is_closed_ = false;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::film

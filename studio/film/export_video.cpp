@@ -15,7 +15,7 @@
 #include "studio/render/renderer.h"
 #include "studio/views/view_of_scene.h"
 
-namespace ctpm {
+namespace ctpm::film {
 namespace {
 
 void append(Errors& errors, const Errors& more) { errors.insert(errors.end(), more.begin(), more.end()); }
@@ -24,26 +24,28 @@ Errors check_options(const std::string& path, const ExportOptions& options) {
   Errors errors;
   const bool is_good_rate = options.fps >= 1 && options.fps <= 240;
   if (!is_good_rate)
-    errors.push_back({option_name("export.fps"), "got " + fixed(options.fps, 3) + ", must be in [1, 240]", ""});
-  if (!(options.speed >= 0.001 && options.speed <= 1000))
     errors.push_back(
-        {option_name("export.speed"), "got " + fixed(options.speed, 3) + ", must be in [0.001, 1000]", ""});
-  append(errors, VideoWriter::check(path, options.size.width, options.size.height,
-                                    is_good_rate ? options.fps : ExportOptions().fps));
+        {output::option_name("export.fps"), "got " + output::fixed(options.fps, 3) + ", must be in [1, 240]", ""});
+  if (!(options.speed >= 0.001 && options.speed <= 1000))
+    errors.push_back({output::option_name("export.speed"),
+                      "got " + output::fixed(options.speed, 3) + ", must be in [0.001, 1000]", ""});
+  append(errors, video::VideoWriter::check(path, options.size.width, options.size.height,
+                                           is_good_rate ? options.fps : ExportOptions().fps));
   return errors;
 }
 
 /// The ticks of each session that are shown: the same time of all, as far as they go.
-Result<std::vector<TickRange>> find_ranges(const std::vector<SessionReader*>& sessions, const TimeRange& range) {
-  const auto longer = [](const SessionReader* a, const SessionReader* b) {
+Result<std::vector<session::TickRange>> find_ranges(const std::vector<recordings::SessionReader*>& sessions,
+                                                    const session::TimeRange& range) {
+  const auto longer = [](const recordings::SessionReader* a, const recordings::SessionReader* b) {
     return double(a->tick_count()) * a->start().model.tick < double(b->tick_count()) * b->start().model.tick;
   };
-  const SessionReader& longest = **std::max_element(sessions.begin(), sessions.end(), longer);
+  const recordings::SessionReader& longest = **std::max_element(sessions.begin(), sessions.end(), longer);
   const double tick = longest.start().model.tick;
-  const Result<TickRange> shown = range.in_ticks(longest.path(), tick, longest.tick_count());
+  const Result<session::TickRange> shown = range.in_ticks(longest.path(), tick, longest.tick_count());
   if (!shown) return shown.errors();
-  std::vector<TickRange> ranges;
-  for (const SessionReader* session : sessions) {
+  std::vector<session::TickRange> ranges;
+  for (const recordings::SessionReader* session : sessions) {
     const auto there = [&](std::int64_t of_longest) {
       const double ticks = double(of_longest) * tick / session->start().model.tick;
       return std::min<std::int64_t>(session->tick_count(), std::llround(ticks));
@@ -56,14 +58,14 @@ Result<std::vector<TickRange>> find_ranges(const std::vector<SessionReader*>& se
 /// One session of the film: what simulates it and what draws it.
 struct Reel {
   std::unique_ptr<SessionFilm> film;
-  Look look;
-  std::unique_ptr<Renderer> renderer;
-  std::unique_ptr<Overlay> overlay;
+  views::Look look;
+  std::unique_ptr<render::Renderer> renderer;
+  std::unique_ptr<render::Overlay> overlay;
   double ticks_a_frame = 1;
 
   /// The tick that is shown in a frame, or the last one.
   std::int64_t tick_of(std::int64_t frame) const {
-    const TickRange& range = film->range();
+    const session::TickRange& range = film->range();
     return std::min<std::int64_t>(range.to, range.from + std::llround(double(frame + 1) * ticks_a_frame));
   }
   /// The moment of a frame; a session that is over says so and stands still.
@@ -77,59 +79,60 @@ struct Reel {
   }
 };
 
-Result<Reel> make_reel(SessionReader& session, const TickRange& range, int width, const ExportOptions& options) {
+Result<Reel> make_reel(recordings::SessionReader& session, const session::TickRange& range, int width,
+                       const ExportOptions& options) {
   Reel reel;
   Result<std::unique_ptr<SessionFilm>> film = SessionFilm::create(session, range, options.allow_diverged);
   if (!film) return film.errors();
   reel.film = std::move(*film);
   const Model& model = reel.film->model();
-  SceneView view = view_of(reel.film->scene(), model, session.start().surfaces);
+  render::SceneView view = views::view_of(reel.film->scene(), model, session.start().surfaces);
   const int height = options.size.height;
-  const Result<Look> look = find_look(options.look, reel.film->scene(), view, double(width) / height);
+  const Result<views::Look> look = views::find_look(options.look, reel.film->scene(), view, double(width) / height);
   if (!look) return look.errors();
   reel.look = *look;
-  Result<std::unique_ptr<Renderer>> renderer = Renderer::create(width, height, std::move(view));
+  Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(width, height, std::move(view));
   if (!renderer) return renderer.errors();
   reel.renderer = std::move(*renderer);
-  reel.overlay = std::make_unique<Overlay>(width, height);
+  reel.overlay = std::make_unique<render::Overlay>(width, height);
   reel.ticks_a_frame = options.speed / (options.fps * model.tick);
   return reel;
 }
 
-Frame draw_shot(Reel& reel, Shot& shot, double least_top_force) {
-  const DrawOptions draw = reel.look.at(reel.renderer->scene(), shot.moments);
-  Frame picture = reel.renderer->draw(shot.state, draw);
-  shot.overlay.legend = legend_of(reel.film->model(), draw);
+render::Frame draw_shot(Reel& reel, Shot& shot, double least_top_force) {
+  const render::DrawOptions draw = reel.look.at(reel.renderer->scene(), shot.moments);
+  render::Frame picture = reel.renderer->draw(shot.state, draw);
+  shot.overlay.legend = render::legend_of(reel.film->model(), draw);
   shot.overlay.least_top_force = std::max(shot.overlay.least_top_force, least_top_force);
   reel.overlay->draw(picture, shot.overlay);
   return picture;
 }
 
 /// All sessions at one moment, side by side; their plots have one scale.
-Frame draw_shots(std::vector<Reel>& reels, std::vector<Shot>& shots) {
+render::Frame draw_shots(std::vector<Reel>& reels, std::vector<Shot>& shots) {
   double top_force = 0;
-  for (const Shot& shot : shots) top_force = std::max(top_force, largest_force(shot.overlay));
-  Frame picture = draw_shot(reels[0], shots[0], top_force);
+  for (const Shot& shot : shots) top_force = std::max(top_force, render::largest_force(shot.overlay));
+  render::Frame picture = draw_shot(reels[0], shots[0], top_force);
   for (std::size_t i = 1; i < reels.size(); ++i)
-    picture = join_beside(picture, draw_shot(reels[i], shots[i], top_force));
+    picture = render::join_beside(picture, draw_shot(reels[i], shots[i], top_force));
   return picture;
 }
 
-Result<StageTimes> make_film(std::vector<Reel>& reels, VideoWriter& writer, ByteHash& pixels,
+Result<StageTimes> make_film(std::vector<Reel>& reels, video::VideoWriter& writer, recordings::ByteHash& pixels,
                              const ExportOptions& options) {
   std::int64_t frames = 0, drawn = 0;
   for (const Reel& reel : reels) frames = std::max(frames, reel.frame_count());
   FilmWork work;
   for (Reel& reel : reels) work.shoot.push_back([&reel](std::int64_t frame) { return reel.shoot(frame); });
-  work.draw = [&](std::vector<Shot> shots) -> Result<Frame> {
+  work.draw = [&](std::vector<Shot> shots) -> Result<render::Frame> {
     // Ctrl-C is an error of this export: nothing is left behind.
     if (options.should_stop && options.should_stop())
       return Error{writer.path(), "stopped before the end; no video was written", ""};
-    Frame picture = draw_shots(reels, shots);
+    render::Frame picture = draw_shots(reels, shots);
     if (options.progress) options.progress(++drawn, frames);
     return picture;
   };
-  work.encode = [&](const Frame& picture) {
+  work.encode = [&](const render::Frame& picture) {
     pixels.add(picture.rgb.data(), picture.rgb.size());
     return writer.add(picture);
   };
@@ -138,31 +141,31 @@ Result<StageTimes> make_film(std::vector<Reel>& reels, VideoWriter& writer, Byte
 
 }  // namespace
 
-Result<ExportOutcome> export_video(const std::vector<SessionReader*>& sessions, const std::string& path,
+Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>& sessions, const std::string& path,
                                    const ExportOptions& options) {
   Errors errors = check_options(path, options);
-  const Result<std::vector<TickRange>> ranges = find_ranges(sessions, options.range);
+  const Result<std::vector<session::TickRange>> ranges = find_ranges(sessions, options.range);
   if (!ranges) append(errors, ranges.errors());
   const int width = options.size.width / int(sessions.size());
   std::vector<Reel> reels;
   for (std::size_t i = 0; i < sessions.size(); ++i) {
-    Result<Reel> reel = make_reel(*sessions[i], ranges ? (*ranges)[i] : TickRange{}, width, options);
+    Result<Reel> reel = make_reel(*sessions[i], ranges ? (*ranges)[i] : session::TickRange{}, width, options);
     if (reel)
       reels.push_back(std::move(*reel));
     else
       append(errors, reel.errors());
   }
   if (!errors.empty()) return errors;
-  Result<std::unique_ptr<VideoWriter>> writer =
-      VideoWriter::create(path, width * int(sessions.size()), options.size.height, options.fps);
+  Result<std::unique_ptr<video::VideoWriter>> writer =
+      video::VideoWriter::create(path, width * int(sessions.size()), options.size.height, options.fps);
   if (!writer) return writer.errors();
 
-  ByteHash pixels;
+  recordings::ByteHash pixels;
   const Result<StageTimes> times = make_film(reels, **writer, pixels, options);
   if (!times) return times.errors();
-  const Result<VideoFacts> video = (*writer)->finish();
+  const Result<video::VideoFacts> video = (*writer)->finish();
   if (!video) return video.errors();
-  ExportOutcome outcome{*video, {}, *times, hash_text(pixels.value())};
+  ExportOutcome outcome{*video, {}, *times, recordings::hash_text(pixels.value())};
   std::vector<SidecarSession> shown;
   for (const Reel& reel : reels) {
     outcome.sessions.push_back({reel.film->range(), reel.film->first_different_tick()});
@@ -171,11 +174,11 @@ Result<ExportOutcome> export_video(const std::vector<SessionReader*>& sessions, 
   const Result<std::string> sidecar =
       sidecar_text(shown, {*video, *times, outcome.pixels_hash, options.speed, reels[0].renderer->opengl()});
   const Result<Done> written =
-      sidecar ? write_text_file(video->path + ".json", *sidecar) : Result<Done>(sidecar.errors());
+      sidecar ? output::write_text_file(video->path + ".json", *sidecar) : Result<Done>(sidecar.errors());
   if (written) return outcome;
   std::error_code ignored;
   std::filesystem::remove_all(video->path, ignored);
   return written.errors();
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::film

@@ -13,14 +13,14 @@
 #include "studio/video/video_writer.h"
 #include "studio/views/look.h"
 
-namespace ctpm {
+namespace ctpm::film {
 
 struct ExportOptions {
-  PictureSize size;
+  render::PictureSize size;
   double fps = 30;              ///< frames per second, in [1, 240]
   double speed = 1;             ///< times real speed, > 0
-  LookRequest look;             ///< what is shown, and from where
-  TimeRange range;              ///< part that is shown; its end is that of the longest session if not given
+  views::LookRequest look;      ///< what is shown, and from where
+  session::TimeRange range;     ///< part that is shown; its end is that of the longest session if not given
   bool allow_diverged = false;  ///< go on although the replay differs from the recording
   std::function<void(std::int64_t done, std::int64_t total)> progress;
   std::function<bool()> should_stop;  ///< asked at every frame
@@ -28,12 +28,12 @@ struct ExportOptions {
 
 /// A session that a video shows.
 struct ShownSession {
-  TickRange ticks;                         ///< that are shown
+  session::TickRange ticks;                ///< that are shown
   std::int64_t first_different_tick = -1;  ///< whose replay differs from the recording; -1: none
 };
 
 struct ExportOutcome {
-  VideoFacts video;
+  video::VideoFacts video;
   std::vector<ShownSession> sessions;  ///< in the order that was asked for
   StageTimes times;
   std::string pixels_hash;  ///< XXH3-64 of all frames before encoding
@@ -49,7 +49,7 @@ struct ExportOutcome {
 /// `<video>.json` that says what it shows and how it was made (studio/film/README.md). Errors: options out of
 /// range, an unknown camera or view, a damaged session, a replay that differs (unless allowed), an output
 /// that cannot be written, stopped. After an error no file is left behind.
-Result<ExportOutcome> export_video(const std::vector<SessionReader*>& sessions, const std::string& path,
+Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>& sessions, const std::string& path,
                                    const ExportOptions& options);
 
-}  // namespace ctpm
+}  // namespace ctpm::film

@@ -7,7 +7,7 @@
 
 #include "studio/film/bounded_queue.h"
 
-namespace ctpm {
+namespace ctpm::film {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -62,7 +62,7 @@ class FilmRun {
         shots.push_back(std::move(*shot));
       }
       const Clock::time_point start = Clock::now();
-      Result<Frame> picture = work_.draw(std::move(shots));
+      Result<render::Frame> picture = work_.draw(std::move(shots));
       times_.rendering += seconds_since(start);
       if (!picture) return fail(picture.errors());
       if (!pictures_.push(std::move(*picture))) return;
@@ -71,7 +71,7 @@ class FilmRun {
   }
 
   void encode() {
-    while (const std::optional<Frame> picture = pictures_.pop()) {
+    while (const std::optional<render::Frame> picture = pictures_.pop()) {
       const Clock::time_point start = Clock::now();
       const Result<Done> done = work_.encode(*picture);
       times_.encoding += seconds_since(start);
@@ -82,7 +82,7 @@ class FilmRun {
   const std::int64_t frames_;
   const FilmWork& work_;
   std::deque<BoundedQueue<Shot>> shots_;  // (session_count)
-  BoundedQueue<Frame> pictures_{kFilmQueue};
+  BoundedQueue<render::Frame> pictures_{kFilmQueue};
   std::vector<double> shooting_s_;  // (session_count)
   StageTimes times_;                // each member belongs to one thread until all are joined
   std::mutex mutex_;
@@ -93,4 +93,4 @@ class FilmRun {
 
 Result<StageTimes> run_film(std::int64_t frames, const FilmWork& work) { return FilmRun(frames, work).run(); }
 
-}  // namespace ctpm
+}  // namespace ctpm::film

@@ -8,7 +8,7 @@
 #include "studio/film/session_film.h"
 #include "studio/render/frame.h"
 
-namespace ctpm {
+namespace ctpm::film {
 
 /// How long each stage of an export worked, waiting left out [s]. The stages run at the same time, so that
 /// their sum may exceed `elapsed`.
@@ -22,8 +22,8 @@ struct StageTimes {
 /// What is done for each frame.
 struct FilmWork {
   std::vector<std::function<Result<Shot>(std::int64_t frame)>> shoot;  ///< one thread for each session
-  std::function<Result<Frame>(std::vector<Shot> shots)> draw;          ///< in the caller's thread
-  std::function<Result<Done>(const Frame& frame)> encode;              ///< one thread
+  std::function<Result<render::Frame>(std::vector<Shot> shots)> draw;  ///< in the caller's thread
+  std::function<Result<Done>(const render::Frame& frame)> encode;      ///< one thread
 };
 
 /// Shots and frames that wait at most between two stages: enough to even out, and little memory.
@@ -33,4 +33,4 @@ inline constexpr std::size_t kFilmQueue = 4;
 /// kFilmQueue things waiting for each stage. Errors: the first one of any stage; all have stopped then.
 Result<StageTimes> run_film(std::int64_t frames, const FilmWork& work);
 
-}  // namespace ctpm
+}  // namespace ctpm::film

@@ -10,30 +10,30 @@
 #include "studio/output/option_name.h"
 #include "studio/session/run_session.h"
 
-namespace ctpm {
+namespace ctpm::film {
 namespace {
 
 constexpr std::int64_t kPlotPoints = 600;  ///< most points of the running force plot
 
 }  // namespace
 
-std::string structure_name(const SceneSpec& scene) {
+std::string structure_name(const scenes::SceneSpec& scene) {
   if (scene.organs.empty()) return "";
   switch (scene.organs.front().structure) {
-    case Structure::mass_spring:
+    case network::Structure::mass_spring:
       return "mass-spring";
-    case Structure::angle_mass_spring:
+    case network::Structure::angle_mass_spring:
       return "angle-mass-spring";
-    case Structure::tpm:
+    case network::Structure::tpm:
       return "TPM";
-    case Structure::ctpm:
+    case network::Structure::ctpm:
       return "CTPM";
   }
   return "";
 }
 
-SessionFilm::SessionFilm(SessionReader& reader, SceneSpec scene, const TickRange& range, bool allow_diverged,
-                         ReplayCursor cursor)
+SessionFilm::SessionFilm(recordings::SessionReader& reader, scenes::SceneSpec scene, const session::TickRange& range,
+                         bool allow_diverged, recordings::ReplayCursor cursor)
     : reader_(reader),
       scene_(std::move(scene)),
       range_(range),
@@ -41,11 +41,11 @@ SessionFilm::SessionFilm(SessionReader& reader, SceneSpec scene, const TickRange
       cursor_(std::move(cursor)),
       cut_depth_(reader.start().model, reader.start().surfaces) {}
 
-Result<std::unique_ptr<SessionFilm>> SessionFilm::create(SessionReader& reader, const TickRange& range,
-                                                         bool allow_diverged) {
-  Result<SceneText> scene = read_scene(reader.start().scene_text, reader.path() + " (its scene)");
+Result<std::unique_ptr<SessionFilm>> SessionFilm::create(recordings::SessionReader& reader,
+                                                         const session::TickRange& range, bool allow_diverged) {
+  Result<scenes::SceneText> scene = scenes::read_scene(reader.start().scene_text, reader.path() + " (its scene)");
   if (!scene) return scene.errors();
-  Result<ReplayCursor> cursor = ReplayCursor::create(reader);
+  Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(reader);
   if (!cursor) return cursor.errors();
   std::unique_ptr<SessionFilm> film(
       new SessionFilm(reader, std::move(scene->spec), range, allow_diverged, std::move(*cursor)));
@@ -58,30 +58,31 @@ Result<Done> SessionFilm::begin() {
   overlay_.title = scene_.name;
   overlay_.model = structure_name(scene_);
   overlay_.session = std::filesystem::path(reader_.path()).stem().string();
-  overlay_.damage_force = damage_force_of(scene_);
+  overlay_.damage_force = loading::damage_force_of(scene_);
   for (const OrganRange& organ : model.organs)
     if (organ.damage_depth > 0 && (overlay_.damage_depth == 0 || organ.damage_depth < overlay_.damage_depth))
       overlay_.damage_depth = organ.damage_depth;
   if (allow_diverged_) {
-    const Result<Verdict> verdict = verify_session(reader_, {range_.from, range_.to});
+    const Result<recordings::Verdict> verdict = recordings::verify_session(reader_, {range_.from, range_.to});
     if (!verdict) return verdict.errors();
     first_different_ = verdict->first_tick;
   }
   plot_every_ = std::max<std::int64_t>(1, std::llround(overlay_.plot_span / model.tick) / kPlotPoints);
-  moment_every_ = std::size_t(std::max(1ll, std::llround(kFollowedEvery / model.tick)));
+  moment_every_ = std::size_t(std::max(1ll, std::llround(render::kFollowedEvery / model.tick)));
   // Plot and camera begin with what was before.
-  const std::int64_t needed = std::max(kPlotPoints * plot_every_, std::int64_t(kFollowedMoments * moment_every_));
+  const std::int64_t needed =
+      std::max(kPlotPoints * plot_every_, std::int64_t(render::kFollowedMoments * moment_every_));
   const std::int64_t before = std::max<std::int64_t>(0, range_.from - needed);
-  const Result<std::vector<TickRecord>> earlier = reader_.ticks(before, range_.from);
+  const Result<std::vector<recordings::TickRecord>> earlier = reader_.ticks(before, range_.from);
   if (!earlier) return earlier.errors();
   for (std::int64_t tick = before + 1; tick <= range_.from; ++tick) {
-    const TickRecord& record = (*earlier)[std::size_t(tick - before - 1)];
+    const recordings::TickRecord& record = (*earlier)[std::size_t(tick - before - 1)];
     keep_inputs(record.inputs);
     if (tick % plot_every_ == 0) overlay_.history.push_back({double(tick) * model.tick, norm(record.tool_force)});
   }
-  const Result<std::vector<Event>> events = reader_.events();
+  const Result<std::vector<recordings::Event>> events = reader_.events();
   if (!events) return events.errors();
-  overlay_.loose = pieces_came_loose(*events, range_.from);
+  overlay_.loose = recordings::pieces_came_loose(*events, range_.from);
   overlay_.tick = range_.from, overlay_.time = double(range_.from) * model.tick;
   return cursor_.seek(range_.from);
 }
@@ -94,7 +95,7 @@ void SessionFilm::take_tick() {
   overlay_.depth = cursor_.report().depth;
   overlay_.loose += cursor_.report().came_loose;
   keep_inputs(cursor_.record().inputs);
-  std::vector<ForcePoint>& history = overlay_.history;
+  std::vector<render::ForcePoint>& history = overlay_.history;
   if (overlay_.tick % plot_every_ == 0) history.push_back({overlay_.time, overlay_.force});
   if (history.size() > 2 * kPlotPoints) history.erase(history.begin(), history.end() - kPlotPoints - 1);
   if (first_different_ < 0 && !cursor_.same_so_far()) first_different_ = overlay_.tick - 1;
@@ -102,7 +103,7 @@ void SessionFilm::take_tick() {
 
 void SessionFilm::keep_inputs(const Inputs& inputs) {
   inputs_.push_back(inputs);
-  if (inputs_.size() > kFollowedMoments * moment_every_) inputs_.pop_front();
+  if (inputs_.size() > render::kFollowedMoments * moment_every_) inputs_.pop_front();
 }
 
 /// Counted back from the tick that was done last.
@@ -115,16 +116,16 @@ std::vector<Inputs> SessionFilm::moments() const {
 }
 
 std::string SessionFilm::verdict() const {
-  return is_same()
-             ? "replay same as recorded"
-             : "REPLAY DIFFERS from the recording since " + fixed(double(first_different_) * model().tick, 3) + " s";
+  return is_same() ? "replay same as recorded"
+                   : "REPLAY DIFFERS from the recording since " +
+                         output::fixed(double(first_different_) * model().tick, 3) + " s";
 }
 
 Error SessionFilm::differs() const {
   return {reader_.path(),
-          "the replay differs from the recording since " + fixed(double(first_different_) * model().tick, 3) +
+          "the replay differs from the recording since " + output::fixed(double(first_different_) * model().tick, 3) +
               " s; no video was written",
-          "verify the session to see what differs; " + option_name("export.allow_diverged") +
+          "verify the session to see what differs; " + output::option_name("export.allow_diverged") +
               " exports all the same and says so on every frame"};
 }
 
@@ -147,8 +148,8 @@ Result<Shot> SessionFilm::shoot(std::int64_t tick) {
   }
   show_cut_depth();
   overlay_.verdict = verdict();
-  overlay_.verdict_tone = is_same() ? VerdictTone::good : VerdictTone::bad;
+  overlay_.verdict_tone = is_same() ? render::VerdictTone::good : render::VerdictTone::bad;
   return Shot{cursor_.state(), overlay_, moments()};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::film

@@ -15,12 +15,12 @@
 #include "studio/session/cut_depth.h"
 #include "studio/session/time_range.h"
 
-namespace ctpm {
+namespace ctpm::film {
 
 /// One moment of a session, ready to be drawn.
 struct Shot {
   State state;
-  OverlayData overlay;
+  render::OverlayData overlay;
   std::vector<Inputs> moments;  ///< as following_camera() wants them
 };
 
@@ -30,7 +30,7 @@ class SessionFilm {
   /// `range` is what will be shown; the force before it is taken from the recording. With `allow_diverged`
   /// the range is verified first, so that every shot can say that the replay differs. Errors: a damaged
   /// session or scene.
-  static Result<std::unique_ptr<SessionFilm>> create(SessionReader& reader, const TickRange& range,
+  static Result<std::unique_ptr<SessionFilm>> create(recordings::SessionReader& reader, const session::TickRange& range,
                                                      bool allow_diverged);
 
   /// The state before `tick`, which must not be before the last one. Errors: a damaged session; a replay that
@@ -40,15 +40,16 @@ class SessionFilm {
   /// Pieces of tissue that came loose from the session's start to the last shot.
   std::int64_t pieces_loose() const { return overlay_.loose; }
 
-  const SceneSpec& scene() const { return scene_; }
+  const scenes::SceneSpec& scene() const { return scene_; }
   const Model& model() const { return reader_.start().model; }
-  const SessionReader& reader() const { return reader_; }
-  const TickRange& range() const { return range_; }
+  const recordings::SessionReader& reader() const { return reader_; }
+  const session::TickRange& range() const { return range_; }
   std::int64_t first_different_tick() const { return first_different_; }  ///< -1: none was found
   bool is_same() const { return first_different_ < 0; }
 
  private:
-  SessionFilm(SessionReader& reader, SceneSpec scene, const TickRange& range, bool allow_diverged, ReplayCursor cursor);
+  SessionFilm(recordings::SessionReader& reader, scenes::SceneSpec scene, const session::TickRange& range,
+              bool allow_diverged, recordings::ReplayCursor cursor);
   Result<Done> begin();
   void take_tick();
   void keep_inputs(const Inputs& inputs);
@@ -57,13 +58,13 @@ class SessionFilm {
   Error differs() const;
   std::string verdict() const;
 
-  SessionReader& reader_;
-  SceneSpec scene_;
-  TickRange range_;
+  recordings::SessionReader& reader_;
+  scenes::SceneSpec scene_;
+  session::TickRange range_;
   bool allow_diverged_;
-  ReplayCursor cursor_;
-  OverlayData overlay_;
-  CutDepth cut_depth_;
+  recordings::ReplayCursor cursor_;
+  render::OverlayData overlay_;
+  session::CutDepth cut_depth_;
   std::int64_t plot_every_ = 1;   ///< ticks between two points of the force plot
   std::size_t moment_every_ = 1;  ///< ticks between two moments of a following camera
   std::deque<Inputs> inputs_;     ///< of the last ticks, as many as these moments need
@@ -71,6 +72,6 @@ class SessionFilm {
 };
 
 /// What people call the structure of a scene's first organ.
-std::string structure_name(const SceneSpec& scene);
+std::string structure_name(const scenes::SceneSpec& scene);
 
-}  // namespace ctpm
+}  // namespace ctpm::film

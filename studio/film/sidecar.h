@@ -9,17 +9,17 @@
 #include "studio/video/video_writer.h"
 #include "studio/views/look.h"
 
-namespace ctpm {
+namespace ctpm::film {
 
 /// A session as the video shows it.
 struct SidecarSession {
   const SessionFilm* film = nullptr;
-  const Look* look = nullptr;
+  const views::Look* look = nullptr;
 };
 
 /// What is said of the video as a whole.
 struct SidecarFacts {
-  VideoFacts video;
+  video::VideoFacts video;
   StageTimes times;
   std::string pixels_hash;  ///< of all frames before encoding
   double speed = 1;
@@ -30,4 +30,4 @@ struct SidecarFacts {
 /// it and how long that took. Errors: a session cannot be read for its hash.
 Result<std::string> sidecar_text(const std::vector<SidecarSession>& sessions, const SidecarFacts& facts);
 
-}  // namespace ctpm
+}  // namespace ctpm::film

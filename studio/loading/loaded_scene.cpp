@@ -5,13 +5,13 @@
 
 #include "scenes/presets.h"
 
-namespace ctpm {
+namespace ctpm::loading {
 namespace {
 
-ImportOptions import_options_of(const OrganSpec& organ) {
-  ImportOptions options;
-  options.unit_in_metres = metres_of(organ.mesh_unit);
-  if (const MaterialPreset* preset = find_preset(organ.material.preset))
+importers::ImportOptions import_options_of(const scenes::OrganSpec& organ) {
+  importers::ImportOptions options;
+  options.unit_in_metres = scenes::metres_of(organ.mesh_unit);
+  if (const scenes::MaterialPreset* preset = scenes::find_preset(organ.material.preset))
     options.usual_size = {preset->usual_size_least, preset->usual_size_most};
   options.sphere_radius = organ.fill.radius;
   options.gap = organ.fill.gap;
@@ -21,7 +21,7 @@ ImportOptions import_options_of(const OrganSpec& organ) {
 }
 
 /// The errors of an organ's mesh, at the place where the scene names it.
-void add_mesh_errors(Problems& problems, std::size_t organ, const Errors& errors) {
+void add_mesh_errors(scenes::Problems& problems, std::size_t organ, const Errors& errors) {
   const std::string at = "/organs/" + std::to_string(organ) + "/mesh";
   for (const Error& error : errors)
     problems.add(at, (error.where.empty() ? "" : error.where + ": ") + error.message, error.hint, at);
@@ -29,27 +29,27 @@ void add_mesh_errors(Problems& problems, std::size_t organ, const Errors& errors
 
 }  // namespace
 
-Result<ImportedOrgan> fill_of(const std::string& scene_path, const OrganSpec& organ) {
-  if (!organ.rig) return import_organ(mesh_path(scene_path, organ), import_options_of(organ));
+Result<importers::ImportedOrgan> fill_of(const std::string& scene_path, const scenes::OrganSpec& organ) {
+  if (!organ.rig) return importers::import_organ(scenes::mesh_path(scene_path, organ), import_options_of(organ));
   // A rig has no mesh; its surface is empty and bound to nothing.
-  ImportedOrgan filled;
-  filled.organ = fill_rig(organ);
+  importers::ImportedOrgan filled;
+  filled.organ = scenes::fill_rig(organ);
   filled.organ.surface.binding.first = {0};
   return filled;
 }
 
-Result<LoadedScene> load_whole_scene(const std::string& path, const LoadOptions& options,
-                                     const std::function<void(SceneSpec&)>& change) {
-  Result<SceneDraft> draft = load_draft(path, options);
+Result<LoadedScene> load_whole_scene(const std::string& path, const scenes::LoadOptions& options,
+                                     const std::function<void(scenes::SceneSpec&)>& change) {
+  Result<scenes::SceneDraft> draft = scenes::load_draft(path, options);
   if (!draft) return draft.errors();
   auto& [scene, problems] = *draft;
   if (change && problems.is_empty()) change(scene.spec);
   LoadedScene loaded;
   loaded.path = path;
   for (std::size_t i = 0; i < scene.spec.organs.size(); ++i) {
-    ImportedOrgan filled;
-    if (can_be_filled(problems, i)) {
-      Result<ImportedOrgan> imported = fill_of(path, scene.spec.organs[i]);
+    importers::ImportedOrgan filled;
+    if (scenes::can_be_filled(problems, i)) {
+      Result<importers::ImportedOrgan> imported = fill_of(path, scene.spec.organs[i]);
       if (imported)
         filled = *std::move(imported);
       else
@@ -58,17 +58,18 @@ Result<LoadedScene> load_whole_scene(const std::string& path, const LoadOptions&
     loaded.organs.push_back(std::move(filled.organ));
     loaded.reports.push_back(std::move(filled.report));
   }
-  std::optional<BuiltScene> built = build_model(scene.spec, loaded.organs, problems);
+  std::optional<scenes::BuiltScene> built = scenes::build_model(scene.spec, loaded.organs, problems);
   if (!built) return problems.errors();
   loaded.built = *std::move(built);
   loaded.scene = std::move(scene);
   return loaded;
 }
 
-Result<BuiltScene> build_changed(const LoadedScene& scene, const std::function<void(SceneSpec&)>& change) {
-  SceneSpec spec = scene.scene.spec;
+Result<scenes::BuiltScene> build_changed(const LoadedScene& scene,
+                                         const std::function<void(scenes::SceneSpec&)>& change) {
+  scenes::SceneSpec spec = scene.scene.spec;
   change(spec);
-  return build_model(spec, scene.organs);
+  return scenes::build_model(spec, scene.organs);
 }
 
 std::vector<Surface> surfaces_of(const std::vector<FilledOrgan>& organs) {
@@ -77,11 +78,11 @@ std::vector<Surface> surfaces_of(const std::vector<FilledOrgan>& organs) {
   return surfaces;
 }
 
-double damage_force_of(const SceneSpec& scene) {
+double damage_force_of(const scenes::SceneSpec& scene) {
   double least = 0;
-  for (const OrganSpec& organ : scene.organs)
+  for (const scenes::OrganSpec& organ : scene.organs)
     if (organ.damage_force > 0 && (least == 0 || organ.damage_force < least)) least = organ.damage_force;
   return least;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::loading

@@ -11,33 +11,34 @@
 #include "scenes/build_model.h"
 #include "scenes/scene_file.h"
 
-namespace ctpm {
+namespace ctpm::loading {
 
 /// A scene with its meshes read and filled and its Model built.
 struct LoadedScene {
   std::string path;
-  SceneText scene;
-  std::vector<FilledOrgan> organs;    ///< (organ_count)
-  std::vector<ImportReport> reports;  ///< of organs that come from meshes; empty ones for rigs   (organ_count)
-  BuiltScene built;
+  scenes::SceneText scene;
+  std::vector<FilledOrgan> organs;               ///< (organ_count)
+  std::vector<importers::ImportReport> reports;  ///< of organs that come from meshes; empty ones for rigs (organ_count)
+  scenes::BuiltScene built;
 };
 
 /// Fills one organ of a scene: its mesh, or its rig. Errors: those of the mesh.
-Result<ImportedOrgan> fill_of(const std::string& scene_path, const OrganSpec& organ);
+Result<importers::ImportedOrgan> fill_of(const std::string& scene_path, const scenes::OrganSpec& organ);
 
 /// Reads a scene, imports its meshes and builds its Model. `change` may alter the scene between reading and importing.
 /// Warnings are in LoadedScene::scene. Errors: those of the scene, its meshes and its Model, all at once, with places.
-Result<LoadedScene> load_whole_scene(const std::string& path, const LoadOptions& options = {},
-                                     const std::function<void(SceneSpec&)>& change = {});
+Result<LoadedScene> load_whole_scene(const std::string& path, const scenes::LoadOptions& options = {},
+                                     const std::function<void(scenes::SceneSpec&)>& change = {});
 
 /// The Model of a loaded scene after `change`; the meshes are not read again. Errors: those of build_model().
-Result<BuiltScene> build_changed(const LoadedScene& scene, const std::function<void(SceneSpec&)>& change);
+Result<scenes::BuiltScene> build_changed(const LoadedScene& scene,
+                                         const std::function<void(scenes::SceneSpec&)>& change);
 
 /// The surfaces of the organs, in their order.
 std::vector<Surface> surfaces_of(const std::vector<FilledOrgan>& organs);
 
 /// The smallest damage limit of the organs for the force on a tool [N]; 0 if no organ has one. The limits for depth are
 /// in the Model (OrganRange::damage_depth).
-double damage_force_of(const SceneSpec& scene);
+double damage_force_of(const scenes::SceneSpec& scene);
 
-}  // namespace ctpm
+}  // namespace ctpm::loading

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <system_error>
 
-namespace ctpm {
+namespace ctpm::output {
 namespace {
 
 namespace fs = std::filesystem;
@@ -56,4 +56,4 @@ Result<Done> write_text_file(const std::string& path, const std::string& text) {
   return Error{path, "cannot be written: " + why, ""};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::output

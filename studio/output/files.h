@@ -5,7 +5,7 @@
 
 #include "core/model/result.h"
 
-namespace ctpm {
+namespace ctpm::output {
 
 /// The whole file. Errors: it does not exist, is a folder, cannot be read.
 Result<std::string> read_text_file(const std::string& path);
@@ -18,4 +18,4 @@ Result<Done> write_text_file(const std::string& path, const std::string& text);
 /// before long work.
 Result<Done> check_writable(const std::string& path);
 
-}  // namespace ctpm
+}  // namespace ctpm::output

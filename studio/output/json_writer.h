@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace ctpm {
+namespace ctpm::output {
 
 /// Writes JSON for machines: results of commands with --json. Numbers keep all their digits; what is not
 /// finite is null.
@@ -98,4 +98,4 @@ class JsonWriter {
   bool is_first_ = true, after_key_ = false;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::output

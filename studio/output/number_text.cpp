@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace ctpm {
+namespace ctpm::output {
 
 std::string fixed(double value, int digits) {
   char text[64];
@@ -17,4 +17,4 @@ std::string short_number(double value, int significant) {
   return text;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::output

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace ctpm {
+namespace ctpm::output {
 
 /// `value` with `digits` digits behind the point.
 std::string fixed(double value, int digits);
@@ -10,4 +10,4 @@ std::string fixed(double value, int digits);
 /// A number as a person writes it: `significant` digits at most, no trailing zeros.
 std::string short_number(double value, int significant = 4);
 
-}  // namespace ctpm
+}  // namespace ctpm::output

@@ -1,6 +1,6 @@
 #include "studio/output/option_name.h"
 
-namespace ctpm {
+namespace ctpm::output {
 namespace {
 
 constexpr std::string_view kBegin = "{option:", kEnd = "}", kInField = "abcdefghijklmnopqrstuvwxyz_.";
@@ -23,4 +23,4 @@ Errors name_options(Errors errors, const std::function<std::string(std::string_v
   return errors;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::output

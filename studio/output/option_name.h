@@ -6,7 +6,7 @@
 
 #include "core/model/result.h"
 
-namespace ctpm {
+namespace ctpm::output {
 
 /// Names a field of an option struct in the text of an error, for example option_name("look.camera"). A library knows
 /// only the field. Its caller knows what the user calls it, for example `--camera`, and puts that in with
@@ -16,4 +16,4 @@ std::string option_name(std::string_view field);
 /// The errors with every option_name() in place, message and hint replaced by `name_of(field)`.
 Errors name_options(Errors errors, const std::function<std::string(std::string_view field)>& name_of);
 
-}  // namespace ctpm
+}  // namespace ctpm::output

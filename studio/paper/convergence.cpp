@@ -8,13 +8,13 @@
 #include "studio/output/number_text.h"
 #include "studio/paper/paper.h"
 
-namespace ctpm {
+namespace ctpm::paper {
 namespace {
 
-constexpr Variant kVariants[] = {{"mass-spring", Structure::mass_spring, false, ""},
-                                 {"angle mass-spring", Structure::angle_mass_spring, false, ""},
-                                 {"TPM", Structure::tpm, false, ""},
-                                 {"CTPM", Structure::ctpm, false, ""}};
+constexpr Variant kVariants[] = {{"mass-spring", network::Structure::mass_spring, false, ""},
+                                 {"angle mass-spring", network::Structure::angle_mass_spring, false, ""},
+                                 {"TPM", network::Structure::tpm, false, ""},
+                                 {"CTPM", network::Structure::ctpm, false, ""}};
 
 /// Mean depth by which the spheres have sunk from rest [mm].
 double mean_sag(const Model& model, const State& state) {
@@ -34,12 +34,12 @@ Result<double> sag_at_rest(Model model, const std::string& name) {
                   .max_iterations = 20000,
                   .substeps = 1,
                   .integrator = Integrator::backward_euler};
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   double sag = 0;
   for (int i = 0; i < kMostSteps; ++i) {
-    const StepReport report = stepper.step(state, Inputs{});
-    if (report.status != StepStatus::ok) break;
+    const stepping::StepReport report = stepper.step(state, Inputs{});
+    if (report.status != stepping::StepStatus::ok) break;
     const double before = sag;
     sag = mean_sag(model, state);
     if (std::abs(sag - before) <= kEnough * std::abs(sag)) return sag;
@@ -48,13 +48,13 @@ Result<double> sag_at_rest(Model model, const std::string& name) {
 }
 
 /// The organ filled `finer` times as finely.
-void fill_finer(OrganSpec& organ, int finer) {
+void fill_finer(scenes::OrganSpec& organ, int finer) {
   organ.fill.radius /= finer, organ.fill.gap /= finer;
   if (organ.rig && organ.rig->block) organ.rig->block = double(finer) * *organ.rig->block;
 }
 
-Table fillings_layout() {
-  Table table;
+reports::Table fillings_layout() {
+  reports::Table table;
   table.title = "Mean sag under gravity";
   table.columns = {{"organ", "organ"},
                    {"model", "model"},
@@ -71,7 +71,7 @@ void add_fillings(Experiment& experiment, const std::string& organ, const Varian
     const SagOfFilling& f = refined.fillings[i];
     experiment.section.tables[0].rows.push_back(
         {organ, std::string(variant.name), f.radius, std::int64_t(f.spheres), f.sag,
-         i == 0 ? Cell() : Cell(100 * (f.sag / refined.fillings[i - 1].sag - 1))});
+         i == 0 ? reports::Cell() : reports::Cell(100 * (f.sag / refined.fillings[i - 1].sag - 1))});
   }
   Claim claim{.experiment = "convergence",
               .organ = organ,
@@ -80,19 +80,19 @@ void add_fillings(Experiment& experiment, const std::string& organ, const Varian
   claim.network = is_aligned ? refined.order() : refined.shrinkage();
   // An order of one half: each halving changes less than 0.71 times as much as the one before.
   claim.holds = refined.shrinkage() < std::sqrt(0.5);
-  claim.note = is_aligned ? "it converges; limit " + short_number(refined.limit()) + " mm"
+  claim.note = is_aligned ? "it converges; limit " + output::short_number(refined.limit()) + " mm"
                           : "it converges; the anchored spheres jump with the lattice, so no order is read";
   experiment.claims.push_back(claim);
 }
 
-Plot sag_plot(const std::vector<Refinement>& refined) {
-  Plot plot{.title = "mean sag of the block against its spheres",
-            .x_title = "sphere radius [mm]",
-            .y_title = "mean sag [mm]"};
+reports::Plot sag_plot(const std::vector<Refinement>& refined) {
+  reports::Plot plot{.title = "mean sag of the block against its spheres",
+                     .x_title = "sphere radius [mm]",
+                     .y_title = "mean sag [mm]"};
   for (std::size_t i = 0; i < refined.size(); ++i) {
-    Series series{.name = kVariants[i].name, .stroke = Stroke::path, .colour = int(i)};
+    reports::Series series{.name = kVariants[i].name, .stroke = reports::Stroke::path, .colour = int(i)};
     for (const SagOfFilling& f : refined[i].fillings) series.x.push_back(f.radius), series.y.push_back(f.sag);
-    Series limit{.x = {0}, .y = {refined[i].limit()}, .stroke = Stroke::crosses, .colour = int(i)};
+    reports::Series limit{.x = {0}, .y = {refined[i].limit()}, .stroke = reports::Stroke::crosses, .colour = int(i)};
     plot.series.push_back(series), plot.series.push_back(limit);
   }
   plot.x_range = {-0.1, 4.2};
@@ -111,15 +111,15 @@ double Refinement::limit() const {
   return fillings[2].sag + (fillings[2].sag - fillings[1].sag) * ratio / (1 - ratio);
 }
 
-Result<Refinement> refine(const LoadedScene& scene, const Variant& variant) {
+Result<Refinement> refine(const loading::LoadedScene& scene, const Variant& variant) {
   Refinement refined;
   for (const int finer : {1, 2, 4}) {
-    SceneSpec spec = scene.scene.spec;
+    scenes::SceneSpec spec = scene.scene.spec;
     use_variant(spec, variant);
     fill_finer(spec.organs[0], finer);
-    Result<ImportedOrgan> filled = fill_of(scene.path, spec.organs[0]);
+    Result<importers::ImportedOrgan> filled = loading::fill_of(scene.path, spec.organs[0]);
     if (!filled) return filled.errors();
-    Result<BuiltScene> built = build_model(spec, {&filled->organ, 1});
+    Result<scenes::BuiltScene> built = scenes::build_model(spec, {&filled->organ, 1});
     if (!built) return built.errors();
     const std::size_t spheres = built->model.sphere_count();
     const Result<double> sag = sag_at_rest(std::move(built->model), scene.path);
@@ -130,8 +130,8 @@ Result<Refinement> refine(const LoadedScene& scene, const Variant& variant) {
 }
 
 Result<Experiment> run_convergence(const std::string& scenes) {
-  const Result<LoadedScene> block = load_experiment(scenes, "paper/convergence-liver.json"),
-                            liver = load_experiment(scenes, "liver.json");
+  const Result<loading::LoadedScene> block = load_experiment(scenes, "paper/convergence-liver.json"),
+                                     liver = load_experiment(scenes, "liver.json");
   if (!block) return block.errors();
   if (!liver) return liver.errors();
   // The liver takes longest and runs beside the others.
@@ -150,7 +150,7 @@ Result<Experiment> run_convergence(const std::string& scenes) {
   if (!errors.empty()) return errors;
 
   Experiment experiment;
-  Section& section = experiment.section;
+  reports::Section& section = experiment.section;
   section.key = "convergence", section.title = "The same organ filled with r, r/2 and r/4";
   section.tables = {fillings_layout()};
   for (std::size_t i = 0; i < refined.size(); ++i)
@@ -172,4 +172,4 @@ Result<Experiment> run_convergence(const std::string& scenes) {
   return experiment;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::paper

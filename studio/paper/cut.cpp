@@ -11,12 +11,12 @@
 #include "studio/paper/paper.h"
 #include "studio/paper/pictures.h"
 
-namespace ctpm {
+namespace ctpm::paper {
 namespace {
 
-constexpr Variant kVariants[] = {{"mass-spring", Structure::mass_spring, false, ""},
-                                 {"CTPM", Structure::ctpm, false, "kPa s"},
-                                 {"CTPM", Structure::ctpm, true, "Pa s"}};
+constexpr Variant kVariants[] = {{"mass-spring", network::Structure::mass_spring, false, ""},
+                                 {"CTPM", network::Structure::ctpm, false, "kPa s"},
+                                 {"CTPM", network::Structure::ctpm, true, "Pa s"}};
 constexpr std::size_t kMassSpring = 0, kCtpm = 1;
 
 /// The scene's probes: A and B stand on one bank of the cut, C and D across it.
@@ -28,14 +28,14 @@ struct CutRun {
   std::array<std::array<Vec3, kSeconds>, 4>
       place;  ///< of A to D, 1 s to 8 s after the cut, from where they were before it [mm]
   std::array<double, 2> gap_before, gap_after;  ///< A to C and B to D [mm]
-  Series way_of_a;                              ///< y of A over the time after the cut [s], [mm]
+  reports::Series way_of_a;                     ///< y of A over the time after the cut [s], [mm]
   State state;                                  ///< 1 s after the cut
   Model model;
   std::string integrator;  ///< what was chosen for the Model
 };
 
-Result<CutRun> run_kidney(const LoadedScene& scene, const Script& script, const Variant& variant) {
-  Result<BuiltScene> built = build_changed(scene, [&](SceneSpec& s) {
+Result<CutRun> run_kidney(const loading::LoadedScene& scene, const scenes::Script& script, const Variant& variant) {
+  Result<scenes::BuiltScene> built = loading::build_changed(scene, [&](scenes::SceneSpec& s) {
     use_variant(s, variant);
     s.solver.tolerance = 1e-6, s.solver.velocity_floor = 1e-10;
   });
@@ -44,13 +44,13 @@ Result<CutRun> run_kidney(const LoadedScene& scene, const Script& script, const 
   run.model = std::move(built->model);
   Model& model = run.model;
   State state = rest_state(model);
-  Stepper(model).settle(state, std::llround(3 / model.tick));
+  stepping::Stepper(model).settle(state, std::llround(3 / model.tick));
   // Small steps from here on: where they are implicit, a whole tick would damp what is to be seen.
   model.solver.substeps = kSubsteps;
-  resolve_integrator(model);
-  Stepper stepper(model);
-  run.integrator = name_of(stepper.integrator().integrator);
-  const ScriptPlayer player(script, model.tools, model.tick);
+  stepping::resolve_integrator(model);
+  stepping::Stepper stepper(model);
+  run.integrator = stepping::name_of(stepper.integrator().integrator);
+  const scenes::ScriptPlayer player(script, model.tools, model.tick);
   const auto at = [&](std::size_t probe) { return state.position[std::size_t(built->probe_sphere[probe])]; };
   std::array<Vec3, 4> before;
   for (std::size_t p = 0; p < 4; ++p) before[p] = at(p);
@@ -58,8 +58,8 @@ Result<CutRun> run_kidney(const LoadedScene& scene, const Script& script, const 
   std::int32_t severed = 0;
   const auto per_second = std::int64_t(std::lround(1 / model.tick));
   for (std::int64_t tick = 0; tick < player.tick_count(); ++tick) {
-    const StepReport report = stepper.step(state, player.at(tick));
-    if (is_refused(report.status))
+    const stepping::StepReport report = stepper.step(state, player.at(tick));
+    if (stepping::is_refused(report.status))
       return Error{scene.path,
                    full_name(variant) + ": the run diverged at sphere " + std::to_string(report.worst_sphere), ""};
     severed += report.severed;
@@ -92,21 +92,21 @@ double spread(const std::array<Vec3, kSeconds>& places) {
 }
 
 /// Fig. 14: one point of both models in y and z.
-Plot place_plot(std::size_t probe, const std::array<CutRun, 3>& runs) {
-  Plot plot{.title = std::string("point ") + kProbes[probe] + ", each second from 1 s to 8 s after the cut",
-            .x_title = "y from before the cut [mm]",
-            .y_title = "z from before the cut [mm]"};
+reports::Plot place_plot(std::size_t probe, const std::array<CutRun, 3>& runs) {
+  reports::Plot plot{.title = std::string("point ") + kProbes[probe] + ", each second from 1 s to 8 s after the cut",
+                     .x_title = "y from before the cut [mm]",
+                     .y_title = "z from before the cut [mm]"};
   constexpr int kColours[] = {1, 0, 4};
   for (const std::size_t i : {std::size_t(0), std::size_t(2), std::size_t(1)}) {
-    Series series{.name = runs[i].way_of_a.name, .stroke = Stroke::path, .colour = kColours[i]};
+    reports::Series series{.name = runs[i].way_of_a.name, .stroke = reports::Stroke::path, .colour = kColours[i]};
     for (const Vec3& p : runs[i].place[probe]) series.x.push_back(p.y), series.y.push_back(p.z);
     plot.series.push_back(series);
   }
   return plot;
 }
 
-Table place_table(const std::array<CutRun, 3>& runs) {
-  Table table;
+reports::Table place_table(const std::array<CutRun, 3>& runs) {
+  reports::Table table;
   table.title = "Places of the points from 1 s to 8 s after the cut";
   table.columns = {{"model", "model"},
                    {"viscosity", "viscosity"},
@@ -138,7 +138,7 @@ void add_claims(Experiment& experiment, const std::array<CutRun, 3>& runs) {
                 .quantity = std::string("spread of ") + kProbes[p] + " [mm]",
                 .network = spread(runs[kCtpm].place[p])};
     claim.holds = 10 * spread(runs[kCtpm].place[p]) < spread(runs[kMassSpring].place[p]);
-    claim.note = "less than a tenth of mass-spring's " + short_number(spread(runs[kMassSpring].place[p]), 2) +
+    claim.note = "less than a tenth of mass-spring's " + output::short_number(spread(runs[kMassSpring].place[p]), 2) +
                  " mm: it settles where mass-spring wanders";
     experiment.claims.push_back(claim);
   }
@@ -154,12 +154,13 @@ void add_claims(Experiment& experiment, const std::array<CutRun, 3>& runs) {
   }
 }
 
-Result<Done> add_pictures(Section& section, const LoadedScene& scene, const std::array<CutRun, 3>& runs) {
-  const Camera camera{{-0.03, -0.12, 0.15}, {0, -0.004, 0.028}, {0, 0, 1}, 32};
+Result<Done> add_pictures(reports::Section& section, const loading::LoadedScene& scene,
+                          const std::array<CutRun, 3>& runs) {
+  const render::Camera camera{{-0.03, -0.12, 0.15}, {0, -0.004, 0.028}, {0, 0, 1}, 32};
   for (const std::size_t i : {kMassSpring, kCtpm}) {
     const std::string what = "Figs. 12 and 13, " + runs[i].way_of_a.name + ": ";
     const std::string when = " 1 s after the cut.";
-    const Result<std::vector<Picture>> pictures =
+    const Result<std::vector<reports::Picture>> pictures =
         draw_shots(scene.scene.spec, scene.organs, runs[i].model, camera,
                    {{.state = runs[i].state, .caption = what + "surface" + when},
                     {.state = runs[i].state, .caption = what + "inside" + when, .is_inside = true}});
@@ -172,14 +173,14 @@ Result<Done> add_pictures(Section& section, const LoadedScene& scene, const std:
 }  // namespace
 
 Result<Experiment> run_cut(const std::string& scenes, bool with_pictures) {
-  const Result<LoadedScene> scene = load_experiment(scenes, "incision.json");
+  const Result<loading::LoadedScene> scene = load_experiment(scenes, "incision.json");
   if (!scene) return scene.errors();
   const std::string script_file = scenes + "/scripts/incision-cut.json";
-  const Result<std::string> text = read_text_file(script_file);
+  const Result<std::string> text = output::read_text_file(script_file);
   if (!text) return text.errors();
   std::vector<std::string> tools;
-  for (const ToolSpec& tool : scene->scene.spec.tools) tools.push_back(tool.name);
-  const Result<Script> script = read_script(*text, script_file, tools);
+  for (const scenes::ToolSpec& tool : scene->scene.spec.tools) tools.push_back(tool.name);
+  const Result<scenes::Script> script = scenes::read_script(*text, script_file, tools);
   if (!script) return script.errors();
 
   std::array<CutRun, 3> runs;
@@ -195,13 +196,13 @@ Result<Experiment> run_cut(const std::string& scenes, bool with_pictures) {
   runs = {std::move(*first), std::move(*second), std::move(*third)};
 
   Experiment experiment;
-  Section& section = experiment.section;
+  reports::Section& section = experiment.section;
   section.key = "cut", section.title = "A kidney is cut, mass-spring against CTPM: Figs. 12 to 14";
   for (std::size_t p = 0; p < 4; ++p) section.plots.push_back(place_plot(p, runs));
-  Plot ways{.title = "y of point A after the cut",
-            .x_title = "time after the cut [s]",
-            .y_title = "y from before the cut [mm]",
-            .series = {runs[0].way_of_a, runs[2].way_of_a, runs[1].way_of_a}};
+  reports::Plot ways{.title = "y of point A after the cut",
+                     .x_title = "time after the cut [s]",
+                     .y_title = "y from before the cut [mm]",
+                     .series = {runs[0].way_of_a, runs[2].way_of_a, runs[1].way_of_a}};
   ways.series[0].colour = 1, ways.series[1].colour = 4, ways.series[2].colour = 0;
   section.plots.push_back(ways);
   section.tables = {place_table(runs)};
@@ -223,4 +224,4 @@ Result<Experiment> run_cut(const std::string& scenes, bool with_pictures) {
   return experiment;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::paper

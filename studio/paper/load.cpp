@@ -9,41 +9,41 @@
 #include "studio/paper/paper.h"
 #include "studio/paper/pictures.h"
 
-namespace ctpm {
+namespace ctpm::paper {
 namespace {
 
-constexpr Variant kVariants[] = {{"mass-spring", Structure::mass_spring, false, ""},
-                                 {"angle mass-spring", Structure::angle_mass_spring, false, ""},
-                                 {"TPM", Structure::tpm, false, "kPa s"},
-                                 {"TPM", Structure::tpm, true, "Pa s"},
-                                 {"CTPM", Structure::ctpm, false, "kPa s"},
-                                 {"CTPM", Structure::ctpm, true, "Pa s"}};
+constexpr Variant kVariants[] = {{"mass-spring", network::Structure::mass_spring, false, ""},
+                                 {"angle mass-spring", network::Structure::angle_mass_spring, false, ""},
+                                 {"TPM", network::Structure::tpm, false, "kPa s"},
+                                 {"TPM", network::Structure::tpm, true, "Pa s"},
+                                 {"CTPM", network::Structure::ctpm, false, "kPa s"},
+                                 {"CTPM", network::Structure::ctpm, true, "Pa s"}};
 constexpr std::size_t kMassSpring = 0, kCtpm = 4;
 
 /// A run of the block.
 struct LoadRun {
-  Series depth;            ///< of the loaded sphere over time [s], [mm]
+  reports::Series depth;   ///< of the loaded sphere over time [s], [mm]
   std::string integrator;  ///< what was chosen for its Model
 };
 
 constexpr double kDuration = 1.0;  ///< [s]
 
-Result<LoadRun> run_block(const LoadedScene& scene, const Variant& variant, bool is_sudden) {
-  const Result<BuiltScene> built = build_changed(scene, [&](SceneSpec& s) {
+Result<LoadRun> run_block(const loading::LoadedScene& scene, const Variant& variant, bool is_sudden) {
+  const Result<scenes::BuiltScene> built = loading::build_changed(scene, [&](scenes::SceneSpec& s) {
     use_variant(s, variant);
     if (is_sudden) s.loads[0].ramp = 0;
   });
   if (!built) return built.errors();
   const Model& model = built->model;
   const auto c = std::size_t(built->probe_sphere[0]);
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   LoadRun run;
-  run.depth.name = full_name(variant), run.integrator = name_of(stepper.integrator().integrator);
+  run.depth.name = full_name(variant), run.integrator = stepping::name_of(stepper.integrator().integrator);
   State state = rest_state(model);
   const auto ticks = std::int64_t(std::lround(kDuration / model.tick));
   for (std::int64_t tick = 1; tick <= ticks; ++tick) {
-    const StepReport report = stepper.step(state, Inputs{});
-    if (report.status != StepStatus::ok)
+    const stepping::StepReport report = stepper.step(state, Inputs{});
+    if (report.status != stepping::StepStatus::ok)
       return Error{scene.path,
                    full_name(variant) + ": the run diverged at sphere " + std::to_string(report.worst_sphere), ""};
     run.depth.x.push_back(double(tick) * model.tick),
@@ -53,7 +53,7 @@ Result<LoadRun> run_block(const LoadedScene& scene, const Variant& variant, bool
 }
 
 /// All variants, two at a time.
-Result<std::vector<LoadRun>> run_variants(const LoadedScene& scene, bool is_sudden) {
+Result<std::vector<LoadRun>> run_variants(const loading::LoadedScene& scene, bool is_sudden) {
   std::vector<LoadRun> runs;
   for (std::size_t i = 0; i < std::size(kVariants); i += 2) {
     std::future<Result<LoadRun>> other =
@@ -66,8 +66,8 @@ Result<std::vector<LoadRun>> run_variants(const LoadedScene& scene, bool is_sudd
   return runs;
 }
 
-Table motion_layout(const std::string& title) {
-  Table table;
+reports::Table motion_layout(const std::string& title) {
+  reports::Table table;
   table.title = title;
   table.columns = {{"model", "model"},
                    {"viscosity", "viscosity"},
@@ -81,16 +81,17 @@ Table motion_layout(const std::string& title) {
 
 /// One way of loading: plots, a table, and what must hold.
 void add_runs(Experiment& experiment, const std::vector<LoadRun>& runs, const std::string& how) {
-  Section& section = experiment.section;
-  Plot compared{.title = "depth of the loaded sphere, load " + how, .x_title = "time [s]", .y_title = "depth [mm]"};
-  Plot others = compared;
+  reports::Section& section = experiment.section;
+  reports::Plot compared{
+      .title = "depth of the loaded sphere, load " + how, .x_title = "time [s]", .y_title = "depth [mm]"};
+  reports::Plot others = compared;
   others.title = "the other models, load " + how;
   for (const std::size_t i : {std::size_t(0), std::size_t(5), std::size_t(4)}) compared.series.push_back(runs[i].depth);
   compared.series[0].colour = 1, compared.series[1].colour = 4, compared.series[2].colour = 0;
   for (const std::size_t i : {std::size_t(1), std::size_t(3), std::size_t(2)}) others.series.push_back(runs[i].depth);
   others.series[0].colour = 2, others.series[1].colour = 4, others.series[2].colour = 0;
   section.plots.push_back(compared), section.plots.push_back(others);
-  Table table = motion_layout("0.13 N, load " + how);
+  reports::Table table = motion_layout("0.13 N, load " + how);
   std::vector<StepResponse> motions;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const StepResponse& m = motions.emplace_back(step_response_of(runs[i].depth));
@@ -125,18 +126,19 @@ Result<Press> press_and_leave(Model model, const std::string& name, State state,
   constexpr double kSpeed = 0.1, kHold = 0.3;
   // An implicit step of a whole tick would damp what is to be seen.
   model.solver.substeps = 10;
-  resolve_integrator(model);
-  const auto c = std::size_t(nearest_sphere(model, place));
+  stepping::resolve_integrator(model);
+  const auto c = std::size_t(scenes::nearest_sphere(model, place));
   const Vec3 touch = state.position[c] + Vec3{0, 0, model.tools[0].radius + model.contact_radius[c]};
   const auto ticks_of = [&](double t) { return std::int64_t(std::lround(t / model.tick)); };
   const std::int64_t down = ticks_of(depth / kSpeed), held = down + ticks_of(kHold), end = held + ticks_of(kLeft);
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   Press press;
   for (std::int64_t tick = 1; tick <= end; ++tick) {
     Inputs inputs;
     if (tick <= held)
       inputs.tool = 0, inputs.position = touch - Vec3{0, 0, depth * std::min(1.0, double(tick) / double(down))};
-    if (stepper.step(state, inputs).status == StepStatus::diverged) return Error{name, "the press diverged", ""};
+    if (stepper.step(state, inputs).status == stepping::StepStatus::diverged)
+      return Error{name, "the press diverged", ""};
     if (tick == held) press.under = state;
   }
   press.depth = 1e3 * (model.rest_position.z[c] - press.under.position.z[c]);
@@ -145,17 +147,18 @@ Result<Press> press_and_leave(Model model, const std::string& name, State state,
 }
 
 /// Adds the pictures of one state, one camera each.
-Result<Done> add_shot(Section& section, const LoadedScene& scene, const std::vector<FilledOrgan>& organs,
-                      const Camera& camera, const PaperShot& shot) {
-  Result<std::vector<Picture>> pictures = draw_shots(scene.scene.spec, organs, scene.built.model, camera, {shot});
+Result<Done> add_shot(reports::Section& section, const loading::LoadedScene& scene,
+                      const std::vector<FilledOrgan>& organs, const render::Camera& camera, const PaperShot& shot) {
+  Result<std::vector<reports::Picture>> pictures =
+      draw_shots(scene.scene.spec, organs, scene.built.model, camera, {shot});
   if (!pictures) return pictures.errors();
-  for (Picture& picture : *pictures) section.pictures.push_back(std::move(picture));
+  for (reports::Picture& picture : *pictures) section.pictures.push_back(std::move(picture));
   return Done{};
 }
 
 /// The Model of a scene in one variant.
-Result<Model> model_of(const LoadedScene& scene, const Variant& variant) {
-  Result<BuiltScene> built = build_changed(scene, [&](SceneSpec& s) {
+Result<Model> model_of(const loading::LoadedScene& scene, const Variant& variant) {
+  Result<scenes::BuiltScene> built = loading::build_changed(scene, [&](scenes::SceneSpec& s) {
     use_variant(s, variant);
     s.loads.clear();
   });
@@ -164,8 +167,8 @@ Result<Model> model_of(const LoadedScene& scene, const Variant& variant) {
 }
 
 /// Fig. 9: surface and inside of the block in both models after a ball was taken away.
-Result<Done> add_block_pictures(Section& section, const LoadedScene& scene) {
-  const Camera outer{{-0.05, -0.20, 0.16}, {0, 0.002, 0.056}, {0, 0, 1}, 32},
+Result<Done> add_block_pictures(reports::Section& section, const loading::LoadedScene& scene) {
+  const render::Camera outer{{-0.05, -0.20, 0.16}, {0, 0.002, 0.056}, {0, 0, 1}, 32},
       inner{{-0.03, -0.24, 0.12}, {0, 0, 0.044}, {0, 0, 1}, 32};
   std::vector<FilledOrgan> organs = scene.organs;
   add_box_surface(organs[0], 3);
@@ -191,22 +194,22 @@ Result<Done> add_block_pictures(Section& section, const LoadedScene& scene) {
 }
 
 /// Fig. 10: the shipped liver under a ball, where its stiffness was fitted, and after it.
-Result<Done> add_liver_pictures(Section& section, const std::string& scenes) {
-  const Result<LoadedScene> scene = load_experiment(scenes, "liver.json");
+Result<Done> add_liver_pictures(reports::Section& section, const std::string& scenes) {
+  const Result<loading::LoadedScene> scene = load_experiment(scenes, "liver.json");
   if (!scene) return scene.errors();
-  const std::optional<FittedForSpec>& fitted = scene->scene.spec.organs[0].material.fitted_for;
+  const std::optional<scenes::FittedForSpec>& fitted = scene->scene.spec.organs[0].material.fitted_for;
   if (!fitted) return Error{scene->path, "its stiffness scale was fitted for no place", "fit its stiffness"};
   for (const std::size_t i : {kMassSpring, kCtpm}) {
     const Result<Model> model = model_of(*scene, kVariants[i]);
     if (!model) return model.errors();
     State state = rest_state(*model);
-    Stepper(*model).settle(state, std::llround(scene->scene.spec.settle / model->tick));
+    stepping::Stepper(*model).settle(state, std::llround(scene->scene.spec.settle / model->tick));
     const Result<Press> press = press_and_leave(*model, scene->path, state, fitted->place, 9e-3);
     if (!press) return press.errors();
     const std::string what = "Fig. 10, " + full_name(kVariants[i]) + ": the liver ";
-    const Camera camera{fitted->place + Vec3{-0.03, -0.13, 0.075}, fitted->place, {0, 0, 1}, 32};
+    const render::Camera camera{fitted->place + Vec3{-0.03, -0.13, 0.075}, fitted->place, {0, 0, 1}, 32};
     const PaperShot under{.state = press->under,
-                          .caption = what + "with a ball " + fixed(press->depth, 1) + " mm deep.",
+                          .caption = what + "with a ball " + output::fixed(press->depth, 1) + " mm deep.",
                           .show_tool = true},
         after{.state = press->after,
               .caption = what + "20 ms after the ball is taken away, displacements drawn 3 times as large.",
@@ -219,7 +222,7 @@ Result<Done> add_liver_pictures(Section& section, const std::string& scenes) {
 
 }  // namespace
 
-StepResponse step_response_of(const Series& series) {
+StepResponse step_response_of(const reports::Series& series) {
   StepResponse motion;
   const std::vector<double>& y = series.y;
   const std::size_t tail = y.size() * 3 / 4;
@@ -238,9 +241,9 @@ StepResponse step_response_of(const Series& series) {
 
 Result<Experiment> run_load(const std::string& scenes, bool with_pictures) {
   Experiment experiment;
-  Section& section = experiment.section;
+  reports::Section& section = experiment.section;
   section.key = "load", section.title = "A force on one surface sphere, mass-spring against CTPM: Figs. 9 to 11";
-  const Result<LoadedScene> scene = load_experiment(scenes, "paper/block-liver.json");
+  const Result<loading::LoadedScene> scene = load_experiment(scenes, "paper/block-liver.json");
   if (!scene) return scene.errors();
   for (const bool is_sudden : {false, true}) {
     const Result<std::vector<LoadRun>> runs = run_variants(*scene, is_sudden);
@@ -268,4 +271,4 @@ Result<Experiment> run_load(const std::string& scenes, bool with_pictures) {
   return experiment;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::paper

@@ -8,7 +8,7 @@
 
 #include "scenes/presets.h"
 
-namespace ctpm {
+namespace ctpm::paper {
 namespace {
 
 /// Printed numbers that are this close [share] are called agreeing where nothing must hold.
@@ -18,8 +18,8 @@ double share(const std::optional<double>& got, const std::optional<double>& want
   return got && wanted && *wanted != 0 ? *got / *wanted - 1 : std::nan("");
 }
 
-Cell cell(const std::optional<double>& value) { return value ? Cell(*value) : Cell(); }
-Cell percent(double value) { return std::isfinite(value) ? Cell(100 * value) : Cell(); }
+reports::Cell cell(const std::optional<double>& value) { return value ? reports::Cell(*value) : reports::Cell(); }
+reports::Cell percent(double value) { return std::isfinite(value) ? reports::Cell(100 * value) : reports::Cell(); }
 
 }  // namespace
 
@@ -28,18 +28,18 @@ double Claim::error_to_closed_form() const {
 }
 double Claim::error_to_paper() const { return share(network, paper); }
 
-ReportVerdict Claim::verdict() const {
+reports::ReportVerdict Claim::verdict() const {
   bool is_met = true;
   // Written so that an error that is not a number counts as missed.
   if (closed_form_bound) is_met = is_met && std::abs(error_to_closed_form()) <= *closed_form_bound;
   if (paper_bound) is_met = is_met && std::abs(error_to_paper()) <= *paper_bound;
   if (holds) is_met = is_met && *holds;
-  if (!is_met) return ReportVerdict::missed;
-  return closed_form_bound || paper_bound || holds ? ReportVerdict::met : ReportVerdict::shown;
+  if (!is_met) return reports::ReportVerdict::missed;
+  return closed_form_bound || paper_bound || holds ? reports::ReportVerdict::met : reports::ReportVerdict::shown;
 }
 
-Table claims_table(const std::vector<Claim>& claims) {
-  Table table;
+reports::Table claims_table(const std::vector<Claim>& claims) {
+  reports::Table table;
   table.columns = {{"experiment", "experiment"},
                    {"organ", "organ"},
                    {"model", "model"},
@@ -62,8 +62,9 @@ Table claims_table(const std::vector<Claim>& claims) {
                                                                             : "differs";
     table.rows.push_back({c.experiment, c.organ, c.structure, c.viscosity, c.quantity, cell(c.paper),
                           cell(c.closed_form), cell(c.network), percent(c.error_to_closed_form()),
-                          c.closed_form_bound ? percent(*c.closed_form_bound) : Cell(), percent(off),
-                          c.paper_bound ? percent(*c.paper_bound) : Cell(), c.verdict(), std::string(agrees), c.note});
+                          c.closed_form_bound ? percent(*c.closed_form_bound) : reports::Cell(), percent(off),
+                          c.paper_bound ? percent(*c.paper_bound) : reports::Cell(), c.verdict(), std::string(agrees),
+                          c.note});
   }
   return table;
 }
@@ -72,11 +73,11 @@ std::string full_name(const Variant& variant) {
   return variant.name + (*variant.reading ? std::string(", ") + variant.reading : "");
 }
 
-void use_variant(SceneSpec& scene, const Variant& variant) {
+void use_variant(scenes::SceneSpec& scene, const Variant& variant) {
   scene.organs[0].structure = variant.structure;
   if (!variant.is_pa_s) return;
   scene.organs[0].material.preset += "-pa-s";
-  for (LayerSpec& layer : scene.organs[0].layers) layer.material.preset += "-pa-s";
+  for (scenes::LayerSpec& layer : scene.organs[0].layers) layer.material.preset += "-pa-s";
 }
 
 namespace {
@@ -97,12 +98,12 @@ constexpr Need kNeeds[] = {{"paper/rig-skin.json", 7, 0, 0, 1},
 
 }  // namespace
 
-Result<LoadedScene> load_experiment(const std::string& scenes, const std::string& name) {
-  Result<LoadedScene> scene = load_whole_scene(scenes + "/" + name);
+Result<loading::LoadedScene> load_experiment(const std::string& scenes, const std::string& name) {
+  Result<loading::LoadedScene> scene = loading::load_whole_scene(scenes + "/" + name);
   if (!scene) return scene;
   const auto need = std::find_if(std::begin(kNeeds), std::end(kNeeds), [&](const Need& n) { return n.name == name; });
   CTPM_CHECK(need != std::end(kNeeds), "every experiment says what it needs");
-  const SceneSpec& spec = scene->scene.spec;
+  const scenes::SceneSpec& spec = scene->scene.spec;
   Errors errors;
   const std::size_t cells = spec.organs[0].rig ? spec.organs[0].rig->cells.size() : 0;
   if (cells < need->cells)
@@ -122,9 +123,9 @@ Result<LoadedScene> load_experiment(const std::string& scenes, const std::string
 Errors check_experiments(const std::string& scenes) {
   Errors errors;
   for (const Need& need : kNeeds)
-    if (const Result<LoadedScene> scene = load_experiment(scenes, need.name); !scene)
+    if (const Result<loading::LoadedScene> scene = load_experiment(scenes, need.name); !scene)
       errors.insert(errors.end(), scene.errors().begin(), scene.errors().end());
   return errors;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::paper

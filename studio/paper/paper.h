@@ -13,7 +13,7 @@
 
 // The experiments of Bao & Wu, run on the sphere network. Each takes the folder of the shipped scenes, runs
 // scenes of it, and compares what the network gives with the closed forms and with what the paper prints.
-namespace ctpm {
+namespace ctpm::paper {
 
 /// One number that three sides may know: the paper as printed, the closed form, the network.
 struct Claim {
@@ -31,25 +31,25 @@ struct Claim {
 
   double error_to_closed_form() const;  ///< [share]; NaN if one side is unknown
   double error_to_paper() const;        ///< [share]; NaN if one side is unknown
-  ReportVerdict verdict()
+  reports::ReportVerdict verdict()
       const;  ///< missed if a bound is passed or something asked is not so; shown if nothing must hold
 };
 
 /// One of the models that an experiment compares.
 struct Variant {
   const char* name;
-  Structure structure;
+  network::Structure structure;
   bool is_pa_s;         ///< viscosity as printed, in Pa s/mm
   const char* reading;  ///< the viscosity's, as a reader is told; empty: the model has none
 };
 /// "CTPM, kPa s".
 std::string full_name(const Variant& variant);
 /// Gives the scene's first organ the variant's structure and viscosity.
-void use_variant(SceneSpec& scene, const Variant& variant);
+void use_variant(scenes::SceneSpec& scene, const Variant& variant);
 
 /// What one experiment gave.
 struct Experiment {
-  Section section;
+  reports::Section section;
   std::vector<Claim> claims;
 };
 
@@ -84,14 +84,14 @@ struct Refinement {
   double limit() const;      ///< sag that the three point to [mm] (Richardson)
 };
 /// Fills the scene's organ three times and lets it come to rest. Errors: those of the mesh; no rest is found.
-Result<Refinement> refine(const LoadedScene& scene, const Variant& variant);
+Result<Refinement> refine(const loading::LoadedScene& scene, const Variant& variant);
 
 /// The same organ with finer and finer fillings: a block in all four structures, and the shipped liver.
 Result<Experiment> run_convergence(const std::string& scenes);
 
 /// All experiments, in the paper's order.
 struct PaperResults {
-  std::vector<Section> sections;
+  std::vector<reports::Section> sections;
   std::vector<Claim> claims;
 };
 /// Runs them all, the long ones with two threads. Errors: those of the scenes; a run that diverged.
@@ -109,16 +109,16 @@ struct StepResponse {
   int reversals = 0;         ///< turns that swing back by more than 0.1 % of rest
   double settling_time = 0;  ///< after which it stays within 5 % of rest [s]
 };
-StepResponse step_response_of(const Series& series);
+StepResponse step_response_of(const reports::Series& series);
 
 /// All claims as one table, for the page, results.json and results.csv.
-Table claims_table(const std::vector<Claim>& claims);
+reports::Table claims_table(const std::vector<Claim>& claims);
 
 /// Loads a scene of an experiment by its path within the folder of the shipped scenes. Errors: those of the
 /// scene; too few spheres for the rig of Fig. 3; no load, probe or tool where the experiment uses one.
-Result<LoadedScene> load_experiment(const std::string& scenes, const std::string& name);
+Result<loading::LoadedScene> load_experiment(const std::string& scenes, const std::string& name);
 
 /// What is wrong with the scenes of all experiments together; empty: nothing.
 Errors check_experiments(const std::string& scenes);
 
-}  // namespace ctpm
+}  // namespace ctpm::paper

@@ -8,7 +8,7 @@
 #include "studio/render/renderer.h"
 #include "studio/views/view_of_scene.h"
 
-namespace ctpm {
+namespace ctpm::paper {
 namespace {
 
 constexpr int kWidth = 640, kHeight = 420;
@@ -55,15 +55,16 @@ void add_box_surface(FilledOrgan& block, int steps) {
             surface.triangle.push_back({a, c, b}), surface.triangle.push_back({a, d, c});
         }
     }
-  bind_surface(block);
+  surface::bind_surface(block);
 }
 
-Result<std::vector<Picture>> draw_shots(const SceneSpec& scene, const std::vector<FilledOrgan>& organs,
-                                        const Model& model, const Camera& camera, const std::vector<PaperShot>& shots) {
-  SceneView view = view_of(scene, model, surfaces_of(organs));
-  Result<std::unique_ptr<Renderer>> renderer = Renderer::create(kWidth, kHeight, std::move(view));
+Result<std::vector<reports::Picture>> draw_shots(const scenes::SceneSpec& scene, const std::vector<FilledOrgan>& organs,
+                                                 const Model& model, const render::Camera& camera,
+                                                 const std::vector<PaperShot>& shots) {
+  render::SceneView view = views::view_of(scene, model, loading::surfaces_of(organs));
+  Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(kWidth, kHeight, std::move(view));
   if (!renderer) return renderer.errors();
-  std::vector<Picture> pictures;
+  std::vector<reports::Picture> pictures;
   for (const PaperShot& shot : shots) {
     State state = shot.state;
     for (std::size_t i = 0; i < model.sphere_count(); ++i)
@@ -72,13 +73,13 @@ Result<std::vector<Picture>> draw_shots(const SceneSpec& scene, const std::vecto
     for (std::size_t i = 0; i < model.sphere_count(); ++i)
       if (model.rest_position[i].y < shot.from_y)
         state.position.set(i, camera.eye + 0.5 * (camera.eye - camera.target));
-    DrawOptions options;
+    render::DrawOptions options;
     options.camera = camera;
-    options.view = shot.is_inside ? View::spheres : View::surface;
+    options.view = shot.is_inside ? render::View::spheres : render::View::surface;
     options.show_tool = shot.show_tool;
     pictures.push_back({(*renderer)->draw(state, options), shot.caption});
   }
   return pictures;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::paper

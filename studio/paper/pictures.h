@@ -8,7 +8,7 @@
 #include "studio/render/camera.h"
 #include "studio/reports/report.h"
 
-namespace ctpm {
+namespace ctpm::paper {
 
 /// A closed box around a block of spheres as its surface, bound to them, so that a block can be drawn as
 /// tissue. `steps` squares along each spacing.
@@ -25,7 +25,8 @@ struct PaperShot {
 };
 
 /// Pictures of several states of one Model, all through one camera. Errors: those of the renderer.
-Result<std::vector<Picture>> draw_shots(const SceneSpec& scene, const std::vector<FilledOrgan>& organs,
-                                        const Model& model, const Camera& camera, const std::vector<PaperShot>& shots);
+Result<std::vector<reports::Picture>> draw_shots(const scenes::SceneSpec& scene, const std::vector<FilledOrgan>& organs,
+                                                 const Model& model, const render::Camera& camera,
+                                                 const std::vector<PaperShot>& shots);
 
-}  // namespace ctpm
+}  // namespace ctpm::paper

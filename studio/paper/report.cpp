@@ -5,61 +5,63 @@
 
 #include "studio/paper/paper.h"
 
-namespace ctpm {
+namespace ctpm::paper {
 namespace {
 
 /// Overview: how many figures of each experiment hold.
-Table overview(const PaperResults& results) {
-  Table table;
+reports::Table overview(const PaperResults& results) {
+  reports::Table table;
   table.columns = {{"experiment", "experiment"}, {"must_hold", "must hold"},     {"met", "met"},
                    {"missed", "missed"},         {"shown", "shown as they are"}, {"verdict", "verdict"}};
-  for (const Section& section : results.sections) {
+  for (const reports::Section& section : results.sections) {
     std::int64_t counts[3] = {0, 0, 0};
     for (const Claim& claim : results.claims)
       if (claim.experiment == section.key) ++counts[int(claim.verdict())];
-    const std::int64_t met = counts[int(ReportVerdict::met)], missed = counts[int(ReportVerdict::missed)];
-    const ReportVerdict verdict = missed > 0 ? ReportVerdict::missed
-                                  : met > 0  ? ReportVerdict::met
-                                             : ReportVerdict::shown;
-    table.rows.push_back({section.title, met + missed, met, missed, counts[int(ReportVerdict::shown)], verdict});
+    const std::int64_t met = counts[int(reports::ReportVerdict::met)],
+                       missed = counts[int(reports::ReportVerdict::missed)];
+    const reports::ReportVerdict verdict = missed > 0 ? reports::ReportVerdict::missed
+                                           : met > 0  ? reports::ReportVerdict::met
+                                                      : reports::ReportVerdict::shown;
+    table.rows.push_back(
+        {section.title, met + missed, met, missed, counts[int(reports::ReportVerdict::shown)], verdict});
   }
   return table;
 }
 
 std::string results_json(const PaperResults& results) {
-  JsonWriter json;
+  output::JsonWriter json;
   json.begin_object()
       .member("format", "ctpm-paper-results")
       .member("version", 1)
       .member("program_version", CTPM_VERSION);
   json.key("claims");
-  write_rows(json, claims_table(results.claims));
+  reports::write_rows(json, claims_table(results.claims));
   json.key("experiments").begin_list();
-  for (const Section& section : results.sections) {
+  for (const reports::Section& section : results.sections) {
     json.begin_object().member("key", std::string_view(section.key)).member("title", std::string_view(section.title));
     json.key("tables").begin_list();
-    for (const Table& table : section.tables) {
+    for (const reports::Table& table : section.tables) {
       json.begin_object().member("title", std::string_view(table.title)).key("rows");
-      write_rows(json, table);
+      reports::write_rows(json, table);
       json.end_object();
     }
     json.end_list().key("plots").begin_list();
-    for (const Plot& plot : section.plots) write_points(json, plot);
+    for (const reports::Plot& plot : section.plots) reports::write_points(json, plot);
     json.end_list().end_object();
   }
   return json.end_list().end_object().text();
 }
 
 /// Columns of the claims that a reader of the page needs; results.csv has them all.
-Table shortened(const Table& claims) {
+reports::Table shortened(const reports::Table& claims) {
   const auto is_needed = [&](std::size_t i) {
     if (claims.columns[i].key == "experiment") return false;
-    return std::any_of(claims.rows.begin(), claims.rows.end(), [&](const std::vector<Cell>& row) {
+    return std::any_of(claims.rows.begin(), claims.rows.end(), [&](const std::vector<reports::Cell>& row) {
       const auto* text = std::get_if<std::string>(&row[i]);
       return text ? !text->empty() : !std::holds_alternative<std::monostate>(row[i]);
     });
   };
-  Table table;
+  reports::Table table;
   table.rows.resize(claims.rows.size());
   for (std::size_t i = 0; i < claims.columns.size(); ++i) {
     if (!is_needed(i)) continue;
@@ -97,20 +99,20 @@ Result<PaperResults> run_paper_experiments(const std::string& scenes,
 }
 
 Result<Done> write_paper_report(const std::string& folder, const PaperResults& results) {
-  Report report("The paper's experiments on the sphere network",
-                "Y. Bao and D. Wu, Establishment and Stability Analysis of a Hybrid Viscoelastic Model Based "
-                "on Meshless for Surgical Robot System. "
-                "Each figure below comes from a shipped scene that the network ran; closed forms are only "
-                "compared with it.");
+  reports::Report report("The paper's experiments on the sphere network",
+                         "Y. Bao and D. Wu, Establishment and Stability Analysis of a Hybrid Viscoelastic Model Based "
+                         "on Meshless for Surgical Robot System. "
+                         "Each figure below comes from a shipped scene that the network ran; closed forms are only "
+                         "compared with it.");
   const auto missed = std::count_if(results.claims.begin(), results.claims.end(),
-                                    [](const Claim& c) { return c.verdict() == ReportVerdict::missed; });
+                                    [](const Claim& c) { return c.verdict() == reports::ReportVerdict::missed; });
   const auto met = std::count_if(results.claims.begin(), results.claims.end(),
-                                 [](const Claim& c) { return c.verdict() == ReportVerdict::met; });
+                                 [](const Claim& c) { return c.verdict() == reports::ReportVerdict::met; });
   report.add_verdict(missed == 0, missed == 0 ? "All " + std::to_string(met) + " figures that must hold do."
                                               : std::to_string(missed) + " of " + std::to_string(met + missed) +
                                                     " figures that must hold do not.");
   report.add_table(overview(results));
-  for (const Section& section : results.sections) {
+  for (const reports::Section& section : results.sections) {
     if (const Result<Done> added = report.add(section); !added) return added;
     std::vector<Claim> own;
     std::copy_if(results.claims.begin(), results.claims.end(), std::back_inserter(own),
@@ -118,9 +120,9 @@ Result<Done> write_paper_report(const std::string& folder, const PaperResults& r
     // Table 1 shows its figures itself.
     if (section.key != "table-1" && !own.empty()) report.add_table(shortened(claims_table(own)));
   }
-  return write_report(folder, {{"results.json", results_json(results)},
-                               {"results.csv", to_csv(claims_table(results.claims))},
-                               {"report.html", report.html()}});
+  return reports::write_report(folder, {{"results.json", results_json(results)},
+                                        {"results.csv", reports::to_csv(claims_table(results.claims))},
+                                        {"report.html", report.html()}});
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::paper

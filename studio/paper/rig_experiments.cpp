@@ -9,7 +9,7 @@
 #include "studio/rig/press_rig.h"
 #include "studio/rig/site.h"
 
-namespace ctpm {
+namespace ctpm::paper {
 namespace {
 
 constexpr const char* kOrgans[] = {"skin", "kidney", "liver"};
@@ -24,27 +24,27 @@ struct Reading {
 constexpr Reading kReadings[] = {{"kPa s", 1.0}, {"Pa s", 1e-3}};
 
 /// Gives the first organ's viscosity the other reading: its preset's twin.
-void read_viscosity(SceneSpec& scene, const Reading& reading) {
+void read_viscosity(scenes::SceneSpec& scene, const Reading& reading) {
   if (reading.factor != 1.0) scene.organs[0].material.preset += "-pa-s";
 }
 
 /// Plot of one organ's Table 1, as in Figs. 5 and 6.
-Plot force_plot(const std::string& organ, const Site& site, const std::vector<double>& tpm,
-                const std::vector<double>& ctpm) {
-  Plot plot{.title = organ + ": force against depth", .x_title = "depth of C [mm]", .y_title = "force [N]"};
-  Series law_tpm{.name = "TPM, closed form", .stroke = Stroke::dashed, .colour = 1},
+reports::Plot force_plot(const std::string& organ, const rig::Site& site, const std::vector<double>& tpm,
+                         const std::vector<double>& ctpm) {
+  reports::Plot plot{.title = organ + ": force against depth", .x_title = "depth of C [mm]", .y_title = "force [N]"};
+  reports::Series law_tpm{.name = "TPM, closed form", .stroke = reports::Stroke::dashed, .colour = 1},
       law_ctpm{.name = "CTPM, closed form", .colour = 0};
   for (double depth = 0; depth <= 12.001; depth += 0.25) {
-    law_tpm.x.push_back(depth), law_tpm.y.push_back(table_force(site, depth, false));
-    law_ctpm.x.push_back(depth), law_ctpm.y.push_back(table_force(site, depth, true));
+    law_tpm.x.push_back(depth), law_tpm.y.push_back(rig::table_force(site, depth, false));
+    law_ctpm.x.push_back(depth), law_ctpm.y.push_back(rig::table_force(site, depth, true));
   }
-  Series net_tpm{.name = "TPM, network", .stroke = Stroke::marks, .colour = 1},
-      net_ctpm{.name = "CTPM, network", .stroke = Stroke::marks, .colour = 0};
-  Series paper_tpm{.name = "TPM, paper's Table 1", .stroke = Stroke::crosses, .colour = 4},
-      paper_ctpm{.name = "CTPM, paper's Table 1", .stroke = Stroke::crosses, .colour = 6};
-  const std::vector<PrintedRow>& rows = printed_table(organ);
+  reports::Series net_tpm{.name = "TPM, network", .stroke = reports::Stroke::marks, .colour = 1},
+      net_ctpm{.name = "CTPM, network", .stroke = reports::Stroke::marks, .colour = 0};
+  reports::Series paper_tpm{.name = "TPM, paper's Table 1", .stroke = reports::Stroke::crosses, .colour = 4},
+      paper_ctpm{.name = "CTPM, paper's Table 1", .stroke = reports::Stroke::crosses, .colour = 6};
+  const std::vector<rig::PrintedRow>& rows = rig::printed_table(organ);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (Series* s : {&net_tpm, &net_ctpm, &paper_tpm, &paper_ctpm}) s->x.push_back(rows[i].depth);
+    for (reports::Series* s : {&net_tpm, &net_ctpm, &paper_tpm, &paper_ctpm}) s->x.push_back(rows[i].depth);
     net_tpm.y.push_back(tpm[i]), net_ctpm.y.push_back(ctpm[i]);
     paper_tpm.y.push_back(rows[i].tpm), paper_ctpm.y.push_back(rows[i].ctpm);
   }
@@ -54,12 +54,12 @@ Plot force_plot(const std::string& organ, const Site& site, const std::vector<do
 }
 
 /// lambda as the network has it [kPa/mm]: what the force at rest has beyond P2.
-double network_lambda(const Site& site, double depth, double force_without_softening) {
-  return force_without_softening / force_of_stress(site, depth) - p2(site);
+double network_lambda(const rig::Site& site, double depth, double force_without_softening) {
+  return force_without_softening / rig::force_of_stress(site, depth) - rig::p2(site);
 }
 
-Table table_1_layout() {
-  Table table;
+reports::Table table_1_layout() {
+  reports::Table table;
   table.title = "Table 1: the paper as printed, the closed forms, and the network";
   table.columns = {{"organ", "organ"},
                    {"depth_mm", "depth [mm]"},
@@ -79,18 +79,19 @@ Table table_1_layout() {
 
 struct OrganForces {
   std::string organ;
-  Site site;
+  rig::Site site;
   std::vector<double> tpm, ctpm;  ///< at the six depths [N]
 };
 
 Result<OrganForces> press_organ(const std::string& scenes, const std::string& organ) {
-  const Result<LoadedScene> scene = load_experiment(scenes, std::string("paper/rig-") + organ + ".json");
+  const Result<loading::LoadedScene> scene = load_experiment(scenes, std::string("paper/rig-") + organ + ".json");
   if (!scene) return scene.errors();
-  OrganForces out{organ, site_of(scene->scene.spec.organs[0]), {}, {}};
+  OrganForces out{organ, rig::site_of(scene->scene.spec.organs[0]), {}, {}};
   for (const bool softens : {false, true}) {
-    const Result<BuiltScene> built = build_changed(*scene, [&](SceneSpec& s) { s.organs[0].softening = softens; });
+    const Result<scenes::BuiltScene> built =
+        loading::build_changed(*scene, [&](scenes::SceneSpec& s) { s.organs[0].softening = softens; });
     if (!built) return built.errors();
-    Result<std::vector<double>> force = press_rig(built->model, scene->path, printed_table(organ));
+    Result<std::vector<double>> force = rig::press_rig(built->model, scene->path, rig::printed_table(organ));
     if (!force) return force.errors();
     (softens ? out.ctpm : out.tpm) = std::move(*force);
   }
@@ -98,11 +99,11 @@ Result<OrganForces> press_organ(const std::string& scenes, const std::string& or
 }
 
 void add_table_1(Experiment& experiment, const OrganForces& forces) {
-  const std::vector<PrintedRow>& rows = printed_table(forces.organ);
+  const std::vector<rig::PrintedRow>& rows = rig::printed_table(forces.organ);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const PrintedRow& row = rows[i];
-    const std::string at = " at " + fixed(row.depth, 0) + " mm";
-    const double own = network_lambda(forces.site, row.depth, forces.tpm[i]), law = lambda(forces.site, row.depth);
+    const rig::PrintedRow& row = rows[i];
+    const std::string at = " at " + output::fixed(row.depth, 0) + " mm";
+    const double own = network_lambda(forces.site, row.depth, forces.tpm[i]), law = rig::lambda(forces.site, row.depth);
     Claim claim{.experiment = "table-1",
                 .organ = forces.organ,
                 .structure = "TPM",
@@ -112,8 +113,8 @@ void add_table_1(Experiment& experiment, const OrganForces& forces) {
                 .network = own,
                 .paper_bound = kLambdaBound};
     experiment.claims.push_back(claim);
-    const double closed_tpm = table_force(forces.site, row.depth, false),
-                 closed_ctpm = table_force(forces.site, row.depth, true);
+    const double closed_tpm = rig::table_force(forces.site, row.depth, false),
+                 closed_ctpm = rig::table_force(forces.site, row.depth, true);
     claim.quantity = "force" + at + " [N]", claim.closed_form_bound = kStaticBound, claim.paper_bound = {};
     claim.paper = row.tpm, claim.closed_form = closed_tpm, claim.network = forces.tpm[i];
     experiment.claims.push_back(claim);
@@ -133,31 +134,32 @@ struct Compared {
 };
 
 /// Force on the pin over time [N], every `every` ticks, with the depth given over time [mm].
-Result<Series> press_over_time(const Model& model, const std::string& name, const std::function<double(double)>& depth,
-                               double duration, int every) {
-  Stepper stepper(model);
+Result<reports::Series> press_over_time(const Model& model, const std::string& name,
+                                        const std::function<double(double)>& depth, double duration, int every) {
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
-  Series series;
+  reports::Series series;
   const auto ticks = std::int64_t(std::lround(duration / model.tick));
   for (std::int64_t tick = 1; tick <= ticks; ++tick) {
     const double t = double(tick) * model.tick;
-    const StepReport report = stepper.step(state, pressed_to(depth(t)));
-    if (report.status != StepStatus::ok) return diverged(name, report);
+    const stepping::StepReport report = stepper.step(state, rig::pressed_to(depth(t)));
+    if (report.status != stepping::StepStatus::ok) return rig::diverged(name, report);
     if (tick % every == 0) series.x.push_back(t), series.y.push_back(report.tool_force.z);
   }
   return series;
 }
 
 /// Depth of C over time [mm] under the scene's own loads, without a tool.
-Result<Series> creep_over_time(const BuiltScene& built, const std::string& name, double duration, int every) {
-  Stepper stepper(built.model);
+Result<reports::Series> creep_over_time(const scenes::BuiltScene& built, const std::string& name, double duration,
+                                        int every) {
+  stepping::Stepper stepper(built.model);
   State state = rest_state(built.model);
   const auto c = std::size_t(built.probe_sphere[0]);
-  Series series;
+  reports::Series series;
   const auto ticks = std::int64_t(std::lround(duration / built.model.tick));
   for (std::int64_t tick = 1; tick <= ticks; ++tick) {
-    const StepReport report = stepper.step(state, Inputs{});
-    if (report.status != StepStatus::ok) return diverged(name, report);
+    const stepping::StepReport report = stepper.step(state, Inputs{});
+    if (report.status != stepping::StepStatus::ok) return rig::diverged(name, report);
     if (tick % every == 0)
       series.x.push_back(double(tick) * built.model.tick),
           series.y.push_back(1e3 * (built.model.rest_position.z[c] - state.position.z[c]));
@@ -166,17 +168,17 @@ Result<Series> creep_over_time(const BuiltScene& built, const std::string& name,
 }
 
 /// `samples[0]` is at time zero, `got` begins one interval later.
-Compared compare(const Series& got, const std::vector<double>& law) {
+Compared compare(const reports::Series& got, const std::vector<double>& law) {
   Compared out;
   for (const double v : law) out.largest = std::max(out.largest, std::abs(v));
   for (std::size_t i = 0; i < got.y.size(); ++i) out.worst = std::max(out.worst, std::abs(got.y[i] - law[i + 1]));
   return out;
 }
 
-Series law_series(const std::string& name, const std::vector<Sample>& samples, const std::vector<double>& y,
-                  int colour) {
-  Series series{.name = name, .stroke = Stroke::dashed, .colour = colour};
-  for (const Sample& s : samples) series.x.push_back(s.time);
+reports::Series law_series(const std::string& name, const std::vector<rig::Sample>& samples,
+                           const std::vector<double>& y, int colour) {
+  reports::Series series{.name = name, .stroke = reports::Stroke::dashed, .colour = colour};
+  for (const rig::Sample& s : samples) series.x.push_back(s.time);
   series.y = y;
   return series;
 }
@@ -189,22 +191,23 @@ double relaxation_depth(double t) { return std::min(kPressDepth, kPressSpeed * t
 double relaxation_rate(double t) { return t < kPressDepth / kPressSpeed ? kPressSpeed : 0.0; }
 
 /// One organ and reading of Fig. 7: its claims, and for the liver its curves.
-Result<Done> add_relaxation(Experiment& experiment, const LoadedScene& scene, const std::string& organ,
-                            const Reading& reading, Plot& plot) {
+Result<Done> add_relaxation(Experiment& experiment, const loading::LoadedScene& scene, const std::string& organ,
+                            const Reading& reading, reports::Plot& plot) {
   constexpr double kDuration = 5;
   const bool is_plotted = organ == "liver";
   const int colour = reading.factor == 1.0 ? 0 : 1;
-  Site site = site_of(scene.scene.spec.organs[0]);
+  rig::Site site = rig::site_of(scene.scene.spec.organs[0]);
   site.viscosity *= reading.factor;
-  const std::vector<Sample> samples = relaxation(site, relaxation_depth, relaxation_rate, kDuration, kInterval);
+  const std::vector<rig::Sample> samples =
+      rig::relaxation(site, relaxation_depth, relaxation_rate, kDuration, kInterval);
   std::vector<double> law;
-  for (const Sample& s : samples) law.push_back(force_of_stress(site, s.stress));
+  for (const rig::Sample& s : samples) law.push_back(rig::force_of_stress(site, s.stress));
   for (const bool softens : {true, false}) {
     if (!softens && !is_plotted) continue;
-    const Result<BuiltScene> built =
-        build_changed(scene, [&](SceneSpec& s) { read_viscosity(s, reading), s.organs[0].softening = softens; });
+    const Result<scenes::BuiltScene> built = loading::build_changed(
+        scene, [&](scenes::SceneSpec& s) { read_viscosity(s, reading), s.organs[0].softening = softens; });
     if (!built) return built.errors();
-    Result<Series> force = press_over_time(built->model, scene.path, relaxation_depth, kDuration, kEvery);
+    Result<reports::Series> force = press_over_time(built->model, scene.path, relaxation_depth, kDuration, kEvery);
     if (!force) return force.errors();
     force->name = std::string(softens ? "CTPM" : "TPM") + ", network, " + reading.name;
     force->colour = softens ? colour : colour + 2;
@@ -221,7 +224,7 @@ Result<Done> add_relaxation(Experiment& experiment, const LoadedScene& scene, co
                 .note = "against Eq. 10 integrated"};
     experiment.claims.push_back(claim);
     claim.closed_form_error = {}, claim.note = "Eq. 14";
-    claim.quantity = "force at rest at 4 mm [N]", claim.closed_form = table_force(site, kPressDepth, true),
+    claim.quantity = "force at rest at 4 mm [N]", claim.closed_form = rig::table_force(site, kPressDepth, true),
     claim.network = force->y.back();
     experiment.claims.push_back(claim);
     const double peak = *std::max_element(force->y.begin(), force->y.end());
@@ -247,45 +250,45 @@ struct CreepLoad {
 /// Deviation: the paper's sentence names the ranges for the two forces the wrong way round.
 constexpr CreepLoad kCreepLoads[] = {{0.196, 3.8, 6.65}, {0.98, 9.6, 11.9}};
 
-std::vector<double> depths_of(const std::vector<Sample>& samples) {
+std::vector<double> depths_of(const std::vector<rig::Sample>& samples) {
   std::vector<double> depths;
-  for (const Sample& s : samples) depths.push_back(s.depth);
+  for (const rig::Sample& s : samples) depths.push_back(s.depth);
   return depths;
 }
 
 /// One load and reading of Fig. 8.
-Result<Done> add_creep(Experiment& experiment, const LoadedScene& scene, const CreepLoad& load, const Reading& reading,
-                       Plot& plot) {
+Result<Done> add_creep(Experiment& experiment, const loading::LoadedScene& scene, const CreepLoad& load,
+                       const Reading& reading, reports::Plot& plot) {
   constexpr double kDuration = 33;
-  Site site = site_of(scene.scene.spec.organs[0]);
+  rig::Site site = rig::site_of(scene.scene.spec.organs[0]);
   site.viscosity *= reading.factor;
-  const double stress = load.newton / force_of_stress(site, 1);
+  const double stress = load.newton / rig::force_of_stress(site, 1);
   const auto stress_at = [=](double t) { return stress * std::min(1.0, t / kRamp); };
   const auto rate_at = [=](double t) { return t < kRamp ? stress / kRamp : 0.0; };
-  const auto creep_with = [&](Law law) { return creep(site, stress_at, rate_at, kDuration, kInterval, law); };
-  const std::vector<Sample> samples = creep_with(Law::eq_10);
+  const auto creep_with = [&](rig::Law law) { return rig::creep(site, stress_at, rate_at, kDuration, kInterval, law); };
+  const std::vector<rig::Sample> samples = creep_with(rig::Law::eq_10);
   const std::vector<double> law = depths_of(samples);
   for (const bool softens : {true, false}) {
-    const Result<BuiltScene> built = build_changed(scene, [&](SceneSpec& s) {
+    const Result<scenes::BuiltScene> built = loading::build_changed(scene, [&](scenes::SceneSpec& s) {
       read_viscosity(s, reading), s.organs[0].softening = softens, s.loads[0].force = {0, 0, -load.newton};
     });
     if (!built) return built.errors();
-    Result<Series> depth = creep_over_time(*built, scene.path, kDuration, kEvery);
+    Result<reports::Series> depth = creep_over_time(*built, scene.path, kDuration, kEvery);
     if (!depth) return depth.errors();
     depth->name = std::string(softens ? "CTPM" : "TPM") + ", network, " + reading.name;
     depth->colour = (reading.factor == 1.0 ? 0 : 1) + (softens ? 0 : 2);
     plot.series.push_back(*depth);
     if (!softens) continue;
     const bool is_slow = reading.factor == 1.0, is_large = load.newton > 0.5;
-    Claim claim{
-        .experiment = "creep",
-        .organ = "liver",
-        .structure = "CTPM",
-        .viscosity = reading.name,
-        .quantity = "depth over 33 s under " + short_number(load.newton) + " N, largest difference [share of largest]",
-        .closed_form_error = compare(*depth, law).share(),
-        .closed_form_bound = kMovingBound,
-        .note = "against Eq. 10 integrated"};
+    Claim claim{.experiment = "creep",
+                .organ = "liver",
+                .structure = "CTPM",
+                .viscosity = reading.name,
+                .quantity = "depth over 33 s under " + output::short_number(load.newton) +
+                            " N, largest difference [share of largest]",
+                .closed_form_error = compare(*depth, law).share(),
+                .closed_form_bound = kMovingBound,
+                .note = "against Eq. 10 integrated"};
     if (is_slow && is_large)
       claim.closed_form_bound = {},
       claim.note +=
@@ -293,16 +296,17 @@ Result<Done> add_creep(Experiment& experiment, const LoadedScene& scene, const C
           "elastic; in the network P2/K' of it comes from the line's own triples, which creep (next row)";
     experiment.claims.push_back(claim);
     if (is_slow)
-      claim.closed_form_error = compare(*depth, depths_of(creep_with(Law::eqs_3_to_8_rig))).share(),
+      claim.closed_form_error = compare(*depth, depths_of(creep_with(rig::Law::eqs_3_to_8_rig))).share(),
       claim.closed_form_bound = kMovingBound,
       claim.note = "against Eqs. 3 to 8 of all three triples of the rig, integrated",
       experiment.claims.push_back(claim);
     claim.closed_form_error = {}, claim.closed_form_bound = kMovingBound;
-    claim.quantity = "depth after 33 s under " + short_number(load.newton) + " N [mm]",
-    claim.closed_form = slow_depth(site, stress), claim.network = depth->y.back();
+    claim.quantity = "depth after 33 s under " + output::short_number(load.newton) + " N [mm]",
+    claim.closed_form = rig::slow_depth(site, stress), claim.network = depth->y.back();
     const bool is_inside = depth->y.back() >= load.measured_low && depth->y.back() <= load.measured_high;
-    claim.note = "measured on pig liver " + short_number(load.measured_low) + " to " +
-                 short_number(load.measured_high) + " mm: " + (is_inside ? "inside" : "outside, shown as it is");
+    claim.note = "measured on pig liver " + output::short_number(load.measured_low) + " to " +
+                 output::short_number(load.measured_high) +
+                 " mm: " + (is_inside ? "inside" : "outside, shown as it is");
     experiment.claims.push_back(claim);
     plot.series.push_back(law_series(reading.factor == 1.0 ? "CTPM, Eq. 10 integrated" : "", samples, law, 6));
   }
@@ -310,10 +314,10 @@ Result<Done> add_creep(Experiment& experiment, const LoadedScene& scene, const C
 }
 
 /// The same curves while the load comes on.
-Plot beginning_of(Plot plot, double until) {
-  plot.title += ", the first " + short_number(until) + " s";
+reports::Plot beginning_of(reports::Plot plot, double until) {
+  plot.title += ", the first " + output::short_number(until) + " s";
   plot.x_range = {0, until};
-  for (Series& s : plot.series) {
+  for (reports::Series& s : plot.series) {
     const auto end = std::upper_bound(s.x.begin(), s.x.end(), until + 1e-9) - s.x.begin();
     s.x.resize(std::size_t(end)), s.y.resize(std::size_t(end));
   }
@@ -325,7 +329,7 @@ Plot beginning_of(Plot plot, double until) {
 
 Result<Experiment> run_table_1(const std::string& scenes) {
   Experiment experiment;
-  Section& section = experiment.section;
+  reports::Section& section = experiment.section;
   section.key = "table-1", section.title = "Force against depth: Table 1, Figs. 5 and 6";
   section.tables = {table_1_layout()};
   for (const char* organ : kOrgans) {
@@ -349,11 +353,11 @@ Result<Experiment> run_table_1(const std::string& scenes) {
 
 Result<Experiment> run_relaxation(const std::string& scenes) {
   Experiment experiment;
-  Section& section = experiment.section;
+  reports::Section& section = experiment.section;
   section.key = "relaxation", section.title = "Stress relaxation: Fig. 7";
-  Plot plot{.title = "liver: force on C", .x_title = "time [s]", .y_title = "force [N]"};
+  reports::Plot plot{.title = "liver: force on C", .x_title = "time [s]", .y_title = "force [N]"};
   for (const char* organ : kOrgans) {
-    const Result<LoadedScene> scene = load_experiment(scenes, std::string("paper/rig-") + organ + ".json");
+    const Result<loading::LoadedScene> scene = load_experiment(scenes, std::string("paper/rig-") + organ + ".json");
     if (!scene) return scene.errors();
     for (const Reading& reading : kReadings)
       if (const Result<Done> added = add_relaxation(experiment, *scene, organ, reading, plot); !added)
@@ -370,14 +374,14 @@ Result<Experiment> run_relaxation(const std::string& scenes) {
 
 Result<Experiment> run_creep(const std::string& scenes) {
   Experiment experiment;
-  Section& section = experiment.section;
+  reports::Section& section = experiment.section;
   section.key = "creep", section.title = "Creep: Fig. 8";
-  const Result<LoadedScene> scene = load_experiment(scenes, "paper/creep-liver.json");
+  const Result<loading::LoadedScene> scene = load_experiment(scenes, "paper/creep-liver.json");
   if (!scene) return scene.errors();
   for (const CreepLoad& load : kCreepLoads) {
-    Plot plot{.title = "liver: depth of C under " + short_number(load.newton) + " N",
-              .x_title = "time [s]",
-              .y_title = "depth [mm]"};
+    reports::Plot plot{.title = "liver: depth of C under " + output::short_number(load.newton) + " N",
+                       .x_title = "time [s]",
+                       .y_title = "depth [mm]"};
     for (const Reading& reading : kReadings)
       if (const Result<Done> added = add_creep(experiment, *scene, load, reading, plot); !added) return added.errors();
     section.plots.push_back(beginning_of(plot, 3));
@@ -400,4 +404,4 @@ Result<Experiment> run_creep(const std::string& scenes) {
   return experiment;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::paper

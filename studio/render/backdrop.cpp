@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ctpm {
+namespace ctpm::render {
 namespace {
 
 double smooth_step(double low, double high, double x) {
@@ -31,4 +31,4 @@ Frame make_backdrop(int width, int height) {
   return frame;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

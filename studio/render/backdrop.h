@@ -2,10 +2,10 @@
 
 #include "studio/render/frame.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// The studio's backdrop: a soft gradient, brightest behind the scene, with a fixed dither that hides bands
 /// in a video.
 Frame make_backdrop(int width, int height);
 
-}  // namespace ctpm
+}  // namespace ctpm::render

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace ctpm {
+namespace ctpm::render {
 namespace {
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
@@ -105,4 +105,4 @@ Pixel project(const Camera& camera, int width, int height, Vec3 point) {
   return {0.5 * width + half * dot(p, a.right), 0.5 * height - half * dot(p, a.up), depth};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

@@ -5,7 +5,7 @@
 
 #include "core/model/vec3.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// A pinhole camera.
 struct Camera {
@@ -54,4 +54,4 @@ struct Pixel {
 /// Where a world point falls in a picture of the given size.
 Pixel project(const Camera& camera, int width, int height, Vec3 point);
 
-}  // namespace ctpm
+}  // namespace ctpm::render

@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace ctpm {
+namespace ctpm::render {
 namespace {
 
 /// x with m x = b for a symmetric positive definite matrix given as xx, xy, xz, yy, yz, zz.
@@ -40,4 +40,4 @@ std::optional<Plane> fit_plane(const std::vector<CutPoint>& crossings, Vec3 near
   return Plane{middle, normal / norm(normal)};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

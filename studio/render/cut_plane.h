@@ -5,7 +5,7 @@
 
 #include "core/model/vec3.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// Where the blade passed around a sphere: crossings of the links between what it sees and what it lost, with
 /// the direction across.
@@ -23,4 +23,4 @@ struct Plane {
 /// where they lie on one line, it takes the mean direction across.
 std::optional<Plane> fit_plane(const std::vector<CutPoint>& crossings, Vec3 near, double reach);
 
-}  // namespace ctpm
+}  // namespace ctpm::render

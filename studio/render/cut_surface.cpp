@@ -10,7 +10,7 @@
 #include "studio/render/cut_vertices.h"
 #include "studio/render/cut_wall.h"
 
-namespace ctpm {
+namespace ctpm::render {
 namespace {
 
 using Index = CutVertices::Index;
@@ -235,4 +235,4 @@ const std::vector<std::uint8_t>& CutSurface::is_lip() const { return parts_->is_
 const std::vector<float>& CutSurface::rind() const { return parts_->rind; }
 std::size_t CutSurface::outer_vertex_count() const { return parts_->outer_vertices; }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

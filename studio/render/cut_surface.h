@@ -9,7 +9,7 @@
 #include "core/model/organ.h"
 #include "core/model/state.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// An organ's surface as it is drawn: split where the organ was cut, its lips on their own sides, and the
 /// wall of the cut between them. Nothing is remembered from tick to tick but what is severed, so any State
@@ -43,4 +43,4 @@ class CutSurface {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::render

@@ -5,7 +5,7 @@
 
 #include "core/surface/surface.h"
 
-namespace ctpm {
+namespace ctpm::render {
 namespace {
 
 constexpr double kReachInSpacings = 2.2;  // as a whole surface is bound
@@ -61,7 +61,7 @@ void CutVertices::follow(Vec3 rest, Index home) {
     const auto within = std::partition(known, near_.end(), [&](const auto& n) { return n.first < reach; });
     std::sort(known, within);
     for (auto n = known; n != within; ++n) centres.push_back(links_.rest(n->second));
-    weights = follow_weights(rest, centres, reach);
+    weights = surface::follow_weights(rest, centres, reach);
     Vec3 held = -rest;
     for (std::size_t i = 0; i < centres.size(); ++i) held += weights[i] * centres[i];
     if (norm(held) < kHeld * links_.spacing() || within == near_.end()) break;
@@ -99,4 +99,4 @@ CutVertices::Index CutVertices::copy(Index vertex) {
   return add(rest(vertex), home(vertex), spheres, weights);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

@@ -11,7 +11,7 @@
 #include "studio/render/cut_plane.h"
 #include "studio/render/lattice_links.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// The vertices of a cut organ's surface. Each has a home, a sphere on its own side of the cut, and follows
 /// only spheres that its home sees.
@@ -56,4 +56,4 @@ class CutVertices {
   std::vector<std::pair<double, Index>> near_;        ///< working memory of follow()
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::render

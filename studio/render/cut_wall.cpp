@@ -7,7 +7,7 @@
 
 #include "studio/render/open_edges.h"
 
-namespace ctpm {
+namespace ctpm::render {
 namespace {
 
 using Index = CutVertices::Index;
@@ -271,4 +271,4 @@ void CutWall::close() {
 
 void add_cut_wall(CutVertices& vertices, const SplitLine& split) { CutWall(vertices, split).build(); }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

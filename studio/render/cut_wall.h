@@ -6,7 +6,7 @@
 
 #include "studio/render/cut_vertices.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// A side of the split line: an edge of the outer surface where the wall begins, as its outer triangle walks
 /// it.
@@ -25,4 +25,4 @@ struct SplitLine {
 /// each bank, joined to the lips and closed. The wall has its own vertices, so that normals break at the lip.
 void add_cut_wall(CutVertices& vertices, const SplitLine& split);
 
-}  // namespace ctpm
+}  // namespace ctpm::render

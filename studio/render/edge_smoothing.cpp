@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstring>
 
-namespace ctpm {
+namespace ctpm::render {
 namespace {
 
 constexpr int kBackdropLuma = 160;  // what shows where nothing was drawn, in [0, 255]
@@ -101,4 +101,4 @@ void EdgeSmoother::smooth(std::vector<std::uint8_t>& rgba, int width, int height
   for (const Smoothed& s : smoothed_) std::copy_n(s.rgba.data(), 4, &rgba[4 * s.pixel]);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

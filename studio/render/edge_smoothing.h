@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// Smooths the stairs of edges in pictures (RGBA, colours multiplied by alpha): pixels of high contrast are
 /// averaged along the edge that passes them, as fast approximate anti-aliasing does. Four samples a pixel
@@ -23,4 +23,4 @@ class EdgeSmoother {
   std::vector<Smoothed> smoothed_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::render

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ctpm {
+namespace ctpm::render {
 namespace {
 
 bool is_severed(const std::vector<std::uint8_t>& severed, std::size_t i) { return i < severed.size() && severed[i]; }
@@ -78,4 +78,4 @@ void measure_elements(const Model& model, const State& state, ElementQuantity qu
   }
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

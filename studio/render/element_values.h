@@ -7,7 +7,7 @@
 #include "core/model/state.h"
 #include "studio/render/scene_view.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// One element as it is drawn: a rod between two spheres, and what it carries.
 struct ElementValue {
@@ -20,4 +20,4 @@ struct ElementValue {
 void measure_elements(const Model& model, const State& state, ElementQuantity quantity,
                       std::vector<ElementValue>& values);
 
-}  // namespace ctpm
+}  // namespace ctpm::render

@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <system_error>
 
-namespace ctpm {
+namespace ctpm::render {
 
 Frame blank_frame(int width, int height, std::uint8_t red, std::uint8_t green, std::uint8_t blue) {
   Frame frame{width, height, std::vector<std::uint8_t>(std::size_t(width) * std::size_t(height) * 3)};
@@ -70,4 +70,4 @@ Result<Frame> read_picture(const std::string& path) {
   }
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

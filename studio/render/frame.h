@@ -6,7 +6,7 @@
 
 #include "core/model/result.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// One picture.
 struct Frame {
@@ -29,4 +29,4 @@ Result<Done> write_png(const std::string& path, const Frame& frame);
 /// Reads a picture that OpenCV knows (PNG). Errors: no file, not a picture.
 Result<Frame> read_picture(const std::string& path);
 
-}  // namespace ctpm
+}  // namespace ctpm::render

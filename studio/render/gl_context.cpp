@@ -2,7 +2,7 @@
 
 #include <GL/osmesa.h>
 
-namespace ctpm {
+namespace ctpm::render {
 
 Result<std::unique_ptr<GlContext>> GlContext::create() {
   const int attributes[] = {OSMESA_FORMAT,
@@ -42,4 +42,4 @@ void GlContext::make_current() {
              "an OSMesa context cannot be made current");
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

@@ -6,7 +6,7 @@
 
 #include "core/model/result.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// Every OpenGL 3.3 entry point that the renderer uses: X(type, name).
 // One entry a line.
@@ -107,4 +107,4 @@ class GlContext {
   Gl gl_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::render

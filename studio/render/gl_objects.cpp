@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ctpm {
+namespace ctpm::render {
 namespace {
 
 std::string log_of(const Gl& gl, GLuint id, bool is_program) {
@@ -111,4 +111,4 @@ void PictureTarget::read(const Gl& gl, const PixelRect& rect, std::vector<std::u
   gl.ReadPixels(rect.x, rect.y, rect.width, rect.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

@@ -10,7 +10,7 @@
 #include "studio/render/camera.h"
 #include "studio/render/gl_context.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// A linked shader program.
 class Program {
@@ -67,4 +67,4 @@ struct PictureTarget {
   void read(const Gl& gl, const PixelRect& rect, std::vector<std::uint8_t>& rgba) const;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::render

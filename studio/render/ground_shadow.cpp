@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ctpm {
+namespace ctpm::render {
 namespace {
 
 constexpr int kStep = 8;  // pixels between knots; the shadow has no finer detail
@@ -177,4 +177,4 @@ void GroundShadow::darken_row(Frame& frame, const KnotRange& range, int y) {
   }
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

@@ -8,7 +8,7 @@
 #include "studio/render/camera.h"
 #include "studio/render/frame.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// The soft shadow that a scene casts straight down onto its ground: a square picture of darkness.
 class GroundShadow {
@@ -50,4 +50,4 @@ class GroundShadow {
   std::vector<std::uint16_t> light_;                   ///< of a row, 65535: all; for each part of a colour
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::render

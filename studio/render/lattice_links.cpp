@@ -6,7 +6,7 @@
 #include "core/cutting/cutting.h"
 #include "core/model/result.h"
 
-namespace ctpm {
+namespace ctpm::render {
 namespace {
 
 /// Longest element that joins lattice neighbours; springs that resist angles are longer.
@@ -140,7 +140,7 @@ bool LatticeLinks::update(const State& state) {
     const auto [a, s, source] = elements_[e];
     const std::int32_t b = neighbour(a, s);
     link_[index(a, s)] = link_[index(b, step_back(s))] = severed_[e] ? Link::severed : Link::joined;
-    const double along = crossing_of(passed_[e]);
+    const double along = cutting::crossing_of(passed_[e]);
     crossing_[index(a, s)] = float(along), crossing_[index(b, step_back(s))] = float(1 - along);
     if (severed_[e]) cut_[std::size_t(a)] = cut_[std::size_t(b)] = 1, anything_cut_ = true;
   }
@@ -180,4 +180,4 @@ LatticeLinks::Sight LatticeLinks::sight_from(std::int32_t home) const {
   return sight;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

@@ -7,7 +7,7 @@
 #include "core/model/model.h"
 #include "core/model/state.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// The lattice of one organ: who is joined to whom, and what has been severed.
 /// Spheres are counted within the organ.
@@ -94,4 +94,4 @@ class LatticeLinks {
   bool has_diagonals_ = false;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::render

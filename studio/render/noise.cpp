@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace ctpm {
+namespace ctpm::render {
 namespace {
 
 /// The noise's value at a knot, from an integer hash.
@@ -27,4 +27,4 @@ double noise_at(Vec3 place) {
   return sum;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

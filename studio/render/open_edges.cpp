@@ -1,6 +1,6 @@
 #include "studio/render/open_edges.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 void OpenEdges::add(std::int32_t from, std::int32_t to) {
   const auto opposite = count_.find({to, from});
@@ -38,4 +38,4 @@ std::vector<std::vector<std::int32_t>> OpenEdges::take_loops() {
   return loops;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// The directed edges of triangles that have no opposite. Those of closed surfaces with holes form loops.
 class OpenEdges {
@@ -23,4 +23,4 @@ class OpenEdges {
   std::map<std::pair<std::int32_t, std::int32_t>, int> count_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::render

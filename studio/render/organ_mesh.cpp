@@ -5,7 +5,7 @@
 #include "core/surface/surface.h"
 #include "studio/render/noise.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 void OrganMesh::set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip,
                             const std::vector<float>& rind) {
@@ -26,7 +26,7 @@ void OrganMesh::set_surface(const Surface& surface, const std::vector<std::uint8
 }
 
 void OrganMesh::update(const Surface& surface, const State& state, std::int32_t first_sphere) {
-  deform_surface(surface, state.position, first_sphere, position_);
+  surface::deform_surface(surface, state.position, first_sphere, position_);
   const std::size_t count = position_.size();
   // Normals: the sum over the triangles at a vertex, weighted by their area.
   normal_.assign(count, Vec3{});
@@ -59,4 +59,4 @@ void OrganMesh::update(const Surface& surface, const State& state, std::int32_t 
   }
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

@@ -6,7 +6,7 @@
 #include "core/model/organ.h"
 #include "core/model/state.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// Floats of one vertex as the organ shader reads them: position, normal, rest position [m], crevice, stain,
 /// lip, rind.
@@ -34,4 +34,4 @@ class OrganMesh {
   std::vector<float> data_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::render

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace ctpm {
+namespace ctpm::render {
 namespace {
 
 /// Of the outermost layer where it is cut, as light: the lighter of the organ's colours, paler as fibrous
@@ -121,4 +121,4 @@ void OrganPainter::draw(const Gl& gl, const SceneView& scene, const DrawOptions&
   gl.Disable(GL_BLEND);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

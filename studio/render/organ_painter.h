@@ -9,7 +9,7 @@
 #include "studio/render/scene_view.h"
 #include "studio/render/shaders.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// An sRGB colour as light. Gamma 2, as the shaders write it.
 inline Vec3 linear(const Colour& c) { return {c[0] * c[0], c[1] * c[1], c[2] * c[2]}; }
@@ -59,4 +59,4 @@ class OrganPainter {
   Program programs_[3][2];  ///< [OrganPass][has_cutaway]
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::render

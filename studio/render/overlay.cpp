@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace ctpm {
+namespace ctpm::render {
 namespace {
 
 using Ink = std::array<int, 3>;
@@ -138,9 +138,11 @@ bool is_too_strong(const OverlayData& data) { return data.damage_force > 0 && da
 std::string damage_text(const OverlayData& data) {
   std::string text;
   if (is_too_deep(data))
-    text += " " + fixed(1000 * data.depth, 1) + " mm, limit " + fixed(1000 * data.damage_depth, 1) + " mm";
+    text +=
+        " " + output::fixed(1000 * data.depth, 1) + " mm, limit " + output::fixed(1000 * data.damage_depth, 1) + " mm";
   if (is_too_strong(data))
-    text += (text.empty() ? " " : "; ") + fixed(data.force, 2) + " N, limit " + fixed(data.damage_force, 2) + " N";
+    text += (text.empty() ? " " : "; ") + output::fixed(data.force, 2) + " N, limit " +
+            output::fixed(data.damage_force, 2) + " N";
   return text.empty() ? text : "TISSUE DAMAGE:" + text;
 }
 
@@ -191,10 +193,10 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
   const std::array<std::pair<std::string, std::string>, 7> facts{
       {{"session", small.shortened_inside(data.session, px(195))},
        {"model", small.shortened(data.model, px(195))},
-       {data.is_over ? "ended" : "time", fixed(data.time, 3) + " s"},
+       {data.is_over ? "ended" : "time", output::fixed(data.time, 3) + " s"},
        {"tick", std::to_string(data.tick)},
-       {"force", fixed(data.force, 3) + " N"},
-       {data.is_blade ? "cut depth" : "depth", fixed(1000 * data.depth, 2) + " mm"},
+       {"force", output::fixed(data.force, 3) + " N"},
+       {data.is_blade ? "cut depth" : "depth", output::fixed(1000 * data.depth, 2) + " mm"},
        {"loose", data.loose == 0 ? "" : std::to_string(data.loose) + (data.loose == 1 ? " piece" : " pieces")}}};
   for (const auto& [name, value] : facts) {
     if (value.empty()) continue;
@@ -215,7 +217,7 @@ void Overlay::Parts::plan_plot(const OverlayData& data, Plan& plan) {
   const int pad = px(16), w = px(332), h = px(160);
   plan.plot = {px(20), height - px(20) - h, w, h};
   plan.lines.push_back(line(small, "force [N]", plan.plot.x + pad, plan.plot.y + px(12), kGrey));
-  const std::string scale_text = fixed(plan.top_force, plan.top_force < 0.1 ? 2 : plan.top_force < 1 ? 1 : 0);
+  const std::string scale_text = output::fixed(plan.top_force, plan.top_force < 0.1 ? 2 : plan.top_force < 1 ? 1 : 0);
   const int label = pad + std::max(small.width("0.02"), small.width(scale_text)) + px(8);
   plan.curve = {plan.plot.x + label, plan.plot.y + px(46), w - label - pad, h - px(46) - px(34)};
   const auto left_label = [&](const std::string& text, int y) {
@@ -224,7 +226,7 @@ void Overlay::Parts::plan_plot(const OverlayData& data, Plan& plan) {
     plan.lines.push_back(shown);
   };
   left_label(scale_text, plan.curve.y), left_label("0", plan.curve.y + plan.curve.height);
-  Line now = line(small, "last " + fixed(data.plot_span, data.plot_span < 1 ? 1 : 0) + " s", 0,
+  Line now = line(small, "last " + output::fixed(data.plot_span, data.plot_span < 1 ? 1 : 0) + " s", 0,
                   plan.curve.y + plan.curve.height + px(8), kGrey);
   now.placed.box.x = plan.curve.x + plan.curve.width - now.placed.box.width;
   plan.lines.push_back(now);
@@ -335,4 +337,4 @@ std::vector<PlacedText> Overlay::layout(const OverlayData& data) {
   return texts;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

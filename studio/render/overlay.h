@@ -8,7 +8,7 @@
 #include "studio/render/frame.h"
 #include "studio/render/scene_view.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// One point of the running force plot.
 struct ForcePoint {
@@ -77,4 +77,4 @@ class Overlay {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::render

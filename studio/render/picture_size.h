@@ -6,7 +6,7 @@
 #include "core/model/result.h"
 #include "studio/output/option_name.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// Width and height of pictures [pixels].
 struct PictureSize {
@@ -18,11 +18,13 @@ inline Result<PictureSize> parse_picture_size(const std::string& text) {
   PictureSize size;
   char rest = 0;
   if (std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &rest) != 2)
-    return Error{option_name("picture.size"), "got '" + text + "', must be WIDTHxHEIGHT, for example 1280x720", ""};
+    return Error{output::option_name("picture.size"), "got '" + text + "', must be WIDTHxHEIGHT, for example 1280x720",
+                 ""};
   for (const int side : {size.width, size.height})
     if (side < 64 || side > 8192 || side % 2 != 0)
-      return Error{option_name("picture.size"), "got " + text + ", both sides must be even and in [64, 8192]", ""};
+      return Error{output::option_name("picture.size"), "got " + text + ", both sides must be even and in [64, 8192]",
+                   ""};
   return size;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

@@ -13,7 +13,7 @@
 #include "studio/render/shaders.h"
 #include "studio/render/tool_mesh.h"
 
-namespace ctpm {
+namespace ctpm::render {
 namespace {
 
 constexpr double kGroundExtent = 1.45;  // side of the ground that can be shaded, against the scene's size
@@ -336,4 +336,4 @@ Frame Renderer::draw(const State& state, const DrawOptions& options) {
   return std::move(p.frame);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

@@ -7,7 +7,7 @@
 #include "studio/render/frame.h"
 #include "studio/render/scene_view.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// Draws States of one scene into memory, without a display or a GPU. Only `State` and the options decide
 /// what is drawn: the same ones give the same pixels, in any order of calls. One thread at a time may use a
@@ -33,4 +33,4 @@ class Renderer {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::render

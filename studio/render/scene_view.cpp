@@ -6,7 +6,7 @@
 #include <numbers>
 #include <span>
 
-namespace ctpm {
+namespace ctpm::render {
 
 OrganLook look_of(std::string_view organ_name) {
   OrganLook look{std::string(organ_name), {0.53, 0.20, 0.17}, {0.50, 0.08, 0.08}, 1};
@@ -141,4 +141,4 @@ Legend legend_of(const Model& model, const DrawOptions& options) {
   return legend;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

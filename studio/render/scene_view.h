@@ -12,7 +12,7 @@
 #include "core/model/state.h"
 #include "studio/render/camera.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// An sRGB colour, each part in [0, 1].
 using Colour = std::array<double, 3>;
@@ -108,4 +108,4 @@ Legend legend_of(const Model& model, const DrawOptions& options);
 /// Colour of a layer, 1 = outermost, of an organ with `layer_count` layers.
 Colour layer_colour(int layer, int layer_count);
 
-}  // namespace ctpm
+}  // namespace ctpm::render

@@ -2,7 +2,7 @@
 
 #include <initializer_list>
 
-namespace ctpm {
+namespace ctpm::render {
 namespace {
 
 const char* const kVersion = "#version 330 core\n";
@@ -341,4 +341,4 @@ ShaderSource tool_shader() { return {join({kToolVertex}), join({kLight, kToolFra
 ShaderSource sphere_shader() { return {join({kSphereVertex}), join({kLight, kShade, kSphereFragment})}; }
 ShaderSource rod_shader() { return {join({kRodVertex}), join({kLight, kShade, kRodFragment})}; }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

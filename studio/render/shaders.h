@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// GLSL 3.30 sources. What several of them share is put in front when they are handed out.
 struct ShaderSource {
@@ -23,4 +23,4 @@ ShaderSource tool_shader();
 ShaderSource sphere_shader();
 ShaderSource rod_shader();  ///< elements
 
-}  // namespace ctpm
+}  // namespace ctpm::render

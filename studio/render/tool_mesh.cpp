@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace ctpm {
+namespace ctpm::render {
 namespace {
 
 constexpr int kAround = 40;
@@ -113,4 +113,4 @@ ToolMesh make_tool_mesh(const Tool& tool) {
   return tool.kind == ToolKind::ball ? make_ball(tool.radius) : make_scalpel(tool.blade_length);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::render

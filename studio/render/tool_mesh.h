@@ -5,7 +5,7 @@
 
 #include "core/model/model.h"
 
-namespace ctpm {
+namespace ctpm::render {
 
 /// What one part of a tool is made of.
 enum class ToolPart : std::int32_t { steel = 0, handle = 1 };
@@ -21,4 +21,4 @@ struct ToolMesh {
 /// along +z.
 ToolMesh make_tool_mesh(const Tool& tool);
 
-}  // namespace ctpm
+}  // namespace ctpm::render

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace ctpm {
+namespace ctpm::reports {
 namespace {
 
 /// Colours that people with any colour vision tell apart (Okabe and Ito), darker first.
@@ -106,11 +106,11 @@ struct Drawing {
   void add_axes() {
     for (const double v : x.ticks(7)) {
       add_line(svg, x.at(v), top, x.at(v), bottom, "grid");
-      add_text(svg, x.at(v), bottom + 16, "middle", "tick", short_number(v));
+      add_text(svg, x.at(v), bottom + 16, "middle", "tick", output::short_number(v));
     }
     for (const double v : y.ticks(6)) {
       add_line(svg, left, y.at(v), right, y.at(v), "grid");
-      add_text(svg, left - 6, y.at(v) + 4, "end", "tick", short_number(v));
+      add_text(svg, left - 6, y.at(v) + 4, "end", "tick", output::short_number(v));
     }
     add_line(svg, left, bottom, right, bottom, "axis"), add_line(svg, left, top, left, bottom, "axis");
     add_text(svg, 0.5 * (left + right), bottom + 36, "middle", "title", plot.x_title);
@@ -197,7 +197,7 @@ int legend_rows(const Plot& plot) {
 
 }  // namespace
 
-void write_points(JsonWriter& json, const Plot& plot) {
+void write_points(output::JsonWriter& json, const Plot& plot) {
   const auto write_list = [&](const char* key, const std::vector<double>& values) {
     json.key(key).begin_list();
     for (const double v : values) json.value(v);
@@ -281,4 +281,4 @@ std::string to_svg(const Plot& plot) {
   return svg + "</svg>\n";
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::reports

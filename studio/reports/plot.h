@@ -7,7 +7,7 @@
 
 #include "studio/output/json_writer.h"
 
-namespace ctpm {
+namespace ctpm::reports {
 
 /// How a series is drawn.
 enum class Stroke {
@@ -50,9 +50,9 @@ struct Plot {
 std::string to_svg(const Plot& plot);
 
 /// The points of the plot as a JSON object: title, axes, series with their x and y, bands.
-void write_points(JsonWriter& json, const Plot& plot);
+void write_points(output::JsonWriter& json, const Plot& plot);
 
 /// Text as it may stand in HTML, SVG and attributes.
 std::string escape_html(const std::string& text);
 
-}  // namespace ctpm
+}  // namespace ctpm::reports

@@ -7,7 +7,7 @@
 #include "studio/output/files.h"
 #include "studio/output/option_name.h"
 
-namespace ctpm {
+namespace ctpm::reports {
 namespace {
 
 constexpr const char* kStyle = R"(
@@ -102,7 +102,7 @@ std::string Report::html() const {
          "</h1>\n<p class=\"subtitle\">" + escape_html(subtitle_) + "</p>\n" + body_ + "</body>\n</html>\n";
 }
 
-Result<std::string> to_data_uri(const Frame& frame) {
+Result<std::string> to_data_uri(const render::Frame& frame) {
   if (frame.width <= 0 || frame.height <= 0) return Error{"picture", "is empty", ""};
   CTPM_CHECK(frame.rgb.size() == std::size_t(frame.width) * std::size_t(frame.height) * 3, "three bytes a pixel");
   cv::Mat bgr(frame.height, frame.width, CV_8UC3);
@@ -121,17 +121,17 @@ Result<Done> prepare_folder(const std::string& folder) {
   std::filesystem::create_directories(folder, failure);
   if (failure)
     return Error{folder, "cannot be made: " + failure.message(),
-                 "give another folder with " + option_name("report.folder")};
-  return check_writable((std::filesystem::path(folder) / "report.html").string());
+                 "give another folder with " + output::option_name("report.folder")};
+  return output::check_writable((std::filesystem::path(folder) / "report.html").string());
 }
 
 Result<Done> write_report(const std::string& folder, const std::vector<ReportFile>& files) {
   if (Result<Done> ready = prepare_folder(folder); !ready) return ready;
   for (const ReportFile& file : files)
-    if (Result<Done> written = write_text_file((std::filesystem::path(folder) / file.name).string(), file.text);
+    if (Result<Done> written = output::write_text_file((std::filesystem::path(folder) / file.name).string(), file.text);
         !written)
       return written;
   return Done{};
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::reports

@@ -8,11 +8,11 @@
 #include "studio/reports/plot.h"
 #include "studio/reports/table.h"
 
-namespace ctpm {
+namespace ctpm::reports {
 
 /// A picture with what it shows.
 struct Picture {
-  Frame frame;
+  render::Frame frame;
   std::string caption;
 };
 
@@ -55,7 +55,7 @@ class Report {
 };
 
 /// A frame as `data:image/png;base64,...`. Error: an empty frame.
-Result<std::string> to_data_uri(const Frame& frame);
+Result<std::string> to_data_uri(const render::Frame& frame);
 
 /// A file of a report by its name within the report's folder.
 struct ReportFile {
@@ -69,4 +69,4 @@ Result<Done> prepare_folder(const std::string& folder);
 /// Errors: those of files.h.
 Result<Done> write_report(const std::string& folder, const std::vector<ReportFile>& files);
 
-}  // namespace ctpm
+}  // namespace ctpm::reports

@@ -6,7 +6,7 @@
 #include "studio/output/number_text.h"
 #include "studio/reports/plot.h"
 
-namespace ctpm {
+namespace ctpm::reports {
 namespace {
 
 std::string whole_number(double value) {
@@ -18,7 +18,7 @@ std::string whole_number(double value) {
 std::string html_cell(const Cell& cell, int digits) {
   if (const auto* text = std::get_if<std::string>(&cell)) return "<td>" + escape_html(*text) + "</td>";
   if (const auto* value = std::get_if<double>(&cell))
-    return "<td class=\"n\">" + short_number(*value, digits) + "</td>";
+    return "<td class=\"n\">" + output::short_number(*value, digits) + "</td>";
   if (const auto* count = std::get_if<std::int64_t>(&cell))
     return "<td class=\"n\">" + std::to_string(*count) + "</td>";
   if (const auto* verdict = std::get_if<ReportVerdict>(&cell))
@@ -90,7 +90,7 @@ std::string to_csv(const Table& table) {
   return csv;
 }
 
-void write_rows(JsonWriter& json, const Table& table) {
+void write_rows(output::JsonWriter& json, const Table& table) {
   check_shape(table);
   json.begin_list();
   for (const auto& row : table.rows) {
@@ -107,4 +107,4 @@ void write_rows(JsonWriter& json, const Table& table) {
   json.end_list();
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::reports

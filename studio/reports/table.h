@@ -7,7 +7,7 @@
 
 #include "studio/output/json_writer.h"
 
-namespace ctpm {
+namespace ctpm::reports {
 
 /// What became of something that must hold.
 enum class ReportVerdict {
@@ -44,6 +44,6 @@ std::string to_html(const Table& table);
 std::string to_csv(const Table& table);
 
 /// A list of objects, one a row; empty cells are left out.
-void write_rows(JsonWriter& json, const Table& table);
+void write_rows(output::JsonWriter& json, const Table& table);
 
-}  // namespace ctpm
+}  // namespace ctpm::reports

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace ctpm {
+namespace ctpm::rig {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -256,4 +256,4 @@ std::vector<Sample> creep(const Site& site, const std::function<double(double)>&
   return samples;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::rig

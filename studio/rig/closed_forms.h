@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-namespace ctpm {
+namespace ctpm::rig {
 
 /// One contact site of the paper: a five-sphere line over one triple. Everything in this file is Bao & Wu, section 3,
 /// in the paper's units: moduli in kPa/mm (the paper prints kPa), viscosity in kPa s/mm, lengths in mm, stress in kPa.
@@ -74,4 +74,4 @@ std::vector<Sample> creep(const Site& site, const std::function<double(double)>&
                           const std::function<double(double)>& rate, double duration, double interval,
                           Law law = Law::eq_10);
 
-}  // namespace ctpm
+}  // namespace ctpm::rig

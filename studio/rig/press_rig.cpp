@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace ctpm {
+namespace ctpm::rig {
 
 Inputs pressed_to(double depth_mm) {
   Inputs inputs;
@@ -11,27 +11,27 @@ Inputs pressed_to(double depth_mm) {
   return inputs;
 }
 
-Error diverged(const std::string& scene, const StepReport& report) {
+Error diverged(const std::string& scene, const stepping::StepReport& report) {
   return {scene, "the run diverged at sphere " + std::to_string(report.worst_sphere), ""};
 }
 
 Result<std::vector<double>> press_rig(const Model& model, const std::string& name,
                                       const std::vector<PrintedRow>& rows) {
   constexpr double kSpeed = 10, kHold = 12;
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   std::vector<double> force;
   double depth = 0;
   for (const PrintedRow& row : rows) {
-    StepReport report;
+    stepping::StepReport report;
     for (double held = 0; held < kHold; held += depth < row.depth ? 0 : model.tick) {
       depth = std::min(row.depth, depth + kSpeed * model.tick);
       report = stepper.step(state, pressed_to(depth));
-      if (report.status != StepStatus::ok) return diverged(name, report);
+      if (report.status != stepping::StepStatus::ok) return diverged(name, report);
     }
     force.push_back(report.tool_force.z);
   }
   return force;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::rig

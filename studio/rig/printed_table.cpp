@@ -4,7 +4,7 @@
 
 #include "core/model/result.h"
 
-namespace ctpm {
+namespace ctpm::rig {
 
 const std::vector<PrintedRow>& printed_table(const std::string& organ) {
   static const std::map<std::string, std::vector<PrintedRow>> kPrinted{{"skin",
@@ -33,4 +33,4 @@ const std::vector<PrintedRow>& printed_table(const std::string& organ) {
   return it->second;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::rig

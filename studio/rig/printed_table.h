@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace ctpm {
+namespace ctpm::rig {
 
 /// What the paper prints in its Table 1.
 struct PrintedRow {
@@ -13,4 +13,4 @@ struct PrintedRow {
 /// The six rows of an organ: "skin", "kidney" or "liver".
 const std::vector<PrintedRow>& printed_table(const std::string& organ);
 
-}  // namespace ctpm
+}  // namespace ctpm::rig

@@ -5,10 +5,10 @@
 
 #include "scenes/presets.h"
 
-namespace ctpm {
+namespace ctpm::rig {
 
-Site site_of(const OrganSpec& organ) {
-  const Material m = resolve_material(organ.material).material;
+Site site_of(const scenes::OrganSpec& organ) {
+  const network::Material m = scenes::resolve_material(organ.material).material;
   Site site;
   site.spring = m.spring * 1e-6, site.kelvin = m.kelvin * 1e-6, site.constraint = m.constraint * 1e-6;
   site.viscosity = m.viscosity * 1e-6;
@@ -17,4 +17,4 @@ Site site_of(const OrganSpec& organ) {
   return site;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::rig

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ctpm {
+namespace ctpm::session {
 
 CutDepth::CutDepth(const Model& model, const std::vector<Surface>& surfaces)
     : model_(model), is_added_(model.axial.size()) {
@@ -22,8 +22,9 @@ void CutDepth::add(std::size_t element) {
   const auto rest = [&](std::int32_t sphere) { return model_.rest_position[std::size_t(sphere)]; };
   const Vec3 middle = 0.5 * (rest(model_.axial.a[element]) + rest(model_.axial.b[element]));
   double nearest2 = INFINITY;
-  for (const SurfaceIndex& surface : surfaces_) nearest2 = std::min(nearest2, surface.nearest(middle).squared_distance);
+  for (const importers::SurfaceIndex& surface : surfaces_)
+    nearest2 = std::min(nearest2, surface.nearest(middle).squared_distance);
   deepest_ = std::max(deepest_.value_or(0), std::sqrt(nearest2));
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::session

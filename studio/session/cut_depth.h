@@ -9,7 +9,7 @@
 #include "core/model/state.h"
 #include "importers/surface_index.h"
 
-namespace ctpm {
+namespace ctpm::session {
 
 /// How deep a cut goes: how far below the organs' surfaces the deepest severed axial element lay at rest.
 class CutDepth {
@@ -28,9 +28,9 @@ class CutDepth {
 
  private:
   const Model& model_;
-  std::vector<SurfaceIndex> surfaces_;
+  std::vector<importers::SurfaceIndex> surfaces_;
   std::vector<bool> is_added_;  ///< (axial_count)
   std::optional<double> deepest_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::session

@@ -13,64 +13,67 @@
 #include "studio/sources/script_source.h"
 #include "studio/version/version.h"
 
-namespace ctpm {
+namespace ctpm::session {
 
-SessionStart start_session(const LoadedScene& scene) {
-  SessionStart start;
+recordings::SessionStart start_session(const loading::LoadedScene& scene) {
+  recordings::SessionStart start;
   start.scene_text = scene.scene.text;
   start.model = scene.built.model;
-  start.surfaces = surfaces_of(scene.organs);
+  start.surfaces = loading::surfaces_of(scene.organs);
   start.initial_state = rest_state(start.model);
-  Stepper(start.model).settle(start.initial_state, std::llround(scene.scene.spec.settle / start.model.tick));
-  start.build_fingerprint = build_fingerprint();
+  stepping::Stepper(start.model).settle(start.initial_state, std::llround(scene.scene.spec.settle / start.model.tick));
+  start.build_fingerprint = version::build_fingerprint();
   start.metadata = {{"scene_name", scene.scene.spec.name}};
   return start;
 }
 
-Result<SessionStart> continue_session_at(const std::string& file, double at_s) {
-  Result<SessionReader> parent = SessionReader::open(file);
+Result<recordings::SessionStart> continue_session_at(const std::string& file, double at_s) {
+  Result<recordings::SessionReader> parent = recordings::SessionReader::open(file);
   if (!parent) return parent.errors();
   const double tick = parent->start().model.tick, end_s = double(parent->tick_count()) * tick;
   if (!(at_s >= 0 && at_s <= end_s + 0.5 * tick))
-    return Error{option_name("continue.at_s"),
-                 "got " + fixed(at_s, 3) + ", must be in [0, " + fixed(end_s, 3) + "] s: so long lasts " + file, ""};
-  Result<SessionStart> start =
-      continue_session(*parent, std::min<std::int64_t>(std::llround(at_s / tick), parent->tick_count()));
+    return Error{
+        output::option_name("continue.at_s"),
+        "got " + output::fixed(at_s, 3) + ", must be in [0, " + output::fixed(end_s, 3) + "] s: so long lasts " + file,
+        ""};
+  Result<recordings::SessionStart> start =
+      recordings::continue_session(*parent, std::min<std::int64_t>(std::llround(at_s / tick), parent->tick_count()));
   if (!start) return start.errors();
-  start->build_fingerprint = build_fingerprint();
+  start->build_fingerprint = version::build_fingerprint();
   // What the parent's hand did is not what this one's does.
   std::erase_if(start->metadata, [](const auto& entry) {
-    return entry.first != "scene_name" && entry.first != parent_session_key && entry.first != parent_tick_key;
+    return entry.first != "scene_name" && entry.first != recordings::parent_session_key &&
+           entry.first != recordings::parent_tick_key;
   });
   return start;
 }
 
-Result<RecordOutcome> record_session(const SessionStart& start, InputSource& source, const std::string& path,
-                                     bool overwrite, const RunOptions& options) {
-  WriterOptions writing;
+Result<RecordOutcome> record_session(const recordings::SessionStart& start, sources::InputSource& source,
+                                     const std::string& path, bool overwrite, const RunOptions& options) {
+  recordings::WriterOptions writing;
   writing.overwrite = overwrite;
   writing.wait_when_full = !options.in_real_time;
-  Result<SessionWriter> writer = SessionWriter::create(path, start, writing);
+  Result<recordings::SessionWriter> writer = recordings::SessionWriter::create(path, start, writing);
   if (!writer) return writer.errors();
 
   RunOptions running = options;
-  if (const Result<SceneText> scene = read_scene(start.scene_text, path))
-    running.damage_force = damage_force_of(scene->spec);
+  if (const Result<scenes::SceneText> scene = scenes::read_scene(start.scene_text, path))
+    running.damage_force = loading::damage_force_of(scene->spec);
   RecordOutcome outcome;
   State state = start.initial_state;
   outcome.run = run_session(start.model, state, source, *writer, running);
-  const Result<SessionStatistics> statistics = writer->finish(source.statistics());
+  const Result<recordings::SessionStatistics> statistics = writer->finish(source.statistics());
   if (!statistics) return statistics.errors();
   outcome.statistics = *statistics;
   return outcome;
 }
 
-Result<RecordOutcome> record_script(const LoadedScene& scene, const Script& script, const std::string& path,
-                                    bool overwrite, const RunOptions& options) {
-  SessionStart start = start_session(scene);
-  start.metadata["source"] = "script", start.metadata["script"] = write_script(script);
-  ScriptSource source(ScriptPlayer(script, start.model.tools, start.model.tick));
+Result<RecordOutcome> record_script(const loading::LoadedScene& scene, const scenes::Script& script,
+                                    const std::string& path, bool overwrite, const RunOptions& options) {
+  recordings::SessionStart start = start_session(scene);
+  start.metadata["source"] = "script", start.metadata["script"] = scenes::write_script(script);
+  sources::ScriptSource source(scenes::ScriptPlayer(script, start.model.tools, start.model.tick));
   return record_session(start, source, path, overwrite, options);
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::session

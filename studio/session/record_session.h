@@ -10,27 +10,27 @@
 #include "studio/session/run_session.h"
 #include "studio/sources/input_source.h"
 
-namespace ctpm {
+namespace ctpm::session {
 
 struct RecordOutcome {
   RunOutcome run;
-  SessionStatistics statistics;
+  recordings::SessionStatistics statistics;
 };
 
 /// The start of a session of `scene`, after it has come to rest.
-SessionStart start_session(const LoadedScene& scene);
+recordings::SessionStart start_session(const loading::LoadedScene& scene);
 
 /// The start of a session that goes on from the State at `at_s` [s] of the session in `file`, which it names as
 /// its parent. Errors: the session cannot be read, does not last so long, or does not replay.
-Result<SessionStart> continue_session_at(const std::string& file, double at_s);
+Result<recordings::SessionStart> continue_session_at(const std::string& file, double at_s);
 
 /// Runs a session from `start` with what `source` gives and records it at `path`. Errors: the file exists and
 /// `overwrite` is false, it cannot be written.
-Result<RecordOutcome> record_session(const SessionStart& start, InputSource& source, const std::string& path,
-                                     bool overwrite, const RunOptions& options);
+Result<RecordOutcome> record_session(const recordings::SessionStart& start, sources::InputSource& source,
+                                     const std::string& path, bool overwrite, const RunOptions& options);
 
 /// Lets the scene come to rest, then runs the script and records it at `path`. Errors: as for record_session().
-Result<RecordOutcome> record_script(const LoadedScene& scene, const Script& script, const std::string& path,
-                                    bool overwrite, const RunOptions& options);
+Result<RecordOutcome> record_script(const loading::LoadedScene& scene, const scenes::Script& script,
+                                    const std::string& path, bool overwrite, const RunOptions& options);
 
-}  // namespace ctpm
+}  // namespace ctpm::session

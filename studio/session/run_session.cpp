@@ -8,7 +8,7 @@
 #include "core/stepping/step.h"
 #include "recordings/state_hash.h"
 
-namespace ctpm {
+namespace ctpm::session {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -18,7 +18,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 /// Notes what a reviewer wants to find again: the moments at which something begins or ends.
 class EventWatch {
  public:
-  EventWatch(const Model& model, double damage_force, SessionWriter& writer)
+  EventWatch(const Model& model, double damage_force, recordings::SessionWriter& writer)
       : writer_(writer), force_limit_(damage_force) {
     for (std::size_t i = 0; i < model.organs.size(); ++i) {
       const double limit = model.organs[i].damage_depth;
@@ -26,18 +26,18 @@ class EventWatch {
     }
   }
 
-  void look(std::int64_t tick, std::int32_t tool, const StepReport& report) {
+  void look(std::int64_t tick, std::int32_t tool, const stepping::StepReport& report) {
     if (begins(contact_, tick, report.contacts > 0)) {
       tool_ = tool;
-      writer_.event({.tick = tick, .kind = EventKind::contact_begins, .tool = tool});
+      writer_.event({.tick = tick, .kind = recordings::EventKind::contact_begins, .tool = tool});
     }
     if (ends(contact_, tick))
-      writer_.event({.tick = contact_.last_tick, .kind = EventKind::contact_ends, .tool = tool_});
+      writer_.event({.tick = contact_.last_tick, .kind = recordings::EventKind::contact_ends, .tool = tool_});
     if (begins(cut_, tick, report.severed > 0))
-      writer_.event({.tick = tick, .kind = EventKind::cut, .tool = tool, .severed = report.severed});
+      writer_.event({.tick = tick, .kind = recordings::EventKind::cut, .tool = tool, .severed = report.severed});
     ends(cut_, tick);
     if (report.came_loose > 0)
-      writer_.event({.tick = tick, .kind = EventKind::piece_came_loose, .pieces = report.came_loose});
+      writer_.event({.tick = tick, .kind = recordings::EventKind::piece_came_loose, .pieces = report.came_loose});
     look_for_damage(tick, report);
   }
 
@@ -62,21 +62,21 @@ class EventWatch {
     return true;
   }
 
-  void look_for_damage(std::int64_t tick, const StepReport& report) {
+  void look_for_damage(std::int64_t tick, const stepping::StepReport& report) {
     if (begins(too_deep_, tick, depth_limit_ > 0 && report.depth > depth_limit_))
       writer_.event({.tick = tick,
-                     .kind = EventKind::damage,
+                     .kind = recordings::EventKind::damage,
                      .organ = organ_,
                      .depth = report.depth,
                      .depth_limit = depth_limit_});
     ends(too_deep_, tick);
     const double force = norm(report.tool_force);
     if (begins(too_strong_, tick, force_limit_ > 0 && force > force_limit_))
-      writer_.event({.tick = tick, .kind = EventKind::damage, .force = force, .force_limit = force_limit_});
+      writer_.event({.tick = tick, .kind = recordings::EventKind::damage, .force = force, .force_limit = force_limit_});
     ends(too_strong_, tick);
   }
 
-  SessionWriter& writer_;
+  recordings::SessionWriter& writer_;
   double depth_limit_ = 0, force_limit_ = 0;  // [m], [N]; 0: no limit
   std::int32_t organ_ = -1;                   // whose depth limit it is
   std::int32_t tool_ = -1;                    // of the contact that goes on
@@ -90,19 +90,19 @@ int threads_for(const Model& model) {
   return model.sphere_count() >= kWorthSharing && std::thread::hardware_concurrency() > 1 ? 2 : 1;
 }
 
-RunOutcome run_session(const Model& model, State& state, InputSource& source, SessionWriter& writer,
-                       const RunOptions& options) {
-  Stepper stepper(model, {.threads = options.threads});
+RunOutcome run_session(const Model& model, State& state, sources::InputSource& source,
+                       recordings::SessionWriter& writer, const RunOptions& options) {
+  stepping::Stepper stepper(model, {.threads = options.threads});
   EventWatch watch(model, options.damage_force, writer);
   RunOutcome outcome;
-  StepReport report;
+  stepping::StepReport report;
   const auto tick_length = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(model.tick));
   Clock::time_point deadline = Clock::now();
   for (std::int64_t tick = 0; options.most_ticks == 0 || tick < options.most_ticks; ++tick) {
     if (options.should_stop && options.should_stop()) break;
     if (options.in_real_time) std::this_thread::sleep_until(deadline);
     const std::optional<Inputs> inputs = source.next(tick, report);
-    for (Event& event : source.take_events()) {
+    for (recordings::Event& event : source.take_events()) {
       event.tick = tick;
       writer.event(std::move(event));
     }
@@ -111,19 +111,20 @@ RunOutcome run_session(const Model& model, State& state, InputSource& source, Se
     report = stepper.step(state, *inputs);
     const double tick_time = seconds_since(start);
     outcome.status = report.status, outcome.worst_sphere = report.worst_sphere;
-    if (is_refused(report.status)) {
+    if (stepping::is_refused(report.status)) {
       writer.event({.tick = tick,
-                    .kind = EventKind::step_refused,
+                    .kind = recordings::EventKind::step_refused,
                     .status = std::int32_t(report.status),
                     .sphere = report.worst_sphere});
       break;
     }
-    writer.append(state, make_record(*inputs, report, tick_time, state_hash(state), source.input_age()));
+    writer.append(
+        state, recordings::make_record(*inputs, report, tick_time, recordings::state_hash(state), source.input_age()));
     watch.look(tick, inputs->tool, report);
     deadline += tick_length;
     if (options.in_real_time && Clock::now() > deadline) {
       ++outcome.late_ticks;
-      writer.event({.tick = tick, .kind = EventKind::late_tick, .late = seconds_since(deadline)});
+      writer.event({.tick = tick, .kind = recordings::EventKind::late_tick, .late = seconds_since(deadline)});
       deadline = Clock::now();  // a late tick does not make the next ones hurry
     }
     ++outcome.ticks;
@@ -134,4 +135,4 @@ RunOutcome run_session(const Model& model, State& state, InputSource& source, Se
   return outcome;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::session

@@ -10,7 +10,7 @@
 #include "recordings/session_writer.h"
 #include "studio/sources/input_source.h"
 
-namespace ctpm {
+namespace ctpm::session {
 
 struct RunOptions {
   bool in_real_time = true;     ///< ticks start on absolute deadlines of the wall clock; else one after the other
@@ -27,14 +27,14 @@ int threads_for(const Model& model);
 /// What a run came to.
 struct RunOutcome {
   std::int64_t ticks = 0;
-  std::int64_t late_ticks = 0;         ///< ticks that ended after their deadline, in real time only
-  StepStatus status = StepStatus::ok;  ///< of the last tick; a diverged tick ends the run
+  std::int64_t late_ticks = 0;                             ///< ticks that ended after their deadline, in real time only
+  stepping::StepStatus status = stepping::StepStatus::ok;  ///< of the last tick; a diverged tick ends the run
   std::int32_t worst_sphere = -1;
   std::string fault;  ///< why the source ended the session before its time; empty if it did not
 };
 
 /// Runs one session: source -> step -> writer, tick by tick. `state` goes on from where it is.
-RunOutcome run_session(const Model& model, State& state, InputSource& source, SessionWriter& writer,
-                       const RunOptions& options);
+RunOutcome run_session(const Model& model, State& state, sources::InputSource& source,
+                       recordings::SessionWriter& writer, const RunOptions& options);
 
-}  // namespace ctpm
+}  // namespace ctpm::session

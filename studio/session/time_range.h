@@ -8,7 +8,7 @@
 #include "core/model/result.h"
 #include "studio/output/option_name.h"
 
-namespace ctpm {
+namespace ctpm::session {
 
 /// Ticks [from, to) of a session.
 struct TickRange {
@@ -26,16 +26,18 @@ struct TimeRange {
     const double end_s = double(tick_count) * tick, last_s = to_s.value_or(end_s);
     const std::string is_long = "the session lasts " + std::to_string(end_s) + " s";
     if (!(from_s >= 0 && from_s <= end_s))
-      return Error{where, option_name("time_range.from_s") + ": got " + std::to_string(from_s) + ", " + is_long, ""};
+      return Error{where, output::option_name("time_range.from_s") + ": got " + std::to_string(from_s) + ", " + is_long,
+                   ""};
     if (!(last_s > from_s) && tick_count > 0)
       return Error{where,
-                   option_name("time_range.to_s") + ": got " + std::to_string(last_s) + ", must be after " +
-                       option_name("time_range.from_s"),
+                   output::option_name("time_range.to_s") + ": got " + std::to_string(last_s) + ", must be after " +
+                       output::option_name("time_range.from_s"),
                    ""};
     if (last_s > end_s + 0.5 * tick)
-      return Error{where, option_name("time_range.to_s") + ": got " + std::to_string(last_s) + ", " + is_long, ""};
+      return Error{where, output::option_name("time_range.to_s") + ": got " + std::to_string(last_s) + ", " + is_long,
+                   ""};
     return TickRange{std::llround(from_s / tick), std::llround(last_s / tick)};
   }
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::session

@@ -9,7 +9,7 @@
 #include "core/stepping/step.h"
 #include "recordings/session.h"
 
-namespace ctpm {
+namespace ctpm::sources {
 
 /// Where a session's inputs come from: a script, a file of motion, a device.
 class InputSource {
@@ -18,7 +18,7 @@ class InputSource {
 
   /// What the hand does in tick `tick`, knowing what came of the tick before. Asked when the tick begins, and
   /// never waits. Nothing: the session is over.
-  virtual std::optional<Inputs> next(std::int64_t tick, const StepReport& last) = 0;
+  virtual std::optional<Inputs> next(std::int64_t tick, const stepping::StepReport& last) = 0;
 
   /// Ticks that the session will have, for progress; 0 if nobody knows.
   virtual std::int64_t tick_count() const { return 0; }
@@ -27,13 +27,13 @@ class InputSource {
   virtual double input_age() const { return 0; }
 
   /// What was noticed since it was asked last, without its tick; empty in nearly every tick.
-  virtual std::vector<Event> take_events() { return {}; }
+  virtual std::vector<recordings::Event> take_events() { return {}; }
 
   /// Numbers about the whole session, unit in the name; asked once, at its end.
-  virtual std::vector<NamedValue> statistics() const { return {}; }
+  virtual std::vector<recordings::NamedValue> statistics() const { return {}; }
 
   /// Why the source ended the session before its time; empty if it did not.
   virtual std::string fault() const { return ""; }
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::sources

@@ -8,7 +8,7 @@
 
 #include "studio/sources/rotation.h"
 
-namespace ctpm {
+namespace ctpm::sources {
 namespace {
 
 enum Column { time, x, y, z, qw, qx, qy, qz, buttons, tool, column_count };
@@ -209,4 +209,4 @@ std::int64_t motion_tick_count(const Motion& motion, double tick) {
   return std::int64_t(std::floor((motion.samples.back().time - motion.samples.front().time) / tick + 1e-6)) + 1;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::sources

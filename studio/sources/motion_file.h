@@ -9,7 +9,7 @@
 #include "core/model/model.h"
 #include "core/model/result.h"
 
-namespace ctpm {
+namespace ctpm::sources {
 
 /// Where a hand was at one moment of a motion.
 struct MotionSample {
@@ -41,4 +41,4 @@ Inputs motion_at(const Motion& motion, double time);
 /// Ticks of length `tick` [s] from the first to the last sample, both included.
 std::int64_t motion_tick_count(const Motion& motion, double tick);
 
-}  // namespace ctpm
+}  // namespace ctpm::sources

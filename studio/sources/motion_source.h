@@ -6,14 +6,14 @@
 #include "studio/sources/input_source.h"
 #include "studio/sources/motion_file.h"
 
-namespace ctpm {
+namespace ctpm::sources {
 
 /// A measured motion as the source of a session, one sample a tick.
 class MotionSource : public InputSource {
  public:
   MotionSource(Motion motion, double tick) : motion_(std::move(motion)), tick_(tick) {}
 
-  std::optional<Inputs> next(std::int64_t tick, const StepReport&) override {
+  std::optional<Inputs> next(std::int64_t tick, const stepping::StepReport&) override {
     if (tick >= tick_count()) return std::nullopt;
     return motion_at(motion_, double(tick) * tick_);
   }
@@ -24,4 +24,4 @@ class MotionSource : public InputSource {
   double tick_;  ///< [s]
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::sources

@@ -6,27 +6,27 @@
 #include "studio/sources/motion_source.h"
 #include "studio/sources/script_source.h"
 
-namespace ctpm {
+namespace ctpm::sources {
 
-OpenedSource play_script(const Script& script, const Model& model) {
+OpenedSource play_script(const scenes::Script& script, const Model& model) {
   OpenedSource opened;
-  opened.source = std::make_unique<ScriptSource>(ScriptPlayer(script, model.tools, model.tick));
-  opened.metadata = {{"source", "script"}, {"script", write_script(script)}};
+  opened.source = std::make_unique<ScriptSource>(scenes::ScriptPlayer(script, model.tools, model.tick));
+  opened.metadata = {{"source", "script"}, {"script", scenes::write_script(script)}};
   return opened;
 }
 
 Result<OpenedSource> open_script(const std::string& file, const Model& model) {
-  const Result<std::string> text = read_text_file(file);
+  const Result<std::string> text = output::read_text_file(file);
   if (!text) return text.errors();
   std::vector<std::string> tools;
   for (const Tool& tool : model.tools) tools.push_back(tool.name);
-  const Result<Script> script = read_script(*text, file, tools);
+  const Result<scenes::Script> script = scenes::read_script(*text, file, tools);
   if (!script) return script.errors();
   return play_script(*script, model);
 }
 
 Result<OpenedSource> open_motion(const std::string& file, const Model& model) {
-  const Result<std::string> text = read_text_file(file);
+  const Result<std::string> text = output::read_text_file(file);
   if (!text) return text.errors();
   Result<Motion> motion = read_motion(*text, file, model.tools);
   if (!motion) return motion.errors();
@@ -40,4 +40,4 @@ Result<OpenedSource> open_motion(const std::string& file, const Model& model) {
   return opened;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::sources

@@ -10,7 +10,7 @@
 #include "scenes/script.h"
 #include "studio/sources/input_source.h"
 
-namespace ctpm {
+namespace ctpm::sources {
 
 /// A source that is ready.
 struct OpenedSource {
@@ -20,7 +20,7 @@ struct OpenedSource {
 };
 
 /// A script as a source for `model`.
-OpenedSource play_script(const Script& script, const Model& model);
+OpenedSource play_script(const scenes::Script& script, const Model& model);
 
 /// The script in `file`. Errors: the file cannot be read; those of read_script(), with places.
 Result<OpenedSource> open_script(const std::string& file, const Model& model);
@@ -29,4 +29,4 @@ Result<OpenedSource> open_script(const std::string& file, const Model& model);
 /// not used.
 Result<OpenedSource> open_motion(const std::string& file, const Model& model);
 
-}  // namespace ctpm
+}  // namespace ctpm::sources

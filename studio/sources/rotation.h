@@ -7,7 +7,7 @@
 
 // Rotations of devices. What is worked out here enters a session as a recorded input, so transcendental functions may
 // be used.
-namespace ctpm {
+namespace ctpm::sources {
 
 inline double dot(Quat a, Quat b) { return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z; }
 inline double length_of(Quat q) { return std::sqrt(dot(q, q)); }
@@ -56,4 +56,4 @@ inline Quat shortest_turn(Vec3 from, Vec3 to) {
 /// Angle of the shortest turn from `a` to `b` [rad], in [0, pi].
 inline double angle_between(Quat a, Quat b) { return 2 * std::acos(std::min(1.0, std::abs(dot(a, b)))); }
 
-}  // namespace ctpm
+}  // namespace ctpm::sources

@@ -7,23 +7,24 @@
 
 namespace ctpm::stability {
 
-SceneSpec block(double nx, double ny, double nz) {
-  SceneSpec scene;
+scenes::SceneSpec block(double nx, double ny, double nz) {
+  scenes::SceneSpec scene;
   scene.name = "block", scene.gravity = {};
-  OrganSpec organ;
+  scenes::OrganSpec organ;
   organ.name = "block", organ.material.preset = "liver";
   organ.rig.emplace().block = Vec3{nx, ny, nz};
   organ.anchors.resize(1), organ.anchors[0].lowest = 0;
   scene.organs.push_back(organ);
-  ToolSpec ball{"ball", ToolKind::ball, kBallRadius, {}, {}}, scalpel{"scalpel", ToolKind::scalpel, {}, 0.4, {}};
+  scenes::ToolSpec ball{"ball", ToolKind::ball, kBallRadius, {}, {}},
+      scalpel{"scalpel", ToolKind::scalpel, {}, 0.4, {}};
   scene.tools = {ball, scalpel};
   return scene;
 }
 
-Model build(const SceneSpec& scene) {
+Model build(const scenes::SceneSpec& scene) {
   std::vector<FilledOrgan> organs;
-  for (const OrganSpec& organ : scene.organs) organs.push_back(fill_rig(organ));
-  Result<BuiltScene> built = build_model(scene, organs);
+  for (const scenes::OrganSpec& organ : scene.organs) organs.push_back(scenes::fill_rig(organ));
+  Result<scenes::BuiltScene> built = scenes::build_model(scene, organs);
   CTPM_CHECK(bool(built), "the scenes of the stability cases are valid");
   return std::move(built->model);
 }
@@ -45,7 +46,8 @@ std::function<Inputs(std::int64_t)> press(Vec3 from, double depth, std::int64_t 
   };
 }
 
-StabilityCase pressed(const std::string& key, const std::string& title, const SceneSpec& scene, double seconds) {
+StabilityCase pressed(const std::string& key, const std::string& title, const scenes::SceneSpec& scene,
+                      double seconds) {
   StabilityCase what{.key = key, .title = title, .expectation = {}, .build = [=] { return build(scene); }};
   what.ticks = std::llround(seconds / scene.tick);
   const std::int64_t stretch = std::max<std::int64_t>(1, what.ticks / 20);

@@ -13,10 +13,10 @@ constexpr std::int32_t kBall = 0, kScalpel = 1;
 
 /// A block of nx x ny x nz spheres with the moduli of the paper's liver, its lowest spheres anchored, without
 /// gravity.
-SceneSpec block(double nx, double ny, double nz);
+scenes::SceneSpec block(double nx, double ny, double nz);
 
 /// The Model of a scene of rigs, which must be valid.
-Model build(const SceneSpec& scene);
+Model build(const scenes::SceneSpec& scene);
 
 Inputs ball_at(Vec3 place);
 
@@ -28,6 +28,6 @@ Vec3 touch(double nz);
 std::function<Inputs(std::int64_t)> press(Vec3 from, double depth, std::int64_t stretch);
 
 /// A block that is pressed 6 mm deep, let go, and comes back as far as its tissue lets it.
-StabilityCase pressed(const std::string& key, const std::string& title, const SceneSpec& scene, double seconds);
+StabilityCase pressed(const std::string& key, const std::string& title, const scenes::SceneSpec& scene, double seconds);
 
 }  // namespace ctpm::stability

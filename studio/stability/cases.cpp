@@ -11,19 +11,19 @@
 #include "studio/output/number_text.h"
 #include "studio/stability/blocks.h"
 
-namespace ctpm {
+namespace ctpm::stability {
 namespace {
 
 using namespace stability;
 
-std::string times(const char* what, double factor) { return std::string(what) + " x " + short_number(factor); }
+std::string times(const char* what, double factor) { return std::string(what) + " x " + output::short_number(factor); }
 
 void add_stiffness(std::vector<StabilityCase>& cases) {
   for (const double factor : {1e-3, 1.0, 1e3, 1e6}) {
-    SceneSpec scene = block(5, 5, 5);
-    MaterialSpec& m = scene.organs[0].material;
+    scenes::SceneSpec scene = block(5, 5, 5);
+    scenes::MaterialSpec& m = scene.organs[0].material;
     m.spring = 15e6 * factor, m.kelvin = 15e6 * factor, m.constraint = 20e6 * factor;
-    StabilityCase what = pressed("stiffness-" + short_number(factor), times("stiffness", factor), scene, 1);
+    StabilityCase what = pressed("stiffness-" + output::short_number(factor), times("stiffness", factor), scene, 1);
     if (factor >= 1) what.end_speed = 1e-3, what.end_distance = 0.5e-3, what.expectation += ", back within 0.5 mm";
     cases.push_back(what);
   }
@@ -33,9 +33,9 @@ void add_viscosity(std::vector<StabilityCase>& cases) {
   // The springs beside the Kelvin units are not damped: only the viscosity of the organ itself brings it to
   // rest soon.
   for (const double factor : {0.0, 1e-6, 1e-3, 1e3, 1e6}) {
-    SceneSpec scene = block(5, 5, 5);
+    scenes::SceneSpec scene = block(5, 5, 5);
     scene.organs[0].material.viscosity = 5e6 * factor;
-    cases.push_back(pressed("viscosity-" + short_number(factor), times("viscosity", factor), scene, 1));
+    cases.push_back(pressed("viscosity-" + output::short_number(factor), times("viscosity", factor), scene, 1));
   }
 }
 
@@ -49,7 +49,7 @@ void make_masses_uneven(Model& model) {
 }
 
 void add_masses(std::vector<StabilityCase>& cases) {
-  const SceneSpec scene = block(5, 5, 5);
+  const scenes::SceneSpec scene = block(5, 5, 5);
   StabilityCase what = pressed("mass-ratio-1e6", "mass ratio 1e6 between neighbours", scene, 2);
   what.build = [=] {
     Model model = build(scene);
@@ -66,10 +66,12 @@ void add_ticks(std::vector<StabilityCase>& cases, bool is_quick) {
   };
   for (const Length& length : {Length{1e-5, is_quick ? 0.02 : 0.2, "10 us"}, Length{1e-4, 0.2, "100 us"},
                                Length{1e-2, 3, "10 ms"}, Length{0.1, 20, "100 ms"}}) {
-    SceneSpec scene = block(5, 5, 5);
+    scenes::SceneSpec scene = block(5, 5, 5);
     scene.tick = length.tick;
-    const std::string title = std::string("ticks of ") + length.name + ", " + short_number(length.seconds) + " s";
-    StabilityCase what = pressed("tick-" + short_number(length.tick * 1e6) + "us", title, scene, length.seconds);
+    const std::string title =
+        std::string("ticks of ") + length.name + ", " + output::short_number(length.seconds) + " s";
+    StabilityCase what =
+        pressed("tick-" + output::short_number(length.tick * 1e6) + "us", title, scene, length.seconds);
     if (length.tick >= 1e-2) {
       what.end_speed = 1e-3, what.end_distance = 0.5e-3;
       what.expectation += ", back within 0.5 mm";
@@ -80,9 +82,9 @@ void add_ticks(std::vector<StabilityCase>& cases, bool is_quick) {
 
 void add_gravity(std::vector<StabilityCase>& cases) {
   for (const double factor : {1.0, 100.0}) {
-    SceneSpec scene = block(5, 5, 5);
+    scenes::SceneSpec scene = block(5, 5, 5);
     scene.gravity = {0, 0, -kGravity * factor};
-    StabilityCase what{.key = "gravity-" + short_number(factor),
+    StabilityCase what{.key = "gravity-" + output::short_number(factor),
                        .title = times("gravity", factor) + ", sudden",
                        .expectation = "sinks, no energy gained, at rest after 10 s",
                        .build = [=] { return build(scene); }};
@@ -93,7 +95,7 @@ void add_gravity(std::vector<StabilityCase>& cases) {
 }
 
 /// 100 N, sudden, on the sphere at `at`.
-StabilityCase loaded(const std::string& key, const std::string& title, SceneSpec scene, Vec3 at, Vec3 force) {
+StabilityCase loaded(const std::string& key, const std::string& title, scenes::SceneSpec scene, Vec3 at, Vec3 force) {
   scene.loads.push_back({at, force, 0, 0});
   return {.key = key, .title = title, .expectation = {}, .build = [=] { return build(scene); }, .ticks = 3000};
 }
@@ -101,8 +103,8 @@ StabilityCase loaded(const std::string& key, const std::string& title, SceneSpec
 /// Eq. 8 bounds what a sphere's springs can hold, so 100 N tear a sphere out of a surface; without softening
 /// they do not.
 void add_loads(std::vector<StabilityCase>& cases) {
-  const SceneSpec softened = block(5, 5, 5);
-  SceneSpec plain = softened;
+  const scenes::SceneSpec softened = block(5, 5, 5);
+  scenes::SceneSpec plain = softened;
   plain.organs[0].softening = false;
   const Vec3 top{0, 0, 4 * kSpacing};
   for (const bool is_push : {true, false}) {
@@ -124,7 +126,7 @@ void add_loads(std::vector<StabilityCase>& cases) {
 void add_teleports(std::vector<StabilityCase>& cases) {
   constexpr double kDepth = 50e-3;
   for (const std::int64_t stay : {std::int64_t(1), std::int64_t(100)}) {
-    const SceneSpec scene = block(7, 7, 7);
+    const scenes::SceneSpec scene = block(7, 7, 7);
     const Vec3 outside = touch(7);
     StabilityCase what{
         .key = "teleport-" + std::to_string(stay),
@@ -145,7 +147,7 @@ void add_teleports(std::vector<StabilityCase>& cases) {
 /// A start out of shape that is let go.
 StabilityCase let_go(const std::string& key, const std::string& title,
                      std::function<void(const Model&, State&)> disturb) {
-  const SceneSpec scene = block(5, 5, 5);
+  const scenes::SceneSpec scene = block(5, 5, 5);
   StabilityCase what{.key = key,
                      .title = title,
                      .expectation = "within 150 mm, no energy gained, at rest after 3 s",
@@ -156,7 +158,9 @@ StabilityCase let_go(const std::string& key, const std::string& title,
 }
 
 void add_shapes(std::vector<StabilityCase>& cases) {
-  const auto middle = [](const Model& model) { return std::size_t(nearest_sphere(model, {0, 0, 2 * kSpacing})); };
+  const auto middle = [](const Model& model) {
+    return std::size_t(scenes::nearest_sphere(model, {0, 0, 2 * kSpacing}));
+  };
   StabilityCase pair = let_go("coincident-two", "two spheres at one place", [=](const Model& model, State& state) {
     state.position.set(middle(model), model.rest_position[middle(model) + 1]);
   });
@@ -201,19 +205,20 @@ void kick(const Model& model, State& state) {
 /// Free swings: where nothing does work, energy must not grow, whatever the structure.
 void add_swings(std::vector<StabilityCase>& cases) {
   struct Kind {
-    Structure structure;
+    network::Structure structure;
     bool has_softening;
     double viscosity;
     const char* name;
   };
-  for (const Kind& kind :
-       {Kind{Structure::mass_spring, false, 0, "mass-spring"},
-        Kind{Structure::angle_mass_spring, false, 0, "angle mass-spring"},
-        Kind{Structure::tpm, false, 0, "tpm without viscosity"}, Kind{Structure::tpm, false, 5e6, "tpm"},
-        Kind{Structure::ctpm, false, 5e6, "ctpm without softening"}, Kind{Structure::ctpm, true, 5e6, "ctpm"},
-        Kind{Structure::ctpm, true, 0, "ctpm without viscosity"}}) {
-    SceneSpec scene = block(5, 5, 5);
-    OrganSpec& organ = scene.organs[0];
+  for (const Kind& kind : {Kind{network::Structure::mass_spring, false, 0, "mass-spring"},
+                           Kind{network::Structure::angle_mass_spring, false, 0, "angle mass-spring"},
+                           Kind{network::Structure::tpm, false, 0, "tpm without viscosity"},
+                           Kind{network::Structure::tpm, false, 5e6, "tpm"},
+                           Kind{network::Structure::ctpm, false, 5e6, "ctpm without softening"},
+                           Kind{network::Structure::ctpm, true, 5e6, "ctpm"},
+                           Kind{network::Structure::ctpm, true, 0, "ctpm without viscosity"}}) {
+    scenes::SceneSpec scene = block(5, 5, 5);
+    scenes::OrganSpec& organ = scene.organs[0];
     organ.structure = kind.structure, organ.softening = kind.has_softening, organ.material.viscosity = kind.viscosity;
     std::string key = std::string("swing-") + kind.name;
     for (char& c : key) c = c == ' ' ? '-' : c;
@@ -229,12 +234,12 @@ void add_swings(std::vector<StabilityCase>& cases) {
 }
 
 /// A row of spheres along x; the first one anchored if asked.
-SceneSpec chain(int count) {
-  SceneSpec scene = block(count, 1, 1);
+scenes::SceneSpec chain(int count) {
+  scenes::SceneSpec scene = block(count, 1, 1);
   scene.gravity = {0, 0, -kGravity};
   scene.organs[0].anchors[0] = {};
   const double end = -0.5 * kSpacing * (count - 1);
-  scene.organs[0].anchors[0].sphere = SphereRegion{{end, 0, 0}, 1e-3};
+  scene.organs[0].anchors[0].sphere = scenes::SphereRegion{{end, 0, 0}, 1e-3};
   return scene;
 }
 
@@ -243,19 +248,19 @@ std::string falls_freely(const Model& model, const State& first, const State& la
   double worst = 0;
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
     worst = std::max(worst, norm(last.position[i] - first.position[i] - Vec3{0, 0, -way}));
-  return worst <= 0.01 * way ? "" : "is " + short_number(1e3 * worst) + " mm from where it must have fallen";
+  return worst <= 0.01 * way ? "" : "is " + output::short_number(1e3 * worst) + " mm from where it must have fallen";
 }
 
 /// One sphere, joined to nothing.
 Model single_sphere() {
-  SceneSpec scene = block(1, 1, 1);
+  scenes::SceneSpec scene = block(1, 1, 1);
   scene.gravity = {0, 0, -kGravity};
-  const OrganSpec& organ = scene.organs[0];
-  OrganSettings settings;
-  settings.name = organ.name, settings.material = resolve_material(organ.material).material;
+  const scenes::OrganSpec& organ = scene.organs[0];
+  network::OrganSettings settings;
+  settings.name = organ.name, settings.material = scenes::resolve_material(organ.material).material;
   Model model;
   model.gravity = scene.gravity;
-  const Result<Done> added = add_organ(model, fill_rig(organ), settings);
+  const Result<Done> added = network::add_organ(model, scenes::fill_rig(organ), settings);
   CTPM_CHECK(bool(added), "one sphere is an organ");
   return model;
 }
@@ -268,10 +273,10 @@ void add_holds(std::vector<StabilityCase>& cases) {
                    .ticks = 3000,
                    .reach = 0.6,
                    .free_from = 0});
-  SceneSpec hung = block(5, 5, 5);
+  scenes::SceneSpec hung = block(5, 5, 5);
   hung.gravity = {0, 0, -kGravity};
   hung.organs[0].anchors[0] = {};
-  hung.organs[0].anchors[0].sphere = SphereRegion{{0, 0, 4 * kSpacing}, 1e-3};
+  hung.organs[0].anchors[0].sphere = scenes::SphereRegion{{0, 0, 4 * kSpacing}, 1e-3};
   cases.push_back({.key = "one-anchor",
                    .title = "one anchored sphere holds the block, under gravity",
                    .expectation = "hangs within 0.3 m, no energy gained",
@@ -279,7 +284,7 @@ void add_holds(std::vector<StabilityCase>& cases) {
                    .ticks = 3000,
                    .reach = 0.3,
                    .free_from = 0});
-  SceneSpec loose = hung;
+  scenes::SceneSpec loose = hung;
   loose.organs[0].anchors.clear();
   cases.push_back({.key = "no-anchor",
                    .title = "no anchored sphere, under gravity",
@@ -344,7 +349,7 @@ Inputs dice(std::int64_t tick) {
 }
 
 void add_cut(std::vector<StabilityCase>& cases) {
-  SceneSpec scene = block(10, 10, 8);
+  scenes::SceneSpec scene = block(10, 10, 8);
   scene.gravity = {0, 0, -kGravity};
   cases.push_back({.key = "hundred-pieces",
                    .title = "a cut into a hundred pieces, under gravity",
@@ -362,7 +367,7 @@ void add_cut(std::vector<StabilityCase>& cases) {
 
 void add_many(std::vector<StabilityCase>& cases, bool is_quick) {
   const double n = is_quick ? 16 : 47;
-  SceneSpec scene = block(n, n, n);
+  scenes::SceneSpec scene = block(n, n, n);
   scene.gravity = {0, 0, -kGravity};
   const std::int64_t ticks = is_quick ? 10 : 20;
   StabilityCase what{.key = "many",
@@ -412,7 +417,7 @@ Inputs broken(std::int64_t kind, Inputs inputs) {
 }
 
 void add_device(std::vector<StabilityCase>& cases) {
-  const SceneSpec scene = block(5, 5, 5);
+  const scenes::SceneSpec scene = block(5, 5, 5);
   StabilityCase what = pressed("device-nan", "NaN, infinity and unknown tools from the device", scene, 1);
   const auto good = what.hand;
   what.is_bad_input = [](std::int64_t tick) { return tick < 90 && tick % 10 == 5; };
@@ -434,7 +439,7 @@ void add_device(std::vector<StabilityCase>& cases) {
 
 /// The block hangs in balance; nothing may creep away.
 void add_rest(std::vector<StabilityCase>& cases, bool is_quick) {
-  SceneSpec scene = block(2, 2, 3);
+  scenes::SceneSpec scene = block(2, 2, 3);
   scene.gravity = {0, 0, -kGravity};
   constexpr double kDrift = 5e-6;  // what the solver's floor of 1e-6 m/s leaves open, an hour long or not
   StabilityCase what{.key = "rest",
@@ -442,7 +447,7 @@ void add_rest(std::vector<StabilityCase>& cases, bool is_quick) {
                      .expectation = "after 5 s of settling, nothing drifts by more than 0.005 mm",
                      .build = [=] { return build(scene); }};
   what.disturb = [](const Model& model, State& state) {
-    Stepper stepper(model);
+    stepping::Stepper stepper(model);
     for (int i = 0; i < 5000; ++i) stepper.step(state, {});
   };
   what.ticks = is_quick ? 10'000 : 3'600'000, what.reach = 10e-3, what.free_from = 0;
@@ -451,7 +456,7 @@ void add_rest(std::vector<StabilityCase>& cases, bool is_quick) {
     double drift = 0;
     for (std::size_t i = 0; i < model.sphere_count(); ++i)
       drift = std::max(drift, norm(last.position[i] - first.position[i]));
-    return drift <= kDrift ? std::string() : "drifted by " + short_number(1e3 * drift) + " mm";
+    return drift <= kDrift ? std::string() : "drifted by " + output::short_number(1e3 * drift) + " mm";
   };
   cases.push_back(what);
 }
@@ -477,4 +482,4 @@ std::vector<StabilityCase> stability_cases(bool is_quick) {
   return cases;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::stability

@@ -3,12 +3,12 @@
 #include "studio/reports/report.h"
 #include "studio/stability/stability.h"
 
-namespace ctpm {
+namespace ctpm::stability {
 namespace {
 
 /// All runs, one a row, for programs.
-Table runs_table(const std::vector<StabilityRow>& rows) {
-  Table table;
+reports::Table runs_table(const std::vector<StabilityRow>& rows) {
+  reports::Table table;
   table.columns = {{"case", "case"},
                    {"title", "what"},
                    {"integrator", "integrator"},
@@ -23,25 +23,26 @@ Table runs_table(const std::vector<StabilityRow>& rows) {
                    {"expectation", "what must hold"}};
   for (const StabilityRow& row : rows)
     for (const StabilityRun& run : row.runs)
-      table.rows.push_back({row.what->key, row.what->title, std::string(name_of(run.asked)),
-                            std::string(name_of(run.used)), std::int64_t(run.substeps), run.verdict, run.reason,
-                            run.ticks, run.unconverged, 1e3 * run.reach, 1e3 * run.end_speed, row.what->expectation});
+      table.rows.push_back({row.what->key, row.what->title, std::string(stepping::name_of(run.asked)),
+                            std::string(stepping::name_of(run.used)), std::int64_t(run.substeps), run.verdict,
+                            run.reason, run.ticks, run.unconverged, 1e3 * run.reach, 1e3 * run.end_speed,
+                            row.what->expectation});
   return table;
 }
 
 /// One row a case: the verdict under each integrator.
-Table overview(const std::vector<StabilityRow>& rows) {
-  Table table;
+reports::Table overview(const std::vector<StabilityRow>& rows) {
+  reports::Table table;
   table.columns = {{"title", "case"}, {"used", "auto takes"}};
   for (const std::optional<Integrator> integrator : kStabilityIntegrators)
-    table.columns.push_back({name_of(integrator), name_of(integrator)});
+    table.columns.push_back({stepping::name_of(integrator), stepping::name_of(integrator)});
   table.columns.push_back({"reach", "furthest under auto [mm]", 3});
   table.columns.push_back({"expectation", "what must hold"});
   for (const StabilityRow& row : rows) {
     const StabilityRun& automatic = row.runs[0];
-    std::string used = name_of(automatic.used);
+    std::string used = stepping::name_of(automatic.used);
     if (automatic.substeps > 1) used += ", " + std::to_string(automatic.substeps) + " substeps";
-    std::vector<Cell> cells;
+    std::vector<reports::Cell> cells;
     cells.emplace_back(row.what->title), cells.emplace_back(used);
     for (const StabilityRun& run : row.runs) cells.emplace_back(run.verdict);
     cells.emplace_back(1e3 * automatic.reach), cells.emplace_back(row.what->expectation);
@@ -54,35 +55,35 @@ Table overview(const std::vector<StabilityRow>& rows) {
 }
 
 /// Why runs were refused, one line for each reason and integrator.
-Table refusals(const std::vector<StabilityRow>& rows) {
-  Table table;
+reports::Table refusals(const std::vector<StabilityRow>& rows) {
+  reports::Table table;
   table.title = "Refused, and why";
   table.columns = {{"title", "case"}, {"integrator", "integrator"}, {"ticks", "after ticks"}, {"reason", "reason"}};
   for (const StabilityRow& row : rows)
     for (const StabilityRun& run : row.runs)
-      if (run.verdict == ReportVerdict::refused)
-        table.rows.push_back({row.what->title, std::string(name_of(run.asked)), run.ticks, run.reason});
+      if (run.verdict == reports::ReportVerdict::refused)
+        table.rows.push_back({row.what->title, std::string(stepping::name_of(run.asked)), run.ticks, run.reason});
   return table;
 }
 
-std::vector<Plot> plots_of(const StabilityRun& run) {
-  Plot distance{.title = "furthest sphere", .x_title = "time [s]", .y_title = "distance from rest [mm]"};
-  Plot energy{.title = "energy", .x_title = "time [s]", .y_title = "of motion, springs and gravity [J]"};
+std::vector<reports::Plot> plots_of(const StabilityRun& run) {
+  reports::Plot distance{.title = "furthest sphere", .x_title = "time [s]", .y_title = "distance from rest [mm]"};
+  reports::Plot energy{.title = "energy", .x_title = "time [s]", .y_title = "of motion, springs and gravity [J]"};
   distance.series.push_back(run.distance), energy.series.push_back(run.energy);
   distance.height = energy.height = 260;
   return {distance, energy};
 }
 
 /// The runs that did not hold, those of `auto` first.
-std::vector<Section> failures(const std::vector<StabilityRow>& rows) {
-  std::vector<Section> sections;
+std::vector<reports::Section> failures(const std::vector<StabilityRow>& rows) {
+  std::vector<reports::Section> sections;
   for (const bool is_automatic : {true, false})
     for (const StabilityRow& row : rows)
       for (const StabilityRun& run : row.runs) {
-        if (run.verdict != ReportVerdict::missed || run.asked.has_value() == is_automatic) continue;
-        Section section;
-        section.key = row.what->key + "/" + name_of(run.asked);
-        section.title = std::string("Missed under ") + name_of(run.asked) + ": " + row.what->title;
+        if (run.verdict != reports::ReportVerdict::missed || run.asked.has_value() == is_automatic) continue;
+        reports::Section section;
+        section.key = row.what->key + "/" + stepping::name_of(run.asked);
+        section.title = std::string("Missed under ") + stepping::name_of(run.asked) + ": " + row.what->title;
         section.paragraphs = {"Must hold: " + row.what->expectation + ".", "Does not: " + run.reason + "."};
         section.plots = plots_of(run);
         sections.push_back(section);
@@ -90,8 +91,8 @@ std::vector<Section> failures(const std::vector<StabilityRow>& rows) {
   return sections;
 }
 
-std::string results_json(const std::vector<StabilityRow>& rows, const std::vector<Section>& failed) {
-  JsonWriter json;
+std::string results_json(const std::vector<StabilityRow>& rows, const std::vector<reports::Section>& failed) {
+  output::JsonWriter json;
   json.begin_object()
       .member("format", "ctpm-stability-results")
       .member("version", 1)
@@ -99,11 +100,11 @@ std::string results_json(const std::vector<StabilityRow>& rows, const std::vecto
       .member("cases", rows.size())
       .member("failures_under_auto", count_failures(rows));
   json.key("runs");
-  write_rows(json, runs_table(rows));
+  reports::write_rows(json, runs_table(rows));
   json.key("missed").begin_list();
-  for (const Section& section : failed) {
+  for (const reports::Section& section : failed) {
     json.begin_object().member("key", std::string_view(section.key)).key("plots").begin_list();
-    for (const Plot& plot : section.plots) write_points(json, plot);
+    for (const reports::Plot& plot : section.plots) reports::write_points(json, plot);
     json.end_list().end_object();
   }
   return json.end_list().end_object().text();
@@ -112,10 +113,10 @@ std::string results_json(const std::vector<StabilityRow>& rows, const std::vecto
 }  // namespace
 
 Result<Done> write_stability_report(const std::string& folder, const std::vector<StabilityRow>& rows) {
-  Report report("Stability on stiff and extreme cases",
-                "Each case is a small scene of liver tissue (r = 4 mm, the paper's moduli, viscosity in kPa "
-                "s, ticks of "
-                "1 ms where nothing else is said) that is driven to an extreme, run under every integrator.");
+  reports::Report report("Stability on stiff and extreme cases",
+                         "Each case is a small scene of liver tissue (r = 4 mm, the paper's moduli, viscosity in kPa "
+                         "s, ticks of "
+                         "1 ms where nothing else is said) that is driven to an extreme, run under every integrator.");
   const std::int64_t failed = count_failures(rows);
   report.add_verdict(failed == 0, failed == 0 ? "auto holds all " + std::to_string(rows.size()) + " cases."
                                               : "auto fails " + std::to_string(failed) + " of " +
@@ -140,14 +141,14 @@ Result<Done> write_stability_report(const std::string& folder, const std::vector
       "motion, as solves stop at a residual. SDIRK2 says beforehand that it damps nothing by itself: where energy "
       "grows or "
       "rest does not come, it counts as refused, with what was seen.");
-  const std::vector<Section> sections = failures(rows);
-  for (const Section& section : sections)
+  const std::vector<reports::Section> sections = failures(rows);
+  for (const reports::Section& section : sections)
     if (const Result<Done> added = report.add(section); !added) return added;
-  const Table refused = refusals(rows);
+  const reports::Table refused = refusals(rows);
   if (!refused.rows.empty()) report.add_heading("Refusals"), report.add_table(refused);
-  return write_report(folder, {{"results.json", results_json(rows, sections)},
-                               {"results.csv", to_csv(runs_table(rows))},
-                               {"report.html", report.html()}});
+  return reports::write_report(folder, {{"results.json", results_json(rows, sections)},
+                                        {"results.csv", reports::to_csv(runs_table(rows))},
+                                        {"report.html", report.html()}});
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::stability

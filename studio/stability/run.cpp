@@ -12,7 +12,7 @@
 #include "studio/output/number_text.h"
 #include "studio/stability/stability.h"
 
-namespace ctpm {
+namespace ctpm::stability {
 namespace {
 
 /// Samples of a run: enough to see every turn of a case that is a thousand ticks long.
@@ -34,7 +34,7 @@ Energy energy_of(const Model& model, const State& state) {
     energy.motion += 0.5 * model.mass[i] * dot(v, v);
     energy.lift -= model.mass[i] * dot(model.gravity, state.position[i] - model.rest_position[i]);
   }
-  energy.stored = elastic_energy(model, state);
+  energy.stored = elements::elastic_energy(model, state);
   return energy;
 }
 
@@ -53,17 +53,17 @@ Extent extent_of(const Model& model, const State& state) {
   return extent;
 }
 
-const char* to_words(StepStatus status) {
+const char* to_words(stepping::StepStatus status) {
   switch (status) {
-    case StepStatus::ok:
+    case stepping::StepStatus::ok:
       return "ok";
-    case StepStatus::not_converged:
+    case stepping::StepStatus::not_converged:
       return "the solve did not converge";
-    case StepStatus::bad_input:
+    case stepping::StepStatus::bad_input:
       return "bad input";
-    case StepStatus::diverged:
+    case stepping::StepStatus::diverged:
       return "diverged";
-    case StepStatus::too_long:
+    case stepping::StepStatus::too_long:
       return "the step is too long";
   }
   return "";
@@ -72,12 +72,12 @@ const char* to_words(StepStatus status) {
 /// Holds a run's energy to what it was since nothing does work any more; see run_stability_case().
 class EnergyWatch {
  public:
-  EnergyWatch(const Model& model, const IntegratorChoice& choice, double middle)
+  EnergyWatch(const Model& model, const stepping::IntegratorChoice& choice, double middle)
       : middle_(middle),
         is_explicit_(choice.integrator == Integrator::leapfrog),
         has_softening_(model.has_softening),
         has_constraints_(model.constraints.size() > 0) {
-    const double share = model.tick / choice.substeps / stable_step_bound(model);
+    const double share = model.tick / choice.substeps / stepping::stable_step_bound(model);
     if (is_explicit_ && choice.holds) swing_ = 1 / (1 - share * share);
   }
 
@@ -89,7 +89,7 @@ class EnergyWatch {
     scale_ = std::max(scale_, energy.motion + energy.stored);
     sum_[time > middle_] += energy.total(), ++count_[time > middle_];
     if (now > limit_ + (swing_ - 1 + kEnergySlack) * scale_ + 1e-15)
-      return "energy grew from " + short_number(limit_) + " J to " + short_number(now) + " J";
+      return "energy grew from " + output::short_number(limit_) + " J to " + output::short_number(now) + " J";
     if (!is_explicit_ && !has_softening_ && !has_constraints_) limit_ = std::min(limit_, now);
     return "";
   }
@@ -99,7 +99,7 @@ class EnergyWatch {
     if (!is_explicit_ || count_[0] == 0 || count_[1] == 0) return "";
     const double first = sum_[0] / count_[0], second = sum_[1] / count_[1];
     if (second <= first + 0.05 * scale_) return "";
-    return "mean energy rose from " + short_number(first) + " J to " + short_number(second) + " J";
+    return "mean energy rose from " + output::short_number(first) + " J to " + output::short_number(second) + " J";
   }
 
  private:
@@ -111,7 +111,7 @@ class EnergyWatch {
 
 /// A run while it goes on.
 struct Watch {
-  Watch(const StabilityCase& c, const Model& m, const IntegratorChoice& choice)
+  Watch(const StabilityCase& c, const Model& m, const stepping::IntegratorChoice& choice)
       : what(c), model(m), energy(m, choice, 0.5 * double(c.ticks + c.free_from) * m.tick) {}
 
   /// What is wrong after tick `tick`; empty if nothing is.
@@ -124,8 +124,8 @@ struct Watch {
     const Energy now = energy_of(model, state);
     run.energy.x.push_back(time), run.energy.y.push_back(now.total());
     if (extent.distance > what.reach)
-      return "a sphere is " + short_number(1e3 * extent.distance) + " mm from its rest position, more than " +
-             short_number(1e3 * what.reach) + " mm";
+      return "a sphere is " + output::short_number(1e3 * extent.distance) + " mm from its rest position, more than " +
+             output::short_number(1e3 * what.reach) + " mm";
     const std::string grown = what.free_from >= 0 && tick >= what.free_from ? energy.take(now, time) : "";
     is_undamped = !grown.empty();
     return grown;
@@ -135,9 +135,9 @@ struct Watch {
     if (std::string wrong = energy.finish(); !wrong.empty()) return wrong;
     const Extent extent = extent_of(model, last);
     is_undamped = extent.speed > what.end_speed;
-    if (is_undamped) return "does not come to rest: " + short_number(1e3 * extent.speed) + " mm/s at the end";
+    if (is_undamped) return "does not come to rest: " + output::short_number(1e3 * extent.speed) + " mm/s at the end";
     if (extent.distance > what.end_distance)
-      return "ends " + short_number(1e3 * extent.distance) + " mm from where it should rest";
+      return "ends " + output::short_number(1e3 * extent.distance) + " mm from where it should rest";
     return what.also ? what.also(model, first, last) : "";
   }
 
@@ -148,7 +148,7 @@ struct Watch {
 };
 
 std::string at_tick(std::int64_t tick, double length) {
-  return "tick " + std::to_string(tick) + " (" + short_number(double(tick) * length) + " s)";
+  return "tick " + std::to_string(tick) + " (" + output::short_number(double(tick) * length) + " s)";
 }
 
 }  // namespace
@@ -157,8 +157,8 @@ StabilityRun run_stability_case(const StabilityCase& what, std::optional<Integra
   StabilityRun run;
   Model model = what.build();
   run.asked = integrator;
-  const IntegratorChoice choice = resolve_integrator(model, integrator);
-  Stepper stepper(model);
+  const stepping::IntegratorChoice choice = stepping::resolve_integrator(model, integrator);
+  stepping::Stepper stepper(model);
   run.used = choice.integrator, run.substeps = choice.substeps;
   State state = rest_state(model);
   if (what.disturb) what.disturb(model, state);
@@ -167,23 +167,24 @@ StabilityRun run_stability_case(const StabilityCase& what, std::optional<Integra
   const std::int64_t every = std::max<std::int64_t>(1, what.ticks / kSamples);
   run.reason = watch.sample(state, 0, run);
   for (std::int64_t tick = 0; tick < what.ticks && run.reason.empty(); ++tick) {
-    const std::uint64_t before = state_hash(state);
-    const StepReport report = stepper.step(state, what.hand ? what.hand(tick) : Inputs{});
+    const std::uint64_t before = recordings::state_hash(state);
+    const stepping::StepReport report = stepper.step(state, what.hand ? what.hand(tick) : Inputs{});
     if (!is_finite(report.tool_force)) run.reason = at_tick(tick, model.tick) + ": the force is not finite";
-    const bool is_refused = report.status != StepStatus::ok && report.status != StepStatus::not_converged;
+    const bool is_refused =
+        report.status != stepping::StepStatus::ok && report.status != stepping::StepStatus::not_converged;
     const bool is_bad_input = what.is_bad_input && what.is_bad_input(tick);
-    if (is_refused && state_hash(state) != before)
+    if (is_refused && recordings::state_hash(state) != before)
       run.reason = at_tick(tick, model.tick) + ": refused, but the State changed";
-    else if (is_bad_input && report.status == StepStatus::bad_input)
+    else if (is_bad_input && report.status == stepping::StepStatus::bad_input)
       continue;
     else if (is_refused) {
       run.reason = at_tick(tick, model.tick) + ": " + to_words(report.status);
-      if (report.status == StepStatus::too_long) run.reason = choice.reason;
-      if (integrator) run.verdict = ReportVerdict::refused;
+      if (report.status == stepping::StepStatus::too_long) run.reason = choice.reason;
+      if (integrator) run.verdict = reports::ReportVerdict::refused;
     } else if (is_bad_input) {
       run.reason = at_tick(tick, model.tick) + ": input that no hand gives was taken";
     } else {
-      ++run.ticks, run.unconverged += report.status == StepStatus::not_converged;
+      ++run.ticks, run.unconverged += report.status == stepping::StepStatus::not_converged;
       if ((tick + 1) % every == 0 || tick + 1 == what.ticks) {
         const std::string wrong = watch.sample(state, tick + 1, run);
         if (!wrong.empty()) run.reason = at_tick(tick + 1, model.tick) + ": " + wrong;
@@ -191,9 +192,9 @@ StabilityRun run_stability_case(const StabilityCase& what, std::optional<Integra
     }
   }
   if (run.reason.empty()) run.reason = watch.finish(first, state);
-  if (run.reason.empty()) run.verdict = ReportVerdict::met;
+  if (run.reason.empty()) run.verdict = reports::ReportVerdict::met;
   if (watch.is_undamped && !choice.damps) {
-    run.verdict = ReportVerdict::refused;
+    run.verdict = reports::ReportVerdict::refused;
     run.reason = choice.reason + "; here: " + run.reason;
   }
   return run;
@@ -224,7 +225,7 @@ std::vector<StabilityRow> run_stability(const std::vector<StabilityCase>& cases,
 
 std::int64_t count_failures(const std::vector<StabilityRow>& rows) {
   return std::count_if(rows.begin(), rows.end(),
-                       [](const StabilityRow& row) { return row.runs[0].verdict != ReportVerdict::met; });
+                       [](const StabilityRow& row) { return row.runs[0].verdict != reports::ReportVerdict::met; });
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::stability

@@ -15,7 +15,7 @@
 #include "studio/reports/table.h"
 
 // Stiff and extreme cases that every integrator is put through, and what becomes of each.
-namespace ctpm {
+namespace ctpm::stability {
 
 /// One case: a small scene, what is done to it, and what must hold then.
 struct StabilityCase {
@@ -47,13 +47,13 @@ struct StabilityRun {
   std::optional<Integrator> asked;  ///< none: the Model's own choice
   Integrator used = Integrator::backward_euler;
   std::int32_t substeps = 1;
-  ReportVerdict verdict = ReportVerdict::missed;  ///< met, missed or refused
-  std::string reason;                             ///< why it was missed or refused; empty if met
-  std::int64_t ticks = 0;                         ///< done
-  std::int64_t unconverged = 0;                   ///< ticks whose solve stopped at its count
-  double reach = 0;                               ///< furthest that a sphere was from its rest position [m]
-  double end_speed = 0;                           ///< fastest sphere at the end [m/s]
-  Series distance, energy;                        ///< over time [s]: of the furthest sphere [mm], of all [J]
+  reports::ReportVerdict verdict = reports::ReportVerdict::missed;  ///< met, missed or refused
+  std::string reason;                                               ///< why it was missed or refused; empty if met
+  std::int64_t ticks = 0;                                           ///< done
+  std::int64_t unconverged = 0;                                     ///< ticks whose solve stopped at its count
+  double reach = 0;                  ///< furthest that a sphere was from its rest position [m]
+  double end_speed = 0;              ///< fastest sphere at the end [m/s]
+  reports::Series distance, energy;  ///< over time [s]: of the furthest sphere [mm], of all [J]
 };
 
 /// Runs one case. Finite and bounded are asked of every sampled tick; a tick that is refused must leave the
@@ -90,4 +90,4 @@ std::int64_t count_failures(const std::vector<StabilityRow>& rows);
 /// Writes report.html, results.json and results.csv into a folder.
 Result<Done> write_stability_report(const std::string& folder, const std::vector<StabilityRow>& rows);
 
-}  // namespace ctpm
+}  // namespace ctpm::stability

@@ -2,7 +2,7 @@
 
 #include "studio/version/commit.h"
 
-namespace ctpm {
+namespace ctpm::version {
 
 std::string build_fingerprint() {
 #ifdef __clang__
@@ -18,4 +18,4 @@ std::string build_fingerprint() {
   return std::string("ctpm ") + CTPM_VERSION + ", commit " + build_commit() + ", " + compiler + ", " + kind;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::version

@@ -12,9 +12,9 @@ if(GIT)
 endif()
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT [[#include "studio/version/commit.h"
 
-namespace ctpm {
+namespace ctpm::version {
 
 const char* build_commit() { return "@commit@"; }
 
-}  // namespace ctpm
+}  // namespace ctpm::version
 ]] @ONLY)

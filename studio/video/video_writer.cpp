@@ -13,7 +13,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace ctpm {
+namespace ctpm::video {
 namespace {
 
 namespace fs = std::filesystem;
@@ -97,7 +97,7 @@ struct VideoWriter::Parts {
   bool open(const Format& wanted);
   Result<Done> open_pictures();
   void discard();
-  Result<Done> put(const Frame& frame);
+  Result<Done> put(const render::Frame& frame);
   Result<VideoFacts> check_file() const;
   Result<VideoFacts> check_pictures() const;
 };
@@ -147,9 +147,9 @@ void VideoWriter::Parts::discard() {
   if (!part.empty()) fs::remove_all(part, ignored);
 }
 
-Result<Done> VideoWriter::Parts::put(const Frame& frame) {
+Result<Done> VideoWriter::Parts::put(const render::Frame& frame) {
   if (format.is_pictures()) {
-    const Result<Done> written = write_png(picture_path(part, frames + 1).string(), frame);
+    const Result<Done> written = render::write_png(picture_path(part, frames + 1).string(), frame);
     if (written) return written;
     return Error{picture_path(path, frames + 1).string(), written.errors()[0].message, "check the free space"};
   }
@@ -185,7 +185,7 @@ Result<VideoFacts> VideoWriter::Parts::check_file() const {
 Result<VideoFacts> VideoWriter::Parts::check_pictures() const {
   VideoFacts facts{path, format.codec, note, 0, 0, fps, 0, 0};
   for (const std::int64_t index : {std::int64_t(1), frames}) {
-    const Result<Frame> picture = read_picture(picture_path(part, index).string());
+    const Result<render::Frame> picture = render::read_picture(picture_path(part, index).string());
     if (!picture) return picture.errors();
     facts.width = picture->width, facts.height = picture->height;
   }
@@ -243,7 +243,7 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::create(const std::string& path
 const std::string& VideoWriter::path() const { return parts_->path; }
 const std::string& VideoWriter::note() const { return parts_->note; }
 
-Result<Done> VideoWriter::add(const Frame& frame) {
+Result<Done> VideoWriter::add(const render::Frame& frame) {
   Parts& p = *parts_;
   if (p.is_finished) return Error{p.path, "the video is finished", ""};
   if (frame.width != p.width || frame.height != p.height)
@@ -272,4 +272,4 @@ Result<VideoFacts> VideoWriter::finish() {
   return facts;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::video

@@ -7,7 +7,7 @@
 #include "core/model/result.h"
 #include "studio/render/frame.h"
 
-namespace ctpm {
+namespace ctpm::video {
 
 /// What was written, as found by opening the file again.
 struct VideoFacts {
@@ -41,7 +41,7 @@ class VideoWriter {
   const std::string& note() const;
 
   /// Appends a frame. Errors: a frame of another size, after finish().
-  Result<Done> add(const Frame& frame);
+  Result<Done> add(const render::Frame& frame);
 
   /// Closes the file, opens it again, compares its size and number of frames, and gives it its name.
   /// Errors: no frame was added, the file does not hold what was written.
@@ -53,4 +53,4 @@ class VideoWriter {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace ctpm
+}  // namespace ctpm::video

@@ -11,75 +11,80 @@
 #include "studio/output/number_text.h"
 #include "studio/output/option_name.h"
 
-namespace ctpm {
+namespace ctpm::views {
 namespace {
 
 template <class T>
 using Choices = std::array<std::pair<const char*, T>, 4>;
 
-constexpr Choices<View> kViews{
-    {{"surface", View::surface}, {"spheres", View::spheres}, {"both", View::both}, {"elements", View::elements}}};
+constexpr Choices<render::View> kViews{{{"surface", render::View::surface},
+                                        {"spheres", render::View::spheres},
+                                        {"both", render::View::both},
+                                        {"elements", render::View::elements}}};
 
-std::optional<View> find_view(const std::string& name, Errors& errors) {
+std::optional<render::View> find_view(const std::string& name, Errors& errors) {
   for (const auto& [known, view] : kViews)
     if (name == known) return view;
-  errors.push_back({option_name("look.view"), "got '" + name + "', must be surface, spheres, both or elements", ""});
+  errors.push_back(
+      {output::option_name("look.view"), "got '" + name + "', must be surface, spheres, both or elements", ""});
   return std::nullopt;
 }
 
 /// The quantity that colours show; the view decides which there are.
-ElementQuantity find_quantity(const std::string& by, View view, Errors& errors) {
-  if (view == View::elements) {
-    if (by.empty() || by == "stretch") return ElementQuantity::stretch;
-    if (by == "tilt") return ElementQuantity::tilt;
-    if (by == "force") return ElementQuantity::force;
-    errors.push_back({option_name("look.by"), "got '" + by + "', elements are coloured by stretch, tilt or force", ""});
-  } else if (view == View::surface) {
+render::ElementQuantity find_quantity(const std::string& by, render::View view, Errors& errors) {
+  if (view == render::View::elements) {
+    if (by.empty() || by == "stretch") return render::ElementQuantity::stretch;
+    if (by == "tilt") return render::ElementQuantity::tilt;
+    if (by == "force") return render::ElementQuantity::force;
+    errors.push_back(
+        {output::option_name("look.by"), "got '" + by + "', elements are coloured by stretch, tilt or force", ""});
+  } else if (view == render::View::surface) {
     if (!by.empty())
-      errors.push_back({option_name("look.by"), "the surface has its own colours",
-                        "give " + option_name("look.view") + " spheres or " + option_name("look.view") + " elements"});
+      errors.push_back({output::option_name("look.by"), "the surface has its own colours",
+                        "give " + output::option_name("look.view") + " spheres or " + output::option_name("look.view") +
+                            " elements"});
   } else if (!by.empty() && by != "layer") {
-    errors.push_back({option_name("look.by"), "got '" + by + "', spheres are coloured by layer",
+    errors.push_back({output::option_name("look.by"), "got '" + by + "', spheres are coloured by layer",
                       by == "stretch" || by == "tilt" || by == "force"
-                          ? "give " + option_name("look.view") + " elements"
+                          ? "give " + output::option_name("look.view") + " elements"
                           : std::string()});
   }
-  return ElementQuantity::stretch;
+  return render::ElementQuantity::stretch;
 }
 
 /// The legend's unit in SI: %, degrees, N.
-double unit_of(ElementQuantity quantity) {
+double unit_of(render::ElementQuantity quantity) {
   switch (quantity) {
-    case ElementQuantity::stretch:
+    case render::ElementQuantity::stretch:
       return 0.01;
-    case ElementQuantity::tilt:
+    case render::ElementQuantity::tilt:
       return std::numbers::pi / 180;
-    case ElementQuantity::force:
+    case render::ElementQuantity::force:
       return 1;
   }
   return 1;
 }
 
 /// `x`, `y` or `z` through the scene's middle, or with a place; the side towards the eye is left out.
-Cutaway find_cutaway(const std::string& text, const SceneView& scene, Vec3 eye, Errors& errors) {
+render::Cutaway find_cutaway(const std::string& text, const render::SceneView& scene, Vec3 eye, Errors& errors) {
   if (text.empty()) return {};
   Vec3 axis{text[0] == 'x' ? 1.0 : 0.0, text[0] == 'y' ? 1.0 : 0.0, text[0] == 'z' ? 1.0 : 0.0};
-  const Bounds bounds = rest_bounds(scene);
+  const render::Bounds bounds = render::rest_bounds(scene);
   double place = dot(bounds.centre(), axis);
   char* end = nullptr;
   if (text.size() > 2 && text[1] == '=') place = 1e-3 * std::strtod(text.c_str() + 2, &end);
   const bool is_read = text.size() == 1 || (end && *end == 0 && std::isfinite(place));
   if (axis == Vec3{} || !is_read) {
-    errors.push_back({option_name("look.cutaway"),
+    errors.push_back({output::option_name("look.cutaway"),
                       "got '" + text + "', must be x, y or z, or one of them and a place in mm", "for example y=12.5"});
     return {};
   }
   const double least = dot(bounds.min, axis), most = dot(bounds.max, axis);
   if (place < least || place > most) {
-    errors.push_back(
-        {option_name("look.cutaway"),
-         "got '" + text + "', the organs lie between " + fixed(1e3 * least, 1) + " and " + fixed(1e3 * most, 1) + " mm",
-         ""});
+    errors.push_back({output::option_name("look.cutaway"),
+                      "got '" + text + "', the organs lie between " + output::fixed(1e3 * least, 1) + " and " +
+                          output::fixed(1e3 * most, 1) + " mm",
+                      ""});
     return {};
   }
   if (dot(eye, axis) < place) axis = -axis, place = -place;
@@ -88,49 +93,51 @@ Cutaway find_cutaway(const std::string& text, const SceneView& scene, Vec3 eye, 
 
 /// The camera of that name; if the name is empty the scene's first, or one that has everything in sight.
 /// Error: no camera of that name, with the names there are.
-Result<Camera> find_camera(const SceneSpec& scene, const SceneView& view, const std::string& name, double aspect) {
-  if (name.empty() && scene.cameras.empty()) return default_camera(view, aspect);
+Result<render::Camera> find_camera(const scenes::SceneSpec& scene, const render::SceneView& view,
+                                   const std::string& name, double aspect) {
+  if (name.empty() && scene.cameras.empty()) return render::default_camera(view, aspect);
   std::string known;
-  for (const CameraSpec& camera : scene.cameras) {
+  for (const scenes::CameraSpec& camera : scene.cameras) {
     if (name.empty() || camera.name == name) {
       // Cameras are set up for 16:9; in a narrower picture they step back so that the sides stay in sight.
       const double back = std::max(1.0, 16.0 / 9 / aspect);
-      return Camera{camera.target + back * (camera.eye - camera.target), camera.target, camera.up,
-                    camera.field_of_view};
+      return render::Camera{camera.target + back * (camera.eye - camera.target), camera.target, camera.up,
+                            camera.field_of_view};
     }
     known += (known.empty() ? "" : ", ") + camera.name;
   }
-  return Error{option_name("look.camera"), "the scene has no camera '" + name + "'",
+  return Error{output::option_name("look.camera"), "the scene has no camera '" + name + "'",
                "there are: fitted, follow" + (known.empty() ? "" : ", " + known)};
 }
 
 }  // namespace
 
-DrawOptions Look::at(const SceneView& scene, std::span<const Inputs> moments) const {
-  DrawOptions options = draw;
-  if (follows) options.camera = following_camera(scene, draw.camera, moments);
+render::DrawOptions Look::at(const render::SceneView& scene, std::span<const Inputs> moments) const {
+  render::DrawOptions options = draw;
+  if (follows) options.camera = render::following_camera(scene, draw.camera, moments);
   return options;
 }
 
-Result<Look> find_look(const LookRequest& request, const SceneSpec& scene, const SceneView& view, double aspect) {
+Result<Look> find_look(const LookRequest& request, const scenes::SceneSpec& scene, const render::SceneView& view,
+                       double aspect) {
   Errors errors;
   Look look;
-  if (const std::optional<View> found = find_view(request.view, errors)) {
+  if (const std::optional<render::View> found = find_view(request.view, errors)) {
     look.draw.view = *found;
     look.draw.quantity = find_quantity(request.by, *found, errors);
   }
   if (!(request.full_scale >= 0 && std::isfinite(request.full_scale)))
-    errors.push_back(
-        {option_name("look.full_scale"), "got " + fixed(request.full_scale, 3) + ", must be more than 0", ""});
+    errors.push_back({output::option_name("look.full_scale"),
+                      "got " + output::fixed(request.full_scale, 3) + ", must be more than 0", ""});
   look.draw.full_scale = request.full_scale * unit_of(look.draw.quantity);
   bool is_the_scenes = false;
-  for (const CameraSpec& camera : scene.cameras) is_the_scenes |= camera.name == request.camera;
+  for (const scenes::CameraSpec& camera : scene.cameras) is_the_scenes |= camera.name == request.camera;
   look.camera = request.camera;
   if (request.camera == "fitted" && !is_the_scenes) {
-    look.draw.camera = default_camera(view, aspect);
+    look.draw.camera = render::default_camera(view, aspect);
   } else {
     look.follows = request.camera == "follow" && !is_the_scenes;
-    const Result<Camera> camera = find_camera(scene, view, look.follows ? "" : request.camera, aspect);
+    const Result<render::Camera> camera = find_camera(scene, view, look.follows ? "" : request.camera, aspect);
     if (camera)
       look.draw.camera = *camera;
     else
@@ -142,4 +149,4 @@ Result<Look> find_look(const LookRequest& request, const SceneSpec& scene, const
   return look;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::views

@@ -7,7 +7,7 @@
 #include "scenes/scene_spec.h"
 #include "studio/render/scene_view.h"
 
-namespace ctpm {
+namespace ctpm::views {
 
 /// What a picture shall show, as the user wrote it; find_look() checks it.
 struct LookRequest {
@@ -20,16 +20,17 @@ struct LookRequest {
 
 /// The draw options and the camera of one scene.
 struct Look {
-  DrawOptions draw;      ///< with the base camera
-  bool follows = false;  ///< the camera follows the tool
-  std::string camera;    ///< its name: of the scene, `fitted`, or `follow`
+  render::DrawOptions draw;  ///< with the base camera
+  bool follows = false;      ///< the camera follows the tool
+  std::string camera;        ///< its name: of the scene, `fitted`, or `follow`
 
   /// The options for a moment of the scene; `moments` as following_camera() wants them.
-  DrawOptions at(const SceneView& scene, std::span<const Inputs> moments) const;
+  render::DrawOptions at(const render::SceneView& scene, std::span<const Inputs> moments) const;
 };
 
 /// Checks a request against a scene. Errors, all at once: an unknown view, quantity or camera, with the known ones; a
 /// quantity that the view does not have; a cutaway outside the organs.
-Result<Look> find_look(const LookRequest& request, const SceneSpec& scene, const SceneView& view, double aspect);
+Result<Look> find_look(const LookRequest& request, const scenes::SceneSpec& scene, const render::SceneView& view,
+                       double aspect);
 
-}  // namespace ctpm
+}  // namespace ctpm::views

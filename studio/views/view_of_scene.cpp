@@ -2,14 +2,14 @@
 
 #include <utility>
 
-namespace ctpm {
+namespace ctpm::views {
 
-SceneView view_of(const SceneSpec& scene, const Model& model, std::vector<Surface> surfaces) {
-  SceneView view;
+render::SceneView view_of(const scenes::SceneSpec& scene, const Model& model, std::vector<Surface> surfaces) {
+  render::SceneView view;
   view.model = &model;
   view.surfaces = std::move(surfaces);
-  for (const OrganSpec& organ : scene.organs) {
-    OrganLook look = look_of(organ.name);
+  for (const scenes::OrganSpec& organ : scene.organs) {
+    render::OrganLook look = render::look_of(organ.name);
     look.name = organ.name;
     look.outer = {organ.surface_color.x, organ.surface_color.y, organ.surface_color.z};
     look.inner = {organ.inner_color.x, organ.inner_color.y, organ.inner_color.z};
@@ -18,4 +18,4 @@ SceneView view_of(const SceneSpec& scene, const Model& model, std::vector<Surfac
   return view;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::views

@@ -7,9 +7,9 @@
 #include "scenes/scene_spec.h"
 #include "studio/render/scene_view.h"
 
-namespace ctpm {
+namespace ctpm::views {
 
 /// What the renderer draws of a scene: its surfaces in the organs' colours. `model` must outlive the view.
-SceneView view_of(const SceneSpec& scene, const Model& model, std::vector<Surface> surfaces);
+render::SceneView view_of(const scenes::SceneSpec& scene, const Model& model, std::vector<Surface> surfaces);
 
-}  // namespace ctpm
+}  // namespace ctpm::views

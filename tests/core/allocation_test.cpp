@@ -18,13 +18,13 @@ using testing::allocations, testing::live_bytes;
 class EveryIntegrator : public ::testing::TestWithParam<Integrator> {};
 
 TEST_P(EveryIntegrator, AllocatesNothingAfterTheFirstTick) {
-  Material material = testing::liver_material();
+  network::Material material = testing::liver_material();
   if (GetParam() == Integrator::leapfrog) material.viscosity = 5e3, material.stiffness_scale = 0.3;
   for (const int threads : {1, 2}) {
-    Model model = testing::make_block_model(12, 12, 12, Structure::ctpm, material);
+    Model model = testing::make_block_model(12, 12, 12, network::Structure::ctpm, material);
     model.tools = {testing::ball(0.02), testing::scalpel(0.1)};
     testing::use_integrator(model, GetParam());
-    Stepper stepper(model, {threads, best_instruction_set()});
+    stepping::Stepper stepper(model, {threads, elements::best_instruction_set()});
     State state = rest_state(model);
     std::int32_t contacts = 0, severed = 0;
     // The first tick with each tool may make room.
@@ -34,7 +34,7 @@ TEST_P(EveryIntegrator, AllocatesNothingAfterTheFirstTick) {
       inputs.tool = tick < 12 ? 0 : 1;
       inputs.position = tick < 12 ? Vec3{0, 0, 0.156 - 0.0006 * tick} : Vec3{0.0007, -0.1 + 0.01 * (tick - 12), 0.1};
       if (tick == 1 || tick == 13) before = allocations;
-      const StepReport report = stepper.step(state, inputs);
+      const stepping::StepReport report = stepper.step(state, inputs);
       if (tick != 0 && tick != 12) {
         ASSERT_EQ(allocations, before) << "tick " << tick << ", " << threads << " threads";
       }
@@ -49,9 +49,9 @@ INSTANTIATE_TEST_SUITE_P(All, EveryIntegrator,
                          ::testing::Values(Integrator::leapfrog, Integrator::backward_euler, Integrator::sdirk2));
 
 Model springs_only() {
-  Material material = testing::liver_material();
+  network::Material material = testing::liver_material();
   material.stiffness_scale = 0.29;
-  Model model = testing::make_block_model(11, 11, 11, Structure::mass_spring, material);
+  Model model = testing::make_block_model(11, 11, 11, network::Structure::mass_spring, material);
   testing::use_integrator(model, Integrator::leapfrog);
   return model;
 }
@@ -60,8 +60,8 @@ Model springs_only() {
 long stepper_bytes(const Model& model) {
   State state = rest_state(model);
   const long before = live_bytes;
-  Stepper stepper(model);
-  EXPECT_EQ(stepper.step(state, {}).status, StepStatus::ok);
+  stepping::Stepper stepper(model);
+  EXPECT_EQ(stepper.step(state, {}).status, stepping::StepStatus::ok);
   return live_bytes - before;
 }
 

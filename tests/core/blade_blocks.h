@@ -11,27 +11,28 @@ namespace ctpm::testing {
 
 inline constexpr double kToughness = 164, kFriction = 2000;  // [J/m^2], [Pa]
 
-inline Material resisting(double toughness = kToughness, double friction = 0) {
-  Material material = liver_material();
+inline network::Material resisting(double toughness = kToughness, double friction = 0) {
+  network::Material material = liver_material();
   material.fracture_toughness = toughness, material.blade_friction = friction;
   return material;
 }
 
 /// A block with a blade longer than the block is high.
-inline Model block_with_blade(int ni, int nj, int nk, const Material& material, Structure structure = Structure::ctpm) {
+inline Model block_with_blade(int ni, int nj, int nk, const network::Material& material,
+                              network::Structure structure = network::Structure::ctpm) {
   Model model = make_block_model(ni, nj, nk, structure, material);
   model.tools = {scalpel(0.2)};
   model.solver.tolerance = 1e-11, model.solver.velocity_floor = 1e-14, model.solver.max_iterations = 2000;
   return model;
 }
 
-inline Model held_block(int ni, int nj, int nk, const Material& material = resisting()) {
+inline Model held_block(int ni, int nj, int nk, const network::Material& material = resisting()) {
   Model model = block_with_blade(ni, nj, nk, material);
   model.held_axes.assign(model.sphere_count(), kAnchored);
   return model;
 }
 
-inline Model free_block(int ni, int nj, int nk, const Material& material = resisting()) {
+inline Model free_block(int ni, int nj, int nk, const network::Material& material = resisting()) {
   Model model = block_with_blade(ni, nj, nk, material);
   model.held_axes.assign(model.sphere_count(), 0);
   return model;
@@ -76,11 +77,12 @@ struct Work {
 inline Work cut_through(const Model& model, double per_tick, Vec3 start, Vec3 way) {
   Work work;
   work.state = rest_state(model);
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   const Vec3 direction = way / norm(way);
   const int ticks = int(std::ceil(norm(way) / per_tick));
   for (int i = 0; i <= ticks; ++i) {
-    const StepReport report = stepper.step(work.state, blade_at(start + std::min(i * per_tick, norm(way)) * direction));
+    const stepping::StepReport report =
+        stepper.step(work.state, blade_at(start + std::min(i * per_tick, norm(way)) * direction));
     if (i > 0) work.by_hand -= per_tick * dot(report.tool_force, direction);
     EXPECT_LE(dot(report.tool_force, direction), 0) << "the blade is never drawn in";
   }

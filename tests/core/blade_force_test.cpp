@@ -22,12 +22,12 @@ using testing::resisting;
 using testing::Work;
 
 TEST(BladeForce, EveryPlaneOpensItsOwnAreaWhicheverWayItLies) {
-  for (const LatticeKind lattice : {LatticeKind::cubic_18, LatticeKind::cubic_6}) {
-    OrganSettings settings;
+  for (const network::LatticeKind lattice : {network::LatticeKind::cubic_18, network::LatticeKind::cubic_6}) {
+    network::OrganSettings settings;
     settings.material = resisting(), settings.lattice = lattice;
     Model model;
     const FilledOrgan block = make_block(7, 7, 7);
-    ASSERT_TRUE(add_organ(model, block, settings));
+    ASSERT_TRUE(network::add_organ(model, block, settings));
     const std::int32_t middle = 3 + 7 * (3 + 7 * 3);
     testing::Noise noise;
     for (int trial = 0; trial < 50; ++trial) {
@@ -59,9 +59,9 @@ TEST(BladeForce, TheHandsWorkIsTheToughnessTimesTheAreaAtEverySpeed) {
 }
 
 /// A block of 60 x 60 x 36 mm, held below and at both sides, that a blade cuts in half.
-Model clamped_block(double spacing, const Material& material) {
+Model clamped_block(double spacing, const network::Material& material) {
   const int f = int(std::lround(0.012 / spacing));
-  Model model = testing::make_block_model(5 * f, 5 * f, 3 * f, Structure::ctpm, material, spacing);
+  Model model = testing::make_block_model(5 * f, 5 * f, 3 * f, network::Structure::ctpm, material, spacing);
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
     if (int(i) % (5 * f) == 0 || int(i) % (5 * f) == 5 * f - 1) model.held_axes[i] = kAnchored;
   model.tools = {testing::scalpel(0.2)};
@@ -90,15 +90,15 @@ TEST(BladeForce, TheHandPaysForTheAreaAndForWhatTheTissueLosesWhateverTheSpheres
   constexpr double kPerTick = 4e-5;
   for (const double spacing : {0.012, 0.006}) {
     // Firm, so that tissue is not dragged far and the blade faces the elements as it does at rest.
-    Material material = resisting();
+    network::Material material = resisting();
     material.stiffness_scale = 3;
     const Model model = clamped_block(spacing, material);
-    Stepper stepper(model);
+    stepping::Stepper stepper(model);
     State state = rest_state(model), before = state;
     double by_hand = 0, lost = 0;
     for (int i = 0; i <= int(0.1 / kPerTick); ++i) {
       before = state;
-      const StepReport report = stepper.step(state, blade_at({0.0002, -0.05 + kPerTick * i, -0.05}));
+      const stepping::StepReport report = stepper.step(state, blade_at({0.0002, -0.05 + kPerTick * i, -0.05}));
       if (i > 0) by_hand -= kPerTick * report.tool_force.y;
       lost += viscous_work(model, before, state);
     }
@@ -111,14 +111,14 @@ TEST(BladeForce, TheHandPaysForTheAreaAndForWhatTheTissueLosesWhateverTheSpheres
 
 TEST(BladeForce, RisesBeforeTheCutAndIsGoneAfterIt) {
   const Model model = block_with_blade(6, 5, 4, resisting());
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   double before_first = 0, while_cutting = 0;
   int severed = 0;
-  StepReport report;
+  stepping::StepReport report;
   for (int i = 0; i < 2400; ++i) {
     report = stepper.step(state, blade_at({0.0002, -0.06 + 5e-5 * i, -0.05}));
-    ASSERT_EQ(report.status, StepStatus::ok);
+    ASSERT_EQ(report.status, stepping::StepStatus::ok);
     severed += report.severed;
     const double force = norm(report.tool_force);
     if (i < 300) {
@@ -138,9 +138,9 @@ TEST(BladeForce, RisesBeforeTheCutAndIsGoneAfterIt) {
 
 TEST(BladeForce, ARestingBladeGoesOnHoldingTheTissueBack) {
   const Model model = block_with_blade(6, 5, 4, resisting());
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
-  StepReport report;
+  stepping::StepReport report;
   double y = -0.06;
   for (; y < 0 && report.tool_force.y > -1; y += 5e-5) report = stepper.step(state, blade_at({0.0002, y, -0.05}));
   ASSERT_LT(y, 0);
@@ -160,11 +160,11 @@ TEST(BladeForce, FlanksRubUntilTheBladeLeavesWhateverTheSpheres) {
     Model model = clamped_block(spacing, resisting(0, kFriction));
     model.held_axes.assign(model.sphere_count(), kAnchored);
     model.tools[0].flank_height = flank_height;
-    Stepper stepper(model);
+    stepping::Stepper stepper(model);
     State state = rest_state(model);
     double sum = 0;
     int inside = 0;
-    StepReport report;
+    stepping::StepReport report;
     for (int i = 0; i < 1200; ++i) {
       const double y = -0.06 + 1e-4 * i;
       report = stepper.step(state, blade_at({0.0002, y, -0.05}));
@@ -184,7 +184,7 @@ TEST(BladeForce, FlanksRubUntilTheBladeLeavesWhateverTheSpheres) {
 double friction_in_opened_cut(const Tool& blade, double opened, double per_tick) {
   Model model = held_block(6, 5, 4, resisting(0, kFriction));
   model.tools = {blade};
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   double y = -0.06;
   for (; y < 0; y += 1e-3) (void)stepper.step(state, blade_at({0.0002, y, -0.05}));
@@ -216,7 +216,7 @@ TEST(BladeForce, FrictionFallsLinearlyBelowTheSlowestSlip) {
 double resistance_begins(const Tool& blade) {
   Model model = held_block(6, 5, 4);
   model.tools = {blade};
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   double y = -0.1;
   while (y < 0 && stepper.step(state, blade_at({0.0002, y, -0.05})).tool_force.y == 0) y += 1e-4;
@@ -238,7 +238,7 @@ TEST(BladeForce, GrowsWithTheHeadingUntilTheTrailIsTaut) {
   const auto force_after = [](double trail_distance, double way) {
     Model model = held_block(6, 5, 4);
     model.tools[0].trail_distance = trail_distance;
-    Stepper stepper(model);
+    stepping::Stepper stepper(model);
     State state = rest_state(model);
     (void)stepper.step(state, blade_at({0.0002, -0.03, -0.05}));
     return norm(stepper.step(state, blade_at({0.0002, -0.03 + way, -0.05})).tool_force);
@@ -254,13 +254,13 @@ TEST(BladeForce, SlicingAlongTheEdgeMakesPushingEasier) {
   Model model = clamped_block(0.006, resisting());
   model.held_axes.assign(model.sphere_count(), kAnchored);
   const auto mean_force = [&](double xi) {
-    Stepper stepper(model);
+    stepping::Stepper stepper(model);
     State state = rest_state(model);
     Vec3 sum;
     int inside = 0;
     for (int i = 0; i < 600; ++i) {
       const double y = -0.05 + 1e-4 * i;
-      const StepReport report = stepper.step(state, blade_at({0.0002, y, -0.1 + xi * (y + 0.05)}));
+      const stepping::StepReport report = stepper.step(state, blade_at({0.0002, y, -0.1 + xi * (y + 0.05)}));
       if (std::abs(y) < 0.012) sum += report.tool_force, ++inside;
     }
     return sum / inside;
@@ -275,12 +275,12 @@ TEST(BladeForce, SlicingAlongTheEdgeMakesPushingEasier) {
 }
 
 TEST(BladeForce, WhatTensionHasStoredOpensTheCutWithTheHand) {
-  const Material material = resisting();
+  const network::Material material = resisting();
   Model model = clamped_block(0.012, material);
   model.held_axes.assign(model.sphere_count(), kAnchored);
   State state = rest_state(model);
   for (double& x : state.position.x) x *= 1.3;  // pulled apart across the cut
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   double by_hand = 0;
   for (int i = 0; i < 1000; ++i)
     by_hand -= 1e-4 * stepper.step(state, blade_at({0.0002, -0.05 + 1e-4 * i, -0.05})).tool_force.y;
@@ -301,14 +301,14 @@ TEST(BladeForce, WhatTensionHasStoredOpensTheCutWithTheHand) {
 
 TEST(BladeForce, TheTissueFeelsWhatTheHandFeels) {
   const Model model = free_block(6, 5, 4, resisting(kToughness, kFriction));
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   Vec3 before;
   double largest = 0;
   for (const double per_tick : {1e-4, 4e-3})
     for (int i = 0; i < 300; ++i) {
       const Vec3 middle = state.position[70];
-      const StepReport report =
+      const stepping::StepReport report =
           stepper.step(state, blade_at({0.0002 + 1e-5 * i, middle.y - 0.04 + per_tick * (i % 25), -0.05}));
       const Vec3 now = momentum(model, state), gained = now - before;
       EXPECT_NEAR(norm(gained + model.tick * report.tool_force), 0, 1e-9 + 1e-5 * norm(gained)) << i;
@@ -321,15 +321,15 @@ TEST(BladeForce, TheTissueFeelsWhatTheHandFeels) {
 TEST(BladeForce, TissueNeverGainsMoreEnergyThanTheHandGives) {
   for (const double per_tick : {1e-4, 2e-3, 0.03}) {
     const Model model = free_block(6, 5, 4, resisting(kToughness, kFriction));
-    Stepper stepper(model);
+    stepping::Stepper stepper(model);
     State state = rest_state(model);
     double given = 0;
     const int ticks = int(0.12 / per_tick);
     for (int i = 0; i <= ticks + 50; ++i) {
       const int moved = std::min(i, ticks);
-      const StepReport report = stepper.step(state, blade_at({0.0002, -0.06 + per_tick * moved, -0.05}));
+      const stepping::StepReport report = stepper.step(state, blade_at({0.0002, -0.06 + per_tick * moved, -0.05}));
       if (i > 0 && i <= ticks) given -= per_tick * report.tool_force.y;
-      EXPECT_LE(elastic_energy(model, state) + kinetic_energy(model, state), given + 1e-9) << "tick " << i;
+      EXPECT_LE(elements::elastic_energy(model, state) + kinetic_energy(model, state), given + 1e-9) << "tick " << i;
     }
     EXPECT_GT(given, 0);
   }

@@ -13,8 +13,8 @@
 namespace ctpm::testing {
 
 /// Moduli of the paper's liver (Table 1 and section 5.1), viscosity in kPa s/mm.
-inline Material liver_material() {
-  Material m;
+inline network::Material liver_material() {
+  network::Material m;
   m.spring = m.kelvin = 15e6;
   m.constraint = 20e6;
   m.viscosity = 5e6;
@@ -41,20 +41,20 @@ inline FilledOrgan make_block(int ni, int nj, int nk, double spacing = 0.012) {
 }
 
 /// A Model of one block whose lowest spheres are anchored.
-inline Model make_block_model(int ni, int nj, int nk, Structure structure = Structure::ctpm,
-                              Material material = liver_material(), double spacing = 0.012) {
+inline Model make_block_model(int ni, int nj, int nk, network::Structure structure = network::Structure::ctpm,
+                              network::Material material = liver_material(), double spacing = 0.012) {
   const FilledOrgan organ = make_block(ni, nj, nk, spacing);
-  OrganSettings settings;
+  network::OrganSettings settings;
   settings.name = "block";
   settings.structure = structure;
   settings.material = material;
   for (int i = 0; i < ni * nj; ++i) settings.anchored.push_back(i);
   Model model;
-  const Result<Done> added = add_organ(model, organ, settings);
+  const Result<Done> added = network::add_organ(model, organ, settings);
   CTPM_CHECK(bool(added), "a test's own block is valid");
-  model.contact_k = 20 * material.spring * edge_area(material, organ.spacing);
+  model.contact_k = 20 * material.spring * network::edge_area(material, organ.spacing);
   model.contact_friction = 0.3;
-  resolve_integrator(model);
+  stepping::resolve_integrator(model);
   return model;
 }
 

@@ -19,7 +19,7 @@ Inputs tool_at(Vec3 position) {
 
 /// One sphere that nothing holds.
 Model make_free_sphere(Integrator integrator, double tick) {
-  Model model = make_block_model(1, 1, 1, Structure::mass_spring);
+  Model model = make_block_model(1, 1, 1, network::Structure::mass_spring);
   model.held_axes = {0};
   testing::use_integrator(model, integrator), model.tick = tick;
   model.solver.tolerance = 1e-10, model.solver.velocity_floor = 1e-12;
@@ -35,8 +35,8 @@ double rebound(Integrator integrator, double damping) {
   State state = rest_state(model);
   state.velocity.set(0, {0, 0, 0.03});
   const Inputs still = tool_at({0, 0, 0.02 + model.contact_radius[0] + 1e-5});
-  Stepper stepper(model);
-  for (int i = 0; i < 2500; ++i) EXPECT_EQ(stepper.step(state, still).status, StepStatus::ok);
+  stepping::Stepper stepper(model);
+  for (int i = 0; i < 2500; ++i) EXPECT_EQ(stepper.step(state, still).status, stepping::StepStatus::ok);
   return -state.velocity.z[0];
 }
 
@@ -64,9 +64,10 @@ TEST_P(AContact, CreepsUnderAStickingToolAsItsStickTimeSays) {
     model.loads.start = {0}, model.loads.ramp = {0};
     State state = rest_state(model);
     state.position.z[0] = press / model.contact_k;
-    Stepper stepper(model);
+    stepping::Stepper stepper(model);
     for (int i = 0; i < 200; ++i)
-      ASSERT_EQ(stepper.step(state, tool_at({0, 0, radius + model.contact_radius[0]})).status, StepStatus::ok);
+      ASSERT_EQ(stepper.step(state, tool_at({0, 0, radius + model.contact_radius[0]})).status,
+                stepping::StepStatus::ok);
     const double creep = push / (stick_time * model.contact_k);
     EXPECT_NEAR(state.velocity.x[0], creep, 1e-3 * creep) << stick_time << " s";
   }
@@ -83,16 +84,16 @@ TEST_P(AContact, SlidesUnderCoulombsLawAndThenSticks) {
   state.position.z[0] = press / model.contact_k;
   state.velocity.set(0, {speed, 0, 0});
   const Inputs still = tool_at({0, 0, radius + model.contact_radius[0]});
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   const double slowing = model.contact_friction * press / model.mass[0], stops = speed / slowing;
   ASSERT_GT(stops, 20 * model.tick);
   while ((double(state.tick) + 1) * model.tick < 0.9 * stops) {
-    const StepReport report = stepper.step(state, still);
-    ASSERT_EQ(report.status, StepStatus::ok);
+    const stepping::StepReport report = stepper.step(state, still);
+    ASSERT_EQ(report.status, stepping::StepStatus::ok);
     EXPECT_NEAR(state.velocity.x[0], speed - slowing * double(state.tick) * model.tick, 0.02 * speed);
     EXPECT_NEAR(report.tool_force.x, model.contact_friction * press, 0.05 * press);
   }
-  for (int i = 0; i < 5000; ++i) ASSERT_EQ(stepper.step(state, still).status, StepStatus::ok);
+  for (int i = 0; i < 5000; ++i) ASSERT_EQ(stepper.step(state, still).status, stepping::StepStatus::ok);
   EXPECT_NEAR(state.velocity.x[0], 0, 1e-3 * speed);
   EXPECT_NEAR(state.position.x[0], 0.5 * speed * stops, 0.05 * speed * stops);
 }
@@ -102,11 +103,11 @@ TEST_P(AContact, IsTheSameInSubstepsAsInTicks) {
     Model model = make_free_sphere(GetParam(), 4e-4 / (5 - substeps));
     model.tools = {ball(0.02)}, model.solver.substeps = substeps;
     State state = rest_state(model);
-    Stepper stepper(model);
+    stepping::Stepper stepper(model);
     const auto hand = [&](double time) { return tool_at({0, 0.001, 0.0199 + model.contact_radius[0] - 0.05 * time}); };
     state.last_inputs = hand(0);
     while (double(state.tick) * model.tick < 0.004 - 0.5 * model.tick)
-      EXPECT_EQ(stepper.step(state, hand(double(state.tick + 1) * model.tick)).status, StepStatus::ok);
+      EXPECT_EQ(stepper.step(state, hand(double(state.tick + 1) * model.tick)).status, stepping::StepStatus::ok);
     return state;
   };
   const State in_ticks = press(1), in_substeps = press(4);
@@ -119,10 +120,10 @@ TEST_P(AContact, DoesNotMoveASphereOffItsGuide) {
   Model model = make_free_sphere(GetParam(), 1e-4);
   model.held_axes = {1}, model.tools = {ball(0.02)};
   State state = rest_state(model);
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   for (int i = 0; i < 20; ++i)
     ASSERT_EQ(stepper.step(state, tool_at({0.005, 0, 0.019 + model.contact_radius[0] - 5e-6 * i})).status,
-              StepStatus::ok);
+              stepping::StepStatus::ok);
   EXPECT_EQ(state.position.x[0], model.rest_position.x[0]);
   EXPECT_LT(state.position.z[0], model.rest_position.z[0]);
 }
@@ -132,13 +133,13 @@ INSTANTIATE_TEST_SUITE_P(Under, AContact,
 
 /// Where a block's spheres are while a ball presses one of them, without friction; it touches from the start, since a
 /// contact that begins within a step has a kink there.
-Vec3Array press(Structure structure, Integrator integrator, double tick) {
-  Material material = testing::liver_material();
+Vec3Array press(network::Structure structure, Integrator integrator, double tick) {
+  network::Material material = testing::liver_material();
   material.stiffness_scale = 0.3;
   Model model = make_block_model(4, 4, 4, structure, material);
   model.contact_friction = 0, model.tools = {ball(0.004)}, model.tick = tick;
   testing::use_integrator(model, integrator), model.solver.tolerance = 1e-10, model.solver.velocity_floor = 1e-14;
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   const double touch = 0.012 * 3 + 0.004 + model.contact_radius.back(), duration = 0.016;
   const auto hand = [&](double time) {
@@ -147,7 +148,7 @@ Vec3Array press(Structure structure, Integrator integrator, double tick) {
   };
   state.last_inputs = hand(0);
   while (double(state.tick) * tick < duration - 0.5 * tick)
-    EXPECT_EQ(stepper.step(state, hand(double(state.tick + 1) * tick)).status, StepStatus::ok);
+    EXPECT_EQ(stepper.step(state, hand(double(state.tick + 1) * tick)).status, stepping::StepStatus::ok);
   return state.position;
 }
 
@@ -157,7 +158,7 @@ double distance(const Vec3Array& a, const Vec3Array& b) {
   return std::sqrt(sum);
 }
 
-class APress : public ::testing::TestWithParam<std::pair<Integrator, Structure>> {};
+class APress : public ::testing::TestWithParam<std::pair<Integrator, network::Structure>> {};
 
 TEST_P(APress, IsOfSecondOrder) {
   const auto [integrator, structure] = GetParam();
@@ -169,23 +170,23 @@ TEST_P(APress, IsOfSecondOrder) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, APress,
-                         ::testing::Values(std::pair{Integrator::leapfrog, Structure::mass_spring},
-                                           std::pair{Integrator::sdirk2, Structure::ctpm}));
+                         ::testing::Values(std::pair{Integrator::leapfrog, network::Structure::mass_spring},
+                                           std::pair{Integrator::sdirk2, network::Structure::ctpm}));
 
 TEST(Contact, HasOneLawUnderEveryIntegrator) {
   // A ball runs into a block at 100 mm/s and slides on it; in short steps all must see the same.
   const auto press = [](Integrator integrator) {
-    Material material = testing::liver_material();
+    network::Material material = testing::liver_material();
     material.viscosity = 5e3, material.stiffness_scale = 0.3;
-    Model model = make_block_model(4, 4, 4, Structure::ctpm, material);
+    Model model = make_block_model(4, 4, 4, network::Structure::ctpm, material);
     model.tools = {ball(0.006)}, testing::use_integrator(model, integrator), model.solver.substeps = 16;
     State state = rest_state(model);
-    Stepper stepper(model);
+    stepping::Stepper stepper(model);
     const double touch = 0.036 + 0.006 + model.contact_radius.back();
     const auto hand = [&](double time) { return tool_at({0.007, 0.004 + 0.05 * time, touch - 0.1 * time}); };
     state.last_inputs = hand(0);
     while (state.tick < 60)
-      EXPECT_EQ(stepper.step(state, hand(double(state.tick + 1) * model.tick)).status, StepStatus::ok);
+      EXPECT_EQ(stepper.step(state, hand(double(state.tick + 1) * model.tick)).status, stepping::StepStatus::ok);
     return state.position;
   };
   const Vec3Array reference = press(Integrator::sdirk2), rest = make_block_model(4, 4, 4).rest_position;

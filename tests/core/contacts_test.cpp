@@ -21,35 +21,37 @@ class CutAndPressed : public ::testing::Test {
     model_.tools = {testing::scalpel(0.2), testing::ball(0.02)};
     model_.lip_k = model_.axial.k[0], model_.contact_friction = 0.3;
     state_ = rest_state(model_);
-    Stepper stepper(model_);
+    stepping::Stepper stepper(model_);
     for (int i = 0; i < 100; ++i) (void)stepper.step(state_, testing::blade_at({0.0002, -0.05 + 0.001 * i, -0.05}));
     testing::shake(state_, 1e-3, 0.1);
     tool_.tool = &model_.tools[1];
     tool_.from = tool_.to = {0, 0, 0.048};
-    contacts_.emplace(model_, kernels_for(best_instruction_set()));
+    contacts_.emplace(model_, elements::kernels_for(elements::best_instruction_set()));
     force_.resize(3 * model_.sphere_count()), blocks_.resize(6 * model_.sphere_count());
     testing::Noise noise;
     for (double& f : force_) f = noise.next();
     for (double& b : blocks_) b = noise.next();
   }
 
-  ImplicitContacts detect() { return contacts_->detect(state_, tool_, {1e-3, 1.0, {}}, Linearisation::rest); }
+  contact::ImplicitContacts detect() {
+    return contacts_->detect(state_, tool_, {1e-3, 1.0, {}}, contact::Linearisation::rest);
+  }
 
   Model model_ = testing::free_block(6, 4, 4, testing::resisting(0));
   State state_;
-  HeldTool tool_;
-  std::optional<Contacts> contacts_;
-  Coordinates force_;
-  DiagonalBlocks blocks_;
+  contact::HeldTool tool_;
+  std::optional<contact::Contacts> contacts_;
+  elements::Coordinates force_;
+  elements::DiagonalBlocks blocks_;
 };
 
 TEST_F(CutAndPressed, ContactsLeaveALinearSystemToTheBit) {
-  const Coordinates force = force_;
-  const DiagonalBlocks blocks = blocks_;
-  ImplicitContacts set = detect();
+  const elements::Coordinates force = force_;
+  const elements::DiagonalBlocks blocks = blocks_;
+  contact::ImplicitContacts set = detect();
   EXPECT_GT(set.touched(), 0);
   {
-    const LinearisedContacts linearised = set.linearise(force_, blocks_);
+    const contact::LinearisedContacts linearised = set.linearise(force_, blocks_);
     EXPECT_NE(force_, force);
     EXPECT_NE(blocks_, blocks);
   }
@@ -58,15 +60,15 @@ TEST_F(CutAndPressed, ContactsLeaveALinearSystemToTheBit) {
 }
 
 TEST_F(CutAndPressed, DroppedContactsLeaveTheSystemToTheBitAndDoNotComeBack) {
-  const Coordinates force = force_;
-  const DiagonalBlocks blocks = blocks_;
-  ImplicitContacts set = detect();
+  const elements::Coordinates force = force_;
+  const elements::DiagonalBlocks blocks = blocks_;
+  contact::ImplicitContacts set = detect();
   const std::int32_t touched = set.touched();
   // All spheres move away from the ball, far faster than any contact follows.
-  Coordinates away(force_.size());
+  elements::Coordinates away(force_.size());
   std::fill(away.begin() + std::ptrdiff_t(2 * model_.sphere_count()), away.end(), -100.0);
   {
-    LinearisedContacts linearised = set.linearise(force_, blocks_);
+    contact::LinearisedContacts linearised = set.linearise(force_, blocks_);
     EXPECT_TRUE(linearised.pulls(away));
     std::move(linearised).drop_pulling(away);
     EXPECT_EQ(force_, force) << "taken back before contacts are dropped";
@@ -79,11 +81,11 @@ TEST_F(CutAndPressed, DroppedContactsLeaveTheSystemToTheBitAndDoNotComeBack) {
 
 TEST_F(CutAndPressed, TheCouplingIsSymmetricAndHasTheDiagonalThatWasAdded) {
   std::fill(blocks_.begin(), blocks_.end(), 0.0);
-  ImplicitContacts set = detect();
-  const LinearisedContacts linearised = set.linearise(force_, blocks_);
+  contact::ImplicitContacts set = detect();
+  const contact::LinearisedContacts linearised = set.linearise(force_, blocks_);
   const std::size_t n = force_.size();
   testing::Noise noise;
-  Coordinates u(n), v(n), of_u(n), of_v(n);
+  elements::Coordinates u(n), v(n), of_u(n), of_v(n);
   for (double& x : u) x = noise.next();
   for (double& x : v) x = noise.next();
   const double energy = linearised.apply(u.data(), of_u.data());
@@ -93,7 +95,7 @@ TEST_F(CutAndPressed, TheCouplingIsSymmetricAndHasTheDiagonalThatWasAdded) {
   EXPECT_NEAR(energy, std::inner_product(u.begin(), u.end(), of_u.begin(), 0.0), 1e-12 * energy);
   // xx, yy and zz of the blocks are the diagonal of the matrix.
   for (std::size_t i = 0; i < n; ++i) {
-    Coordinates one(n), column(n);
+    elements::Coordinates one(n), column(n);
     one[i] = 1;
     (void)linearised.apply(one.data(), column.data());
     const std::size_t axis = i / model_.sphere_count(), sphere = i % model_.sphere_count(), rows[3] = {0, 3, 5};
@@ -109,7 +111,7 @@ TEST_F(CutAndPressed, AnExplicitStepKeepsTheMomentumThatTheToolDoesNotTake) {
   };
   const double h = 1e-4;
   Vec3Array velocity = state_.velocity;
-  const ExplicitContacts set = contacts_->push_apart(state_, tool_, {h, 1.0, {}}, velocity);
+  const contact::ExplicitContacts set = contacts_->push_apart(state_, tool_, {h, 1.0, {}}, velocity);
   EXPECT_GT(set.touched(), 0);
   EXPECT_GT(norm(set.tool_force()), 0);
   const Vec3 gained = momentum(velocity) - momentum(state_.velocity);
@@ -118,18 +120,18 @@ TEST_F(CutAndPressed, AnExplicitStepKeepsTheMomentumThatTheToolDoesNotTake) {
 
 TEST_F(CutAndPressed, APinIsAContactThatFollowsTheHand) {
   model_.tools.push_back({"pin", ToolKind::pin, 0, 0, 5});
-  HeldTool pin;
+  contact::HeldTool pin;
   pin.tool = &model_.tools[2];
   pin.from = model_.rest_position[5], pin.to = pin.from + Vec3{0, 0, 2e-3};
   const double h = 1e-3;
-  const ContactStep step{h, 1.0, Contacts::pin(pin, state_.position, 1.0, h)};
+  const contact::ContactStep step{h, 1.0, contact::Contacts::pin(pin, state_.position, 1.0, h)};
   EXPECT_NEAR(norm(state_.position[5] + h * step.pin.velocity - pin.to), 0, 1e-15);
-  const ImplicitContacts set = contacts_->detect(state_, pin, step, Linearisation::rest);
+  const contact::ImplicitContacts set = contacts_->detect(state_, pin, step, contact::Linearisation::rest);
   EXPECT_EQ(set.touched(), 1);
   Vec3Array end = model_.rest_position;
   end.set(5, pin.to);
   EXPECT_NEAR(set.depth(end), 2e-3, 1e-15);
-  EXPECT_FALSE(Contacts::pin(tool_, state_.position, 1.0, h).is_held()) << "a ball is no pin";
+  EXPECT_FALSE(contact::Contacts::pin(tool_, state_.position, 1.0, h).is_held()) << "a ball is no pin";
 }
 
 using CutAndPressedDeathTest = CutAndPressed;
@@ -137,19 +139,19 @@ using CutAndPressedDeathTest = CutAndPressed;
 TEST_F(CutAndPressedDeathTest, TwoSetsAtATimeAreABug) {
   EXPECT_DEATH(
       {
-        const ImplicitContacts first = detect();
+        const contact::ImplicitContacts first = detect();
         (void)detect();
       },
       "while those of another step are in use");
-  { const ImplicitContacts first = detect(); }
+  { const contact::ImplicitContacts first = detect(); }
   EXPECT_GT(detect().touched(), 0) << "the first has ended";
 }
 
 TEST_F(CutAndPressedDeathTest, TwoLinearisationsAtATimeAreABug) {
   EXPECT_DEATH(
       {
-        ImplicitContacts set = detect();
-        const LinearisedContacts first = set.linearise(force_, blocks_);
+        contact::ImplicitContacts set = detect();
+        const contact::LinearisedContacts first = set.linearise(force_, blocks_);
         (void)set.linearise(force_, blocks_);
       },
       "while they are in a linear system");

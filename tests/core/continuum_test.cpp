@@ -19,19 +19,19 @@ struct Elasticity {
 /// Pulls a free bar of n x n x nz spheres at its top and measures strain in its middle half. The sphere's own
 /// cell is its share of the cross-section: area (n s)^2.
 Elasticity stretch_bar(int n, int nz) {
-  Material material = testing::liver_material();
+  network::Material material = testing::liver_material();
   material.viscosity = 0;
   const FilledOrgan organ = testing::make_block(n, n, nz);
-  OrganSettings settings;
+  network::OrganSettings settings;
   settings.name = "bar";
-  settings.structure = Structure::mass_spring;
+  settings.structure = network::Structure::mass_spring;
   settings.material = material;
   // The foot may not move along z; its middle line and one more sphere stop it from sliding and turning.
   for (std::int32_t i = 0; i < n * n; ++i) settings.guides.push_back({i, 4});
   settings.guides.push_back({n / 2 + n * (n / 2), 1 | 2 | 4});
   settings.guides.push_back({n - 1 + n * (n / 2), 2 | 4});
   Model model;
-  CTPM_CHECK(bool(add_organ(model, organ, settings)), "the bar is valid");
+  CTPM_CHECK(bool(network::add_organ(model, organ, settings)), "the bar is valid");
   const double pull = 1e-3;  // [N] on each sphere of the top: a strain of 1e-5, so that nothing is nonlinear
   for (std::int32_t i = n * n * (nz - 1); i < n * n * nz; ++i) {
     model.loads.sphere.push_back(i);
@@ -42,7 +42,7 @@ Elasticity stretch_bar(int n, int nz) {
   model.solver.tolerance = 1e-12;
   model.solver.velocity_floor = 1e-20;
   model.solver.max_iterations = 5000;
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   for (int i = 0; i < 4; ++i) (void)stepper.step(state, {});
   const auto moved = [&](int i, int j, int k) {
@@ -59,8 +59,8 @@ TEST(Cubic18, IsASolidOfYoungsModulus2500OverSpacingAndPoissonRatioOneQuarter) {
   // The surface of a bar is softer than its inside by a share that falls as 1 / n; two sizes give the limit.
   const Elasticity small = stretch_bar(7, 41), large = stretch_bar(13, 53);
   const auto limit = [](double at7, double at13) { return (13 * at13 - 7 * at7) / 6; };
-  const Material m = testing::liver_material();
-  const double k = m.spring * edge_area(m, 0.012), young = 2.5 * k / 0.012;
+  const network::Material m = testing::liver_material();
+  const double k = m.spring * network::edge_area(m, 0.012), young = 2.5 * k / 0.012;
   EXPECT_NEAR(limit(small.young, large.young), young, 0.02 * young)
       << small.young / young << " " << large.young / young;
   EXPECT_NEAR(limit(small.poisson, large.poisson), 0.25, 0.02 * 0.25) << small.poisson << " " << large.poisson;

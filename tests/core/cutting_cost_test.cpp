@@ -12,7 +12,7 @@ namespace {
 using testing::allocations;
 
 long allocations_of_ticks(const Model& model, const std::vector<Inputs>& inputs) {
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   (void)stepper.step(state, inputs[0]);  // scratch that is as large as State takes its room here
   const long before = allocations;
@@ -35,23 +35,23 @@ TEST(CuttingCost, WithoutABladeNothingIsKeptForOne) {
               state.axial_crossing.empty() && state.blade_trail.x.empty());
   EXPECT_FALSE(model.cut_resistance.any()) << "the tissue has no toughness";
   const long before = allocations;
-  { const Stepper stepper(model); }
+  { const stepping::Stepper stepper(model); }
   const long without = allocations - before;
   // The same network with a blade needs more room, so the comparison can fail.
   model.tools = {testing::scalpel(0.1)};
-  Material tough = testing::liver_material();
+  network::Material tough = testing::liver_material();
   tough.fracture_toughness = 100;
-  Model blade = testing::make_block_model(5, 5, 4, Structure::ctpm, tough);
+  Model blade = testing::make_block_model(5, 5, 4, network::Structure::ctpm, tough);
   blade.tools = model.tools;
   const long before_blade = allocations;
-  { const Stepper stepper(blade); }
+  { const stepping::Stepper stepper(blade); }
   EXPECT_GT(allocations - before_blade, without);
 }
 
 TEST(CuttingCost, TicksDoNotAllocateNotEvenWhileTheyCut) {
-  Material tough = testing::liver_material();
+  network::Material tough = testing::liver_material();
   tough.fracture_toughness = 100, tough.blade_friction = 1000;
-  Model model = testing::make_block_model(6, 5, 4, Structure::ctpm, tough);
+  Model model = testing::make_block_model(6, 5, 4, network::Structure::ctpm, tough);
   model.tools = {testing::scalpel(0.1)};
   model.lip_k = model.axial.k[0];
   EXPECT_EQ(allocations_of_ticks(model, way_through({0.0002, -0.05, -0.03}, {0.0002, 0.05, -0.03})), 0);

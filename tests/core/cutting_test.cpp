@@ -20,21 +20,22 @@ using testing::resisting;
 using testing::shake;
 
 TEST(Severing, ConservesMomentumAndNeverAddsEnergy) {
-  for (const Structure structure :
-       {Structure::mass_spring, Structure::angle_mass_spring, Structure::tpm, Structure::ctpm}) {
+  for (const network::Structure structure : {network::Structure::mass_spring, network::Structure::angle_mass_spring,
+                                             network::Structure::tpm, network::Structure::ctpm}) {
     const Model model = block_with_blade(6, 5, 4, resisting(), structure);
     State state = rest_state(model);
     shake(state, 0.002, 0.5);
     const State before = state;
-    std::vector<Crossing> crossings;
-    EXPECT_GT(sever_swept_by_blade(model, NearElements(model), {{0.0002, -0.06, -0.05}, {0.0002, -0.06, 0.15}},
-                                   {{0.0032, 0.01, -0.05}, {0.0012, 0.02, 0.15}}, state.position, state, crossings),
+    std::vector<cutting::Crossing> crossings;
+    EXPECT_GT(cutting::sever_swept_by_blade(
+                  model, cutting::NearElements(model), {{0.0002, -0.06, -0.05}, {0.0002, -0.06, 0.15}},
+                  {{0.0032, 0.01, -0.05}, {0.0012, 0.02, 0.15}}, state.position, state, crossings),
               0);
     EXPECT_EQ(state.velocity, before.velocity);
     EXPECT_EQ(state.position, before.position);
-    EXPECT_LE(elastic_energy(model, state), elastic_energy(model, before));
+    EXPECT_LE(elements::elastic_energy(model, state), elements::elastic_energy(model, before));
     Vec3 force;
-    const Vec3Array forces = internal_forces(model, state);
+    const Vec3Array forces = elements::internal_forces(model, state);
     for (std::size_t i = 0; i < forces.size(); ++i) force += forces[i];
     EXPECT_NEAR(norm(force), 0, 1e-9);
   }
@@ -55,7 +56,8 @@ TEST(Severing, IsTheSameAtEverySpeedThroughAHeldOrgan) {
         EXPECT_EQ(state.axial_severed, slow.axial_severed);
         EXPECT_EQ(state.constraint_severed, slow.constraint_severed);
         for (std::size_t e = 0; e < state.axial_crossing.size(); ++e)
-          EXPECT_NEAR(crossing_of(state.axial_crossing[e]), crossing_of(slow.axial_crossing[e]), 1.01 * kCrossingUnit);
+          EXPECT_NEAR(cutting::crossing_of(state.axial_crossing[e]), cutting::crossing_of(slow.axial_crossing[e]),
+                      1.01 * cutting::kCrossingUnit);
       }
       EXPECT_GT(std::count(slow.axial_severed.begin(), slow.axial_severed.end(), 1), 0);
     }
@@ -73,7 +75,7 @@ TEST(Severing, RemembersWhereTheBladePassed) {
     }
     const double a = model.rest_position.x[std::size_t(model.axial.a[e])],
                  b = model.rest_position.x[std::size_t(model.axial.b[e])];
-    EXPECT_NEAR(a + crossing_of(state.axial_crossing[e]) * (b - a), x, kCrossingUnit * 0.012);
+    EXPECT_NEAR(a + cutting::crossing_of(state.axial_crossing[e]) * (b - a), x, cutting::kCrossingUnit * 0.012);
     ++severed;
   }
   EXPECT_GT(severed, 0);
@@ -100,25 +102,25 @@ TEST(Severing, LooksOnlyNearTheBladeAndMissesNothing) {
   State tissue = rest_state(model);
   shake(tissue, 0.003);
   testing::Noise noise;
-  NearElements near(model);
+  cutting::NearElements near(model);
   std::size_t looked_at = 0, all = 0;
   std::int32_t severed = 0;
   for (int trial = 0; trial < 200; ++trial) {
     const auto place = [&] { return Vec3{0, 0, 0.024} + 0.05 * noise.next_vec3(); };
-    const BladeEdge from{place(), place()},
+    const cutting::BladeEdge from{place(), place()},
         to{from.tip + 0.01 * noise.next_vec3(), from.heel + 0.01 * noise.next_vec3()};
     State whole = tissue, part = tissue;
     Vec3Array moved = tissue.position;
     for (std::size_t i = 0; i < moved.size(); ++i) moved.add(i, (trial % 4 == 0 ? 0.02 : 0.001) * noise.next_vec3());
-    std::vector<Crossing> of_whole, of_part;
-    near.find(tissue.position, Box(from.tip, from.heel, to.tip, to.heel));
+    std::vector<cutting::Crossing> of_whole, of_part;
+    near.find(tissue.position, cutting::Box(from.tip, from.heel, to.tip, to.heel));
     looked_at += near.elements().size(), all += model.axial.size();
-    const NearElements everything(model);
-    severed += sever_swept_by_blade(model, everything, from, to, tissue.position, whole, of_whole);
-    (void)sever_swept_by_blade(model, near, from, to, tissue.position, part, of_part);
+    const cutting::NearElements everything(model);
+    severed += cutting::sever_swept_by_blade(model, everything, from, to, tissue.position, whole, of_whole);
+    (void)cutting::sever_swept_by_blade(model, near, from, to, tissue.position, part, of_part);
     near.follow(moved);
-    severed += sever_moved_through_blade(model, everything, to, tissue.position, moved, whole, of_whole);
-    (void)sever_moved_through_blade(model, near, to, tissue.position, moved, part, of_part);
+    severed += cutting::sever_moved_through_blade(model, everything, to, tissue.position, moved, whole, of_whole);
+    (void)cutting::sever_moved_through_blade(model, near, to, tissue.position, moved, part, of_part);
     EXPECT_EQ(whole.axial_crossing, part.axial_crossing) << trial;
     EXPECT_EQ(whole.constraint_severed, part.constraint_severed) << trial;
     EXPECT_EQ(of_whole.size(), of_part.size());
@@ -128,7 +130,7 @@ TEST(Severing, LooksOnlyNearTheBladeAndMissesNothing) {
 }
 
 /// Along a closed polygon around `middle`, `ticks_per_side` ticks for each of its sides.
-std::int32_t cut_around(Stepper& stepper, State& state, Vec3 middle, double radius, int ticks_per_side) {
+std::int32_t cut_around(stepping::Stepper& stepper, State& state, Vec3 middle, double radius, int ticks_per_side) {
   constexpr int kSides = 64;
   constexpr double kTurn = 2 * 3.14159265358979323846 / kSides;
   const auto corner = [&](int i) {
@@ -151,11 +153,11 @@ TEST(Severing, FollowsACurveAndCutsAPlugOut) {
   };
   for (const int ticks_per_side : {1, 7}) {
     State state = rest_state(model);
-    Stepper stepper(model);
+    stepping::Stepper stepper(model);
     EXPECT_GT(cut_around(stepper, state, {0.0002, 0.0003, -0.05}, 0.016, ticks_per_side), 0);
     for (std::size_t e = 0; e < model.axial.size(); ++e)
       EXPECT_EQ(state.axial_severed[e] != 0, is_inside(model.axial.a[e]) != is_inside(model.axial.b[e]));
-    Pieces pieces(model);
+    cutting::Pieces pieces(model);
     EXPECT_EQ(pieces.find(state), 2);
     for (std::int32_t i = 0; i < std::int32_t(model.sphere_count()); ++i)
       EXPECT_EQ(pieces.piece()[std::size_t(i)] == 0, !is_inside(i));
@@ -168,19 +170,19 @@ TEST(Severing, FollowsACurveAndCutsAPlugOut) {
 /// at `x`.
 Vec3Array forces_after_cut(const Model& model, double x) {
   State state = rest_state(model);
-  std::vector<Crossing> crossings;
-  EXPECT_GT(sever_swept_by_blade(model, NearElements(model), {{x, -0.05, -0.05}, {x, -0.05, 0.05}},
-                                 {{x, 0.05, -0.05}, {x, 0.05, 0.05}}, state.position, state, crossings),
+  std::vector<cutting::Crossing> crossings;
+  EXPECT_GT(cutting::sever_swept_by_blade(model, cutting::NearElements(model), {{x, -0.05, -0.05}, {x, -0.05, 0.05}},
+                                          {{x, 0.05, -0.05}, {x, 0.05, 0.05}}, state.position, state, crossings),
             1)
       << "an edge and the constraint over it";
   EXPECT_EQ(crossings.size(), 1u);
   EXPECT_EQ(state.constraint_severed, std::vector<std::uint8_t>{1});
   state.position.add(1, {0.001, 0, 0});
-  return internal_forces(model, state);
+  return elements::internal_forces(model, state);
 }
 
 TEST(Severing, WhatIsLeftOfATripleIsItsOtherEdgeAsStiffAsBefore) {
-  Material material = testing::liver_material();
+  network::Material material = testing::liver_material();
   material.kelvin = 2 * material.spring;
   const Model model = block_with_blade(5, 1, 1, material);
   ASSERT_EQ(model.axial.size(), 4u);
@@ -205,9 +207,9 @@ TEST(Severing, WhatIsLeftOfATripleIsItsOtherEdgeAsStiffAsBefore) {
 
 TEST(Pieces, AreCountedAsTheyComeLoose) {
   const Model model = held_block(6, 6, 4);
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
-  Pieces pieces(model);
+  cutting::Pieces pieces(model);
   EXPECT_EQ(pieces.find(state), 1);
   int loose = 0;
   const auto sweep = [&](Vec3 from, Vec3 to) {
@@ -240,12 +242,12 @@ double gap_after_pushing(bool lips_meet, double sideways, double stiffening = Mo
     model.loads.sphere.push_back(std::int32_t(i)), model.loads.force.push_back({-0.1, sideways, 0});
     model.loads.start.push_back(0.05), model.loads.ramp.push_back(0.1);
   }
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   double gap = INFINITY;
   for (int i = 0; i < 400; ++i) {
     const Inputs inputs = i < 50 ? blade_at({0.0002, -0.05 + 0.002 * i, -0.05}) : Inputs{};
-    EXPECT_EQ(stepper.step(state, inputs).status, StepStatus::ok);
+    EXPECT_EQ(stepper.step(state, inputs).status, stepping::StepStatus::ok);
     if (i % 5 != 0) continue;
     for (std::size_t a = 0; a < model.sphere_count(); ++a)
       for (std::size_t b = 0; b < model.sphere_count(); ++b)
@@ -271,16 +273,16 @@ TEST(CutFaces, StayFartherApartTheMoreTheirContactStiffens) {
 TEST(CutFaces, ConserveMomentum) {
   Model model = free_block(6, 4, 4, resisting(0));
   model.lip_k = model.axial.k[0];
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   for (int i = 0; i < 50; ++i) (void)stepper.step(state, blade_at({0.0002, -0.05 + 0.002 * i, -0.05}));
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
     state.velocity.set(i, {i % 6 < 3 ? 0.2 : -0.2, i % 6 < 3 ? 0.05 : -0.01, 0});
   const Vec3 before = momentum(model, state);
-  double energy = kinetic_energy(model, state) + elastic_energy(model, state);
+  double energy = kinetic_energy(model, state) + elements::elastic_energy(model, state);
   for (int i = 0; i < 300; ++i) (void)stepper.step(state, {});
   EXPECT_NEAR(norm(momentum(model, state) - before), 0, 1e-6 * norm(before) + 1e-9);
-  EXPECT_LE(kinetic_energy(model, state) + elastic_energy(model, state), energy);
+  EXPECT_LE(kinetic_energy(model, state) + elements::elastic_energy(model, state), energy);
   double left = 0, right = 0;
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
     (i % 6 < 3 ? left : right) += state.velocity.x[i] * model.mass[i];

@@ -18,7 +18,7 @@ using testing::shake;
 // Forces of a shaken liver block are about 1 N; rounding of sums of a few dozen of them stays far below this.
 constexpr double kRounding = 1e-12;
 
-class EveryStructure : public ::testing::TestWithParam<Structure> {};
+class EveryStructure : public ::testing::TestWithParam<network::Structure> {};
 
 State moved_rigidly(const Model& model) {
   State state = rest_state(model);
@@ -37,7 +37,7 @@ void expect_momentum_is_kept(const Model& model, double force_bound, double torq
   shake(state, 0.005, 0.2);
   Noise noise;
   for (double& z : state.kelvin_elongation) z = 0.001 * noise.next();
-  const Vec3Array force = internal_forces(model, state);
+  const Vec3Array force = elements::internal_forces(model, state);
   Vec3 sum, torque;
   double largest = 0;
   for (std::size_t i = 0; i < force.size(); ++i) {
@@ -51,7 +51,7 @@ void expect_momentum_is_kept(const Model& model, double force_bound, double torq
 
 TEST_P(EveryStructure, RigidMotionGivesNoForce) {
   const Model model = make_block_model(6, 5, 7, GetParam());
-  const Vec3Array force = internal_forces(model, moved_rigidly(model));
+  const Vec3Array force = elements::internal_forces(model, moved_rigidly(model));
   for (std::size_t i = 0; i < force.size(); ++i) ASSERT_NEAR(norm(force[i]), 0, 1e-10) << "sphere " << i;
 }
 
@@ -68,7 +68,8 @@ TEST_P(EveryStructure, TurnsWithTheBody) {
   const auto turn = [](Vec3 p) { return Vec3{-p.y, p.x, p.z}; };
   for (std::size_t i = 0; i < state.position.size(); ++i)
     turned.position.set(i, turn(state.position[i])), turned.velocity.set(i, turn(state.velocity[i]));
-  const Vec3Array force = internal_forces(model, state), turned_force = internal_forces(model, turned);
+  const Vec3Array force = elements::internal_forces(model, state),
+                  turned_force = elements::internal_forces(model, turned);
   for (std::size_t i = 0; i < force.size(); ++i) ASSERT_NEAR(norm(turned_force[i] - turn(force[i])), 0, kRounding);
 }
 
@@ -76,26 +77,27 @@ TEST_P(EveryStructure, StaysFiniteWhenSpheresCoincide) {
   const Model model = make_block_model(5, 5, 5, GetParam());
   State state = rest_state(model);
   for (std::size_t i = 0; i < state.position.size(); ++i) state.position.set(i, {0.01, 0.02, 0.03});
-  const Vec3Array force = internal_forces(model, state);
+  const Vec3Array force = elements::internal_forces(model, state);
   for (std::size_t i = 0; i < force.size(); ++i) ASSERT_TRUE(is_finite(force[i]));
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, EveryStructure,
-                         ::testing::Values(Structure::mass_spring, Structure::angle_mass_spring, Structure::tpm,
-                                           Structure::ctpm));
+                         ::testing::Values(network::Structure::mass_spring, network::Structure::angle_mass_spring,
+                                           network::Structure::tpm, network::Structure::ctpm));
 
 TEST(EdgesAndAngleSprings, AreTheGradientOfTheirEnergy) {
-  const Model model = make_block_model(4, 4, 4, Structure::angle_mass_spring);
+  const Model model = make_block_model(4, 4, 4, network::Structure::angle_mass_spring);
   State state = rest_state(model);
   shake(state, 0.004);
-  const Vec3Array force = internal_forces(model, state);
+  const Vec3Array force = elements::internal_forces(model, state);
   constexpr double kStep = 1e-7;  // [m]; a central difference errs by about step^2 k / s^2, here 1e-8 N
   for (const std::size_t i : {0u, 21u, 42u, 63u})
     for (int axis = 0; axis < 3; ++axis) {
       const Vec3 delta{axis == 0 ? kStep : 0, axis == 1 ? kStep : 0, axis == 2 ? kStep : 0};
       State plus = state, minus = state;
       plus.position.add(i, delta), minus.position.add(i, -delta);
-      const double gradient = (elastic_energy(model, plus) - elastic_energy(model, minus)) / (2 * kStep);
+      const double gradient =
+          (elements::elastic_energy(model, plus) - elements::elastic_energy(model, minus)) / (2 * kStep);
       EXPECT_NEAR(dot(force[i], delta / kStep), -gradient, 1e-7);
     }
 }
@@ -110,7 +112,7 @@ struct Line {
 };
 
 TEST(TwoSphereTpm, ForcesAreTheGradientOfTheSeriesSpringWhileTheKelvinUnitRests) {
-  const Model model = make_block_model(3, 3, 3, Structure::tpm);
+  const Model model = make_block_model(3, 3, 3, network::Structure::tpm);
   State state = rest_state(model);
   shake(state, 0.001);
   testing::Noise noise;
@@ -125,7 +127,7 @@ TEST(TwoSphereTpm, ForcesAreTheGradientOfTheSeriesSpringWhileTheKelvinUnitRests)
     }
     return sum;
   };
-  const Vec3Array force = internal_forces(model, state);
+  const Vec3Array force = elements::internal_forces(model, state);
   constexpr double kStep = 1e-7;
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
     for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
@@ -143,7 +145,7 @@ TEST(Constraint, ForceOnCIsEquation2Over8) {
     const double arm = 0.024, k = line.model.constraints.k.at(0);
     const double cosine = arm / std::sqrt(arm * arm + tilt * tilt);
     const double expected = -2 * k * (1 - cosine) * tilt / (1 + tilt / arm);
-    const Vec3Array force = internal_forces(line.model, line.state);
+    const Vec3Array force = elements::internal_forces(line.model, line.state);
     EXPECT_NEAR(force.z[2], expected, 1e-12);
     EXPECT_NEAR(force.z[0], -expected / 2, 1e-12);
     EXPECT_NEAR(force.z[4], -expected / 2, 1e-12);
@@ -159,14 +161,14 @@ TEST(Constraint, IsTheGradientOfItsEnergyWithoutSoftening) {
   constexpr double kStep = 1e-6;
   const double gradient = (energy(0.007 + kStep) - energy(0.007 - kStep)) / (2 * kStep);
   const double softening = 1 + 0.007 / h;  // Eq. 8 divides the force; what it divides has an energy
-  EXPECT_NEAR(internal_forces(line.model, line.state).z[2] * softening, -gradient, 1e-8);
+  EXPECT_NEAR(elements::internal_forces(line.model, line.state).z[2] * softening, -gradient, 1e-8);
 }
 
 TEST(Constraint, AStraightStretchedLineHasNone) {
   Line line(0);
   for (std::size_t i = 0; i < 5; ++i) line.state.position.x[i] *= 1.5;
   line.model.axial.k.assign(line.model.axial.size(), 0);
-  const Vec3Array force = internal_forces(line.model, line.state);
+  const Vec3Array force = elements::internal_forces(line.model, line.state);
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(norm(force[i]), 0);
 }
 
@@ -175,19 +177,19 @@ TEST(Constraint, PullsWithTwiceKWhereItsEndsMeetAndNotAtAllWhereItIsAPoint) {
   line.model.axial.k.assign(line.model.axial.size(), 0);
   line.model.has_softening = false, line.model.axial.third = {};
   line.state.position.x.assign(5, 0);
-  const Vec3Array force = internal_forces(line.model, line.state);
+  const Vec3Array force = elements::internal_forces(line.model, line.state);
   EXPECT_NEAR(force.z[2], -2 * line.model.constraints.k.at(0) * 0.01, 1e-12);
   line.state.position.z[2] = line.state.position.z[0];
-  const Vec3Array none = internal_forces(line.model, line.state);
+  const Vec3Array none = elements::internal_forces(line.model, line.state);
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(norm(none[i]), 0);
 }
 
 TEST(Softening, HalvesATripleAt45Degrees) {
   Line line(0.024);  // tan(theta) = 1
-  const double soft = internal_forces(line.model, line.state).x[1];
+  const double soft = elements::internal_forces(line.model, line.state).x[1];
   line.model.has_softening = false;
   line.model.axial.third = {};
-  const double hard = internal_forces(line.model, line.state).x[1];
+  const double hard = elements::internal_forces(line.model, line.state).x[1];
   ASSERT_NE(hard, 0);
   EXPECT_NEAR(soft, hard / 2, 1e-12);
 }
@@ -201,7 +203,7 @@ TEST(Softening, DoesWorkInAClosedCycle) {
     constexpr int kSteps = 200;
     for (int i = 0; i < kSteps; ++i) {
       line.state.position.add(sphere, 0.5 / kSteps * way);
-      work += dot(internal_forces(line.model, line.state)[sphere], way) / kSteps;
+      work += dot(elements::internal_forces(line.model, line.state)[sphere], way) / kSteps;
       line.state.position.add(sphere, 0.5 / kSteps * way);
     }
   };
@@ -217,7 +219,7 @@ TEST(Softening, DoesWorkInAClosedCycle) {
 TEST(Softening, StaysFiniteAt90Degrees) {
   Line line(0.01);
   for (const std::size_t i : {0u, 1u, 3u, 4u}) line.state.position.set(i, {0, 0, 0});
-  const Vec3Array force = internal_forces(line.model, line.state);
+  const Vec3Array force = elements::internal_forces(line.model, line.state);
   for (std::size_t i = 0; i < 5; ++i) EXPECT_TRUE(is_finite(force[i]));
 }
 
@@ -241,11 +243,11 @@ TEST(Network, TilesARunIntoMirroredTriplesThatShareEnds) {
 
 TEST(Network, TwoSphereTpmsOfAllOrgansComeLast) {
   Model model;
-  OrganSettings settings;
+  network::OrganSettings settings;
   settings.material = testing::liver_material();
   for (const double toughness : {100.0, 300.0}) {
     settings.material.fracture_toughness = toughness;
-    ASSERT_TRUE(add_organ(model, testing::make_block(6, 4, 5), settings));
+    ASSERT_TRUE(network::add_organ(model, testing::make_block(6, 4, 5), settings));
   }
   const AxialElements& axial = model.axial;
   const std::size_t first_tpm = axial.size() - axial.internal_count();
@@ -275,17 +277,17 @@ TEST(Network, SpheresKeepTheirCellsCountedFromTheOrgansFirst) {
   FilledOrgan organ = testing::make_block(4, 3, 2);
   for (auto& cell : organ.cell) cell = {cell[0] + 7, cell[1] - 5, cell[2] + 2};
   Model model;
-  OrganSettings settings;
+  network::OrganSettings settings;
   settings.material = testing::liver_material();
-  ASSERT_TRUE(add_organ(model, organ, settings));
-  ASSERT_TRUE(add_organ(model, organ, settings));
+  ASSERT_TRUE(network::add_organ(model, organ, settings));
+  ASSERT_TRUE(network::add_organ(model, organ, settings));
   ASSERT_EQ(model.cell.size(), model.sphere_count());
   for (std::int32_t i = 0; i < 48; ++i)
     EXPECT_EQ(model.cell[std::size_t(i)], (LatticeCell{i % 4, i % 24 / 4 % 3, i % 24 / 12})) << "sphere " << i;
 }
 
 TEST(Network, InnerSpheresOfCubic18Have18Edges) {
-  const Model model = make_block_model(5, 5, 5, Structure::mass_spring);
+  const Model model = make_block_model(5, 5, 5, network::Structure::mass_spring);
   std::vector<int> degree(model.sphere_count());
   for (std::size_t i = 0; i < model.axial.size(); ++i)
     ++degree[std::size_t(model.axial.a[i])], ++degree[std::size_t(model.axial.b[i])];
@@ -301,11 +303,11 @@ TEST(Network, StiffnessIsThePapersModulusTimesProbeArea) {
 
 TEST(Network, SaysEveryModulusThatIsOutOfRange) {
   Model model;
-  OrganSettings settings;
+  network::OrganSettings settings;
   settings.name = "block";
   settings.material.spring = -1;
   settings.material.viscosity = NAN;
-  const Result<Done> added = add_organ(model, testing::make_block(2, 2, 2), settings);
+  const Result<Done> added = network::add_organ(model, testing::make_block(2, 2, 2), settings);
   ASSERT_FALSE(added);
   EXPECT_GE(added.errors().size(), 3u);
   EXPECT_EQ(model.sphere_count(), 0u);
@@ -313,8 +315,8 @@ TEST(Network, SaysEveryModulusThatIsOutOfRange) {
 
 /// A capsule around a parenchyma: the outermost spheres of a block, 6 mm deep, are stiffer, heavier and less
 /// viscous.
-LayerMaterial capsule(double to_depth = 0.012) {
-  LayerMaterial layer;
+network::LayerMaterial capsule(double to_depth = 0.012) {
+  network::LayerMaterial layer;
   layer.to_depth = to_depth;
   layer.material = testing::liver_material();
   layer.material.spring = 82e6, layer.material.kelvin = 58e6, layer.material.constraint = 164e6;
@@ -322,14 +324,14 @@ LayerMaterial capsule(double to_depth = 0.012) {
   return layer;
 }
 
-Result<Model> make_layered_model(int ni, int nj, int nk, Structure structure,
-                                 const std::vector<LayerMaterial>& layers) {
-  OrganSettings settings;
+Result<Model> make_layered_model(int ni, int nj, int nk, network::Structure structure,
+                                 const std::vector<network::LayerMaterial>& layers) {
+  network::OrganSettings settings;
   settings.name = "block", settings.structure = structure;
   settings.material = testing::liver_material(), settings.layers = layers;
   for (int i = 0; i < ni * nj; ++i) settings.anchored.push_back(i);
   Model model;
-  if (const Result<Done> added = add_organ(model, testing::make_block(ni, nj, nk), settings); !added)
+  if (const Result<Done> added = network::add_organ(model, testing::make_block(ni, nj, nk), settings); !added)
     return added.errors();
   return model;
 }
@@ -338,7 +340,7 @@ class EveryLayeredStructure : public EveryStructure {};
 
 TEST_P(EveryLayeredStructure, RigidMotionGivesNoForce) {
   const Model model = *make_layered_model(6, 5, 7, GetParam(), {capsule()});
-  const Vec3Array force = internal_forces(model, moved_rigidly(model));
+  const Vec3Array force = elements::internal_forces(model, moved_rigidly(model));
   for (std::size_t i = 0; i < force.size(); ++i) ASSERT_NEAR(norm(force[i]), 0, 1e-10) << "sphere " << i;
 }
 
@@ -349,7 +351,7 @@ TEST_P(EveryLayeredStructure, KeepsLinearAndAngularMomentum) {
 }
 
 TEST_P(EveryLayeredStructure, LayersOfOneMaterialAreTheOrganWithoutLayers) {
-  LayerMaterial same{0.012, testing::liver_material()}, deeper{0.020, testing::liver_material()};
+  network::LayerMaterial same{0.012, testing::liver_material()}, deeper{0.020, testing::liver_material()};
   const Model plain = make_block_model(6, 5, 7, GetParam());
   const Model layered = *make_layered_model(6, 5, 7, GetParam(), {same, deeper});
   EXPECT_EQ(layered.mass, plain.mass);
@@ -362,28 +364,29 @@ TEST_P(EveryLayeredStructure, LayersOfOneMaterialAreTheOrganWithoutLayers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, EveryLayeredStructure,
-                         ::testing::Values(Structure::mass_spring, Structure::angle_mass_spring, Structure::tpm,
-                                           Structure::ctpm));
+                         ::testing::Values(network::Structure::mass_spring, network::Structure::angle_mass_spring,
+                                           network::Structure::tpm, network::Structure::ctpm));
 
 TEST(Layers, EdgesAndAngleSpringsAreTheGradientOfTheirEnergy) {
-  const Model model = *make_layered_model(4, 4, 4, Structure::angle_mass_spring, {capsule()});
+  const Model model = *make_layered_model(4, 4, 4, network::Structure::angle_mass_spring, {capsule()});
   State state = rest_state(model);
   shake(state, 0.004);
-  const Vec3Array force = internal_forces(model, state);
+  const Vec3Array force = elements::internal_forces(model, state);
   constexpr double kStep = 1e-7;  // [m]; a central difference errs by about step^2 k / s^2, here 5e-8 N
   for (const std::size_t i : {0u, 21u, 42u, 63u}) {
     State plus = state, minus = state;
     plus.position.add(i, {0, kStep, 0}), minus.position.add(i, {0, -kStep, 0});
-    const double gradient = (elastic_energy(model, plus) - elastic_energy(model, minus)) / (2 * kStep);
+    const double gradient =
+        (elements::elastic_energy(model, plus) - elements::elastic_energy(model, minus)) / (2 * kStep);
     EXPECT_NEAR(force.y[i], -gradient, 5e-7);
   }
 }
 
 TEST(Layers, AnElementHasTheMeanOfItsSpheres) {
   // The middle line along x of a 5 x 3 x 3 block: capsule, liver, liver, liver, capsule.
-  const double area = edge_area(testing::liver_material(), 0.012);
+  const double area = network::edge_area(testing::liver_material(), 0.012);
   const auto value = [&](double mpa) { return mpa * 1e6 * area; };
-  const Model model = *make_layered_model(5, 3, 3, Structure::ctpm, {capsule()});
+  const Model model = *make_layered_model(5, 3, 3, network::Structure::ctpm, {capsule()});
   const std::int32_t a = 20;  // of the middle line
   std::size_t spring = 0, kelvin = 0, line = 0;
   while (!(model.axial.a[spring] == a && model.axial.b[spring] == a + 1)) ++spring;
@@ -395,7 +398,7 @@ TEST(Layers, AnElementHasTheMeanOfItsSpheres) {
   const double capsule_p2 = 82.0 * 58 / (82 + 58);
   EXPECT_NEAR(model.constraints.k[line], value((2 * (164 - capsule_p2) + 3 * (20 - 7.5)) / 5), 1e-9);
 
-  const Model tpm = *make_layered_model(5, 3, 3, Structure::tpm, {capsule()});
+  const Model tpm = *make_layered_model(5, 3, 3, network::Structure::tpm, {capsule()});
   std::size_t border = 0;
   while (!(tpm.axial.a[border] == a && tpm.axial.b[border] == a + 1)) ++border;
   EXPECT_NEAR(tpm.axial.k[border], value((82 + 15) / 2.0), 1e-9);
@@ -404,13 +407,13 @@ TEST(Layers, AnElementHasTheMeanOfItsSpheres) {
 
 TEST(Layers, ASphereHasTheMassOfItsOwnLayer) {
   const double volume = 0.012 * 0.012 * 0.012;
-  LayerMaterial second{0.018, testing::liver_material()};
+  network::LayerMaterial second{0.018, testing::liver_material()};
   second.material.density = 1100;
   // The spheres of the second rim are 18 mm deep: a layer that ends there does not hold them, one that ends
   // below does.
   for (const auto& [to_depth, density] : {std::pair{0.018, 1060}, {0.0181, 1100}}) {
     second.to_depth = to_depth;
-    const Model model = *make_layered_model(5, 5, 5, Structure::ctpm, {capsule(0.012), second});
+    const Model model = *make_layered_model(5, 5, 5, network::Structure::ctpm, {capsule(0.012), second});
     EXPECT_NEAR(model.mass[0], 1200 * volume, 1e-15);
     EXPECT_NEAR(model.mass[31], density * volume, 1e-15);
     EXPECT_NEAR(model.mass[62], 1060 * volume, 1e-15);
@@ -418,9 +421,10 @@ TEST(Layers, ASphereHasTheMassOfItsOwnLayer) {
 }
 
 TEST(Layers, OutOfOrderOrWithABadModulusAreRefusedByNumber) {
-  LayerMaterial bad = capsule(0.020);
+  network::LayerMaterial bad = capsule(0.020);
   bad.material.kelvin = -1;
-  const Result<Model> model = make_layered_model(3, 3, 3, Structure::ctpm, {capsule(0.012), capsule(0.012), bad});
+  const Result<Model> model =
+      make_layered_model(3, 3, 3, network::Structure::ctpm, {capsule(0.012), capsule(0.012), bad});
   ASSERT_FALSE(model);
   EXPECT_EQ(model.errors()[0].where, "organ block, layer 1");
   EXPECT_NE(model.errors()[0].message.find("must be more than 0.012"), std::string::npos);

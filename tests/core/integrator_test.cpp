@@ -17,8 +17,8 @@ using testing::make_block_model;
 using testing::shake;
 
 /// A block whose springs and dashpots matter alike at ticks of about a millisecond.
-Model make_smooth_block(Structure structure, double tick, Integrator integrator) {
-  Material material = liver_material();
+Model make_smooth_block(network::Structure structure, double tick, Integrator integrator) {
+  network::Material material = liver_material();
   material.viscosity = 5e4;
   Model model = make_block_model(3, 3, 3, structure, material);
   model.tick = tick;
@@ -35,9 +35,9 @@ State let_go(const Model& model, double duration) {
     const Vec3 p = model.rest_position[i];
     if (model.held_axes[i] == 0) state.position.set(i, p + 0.05 * p.z * Vec3{1, 0.5, -0.3});
   }
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   for (std::int64_t i = 0; i < std::llround(duration / model.tick); ++i)
-    EXPECT_EQ(stepper.step(state, {}).status, StepStatus::ok);
+    EXPECT_EQ(stepper.step(state, {}).status, stepping::StepStatus::ok);
   return state;
 }
 
@@ -52,7 +52,7 @@ double distance(const State& a, const State& b) {
 
 struct Order {
   Integrator integrator;
-  Structure structure;
+  network::Structure structure;
   double expected;
 };
 
@@ -71,31 +71,32 @@ TEST_P(IntegratorOrder, IsWhatItsNamePromises) {
   EXPECT_NEAR(std::log2(coarse / fine), order.expected, 0.25) << coarse << " and " << fine << " m";
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, IntegratorOrder,
-    ::testing::Values(Order{Integrator::leapfrog, Structure::mass_spring, 2},
-                      Order{Integrator::leapfrog, Structure::tpm, 2},
-                      Order{Integrator::leapfrog, Structure::ctpm, 1},  // its dashpots see the old velocity
-                      Order{Integrator::backward_euler, Structure::mass_spring, 1},
-                      Order{Integrator::backward_euler, Structure::tpm, 1},
-                      Order{Integrator::backward_euler, Structure::ctpm, 1},
-                      Order{Integrator::sdirk2, Structure::mass_spring, 2},
-                      Order{Integrator::sdirk2, Structure::tpm, 2}, Order{Integrator::sdirk2, Structure::ctpm, 2}));
+INSTANTIATE_TEST_SUITE_P(All, IntegratorOrder,
+                         ::testing::Values(Order{Integrator::leapfrog, network::Structure::mass_spring, 2},
+                                           Order{Integrator::leapfrog, network::Structure::tpm, 2},
+                                           Order{Integrator::leapfrog, network::Structure::ctpm,
+                                                 1},  // its dashpots see the old velocity
+                                           Order{Integrator::backward_euler, network::Structure::mass_spring, 1},
+                                           Order{Integrator::backward_euler, network::Structure::tpm, 1},
+                                           Order{Integrator::backward_euler, network::Structure::ctpm, 1},
+                                           Order{Integrator::sdirk2, network::Structure::mass_spring, 2},
+                                           Order{Integrator::sdirk2, network::Structure::tpm, 2},
+                                           Order{Integrator::sdirk2, network::Structure::ctpm, 2}));
 
 class ImplicitIntegrator : public ::testing::TestWithParam<Integrator> {};
 
 TEST_P(ImplicitIntegrator, IsLStable) {
   // A spring a million times too stiff for the tick: what deflects it is gone after a few ticks, and does not ring.
-  Material material = liver_material();
+  network::Material material = liver_material();
   material.spring *= 1e6, material.kelvin *= 1e6, material.constraint *= 1e6, material.viscosity = 0;
-  Model model = make_block_model(3, 3, 3, Structure::ctpm, material);
+  Model model = make_block_model(3, 3, 3, network::Structure::ctpm, material);
   testing::use_integrator(model, GetParam());
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   shake(state, 1e-6);
   for (std::size_t i = 0; i < 9; ++i) state.position.set(i, model.rest_position[i]);
   const double first = distance(state, rest_state(model));
-  for (int i = 0; i < 10; ++i) ASSERT_LE(stepper.step(state, {}).status, StepStatus::not_converged);
+  for (int i = 0; i < 10; ++i) ASSERT_LE(stepper.step(state, {}).status, stepping::StepStatus::not_converged);
   EXPECT_LT(distance(state, rest_state(model)), 0.02 * first);
 }
 
@@ -103,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(Both, ImplicitIntegrator, ::testing::Values(Integrator:
 
 /// Two free spheres and one spring, whose frequency is sqrt(2 k / m).
 Model make_pair() {
-  Model model = make_block_model(2, 1, 1, Structure::mass_spring);
+  Model model = make_block_model(2, 1, 1, network::Structure::mass_spring);
   model.held_axes.assign(2, 0);
   return model;
 }
@@ -111,18 +112,19 @@ Model make_pair() {
 TEST(StableStepBound, IsExactForOneSpring) {
   const Model model = make_pair();
   const double frequency = std::sqrt(2 * model.axial.k[0] / model.mass[0]);
-  EXPECT_NEAR(stable_step_bound(model), 2 / frequency, 1e-12);
+  EXPECT_NEAR(stepping::stable_step_bound(model), 2 / frequency, 1e-12);
 }
 
 TEST(StableStepBound, LeapfrogHoldsUpToIt) {
-  for (const Structure structure : {Structure::mass_spring, Structure::tpm, Structure::ctpm}) {
+  for (const network::Structure structure :
+       {network::Structure::mass_spring, network::Structure::tpm, network::Structure::ctpm}) {
     Model model = make_smooth_block(structure, 1e-3, Integrator::leapfrog);
-    model.tick = 0.99 * stable_step_bound(model);
-    Stepper stepper(model);
+    model.tick = 0.99 * stepping::stable_step_bound(model);
+    stepping::Stepper stepper(model);
     State state = rest_state(model);
     shake(state, 0.0005);
     for (std::size_t i = 0; i < 9; ++i) state.position.set(i, model.rest_position[i]);
-    for (int i = 0; i < 5000; ++i) ASSERT_EQ(stepper.step(state, {}).status, StepStatus::ok);
+    for (int i = 0; i < 5000; ++i) ASSERT_EQ(stepper.step(state, {}).status, stepping::StepStatus::ok);
     EXPECT_LT(distance(state, rest_state(model)), 0.05) << "structure " << int(structure);
   }
 }
@@ -130,9 +132,9 @@ TEST(StableStepBound, LeapfrogHoldsUpToIt) {
 TEST(Leapfrog, RefusesStepsThatItCannotHoldAndLeavesTheState) {
   Model model = make_block_model(3, 3, 3);
   testing::use_integrator(model, Integrator::leapfrog);
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
-  EXPECT_EQ(stepper.step(state, {}).status, StepStatus::too_long);
+  EXPECT_EQ(stepper.step(state, {}).status, stepping::StepStatus::too_long);
   EXPECT_EQ(state.tick, 0);
   EXPECT_EQ(state.position, model.rest_position);
   EXPECT_FALSE(stepper.integrator().holds);
@@ -141,12 +143,12 @@ TEST(Leapfrog, RefusesStepsThatItCannotHoldAndLeavesTheState) {
 
 /// After one tick of a block that is let go out of shape, with every sphere as fast as `speed` [m/s].
 State after_a_tick(Integrator integrator, double speed) {
-  Model model = make_smooth_block(Structure::tpm, 1e-3, integrator);
+  Model model = make_smooth_block(network::Structure::tpm, 1e-3, integrator);
   State state = rest_state(model);
   shake(state, 1e-3, speed);
   for (std::size_t i = 0; i < 9; ++i) state.position.set(i, model.rest_position[i]), state.velocity.set(i, {});
-  Stepper stepper(model);
-  EXPECT_EQ(stepper.step(state, {}).status, StepStatus::ok);
+  stepping::Stepper stepper(model);
+  EXPECT_EQ(stepper.step(state, {}).status, stepping::StepStatus::ok);
   return state;
 }
 
@@ -160,19 +162,19 @@ TEST(Sdirk2, TakesBackwardEulerWhereItsStepIsTooLongForTheMotion) {
     EXPECT_EQ(by_sdirk.kelvin_elongation, by_euler.kelvin_elongation) << speed;
   }
   EXPECT_NE(after_a_tick(Integrator::sdirk2, 0).position,
-            rest_state(make_smooth_block(Structure::tpm, 1e-3, Integrator::sdirk2)).position);
+            rest_state(make_smooth_block(network::Structure::tpm, 1e-3, Integrator::sdirk2)).position);
 }
 
 TEST(Leapfrog, ALoadThatStartsAtOnceIsOfSecondOrder) {
   const auto height = [](double tick) {
-    Model model = make_block_model(2, 1, 1, Structure::mass_spring);
+    Model model = make_block_model(2, 1, 1, network::Structure::mass_spring);
     model.held_axes = {kAnchored, 0}, model.tick = tick;
     testing::use_integrator(model, Integrator::leapfrog);
     model.loads.sphere = {1}, model.loads.force.push_back({0.02, 0, 0});
     model.loads.start = {0}, model.loads.ramp = {0};
     State state = rest_state(model);
-    Stepper stepper(model);
-    while (double(state.tick) * tick < 0.0159) EXPECT_EQ(stepper.step(state, {}).status, StepStatus::ok);
+    stepping::Stepper stepper(model);
+    while (double(state.tick) * tick < 0.0159) EXPECT_EQ(stepper.step(state, {}).status, stepping::StepStatus::ok);
     const double k = model.axial.k[0], angle = std::sqrt(k / model.mass[1]) * 0.016;
     return state.position.x[1] - model.rest_position.x[1] - 0.02 / k * (1 - std::cos(angle));
   };
@@ -180,12 +182,13 @@ TEST(Leapfrog, ALoadThatStartsAtOnceIsOfSecondOrder) {
 }
 
 TEST(Automatic, IsExplicitWithoutStiffDashpotsAndImplicitWithThem) {
-  Material material = liver_material();
-  EXPECT_EQ(choose_integrator(make_block_model(4, 4, 4, Structure::ctpm, material)).integrator,
+  network::Material material = liver_material();
+  EXPECT_EQ(stepping::choose_integrator(make_block_model(4, 4, 4, network::Structure::ctpm, material)).integrator,
             Integrator::backward_euler);
   material.viscosity = 5e3;
   material.stiffness_scale = 0.3;
-  const IntegratorChoice choice = choose_integrator(make_block_model(4, 4, 4, Structure::ctpm, material));
+  const stepping::IntegratorChoice choice =
+      stepping::choose_integrator(make_block_model(4, 4, 4, network::Structure::ctpm, material));
   EXPECT_EQ(choice.integrator, Integrator::leapfrog);
   EXPECT_GE(choice.substeps, 1);
   EXPECT_TRUE(choice.holds);
@@ -193,13 +196,13 @@ TEST(Automatic, IsExplicitWithoutStiffDashpotsAndImplicitWithThem) {
 
 TEST(Automatic, TakesAsManySubstepsAsTheStiffestSphereNeeds) {
   Model model = make_pair();
-  const double bound = stable_step_bound(model);
+  const double bound = stepping::stable_step_bound(model);
   model.tick = 0.5 * bound;
-  EXPECT_EQ(choose_integrator(model).substeps, 1);
+  EXPECT_EQ(stepping::choose_integrator(model).substeps, 1);
   model.tick = 2.5 * bound;
-  EXPECT_EQ(choose_integrator(model).substeps, 3);
+  EXPECT_EQ(stepping::choose_integrator(model).substeps, 3);
   model.tick = 100 * bound;
-  EXPECT_EQ(choose_integrator(model).integrator, Integrator::backward_euler);
+  EXPECT_EQ(stepping::choose_integrator(model).integrator, Integrator::backward_euler);
 }
 
 }  // namespace

@@ -17,15 +17,15 @@ using testing::make_block_model;
 using testing::scalpel;
 
 struct Machine {
-  InstructionSet set;
+  elements::InstructionSet set;
   int threads;
 };
 
 class EveryMachine : public ::testing::TestWithParam<Machine> {};
 
 /// Large enough to be cut into slabs; pressed, then cut.
-Model make_model(Structure structure, Integrator integrator) {
-  Material material = testing::liver_material();
+Model make_model(network::Structure structure, Integrator integrator) {
+  network::Material material = testing::liver_material();
   if (integrator == Integrator::leapfrog) material.viscosity = 5e3, material.stiffness_scale = 0.3;
   Model model = make_block_model(13, 12, 12, structure, material);
   model.gravity = {0, 0, -9.81};
@@ -34,27 +34,28 @@ Model make_model(Structure structure, Integrator integrator) {
   return model;
 }
 
-State run(const Model& model, const StepperOptions& options) {
-  Stepper stepper(model, options);
+State run(const Model& model, const stepping::StepperOptions& options) {
+  stepping::Stepper stepper(model, options);
   State state = rest_state(model);
   for (int tick = 0; tick < 24; ++tick) {
     Inputs inputs;
     inputs.tool = tick < 14 ? 0 : 1;
     inputs.position =
         tick < 14 ? Vec3{0.003, 0.001, 0.158 - 0.0005 * tick} : Vec3{0.0007, -0.1 + 0.008 * (tick - 14), 0.1};
-    EXPECT_LE(stepper.step(state, inputs).status, StepStatus::not_converged);
+    EXPECT_LE(stepper.step(state, inputs).status, stepping::StepStatus::not_converged);
   }
   return state;
 }
 
 TEST_P(EveryMachine, GivesTheSameBits) {
-  const StepperOptions options{GetParam().threads, GetParam().set};
+  const stepping::StepperOptions options{GetParam().threads, GetParam().set};
   for (const auto& [structure, integrator] :
-       {std::pair{Structure::ctpm, Integrator::backward_euler}, std::pair{Structure::ctpm, Integrator::leapfrog},
-        std::pair{Structure::angle_mass_spring, Integrator::backward_euler},
-        std::pair{Structure::tpm, Integrator::sdirk2}}) {
+       {std::pair{network::Structure::ctpm, Integrator::backward_euler},
+        std::pair{network::Structure::ctpm, Integrator::leapfrog},
+        std::pair{network::Structure::angle_mass_spring, Integrator::backward_euler},
+        std::pair{network::Structure::tpm, Integrator::sdirk2}}) {
     const Model model = make_model(structure, integrator);
-    const State plain = run(model, {1, InstructionSet::baseline}), other = run(model, options);
+    const State plain = run(model, {1, elements::InstructionSet::baseline}), other = run(model, options);
     EXPECT_EQ(plain.position, other.position) << "structure " << int(structure);
     EXPECT_EQ(plain.velocity, other.velocity) << "structure " << int(structure);
     EXPECT_EQ(plain.kelvin_elongation, other.kelvin_elongation) << "structure " << int(structure);
@@ -66,33 +67,33 @@ TEST_P(EveryMachine, GivesTheSameBits) {
 
 TEST_P(EveryMachine, GivesTheSameBitsInManySlabs) {
   const Model model = make_block_model(26, 26, 26);
-  ASSERT_EQ(Slabs(model.sphere_count()).count(), 4);
-  const auto run = [&](const StepperOptions& options) {
-    Stepper stepper(model, options);
+  ASSERT_EQ(parallel::Slabs(model.sphere_count()).count(), 4);
+  const auto run = [&](const stepping::StepperOptions& options) {
+    stepping::Stepper stepper(model, options);
     State state = rest_state(model);
     testing::shake(state, 1e-3, 0.01);
-    for (int tick = 0; tick < 3; ++tick) EXPECT_FALSE(is_refused(stepper.step(state, {}).status));
+    for (int tick = 0; tick < 3; ++tick) EXPECT_FALSE(stepping::is_refused(stepper.step(state, {}).status));
     return state;
   };
-  const State plain = run({1, InstructionSet::baseline}), other = run({GetParam().threads, GetParam().set});
+  const State plain = run({1, elements::InstructionSet::baseline}), other = run({GetParam().threads, GetParam().set});
   EXPECT_EQ(plain.position, other.position);
   EXPECT_EQ(plain.velocity, other.velocity);
 }
 
-INSTANTIATE_TEST_SUITE_P(Machines, EveryMachine,
-                         ::testing::Values(Machine{InstructionSet::baseline, 2}, Machine{InstructionSet::baseline, 4},
-                                           Machine{InstructionSet::avx2, 1}, Machine{InstructionSet::avx2, 2},
-                                           Machine{InstructionSet::avx512, 1}, Machine{InstructionSet::avx512, 3}),
-                         [](const auto& of) {
-                           return std::string(name_of(of.param.set)) + "With" + std::to_string(of.param.threads) +
-                                  "Threads";
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Machines, EveryMachine,
+    ::testing::Values(Machine{elements::InstructionSet::baseline, 2}, Machine{elements::InstructionSet::baseline, 4},
+                      Machine{elements::InstructionSet::avx2, 1}, Machine{elements::InstructionSet::avx2, 2},
+                      Machine{elements::InstructionSet::avx512, 1}, Machine{elements::InstructionSet::avx512, 3}),
+    [](const auto& of) {
+      return std::string(elements::name_of(of.param.set)) + "With" + std::to_string(of.param.threads) + "Threads";
+    });
 
 TEST(Slabs, DependOnTheModelAlone) {
-  EXPECT_EQ(Slabs(729).count(), 1);
-  EXPECT_EQ(Slabs(5000).count(), 2);
-  EXPECT_EQ(Slabs(30000).count(), 4);
-  const Slabs many(100000);
+  EXPECT_EQ(parallel::Slabs(729).count(), 1);
+  EXPECT_EQ(parallel::Slabs(5000).count(), 2);
+  EXPECT_EQ(parallel::Slabs(30000).count(), 4);
+  const parallel::Slabs many(100000);
   EXPECT_EQ(many.count() % 4, 0);
   for (std::int32_t sphere = 0; sphere < 100000; sphere += 997) {
     const int slab = many.of(sphere);
@@ -103,7 +104,7 @@ TEST(Slabs, DependOnTheModelAlone) {
 
 TEST(Team, DoesEveryTaskOnce) {
   for (const int threads : {1, 2, 5}) {
-    Team team(threads);
+    parallel::Team team(threads);
     for (const int count : {0, 1, 2, 7, 64})
       for (int round = 0; round < 50; ++round) {
         std::vector<int> done(std::size_t(count), 0);

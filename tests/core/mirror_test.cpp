@@ -50,14 +50,14 @@ State shaken(const Model& model) {
   return state;
 }
 
-class MirroredStructure : public ::testing::TestWithParam<Structure> {};
+class MirroredStructure : public ::testing::TestWithParam<network::Structure> {};
 
 TEST_P(MirroredStructure, MirroredStateGivesMirroredForces) {
   const Model model = testing::make_block_model(6, 5, 4, GetParam());
   const State state = shaken(model);
-  const Vec3Array force = internal_forces(model, state);
+  const Vec3Array force = elements::internal_forces(model, state);
   for (const Mirror mirror : {Mirror{0}, Mirror{1}, Mirror{2}}) {
-    const Vec3Array got = internal_forces(mirrored(model, mirror), mirrored(state, mirror));
+    const Vec3Array got = elements::internal_forces(mirrored(model, mirror), mirrored(state, mirror));
     for (std::size_t i = 0; i < force.size(); ++i)
       ASSERT_NEAR(norm(got[i] - mirror(force[i])), 0, kRounding) << "axis " << mirror.axis << " sphere " << i;
   }
@@ -72,13 +72,13 @@ TEST_P(MirroredStructure, MirroredInputsGiveMirroredSteps) {
   constexpr int kTicks = 30;
   const auto ball_at = [](int tick) { return Vec3{0.011 - 0.0001 * tick, 0.004, 0.048 - 0.0003 * tick}; };
   const auto run = [&](const Model& of, State state, const auto& place) {
-    Stepper stepper(of);
-    StepReport report;
+    stepping::Stepper stepper(of);
+    stepping::StepReport report;
     for (int tick = 0; tick < kTicks; ++tick) {
       Inputs inputs;
       inputs.tool = 0, inputs.position = place(ball_at(tick));
       report = stepper.step(state, inputs);
-      EXPECT_EQ(report.status, StepStatus::ok);
+      EXPECT_EQ(report.status, stepping::StepStatus::ok);
     }
     return std::pair{state, report};
   };
@@ -110,14 +110,15 @@ TEST_P(MirroredStructure, ABlockThatIsItsOwnMirrorImageIsPushedBackMirrored) {
   testing::shake(state, 0.004, 0.1);
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
     other.position.set(across(i), mirror(state.position[i])), other.velocity.set(across(i), mirror(state.velocity[i]));
-  const Vec3Array force = internal_forces(model, state), other_force = internal_forces(model, other);
+  const Vec3Array force = elements::internal_forces(model, state),
+                  other_force = elements::internal_forces(model, other);
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
     ASSERT_NEAR(norm(other_force[across(i)] - mirror(force[i])), 0, kRounding) << "sphere " << i;
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, MirroredStructure,
-                         ::testing::Values(Structure::mass_spring, Structure::angle_mass_spring, Structure::tpm,
-                                           Structure::ctpm));
+                         ::testing::Values(network::Structure::mass_spring, network::Structure::angle_mass_spring,
+                                           network::Structure::tpm, network::Structure::ctpm));
 
 }  // namespace
 }  // namespace ctpm

@@ -31,9 +31,9 @@ TEST(Step, AFreeBlockFallsAsGalileoSays) {
   Model model = make_block_model(3, 3, 3);
   model.held_axes.assign(model.sphere_count(), 0);
   model.gravity = {0, 0, -9.81};
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
-  for (int i = 0; i < 500; ++i) ASSERT_EQ(stepper.step(state, {}).status, StepStatus::ok);
+  for (int i = 0; i < 500; ++i) ASSERT_EQ(stepper.step(state, {}).status, stepping::StepStatus::ok);
   const double t = 0.5, h = 1e-3;
   for (std::size_t i = 0; i < model.sphere_count(); ++i) {
     // Each tick's acceleration is solved to 1e-4; (t + h) / 2 holds backward Euler's own error of half a
@@ -46,14 +46,14 @@ TEST(Step, AFreeBlockFallsAsGalileoSays) {
 TEST(Step, HoldsTheLiversStiffDashpotsAtOneMillisecond) {
   Model model = make_block_model(9, 9, 7);
   model.tools = {ball(0.002)};
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   const double top = 0.072 + 0.006 + 0.002;
-  StepReport report;
+  stepping::StepReport report;
   for (int i = 0; i < 2000; ++i) {
     const double depth = std::min(0.010, 0.010 * i / 1000.0);
     report = stepper.step(state, tool_at({0, 0, top - depth}));
-    ASSERT_EQ(report.status, StepStatus::ok) << "tick " << i;
+    ASSERT_EQ(report.status, stepping::StepStatus::ok) << "tick " << i;
   }
   EXPECT_GT(report.tool_force.z, 0.5);
   EXPECT_LT(report.tool_force.z, 10);
@@ -62,19 +62,19 @@ TEST(Step, HoldsTheLiversStiffDashpotsAtOneMillisecond) {
 
 TEST(Step, EnergyOfAShakenBlockOnlyFalls) {
   Model model = make_block_model(5, 5, 5);
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   shake(state, 0.001, 0.05);
   for (std::size_t i = 0; i < 25; ++i) state.position.set(i, model.rest_position[i]), state.velocity.set(i, {});
   const auto energy = [&] {
-    double sum = elastic_energy(model, state);
+    double sum = elements::elastic_energy(model, state);
     for (std::size_t i = 0; i < model.sphere_count(); ++i)
       sum += 0.5 * model.mass[i] * dot(state.velocity[i], state.velocity[i]);
     return sum;
   };
   double last = energy();
   for (int i = 0; i < 300; ++i) {
-    ASSERT_EQ(stepper.step(state, {}).status, StepStatus::ok);
+    ASSERT_EQ(stepper.step(state, {}).status, stepping::StepStatus::ok);
     const double now = energy();
     ASSERT_LE(now, last * (1 + 1e-6)) << "tick " << i;
     last = now;
@@ -84,7 +84,7 @@ TEST(Step, EnergyOfAShakenBlockOnlyFalls) {
 TEST(Step, AnchoredSpheresNeverMove) {
   Model model = make_block_model(4, 4, 4);
   model.gravity = {0, 0, -9.81};
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   for (int i = 0; i < 100; ++i) (void)stepper.step(state, {});
   for (std::size_t i = 0; i < 16; ++i) EXPECT_EQ(state.position[i], model.rest_position[i]);
@@ -96,7 +96,7 @@ TEST(Step, SameInputsGiveTheSameBits) {
   model.tools = {ball(0.006)};
   State first, second;
   for (State* state : {&first, &second}) {
-    Stepper stepper(model);
+    stepping::Stepper stepper(model);
     *state = rest_state(model);
     for (int i = 0; i < 200; ++i) (void)stepper.step(*state, tool_at({0, 0, 0.066 - 0.0001 * i}));
   }
@@ -105,8 +105,8 @@ TEST(Step, SameInputsGiveTheSameBits) {
 }
 
 /// Moduli that the explicit integrator holds too.
-Material soft_material() {
-  Material material = testing::liver_material();
+network::Material soft_material() {
+  network::Material material = testing::liver_material();
   material.viscosity = 5e3, material.stiffness_scale = 0.3;
   return material;
 }
@@ -130,15 +130,15 @@ std::uint64_t bits_of(const State& state) {
 class EveryIntegrator : public ::testing::TestWithParam<Integrator> {};
 
 TEST_P(EveryIntegrator, GoesOnFromAnyStateOfAnyMoment) {
-  Model model = make_block_model(5, 5, 5, Structure::ctpm, soft_material());
+  Model model = make_block_model(5, 5, 5, network::Structure::ctpm, soft_material());
   testing::use_integrator(model, GetParam());
   model.tools = {ball(0.006), scalpel(0.05)};
   const auto inputs = [](int i) { return tool_at({-0.04 + 0.0008 * i, 0.0003, 0.03}, i < 60 ? 0 : 1); };
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model), saved;
   for (int i = 0; i < 120; ++i) {
     if (i == 70) saved = state;
-    ASSERT_FALSE(is_refused(stepper.step(state, inputs(i)).status));
+    ASSERT_FALSE(stepping::is_refused(stepper.step(state, inputs(i)).status));
   }
   for (int i = 70; i < 120; ++i) (void)stepper.step(saved, inputs(i));
   EXPECT_EQ(bits_of(saved), bits_of(state));
@@ -146,32 +146,32 @@ TEST_P(EveryIntegrator, GoesOnFromAnyStateOfAnyMoment) {
 
 TEST_P(EveryIntegrator, LeavesTheStateOfARefusedTickToTheBit) {
   for (const int substeps : {1, 3})
-    for (const Structure structure : {Structure::ctpm, Structure::tpm}) {
+    for (const network::Structure structure : {network::Structure::ctpm, network::Structure::tpm}) {
       Model model = make_block_model(4, 4, 4, structure, soft_material());
       testing::use_integrator(model, GetParam()), model.solver.substeps = substeps;
       model.tools = {Tool{"pin", ToolKind::pin, 0, 0, 60}};
-      Stepper stepper(model);
+      stepping::Stepper stepper(model);
       State state = rest_state(model);
       const auto pull = [&](int i) { return tool_at(model.rest_position[60] + Vec3{0, 0, 1e-4 * i}); };
-      for (int i = 1; i < 10; ++i) ASSERT_FALSE(is_refused(stepper.step(state, pull(i)).status));
+      for (int i = 1; i < 10; ++i) ASSERT_FALSE(stepping::is_refused(stepper.step(state, pull(i)).status));
       state.velocity.y[40] = NAN;
       const std::uint64_t before = bits_of(state);
-      EXPECT_EQ(stepper.step(state, pull(10)).status, StepStatus::diverged);
+      EXPECT_EQ(stepper.step(state, pull(10)).status, stepping::StepStatus::diverged);
       EXPECT_EQ(bits_of(state), before) << substeps << " substeps, structure " << int(structure);
     }
 }
 
 TEST_P(EveryIntegrator, LeavesTheStateOfARefusedCutToTheBit) {
-  Model model = make_block_model(4, 4, 4, Structure::ctpm, soft_material());
+  Model model = make_block_model(4, 4, 4, network::Structure::ctpm, soft_material());
   testing::use_integrator(model, GetParam()), model.tools = {scalpel(0.1)};
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   const auto cut = [&](int i) { return tool_at({0.0003, -0.03 + 0.002 * i, -0.01}); };
-  for (int i = 0; i < 15; ++i) ASSERT_FALSE(is_refused(stepper.step(state, cut(i)).status));
+  for (int i = 0; i < 15; ++i) ASSERT_FALSE(stepping::is_refused(stepper.step(state, cut(i)).status));
   const double good = std::exchange(state.velocity.y[40], NAN);
   const std::uint64_t before = bits_of(state);
-  const StepReport refused = stepper.step(state, cut(20));
-  EXPECT_EQ(refused.status, StepStatus::diverged);
+  const stepping::StepReport refused = stepper.step(state, cut(20));
+  EXPECT_EQ(refused.status, stepping::StepStatus::diverged);
   EXPECT_GT(refused.severed, 0) << "by a blade that was on its way";
   EXPECT_EQ(bits_of(state), before);
   state.velocity.y[40] = good;
@@ -184,12 +184,12 @@ INSTANTIATE_TEST_SUITE_P(Under, EveryIntegrator,
 TEST(Step, RefusesPosesThatAreNotNumbersAndLeavesTheState) {
   Model model = make_block_model(3, 3, 3);
   model.tools = {ball(0.006)};
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   const State before = state;
   for (const Inputs& inputs :
        {tool_at({NAN, 0, 0}), tool_at({INFINITY, 0, 0}), tool_at({0, 0, 0}, 7), tool_at({0, 0, 0}, -2)}) {
-    EXPECT_EQ(stepper.step(state, inputs).status, StepStatus::bad_input);
+    EXPECT_EQ(stepper.step(state, inputs).status, stepping::StepStatus::bad_input);
     EXPECT_EQ(state.tick, before.tick);
     EXPECT_EQ(state.position, before.position);
   }
@@ -197,11 +197,11 @@ TEST(Step, RefusesPosesThatAreNotNumbersAndLeavesTheState) {
 
 TEST(Step, SaysWhichSphereDivergedAndLeavesTheState) {
   Model model = make_block_model(3, 3, 3);
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   state.velocity.x[20] = NAN;
-  const StepReport report = stepper.step(state, {});
-  EXPECT_EQ(report.status, StepStatus::diverged);
+  const stepping::StepReport report = stepper.step(state, {});
+  EXPECT_EQ(report.status, stepping::StepStatus::diverged);
   EXPECT_GE(report.worst_sphere, 0);
   EXPECT_EQ(state.tick, 0);
   EXPECT_EQ(state.position, model.rest_position);
@@ -212,12 +212,12 @@ TEST(Contact, ForceOnTheToolBalancesForceOnTheAnchors) {
   Model model = make_block_model(5, 5, 4);
   model.tools = {ball(0.010)};
   model.solver.tolerance = 1e-8;
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
-  StepReport report;
+  stepping::StepReport report;
   for (int i = 0; i < 6000; ++i)
     report = stepper.step(state, tool_at({0, 0, 0.036 + 0.006 + 0.010 - std::min(0.005, 1e-5 * i)}));
-  const Vec3Array force = internal_forces(model, state);
+  const Vec3Array force = elements::internal_forces(model, state);
   Vec3 anchors;
   for (std::size_t i = 0; i < 25; ++i) anchors += force[i];
   EXPECT_GT(report.tool_force.z, 0.1);
@@ -227,11 +227,11 @@ TEST(Contact, ForceOnTheToolBalancesForceOnTheAnchors) {
 TEST(Contact, NeverPullsTheTissueAlong) {
   Model model = make_block_model(5, 5, 4);
   model.tools = {ball(0.010)};
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   for (int i = 0; i < 500; ++i) (void)stepper.step(state, tool_at({0, 0, 0.045}));
   for (int i = 0; i < 200; ++i) {
-    const StepReport report = stepper.step(state, tool_at({0, 0, 0.045 + 0.0005 * i}));
+    const stepping::StepReport report = stepper.step(state, tool_at({0, 0, 0.045 + 0.0005 * i}));
     ASSERT_GE(report.tool_force.z, 0) << "tick " << i;
   }
 }
@@ -239,7 +239,7 @@ TEST(Contact, NeverPullsTheTissueAlong) {
 TEST(Cutting, AFullCutSeparatesTheBlockExactly) {
   Model model = make_block_model(6, 4, 4);
   model.tools = {scalpel(0.2)};
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   // The blade hangs from above the block to below it and passes between the third and the fourth plane in x.
   std::int32_t severed = 0;
@@ -256,7 +256,7 @@ TEST(Cutting, IsExactHoweverFastTheBladeMoves) {
   for (const int ticks : {2, 7, 50}) {
     Model model = make_block_model(6, 4, 4);
     model.tools = {scalpel(0.2)};
-    Stepper stepper(model);
+    stepping::Stepper stepper(model);
     State state = rest_state(model);
     for (int i = 0; i < ticks; ++i) (void)stepper.step(state, tool_at({0.0001, -0.05 + 0.1 * i / (ticks - 1), -0.05}));
     for (std::size_t e = 0; e < model.axial.size(); ++e) {
@@ -270,7 +270,7 @@ TEST(Cutting, IsExactHoweverFastTheBladeMoves) {
 TEST(Cutting, AToolThatIsTakenInHandDoesNotCutOnItsWay) {
   Model model = make_block_model(6, 4, 4);
   model.tools = {scalpel(0.2)};
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   EXPECT_EQ(stepper.step(state, tool_at({0.0001, 0.05, -0.05})).severed, 0);
 }
@@ -278,11 +278,11 @@ TEST(Cutting, AToolThatIsTakenInHandDoesNotCutOnItsWay) {
 TEST(Settle, ComesToRestUnderGravityWithoutAdvancingTheTick) {
   Model model = make_block_model(4, 4, 4);
   model.gravity = {0, 0, -9.81};
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   (void)stepper.settle(state, 20000);
   EXPECT_EQ(state.tick, 0);
-  const Vec3Array force = internal_forces(model, state);
+  const Vec3Array force = elements::internal_forces(model, state);
   for (std::size_t i = 16; i < model.sphere_count(); ++i)
     EXPECT_NEAR(force.z[i], 9.81 * model.mass[i], 2e-3 * 9.81 * model.mass[i] + 1e-4);
 }

@@ -25,14 +25,14 @@ FilledOrgan make_block(int n) {
 
 TEST(SurfaceBinding, FollowsEveryAffineMotionExactly) {
   FilledOrgan organ = make_block(5);
-  bind_surface(organ);
+  surface::bind_surface(organ);
   const auto motion = [](Vec3 p) {
     return Vec3{1.1 * p.x + 0.3 * p.y - 0.02, -0.4 * p.x + 0.9 * p.y + 0.2 * p.z + 0.5, 0.1 * p.y + 1.2 * p.z - 1};
   };
   Vec3Array moved;
   for (const Vec3& centre : organ.centre) moved.push_back(motion(centre));
   std::vector<Vec3> vertex;
-  deform_surface(organ.surface, moved, 0, vertex);
+  surface::deform_surface(organ.surface, moved, 0, vertex);
   for (std::size_t v = 0; v < vertex.size(); ++v)
     EXPECT_NEAR(norm(vertex[v] - motion(organ.surface.vertex[v])), 0, 1e-12) << "vertex " << v;  // rounding only
 }
@@ -43,7 +43,7 @@ TEST(SurfaceBinding, WeightsSumToOneAlsoForOneSphereAndForAPlane) {
     if (n == 3) {  // a single layer of spheres does not span space
       organ.centre.resize(9), organ.cell.resize(9);
     }
-    bind_surface(organ);
+    surface::bind_surface(organ);
     for (std::size_t v = 0; v < organ.surface.vertex.size(); ++v) {
       double sum = 0;
       for (int e = organ.surface.binding.first[v]; e < organ.surface.binding.first[v + 1]; ++e)

@@ -21,18 +21,18 @@ using testing::kGoldenRevisions;
 
 struct Session {
   const char* name;  ///< that of its row
-  Structure structure;
+  network::Structure structure;
   std::optional<Integrator> integrator;
 };
 
 constexpr Session kSessions[] = {
-    {"mass-spring, auto", Structure::mass_spring, std::nullopt},
-    {"angle-mass-spring, auto", Structure::angle_mass_spring, std::nullopt},
-    {"tpm, auto", Structure::tpm, std::nullopt},
-    {"ctpm, auto", Structure::ctpm, std::nullopt},
-    {"tpm, backward-euler", Structure::tpm, Integrator::backward_euler},
-    {"angle-mass-spring, backward-euler", Structure::angle_mass_spring, Integrator::backward_euler},
-    {"ctpm, sdirk2", Structure::ctpm, Integrator::sdirk2},
+    {"mass-spring, auto", network::Structure::mass_spring, std::nullopt},
+    {"angle-mass-spring, auto", network::Structure::angle_mass_spring, std::nullopt},
+    {"tpm, auto", network::Structure::tpm, std::nullopt},
+    {"ctpm, auto", network::Structure::ctpm, std::nullopt},
+    {"tpm, backward-euler", network::Structure::tpm, Integrator::backward_euler},
+    {"angle-mass-spring, backward-euler", network::Structure::angle_mass_spring, Integrator::backward_euler},
+    {"ctpm, sdirk2", network::Structure::ctpm, Integrator::sdirk2},
 };
 
 std::string to_text(const std::array<std::uint64_t, 4>& hash) {

@@ -32,21 +32,21 @@ struct GoldenRun {
 };
 
 /// `ticks` ticks, evenly taken from the whole session, of a block of ni x nj x nk spheres.
-inline GoldenRun run_golden(int ni, int nj, int nk, int ticks, Structure structure,
-                            std::optional<Integrator> integrator, const StepperOptions& options = {}) {
+inline GoldenRun run_golden(int ni, int nj, int nk, int ticks, network::Structure structure,
+                            std::optional<Integrator> integrator, const stepping::StepperOptions& options = {}) {
   Model model = make_block_model(ni, nj, nk, structure);
   model.gravity = {0, 0, -9.81};
   model.tools = {ball(0.006), scalpel(0.06)};
   model.solver = {};
-  resolve_integrator(model, integrator);
+  stepping::resolve_integrator(model, integrator);
   State state = rest_state(model);
-  Stepper stepper(model, options);
+  stepping::Stepper stepper(model, options);
   GoldenRun run;
   for (int tick = 0; tick < ticks; ++tick) {
-    const StepReport report = stepper.step(state, golden_inputs(tick * 400 / ticks));
-    run.is_good = run.is_good && report.status <= StepStatus::not_converged;
+    const stepping::StepReport report = stepper.step(state, golden_inputs(tick * 400 / ticks));
+    run.is_good = run.is_good && report.status <= stepping::StepStatus::not_converged;
     run.severed += report.severed, run.contacts += report.contacts;
-    if ((tick + 1) % (ticks / 4) == 0) run.hash[std::size_t(tick / (ticks / 4))] = state_hash(state);
+    if ((tick + 1) % (ticks / 4) == 0) run.hash[std::size_t(tick / (ticks / 4))] = recordings::state_hash(state);
   }
   return run;
 }

@@ -21,8 +21,8 @@ constexpr bool kIsSanitized = true;
 constexpr bool kIsSanitized = false;
 #endif
 
-ChildLimits short_limits() {
-  ChildLimits limits;
+importers::ChildLimits short_limits() {
+  importers::ChildLimits limits;
   limits.time_s = 0.3;
   limits.memory_mib = 64;
   limits.output_mib = 8;
@@ -36,7 +36,7 @@ double seconds_of(const std::function<void()>& work) {
 }
 
 TEST(Child, SendsWhatItComputes) {
-  const ChildResult child = run_in_child({}, [](const Send& send) {
+  const importers::ChildResult child = importers::run_in_child({}, [](const importers::Send& send) {
     send("abc", 3);
     const std::string much(1 << 20, 'x');
     send(much.data(), much.size());
@@ -47,7 +47,7 @@ TEST(Child, SendsWhatItComputes) {
 
 TEST(Child, CrashIsTroubleOfTheChildAlone) {
   for (const int number : {SIGSEGV, SIGABRT, SIGFPE, SIGKILL}) {
-    const ChildResult child = run_in_child(short_limits(), [number](const Send& send) {
+    const importers::ChildResult child = importers::run_in_child(short_limits(), [number](const importers::Send& send) {
       send("half", 4);
       std::raise(number);
     });
@@ -58,16 +58,17 @@ TEST(Child, CrashIsTroubleOfTheChildAlone) {
 }
 
 TEST(Child, SleepingChildIsKilledInTime) {
-  ChildResult child;
-  const double seconds = seconds_of([&] { child = run_in_child(short_limits(), [](const Send&) { pause(); }); });
+  importers::ChildResult child;
+  const double seconds =
+      seconds_of([&] { child = importers::run_in_child(short_limits(), [](const importers::Send&) { pause(); }); });
   EXPECT_EQ(child.trouble, "took longer than 0.3 s");
   EXPECT_LT(seconds, 2.0);
 }
 
 TEST(Child, SpinningChildThatIgnoresSignalsIsKilledInTime) {
-  ChildResult child;
+  importers::ChildResult child;
   const double seconds = seconds_of([&] {
-    child = run_in_child(short_limits(), [](const Send&) {
+    child = importers::run_in_child(short_limits(), [](const importers::Send&) {
       for (int number = 1; number < 32; ++number) std::signal(number, SIG_IGN);
       for (volatile bool goes_on = true; goes_on;) {
       }
@@ -78,7 +79,7 @@ TEST(Child, SpinningChildThatIgnoresSignalsIsKilledInTime) {
 }
 
 TEST(Child, ChildThatDripsForeverIsKilledInTime) {
-  const ChildResult child = run_in_child(short_limits(), [](const Send& send) {
+  const importers::ChildResult child = importers::run_in_child(short_limits(), [](const importers::Send& send) {
     while (send("x", 1)) usleep(1000);
   });
   EXPECT_EQ(child.trouble, "took longer than 0.3 s");
@@ -86,18 +87,18 @@ TEST(Child, ChildThatDripsForeverIsKilledInTime) {
 
 TEST(Child, MemoryHungerEndsAtTheLimit) {
   if (kIsSanitized) GTEST_SKIP() << "sanitizers need far more address space than any limit";
-  ChildLimits limits = short_limits();
+  importers::ChildLimits limits = short_limits();
   limits.time_s = 20;
-  const ChildResult child = run_in_child(limits, [](const Send&) {
+  const importers::ChildResult child = importers::run_in_child(limits, [](const importers::Send&) {
     for (std::vector<std::vector<char>> hoard;;) hoard.emplace_back(std::size_t(1) << 20, 'x');
   });
   EXPECT_EQ(child.trouble, "needs more than 64 MiB of memory");
 }
 
 TEST(Child, FloodEndsAtTheLimit) {
-  ChildLimits limits = short_limits();
+  importers::ChildLimits limits = short_limits();
   limits.time_s = 20;
-  const ChildResult child = run_in_child(limits, [](const Send& send) {
+  const importers::ChildResult child = importers::run_in_child(limits, [](const importers::Send& send) {
     const std::string much(1 << 20, 'x');
     while (send(much.data(), much.size())) {
     }
@@ -106,7 +107,8 @@ TEST(Child, FloodEndsAtTheLimit) {
 }
 
 TEST(Child, ExceptionIsTroubleToo) {
-  const ChildResult child = run_in_child(short_limits(), [](const Send&) { throw std::runtime_error("no"); });
+  const importers::ChildResult child =
+      importers::run_in_child(short_limits(), [](const importers::Send&) { throw std::runtime_error("no"); });
   EXPECT_FALSE(child.is_whole);
   EXPECT_NE(child.trouble.find("gave up"), std::string::npos) << child.trouble;
 }
@@ -114,7 +116,7 @@ TEST(Child, ExceptionIsTroubleToo) {
 TEST(Child, HasNoFilesOfTheParentAndWritesNone) {
   const int open_in_parent = open("/dev/null", O_RDONLY);
   ASSERT_GE(open_in_parent, 3);
-  const ChildResult child = run_in_child(short_limits(), [&](const Send& send) {
+  const importers::ChildResult child = importers::run_in_child(short_limits(), [&](const importers::Send& send) {
     const char is_closed = fcntl(open_in_parent, F_GETFD) < 0 && errno == EBADF ? 'y' : 'n';
     send(&is_closed, 1);
     std::signal(SIGXFSZ, SIG_IGN);
@@ -131,7 +133,7 @@ TEST(Child, LeavesNeitherZombieNorFileBehind) {
   const int before = open("/dev/null", O_RDONLY);
   close(before);
   for (int run = 0; run < 20; ++run)
-    (void)run_in_child(short_limits(), [run](const Send&) {
+    (void)importers::run_in_child(short_limits(), [run](const importers::Send&) {
       if (run % 2) std::abort();
     });
   const int after = open("/dev/null", O_RDONLY);

@@ -19,29 +19,29 @@ using zoo::find;
 using zoo::summary;
 using zoo::text_of;
 
-CheckedMesh checked(const RawMesh& raw, double unit = 1, bool all_parts = false) {
-  RepairOptions options;
+importers::CheckedMesh checked(const importers::RawMesh& raw, double unit = 1, bool all_parts = false) {
+  importers::RepairOptions options;
   options.all_parts = all_parts;
-  Result<CheckedMesh> mesh = repair_mesh(raw, unit, options);
+  Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, unit, options);
   EXPECT_TRUE(mesh) << text_of(mesh.errors());
   return std::move(*mesh);
 }
 
-FillOptions spaced(double spacing) {
-  FillOptions options;
+importers::FillOptions spaced(double spacing) {
+  importers::FillOptions options;
   options.sphere_radius = spacing / 3;
   options.gap = spacing - 2 * options.sphere_radius;
   return options;
 }
 
-Filling filled(const CheckedMesh& mesh, const FillOptions& options) {
-  Result<Filling> filling = fill_organ(mesh, options);
+importers::Filling filled(const importers::CheckedMesh& mesh, const importers::FillOptions& options) {
+  Result<importers::Filling> filling = importers::fill_organ(mesh, options);
   EXPECT_TRUE(filling) << text_of(filling.errors());
   return std::move(*filling);
 }
 
 /// Promises of FilledOrgan that hold for every filling.
-void expect_sound(const Filling& filling) {
+void expect_sound(const importers::Filling& filling) {
   const FilledOrgan& organ = filling.organ;
   const std::size_t count = organ.centre.size();
   ASSERT_GT(count, 0u);
@@ -119,7 +119,7 @@ double distance_to_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
 }
 
 TEST(Fill, CubeHasTheSpheresAndLayersThatGeometrySays) {
-  const Filling filling = filled(checked(zoo::box({0.1, 0.1, 0.1})), spaced(0.01));
+  const importers::Filling filling = filled(checked(zoo::box({0.1, 0.1, 0.1})), spaced(0.01));
   expect_sound(filling);
   EXPECT_EQ(filling.report.spheres, 1000);
   EXPECT_EQ(filling.report.spheres_per_layer, (std::vector<std::int64_t>{488, 296, 152, 56, 8}));
@@ -135,15 +135,15 @@ TEST(Fill, CubeHasTheSpheresAndLayersThatGeometrySays) {
 }
 
 TEST(Fill, SlabIsOneLayerOfSpheresThick) {
-  const Filling filling = filled(checked(zoo::box({0.1, 0.1, 0.02}, 5)), spaced(0.01));
+  const importers::Filling filling = filled(checked(zoo::box({0.1, 0.1, 0.02}, 5)), spaced(0.01));
   expect_sound(filling);
   EXPECT_EQ(filling.report.spheres_per_layer, (std::vector<std::int64_t>{200}));
 }
 
 TEST(Fill, SphereHasItsVolumeAndDepth) {
   const double radius = 0.05, spacing = 0.005;
-  const CheckedMesh mesh = checked(zoo::sphere(radius, 5));
-  const Filling filling = filled(mesh, spaced(spacing));
+  const importers::CheckedMesh mesh = checked(zoo::sphere(radius, 5));
+  const importers::Filling filling = filled(mesh, spaced(spacing));
   expect_sound(filling);
   constexpr double kRounding = 0.02;  // of the volume: 4189 cells, whose rounding errors partly cancel
   EXPECT_NEAR(filling.report.filled_volume, mesh.volume, kRounding * mesh.volume);
@@ -161,8 +161,8 @@ TEST(Fill, SphereHasItsVolumeAndDepth) {
 }
 
 TEST(Fill, TorusHasItsVolumeAndItsHole) {
-  const CheckedMesh mesh = checked(zoo::torus(0.05, 0.02, 96, 48));
-  const Filling filling = filled(mesh, spaced(0.004));
+  const importers::CheckedMesh mesh = checked(zoo::torus(0.05, 0.02, 96, 48));
+  const importers::Filling filling = filled(mesh, spaced(0.004));
   expect_sound(filling);
   const double exact = 2 * std::numbers::pi * std::numbers::pi * 0.05 * 0.02 * 0.02;
   EXPECT_NEAR(filling.report.filled_volume, exact, 0.03 * exact);
@@ -171,11 +171,11 @@ TEST(Fill, TorusHasItsVolumeAndItsHole) {
 }
 
 TEST(Fill, DepthIsTheExactDistance) {
-  const CheckedMesh mesh = checked(zoo::torus(0.05, 0.02, 24, 12));
-  const Filling filling = filled(mesh, spaced(0.006));
+  const importers::CheckedMesh mesh = checked(zoo::torus(0.05, 0.02, 24, 12));
+  const importers::Filling filling = filled(mesh, spaced(0.006));
   for (std::size_t n = 0; n < filling.organ.centre.size(); ++n) {
     double least = 1;
-    for (const Triangle& t : mesh.triangle)
+    for (const importers::Triangle& t : mesh.triangle)
       least = std::min(least, distance_to_triangle(filling.organ.centre[n], mesh.vertex[std::size_t(t[0])],
                                                    mesh.vertex[std::size_t(t[1])], mesh.vertex[std::size_t(t[2])]));
     ASSERT_NEAR(filling.organ.depth[n], least, 1e-12);
@@ -184,9 +184,9 @@ TEST(Fill, DepthIsTheExactDistance) {
 
 TEST(Fill, InsideIsWhereTheSolidAngleIsFull) {
   // Winding number by the solid angles of van Oosterom and Strackee; independent of the scan along rows.
-  const CheckedMesh mesh = checked(zoo::torus(0.05, 0.02, 24, 12));
+  const importers::CheckedMesh mesh = checked(zoo::torus(0.05, 0.02, 24, 12));
   const double spacing = 0.007;
-  const Filling filling = filled(mesh, spaced(spacing));
+  const importers::Filling filling = filled(mesh, spaced(spacing));
   std::set<std::array<std::int32_t, 3>> inside(filling.organ.cell.begin(), filling.organ.cell.end());
   const auto& some_cell = filling.organ.cell[0];
   const Vec3 some_centre = filling.organ.centre[0];
@@ -196,7 +196,7 @@ TEST(Fill, InsideIsWhereTheSolidAngleIsFull) {
         const Vec3 p =
             some_centre + spacing * Vec3{double(i - some_cell[0]), double(j - some_cell[1]), double(k - some_cell[2])};
         double angle = 0;
-        for (const Triangle& t : mesh.triangle) {
+        for (const importers::Triangle& t : mesh.triangle) {
           const Vec3 a = mesh.vertex[std::size_t(t[0])] - p, b = mesh.vertex[std::size_t(t[1])] - p,
                      c = mesh.vertex[std::size_t(t[2])] - p;
           const double la = norm(a), lb = norm(b), lc = norm(c);
@@ -207,7 +207,7 @@ TEST(Fill, InsideIsWhereTheSolidAngleIsFull) {
 }
 
 /// A mesh whose coordinates are multiples of 2^-20 m, so that shifts and turns do not round.
-RawMesh dyadic() {
+importers::RawMesh dyadic() {
   return zoo::moved(zoo::torus(0.05, 0.02, 40, 20), [](Vec3 p) {
     const auto round = [](double x) { return std::ldexp(std::round(std::ldexp(x, 20)), -20); };
     return Vec3{round(p.x + 0.02 * p.y), round(p.y), round(p.z + 0.3 * p.x * p.x)};
@@ -215,8 +215,8 @@ RawMesh dyadic() {
 }
 
 constexpr double kDyadicSpacing = 1.0 / 256;  // [m]
-FillOptions dyadic_options() {
-  FillOptions options;
+importers::FillOptions dyadic_options() {
+  importers::FillOptions options;
   options.sphere_radius = kDyadicSpacing / 4;
   options.gap = kDyadicSpacing / 2;
   return options;
@@ -258,7 +258,7 @@ TEST(Fill, AnyTurnKeepsTheCountWithinTheLatticesRounding) {
   const double length = std::sqrt(0.25 + 0.25 + 0.01 + 0.49);
   const Quat unit{turn.w / length, turn.x / length, turn.y / length, turn.z / length};
   const auto moved = zoo::moved(dyadic(), [&](Vec3 p) { return rotate(unit, p) + Vec3{0.0123, 0.4, 0.007}; });
-  const Filling filling = filled(checked(moved), dyadic_options());
+  const importers::Filling filling = filled(checked(moved), dyadic_options());
   EXPECT_NEAR(filling.report.filled_volume, volume, 0.03 * volume);
 }
 
@@ -274,20 +274,20 @@ TEST(Fill, FlippingAllFacesChangesNothing) {
 TEST(Fill, UnitsOnlyScale) {
   constexpr double kUnit = 1.0 / 1024;  // a power of two scales without rounding
   const FilledOrgan metres = filled(checked(dyadic()), dyadic_options()).organ;
-  const RawMesh raw = zoo::moved(dyadic(), [](Vec3 p) { return p / kUnit; });
+  const importers::RawMesh raw = zoo::moved(dyadic(), [](Vec3 p) { return p / kUnit; });
   const FilledOrgan scaled = filled(checked(raw, kUnit), dyadic_options()).organ;
   EXPECT_EQ(metres.centre, scaled.centre);
   EXPECT_EQ(metres.depth, scaled.depth);
 }
 
 TEST(Fill, ThreadsDoNotChangeOneBit) {
-  const CheckedMesh mesh = checked(zoo::torus(0.05, 0.02, 96, 48));
-  FillOptions options = spaced(0.002);
+  const importers::CheckedMesh mesh = checked(zoo::torus(0.05, 0.02, 96, 48));
+  importers::FillOptions options = spaced(0.002);
   options.threads = 1;
-  const Filling one = filled(mesh, options);
+  const importers::Filling one = filled(mesh, options);
   for (const int threads : {2, 4}) {
     options.threads = threads;
-    const Filling many = filled(mesh, options);
+    const importers::Filling many = filled(mesh, options);
     EXPECT_EQ(one.organ.centre, many.organ.centre);
     EXPECT_EQ(one.organ.cell, many.organ.cell);
     EXPECT_EQ(one.organ.layer, many.organ.layer);
@@ -300,7 +300,7 @@ TEST(Fill, ThreadsDoNotChangeOneBit) {
 }
 
 /// Two balls on a bar that is far thinner than the spacing and lies between lattice rows.
-RawMesh dumb_bell() {
+importers::RawMesh dumb_bell() {
   return zoo::moved(zoo::box({0.12, 0.02, 0.02}, 24), [](Vec3 p) {
     const double squeeze = std::abs(p.x) < 0.03 ? 0.05 : 1;
     return Vec3{p.x, p.y * squeeze, p.z * squeeze};
@@ -308,21 +308,21 @@ RawMesh dumb_bell() {
 }
 
 TEST(Fill, IslandsAreDroppedAndToldOrKept) {
-  RawMesh raw = dumb_bell();
+  importers::RawMesh raw = dumb_bell();
   for (Vec3& p : raw.vertex)
     if (p.x > 0.03) p.x += 0.02;  // makes the right end the longer one
-  const CheckedMesh mesh = checked(raw);
-  FillOptions options = spaced(0.01);
-  const Filling dropped = filled(mesh, options);
+  const importers::CheckedMesh mesh = checked(raw);
+  importers::FillOptions options = spaced(0.01);
+  const importers::Filling dropped = filled(mesh, options);
   expect_sound(dropped);
   EXPECT_EQ(network_of(dropped.organ).networks, 1);
-  const Finding* island = find(dropped.report.findings, "island");
+  const importers::Finding* island = find(dropped.report.findings, "island");
   ASSERT_NE(island, nullptr) << summary(dropped.report.findings);
   EXPECT_EQ(island->count, 1);
   EXPECT_LT(island->place->x, 0) << "the smaller end is on the left";
   EXPECT_EQ(island->remains, "");
   options.keep_islands = true;
-  const Filling kept = filled(mesh, options);
+  const importers::Filling kept = filled(mesh, options);
   expect_sound(kept);
   EXPECT_EQ(network_of(kept.organ).networks, 2);
   EXPECT_GT(kept.report.spheres, dropped.report.spheres);
@@ -331,12 +331,12 @@ TEST(Fill, IslandsAreDroppedAndToldOrKept) {
 
 TEST(Fill, ThinPartsWithoutSpheresAreTold) {
   // A cube with a tail that no lattice row meets.
-  const RawMesh raw = zoo::moved(zoo::box({0.1, 0.1, 0.1}, 10), [](Vec3 p) {
+  const importers::RawMesh raw = zoo::moved(zoo::box({0.1, 0.1, 0.1}, 10), [](Vec3 p) {
     const bool is_tip = p.x > 0.049 && std::abs(p.y) < 0.001 && std::abs(p.z) < 0.001;
     return is_tip ? Vec3{p.x + 0.05, p.y, p.z} : p;
   });
-  const Filling filling = filled(checked(raw), spaced(0.01));
-  const Finding* thin = find(filling.report.findings, "thin");
+  const importers::Filling filling = filled(checked(raw), spaced(0.01));
+  const importers::Finding* thin = find(filling.report.findings, "thin");
   ASSERT_NE(thin, nullptr) << summary(filling.report.findings);
   EXPECT_EQ(thin->count, 1);
   EXPECT_LT(norm(*thin->place - Vec3{0.1, 0, 0}), 1e-9);
@@ -344,26 +344,26 @@ TEST(Fill, ThinPartsWithoutSpheresAreTold) {
 }
 
 TEST(Fill, SingleSheetOfSpheresIsTold) {
-  const Filling filling = filled(checked(zoo::box({0.1, 0.1, 0.008}, 5)), spaced(0.01));
+  const importers::Filling filling = filled(checked(zoo::box({0.1, 0.1, 0.008}, 5)), spaced(0.01));
   EXPECT_EQ(filling.report.spheres, 100);
-  const Finding* flat = find(filling.report.findings, "flat");
+  const importers::Finding* flat = find(filling.report.findings, "flat");
   ASSERT_NE(flat, nullptr) << summary(filling.report.findings);
   EXPECT_EQ(flat->count, std::int64_t(filling.organ.surface.vertex.size()));
   Vec3Array rest;
   for (const Vec3& p : filling.organ.centre) rest.push_back(p);
   std::vector<Vec3> drawn;
-  deform_surface(filling.organ.surface, rest, 0, drawn);
+  surface::deform_surface(filling.organ.surface, rest, 0, drawn);
   for (const Vec3& p : drawn) ASSERT_NEAR(p.z, 0, 1e-12) << "all of it lies in the sheet";
   EXPECT_EQ(find(filled(checked(zoo::box({0.1, 0.1, 0.02}, 5)), spaced(0.01)).report.findings, "flat"), nullptr);
 }
 
 TEST(Fill, WhatCannotBeFilledIsRefused) {
-  const CheckedMesh mesh = checked(zoo::sphere(0.05, 3));
-  const auto message = [&](const FillOptions& options) {
-    const Result<Filling> filling = fill_organ(mesh, options);
+  const importers::CheckedMesh mesh = checked(zoo::sphere(0.05, 3));
+  const auto message = [&](const importers::FillOptions& options) {
+    const Result<importers::Filling> filling = importers::fill_organ(mesh, options);
     return filling ? std::string("filled") : text_of(filling.errors());
   };
-  FillOptions options = spaced(0.005);
+  importers::FillOptions options = spaced(0.005);
   options.sphere_radius = 0;
   EXPECT_NE(message(options).find("radius must be above 0"), std::string::npos);
   options = spaced(0.005);
@@ -379,10 +379,10 @@ TEST(Fill, WhatCannotBeFilledIsRefused) {
 
 TEST(Fill, NoSphereFitsIntoAShellOfPaper) {
   // A closed bowl, 0.1 mm thick: a lattice that is symmetric about the box's middle meets nothing of it.
-  const RawMesh raw = zoo::moved(zoo::box({0.1, 0.1, 0.0001}, 20), [](Vec3 p) {
+  const importers::RawMesh raw = zoo::moved(zoo::box({0.1, 0.1, 0.0001}, 20), [](Vec3 p) {
     return Vec3{p.x, p.y, p.z + 0.03 * (p.x * p.x + p.y * p.y) / 0.005};
   });
-  const Result<Filling> filling = fill_organ(checked(raw), spaced(0.03));
+  const Result<importers::Filling> filling = importers::fill_organ(checked(raw), spaced(0.03));
   ASSERT_FALSE(filling) << filling->report.spheres;
   EXPECT_NE(filling.errors()[0].message.find("no sphere fits"), std::string::npos);
 }
@@ -395,9 +395,9 @@ TEST(Fill, SurfaceFollowsRigidMotionExactly) {
   Vec3Array rest, positions;
   for (const Vec3& p : organ.centre) rest.push_back(p), positions.push_back(move(p));
   std::vector<Vec3> vertex;
-  deform_surface(organ.surface, rest, 0, vertex);
+  surface::deform_surface(organ.surface, rest, 0, vertex);
   for (std::size_t v = 0; v < vertex.size(); ++v) ASSERT_LT(norm(vertex[v] - organ.surface.vertex[v]), 1e-9);
-  deform_surface(organ.surface, positions, 0, vertex);
+  surface::deform_surface(organ.surface, positions, 0, vertex);
   for (std::size_t v = 0; v < vertex.size(); ++v) ASSERT_LT(norm(vertex[v] - move(organ.surface.vertex[v])), 1e-9);
 }
 

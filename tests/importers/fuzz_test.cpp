@@ -23,7 +23,7 @@ struct Sample {
 };
 
 std::vector<Sample> samples() {
-  const RawMesh mesh = zoo::sphere(0.06, 1, {0.01, 0.02, 0.04});
+  const importers::RawMesh mesh = zoo::sphere(0.06, 1, {0.01, 0.02, 0.04});
   return {{"a.obj", zoo::to_obj_text(mesh)},
           {"ascii.stl", zoo::to_ascii_stl(mesh)},
           {"binary.stl", zoo::to_binary_stl(mesh)},
@@ -86,7 +86,7 @@ int lowest_free_file() {
 }
 
 /// A mesh that is accepted must keep its promises, however damaged the file was.
-void expect_sound(const Result<CheckedMesh>& mesh, const std::string& path) {
+void expect_sound(const Result<importers::CheckedMesh>& mesh, const std::string& path) {
   if (!mesh) {
     ASSERT_FALSE(mesh.errors().empty());
     for (const Error& error : mesh.errors()) {
@@ -95,7 +95,7 @@ void expect_sound(const Result<CheckedMesh>& mesh, const std::string& path) {
     }
     return;
   }
-  const MeshCounts counts = count_mesh(mesh->vertex, mesh->triangle);
+  const importers::MeshCounts counts = importers::count_mesh(mesh->vertex, mesh->triangle);
   EXPECT_EQ(counts.open_edges, 0);
   EXPECT_EQ(counts.non_manifold_edges, 0);
   EXPECT_GT(mesh->volume, 0);
@@ -117,11 +117,11 @@ TEST_P(Fuzz, DamagedFilesEndAsAMeshOrAsAnError) {
   for (int round = 0; round < CTPM_FUZZ_ROUNDS; ++round) {
     SCOPED_TRACE(sample.name + ", round " + std::to_string(round));
     const std::string path = folder.write(sample.name, damaged(sample.bytes, random));
-    ReadOptions options;
+    importers::ReadOptions options;
     options.time_limit_s = kLimit;
     options.memory_limit_mib = 512;
     const auto start = std::chrono::steady_clock::now();
-    const Result<RawMesh> read = read_mesh(path, options);
+    const Result<importers::RawMesh> read = importers::read_mesh(path, options);
     EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), kLimit + kSlack);
     if (!read) {
       ASSERT_FALSE(read.errors().empty());
@@ -130,17 +130,18 @@ TEST_P(Fuzz, DamagedFilesEndAsAMeshOrAsAnError) {
       continue;
     }
     ++accepted;
-    for (const Triangle& t : read->triangle)
+    for (const importers::Triangle& t : read->triangle)
       for (const std::int32_t v : t) {
         ASSERT_TRUE(v >= 0 && v < std::int32_t(read->vertex.size()));
         ASSERT_TRUE(is_finite(read->vertex[std::size_t(v)]));
       }
-    const Result<CheckedMesh> mesh = repair_mesh(*read, choose_unit(*read, {}, {}).in_metres);
+    const Result<importers::CheckedMesh> mesh =
+        importers::repair_mesh(*read, importers::choose_unit(*read, {}, {}).in_metres);
     expect_sound(mesh, path);
     if (!mesh) continue;
-    FillOptions fill;
+    importers::FillOptions fill;
     fill.sphere_radius = norm(mesh->box_most - mesh->box_least) / 60;
-    (void)fill_organ(*mesh, fill);
+    (void)importers::fill_organ(*mesh, fill);
   }
   EXPECT_EQ(lowest_free_file(), first_free) << "a file of the parent stayed open";
   EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
@@ -157,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(EveryFormat, Fuzz, ::testing::Range<std::size_t>(0, sam
 });
 
 /// A mesh with several random faults, from a vertex out of place to triangles that join what is far apart.
-RawMesh damaged(RawMesh mesh, std::mt19937& random) {
+importers::RawMesh damaged(importers::RawMesh mesh, std::mt19937& random) {
   const auto below = [&](std::size_t n) { return std::size_t(random() % n); };
   const auto unit = [&] { return double(random()) / 4294967295.0 - 0.5; };
   for (std::size_t faults = 1 + below(12); faults > 0; --faults) {
@@ -193,25 +194,26 @@ RawMesh damaged(RawMesh mesh, std::mt19937& random) {
 }
 
 TEST(FuzzRepair, DamagedMeshesComeOutSoundOrAreRefused) {
-  const RawMesh whole[] = {zoo::sphere(0.05, 2), zoo::torus(0.05, 0.02, 16, 8), zoo::box({0.1, 0.1, 0.02}, 3),
-                           zoo::both(zoo::box({0.1, 0.1, 0.1}, 2), zoo::sphere(0.03, 1, {0.05, 0.05, 0.05}))};
+  const importers::RawMesh whole[] = {
+      zoo::sphere(0.05, 2), zoo::torus(0.05, 0.02, 16, 8), zoo::box({0.1, 0.1, 0.02}, 3),
+      zoo::both(zoo::box({0.1, 0.1, 0.1}, 2), zoo::sphere(0.03, 1, {0.05, 0.05, 0.05}))};
   std::mt19937 random(20240502);
   int closed = 0;
   constexpr int kRounds = 8 * CTPM_FUZZ_ROUNDS;
   for (int round = 0; round < kRounds; ++round) {
     SCOPED_TRACE("round " + std::to_string(round));
-    const RawMesh raw = damaged(whole[round % 4], random);
-    RepairOptions options;
+    const importers::RawMesh raw = damaged(whole[round % 4], random);
+    importers::RepairOptions options;
     options.all_parts = random() % 2;
     if (random() % 2) options.largest_hole = 1.0;
-    const Result<CheckedMesh> mesh = repair_mesh(raw, 1, options);
+    const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1, options);
     expect_sound(mesh, raw.path);
     if (!mesh) continue;
     ++closed;
-    FillOptions fill;
+    importers::FillOptions fill;
     fill.sphere_radius = norm(mesh->box_most - mesh->box_least) / 60;
     fill.most_triangles = random() % 2 ? 100 : 0;
-    const Result<Filling> filling = fill_organ(*mesh, fill);
+    const Result<importers::Filling> filling = importers::fill_organ(*mesh, fill);
     if (!filling) continue;
     for (const double weight : filling->organ.surface.binding.weight) ASSERT_TRUE(std::isfinite(weight));
     for (const double depth : filling->organ.depth) ASSERT_TRUE(std::isfinite(depth) && depth > 0);
@@ -221,7 +223,8 @@ TEST(FuzzRepair, DamagedMeshesComeOutSoundOrAreRefused) {
 
 TEST(FuzzSamples, AreWholeBeforeTheyAreDamaged) {
   const zoo::Folder folder;
-  for (const Sample& sample : samples()) EXPECT_TRUE(read_mesh(folder.write(sample.name, sample.bytes))) << sample.name;
+  for (const Sample& sample : samples())
+    EXPECT_TRUE(importers::read_mesh(folder.write(sample.name, sample.bytes))) << sample.name;
 }
 
 }  // namespace

@@ -25,13 +25,13 @@ TEST(Import, ShippedOrgansAreSoundAndHaveTheirVolume) {
   for (const Organ& organ : {Organ{"liver", 1255, 5598, {223, 151, 90}}, Organ{"kidney", 163, 3210, {110, 59, 45}},
                              Organ{"skin", 383, 3214, {120, 120, 30}}}) {
     SCOPED_TRACE(organ.name);
-    ImportOptions options;
+    importers::ImportOptions options;
     options.unit_in_metres = 0.001;
     options.sphere_radius = 0.0025;
-    const Result<ImportedOrgan> imported =
-        import_organ(std::string(CTPM_SOURCE_DIR "/scenes/organs/") + organ.name + ".obj", options);
+    const Result<importers::ImportedOrgan> imported =
+        importers::import_organ(std::string(CTPM_SOURCE_DIR "/scenes/organs/") + organ.name + ".obj", options);
     ASSERT_TRUE(imported) << text_of(imported.errors());
-    const ImportReport& report = imported->report;
+    const importers::ImportReport& report = imported->report;
     EXPECT_EQ(summary(report.findings), "");
     EXPECT_EQ(report.before.triangles, organ.triangles);
     EXPECT_EQ(report.after.triangles, organ.triangles);
@@ -49,11 +49,11 @@ TEST(Import, ShippedOrgansAreSoundAndHaveTheirVolume) {
 TEST(Import, GuessedUnitIsSaidAloud) {
   const zoo::Folder folder;
   const std::string path = folder.write("ball.stl", zoo::to_binary_stl(zoo::sphere(60, 3)));
-  const Result<ImportedOrgan> imported = import_organ(path);
+  const Result<importers::ImportedOrgan> imported = importers::import_organ(path);
   ASSERT_TRUE(imported) << text_of(imported.errors());
   EXPECT_EQ(summary(imported->report.findings), "unit_guessed x 1");
   EXPECT_EQ(imported->report.unit.in_metres, 0.001);
-  const std::string text = to_text(imported->report);
+  const std::string text = importers::to_text(imported->report);
   EXPECT_NE(text.find("unit: mm (guessed from the size)"), std::string::npos) << text;
   EXPECT_NE(text.find("give the unit if that is wrong"), std::string::npos) << text;
 }
@@ -61,10 +61,10 @@ TEST(Import, GuessedUnitIsSaidAloud) {
 TEST(Import, UnusualSizeIsTold) {
   const zoo::Folder folder;
   const std::string path = folder.write("ball.stl", zoo::to_binary_stl(zoo::sphere(60, 3)));
-  ImportOptions options;
+  importers::ImportOptions options;
   options.unit_in_metres = 0.01;  // 1.2 m across
   options.sphere_radius = 0.03;
-  const Result<ImportedOrgan> imported = import_organ(path, options);
+  const Result<importers::ImportedOrgan> imported = importers::import_organ(path, options);
   ASSERT_TRUE(imported) << text_of(imported.errors());
   EXPECT_EQ(summary(imported->report.findings), "unusual_size x 1");
 }
@@ -75,9 +75,9 @@ TEST(Import, UnitOfTheFileIsTaken) {
                                     {"m.glb", zoo::to_glb(zoo::sphere(0.06, 3))},
                                     {"cm.fbx", zoo::to_fbx(zoo::sphere(6, 3), 1)}}) {
     SCOPED_TRACE(name);
-    const Result<ImportedOrgan> imported = import_organ(folder.write(name, bytes));
+    const Result<importers::ImportedOrgan> imported = importers::import_organ(folder.write(name, bytes));
     ASSERT_TRUE(imported) << text_of(imported.errors());
-    EXPECT_EQ(imported->report.unit.source, UnitSource::file);
+    EXPECT_EQ(imported->report.unit.source, importers::UnitSource::file);
     EXPECT_EQ(summary(imported->report.findings), "");
     EXPECT_NEAR(imported->report.box_most.x - imported->report.box_least.x, 0.12, 0.001);
   }
@@ -85,24 +85,24 @@ TEST(Import, UnitOfTheFileIsTaken) {
 
 TEST(Import, ErrorsNameTheFile) {
   const zoo::Folder folder;
-  const RawMesh open = zoo::without(zoo::sphere(60, 3), [](Vec3 p) { return p.z > 20; });
+  const importers::RawMesh open = zoo::without(zoo::sphere(60, 3), [](Vec3 p) { return p.z > 20; });
   const std::string path = folder.write("open.obj", zoo::to_obj_text(open));
-  const Result<ImportedOrgan> imported = import_organ(path);
+  const Result<importers::ImportedOrgan> imported = importers::import_organ(path);
   ASSERT_FALSE(imported);
   EXPECT_EQ(imported.errors()[0].where, path);
   EXPECT_NE(imported.errors()[0].message.find("a hole"), std::string::npos) << text_of(imported.errors());
-  ImportOptions large;
+  importers::ImportOptions large;
   large.sphere_radius = 0.5;
   large.largest_hole = 0.2;
   // Even the largest sphere has its centre in the middle of a ball, so take one that is too fine instead.
   large.sphere_radius = 1e-6;
-  const Result<ImportedOrgan> fine = import_organ(path, large);
+  const Result<importers::ImportedOrgan> fine = importers::import_organ(path, large);
   ASSERT_FALSE(fine);
   EXPECT_EQ(fine.errors()[0].where, path);
 }
 
 TEST(Import, AllOptionsOutOfRangeAreToldAtOnce) {
-  ImportOptions options;
+  importers::ImportOptions options;
   options.unit_in_metres = -1;
   options.usual_size = {1, 0.5};
   options.largest_hole = -1;
@@ -111,7 +111,7 @@ TEST(Import, AllOptionsOutOfRangeAreToldAtOnce) {
   options.most_spheres = 0;
   options.threads = 0;
   options.time_limit_s = 0;
-  const Result<ImportedOrgan> imported = import_organ("nowhere.obj", options);
+  const Result<importers::ImportedOrgan> imported = importers::import_organ("nowhere.obj", options);
   ASSERT_FALSE(imported);
   EXPECT_EQ(imported.errors().size(), 8u);
 }
@@ -119,14 +119,14 @@ TEST(Import, AllOptionsOutOfRangeAreToldAtOnce) {
 TEST(Import, ProgressNeverFallsAndEndsWhole) {
   const zoo::Folder folder;
   const std::string path = folder.write("ball.stl", zoo::to_binary_stl(zoo::sphere(60, 4)));
-  ImportOptions options;
+  importers::ImportOptions options;
   std::vector<double> told;
   std::set<std::string> stages;
   options.progress = [&](const std::string& stage, double fraction) {
     told.push_back(fraction);
     stages.insert(stage.substr(0, stage.find(':')));
   };
-  ASSERT_TRUE(import_organ(path, options));
+  ASSERT_TRUE(importers::import_organ(path, options));
   EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
   EXPECT_EQ(told.front(), 0.0);
   EXPECT_EQ(told.back(), 1.0);

@@ -17,7 +17,7 @@ using zoo::text_of;
 constexpr double kFloat = 1e-6;  // relative; files and the reader hold single precision
 
 /// A sphere off the origin, so that a lost transform or axis would show.
-RawMesh sample() { return zoo::sphere(0.06, 3, {0.01, 0.02, 0.04}); }
+importers::RawMesh sample() { return zoo::sphere(0.06, 3, {0.01, 0.02, 0.04}); }
 
 struct Written {
   const char* name;
@@ -26,7 +26,7 @@ struct Written {
   double scale;      // of the positions that come out
 };
 
-std::vector<Written> all_formats(const RawMesh& mesh) {
+std::vector<Written> all_formats(const importers::RawMesh& mesh) {
   return {{"organ.obj", zoo::to_obj_text(mesh), 0, 1},
           {"ascii.stl", zoo::to_ascii_stl(mesh), 0, 1},
           {"binary.stl", zoo::to_binary_stl(mesh), 0, 1},
@@ -44,19 +44,19 @@ std::vector<Written> all_formats(const RawMesh& mesh) {
 
 TEST(ReadMesh, EveryFormatGivesTheSameMesh) {
   const zoo::Folder folder;
-  const RawMesh mesh = sample();
-  const double volume = signed_volume(mesh.vertex, mesh.triangle, {});
+  const importers::RawMesh mesh = sample();
+  const double volume = importers::signed_volume(mesh.vertex, mesh.triangle, {});
   for (const Written& file : all_formats(mesh)) {
     SCOPED_TRACE(file.name);
-    const Result<RawMesh> read = read_mesh(folder.write(file.name, file.bytes));
+    const Result<importers::RawMesh> read = importers::read_mesh(folder.write(file.name, file.bytes));
     ASSERT_TRUE(read) << text_of(read.errors());
     EXPECT_EQ(read->vertex.size(), mesh.vertex.size()) << "repeats of one position are joined";
     EXPECT_EQ(read->triangle.size(), mesh.triangle.size());
     EXPECT_NEAR(read->unit_in_metres, file.said_unit, 1e-7);
     const double scale = file.scale;
-    EXPECT_NEAR(signed_volume(read->vertex, read->triangle, {}), volume * std::pow(scale, 3), 1e-5 * volume);
-    const BoundingBox box = bounding_box({read->vertex, read->triangle}),
-                      wanted = bounding_box({mesh.vertex, mesh.triangle});
+    EXPECT_NEAR(importers::signed_volume(read->vertex, read->triangle, {}), volume * std::pow(scale, 3), 1e-5 * volume);
+    const importers::BoundingBox box = importers::bounding_box({read->vertex, read->triangle}),
+                                 wanted = importers::bounding_box({mesh.vertex, mesh.triangle});
     EXPECT_LT(norm(box.least - scale * wanted.least), kFloat);
     EXPECT_LT(norm(box.most - scale * wanted.most), kFloat);
   }
@@ -64,28 +64,28 @@ TEST(ReadMesh, EveryFormatGivesTheSameMesh) {
 
 TEST(ReadMesh, JoinsPartsOrTakesOneByName) {
   const zoo::Folder folder;
-  const RawMesh liver = zoo::sphere(1, 1), stone = zoo::sphere(0.1, 0, {3, 0, 0});
+  const importers::RawMesh liver = zoo::sphere(1, 1), stone = zoo::sphere(0.1, 0, {3, 0, 0});
   std::string text = zoo::to_obj_text(liver, "liver") + "o stone\n";
   for (const Vec3& p : stone.vertex)
     text += "v " + std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + "\n";
-  for (const Triangle& t : stone.triangle) {
+  for (const importers::Triangle& t : stone.triangle) {
     text += "f";
     for (const std::int32_t v : t) text += " " + std::to_string(v + 1 + std::int32_t(liver.vertex.size()));
     text += "\n";
   }
   const std::string path = folder.write("two.obj", text);
-  const Result<RawMesh> all = read_mesh(path);
+  const Result<importers::RawMesh> all = importers::read_mesh(path);
   ASSERT_TRUE(all);
   EXPECT_EQ(all->parts, (std::vector<std::string>{"liver", "stone"}));
   EXPECT_EQ(all->triangle.size(), liver.triangle.size() + stone.triangle.size());
-  ReadOptions options;
+  importers::ReadOptions options;
   options.part = "stone";
-  const Result<RawMesh> one = read_mesh(path, options);
+  const Result<importers::RawMesh> one = importers::read_mesh(path, options);
   ASSERT_TRUE(one);
   EXPECT_EQ(one->triangle.size(), stone.triangle.size());
-  EXPECT_GT(bounding_box({one->vertex, one->triangle}).least.x, 2.8);
+  EXPECT_GT(importers::bounding_box({one->vertex, one->triangle}).least.x, 2.8);
   options.part = "spleen";
-  const Result<RawMesh> none = read_mesh(path, options);
+  const Result<importers::RawMesh> none = importers::read_mesh(path, options);
   ASSERT_FALSE(none);
   EXPECT_EQ(none.errors()[0].where, path);
   EXPECT_EQ(none.errors()[0].message, "no mesh named \"spleen\"");
@@ -97,10 +97,10 @@ TEST(ReadMesh, CutsPolygonsIntoTriangles) {
   const std::string cube =
       "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
       "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
-  const Result<RawMesh> read = read_mesh(folder.write("cube.obj", cube));
+  const Result<importers::RawMesh> read = importers::read_mesh(folder.write("cube.obj", cube));
   ASSERT_TRUE(read);
   EXPECT_EQ(read->triangle.size(), 12u);
-  EXPECT_NEAR(signed_volume(read->vertex, read->triangle, {}), 1, kFloat);
+  EXPECT_NEAR(importers::signed_volume(read->vertex, read->triangle, {}), 1, kFloat);
 }
 
 /// A file that must be refused, and words that the message must hold.
@@ -125,7 +125,7 @@ TEST(ReadMesh, RefusesWhatIsNoMeshAndSaysWhy) {
                                          {"nan.stl", nan, "not finite"}}) {
     SCOPED_TRACE(bad.name);
     const std::string path = folder.write(bad.name, bad.bytes);
-    const Result<RawMesh> read = read_mesh(path);
+    const Result<importers::RawMesh> read = importers::read_mesh(path);
     ASSERT_FALSE(read);
     EXPECT_EQ(read.errors()[0].where, path);
     EXPECT_NE(read.errors()[0].message.find(bad.message), std::string::npos) << text_of(read.errors());
@@ -136,7 +136,7 @@ TEST(ReadMesh, RefusesWhatIsNoMeshAndSaysWhy) {
 TEST(ReadMesh, RefusesNanTextVertices) {
   const zoo::Folder folder;
   const std::string path = folder.write("nan.obj", "v 0 0 0\nv 1 0 0\nv nan 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n");
-  const Result<RawMesh> read = read_mesh(path);
+  const Result<importers::RawMesh> read = importers::read_mesh(path);
   ASSERT_FALSE(read) << "a vertex that is not a number became " << read->vertex[2].x;
   EXPECT_NE(read.errors()[0].message.find("not finite"), std::string::npos) << text_of(read.errors());
 }
@@ -144,7 +144,7 @@ TEST(ReadMesh, RefusesNanTextVertices) {
 TEST(ReadMesh, RefusesWhatIsNoFile) {
   const zoo::Folder folder;
   const auto message = [](const std::string& path) {
-    const Result<RawMesh> read = read_mesh(path);
+    const Result<importers::RawMesh> read = importers::read_mesh(path);
     return read ? std::string("read") : read.errors()[0].message;
   };
   EXPECT_EQ(message(folder.path() + "/none.obj"), "no such file");
@@ -157,63 +157,63 @@ TEST(ReadMesh, RefusesWhatIsNoFile) {
 TEST(ReadMesh, TimeAndMemoryAreLimited) {
   const zoo::Folder folder;
   const std::string path = folder.write("large.stl", zoo::to_binary_stl(zoo::sphere(1, 7)));
-  ReadOptions options;
+  importers::ReadOptions options;
   options.time_limit_s = 0.01;
-  const Result<RawMesh> late = read_mesh(path, options);
+  const Result<importers::RawMesh> late = importers::read_mesh(path, options);
   ASSERT_FALSE(late);
   EXPECT_EQ(late.errors()[0].message, "the reader took longer than 0.01 s");
   EXPECT_EQ(late.errors()[0].where, path);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   options.time_limit_s = 60;
   options.memory_limit_mib = 30;
-  const Result<RawMesh> hungry = read_mesh(path, options);
+  const Result<importers::RawMesh> hungry = importers::read_mesh(path, options);
   ASSERT_FALSE(hungry);
   EXPECT_EQ(hungry.errors()[0].message, "the reader needs more than 30 MiB of memory");
 #endif
 }
 
 TEST(Unit, GivenBeatsFileBeatsGuess) {
-  RawMesh mesh = zoo::box({100, 100, 100});
-  const UsualSize usual{0.05, 0.5};
-  UnitChoice choice = choose_unit(mesh, {}, usual);
-  EXPECT_EQ(choice.source, UnitSource::guessed);
+  importers::RawMesh mesh = zoo::box({100, 100, 100});
+  const importers::UsualSize usual{0.05, 0.5};
+  importers::UnitChoice choice = importers::choose_unit(mesh, {}, usual);
+  EXPECT_EQ(choice.source, importers::UnitSource::guessed);
   EXPECT_EQ(choice.in_metres, 0.001);
   EXPECT_TRUE(choice.is_usual_size);
   mesh.unit_in_metres = 0.01;
-  choice = choose_unit(mesh, {}, usual);
-  EXPECT_EQ(choice.source, UnitSource::file);
+  choice = importers::choose_unit(mesh, {}, usual);
+  EXPECT_EQ(choice.source, importers::UnitSource::file);
   EXPECT_EQ(choice.in_metres, 0.01);
   EXPECT_FALSE(choice.is_usual_size);
-  choice = choose_unit(mesh, 1.0, usual);
-  EXPECT_EQ(choice.source, UnitSource::given);
+  choice = importers::choose_unit(mesh, 1.0, usual);
+  EXPECT_EQ(choice.source, importers::UnitSource::given);
   EXPECT_EQ(choice.in_metres, 1.0);
 }
 
 TEST(Unit, EachIsGuessedFromAnOrganOfUsualSize) {
-  const UsualSize liver{0.15, 0.35};
+  const importers::UsualSize liver{0.15, 0.35};
   for (const double unit : {1.0, 0.01, 0.001}) {
     const double side = 0.25 / std::sqrt(3.0) / unit;  // 25 cm from corner to corner
-    EXPECT_EQ(choose_unit(zoo::box({side, side, side}), {}, liver).in_metres, unit);
+    EXPECT_EQ(importers::choose_unit(zoo::box({side, side, side}), {}, liver).in_metres, unit);
   }
   // Inches only where no metric unit gives a usual size.
   const double side = 10.0 / std::sqrt(3.0);
-  EXPECT_EQ(choose_unit(zoo::box({side, side, side}), {}, {0.2, 0.3}).in_metres, 0.0254);
-  EXPECT_EQ(unit_name(0.0254), "inch");
-  EXPECT_EQ(unit_name(0.001), "mm");
+  EXPECT_EQ(importers::choose_unit(zoo::box({side, side, side}), {}, {0.2, 0.3}).in_metres, 0.0254);
+  EXPECT_EQ(importers::unit_name(0.0254), "inch");
+  EXPECT_EQ(importers::unit_name(0.001), "mm");
 }
 
 TEST(Unit, LiverOfASegmentationIsInCentimetresAndItsFoldIsMended) {
   const std::string path = CTPM_SOURCE_DIR "/../shared/meshes/liver-smooth.obj";
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) GTEST_SKIP() << "no such mesh here";
-  const Result<RawMesh> read = read_mesh(path);
+  const Result<importers::RawMesh> read = importers::read_mesh(path);
   ASSERT_TRUE(read) << text_of(read.errors());
-  const UnitChoice choice = choose_unit(*read, {}, {0.08, 0.40});
+  const importers::UnitChoice choice = importers::choose_unit(*read, {}, {0.08, 0.40});
   EXPECT_EQ(choice.in_metres, 0.01);
   EXPECT_TRUE(choice.is_usual_size);
-  const Result<CheckedMesh> mesh = repair_mesh(*read, choice.in_metres);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(*read, choice.in_metres);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
-  const Finding* crossing = zoo::find(mesh->findings, "self_intersection");
+  const importers::Finding* crossing = zoo::find(mesh->findings, "self_intersection");
   ASSERT_NE(crossing, nullptr) << zoo::summary(mesh->findings);
   EXPECT_EQ(crossing->count, 8);
   EXPECT_EQ(crossing->remains, "");

@@ -16,41 +16,42 @@ using zoo::summary;
 using zoo::text_of;
 
 TEST(Crossing, SoundMeshesHaveNone) {
-  for (const RawMesh& raw : {zoo::sphere(0.05, 3), zoo::torus(0.05, 0.02, 48, 24), zoo::box({0.1, 0.1, 0.02}, 4)})
-    EXPECT_TRUE(find_crossing({raw.vertex, raw.triangle}).empty());
+  for (const importers::RawMesh& raw :
+       {zoo::sphere(0.05, 3), zoo::torus(0.05, 0.02, 48, 24), zoo::box({0.1, 0.1, 0.02}, 4)})
+    EXPECT_TRUE(importers::find_crossing({raw.vertex, raw.triangle}).empty());
 }
 
 TEST(Crossing, SpikeThroughTheOppositeSideIsCutOutAndFilledAgain) {
   // One vertex pulled through the ball and out at the other side, as a slip in a mesh editor does.
-  RawMesh raw = zoo::sphere(0.05, 4);
+  importers::RawMesh raw = zoo::sphere(0.05, 4);
   raw.vertex[0] = -1.2 * raw.vertex[0] + Vec3{0.001, 0.002, 0.001};
-  const std::vector<std::int32_t> crossing = find_crossing({raw.vertex, raw.triangle});
+  const std::vector<std::int32_t> crossing = importers::find_crossing({raw.vertex, raw.triangle});
   ASSERT_FALSE(crossing.empty());
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   EXPECT_EQ(summary(mesh->findings), "self_intersection x " + std::to_string(crossing.size()));
-  const Finding& finding = *find(mesh->findings, "self_intersection");
+  const importers::Finding& finding = *find(mesh->findings, "self_intersection");
   EXPECT_EQ(finding.remains, "") << finding.done;
-  EXPECT_TRUE(find_crossing({mesh->vertex, mesh->triangle}).empty());
+  EXPECT_TRUE(importers::find_crossing({mesh->vertex, mesh->triangle}).empty());
   EXPECT_EQ(mesh->after.open_edges, 0);
   EXPECT_EQ(mesh->after.parts, 1);
   std::vector<char> is_used(mesh->vertex.size(), 0);
-  for (const Triangle& t : mesh->triangle)
+  for (const importers::Triangle& t : mesh->triangle)
     for (const std::int32_t v : t) is_used[std::size_t(v)] = 1;
   EXPECT_EQ(std::count(is_used.begin(), is_used.end(), 0), 0) << "no loose vertices";
-  const double ball = signed_volume(zoo::sphere(0.05, 4).vertex, raw.triangle, {});
+  const double ball = importers::signed_volume(zoo::sphere(0.05, 4).vertex, raw.triangle, {});
   EXPECT_NEAR(mesh->volume, ball, 0.01 * ball);
 }
 
 TEST(Crossing, WideCrossingIsLeftAndTold) {
   // A ring whose tube is pushed through its opposite side.
-  const RawMesh raw = zoo::moved(zoo::torus(0.05, 0.02, 48, 24), [](Vec3 p) {
+  const importers::RawMesh raw = zoo::moved(zoo::torus(0.05, 0.02, 48, 24), [](Vec3 p) {
     return p.x > 0 ? Vec3{p.x - 0.9 * p.x * p.x / 0.05, p.y, p.z} : p;
   });
-  ASSERT_FALSE(find_crossing({raw.vertex, raw.triangle}).empty());
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  ASSERT_FALSE(importers::find_crossing({raw.vertex, raw.triangle}).empty());
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
-  const Finding* finding = find(mesh->findings, "self_intersection");
+  const importers::Finding* finding = find(mesh->findings, "self_intersection");
   ASSERT_NE(finding, nullptr);
   EXPECT_EQ(finding->done, "none");
   EXPECT_NE(finding->remains, "");
@@ -58,15 +59,15 @@ TEST(Crossing, WideCrossingIsLeftAndTold) {
 }
 
 TEST(Crossing, OverlappingPartsAreFilledOnce) {
-  const RawMesh raw = zoo::both(zoo::sphere(0.05, 4), zoo::sphere(0.03, 4, {0.05, 0, 0}));
-  RepairOptions repair;
+  const importers::RawMesh raw = zoo::both(zoo::sphere(0.05, 4), zoo::sphere(0.03, 4, {0.05, 0, 0}));
+  importers::RepairOptions repair;
   repair.all_parts = true;
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1, repair);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1, repair);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   EXPECT_NE(find(mesh->findings, "self_intersection"), nullptr) << summary(mesh->findings);
-  FillOptions fill;
+  importers::FillOptions fill;
   fill.sphere_radius = 0.001;
-  const Result<Filling> filling = fill_organ(*mesh, fill);
+  const Result<importers::Filling> filling = importers::fill_organ(*mesh, fill);
   ASSERT_TRUE(filling) << text_of(filling.errors());
   std::int64_t expected = 0;
   const double s = filling->organ.spacing;
@@ -81,7 +82,7 @@ TEST(Crossing, OverlappingPartsAreFilledOnce) {
 }
 
 TEST(Crossing, MoebiusStripIsRefused) {
-  RawMesh raw;
+  importers::RawMesh raw;
   raw.path = "strip";
   constexpr int kAround = 40;
   for (int i = 0; i < kAround; ++i)
@@ -95,7 +96,7 @@ TEST(Crossing, MoebiusStripIsRefused) {
     raw.triangle.push_back({a, b, d});
     raw.triangle.push_back({a, d, c});
   }
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_FALSE(mesh);
   EXPECT_NE(mesh.errors()[0].message.find("hole"), std::string::npos) << text_of(mesh.errors());
 }

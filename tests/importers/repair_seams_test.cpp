@@ -18,14 +18,14 @@ using zoo::summary;
 using zoo::text_of;
 
 /// A cube of 100 mm whose top is cut `top` times and whose other sides `sides` times, not joined.
-RawMesh cube_with_other_top(int sides, int top) {
+importers::RawMesh cube_with_other_top(int sides, int top) {
   const auto is_top = [](Vec3 p) { return p.z > 0.0499; };
   return zoo::both(zoo::without(zoo::box({0.1, 0.1, 0.1}, sides), is_top),
                    zoo::without(zoo::box({0.1, 0.1, 0.1}, top), [&](Vec3 p) { return !is_top(p); }));
 }
 
 /// The index of the vertex at `p`, which is added if there is none.
-std::int32_t vertex_at(RawMesh& mesh, Vec3 p) {
+std::int32_t vertex_at(importers::RawMesh& mesh, Vec3 p) {
   for (std::size_t i = 0; i < mesh.vertex.size(); ++i)
     if (norm(mesh.vertex[i] - p) < 1e-9) return std::int32_t(i);
   mesh.vertex.push_back(p);
@@ -33,8 +33,8 @@ std::int32_t vertex_at(RawMesh& mesh, Vec3 p) {
 }
 
 /// The cube, `cuts` squares along each edge, with a wall across its middle.
-RawMesh cube_with_wall(int cuts) {
-  RawMesh mesh = zoo::box({0.1, 0.1, 0.1}, cuts);
+importers::RawMesh cube_with_wall(int cuts) {
+  importers::RawMesh mesh = zoo::box({0.1, 0.1, 0.1}, cuts);
   const double edge = 0.1 / cuts;
   for (int j = 0; j < cuts; ++j)
     for (int k = 0; k < cuts; ++k) {
@@ -48,9 +48,9 @@ RawMesh cube_with_wall(int cuts) {
 }
 
 /// Two balls joined by three long, thin sides.
-RawMesh balls_on_a_needle() {
-  const RawMesh one = zoo::sphere(0.03, 3, {-0.06, 0, 0});
-  RawMesh mesh = zoo::both(one, zoo::moved(one, [](Vec3 p) { return Vec3{-p.x, p.y, p.z}; }));
+importers::RawMesh balls_on_a_needle() {
+  const importers::RawMesh one = zoo::sphere(0.03, 3, {-0.06, 0, 0});
+  importers::RawMesh mesh = zoo::both(one, zoo::moved(one, [](Vec3 p) { return Vec3{-p.x, p.y, p.z}; }));
   // The second ball is the first one's mirror image: its triangles must be turned.
   for (std::size_t t = one.triangle.size(); t < mesh.triangle.size(); ++t)
     std::swap(mesh.triangle[t][1], mesh.triangle[t][2]);
@@ -61,7 +61,7 @@ RawMesh balls_on_a_needle() {
     for (const std::int32_t v : one.triangle[t]) x += one.vertex[std::size_t(v)].x;
     if (x > most || t == 0) most = x, nearest = t;
   }
-  const Triangle gap = mesh.triangle[nearest];
+  const importers::Triangle gap = mesh.triangle[nearest];
   const auto twin = [&](std::int32_t v) { return v + std::int32_t(one.vertex.size()); };
   mesh.triangle.erase(mesh.triangle.begin() + std::ptrdiff_t(one.triangle.size() + nearest));
   mesh.triangle.erase(mesh.triangle.begin() + std::ptrdiff_t(nearest));
@@ -72,8 +72,8 @@ RawMesh balls_on_a_needle() {
   return mesh;
 }
 
-CheckedMesh repaired(const RawMesh& raw) {
-  Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+importers::CheckedMesh repaired(const importers::RawMesh& raw) {
+  Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   EXPECT_TRUE(mesh) << text_of(mesh.errors());
   if (!mesh) return {};
   EXPECT_EQ(mesh->after.open_edges, 0);
@@ -85,7 +85,7 @@ TEST(TJunctions, CracksBetweenFineAndCoarseSidesAreClosed) {
   for (const auto& [sides, top, report] : {std::tuple{1, 4, "unwelded x 4, t_junction x 12"},
                                            {4, 1, "unwelded x 4, t_junction x 12"},
                                            {3, 5, "unwelded x 4, t_junction x 24"}}) {
-    const CheckedMesh mesh = repaired(cube_with_other_top(sides, top));
+    const importers::CheckedMesh mesh = repaired(cube_with_other_top(sides, top));
     EXPECT_EQ(summary(mesh.findings), report);
     EXPECT_NEAR(mesh.volume, 1e-3, 1e-12);
     EXPECT_EQ(find(mesh.findings, "t_junction")->remains, "");
@@ -95,32 +95,32 @@ TEST(TJunctions, CracksBetweenFineAndCoarseSidesAreClosed) {
 
 TEST(TJunctions, AVertexALittleBesideTheEdgeIsOnItAndOneFurtherOffIsNot) {
   for (const double off : {1e-6, -1e-6, 1e-4, -1e-4}) {
-    RawMesh raw = cube_with_other_top(1, 2);
+    importers::RawMesh raw = cube_with_other_top(1, 2);
     for (Vec3& p : raw.vertex)
       if (norm(p - Vec3{0.05, 0, 0.05}) < 1e-9) p.x += off;
-    const CheckedMesh mesh = repaired(raw);
+    const importers::CheckedMesh mesh = repaired(raw);
     EXPECT_EQ(find(mesh.findings, "t_junction")->count, 4) << off;
     EXPECT_NEAR(mesh.volume, 1e-3, 1e-6) << off;
   }
-  RawMesh raw = cube_with_other_top(1, 2);
+  importers::RawMesh raw = cube_with_other_top(1, 2);
   for (Vec3& p : raw.vertex)
     if (norm(p - Vec3{0.05, 0, 0.05}) < 1e-9) p.x -= 2e-3;
-  Soup soup{raw.vertex, raw.triangle};
-  weld(soup, 0);
-  EXPECT_EQ(split_t_junctions(soup, 1e-4).size(), 3u);
+  importers::Soup soup{raw.vertex, raw.triangle};
+  importers::weld(soup, 0);
+  EXPECT_EQ(importers::split_t_junctions(soup, 1e-4).size(), 3u);
 }
 
 TEST(TJunctions, ASoundMeshAndAnHonestHoleHaveNone) {
-  Soup sound{zoo::sphere(0.05, 3).vertex, zoo::sphere(0.05, 3).triangle};
+  importers::Soup sound{zoo::sphere(0.05, 3).vertex, zoo::sphere(0.05, 3).triangle};
   const std::size_t count = sound.triangle.size();
-  EXPECT_TRUE(split_t_junctions(sound, 1e-4).empty());
+  EXPECT_TRUE(importers::split_t_junctions(sound, 1e-4).empty());
   sound.triangle.resize(count - 20);
-  EXPECT_TRUE(split_t_junctions(sound, 1e-4).empty());
+  EXPECT_TRUE(importers::split_t_junctions(sound, 1e-4).empty());
   EXPECT_EQ(sound.triangle.size(), count - 20);
 }
 
 TEST(InnerWalls, AWallAcrossAnOrganIsDroppedAndTheOrganStaysWhole) {
-  const CheckedMesh mesh = repaired(cube_with_wall(4));
+  const importers::CheckedMesh mesh = repaired(cube_with_wall(4));
   EXPECT_EQ(summary(mesh.findings), "inner_wall x 32");
   EXPECT_EQ(mesh.triangle.size(), 192u);
   EXPECT_NEAR(mesh.volume, 1e-3, 1e-12);
@@ -128,17 +128,17 @@ TEST(InnerWalls, AWallAcrossAnOrganIsDroppedAndTheOrganStaysWhole) {
 }
 
 TEST(InnerWalls, RegionsThatShareTheirBorderAreOneOrgan) {
-  const RawMesh raw =
+  const importers::RawMesh raw =
       zoo::both(zoo::box({0.1, 0.1, 0.1}, 4, {-0.05, 0, 0}), zoo::box({0.1, 0.1, 0.1}, 4, {0.05, 0, 0}));
-  const CheckedMesh mesh = repaired(raw);
+  const importers::CheckedMesh mesh = repaired(raw);
   EXPECT_EQ(summary(mesh.findings), "unwelded x 25, duplicate x 32, inner_wall x 32");
   EXPECT_NEAR(mesh.volume, 2e-3, 1e-12);
 }
 
 TEST(InnerWalls, AreFoundHoweverTheTrianglesFaceAndBesideAHole) {
-  RawMesh raw = zoo::flipped(cube_with_wall(12), 3);
+  importers::RawMesh raw = zoo::flipped(cube_with_wall(12), 3);
   raw.triangle.erase(raw.triangle.begin() + 40);
-  const CheckedMesh mesh = repaired(zoo::unwelded(raw));
+  const importers::CheckedMesh mesh = repaired(zoo::unwelded(raw));
   for (const char* code : {"unwelded", "inner_wall", "flipped", "hole"})
     EXPECT_NE(find(mesh.findings, code), nullptr) << code << " is missing in: " << summary(mesh.findings);
   EXPECT_EQ(find(mesh.findings, "inner_wall")->count, 288);
@@ -146,46 +146,48 @@ TEST(InnerWalls, AreFoundHoweverTheTrianglesFaceAndBesideAHole) {
 }
 
 TEST(InnerWalls, SoundMeshesCavitiesAndFinsHaveNone) {
-  const auto walls_of = [](const RawMesh& raw) { return find_inner_walls({raw.vertex, raw.triangle}).size(); };
+  const auto walls_of = [](const importers::RawMesh& raw) {
+    return importers::find_inner_walls({raw.vertex, raw.triangle}).size();
+  };
   EXPECT_EQ(walls_of(zoo::torus(0.05, 0.02, 48, 24)), 0u);
   EXPECT_EQ(walls_of(zoo::both(zoo::sphere(0.05, 3), zoo::sphere(0.02, 2))), 0u);
-  RawMesh fin = zoo::sphere(0.05, 3);
-  const Triangle t = fin.triangle[0];
+  importers::RawMesh fin = zoo::sphere(0.05, 3);
+  const importers::Triangle t = fin.triangle[0];
   fin.vertex.push_back(1.3 * fin.vertex[std::size_t(t[0])]);
   fin.triangle.push_back({t[0], t[1], std::int32_t(fin.vertex.size()) - 1});
   EXPECT_EQ(walls_of(fin), 0u);
 }
 
 TEST(InnerWalls, AnEdgeOfVeryManyTrianglesCostsNoTime) {
-  RawMesh book;
+  importers::RawMesh book;
   book.vertex = {{0, 0, 0}, {0, 0, 1}};
   for (int i = 0; i < 20000; ++i) {
     book.vertex.push_back({std::cos(i * 1e-4), std::sin(i * 1e-4), 0.5});
     book.triangle.push_back({0, 1, std::int32_t(book.vertex.size()) - 1});
   }
-  EXPECT_TRUE(find_inner_walls({book.vertex, book.triangle}).empty());
-  Soup soup{book.vertex, book.triangle};
-  EXPECT_LT(split_t_junctions(soup, 1e-3).size(), 100000u);
+  EXPECT_TRUE(importers::find_inner_walls({book.vertex, book.triangle}).empty());
+  importers::Soup soup{book.vertex, book.triangle};
+  EXPECT_LT(importers::split_t_junctions(soup, 1e-3).size(), 100000u);
 }
 
 TEST(ThinBridges, OfLongTrianglesCarryNoSphereAndTheSmallerEndIsToldAndDropped) {
-  const CheckedMesh mesh = repaired(balls_on_a_needle());
+  const importers::CheckedMesh mesh = repaired(balls_on_a_needle());
   EXPECT_EQ(summary(mesh.findings), "");
-  FillOptions options;
+  importers::FillOptions options;
   options.sphere_radius = 0.01 / 3;
-  const Result<Filling> filling = fill_organ(mesh, options);
+  const Result<importers::Filling> filling = importers::fill_organ(mesh, options);
   ASSERT_TRUE(filling) << text_of(filling.errors());
-  const Finding* island = find(filling->report.findings, "island");
+  const importers::Finding* island = find(filling->report.findings, "island");
   ASSERT_NE(island, nullptr) << summary(filling->report.findings);
   EXPECT_EQ(island->count, 1);
   options.keep_islands = true;
-  const Result<Filling> both = fill_organ(mesh, options);
+  const Result<importers::Filling> both = importers::fill_organ(mesh, options);
   ASSERT_TRUE(both);
   EXPECT_EQ(both->report.spheres, 2 * filling->report.spheres);
 }
 
 TEST(Seams, CracksWallsHolesFlipsAndCrumbsAtOnceAreAllToldAndMended) {
-  RawMesh raw = cube_with_wall(12);
+  importers::RawMesh raw = cube_with_wall(12);
   // The top is another, finer one, so that its rim has vertices that the sides do not know.
   const auto is_top = [](Vec3 p) { return p.z > 0.0499; };
   raw = zoo::both(zoo::without(raw, is_top),
@@ -193,7 +195,7 @@ TEST(Seams, CracksWallsHolesFlipsAndCrumbsAtOnceAreAllToldAndMended) {
   raw = zoo::unwelded(zoo::flipped(raw, 4));
   raw = zoo::both(raw, zoo::sphere(0.005, 2, {0.1, 0, 0}));
   raw.triangle.erase(raw.triangle.begin() + 7);
-  const CheckedMesh mesh = repaired(raw);
+  const importers::CheckedMesh mesh = repaired(raw);
   for (const char* code : {"unwelded", "t_junction", "inner_wall", "flipped", "hole", "other_part"})
     EXPECT_NE(find(mesh.findings, code), nullptr) << code << " is missing in: " << summary(mesh.findings);
   EXPECT_NEAR(mesh.volume, 1e-3, 1e-9);

@@ -14,7 +14,7 @@ using zoo::find;
 using zoo::summary;
 using zoo::text_of;
 
-RawMesh ball() { return zoo::sphere(0.05, 4); }
+importers::RawMesh ball() { return zoo::sphere(0.05, 4); }
 
 /// True for the triangles around the ball's first vertex, which lies on the pole `pole()`.
 Vec3 pole() {
@@ -23,22 +23,22 @@ Vec3 pole() {
 }
 bool is_at_pole(Vec3 p) { return norm(p - pole()) < 0.003; }
 
-double volume_of(const RawMesh& mesh) { return signed_volume(mesh.vertex, mesh.triangle, {}); }
+double volume_of(const importers::RawMesh& mesh) { return importers::signed_volume(mesh.vertex, mesh.triangle, {}); }
 
 /// What every mesh that passes has.
-void expect_closed(const CheckedMesh& mesh) {
+void expect_closed(const importers::CheckedMesh& mesh) {
   EXPECT_EQ(mesh.after.open_edges, 0);
   EXPECT_EQ(mesh.after.non_manifold_edges, 0);
   EXPECT_GT(mesh.volume, 0);
-  EXPECT_NEAR(signed_volume(mesh.vertex, mesh.triangle, {}), mesh.volume, 1e-9 * mesh.volume);
+  EXPECT_NEAR(importers::signed_volume(mesh.vertex, mesh.triangle, {}), mesh.volume, 1e-9 * mesh.volume);
   EXPECT_EQ(mesh.after.vertices, std::int64_t(mesh.vertex.size()));
   EXPECT_EQ(mesh.after.triangles, std::int64_t(mesh.triangle.size()));
 }
 
 TEST(Repair, SoundMeshStaysAsItIs) {
-  for (const RawMesh& raw :
+  for (const importers::RawMesh& raw :
        {ball(), zoo::torus(0.05, 0.02, 48, 24), zoo::box({0.1, 0.1, 0.1}), zoo::box({0.1, 0.1, 0.02}, 4)}) {
-    const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+    const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
     ASSERT_TRUE(mesh) << text_of(mesh.errors());
     expect_closed(*mesh);
     EXPECT_EQ(summary(mesh->findings), "");
@@ -50,7 +50,7 @@ TEST(Repair, SoundMeshStaysAsItIs) {
 }
 
 TEST(Repair, UnitScalesOnly) {
-  const Result<CheckedMesh> mesh = repair_mesh(zoo::box({100, 200, 300}), 0.001);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(zoo::box({100, 200, 300}), 0.001);
   ASSERT_TRUE(mesh);
   EXPECT_NEAR(mesh->volume, 0.1 * 0.2 * 0.3, 1e-12);
   EXPECT_NEAR(mesh->area, 2 * (0.02 + 0.03 + 0.06), 1e-12);
@@ -58,8 +58,8 @@ TEST(Repair, UnitScalesOnly) {
 }
 
 TEST(Repair, UnweldedSoupIsWelded) {
-  const RawMesh raw = zoo::unwelded(ball());
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  const importers::RawMesh raw = zoo::unwelded(ball());
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);
   EXPECT_EQ(mesh->vertex.size(), ball().vertex.size());
@@ -70,7 +70,7 @@ TEST(Repair, UnweldedSoupIsWelded) {
 
 TEST(Repair, NearlyEqualVerticesAreWelded) {
   // Noise as single precision leaves it, well below the welding distance.
-  RawMesh raw = zoo::unwelded(ball());
+  importers::RawMesh raw = zoo::unwelded(ball());
   std::uint32_t seed = 1;
   for (Vec3& p : raw.vertex) {
     const auto noise = [&] {
@@ -78,15 +78,15 @@ TEST(Repair, NearlyEqualVerticesAreWelded) {
     };
     p += {noise(), noise(), noise()};
   }
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);
   EXPECT_EQ(mesh->vertex.size(), ball().vertex.size());
 }
 
 TEST(Repair, FlippedFacesAreTurned) {
-  const RawMesh raw = zoo::flipped(ball(), 7);
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  const importers::RawMesh raw = zoo::flipped(ball(), 7);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);
   EXPECT_NEAR(mesh->volume, volume_of(ball()), 1e-12);
@@ -94,37 +94,37 @@ TEST(Repair, FlippedFacesAreTurned) {
 }
 
 TEST(Repair, InsideOutIsTurned) {
-  const Result<CheckedMesh> mesh = repair_mesh(zoo::flipped(ball(), 1), 1);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(zoo::flipped(ball(), 1), 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);
   EXPECT_EQ(summary(mesh->findings), "inside_out x " + std::to_string(ball().triangle.size()));
 }
 
 TEST(Repair, SmallHoleIsFilled) {
-  const RawMesh raw = zoo::without(ball(), is_at_pole);
+  const importers::RawMesh raw = zoo::without(ball(), is_at_pole);
   ASSERT_EQ(raw.triangle.size(), ball().triangle.size() - 5);
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);
   EXPECT_EQ(summary(mesh->findings), "hole x 1");
   EXPECT_GT(mesh->before.open_edges, 0);
-  const Finding& hole = *find(mesh->findings, "hole");
+  const importers::Finding& hole = *find(mesh->findings, "hole");
   ASSERT_TRUE(hole.place);
   EXPECT_LT(norm(*hole.place - pole()), 0.002) << "the place of the hole is told";
   EXPECT_NEAR(mesh->volume, volume_of(ball()), 1e-3 * mesh->volume);
 }
 
 TEST(Repair, TwoHolesAreFilled) {
-  const RawMesh raw = zoo::without(ball(), [](Vec3 p) { return is_at_pole(p) || is_at_pole(-p); });
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  const importers::RawMesh raw = zoo::without(ball(), [](Vec3 p) { return is_at_pole(p) || is_at_pole(-p); });
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);
   EXPECT_EQ(summary(mesh->findings), "hole x 2");
 }
 
 TEST(Repair, HugeHoleIsRefusedWithSizeAndPlace) {
-  const RawMesh raw = zoo::without(ball(), [](Vec3 p) { return p.z > 0.03; });
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  const importers::RawMesh raw = zoo::without(ball(), [](Vec3 p) { return p.z > 0.03; });
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_FALSE(mesh);
   ASSERT_EQ(mesh.errors().size(), 1u);
   const Error& error = mesh.errors()[0];
@@ -143,21 +143,21 @@ TEST(Repair, HugeHoleIsRefusedWithSizeAndPlace) {
   EXPECT_NEAR(y_shown, 0, 2);
   EXPECT_NE(error.message.find("may be filled"), std::string::npos);
   EXPECT_NE(error.hint, "");
-  RepairOptions options;
+  importers::RepairOptions options;
   options.largest_hole = 0.1;
-  EXPECT_TRUE(repair_mesh(raw, 1, options)) << "the author may allow it";
+  EXPECT_TRUE(importers::repair_mesh(raw, 1, options)) << "the author may allow it";
   options.largest_hole = 0;
-  EXPECT_FALSE(repair_mesh(zoo::without(ball(), is_at_pole), 1, options)) << "or forbid any";
+  EXPECT_FALSE(importers::repair_mesh(zoo::without(ball(), is_at_pole), 1, options)) << "or forbid any";
 }
 
 TEST(Repair, DuplicateFacesAreDropped) {
-  RawMesh raw = ball();
+  importers::RawMesh raw = ball();
   for (int n = 0; n < 10; ++n) raw.triangle.push_back(raw.triangle[std::size_t(7 * n)]);
   for (int n = 0; n < 5; ++n) {
-    const Triangle t = raw.triangle[std::size_t(5 * n + 1)];
+    const importers::Triangle t = raw.triangle[std::size_t(5 * n + 1)];
     raw.triangle.push_back({t[1], t[0], t[2]});  // turned round: still the same face
   }
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);
   EXPECT_EQ(summary(mesh->findings), "duplicate x 15");
@@ -165,10 +165,10 @@ TEST(Repair, DuplicateFacesAreDropped) {
 }
 
 TEST(Repair, DegenerateFacesAreDropped) {
-  RawMesh raw = ball();
+  importers::RawMesh raw = ball();
   raw.triangle.push_back({3, 3, 4});
   raw.triangle.push_back({5, 5, 5});
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);
   EXPECT_EQ(summary(mesh->findings), "degenerate x 2");
@@ -177,22 +177,22 @@ TEST(Repair, DegenerateFacesAreDropped) {
 TEST(Repair, NeedlesOnAnEdgeDoNotOpenTheMesh) {
   // One face cut in two through a point on its edge, its neighbour left uncut, the gap closed by a face
   // without area.
-  RawMesh raw = zoo::box({0.1, 0.1, 0.1});
-  const Triangle t = raw.triangle[0];
+  importers::RawMesh raw = zoo::box({0.1, 0.1, 0.1});
+  const importers::Triangle t = raw.triangle[0];
   const std::int32_t middle = std::int32_t(raw.vertex.size());
   raw.vertex.push_back(0.5 * (raw.vertex[std::size_t(t[0])] + raw.vertex[std::size_t(t[1])]));
   raw.triangle[0] = {t[0], middle, t[2]};
   raw.triangle.push_back({middle, t[1], t[2]});
   raw.triangle.push_back({t[0], t[1], middle});
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);
   EXPECT_NEAR(mesh->volume, 1e-3, 1e-12);
 }
 
 TEST(Repair, LargestPartIsKeptAndTheOtherTold) {
-  const RawMesh raw = zoo::both(zoo::sphere(0.01, 2, {0.1, 0, 0}), ball());
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  const importers::RawMesh raw = zoo::both(zoo::sphere(0.01, 2, {0.1, 0, 0}), ball());
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);
   EXPECT_EQ(summary(mesh->findings), "other_part x 1");
@@ -205,25 +205,26 @@ TEST(Repair, LargestPartIsKeptAndTheOtherTold) {
 TEST(Repair, ManyCrumbsCostNoMoreThanTheirTriangles) {
   // What a segmentation leaves: thousands of crumbs around the organ. Work that grew with parts times
   // vertices would take minutes.
-  RawMesh raw = zoo::sphere(0.05, 6);
-  const RawMesh crumb = zoo::sphere(0.0005, 0);
+  importers::RawMesh raw = zoo::sphere(0.05, 6);
+  const importers::RawMesh crumb = zoo::sphere(0.0005, 0);
   for (int n = 0; n < 10'000; ++n) {
     const std::int32_t first = std::int32_t(raw.vertex.size());
     for (const Vec3& p : crumb.vertex)
       raw.vertex.push_back(p + 0.002 * Vec3{50.0 + n % 22, double(n / 22 % 22), double(n / 484)});
-    for (const Triangle& t : crumb.triangle) raw.triangle.push_back({t[0] + first, t[1] + first, t[2] + first});
+    for (const importers::Triangle& t : crumb.triangle)
+      raw.triangle.push_back({t[0] + first, t[1] + first, t[2] + first});
   }
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   EXPECT_EQ(summary(mesh->findings), "other_part x 10000");
   EXPECT_EQ(mesh->after.parts, 1);
 }
 
 TEST(Repair, AllPartsAreKeptWhenWanted) {
-  const RawMesh raw = zoo::both(zoo::flipped(zoo::sphere(0.01, 2, {0.1, 0, 0}), 1), ball());
-  RepairOptions options;
+  const importers::RawMesh raw = zoo::both(zoo::flipped(zoo::sphere(0.01, 2, {0.1, 0, 0}), 1), ball());
+  importers::RepairOptions options;
   options.all_parts = true;
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1, options);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1, options);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);
   EXPECT_EQ(mesh->after.parts, 2);
@@ -232,10 +233,10 @@ TEST(Repair, AllPartsAreKeptWhenWanted) {
 }
 
 TEST(Repair, OpenPartIsDroppedWithTheReason) {
-  const RawMesh bowl = zoo::without(zoo::sphere(0.03, 3, {0.1, 0, 0}), [](Vec3 p) { return p.z > 0; });
-  RepairOptions options;
+  const importers::RawMesh bowl = zoo::without(zoo::sphere(0.03, 3, {0.1, 0, 0}), [](Vec3 p) { return p.z > 0; });
+  importers::RepairOptions options;
   options.all_parts = true;
-  const Result<CheckedMesh> mesh = repair_mesh(zoo::both(bowl, ball()), 1, options);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(zoo::both(bowl, ball()), 1, options);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);
   EXPECT_EQ(summary(mesh->findings), "other_part x 1");
@@ -243,20 +244,21 @@ TEST(Repair, OpenPartIsDroppedWithTheReason) {
 }
 
 TEST(Repair, CavityStaysACavityWithAllParts) {
-  RepairOptions options;
+  importers::RepairOptions options;
   options.all_parts = true;
-  const Result<CheckedMesh> mesh = repair_mesh(zoo::both(ball(), zoo::sphere(0.02, 3)), 1, options);
+  const Result<importers::CheckedMesh> mesh =
+      importers::repair_mesh(zoo::both(ball(), zoo::sphere(0.02, 3)), 1, options);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   EXPECT_NEAR(mesh->volume, volume_of(ball()) - volume_of(zoo::sphere(0.02, 3)), 1e-12);
 }
 
 TEST(Repair, FinOnAnEdgeIsCutOff) {
-  RawMesh raw = ball();
-  const Triangle t = raw.triangle[0];
+  importers::RawMesh raw = ball();
+  const importers::Triangle t = raw.triangle[0];
   raw.vertex.push_back(1.3 * raw.vertex[std::size_t(t[0])]);
   raw.triangle.push_back({t[0], t[1], std::int32_t(raw.vertex.size()) - 1});
-  ASSERT_EQ(count_mesh(raw.vertex, raw.triangle).non_manifold_edges, 1);
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  ASSERT_EQ(importers::count_mesh(raw.vertex, raw.triangle).non_manifold_edges, 1);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);
   EXPECT_EQ(summary(mesh->findings), "non_manifold_edge x 1, other_part x 1");
@@ -264,8 +266,9 @@ TEST(Repair, FinOnAnEdgeIsCutOff) {
 }
 
 TEST(Repair, CubesThatShareAnEdgeAreParted) {
-  const RawMesh raw = zoo::both(zoo::box({0.1, 0.1, 0.1}), zoo::box({0.05, 0.05, 0.1}, 1, {0.075, 0.075, 0}));
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  const importers::RawMesh raw =
+      zoo::both(zoo::box({0.1, 0.1, 0.1}), zoo::box({0.05, 0.05, 0.1}, 1, {0.075, 0.075, 0}));
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);
   EXPECT_NE(find(mesh->findings, "non_manifold_edge"), nullptr) << summary(mesh->findings);
@@ -274,8 +277,9 @@ TEST(Repair, CubesThatShareAnEdgeAreParted) {
 }
 
 TEST(Repair, CubesThatShareACornerAreParted) {
-  const RawMesh raw = zoo::both(zoo::box({0.1, 0.1, 0.1}), zoo::box({0.05, 0.05, 0.05}, 1, {0.075, 0.075, 0.075}));
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  const importers::RawMesh raw =
+      zoo::both(zoo::box({0.1, 0.1, 0.1}), zoo::box({0.05, 0.05, 0.05}, 1, {0.075, 0.075, 0.075}));
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);
   EXPECT_EQ(summary(mesh->findings), "unwelded x 1, non_manifold_vertex x 1, other_part x 1");
@@ -284,10 +288,10 @@ TEST(Repair, CubesThatShareACornerAreParted) {
 
 TEST(Repair, PinchedVertexIsSplitAndTold) {
   // Two far vertices of one ball drawn into one point: the surface touches itself there but stays one part.
-  RawMesh raw = zoo::torus(0.05, 0.02, 48, 24);
+  importers::RawMesh raw = zoo::torus(0.05, 0.02, 48, 24);
   const std::int32_t a = 12, b = 24 * 24 + 12;  // opposite places of the ring's inside
   raw.vertex[a] = raw.vertex[b] = {0, 0, 0};
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);
   EXPECT_EQ(summary(mesh->findings), "unwelded x 1, non_manifold_vertex x 1");
@@ -297,13 +301,13 @@ TEST(Repair, PinchedVertexIsSplitAndTold) {
 }
 
 TEST(Repair, ManyDefectsAtOnceAreAllTold) {
-  RawMesh raw = zoo::without(ball(), is_at_pole);
+  importers::RawMesh raw = zoo::without(ball(), is_at_pole);
   const std::size_t whole = raw.triangle.size();
   raw.triangle.push_back(raw.triangle[100]);
   raw.triangle.push_back({3, 4, 4});
   raw = zoo::unwelded(zoo::flipped(raw, 3));
   raw = zoo::both(raw, zoo::sphere(0.01, 2, {0.1, 0, 0}));
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_TRUE(mesh) << text_of(mesh.errors());
   expect_closed(*mesh);
   for (const char* code : {"unwelded", "degenerate", "duplicate", "flipped", "hole", "other_part"})
@@ -313,53 +317,53 @@ TEST(Repair, ManyDefectsAtOnceAreAllTold) {
 }
 
 TEST(Repair, SheetIsRefused) {
-  RawMesh raw;
+  importers::RawMesh raw;
   raw.path = "sheet";
   raw.vertex = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   raw.triangle = {{0, 1, 2}, {0, 2, 3}};
   for (const bool is_wide_allowed : {false, true}) {
-    RepairOptions options;
+    importers::RepairOptions options;
     if (is_wide_allowed) options.largest_hole = 10;
-    const Result<CheckedMesh> mesh = repair_mesh(raw, 1, options);
+    const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1, options);
     ASSERT_FALSE(mesh);
     EXPECT_EQ(mesh.errors()[0].where, "sheet");
   }
 }
 
 TEST(Repair, OnlyDegenerateFacesAreRefused) {
-  RawMesh raw;
+  importers::RawMesh raw;
   raw.path = "line";
   raw.vertex = {{0, 0, 0}, {1, 0, 0}};
   raw.triangle = {{0, 1, 1}, {0, 0, 1}};
-  const Result<CheckedMesh> mesh = repair_mesh(raw, 1);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
   ASSERT_FALSE(mesh);
   EXPECT_EQ(mesh.errors()[0].message, "holds only triangles without area");
 }
 
 TEST(Repair, OptionsOutOfRangeAreRefused) {
-  RepairOptions options;
-  EXPECT_FALSE(repair_mesh(ball(), 0));
-  EXPECT_FALSE(repair_mesh(ball(), std::nan("")));
+  importers::RepairOptions options;
+  EXPECT_FALSE(importers::repair_mesh(ball(), 0));
+  EXPECT_FALSE(importers::repair_mesh(ball(), std::nan("")));
   options.largest_hole = -1;
-  EXPECT_FALSE(repair_mesh(ball(), 1, options));
+  EXPECT_FALSE(importers::repair_mesh(ball(), 1, options));
   options.largest_hole.reset();
   options.weld_distance = 0.5;
-  EXPECT_FALSE(repair_mesh(ball(), 1, options));
+  EXPECT_FALSE(importers::repair_mesh(ball(), 1, options));
 }
 
 TEST(Repair, MendedMeshWrittenAndReadAgainIsSound) {
   const zoo::Folder folder;
-  const Result<CheckedMesh> mesh = repair_mesh(zoo::unwelded(zoo::flipped(ball(), 5)), 1);
+  const Result<importers::CheckedMesh> mesh = importers::repair_mesh(zoo::unwelded(zoo::flipped(ball(), 5)), 1);
   ASSERT_TRUE(mesh);
   const std::string path = folder.path() + "/mended.obj";
-  ASSERT_TRUE(write_obj(path, mesh->vertex, mesh->triangle));
-  const Result<RawMesh> read = read_mesh(path);
+  ASSERT_TRUE(importers::write_obj(path, mesh->vertex, mesh->triangle));
+  const Result<importers::RawMesh> read = importers::read_mesh(path);
   ASSERT_TRUE(read) << text_of(read.errors());
-  const Result<CheckedMesh> again = repair_mesh(*read, 0.001);
+  const Result<importers::CheckedMesh> again = importers::repair_mesh(*read, 0.001);
   ASSERT_TRUE(again) << text_of(again.errors());
   EXPECT_EQ(summary(again->findings), "");
   EXPECT_NEAR(again->volume, mesh->volume, 1e-5 * mesh->volume);
-  EXPECT_FALSE(write_obj(folder.path() + "/no/folder.obj", mesh->vertex, mesh->triangle));
+  EXPECT_FALSE(importers::write_obj(folder.path() + "/no/folder.obj", mesh->vertex, mesh->triangle));
 }
 
 }  // namespace

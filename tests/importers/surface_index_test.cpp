@@ -16,7 +16,7 @@ constexpr double kRounding = 1e-12;
 
 struct Heap {
   std::vector<Vec3> vertex;
-  std::vector<Triangle> triangle;
+  std::vector<importers::Triangle> triangle;
 };
 
 /// Triangles of all sizes in a box, among them needles, points and equal ones.
@@ -40,9 +40,10 @@ Heap heap_of_triangles(std::size_t count, std::mt19937& random) {
 
 double distance_one_by_one(const Heap& heap, Vec3 p) {
   double least = std::numeric_limits<double>::infinity();
-  for (const Triangle& t : heap.triangle)
-    least = std::min(least, squared_distance(p, heap.vertex[std::size_t(t[0])], heap.vertex[std::size_t(t[1])],
-                                             heap.vertex[std::size_t(t[2])]));
+  for (const importers::Triangle& t : heap.triangle)
+    least =
+        std::min(least, importers::squared_distance(p, heap.vertex[std::size_t(t[0])], heap.vertex[std::size_t(t[1])],
+                                                    heap.vertex[std::size_t(t[2])]));
   return std::sqrt(least);
 }
 
@@ -51,7 +52,7 @@ TEST(SurfaceIndex, FindsTheDistanceThatLookingAtEveryTriangleFinds) {
   std::uniform_real_distribution<double> anywhere(-1.5, 1.5);
   for (const std::size_t count : {1u, 2u, 4u, 5u, 9u, 16u, 17u, 33u, 300u, 2000u}) {
     const Heap heap = heap_of_triangles(count, random);
-    const SurfaceIndex index(heap.vertex, heap.triangle);
+    const importers::SurfaceIndex index(heap.vertex, heap.triangle);
     std::int32_t guess = 0;
     for (int n = 0; n < 200; ++n) {
       const Vec3 p{anywhere(random), anywhere(random), anywhere(random)};
@@ -65,7 +66,7 @@ TEST(SurfaceIndex, FindsTheDistanceThatLookingAtEveryTriangleFinds) {
 
 TEST(SurfaceIndex, CornersAndEdgesAndPlaneOfATriangleAreAsFarAsGeometrySays) {
   const std::vector<Vec3> vertex{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
-  const SurfaceIndex index(vertex, {{0, 1, 2}});
+  const importers::SurfaceIndex index(vertex, {{0, 1, 2}});
   const auto squared = [&](Vec3 p) { return index.nearest(p).squared_distance; };
   EXPECT_DOUBLE_EQ(squared({0.5, 0.5, 3}), 9);
   EXPECT_DOUBLE_EQ(squared({0.5, 0.5, -3}), 9);
@@ -78,7 +79,7 @@ TEST(SurfaceIndex, CornersAndEdgesAndPlaneOfATriangleAreAsFarAsGeometrySays) {
 TEST(SurfaceIndex, GuessDoesNotChangeTheDistance) {
   std::mt19937 random(6);
   const Heap heap = heap_of_triangles(400, random);
-  const SurfaceIndex index(heap.vertex, heap.triangle);
+  const importers::SurfaceIndex index(heap.vertex, heap.triangle);
   const double plain = index.nearest({0.1, 0.2, 0.3}).squared_distance;
   for (std::int32_t guess = 0; guess < 100; ++guess)
     EXPECT_EQ(index.nearest({0.1, 0.2, 0.3}, guess).squared_distance, plain);

@@ -8,15 +8,15 @@
 namespace ctpm::zoo {
 namespace {
 
-RawMesh named() {
-  RawMesh mesh;
+importers::RawMesh named() {
+  importers::RawMesh mesh;
   mesh.path = "zoo";
   mesh.format = "zoo";
   return mesh;
 }
 
-std::int32_t middle_vertex(RawMesh& mesh, std::map<std::array<std::int32_t, 2>, std::int32_t>& known, std::int32_t a,
-                           std::int32_t b) {
+std::int32_t middle_vertex(importers::RawMesh& mesh, std::map<std::array<std::int32_t, 2>, std::int32_t>& known,
+                           std::int32_t a, std::int32_t b) {
   const auto [it, is_new] = known.emplace(std::array{std::min(a, b), std::max(a, b)}, std::int32_t(mesh.vertex.size()));
   if (is_new) {
     const Vec3 p = mesh.vertex[std::size_t(a)] + mesh.vertex[std::size_t(b)];
@@ -27,8 +27,8 @@ std::int32_t middle_vertex(RawMesh& mesh, std::map<std::array<std::int32_t, 2>, 
 
 }  // namespace
 
-RawMesh sphere(double radius, int cuts, Vec3 centre) {
-  RawMesh mesh = named();
+importers::RawMesh sphere(double radius, int cuts, Vec3 centre) {
+  importers::RawMesh mesh = named();
   const double g = std::numbers::phi;
   for (const Vec3 p : {Vec3{-1, g, 0},
                        {1, g, 0},
@@ -48,19 +48,20 @@ RawMesh sphere(double radius, int cuts, Vec3 centre) {
                    {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   for (int cut = 0; cut < cuts; ++cut) {
     std::map<std::array<std::int32_t, 2>, std::int32_t> known;
-    std::vector<Triangle> finer;
+    std::vector<importers::Triangle> finer;
     for (const auto& [a, b, c] : mesh.triangle) {
       const std::int32_t ab = middle_vertex(mesh, known, a, b), bc = middle_vertex(mesh, known, b, c),
                          ca = middle_vertex(mesh, known, c, a);
-      for (const Triangle& t : {Triangle{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}}) finer.push_back(t);
+      for (const importers::Triangle& t : {importers::Triangle{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}})
+        finer.push_back(t);
     }
     mesh.triangle = std::move(finer);
   }
   return moved(mesh, [&](Vec3 p) { return centre + radius * p; });
 }
 
-RawMesh torus(double ring_radius, double tube_radius, int around, int across) {
-  RawMesh mesh = named();
+importers::RawMesh torus(double ring_radius, double tube_radius, int around, int across) {
+  importers::RawMesh mesh = named();
   for (int i = 0; i < around; ++i)
     for (int j = 0; j < across; ++j) {
       const double u = 2 * std::numbers::pi * i / around, v = 2 * std::numbers::pi * j / across;
@@ -76,8 +77,8 @@ RawMesh torus(double ring_radius, double tube_radius, int around, int across) {
   return mesh;
 }
 
-RawMesh box(Vec3 size, int cuts, Vec3 centre) {
-  RawMesh mesh = named();
+importers::RawMesh box(Vec3 size, int cuts, Vec3 centre) {
+  importers::RawMesh mesh = named();
   std::map<std::array<int, 3>, std::int32_t> known;
   const auto at = [&](std::array<int, 3> grid) {
     const auto [it, is_new] = known.emplace(grid, std::int32_t(mesh.vertex.size()));
@@ -96,28 +97,28 @@ RawMesh box(Vec3 size, int cuts, Vec3 centre) {
             return at(grid);
           };
           const std::int32_t a = corner(i, j), b = corner(i + 1, j), c = corner(i + 1, j + 1), d = corner(i, j + 1);
-          mesh.triangle.push_back(is_far ? Triangle{a, b, c} : Triangle{a, c, b});
-          mesh.triangle.push_back(is_far ? Triangle{a, c, d} : Triangle{a, d, c});
+          mesh.triangle.push_back(is_far ? importers::Triangle{a, b, c} : importers::Triangle{a, c, b});
+          mesh.triangle.push_back(is_far ? importers::Triangle{a, c, d} : importers::Triangle{a, d, c});
         }
   return mesh;
 }
 
-RawMesh both(const RawMesh& a, const RawMesh& b) {
-  RawMesh mesh = a;
+importers::RawMesh both(const importers::RawMesh& a, const importers::RawMesh& b) {
+  importers::RawMesh mesh = a;
   const std::int32_t first = std::int32_t(a.vertex.size());
   mesh.vertex.insert(mesh.vertex.end(), b.vertex.begin(), b.vertex.end());
-  for (const Triangle& t : b.triangle) mesh.triangle.push_back({t[0] + first, t[1] + first, t[2] + first});
+  for (const importers::Triangle& t : b.triangle) mesh.triangle.push_back({t[0] + first, t[1] + first, t[2] + first});
   return mesh;
 }
 
-RawMesh moved(RawMesh mesh, const std::function<Vec3(Vec3)>& where) {
+importers::RawMesh moved(importers::RawMesh mesh, const std::function<Vec3(Vec3)>& where) {
   for (Vec3& p : mesh.vertex) p = where(p);
   return mesh;
 }
 
-RawMesh unwelded(const RawMesh& mesh) {
-  RawMesh soup = named();
-  for (const Triangle& t : mesh.triangle) {
+importers::RawMesh unwelded(const importers::RawMesh& mesh) {
+  importers::RawMesh soup = named();
+  for (const importers::Triangle& t : mesh.triangle) {
     const std::int32_t first = std::int32_t(soup.vertex.size());
     for (const std::int32_t v : t) soup.vertex.push_back(mesh.vertex[std::size_t(v)]);
     soup.triangle.push_back({first, first + 1, first + 2});
@@ -125,27 +126,28 @@ RawMesh unwelded(const RawMesh& mesh) {
   return soup;
 }
 
-RawMesh flipped(RawMesh mesh, std::size_t every) {
+importers::RawMesh flipped(importers::RawMesh mesh, std::size_t every) {
   for (std::size_t t = 0; t < mesh.triangle.size(); t += every) std::swap(mesh.triangle[t][1], mesh.triangle[t][2]);
   return mesh;
 }
 
-RawMesh without(RawMesh mesh, const std::function<bool(Vec3)>& goes) {
-  std::erase_if(mesh.triangle, [&](const Triangle& t) {
+importers::RawMesh without(importers::RawMesh mesh, const std::function<bool(Vec3)>& goes) {
+  std::erase_if(mesh.triangle, [&](const importers::Triangle& t) {
     return goes((mesh.vertex[std::size_t(t[0])] + mesh.vertex[std::size_t(t[1])] + mesh.vertex[std::size_t(t[2])]) / 3);
   });
   return mesh;
 }
 
-const Finding* find(const std::vector<Finding>& findings, const std::string& code) {
-  for (const Finding& finding : findings)
+const importers::Finding* find(const std::vector<importers::Finding>& findings, const std::string& code) {
+  for (const importers::Finding& finding : findings)
     if (finding.code == code) return &finding;
   return nullptr;
 }
 
-std::string summary(const std::vector<Finding>& findings) {
+std::string summary(const std::vector<importers::Finding>& findings) {
   std::string text;
-  for (const Finding& f : findings) text += (text.empty() ? "" : ", ") + f.code + " x " + std::to_string(f.count);
+  for (const importers::Finding& f : findings)
+    text += (text.empty() ? "" : ", ") + f.code + " x " + std::to_string(f.count);
   return text;
 }
 

@@ -40,14 +40,14 @@ std::string base64(const std::string& bytes) {
 }
 
 /// Positions, then indices.
-std::string gltf_buffer(const RawMesh& mesh) {
+std::string gltf_buffer(const importers::RawMesh& mesh) {
   std::string bytes;
   for (const Vec3& p : mesh.vertex) put_point(bytes, p);
-  for (const Triangle& t : mesh.triangle) put(bytes, t[0], t[1], t[2]);
+  for (const importers::Triangle& t : mesh.triangle) put(bytes, t[0], t[1], t[2]);
   return bytes;
 }
 
-std::string gltf_json(const RawMesh& mesh, double scale, const std::string& uri) {
+std::string gltf_json(const importers::RawMesh& mesh, double scale, const std::string& uri) {
   const std::size_t points = 12 * mesh.vertex.size(), indices = 12 * mesh.triangle.size();
   std::string text = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)";
   text += line(R"("nodes":[{"mesh":0,"name":"organ","scale":[%.9g,%.9g,%.9g]}],)", scale, scale, scale);
@@ -87,16 +87,16 @@ std::string Folder::write(const std::string& name, const std::string& bytes) con
   return path;
 }
 
-std::string to_obj_text(const RawMesh& mesh, const std::string& name) {
+std::string to_obj_text(const importers::RawMesh& mesh, const std::string& name) {
   std::string text = "o " + name + "\n";
   for (const Vec3& p : mesh.vertex) text += line("v %.9g %.9g %.9g\n", p.x, p.y, p.z);
-  for (const Triangle& t : mesh.triangle) text += line("f %d %d %d\n", t[0] + 1, t[1] + 1, t[2] + 1);
+  for (const importers::Triangle& t : mesh.triangle) text += line("f %d %d %d\n", t[0] + 1, t[1] + 1, t[2] + 1);
   return text;
 }
 
-std::string to_ascii_stl(const RawMesh& mesh) {
+std::string to_ascii_stl(const importers::RawMesh& mesh) {
   std::string text = "solid organ\n";
-  for (const Triangle& t : mesh.triangle) {
+  for (const importers::Triangle& t : mesh.triangle) {
     text += "facet normal 0 0 0\nouter loop\n";
     for (const std::int32_t v : t) {
       const Vec3 p = mesh.vertex[std::size_t(v)];
@@ -107,10 +107,10 @@ std::string to_ascii_stl(const RawMesh& mesh) {
   return text + "endsolid organ\n";
 }
 
-std::string to_binary_stl(const RawMesh& mesh) {
+std::string to_binary_stl(const importers::RawMesh& mesh) {
   std::string bytes(80, ' ');
   put(bytes, std::uint32_t(mesh.triangle.size()));
-  for (const Triangle& t : mesh.triangle) {
+  for (const importers::Triangle& t : mesh.triangle) {
     put_point(bytes, {});
     for (const std::int32_t v : t) put_point(bytes, mesh.vertex[std::size_t(v)]);
     put(bytes, std::uint16_t(0));
@@ -118,39 +118,39 @@ std::string to_binary_stl(const RawMesh& mesh) {
   return bytes;
 }
 
-static std::string ply_head(const RawMesh& mesh, const char* kind) {
+static std::string ply_head(const importers::RawMesh& mesh, const char* kind) {
   return line("ply\nformat %s 1.0\nelement vertex %zu\n", kind, mesh.vertex.size()) +
          "property float x\nproperty float y\nproperty float z\n" +
          line("element face %zu\nproperty list uchar int vertex_indices\nend_header\n", mesh.triangle.size());
 }
 
-std::string to_ascii_ply(const RawMesh& mesh) {
+std::string to_ascii_ply(const importers::RawMesh& mesh) {
   std::string text = ply_head(mesh, "ascii");
   for (const Vec3& p : mesh.vertex) text += line("%.9g %.9g %.9g\n", p.x, p.y, p.z);
-  for (const Triangle& t : mesh.triangle) text += line("3 %d %d %d\n", t[0], t[1], t[2]);
+  for (const importers::Triangle& t : mesh.triangle) text += line("3 %d %d %d\n", t[0], t[1], t[2]);
   return text;
 }
 
-std::string to_binary_ply(const RawMesh& mesh) {
+std::string to_binary_ply(const importers::RawMesh& mesh) {
   std::string bytes = ply_head(mesh, "binary_little_endian");
   for (const Vec3& p : mesh.vertex) put_point(bytes, p);
-  for (const Triangle& t : mesh.triangle) put(bytes, std::uint8_t(3), t[0], t[1], t[2]);
+  for (const importers::Triangle& t : mesh.triangle) put(bytes, std::uint8_t(3), t[0], t[1], t[2]);
   return bytes;
 }
 
-std::string to_off(const RawMesh& mesh) {
+std::string to_off(const importers::RawMesh& mesh) {
   std::string text = line("OFF\n%zu %zu 0\n", mesh.vertex.size(), mesh.triangle.size());
   for (const Vec3& p : mesh.vertex) text += line("%.9g %.9g %.9g\n", p.x, p.y, p.z);
-  for (const Triangle& t : mesh.triangle) text += line("3 %d %d %d\n", t[0], t[1], t[2]);
+  for (const importers::Triangle& t : mesh.triangle) text += line("3 %d %d %d\n", t[0], t[1], t[2]);
   return text;
 }
 
-std::string to_gltf(const RawMesh& mesh, double node_scale) {
+std::string to_gltf(const importers::RawMesh& mesh, double node_scale) {
   return gltf_json(mesh, node_scale,
                    R"(,"uri":"data:application/octet-stream;base64,)" + base64(gltf_buffer(mesh)) + '"');
 }
 
-std::string to_glb(const RawMesh& mesh) {
+std::string to_glb(const importers::RawMesh& mesh) {
   std::string json = gltf_json(mesh, 1, ""), buffer = gltf_buffer(mesh), bytes = "glTF";
   json.resize((json.size() + 3) / 4 * 4, ' ');
   put(bytes, std::uint32_t(2), std::uint32_t(28 + json.size() + buffer.size()));
@@ -160,10 +160,10 @@ std::string to_glb(const RawMesh& mesh) {
   return bytes + std::string("BIN\0", 4) + buffer;
 }
 
-std::string to_dae(const RawMesh& mesh, double unit_in_metres) {
+std::string to_dae(const importers::RawMesh& mesh, double unit_in_metres) {
   std::string points, indices;
   for (const Vec3& p : mesh.vertex) points += line("%.9g %.9g %.9g ", p.x, p.y, p.z);
-  for (const Triangle& t : mesh.triangle) indices += line("%d %d %d ", t[0], t[1], t[2]);
+  for (const importers::Triangle& t : mesh.triangle) indices += line("%d %d %d ", t[0], t[1], t[2]);
   const std::size_t count = mesh.vertex.size();
   return R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset>)" +
          line(R"(<unit name="u" meter="%.9g"/><up_axis>Z_UP</up_axis></asset>)", unit_in_metres) +
@@ -179,10 +179,10 @@ std::string to_dae(const RawMesh& mesh, double unit_in_metres) {
          R"(<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
 }
 
-std::string to_fbx(const RawMesh& mesh, double unit_in_centimetres) {
+std::string to_fbx(const importers::RawMesh& mesh, double unit_in_centimetres) {
   std::string points, indices;
   for (const Vec3& p : mesh.vertex) points += line("%s%.9g,%.9g,%.9g", points.empty() ? "" : ",", p.x, p.y, p.z);
-  for (const Triangle& t : mesh.triangle)
+  for (const importers::Triangle& t : mesh.triangle)
     indices += line("%s%d,%d,%d", indices.empty() ? "" : ",", t[0], t[1], -t[2] - 1);
   return "; FBX 7.4.0 project file\nFBXHeaderExtension:  {\n\tFBXHeaderVersion: 1003\n\tFBXVersion: 7400\n}\n"
          "GlobalSettings:  {\n\tVersion: 1000\n\tProperties70:  {\n" +
@@ -195,12 +195,12 @@ std::string to_fbx(const RawMesh& mesh, double unit_in_centimetres) {
          "Connections:  {\n\tC: \"OO\",1001,1002\n\tC: \"OO\",1002,0\n}\n";
 }
 
-std::string to_3ds(const RawMesh& mesh) {
+std::string to_3ds(const importers::RawMesh& mesh) {
   std::string points, faces;
   put(points, std::uint16_t(mesh.vertex.size()));
   for (const Vec3& p : mesh.vertex) put_point(points, p);
   put(faces, std::uint16_t(mesh.triangle.size()));
-  for (const Triangle& t : mesh.triangle)
+  for (const importers::Triangle& t : mesh.triangle)
     put(faces, std::uint16_t(t[0]), std::uint16_t(t[1]), std::uint16_t(t[2]), std::uint16_t(0));
   const std::string object = std::string("organ\0", 6) + block(0x4100, block(0x4110, points) + block(0x4120, faces));
   return block(0x4D4D, block(0x3D3D, block(0x4000, object)));

@@ -19,7 +19,7 @@ struct Package {
 };
 
 /// Every file declares its room's namespace. False until the rooms have their namespaces.
-constexpr bool kNamespacesAreRooms = false;
+constexpr bool kNamespacesAreRooms = true;
 
 constexpr int kMostLines = 500;  ///< of a source file
 

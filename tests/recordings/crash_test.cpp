@@ -39,10 +39,10 @@ void give_space() {
 constexpr rlim_t full_at = 400 << 10;  // [bytes]
 
 /// Appends until the disk has refused; the number of ticks appended by then, 0 if it never does.
-std::int64_t append_until_full(SessionWriter& writer, const SessionStart& start) {
+std::int64_t append_until_full(recordings::SessionWriter& writer, const recordings::SessionStart& start) {
   std::int64_t appended = 0;
   bool full = false;
-  live(start, 12000, [&](const State& after, const TickRecord& record) {
+  live(start, 12000, [&](const State& after, const recordings::TickRecord& record) {
     if (full) return;
     writer.append(after, record);
     ++appended;
@@ -56,36 +56,36 @@ TEST(FullDisk, IsToldByStatusAndByTheEndAndWhatFitsIsGood) {
   const Folder folder;
   const std::string path = folder / "a.ctpm";
   const int code = on_a_full_disk(full_at, [&] {
-    const SessionStart start = small_start(3, 2, 2);
-    auto writer = SessionWriter::create(path, start, {.keyframe_ticks = 100});
+    const recordings::SessionStart start = small_start(3, 2, 2);
+    auto writer = recordings::SessionWriter::create(path, start, {.keyframe_ticks = 100});
     if (!writer) return 2;
     if (append_until_full(*writer, start) == 0) return 3;
     const auto ended = writer->finish();
     if (ended) return 4;
-    const WriterStatus status = writer->status();
+    const recordings::WriterStatus status = writer->status();
     if (status.lost <= 0 || status.committed + status.lost != status.appended) return 5;
     if (ended.errors()[0].where != path || ended.errors()[0].message.find("were not recorded") == std::string::npos)
       return 6;
     return 0;
   });
   EXPECT_EQ(code, 0);
-  auto reader = SessionReader::open(path);
+  auto reader = recordings::SessionReader::open(path);
   ASSERT_TRUE(reader) << text_of(reader.errors());
   EXPECT_FALSE(reader->ended_cleanly());
   EXPECT_GT(reader->tick_count(), 100);
   const auto all = reader->check_all();
   EXPECT_TRUE(all) << text_of(all.errors());
-  const auto verdict = verify_session(*reader);
+  const auto verdict = recordings::verify_session(*reader);
   ASSERT_TRUE(verdict);
-  EXPECT_TRUE(verdict->same) << to_string(*verdict);
+  EXPECT_TRUE(verdict->same) << recordings::to_string(*verdict);
 }
 
 TEST(FullDisk, SpaceThatIsFreedInTimeLosesNothing) {
   const Folder folder;
   const std::string path = folder / "a.ctpm";
   const int code = on_a_full_disk(full_at, [&] {
-    const SessionStart start = small_start(3, 2, 2);
-    auto writer = SessionWriter::create(path, start, {.keyframe_ticks = 100});
+    const recordings::SessionStart start = small_start(3, 2, 2);
+    auto writer = recordings::SessionWriter::create(path, start, {.keyframe_ticks = 100});
     if (!writer) return 2;
     const std::int64_t appended = append_until_full(*writer, start);
     if (appended == 0) return 3;
@@ -95,7 +95,7 @@ TEST(FullDisk, SpaceThatIsFreedInTimeLosesNothing) {
     return ended->ticks == appended && writer->status().lost == 0 ? 0 : 5;
   });
   EXPECT_EQ(code, 0);
-  auto reader = SessionReader::open(path);
+  auto reader = recordings::SessionReader::open(path);
   ASSERT_TRUE(reader) << text_of(reader.errors());
   EXPECT_TRUE(reader->ended_cleanly());
   EXPECT_TRUE(reader->check_all());
@@ -104,7 +104,7 @@ TEST(FullDisk, SpaceThatIsFreedInTimeLosesNothing) {
 TEST(FullDisk, AtCreationLeavesNothingBehind) {
   const Folder folder;
   const int code = on_a_full_disk(8 << 10, [&] {
-    const auto writer = SessionWriter::create(folder / "a.ctpm", small_start(5, 5, 5));
+    const auto writer = recordings::SessionWriter::create(folder / "a.ctpm", small_start(5, 5, 5));
     return !writer && writer.errors()[0].where == folder / "a.ctpm" ? 0 : 1;
   });
   EXPECT_EQ(code, 0);
@@ -115,20 +115,20 @@ TEST(FullDisk, AQueueThatOverflowsEndsTheRecordingAndSaysSo) {
   const Folder folder;
   const std::string path = folder / "a.ctpm";
   const int code = on_a_full_disk(full_at, [&] {
-    const SessionStart start = small_start(3, 2, 2);
-    auto writer = SessionWriter::create(path, start, {.keyframe_ticks = 100, .queue_ticks = 300});
+    const recordings::SessionStart start = small_start(3, 2, 2);
+    auto writer = recordings::SessionWriter::create(path, start, {.keyframe_ticks = 100, .queue_ticks = 300});
     if (!writer) return 2;
     const std::int64_t before = append_until_full(*writer, start);
     if (before == 0) return 3;
     for (int i = 0; i < 1000; ++i) writer->append(start.initial_state, {});
     give_space();
     const auto ended = writer->finish();
-    const WriterStatus status = writer->status();
+    const recordings::WriterStatus status = writer->status();
     if (ended || status.lost < 600 || status.appended != before + 1000) return 4;
     return 0;
   });
   EXPECT_EQ(code, 0);
-  auto reader = SessionReader::open(path);
+  auto reader = recordings::SessionReader::open(path);
   ASSERT_TRUE(reader) << text_of(reader.errors());
   EXPECT_TRUE(reader->check_all()) << "what is there has no gap";
   EXPECT_FALSE(reader->ended_cleanly());
@@ -151,9 +151,9 @@ int without_rights(const std::function<int()>& work) {
 TEST(Crash, WhatIsLeftCanBeReadWhereNothingCanBeWritten) {
   const Folder folder;
   const std::string path = folder / "a.ctpm";
-  const SessionStart start = small_start(3, 2, 2);
+  const recordings::SessionStart start = small_start(3, 2, 2);
   const Folder live_folder;
-  auto writer = SessionWriter::create(live_folder / "a.ctpm", start, {.wait_when_full = true});
+  auto writer = recordings::SessionWriter::create(live_folder / "a.ctpm", start, {.wait_when_full = true});
   ASSERT_TRUE(writer);
   for (int i = 0; i < 250; ++i) writer->append(start.initial_state, {});
   while (writer->status().committed < 250) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -167,7 +167,7 @@ TEST(Crash, WhatIsLeftCanBeReadWhereNothingCanBeWritten) {
     }
     ::chmod(folder.path().c_str(), 0555);
     const int code = without_rights([&] {
-      auto reader = SessionReader::open(path);
+      auto reader = recordings::SessionReader::open(path);
       if (!reader) {
         std::fputs(text_of(reader.errors()).c_str(), stderr);
         return 1;
@@ -184,7 +184,7 @@ TEST(Session, AFolderThatCannotBeWrittenIsSaid) {
   const Folder folder;
   ::chmod(folder.path().c_str(), 0555);
   const int code = without_rights([&] {
-    const auto writer = SessionWriter::create(folder / "a.ctpm", small_start(3, 2, 2));
+    const auto writer = recordings::SessionWriter::create(folder / "a.ctpm", small_start(3, 2, 2));
     if (writer) return 1;
     return writer.errors()[0].message == "the folder " + folder.path() + " cannot be written" ? 0 : 2;
   });

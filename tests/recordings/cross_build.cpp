@@ -22,20 +22,20 @@ int fail(const Errors& errors) {
 }
 
 int record(const std::string& from, const std::string& to) {
-  auto session = SessionReader::open(from);
+  auto session = recordings::SessionReader::open(from);
   if (!session) return fail(session.errors());
-  SessionStart start = session->start();
+  recordings::SessionStart start = session->start();
   start.physics_revision = kPhysicsRevision;
-  auto writer = SessionWriter::create(to, start, {.overwrite = true, .wait_when_full = true});
+  auto writer = recordings::SessionWriter::create(to, start, {.overwrite = true, .wait_when_full = true});
   if (!writer) return fail(writer.errors());
-  Stepper stepper(session->start().model);
+  stepping::Stepper stepper(session->start().model);
   State state = session->start().initial_state;
   for (std::int64_t first = 0; first < session->tick_count(); first += kReadTicks) {
     const auto records = session->ticks(first, std::min(first + kReadTicks, session->tick_count()));
     if (!records) return fail(records.errors());
-    for (const TickRecord& lived : *records) {
-      const StepReport report = stepper.step(state, lived.inputs);
-      writer->append(state, make_record(lived.inputs, report, 0, state_hash(state)));
+    for (const recordings::TickRecord& lived : *records) {
+      const stepping::StepReport report = stepper.step(state, lived.inputs);
+      writer->append(state, recordings::make_record(lived.inputs, report, 0, recordings::state_hash(state)));
     }
   }
   const auto ended = writer->finish();
@@ -45,11 +45,11 @@ int record(const std::string& from, const std::string& to) {
 }
 
 int verify(const std::string& file) {
-  auto session = SessionReader::open(file);
+  auto session = recordings::SessionReader::open(file);
   if (!session) return fail(session.errors());
-  const auto verdict = verify_session(*session);
+  const auto verdict = recordings::verify_session(*session);
   if (!verdict) return fail(verdict.errors());
-  std::printf("%s: %s\n", file.c_str(), to_string(*verdict).c_str());
+  std::printf("%s: %s\n", file.c_str(), recordings::to_string(*verdict).c_str());
   return verdict->same ? 0 : 1;
 }
 

@@ -13,9 +13,9 @@ using namespace ctpm::testing;
 
 /// What an undamaged session gives, for comparing.
 struct Truth {
-  SessionStart start;
-  std::vector<TickRecord> records;
-  std::vector<Event> events;
+  recordings::SessionStart start;
+  std::vector<recordings::TickRecord> records;
+  std::vector<recordings::Event> events;
   std::vector<std::uint64_t> state_hashes;  ///< before each tick, and after the last
   std::uint64_t model_hash = 0;
 };
@@ -35,17 +35,17 @@ std::uint64_t hash_of(const Model& model) {
       for_each_field(value, [&](std::string_view, const auto& member) { self(self, member); });
   };
   add(add, model);
-  return state_hash(all);
+  return recordings::state_hash(all);
 }
 
-Truth truth_of(const std::string& path, const SessionStart& start, const Lived& lived) {
+Truth truth_of(const std::string& path, const recordings::SessionStart& start, const Lived& lived) {
   Truth truth;
   truth.start = start;
   truth.records = lived.records;
-  truth.state_hashes.push_back(state_hash(start.initial_state));
-  for (const TickRecord& record : lived.records) truth.state_hashes.push_back(record.state_hash);
+  truth.state_hashes.push_back(recordings::state_hash(start.initial_state));
+  for (const recordings::TickRecord& record : lived.records) truth.state_hashes.push_back(record.state_hash);
   truth.model_hash = hash_of(start.model);
-  auto reader = SessionReader::open(path);
+  auto reader = recordings::SessionReader::open(path);
   CTPM_CHECK(bool(reader), "the undamaged session opens");
   truth.events = *reader->events();
   return truth;
@@ -67,7 +67,7 @@ Finding expect_error_or_truth(const std::string& path, const Truth& truth, const
       EXPECT_FALSE(error.message.empty()) << what;
     }
   };
-  auto reader = SessionReader::open(path);
+  auto reader = recordings::SessionReader::open(path);
   if (!reader) {
     complain(reader.errors());
     return finding;
@@ -78,7 +78,7 @@ Finding expect_error_or_truth(const std::string& path, const Truth& truth, const
   EXPECT_EQ(reader->start().metadata, truth.start.metadata) << what;
   EXPECT_EQ(reader->start().build_fingerprint, truth.start.build_fingerprint) << what;
   EXPECT_EQ(hash_of(reader->start().model), truth.model_hash) << what;
-  EXPECT_EQ(state_hash(reader->start().initial_state), truth.state_hashes[0]) << what;
+  EXPECT_EQ(recordings::state_hash(reader->start().initial_state), truth.state_hashes[0]) << what;
 
   const std::int64_t count = reader->tick_count();
   EXPECT_LE(count, static_cast<std::int64_t>(truth.records.size())) << what;
@@ -98,7 +98,7 @@ Finding expect_error_or_truth(const std::string& path, const Truth& truth, const
     }
     const auto keyframe = reader->keyframe_at_or_before(to);
     if (keyframe) {
-      EXPECT_EQ(state_hash(keyframe->state), truth.state_hashes.at(keyframe->tick)) << what;
+      EXPECT_EQ(recordings::state_hash(keyframe->state), truth.state_hashes.at(keyframe->tick)) << what;
     } else {
       complain(keyframe.errors());
     }
@@ -123,7 +123,7 @@ struct Sample {
   std::vector<char> bytes;
 
   Sample() {
-    const SessionStart start = small_start(3, 2, 2);
+    const recordings::SessionStart start = small_start(3, 2, 2);
     const Lived lived = record_session(path, start, 730, 200);
     truth = truth_of(path, start, lived);
     bytes = read_bytes(path);
@@ -203,7 +203,7 @@ std::string damage_until(const std::string& path, const std::vector<char>& bytes
     std::vector<char> damaged = bytes;
     damaged[place] = static_cast<char>(damaged[place] ^ 0x10);
     write_bytes(path, damaged);
-    auto reader = SessionReader::open(path);
+    auto reader = recordings::SessionReader::open(path);
     if (!reader) continue;
     const auto all = reader->check_all();
     if (!all && text_of(all.errors()).find(message) != std::string::npos) return text_of(all.errors());
@@ -216,14 +216,14 @@ TEST(Damage, ADamagedChunkIsNamedByItsTicks) {
   const Folder folder;
   const std::string path = folder / "a.ctpm";
   ASSERT_NE(damage_until(path, whole.bytes, "chunk 300 100: the checksum does not match"), "");
-  auto reader = SessionReader::open(path);
+  auto reader = recordings::SessionReader::open(path);
   ASSERT_TRUE(reader);
   EXPECT_TRUE(reader->ticks(0, 300)) << "what is before it can be read";
   EXPECT_TRUE(reader->ticks(400, 730)) << "what is behind it can be read";
   const auto lost = reader->ticks(250, 350);
   ASSERT_FALSE(lost);
   EXPECT_NE(lost.errors()[0].message.find("chunk 300 100"), std::string::npos);
-  EXPECT_FALSE(verify_session(*reader)) << "a replay cannot step over it";
+  EXPECT_FALSE(recordings::verify_session(*reader)) << "a replay cannot step over it";
 }
 
 TEST(Damage, ADamagedKeyframeCostsTimeButNotTheReplay) {
@@ -231,19 +231,19 @@ TEST(Damage, ADamagedKeyframeCostsTimeButNotTheReplay) {
   const Folder folder;
   const std::string path = folder / "a.ctpm";
   ASSERT_NE(damage_until(path, whole.bytes, "keyframe 400: the checksum does not match"), "");
-  auto reader = SessionReader::open(path);
+  auto reader = recordings::SessionReader::open(path);
   ASSERT_TRUE(reader);
-  auto cursor = ReplayCursor::create(*reader);
+  auto cursor = recordings::ReplayCursor::create(*reader);
   ASSERT_TRUE(cursor);
   ASSERT_TRUE(cursor->seek(450));
-  EXPECT_EQ(state_hash(cursor->state()), whole.truth.state_hashes[450]);
+  EXPECT_EQ(recordings::state_hash(cursor->state()), whole.truth.state_hashes[450]);
 }
 
 TEST(Damage, WhatIsNotASessionIsSaidPlainly) {
   const Folder folder;
   const std::string path = folder / "a.ctpm";
   const auto message = [&] {
-    const auto reader = SessionReader::open(path);
+    const auto reader = recordings::SessionReader::open(path);
     EXPECT_FALSE(reader);
     return reader ? "" : to_string(reader.errors()[0]);
   };
@@ -269,17 +269,18 @@ TEST(Damage, ANewerVersionIsRefusedWithBothNumbers) {
   std::vector<char> newer = sample().bytes;
   newer[63] = 9;  // the last byte of user_version
   write_bytes(folder / "a.ctpm", newer);
-  const auto reader = SessionReader::open(folder / "a.ctpm");
+  const auto reader = recordings::SessionReader::open(folder / "a.ctpm");
   ASSERT_FALSE(reader);
   EXPECT_EQ(reader.errors()[0].message, "is of format version 9, this program reads up to 1");
 }
 
 TEST(Damage, APowerCutInTheLogLosesOnlyTheEnd) {
   const Folder folder;
-  const SessionStart start = small_start(3, 2, 2);
-  auto writer = SessionWriter::create(folder / "live.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 200});
+  const recordings::SessionStart start = small_start(3, 2, 2);
+  auto writer =
+      recordings::SessionWriter::create(folder / "live.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 200});
   ASSERT_TRUE(writer);
-  const Lived lived = live(start, 600, [&](const State& after, const TickRecord& record) {
+  const Lived lived = live(start, 600, [&](const State& after, const recordings::TickRecord& record) {
     writer->append(after, record);
     if (after.tick % 60 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   });
@@ -297,7 +298,7 @@ TEST(Damage, APowerCutInTheLogLosesOnlyTheEnd) {
     write_bytes(path + "-wal", {log.begin(), log.begin() + static_cast<std::ptrdiff_t>(length)});
     const Finding finding = expect_error_or_truth(path, truth, "log of " + std::to_string(length));
     EXPECT_FALSE(finding.complained) << "log of " << length;
-    counts.insert(SessionReader::open(path)->tick_count());
+    counts.insert(recordings::SessionReader::open(path)->tick_count());
   }
   EXPECT_GE(counts.size(), 3u) << "shorter logs hold fewer ticks";
   EXPECT_EQ(*counts.begin(), 0);
@@ -306,14 +307,14 @@ TEST(Damage, APowerCutInTheLogLosesOnlyTheEnd) {
 
 TEST(Damage, ALogOfAnotherSessionIsNotMixedIn) {
   const Folder folder;
-  const SessionStart start = small_start(3, 2, 2);
+  const recordings::SessionStart start = small_start(3, 2, 2);
   std::vector<char> files[2], logs[2];
   Truth truth;
   for (int i = 0; i < 2; ++i) {
-    auto writer = SessionWriter::create(folder / std::to_string(i), start, {.wait_when_full = true});
+    auto writer = recordings::SessionWriter::create(folder / std::to_string(i), start, {.wait_when_full = true});
     ASSERT_TRUE(writer);
-    const Lived lived =
-        live(start, 300, [&](const State& after, const TickRecord& record) { writer->append(after, record); });
+    const Lived lived = live(
+        start, 300, [&](const State& after, const recordings::TickRecord& record) { writer->append(after, record); });
     while (writer->status().committed < 300) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     files[i] = read_bytes(folder / std::to_string(i)), logs[i] = read_bytes(folder / (std::to_string(i) + "-wal"));
     if (i == 0) truth = truth_of(folder / "0", start, lived);
@@ -326,7 +327,7 @@ TEST(Damage, ALogOfAnotherSessionIsNotMixedIn) {
 TEST(Recover, AWholeSessionComesBackWhole) {
   const Sample& whole = sample();
   const Folder folder;
-  const auto report = recover_session(whole.path, folder / "out.ctpm");
+  const auto report = recordings::recover_session(whole.path, folder / "out.ctpm");
   ASSERT_TRUE(report) << text_of(report.errors());
   EXPECT_TRUE(report->complete);
   EXPECT_TRUE(report->losses.empty());
@@ -334,7 +335,7 @@ TEST(Recover, AWholeSessionComesBackWhole) {
   EXPECT_EQ(report->keyframes_saved, 3);
   EXPECT_TRUE(report->verdict.same);
   EXPECT_EQ(report->verdict.ticks_compared, 730);
-  auto reader = SessionReader::open(folder / "out.ctpm");
+  auto reader = recordings::SessionReader::open(folder / "out.ctpm");
   ASSERT_TRUE(reader);
   EXPECT_TRUE(reader->ended_cleanly());
   EXPECT_TRUE(*reader->ticks(0, 730) == whole.truth.records);
@@ -345,7 +346,7 @@ TEST(Recover, ADamagedChunkIsNamedAndWhatIsBeforeItSaved) {
   const Sample& whole = sample();
   const Folder folder;
   ASSERT_NE(damage_until(folder / "a.ctpm", whole.bytes, "chunk 300 100: the checksum does not match"), "");
-  const auto report = recover_session(folder / "a.ctpm", folder / "out.ctpm");
+  const auto report = recordings::recover_session(folder / "a.ctpm", folder / "out.ctpm");
   ASSERT_TRUE(report) << text_of(report.errors());
   EXPECT_FALSE(report->complete);
   EXPECT_EQ(report->ticks_saved, 300);
@@ -354,7 +355,7 @@ TEST(Recover, ADamagedChunkIsNamedAndWhatIsBeforeItSaved) {
   EXPECT_NE(report->losses[0].find("chunk 300 100"), std::string::npos);
   EXPECT_TRUE(report->verdict.same);
   EXPECT_EQ(report->verdict.ticks_compared, 300);
-  auto reader = SessionReader::open(folder / "out.ctpm");
+  auto reader = recordings::SessionReader::open(folder / "out.ctpm");
   ASSERT_TRUE(reader);
   EXPECT_FALSE(reader->ended_cleanly());
   ASSERT_EQ(reader->tick_count(), 300);
@@ -370,8 +371,8 @@ TEST(Recover, AFileCutShortGivesItsBeginning) {
     const std::string path = folder / (std::to_string(percent) + ".ctpm");
     write_bytes(path, {whole.bytes.begin(),
                        whole.bytes.begin() + static_cast<std::ptrdiff_t>(whole.bytes.size() * percent / 100)});
-    EXPECT_FALSE(SessionReader::open(path));
-    const auto report = recover_session(path, folder / "out.ctpm");
+    EXPECT_FALSE(recordings::SessionReader::open(path));
+    const auto report = recordings::recover_session(path, folder / "out.ctpm");
     if (!report) {
       EXPECT_FALSE(std::filesystem::exists(folder / "out.ctpm"));
       continue;
@@ -394,8 +395,8 @@ TEST(Recover, ALostHeaderAndListOfTablesCostNothing) {
     std::vector<char> damaged = whole.bytes;
     std::fill(damaged.begin(), damaged.begin() + static_cast<std::ptrdiff_t>(lost), '\x55');
     write_bytes(folder / "a.ctpm", damaged);
-    EXPECT_FALSE(SessionReader::open(folder / "a.ctpm"));
-    const auto report = recover_session(folder / "a.ctpm", folder / "out.ctpm");
+    EXPECT_FALSE(recordings::SessionReader::open(folder / "a.ctpm"));
+    const auto report = recordings::recover_session(folder / "a.ctpm", folder / "out.ctpm");
     ASSERT_TRUE(report) << text_of(report.errors());
     EXPECT_TRUE(report->complete);
     EXPECT_EQ(report->repairs.size(), 1u);
@@ -414,7 +415,7 @@ TEST(Recover, AnyDamagedPageGivesATrueBeginningOrAnError) {
     std::vector<char> damaged = whole.bytes;
     std::fill_n(damaged.begin() + static_cast<std::ptrdiff_t>(page * 4096), 4096, '\0');
     write_bytes(folder / "a.ctpm", damaged);
-    const auto report = recover_session(folder / "a.ctpm", folder / "out.ctpm");
+    const auto report = recordings::recover_session(folder / "a.ctpm", folder / "out.ctpm");
     if (!report) {
       EXPECT_FALSE(std::filesystem::exists(folder / "out.ctpm"));
       continue;
@@ -422,7 +423,7 @@ TEST(Recover, AnyDamagedPageGivesATrueBeginningOrAnError) {
     ++recovered;
     EXPECT_FALSE(report->complete) << "page " << page;
     EXPECT_TRUE(report->verdict.same) << "page " << page;
-    auto reader = SessionReader::open(folder / "out.ctpm");
+    auto reader = recordings::SessionReader::open(folder / "out.ctpm");
     ASSERT_TRUE(reader);
     ASSERT_EQ(reader->tick_count(), report->ticks_saved);
     const auto records = reader->ticks(0, report->ticks_saved);
@@ -437,13 +438,13 @@ TEST(Recover, RefusesToReplaceAFileAndWhatCannotBeReplayed) {
   const Sample& whole = sample();
   const Folder folder;
   write_bytes(folder / "out.ctpm", {'o', 'l', 'd'});
-  const auto refused = recover_session(whole.path, folder / "out.ctpm");
+  const auto refused = recordings::recover_session(whole.path, folder / "out.ctpm");
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.errors()[0].message, "exists already");
   EXPECT_EQ(read_bytes(folder / "out.ctpm").size(), 3u);
 
   write_bytes(folder / "no.ctpm", std::vector<char>(9000, 'x'));
-  EXPECT_FALSE(recover_session(folder / "no.ctpm", folder / "new.ctpm"));
+  EXPECT_FALSE(recordings::recover_session(folder / "no.ctpm", folder / "new.ctpm"));
   EXPECT_FALSE(std::filesystem::exists(folder / "new.ctpm"));
 }
 

@@ -18,7 +18,7 @@ std::vector<T> tail(const std::vector<T>& all, std::size_t count) {
 }
 
 /// Writes what `model` has apart from the axial elements, their resistance to a blade and the lattice cells.
-inline void put_common_fields(session_file::FieldWriter& out, const Model& model) {
+inline void put_common_fields(recordings::session_file::FieldWriter& out, const Model& model) {
   for_each_field(model, [&](std::string_view name, const auto& value) {
     if (!name.starts_with("axial.") && !name.starts_with("cell.") && name != "cut_resistance.energy" &&
         name != "cut_resistance.friction")
@@ -27,12 +27,12 @@ inline void put_common_fields(session_file::FieldWriter& out, const Model& model
 }
 
 /// A Model as programs wrote it before there was one table of axial elements and before spheres kept their cells.
-inline session_file::Bytes earlier_bytes(const Model& model) {
+inline recordings::session_file::Bytes earlier_bytes(const Model& model) {
   const AxialElements& axial = model.axial;
   std::size_t edges = 0;
   while (edges < axial.size() && axial.law[edges] != AxialLaw::two_sphere_tpm) ++edges;
-  session_file::Bytes bytes;
-  session_file::put_field_set(bytes, [&](session_file::FieldWriter& out) {
+  recordings::session_file::Bytes bytes;
+  recordings::session_file::put_field_set(bytes, [&](recordings::session_file::FieldWriter& out) {
     put_common_fields(out, model);
     out("edges.a", head(axial.a, edges)), out("edges.b", head(axial.b, edges));
     out("edges.rest_length", head(axial.rest_length, edges));
@@ -53,9 +53,9 @@ inline session_file::Bytes earlier_bytes(const Model& model) {
 }
 
 /// A State of a Model with `edges` springs and Kelvin units likewise.
-inline session_file::Bytes earlier_bytes(const State& state, std::size_t edges) {
-  session_file::Bytes bytes;
-  session_file::put_field_set(bytes, [&](session_file::FieldWriter& out) {
+inline recordings::session_file::Bytes earlier_bytes(const State& state, std::size_t edges) {
+  recordings::session_file::Bytes bytes;
+  recordings::session_file::put_field_set(bytes, [&](recordings::session_file::FieldWriter& out) {
     for_each_field(state, [&](std::string_view name, const auto& value) {
       if (!name.starts_with("axial_")) out(name, value);
     });

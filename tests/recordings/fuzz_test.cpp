@@ -16,7 +16,7 @@ namespace ctpm {
 namespace {
 
 using namespace ctpm::testing;
-using namespace ctpm::session_file;
+using namespace ctpm::recordings::session_file;
 
 constexpr std::uint64_t budget = 64 << 20;  // [bytes]
 
@@ -103,8 +103,8 @@ std::optional<S> decoded(const Bytes& bytes) {
 }
 
 /// Few enough spheres and elements that thousands of variants can be simulated.
-SessionStart tiny_start() {
-  SessionStart start = small_start(5, 2, 2);
+recordings::SessionStart tiny_start() {
+  recordings::SessionStart start = small_start(5, 2, 2);
   start.model.solver.max_iterations = 20;
   return start;
 }
@@ -124,7 +124,7 @@ void expect_safe_models(const Bytes& whole) {
     if (model->solver.max_iterations > 1000 || model->solver.substeps > 10) continue;
     State state = rest_state(*model);
     ASSERT_TRUE(check_state(*model, state).empty());
-    Stepper stepper(*model);
+    stepping::Stepper stepper(*model);
     for (std::int64_t tick : {0, 401, 402}) stepper.step(state, scripted_inputs(tick, 0.012));
     ++simulated;
   }
@@ -137,11 +137,11 @@ TEST(Fuzz, AModelIsRefusedOrCanBeSimulated) { expect_safe_models(bytes_of(tiny_s
 TEST(Fuzz, AModelOfAnEarlierProgramIsRefusedOrCanBeSimulated) { expect_safe_models(earlier_bytes(tiny_start().model)); }
 
 TEST(Fuzz, AStateIsRefusedOrCanBeSimulated) {
-  const SessionStart start = tiny_start();
+  const recordings::SessionStart start = tiny_start();
   State moved = start.initial_state;
   shake(moved, 1e-4, 1e-2);
   const Bytes whole = bytes_of(moved);
-  Stepper stepper(start.model);
+  stepping::Stepper stepper(start.model);
   Mutator mutate(2);
   int refused = 0, simulated = 0;
   for (int i = 0; i < 6000; ++i) {
@@ -158,7 +158,7 @@ TEST(Fuzz, AStateIsRefusedOrCanBeSimulated) {
 }
 
 TEST(Fuzz, ASurfaceIsRefusedOrCanBeDrawn) {
-  const SessionStart start = tiny_start();
+  const recordings::SessionStart start = tiny_start();
   const Bytes whole = bytes_of(start.surfaces[0]);
   Mutator mutate(3);
   int refused = 0, drawn = 0;
@@ -169,7 +169,7 @@ TEST(Fuzz, ASurfaceIsRefusedOrCanBeDrawn) {
       ++refused;
       continue;
     }
-    deform_surface(*surface, start.initial_state.position, start.model.organs[0].first, vertex);
+    surface::deform_surface(*surface, start.initial_state.position, start.model.organs[0].first, vertex);
     for (const auto& triangle : surface->triangle)
       for (const std::int32_t corner : triangle) ASSERT_LT(static_cast<std::size_t>(corner), vertex.size());
     ++drawn;
@@ -179,22 +179,22 @@ TEST(Fuzz, ASurfaceIsRefusedOrCanBeDrawn) {
 }
 
 TEST(Fuzz, RecordsAndEventsAreRefusedOrDecoded) {
-  const SessionStart start = tiny_start();
-  const Lived lived = live(start, 100, [](const State&, const TickRecord&) {});
+  const recordings::SessionStart start = tiny_start();
+  const Lived lived = live(start, 100, [](const State&, const recordings::TickRecord&) {});
   Bytes records;
   put_records(records, lived.records);
   const auto decoder = RecordDecoder::create(column_text());
   ASSERT_TRUE(decoder);
   ASSERT_TRUE(decoder->decode(records, 100));
-  const Bytes event = bytes_of(
-      Event{.tick = 7, .kind = EventKind::cut, .tool = 1, .severed = 3, .text = "severed", .values = {1, 2, 3}});
+  const Bytes event = bytes_of(recordings::Event{
+      .tick = 7, .kind = recordings::EventKind::cut, .tool = 1, .severed = 3, .text = "severed", .values = {1, 2, 3}});
   Mutator mutate(4);
   int refused = 0, taken = 0;
   for (int i = 0; i < 6000; ++i) {
     const auto some = decoder->decode(mutate(records), 100);
     (some ? taken : refused)++;
     EXPECT_TRUE(!some || some->size() == 100u);
-    (decoded<Event>(mutate(event)) ? taken : refused)++;
+    (decoded<recordings::Event>(mutate(event)) ? taken : refused)++;
   }
   EXPECT_GT(refused, 1000);
   EXPECT_GT(taken, 100);

@@ -32,12 +32,12 @@ struct Shared {
 std::int64_t now_ns() { return Clock::now().time_since_epoch() / std::chrono::nanoseconds(1); }
 
 /// The child: one session of 400 ms, ended properly if it lives that long.
-[[noreturn]] void record_until_killed(const std::string& path, const SessionStart& start, Shared& shared) {
-  auto writer = SessionWriter::create(path, start, {.keyframe_ticks = 50});
+[[noreturn]] void record_until_killed(const std::string& path, const recordings::SessionStart& start, Shared& shared) {
+  auto writer = recordings::SessionWriter::create(path, start, {.keyframe_ticks = 50});
   if (!writer) ::_exit(1);
   shared.created = true;
   auto deadline = Clock::now();
-  live(start, session_ticks, [&](const State& after, const TickRecord& record) {
+  live(start, session_ticks, [&](const State& after, const recordings::TickRecord& record) {
     std::this_thread::sleep_until(deadline += std::chrono::milliseconds(1));
     writer->append(after, record);
     const std::int64_t tick = shared.appended;
@@ -50,7 +50,7 @@ std::int64_t now_ns() { return Clock::now().time_since_epoch() / std::chrono::na
 
 void check_what_is_left(const std::string& path, const Shared& shared, std::int64_t killed_at_ns) {
   if (!shared.created && !std::filesystem::exists(path)) return;
-  auto reader = SessionReader::open(path);
+  auto reader = recordings::SessionReader::open(path);
   ASSERT_TRUE(reader) << text_of(reader.errors());
   const auto all = reader->check_all();
   ASSERT_TRUE(all) << text_of(all.errors());
@@ -61,9 +61,9 @@ void check_what_is_left(const std::string& path, const Shared& shared, std::int6
     EXPECT_LE(lost_ns, allowed_loss / std::chrono::nanoseconds(1))
         << "kept " << kept << " of " << shared.appended << " ticks";
   }
-  const auto verdict = verify_session(*reader);
+  const auto verdict = recordings::verify_session(*reader);
   ASSERT_TRUE(verdict) << text_of(verdict.errors());
-  EXPECT_TRUE(verdict->same) << to_string(*verdict);
+  EXPECT_TRUE(verdict->same) << recordings::to_string(*verdict);
   EXPECT_EQ(verdict->ticks_compared, kept);
 }
 
@@ -78,7 +78,7 @@ struct Victim {
 
 /// Some recorders at the same time, each killed at its own moment. They mostly sleep, so they do not slow
 /// each other down.
-void kill_together(std::span<Shared* const> memory, const SessionStart& start, std::mt19937& random) {
+void kill_together(std::span<Shared* const> memory, const recordings::SessionStart& start, std::mt19937& random) {
   std::uniform_int_distribution<int> life_us(500, 430000);
   std::vector<Victim> victims(memory.size());
   for (std::size_t i = 0; i < victims.size(); ++i) {
@@ -109,7 +109,7 @@ void kill_together(std::span<Shared* const> memory, const SessionStart& start, s
 
 void kill_recorders(int count) {
   constexpr int together = 2;
-  const SessionStart start = small_start(3, 2, 2);
+  const recordings::SessionStart start = small_start(3, 2, 2);
   std::mt19937 random(12345);
   void* memory = ::mmap(nullptr, together * sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   ASSERT_NE(memory, MAP_FAILED);

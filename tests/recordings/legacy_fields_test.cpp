@@ -12,7 +12,7 @@ namespace ctpm {
 namespace {
 
 using namespace ctpm::testing;
-using namespace ctpm::session_file;
+using namespace ctpm::recordings::session_file;
 
 constexpr std::uint64_t kBudget = 64 << 20;  // [bytes]
 
@@ -32,8 +32,8 @@ std::string read(Get&& get, const Bytes& bytes, S& structure) {
 }
 
 /// A block with springs, Kelvin units, two-sphere TPMs, constraints and resistance to a blade.
-Model tough_block(Structure structure, double viscosity = 5e6) {
-  Material material = liver_material();
+Model tough_block(network::Structure structure, double viscosity = 5e6) {
+  network::Material material = liver_material();
   material.viscosity = viscosity, material.fracture_toughness = 100, material.blade_friction = 2000;
   Model model = make_block_model(6, 5, 4, structure, material);
   model.tools = {scalpel(0.2)};
@@ -41,8 +41,8 @@ Model tough_block(Structure structure, double viscosity = 5e6) {
 }
 
 TEST(LegacyFields, AModelOfTwoTablesReadsAsTheSameModel) {
-  for (const Structure structure :
-       {Structure::mass_spring, Structure::angle_mass_spring, Structure::tpm, Structure::ctpm})
+  for (const network::Structure structure : {network::Structure::mass_spring, network::Structure::angle_mass_spring,
+                                             network::Structure::tpm, network::Structure::ctpm})
     for (const double viscosity : {0.0, 5e6}) {
       const Model model = tough_block(structure, viscosity);
       Model read_back;
@@ -53,14 +53,14 @@ TEST(LegacyFields, AModelOfTwoTablesReadsAsTheSameModel) {
 }
 
 TEST(LegacyFields, AStateOfTwoTablesReadsAsTheSameState) {
-  const Model model = tough_block(Structure::ctpm);
+  const Model model = tough_block(network::Structure::ctpm);
   ASSERT_GT(model.axial.internal_count(), 0u);
   State state = rest_state(model);
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   for (int i = 0; i < 60; ++i) {
     Inputs inputs;
     inputs.tool = 0, inputs.position = {0.0002, -0.06 + 0.002 * i, -0.05};
-    ASSERT_FALSE(is_refused(stepper.step(state, inputs).status));
+    ASSERT_FALSE(stepping::is_refused(stepper.step(state, inputs).status));
   }
   const std::size_t edges = model.axial.size() - model.axial.internal_count();
   const auto severed_among = [&](std::size_t first, std::size_t last) {
@@ -75,7 +75,7 @@ TEST(LegacyFields, AStateOfTwoTablesReadsAsTheSameState) {
 }
 
 TEST(LegacyFields, TheCellsOfATurnedOrganAreFound) {
-  Model model = tough_block(Structure::ctpm);
+  Model model = tough_block(network::Structure::ctpm);
   const Quat turn{0.5, 0.5, -0.5, 0.5};
   const Quat tilt{std::cos(0.3), 0.6 * std::sin(0.3), 0, 0.8 * std::sin(0.3)};
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
@@ -86,7 +86,7 @@ TEST(LegacyFields, TheCellsOfATurnedOrganAreFound) {
 }
 
 TEST(LegacyFields, TablesThatDoNotFitAreRefusedByName) {
-  const Model model = tough_block(Structure::ctpm);
+  const Model model = tough_block(network::Structure::ctpm);
   // One stiffness too many in one table and one too few in the other: together they would fit.
   Model moved = model;
   std::size_t first_tpm = model.axial.size() - model.axial.internal_count();
@@ -109,7 +109,7 @@ TEST(LegacyFields, TablesThatDoNotFitAreRefusedByName) {
 }
 
 TEST(LegacyFields, FieldsOfBothKindsAreRefused) {
-  const Model model = tough_block(Structure::ctpm);
+  const Model model = tough_block(network::Structure::ctpm);
   Bytes bytes;
   put_field_set(bytes, [&](FieldWriter& out) {
     for_each_field(model, out);

@@ -4,7 +4,7 @@
 #include "recordings/internal/session_database.h"
 #include "tests/recordings/sessions.h"
 
-namespace ctpm::session_file {
+namespace ctpm::recordings::session_file {
 
 /// An event as it was stored before events had fields.
 struct SentenceEvent {
@@ -20,15 +20,15 @@ void for_each_field(E& e, Visit&& visit) {
   visit("tick", e.tick), visit("kind", e.kind), visit("text", e.text), visit("values", e.values);
 }
 
-}  // namespace ctpm::session_file
+}  // namespace ctpm::recordings::session_file
 
 namespace ctpm::testing {
 
 /// A session without ticks whose Model stores `integrator`, written past the writer's own checks.
 inline void write_with_integrator(const std::string& path, std::int32_t integrator, std::int32_t physics_revision,
-                                  const std::vector<session_file::SentenceEvent>& events = {}) {
-  namespace file = session_file;
-  SessionStart start = small_start();
+                                  const std::vector<recordings::session_file::SentenceEvent>& events = {}) {
+  namespace file = recordings::session_file;
+  recordings::SessionStart start = small_start();
   start.model.solver.integrator = static_cast<Integrator>(integrator);
   start.physics_revision = physics_revision;
   const file::SessionIdentity identity = file::new_identity(start);

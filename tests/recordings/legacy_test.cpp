@@ -6,7 +6,7 @@ namespace ctpm {
 namespace {
 
 using namespace ctpm::testing;
-using session_file::SentenceEvent;
+using recordings::session_file::SentenceEvent;
 
 TEST(LegacyIntegrator, ARetiredOneIsRefusedByName) {
   const Folder folder;
@@ -14,7 +14,7 @@ TEST(LegacyIntegrator, ARetiredOneIsRefusedByName) {
        {std::pair{1, std::string("symplectic Euler")}, std::pair{3, std::string("extrapolated Euler")}}) {
     const std::string path = folder / (std::to_string(number) + ".ctpm");
     write_with_integrator(path, number, 0);
-    const auto reader = SessionReader::open(path);
+    const auto reader = recordings::SessionReader::open(path);
     ASSERT_FALSE(reader);
     EXPECT_TRUE(to_string(reader.errors()[0])
                     .starts_with(path + ": error: was recorded with " + name + ", which this program no longer has"))
@@ -25,16 +25,16 @@ TEST(LegacyIntegrator, ARetiredOneIsRefusedByName) {
 TEST(LegacyIntegrator, AutomaticBecomesWhatThisBuildChoosesAndTheReaderSaysSo) {
   const Folder folder;
   write_with_integrator(folder / "a.ctpm", 0, 0);
-  auto reader = SessionReader::open(folder / "a.ctpm");
+  auto reader = recordings::SessionReader::open(folder / "a.ctpm");
   ASSERT_TRUE(reader) << text_of(reader.errors());
-  const IntegratorChoice choice = choose_integrator(small_start().model);
+  const stepping::IntegratorChoice choice = stepping::choose_integrator(small_start().model);
   EXPECT_EQ(reader->start().model.solver.integrator, choice.integrator);
   EXPECT_EQ(reader->start().model.solver.substeps, choice.substeps);
   ASSERT_EQ(reader->remarks().size(), 1u);
-  EXPECT_NE(reader->remarks()[0].find(name_of(choice.integrator)), std::string::npos) << reader->remarks()[0];
+  EXPECT_NE(reader->remarks()[0].find(stepping::name_of(choice.integrator)), std::string::npos) << reader->remarks()[0];
 
   write_with_integrator(folder / "named.ctpm", 2, 0);
-  const auto named = SessionReader::open(folder / "named.ctpm");
+  const auto named = recordings::SessionReader::open(folder / "named.ctpm");
   ASSERT_TRUE(named);
   EXPECT_TRUE(named->remarks().empty());
 }
@@ -44,12 +44,12 @@ TEST(LegacyIntegrator, AFileThatStoresItsRevisionHoldsNoWordAndNoUnknownNumber) 
   for (const int number : {0, -1, 6, 255}) {
     const std::string path = folder / (std::to_string(number) + ".ctpm");
     write_with_integrator(path, number, kPhysicsRevision);
-    const auto reader = SessionReader::open(path);
+    const auto reader = recordings::SessionReader::open(path);
     ASSERT_FALSE(reader) << number;
     EXPECT_NE(text_of(reader.errors()).find("solver.integrator is of an unknown kind"), std::string::npos);
   }
   write_with_integrator(folder / "below.ctpm", 2, -1);
-  EXPECT_FALSE(SessionReader::open(folder / "below.ctpm")) << "a revision below 0";
+  EXPECT_FALSE(recordings::SessionReader::open(folder / "below.ctpm")) << "a revision below 0";
 }
 
 TEST(LegacyEvents, KeepTheirSentenceAndOnlyPiecesGetAKindOfTheirOwn) {
@@ -60,22 +60,22 @@ TEST(LegacyEvents, KeepTheirSentenceAndOnlyPiecesGetAKindOfTheirOwn) {
       {15, 8, "a piece comes loose; value: pieces", {1}},     {16, 99, "of a newer program", {1, 2}},
   };
   write_with_integrator(folder / "a.ctpm", 2, 0, stored);
-  auto reader = SessionReader::open(folder / "a.ctpm");
+  auto reader = recordings::SessionReader::open(folder / "a.ctpm");
   ASSERT_TRUE(reader) << text_of(reader.errors());
   const auto events = reader->events();
   ASSERT_TRUE(events) << text_of(events.errors());
   ASSERT_EQ(events->size(), stored.size());
   for (std::size_t i = 0; i < stored.size(); ++i) {
-    const Event& event = (*events)[i];
-    EXPECT_EQ(event.kind == EventKind::piece_came_loose, i == 1) << i;
+    const recordings::Event& event = (*events)[i];
+    EXPECT_EQ(event.kind == recordings::EventKind::piece_came_loose, i == 1) << i;
     if (i != 1) {
       EXPECT_EQ(static_cast<std::int32_t>(event.kind), stored[i].kind);
     }
-    EXPECT_EQ(describe(event, reader->start().model), stored[i].text);
+    EXPECT_EQ(recordings::describe(event, reader->start().model), stored[i].text);
     EXPECT_EQ(event.values, stored[i].values);
   }
-  EXPECT_EQ(pieces_came_loose(*events, 12), 0);
-  EXPECT_EQ(pieces_came_loose(*events, 100), 2);
+  EXPECT_EQ(recordings::pieces_came_loose(*events, 12), 0);
+  EXPECT_EQ(recordings::pieces_came_loose(*events, 100), 2);
 }
 
 }  // namespace

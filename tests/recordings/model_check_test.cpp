@@ -12,12 +12,12 @@ namespace ctpm {
 namespace {
 
 using namespace ctpm::testing;
-using session_file::check_model;
-using session_file::check_state;
+using recordings::session_file::check_model;
+using recordings::session_file::check_state;
 
 /// A Model with an entry in every array.
 Model rich_model() {
-  Model model = make_block_model(5, 3, 3, Structure::ctpm);
+  Model model = make_block_model(5, 3, 3, network::Structure::ctpm);
   model.tools = {ball(0.006), scalpel(0.02), {"pin", ToolKind::pin, 0, 0, 3}};
   model.angle_springs.a = {0}, model.angle_springs.b = {1}, model.angle_springs.c = {2};
   model.angle_springs.k = {1}, model.angle_springs.edge[0] = {0}, model.angle_springs.edge[1] = {1};
@@ -44,7 +44,7 @@ class Spoiler {
 
   template <class T>
   void operator()(std::string_view name, std::vector<T>& values) {
-    if constexpr (session_file::Structure_<T>) {
+    if constexpr (recordings::session_file::Structure_<T>) {
       for (T& value : values) for_each_field(value, *this);
     } else {
       if (at_++ != target_) return;

@@ -37,7 +37,7 @@ TEST(OldFiles, EachOpensAndGivesAllThatItHolds) {
     const std::string name = entry.path().filename().string();
     SCOPED_TRACE(name);
     const Folder folder;
-    auto reader = SessionReader::open(copy_of(name, folder));
+    auto reader = recordings::SessionReader::open(copy_of(name, folder));
     ASSERT_TRUE(reader) << text_of(reader.errors());
     EXPECT_EQ("v" + std::to_string(reader->format_version()), name.substr(0, name.find_first_of("-.")));
     EXPECT_TRUE(reader->ended_cleanly());
@@ -54,14 +54,14 @@ TEST(OldFiles, EachOpensAndGivesAllThatItHolds) {
       ASSERT_TRUE(keyframe) << text_of(keyframe.errors());
       // The hash that the program of then gave.
       if (tick == 0) continue;
-      EXPECT_EQ(state_hash(keyframe->state), (*ticks)[std::size_t(tick - 1)].state_hash) << tick;
+      EXPECT_EQ(recordings::state_hash(keyframe->state), (*ticks)[std::size_t(tick - 1)].state_hash) << tick;
     }
     expect_cells_of_neighbours(reader->start().model);
     EXPECT_TRUE(reader->events());
     EXPECT_TRUE(reader->statistics());
     EXPECT_EQ(reader->start().physics_revision, 0) << "recorded before revisions were stored";
     // It need not replay to the bit for ever, but a replay of it can always be asked for.
-    const auto verdict = verify_session(*reader);
+    const auto verdict = recordings::verify_session(*reader);
     ASSERT_TRUE(verdict) << text_of(verdict.errors());
     EXPECT_EQ(verdict->ticks_compared, reader->tick_count());
     ++count;
@@ -72,7 +72,7 @@ TEST(OldFiles, EachOpensAndGivesAllThatItHolds) {
 /// What the session in v1.ctpm came to when it was recorded with record_session(); never to be changed.
 TEST(OldFiles, AFileOfVersion1GivesWhatWasRecorded) {
   const Folder folder;
-  auto reader = SessionReader::open(copy_of("v1.ctpm", folder));
+  auto reader = recordings::SessionReader::open(copy_of("v1.ctpm", folder));
   ASSERT_TRUE(reader) << text_of(reader.errors());
   EXPECT_EQ(reader->start().scene_text, "{ \"scene\": \"a block\" }\n");
   EXPECT_EQ(reader->start().metadata.at("user"), "a trainee");
@@ -84,7 +84,7 @@ TEST(OldFiles, AFileOfVersion1GivesWhatWasRecorded) {
   double most_force = 0;
   std::int64_t severed = 0;
   for (std::size_t i = 0; i < ticks->size(); ++i) {
-    const TickRecord& record = (*ticks)[i];
+    const recordings::TickRecord& record = (*ticks)[i];
     EXPECT_EQ(record.inputs.tool, i < 400 ? 0 : 1) << i;
     EXPECT_EQ(record.inputs.buttons, i < 400 ? 0u : 1u) << i;
     if (i >= 400) {
@@ -104,7 +104,7 @@ TEST(OldFiles, AFileOfVersion1GivesWhatWasRecorded) {
   const auto events = reader->events();
   ASSERT_TRUE(events);
   EXPECT_EQ(events->size(), 6u);
-  EXPECT_EQ(events->front().kind, EventKind::cut);
+  EXPECT_EQ(events->front().kind, recordings::EventKind::cut);
   const auto keyframes = reader->keyframe_ticks();
   ASSERT_TRUE(keyframes);
   EXPECT_EQ(*keyframes, (std::vector<std::int64_t>{0, 250, 500}));

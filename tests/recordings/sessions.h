@@ -69,8 +69,8 @@ inline Surface small_surface() {
 }
 
 /// The start of a session on a small block with a ball and a scalpel.
-inline SessionStart small_start(int ni = 3, int nj = 3, int nk = 3) {
-  SessionStart start;
+inline recordings::SessionStart small_start(int ni = 3, int nj = 3, int nk = 3) {
+  recordings::SessionStart start;
   start.scene_text = "{ \"scene\": \"a block\" }\n";
   start.look = "block rose";
   start.model = make_block_model(ni, nj, nk);
@@ -100,40 +100,42 @@ inline Inputs scripted_inputs(std::int64_t tick, double top) {
 
 /// A session that was really simulated: what was recorded, in memory.
 struct Lived {
-  std::vector<TickRecord> records;
+  std::vector<recordings::TickRecord> records;
   State last;
 };
 
 /// Simulates `ticks` ticks from the start and gives each to `each(state, record)`.
 template <class Each>
-Lived live(const SessionStart& start, std::int64_t ticks, Each&& each) {
+Lived live(const recordings::SessionStart& start, std::int64_t ticks, Each&& each) {
   Lived lived;
   lived.last = start.initial_state;
-  Stepper stepper(start.model);
+  stepping::Stepper stepper(start.model);
   const double top = start.model.rest_position.z.back();
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
     const Inputs inputs = scripted_inputs(tick, top);
-    const StepReport report = stepper.step(lived.last, inputs);
-    lived.records.push_back(
-        make_record(inputs, report, static_cast<double>(250000 + tick % 977) / 1e9, state_hash(lived.last)));
+    const stepping::StepReport report = stepper.step(lived.last, inputs);
+    lived.records.push_back(recordings::make_record(inputs, report, static_cast<double>(250000 + tick % 977) / 1e9,
+                                                    recordings::state_hash(lived.last)));
     each(lived.last, lived.records.back());
   }
   return lived;
 }
 
 /// Records a whole session and ends it. The writer may wait: these sessions run faster than a disk.
-inline Lived record_session(const std::string& path, const SessionStart& start, std::int64_t ticks,
+inline Lived record_session(const std::string& path, const recordings::SessionStart& start, std::int64_t ticks,
                             std::int32_t keyframe_ticks = 250) {
-  WriterOptions options;
+  recordings::WriterOptions options;
   options.keyframe_ticks = keyframe_ticks;
   options.wait_when_full = true;
-  auto writer = SessionWriter::create(path, start, options);
+  auto writer = recordings::SessionWriter::create(path, start, options);
   CTPM_CHECK(bool(writer), "a test's session can be created");
-  const Lived lived = live(start, ticks, [&](const State& after, const TickRecord& record) {
+  const Lived lived = live(start, ticks, [&](const State& after, const recordings::TickRecord& record) {
     writer->append(after, record);
     if (record.severed > 0)
-      writer->event(
-          {.tick = after.tick - 1, .kind = EventKind::cut, .tool = record.inputs.tool, .severed = record.severed});
+      writer->event({.tick = after.tick - 1,
+                     .kind = recordings::EventKind::cut,
+                     .tool = record.inputs.tool,
+                     .severed = record.severed});
   });
   CTPM_CHECK(bool(writer->finish({{"input_age_p50_s", 0.0005}})), "a test's session can be finished");
   return lived;

@@ -14,7 +14,7 @@
 namespace ctpm {
 namespace {
 
-using session_file::FieldType;
+using recordings::session_file::FieldType;
 using Numbers = std::map<int, std::string>;
 
 // One switch for each enumeration, without a default: a new enumerator does not compile until it is named here.
@@ -43,47 +43,47 @@ const char* name_in_file(ToolKind value) {
   return nullptr;
 }
 
-const char* name_in_file(StepStatus value) {
+const char* name_in_file(stepping::StepStatus value) {
   switch (value) {
-    case StepStatus::ok:
+    case stepping::StepStatus::ok:
       return "ok";
-    case StepStatus::not_converged:
+    case stepping::StepStatus::not_converged:
       return "not_converged";
-    case StepStatus::bad_input:
+    case stepping::StepStatus::bad_input:
       return "bad_input";
-    case StepStatus::diverged:
+    case stepping::StepStatus::diverged:
       return "diverged";
-    case StepStatus::too_long:
+    case stepping::StepStatus::too_long:
       return "too_long";
   }
   return nullptr;
 }
 
-const char* name_in_file(EventKind value) {
+const char* name_in_file(recordings::EventKind value) {
   switch (value) {
-    case EventKind::contact_begins:
+    case recordings::EventKind::contact_begins:
       return "contact_begins";
-    case EventKind::contact_ends:
+    case recordings::EventKind::contact_ends:
       return "contact_ends";
-    case EventKind::cut:
+    case recordings::EventKind::cut:
       return "cut";
-    case EventKind::damage:
+    case recordings::EventKind::damage:
       return "damage";
-    case EventKind::late_tick:
+    case recordings::EventKind::late_tick:
       return "late_tick";
-    case EventKind::device_lost:
+    case recordings::EventKind::device_lost:
       return "device_lost";
-    case EventKind::device_back:
+    case recordings::EventKind::device_back:
       return "device_back";
-    case EventKind::note:
+    case recordings::EventKind::note:
       return "note";
-    case EventKind::piece_came_loose:
+    case recordings::EventKind::piece_came_loose:
       return "piece_came_loose";
-    case EventKind::press_reached_force:
+    case recordings::EventKind::press_reached_force:
       return "press_reached_force";
-    case EventKind::press_gave_up:
+    case recordings::EventKind::press_gave_up:
       return "press_gave_up";
-    case EventKind::step_refused:
+    case recordings::EventKind::step_refused:
       return "step_refused";
   }
   return nullptr;
@@ -124,7 +124,7 @@ TEST(StoredNumbers, OfIntegratorsKeepTheirMeaning) {
   EXPECT_EQ(numbers_of<Integrator>(), (Numbers{{2, "backward_euler"}, {4, "leapfrog"}, {5, "sdirk2"}}));
   const Numbers retired{{0, "automatic"}, {1, "symplectic Euler"}, {3, "extrapolated Euler"}};
   for (int number = 0; number < 256; ++number) {
-    const char* name = session_file::retired_integrator(number);
+    const char* name = recordings::session_file::retired_integrator(number);
     EXPECT_EQ(name != nullptr, retired.contains(number)) << number;
     if (!name) continue;
     EXPECT_EQ(name, retired.at(number));
@@ -137,23 +137,23 @@ TEST(StoredNumbers, OfToolsKeepTheirMeaning) {
 }
 
 TEST(StoredNumbers, OfStepReportsKeepTheirMeaning) {
-  EXPECT_EQ(numbers_of<StepStatus>(),
+  EXPECT_EQ(numbers_of<stepping::StepStatus>(),
             (Numbers{{0, "ok"}, {1, "not_converged"}, {2, "bad_input"}, {3, "diverged"}, {4, "too_long"}}));
 }
 
 TEST(StoredNumbers, OfEventsKeepTheirMeaning) {
-  EXPECT_EQ(numbers_of<EventKind>(), (Numbers{{1, "contact_begins"},
-                                              {2, "contact_ends"},
-                                              {3, "cut"},
-                                              {4, "damage"},
-                                              {5, "late_tick"},
-                                              {6, "device_lost"},
-                                              {7, "device_back"},
-                                              {8, "note"},
-                                              {9, "piece_came_loose"},
-                                              {10, "press_reached_force"},
-                                              {11, "press_gave_up"},
-                                              {12, "step_refused"}}));
+  EXPECT_EQ(numbers_of<recordings::EventKind>(), (Numbers{{1, "contact_begins"},
+                                                          {2, "contact_ends"},
+                                                          {3, "cut"},
+                                                          {4, "damage"},
+                                                          {5, "late_tick"},
+                                                          {6, "device_lost"},
+                                                          {7, "device_back"},
+                                                          {8, "note"},
+                                                          {9, "piece_came_loose"},
+                                                          {10, "press_reached_force"},
+                                                          {11, "press_gave_up"},
+                                                          {12, "step_refused"}}));
 }
 
 TEST(StoredNumbers, OfFieldTypesKeepTheirMeaning) {

@@ -15,13 +15,13 @@ constexpr Vec3 kDown{0, 0, -9.81};
 
 /// A block of 5 x 3 x 4 spheres, 12 mm apart: x from -24 to 24, y from -12 to 12, z from 0 to 36 mm.
 FilledOrgan block() {
-  OrganSpec organ;
+  scenes::OrganSpec organ;
   organ.rig.emplace().block = Vec3{5, 3, 4};
-  return fill_rig(organ);
+  return scenes::fill_rig(organ);
 }
 
-AnchorSpec anchor_of(const std::string& text) {
-  const Result<AnchorSpec> anchor = parse_anchor(text);
+scenes::AnchorSpec anchor_of(const std::string& text) {
+  const Result<scenes::AnchorSpec> anchor = scenes::parse_anchor(text);
   if (!anchor) {
     ADD_FAILURE() << to_string(anchor.errors().front());
     return {};
@@ -31,10 +31,10 @@ AnchorSpec anchor_of(const std::string& text) {
 
 /// The centres that the anchors hold.
 std::vector<Vec3> held(const std::vector<std::string>& anchors, Vec3 gravity = kDown) {
-  std::vector<AnchorSpec> specs;
+  std::vector<scenes::AnchorSpec> specs;
   for (const std::string& text : anchors) specs.push_back(anchor_of(text));
   const FilledOrgan organ = block();
-  const Result<std::vector<std::int32_t>> selected = select_anchored(organ, specs, gravity, "/organs/0");
+  const Result<std::vector<std::int32_t>> selected = scenes::select_anchored(organ, specs, gravity, "/organs/0");
   if (!selected) {
     ADD_FAILURE() << to_string(selected.errors().front());
     return {};
@@ -79,8 +79,8 @@ TEST(Anchors, APlaneHoldsWhatIsBehindItAndOnIt) {
 TEST(Anchors, ASphereInTwoRegionsIsHeldOnceAndCountedInBoth) {
   const FilledOrgan organ = block();
   std::vector<std::int32_t> counts;
-  const Result<std::vector<std::int32_t>> selected =
-      select_anchored(organ, {anchor_of("lowest:0"), anchor_of("plane:-24,0,0,1,0,0")}, kDown, "/organs/0", &counts);
+  const Result<std::vector<std::int32_t>> selected = scenes::select_anchored(
+      organ, {anchor_of("lowest:0"), anchor_of("plane:-24,0,0,1,0,0")}, kDown, "/organs/0", &counts);
   ASSERT_TRUE(selected);
   EXPECT_EQ(counts, (std::vector<std::int32_t>{15, 12}));
   EXPECT_EQ(selected->size(), 15u + 12 - 3);
@@ -88,9 +88,9 @@ TEST(Anchors, ASphereInTwoRegionsIsHeldOnceAndCountedInBoth) {
 }
 
 TEST(Anchors, EachThatHoldsNoSphereIsAnErrorWithTheOrgansExtent) {
-  const Result<std::vector<std::int32_t>> selected =
-      select_anchored(block(), {anchor_of("sphere:0,0,500,10"), anchor_of("lowest:0"), anchor_of("box:1,1,1,2,2,2")},
-                      kDown, "/organs/3");
+  const Result<std::vector<std::int32_t>> selected = scenes::select_anchored(
+      block(), {anchor_of("sphere:0,0,500,10"), anchor_of("lowest:0"), anchor_of("box:1,1,1,2,2,2")}, kDown,
+      "/organs/3");
   ASSERT_FALSE(selected);
   ASSERT_EQ(selected.errors().size(), 2u);
   EXPECT_EQ(to_string(selected.errors()[0]),
@@ -100,21 +100,21 @@ TEST(Anchors, EachThatHoldsNoSphereIsAnErrorWithTheOrgansExtent) {
 }
 
 TEST(Anchors, AnOrganWithoutSpheresIsAnError) {
-  const Result<std::vector<std::int32_t>> selected = select_anchored({}, {}, kDown, "/organs/0");
+  const Result<std::vector<std::int32_t>> selected = scenes::select_anchored({}, {}, kDown, "/organs/0");
   ASSERT_FALSE(selected);
   EXPECT_EQ(selected.errors().front().message, "the organ has no spheres");
 }
 
 TEST(ParseAnchor, ReadsEveryKindInMillimetres) {
   EXPECT_EQ(anchor_of("lowest:4.1").lowest, 0.0041);
-  EXPECT_EQ(anchor_of("box:1,-2,3.5,4,5e1,6").box, (BoxRegion{{0.001, -0.002, 0.0035}, {0.004, 0.05, 0.006}}));
-  EXPECT_EQ(anchor_of("sphere:1,2,3,4").sphere, (SphereRegion{{0.001, 0.002, 0.003}, 0.004}));
-  EXPECT_EQ(anchor_of("plane:1,2,3,0,0,-2").plane, (PlaneRegion{{0.001, 0.002, 0.003}, {0, 0, -2}}));
+  EXPECT_EQ(anchor_of("box:1,-2,3.5,4,5e1,6").box, (scenes::BoxRegion{{0.001, -0.002, 0.0035}, {0.004, 0.05, 0.006}}));
+  EXPECT_EQ(anchor_of("sphere:1,2,3,4").sphere, (scenes::SphereRegion{{0.001, 0.002, 0.003}, 0.004}));
+  EXPECT_EQ(anchor_of("plane:1,2,3,0,0,-2").plane, (scenes::PlaneRegion{{0.001, 0.002, 0.003}, {0, 0, -2}}));
 }
 
 TEST(ParseAnchor, SetsOneRegionOnly) {
   for (const std::string text : {"lowest:4", "box:0,0,0,1,1,1", "sphere:1,2,3,4", "plane:1,2,3,0,0,1"}) {
-    const AnchorSpec anchor = anchor_of(text);
+    const scenes::AnchorSpec anchor = anchor_of(text);
     EXPECT_EQ(anchor.lowest.has_value() + anchor.box.has_value() + anchor.sphere.has_value() + anchor.plane.has_value(),
               1);
   }
@@ -145,7 +145,7 @@ TEST(ParseAnchor, RefusesWhatIsNotAnAnchorAndSaysHowOneIsWritten) {
                                  "plane:0,0,0,1",
                                  "floor:3",
                                  "box:1,,3,4,5,6"}) {
-    const Result<AnchorSpec> anchor = parse_anchor(text);
+    const Result<scenes::AnchorSpec> anchor = scenes::parse_anchor(text);
     ASSERT_FALSE(anchor) << text;
     EXPECT_EQ(anchor.errors().front().where, "--anchor");
     EXPECT_EQ(anchor.errors().front().message.find("got '" + text + "', must be lowest:HEIGHT, box:"), 0u);
@@ -153,12 +153,12 @@ TEST(ParseAnchor, RefusesWhatIsNotAnAnchorAndSaysHowOneIsWritten) {
 }
 
 TEST(ParseAnchor, WhatItReadsIsWrittenWithTheSameDigits) {
-  SceneSpec scene;
+  scenes::SceneSpec scene;
   scene.name = "a";
-  OrganSpec& organ = scene.organs.emplace_back();
+  scenes::OrganSpec& organ = scene.organs.emplace_back();
   organ.name = "a", organ.mesh = "a.obj", organ.material.preset = "liver";
   organ.anchors = {anchor_of("lowest:4.1"), anchor_of("sphere:0.3,1.1,2.2,3.3")};
-  const std::string text = write_scene(scene);
+  const std::string text = scenes::write_scene(scene);
   EXPECT_NE(text.find("\"lowest_mm\": 4.1}"), std::string::npos) << text;
   EXPECT_NE(text.find("\"centre_mm\": [0.3, 1.1, 2.2], \"radius_mm\": 3.3"), std::string::npos) << text;
 }

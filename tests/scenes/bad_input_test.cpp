@@ -14,7 +14,7 @@ std::string scene_with(const std::string& organ_keys, const std::string& more = 
          "}]\n" + more + "}\n";
 }
 std::string errors_of(const std::string& text) {
-  const Result<SceneText> scene = read_scene(text, "t.json");
+  const Result<scenes::SceneText> scene = scenes::read_scene(text, "t.json");
   if (scene) return "no error";
   std::string all;
   for (const Error& error : scene.errors()) all += to_string(error) + "\n";
@@ -233,7 +233,7 @@ TEST(BadInput, AnOldOrForeignFileIsRefused) {
 TEST(BadInput, OfVeryManyProblemsTheFirstAreListedAndTheOthersCounted) {
   std::string keys;
   for (int i = 0; i < 5000; ++i) keys += "\"key" + std::to_string(i) + "\": 1,\n";
-  const Result<SceneText> scene = read_scene(scene_with(keys + kMesh + kLiver), "t.json");
+  const Result<scenes::SceneText> scene = scenes::read_scene(scene_with(keys + kMesh + kLiver), "t.json");
   ASSERT_FALSE(scene);
   ASSERT_EQ(scene.errors().size(), 1001u);
   EXPECT_EQ(to_string(scene.errors().front()).find("t.json:2:1: error: /organs/0/key0: unknown key"), 0u);

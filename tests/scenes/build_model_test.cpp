@@ -13,8 +13,8 @@ namespace ctpm {
 namespace {
 
 /// A scene of a liver block of 3 x 3 x 3 spheres, 12 mm apart, with more keys of the organ and of the scene.
-SceneSpec block_scene(const std::string& more_of_organ = "", const std::string& more = "") {
-  const Result<SceneText> scene = read_scene(
+scenes::SceneSpec block_scene(const std::string& more_of_organ = "", const std::string& more = "") {
+  const Result<scenes::SceneText> scene = scenes::read_scene(
       R"({"format": "ctpm-scene", "version": 1, "name": "block", "organs": [{"name": "block", "rig": {"block": [3, 3, 3]},
           "material": {"preset": "liver"})" +
           more_of_organ + "}]" + more + "}",
@@ -26,10 +26,10 @@ SceneSpec block_scene(const std::string& more_of_organ = "", const std::string& 
   return scene->spec;
 }
 
-BuiltScene build(const SceneSpec& scene) {
+scenes::BuiltScene build(const scenes::SceneSpec& scene) {
   std::vector<FilledOrgan> organs;
-  for (const OrganSpec& organ : scene.organs) organs.push_back(fill_rig(organ));
-  Result<BuiltScene> built = build_model(scene, organs);
+  for (const scenes::OrganSpec& organ : scene.organs) organs.push_back(scenes::fill_rig(organ));
+  Result<scenes::BuiltScene> built = scenes::build_model(scene, organs);
   if (!built) {
     ADD_FAILURE() << to_string(built.errors().front());
     return {};
@@ -37,18 +37,18 @@ BuiltScene build(const SceneSpec& scene) {
   return std::move(*built);
 }
 
-Errors errors_of_build(const SceneSpec& scene) {
+Errors errors_of_build(const scenes::SceneSpec& scene) {
   std::vector<FilledOrgan> organs;
-  for (const OrganSpec& organ : scene.organs) organs.push_back(fill_rig(organ));
-  const Result<BuiltScene> built = build_model(scene, organs);
+  for (const scenes::OrganSpec& organ : scene.organs) organs.push_back(scenes::fill_rig(organ));
+  const Result<scenes::BuiltScene> built = scenes::build_model(scene, organs);
   return built ? Errors{} : built.errors();
 }
 
 const std::string kBall = R"(, "tools": [{"name": "ball", "kind": "ball", "radius_mm": 6}])";
 
 TEST(FillRig, ABlockIsCentredOverTheOriginWithLayersFromItsFaces) {
-  const SceneSpec scene = block_scene();
-  const FilledOrgan organ = fill_rig(scene.organs[0]);
+  const scenes::SceneSpec scene = block_scene();
+  const FilledOrgan organ = scenes::fill_rig(scene.organs[0]);
   ASSERT_EQ(organ.centre.size(), 27u);
   EXPECT_DOUBLE_EQ(organ.spacing, 0.012);
   Vec3 sum;
@@ -63,7 +63,7 @@ TEST(FillRig, ABlockIsCentredOverTheOriginWithLayersFromItsFaces) {
 }
 
 TEST(BuildModel, LoadsActOnTheNearestSphereWithTheirTimes) {
-  const BuiltScene built = build(block_scene(
+  const scenes::BuiltScene built = build(block_scene(
       "", R"(, "loads": [{"at_mm": [1, -1, 30], "force_n": [0.1, 0, -0.13], "start_s": 0.5, "ramp_s": 0.25}])"));
   const Loads& loads = built.model.loads;
   ASSERT_EQ(loads.size(), 1u);
@@ -74,7 +74,7 @@ TEST(BuildModel, LoadsActOnTheNearestSphereWithTheirTimes) {
 }
 
 TEST(BuildModel, ProbesAndPinsTakeTheNearestSphereTheFirstOfSeveral) {
-  const BuiltScene built =
+  const scenes::BuiltScene built =
       build(block_scene("", R"(, "probes": [{"name": "p", "at_mm": [12, 12, 0]}, {"name": "q", "at_mm": [6, 0, 0]}],
       "tools": [{"name": "pin", "kind": "pin", "holds_mm": [-13, 0, 25]}])"));
   ASSERT_EQ(built.probe_sphere.size(), 2u);
@@ -87,28 +87,28 @@ TEST(BuildModel, ProbesAndPinsTakeTheNearestSphereTheFirstOfSeveral) {
 }
 
 TEST(BuildModel, AnchorsAreHeldAndCounted) {
-  const BuiltScene built = build(block_scene(R"(, "anchors": [{"lowest_mm": 2}])"));
+  const scenes::BuiltScene built = build(block_scene(R"(, "anchors": [{"lowest_mm": 2}])"));
   EXPECT_EQ(built.anchored_count, std::vector<std::int32_t>{9});
   for (std::size_t i = 0; i < 27; ++i) EXPECT_EQ(built.model.held_axes[i], i < 9 ? kAnchored : 0);
 }
 
 TEST(BuildModel, GuidesHoldTheAxesThatTheyName) {
-  SceneSpec scene = block_scene();
+  scenes::SceneSpec scene = block_scene();
   scene.organs[0].rig->guides = {{{1, 1, 1}, "x"}, {{0, 2, 2}, "zy"}};
-  const BuiltScene built = build(scene);
+  const scenes::BuiltScene built = build(scene);
   EXPECT_EQ(built.model.held_axes[13], 1);
   EXPECT_EQ(built.model.held_axes[24], 2 | 4);
   EXPECT_EQ(std::count(built.model.held_axes.begin(), built.model.held_axes.end(), 0), 25);
 }
 
 TEST(BuildModel, SolverSettingsAreTheScenesOrElseThoseOfTheCore) {
-  const BuiltScene plain = build(block_scene());
+  const scenes::BuiltScene plain = build(block_scene());
   const SolverSettings standard;
   EXPECT_EQ(plain.model.solver.tolerance, standard.tolerance);
   EXPECT_EQ(plain.model.solver.velocity_floor, standard.velocity_floor);
   EXPECT_EQ(plain.model.solver.max_iterations, standard.max_iterations);
   EXPECT_EQ(plain.model.solver.substeps, standard.substeps);
-  const BuiltScene own = build(
+  const scenes::BuiltScene own = build(
       block_scene("",
                   R"(, "solver": {"tolerance": 1e-7, "velocity_floor_mm_per_s": 2, "max_iterations": 77, "substeps": 3},
       "tick_s": 0.002, "gravity_m_per_s2": [1, 2, 3])"));
@@ -121,11 +121,11 @@ TEST(BuildModel, SolverSettingsAreTheScenesOrElseThoseOfTheCore) {
 }
 
 TEST(BuildModel, AToolIsTwentyTimesAsStiffAsTheStiffestEdgeUnlessTheSceneSaysMore) {
-  const double area = edge_area(find_preset("liver")->material, 0.012);
+  const double area = network::edge_area(scenes::find_preset("liver")->material, 0.012);
   EXPECT_NEAR(build(block_scene("", kBall)).model.contact_k, 20 * 15e6 * area, 1e-9);
   EXPECT_EQ(build(block_scene("", kBall)).model.contact_friction, 0.3);
   EXPECT_NEAR(build(block_scene(R"(, "model": "tpm")", kBall)).model.contact_k, 20 * 15e6 * area, 1e-9);
-  const BuiltScene own =
+  const scenes::BuiltScene own =
       build(block_scene("", kBall + R"(, "contact_stiffness_n_per_m": 1234, "contact_friction": 0.1)"));
   EXPECT_EQ(own.model.contact_k, 1234);
   EXPECT_EQ(own.model.contact_friction, 0.1);
@@ -135,7 +135,7 @@ TEST(BuildModel, AToolIsTwentyTimesAsStiffAsTheStiffestEdgeUnlessTheSceneSaysMor
 TEST(BuildModel, TheLawsOfContactAreTheScenesOrElseThoseOfTheCore) {
   const std::string kTools = R"(, "tools": [{"name": "ball", "kind": "ball", "radius_mm": 6},
       {"name": "knife", "kind": "scalpel", "blade_length_mm": 50)";
-  const BuiltScene plain = build(block_scene("", kTools + R"(}], "lips_meet": true)"));
+  const scenes::BuiltScene plain = build(block_scene("", kTools + R"(}], "lips_meet": true)"));
   const Model standard;
   EXPECT_EQ(plain.model.contact_damping, standard.contact_damping);
   EXPECT_EQ(plain.model.contact_stick_time, standard.contact_stick_time);
@@ -145,7 +145,7 @@ TEST(BuildModel, TheLawsOfContactAreTheScenesOrElseThoseOfTheCore) {
   EXPECT_EQ(blade.flank_height, other.flank_height);
   EXPECT_EQ(blade.blade_thickness, other.blade_thickness);
 
-  const BuiltScene own =
+  const scenes::BuiltScene own =
       build(block_scene("", kTools + R"(, "blade_reach_mm": 4, "flank_height_mm": 7, "blade_thickness_mm": 0.25}],
       "lips_meet": true, "contact_damping_s_per_m": 20, "contact_stick_time_s": 0.5, "cut_face_stiffening": 3)"));
   EXPECT_EQ(own.model.contact_damping, 20);
@@ -157,12 +157,12 @@ TEST(BuildModel, TheLawsOfContactAreTheScenesOrElseThoseOfTheCore) {
 }
 
 TEST(BuildModel, TheOrgansKeysReachTheNetwork) {
-  const BuiltScene ctpm = build(block_scene(R"(, "damage_depth_mm": 12)"));
+  const scenes::BuiltScene ctpm = build(block_scene(R"(, "damage_depth_mm": 12)"));
   EXPECT_EQ(ctpm.model.organs.at(0).damage_depth, 0.012);
   EXPECT_EQ(ctpm.model.organs.at(0).name, "block");
   EXPECT_GT(ctpm.model.axial.size(), 0u);
   EXPECT_FALSE(ctpm.model.axial.c.empty());
-  const BuiltScene springs = build(block_scene(R"(, "model": "mass-spring")"));
+  const scenes::BuiltScene springs = build(block_scene(R"(, "model": "mass-spring")"));
   EXPECT_TRUE(springs.model.axial.c.empty());
   EXPECT_EQ(build(block_scene(R"(, "model": "tpm")")).model.axial.internal_count(), springs.model.axial.size());
   EXPECT_GT(build(block_scene(R"(, "model": "angle-mass-spring")")).model.angle_springs.size(), 0u);
@@ -170,21 +170,21 @@ TEST(BuildModel, TheOrgansKeysReachTheNetwork) {
 }
 
 /// A block of 5 x 5 x 5 spheres, 6, 18 and 30 mm deep, with layers.
-SceneSpec layered_scene(const std::string& layers) {
-  SceneSpec scene = block_scene(R"(, "layers": [)" + layers + "]");
+scenes::SceneSpec layered_scene(const std::string& layers) {
+  scenes::SceneSpec scene = block_scene(R"(, "layers": [)" + layers + "]");
   scene.organs.at(0).rig->block = Vec3{5, 5, 5};
   return scene;
 }
 
 TEST(BuildModel, LayersHaveTheirOwnTissue) {
-  const BuiltScene built = build(layered_scene(
+  const scenes::BuiltScene built = build(layered_scene(
       R"({"to_depth_mm": 12, "material": {"preset": "skin", "density_kg_per_m3": 1200}}, {"to_depth_mm": 20, "material": {"preset": "kidney", "density_kg_per_m3": 1100}})"));
   const double volume = 0.012 * 0.012 * 0.012;
   EXPECT_NEAR(built.model.mass[0], 1200 * volume, 1e-15);
   EXPECT_NEAR(built.model.mass[31], 1100 * volume, 1e-15);
   EXPECT_NEAR(built.model.mass[62], 1060 * volume, 1e-15);
   // Along the block's first line all five spheres are skin.
-  EXPECT_NEAR(built.model.axial.k.at(0), 82e6 * edge_area(find_preset("skin")->material, 0.012), 1e-9);
+  EXPECT_NEAR(built.model.axial.k.at(0), 82e6 * network::edge_area(scenes::find_preset("skin")->material, 0.012), 1e-9);
 }
 
 TEST(BuildModel, ALayerDeeperThanTheOrganIsAnErrorAtItsPlace) {
@@ -207,7 +207,7 @@ TEST(BuildModel, ALayerThatHoldsNoSphereIsAnErrorAtItsPlace) {
 }
 
 TEST(BuildModel, SofteningCanBeLeftOut) {
-  SceneSpec scene = block_scene();
+  scenes::SceneSpec scene = block_scene();
   scene.organs[0].rig->block = Vec3{5, 5, 5};
   EXPECT_TRUE(build(scene).model.has_softening);
   scene.organs[0].softening = false;
@@ -215,9 +215,9 @@ TEST(BuildModel, SofteningCanBeLeftOut) {
 }
 
 TEST(BuildModel, EveryProblemOfEveryOrganIsReportedAtItsOrgan) {
-  SceneSpec scene = block_scene();
+  scenes::SceneSpec scene = block_scene();
   scene.organs.push_back(scene.organs[0]);
-  scene.organs[0].anchors.emplace_back().sphere = SphereRegion{{9, 9, 9}, 0.001};
+  scene.organs[0].anchors.emplace_back().sphere = scenes::SphereRegion{{9, 9, 9}, 0.001};
   scene.organs[1].rig->block.reset();
   scene.organs[1].rig->cells = {{0, 0, 0}, {5, 0, 0}, {0, 7, 0}};
   const Errors errors = errors_of_build(scene);
@@ -229,7 +229,7 @@ TEST(BuildModel, EveryProblemOfEveryOrganIsReportedAtItsOrgan) {
 }
 
 TEST(BuildModel, AMaterialThatTheNetworkRefusesIsPlacedAtItsOrgan) {
-  SceneSpec scene = layered_scene(R"({"to_depth_mm": 12, "material": {"preset": "skin"}})");
+  scenes::SceneSpec scene = layered_scene(R"({"to_depth_mm": 12, "material": {"preset": "skin"}})");
   scene.organs[0].material.spring = -1.0;  // the reader would have refused both
   scene.organs[0].layers[0].material.kelvin = -1.0;
   const Errors errors = errors_of_build(scene);

@@ -22,12 +22,13 @@ std::string lines_of(const Errors& errors) {
 
 /// Errors of reading and building a scene of rigs.
 std::string errors_of(const std::string& text) {
-  Result<SceneDraft> draft = read_draft(text, "t.json");
+  Result<scenes::SceneDraft> draft = scenes::read_draft(text, "t.json");
   if (!draft) return lines_of(draft.errors());
   std::vector<FilledOrgan> organs;
   for (std::size_t i = 0; i < draft->scene.spec.organs.size(); ++i)
-    organs.push_back(can_be_filled(draft->problems, i) ? fill_rig(draft->scene.spec.organs[i]) : FilledOrgan{});
-  const bool is_built = build_model(draft->scene.spec, organs, draft->problems).has_value();
+    organs.push_back(scenes::can_be_filled(draft->problems, i) ? scenes::fill_rig(draft->scene.spec.organs[i])
+                                                               : FilledOrgan{});
+  const bool is_built = scenes::build_model(draft->scene.spec, organs, draft->problems).has_value();
   EXPECT_EQ(is_built, draft->problems.is_empty());
   return lines_of(draft->problems.errors());
 }
@@ -157,12 +158,12 @@ TEST(ErrorPlaces, AMissingMeshHidesNoAnchorOfAnotherOrgan) {
   const std::string path = (folder / "s.json").string();
   std::ofstream(path, std::ios::binary) << scene_with(
       {R"("mesh": "no.obj", )" + kFarAnchor + kLiver, kFarAnchor + kBlock + kLiver});
-  Result<SceneDraft> draft = load_draft(path);
+  Result<scenes::SceneDraft> draft = scenes::load_draft(path);
   ASSERT_TRUE(draft);
-  EXPECT_FALSE(can_be_filled(draft->problems, 0));
-  ASSERT_TRUE(can_be_filled(draft->problems, 1));
-  EXPECT_FALSE(build_model(draft->scene.spec, std::vector{FilledOrgan{}, fill_rig(draft->scene.spec.organs[1])},
-                           draft->problems));
+  EXPECT_FALSE(scenes::can_be_filled(draft->problems, 0));
+  ASSERT_TRUE(scenes::can_be_filled(draft->problems, 1));
+  EXPECT_FALSE(scenes::build_model(
+      draft->scene.spec, std::vector{FilledOrgan{}, scenes::fill_rig(draft->scene.spec.organs[1])}, draft->problems));
   EXPECT_EQ(lines_of(draft->problems.errors()),
             path + ":2:23: error: /organs/0/mesh: there is no file \"no.obj\" in the scene's folder (looked for " +
                 (folder / "no.obj").string() + ")\n" + path + ":3:45: error: /organs/1/anchors/1: " + kExtent);
@@ -170,7 +171,8 @@ TEST(ErrorPlaces, AMissingMeshHidesNoAnchorOfAnotherOrgan) {
 }
 
 TEST(ErrorPlaces, ASceneThatWasReadKeepsThePlacesOfItsValues) {
-  const Result<SceneText> scene = read_scene(scene_with({kBlock + kLiver}, ", \"tick_s\": 0.001"), "t.json");
+  const Result<scenes::SceneText> scene =
+      scenes::read_scene(scene_with({kBlock + kLiver}, ", \"tick_s\": 0.001"), "t.json");
   ASSERT_TRUE(scene);
   EXPECT_EQ(to_string(scene->places.error_at("/tick_s", "is long", "shorten it")),
             "t.json:3:13: error: /tick_s: is long (shorten it)");
@@ -186,8 +188,8 @@ TEST(ErrorPlaces, TextThatIsNestedTooDeepIsRefusedAtTheBracket) {
 
 TEST(ErrorPlaces, AScriptsErrorsHideNoneOfEachOther) {
   const auto errors = [](const std::string& steps) {
-    const Result<Script> script =
-        read_script("{\"format\": \"ctpm-script\", \"version\": 1, \"steps\": [\n" + steps + "]}", "s.json", {"ball"});
+    const Result<scenes::Script> script = scenes::read_script(
+        "{\"format\": \"ctpm-script\", \"version\": 1, \"steps\": [\n" + steps + "]}", "s.json", {"ball"});
     return script ? "" : lines_of(script.errors());
   };
   EXPECT_EQ(errors("{\"press\": {\"distance_mm\": 0, \"direction\": [0, 0, 0], \"speed_mm_per_s\": 9}},\n"
@@ -206,7 +208,7 @@ TEST(ErrorPlaces, AScriptsErrorsHideNoneOfEachOther) {
 }
 
 TEST(Problems, AValueIsGoodUnlessItOrSomethingInItOrAroundItIsRefused) {
-  Problems problems;
+  scenes::Problems problems;
   EXPECT_TRUE(problems.is_good("/a/1"));
   problems.add_rule("/a/1/b", "is wrong");
   for (const char* refused : {"", "/a", "/a/1", "/a/1/b", "/a/1/b/0/c"})
@@ -217,7 +219,7 @@ TEST(Problems, AValueIsGoodUnlessItOrSomethingInItOrAroundItIsRefused) {
 }
 
 TEST(Problems, ARefusedValueIsReportedOnce) {
-  Problems problems;
+  scenes::Problems problems;
   problems.add_rule("/a", "the key \"b\" is missing", "", "/a/b");
   problems.add_rule("/a/b", "follows from it");
   problems.add_rule("/a/c", "does not");

@@ -120,19 +120,19 @@ void expect_placed(const Errors& errors, const std::string& file_name, const std
 }
 
 TEST(Fuzz, DamagedScenesAreReadOrRefusedWithAPlace) {
-  ASSERT_FALSE(read_scene(kScene, "s.json"));  // the line break in a name
+  ASSERT_FALSE(scenes::read_scene(kScene, "s.json"));  // the line break in a name
   Chance chance(1);
-  const SchemaCheck schema(scene_schema());
+  const SchemaCheck schema(scenes::scene_schema());
   std::string whole = kScene;
   whole.erase(whole.find("\\n"), 2);
-  ASSERT_TRUE(read_scene(whole, "s.json")) << to_string(read_scene(whole, "s.json").errors().front());
+  ASSERT_TRUE(scenes::read_scene(whole, "s.json")) << to_string(scenes::read_scene(whole, "s.json").errors().front());
   int refused = 0;
   for (int round = 0; round < kRounds; ++round) {
     const std::string text = damaged(whole, chance);
-    const Result<SceneText> scene = read_scene(text, "s.json");
+    const Result<scenes::SceneText> scene = scenes::read_scene(text, "s.json");
     if (scene) {
       // What is accepted can be written, and read again as the same.
-      const Result<SceneText> again = read_scene(write_scene(scene->spec), "again.json");
+      const Result<scenes::SceneText> again = scenes::read_scene(scenes::write_scene(scene->spec), "again.json");
       ASSERT_TRUE(again) << to_string(again.errors().front()) << "\n" << text;
       ASSERT_TRUE(again->spec == scene->spec) << text;
       // What the reader accepts, the schema accepts.
@@ -153,15 +153,15 @@ TEST(Fuzz, DamagedScenesAreJudgedAsFarAsTheyAreGood) {
   int placed = 0;
   for (int round = 0; round < kRounds / 10; ++round) {
     const std::string text = damaged(whole, chance);
-    Result<SceneDraft> draft = read_draft(text, "s.json");
+    Result<scenes::SceneDraft> draft = scenes::read_draft(text, "s.json");
     if (!draft) continue;
     std::vector<FilledOrgan> organs;
     for (std::size_t i = 0; i < draft->scene.spec.organs.size(); ++i) {
-      const OrganSpec& organ = draft->scene.spec.organs[i];
+      const scenes::OrganSpec& organ = draft->scene.spec.organs[i];
       const bool is_small = organ.rig && (!organ.rig->block || norm(*organ.rig->block) < 10);
-      organs.push_back(is_small && can_be_filled(draft->problems, i) ? fill_rig(organ) : FilledOrgan{});
+      organs.push_back(is_small && scenes::can_be_filled(draft->problems, i) ? scenes::fill_rig(organ) : FilledOrgan{});
     }
-    const std::optional<BuiltScene> built = build_model(draft->scene.spec, organs, draft->problems);
+    const std::optional<scenes::BuiltScene> built = scenes::build_model(draft->scene.spec, organs, draft->problems);
     ASSERT_EQ(built.has_value(), draft->problems.is_empty()) << text;
     expect_placed(draft->problems.errors(), "s.json:", text);
     placed += int(draft->problems.errors().size());
@@ -173,19 +173,19 @@ TEST(Fuzz, DamagedScriptsAreReadAndPlayedOrRefusedWithAPlace) {
   const std::vector<std::string> names{"ball", "knife"};
   std::vector<Tool> tools(2);
   tools[0].name = "ball", tools[1].name = "knife";
-  ASSERT_TRUE(read_script(kScript, "s.json", names));
+  ASSERT_TRUE(scenes::read_script(kScript, "s.json", names));
   Chance chance(2);
-  const SchemaCheck schema(script_schema());
+  const SchemaCheck schema(scenes::script_schema());
   int refused = 0;
   for (int round = 0; round < kRounds; ++round) {
     const std::string text = damaged(kScript, chance);
-    const Result<Script> script = read_script(text, "s.json", names);
+    const Result<scenes::Script> script = scenes::read_script(text, "s.json", names);
     if (script) {
-      const Result<Script> again = read_script(write_script(*script), "again.json", names);
+      const Result<scenes::Script> again = scenes::read_script(scenes::write_script(*script), "again.json", names);
       ASSERT_TRUE(again) << to_string(again.errors().front()) << "\n" << text;
       ASSERT_TRUE(*again == *script) << text;
       ASSERT_EQ(schema.problem_of(text), "") << text;
-      const ScriptPlayer player(*script, tools, 1e-3);
+      const scenes::ScriptPlayer player(*script, tools, 1e-3);
       ASSERT_GT(player.tick_count(), 0) << text;
       for (const std::int64_t tick : {std::int64_t(0), player.tick_count() / 3, player.tick_count() - 1}) {
         ASSERT_TRUE(is_finite(player.at(tick).position)) << text;
@@ -203,7 +203,7 @@ TEST(Fuzz, DamagedScriptsAreReadAndPlayedOrRefusedWithAPlace) {
 
 TEST(Fuzz, EveryPrefixOfASceneIsRefused) {
   for (std::size_t length = 0; length < kScene.size(); ++length)
-    ASSERT_FALSE(read_scene(std::string_view(kScene).substr(0, length), "s.json")) << length;
+    ASSERT_FALSE(scenes::read_scene(std::string_view(kScene).substr(0, length), "s.json")) << length;
 }
 
 TEST(Fuzz, RandomBytesAreNeitherScenesNorAnchors) {
@@ -211,15 +211,15 @@ TEST(Fuzz, RandomBytesAreNeitherScenesNorAnchors) {
   for (int round = 0; round < kRounds; ++round) {
     std::string text;
     for (std::size_t i = chance.below(60); i > 0; --i) text += static_cast<char>(chance.below(256));
-    ASSERT_FALSE(read_scene(text, "s.json"));
-    ASSERT_FALSE(parse_anchor("box:" + text));
+    ASSERT_FALSE(scenes::read_scene(text, "s.json"));
+    ASSERT_FALSE(scenes::parse_anchor("box:" + text));
   }
 }
 
 /// Seconds that it takes to read a text.
 double time_to_refuse(const std::string& text) {
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_FALSE(read_scene(text, "s.json"));
+  EXPECT_FALSE(scenes::read_scene(text, "s.json"));
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 

@@ -22,12 +22,12 @@ TEST(Presets, HoldThePapersNumbersInBothReadingsOfTheViscosity) {
   for (const Row& row : kPaper)
     for (const bool as_printed : {false, true}) {
       const std::string name = row.organ + std::string(as_printed ? "-pa-s" : "");
-      const MaterialPreset* preset = find_preset(name);
+      const scenes::MaterialPreset* preset = scenes::find_preset(name);
       ASSERT_NE(preset, nullptr) << name;
       EXPECT_EQ(std::string(preset->organ), row.organ);
       EXPECT_DOUBLE_EQ(preset->sphere_radius, row.sphere_radius * 1e-3);
       EXPECT_DOUBLE_EQ(preset->ball_radius, row.ball_radius * 1e-3);
-      const Material& m = preset->material;
+      const network::Material& m = preset->material;
       EXPECT_DOUBLE_EQ(m.kelvin, row.kelvin * 1e6);  // kPa/mm = 1e6 Pa/m
       EXPECT_DOUBLE_EQ(m.spring, row.spring * 1e6);
       EXPECT_DOUBLE_EQ(m.constraint, row.constraint * 1e6);
@@ -37,16 +37,16 @@ TEST(Presets, HoldThePapersNumbersInBothReadingsOfTheViscosity) {
       EXPECT_DOUBLE_EQ(m.density, 1060);
       EXPECT_EQ(m.stiffness_scale, 1);
     }
-  EXPECT_EQ(material_presets().size(), 6u);
+  EXPECT_EQ(scenes::material_presets().size(), 6u);
 }
 
 TEST(Presets, CreepOverSecondsInOneReadingAndInMicrosecondsInTheOther) {
   for (const Row& row : kPaper) {
-    const auto time_constant = [](const MaterialPreset* preset) {
+    const auto time_constant = [](const scenes::MaterialPreset* preset) {
       return preset->material.viscosity / (preset->material.kelvin + preset->material.spring);
     };
-    const double slow = time_constant(find_preset(row.organ)),
-                 fast = time_constant(find_preset(std::string(row.organ) + "-pa-s"));
+    const double slow = time_constant(scenes::find_preset(row.organ)),
+                 fast = time_constant(scenes::find_preset(std::string(row.organ) + "-pa-s"));
     EXPECT_GT(slow, 0.018);
     EXPECT_LT(slow, 0.17);
     EXPECT_NEAR(fast, 1e-3 * slow, 1e-12);
@@ -54,22 +54,24 @@ TEST(Presets, CreepOverSecondsInOneReadingAndInMicrosecondsInTheOther) {
 }
 
 TEST(Presets, OnlyTheLiverHasAKnownDamageDepth) {
-  EXPECT_EQ(find_preset("liver")->damage_depth, 0.012);
-  EXPECT_EQ(find_preset("liver-pa-s")->damage_depth, 0.012);
-  for (const char* name : {"kidney", "skin", "kidney-pa-s", "skin-pa-s"}) EXPECT_EQ(find_preset(name)->damage_depth, 0);
+  EXPECT_EQ(scenes::find_preset("liver")->damage_depth, 0.012);
+  EXPECT_EQ(scenes::find_preset("liver-pa-s")->damage_depth, 0.012);
+  for (const char* name : {"kidney", "skin", "kidney-pa-s", "skin-pa-s"})
+    EXPECT_EQ(scenes::find_preset(name)->damage_depth, 0);
 }
 
 TEST(Presets, EachIsFoundByItsNameAndNoOtherIs) {
-  for (const MaterialPreset& preset : material_presets()) EXPECT_EQ(find_preset(preset.name), &preset);
-  EXPECT_EQ(preset_names().size(), material_presets().size());
-  for (const char* name : {"", "Liver", "liver ", "spleen"}) EXPECT_EQ(find_preset(name), nullptr);
+  for (const scenes::MaterialPreset& preset : scenes::material_presets())
+    EXPECT_EQ(scenes::find_preset(preset.name), &preset);
+  EXPECT_EQ(scenes::preset_names().size(), scenes::material_presets().size());
+  for (const char* name : {"", "Liver", "liver ", "spleen"}) EXPECT_EQ(scenes::find_preset(name), nullptr);
 }
 
 TEST(ResolveMaterial, OwnValuesTakeThePresetsPlace) {
-  MaterialSpec spec;
+  scenes::MaterialSpec spec;
   spec.preset = "liver";
   spec.spring = 16e6, spec.density = 1000, spec.calibration_ball = 0.003;
-  const ResolvedMaterial resolved = resolve_material(spec);
+  const scenes::ResolvedMaterial resolved = scenes::resolve_material(spec);
   EXPECT_TRUE(resolved.missing.empty());
   EXPECT_EQ(resolved.material.spring, 16e6);
   EXPECT_EQ(resolved.material.kelvin, 15e6);
@@ -79,13 +81,13 @@ TEST(ResolveMaterial, OwnValuesTakeThePresetsPlace) {
 }
 
 TEST(ResolveMaterial, WithoutAPresetNamesWhatIsMissing) {
-  MaterialSpec spec;
+  scenes::MaterialSpec spec;
   spec.spring = 1e6, spec.kelvin = 1e6;
-  EXPECT_EQ(resolve_material(spec).missing,
+  EXPECT_EQ(scenes::resolve_material(spec).missing,
             (std::vector<std::string>{"constraint_kpa_per_mm", "viscosity_kpa_s_per_mm", "calibration_ball_radius_mm",
                                       "calibration_spacing_mm"}));
   spec.constraint = 1e6, spec.viscosity = 0, spec.calibration_ball = 0.002, spec.calibration_spacing = 0.012;
-  const ResolvedMaterial whole = resolve_material(spec);
+  const scenes::ResolvedMaterial whole = scenes::resolve_material(spec);
   EXPECT_TRUE(whole.missing.empty());
   EXPECT_EQ(whole.material.density, 1060);
   EXPECT_EQ(whole.material.stiffness_scale, 1);

@@ -25,7 +25,7 @@ std::string scene_with(const std::string& organ_keys, const std::string& more = 
 
 /// The only error of a text, with its place.
 std::string error_of(const std::string& text) {
-  const Result<SceneText> scene = read_scene(text, "test.json");
+  const Result<scenes::SceneText> scene = scenes::read_scene(text, "test.json");
   if (scene) return "no error";
   std::string all;
   for (const Error& error : scene.errors()) all += to_string(error) + "\n";
@@ -35,12 +35,12 @@ std::string error_of(const std::string& text) {
 TEST(SceneFile, EveryShippedSceneIsWrittenAndReadBackEqual) {
   ASSERT_GE(shipped_scenes().size(), 8u);
   for (const std::string& path : shipped_scenes()) {
-    const Result<SceneText> scene = load_scene(path);
+    const Result<scenes::SceneText> scene = scenes::load_scene(path);
     ASSERT_TRUE(scene) << to_string(scene.errors().front());
     EXPECT_TRUE(scene->warnings.empty());
-    const Result<SceneText> again = read_scene(write_scene(scene->spec), path);
+    const Result<scenes::SceneText> again = scenes::read_scene(scenes::write_scene(scene->spec), path);
     ASSERT_TRUE(again) << to_string(again.errors().front());
-    EXPECT_TRUE(again->spec == scene->spec) << write_scene(scene->spec);
+    EXPECT_TRUE(again->spec == scene->spec) << scenes::write_scene(scene->spec);
   }
 }
 
@@ -74,16 +74,16 @@ TEST(SceneFile, ASyntaxErrorHasItsPlace) {
 }
 
 TEST(SceneFile, ASceneThatIsNotThereOrNotAFileIsRefused) {
-  const Result<SceneText> missing = load_scene(shipped("nowhere.json"));
+  const Result<scenes::SceneText> missing = scenes::load_scene(shipped("nowhere.json"));
   ASSERT_FALSE(missing);
   EXPECT_EQ(to_string(missing.errors().front()), shipped("nowhere.json") + ": error: does not exist");
-  const Result<SceneText> folder = load_scene(shipped("organs"));
+  const Result<scenes::SceneText> folder = scenes::load_scene(shipped("organs"));
   ASSERT_FALSE(folder);
   EXPECT_EQ(to_string(folder.errors().front()), shipped("organs") + ": error: is not a file");
 }
 
 /// Loads a scene in a folder of its own beside a file `outside.obj`, with `mesh` as its mesh.
-Result<SceneText> load_with_mesh(const std::string& mesh, const LoadOptions& options = {}) {
+Result<scenes::SceneText> load_with_mesh(const std::string& mesh, const scenes::LoadOptions& options = {}) {
   namespace fs = std::filesystem;
   const fs::path outer = fs::path(::testing::TempDir()) / ("scene_file_test_" + std::to_string(::getpid()));
   const fs::path folder = outer / "inner";
@@ -93,7 +93,7 @@ Result<SceneText> load_with_mesh(const std::string& mesh, const LoadOptions& opt
   std::ofstream(folder / "scene.json")
       << "{\"format\": \"ctpm-scene\", \"version\": 1, \"name\": \"t\", \"organs\": [\n{\"mesh\": \"" << mesh
       << "\", \"name\": \"a\", \"material\": {\"preset\": \"liver\"}}]}\n";
-  Result<SceneText> scene = load_scene((folder / "scene.json").string(), options);
+  Result<scenes::SceneText> scene = scenes::load_scene((folder / "scene.json").string(), options);
   fs::remove_all(outer);
   return scene;
 }
@@ -106,19 +106,19 @@ TEST(SceneFile, AMeshIsInTheScenesFolderOrNamedAtItsPlace) {
            {"../outside.obj", "got \"../outside.obj\", which leaves the scene's folder"},
            {"folder.obj/../../outside.obj", "which leaves the scene's folder"},
            {"/etc/hostname", "got \"/etc/hostname\", which leaves the scene's folder"}}) {
-    const Result<SceneText> scene = load_with_mesh(mesh);
+    const Result<scenes::SceneText> scene = load_with_mesh(mesh);
     ASSERT_FALSE(scene) << mesh;
     ASSERT_EQ(scene.errors().size(), 1u);
     EXPECT_TRUE(scene.errors()[0].where.ends_with("scene.json:2:10")) << scene.errors()[0].where;
     EXPECT_EQ(scene.errors()[0].message.find("/organs/0/mesh: "), 0u);
     EXPECT_NE(scene.errors()[0].message.find(message), std::string::npos) << scene.errors()[0].message;
   }
-  EXPECT_TRUE(load_with_mesh("../outside.obj", LoadOptions{.allow_outside_paths = true}));
+  EXPECT_TRUE(load_with_mesh("../outside.obj", scenes::LoadOptions{.allow_outside_paths = true}));
 }
 
 TEST(SceneFile, Cubic6InAnOrganIsWarnedOf) {
-  const Result<SceneText> scene =
-      read_scene(scene_with("\"material\": {\"preset\": \"liver\"}, \"lattice\": \"cubic-6\""), "test.json");
+  const Result<scenes::SceneText> scene =
+      scenes::read_scene(scene_with("\"material\": {\"preset\": \"liver\"}, \"lattice\": \"cubic-6\""), "test.json");
   ASSERT_TRUE(scene);
   ASSERT_EQ(scene->warnings.size(), 1u);
   EXPECT_NE(scene->warnings[0].message.find("no shear stiffness"), std::string::npos);
@@ -130,10 +130,10 @@ TEST(BuildModel, ARigBecomesItsSpheresAndElements) {
     "organs": [{"name": "rig", "rig": {"cells": [[0,0,0],[1,0,0],[2,0,0],[3,0,0],[4,0,0]]}, "lattice": "cubic-6",
                 "material": {"preset": "liver"}, "anchors": [{"sphere": {"centre_mm": [0,0,0], "radius_mm": 1}}]}],
     "tools": [{"name": "pin", "kind": "pin", "holds_mm": [24, 0, 0]}]})";
-  const Result<SceneText> scene = read_scene(text, "rig.json");
+  const Result<scenes::SceneText> scene = scenes::read_scene(text, "rig.json");
   ASSERT_TRUE(scene) << to_string(scene.errors().front());
-  const std::vector<FilledOrgan> organs{fill_rig(scene->spec.organs[0])};
-  const Result<BuiltScene> built = build_model(scene->spec, organs);
+  const std::vector<FilledOrgan> organs{scenes::fill_rig(scene->spec.organs[0])};
+  const Result<scenes::BuiltScene> built = scenes::build_model(scene->spec, organs);
   ASSERT_TRUE(built) << to_string(built.errors().front());
   EXPECT_EQ(built->model.sphere_count(), 5u);
   EXPECT_EQ(built->model.axial.size(), 4u);
@@ -147,10 +147,10 @@ TEST(BuildModel, AnAnchorThatHoldsNoSphereIsAnError) {
   const std::string text = R"({"format": "ctpm-scene", "version": 1, "name": "rig",
     "organs": [{"name": "rig", "rig": {"block": [3, 3, 3]}, "material": {"preset": "liver"},
                 "anchors": [{"sphere": {"centre_mm": [900,0,0], "radius_mm": 1}}]}]})";
-  const Result<SceneText> scene = read_scene(text, "rig.json");
+  const Result<scenes::SceneText> scene = scenes::read_scene(text, "rig.json");
   ASSERT_TRUE(scene);
-  const std::vector<FilledOrgan> organs{fill_rig(scene->spec.organs[0])};
-  const Result<BuiltScene> built = build_model(scene->spec, organs);
+  const std::vector<FilledOrgan> organs{scenes::fill_rig(scene->spec.organs[0])};
+  const Result<scenes::BuiltScene> built = scenes::build_model(scene->spec, organs);
   ASSERT_FALSE(built);
   EXPECT_EQ(built.errors().front().where, "/organs/0/anchors/0");
 }

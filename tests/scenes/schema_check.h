@@ -17,45 +17,45 @@ class SchemaCheck {
   std::string problem_of(const std::string& text) const { return problem(schema_, parsed(text), ""); }
 
  private:
-  static JsonNode parsed(const std::string& text) {
-    Result<JsonNode> node = parse_json(text, "text");
+  static scenes::JsonNode parsed(const std::string& text) {
+    Result<scenes::JsonNode> node = scenes::parse_json(text, "text");
     CTPM_CHECK(bool(node), node ? "" : to_string(node.errors().front()).c_str());
     return *node;
   }
-  static double number(const JsonNode& node) { return decimal_to_double(node.raw, 0); }
-  static bool are_equal(const JsonNode& a, const JsonNode& b) {
+  static double number(const scenes::JsonNode& node) { return scenes::decimal_to_double(node.raw, 0); }
+  static bool are_equal(const scenes::JsonNode& a, const scenes::JsonNode& b) {
     return a.kind == b.kind &&
-           (a.kind == JsonKind::number ? number(a) == number(b) : a.text == b.text && a.raw == b.raw);
+           (a.kind == scenes::JsonKind::number ? number(a) == number(b) : a.text == b.text && a.raw == b.raw);
   }
-  static bool has_type(const JsonNode& node, const std::string& type) {
+  static bool has_type(const scenes::JsonNode& node, const std::string& type) {
     switch (node.kind) {
-      case JsonKind::null:
+      case scenes::JsonKind::null:
         return type == "null";
-      case JsonKind::boolean:
+      case scenes::JsonKind::boolean:
         return type == "boolean";
-      case JsonKind::number:
+      case scenes::JsonKind::number:
         return type == "number" || (type == "integer" && number(node) == double((long long)number(node)));
-      case JsonKind::text:
+      case scenes::JsonKind::text:
         return type == "string";
-      case JsonKind::list:
+      case scenes::JsonKind::list:
         return type == "array";
-      case JsonKind::object:
+      case scenes::JsonKind::object:
         return type == "object";
     }
     return false;
   }
 
-  std::string problem(const JsonNode& schema, const JsonNode& value, const std::string& at) const {
+  std::string problem(const scenes::JsonNode& schema, const scenes::JsonNode& value, const std::string& at) const {
     for (std::size_t i = 0; i < schema.keys.size(); ++i)
       if (const std::string found = problem_with(schema.keys[i], schema.children[i], schema, value, at); !found.empty())
         return found;
     return "";
   }
 
-  std::string problem_with(const std::string& word, const JsonNode& rule, const JsonNode& schema, const JsonNode& value,
-                           const std::string& at) const {
+  std::string problem_with(const std::string& word, const scenes::JsonNode& rule, const scenes::JsonNode& schema,
+                           const scenes::JsonNode& value, const std::string& at) const {
     const auto unless = [&](bool fits) { return fits ? "" : at + ": " + word; };
-    const bool is_number = value.kind == JsonKind::number, is_list = value.kind == JsonKind::list;
+    const bool is_number = value.kind == scenes::JsonKind::number, is_list = value.kind == scenes::JsonKind::list;
     const double count = double(value.children.size());
     if (word == "$schema" || word == "title" || word == "description" || word == "default" || word == "$defs")
       return "";
@@ -63,7 +63,7 @@ class SchemaCheck {
     if (word == "const") return unless(are_equal(rule, value));
     if (word == "enum")
       return unless(std::any_of(rule.children.begin(), rule.children.end(),
-                                [&](const JsonNode& w) { return are_equal(w, value); }));
+                                [&](const scenes::JsonNode& w) { return are_equal(w, value); }));
     if (word == "pattern") return unless(!value.text.empty());  // the one pattern: a line that is not empty
     if (word == "minimum") return unless(!is_number || number(value) >= number(rule));
     if (word == "maximum") return unless(!is_number || number(value) <= number(rule));
@@ -73,21 +73,21 @@ class SchemaCheck {
     if (word == "maxItems" || word == "maxProperties") return unless(count <= number(rule));
     if (word == "required")
       return unless(std::all_of(rule.children.begin(), rule.children.end(),
-                                [&](const JsonNode& key) { return value.find(key.text) != nullptr; }));
+                                [&](const scenes::JsonNode& key) { return value.find(key.text) != nullptr; }));
     if (word == "$ref") {
-      const JsonNode* target = schema_.find("$defs")->find(rule.text.substr(std::string("#/$defs/").size()));
+      const scenes::JsonNode* target = schema_.find("$defs")->find(rule.text.substr(std::string("#/$defs/").size()));
       return target == nullptr ? at + ": no " + rule.text : problem(*target, value, at);
     }
     if (word == "items" && is_list) {
       for (std::size_t i = 0; i < value.children.size(); ++i)
-        if (const std::string found = problem(rule, value.children[i], child_pointer(at, i)); !found.empty())
+        if (const std::string found = problem(rule, value.children[i], scenes::child_pointer(at, i)); !found.empty())
           return found;
       return "";
     }
     if (word == "properties") {
       for (std::size_t i = 0; i < value.keys.size(); ++i)
-        if (const JsonNode* of_key = rule.find(value.keys[i]))
-          if (const std::string found = problem(*of_key, value.children[i], child_pointer(at, value.keys[i]));
+        if (const scenes::JsonNode* of_key = rule.find(value.keys[i]))
+          if (const std::string found = problem(*of_key, value.children[i], scenes::child_pointer(at, value.keys[i]));
               !found.empty())
             return found;
       return "";
@@ -99,7 +99,7 @@ class SchemaCheck {
     return "the schema has a word that is not known here: " + word;
   }
 
-  JsonNode schema_;
+  scenes::JsonNode schema_;
 };
 
 }  // namespace ctpm

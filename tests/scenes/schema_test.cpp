@@ -37,13 +37,13 @@ std::string with_tables(const std::string& name, const std::string& tables) {
 }
 
 TEST(CheckedIn, TheSchemasAreThoseOfTheTables) {
-  expect_checked_in("scene.schema.json", scene_schema());
-  expect_checked_in("script.schema.json", script_schema());
+  expect_checked_in("scene.schema.json", scenes::scene_schema());
+  expect_checked_in("script.schema.json", scenes::script_schema());
 }
 
 TEST(CheckedIn, TheTablesOfTheDocumentationAreThoseOfTheReader) {
-  expect_checked_in("FORMAT.md", with_tables("FORMAT.md", scene_reference()));
-  expect_checked_in("SCRIPT.md", with_tables("SCRIPT.md", script_reference()));
+  expect_checked_in("FORMAT.md", with_tables("FORMAT.md", scenes::scene_reference()));
+  expect_checked_in("SCRIPT.md", with_tables("SCRIPT.md", scenes::script_reference()));
 }
 
 /// The first JSON block of a Markdown file.
@@ -54,21 +54,21 @@ std::string example_in(const std::string& name) {
 }
 
 TEST(Documentation, ItsExamplesAreReadAndFitTheSchemas) {
-  const Result<SceneText> scene = read_scene(example_in("FORMAT.md"), "FORMAT.md");
+  const Result<scenes::SceneText> scene = scenes::read_scene(example_in("FORMAT.md"), "FORMAT.md");
   ASSERT_TRUE(scene) << to_string(scene.errors().front());
-  const Result<Script> script = read_script(example_in("SCRIPT.md"), "SCRIPT.md", {"ball"});
+  const Result<scenes::Script> script = scenes::read_script(example_in("SCRIPT.md"), "SCRIPT.md", {"ball"});
   ASSERT_TRUE(script) << to_string(script.errors().front());
-  EXPECT_EQ(SchemaCheck(scene_schema()).problem_of(example_in("FORMAT.md")), "");
-  EXPECT_EQ(SchemaCheck(script_schema()).problem_of(example_in("SCRIPT.md")), "");
+  EXPECT_EQ(SchemaCheck(scenes::scene_schema()).problem_of(example_in("FORMAT.md")), "");
+  EXPECT_EQ(SchemaCheck(scenes::script_schema()).problem_of(example_in("SCRIPT.md")), "");
 }
 
 TEST(SceneSchema, AcceptsTheShippedScenesAndEverythingThatIsWritten) {
-  const SchemaCheck schema(scene_schema());
+  const SchemaCheck schema(scenes::scene_schema());
   for (const std::string& path : shipped_scenes()) {
     EXPECT_EQ(schema.problem_of(content_of_file(path)), "") << path;
-    const Result<SceneText> scene = load_scene(path);
+    const Result<scenes::SceneText> scene = scenes::load_scene(path);
     ASSERT_TRUE(scene) << path;
-    EXPECT_EQ(schema.problem_of(write_scene(scene->spec)), "") << path;
+    EXPECT_EQ(schema.problem_of(scenes::write_scene(scene->spec)), "") << path;
   }
 }
 
@@ -78,7 +78,7 @@ std::string organ_with(const std::string& keys) {
 }
 
 TEST(SceneSchema, RefusesWhatTheReaderRefuses) {
-  const SchemaCheck schema(scene_schema());
+  const SchemaCheck schema(scenes::scene_schema());
   const std::string liver = R"("material": {"preset": "liver"})";
   ASSERT_EQ(schema.problem_of(organ_with(liver)), "");
   for (const std::string keys :
@@ -94,13 +94,13 @@ TEST(SceneSchema, RefusesWhatTheReaderRefuses) {
         R"("material": {"preset": "liver"}, "anchors": {"lowest_mm": 1})",
         R"("material": {"preset": "liver"}, "anchors": [{"sphere": {"centre_mm": [0, 0, 0], "radius_mm": 0}}])"}) {
     EXPECT_NE(schema.problem_of(organ_with(keys)), "") << keys;
-    EXPECT_FALSE(read_scene(organ_with(keys), "s.json")) << keys;
+    EXPECT_FALSE(scenes::read_scene(organ_with(keys), "s.json")) << keys;
   }
   EXPECT_NE(schema.problem_of(R"({"format": "ctpm-scene", "version": 2, "name": "s", "organs": []})"), "");
 }
 
 TEST(ScriptSchema, RefusesWhatTheReaderRefuses) {
-  const SchemaCheck schema(script_schema());
+  const SchemaCheck schema(scenes::script_schema());
   const auto script = [](const std::string& step) {
     return R"({"format": "ctpm-script", "version": 1, "steps": [)" + step + "]}";
   };
@@ -109,7 +109,7 @@ TEST(ScriptSchema, RefusesWhatTheReaderRefuses) {
        {R"({})", R"({"wait_s": 1, "put_away": true})", R"({"wait_s": -1})", R"({"put_away": 1})", R"({"sleep": 1})",
         R"({"take": {"tool": "ball"}})", R"({"take": {"tool": "ball", "at_mm": [0, 0, 0], "speed": 1}})"}) {
     EXPECT_NE(schema.problem_of(script(step)), "") << step;
-    EXPECT_FALSE(read_script(script(step), "s.json", {"ball"})) << step;
+    EXPECT_FALSE(scenes::read_script(script(step), "s.json", {"ball"})) << step;
   }
 }
 

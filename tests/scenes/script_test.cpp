@@ -32,15 +32,15 @@ const std::string kTake = R"({"take": {"tool": "ball", "at_mm": [0, 0, 50]}})";
 
 /// Every error of a text, one a line.
 std::string errors_of(const std::string& text) {
-  const Result<Script> script = read_script(text, "s.json", kTools);
+  const Result<scenes::Script> script = scenes::read_script(text, "s.json", kTools);
   if (script) return "no error";
   std::string all;
   for (const Error& error : script.errors()) all += to_string(error) + "\n";
   return all;
 }
 
-Script read_good(const std::string& steps) {
-  const Result<Script> script = read_script(script_of(steps), "s.json", kTools);
+scenes::Script read_good(const std::string& steps) {
+  const Result<scenes::Script> script = scenes::read_script(script_of(steps), "s.json", kTools);
   if (!script) {
     ADD_FAILURE() << to_string(script.errors().front());
     return {};
@@ -133,21 +133,21 @@ const std::string kEveryStep = R"(
   {"put_away": true}, {"wait_s": 0.1})";
 
 TEST(WriteScript, WhatIsWrittenIsReadBackEqual) {
-  const Script script = read_good(kEveryStep);
+  const scenes::Script script = read_good(kEveryStep);
   ASSERT_EQ(script.steps.size(), 9u);
-  const Result<Script> again = read_script(write_script(script), "again.json", kTools);
+  const Result<scenes::Script> again = scenes::read_script(scenes::write_script(script), "again.json", kTools);
   ASSERT_TRUE(again) << to_string(again.errors().front());
-  EXPECT_TRUE(*again == script) << write_script(script);
-  EXPECT_EQ(write_script(*again), write_script(script));
+  EXPECT_TRUE(*again == script) << scenes::write_script(script);
+  EXPECT_EQ(scenes::write_script(*again), scenes::write_script(script));
 }
 
 TEST(WriteScript, AReleaseLeavesUpwardsUnlessAnotherDirectionIsWritten) {
-  const Script script = read_good(kTake + R"(, {"release": {"distance_mm": 3, "speed_mm_per_s": 30}})");
+  const scenes::Script script = read_good(kTake + R"(, {"release": {"distance_mm": 3, "speed_mm_per_s": 30}})");
   EXPECT_EQ(script.steps.at(1).release.value().direction, (Vec3{0, 0, 1}));
 }
 
 /// Positions of the tool from `first` on, as long as it is in the hand.
-std::vector<Vec3> way_in_hand(const ScriptPlayer& player, std::int64_t first = 0) {
+std::vector<Vec3> way_in_hand(const scenes::ScriptPlayer& player, std::int64_t first = 0) {
   std::vector<Vec3> way;
   for (std::int64_t tick = first; tick < player.tick_count() && player.at(tick).tool >= 0; ++tick)
     way.push_back(player.at(tick).position);
@@ -155,8 +155,8 @@ std::vector<Vec3> way_in_hand(const ScriptPlayer& player, std::int64_t first = 0
 }
 
 TEST(ScriptPlayer, NeverMovesFasterThanTheStepSays) {
-  const Script script = read_good(kEveryStep);
-  const ScriptPlayer player(script, tools_of_model(), kTick);
+  const scenes::Script script = read_good(kEveryStep);
+  const scenes::ScriptPlayer player(script, tools_of_model(), kTick);
   const std::vector<Vec3> way = way_in_hand(player);
   ASSERT_GT(way.size(), 100u);
   double largest = 0;
@@ -167,17 +167,17 @@ TEST(ScriptPlayer, NeverMovesFasterThanTheStepSays) {
 }
 
 TEST(ScriptPlayer, ReachesItsSpeedAndKeepsItInBetween) {
-  const Script script = read_good(kTake + R"(, {"move": {"to_mm": [100, 0, 50], "speed_mm_per_s": 50}})");
-  const ScriptPlayer player(script, tools_of_model(), kTick);
+  const scenes::Script script = read_good(kTake + R"(, {"move": {"to_mm": [100, 0, 50], "speed_mm_per_s": 50}})");
+  const scenes::ScriptPlayer player(script, tools_of_model(), kTick);
   const std::int64_t middle = player.tick_count() / 2;
   for (std::int64_t tick = middle - 500; tick < middle + 500; ++tick)
     ASSERT_NEAR(norm(player.at(tick + 1).position - player.at(tick).position), 50e-3 * kTick, 1e-15);
 }
 
 TEST(ScriptPlayer, EveryStretchStartsAndEndsAtRest) {
-  const Script script = read_good(kTake + R"(, {"move": {"to_mm": [100, 0, 50], "speed_mm_per_s": 50}},
+  const scenes::Script script = read_good(kTake + R"(, {"move": {"to_mm": [100, 0, 50], "speed_mm_per_s": 50}},
                                                {"move": {"to_mm": [100, 80, 50], "speed_mm_per_s": 20}})");
-  const ScriptPlayer player(script, tools_of_model(), kTick);
+  const scenes::ScriptPlayer player(script, tools_of_model(), kTick);
   // After a share t of the time the speed is about 3 (t / 0.2)^2 of the full one: a thousandth in the first
   // tick of 2500.
   const auto speed = [&](std::int64_t tick) {
@@ -197,7 +197,7 @@ TEST(ScriptPlayer, EveryStretchStartsAndEndsAtRest) {
 
 TEST(ScriptPlayer, LastsAsLongAsItsSteps) {
   const auto ticks = [](const std::string& steps) {
-    return ScriptPlayer(read_good(steps), tools_of_model(), kTick).tick_count();
+    return scenes::ScriptPlayer(read_good(steps), tools_of_model(), kTick).tick_count();
   };
   EXPECT_EQ(ticks(kTake), 1);
   EXPECT_EQ(ticks(kTake + R"(, {"wait_s": 0.5})"), 501);
@@ -211,8 +211,8 @@ TEST(ScriptPlayer, LastsAsLongAsItsSteps) {
 }
 
 TEST(ScriptPlayer, IsAPureFunctionOfTheTick) {
-  const Script script = read_good(kEveryStep);
-  const ScriptPlayer player(script, tools_of_model(), kTick), other(script, tools_of_model(), kTick);
+  const scenes::Script script = read_good(kEveryStep);
+  const scenes::ScriptPlayer player(script, tools_of_model(), kTick), other(script, tools_of_model(), kTick);
   std::vector<Inputs> forwards;
   for (std::int64_t tick = 0; tick < player.tick_count(); ++tick) forwards.push_back(player.at(tick));
   for (std::int64_t tick = player.tick_count() - 1; tick >= 0; --tick) {
@@ -222,8 +222,8 @@ TEST(ScriptPlayer, IsAPureFunctionOfTheTick) {
 }
 
 TEST(ScriptPlayer, StaysAsItIsAfterTheEnd) {
-  const Script script = read_good(kTake + R"(, {"move": {"to_mm": [7, 0, 50], "speed_mm_per_s": 50}})");
-  const ScriptPlayer player(script, tools_of_model(), kTick);
+  const scenes::Script script = read_good(kTake + R"(, {"move": {"to_mm": [7, 0, 50], "speed_mm_per_s": 50}})");
+  const scenes::ScriptPlayer player(script, tools_of_model(), kTick);
   const Inputs last = player.at(player.tick_count() - 1);
   EXPECT_EQ(last.position, (Vec3{0.007, 0, 0.05}));
   for (const std::int64_t later : {std::int64_t(0), std::int64_t(1), std::int64_t(1) << 60})
@@ -237,9 +237,9 @@ TEST(ScriptPlayer, TurnsMinusZOntoPointing) {
        {Vec3{0, 0, -1}, Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{0, -3, 0}, Vec3{1, 2, -3}, Vec3{-1, 5, 4}, Vec3{1e-4, 0, 1},
         Vec3{0, -1e-6, 1}, Vec3{3e-9, 4e-9, 1}, Vec3{1e-30, 0, 1}, Vec3{1e-130, 0, 1}, Vec3{1e-5, 1e-5, -1},
         Vec3{2e-9, 0, 0}, Vec3{0, 0, 1e6}}) {
-    Script script;
-    script.steps.emplace_back().take = ScriptStep::Take{"ball", {}, pointing, {}};
-    const Quat q = ScriptPlayer(script, tools_of_model(), kTick).at(0).world_from_tool;
+    scenes::Script script;
+    script.steps.emplace_back().take = scenes::ScriptStep::Take{"ball", {}, pointing, {}};
+    const Quat q = scenes::ScriptPlayer(script, tools_of_model(), kTick).at(0).world_from_tool;
     EXPECT_NEAR(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z, 1, kRounding);
     EXPECT_NEAR(norm(rotate(q, {0, 0, -1}) - pointing / norm(pointing)), 0, kRounding)
         << pointing.x << " " << pointing.y << " " << pointing.z;
@@ -247,9 +247,9 @@ TEST(ScriptPlayer, TurnsMinusZOntoPointing) {
 }
 
 TEST(ScriptPlayer, HoldsTheToolsThatTheStepsSay) {
-  const Script script = read_good(kTake + R"(, {"wait_s": 0.01}, {"put_away": true}, {"wait_s": 0.01},
+  const scenes::Script script = read_good(kTake + R"(, {"wait_s": 0.01}, {"put_away": true}, {"wait_s": 0.01},
                                                {"take": {"tool": "scalpel", "at_mm": [1, 2, 3]}})");
-  const ScriptPlayer player(script, tools_of_model(), kTick);
+  const scenes::ScriptPlayer player(script, tools_of_model(), kTick);
   ASSERT_EQ(player.tick_count(), 1 + 10 + 1 + 10 + 1);
   EXPECT_EQ(player.at(10).tool, 0);
   for (std::int64_t tick = 11; tick < 22; ++tick) EXPECT_EQ(player.at(tick).tool, -1);
@@ -258,13 +258,13 @@ TEST(ScriptPlayer, HoldsTheToolsThatTheStepsSay) {
 }
 
 /// A scene of one block with a ball and a scalpel.
-SceneSpec block_scene(const std::string& block, const std::string& gravity = "[0, 0, -9.81]") {
-  const Result<SceneText> scene =
-      read_scene(R"({"format": "ctpm-scene", "version": 1, "name": "block", "gravity_m_per_s2": )" + gravity +
-                     R"(, "organs": [{"name": "block", "rig": {"block": )" + block +
-                     R"(}, "material": {"preset": "liver"}}],
+scenes::SceneSpec block_scene(const std::string& block, const std::string& gravity = "[0, 0, -9.81]") {
+  const Result<scenes::SceneText> scene =
+      scenes::read_scene(R"({"format": "ctpm-scene", "version": 1, "name": "block", "gravity_m_per_s2": )" + gravity +
+                             R"(, "organs": [{"name": "block", "rig": {"block": )" + block +
+                             R"(}, "material": {"preset": "liver"}}],
            "tools": [{"name": "ball", "kind": "ball", "radius_mm": 6}, {"name": "scalpel", "kind": "scalpel", "blade_length_mm": 40}]})",
-                 "block.json");
+                         "block.json");
   if (!scene) {
     ADD_FAILURE() << to_string(scene.errors().front());
     return {};
@@ -281,17 +281,17 @@ const std::string kPressToForce = R"(, {"press": {"distance_mm": 20, "speed_mm_p
                                        {"wait_s": 0.1}, {"release": {"distance_mm": 3, "speed_mm_per_s": 10}})";
 
 TEST(ScriptPlayer, APressToAForceEndsWhereTheTissuePushesBackWithItAndTheNextStepsGoOnFromThere) {
-  ScriptPlayer player(read_good(kTake + kPressToForce), tools_of_model(), kTick);
+  scenes::ScriptPlayer player(read_good(kTake + kPressToForce), tools_of_model(), kTick);
   const std::int64_t whole = player.tick_count();
   std::int64_t ended = -1;
   double lowest = 1;
   for (std::int64_t tick = 0; tick < player.tick_count(); ++tick) {
     const Inputs before = player.at(tick);
     lowest = std::min(lowest, before.position.z);
-    const PressEnd end = player.feel(tick, spring_force(before, 0.045));
+    const scenes::PressEnd end = player.feel(tick, spring_force(before, 0.045));
     EXPECT_EQ(player.at(tick), before) << "what was done stays done";
-    if (end == PressEnd::none) continue;
-    EXPECT_EQ(end, PressEnd::at_force);
+    if (end == scenes::PressEnd::none) continue;
+    EXPECT_EQ(end, scenes::PressEnd::at_force);
     EXPECT_EQ(ended, -1) << "it ends once";
     ended = tick;
   }
@@ -305,11 +305,12 @@ TEST(ScriptPlayer, APressToAForceEndsWhereTheTissuePushesBackWithItAndTheNextSte
 }
 
 TEST(ScriptPlayer, APressToAForceThatNeverComesGivesUpAtItsDepth) {
-  ScriptPlayer player(read_good(kTake + kPressToForce), tools_of_model(), kTick);
+  scenes::ScriptPlayer player(read_good(kTake + kPressToForce), tools_of_model(), kTick);
   const std::int64_t whole = player.tick_count();
   int gave_up = 0;
   for (std::int64_t tick = 0; tick < player.tick_count(); ++tick)
-    gave_up += player.feel(tick, {0.6, 0.6, 0.49}) == PressEnd::at_depth;  // only what is against the way counts
+    gave_up +=
+        player.feel(tick, {0.6, 0.6, 0.49}) == scenes::PressEnd::at_depth;  // only what is against the way counts
   EXPECT_EQ(gave_up, 1);
   EXPECT_EQ(player.tick_count(), whole);
   EXPECT_NEAR(player.at(whole).position.z, 0.05 - 0.02 + 0.003, 1e-12);
@@ -326,8 +327,8 @@ TEST(ReadScript, AForceToPressToMustBeAPositiveNumber) {
 
 TEST(ScriptPlayer, ASmoothCutPassesItsPointsWithoutARestOrACorner) {
   const std::string path = R"("path_mm": [[10, 0, 50], [10, 10, 50], [12, 11, 50], [40, 0, 45]], "speed_mm_per_s": 20)";
-  const Script script = read_good(kTake + R"(, {"cut": {)" + path + R"(, "smooth": true}})");
-  const ScriptPlayer player(script, tools_of_model(), kTick);
+  const scenes::Script script = read_good(kTake + R"(, {"cut": {)" + path + R"(, "smooth": true}})");
+  const scenes::ScriptPlayer player(script, tools_of_model(), kTick);
   const std::vector<Vec3> way = way_in_hand(player);
   for (const Vec3& point : script.steps.at(1).cut->path) {
     double nearest = 1;
@@ -343,7 +344,7 @@ TEST(ScriptPlayer, ASmoothCutPassesItsPointsWithoutARestOrACorner) {
   }
   // Without it there is a corner of a right angle, and a rest.
   const std::vector<Vec3> straight =
-      way_in_hand(ScriptPlayer(read_good(kTake + R"(, {"cut": {)" + path + "}}"), tools_of_model(), kTick));
+      way_in_hand(scenes::ScriptPlayer(read_good(kTake + R"(, {"cut": {)" + path + "}}"), tools_of_model(), kTick));
   double slowest = 1;
   for (std::size_t i = straight.size() / 5; i < straight.size() * 4 / 5; ++i)
     slowest = std::min(slowest, norm(straight[i] - straight[i - 1]) / kTick);
@@ -353,7 +354,7 @@ TEST(ScriptPlayer, ASmoothCutPassesItsPointsWithoutARestOrACorner) {
 TEST(ScriptPlayer, ASmoothCutOfPointsThatCoincideOrOfOneIsAStraightWay) {
   for (const std::string path : {"[[0, 0, 40]]", "[[0, 0, 50], [0, 0, 50], [0, 0, 40], [0, 0, 40]]",
                                  "[[1e-300, 0, 50], [0, 0, 50], [0, 0, 40]]"}) {
-    const ScriptPlayer player(
+    const scenes::ScriptPlayer player(
         read_good(kTake + R"(, {"cut": {"smooth": true, "speed_mm_per_s": 20, "path_mm": )" + path + "}}"),
         tools_of_model(), kTick);
     for (const Vec3& p : way_in_hand(player)) {
@@ -367,20 +368,20 @@ TEST(ScriptPlayer, ASmoothCutOfPointsThatCoincideOrOfOneIsAStraightWay) {
 TEST(DefaultScript, OfAnyBlockIsReadWithTheScenesTools) {
   for (const std::string block : {"[9, 9, 7]", "[3, 3, 1]", "[1, 1, 5]", "[2, 1, 1]"})
     for (const std::string gravity : {"[0, 0, -9.81]", "[0, 0, 0]", "[5, 5, 5]"}) {
-      const SceneSpec scene = block_scene(block, gravity);
-      const std::vector<FilledOrgan> organs{fill_rig(scene.organs.at(0))};
-      const Script script = default_script(scene, organs);
-      const Result<Script> again = read_script(write_script(script), "default.json", kTools);
+      const scenes::SceneSpec scene = block_scene(block, gravity);
+      const std::vector<FilledOrgan> organs{scenes::fill_rig(scene.organs.at(0))};
+      const scenes::Script script = scenes::default_script(scene, organs);
+      const Result<scenes::Script> again = scenes::read_script(scenes::write_script(script), "default.json", kTools);
       ASSERT_TRUE(again) << block << " " << to_string(again.errors().front());
       EXPECT_TRUE(*again == script);
-      EXPECT_GT(ScriptPlayer(script, tools_of_model(), kTick).tick_count(), 1000);
+      EXPECT_GT(scenes::ScriptPlayer(script, tools_of_model(), kTick).tick_count(), 1000);
     }
 }
 
 TEST(DefaultScript, PressesIntoTheTopOfABlockAndCutsIt) {
-  const SceneSpec scene = block_scene("[9, 9, 7]");
-  const std::vector<FilledOrgan> organs{fill_rig(scene.organs.at(0))};
-  const ScriptPlayer player(default_script(scene, organs), tools_of_model(), kTick);
+  const scenes::SceneSpec scene = block_scene("[9, 9, 7]");
+  const std::vector<FilledOrgan> organs{scenes::fill_rig(scene.organs.at(0))};
+  const scenes::ScriptPlayer player(scenes::default_script(scene, organs), tools_of_model(), kTick);
   constexpr double kTop = (6 + 0.5) * 12e-3;  // [m]
   double lowest[2] = {1, 1};
   for (std::int64_t tick = 0; tick < player.tick_count(); ++tick) {
@@ -397,11 +398,11 @@ TEST(DefaultScript, PressesIntoTheTopOfABlockAndCutsIt) {
 
 TEST(ScriptPlayer, FacingTurnsABladeAboutItsOwnAxisAlone) {
   for (const Vec3 way : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, -1, 0}, Vec3{0.6, 0.8, 0}}) {
-    Script script;
-    script.steps.emplace_back().take = ScriptStep::Take{"scalpel", {}, {0.3, 0.1, -1}, way};
+    scenes::Script script;
+    script.steps.emplace_back().take = scenes::ScriptStep::Take{"scalpel", {}, {0.3, 0.1, -1}, way};
     Tool scalpel;
     scalpel.name = "scalpel", scalpel.kind = ToolKind::scalpel;
-    const Quat q = ScriptPlayer(script, std::span(&scalpel, 1), 1e-3).at(0).world_from_tool;
+    const Quat q = scenes::ScriptPlayer(script, std::span(&scalpel, 1), 1e-3).at(0).world_from_tool;
     const Vec3 pointing = Vec3{0.3, 0.1, -1} / norm(Vec3{0.3, 0.1, -1});
     EXPECT_NEAR(norm(rotate(q, {0, 0, -1}) - pointing), 0, 1e-14);
     // What of the way is across the tool's axis is where +x looks.
@@ -411,11 +412,11 @@ TEST(ScriptPlayer, FacingTurnsABladeAboutItsOwnAxisAlone) {
 }
 
 TEST(DefaultScript, OfASceneWithoutToolsWaits) {
-  SceneSpec scene = block_scene("[3, 3, 3]");
+  scenes::SceneSpec scene = block_scene("[3, 3, 3]");
   scene.tools.clear();
-  const std::vector<FilledOrgan> organs{fill_rig(scene.organs.at(0))};
-  const Script script = default_script(scene, organs);
-  EXPECT_TRUE(read_script(write_script(script), "default.json", {}));
+  const std::vector<FilledOrgan> organs{scenes::fill_rig(scene.organs.at(0))};
+  const scenes::Script script = scenes::default_script(scene, organs);
+  EXPECT_TRUE(scenes::read_script(scenes::write_script(script), "default.json", {}));
 }
 
 }  // namespace

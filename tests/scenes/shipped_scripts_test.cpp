@@ -50,8 +50,8 @@ std::string scene_of(std::string script) {
 
 struct Shipped {
   std::string name;
-  SceneSpec scene;
-  Script script;
+  scenes::SceneSpec scene;
+  scenes::Script script;
   std::vector<Tool> tools;
   std::vector<Vec3> vertices;
 };
@@ -61,26 +61,26 @@ std::vector<Shipped> shipped_scripts() {
   for (const auto& entry : fs::directory_iterator(kScenes / "scripts")) {
     if (entry.path().extension() != ".json") continue;
     const std::string name = entry.path().stem().string();
-    const auto scene = load_scene((kScenes / (scene_of(name) + ".json")).string());
+    const auto scene = scenes::load_scene((kScenes / (scene_of(name) + ".json")).string());
     if (!scene) {
       ADD_FAILURE() << name << ": " << to_string(scene.errors().front());
       continue;
     }
     std::vector<std::string> names;
     std::vector<Tool> tools;
-    for (const ToolSpec& spec : scene->spec.tools) {
+    for (const scenes::ToolSpec& spec : scene->spec.tools) {
       names.push_back(spec.name);
       Tool& tool = tools.emplace_back();
       tool.name = spec.name, tool.kind = spec.kind;
       tool.radius = spec.radius.value_or(0), tool.blade_length = spec.blade_length.value_or(0);
     }
-    const auto script = read_script(read_whole(entry.path()), entry.path().string(), names);
+    const auto script = scenes::read_script(read_whole(entry.path()), entry.path().string(), names);
     if (!script) {
       ADD_FAILURE() << to_string(script.errors().front());
       continue;
     }
     Shipped& shipped = all.emplace_back(Shipped{name, scene->spec, *script, tools, {}});
-    for (const OrganSpec& organ : scene->spec.organs)
+    for (const scenes::OrganSpec& organ : scene->spec.organs)
       for (const Vec3& vertex : vertices_of(kScenes / organ.mesh)) shipped.vertices.push_back(vertex);
   }
   std::sort(all.begin(), all.end(), [](const Shipped& a, const Shipped& b) { return a.name < b.name; });
@@ -113,7 +113,7 @@ TEST(ShippedScripts, WrittenAndReadAgainTheyAreTheSame) {
   for (const Shipped& shipped : shipped_scripts()) {
     std::vector<std::string> names;
     for (const Tool& tool : shipped.tools) names.push_back(tool.name);
-    const auto again = read_script(write_script(shipped.script), "again.json", names);
+    const auto again = scenes::read_script(scenes::write_script(shipped.script), "again.json", names);
     ASSERT_TRUE(again) << shipped.name;
     EXPECT_EQ(*again, shipped.script) << shipped.name;
   }
@@ -121,7 +121,7 @@ TEST(ShippedScripts, WrittenAndReadAgainTheyAreTheSame) {
 
 TEST(ShippedScripts, ToolsAppearOutsideGoWellInAndLeave) {
   for (const Shipped& shipped : shipped_scripts()) {
-    const ScriptPlayer player(shipped.script, shipped.tools, kTick);
+    const scenes::ScriptPlayer player(shipped.script, shipped.tools, kTick);
     double deepest = -1, last = 1;
     std::int32_t held = -1;
     // Every tenth tick: 0.8 mm of way at the most.

@@ -1,6 +1,6 @@
 // Loops over axial elements; part of loops.h.
 
-namespace ctpm::CTPM_KERNELS {
+namespace ctpm::elements::CTPM_KERNELS {
 namespace {
 
 /// Unit vectors from a to b and lengths of a batch.
@@ -189,4 +189,4 @@ void apply_axial(const AxialArrays& m, const AxialBatch* first, const AxialBatch
 }
 
 }  // namespace
-}  // namespace ctpm::CTPM_KERNELS
+}  // namespace ctpm::elements::CTPM_KERNELS

@@ -1,6 +1,6 @@
 #include "core/elements/kernels/kernels.h"
 
-namespace ctpm {
+namespace ctpm::elements {
 
 namespace baseline {
 extern const Kernels kernels;
@@ -46,4 +46,4 @@ const Kernels& kernels_for(InstructionSet set) {
   return baseline::kernels;
 }
 
-}  // namespace ctpm
+}  // namespace ctpm::elements

@@ -5,7 +5,7 @@
 
 #include "core/model/axial_law.h"
 
-namespace ctpm {
+namespace ctpm::elements {
 
 /// Vector instructions that the inner loops may use. All give the same bits: every lane does what scalar code does, in
 /// the same order, and nothing is contracted.
@@ -151,4 +151,4 @@ const SolverKernels<Real>& solver_kernels(const Kernels& kernels) {
 /// The loops for a set that this machine has; the nearest narrower one if it has not.
 const Kernels& kernels_for(InstructionSet set);
 
-}  // namespace ctpm
+}  // namespace ctpm::elements

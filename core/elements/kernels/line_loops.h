@@ -1,6 +1,6 @@
 // Loops over lines of three spheres; part of loops.h.
 
-namespace ctpm::CTPM_KERNELS {
+namespace ctpm::elements::CTPM_KERNELS {
 namespace {
 
 /// Couplings below this part of the sphere's mass change the matrix by less than any solver tolerance.
@@ -278,4 +278,4 @@ void apply_line(const LineArrays& m, const LineBatch& batch, const Real* v, Slab
 }
 
 }  // namespace
-}  // namespace ctpm::CTPM_KERNELS
+}  // namespace ctpm::elements::CTPM_KERNELS

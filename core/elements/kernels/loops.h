@@ -12,7 +12,7 @@
 #define CTPM_INDEPENDENT _Pragma("GCC ivdep")
 #endif
 
-namespace ctpm::CTPM_KERNELS {
+namespace ctpm::elements::CTPM_KERNELS {
 namespace {
 
 using std::int32_t;
@@ -85,13 +85,13 @@ void add_to_blocks(const SlabTarget<double>& blocks, int32_t sphere, int32_t cou
 }
 
 }  // namespace
-}  // namespace ctpm::CTPM_KERNELS
+}  // namespace ctpm::elements::CTPM_KERNELS
 
 #include "core/elements/kernels/axial_loops.h"
 #include "core/elements/kernels/line_loops.h"
 #include "core/elements/kernels/solver_loops.h"
 
-namespace ctpm::CTPM_KERNELS {
+namespace ctpm::elements::CTPM_KERNELS {
 
 template <class Real>
 constexpr SolverKernels<Real> solver{apply_axial<Real>, apply_line<Real>, invert_blocks<Real>, begin_solve<Real>,
@@ -101,4 +101,4 @@ extern const Kernels kernels;
 const Kernels kernels{add_axial_forces, linearise_axial, measure_line,  add_line_forces, linearise_line, solver<float>,
                       solver<double>,   multiply_mass,   residual_from, nearest_squared, fastest_squared};
 
-}  // namespace ctpm::CTPM_KERNELS
+}  // namespace ctpm::elements::CTPM_KERNELS

@@ -1,6 +1,6 @@
 // Loops of the solver over spheres; part of loops.h.
 
-namespace ctpm::CTPM_KERNELS {
+namespace ctpm::elements::CTPM_KERNELS {
 namespace {
 
 /// As many accumulators as a cache line has numbers, whatever the instruction set.
@@ -176,4 +176,4 @@ double fastest_squared(const double* x, const double* y, const double* z, size_t
 }
 
 }  // namespace
-}  // namespace ctpm::CTPM_KERNELS
+}  // namespace ctpm::elements::CTPM_KERNELS

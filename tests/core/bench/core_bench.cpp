@@ -21,8 +21,8 @@ namespace {
 /// Edge of a block of about `spheres` spheres.
 int edge_of(std::int64_t spheres) { return int(std::lround(std::cbrt(double(spheres)))); }
 
-Model make_model(std::int64_t spheres, Structure structure, double viscosity) {
-  Material material = testing::liver_material();
+Model make_model(std::int64_t spheres, network::Structure structure, double viscosity) {
+  network::Material material = testing::liver_material();
   material.viscosity = viscosity, material.stiffness_scale = 0.29;
   const int n = edge_of(spheres);
   Model model = testing::make_block_model(n, n, n, structure, material);
@@ -36,13 +36,13 @@ void report(benchmark::State& run, const Model& model) {
       double(model.axial.size()), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void forces(benchmark::State& run, Structure structure, double viscosity) {
+void forces(benchmark::State& run, network::Structure structure, double viscosity) {
   const Model model = make_model(run.range(0), structure, viscosity);
-  Team team(int(run.range(1)));
-  Elements elements(model, team);
+  parallel::Team team(int(run.range(1)));
+  elements::Elements elements(model, team);
   State state = rest_state(model);
   testing::shake(state, 1e-4, 1e-3);
-  Coordinates force(3 * model.sphere_count());
+  elements::Coordinates force(3 * model.sphere_count());
   for (auto _ : run) elements.add_forces(state, force), benchmark::DoNotOptimize(force.data());
   report(run, model);
 }
@@ -50,13 +50,13 @@ void forces(benchmark::State& run, Structure structure, double viscosity) {
 /// The forces of springs by a loop that knows nothing else: no damping, cutting, softening, constraints or slabs. What
 /// forces/springs takes beyond it, features cost a scene that has none of them.
 void plain_springs(benchmark::State& run) {
-  const Model model = make_model(run.range(0), Structure::mass_spring, 0);
+  const Model model = make_model(run.range(0), network::Structure::mass_spring, 0);
   const AxialElements& axial = model.axial;
   State state = rest_state(model);
   testing::shake(state, 1e-4, 1e-3);
   const double *x = state.position.x.data(), *y = state.position.y.data(), *z = state.position.z.data();
   const std::size_t n = model.sphere_count();
-  Coordinates force(3 * n);
+  elements::Coordinates force(3 * n);
   double *fx = force.data(), *fy = fx + n, *fz = fy + n;
   for (auto _ : run) {
     for (std::size_t i = 0; i < axial.size(); ++i) {
@@ -75,7 +75,7 @@ void plain_springs(benchmark::State& run) {
 
 /// Reads and writes what a force evaluation must at the least: positions, velocities and forces once.
 void streaming(benchmark::State& run) {
-  const Model model = make_model(run.range(0), Structure::mass_spring, 0);
+  const Model model = make_model(run.range(0), network::Structure::mass_spring, 0);
   const std::size_t n = 3 * model.sphere_count();
   std::vector<double> position(n, 1), velocity(n, 2), force(n);
   for (auto _ : run) {
@@ -98,10 +98,10 @@ SolverSettings at_residual(double tolerance) {
 /// A ball presses at 20 mm/s, each solve starting from the last velocities; percentiles of the tick, iterations of its
 /// solves, and ticks with a solve that stopped at its count.
 void ticks(benchmark::State& run, double viscosity, const SolverSettings& solver) {
-  Model model = make_model(run.range(0), Structure::ctpm, viscosity);
+  Model model = make_model(run.range(0), network::Structure::ctpm, viscosity);
   model.solver = solver;
   const double top = 0.012 * (edge_of(run.range(0)) - 1) + 0.006 + 0.006;
-  Stepper stepper(model, {.threads = int(run.range(1))});
+  stepping::Stepper stepper(model, {.threads = int(run.range(1))});
   State state = rest_state(model);
   std::vector<double> times;
   double iterations = 0, unconverged = 0;
@@ -110,20 +110,20 @@ void ticks(benchmark::State& run, double viscosity, const SolverSettings& solver
     inputs.tool = 0;
     inputs.position = {0.001, 0.002, top - 2e-5 * double(state.tick)};
     const auto start = std::chrono::steady_clock::now();
-    const StepReport report = stepper.step(state, inputs);
+    const stepping::StepReport report = stepper.step(state, inputs);
     times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    iterations += report.iterations, unconverged += report.status == StepStatus::not_converged;
+    iterations += report.iterations, unconverged += report.status == stepping::StepStatus::not_converged;
   }
   std::sort(times.begin(), times.end());
   const auto percentile = [&](double p) { return 1e3 * times[std::size_t(p * double(times.size() - 1))]; };
   run.counters["p50_ms"] = percentile(0.5), run.counters["p99_ms"] = percentile(0.99);
   run.counters["iterations"] = iterations / double(times.size()), run.counters["unconverged"] = unconverged;
-  run.SetLabel(name_of(stepper.integrator().integrator));
+  run.SetLabel(stepping::name_of(stepper.integrator().integrator));
   report(run, model);
 }
 
 /// Bytes of Model and State of a sphere, with all features of the tissue and without.
-void memory(benchmark::State& run, Structure structure, double viscosity) {
+void memory(benchmark::State& run, network::Structure structure, double viscosity) {
   const Model model = make_model(run.range(0), structure, viscosity);
   const State state = rest_state(model);
   double bytes = 0;
@@ -138,13 +138,15 @@ constexpr double kPascal = 5e3, kKilopascal = 5e6;  // v1 of the liver in both r
 
 BENCHMARK(plain_springs)->Arg(1000)->Arg(10000)->Arg(100000);
 BENCHMARK(streaming)->Arg(1000)->Arg(10000)->Arg(100000);
-BENCHMARK_CAPTURE(forces, springs, Structure::mass_spring, 0.0)
+BENCHMARK_CAPTURE(forces, springs, network::Structure::mass_spring, 0.0)
     ->ArgsProduct({{1000, 10000, 100000}, {1, 2}})
     ->UseRealTime();
-BENCHMARK_CAPTURE(forces, two_sphere_tpms, Structure::tpm, kPascal)
+BENCHMARK_CAPTURE(forces, two_sphere_tpms, network::Structure::tpm, kPascal)
     ->ArgsProduct({{1000, 10000, 100000}, {1, 2}})
     ->UseRealTime();
-BENCHMARK_CAPTURE(forces, ctpm, Structure::ctpm, kPascal)->ArgsProduct({{1000, 10000, 100000}, {1, 2}})->UseRealTime();
+BENCHMARK_CAPTURE(forces, ctpm, network::Structure::ctpm, kPascal)
+    ->ArgsProduct({{1000, 10000, 100000}, {1, 2}})
+    ->UseRealTime();
 BENCHMARK_CAPTURE(ticks, stiff_liver, kKilopascal, as_scenes())
     ->ArgsProduct({{729, 4913}, {1, 2}})
     ->Iterations(500)
@@ -161,8 +163,8 @@ BENCHMARK_CAPTURE(ticks, liver_not_stiff, kPascal, as_scenes())
     ->ArgsProduct({{4913, 29791}, {1, 2}})
     ->Iterations(500)
     ->UseRealTime();
-BENCHMARK_CAPTURE(memory, springs, Structure::mass_spring, 0.0)->Arg(5000);
-BENCHMARK_CAPTURE(memory, ctpm, Structure::ctpm, kKilopascal)->Arg(5000);
+BENCHMARK_CAPTURE(memory, springs, network::Structure::mass_spring, 0.0)->Arg(5000);
+BENCHMARK_CAPTURE(memory, ctpm, network::Structure::ctpm, kKilopascal)->Arg(5000);
 
 }  // namespace
 }  // namespace ctpm

@@ -12,13 +12,13 @@ namespace ctpm::bench {
 constexpr double kRing = 0.06, kTube = 0.025;  // [m]
 
 /// A ring of about this many triangles.
-inline RawMesh ring_of(std::int64_t triangles) {
+inline importers::RawMesh ring_of(std::int64_t triangles) {
   const int across = int(std::lround(std::sqrt(double(triangles) / 2 * kTube / kRing)));
   return zoo::torus(kRing, kTube, int(triangles / 2 / across), across);
 }
 
-inline CheckedMesh checked_ring_of(std::int64_t triangles) {
-  Result<CheckedMesh> mesh = repair_mesh(ring_of(triangles), 1);
+inline importers::CheckedMesh checked_ring_of(std::int64_t triangles) {
+  Result<importers::CheckedMesh> mesh = importers::repair_mesh(ring_of(triangles), 1);
   if (!mesh) throw std::runtime_error(zoo::text_of(mesh.errors()));
   return std::move(*mesh);
 }
@@ -28,8 +28,8 @@ inline double spacing_for(std::int64_t spheres) {
   return std::cbrt(2 * std::numbers::pi * std::numbers::pi * kRing * kTube * kTube / double(spheres));
 }
 
-inline FillOptions options_for(std::int64_t spheres) {
-  FillOptions options;
+inline importers::FillOptions options_for(std::int64_t spheres) {
+  importers::FillOptions options;
   options.sphere_radius = spacing_for(spheres) / 3;
   options.gap = spacing_for(spheres) / 3;
   options.threads = 2;

@@ -17,20 +17,20 @@ using namespace ctpm::testing;
 constexpr std::int64_t ticks_per_minute = 60'000;
 constexpr std::int64_t session_ticks = 20'000;  // of the session that is really simulated
 
-const SessionStart& block_start() {
-  static const SessionStart start = small_start(10, 10, 10);
+const recordings::SessionStart& block_start() {
+  static const recordings::SessionStart start = small_start(10, 10, 10);
   return start;
 }
 
 /// 20 s of session, simulated once.
 const Lived& lived_block() {
-  static const Lived lived = live(block_start(), session_ticks, [](const State&, const TickRecord&) {});
+  static const Lived lived = live(block_start(), session_ticks, [](const State&, const recordings::TickRecord&) {});
   return lived;
 }
 
 void StateHash1000Spheres(benchmark::State& state) {
   const State& last = lived_block().last;
-  for (auto _ : state) benchmark::DoNotOptimize(state_hash(last));
+  for (auto _ : state) benchmark::DoNotOptimize(recordings::state_hash(last));
 }
 BENCHMARK(StateHash1000Spheres)->Unit(benchmark::kMicrosecond);
 
@@ -38,7 +38,7 @@ BENCHMARK(StateHash1000Spheres)->Unit(benchmark::kMicrosecond);
 void Append1000Spheres(benchmark::State& state) {
   const Folder folder;
   const Lived& lived = lived_block();
-  auto writer = SessionWriter::create(folder / "a.ctpm", block_start());
+  auto writer = recordings::SessionWriter::create(folder / "a.ctpm", block_start());
   std::size_t tick = 0;
   for (auto _ : state) {
     std::this_thread::sleep_for(std::chrono::microseconds(300));
@@ -54,19 +54,19 @@ BENCHMARK(Append1000Spheres)->UseManualTime()->Iterations(5000)->Unit(benchmark:
 /// recording is.
 void TickWithRecording1000Spheres(benchmark::State& state) {
   using Clock = std::chrono::steady_clock;
-  const SessionStart& start = block_start();
+  const recordings::SessionStart& start = block_start();
   const Folder folder;
-  auto writer = SessionWriter::create(folder / "a.ctpm", start);
+  auto writer = recordings::SessionWriter::create(folder / "a.ctpm", start);
   std::vector<double> step_us, record_us;
   State now = start.initial_state;
-  Stepper stepper(start.model);
+  stepping::Stepper stepper(start.model);
   std::int64_t tick = 0;
   for (auto _ : state) {
     const Inputs inputs = scripted_inputs(tick++, start.model.rest_position.z.back());
     const auto t0 = Clock::now();
-    const StepReport report = stepper.step(now, inputs);
+    const stepping::StepReport report = stepper.step(now, inputs);
     const auto t1 = Clock::now();
-    writer->append(now, make_record(inputs, report, 1e-3, state_hash(now)));
+    writer->append(now, recordings::make_record(inputs, report, 1e-3, recordings::state_hash(now)));
     const auto t2 = Clock::now();
     step_us.push_back(std::chrono::duration<double, std::micro>(t1 - t0).count());
     record_us.push_back(std::chrono::duration<double, std::micro>(t2 - t1).count());
@@ -86,15 +86,16 @@ BENCHMARK(TickWithRecording1000Spheres)->Iterations(5000)->Unit(benchmark::kMicr
 /// Size of a session whose every tick is different, with its keyframes.
 void FileSize1000Spheres(benchmark::State& state) {
   const Folder folder;
-  const SessionStart& start = block_start();
-  WriterOptions options;
+  const recordings::SessionStart& start = block_start();
+  recordings::WriterOptions options;
   options.wait_when_full = true;
   for (auto _ : state) {
-    auto empty = SessionWriter::create(folder / "empty.ctpm", start, options);
+    auto empty = recordings::SessionWriter::create(folder / "empty.ctpm", start, options);
     if (!empty || !empty->finish()) return state.SkipWithError("not recorded");
-    auto writer = SessionWriter::create(folder / "a.ctpm", start, options);
-    auto bare = SessionWriter::create(folder / "bare.ctpm", start, {.wait_when_full = true, .keyframe_ticks = 1 << 30});
-    live(start, session_ticks, [&](const State& after, const TickRecord& record) {
+    auto writer = recordings::SessionWriter::create(folder / "a.ctpm", start, options);
+    auto bare = recordings::SessionWriter::create(folder / "bare.ctpm", start,
+                                                  {.wait_when_full = true, .keyframe_ticks = 1 << 30});
+    live(start, session_ticks, [&](const State& after, const recordings::TickRecord& record) {
       writer->append(after, record);
       bare->append(after, record);
     });
@@ -115,7 +116,8 @@ const std::string& one_hour() {
   static const Folder folder;
   static const std::string path = [] {
     const std::string name = folder / "hour.ctpm";
-    auto writer = SessionWriter::create(name, block_start(), {.wait_when_full = true, .queue_ticks = 1 << 18});
+    auto writer =
+        recordings::SessionWriter::create(name, block_start(), {.wait_when_full = true, .queue_ticks = 1 << 18});
     const Lived& lived = lived_block();
     for (std::int64_t tick = 0; tick < 60 * ticks_per_minute; ++tick)
       writer->append(lived.last, lived.records[static_cast<std::size_t>(tick) % lived.records.size()]);
@@ -128,7 +130,7 @@ const std::string& one_hour() {
 void OpenOneHour(benchmark::State& state) {
   const std::string& path = one_hour();
   for (auto _ : state) {
-    auto reader = SessionReader::open(path);
+    auto reader = recordings::SessionReader::open(path);
     if (!reader || reader->tick_count() != 60 * ticks_per_minute) return state.SkipWithError("not opened");
   }
   state.counters["file_mb"] = static_cast<double>(std::filesystem::file_size(path)) / 1e6;
@@ -136,7 +138,7 @@ void OpenOneHour(benchmark::State& state) {
 BENCHMARK(OpenOneHour)->Unit(benchmark::kMillisecond);
 
 void ReadOneMinuteInTheMiddleOfAnHour(benchmark::State& state) {
-  auto reader = SessionReader::open(one_hour());
+  auto reader = recordings::SessionReader::open(one_hour());
   for (auto _ : state) benchmark::DoNotOptimize(reader->ticks(30 * ticks_per_minute, 31 * ticks_per_minute));
 }
 BENCHMARK(ReadOneMinuteInTheMiddleOfAnHour)->Unit(benchmark::kMillisecond);
@@ -146,21 +148,21 @@ BENCHMARK(ReadOneMinuteInTheMiddleOfAnHour)->Unit(benchmark::kMillisecond);
 /// keyframes, so each seek reads and simulates what it would of a session that was.
 void SeekInTenMinutes(benchmark::State& state) {
   const Folder folder;
-  const SessionStart start = small_start(9, 9, 9);
-  const WriterOptions options{.wait_when_full = true};
+  const recordings::SessionStart start = small_start(9, 9, 9);
+  const recordings::WriterOptions options{.wait_when_full = true};
   std::vector<State> keyframes;
-  const Lived lived = live(start, session_ticks, [&](const State& after, const TickRecord&) {
+  const Lived lived = live(start, session_ticks, [&](const State& after, const recordings::TickRecord&) {
     if (after.tick % options.keyframe_ticks == 0) keyframes.push_back(after);
   });
-  auto writer = SessionWriter::create(folder / "a.ctpm", start, options);
+  auto writer = recordings::SessionWriter::create(folder / "a.ctpm", start, options);
   for (std::int64_t tick = 0; tick < 10 * ticks_per_minute; ++tick) {
     const std::int64_t lived_tick = tick % session_ticks;
     writer->append(keyframes[static_cast<std::size_t>(lived_tick / options.keyframe_ticks)],
                    lived.records[static_cast<std::size_t>(lived_tick)]);
   }
   if (!writer->finish()) return state.SkipWithError("not recorded");
-  auto reader = SessionReader::open(folder / "a.ctpm");
-  auto cursor = ReplayCursor::create(*reader);
+  auto reader = recordings::SessionReader::open(folder / "a.ctpm");
+  auto cursor = recordings::ReplayCursor::create(*reader);
   std::int64_t keyframe = 0;
   double longest = 0;
   for (auto _ : state) {
@@ -177,15 +179,15 @@ BENCHMARK(SeekInTenMinutes)->Iterations(20)->Unit(benchmark::kMillisecond);
 /// Verifying a session against the time it lasted.
 void VerifySession(benchmark::State& state) {
   const Folder folder;
-  const SessionStart& start = block_start();
-  auto writer = SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true});
-  live(start, 5000, [&](const State& after, const TickRecord& record) { writer->append(after, record); });
+  const recordings::SessionStart& start = block_start();
+  auto writer = recordings::SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true});
+  live(start, 5000, [&](const State& after, const recordings::TickRecord& record) { writer->append(after, record); });
   if (!writer->finish()) return state.SkipWithError("not recorded");
-  auto reader = SessionReader::open(folder / "a.ctpm");
+  auto reader = recordings::SessionReader::open(folder / "a.ctpm");
   double seconds = 0;
   for (auto _ : state) {
     const auto begin = std::chrono::steady_clock::now();
-    const auto verdict = verify_session(*reader);
+    const auto verdict = recordings::verify_session(*reader);
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (!verdict || !verdict->same) return state.SkipWithError("differs");
   }

@@ -20,17 +20,17 @@ const std::string kScenes = std::string(CTPM_SOURCE_DIR) + "/scenes";
 class ShippedOrgan : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ShippedOrgan, HoldsTheScaleThatMeetsTable1AtTwelveMillimetres) {
-  const Result<LoadedScene> scene = load_whole_scene(kScenes + "/" + GetParam() + ".json");
+  const Result<loading::LoadedScene> scene = loading::load_whole_scene(kScenes + "/" + GetParam() + ".json");
   ASSERT_TRUE(scene) << to_string(scene.errors().front());
-  const OrganSpec& organ = scene->scene.spec.organs[0];
-  const Result<StiffnessFit> fit = fit_stiffness(scene->scene.spec, 0, scene->organs[0]);
+  const scenes::OrganSpec& organ = scene->scene.spec.organs[0];
+  const Result<authoring::StiffnessFit> fit = authoring::fit_stiffness(scene->scene.spec, 0, scene->organs[0]);
   ASSERT_TRUE(fit) << to_string(fit.errors().front());
   // Fitting what is fitted already changes nothing.
   EXPECT_NEAR(fit->factor, 1, 0.01);
   ASSERT_TRUE(organ.material.fitted_for);
-  const FittedForSpec& stored = *organ.material.fitted_for;
+  const scenes::FittedForSpec& stored = *organ.material.fitted_for;
   EXPECT_NEAR(norm(stored.place - fit->fitted_for.place), 0, 0.1e-3);
-  EXPECT_NEAR(stored.force, table_force(site_of(organ), 12, true), 0.01 * stored.force);
+  EXPECT_NEAR(stored.force, rig::table_force(rig::site_of(organ), 12, true), 0.01 * stored.force);
   ASSERT_EQ(fit->rows.size(), 6u);
   EXPECT_NEAR(fit->rows.back().error(), 0, 0.01);
 }
@@ -38,17 +38,19 @@ TEST_P(ShippedOrgan, HoldsTheScaleThatMeetsTable1AtTwelveMillimetres) {
 INSTANTIATE_TEST_SUITE_P(Fit, ShippedOrgan, ::testing::Values("liver", "kidney", "kidney-capsule", "skin"));
 
 /// Force on a ball that presses the top of an organ by 4 mm, without gravity [N].
-double force_at_four_millimetres(const LoadedScene& scene, const std::function<void(SceneSpec&)>& change) {
-  const Result<BuiltScene> built = build_changed(scene, [&](SceneSpec& s) { s.gravity = {}, change(s); });
+double force_at_four_millimetres(const loading::LoadedScene& scene,
+                                 const std::function<void(scenes::SceneSpec&)>& change) {
+  const Result<scenes::BuiltScene> built =
+      loading::build_changed(scene, [&](scenes::SceneSpec& s) { s.gravity = {}, change(s); });
   CTPM_CHECK(bool(built), "a shipped scene is valid");
   const Model& model = built->model;
   Vec3 top = scene.scene.spec.organs[0].material.fitted_for->place;
-  const auto c = std::size_t(nearest_sphere(model, top));
+  const auto c = std::size_t(scenes::nearest_sphere(model, top));
   Inputs inputs;
   inputs.tool = 0;
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
-  StepReport report;
+  stepping::StepReport report;
   for (int tick = 0; tick <= 1000; ++tick) {
     inputs.position = model.rest_position[c] +
                       Vec3{0, 0, model.tools[0].radius + model.contact_radius[c] - 4e-3 * std::min(1.0, tick / 400.0)};
@@ -58,43 +60,43 @@ double force_at_four_millimetres(const LoadedScene& scene, const std::function<v
 }
 
 TEST(ShippedCapsule, IsItsOwnTissueAndMakesTheKidneyStiffer) {
-  const Result<LoadedScene> scene = load_whole_scene(kScenes + "/kidney-capsule.json");
+  const Result<loading::LoadedScene> scene = loading::load_whole_scene(kScenes + "/kidney-capsule.json");
   ASSERT_TRUE(scene) << to_string(scene.errors().front());
   const std::vector<double>& depth = scene->organs[0].depth;
   const double end = scene->scene.spec.organs[0].layers.at(0).to_depth;
   const auto capsule = std::count_if(depth.begin(), depth.end(), [&](double d) { return d < end; });
   EXPECT_GT(capsule, 100);
   EXPECT_GT(std::ptrdiff_t(depth.size()) - capsule, 100);
-  const double whole = force_at_four_millimetres(*scene, [](SceneSpec&) {});
-  const double bare = force_at_four_millimetres(*scene, [](SceneSpec& s) { s.organs[0].layers.clear(); });
-  const double solid =
-      force_at_four_millimetres(*scene, [](SceneSpec& s) { s.organs[0].material = s.organs[0].layers[0].material; });
+  const double whole = force_at_four_millimetres(*scene, [](scenes::SceneSpec&) {});
+  const double bare = force_at_four_millimetres(*scene, [](scenes::SceneSpec& s) { s.organs[0].layers.clear(); });
+  const double solid = force_at_four_millimetres(
+      *scene, [](scenes::SceneSpec& s) { s.organs[0].material = s.organs[0].layers[0].material; });
   EXPECT_GT(whole, 1.2 * bare);
   EXPECT_LT(whole, solid);
 }
 
 TEST(Fit, FindsTheFactorWhateverTheScaleWas) {
-  const Result<LoadedScene> scene = load_whole_scene(kScenes + "/skin.json");
+  const Result<loading::LoadedScene> scene = loading::load_whole_scene(kScenes + "/skin.json");
   ASSERT_TRUE(scene);
-  SceneSpec spec = scene->scene.spec;
+  scenes::SceneSpec spec = scene->scene.spec;
   const double fitted = *spec.organs[0].material.stiffness_scale;
   spec.organs[0].material.stiffness_scale = 5 * fitted;
-  const Result<StiffnessFit> fit = fit_stiffness(spec, 0, scene->organs[0]);
+  const Result<authoring::StiffnessFit> fit = authoring::fit_stiffness(spec, 0, scene->organs[0]);
   ASSERT_TRUE(fit);
   EXPECT_NEAR(fit->factor, 0.2, 0.002);
-  apply_fit(spec.organs[0], *fit);
+  authoring::apply_fit(spec.organs[0], *fit);
   EXPECT_NEAR(*spec.organs[0].material.stiffness_scale, fitted, 0.01 * fitted);
-  const Result<SceneText> again = read_scene(write_scene(spec), "fitted.json");
+  const Result<scenes::SceneText> again = scenes::read_scene(scenes::write_scene(spec), "fitted.json");
   ASSERT_TRUE(again) << to_string(again.errors().front());
   EXPECT_TRUE(again->spec == spec);
 }
 
 TEST(Fit, AnOrganThatCannotMoveIsToldSo) {
-  const Result<LoadedScene> scene = load_whole_scene(kScenes + "/paper/block-liver.json");
+  const Result<loading::LoadedScene> scene = loading::load_whole_scene(kScenes + "/paper/block-liver.json");
   ASSERT_TRUE(scene);
-  SceneSpec spec = scene->scene.spec;
+  scenes::SceneSpec spec = scene->scene.spec;
   spec.organs[0].anchors[0].lowest = 1.0;
-  const Result<StiffnessFit> fit = fit_stiffness(spec, 0, scene->organs[0]);
+  const Result<authoring::StiffnessFit> fit = authoring::fit_stiffness(spec, 0, scene->organs[0]);
   ASSERT_FALSE(fit);
   EXPECT_NE(to_string(fit.errors().front()).find("no outermost sphere can move"), std::string::npos);
 }

@@ -19,23 +19,23 @@ using testing::TemporaryFolder;
 TEST(Bench, TheFrontHoldsWhatNothingElseBeatsInBoth) {
   const std::vector<double> cost{3, 1, 2, 4, 1}, error{0.1, 0.5, 0.6, 0.2, 0.4};
   // Fastest first: the more accurate of the two that cost 1, then what costs more and errs less.
-  EXPECT_EQ(pareto_front(cost, error), (std::vector<std::size_t>{4, 0}));
-  EXPECT_TRUE(pareto_front({}, {}).empty());
+  EXPECT_EQ(bench::pareto_front(cost, error), (std::vector<std::size_t>{4, 0}));
+  EXPECT_TRUE(bench::pareto_front({}, {}).empty());
 }
 
 TEST(Bench, PercentilesAreValuesThatWereMeasured) {
   std::vector<double> values;
   for (int i = 1000; i >= 1; --i) values.push_back(i);
-  EXPECT_EQ(percentile(values, 0.5), 500);
-  EXPECT_EQ(percentile(values, 0.99), 990);
-  EXPECT_EQ(percentile(values, 0.999), 999);
-  EXPECT_EQ(percentile({7}, 0.999), 7);
-  EXPECT_EQ(percentile({}, 0.5), 0);
+  EXPECT_EQ(bench::percentile(values, 0.5), 500);
+  EXPECT_EQ(bench::percentile(values, 0.99), 990);
+  EXPECT_EQ(bench::percentile(values, 0.999), 999);
+  EXPECT_EQ(bench::percentile({7}, 0.999), 7);
+  EXPECT_EQ(bench::percentile({}, 0.5), 0);
 }
 
 /// A run of one sphere that goes along x, `off` [m] away from where it should be.
-BenchRun straight_run(double off) {
-  BenchRun run;
+bench::BenchRun straight_run(double off) {
+  bench::BenchRun run;
   for (int t = 1; t <= 10; ++t) {
     Vec3Array p;
     p.push_back({0.01 * t + off, 0, 0});
@@ -49,10 +49,10 @@ TEST(Bench, ErrorsAreRelativeToHowFarItMovesAndHowHardItPushes) {
   rest.push_back({});
   double squares = 0;
   for (int t = 1; t <= 10; ++t) squares += 1e-4 * t * t;
-  const BenchRun reference = straight_run(0), off = straight_run(1e-3);
-  EXPECT_EQ(position_error(reference, reference, rest), 0);
-  EXPECT_NEAR(position_error(off, reference, rest), std::sqrt(10 * 1e-6 / squares), 1e-12);
-  EXPECT_NEAR(force_error(off, reference), 0.1 / 2, 1e-12);
+  const bench::BenchRun reference = straight_run(0), off = straight_run(1e-3);
+  EXPECT_EQ(bench::position_error(reference, reference, rest), 0);
+  EXPECT_NEAR(bench::position_error(off, reference, rest), std::sqrt(10 * 1e-6 / squares), 1e-12);
+  EXPECT_NEAR(bench::force_error(off, reference), 0.1 / 2, 1e-12);
 }
 
 TEST(BenchCommand, ShowsErrorAgainstRunTimeOfAScene) {

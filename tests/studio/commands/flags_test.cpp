@@ -40,7 +40,7 @@ TEST(Flags, EveryFieldThatAnErrorNamesHasAFlagOfTheProgram) {
   for (const char* command : {"import", "record", "replay", "export", "preview", "paper"})
     help += testing::run_ctpm({command, "--help"}, folder.path()).out;
   for (const std::string& field : fields) {
-    const std::string flag = flag_of(field);
+    const std::string flag = commands::flag_of(field);
     EXPECT_EQ(flag[0], '-') << field << " has no flag";
     EXPECT_TRUE(std::regex_search(help, std::regex("[ ,]" + flag + "[ ,]"))) << flag << " is no flag of the program";
   }

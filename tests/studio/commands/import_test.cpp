@@ -36,7 +36,7 @@ class ImportProgram : public ::testing::Test {
 };
 
 /// An organ of kidney size, 90 x 60 x 50, in the unit that makes one of its millimetres `millimetre` long.
-RawMesh bean(double millimetre = 1, int cuts = 4) {
+importers::RawMesh bean(double millimetre = 1, int cuts = 4) {
   return zoo::moved(zoo::sphere(1, cuts), [=](Vec3 p) {
     return millimetre * Vec3{45 * p.x, 30 * p.y + 8 * p.x * p.x, 25 * p.z};
   });
@@ -67,7 +67,7 @@ TEST_F(ImportProgram, ACoarserSurfaceIsDrawnAroundTheSameSpheres) {
 }
 
 TEST_F(ImportProgram, AllPartsAreInTheSceneAsWell) {
-  const RawMesh two = zoo::both(bean(), zoo::moved(bean(), [](Vec3 p) { return p + Vec3{120, 0, 0}; }));
+  const importers::RawMesh two = zoo::both(bean(), zoo::moved(bean(), [](Vec3 p) { return p + Vec3{120, 0, 0}; }));
   write("two.obj", zoo::to_obj_text(two));
   ASSERT_EQ(import("two.obj", {"--unit", "mm"}).code, 0);
   const auto one = run_ctpm({"check", "scene.json"}, folder_.path());
@@ -90,7 +90,7 @@ TEST_F(ImportProgram, AHoleWiderThanUsualIsFilledWhenThatIsAskedFor) {
 }
 
 TEST_F(ImportProgram, CrumbsFarAwayDoNotMakeTheOrganUnusuallyLarge) {
-  const RawMesh crumb = zoo::sphere(3, 1, {150, 0, 0});
+  const importers::RawMesh crumb = zoo::sphere(3, 1, {150, 0, 0});
   write("crumb.obj", zoo::to_obj_text(zoo::both(bean(1, 3), crumb)));
   const auto outcome = import("crumb.obj");
   ASSERT_EQ(outcome.code, 0) << outcome.err;

@@ -129,11 +129,11 @@ TEST(ReplayCsv, HasTimeToolForceAndDepthOfEachTick) {
 
 /// A session that the physics `revision` made, with hashes of its own.
 void record_with_other_physics(const std::string& path, std::int32_t revision = kPhysicsRevision) {
-  SessionStart start = testing::small_start();
+  recordings::SessionStart start = testing::small_start();
   start.physics_revision = revision;
-  auto writer = SessionWriter::create(path, start, {.wait_when_full = true});
-  testing::live(start, 300, [&](const State& after, const TickRecord& record) {
-    TickRecord other = record;
+  auto writer = recordings::SessionWriter::create(path, start, {.wait_when_full = true});
+  testing::live(start, 300, [&](const State& after, const recordings::TickRecord& record) {
+    recordings::TickRecord other = record;
     if (after.tick > 120) ++other.state_hash;
     writer->append(after, other);
   });
@@ -205,12 +205,12 @@ TEST(Info, SaysWhatAnOldSessionLeavesOpen) {
 
 TEST(Info, ListsEventsInOrderOfTime) {
   const TemporaryFolder folder;
-  const SessionStart start = testing::small_start();
-  auto writer = SessionWriter::create((folder.path() / "a.ctpm").string(), start, {.wait_when_full = true});
-  testing::live(start, 300, [&](const State& after, const TickRecord& record) {
+  const recordings::SessionStart start = testing::small_start();
+  auto writer = recordings::SessionWriter::create((folder.path() / "a.ctpm").string(), start, {.wait_when_full = true});
+  testing::live(start, 300, [&](const State& after, const recordings::TickRecord& record) {
     writer->append(after, record);
     if (after.tick == 200) writer->event({.tick = 200, .text = "later"});
-    if (after.tick == 250) writer->event({.tick = 150, .kind = EventKind::contact_ends, .tool = 1});
+    if (after.tick == 250) writer->event({.tick = 150, .kind = recordings::EventKind::contact_ends, .tool = 1});
   });
   ASSERT_TRUE(writer->finish());
   for (const char* json : {"", "--json"}) {
@@ -249,7 +249,7 @@ TEST(RecoverProgram, ExitsWith3WhenSomethingIsMissingAndWith0WhenNothingIs) {
     bytes[place] = char(bytes[place] ^ 4);
     testing::write_bytes(damaged, bytes);
     bytes[place] = char(bytes[place] ^ 4);
-    auto reader = SessionReader::open(damaged);
+    auto reader = recordings::SessionReader::open(damaged);
     const auto all = reader ? reader->check_all() : Result<Done>(Done{});
     if (!all && holds(testing::text_of(all.errors()), "chunk")) damage = testing::text_of(all.errors());
   }

@@ -14,7 +14,7 @@ namespace ctpm {
 namespace {
 
 /// A hand that has moved `seconds` from one place to another, at a steady pace, with a tool.
-void go(SessionTrack& track, Vec3 from, Vec3 to, double seconds) {
+void go(compare::SessionTrack& track, Vec3 from, Vec3 to, double seconds) {
   const int ticks = int(std::lround(seconds / track.tick));
   for (int i = 1; i <= ticks; ++i) {
     track.tool.push_back(0);
@@ -24,109 +24,109 @@ void go(SessionTrack& track, Vec3 from, Vec3 to, double seconds) {
 }
 
 /// Fills in what a reader would have found.
-SessionTrack finished(SessionTrack track, const Model& model) {
+compare::SessionTrack finished(compare::SessionTrack track, const Model& model) {
   track.strokes = {{0, track.tick_count()}};
-  if (track.severed_at.empty()) track.severed_at.assign(ElementPlaces(model).count, -1);
+  if (track.severed_at.empty()) track.severed_at.assign(compare::ElementPlaces(model).count, -1);
   return track;
 }
 
-SessionTrack new_track() {
-  SessionTrack track;
+compare::SessionTrack new_track() {
+  compare::SessionTrack track;
   track.path = "made.ctpm", track.tick = 1e-3;
   return track;
 }
 
 class Measures : public ::testing::Test {
  protected:
-  const SessionStart scene_ = [] {
-    SessionStart start = testing::small_start();
+  const recordings::SessionStart scene_ = [] {
+    recordings::SessionStart start = testing::small_start();
     start.model.organs.at(0).damage_depth = 0.01;
     return start;
   }();
 
   /// The way of a press that takes 1 s down, `hold_s` of rest, and 1 s up.
-  SessionTrack press(double hold_s = 0) const {
-    SessionTrack track = new_track();
+  compare::SessionTrack press(double hold_s = 0) const {
+    compare::SessionTrack track = new_track();
     go(track, {0, 0, 0.1}, {0, 0, 0.05}, 1);
     go(track, {0, 0, 0.05}, {0, 0, 0.05}, hold_s);
     go(track, {0, 0, 0.05}, {0, 0, 0.1}, 1);
     return finished(track, scene_.model);
   }
 
-  static const MeasuredValue& find(const Comparison& comparison, const std::string& key) {
+  static const compare::MeasuredValue& find(const compare::Comparison& comparison, const std::string& key) {
     const auto it = std::find_if(comparison.values.begin(), comparison.values.end(),
-                                 [&](const MeasuredValue& v) { return key == v.measure->key; });
+                                 [&](const compare::MeasuredValue& v) { return key == v.measure->key; });
     CTPM_CHECK(it != comparison.values.end(), "a measure of that name");
     return *it;
   }
-  static double trainee(const Comparison& comparison, const std::string& key) {
+  static double trainee(const compare::Comparison& comparison, const std::string& key) {
     return find(comparison, key).trainee.value();
   }
 };
 
 TEST_F(Measures, TimePathAndPauseAreThoseOfTheWay) {
-  const Comparison comparison = compare_sessions(press(), press(2.5), scene_);
+  const compare::Comparison comparison = compare::compare_sessions(press(), press(2.5), scene_);
   EXPECT_NEAR(trainee(comparison, "completion_time_s"), 4.5, 1e-9);
   EXPECT_NEAR(find(comparison, "completion_time_s").expert.value(), 2, 1e-9);
   EXPECT_NEAR(trainee(comparison, "path_length_mm"), 100, 0.1);  // the first tick's way is before the session
   EXPECT_NEAR(trainee(comparison, "idle_time_s"), 2.5, 0.02);    // at the 100 Hz of hands
   EXPECT_EQ(find(comparison, "idle_time_s").expert.value(), 0);
   ASSERT_EQ(comparison.moments.size(), 1u);
-  EXPECT_EQ(comparison.moments[0].kind, MomentKind::pause);
+  EXPECT_EQ(comparison.moments[0].kind, compare::MomentKind::pause);
   EXPECT_NEAR(comparison.moments[0].from_s, 1, 0.02);
   EXPECT_NEAR(comparison.moments[0].severity, 1.5, 0.02);  // 2.5 s where 1 s is allowed
 }
 
 TEST_F(Measures, ATriangleOfForceHasItsAreaAndItsHeight) {
-  SessionTrack track = press();
+  compare::SessionTrack track = press();
   for (std::size_t i = 0; i < 2000; ++i) track.force[i] = 4 * (1 - std::abs(double(i) - 1000) / 1000);  // [N]
-  const Comparison comparison = compare_sessions(press(), track, scene_, {.force_limit = 2});
+  const compare::Comparison comparison = compare::compare_sessions(press(), track, scene_, {.force_limit = 2});
   EXPECT_EQ(trainee(comparison, "peak_force_n"), 4);
   EXPECT_NEAR(trainee(comparison, "mean_force_n"), 2, 0.01);
   EXPECT_NEAR(trainee(comparison, "time_above_force_limit_s"), 1, 0.002);
   EXPECT_NEAR(trainee(comparison, "impulse_above_force_limit_n_s"), 1, 0.002);  // half of 1 s times 2 N
   ASSERT_EQ(comparison.moments.size(), 1u);
-  EXPECT_EQ(comparison.moments[0].kind, MomentKind::force);
+  EXPECT_EQ(comparison.moments[0].kind, compare::MomentKind::force);
   EXPECT_NEAR(comparison.moments[0].worst_s, 1, 1e-9);
   EXPECT_NEAR(comparison.moments[0].severity, 1, 1e-9);  // twice the limit
 }
 
 TEST_F(Measures, TheForceLimitIsTheOneGivenOrTheScenesOrTheExpertsPeak) {
-  SessionTrack expert = press();
+  compare::SessionTrack expert = press();
   expert.force[1000] = 3;
-  EXPECT_EQ(compare_sessions(expert, press(), scene_).force_limit, 3);
-  EXPECT_EQ(compare_sessions(expert, press(), scene_, {.damage_force = 2}).force_limit, 2);
-  EXPECT_EQ(compare_sessions(expert, press(), scene_, {.force_limit = 1, .damage_force = 2}).force_limit, 1);
-  const Comparison none = compare_sessions(press(), expert, scene_);
+  EXPECT_EQ(compare::compare_sessions(expert, press(), scene_).force_limit, 3);
+  EXPECT_EQ(compare::compare_sessions(expert, press(), scene_, {.damage_force = 2}).force_limit, 2);
+  EXPECT_EQ(compare::compare_sessions(expert, press(), scene_, {.force_limit = 1, .damage_force = 2}).force_limit, 1);
+  const compare::Comparison none = compare::compare_sessions(press(), expert, scene_);
   EXPECT_FALSE(none.force_limit);
   EXPECT_FALSE(find(none, "time_above_force_limit_s").trainee);
   EXPECT_FALSE(find(none, "time_above_force_limit_s").note.empty());
 }
 
 TEST_F(Measures, TimeBeyondTheDamageDepthIsThatOfTheTicks) {
-  SessionTrack track = press();
+  compare::SessionTrack track = press();
   for (std::size_t i = 500; i < 800; ++i) track.depth[i] = 0.011;
   track.depth[900] = 0.01;  // at the limit, not beyond
-  const Comparison comparison = compare_sessions(press(), track, scene_);
+  const compare::Comparison comparison = compare::compare_sessions(press(), track, scene_);
   EXPECT_NEAR(trainee(comparison, "time_beyond_damage_depth_s"), 0.3, 1e-9);
   EXPECT_NEAR(trainee(comparison, "largest_depth_mm"), 11, 1e-9);
   ASSERT_EQ(comparison.moments.size(), 1u);
-  EXPECT_EQ(comparison.moments[0].kind, MomentKind::depth);
+  EXPECT_EQ(comparison.moments[0].kind, compare::MomentKind::depth);
   EXPECT_NEAR(comparison.moments[0].severity, 0.1, 1e-9);
-  SessionStart without = scene_;
+  recordings::SessionStart without = scene_;
   without.model.organs[0].damage_depth = 0;
-  EXPECT_FALSE(find(compare_sessions(press(), track, without), "time_beyond_damage_depth_s").trainee);
+  EXPECT_FALSE(find(compare::compare_sessions(press(), track, without), "time_beyond_damage_depth_s").trainee);
 }
 
 TEST_F(Measures, OverlapOfCutsIsTheDiceCoefficientOfTheirElements) {
-  SessionTrack expert = press(), trainee_track = press();
-  const auto sever = [](SessionTrack& track, std::size_t first, std::size_t last, std::int64_t tick) {
+  compare::SessionTrack expert = press(), trainee_track = press();
+  const auto sever = [](compare::SessionTrack& track, std::size_t first, std::size_t last, std::int64_t tick) {
     for (std::size_t i = first; i < last; ++i) track.severed_at[i] = tick;
     track.severed[std::size_t(tick)] += std::int32_t(last - first);
   };
   sever(expert, 0, 20, 900), sever(trainee_track, 15, 25, 700), sever(trainee_track, 25, 30, 1500);
   expert.cuts = {{900, 901}}, trainee_track.cuts = {{700, 701}, {1500, 1501}};
-  const Comparison comparison = compare_sessions(expert, trainee_track, scene_);
+  const compare::Comparison comparison = compare::compare_sessions(expert, trainee_track, scene_);
   EXPECT_EQ(trainee(comparison, "elements_severed"), 15);
   EXPECT_EQ(trainee(comparison, "elements_severed_by_both"), 5);
   EXPECT_EQ(trainee(comparison, "elements_severed_by_expert_only"), 15);
@@ -137,57 +137,57 @@ TEST_F(Measures, OverlapOfCutsIsTheDiceCoefficientOfTheirElements) {
   EXPECT_NEAR(trainee(comparison, "cut_path_hausdorff_mm"), 20.1, 1e-9);
   EXPECT_NEAR(trainee(comparison, "cut_path_mean_distance_mm"), (10.0 + 10.0 + 20.1) / 3, 1e-9);
   ASSERT_EQ(comparison.moments.size(), 2u);
-  EXPECT_EQ(comparison.moments[0].kind, MomentKind::stray_cut);
+  EXPECT_EQ(comparison.moments[0].kind, compare::MomentKind::stray_cut);
   EXPECT_EQ(comparison.moments[0].value, 5);
   EXPECT_NEAR(comparison.moments[0].severity, 5.0 / 20, 1e-12);
 }
 
 TEST_F(Measures, DepthOfACutIsThatOfItsDeepestEdge) {
   // A box from z = 0 up to 0.1 m, far wider than deep; the first edge lies 7 mm below its top.
-  SessionStart scene = scene_;
-  const Vec3 middle = rest_middle(scene.model, 0);
+  recordings::SessionStart scene = scene_;
+  const Vec3 middle = compare::rest_middle(scene.model, 0);
   const double top = middle.z + 0.007;
   scene.surfaces = {Surface{}};
   scene.surfaces[0].vertex = {{-1, -1, top}, {3, -1, top}, {-1, 3, top}};
   scene.surfaces[0].triangle = {{0, 1, 2}};
-  SessionTrack track = press();
+  compare::SessionTrack track = press();
   track.severed_at[0] = 10, track.severed[10] = 1, track.cuts = {{10, 11}};
-  EXPECT_NEAR(cut_depth(track, scene).value(), 0.007, 1e-12);
-  EXPECT_FALSE(cut_depth(press(), scene));
+  EXPECT_NEAR(compare::cut_depth(track, scene).value(), 0.007, 1e-12);
+  EXPECT_FALSE(compare::cut_depth(press(), scene));
   scene.surfaces.clear();
-  EXPECT_FALSE(cut_depth(track, scene));
+  EXPECT_FALSE(compare::cut_depth(track, scene));
 }
 
 TEST_F(Measures, APathBesideTheExpertsIsThatFarAwayWhateverItsPace) {
-  SessionTrack beside = new_track();
+  compare::SessionTrack beside = new_track();
   go(beside, {0.02, 0, 0.1}, {0.02, 0, 0.05}, 1.3);
   go(beside, {0.02, 0, 0.05}, {0.02, 0, 0.1}, 0.9);
-  const Comparison comparison = compare_sessions(press(), finished(beside, scene_.model), scene_);
+  const compare::Comparison comparison = compare::compare_sessions(press(), finished(beside, scene_.model), scene_);
   EXPECT_NEAR(trainee(comparison, "aligned_deviation_mean_mm"), 20, 0.05);
   EXPECT_NEAR(trainee(comparison, "aligned_deviation_largest_mm"), 20, 0.1);
   ASSERT_EQ(comparison.moments.size(), 1u);
-  EXPECT_EQ(comparison.moments[0].kind, MomentKind::deviation);
+  EXPECT_EQ(comparison.moments[0].kind, compare::MomentKind::deviation);
   EXPECT_EQ(comparison.moments[0].from_s, 0);
   EXPECT_NEAR(comparison.moments[0].to_s, 2.2, 0.05);
 }
 
 TEST_F(Measures, WhatHarmsTheTissueComesBeforeWhatOnlyCostsTime) {
-  SessionTrack track = press(2.5);
+  compare::SessionTrack track = press(2.5);
   track.force[100] = 1.1;  // hardly beyond the limit, while the pause is 2.5 times as long as allowed
-  const Comparison comparison = compare_sessions(press(), track, scene_, {.force_limit = 1});
+  const compare::Comparison comparison = compare::compare_sessions(press(), track, scene_, {.force_limit = 1});
   ASSERT_EQ(comparison.moments.size(), 2u);
-  EXPECT_EQ(comparison.moments[0].kind, MomentKind::force);
+  EXPECT_EQ(comparison.moments[0].kind, compare::MomentKind::force);
   EXPECT_GT(comparison.moments[1].severity, comparison.moments[0].severity);
 }
 
 TEST_F(Measures, EachHasAUnitADirectionAMeaningAndASource) {
-  SessionTrack cutting = press();
+  compare::SessionTrack cutting = press();
   cutting.severed_at[0] = 10, cutting.severed[10] = 1, cutting.cuts = {{10, 11}};
-  const Comparison comparison = compare_sessions(cutting, cutting, scene_);
+  const compare::Comparison comparison = compare::compare_sessions(cutting, cutting, scene_);
   EXPECT_EQ(comparison.values.size(), 22u);
-  for (const MeasuredValue& value : comparison.values) {
+  for (const compare::MeasuredValue& value : comparison.values) {
     EXPECT_NE(std::string(value.measure->unit), "") << value.measure->key;
-    EXPECT_NE(std::string(to_word(value.measure->direction)), "") << value.measure->key;
+    EXPECT_NE(std::string(compare::to_word(value.measure->direction)), "") << value.measure->key;
     EXPECT_NE(std::string(value.measure->meaning), "") << value.measure->key;
     EXPECT_NE(std::string(value.measure->source), "") << value.measure->key;
     EXPECT_EQ(value.trainee.has_value(), value.note.empty()) << value.measure->key;
@@ -196,21 +196,22 @@ TEST_F(Measures, EachHasAUnitADirectionAMeaningAndASource) {
 
 TEST(SameScene, ADifferenceIsNamedAndLooksMayDiffer) {
   const testing::Folder folder;
-  const auto opened = [&](const std::string& name, const SessionStart& start) {
+  const auto opened = [&](const std::string& name, const recordings::SessionStart& start) {
     testing::record_session(folder / name, start, 10);
-    auto reader = SessionReader::open(folder / name);
+    auto reader = recordings::SessionReader::open(folder / name);
     CTPM_CHECK(bool(reader), "a test's session opens");
     return std::move(*reader);
   };
-  const SessionStart start = testing::small_start();
-  SessionStart other_look = start, softer = start, larger = testing::small_start(3, 3, 4), other_tool = start;
+  const recordings::SessionStart start = testing::small_start();
+  recordings::SessionStart other_look = start, softer = start, larger = testing::small_start(3, 3, 4),
+                           other_tool = start;
   other_look.look = "block blue", other_look.scene_text = "{}";
   softer.model.axial.k[7] *= 0.5;
   other_tool.model.tools[0].name = "fist";
-  const SessionReader expert = opened("a.ctpm", start);
-  EXPECT_TRUE(check_same_scene(expert, opened("b.ctpm", other_look)));
-  const auto reason = [&](const std::string& name, const SessionStart& trainee) {
-    const auto same = check_same_scene(expert, opened(name, trainee));
+  const recordings::SessionReader expert = opened("a.ctpm", start);
+  EXPECT_TRUE(compare::check_same_scene(expert, opened("b.ctpm", other_look)));
+  const auto reason = [&](const std::string& name, const recordings::SessionStart& trainee) {
+    const auto same = compare::check_same_scene(expert, opened(name, trainee));
     return same ? std::string() : same.errors()[0].message;
   };
   EXPECT_NE(reason("c.ctpm", softer).find("differs in axial.k"), std::string::npos);
@@ -220,15 +221,15 @@ TEST(SameScene, ADifferenceIsNamedAndLooksMayDiffer) {
 
 TEST(Track, FindsTheElementsThatWereSeveredAndWhen) {
   const testing::Folder folder;
-  const SessionStart start = testing::small_start();
+  const recordings::SessionStart start = testing::small_start();
   const testing::Lived lived = testing::record_session(folder / "a.ctpm", start, 700, 250);
-  auto reader = SessionReader::open(folder / "a.ctpm");
+  auto reader = recordings::SessionReader::open(folder / "a.ctpm");
   ASSERT_TRUE(reader);
-  const auto track = read_track(*reader);
+  const auto track = compare::read_track(*reader);
   ASSERT_TRUE(track) << testing::text_of(track.errors());
   EXPECT_TRUE(track->replays);
   ASSERT_EQ(track->strokes.size(), 2u);  // the ball, then the scalpel
-  EXPECT_EQ(track->strokes[1], (Spell{400, 700}));
+  EXPECT_EQ(track->strokes[1], (compare::Spell{400, 700}));
   std::vector<std::int64_t> severed_in(700);
   for (const std::int64_t tick : track->severed_at)
     if (tick >= 0) ++severed_in[std::size_t(tick)];

@@ -14,8 +14,8 @@ namespace ctpm {
 namespace {
 
 /// A straight way of length 1 in 1 s with the least jerk: 10 t^3 - 15 t^4 + 6 t^5 (Flash and Hogan 1985).
-Path least_jerk_path(double rate_hz) {
-  Path path;
+compare::Path least_jerk_path(double rate_hz) {
+  compare::Path path;
   for (int i = 0; i <= int(rate_hz); ++i) {
     const double t = i / rate_hz;
     path.push_back({0, t * t * t * (10 - 15 * t + 6 * t * t), 0});
@@ -23,37 +23,37 @@ Path least_jerk_path(double rate_hz) {
   return path;
 }
 
-Path line(Vec3 from, Vec3 to, int count) {
-  Path path;
+compare::Path line(Vec3 from, Vec3 to, int count) {
+  compare::Path path;
   for (int i = 0; i < count; ++i) path.push_back(from + (double(i) / (count - 1)) * (to - from));
   return path;
 }
 
 TEST(Motion, PathLengthOfACircleIsItsCircumference) {
-  Path circle;
+  compare::Path circle;
   for (int i = 0; i <= 3600; ++i) {
     const double angle = 2 * std::numbers::pi * i / 3600;
     circle.push_back({0.05 * std::cos(angle), 0.05 * std::sin(angle), 0.01});
   }
-  EXPECT_NEAR(path_length(circle), 2 * std::numbers::pi * 0.05, 1e-6);
+  EXPECT_NEAR(compare::path_length(circle), 2 * std::numbers::pi * 0.05, 1e-6);
 }
 
 TEST(Motion, AStraightLineHasEconomyOneAndARightAngleItsDiagonal) {
   const std::vector<std::size_t> ends{0, 20};
-  EXPECT_NEAR(*economy_of_motion(line({0, 0, 0}, {3, 4, 0}, 21), ends), 1, 1e-12);
-  Path corner = line({0, 0, 0}, {1, 0, 0}, 11);
-  const Path second = line({1, 0, 0}, {1, 1, 0}, 11);
+  EXPECT_NEAR(*compare::economy_of_motion(line({0, 0, 0}, {3, 4, 0}, 21), ends), 1, 1e-12);
+  compare::Path corner = line({0, 0, 0}, {1, 0, 0}, 11);
+  const compare::Path second = line({1, 0, 0}, {1, 1, 0}, 11);
   corner.insert(corner.end(), second.begin() + 1, second.end());
-  EXPECT_NEAR(*economy_of_motion(corner, ends), std::sqrt(2) / 2, 1e-12);
-  EXPECT_NEAR(*economy_of_motion(corner, std::vector<std::size_t>{0, 10, 20}), 1, 1e-12);
-  EXPECT_FALSE(economy_of_motion(Path(5, {1, 1, 1}), std::vector<std::size_t>{0, 4}));
+  EXPECT_NEAR(*compare::economy_of_motion(corner, ends), std::sqrt(2) / 2, 1e-12);
+  EXPECT_NEAR(*compare::economy_of_motion(corner, std::vector<std::size_t>{0, 10, 20}), 1, 1e-12);
+  EXPECT_FALSE(compare::economy_of_motion(compare::Path(5, {1, 1, 1}), std::vector<std::size_t>{0, 4}));
 }
 
 TEST(Motion, SpectralArcLengthIsThatOfItsAuthorsExample) {
   // exp(-5 t^2) at 100 Hz for t in [-1, 1): -1.41403 in the text beside the authors' own program.
   std::vector<double> speed;
   for (int i = 0; i < 200; ++i) speed.push_back(std::exp(-5 * std::pow(-1 + 0.01 * i, 2)));
-  EXPECT_NEAR(*spectral_arc_length(speed, 100), -1.41403, 5e-6);
+  EXPECT_NEAR(*compare::spectral_arc_length(speed, 100), -1.41403, 5e-6);
 }
 
 TEST(Motion, SpectralArcLengthOfLeastJerkIsThatOfItsSpectrum) {
@@ -64,95 +64,96 @@ TEST(Motion, SpectralArcLengthOfLeastJerkIsThatOfItsSpectrum) {
     return k == 0 ? 1.0 : std::abs(15 * std::sph_bessel(2, k) / (k * k));
   };
   constexpr int steps = 100000;
-  const auto frequency = [](int i) { return kSpectralCutoff * i / steps; };
+  const auto frequency = [](int i) { return compare::kSpectralCutoff * i / steps; };
   int last = steps;
-  while (amplitude(frequency(last)) < kSpectralAmplitude) --last;
+  while (amplitude(frequency(last)) < compare::kSpectralAmplitude) --last;
   double length = 0;
   for (int i = 1; i <= last; ++i)
     length += std::hypot(1.0 / last, amplitude(frequency(i)) - amplitude(frequency(i - 1)));
   // The tail is cut at one of the frequencies that a transform has, 0.05 Hz apart here.
   constexpr double kOneFrequencyMore = 0.01;
   for (const double rate : {100.0, 1000.0})
-    EXPECT_NEAR(*spectral_arc_length(speed_along(least_jerk_path(rate), rate), rate), -length, kOneFrequencyMore)
+    EXPECT_NEAR(*compare::spectral_arc_length(compare::speed_along(least_jerk_path(rate), rate), rate), -length,
+                kOneFrequencyMore)
         << rate;
 }
 
 TEST(Motion, LogDimensionlessJerkOfLeastJerkIsItsClosedForm) {
   // Integral of the squared jerk 720, largest speed 15/8: -ln(720 / (15/8)^2) = -ln 204.8.
-  EXPECT_NEAR(*log_dimensionless_jerk(least_jerk_path(10000), 10000), -std::log(204.8), 0.001);
-  EXPECT_NEAR(*log_dimensionless_jerk(least_jerk_path(100), 100), -std::log(204.8), 0.1);
+  EXPECT_NEAR(*compare::log_dimensionless_jerk(least_jerk_path(10000), 10000), -std::log(204.8), 0.001);
+  EXPECT_NEAR(*compare::log_dimensionless_jerk(least_jerk_path(100), 100), -std::log(204.8), 0.1);
 }
 
 TEST(Motion, SmoothnessDependsNeitherOnSizeNorOnDuration) {
-  const Path path = least_jerk_path(100);
-  Path large = path;
+  const compare::Path path = least_jerk_path(100);
+  compare::Path large = path;
   for (Vec3& p : large) p = 7 * p;
-  EXPECT_NEAR(*log_dimensionless_jerk(large, 100), *log_dimensionless_jerk(path, 100), 1e-9);
-  EXPECT_NEAR(*log_dimensionless_jerk(path, 20), *log_dimensionless_jerk(path, 100), 1e-9);
-  EXPECT_NEAR(*spectral_arc_length(speed_along(large, 100), 100), *spectral_arc_length(speed_along(path, 100), 100),
-              1e-9);
+  EXPECT_NEAR(*compare::log_dimensionless_jerk(large, 100), *compare::log_dimensionless_jerk(path, 100), 1e-9);
+  EXPECT_NEAR(*compare::log_dimensionless_jerk(path, 20), *compare::log_dimensionless_jerk(path, 100), 1e-9);
+  EXPECT_NEAR(*compare::spectral_arc_length(compare::speed_along(large, 100), 100),
+              *compare::spectral_arc_length(compare::speed_along(path, 100), 100), 1e-9);
 }
 
 TEST(Motion, TremorIsLessSmooth) {
-  const Path path = least_jerk_path(100);
-  Path shaking = path;
+  const compare::Path path = least_jerk_path(100);
+  compare::Path shaking = path;
   for (std::size_t i = 0; i < shaking.size(); ++i)
     shaking[i].y += 0.01 * std::sin(2 * std::numbers::pi * 4 * double(i) / 100);
-  EXPECT_LT(*spectral_arc_length(speed_along(shaking, 100), 100),
-            *spectral_arc_length(speed_along(path, 100), 100) - 0.1);
-  EXPECT_LT(*log_dimensionless_jerk(shaking, 100), *log_dimensionless_jerk(path, 100) - 1);
+  EXPECT_LT(*compare::spectral_arc_length(compare::speed_along(shaking, 100), 100),
+            *compare::spectral_arc_length(compare::speed_along(path, 100), 100) - 0.1);
+  EXPECT_LT(*compare::log_dimensionless_jerk(shaking, 100), *compare::log_dimensionless_jerk(path, 100) - 1);
 }
 
 TEST(Motion, AHandThatRestsHasNoSmoothness) {
-  const Path still(200, {1, 2, 3});
-  EXPECT_FALSE(spectral_arc_length(speed_along(still, 100), 100));
-  EXPECT_FALSE(log_dimensionless_jerk(still, 100));
-  EXPECT_FALSE(log_dimensionless_jerk(Path(3, {0, 0, 0}), 100));
+  const compare::Path still(200, {1, 2, 3});
+  EXPECT_FALSE(compare::spectral_arc_length(compare::speed_along(still, 100), 100));
+  EXPECT_FALSE(compare::log_dimensionless_jerk(still, 100));
+  EXPECT_FALSE(compare::log_dimensionless_jerk(compare::Path(3, {0, 0, 0}), 100));
 }
 
 TEST(Motion, SpellsAreRunsThatLastLongEnoughAndGapsThatAreShortAreClosed) {
   const std::vector<bool> holds{true, false, true, true, true, false, true, true, false, false, false, true};
-  EXPECT_EQ(spells_of(holds, 1), (std::vector<Spell>{{0, 1}, {2, 5}, {6, 8}, {11, 12}}));
-  EXPECT_EQ(spells_of(holds, 2), (std::vector<Spell>{{2, 5}, {6, 8}}));
-  EXPECT_EQ(spells_of(holds, 2, 2), (std::vector<Spell>{{0, 8}}));
+  EXPECT_EQ(compare::spells_of(holds, 1), (std::vector<compare::Spell>{{0, 1}, {2, 5}, {6, 8}, {11, 12}}));
+  EXPECT_EQ(compare::spells_of(holds, 2), (std::vector<compare::Spell>{{2, 5}, {6, 8}}));
+  EXPECT_EQ(compare::spells_of(holds, 2, 2), (std::vector<compare::Spell>{{0, 8}}));
 }
 
 TEST(Motion, TheMeanOfEachTenIsOnTheLine) {
-  const Path tens = mean_of_each(line({0, 0, 0}, {0, 0, 24}, 25), 10);
+  const compare::Path tens = compare::mean_of_each(line({0, 0, 0}, {0, 0, 24}, 25), 10);
   ASSERT_EQ(tens.size(), 2u);
   EXPECT_DOUBLE_EQ(tens[0].z, 4.5);
   EXPECT_DOUBLE_EQ(tens[1].z, 14.5);
 }
 
 TEST(PathDistance, TwoShiftedLinesAreTheShiftApart) {
-  const Path a = line({0, 0, 0}, {60, 0, 0}, 7), b = line({0, 0, 3}, {60, 0, 3}, 4);
-  const PathDistance distance = distance_between({{a}}, {{b}}, 0.5);
+  const compare::Path a = line({0, 0, 0}, {60, 0, 0}, 7), b = line({0, 0, 3}, {60, 0, 3}, 4);
+  const compare::PathDistance distance = compare::distance_between({{a}}, {{b}}, 0.5);
   EXPECT_NEAR(distance.mean, 3, 1e-12);
   EXPECT_NEAR(distance.hausdorff, 3, 1e-12);
 }
 
 TEST(PathDistance, HausdorffOfAPathThatGoesOnIsWhatItGoesFurther) {
-  const Path a = line({0, 0, 0}, {40, 0, 0}, 5), b = line({0, 0, 0}, {50, 0, 0}, 6);
-  const PathDistance distance = distance_between({{a}}, {{b}}, 0.01);
+  const compare::Path a = line({0, 0, 0}, {40, 0, 0}, 5), b = line({0, 0, 0}, {50, 0, 0}, 6);
+  const compare::PathDistance distance = compare::distance_between({{a}}, {{b}}, 0.01);
   EXPECT_NEAR(distance.hausdorff, 10, 1e-12);
   // 10 of 90 parts of the length are 5 away on average.
   EXPECT_NEAR(distance.mean, 5.0 * 10 / 90, 0.01);
-  const PathDistance other_way = distance_between({{b}}, {{a}}, 0.01);
+  const compare::PathDistance other_way = compare::distance_between({{b}}, {{a}}, 0.01);
   EXPECT_EQ(distance.hausdorff, other_way.hausdorff);
   EXPECT_NEAR(distance.mean, other_way.mean, 1e-12);
 }
 
 TEST(PathDistance, TheNearestOfSeveralPathsCounts) {
-  const std::vector<Path> paths{line({0, 0, 0}, {10, 0, 0}, 3), {{0, 5, 0}}};
-  EXPECT_DOUBLE_EQ(distance_from({0, 4, 0}, paths), 1);
-  EXPECT_DOUBLE_EQ(distance_from({13, 4, 0}, paths), 5);
+  const std::vector<compare::Path> paths{line({0, 0, 0}, {10, 0, 0}, 3), {{0, 5, 0}}};
+  EXPECT_DOUBLE_EQ(compare::distance_from({0, 4, 0}, paths), 1);
+  EXPECT_DOUBLE_EQ(compare::distance_from({13, 4, 0}, paths), 5);
 }
 
 TEST(Alignment, APathWithPausesIsThePathItself) {
-  const Path path = line({0, 0, 0}, {1, 2, 3}, 100);
-  Path pausing;
+  const compare::Path path = line({0, 0, 0}, {1, 2, 3}, 100);
+  compare::Path pausing;
   for (std::size_t i = 0; i < path.size(); ++i) pausing.insert(pausing.end(), i == 30 ? 9 : 1, path[i]);
-  const Alignment alignment = align_paths(path, pausing);
+  const compare::Alignment alignment = compare::align_paths(path, pausing);
   EXPECT_EQ(alignment.mean, 0);
   EXPECT_EQ(alignment.largest, 0);
   EXPECT_EQ(alignment.pairs.front().a, 0u);
@@ -160,21 +161,22 @@ TEST(Alignment, APathWithPausesIsThePathItself) {
 }
 
 TEST(Alignment, AShiftedPathIsTheShiftAway) {
-  const Alignment alignment = align_paths(line({0, 0, 0}, {50, 0, 0}, 51), line({0, 4, 0}, {50, 4, 0}, 51));
+  const compare::Alignment alignment =
+      compare::align_paths(line({0, 0, 0}, {50, 0, 0}, 51), line({0, 4, 0}, {50, 4, 0}, 51));
   EXPECT_NEAR(alignment.mean, 4, 1e-12);
   EXPECT_NEAR(alignment.largest, 4, 1e-12);
 }
 
 TEST(Alignment, APauseLongerThanTheBandIsNotAlignedAway) {
-  const Path path = line({0, 0, 0}, {100, 0, 0}, 101);
-  Path late(60, path.front());
+  const compare::Path path = line({0, 0, 0}, {100, 0, 0}, 101);
+  compare::Path late(60, path.front());
   late.insert(late.end(), path.begin(), path.end());
-  EXPECT_GT(align_paths(path, late, 0.1).largest, 5);
-  EXPECT_EQ(align_paths(path, late, 0.7).largest, 0);
+  EXPECT_GT(compare::align_paths(path, late, 0.1).largest, 5);
+  EXPECT_EQ(compare::align_paths(path, late, 0.7).largest, 0);
 }
 
 /// The least sum by trying every way on from a pair; a step in both paths counts twice.
-double least_sum(const Path& a, const Path& b, std::size_t i, std::size_t j) {
+double least_sum(const compare::Path& a, const compare::Path& b, std::size_t i, std::size_t j) {
   if (i + 1 == a.size() && j + 1 == b.size()) return 0;
   double least = INFINITY;
   const auto try_step = [&](std::size_t by_a, std::size_t by_b) {
@@ -190,19 +192,19 @@ TEST(Alignment, NoOtherWayHasALesserMean) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> anywhere(-1, 1);
   for (int round = 0; round < 20; ++round) {
-    Path a(5 + std::size_t(round) % 3), b(6);
-    for (Path* path : {&a, &b})
+    compare::Path a(5 + std::size_t(round) % 3), b(6);
+    for (compare::Path* path : {&a, &b})
       for (Vec3& p : *path) p = {anywhere(random), anywhere(random), anywhere(random)};
     const double least = 2 * norm(a[0] - b[0]) + least_sum(a, b, 0, 0);
-    EXPECT_NEAR(align_paths(a, b, 1).mean, least / double(a.size() + b.size()), 1e-12);
+    EXPECT_NEAR(compare::align_paths(a, b, 1).mean, least / double(a.size() + b.size()), 1e-12);
   }
 }
 
 TEST(Alignment, PathsOfAnyTwoLengthsAreAligned) {
   for (const int m : {1, 2, 3, 50, 400})
     for (const int n : {1, 2, 7, 399}) {
-      const Path a(std::size_t(m), {1, 0, 0}), b(std::size_t(n), {0, 0, 0});
-      const Alignment alignment = align_paths(a, b, 0.01);
+      const compare::Path a(std::size_t(m), {1, 0, 0}), b(std::size_t(n), {0, 0, 0});
+      const compare::Alignment alignment = compare::align_paths(a, b, 0.01);
       EXPECT_NEAR(alignment.mean, 1, 1e-12);
       EXPECT_GE(alignment.pairs.size(), std::size_t(std::max(m, n)));
     }

@@ -23,9 +23,9 @@ constexpr double kLoan = 1e-6;    // with which PassiveForce begins [J]
 
 /// A block of `stiffness` times the paper's liver under a ball.
 Model block_of(double stiffness) {
-  Material material = testing::liver_material();
+  network::Material material = testing::liver_material();
   material.spring *= stiffness, material.kelvin *= stiffness, material.constraint *= stiffness;
-  Model model = testing::make_block_model(3, 3, 3, Structure::ctpm, material);
+  Model model = testing::make_block_model(3, 3, 3, network::Structure::ctpm, material);
   model.tools.push_back(testing::ball(0.01));
   return model;
 }
@@ -71,12 +71,13 @@ struct Energy {
 };
 
 /// Leads the ball along the path; the hand gets what `passive` lets through of the coupling's force.
-Energy lead(const Model& model, const Path& path, const CouplingSettings& settings, PassiveForce& passive) {
-  Stepper stepper(model);
+Energy lead(const Model& model, const Path& path, const devices::CouplingSettings& settings,
+            devices::PassiveForce& passive) {
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
-  VirtualCoupling coupling(settings, kTick);
+  devices::VirtualCoupling coupling(settings, kTick);
   coupling.reset({path.at(0), {}});
-  StepReport report;
+  stepping::StepReport report;
   Energy energy;
   Vec3 held, hand = path.at(0);
   const std::int64_t moving = std::llround(path.duration / kTick);
@@ -91,7 +92,7 @@ Energy lead(const Model& model, const Path& path, const CouplingSettings& settin
     Inputs inputs;
     inputs.tool = 0, inputs.position = coupling.tool().position;
     report = stepper.step(state, inputs);
-    energy.is_steady = energy.is_steady && report.status == StepStatus::ok;
+    energy.is_steady = energy.is_steady && report.status == stepping::StepStatus::ok;
   }
   return energy;
 }
@@ -104,8 +105,8 @@ TEST(VirtualCoupling, ReturnsNoMoreEnergyOverAClosedPathThanWasPutIn) {
   for (const Case c : {Case{1, 1000}, Case{100, 1000}, Case{100, 20000}}) {
     const Model model = block_of(c.tissue);
     for (const Path& path : closed_paths()) {
-      PassiveForce passive(kMostForce);
-      CouplingSettings settings;
+      devices::PassiveForce passive(kMostForce);
+      devices::CouplingSettings settings;
       settings.stiffness = c.spring;
       const Energy energy = lead(model, path, settings, passive);
       SCOPED_TRACE(::testing::Message() << path.name << ", tissue x " << c.tissue << ", spring " << c.spring << " N/m");
@@ -128,7 +129,7 @@ TEST(PassiveForce, TakesFromAWallThatGivesMoreThanItGotWhatIsTooMuch) {
   for (const Path& path : closed_paths()) {
     double returned[2] = {0, 0}, felt = 0;
     for (const bool is_kept : {false, true}) {
-      PassiveForce passive(100);
+      devices::PassiveForce passive(100);
       Vec3 held, hand = path.at(0);
       for (double t = 0; t <= path.duration + kTick; t += kTick) {
         const Vec3 now = path.at(std::min(t, path.duration)), wanted = greedy_wall(now, now - hand);
@@ -145,7 +146,7 @@ TEST(PassiveForce, TakesFromAWallThatGivesMoreThanItGotWhatIsTooMuch) {
 }
 
 TEST(PassiveForce, IsBoundedWhateverIsWanted) {
-  PassiveForce passive(kMostForce);
+  devices::PassiveForce passive(kMostForce);
   testing::Noise noise;
   for (int i = 0; i < 100000; ++i)
     EXPECT_LE(norm(passive.pass(1e3 * noise.next() * noise.next_vec3(), 0.1 * noise.next_vec3())),
@@ -155,14 +156,14 @@ TEST(PassiveForce, IsBoundedWhateverIsWanted) {
 TEST(VirtualCoupling, AHandThatJumpsBy50MillimetresIsFollowedWithABoundedForce) {
   const Model model = block_of(10);
   for (const Vec3 jump : {Vec3{0, 0, -0.05}, Vec3{0.05, 0, 0}, Vec3{0, 0, 0.05}}) {
-    Stepper stepper(model);
+    stepping::Stepper stepper(model);
     State state = rest_state(model);
-    const CouplingSettings settings;
-    VirtualCoupling coupling(settings, kTick);
-    PassiveForce passive(kMostForce);
+    const devices::CouplingSettings settings;
+    devices::VirtualCoupling coupling(settings, kTick);
+    devices::PassiveForce passive(kMostForce);
     Vec3 hand{0, 0, 0.036};
     coupling.reset({hand, {}});
-    StepReport report;
+    stepping::StepReport report;
     double most_sent = 0, most_speed = 0, most_felt = 0;
     for (int tick = 0; tick < 1500; ++tick) {
       if (tick == 300) hand = hand + jump;
@@ -173,7 +174,7 @@ TEST(VirtualCoupling, AHandThatJumpsBy50MillimetresIsFollowedWithABoundedForce) 
       Inputs inputs;
       inputs.tool = 0, inputs.position = coupling.tool().position;
       report = stepper.step(state, inputs);
-      ASSERT_EQ(report.status, StepStatus::ok);
+      ASSERT_EQ(report.status, stepping::StepStatus::ok);
       most_felt = std::max(most_felt, norm(report.tool_force));
     }
     EXPECT_LE(most_sent, kMostForce * (1 + 1e-12));
@@ -184,7 +185,7 @@ TEST(VirtualCoupling, AHandThatJumpsBy50MillimetresIsFollowedWithABoundedForce) 
 }
 
 TEST(VirtualCoupling, TheToolFollowsAFreeHandWithoutLaggingBehindAndStopsWithIt) {
-  VirtualCoupling coupling({}, kTick);
+  devices::VirtualCoupling coupling({}, kTick);
   coupling.reset({});
   Vec3 hand;
   for (int tick = 0; tick < 500; ++tick) {
@@ -203,25 +204,25 @@ TEST(VirtualCoupling, TheToolFollowsAFreeHandWithoutLaggingBehindAndStopsWithIt)
 }
 
 TEST(VirtualCoupling, ATurnIsFollowedAtABoundedSpeed) {
-  const CouplingSettings settings;
-  VirtualCoupling coupling(settings, kTick);
+  const devices::CouplingSettings settings;
+  devices::VirtualCoupling coupling(settings, kTick);
   coupling.reset({});
   const Quat turned{0, 0, 1, 0};  // half a turn at once
   for (int tick = 0; tick < 500; ++tick) {
     const Quat before = coupling.tool().orientation;
     coupling.step({{}, turned}, {});
-    EXPECT_LE(angle_between(before, coupling.tool().orientation), settings.most_turn * kTick + 1e-7);
-    EXPECT_NEAR(length_of(coupling.tool().orientation), 1, 1e-12);
+    EXPECT_LE(sources::angle_between(before, coupling.tool().orientation), settings.most_turn * kTick + 1e-7);
+    EXPECT_NEAR(sources::length_of(coupling.tool().orientation), 1, 1e-12);
   }
-  EXPECT_NEAR(angle_between(coupling.tool().orientation, turned), 0, 1e-6);
+  EXPECT_NEAR(sources::angle_between(coupling.tool().orientation, turned), 0, 1e-6);
 }
 
 TEST(VirtualCoupling, AStandingHandFeelsTheTissueAsItIs) {
-  VirtualCoupling coupling({}, kTick);
+  devices::VirtualCoupling coupling({}, kTick);
   coupling.reset({});
   for (int tick = 0; tick < 1000; ++tick) coupling.step({{}, {}}, {0, 0, 1.5});
   EXPECT_NEAR(norm(coupling.hand_force() - Vec3{0, 0, 1.5}), 0, 1e-9);
-  EXPECT_NEAR(coupling.tool().position.z, 1.5 / CouplingSettings().stiffness, 1e-9);
+  EXPECT_NEAR(coupling.tool().position.z, 1.5 / devices::CouplingSettings().stiffness, 1e-9);
 }
 
 }  // namespace

@@ -19,9 +19,9 @@ namespace {
 constexpr double kTick = 1e-3;  // [s]
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-class ToldDevice : public Device {
+class ToldDevice : public devices::Device {
  public:
-  bool next(DeviceReport& report) override {
+  bool next(devices::DeviceReport& report) override {
     if (waiting.empty()) return false;
     report = waiting.front();
     waiting.pop_front();
@@ -29,38 +29,38 @@ class ToldDevice : public Device {
   }
   void send_force(Vec3 force) override { forces.push_back(force); }
 
-  std::deque<DeviceReport> waiting;
+  std::deque<devices::DeviceReport> waiting;
   std::vector<Vec3> forces;
 };
 
 class DeviceSession : public ::testing::Test {
  protected:
   DeviceSession() { start({}); }
-  void start(DeviceSettings settings) {
+  void start(devices::DeviceSettings settings) {
     if (settings.map.tool < 0 && settings.map.button_tools.empty()) settings.map.tool = 0;
     auto device = std::make_unique<ToldDevice>();
     device_ = device.get();
-    source_ = std::make_unique<DeviceSource>(std::move(device), settings, kTick, [this] { return now_; });
+    source_ = std::make_unique<devices::DeviceSource>(std::move(device), settings, kTick, [this] { return now_; });
     events_.clear();
     tell({0, 0, 0.05});
   }
-  DeviceReport report(Vec3 position) const {
-    DeviceReport report;
+  devices::DeviceReport report(Vec3 position) const {
+    devices::DeviceReport report;
     report.arrival = now_, report.pose.position = position;
     return report;
   }
   void tell(Vec3 position) { device_->waiting.push_back(report(position)); }
-  void tell(DeviceNews news, const char* text = "") {
-    DeviceReport told = report({});
+  void tell(devices::DeviceNews news, const char* text = "") {
+    devices::DeviceReport told = report({});
     told.news = news, told.text = text;
     device_->waiting.push_back(told);
   }
   /// One tick; its events are kept.
   std::optional<Inputs> tick(Vec3 tissue_force = {}) {
-    StepReport last;
+    stepping::StepReport last;
     last.tool_force = tissue_force;
     const auto inputs = source_->next(0, last);
-    for (Event& event : source_->take_events()) events_.push_back(event);
+    for (recordings::Event& event : source_->take_events()) events_.push_back(event);
     now_ += kTick;
     return inputs;
   }
@@ -82,18 +82,18 @@ class DeviceSession : public ::testing::Test {
   /// "lost: text" and "back", one a line.
   std::string story() const {
     std::string all;
-    for (const Event& event : events_)
-      all += (event.kind == EventKind::device_lost   ? "lost: " + describe(event, {})
-              : event.kind == EventKind::device_back ? std::string("back")
-                                                     : "note: " + event.text) +
+    for (const recordings::Event& event : events_)
+      all += (event.kind == recordings::EventKind::device_lost   ? "lost: " + recordings::describe(event, {})
+              : event.kind == recordings::EventKind::device_back ? std::string("back")
+                                                                 : "note: " + event.text) +
              "\n";
     return all;
   }
 
   double now_ = 1000;
   ToldDevice* device_ = nullptr;
-  std::unique_ptr<DeviceSource> source_;
-  std::vector<Event> events_;
+  std::unique_ptr<devices::DeviceSource> source_;
+  std::vector<recordings::Event> events_;
 };
 
 const Vec3 kHome{0, 0, 0.05};
@@ -120,7 +120,7 @@ TEST_F(DeviceSession, AStallIsHeldAndNotedOnceAndItsEndAsWell) {
 
 TEST_F(DeviceSession, ADeviceThatStaysAwayEndsTheSessionWithAReason) {
   hold(kHome, 100);
-  tell(DeviceNews::lost, "it hung up");
+  tell(devices::DeviceNews::lost, "it hung up");
   int ticks = 0;
   while (tick()) ++ticks;
   EXPECT_NEAR(ticks, 5000, 3);
@@ -130,9 +130,9 @@ TEST_F(DeviceSession, ADeviceThatStaysAwayEndsTheSessionWithAReason) {
 
 TEST_F(DeviceSession, ADeviceThatComesBackGoesOnFromThePoseThatWasHeldNoFasterThanAHandMoves) {
   hold(kHome, 100);
-  tell(DeviceNews::lost, "it hung up");
+  tell(devices::DeviceNews::lost, "it hung up");
   be_silent(2000);
-  tell(DeviceNews::connected);
+  tell(devices::DeviceNews::connected);
   const Vec3 elsewhere = kHome + Vec3{0.3, 0, 0};
   Vec3 before = kHome;
   double fastest = 0;
@@ -142,15 +142,15 @@ TEST_F(DeviceSession, ADeviceThatComesBackGoesOnFromThePoseThatWasHeldNoFasterTh
     before = at;
   }
   EXPECT_NEAR(norm(before - elsewhere), 0, 1e-6);
-  EXPECT_LT(fastest, 1.3 * GuardSettings().most_speed);  // the coupling swings a little
-  EXPECT_EQ(events_.back().kind, EventKind::device_back);
+  EXPECT_LT(fastest, 1.3 * devices::GuardSettings().most_speed);  // the coupling swings a little
+  EXPECT_EQ(events_.back().kind, recordings::EventKind::device_back);
   EXPECT_EQ(source_->fault(), "");
 }
 
 TEST_F(DeviceSession, WhatIsNotFiniteOrNoRotationIsNotBelieved) {
   hold(kHome, 100);
   for (const Vec3 bad : {Vec3{kNan, 0, 0}, Vec3{0, INFINITY, 0}}) tell(bad);
-  DeviceReport twisted = report(kHome);
+  devices::DeviceReport twisted = report(kHome);
   twisted.pose.orientation = {0.1, 0.1, 0, 0};
   device_->waiting.push_back(twisted);
   twisted.pose.orientation = {kNan, 0, 0, 0};
@@ -162,7 +162,7 @@ TEST_F(DeviceSession, WhatIsNotFiniteOrNoRotationIsNotBelieved) {
   EXPECT_EQ(story(),
             "lost: pose is not finite; the pose is held\nlost: orientation is no rotation; the pose is held\n");
   hold(kHome, 200);
-  EXPECT_EQ(events_.back().kind, EventKind::device_back);
+  EXPECT_EQ(events_.back().kind, recordings::EventKind::device_back);
   EXPECT_EQ(events_.back().refused_samples, 4);  // samples refused
 }
 
@@ -175,7 +175,7 @@ TEST_F(DeviceSession, ATeleportIsHeldUntilAHandCouldHaveGoneThere) {
   EXPECT_EQ(story(), "lost: jumps farther than a hand moves; the pose is held\n");
   const Inputs there = hold(far, 600);
   EXPECT_NEAR(norm(there.position - far), 0, 1e-6);
-  EXPECT_EQ(events_.back().kind, EventKind::device_back);
+  EXPECT_EQ(events_.back().kind, recordings::EventKind::device_back);
   for (const Vec3& force : device_->forces) EXPECT_LE(norm(force), 3 * (1 + 1e-12));
 }
 
@@ -191,7 +191,7 @@ TEST_F(DeviceSession, OneWildSampleMovesNothing) {
 
 TEST_F(DeviceSession, ASampleFromThePastIsNotBelievedButANewConnectionMayHaveAnotherClock) {
   const auto tell_at = [&](double device_time, Vec3 position) {
-    DeviceReport told = report(position);
+    devices::DeviceReport told = report(position);
     told.device_time = device_time;
     device_->waiting.push_back(told);
   };
@@ -202,14 +202,14 @@ TEST_F(DeviceSession, ASampleFromThePastIsNotBelievedButANewConnectionMayHaveAno
   EXPECT_EQ(story(), "lost: time goes backwards; the pose is held\n");
   tell_at(50, kHome);  // the same moment again is no step back
   tick();
-  tell(DeviceNews::lost, "it hung up");
-  tell(DeviceNews::connected);
+  tell(devices::DeviceNews::lost, "it hung up");
+  tell(devices::DeviceNews::connected);
   tell_at(3, kHome);
   tick();
   EXPECT_EQ(story(), "lost: time goes backwards; the pose is held\nlost: it hung up; the pose is held\n");
   const auto values = source_->statistics();
-  EXPECT_EQ(values.at(0), (NamedValue{"device_samples", 5}));
-  EXPECT_EQ(values.at(1), (NamedValue{"device_samples_refused", 1}));
+  EXPECT_EQ(values.at(0), (recordings::NamedValue{"device_samples", 5}));
+  EXPECT_EQ(values.at(1), (recordings::NamedValue{"device_samples_refused", 1}));
 }
 
 TEST_F(DeviceSession, AFaultThatComesAndGoesIsNotedAFewTimesASecondAtMost) {
@@ -217,14 +217,14 @@ TEST_F(DeviceSession, AFaultThatComesAndGoesIsNotedAFewTimesASecondAtMost) {
   for (int i = 0; i < 3000; ++i) {
     tell(kHome);
     if (i % 3 == 0) tell(Vec3{kNan, 0, 0});
-    if (i % 7 == 0) tell(DeviceNews::bad_message, "a message with a wrong checksum");
+    if (i % 7 == 0) tell(devices::DeviceNews::bad_message, "a message with a wrong checksum");
     tick();
   }
   EXPECT_EQ(events_.size(), 2u) << story();
 }
 
 TEST_F(DeviceSession, ASecondDeviceIsNotedAndNothingElse) {
-  tell(DeviceNews::turned_away);
+  tell(devices::DeviceNews::turned_away);
   hold(kHome, 10);
   EXPECT_EQ(story(), "note: a second device came and was turned away\n");
 }
@@ -242,7 +242,7 @@ TEST_F(DeviceSession, ASlowDeviceGivesAnEvenMotion) {
 }
 
 TEST_F(DeviceSession, TheDeviceLiesInTheSceneAsTheMapSays) {
-  DeviceSettings settings;
+  devices::DeviceSettings settings;
   settings.map.scale = 0.5;
   settings.map.offset = {0.1, 0.2, 0.3};
   settings.map.scene_from_device = {std::sqrt(0.5), 0, 0, std::sqrt(0.5)};  // x of the device is y of the scene
@@ -264,14 +264,14 @@ TEST_F(DeviceSession, TheDeviceLiesInTheSceneAsTheMapSays) {
 }
 
 TEST_F(DeviceSession, AButtonSelectsItsToolAndTheToolIsInTheHandAtOnce) {
-  DeviceSettings settings;
+  devices::DeviceSettings settings;
   settings.map.tool = 0;
   settings.map.button_tools = {{3, -1}, {0, 1}};
   start(settings);
   hold(kHome, 5);
   const auto press = [&](std::uint32_t buttons) {
-    DeviceReport told = report({});
-    told.news = DeviceNews::buttons, told.buttons = buttons;
+    devices::DeviceReport told = report({});
+    told.news = devices::DeviceNews::buttons, told.buttons = buttons;
     device_->waiting.push_back(told);
     return hold(kHome, 1);
   };
@@ -283,7 +283,7 @@ TEST_F(DeviceSession, AButtonSelectsItsToolAndTheToolIsInTheHandAtOnce) {
 }
 
 TEST_F(DeviceSession, WhoeverStopsWaitingForADeviceIsHeard) {
-  DeviceSource source(std::make_unique<ToldDevice>(), {}, kTick, [] { return 0.0; });
+  devices::DeviceSource source(std::make_unique<ToldDevice>(), {}, kTick, [] { return 0.0; });
   int asked = 0;
   EXPECT_FALSE(source.wait_for_first_pose([&] { return ++asked > 3; }));
 }

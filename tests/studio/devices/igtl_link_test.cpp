@@ -17,17 +17,17 @@ namespace {
 using testing::IgtlPeer;
 using testing::transform_bytes;
 
-std::unique_ptr<IgtlLink> listen() {
-  IgtlSettings settings;
+std::unique_ptr<devices::IgtlLink> listen() {
+  devices::IgtlSettings settings;
   settings.listens = true;
-  Result<std::unique_ptr<IgtlLink>> link = IgtlLink::open(settings);
+  Result<std::unique_ptr<devices::IgtlLink>> link = devices::IgtlLink::open(settings);
   CTPM_CHECK(bool(link), "a free port on this machine");
   return std::move(*link);
 }
 
 /// The next report, for which it waits.
-DeviceReport next_of(IgtlLink& link) {
-  DeviceReport report;
+devices::DeviceReport next_of(devices::IgtlLink& link) {
+  devices::DeviceReport report;
   for (int i = 0; i < 20000 && !link.next(report); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   return report;
 }
@@ -35,7 +35,7 @@ DeviceReport next_of(IgtlLink& link) {
 TEST(IgtlLink, HandsOverEveryReportInItsOrderWhileForcesGoTheOtherWay) {
   auto link = listen();
   IgtlPeer peer = IgtlPeer::connect(link->port());
-  EXPECT_EQ(next_of(*link).news, DeviceNews::connected);
+  EXPECT_EQ(next_of(*link).news, devices::DeviceNews::connected);
   constexpr int kCount = 20000;
   std::thread sender([&] {
     for (int i = 0; i < kCount; ++i) {
@@ -45,8 +45,8 @@ TEST(IgtlLink, HandsOverEveryReportInItsOrderWhileForcesGoTheOtherWay) {
   });
   double before = 0;
   for (int i = 0; i < kCount; ++i) {
-    const DeviceReport report = next_of(*link);
-    ASSERT_EQ(report.news, DeviceNews::pose);
+    const devices::DeviceReport report = next_of(*link);
+    ASSERT_EQ(report.news, devices::DeviceNews::pose);
     ASSERT_NEAR(report.pose.position.x, 1e-3 * (i % 1000), 1e-7) << i;
     ASSERT_NEAR(report.pose.position.z, 1e-3 * (i / 1000), 1e-7) << i;
     EXPECT_GE(report.arrival, before);
@@ -68,7 +68,7 @@ TEST(IgtlLink, ADeviceThatTakesNoForcesHoldsUpNobody) {
   auto link = listen();
   igtl::ClientSocket::Pointer deaf = igtl::ClientSocket::New();
   ASSERT_EQ(deaf->ConnectToServer("127.0.0.1", link->port()), 0);
-  EXPECT_EQ(next_of(*link).news, DeviceNews::connected);
+  EXPECT_EQ(next_of(*link).news, devices::DeviceNews::connected);
   for (int i = 0; i < 100000; ++i) link->send_force({1, 2, 3});  // ten times what the connection can hold
   const std::string pose = transform_bytes({7, 0, 0});
   deaf->Send(pose.data(), int(pose.size()));
@@ -80,9 +80,9 @@ TEST(IgtlLink, WhoeverHangsUpIsReportedAndTheNextOneTaken) {
   for (int i = 0; i < 5; ++i) {
     {
       IgtlPeer peer = IgtlPeer::connect(link->port());
-      EXPECT_EQ(next_of(*link).news, DeviceNews::connected);
+      EXPECT_EQ(next_of(*link).news, devices::DeviceNews::connected);
     }
-    EXPECT_EQ(next_of(*link).news, DeviceNews::lost);
+    EXPECT_EQ(next_of(*link).news, devices::DeviceNews::lost);
   }
 }
 

@@ -30,17 +30,17 @@ std::span<const std::uint8_t> view(const std::string& bytes) {
 }
 
 struct Heard {
-  std::vector<DeviceReport> reports;
+  std::vector<devices::DeviceReport> reports;
   bool is_good = true;
 };
 
 /// What a stream tells of bytes that come `at_once` at a time.
 Heard hear(const std::string& bytes, std::size_t at_once = 1 << 20, const std::string& name = "") {
-  IgtlStream stream(name);
+  devices::IgtlStream stream(name);
   Heard heard;
   for (std::size_t i = 0; i < bytes.size() && heard.is_good; i += at_once)
     heard.is_good = stream.take(view(bytes).subspan(i, std::min(at_once, bytes.size() - i)), 7.5,
-                                [&](const DeviceReport& report) { heard.reports.push_back(report); });
+                                [&](const devices::DeviceReport& report) { heard.reports.push_back(report); });
   return heard;
 }
 
@@ -70,12 +70,12 @@ TEST(IgtlStream, APoseIsInMetresAndStampedWithTheDevicesTime) {
   transform->SetTimeStamp(1000, 0x40000000);
   const Heard heard = hear(bytes_of(*transform));
   ASSERT_EQ(heard.reports.size(), 1u);
-  const DeviceReport& report = heard.reports.front();
-  EXPECT_EQ(report.news, DeviceNews::pose);
+  const devices::DeviceReport& report = heard.reports.front();
+  EXPECT_EQ(report.news, devices::DeviceNews::pose);
   EXPECT_EQ(report.arrival, 7.5);
   EXPECT_EQ(report.device_time, 1000.25);
   EXPECT_NEAR(norm(report.pose.position - Vec3{0.01, -0.02, 0.03}), 0, 1e-8);
-  EXPECT_NEAR(angle_between(report.pose.orientation, {0.5, 0.5, -0.5, 0.5}), 0, 1e-3);
+  EXPECT_NEAR(sources::angle_between(report.pose.orientation, {0.5, 0.5, -0.5, 0.5}), 0, 1e-3);
 }
 
 TEST(IgtlStream, EveryRotationMatrixGivesItsQuaternion) {
@@ -83,8 +83,8 @@ TEST(IgtlStream, EveryRotationMatrixGivesItsQuaternion) {
   for (int i = 0; i < 1000; ++i) {
     Quat q{noise.next(), noise.next(), noise.next(), noise.next()};
     if (i % 5 == 0) q.w *= 1e-4;  // half turns, where the trace gives nothing
-    if (length_of(q) < 0.1) continue;
-    q = normalised(q);
+    if (sources::length_of(q) < 0.1) continue;
+    q = sources::normalised(q);
     std::string body;
     for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{}}) {
       const Vec3 column = rotate(q, axis);
@@ -93,7 +93,7 @@ TEST(IgtlStream, EveryRotationMatrixGivesItsQuaternion) {
     }
     const Heard heard = hear(message(1, "TRANSFORM", body.size(), body));
     ASSERT_EQ(heard.reports.size(), 1u);
-    EXPECT_NEAR(std::abs(dot(heard.reports[0].pose.orientation, q)), 1, 1e-6);
+    EXPECT_NEAR(std::abs(sources::dot(heard.reports[0].pose.orientation, q)), 1, 1e-6);
   }
 }
 
@@ -103,7 +103,7 @@ TEST(IgtlStream, AMirrorAScaleOrAnEmptyMatrixIsNoRotation) {
     for (const double value : {diagonal.x, 0., 0., 0., diagonal.y, 0., 0., 0., diagonal.z, 0., 0., 0.})
       body += wire(std::bit_cast<std::uint32_t>(float(value)), 4);
     const Quat q = hear(message(1, "TRANSFORM", 48, body)).reports.at(0).pose.orientation;
-    EXPECT_FALSE(std::abs(length_of(q) - 1) < 0.1);
+    EXPECT_FALSE(std::abs(sources::length_of(q) - 1) < 0.1);
   }
 }
 
@@ -111,36 +111,37 @@ TEST(IgtlStream, PositionsAreReadWithAllThreeKindsOfOrientation) {
   igtl::PositionMessage::Pointer position = igtl::PositionMessage::New();
   position->SetPosition(1, 2, 3);
   position->SetQuaternion(0.6f, 0, 0, 0.8f);
-  const std::string whole = bytes_of(*position), body = whole.substr(IgtlStream::kHeaderSize);
+  const std::string whole = bytes_of(*position), body = whole.substr(devices::IgtlStream::kHeaderSize);
   // The shorter ones by hand: OpenIGTLink 1.11 writes past the end of its own buffer when it packs them.
   for (const std::string& bytes :
        {whole, message(1, "QTRANS", 28, body), message(1, "POSITION", 24, body.substr(0, 24)),
         message(1, "POSITION", 12, body.substr(0, 12))}) {
     const Heard heard = hear(bytes);
     ASSERT_EQ(heard.reports.size(), 1u);
-    EXPECT_EQ(heard.reports[0].news, DeviceNews::pose) << heard.reports[0].text;
+    EXPECT_EQ(heard.reports[0].news, devices::DeviceNews::pose) << heard.reports[0].text;
     EXPECT_NEAR(norm(heard.reports[0].pose.position - Vec3{0.001, 0.002, 0.003}), 0, 1e-9);
-    const bool has_turn = bytes.size() > IgtlStream::kHeaderSize + 12;
-    EXPECT_NEAR(length_of(heard.reports[0].pose.orientation), 1, 1e-6);
-    EXPECT_NEAR(angle_between(heard.reports[0].pose.orientation, has_turn ? Quat{0.8, 0.6, 0, 0} : Quat{}), 0, 1e-3);
+    const bool has_turn = bytes.size() > devices::IgtlStream::kHeaderSize + 12;
+    EXPECT_NEAR(sources::length_of(heard.reports[0].pose.orientation), 1, 1e-6);
+    EXPECT_NEAR(sources::angle_between(heard.reports[0].pose.orientation, has_turn ? Quat{0.8, 0.6, 0, 0} : Quat{}), 0,
+                1e-3);
   }
 }
 
 TEST(IgtlStream, ASensorsValuesAreButtons) {
   const Heard heard = hear(sensor_bytes({1, 0, 0.4, 0.6, NAN}));
   ASSERT_EQ(heard.reports.size(), 1u);
-  EXPECT_EQ(heard.reports[0].news, DeviceNews::buttons);
+  EXPECT_EQ(heard.reports[0].news, devices::DeviceNews::buttons);
   EXPECT_EQ(heard.reports[0].buttons, 0b1001u);
   EXPECT_EQ(hear(sensor_bytes(std::vector<double>(255, 1))).reports.at(0).buttons, 0xffffffffu);
 }
 
 TEST(IgtlStream, AMessageOfProtocolVersion3IsReadAroundItsFurtherHeaderAndMetadata) {
-  const std::string pose = transform_bytes({4, 5, 6}).substr(IgtlStream::kHeaderSize);
+  const std::string pose = transform_bytes({4, 5, 6}).substr(devices::IgtlStream::kHeaderSize);
   const std::string further = wire(12, 2) + wire(6, 2) + wire(9, 4) + wire(77, 4), metadata(15, 'm');
   const std::string body = further + pose + metadata;
   const Heard heard = hear(message(2, "TRANSFORM", body.size(), body));
   ASSERT_EQ(heard.reports.size(), 1u);
-  EXPECT_EQ(heard.reports[0].news, DeviceNews::pose) << heard.reports[0].text;
+  EXPECT_EQ(heard.reports[0].news, devices::DeviceNews::pose) << heard.reports[0].text;
   EXPECT_NEAR(norm(heard.reports[0].pose.position - Vec3{0.004, 0.005, 0.006}), 0, 1e-9);
   // Sizes that do not fit.
   for (const std::string& bad :
@@ -148,7 +149,7 @@ TEST(IgtlStream, AMessageOfProtocolVersion3IsReadAroundItsFurtherHeaderAndMetada
         wire(65535, 2) + further.substr(2), std::string("abc")}) {
     const Heard refused = hear(message(2, "TRANSFORM", bad.size() + pose.size(), bad + pose));
     ASSERT_EQ(refused.reports.size(), 1u);
-    EXPECT_EQ(refused.reports[0].news, DeviceNews::bad_message);
+    EXPECT_EQ(refused.reports[0].news, devices::DeviceNews::bad_message);
   }
 }
 
@@ -174,7 +175,7 @@ TEST(IgtlStream, PosesOfOtherDevicesAreSkippedWhereOneIsNamed) {
   const Heard heard = hear(bytes, 100, "Stylus");
   ASSERT_EQ(heard.reports.size(), 2u);
   EXPECT_EQ(heard.reports[0].pose.position.x, 1e-3);
-  EXPECT_EQ(heard.reports[1].news, DeviceNews::buttons);
+  EXPECT_EQ(heard.reports[1].news, devices::DeviceNews::buttons);
 }
 
 TEST(IgtlStream, AWrongChecksumOrSizeCostsOneMessageAndNotTheNext) {
@@ -188,9 +189,9 @@ TEST(IgtlStream, AWrongChecksumOrSizeCostsOneMessageAndNotTheNext) {
     const Heard heard = hear(bad + good, 64);
     EXPECT_TRUE(heard.is_good);
     ASSERT_EQ(heard.reports.size(), 2u);
-    EXPECT_EQ(heard.reports[0].news, DeviceNews::bad_message);
+    EXPECT_EQ(heard.reports[0].news, devices::DeviceNews::bad_message);
     EXPECT_NE(std::string(heard.reports[0].text), "");
-    EXPECT_EQ(heard.reports[1].news, DeviceNews::pose);
+    EXPECT_EQ(heard.reports[1].news, devices::DeviceNews::pose);
   }
 }
 
@@ -206,10 +207,10 @@ TEST(IgtlStream, ASizeThatNobodyMeansEndsTheConnectionAndALargeOneIsSkippedWitho
   for (const std::uint64_t size : {1ull << 63, ~0ull, (1ull << 32) + 1})
     EXPECT_FALSE(hear(message(1, "TRANSFORM", size, "")).is_good) << size;
   // An image of 300 MB goes by in pieces; the stream is of a fixed size.
-  static_assert(sizeof(IgtlStream) < 8192);
-  IgtlStream stream("");
+  static_assert(sizeof(devices::IgtlStream) < 8192);
+  devices::IgtlStream stream("");
   int told = 0;
-  const auto tell = [&](const DeviceReport& report) { told += report.news == DeviceNews::pose; };
+  const auto tell = [&](const devices::DeviceReport& report) { told += report.news == devices::DeviceNews::pose; };
   const std::string image = message(1, "IMAGE", 300'000'000, ""), piece(1'000'000, '\x5a');
   EXPECT_TRUE(stream.take(view(image), 0, tell));
   for (int i = 0; i < 300; ++i) EXPECT_TRUE(stream.take(view(piece), 0, tell));
@@ -219,7 +220,7 @@ TEST(IgtlStream, ASizeThatNobodyMeansEndsTheConnectionAndALargeOneIsSkippedWitho
 
 TEST(IgtlStream, NoChangedCutOrRandomStreamDoesAnythingButReadOrRefuse) {
   const std::string further = wire(12, 2) + wire(6, 2) + wire(9, 4) + wire(77, 4);
-  const std::string pose = transform_bytes({4, 5, 6}).substr(IgtlStream::kHeaderSize);
+  const std::string pose = transform_bytes({4, 5, 6}).substr(devices::IgtlStream::kHeaderSize);
   const std::string whole = transform_bytes({1, 2, 3}) + sensor_bytes({1, 0, 1}) +
                             message(2, "TRANSFORM", 12 + 48 + 15, further + pose + std::string(15, 'm')) +
                             message(1, "POSITION", 28, std::string(28, '?')) + transform_bytes({7, 8, 9});
@@ -230,14 +231,14 @@ TEST(IgtlStream, NoChangedCutOrRandomStreamDoesAnythingButReadOrRefuse) {
     for (std::uint64_t change = next() % 4 + 1; change > 0; --change) bytes[next() % bytes.size()] = char(next());
     if (round % 3 == 0) bytes.resize(next() % bytes.size());
     if (round % 5 == 0) bytes = bytes.substr(next() % (bytes.size() + 1));
-    for (const DeviceReport& report : hear(bytes, next() % 200 + 1).reports)
-      EXPECT_TRUE(report.news == DeviceNews::pose || report.news == DeviceNews::buttons ||
-                  report.news == DeviceNews::bad_message);
+    for (const devices::DeviceReport& report : hear(bytes, next() % 200 + 1).reports)
+      EXPECT_TRUE(report.news == devices::DeviceNews::pose || report.news == devices::DeviceNews::buttons ||
+                  report.news == devices::DeviceNews::bad_message);
   }
 }
 
 TEST(IgtlForceMessage, IsReadByOpenIgtLinkItself) {
-  IgtlForceMessage packed;
+  devices::IgtlForceMessage packed;
   (void)packed.pack({9, 9, 9});
   const std::span<const std::uint8_t> bytes = packed.pack({1.25, -2.5, 1e-9});
   igtl::MessageHeader::Pointer header = igtl::MessageHeader::New();

@@ -59,12 +59,12 @@ class Export : public ::testing::Test {
   }
 
   std::string sidecar(const std::string& video) { return testing::slurp(folder_.path() / (video + ".json")); }
-  Frame picture(const std::string& folder, int index) {
+  render::Frame picture(const std::string& folder, int index) {
     char name[32];
     std::snprintf(name, sizeof name, "%06d.png", index);
-    const auto read = read_picture((folder_.path() / folder / name).string());
+    const auto read = render::read_picture((folder_.path() / folder / name).string());
     EXPECT_TRUE(read) << folder << " " << index;
-    return read ? *read : Frame{};
+    return read ? *read : render::Frame{};
   }
   std::string probe(const std::string& video) {
     return run({"ffprobe", "-v", "error", "-count_frames", "-select_streams", "v:0", "-show_entries",
@@ -82,10 +82,11 @@ TEST_F(Export, TheSidecarSaysWhatTheVideoShows) {
   EXPECT_TRUE(holds(exported.err, "simulation") && holds(exported.err, "times real time")) << exported.err;
   EXPECT_EQ(probe("a.mp4"), "h264,320,180,30/1,36\n");
   const std::string json = sidecar("a.mp4");
-  const auto reader = SessionReader::open((folder_.path() / "press.ctpm").string());
+  const auto reader = recordings::SessionReader::open((folder_.path() / "press.ctpm").string());
   ASSERT_TRUE(reader);
   EXPECT_EQ(value_of(json, "session_id"), "\"" + reader->session_id() + "\"");
-  EXPECT_EQ(value_of(json, "file_xxh3"), "\"" + hash_text(*file_hash((folder_.path() / "press.ctpm").string())) + "\"");
+  EXPECT_EQ(value_of(json, "file_xxh3"),
+            "\"" + recordings::hash_text(*recordings::file_hash((folder_.path() / "press.ctpm").string())) + "\"");
   EXPECT_EQ(value_of(json, "verdict"), "\"same\"");
   EXPECT_EQ(value_of(json, "frames"), "36");
   EXPECT_EQ(value_of(json, "codec"), "\"H.264\"");
@@ -105,7 +106,7 @@ TEST_F(Export, TheVideoShowsTheNumbersOfTheReplay) {
       run({"ffmpeg", "-v", "error", "-i", "a.mp4", "-vf", "select=eq(n\\,8)", "-frames:v", "1", "frame.png"},
           folder_.path());
   ASSERT_EQ(decoded.code, 0) << decoded.err;
-  const auto frame = read_picture((folder_.path() / "frame.png").string());
+  const auto frame = render::read_picture((folder_.path() / "frame.png").string());
   ASSERT_TRUE(frame);
   ASSERT_EQ(run_ctpm({"replay", "press.ctpm", "--csv", "a.csv"}, folder_.path()).code, 0);
   // Frame 8 shows the state after tick 1199: the last line of the table.
@@ -201,7 +202,7 @@ TEST_F(Export, BesideSaysThatASessionHasEnded) {
                               "--to-s", "0.8", "--speed", "3"},
                              folder_.path());
   ASSERT_EQ(both.code, 0) << both.err;
-  Frame half = picture("both", 3);  // 0.8 s
+  render::Frame half = picture("both", 3);  // 0.8 s
   for (int y = 0; y < 720; ++y)
     std::copy_n(half.rgb.begin() + (y * 1280 + 640) * 3, 640 * 3, half.rgb.begin() + y * 640 * 3);
   half.width = 640, half.rgb.resize(std::size_t(640 * 720 * 3));
@@ -219,7 +220,7 @@ TEST_F(Export, BesideShowsTwoSessionsInStep) {
   EXPECT_EQ(picture("both", 36).width, 640);
   // The same script on both sides: apart from the names the halves are alike, until one of them is over.
   const auto differing = [&](int index) {
-    const Frame frame = picture("both", index);
+    const render::Frame frame = picture("both", index);
     int count = 0;
     for (int y = 0; y < 180; ++y)
       for (int x = 160; x < 318; ++x) {
@@ -237,18 +238,18 @@ TEST_F(Export, BesideShowsTwoSessionsInStep) {
 
 /// A copy of a session in which one tick's state hash is not what the simulation gives.
 void falsify(const std::string& from, const std::string& to, std::int64_t bad_tick) {
-  auto reader = SessionReader::open(from);
+  auto reader = recordings::SessionReader::open(from);
   ASSERT_TRUE(reader);
-  auto writer = SessionWriter::create(to, reader->start());
+  auto writer = recordings::SessionWriter::create(to, reader->start());
   ASSERT_TRUE(writer);
   auto records = reader->ticks(0, reader->tick_count());
   ASSERT_TRUE(records);
   (*records)[std::size_t(bad_tick)].state_hash ^= 1;
   // Simulated again, since the new file's keyframes must be what its ticks say.
-  Stepper stepper(reader->start().model);
+  stepping::Stepper stepper(reader->start().model);
   State state = reader->start().initial_state;
-  for (const TickRecord& record : *records) {
-    ASSERT_EQ(stepper.step(state, record.inputs).status, StepStatus::ok);
+  for (const recordings::TickRecord& record : *records) {
+    ASSERT_EQ(stepper.step(state, record.inputs).status, stepping::StepStatus::ok);
     writer->append(state, record);
   }
   ASSERT_TRUE(writer->finish());
@@ -271,7 +272,7 @@ TEST_F(Export, ASessionThatDiffersIsRefusedOrMarkedOnEveryFrame) {
   EXPECT_EQ(value_of(sidecar("marked"), "first_different_tick"), "700");
   // The banner at the top right is amber on dark in every frame, also before the difference.
   for (int i = 1; i <= 36; ++i) {
-    const Frame frame = picture("marked", i);
+    const render::Frame frame = picture("marked", i);
     int amber = 0;
     for (int y = 8; y < 40; ++y)
       for (int x = 320; x < 632; ++x) {
@@ -283,7 +284,7 @@ TEST_F(Export, ASessionThatDiffersIsRefusedOrMarkedOnEveryFrame) {
 }
 
 TEST_F(Export, EveryViewShowsSomethingElse) {
-  std::vector<Frame> seen;
+  std::vector<render::Frame> seen;
   const std::vector<std::vector<std::string>> looks{
       {},
       {"--view", "spheres"},

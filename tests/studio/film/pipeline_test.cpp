@@ -11,7 +11,7 @@ namespace ctpm {
 namespace {
 
 /// A frame that carries its number.
-Frame numbered(std::int64_t number) { return blank_frame(2, 2, std::uint8_t(number), 0, 0); }
+render::Frame numbered(std::int64_t number) { return render::blank_frame(2, 2, std::uint8_t(number), 0, 0); }
 
 void nap(int microseconds) { std::this_thread::sleep_for(std::chrono::microseconds(microseconds)); }
 
@@ -21,43 +21,43 @@ TEST(Film, KeepsTheOrderAndNeverMoreThanAFewFramesInMemory) {
     std::atomic<int> shots = 0, pictures = 0;
     int most_shots = 0, most_pictures = 0;
     std::int64_t drawn = 0, encoded = 0;
-    FilmWork work;
-    work.shoot = {[&](std::int64_t frame) -> Result<Shot> {
+    film::FilmWork work;
+    work.shoot = {[&](std::int64_t frame) -> Result<film::Shot> {
       if (slow_stage == 0) nap(200);
       ++shots;
-      Shot shot;
+      film::Shot shot;
       shot.overlay.tick = frame;
       return shot;
     }};
-    work.draw = [&](std::vector<Shot> taken) -> Result<Frame> {
+    work.draw = [&](std::vector<film::Shot> taken) -> Result<render::Frame> {
       if (slow_stage == 1) nap(200);
       most_shots = std::max(most_shots, shots--);
       ++pictures;
       EXPECT_EQ(taken.at(0).overlay.tick, drawn);
       return numbered(drawn++);
     };
-    work.encode = [&](const Frame& frame) -> Result<Done> {
+    work.encode = [&](const render::Frame& frame) -> Result<Done> {
       if (slow_stage == 2) nap(200);
       most_pictures = std::max(most_pictures, pictures--);
       EXPECT_EQ(frame, numbered(encoded++));
       return Done{};
     };
-    const auto times = run_film(kFrames, work);
+    const auto times = film::run_film(kFrames, work);
     ASSERT_TRUE(times);
     EXPECT_EQ(encoded, kFrames);
     // What waits in the queue, one in the hands of whoever made it and one of whoever takes it.
-    EXPECT_LE(most_shots, int(kFilmQueue) + 2);
-    EXPECT_LE(most_pictures, int(kFilmQueue) + 2);
+    EXPECT_LE(most_shots, int(film::kFilmQueue) + 2);
+    EXPECT_LE(most_pictures, int(film::kFilmQueue) + 2);
     EXPECT_GT(times->elapsed, 0);
   }
 }
 
 TEST(Film, StagesWorkAtTheSameTime) {
-  FilmWork work;
-  work.shoot = {[](std::int64_t) -> Result<Shot> { return nap(2000), Shot{}; }};
-  work.draw = [](std::vector<Shot>) -> Result<Frame> { return nap(2000), numbered(0); };
-  work.encode = [](const Frame&) -> Result<Done> { return nap(2000), Done{}; };
-  const auto times = run_film(100, work);
+  film::FilmWork work;
+  work.shoot = {[](std::int64_t) -> Result<film::Shot> { return nap(2000), film::Shot{}; }};
+  work.draw = [](std::vector<film::Shot>) -> Result<render::Frame> { return nap(2000), numbered(0); };
+  work.encode = [](const render::Frame&) -> Result<Done> { return nap(2000), Done{}; };
+  const auto times = film::run_film(100, work);
   ASSERT_TRUE(times);
   EXPECT_LT(times->elapsed, 0.6 * times->work()) << "one after another they would take all of it";
 }
@@ -65,22 +65,22 @@ TEST(Film, StagesWorkAtTheSameTime) {
 TEST(Film, AnErrorOfAnyStageStopsThemAll) {
   for (const int bad : {0, 1, 2}) {
     std::atomic<std::int64_t> shot = 0;
-    FilmWork work;
-    work.shoot = {[&](std::int64_t frame) -> Result<Shot> {
+    film::FilmWork work;
+    work.shoot = {[&](std::int64_t frame) -> Result<film::Shot> {
                     if (bad == 0 && frame == 7) return Error{"shoot", "broke", ""};
-                    return ++shot, Shot{};
+                    return ++shot, film::Shot{};
                   },
-                  [](std::int64_t) -> Result<Shot> { return Shot{}; }};
-    work.draw = [&](std::vector<Shot> taken) -> Result<Frame> {
+                  [](std::int64_t) -> Result<film::Shot> { return film::Shot{}; }};
+    work.draw = [&](std::vector<film::Shot> taken) -> Result<render::Frame> {
       EXPECT_EQ(taken.size(), 2u);
       if (bad == 1 && shot > 7) return Error{"draw", "broke", ""};
       return numbered(0);
     };
-    work.encode = [&](const Frame&) -> Result<Done> {
+    work.encode = [&](const render::Frame&) -> Result<Done> {
       if (bad == 2 && shot > 7) return Error{"encode", "broke", ""};
       return Done{};
     };
-    const auto times = run_film(1'000'000, work);
+    const auto times = film::run_film(1'000'000, work);
     ASSERT_FALSE(times);
     EXPECT_EQ(times.errors().size(), 1u);
     EXPECT_EQ(times.errors()[0].where, bad == 0 ? "shoot" : bad == 1 ? "draw" : "encode");
@@ -89,7 +89,7 @@ TEST(Film, AnErrorOfAnyStageStopsThemAll) {
 }
 
 TEST(Film, AClosedQueueGivesWhatWaitsAndTakesNothing) {
-  BoundedQueue<int> queue(3);
+  film::BoundedQueue<int> queue(3);
   EXPECT_TRUE(queue.push(1) && queue.push(2));
   queue.close();
   EXPECT_FALSE(queue.push(3));

@@ -38,19 +38,20 @@ struct Lips {
 
 Lips cut_and_push(bool lips_meet) {
   Lips lips;
-  const Result<LoadedScene> scene = load_whole_scene(kScenes + "/kidney.json", {}, [&](SceneSpec& spec) {
-    spec.lips_meet = lips_meet;
-    for (ToolSpec& tool : spec.tools)
-      if (tool.kind == ToolKind::ball) tool.radius = 0.010;
-  });
+  const Result<loading::LoadedScene> scene =
+      loading::load_whole_scene(kScenes + "/kidney.json", {}, [&](scenes::SceneSpec& spec) {
+        spec.lips_meet = lips_meet;
+        for (scenes::ToolSpec& tool : spec.tools)
+          if (tool.kind == ToolKind::ball) tool.radius = 0.010;
+      });
   EXPECT_TRUE(bool(scene));
   const Model& model = scene->built.model;
   std::vector<std::string> tools;
   for (const Tool& tool : model.tools) tools.push_back(tool.name);
-  const Result<Script> script = read_script(kCutAndPush, "push.script.json", tools);
+  const Result<scenes::Script> script = scenes::read_script(kCutAndPush, "push.script.json", tools);
   EXPECT_TRUE(bool(script));
-  const ScriptPlayer player(*script, model.tools, model.tick);
-  Stepper stepper(model);
+  const scenes::ScriptPlayer player(*script, model.tools, model.tick);
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   stepper.settle(state, 1000);
   const auto measure = [&] {
@@ -64,8 +65,8 @@ Lips cut_and_push(bool lips_meet) {
     }
   };
   for (std::int64_t tick = 0; tick < player.tick_count(); ++tick) {
-    const StepReport report = stepper.step(state, player.at(tick));
-    EXPECT_FALSE(is_refused(report.status)) << tick;
+    const stepping::StepReport report = stepper.step(state, player.at(tick));
+    EXPECT_FALSE(stepping::is_refused(report.status)) << tick;
     lips.severed += report.severed;
     lips.along_at_end = INFINITY;
     measure();

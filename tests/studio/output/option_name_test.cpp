@@ -9,9 +9,10 @@ std::string flag(std::string_view field) { return "--" + std::string(field); }
 
 TEST(OptionName, IsReplacedWhereverAnErrorNamesIt) {
   const Errors errors =
-      name_options({{option_name("fps"), "must be less than " + option_name("most") + " of " + option_name("fps"),
-                     "give " + option_name("most")}},
-                   flag);
+      output::name_options({{output::option_name("fps"),
+                             "must be less than " + output::option_name("most") + " of " + output::option_name("fps"),
+                             "give " + output::option_name("most")}},
+                           flag);
   ASSERT_EQ(errors.size(), 1u);
   EXPECT_EQ(errors[0].where, "--fps");
   EXPECT_EQ(errors[0].message, "must be less than --most of --fps");
@@ -20,13 +21,14 @@ TEST(OptionName, IsReplacedWhereverAnErrorNamesIt) {
 
 TEST(OptionName, LeavesOtherTextAlone) {
   const Error error{"{fps}.json", "got '{option:' and 'option:fps}'", "{}"};
-  const Errors errors = name_options({error}, flag);
+  const Errors errors = output::name_options({error}, flag);
   EXPECT_EQ(to_string(errors[0]), to_string(error));
 }
 
 TEST(OptionName, DoesNotReplaceWhatTheCallersNameContains) {
-  const Errors errors = name_options({{option_name("a"), "", ""}}, [](std::string_view) { return option_name("a"); });
-  EXPECT_EQ(errors[0].where, option_name("a"));
+  const Errors errors = output::name_options({{output::option_name("a"), "", ""}},
+                                             [](std::string_view) { return output::option_name("a"); });
+  EXPECT_EQ(errors[0].where, output::option_name("a"));
 }
 
 }  // namespace

@@ -22,23 +22,23 @@ namespace fs = std::filesystem;
 const std::string kScenes = std::string(CTPM_SOURCE_DIR) + "/scenes";
 
 /// All that must hold of an experiment does; the number of such claims is counted, so that none goes missing.
-void expect_met(const Result<Experiment>& experiment, std::size_t count) {
+void expect_met(const Result<paper::Experiment>& experiment, std::size_t count) {
   ASSERT_TRUE(experiment) << to_string(experiment.errors().front());
   std::size_t asked = 0;
-  for (const Claim& claim : experiment->claims) {
-    EXPECT_NE(claim.verdict(), ReportVerdict::missed)
+  for (const paper::Claim& claim : experiment->claims) {
+    EXPECT_NE(claim.verdict(), reports::ReportVerdict::missed)
         << claim.organ << " " << claim.structure << " " << claim.viscosity << " " << claim.quantity << ": "
         << claim.error_to_closed_form() << ", paper " << claim.error_to_paper();
-    asked += claim.verdict() == ReportVerdict::met ? 1 : 0;
+    asked += claim.verdict() == reports::ReportVerdict::met ? 1 : 0;
   }
   EXPECT_EQ(asked, count);
 }
 
 TEST(Paper, TheRigGivesTable1AndAllEighteenLambdas) {
-  const Result<Experiment> experiment = run_table_1(kScenes);
+  const Result<paper::Experiment> experiment = paper::run_table_1(kScenes);
   expect_met(experiment, 3 * 6 * 3);
   int close = 0, lambdas = 0;
-  for (const Claim& c : experiment->claims) {
+  for (const paper::Claim& c : experiment->claims) {
     if (c.quantity.starts_with("lambda")) ++lambdas;
     if (c.quantity.starts_with("force") && std::abs(c.error_to_paper()) <= 0.10) ++close;
   }
@@ -46,14 +46,14 @@ TEST(Paper, TheRigGivesTable1AndAllEighteenLambdas) {
   EXPECT_EQ(close, 28);  // the others are the paper's own scatter
 }
 
-TEST(Paper, TheRigRelaxesAsEquation10) { expect_met(run_relaxation(kScenes), 3 * 2 * 2); }
+TEST(Paper, TheRigRelaxesAsEquation10) { expect_met(paper::run_relaxation(kScenes), 3 * 2 * 2); }
 
 TEST(Paper, TheRigCreepsAsEquation10AndTheMeasuredRangesAreNamed) {
-  const Result<Experiment> experiment = run_creep(kScenes);
+  const Result<paper::Experiment> experiment = paper::run_creep(kScenes);
   // Two rows for each load and reading, one more for each load; one of them is not asked for.
   expect_met(experiment, 2 * 2 * 2 + 2 - 1);
-  for (const Claim& c : experiment->claims) {
-    if (c.verdict() == ReportVerdict::shown) {
+  for (const paper::Claim& c : experiment->claims) {
+    if (c.verdict() == reports::ReportVerdict::shown) {
       EXPECT_NE(c.quantity.find("under 0.98 N"), std::string::npos);
       EXPECT_EQ(c.viscosity, "kPa s");
       EXPECT_GT(c.error_to_closed_form(), 0.020);
@@ -67,17 +67,17 @@ TEST(Paper, TheRigCreepsAsEquation10AndTheMeasuredRangesAreNamed) {
   }
 }
 
-TEST(Paper, UnderAForceMassSpringSwingsAndCtpmCreeps) { expect_met(run_load(kScenes, false), 4); }
+TEST(Paper, UnderAForceMassSpringSwingsAndCtpmCreeps) { expect_met(paper::run_load(kScenes, false), 4); }
 
-TEST(Paper, AfterACutMassSpringWandersAndCtpmSeparatesAndSettles) { expect_met(run_cut(kScenes, false), 6); }
+TEST(Paper, AfterACutMassSpringWandersAndCtpmSeparatesAndSettles) { expect_met(paper::run_cut(kScenes, false), 6); }
 
-class EveryModel : public ::testing::TestWithParam<Structure> {};
+class EveryModel : public ::testing::TestWithParam<network::Structure> {};
 
 TEST_P(EveryModel, FilledWithRAndHalfAndQuarterConvergesWithOrderOne) {
-  Result<LoadedScene> scene = load_whole_scene(kScenes + "/paper/convergence-liver.json");
+  Result<loading::LoadedScene> scene = loading::load_whole_scene(kScenes + "/paper/convergence-liver.json");
   ASSERT_TRUE(scene) << to_string(scene.errors().front());
   scene->scene.spec.organs[0].rig->block = Vec3{4, 4, 3};
-  const Result<Refinement> refined = refine(*scene, {"", GetParam(), false, ""});
+  const Result<paper::Refinement> refined = paper::refine(*scene, {"", GetParam(), false, ""});
   ASSERT_TRUE(refined) << to_string(refined.errors().front());
   ASSERT_EQ(refined->fillings.size(), 3u);
   EXPECT_EQ(refined->fillings[2].spheres, 64 * refined->fillings[0].spheres);
@@ -90,36 +90,37 @@ TEST_P(EveryModel, FilledWithRAndHalfAndQuarterConvergesWithOrderOne) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Paper, EveryModel,
-                         ::testing::Values(Structure::mass_spring, Structure::angle_mass_spring, Structure::tpm,
-                                           Structure::ctpm));
+                         ::testing::Values(network::Structure::mass_spring, network::Structure::angle_mass_spring,
+                                           network::Structure::tpm, network::Structure::ctpm));
 
 TEST(Paper, ARefinementKnowsItsOrderAndItsLimit) {
-  const Refinement first{{{4, 1, 1.8}, {2, 8, 1.9}, {1, 64, 1.95}}};  // 2 - 0.05 r
+  const paper::Refinement first{{{4, 1, 1.8}, {2, 8, 1.9}, {1, 64, 1.95}}};  // 2 - 0.05 r
   EXPECT_NEAR(first.order(), 1, 1e-12);
   EXPECT_NEAR(first.limit(), 2, 1e-12);
-  const Refinement second{{{4, 1, 2.16}, {2, 8, 2.04}, {1, 64, 2.01}}};  // 2 + 0.01 r^2
+  const paper::Refinement second{{{4, 1, 2.16}, {2, 8, 2.04}, {1, 64, 2.01}}};  // 2 + 0.01 r^2
   EXPECT_NEAR(second.order(), 2, 1e-12);
   EXPECT_NEAR(second.limit(), 2, 1e-12);
 }
 
 TEST(Paper, AClaimBeyondItsBoundIsMissed) {
-  Claim claim{.experiment = "x", .organ = "x", .structure = "x", .quantity = "x", .closed_form = 1.0, .network = 1.02};
-  EXPECT_EQ(claim.verdict(), ReportVerdict::shown);
+  paper::Claim claim{
+      .experiment = "x", .organ = "x", .structure = "x", .quantity = "x", .closed_form = 1.0, .network = 1.02};
+  EXPECT_EQ(claim.verdict(), reports::ReportVerdict::shown);
   claim.closed_form_bound = 0.01;
-  EXPECT_EQ(claim.verdict(), ReportVerdict::missed);
+  EXPECT_EQ(claim.verdict(), reports::ReportVerdict::missed);
   claim.closed_form_bound = 0.03;
-  EXPECT_EQ(claim.verdict(), ReportVerdict::met);
+  EXPECT_EQ(claim.verdict(), reports::ReportVerdict::met);
   claim.network = std::nan("");
-  EXPECT_EQ(claim.verdict(), ReportVerdict::missed);
+  EXPECT_EQ(claim.verdict(), reports::ReportVerdict::missed);
 }
 
 TEST(Paper, MotionOfADampedSwingIsFound) {
-  Series swing;
+  reports::Series swing;
   for (int i = 0; i <= 4000; ++i) {
     const double t = 1e-3 * i;
     swing.x.push_back(t), swing.y.push_back(1 - std::exp(-3 * t) * std::cos(2 * 3.14159265358979 * 5 * t));
   }
-  const StepResponse motion = step_response_of(swing);
+  const paper::StepResponse motion = paper::step_response_of(swing);
   EXPECT_NEAR(motion.rest, 1, 1e-4);
   EXPECT_NEAR(motion.overshoot, std::exp(-0.3), 0.02);  // at half a period
   EXPECT_NEAR(motion.settling_time, 1.0, 0.1);          // exp(-3 t) = 0.05
@@ -146,17 +147,17 @@ std::string unbalanced(const std::string& html) {
   return open.empty() ? "" : open.back() + " stays open";
 }
 
-PaperResults small_results() {
-  PaperResults results;
-  Section section;
+paper::PaperResults small_results() {
+  paper::PaperResults results;
+  reports::Section section;
   section.key = "creep", section.title = "A <title> & \"quotes\"", section.paragraphs = {"1 < 2"};
   section.plots = {{.title = "plot",
                     .x_title = "t [s]",
                     .y_title = "f [N]",
                     .series = {{.name = "a", .x = {0, 1, std::nan("")}, .y = {1, 2, 3}},
-                               {.name = "b", .x = {0.5}, .y = {1.5}, .stroke = Stroke::path}},
+                               {.name = "b", .x = {0.5}, .y = {1.5}, .stroke = reports::Stroke::path}},
                     .bands = {{"range", 1, 2, 2}}}};
-  section.pictures = {{blank_frame(32, 16, 200, 10, 10), "picture"}};
+  section.pictures = {{render::blank_frame(32, 16, 200, 10, 10), "picture"}};
   results.sections = {section};
   results.claims = {{.experiment = "creep",
                      .organ = "liver",
@@ -176,7 +177,7 @@ std::string slurp(const fs::path& path) {
 
 TEST(Report, IsOneBalancedPageThatLoadsNothing) {
   const fs::path folder = fs::temp_directory_path() / ("ctpm-paper-" + std::to_string(getpid())) / "deep";
-  const Result<Done> written = write_paper_report(folder.string(), small_results());
+  const Result<Done> written = paper::write_paper_report(folder.string(), small_results());
   ASSERT_TRUE(written) << to_string(written.errors().front());
   const std::string html = slurp(folder / "report.html");
   EXPECT_EQ(unbalanced(html), "");
@@ -196,7 +197,8 @@ TEST(Report, AFolderThatCannotBeMadeIsAnError) {
   const fs::path file = fs::temp_directory_path() / ("ctpm-paper-file-" + std::to_string(getpid()));
   std::ofstream(file) << "in the way";
   const std::string folder = (file / "report").string();
-  const Result<Done> ready = prepare_folder(folder), written = write_paper_report(folder, small_results());
+  const Result<Done> ready = reports::prepare_folder(folder),
+                     written = paper::write_paper_report(folder, small_results());
   fs::remove(file);
   ASSERT_FALSE(ready);
   ASSERT_FALSE(written);

@@ -11,13 +11,13 @@ namespace {
 /// A blob of 20,448 triangles, cut half through, with the scalpel in it.
 struct Bench {
   std::unique_ptr<TestScene> scene = make_blob_scene(0.003, 72);
-  std::unique_ptr<Renderer> renderer = std::move(*Renderer::create(1280, 720, scene->view));
+  std::unique_ptr<render::Renderer> renderer = std::move(*render::Renderer::create(1280, 720, scene->view));
   State rest = rest_state(scene->model), severed = rest;
-  DrawOptions options;
-  OverlayData data;
+  render::DrawOptions options;
+  render::OverlayData data;
 
   Bench() {
-    options.camera = default_camera(scene->view);
+    options.camera = render::default_camera(scene->view);
     cut(scene->model, severed, {{0, -0.1, 0}, {0, -0.1, 0.1}}, {{0, 0.02, 0}, {0, 0.02, 0.1}});
     severed.last_inputs.tool = 1, severed.last_inputs.position = {0, 0.02, 0};
     data.title = "Liver", data.model = "CTPM", data.session = "liver-press", data.verdict = "replay same as recorded";
@@ -28,9 +28,9 @@ struct Bench {
 
 void picture_with_overlay(benchmark::State& run) {
   Bench bench;
-  Overlay overlay(1280, 720);
+  render::Overlay overlay(1280, 720);
   for (auto _ : run) {
-    Frame frame = bench.renderer->draw(run.range(0) ? bench.severed : bench.rest, bench.options);
+    render::Frame frame = bench.renderer->draw(run.range(0) ? bench.severed : bench.rest, bench.options);
     overlay.draw(frame, bench.data);
     benchmark::DoNotOptimize(frame.rgb.data());
   }
@@ -52,8 +52,8 @@ BENCHMARK(picture_alone)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()
 
 void overlay_alone(benchmark::State& run) {
   Bench bench;
-  Overlay overlay(1280, 720);
-  Frame frame = bench.renderer->draw(bench.rest, bench.options);
+  render::Overlay overlay(1280, 720);
+  render::Frame frame = bench.renderer->draw(bench.rest, bench.options);
   for (auto _ : run) {
     overlay.draw(frame, bench.data);
     benchmark::DoNotOptimize(frame.rgb.data());
@@ -74,8 +74,8 @@ BENCHMARK(picture_while_cutting)->Unit(benchmark::kMillisecond)->MeasureProcessC
 
 void encoded_frame(benchmark::State& run) {
   Bench bench;
-  const Frame frame = bench.renderer->draw(bench.rest, bench.options);
-  auto writer = VideoWriter::create("/tmp/ctpm_render_benchmark.mp4", 1280, 720, 30);
+  const render::Frame frame = bench.renderer->draw(bench.rest, bench.options);
+  auto writer = video::VideoWriter::create("/tmp/ctpm_render_benchmark.mp4", 1280, 720, 30);
   for (auto _ : run)
     if (!(*writer)->add(frame)) run.SkipWithError("a frame could not be written");
 }

@@ -13,18 +13,18 @@ namespace {
 TEST(CutPicture, AClosedCutIsALineAndChangesNothingElse) {
   constexpr int kWidth = 640, kHeight = 360, kLine = 3;  // kLine: half the line's width, with smoothed edges [pixels]
   const auto scene = make_blob_scene(0.003, 60);
-  auto made = Renderer::create(kWidth, kHeight, scene->view);
+  auto made = render::Renderer::create(kWidth, kHeight, scene->view);
   ASSERT_TRUE(made);
-  DrawOptions options;
-  options.camera = fit_camera(rest_bounds(scene->view), {0.1, 0.35, -1}, {0, 1, 0});
+  render::DrawOptions options;
+  options.camera = render::fit_camera(render::rest_bounds(scene->view), {0.1, 0.35, -1}, {0, 1, 0});
   const State rest = rest_state(scene->model), severed = cut_along_y(scene->model, 0.001, 0.02, -0.005);
-  const Frame whole = (*made)->draw(rest, options), closed = (*made)->draw(severed, options);
-  CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
+  const render::Frame whole = (*made)->draw(rest, options), closed = (*made)->draw(severed, options);
+  render::CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
   ASSERT_TRUE(cut_surface.update(severed));
   std::vector<bool> near_lip(kWidth * kHeight);
   for (std::size_t v = 0; v < cut_surface.outer_vertex_count(); ++v) {
     if (!cut_surface.is_lip()[v]) continue;
-    const Pixel at = project(options.camera, kWidth, kHeight, cut_surface.surface().vertex[v]);
+    const render::Pixel at = render::project(options.camera, kWidth, kHeight, cut_surface.surface().vertex[v]);
     for (int y = std::max(0, int(at.y) - 3 * kLine); y < std::min(kHeight, int(at.y) + 3 * kLine); ++y)
       for (int x = std::max(0, int(at.x) - kLine); x < std::min(kWidth, int(at.x) + kLine); ++x)
         near_lip[std::size_t(y * kWidth + x)] = true;
@@ -44,7 +44,7 @@ TEST(CutPicture, AClosedCutIsALineAndChangesNothingElse) {
 }
 
 /// Backdrop that cannot be reached from the picture's edge: what one sees through a hole.
-int holes(const Frame& picture, const Frame& backdrop) {
+int holes(const render::Frame& picture, const render::Frame& backdrop) {
   const int w = picture.width, h = picture.height;
   std::vector<int> kind(std::size_t(w * h));  // 1: backdrop, 2: backdrop reached from the edge
   for (std::size_t i = 0; i < kind.size(); ++i) {
@@ -70,12 +70,12 @@ int holes(const Frame& picture, const Frame& backdrop) {
 
 TEST(CutPicture, OpensShowsItsWallAndNoBackground) {
   const auto scene = make_blob_scene();
-  SceneView view = scene->view;
-  view.looks = {look_of("liver")};
+  render::SceneView view = scene->view;
+  view.looks = {render::look_of("liver")};
   view.looks[0].inner = {0.1, 0.7, 0.2};  // green, which is nowhere else
-  auto made = Renderer::create(480, 270, view);
+  auto made = render::Renderer::create(480, 270, view);
   ASSERT_TRUE(made);
-  Renderer& renderer = **made;
+  render::Renderer& renderer = **made;
   const State rest = rest_state(scene->model);
   State state = cut_along_y(scene->model, 0.0, 0.02, -0.005);
   // Open it by up to 8 mm at the top, tapering to its bottom and its end.
@@ -84,14 +84,14 @@ TEST(CutPicture, OpensShowsItsWallAndNoBackground) {
     return Vec3{(p.x > 0 ? 0.004 : -0.004) * open, 0, 0};
   });
   for (const Vec3 direction : {Vec3{0.1, 0.35, -1}, Vec3{0, 0.8, -1}}) {
-    DrawOptions options;
-    options.camera = fit_camera(rest_bounds(view), direction, {0, 1, 0});
+    render::DrawOptions options;
+    options.camera = render::fit_camera(render::rest_bounds(view), direction, {0, 1, 0});
     options.show_ground = false;
-    const Frame before = renderer.draw(rest, options), after = renderer.draw(state, options);
-    DrawOptions away = options;
+    const render::Frame before = renderer.draw(rest, options), after = renderer.draw(state, options);
+    render::DrawOptions away = options;
     away.camera.target = options.camera.eye + (options.camera.eye - options.camera.target);
-    const Frame backdrop = renderer.draw(rest, away);
-    const auto green = [](const Frame& f) {
+    const render::Frame backdrop = renderer.draw(rest, away);
+    const auto green = [](const render::Frame& f) {
       int count = 0;
       for (std::size_t i = 0; i < f.rgb.size(); i += 3)
         count += f.rgb[i + 1] > f.rgb[i] + 25 && f.rgb[i + 1] > f.rgb[i + 2] + 25;
@@ -104,10 +104,11 @@ TEST(CutPicture, OpensShowsItsWallAndNoBackground) {
 }
 
 /// The wall of a full cut in the plane x = 0, seen straight on; the other half is out of sight.
-Frame picture_of_wall(const TestScene& scene, const OrganLook& look, const DrawOptions& options) {
-  SceneView view = scene.view;
+render::Frame picture_of_wall(const TestScene& scene, const render::OrganLook& look,
+                              const render::DrawOptions& options) {
+  render::SceneView view = scene.view;
   view.looks = {look};
-  auto made = Renderer::create(480, 360, view);
+  auto made = render::Renderer::create(480, 360, view);
   EXPECT_TRUE(made);
   State state = cut_along_y(scene.model, 0, 0.1, -0.1);
   spread(state, scene.model, [](Vec3 p) { return p.x > 0 ? Vec3{0, 0, -1} : Vec3{}; });
@@ -119,14 +120,14 @@ TEST(CutPicture, ItsWallIsPalerInTheOutermostLayer) {
   ASSERT_GT(layered->model.organs[0].layer_count, 3);
   plain->model.organs[0].layer_count = 1;
   std::fill(plain->model.layer.begin(), plain->model.layer.end(), 1);
-  DrawOptions options;
-  options.camera = fit_camera(rest_bounds(layered->view), {-1, 0, 0}, {0, 0, 1});
+  render::DrawOptions options;
+  options.camera = render::fit_camera(render::rest_bounds(layered->view), {-1, 0, 0}, {0, 0, 1});
   options.show_ground = false;
   for (const char* organ : {"liver", "kidney", "skin"}) {
-    OrganLook look = look_of(organ), other = look;
+    render::OrganLook look = render::look_of(organ), other = look;
     look.wetness = other.wetness = 0, other.outer = {0.2, 0.9, 0.9};
-    const Frame layers = picture_of_wall(*layered, look, options), one = picture_of_wall(*plain, look, options),
-                recoloured = picture_of_wall(*plain, other, options);
+    const render::Frame layers = picture_of_wall(*layered, look, options), one = picture_of_wall(*plain, look, options),
+                        recoloured = picture_of_wall(*plain, other, options);
     std::array<double, 2> paler{};  // green over red that the layers add: near the surface, deep inside
     std::array<int, 2> pixels{};
     for (double y = -0.045; y < 0.045; y += 0.0005)
@@ -135,9 +136,9 @@ TEST(CutPicture, ItsWallIsPalerInTheOutermostLayer) {
         const bool is_near = depth > 0.001 && depth < 0.003;
         const bool is_deep = depth > 0.021;
         if (!is_near && !is_deep) continue;
-        const Pixel at = project(options.camera, layers.width, layers.height, {0, y, z});
+        const render::Pixel at = render::project(options.camera, layers.width, layers.height, {0, y, z});
         const std::size_t i = 3 * (std::size_t(at.y) * std::size_t(layers.width) + std::size_t(at.x));
-        const auto green = [i](const Frame& f) { return f.rgb[i + 1] / double(f.rgb[i]); };
+        const auto green = [i](const render::Frame& f) { return f.rgb[i + 1] / double(f.rgb[i]); };
         paler[is_deep] += green(layers) - green(one), ++pixels[is_deep];
         for (std::size_t c = 0; c < 3; ++c) {
           EXPECT_NEAR(one.rgb[i + c], recoloured.rgb[i + c], 1) << organ << ": one layer has the inner colour";
@@ -163,7 +164,7 @@ struct Stages {
 Stages cut_in_stages() {
   Stages stages;
   const FilledOrgan organ = fill(blob, star_surface(blob, 60), 0.0025);
-  OrganSettings settings;
+  network::OrganSettings settings;
   settings.name = "liver";
   settings.material = {15e6, 15e6, 20e6, 5e6, 1060, 1, std::numbers::pi * 4e-6, 0.012};
   settings.material.fracture_toughness = 164, settings.material.blade_friction = 2000;
@@ -173,11 +174,11 @@ Stages cut_in_stages() {
     if (organ.centre[i].z < -0.016) settings.anchored.push_back(std::int32_t(i));
   stages.scene = std::make_unique<TestScene>();
   Model& model = stages.scene->model;
-  EXPECT_TRUE(add_organ(model, organ, settings));
+  EXPECT_TRUE(network::add_organ(model, organ, settings));
   model.gravity = {0, 0, -9.81}, model.tools = {{"scalpel", ToolKind::scalpel, 0, 0.05}};
   stages.scene->view.model = &model, stages.scene->view.surfaces = {organ.surface};
-  stages.scene->view.looks = {look_of("liver")};
-  Stepper stepper(model);
+  stages.scene->view.looks = {render::look_of("liver")};
+  stepping::Stepper stepper(model);
   State state = rest_state(model);
   (void)stepper.settle(state, 200);
   const Vec3 from{0.001, -0.055, 0.006}, to{0.001, 0.025, 0.006};
@@ -188,7 +189,7 @@ Stages cut_in_stages() {
       inputs.tool = 0, inputs.position = from + double(i) / kTicks * (to - from);
       inputs.world_from_tool = {std::sqrt(0.5), 0, 0, std::sqrt(0.5)};  // faces along y
     }
-    EXPECT_EQ(stepper.step(state, inputs).status, StepStatus::ok);
+    EXPECT_EQ(stepper.step(state, inputs).status, stepping::StepStatus::ok);
     if (i == kTicks * 2 / 5 || i == kTicks * 7 / 10 || i == kTicks || i == kTicks + kAfter)
       stages.states.push_back(state);
   }
@@ -214,22 +215,22 @@ TEST(CutPicture, FourStagesOfACutFromTwoCameras) {
   EXPECT_GT(gape(model, stages.states[3]), 0.002) << "the lips gape";
   const std::filesystem::path folder = "cut_stages";
   std::filesystem::create_directories(folder);
-  auto made = Renderer::create(640, 400, stages.scene->view);
+  auto made = render::Renderer::create(640, 400, stages.scene->view);
   ASSERT_TRUE(made);
   const std::pair<const char*, Vec3> cameras[] = {{"above", {0.25, 0.6, -1}}, {"along", {-0.1, 1, -0.45}}};
   for (const auto& [name, direction] : cameras) {
-    DrawOptions options;
-    options.camera = fit_camera(rest_bounds(stages.scene->view), direction, {0, 0, 1});
+    render::DrawOptions options;
+    options.camera = render::fit_camera(render::rest_bounds(stages.scene->view), direction, {0, 0, 1});
     options.show_tool = false, options.show_ground = false;
-    DrawOptions away = options;
+    render::DrawOptions away = options;
     away.camera.target = options.camera.eye + (options.camera.eye - options.camera.target);
-    const Frame backdrop = (*made)->draw(stages.states[0], away);
+    const render::Frame backdrop = (*made)->draw(stages.states[0], away);
     for (std::size_t i = 0; i < 4; ++i) {
       EXPECT_EQ(holes((*made)->draw(stages.states[i], options), backdrop), 0) << name << ", stage " << i + 1;
-      DrawOptions shown = options;
+      render::DrawOptions shown = options;
       shown.show_tool = shown.show_ground = true;
       const std::string file = "stage_" + std::to_string(i + 1) + "_" + name + ".png";
-      EXPECT_TRUE(write_png((folder / file).string(), (*made)->draw(stages.states[i], shown)));
+      EXPECT_TRUE(render::write_png((folder / file).string(), (*made)->draw(stages.states[i], shown)));
     }
   }
 }

@@ -25,7 +25,7 @@ double area(const Surface& surface, std::size_t triangles) {
 
 TEST(CutSurface, WithoutACutIsTheWholeSurface) {
   const auto scene = make_blob_scene();
-  CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
+  render::CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
   EXPECT_FALSE(cut_surface.update(rest_state(scene->model)));
   EXPECT_EQ(cut_surface.surface().triangle, scene->view.surfaces[0].triangle);
   const State severed = cut_along_y(scene->model, 0, 0.1, 0);
@@ -40,7 +40,7 @@ TEST(CutSurface, SplitTrianglesKeepTheWholeArea) {
   const auto scene = make_blob_scene();
   const double whole = area(scene->view.surfaces[0], scene->view.surfaces[0].triangle.size());
   for (const double bottom : {-0.1, 0.0, 0.01}) {
-    CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
+    render::CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
     State state = cut_along_y(scene->model, 0.001, 0.02, bottom);
     cut(scene->model, state, {{-0.1, 0, bottom}, {-0.1, 0.01, 0.1}},
         {{0.1, 0, bottom}, {0.1, 0.01, 0.1}});  // a second cut, across
@@ -52,10 +52,10 @@ TEST(CutSurface, SplitTrianglesKeepTheWholeArea) {
 }
 
 /// The largest change of length of any edge of any triangle [m].
-double worst_stretch(const CutSurface& cut_surface, const State& state) {
+double worst_stretch(const render::CutSurface& cut_surface, const State& state) {
   std::vector<Vec3> moved;
   const Surface& surface = cut_surface.surface();
-  deform_surface(surface, state.position, 0, moved);
+  surface::deform_surface(surface, state.position, 0, moved);
   double worst = 0;
   for (const auto& t : surface.triangle)
     for (std::size_t i = 0; i < 3; ++i) {
@@ -71,7 +71,7 @@ TEST(CutSurface, PiecesOfAFullCutMoveApartWithoutStretchingATriangle) {
     State state = rest_state(scene->model);
     cut(scene->model, state, {{-0.1 * lean, -0.1, -0.1}, {-0.1 * lean, -0.1, 0.1}},
         {{0.1 * lean, 0.1, -0.1}, {0.1 * lean, 0.1, 0.1}});
-    CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
+    render::CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
     ASSERT_TRUE(cut_surface.update(state));
     spread(state, scene->model, [&](Vec3 p) { return p.x > lean * p.y ? Vec3{0.05, 0.01, 0} : Vec3{}; });
     EXPECT_LT(worst_stretch(cut_surface, state), 1e-12) << "lean " << lean;  // rounding only
@@ -87,7 +87,7 @@ TEST(CutSurface, NothingSpansThePiecesWhereASideCutMeetsTheCut) {
         cut(scene->model, state, {{x, -0.1, -0.1}, {x, -0.1, 0.1}}, {{x, 0.1, -0.1}, {x, 0.1, 0.1}});
         cut(scene->model, state, {{x - 0.0001, y, bottom}, {x - 0.0001, y, 0.1}},
             {{x + 0.009, y + 0.002, bottom}, {x + 0.009, y + 0.002, 0.1}});
-        CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
+        render::CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
         ASSERT_TRUE(cut_surface.update(state));
         spread(state, scene->model, [&](Vec3 p) { return p.x > x ? Vec3{0.05, 0.01, 0} : Vec3{}; });
         EXPECT_LT(worst_stretch(cut_surface, state), 1e-12) << "side cut at " << x << ", " << y << " to " << bottom;
@@ -113,7 +113,7 @@ std::vector<std::int32_t> weld(const Surface& surface) {
 
 int open_edges(const Surface& surface) {
   const std::vector<std::int32_t> vertex = weld(surface);
-  OpenEdges open;
+  render::OpenEdges open;
   for (const auto& t : surface.triangle)
     for (std::size_t i = 0; i < 3; ++i)
       if (vertex[std::size_t(t[i])] != vertex[std::size_t(t[(i + 1) % 3])])
@@ -124,9 +124,9 @@ int open_edges(const Surface& surface) {
 }
 
 /// Ways of a blade: each entry is where its edge is, one after the other.
-using Way = std::vector<BladeEdge>;
+using Way = std::vector<cutting::BladeEdge>;
 
-BladeEdge upright(double x, double y, double bottom) { return {{x, y, bottom}, {x, y, 0.1}}; }
+cutting::BladeEdge upright(double x, double y, double bottom) { return {{x, y, bottom}, {x, y, 0.1}}; }
 
 struct NamedWays {
   const char* name;
@@ -180,7 +180,7 @@ FilledOrgan lens_of_one_sheet() {
       organ.centre.push_back(p), organ.cell.push_back({i, j, 0});
       organ.layer.push_back(1), organ.depth.push_back(-lens(p));
     }
-  bind_surface(organ);
+  surface::bind_surface(organ);
   return organ;
 }
 
@@ -192,7 +192,7 @@ TEST(CutSurface, IsWatertightWhateverTheCut) {
     EXPECT_EQ(open_edges(scene->view.surfaces[0]), 0);
     for (const NamedWays& kind : cuts_of_all_kinds()) {
       const State state = cut_along(scene->model, kind.ways);
-      CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
+      render::CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
       if (!cut_surface.update(state)) continue;
       ++severed_scenes;
       EXPECT_EQ(open_edges(cut_surface.surface()), 0) << kind.name << ", " << scene->model.sphere_count() << " spheres";
@@ -208,7 +208,7 @@ TEST(CutSurface, WallAndLipsStandWhereTheBladePassed) {
       State state = rest_state(scene->model);
       cut(scene->model, state, {{x - 0.1 * lean, -0.1, -0.1}, {x - 0.1 * lean, -0.1, 0.1}},
           {{x + 0.1 * lean, 0.1, -0.1}, {x + 0.1 * lean, 0.1, 0.1}});
-      CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
+      render::CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
       ASSERT_TRUE(cut_surface.update(state));
       const Surface& surface = cut_surface.surface();
       std::vector<double> off;
@@ -237,17 +237,19 @@ TEST(CutSurface, NormalsAndColourContinueOverTheClosedCut) {
   const State rest = rest_state(scene->model);
   State state = cut_along_y(scene->model, 0.001, 0.02, -0.005);
   cut(scene->model, state, {{-0.1, 0, 0}, {-0.1, 0.01, 0.1}}, {{0.1, 0, 0}, {0.1, 0.01, 0.1}});
-  CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
+  render::CutSurface cut_surface(scene->model, 0, scene->view.surfaces[0]);
   ASSERT_TRUE(cut_surface.update(state));
   const Surface &whole = scene->view.surfaces[0], &surface = cut_surface.surface();
-  OrganMesh uncut, mesh;
+  render::OrganMesh uncut, mesh;
   uncut.set_surface(whole, {}, {}), uncut.update(whole, rest, 0);
   mesh.set_surface(surface, cut_surface.is_lip(), cut_surface.rind()), mesh.update(surface, state, 0);
-  const auto normal = [](const OrganMesh& m, std::size_t v) {
-    const float* f = &m.vertices()[v * kOrganVertexFloats];
+  const auto normal = [](const render::OrganMesh& m, std::size_t v) {
+    const float* f = &m.vertices()[v * render::kOrganVertexFloats];
     return Vec3{f[3], f[4], f[5]};
   };
-  const auto stain = [](const OrganMesh& m, std::size_t v) { return m.vertices()[v * kOrganVertexFloats + 10]; };
+  const auto stain = [](const render::OrganMesh& m, std::size_t v) {
+    return m.vertices()[v * render::kOrganVertexFloats + 10];
+  };
   const auto degrees = [](Vec3 a, Vec3 b) { return std::asin(norm(cross(a, b))) * 180 / std::numbers::pi; };
   double worst_uncut = 0, worst_kept = 0, worst_lip = 0;
   std::map<std::array<double, 3>, std::pair<int, float>> lips;  // place -> how many copies, and their stain

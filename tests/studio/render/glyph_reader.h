@@ -17,12 +17,12 @@ class GlyphReader {
   /// For pictures of this size.
   GlyphReader(int width, int height) {
     for (const char c : std::string("0123456789.-+ abcdefghijklmnopqrstuvwxyzNCTPM")) {
-      OverlayData data;
+      render::OverlayData data;
       data.session = std::string(" ") + c + " ";
-      Overlay overlay(width, height);
-      Frame frame = blank_frame(width, height, 60, 60, 60);
+      render::Overlay overlay(width, height);
+      render::Frame frame = render::blank_frame(width, height, 60, 60, 60);
       overlay.draw(frame, data);
-      for (const PlacedText& text : overlay.layout(data)) {
+      for (const render::PlacedText& text : overlay.layout(data)) {
         if (text.text != data.session) continue;
         const int space = space_width(width, height);
         glyphs_[c] = patch(frame, text.box.x + space, text.box.y, text.box.width - 2 * space, text.box.height);
@@ -32,7 +32,7 @@ class GlyphReader {
 
   /// The text behind `label`, read to the right as far as characters are found; empty if the label is not in
   /// the picture.
-  std::string read_after(const Frame& frame, const std::string& label) const {
+  std::string read_after(const render::Frame& frame, const std::string& label) const {
     Patch word{0, glyphs_.at('t').height, {}};
     for (const char c : label) word.width += glyphs_.at(c).width;
     word.light.resize(std::size_t(word.width * word.height));
@@ -55,18 +55,18 @@ class GlyphReader {
   };
 
   static int space_width(int width, int height) {
-    OverlayData data;
+    render::OverlayData data;
     data.session = std::string(1, ' ');
-    for (const PlacedText& text : Overlay(width, height).layout(data))
+    for (const render::PlacedText& text : render::Overlay(width, height).layout(data))
       if (text.text == data.session) return text.box.width;
     return 0;
   }
   /// Of the brightest of red and green: inks are white, grey, amber, green or red.
-  static float light(const Frame& frame, int x, int y) {
+  static float light(const render::Frame& frame, int x, int y) {
     const std::uint8_t* pixel = &frame.rgb[(std::size_t(y) * std::size_t(frame.width) + std::size_t(x)) * 3];
     return std::max(pixel[0], pixel[1]);
   }
-  static Patch patch(const Frame& frame, int x, int y, int width, int height) {
+  static Patch patch(const render::Frame& frame, int x, int y, int width, int height) {
     Patch patch{width, height, {}};
     for (int r = 0; r < height; ++r)
       for (int c = 0; c < width; ++c) patch.light.push_back(light(frame, x + c, y + r));
@@ -78,7 +78,7 @@ class GlyphReader {
         word.light[std::size_t(r * word.width + x + c)] = glyph.light[std::size_t(r * glyph.width + c)];
   }
   /// Normalised correlation, in [-1, 1]; of two even patches: 1.
-  static double similarity(const Frame& frame, int x, int y, const Patch& p) {
+  static double similarity(const render::Frame& frame, int x, int y, const Patch& p) {
     double a = 0, b = 0, aa = 0, bb = 0, ab = 0;
     const double n = double(p.light.size());
     for (int r = 0; r < p.height; ++r)
@@ -92,14 +92,14 @@ class GlyphReader {
     return (ab - a * b / n) / std::sqrt(spread_a * spread_b);
   }
 
-  bool is_blank(const Frame& frame, int x, int y) const {
+  bool is_blank(const render::Frame& frame, int x, int y) const {
     float least = 255, most = 0;
     for (int r = y; r < y + glyphs_.at(' ').height; ++r)
       least = std::min(least, light(frame, x, r)), most = std::max(most, light(frame, x, r));
     return most - least < 45;
   }
 
-  std::string read_line(const Frame& frame, int x, int y) const {
+  std::string read_line(const render::Frame& frame, int x, int y) const {
     const int space = glyphs_.at(' ').width;
     std::string text;
     for (int gap = 0; x + 2 * space < frame.width;) {

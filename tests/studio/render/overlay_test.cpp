@@ -10,29 +10,29 @@
 namespace ctpm {
 namespace {
 
-OverlayData full_data() {
-  OverlayData data;
+render::OverlayData full_data() {
+  render::OverlayData data;
   data.title = "Liver", data.model = "CTPM", data.session = "press";
   data.time = 12.345, data.tick = 12345, data.force = 1.234, data.depth = 0.0134, data.damage_depth = 0.012;
   data.loose = 2;
-  data.verdict = "Replay identical: 12345 of 12345 ticks", data.verdict_tone = VerdictTone::good;
+  data.verdict = "Replay identical: 12345 of 12345 ticks", data.verdict_tone = render::VerdictTone::good;
   data.legend = {"stretch [%]", "-20", "+20", {{0.1, 0.2, 0.7}, {0.8, 0.8, 0.8}, {0.8, 0.1, 0.1}}, false};
   for (int i = 0; i <= 12345; i += 5) data.history.push_back({i * 1e-3, 1 + std::sin(i * 0.003)});
   return data;
 }
 
 TEST(Overlay, TextsNeitherOverlapNorLeaveThePicture) {
-  OverlayData long_winded = full_data();
+  render::OverlayData long_winded = full_data();
   long_winded.title = std::string(200, 'W'), long_winded.verdict = std::string(300, 'M');
   long_winded.tick = 999999999, long_winded.time = 99999.999, long_winded.force = 12345.678;
   for (const auto& [width, height] :
        {std::pair{1280, 720}, {640, 360}, {1920, 1080}, {1080, 1080}, {854, 480}, {640, 720}, {360, 640}})
-    for (const OverlayData& data : {full_data(), long_winded}) {
-      Overlay overlay(width, height);
+    for (const render::OverlayData& data : {full_data(), long_winded}) {
+      render::Overlay overlay(width, height);
       const auto texts = overlay.layout(data);
       EXPECT_GT(texts.size(), 10u);
       for (std::size_t i = 0; i < texts.size(); ++i) {
-        const PixelBox& box = texts[i].box;
+        const render::PixelBox& box = texts[i].box;
         EXPECT_TRUE(box.x >= 0 && box.y >= 0 && box.x + box.width <= width && box.y + box.height <= height)
             << texts[i].text;
         for (std::size_t j = 0; j < i; ++j)
@@ -43,11 +43,11 @@ TEST(Overlay, TextsNeitherOverlapNorLeaveThePicture) {
 }
 
 TEST(Overlay, EveryTextLeavesInkInItsPlace) {
-  Overlay overlay(1280, 720);
-  const OverlayData data = full_data();
-  Frame frame = blank_frame(1280, 720, 120, 130, 140);
+  render::Overlay overlay(1280, 720);
+  const render::OverlayData data = full_data();
+  render::Frame frame = render::blank_frame(1280, 720, 120, 130, 140);
   overlay.draw(frame, data);
-  for (const PlacedText& text : overlay.layout(data)) {
+  for (const render::PlacedText& text : overlay.layout(data)) {
     int least = 255, most = 0;
     for (int y = text.box.y; y < text.box.y + text.box.height; ++y)
       for (int x = text.box.x; x < text.box.x + text.box.width; ++x) {
@@ -60,12 +60,12 @@ TEST(Overlay, EveryTextLeavesInkInItsPlace) {
 
 TEST(Overlay, EveryTextStandsOnAPanel) {
   for (const auto& [width, height] : {std::pair{1280, 720}, {640, 720}, {640, 360}}) {
-    Overlay overlay(width, height);
-    OverlayData data = full_data();
+    render::Overlay overlay(width, height);
+    render::OverlayData data = full_data();
     data.history = {{12, 0.04}};  // the plot's axis has its longest numbers
-    Frame frame = blank_frame(width, height, 255, 255, 255);
+    render::Frame frame = render::blank_frame(width, height, 255, 255, 255);
     overlay.draw(frame, data);
-    for (const PlacedText& text : overlay.layout(data))
+    for (const render::PlacedText& text : overlay.layout(data))
       for (const int x : {text.box.x, text.box.x + text.box.width - 1})
         for (const int y : {text.box.y, text.box.y + text.box.height - 1})
           EXPECT_LT(frame.rgb[std::size_t(y * width + x) * 3 + 1], 200) << text.text << " " << width;
@@ -74,11 +74,11 @@ TEST(Overlay, EveryTextStandsOnAPanel) {
 
 TEST(Overlay, ItsNumbersAreReadBackFromThePicture) {
   const render_test::GlyphReader reader(1280, 720);
-  OverlayData data = full_data();
+  render::OverlayData data = full_data();
   data.model = "CTPM", data.session = "expert-2";
-  Overlay overlay(1280, 720);
+  render::Overlay overlay(1280, 720);
   // Behind it a picture with much detail: stripes and blots.
-  Frame frame = blank_frame(1280, 720, 0, 0, 0);
+  render::Frame frame = render::blank_frame(1280, 720, 0, 0, 0);
   for (std::size_t i = 0; i < frame.rgb.size(); ++i)
     frame.rgb[i] = std::uint8_t(125 + 60 * std::sin(double(i % 3840) * 0.09) * std::cos(double(i / 3840) * 0.31));
   EXPECT_EQ(reader.read_after(frame, "time"), "") << "nothing is written yet";
@@ -94,9 +94,9 @@ TEST(Overlay, ItsNumbersAreReadBackFromThePicture) {
 
 TEST(Overlay, LongNamesOfAPairCanBeToldApart) {
   const auto shown = [](const std::string& session, int width) {
-    OverlayData data = full_data();
+    render::OverlayData data = full_data();
     data.session = session;
-    const auto texts = Overlay(width, 720).layout(data);
+    const auto texts = render::Overlay(width, 720).layout(data);
     const auto label = std::find_if(texts.begin(), texts.end(), [](const auto& t) { return t.text == "session"; });
     return label == texts.end() ? "" : (label + 1)->text;
   };
@@ -110,11 +110,11 @@ TEST(Overlay, LongNamesOfAPairCanBeToldApart) {
 }
 
 TEST(Overlay, ShowsOnlyWhatThereIs) {
-  Overlay overlay(1280, 720);
-  OverlayData data = full_data();
+  render::Overlay overlay(1280, 720);
+  render::OverlayData data = full_data();
   data.depth = 0.002;
   const auto says = [&](const std::string& word) {
-    for (const PlacedText& text : overlay.layout(data))
+    for (const render::PlacedText& text : overlay.layout(data))
       if (text.text.find(word) != std::string::npos) return true;
     return false;
   };
@@ -144,9 +144,9 @@ TEST(Overlay, ShowsOnlyWhatThereIs) {
 }
 
 TEST(Overlay, SameDataGivesSamePixels) {
-  Overlay one(640, 360), other(640, 360);
-  Frame a = blank_frame(640, 360, 9, 9, 9), b = a, plain = a;
-  OverlayData earlier = full_data();
+  render::Overlay one(640, 360), other(640, 360);
+  render::Frame a = render::blank_frame(640, 360, 9, 9, 9), b = a, plain = a;
+  render::OverlayData earlier = full_data();
   earlier.history.clear();
   one.draw(plain, earlier);
   one.draw(a, full_data()), other.draw(b, full_data());

@@ -9,31 +9,32 @@ namespace {
 
 constexpr int kWidth = 480, kHeight = 270;
 
-std::unique_ptr<Renderer> make_renderer(const TestScene& scene) {
-  auto made = Renderer::create(kWidth, kHeight, scene.view);
+std::unique_ptr<render::Renderer> make_renderer(const TestScene& scene) {
+  auto made = render::Renderer::create(kWidth, kHeight, scene.view);
   if (!made) ADD_FAILURE() << to_string(made.errors()[0]);
   return *std::move(made);
 }
 
-int difference(const Frame& a, const Frame& b, std::size_t pixel) {
+int difference(const render::Frame& a, const render::Frame& b, std::size_t pixel) {
   int worst = 0;
   for (std::size_t c = 0; c < 3; ++c) worst = std::max(worst, std::abs(a.rgb[3 * pixel + c] - b.rgb[3 * pixel + c]));
   return worst;
 }
 
 /// Pixels whose centre a projected triangle covers.
-std::vector<bool> projected_mask(const Surface& surface, const Camera& camera) {
+std::vector<bool> projected_mask(const Surface& surface, const render::Camera& camera) {
   std::vector<bool> mask(kWidth * kHeight);
   for (const auto& t : surface.triangle) {
-    Pixel p[3];
-    for (std::size_t i = 0; i < 3; ++i) p[i] = project(camera, kWidth, kHeight, surface.vertex[std::size_t(t[i])]);
+    render::Pixel p[3];
+    for (std::size_t i = 0; i < 3; ++i)
+      p[i] = render::project(camera, kWidth, kHeight, surface.vertex[std::size_t(t[i])]);
     const int top = int(std::min({p[0].y, p[1].y, p[2].y})), bottom = int(std::max({p[0].y, p[1].y, p[2].y})) + 1;
     const int left = int(std::min({p[0].x, p[1].x, p[2].x})), right = int(std::max({p[0].x, p[1].x, p[2].x})) + 1;
     for (int y = std::max(top, 0); y < std::min(bottom, kHeight); ++y)
       for (int x = std::max(left, 0); x < std::min(right, kWidth); ++x) {
         double turn[3];
         for (std::size_t i = 0; i < 3; ++i) {
-          const Pixel a = p[i], b = p[(i + 1) % 3];
+          const render::Pixel a = p[i], b = p[(i + 1) % 3];
           turn[i] = (b.x - a.x) * (y + 0.5 - a.y) - (b.y - a.y) * (x + 0.5 - a.x);
         }
         if ((turn[0] >= 0 && turn[1] >= 0 && turn[2] >= 0) || (turn[0] <= 0 && turn[1] <= 0 && turn[2] <= 0))
@@ -46,14 +47,14 @@ std::vector<bool> projected_mask(const Surface& surface, const Camera& camera) {
 TEST(Picture, SilhouetteIsThatOfTheProjectedMesh) {
   const auto scene = make_blob_scene();
   auto renderer = make_renderer(*scene);
-  DrawOptions options;
-  options.camera = default_camera(scene->view);
+  render::DrawOptions options;
+  options.camera = render::default_camera(scene->view);
   options.show_ground = false;
   const State state = rest_state(scene->model);
-  const Frame picture = renderer->draw(state, options);
-  DrawOptions away = options;  // the backdrop does not depend on the camera
+  const render::Frame picture = renderer->draw(state, options);
+  render::DrawOptions away = options;  // the backdrop does not depend on the camera
   away.camera.target = options.camera.eye + (options.camera.eye - options.camera.target);
-  const Frame backdrop = renderer->draw(state, away);
+  const render::Frame backdrop = renderer->draw(state, away);
   const std::vector<bool> mask = projected_mask(scene->view.surfaces[0], options.camera);
   int covered = 0, wrong = 0;
   for (std::size_t i = 0; i < mask.size(); ++i) {
@@ -67,13 +68,13 @@ TEST(Picture, SilhouetteIsThatOfTheProjectedMesh) {
 TEST(Picture, FollowsTheSpheres) {
   const auto scene = make_blob_scene();
   auto renderer = make_renderer(*scene);
-  DrawOptions options;
-  options.camera = default_camera(scene->view);
+  render::DrawOptions options;
+  options.camera = render::default_camera(scene->view);
   options.show_ground = false;
   State state = rest_state(scene->model);
   const Vec3 shift{0.02, 0, 0};
   for (std::size_t i = 0; i < scene->model.sphere_count(); ++i) state.position.add(i, shift);
-  const Frame moved = renderer->draw(state, options);
+  const render::Frame moved = renderer->draw(state, options);
   Surface surface = scene->view.surfaces[0];
   for (Vec3& v : surface.vertex) v += shift;
   const std::vector<bool> mask = projected_mask(surface, options.camera);
@@ -86,18 +87,18 @@ TEST(Picture, FollowsTheSpheres) {
 TEST(Picture, ShowsTheToolWhereItIs) {
   const auto scene = make_blob_scene();
   auto renderer = make_renderer(*scene);
-  DrawOptions options;
-  options.camera = default_camera(scene->view);
+  render::DrawOptions options;
+  options.camera = render::default_camera(scene->view);
   options.camera.eye = options.camera.eye + 0.8 * (options.camera.eye - options.camera.target);  // room for the tool
   State state = rest_state(scene->model);
-  const Frame without = renderer->draw(state, options);
+  const render::Frame without = renderer->draw(state, options);
   for (const std::int32_t tool : {0, 1}) {
     state.last_inputs.tool = tool;
     state.last_inputs.position = {0, 0, 0.045};
-    const Frame with = renderer->draw(state, options);
+    const render::Frame with = renderer->draw(state, options);
     // The ball's middle; the blade a third up its edge and a little towards its back.
     const Vec3 inside = state.last_inputs.position + (tool ? Vec3{-0.003, 0, 0.012} : Vec3{});
-    const Pixel at = project(options.camera, kWidth, kHeight, inside);
+    const render::Pixel at = render::project(options.camera, kWidth, kHeight, inside);
     ASSERT_TRUE(at.x >= 0 && at.x < kWidth && at.y >= 0 && at.y < kHeight) << at.x << ", " << at.y;
     EXPECT_GT(difference(with, without, std::size_t(int(at.y) * kWidth + int(at.x))), 20) << "tool " << tool;
     options.show_tool = false;
@@ -108,16 +109,16 @@ TEST(Picture, ShowsTheToolWhereItIs) {
 
 TEST(Picture, SameStateGivesSamePixelsWhateverWasDrawnBefore) {
   const auto scene = make_blob_scene();
-  DrawOptions options;
-  options.camera = default_camera(scene->view);
-  for (const View view : {View::surface, View::spheres, View::both}) {
+  render::DrawOptions options;
+  options.camera = render::default_camera(scene->view);
+  for (const render::View view : {render::View::surface, render::View::spheres, render::View::both}) {
     options.view = view;
     auto renderer = make_renderer(*scene);
     const State rest = rest_state(scene->model);
     State severed = rest;
     cut(scene->model, severed, {{0, -0.1, 0}, {0, -0.1, 0.1}}, {{0, 0.1, 0}, {0, 0.1, 0.1}});
-    const Frame first = renderer->draw(rest, options);
-    const Frame cut_open = renderer->draw(severed, options);
+    const render::Frame first = renderer->draw(rest, options);
+    const render::Frame cut_open = renderer->draw(severed, options);
     EXPECT_EQ(renderer->draw(rest, options), first);
     auto other = make_renderer(*scene);
     EXPECT_EQ(other->draw(severed, options), cut_open);
@@ -128,14 +129,14 @@ TEST(Picture, SameStateGivesSamePixelsWhateverWasDrawnBefore) {
 TEST(Picture, ViewsDiffer) {
   const auto scene = make_blob_scene();
   auto renderer = make_renderer(*scene);
-  DrawOptions options;
-  options.camera = default_camera(scene->view);
+  render::DrawOptions options;
+  options.camera = render::default_camera(scene->view);
   const State state = rest_state(scene->model);
-  const Frame surface = renderer->draw(state, options);
-  options.view = View::spheres;
-  const Frame spheres = renderer->draw(state, options);
-  options.view = View::both;
-  const Frame both = renderer->draw(state, options);
+  const render::Frame surface = renderer->draw(state, options);
+  options.view = render::View::spheres;
+  const render::Frame spheres = renderer->draw(state, options);
+  options.view = render::View::both;
+  const render::Frame both = renderer->draw(state, options);
   int changed_spheres = 0, changed_both = 0;
   for (std::size_t i = 0; i < kWidth * kHeight; ++i)
     changed_spheres += difference(surface, spheres, i) > 30, changed_both += difference(spheres, both, i) > 10;
@@ -149,11 +150,11 @@ TEST(Picture, TrianglesThatReachOutOfItAreLitAsAllOthers) {
     auto renderer = make_renderer(*scene);
     for (const double zoom : {0.15, 0.3, 0.6})
       for (const double aside : {-0.03, 0.0, 0.03}) {
-        DrawOptions options;
-        options.camera = default_camera(scene->view);
+        render::DrawOptions options;
+        options.camera = render::default_camera(scene->view);
         options.camera.fov_deg *= zoom;
         options.camera.eye.x += aside, options.camera.target.x += aside;
-        const Frame picture = renderer->draw(rest_state(scene->model), options);
+        const render::Frame picture = renderer->draw(rest_state(scene->model), options);
         int black = 0;
         for (std::size_t i = 0; i < picture.rgb.size(); i += 3) black += picture.rgb[i] < 25;
         EXPECT_EQ(black, 0) << rows << " rows, " << zoom << " of the view, " << aside << " m aside";
@@ -164,25 +165,25 @@ TEST(Picture, TrianglesThatReachOutOfItAreLitAsAllOthers) {
 TEST(Picture, BadSizeOrSceneIsAnErrorNotAPicture) {
   const auto scene = make_blob_scene(0.004, 12);
   for (const auto& [width, height] : {std::pair{0, 100}, {100, -1}, {100, 100000}}) {
-    const auto made = Renderer::create(width, height, scene->view);
+    const auto made = render::Renderer::create(width, height, scene->view);
     ASSERT_FALSE(made);
     EXPECT_EQ(made.errors()[0].where, "picture size");
   }
-  SceneView incomplete = scene->view;
+  render::SceneView incomplete = scene->view;
   incomplete.surfaces.clear();
-  const auto made = Renderer::create(100, 100, incomplete);
+  const auto made = render::Renderer::create(100, 100, incomplete);
   ASSERT_FALSE(made);
   EXPECT_EQ(made.errors()[0].where, "scene");
 }
 
 TEST(Png, IsReadBackAsWritten) {
   const auto scene = make_blob_scene(0.004, 12);
-  DrawOptions options;
-  options.camera = default_camera(scene->view);
-  const Frame frame = make_renderer(*scene)->draw(rest_state(scene->model), options);
+  render::DrawOptions options;
+  options.camera = render::default_camera(scene->view);
+  const render::Frame frame = make_renderer(*scene)->draw(rest_state(scene->model), options);
   const std::string path = testing::TempDir() + "/render_picture.png";
-  ASSERT_TRUE(write_png(path, frame));
-  const auto back = read_picture(path);
+  ASSERT_TRUE(render::write_png(path, frame));
+  const auto back = render::read_picture(path);
   ASSERT_TRUE(back);
   EXPECT_EQ(*back, frame);
   std::filesystem::remove(path);
@@ -190,12 +191,12 @@ TEST(Png, IsReadBackAsWritten) {
 
 TEST(Png, BadTargetIsAnErrorAndLeavesNothing) {
   const std::string folder = testing::TempDir() + "/no_such_folder";
-  const auto missing = write_png(folder + "/a.png", blank_frame(4, 4, 1, 2, 3));
+  const auto missing = render::write_png(folder + "/a.png", render::blank_frame(4, 4, 1, 2, 3));
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.errors()[0].where, folder + "/a.png");
   EXPECT_FALSE(std::filesystem::exists(folder));
-  EXPECT_FALSE(write_png(testing::TempDir() + "/a.jpg", blank_frame(4, 4, 1, 2, 3)));
-  EXPECT_FALSE(write_png(testing::TempDir() + "/a.png", Frame{}));
+  EXPECT_FALSE(render::write_png(testing::TempDir() + "/a.jpg", render::blank_frame(4, 4, 1, 2, 3)));
+  EXPECT_FALSE(render::write_png(testing::TempDir() + "/a.png", render::Frame{}));
   EXPECT_FALSE(std::filesystem::exists(testing::TempDir() + "/a.png"));
 }
 

@@ -65,7 +65,7 @@ inline FilledOrgan fill(const Shape& shape, Surface surface, double radius) {
   FilledOrgan organ;
   organ.sphere_radius = radius, organ.spacing = 3 * radius;
   organ.surface = std::move(surface);
-  const Bounds box = bounds_of(organ.surface.vertex);
+  const render::Bounds box = render::bounds_of(organ.surface.vertex);
   const auto cells = [&](double length) { return int(length / 2 / organ.spacing) + 1; };
   for (int k = -cells(box.max.z - box.min.z); k <= cells(box.max.z - box.min.z); ++k)
     for (int j = -cells(box.max.y - box.min.y); j <= cells(box.max.y - box.min.y); ++j)
@@ -76,25 +76,25 @@ inline FilledOrgan fill(const Shape& shape, Surface surface, double radius) {
         organ.centre.push_back(p), organ.cell.push_back({i, j, k}), organ.depth.push_back(depth);
         organ.layer.push_back(1 + int(depth / organ.spacing));
       }
-  bind_surface(organ);
+  surface::bind_surface(organ);
   return organ;
 }
 
 /// A scene of one organ with a ball (tool 0) and a scalpel (tool 1).
 struct TestScene {
   Model model;
-  SceneView view;
+  render::SceneView view;
 };
 
 inline std::unique_ptr<TestScene> make_scene(const FilledOrgan& organ, const std::string& name = "liver") {
   auto scene = std::make_unique<TestScene>();
-  OrganSettings settings;
+  network::OrganSettings settings;
   settings.name = name;
   settings.material = {15e6, 15e6, 20e6, 5e6, 1060, 1, std::numbers::pi * 4e-6, 0.012};
   scene->model.gravity = {0, 0, -9.81};
   scene->model.tools = {{"ball", ToolKind::ball, 0.008, 0}, {"scalpel", ToolKind::scalpel, 0, 0.035}};
   scene->model.contact_k = 100;
-  const auto added = add_organ(scene->model, organ, settings);
+  const auto added = network::add_organ(scene->model, organ, settings);
   EXPECT_TRUE(added) << to_string(added ? Error{} : added.errors()[0]);
   scene->view.model = &scene->model;
   scene->view.surfaces = {organ.surface};
@@ -106,9 +106,9 @@ inline std::unique_ptr<TestScene> make_blob_scene(double radius = 0.003, int row
 }
 
 /// Severs what a blade through `tip`-`heel` sweeps on its way to the other end.
-inline void cut(const Model& model, State& state, const BladeEdge& from, const BladeEdge& to) {
-  std::vector<Crossing> crossings;
-  sever_swept_by_blade(model, NearElements(model), from, to, state.position, state, crossings);
+inline void cut(const Model& model, State& state, const cutting::BladeEdge& from, const cutting::BladeEdge& to) {
+  std::vector<cutting::Crossing> crossings;
+  cutting::sever_swept_by_blade(model, cutting::NearElements(model), from, to, state.position, state, crossings);
 }
 
 /// Moves the spheres apart on both sides of the plane through `point` with the given normal, more the nearer

@@ -6,7 +6,7 @@
 namespace ctpm::render_test {
 namespace {
 
-int count_green(const Frame& f) {
+int count_green(const render::Frame& f) {
   int count = 0;
   for (std::size_t i = 0; i < f.rgb.size(); i += 3)
     count += f.rgb[i + 1] > f.rgb[i] + 25 && f.rgb[i + 1] > f.rgb[i + 2] + 25;
@@ -19,14 +19,14 @@ TEST(ElementValues, AnEvenStretchIsThatOfEveryElement) {
   constexpr double kStretch = 0.05;
   for (std::size_t i = 0; i < scene->model.sphere_count(); ++i)
     state.position.set(i, (1 + kStretch) * scene->model.rest_position[i]);
-  std::vector<ElementValue> values;
-  measure_elements(scene->model, state, ElementQuantity::stretch, values);
+  std::vector<render::ElementValue> values;
+  render::measure_elements(scene->model, state, render::ElementQuantity::stretch, values);
   ASSERT_EQ(values.size(), scene->model.axial.size());
-  for (const ElementValue& e : values) EXPECT_NEAR(e.value, kStretch, 1e-12);  // rounding only
-  measure_elements(scene->model, state, ElementQuantity::tilt, values);
+  for (const render::ElementValue& e : values) EXPECT_NEAR(e.value, kStretch, 1e-12);  // rounding only
+  render::measure_elements(scene->model, state, render::ElementQuantity::tilt, values);
   ASSERT_EQ(values.size(), 2 * scene->model.constraints.size());
-  for (const ElementValue& e : values) EXPECT_NEAR(e.value, 0, 1e-6);
-  measure_elements(scene->model, state, ElementQuantity::force, values);
+  for (const render::ElementValue& e : values) EXPECT_NEAR(e.value, 0, 1e-6);
+  render::measure_elements(scene->model, state, render::ElementQuantity::force, values);
   const AxialElements& axial = scene->model.axial;
   for (std::size_t i = 0; i < axial.size(); ++i)
     EXPECT_NEAR(values[i].value, axial.k[i] * kStretch * axial.rest_length[i], 1e-9 * axial.k[i]);
@@ -35,58 +35,58 @@ TEST(ElementValues, AnEvenStretchIsThatOfEveryElement) {
 TEST(ElementValues, SeveredElementsAreNotShown) {
   const auto scene = make_blob_scene(0.004, 12);
   State state = rest_state(scene->model);
-  std::vector<ElementValue> whole, rest;
-  measure_elements(scene->model, state, ElementQuantity::stretch, whole);
+  std::vector<render::ElementValue> whole, rest;
+  render::measure_elements(scene->model, state, render::ElementQuantity::stretch, whole);
   cut(scene->model, state, {{0, -0.1, -0.1}, {0, -0.1, 0.1}}, {{0, 0.1, -0.1}, {0, 0.1, 0.1}});
-  measure_elements(scene->model, state, ElementQuantity::stretch, rest);
+  render::measure_elements(scene->model, state, render::ElementQuantity::stretch, rest);
   EXPECT_LT(rest.size(), whole.size());
-  for (const ElementValue& e : rest)
+  for (const render::ElementValue& e : rest)
     EXPECT_GT(scene->model.rest_position[std::size_t(e.a)].x * scene->model.rest_position[std::size_t(e.b)].x, 0);
 }
 
 TEST(View, CutawayShowsASolidSectionAndNothingBeyondIt) {
   const auto scene = make_blob_scene();
-  SceneView view = scene->view;
-  view.looks = {look_of("liver")};
+  render::SceneView view = scene->view;
+  view.looks = {render::look_of("liver")};
   view.looks[0].inner = {0.1, 0.7, 0.2};  // green, which is nowhere else
-  auto renderer = Renderer::create(480, 270, view);
+  auto renderer = render::Renderer::create(480, 270, view);
   ASSERT_TRUE(renderer);
-  DrawOptions options;
-  options.camera = fit_camera(rest_bounds(view), {0, 1, 0}, {0, 0, 1});
+  render::DrawOptions options;
+  options.camera = render::fit_camera(render::rest_bounds(view), {0, 1, 0}, {0, 0, 1});
   options.show_ground = false;
   const State state = rest_state(scene->model);
-  const Frame whole = (*renderer)->draw(state, options);
+  const render::Frame whole = (*renderer)->draw(state, options);
   EXPECT_EQ(count_green(whole), 0);
   options.cutaway = {{0, 0, 0}, {0, -1, 0}};
-  const Frame half = (*renderer)->draw(state, options);
+  const render::Frame half = (*renderer)->draw(state, options);
   // The section of an ellipsoid through its middle, seen straight on, fills its outline.
   int outline = 0;
   for (std::size_t i = 0; i < whole.rgb.size(); i += 3) outline += whole.rgb[i] > whole.rgb[i + 2] + 25;
   EXPECT_GT(count_green(half), 0.85 * outline);
   options.cutaway.point.y = -1;  // everything is on the side that is left out
   options.cutaway.normal = {0, 1, 0};
-  const Frame none = (*renderer)->draw(state, options);
+  const render::Frame none = (*renderer)->draw(state, options);
   options.camera.target = options.camera.eye + (options.camera.eye - options.camera.target);
   EXPECT_EQ(none, (*renderer)->draw(state, options)) << "only the backdrop is left";
 }
 
 TEST(View, ElementsShowColoursOfTheirLegend) {
   const auto scene = make_blob_scene(0.004, 12);
-  auto renderer = Renderer::create(480, 270, scene->view);
+  auto renderer = render::Renderer::create(480, 270, scene->view);
   ASSERT_TRUE(renderer);
-  DrawOptions options;
-  options.camera = default_camera(scene->view);
-  options.view = View::elements;
+  render::DrawOptions options;
+  options.camera = render::default_camera(scene->view);
+  options.view = render::View::elements;
   State state = rest_state(scene->model);
   const auto blueness = [&](double stretch) {
     State moved = state;
     for (std::size_t i = 0; i < scene->model.sphere_count(); ++i)
       moved.position.set(i, (1 + stretch) * scene->model.rest_position[i]);
     options.show_ground = false;
-    const Frame frame = (*renderer)->draw(moved, options);
+    const render::Frame frame = (*renderer)->draw(moved, options);
     options.camera.target = options.camera.eye + (options.camera.eye - options.camera.target);
-    const Frame backdrop = (*renderer)->draw(moved, options);
-    options.camera = default_camera(scene->view);
+    const render::Frame backdrop = (*renderer)->draw(moved, options);
+    options.camera = render::default_camera(scene->view);
     double sum = 0;
     for (std::size_t i = 0; i < frame.rgb.size(); i += 3)
       if (std::abs(frame.rgb[i] - backdrop.rgb[i]) > 20) sum += double(frame.rgb[i + 2]) - frame.rgb[i];
@@ -94,19 +94,19 @@ TEST(View, ElementsShowColoursOfTheirLegend) {
   };
   EXPECT_GT(blueness(-0.2), 1000) << "pressed elements are blue";
   EXPECT_LT(blueness(0.2), -1000) << "pulled elements are red";
-  EXPECT_EQ(legend_of(scene->model, options).high, "+20");
-  options.quantity = ElementQuantity::force, options.full_scale = 0.25;
-  EXPECT_EQ(legend_of(scene->model, options).high, "0.25");
-  options.view = View::surface;
-  EXPECT_TRUE(legend_of(scene->model, options).title.empty());
+  EXPECT_EQ(render::legend_of(scene->model, options).high, "+20");
+  options.quantity = render::ElementQuantity::force, options.full_scale = 0.25;
+  EXPECT_EQ(render::legend_of(scene->model, options).high, "0.25");
+  options.view = render::View::surface;
+  EXPECT_TRUE(render::legend_of(scene->model, options).title.empty());
 }
 
 TEST(View, FollowingCameraNearsTheToolThatWorks) {
   const auto scene = make_blob_scene(0.004, 12);
-  const Camera base = default_camera(scene->view);
+  const render::Camera base = render::default_camera(scene->view);
   Inputs inputs;
-  const auto follow = [&] { return following_camera(scene->view, base, {&inputs, 1}); };
-  const auto distance = [](const Camera& c) { return norm(c.eye - c.target); };
+  const auto follow = [&] { return render::following_camera(scene->view, base, {&inputs, 1}); };
+  const auto distance = [](const render::Camera& c) { return norm(c.eye - c.target); };
   EXPECT_EQ(distance(follow()), distance(base));
   inputs.tool = 0, inputs.position = {0, 0, 10};
   EXPECT_EQ(distance(follow()), distance(base)) << "far away";
@@ -122,14 +122,14 @@ TEST(View, FollowingCameraNearsTheToolThatWorks) {
 
 TEST(View, FollowingCameraMovesSoftlyWhenTheToolIsPutAwayAtTheTissue) {
   const auto scene = make_blob_scene(0.004, 12);
-  const Camera base = default_camera(scene->view);
+  const render::Camera base = render::default_camera(scene->view);
   // Two seconds of work at the tissue, then nothing is held.
   std::vector<Inputs> all(400);
   for (std::size_t i = 0; i < 200; ++i) all[i].tool = 0, all[i].position = {0.05, 0, 0.02};
   std::vector<Vec3> eye;
   for (std::size_t now = 1; now <= all.size(); ++now) {
-    const std::size_t count = std::min(now, kFollowedMoments);
-    eye.push_back(following_camera(scene->view, base, std::span(all).subspan(now - count, count)).eye);
+    const std::size_t count = std::min(now, render::kFollowedMoments);
+    eye.push_back(render::following_camera(scene->view, base, std::span(all).subspan(now - count, count)).eye);
   }
   const double way = norm(eye[199] - base.eye);
   EXPECT_GT(way, 0.02);
@@ -145,8 +145,9 @@ TEST(View, FollowingCameraMovesSoftlyWhenTheToolIsPutAwayAtTheTissue) {
 }
 
 TEST(View, BesideKeepsBothPictures) {
-  const Frame left = blank_frame(100, 40, 200, 10, 10), right = blank_frame(60, 40, 10, 200, 10);
-  const Frame both = join_beside(left, right);
+  const render::Frame left = render::blank_frame(100, 40, 200, 10, 10),
+                      right = render::blank_frame(60, 40, 10, 200, 10);
+  const render::Frame both = render::join_beside(left, right);
   ASSERT_EQ(both.width, 160);
   ASSERT_EQ(both.height, 40);
   for (int y = 0; y < 40; ++y)

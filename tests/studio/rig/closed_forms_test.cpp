@@ -10,7 +10,7 @@ namespace {
 
 struct Organ {
   const char* name;
-  Site site;
+  rig::Site site;
   std::array<double, 6> lambda, tpm_force, ctpm_force;  ///< printed in the paper's Table 1 for 2, 4 .. 12 mm
 };
 
@@ -36,7 +36,7 @@ TEST(ClosedForms, GiveAllEighteenLambdasOfTable1) {
   constexpr double kPapersRounding = 0.025;
   for (const Organ& organ : kTable1)
     for (std::size_t i = 0; i < 6; ++i)
-      EXPECT_NEAR(lambda(organ.site, 2.0 * double(i + 1)), organ.lambda[i], kPapersRounding * organ.lambda[i])
+      EXPECT_NEAR(rig::lambda(organ.site, 2.0 * double(i + 1)), organ.lambda[i], kPapersRounding * organ.lambda[i])
           << organ.name << " " << i;
 }
 
@@ -45,8 +45,8 @@ TEST(ClosedForms, Give28Of36ForcesOfTable1WithinTenPercent) {
   for (const Organ& organ : kTable1)
     for (std::size_t i = 0; i < 6; ++i) {
       const double x = 2.0 * double(i + 1);
-      near += std::abs(table_force(organ.site, x, false) / organ.tpm_force[i] - 1) <= 0.10;
-      near += std::abs(table_force(organ.site, x, true) / organ.ctpm_force[i] - 1) <= 0.10;
+      near += std::abs(rig::table_force(organ.site, x, false) / organ.tpm_force[i] - 1) <= 0.10;
+      near += std::abs(rig::table_force(organ.site, x, true) / organ.ctpm_force[i] - 1) <= 0.10;
     }
   // The other eight are the paper's own scatter: skin at 2 mm, kidney TPM and CTPM at 4 mm, liver CTPM at 4
   // to 10 mm.
@@ -54,18 +54,18 @@ TEST(ClosedForms, Give28Of36ForcesOfTable1WithinTenPercent) {
 }
 
 TEST(ClosedForms, RelaxationGoesFromEquation13ToEquation14) {
-  const Site liver = kTable1[2].site;
-  const double at_once = (liver.spring + lambda(liver, 4)) * 4 / (1 + 4 / 24.0);
-  EXPECT_NEAR(relaxation_stress(liver, 4, 0), at_once, 1e-12 * at_once);
-  EXPECT_NEAR(relaxation_stress(liver, 4, 100), slow_stress(liver, 4), 1e-12 * at_once);
+  const rig::Site liver = kTable1[2].site;
+  const double at_once = (liver.spring + rig::lambda(liver, 4)) * 4 / (1 + 4 / 24.0);
+  EXPECT_NEAR(rig::relaxation_stress(liver, 4, 0), at_once, 1e-12 * at_once);
+  EXPECT_NEAR(rig::relaxation_stress(liver, 4, 100), rig::slow_stress(liver, 4), 1e-12 * at_once);
 }
 
 TEST(ClosedForms, CreepGoesFromEquation15ToTheLimitOfEquation12NotToThePrintedEquation16) {
-  const Site liver = kTable1[2].site;
-  const double stress = 30, depth = 4, softening = 1 + depth / 24, l = lambda(liver, depth);
-  EXPECT_NEAR(creep_depth(liver, stress, depth, 0), stress * softening / (l + liver.spring), 1e-12);
+  const rig::Site liver = kTable1[2].site;
+  const double stress = 30, depth = 4, softening = 1 + depth / 24, l = rig::lambda(liver, depth);
+  EXPECT_NEAR(rig::creep_depth(liver, stress, depth, 0), stress * softening / (l + liver.spring), 1e-12);
   const double limit = stress * softening * 30 / (l * 30 + 225);
-  EXPECT_NEAR(creep_depth(liver, stress, depth, 1000), limit, 1e-12);
+  EXPECT_NEAR(rig::creep_depth(liver, stress, depth, 1000), limit, 1e-12);
   const double printed = stress * softening / (l + liver.spring) + limit;
   EXPECT_GT(printed, 1.4 * limit);
 }
@@ -73,29 +73,29 @@ TEST(ClosedForms, CreepGoesFromEquation15ToTheLimitOfEquation12NotToThePrintedEq
 TEST(ClosedForms, SlowDepthInvertsSlowStress) {
   for (const Organ& organ : kTable1)
     for (const double x : {0.5, 2.0, 6.0, 12.0})
-      EXPECT_NEAR(slow_depth(organ.site, slow_stress(organ.site, x)), x, 1e-9);
+      EXPECT_NEAR(rig::slow_depth(organ.site, rig::slow_stress(organ.site, x)), x, 1e-9);
 }
 
 TEST(ClosedForms, IntegratedEquation10MeetsEquation11AfterASuddenDepth) {
-  const Site liver = kTable1[2].site;
-  const auto curve = relaxation(
+  const rig::Site liver = kTable1[2].site;
+  const auto curve = rig::relaxation(
       liver, [](double) { return 4.0; }, [](double) { return 0.0; }, 2.0, 0.05);
-  for (const Sample& sample : curve)
-    EXPECT_NEAR(sample.stress, relaxation_stress(liver, 4, sample.time), 1e-6 * curve.front().stress);
+  for (const rig::Sample& sample : curve)
+    EXPECT_NEAR(sample.stress, rig::relaxation_stress(liver, 4, sample.time), 1e-6 * curve.front().stress);
 }
 
 TEST(ClosedForms, AllLawsAgreeWhereLambdaHardlyChanges) {
-  Site site = kTable1[2].site;
-  site.constraint = p2(site), site.arm = 1e6;  // no tilt: what is left is linear
+  rig::Site site = kTable1[2].site;
+  site.constraint = rig::p2(site), site.arm = 1e6;  // no tilt: what is left is linear
   const auto depth = [](double t) { return std::min(4.0, 2 * t); };
   const auto rate = [](double t) { return t < 2 ? 2.0 : 0.0; };
-  const auto a = relaxation(site, depth, rate, 3, 0.1, Law::eq_10);
+  const auto a = rig::relaxation(site, depth, rate, 3, 0.1, rig::Law::eq_10);
   const auto load = [](double) { return 15.6; };
-  const auto c = creep(
-      site, load, [](double) { return 0.0; }, 3, 0.1, Law::eq_10);
-  for (const Law law : {Law::eqs_3_to_8, Law::eqs_3_to_8_rig}) {
-    const auto b = relaxation(site, depth, rate, 3, 0.1, law);
-    const auto d = creep(
+  const auto c = rig::creep(
+      site, load, [](double) { return 0.0; }, 3, 0.1, rig::Law::eq_10);
+  for (const rig::Law law : {rig::Law::eqs_3_to_8, rig::Law::eqs_3_to_8_rig}) {
+    const auto b = rig::relaxation(site, depth, rate, 3, 0.1, law);
+    const auto d = rig::creep(
         site, load, [](double) { return 0.0; }, 3, 0.1, law);
     for (std::size_t i = 0; i < a.size(); ++i) {
       EXPECT_NEAR(a[i].stress, b[i].stress, 1e-4);  // [kPa] of 40; what tilt is left at an arm of 1 km
@@ -105,23 +105,23 @@ TEST(ClosedForms, AllLawsAgreeWhereLambdaHardlyChanges) {
 }
 
 TEST(ClosedForms, AllLawsEndAtTheSameDepthAndStress) {
-  const Site liver = kTable1[2].site;
-  for (const Law law : {Law::eq_10, Law::eqs_3_to_8, Law::eqs_3_to_8_rig}) {
-    const auto crept = creep(
+  const rig::Site liver = kTable1[2].site;
+  for (const rig::Law law : {rig::Law::eq_10, rig::Law::eqs_3_to_8, rig::Law::eqs_3_to_8_rig}) {
+    const auto crept = rig::creep(
         liver, [](double) { return 78.0; }, [](double) { return 0.0; }, 33, 0.5, law);
-    EXPECT_NEAR(crept.back().depth, slow_depth(liver, 78.0), 1e-6);
-    const auto relaxed = relaxation(
+    EXPECT_NEAR(crept.back().depth, rig::slow_depth(liver, 78.0), 1e-6);
+    const auto relaxed = rig::relaxation(
         liver, [](double) { return 8.0; }, [](double) { return 0.0; }, 33, 0.5, law);
-    EXPECT_NEAR(relaxed.back().stress, slow_stress(liver, 8.0), 1e-6);
+    EXPECT_NEAR(relaxed.back().stress, rig::slow_stress(liver, 8.0), 1e-6);
   }
 }
 
 TEST(ClosedForms, IntegratedCreepEndsAtTheSlowDepth) {
-  const Site liver = kTable1[2].site;
+  const rig::Site liver = kTable1[2].site;
   for (const double stress : {15.6, 78.0}) {  // 0.196 N and 0.98 N on the 2 mm ball
-    const auto curve = creep(
+    const auto curve = rig::creep(
         liver, [=](double) { return stress; }, [](double) { return 0.0; }, 33, 0.5);
-    EXPECT_NEAR(curve.back().depth, slow_depth(liver, stress), 1e-6);
+    EXPECT_NEAR(curve.back().depth, rig::slow_depth(liver, stress), 1e-6);
     for (std::size_t i = 1; i < curve.size(); ++i) EXPECT_GE(curve[i].depth, curve[i - 1].depth - 1e-9);
   }
 }

@@ -21,15 +21,15 @@ std::vector<Tool> tools() {
 }
 
 std::string errors_of(const std::string& text) {
-  const Result<Motion> motion = read_motion(text, "m.csv", tools());
+  const Result<sources::Motion> motion = sources::read_motion(text, "m.csv", tools());
   if (motion) return "no error";
   std::string all;
   for (const Error& error : motion.errors()) all += to_string(error) + "\n";
   return all;
 }
 
-Motion read_good(const std::string& text) {
-  Result<Motion> motion = read_motion(text, "m.csv", tools());
+sources::Motion read_good(const std::string& text) {
+  Result<sources::Motion> motion = sources::read_motion(text, "m.csv", tools());
   if (motion) return *motion;
   ADD_FAILURE() << to_string(motion.errors().front());
   return {};
@@ -38,7 +38,7 @@ Motion read_good(const std::string& text) {
 const std::string kHeader = "time_s,tool_x_mm,tool_y_mm,tool_z_mm,tool_qw,tool_qx,tool_qy,tool_qz,buttons,tool\n";
 
 TEST(ReadMotion, ColumnsMayStandInAnyOrderAndOthersAreNamedAsUnused) {
-  const Motion motion = read_good(
+  const sources::Motion motion = read_good(
       "\xEF\xBB\xBFtool_z_mm, force_n ,time_s,tool_y_mm,\"tool_x_mm\"\r\n3, 0.5 ,10.5,2,1\r\n\r\n6,0,11,5,4\n");
   ASSERT_EQ(motion.samples.size(), 2u);
   EXPECT_EQ(motion.samples[0].time, 10.5);
@@ -50,7 +50,7 @@ TEST(ReadMotion, ColumnsMayStandInAnyOrderAndOthersAreNamedAsUnused) {
 }
 
 TEST(ReadMotion, ToolsButtonsAndOrientationsAreRead) {
-  const Motion motion = read_good(kHeader + "0,0,0,0,0,0.99,0,0,5,scalpel\n1,0,0,0,1,0,0,0,0,\n");
+  const sources::Motion motion = read_good(kHeader + "0,0,0,0,0,0.99,0,0,5,scalpel\n1,0,0,0,1,0,0,0,0,\n");
   EXPECT_EQ(motion.samples[0].inputs.tool, 1);
   EXPECT_EQ(motion.samples[0].inputs.buttons, 5u);
   EXPECT_EQ(motion.samples[0].inputs.world_from_tool, (Quat{0, 1, 0, 0}));  // brought to length 1
@@ -100,7 +100,7 @@ TEST(ReadMotion, AnOrientationAButtonSetOrAToolThatIsNoneIsRefusedWhereItStands)
 TEST(ReadMotion, OfVeryManyErrorsTheFirstHundredAreToldAndTheOthersCounted) {
   std::string text = "time_s,tool_x_mm,tool_y_mm,tool_z_mm\n";
   for (int i = 0; i < 250; ++i) text += "x,1,2,3\n";
-  const Result<Motion> motion = read_motion(text, "m.csv", tools());
+  const Result<sources::Motion> motion = sources::read_motion(text, "m.csv", tools());
   ASSERT_FALSE(motion);
   ASSERT_EQ(motion.errors().size(), 101u);
   EXPECT_EQ(motion.errors().back().message, "and 150 more errors");
@@ -109,15 +109,15 @@ TEST(ReadMotion, OfVeryManyErrorsTheFirstHundredAreToldAndTheOthersCounted) {
 TEST(ReadMotion, NoCutOrChangedFileDoesAnythingButReadOrRefuse) {
   const std::string whole = kHeader + "0,1.5,2,3,0,1,0,0,5,scalpel\n0.01,1,2,3,1,0,0,0,0,\n";
   for (std::size_t length = 0; length < whole.size(); ++length)
-    (void)read_motion(whole.substr(0, length), "m.csv", tools());
+    (void)sources::read_motion(whole.substr(0, length), "m.csv", tools());
   for (std::size_t i = 0; i < whole.size(); ++i)
     for (const int change : {1, 2, 4, 8, 16, 32, 64, 128}) {
       std::string changed = whole;
       changed[i] = char(changed[i] ^ change);
-      if (const Result<Motion> motion = read_motion(changed, "m.csv", tools()); motion)
-        for (const MotionSample& sample : motion->samples) {
+      if (const Result<sources::Motion> motion = sources::read_motion(changed, "m.csv", tools()); motion)
+        for (const sources::MotionSample& sample : motion->samples) {
           EXPECT_TRUE(is_finite(sample.inputs.position));
-          EXPECT_NEAR(length_of(sample.inputs.world_from_tool), 1, 1e-12);
+          EXPECT_NEAR(sources::length_of(sample.inputs.world_from_tool), 1, 1e-12);
         }
     }
 }
@@ -125,27 +125,29 @@ TEST(ReadMotion, NoCutOrChangedFileDoesAnythingButReadOrRefuse) {
 TEST(MotionAt, PositionsLieOnTheStraightLineAndTurnsAreEvenWhateverTheRate) {
   // A quarter turn about z in 0.1 s, sampled at its ends alone.
   const double half = std::sqrt(0.5);
-  Motion motion;
+  sources::Motion motion;
   motion.samples = {{5.0, {0, {0, 0, 0}, {1, 0, 0, 0}, 1}}, {5.1, {1, {0.02, 0, -0.01}, {-half, 0, 0, -half}, 2}}};
-  EXPECT_EQ(motion_tick_count(motion, 1e-3), 101);
+  EXPECT_EQ(sources::motion_tick_count(motion, 1e-3), 101);
   for (int tick = 0; tick < 100; ++tick) {
-    const Inputs inputs = motion_at(motion, tick * 1e-3);
+    const Inputs inputs = sources::motion_at(motion, tick * 1e-3);
     EXPECT_NEAR(norm(inputs.position - tick / 100.0 * Vec3{0.02, 0, -0.01}), 0, 1e-12);
-    EXPECT_NEAR(angle_between(Quat{}, inputs.world_from_tool), tick / 100.0 * std::numbers::pi / 2, 1e-6) << tick;
+    EXPECT_NEAR(sources::angle_between(Quat{}, inputs.world_from_tool), tick / 100.0 * std::numbers::pi / 2, 1e-6)
+        << tick;
     EXPECT_EQ(inputs.tool, 0) << "tool and buttons are held until the next sample";
     EXPECT_EQ(inputs.buttons, 1u);
   }
-  EXPECT_EQ(motion_at(motion, 0.1).tool, 1);
-  EXPECT_EQ(motion_at(motion, 7), motion.samples.back().inputs);
-  EXPECT_EQ(motion_at(motion, -1), motion.samples.front().inputs);
+  EXPECT_EQ(sources::motion_at(motion, 0.1).tool, 1);
+  EXPECT_EQ(sources::motion_at(motion, 7), motion.samples.back().inputs);
+  EXPECT_EQ(sources::motion_at(motion, -1), motion.samples.front().inputs);
 }
 
 TEST(MotionAt, AMotionSampledAtTheTicksIsTakenAsItIs) {
-  Motion motion;
+  sources::Motion motion;
   for (int i = 0; i < 5000; ++i)
     motion.samples.push_back({17 + i * 1e-3, {0, {std::sin(i * 0.7), std::cos(i * 1.3), i * 1e-3}, {1, 0, 0, 0}, 0}});
-  ASSERT_EQ(motion_tick_count(motion, 1e-3), 5000);
-  for (int i = 0; i < 5000; ++i) ASSERT_EQ(motion_at(motion, i * 1e-3), motion.samples[std::size_t(i)].inputs) << i;
+  ASSERT_EQ(sources::motion_tick_count(motion, 1e-3), 5000);
+  for (int i = 0; i < 5000; ++i)
+    ASSERT_EQ(sources::motion_at(motion, i * 1e-3), motion.samples[std::size_t(i)].inputs) << i;
 }
 
 }  // namespace

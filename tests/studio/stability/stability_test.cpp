@@ -15,79 +15,80 @@ using testing::run_ctpm;
 using testing::slurp;
 using testing::TemporaryFolder;
 
-StabilityCase case_named(const std::string& key) {
-  const std::vector<StabilityCase> cases = stability_cases(true);
-  const auto it = std::find_if(cases.begin(), cases.end(), [&](const StabilityCase& c) { return c.key == key; });
+stability::StabilityCase case_named(const std::string& key) {
+  const std::vector<stability::StabilityCase> cases = stability::stability_cases(true);
+  const auto it =
+      std::find_if(cases.begin(), cases.end(), [&](const stability::StabilityCase& c) { return c.key == key; });
   EXPECT_NE(it, cases.end()) << key;
   return *it;
 }
 
 TEST(Stability, ACaseThatHoldsIsMet) {
-  const StabilityRun run = run_stability_case(case_named("stiffness-1"), std::nullopt);
-  EXPECT_EQ(run.verdict, ReportVerdict::met) << run.reason;
+  const stability::StabilityRun run = stability::run_stability_case(case_named("stiffness-1"), std::nullopt);
+  EXPECT_EQ(run.verdict, reports::ReportVerdict::met) << run.reason;
   EXPECT_EQ(run.ticks, 1000);
   EXPECT_GT(run.reach, 4e-3);
   EXPECT_EQ(run.distance.x.size(), run.energy.y.size());
 }
 
 TEST(Stability, ASphereThatLeavesItsBoundsIsMissed) {
-  StabilityCase what = case_named("stiffness-1");
+  stability::StabilityCase what = case_named("stiffness-1");
   what.reach = 2e-3;  // it is pressed 6 mm
-  const StabilityRun run = run_stability_case(what, std::nullopt);
-  EXPECT_EQ(run.verdict, ReportVerdict::missed);
+  const stability::StabilityRun run = stability::run_stability_case(what, std::nullopt);
+  EXPECT_EQ(run.verdict, reports::ReportVerdict::missed);
   EXPECT_NE(run.reason.find("more than 2 mm"), std::string::npos) << run.reason;
 }
 
 TEST(Stability, EnergyThatGrowsIsMissed) {
-  StabilityCase what = case_named("stiffness-1");
+  stability::StabilityCase what = case_named("stiffness-1");
   what.free_from = 0;  // the ball has not come yet, and will do work
-  const StabilityRun run = run_stability_case(what, std::nullopt);
-  EXPECT_EQ(run.verdict, ReportVerdict::missed);
+  const stability::StabilityRun run = stability::run_stability_case(what, std::nullopt);
+  EXPECT_EQ(run.verdict, reports::ReportVerdict::missed);
   EXPECT_NE(run.reason.find("energy grew"), std::string::npos) << run.reason;
 }
 
 TEST(Stability, WhatDoesNotComeToRestIsMissed) {
-  StabilityCase what = case_named("swing-mass-spring");
+  stability::StabilityCase what = case_named("swing-mass-spring");
   what.end_speed = 1e-3;  // springs without dashpots go on swinging
-  const StabilityRun run = run_stability_case(what, std::nullopt);
-  EXPECT_EQ(run.verdict, ReportVerdict::missed);
+  const stability::StabilityRun run = stability::run_stability_case(what, std::nullopt);
+  EXPECT_EQ(run.verdict, reports::ReportVerdict::missed);
   EXPECT_NE(run.reason.find("rest"), std::string::npos) << run.reason;
 }
 
 TEST(Stability, WhatAnIntegratorSaysBeforehandItDoesNotDampIsRefused) {
-  const StabilityRun run = run_stability_case(case_named("viscosity-1000"), Integrator::sdirk2);
-  EXPECT_EQ(run.verdict, ReportVerdict::refused);
+  const stability::StabilityRun run = stability::run_stability_case(case_named("viscosity-1000"), Integrator::sdirk2);
+  EXPECT_EQ(run.verdict, reports::ReportVerdict::refused);
   EXPECT_NE(run.reason.find("damps nothing by itself"), std::string::npos) << run.reason;
   EXPECT_NE(run.reason.find("energy grew"), std::string::npos) << run.reason;
 }
 
 TEST(Stability, BadInputThatIsTakenIsMissed) {
-  StabilityCase what = case_named("stiffness-1");
+  stability::StabilityCase what = case_named("stiffness-1");
   what.is_bad_input = [](std::int64_t tick) { return tick == 7; };  // it is good
-  const StabilityRun run = run_stability_case(what, std::nullopt);
-  EXPECT_EQ(run.verdict, ReportVerdict::missed);
+  const stability::StabilityRun run = stability::run_stability_case(what, std::nullopt);
+  EXPECT_EQ(run.verdict, reports::ReportVerdict::missed);
   EXPECT_EQ(run.ticks, 7);
 }
 
 TEST(Stability, AnIntegratorThatSaysItCannotIsRefusedIfItWasNamed) {
-  const StabilityRun run = run_stability_case(case_named("stiffness-1"), Integrator::leapfrog);
-  EXPECT_EQ(run.verdict, ReportVerdict::refused);
+  const stability::StabilityRun run = stability::run_stability_case(case_named("stiffness-1"), Integrator::leapfrog);
+  EXPECT_EQ(run.verdict, reports::ReportVerdict::refused);
   EXPECT_EQ(run.ticks, 0);
   EXPECT_NE(run.reason.find("ms"), std::string::npos) << run.reason;
 }
 
 TEST(Stability, NoIntegratorTakesWhatABrokenDeviceSends) {
-  const StabilityCase what = case_named("device-nan");
-  for (const std::optional<Integrator> integrator : kStabilityIntegrators) {
-    const StabilityRun run = run_stability_case(what, integrator);
-    EXPECT_NE(run.verdict, ReportVerdict::missed) << name_of(integrator) << ": " << run.reason;
+  const stability::StabilityCase what = case_named("device-nan");
+  for (const std::optional<Integrator> integrator : stability::kStabilityIntegrators) {
+    const stability::StabilityRun run = stability::run_stability_case(what, integrator);
+    EXPECT_NE(run.verdict, reports::ReportVerdict::missed) << stepping::name_of(integrator) << ": " << run.reason;
   }
 }
 
 TEST(Stability, KeysNameOneCaseEach) {
   for (const bool is_quick : {true, false}) {
     std::vector<std::string> keys;
-    for (const StabilityCase& what : stability_cases(is_quick)) keys.push_back(what.key);
+    for (const stability::StabilityCase& what : stability::stability_cases(is_quick)) keys.push_back(what.key);
     std::sort(keys.begin(), keys.end());
     EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
     EXPECT_GT(keys.size(), 30u);

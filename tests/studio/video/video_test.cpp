@@ -24,15 +24,15 @@ class Video : public testing::Test {
 };
 
 /// A bright square that moves over a dark ground.
-Frame moving_square(int width, int height, int step) {
-  Frame frame = blank_frame(width, height, 20, 30, 40);
+render::Frame moving_square(int width, int height, int step) {
+  render::Frame frame = render::blank_frame(width, height, 20, 30, 40);
   for (int y = 20; y < 60; ++y)
     for (int x = 10 + 4 * step; x < 50 + 4 * step; ++x) frame.rgb[std::size_t(y * width + x) * 3] = 220;
   return frame;
 }
 
 TEST_F(Video, IsReopenedAndCounted) {
-  auto writer = VideoWriter::create(path("a.mp4"), 320, 180, 30);
+  auto writer = video::VideoWriter::create(path("a.mp4"), 320, 180, 30);
   ASSERT_TRUE(writer) << to_string(writer.errors()[0]);
   for (int i = 0; i < 45; ++i) ASSERT_TRUE((*writer)->add(moving_square(320, 180, i)));
   EXPECT_FALSE(fs::exists(path("a.mp4"))) << "before it is whole";
@@ -52,7 +52,7 @@ TEST_F(Video, IsReopenedAndCounted) {
 TEST_F(Video, OtherEndingsGiveMotionJpegAndPictures) {
   for (const auto& [name, codec, written] :
        {std::array{"a.avi", "Motion JPEG", "a.avi"}, std::array{"frames/", "PNG", "frames"}}) {
-    auto writer = VideoWriter::create(path(name), 320, 180, 25);
+    auto writer = video::VideoWriter::create(path(name), 320, 180, 25);
     ASSERT_TRUE(writer) << to_string(writer.errors()[0]);
     for (int i = 0; i < 7; ++i) ASSERT_TRUE((*writer)->add(moving_square(320, 180, i)));
     EXPECT_FALSE(fs::exists(path(written))) << "before it is whole";
@@ -64,14 +64,14 @@ TEST_F(Video, OtherEndingsGiveMotionJpegAndPictures) {
     EXPECT_EQ(facts->note, "");
   }
   EXPECT_EQ(file_count(), 2);
-  const auto last = read_picture(path("frames/000007.png"));
+  const auto last = render::read_picture(path("frames/000007.png"));
   ASSERT_TRUE(last);
   EXPECT_EQ(*last, moving_square(320, 180, 6)) << "PNG keeps every pixel";
-  EXPECT_FALSE(VideoWriter::create(path("frames/"), 320, 180, 25)) << "pictures are never mixed";
+  EXPECT_FALSE(video::VideoWriter::create(path("frames/"), 320, 180, 25)) << "pictures are never mixed";
 }
 
 TEST_F(Video, WithoutFramesIsAnErrorAndNoFile) {
-  auto writer = VideoWriter::create(path("a.mp4"), 320, 180, 30);
+  auto writer = video::VideoWriter::create(path("a.mp4"), 320, 180, 30);
   ASSERT_TRUE(writer);
   EXPECT_FALSE((*writer)->finish());
   EXPECT_EQ(file_count(), 0);
@@ -79,10 +79,10 @@ TEST_F(Video, WithoutFramesIsAnErrorAndNoFile) {
 
 TEST_F(Video, LeftUnfinishedIsRemoved) {
   {
-    auto writer = VideoWriter::create(path("a.mp4"), 320, 180, 30);
+    auto writer = video::VideoWriter::create(path("a.mp4"), 320, 180, 30);
     ASSERT_TRUE(writer);
     ASSERT_TRUE((*writer)->add(moving_square(320, 180, 0)));
-    auto pictures = VideoWriter::create(path("frames/"), 320, 180, 30);
+    auto pictures = video::VideoWriter::create(path("frames/"), 320, 180, 30);
     ASSERT_TRUE(pictures);
     ASSERT_TRUE((*pictures)->add(moving_square(320, 180, 0)));
     EXPECT_EQ(file_count(), 2);
@@ -91,27 +91,27 @@ TEST_F(Video, LeftUnfinishedIsRemoved) {
 }
 
 TEST_F(Video, FrameOfAnotherSizeIsRefused) {
-  auto writer = VideoWriter::create(path("a.mp4"), 320, 180, 30);
+  auto writer = video::VideoWriter::create(path("a.mp4"), 320, 180, 30);
   ASSERT_TRUE(writer);
-  const auto added = (*writer)->add(blank_frame(322, 180, 0, 0, 0));
+  const auto added = (*writer)->add(render::blank_frame(322, 180, 0, 0, 0));
   ASSERT_FALSE(added);
   EXPECT_NE(added.errors()[0].message.find("322x180"), std::string::npos);
 }
 
 TEST_F(Video, BadRequestsAreAllNamedAtOnce) {
-  const auto bad = VideoWriter::create(folder_ + "/missing/a.mov", 321, 0, 0);
+  const auto bad = video::VideoWriter::create(folder_ + "/missing/a.mov", 321, 0, 0);
   ASSERT_FALSE(bad);
   EXPECT_EQ(bad.errors().size(), 4u);  // ending, size, rate, folder
-  EXPECT_FALSE(VideoWriter::create(path("a.mp4"), 0, 0, 30));
-  EXPECT_FALSE(VideoWriter::create(path("a.mp4"), 320, 181, 30));
+  EXPECT_FALSE(video::VideoWriter::create(path("a.mp4"), 0, 0, 30));
+  EXPECT_FALSE(video::VideoWriter::create(path("a.mp4"), 320, 181, 30));
   for (const char* taken_nowhere : {"/proc/a.mp4", "/proc/a.avi", "/proc/a/"}) {
-    const auto refused = VideoWriter::create(taken_nowhere, 320, 180, 30);
+    const auto refused = video::VideoWriter::create(taken_nowhere, 320, 180, 30);
     ASSERT_FALSE(refused) << taken_nowhere;
     EXPECT_TRUE(refused.errors()[0].where.starts_with("/proc/a")) << refused.errors()[0].where;
     EXPECT_EQ(refused.errors()[0].where.find("frames"), std::string::npos) << "no missing codec";
   }
   std::filesystem::create_directory(path("b.mp4"));
-  const auto folder = VideoWriter::create(path("b.mp4"), 320, 180, 30);
+  const auto folder = video::VideoWriter::create(path("b.mp4"), 320, 180, 30);
   ASSERT_FALSE(folder);
   EXPECT_EQ(folder.errors()[0].message, "is a folder");
   std::filesystem::remove(path("b.mp4"));
