@@ -1,3 +1,3 @@
 // Not formatted.
 
-int two_spaces = 0;
+int  two_spaces = 0;

@@ -135,7 +135,7 @@ TEST_F(BadInput, AMeshThatIsNoneIsRefusedWhereTheSceneNamesIt) {
 TEST_F(BadInput, AnUnstableIntegratorIsRefusedWhereItStands) {
   write("a.json", two_organs(kRig, kRig, R"("solver": {"integrator": "leapfrog"}, "contact_friction": -1)"));
   refuse({"check", "a.json"},
-         {"a.json:4:26: error: /solver/integrator: leapfrog", "a.json:4:58: error: /contact_friction"});
+         {"a.json:4:26: error: /solver/integrator: leapfrog", "a.json:4:59: error: /contact_friction"});
 }
 
 TEST_F(BadInput, ASceneAndItsScriptAreRefusedTogether) {
@@ -245,7 +245,7 @@ TEST_F(BadInput, ModuliRadiiSpacingsAndViscositiesThatCannotBeAreAllNamedWithThe
   }
   write("a.json", scene_with(fill, "\"radius_mm\": 90, \"gap_mm\": 90"));
   refuse({"check", "a.json"},
-         {"a.json:10:13: error: /organs/0/fill: no two of the 1 spheres are neighbours", "smaller radius_mm"});
+         {"a.json:10:15: error: /organs/0/fill: no two of the 1 spheres are neighbours", "smaller radius_mm"});
 }
 
 TEST_F(BadInput, APresetThatDoesNotExist) {
@@ -257,7 +257,7 @@ TEST_F(BadInput, ALayerThatIsDeeperThanTheOrgan) {
   write("a.json", scene_with("\"anchors\"",
                              "\"layers\": [{\"to_depth_mm\": 400, \"material\": {\"preset\": "
                              "\"kidney\"}}],\n\"anchors\""));
-  refuse({"check", "a.json"}, {"a.json:13:29: error: /organs/0/layers/0/to_depth_mm: got 400 mm",
+  refuse({"check", "a.json"}, {"a.json:16:34: error: /organs/0/layers/0/to_depth_mm: got 400 mm",
                                "deeper than the organ", "its spheres lie"});
 }
 
@@ -270,7 +270,7 @@ TEST_F(BadInput, ARigWithTooFewSpheres) {
   write("a.json", rig_of("[0, 0, 0]"));
   refuse({"check", "a.json"}, {"a.json:2:", "/organs/0/rig/cells", "at least two"});
   write("a.json", rig_of("[0, 0, 0], [5, 0, 0]"));
-  refuse({"check", "a.json"}, {"a.json:2:17: error: /organs/0/rig/cells: no two of the 2 spheres are neighbours"});
+  refuse({"check", "a.json"}, {"a.json:2:18: error: /organs/0/rig/cells: no two of the 2 spheres are neighbours"});
 }
 
 TEST_F(BadInput, AnExperimentOfThePaperWhoseRigHasTooFewSpheresOrNoLoad) {
