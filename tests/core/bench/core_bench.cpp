@@ -86,9 +86,9 @@ void streaming(benchmark::State& run) {
   report(run, model);
 }
 
-/// When the solves of a tick stop: as a scene's do, or at a residual alone.
-SolverSettings as_scenes() { return {}; }
-SolverSettings at_residual(double tolerance) {
+/// How a tick is solved: as a scene's, with the integrator that the Model gets, or to a residual alone.
+std::optional<SolverSettings> as_scenes() { return std::nullopt; }
+std::optional<SolverSettings> at_residual(double tolerance) {
   SolverSettings solver;
   solver.integrator = Integrator::backward_euler;
   solver.tolerance = tolerance, solver.velocity_floor = 1e-15, solver.max_iterations = 2000;
@@ -97,9 +97,9 @@ SolverSettings at_residual(double tolerance) {
 
 /// A ball presses at 20 mm/s, each solve starting from the last velocities; percentiles of the tick, iterations of its
 /// solves, and ticks with a solve that stopped at its count.
-void ticks(benchmark::State& run, double viscosity, const SolverSettings& solver) {
+void ticks(benchmark::State& run, double viscosity, const std::optional<SolverSettings>& solver) {
   Model model = make_model(run.range(0), network::Structure::ctpm, viscosity);
-  model.solver = solver;
+  if (solver) model.solver = *solver;
   const double top = 0.012 * (edge_of(run.range(0)) - 1) + 0.006 + 0.006;
   stepping::Stepper stepper(model, {.threads = int(run.range(1))});
   State state = rest_state(model);
