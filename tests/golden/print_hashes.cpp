@@ -12,18 +12,18 @@ namespace {
 struct Session {
   const char* name;
   int ni, nj, nk, ticks;
-  Structure structure;
+  network::Structure structure;
   std::optional<Integrator> integrator;
 };
 
 constexpr Session kSessions[] = {
-    {"mass-spring", 6, 5, 5, 400, Structure::mass_spring, std::nullopt},
-    {"angle-mass-spring", 6, 5, 5, 400, Structure::angle_mass_spring, Integrator::backward_euler},
-    {"tpm", 6, 5, 5, 400, Structure::tpm, std::nullopt},
-    {"ctpm", 6, 5, 5, 400, Structure::ctpm, std::nullopt},
-    {"ctpm, second order", 6, 5, 5, 400, Structure::ctpm, Integrator::sdirk2},
-    {"ctpm in slabs", 13, 12, 12, 40, Structure::ctpm, std::nullopt},
-    {"mass-spring in slabs", 13, 12, 12, 40, Structure::mass_spring, std::nullopt},
+    {"mass-spring", 6, 5, 5, 400, network::Structure::mass_spring, std::nullopt},
+    {"angle-mass-spring", 6, 5, 5, 400, network::Structure::angle_mass_spring, Integrator::backward_euler},
+    {"tpm", 6, 5, 5, 400, network::Structure::tpm, std::nullopt},
+    {"ctpm", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt},
+    {"ctpm, second order", 6, 5, 5, 400, network::Structure::ctpm, Integrator::sdirk2},
+    {"ctpm in slabs", 13, 12, 12, 40, network::Structure::ctpm, std::nullopt},
+    {"mass-spring in slabs", 13, 12, 12, 40, network::Structure::mass_spring, std::nullopt},
 };
 
 }  // namespace
@@ -31,16 +31,17 @@ constexpr Session kSessions[] = {
 int main() {
   bool all_equal = true;
   for (const Session& session : kSessions) {
-    const auto run = [&](const StepperOptions& options) {
+    const auto run = [&](const stepping::StepperOptions& options) {
       return testing::run_golden(session.ni, session.nj, session.nk, session.ticks, session.structure,
                                  session.integrator, options);
     };
-    const testing::GoldenRun plain = run({1, InstructionSet::baseline});
-    for (const InstructionSet set : {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512})
+    const testing::GoldenRun plain = run({1, elements::InstructionSet::baseline});
+    for (const elements::InstructionSet set :
+         {elements::InstructionSet::baseline, elements::InstructionSet::avx2, elements::InstructionSet::avx512})
       for (const int threads : {1, 2, 4}) {
-        if (set > best_instruction_set()) continue;
+        if (set > elements::best_instruction_set()) continue;
         const bool equal = run({threads, set}).hash == plain.hash;
-        if (!equal) std::printf("%s differs with %s and %d threads\n", session.name, name_of(set), threads);
+        if (!equal) std::printf("%s differs with %s and %d threads\n", session.name, elements::name_of(set), threads);
         all_equal = all_equal && equal;
       }
     std::printf("%s:", session.name);

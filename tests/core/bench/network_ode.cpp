@@ -5,6 +5,7 @@
 
 #include "core/contact/ball_contact.h"
 #include "core/contact/contact_law.h"
+#include "core/stepping/external_loads.h"
 
 namespace ctpm::testing {
 
@@ -83,18 +84,19 @@ void NetworkOde::for_each_touched(double time, Touch&& touch) const {
     const double distance = std::sqrt(squared), penetration = reach - distance;
     const Vec3 normal = apart / distance, past = state_.velocity[i] - velocity;
     const Vec3 slip = past - dot(past, normal) * normal;
-    const double drag = contact_drag(model_, penetration, norm(slip));
-    const double damping = contact_damping(model_.contact_damping, model_.contact_k, model_.mass[i], penetration);
-    touch(SphereContact{std::int32_t(i), normal, penetration, damping, drag, -dot(past, normal), slip}, slip);
+    const double drag = contact::contact_drag(model_, penetration, norm(slip));
+    const double damping =
+        contact::contact_damping(model_.contact_damping, model_.contact_k, model_.mass[i], penetration);
+    touch(contact::SphereContact{std::int32_t(i), normal, penetration, damping, drag, -dot(past, normal), slip}, slip);
   }
 }
 
 void NetworkOde::derive(double time, const double* y, double* derivative) {
   take_state(y);
-  set_weight(model_, 0, spheres_, force_);
+  stepping::ExternalLoads{model_, time, false}.set(0, spheres_, force_);
   elements_.add_forces(state_, force_);
   add_loads(time);
-  for_each_touched(time, [&](const SphereContact& contact, Vec3 slip) {
+  for_each_touched(time, [&](const contact::SphereContact& contact, Vec3 slip) {
     const double pressure = model_.contact_k * contact.penetration + contact.damping * contact.approach;
     const Vec3 push = std::max(0.0, pressure) * contact.normal - contact.drag * slip;
     const auto i = std::size_t(contact.sphere);
@@ -124,14 +126,15 @@ void NetworkOde::take_blocks(double time, double gamma, const double* y) {
     for (std::size_t i = 0; i < spheres_; ++i)
       blocks_[k * spheres_ + i] = k == 0 || k == 3 || k == 5 ? model_.mass[i] : 0.0;
   elements_.linearise(state_, gamma, false, force_, blocks_, [](int) {});
-  for_each_touched(time, [&](const SphereContact& contact, Vec3) {
+  for_each_touched(time, [&](const contact::SphereContact& contact, Vec3) {
     const Vec3 n = contact.normal;
     const double across = gamma * contact.drag, along = gamma * (gamma * model_.contact_k + contact.damping) - across;
     const double own[6] = {along * n.x * n.x + across, along * n.x * n.y, along * n.x * n.z,
                            along * n.y * n.y + across, along * n.y * n.z, along * n.z * n.z + across};
     for (std::size_t k = 0; k < 6; ++k) blocks_[k * spheres_ + std::size_t(contact.sphere)] += own[k];
   });
-  kernels_for(best_instruction_set()).full.invert_blocks(spheres_, blocks_.data(), inverse_.data(), 0, spheres_);
+  elements::kernels_for(elements::best_instruction_set())
+      .full.invert_blocks(spheres_, blocks_.data(), inverse_.data(), 0, spheres_);
 }
 
 void NetworkOde::precondition(double gamma, const double* r, double* z) const {

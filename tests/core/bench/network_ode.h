@@ -54,11 +54,11 @@ class NetworkOde {
   const State start_;
   const Press press_;
   const std::size_t spheres_;
-  Team team_;
-  Elements elements_;
+  parallel::Team team_;
+  elements::Elements elements_;
   State state_;
-  Coordinates force_;
-  DiagonalBlocks blocks_, inverse_;
+  elements::Coordinates force_;
+  elements::DiagonalBlocks blocks_, inverse_;
 };
 
 }  // namespace ctpm::testing

@@ -67,10 +67,10 @@ void add_load(Case& c, int edge) {
 }
 
 Case make_case(const std::string& drive, int edge, const std::string& reading, double viscosity) {
-  Material material = liver_material();
+  network::Material material = liver_material();
   material.viscosity = viscosity, material.stiffness_scale = 0.29;
   Case c{"liver_press/" + drive + "/" + std::to_string(edge * edge * edge) + "/" + reading,
-         make_block_model(edge, edge, edge, Structure::ctpm, material),
+         make_block_model(edge, edge, edge, network::Structure::ctpm, material),
          {},
          {},
          {},
@@ -92,8 +92,8 @@ double error_of(const Trajectory& trajectory, const Trajectory& reference) {
   return std::sqrt(off / size);
 }
 
-Coordinates displacements(const State& state, const State& start) {
-  Coordinates all;
+elements::Coordinates displacements(const State& state, const State& start) {
+  elements::Coordinates all;
   const auto add = [&](const std::vector<double>& now, const std::vector<double>& then) {
     for (std::size_t i = 0; i < now.size(); ++i) all.push_back(now[i] - then[i]);
   };
@@ -107,7 +107,7 @@ Run run_core(const Case& c, Integrator integrator, int steps_per_sample, double 
   Model model = c.model;
   model.tick = kSamples.interval / steps_per_sample;
   model.solver = {tolerance, 1e-12, 2000, 1, integrator};
-  Stepper stepper(model);
+  stepping::Stepper stepper(model);
   State state = c.start;
   Run run;
   for (int sample = 1; sample <= kSamples.count; ++sample) {
@@ -115,9 +115,9 @@ Run run_core(const Case& c, Integrator integrator, int steps_per_sample, double 
       const double start = processor_time();
       Inputs inputs;
       if (!model.tools.empty()) inputs.tool = 0, inputs.position = c.press.centre(double(state.tick + 1) * model.tick);
-      const StepReport report = stepper.step(state, inputs);
+      const stepping::StepReport report = stepper.step(state, inputs);
       run.seconds += processor_time() - start;
-      if (is_refused(report.status)) return run;
+      if (stepping::is_refused(report.status)) return run;
       run.evaluations += report.iterations, ++run.steps;
     }
     run.trajectory.push_back(displacements(state, c.start));
@@ -195,7 +195,7 @@ void add(Case& c, Family family, const std::string& name, Solve solve) {
 void add_all(Case& c) {
   char name[64];
   const auto add_core = [&](Integrator integrator, int steps, double tolerance) {
-    std::snprintf(name, sizeof name, "core/%s/h_us:%g/tolerance:%g", name_of(integrator),
+    std::snprintf(name, sizeof name, "core/%s/h_us:%g/tolerance:%g", stepping::name_of(integrator),
                   1e6 * kSamples.interval / steps, tolerance);
     add(c, Family::core, name,
         [&c, integrator, steps, tolerance](NetworkOde&) { return run_core(c, integrator, steps, tolerance); });
@@ -204,7 +204,7 @@ void add_all(Case& c) {
     for (const int steps : {1, 2, 3, 5, 7, 10, 14, 20, 40}) add_core(Integrator::sdirk2, steps, tolerance);
   for (const double tolerance : {1e-2, 1e-4})
     for (const int steps : {5, 20, 80}) add_core(Integrator::backward_euler, steps, tolerance);
-  const double longest = stable_step_bound(c.model);
+  const double longest = stepping::stable_step_bound(c.model);
   const bool is_stiff = longest < 5e-5;
   const int fewest = 5 * int(std::ceil(1e-3 / longest));
   for (int steps = fewest; steps <= (is_stiff ? 2 : 64) * fewest; steps *= 2)

@@ -8,7 +8,7 @@
 namespace ctpm::testing {
 
 /// Displacements from the start at equal intervals [m]  (sample_count, 3 x sphere_count).
-using Trajectory = std::vector<Coordinates>;
+using Trajectory = std::vector<elements::Coordinates>;
 
 /// A run of any integrator.
 struct Run {
