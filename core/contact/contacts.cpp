@@ -21,6 +21,7 @@ Pin Contacts::pin(const HeldTool& tool, const Vec3Array& position, double share,
 void Contacts::find_pairs(const StateView& state, const HeldTool& tool) {
   pairs_.clear();
   if (tool.is(ToolKind::scalpel) && blade_.any()) {
+    CTPM_CHECK(tool.near != nullptr, "a blade has swept before its contacts are detected");
     tool.near->follow(state.position);
     blade_.find(state, *tool.near, *tool.tool, tool.blade, pairs_);
     blade_.add_severed(state, *tool.tool, tool.blade, tool.swept, pairs_);
@@ -70,7 +71,7 @@ double ContactSet::depth(const Vec3Array& position) const {
   return contacts_->ball_.depth(position);
 }
 
-LinearisedContacts ImplicitContacts::linearise(elements::Coordinates& force, elements::DiagonalBlocks& blocks) {
+LinearisedContacts ImplicitContacts::linearise(elements::Coordinates& force, elements::DiagonalBlocks& blocks) & {
   return {*contacts_, step_.h, force, blocks};
 }
 

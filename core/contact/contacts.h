@@ -152,7 +152,7 @@ class ImplicitContacts : public ContactSet {
  public:
   /// Adds the contacts' forces [N] and the diagonal of their coupling to the system of the step, until the result is
   /// destroyed; neither the system's diagonal nor its forces may be changed by others before that.
-  [[nodiscard]] LinearisedContacts linearise(elements::Coordinates& force, elements::DiagonalBlocks& blocks);
+  [[nodiscard]] LinearisedContacts linearise(elements::Coordinates& force, elements::DiagonalBlocks& blocks) &;
 
  private:
   friend class Contacts;

@@ -4,8 +4,6 @@
 #include <cmath>
 
 namespace ctpm::contact {
-namespace {}  // namespace
-
 CutFaceContact::CutFaceContact(const Model& model) : model_(model) {
   if (!is_wanted()) return;
   const AxialElements& axial = model.axial;

@@ -83,18 +83,18 @@ IntegratorChoice choose_integrator(const Model& model) {
 
 IntegratorChoice check_integrator(const Model& model) {
   const SolverSettings& solver = model.solver;
-  IntegratorChoice choice{solver.integrator, solver.substeps, true, true, "the scene asks for it"};
+  IntegratorChoice choice{solver.integrator, solver.substeps, true, true, "the Model names it"};
   if (solver.integrator == Integrator::sdirk2) {
     choice.damps = false;
     choice.reason =
-        "the scene asks for it, but it damps nothing by itself: what no dashpot damps swings on, and gains what "
-        "Eq. 8 does in closed cycles";
+        "the Model names it, but it has no numerical damping: motion that no dashpot damps goes on, and gains the work "
+        "that Eq. 8 does in closed cycles";
   }
   if (solver.integrator != Integrator::leapfrog) return choice;
   const double longest = stable_step_bound(model);
   if (model.tick / solver.substeps > longest) {
     choice.holds = false;
-    choice.reason = with_milliseconds("the scene asks for it, but it only holds for substeps up to %.3g ms", longest);
+    choice.reason = with_milliseconds("it is asked for, but it only holds for substeps up to %.3g ms", longest);
   }
   return choice;
 }

@@ -131,8 +131,11 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
   State& current = changes_once ? state : parts.trial;
   if (cuts) parts.blade->sweep(parts.contacts, last, inputs, tool, current, report);
   if (!parts.run_substeps(current, tool, report)) {
-    report.depth = 0, report.contacts = 0;
-    return report;
+    // Nothing of a refused tick has happened.
+    StepReport refused;
+    refused.status = report.status, refused.worst_sphere = report.worst_sphere;
+    refused.residual = report.residual, refused.iterations = report.iterations;
+    return refused;
   }
   if (cuts) parts.blade->report_pieces(current, report);
   if (!changes_once) std::swap(state, parts.trial);
