@@ -129,10 +129,15 @@ void find_cells(Model& model) {
   const Vec3Array& rest = model.rest_position;
   if (rest.x.size() != count || rest.y.size() != count || rest.z.size() != count) return;
   for (auto* coordinates : {&model.cell.i, &model.cell.j, &model.cell.k}) coordinates->assign(count, 0);
+  std::int32_t end = 0;
   for (const OrganRange& organ : model.organs) {
+    if (organ.count == 0) continue;
+    if (organ.first < end) return;  // overlaps the organ before it
     const bool is_range = organ.first >= 0 && organ.count > 0 && std::size_t(organ.first) < count &&
                           std::size_t(organ.count) <= count - std::size_t(organ.first);
-    if (!is_range || !(organ.spacing > 0)) continue;
+    if (!is_range) return;
+    end = organ.first + organ.count;
+    if (!(organ.spacing > 0)) continue;
     const LatticeAxes axes(model, organ);
     const double per_cell = 1 / (organ.spacing * organ.spacing);
     const Vec3 origin = rest[std::size_t(organ.first)];

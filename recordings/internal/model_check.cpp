@@ -216,8 +216,11 @@ void check_axial(Checker& check, const Model& model) {
 /// Lattice cells of an organ lie near enough to each other for a table of all of them.
 void check_cells(Checker& check, const Model& model) {
   constexpr std::int64_t most = 1 << 26;
+  std::int64_t all = 0;
+  std::int32_t end = 0;
   for (std::size_t o = 0; o < model.organs.size(); ++o) {
     const OrganRange& organ = model.organs[o];
+    if (organ.first < end) continue;  // told by check_organs()
     std::int64_t volume = 1;
     for (const auto* coordinate : {&model.cell.i, &model.cell.j, &model.cell.k}) {
       if (organ.first < 0 || organ.count <= 0 || std::int64_t{organ.first} + organ.count > std::ssize(*coordinate))
@@ -226,7 +229,9 @@ void check_cells(Checker& check, const Model& model) {
       const auto [low, high] = std::minmax_element(begin, begin + organ.count);
       volume = std::min(volume * (std::int64_t{*high} - *low + 1), 2 * most);
     }
-    check.require(volume <= most, "organs" + place(o), "spans more lattice cells than it can have");
+    end = organ.first + std::max(organ.count, 0);
+    all = std::min(all + volume, 2 * most);
+    check.require(all <= most, "organs" + place(o), "spans more lattice cells than organs can have together");
   }
 }
 
@@ -240,10 +245,13 @@ void check_cut_resistance(Checker& check, const Model& model) {
 
 void check_organs(Checker& check, const Model& model) {
   const auto spheres = static_cast<std::int64_t>(model.sphere_count());
+  std::int32_t end = 0;
   for (std::size_t i = 0; i < model.organs.size(); ++i) {
     const OrganRange& organ = model.organs[i];
-    check.require(organ.first >= 0 && organ.count >= 0 && std::int64_t{organ.first} + organ.count <= spheres,
-                  "organs" + place(i), "is not a range of spheres");
+    const bool is_range = organ.first >= 0 && organ.count >= 0 && std::int64_t{organ.first} + organ.count <= spheres;
+    check.require(is_range, "organs" + place(i), "is not a range of spheres");
+    check.require(!is_range || organ.first >= end, "organs" + place(i), "overlaps the organ before it");
+    if (is_range) end = organ.first + organ.count;
   }
 }
 

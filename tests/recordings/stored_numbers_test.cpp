@@ -43,6 +43,18 @@ const char* name_in_file(ToolKind value) {
   return nullptr;
 }
 
+const char* name_in_file(AxialLaw value) {
+  switch (value) {
+    case AxialLaw::spring:
+      return "spring";
+    case AxialLaw::kelvin_unit:
+      return "kelvin_unit";
+    case AxialLaw::two_sphere_tpm:
+      return "two_sphere_tpm";
+  }
+  return nullptr;
+}
+
 const char* name_in_file(stepping::StepStatus value) {
   switch (value) {
     case stepping::StepStatus::ok:
@@ -136,6 +148,10 @@ TEST(StoredNumbers, OfToolsKeepTheirMeaning) {
   EXPECT_EQ(numbers_of<ToolKind>(), (Numbers{{0, "ball"}, {1, "scalpel"}, {2, "pin"}}));
 }
 
+TEST(StoredNumbers, OfAxialLawsKeepTheirMeaning) {
+  EXPECT_EQ(numbers_of<AxialLaw>(), (Numbers{{0, "spring"}, {1, "kelvin_unit"}, {2, "two_sphere_tpm"}}));
+}
+
 TEST(StoredNumbers, OfStepReportsKeepTheirMeaning) {
   EXPECT_EQ(numbers_of<stepping::StepStatus>(),
             (Numbers{{0, "ok"}, {1, "not_converged"}, {2, "bad_input"}, {3, "diverged"}, {4, "too_long"}}));
@@ -154,6 +170,22 @@ TEST(StoredNumbers, OfEventsKeepTheirMeaning) {
                                                           {10, "press_reached_force"},
                                                           {11, "press_gave_up"},
                                                           {12, "step_refused"}}));
+}
+
+// A session from before these fields has none of them and gets the defaults: the constants that its program computed
+// with.
+TEST(StoredNumbers, DefaultsOfFieldsThatEarlierSessionsLackAreForEver) {
+  const Model model;
+  EXPECT_EQ(model.contact_damping, 50);
+  EXPECT_EQ(model.contact_stick_time, 0.1);
+  EXPECT_EQ(model.cut_face_stiffening, 8);
+  const Tool tool;
+  EXPECT_EQ(tool.trail_distance, 0.5e-3);
+  EXPECT_EQ(tool.blade_reach, 9e-3);
+  EXPECT_EQ(tool.blade_reach_spacings, 0.75);
+  EXPECT_EQ(tool.flank_height, 6e-3);
+  EXPECT_EQ(tool.blade_thickness, 1e-3);
+  EXPECT_EQ(tool.slowest_slip, 1e-3);
 }
 
 TEST(StoredNumbers, OfFieldTypesKeepTheirMeaning) {
