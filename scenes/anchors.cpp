@@ -67,7 +67,7 @@ Result<std::vector<std::int32_t>> select_anchored(const FilledOrgan& organ, cons
 }
 
 Result<AnchorSpec> parse_anchor(const std::string& text) {
-  const Error error{"--anchor",
+  const Error error{"",
                     "got '" + text +
                         "', must be lowest:HEIGHT, box:X0,Y0,Z0,X1,Y1,Z1, sphere:X,Y,Z,R or plane:X,Y,Z,NX,NY,NZ, "
                         "with all lengths in mm",

@@ -32,7 +32,7 @@ void check_files(Problems& problems, const SceneSpec& scene, const std::string& 
     std::error_code ignored;
     if (leaves_folder(scene.organs[i].mesh) && !options.allow_outside_paths)
       problems.add_rule(at, "got " + in_quotes(scene.organs[i].mesh) + ", which leaves the scene's folder",
-                        "put the mesh beside the scene, or allow it with --allow-outside-paths");
+                        "put the mesh beside the scene, or allow meshes outside it");
     else if (!fs::exists(path, ignored))
       problems.add_rule(at, "there is no file " + in_quotes(scene.organs[i].mesh) + " in the scene's folder",
                         "looked for " + path);

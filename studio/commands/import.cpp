@@ -55,7 +55,7 @@ Errors complete(ImportArguments& a) {
     if (anchor)
       a.request.anchors.push_back(*anchor);
     else
-      errors.insert(errors.end(), anchor.errors().begin(), anchor.errors().end());
+      errors.push_back({"--anchor", anchor.errors().front().message, ""});
   }
   if (!a.report.empty())
     if (const Result<Done> writable = output::check_writable(a.report); !writable)

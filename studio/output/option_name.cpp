@@ -3,7 +3,8 @@
 namespace ctpm::output {
 namespace {
 
-constexpr std::string_view kBegin = "{option:", kEnd = "}", kInField = "abcdefghijklmnopqrstuvwxyz_.";
+/// Control characters, which texts of users do not have.
+constexpr std::string_view kBegin = "\x01option:", kEnd = "\x02", kInField = "abcdefghijklmnopqrstuvwxyz_.";
 
 }  // namespace
 

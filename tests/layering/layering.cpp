@@ -170,14 +170,13 @@ class Sources {
   void check_words(const std::string& file, const std::vector<std::string>& lines) {
     static const std::regex print(R"((^|[^\w])(printf|puts|putchar|fputs|fprintf)\s*\(|std::(cout|cerr|clog)\b)"),
         flag(R"re("([^"]*[^"\w])?(--[a-z][a-z-]+|-o)\b[^"]*")re");
-    const bool is_studio = file.starts_with("studio/");
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const std::string& text = lines[i];
       // An internal error prints where it is before it aborts.
       if (file != "core/model/result.h" && std::regex_search(text, print))
         report(file, int(i) + 1, "prints, which only studio/commands may");
-      if (is_studio && std::regex_search(text, flag))
-        report(file, int(i) + 1, "names a flag, which only studio/commands may: use option_name()");
+      if (std::regex_search(text, flag))
+        report(file, int(i) + 1, "names a flag, which only studio/commands may: name the option's field");
     }
   }
 

@@ -18,7 +18,7 @@ struct Package {
   std::vector<std::string> owners;
 };
 
-/// Every file declares its room's namespace. False until the rooms have their namespaces.
+/// Every file declares its room's namespace.
 constexpr bool kNamespacesAreRooms = true;
 
 constexpr int kMostLines = 500;  ///< of a source file

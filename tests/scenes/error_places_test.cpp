@@ -86,7 +86,7 @@ TEST(ErrorPlaces, AMaterialThatIsNotWholeOrHasAWeakConstraint) {
 
 TEST(ErrorPlaces, AnIntegratorThatIsUnstableForTheScene) {
   const std::string all = errors_of(scene_with({kBlock + kLiver}, ", \"solver\": {\"integrator\": \"leapfrog\"}"));
-  EXPECT_EQ(all.find("t.json:3:28: error: /solver/integrator: leapfrog: the scene asks for it, but"), 0u) << all;
+  EXPECT_EQ(all.find("t.json:3:28: error: /solver/integrator: leapfrog: it is asked for, but"), 0u) << all;
 }
 
 TEST(ErrorPlaces, ToolsCamerasPinsLoadsAndProbes) {
