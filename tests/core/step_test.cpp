@@ -172,10 +172,10 @@ TEST_P(EveryIntegrator, LeavesTheStateOfARefusedCutToTheBit) {
   const std::uint64_t before = bits_of(state);
   const stepping::StepReport refused = stepper.step(state, cut(20));
   EXPECT_EQ(refused.status, stepping::StepStatus::diverged);
-  EXPECT_GT(refused.severed, 0) << "by a blade that was on its way";
+  EXPECT_EQ(refused.severed, 0) << "nothing of a refused tick has happened";
   EXPECT_EQ(bits_of(state), before);
   state.velocity.y[40] = good;
-  EXPECT_EQ(stepper.step(state, cut(20)).severed, refused.severed);
+  EXPECT_GT(stepper.step(state, cut(20)).severed, 0) << "the refused tick was a cut";
 }
 
 INSTANTIATE_TEST_SUITE_P(Under, EveryIntegrator,
