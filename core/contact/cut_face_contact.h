@@ -9,9 +9,9 @@
 
 namespace ctpm::contact {
 
-/// Contact between the two faces of a cut, which keeps them from passing through each other. Two spheres on cut faces
-/// of an organ that no unsevered element joins stay a spacing apart. A sphere is on a cut face if one of its elements
-/// is severed; only such spheres are checked, sorted along x.
+/// Contact between the two faces of a cut, which keeps them from passing through each other. A sphere is on a cut face
+/// if one of its elements is severed. Two such spheres of an organ stay a spacing apart unless an unsevered element
+/// joins them. Only spheres on cut faces are checked, sorted along x.
 ///
 /// The force between two centres at a distance d < s is lip_k p (1 + (b p / s)^2), p = s - d, b = cut_face_stiffening.
 /// At first it is no stiffer than the severed elements were, so that severing compressed tissue adds no energy. Then it

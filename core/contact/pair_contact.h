@@ -52,8 +52,9 @@ class PairContacts {
   void undo_linearise(elements::Coordinates& force, elements::DiagonalBlocks& blocks) const;
 
   /// Adds these contacts, found in the middle of an explicit step of `h` [s], to the `velocity` [m/s] that the step
-  /// reached without them, one after the other, each solved implicitly. `before`: velocity [m/s] at the start. Spheres
-  /// keep their velocity along held axes, and so does the sphere of `pin`. Returns the force on the tool [N].
+  /// reached without them. Contacts follow one after the other, each solved implicitly. `before`: velocity [m/s] at the
+  /// start. Spheres keep their velocity along held axes, and so does the sphere of `pin`. Returns the force on the tool
+  /// [N].
   Vec3 push_apart(double h, const Pin& pin, const Vec3Array& before, Vec3Array& velocity);
 
   /// result += coupling of a step of `h` [s] times `v`, in the precision of `v`, float or double.

@@ -9,8 +9,7 @@
 
 namespace ctpm::cutting {
 
-/// The axial elements near a blade. Elements outside this set cannot meet the blade in the tick, so nobody looks at
-/// them.
+/// The axial elements near a blade, so that a tick checks only these. The others cannot meet the blade.
 class NearElements {
  public:
   /// Holds all elements until find().

@@ -45,9 +45,8 @@ struct AxialElements {
   }
 };
 
-/// Constraints of five-sphere lines A B C D E (Eqs. 2, 5). The force on C is -2 k' (1 - cos theta) u, with u = C - (A +
-/// E) / 2
-/// and tan theta = 2 |u| / |E - A|. A and E each get half of the opposite force.
+/// Constraints of five-sphere lines A B C D E (Eqs. 2, 5). With u = C - (A + E) / 2 and tan theta = 2 |u| / |E - A|,
+/// the force on C is -2 k' (1 - cos theta) u. A and E each get half of the opposite force.
 struct Constraints {
   std::vector<std::int32_t> a, c, e;  ///< end, centre, end sphere (constraint_count)
   std::vector<double> k;              ///< k' = (K' - P2) times the calibrated area [N/m]     (constraint_count)

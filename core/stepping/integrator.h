@@ -10,9 +10,8 @@ namespace ctpm::stepping {
 /// Longest step [s] for which leapfrog is proven stable; infinity if nothing is stiff.
 ///
 /// A linear system M x'' + C x' + K x = 0 stays bounded while h^2 k + 2 h c < 4, with k and c the largest eigenvalues
-/// of M^-1 K and M^-1 C. Whatever the deformation, an element adds to a sphere of mass m at most 2 k / m if it is a
-/// spring,
-/// and 1.5 * 2 k' / m if it is a constraint. The largest sum over the elements of one sphere bounds the eigenvalues
+/// of M^-1 K and M^-1 C. Whatever the deformation, a spring adds at most 2 k / m to a sphere of mass m, and a
+/// constraint at most 1.5 * 2 k' / m. The largest sum over the elements of one sphere bounds the eigenvalues
 /// (Gershgorin). Contacts do not count: they are solved implicitly.
 double stable_step_bound(const Model& model);
 
