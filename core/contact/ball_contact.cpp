@@ -8,7 +8,7 @@
 namespace ctpm::contact {
 namespace {
 
-/// Spheres whose distance is looked at together before each is looked at by itself.
+/// Spheres per block. A block is checked as a whole before its spheres are checked one by one.
 constexpr std::size_t kLookedAtOnce = 128;
 
 }  // namespace
@@ -43,7 +43,7 @@ void BallContact::find_among(const StateView& state, Vec3 centre, double radius,
     const double distance_squared = dot(apart, apart);
     if (distance_squared >= reach * reach) continue;
     const double distance = std::sqrt(distance_squared);
-    // A sphere whose centre coincides with the ball's is pushed in the direction in which the ball moves.
+    // A sphere whose centre coincides with that of the ball is pushed in the direction of the ball's motion.
     const Vec3 fallback = norm(velocity) > 0 ? velocity / norm(velocity) : Vec3{0, 0, -1};
     const Vec3 normal = distance > 1e-9 * reach ? apart / distance : fallback;
     const double penetration = reach - distance;
@@ -135,7 +135,7 @@ Vec3 BallContact::change_of(const SphereContact& contact, const elements::Coordi
   return {v[i], v[spheres + i], v[2 * spheres + i]};
 }
 
-/// What the normal part of a velocity is multiplied by in the matrix of a step of `h` [kg].
+/// Factor of the normal velocity in the matrix of a step of `h` [kg].
 double BallContact::coupling_along(const SphereContact& contact, double h) const {
   return h * (h * model_.contact_k + contact.damping);
 }

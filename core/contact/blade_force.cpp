@@ -15,8 +15,8 @@ Vec3 unit(Vec3 v) {
 
 Vec3 between(Vec3 tip, Vec3 heel, double across) { return tip + across * (heel - tip); }
 
-/// Share of an element's resistance that a blade meets at `across` (0 to 1) of an edge of `length` that extends by
-/// `beyond` past the blade at both ends. It falls to 0 linearly over twice `beyond`, so that tissue that slips past the
+/// Share of an element's resistance that the blade meets at `across` (0 to 1) of an edge of `length` that extends past
+/// both ends of the blade by `beyond`. It falls linearly to 0 over twice `beyond`, so that tissue that slips past the
 /// tip is released gently.
 double held_share(double across, double length, double beyond) {
   return std::clamp(std::min(across, 1 - across) * length / (2 * beyond), 0.0, 1.0);
@@ -28,8 +28,8 @@ struct BladeForce::Element {
   std::size_t a, b;
   double rest_length, k, energy, friction;
 
-  /// Energy that a blade has to bring [J] to open the `share` of the element's area that faces it, while the
-  /// element is `length` long: what tension has stored opens with it.
+  /// Energy that a blade must supply [J] to open the `share` of the element's area that faces it, while the element is
+  /// `length` long. The energy stored by tension contributes to the opening.
   double to_open(double share, double length) const {
     const double stretch = std::max(0.0, length - rest_length);
     return std::max(0.0, share * energy - 0.5 * k * stretch * stretch);
@@ -98,15 +98,14 @@ void BladeForce::find(const StateView& state, const cutting::NearElements& near,
       contact.force = contact.drag * (blade - dot(blade, normal) * normal);
       if (contact.drag == 0) continue;
     } else {
-      // Energy G p^2, p = 1 - distance / reach: the force is its growth over the tick's advance, 2 G p /
-      // reach if that is short.
+      // The energy is G p^2 with p = 1 - distance / reach. The force is its growth over the advance in the tick; for a
+      // short advance it is 2 G p / reach.
       const double energy = e.to_open(held * certainty, length), p = 1 - hit->share;
       const double advance = std::max(0.0, dot(path, heading)) / reach, p_before = std::max(0.0, p - advance);
       const double entered = advance > p ? p / advance : 1.0;
       contact.axis = heading, contact.only_pushes = true;
       contact.k = 2 * energy / (reach * reach), contact.force = energy / reach * (p + p_before) * entered * heading;
-      // What moves away faster than the blade follows would only be dropped again, at the price of a second
-      // solve.
+      // Tissue that moves away faster than the blade follows would be dropped later, at the cost of a second solve.
       if (dot(heading, contact.force - model_.tick * contact.k * point_velocity) <= 0) continue;
     }
     contacts.add(contact);

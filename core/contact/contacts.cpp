@@ -17,7 +17,7 @@ Pin Contacts::pin(const HeldTool& tool, const Vec3Array& position, double share,
   return {sphere, (tool.at(share) - position[std::size_t(sphere)]) / h};
 }
 
-/// What a blade meets, and cut faces that meet again.
+/// Finds the contacts of the blade and those between cut faces.
 void Contacts::find_pairs(const StateView& state, const HeldTool& tool) {
   pairs_.clear();
   if (tool.is(ToolKind::scalpel) && blade_.any()) {
@@ -84,7 +84,7 @@ LinearisedContacts::LinearisedContacts(Contacts& contacts, double h, elements::C
   contacts_.pairs_.linearise(h_, force_, blocks_);
 }
 
-/// In the opposite order, since a sphere may have several contacts.
+/// Takes contacts out in the opposite order, since a sphere may have several.
 void LinearisedContacts::take_back() {
   if (!is_in_system_) return;
   contacts_.pairs_.undo_linearise(force_, blocks_);

@@ -23,34 +23,34 @@ class ImplicitContacts;
 /// The step for which contacts are detected.
 struct ContactStep {
   double h;      ///< length [s]
-  double share;  ///< of the tool's motion in the tick at which they are detected, 0 to 1
+  double share;  ///< part of the tick's tool motion that is done at detection, 0 to 1
   Pin pin;       ///< of this step
 };
 
-/// About which motion an implicit step is linearised; its velocities are changes from there.
+/// The motion about which an implicit step is linearised. Its velocities are changes from that motion.
 enum class Linearisation {
-  rest,      ///< spheres that rest
+  rest,      ///< spheres at rest
   velocity,  ///< spheres that move with StateView::velocity
 };
 
-/// All contacts of a Model: a ball's, a blade's, a pin's, and those of the two faces of a cut with each other. It holds
-/// room for them, so that a tick never allocates. What a step may do with its contacts is in the sets that detection
-/// returns; a Contacts serves one set at a time, and a second detection before the first set has ended is a bug that
-/// aborts.
+/// All contacts of a Model: of a ball, a blade and a pin, and between the two faces of a cut. Its capacity is fixed at
+/// construction, so that a tick never allocates. Detection returns a set; the type of the set says what a step may do
+/// with its contacts. A Contacts serves one set at a time: a second detection before the first set is destroyed is a
+/// bug and aborts.
 class Contacts {
  public:
   /// `model` must outlive the Contacts.
   Contacts(const Model& model, const elements::Kernels& kernels);
 
-  /// Box that holds all that a blade can meet in this tick.
+  /// Box that contains everything that a blade can meet in this tick.
   cutting::Box around(const HeldTool& tool) const { return blade_.around(*tool.tool, tool.blade); }
 
-  /// The pin's contact in a step of `h` [s] from `position` [m] to where the hand is at `share` of the tick.
+  /// The pin's contact in a step of `h` [s] from `position` [m] to the hand at `share` of the tick.
   static Pin pin(const HeldTool& tool, const Vec3Array& position, double share, double h);
 
   /// Detects the contacts of an explicit step in its middle, and changes the `velocity` [m/s] that spheres have after
-  /// the step without contacts: each contact is solved implicitly by itself, one after the other; those that would pull
-  /// do not act.
+  /// the step without contacts. Contacts are solved one after the other, each implicitly by itself; those that would
+  /// pull do not act.
   [[nodiscard]] ExplicitContacts push_apart(const StateView& middle, const HeldTool& tool, const ContactStep& step,
                                             Vec3Array& velocity);
 
@@ -72,7 +72,7 @@ class Contacts {
   BladeForce blade_;
   CutFaceContact cut_faces_;
   PairContacts pairs_;          ///< of the blade and of cut faces
-  bool is_locked_ = false;      ///< a set is in use
+  bool is_locked_ = false;      ///< a set exists
   bool is_linearised_ = false;  ///< the set is in a linear system
 };
 
@@ -81,11 +81,11 @@ class ContactSet {
  public:
   const ContactStep& step() const { return step_; }
 
-  /// Spheres that the tool touches; of a blade, elements before its edge or on its flanks.
+  /// Number of spheres that the tool touches; for a blade, of elements ahead of its edge or on its flanks.
   std::int32_t touched() const;
 
-  /// Largest displacement from rest [m], at `position`, of a touched sphere along its contact; of a pin, of its sphere;
-  /// 0 without contact.
+  /// Largest displacement from rest [m], at `position`, of a sphere that a ball touches, along its contact; for a pin,
+  /// that of its sphere. 0 without contact and for a blade.
   double depth(const Vec3Array& position) const;
 
  protected:
@@ -111,8 +111,8 @@ class ExplicitContacts : public ContactSet {
   Vec3 tool_force_;
 };
 
-/// Contacts in the linear system of an implicit step, until it is destroyed: what they added to the system is then
-/// taken back to the bit. Velocities `v` [m/s] are those that the system solves for  (3 x sphere_count).
+/// Contacts in the linear system of an implicit step, until it is destroyed. The destructor restores the system to the
+/// bit. Velocities `v` [m/s] are the unknowns of the system (3 x sphere_count).
 class LinearisedContacts {
  public:
   LinearisedContacts(const LinearisedContacts&) = delete;
@@ -151,7 +151,7 @@ class LinearisedContacts {
 class ImplicitContacts : public ContactSet {
  public:
   /// Adds the contacts' forces [N] and the diagonal of their coupling to the system of the step, until the result is
-  /// destroyed; neither the system's diagonal nor its forces may be changed by others before that.
+  /// destroyed. Until then nothing else may change the system's forces or diagonal.
   [[nodiscard]] LinearisedContacts linearise(elements::Coordinates& force, elements::DiagonalBlocks& blocks) &;
 
  private:

@@ -29,7 +29,7 @@ CutFaceContact::CutFaceContact(const Model& model) : model_(model) {
   on_faces_.reserve(n);
 }
 
-/// The spheres beside a cut, sorted along x; equal places by index, so that the order is always the same.
+/// Collects the spheres on cut faces, sorted along x. Ties are broken by index, so that the order is always the same.
 void CutFaceContact::gather(const StateView& state) {
   std::fill(is_on_face_.begin(), is_on_face_.end(), std::uint8_t(0));
   const AxialElements& axial = model_.axial;

@@ -12,7 +12,7 @@ namespace ctpm::contact {
 /// The held tool and its motion over one tick.
 struct HeldTool {
   const Tool* tool = nullptr;                ///< null: no tool is held
-  Vec3 from, to;                             ///< tool's origin at the start and the end of the tick [m]
+  Vec3 from, to;                             ///< the tool's origin at the start and the end of the tick [m]
   BladeMotion blade;                         ///< of a scalpel
   cutting::NearElements* near = nullptr;     ///< elements that a scalpel can meet in this tick
   std::span<const cutting::Crossing> swept;  ///< elements that a scalpel severed by its own motion in this tick

@@ -40,7 +40,7 @@ void PairContacts::undo_linearise(elements::Coordinates& force, elements::Diagon
     for (std::size_t k = 0; k < 3; ++k) force[k * n + i] = without[k];
     for (std::size_t k = 0; k < 6; ++k) blocks[k * n + i] = without[3 + k];
   };
-  // Backwards, since a sphere may have several contacts.
+  // In reverse order, since a sphere may have several contacts.
   for (auto c = contacts_.rbegin(); c != contacts_.rend(); ++c)
     restore(c->b, &c->without[9]), restore(c->a, &c->without[0]);
 }

@@ -6,7 +6,7 @@ namespace {
 /// Six times the signed volume of the tetrahedron a b c d.
 double volume(Vec3 a, Vec3 b, Vec3 c, Vec3 d) { return dot(b - a, cross(c - a, d - a)); }
 
-/// Where a segment meets a triangle: its place on the segment, and the weights of the triangle's corners.
+/// Where a segment meets a triangle: the position on the segment and the barycentric weights of the corners.
 struct TriangleHit {
   double along, a, b, c;
 };
@@ -20,7 +20,7 @@ std::optional<TriangleHit> meet_triangle(Vec3 p, Vec3 q, Vec3 a, Vec3 b, Vec3 c)
   const double sum = ab + bc + ca;
   if (!meets) return std::nullopt;
   const double along = side_p / (side_p - side_q);
-  if (sum == 0) return TriangleHit{along, 1.0 / 3, 1.0 / 3, 1.0 / 3};  // so thin that rounding ate its area
+  if (sum == 0) return TriangleHit{along, 1.0 / 3, 1.0 / 3, 1.0 / 3};  // so thin that its area is lost in rounding
   return TriangleHit{along, bc / sum, ca / sum, ab / sum};
 }
 

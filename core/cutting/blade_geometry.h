@@ -6,15 +6,15 @@
 
 namespace ctpm::cutting {
 
-/// Where a segment p-q meets what an edge sweeps that goes from `from`-`to` to `from2`-`to2`: the triangles
-/// (from, to, from2) and (to, to2, from2).
+/// Where a segment p-q crosses the surface that an edge sweeps while it moves from `from`-`to` to `from2`-`to2`: the
+/// triangles (from, to, from2) and (to, to2, from2).
 struct SweepHit {
-  double along;   ///< of the segment, 0 at p to 1 at q
-  double across;  ///< of the edge, 0 at `from` to 1 at `to`
-  double share;   ///< of the edge's way, 0 to 1
+  double along;   ///< position along the segment, 0 at p to 1 at q
+  double across;  ///< position along the edge, 0 at `from` to 1 at `to`
+  double share;   ///< part of the edge's motion, 0 to 1
 };
 
-/// Touching an edge or corner of a triangle counts; a segment in its plane does not.
+/// Touching an edge or corner of a triangle counts as crossing; a segment in the plane of a triangle does not cross it.
 std::optional<SweepHit> meet_sweep(Vec3 p, Vec3 q, Vec3 from, Vec3 to, Vec3 from2, Vec3 to2);
 
 /// An axis-parallel box around points.

@@ -7,8 +7,8 @@
 namespace ctpm::cutting {
 namespace {
 
-/// Severs the live elements, of those that are `near`, that `meet(a, b)` says are crossed, then the
-/// constraints and angle springs that lost an element.
+/// Severs the unsevered elements among those `near` for which `meet(a, b)` finds a crossing, then the constraints and
+/// angle springs that have lost an element.
 template <class Meet>
 std::int32_t sever(const Model& model, const NearElements& near, State& state, std::vector<Crossing>& crossings,
                    Meet&& meet) {

@@ -26,7 +26,8 @@ void NearElements::find(const Vec3Array& position, const Box& box) {
   mark(position.y, box.low.y - kMargin, box.high.y + kMargin, 2);
   mark(position.z, box.low.z - kMargin, box.high.z + kMargin, 4);
   count_ = 0;
-  // Written always and kept sometimes: a branch here would be guessed wrong at every row of the lattice.
+  // Branch-free: every element is written, and only a near one advances the count. A branch would be mispredicted at
+  // every lattice row.
   const AxialElements& axial = model_.axial;
   for (std::size_t i = 0; i < axial.size(); ++i) {
     near_[count_] = std::int32_t(i);

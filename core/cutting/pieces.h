@@ -10,22 +10,22 @@
 
 namespace ctpm::cutting {
 
-/// The pieces that a scene's tissue has come to: spheres that unsevered axial elements join.
+/// The pieces of tissue: connected components of the spheres, joined by unsevered axial elements.
 class Pieces {
  public:
   explicit Pieces(const Model& model) : model_(model) {}
 
-  /// Room for every sphere, so that find() never allocates.
+  /// Reserves capacity for every sphere, so that find() never allocates.
   void reserve() { piece_.reserve(model_.sphere_count()); }
 
-  /// Finds the pieces of `state` and returns how many there are.
+  /// Finds the pieces of `state` and returns their number.
   std::int32_t find(const State& state);
 
-  /// Joins what the elements of `crossings` held together, and returns how many pieces fewer that makes:
-  /// those that came loose when they were severed, if find() came after it.
+  /// Joins what the elements of `crossings` held together, and returns by how much that reduces the number of pieces.
+  /// After find(), this is the number of pieces that came loose when those elements were severed.
   std::int32_t rejoin(std::span<const Crossing> crossings);
 
-  /// Of each sphere, as found last: the first sphere of its piece (sphere_count).
+  /// The first sphere of the piece of each sphere, as of the last find() (sphere_count).
   const std::vector<std::int32_t>& piece() const { return piece_; }
 
  private:

@@ -11,15 +11,15 @@ double distance(const Vec3Array& p, std::int32_t a, std::int32_t b) {
   return norm(p[std::size_t(b)] - p[std::size_t(a)]);
 }
 
-/// Springs and Kelvin units at most so many spheres apart share a batch.
+/// Springs and Kelvin units at most this many spheres apart share a batch.
 constexpr std::int32_t kBridged = 4;
 
-/// Rows of one batch's parameters, one copy of each content.
+/// Pool of parameter rows; equal rows are stored once.
 class ParameterPool {
  public:
   explicit ParameterPool(std::vector<double>& pool) : pool_(pool) {}
 
-  /// Where `rows` begin in the pool.
+  /// Offset of `rows` in the pool.
   std::int32_t offset_of(std::vector<double> rows) {
     const auto [place, is_new] = known_.emplace(std::move(rows), std::int32_t(pool_.size()));
     if (is_new) pool_.insert(pool_.end(), place->first.begin(), place->first.end());
@@ -31,12 +31,12 @@ class ParameterPool {
   std::map<std::vector<double>, std::int32_t> known_;
 };
 
-/// Whether two elements can share a batch: internal variables lie in a batch as they lie in State.
+/// Whether two elements can share a batch. Internal variables of a batch must be contiguous in State.
 bool can_share(AxialLaw p, AxialLaw q) { return (p == AxialLaw::two_sphere_tpm) == (q == AxialLaw::two_sphere_tpm); }
 
 }  // namespace
 
-/// The longest run from row `first` on. A batch of springs of which one is a Kelvin unit is one of Kelvin units.
+/// The longest run from row `first` on. A run of springs with at least one Kelvin unit has the law of Kelvin units.
 AxialForces::Run AxialForces::find_run(std::size_t first, const parallel::Slabs& slabs) const {
   const AxialElements& axial = model_.axial;
   const std::int32_t bridged = axial.law[first] == AxialLaw::two_sphere_tpm ? 1 : kBridged;
@@ -54,7 +54,7 @@ AxialForces::Run AxialForces::find_run(std::size_t first, const parallel::Slabs&
   return run;
 }
 
-/// What AxialBatch::parameters says; a place without an element has k = 0.
+/// The rows of AxialBatch::parameters; a place without an element has k = 0.
 std::vector<double> AxialForces::parameters_of(const Run& run) const {
   const AxialElements& axial = model_.axial;
   std::vector<double> rows;
@@ -88,7 +88,7 @@ AxialForces::AxialForces(const Model& model, const parallel::Slabs& slabs, const
     if (axial.internal[i] >= 0) of_internal_[std::size_t(axial.internal[i])] = std::int32_t(i);
   std::vector<Run> runs;
   for (std::size_t i = 0; i < axial.size(); i = runs.back().last) runs.push_back(find_run(i, slabs));
-  // All directions of a row together, so that its spheres are at hand for all of them.
+  // Sorts all directions of a lattice row together, so that its spheres stay in the cache.
   std::stable_sort(runs.begin(), runs.end(),
                    [&](const Run& r, const Run& s) { return axial.a[r.first] < axial.a[s.first]; });
   ParameterPool pool(parameters_);
@@ -148,7 +148,7 @@ void AxialForces::apply(int slab, const Real* v, SlabTarget<Real> result) const 
 template void AxialForces::apply(int slab, const float* v, SlabTarget<float> result) const;
 template void AxialForces::apply(int slab, const double* v, SlabTarget<double> result) const;
 
-/// The implicit step of c z' = k2 (x - z) - k1 z of `h` [s] to a moment at which the TPM is x longer than at rest.
+/// The implicit step of c z' = k2 (x - z) - k1 z over `h` [s], at whose end the TPM is longer than at rest by x.
 double AxialForces::kelvin_after(double h, const StateView& state, std::size_t variable) const {
   const AxialElements& m = model_.axial;
   const auto i = std::size_t(of_internal_[variable]);
@@ -157,8 +157,8 @@ double AxialForces::kelvin_after(double h, const StateView& state, std::size_t v
   return (damping * state.kelvin_elongation[variable] + m.k[i] * x) / (m.k[i] + m.kelvin_k[i] + damping);
 }
 
-/// Part of a step of `h` [s] after which a TPM's elongation acts: half of it, as the midpoint rule has it, or so much
-/// more that no step overshoots the limit.
+/// Share of a step of `h` [s] after which the elongation of a TPM acts: 0.5 as in the midpoint rule, or more where that
+/// would overshoot the limit.
 double AxialForces::acting_part(double h, std::size_t variable) const {
   const AxialElements& m = model_.axial;
   const auto i = std::size_t(of_internal_[variable]);

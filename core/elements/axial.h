@@ -13,33 +13,33 @@ namespace ctpm::elements {
 /// Three coordinates of all spheres in one array: x of all, then y, then z  (3 x sphere_count).
 using Coordinates = std::vector<double>;
 
-/// Symmetric 3x3 blocks, one a sphere, as six arrays: xx, xy, xz, yy, yz, zz  (6 x sphere_count).
+/// Symmetric 3x3 blocks, one per sphere, as six arrays: xx, xy, xz, yy, yz, zz (6 x sphere_count).
 using DiagonalBlocks = std::vector<double>;
 
-/// Forces of all axial elements of a Model, as batches for the inner loops (AxialBatch). Batches with the same
-/// parameters share one copy of them, so a tissue of one material streams none from memory.
+/// Forces of all axial elements of a Model, in batches for the inner loops (AxialBatch). Batches with equal parameters
+/// share one copy of them, so that tissue of one material streams no parameters from memory.
 class AxialForces {
  public:
   AxialForces(const Model& model, const parallel::Slabs& slabs, const Kernels& kernels);
 
-  /// What the loops of one call read and write; `softness` as in Elements, null without it.
+  /// Arrays that the loops of one call read and write; `softness` as in Elements, null without softening.
   AxialArrays arrays(const StateView& state, const double* softness) const;
 
-  /// Adds the forces of this moment [N] of one slab's elements to `m.force`.
+  /// Adds the present forces [N] of one slab's elements to `m.force`.
   void add_forces(const AxialArrays& m, int slab) const;
 
-  /// Makes room for the coupling; before the first linearise().
+  /// Allocates the coupling; call it before the first linearise().
   void prepare_linearise();
 
-  /// Adds the elastic forces [N] to `m.force` and the diagonal of h^2 K + h C [kg] to `m.blocks`, and keeps the
-  /// coupling for apply().
+  /// Adds the elastic forces [N] to `m.force` and the diagonal of h^2 K + h C [kg] to `m.blocks`. Stores the coupling
+  /// for apply().
   void linearise(AxialArrays m, int slab);
 
   /// result += coupling times `v`, in the precision of `v`, float or double.
   template <class Real>
   void apply(int slab, const Real* v, SlabTarget<Real> result) const;
 
-  /// As Elements::find_kelvin(), find_acting_kelvin() and finish_kelvin(), of internal variables [first, last).
+  /// Elements::find_kelvin(), find_acting_kelvin() and finish_kelvin() for internal variables [first, last).
   void find_kelvin(double h, const StateView& state, std::vector<double>& after, std::size_t first,
                    std::size_t last) const;
   void find_acting_kelvin(double h, const StateView& state, std::vector<double>& acting, std::size_t first,
@@ -48,7 +48,7 @@ class AxialForces {
                      std::size_t last) const;
 
  private:
-  /// Elements that lie so that they can share a batch, and the places between them.
+  /// Elements that can share a batch, and the empty places between them.
   struct Run {
     std::size_t first, last;            ///< rows of Model::axial [first, last)
     std::vector<std::int32_t> element;  ///< row of each place; -1: none (place_count)
@@ -65,10 +65,10 @@ class AxialForces {
 
   const Model& model_;
   const Kernels& kernels_;
-  std::vector<Batches> of_slab_;  ///< whose spheres they add to
+  std::vector<Batches> of_slab_;  ///< of each slab, the batches that add to its spheres (slab_count)
   std::vector<double> parameters_;
-  std::vector<std::int32_t> third_;        ///< like AxialElements::third, with the own first sphere where there is
-                                           ///< none; empty without softening (place_count)
+  /// AxialElements::third, with the element's own first sphere if it has none; empty without softening (place_count).
+  std::vector<std::int32_t> third_;
   std::vector<std::int32_t> element_;      ///< AxialArrays::element; empty without a scalpel (place_count)
   std::vector<std::int32_t> of_internal_;  ///< row of Model::axial that has the internal variable (internal_count)
   std::size_t place_count_ = 0;

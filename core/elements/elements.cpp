@@ -6,11 +6,11 @@
 namespace ctpm::elements {
 namespace {
 
-/// Numbers between the rows of one slab and those of the next: more than a processor reads ahead.
+/// Numbers between the rows of two slabs: more than a core prefetches.
 constexpr std::size_t kApart = 256;
 
-/// Slabs of more spheres add forces to where those of all spheres are: bringing them there would cost more than the few
-/// places that threads then share.
+/// Slabs of more spheres add forces directly to the arrays of all spheres: copying would cost more than the few cache
+/// lines that threads then share.
 constexpr std::int32_t kThick = 4096;
 
 }  // namespace

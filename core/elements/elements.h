@@ -12,41 +12,42 @@
 
 namespace ctpm::elements {
 
-/// All elements of a Model together: their forces, and their linearisation for an implicit step.
+/// All elements of a Model: their forces, and their linearisation for an implicit step.
 class Elements {
  public:
   /// `model` and `team` must outlive the Elements.
   Elements(const Model& model, parallel::Team& team, InstructionSet set = best_instruction_set());
 
-  /// Adds the forces of this moment [N] to `force`: springs, dashpots at StateView::velocity, two-sphere TPMs at
-  /// their present Kelvin elongation, constraints, softening (Eqs. 1-8)  (3 x sphere_count).
+  /// Adds the present forces [N] to `force` (3 x sphere_count): springs, dashpots at StateView::velocity, two-sphere
+  /// TPMs at their present Kelvin elongation, constraints and softening (Eqs. 1-8).
   void add_forces(const StateView& state, Coordinates& force);
 
-  /// As above, with before(slab) ahead of what is added to a slab's spheres and after(slab) behind it.
+  /// As above. Calls before(slab) and after(slab) around the additions to the spheres of a slab.
   template <class Before, class After>
   void add_forces(const StateView& state, Coordinates& force, Before&& before, After&& after);
 
-  /// Adds the elastic forces [N] to `force` and the diagonal of h^2 K + h C [kg] to `blocks`, for a step of `h` [s], at
-  /// the end of which two-sphere TPMs are meant; before(slab) is called ahead of what is added to a slab's spheres. The
-  /// dashpots' forces are left to the matrix unless `with_dashpots`.
+  /// Adds the elastic forces [N] to `force` and the diagonal of h^2 K + h C [kg] to `blocks` for a step of `h` [s].
+  /// Kelvin elongations are those at the end of the step. The forces of dashpots are added only `with_dashpots`;
+  /// otherwise the matrix alone accounts for them. Calls before(slab) before anything is added to the spheres of a
+  /// slab.
   template <class Before>
   void linearise(const StateView& state, double h, bool with_dashpots, Coordinates& force, DiagonalBlocks& blocks,
                  Before&& before);
 
-  /// result += (h^2 K + h C) v as of the last linearise(), in the precision of `v`, float or double  (3 x sphere_count
-  /// each). `after(slab)` is called for each slab when its part of `result` is done.
+  /// result += (h^2 K + h C) v as of the last linearise(), in the precision of `v`, float or double (3 x sphere_count
+  /// each). Calls after(slab) when the part of `result` that belongs to a slab is complete.
   template <class Real, class After>
   void apply(const Real* v, Real* result, After&& after) const;
 
-  /// Kelvin elongations of the two-sphere TPMs [m] at the end of a step of `h` [s] from StateView::kelvin_elongation
-  /// with the spheres at StateView::position at its end; first order  (internal_count).
+  /// Kelvin elongations of the two-sphere TPMs [m] at the end of a step of `h` [s] that starts from
+  /// StateView::kelvin_elongation and ends with the spheres at StateView::position. First order (internal_count).
   void find_kelvin(double h, const StateView& state, std::vector<double>& after) const;
 
-  /// Kelvin elongations [m] that act in a step of `h` [s] in whose middle the spheres are at StateView::position;
-  /// second order where the step resolves them  (internal_count).
+  /// Kelvin elongations [m] that act in a step of `h` [s], with the spheres at StateView::position in its middle.
+  /// Second order if the step resolves them (internal_count).
   void find_acting_kelvin(double h, const StateView& state, std::vector<double>& acting) const;
 
-  /// Kelvin elongations [m] at the end of that step, in place of those that act in it; `before`: at its start
+  /// Replaces the acting Kelvin elongations [m] of that step by those at its end; `before`: at its start
   /// (internal_count).
   void finish_kelvin(double h, const std::vector<double>& before, std::vector<double>& kelvin) const;
 
@@ -57,13 +58,14 @@ class Elements {
   template <class Part>
   void for_internal(std::size_t count, Part&& part) const;
 
-  /// Room for what one slab's elements add, before it goes to where all spheres are; with a single slab none is needed.
+  /// Scratch memory for the sums of one slab, before they are added to the arrays of all spheres. Unused with a single
+  /// slab.
   struct Workbench {
     std::vector<double> full;   ///< three rows of forces, six of blocks
     std::vector<float> single;  ///< three rows
   };
 
-  /// What the loops of one call read and write.
+  /// Arrays that the loops of one call read and write.
   struct Arrays {
     LineArrays constraints, angles;
     AxialArrays axial;
@@ -77,11 +79,11 @@ class Elements {
 
   void make_room(std::size_t full_rows, std::size_t single_rows);
 
-  /// Where a slab adds three rows (of a vector) or six (of blocks) that are meant for `all`  (rows x sphere_count).
+  /// Where a slab adds three rows (of a vector) or six (of blocks) that belong to `all` (rows x sphere_count).
   template <class Real>
   SlabTarget<Real> target_for(int slab, std::size_t rows, Real* all) const;
 
-  /// Adds what a slab has gathered to `all`.
+  /// Adds the sums of a slab to `all`.
   template <class Real>
   void bring(const SlabTarget<Real>& own, std::size_t rows, Real* all) const;
 

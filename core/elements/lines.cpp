@@ -8,20 +8,20 @@
 namespace ctpm::elements {
 namespace {
 
-/// Shorter rows are gathered with their neighbours instead.
+/// Shorter rows are merged with their neighbours into a gathered batch.
 constexpr std::size_t kShortestRow = 4;
 
-/// Numbers of the widest vector.
+/// Numbers in the widest vector.
 constexpr std::size_t kWidest = 8;
 
-/// Lines whose spheres are in the same slabs, in rows.
+/// Finds rows of lines whose spheres are in the same slabs.
 class RowFinder {
  public:
   RowFinder(const std::vector<std::int32_t>& first, const std::vector<std::int32_t>& middle,
             const std::vector<std::int32_t>& last, const parallel::Slabs& slabs)
       : first_(first), middle_(middle), last_(last), slabs_(slabs) {}
 
-  /// End of the batch from line `i` on: a row, or several that are too short.
+  /// End of the batch from line `i` on: one row, or several that are too short.
   std::size_t batch_end(std::size_t i) const {
     std::size_t end = row_end(i);
     while (!is_row(i) && end < middle_.size() && slabs_of(end) == slabs_of(i) && end - i < std::size_t(kBatch)) {
@@ -31,7 +31,7 @@ class RowFinder {
     return std::min(end, i + std::size_t(kBatch));
   }
 
-  /// Places of the batch of lines [i, end): a row goes on without lines to the end of a vector, if there is room.
+  /// Places of the batch of lines [i, end). A row is padded to whole vectors, if there is room.
   std::size_t places_of(std::size_t i, std::size_t end) const {
     const std::size_t count = end - i, whole_vectors = (count + kWidest - 1) / kWidest * kWidest;
     return is_row(i) ? std::min(whole_vectors, room_of(i)) : count;
@@ -48,7 +48,8 @@ class RowFinder {
     return first_[i] == first_[i - 1] + 1 && middle_[i] == middle_[i - 1] + 1 && last_[i] == last_[i - 1] + 1;
   }
 
-  /// Most places of a row from line `i` on: none of its spheres is another slab's or in another sphere's row.
+  /// Capacity in places of a row from line `i` on: none of its spheres may be in another slab or in the range of
+  /// another of the three spheres.
   std::size_t room_of(std::size_t i) const {
     const std::int32_t a = first_[i], c = middle_[i], e = last_[i];
     const auto left = [&](std::int32_t sphere) { return slabs_.end(slabs_.of(sphere)) - sphere; };
@@ -56,7 +57,7 @@ class RowFinder {
         std::min({kBatch, std::abs(c - a), std::abs(e - c), std::abs(e - a), left(a), left(c), left(e)}));
   }
 
-  /// End of the row of lines from line `i` on, whose spheres all advance by one.
+  /// End of the row of lines from line `i` on: all three spheres advance by one.
   std::size_t row_end(std::size_t i) const {
     const std::size_t last = std::min(middle_.size(), i + room_of(i));
     std::size_t end = i + 1;
@@ -85,7 +86,7 @@ LineElements::LineElements(const Model& model, bool is_constraint, const std::ve
   const RowFinder rows(first, middle, last, slabs);
   std::vector<std::pair<std::size_t, std::size_t>> runs;  // lines of each batch
   for (std::size_t i = 0; i < middle.size(); i = runs.back().second) runs.emplace_back(i, rows.batch_end(i));
-  // Lines of all directions go through the organ together, so that positions and forces stay in the first cache.
+  // Sorts lines of all directions together, so that positions and forces stay in the first-level cache.
   std::stable_sort(runs.begin(), runs.end(),
                    [&](const auto& p, const auto& q) { return middle[p.first] < middle[q.first]; });
   std::vector<LineBatch> all;

@@ -11,9 +11,9 @@
 
 namespace ctpm::elements {
 
-/// Elements that draw the middle sphere of a lattice line towards the middle of its ends, u = C - (A + E) / 2: the
-/// constraints of five-sphere lines (Eqs. 2, 5), whose stiffness grows with the tilt, or the angle springs of Fig. 1b,
-/// whose stiffness is constant.
+/// Elements that pull the middle sphere of a lattice line towards the midpoint of its ends, u = C - (A + E) / 2: either
+/// the constraints of five-sphere lines (Eqs. 2, 5), whose stiffness grows with the tilt, or the angle springs of Fig.
+/// 1b, whose stiffness is constant.
 class LineElements {
  public:
   LineElements(const Model& model, const Constraints& constraints, const parallel::Slabs& slabs,
@@ -23,18 +23,18 @@ class LineElements {
 
   bool empty() const { return k_.empty(); }
 
-  /// What the loops of one call read and write. `softness` [1] = 1 / (1 + tan theta) of each sphere, null without
-  /// softening.
+  /// Arrays that the loops of one call read and write. `softness` [1] = 1 / (1 + tan theta) of each sphere, null
+  /// without softening.
   LineArrays arrays(const StateView& state, double* softness);
 
-  /// Of lines whose middle sphere is the slab's own, lambda and the sphere's softness: the least of all lines centred
-  /// on it (Eq. 8).
+  /// Computes lambda of the lines centred on a sphere of the slab, and the softness of that sphere: the least of all
+  /// its lines (Eq. 8).
   void measure(const LineArrays& m, int slab) const;
 
-  /// Adds the forces [N] of one slab's lines to `m.force`. measure() of all slabs comes first.
+  /// Adds the forces [N] of one slab's lines to `m.force`. Call measure() of all slabs first.
   void add_forces(const LineArrays& m, int slab) const;
 
-  /// Adds the forces to `m.force` and the diagonal of h^2 K [kg] to `m.blocks`, and keeps the coupling for apply().
+  /// Adds the forces to `m.force` and the diagonal of h^2 K [kg] to `m.blocks`. Stores the coupling for apply().
   void linearise(LineArrays m, int slab);
   void prepare_linearise();
 
@@ -43,7 +43,7 @@ class LineElements {
   void apply(int slab, const Real* v, SlabTarget<Real> result) const;
 
  private:
-  /// Batches [first, last) are one slab's.
+  /// The batches [first, last) of one slab.
   struct Range {
     std::size_t first, last;
   };
@@ -58,10 +58,11 @@ class LineElements {
   std::vector<std::int32_t> first_, middle_, last_, line_;  ///< spheres and line of each place (place_count)
   std::vector<double> k_;                                   ///< (place_count)
   std::vector<LineBatch> batches_;
-  std::vector<Range> of_slab_;               ///< (slab_count)
-  std::vector<std::uint8_t> matters_;        ///< of each batch, whether its coupling does
-  std::vector<double> lambda_;               ///< without softness [N/m] (place_count)
-  std::vector<float> along_[3], isotropic_;  ///< coupling: along u its root [kg^1/2], and in all directions [kg]
+  std::vector<Range> of_slab_;         ///< (slab_count)
+  std::vector<std::uint8_t> matters_;  ///< of each batch, whether its coupling matters
+  std::vector<double> lambda_;         ///< before softening [N/m] (place_count)
+  /// Coupling: its root along u [kg^1/2], and the part equal in all directions [kg] (place_count each).
+  std::vector<float> along_[3], isotropic_;
 };
 
 }  // namespace ctpm::elements

@@ -4,8 +4,8 @@
 
 namespace ctpm {
 
-/// How the force of an axial element follows from the motion of its two ends. Stored in sessions: a number never gets
-/// another meaning. In a header without functions, so that the inner loops can include it.
+/// Force law of an axial element. Sessions store the numbers: none ever gets another meaning. This header has no
+/// functions, so that the inner loops can include it.
 enum class AxialLaw : std::int32_t {
   spring = 0,          ///< k (length - rest_length)
   kelvin_unit = 1,     ///< spring parallel to a dashpot: k (length - rest_length) + c d length / dt

@@ -8,7 +8,7 @@
 
 namespace ctpm {
 
-/// What an array of a Model or a State has one entry of.
+/// What the entries of an array of a Model or a State belong to.
 enum class EntryOf : std::int32_t {
   none,  ///< not an array, or an array of any length
   sphere,
@@ -33,11 +33,11 @@ struct FieldMeaning {
   Range range = Range::any;
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();
-  bool is_open = false;  ///< lowest and highest do not belong to the range
+  bool is_open = false;  ///< the range excludes lowest and highest
   EntryOf indexed = EntryOf::none;
   std::uint64_t mask = 0;
   EntryOf shape = EntryOf::none;
-  bool may_be_empty = false;  ///< the array is left out where the scene does not need it
+  bool may_be_empty = false;  ///< the array is empty if the scene does not need it
 
   constexpr FieldMeaning per(EntryOf entry) const {
     FieldMeaning meaning = *this;
@@ -66,7 +66,7 @@ constexpr FieldMeaning within(double lowest, double highest) {
 constexpr FieldMeaning between(double lowest, double highest) {
   return {.range = FieldMeaning::Range::number, .lowest = lowest, .highest = highest, .is_open = true};
 }
-/// Index of an entry; -1, where `lowest` allows it: none.
+/// Index of an entry; -1 means none, if `lowest` allows it.
 constexpr FieldMeaning index(EntryOf indexed, std::int32_t lowest = 0) {
   return {.range = FieldMeaning::Range::index, .lowest = double(lowest), .indexed = indexed};
 }
@@ -80,7 +80,7 @@ constexpr FieldMeaning one_of(std::initializer_list<E> known) {
 
 }  // namespace meaning
 
-/// Calls `visit(name, member, meaning)`, or `visit(name, member)` where a visitor does not ask for the meaning.
+/// Calls `visit(name, member, meaning)`, or `visit(name, member)` if the visitor takes no meaning.
 template <class Visit>
 auto with_meaning(Visit& visit) {
   return [&visit](std::string_view name, auto& member, const FieldMeaning& meaning) {

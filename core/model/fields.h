@@ -10,16 +10,16 @@
 
 namespace ctpm {
 
-// The one list of everything in a Model and a State. Storing, reading, hashing, comparing and checking are all made
-// from it. `visit(name, member, meaning)`, or `visit(name, member)`, is called for each member in a fixed order;
-// members are arithmetic values, enums, Vec3, Quat, std::string, or vectors of numbers or enums. A Vec3Array is visited
-// as its three coordinates. Names are stored in session files: never give one another meaning, append new ones. Names
-// that earlier programs wrote are read in recordings/internal/legacy_fields.h.
+// The one list of every field of a Model and a State: storing, reading, hashing, comparing and checking all use it. It
+// calls `visit(name, member, meaning)` or `visit(name, member)` for each member in a fixed order. Members are
+// arithmetic values, enums, Vec3, Quat, std::string, or vectors of numbers or enums; a Vec3Array is visited as its
+// three coordinates. Session files store the names: append new ones and never give one another meaning.
+// recordings/internal/legacy_fields.h reads the names of earlier programs.
 
-/// Bounds of what a file may ask of one tick.
+/// Largest solver settings that a file may ask for: iterations of a solve, substeps of a tick.
 inline constexpr std::int32_t kMostIterations = 1'000'000, kMostSubsteps = 10'000;
 
-/// Lattice coordinates are at most this far from 0: beyond what an organ has, within what 32 bits hold.
+/// Largest magnitude of a lattice coordinate: more than any organ has, and well within 32 bits.
 inline constexpr std::int32_t kFarthestCell = 1 << 20;
 
 template <class Points, class Give>
@@ -83,7 +83,7 @@ void for_each_field(Organ_& o, Visit&& visit) {
   give("layer_count", o.layer_count, any);
 }
 
-/// As above; `organs` and `tools` are vectors of structs, whose own fields are visited by for_each_field.
+/// As above. `organs` and `tools` are vectors of structs; for_each_field visits their fields in turn.
 template <class Model_, class Visit>
 requires std::is_same_v<std::remove_const_t<Model_>, Model>
 void for_each_field(Model_& m, Visit&& visit) {

@@ -9,23 +9,23 @@
 
 namespace ctpm {
 
-/// What one vertex of a render surface follows: its position is the weighted sum of sphere positions.
-/// The weights reproduce every linear function of the rest positions, so any rigid motion is followed
-/// exactly.
+/// How the vertices of a render surface follow the spheres: each is a weighted sum of sphere positions. The weights
+/// reproduce every linear function of the rest positions, so the surface follows any rigid motion exactly, except at
+/// vertices whose spheres do not span space (see surface::follow_weights).
 struct SurfaceBinding {
-  std::vector<std::int32_t> first;  ///< where a vertex's entries begin; the last entry is the total  (vertex_count + 1)
-  std::vector<std::int32_t> sphere;  ///< sphere that is followed (entry_count)
+  std::vector<std::int32_t> first;   ///< where a vertex's entries begin; the last value is the total (vertex_count + 1)
+  std::vector<std::int32_t> sphere;  ///< the sphere of an entry (entry_count)
   std::vector<double> weight;        ///< its weight; a vertex's weights sum to 1                     (entry_count)
 };
 
-/// The triangle mesh that is drawn for one organ, closed and oriented outwards.
+/// The watertight triangle mesh that is drawn for one organ, oriented outwards.
 struct Surface {
   std::vector<Vec3> vertex;                           ///< rest positions [m]                          (vertex_count)
   std::vector<std::array<std::int32_t, 3>> triangle;  ///< counter-clockwise seen from outside         (triangle_count)
   SurfaceBinding binding;                             ///< which spheres the vertices follow; indices within the organ
 };
 
-/// An organ's inside, filled with layered spheres of equal radius on a cubic lattice.
+/// The inside of an organ, filled with layered spheres of equal radius on a cubic lattice.
 struct FilledOrgan {
   double sphere_radius = 0;                       ///< r [m], > 0
   double spacing = 0;                             ///< s = 2 r + gap, centre to centre along a lattice axis [m], > 0

@@ -9,10 +9,10 @@
 
 namespace ctpm {
 
-/// One problem with what the user gave: where it is, what is wrong, and what would mend it.
+/// One problem in the user's input: where it is, what is wrong and how to mend it.
 struct Error {
-  std::string where;    ///< `file`, `file:line:col` or the name of a thing; empty if there is no place
-  std::string message;  ///< what is wrong, with the value that was got and what it must be
+  std::string where;    ///< `file`, `file:line:col` or the name of a thing; empty if it has none
+  std::string message;  ///< what is wrong, with the value found and the values allowed
   std::string hint;     ///< what to do about it; may be empty
 
   friend bool operator==(const Error&, const Error&) = default;
@@ -29,7 +29,7 @@ inline std::string to_string(const Error& error) {
   return text;
 }
 
-/// Stops the program: a broken promise of our own code, never bad input.
+/// Aborts on a bug of our own, never on bad input.
 [[noreturn]] inline void fail_check(const char* file, int line, const char* what) {
   std::fprintf(stderr, "%s:%d: internal error: %s\n", file, line, what);
   std::abort();
@@ -41,7 +41,7 @@ inline std::string to_string(const Error& error) {
     if (!(condition)) ::ctpm::fail_check(__FILE__, __LINE__, what); \
   } while (false)
 
-/// Either a value or all the errors that stood in its way.
+/// Either a value or all the errors that prevented it.
 template <class T>
 class [[nodiscard]] Result {
  public:

@@ -6,7 +6,7 @@
 
 namespace ctpm {
 
-/// A point or a vector. Units are said where it is used; metres and newtons inside core.
+/// A point or a vector. Each use says the unit; core uses metres and newtons.
 struct Vec3 {
   double x = 0, y = 0, z = 0;
 

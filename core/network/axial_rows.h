@@ -16,13 +16,14 @@ struct AxialRow {
   double cut_energy, cut_friction;  ///< [J], [N]
 };
 
-/// Adds a row at the end of the table. All arrays of the table must be there, see bring_back_unused().
+/// Appends a row to the table. All arrays of the table must have their full length; see bring_back_unused().
 void append(Model& model, const AxialRow& row);
 
-/// Removes the two-sphere TPMs from the end of the table and returns them: another organ's springs go before them.
+/// Removes the two-sphere TPMs from the end of the table and returns them, so that the springs of another organ can go
+/// before them.
 std::vector<AxialRow> take_tpms(Model& model);
 
-/// Gives the arrays of the table that leave_out_unused() left out their full length again.
+/// Restores the full length of the arrays that leave_out_unused() emptied.
 void bring_back_unused(Model& model);
 
 /// Empties the arrays of the table that no element uses.

@@ -15,8 +15,8 @@ namespace {
 
 using Cell = LatticeCell;
 
-// Lattice directions, each with its first non-zero component in the order k, j, i positive, so that an edge's
-// second sphere always comes later in the (k, j, i) order than its first.
+// Lattice directions. In each, the first non-zero component in the order k, j, i is positive, so that the second sphere
+// of an element always comes later in the (k, j, i) order than the first.
 constexpr std::array<Cell, 3> kAxisDirections{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 constexpr std::array<Cell, 6> kDiagonalDirections{
     {{1, 1, 0}, {-1, 1, 0}, {1, 0, 1}, {-1, 0, 1}, {0, 1, 1}, {0, -1, 1}}};
@@ -104,15 +104,15 @@ Stiffness stiffness_of(const Material& m, double spacing) {
           1 - m.prestrain};
 }
 
-/// Area that an element stands for when a cut crosses it at right angles [m^2]. A plane with the unit normal
-/// n crosses |n . D| / s^3 elements of the direction D per area; with this area times |n . D| / |D| for each,
-/// they sum to 1 for every n, since the squared components of all directions add up to a multiple of |n|^2.
+/// Area that an element stands for when a cut crosses it at right angles [m^2]. Per area, a plane with the unit normal
+/// n crosses |n . D| / s^3 elements of direction D. Each counts with this area times |n . D| / |D|. The sum is 1 for
+/// every n, since the squared components of all directions add up to a multiple of |n|^2.
 double crossed_area(LatticeKind lattice, double spacing) {
   return spacing * spacing / (lattice == LatticeKind::cubic_18 ? 1 + 2 * std::sqrt(2.0) : 1);
 }
 
-/// Builds the elements of one organ line by line, and brings those of a direction into the order in which they are
-/// computed. Springs and Kelvin units go to the end of Model::axial, two-sphere TPMs to `tpms`.
+/// Builds the elements of one organ line by line, and sorts those of a direction into the order of computation. Springs
+/// and Kelvin units go to the end of Model::axial, two-sphere TPMs to `tpms`.
 class LineTiler {
  public:
   LineTiler(Model& model, const FilledOrgan& organ, const OrganSettings& settings, std::int32_t first_sphere)
@@ -142,7 +142,7 @@ class LineTiler {
  private:
   struct Spring {
     AxialRow row;
-    std::int32_t line_number;  ///< position in the order of tiling, by which constraints know their elements
+    std::int32_t line_number;  ///< position in the order of tiling, by which constraints refer to their elements
   };
   struct Angle {
     std::int32_t a, middle, c, line_number;
@@ -154,7 +154,7 @@ class LineTiler {
     std::array<std::int32_t, 4> line_number;
   };
 
-  /// Mean over `count` spheres of a run, exactly that of one if all are equal.
+  /// Mean over `count` spheres of a run; exact if all are equal.
   Stiffness mean_over(const std::vector<std::int32_t>& run, std::size_t first, std::size_t count) const {
     const auto of = [&](std::size_t i) -> const Stiffness& {
       return stiffness_[std::size_t(run[first + i] - first_sphere_)];
@@ -168,7 +168,7 @@ class LineTiler {
             mean(&Stiffness::constraint_k), mean(&Stiffness::rest_part)};
   }
 
-  /// Of a spring of which two in series are as stiff as one slow triple.
+  /// Stiffness of a spring two of which in series are as stiff as one slow triple.
   static double single_spring(const Stiffness& s) { return 2 * series(s.kelvin_k, s.spring_k); }
 
   void tile_run(const std::vector<std::int32_t>& run, double rest_length) {
@@ -198,7 +198,7 @@ class LineTiler {
     }
   }
 
-  /// Triples A-B-C, C-B-A, A-B-C ... that share ends; where two share C, the five spheres carry a constraint.
+  /// Triples A-B-C, C-B-A, A-B-C ... that share ends. Where two share C, the five spheres carry a constraint.
   void tile_triples(const std::vector<std::int32_t>& run, double rest_length) {
     const std::size_t triple_count = (run.size() - 1) / 2;
     for (std::size_t t = 0; t < triple_count; ++t) {
@@ -238,7 +238,7 @@ class LineTiler {
                                   s.kelvin_k, -1, energy, friction});
   }
 
-  /// What an element between two spheres sets against a blade: energy [J] and friction [N], as in CutResistance.
+  /// Resistance of an element between two spheres to a blade: energy [J] and friction [N], as in CutResistance.
   std::pair<double, double> cut_resistance_of(std::int32_t a, std::int32_t b) const {
     const double area = crossed_area(settings_.lattice, organ_.spacing);
     const Material& p = material_of(organ_, settings_, std::size_t(a - first_sphere_));
@@ -247,8 +247,8 @@ class LineTiler {
     return {area * 0.5 * (p.fracture_toughness + q.fracture_toughness), friction};
   }
 
-  /// Moves one direction's elements into the Model, sorted by their first sphere: along a lattice row both
-  /// ends then advance by one from edge to edge, and the element loops run without index gathers.
+  /// Moves the elements of one direction into the Model, sorted by their first sphere. Along a lattice row both ends
+  /// then advance by one from element to element, and the element loops gather no indices.
   void flush_direction() {
     std::stable_sort(springs_.begin(), springs_.end(),
                      [](const Spring& p, const Spring& q) { return p.row.a < q.row.a; });
@@ -293,8 +293,8 @@ class LineTiler {
   std::int32_t next_line_number_ = 0;
 };
 
-/// How far from its centre a tool touches a sphere: as far as the surface is for the outermost layer, so that
-/// the tool meets the surface one sees, and the sphere's own radius further in.
+/// Distance from the centre of a sphere at which a tool touches it. In the outermost layer this is the depth of the
+/// centre, so that the tool meets the visible surface, limited to [r, spacing]; further in it is r.
 double contact_radius_of(const FilledOrgan& organ, std::size_t sphere) {
   if (organ.layer[sphere] != 1) return organ.sphere_radius;
   return std::clamp(organ.depth[sphere], organ.sphere_radius, organ.spacing);

@@ -13,9 +13,9 @@ namespace ctpm::network {
 
 /// Which structure joins the spheres (scene key `model`).
 enum class Structure : std::int32_t {
-  mass_spring = 0,        ///< every edge a spring (Eq. 1)
+  mass_spring = 0,        ///< every element a spring (Eq. 1)
   angle_mass_spring = 1,  ///< springs, and springs that resist the angle at each sphere (Fig. 1b)
-  tpm = 2,                ///< a two-sphere TPM in every edge
+  tpm = 2,                ///< every element a two-sphere TPM
   ctpm = 3,               ///< triples, constraints, softening
 };
 
@@ -33,27 +33,29 @@ struct Material {
   double viscosity = 0;            ///< v1 [Pa s/m], >= 0
   double density = 1060;           ///< [kg/m^3], > 0
   double stiffness_scale = 1;      ///< multiplies every stiffness and damping, > 0
-  double calibration_area = 0;     ///< S0 = pi R^2 of the ball the moduli were calibrated with [m^2], > 0
+  double calibration_area = 0;     ///< S0 = pi R^2 of the ball with which the moduli were calibrated [m^2], > 0
   double calibration_spacing = 0;  ///< spacing of that site [m], > 0
-  double prestrain = 0;            ///< of the tissue in the body: an element at rest is shorter by this part of
-                                   ///< its length in the lattice, in [0, 0.5]; what makes a cut gape
-  double fracture_toughness = 0;   ///< J_c: energy that opens a unit of area [J/m^2], >= 0
-  double blade_friction = 0;       ///< shear stress on each flank of a blade that moves [Pa], >= 0
+  /// In-situ strain: the rest length of an element is shorter than its length in the lattice by this part, in [0, 0.5].
+  /// It makes a cut gape.
+  double prestrain = 0;
+  double fracture_toughness = 0;  ///< J_c: energy to open a unit of area [J/m^2], >= 0
+  double blade_friction = 0;      ///< shear stress on each flank of a moving blade [Pa], >= 0
 };
 
 /// A layer that follows the organ's surface: a capsule over a parenchyma.
 struct LayerMaterial {
-  double to_depth = 0;  ///< the layer ends here; depth of a sphere's centre below the surface [m], > 0
+  /// Depth at which the layer ends, of a sphere's centre below the surface [m], > 0.
+  double to_depth = 0;
   Material material;
 };
 
 /// How one filled organ becomes part of a Model.
 ///
-/// Layers: a sphere belongs to the first layer whose `to_depth` is more than its own depth, and to `material`
-/// if there is none. Its mass is that of its material. An element takes each of its stiffness and damping
-/// values, prestrain too, as the mean over its spheres' materials: the two ends of a spring or two-sphere TPM, the
-/// three spheres of a triple or angle spring (so both elements of a triple have the K1, K2, v1 of one place), and for
-/// K' - P2 the five of a constraint's line.
+/// A sphere belongs to the first layer whose `to_depth` is more than its own depth, or to `material` if there is none.
+/// The mass of a sphere is that of its material. An element takes the mean of its spheres' materials for each of
+/// stiffness, damping and prestrain. These spheres are the two ends of a spring or two-sphere TPM, the three spheres of
+/// a triple or angle spring (so both elements of a triple have the same K1, K2, v1), and the five spheres of a
+/// constraint's line for K' - P2.
 struct OrganSettings {
   std::string name;
   Structure structure = Structure::ctpm;
@@ -64,18 +66,17 @@ struct OrganSettings {
   std::vector<std::int32_t> anchored;  ///< spheres of the organ that never move, by index within the organ
   struct Guide {
     std::int32_t sphere;  ///< index within the organ
-    std::uint8_t axes;    ///< that it may not leave, as in Model::held_axes
+    std::uint8_t axes;    ///< axes along which it is held, as in Model::held_axes
   };
   std::vector<Guide> guides;  ///< spheres that run on rails or planes, for rigs
   double damage_depth = 0;    ///< [m]; 0: no limit
 };
 
-/// Stiffness of an edge of the given spacing per unit of modulus [m^2]: S0_cal (s / s_cal) times the
-/// stiffness scale.
+/// Stiffness of an element per unit of modulus at `spacing` [m^2]: S0_cal (s / s_cal) times the stiffness scale.
 double edge_area(const Material& material, double spacing);
 
-/// Appends the organ's spheres and the elements between them to `model`. Errors: an organ without spheres, a
-/// modulus out of range in any layer, layers out of order, an anchor that is not a sphere of the organ.
+/// Appends the organ's spheres and the elements between them to `model`. Errors: an organ without spheres, a modulus
+/// out of range in any layer, layers out of order, an anchor or guide that is not a sphere of the organ.
 Result<Done> add_organ(Model& model, const FilledOrgan& organ, const OrganSettings& settings);
 
 }  // namespace ctpm::network

@@ -5,14 +5,14 @@
 namespace ctpm::parallel {
 namespace {
 
-/// Fewer spheres than this are done before a second thread has woken up.
+/// Below this number of spheres the work is done before a second thread wakes up.
 constexpr std::size_t kFewest = 1500;
 
-/// Slabs of a small Model and of a large one, so that as many threads share its work.
+/// Number of slabs of a small Model and of a large one: that many threads can share its work.
 constexpr std::size_t kFewSlabs = 2, kManySlabs = 4;
 
-/// Spheres per slab up to which a Model is small, and beyond which there are more slabs still: elements between slabs
-/// are worked on once for each, so slabs are better thick.
+/// Spheres per slab up to which a Model is small, and beyond which it gets more slabs. Elements between slabs are
+/// computed once for each slab, so thick slabs are better.
 constexpr std::size_t kThin = 4096, kThick = 32768;
 
 std::size_t count_for(std::size_t spheres) {

@@ -7,8 +7,8 @@
 
 namespace ctpm::parallel {
 
-/// Spheres in ranges of about equal size that follow their order, which is the lattice's. How many there are depends on
-/// the Model alone: sums go slab by slab, and so have the same shape on any number of threads.
+/// Partition of the spheres into ranges of about equal size, in the order of the lattice. Their number depends on the
+/// Model alone. Sums go slab by slab, and so have the same shape on any number of threads.
 class Slabs {
  public:
   explicit Slabs(std::size_t sphere_count);

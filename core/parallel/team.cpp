@@ -3,8 +3,7 @@
 namespace ctpm::parallel {
 namespace {
 
-/// How often a thread looks before it sleeps or gives way: some tens of microseconds, longer than the gaps within a
-/// tick.
+/// Checks before a thread sleeps or yields: some tens of microseconds, longer than the gaps within a tick.
 constexpr int kLooks = 4000;
 
 void pause() {
@@ -15,7 +14,7 @@ void pause() {
 #endif
 }
 
-/// open_ as one number: the round, the first and the end of the tasks that are left.
+/// open_ as one number: the round, the first task left and the end of the tasks left.
 std::uint64_t packed(std::uint32_t round, std::uint32_t first, std::uint32_t end) {
   return std::uint64_t(round) << 32 | std::uint64_t(first) << 16 | end;
 }
@@ -33,8 +32,8 @@ Team::~Team() {
   for (std::thread& worker : workers_) worker.join();
 }
 
-/// Takes a task of the round that nobody has begun: the caller the first one, workers the last one, so that each finds
-/// the same data in its own cache time after time. False: none is left, or the round is over.
+/// Takes a task of the round that nobody has begun: the caller the first one, workers the last one, so that each thread
+/// finds the same data in its own cache. False: none is left, or the round is over.
 bool Team::claim(std::uint32_t round, bool from_below, int& task) {
   std::uint64_t seen = open_.load(std::memory_order_acquire);
   for (;;) {
@@ -47,7 +46,7 @@ bool Team::claim(std::uint32_t round, bool from_below, int& task) {
 }
 
 void Team::run(int count, Call call, void* what) {
-  // All tasks of the last round are done, so nobody reads these now.
+  // All tasks of the last round are done, so no thread reads these now.
   call_ = call, what_ = what;
   undone_.store(count, std::memory_order_relaxed);
   const std::uint32_t round = round_.load(std::memory_order_relaxed) + 1;

@@ -7,12 +7,12 @@
 
 namespace ctpm::parallel {
 
-/// A fixed set of threads that share numbered tasks. Which thread runs a task never changes what comes out, so results
-/// are the same for any number of threads. Between calls the threads first watch for work, then sleep; the caller does
-/// what they have not begun, so that a thread that the system keeps away from its core holds nobody up.
+/// A fixed set of threads that share numbered tasks. Results do not depend on which thread runs a task, and so are the
+/// same for any number of threads. Between calls the threads first spin, then sleep. The caller runs the tasks that
+/// they have not begun, so that a thread that the system keeps off its core delays nobody.
 class Team {
  public:
-  /// `threads` >= 1, the caller's own among them; 1 starts none.
+  /// `threads` >= 1 includes the thread of the caller; 1 starts none.
   explicit Team(int threads);
   ~Team();
   Team(const Team&) = delete;
@@ -20,8 +20,7 @@ class Team {
 
   int size() const { return int(workers_.size()) + 1; }
 
-  /// Calls `task(i)` once for each i in [0, count), possibly at the same time, and returns when all are done. count is
-  /// below 65536.
+  /// Calls `task(i)` once for each i in [0, count), possibly in parallel, and returns when all are done; count < 65536.
   template <class Task>
   void for_each(int count, Task&& task) {
     if (workers_.empty() || count <= 1) {
@@ -43,8 +42,8 @@ class Team {
   Call call_ = nullptr;
   void* what_ = nullptr;
   std::atomic<bool> stops_{false};
-  alignas(64) std::atomic<std::uint32_t> round_{0};  ///< goes up when there is work
-  alignas(64) std::atomic<std::uint64_t> open_{0};   ///< round, and the range of tasks that nobody has begun
+  alignas(64) std::atomic<std::uint32_t> round_{0};  ///< rises when there is work
+  alignas(64) std::atomic<std::uint64_t> open_{0};   ///< the round, and the range of tasks not yet begun
   alignas(64) std::atomic<int> undone_{0};           ///< tasks of the round that are not finished
 };
 

@@ -11,8 +11,8 @@
 
 namespace ctpm::solver {
 
-/// sum over all slabs of part(begin, end), which get a range of spheres each. Sums go slab by slab, so they do not
-/// depend on the number of threads.
+/// Sum over all slabs of part(begin, end), each called with its range of spheres. It adds slab by slab, so the result
+/// does not depend on the number of threads.
 template <class Part>
 double sum_over_slabs(const parallel::Slabs& slabs, parallel::Team& team, std::vector<double>& parts, Part&& part) {
   team.for_each(slabs.count(), [&](int slab) {
@@ -23,23 +23,24 @@ double sum_over_slabs(const parallel::Slabs& slabs, parallel::Team& team, std::v
   return sum;
 }
 
-/// Conjugate gradients for A c = r from c = 0, with vectors of Real, preconditioned by each sphere's own 3x3 block
-/// (Saad, "Iterative methods for sparse linear systems", 2003, alg. 9.1). r is scaled into the range of float.
+/// Conjugate gradients for A c = r from c = 0, with vectors of Real and a block Jacobi preconditioner of one 3x3 block
+/// per sphere (Saad, "Iterative methods for sparse linear systems", 2003, alg. 9.1). r is scaled into the range of
+/// float.
 template <class Real>
 class ConjugateGradient {
  public:
   ConjugateGradient(const std::vector<double>& mass, const parallel::Slabs& slabs, parallel::Team& team,
                     const elements::Kernels& kernels);
 
-  /// Inverse blocks, to be filled before a solve; 0 along axes that are held  (6 x sphere_count).
+  /// Inverse blocks of the preconditioner, to be filled before a solve; 0 along held axes (6 x sphere_count).
   std::vector<Real>& inverse() { return inverse_; }
 
-  /// Takes r = `scale` * `residual`; returns its energy r . (inverse blocks) r.
+  /// Sets r = `scale` * `residual`; returns its energy r . (inverse blocks) r.
   double begin(const elements::Coordinates& residual, double scale);
 
-  /// Iterates until the residual's energy is at most `enough` or `iterations` are used up; decrements `iterations` and
-  /// returns the energy. `add_coupling(in, out, after)` does out += coupling times in and calls after(slab) for each
-  /// slab whose part of out is done; for what it adds to out after that, it returns in . addition.
+  /// Iterates until the energy of the residual is at most `enough` or `iterations` are used up. Decrements `iterations`
+  /// and returns the energy. `add_coupling(in, out, after)` does out += coupling times in, and calls after(slab) when
+  /// the part of out that belongs to a slab is done. It returns in . addition for anything it adds to out afterwards.
   template <class AddCoupling>
   double descend(double enough, std::int32_t& iterations, AddCoupling&& add_coupling);
 

@@ -3,7 +3,7 @@
 namespace ctpm::solver {
 namespace {
 
-/// Stiffness ratio up to which float resolves soft motions beside stiff ones.
+/// Largest stiffness ratio at which float resolves soft motions beside stiff ones.
 constexpr double kStiffestForFloat = 1e4;
 
 std::variant<ConjugateGradient<float>, ConjugateGradient<double>> gradient_for(const Model& model,
@@ -58,7 +58,7 @@ void LinearSolver::set_blocks_of(ConjugateGradient<Real>& gradient, const elemen
   for (const std::int32_t sphere : held_) {
     const auto i = std::size_t(sphere);
     if (model_.held_axes[i] != kAnchored) {
-      // The block of the free axes is inverted by itself.
+      // Inverts the block of the free axes by itself.
       double own[6];
       Real free[6];
       for (std::size_t k = 0; k < 6; ++k) own[k] = blocks[k * n + i];

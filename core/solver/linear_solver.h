@@ -15,12 +15,13 @@
 
 namespace ctpm::solver {
 
-/// When a solve may stop. Norms are of the preconditioned residual, whose square is an energy.
+/// When a solve may stop. Norms are those of the preconditioned residual; their square is an energy.
 struct SolverLimits {
-  double relative = 1e-4;  ///< residual against that of the first guess, or against the root of the first guess's
-                           ///< kinetic energy x M x where that is less: dashpots that are far stiffer than the mass
-                           ///< make the first residual so large that soft motions would be left unsolved
-  double absolute = 0;     ///< residual that counts as solved anyway
+  /// Residual relative to that of the first guess. The reference is the root of the kinetic energy x M x of the first
+  /// guess instead where that is less: dashpots far stiffer than the mass make the first residual so large that soft
+  /// motions would be left unsolved.
+  double relative = 1e-4;
+  double absolute = 0;  ///< residual that always counts as solved
   std::int32_t max_iterations = 200;
 };
 
@@ -30,21 +31,24 @@ struct SolverOutcome {
   bool converged = false;
 };
 
-/// Solves A x = b with A = mass + coupling, symmetric and positive definite, in rounds: the residual in double, a
-/// correction by conjugate gradients in float, where the Model is soft enough for that, or in double (iterative
-/// refinement: Higham, "Accuracy and stability of numerical algorithms", 2002, ch. 12). One round is mostly enough.
+/// Solves A x = b with A = mass + coupling, symmetric and positive definite, by iterative refinement (Higham, "Accuracy
+/// and stability of numerical algorithms", 2002, ch. 12). Each round computes the residual in double. Its correction
+/// comes from conjugate gradients, in float if the Model is soft enough and otherwise in double. One round mostly
+/// suffices.
 class LinearSolver {
  public:
-  /// `stiffness_ratio` bounds the largest eigenvalue of M^-1 (A - M) [1]: whether corrections are computed in float.
+  /// `stiffness_ratio` is a bound on the largest eigenvalue of M^-1 (A - M) [1]; it decides whether corrections are
+  /// computed in float.
   LinearSolver(const Model& model, const parallel::Slabs& slabs, parallel::Team& team, const elements::Kernels& kernels,
                double stiffness_ratio);
 
-  /// Takes the diagonal blocks of A. Coordinates that are held, as in Model::held_axes, and the sphere `pinned` stay at
-  /// the first guess: their rows are left out of the system.
+  /// Sets the diagonal blocks of A. Coordinates held by Model::held_axes, and the sphere `pinned`, keep the first
+  /// guess: their rows are left out of the system.
   void set_blocks(const elements::DiagonalBlocks& blocks, std::int32_t pinned);
 
-  /// `x` is the first guess and the result. If it is all zero, since it is a change of a velocity, `guess_energy` is
-  /// energy_of() that. `add_coupling` as for ConjugateGradient, for vectors of float and of double.
+  /// `x` is the first guess and the result. `guess_energy` is given if `x` is all zero because it is the change of a
+  /// velocity; it is then energy_of() that velocity. `add_coupling` as in ConjugateGradient, for vectors of float and
+  /// of double.
   template <class AddCoupling>
   SolverOutcome solve(const elements::Coordinates& b, elements::Coordinates& x, std::optional<double> guess_energy,
                       const SolverLimits& limits, AddCoupling&& add_coupling);
@@ -56,7 +60,8 @@ class LinearSolver {
   template <class Real>
   void set_blocks_of(ConjugateGradient<Real>& gradient, const elements::DiagonalBlocks& blocks, std::int32_t pinned);
 
-  /// Factor by which a round with vectors of Real may reduce the energy of the residual; less is lost in rounding.
+  /// Factor by which one round with vectors of Real may reduce the energy of the residual; a smaller one is lost in
+  /// rounding.
   template <class Real>
   static constexpr double kGain = sizeof(Real) == sizeof(float) ? 1e-10 : 0.0;
 
@@ -64,7 +69,7 @@ class LinearSolver {
   const parallel::Slabs& slabs_;
   parallel::Team& team_;
   const elements::Kernels& kernels_;
-  std::vector<std::int32_t> held_;  ///< spheres of which an axis or more is held
+  std::vector<std::int32_t> held_;  ///< spheres held along one axis or more
   elements::Coordinates residual_;
   std::vector<double> parts_;  ///< of a sum (slab_count)
   std::variant<ConjugateGradient<float>, ConjugateGradient<double>> gradient_;

@@ -16,7 +16,7 @@ class BackwardEuler {
   /// `context` and `solve` must outlive the integrator.
   BackwardEuler(const StepContext& context, ImplicitSolve& solve) : context_(context), solve_(solve), check_(context) {}
 
-  /// One substep from `from` into `to`. False: the step is refused, `report` says why, and `to` holds nothing useful.
+  /// One substep from `from` into `to`. False: the step is refused, `report` says why, and `to` is not usable.
   bool step(const State& from, const contact::HeldTool& tool, const Substep& part, Motion& to, StepReport& report);
 
  private:

@@ -13,18 +13,19 @@
 
 namespace ctpm::stepping {
 
-/// What a scalpel severs in one tick, and the pieces that come loose.
+/// Severs what a scalpel cuts in one tick, and counts the pieces that come loose.
 class BladeSweep {
  public:
   /// `model` must outlive the BladeSweep and have a scalpel.
   explicit BladeSweep(const Model& model);
 
-  /// Moves the scalpel from `last` to `inputs` through the tissue as it rests, and severs what it sweeps. Gives `tool`
-  /// the blade's motion, the elements near it and those that it severed.
+  /// Moves the scalpel from `last` to `inputs` through the resting tissue, and severs what it sweeps. Sets in `tool`
+  /// the motion of the blade, the elements near it and those that it severed.
   void sweep(const contact::Contacts& contacts, const Inputs& last, const Inputs& inputs, contact::HeldTool& tool,
              State& state, StepReport& report);
 
-  /// Severs what has moved through the resting blade while positions went from `before` [m] to State's.
+  /// Severs the elements that moved through the resting blade while positions went from `before` [m] to those of
+  /// `state`.
   void sever_moved(const contact::HeldTool& tool, const Vec3Array& before, State& state, StepReport& report);
 
   /// Reports the pieces that came loose since sweep().

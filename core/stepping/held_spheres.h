@@ -10,13 +10,13 @@
 
 namespace ctpm::stepping {
 
-/// Spheres that do not move along one axis or more.
+/// Spheres that are held along one axis or more.
 class HeldSpheres {
  public:
   HeldSpheres(const Model& model, const parallel::Slabs& slabs);
 
-  /// Sets velocities along held axes of a slab's spheres to 0, and that of the pin's sphere to the pin's. `velocity`:
-  /// x, y and z [m/s]  (sphere_count each).
+  /// Sets the velocities of a slab's spheres to 0 along held axes, and that of the pin's sphere to the pin's velocity.
+  /// `velocity`: x, y and z [m/s] (sphere_count each).
   void stop(const contact::Pin& pin, int slab, std::array<double*, 3> velocity) const;
 
  private:

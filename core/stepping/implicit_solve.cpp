@@ -9,7 +9,7 @@
 namespace ctpm::stepping {
 namespace {
 
-/// Rounds in which contacts that would pull are dropped and the step is solved again.
+/// Solves of a step are repeated at most this often after contacts that would pull are dropped.
 constexpr int kContactRounds = 4;
 
 }  // namespace
@@ -57,7 +57,7 @@ const elements::Coordinates& ImplicitSolve::solve_near(const StateView& predicte
   return velocity_;
 }
 
-/// External forces, ahead of the tissue's, and the first guess of the velocity.
+/// Writes the external forces, to which the tissue adds its own, and the first guess of the velocity.
 void ImplicitSolve::begin(const StateView& state, const contact::Pin& pin, const ExternalLoads& loads, int slab) {
   const parallel::Slabs& slabs = context_.elements.slabs();
   const auto first = std::size_t(slabs.begin(slab)), last = std::size_t(slabs.end(slab));
@@ -69,7 +69,7 @@ void ImplicitSolve::begin(const StateView& state, const contact::Pin& pin, const
   loads.set(first, last, force_);
 }
 
-/// The masses, ahead of the tissue's blocks.
+/// Writes the masses, to which the tissue adds its blocks.
 void ImplicitSolve::begin_blocks(int slab) {
   const parallel::Slabs& slabs = context_.elements.slabs();
   const Model& model = context_.model;
@@ -81,7 +81,7 @@ void ImplicitSolve::begin_blocks(int slab) {
   }
 }
 
-/// Solves until no contact pulls; `change` is the velocity itself, or its change from a prediction.
+/// Solves until no contact pulls. `change` is the velocity itself, or its change from a predictor.
 void ImplicitSolve::solve_contacts(const Beginning& beginning, contact::ImplicitContacts& contacts,
                                    elements::Coordinates& change, StepReport& report) {
   const parallel::Slabs& slabs = context_.elements.slabs();
@@ -109,7 +109,7 @@ void ImplicitSolve::solve_contacts(const Beginning& beginning, contact::Implicit
   }
 }
 
-/// momentum = mass * (velocity - prediction) + h * force [kg m/s] of a slab's spheres.
+/// momentum = mass * (velocity - prediction) + h * force [kg m/s], for a slab's spheres.
 void ImplicitSolve::find_momentum(const Beginning& beginning, double h, int slab) {
   const parallel::Slabs& slabs = context_.elements.slabs();
   const std::size_t n = context_.model.sphere_count(), begin = std::size_t(slabs.begin(slab)),
@@ -126,7 +126,7 @@ void ImplicitSolve::find_momentum(const Beginning& beginning, double h, int slab
   }
 }
 
-/// The row of the balance of momentum of the pin's sphere, with the sign turned; `before` is its velocity at the start.
+/// The momentum balance of the pin's sphere, with opposite sign; `before` is its velocity at the start.
 Vec3 ImplicitSolve::force_on_pin(Vec3 before, const contact::ContactStep& step, const elements::Coordinates& change) {
   const Model& model = context_.model;
   const std::size_t n = model.sphere_count(), i = step.pin.index();

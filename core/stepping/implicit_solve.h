@@ -10,23 +10,23 @@
 
 namespace ctpm::stepping {
 
-/// The solve of an implicit step, linearised once: M (v' - v) = h f(x + h v', v') by one step of Newton's method,
-/// (M + h C + h^2 K) dv = its residual, with what would make the matrix indefinite left out of it (Baraff & Witkin,
-/// "Large steps in cloth simulation", 1998). Contacts that would pull are dropped, and the step is solved again. What
-/// backward Euler and both stages of SDIRK2 share.
+/// Solves an implicit step, linearised once: one step of Newton's method for M (v' - v) = h f(x + h v', v'), that is
+/// (M + h C + h^2 K) dv = residual. Terms that would make the matrix indefinite are left out (Baraff & Witkin, "Large
+/// steps in cloth simulation", 1998). If contacts would pull, they are dropped and the step is solved again. Backward
+/// Euler and both stages of SDIRK2 use it.
 class ImplicitSolve {
  public:
   explicit ImplicitSolve(const StepContext& context);
 
-  /// Velocity [m/s] at the end of a step of `part` that begins with `start`, linearised about spheres that rest; valid
-  /// until the next solve  (3 x sphere_count). Force on the tool, iterations and residual go into `report`.
+  /// Returns the velocity [m/s] at the end of a step of `part` from `start`, linearised about spheres at rest; valid
+  /// until the next solve (3 x sphere_count). Writes the force on the tool, iterations and residual to `report`.
   const elements::Coordinates& solve(const StateView& start, const Substep& part, contact::ImplicitContacts& contacts,
                                      StepReport& report);
 
-  /// As above, linearised about a prediction of the end: `predicted` has its velocity, and the positions to which that
-  /// leads; `before` is the velocity [m/s] at the start. With `keeps_matrix`, the elements' part of the matrix is that
-  /// of the last solve, which must have been of the same length, and Kelvin elongations are those at the end of the
-  /// step. `change`: by which the result differs from the prediction [m/s]  (3 x sphere_count).
+  /// As above, linearised about a predictor of the end. `predicted` has the predicted velocity and the positions to
+  /// which it leads; `before` is the velocity [m/s] at the start. With `keeps_matrix`, the elements' part of the matrix
+  /// is that of the last solve, which must have been of the same length, and Kelvin elongations are those at the end of
+  /// the step. `change`: result minus predicted velocity [m/s] (3 x sphere_count).
   const elements::Coordinates& solve_near(const StateView& predicted, const Vec3Array& before, bool keeps_matrix,
                                           const Substep& part, contact::ImplicitContacts& contacts,
                                           elements::Coordinates& change, StepReport& report);
@@ -35,11 +35,11 @@ class ImplicitSolve {
   double energy_of(const elements::Coordinates& v) { return solver_.energy_of(v); }
 
  private:
-  /// What a step is solved from.
+  /// The velocities from which a step is solved.
   struct Beginning {
-    const Vec3Array& before;                    ///< velocity at its start
-    const Vec3Array* prediction = nullptr;      ///< of the velocity at its end; null: none
-    std::optional<double> prediction_energy{};  ///< energy_of() it
+    const Vec3Array& before;                    ///< at the start of the step
+    const Vec3Array* prediction = nullptr;      ///< predictor of the velocity at the end; null: none
+    std::optional<double> prediction_energy{};  ///< energy_of() the predictor
   };
 
   void begin(const StateView& state, const contact::Pin& pin, const ExternalLoads& loads, int slab);

@@ -9,13 +9,13 @@
 namespace ctpm::stepping {
 namespace {
 
-/// Substeps up to which the explicit step costs less than an implicit solve.
+/// Largest number of substeps for which the explicit step costs less than an implicit solve.
 constexpr std::int32_t kMostExplicitSubsteps = 4;
 
-/// `automatic` keeps this share of the proven step.
+/// The choice keeps to this share of the proven step.
 constexpr double kSafety = 0.9;
 
-/// Per sphere: what bounds its stiffness and its damping, each divided by its mass.
+/// Bounds on the stiffness and the damping of each sphere, divided by its mass.
 struct Bound {
   std::vector<double> stiffness, damping;  ///< [1/s^2], [1/s]  (sphere_count)
 };
@@ -28,7 +28,7 @@ Bound bound_of(const Model& model) {
   };
   const AxialElements& axial = model.axial;
   for (std::size_t i = 0; i < axial.size(); ++i) {
-    // The Kelvin elongation of a two-sphere TPM follows implicitly, so only its spring meets the spheres.
+    // The Kelvin elongation of a two-sphere TPM follows implicitly, so the spheres feel only its spring.
     const double c = axial.law[i] == AxialLaw::two_sphere_tpm ? 0.0 : axial.damping(i);
     for (const std::int32_t end : {axial.a[i], axial.b[i]}) add(end, 2 * axial.k[i], 2 * c);
   }
@@ -55,7 +55,7 @@ double stable_step_bound(const Model& model) {
   for (std::size_t i = 0; i < model.sphere_count(); ++i) {
     if (model.held_axes[i] == kAnchored) continue;
     const double k = bound.stiffness[i], c = bound.damping[i];
-    // The positive root of h^2 k + 2 h c = 4, written so that nothing cancels.
+    // The positive root of h^2 k + 2 h c = 4, written without cancellation.
     const double root = c + std::sqrt(c * c + 4 * k);
     if (root > 0) longest = std::min(longest, 4 / root);
   }

@@ -52,7 +52,7 @@ const Vec3Array& Leapfrog::start_velocity(const State& from, const contact::Pin&
   return pinned_velocity_;
 }
 
-/// velocity = v + h M^-1 f, with v and f in the middle of the step; contacts come later.
+/// velocity = v + h M^-1 f, with v and f at the middle of the step; contacts are added later.
 void Leapfrog::kick(const StateView& middle, const contact::Pin& pin, const Substep& part, Vec3Array& velocity) {
   const std::size_t n = context_.model.sphere_count();
   const parallel::Slabs& slabs = context_.elements.slabs();

@@ -9,15 +9,15 @@
 
 namespace ctpm::stepping {
 
-/// Leapfrog (position Verlet). Half a step of drift with the old velocity, a kick v' = v + h M^-1 f there, and half a
-/// step of drift with the new velocity. Second order for one evaluation of the forces (Leimkuhler & Reich, "Simulating
-/// Hamiltonian dynamics", 2004, ch. 4); first order in the dashpots, which see the old velocity. Explicit in the
-/// elements, implicit in each contact by itself. Stable for steps up to stable_step_bound() (integrator.h).
+/// Leapfrog (position Verlet): half a step of drift with the old velocity, a kick v' = v + h M^-1 f, and half a step of
+/// drift with the new velocity. Second order with one evaluation of the forces (Leimkuhler & Reich, "Simulating
+/// Hamiltonian dynamics", 2004, ch. 4); first order in the dashpots, which see the old velocity. It is explicit in the
+/// elements and solves each contact implicitly by itself. Stable for steps up to stable_step_bound() (integrator.h).
 class Leapfrog {
  public:
   explicit Leapfrog(const StepContext& context);
 
-  /// One substep from `from` into `to`. False: the step is refused, `report` says why, and `to` holds nothing useful.
+  /// One substep from `from` into `to`. False: the step is refused, `report` says why, and `to` is not usable.
   bool step(const State& from, const contact::HeldTool& tool, const Substep& part, Motion& to, StepReport& report);
 
  private:
@@ -29,7 +29,7 @@ class Leapfrog {
   VelocityCheck check_;
   std::vector<double> per_mass_;  ///< 1 / mass [1/kg]  (sphere_count)
   elements::Coordinates force_;   ///< [N]
-  Vec3Array pinned_velocity_;     ///< State's, with that of the pin; empty if the Model has no pin  (sphere_count)
+  Vec3Array pinned_velocity_;     ///< of State, with that of the pin; empty if the Model has no pin (sphere_count)
 };
 
 }  // namespace ctpm::stepping

@@ -19,11 +19,11 @@ struct Motion {
         kelvin_elongation(model.axial.internal_count()) {}
 
   Vec3Array position, velocity;           ///< [m], [m/s]  (sphere_count)
-  Vec3Array acceleration;                 ///< [m/s^2]; empty for other integrators than SDIRK2  (sphere_count)
-  std::vector<double> kelvin_elongation;  ///< [m]  (tpm_count)
+  Vec3Array acceleration;                 ///< [m/s^2]; empty unless the integrator is SDIRK2 (sphere_count)
+  std::vector<double> kelvin_elongation;  ///< [m] (internal_count)
 };
 
-/// Takes `motion` into `state`; the arrays of `motion` are then those that `state` had. Never allocates.
+/// Swaps the arrays of `motion` with those of `state`. Never allocates.
 void commit(Motion& motion, State& state);
 
 /// to = position + h * velocity  (sphere_count); `to` must be another array than `position`.
@@ -34,8 +34,8 @@ void drift(const parallel::Slabs& slabs, parallel::Team& team, const Vec3Array& 
 void drift(const parallel::Slabs& slabs, parallel::Team& team, const Vec3Array& velocity, double h,
            Vec3Array& position);
 
-/// Gives `to` the `velocity` (3 x sphere_count) that was solved for, and the positions that it leads to from `position`
-/// in a step of `h` [s].
+/// Sets the velocities of `to` to the solution `velocity` (3 x sphere_count), and its positions to those after a step
+/// of `h` [s] from `position`.
 void commit_velocity(const parallel::Slabs& slabs, parallel::Team& team, const elements::Coordinates& velocity,
                      const Vec3Array& position, double h, Motion& to);
 

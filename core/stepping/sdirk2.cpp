@@ -24,7 +24,7 @@ void stretch(const Vec3Array& from, double factor, Vec3Array& to) {
   stretch(from.x, factor, to.x), stretch(from.y, factor, to.y), stretch(from.z, factor, to.z);
 }
 
-/// to = velocity + h * acceleration; without accelerations they are 0.
+/// to = velocity + h * acceleration; the acceleration is 0 if none is known.
 void extrapolate(const Vec3Array& velocity, const Vec3Array& acceleration, double h, Vec3Array& to) {
   const bool is_known = acceleration.size() > 0;
   for (std::size_t i = 0; i < to.size(); ++i) to.set(i, velocity[i] + h * (is_known ? acceleration[i] : Vec3{}));
@@ -74,7 +74,7 @@ bool Sdirk2::step(const State& from, const contact::HeldTool& tool, const Subste
   return true;
 }
 
-/// Whether no sphere moves farther in the step than a prediction is good for.
+/// Whether every sphere moves so little in the step that a predictor is good enough.
 bool Sdirk2::is_short(const State& from, const contact::HeldTool& tool, const Substep& part) const {
   const double limit = kLongestMove * shortest_element_;
   const double jump =
@@ -96,8 +96,8 @@ bool Sdirk2::two_stages(const State& from, const contact::HeldTool& tool, const 
   return dirk_stage(start, tool, {h, part.time, part.share, part.has_loads}, true, to, report);
 }
 
-/// One stage from `start` into `to`, linearised about where the velocity in predicted_ leads; the second stage takes
-/// the matrix of the first.
+/// One stage from `start` into `to`, linearised about the positions to which the velocity in predicted_ leads. The
+/// second stage reuses the matrix of the first.
 bool Sdirk2::dirk_stage(const StateView& start, const contact::HeldTool& tool, const Substep& part, bool is_second,
                         Motion& to, StepReport& report) {
   elements::Elements& elements = context_.elements;
@@ -105,7 +105,7 @@ bool Sdirk2::dirk_stage(const StateView& start, const contact::HeldTool& tool, c
   stage_pin_ = contact::Contacts::pin(tool, start.position, part.share, part.h);
   if (stage_pin_.is_held()) predicted_.velocity.set(stage_pin_.index(), stage_pin_.velocity);
   drift(slabs, context_.team, start.position, predicted_.velocity, part.h, predicted_.position);
-  // A new matrix accounts for the change of the Kelvin elongations in the step; an old one must be given their end.
+  // A new matrix accounts for the change of Kelvin elongations during the step; a reused one needs those at its end.
   if (is_second)
     elements.find_kelvin(part.h, {start, predicted_.position, predicted_.velocity, start.kelvin_elongation},
                          predicted_.kelvin_elongation);
@@ -121,7 +121,7 @@ bool Sdirk2::dirk_stage(const StateView& start, const contact::HeldTool& tool, c
   return true;
 }
 
-/// Part of the kinetic energy at the end of the last stage that its prediction missed; the pin's sphere does not count.
+/// Share of the kinetic energy at the end of the last stage that its predictor missed; the pin's sphere does not count.
 double Sdirk2::predictor_error(const contact::Pin& pin) {
   const std::size_t n = context_.model.sphere_count();
   const elements::Coordinates& velocity = *stage_velocity_;

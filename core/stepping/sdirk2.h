@@ -10,15 +10,16 @@
 
 namespace ctpm::stepping {
 
-/// SDIRK2: L-stable, second order (Alexander, "Diagonally implicit Runge-Kutta methods for stiff O.D.E.'s", 1977). Two
-/// stages, each a shorter step of backward Euler, linearised about a prediction; the second starts where the first
-/// leads in the rest of the step. A step that is too long for the motion is done by backward Euler alone.
+/// SDIRK2: L-stable, second order (Alexander, "Diagonally implicit Runge-Kutta methods for stiff O.D.E.'s", 1977). Each
+/// of its two stages is a shorter step of backward Euler, linearised about a predictor. The second stage starts from
+/// the first, extrapolated over the rest of the step. If the step is too long for the motion, backward Euler does it
+/// alone.
 class Sdirk2 {
  public:
   /// `context` and `solve` must outlive the integrator.
   Sdirk2(const StepContext& context, ImplicitSolve& solve);
 
-  /// One substep from `from` into `to`. False: the step is refused, `report` says why, and `to` holds nothing useful.
+  /// One substep from `from` into `to`. False: the step is refused, `report` says why, and `to` is not usable.
   bool step(const State& from, const contact::HeldTool& tool, const Substep& part, Motion& to, StepReport& report);
 
  private:
@@ -34,9 +35,9 @@ class Sdirk2 {
   BackwardEuler fallback_;
   VelocityCheck check_;
   double shortest_element_;                                ///< at rest [m]
-  Motion predicted_;                                       ///< end of a stage
+  Motion predicted_;                                       ///< predictor of the end of a stage
   Motion second_start_;                                    ///< end of the first stage, then start of the second
-  elements::Coordinates change_;                           ///< of the last stage's velocity from its prediction [m/s]
+  elements::Coordinates change_;                           ///< velocity of the last stage minus its predictor [m/s]
   const elements::Coordinates* stage_velocity_ = nullptr;  ///< solution of the last stage
   contact::Pin stage_pin_;                                 ///< of the last stage
 };

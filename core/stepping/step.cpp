@@ -32,7 +32,7 @@ using AnyIntegrator = std::variant<std::monostate, Leapfrog, BackwardEuler, Sdir
 
 }  // namespace
 
-/// Kernels, integrator and scratch of one Model.
+/// Kernels, integrator and scratch memory of one Model.
 struct Stepper::Parts {
   Parts(const Model& m, const StepperOptions& options)
       : model(m),
@@ -65,11 +65,12 @@ struct Stepper::Parts {
   elements::Elements elements;
   contact::Contacts contacts;
   StepContext context{model, kernels, team, elements, contacts};
-  std::optional<ImplicitSolve> implicit_solve;  ///< of implicit integrators
+  std::optional<ImplicitSolve> implicit_solve;  ///< empty for leapfrog
   AnyIntegrator integrator;
   std::optional<BladeSweep> blade;  ///< empty if the Model has no scalpel
-  Motion next;                      ///< to which a substep leads
-  State trial;                      ///< of a tick that changes more than once before it is taken
+  Motion next;                      ///< result of a substep
+  /// Trial state of a tick that changes State more than once.
+  State trial;
   bool has_loads = true;
 };
 
@@ -80,7 +81,7 @@ contact::HeldTool Stepper::Parts::hold(const Inputs& last, const Inputs& inputs)
   return tool;
 }
 
-/// One substep into `next`. False: it must be refused.
+/// One substep into `next`. False: it is refused.
 bool Stepper::Parts::advance(const State& from, const contact::HeldTool& tool, const Substep& part,
                              StepReport& report) {
   return std::visit(
@@ -93,7 +94,7 @@ bool Stepper::Parts::advance(const State& from, const contact::HeldTool& tool, c
       integrator);
 }
 
-/// All substeps of a tick. False: one was refused; `state` is then as before that one.
+/// All substeps of a tick. False: one was refused, and `state` is as before that one.
 bool Stepper::Parts::run_substeps(State& state, const contact::HeldTool& tool, StepReport& report) {
   const std::int32_t substeps = choice.substeps;
   const double h = model.tick / substeps;
@@ -101,7 +102,7 @@ bool Stepper::Parts::run_substeps(State& state, const contact::HeldTool& tool, S
     const double share = double(k) / substeps, time = (double(state.tick) + share) * model.tick;
     if (!advance(state, tool, {h, time, share, has_loads}, report)) return false;
     commit(next, state);
-    // The positions before are now in `next`.
+    // `next` now holds the positions before the substep.
     if (tool.is(ToolKind::scalpel)) blade->sever_moved(tool, next.position, state, report);
   }
   return true;
@@ -120,12 +121,12 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
   if (!is_usable(model_, inputs)) report.status = StepStatus::bad_input;
   if (!parts.choice.holds) report.status = StepStatus::too_long;
   if (report.status != StepStatus::ok) return report;
-  // A tool that was not held before has not moved yet.
+  // A tool that has just been picked up has not moved yet.
   const Inputs last = inputs.tool >= 0 && state.last_inputs.tool == inputs.tool ? state.last_inputs : inputs;
   contact::HeldTool tool = parts.hold(last, inputs);
   const bool cuts = tool.is(ToolKind::scalpel);
-  // An integrator leaves State as it is until its substep is taken. Ticks that change State more than once do that in
-  // `trial`.
+  // An integrator leaves State unchanged until its substep is committed. Ticks that change State more than once work on
+  // the trial state.
   const bool changes_once = !cuts && parts.choice.substeps == 1;
   if (!changes_once) parts.trial = state;
   State& current = changes_once ? state : parts.trial;

@@ -13,36 +13,40 @@ namespace ctpm::stepping {
 
 enum class StepStatus : std::int32_t {
   ok = 0,
-  not_converged = 1,  ///< the solve stopped at its count; State went on with what was reached
-  bad_input = 2,      ///< the tool's pose is not finite or its index unknown; State is as before the step
-  diverged = 3,       ///< a number became infinite or not a number; State is as before the step
-  too_long = 4,       ///< the explicit integrator of the Model cannot hold steps of this length; State is as before
+  not_converged = 1,  ///< the solve reached its iteration limit; State advances with the last iterate
+  /// The tool's index is unknown, its position not finite or its quaternion not of unit length; State is as before.
+  bad_input = 2,
+  diverged = 3,  ///< a sphere is faster than 10^4 m/s or its speed not a number; State is as before
+  too_long = 4,  ///< steps are longer than leapfrog is proven stable for; State is as before
 };
 
-/// Whether a tick was not done, and State is as before it.
+/// Whether the tick was refused, and State is as before it.
 constexpr bool is_refused(StepStatus status) { return status >= StepStatus::bad_input; }
 
-/// What one tick did. Never thrown, always complete.
+/// Result of one tick. Never thrown, always complete.
 struct StepReport {
   StepStatus status = StepStatus::ok;
-  std::int32_t worst_sphere = -1;  ///< sphere that failed or moves fastest; -1: none
-  double residual = 0;             ///< of the last solve, relative
+  std::int32_t worst_sphere = -1;  ///< the sphere that failed or the fastest one; -1: none
+  double residual = 0;             ///< of the last solve, relative to its first guess
   std::int32_t iterations = 0;     ///< of all solves of the tick
-  Vec3 tool_force;                 ///< force of the tissue on the tool, ball, pin or blade [N]
-  double depth = 0;                ///< largest displacement from rest of a touched sphere, along the contact [m]
-  std::int32_t contacts = 0;       ///< spheres touched; by a blade, elements before its edge or on its flanks
-  std::int32_t severed = 0;        ///< elements severed in this tick
-  std::int32_t came_loose = 0;     ///< pieces that came loose in this tick: how many more there are than before
+  Vec3 tool_force;                 ///< force of the tissue on the tool: ball, pin or blade [N]
+  /// Largest displacement from rest of a sphere that a ball touches, along its contact; of a pin, that of its sphere
+  /// [m].
+  double depth = 0;
+  std::int32_t contacts = 0;    ///< spheres touched; for a blade, elements ahead of its edge or on its flanks
+  std::int32_t severed = 0;     ///< elements, constraints and angle springs severed in this tick
+  std::int32_t came_loose = 0;  ///< pieces that came loose in this tick: the increase of their number
 };
 
-/// What a Stepper may use of the machine. None of it changes a bit of what comes out.
+/// What a Stepper may use of the machine. No option changes a bit of the result.
 struct StepperOptions {
-  int threads = 1;  ///< >= 1; more only help from some thousand spheres on
+  int threads = 1;  ///< >= 1; more threads help from some thousand spheres on
   elements::InstructionSet instruction_set = elements::best_instruction_set();
 };
 
-/// Advances States of one Model. Holds the kernels chosen for the Model and their scratch memory, nothing
-/// else: any State of the Model may be given at any call, in any order, and step() allocates nothing.
+/// Advances States of one Model. It holds the kernels of the Model, their scratch memory and the threads, and no
+/// simulated state: any State of the Model may be given at any call, in any order. step() allocates scratch memory in
+/// the first tick and in the first one with a scalpel, and nothing afterwards.
 class Stepper {
  public:
   /// `model` must outlive the Stepper.
@@ -50,14 +54,14 @@ class Stepper {
   ~Stepper();
   Stepper(Stepper&&) noexcept;
 
-  /// One tick. Same Model, State and Inputs: the same bits, on every machine.
+  /// One tick. The same Model, State and Inputs give the same bits on every machine.
   StepReport step(State& state, const Inputs& inputs);
 
-  /// Lets the scene come to rest under gravity without a tool, for at most `ticks` ticks; State::tick stays
-  /// 0.
+  /// Lets the scene come to rest under gravity, without a tool and without Model::loads, for at most `ticks` ticks. It
+  /// ends when no sphere is faster than 10^-5 m/s. State::tick does not change.
   StepReport settle(State& state, std::int64_t ticks);
 
-  /// The Model's integrator, and whether it holds.
+  /// The Model's integrator, and whether it is stable.
   const IntegratorChoice& integrator() const;
 
  private:

@@ -13,11 +13,11 @@ namespace ctpm::stepping {
 struct Substep {
   double h;               ///< length [s]
   double time;            ///< simulated time at its end [s]
-  double share;           ///< of the tool's motion in the tick that is done at its end, 0 to 1
-  bool has_loads = true;  ///< Model::loads act (they do not while a scene settles)
+  double share;           ///< part of the tick's tool motion that is done at its end, 0 to 1
+  bool has_loads = true;  ///< whether Model::loads act (they do not while a scene settles)
 };
 
-/// What the integrator of one Model works with; all of it outlives the integrator.
+/// What an integrator refers to; all of it must outlive the integrator.
 struct StepContext {
   const Model& model;
   const elements::Kernels& kernels;
@@ -26,7 +26,7 @@ struct StepContext {
   contact::Contacts& contacts;
 };
 
-/// Reports what the tool touches at the end of a substep, with the spheres at `position` [m].
+/// Reports the contacts at the end of a substep, with the spheres at `position` [m].
 inline void report_contacts(const contact::ContactSet& contacts, const Vec3Array& position, StepReport& report) {
   report.depth = contacts.depth(position), report.contacts = contacts.touched();
 }

@@ -5,7 +5,7 @@
 namespace ctpm::stepping {
 namespace {
 
-/// A sphere faster than this [m/s] has left every physical range.
+/// Limit of physical speeds [m/s].
 constexpr double kFastest = 1e4;
 
 }  // namespace
@@ -25,7 +25,7 @@ bool VelocityCheck::passes(const Vec3Array& velocity, StepReport& report) {
   report.worst_sphere = slabs.begin(slab);
   for (std::int32_t sphere = slabs.begin(slab); sphere < slabs.end(slab); ++sphere) {
     const Vec3 v = velocity[std::size_t(sphere)];
-    if (dot(v, v) < *fastest) continue;  // not so if it is not a number
+    if (dot(v, v) < *fastest) continue;  // false if the speed is not a number
     report.worst_sphere = sphere;
     break;
   }

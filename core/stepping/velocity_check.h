@@ -8,7 +8,7 @@
 
 namespace ctpm::stepping {
 
-/// Refuses velocities that no tissue has.
+/// Refuses unphysical velocities.
 class VelocityCheck {
  public:
   explicit VelocityCheck(const StepContext& context);

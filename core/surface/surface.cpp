@@ -23,7 +23,7 @@ double kernel(double distance, double reach) {
   return q >= 1 ? 0.0 : (1 - q * q) * (1 - q * q);
 }
 
-/// A sphere and how far it is from the point in question.
+/// A sphere and its distance from the point to be bound.
 struct Candidate {
   double distance;
   std::int32_t sphere;
@@ -32,7 +32,7 @@ struct Candidate {
   }
 };
 
-/// Spheres by lattice row, so that neighbours of a point are found without looking at all spheres.
+/// Spheres by lattice row, so that a search for neighbours does not visit all spheres.
 class CellIndex {
  public:
   explicit CellIndex(const FilledOrgan& organ) : organ_(organ), least_(organ.cell[0]), most_(organ.cell[0]) {
@@ -41,7 +41,7 @@ class CellIndex {
     for (const auto& c : organ.cell)
       for (std::size_t axis = 0; axis < 3; ++axis)
         least_[axis] = std::min(least_[axis], c[axis]), most_[axis] = std::max(most_[axis], c[axis]);
-    // Spheres of a row side by side, in the order of i.
+    // Sorts the spheres of a row by i.
     first_.assign(std::size_t(rows(1)) * std::size_t(rows(2)) + 1, 0);
     for (const auto& c : organ.cell) ++first_[row_of(c[1], c[2]) + 1];
     for (std::size_t row = 1; row < first_.size(); ++row) first_[row] += first_[row - 1];
@@ -89,10 +89,10 @@ class CellIndex {
   std::vector<Entry> in_row_;
 };
 
-/// The spheres that a vertex follows: all within reach, or the nearest few where the reach catches too few.
+/// Finds the spheres of the binding of a vertex: all within reach, or the nearest few if the reach holds too few.
 void find_followed(const FilledOrgan& organ, const CellIndex& index, Vec3 point, std::vector<Candidate>& found,
                    double& reach) {
-  // The nearest few may lie just within the reach and stretch it by this much.
+  // If the nearest few lie just within the reach, they stretch it by this factor.
   constexpr double kStretch = 1.05;
   const double usual = kReachInSpacings * organ.spacing;
   const std::size_t fewest = std::min(organ.centre.size(), kFewestFollowed);
@@ -139,7 +139,7 @@ std::vector<double> follow_weights(Vec3 point, std::span<const Vec3> candidates,
   double total = 0;
   for (std::size_t i = 0; i < candidates.size(); ++i) total += weight[i] = kernel(norm(candidates[i] - point), radius);
   if (total <= 0) {
-    // Nothing in reach: follow the nearest alone.
+    // Nothing is in reach: follow the nearest sphere alone.
     std::size_t nearest = 0;
     for (std::size_t i = 1; i < candidates.size(); ++i)
       if (norm(candidates[i] - point) < norm(candidates[nearest] - point)) nearest = i;
@@ -155,7 +155,7 @@ std::vector<double> follow_weights(Vec3 point, std::span<const Vec3> candidates,
   };
   for (std::size_t i = 0; i < candidates.size(); ++i) moments += weight[i] / total * basis(i) * basis(i).transpose();
   const Eigen::FullPivLU<Eigen::Matrix4d> lu(moments);
-  constexpr double kSpansSpace = 1e-4;  // smallest pivot against the largest; below it the weights would explode
+  constexpr double kSpansSpace = 1e-4;  // smallest pivot relative to the largest; below it the weights would explode
   const bool spans_space = std::abs(lu.matrixLU()(3, 3)) > kSpansSpace * std::abs(lu.matrixLU()(0, 0));
   const Eigen::Vector4d correction =
       spans_space ? Eigen::Vector4d(lu.solve(Eigen::Vector4d::UnitX())) : Eigen::Vector4d::UnitX();
@@ -166,7 +166,7 @@ std::vector<double> follow_weights(Vec3 point, std::span<const Vec3> candidates,
 void bind_surface(FilledOrgan& organ, int threads) {
   CTPM_CHECK(!organ.centre.empty(), "binding needs spheres");
   const CellIndex index(organ);
-  // Runs of equal length whatever the threads, each thread takes the next one that is free.
+  // Runs have equal length on any number of threads; each thread takes the next free one.
   constexpr std::size_t kRun = 4096;
   const std::size_t vertex_count = organ.surface.vertex.size(), run_count = (vertex_count + kRun - 1) / kRun;
   std::vector<SurfaceBinding> runs(run_count);

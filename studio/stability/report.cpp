@@ -138,7 +138,7 @@ Result<Done> write_stability_report(const std::string& folder, const std::vector
       "the square of its share s of the longest stable step, so there the bound is 1 / (1 - s^2) times that, and the "
       "mean "
       "of the second half may not pass that of the first. All bounds have a slack of 1e-4 of what is stored and in "
-      "motion, as solves stop at a residual. SDIRK2 says beforehand that it damps nothing by itself: where energy "
+      "motion, as solves stop at a residual. SDIRK2 says beforehand that it has no numerical damping: where energy "
       "grows or "
       "rest does not come, it counts as refused, with what was seen.");
   const std::vector<reports::Section> sections = failures(rows);

@@ -21,8 +21,8 @@ void find_directions(const AxialArrays& m, const AxialBatch& batch, Directions& 
   }
 }
 
-/// What tension is multiplied by: Eq. 8's factor of a whole triple, from the largest tilt of its spheres, and nothing
-/// where the element is severed. False: by one everywhere, and `factor` is not written.
+/// Factors of the tension: that of Eq. 8 for a whole triple, from the largest tilt of its spheres, and 0 where the
+/// element is severed. False: all factors are 1, and `factor` is not written.
 bool find_factors(const AxialArrays& m, const AxialBatch& batch, double* __restrict factor) {
   if (m.softness == nullptr && m.severed == nullptr) return false;
   if (m.softness != nullptr) {
@@ -43,7 +43,7 @@ bool find_factors(const AxialArrays& m, const AxialBatch& batch, double* __restr
   return true;
 }
 
-/// In one loop, so that nothing of an element goes to memory and back but its force.
+/// One loop per batch: only the force of an element is written to memory.
 template <AxialLaw kLaw, bool kHasFactors>
 void add_axial_forces_of(const AxialArrays& m, const AxialBatch& batch) {
   const int32_t n = batch.count;
@@ -104,7 +104,7 @@ void find_tension(const AxialArrays& m, const AxialBatch& batch, const Direction
   if (batch.law == AxialLaw::two_sphere_tpm) {
     const double *spring = k, *unit = c, *viscosity = c + n;
     const double* kelvin = m.kelvin_elongation + batch.internal;
-    // The implicit step of c z' + k1 z = k2 (x - z) is solved for z, which leaves a spring with an offset.
+    // Solving the implicit step of c z' + k1 z = k2 (x - z) for z leaves a spring with an offset.
     CTPM_INDEPENDENT
     for (int32_t i = 0; i < n; ++i) {
       const double damping = viscosity[i] / h, sum = spring[i] + unit[i] + damping;
@@ -136,7 +136,7 @@ void linearise_axial_of(const AxialArrays& m, const AxialBatch& batch) {
   if (find_factors(m, batch, factor)) CTPM_INDEPENDENT
   for (int32_t i = 0; i < n; ++i) tension[i] *= factor[i], coupling[i] *= factor[i];
 
-  // Tension stiffens across the element; compression would soften and is left out, which keeps the matrix positive
+  // Tension stiffens across the element. Compression would soften; it is left out, which keeps the matrix positive
   // definite.
   alignas(64) double q[6][kBatch], pull[3][kBatch], kept[4][kBatch];
   const double hh = m.h * m.h;

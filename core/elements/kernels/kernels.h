@@ -8,62 +8,65 @@
 namespace ctpm::elements {
 
 /// Vector instructions that the inner loops may use. All give the same bits: every lane does what scalar code does, in
-/// the same order, and nothing is contracted.
+/// the same order, and multiply-adds are not contracted.
 enum class InstructionSet : std::int32_t { baseline = 0, avx2 = 1, avx512 = 2 };
 
-/// The widest that this machine has.
+/// The widest set that this machine has.
 InstructionSet best_instruction_set();
 
 /// "baseline", "avx2", "avx512".
 const char* name_of(InstructionSet set);
 
-/// Most elements of a batch; what a loop keeps of a batch stays in the first cache.
+/// Capacity of a batch in elements. The scratch memory of one batch fits the first-level cache.
 inline constexpr std::int32_t kBatch = 64;
 
-/// Where loops over one slab's elements add: rows of the slab's own spheres. They lie apart from those of other slabs,
-/// since processors that write to neighbouring memory wait for each other.
+/// Where the loops over one slab's elements add: rows of the slab's own spheres. Slabs keep them apart, since cores
+/// that write to neighbouring memory wait for each other (false sharing).
 template <class Real>
 struct SlabTarget {
   Real* data;
   std::int32_t begin;  ///< first sphere of the slab
-  std::size_t stride;  ///< from row to row
+  std::size_t stride;  ///< distance between rows
 };
 
-/// Axial elements of one law, or springs among Kelvin units (c = 0), whose two ends both advance by one sphere from
-/// place to place, so that loops need no index gathers. Where a lattice row leaves out a few, places without an element
-/// (k = 0) bridge the gap. An element between two slabs has a place for each of them, which adds to that slab's spheres
-/// only, so that slabs never wait for each other.
+/// Axial elements of one law, or springs among Kelvin units (c = 0). Both ends advance by one sphere from place to
+/// place, so that the loops gather no indices. Where a lattice row lacks a few elements, empty places with k = 0 bridge
+/// the gap. An element between two slabs has a place in each; each place adds only to the spheres of its slab, so that
+/// slabs never wait for each other.
 struct AxialBatch {
-  std::int32_t count;       ///< in [1, kBatch]
-  std::int32_t place;       ///< first place
-  std::int32_t a, b;        ///< ends of the first element
-  std::int32_t parameters;  ///< where its rows of `count` parameters begin: rest length, k; then c, or kelvin_k and c
-  std::int32_t internal;    ///< first internal variable, of a batch of two-sphere TPMs
-  bool adds_a, adds_b;      ///< whether ends a, b are the slab's own
-  AxialLaw law;             ///< chosen once: loops ask once for each batch
+  std::int32_t count;  ///< in [1, kBatch]
+  std::int32_t place;  ///< first place
+  std::int32_t a, b;   ///< ends of the first element
+  /// Offset of its rows of `count` parameters: rest length, k; then c, or kelvin_k and c.
+  std::int32_t parameters;
+  std::int32_t internal;  ///< first internal variable, of a batch of two-sphere TPMs
+  bool adds_a, adds_b;    ///< whether ends a, b are the slab's own
+  AxialLaw law;           ///< loops branch on it once per batch
 };
 
-/// What the axial loops read and write. Pointers are null where the Model has no such thing.
+/// Arrays that the axial loops read and write. A pointer is null if the Model has no such array.
 struct AxialArrays {
   std::size_t spheres;
   const double *x, *y, *z, *vx, *vy, *vz;  ///< (sphere_count)
   const double* parameters;
   const double* softness;            ///< (sphere_count)
   const std::int32_t* third;         ///< (place_count)
-  const std::int32_t* element;       ///< row of Model::axial, any where a place has none (place_count)
+  const std::int32_t* element;       ///< row of Model::axial; arbitrary at places without an element (place_count)
   const std::uint8_t* severed;       ///< (axial_count)
   const double* kelvin_elongation;   ///< (internal_count)
   SlabTarget<double> force, blocks;  ///< three and six rows
   double h;
-  bool with_dashpots;                        ///< a linearisation's force has those of the dashpots
+  bool with_dashpots;                        ///< the forces of a linearisation include those of dashpots
   float *root_x, *root_y, *root_z, *across;  ///< linearised coupling (place_count)
 };
 
-/// Lines of three spheres whose middle is drawn towards the middle of its ends: constraints and angle springs. If the
-/// spheres all advance by one from line to line, the lines are a row: it ends before its three rows of spheres overlap,
-/// and may have places without a line (k = 0) behind the last, so that it fills whole vectors. Lines whose spheres are
-/// in several slabs are in a batch of each of them, which adds to that slab's spheres only; all have the same places,
-/// which the slab of the middle spheres writes.
+/// Lines of three spheres whose middle is pulled towards the midpoint of its ends: constraints and angle springs.
+///
+/// If the three spheres all advance by one from line to line, the lines form a row. A row ends before its three ranges
+/// of spheres overlap. Places without a line (k = 0) may follow its last line, to fill whole vectors.
+///
+/// Lines with spheres in several slabs are in a batch of each of these slabs, which adds only to the spheres of its
+/// slab. These batches have the same places, which the slab of the middle spheres writes.
 struct LineBatch {
   std::int32_t count;           ///< lines, in [1, kBatch]
   std::int32_t places;          ///< in [count, kBatch]; `count` if not a row
@@ -79,7 +82,7 @@ struct LineArrays {
   const double* k;                   ///< (place_count)
   const std::int32_t* line;          ///< line of each place (place_count)
   const std::uint8_t* severed;       ///< (line_count) or null
-  bool is_constraint;                ///< Eq. 2; if not, an angle spring
+  bool is_constraint;                ///< Eq. 2; otherwise an angle spring
   double* softness;                  ///< (sphere_count) or null
   const double* mass;                ///< (sphere_count)
   SlabTarget<double> force, blocks;  ///< three and six rows
@@ -88,7 +91,7 @@ struct LineArrays {
   float *along_x, *along_y, *along_z, *isotropic;  ///< linearised coupling (place_count)
 };
 
-/// What the solver's loops read and write; vectors are (3 x sphere_count), `inverse` is (6 x sphere_count).
+/// Arrays that the loops of the solver read and write. Vectors are (3 x sphere_count), `inverse` is (6 x sphere_count).
 template <class Real>
 struct SolverArrays {
   std::size_t spheres;
@@ -97,7 +100,7 @@ struct SolverArrays {
   Real *solution, *residual, *preconditioned, *direction, *product;
 };
 
-/// The loops of an iterative solve with vectors of Real, which is float or double. Ranges are of spheres.
+/// Loops of an iterative solver with vectors of Real, float or double. Ranges are of spheres.
 template <class Real>
 struct SolverKernels {
   void (*apply_axial)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last, const Real* v,
@@ -111,7 +114,7 @@ struct SolverKernels {
   /// direction = preconditioned + turn * direction, product = mass * direction.
   void (*turn)(const SolverArrays<Real>&, Real turn, std::size_t begin, std::size_t end);
   double (*curvature)(const SolverArrays<Real>&, std::size_t begin, std::size_t end);  ///< direction . product
-  /// Goes `step` along the direction; returns residual . preconditioned.
+  /// Moves the solution by `step` along the direction; returns residual . preconditioned.
   double (*descend)(const SolverArrays<Real>&, Real step, std::size_t begin, std::size_t end);
 };
 
@@ -120,7 +123,7 @@ struct Kernels {
   void (*add_axial_forces)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last);
   void (*linearise_axial)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last);
 
-  /// lambda of lines whose middle spheres are the slab's own, and those spheres' softness (Eq. 8).
+  /// Computes lambda of lines whose middle spheres are in the slab, and the softness of those spheres (Eq. 8).
   void (*measure_line)(const LineArrays&, const LineBatch&);
   void (*add_line_forces)(const LineArrays&, const LineBatch&);
   /// False: the coupling is too small to matter.
@@ -148,7 +151,7 @@ const SolverKernels<Real>& solver_kernels(const Kernels& kernels) {
     return kernels.full;
 }
 
-/// The loops for a set that this machine has; the nearest narrower one if it has not.
+/// The loops for `set`, or for the widest narrower set that this machine has.
 const Kernels& kernels_for(InstructionSet set);
 
 }  // namespace ctpm::elements

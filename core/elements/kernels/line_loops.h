@@ -3,17 +3,17 @@
 namespace ctpm::elements::CTPM_KERNELS {
 namespace {
 
-/// Couplings below this part of the sphere's mass change the matrix by less than any solver tolerance.
+/// Couplings below this share of the mass of the sphere change the matrix by less than any solver tolerance.
 constexpr double kNegligibleCoupling = 1e-6;
 
-/// Couplings of lines below this part of the sphere's mass are left out of the preconditioner, where they save less
-/// than they cost.
+/// Couplings of lines below this share of the mass of the sphere are left out of the preconditioner: there they save
+/// less than they cost.
 constexpr double kLeadingCoupling = 0.05;
 
-/// Below this product of four lengths [m^4] there is no line.
+/// Below this product of four lengths [m^4] a line is degenerate.
 constexpr double kLeastProduct = 1e-300;
 
-/// Where one of the three spheres of each of a batch's lines is.
+/// Indices of one of the three spheres of each line of a batch.
 template <bool kInRow>
 struct Spheres {
   const int32_t* list;
@@ -22,12 +22,12 @@ struct Spheres {
   size_t operator[](int32_t i) const { return size_t(kInRow ? first + i : list[i]); }
 };
 
-/// u of a line, and the squares of its length and of half the length from A to E.
+/// u of a line, its squared length, and the square of half the length from A to E.
 struct Tilt {
   double x, y, z, offset_squared, half_squared;
 };
 
-/// Those of a batch's lines.
+/// The tilts of a batch's lines.
 template <bool kInRow>
 struct Tilts {
   const double *x, *y, *z;
@@ -55,8 +55,8 @@ struct Three {
   Real x, y, z;
 };
 
-/// Adds what `act` makes of u, or of its rate, to the middle spheres of a batch's lines, and takes half of it from each
-/// end.
+/// Adds the result of `act` on u, or on its rate, to the middle spheres of a batch's lines. Subtracts half of it from
+/// each end.
 template <class Real, class Act>
 void act_in_row(const LineBatch& batch, const Real* x, const Real* y, const Real* z, const SlabTarget<Real>& target,
                 const Act& act) {
@@ -70,7 +70,7 @@ void act_in_row(const LineBatch& batch, const Real* x, const Real* y, const Real
         i, Three<Real>{cx[i] - half * (ax[i] + ex[i]), cy[i] - half * (ay[i] + ey[i]), cz[i] - half * (az[i] + ez[i])});
   };
   if (batch.adds_a && batch.adds_c && batch.adds_e) {
-    // In one loop, so that nothing of a line goes to memory and back.
+    // In one loop, so that nothing of a line is stored and read back.
     const size_t stride = target.stride;
     Real *tax = target.data + (batch.a - target.begin), *tay = tax + stride, *taz = tay + stride;
     Real *tcx = target.data + (batch.c - target.begin), *tcy = tcx + stride, *tcz = tcy + stride;
@@ -135,7 +135,7 @@ void scatter_line_blocks(const LineArrays& m, const LineBatch& batch, const doub
   }
 }
 
-/// k of a batch's lines, nothing where severed: those in `room` if any line of the Model may be severed.
+/// k of a batch's lines, 0 where severed. The result is in `room` if any line of the Model may be severed.
 const double* find_stiffness(const LineArrays& m, const LineBatch& batch, double* __restrict room) {
   const double* k = m.k + batch.place;
   if (m.severed == nullptr) return k;
@@ -145,9 +145,10 @@ const double* find_stiffness(const LineArrays& m, const LineBatch& batch, double
   return room;
 }
 
-/// Eq. 2 with Eq. 8: lambda = 2 k' (1 - cos theta), and k' = k / (1 + tan theta) with the largest tilt of lines centred
-/// on the same sphere. With u and half the vector l from A to E, 1 / (1 + tan theta) = l^2 / (l^2 + root(u^2 l^2)); and
-/// with r^2 = u^2 + l^2, without cancellation at small tilt, 1 - cos theta = u^2 / (r^2 + root(r^2 l^2)).
+/// Eq. 2 with Eq. 8: lambda = 2 k' (1 - cos theta), and k' = k / (1 + tan theta) with the largest tilt of the lines
+/// centred on the same sphere. Let l be half the vector from A to E, and r^2 = u^2 + l^2. Then
+/// 1 / (1 + tan theta) = l^2 / (l^2 + root(u^2 l^2)) and 1 - cos theta = u^2 / (r^2 + root(r^2 l^2)),
+/// without cancellation at small tilt.
 template <bool kInRow>
 void measure_constraints(const LineArrays& m, const LineBatch& batch) {
   const Tilts<kInRow> tilts(m, batch);
@@ -199,7 +200,7 @@ struct Softness {
   }
 };
 
-/// -lambda u on the middle spheres, half of the opposite on the ends.
+/// Adds -lambda u to the middle spheres and half of the opposite to each end.
 void add_pull(const LineArrays& m, const LineBatch& batch, const Softness& found) {
   const double *softness = found.of, *lambda = m.lambda + batch.place;
   act_on_offsets(m, batch, m.x, m.y, m.z, m.force, [=](int32_t i, const Three<double>& u) {

@@ -4,7 +4,7 @@
 
 #include "core/elements/kernels/kernels.h"
 
-// The passes of the next loop do not depend on each other, whatever the compiler can prove about its pointers.
+// The iterations of the next loop are independent, whatever the compiler can prove about its pointers.
 #undef CTPM_INDEPENDENT
 #ifdef __clang__
 #define CTPM_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
@@ -25,16 +25,16 @@ double smaller(double a, double b) { return b < a ? b : a; }
 double larger(double a, double b) { return b > a ? b : a; }
 double root_of(double a) { return __builtin_sqrt(a); }
 
-/// A batch's numbers in another precision: apart from what computes them, since loops that mix precisions are only
-/// vectorised for the wider count of the narrower one.
+/// Converts the numbers of a batch to another precision. This loop stands alone, because a loop that mixes precisions
+/// is vectorised only for the wider count of the narrower one.
 template <class From, class To>
 void convert(const From* __restrict from, To* __restrict to, int32_t count) {
   CTPM_INDEPENDENT
   for (int32_t i = 0; i < count; ++i) to[i] = To(from[i]);
 }
 
-/// A batch's linearised coupling: the root of what acts along one direction, and what acts in all. It is kept in single
-/// precision, which is far closer than a linearisation is.
+/// Linearised coupling of a batch: the root of the part along one direction, and the part equal in all directions.
+/// Single precision is far more accurate than a linearisation.
 template <class Real>
 struct Coupling {
   const Real *x, *y, *z, *all;

@@ -3,7 +3,7 @@
 namespace ctpm::elements::CTPM_KERNELS {
 namespace {
 
-/// As many accumulators as a cache line has numbers, whatever the instruction set.
+/// One accumulator for each number of a 64-byte cache line, whatever the instruction set.
 template <class Real>
 struct Lanes {
   static constexpr size_t kCount = 64 / sizeof(Real);
@@ -44,7 +44,8 @@ double dot(size_t spheres, const Real* a, const Real* b, size_t begin, size_t en
 template <class Real>
 void invert_blocks(size_t n, const double* blocks, Real* inverse, size_t begin, size_t end) {
   const double *xx = blocks, *xy = xx + n, *xz = xy + n, *yy = xz + n, *yz = yy + n, *zz = yz + n;
-  // Adjugate over determinant; the blocks are sums of a mass and of positive parts, so the determinant is positive.
+  // Adjugate over determinant. The blocks are sums of a mass and of positive semidefinite parts, so the determinant is
+  // positive.
   for (size_t first = begin; first < end; first += size_t(kBatch)) {
     const size_t count = end - first < size_t(kBatch) ? end - first : size_t(kBatch);
     alignas(64) double own[6][kBatch];
