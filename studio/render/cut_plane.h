@@ -19,7 +19,8 @@ struct Plane {
   double height(Vec3 p) const { return dot(p - point, normal); }
 };
 
-/// Fits a plane to the crossings within `reach` [m] of `near` [m]; none if there are none. Where several normals fit
+/// Fits a plane to the crossings within `reach` [m] of `near` [m]; none if there are none or if
+/// their directions across cancel. Where several normals fit
 /// equally well, for example for crossings on one line, the normal is the one nearest to the mean direction across.
 std::optional<Plane> fit_plane(const std::vector<CutPoint>& crossings, Vec3 near, double reach);
 
