@@ -18,7 +18,7 @@ namespace ctpm::film {
 struct ExportOptions {
   render::PictureSize size;
   double fps = 30;              ///< frames per second, in [1, 240]
-  double speed = 1;             ///< playback speed relative to real time, > 0
+  double speed = 1;             ///< playback speed relative to real time, in [0.001, 1000]
   views::LookRequest look;      ///< view and camera
   session::TimeRange range;     ///< part that is shown; by default to the end of the longest session
   bool allow_diverged = false;  ///< continue if the replay differs from the recording
