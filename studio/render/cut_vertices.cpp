@@ -56,7 +56,7 @@ void CutVertices::follow(Vec3 rest, Index home) {
   std::vector<Vec3> centres;
   std::vector<double> weights;
   for (double reach = std::max(kReachInSpacings * links_.spacing(), 1.05 * last_of_fewest->first);; reach *= kWiden) {
-    // Only what is within reach is sorted, nearest first.
+    // Only spheres within reach are sorted, nearest first.
     const auto known = near_.begin() + std::ptrdiff_t(centres.size());
     const auto within = std::partition(known, near_.end(), [&](const auto& n) { return n.first < reach; });
     std::sort(known, within);

@@ -13,7 +13,7 @@ void OpenEdges::add(std::int32_t from, std::int32_t to) {
 std::vector<std::vector<std::int32_t>> OpenEdges::take_loops() {
   std::vector<std::vector<std::int32_t>> loops;
   while (!count_.empty()) {
-    // Walks along open edges until a vertex comes again; what lies between is a loop.
+    // Walks along open edges until a vertex repeats; the vertices between are a loop.
     std::vector<std::int32_t> way{count_.begin()->first.first};
     std::map<std::int32_t, std::size_t> place{{way[0], 0}};
     do {
