@@ -45,8 +45,8 @@ const std::vector<CutPoint>& CutVertices::crossings_around(Index sphere) {
   return all;
 }
 
-/// Appends a binding to what `home` sees around `rest`. Spheres that do not span space cannot hold a vertex
-/// at its distance from them; then the reach grows until they do, or until nothing more is seen.
+/// Appends a binding to the spheres that `home` sees around `rest`. If these do not span space, they cannot hold a
+/// vertex away from them; then the reach grows until they do, or until no further sphere is seen.
 void CutVertices::follow(Vec3 rest, Index home) {
   constexpr double kWiden = 1.4, kHeld = 1e-6;  // kHeld: of a spacing
   near_.clear();
