@@ -22,7 +22,7 @@ struct Corner {
   Vec3 rest;                    ///< on the cut [m]
   bool at_border = false;       ///< the cube extends out of the organ
   bool is_snapped = false;      ///< lies on the split line of the outer surface
-  std::vector<Index> spheres;   ///< that fill the cube's cells
+  std::vector<Index> spheres;   ///< in the cube's cells
   std::vector<Index> piece;     ///< of each of these; named by its first sphere
   std::map<Index, Index> copy;  ///< piece -> vertex of the wall
   std::vector<Cell> beside;     ///< corners that share a facet's side with this one
@@ -65,7 +65,7 @@ class CutWall {
   const Index outer_vertices_;
   const std::size_t outer_triangles_;
   std::map<Cell, Corner> corners_;
-  std::map<Index, Index> wall_vertex_;  ///< of a vertex on a lip
+  std::map<Index, Index> wall_vertex_;  ///< split-edge vertex of the outer surface -> its copy on the wall
 };
 
 /// The eight cells around a dual corner: their spheres, pieces, and crossings.

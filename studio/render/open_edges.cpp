@@ -19,7 +19,7 @@ std::vector<std::vector<std::int32_t>> OpenEdges::take_loops() {
     do {
       const auto edge = count_.lower_bound({way.back(), -1});
       if (edge == count_.end() || edge->first.first != way.back()) {
-        place.erase(way.back()), way.pop_back();  // the border of a surface that was open before
+        place.erase(way.back()), way.pop_back();  // a border of the input surface, not a loop
         continue;
       }
       const std::int32_t next = edge->first.second;
