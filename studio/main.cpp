@@ -8,7 +8,7 @@
 
 int main(int argc, char** argv) {
   using namespace ctpm::commands;
-  std::setlocale(LC_ALL, "C");  // numbers are written and read with a point, wherever the program runs
+  std::setlocale(LC_ALL, "C");  // numbers have a decimal point in every locale
 
   CLI::App program{
       "ctpm: a studio for soft-tissue scenes.\n"
@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
     for (const Command& command : commands)
       if (command.app->parsed()) return command.run();
   } catch (const std::exception& error) {
-    // Nothing of ours throws; what gets here is the machine running out of something.
+    // Our own code does not throw; this is a lack of memory or another resource.
     return print_errors({{"", error.what(), ""}});
   }
   return exit_bad_input;

@@ -18,13 +18,14 @@ namespace {
 constexpr double kDepths[] = {2e-3, 4e-3, 6e-3, 8e-3, 10e-3, 12e-3};  ///< of Table 1 [m]
 constexpr double kFitDepth = 12e-3;
 
-/// A pressed sphere that is not this deep after so much more of the ball's way has been slipped off [m].
+/// The ball has slipped off if the sphere is not at the depth of the fit after this much more displacement of the ball
+/// [m].
 constexpr double kLongestWay = 30e-3;
 
-/// Spheres that are tried, from the top.
+/// Largest number of spheres to try.
 constexpr std::size_t kMostTries = 8;
 
-/// The force may differ from Table 1 by this much at the depth of the fit [share].
+/// Largest difference from Table 1 at the depth of the fit [share].
 constexpr double kFitBound = 0.002;
 constexpr int kMostRounds = 4;
 
@@ -36,8 +37,7 @@ void multiply_scale(scenes::MaterialSpec& material, double factor) {
   material.stiffness_scale = factor * scenes::resolve_material(material).material.stiffness_scale;
 }
 
-/// The scene with that organ alone, at rest for good: no gravity, no viscosity, the calibration's ball as its
-/// tool.
+/// The scene with that organ alone, without gravity and viscosity, and with the calibration's ball as its tool.
 scenes::SceneSpec slow_scene(const scenes::SceneSpec& scene, std::size_t organ, double factor) {
   scenes::SceneSpec slow;
   slow.name = scene.name, slow.gravity = {}, slow.tick = 10e-3;
@@ -53,7 +53,7 @@ scenes::SceneSpec slow_scene(const scenes::SceneSpec& scene, std::size_t organ, 
   return slow;
 }
 
-/// Force [N] at each of kDepths, or nothing if the ball slips off or the run does not stay whole.
+/// Force [N] at each of kDepths; none if the ball slips off or a step fails.
 std::optional<std::vector<double>> press(const Model& model, std::int32_t sphere, Vec3 up, double speed) {
   const auto c = std::size_t(sphere);
   const Vec3 touch = model.rest_position[c] + (model.tools[0].radius + model.contact_radius[c]) * up;
@@ -67,7 +67,7 @@ std::optional<std::vector<double>> press(const Model& model, std::int32_t sphere
     const stepping::StepReport report = stepper.step(state, inputs);
     if (report.status != stepping::StepStatus::ok) return std::nullopt;
     const double depth = dot(model.rest_position[c] - state.position[c], up), force = dot(report.tool_force, up);
-    // Between two ticks the force rises in proportion.
+    // Interpolates linearly between two ticks.
     while (forces.size() < std::size(kDepths) && depth >= kDepths[forces.size()]) {
       const double share = (kDepths[forces.size()] - last_depth) / (depth - last_depth);
       forces.push_back(last_force + share * (force - last_force));
@@ -78,8 +78,8 @@ std::optional<std::vector<double>> press(const Model& model, std::int32_t sphere
   return forces;
 }
 
-/// Of the eight places one and two steps beside a sphere, across `up`, how many hold a sphere: the paper's C
-/// has all. -1 for a sphere that has another one above it, which the ball would meet first.
+/// Number of spheres in the eight cells one and two steps beside each sphere, perpendicular to `up`; the paper's C has
+/// all eight. -1 for a sphere below another one, which the ball would touch first.
 std::vector<int> neighbours_across(const FilledOrgan& filled, Vec3 up) {
   const std::set<std::array<std::int32_t, 3>> cells(filled.cell.begin(), filled.cell.end());
   const double along[3] = {up.x, up.y, up.z};
@@ -102,9 +102,8 @@ std::vector<int> neighbours_across(const FilledOrgan& filled, Vec3 up) {
   return counts;
 }
 
-/// Outermost spheres near the top that can move: those first that lie among the most neighbours, as the
-/// paper's C does, since a sphere that sticks out alone gives way sideways; then the highest, then the
-/// nearest to the organ's middle.
+/// Outermost spheres near the top that can move. Those with the most neighbours come first, as for the paper's C,
+/// because a protruding sphere moves sideways; then the highest, then the nearest to the organ's middle.
 std::vector<std::int32_t> top_spheres(const Model& model, const FilledOrgan& filled, Vec3 up) {
   Vec3 middle;
   for (const Vec3& centre : filled.centre) middle += centre / double(filled.centre.size());
@@ -150,7 +149,7 @@ Result<StiffnessFit> fit_stiffness(const scenes::SceneSpec& scene, std::size_t o
     std::optional<std::vector<double>> forces = press(first->model, sphere, up, 20e-3);
     if (!forces || !(forces->back() > 0)) continue;
     fit.factor = 1;
-    // Only the spheres' mass does not grow with the scale; it hardly counts, and the next round has it.
+    // Force is proportional to the scale except for inertia, because mass is not scaled; the next round corrects this.
     for (int round = 0; round < kMostRounds; ++round) {
       fit.factor *= wanted / forces->back();
       const Result<scenes::BuiltScene> scaled = build(fit.factor);
@@ -173,7 +172,7 @@ Result<StiffnessFit> fit_stiffness(const scenes::SceneSpec& scene, std::size_t o
 }
 
 void apply_fit(scenes::OrganSpec& organ, const StiffnessFit& fit) {
-  // Six digits say more than the fit knows, and stay readable in a scene.
+  // Six digits exceed the fit's accuracy and stay readable in a scene.
   const auto rounded = [](double value) { return std::stod(output::short_number(value, 6)); };
   for (scenes::LayerSpec& layer : organ.layers)
     layer.material.stiffness_scale =

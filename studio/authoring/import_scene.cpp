@@ -18,10 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Organs of more spheres are imported without a fit, which would take longer than a few seconds.
+/// Larger organs [spheres] are imported without a fit, which would take longer than a few seconds.
 constexpr std::size_t kMostFittedSpheres = 4000;
 
-/// The preset that was named, or the one whose organ's name stands in the mesh's file name.
+/// The requested preset, or the one whose organ the mesh's file name contains.
 Result<const scenes::MaterialPreset*> choose_preset(const ImportRequest& request) {
   std::string known;
   for (const scenes::MaterialPreset& preset : scenes::material_presets()) {
@@ -51,7 +51,7 @@ scenes::CameraSpec front_camera(const FilledOrgan& organ) {
   const double size = norm(high - low);
   scenes::CameraSpec camera;
   camera.name = "front";
-  // The organ stands right of the middle, clear of the panels on the left.
+  // The organ is right of the centre, clear of the panels on the left.
   camera.target = whole_mm(0.5 * (low + high) + size * Vec3{-0.13, 0, 0});
   camera.eye = whole_mm(camera.target + size * Vec3{0.05, -1.25, 0.95});
   camera.field_of_view = 32;
@@ -64,8 +64,8 @@ double extent_z(const FilledOrgan& organ) {
   return high->z - low->z;
 }
 
-/// Height [m] above the lowest sphere within which lies an eighth of all spheres, at least: an organ that stands on
-/// less would fall over while it settles.
+/// Height [m] above the lowest sphere that contains at least an eighth of all spheres. An organ anchored by fewer would
+/// tip over while it settles.
 double footing_height(const FilledOrgan& organ) {
   std::vector<double> heights;
   for (const Vec3& centre : organ.centre) heights.push_back(centre.z);
@@ -95,7 +95,7 @@ scenes::SceneSpec make_scene(const ImportRequest& request, const scenes::Materia
     spec.anchors = {lowest};
   }
   scene.organs = {spec};
-  // Tools in proportion to the organ: a ball of two spheres, a blade that reaches through.
+  // Tools in proportion to the organ: a ball of 2.5 sphere radii; a blade of 0.7 of the organ's height, at least 40 mm.
   scenes::ToolSpec ball, scalpel;
   ball.name = "ball", ball.kind = ToolKind::ball, ball.radius = 2.5 * organ.sphere_radius;
   scalpel.name = "scalpel", scalpel.kind = ToolKind::scalpel;

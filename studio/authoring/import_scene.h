@@ -14,8 +14,8 @@ namespace ctpm::authoring {
 struct ImportRequest {
   std::string mesh;                      ///< mesh file
   std::string scene;                     ///< scene file to write (.json); mesh and script are written beside it
-  std::string organ;                     ///< name of a material preset; empty: found in the mesh's file name
-  std::optional<double> unit_in_metres;  ///< unset: from the file, else guessed
+  std::string organ;                     ///< name of a material preset; empty: taken from the mesh's file name
+  std::optional<double> unit_in_metres;  ///< unset: the file's, else guessed
   std::optional<double> sphere_radius;   ///< [m]; unset: the preset's
   std::optional<double> gap;             ///< [m]; unset: the radius
   std::string part;
@@ -26,21 +26,21 @@ struct ImportRequest {
   importers::Progress progress;
 };
 
-/// The files of an import, and what it found.
+/// The files of an import, and its findings.
 struct ImportOutcome {
   importers::ImportReport report;
   std::string scene_file;                 ///< ImportRequest::scene
   std::string mesh_file, script_file;     ///< written beside the scene
   std::optional<double> stiffness_scale;  ///< fitted and stored; unset: it could not be fitted
   std::string fit_problem;                ///< why there is no fit
-  bool can_be_fitted_later = false;       ///< the fit was left out only because it takes long
+  bool can_be_fitted_later = false;       ///< the fit was skipped only because it takes long
   std::size_t anchored = 0;               ///< spheres that never move
 };
 
-/// Imports a mesh and writes a scene that runs as it is: `NAME.json` with its stiffness fitted, the repaired mesh
-/// `NAME.obj` in millimetres, and a script `NAME.script.json` that presses and cuts it. Errors: those of the import, an
-/// unknown organ, an anchor that catches nothing, a folder that cannot be written. The scene is written last, so it
-/// never names a missing file.
+/// Imports a mesh and writes a scene that runs without changes: `NAME.json` with its stiffness fitted, the repaired
+/// mesh `NAME.obj` in millimetres, and a script `NAME.script.json` that presses and cuts it. Errors: those of the
+/// import, an unknown organ, an anchor without spheres, a folder that cannot be written. The scene is written last, so
+/// that it never names a missing file.
 Result<ImportOutcome> import_scene(const ImportRequest& request);
 
 }  // namespace ctpm::authoring

@@ -10,7 +10,7 @@
 namespace ctpm::bench {
 namespace {
 
-/// The processor's name, or what the system calls its kind.
+/// The processor's name, or else its architecture.
 std::string machine() {
   std::ifstream info("/proc/cpuinfo");
   const std::string threads = ", " + std::to_string(std::thread::hardware_concurrency()) + " hardware threads";
@@ -59,7 +59,7 @@ std::string results_json(const std::vector<BenchStudy>& studies) {
   return json.end_list().end_object().text();
 }
 
-/// The settings on the Pareto front, as a reader needs them; results.csv has all.
+/// The settings on the Pareto front, with the main columns; results.csv has all.
 reports::Table front_of(const BenchStudy& study) {
   static constexpr const char* kColumns[] = {"integrator",     "substeps",    "tolerance",
                                              "position_error", "force_error", "run_time_s_per_s",

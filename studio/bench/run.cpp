@@ -1,4 +1,4 @@
-// What every study of the benchmark needs: timed runs, errors, percentiles, the Pareto front.
+// Shared by all studies: timed runs, errors, percentiles, the Pareto front.
 
 #include <algorithm>
 #include <chrono>

@@ -16,7 +16,7 @@ struct PressedFilling {
   BenchRun run;  ///< its positions are those of the surface's vertices
 };
 
-/// Where the surface's vertices are when the spheres are at `position`.
+/// Positions of the surface's vertices for spheres at `position`.
 Vec3Array surface_at(const Surface& surface, const Vec3Array& position) {
   const SurfaceBinding& binding = surface.binding;
   Vec3Array vertices(surface.vertex.size());
@@ -126,7 +126,7 @@ Result<BenchStudy> run_bench_space(const BenchOptions& options, const BenchProgr
   }
   work.series = {position, force, front}, convergence.series = {position_r, force_r};
   section.plots = {work, convergence}, section.tables = {table};
-  // Least squares through the logarithms.
+  // Least-squares line through the logarithms.
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const double x = std::log(position_r.x[i]), y = std::log(errors[i]);

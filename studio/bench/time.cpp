@@ -11,16 +11,15 @@
 namespace ctpm::bench {
 namespace {
 
-/// Sphere radius of the shipped organs in this study [m]: the reference takes tens of runs as fine as the
-/// finest.
+/// Sphere radius of the shipped organs in this study [m]: the reference takes as long as tens of the finest runs.
 constexpr double kRadius = 6e-3, kQuickRadius = 9e-3;
 
 constexpr double kReferenceTolerance = 1e-9;
 
-/// Explicit settings that need more substeps than this are left out: they are slower than the reference.
+/// Explicit settings that need more substeps are left out, because they are slower than the reference.
 constexpr double kMostSubsteps = 1000;
 
-/// Ticks over which the percentiles of the setting that is recommended are taken.
+/// Number of ticks for the percentiles of the recommended setting.
 constexpr std::size_t kTimedTicks = 1000;
 
 struct TimeJob {
@@ -132,13 +131,13 @@ std::int32_t first_tool(const Model& model, ToolKind kind) {
   return it == model.tools.end() ? -1 : std::int32_t(it - model.tools.begin());
 }
 
-/// What is done, and the kind of tool that a scene must have for it.
+/// A motion, and the kind of tool that a scene must have for it.
 struct Deed {
   ToolKind kind;
   std::function<BenchMotion(const Model&, std::int32_t tool)> motion;
 };
 
-/// Gravity is left out, so that every run starts from the same rest.
+/// Without gravity, so that every run starts from the same State.
 Result<TimeJob> make_job(const std::string& path, const std::string& title, const Deed& deed,
                          const std::function<void(scenes::SceneSpec&)>& change, const BenchOptions& options = {}) {
   const auto prepare = [&](scenes::SceneSpec& spec) {
@@ -249,8 +248,8 @@ reports::Plot diagram(const std::string& title, const std::vector<Point>& points
   return plot;
 }
 
-/// Slope of the error over the substeps at the tightest tolerance, between the two finest runs whose error
-/// the reference, off by up to `gap` itself, can tell.
+/// Order of the error in the substeps at the tightest tolerance, from the two finest runs whose error the reference can
+/// resolve; its own error is up to `gap`.
 reports::Table orders(const std::vector<Point>& points, double gap) {
   reports::Table table;
   table.title =
@@ -290,7 +289,7 @@ double order_without_contact(const TimeJob& job, std::int32_t fine) {
   return std::log2(error(2) / error(4));
 }
 
-/// The most accurate setting that holds the scene's ticks, its percentiles taken over many ticks.
+/// Names the most accurate setting whose tick takes at most the scene's tick at p99, with percentiles over many ticks.
 std::string recommendation(const TimeJob& job, std::vector<Point> points) {
   const double tick = job.model.tick;
   const std::string rate =
@@ -318,7 +317,7 @@ std::string recommendation(const TimeJob& job, std::vector<Point> points) {
 }
 
 BenchStudy study(const TimeJob& job, const BenchOptions& options, const std::function<void()>& advance) {
-  // The reference and its half run beside each other; what is timed runs alone.
+  // The reference and the run with half its step run in parallel; timed runs run alone.
   const std::int32_t fine = options.is_quick ? 8 : 16;
   const auto reference_run = [&](std::int32_t substeps) {
     return run_motion(with_setting(job.model, {Integrator::sdirk2, substeps, kReferenceTolerance}), job.motion);

@@ -13,7 +13,7 @@ struct BenchArguments {
   bench::BenchOptions options;
 };
 
-/// All studies, each with its own progress. Scenes that are named are studied in time alone.
+/// All studies, each with its own progress. For named scenes only the study in time runs.
 Result<std::vector<bench::BenchStudy>> run_studies(const bench::BenchOptions& options) {
   const auto line = [](ProgressLine& progress) {
     return [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };

@@ -5,10 +5,10 @@
 
 namespace ctpm::commands {
 
-/// What runs a subcommand once its arguments are read; returns an ExitCode.
+/// Runs a subcommand after its arguments were parsed; returns an ExitCode.
 using Run = std::function<int()>;
 
-/// Each adds one subcommand with its options and an example to the program, and returns what runs it.
+/// A subcommand and the function that runs it. Each add_...() adds one subcommand with its options and an example.
 struct Command {
   CLI::App* app;
   Run run;

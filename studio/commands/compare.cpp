@@ -34,7 +34,7 @@ int run_compare(const CompareArguments& arguments) {
   for (const auto* track : {&expert_track, &trainee_track})
     if (!*track) errors.insert(errors.end(), track->errors().begin(), track->errors().end());
   if (!errors.empty()) return print_errors(errors);
-  // Only now, so that sessions that are refused leave no folder behind.
+  // Created only now, so that refused sessions leave no folder behind.
   if (!arguments.folder.empty())
     if (const Result<Done> ready = reports::prepare_folder(arguments.folder); !ready)
       return print_errors(ready.errors());
@@ -42,7 +42,7 @@ int run_compare(const CompareArguments& arguments) {
   compare::CompareOptions options;
   if (arguments.has_force_limit) options.force_limit = arguments.force_limit_n;
   const recordings::SessionStart& scene = expert->start();
-  // A scene text of another version may not be readable any more; the limit is all that is asked of it.
+  // A scene text of another version may be unreadable; only the limit is needed from it.
   if (const Result<scenes::SceneText> text = scenes::read_scene(scene.scene_text, arguments.expert); text)
     options.damage_force = loading::damage_force_of(text->spec);
   const compare::Comparison comparison = compare::compare_sessions(*expert_track, *trainee_track, scene, options);

@@ -8,7 +8,7 @@
 
 namespace ctpm::commands {
 
-/// What the program says to its caller.
+/// Exit codes of the program.
 enum ExitCode : int {
   exit_good = 0,              ///< done, and good
   exit_bad_verdict = 1,       ///< done, and the verdict is bad: diverged, unstable, out of bounds
@@ -16,17 +16,16 @@ enum ExitCode : int {
   exit_partly_recovered = 3,  ///< done, but something could not be saved
 };
 
-/// Prints every error to stderr, one a line, with the flags in place of option names; returns exit_bad_input.
+/// Prints errors to stderr, one per line, with flags instead of option names; returns exit_bad_input.
 int print_errors(const Errors& errors);
 
-/// Prints every warning of a scene to stderr, one a line.
+/// Prints the warnings of a scene to stderr, one per line.
 void print_warnings(const Errors& warnings);
 
-/// Prints a line to stderr: progress and remarks; results go to stdout.
+/// Prints a line to stderr, for progress and remarks; results go to stdout.
 void print_remark(const std::string& text);
 
-/// A line on stderr that says how far long work is and how long it will still take; silent where stderr is no
-/// terminal.
+/// A progress line on stderr with the remaining time; silent if stderr is not a terminal.
 class ProgressLine {
  public:
   explicit ProgressLine(std::string what);

@@ -28,8 +28,7 @@ struct DemoArguments {
   std::string folder = "out";
 };
 
-/// Runs this program again with other arguments and returns its exit code: a process that shares nothing with
-/// this one.
+/// Runs this program with other arguments in a separate process and returns its exit code.
 int run_in_new_process(const std::vector<std::string>& arguments) {
   const pid_t child = fork();
   if (child < 0) return exit_bad_input;

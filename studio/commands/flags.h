@@ -7,7 +7,7 @@
 #include "studio/session/time_range.h"
 #include "studio/views/look.h"
 
-// The names of flags, as far as several commands or the errors of libraries share them.
+// Flags that several commands share, and the flags behind the option names in errors of libraries.
 namespace ctpm::commands {
 
 /// The flag that sets a field of an option struct: `--camera` for "look.camera". A field without a flag is returned

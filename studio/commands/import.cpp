@@ -24,7 +24,7 @@ struct ImportArguments {
   std::vector<std::string> anchors;
 };
 
-/// Everything that is wrong with the arguments, and what they mean in SI.
+/// Checks the arguments, with all errors at once, and converts them to SI.
 Errors complete(ImportArguments& a) {
   Errors errors;
   const std::map<std::string, double> units{{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}, {"in", 0.0254}};
@@ -99,7 +99,7 @@ std::string report_json(const importers::ImportReport& r, const authoring::Impor
   return json.end_list().end_object().text();
 }
 
-/// Few spheres make a coarse organ; says which radius would give a livelier one.
+/// If the organ has few spheres, suggests a smaller radius.
 void suggest_radius(const importers::ImportReport& report) {
   constexpr double kFew = 200, kLively = 800;
   if (double(report.fill.spheres) >= kFew) return;

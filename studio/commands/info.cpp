@@ -86,7 +86,7 @@ void print_origin(const recordings::SessionReader& reader) {
                 metadata_of(reader, recordings::parent_tick_key).c_str());
 }
 
-/// The events, of late ticks only how many there are: on a busy machine they would hide the others.
+/// Lists the events. Late ticks are only counted, because on a busy machine they would hide the others.
 void print_events(const std::vector<recordings::Event>& events, const Model& model) {
   constexpr std::int64_t kMostShown = 20;
   std::int64_t count = 0;
@@ -140,7 +140,7 @@ int run_info(const InfoArguments& arguments) {
   if (!statistics) return print_errors(statistics.errors());
   Result<std::vector<recordings::Event>> events = reader->events();
   if (!events) return print_errors(events.errors());
-  // That something has ended is known, and recorded, only a while later.
+  // An end is detected, and recorded, only a while later.
   std::ranges::stable_sort(*events, {}, &recordings::Event::tick);
   (arguments.json ? print_json : print_text)(*reader, *statistics, *events);
   return exit_good;

@@ -4,8 +4,8 @@
 
 namespace ctpm::commands {
 
-/// Warns on stderr, before anything is simulated, that this build computes another physics revision than recorded
-/// `session`; silent if it computes the same.
+/// Warns on stderr if this build computes another physics revision than the one that recorded `session`. Call it before
+/// simulating.
 void warn_of_physics(const recordings::SessionReader& session);
 
 }  // namespace ctpm::commands

@@ -20,7 +20,7 @@ struct PlanArguments {
   scenes::LoadOptions load;
 };
 
-/// One thing that a scene may need.
+/// One feature that a scene may need.
 struct Feature {
   std::string name;
   bool is_in = false;
@@ -108,7 +108,7 @@ double measure_tick(const Model& model) {
   return times[kMeasured / 2];
 }
 
-/// How a tick is solved, in words.
+/// The integrator and solver of a tick, in words.
 std::string solver_of(const Model& model, const stepping::IntegratorChoice& choice) {
   std::string words = stepping::name_of(choice.integrator);
   if (choice.substeps > 1) words += ", " + std::to_string(choice.substeps) + " substeps a tick";

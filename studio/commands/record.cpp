@@ -23,10 +23,10 @@ struct RecordArguments {
   double duration_s = 0;
   bool overwrite = false, as_fast_as_possible = false;
   scenes::LoadOptions load;
-  int threads = 0;  ///< 0: as many as pay
+  int threads = 0;  ///< 0: threads_for()
 };
 
-/// What does not fit together, before anything is read.
+/// Errors in the combination of flags, before any file is read.
 Errors check(const RecordArguments& arguments) {
   Errors errors;
   if (!(arguments.duration_s >= 0)) errors.push_back({"--duration-s", "must be 0 or more", ""});
@@ -51,14 +51,13 @@ Errors check(const RecordArguments& arguments) {
   return errors;
 }
 
-/// A session's start, and the source that a user who names none gets: a press and a cut at the organ's top.
+/// A session's start, and the default source: a press and a cut at the organ's top.
 struct Beginning {
   recordings::SessionStart start;
   std::optional<scenes::Script> script;
 };
 
-/// What is wrong with the script, if one is given, for a scene that cannot be built: its errors are told together with
-/// those of the scene.
+/// The errors of the given script for a scene that cannot be built; they are printed together with those of the scene.
 Errors errors_of_script(const RecordArguments& arguments) {
   if (arguments.source.script.empty()) return {};
   const Result<scenes::SceneDraft> draft = scenes::load_draft(arguments.scene, arguments.load);
@@ -112,7 +111,7 @@ int run_record(const RecordArguments& arguments) {
   if (const Errors errors = check(arguments); !errors.empty()) return print_errors(errors);
   const StopSignal stop;
   const auto should_stop = [&] { return stop.came(); };
-  // First of all, so that a port that is in use is told at once, and a device finds somebody to talk to.
+  // Opened first, so that a port in use is reported at once and a device can connect early.
   Result<devices::OpenedDevice> device = devices::open_device(arguments.source.device);
   if (!device) return print_errors(device.errors());
   const std::string place = device->place;

@@ -14,7 +14,7 @@
 
 namespace ctpm::commands {
 
-/// The source that a user asks for: at most one of script, motion and device is set.
+/// The requested source: at most one of script, motion and device is set.
 struct SourceRequest {
   std::string script;  ///< file of a script
   std::string motion;  ///< file of a motion
@@ -27,7 +27,7 @@ inline constexpr const char* source_flags = "--script, --motion, --igtl, --igtl-
 /// Adds the flags of all sources.
 void add_source(CLI::App& app, SourceRequest& request);
 
-/// How many sources are asked for.
+/// Number of requested sources.
 int count_of(const SourceRequest& request);
 
 /// A source that is ready for a session.
@@ -37,7 +37,7 @@ struct ReadySource {
   std::map<std::string, std::string> metadata;  ///< what the session stores about its source
 };
 
-/// Opens the one source that is asked for, or plays `otherwise` if none is. `device` is what open_device() gave. Prints
+/// Opens the requested source, or plays `otherwise` if there is none. `device` is the result of open_device(). Prints
 /// remarks. Errors: those of the source's file, with places; tools that the scene does not have.
 Result<ReadySource> open_source(const SourceRequest& request, devices::OpenedDevice device, const Model& model,
                                 const std::optional<scenes::Script>& otherwise);

@@ -16,7 +16,7 @@ struct StabilityArguments {
   bool is_quick = false;
 };
 
-/// The cases whose keys are asked for; all if none are. Errors: keys that no case has.
+/// The cases with the requested keys; all cases without keys. Errors: unknown keys.
 Result<std::vector<stability::StabilityCase>> chosen_cases(const StabilityArguments& arguments) {
   std::vector<stability::StabilityCase> all = stability::stability_cases(arguments.is_quick), chosen;
   if (arguments.keys.empty()) return all;

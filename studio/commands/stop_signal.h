@@ -4,7 +4,7 @@
 
 namespace ctpm::commands {
 
-/// While it lives, Ctrl-C and SIGTERM ask for an orderly end instead of killing the program.
+/// During its lifetime Ctrl-C and SIGTERM set a flag instead of killing the program.
 class StopSignal {
  public:
   StopSignal() {

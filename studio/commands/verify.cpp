@@ -17,7 +17,7 @@ struct VerifyArguments {
   int threads = 1;
 };
 
-/// Prints the verdict; where it is bad, who recorded and who replayed.
+/// Prints the verdict; a bad one with the builds that recorded and replayed.
 void print_verdict(const recordings::SessionReader& session, const recordings::Verdict& verdict, double seconds) {
   const double lived = double(verdict.ticks_compared) * session.start().model.tick;
   std::printf("%s: %s; %.1f times as fast as it was lived\n", session.path().c_str(),

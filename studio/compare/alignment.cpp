@@ -9,7 +9,7 @@
 namespace ctpm::compare {
 namespace {
 
-/// Where the best way to a pair comes from.
+/// The predecessor of a pair on the best alignment.
 enum class From : std::uint8_t { start, both, a_only, b_only };
 
 /// The columns of one row that lie in the band.
@@ -18,7 +18,7 @@ struct Row {
   bool has(std::size_t column) const { return column >= first && column - first < count; }
 };
 
-/// Rows of the band around the diagonal; neighbours always overlap, so that a way leads through.
+/// Rows of the band around the diagonal; neighbouring rows overlap, so that an alignment exists.
 std::vector<Row> band_rows(std::size_t rows, std::size_t columns, double band) {
   const double slope = rows > 1 ? double(columns - 1) / double(rows - 1) : 0;
   const double half = rows > 1 ? std::max(band * double(std::max(rows, columns)), slope + 1) : double(columns);

@@ -8,25 +8,25 @@
 
 namespace ctpm::compare {
 
-/// Points of two paths that belong together once differences of pace are taken out.
+/// Points of two paths that time warping matches.
 struct AlignedPair {
   std::size_t a = 0, b = 0;  ///< indices into the two paths
-  double distance = 0;       ///< between the two points
+  double distance = 0;       ///< between the two points, in the paths' unit
 };
 
 struct Alignment {
-  /// From both beginnings to both ends; each step goes on in one path or in both.
+  /// From both starts to both ends; each step advances in one path or in both.
   std::vector<AlignedPair> pairs;
-  double mean = 0;  ///< of the pairs' distances; a step in both paths counts twice, as two steps would
+  double mean = 0;  ///< of the pairs' distances; a step in both paths has weight 2
   double largest = 0;
 };
 
-/// Width of the band: pairs may be out of step by this share of the longer path.
+/// Half-width of the band: the largest offset of a pair from the diagonal, as a share of the longer path.
 inline constexpr double kAlignmentBand = 0.25;
 
-/// Dynamic time warping with the symmetric weights and the band of Sakoe and Chiba 1978, laid along the
-/// diagonal of paths of different length. The mean is the least possible, and no way is preferred for being
-/// short. Neither path may be empty. Time and memory grow with the band's share of a.size() * b.size().
+/// Dynamic time warping with the symmetric weights and the band of Sakoe and Chiba 1978. The band follows the diagonal
+/// if the paths differ in length. The mean is the least possible; the weights prevent a bias towards short alignments.
+/// Neither path may be empty. Time and memory grow with the band's share of a.size() * b.size().
 Alignment align_paths(std::span<const Vec3> a, std::span<const Vec3> b, double band = kAlignmentBand);
 
 }  // namespace ctpm::compare

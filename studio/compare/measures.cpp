@@ -9,9 +9,9 @@ namespace ctpm::compare {
 namespace {
 
 constexpr double kMillimetres = 1e3;
-constexpr double kCutPathSpacing = 0.5e-3;    // points of cut paths that are compared [m]
-constexpr std::size_t kAlignedPoints = 4000;  // at most, of each path: aligning costs their product
-constexpr double kAlignedRate = 50;           // points a second [Hz], as long as there are not too many
+constexpr double kCutPathSpacing = 0.5e-3;    // distance of the points of cut paths that are compared [m]
+constexpr std::size_t kAlignedPoints = 4000;  // largest number per path; time grows with the product of both
+constexpr double kAlignedRate = 50;           // points per second [Hz], fewer above kAlignedPoints
 
 constexpr const char* kCotin =
     "Cotin et al., Metrics for laparoscopic skills trainers: the weakest link! MICCAI 2002, 35-43";
@@ -145,8 +145,8 @@ constexpr Measure kAlignedLargest{"aligned_deviation_largest_mm",
                                   "of the tip from the expert's, whatever the pace",
                                   kSakoe};
 
-/// Where the hand had to be in a stroke: at its ends, where it met and left the tissue, and where it was
-/// deepest. Indices within the stroke, ascending.
+/// The stations of a stroke: its ends, the points where the tool met and left the tissue, and the deepest point.
+/// Ascending indices within the stroke.
 std::vector<std::size_t> stations_of(const SessionTrack& track, const Spell& stroke) {
   std::vector<std::size_t> at{stroke.first};
   std::size_t deepest = stroke.first;
@@ -163,13 +163,13 @@ std::vector<std::size_t> stations_of(const SessionTrack& track, const Spell& str
   return at;
 }
 
-/// What the motion of one session comes to.
+/// Measures of the motion of one session.
 struct Motion {
   double path_length = 0, idle_time = 0;  // [m], [s]
   std::optional<double> economy, spectral_arc_length, log_dimensionless_jerk;
 };
 
-/// A mean that leaves out strokes without a value.
+/// A weighted mean that skips strokes without a value.
 struct WeightedMean {
   double sum = 0, weight = 0;
   void add(std::optional<double> value, double w) {
@@ -178,8 +178,8 @@ struct WeightedMean {
   std::optional<double> value() const { return weight > 0 ? std::optional(sum / weight) : std::nullopt; }
 };
 
-/// Strokes are measured one by one, since the tool jumps between them, and smoothness for each movement
-/// between two pauses, for which it is defined. The means are weighted by time, the economy by length.
+/// Measures each stroke by itself, because the tool jumps between strokes. Smoothness is defined for movements between
+/// pauses and measured for each. Its means are weighted by time, the economy's by length.
 Motion motion_of(const SessionTrack& track) {
   Motion motion;
   WeightedMean economy, arc_length, jerk;
@@ -202,7 +202,7 @@ Motion motion_of(const SessionTrack& track) {
   return motion;
 }
 
-/// What the forces of one session come to.
+/// Measures of the forces of one session.
 struct Force {
   double peak = 0, mean = 0, time_above = 0, impulse_above = 0;  // [N], [N], [s], [N s]
 };
@@ -228,7 +228,7 @@ double time_beyond(const SessionTrack& track, double depth) {
       std::size_t(std::count_if(track.depth.begin(), track.depth.end(), [&](double d) { return d > depth; })));
 }
 
-/// The tool's places that are aligned: points of all strokes, fewer a second in a long session.
+/// The points of the tool to be aligned: of all strokes, fewer per second in a long session.
 void collect_path(const SessionTrack& track, std::vector<Vec3>& path, std::vector<double>& time) {
   const std::size_t step = std::max(std::size_t(std::llround(1 / (kAlignedRate * track.tick))),
                                     (track.tick_count() + kAlignedPoints - 1) / kAlignedPoints);
@@ -305,7 +305,7 @@ void add_cut(Comparison& comparison, const SessionTrack& expert, const SessionTr
   values.push_back({&kCutDepth, depth_a, depth_b});
 }
 
-/// The first that there is: given, the scene's, the expert's peak.
+/// The force limit: the given one, else the scene's, else the expert's peak.
 void set_force_limit(Comparison& comparison, const SessionTrack& expert, const CompareOptions& options) {
   const double expert_peak = *std::max_element(expert.force.begin(), expert.force.end());
   if (options.force_limit)

@@ -10,11 +10,11 @@
 
 namespace ctpm::compare {
 
-/// Which of two values of a measure speaks for more skill.
+/// Which value of a measure indicates more skill.
 enum class Direction {
   lower,   ///< the lower one
   higher,  ///< the higher one
-  nearer,  ///< the one that is nearer to the expert's
+  nearer,  ///< the one nearer to the expert's
 };
 
 /// "lower", "higher", "as the expert".
@@ -22,15 +22,15 @@ const char* to_word(Direction direction);
 
 /// One measure of skill.
 struct Measure {
-  const char* key;    ///< name in JSON, with the unit in it
-  const char* title;  ///< as a person reads it
+  const char* key;    ///< name in JSON, contains the unit
+  const char* title;  ///< name for people
   const char* unit;   ///< "1" if it has none
   Direction direction;
   const char* meaning;  ///< one sentence
   const char* source;   ///< who published it
 };
 
-/// A measure of both sessions, or of the trainee's against the expert's.
+/// The values of a measure for both sessions, or one value for the pair.
 struct MeasuredValue {
   const Measure* measure = nullptr;
   std::optional<double> expert = {}, trainee = {};  ///< in the measure's unit; expert unset for measures of the pair
@@ -42,13 +42,13 @@ enum class MomentKind { force, depth, deviation, pause, stray_cut };
 /// "force above the limit", "deeper than the damage limit" ...
 const char* to_word(MomentKind kind);
 
-/// A stretch of the trainee's session that a teacher would show.
+/// An interval of the trainee's session that a teacher would show.
 struct Moment {
   MomentKind kind = MomentKind::force;
   double from_s = 0, to_s = 0, worst_s = 0;
-  double value = 0, limit = 0;  ///< the worst value, and what it should not pass, in `unit`
+  double value = 0, limit = 0;  ///< the worst value, and its limit, in `unit`
   const char* unit = "";
-  double severity = 0;  ///< how far beyond the limit, in limits: 0 at the limit
+  double severity = 0;  ///< value / limit - 1; stray cuts: worst_moments() says
 };
 
 struct CompareOptions {
@@ -57,20 +57,20 @@ struct CompareOptions {
   double damage_force = 0;  ///< the scene's limit [N]; 0: it has none
 };
 
-/// Everything that is known about a trainee's session beside an expert's.
+/// The whole result of comparing a trainee's session with an expert's.
 struct Comparison {
-  std::optional<double> force_limit;  ///< [N]; unset: there is none and the expert never touched the tissue
+  std::optional<double> force_limit;  ///< [N]; unset: no limit, and the expert never touched the tissue
   const char* force_limit_from = "";  ///< "given", "the scene", "the expert's peak"
   double damage_depth = 0;            ///< smallest limit of the scene's organs [m]; 0: no limit
-  double path_limit = 0;  ///< half of the smallest spacing of spheres: beyond it other spheres are nearer [m]
-  std::vector<MeasuredValue> values;              ///< in the order of a report
-  std::vector<Moment> moments;                    ///< worst first
-  Alignment alignment;                            ///< of the paths below; a: the expert's
-  std::vector<Vec3> expert_path, trainee_path;    ///< of the tool, as it was aligned [m]
+  double path_limit = 0;              ///< half of the smallest sphere spacing: beyond it other spheres are nearer [m]
+  std::vector<MeasuredValue> values;  ///< in the order of a report
+  std::vector<Moment> moments;        ///< worst first
+  Alignment alignment;                ///< of the paths below; a: the expert's
+  std::vector<Vec3> expert_path, trainee_path;    ///< of the tool, as aligned [m]
   std::vector<double> expert_time, trainee_time;  ///< of the points of these paths [s]
 };
 
-/// Measures a trainee's session against an expert's of the same scene (check_same_scene).
+/// Compares a trainee's session with an expert's of the same scene (check_same_scene).
 Comparison compare_sessions(const SessionTrack& expert, const SessionTrack& trainee,
                             const recordings::SessionStart& scene, const CompareOptions& options = {});
 

@@ -9,7 +9,7 @@ namespace {
 constexpr double kHandRate = 100;    // [Hz]
 constexpr double kIdleSpeed = 5e-3;  // [m/s]
 constexpr double kIdleLeast = 0.3;   // [s]
-constexpr double kSameMoment = 0.3;  // [s] shorter gaps do not end a moment
+constexpr double kSameMoment = 0.3;  // shorter gaps do not end a moment [s]
 constexpr double kPauseAllowed = 1;  // [s]
 constexpr double kMillimetres = 1e3;
 
@@ -76,7 +76,7 @@ std::vector<Moment> stray_cuts(const SessionTrack& expert, const SessionTrack& t
       std::count_if(expert.severed_at.begin(), expert.severed_at.end(), [](std::int64_t tick) { return tick >= 0; });
   std::vector<Moment> moments;
   for (const Spell& cut : trainee.cuts) {
-    std::vector<std::int64_t> ticks;  // of elements that the expert left whole
+    std::vector<std::int64_t> ticks;  // in which elements were severed that the expert left whole
     for (std::size_t i = 0; i < trainee.severed_at.size(); ++i) {
       const std::int64_t tick = trainee.severed_at[i];
       if (tick >= std::int64_t(cut.first) && tick < std::int64_t(cut.last) && expert.severed_at[i] < 0)

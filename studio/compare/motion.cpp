@@ -66,7 +66,7 @@ std::optional<double> spectral_arc_length(std::span<const double> speed, double 
   // Speed is never negative, so the largest amplitude is that of frequency 0.
   for (int i = count - 1; i >= 0; --i) amplitude[std::size_t(i)] /= amplitude[0];
 
-  // The first value is 1, so what is selected begins at frequency 0; it ends with the last large amplitude.
+  // The first value is 1, so the selection begins at frequency 0; it ends with the last large amplitude.
   std::size_t last = amplitude.size() - 1;
   while (amplitude[last] < kSpectralAmplitude) --last;
   if (last == 0) return std::nullopt;
@@ -85,7 +85,7 @@ std::optional<double> log_dimensionless_jerk(std::span<const Vec3> path, double 
     mean_square += dot(jerk, jerk) / double(path.size() - 3);
   }
   if (!(peak > 0) || !(mean_square > 0)) return std::nullopt;
-  // The integral is the mean times the duration: third differences end 1.5 samples before the path does.
+  // The integral is the mean times the duration: third differences end 1.5 samples before the path.
   const double duration = double(path.size() - 1) / rate_hz;
   return -std::log(std::pow(duration, 4) / (peak * peak) * mean_square);
 }

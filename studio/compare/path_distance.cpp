@@ -15,7 +15,7 @@ double distance_from_segment(Vec3 point, Vec3 a, Vec3 b) {
   return norm(point - (a + share * along));
 }
 
-/// Distances of points every `spacing` along `from` to `to`: their sum and the largest.
+/// Sum and maximum of the distances to `to` of points every `spacing` along `from`.
 struct OneWay {
   double sum = 0, largest = 0;
   std::size_t count = 0;

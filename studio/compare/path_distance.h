@@ -7,19 +7,19 @@
 
 namespace ctpm::compare {
 
-/// A line through points.
+/// A polyline.
 using Path = std::vector<Vec3>;
 
-/// Points along the path at most `spacing` apart, its own points among them.
+/// Resamples the path: its own points, and points between them, at most `spacing` apart.
 Path with_points_every(std::span<const Vec3> path, double spacing);
 
-/// Distance of a point from the nearest of some paths; infinity if there are none.
+/// Distance of a point from the nearest of the paths; infinity if there are none.
 double distance_from(Vec3 point, std::span<const Path> paths);
 
-/// How far two sets of paths are apart, in their unit.
+/// Distances between two sets of paths, in their unit.
 struct PathDistance {
-  double mean = 0;       ///< over points of both, of the distance from the other: average symmetric distance
-  double hausdorff = 0;  ///< the farthest that any point of one is from the other
+  double mean = 0;       ///< average symmetric distance: the mean over the points of both of the distance to the other
+  double hausdorff = 0;  ///< the largest distance of any point of one from the other
 };
 
 /// Compares points every `spacing` along both; neither may be empty. Hausdorff: Huttenlocher et al. 1993;

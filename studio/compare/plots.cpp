@@ -8,12 +8,12 @@ namespace ctpm::compare {
 namespace {
 
 constexpr double kMillimetres = 1e3;
-constexpr std::size_t kCurvePoints = 1200;  // of a curve over time: more than a screen shows
+constexpr std::size_t kCurvePoints = 1200;  // of a curve over time, more than a screen resolves
 constexpr int kExpertColour = 0, kTraineeColour = 1, kNeutralColour = 6;
 constexpr int kPlaneWidth = 520, kPlaneHeight = 400;
-constexpr double kPlaneAspect = double(kPlaneWidth - 76) / (kPlaneHeight - 76);  // of what lies within the axes
+constexpr double kPlaneAspect = double(kPlaneWidth - 76) / (kPlaneHeight - 76);  // of the area within the axes
 
-/// The largest of each run of values, so that no peak is lost, over time.
+/// Resamples values over time: the largest of each run of values, so that no peak is lost.
 reports::Series curve(const std::string& name, const SessionTrack& track, const std::vector<double>& value,
                       double scale, int colour) {
   reports::Series series{.name = name, .colour = colour};
@@ -64,7 +64,7 @@ void set_equal_scales(reports::Plot& plot) {
   plot.width = kPlaneWidth, plot.height = kPlaneHeight;
 }
 
-/// A path as lines of the plane, one series for each stroke: the tool does not fly between two.
+/// A path as lines in the plane, one series for each stroke, without lines between strokes.
 void add_path(reports::Plot& plot, const std::string& name, const SessionTrack& track, const Plane& plane, int colour) {
   const std::size_t step = std::max<std::size_t>(1, track.tick_count() / (2 * kCurvePoints));
   bool is_first = true;

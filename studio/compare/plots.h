@@ -7,13 +7,13 @@
 
 namespace ctpm::compare {
 
-/// Force and depth over time of both, as far as there is any.
+/// Force and depth of both sessions over time, where there is any.
 std::vector<reports::Plot> plots_over_time(const ComparedSessions& compared);
 
-/// Paths of the tool from above and from the side, and how far the aligned paths are apart.
+/// The tool's paths from above and from the side, and the distance of the aligned paths.
 std::vector<reports::Plot> plots_of_paths(const ComparedSessions& compared);
 
-/// The cut from above and from the side: where elements were severed by whom. Empty if nobody cut.
+/// The severed elements of each session from above and from the side. Empty if nobody cut.
 std::vector<reports::Plot> plots_of_cut(const ComparedSessions& compared);
 
 }  // namespace ctpm::compare

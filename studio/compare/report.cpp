@@ -11,7 +11,7 @@
 namespace ctpm::compare {
 namespace {
 
-constexpr double kSame = 0.01;  // values that differ by a smaller share are the same to a teacher
+constexpr double kSame = 0.01;  // values with a smaller relative difference count as the same
 reports::Cell cell_of(std::optional<double> value) { return value ? reports::Cell(*value) : reports::Cell(); }
 
 reports::Table measures_table(const Comparison& comparison) {

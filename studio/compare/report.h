@@ -8,7 +8,7 @@
 
 namespace ctpm::compare {
 
-/// Two sessions and what came of comparing them; all must outlive the report.
+/// Two sessions and their comparison; all must outlive the report.
 struct ComparedSessions {
   const SessionTrack& expert;
   const SessionTrack& trainee;
@@ -16,18 +16,18 @@ struct ComparedSessions {
   const Comparison& comparison;
 };
 
-/// What a reader must know before trusting the numbers; mostly nothing.
+/// Caveats that a reader must know before trusting the numbers; usually none.
 std::vector<std::string> remarks_of(const ComparedSessions& compared);
 
 /// How the trainee's value compares with the expert's: "same" (within 1 %), "better", "worse", "differs". Empty for
 /// measures of the pair.
 std::string standing_of(const MeasuredValue& value);
 
-/// Everything for programs: sessions, measures with meaning and source, moments, and the points of the plots.
+/// The whole comparison as JSON: sessions, measures with meaning and source, moments, and the points of the plots.
 std::string comparison_json(const ComparedSessions& compared);
 
-/// Writes report.html (one page that loads nothing from elsewhere) and results.json. `to_see_worst` tells the reader
-/// how to see the worst moment; the page does not use it if there is none. Errors: those of write_report().
+/// Writes report.html (one self-contained page) and results.json. `to_see_worst` tells the reader how to see the worst
+/// moment; it is not used if there is none. Errors: those of write_report().
 Result<Done> write_comparison(const std::string& folder, const ComparedSessions& compared,
                               const std::string& to_see_worst);
 

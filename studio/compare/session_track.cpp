@@ -13,7 +13,7 @@ namespace ctpm::compare {
 namespace {
 
 constexpr std::int64_t kReadTicks = 10000;  // held in memory at a time
-constexpr double kCutSpacings = 3;          // a tip that goes further without severing begins another cut
+constexpr double kCutSpacings = 3;          // a tip that moves farther without severing begins another cut
 
 /// The severed flags of a State in the order of ElementPlaces.
 std::vector<std::uint8_t> severed_flags(const State& state) {
@@ -23,7 +23,7 @@ std::vector<std::uint8_t> severed_flags(const State& state) {
   return flags;
 }
 
-/// Simulates each cut again and notes when which element was severed.
+/// Replays each cut and stores the tick in which each element was severed.
 Result<Done> find_severed(recordings::SessionReader& session, SessionTrack& track) {
   track.severed_at.assign(ElementPlaces(session.start().model).count, -1);
   if (track.cuts.empty()) return Done{};
@@ -58,8 +58,8 @@ std::vector<Spell> strokes_of(const std::vector<std::int32_t>& tool) {
   return strokes;
 }
 
-/// Runs of severing ticks. Where elements lie a spacing apart, a blade that goes on meets the next one soon,
-/// however slow it is.
+/// Runs of severing ticks, separated by the path of the tip instead of time: elements lie a spacing apart, so a blade
+/// that continues soon meets the next one at any speed.
 std::vector<Spell> cuts_of(const SessionTrack& track, const Model& model) {
   double most = 0, gone = 0;
   for (const OrganRange& organ : model.organs) most = std::max(most, kCutSpacings * organ.spacing);
@@ -103,7 +103,7 @@ struct FieldBytes {
   }
 };
 
-/// What a person would call the difference of two networks; empty if only numbers differ.
+/// The difference of two networks in words; empty if only numbers differ.
 std::string difference_in_words(const Model& a, const Model& b) {
   const auto list = [](const auto& things) {
     std::string names;

@@ -6,10 +6,10 @@
 
 namespace ctpm::devices {
 
-/// Where a hand's instrument is and how it is turned.
+/// Position and orientation of the instrument.
 struct Pose {
   Vec3 position;     ///< [m]
-  Quat orientation;  ///< of unit length once it was checked
+  Quat orientation;  ///< unit length after DeviceGuard
 
   friend bool operator==(const Pose&, const Pose&) = default;
 };
@@ -17,34 +17,34 @@ struct Pose {
 enum class DeviceNews : std::int32_t {
   pose,         ///< `pose` was measured
   buttons,      ///< `buttons` are pressed now
-  connected,    ///< somebody is there
-  lost,         ///< nobody is there any more; `text` says why
-  turned_away,  ///< somebody else came as well and was turned away
-  bad_message,  ///< what came could not be read; `text` says why
+  connected,    ///< a device is connected
+  lost,         ///< the connection ended; `text` says why
+  turned_away,  ///< a second device tried to connect and was refused
+  bad_message,  ///< a message could not be read; `text` says why
 };
 
-/// One thing that a device told or that happened to it.
+/// One message of a device, or one change of its connection.
 struct DeviceReport {
   DeviceNews news = DeviceNews::pose;
-  double arrival = 0;         ///< when it came, by device_clock() [s]
-  double device_time = 0;     ///< when it was measured, by the device's own clock [s]; 0: it does not say
-  Pose pose;                  ///< in the device's frame, as it was told: perhaps not even finite
+  double arrival = 0;         ///< time of arrival, by device_clock() [s]
+  double device_time = 0;     ///< time of measurement, by the device's own clock [s]; 0: unknown
+  Pose pose;                  ///< in the device's frame, unchecked: may be non-finite
   std::uint32_t buttons = 0;  ///< bit set
-  const char* text = "";      ///< lives for ever
+  const char* text = "";      ///< static storage
 };
 
-/// Seconds of a clock that never jumps; any origin.
+/// Seconds of a monotonic clock of arbitrary origin.
 double device_clock();
 
-/// A device that is being read by a thread of its own. Both calls belong to the tick's thread and never wait.
+/// A device that a thread of its own reads. Call both functions from the thread of the ticks; they never wait.
 class Device {
  public:
   virtual ~Device() = default;
 
-  /// The next report in the order they came; false if there is none.
+  /// Takes the next report in order of arrival; false if there is none.
   virtual bool next(DeviceReport& report) = 0;
 
-  /// Hands `force` [N], in the device's frame, to the one who holds the instrument.
+  /// Sends `force` [N], in the device's frame, to the hand.
   virtual void send_force(Vec3 force) = 0;
 };
 

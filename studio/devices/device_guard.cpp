@@ -20,7 +20,7 @@ std::string seconds(double value) {
 
 }  // namespace
 
-/// What is wrong with a pose; null if it is believed.
+/// Why a pose is refused; null if it is accepted.
 const char* DeviceGuard::problem_with(const DeviceReport& report) const {
   if (!is_finite(report.pose.position) || !sources::is_finite(report.pose.orientation)) return "pose is not finite";
   if (!(std::abs(sources::length_of(report.pose.orientation) - 1) <= kLengthTolerance))
@@ -35,7 +35,7 @@ const char* DeviceGuard::problem_with(const DeviceReport& report) const {
 bool DeviceGuard::take(const DeviceReport& report) {
   switch (report.news) {
     case DeviceNews::connected:
-      device_time_ = 0;  // whoever comes back may have another clock
+      device_time_ = 0;  // a new connection may have another clock
       return false;
     case DeviceNews::buttons:
       buttons_ = report.buttons;

@@ -24,7 +24,7 @@ DeviceSource::DeviceSource(std::unique_ptr<Device> device, const DeviceSettings&
       passive_(settings.most_force) {}
 
 bool DeviceSource::wait_for_first_pose(const std::function<bool()>& should_stop) {
-  // What came before, while nobody listened, is old.
+  // Poses from before this call are too old.
   const double began = clock_();
   while (!guard_.has_pose() || guard_.pose_arrival() < began) {
     if (should_stop()) return false;
@@ -33,7 +33,7 @@ bool DeviceSource::wait_for_first_pose(const std::function<bool()>& should_stop)
   return true;
 }
 
-/// Takes all reports that wait. True if a good pose was among them.
+/// Takes all waiting reports. True if a good pose was among them.
 bool DeviceSource::take_reports() {
   bool has_new_pose = false;
   const std::int64_t refused_before = guard_.counts().refused + guard_.counts().unread;
@@ -43,8 +43,8 @@ bool DeviceSource::take_reports() {
   return has_new_pose;
 }
 
-/// Sends the hand from where it is to the new pose, for as long as it took from one sample to the next: so slow devices
-/// give an even motion, one sample late, and one that jumped is followed no faster than a hand moves.
+/// Interpolates from the hand's present pose to the new one over the last sample interval. Slow devices thus give a
+/// smooth motion, delayed by one sample. After a jump the speed is limited to that of a hand.
 void DeviceSource::aim(double now) {
   constexpr double kMostInterval = 0.05;  // [s]
   to_ = settings_.map.to_scene(guard_.pose());
@@ -66,7 +66,7 @@ std::optional<Inputs> DeviceSource::next(std::int64_t, const stepping::StepRepor
     hand_ = Pose{from_.position + share * (to_.position - from_.position),
                  sources::turned_towards(from_.orientation, to_.orientation, share)};
   }
-  // A tool that was just taken into the hand is where the hand is.
+  // A tool that was just picked up starts at the hand.
   const std::int32_t tool = settings_.map.tool_for(guard_.buttons());
   if (tool != tool_ || tool < 0)
     coupling_.reset(*hand_);
@@ -84,7 +84,7 @@ std::optional<Inputs> DeviceSource::next(std::int64_t, const stepping::StepRepor
   return inputs;
 }
 
-/// Every good pose is answered with a force; while poses are refused, nobody knows where the hand is, and it gets none.
+/// Answers every good pose with a force. While poses are refused the hand's position is unknown, and the force is zero.
 void DeviceSource::send_force(bool has_new_pose) {
   if (!has_new_pose && !saw_fault_) return;
   Vec3 force;

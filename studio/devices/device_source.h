@@ -19,19 +19,19 @@ struct DeviceSettings {
   DeviceMap map;
   GuardSettings guard;
   CouplingSettings coupling;
-  double most_force = 3;  ///< that is sent to the device [N], > 0
+  double most_force = 3;  ///< largest force sent to the device [N], > 0
 };
 
-/// A device as the source of a session: its samples are checked, brought into the scene, spread over the ticks between
-/// them and followed by the tool through a virtual coupling, whose force goes back to the device.
+/// A device as the source of a session. Its samples are checked, mapped into the scene and interpolated over the ticks
+/// between them. The tool follows through a virtual coupling, whose force is sent back to the device.
 class DeviceSource : public sources::InputSource {
  public:
   using Clock = std::function<double()>;
 
-  /// `tick` [s]. `clock` is the one of the reports' arrival.
+  /// `tick` [s]. `clock` must be the clock of the reports' arrival times.
   DeviceSource(std::unique_ptr<Device> device, const DeviceSettings& settings, double tick, Clock clock = device_clock);
 
-  /// Waits until the device has told where it is. False if `should_stop` said so before.
+  /// Waits for the first good pose. False if `should_stop` returned true before.
   bool wait_for_first_pose(const std::function<bool()>& should_stop);
 
   std::optional<Inputs> next(std::int64_t tick, const stepping::StepReport& last) override;
@@ -53,9 +53,9 @@ class DeviceSource : public sources::InputSource {
   VirtualCoupling coupling_;
   PassiveForce passive_;
   std::int32_t tool_ = -1;
-  std::optional<Pose> hand_;     ///< in the scene, as the coupling sees it
-  Pose from_, to_;               ///< the way on which the hand is
-  std::int64_t ticks_left_ = 0;  ///< of that way
+  std::optional<Pose> hand_;     ///< interpolated pose in the scene
+  Pose from_, to_;               ///< ends of the interpolation
+  std::int64_t ticks_left_ = 0;  ///< of the interpolation
   std::int64_t ticks_whole_ = 1;
   bool saw_fault_ = false;  ///< a report of this tick was refused
   double age_ = 0;

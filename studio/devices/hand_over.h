@@ -6,13 +6,13 @@
 
 namespace ctpm::devices {
 
-/// Hands values from one thread to another without a lock. One thread pushes, one pops; neither ever waits.
+/// Lock-free ring buffer for one producer and one consumer thread. Neither ever waits.
 template <class T, std::size_t capacity>
 class HandOver {
   static_assert((capacity & (capacity - 1)) == 0, "a power of two");
 
  public:
-  /// False if it is full; the value is not taken then.
+  /// False if it is full; the value is then not taken.
   bool push(const T& value) {
     const std::size_t end = end_.load(std::memory_order_relaxed);
     if (end - begin_.load(std::memory_order_acquire) == capacity) return false;

@@ -20,8 +20,8 @@ namespace {
 
 constexpr double kConnectTimeout = 3;   // [s]
 constexpr int kCallAgainAfter = 200;    // [ms]
-constexpr std::size_t kReports = 4096;  // that can wait for the tick's thread: seconds of a fast device
-constexpr std::size_t kForces = 64;     // that can wait for this one
+constexpr std::size_t kReports = 4096;  // capacity towards the tick's thread: seconds of a fast device
+constexpr std::size_t kForces = 64;     // capacity towards this thread
 
 }  // namespace
 
@@ -40,13 +40,13 @@ struct IgtlLink::Impl {
   Descriptor listener, connection;
   IgtlStream stream;
   IgtlForceMessage message;
-  std::optional<Vec3> newest;        ///< force that is to be sent
-  std::vector<std::uint8_t> unsent;  ///< rest of a message that the device did not take at once
+  std::optional<Vec3> newest;        ///< next force to send
+  std::vector<std::uint8_t> unsent;  ///< rest of a partly sent message
   std::array<std::uint8_t, 1 << 16> buffer;
 
   void wake_thread();
   void run();
-  void tell(DeviceReport report) { (void)reports.push(report); }  // a session that reads no more needs none
+  void tell(DeviceReport report) { (void)reports.push(report); }  // if full, the session has stopped reading
   void tell(DeviceNews news, const char* text = "");
   void take_connection(Descriptor socket);
   void hang_up(const char* reason);
@@ -86,7 +86,7 @@ int IgtlLink::port() const { return impl_->port; }
 bool IgtlLink::next(DeviceReport& report) { return impl_->reports.pop(report); }
 
 void IgtlLink::send_force(Vec3 force) {
-  (void)impl_->forces.push(force);  // if so many wait, nobody takes them
+  (void)impl_->forces.push(force);  // if full, the thread has stopped sending
   impl_->wake_thread();
 }
 
@@ -118,7 +118,7 @@ void IgtlLink::Impl::hang_up(const char* reason) {
 void IgtlLink::Impl::run() {
   while (!stopping) {
     const short wanted = short(POLLIN | (unsent.empty() ? 0 : POLLOUT));
-    // A number below 0 is not looked at.
+    // poll() ignores negative descriptors.
     std::array<pollfd, 3> waiting{
         {{wake.number(), POLLIN, 0}, {listener.number(), POLLIN, 0}, {connection.number(), wanted, 0}}};
     const bool calls_again = !settings.listens && !connection;
@@ -153,7 +153,7 @@ void IgtlLink::Impl::read() {
     hang_up("what it sends is not OpenIGTLink");
 }
 
-/// Sends what is left of a message. True if nothing is. A connection that is over is noticed by reading.
+/// Sends the rest of a message. True if nothing is left. Reading detects the end of a connection.
 bool IgtlLink::Impl::send_rest() {
   if (unsent.empty()) return true;
   const int count = devices::send(connection, unsent);
@@ -161,14 +161,14 @@ bool IgtlLink::Impl::send_rest() {
   return unsent.empty();
 }
 
-/// Takes the forces that wait; older ones than the newest are of no use any more.
+/// Takes the waiting forces and keeps only the newest.
 void IgtlLink::Impl::take_forces() {
   std::uint64_t ignored;
   [[maybe_unused]] const ssize_t count = ::read(wake.number(), &ignored, sizeof ignored);
   for (Vec3 force; forces.pop(force);) newest = force;
 }
 
-/// Sends the newest force, once the one before is sent as a whole.
+/// Sends the newest force after the message before it is complete.
 void IgtlLink::Impl::send_newest() {
   if (!connection || !send_rest() || !newest) return;
   const std::span<const std::uint8_t> bytes = message.pack(*newest);

@@ -10,28 +10,28 @@
 namespace ctpm::devices {
 
 struct IgtlSettings {
-  bool listens = false;            ///< waits for a device to connect; else connects to one
+  bool listens = false;            ///< true: waits for a device to connect; false: connects to one
   std::string host = "127.0.0.1";  ///< name or address to connect to, or of the interface on which to listen
-  int port = 0;                    ///< in [1, 65535]; 0 when listening: any that is free
-  std::string device_name;         ///< poses of others are skipped; empty: all are taken
+  int port = 0;                    ///< in [1, 65535]; 0 when listening: any free port
+  std::string device_name;         ///< skips poses of other names; empty: takes all
 };
 
-/// A device that speaks OpenIGTLink over TCP, read by a thread of its own. One connection at a time: a second one is
-/// turned away. If it ends, the next one is taken, or the device is called again five times a second.
+/// A device that speaks OpenIGTLink over TCP, read by a thread of its own. It has one connection at a time and refuses
+/// a second one. When the connection ends, it accepts the next one, or retries to connect five times per second.
 class IgtlLink : public Device {
  public:
   /// Listens, or connects. Errors: no such host, nobody listens there, the port is in use.
   static Result<std::unique_ptr<IgtlLink>> open(const IgtlSettings& settings);
 
-  /// Sends a last force of zero, so that no hand is left with one.
+  /// Sends a last force of zero, so that none persists on the hand.
   ~IgtlLink() override;
 
-  /// On which it listens, or to which it is connected.
+  /// The port on which it listens, or to which it is connected.
   int port() const;
 
   bool next(DeviceReport& report) override;
 
-  /// Forces are sent by the other thread; if the device does not take them as fast, the newest one is.
+  /// The other thread sends the force. If the device is slower than the calls, only the newest force is sent.
   void send_force(Vec3 force) override;
 
  private:

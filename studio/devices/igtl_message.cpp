@@ -18,7 +18,7 @@ namespace {
 
 static_assert(sizeof(igtl_header) == IgtlStream::kHeaderSize);
 
-/// Reads numbers as they stand on the wire, highest byte first.
+/// Reads big-endian numbers.
 class WireReader {
  public:
   explicit WireReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -47,8 +47,8 @@ std::string_view text_of(const char (&text)[size]) {
   return {text, strnlen(text, size)};
 }
 
-/// What a message says, between the further header and the metadata that protocol version 3 puts around it. None if
-/// their sizes do not fit.
+/// The content of a message, without the extended header and metadata of protocol version 3. None if their sizes do not
+/// fit.
 std::optional<std::span<const std::uint8_t>> content_of(std::span<const std::uint8_t> body, int version) {
   if (version < 2) return body;
   constexpr std::size_t kFurtherHeader = 12;
@@ -63,7 +63,7 @@ std::optional<std::span<const std::uint8_t>> content_of(std::span<const std::uin
 constexpr double kMillimetre = 1e-3;
 
 /// The rotation with the columns `x`, `y`, `z`; of length 0 if they are no rotation. Shepperd, "Quaternion from
-/// rotation matrix" (1978): from the largest of the four, so that nothing cancels.
+/// rotation matrix" (1978): starts from the largest of the four components to avoid cancellation.
 Quat rotation_of(Vec3 x, Vec3 y, Vec3 z) {
   constexpr double kTolerance = 0.02;  // single precision, and trackers that round
   const double off = std::max({std::abs(norm(x) - 1), std::abs(norm(y) - 1), norm(cross(x, y) - z)});
@@ -143,7 +143,7 @@ bool IgtlStream::take(std::span<const std::uint8_t> bytes, double now, const Tel
   return true;
 }
 
-/// Decides by its header what is done with a message. False if it is none.
+/// Decides from the header whether to read or skip a message. False if the header is invalid.
 bool IgtlStream::begin_body() {
   const igtl_header header = decode(header_);
   const std::string_view type = text_of(header.name);
@@ -160,7 +160,7 @@ bool IgtlStream::begin_body() {
   return true;
 }
 
-/// Tells what a message says that is there as a whole.
+/// Reports the content of a complete message.
 void IgtlStream::end_body(double now, const Tell& tell) const {
   DeviceReport report;
   report.arrival = now;
@@ -176,7 +176,7 @@ void IgtlStream::end_body(double now, const Tell& tell) const {
   const auto content = content_of(std::span(body_).first(body_size_), header.version);
   if (!content) return refuse("a message of a wrong size");
 
-  report.device_time = double(header.timestamp) / 4294967296.0;  // seconds with 32 bits behind the point
+  report.device_time = double(header.timestamp) / 4294967296.0;  // seconds as fixed point with 32 fractional bits
   if (kind_ == Kind::sensor) {
     const auto buttons = buttons_of_sensor(*content);
     if (!buttons) return refuse("a message of a wrong size");

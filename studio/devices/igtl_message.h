@@ -13,27 +13,26 @@
 
 namespace ctpm::devices {
 
-/// Cuts what comes over a connection into OpenIGTLink messages (protocol versions 1 to 3) and tells what they say:
-/// TRANSFORM, POSITION and QTRANS as poses, from millimetres to metres; SENSOR as buttons, its n-th value above 0.5
-/// meaning that button n is pressed. Other messages are skipped without being kept, so that no size that is written in
-/// one takes memory.
+/// Parses a byte stream of OpenIGTLink messages (protocol versions 1 to 3) into reports. TRANSFORM, POSITION and QTRANS
+/// become poses, converted from millimetres to metres. SENSOR becomes buttons: button n is pressed if the n-th value is
+/// above 0.5. Other messages are skipped without storage, so that no announced size costs memory.
 class IgtlStream {
  public:
   using Tell = std::function<void(const DeviceReport&)>;
 
-  /// Poses of other devices than `device_name` are skipped; empty: all are taken.
+  /// Skips poses of devices other than `device_name`; empty: takes all.
   explicit IgtlStream(std::string device_name) : device_name_(std::move(device_name)) {}
 
-  /// Takes the next bytes, cut in any way, at the time `now` [s]. False if they cannot be OpenIGTLink; the connection
-  /// is of no use then.
+  /// Takes the next bytes, split anywhere, which arrived at `now` [s]. False if they cannot be OpenIGTLink; the
+  /// connection is then useless.
   bool take(std::span<const std::uint8_t> bytes, double now, const Tell& tell);
 
-  /// Forgets a message that was begun: a new connection begins.
+  /// Drops an incomplete message, because a new connection begins.
   void begin_again();
 
   static constexpr std::size_t kHeaderSize = 58;
-  static constexpr std::size_t kMostBody = 4096;             ///< of a message that is read: a pose with its metadata
-  static constexpr std::uint64_t kMostSkipped = 1ull << 32;  ///< beyond it nobody means it [bytes]
+  static constexpr std::size_t kMostBody = 4096;  ///< largest body that is read: a pose with its metadata [bytes]
+  static constexpr std::uint64_t kMostSkipped = 1ull << 32;  ///< a larger size is taken for garbage [bytes]
 
  private:
   enum class Kind { transform, position, sensor };
@@ -44,14 +43,14 @@ class IgtlStream {
   std::string device_name_;
   std::array<std::uint8_t, kHeaderSize> header_{};
   std::array<std::uint8_t, kMostBody> body_{};
-  std::size_t header_size_ = 0, body_size_ = 0;  ///< bytes that are there
-  std::uint64_t body_left_ = 0;                  ///< bytes that are to come
+  std::size_t header_size_ = 0, body_size_ = 0;  ///< bytes received
+  std::uint64_t body_left_ = 0;                  ///< bytes of the body still to come
   bool is_kept_ = false;                         ///< the body is read, not skipped
-  bool is_too_large_ = false;                    ///< a message that would be read, but is larger than any such
+  bool is_too_large_ = false;                    ///< a message of a kind that is read, above kMostBody
   Kind kind_ = Kind::transform;
 };
 
-/// A SENSOR message of three values in newton, named "Force", as it goes over the wire.
+/// The bytes of a SENSOR message named "Force" with three values in newton.
 class IgtlForceMessage {
  public:
   IgtlForceMessage();
@@ -59,8 +58,7 @@ class IgtlForceMessage {
   IgtlForceMessage(const IgtlForceMessage&) = delete;
   IgtlForceMessage& operator=(const IgtlForceMessage&) = delete;
 
-  /// The bytes of a message with `force` [N], stamped with the time of the system's clock; they are good until the
-  /// next call.
+  /// Packs `force` [N] with a time stamp of the system clock. The bytes are valid until the next call.
   std::span<const std::uint8_t> pack(Vec3 force);
 
  private:

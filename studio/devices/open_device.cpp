@@ -80,7 +80,7 @@ Result<DeviceMap> map_of(const DeviceRequest& request, const Model& model) {
   return map;
 }
 
-/// What a session remembers of how a device lay in its scene.
+/// The device's map into the scene as session metadata.
 std::string describe(const DeviceRequest& request, const DeviceMap& map) {
   char text[512];
   const Quat q = map.scene_from_device;

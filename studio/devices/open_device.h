@@ -16,8 +16,8 @@ namespace ctpm::devices {
 struct DeviceRequest {
   std::string address;                           ///< HOST:PORT to connect to; empty: none
   std::optional<int> listen_port;                ///< port to listen on instead; 0: any free port
-  std::string interface = "127.0.0.1";           ///< to listen on
-  std::string name;                              ///< takes only poses of the device of this name; empty: all poses
+  std::string interface = "127.0.0.1";           ///< address to listen on
+  std::string name;                              ///< takes only poses of this name; empty: all poses
   std::string tool;                              ///< tool without a button; empty: the scene's first
   std::vector<std::string> buttons;              ///< each BUTTON=TOOL; BUTTON= alone: no tool
   double scale = 1;                              ///< scene length over hand length [1], in [0.001, 1000]
@@ -32,9 +32,9 @@ bool asks_for_device(const DeviceRequest& request);
 /// Checks a description by itself, before the scene is known. Errors name the fields as "device.FIELD".
 Errors check_device(const DeviceRequest& request);
 
-/// A device that is connected or awaited; the scene is not known yet.
+/// A device that is connected or awaited; the scene is not yet known.
 struct OpenedDevice {
-  std::unique_ptr<Device> device;  ///< none if none is asked for
+  std::unique_ptr<Device> device;  ///< null if none is requested
   std::string place;               ///< "connected to ..." or "waiting on ..."
 };
 /// Connects or listens. Errors: no server answers; the port is in use.
@@ -45,7 +45,7 @@ struct FollowedDevice {
   std::unique_ptr<DeviceSource> source;
   std::map<std::string, std::string> metadata;  ///< what the session stores about the device
 };
-/// Follows `device` in the scene of `model`. Errors: tools that the scene does not have.
+/// Makes `device` a source for the scene of `model`. Errors: tools that the scene does not have.
 Result<FollowedDevice> follow_device(const DeviceRequest& request, std::unique_ptr<Device> device, const Model& model);
 
 }  // namespace ctpm::devices

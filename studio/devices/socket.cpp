@@ -38,7 +38,7 @@ void switch_on(const Descriptor& socket, int level, int option) {
   ::setsockopt(socket.number(), level, option, &on, sizeof on);
 }
 
-/// Whether a connection that was begun stands; 0 if it does, else the error.
+/// Result of a pending connection: 0 if it is established, else the error.
 int outcome_of(const Descriptor& socket, double timeout_s) {
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double>(timeout_s);
@@ -68,7 +68,7 @@ Result<Descriptor> listen_on(const std::string& host, int port) {
   int problem = 0;
   for (const addrinfo* address = addresses->get(); address; address = address->ai_next) {
     Descriptor socket = new_socket(*address);
-    switch_on(socket, SOL_SOCKET, SO_REUSEADDR);  // a session that just ended does not keep the port
+    switch_on(socket, SOL_SOCKET, SO_REUSEADDR);  // allows reuse of the port right after a session
     constexpr int kWaiting = 4;
     if (socket && ::bind(socket.number(), address->ai_addr, address->ai_addrlen) == 0 &&
         ::listen(socket.number(), kWaiting) == 0)

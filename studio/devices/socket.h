@@ -7,11 +7,11 @@
 
 #include "core/model/result.h"
 
-// TCP as far as a device needs it. The classes of OpenIGTLink are not used for this: they listen on every interface of
-// the machine and cannot be woken.
+// TCP as far as a device needs it. OpenIGTLink's own socket classes are not used: they listen on every interface of the
+// machine, and a thread that waits in them cannot be woken.
 namespace ctpm::devices {
 
-/// A file descriptor that is closed with its owner.
+/// Owns a file descriptor and closes it.
 class Descriptor {
  public:
   Descriptor() = default;
@@ -31,22 +31,22 @@ class Descriptor {
   int number_ = -1;
 };
 
-/// Listens on an interface; `port` 0: any that is free. Errors: no such address, the port is in use or not allowed.
+/// Listens on an interface; `port` 0: any free port. Errors: no such address, the port is in use or not allowed.
 Result<Descriptor> listen_on(const std::string& host, int port);
 
 /// Connects within `timeout_s` [s]. Errors: no such host, nobody listens there, no answer.
 Result<Descriptor> connect_to(const std::string& host, int port, double timeout_s);
 
-/// The next waiting connection of a listening socket, ready to use; none if there is none.
+/// The next waiting connection of a listening socket, ready to use; empty if there is none.
 Descriptor accept_from(const Descriptor& listener);
 
-/// The port at this end.
+/// The local port.
 int port_of(const Descriptor& socket);
 
-/// Bytes read, 0 if there are none now, -1 if the connection is over. Never waits.
+/// Returns the number of bytes read, 0 if none are there, -1 if the connection has ended. Never waits.
 int receive(const Descriptor& socket, std::span<std::uint8_t> into);
 
-/// Bytes taken, -1 if the connection is over. Never waits.
+/// Returns the number of bytes accepted, -1 if the connection has ended. Never waits.
 int send(const Descriptor& socket, std::span<const std::uint8_t> bytes);
 
 }  // namespace ctpm::devices

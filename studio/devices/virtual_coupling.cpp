@@ -20,7 +20,7 @@ void VirtualCoupling::step(const Pose& hand, Vec3 tissue_force) {
   const Vec3 hand_velocity = (hand.position - hand_) / tick_, stretch = hand.position - tool_.position;
   hand_ = hand.position;
 
-  // Spring and damper give way together where they would pull harder than they may.
+  // Above the largest force, stiffness and damping are reduced by the same factor.
   const double m = settings_.mass, h = tick_;
   const Vec3 pull = settings_.stiffness * stretch + damping_ * (hand_velocity - velocity_);
   const double share = std::min(1.0, settings_.most_force / std::max(norm(pull), 1e-300));
@@ -44,7 +44,8 @@ Vec3 PassiveForce::pass(Vec3 wanted, Vec3 position) {
 
   const double size = norm(wanted);
   if (size > most_force_) wanted = most_force_ / size * wanted;
-  // What the hand takes out of the account until its next sample if it goes on in this way and turns with the force.
+  // Largest work that the force can do on the hand until the next sample, if the displacement repeats and changes along
+  // the force.
   const double taken = dot(wanted, way) + kMoreTurn * norm(wanted) * norm(turn);
   const double most = std::max(0.0, account_ + kLoan);
   if (taken > most) wanted = most / taken * wanted;

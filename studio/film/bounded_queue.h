@@ -9,8 +9,8 @@
 
 namespace ctpm::film {
 
-/// Hands things from one thread to another, at most `capacity` of them waiting: whoever is ahead waits, so
-/// that memory stays the same however long the work.
+/// A queue between two threads that holds at most `capacity` things. The faster thread waits, so that memory does not
+/// grow with the length of the work.
 template <class T>
 class BoundedQueue {
  public:
@@ -26,7 +26,7 @@ class BoundedQueue {
     return true;
   }
 
-  /// Waits for the next thing. Nothing: the queue is closed and empty.
+  /// Waits for the next thing. None: the queue is closed and empty.
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);
     has_things_.wait(lock, [&] { return !waiting_.empty() || is_closed_; });
@@ -37,14 +37,14 @@ class BoundedQueue {
     return thing;
   }
 
-  /// Nothing more comes; what waits can still be taken.
+  /// Ends the pushing: the things in the queue can still be popped.
   void close() {
     const std::lock_guard lock(mutex_);
     is_closed_ = true;
     has_room_.notify_all(), has_things_.notify_all();
   }
 
-  /// Nothing more is wanted: what waits is dropped, and whoever pushes is told.
+  /// Ends the popping: drops the things in the queue, and push() returns false.
   void abandon() {
     close();
     const std::lock_guard lock(mutex_);

@@ -34,7 +34,7 @@ Errors check_options(const std::string& path, const ExportOptions& options) {
   return errors;
 }
 
-/// The ticks of each session that are shown: the same time of all, as far as they go.
+/// The ticks of each session that are shown: the same interval of time, up to each session's end.
 Result<std::vector<session::TickRange>> find_ranges(const std::vector<recordings::SessionReader*>& sessions,
                                                     const session::TimeRange& range) {
   const auto longer = [](const recordings::SessionReader* a, const recordings::SessionReader* b) {
@@ -55,7 +55,7 @@ Result<std::vector<session::TickRange>> find_ranges(const std::vector<recordings
   return ranges;
 }
 
-/// One session of the film: what simulates it and what draws it.
+/// One session of the film with its replay, renderer and overlay.
 struct Reel {
   std::unique_ptr<SessionFilm> film;
   views::Look look;
@@ -63,12 +63,12 @@ struct Reel {
   std::unique_ptr<render::Overlay> overlay;
   double ticks_a_frame = 1;
 
-  /// The tick that is shown in a frame, or the last one.
+  /// The tick that a frame shows, at most the last one.
   std::int64_t tick_of(std::int64_t frame) const {
     const session::TickRange& range = film->range();
     return std::min<std::int64_t>(range.to, range.from + std::llround(double(frame + 1) * ticks_a_frame));
   }
-  /// The moment of a frame; a session that is over says so and stands still.
+  /// The shot of a frame. A session that has ended keeps its last State and says so.
   Result<Shot> shoot(std::int64_t frame) const {
     Result<Shot> shot = film->shoot(tick_of(frame));
     if (shot) shot->overlay.is_over = frame >= frame_count();

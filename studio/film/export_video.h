@@ -18,23 +18,23 @@ namespace ctpm::film {
 struct ExportOptions {
   render::PictureSize size;
   double fps = 30;              ///< frames per second, in [1, 240]
-  double speed = 1;             ///< times real speed, > 0
-  views::LookRequest look;      ///< what is shown, and from where
-  session::TimeRange range;     ///< part that is shown; its end is that of the longest session if not given
-  bool allow_diverged = false;  ///< go on although the replay differs from the recording
+  double speed = 1;             ///< playback speed relative to real time, in [0.001, 1000]
+  views::LookRequest look;      ///< view and camera
+  session::TimeRange range;     ///< part that is shown; by default to the end of the longest session
+  bool allow_diverged = false;  ///< continue if the replay differs from the recording
   std::function<void(std::int64_t done, std::int64_t total)> progress;
   std::function<bool()> should_stop;  ///< asked at every frame
 };
 
 /// A session that a video shows.
 struct ShownSession {
-  session::TickRange ticks;                ///< that are shown
-  std::int64_t first_different_tick = -1;  ///< whose replay differs from the recording; -1: none
+  session::TickRange ticks;                ///< the ticks shown
+  std::int64_t first_different_tick = -1;  ///< first tick whose replay differs from the recording; -1: none
 };
 
 struct ExportOutcome {
   video::VideoFacts video;
-  std::vector<ShownSession> sessions;  ///< in the order that was asked for
+  std::vector<ShownSession> sessions;  ///< in the order of the request
   StageTimes times;
   std::string pixels_hash;  ///< XXH3-64 of all frames before encoding
 
@@ -45,10 +45,10 @@ struct ExportOutcome {
   }
 };
 
-/// Replays one session, or two side by side in step, into a video with overlay; beside it a sidecar
-/// `<video>.json` that says what it shows and how it was made (studio/film/README.md). Errors: options out of
-/// range, an unknown camera or view, a damaged session, a replay that differs (unless allowed), an output
-/// that cannot be written, stopped. After an error no file is left behind.
+/// Replays one session, or two synchronised side by side, into a video with overlay. Writes a sidecar `<video>.json`
+/// with the video's content and origin (studio/film/README.md). Errors: options out of range, an unknown camera or
+/// view, a damaged session, a replay that differs (unless allowed), an output that cannot be written, stopped. After an
+/// error no file is left behind.
 Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>& sessions, const std::string& path,
                                    const ExportOptions& options);
 

@@ -84,7 +84,7 @@ class FilmRun {
   std::deque<BoundedQueue<Shot>> shots_;  // (session_count)
   BoundedQueue<render::Frame> pictures_{kFilmQueue};
   std::vector<double> shooting_s_;  // (session_count)
-  StageTimes times_;                // each member belongs to one thread until all are joined
+  StageTimes times_;                // each member belongs to one thread until the join
   std::mutex mutex_;
   Errors errors_;
 };

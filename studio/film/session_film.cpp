@@ -13,7 +13,7 @@
 namespace ctpm::film {
 namespace {
 
-constexpr std::int64_t kPlotPoints = 600;  ///< most points of the running force plot
+constexpr std::int64_t kPlotPoints = 600;  ///< largest number of points of the running force plot
 
 }  // namespace
 
@@ -69,7 +69,7 @@ Result<Done> SessionFilm::begin() {
   }
   plot_every_ = std::max<std::int64_t>(1, std::llround(overlay_.plot_span / model.tick) / kPlotPoints);
   moment_every_ = std::size_t(std::max(1ll, std::llround(render::kFollowedEvery / model.tick)));
-  // Plot and camera begin with what was before.
+  // Fill the plot and the camera's moments from before the range.
   const std::int64_t needed =
       std::max(kPlotPoints * plot_every_, std::int64_t(render::kFollowedMoments * moment_every_));
   const std::int64_t before = std::max<std::int64_t>(0, range_.from - needed);
@@ -87,7 +87,7 @@ Result<Done> SessionFilm::begin() {
   return cursor_.seek(range_.from);
 }
 
-/// Keeps what the overlay says of the tick that was done last.
+/// Updates the overlay from the last simulated tick.
 void SessionFilm::take_tick() {
   overlay_.tick = cursor_.tick();
   overlay_.time = double(overlay_.tick) * model().tick;
@@ -106,7 +106,7 @@ void SessionFilm::keep_inputs(const Inputs& inputs) {
   if (inputs_.size() > render::kFollowedMoments * moment_every_) inputs_.pop_front();
 }
 
-/// Counted back from the tick that was done last.
+/// Counted back from the last simulated tick.
 std::vector<Inputs> SessionFilm::moments() const {
   std::vector<Inputs> moments;
   for (std::size_t back = 0; back < inputs_.size(); back += moment_every_)
@@ -129,7 +129,7 @@ Error SessionFilm::differs() const {
               " exports all the same and says so on every frame"};
 }
 
-/// With a blade in the hand, and when it was put away after a cut, the depth is that of the cut.
+/// While a blade is held, and after it was put away after a cut, the depth is that of the cut.
 void SessionFilm::show_cut_depth() {
   cut_depth_.add(cursor_.state());
   const std::int32_t tool = cursor_.state().last_inputs.tool;

@@ -21,20 +21,19 @@ namespace ctpm::film {
 struct Shot {
   State state;
   render::OverlayData overlay;
-  std::vector<Inputs> moments;  ///< as following_camera() wants them
+  std::vector<Inputs> moments;  ///< argument of following_camera()
 };
 
-/// A session simulated again, from one moment to the next.
+/// Replays a session and gives one Shot for each frame.
 class SessionFilm {
  public:
-  /// `range` is what will be shown; the force before it is taken from the recording. With `allow_diverged`
-  /// the range is verified first, so that every shot can say that the replay differs. Errors: a damaged
-  /// session or scene.
+  /// `range` is the part to show; forces before it come from the recording. With `allow_diverged` the range is verified
+  /// first, so that every shot can say that the replay differs. Errors: a damaged session or scene.
   static Result<std::unique_ptr<SessionFilm>> create(recordings::SessionReader& reader, const session::TickRange& range,
                                                      bool allow_diverged);
 
-  /// The state before `tick`, which must not be before the last one. Errors: a damaged session; a replay that
-  /// differs, unless that is allowed.
+  /// The shot of the State before `tick`. Ticks must not decrease from call to call. Errors: a damaged session; a
+  /// replay that differs, unless allowed.
   Result<Shot> shoot(std::int64_t tick);
 
   /// Pieces of tissue that came loose from the session's start to the last shot.
@@ -44,7 +43,7 @@ class SessionFilm {
   const Model& model() const { return reader_.start().model; }
   const recordings::SessionReader& reader() const { return reader_; }
   const session::TickRange& range() const { return range_; }
-  std::int64_t first_different_tick() const { return first_different_; }  ///< -1: none was found
+  std::int64_t first_different_tick() const { return first_different_; }  ///< -1: none
   bool is_same() const { return first_different_ < 0; }
 
  private:
@@ -67,11 +66,11 @@ class SessionFilm {
   session::CutDepth cut_depth_;
   std::int64_t plot_every_ = 1;   ///< ticks between two points of the force plot
   std::size_t moment_every_ = 1;  ///< ticks between two moments of a following camera
-  std::deque<Inputs> inputs_;     ///< of the last ticks, as many as these moments need
+  std::deque<Inputs> inputs_;     ///< of the last ticks, as many as the moments need
   std::int64_t first_different_ = -1;
 };
 
-/// What people call the structure of a scene's first organ.
+/// Display name of the structure of a scene's first organ.
 std::string structure_name(const scenes::SceneSpec& scene);
 
 }  // namespace ctpm::film

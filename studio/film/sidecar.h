@@ -11,23 +11,23 @@
 
 namespace ctpm::film {
 
-/// A session as the video shows it.
+/// A session and its view in the video.
 struct SidecarSession {
   const SessionFilm* film = nullptr;
   const views::Look* look = nullptr;
 };
 
-/// What is said of the video as a whole.
+/// Facts about the whole video.
 struct SidecarFacts {
   video::VideoFacts video;
   StageTimes times;
   std::string pixels_hash;  ///< of all frames before encoding
   double speed = 1;
-  std::string opengl;  ///< what drew it
+  std::string opengl;  ///< name and version of the OpenGL implementation
 };
 
-/// The JSON beside a video: which sessions it shows, with hash and verdict; video, camera and view; what made
-/// it and how long that took. Errors: a session cannot be read for its hash.
+/// The JSON beside a video: its sessions with hash and verdict; video, camera and view; the program that made it and
+/// the time that this took. Errors: a session file cannot be read for its hash.
 Result<std::string> sidecar_text(const std::vector<SidecarSession>& sessions, const SidecarFacts& facts);
 
 }  // namespace ctpm::film

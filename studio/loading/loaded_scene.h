@@ -18,7 +18,7 @@ struct LoadedScene {
   std::string path;
   scenes::SceneText scene;
   std::vector<FilledOrgan> organs;               ///< (organ_count)
-  std::vector<importers::ImportReport> reports;  ///< of organs that come from meshes; empty ones for rigs (organ_count)
+  std::vector<importers::ImportReport> reports;  ///< of organs from meshes; empty for rigs (organ_count)
   scenes::BuiltScene built;
 };
 
@@ -37,8 +37,8 @@ Result<scenes::BuiltScene> build_changed(const LoadedScene& scene,
 /// The surfaces of the organs, in their order.
 std::vector<Surface> surfaces_of(const std::vector<FilledOrgan>& organs);
 
-/// The smallest damage limit of the organs for the force on a tool [N]; 0 if no organ has one. The limits for depth are
-/// in the Model (OrganRange::damage_depth).
+/// Smallest damage limit of the organs for the force on a tool [N]; 0 if no organ has one. The depth limits are in the
+/// Model (OrganRange::damage_depth).
 double damage_force_of(const scenes::SceneSpec& scene);
 
 }  // namespace ctpm::loading

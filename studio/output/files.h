@@ -7,15 +7,14 @@
 
 namespace ctpm::output {
 
-/// The whole file. Errors: it does not exist, is a folder, cannot be read.
+/// Reads a whole file. Errors: it does not exist, is a folder, cannot be read.
 Result<std::string> read_text_file(const std::string& path);
 
-/// Writes `text` to a temporary name beside `path` and renames it when it is whole. Errors: the folder is
-/// missing or cannot be written, the disk is full; nothing is left behind then.
+/// Writes `text` to a temporary file beside `path`, then renames it. Errors: the folder is missing or cannot be
+/// written, the disk is full. After an error no file is left behind.
 Result<Done> write_text_file(const std::string& path, const std::string& text);
 
-/// An error if a file of that name cannot be made: its folder is missing or cannot be written. For checks
-/// before long work.
+/// Checks before long work that a file can be created. Errors: its folder is missing or cannot be written.
 Result<Done> check_writable(const std::string& path);
 
 }  // namespace ctpm::output

@@ -8,8 +8,7 @@
 
 namespace ctpm::output {
 
-/// Writes JSON for machines: results of commands with --json. Numbers keep all their digits; what is not
-/// finite is null.
+/// Writes JSON for programs. Numbers keep all digits; non-finite numbers become null.
 class JsonWriter {
  public:
   JsonWriter& begin_object() { return open('{'); }

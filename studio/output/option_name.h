@@ -9,7 +9,7 @@
 namespace ctpm::output {
 
 /// Names a field of an option struct in the text of an error, for example option_name("look.camera"). A library knows
-/// only the field. Its caller knows what the user calls it, for example `--camera`, and puts that in with
+/// only the field. Its caller knows the user's name for it, for example `--camera`, and substitutes that with
 /// name_options().
 std::string option_name(std::string_view field);
 

@@ -1,5 +1,4 @@
-// The same organ filled with r, r/2 and r/4: what it comes to under its own weight, and how fast that
-// converges.
+// The same organ filled with r, r/2 and r/4: its sag under its own weight, and the order of convergence.
 
 #include <cmath>
 #include <future>
@@ -16,15 +15,15 @@ constexpr Variant kVariants[] = {{"mass-spring", network::Structure::mass_spring
                                  {"TPM", network::Structure::tpm, false, ""},
                                  {"CTPM", network::Structure::ctpm, false, ""}};
 
-/// Mean depth by which the spheres have sunk from rest [mm].
+/// Mean downward displacement of the spheres [mm].
 double mean_sag(const Model& model, const State& state) {
   double sum = 0;
   for (std::size_t i = 0; i < model.sphere_count(); ++i) sum += model.rest_position.z[i] - state.position.z[i];
   return 1e3 * sum / double(model.sphere_count());
 }
 
-/// Mean sag [mm] of a Model at rest under gravity. Backward Euler with a tick that is longer than everything
-/// that moves is Newton's rule for the state at rest.
+/// Mean sag [mm] of a Model at rest under gravity. Backward Euler with a tick far above every time constant is Newton's
+/// method for the static State.
 Result<double> sag_at_rest(Model model, const std::string& name) {
   constexpr double kEnough = 1e-6;  // change of the last step [share]
   constexpr int kMostSteps = 30;
@@ -47,7 +46,7 @@ Result<double> sag_at_rest(Model model, const std::string& name) {
   return Error{name, "does not come to rest under its own weight", ""};
 }
 
-/// The organ filled `finer` times as finely.
+/// Divides the organ's sphere radius and gap by `finer`.
 void fill_finer(scenes::OrganSpec& organ, int finer) {
   organ.fill.radius /= finer, organ.fill.gap /= finer;
   if (organ.rig && organ.rig->block) organ.rig->block = double(finer) * *organ.rig->block;
@@ -78,7 +77,7 @@ void add_fillings(Experiment& experiment, const std::string& organ, const Varian
               .structure = variant.name,
               .quantity = is_aligned ? "observed order of r, r/2, r/4" : "second change over first [share]"};
   claim.network = is_aligned ? refined.order() : refined.shrinkage();
-  // An order of one half: each halving changes less than 0.71 times as much as the one before.
+  // An order of one half: each halving changes the sag by less than 0.71 times the change before.
   claim.holds = refined.shrinkage() < std::sqrt(0.5);
   claim.note = is_aligned ? "it converges; limit " + output::short_number(refined.limit()) + " mm"
                           : "it converges; the anchored spheres jump with the lattice, so no order is read";
@@ -134,7 +133,7 @@ Result<Experiment> run_convergence(const std::string& scenes) {
                                      liver = load_experiment(scenes, "liver.json");
   if (!block) return block.errors();
   if (!liver) return liver.errors();
-  // The liver takes longest and runs beside the others.
+  // The liver takes longest and runs in parallel with the others.
   std::future<Result<Refinement>> other = std::async(std::launch::async, [&] { return refine(*liver, kVariants[3]); });
   std::vector<Refinement> refined;
   Errors errors;

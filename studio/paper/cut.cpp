@@ -1,4 +1,4 @@
-// Figs. 12 to 14: a kidney is cut along its top, and four points beside the cut are followed.
+// Figs. 12 to 14: a kidney is cut along its top, and four points beside the cut are tracked.
 
 #include <array>
 #include <cmath>
@@ -19,19 +19,18 @@ constexpr Variant kVariants[] = {{"mass-spring", network::Structure::mass_spring
                                  {"CTPM", network::Structure::ctpm, true, "Pa s"}};
 constexpr std::size_t kMassSpring = 0, kCtpm = 1;
 
-/// The scene's probes: A and B stand on one bank of the cut, C and D across it.
+/// The scene's probes: A and B are on one side of the cut, C and D on the other.
 constexpr const char* kProbes[] = {"A", "B", "C", "D"};
 constexpr int kSeconds = 8;
 constexpr std::int32_t kSubsteps = 20;
 
 struct CutRun {
-  std::array<std::array<Vec3, kSeconds>, 4>
-      place;  ///< of A to D, 1 s to 8 s after the cut, from where they were before it [mm]
-  std::array<double, 2> gap_before, gap_after;  ///< A to C and B to D [mm]
-  reports::Series way_of_a;                     ///< y of A over the time after the cut [s], [mm]
-  State state;                                  ///< 1 s after the cut
+  std::array<std::array<Vec3, kSeconds>, 4> place;  ///< displacement of A to D by the cut, 1 s to 8 s after it [mm]
+  std::array<double, 2> gap_before, gap_after;      ///< A to C and B to D [mm]
+  reports::Series way_of_a;                         ///< y of A over the time after the cut [s], [mm]
+  State state;                                      ///< 1 s after the cut
   Model model;
-  std::string integrator;  ///< what was chosen for the Model
+  std::string integrator;  ///< the Model's own choice
 };
 
 Result<CutRun> run_kidney(const loading::LoadedScene& scene, const scenes::Script& script, const Variant& variant) {
@@ -45,7 +44,7 @@ Result<CutRun> run_kidney(const loading::LoadedScene& scene, const scenes::Scrip
   Model& model = run.model;
   State state = rest_state(model);
   stepping::Stepper(model).settle(state, std::llround(3 / model.tick));
-  // Small steps from here on: where they are implicit, a whole tick would damp what is to be seen.
+  // Small steps from here on, because an implicit step of a whole tick would damp the motion of interest.
   model.solver.substeps = kSubsteps;
   stepping::resolve_integrator(model);
   stepping::Stepper stepper(model);
@@ -82,7 +81,7 @@ Result<CutRun> run_kidney(const loading::LoadedScene& scene, const scenes::Scrip
   return run;
 }
 
-/// How far the eight places of a point lie from their middle, root mean square in y and z [mm].
+/// Root mean square distance in y and z of a point's eight positions from their mean [mm].
 double spread(const std::array<Vec3, kSeconds>& places) {
   Vec3 middle;
   for (const Vec3& p : places) middle += p / double(kSeconds);

@@ -23,7 +23,7 @@ constexpr std::size_t kMassSpring = 0, kCtpm = 4;
 /// A run of the block.
 struct LoadRun {
   reports::Series depth;   ///< of the loaded sphere over time [s], [mm]
-  std::string integrator;  ///< what was chosen for its Model
+  std::string integrator;  ///< its Model's own choice
 };
 
 constexpr double kDuration = 1.0;  ///< [s]
@@ -79,7 +79,7 @@ reports::Table motion_layout(const std::string& title) {
   return table;
 }
 
-/// One way of loading: plots, a table, and what must hold.
+/// One kind of load: plots, a table, and the claims.
 void add_runs(Experiment& experiment, const std::vector<LoadRun>& runs, const std::string& how) {
   reports::Section& section = experiment.section;
   reports::Plot compared{
@@ -114,7 +114,7 @@ void add_runs(Experiment& experiment, const std::vector<LoadRun>& runs, const st
   experiment.claims.push_back(claim);
 }
 
-/// A ball that came at 100 mm/s and stays, and the tissue 20 ms after it was taken away at once.
+/// A ball that arrived at 100 mm/s and stays, and the tissue 20 ms after its sudden removal.
 struct Press {
   State under, after;
   double depth = 0;  ///< of the pressed sphere under the ball [mm]
@@ -124,7 +124,7 @@ constexpr double kLeft = 0.02;  ///< after the ball was taken away [s]
 /// Presses the sphere nearest to `place` straight down by `depth` [m] with the Model's first tool.
 Result<Press> press_and_leave(Model model, const std::string& name, State state, Vec3 place, double depth) {
   constexpr double kSpeed = 0.1, kHold = 0.3;
-  // An implicit step of a whole tick would damp what is to be seen.
+  // An implicit step of a whole tick would damp the motion of interest.
   model.solver.substeps = 10;
   stepping::resolve_integrator(model);
   const auto c = std::size_t(scenes::nearest_sphere(model, place));
@@ -166,7 +166,7 @@ Result<Model> model_of(const loading::LoadedScene& scene, const Variant& variant
   return std::move(built->model);
 }
 
-/// Fig. 9: surface and inside of the block in both models after a ball was taken away.
+/// Fig. 9: surface and inside of the block in both models after the ball was removed.
 Result<Done> add_block_pictures(reports::Section& section, const loading::LoadedScene& scene) {
   const render::Camera outer{{-0.05, -0.20, 0.16}, {0, 0.002, 0.056}, {0, 0, 1}, 32},
       inner{{-0.03, -0.24, 0.12}, {0, 0, 0.044}, {0, 0, 1}, 32};
@@ -193,7 +193,7 @@ Result<Done> add_block_pictures(reports::Section& section, const loading::Loaded
   return Done{};
 }
 
-/// Fig. 10: the shipped liver under a ball, where its stiffness was fitted, and after it.
+/// Fig. 10: the shipped liver under a ball at the point of the stiffness fit, and after the ball's removal.
 Result<Done> add_liver_pictures(reports::Section& section, const std::string& scenes) {
   const Result<loading::LoadedScene> scene = load_experiment(scenes, "liver.json");
   if (!scene) return scene.errors();

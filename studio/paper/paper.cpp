@@ -11,7 +11,7 @@
 namespace ctpm::paper {
 namespace {
 
-/// Printed numbers that are this close [share] are called agreeing where nothing must hold.
+/// Values within this share of the printed number count as agreeing where there is no bound.
 constexpr double kAgrees = 0.10;
 
 double share(const std::optional<double>& got, const std::optional<double>& wanted) {
@@ -30,7 +30,7 @@ double Claim::error_to_paper() const { return share(network, paper); }
 
 reports::ReportVerdict Claim::verdict() const {
   bool is_met = true;
-  // Written so that an error that is not a number counts as missed.
+  // A NaN error counts as missed.
   if (closed_form_bound) is_met = is_met && std::abs(error_to_closed_form()) <= *closed_form_bound;
   if (paper_bound) is_met = is_met && std::abs(error_to_paper()) <= *paper_bound;
   if (holds) is_met = is_met && *holds;
@@ -82,7 +82,7 @@ void use_variant(scenes::SceneSpec& scene, const Variant& variant) {
 
 namespace {
 
-/// What an experiment uses of a scene; the others take nothing for granted.
+/// The parts of a scene that an experiment requires.
 struct Need {
   const char* name;
   std::size_t cells, loads, probes, tools;

@@ -29,7 +29,7 @@ void add_box_surface(FilledOrgan& block, int steps) {
   for (std::size_t axis = 0; axis < 3; ++axis) count[axis] = int(size[axis] / edge + 0.5);
   Surface& surface = block.surface;
   surface = {};
-  // Vertices on the box's edges belong to several faces and are made once.
+  // Vertices on the box's edges belong to several faces and are created once.
   std::map<std::array<int, 3>, std::int32_t> vertex_at;
   const auto vertex = [&](const std::array<int, 3>& place) {
     const auto [it, is_new] = vertex_at.emplace(place, std::int32_t(surface.vertex.size()));
@@ -69,7 +69,7 @@ Result<std::vector<reports::Picture>> draw_shots(const scenes::SceneSpec& scene,
     State state = shot.state;
     for (std::size_t i = 0; i < model.sphere_count(); ++i)
       state.position.set(i, model.rest_position[i] + shot.exaggeration * (state.position[i] - model.rest_position[i]));
-    // What is left out goes behind the camera.
+    // Hidden spheres move behind the camera.
     for (std::size_t i = 0; i < model.sphere_count(); ++i)
       if (model.rest_position[i].y < shot.from_y)
         state.position.set(i, camera.eye + 0.5 * (camera.eye - camera.target));

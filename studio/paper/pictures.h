@@ -10,21 +10,21 @@
 
 namespace ctpm::paper {
 
-/// A closed box around a block of spheres as its surface, bound to them, so that a block can be drawn as
-/// tissue. `steps` squares along each spacing.
+/// Gives a block of spheres a closed box as its surface, bound to them, so that it can be drawn as tissue. `steps`:
+/// squares along each spacing.
 void add_box_surface(FilledOrgan& block, int steps);
 
-/// What is drawn of a state.
+/// A State and how to draw it.
 struct PaperShot {
   State state = {};
   std::string caption = {};
-  bool is_inside = false;  ///< the spheres instead of the surface
+  bool is_inside = false;  ///< draws the spheres instead of the surface
   bool show_tool = false;
-  double exaggeration = 1;    ///< displacements from rest are drawn so many times as large
-  double from_y = -INFINITY;  ///< spheres that rest before this y are left out [m]; for the inside only
+  double exaggeration = 1;    ///< factor on displacements from rest
+  double from_y = -INFINITY;  ///< spheres with a smaller rest y are left out [m]; for `is_inside` only
 };
 
-/// Pictures of several states of one Model, all through one camera. Errors: those of the renderer.
+/// Draws several States of one Model with one camera. Errors: those of the renderer.
 Result<std::vector<reports::Picture>> draw_shots(const scenes::SceneSpec& scene, const std::vector<FilledOrgan>& organs,
                                                  const Model& model, const render::Camera& camera,
                                                  const std::vector<PaperShot>& shots);

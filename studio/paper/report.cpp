@@ -8,7 +8,7 @@
 namespace ctpm::paper {
 namespace {
 
-/// Overview: how many figures of each experiment hold.
+/// Overview: the number of claims of each experiment that hold.
 reports::Table overview(const PaperResults& results) {
   reports::Table table;
   table.columns = {{"experiment", "experiment"}, {"must_hold", "must hold"},     {"met", "met"},
@@ -81,7 +81,7 @@ Result<PaperResults> run_paper_experiments(const std::string& scenes,
                                     [&] { return run_creep(scenes); },     [&] { return run_load(scenes, true); },
                                     [&] { return run_cut(scenes, true); }, [&] { return run_convergence(scenes); }};
   PaperResults results;
-  // The experiments take a minute: what is wrong with their scenes is said before.
+  // The experiments take a minute, so the scenes are checked first.
   Errors errors = check_experiments(scenes);
   if (!errors.empty()) return errors;
   for (std::size_t i = 0; i < runners.size(); ++i) {

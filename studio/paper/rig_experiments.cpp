@@ -23,7 +23,7 @@ struct Reading {
 };
 constexpr Reading kReadings[] = {{"kPa s", 1.0}, {"Pa s", 1e-3}};
 
-/// Gives the first organ's viscosity the other reading: its preset's twin.
+/// Reads the first organ's viscosity in the other unit, with its preset's twin.
 void read_viscosity(scenes::SceneSpec& scene, const Reading& reading) {
   if (reading.factor != 1.0) scene.organs[0].material.preset += "-pa-s";
 }
@@ -53,7 +53,7 @@ reports::Plot force_plot(const std::string& organ, const rig::Site& site, const 
   return plot;
 }
 
-/// lambda as the network has it [kPa/mm]: what the force at rest has beyond P2.
+/// lambda of the network [kPa/mm]: the part of the static force beyond P2.
 double network_lambda(const rig::Site& site, double depth, double force_without_softening) {
   return force_without_softening / rig::force_of_stress(site, depth) - rig::p2(site);
 }
@@ -126,7 +126,7 @@ void add_table_1(Experiment& experiment, const OrganForces& forces) {
   }
 }
 
-/// What a run over time is compared with.
+/// Comparison of a run over time with a law.
 struct Compared {
   double worst = 0;    ///< largest difference
   double largest = 0;  ///< largest value of the law
@@ -241,13 +241,13 @@ Result<Done> add_relaxation(Experiment& experiment, const loading::LoadedScene& 
 }
 
 constexpr double kRamp =
-    0.5;  ///< of the loads of Fig. 8 [s]; a sudden load would set the spheres swinging, which no law here has
+    0.5;  ///< of the loads of Fig. 8 [s]; a step load would make the spheres oscillate, which no law here models
 
 struct CreepLoad {
   double newton;
   double measured_low, measured_high;  ///< on pig liver after 33 s [mm]
 };
-/// Deviation: the paper's sentence names the ranges for the two forces the wrong way round.
+/// Deviation: the paper's sentence swaps the ranges of the two forces.
 constexpr CreepLoad kCreepLoads[] = {{0.196, 3.8, 6.65}, {0.98, 9.6, 11.9}};
 
 std::vector<double> depths_of(const std::vector<rig::Sample>& samples) {

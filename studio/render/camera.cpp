@@ -15,7 +15,7 @@ struct Axes {
 
 Vec3 unit(Vec3 v) { return v / norm(v); }
 
-/// The camera's axes; any up will do if the given one lies along the line of sight.
+/// The camera's axes; uses another up if the given one is parallel to the line of sight.
 Axes axes_of(Vec3 look, Vec3 up) {
   const Vec3 back = -unit(look);
   Vec3 right = cross(up, back);
@@ -44,7 +44,7 @@ Camera fit_camera(std::span<const Vec3> points, Vec3 direction, Vec3 up, double 
   const Axes axes = axes_of(direction, up);
   const double tan_up = std::tan(fov_deg / 2 * kRadiansPerDegree) / kMargin, tan_right = tan_up * aspect;
   double distance = 1e-6;
-  // Step back until each point is inside the pyramid of sight.
+  // Step back until each point is inside the view frustum.
   for (const Vec3& point : points) {
     const Vec3 p = point - camera.target;
     const double towards = dot(p, axes.back);

@@ -10,8 +10,8 @@ namespace ctpm::render {
 /// A pinhole camera.
 struct Camera {
   Vec3 eye{0, -1, 0.5};  ///< [m]
-  Vec3 target;           ///< where it looks [m], not equal to the eye
-  Vec3 up{0, 0, 1};      ///< which way is up in the picture, not along the line of sight
+  Vec3 target;           ///< point in the centre of the picture [m], not equal to the eye
+  Vec3 up{0, 0, 1};      ///< points up in the picture, not parallel to the line of sight
   double fov_deg = 32;   ///< vertical field of view, in (0, 170)
 };
 
@@ -26,11 +26,10 @@ struct Bounds {
 /// The smallest box around the points; a point at the origin if there are none.
 Bounds bounds_of(std::span<const Vec3> points);
 
-/// A camera that looks along `direction` and has the whole box in sight, with a margin. `aspect` = width /
-/// height.
+/// A camera that looks along `direction` and frames the whole box with a margin. `aspect` = width / height.
 Camera fit_camera(const Bounds& bounds, Vec3 direction, Vec3 up, double fov_deg = 32, double aspect = 16.0 / 9);
 
-/// As above, with all the points in sight: closer than their box allows.
+/// As above for points: the camera stands closer than it would for their box.
 Camera fit_camera(std::span<const Vec3> points, Vec3 direction, Vec3 up, double fov_deg = 32, double aspect = 16.0 / 9);
 
 /// Column-major 4 x 4 matrix.
@@ -51,7 +50,7 @@ struct Pixel {
   double depth = 0;     ///< distance in front of the camera [m]; <= 0: behind it
 };
 
-/// Where a world point falls in a picture of the given size.
+/// Projects a world point into a picture of the given size.
 Pixel project(const Camera& camera, int width, int height, Vec3 point);
 
 }  // namespace ctpm::render

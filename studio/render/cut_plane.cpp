@@ -5,7 +5,7 @@
 namespace ctpm::render {
 namespace {
 
-/// x with m x = b for a symmetric positive definite matrix given as xx, xy, xz, yy, yz, zz.
+/// Solves m x = b for a symmetric positive definite matrix given as xx, xy, xz, yy, yz, zz.
 Vec3 solve(const std::array<double, 6>& m, Vec3 b) {
   const Vec3 r0{m[0], m[1], m[2]}, r1{m[1], m[3], m[4]}, r2{m[2], m[4], m[5]};
   const Vec3 c0 = cross(r1, r2), c1 = cross(r2, r0), c2 = cross(r0, r1);
@@ -15,7 +15,7 @@ Vec3 solve(const std::array<double, 6>& m, Vec3 b) {
 }  // namespace
 
 std::optional<Plane> fit_plane(const std::vector<CutPoint>& crossings, Vec3 near, double reach) {
-  constexpr double kPreference = 1e-4;  // of the mean direction against the fit
+  constexpr double kPreference = 1e-4;  // weight of the mean direction relative to the fit
   double sum = 0;
   Vec3 middle, across;
   const auto weight = [&](const CutPoint& c) {

@@ -16,9 +16,9 @@ namespace {
 using Index = CutVertices::Index;
 using Triangle = std::array<Index, 3>;
 
-constexpr double kPlaneReach = 2.4;    // in spacings: crossings that tell where the cut is at a place
+constexpr double kPlaneReach = 2.4;    // in spacings: radius of the crossings that define the cut at a point
 constexpr double kFarthestHome = 1.8;  // in spacings
-constexpr double kRindEnds = 2.0;      // in layers: in the middle of the second
+constexpr double kRindEnds = 2.0;      // in layers: the middle of the second
 
 }  // namespace
 
@@ -54,7 +54,7 @@ struct CutSurface::Parts {
   std::vector<std::uint8_t> is_lip;
   std::vector<float> rind;
 
-  // Working memory of rebuild().
+  // Scratch memory of rebuild().
   std::vector<std::uint8_t> is_near_cut;  ///< of the whole surface's vertices
   SplitLine split;
 };
@@ -73,7 +73,7 @@ void CutSurface::Parts::bind_homes() {
   outer_triangles = whole.triangle.size(), outer_vertices = whole.vertex.size();
 }
 
-/// The nearest sphere that has the vertex on its own side of where the blade passed.
+/// The nearest sphere that lies on the vertex's side of the cut.
 Index CutSurface::Parts::home_on_own_side(std::size_t vertex) {
   const SurfaceBinding& b = whole.binding;
   const Vec3 rest = whole.vertex[vertex];
@@ -91,7 +91,7 @@ Index CutSurface::Parts::home_on_own_side(std::size_t vertex) {
   return nearest[vertex];
 }
 
-/// The whole surface's vertices; those near the cut follow only what their home sphere sees.
+/// Adds the whole surface's vertices; those near the cut are bound only to spheres that their home sees.
 void CutSurface::Parts::add_whole_vertices() {
   const SurfaceBinding& b = whole.binding;
   is_near_cut.assign(whole.vertex.size(), 0);
@@ -113,7 +113,7 @@ bool CutSurface::Parts::are_parted(Index u, Index v) {
   return is_near_cut[std::size_t(u)] && is_near_cut[std::size_t(v)] && out.loses(a, b);
 }
 
-/// How far along the edge u-v, in (0, 1), the blade passed.
+/// The crossing of the edge u-v as a fraction in (0, 1).
 double CutSurface::Parts::where_parted(Index u, Index v) {
   const Vec3 p = out.rest(u), q = out.rest(v);
   const double reach = kPlaneReach * links.spacing();
@@ -135,8 +135,8 @@ Index CutSurface::Parts::middle(Index u, Index v) {
   return split.middles[{u, v}];
 }
 
-/// Where a cut that enters the triangle a b c between a and b ends: inside, where the blade passed. What c
-/// sees belongs to both banks.
+/// End of a cut that enters the triangle a b c between a and b: a point inside, where the blade stopped. The spheres
+/// that c sees belong to both sides of the cut.
 Index CutSurface::Parts::end_of_cut(Index a, Index b, Index c) {
   constexpr double kInto = 0.45, kInside = 0.03;  // towards c; least weight of a corner
   const Index low = std::min(a, b), high = std::max(a, b);
@@ -155,7 +155,7 @@ Index CutSurface::Parts::end_of_cut(Index a, Index b, Index c) {
   return out.add(weight_a * pa + weight_b * pb + kInto * pc, out.home(c));
 }
 
-/// Emits what the cut leaves of one triangle; the pieces keep its orientation.
+/// Emits the pieces of one triangle after the cut; they keep its orientation.
 void CutSurface::Parts::split_triangle(const Triangle& t) {
   const auto emit = [&](Index a, Index b, Index c) { out.surface().triangle.push_back({a, b, c}); };
   if (!is_near_cut[std::size_t(t[0])] && !is_near_cut[std::size_t(t[1])] && !is_near_cut[std::size_t(t[2])])
@@ -164,7 +164,7 @@ void CutSurface::Parts::split_triangle(const Triangle& t) {
   const int count = parted[0] + parted[1] + parted[2];
   if (count == 0) return emit(t[0], t[1], t[2]);
   if (count == 3) {
-    // Three banks meet: each keeps its corner.
+    // Three sides of cuts meet: each keeps its corner.
     const Vec3 centre = (out.rest(t[0]) + out.rest(t[1]) + out.rest(t[2])) / 3.0;
     for (std::size_t i = 0; i < 3; ++i) {
       const Index a = t[i], b = t[(i + 1) % 3], c = t[(i + 2) % 3];
@@ -182,7 +182,7 @@ void CutSurface::Parts::split_triangle(const Triangle& t) {
       split.lips.push_back({at_a, tip}), split.lips.push_back({tip, at_b});
     }
     if (count == 2 && !parted[(i + 1) % 3]) {
-      // a is alone on its bank.
+      // a is alone on its side.
       const Index ab = middle(a, b), ac = middle(a, c), ba = middle(b, a), ca = middle(c, a);
       emit(a, ab, ac), emit(ba, b, c), emit(ba, c, ca);
       split.lips.push_back({ab, ac}), split.lips.push_back({ca, ba});

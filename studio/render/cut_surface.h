@@ -11,9 +11,8 @@
 
 namespace ctpm::render {
 
-/// An organ's surface as it is drawn: split where the organ was cut, its lips on their own sides, and the
-/// wall of the cut between them. Nothing is remembered from tick to tick but what is severed, so any State
-/// may follow any other.
+/// An organ's surface as it is drawn: split along the cut, with each edge bound to its own side, and closed by the
+/// walls of the cut. Only the severed links are kept between calls, so the States may come in any order.
 class CutSurface {
  public:
   /// `whole` is the uncut surface of organ `organ`, bound to its spheres.
@@ -21,21 +20,20 @@ class CutSurface {
   ~CutSurface();
   CutSurface(CutSurface&&) noexcept;
 
-  /// Takes over what is severed in `state`. Returns whether surface() changed.
+  /// Takes over the severed links of `state`. Returns whether surface() changed.
   bool update(const State& state);
 
-  /// Outer triangles first, then the wall's. The wall has its own vertices, so that normals break at the lip.
-  /// Vertices are given at rest, where both lips of a cut coincide; deform_surface() opens it.
+  /// Outer triangles first, then the wall's. The wall has its own vertices, so that normals break at the cut edge.
+  /// Vertices are at rest, where both sides of a cut coincide; deform_surface() opens the cut.
   const Surface& surface() const;
   std::size_t outer_triangle_count() const;
   std::size_t outer_vertex_count() const;
 
-  /// 1 where an outer vertex lies on the lip of a cut                        (outer_vertex_count, or empty
-  /// without a cut)
+  /// 1 for outer vertices on the edge of a cut                      (outer_vertex_count, or empty without a cut)
   const std::vector<std::uint8_t>& is_lip() const;
 
-  /// How much a vertex of the wall belongs to the outermost layer: 1 in it, 0 in the second and below. 0 for
-  /// outer vertices, and in organs of one layer                     (vertex_count, or empty without a cut)
+  /// Share of the outermost layer in a vertex of the wall: 1 in that layer, 0 in the second and below. 0 for outer
+  /// vertices, and in organs of one layer                           (vertex_count, or empty without a cut)
   const std::vector<float>& rind() const;
 
  private:

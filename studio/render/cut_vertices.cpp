@@ -45,8 +45,8 @@ const std::vector<CutPoint>& CutVertices::crossings_around(Index sphere) {
   return all;
 }
 
-/// Appends a binding to what `home` sees around `rest`. Spheres that do not span space cannot hold a vertex
-/// at its distance from them; then the reach grows until they do, or until nothing more is seen.
+/// Appends a binding to the spheres that `home` sees around `rest`. If these do not span space, they cannot hold a
+/// vertex away from them; then the reach grows until they do, or until no further sphere is seen.
 void CutVertices::follow(Vec3 rest, Index home) {
   constexpr double kWiden = 1.4, kHeld = 1e-6;  // kHeld: of a spacing
   near_.clear();
@@ -56,7 +56,7 @@ void CutVertices::follow(Vec3 rest, Index home) {
   std::vector<Vec3> centres;
   std::vector<double> weights;
   for (double reach = std::max(kReachInSpacings * links_.spacing(), 1.05 * last_of_fewest->first);; reach *= kWiden) {
-    // Only what is within reach is sorted, nearest first.
+    // Only spheres within reach are sorted, nearest first.
     const auto known = near_.begin() + std::ptrdiff_t(centres.size());
     const auto within = std::partition(known, near_.end(), [&](const auto& n) { return n.first < reach; });
     std::sort(known, within);

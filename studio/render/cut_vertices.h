@@ -13,8 +13,8 @@
 
 namespace ctpm::render {
 
-/// The vertices of a cut organ's surface. Each has a home, a sphere on its own side of the cut, and follows
-/// only spheres that its home sees.
+/// The vertices of a cut organ's surface. Each has a home, a sphere on its own side of the cut, and is bound only to
+/// spheres that its home sees.
 class CutVertices {
  public:
   using Index = std::int32_t;
@@ -22,26 +22,26 @@ class CutVertices {
   /// `links` must outlive this.
   explicit CutVertices(const LatticeLinks& links) : links_(links) {}
 
-  /// Forgets all vertices, and what spheres saw before the links changed.
+  /// Removes all vertices and clears the caches. Call it when links have changed.
   void clear();
 
   const LatticeLinks::Sight& sight(Index sphere);
-  bool sees(Index sphere, Index other);   ///< over joined links, as before anything was severed
-  bool loses(Index sphere, Index other);  ///< the cut passes between two spheres that saw each other before
-  /// Where the blade passed between what a sphere sees and what it lost.
+  bool sees(Index sphere, Index other);   ///< over joined links, in as few hops as when uncut
+  bool loses(Index sphere, Index other);  ///< the cut separates two spheres that saw each other
+  /// Crossings of the links between what a sphere sees and what it lost.
   const std::vector<CutPoint>& crossings_around(Index sphere);
 
   Index add(Vec3 rest, Index home);
-  /// A vertex that is bound as given.
+  /// Adds a vertex with the given binding.
   Index add(Vec3 rest, Index home, std::span<const Index> spheres, std::span<const double> weights);
-  Index copy(Index vertex);  ///< a second vertex at the same place that follows the same spheres
+  Index copy(Index vertex);  ///< a second vertex with the same position and binding
 
   const LatticeLinks& links() const { return links_; }
   Index count() const { return Index(surface_.vertex.size()); }
   Vec3 rest(Index vertex) const { return surface_.vertex[std::size_t(vertex)]; }
   Index home(Index vertex) const { return home_[std::size_t(vertex)]; }
 
-  /// The vertices with their binding, and the triangles that were added to them.
+  /// The vertices with their bindings, and the triangles that were added.
   Surface& surface() { return surface_; }
   const Surface& surface() const { return surface_; }
 
@@ -51,9 +51,9 @@ class CutVertices {
   const LatticeLinks& links_;
   Surface surface_;
   std::vector<Index> home_;                           ///< (vertex_count)
-  std::map<Index, LatticeLinks::Sight> sights_;       ///< of spheres that were asked for
-  std::map<Index, std::vector<CutPoint>> crossings_;  ///< of spheres that were asked for
-  std::vector<std::pair<double, Index>> near_;        ///< working memory of follow()
+  std::map<Index, LatticeLinks::Sight> sights_;       ///< cache by sphere
+  std::map<Index, std::vector<CutPoint>> crossings_;  ///< cache by sphere
+  std::vector<std::pair<double, Index>> near_;        ///< scratch memory of follow()
 };
 
 }  // namespace ctpm::render

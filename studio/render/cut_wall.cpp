@@ -16,13 +16,13 @@ using Cell = LatticeLinks::Cell;
 constexpr int kSmoothings = 3;
 constexpr double kFarthestFoot = 2.5;  // in spacings
 
-/// A corner of the wall: the middle of a cube of eight lattice cells, as many copies as the cut leaves pieces
+/// A corner of the wall: the middle of a cube of eight lattice cells, with one copy for each piece that the cut leaves
 /// there.
 struct Corner {
-  Vec3 rest;                    ///< where the blade passed [m]
-  bool at_border = false;       ///< the cube reaches out of the organ
+  Vec3 rest;                    ///< on the cut [m]
+  bool at_border = false;       ///< the cube extends out of the organ
   bool is_snapped = false;      ///< lies on the split line of the outer surface
-  std::vector<Index> spheres;   ///< that fill the cube's cells
+  std::vector<Index> spheres;   ///< in the cube's cells
   std::vector<Index> piece;     ///< of each of these; named by its first sphere
   std::map<Index, Index> copy;  ///< piece -> vertex of the wall
   std::vector<Cell> beside;     ///< corners that share a facet's side with this one
@@ -65,11 +65,10 @@ class CutWall {
   const Index outer_vertices_;
   const std::size_t outer_triangles_;
   std::map<Cell, Corner> corners_;
-  std::map<Index, Index> wall_vertex_;  ///< of a vertex on a lip
+  std::map<Index, Index> wall_vertex_;  ///< split-edge vertex of the outer surface -> its copy on the wall
 };
 
-/// The eight cells around a dual corner: which spheres, in which pieces, and where the cut passes between
-/// them.
+/// The eight cells around a dual corner: their spheres, pieces, and crossings.
 Corner CutWall::make_corner(Cell cube) const {
   Corner corner;
   for (Index n = 0; n < 8; ++n) {
@@ -96,7 +95,7 @@ Corner CutWall::make_corner(Cell cube) const {
   return corner;
 }
 
-/// The four corners around the middle of an axis link, counter-clockwise seen against the step's direction.
+/// The four corners around the middle of an axis link, counter-clockwise when seen against the step's direction.
 std::array<Cell, 4> corners_around(Cell cell, int axis) {
   const std::size_t p = std::size_t(axis + 1) % 3, q = std::size_t(axis + 2) % 3;
   std::array<Cell, 4> around{cell, cell, cell, cell};
@@ -117,7 +116,7 @@ void CutWall::find_corners() {
     }
 }
 
-/// Border corners go onto the split line; the others become a smooth sheet.
+/// Moves border corners onto the split line and smooths the others.
 void CutWall::smooth_corners() {
   for (auto& [cube, corner] : corners_) {
     if (!corner.at_border) continue;
@@ -155,7 +154,7 @@ Index CutWall::wall_copy(Corner& corner, Index piece) {
   return corner.copy[piece] = vertices_.add(corner.rest, nearest);
 }
 
-/// Each severed axis link has a dual facet, once for each bank, facing away from its own tissue.
+/// Adds the dual facet of each severed axis link, once for each cut face, facing away from its own tissue.
 void CutWall::add_facets() {
   for (Index a = 0; a < links_.count(); ++a)
     for (int axis = 0; axis < 3; ++axis) {
@@ -179,8 +178,8 @@ void CutWall::add_facets() {
     }
 }
 
-/// The piece at a corner that a lip with this home belongs to: the one of which it sees most; none if it sees
-/// nothing.
+/// The piece at a corner to which a split edge with this home belongs: the one of which the home sees most spheres;
+/// none if it sees none.
 std::optional<Index> CutWall::piece_seen_by(const Corner& corner, Index home) {
   std::map<Index, int> seen;
   for (std::size_t i = 0; i < corner.spheres.size(); ++i)
@@ -190,7 +189,7 @@ std::optional<Index> CutWall::piece_seen_by(const Corner& corner, Index home) {
       ->first;
 }
 
-/// The wall's vertex below a vertex of a lip, on the lip's own bank; -1 if there is no wall nearby.
+/// The wall's vertex below a vertex of a split edge, on the same side of the cut; -1 if there is no wall nearby.
 Index CutWall::skirt_foot(Index lip_vertex) {
   const Vec3 rest = vertices_.rest(lip_vertex);
   const Index home = vertices_.home(lip_vertex);
@@ -207,7 +206,7 @@ Index CutWall::skirt_foot(Index lip_vertex) {
   return -1;
 }
 
-/// Joins the lips to the wall.
+/// Joins the split edges to the wall.
 void CutWall::add_skirt() {
   std::map<Index, Index> foot;
   for (const Lip& lip : split_.lips)
@@ -225,21 +224,21 @@ void CutWall::add_skirt() {
   }
 }
 
-/// The wall's own vertex in place of one of a lip.
+/// The wall's own copy of a vertex of a split edge.
 Index CutWall::on_wall(Index vertex) {
   if (vertex >= outer_vertices_) return vertex;
   const auto found = wall_vertex_.find(vertex);
   return found != wall_vertex_.end() ? found->second : wall_vertex_[vertex] = vertices_.copy(vertex);
 }
 
-/// Length of an edge at rest, and much more if it would span the cut.
+/// Cost of an edge: its rest length, and much more if it spans the cut.
 double CutWall::cost_of_edge(Index u, Index v) {
   const Index a = vertices_.home(u), b = vertices_.home(v);
   const double across = vertices_.loses(a, b) ? 10 * links_.spacing() : 0.0;
   return across + norm(vertices_.rest(u) - vertices_.rest(v));
 }
 
-/// Closes a loop of open edges with triangles, cutting off the cheapest corner first.
+/// Triangulates a loop of open edges, cheapest ear first.
 void CutWall::fill_loop(std::vector<Index> loop) {
   while (loop.size() >= 3) {
     const std::size_t n = loop.size();
@@ -256,8 +255,8 @@ void CutWall::fill_loop(std::vector<Index> loop) {
   }
 }
 
-/// Fills whatever lips, wall and skirt leave open, so that every edge has its opposite: one never looks into
-/// the organ. Where lips and wall fit each other, little is left.
+/// Fills the remaining open edges between split edges, wall and skirt, so that the surface is watertight. Where split
+/// edges and wall fit each other, few remain.
 void CutWall::close() {
   OpenEdges open;
   for (const Lip& lip : split_.lips) open.add(on_wall(lip.from), on_wall(lip.to));

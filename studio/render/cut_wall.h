@@ -8,8 +8,7 @@
 
 namespace ctpm::render {
 
-/// A side of the split line: an edge of the outer surface where the wall begins, as its outer triangle walks
-/// it.
+/// An edge of the split outer surface at which the wall begins, in the direction of its outer triangle.
 struct Lip {
   CutVertices::Index from, to;
 };
@@ -17,12 +16,13 @@ struct Lip {
 /// Where the outer surface was split.
 struct SplitLine {
   std::vector<Lip> lips;
-  /// (u, v): the copy on u's side of the place where the edge u-v is split.
+  /// (u, v): the vertex that splits the edge u-v, in the copy on u's side.
   std::map<std::pair<CutVertices::Index, CutVertices::Index>, CutVertices::Index> middles;
 };
 
-/// Adds the wall of the cut to a split outer surface: the dual facets of severed axis links, one copy for
-/// each bank, joined to the lips and closed. The wall has its own vertices, so that normals break at the lip.
+/// Adds the walls of the cut to a split outer surface, which makes it watertight. They are the dual facets of severed
+/// axis links, one copy for each cut face, joined to the split line. A wall has its own vertices, so that normals break
+/// at the cut edge.
 void add_cut_wall(CutVertices& vertices, const SplitLine& split);
 
 }  // namespace ctpm::render

@@ -9,14 +9,13 @@
 namespace ctpm::render {
 namespace {
 
-constexpr int kBackdropLuma = 160;  // what shows where nothing was drawn, in [0, 255]
-constexpr int kLeastContrast = 26;  // below it a step is no edge
-constexpr float kReach = 8;         // longest way along an edge [pixels]
+constexpr int kBackdropLuma = 160;  // luma of pixels without drawing, in [0, 255]
+constexpr int kLeastContrast = 26;  // smaller steps are not edges
+constexpr float kReach = 8;         // longest search along an edge [pixels]
 
 int luma_of(const std::uint8_t* p) { return (77 * p[0] + 150 * p[1] + 29 * p[2] + kBackdropLuma * (255 - p[3])) >> 8; }
 
-/// Brightness of every pixel. Whole words through plain pointers, so that the compiler makes several at a
-/// time.
+/// Brightness of every pixel. Reads whole words through plain pointers, so that the compiler vectorises the loop.
 void find_luma(const std::vector<std::uint8_t>& rgba, std::vector<std::uint8_t>& luma) {
   const std::size_t count = rgba.size() / 4;
   luma.resize(count);
@@ -42,7 +41,7 @@ void find_edges(const std::uint8_t* row, int width, std::uint8_t* is_edge) {
   }
 }
 
-/// Colour between the pixels.
+/// Interpolated colour between pixels.
 std::array<float, 4> between(const std::uint8_t* rgba, int width, int height, float x, float y) {
   x = std::clamp(x, 0.0f, float(width - 1)), y = std::clamp(y, 0.0f, float(height - 1));
   const int c = std::min(int(x), width - 2), r = std::min(int(y), height - 2);
@@ -61,12 +60,12 @@ int next_edge(const std::vector<std::uint8_t>& is_edge, int x, int end) {
   return found ? int(static_cast<const std::uint8_t*>(found) - is_edge.data()) : end;
 }
 
-/// The colour of an edge pixel: the mean of places along the edge.
+/// The colour of an edge pixel: the mean of samples along the edge.
 std::array<std::uint8_t, 4> along_edge(const std::vector<std::uint8_t>& rgba, const std::uint8_t* m, int width,
                                        int height, int x, int y) {
   const int nw = m[-width - 1], ne = m[-width + 1], sw = m[width - 1], se = m[width + 1];
   const int low = std::min({int(*m), nw, ne, sw, se}), high = std::max({int(*m), nw, ne, sw, se});
-  // Along the edge is across the steepest change.
+  // The edge is perpendicular to the gradient.
   float dx = float(-(nw + ne) + (sw + se)), dy = float((nw + sw) - (ne + se));
   const float scale = 1 / (std::min(std::abs(dx), std::abs(dy)) + std::max(float(nw + ne + sw + se) / 32, 2.0f));
   dx = std::clamp(dx * scale, -kReach, kReach), dy = std::clamp(dy * scale, -kReach, kReach);
@@ -97,7 +96,7 @@ void EdgeSmoother::smooth(std::vector<std::uint8_t>& rgba, int width, int height
       smoothed_.push_back(
           {std::size_t(y) * std::size_t(width) + std::size_t(x), along_edge(rgba, row + x, width, height, x, y)});
   }
-  // Written once all are known, for each is made from the picture as it was.
+  // Written at the end, because every colour is computed from the unchanged picture.
   for (const Smoothed& s : smoothed_) std::copy_n(s.rgba.data(), 4, &rgba[4 * s.pixel]);
 }
 

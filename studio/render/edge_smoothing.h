@@ -7,9 +7,9 @@
 
 namespace ctpm::render {
 
-/// Smooths the stairs of edges in pictures (RGBA, colours multiplied by alpha): pixels of high contrast are
-/// averaged along the edge that passes them, as fast approximate anti-aliasing does. Four samples a pixel
-/// would look much the same and cost more than twice the time in software.
+/// Fast approximate anti-aliasing (FXAA) of pictures (RGBA, premultiplied alpha): averages pixels of high contrast
+/// along the edge that passes them. Four samples per pixel look much the same and cost more than twice the time in
+/// software.
 class EdgeSmoother {
  public:
   void smooth(std::vector<std::uint8_t>& rgba, int width, int height);
@@ -19,7 +19,7 @@ class EdgeSmoother {
     std::size_t pixel;
     std::array<std::uint8_t, 4> rgba;
   };
-  std::vector<std::uint8_t> luma_, is_edge_;  // kept from picture to picture
+  std::vector<std::uint8_t> luma_, is_edge_;  // scratch memory
   std::vector<Smoothed> smoothed_;
 };
 

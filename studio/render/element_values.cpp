@@ -16,7 +16,7 @@ double tan_tilt(const Constraints& lines, const State& state, std::size_t i) {
   return half > 0 ? norm(c - 0.5 * (a + e)) / half : 0;
 }
 
-/// The largest tan theta of the living lines centred on each sphere (Eq. 8); zero without softening.
+/// The largest tan theta of the unsevered lines centred on each sphere (Eq. 8); zero without softening.
 std::vector<double> tilt_of_spheres(const Model& model, const State& state) {
   std::vector<double> tilt(model.sphere_count(), 0.0);
   if (!model.has_softening) return tilt;
@@ -31,13 +31,13 @@ Vec3 apart(const Model& model, const Vec3Array& of, std::size_t i) {
   return of[std::size_t(model.axial.b[i])] - of[std::size_t(model.axial.a[i])];
 }
 
-/// How much longer an axial element is than at rest [m].
+/// Elongation of an axial element [m].
 double elongation(const Model& model, const State& state, std::size_t i) {
   return norm(apart(model, state.position, i)) - model.axial.rest_length[i];
 }
 
-/// Size of the force of an axial element [N], softened by the largest tilt of its spheres (Eq. 8). A two-sphere TPM
-/// carries what its spring does.
+/// Magnitude of the force of an axial element [N], softened by the largest tilt of its spheres (Eq. 8). The force of a
+/// two-sphere TPM is that of its spring.
 double axial_force(const Model& model, const State& state, const std::vector<double>& tilt, std::size_t i) {
   const AxialElements& axial = model.axial;
   double worst = std::max(tilt[std::size_t(axial.a[i])], tilt[std::size_t(axial.b[i])]);
@@ -63,7 +63,7 @@ void measure_elements(const Model& model, const State& state, ElementQuantity qu
       const double tilt = std::atan(tan_tilt(lines, state, i));
       values.push_back({lines.a[i], lines.c[i], tilt}), values.push_back({lines.c[i], lines.e[i], tilt});
     }
-    // The most tilted last, so that they are not hidden by those that lie on the same spheres.
+    // The most tilted lines come last, so that lines on the same spheres do not hide them.
     std::stable_sort(values.begin(), values.end(),
                      [](const ElementValue& x, const ElementValue& y) { return x.value < y.value; });
     return;

@@ -19,14 +19,14 @@ struct Frame {
 /// A frame of one colour.
 Frame blank_frame(int width, int height, std::uint8_t red, std::uint8_t green, std::uint8_t blue);
 
-/// Two pictures of one height side by side, with a thin line between them.
+/// Two pictures of equal height side by side, with a thin line between them.
 Frame join_beside(const Frame& left, const Frame& right);
 
-/// Writes a PNG file: under a temporary name beside `path`, renamed when whole. Errors: an empty frame, a
-/// name that does not end in .png, a folder that cannot be written.
+/// Writes a PNG file under a temporary name beside `path`, then renames it. Errors: an empty frame, a name that does
+/// not end in .png, a folder that cannot be written.
 Result<Done> write_png(const std::string& path, const Frame& frame);
 
-/// Reads a picture that OpenCV knows (PNG). Errors: no file, not a picture.
+/// Reads a picture in a format of this OpenCV build (PNG). Errors: no file, not a picture.
 Result<Frame> read_picture(const std::string& path);
 
 }  // namespace ctpm::render

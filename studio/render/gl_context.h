@@ -81,7 +81,7 @@ namespace ctpm::render {
   X(PFNGLVIEWPORTPROC, Viewport)
 // clang-format on
 
-/// The entry points, fetched from OSMesa once a context is there.
+/// The entry points, loaded from OSMesa after a context was created.
 struct Gl {
 #define CTPM_GL_MEMBER(type, name) type name = nullptr;
   CTPM_GL_ENTRY_POINTS(CTPM_GL_MEMBER)
@@ -91,11 +91,11 @@ struct Gl {
 /// An OpenGL 3.3 core context in memory: no display, no GPU.
 class GlContext {
  public:
-  /// Errors: OSMesa gives no such context, or lacks an entry point.
+  /// Errors: OSMesa cannot create such a context, or lacks an entry point.
   static Result<std::unique_ptr<GlContext>> create();
   ~GlContext();
 
-  /// Makes this context the calling thread's, unless it is already.
+  /// Makes this context current in the calling thread, unless it already is.
   void make_current();
 
   const Gl& gl() const { return gl_; }
@@ -103,7 +103,7 @@ class GlContext {
  private:
   GlContext() = default;
   void* context_ = nullptr;
-  alignas(16) unsigned char pixels_[16 * 16 * 4] = {};  ///< OSMesa wants a buffer; pictures go to framebuffer objects
+  alignas(16) unsigned char pixels_[16 * 16 * 4] = {};  ///< OSMesa needs a buffer; pictures use framebuffer objects
   Gl gl_;
 };
 

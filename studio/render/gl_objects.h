@@ -16,7 +16,7 @@ namespace ctpm::render {
 class Program {
  public:
   Program() = default;
-  /// Errors: the compiler's or linker's words; a bug of ours unless the driver is too old.
+  /// Errors: the message of the compiler or linker, which is a bug of ours unless the driver is too old.
   static Result<Program> create(const Gl& gl, const std::string& name, const std::string& vertex,
                                 const std::string& fragment);
 
@@ -36,7 +36,7 @@ class Program {
   GLuint id_ = 0;
 };
 
-/// Vertices in memory of the context: `stream` attributes change with every frame, indices seldom.
+/// Vertices in buffers of the context. `stream` attributes change with every frame, indices seldom.
 struct VertexArray {
   GLuint id = 0, stream = 0, indices = 0;
   std::size_t stream_bytes = 0;
@@ -54,14 +54,14 @@ struct PixelRect {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// What a picture is drawn to.
+/// The framebuffer that a picture is drawn to.
 struct PictureTarget {
   GLuint framebuffer = 0;
   int width = 0, height = 0;
 
   /// Errors: the driver refuses the size.
   Result<Done> create(const Gl& gl, int width, int height);
-  /// Clears the rectangle to nothing, and keeps what follows inside it. Row 0 is the bottom.
+  /// Clears the rectangle to transparent, and clips later drawing to it. Row 0 is the bottom.
   void begin(const Gl& gl, const PixelRect& rect) const;
   /// Reads the rectangle: RGBA, bottom row first.
   void read(const Gl& gl, const PixelRect& rect, std::vector<std::uint8_t>& rgba) const;

@@ -46,7 +46,7 @@ void GroundShadow::add(const Surface& surface, std::span<const Vec3> position, s
       add_point(a + (b + c) / 3.0);
       continue;
     }
-    const int parts = std::min(int(std::sqrt(longest) / texel) + 1, 64);  // points no further apart than a texel
+    const int parts = std::min(int(std::sqrt(longest) / texel) + 1, 64);  // points at most a texel apart
     for (int u = 0; u <= parts; ++u)
       for (int v = 0; u + v <= parts; ++v) add_point(a + (double(u) / parts) * b + (double(v) / parts) * c);
   }
@@ -59,7 +59,7 @@ void GroundShadow::blur(const std::vector<float>& from, std::vector<float>& to, 
   for (int k = -radius; k <= radius; ++k)
     weight.push_back(float(std::exp(-k * k / (2 * width * width)))), total += weight.back();
   for (float& w : weight) w /= total;
-  // Rows, then columns; beyond the border there is no shadow.
+  // Blurs rows, then columns; there is no shadow beyond the border.
   for (int r = 0; r < kSize; ++r)
     for (int c = 0; c < kSize; ++c) {
       float sum = 0;
@@ -78,10 +78,10 @@ void GroundShadow::blur(const std::vector<float>& from, std::vector<float>& to, 
   }
 }
 
-/// Both blurs together, in wide_.
+/// Combines both blurs in wide_.
 void GroundShadow::find_darkness() {
   constexpr float kContact = 0.46f, kRoom = 0.38f, kDarkest = 0.85f;
-  // 1 on the ground, a third at the reach, nothing far above.
+  // 1 on the ground, a third at height `reach`, 0 far above.
   for (std::size_t i = 0; i < kTexels; ++i) {
     const float h = std::max(lowest_[i], 0.0f);
     touched_[i] = 1 / (1 + h * (1 + h));
@@ -90,7 +90,7 @@ void GroundShadow::find_darkness() {
   for (std::size_t i = 0; i < kTexels; ++i) wide_[i] = std::min(kDarkest, kContact * narrow_[i] + kRoom * wide_[i]);
 }
 
-/// Between texels, at a place in texels; nothing outside.
+/// Darkness at a point in texel coordinates, interpolated; 0 outside.
 float GroundShadow::darkness(float u, float v) const {
   if (!(u >= 0 && v >= 0 && u < kSize - 1 && v < kSize - 1)) return 0;
   const int c = int(u), r = int(v);
@@ -99,8 +99,7 @@ float GroundShadow::darkness(float u, float v) const {
   return (1 - t) * ((1 - s) * row[0] + s * row[1]) + t * ((1 - s) * row[kSize] + s * row[kSize + 1]);
 }
 
-/// The part of the picture on which the ground square lies, in knots: columns [left, right), rows [top,
-/// bottom).
+/// The part of the picture that the ground square covers, in knots: columns [left, right), rows [top, bottom).
 GroundShadow::KnotRange GroundShadow::find_range(const Frame& frame, const Mat4& m) const {
   const KnotRange all{0, 0, frame.width / kStep + 2, frame.height / kStep + 2};
   double left = 1, right = -1, low = 1, high = -1;
@@ -120,7 +119,7 @@ GroundShadow::KnotRange GroundShadow::find_range(const Frame& frame, const Mat4&
 
 /// Darkness at the knots of a range.
 void GroundShadow::find_knots(const Frame& frame, const Mat4& m, const KnotRange& range) {
-  // Clip coordinates (x, y, w) of ground coordinates (u, v, 1); its adjugate leads back from the picture.
+  // Maps ground coordinates (u, v, 1) to clip coordinates (x, y, w); its adjugate is the inverse up to scale.
   const auto row = [&](int r, Vec3 p, double last) {
     return m[std::size_t(r)] * p.x + m[std::size_t(4 + r)] * p.y + m[std::size_t(8 + r)] * p.z +
            last * m[std::size_t(12 + r)];
@@ -151,13 +150,13 @@ void GroundShadow::draw(Frame& frame, const Mat4& clip_from_world) {
     for (int y = r * kStep; y < std::min(frame.height, (r + 1) * kStep); ++y) darken_row(frame, range, y);
 }
 
-/// Darkens one row of the picture by what lies linearly between the knots.
+/// Darkens one row of the picture by linear interpolation between the knots.
 void GroundShadow::darken_row(Frame& frame, const KnotRange& range, int y) {
   const float t = float(y % kStep) / kStep;
   const float* upper = &knots_[std::size_t((y / kStep - range.top) * range.columns())];
   const float* lower = upper + range.columns();
   const auto at = [&](int c) { return upper[c] + t * (lower[c] - upper[c]); };
-  int begin = 0, end = range.columns() - 1;  // without shadow nothing changes
+  int begin = 0, end = range.columns() - 1;  // skips knots without shadow
   while (begin < end && at(begin) + at(begin + 1) == 0) ++begin;
   while (begin < end && at(end) + at(end - 1) == 0) --end;
   if (begin == end) return;
@@ -170,7 +169,7 @@ void GroundShadow::darken_row(Frame& frame, const KnotRange& range, int y) {
   const int first = (range.left + begin) * kStep, last = std::min(frame.width, (range.left + end) * kStep);
   std::uint8_t* to = &frame.rgb[(std::size_t(y) * std::size_t(frame.width) + std::size_t(first)) * 3];
   const std::uint16_t* light = light_.data();
-  // In 16 bits, so that the compiler makes many at a time: colour * light in 1/256, rounded.
+  // In 16 bits, so that the compiler vectorises the loop: colour * light in 1/256, rounded.
   for (int i = 0; i < 3 * (last - first); ++i) {
     const std::uint16_t product = std::uint16_t((std::uint32_t(to[i] << 8) * light[i]) >> 16);
     to[i] = std::uint8_t(std::uint16_t(product + 128) >> 8);

@@ -10,20 +10,20 @@
 
 namespace ctpm::render {
 
-/// The soft shadow that a scene casts straight down onto its ground: a square picture of darkness.
+/// The soft shadow that a scene casts straight down onto its ground, as a square texture of darkness.
 class GroundShadow {
  public:
   static constexpr int kSize = 96;  ///< [texels] along a side; the shadow is blurred far wider than a texel
 
-  /// The plane through `centre` spanned by `x` and `y` (half a side each) [m]; what stands `reach` [m] above
-  /// it darkens it by a third.
+  /// The ground is the plane through `centre` spanned by `x` and `y` (half a side each) [m]. A surface `reach` [m]
+  /// above it darkens it by a third.
   GroundShadow(Vec3 centre, Vec3 x, Vec3 y, Vec3 up, double reach);
 
   void clear();
   /// Adds the first `triangle_count` triangles of a surface whose vertices are at `position`.
   void add(const Surface& surface, std::span<const Vec3> position, std::size_t triangle_count);
-  /// Darkens `frame`, a picture of the empty ground taken with `clip_from_world`: a narrow shadow for the
-  /// contact and a wide one for the room's light.
+  /// Darkens `frame`, a picture of the empty ground seen with `clip_from_world`. A narrow shadow shows contact, a wide
+  /// one the ambient light.
   void draw(Frame& frame, const Mat4& clip_from_world);
 
  private:
@@ -31,7 +31,7 @@ class GroundShadow {
   void blur(const std::vector<float>& from, std::vector<float>& to, double width);
 
   Vec3 centre_, half_x_, half_y_;
-  Vec3 x_, y_, up_;  ///< turn a world vector into ground coordinates, -1 to 1, and height in reaches
+  Vec3 x_, y_, up_;  ///< map a world vector to ground coordinates in [-1, 1], and height in units of `reach`
 
   struct KnotRange {
     int left, top, right, bottom;
@@ -44,10 +44,10 @@ class GroundShadow {
   void darken_row(Frame& frame, const KnotRange& range, int y);
   void find_knots(const Frame& frame, const Mat4& clip_from_world, const KnotRange& range);
 
-  std::vector<float> lowest_;                          ///< height of what stands there [reaches] (kSize x kSize)
+  std::vector<float> lowest_;                          ///< height of the lowest surface [reach] (kSize x kSize)
   std::vector<float> touched_, narrow_, wide_, swap_;  ///< (kSize x kSize)
-  std::vector<float> knots_;                           ///< darkness at every few pixels of a part of the picture
-  std::vector<std::uint16_t> light_;                   ///< of a row, 65535: all; for each part of a colour
+  std::vector<float> knots_;                           ///< darkness at a coarse grid of pixels in a part of the picture
+  std::vector<std::uint16_t> light_;  ///< share of light left, 65535 = all; one row, each colour channel
 };
 
 }  // namespace ctpm::render

@@ -9,7 +9,7 @@
 namespace ctpm::render {
 namespace {
 
-/// Longest element that joins lattice neighbours; springs that resist angles are longer.
+/// Length of the longest element between lattice neighbours; angle springs are longer.
 constexpr double kLongestLinkInSpacings = 1.6;
 
 int step_back(int step) {
@@ -63,7 +63,7 @@ LatticeLinks::LatticeLinks(const Model& model, std::size_t organ) {
   severed_.assign(elements_.size(), 0), passed_.assign(elements_.size(), 0), cut_.assign(rest_.size(), 0);
 }
 
-/// The dense box that finds a sphere by its cell.
+/// Builds the dense table from cell to sphere.
 void LatticeLinks::build_table() {
   Cell high{};
   for (std::size_t i = 0; i < cell_.size(); ++i)
@@ -78,8 +78,8 @@ void LatticeLinks::build_table() {
                            low_[0])] = std::int32_t(i);
 }
 
-/// Each axis from the first two spheres that are neighbours along it. Where an organ is one sphere thick there are
-/// none, and the axis is across the others.
+/// Takes each axis from the first two spheres that are neighbours along it. Where an organ is one sphere thick there
+/// are none, and the axis is perpendicular to the others.
 void LatticeLinks::find_axes() {
   bool found[3] = {};
   for (std::size_t c = 0; c < 3; ++c)
@@ -148,7 +148,7 @@ bool LatticeLinks::update(const State& state) {
 }
 
 std::vector<std::array<std::int32_t, 2>> LatticeLinks::hops_from(std::int32_t home, bool over_severed) const {
-  // Far enough for every sphere that a surface vertex near `home` may follow.
+  // Reaches every sphere to which a surface vertex near `home` may be bound.
   const std::int32_t farthest = has_diagonals_ ? 4 : 6;
   std::vector<std::array<std::int32_t, 2>> reached{{home, 0}};
   std::vector<std::uint8_t> seen(rest_.size(), 0);

@@ -9,8 +9,8 @@
 
 namespace ctpm::render {
 
-/// The lattice of one organ: who is joined to whom, and what has been severed.
-/// Spheres are counted within the organ.
+/// The lattice of one organ: which neighbours are linked, and which links are severed. Sphere indices count from 0
+/// within the organ.
 class LatticeLinks {
  public:
   /// Steps to the 18 neighbours: 6 along the axes first, then 12 along face diagonals.
@@ -18,10 +18,10 @@ class LatticeLinks {
   using Cell = LatticeCell;
   static const std::array<Cell, kSteps>& steps();
 
-  /// The lattice of organ `organ` of the model. An organ may be turned in its scene.
+  /// The lattice of organ `organ` of the model. An organ may be rotated in its scene.
   LatticeLinks(const Model& model, std::size_t organ);
 
-  /// Takes over what is severed. Returns whether anything changed since the last call.
+  /// Takes over the severed links of `state`. Returns whether anything changed since the last call.
   bool update(const State& state);
 
   std::int32_t count() const { return std::int32_t(rest_.size()); }
@@ -30,7 +30,7 @@ class LatticeLinks {
   Vec3 rest(std::int32_t sphere) const { return rest_[std::size_t(sphere)]; }
   Cell cell(std::int32_t sphere) const { return cell_[std::size_t(sphere)]; }
 
-  /// Rest position [m] of a place given in cells, whole or between.
+  /// Rest position [m] of a point in cell coordinates, which need not be integers.
   Vec3 place(double i, double j, double k) const { return origin_ + i * axis_[0] + j * axis_[1] + k * axis_[2]; }
 
   /// Sphere in a cell, or -1.
@@ -41,7 +41,7 @@ class LatticeLinks {
   bool is_joined(std::int32_t sphere, int step) const { return link_[index(sphere, step)] == Link::joined; }
   bool is_severed(std::int32_t sphere, int step) const { return link_[index(sphere, step)] == Link::severed; }
 
-  /// Where on the link from a sphere by a severed step the blade passed: rest position [m].
+  /// Crossing of the severed link from a sphere along `step`: rest position [m].
   Vec3 crossing(std::int32_t sphere, int step) const {
     const double t = crossing_[index(sphere, step)];
     return (1 - t) * rest(sphere) + t * rest(neighbour(sphere, step));
@@ -51,13 +51,13 @@ class LatticeLinks {
   bool is_cut(std::int32_t sphere) const { return cut_[std::size_t(sphere)]; }
   bool anything_cut() const { return anything_cut_; }
 
-  /// What a sphere sees of its neighbourhood, in the order of the spheres' index.
+  /// The part of its neighbourhood that a sphere sees, in ascending order of index.
   struct Sight {
-    std::vector<std::int32_t> seen;  ///< reached over joined links in as few hops as before anything was severed
-    std::vector<std::int32_t> lost;  ///< reached before, and now not at all or only by a detour around a cut's end
+    std::vector<std::int32_t> seen;  ///< reached over joined links in as few hops as when uncut
+    std::vector<std::int32_t> lost;  ///< reached when uncut, now not at all or only by a detour around a cut's end
   };
 
-  /// What `home` sees, itself included. The two sides of a cut do not see each other, though they meet beyond
+  /// What `home` sees, itself included. The two sides of a cut do not see each other, although they are joined beyond
   /// its end.
   Sight sight_from(std::int32_t home) const;
 
@@ -85,10 +85,10 @@ class LatticeLinks {
   std::vector<std::int32_t> sphere_at_;  ///< dense over the box of cells
   std::vector<std::int32_t> neighbour_;
   std::vector<Link> link_;
-  std::vector<float> crossing_;  ///< of a severed link, 0 at this sphere to 1 at its neighbour
+  std::vector<float> crossing_;  ///< of a severed link, from 0 at this sphere to 1 at its neighbour
   std::vector<Element> elements_;
-  std::vector<std::uint8_t> severed_;  ///< of elements_, as last seen
-  std::vector<std::uint8_t> passed_;   ///< State's crossing of elements_, as last seen
+  std::vector<std::uint8_t> severed_;  ///< of elements_, at the last update()
+  std::vector<std::uint8_t> passed_;   ///< crossings of elements_ as State stores them, at the last update()
   std::vector<std::uint8_t> cut_;
   bool anything_cut_ = false;
   bool has_diagonals_ = false;

@@ -12,7 +12,7 @@ double knot(int i, int j, int k) {
   return double(h & 0xffffu) / 32767.5 - 1;
 }
 
-/// From 0 to 1 without a jump in slope or bend.
+/// Smooth step from 0 to 1 with continuous first and second derivative.
 double ease(double t) { return t * t * t * (t * (6 * t - 15) + 10); }
 
 }  // namespace

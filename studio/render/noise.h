@@ -4,7 +4,7 @@
 
 namespace ctpm::render {
 
-/// Smooth noise in [-1, 1] with features of the size of 1; the same everywhere and always, repeats after 64.
+/// Smooth noise in [-1, 1] with features of size 1 and period 64. Equal on every machine and in every run.
 double noise_at(Vec3 place);
 
 }  // namespace ctpm::render

@@ -13,13 +13,13 @@ void OpenEdges::add(std::int32_t from, std::int32_t to) {
 std::vector<std::vector<std::int32_t>> OpenEdges::take_loops() {
   std::vector<std::vector<std::int32_t>> loops;
   while (!count_.empty()) {
-    // Walks along open edges until a vertex comes again; what lies between is a loop.
+    // Walks along open edges until a vertex repeats; the vertices between are a loop.
     std::vector<std::int32_t> way{count_.begin()->first.first};
     std::map<std::int32_t, std::size_t> place{{way[0], 0}};
     do {
       const auto edge = count_.lower_bound({way.back(), -1});
       if (edge == count_.end() || edge->first.first != way.back()) {
-        place.erase(way.back()), way.pop_back();  // the border of a surface that was open before
+        place.erase(way.back()), way.pop_back();  // a border of the input surface, not a loop
         continue;
       }
       const std::int32_t next = edge->first.second;

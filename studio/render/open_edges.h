@@ -7,16 +7,16 @@
 
 namespace ctpm::render {
 
-/// The directed edges of triangles that have no opposite. Those of closed surfaces with holes form loops.
+/// The directed triangle edges that have no opposite. On a surface with holes they form loops.
 class OpenEdges {
  public:
-  /// A triangle's edge, as the triangle walks it.
+  /// Adds a triangle's edge in the triangle's direction.
   void add(std::int32_t from, std::int32_t to);
 
   bool none() const { return count_.empty(); }
 
-  /// Takes them all and returns the loops among them, in which no vertex comes twice; each loop's last vertex is joined
-  /// to its first.
+  /// Removes all edges and returns the loops among them. No vertex occurs twice in a loop; its last vertex is joined to
+  /// its first.
   std::vector<std::vector<std::int32_t>> take_loops();
 
  private:

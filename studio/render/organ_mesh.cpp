@@ -14,7 +14,7 @@ void OrganMesh::set_surface(const Surface& surface, const std::vector<std::uint8
   lip_.resize(surface.vertex.size(), 0.0f);
   rind_ = rind;
   rind_.resize(surface.vertex.size(), 0.0f);
-  // While a cut grows, most vertices stay.
+  // While a cut grows, most vertices keep their stain.
   stain_.resize(surface.vertex.size()), stained_.resize(surface.vertex.size(), Vec3{INFINITY, 0, 0});
   for (std::size_t v = 0; v < stain_.size(); ++v)
     if (!(stained_[v] == surface.vertex[v]))
@@ -39,7 +39,7 @@ void OrganMesh::update(const Surface& surface, const State& state, std::int32_t 
     const double length = norm(n);
     n = length > 0 ? n / length : Vec3{0, 0, 1};
   }
-  // Crevice: how far the neighbours stand below the tangent plane, in units of their distance.
+  // Crevice: height of the neighbours below the tangent plane over their distance.
   crevice_.assign(count, 0.0f);
   for (const auto& t : surface.triangle)
     for (std::size_t i = 0; i < 3; ++i) {

@@ -8,18 +8,16 @@
 
 namespace ctpm::render {
 
-/// Floats of one vertex as the organ shader reads them: position, normal, rest position [m], crevice, stain,
-/// lip, rind.
+/// Floats of one vertex as the organ shader reads them: position, normal, rest position [m], crevice, stain, lip, rind.
 constexpr int kOrganVertexFloats = 13;
 
-/// The moving vertices of one surface, made new for every picture.
+/// The moving vertices of one surface, computed for every picture.
 class OrganMesh {
  public:
-  /// Takes over a surface whose vertices or triangles changed. `is_lip`: 1 where a vertex lies on the lip of
-  /// a cut. `rind`: as CutSurface says.
+  /// Takes over a surface whose vertices or triangles changed. `is_lip`, `rind`: as in CutSurface.
   void set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip, const std::vector<float>& rind);
 
-  /// Deforms the surface that was set and fills vertices(). `first_sphere`: of the organ, in the State.
+  /// Deforms the surface and fills vertices(). `first_sphere`: index of the organ's first sphere in the State.
   void update(const Surface& surface, const State& state, std::int32_t first_sphere);
 
   /// Interleaved floats (vertex_count x kOrganVertexFloats). The crevice is negative in hollows and positive
@@ -29,7 +27,7 @@ class OrganMesh {
 
  private:
   std::vector<Vec3> position_, normal_;
-  std::vector<Vec3> stained_;  ///< rest position of which stain_ is [m]
+  std::vector<Vec3> stained_;  ///< rest positions for which stain_ was computed [m]
   std::vector<float> crevice_, per_neighbour_, stain_, lip_, rind_;
   std::vector<float> data_;
 };

@@ -62,7 +62,7 @@ void OrganPainter::set_look(const Program& program, const OrganLook& look, const
   const Vec3 outer = linear(look.outer), inner = linear(look.inner);
   program.set("outer_colour", outer), program.set("inner_colour", inner);
   program.set("rind_colour", rind_colour(look));
-  // Towards a dark inside, as if paint were mixed before it is lit.
+  // Mixes towards a dark inside before lighting.
   const auto tint = [](double in, double out) { return 0.55 * in / std::max(out, 0.01); };
   program.set("lip_tint", Vec3{tint(inner.x, outer.x), tint(inner.y, outer.y), tint(inner.z, outer.z)});
   program.set("wetness", look.wetness);
@@ -105,10 +105,10 @@ void OrganPainter::draw(const Gl& gl, const SceneView& scene, const DrawOptions&
   if (glassy) gl.Enable(GL_BLEND), gl.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   for (std::size_t i = 0; i < organs_.size(); ++i) {
     Organ& organ = organs_[i];
-    // Surface and walls are closed: inner faces are seen through a cutaway only.
+    // Surface and walls are watertight: inner faces are visible only through a cutaway.
     const Order order = sort_triangles(organ, options.camera.eye, !glassy && options.cutaway.is_on());
     organ.array.set_indices(gl, indices_);
-    // What faces the eye comes first: it hides most of the rest.
+    // Triangles that face the eye come first, because they hide most of the rest.
     set_look(outside, scene.looks[i], options);
     draw_indices(0, order.facing);
     if (glassy || order.wall + order.averted == 0) continue;

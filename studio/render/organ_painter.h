@@ -11,7 +11,7 @@
 
 namespace ctpm::render {
 
-/// An sRGB colour as light. Gamma 2, as the shaders write it.
+/// An sRGB colour as linear light, with gamma 2 as in the shaders.
 inline Vec3 linear(const Colour& c) { return {c[0] * c[0], c[1] * c[1], c[2] * c[2]}; }
 
 /// Draws the organs' surfaces.
@@ -20,15 +20,15 @@ class OrganPainter {
   /// Errors: shaders that do not compile.
   Result<Done> create(const Gl& gl, const SceneView& scene);
 
-  /// Deforms and splits the surfaces as the state says.
+  /// Deforms and splits the surfaces according to the state.
   void update(const Gl& gl, const SceneView& scene, const State& state);
   void add_shadows(GroundShadow& shadow) const;
 
-  /// The programs that draw() will use; the light of each must be set before.
+  /// The programs that draw() will use. The caller sets the light of each first.
   std::vector<const Program*> programs(const DrawOptions& options) const;
   void draw(const Gl& gl, const SceneView& scene, const DrawOptions& options);
 
-  /// Where the vertices of all organs are [m].
+  /// Visits the positions of all vertices of all organs [m].
   template <class Visit>
   void for_each_position(Visit&& visit) const {
     for (const Organ& organ : organs_)
@@ -43,7 +43,7 @@ class OrganPainter {
     bool is_set = false;
   };
 
-  /// Index ranges of one organ: what faces the eye, the wall of its cuts, what faces away.
+  /// Index ranges of one organ: triangles that face the eye, walls of cuts, triangles that face away.
   struct Order {
     std::size_t facing = 0, wall = 0, averted = 0;  ///< counts of indices
   };

@@ -112,7 +112,7 @@ struct Line {
   bool is_large = false;
 };
 
-/// Everything that is written, and the panels behind it.
+/// All texts, and the panels behind them.
 struct Plan {
   std::vector<Line> lines;
   PixelBox facts, plot, verdict, warning, legend;
@@ -134,7 +134,7 @@ bool is_too_deep(const OverlayData& data) {
 }
 bool is_too_strong(const OverlayData& data) { return data.damage_force > 0 && data.force > data.damage_force; }
 
-/// What is beyond its limit; empty if nothing is.
+/// The damage warning: the limits that are exceeded; empty if none is.
 std::string damage_text(const OverlayData& data) {
   std::string text;
   if (is_too_deep(data))
@@ -252,7 +252,7 @@ void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
     plan.warning = banner(text, is_narrow ? height - margin - px(160) - px(10) - h : height - margin - h, kWhite);
 }
 
-/// Bottom right, above where the warning may come.
+/// Bottom right, above the place of the warning.
 void Overlay::Parts::plan_legend(const OverlayData& data, Plan& plan) {
   if (data.legend.title.empty()) return;
   const int pad = px(16), w = px(250), h = px(98);

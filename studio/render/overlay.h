@@ -18,26 +18,26 @@ struct ForcePoint {
 
 enum class VerdictTone { none, good, bad };
 
-/// What the overlay says. Texts that are empty are left out; long ones are shortened with an ellipsis.
+/// The content of the overlay. Empty texts are left out; long ones are shortened with an ellipsis.
 struct OverlayData {
   std::string title;     ///< of the scene
   std::string model;     ///< structure of the tissue: "CTPM"
-  std::string session;   ///< which recording it is, where there may be several
+  std::string session;   ///< which recording it is, if there may be several
   double time = 0;       ///< [s]
   bool is_over = false;  ///< the session has ended at `time`
   std::int64_t tick = 0;
   double force = 0;         ///< magnitude on the tool [N]
-  double depth = 0;         ///< of the touched tissue, or of the cut [m]
+  double depth = 0;         ///< indentation of the touched tissue, or depth of the cut [m]
   bool is_blade = false;    ///< the depth is that of the cut, which has no limit
-  std::int64_t loose = 0;   ///< pieces of tissue that came loose; 0 is not shown
+  std::int64_t loose = 0;   ///< pieces of tissue that came loose; not shown if 0
   double damage_depth = 0;  ///< depth beyond which the tissue is damaged [m]; 0: no limit
-  double damage_force = 0;  ///< force beyond which it is [N]; 0: no limit
-  std::string verdict;      ///< what the replay found, one line
+  double damage_force = 0;  ///< force beyond which the tissue is damaged [N]; 0: no limit
+  std::string verdict;      ///< result of the replay, one line
   VerdictTone verdict_tone = VerdictTone::none;
   std::vector<ForcePoint> history;  ///< in order of time; empty: no plot
-  Legend legend;                    ///< of the view; nothing if it has no title
-  double plot_span = 5;             ///< the plot shows the last so many seconds [s], > 0
-  double least_top_force = 0.1;     ///< the plot's axis reaches at least to here [N], > 0
+  Legend legend;                    ///< of the view; not drawn without a title
+  double plot_span = 5;             ///< time that the plot covers, up to now [s], > 0
+  double least_top_force = 0.1;     ///< smallest upper end of the plot's axis [N], > 0
 };
 
 /// The largest force in the running plot [N].
@@ -52,24 +52,24 @@ struct PixelBox {
   }
 };
 
-/// A text and where it stands.
+/// A text and its rectangle.
 struct PlacedText {
   std::string text;
   PixelBox box;
 };
 
-/// Writes on pictures of one size. Sizes are those of 1280x720, scaled; narrow pictures (half of a pair side
-/// by side) get larger letters and the banners below one another.
+/// Draws on pictures of one size. The layout of 1280x720 is scaled. Narrow pictures (one of a pair side by side) get
+/// larger letters and stacked banners.
 class Overlay {
  public:
   Overlay(int width, int height);
   ~Overlay();
   Overlay(Overlay&&) noexcept;
 
-  /// Draws the panels onto the frame, which must have the overlay's size. Same frame and data: same pixels.
+  /// Draws the panels onto the frame, which must have the overlay's size. Equal frames and data give equal pixels.
   void draw(Frame& frame, const OverlayData& data);
 
-  /// All texts of draw() and their places, without drawing.
+  /// All texts of draw() and their rectangles, without drawing.
   std::vector<PlacedText> layout(const OverlayData& data);
 
  private:

@@ -13,7 +13,7 @@ struct PictureSize {
   int width = 1280, height = 720;
 };
 
-/// Reads `WIDTHxHEIGHT`. Errors: another form, or a side outside [64, 8192] or odd, which videos cannot have.
+/// Reads `WIDTHxHEIGHT`. Errors: another form; a side outside [64, 8192] or odd, which video codecs do not allow.
 inline Result<PictureSize> parse_picture_size(const std::string& text) {
   PictureSize size;
   char rest = 0;

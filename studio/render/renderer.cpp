@@ -165,7 +165,7 @@ const Tool* Renderer::Parts::held_tool(const State& state, const DrawOptions& op
              : nullptr;
 }
 
-/// What will be drawn on: the rest of the picture is backdrop.
+/// The rectangle to draw; the rest of the picture is backdrop.
 PixelRect Renderer::Parts::footprint(const State& state, const DrawOptions& options) const {
   Footprint print(clip, frame.width, frame.height);
   organs.for_each_position([&](Vec3 p) { print.add(p); });
@@ -230,7 +230,7 @@ void Renderer::Parts::draw_elements(const State& state, const DrawOptions& optio
     if (options.cutaway.leaves_out(0.5 * (a + b))) continue;
     const double part = e.value / scale;
     const Vec3 c = linear(quantity_colour(options.quantity, part));
-    const double width = radius * (1 + 1.2 * std::min(std::abs(part), 1.0));  // what carries more is thicker
+    const double width = radius * (1 + 1.2 * std::min(std::abs(part), 1.0));  // larger values are thicker
     for (const double x : {a.x, a.y, a.z, b.x, b.y, b.z, width, c.x, c.y, c.z}) instances.push_back(float(x));
   }
   rods.set_stream(g, instances);
@@ -255,7 +255,7 @@ void Renderer::Parts::draw_behind(const DrawOptions& options) {
   shadow->draw(frame, clip);
 }
 
-/// Reads what was drawn and puts it before what is behind.
+/// Reads the drawn pixels and composites them over the background.
 void Renderer::Parts::read_frame() {
   if (rect.width == 0 || rect.height == 0) return;
   target.read(gl(), rect, rgba);
@@ -330,7 +330,7 @@ Frame Renderer::draw(const State& state, const DrawOptions& options) {
     for (const Program* program : p.organs.programs(options)) p.set_light(*program, state, options);
     p.organs.draw(gl, p.scene, options);
   }
-  gl.Flush();  // the driver's threads draw while this one does what is behind
+  gl.Flush();  // the driver's threads draw while this one computes the background
   p.draw_behind(options);
   p.read_frame();
   return std::move(p.frame);

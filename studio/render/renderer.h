@@ -9,9 +9,8 @@
 
 namespace ctpm::render {
 
-/// Draws States of one scene into memory, without a display or a GPU. Only `State` and the options decide
-/// what is drawn: the same ones give the same pixels, in any order of calls. One thread at a time may use a
-/// Renderer.
+/// Draws States of one scene into memory, without a display or a GPU. The pixels depend only on the State and the
+/// options, not on the order of calls. One thread at a time may use a Renderer.
 class Renderer {
  public:
   /// Errors: a size outside [16, 8192], a scene without a model or without one surface for each organ, no
@@ -24,7 +23,7 @@ class Renderer {
 
   const SceneView& scene() const;
 
-  /// What draws, with its version.
+  /// Name and version of the OpenGL implementation.
   std::string opengl() const;
 
  private:

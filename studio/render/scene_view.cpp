@@ -43,7 +43,7 @@ Camera default_camera(const SceneView& scene, double aspect) {
 
 namespace {
 
-/// How near the held tool is to the organs: 0 where it does not matter, 1 where it works.
+/// Nearness of the held tool to the organs: 0 far away, 1 at work.
 double nearness(const Bounds& organs, const Inputs& inputs) {
   if (inputs.tool < 0) return 0;
   const Vec3 p = inputs.position;
@@ -59,7 +59,7 @@ double nearness(const Bounds& organs, const Inputs& inputs) {
 Camera following_camera(const SceneView& scene, const Camera& base, std::span<const Inputs> moments) {
   constexpr double kClosest = 0.5;  // of the base camera's distance
   const Bounds organs = rest_bounds(scene);
-  // Weights that rise and fall: after a sudden change the camera sets out and arrives gently.
+  // Weights rise and fall, so that the camera starts and stops smoothly after a sudden change.
   double sum = 0, near = 0;
   Vec3 pull;
   for (std::size_t i = 0; i < moments.size(); ++i) {
@@ -76,7 +76,7 @@ Camera following_camera(const SceneView& scene, const Camera& base, std::span<co
 
 namespace {
 
-/// The colour at `place` in [0, 1] of a ladder of equal steps.
+/// The colour at `place` in [0, 1], interpolated between equal steps.
 Colour on_ladder(std::span<const Colour> ladder, double place) {
   const double steps = std::clamp(place, 0.0, 1.0) * double(ladder.size() - 1);
   const std::size_t low = std::min(std::size_t(steps), ladder.size() - 2);

@@ -21,14 +21,14 @@ using Colour = std::array<double, 3>;
 struct OrganLook {
   std::string name;                ///< of the organ
   Colour outer{0.50, 0.17, 0.13};  ///< of its surface
-  Colour inner{0.46, 0.06, 0.06};  ///< of its inside, seen where it is cut
-  double wetness = 1;              ///< strength of the wet film's mirror, in [0, 1]
+  Colour inner{0.46, 0.06, 0.06};  ///< of its inside, visible where it is cut
+  double wetness = 1;              ///< strength of specular reflection by a wet film, in [0, 1]
 };
 
-/// The look of a known tissue (liver, kidney, skin), found in the organ's name; a plain red one for others.
+/// The look of the tissue (liver, kidney, skin) that the organ's name contains; plain red for others.
 OrganLook look_of(std::string_view organ_name);
 
-/// What is drawn: a Model, and one surface and look for each of its organs.
+/// The scene to draw: a Model, and one surface and look for each of its organs.
 struct SceneView {
   const Model* model = nullptr;   ///< must outlive the Renderer
   std::vector<Surface> surfaces;  ///< bound to the spheres of their organ    (organ_count)
@@ -41,37 +41,37 @@ Bounds rest_bounds(const SceneView& scene);
 /// Up in the scene: against gravity, +z without gravity.
 Vec3 up_of(const Model& model);
 
-/// A camera in front of the scene, a little above it and to the right, with everything in sight.
+/// A camera in front of the scene, a little above it and to the right, that frames everything.
 Camera default_camera(const SceneView& scene, double aspect = 16.0 / 9);
 
-/// How many moments a following camera moves over, and how far they are apart: it lags by half of 0.8 s.
+/// Number of moments that a following camera averages, and their interval: it lags by half of 0.8 s.
 inline constexpr std::size_t kFollowedMoments = 80;
 inline constexpr double kFollowedEvery = 0.01;  ///< [s]
 
-/// A camera that comes closer as the held tool nears the organs, and looks where it works. `moments` are the
-/// inputs of the last moments, oldest first; fewer at a session's beginning. The camera moves softly whatever
-/// the tool does, and depends on nothing else, so a video that starts later shows the same pictures. Without
-/// a tool: `base` itself.
+/// A camera that comes closer as the held tool nears the organs, and looks at the point where it works. `moments` are
+/// the inputs of the last moments, oldest first; fewer at a session's beginning. The average makes the camera's motion
+/// smooth. The camera depends on nothing else, so a video that starts later shows the same pictures. Without a tool:
+/// `base` itself.
 Camera following_camera(const SceneView& scene, const Camera& base, std::span<const Inputs> moments);
 
 enum class View {
   surface,   ///< the organs' surfaces, as tissue
   spheres,   ///< the spheres, coloured by layer
-  both,      ///< the spheres through a glassy surface
-  elements,  ///< the elements, coloured by what ElementQuantity says
+  both,      ///< the spheres through a transparent surface
+  elements,  ///< the elements, coloured by an ElementQuantity
 };
 
-/// What the colour of an element shows.
+/// The quantity that an element's colour shows.
 enum class ElementQuantity {
   stretch,  ///< (length - rest length) / rest length of axial elements
   tilt,     ///< theta of the five-sphere lines [rad]
-  force,    ///< size of the axial force of axial elements, softened (Eq. 8) [N]
+  force,    ///< magnitude of the force of axial elements, softened (Eq. 8) [N]
 };
 
-/// Cuts everything away on one side of a plane, so that one looks inside.
+/// Hides everything on one side of a plane, to show the inside.
 struct Cutaway {
   Vec3 point;            ///< on the plane [m]
-  Vec3 normal{0, 0, 0};  ///< towards the side that is left out, unit length; zero: nothing is left out
+  Vec3 normal{0, 0, 0};  ///< towards the hidden side, unit length; zero: nothing is hidden
 
   bool is_on() const { return dot(normal, normal) > 0; }
   bool leaves_out(Vec3 p) const { return is_on() && dot(p - point, normal) > 0; }
@@ -81,25 +81,24 @@ struct DrawOptions {
   Camera camera;
   View view = View::surface;
   ElementQuantity quantity = ElementQuantity::stretch;
-  double full_scale = 0;  ///< value that gets the last colour [1, rad or N]; 0: default_full_scale()
+  double full_scale = 0;  ///< value of the last colour [1, rad or N]; 0: default_full_scale()
   Cutaway cutaway;
   bool show_tool = true;    ///< at the pose of State::last_inputs
   bool show_ground = true;  ///< a soft shadow below the scene
 };
 
-/// 20 % stretch, 0.5 rad tilt, 0.05 N force.
+/// Full scale of the colours: 20 % stretch, 0.5 rad tilt, 0.05 N force.
 double default_full_scale(ElementQuantity quantity);
 
-/// Colour of a value in units of full scale: for stretch from blue (-1) over grey to red (1), else from 0
-/// to 1.
+/// Colour of a value in units of full scale: from blue (-1) over grey to red (1) for stretch, else over [0, 1].
 Colour quantity_colour(ElementQuantity quantity, double value);
 
-/// What the colours of a view mean.
+/// The legend of a view's colours.
 struct Legend {
   std::string title;            ///< with its unit; empty: the view needs no legend
   std::string low, high;        ///< values of the first and the last colour
   std::vector<Colour> colours;  ///< in equal steps
-  bool is_stepped = false;      ///< the colours stand for single values, not for a range
+  bool is_stepped = false;      ///< each colour stands for one value, not for a range
 };
 
 /// The legend of the view that the options ask for.

@@ -4,20 +4,20 @@
 
 namespace ctpm::render {
 
-/// GLSL 3.30 sources. What several of them share is put in front when they are handed out.
+/// GLSL 3.30 sources, each with the code that several shaders share in front.
 struct ShaderSource {
   std::string vertex, fragment;
 };
 
-/// Which side of an organ's surface is drawn, each with its own program: what the outside need not work out is
-/// left out, for most pixels are outside.
+/// The part of an organ's surface that is drawn. Each has its own program: most pixels show the outside, whose program
+/// omits what it does not need.
 enum class OrganPass {
   outside,  ///< triangles that face the eye
   inside,   ///< walls of cuts, inner faces, and with a cutaway the section
-  glassy,   ///< the outside, see-through where it faces the eye
+  glassy,   ///< the outside, transparent where it faces the eye
 };
 
-/// Colours come out multiplied by their alpha; the backdrop is put behind them afterwards.
+/// The shader's output has premultiplied alpha; the backdrop is composited behind it afterwards.
 ShaderSource organ_shader(OrganPass pass, bool has_cutaway);
 ShaderSource tool_shader();
 ShaderSource sphere_shader();

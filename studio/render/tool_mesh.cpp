@@ -81,7 +81,7 @@ ToolMesh make_ball(double radius) {
 ToolMesh make_scalpel(double length) {
   Builder builder;
   const double width = 0.28 * length, half = 0.02 * length;
-  // The edge runs straight up; the back bellies out from the tip to the full width.
+  // The edge is straight; the back curves out from the tip to the full width.
   std::vector<Vec3> edge, back, ridge_left, ridge_right;
   constexpr int kRows = 12;
   for (int i = 0; i <= kRows; ++i) {

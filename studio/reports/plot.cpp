@@ -9,7 +9,7 @@
 namespace ctpm::reports {
 namespace {
 
-/// Colours that people with any colour vision tell apart (Okabe and Ito), darker first.
+/// Colours that are distinct for any colour vision (Okabe and Ito), darker first.
 constexpr std::array<const char*, 7> kPalette{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                               "#e69f00", "#56b4e9", "#4d4d4d"};
 
@@ -23,7 +23,7 @@ std::string number(double pixels) {
   return text;
 }
 
-/// One axis: its range, its ticks, and where a value is in the picture.
+/// One axis: its range, its ticks, and the map from value to pixels.
 class Axis {
  public:
   Axis(double low, double high, bool is_log, double from, double to) : is_log_(is_log), from_(from), to_(to) {
@@ -62,7 +62,7 @@ struct Range {
   bool is_empty() const { return !(low <= high); }
 };
 
-/// What must be in sight; linear axes that nearly reach zero begin there, and leave some air above.
+/// The range that an axis must show. Linear axes that nearly reach zero begin there and have a margin above.
 Range range_of(const Plot& plot, bool is_y) {
   Range range;
   const bool is_log = is_y ? plot.is_log_y : plot.is_log_x;
@@ -75,7 +75,7 @@ Range range_of(const Plot& plot, bool is_y) {
   if (is_log)
     return {std::pow(10.0, std::floor(std::log10(range.low))), std::pow(10.0, std::ceil(std::log10(range.high)))};
   const double size = std::max(range.high - range.low, 1e-12 * std::max(1.0, std::abs(range.high)));
-  // Places in a plane need air on both sides, curves over time do not.
+  // Paths in a plane need margins on both sides, curves over time do not.
   const bool has_places =
       std::any_of(plot.series.begin(), plot.series.end(), [](const Series& s) { return s.stroke == Stroke::path; });
   if (!is_y && !has_places) return {range.low >= 0 && range.low < 0.1 * size ? 0.0 : range.low, range.high};
@@ -96,7 +96,7 @@ void add_line(std::string& svg, double x1, double y1, double x2, double y2, cons
 
 bool has_marks_only(const Series& series) { return series.stroke == Stroke::marks || series.stroke == Stroke::crosses; }
 
-/// A drawing of one plot while it is made.
+/// Draws one plot.
 struct Drawing {
   const Plot& plot;
   Axis x, y;
@@ -258,7 +258,7 @@ std::string to_svg(const Plot& plot) {
                   bottom,
                   ""};
   std::string& svg = drawing.svg;
-  // Names of clips must differ within a page; the title and size of a plot make one.
+  // Names of clip paths must be unique within a page; they come from the plot's title and size.
   const std::string clip =
       "c" + std::to_string(std::hash<std::string>{}(plot.title + plot.y_title + std::to_string(plot.series.size())) %
                            1000000007);

@@ -15,18 +15,18 @@ enum class Stroke {
   dashed,   ///< a dashed line
   marks,    ///< a circle at each point, no line
   crosses,  ///< a cross at each point, no line
-  path,     ///< a thin line with a mark at each point, the first one larger: where something goes
+  path,     ///< a thin line with a mark at each point, the first one larger: a path in space
 };
 
-/// Points of a line plot; `x` and `y` have the same length. Points that are not finite are left out.
+/// Points of a line plot; `x` and `y` have the same length. Non-finite points are left out.
 struct Series {
   std::string name = {};  ///< in the legend; empty: not listed
   std::vector<double> x = {}, y = {};
   Stroke stroke = Stroke::line;
-  int colour = -1;  ///< index of the report's palette; -1: the next one that is free
+  int colour = -1;  ///< index of the report's palette; -1: the next free one
 };
 
-/// A range of y that is tinted over the whole width: measured values.
+/// A range of y that is tinted over the whole width, for example of measured values.
 struct Band {
   std::string name;
   double low = 0, high = 0;
@@ -40,19 +40,19 @@ struct Plot {
   std::vector<Series> series = {};
   std::vector<Band> bands = {};
   std::string caption = {};                                             ///< below the plot; empty: none
-  std::optional<std::pair<double, double>> x_range = {}, y_range = {};  ///< unset: all that is to be seen
+  std::optional<std::pair<double, double>> x_range = {}, y_range = {};  ///< unset: the range of the data
   bool is_log_x = false;  ///< x on a logarithmic axis; points with x <= 0 are left out
   bool is_log_y = false;
   int width = 520, height = 340;  ///< [pixels]
 };
 
-/// The plot as an SVG element that stands in a page by itself.
+/// The plot as a self-contained SVG element.
 std::string to_svg(const Plot& plot);
 
 /// The points of the plot as a JSON object: title, axes, series with their x and y, bands.
 void write_points(output::JsonWriter& json, const Plot& plot);
 
-/// Text as it may stand in HTML, SVG and attributes.
+/// Escapes text for HTML, SVG and attributes.
 std::string escape_html(const std::string& text);
 
 }  // namespace ctpm::reports

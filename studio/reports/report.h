@@ -10,13 +10,13 @@
 
 namespace ctpm::reports {
 
-/// A picture with what it shows.
+/// A picture with its caption.
 struct Picture {
   render::Frame frame;
   std::string caption;
 };
 
-/// One part of a report: said first, then shown.
+/// One part of a report: text first, then plots, pictures and tables.
 struct Section {
   std::string key;  ///< name in JSON
   std::string title;
@@ -26,7 +26,7 @@ struct Section {
   std::vector<Table> tables;
 };
 
-/// One self-contained HTML page: text, tables, line plots and pictures, nothing loaded from elsewhere.
+/// One self-contained HTML page: text, tables, line plots and pictures.
 class Report {
  public:
   Report(std::string title, std::string subtitle);
@@ -34,17 +34,17 @@ class Report {
   void add_heading(const std::string& text);
   void add_paragraph(const std::string& text);
 
-  /// A whole section under its heading. Error: a picture that cannot be encoded.
+  /// Adds a section with its heading. Error: a picture that cannot be encoded.
   Result<Done> add(const Section& section);
 
-  /// A line that tells good from bad at a glance.
+  /// Adds a line with a coloured verdict.
   void add_verdict(bool is_good, const std::string& text);
   void add_table(const Table& table);
 
-  /// Plots side by side, as many as fit in a row.
+  /// Adds plots side by side, as many as fit in a row.
   void add_plots(const std::vector<Plot>& plots);
 
-  /// Pictures side by side, as many as fit in a row, embedded as PNG. Error: a frame that cannot be encoded.
+  /// Adds pictures side by side, as many as fit in a row, embedded as PNG. Error: a frame that cannot be encoded.
   Result<Done> add_pictures(const std::vector<Picture>& pictures);
 
   /// The page so far.
@@ -57,16 +57,16 @@ class Report {
 /// A frame as `data:image/png;base64,...`. Error: an empty frame.
 Result<std::string> to_data_uri(const render::Frame& frame);
 
-/// A file of a report by its name within the report's folder.
+/// A file of a report; `name` is relative to the report's folder.
 struct ReportFile {
   std::string name, text;
 };
 
-/// Makes `folder` if need be and checks that it can be written: for before the work that a report is about.
+/// Creates `folder` if necessary and checks that it can be written. Call it before the work to be reported.
 Result<Done> prepare_folder(const std::string& folder);
 
-/// Writes each file whole under a temporary name and renames it, so no reader ever sees half a file.
-/// Errors: those of files.h.
+/// Writes each file under a temporary name, then renames it, so that no reader sees an incomplete file. Errors: those
+/// of output/files.h.
 Result<Done> write_report(const std::string& folder, const std::vector<ReportFile>& files);
 
 }  // namespace ctpm::reports

@@ -9,41 +9,41 @@
 
 namespace ctpm::reports {
 
-/// What became of something that must hold.
+/// The verdict on a condition.
 enum class ReportVerdict {
   met,      ///< holds
-  missed,   ///< must hold and does not
-  shown,    ///< does not agree and need not; it is shown as it is
-  refused,  ///< was refused beforehand, as it may be
+  missed,   ///< must hold and does not hold
+  shown,    ///< need not hold; the value is only shown
+  refused,  ///< was refused beforehand, which is allowed
 };
 
-/// A number, a word, a verdict, or nothing.
+/// A number, a word, a verdict, or empty.
 using Cell = std::variant<std::monostate, std::string, double, std::int64_t, ReportVerdict>;
 
 struct Column {
-  std::string key;    ///< name in JSON and CSV, with the unit in it (`force_n`)
-  std::string title;  ///< as a person reads it, with the unit
+  std::string key;    ///< name in JSON and CSV, contains the unit (`force_n`)
+  std::string title;  ///< name for people, with the unit
   int digits = 4;     ///< significant digits in the page; JSON and CSV keep all
 };
 
-/// Rows under named columns: once shown in a page, once written for programs.
+/// Rows under named columns, for the page and for programs.
 struct Table {
   std::string title;
   std::vector<Column> columns;
-  std::vector<std::vector<Cell>> rows;  ///< each with one cell a column
+  std::vector<std::vector<Cell>> rows;  ///< (row_count x column_count)
   std::string caption;
 };
 
 /// "met", "missed", "shown", "refused".
 const char* to_word(ReportVerdict verdict);
 
-/// The table as an HTML element; numbers stand right, verdicts are coloured.
+/// The table as an HTML element; numbers are right-aligned, verdicts coloured.
 std::string to_html(const Table& table);
 
-/// One header line, then one line a row; text is quoted where it must be (RFC 4180).
+/// The table as CSV (RFC 4180): a header line, then one line per row; text is quoted where necessary.
 std::string to_csv(const Table& table);
 
-/// A list of objects, one a row; empty cells are left out.
+/// Writes a list of objects, one per row; empty cells are left out.
 void write_rows(output::JsonWriter& json, const Table& table);
 
 }  // namespace ctpm::reports

@@ -17,7 +17,7 @@ using Eigen::Vector2d;
 double size_of(double y) { return std::abs(y); }
 double size_of(const Vector2d& y) { return y.cwiseAbs().maxCoeff(); }
 
-/// Slope of one unknown or of two at a time.
+/// Time derivative of one unknown or of two.
 template <class Y>
 using Slope = std::function<Y(double t, const Y& y)>;
 
@@ -25,7 +25,7 @@ using Slope = std::function<Y(double t, const Y& y)>;
 template <class Y>
 std::vector<Y> integrate(const Slope<Y>& slope, Y y, std::size_t sample_count, double interval, long steps) {
   std::vector<Y> samples{y};
-  // Loads may have kinks at samples; every step stays on its own side of them.
+  // Loads may have kinks at samples; no step crosses one.
   const double h = interval / double(steps), inside = 1e-9 * h;
   for (std::size_t s = 1; s < sample_count; ++s) {
     for (long i = 0; i < steps; ++i) {
@@ -39,8 +39,7 @@ std::vector<Y> integrate(const Slope<Y>& slope, Y y, std::size_t sample_count, d
   return samples;
 }
 
-/// Halves the step until it changes nothing any more. `fastest` [s] is the shortest time constant of the
-/// equation.
+/// Halves the step until two runs agree to kAgreement. `fastest` [s] is the shortest time constant of the equation.
 template <class Y>
 std::vector<Y> integrate_to_agreement(const Slope<Y>& slope, Y y0, std::size_t sample_count, double interval,
                                       double fastest) {
@@ -120,14 +119,13 @@ namespace {
 
 double cos_theta(const Site& site, double depth) { return site.arm / std::hypot(site.arm, depth); }
 
-/// What of lambda acts at once: all of it, or what the line's own triples leave of it.
+/// The part of lambda without delay: all of it, or the rest after the share of the line's own triples.
 double lambda_at_once(const Site& site, double depth, Law law) {
   const double modulus = law == Law::eqs_3_to_8_rig ? site.constraint - p2(site) : site.constraint;
   return 2 * modulus * (1 - cos_theta(site, depth));
 }
 
-/// How much longer the line's triples are than at rest [mm]; Eqs. 3-8 of the paper have lambda in their
-/// place.
+/// Elongation of the line's triples [mm]; Eqs. 3-8 of the paper have lambda instead.
 double stretch_of_line(const Site& site, double depth, Law law) {
   return law == Law::eqs_3_to_8_rig ? std::hypot(site.arm, depth) - site.arm : 0.0;
 }
@@ -193,9 +191,8 @@ struct Crept {
   double below, line;
 };
 
-/// Depth at which the springs K2 carry, beyond what the Kelvin units have crept, what the constraint leaves
-/// of the stress: K2 (eps - eps1) + lambda eps + 2 sin theta K2 (e - e1) = sigma (1 + tan theta), Eqs. 4-8,
-/// by Newton's rule.
+/// Depth at which springs, Kelvin units and constraint balance the stress, by Newton's method:
+/// K2 (eps - eps1) + lambda eps + 2 sin theta K2 (e - e1) = sigma (1 + tan theta), Eqs. 4-8.
 double depth_of(const Site& site, double stress, Crept crept, Law law) {
   const bool is_rig = law == Law::eqs_3_to_8_rig;
   const double modulus = site.constraint - (is_rig ? p2(site) : 0.0);
@@ -214,7 +211,7 @@ double depth_of(const Site& site, double stress, Crept crept, Law law) {
   return x;
 }
 
-/// Eqs. 3-8: what creeps are the Kelvin units' elongations, v1 eps1' = K2 (eps - eps1) - K1 eps1.
+/// Eqs. 3-8 for the elongations of the Kelvin units: v1 eps1' = K2 (eps - eps1) - K1 eps1.
 std::vector<double> creep_of_kelvin_units(const Site& site, const std::function<double(double)>& stress,
                                           std::size_t count, double interval, double fastest, Law law) {
   const auto depth_at = [&](double t, const Vector2d& e) { return depth_of(site, stress(t), {e[0], e[1]}, law); };

@@ -11,14 +11,14 @@
 
 namespace ctpm::rig {
 
-/// Inputs in which the rig's pin holds C `depth_mm` [mm] below its rest.
+/// Inputs with which the rig's pin holds C `depth_mm` [mm] below its rest position.
 Inputs pressed_to(double depth_mm);
 
 /// The error of a run of `scene` that diverged.
 Error diverged(const std::string& scene, const stepping::StepReport& report);
 
-/// Force at rest at each depth of a rig whose pin holds C [N]: pressed on at 10 mm/s from depth to depth and held at
-/// each until the spheres beside C, which nothing but the step damps, have stopped swinging. Error: a step that failed.
+/// Static force at each depth of a rig whose pin holds C [N]. The pin moves at 10 mm/s from depth to depth and waits at
+/// each until the spheres beside C, which only numerical damping slows, stop swinging. Error: a step that failed.
 Result<std::vector<double>> press_rig(const Model& model, const std::string& name, const std::vector<PrintedRow>& rows);
 
 }  // namespace ctpm::rig

@@ -5,7 +5,7 @@
 
 namespace ctpm::rig {
 
-/// What the paper prints in its Table 1.
+/// One row of the paper's Table 1 as printed.
 struct PrintedRow {
   double depth;              ///< [mm]
   double lambda, tpm, ctpm;  ///< [kPa/mm], [N], [N]

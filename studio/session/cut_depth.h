@@ -11,19 +11,20 @@
 
 namespace ctpm::session {
 
-/// How deep a cut goes: how far below the organs' surfaces the deepest severed axial element lay at rest.
+/// Depth of a cut: the rest distance of the deepest severed axial element from the organs' surfaces. It counts an
+/// element's middle.
 class CutDepth {
  public:
   /// `surfaces` at rest. `model` must outlive this.
   CutDepth(const Model& model, const std::vector<Surface>& surfaces);
 
-  /// Adds what a later State of one session has lost.
+  /// Adds the severed elements of a later State of the same session.
   void add(const State& state);
 
   /// Adds one axial element.
   void add(std::size_t element);
 
-  /// [m]. Nothing if nothing was severed or there are no surfaces.
+  /// The depth [m]. None if nothing was severed or there are no surfaces.
   std::optional<double> deepest() const { return deepest_; }
 
  private:

@@ -40,7 +40,7 @@ Result<recordings::SessionStart> continue_session_at(const std::string& file, do
       recordings::continue_session(*parent, std::min<std::int64_t>(std::llround(at_s / tick), parent->tick_count()));
   if (!start) return start.errors();
   start->build_fingerprint = version::build_fingerprint();
-  // What the parent's hand did is not what this one's does.
+  // The parent's motion is not this session's.
   std::erase_if(start->metadata, [](const auto& entry) {
     return entry.first != "scene_name" && entry.first != recordings::parent_session_key &&
            entry.first != recordings::parent_tick_key;

@@ -17,19 +17,19 @@ struct RecordOutcome {
   recordings::SessionStatistics statistics;
 };
 
-/// The start of a session of `scene`, after it has come to rest.
+/// The start of a session of `scene`, settled to rest.
 recordings::SessionStart start_session(const loading::LoadedScene& scene);
 
-/// The start of a session that goes on from the State at `at_s` [s] of the session in `file`, which it names as
-/// its parent. Errors: the session cannot be read, does not last so long, or does not replay.
+/// The start of a session that continues the session in `file` from its State at `at_s` [s] and names it as its parent.
+/// Errors: the session cannot be read, ends before `at_s`, or does not replay.
 Result<recordings::SessionStart> continue_session_at(const std::string& file, double at_s);
 
-/// Runs a session from `start` with what `source` gives and records it at `path`. Errors: the file exists and
-/// `overwrite` is false, it cannot be written.
+/// Runs a session from `start` with the inputs of `source` and records it at `path`. Errors: the file exists and
+/// `overwrite` is false; it cannot be written.
 Result<RecordOutcome> record_session(const recordings::SessionStart& start, sources::InputSource& source,
                                      const std::string& path, bool overwrite, const RunOptions& options);
 
-/// Lets the scene come to rest, then runs the script and records it at `path`. Errors: as for record_session().
+/// Settles the scene to rest, runs the script and records it at `path`. Errors: those of record_session().
 Result<RecordOutcome> record_script(const loading::LoadedScene& scene, const scenes::Script& script,
                                     const std::string& path, bool overwrite, const RunOptions& options);
 

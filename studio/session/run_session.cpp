@@ -15,7 +15,7 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// Notes what a reviewer wants to find again: the moments at which something begins or ends.
+/// Records events for reviewers: the moments at which something begins or ends.
 class EventWatch {
  public:
   EventWatch(const Model& model, double damage_force, recordings::SessionWriter& writer)
@@ -42,8 +42,8 @@ class EventWatch {
   }
 
  private:
-  /// Something that goes on while it is seen again within kPause; tissue that follows a leaving tool touches
-  /// it on and off.
+  /// A state that persists while it is seen again within kPause. Tissue that follows a retreating tool touches it
+  /// intermittently.
   struct Spell {
     bool goes_on = false;
     std::int64_t last_tick = 0;
@@ -79,7 +79,7 @@ class EventWatch {
   recordings::SessionWriter& writer_;
   double depth_limit_ = 0, force_limit_ = 0;  // [m], [N]; 0: no limit
   std::int32_t organ_ = -1;                   // whose depth limit it is
-  std::int32_t tool_ = -1;                    // of the contact that goes on
+  std::int32_t tool_ = -1;                    // of the present contact
   Spell contact_, cut_, too_deep_, too_strong_;
 };
 
@@ -125,7 +125,7 @@ RunOutcome run_session(const Model& model, State& state, sources::InputSource& s
     if (options.in_real_time && Clock::now() > deadline) {
       ++outcome.late_ticks;
       writer.event({.tick = tick, .kind = recordings::EventKind::late_tick, .late = seconds_since(deadline)});
-      deadline = Clock::now();  // a late tick does not make the next ones hurry
+      deadline = Clock::now();  // the next ticks do not make up for a late one
     }
     ++outcome.ticks;
     if (options.progress)

@@ -13,27 +13,27 @@
 namespace ctpm::session {
 
 struct RunOptions {
-  bool in_real_time = true;     ///< ticks start on absolute deadlines of the wall clock; else one after the other
-  double damage_force = 0;      ///< force on the tool beyond which a damage event is noted [N]; 0: no limit
-  std::int64_t most_ticks = 0;  ///< the session ends after so many; 0: when the source ends
-  int threads = 1;              ///< that share a tick, >= 1; they change no bit of it
+  bool in_real_time = true;     ///< true: ticks start at absolute wall-clock deadlines; false: without pauses
+  double damage_force = 0;      ///< force on the tool above which a damage event is recorded [N]; 0: no limit
+  std::int64_t most_ticks = 0;  ///< the session ends after this many ticks; 0: when the source ends
+  int threads = 1;              ///< threads of a tick, >= 1; the result does not depend on it
   std::function<void(std::int64_t done, std::int64_t total)> progress;
-  std::function<bool()> should_stop;  ///< asked every tick: Ctrl-C
+  std::function<bool()> should_stop;  ///< called every tick, for Ctrl-C
 };
 
-/// Threads that pay for a scene on this machine: two where there are so many cores and a tick has enough to share.
+/// Number of threads that pays off for a model on this machine: 2 with several cores and at least 3000 spheres, else 1.
 int threads_for(const Model& model);
 
-/// What a run came to.
+/// The result of a run.
 struct RunOutcome {
   std::int64_t ticks = 0;
   std::int64_t late_ticks = 0;                             ///< ticks that ended after their deadline, in real time only
   stepping::StepStatus status = stepping::StepStatus::ok;  ///< of the last tick; a diverged tick ends the run
   std::int32_t worst_sphere = -1;
-  std::string fault;  ///< why the source ended the session before its time; empty if it did not
+  std::string fault;  ///< why the source ended the session early; empty if it did not
 };
 
-/// Runs one session: source -> step -> writer, tick by tick. `state` goes on from where it is.
+/// Runs one session from `state`: source -> step -> writer, tick by tick.
 RunOutcome run_session(const Model& model, State& state, sources::InputSource& source,
                        recordings::SessionWriter& writer, const RunOptions& options);
 

@@ -20,8 +20,8 @@ struct TimeRange {
   double from_s = 0;
   std::optional<double> to_s;  ///< unset: to the end
 
-  /// The ticks of this part. `where` names the session, `tick` [s] is its tick. Errors: the part is empty or ends after
-  /// the session's `tick_count` ticks.
+  /// The ticks of this part. `where` names the session in errors, `tick` [s] is its tick. Errors: the part is empty, or
+  /// begins or ends outside the session's `tick_count` ticks.
   Result<TickRange> in_ticks(const std::string& where, double tick, std::int64_t tick_count) const {
     const double end_s = double(tick_count) * tick, last_s = to_s.value_or(end_s);
     const std::string is_long = "the session lasts " + std::to_string(end_s) + " s";

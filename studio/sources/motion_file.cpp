@@ -15,7 +15,7 @@ enum Column { time, x, y, z, qw, qx, qy, qz, buttons, tool, column_count };
 constexpr std::array<const char*, column_count> kNames{"time_s",  "tool_x_mm", "tool_y_mm", "tool_z_mm", "tool_qw",
                                                        "tool_qx", "tool_qy",   "tool_qz",   "buttons",   "tool"};
 constexpr double kMostMillimetres = 100000, kMostSeconds = 100000;
-constexpr double kLengthTolerance = 0.1;  // of a quaternion: loggers that round to two digits are read
+constexpr double kLengthTolerance = 0.1;  // of a quaternion's length: allows loggers that round to two digits
 constexpr std::size_t kMostErrors = 100;
 
 /// One value of a row, without the blanks and the quotes around it.
@@ -40,7 +40,7 @@ std::vector<Cell> cells_of(std::string_view line) {
   }
 }
 
-/// What stands in a cell, cut to a length that fits a message.
+/// The text of a cell, shortened for a message.
 std::string shown(std::string_view text) { return "'" + std::string(text.substr(0, 40)) + "'"; }
 
 class MotionReader {
@@ -59,7 +59,7 @@ class MotionReader {
       if (has_header) {
         read_row(line);
       } else if (has_header = true; !read_header(line)) {
-        return errors_;  // without the columns nothing can be said about the rows
+        return errors_;  // rows cannot be checked without the columns
       }
     }
     if (!has_header) return Error{file_, "is empty", "the first row names the columns: time_s, tool_x_mm ..."};
@@ -179,7 +179,7 @@ class MotionReader {
   Errors errors_;
   std::size_t error_count_ = 0, line_ = 1, width_ = 0;
   std::array<std::optional<std::size_t>, column_count> place_;  ///< in a row
-  std::vector<Cell> cells_;                                     ///< of the row that is read
+  std::vector<Cell> cells_;                                     ///< of the present row
 };
 
 }  // namespace
@@ -190,7 +190,7 @@ Result<Motion> read_motion(std::string_view text, const std::string& file_name, 
 
 Inputs motion_at(const Motion& motion, double time) {
   const std::vector<MotionSample>& samples = motion.samples;
-  // Sampled at the ticks themselves, a motion is taken as it is: a tick's time is rounded, by less than this.
+  // A motion that was sampled at the ticks is not interpolated: a tick's time is rounded by less than this.
   constexpr double kRounding = 1e-9;  // [s]
   const double moment = samples.front().time + time;
   const auto next = std::upper_bound(samples.begin(), samples.end(), moment + kRounding,

@@ -11,20 +11,20 @@
 
 namespace ctpm::sources {
 
-/// Where a hand was at one moment of a motion.
+/// One row of a motion.
 struct MotionSample {
   double time = 0;  ///< [s], rising from sample to sample; any origin
-  Inputs inputs;    ///< of unit length where it is a rotation
+  Inputs inputs;    ///< the orientation has unit length
 };
 
-/// A hand's motion as it was measured, at any rate.
+/// A measured motion of the hand, at any sampling rate.
 struct Motion {
   std::vector<MotionSample> samples;        ///< at least one
-  std::vector<std::string> unused_columns;  ///< names of columns that say nothing about the hand
+  std::vector<std::string> unused_columns;  ///< names of columns that are ignored
 };
 
-/// Reads a table of a motion (CSV: values separated by commas, the names of the columns in the first row, in any
-/// order). The names are those that `ctpm replay --csv` writes:
+/// Reads a motion from CSV: values separated by commas, column names in the first row, in any order. The names are
+/// those that `ctpm replay --csv` writes:
 ///   time_s                               required, rising
 ///   tool_x_mm, tool_y_mm, tool_z_mm      required: the tool frame's origin in the scene
 ///   tool_qw, tool_qx, tool_qy, tool_qz   its orientation, of length 1 to 10 %; all four or none: upright
@@ -34,8 +34,9 @@ struct Motion {
 /// no finite number or out of range, time that does not rise, tools that the scene does not have.
 Result<Motion> read_motion(std::string_view text, const std::string& file_name, const std::vector<Tool>& tools);
 
-/// The motion at `time` after its first sample [s]: positions on the straight line between two samples, orientations
-/// on the shortest turn, tool and buttons of the earlier one. Before the first and after the last sample it rests.
+/// The motion at `time` after its first sample [s]. Positions are interpolated linearly, orientations along the
+/// shortest rotation; tool and buttons are those of the earlier sample. Constant before the first and after the last
+/// sample.
 Inputs motion_at(const Motion& motion, double time);
 
 /// Ticks of length `tick` [s] from the first to the last sample, both included.

@@ -8,7 +8,7 @@
 
 namespace ctpm::sources {
 
-/// A measured motion as the source of a session, one sample a tick.
+/// A measured motion as the source of a session, sampled once per tick.
 class MotionSource : public InputSource {
  public:
   MotionSource(Motion motion, double tick) : motion_(std::move(motion)), tick_(tick) {}

@@ -16,7 +16,7 @@ namespace ctpm::sources {
 struct OpenedSource {
   std::unique_ptr<InputSource> source;
   std::map<std::string, std::string> metadata;  ///< what the session stores about its source
-  std::vector<std::string> remarks;             ///< what the user should know; each a sentence with the file's name
+  std::vector<std::string> remarks;             ///< for the user; each a sentence with the file's name
 };
 
 /// A script as a source for `model`.

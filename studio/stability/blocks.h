@@ -3,7 +3,7 @@
 #include "scenes/scene_spec.h"
 #include "studio/stability/stability.h"
 
-/// What the stability cases are built of: blocks of liver, a ball that presses them.
+/// Parts of the stability cases: blocks of liver, and a ball that presses them.
 namespace ctpm::stability {
 
 constexpr double kGravity = 9.81;      ///< [m/s^2]
@@ -15,19 +15,19 @@ constexpr std::int32_t kBall = 0, kScalpel = 1;
 /// gravity.
 scenes::SceneSpec block(double nx, double ny, double nz);
 
-/// The Model of a scene of rigs, which must be valid.
+/// The Model of a scene of rigs. The scene must be valid.
 Model build(const scenes::SceneSpec& scene);
 
 Inputs ball_at(Vec3 place);
 
-/// Where the ball touches the middle of a block that is `nz` spheres high.
+/// Centre of the ball [m] when it touches the middle of a block that is `nz` spheres high.
 Vec3 touch(double nz);
 
-/// The ball presses a block `depth` [m] deep, holds, and leaves, each within `stretch` ticks; then the hand
-/// is empty.
+/// The ball starts at `from` [m], presses a block `depth` [m] deep, holds, and leaves, each within `stretch` ticks.
+/// Then no tool is held.
 std::function<Inputs(std::int64_t)> press(Vec3 from, double depth, std::int64_t stretch);
 
-/// A block that is pressed 6 mm deep, let go, and comes back as far as its tissue lets it.
+/// A block that is pressed 6 mm deep, released, and recovers as far as its tissue allows.
 StabilityCase pressed(const std::string& key, const std::string& title, const scenes::SceneSpec& scene, double seconds);
 
 }  // namespace ctpm::stability

@@ -1,4 +1,4 @@
-// The cases: what is stiff, extreme or plainly wrong about each, and what must hold then.
+// The cases: stiff, extreme or invalid values, and the conditions that must hold.
 
 #include <array>
 #include <cmath>
@@ -30,8 +30,7 @@ void add_stiffness(std::vector<StabilityCase>& cases) {
 }
 
 void add_viscosity(std::vector<StabilityCase>& cases) {
-  // The springs beside the Kelvin units are not damped: only the viscosity of the organ itself brings it to
-  // rest soon.
+  // The springs beside the Kelvin units are not damped; only the organ's own viscosity brings it to rest soon.
   for (const double factor : {0.0, 1e-6, 1e-3, 1e3, 1e6}) {
     scenes::SceneSpec scene = block(5, 5, 5);
     scene.organs[0].material.viscosity = 5e6 * factor;
@@ -94,14 +93,14 @@ void add_gravity(std::vector<StabilityCase>& cases) {
   }
 }
 
-/// 100 N, sudden, on the sphere at `at`.
+/// A step load of 100 N on the sphere at `at`.
 StabilityCase loaded(const std::string& key, const std::string& title, scenes::SceneSpec scene, Vec3 at, Vec3 force) {
   scene.loads.push_back({at, force, 0, 0});
   return {.key = key, .title = title, .expectation = {}, .build = [=] { return build(scene); }, .ticks = 3000};
 }
 
-/// Eq. 8 bounds what a sphere's springs can hold, so 100 N tear a sphere out of a surface; without softening
-/// they do not.
+/// Eq. 8 bounds the force of a sphere's springs, so 100 N tear a sphere out of a surface. Without softening they do
+/// not.
 void add_loads(std::vector<StabilityCase>& cases) {
   const scenes::SceneSpec softened = block(5, 5, 5);
   scenes::SceneSpec plain = softened;
@@ -144,7 +143,7 @@ void add_teleports(std::vector<StabilityCase>& cases) {
   }
 }
 
-/// A start out of shape that is let go.
+/// A release from a deformed shape.
 StabilityCase let_go(const std::string& key, const std::string& title,
                      std::function<void(const Model&, State&)> disturb) {
   const scenes::SceneSpec scene = block(5, 5, 5);
@@ -181,7 +180,7 @@ void add_shapes(std::vector<StabilityCase>& cases) {
     }
   });
   for (StabilityCase* what : {&point, &inverted}) {
-    // They unfold slowly.
+    // The organ unfolds slowly.
     what->ticks = 20'000;
     what->expectation = "within 150 mm, no energy gained, at rest after 20 s";
     cases.push_back(*what);
@@ -202,7 +201,7 @@ void kick(const Model& model, State& state) {
   }
 }
 
-/// Free swings: where nothing does work, energy must not grow, whatever the structure.
+/// Free oscillation: without external work, energy must not grow in any structure.
 void add_swings(std::vector<StabilityCase>& cases) {
   struct Kind {
     network::Structure structure;
@@ -251,7 +250,7 @@ std::string falls_freely(const Model& model, const State& first, const State& la
   return worst <= 0.01 * way ? "" : "is " + output::short_number(1e3 * worst) + " mm from where it must have fallen";
 }
 
-/// One sphere, joined to nothing.
+/// One sphere without elements.
 Model single_sphere() {
   scenes::SceneSpec scene = block(1, 1, 1);
   scene.gravity = {0, 0, -kGravity};
@@ -311,7 +310,7 @@ void add_holds(std::vector<StabilityCase>& cases) {
                    .free_from = 0});
 }
 
-/// Parts that no live axial element joins.
+/// Number of pieces: parts that no unsevered axial element joins.
 std::int64_t count_pieces(const Model& model, const State& state) {
   std::vector<std::size_t> parent(model.sphere_count());
   std::iota(parent.begin(), parent.end(), std::size_t(0));
@@ -379,7 +378,7 @@ void add_many(std::vector<StabilityCase>& cases, bool is_quick) {
   cases.push_back(what);
 }
 
-/// What a broken device may send; each in one tick, with good ticks between them.
+/// Inputs that a faulty device may send, each in one tick, with good ticks between them.
 Inputs broken(std::int64_t kind, Inputs inputs) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = INFINITY;
   switch (kind) {
@@ -437,11 +436,11 @@ void add_device(std::vector<StabilityCase>& cases) {
   cases.push_back(far);
 }
 
-/// The block hangs in balance; nothing may creep away.
+/// The block hangs in equilibrium; nothing may drift.
 void add_rest(std::vector<StabilityCase>& cases, bool is_quick) {
   scenes::SceneSpec scene = block(2, 2, 3);
   scene.gravity = {0, 0, -kGravity};
-  constexpr double kDrift = 5e-6;  // what the solver's floor of 1e-6 m/s leaves open, an hour long or not
+  constexpr double kDrift = 5e-6;  // allowed by the solver's velocity floor of 1e-6 m/s, also over an hour
   StabilityCase what{.key = "rest",
                      .title = is_quick ? "10 s at rest under gravity" : "an hour at rest under gravity",
                      .expectation = "after 5 s of settling, nothing drifts by more than 0.005 mm",
@@ -465,7 +464,7 @@ void add_rest(std::vector<StabilityCase>& cases, bool is_quick) {
 
 std::vector<StabilityCase> stability_cases(bool is_quick) {
   std::vector<StabilityCase> cases;
-  add_many(cases, is_quick);  // the longest first, so that no thread waits for them at the end
+  add_many(cases, is_quick);  // the longest first, to balance the threads
   add_rest(cases, is_quick);
   add_stiffness(cases);
   add_viscosity(cases);

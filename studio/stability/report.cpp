@@ -1,4 +1,4 @@
-// The page about the stability cases: what held, what was refused, and what each failing run looked like.
+// The page about the stability cases: which runs met their conditions, which were refused, and plots of the failures.
 
 #include "studio/reports/report.h"
 #include "studio/stability/stability.h"
@@ -6,7 +6,7 @@
 namespace ctpm::stability {
 namespace {
 
-/// All runs, one a row, for programs.
+/// All runs, one per row, for programs.
 reports::Table runs_table(const std::vector<StabilityRow>& rows) {
   reports::Table table;
   table.columns = {{"case", "case"},
@@ -30,7 +30,7 @@ reports::Table runs_table(const std::vector<StabilityRow>& rows) {
   return table;
 }
 
-/// One row a case: the verdict under each integrator.
+/// One row per case: the verdict under each integrator.
 reports::Table overview(const std::vector<StabilityRow>& rows) {
   reports::Table table;
   table.columns = {{"title", "case"}, {"used", "auto takes"}};
@@ -74,7 +74,7 @@ std::vector<reports::Plot> plots_of(const StabilityRun& run) {
   return {distance, energy};
 }
 
-/// The runs that did not hold, those of `auto` first.
+/// The runs that missed, those of `auto` first.
 std::vector<reports::Section> failures(const std::vector<StabilityRow>& rows) {
   std::vector<reports::Section> sections;
   for (const bool is_automatic : {true, false})

@@ -1,4 +1,4 @@
-// One case under one integrator, watched tick by tick; and all of them, several at a time.
+// Runs one case under one integrator and checks it tick by tick; runs all cases in parallel.
 
 #include <algorithm>
 #include <atomic>
@@ -15,15 +15,15 @@
 namespace ctpm::stability {
 namespace {
 
-/// Samples of a run: enough to see every turn of a case that is a thousand ticks long.
+/// Samples of a run: enough to resolve every oscillation of a case of a thousand ticks.
 constexpr std::int64_t kSamples = 2000;
 
-/// Energy may grow by this share of what is stored and in motion: solves stop at a residual.
+/// Energy may grow by this share of kinetic plus elastic energy, because solvers stop at a residual.
 constexpr double kEnergySlack = 1e-4;
 
 struct Energy {
-  double motion = 0, stored = 0;  ///< of spheres, and in springs and two-sphere TPMs [J], >= 0
-  double lift = 0;                ///< against gravity, from the rest positions [J]
+  double motion = 0, stored = 0;  ///< kinetic; elastic, of springs and two-sphere TPMs [J], >= 0
+  double lift = 0;                ///< gravitational, relative to the rest positions [J]
   double total() const { return motion + stored + lift; }
 };
 
@@ -69,7 +69,7 @@ const char* to_words(stepping::StepStatus status) {
   return "";
 }
 
-/// Holds a run's energy to what it was since nothing does work any more; see run_stability_case().
+/// Checks a run's energy from the tick on at which external work ends; see run_stability_case().
 class EnergyWatch {
  public:
   EnergyWatch(const Model& model, const stepping::IntegratorChoice& choice, double middle)
@@ -81,9 +81,9 @@ class EnergyWatch {
     if (is_explicit_ && choice.holds) swing_ = 1 / (1 - share * share);
   }
 
-  /// What is wrong at this sample; empty if nothing is.
+  /// The violation at this sample; empty if there is none.
   std::string take(const Energy& energy, double time) {
-    // Softened springs give back less than they would hold, so only what moves can be held to account.
+    // Softened springs return less than their energy function says, so only kinetic and gravitational energy count.
     const double now = has_softening_ ? energy.motion + energy.lift : energy.total();
     if (!has_begun_) has_begun_ = true, limit_ = energy.total();
     scale_ = std::max(scale_, energy.motion + energy.stored);
@@ -94,7 +94,7 @@ class EnergyWatch {
     return "";
   }
 
-  /// What is wrong with the run as a whole.
+  /// The violation of the whole run; empty if there is none.
   std::string finish() const {
     if (!is_explicit_ || count_[0] == 0 || count_[1] == 0) return "";
     const double first = sum_[0] / count_[0], second = sum_[1] / count_[1];
@@ -109,12 +109,12 @@ class EnergyWatch {
   int count_[2] = {0, 0};
 };
 
-/// A run while it goes on.
+/// Checks a run while it is simulated.
 struct Watch {
   Watch(const StabilityCase& c, const Model& m, const stepping::IntegratorChoice& choice)
       : what(c), model(m), energy(m, choice, 0.5 * double(c.ticks + c.free_from) * m.tick) {}
 
-  /// What is wrong after tick `tick`; empty if nothing is.
+  /// The violation after tick `tick`; empty if there is none.
   std::string sample(const State& state, std::int64_t tick, StabilityRun& run) {
     const Extent extent = extent_of(model, state);
     const double time = double(tick) * model.tick;
@@ -144,7 +144,7 @@ struct Watch {
   const StabilityCase& what;
   const Model& model;
   EnergyWatch energy;
-  bool is_undamped = false;  ///< what is wrong is energy that grew, or motion that goes on
+  bool is_undamped = false;  ///< the violation is growing energy or persistent motion
 };
 
 std::string at_tick(std::int64_t tick, double length) {

@@ -14,64 +14,68 @@
 #include "studio/reports/plot.h"
 #include "studio/reports/table.h"
 
-// Stiff and extreme cases that every integrator is put through, and what becomes of each.
+// Stiff and extreme cases, run under every integrator, and their verdicts.
 namespace ctpm::stability {
 
-/// One case: a small scene, what is done to it, and what must hold then.
+/// One case: a small scene, its disturbance or inputs, and the conditions that must hold.
 struct StabilityCase {
-  std::string key;          ///< in files: "stiffness-1e6"
-  std::string title;        ///< what it is
-  std::string expectation;  ///< what must hold, in words; finite and bounded always must
+  std::string key;          ///< name in files, for example "stiffness-1e6"
+  std::string title;        ///< name for people
+  std::string expectation;  ///< the conditions in words; finite and bounded are always required
   std::function<Model()> build;
-  std::function<void(const Model& model, State& state)> disturb = {};  ///< the start, from rest; empty: rest
-  std::function<Inputs(std::int64_t tick)> hand = {};                  ///< empty: no tool
-  std::function<bool(std::int64_t tick)> is_bad_input = {};            ///< ticks whose input must be refused
+  std::function<void(const Model& model, State& state)> disturb =
+      {};  ///< changes the initial State, which is at rest; empty: no change
+  std::function<Inputs(std::int64_t tick)> hand = {};        ///< empty: no tool
+  std::function<bool(std::int64_t tick)> is_bad_input = {};  ///< ticks whose input must be refused
   std::int64_t ticks = 0;
 
   double reach = 0;             ///< no sphere may get further from its rest position [m]
-  std::int64_t free_from = -1;  ///< first tick from which nothing does work on the tissue; -1: none
+  std::int64_t free_from = -1;  ///< from this tick on nothing does work on the tissue; -1: never
   double end_speed = kAny;      ///< no sphere may be faster at the end [m/s]
   double end_distance = kAny;   ///< no sphere may be further from its rest position at the end [m]
-  /// What else must hold of the first and the last State: empty if it does, else what is wrong.
+  /// A further condition on the first and the last State. Returns the violation, or an empty text.
   std::function<std::string(const Model& model, const State& first, const State& last)> also = {};
 
   static constexpr double kAny = std::numeric_limits<double>::infinity();
 };
 
-/// All cases. The long ones (an hour at rest, 1e5 spheres, the shortest ticks) are cut down if `is_quick`,
-/// and say so in their titles.
+/// All cases. With `is_quick` the long ones (an hour at rest, 1e5 spheres, the shortest ticks) are reduced, and their
+/// titles say so.
 std::vector<StabilityCase> stability_cases(bool is_quick);
 
-/// What became of a case under one integrator.
+/// The result of a case under one integrator.
 struct StabilityRun {
   std::optional<Integrator> asked;  ///< none: the Model's own choice
   Integrator used = Integrator::backward_euler;
   std::int32_t substeps = 1;
   reports::ReportVerdict verdict = reports::ReportVerdict::missed;  ///< met, missed or refused
   std::string reason;                                               ///< why it was missed or refused; empty if met
-  std::int64_t ticks = 0;                                           ///< done
-  std::int64_t unconverged = 0;                                     ///< ticks whose solve stopped at its count
-  double reach = 0;                  ///< furthest that a sphere was from its rest position [m]
+  std::int64_t ticks = 0;                                           ///< simulated
+  std::int64_t unconverged = 0;                                     ///< ticks whose solver reached its iteration limit
+  double reach = 0;                  ///< largest distance of a sphere from its rest position [m]
   double end_speed = 0;              ///< fastest sphere at the end [m/s]
-  reports::Series distance, energy;  ///< over time [s]: of the furthest sphere [mm], of all [J]
+  reports::Series distance, energy;  ///< over time [s]: largest distance [mm], total energy [J]
 };
 
-/// Runs one case. Finite and bounded are asked of every sampled tick; a tick that is refused must leave the
-/// State as it was. No integrator asked: nothing but bad input may be refused.
+/// Runs one case. Every sampled State must be finite and bounded, and a refused tick must leave the State unchanged.
+/// Under the Model's own choice of integrator only bad input may be refused.
 ///
-/// Energy is that of motion, springs, two-sphere TPMs and gravity. It may not grow from `free_from` on:
-/// - implicit integrators, networks without constraint and softening: from no sample to the next;
-/// - with a constraint (Eq. 2), which has no energy function: never above what it was at `free_from`;
-/// - with softening (Eq. 8), where springs would seem to hold more than they give back: that of motion and
-///   gravity alone never above what all was at `free_from`;
-/// - leapfrog keeps an energy that differs from this one by up to the square of its share s of the longest stable
-///   step: never above 1 / (1 - s^2) of what it was, and no higher on average in the second half.
+/// The energy is the sum of kinetic, spring, two-sphere TPM and gravitational energy. From `free_from` on it may not
+/// grow:
+/// - implicit integrators, networks without constraint and softening: not from one sample to the next;
+/// - with a constraint (Eq. 2), which has no energy function: never above its value at `free_from`;
+/// - with softening (Eq. 8), where springs return less than their energy function says: kinetic plus gravitational
+///   energy never above the total at `free_from`;
+/// - leapfrog conserves an energy that differs from this one by up to s^2, where s is its step over the longest stable
+///   step: above the value at `free_from` by at most 1 / (1 - s^2) - 1 of the largest kinetic plus elastic energy; and
+///   the mean of the second half above that of the first by at most 5 % of the same energy.
+/// Every bound has a slack of 1e-4 of that energy, because solvers stop at a residual.
 ///
-/// An integrator whose choice says beforehand that it damps nothing (IntegratorChoice::damps) counts as refused where
-/// energy grows or rest does not come.
+/// An integrator that announces no numerical damping (IntegratorChoice::damps) counts as refused, not missed, where
+/// energy grows or the tissue does not come to rest.
 StabilityRun run_stability_case(const StabilityCase& what, std::optional<Integrator> integrator);
 
-/// What all integrators made of one case, in the order of kStabilityIntegrators.
+/// The results of one case, in the order of kStabilityIntegrators.
 struct StabilityRow {
   const StabilityCase* what;
   std::vector<StabilityRun> runs;
@@ -84,7 +88,7 @@ inline constexpr std::optional<Integrator> kStabilityIntegrators[] = {std::nullo
 std::vector<StabilityRow> run_stability(const std::vector<StabilityCase>& cases,
                                         const std::function<void(std::int64_t done, std::int64_t total)>& progress);
 
-/// Runs under the Model's own choice that did not hold.
+/// Number of runs under the Model's own choice of integrator that missed.
 std::int64_t count_failures(const std::vector<StabilityRow>& rows);
 
 /// Writes report.html, results.json and results.csv into a folder.

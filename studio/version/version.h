@@ -4,8 +4,7 @@
 
 namespace ctpm::version {
 
-/// Names the program's version, the commit that it was built from (with `-dirty` if files differed from it; `unknown`
-/// outside of git), the compiler and the kind of build.
+/// Version, commit (build_commit()), compiler and build type of this program.
 std::string build_fingerprint();
 
 }  // namespace ctpm::version

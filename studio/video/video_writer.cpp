@@ -18,14 +18,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One way to write a video.
+/// One video format.
 struct Format {
   int fourcc;   ///< 0: PNG pictures
   int backend;  ///< of OpenCV
   const char* codec;
   const char* container;  ///< for people
-  const char* ending;     ///< of the path that is asked for
-  const char* written;    ///< of the path that is written, in place of it
+  const char* ending;     ///< of the requested path
+  const char* written;    ///< its replacement in the written path
 
   bool is_pictures() const { return fourcc == 0; }
 };
@@ -41,7 +41,7 @@ const std::array<Format, 3>& formats() {
   return all;
 }
 
-/// Which format the path asks for; 3 if none.
+/// Index of the requested format; 3 if the ending is unknown.
 std::size_t format_asked_for(const std::string& path) {
   std::size_t i = 0;
   while (i < formats().size() && !path.ends_with(formats()[i].ending)) ++i;
@@ -55,7 +55,7 @@ fs::path picture_path(const std::string& folder, std::int64_t index) {
   return fs::path(folder) / name;
 }
 
-/// Why no file of this name can be made, as `errno` says it; 0: it can. A path that cannot be written is no
+/// The `errno` with which creating this file fails; 0: it succeeds. This tells a path that cannot be written from a
 /// missing codec.
 int cannot_write(const std::string& path) {
   std::FILE* file = std::fopen(path.c_str(), "wb");
@@ -64,7 +64,7 @@ int cannot_write(const std::string& path) {
   return 0;
 }
 
-/// What was found must be what was written.
+/// Checks the reopened video against the written frames.
 Errors differences(const VideoFacts& facts, std::int64_t frames, int width, int height) {
   Errors errors;
   if (facts.frames != frames)
@@ -102,7 +102,7 @@ struct VideoWriter::Parts {
   Result<VideoFacts> check_pictures() const;
 };
 
-/// Opens the format that is asked for, or the first that works of those behind it.
+/// Opens the requested format, or the first of the later ones that works.
 Result<Done> VideoWriter::Parts::open_first(std::size_t asked_for) {
   for (std::size_t i = asked_for; i < formats().size(); ++i) {
     format = formats()[i];
@@ -126,7 +126,7 @@ bool VideoWriter::Parts::open(const Format& wanted) {
     if (wanted.backend == cv::CAP_FFMPEG) settings.clear();
     if (writer.open(part, wanted.backend, wanted.fourcc, fps, {width, height}, settings)) return true;
   } catch (const cv::Exception&) {
-    // The next format is tried, and the note says so.
+    // Try the next format; the note says so.
   }
   discard();
   return false;
@@ -163,7 +163,7 @@ Result<Done> VideoWriter::Parts::put(const render::Frame& frame) {
   return Done{};
 }
 
-/// Opens the closed temporary file and counts what is in it.
+/// Reopens the closed temporary file and counts its frames.
 Result<VideoFacts> VideoWriter::Parts::check_file() const {
   VideoFacts facts{path, format.codec, note, 0, 0, 0, 0, 0};
   try {

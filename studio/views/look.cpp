@@ -30,7 +30,7 @@ std::optional<render::View> find_view(const std::string& name, Errors& errors) {
   return std::nullopt;
 }
 
-/// The quantity that colours show; the view decides which there are.
+/// The quantity that colours show; each view has its own quantities.
 render::ElementQuantity find_quantity(const std::string& by, render::View view, Errors& errors) {
   if (view == render::View::elements) {
     if (by.empty() || by == "stretch") return render::ElementQuantity::stretch;
@@ -65,7 +65,7 @@ double unit_of(render::ElementQuantity quantity) {
   return 1;
 }
 
-/// `x`, `y` or `z` through the scene's middle, or with a place; the side towards the eye is left out.
+/// The plane across `x`, `y` or `z`, through the scene's middle or a given position; it hides the side towards the eye.
 render::Cutaway find_cutaway(const std::string& text, const render::SceneView& scene, Vec3 eye, Errors& errors) {
   if (text.empty()) return {};
   Vec3 axis{text[0] == 'x' ? 1.0 : 0.0, text[0] == 'y' ? 1.0 : 0.0, text[0] == 'z' ? 1.0 : 0.0};
@@ -91,15 +91,15 @@ render::Cutaway find_cutaway(const std::string& text, const render::SceneView& s
   return {place * axis, axis};
 }
 
-/// The camera of that name; if the name is empty the scene's first, or one that has everything in sight.
-/// Error: no camera of that name, with the names there are.
+/// The camera of that name. For an empty name: the scene's first, or one that frames everything. Error: no camera of
+/// that name; lists the known names.
 Result<render::Camera> find_camera(const scenes::SceneSpec& scene, const render::SceneView& view,
                                    const std::string& name, double aspect) {
   if (name.empty() && scene.cameras.empty()) return render::default_camera(view, aspect);
   std::string known;
   for (const scenes::CameraSpec& camera : scene.cameras) {
     if (name.empty() || camera.name == name) {
-      // Cameras are set up for 16:9; in a narrower picture they step back so that the sides stay in sight.
+      // Cameras are set up for 16:9; in a narrower picture they step back to keep the sides visible.
       const double back = std::max(1.0, 16.0 / 9 / aspect);
       return render::Camera{camera.target + back * (camera.eye - camera.target), camera.target, camera.up,
                             camera.field_of_view};

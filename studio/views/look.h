@@ -9,7 +9,7 @@
 
 namespace ctpm::views {
 
-/// What a picture shall show, as the user wrote it; find_look() checks it.
+/// The user's request for a picture, as text; find_look() checks it.
 struct LookRequest {
   std::string view = "surface";  ///< surface, spheres, both or elements
   std::string by;                ///< quantity of the colours: layer (spheres); stretch, tilt or force (elements)
@@ -22,14 +22,14 @@ struct LookRequest {
 struct Look {
   render::DrawOptions draw;  ///< with the base camera
   bool follows = false;      ///< the camera follows the tool
-  std::string camera;        ///< its name: of the scene, `fitted`, or `follow`
+  std::string camera;        ///< its name: a camera of the scene, `fitted`, or `follow`
 
-  /// The options for a moment of the scene; `moments` as following_camera() wants them.
+  /// The options for one moment of the scene. `moments`: see following_camera().
   render::DrawOptions at(const render::SceneView& scene, std::span<const Inputs> moments) const;
 };
 
-/// Checks a request against a scene. Errors, all at once: an unknown view, quantity or camera, with the known ones; a
-/// quantity that the view does not have; a cutaway outside the organs.
+/// Checks a request against a scene. Errors, all at once: an unknown view, quantity or camera (the known ones are
+/// listed); a quantity that the view does not have; a cutaway outside the organs.
 Result<Look> find_look(const LookRequest& request, const scenes::SceneSpec& scene, const render::SceneView& view,
                        double aspect);
 

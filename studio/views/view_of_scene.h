@@ -9,7 +9,7 @@
 
 namespace ctpm::views {
 
-/// What the renderer draws of a scene: its surfaces in the organs' colours. `model` must outlive the view.
+/// The renderer's view of a scene: its surfaces in the organs' colours. `model` must outlive the view.
 render::SceneView view_of(const scenes::SceneSpec& scene, const Model& model, std::vector<Surface> surfaces);
 
 }  // namespace ctpm::views
