@@ -29,10 +29,9 @@ struct RawMesh {
 };
 
 struct ReadOptions {
-  std::string part;           ///< name of the mesh to take; empty: all, joined
-  double time_limit_s = 120;  ///< the reader is stopped after this long [s], > 0
-  std::int64_t memory_limit_mib =
-      4096;  ///< the reader may use this much in addition to the program's memory [MiB], > 0
+  std::string part;                      ///< name of the mesh to take; empty: all, joined
+  double time_limit_s = 120;             ///< the reader is stopped after this long [s], > 0
+  std::int64_t memory_limit_mib = 4096;  ///< for the reader, beyond the program's memory [MiB], > 0
 };
 
 /// Reads a mesh file in a child process with limits, so a crash or hang of the reader is only an error of this file.

@@ -56,11 +56,11 @@ struct Verdict {
   std::int32_t physics_revision = 0;  ///< revision of the recording; 0: recorded before revisions were stored
   std::int64_t ticks_compared = 0;
   std::int64_t ticks_different = 0;
-  std::int64_t first_tick = -1;  ///< first tick that differs; -1: none
-  std::string first_quantity;    ///< quantity that differs there: `state_hash`, `tool_force.x`, `depth`, `status` ...
-  std::int64_t located_tick =
-      -1;  ///< tick at which `quantity` was compared: first keyframe at or after the difference; -1: no such keyframe
-  std::string quantity;     ///< field of the State; equals first_quantity if no later keyframe exists
+  std::int64_t first_tick = -1;    ///< first tick that differs; -1: none
+  std::string first_quantity;      ///< quantity that differs there: `state_hash`, `tool_force.x`, `depth`, `status` ...
+  std::int64_t located_tick = -1;  ///< first keyframe after the difference, where `quantity` was compared; -1: none
+  std::string quantity;  ///< field of the State; without a located_tick, the first number of first_tick that differs,
+                         ///< else `state_hash`
   std::int32_t index = -1;  ///< sphere or element with the largest difference; -1: the field is a single value
   double recorded = 0, replayed = 0;  ///< both values, in the quantity's unit
   double difference = 0;              ///< |replayed - recorded|

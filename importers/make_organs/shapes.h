@@ -8,8 +8,7 @@
 
 namespace ctpm::importers {
 
-/// An organ as an implicit shape, with acceptance bounds for its mesh. z is up, and the organ's lowest point is near z
-/// = 0.
+/// An organ as an implicit shape, with acceptance bounds for its mesh. z is up; the lowest point is near z = 0.
 struct OrganShape {
   /// Closed interval.
   struct Range {
