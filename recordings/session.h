@@ -19,15 +19,14 @@ namespace ctpm::recordings {
 
 /// Everything known before the first tick. FORMAT.md section 4.
 struct SessionStart {
-  std::string scene_text;         ///< scene text as read; opaque to this folder
-  std::string look;               ///< organ colours and names for rendering; opaque to this folder
-  Model model;                    ///< the built network
-  std::vector<Surface> surfaces;  ///< one per organ of the Model, or empty
-  State initial_state;            ///< State before tick 0
-  std::string build_fingerprint;  ///< identifies the build of the recording program
-  std::int32_t physics_revision =
-      kPhysicsRevision;  ///< revision of the recording program; 0: recorded before revisions were stored
-  std::map<std::string, std::string> metadata;  ///< free key/value pairs; see parent_session_key
+  std::string scene_text;                            ///< scene text as read; opaque to this folder
+  std::string look;                                  ///< organ colours and names for rendering; opaque to this folder
+  Model model;                                       ///< the built network
+  std::vector<Surface> surfaces;                     ///< one per organ of the Model, or empty
+  State initial_state;                               ///< State before tick 0
+  std::string build_fingerprint;                     ///< identifies the build of the recording program
+  std::int32_t physics_revision = kPhysicsRevision;  ///< of the recording program; 0: not stored, an old session
+  std::map<std::string, std::string> metadata;       ///< free key/value pairs; see parent_session_key
 };
 
 /// Warning to show before replaying a session of physics revision `recorded`. Empty if this build computes the same
