@@ -54,8 +54,9 @@ struct UsualSize {
   double most = 0.5;    ///< [m], > least
 };
 
-/// Chooses the unit: the given one, else that of the file, else a guess. The guess is the one of m, cm, mm that puts
-/// the diagonal nearest the middle of the usual size. It is inch only if no metric unit gives a usual size.
+/// Chooses the unit: the given one, else that of the file, else a guess. The guess is the one of m, cm, mm whose
+/// diagonal is nearest, as a ratio, to the geometric mean of the usual range. It is inch only if no metric unit gives a
+/// usual size.
 UnitChoice choose_unit(const RawMesh& mesh, std::optional<double> given_in_metres, UsualSize usual);
 
 /// "mm", "cm", "m", "inch", or the length in metres where the unit has no name.

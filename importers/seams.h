@@ -13,8 +13,8 @@ namespace ctpm::importers {
 std::vector<Vec3> split_t_junctions(Soup& soup, double distance);
 
 /// Finds walls inside a mesh: triangles that are attached by edges with more than two triangles and that a walk over
-/// the outside, from edge to edge, never reaches. Returns only those whose removal opens no edge, by ascending index.
-/// The mesh must be welded.
+/// the outside, from edge to edge, never reaches. Returns them by ascending index, or none if their removal would open
+/// an edge or if an edge has more than 64 triangles. The mesh must be welded.
 std::vector<std::int32_t> find_inner_walls(const Soup& soup);
 
 }  // namespace ctpm::importers
