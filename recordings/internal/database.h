@@ -75,8 +75,7 @@ class Database {
  private:
   sqlite3* connection_ = nullptr;
   std::string path_;
-  std::string
-      copy_folder_;  ///< folder of the copy that is read if SQLite cannot create an index beside the file; else empty
+  std::string copy_folder_;  ///< folder of the copy read in place of the file; empty: no copy
 };
 
 }  // namespace ctpm::recordings::session_file
