@@ -84,7 +84,8 @@ TEST(Severing, RemembersWhereTheBladePassed) {
 TEST(Severing, ATripleThatLostOneEdgeKeepsTheOther) {
   const Model model = held_block(6, 5, 4);
   const State state = cut_through(model, 3e-4, {0.0002, -0.06, -0.05}, {0, 0.12, 0}).state;
-  // No element is severed that the plane x = 0 does not cross; every constraint with a severed element is severed.
+  // A constraint is severed exactly if one of its elements is, and an element exactly if the plane x = 0.2 mm crosses
+  // it.
   for (std::size_t c = 0; c < model.constraints.size(); ++c) {
     bool lost = false;
     for (const auto& edge : model.constraints.edge) lost = lost || state.axial_severed[std::size_t(edge[c])];
