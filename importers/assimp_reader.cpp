@@ -19,14 +19,14 @@
 namespace ctpm::importers {
 namespace {
 
-/// All triangles of the wanted meshes, with the node transforms applied.
+/// All triangles of the requested meshes, with node transforms applied.
 struct Collected {
   std::vector<std::string> parts;
   std::vector<Vec3> vertex;
   std::vector<std::array<std::int32_t, 3>> triangle;
 };
 
-/// A mesh goes by its own name, else by its node's, else by its number.
+/// Name of a mesh: its own, else its node's, else its number.
 std::string part_name(const aiMesh& mesh, const aiNode& node, unsigned index) {
   if (mesh.mName.length > 0) return mesh.mName.C_Str();
   if (node.mName.length > 0) return node.mName.C_Str();
@@ -76,8 +76,8 @@ std::string suffix_of(const std::string& path) {
   return suffix;
 }
 
-/// Length of one unit [m] where the format says it. glTF is in metres by definition; assimp scales a DAE file
-/// to metres by its <unit>; FBX says its centimetres per unit in the header.
+/// Length of one unit [m] if the format states it, else 0. glTF is in metres by definition. assimp scales a DAE file to
+/// metres by its <unit>. FBX states centimetres per unit in its header.
 double unit_said_by(const aiScene& scene, const std::string& suffix) {
   if (suffix == ".gltf" || suffix == ".glb" || suffix == ".dae") return 1.0;
   if (suffix == ".fbx" && scene.mMetaData != nullptr) {
@@ -89,14 +89,13 @@ double unit_said_by(const aiScene& scene, const std::string& suffix) {
   return 0;
 }
 
-/// The reader turns 3DS files, which are z up, to y up; this turns them back, so that coordinates are the
-/// file's own.
+/// assimp rotates 3DS files from z up to y up. This matrix rotates them back to the file's own coordinates.
 aiMatrix4x4t<double> file_from_scene(const std::string& suffix) {
   if (suffix != ".3ds") return {};
   return {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
 }
 
-/// True for what the reader says of a file that it could read but that has no triangles.
+/// Whether assimp's message means a readable file without triangles.
 bool means_no_triangles(const std::string& trouble) {
   return trouble.find("mNumMeshes is 0") != std::string::npos ||
          trouble.find("No meshes remaining") != std::string::npos;

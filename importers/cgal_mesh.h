@@ -17,7 +17,7 @@ using Point = Kernel::Point_3;
 using Mesh = CGAL::Surface_mesh<Point>;
 using Polygon = std::array<std::size_t, 3>;
 
-/// A soup as CGAL takes it.
+/// A triangle soup in CGAL's types.
 struct PolygonSoup {
   std::vector<Point> points;
   std::vector<Polygon> polygons;
@@ -25,8 +25,7 @@ struct PolygonSoup {
   explicit PolygonSoup(const Soup& soup);
 };
 
-/// Faces and vertices keep their order and so their index. Throws std::logic_error if the soup is not
-/// manifold and oriented.
+/// Faces and vertices keep their index. Throws std::logic_error if the soup is not manifold and oriented.
 Mesh to_mesh(const PolygonSoup& soup);
 Soup to_soup(const Mesh& mesh);
 

@@ -23,14 +23,14 @@ constexpr std::int64_t kMebibyte = 1024 * 1024;
 constexpr int kOutOfMemory = 71;  // exit codes of the child
 constexpr int kThrew = 72;
 
-// The sanitizers' shadow memory is far larger than any limit.
+// The shadow memory of sanitizers exceeds any limit.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kLimitsMemory = false;
 #else
 constexpr bool kLimitsMemory = true;
 #endif
 
-/// Address space of this process now [bytes]; limits count from here, since the child inherits all of it.
+/// Current address space of this process [bytes]. The child inherits it, so limits count from here.
 std::int64_t address_space() {
   std::int64_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
@@ -45,7 +45,7 @@ void set_limit(int resource, std::int64_t value) {
   setrlimit(static_cast<__rlimit_resource_t>(resource), &limit);
 }
 
-/// Cuts the child off from everything but its pipe.
+/// Isolates the child from everything except its pipe.
 void shut_in(int pipe_end, const ChildLimits& limits, std::int64_t address_space_before) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int number :
@@ -57,7 +57,7 @@ void shut_in(int pipe_end, const ChildLimits& limits, std::int64_t address_space
   sigprocmask(SIG_SETMASK, &none, nullptr);
   const int nothing = open("/dev/null", O_RDWR);
   for (int fd = 0; fd < 3; ++fd) dup2(nothing, fd);
-  // Every other file of the parent is closed, so that no lock or pipe of it lives on here.
+  // Close all other files of the parent, so that the child holds none of its locks or pipes.
   if (pipe_end > 3) syscall(SYS_close_range, 3u, unsigned(pipe_end - 1), 0u);
   syscall(SYS_close_range, unsigned(pipe_end + 1), ~0u, 0u);
   set_limit(RLIMIT_CORE, 0);
@@ -95,7 +95,7 @@ std::string seconds_text(double seconds) {
   return text;
 }
 
-/// Why a child did not end well; empty if it did.
+/// Why a child failed; empty if it did not.
 std::string trouble_of(int status, const ChildLimits& limits) {
   if (WIFEXITED(status)) {
     if (WEXITSTATUS(status) == 0) return "";
@@ -108,7 +108,7 @@ std::string trouble_of(int status, const ChildLimits& limits) {
   return std::string("crashed (") + (number ? strsignal(number) : "unknown state") + ")";
 }
 
-/// Reads the pipe to its end. Returns why it stopped early, or nothing.
+/// Reads the pipe to its end. Returns the reason for stopping early, or an empty string.
 std::string collect(int pipe_end, const ChildLimits& limits, std::string& output) {
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double>(limits.time_s);
@@ -163,7 +163,7 @@ ChildResult run_in_child(const ChildLimits& limits, const std::function<void(con
   pid_t waited;
   while ((waited = waitpid(child, &status, 0)) < 0 && errno == EINTR) {
   }
-  // A program that ignores SIGCHLD never learns the status; then the sent bytes must speak for themselves.
+  // A program that ignores SIGCHLD never gets the status; the received bytes must then suffice.
   if (result.trouble.empty() && waited == child) result.trouble = trouble_of(status, limits);
   result.is_whole = result.trouble.empty();
   return result;

@@ -6,9 +6,9 @@
 
 namespace ctpm::importers {
 
-/// A closed manifold mesh with at most `most_triangles` if that can be had without turning a triangle over or
-/// changing what is joined to what; else with as few as can be. Collapses edges in the order of what they
-/// change (Lindstrom and Turk 1998), which keeps the volume. The same mesh always gives the same one.
+/// Coarsens a closed manifold mesh to at most `most_triangles`, or as near to it as possible without flipping a
+/// triangle or changing the topology. Collapses edges in order of a cost that preserves volume (Lindstrom and Turk
+/// 1998). Deterministic.
 Soup coarsen(const Soup& soup, std::int64_t most_triangles);
 
 }  // namespace ctpm::importers

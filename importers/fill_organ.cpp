@@ -18,13 +18,13 @@
 namespace ctpm::importers {
 namespace {
 
-constexpr double kOnSurface = 1e-6;      // of the spacing: a centre this near to the surface is not inside
-constexpr double kMostRows = 1e7;        // of the lattice; a bound on memory
-constexpr double kThinInSpacings = 2.0;  // farther than this from every sphere, a surface point is over a thin part
+constexpr double kOnSurface = 1e-6;      // of the spacing: a centre nearer to the surface does not count as inside
+constexpr double kMostRows = 1e7;        // lattice rows; bounds memory
+constexpr double kThinInSpacings = 2.0;  // a surface point farther than this from every sphere marks a thin part
 
-constexpr std::int64_t kFewestTriangles = 100;  // of a coarsened surface that still looks like its organ
+constexpr std::int64_t kFewestTriangles = 100;  // a coarser surface no longer resembles its organ
 
-/// Calls `work(begin, end)` for pieces of 0 .. count on several threads. The pieces do not depend on the
+/// Calls `work(begin, end)` for ranges of 0 .. count on several threads. The ranges do not depend on the number of
 /// threads.
 template <class Work>
 void in_pieces(std::size_t count, int threads, const Work& work) {
@@ -58,8 +58,8 @@ Errors check(const CheckedMesh& mesh, const FillOptions& options) {
   return errors;
 }
 
-/// Cells that cover the mesh's box, symmetric about its centre. Errors: far more cells than the mesh may have
-/// spheres.
+/// A lattice that covers the mesh's box, symmetric about its centre. Error: far more spheres than allowed, more than
+/// kMostRows rows, or more than 1e6 cells along an axis.
 Result<Lattice> lay_lattice(const CheckedMesh& mesh, double spacing, const FillOptions& options) {
   const Vec3 extent = mesh.box_most - mesh.box_least;
   const auto cells = [&](double length) { return std::max(1.0, std::ceil(length / spacing)); };
@@ -78,12 +78,12 @@ Result<Lattice> lay_lattice(const CheckedMesh& mesh, double spacing, const FillO
       0.5 * (mesh.box_least + mesh.box_most), spacing, {std::int32_t(nx), std::int32_t(ny), std::int32_t(nz)}};
 }
 
-/// Depth of every cell's centre below the surface [m].
+/// Depth of every cell centre below the surface [m].
 std::vector<double> find_depths(const SurfaceIndex& index, const Lattice& lattice, const std::vector<Cell>& cell,
                                 int threads) {
   std::vector<double> depth(cell.size());
   in_pieces(cell.size(), threads, [&](std::size_t begin, std::size_t end) {
-    // Neighbours in a row have near triangles in common.
+    // Neighbours in a row have similar nearest triangles.
     std::int32_t guess = 0;
     for (std::size_t n = begin; n < end; ++n) {
       const auto nearest = index.nearest(lattice.at(cell[n]), guess);
@@ -105,11 +105,11 @@ void keep_only(std::vector<Cell>& cell, std::vector<double>& depth, const Keep& 
 }
 
 struct Islands {
-  std::vector<std::int32_t> of_cell;  ///< number of the island, by its first cell
+  std::vector<std::int32_t> of_cell;  ///< index of the island; islands are numbered by their first cell
   std::vector<std::int64_t> size;
 };
 
-/// Groups of cells that are joined by neighbours.
+/// Connected groups of neighbouring cells.
 Islands find_islands(const CellLookup& lookup, const std::vector<Cell>& cell) {
   Islands islands;
   islands.of_cell.assign(cell.size(), -1);
@@ -136,7 +136,7 @@ Islands find_islands(const CellLookup& lookup, const std::vector<Cell>& cell) {
   return islands;
 }
 
-/// Drops all islands but the largest (the first of equal ones), or only says that they are there.
+/// Drops all islands but the largest (the first of equal ones), or only reports them.
 void treat_islands(const Lattice& lattice, std::vector<Cell>& cell, std::vector<double>& depth, bool keeps_islands,
                    std::vector<Finding>& findings) {
   const Islands islands = find_islands(CellLookup(lattice, cell), cell);
@@ -156,7 +156,7 @@ void treat_islands(const Lattice& lattice, std::vector<Cell>& cell, std::vector<
   if (!keeps_islands) keep_only(cell, depth, [&](std::size_t n) { return islands.of_cell[n] == largest; });
 }
 
-/// Whole spacings of depth, with the numbers that no sphere has left out.
+/// Numbers the layers: 1 + the whole spacings of depth, renumbered without empty layers.
 std::vector<std::int32_t> number_layers(const std::vector<double>& depth, double spacing,
                                         std::vector<std::int64_t>& spheres_per_layer) {
   std::vector<std::int32_t> layer;
@@ -180,11 +180,11 @@ std::int64_t count_edges(const CellLookup& lookup, const std::vector<Cell>& cell
   return edges;
 }
 
-/// How many groups of marked vertices there are that triangles join.
+/// Number of groups of marked vertices that triangles connect.
 std::int64_t count_groups(const std::vector<Triangle>& triangle, const std::vector<char>& is_marked) {
   std::vector<Triangle> marked;
   for (const Triangle& t : triangle) {
-    // A corner that is not marked is replaced by one that is, so that only marked ones are joined.
+    // Replace unmarked corners by a marked one, so that only marked vertices are connected.
     Triangle kept{};
     int count = 0;
     for (const std::int32_t v : t)
@@ -195,7 +195,7 @@ std::int64_t count_groups(const std::vector<Triangle>& triangle, const std::vect
   return count_joined(marked);
 }
 
-/// How far the surface is from the spheres, and where it is too thin to have any.
+/// Measures the distance from the surface to the spheres, and finds parts too thin to hold spheres.
 void measure_surface(const CellLookup& lookup, const CheckedMesh& mesh, double spacing, int threads,
                      FillReport& report) {
   std::vector<double> distance(mesh.vertex.size());
@@ -216,14 +216,14 @@ void measure_surface(const CellLookup& lookup, const CheckedMesh& mesh, double s
                              "none", "what is thin follows the nearest spheres; a smaller sphere radius fills it"});
 }
 
-/// The surface that is drawn: the mesh, or a coarser one if that was asked for.
+/// The drawn surface: the mesh, or a coarser one if requested.
 Surface take_surface(const CheckedMesh& mesh, std::int64_t most_triangles, std::vector<Finding>& findings) {
   Surface surface;
   surface.vertex = mesh.vertex;
   surface.triangle = mesh.triangle;
   if (most_triangles == 0 || std::int64_t(mesh.triangle.size()) <= most_triangles) return surface;
   Soup coarse = coarsen({mesh.vertex, mesh.triangle}, most_triangles);
-  // How far the mesh's own vertices are off the coarser surface.
+  // Distance of the mesh's vertices from the coarser surface.
   const SurfaceIndex index(coarse.vertex, coarse.triangle);
   double off = 0;
   for (const Vec3& p : mesh.vertex) off = std::max(off, index.nearest(p).squared_distance);
@@ -240,11 +240,10 @@ Surface take_surface(const CheckedMesh& mesh, std::int64_t most_triangles, std::
   return surface;
 }
 
-/// Where the spheres around do not span space (one sheet or one row of them), what they carry has no
-/// thickness: the drawn surface lies in the sheet even at rest. Said, because it looks like a fault of the
-/// mesh.
+/// Finds places whose bound spheres lie in one sheet or row. The drawn surface has no thickness there, even at rest.
+/// The finding explains what looks like a defect of the mesh.
 void note_flat(const FilledOrgan& organ, std::vector<Finding>& findings) {
-  constexpr double kOff = 1e-3;  // of the spacing; rounding is far below it
+  constexpr double kOff = 1e-3;  // of the spacing; far above rounding errors
   Vec3Array rest(organ.centre.size());
   for (std::size_t n = 0; n < organ.centre.size(); ++n) rest.set(n, organ.centre[n]);
   std::vector<Vec3> drawn;

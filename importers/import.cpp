@@ -7,10 +7,10 @@
 namespace ctpm::importers {
 namespace {
 
-// What is done of an import after reading and after repairing, as it takes on meshes of a scanner.
+// Fraction of an import done after reading and after repairing, measured on scanner meshes.
 constexpr double kReadShare = 0.3, kRepairShare = 0.7;
 
-/// Options that no mesh could make right.
+/// Checks options that are invalid for every mesh.
 Errors check(const ImportOptions& options) {
   Errors errors;
   const auto must = [&](bool is_right, const std::string& message) {
@@ -33,7 +33,7 @@ Errors check(const ImportOptions& options) {
 
 std::string range_text(UsualSize usual) { return mm_text(usual.least) + " to " + mm_text(usual.most); }
 
-/// The unit is worth a finding where it was guessed or where the size looks wrong.
+/// Adds a finding if the unit was guessed or the size is unusual.
 void note_unit(const UnitChoice& unit, double diagonal, UsualSize usual, std::vector<Finding>& findings) {
   if (unit.source == UnitSource::guessed)
     findings.push_back({"unit_guessed",
@@ -43,7 +43,7 @@ void note_unit(const UnitChoice& unit, double diagonal, UsualSize usual, std::ve
                         "taken as " + unit_name(unit.in_metres) + ", which makes the organ " + mm_text(diagonal) +
                             " across (usual: " + range_text(usual) + ")",
                         "give the unit if that is wrong"});
-  // The guess saw all that the file holds; what is said is about what was kept of it.
+  // The guess used the whole file; this check uses only the parts kept.
   if (diagonal < usual.least || diagonal > usual.most)
     findings.push_back({"unusual_size",
                         1,
@@ -53,7 +53,7 @@ void note_unit(const UnitChoice& unit, double diagonal, UsualSize usual, std::ve
                         "check the unit"});
 }
 
-/// The progress of one stage as its share of the whole import.
+/// Maps the progress of one stage to the whole import.
 Progress share_of(const Progress& whole, double begin, double end) {
   if (!whole) return {};
   return [whole, begin, end](const std::string& stage, double fraction) {

@@ -42,8 +42,8 @@ double CellLookup::nearest_squared_distance(Vec3 point) const {
     if (it != end) consider(*it);
     if (it != begin) consider(*(it - 1));
   };
-  // Square rings of rows around the point's own; ring n is at least (n - 1/2) spacings away for points in the
-  // box.
+  // Search square rings of rows around the point's row. For points in the box, ring n is at least (n - 1/2) spacings
+  // away.
   const std::int32_t most = std::max(lattice_.count[1], lattice_.count[2]);
   for (std::int32_t ring = 0; ring <= most; ++ring) {
     const double reach = (ring - 0.5) * s;

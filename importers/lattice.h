@@ -26,7 +26,7 @@ struct Lattice {
   std::int64_t row_of(const Cell& c) const { return std::int64_t(c[2]) * count[1] + c[1]; }
 };
 
-/// Finds spheres by lattice cell; rows of equal j and k are runs in the sorted list of cells.
+/// Finds spheres by lattice cell. Each lattice row (equal j and k) is a run in the sorted list of cells.
 class CellLookup {
  public:
   /// `cell` is sorted by (k, j, i) and must outlive the lookup.
@@ -34,16 +34,16 @@ class CellLookup {
 
   /// The sphere in a cell, or -1.
   std::int32_t find(const Cell& wanted) const;
-  /// Squared distance from a point to the nearest sphere's centre [m^2]. There is at least one sphere.
+  /// Squared distance from a point to the nearest sphere centre [m^2]. Needs at least one sphere.
   double nearest_squared_distance(Vec3 point) const;
 
  private:
   const Lattice& lattice_;
   const std::vector<Cell>& cell_;
-  std::vector<std::int32_t> first_;  ///< where a row begins (row_count + 1)
+  std::vector<std::int32_t> first_;  ///< index of the first sphere of each row (row_count + 1)
 };
 
-/// The 9 neighbours of a cell that come after it in the order of (k, j, i), out of 18.
+/// Of the 18 neighbours of a cell, the 9 that follow it in (k, j, i) order.
 inline constexpr std::array<Cell, 9> kLaterNeighbours{
     {{1, 0, 0}, {-1, 1, 0}, {0, 1, 0}, {1, 1, 0}, {0, -1, 1}, {-1, 0, 1}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
 

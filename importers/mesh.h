@@ -14,12 +14,11 @@ namespace ctpm::importers {
 
 using Triangle = std::array<std::int32_t, 3>;
 
-/// Told while an import runs: the stage that is at work and how much of it is done, 0 to 1.
+/// Progress callback of an import: the current stage, and the fraction of it that is done, 0 to 1.
 using Progress = std::function<void(const std::string& stage, double fraction)>;
 
-/// What a mesh file holds, as it is: node transforms applied, polygons cut into triangles, vertices that
-/// repeat the very same position joined (readers and some formats repeat a vertex for every face), nothing
-/// else changed.
+/// Content of a mesh file. Node transforms are applied and polygons are triangulated. Vertices at bit-equal positions
+/// are merged, because readers and some formats repeat a vertex for every face. Nothing else is changed.
 struct RawMesh {
   std::string path;                ///< the file
   std::string format;              ///< its suffix in lower case, without the dot
@@ -32,59 +31,59 @@ struct RawMesh {
 struct ReadOptions {
   std::string part;                      ///< name of the mesh to take; empty: all, joined
   double time_limit_s = 120;             ///< the reader is stopped after this long [s], > 0
-  std::int64_t memory_limit_mib = 4096;  ///< the reader may use this much beside the program's own memory [MiB], > 0
+  std::int64_t memory_limit_mib = 4096;  ///< for the reader, beyond the program's memory [MiB], > 0
 };
 
-/// Reads a mesh file in a child process with limits, so a crash or a hang of the reader is an error of this
-/// file and nothing else. Errors: no such file, not a file, empty, not a mesh, no triangles, a vertex that is
-/// not finite, no part of that name (the names are listed), a reader that crashed or broke a limit.
+/// Reads a mesh file in a child process with limits, so a crash or hang of the reader is only an error of this file.
+/// Errors: no such file, not a file, empty, not a mesh, no triangles, a vertex that is not finite, no part of that name
+/// (the message lists the names), a reader that crashed or exceeded a limit.
 Result<RawMesh> read_mesh(const std::string& path, const ReadOptions& options = {});
 
-/// How the unit of a mesh was found.
+/// Source of a mesh's unit.
 enum class UnitSource : std::int32_t { given = 0, file = 1, guessed = 2 };
 
 struct UnitChoice {
   double in_metres = 1;  ///< length of one unit of the file [m], > 0
   UnitSource source = UnitSource::guessed;
-  bool is_usual_size = true;  ///< the mesh's diagonal lies in the organ's usual size
+  bool is_usual_size = true;  ///< the mesh's diagonal is within the organ's usual size
 };
 
-/// Smallest and largest bounding-box diagonal that an organ of this kind usually has.
+/// Usual range of an organ's bounding-box diagonal.
 struct UsualSize {
   double least = 0.05;  ///< [m], > 0
   double most = 0.5;    ///< [m], > least
 };
 
-/// The unit: as given, else as the file says, else the one of m, cm, mm that puts the diagonal nearest the
-/// middle of the usual size; inch only where no metric unit gives a usual size.
+/// Chooses the unit: the given one, else that of the file, else a guess. The guess is the one of m, cm, mm whose
+/// diagonal is nearest, as a ratio, to the geometric mean of the usual range. It is inch only if no metric unit gives a
+/// usual size.
 UnitChoice choose_unit(const RawMesh& mesh, std::optional<double> given_in_metres, UsualSize usual);
 
 /// "mm", "cm", "m", "inch", or the length in metres where the unit has no name.
 std::string unit_name(double in_metres);
 
-/// Something that was wrong with a mesh or its filling.
+/// A defect of a mesh or its filling.
 struct Finding {
-  std::string code;           ///< stable short name, for example `hole`; see the README's list
+  std::string code;           ///< stable short name, for example `hole`; README.md lists them
   std::int64_t count = 0;     ///< how many
-  std::optional<Vec3> place;  ///< where (the worst one) [m]
+  std::optional<Vec3> place;  ///< position of the worst one [m]
   std::string found;          ///< what was found, with sizes
   std::string done;           ///< what was done about it
-  std::string remains;        ///< what remains of it; empty: nothing
+  std::string remains;        ///< what remains of the defect; empty: nothing
 };
 
-/// What a triangle mesh looks like; counted by vertex index, so unwelded meshes have many parts and open
-/// edges.
+/// Topology of a triangle mesh by vertex index. Unwelded meshes therefore have many parts and open edges.
 struct MeshCounts {
   std::int64_t vertices = 0;
   std::int64_t triangles = 0;
-  std::int64_t parts = 0;               ///< pieces joined by edges
+  std::int64_t parts = 0;               ///< edge-connected parts
   std::int64_t open_edges = 0;          ///< edges of one triangle
   std::int64_t non_manifold_edges = 0;  ///< edges of more than two triangles
 };
 
 MeshCounts count_mesh(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle);
 
-/// A mesh that bounds a volume: closed, manifold, oriented outwards, without loose vertices.
+/// A mesh that bounds a volume: closed, manifold, oriented outwards, without unused vertices.
 struct CheckedMesh {
   std::vector<Vec3> vertex;        ///< [m]                                        (vertex_count)
   std::vector<Triangle> triangle;  ///< counter-clockwise seen from outside        (triangle_count)
@@ -97,23 +96,23 @@ struct CheckedMesh {
 };
 
 struct RepairOptions {
-  bool all_parts = false;       ///< keep every closed part, not only the largest
-  double weld_distance = 1e-6;  ///< vertices this near are one, in bounding-box diagonals, >= 0
+  bool all_parts = false;       ///< keeps every closed part, not only the largest
+  double weld_distance = 1e-6;  ///< closer vertices are merged, in bounding-box diagonals, >= 0
   std::optional<double>
       largest_hole;  ///< holes up to this diameter are filled [m], >= 0; unset: a tenth of the diagonal
   Progress progress;
 };
 
-/// Welds, drops what is doubled or degenerate, splits what is not manifold, orients, stitches, fills small
-/// holes and keeps the largest part. Errors: a hole above the limit or one that cannot be filled (size and
-/// place), nothing that bounds a volume.
+/// Welds vertices, drops duplicate and degenerate triangles, closes cracks, drops inner walls, splits non-manifold
+/// edges and vertices, orients, stitches, fills small holes, keeps the largest part and removes small
+/// self-intersections. Errors: a hole above the limit or one that cannot be filled (with size and place), or no
+/// enclosed volume.
 Result<CheckedMesh> repair_mesh(const RawMesh& mesh, double unit_in_metres, const RepairOptions& options = {});
 
-/// The mesh as OBJ text in millimetres with six decimals, so the same mesh always gives the same bytes.
+/// The mesh as OBJ text in millimetres with six decimals. The same mesh always gives the same bytes.
 std::string to_obj(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle);
 
-/// Writes to_obj() to a file under a temporary name and renames it when it is whole. Error: cannot be
-/// written.
+/// Writes to_obj() to a temporary file and renames it when complete. Error: the file cannot be written.
 Result<Done> write_obj(const std::string& path, const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle);
 
 }  // namespace ctpm::importers

@@ -36,7 +36,7 @@ Hole measure(const Mesh& mesh, Halfedge border) {
   return hole;
 }
 
-/// Closes one border; false if no triangulation of it exists that keeps the mesh manifold.
+/// Fills one hole. False if no triangulation keeps the mesh manifold.
 bool fill_one(Mesh& mesh, Halfedge border) {
   std::vector<Mesh::Face_index> faces;
   std::vector<Mesh::Vertex_index> vertices;
@@ -50,7 +50,7 @@ void orient_and_stitch(Soup& soup) {
   PolygonSoup polygons(soup);
   PMP::orient_polygon_soup(polygons.points, polygons.polygons);
   Mesh mesh = to_mesh(polygons);
-  // First within parts, so that a fin on a closed part does not keep its own edges apart; then between parts.
+  // Stitch first within parts, so that a fin on a closed part does not keep its own edges apart, then between parts.
   PMP::stitch_borders(mesh, CGAL::parameters::apply_per_connected_component(true));
   PMP::stitch_borders(mesh);
   PMP::duplicate_non_manifold_vertices(mesh);

@@ -22,7 +22,7 @@ std::string suffix_of(const std::string& path) {
   return suffix;
 }
 
-/// Problems that need no reader to be seen.
+/// Checks that need no reader.
 Errors check_file(const std::string& path) {
   std::error_code trouble;
   const auto status = std::filesystem::status(path, trouble);
@@ -54,7 +54,7 @@ bool get_names(wire::Reader& reader, std::vector<std::string>& names) {
   return true;
 }
 
-/// Vertices that a triangle uses must be finite; the others are of no interest.
+/// Vertices used by triangles must be finite; others do not matter.
 Errors check_vertices(const RawMesh& mesh) {
   std::int64_t bad_count = 0, first_bad = -1;
   std::vector<char> is_counted(mesh.vertex.size(), 0);
@@ -72,7 +72,7 @@ Errors check_vertices(const RawMesh& mesh) {
            "export the mesh again; NaN or infinite coordinates cannot be repaired"}};
 }
 
-/// The reader repeats a vertex for every face that uses it, whatever the file did; repeats are joined here.
+/// Merges repeated vertices: assimp repeats a vertex for every face that uses it.
 void join_repeats(RawMesh& mesh) {
   Soup soup{std::move(mesh.vertex), std::move(mesh.triangle)};
   weld(soup, 0);

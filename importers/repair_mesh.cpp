@@ -13,11 +13,11 @@
 namespace ctpm::importers {
 namespace {
 
-constexpr double kCutShare = 0.25;     // of the diagonal: so wide a place may be cut out where the mesh crosses itself
-constexpr double kHoleShare = 0.1;     // of the diagonal: holes up to this are filled by default
-constexpr double kCrackShare = 1e-3;   // of the diagonal: cracks up to this wide are closed at T-junctions
-constexpr double kFlat = 1e-9;         // a volume below this share of the diagonal cubed bounds nothing
-constexpr std::size_t kMostShown = 5;  // holes that are named one by one
+constexpr double kCutShare = 0.25;     // of the diagonal: largest hole cut to remove a self-intersection
+constexpr double kHoleShare = 0.1;     // of the diagonal: default limit of holes to fill
+constexpr double kCrackShare = 1e-3;   // of the diagonal: widest crack to close at T-junctions
+constexpr double kFlat = 1e-9;         // of the diagonal cubed: a smaller volume counts as none
+constexpr std::size_t kMostShown = 5;  // holes named one by one
 
 std::string hole_text(const Hole& hole) {
   return mm_text(hole.diameter) + " wide (" + counted(hole.edges, "edge") + ") at " + place_text(hole.centre);
@@ -28,8 +28,8 @@ const Hole& widest(const std::vector<Hole>& holes) {
                            [](const Hole& a, const Hole& b) { return a.diameter < b.diameter; });
 }
 
-/// Some triangles of a mesh with the vertices that they use. `new_index` is scratch: -1 for every vertex of
-/// the mesh, before and after.
+/// Extracts some triangles of a mesh with the vertices that they use. `new_index` is scratch memory: -1 for every
+/// vertex, before and after.
 Soup take(const Soup& soup, const std::vector<Triangle>& triangles, std::vector<std::int32_t>& new_index) {
   Soup piece{{}, triangles};
   for (Triangle& triangle : piece.triangle)
@@ -45,7 +45,7 @@ Soup take(const Soup& soup, const std::vector<Triangle>& triangles, std::vector<
   return piece;
 }
 
-/// The parts of a mesh as meshes of their own, largest enclosed volume first.
+/// Splits a mesh into its parts, largest enclosed volume first.
 std::vector<Soup> split_parts(const Soup& soup) {
   const Parts parts = find_parts(soup.triangle);
   std::vector<std::vector<Triangle>> triangles(std::size_t(parts.count));
@@ -56,7 +56,7 @@ std::vector<Soup> split_parts(const Soup& soup) {
   std::vector<std::int32_t> new_index(soup.vertex.size(), -1);
   for (const std::vector<Triangle>& part : triangles) {
     const Soup& piece = pieces.emplace_back(take(soup, part, new_index));
-    // Seen from its own centre, an open part has the volume of the cones over its holes added.
+    // Relative to its own centre, the volume of an open part includes the cones over its holes.
     volume.push_back(std::abs(signed_volume(piece.vertex, piece.triangle, bounding_box(piece).centre())));
   }
   std::vector<std::size_t> order(pieces.size());
@@ -73,7 +73,7 @@ void append(Soup& to, const Soup& piece) {
   for (const Triangle& t : piece.triangle) to.triangle.push_back({t[0] + first, t[1] + first, t[2] + first});
 }
 
-/// One repair: the soup on its way to a closed mesh, and what was found so far.
+/// One repair: the current soup and the findings so far.
 class Repair {
  public:
   Repair(const RawMesh& mesh, double unit, const RepairOptions& options) : path_(mesh.path), options_(options) {
@@ -162,7 +162,8 @@ class Repair {
     orient_and_stitch(soup_);
   }
 
-  /// Fills holes, part by part from the largest, and decides which parts stay. Errors: none can be closed.
+  /// Fills holes, part by part from the largest, and selects the parts to keep. Errors: no part can be closed, or with
+  /// all_parts not every one.
   Errors keep_closed_parts() {
     const std::vector<Soup> parts = split_parts(soup_);
     const double largest_hole = options_.largest_hole.value_or(kHoleShare * diagonal_);
@@ -210,7 +211,7 @@ class Repair {
     return {};
   }
 
-  /// Cuts out what passes through itself where that is a small place, and says what is left.
+  /// Removes small self-intersections and reports the rest.
   void treat_crossings() {
     const std::vector<std::int32_t> crossing = find_crossing(soup_);
     if (crossing.empty()) return;

@@ -7,14 +7,14 @@
 namespace ctpm::importers {
 namespace {
 
-/// Where a row's line passes the surface.
+/// A crossing of a lattice row and the surface.
 struct Crossing {
   double x;             ///< [m]
-  std::int32_t enters;  ///< +1 into the inside, -1 out of it
+  std::int32_t enters;  ///< +1: enters the inside, -1: leaves it
 };
 
-/// +1 or -1 if the edge from `a` to `b`, seen along x, passes the half-line from (y, z) towards +y upwards or
-/// downwards, else 0. The point of passing depends on the edge alone, not on its direction.
+/// +1 or -1 if the edge from `a` to `b`, projected along x, crosses the ray from (y, z) towards +y upwards or
+/// downwards, else 0. The crossing point depends on the edge alone, not on its direction.
 int passes(Vec3 a, Vec3 b, double y, double z) {
   const bool goes_up = a.z <= z && z < b.z, goes_down = b.z <= z && z < a.z;
   if (!goes_up && !goes_down) return 0;
@@ -24,7 +24,7 @@ int passes(Vec3 a, Vec3 b, double y, double z) {
   return goes_up ? 1 : -1;
 }
 
-/// x of the triangle's plane over (y, z), kept within the triangle where the plane is steep.
+/// x of the triangle's plane at (y, z), clamped to the triangle because the plane may be steep.
 double height_over(Vec3 a, Vec3 b, Vec3 c, double y, double z) {
   const Vec3 normal = cross(b - a, c - a);
   const double least = std::min({a.x, b.x, c.x}), most = std::max({a.x, b.x, c.x});
@@ -32,8 +32,7 @@ double height_over(Vec3 a, Vec3 b, Vec3 c, double y, double z) {
   return std::isfinite(x) ? std::clamp(x, least, most) : 0.5 * (least + most);
 }
 
-/// Calls `on_crossing(row, crossing)` for every line of the lattice that passes a triangle, triangle by
-/// triangle.
+/// Calls `on_crossing(row, crossing)` for every crossing of a lattice row and a triangle, triangle by triangle.
 template <class OnCrossing>
 void for_each_crossing(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle, const Lattice& lattice,
                        const OnCrossing& on_crossing) {
@@ -54,7 +53,7 @@ void for_each_crossing(const std::vector<Vec3>& vertex, const std::vector<Triang
       for (std::int32_t j = first_row(std::min({a.y, b.y, c.y}), origin.y, 1); j <= j_end; ++j) {
         const Vec3 line = lattice.at({0, j, k});
         const int turns = passes(a, b, line.y, line.z) + passes(b, c, line.y, line.z) + passes(c, a, line.y, line.z);
-        // Counter-clockwise seen from +x means that the outside is towards +x.
+        // If the corners run counter-clockwise seen from +x, the outside is towards +x.
         if (turns != 0) on_crossing(lattice.row_of({0, j, k}), Crossing{height_over(a, b, c, line.y, line.z), -turns});
       }
   }
@@ -64,7 +63,7 @@ void for_each_crossing(const std::vector<Vec3>& vertex, const std::vector<Triang
 
 std::vector<Cell> cells_inside(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle,
                                const Lattice& lattice) {
-  // Crossings of each row, side by side: count, then place.
+  // Store the crossings of each row contiguously: count first, then place.
   std::vector<std::int64_t> first(std::size_t(lattice.row_count()) + 1, 0);
   for_each_crossing(vertex, triangle, lattice, [&](std::int64_t row, Crossing) { ++first[std::size_t(row) + 1]; });
   for (std::size_t row = 1; row < first.size(); ++row) first[row] += first[row - 1];

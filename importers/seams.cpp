@@ -9,8 +9,8 @@
 namespace ctpm::importers {
 namespace {
 
-constexpr std::int64_t kMostLooks = 50'000'000;  // at rim vertices; a mesh that needs more is made to need it
-constexpr std::size_t kMostAtEdge = 64;          // triangles at one edge of a mesh that somebody means
+constexpr std::int64_t kMostLooks = 50'000'000;  // limit on grid lookups; only a hostile mesh needs more
+constexpr std::size_t kMostAtEdge = 64;          // limit on triangles at one edge; only a hostile mesh has more
 
 using Cell = std::array<std::int64_t, 3>;
 using Edges = std::vector<std::pair<std::uint64_t, std::int32_t>>;
@@ -18,7 +18,7 @@ using Edges = std::vector<std::pair<std::uint64_t, std::int32_t>>;
 std::int32_t first_end(std::uint64_t edge) { return std::int32_t(edge >> 32); }
 std::int32_t second_end(std::uint64_t edge) { return std::int32_t(edge & 0xFFFFFFFFu); }
 
-/// Entry `e` of sorted edges and all that are the same edge: [first, last).
+/// All entries [first, last) of the sorted edges that are the same edge as entry `e`.
 struct Around {
   std::size_t first, last;
 };
@@ -29,7 +29,7 @@ Around around(const Edges& edges, std::size_t e) {
   return a;
 }
 
-/// Edges of one triangle.
+/// Edges with only one triangle.
 Edges rim_of(const Soup& soup) {
   const Edges edges = sorted_edges(soup.triangle);
   Edges rim;
@@ -41,7 +41,7 @@ Edges rim_of(const Soup& soup) {
   return rim;
 }
 
-/// Vertices of rims by the cell of a grid, to find those near an edge.
+/// Grid of boundary vertices, to find those near an edge.
 class RimGrid {
  public:
   RimGrid(const Soup& soup, const Edges& rim, double distance) : soup_(soup) {
@@ -56,7 +56,7 @@ class RimGrid {
     for (const std::int32_t v : vertices) cells_[cell_of(at(v))].push_back(v);
   }
 
-  /// Vertices within `distance` of the edge a-b and not within it of its ends, from a to b.
+  /// Vertices within `distance` of the edge a-b but not of its ends, in order from a to b.
   std::vector<std::int32_t> on(std::int32_t a, std::int32_t b, double distance) {
     const Vec3 from = at(a), along = at(b) - at(a);
     const double length = norm(along);
@@ -95,12 +95,12 @@ class RimGrid {
   }
 
   const Soup& soup_;
-  double size_ = 0;  ///< of a cell
+  double size_ = 0;  ///< edge length of a grid cell
   std::int64_t looks_ = 0;
   std::map<Cell, std::vector<std::int32_t>> cells_;
 };
 
-/// The triangle with its edge from corner `c` on split at `vertices`, as a fan from the corner across.
+/// Splits the triangle's edge that starts at corner `c` at `vertices`, into a fan from the opposite corner.
 void split_edge(Soup& soup, std::size_t t, int c, const std::vector<std::int32_t>& vertices) {
   const Triangle old = soup.triangle[t];
   const std::int32_t b = old[(c + 1) % 3], across = old[(c + 2) % 3];
@@ -110,7 +110,7 @@ void split_edge(Soup& soup, std::size_t t, int c, const std::vector<std::int32_t
     soup.triangle.push_back({vertices[i], i + 1 < vertices.size() ? vertices[i + 1] : b, across});
 }
 
-/// Splits at most one edge of each triangle; the places.
+/// Splits at most one edge of each triangle. Returns the positions.
 std::vector<Vec3> split_once(Soup& soup, double distance) {
   std::vector<Vec3> places;
   const Edges rim = rim_of(soup);
@@ -138,7 +138,7 @@ std::vector<Vec3> split_once(Soup& soup, double distance) {
 
 std::vector<Vec3> split_t_junctions(Soup& soup, double distance) {
   std::vector<Vec3> places;
-  // A triangle has three edges; what a split makes new is not longer than what was there.
+  // A triangle has three edges, and a split makes no longer edges, so three passes suffice.
   for (int pass = 0; pass < 3; ++pass) {
     const std::vector<Vec3> more = split_once(soup, distance);
     if (more.empty()) break;
@@ -149,14 +149,14 @@ std::vector<Vec3> split_t_junctions(Soup& soup, double distance) {
 
 namespace {
 
-/// A walk over the outside of one part from edge to edge. A facet is a triangle with the side that is seen:
-/// 2 t for the side from which its corners run counter-clockwise, 2 t + 1 for the other.
+/// A walk over the outside of one part from edge to edge. A facet is one side of triangle t: 2 t for the side from
+/// which its corners run counter-clockwise, 2 t + 1 for the other.
 class Outside {
  public:
   explicit Outside(const Soup& soup)
       : soup_(soup), edges_(sorted_edges(soup.triangle)), is_seen_(2 * soup.triangle.size(), 0) {}
 
-  /// Sees everything that can be reached from the outermost facet of a part.
+  /// Marks every facet reachable from the outermost facet of a part.
   void walk(const std::vector<std::int32_t>& part) {
     std::vector<std::int32_t> open;
     const auto see = [&](std::int32_t facet) {
@@ -175,8 +175,7 @@ class Outside {
  private:
   Vec3 at(std::int32_t v) const { return soup_.vertex[std::size_t(v)]; }
 
-  /// The facet that a line along x through the middle of the widest triangle leaves last; -1 if there is
-  /// none.
+  /// The last facet hit by the line along x through the centroid of the widest triangle; -1: none.
   std::int32_t outermost(const std::vector<std::int32_t>& part) const {
     double widest = 0;
     Vec3 middle;
@@ -203,8 +202,7 @@ class Outside {
     return last;
   }
 
-  /// The facet that one meets first, turning outside about the edge of a facet from its corner `c` on; -1 at
-  /// a rim.
+  /// The next facet when rotating outwards about the edge that starts at corner `c` of a facet; -1 at a boundary.
   std::int32_t next(std::int32_t facet, int c) const {
     const Triangle& own = soup_.triangle[std::size_t(facet / 2)];
     std::int32_t a = own[c], b = own[(c + 1) % 3];
@@ -214,7 +212,7 @@ class Outside {
     const auto entry = std::lower_bound(edges_.begin(), edges_.end(), std::pair{key, std::int32_t(0)});
     const Around all = around(edges_, std::size_t(entry - edges_.begin()));
     const double length = norm(axis);
-    const Vec3 up = cross(axis, out);  // on the side that is seen
+    const Vec3 up = cross(axis, out);  // points to the side of the facet
     std::int32_t nearest = -1;
     double least = INFINITY;
     for (std::size_t e = all.first; e < all.last; ++e) {
@@ -224,13 +222,13 @@ class Outside {
       int d = 0;
       while (v[d] == a || v[d] == b) ++d;
       const Vec3 other = at(v[d]) - at(a);
-      // The part of `other` across the axis, in the frame of `out` and `up`.
+      // The component of `other` perpendicular to the axis, in the frame of `out` and `up`.
       const double along_up = dot(other, up) / length;
       const double along_out = dot(other - (dot(other, axis) / (length * length)) * axis, out);
       double turn = std::atan2(along_up, along_out);
       if (turn <= 0) turn += 2 * std::numbers::pi;
       if (turn >= least) continue;
-      // Seen from outside, a neighbour runs along the common edge from b to a.
+      // Seen from outside, a neighbour traverses the common edge from b to a.
       const bool runs_back = v[(d + 1) % 3] == b;
       least = turn, nearest = 2 * t + (runs_back ? 0 : 1);
     }
@@ -242,7 +240,7 @@ class Outside {
   std::vector<char> is_seen_;
 };
 
-/// Some of the unseen would leave an edge of what is seen open if they went.
+/// Whether removing the walls would leave an edge with one triangle.
 bool opens_an_edge(const Edges& edges, const std::vector<char>& is_wall) {
   for (std::size_t e = 0; e < edges.size();) {
     const Around all = around(edges, e);

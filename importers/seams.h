@@ -7,14 +7,14 @@
 
 namespace ctpm::importers {
 
-/// T-junctions: vertices on the rim of an opening that lie on another rim's edge, within `distance` [m], and
-/// are none of its ends. The edge's triangle is split there, so that both sides of the crack have the same
-/// vertices. Returns the places.
+/// Closes T-junctions: vertices on the boundary of an opening that lie within `distance` [m] of a boundary edge without
+/// being its end. Splits the edge's triangle there, so that both sides of the crack have the same vertices. Returns the
+/// positions.
 std::vector<Vec3> split_t_junctions(Soup& soup, double distance);
 
-/// Walls inside a mesh: triangles that hang on it by edges of more than two triangles and that nobody sees
-/// who goes over its outside from edge to edge. Only those without which no edge becomes open; in the order
-/// of their index. The mesh is welded.
+/// Finds walls inside a mesh: triangles that are attached by edges with more than two triangles and that a walk over
+/// the outside, from edge to edge, never reaches. Returns them by ascending index, or none if their removal would open
+/// an edge or if an edge has more than 64 triangles. The mesh must be welded.
 std::vector<std::int32_t> find_inner_walls(const Soup& soup);
 
 }  // namespace ctpm::importers

@@ -15,11 +15,11 @@
 namespace ctpm::importers {
 namespace {
 
-constexpr int kMostRings = 4;  // of triangles around the crossing ones that may be cut out with them
+constexpr int kMostRings = 4;  // rings around the crossing triangles that may be removed too
 
-constexpr double kMostChange = 0.02;  // of the volume, by what is filled instead
+constexpr double kMostChange = 0.02;  // largest relative change of volume
 
-/// Triangles that touch a chosen one are chosen too.
+/// Also selects all triangles that touch a selected one.
 void grow(const Soup& soup, std::vector<char>& is_cut) {
   std::vector<char> is_touched(soup.vertex.size(), 0);
   for (std::size_t t = 0; t < soup.triangle.size(); ++t)
@@ -37,7 +37,7 @@ Soup without(const Soup& soup, const std::vector<char>& is_cut) {
   return rest;
 }
 
-/// The mesh without the chosen triangles; chooses more where the rest would hang together at a point only.
+/// The mesh without the selected triangles. Selects more where the rest would be joined only at a vertex.
 std::optional<Soup> cut_out(const Soup& soup, std::vector<char>& is_cut) {
   constexpr int kMostRounds = 20;
   for (int round = 0; round < kMostRounds; ++round) {
@@ -54,7 +54,7 @@ std::optional<Soup> cut_out(const Soup& soup, std::vector<char>& is_cut) {
   return {};
 }
 
-/// Vertices in use less edges plus triangles: 2 for a ball, 0 for a ring.
+/// Euler number of a closed mesh, V - E + F over the used vertices: 2 for a ball, 0 for a torus.
 std::int64_t euler_number(const Soup& soup) {
   std::vector<char> is_used(soup.vertex.size(), 0);
   for (const Triangle& t : soup.triangle)
@@ -72,10 +72,10 @@ Corners corners_of(const Soup& soup, std::size_t t) {
   return {at(0), at(1), at(2)};
 }
 
-/// Two triangles that meet in a corner or an edge which was split have places in common but no vertices; true
-/// if those places are all that they share.
+/// Whether two triangles share only corner positions. Triangles at a split corner or edge have common positions but no
+/// common vertices.
 bool only_touch(Corners a, Corners b) {
-  // Common corners to the front, in the same order.
+  // Move the common corners to the front, in the same order.
   std::size_t common = 0;
   for (std::size_t i = 0; i < 3; ++i)
     if (const auto it = std::find(b.begin() + std::ptrdiff_t(common), b.end(), a[i]); it != b.end()) {
@@ -127,7 +127,7 @@ std::int64_t cut_crossing(Soup& soup, const std::vector<std::int32_t>& crossing,
     std::optional<Soup> mended = cut_out(soup, is_cut);
     if (!mended) return 0;
     const Closing closing = fill_holes(*mended, largest_hole);
-    if (!closing.too_large.empty()) return 0;  // more rings only make it larger
+    if (!closing.too_large.empty()) return 0;  // more rings only enlarge the hole
     if (!closing.unfillable.empty() || !is_as_good(*mended, soup) || !find_crossing(*mended).empty()) continue;
     soup = std::move(*mended);
     drop_unused(soup);

@@ -7,14 +7,14 @@
 
 namespace ctpm::importers {
 
-/// Triangles of a manifold mesh that pass through others or lie on them, in the order of their index.
-/// Triangles that only share an edge or a corner are not meant.
+/// Finds triangles of a manifold mesh that intersect or overlap others, by ascending index. Sharing an edge or a corner
+/// does not count.
 std::vector<std::int32_t> find_crossing(const Soup& soup);
 
-/// Cuts the crossing triangles and their surroundings out of a closed mesh of one part and fills the holes
-/// that this leaves, if none of them is wider than `largest_hole` [m], the mesh stays closed, in one part and
-/// of the same genus, and nothing crosses any more. Returns how many triangles were cut out; 0: `soup` is as
-/// it was.
+/// Removes the crossing triangles and up to four rings around them from a closed mesh of one part, and fills the holes.
+/// Succeeds only if no hole is wider than `largest_hole` [m], the mesh stays closed, in one part and of the same genus,
+/// its volume changes by at most 2 %, and nothing intersects any more. Returns the number of triangles removed; 0:
+/// `soup` is unchanged.
 std::int64_t cut_crossing(Soup& soup, const std::vector<std::int32_t>& crossing, double largest_hole);
 
 }  // namespace ctpm::importers

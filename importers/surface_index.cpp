@@ -17,7 +17,7 @@ double coordinate(Vec3 p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y :
 
 double squared(Vec3 v) { return dot(v, v); }
 
-/// Two numbers that the processor treats as one; the same bits as one after the other.
+/// Two doubles in one SIMD register; gives the same bits as scalar code.
 using Pair = double __attribute__((vector_size(16)));
 constexpr std::size_t kPair = 2;
 
@@ -39,7 +39,7 @@ PairOfVec3 cross(const PairOfVec3& a, const PairOfVec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// Squared distance of a point from a segment.
+/// Squared distance from a point to a segment.
 double squared_distance(Vec3 p, Vec3 a, Vec3 b) {
   const Vec3 ab = b - a, ap = p - a;
   const double length = dot(ab, ab);
@@ -53,7 +53,7 @@ double squared_distance(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   const Vec3 normal = cross(b - a, c - a);
   const double area = dot(normal, normal);
   const auto is_inner_side = [&](Vec3 from, Vec3 to) { return dot(cross(to - from, p - from), normal) >= 0; };
-  // Above the triangle the plane is nearest; anywhere else one of the edges is.
+  // If the point projects into the triangle, the plane is nearest, else an edge.
   if (area > 0 && is_inner_side(a, b) && is_inner_side(b, c) && is_inner_side(c, a)) {
     const double height = dot(p - a, normal);
     return height * height / area;
@@ -61,15 +61,15 @@ double squared_distance(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   return std::min({squared_distance(p, a, b), squared_distance(p, b, c), squared_distance(p, c, a)});
 }
 
-/// Builds the tree from the root down; siblings split their triangles in half, twice.
+/// Builds the tree top-down; each node halves its triangles twice, into four children.
 struct SurfaceIndex::Builder {
   struct Range {
     std::int32_t begin, end;
     std::int32_t count() const { return end - begin; }
   };
   struct Boxes {
-    Vec3 least, most;                ///< of the triangles
-    Vec3 middle_least, middle_most;  ///< of their middles
+    Vec3 least, most;                ///< bounds of the triangles
+    Vec3 middle_least, middle_most;  ///< bounds of their centres
   };
 
   SurfaceIndex& index;
@@ -93,7 +93,7 @@ struct SurfaceIndex::Builder {
     return boxes;
   }
 
-  /// The disc of a range, a little larger than it is, so that rounding never makes it too small.
+  /// The disc of a range, with a margin so that rounding never makes it too small.
   Disc disc_of(Range range, Vec3 centre) const {
     constexpr double kMargin = 1e-12;
     Disc disc;
@@ -115,14 +115,14 @@ struct SurfaceIndex::Builder {
       }
     disc.centre = centre + 0.5 * (low + high) * disc.normal;
     const double size = std::sqrt(squared_radius) + std::max(std::abs(low), std::abs(high));
-    // Moving the centre rounds at the size of the coordinates.
+    // Moving the centre has a rounding error proportional to the coordinates.
     const double margin = kMargin * (size + norm(centre));
     disc.half_height = 0.5 * (high - low) + margin;
     disc.radius = std::sqrt(squared_radius) + margin;
     return disc;
   }
 
-  /// Halves a range at the median of the longest extent of its triangles' middles, in whole blocks.
+  /// Halves a range at the median along the longest extent of its triangle centres, in whole blocks.
   std::pair<Range, Range> halves(Range range) {
     const Boxes boxes = boxes_of(range);
     const Vec3 extent = boxes.middle_most - boxes.middle_least;
@@ -138,7 +138,7 @@ struct SurfaceIndex::Builder {
     return {{range.begin, half}, {half, range.end}};
   }
 
-  /// The child for a range: the number of a node, or ~ the number of a block.
+  /// The child for a range: a node index, or ~ a block index.
   std::int32_t add(Range range) {
     if (range.count() <= kLanes) {
       index.blocks_.push_back(make_block(corners, order.data() + range.begin, range.count()));
@@ -208,7 +208,7 @@ SurfaceIndex::Block SurfaceIndex::make_block(const std::vector<std::array<Vec3, 
   return block;
 }
 
-/// The same as squared_distance(), without branches, for four triangles at once.
+/// squared_distance() for four triangles at once, without branches.
 SurfaceIndex::Lanes SurfaceIndex::squared_distances(const Block& block, Vec3 point) {
   const Pair zero{0, 0}, one{1, 1};
   const PairOfVec3 p{point.x + zero, point.y + zero, point.z + zero};
@@ -224,7 +224,7 @@ SurfaceIndex::Lanes SurfaceIndex::squared_distances(const Block& block, Vec3 poi
     };
     const Pair edge = smaller(smaller(to_edge(ab, ap, block.inverse_ab), to_edge(bc, bp, block.inverse_bc)),
                               to_edge(ca, cp, block.inverse_ca));
-    // Inside of all three edges the plane is nearest; never so for a triangle without a normal.
+    // Inside all three edges the plane is nearest, except for a triangle without a normal.
     const Pair side =
         smaller(smaller(dot(cross(ab, ap), normal), dot(cross(bc, bp), normal)), dot(cross(ca, cp), normal));
     const Pair height = dot(ap, normal);
@@ -255,7 +255,7 @@ double SurfaceIndex::squared_distance_from(const Disc& disc, Vec3 point) {
   const double height = dot(v, disc.normal);
   const double above = std::max(std::abs(height) - disc.half_height, 0.0);
   const double beside = std::max(std::sqrt(std::max(squared(v) - height * height, 0.0)) - disc.radius, 0.0);
-  constexpr double kRounded = 1 - 1e-12;  // never farther than it is
+  constexpr double kRounded = 1 - 1e-12;  // lower bound despite rounding
   return kRounded * (above * above + beside * beside);
 }
 
@@ -272,7 +272,7 @@ SurfaceIndex::Nearest SurfaceIndex::nearest(Vec3 point, std::int32_t guess) cons
     std::int32_t child;
     double distance;
   };
-  std::array<Waiting, 128> stack;  // at most three wait on each level, and a level has a quarter of the last
+  std::array<Waiting, 128> stack;  // at most three wait per level, and each level has a quarter of the triangles
   std::size_t height = 0;
   if (!nodes_.empty()) stack[height++] = {0, 0.0};
   while (height > 0) {
@@ -289,7 +289,7 @@ SurfaceIndex::Nearest SurfaceIndex::nearest(Vec3 point, std::int32_t guess) cons
       if (!(distance[n] < best.squared_distance)) continue;
       distance[n] = std::max(distance[n], squared_distance_from(node.disc[n], point));
       if (!(distance[n] < best.squared_distance)) continue;
-      // The nearest child comes off the stack first.
+      // Pop the nearest child first.
       std::size_t place = height++;
       for (; place > first && stack[place - 1].distance < distance[n]; --place) stack[place] = stack[place - 1];
       stack[place] = {node.child[n], distance[n]};

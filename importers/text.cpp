@@ -6,7 +6,7 @@
 namespace ctpm::importers {
 namespace {
 
-/// Millimetres with four digits, at most a micrometre fine.
+/// Millimetres with four digits, no finer than a micrometre.
 std::string mm_number(double metres) {
   const double mm = 1000 * metres;
   char text[48];

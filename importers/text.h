@@ -7,9 +7,9 @@
 
 namespace ctpm::importers {
 
-/// A length given in metres, in millimetres with at most four digits: "12.35 mm".
+/// Formats a length [m] in millimetres with at most four digits: "12.35 mm".
 std::string mm_text(double metres);
-/// A place given in metres: "(12.35, -4, 0) mm".
+/// Formats a position [m]: "(12.35, -4, 0) mm".
 std::string place_text(Vec3 metres);
 /// "1 hole", "3 holes".
 std::string counted(std::int64_t count, const std::string& noun);

@@ -29,7 +29,7 @@ struct CellHash {
   }
 };
 
-/// The bits of a position, with one zero.
+/// The bits of a position, with -0 mapped to 0.
 std::array<std::int64_t, 3> bits_of(Vec3 p) {
   std::array<std::int64_t, 3> bits{};
   const std::array<double, 3> clean{p.x + 0.0, p.y + 0.0, p.z + 0.0};
@@ -37,7 +37,7 @@ std::array<std::int64_t, 3> bits_of(Vec3 p) {
   return bits;
 }
 
-/// Disjoint sets, for parts.
+/// Disjoint sets (union-find).
 class Sets {
  public:
   explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
@@ -54,7 +54,7 @@ class Sets {
   std::vector<std::int32_t> parent_;
 };
 
-/// Rewrites the soup with `new_of_old` (an index of `kept`) and drops vertices that no triangle uses.
+/// Renumbers the soup with `new_of_old` (an index of `kept`) and drops unused vertices.
 void renumber(Soup& soup, const std::vector<std::int32_t>& representative) {
   std::vector<std::int32_t> new_index(soup.vertex.size(), -1);
   std::vector<Vec3> kept;
@@ -70,7 +70,7 @@ void renumber(Soup& soup, const std::vector<std::int32_t>& representative) {
   soup.vertex = std::move(kept);
 }
 
-/// Vertices in the very same place become the first of them.
+/// Maps vertices at equal positions to the first of them.
 std::vector<std::int32_t> same_place(const Soup& soup) {
   std::unordered_map<std::array<std::int64_t, 3>, std::int32_t, CellHash> first_at;
   first_at.reserve(soup.vertex.size());
@@ -80,7 +80,7 @@ std::vector<std::int32_t> same_place(const Soup& soup) {
   return representative;
 }
 
-/// Vertices within `distance` of an earlier one that stays become that one.
+/// Maps vertices within `distance` of an earlier kept vertex to the nearest such vertex.
 void join_near(const Soup& soup, double distance, std::vector<std::int32_t>& representative) {
   const auto cell_of = [&](Vec3 p) {
     return std::array<std::int64_t, 3>{std::llround(std::floor(p.x / distance)),
@@ -117,7 +117,7 @@ Triangle sorted(Triangle t) {
   return t;
 }
 
-/// The same cyclic order, smallest index first.
+/// The same cyclic order, with the smallest index first.
 Triangle rotated(Triangle t) {
   std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   return t;
@@ -189,7 +189,7 @@ std::int64_t drop_duplicates(Soup& soup) {
 }
 
 std::vector<std::int32_t> find_pinched(const Soup& soup) {
-  // Triangles at each vertex, side by side.
+  // Store the triangles at each vertex contiguously.
   std::vector<std::int32_t> first(soup.vertex.size() + 1, 0);
   for (const Triangle& t : soup.triangle)
     for (const std::int32_t v : t) ++first[std::size_t(v) + 1];
@@ -199,7 +199,7 @@ std::vector<std::int32_t> find_pinched(const Soup& soup) {
     for (const std::int32_t v : soup.triangle[t]) around[std::size_t(next[std::size_t(v)]++)] = std::int32_t(t);
 
   std::vector<std::int32_t> pinched;
-  std::vector<std::pair<std::int32_t, std::int32_t>> spokes;  // the other end of an edge, and its triangle's rank here
+  std::vector<std::pair<std::int32_t, std::int32_t>> spokes;  // other end of an edge, and local index of its triangle
   for (std::size_t v = 0; v < soup.vertex.size(); ++v) {
     const std::int32_t count = first[v + 1] - first[v];
     spokes.clear();
@@ -239,7 +239,7 @@ Parts find_parts(const std::vector<Triangle>& triangle) {
     if (edges[e].first == edges[e - 1].first) sets.join(edges[e].second, edges[e - 1].second);
   Parts parts;
   parts.of_triangle.resize(triangle.size());
-  // The root of a set is its first triangle, so roots come before their members.
+  // The root of a set is its first triangle, so roots precede their members.
   for (std::size_t t = 0; t < triangle.size(); ++t) {
     const std::int32_t root = sets.root(std::int32_t(t));
     parts.of_triangle[t] = std::size_t(root) == t ? parts.count++ : parts.of_triangle[std::size_t(root)];

@@ -22,7 +22,7 @@ UnitChoice choose_unit(const RawMesh& mesh, std::optional<double> given_in_metre
   if (given_in_metres) return choice(*given_in_metres, UnitSource::given);
   if (mesh.unit_in_metres > 0) return choice(mesh.unit_in_metres, UnitSource::file);
 
-  // How many times too large or too small the organ would be, as a logarithm.
+  // |log| of the ratio between the organ's diagonal and the geometric mean of the usual range.
   const double middle = std::sqrt(usual.least * usual.most);
   const auto misfit = [&](double in_metres) { return std::abs(std::log(in_metres * diagonal / middle)); };
   double best = 1.0;

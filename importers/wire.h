@@ -8,9 +8,9 @@
 
 namespace ctpm::importers::wire {
 
-/// What the reading child sends: kind, then for `failed` a text; for `no_such_part` the parts; for `mesh` the
-/// parts, the unit [m], the vertices as x y z doubles and the triangles as three int32. Counts are uint64
-/// before each list.
+/// Message of the reading child: a kind, then its content. `failed`: a text. `no_such_part`: the parts. `mesh`: the
+/// parts, the unit [m], the vertices as x y z doubles and the triangles as three int32. A uint64 count precedes each
+/// list.
 enum class Kind : std::uint32_t { failed = 1, no_such_part = 2, mesh = 3 };
 
 /// Appends plain values to a message.
@@ -32,7 +32,7 @@ class Writer {
   std::string bytes;
 };
 
-/// Takes values from a message that may be cut or wrong; every get says whether the bytes were there.
+/// Reads values from a message that may be truncated or wrong. Each get returns false if bytes are missing.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : rest_(bytes) {}

@@ -12,7 +12,7 @@ namespace ctpm::importers {
 std::string to_obj(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle) {
   std::string text = "# unit: mm\n";
   char line[128];
-  // No "-0.000000": the sign of nothing would depend on how the zero came about.
+  // Avoid "-0.000000": the sign of a rounded zero carries no information.
   const auto mm = [](double metres) {
     const double value = 1000 * metres;
     return value > -0.5e-6 && value < 0 ? 0.0 : value;

@@ -9,7 +9,7 @@
 
 namespace ctpm::recordings {
 
-/// XXH3-64 of bytes that come one after another: proves that two things are the same.
+/// Incremental XXH3-64 hash of a byte stream. Equal hashes mean equal bytes, up to a chance of 2^-64.
 class ByteHash {
  public:
   ByteHash();
@@ -28,7 +28,7 @@ class ByteHash {
 /// 16 hexadecimal digits, as `xxhsum -H3` prints them.
 std::string hash_text(std::uint64_t hash);
 
-/// XXH3-64 of a file's bytes. Errors: it cannot be read.
+/// XXH3-64 of a file's bytes. Error: the file cannot be read.
 Result<std::uint64_t> file_hash(const std::string& path);
 
 }  // namespace ctpm::recordings

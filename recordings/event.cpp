@@ -5,14 +5,14 @@
 namespace ctpm::recordings {
 namespace {
 
-/// `number` in the given format, which takes one double.
+/// Formats `number`; the format takes one double.
 std::string with_number(const char* format, double number) {
   char text[160];
   std::snprintf(text, sizeof text, format, number);
   return text;
 }
 
-/// Name of a tool or an organ; `what` and the index if the Model has no such one.
+/// Name of a tool or an organ; `what` and the index if the Model has none at the index.
 template <class Named>
 std::string name_in(const std::vector<Named>& all, std::int32_t index, const char* what) {
   if (index >= 0 && index < static_cast<std::int32_t>(all.size())) return all[static_cast<std::size_t>(index)].name;

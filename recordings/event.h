@@ -9,7 +9,7 @@
 
 namespace ctpm::recordings {
 
-/// What happened. Session files store the numbers: one is never given another meaning.
+/// Kind of an event. Session files store the numbers, so a number never gets another meaning.
 enum class EventKind : std::int32_t {
   contact_begins = 1,
   contact_ends = 2,
@@ -25,32 +25,32 @@ enum class EventKind : std::int32_t {
   step_refused = 12,
 };
 
-/// Something worth finding again. Only the fields of its kind are set and stored: for_each_value().
+/// One event of a session. Only the fields of its kind are set and stored; for_each_value() lists them.
 struct Event {
   std::int64_t tick = 0;
   EventKind kind = EventKind::note;
-  std::int32_t tool = -1;            ///< that touches or cuts: index into Model::tools
+  std::int32_t tool = -1;            ///< tool that touches or cuts: index into Model::tools
   std::int32_t severed = 0;          ///< elements severed in the tick in which the cut begins
-  std::int32_t organ = -1;           ///< whose damage depth was passed: index into Model::organs
+  std::int32_t organ = -1;           ///< organ whose damage depth was exceeded: index into Model::organs
   double depth = 0;                  ///< largest displacement of a touched sphere [m]; 0: the depth is not the reason
   double depth_limit = 0;            ///< damage depth of the organ [m]
   double force = 0;                  ///< on the tool [N]; 0: the force is not the reason
   double force_limit = 0;            ///< damage force of the scene [N]
-  double late = 0;                   ///< by which the tick passed its deadline [s]
-  std::string reason = {};           ///< why the device was not believed
-  double held = 0;                   ///< for which the last good pose was held [s]
-  std::int64_t refused_samples = 0;  ///< of the device while the pose was held
-  std::int32_t pieces = 0;           ///< more than before the tick
+  double late = 0;                   ///< time from the tick's deadline to its end [s]
+  std::string reason = {};           ///< why the device counts as lost
+  double held = 0;                   ///< how long the last valid pose was held [s]
+  std::int64_t refused_samples = 0;  ///< device samples refused while the pose was held
+  std::int32_t pieces = 0;           ///< increase in the number of loose pieces over the tick
   std::int32_t status = 0;           ///< StepStatus of a step that was refused
   std::int32_t sphere = -1;          ///< StepReport::worst_sphere of that step
-  std::string text = {};             ///< of a note; of an event from before events had fields, its sentence
-  std::vector<double> values = {};   ///< of an event from before events had fields: its numbers, which `text` explains
+  std::string text = {};             ///< text of a note; for an old event without fields, its sentence
+  std::vector<double> values = {};   ///< numbers of an old event without fields; `text` explains them
 
   friend bool operator==(const Event&, const Event&) = default;
 };
 
-/// The one table of what each kind of event holds: `visit(name, member)` is called for each field of the event's kind,
-/// with the unit in the name. All fields are visited if this program does not know the kind.
+/// The only table of the fields of each event kind. Calls `visit(name, member)` for each field of the event's kind;
+/// names contain the unit. Visits all fields if this program does not know the kind.
 template <class Event_, class Visit>
 requires std::is_same_v<std::remove_const_t<Event_>, Event>
 void for_each_value(Event_& e, Visit&& visit) {
@@ -82,10 +82,10 @@ void for_each_value(Event_& e, Visit&& visit) {
 /// Name of a kind in tables and JSON.
 const char* name_of(EventKind kind);
 
-/// One sentence for people, made from the event's fields; the stored sentence of a note or of an event without fields.
+/// One readable sentence, made from the event's fields. A note or an old event without fields returns its stored text.
 std::string describe(const Event& event, const Model& model);
 
-/// Pieces of tissue that came loose in the ticks before `end`.
+/// Number of tissue pieces that came loose in ticks before `end`.
 std::int64_t pieces_came_loose(const std::vector<Event>& events, std::int64_t end);
 
 }  // namespace ctpm::recordings

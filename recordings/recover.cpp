@@ -20,11 +20,11 @@ namespace {
 constexpr int recover_level = 3;  // zstd
 constexpr std::int64_t last_key = std::numeric_limits<std::int64_t>::max();
 
-/// What could be read of the damaged session. Ticks and keyframes are read again when they are written: an
-/// hour of them is large.
+/// The readable content of the damaged session. Ticks and keyframes are read again during writing, because an hour of
+/// them is too large for memory.
 struct Salvage {
   SessionStart start;
-  std::vector<std::int64_t> keyframe_ticks;  ///< of those that prove whole
+  std::vector<std::int64_t> keyframe_ticks;  ///< ticks of the undamaged keyframes
   std::vector<Event> events;
   std::optional<SessionStatistics> finish;
 };
@@ -33,7 +33,7 @@ void note(RecoverReport& report, const Errors& errors) {
   for (const Error& error : errors) report.losses.push_back(error.message);
 }
 
-/// Opens the damaged session; if that fails, a copy whose first page is mended.
+/// Opens the damaged session; if that fails, opens a copy with a repaired first page.
 Result<SessionStore> open_for_salvage(const std::string& in, const std::string& copy, RecoverReport& report) {
   auto store = SessionStore::open(in, true);
   if (store) return store;
@@ -47,8 +47,8 @@ Result<SessionStore> open_for_salvage(const std::string& in, const std::string& 
   return mended;
 }
 
-/// The State before tick 0: as it was stored, or else at rest, where that is proven by what the first tick
-/// led to. A scene without gravity begins there.
+/// The State before tick 0. If the stored one is damaged, uses the rest state, provided that the first tick simulated
+/// from it matches its recorded hash. Scenes without gravity start at rest.
 Result<State> initial_state(SessionStore& store, const Model& model, RecoverReport& report) {
   auto first = store.keyframe_at(0, model);
   if (first && *first) return std::move((*first)->state);
@@ -65,7 +65,7 @@ Result<State> initial_state(SessionStore& store, const Model& model, RecoverRepo
   return rest_state(model);
 }
 
-/// The start. Without Model or initial State there is nothing to replay.
+/// Reads the start. Replay is impossible without Model or initial State.
 Result<Done> salvage_start(SessionStore& store, Salvage& salvage, RecoverReport& report) {
   auto model = store.model();
   if (!model) return model.errors();
@@ -91,7 +91,7 @@ Result<Done> salvage_start(SessionStore& store, Salvage& salvage, RecoverReport&
   return Done{};
 }
 
-/// All chunks up to the first gap; what can be read beyond it is only counted.
+/// Reads all chunks up to the first gap, and only counts the readable ticks beyond it.
 void salvage_ticks(SessionStore& store, Salvage& salvage, RecoverReport& report) {
   std::int64_t next = 0;
   while (true) {
@@ -105,7 +105,7 @@ void salvage_ticks(SessionStore& store, Salvage& salvage, RecoverReport& report)
   }
   report.ticks_saved = next;
 
-  // Walk back from the end: the last chunk that can be read says how long the session was.
+  // Search backwards from the end: the last readable chunk gives the length of the session.
   for (std::int64_t at = last_key; at >= next;) {
     const auto later = store.chunk_at(at);
     if (!later) {
@@ -163,7 +163,7 @@ void salvage_events(SessionStore& store, Salvage& salvage, RecoverReport& report
                             " are left");
 }
 
-/// Writes the salvage as a new session with an identity of its own that names the old one.
+/// Writes the salvage as a new session with a new identity. Its metadata name the old session.
 Result<Done> write_salvage(const std::string& out, Salvage& salvage, SessionStore& from, const RecoverReport& report) {
   SessionIdentity identity = new_identity(salvage.start);
   identity.created_unix_s = from.identity().created_unix_s;
@@ -205,7 +205,7 @@ Result<Done> write_salvage(const std::string& out, Salvage& salvage, SessionStor
       return r;
     for (const Event& event : salvage.events) counter.add(event);
   }
-  // Only a session that is all there has its end.
+  // Only a complete session gets its end.
   if (salvage.finish && report.losses.empty()) {
     SessionStatistics statistics = counter.result();
     statistics.values = salvage.finish->values;
@@ -246,12 +246,12 @@ Result<RecoverReport> recover_session(const std::string& in, const std::string& 
   std::error_code ignored;
   const bool existed = std::filesystem::exists(out, ignored);
   if (auto r = write_salvage(out, salvage, *store, report); !r) {
-    // Whatever was there before stays.
+    // A file that already existed stays.
     if (!existed) remove_with_companions(out);
     return r.errors();
   }
 
-  // What counts is what can be read back and simulated again.
+  // Read the new file back and verify it.
   auto reader = SessionReader::open(out);
   if (!reader) return reader.errors();
   if (auto r = reader->check_all(); !r) return r.errors();

@@ -37,7 +37,7 @@ Result<ReplayCursor> ReplayCursor::create(SessionReader& reader) {
   return ReplayCursor(std::make_unique<Impl>(reader));
 }
 
-/// The nearest keyframe that is whole; keyframe 0 always is.
+/// The nearest undamaged keyframe at or before `target`; open() has verified keyframe 0.
 Result<Keyframe> ReplayCursor::Impl::keyframe_for(std::int64_t target) {
   auto nearest = reader.keyframe_at_or_before(target);
   if (nearest) return nearest;
@@ -75,7 +75,7 @@ Result<bool> ReplayCursor::step() {
       impl.tick >= impl.ahead_first && impl.tick < impl.ahead_first + static_cast<std::int64_t>(impl.ahead.size());
   if (!is_ahead) {
     auto records = impl.reader.ticks(impl.tick, std::min(impl.tick + read_ahead, count));
-    // Damage further ahead does not concern this tick.
+    // Damage in later ticks does not affect this tick.
     if (!records) records = impl.reader.ticks(impl.tick, impl.tick + 1);
     if (!records) return records.errors();
     impl.ahead = std::move(*records);

@@ -19,7 +19,7 @@ struct SessionReader::Impl {
   SessionStart start;
   std::int64_t tick_count = 0, event_count = 0;
   std::optional<SessionStatistics> finish;
-  Run<TickRecord> cached;  ///< the chunk read last
+  Run<TickRecord> cached;  ///< the last chunk read
 
   Error error(const std::string& message) const { return {path, message, ""}; }
   Result<Done> read_start();
@@ -43,7 +43,7 @@ Result<SessionReader> SessionReader::open(const std::string& path) {
   return SessionReader(std::move(impl));
 }
 
-/// All damaged parts are told at once.
+/// Reports all damaged parts together.
 Result<Done> SessionReader::Impl::read_start() {
   Errors errors;
   const auto take = [&](auto result, auto& place) {
@@ -76,7 +76,7 @@ Result<Done> SessionReader::Impl::read_start() {
   return Done{};
 }
 
-/// Where the session ends, by its last chunk and its last events; a clean end must agree.
+/// Finds the end of the session from its last chunk and last events. A clean end must agree.
 Result<Done> SessionReader::Impl::read_ends() {
   auto last_chunk = store.chunk_at(last_key);
   if (!last_chunk) return last_chunk.errors();
@@ -103,7 +103,7 @@ const std::vector<std::string>& SessionReader::remarks() const { return impl_->s
 std::int64_t SessionReader::tick_count() const { return impl_->tick_count; }
 bool SessionReader::ended_cleanly() const { return impl_->finish.has_value(); }
 
-/// Makes `cached` the chunk that holds `tick`.
+/// Loads the chunk that holds `tick` into `cached`.
 Result<Done> SessionReader::Impl::load_chunk(std::int64_t tick) {
   if (tick >= cached.first && tick < cached.end()) return Done{};
   auto chunk = store.chunk_at(tick);
@@ -171,7 +171,7 @@ Result<Done> SessionReader::check_all() {
   Errors errors;
   const auto note = [&](const Errors& found) { errors.insert(errors.end(), found.begin(), found.end()); };
 
-  // Ticks: every chunk, one behind the other. A damaged one is stepped over by its key.
+  // Read every chunk in order. Skip a damaged one by its key.
   const auto chunk_keys = impl_->store.keys("chunk");
   if (!chunk_keys) return chunk_keys.errors();
   std::int64_t next = 0;

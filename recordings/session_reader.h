@@ -10,14 +10,13 @@
 
 namespace ctpm::recordings {
 
-/// Reads a session file, finished or not, also while it is being recorded. Nothing in the file is trusted:
-/// every block is proven by its checksum before it is decoded, and the Model, the States and the surfaces are
-/// checked before they are handed out. Memory grows with the Model and one chunk, not with the length of the
-/// session. For one thread at a time.
+/// Reads a session file: finished, cut off, or still being recorded. It trusts nothing in the file. Each block's
+/// checksum is verified before the block is decoded, and the Model, States and surfaces are checked before they are
+/// returned. Memory grows with the Model and one chunk, not with the length of the session. Not thread-safe: use one
+/// reader per thread.
 class SessionReader {
  public:
-  /// Errors: the file does not exist, is not a session, is of a newer version, is cut short, or its start is
-  /// damaged.
+  /// Errors: the file does not exist, is not a session, has a newer version, is truncated, or its start is damaged.
   static Result<SessionReader> open(const std::string& path);
 
   SessionReader(SessionReader&&) noexcept;
@@ -27,17 +26,17 @@ class SessionReader {
   const std::string& path() const;
   const SessionStart& start() const;
   const std::string& session_id() const;
-  double created_unix_s() const;  ///< when recording began, seconds since 1970
+  double created_unix_s() const;  ///< start of recording, in seconds since 1970
   int format_version() const;
   std::int64_t tick_count() const;  ///< at the time of open()
-  /// What this program decided where an old file leaves it open, one sentence each.
+  /// Choices that this program made where an old file leaves them open, one sentence each.
   const std::vector<std::string>& remarks() const;
-  bool ended_cleanly() const;  ///< false: cut off, or still being recorded
+  bool ended_cleanly() const;  ///< false: recording was interrupted or still runs
 
-  /// Records of the ticks [from, to). Errors: out of range, or a damaged or missing chunk, named.
+  /// Records of ticks [from, to). Errors: range outside the session, or a damaged or missing chunk, which is named.
   Result<std::vector<TickRecord>> ticks(std::int64_t from, std::int64_t to);
 
-  /// The last keyframe at or before `tick`. Keyframe 0 is always there. Errors: it is damaged.
+  /// The last keyframe at or before `tick`. Keyframe 0 always exists. Error: the keyframe is damaged.
   Result<Keyframe> keyframe_at_or_before(std::int64_t tick);
 
   /// The ticks of all keyframes, ascending.
@@ -46,10 +45,10 @@ class SessionReader {
   /// All events in the order they were recorded.
   Result<std::vector<Event>> events();
 
-  /// As recorded at the end; for a session without an end, worked out from its ticks and events.
+  /// Statistics stored at the end; for a session without an end, computed from its ticks and events.
   Result<SessionStatistics> statistics();
 
-  /// Reads and proves every block, and that none is missing. Errors: all damaged places.
+  /// Verifies every block and that none is missing. Errors: every damaged block.
   Result<Done> check_all();
 
  private:

@@ -28,10 +28,10 @@ namespace {
 
 constexpr auto poll_interval = std::chrono::milliseconds(5);
 constexpr auto retry_interval = std::chrono::milliseconds(200);
-constexpr std::size_t chunks_per_commit = 32;  // when there is a backlog
+constexpr std::size_t chunks_per_commit = 32;  // limit with a backlog
 constexpr std::size_t keyframe_slots = 4;
 
-/// A row that is ready to be written.
+/// A row ready to be written.
 struct Row {
   enum class Kind { chunk, keyframe, events } kind;
   std::int64_t first = 0, count = 0;
@@ -54,7 +54,7 @@ struct SessionWriter::Impl {
   SessionTables tables;
   int log_file = -1;
 
-  // Tick thread to writing thread.
+  // From the tick's thread to the writing thread.
   Ring<TickRecord> records;
   Ring<Keyframe> keyframes;
   std::mutex event_mutex;
@@ -62,7 +62,7 @@ struct SessionWriter::Impl {
   std::atomic<std::int64_t> appended{0}, committed{0}, refused{0};
   std::atomic<bool> stopping{false}, saved_all{false};
 
-  // Tick thread only.
+  // The tick's thread only.
   std::vector<Event> own_events;
   std::vector<NamedValue> values;
 
@@ -75,7 +75,7 @@ struct SessionWriter::Impl {
   std::vector<Event> batch_events;
   StatisticsCounter counter;
 
-  // Both threads to whoever asks.
+  // From both threads to any caller.
   mutable std::mutex error_mutex;
   std::string error;
   std::atomic<bool> has_error{false};
@@ -131,7 +131,8 @@ Result<SessionWriter> SessionWriter::create(const std::string& path, const Sessi
   return SessionWriter(std::move(impl));
 }
 
-/// A slot to fill; waits for one if the session may wait, unless the disk is full: that could last for ever.
+/// A slot to fill, or null. Waits for one if wait_when_full is set, but not after a write error, because the wait might
+/// never end.
 template <class T>
 T* SessionWriter::Impl::free_slot(Ring<T>& ring) {
   T* slot = ring.free_slot();
@@ -146,7 +147,7 @@ void SessionWriter::append(const State& after, const TickRecord& record) {
   Impl& impl = *impl_;
   CTPM_CHECK(!impl.stopping.load(std::memory_order_relaxed), "append() after finish()");
   TickRecord* slot = impl.free_slot(impl.records);
-  // Ticks after a lost one cannot be replayed: the recording ends there.
+  // Ticks after a lost one cannot be replayed, so the recording ends there.
   if (!slot || impl.refused.load(std::memory_order_relaxed) > 0) {
     impl.refused.fetch_add(1, std::memory_order_relaxed);
     return;
@@ -156,7 +157,7 @@ void SessionWriter::append(const State& after, const TickRecord& record) {
   const std::int64_t done = impl.appended.load(std::memory_order_relaxed) + 1;
   impl.appended.store(done, std::memory_order_release);
 
-  // A keyframe is a convenience: if the disk is so far behind that no slot is free, it is left out.
+  // Keyframes are optional: skip this one if no slot is free.
   if (done % impl.options.keyframe_ticks == 0) {
     if (Keyframe* keyframe = impl.free_slot(impl.keyframes)) {
       keyframe->tick = done;
@@ -173,7 +174,7 @@ void SessionWriter::event(Event event) {
 }
 
 void SessionWriter::Impl::hand_over_events() {
-  // The other thread holds this for as long as a swap takes; if it does just now, the next tick hands over.
+  // The writing thread holds this lock only for a swap. If it is taken, the next tick hands the events over.
   const std::unique_lock lock(event_mutex, std::try_to_lock);
   if (!lock) return;
   for (Event& event : own_events) shared_events.push_back(std::move(event));
@@ -245,7 +246,7 @@ Result<Done> SessionWriter::Impl::begin() {
 void SessionWriter::Impl::stop() {
   if (!writer.joinable()) return;
   {
-    // Nobody else runs in the tick's thread now: the lock may be waited for.
+    // The tick's thread is here, so waiting for the lock is allowed.
     const std::lock_guard lock(event_mutex);
     for (Event& event : own_events) shared_events.push_back(std::move(event));
     own_events.clear();
@@ -276,7 +277,7 @@ void SessionWriter::Impl::write_until_stopped() {
   saved_all = true;
 }
 
-/// Writes what is due; `all`: whatever there is. False if the disk refused.
+/// Writes what is due, or everything if `all`. False after a write error.
 bool SessionWriter::Impl::save(bool all) {
   while (gather(all)) {
     if (auto r = write_rows(); !r) {
@@ -292,8 +293,7 @@ bool SessionWriter::Impl::save(bool all) {
   return true;
 }
 
-/// Packs what is due into rows, unless rows still wait from a failed attempt. False if there is nothing to
-/// write.
+/// Packs what is due into rows, unless rows of a failed attempt remain. False if there is nothing to write.
 bool SessionWriter::Impl::gather(bool all) {
   if (!rows.empty()) return true;
   batch.clear();
@@ -326,7 +326,7 @@ void SessionWriter::Impl::gather_ticks(bool all) {
   if (taken > 0) waiting_seen = false;
 }
 
-/// Keyframes go with the ticks that lead to them, never ahead of them.
+/// A keyframe is written with the ticks that lead to it, never before them.
 void SessionWriter::Impl::gather_keyframes() {
   const std::int64_t end = next_tick + static_cast<std::int64_t>(batch.size());
   const std::size_t waiting = keyframes.waiting();
@@ -352,7 +352,7 @@ void SessionWriter::Impl::gather_events() {
                   pack(event_name(next_event, count), content, identity.seed, options.compression_level)});
 }
 
-/// One transaction; only when it has succeeded are the queues and the counts moved on.
+/// Writes one transaction, and advances queues and counts only if it succeeds.
 Result<Done> SessionWriter::Impl::write_rows() {
   if (auto r = tables.begin(); !r) return r;
   std::size_t keyframe_count = 0;

@@ -11,37 +11,37 @@
 namespace ctpm::recordings {
 
 struct WriterOptions {
-  bool overwrite = false;       ///< replace a file of that name; otherwise it is an error
-  bool wait_when_full = false;  ///< append() waits for the disk instead of losing ticks: for runs that are not live
-  std::int32_t keyframe_ticks = 1000;  ///< ticks between two keyframes, >= 1: seeking costs at most so many steps
-  std::int32_t queue_ticks = 1 << 16;  ///< ticks that can wait for a slow disk before they are lost, >= 200
+  bool overwrite = false;              ///< replaces an existing file; false: an existing file is an error
+  bool wait_when_full = false;         ///< append() waits for the disk instead of losing ticks; for offline runs
+  std::int32_t keyframe_ticks = 1000;  ///< ticks between keyframes, >= 1; a seek simulates at most this many
+  std::int32_t queue_ticks = 1 << 16;  ///< queue capacity [ticks], >= 200; ticks beyond it are lost
   int compression_level = 3;           ///< zstd, in [1, 19]
 };
 
-/// How recording stands; `error` is empty as long as all is well.
+/// State of the recording. `error` is empty while recording works.
 struct WriterStatus {
-  std::string error;           ///< first error since the last success, kept for good once ticks were lost
-  std::int64_t appended = 0;   ///< ticks given to append()
+  std::string error;           ///< first error since the last success; permanent once ticks were lost
+  std::int64_t appended = 0;   ///< ticks passed to append()
   std::int64_t committed = 0;  ///< ticks that survive kill -9
-  std::int64_t lost = 0;       ///< ticks that were not recorded: the queue was full or the disk failed to the end
+  std::int64_t lost = 0;       ///< ticks not recorded because the queue was full or the disk failed until the end
 };
 
-/// Records one session. append() and event() belong to one thread, the tick's; they never wait for the disk
-/// (unless WriterOptions::wait_when_full) and never allocate, except an event for its own text.
-/// Compressing and writing are done by a thread of its own.
+/// Records one session. Call append() and event() from one thread, the tick's. They never wait for the disk (unless
+/// WriterOptions::wait_when_full is set) and never allocate, except an event for its own text. Separate threads
+/// compress, write and sync.
 class SessionWriter {
  public:
-  /// Writes the start and begins to record at `path`. Errors: a start that does not hold together, the file
-  /// exists, the folder is missing or cannot be written. Nothing is left behind after an error.
+  /// Writes the start to `path` and begins recording. Errors: an inconsistent start, an existing file, a missing or
+  /// read-only folder. An error leaves no file behind.
   static Result<SessionWriter> create(const std::string& path, const SessionStart& start,
                                       const WriterOptions& options = {});
 
   SessionWriter(SessionWriter&&) noexcept;
   SessionWriter& operator=(SessionWriter&&) noexcept;
-  /// Without finish(): saves what was appended and leaves the session marked as not ended.
+  /// Without finish(): saves all appended ticks; the session stays marked as not ended.
   ~SessionWriter();
 
-  /// Records the next tick; `after` is the State that it led to.
+  /// Records the next tick; `after` is the State after it.
   void append(const State& after, const TickRecord& record);
 
   /// Records an event of any tick.
@@ -53,9 +53,9 @@ class SessionWriter {
   /// 32 hexadecimal digits, random.
   const std::string& session_id() const;
 
-  /// Writes what is left and marks the session as ended. Errors: anything that was not written, with the
-  /// reason; what is in the file then is whole up to some tick and opens as a session without an end. Call
-  /// once; append() is over.
+  /// Writes the remaining ticks and marks the session as ended. Errors: everything that was not written, with the
+  /// reason; the file is then intact up to some tick and opens as a session without an end. Call finish() once;
+  /// append() must not follow.
   Result<SessionStatistics> finish(const std::vector<NamedValue>& values = {});
 
  private:

@@ -35,12 +35,12 @@ struct Hasher {
   }
 
  private:
-  /// Arrays over the axial elements count as two, as they were two when the first sessions were recorded: elements
-  /// without an internal variable, and those with one.
+  /// Arrays over the axial elements are hashed as two, elements without an internal variable and those with one: they
+  /// were two arrays when the first sessions were recorded.
   static bool is_axial(std::string_view name) { return name == "axial_severed" || name == "axial_crossing"; }
 
-  /// Arrays that came into State after the first sessions were recorded: while empty they do not count, so
-  /// that the hashes of those sessions stay what they were.
+  /// Arrays added to State after the first sessions were recorded. They are not hashed while empty, so that those
+  /// sessions keep their hashes.
   static bool is_newer(std::string_view name) {
     return name == "axial_crossing" || name.starts_with("blade_trail") || name.starts_with("acceleration");
   }

@@ -6,8 +6,8 @@
 
 namespace ctpm::recordings {
 
-/// XXH3-64 over every field of the State, independent of padding and of the machine. FORMAT.md section 5.
-/// Never allocates. Two States with the same hash are equal to the bit, up to chance of 2^-64.
+/// XXH3-64 over every field of the State, independent of padding and machine. FORMAT.md section 5. Never allocates.
+/// Equal hashes mean bit-equal States, up to a chance of 2^-64.
 std::uint64_t state_hash(const State& state);
 
 }  // namespace ctpm::recordings

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::int64_t progress_interval = 500;  // ticks
 
-/// A number that was recorded and the same one simulated again.
+/// A recorded number and its simulated counterpart.
 struct Pair {
   std::string name;
   double recorded, replayed;
@@ -30,7 +30,7 @@ struct Pair {
   }
 };
 
-/// Everything that a tick reports, next to what the record says.
+/// Every reported number of a tick, recorded and simulated.
 std::vector<Pair> outcomes(const TickRecord& record, const stepping::StepReport& report) {
   return {{"tool_force.x", record.tool_force.x, report.tool_force.x},
           {"tool_force.y", record.tool_force.y, report.tool_force.y},
@@ -42,7 +42,7 @@ std::vector<Pair> outcomes(const TickRecord& record, const stepping::StepReport&
           {"iterations", double(record.iterations), double(report.iterations)}};
 }
 
-/// A State laid out as numbers, field by field.
+/// Flattens a State to numbers, field by field.
 struct FlatField {
   std::string name;
   bool is_array;
@@ -67,10 +67,10 @@ struct Flatten {
   }
 };
 
-/// "position" for "position.x": fields that are told apart by their largest difference.
+/// "position" for "position.x". Within a group, the field with the largest difference is named.
 std::string group_of(const std::string& name) { return name.substr(0, name.find('.')); }
 
-/// Names the largest difference within the first group of fields that differs.
+/// Finds the largest difference within the first group of fields that differs.
 bool locate(const State& recorded, const State& replayed, Verdict& verdict) {
   std::vector<FlatField> before, now;
   for_each_field(recorded, Flatten{before});
@@ -91,7 +91,7 @@ bool locate(const State& recorded, const State& replayed, Verdict& verdict) {
   return !group.empty();
 }
 
-/// Keeps the first difference; the numbers of its tick stand until a keyframe says more.
+/// Keeps the first difference. The numbers of its tick stay in the verdict unless a keyframe locates it.
 void note_difference(std::int64_t tick, bool same_hash, const std::vector<Pair>& pairs, Verdict& verdict) {
   ++verdict.ticks_different;
   if (!verdict.same) return;
@@ -105,8 +105,8 @@ void note_difference(std::int64_t tick, bool same_hash, const std::vector<Pair>&
   verdict.recorded = number->recorded, verdict.replayed = number->replayed, verdict.difference = number->difference();
 }
 
-/// Compares at a keyframe: it must be the state that its tick's hash proves, and after a difference it says
-/// where that lies.
+/// Compares at a keyframe. The keyframe must match the hash that its tick recorded. After a difference it locates the
+/// field and index.
 Result<Done> compare_keyframe(SessionReader& reader, const ReplayCursor& cursor, Verdict& verdict) {
   const auto keyframe = reader.keyframe_at_or_before(cursor.tick());
   if (!keyframe) return keyframe.errors();
@@ -124,12 +124,12 @@ Result<Done> compare_keyframe(SessionReader& reader, const ReplayCursor& cursor,
   return Done{};
 }
 
-/// Ticks [from, to) between two keyframes, or the ends of what is asked for.
+/// Ticks [from, to) between two keyframes or the ends of the requested range.
 struct Stretch {
   std::int64_t from, to;
 };
 
-/// Tells the caller how far all threads together have come.
+/// Reports the progress of all threads together.
 class Progress {
  public:
   Progress(const VerifyOptions& options, std::int64_t total) : call_(options.progress), total_(total) {}
@@ -168,16 +168,16 @@ Result<Verdict> verify_stretch(SessionReader& reader, ReplayCursor& cursor, cons
   return verdict;
 }
 
-/// What came of one stretch: a verdict, or the errors that stood in its way.
+/// Result of one stretch: a verdict or errors.
 struct Outcome {
   Verdict verdict;
   Errors errors;
 };
 
-/// The stretches that all threads share.
+/// Work shared by all threads.
 struct Work {
   std::vector<Stretch> stretches;
-  std::vector<Outcome> outcomes;  ///< (stretches)
+  std::vector<Outcome> outcomes;  ///< (stretch_count)
   std::atomic<std::size_t> next{0};
 };
 
@@ -185,7 +185,7 @@ struct Work {
 void verify_next(SessionReader& reader, Work& work, Progress& progress) {
   std::optional<ReplayCursor> cursor;
   for (std::size_t i; (i = work.next.fetch_add(1)) < work.stretches.size();) {
-    // A cursor that went astray does not find back by walking on.
+    // A diverged cursor cannot return to the recorded State by stepping on.
     if (!cursor || !cursor->same_so_far()) {
       auto fresh = ReplayCursor::create(reader);
       if (fresh)
@@ -202,7 +202,7 @@ void verify_next(SessionReader& reader, Work& work, Progress& progress) {
   }
 }
 
-/// The stretches of [from, to), cut at the keyframes.
+/// The stretches of [from, to), split at the keyframes.
 std::vector<Stretch> cut_at(const std::vector<std::int64_t>& keyframes, std::int64_t from, std::int64_t to) {
   std::vector<Stretch> stretches{{from, to}};
   for (const std::int64_t keyframe : keyframes) {
@@ -213,7 +213,7 @@ std::vector<Stretch> cut_at(const std::vector<std::int64_t>& keyframes, std::int
   return stretches;
 }
 
-/// The first difference speaks for the whole; an error comes before any verdict.
+/// Merges the outcomes: any error wins, then the first difference.
 Result<Verdict> merge(const std::vector<Outcome>& outcomes) {
   Verdict whole;
   for (const Outcome& outcome : outcomes) {
@@ -244,7 +244,7 @@ Result<Verdict> verify_session(SessionReader& reader, const VerifyOptions& optio
   work.outcomes.resize(work.stretches.size());
   Progress progress(options, to - options.from);
 
-  // Each further thread reads for itself.
+  // Each further thread has its own reader.
   const std::size_t threads = std::min<std::size_t>(std::max(options.threads, 1), work.stretches.size());
   std::vector<SessionReader> readers;
   for (std::size_t i = 1; i < threads; ++i) {

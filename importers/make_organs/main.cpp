@@ -27,7 +27,7 @@ void print(const OrganShape& shape, const OrganMesh& mesh, const MeshFacts& fact
               facts.greatest_edge_mm);
 }
 
-/// Makes, checks and writes one organ; false when something is wrong, which has then been said.
+/// Makes, checks and writes one organ. On failure prints the reason and returns false.
 bool make_organ(const OrganShape& shape, const std::string& folder) {
   const auto mesh = mesh_shape(shape);
   if (!mesh) return print(mesh.errors()), false;

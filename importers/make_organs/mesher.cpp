@@ -29,21 +29,21 @@ namespace pmp = CGAL::Polygon_mesh_processing;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
-constexpr unsigned kSeed = 20;           // of the mesher's first points; any value will do, a change moves all vertices
-constexpr double kLeastAngleDeg = 15.0;  // below it fillers and renderers get bad normals
-constexpr double kSizeTolerance = 0.03;  // the sizes are round figures of life, not measurements
+constexpr unsigned kSeed = 20;  // of the mesher's first points; any value works, but a change moves all vertices
+constexpr double kLeastAngleDeg = 15.0;  // smaller angles give fillers and renderers bad normals
+constexpr double kSizeTolerance = 0.03;  // the sizes are rounded typical values, not measurements
 
 Vec3 to_vec3(const Kernel::Point_3& p) { return {p.x(), p.y(), p.z()}; }
 Kernel::Point_3 to_point(Vec3 v) { return {v.x, v.y, v.z}; }
 
 /// Gradient of the shape by central differences.
 Vec3 gradient(const OrganShape& shape, Vec3 p) {
-  constexpr double h = 1e-4;  // [mm]; far below the finest detail, far above rounding
+  constexpr double h = 1e-4;  // [mm]; far below the finest detail, far above rounding errors
   const auto slope = [&](Vec3 step) { return (shape.distance_mm(p + step) - shape.distance_mm(p - step)) / (2.0 * h); };
   return {slope({h, 0, 0}), slope({0, h, 0}), slope({0, 0, h})};
 }
 
-/// Moves a point that is near the surface onto it by Newton steps along the gradient.
+/// Moves a point near the surface onto it by Newton steps along the gradient.
 Vec3 onto_surface(const OrganShape& shape, Vec3 p) {
   for (int iteration = 0; iteration < 8; ++iteration) {
     const Vec3 slope = gradient(shape, p);
@@ -52,8 +52,8 @@ Vec3 onto_surface(const OrganShape& shape, Vec3 p) {
   return p;
 }
 
-/// Delaunay refinement of the implicit surface with triangles shorter than wanted in the end. Mesh_3, not the
-/// older Surface_mesher: that one orders by addresses, so what was made before would change the mesh.
+/// Delaunay refinement of the implicit surface, finer than the final mesh. Uses Mesh_3, because the older
+/// Surface_mesher orders by addresses, so that earlier allocations would change the mesh.
 Mesh refine_surface(const OrganShape& shape) {
   using Domain = CGAL::Labeled_mesh_domain_3<Kernel>;
   using Triangulation = CGAL::Mesh_triangulation_3<Domain>::type;
@@ -75,7 +75,7 @@ Mesh refine_surface(const OrganShape& shape) {
   return mesh;
 }
 
-/// Even triangles of the wanted edge length, vertices on the implicit surface itself.
+/// Remeshes to even triangles of the wanted edge length, with vertices on the implicit surface.
 void even_out(Mesh& mesh, const OrganShape& shape) {
   pmp::isotropic_remeshing(faces(mesh), shape.edge_mm, mesh,
                            pmp::parameters::number_of_iterations(12).number_of_relaxation_steps(3));
@@ -115,7 +115,7 @@ Box bounding_box(const std::vector<Vec3>& points) {
   return box;
 }
 
-/// Shift that takes shape coordinates to file coordinates: lowest point on z = 0, middle over the origin.
+/// Translation from shape to file coordinates: lowest point on z = 0, middle over the origin.
 Vec3 resting_shift(const std::vector<Vec3>& points) {
   const Box box = bounding_box(points);
   return {-0.5 * (box.low.x + box.high.x), -0.5 * (box.low.y + box.high.y), -box.low.z};
@@ -166,7 +166,7 @@ Result<MeshFacts> check_mesh(const OrganMesh& plain, const OrganShape& shape) {
     if (!(got >= range.low && got <= range.high)) complain(out_of(what, got, range));
   };
 
-  // Topology first: the rest is only defined for one closed mesh.
+  // Check topology first: the rest is defined only for one closed mesh.
   const Mesh mesh = cgal_mesh(plain);
   if (mesh.number_of_faces() != plain.triangle.size()) complain("some edges have more than two triangles");
   if (!CGAL::is_valid_polygon_mesh(mesh)) complain("the mesh is not manifold");

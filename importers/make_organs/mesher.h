@@ -10,27 +10,27 @@
 
 namespace ctpm::importers {
 
-/// A triangle mesh with coordinates in [mm], exactly as they stand in the file (three decimals).
+/// A triangle mesh with coordinates in [mm], exactly as stored in the file (three decimals).
 struct OrganMesh {
   std::vector<Vec3> vertex_mm;                        ///< (vertex_count)
   std::vector<std::array<std::int32_t, 3>> triangle;  ///< counter-clockwise seen from outside (triangle_count)
 };
 
-/// What was measured on a mesh.
+/// Measurements of a mesh.
 struct MeshFacts {
   double volume_ml = 0;
   double area_mm2 = 0;
-  double least_angle_deg = 0;  ///< of all triangles
+  double least_angle_deg = 0;  ///< smallest angle of all triangles
   double least_edge_mm = 0, greatest_edge_mm = 0;
   Vec3 low_mm, high_mm;  ///< corners of the bounding box
 };
 
-/// Triangulates the shape evenly and lays it on the plane z = 0, the middle of its bounding box over the
-/// origin. The same shape gives the same mesh. Error: the mesher found no surface.
+/// Triangulates the shape evenly and places it on the plane z = 0, with the middle of its bounding box over the origin.
+/// The same shape gives the same mesh. Error: the mesher found no surface.
 Result<OrganMesh> mesh_shape(const OrganShape& shape);
 
-/// Measures the mesh. Errors: not closed, several parts, with a tunnel, inside out, cutting itself, a
-/// triangle angle of 15 degrees or less, or a count, volume or size that is not what the shape asks for.
+/// Measures the mesh. Errors: not closed, several parts, a tunnel, inside out, self-intersections, a triangle angle of
+/// 15 degrees or less, or a count, volume or size outside the shape's bounds.
 Result<MeshFacts> check_mesh(const OrganMesh& mesh, const OrganShape& shape);
 
 }  // namespace ctpm::importers

@@ -8,8 +8,8 @@
 
 namespace ctpm::importers {
 
-/// Writes the mesh as a Wavefront OBJ file in [mm] with three decimals, headed by what it is, its maker and
-/// its licence. Error: the file cannot be written.
+/// Writes the mesh as a Wavefront OBJ file in [mm] with three decimals, with its description, maker and licence in the
+/// header. Error: the file cannot be written.
 Result<Done> write_obj(const std::filesystem::path& path, const OrganMesh& mesh, const OrganShape& shape);
 
 }  // namespace ctpm::importers

@@ -9,9 +9,8 @@ namespace ctpm::importers {
 
 namespace {
 
-/// Both lobes before the underside is shaped. The right lobe leans back, so that its upper face slopes gently
-/// down to a thin front edge and its back stays thick and round; the left one falls and narrows towards the
-/// patient's left.
+/// Both lobes before the underside is shaped. The right lobe leans back: its upper face slopes gently down to a thin
+/// front edge, and its back stays thick and round. The left lobe descends and narrows towards the patient's left.
 double liver_lobes(Vec3 p) {
   const Vec3 right = turn_y(turn_z(turn_x(p - Vec3{-42, 7, 22.5}, -36), 14), -14);
   const double right_lobe = blunt_ellipsoid(right, {0, 0, 0}, {67, 86, 48.5}, 2.2);
@@ -20,22 +19,22 @@ double liver_lobes(Vec3 p) {
   return join(right_lobe, left_lobe, 50);
 }
 
-/// Height of the underside over the table: flat at the rim, hollow below the middle.
+/// Height of the underside above the table: flat at the rim, concave below the middle.
 double liver_underside(Vec3 p) {
   const double x = (p.x + 4) / 70, y = (p.y - 8) / 44;
   return 14.0 * std::exp(-(x * x + y * y));
 }
 
-/// The line of the falciform ligament: a shallow furrow over the dome that opens into a notch in the front
-/// edge. The depth to be taken off at `p` [mm].
+/// Depth [mm] to remove at `p` for the falciform ligament: a shallow furrow over the dome that opens into a notch in
+/// the front edge.
 double falciform_furrow(Vec3 p) {
   const double beside = (p.x - 24 + 0.12 * p.y) / 9.0;
   const double to_front = std::clamp((5 - p.y) / 45.0, 0.0, 1.0);
   return (2.0 + 16.0 * to_front * to_front) * std::exp(-beside * beside);
 }
 
-/// Furrows of the underside: the ligamentum teres, the gallbladder's bed, the gate of the vessels between
-/// them, and the groove of the vena cava at the back.
+/// Furrows of the underside: ligamentum teres, gallbladder bed, the porta hepatis between them, and the groove of the
+/// vena cava at the back.
 double liver_without_furrows(Vec3 p, double body) {
   body = cut_out(body, tapered_capsule(p, {-20, -43, 3}, 8, {-10, -6, 15}, 5), 12);
   body = cut_out(body, tapered_capsule(p, {23, -40, 3}, 5, {14, 12, 14}, 4), 8);
@@ -60,7 +59,7 @@ double kidney(Vec3 p) {
 }
 
 double skin(Vec3 p) {
-  // Only the upper face waves: the lower one lies flat.
+  // Only the upper face is wavy; the lower one is flat.
   const double wave = 1.2 * std::sin(p.x / 13.0 + 0.4) + 0.8 * std::sin((p.y + 0.5 * p.x) / 10.0);
   const double share = std::clamp((p.z + 14) / 28.0, 0.0, 1.0);
   return rounded_box({p.x, p.y, p.z - wave * share}, {60, 60, 14.2}, 10);

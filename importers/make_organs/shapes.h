@@ -8,23 +8,22 @@
 
 namespace ctpm::importers {
 
-/// An organ as an implicit shape, and what its mesh must look like to be accepted. z is up and the organ lies
-/// with its lowest point near z = 0.
+/// An organ as an implicit shape, with acceptance bounds for its mesh. z is up; the lowest point is near z = 0.
 struct OrganShape {
-  /// Both ends are allowed.
+  /// Closed interval.
   struct Range {
     double low, high;
   };
 
-  std::string name;                         ///< of the file, without its ending
-  std::string description;                  ///< one sentence for the file's head
-  std::function<double(Vec3)> distance_mm;  ///< about the signed distance of a point in [mm]; negative inside
+  std::string name;                         ///< name of the file, without extension
+  std::string description;                  ///< one sentence for the file's header
+  std::function<double(Vec3)> distance_mm;  ///< approximate signed distance of a point [mm]; negative inside
   Vec3 inside_mm;                           ///< a point well inside
   double reach_mm = 0;                      ///< the shape lies within this distance of `inside_mm`
   double edge_mm = 0;                       ///< edge length of the mesh
-  Range triangles{};                        ///< accepted count
+  Range triangles{};                        ///< accepted triangle count
   Range volume_ml{};                        ///< accepted volume
-  Vec3 size_mm;                             ///< bounding box wanted; met to 3 %
+  Vec3 size_mm;                             ///< wanted size of the bounding box, to within 3 %
 };
 
 /// The liver, the kidney and the piece of skin.

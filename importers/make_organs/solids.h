@@ -4,33 +4,31 @@
 
 namespace ctpm::importers {
 
-// Solids as functions of a point: negative inside, positive outside, zero on the surface, and near the
-// surface close to the distance from it. All lengths are in [mm]. Formulas after I. Quilez, "Distance
-// functions".
+// Solids as functions of a point: negative inside, positive outside, zero on the surface. Near the surface the value
+// approximates the distance. All lengths are in [mm]. Formulas after I. Quilez, "Distance functions".
 
-/// Ellipsoid at `centre` with half axes `half` along x, y, z; first order distance, exact sign.
+/// Ellipsoid at `centre` with half axes `half` along x, y, z. The distance is first order, the sign exact.
 double ellipsoid(Vec3 point, Vec3 centre, Vec3 half);
 
-/// The same with |x/a|^exponent + |y/b|^exponent + |z/c|^exponent = 1 as its surface: the ends get blunter
-/// above 2.
+/// Superellipsoid with the surface |x/a|^exponent + |y/b|^exponent + |z/c|^exponent = 1; exponents above 2 make blunter
+/// ends.
 double blunt_ellipsoid(Vec3 point, Vec3 centre, Vec3 half, double exponent);
 
-/// Ball of radius `radius_a` at `a` joined to a ball of radius `radius_b` at `b` by a cone-like body; the
-/// radius changes linearly along the axis. a != b.
+/// Balls of radius `radius_a` at `a` and `radius_b` at `b`, joined by a body whose radius changes linearly along the
+/// axis. a != b.
 double tapered_capsule(Vec3 point, Vec3 a, double radius_a, Vec3 b, double radius_b);
 
 /// Box at the origin with half sides `half`, edges and corners rounded with `radius` <= the smallest half
 /// side.
 double rounded_box(Vec3 point, Vec3 half, double radius);
 
-/// Both solids together; where their distances differ by less than `blend` > 0 the joint is filled smoothly
-/// (C2).
+/// Union of both solids. Where their distances differ by less than `blend` > 0, the joint is filled smoothly (C2).
 double join(double a, double b, double blend);
 
-/// What both solids share, with the edge rounded over `blend` > 0.
+/// Intersection of both solids, with the edge rounded over `blend` > 0.
 double common(double a, double b, double blend);
 
-/// The first solid without the second, with the edge rounded over `blend` > 0.
+/// The first solid minus the second, with the edge rounded over `blend` > 0.
 double cut_out(double solid, double hole, double blend);
 
 /// `v` turned about the x, y or z axis by `degrees`, counter-clockwise seen from the axis' positive end.

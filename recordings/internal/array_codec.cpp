@@ -8,7 +8,7 @@ namespace {
 
 constexpr int order_count = 3;
 
-/// What precedes a value: nothing, the value before it, or the straight line through the two before it.
+/// Predictor of a value: 0, the previous value, or linear extrapolation of the previous two.
 template <class U>
 U prediction(const U* value, int order) {
   if (order == 0) return 0;

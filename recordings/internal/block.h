@@ -12,18 +12,18 @@ inline constexpr std::uint64_t max_part_size = 1ull << 30;  ///< of a part or a 
 inline constexpr std::uint64_t max_chunk_size = 64ull
                                                 << 20;  ///< of a chunk or a run of events before compression [bytes]
 
-/// A compressed, checked payload. FORMAT.md section 2.
+/// A compressed payload with its checksum. FORMAT.md section 2.
 struct Block {
   std::int64_t size = 0;  ///< before compression [bytes]
   std::int64_t checksum = 0;
   Bytes data;
 };
 
-/// `name` is what is in front of the size in the label, such as "chunk 300 100".
+/// `name` is the label without the size, such as "chunk 300 100".
 Block pack(const std::string& name, ByteView content, std::uint64_t seed, int level);
 
-/// The content of a block that is not trusted. Errors: checksum, size beyond `max_size`, or not
-/// decompressible; `name` is named.
+/// Verifies and decompresses an untrusted block. Errors, each with `name`: wrong checksum, size above `max_size`, or
+/// not decompressible.
 Result<Bytes> unpack(const std::string& name, std::int64_t size, std::int64_t checksum, ByteView data,
                      std::uint64_t seed, std::uint64_t max_size);
 

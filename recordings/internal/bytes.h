@@ -31,8 +31,8 @@ inline ByteView view(std::string_view text) {
 }
 inline std::string text_of(ByteView bytes) { return {bytes.begin(), bytes.end()}; }
 
-/// Reads from bytes that are not trusted. After the first read beyond the end everything fails. `budget`
-/// bounds the memory that decoding may take: small blocks can state large arrays.
+/// Reads untrusted bytes. After the first read beyond the end, every read fails. `budget` bounds the memory of
+/// decoding, because a small block can declare large arrays.
 class ByteReader {
  public:
   explicit ByteReader(ByteView bytes, std::uint64_t budget) : bytes_(bytes), budget_(budget) {}
@@ -60,7 +60,8 @@ class ByteReader {
     return value;
   }
 
-  /// Asks for the memory of `count` items of `width` bytes; false, and failed, if there is not so much.
+  /// Takes `count` items of `width` bytes from the budget. If the budget is too small, returns false and the reader
+  /// fails.
   bool spend(std::uint64_t count, std::uint64_t width) {
     if (failed_ || count > budget_ / width) {
       failed_ = true;

@@ -28,13 +28,13 @@ bool has_content(const std::string& path) {
   return ::stat(path.c_str(), &info) == 0 && info.st_size > 0;
 }
 
-/// Whether SQLite would need to put an index of the log beside the file and cannot.
+/// Whether SQLite needs to create an index of the log beside the file and cannot.
 bool needs_a_copy(const std::string& path) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   return !has_content(path + "-shm") && ::access(folder.empty() ? "." : folder.c_str(), W_OK) != 0;
 }
 
-/// Copies a file and its log to a folder of their own and returns that folder; empty if it cannot be done.
+/// Copies a file and its log to a new folder and returns the folder; empty on failure.
 std::string copy_with_log(const std::string& path) {
   std::error_code problem;
   std::string folder = (std::filesystem::temp_directory_path(problem) / "ctpm-XXXXXX").string();
@@ -46,13 +46,12 @@ std::string copy_with_log(const std::string& path) {
   return "";
 }
 
-/// Nothing in a file that is not trusted may run, allocate without bound or write.
+/// Nothing in an untrusted file may run, allocate without bound or write.
 void defend(sqlite3* connection, bool salvage) {
   sqlite3_db_config(connection, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_db_config(connection, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
   sqlite3_db_config(connection, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
-  // Salvage has to go on in a file that is shorter than it says, which SQLite allows only without its
-  // defensive mode.
+  // Salvage must read a truncated file. SQLite allows that only outside its defensive mode.
   if (salvage)
     sqlite3_db_config(connection, SQLITE_DBCONFIG_WRITABLE_SCHEMA, 1, nullptr);
   else
@@ -112,8 +111,7 @@ Result<Database> Database::open(const std::string& path, Access access) {
   int flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_PRIVATECACHE | SQLITE_OPEN_EXRESCODE | SQLITE_OPEN_URI;
   flags |= reads ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
   if (access == Access::create) flags |= SQLITE_OPEN_CREATE;
-  // A file without a log beside it is opened as one that nobody changes, so that SQLite puts no files beside
-  // it.
+  // A file without a log is opened as immutable, so that SQLite creates no files beside it.
   const bool alone = reads && !has_content(path + "-wal");
   std::string opened = path;
   if (reads && !alone && needs_a_copy(path)) {

@@ -28,7 +28,7 @@ class Statement {
   Statement& bind(int index, const std::string& text);
   Statement& bind(int index, ByteView blob);  ///< the bytes must live until reset()
 
-  /// Failed: Database::problem() says why.
+  /// If failed, Database::problem() gives the reason.
   Outcome step();
   void reset();
 
@@ -49,9 +49,9 @@ class Database {
  public:
   enum class Access {
     create,   ///< a new file
-    write,    ///< an existing one
-    read,     ///< an existing one that is not trusted
-    salvage,  ///< as read, and goes on where the file contradicts itself
+    write,    ///< an existing file
+    read,     ///< an existing untrusted file
+    salvage,  ///< like read, but tolerates inconsistencies of the file
   };
 
   static Result<Database> open(const std::string& path, Access access);
@@ -66,17 +66,16 @@ class Database {
   Result<Statement> prepare(const std::string& sql);
   Result<Done> close();
 
-  std::string problem() const;  ///< of the last call that failed
-  bool is_corrupt() const;      ///< the last failure was about the file's content
-  bool is_full() const;         ///< the last failure was about the space or the device
+  std::string problem() const;  ///< message of the last failed call
+  bool is_corrupt() const;      ///< the last failure was damaged file content
+  bool is_full() const;         ///< the last failure was lack of space or a device error
   bool in_transaction() const;
   const std::string& path() const { return path_; }
 
  private:
   sqlite3* connection_ = nullptr;
   std::string path_;
-  std::string copy_folder_;  ///< where a copy is read, because no index can be put beside the file; empty if
-                             ///< it is not
+  std::string copy_folder_;  ///< folder of the copy read in place of the file; empty: no copy
 };
 
 }  // namespace ctpm::recordings::session_file

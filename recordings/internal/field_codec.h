@@ -15,7 +15,7 @@
 
 namespace ctpm::recordings::session_file {
 
-/// Structures of the file that core does not know, in the manner of core/model/fields.h.
+/// Field lists of stored structures that core/model/fields.h does not cover.
 template <class S, class Visit>
 requires std::is_same_v<std::remove_const_t<S>, Surface>
 void for_each_field(S& s, Visit&& visit) {
@@ -32,7 +32,7 @@ void for_each_field(E& e, Visit&& visit) {
   visit("tick", e.tick);
   visit("kind", e.kind);
   for_each_value(e, visit);
-  // Written where they say something, and read from every file.
+  // Written only if not empty, and read from every file.
   if (!std::is_const_v<E> || !e.text.empty()) visit("text", e.text);
   if (!std::is_const_v<E> || !e.values.empty()) visit("values", e.values);
 }
@@ -63,7 +63,7 @@ constexpr FieldType type_of() {
   }
 }
 
-/// Numbers in one T: 3 for a vector.
+/// Count of numbers in one T: 3 for a vector.
 template <class T>
 constexpr std::size_t numbers_in() {
   return sizeof(T) / (type_of<T>() == FieldType::u8                                      ? 1
@@ -144,7 +144,7 @@ class FieldWriter {
   std::uint32_t count_ = 0;
 };
 
-/// Writes whatever `give` visits as a field set.
+/// Writes everything that `give` visits as a field set.
 template <class Give>
 void put_field_set(Bytes& out, Give&& give) {
   const std::size_t place = out.size();
@@ -160,7 +160,7 @@ void put_fields(Bytes& out, const S& structure) {
   put_field_set(out, [&](FieldWriter& writer) { for_each_field(structure, writer); });
 }
 
-/// One field of a field set that has been taken apart but not decoded.
+/// One field of a parsed field set, not yet decoded.
 struct FieldView {
   std::string name;
   FieldType type;
@@ -169,10 +169,10 @@ struct FieldView {
   bool used = false;
 };
 
-/// A field set read from bytes that are not trusted.
+/// A field set read from untrusted bytes.
 class FieldSet {
  public:
-  /// Fails with the reader, which must be at the set's first byte; says in `problem` what is wrong.
+  /// The reader must be at the set's first byte. Fails with the reader and sets `problem`.
   FieldSet(ByteReader& in, std::string& problem);
 
   const std::vector<FieldView>& fields() const { return fields_; }
@@ -273,8 +273,8 @@ class FieldReader {
   std::string& problem_;
 };
 
-/// Runs take(set, reader) over the field set at the reader; a field that it leaves is unknown. `problem` says what is
-/// wrong, empty if nothing is.
+/// Runs take(set, reader) on the field set at the reader. A field not taken is unknown. `problem` describes the error;
+/// empty if none.
 template <class Take>
 void take_field_set(ByteReader& in, std::string& problem, Take&& take) {
   FieldSet set(in, problem);
@@ -285,7 +285,7 @@ void take_field_set(ByteReader& in, std::string& problem, Take&& take) {
   if (problem.empty() && !in.at_end()) problem = "bytes are left over";
 }
 
-/// Fills `structure` from the field set at the reader; `problem` says what is wrong, empty if nothing is.
+/// Fills `structure` from the field set at the reader. `problem` describes the error; empty if none.
 template <class S>
 void get_fields(ByteReader& in, S& structure, std::string& problem) {
   take_field_set(in, problem, [&](FieldSet&, FieldReader& reader) { for_each_field(structure, reader); });

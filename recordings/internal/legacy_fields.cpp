@@ -10,10 +10,10 @@
 namespace ctpm::recordings::session_file {
 namespace {
 
-/// Cells of a lattice that is no lattice end here: beyond what an organ has, within what an i32 holds.
+/// Bound on cell coordinates of malformed lattices: more than any organ has, less than the range of i32.
 constexpr double kFarthestCell = 1 << 20;
 
-/// One of the two tables of axial elements that a Model had.
+/// One of the two earlier tables of axial elements.
 struct EarlierElements {
   std::vector<std::int32_t> a, b, third;
   std::vector<double> rest_length, k, c, kelvin_k, energy, friction;
@@ -34,8 +34,8 @@ void read_tpms(FieldReader& reader, EarlierElements& tpms) {
   reader("cut_resistance.tpm_energy", tpms.energy), reader("cut_resistance.tpm_friction", tpms.friction);
 }
 
-/// Whether the arrays of a table fit each other. One that does not would shift the rows behind it when the tables
-/// become one.
+/// Whether the arrays of a table have matching lengths. A mismatch would shift the rows behind it when the tables are
+/// joined.
 template <class T>
 bool fits(const std::vector<T>& values, std::size_t expected, const char* name, std::string& problem) {
   if (values.size() == expected || !problem.empty()) return problem.empty();
@@ -68,7 +68,7 @@ std::vector<T> joined(std::vector<T> first, const std::vector<T>& second) {
   return first;
 }
 
-/// The two tables as one, edges first.
+/// Joins the two tables, edges first.
 void join_tables(EarlierElements& edges, const EarlierElements& tpms, Model& model) {
   const std::size_t edge_count = edges.a.size(), tpm_count = tpms.a.size();
   AxialElements& axial = model.axial;
@@ -89,8 +89,8 @@ void join_tables(EarlierElements& edges, const EarlierElements& tpms, Model& mod
   model.cut_resistance = {joined(edges.energy, tpms.energy), joined(edges.friction, tpms.friction)};
 }
 
-/// The axes of an organ's lattice, one cell along each [m]: along the first element as long as the spacing, the first
-/// such element across it, and across both. An organ may be turned in its scene.
+/// The lattice axes of an organ, each one cell long [m]: the first element whose length is the spacing, the first such
+/// element perpendicular to it, and their cross product. A scene can rotate an organ.
 struct LatticeAxes {
   Vec3 along[3];
 
@@ -123,7 +123,7 @@ std::int32_t rounded(double cells) {
   return std::isfinite(cells) ? std::int32_t(std::lround(std::clamp(cells, -kFarthestCell, kFarthestCell))) : 0;
 }
 
-/// Gives every sphere its cell. A Model whose positions or organs are not well formed is left to check_model().
+/// Assigns every sphere its cell. check_model() reports malformed positions or organs.
 void find_cells(Model& model) {
   const std::size_t count = model.sphere_count();
   const Vec3Array& rest = model.rest_position;
@@ -150,7 +150,7 @@ void find_cells(Model& model) {
   }
 }
 
-/// Two arrays of a State, of edges and of two-sphere TPMs, as one. Either both are there or none.
+/// Joins two arrays of a State, of edges and of two-sphere TPMs. Both or neither must exist.
 void join_states(const std::vector<std::uint8_t>& of_edges, const std::vector<std::uint8_t>& of_tpms,
                  std::size_t tpm_count, const char* tpm_name, std::vector<std::uint8_t>& all, std::string& problem) {
   if (!of_edges.empty() || !of_tpms.empty()) fits(of_tpms, tpm_count, tpm_name, problem);

@@ -7,7 +7,7 @@ namespace ctpm::recordings::session_file {
 namespace {
 constexpr std::int32_t automatic = 0;
 
-/// Sentence of events of the kind `cut` that were pieces; their one value is how many.
+/// Text of `cut` events that mean loose pieces; their one value is the number of pieces.
 constexpr const char* piece_sentence = "a piece comes loose; value: pieces";
 constexpr double most_pieces = 1e9;
 }  // namespace
@@ -33,7 +33,7 @@ Result<Done> update_integrator(Model& model, std::int32_t physics_revision, std:
     return Error{"", std::string("was recorded with ") + retired + ", which this program no longer has",
                  "use the program that recorded it"};
   if (physics_revision != 0) return Done{};  // refused as an unknown kind
-  // The choice reads the whole Model, so the Model is proven first.
+  // The choice reads the whole Model, so check the Model first.
   model.solver.integrator = Integrator::backward_euler;
   if (!check_model(model).empty()) return Done{};
   const stepping::IntegratorChoice choice = stepping::resolve_integrator(model);

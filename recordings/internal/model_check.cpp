@@ -9,10 +9,10 @@
 namespace ctpm::recordings::session_file {
 namespace {
 
-/// "[i]", for the place in an array.
+/// "[i]", an index in an array.
 std::string place(std::size_t i) { return std::string("[").append(std::to_string(i)).append("]"); }
 
-/// Collects problems; every check names the array it is about.
+/// Collects problems; every check names its array.
 class Checker {
  public:
   explicit Checker(std::string where) : where_(std::move(where)) {}
@@ -74,7 +74,7 @@ std::string shown(double number) {
   return text;
 }
 
-/// What a value of this meaning must be.
+/// Describes the valid values of a meaning.
 std::string demand(const FieldMeaning& meaning) {
   const std::string lowest = shown(meaning.lowest);
   if (std::isfinite(meaning.highest))
@@ -84,7 +84,7 @@ std::string demand(const FieldMeaning& meaning) {
   return "must be finite and " + std::string(meaning.is_open ? "above " : "not below ") + lowest;
 }
 
-/// Checks each field of a Model, of a State or of a structure in them against its meaning.
+/// Checks each field of a Model, a State or a nested structure against its meaning.
 class FieldCheck {
  public:
   FieldCheck(Checker& check, const Model& model, std::string prefix = "")
@@ -173,14 +173,15 @@ class FieldCheck {
   std::string prefix_;
 };
 
-/// An element must not join a sphere with itself.
+/// An element must not join a sphere to itself.
 void check_ends(Checker& check, const std::string& name, const std::vector<std::int32_t>& a,
                 const std::vector<std::int32_t>& b) {
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
     if (a[i] == b[i]) return check.require(false, name + place(i), "joins a sphere with itself");
 }
 
-/// Element by element: a known law, only the values that it has, and internal variables in State's order at the end.
+/// Checks each element: a known law, only the values of that law, and elements with internal variables last, in State's
+/// order.
 void check_laws(Checker& check, const AxialElements& axial) {
   std::int32_t variables = 0;
   for (std::size_t i = 0; i < axial.size(); ++i) {
@@ -208,12 +209,12 @@ void check_axial(Checker& check, const Model& model) {
   check_ends(check, "axial", axial.a, axial.b);
   if (model.has_softening) check.length("axial.third", axial.third.size(), axial.size());
   const auto fits = [&](const auto& values) { return values.empty() || values.size() == axial.size(); };
-  // Lengths were told by the walk over the fields.
+  // The field check has already reported wrong lengths.
   if (axial.law.size() == axial.size() && fits(axial.c) && fits(axial.kelvin_k) && fits(axial.internal))
     check_laws(check, axial);
 }
 
-/// Lattice cells of an organ lie near enough to each other for a table of all of them.
+/// The lattice cells of an organ must span a box small enough for a table.
 void check_cells(Checker& check, const Model& model) {
   constexpr std::int64_t most = 1 << 26;
   std::int64_t all = 0;
@@ -224,7 +225,7 @@ void check_cells(Checker& check, const Model& model) {
     std::int64_t volume = 1;
     for (const auto* coordinate : {&model.cell.i, &model.cell.j, &model.cell.k}) {
       if (organ.first < 0 || organ.count <= 0 || std::int64_t{organ.first} + organ.count > std::ssize(*coordinate))
-        continue;  // told by check_organs() and the walk over the fields
+        continue;  // reported by check_organs() and the field check
       const auto begin = coordinate->begin() + organ.first;
       const auto [low, high] = std::minmax_element(begin, begin + organ.count);
       volume = std::min(volume * (std::int64_t{*high} - *low + 1), 2 * most);
@@ -235,7 +236,7 @@ void check_cells(Checker& check, const Model& model) {
   }
 }
 
-/// The arrays of a cut's resistance are there together or not at all.
+/// The arrays of cut resistance must all exist or all be empty.
 void check_cut_resistance(Checker& check, const Model& model) {
   const CutResistance& cut = model.cut_resistance;
   if (!cut.any()) return;
@@ -255,7 +256,7 @@ void check_organs(Checker& check, const Model& model) {
   }
 }
 
-/// Coordinates of an array that may be left out are left out together.
+/// The coordinates of an optional array must all exist or all be empty.
 void check_together(Checker& check, const std::string& name, const Vec3Array& points) {
   check.require(points.x.size() == points.y.size() && points.x.size() == points.z.size(), name,
                 "has coordinates of different lengths");
@@ -282,7 +283,7 @@ Errors check_state(const Model& model, const State& state) {
   check_together(check, "blade_trail", state.blade_trail);
   check_together(check, "acceleration", state.acceleration);
 
-  // The sets of severed elements are there together or not at all; older sessions do not say where the blade passed.
+  // The arrays of severed elements must all exist or all be empty. Older sessions do not store crossings.
   const bool cuts = !state.axial_severed.empty() || !state.constraint_severed.empty() || !state.angle_severed.empty() ||
                     model.has_scalpel();
   check.length("axial_severed", state.axial_severed.size(), cuts ? model.axial.size() : 0);

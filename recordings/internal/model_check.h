@@ -8,15 +8,14 @@
 
 namespace ctpm::recordings::session_file {
 
-/// Whether a Model can be simulated without reading outside its arrays: lengths fit, indices are in range,
-/// numbers are finite and in the ranges that core/model/model.h states. All problems at once (the first of each
-/// array).
+/// Checks that a Model can be simulated without reading outside its arrays: lengths match, indices are in range,
+/// numbers are finite and in the ranges of core/model/model.h. Returns all problems (the first of each array).
 Errors check_model(const Model& model);
 
-/// Whether a State belongs to the Model.
+/// Checks that a State fits the Model.
 Errors check_state(const Model& model, const State& state);
 
-/// Whether the surfaces are one per organ, or none, and can be drawn without reading outside their arrays.
+/// Checks that there is one surface per organ or none, and that they can be drawn without reading outside their arrays.
 Errors check_surfaces(const Model& model, const std::vector<Surface>& surfaces);
 
 }  // namespace ctpm::recordings::session_file

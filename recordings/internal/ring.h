@@ -6,21 +6,21 @@
 
 namespace ctpm::recordings::session_file {
 
-/// A queue from one thread to one other that never locks and never allocates after it was made: the slots are
+/// A lock-free queue from one producer thread to one consumer thread. It never allocates after construction: slots are
 /// filled and emptied in place.
 template <class T>
 class Ring {
  public:
   Ring(std::size_t capacity, const T& prototype) : slots_(capacity, prototype) {}
 
-  /// Producer: the slot to fill, or none if the ring is full. push() hands it over.
+  /// Producer: the slot to fill, or null if the ring is full. push() hands it over.
   T* free_slot() {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
     return tail - head_.load(std::memory_order_acquire) < slots_.size() ? &slots_[tail % slots_.size()] : nullptr;
   }
   void push() { tail_.store(tail_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
 
-  /// Consumer: how many wait, the i-th of them, and giving the first `count` slots back.
+  /// Consumer: number of waiting items, the i-th of them, and release of the first `count` slots.
   std::size_t waiting() const { return tail_.load(std::memory_order_acquire) - head_.load(std::memory_order_relaxed); }
   const T& waiting_at(std::size_t i) const {
     return slots_[(head_.load(std::memory_order_relaxed) + i) % slots_.size()];

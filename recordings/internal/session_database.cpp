@@ -33,7 +33,7 @@ std::string folder_of(const std::string& path) {
   return slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
 }
 
-/// A rename is durable once its folder is.
+/// A rename is durable once its folder is synced.
 Result<Done> sync_folder(const std::string& path) {
   const int folder = ::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder < 0) return system_error(path, "its folder cannot be opened");
@@ -43,8 +43,8 @@ Result<Done> sync_folder(const std::string& path) {
   return Done{};
 }
 
-/// Gives the finished `temporary` its name; a log that belonged to an older file of that name must not be
-/// taken for its own.
+/// Renames the finished `temporary`. Removes the log of an older file of that name, so that it is not applied to the
+/// new one.
 Result<Done> put_in_place(const std::string& temporary, const std::string& path, bool overwrite) {
   if (overwrite) {
     for (const char* ending : {"-journal", "-wal", "-shm"}) ::unlink((path + ending).c_str());
@@ -78,7 +78,7 @@ struct NamedContent {
   Bytes content;
 };
 
-/// All parts that are known at the start.
+/// Writes all parts known at the start.
 std::vector<NamedContent> start_parts(const SessionStart& start, const SessionIdentity& identity) {
   std::vector<NamedContent> parts;
   const auto add_text = [&](const char* name, const std::string& text) {
@@ -118,7 +118,7 @@ void remove_with_companions(const std::string& path) {
 
 Result<Done> copy_with_new_first_page(const std::string& damaged, const std::string& repaired) {
   constexpr std::size_t page_size = 4096;
-  // SQLite itself makes the page, in a file that becomes the copy.
+  // SQLite makes the page, in a file that becomes the copy.
   auto database = Database::open(repaired, Database::Access::create);
   if (!database) return database.errors();
   if (auto r = database->run(sql_of_new_file()); !r) return r;
@@ -133,7 +133,7 @@ Result<Done> copy_with_new_first_page(const std::string& damaged, const std::str
     std::filesystem::copy_file(damaged + "-wal", repaired + "-wal", problem);
   if (problem) return Error{repaired, "cannot be written: " + problem.message(), ""};
 
-  // The number of pages, big-endian; a page that was cut off is not there.
+  // The number of pages, big-endian; a truncated last page does not count.
   const auto pages = static_cast<std::uint32_t>(std::filesystem::file_size(repaired, problem) / page_size);
   for (int byte = 0; byte < 4; ++byte) page[28 + byte] = static_cast<char>(pages >> (24 - 8 * byte));
   std::fstream file(repaired, std::ios::binary | std::ios::in | std::ios::out);
@@ -193,7 +193,7 @@ Result<SessionTables> SessionTables::open_for_writing(const std::string& path) {
 }
 
 void SessionTables::rollback() {
-  // Some errors make SQLite roll back by itself.
+  // After some errors SQLite has already rolled back.
   if (database_.in_transaction() && !database_.run("ROLLBACK")) return;
 }
 
@@ -225,7 +225,7 @@ Result<Done> SessionTables::insert_events(std::int64_t first, std::int64_t count
 
 Result<Done> SessionTables::close() {
   part_ = {}, chunk_ = {}, keyframe_ = {}, event_ = {};
-  // Fails while somebody reads the file; it is whole then too, with its log beside it.
+  // Fails while another process reads the file. The file is then still complete, with its log beside it.
   if (auto r = database_.run("PRAGMA wal_checkpoint(TRUNCATE); PRAGMA journal_mode=DELETE;"); !r) return r;
   return database_.close();
 }
@@ -259,7 +259,7 @@ Result<Done> create_session_file(const std::string& path, const SessionStart& st
   if (result) result = put_in_place(temporary, path, overwrite);
   if (result) return result;
   remove_with_companions(temporary);
-  // Messages name the file that was asked for, not the one beside it.
+  // Messages name the requested file, not the temporary one.
   Errors errors = result.errors();
   for (Error& error : errors)
     if (error.where == temporary) error.where = path;

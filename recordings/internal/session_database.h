@@ -29,28 +29,28 @@ void for_each_field(S& s, Visit&& visit) {
   visit("physics_revision", s.physics_revision);
 }
 
-/// A new identity of a session that begins with `start`: random, from the operating system.
+/// A new random identity, from the operating system, for a session that begins with `start`.
 SessionIdentity new_identity(const SessionStart& start);
 
-/// What a block is called in its checksum and in messages.
+/// Name of a block in its checksum and in messages.
 std::string part_name(const std::string& name);
 std::string chunk_name(std::int64_t first, std::int64_t count);
 std::string keyframe_name(std::int64_t tick);
 std::string event_name(std::int64_t first, std::int64_t count);
 
-/// Makes a complete session file without ticks at `path`, through a file beside it that is synced and
-/// renamed. Nothing is left behind after an error. `overwrite`: replace what is there.
+/// Makes a complete session file without ticks at `path`: writes a temporary file beside it, syncs and renames it. An
+/// error leaves no file behind. `overwrite` replaces an existing file.
 Result<Done> create_session_file(const std::string& path, const SessionStart& start, const SessionIdentity& identity,
                                  bool overwrite, int level);
 
-/// Writes a copy of the session file `damaged` to `repaired` whose first page is that of a new file: the
-/// header and the list of tables, which are the same in every session of this version. Takes the log along.
+/// Copies the session file `damaged` and its log to `repaired`, with the first page of a new file. That page holds the
+/// header and the list of tables, which are equal in all sessions of this version.
 Result<Done> copy_with_new_first_page(const std::string& damaged, const std::string& repaired);
 
-/// Removes a file and what SQLite may have put beside it.
+/// Removes a file and SQLite's files beside it.
 void remove_with_companions(const std::string& path);
 
-/// The tables of an open session file, for writing. All errors are at the file's path.
+/// The tables of an open session file, for writing. All errors name the file's path.
 class SessionTables {
  public:
   static Result<SessionTables> open_for_writing(const std::string& path);
@@ -64,7 +64,7 @@ class SessionTables {
   Result<Done> insert_keyframe(std::int64_t tick, const Block& block);
   Result<Done> insert_events(std::int64_t first, std::int64_t count, const Block& block);
 
-  /// Leaves one file: folds the log in.
+  /// Checkpoints the log, so that one file remains.
   Result<Done> close();
 
  private:

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t sqlite_header_size = 100;  // [bytes]
 
-/// Errors of a check, put at the file.
+/// Adds the file's path to the errors of a check.
 Errors at_file(const std::string& path, const Errors& errors) {
   Errors placed;
   for (const Error& error : errors) placed.push_back({path, error.where + ": " + error.message, ""});
@@ -32,7 +32,7 @@ std::uint32_t big_endian(const std::uint8_t* bytes) {
   return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 | std::uint32_t{bytes[2]} << 8 | bytes[3];
 }
 
-/// Says plainly what is not a session, before SQLite sees it.
+/// Rejects files that are not sessions with a clear message, before SQLite opens them.
 Result<Done> check_file(const std::string& path, bool salvage) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) {
@@ -52,7 +52,7 @@ Result<Done> check_file(const std::string& path, bool salvage) {
   if (got < static_cast<ssize_t>(sizeof header))
     return Error{path, "is cut short: " + std::to_string(got) + " bytes are left", "try to recover it"};
 
-  // The size that the header states counts only if the last writer kept it up.
+  // The size in the header is valid only if the last writer updated it.
   const std::uint64_t stated = std::uint64_t{big_endian(header + 28)} * 4096;
   const bool valid = big_endian(header + 24) == big_endian(header + 92);
   if (!salvage && valid && static_cast<std::uint64_t>(info.st_size) < stated &&
@@ -263,7 +263,7 @@ Result<Done> SessionStore::read_columns() {
   return Done{};
 }
 
-/// Steps a bound statement once and proves the block of its row; none if there is no row.
+/// Steps a bound statement once and verifies the block of its row; none if there is no row.
 Result<std::optional<Bytes>> SessionStore::block_of(Statement& statement, const std::string& what, bool has_count,
                                                     std::uint64_t max_size, std::int64_t& first, std::int64_t& count) {
   const Statement::Outcome outcome = statement.step();

@@ -12,7 +12,7 @@
 
 namespace ctpm::recordings::session_file {
 
-/// A run of ticks or events as it lies in the file.
+/// A run of ticks or events as stored in the file.
 template <class T>
 struct Run {
   std::int64_t first = 0;
@@ -20,37 +20,37 @@ struct Run {
   std::int64_t end() const { return first + static_cast<std::int64_t>(items.size()); }
 };
 
-/// Reads and proves single blocks of a file that is not trusted. What belongs together is the business of
-/// SessionReader and recover_session. Every error is at the file's path and names the block.
+/// Reads and verifies single blocks of an untrusted file. SessionReader and recover_session check how blocks fit
+/// together. Every error names the file's path and the block.
 class SessionStore {
  public:
-  /// `salvage`: goes on where the container contradicts itself, and does not ask for its header numbers.
+  /// `salvage` tolerates an inconsistent container and ignores its header numbers.
   static Result<SessionStore> open(const std::string& path, bool salvage);
 
   int version() const { return version_; }
   const SessionIdentity& identity() const { return identity_; }
 
   Result<Bytes> part(const std::string& name);
-  /// None if the session has no such part: only `finish` may be missing.
+  /// None if the session has no such part; only `finish` may be missing.
   Result<std::optional<Bytes>> part_if_there(const std::string& name);
 
   Result<std::string> scene();
   Result<std::string> look();
-  Result<Model> model();  ///< brought up to date and checked
-  /// What model() decided where the file leaves it open, for people.
+  Result<Model> model();  ///< updated from older formats and checked
+  /// Choices that model() made where the file leaves them open, as readable sentences.
   const std::vector<std::string>& remarks() const { return remarks_; }
   Result<std::vector<Surface>> surfaces(const Model& model);  ///< checked
   Result<std::map<std::string, std::string>> metadata();
   Result<std::optional<SessionStatistics>> finish();
-  Result<Done> read_columns();  ///< once, before the first chunk
+  Result<Done> read_columns();  ///< call once, before the first chunk
 
-  /// The run with the largest `first` at or below `at`, or none; the chunk or run is proven.
+  /// The verified run with the largest `first` at or below `at`, or none.
   Result<std::optional<Run<TickRecord>>> chunk_at(std::int64_t at);
   Result<std::optional<Run<Event>>> events_at(std::int64_t at);
   /// The keyframe with the largest tick at or below `at`, checked against the Model.
   Result<std::optional<Keyframe>> keyframe_at(std::int64_t at, const Model& model);
 
-  /// The keys of a table in ascending order, read without their blocks: "chunk", "keyframe" or "event".
+  /// The keys of a table ("chunk", "keyframe" or "event") in ascending order, without reading the blocks.
   Result<std::vector<std::int64_t>> keys(const std::string& table);
 
  private:

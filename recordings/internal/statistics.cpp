@@ -8,7 +8,7 @@
 namespace ctpm::recordings::session_file {
 namespace {
 
-/// Nearest rank: the smallest value that at least `part` of all values do not exceed.
+/// Nearest rank: the smallest value such that at least the share `part` of all values does not exceed it.
 double percentile(std::vector<float>& values, double part) {
   if (values.empty()) return 0;
   const double rank = std::ceil(part * static_cast<double>(values.size()));

@@ -8,8 +8,8 @@
 
 namespace ctpm::recordings::session_file {
 
-/// Adds up a session while its ticks and events go by. Four bytes per tick and measured time, so that percentiles are
-/// exact.
+/// Accumulates statistics tick by tick. Stores four bytes per tick and measured quantity, so that percentiles cover
+/// every tick, in single precision.
 class StatisticsCounter {
  public:
   void add(const TickRecord& record);
@@ -19,7 +19,7 @@ class StatisticsCounter {
 
  private:
   SessionStatistics sum_;
-  std::vector<float> tick_times_, input_ages_;  ///< [s], those above 0
+  std::vector<float> tick_times_, input_ages_;  ///< [s], values above 0
 };
 
 /// The part `finish`: fields of a SessionStatistics, with the units in their names.

@@ -11,7 +11,7 @@
 namespace ctpm::recordings::session_file {
 namespace {
 
-/// One column: where its bits are in a record.
+/// One column: access to its bits in a record.
 struct Column {
   const char* name;
   FieldType type;

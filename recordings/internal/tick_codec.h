@@ -11,20 +11,20 @@
 
 namespace ctpm::recordings::session_file {
 
-/// Content of the part `columns`: what the chunks of this program hold.
+/// Content of the part `columns`: the columns that this program writes.
 std::string column_text();
 
 /// A chunk's content: all columns, FORMAT.md section 5.
 void put_records(Bytes& out, std::span<const TickRecord> records);
 
-/// Reads chunks by the columns that a file names.
+/// Reads chunks with the columns that a file names.
 class RecordDecoder {
  public:
-  /// `columns` is the part `columns` of a file. Errors: not a list of columns, a column unknown to this
-  /// program or of another type.
+  /// `columns` is the part `columns` of a file. Errors: not a list of columns, or a column that is unknown or has
+  /// another type.
   static Result<RecordDecoder> create(const std::string& columns);
 
-  /// The `count` records of a chunk's content. Error: it does not decode to exactly these.
+  /// The `count` records of a chunk's content. Error: the content does not decode to exactly `count` records.
   Result<std::vector<TickRecord>> decode(ByteView content, std::int64_t count) const;
 
  private:

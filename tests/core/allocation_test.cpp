@@ -1,4 +1,4 @@
-// A tick must not ask for memory: the allocator may take long, and a haptic device does not wait.
+// A tick must not allocate: allocation time is unbounded, and a haptic device does not wait.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ TEST_P(EveryIntegrator, AllocatesNothingAfterTheFirstTick) {
     stepping::Stepper stepper(model, {threads, elements::best_instruction_set()});
     State state = rest_state(model);
     std::int32_t contacts = 0, severed = 0;
-    // The first tick with each tool may make room.
+    // The first tick with each tool may allocate.
     long before = 0;
     for (int tick = 0; tick < 24; ++tick) {
       Inputs inputs;
@@ -56,7 +56,7 @@ Model springs_only() {
   return model;
 }
 
-/// What a Stepper of `model` holds after a tick [bytes].
+/// Memory of a Stepper of `model` after a tick [bytes].
 long stepper_bytes(const Model& model) {
   State state = rest_state(model);
   const long before = live_bytes;
@@ -88,7 +88,7 @@ TEST(SpringsOnly, StepperHoldsPositionForceVelocityMassAndTheBatchesOfElements) 
   const long bound = spheres * (10 * 8 + 1) + elements * 4, bytes = stepper_bytes(model), room = bound - bytes;
   EXPECT_GT(room, 0);
 
-  // What each feature takes is more than what the bound leaves, so that it could not hide there.
+  // Each feature needs more memory than the bound leaves free, so the bound detects it.
   const auto taken_by = [&](auto&& feature) {
     Model other = springs_only();
     feature(other);

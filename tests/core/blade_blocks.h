@@ -57,7 +57,7 @@ inline Vec3 momentum(const Model& model, const State& state) {
   return sum;
 }
 
-/// What it costs to open the plane with this normal at the elements that are severed [J].
+/// Energy of opening the plane with this normal at the severed elements [J].
 inline double fracture_energy(const Model& model, const State& state, Vec3 normal) {
   double sum = 0;
   const AxialElements& axial = model.axial;
@@ -68,7 +68,7 @@ inline double fracture_energy(const Model& model, const State& state, Vec3 norma
   return sum;
 }
 
-/// What the hand does along its way through a held block, and what the elements that were severed cost.
+/// Work of the hand along its path through a held block, and fracture energy of the severed elements [J].
 struct Work {
   double by_hand = 0, of_fracture = 0;
   State state;

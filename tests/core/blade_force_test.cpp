@@ -1,4 +1,4 @@
-// What a blade feels.
+// Forces on a blade.
 
 #include "core/contact/blade_force.h"
 
@@ -37,7 +37,7 @@ TEST(BladeForce, EveryPlaneOpensItsOwnAreaWhicheverWayItLies) {
       for (std::size_t e = 0; e < axial.size(); ++e) {
         if (axial.a[e] != middle && axial.b[e] != middle) continue;
         const Vec3 d = model.rest_position[std::size_t(axial.b[e])] - model.rest_position[std::size_t(axial.a[e])];
-        // Each direction leaves a sphere twice, and a volume s^3 has one element of each.
+        // A sphere has two elements of each direction; a volume s^3 has one.
         opened += 0.5 * model.cut_resistance.energy[e] * std::abs(dot(n, d)) / norm(d) * std::abs(dot(n, d)) /
                   std::pow(block.spacing, 3);
       }
@@ -52,13 +52,14 @@ TEST(BladeForce, TheHandsWorkIsTheToughnessTimesTheAreaAtEverySpeed) {
     for (const Vec3 way : {Vec3{0, 0.12, 0}, Vec3{0.03, 0.12, 0}}) {
       const Work work = cut_through(model, per_tick, {-0.0131 * way.x / 0.03 + 0.0002, -0.06, -0.05}, way);
       ASSERT_GT(work.of_fracture, 0);
-      // The first half millimetre in which the heading is not yet known is outside; rounding is left.
+      // The heading is unknown for the first half millimetre, but that lies outside the block. Only rounding errors
+      // remain.
       EXPECT_NEAR(work.by_hand, work.of_fracture, 1e-6 * work.of_fracture)
           << per_tick * 1e3 << " mm a tick along " << way.x;
     }
 }
 
-/// A block of 60 x 60 x 36 mm, held below and at both sides, that a blade cuts in half.
+/// A block of 60 x 60 x 36 mm, held at the bottom and at both sides, that a blade cuts in half.
 Model clamped_block(double spacing, const network::Material& material) {
   const int f = int(std::lround(0.012 / spacing));
   Model model = testing::make_block_model(5 * f, 5 * f, 3 * f, network::Structure::ctpm, material, spacing);
@@ -68,7 +69,7 @@ Model clamped_block(double spacing, const network::Material& material) {
   return model;
 }
 
-/// What Kelvin units turn into heat in a tick [J].
+/// Energy that Kelvin units dissipate in a tick [J].
 double viscous_work(const Model& model, const State& before, const State& after) {
   double work = 0;
   const AxialElements& axial = model.axial;
@@ -89,7 +90,7 @@ double viscous_work(const Model& model, const State& before, const State& after)
 TEST(BladeForce, TheHandPaysForTheAreaAndForWhatTheTissueLosesWhateverTheSpheres) {
   constexpr double kPerTick = 4e-5;
   for (const double spacing : {0.012, 0.006}) {
-    // Firm, so that tissue is not dragged far and the blade faces the elements as it does at rest.
+    // Stiff, so that the blade hardly drags the tissue and meets the elements in their rest directions.
     network::Material material = resisting();
     material.stiffness_scale = 3;
     const Model model = clamped_block(spacing, material);
@@ -129,7 +130,7 @@ TEST(BladeForce, RisesBeforeTheCutAndIsGoneAfterIt) {
   }
   EXPECT_GT(severed, 0);
   EXPECT_GT(before_first, 0.5);
-  // J_c times the height of the block is the mean force of a blade that cuts it.
+  // The mean cutting force is J_c times the height of the block.
   const double steady = kToughness * 0.048;
   EXPECT_GT(while_cutting, 0.7 * steady);
   EXPECT_LT(while_cutting, 4 * steady);
@@ -145,7 +146,7 @@ TEST(BladeForce, ARestingBladeGoesOnHoldingTheTissueBack) {
   for (; y < 0 && report.tool_force.y > -1; y += 5e-5) report = stepper.step(state, blade_at({0.0002, y, -0.05}));
   ASSERT_LT(y, 0);
   for (int i = 0; i < 50; ++i) {
-    // The hand trembles by 20 micrometres and the force does not jump.
+    // The hand trembles by 20 micrometres; the force must not jump.
     const double before = report.tool_force.y;
     report = stepper.step(state, blade_at({0.0002, y + (i % 2 ? 2e-5 : 0.0), -0.05}));
     EXPECT_LT(report.tool_force.y, -0.3);
@@ -171,7 +172,7 @@ TEST(BladeForce, FlanksRubUntilTheBladeLeavesWhateverTheSpheres) {
       EXPECT_LE(report.tool_force.y, 0);
       if (std::abs(y) < 0.018) sum -= report.tool_force.y, ++inside;
     }
-    // Two flanks along the 36 mm of the blade that are inside; spheres at the rim have fewer elements.
+    // Two flanks along the 36 mm of blade inside the block; spheres at the boundary have fewer elements.
     const double expected = 2 * kFriction * flank_height * 0.036;
     EXPECT_LT(sum / inside, 1.05 * expected) << spacing;
     EXPECT_GT(sum / inside, 0.75 * expected) << spacing;
@@ -179,8 +180,8 @@ TEST(BladeForce, FlanksRubUntilTheBladeLeavesWhateverTheSpheres) {
   }
 }
 
-/// Force [N] on a blade that is drawn through a held block in ticks of `per_tick` [m], once it is half through and the
-/// right half of the block has moved to the right by `opened` [m].
+/// Force [N] on a blade halfway through a held block, at `per_tick` [m] per tick, after the right half of the block has
+/// moved to the right by `opened` [m].
 double friction_in_opened_cut(const Tool& blade, double opened, double per_tick) {
   Model model = held_block(6, 5, 4, resisting(0, kFriction));
   model.tools = {blade};
@@ -212,7 +213,7 @@ TEST(BladeForce, FrictionFallsLinearlyBelowTheSlowestSlip) {
   EXPECT_NEAR(friction_in_opened_cut(blade, 0, 2.5e-7), full, 0.01 * full);
 }
 
-/// Where the tip of a blade with these dimensions is when a held block first resists it [m].
+/// Position of the blade's tip when a held block first resists it [m].
 double resistance_begins(const Tool& blade) {
   Model model = held_block(6, 5, 4);
   model.tools = {blade};
@@ -279,7 +280,7 @@ TEST(BladeForce, WhatTensionHasStoredOpensTheCutWithTheHand) {
   Model model = clamped_block(0.012, material);
   model.held_axes.assign(model.sphere_count(), kAnchored);
   State state = rest_state(model);
-  for (double& x : state.position.x) x *= 1.3;  // pulled apart across the cut
+  for (double& x : state.position.x) x *= 1.3;  // stretched across the cut
   stepping::Stepper stepper(model);
   double by_hand = 0;
   for (int i = 0; i < 1000; ++i)

@@ -23,7 +23,7 @@ inline network::Material liver_material() {
   return m;
 }
 
-/// An organ of ni x nj x nk spheres, three radii apart, centred on the z axis, standing on z = 0.
+/// An organ of ni x nj x nk spheres with a spacing of three radii, centred on the z axis, standing on z = 0.
 inline FilledOrgan make_block(int ni, int nj, int nk, double spacing = 0.012) {
   FilledOrgan organ;
   organ.sphere_radius = spacing / 3;
@@ -58,7 +58,7 @@ inline Model make_block_model(int ni, int nj, int nk, network::Structure structu
   return model;
 }
 
-/// Names the integrator, with one step a tick, in place of the one that make_block_model() chose.
+/// Sets the integrator, with one step per tick, instead of the one that make_block_model() chose.
 inline void use_integrator(Model& model, Integrator integrator) {
   model.solver.integrator = integrator, model.solver.substeps = 1;
 }
@@ -66,7 +66,7 @@ inline void use_integrator(Model& model, Integrator integrator) {
 inline Tool ball(double radius) { return {"ball", ToolKind::ball, radius, 0}; }
 inline Tool scalpel(double blade_length) { return {"scalpel", ToolKind::scalpel, 0, blade_length}; }
 
-/// Numbers in [-1, 1] that are the same everywhere (a 64-bit linear congruential generator).
+/// Pseudo-random numbers in [-1, 1], equal on every machine (64-bit linear congruential generator).
 class Noise {
  public:
   double next() {
@@ -82,7 +82,7 @@ class Noise {
   std::uint64_t state_ = 42;
 };
 
-/// Moves every sphere by up to `amount` [m] and gives it up to `speed` [m/s].
+/// Displaces every sphere by up to `amount` [m] and gives it a velocity of up to `speed` [m/s].
 inline void shake(State& state, double amount, double speed = 0) {
   Noise noise;
   for (std::size_t i = 0; i < state.position.size(); ++i) {

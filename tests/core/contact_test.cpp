@@ -17,7 +17,7 @@ Inputs tool_at(Vec3 position) {
   return inputs;
 }
 
-/// One sphere that nothing holds.
+/// One free sphere.
 Model make_free_sphere(Integrator integrator, double tick) {
   Model model = make_block_model(1, 1, 1, network::Structure::mass_spring);
   model.held_axes = {0};
@@ -28,7 +28,7 @@ Model make_free_sphere(Integrator integrator, double tick) {
 
 class AContact : public ::testing::TestWithParam<Integrator> {};
 
-/// Speed [m/s] at which a sphere that meets a resting ball at 30 mm/s leaves it again.
+/// Rebound speed [m/s] of a sphere that hits a resting ball at 30 mm/s.
 double rebound(Integrator integrator, double damping) {
   Model model = make_free_sphere(integrator, 2e-6);
   model.contact_friction = 0, model.contact_damping = damping, model.tools = {ball(0.02)};
@@ -55,7 +55,7 @@ TEST_P(AContact, BouncesByHuntAndCrossleysLawForEachDamping) {
 }
 
 TEST_P(AContact, CreepsUnderAStickingToolAsItsStickTimeSays) {
-  // The drag stick_time * k balances the load: the sphere creeps at load / (stick_time * k).
+  // The drag coefficient stick_time * k balances the load: the sphere creeps at load / (stick_time * k).
   const double radius = 100, press = 0.05, push = 0.002;
   for (const double stick_time : {0.05, 0.1, 0.4}) {
     Model model = make_free_sphere(GetParam(), 1e-4);
@@ -74,7 +74,7 @@ TEST_P(AContact, CreepsUnderAStickingToolAsItsStickTimeSays) {
 }
 
 TEST_P(AContact, SlidesUnderCoulombsLawAndThenSticks) {
-  // Under so large a ball the way is straight.
+  // The ball is so large that the path is straight.
   Model model = make_free_sphere(GetParam(), 2e-5);
   const double radius = 100, press = 0.05, speed = 0.02;
   model.tools = {ball(radius)};
@@ -131,8 +131,8 @@ TEST_P(AContact, DoesNotMoveASphereOffItsGuide) {
 INSTANTIATE_TEST_SUITE_P(Under, AContact,
                          ::testing::Values(Integrator::leapfrog, Integrator::backward_euler, Integrator::sdirk2));
 
-/// Where a block's spheres are while a ball presses one of them, without friction; it touches from the start, since a
-/// contact that begins within a step has a kink there.
+/// Positions of a block's spheres while a ball presses one of them without friction. The ball touches from the start,
+/// because a contact that begins within a step makes a kink in the force.
 Vec3Array press(network::Structure structure, Integrator integrator, double tick) {
   network::Material material = testing::liver_material();
   material.stiffness_scale = 0.3;
@@ -174,7 +174,7 @@ INSTANTIATE_TEST_SUITE_P(Of, APress,
                                            std::pair{Integrator::sdirk2, network::Structure::ctpm}));
 
 TEST(Contact, HasOneLawUnderEveryIntegrator) {
-  // A ball runs into a block at 100 mm/s and slides on it; in short steps all must see the same.
+  // A ball hits a block at 100 mm/s and slides on it. With short steps all integrators must agree.
   const auto press = [](Integrator integrator) {
     network::Material material = testing::liver_material();
     material.viscosity = 5e3, material.stiffness_scale = 0.3;

@@ -1,5 +1,5 @@
-// The one interface of all contacts: what is in a linear system leaves it to the bit, and nothing can be called in the
-// wrong order.
+// The common interface of all contacts: removing contacts from a linear system restores it to the bit, and calls in the
+// wrong order are refused.
 
 #include "core/contact/contacts.h"
 
@@ -14,7 +14,7 @@
 namespace ctpm {
 namespace {
 
-/// A block with closed cut faces, pressed by a ball beside the cut.
+/// A block with closed cut faces; a ball presses beside the cut.
 class CutAndPressed : public ::testing::Test {
  protected:
   CutAndPressed() {
@@ -64,7 +64,7 @@ TEST_F(CutAndPressed, DroppedContactsLeaveTheSystemToTheBitAndDoNotComeBack) {
   const elements::DiagonalBlocks blocks = blocks_;
   contact::ImplicitContacts set = detect();
   const std::int32_t touched = set.touched();
-  // All spheres move away from the ball, far faster than any contact follows.
+  // All spheres move away from the ball, faster than any contact can follow.
   elements::Coordinates away(force_.size());
   std::fill(away.begin() + std::ptrdiff_t(2 * model_.sphere_count()), away.end(), -100.0);
   {
@@ -93,7 +93,7 @@ TEST_F(CutAndPressed, TheCouplingIsSymmetricAndHasTheDiagonalThatWasAdded) {
   const double uv = std::inner_product(v.begin(), v.end(), of_u.begin(), 0.0);
   EXPECT_NEAR(uv, std::inner_product(u.begin(), u.end(), of_v.begin(), 0.0), 1e-12 * std::abs(energy));
   EXPECT_NEAR(energy, std::inner_product(u.begin(), u.end(), of_u.begin(), 0.0), 1e-12 * energy);
-  // xx, yy and zz of the blocks are the diagonal of the matrix.
+  // The diagonal of the matrix is xx, yy and zz of the blocks.
   for (std::size_t i = 0; i < n; ++i) {
     elements::Coordinates one(n), column(n);
     one[i] = 1;

@@ -14,7 +14,7 @@ using testing::allocations;
 long allocations_of_ticks(const Model& model, const std::vector<Inputs>& inputs) {
   stepping::Stepper stepper(model);
   State state = rest_state(model);
-  (void)stepper.step(state, inputs[0]);  // scratch that is as large as State takes its room here
+  (void)stepper.step(state, inputs[0]);  // allocates the scratch memory of State's size
   const long before = allocations;
   for (const Inputs& each : inputs) (void)stepper.step(state, each);
   return allocations - before;
@@ -37,7 +37,7 @@ TEST(CuttingCost, WithoutABladeNothingIsKeptForOne) {
   const long before = allocations;
   { const stepping::Stepper stepper(model); }
   const long without = allocations - before;
-  // The same network with a blade needs more room, so the comparison can fail.
+  // The same network with a blade needs more memory, so the comparison can fail.
   model.tools = {testing::scalpel(0.1)};
   network::Material tough = testing::liver_material();
   tough.fracture_toughness = 100;

@@ -1,4 +1,4 @@
-// What a blade severs, and what is left.
+// What a blade severs and what remains.
 
 #include "core/cutting/cutting.h"
 
@@ -42,7 +42,7 @@ TEST(Severing, ConservesMomentumAndNeverAddsEnergy) {
 }
 
 TEST(Severing, IsTheSameAtEverySpeedThroughAHeldOrgan) {
-  // Straight, slanted and through a single sheet of spheres; the last speed jumps over the block in one tick.
+  // Straight, slanted and through a single sheet of spheres. The last speed passes the block in one tick.
   for (const auto& [ni, nj, nk] : {std::array{6, 5, 4}, std::array{6, 5, 1}, std::array{6, 1, 4}})
     for (const Vec3 way : {Vec3{0, 0.12, 0}, Vec3{0.05, 0.12, 0.01}}) {
       const Model model = held_block(ni, nj, nk);
@@ -84,7 +84,8 @@ TEST(Severing, RemembersWhereTheBladePassed) {
 TEST(Severing, ATripleThatLostOneEdgeKeepsTheOther) {
   const Model model = held_block(6, 5, 4);
   const State state = cut_through(model, 3e-4, {0.0002, -0.06, -0.05}, {0, 0.12, 0}).state;
-  // Every edge that the plane x = 0 does not cross lives, and every constraint that lost an edge is gone.
+  // A constraint is severed exactly if one of its elements is, and an element exactly if the plane x = 0.2 mm crosses
+  // it.
   for (std::size_t c = 0; c < model.constraints.size(); ++c) {
     bool lost = false;
     for (const auto& edge : model.constraints.edge) lost = lost || state.axial_severed[std::size_t(edge[c])];
@@ -129,7 +130,7 @@ TEST(Severing, LooksOnlyNearTheBladeAndMissesNothing) {
   EXPECT_LT(looked_at, all / 2) << "it leaves out what is far";
 }
 
-/// Along a closed polygon around `middle`, `ticks_per_side` ticks for each of its sides.
+/// Moves along a closed polygon around `middle`, with `ticks_per_side` ticks per side.
 std::int32_t cut_around(stepping::Stepper& stepper, State& state, Vec3 middle, double radius, int ticks_per_side) {
   constexpr int kSides = 64;
   constexpr double kTurn = 2 * 3.14159265358979323846 / kSides;
@@ -166,8 +167,7 @@ TEST(Severing, FollowsACurveAndCutsAPlugOut) {
   }
 }
 
-/// Force on each sphere of a line of five, of which the second has moved 1 mm to the right, after a cut
-/// at `x`.
+/// Forces on a line of five spheres after a cut at `x`; the second sphere is displaced 1 mm to the right.
 Vec3Array forces_after_cut(const Model& model, double x) {
   State state = rest_state(model);
   std::vector<cutting::Crossing> crossings;
@@ -195,7 +195,7 @@ TEST(Severing, WhatIsLeftOfATripleIsItsOtherEdgeAsStiffAsBefore) {
   };
   const double left = model.axial.k[edge_between(0, 1)], right = model.axial.k[edge_between(1, 2)];
   EXPECT_NE(left, right) << "a triple is a spring and a Kelvin unit";
-  // The left edge of the triple 0-1-2 is severed: only the right one is felt, and the other way round.
+  // If the left edge of the triple 0-1-2 is severed, only the right one acts, and vice versa.
   const Vec3Array without_left = forces_after_cut(model, -0.018), without_right = forces_after_cut(model, -0.006);
   EXPECT_EQ(without_left.x[0], 0);
   EXPECT_NEAR(without_left.x[1], -0.001 * right, 1e-9 * right);
@@ -214,7 +214,7 @@ TEST(Pieces, AreCountedAsTheyComeLoose) {
   int loose = 0;
   const auto sweep = [&](Vec3 from, Vec3 to) {
     Inputs away;
-    (void)stepper.step(state, away);  // the blade is put away and taken again
+    (void)stepper.step(state, away);  // the blade is put away and picked up again
     for (int i = 0; i <= 50; ++i) loose += stepper.step(state, blade_at(from + i / 50.0 * (to - from))).came_loose;
   };
   sweep({0.0002, -0.06, -0.05}, {0.0002, 0.005, -0.05});  // not through
@@ -230,8 +230,8 @@ TEST(Pieces, AreCountedAsTheyComeLoose) {
   EXPECT_EQ(pieces.piece()[5], 3);
 }
 
-/// A block cut through in the middle, whose right half is pushed against the left one: the least distance
-/// that two spheres of its halves ever have [m].
+/// Cuts a block in the middle and pushes its right half against the left one. Returns the least distance ever between
+/// spheres of the two halves [m].
 double gap_after_pushing(bool lips_meet, double sideways, double stiffening = Model{}.cut_face_stiffening) {
   Model model = block_with_blade(6, 4, 4, resisting(0));
   model.held_axes.assign(model.sphere_count(), 0);

@@ -15,7 +15,8 @@ using testing::make_block_model;
 using testing::Noise;
 using testing::shake;
 
-// Forces of a shaken liver block are about 1 N; rounding of sums of a few dozen of them stays far below this.
+// Forces of a shaken liver block are about 1 N; rounding errors of sums of a few dozen of them are far smaller than
+// this.
 constexpr double kRounding = 1e-12;
 
 class EveryStructure : public ::testing::TestWithParam<network::Structure> {};
@@ -31,7 +32,7 @@ State moved_rigidly(const Model& model) {
   return state;
 }
 
-/// The forces of a shaken network, with Kelvin units stretched at random, add up to nothing and turn nothing.
+/// Net force and net torque of a shaken network with randomly stretched Kelvin units are zero.
 void expect_momentum_is_kept(const Model& model, double force_bound, double torque_bound) {
   State state = rest_state(model);
   shake(state, 0.005, 0.2);
@@ -102,7 +103,7 @@ TEST(EdgesAndAngleSprings, AreTheGradientOfTheirEnergy) {
     }
 }
 
-/// Five spheres on a line with the constraint of the paper's liver; C is moved sideways by `tilt`.
+/// Five spheres on a line with the constraint of the paper's liver; C is displaced sideways by `tilt`.
 struct Line {
   explicit Line(double tilt) : model(make_block_model(5, 1, 1)), state(rest_state(model)) {
     state.position.add(2, {0, 0, tilt});
@@ -160,7 +161,7 @@ TEST(Constraint, IsTheGradientOfItsEnergyWithoutSoftening) {
   const auto energy = [&](double u) { return k * u * u - 2 * k * h * (std::sqrt(h * h + u * u) - h); };
   constexpr double kStep = 1e-6;
   const double gradient = (energy(0.007 + kStep) - energy(0.007 - kStep)) / (2 * kStep);
-  const double softening = 1 + 0.007 / h;  // Eq. 8 divides the force; what it divides has an energy
+  const double softening = 1 + 0.007 / h;  // Eq. 8 divides the force of a potential
   EXPECT_NEAR(elements::internal_forces(line.model, line.state).z[2] * softening, -gradient, 1e-8);
 }
 
@@ -195,9 +196,9 @@ TEST(Softening, HalvesATripleAt45Degrees) {
 }
 
 TEST(Softening, DoesWorkInAClosedCycle) {
-  // E moves out while the line is straight, C tilts, E comes back while all is soft, C comes back.
+  // E moves out while the line is straight, C tilts, E returns while the line is softened, C returns.
   Line line(0);
-  line.model.constraints.k.assign(line.model.constraints.k.size(), 0);  // springs alone have an energy
+  line.model.constraints.k.assign(line.model.constraints.k.size(), 0);  // springs alone are conservative
   double work = 0;
   const auto move = [&](std::size_t sphere, Vec3 way) {
     constexpr int kSteps = 200;
@@ -225,7 +226,7 @@ TEST(Softening, StaysFiniteAt90Degrees) {
 
 TEST(Network, TilesARunIntoMirroredTriplesThatShareEnds) {
   const Model model = make_block_model(10, 1, 1);
-  ASSERT_EQ(model.axial.size(), 9u);  // four triples and one element left over
+  ASSERT_EQ(model.axial.size(), 9u);  // four triples and one single element
   ASSERT_EQ(model.constraints.size(), 2u);
   const std::vector<bool> is_kelvin{false, true, true, false, false, true, true, false};
   for (std::size_t i = 0; i < 8; ++i) {
@@ -259,7 +260,7 @@ TEST(Network, TwoSphereTpmsOfAllOrgansComeLast) {
     EXPECT_EQ(is_tpm, i >= first_tpm) << "element " << i;
     EXPECT_EQ(axial.internal[i], is_tpm ? std::int32_t(i - first_tpm) : -1);
     EXPECT_EQ(is_second(axial.a[i]), is_second(axial.b[i]));
-    // Each keeps the resistance of its own organ.
+    // Each element keeps the resistance of its own organ.
     const double per_toughness = model.cut_resistance.energy[i] / (is_second(axial.a[i]) ? 300 : 100);
     EXPECT_NEAR(per_toughness, model.cut_resistance.energy[0] / 100, 1e-18);
   }
@@ -313,8 +314,7 @@ TEST(Network, SaysEveryModulusThatIsOutOfRange) {
   EXPECT_EQ(model.sphere_count(), 0u);
 }
 
-/// A capsule around a parenchyma: the outermost spheres of a block, 6 mm deep, are stiffer, heavier and less
-/// viscous.
+/// A capsule around a parenchyma: spheres of a block up to 6 mm deep are stiffer, heavier and less viscous.
 network::LayerMaterial capsule(double to_depth = 0.012) {
   network::LayerMaterial layer;
   layer.to_depth = to_depth;
@@ -346,7 +346,7 @@ TEST_P(EveryLayeredStructure, RigidMotionGivesNoForce) {
 
 TEST_P(EveryLayeredStructure, KeepsLinearAndAngularMomentum) {
   const Model model = *make_layered_model(6, 5, 7, GetParam(), {capsule()});
-  // The capsule's forces are five times those of the liver.
+  // Forces in the capsule are five times those of the liver.
   expect_momentum_is_kept(model, 5e3 * kRounding, 5e2 * kRounding);
 }
 
@@ -409,8 +409,7 @@ TEST(Layers, ASphereHasTheMassOfItsOwnLayer) {
   const double volume = 0.012 * 0.012 * 0.012;
   network::LayerMaterial second{0.018, testing::liver_material()};
   second.material.density = 1100;
-  // The spheres of the second rim are 18 mm deep: a layer that ends there does not hold them, one that ends
-  // below does.
+  // Spheres of the second shell are 18 mm deep. A layer that ends at 18 mm does not include them; a deeper one does.
   for (const auto& [to_depth, density] : {std::pair{0.018, 1060}, {0.0181, 1100}}) {
     second.to_depth = to_depth;
     const Model model = *make_layered_model(5, 5, 5, network::Structure::ctpm, {capsule(0.012), second});

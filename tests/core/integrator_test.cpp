@@ -16,7 +16,7 @@ using testing::liver_material;
 using testing::make_block_model;
 using testing::shake;
 
-/// A block whose springs and dashpots matter alike at ticks of about a millisecond.
+/// A block in which springs and dashpots are equally important at ticks of about 1 ms.
 Model make_smooth_block(network::Structure structure, double tick, Integrator integrator) {
   network::Material material = liver_material();
   material.viscosity = 5e4;
@@ -28,7 +28,7 @@ Model make_smooth_block(network::Structure structure, double tick, Integrator in
   return model;
 }
 
-/// Where the block is `duration` [s] after it was let go out of shape.
+/// State of the block `duration` [s] after its release from a deformed shape.
 State let_go(const Model& model, double duration) {
   State state = rest_state(model);
   for (std::size_t i = 0; i < model.sphere_count(); ++i) {
@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(All, IntegratorOrder,
                          ::testing::Values(Order{Integrator::leapfrog, network::Structure::mass_spring, 2},
                                            Order{Integrator::leapfrog, network::Structure::tpm, 2},
                                            Order{Integrator::leapfrog, network::Structure::ctpm,
-                                                 1},  // its dashpots see the old velocity
+                                                 1},  // its dashpots use the old velocity
                                            Order{Integrator::backward_euler, network::Structure::mass_spring, 1},
                                            Order{Integrator::backward_euler, network::Structure::tpm, 1},
                                            Order{Integrator::backward_euler, network::Structure::ctpm, 1},
@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(All, IntegratorOrder,
 class ImplicitIntegrator : public ::testing::TestWithParam<Integrator> {};
 
 TEST_P(ImplicitIntegrator, IsLStable) {
-  // A spring a million times too stiff for the tick: what deflects it is gone after a few ticks, and does not ring.
+  // A spring a million times too stiff for the tick: its deflection decays within a few ticks without ringing.
   network::Material material = liver_material();
   material.spring *= 1e6, material.kelvin *= 1e6, material.constraint *= 1e6, material.viscosity = 0;
   Model model = make_block_model(3, 3, 3, network::Structure::ctpm, material);
@@ -102,7 +102,7 @@ TEST_P(ImplicitIntegrator, IsLStable) {
 
 INSTANTIATE_TEST_SUITE_P(Both, ImplicitIntegrator, ::testing::Values(Integrator::backward_euler, Integrator::sdirk2));
 
-/// Two free spheres and one spring, whose frequency is sqrt(2 k / m).
+/// Two free spheres and one spring; their angular frequency is sqrt(2 k / m).
 Model make_pair() {
   Model model = make_block_model(2, 1, 1, network::Structure::mass_spring);
   model.held_axes.assign(2, 0);
@@ -141,7 +141,7 @@ TEST(Leapfrog, RefusesStepsThatItCannotHoldAndLeavesTheState) {
   EXPECT_NE(stepper.integrator().reason.find("ms"), std::string::npos);
 }
 
-/// After one tick of a block that is let go out of shape, with every sphere as fast as `speed` [m/s].
+/// State of a deformed block with random sphere velocities of up to `speed` [m/s], one tick after its release.
 State after_a_tick(Integrator integrator, double speed) {
   Model model = make_smooth_block(network::Structure::tpm, 1e-3, integrator);
   State state = rest_state(model);
@@ -153,7 +153,8 @@ State after_a_tick(Integrator integrator, double speed) {
 }
 
 TEST(Sdirk2, TakesBackwardEulerWhereItsStepIsTooLongForTheMotion) {
-  // 2 m/s lead too far; 0.1 m/s do not, but within the tick no sphere keeps its velocity.
+  // At 2 m/s the predictor moves too far. At 0.1 m/s it does not, but the velocity of every sphere changes within the
+  // tick.
   for (const double speed : {2.0, 0.1}) {
     const State by_sdirk = after_a_tick(Integrator::sdirk2, speed),
                 by_euler = after_a_tick(Integrator::backward_euler, speed);

@@ -1,4 +1,4 @@
-// What a Stepper uses of the machine must not change a bit of what it computes.
+// Threads and instruction sets that a Stepper uses must not change a bit of its results.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ struct Machine {
 
 class EveryMachine : public ::testing::TestWithParam<Machine> {};
 
-/// Large enough to be cut into slabs; pressed, then cut.
+/// Large enough for several slabs; pressed, then cut.
 Model make_model(network::Structure structure, Integrator integrator) {
   network::Material material = testing::liver_material();
   if (integrator == Integrator::leapfrog) material.viscosity = 5e3, material.stiffness_scale = 0.3;

@@ -1,4 +1,4 @@
-// Every element law is symmetric under mirroring: in a mirrored world everything happens mirrored.
+// Every element law is symmetric under reflection: a reflected network moves as the reflection of the original.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace ctpm {
 namespace {
 
-// Forces of a shaken liver block are about 1 N; a change of signs alone rounds nothing, so this is generous.
+// Forces of a shaken liver block are about 1 N. Sign changes cause no rounding, so this is generous.
 constexpr double kRounding = 1e-12;
 
 /// A plane through the origin across one axis.
@@ -29,7 +29,7 @@ struct Mirror {
   }
 };
 
-/// The same elements between the spheres of a mirrored world.
+/// The same elements between reflected spheres.
 Model mirrored(Model model, Mirror mirror) {
   mirror.apply(model.rest_position), mirror.apply(model.loads.force);
   model.gravity = mirror(model.gravity);
@@ -41,7 +41,7 @@ State mirrored(State state, Mirror mirror) {
   return state;
 }
 
-/// A state far from rest, its Kelvin units stretched.
+/// A State far from rest with stretched Kelvin units.
 State shaken(const Model& model) {
   State state = rest_state(model);
   testing::shake(state, 0.004, 0.1);
@@ -96,8 +96,8 @@ TEST_P(MirroredStructure, MirroredInputsGiveMirroredSteps) {
   }
 }
 
-// A run of four edges along x is its own mirror image: A B C B A. So the whole network of a block five wide
-// is.
+// A run of four edges along x, A B C B A, is its own mirror image. So is the whole network of a block five spheres
+// wide.
 TEST_P(MirroredStructure, ABlockThatIsItsOwnMirrorImageIsPushedBackMirrored) {
   const std::array<int, 3> n{5, 4, 6};
   const Model model = testing::make_block_model(n[0], n[1], n[2], GetParam());

@@ -36,8 +36,7 @@ TEST(Step, AFreeBlockFallsAsGalileoSays) {
   for (int i = 0; i < 500; ++i) ASSERT_EQ(stepper.step(state, {}).status, stepping::StepStatus::ok);
   const double t = 0.5, h = 1e-3;
   for (std::size_t i = 0; i < model.sphere_count(); ++i) {
-    // Each tick's acceleration is solved to 1e-4; (t + h) / 2 holds backward Euler's own error of half a
-    // tick.
+    // Each tick solves the acceleration to 1e-4; (t + h) / 2 includes backward Euler's error of half a tick.
     EXPECT_NEAR(state.velocity.z[i], -9.81 * t, 1e-3 * 9.81 * t);
     EXPECT_NEAR(state.position.z[i] - model.rest_position.z[i], -9.81 * t * (t + h) / 2, 1e-3);
   }
@@ -57,7 +56,7 @@ TEST(Step, HoldsTheLiversStiffDashpotsAtOneMillisecond) {
   }
   EXPECT_GT(report.tool_force.z, 0.5);
   EXPECT_LT(report.tool_force.z, 10);
-  EXPECT_NEAR(report.depth, 0.010, 0.0015);  // the penalty contact gives way a little
+  EXPECT_NEAR(report.depth, 0.010, 0.0015);  // the penalty contact allows some overlap
 }
 
 TEST(Step, EnergyOfAShakenBlockOnlyFalls) {
@@ -104,7 +103,7 @@ TEST(Step, SameInputsGiveTheSameBits) {
   EXPECT_EQ(first.velocity, second.velocity);
 }
 
-/// Moduli that the explicit integrator holds too.
+/// Moduli at which the explicit integrator is stable too.
 network::Material soft_material() {
   network::Material material = testing::liver_material();
   material.viscosity = 5e3, material.stiffness_scale = 0.3;
@@ -208,7 +207,7 @@ TEST(Step, SaysWhichSphereDivergedAndLeavesTheState) {
 }
 
 TEST(Contact, ForceOnTheToolBalancesForceOnTheAnchors) {
-  // At rest, what presses on the tool is carried by the anchored spheres.
+  // At rest, the anchored spheres carry the force on the tool.
   Model model = make_block_model(5, 5, 4);
   model.tools = {ball(0.010)};
   model.solver.tolerance = 1e-8;
@@ -241,7 +240,7 @@ TEST(Cutting, AFullCutSeparatesTheBlockExactly) {
   model.tools = {scalpel(0.2)};
   stepping::Stepper stepper(model);
   State state = rest_state(model);
-  // The blade hangs from above the block to below it and passes between the third and the fourth plane in x.
+  // The blade reaches from above the block to below it and passes between the third and fourth plane in x.
   std::int32_t severed = 0;
   for (int i = 0; i < 100; ++i) severed += stepper.step(state, tool_at({0.0001, -0.05 + 0.001 * i, -0.05})).severed;
   EXPECT_GT(severed, 0);

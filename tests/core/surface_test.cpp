@@ -34,13 +34,13 @@ TEST(SurfaceBinding, FollowsEveryAffineMotionExactly) {
   std::vector<Vec3> vertex;
   surface::deform_surface(organ.surface, moved, 0, vertex);
   for (std::size_t v = 0; v < vertex.size(); ++v)
-    EXPECT_NEAR(norm(vertex[v] - motion(organ.surface.vertex[v])), 0, 1e-12) << "vertex " << v;  // rounding only
+    EXPECT_NEAR(norm(vertex[v] - motion(organ.surface.vertex[v])), 0, 1e-12) << "vertex " << v;  // only rounding errors
 }
 
 TEST(SurfaceBinding, WeightsSumToOneAlsoForOneSphereAndForAPlane) {
   for (int n : {1, 2, 3}) {
     FilledOrgan organ = make_block(n);
-    if (n == 3) {  // a single layer of spheres does not span space
+    if (n == 3) {  // a single layer of spheres is coplanar
       organ.centre.resize(9), organ.cell.resize(9);
     }
     surface::bind_surface(organ);

@@ -7,7 +7,7 @@
 
 namespace ctpm::testing {
 
-/// What one golden session came to under one physics revision.
+/// Hashes of one golden session under one physics revision.
 struct GoldenRow {
   std::string_view session;           ///< structure and integrator as scenes name them; retired names stay
   std::array<std::uint64_t, 4> hash;  ///< of State after 100, 200, 300 and 400 ticks
@@ -20,8 +20,8 @@ struct GoldenRevision {
   std::uint64_t digest;  ///< golden_digest() over this revision and all before it
 };
 
-// A new revision appends a table here. A table that is here is never edited: its digest, and those of all later
-// revisions, would no longer hold.
+// A new revision appends a table. Never edit an existing table: its digest and those of all later revisions would no
+// longer match.
 
 inline constexpr GoldenRow kGoldenRevision1[] = {
     {"mass-spring, auto", {0xefee6ee3e3c82c33, 0xcb6ef3f14a3b1100, 0x7495e99c091d5c25, 0x35fb3c8ca2adad62}},

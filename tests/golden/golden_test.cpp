@@ -1,5 +1,5 @@
-// One small session, pressed and cut, against golden hashes. This file is built twice, with core optimised and not, and
-// both programs must give the same bits. Hashes that change without a new physics revision fail here.
+// One small session, pressed and cut, against golden hashes. This file is built twice, with optimised and unoptimised
+// core; both programs must give the same bits. The test fails if hashes change without a new physics revision.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ using testing::GoldenRow;
 using testing::kGoldenRevisions;
 
 struct Session {
-  const char* name;  ///< that of its row
+  const char* name;  ///< name of its row
   network::Structure structure;
   std::optional<Integrator> integrator;
 };

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Builds core and the golden sessions with several compilers, optimisations and for two processors, and compares what
-# they print: the same bits everywhere.   matrix.sh SOURCE_FOLDER WORK_FOLDER [CONFIGURATION...]
-# A configuration is compiler:option, for example clang++:-O0. Those whose compiler is not there are named and left out.
+# Builds core and the golden sessions with several compilers and optimisations and for two processors, and compares the
+# printed hashes, which must be equal.   matrix.sh SOURCE_FOLDER WORK_FOLDER [CONFIGURATION...]
+# A configuration is compiler:option, for example clang++:-O0. Configurations without an installed compiler are reported
+# and skipped.
 set -eu -o pipefail
 source=$1 work=$2
 shift 2
@@ -35,7 +36,7 @@ build() {
   "$compiler" "${objects[@]}" "${link[@]}" -o "$out/print_hashes"
 }
 
-# The hash's header alone, so that no header of this machine's own architecture comes in with a cross compiler.
+# Only the hash's header, so that a cross compiler sees no header of this machine's architecture.
 mkdir -p "$work/headers"
 cp /usr/include/xxhash.h "$work/headers/"
 cp /usr/include/xxh3.h "$work/headers/" 2>/dev/null || true

@@ -1,5 +1,5 @@
-// Prints the hashes of the golden sessions and of a larger block, once for each instruction set of the machine and for
-// several thread counts. matrix.sh builds it in many ways; all must print the same.
+// Prints the hashes of the golden sessions and of a larger block, for each instruction set of the machine and several
+// thread counts. matrix.sh builds it in many configurations; all must print the same.
 
 #include <cstdio>
 

@@ -11,7 +11,7 @@
 
 namespace ctpm::testing {
 
-/// A ball presses for 200 ticks, then a scalpel goes through the block.
+/// A ball presses for 200 ticks, then a scalpel cuts through the block.
 inline Inputs golden_inputs(int tick) {
   Inputs inputs;
   if (tick < 200) {
@@ -24,14 +24,14 @@ inline Inputs golden_inputs(int tick) {
   return inputs;
 }
 
-/// What a golden session did.
+/// Results of a golden session.
 struct GoldenRun {
   std::array<std::uint64_t, 4> hash{};  ///< of State after each quarter
   std::int32_t severed = 0, contacts = 0;
-  bool is_good = true;  ///< every tick was
+  bool is_good = true;  ///< every tick's status is ok or not_converged
 };
 
-/// `ticks` ticks, evenly taken from the whole session, of a block of ni x nj x nk spheres.
+/// Simulates `ticks` ticks, sampled evenly from the golden session, of a block of ni x nj x nk spheres.
 inline GoldenRun run_golden(int ni, int nj, int nk, int ticks, network::Structure structure,
                             std::optional<Integrator> integrator, const stepping::StepperOptions& options = {}) {
   Model model = make_block_model(ni, nj, nk, structure);

@@ -17,7 +17,7 @@ using namespace ctpm::testing;
 
 TEST(Crash, AKilledRecorderLosesAtMost200Ms) { kill_recorders(50); }
 
-/// Runs `work` in a process whose files cannot grow beyond `bytes`, as on a full disk. Returns its exit code.
+/// Runs `work` in a process whose files cannot exceed `bytes`, as on a full disk. Returns its exit code.
 int on_a_full_disk(rlim_t bytes, const std::function<int()>& work) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -38,7 +38,7 @@ void give_space() {
 
 constexpr rlim_t full_at = 400 << 10;  // [bytes]
 
-/// Appends until the disk has refused; the number of ticks appended by then, 0 if it never does.
+/// Appends until the first write error. Returns the number of ticks appended, or 0 without an error.
 std::int64_t append_until_full(recordings::SessionWriter& writer, const recordings::SessionStart& start) {
   std::int64_t appended = 0;
   bool full = false;
@@ -134,8 +134,7 @@ TEST(FullDisk, AQueueThatOverflowsEndsTheRecordingAndSaysSo) {
   EXPECT_FALSE(reader->ended_cleanly());
 }
 
-/// Runs `work` as somebody who may write nothing: as root in a process that gives root up. Returns its exit
-/// code.
+/// Runs `work` without write permission: as root, in a process that drops root. Returns its exit code.
 int without_rights(const std::function<int()>& work) {
   constexpr uid_t nobody = 65534;
   const pid_t child = ::fork();
@@ -157,7 +156,7 @@ TEST(Crash, WhatIsLeftCanBeReadWhereNothingCanBeWritten) {
   ASSERT_TRUE(writer);
   for (int i = 0; i < 250; ++i) writer->append(start.initial_state, {});
   while (writer->status().committed < 250) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  // What kill -9 leaves: the file and its log, and perhaps the log's index.
+  // kill -9 leaves the file, its log, and perhaps the log's index.
   for (const bool with_index : {false, true}) {
     for (const char* ending : {"", "-wal", "-shm"}) {
       std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);

@@ -1,6 +1,6 @@
-// One side of a comparison between builds; cross_builds.sh compiles it in several ways.
-//   cross_build record FROM TO     lives the inputs of session FROM again in this build and records them as
-//   TO cross_build verify FILE...     replays sessions in this build; exit code 1 if any differs
+// One build in a comparison of builds; cross_builds.sh compiles this file in several ways.
+//   cross_build record FROM TO     simulates the inputs of session FROM in this build and records them as TO
+//   cross_build verify FILE...     replays sessions in this build; exit code 1 if any differs
 
 #include <algorithm>
 #include <cstdio>

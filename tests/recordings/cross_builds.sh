@@ -1,6 +1,6 @@
 #!/bin/sh
-# A session that one build records verifies in every other build. Each build lives the inputs of each SESSION again and
-# records them; then each build verifies what all builds recorded.
+# A session recorded by one build must verify in every other build. Each build simulates the inputs of each SESSION and
+# records them; then each build verifies all recordings.
 #   cross_builds.sh SOURCE_DIR WORK_DIR SESSION...
 # CTPM_BUILDS: the builds, separated by blanks, each a compiler and its flags joined by colons.
 # Exit code 77: a compiler is missing.

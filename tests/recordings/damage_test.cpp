@@ -11,16 +11,16 @@ namespace {
 
 using namespace ctpm::testing;
 
-/// What an undamaged session gives, for comparing.
+/// Content of an undamaged session, for comparison.
 struct Truth {
   recordings::SessionStart start;
   std::vector<recordings::TickRecord> records;
   std::vector<recordings::Event> events;
-  std::vector<std::uint64_t> state_hashes;  ///< before each tick, and after the last
+  std::vector<std::uint64_t> state_hashes;  ///< before each tick and after the last
   std::uint64_t model_hash = 0;
 };
 
-/// A number for a whole Model: the hash of a State with all of its numbers in one array.
+/// Hash of a whole Model: the hash of a State that holds all its numbers in one array.
 std::uint64_t hash_of(const Model& model) {
   State all;
   const auto add = [&](const auto& self, const auto& value) -> void {
@@ -51,13 +51,13 @@ Truth truth_of(const std::string& path, const recordings::SessionStart& start, c
   return truth;
 }
 
-/// What was found out about one damaged file.
+/// Result of reading one damaged file.
 struct Finding {
   bool opened = false;
-  bool complained = false;  ///< an error was given by open() or by anything after it
+  bool complained = false;  ///< open() or a later call returned an error
 };
 
-/// Everything that the reader hands out must be the truth, and every error must be at the file.
+/// Everything that the reader returns must be true, and every error must name the file.
 Finding expect_error_or_truth(const std::string& path, const Truth& truth, const std::string& what) {
   Finding finding;
   const auto complain = [&](const Errors& errors) {
@@ -115,7 +115,7 @@ Finding expect_error_or_truth(const std::string& path, const Truth& truth, const
   return finding;
 }
 
-/// One small session, its bytes and its truth, made once.
+/// One small session with its bytes and true content, made once.
 struct Sample {
   Folder folder;
   std::string path = folder / "whole.ctpm";
@@ -151,7 +151,7 @@ TEST(Damage, AFileCutAtAnyLengthIsAnErrorWithItsPlace) {
   }
 }
 
-/// Places that surely are payload: the heads of all compressed frames.
+/// Offsets that are certainly payload: the heads of all compressed frames.
 std::set<std::size_t> frame_heads(const std::vector<char>& bytes) {
   static constexpr char magic[] = {'\x28', '\xb5', '\x2f', '\xfd'};
   std::set<std::size_t> places;
@@ -160,7 +160,7 @@ std::set<std::size_t> frame_heads(const std::vector<char>& bytes) {
   return places;
 }
 
-/// Flips one bit at each of the places, one at a time.
+/// Flips one bit at each offset, one at a time.
 void flip_each(const std::set<std::size_t>& places, bool must_be_found) {
   const Sample& whole = sample();
   const Folder folder;
@@ -196,8 +196,8 @@ TEST(Damage, AFlippedBitInAnyBlockIsFound) {
   flip_each(places, true);
 }
 
-/// Writes the file with one byte changed, at the first place where that makes `message` appear in what
-/// check_all() says. Returns all that it says; empty if there is no such place.
+/// Writes the file with one byte changed, at the first offset where check_all() then reports `message`. Returns all its
+/// errors; empty if there is no such offset.
 std::string damage_until(const std::string& path, const std::vector<char>& bytes, const std::string& message) {
   for (std::size_t place = 4096; place < bytes.size(); place += 61) {
     std::vector<char> damaged = bytes;
@@ -257,7 +257,7 @@ TEST(Damage, WhatIsNotASessionIsSaidPlainly) {
   EXPECT_EQ(message(), path + ": error: is not a session file: it is not a regular file");
   std::filesystem::remove(path);
 
-  // Another SQLite database: other numbers in the header.
+  // Another SQLite database has other numbers in the header.
   std::vector<char> other = sample().bytes;
   other[71] = 'X';
   write_bytes(path, other);

@@ -7,7 +7,7 @@
 
 namespace ctpm::testing {
 
-/// The first `count` values of an array, or those behind them; nothing of an array that is empty.
+/// The first `count` values of an array, or those after them; empty for an empty array.
 template <class T>
 std::vector<T> head(const std::vector<T>& all, std::size_t count) {
   return {all.begin(), all.begin() + std::ptrdiff_t(std::min(count, all.size()))};
@@ -17,7 +17,7 @@ std::vector<T> tail(const std::vector<T>& all, std::size_t count) {
   return {all.begin() + std::ptrdiff_t(std::min(count, all.size())), all.end()};
 }
 
-/// Writes what `model` has apart from the axial elements, their resistance to a blade and the lattice cells.
+/// Writes all fields of `model` except the axial elements, their cut resistance and the lattice cells.
 inline void put_common_fields(recordings::session_file::FieldWriter& out, const Model& model) {
   for_each_field(model, [&](std::string_view name, const auto& value) {
     if (!name.starts_with("axial.") && !name.starts_with("cell.") && name != "cut_resistance.energy" &&
@@ -26,7 +26,7 @@ inline void put_common_fields(recordings::session_file::FieldWriter& out, const 
   });
 }
 
-/// A Model as programs wrote it before there was one table of axial elements and before spheres kept their cells.
+/// Writes a Model in the earlier format: two tables of axial elements and no lattice cells.
 inline recordings::session_file::Bytes earlier_bytes(const Model& model) {
   const AxialElements& axial = model.axial;
   std::size_t edges = 0;
@@ -52,7 +52,7 @@ inline recordings::session_file::Bytes earlier_bytes(const Model& model) {
   return bytes;
 }
 
-/// A State of a Model with `edges` springs and Kelvin units likewise.
+/// Writes a State of a Model with `edges` springs and Kelvin units in the earlier format.
 inline recordings::session_file::Bytes earlier_bytes(const State& state, std::size_t edges) {
   recordings::session_file::Bytes bytes;
   recordings::session_file::put_field_set(bytes, [&](recordings::session_file::FieldWriter& out) {

@@ -1,6 +1,5 @@
-// Hostile content behind valid checksums: what the decoders get when somebody makes a session file on
-// purpose. Each case decodes many damaged copies of a real block. They must be refused or be safe to use;
-// sanitizers say whether they were.
+// Hostile content behind valid checksums, as in a forged session file. Each case decodes many damaged copies of a real
+// block. Decoders must refuse a copy or return data that is safe to use; sanitizers check this.
 
 #include <cstring>
 #include <random>
@@ -20,7 +19,7 @@ using namespace ctpm::recordings::session_file;
 
 constexpr std::uint64_t budget = 64 << 20;  // [bytes]
 
-/// Changes some bytes in one of the ways that hurt parsers most; seeded, so that a failure can be repeated.
+/// Changes some bytes in a way that often breaks parsers. Seeded, so that failures are reproducible.
 class Mutator {
  public:
   explicit Mutator(std::uint32_t seed) : random_(seed) {}
@@ -86,7 +85,7 @@ Bytes bytes_of(const S& structure) {
   return bytes;
 }
 
-/// Decodes as sessions are read; empty if it was refused.
+/// Decodes as the reader does; empty if refused.
 template <class S>
 std::optional<S> decoded(const Bytes& bytes) {
   S structure;
@@ -102,14 +101,14 @@ std::optional<S> decoded(const Bytes& bytes) {
   return structure;
 }
 
-/// Few enough spheres and elements that thousands of variants can be simulated.
+/// Small enough to simulate thousands of variants.
 recordings::SessionStart tiny_start() {
   recordings::SessionStart start = small_start(5, 2, 2);
   start.model.solver.max_iterations = 20;
   return start;
 }
 
-/// Damaged copies of a Model are refused or can be simulated.
+/// Damaged copies of a Model must be refused or simulate safely.
 void expect_safe_models(const Bytes& whole) {
   ASSERT_TRUE(decoded<Model>(whole));
   Mutator mutate(1);
@@ -120,7 +119,7 @@ void expect_safe_models(const Bytes& whole) {
       ++refused;
       continue;
     }
-    // A file may ask for much work in a tick, within its limits; here is no time for that.
+    // A file may ask for much work per tick within the limits; this test limits it.
     if (model->solver.max_iterations > 1000 || model->solver.substeps > 10) continue;
     State state = rest_state(*model);
     ASSERT_TRUE(check_state(*model, state).empty());
@@ -215,7 +214,7 @@ TEST(Fuzz, AListOfColumnsIsRefusedOrKnown) {
 }
 
 TEST(Fuzz, AFewBytesCannotAskForMuchMemory) {
-  // A constant array of 2^40 values needs no planes: 12 bytes that state terabytes.
+  // A constant array of 2^40 values needs no planes, so 12 bytes declare terabytes.
   Bytes bytes;
   put_field_set(bytes, [](FieldWriter&) {});
   bytes.clear();

@@ -22,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::int64_t session_ticks = 400;
 constexpr auto allowed_loss = std::chrono::milliseconds(200);
 
-/// What the recorder tells about itself in memory that outlives it.
+/// Progress of the recorder, in shared memory that outlives it.
 struct Shared {
   std::atomic<bool> created;
   std::atomic<std::int64_t> appended;
@@ -31,7 +31,7 @@ struct Shared {
 
 std::int64_t now_ns() { return Clock::now().time_since_epoch() / std::chrono::nanoseconds(1); }
 
-/// The child: one session of 400 ms, ended properly if it lives that long.
+/// The child: records one session of 400 ms and ends it if not killed before.
 [[noreturn]] void record_until_killed(const std::string& path, const recordings::SessionStart& start, Shared& shared) {
   auto writer = recordings::SessionWriter::create(path, start, {.keyframe_ticks = 50});
   if (!writer) ::_exit(1);
@@ -67,7 +67,7 @@ void check_what_is_left(const std::string& path, const Shared& shared, std::int6
   EXPECT_EQ(verdict->ticks_compared, kept);
 }
 
-/// One recorder in a process of its own, and what it tells.
+/// One recorder process and its shared memory.
 struct Victim {
   Folder folder;
   Shared* shared = nullptr;
@@ -76,8 +76,7 @@ struct Victim {
   std::int64_t killed_at_ns = 0;
 };
 
-/// Some recorders at the same time, each killed at its own moment. They mostly sleep, so they do not slow
-/// each other down.
+/// Several concurrent recorders, each killed at its own moment. They mostly sleep, so they do not slow each other down.
 void kill_together(std::span<Shared* const> memory, const recordings::SessionStart& start, std::mt19937& random) {
   std::uniform_int_distribution<int> life_us(500, 430000);
   std::vector<Victim> victims(memory.size());

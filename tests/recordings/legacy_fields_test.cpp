@@ -1,4 +1,4 @@
-// Models and States as earlier programs wrote them.
+// Models and States written by earlier programs.
 
 #include "recordings/internal/legacy_fields.h"
 
@@ -31,7 +31,7 @@ std::string read(Get&& get, const Bytes& bytes, S& structure) {
   return problem;
 }
 
-/// A block with springs, Kelvin units, two-sphere TPMs, constraints and resistance to a blade.
+/// A block with springs, Kelvin units, two-sphere TPMs, constraints and cut resistance.
 Model tough_block(network::Structure structure, double viscosity = 5e6) {
   network::Material material = liver_material();
   material.viscosity = viscosity, material.fracture_toughness = 100, material.blade_friction = 2000;
@@ -87,7 +87,7 @@ TEST(LegacyFields, TheCellsOfATurnedOrganAreFound) {
 
 TEST(LegacyFields, TablesThatDoNotFitAreRefusedByName) {
   const Model model = tough_block(network::Structure::ctpm);
-  // One stiffness too many in one table and one too few in the other: together they would fit.
+  // One stiffness too many in one table and one too few in the other: the total would fit.
   Model moved = model;
   std::size_t first_tpm = model.axial.size() - model.axial.internal_count();
   Bytes bytes;

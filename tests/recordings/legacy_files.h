@@ -6,7 +6,7 @@
 
 namespace ctpm::recordings::session_file {
 
-/// An event as it was stored before events had fields.
+/// An event in the format from before events had fields.
 struct SentenceEvent {
   std::int64_t tick = 0;
   std::int32_t kind = 0;
@@ -24,7 +24,7 @@ void for_each_field(E& e, Visit&& visit) {
 
 namespace ctpm::testing {
 
-/// A session without ticks whose Model stores `integrator`, written past the writer's own checks.
+/// Writes a session without ticks whose Model stores `integrator`, bypassing the writer's checks.
 inline void write_with_integrator(const std::string& path, std::int32_t integrator, std::int32_t physics_revision,
                                   const std::vector<recordings::session_file::SentenceEvent>& events = {}) {
   namespace file = recordings::session_file;

@@ -1,4 +1,4 @@
-// What files from before a change of the format hold, and what becomes of it.
+// Contents of files from before a format change, and how they are read.
 
 #include "tests/recordings/legacy_files.h"
 

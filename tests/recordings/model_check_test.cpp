@@ -1,4 +1,4 @@
-// A Model or a State from a file: every field is held to its shape and its range.
+// Checks of a Model or a State from a file: every field must have its shape and range.
 
 #include "recordings/internal/model_check.h"
 
@@ -30,11 +30,11 @@ Model rich_model() {
 
 enum class Harm { not_a_number, another_length, far_too_large };
 
-/// Does harm to the field number `target`, counted over all fields and those of structures in lists.
+/// Damages field number `target`, counted over all fields and those of structures in lists.
 class Spoiler {
  public:
   Spoiler(Harm harm, int target) : harm_(harm), target_(target) {}
-  std::string spoiled;  ///< name of the field; empty if the field cannot come to this harm
+  std::string spoiled;  ///< name of the field; empty if this damage does not apply to it
   bool is_over() const { return at_ <= target_; }
 
   template <class T>
@@ -76,7 +76,7 @@ class Spoiler {
   int target_, at_ = 0;
 };
 
-/// Names of the fields whose harm is not noticed, and how many came to harm at all.
+/// Names of the fields whose damage is not detected, and the number of damaged fields.
 template <class S>
 std::pair<std::set<std::string>, int> unnoticed(Harm harm, const S& whole,
                                                 const std::function<bool(const S&)>& notices) {

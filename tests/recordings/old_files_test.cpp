@@ -12,13 +12,13 @@ using namespace ctpm::testing;
 
 const std::string kOld = CTPM_SOURCE_DIR "/tests/recordings/old";
 
-/// A reader must be able to write a log beside its file, so old files are read where that may happen.
+/// Copies an old file to a writable folder, because SQLite may create files beside it.
 std::string copy_of(const std::string& name, const Folder& folder) {
   std::filesystem::copy(kOld + "/" + name, folder / name);
   return folder / name;
 }
 
-/// Elements join spheres whose cells are as far apart as they are, in spacings.
+/// The distance between the cells of two joined spheres equals their rest distance, in spacings.
 void expect_cells_of_neighbours(const Model& model) {
   ASSERT_FALSE(model.organs.empty());
   for (std::size_t e = 0; e < model.axial.size(); ++e) {
@@ -52,7 +52,7 @@ TEST(OldFiles, EachOpensAndGivesAllThatItHolds) {
     for (const std::int64_t tick : *keyframes) {
       const auto keyframe = reader->keyframe_at_or_before(tick);
       ASSERT_TRUE(keyframe) << text_of(keyframe.errors());
-      // The hash that the program of then gave.
+      // The hash stored by the recording program.
       if (tick == 0) continue;
       EXPECT_EQ(recordings::state_hash(keyframe->state), (*ticks)[std::size_t(tick - 1)].state_hash) << tick;
     }
@@ -60,7 +60,7 @@ TEST(OldFiles, EachOpensAndGivesAllThatItHolds) {
     EXPECT_TRUE(reader->events());
     EXPECT_TRUE(reader->statistics());
     EXPECT_EQ(reader->start().physics_revision, 0) << "recorded before revisions were stored";
-    // It need not replay to the bit for ever, but a replay of it can always be asked for.
+    // Replay need not stay bit-equal, but must always run.
     const auto verdict = recordings::verify_session(*reader);
     ASSERT_TRUE(verdict) << text_of(verdict.errors());
     EXPECT_EQ(verdict->ticks_compared, reader->tick_count());
@@ -69,7 +69,7 @@ TEST(OldFiles, EachOpensAndGivesAllThatItHolds) {
   EXPECT_GE(count, 2);
 }
 
-/// What the session in v1.ctpm came to when it was recorded with record_session(); never to be changed.
+/// Results of the session in v1.ctpm, recorded with record_session(). Never change them.
 TEST(OldFiles, AFileOfVersion1GivesWhatWasRecorded) {
   const Folder folder;
   auto reader = recordings::SessionReader::open(copy_of("v1.ctpm", folder));

@@ -15,7 +15,7 @@ namespace {
 
 using namespace ctpm::testing;
 
-/// Every field of two structures as bytes, so that they are compared to the bit.
+/// Every field of a structure as bytes, for a bitwise comparison.
 template <class S>
 std::string bytes_of(const S& structure) {
   std::string bytes;
@@ -122,7 +122,7 @@ TEST(Session, KeyframesHoldTheStateBeforeTheirTick) {
   }
 }
 
-/// An event all of whose fields say something.
+/// An event with all fields set.
 recordings::Event full_event(std::int32_t kind) {
   recordings::Event event;
   event.kind = static_cast<recordings::EventKind>(kind);
@@ -228,7 +228,7 @@ TEST(Session, EventsAndStatisticsComeBack) {
   EXPECT_EQ(statistics->late_ticks, 50);
   EXPECT_EQ(statistics->values, (std::vector<recordings::NamedValue>{{"input_age_p99_s", 0.25}}));
 
-  // Percentiles by nearest rank, worked out here by sorting.
+  // Percentiles by nearest rank, computed here by sorting.
   std::vector<double> times;
   double max_force = 0, max_depth = 0;
   std::int64_t severed = 0;
@@ -345,7 +345,7 @@ TEST(Session, ATickIsSavedWithin200MsThoughNoOtherFollows) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_EQ(writer->status().committed, 7);
 
-  // Another program sees it while the session goes on.
+  // Another program can read the session during recording.
   auto reader = recordings::SessionReader::open(folder / "a.ctpm");
   ASSERT_TRUE(reader) << text_of(reader.errors());
   EXPECT_EQ(reader->tick_count(), 7);
@@ -403,7 +403,7 @@ TEST(Session, AnErrorAtCreationLeavesNothingBehind) {
   EXPECT_EQ(refused.errors()[0].message, "axial.a[3] is 27, must be in [0, 27)");
   EXPECT_TRUE(folder.names().empty());
 
-  // What the law of the blade divides by, and what must not push outwards.
+  // Divisors of the blade's force law, and values that must not push outwards.
   broken = small_start();
   broken.model.tools.at(0).blade_thickness = 0, broken.model.contact_damping = -1;
   const auto unlawful = recordings::SessionWriter::create(folder / "a.ctpm", broken);
@@ -463,7 +463,7 @@ TEST(StateHash, TellsWhereOneArrayEndsAndTheNextBegins) {
 }
 
 TEST(StateHash, IsWhatTheFormatSays) {
-  // XXH3-64 of the 160 bytes that FORMAT.md section 5 says, laid out by another program.
+  // XXH3-64 of the 160 bytes of FORMAT.md section 5, written by another program.
   EXPECT_EQ(recordings::state_hash(State{}), 0x518046858ef5aa7cull);
   // Likewise the 202 bytes with elements of which the last two have internal variables: two arrays of each kind.
   State cut;

@@ -21,7 +21,7 @@
 
 namespace ctpm::testing {
 
-/// A folder of its own for one test, gone with it.
+/// A temporary folder of one test, deleted at its end.
 class Folder {
  public:
   Folder() {
@@ -68,7 +68,7 @@ inline Surface small_surface() {
   return surface;
 }
 
-/// The start of a session on a small block with a ball and a scalpel.
+/// Start of a session on a small block with a ball and a scalpel.
 inline recordings::SessionStart small_start(int ni = 3, int nj = 3, int nk = 3) {
   recordings::SessionStart start;
   start.scene_text = "{ \"scene\": \"a block\" }\n";
@@ -82,8 +82,7 @@ inline recordings::SessionStart small_start(int ni = 3, int nj = 3, int nk = 3) 
   return start;
 }
 
-/// What the hand does in these tests: presses the block from above with the ball, then sweeps the scalpel
-/// through it.
+/// Inputs of these tests: the ball presses the block from above, then the scalpel sweeps through it.
 inline Inputs scripted_inputs(std::int64_t tick, double top) {
   Inputs inputs;
   const double t = 1e-3 * static_cast<double>(tick);
@@ -98,13 +97,13 @@ inline Inputs scripted_inputs(std::int64_t tick, double top) {
   return inputs;
 }
 
-/// A session that was really simulated: what was recorded, in memory.
+/// Records of a simulated session, in memory.
 struct Lived {
   std::vector<recordings::TickRecord> records;
   State last;
 };
 
-/// Simulates `ticks` ticks from the start and gives each to `each(state, record)`.
+/// Simulates `ticks` ticks from the start and calls `each(state, record)` after each.
 template <class Each>
 Lived live(const recordings::SessionStart& start, std::int64_t ticks, Each&& each) {
   Lived lived;
@@ -121,7 +120,7 @@ Lived live(const recordings::SessionStart& start, std::int64_t ticks, Each&& eac
   return lived;
 }
 
-/// Records a whole session and ends it. The writer may wait: these sessions run faster than a disk.
+/// Records a whole session and ends it. The writer waits for the disk, because these sessions run faster than it.
 inline Lived record_session(const std::string& path, const recordings::SessionStart& start, std::int64_t ticks,
                             std::int32_t keyframe_ticks = 250) {
   recordings::WriterOptions options;

@@ -1,5 +1,5 @@
-// Numbers that session files store are for ever: each number that ever stood for something is listed here with what it
-// stood for. A number that gets another meaning, or a retired one that is used again, fails.
+// Numbers stored in session files are permanent. This test lists every number ever used with its meaning. It fails if a
+// number gets another meaning or a retired one is reused.
 
 #include <gtest/gtest.h>
 
@@ -123,7 +123,7 @@ const char* name_in_file(FieldType value) {
   return nullptr;
 }
 
-/// All numbers in [0, 255] that stand for something now.
+/// All numbers in [0, 255] that have a meaning now.
 template <class E>
 Numbers numbers_of() {
   Numbers numbers;

@@ -46,7 +46,7 @@ TEST(Verify, NamesTheFirstTickTheSphereTheQuantityAndTheSize) {
   constexpr std::int64_t wrong_tick = 130;
   constexpr std::int32_t wrong_sphere = 21;
   constexpr double push = 1e-5;  // [m]
-  // The recorded session is pushed at one sphere behind the recording's back; the replay is not.
+  // Push one sphere of the recorded session without recording the push; the replay lacks it.
   auto writer = recordings::SessionWriter::create(folder / "a.ctpm", start,
                                                   {.wait_when_full = true, .keyframe_ticks = wrong_tick + 1});
   ASSERT_TRUE(writer);
@@ -167,7 +167,7 @@ TEST(Replay, ASessionGoesOnFromAMomentOfAnother) {
   ASSERT_TRUE(from) << text_of(from.errors());
   EXPECT_EQ(recordings::state_hash(from->initial_state), parent.records[332].state_hash);
 
-  // Living the same on gives the same as the parent lived.
+  // Continuing with the same inputs gives the parent's results.
   auto writer = recordings::SessionWriter::create(folder / "child.ctpm", *from, {.wait_when_full = true});
   ASSERT_TRUE(writer) << text_of(writer.errors());
   State state = from->initial_state;
@@ -209,7 +209,7 @@ TEST(PhysicsRevision, IsThatOfTheRecordingUntilASessionGoesOn) {
   }
 }
 
-/// Every revision has its line in the table of FORMAT.md, and no line has no revision.
+/// Every revision has one line in the table of FORMAT.md, and every line has a revision.
 TEST(PhysicsRevision, EachHasItsLineInTheFormat) {
   std::ifstream in(CTPM_SOURCE_DIR "/recordings/FORMAT.md");
   std::string line;

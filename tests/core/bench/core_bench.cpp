@@ -1,8 +1,8 @@
-// What a tick costs: forces and ticks of cubic blocks of liver, beside a plain loop over springs and a loop that only
-// streams the same bytes.
-//   ctpm_core_bench                 all of it
-//   ctpm_core_bench --benchmark_filter=Forces
-// "per_spring" is time by axial elements; compare within one run, since machines and their load differ.
+// Cost of forces and ticks of cubic blocks of liver, beside a plain loop over springs and a loop that only streams the
+// same bytes.
+//   ctpm_core_bench                             all benchmarks
+//   ctpm_core_bench --benchmark_filter=forces   some of them
+// "per_spring" is time per axial element. Compare results of one run only, since machines and their load differ.
 
 #include <benchmark/benchmark.h>
 
@@ -18,7 +18,7 @@
 namespace ctpm {
 namespace {
 
-/// Edge of a block of about `spheres` spheres.
+/// Spheres along one edge of a cubic block of about `spheres` spheres.
 int edge_of(std::int64_t spheres) { return int(std::lround(std::cbrt(double(spheres)))); }
 
 Model make_model(std::int64_t spheres, network::Structure structure, double viscosity) {
@@ -47,8 +47,8 @@ void forces(benchmark::State& run, network::Structure structure, double viscosit
   report(run, model);
 }
 
-/// The forces of springs by a loop that knows nothing else: no damping, cutting, softening, constraints or slabs. What
-/// forces/springs takes beyond it, features cost a scene that has none of them.
+/// Spring forces by a plain loop without damping, cutting, softening, constraints or slabs. The excess of
+/// forces/springs over it is the overhead of unused features.
 void plain_springs(benchmark::State& run) {
   const Model model = make_model(run.range(0), network::Structure::mass_spring, 0);
   const AxialElements& axial = model.axial;
@@ -73,7 +73,7 @@ void plain_springs(benchmark::State& run) {
   report(run, model);
 }
 
-/// Reads and writes what a force evaluation must at the least: positions, velocities and forces once.
+/// The least memory traffic of a force evaluation: positions, velocities and forces once.
 void streaming(benchmark::State& run) {
   const Model model = make_model(run.range(0), network::Structure::mass_spring, 0);
   const std::size_t n = 3 * model.sphere_count();
@@ -122,7 +122,7 @@ void ticks(benchmark::State& run, double viscosity, const std::optional<SolverSe
   report(run, model);
 }
 
-/// Bytes of Model and State of a sphere, with all features of the tissue and without.
+/// Bytes of Model and State per sphere, with all tissue features and with none.
 void memory(benchmark::State& run, network::Structure structure, double viscosity) {
   const Model model = make_model(run.range(0), structure, viscosity);
   const State state = rest_state(model);
@@ -134,7 +134,7 @@ void memory(benchmark::State& run, network::Structure structure, double viscosit
   run.counters["bytes_per_sphere"] = bytes / double(model.sphere_count());
 }
 
-constexpr double kPascal = 5e3, kKilopascal = 5e6;  // v1 of the liver in both readings [Pa s/m]
+constexpr double kPascal = 5e3, kKilopascal = 5e6;  // v1 of the liver in both readings of its unit [Pa s/m]
 
 BENCHMARK(plain_springs)->Arg(1000)->Arg(10000)->Arg(100000);
 BENCHMARK(streaming)->Arg(1000)->Arg(10000)->Arg(100000);

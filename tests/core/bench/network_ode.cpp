@@ -71,8 +71,7 @@ void NetworkOde::add_loads(double time) {
   }
 }
 
-/// Calls touch(contact, slip) for every sphere that the ball overlaps; slip is its velocity across the
-/// normal.
+/// Calls touch(contact, slip) for every sphere that the ball overlaps; slip is its tangential velocity.
 template <class Touch>
 void NetworkOde::for_each_touched(double time, Touch&& touch) const {
   if (press_.radius == 0) return;

@@ -8,20 +8,20 @@
 
 namespace ctpm::testing {
 
-/// A rigid ball that presses straight down and leaves again: its depth is `depth` sin^2(pi t / duration).
+/// A rigid ball that presses straight down and leaves: its depth is `depth` sin^2(pi t / duration).
 struct Press {
   Vec3 touch;           ///< centre of the ball at the start and at the end [m]
   double radius = 0;    ///< [m]
-  double depth = 0;     ///< at half of the time [m]
+  double depth = 0;     ///< depth at half the duration [m]
   double duration = 0;  ///< [s]
 
   Vec3 centre(double time) const;
   Vec3 velocity(double time) const;
 };
 
-/// The law that core integrates as y' = f(t, y) for any other integrator: y is displacement from the start,
-/// velocity, and Kelvin elongation. Elements are core's own; loads and the ball's contact are those of
-/// external_loads.h and ball_contact.h at time t, which is what core's substeps come to as they get shorter.
+/// Core's equations as y' = f(t, y) for any other integrator. y holds displacement from the start, velocity, and Kelvin
+/// elongation. Elements are core's own. Loads and the ball's contact are those of external_loads.h and ball_contact.h
+/// at time t, the limit of core's substeps as they get shorter.
 class NetworkOde {
  public:
   /// `model` must outlive it; `start` is the State that y = start_values() stands for.
@@ -31,17 +31,16 @@ class NetworkOde {
   std::size_t sphere_count() const { return spheres_; }
   std::vector<double> start_values() const;
 
-  /// Sizes of displacement [m], velocity [m/s] and Kelvin elongation [m] that a tolerance is relative to
-  /// (size()).
+  /// Reference sizes of displacement [m], velocity [m/s] and Kelvin elongation [m] for tolerances (size()).
   std::vector<double> scales() const;
 
   /// y' = f(t, y).
   void derive(double time, const double* y, double* derivative);
 
-  /// Takes the 3x3 block of each sphere of M + gamma C + gamma^2 K at (t, y): core's own preconditioner.
+  /// Sets up core's preconditioner: the 3x3 block of each sphere of M + gamma C + gamma^2 K at (t, y).
   void take_blocks(double time, double gamma, const double* y);
 
-  /// Solves (1 - gamma f'(y)) z = r with the rest of the matrix left out.
+  /// Solves (1 - gamma f'(y)) z = r with these blocks only.
   void precondition(double gamma, const double* r, double* z) const;
 
  private:

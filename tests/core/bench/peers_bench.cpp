@@ -1,12 +1,13 @@
-// Run time at equal error, beside SUNDIALS: a block of liver is pressed and let go, under one law for all.
+// Run time at equal error, compared with SUNDIALS: a block of liver is pressed and released. All integrators solve the
+// same equations.
 //   ctpm_peers_bench                                   all cases: a quarter of an hour
 //   ctpm_peers_bench --benchmark_filter=ball/729/kPa   one of them
-// "ball": a ball comes down 4 mm and leaves, with friction; core moves it straight within a tick, which is a part of
-// its error. "load": a weight on a patch grows and goes again, where nothing is discontinuous but its rate, at three
-// moments. Without gravity, so that all start from the same rest.
-// Times are processor time of one thread. Errors are relative differences in L2 of all displacements over the whole
-// trajectory, from CVODE at rtol 1e-9; how far ARKODE at its tightest is from that is printed too. Last, for each case,
-// the times at an error of 1e-2 and 1e-3, read off the fronts of core's settings and of each of SUNDIALS' in log-log.
+// "ball": a ball presses 4 mm deep with friction and leaves. Core moves it along a straight line within a tick, which
+// is part of core's error. "load": a load on a patch grows and vanishes; only its rate is discontinuous, at three
+// moments. There is no gravity, so all start from the same rest state. Times are processor time of one thread. Errors
+// are relative L2 differences of all displacements over the whole trajectory from CVODE at rtol 1e-9. The difference of
+// ARKODE at its tightest tolerance is printed too. Last come, for each case, the times at errors of 1e-2 and 1e-3,
+// interpolated in log-log on the fronts of core and of each SUNDIALS method.
 
 #include <benchmark/benchmark.h>
 
@@ -35,7 +36,7 @@ struct Point {
   double seconds, error;
 };
 
-/// A block of liver in one of the readings of its viscosity, and what integrators made of its press.
+/// A pressed block of liver in one reading of its viscosity, and the results of the integrators.
 struct Case {
   std::string name;
   Model model;
@@ -45,15 +46,15 @@ struct Case {
   std::vector<Point> points;
 };
 
-/// A ball of 12 mm that comes down beside the middle of the top.
+/// A ball of 12 mm that presses beside the middle of the top.
 void add_ball(Case& c, int edge) {
   c.model.tools = {ball(0.012)};
   const double touch = 0.012 * (edge - 1) + c.model.tools[0].radius + c.model.contact_radius.back();
   c.press.touch = {0.001, 0.002, touch}, c.press.radius = c.model.tools[0].radius;
 }
 
-/// 0.5 N, shared by the 5 x 5 spheres in the middle of the top, grow over the first half of the time and go
-/// in the second.
+/// A load of 0.5 N on the 5 x 5 spheres in the middle of the top. It grows over the first half of the time and vanishes
+/// over the second.
 void add_load(Case& c, int edge) {
   const double half = 0.5 * c.press.duration;
   for (int j = edge / 2 - 2; j <= edge / 2 + 2; ++j)
@@ -102,7 +103,7 @@ elements::Coordinates displacements(const State& state, const State& start) {
   return all;
 }
 
-/// Ticks of one length without substeps, as a device that samples as often would drive them.
+/// Ticks of one length without substeps, as a device with this sampling rate would drive them.
 Run run_core(const Case& c, Integrator integrator, int steps_per_sample, double tolerance) {
   Model model = c.model;
   model.tick = kSamples.interval / steps_per_sample;
@@ -144,8 +145,8 @@ void measure(benchmark::State& bench, Case& c, Family family, const Solve& solve
   if (std::isfinite(error)) c.points.push_back({family, fastest, error});
 }
 
-/// Time at which the front of a family has the error `wanted`, between its points in log-log; none if it
-/// never has.
+/// Run time at which the front of a family has the error `wanted`, by log-log interpolation; none if it never reaches
+/// it.
 std::optional<double> time_at_error(std::vector<Point> points, Family family, double wanted) {
   std::erase_if(points, [&](const Point& p) { return p.family != family; });
   std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.seconds < b.seconds; });
@@ -216,7 +217,7 @@ void add_all(Case& c) {
     add(c, Family::cvode_preconditioned, std::string("cvode_preconditioned/") + name,
         [rtol](NetworkOde& ode) { return run_cvode(ode, kSamples, rtol, true); });
   }
-  // Where stability alone decides the step, looser tolerances cost the same.
+  // Where stability alone limits the step, looser tolerances cost the same.
   for (const double rtol : is_stiff ? std::vector{1e-3, 1e-6} : std::vector{1e-2, 1e-3, 1e-4, 1e-6, 1e-8}) {
     std::snprintf(name, sizeof name, "arkode/rtol:%g", rtol);
     add(c, Family::arkode, name, [rtol](NetworkOde& ode) { return run_arkode(ode, kSamples, rtol); });

@@ -13,7 +13,7 @@
 namespace ctpm::testing {
 namespace {
 
-/// Dimension of the Krylov space. At equal error, 5 (CVODE's own) and 60 take about as long.
+/// Dimension of the Krylov space. At equal error, 5 (CVODE's default) and 60 take about as long.
 constexpr int kKrylov = 30;
 
 constexpr long kMostSteps = 100'000'000;
@@ -55,7 +55,7 @@ Vector tolerances(const NetworkOde& ode, double rtol, SUNContext context) {
   return vector_of(scale, context);
 }
 
-/// Calls go_on(time) to bring `y` to each sample's time; false ends the run.
+/// Calls go_on(time) to advance `y` to each sample time; a result of false ends the run.
 template <class GoOn>
 void sample(Run& run, const Samples& samples, N_Vector y, std::size_t coordinates, GoOn&& go_on) {
   const double* values = N_VGetArrayPointer(y);

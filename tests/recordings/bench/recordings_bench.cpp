@@ -1,5 +1,4 @@
-// What recording costs a tick, how large its file gets, and how fast it opens. Block of 10 x 10 x 10 spheres,
-// pressed and cut.
+// Cost of recording per tick, file size and opening time. Block of 10 x 10 x 10 spheres, pressed and cut.
 
 #include <benchmark/benchmark.h>
 
@@ -15,7 +14,7 @@ namespace {
 using namespace ctpm::testing;
 
 constexpr std::int64_t ticks_per_minute = 60'000;
-constexpr std::int64_t session_ticks = 20'000;  // of the session that is really simulated
+constexpr std::int64_t session_ticks = 20'000;  // length of the simulated session
 
 const recordings::SessionStart& block_start() {
   static const recordings::SessionStart start = small_start(10, 10, 10);
@@ -34,7 +33,7 @@ void StateHash1000Spheres(benchmark::State& state) {
 }
 BENCHMARK(StateHash1000Spheres)->Unit(benchmark::kMicrosecond);
 
-/// append() alone, at the pace of real ticks, so that the writing thread runs beside it as it does in life.
+/// append() alone, at the rate of real ticks, so that the writing thread runs beside it as in use.
 void Append1000Spheres(benchmark::State& state) {
   const Folder folder;
   const Lived& lived = lived_block();
@@ -50,8 +49,7 @@ void Append1000Spheres(benchmark::State& state) {
 }
 BENCHMARK(Append1000Spheres)->UseManualTime()->Iterations(5000)->Unit(benchmark::kMicrosecond);
 
-/// A live tick with and without its recording; the counters are the medians, and what part of the tick the
-/// recording is.
+/// A live tick with and without recording. The counters are the medians and the share of recording in the tick.
 void TickWithRecording1000Spheres(benchmark::State& state) {
   using Clock = std::chrono::steady_clock;
   const recordings::SessionStart& start = block_start();
@@ -83,7 +81,7 @@ void TickWithRecording1000Spheres(benchmark::State& state) {
 }
 BENCHMARK(TickWithRecording1000Spheres)->Iterations(5000)->Unit(benchmark::kMicrosecond);
 
-/// Size of a session whose every tick is different, with its keyframes.
+/// Size of a session in which every tick differs, with its keyframes.
 void FileSize1000Spheres(benchmark::State& state) {
   const Folder folder;
   const recordings::SessionStart& start = block_start();
@@ -111,7 +109,7 @@ void FileSize1000Spheres(benchmark::State& state) {
 }
 BENCHMARK(FileSize1000Spheres)->Iterations(1)->Unit(benchmark::kSecond);
 
-/// An hour at 1 kHz: the records of the simulated session again and again.
+/// An hour at 1 kHz: repeats the records of the simulated session.
 const std::string& one_hour() {
   static const Folder folder;
   static const std::string path = [] {
@@ -143,9 +141,9 @@ void ReadOneMinuteInTheMiddleOfAnHour(benchmark::State& state) {
 }
 BENCHMARK(ReadOneMinuteInTheMiddleOfAnHour)->Unit(benchmark::kMillisecond);
 
-/// Any moment of ten minutes: a block of as many spheres as the shipped liver, and the worst moments, just
-/// before a keyframe. The session was not simulated as a whole: 20 s of it were, again and again, with their
-/// keyframes, so each seek reads and simulates what it would of a session that was.
+/// Seeks in ten minutes of a block with as many spheres as the shipped liver, to the worst ticks, just before a
+/// keyframe. The session repeats 20 s of simulation with its keyframes, so each seek reads and simulates as much as in
+/// a fully simulated session.
 void SeekInTenMinutes(benchmark::State& state) {
   const Folder folder;
   const recordings::SessionStart start = small_start(9, 9, 9);
@@ -166,7 +164,7 @@ void SeekInTenMinutes(benchmark::State& state) {
   std::int64_t keyframe = 0;
   double longest = 0;
   for (auto _ : state) {
-    // Far from the last one, so that nothing is gained from where the cursor stands.
+    // Far from the last target, so that the cursor's position does not help.
     keyframe = (keyframe + 131) % (reader->tick_count() / options.keyframe_ticks);
     const auto begin = std::chrono::steady_clock::now();
     if (!cursor->seek((keyframe + 1) * options.keyframe_ticks - 1)) return state.SkipWithError("not found");
@@ -176,7 +174,7 @@ void SeekInTenMinutes(benchmark::State& state) {
 }
 BENCHMARK(SeekInTenMinutes)->Iterations(20)->Unit(benchmark::kMillisecond);
 
-/// Verifying a session against the time it lasted.
+/// Verification time compared with the duration of the session.
 void VerifySession(benchmark::State& state) {
   const Folder folder;
   const recordings::SessionStart& start = block_start();
