@@ -42,12 +42,14 @@ inline constexpr GoldenRow kGoldenRevision2[] = {
     {"tpm, backward-euler", {0xa96074b0379faad7, 0x968ca46685dd9aee, 0x9fb2298a133a8092, 0x65c1d447661e118b}},
     {"angle-mass-spring, backward-euler",
      {0xc763299e0bb6a373, 0xbc618d074c9b15e5, 0x1a4a398489d302ca, 0xc784a38daa1aa437}},
+    {"full, auto", {0x2b05c06b95a472fe, 0xf6c28450b5acbc90, 0x7b9fe33a665c0de2, 0x78610f9db02a43ec}},
+    {"full, sdirk2", {0xea86a8ae0f8bddae, 0xfa46db8e64a30568, 0x0ae7c9f8858c5ac7, 0x249274725f3a0cb6}},
     {"ctpm, sdirk2", {0xab9834e13ef5e03a, 0x83d99c0f5e0da13c, 0x85d8915798f0e007, 0x0b5167087a7f4849}},
 };
 
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09},
-    {2, kGoldenRevision2, 0xae5864e96412d500},
+    {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

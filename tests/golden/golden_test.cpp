@@ -35,6 +35,12 @@ constexpr Session kSessions[] = {
     {"ctpm, sdirk2", network::Structure::ctpm, Integrator::sdirk2},
 };
 
+/// Of make_full_model().
+constexpr Session kFullSessions[] = {
+    {"full, auto", network::Structure::ctpm, std::nullopt},
+    {"full, sdirk2", network::Structure::ctpm, Integrator::sdirk2},
+};
+
 std::string to_text(const std::array<std::uint64_t, 4>& hash) {
   char text[128];
   std::snprintf(text, sizeof text, "{0x%016llx, 0x%016llx, 0x%016llx, 0x%016llx}", (unsigned long long)hash[0],
@@ -49,20 +55,28 @@ const GoldenRow* find_row(const GoldenRevision& revision, std::string_view sessi
   return row == revision.rows.end() ? nullptr : &*row;
 }
 
+void expect_row(const testing::GoldenRun& run, const GoldenRow& row) {
+  EXPECT_TRUE(run.is_good) << row.session;
+  EXPECT_GT(run.severed, 0) << row.session;
+  EXPECT_GT(run.contacts, 0) << row.session;
+  EXPECT_EQ(run.hash, row.hash) << row.session << " gave " << to_text(run.hash)
+                                << ": raise kPhysicsRevision, append its rows to golden_rows.h and say in "
+                                   "recordings/FORMAT.md what changed and why";
+}
+
 TEST(Golden, ASmallSessionGivesTheSameBitsInEveryBuild) {
   const GoldenRevision& present = *std::rbegin(kGoldenRevisions);
   ASSERT_EQ(present.revision, kPhysicsRevision) << "golden_rows.h needs the rows of the present physics revision";
-  EXPECT_EQ(present.rows.size(), std::size(kSessions));
+  EXPECT_EQ(present.rows.size(), std::size(kSessions) + std::size(kFullSessions));
   for (const Session& session : kSessions) {
     const GoldenRow* row = find_row(present, session.name);
     ASSERT_NE(row, nullptr) << session.name;
-    const testing::GoldenRun run = testing::run_golden(6, 5, 5, 400, session.structure, session.integrator);
-    EXPECT_TRUE(run.is_good);
-    EXPECT_GT(run.severed, 0);
-    EXPECT_GT(run.contacts, 0);
-    EXPECT_EQ(run.hash, row->hash) << session.name << " gave " << to_text(run.hash)
-                                   << ": raise kPhysicsRevision, append its rows to golden_rows.h and say in "
-                                      "recordings/FORMAT.md what changed and why";
+    expect_row(testing::run_golden(6, 5, 5, 400, session.structure, session.integrator), *row);
+  }
+  for (const Session& session : kFullSessions) {
+    const GoldenRow* row = find_row(present, session.name);
+    ASSERT_NE(row, nullptr) << session.name;
+    expect_row(testing::run_golden(testing::make_full_model(6, 5, 5), 400, session.integrator), *row);
   }
 }
 

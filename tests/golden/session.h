@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/stepping/step.h"
@@ -31,24 +32,55 @@ struct GoldenRun {
   bool is_good = true;  ///< every tick's status is ok or not_converged
 };
 
-/// Simulates `ticks` ticks, sampled evenly from the golden session, of a block of ni x nj x nk spheres.
-inline GoldenRun run_golden(int ni, int nj, int nk, int ticks, network::Structure structure,
-                            std::optional<Integrator> integrator, const stepping::StepperOptions& options = {}) {
-  Model model = make_block_model(ni, nj, nk, structure);
+/// Two blocks with all features that the golden sessions lack: tissue that resists a blade, under prestrain, whose cut
+/// faces meet; a load; a pin, which holds the last quarter.
+inline Model make_full_model(int ni, int nj, int nk) {
+  network::Material material = liver_material();
+  material.fracture_toughness = 150, material.blade_friction = 400, material.prestrain = 0.02;
+  Model model = make_block_model(ni, nj, nk, network::Structure::ctpm, material);
+  FilledOrgan beside = make_block(3, 3, 3, 0.012);
+  for (Vec3& centre : beside.centre) centre.x += 0.2;
+  network::OrganSettings settings;
+  settings.name = "beside", settings.structure = network::Structure::tpm, settings.material = material;
+  CTPM_CHECK(bool(network::add_organ(model, beside, settings)), "a test's own block is valid");
+  model.lip_k = model.axial.k[0];
+  const auto last = std::int32_t(model.sphere_count()) - 1;
+  model.loads.sphere = {last}, model.loads.start = {0.02}, model.loads.ramp = {0.05};
+  model.loads.force.push_back({0.05, 0, -0.1});
+  model.tools = {ball(0.006), scalpel(0.06), {"pin", ToolKind::pin, 0, 0, last - 4}};
+  return model;
+}
+
+/// Simulates `ticks` ticks, sampled evenly from the golden session, of a Model with a ball, a scalpel and perhaps a
+/// pin.
+inline GoldenRun run_golden(Model model, int ticks, std::optional<Integrator> integrator,
+                            const stepping::StepperOptions& options = {}) {
   model.gravity = {0, 0, -9.81};
-  model.tools = {ball(0.006), scalpel(0.06)};
   model.solver = {};
   stepping::resolve_integrator(model, integrator);
   State state = rest_state(model);
   stepping::Stepper stepper(model, options);
   GoldenRun run;
   for (int tick = 0; tick < ticks; ++tick) {
-    const stepping::StepReport report = stepper.step(state, golden_inputs(tick * 400 / ticks));
+    Inputs inputs = golden_inputs(tick * 400 / ticks);
+    if (model.has_tool(ToolKind::pin) && tick >= ticks * 3 / 4) {
+      const Vec3 held = model.rest_position[std::size_t(model.tools[2].sphere)];
+      inputs.tool = 2, inputs.position = held + Vec3{0, 0, 1e-5 * (tick - ticks * 3 / 4)};
+    }
+    const stepping::StepReport report = stepper.step(state, inputs);
     run.is_good = run.is_good && report.status <= stepping::StepStatus::not_converged;
     run.severed += report.severed, run.contacts += report.contacts;
     if ((tick + 1) % (ticks / 4) == 0) run.hash[std::size_t(tick / (ticks / 4))] = recordings::state_hash(state);
   }
   return run;
+}
+
+/// The same of a block of ni x nj x nk spheres.
+inline GoldenRun run_golden(int ni, int nj, int nk, int ticks, network::Structure structure,
+                            std::optional<Integrator> integrator, const stepping::StepperOptions& options = {}) {
+  Model model = make_block_model(ni, nj, nk, structure);
+  model.tools = {ball(0.006), scalpel(0.06)};
+  return run_golden(std::move(model), ticks, integrator, options);
 }
 
 }  // namespace ctpm::testing
