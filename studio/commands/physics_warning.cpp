@@ -7,6 +7,7 @@ namespace ctpm::commands {
 void warn_of_physics(const recordings::SessionReader& session) {
   const std::string remark = recordings::physics_remark(session.start().physics_revision);
   if (!remark.empty()) print_remark(session.path() + ": warning: " + remark);
+  for (const std::string& choice : session.remarks()) print_remark(session.path() + ": warning: " + choice);
 }
 
 }  // namespace ctpm::commands
