@@ -119,9 +119,9 @@ TEST_F(CutAndPressed, AnExplicitStepKeepsTheMomentumThatTheToolDoesNotTake) {
 }
 
 TEST_F(CutAndPressed, APinIsAContactThatFollowsTheHand) {
-  model_.tools.push_back({"pin", ToolKind::pin, 0, 0, 5});
+  const Tool holding{"pin", ToolKind::pin, 0, 0, 5};
   contact::HeldTool pin;
-  pin.tool = &model_.tools[2];
+  pin.tool = &holding;
   pin.from = model_.rest_position[5], pin.to = pin.from + Vec3{0, 0, 2e-3};
   const double h = 1e-3;
   const contact::ContactStep step{h, 1.0, contact::Contacts::pin(pin, state_.position, 1.0, h)};
