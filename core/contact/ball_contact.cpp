@@ -14,8 +14,7 @@ constexpr std::size_t kLookedAtOnce = 128;
 }  // namespace
 
 BallContact::BallContact(const Model& model, const elements::Kernels& kernels) : model_(model), kernels_(kernels) {
-  const auto presses = [](const Tool& tool) { return tool.kind == ToolKind::ball; };
-  if (std::any_of(model.tools.begin(), model.tools.end(), presses)) contacts_.reserve(model.sphere_count());
+  if (model.has_tool(ToolKind::ball)) contacts_.reserve(model.sphere_count());
   for (const double radius : model.contact_radius) largest_radius_ = std::max(largest_radius_, radius);
 }
 

@@ -48,13 +48,10 @@ std::size_t bytes_of_fields(const Owner& owner, std::string_view prefix) {
 }
 
 std::vector<Feature> features_of(const scenes::SceneSpec& scene, const Model& m, const State& s) {
-  const auto has_tool = [&](ToolKind kind) {
-    return std::any_of(m.tools.begin(), m.tools.end(), [&](const Tool& tool) { return tool.kind == kind; });
-  };
   const auto counted = [](std::size_t count, const char* what, const char* none) {
     return count > 0 ? std::to_string(count) + " " + what : std::string(none);
   };
-  const bool cuts = has_tool(ToolKind::scalpel);
+  const bool cuts = m.has_tool(ToolKind::scalpel);
   const bool limits = std::any_of(scene.organs.begin(), scene.organs.end(), [](const scenes::OrganSpec& organ) {
     return organ.damage_depth > 0 || organ.damage_force > 0;
   });
@@ -83,8 +80,10 @@ std::vector<Feature> features_of(const scenes::SceneSpec& scene, const Model& m,
       {"angle springs", m.angle_springs.size() > 0, counted(m.angle_springs.size(), "springs", "the model has none"),
        bytes_of_fields(m, "angle_springs.")},
       {"gravity", !(m.gravity == Vec3{}), m.gravity == Vec3{} ? "the scene has none" : "the scene asks for it", 0},
-      {"ball contact", has_tool(ToolKind::ball), has_tool(ToolKind::ball) ? "a tool presses" : "no tool presses", 0},
-      {"pin", has_tool(ToolKind::pin), has_tool(ToolKind::pin) ? "a tool holds a sphere" : "no tool holds a sphere", 0},
+      {"ball contact", m.has_tool(ToolKind::ball), m.has_tool(ToolKind::ball) ? "a tool presses" : "no tool presses",
+       0},
+      {"pin", m.has_tool(ToolKind::pin), m.has_tool(ToolKind::pin) ? "a tool holds a sphere" : "no tool holds a sphere",
+       0},
       {"cutting", cuts, cuts ? "a tool cuts" : "no tool cuts",
        bytes_of_fields(s, "axial_") + bytes_of_fields(s, "constraint_severed") + bytes_of_fields(s, "angle_severed")},
       {"loads", m.loads.size() > 0, counted(m.loads.size(), "forces from outside", "no forces from outside"),
