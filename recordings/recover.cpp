@@ -83,7 +83,7 @@ Result<Done> salvage_start(SessionStore& store, Salvage& salvage, RecoverReport&
   };
   take(store.scene(), salvage.start.scene_text);
   take(store.look(), salvage.start.look);
-  take(store.surfaces(salvage.start.model), salvage.start.surfaces);
+  take(store.surfaces(salvage.start.model), salvage.start.model.surfaces);
   take(store.metadata(), salvage.start.metadata);
   take(store.finish(), salvage.finish);
   salvage.start.build_fingerprint = store.identity().build;

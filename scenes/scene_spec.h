@@ -87,7 +87,7 @@ struct PlaneRegion {
 
 /// A region whose spheres never move. Exactly one member is set.
 struct AnchorSpec {
-  std::optional<double> lowest;  ///< centres at most this far above the organ's lowest centre, against gravity [m]
+  std::optional<double> lowest;  ///< centres at most this far above the organ's lowest point, against gravity [m]
   std::optional<BoxRegion> box;
   std::optional<SphereRegion> sphere;
   std::optional<PlaneRegion> plane;
@@ -121,6 +121,9 @@ struct LayerSpec {
   friend bool operator==(const LayerSpec&, const LayerSpec&) = default;
 };
 
+/// Scene key `tiling`, of `ctpm`; automatic: two spheres in a mesh, three in a rig, as in the paper.
+enum class TilingSpec { automatic, two_spheres, three_spheres };
+
 struct OrganSpec {
   std::string name;
   std::string mesh;  ///< path, relative to the scene's folder, with '/'; empty: the organ is a rig
@@ -130,6 +133,7 @@ struct OrganSpec {
   std::optional<std::int32_t> most_triangles;  ///< of the drawn surface, which is made coarser if it has more
   network::Structure structure = network::Structure::ctpm;  ///< which elements join the spheres; the key is `model`
   network::LatticeKind lattice = network::LatticeKind::cubic_18;
+  TilingSpec tiling = TilingSpec::automatic;
   bool softening = true;  ///< Eq. 8
   FillSpec fill;
   MaterialSpec material;          ///< below the last layer
@@ -159,7 +163,7 @@ struct ToolSpec {
 
 /// An external force on one sphere.
 struct LoadSpec {
-  Vec3 at;           ///< acts on the sphere nearest to here at rest [m]
+  Vec3 at;           ///< acts on the tissue here, or on a rig's nearest sphere [m]
   Vec3 force;        ///< [N]
   double start = 0;  ///< [s]
   double ramp = 0;   ///< time in which it rises linearly from zero [s]
@@ -205,10 +209,9 @@ struct SceneSpec {
   double settle = 1.0;        ///< longest time for the scene to come to rest before the first tick [s]
   std::vector<OrganSpec> organs;
   std::vector<ToolSpec> tools;
-  std::optional<double> contact_stiffness;    ///< of a tool against one sphere [N/m]
+  std::optional<double> contact_stiffness;    ///< of a tool against one sphere of a rig [N/m]
   double contact_friction = 0.3;              ///< Coulomb coefficient between tool and tissue
   std::optional<double> contact_damping;      ///< Hunt-Crossley damping [s/m]; unset: that of core's Model
-  std::optional<double> contact_stick_time;   ///< [s]; unset: that of core's Model
   std::optional<double> cut_face_stiffening;  ///< [1]; unset: that of core's Model
   bool lips_meet = false;                     ///< the two sides of a cut meet again without passing through each other
   std::vector<LoadSpec> loads;

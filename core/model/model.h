@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/model/axial_law.h"
+#include "core/model/organ.h"
 #include "core/model/vec3.h"
 
 namespace ctpm {
@@ -140,6 +141,11 @@ struct OrganRange {
   double spacing = 0;                 ///< s [m]
   double damage_depth = 0;            ///< depth beyond which the tissue is damaged [m]; 0: no limit
   std::int32_t layer_count = 0;
+  // The tissue just below the surface, of which a tool dents what the lattice does not resolve; see
+  // contact::Foundation.
+  double modulus = 0;        ///< static Young's modulus [Pa], >= 0
+  double instant_ratio = 1;  ///< stiffness at once over static stiffness, >= 1
+  double kelvin_time = 0;    ///< viscosity over stiffness of the Kelvin unit [s], >= 0
 };
 
 /// Method of time integration. Session files store the numbers; 0 (automatic), 1 (symplectic Euler) and 3 (extrapolated
@@ -170,10 +176,14 @@ struct Model {
   Vec3Array rest_position;              ///< [m]                                                     (sphere_count)
   std::vector<double> mass;             ///< [kg], > 0                                               (sphere_count)
   std::vector<std::uint8_t> held_axes;  ///< bits 0, 1, 2: x, y, z never changes; 7: anchored (sphere_count)
-  std::vector<double> contact_radius;   ///< distance at which a tool touches the sphere [m], > 0    (sphere_count)
-  std::vector<std::int32_t> layer;      ///< 1 = outermost (sphere_count)
-  LatticeCells cell;                    ///< in the lattice of the sphere's organ (sphere_count)
+  /// Distance at which a tool touches the sphere, in an organ without a surface [m], > 0 (sphere_count)
+  std::vector<double> contact_radius;
+  std::vector<std::int32_t> layer;  ///< 1 = outermost (sphere_count)
+  LatticeCells cell;                ///< in the lattice of the sphere's organ (sphere_count)
   std::vector<OrganRange> organs;
+  /// The organs' surfaces: drawn, and touched by tools; one without vertices where an organ has none (a rig). Empty if
+  /// no organ has one, else (organ_count).
+  std::vector<Surface> surfaces;
 
   AxialElements axial;
   Constraints constraints;
@@ -183,14 +193,11 @@ struct Model {
   Loads loads;
 
   std::vector<Tool> tools;
-  double contact_k = 0;         ///< stiffness of a tool's contact with one sphere [N/m], > 0 if a tool presses
+  double contact_k = 0;  ///< stiffness of a tool's contact with one sphere of an organ without a surface [N/m], >= 0
   double contact_friction = 0;  ///< Coulomb coefficient between tool and tissue, >= 0
   /// Hunt-Crossley damping of a tool's contact [s/m], >= 0. Default: an impact at 30 mm/s keeps 25 % of its kinetic
   /// energy (our choice).
   double contact_damping = 50;
-  /// Drag of a contact whose surfaces stick, divided by contact_k [s], >= 0. Default: a sphere under a resting tool
-  /// creeps over seconds (our choice).
-  double contact_stick_time = 0.1;
 
   SolverSettings solver;
 

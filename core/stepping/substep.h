@@ -5,6 +5,7 @@
 #include "core/elements/kernels/kernels.h"
 #include "core/model/model.h"
 #include "core/parallel/team.h"
+#include "core/stepping/motion.h"
 #include "core/stepping/step.h"
 
 namespace ctpm::stepping {
@@ -26,9 +27,11 @@ struct StepContext {
   contact::Contacts& contacts;
 };
 
-/// Reports the contacts at the end of a substep, with the spheres at `position` [m].
-inline void report_contacts(const contact::ContactSet& contacts, const Vec3Array& position, StepReport& report) {
-  report.depth = contacts.depth(position), report.contacts = contacts.touched();
+/// Ends the contacts of a substep with the spheres in `to`: reports them, and notes what a ball touches.
+inline void finish_contacts(const contact::ContactSet& contacts, const contact::HeldTool& tool, const Substep& part,
+                            Motion& to, StepReport& report) {
+  report.depth = contacts.depth(to.position), report.contacts = contacts.touched();
+  contacts.note_touched(tool.at(part.share), to.position, to.touched);
 }
 
 }  // namespace ctpm::stepping

@@ -64,6 +64,11 @@ std::size_t count_of(const Model& model, EntryOf entry) {
       return model.tools.size();
     case EntryOf::blade_end:
       return 2;
+    case EntryOf::touchable: {
+      std::size_t count = model.sphere_count();
+      for (const Surface& surface : model.surfaces) count += surface.vertex.size();
+      return count;
+    }
   }
   return 0;
 }
@@ -282,6 +287,10 @@ Errors check_state(const Model& model, const State& state) {
   for_each_field(state, FieldCheck(check, model));
   check_together(check, "blade_trail", state.blade_trail);
   check_together(check, "acceleration", state.acceleration);
+  check.length("grip", state.grip.size(), state.touched.size());
+  check_together(check, "grip", state.grip);
+  check.length("kelvin_dent", state.kelvin_dent.size(), state.touched.size());
+  check.require(std::is_sorted(state.touched.begin(), state.touched.end()), "touched", "must ascend");
 
   // The arrays of severed elements must all exist or all be empty. Older sessions do not store crossings.
   const bool cuts = !state.axial_severed.empty() || !state.constraint_severed.empty() || !state.angle_severed.empty() ||

@@ -39,7 +39,7 @@ SessionFilm::SessionFilm(recordings::SessionReader& reader, scenes::SceneSpec sc
       range_(range),
       allow_diverged_(allow_diverged),
       cursor_(std::move(cursor)),
-      cut_depth_(reader.start().model, reader.start().surfaces) {}
+      cut_depth_(reader.start().model) {}
 
 Result<std::unique_ptr<SessionFilm>> SessionFilm::create(recordings::SessionReader& reader,
                                                          const session::TickRange& range, bool allow_diverged) {

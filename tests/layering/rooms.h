@@ -41,7 +41,7 @@ inline const std::vector<Room> kRooms{
     {"core/surface", {"core/model"}, "ctpm::surface"},
     {"core/elements", {"core/model", "core/parallel"}, "ctpm::elements"},
     {"core/cutting", {"core/model", "core/parallel", "core/elements"}, "ctpm::cutting"},
-    {"core/contact", {"core/model", "core/parallel", "core/elements", "core/cutting"}, "ctpm::contact"},
+    {"core/contact", {"core/model", "core/parallel", "core/surface", "core/elements", "core/cutting"}, "ctpm::contact"},
     {"core/solver", {"core/model", "core/parallel", "core/elements"}, "ctpm::solver"},
     {"core/stepping",
      {"core/model", "core/parallel", "core/elements", "core/cutting", "core/contact", "core/solver"},
