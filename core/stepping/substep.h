@@ -3,6 +3,7 @@
 #include "core/contact/contacts.h"
 #include "core/elements/elements.h"
 #include "core/elements/kernels/kernels.h"
+#include "core/inversion/resistance.h"
 #include "core/model/model.h"
 #include "core/parallel/team.h"
 #include "core/stepping/step.h"
@@ -24,6 +25,7 @@ struct StepContext {
   parallel::Team& team;
   elements::Elements& elements;
   contact::Contacts& contacts;
+  inversion::Resistance& resistance;
 };
 
 /// Reports the contacts at the end of a substep, with the spheres at `position` [m].

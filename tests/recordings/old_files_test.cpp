@@ -57,6 +57,7 @@ TEST(OldFiles, EachOpensAndGivesAllThatItHolds) {
       EXPECT_EQ(recordings::state_hash(keyframe->state), (*ticks)[std::size_t(tick - 1)].state_hash) << tick;
     }
     expect_cells_of_neighbours(reader->start().model);
+    EXPECT_EQ(reader->start().model.tissue_cells.size(), 0u) << "no program of that time resisted inversion";
     EXPECT_TRUE(reader->events());
     EXPECT_TRUE(reader->statistics());
     EXPECT_EQ(reader->start().physics_revision, 0) << "recorded before revisions were stored";

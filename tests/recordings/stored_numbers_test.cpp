@@ -179,6 +179,8 @@ TEST(StoredNumbers, DefaultsOfFieldsThatEarlierSessionsLackAreForEver) {
   EXPECT_EQ(model.contact_damping, 50);
   EXPECT_EQ(model.contact_stick_time, 0.1);
   EXPECT_EQ(model.cut_face_stiffening, 8);
+  EXPECT_EQ(model.tissue_cells.size(), 0u);
+  EXPECT_EQ(model.inversion_threshold, 0.4);
   const Tool tool;
   EXPECT_EQ(tool.trail_distance, 0.5e-3);
   EXPECT_EQ(tool.blade_reach, 9e-3);
