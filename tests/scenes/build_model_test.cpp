@@ -156,6 +156,23 @@ TEST(BuildModel, TheLawsOfContactAreTheScenesOrElseThoseOfTheCore) {
   EXPECT_EQ(own.model.tools.at(1).blade_thickness, 0.00025);
 }
 
+TEST(BuildModel, OrgansFromAMeshResistInversionAndRigsOnlyIfAsked) {
+  EXPECT_EQ(build(block_scene("")).model.tissue_cells.size(), 0u);
+  const scenes::BuiltScene asked = build(block_scene(R"(, "inversion_resistance": 4)"));
+  ASSERT_GT(asked.model.tissue_cells.size(), 0u);
+  const scenes::BuiltScene twice = build(block_scene(R"(, "inversion_resistance": 8)"));
+  EXPECT_NEAR(twice.model.tissue_cells.k.at(0), 2 * asked.model.tissue_cells.k.at(0), 1e-12);
+
+  scenes::OrganSpec organ;
+  organ.mesh = "a.obj";
+  EXPECT_EQ(scenes::inversion_resistance_of(organ), 10);
+  organ.inversion_resistance = 0;
+  EXPECT_EQ(scenes::inversion_resistance_of(organ), 0);
+  scenes::OrganSpec rig;
+  rig.rig.emplace();
+  EXPECT_EQ(scenes::inversion_resistance_of(rig), 0);
+}
+
 TEST(BuildModel, TheOrgansKeysReachTheNetwork) {
   const scenes::BuiltScene ctpm = build(block_scene(R"(, "damage_depth_mm": 12)"));
   EXPECT_EQ(ctpm.model.organs.at(0).damage_depth, 0.012);

@@ -43,7 +43,7 @@ const std::string kScene =
    "layers": [{"to_depth_mm": 6.1, "material": {"preset": "skin"}}, {"to_depth_mm": 9, "material": {"preset": "kidney", "density_kg_per_m3": 1100}}],
    "anchors": [{"lowest_mm": 8}, {"box": {"min_mm": [0, 0, 0], "max_mm": [1, 2, 3]}},
      {"sphere": {"centre_mm": [1, 2, 3], "radius_mm": 4}}, {"plane": {"point_mm": [0, 0, 0], "normal": [0, 0, 1]}}],
-   "damage_depth_mm": 12, "damage_force_n": 3, "surface_color": [0.5, 0.1, 0.1], "inner_color": [0.5, 0, 0]},
+   "damage_depth_mm": 12, "damage_force_n": 3, "inversion_resistance": 5, "surface_color": [0.5, 0.1, 0.1], "inner_color": [0.5, 0, 0]},
   {"name": "b\u00e9\n", "rig": {"cells": [[0, 0, 0], [1, 0, 0]], "guides": [{"cell": [0, 0, 0], "axes": "xy"}]}, "material": {"preset": "skin"}},
   {"name": "c", "rig": {"block": [3, 3, 3]}, "material": {"preset": "kidney-pa-s"}}],
  "tools": [{"name": "ball", "kind": "ball", "radius_mm": 6}, {"name": "pin", "kind": "pin", "holds_mm": [1, 2, 3]},
