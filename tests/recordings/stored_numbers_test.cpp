@@ -97,6 +97,10 @@ const char* name_in_file(recordings::EventKind value) {
       return "press_gave_up";
     case recordings::EventKind::step_refused:
       return "step_refused";
+    case recordings::EventKind::turned_inside_out:
+      return "turned_inside_out";
+    case recordings::EventKind::came_back:
+      return "came_back";
   }
   return nullptr;
 }
@@ -169,7 +173,9 @@ TEST(StoredNumbers, OfEventsKeepTheirMeaning) {
                                                           {9, "piece_came_loose"},
                                                           {10, "press_reached_force"},
                                                           {11, "press_gave_up"},
-                                                          {12, "step_refused"}}));
+                                                          {12, "step_refused"},
+                                                          {13, "turned_inside_out"},
+                                                          {14, "came_back"}}));
 }
 
 // A session from before these fields has none of them and gets the defaults: the constants that its program computed
