@@ -173,7 +173,8 @@ void treat_islands(Cover& cover, bool keeps_islands, std::vector<Finding>& findi
 std::vector<std::int32_t> number_layers(const std::vector<double>& depth, double spacing,
                                         std::vector<std::int64_t>& spheres_per_layer) {
   std::vector<std::int32_t> layer;
-  for (const double d : depth) layer.push_back(1 + std::int32_t(std::floor(std::max(d, 0.0) / spacing)));
+  constexpr double kRounding = 1e-6;  // of a spacing: a sphere just at a whole depth belongs to the next layer
+  for (const double d : depth) layer.push_back(1 + std::int32_t(std::floor(std::max(d, 0.0) / spacing + kRounding)));
   std::vector<std::int64_t> count(std::size_t(*std::max_element(layer.begin(), layer.end())) + 1, 0);
   for (const std::int32_t l : layer) ++count[std::size_t(l)];
   std::vector<std::int32_t> new_number(count.size(), 0);

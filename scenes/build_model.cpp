@@ -13,6 +13,10 @@
 namespace ctpm::scenes {
 namespace {
 
+/// Of an organ from a mesh, unless the scene says otherwise (our choice: presses, strokes and jumping tools left no
+/// cell inside out).
+constexpr double kInversionResistance = 10;
+
 /// A tool is so much stiffer than the stiffest edge of the tissue, unless the scene says otherwise.
 constexpr double kContactOverEdge = 20;
 
@@ -118,12 +122,13 @@ bool add_scene_organ(BuiltScene& built, const SceneSpec& scene, std::size_t inde
   settings.tiling = shares_by_three ? network::Tiling::three_spheres : network::Tiling::two_spheres;
   settings.has_softening = spec.softening, settings.material = resolve_material(spec.material).material;
   settings.damage_depth = spec.damage_depth, settings.guides = guides_of(spec, organ);
+  settings.inversion_resistance = inversion_resistance_of(spec);
   settings.layers = layers_of(spec, organ, at, problems);
   settings.anchored = anchored_in(organ, spec.anchors, scene.gravity, at, problems);
   built.anchored_count.push_back(std::int32_t(settings.anchored.size()));
   const auto is_good = [&] {
-    return can_be_filled(problems, index) &&
-           problems.are_good(at, {"rig", "model", "lattice", "softening", "material", "layers", "anchors"});
+    return can_be_filled(problems, index) && problems.are_good(at, {"rig", "model", "lattice", "softening", "material",
+                                                                    "layers", "anchors", "inversion_resistance"});
   };
   add_network(built.model, organ, is_good() ? settings : stand_in_for(settings), spec.rig.has_value(), at, problems);
   return is_good();
@@ -195,6 +200,10 @@ std::optional<Integrator> integrator_of(IntegratorSpec spec) {
 }
 
 }  // namespace
+
+double inversion_resistance_of(const OrganSpec& organ) {
+  return organ.inversion_resistance.value_or(organ.rig ? 0.0 : kInversionResistance);
+}
 
 FilledOrgan fill_rig(const OrganSpec& organ) {
   FilledOrgan filled;

@@ -237,6 +237,12 @@ void describe_fields(V& v, OrganSpec& organ) {
            organ.damage_depth, units::millimetre, within(0, 1000));
   v.number(Key{"damage_force_n", "Force on a tool beyond which the tissue counts as damaged; 0: no limit."},
            organ.damage_force, units::newton, within(0, 1e6));
+  v.number(
+      Key{"inversion_resistance",
+          "Stiffness over Young's modulus with which tissue that is pressed to less than 0.4 of its volume resists "
+          "being turned inside out; 0: it does not, and costs nothing.",
+          false, "10, or 0 for a rig"},
+      organ.inversion_resistance, units::none, within(0, 1000));
   v.point(Key{"surface_color", "Red, green and blue of the outside."}, organ.surface_color, units::none, within(0, 1));
   v.point(Key{"inner_color", "Red, green and blue of cut faces and spheres."}, organ.inner_color, units::none,
           within(0, 1));

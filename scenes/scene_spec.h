@@ -139,8 +139,11 @@ struct OrganSpec {
   MaterialSpec material;          ///< below the last layer
   std::vector<LayerSpec> layers;  ///< outermost first, depths ascending
   std::vector<AnchorSpec> anchors;
-  double damage_depth = 0;               ///< [m]; 0: no limit
-  double damage_force = 0;               ///< on the tool [N]; 0: no limit
+  double damage_depth = 0;  ///< [m]; 0: no limit
+  double damage_force = 0;  ///< on the tool [N]; 0: no limit
+  /// kappa over Young's modulus, with which tissue resists being turned inside out [1]; 0: it does not; unset: see
+  /// inversion_resistance_of().
+  std::optional<double> inversion_resistance{};
   Vec3 surface_color{0.62, 0.24, 0.20};  ///< red, green, blue in [0, 1]
   Vec3 inner_color{0.80, 0.42, 0.36};    ///< of cut faces and spheres
 

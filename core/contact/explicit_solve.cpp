@@ -147,6 +147,7 @@ Vec3 ExplicitSolve::solve(double h, const Pin& pin, const Vec3Array& before, Vec
     assemble(h, contacts);
     run_conjugate_gradients(h, contacts);
     on_tool = {};
+    std::fill(product_.begin(), product_.begin() + std::ptrdiff_t(touched_.size()), Vec3{});
     std::size_t next = 0;
     bool grips = false;
     for (std::size_t i = 0; i < contacts.count(); ++i) {
@@ -156,6 +157,9 @@ Vec3 ExplicitSolve::solve(double h, const Pin& pin, const Vec3Array& before, Vec
           linear_[i].force - (linear_[i].along - linear_[i].across) * dot(c.axis, u) * c.axis - linear_[i].across * u;
       if (c.only_pushes && dot(c.axis, acting) < 0 && round < kMostRounds) continue;
       if (c.is_tool) on_tool -= acting;
+      const Carriers at = contacts.carriers(c);
+      for (std::size_t e = 0; e < at.sphere.size(); ++e)
+        product_[std::size_t(index_[std::size_t(at.sphere[e])])] += at.weight[e] * acting;
       grips = grips || c.grip_k > 0;
       contacts.contacts_[next++] = c;
     }
@@ -166,7 +170,8 @@ Vec3 ExplicitSolve::solve(double h, const Pin& pin, const Vec3Array& before, Vec
   for (std::size_t p = 0; p < touched_.size(); ++p) {
     const auto i = std::size_t(touched_[p]);
     index_[i] = -1;
-    velocity.x[i] += change_[p].x, velocity.y[i] += change_[p].y, velocity.z[i] += change_[p].z;
+    // From the forces themselves, so that momentum is kept whatever the solve left unsolved.
+    velocity.add(i, h / model_.mass[i] * times(free_[p], product_[p]));
   }
   return on_tool;
 }

@@ -149,6 +149,13 @@ void for_each_field(Model_& m, Visit&& visit) {
   give("lip_k", m.lip_k, not_negative);
   give("contact_damping", m.contact_damping, not_negative);
   give("cut_face_stiffening", m.cut_face_stiffening, not_negative);
+  constexpr const char* corners[8] = {"tissue_cells.corner0", "tissue_cells.corner1", "tissue_cells.corner2",
+                                      "tissue_cells.corner3", "tissue_cells.corner4", "tissue_cells.corner5",
+                                      "tissue_cells.corner6", "tissue_cells.corner7"};
+  for (std::size_t c = 0; c < 8; ++c)
+    give(corners[c], m.tissue_cells.corner[c], index(EntryOf::sphere).per(EntryOf::tissue_cell));
+  give("tissue_cells.k", m.tissue_cells.k, positive.per(EntryOf::tissue_cell));
+  give("inversion_threshold", m.inversion_threshold, between(0, 1));
 }
 
 }  // namespace ctpm

@@ -73,6 +73,21 @@ struct CutResistance {
   bool any() const { return !energy.empty(); }
 };
 
+/// Tissue cells that resist inversion. A tissue cell is a cube of an organ's lattice whose eight corner spheres all
+/// exist. Each corner spans a tetrahedron with its three neighbours along the lattice's axes; J is its signed volume
+/// over that at rest. The energy of a tetrahedron is k / 2 (J0 - J)^2 where J < J0 = Model::inversion_threshold, and
+/// 0 elsewhere (our choice; without it a lattice that was pushed through itself stays inside out). Empty if no organ
+/// asks for it.
+struct TissueCells {
+  /// Corner spheres: bits 0, 1, 2 of an index are set where lattice coordinate i, j, k is the larger one; the
+  /// tetrahedra have positive volumes at rest (cell_count each).
+  std::array<std::vector<std::int32_t>, 8> corner;
+  /// kappa times an eighth of the tissue's volume in the cell [J], > 0; kappa [Pa] is the organ's inversion resistance
+  /// times its Young's modulus (cell_count).
+  std::vector<double> k;
+  std::size_t size() const { return k.size(); }
+};
+
 enum class ToolKind : std::int32_t {
   ball = 0,     ///< rigid ball that presses
   scalpel = 1,  ///< a blade whose edge severs what it sweeps
@@ -208,6 +223,11 @@ struct Model {
   /// Growth of that stiffness with penetration: factor b in 1 + (b p / s)^2, p the penetration and s the spacing [1],
   /// >= 0. Default: our choice, large enough that nothing slips through.
   double cut_face_stiffening = 8;
+
+  TissueCells tissue_cells;
+  /// J0: volume ratio below which the tetrahedra of tissue cells resist [1], in (0, 1). Default: our choice, below what
+  /// a press reaches without buckling, and far enough above 0 that nothing turns over.
+  double inversion_threshold = 0.4;
 
   std::size_t sphere_count() const { return mass.size(); }
   bool has_tool(ToolKind kind) const {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/network/axial_rows.h"
+#include "core/network/tissue_cells.h"
 
 namespace ctpm::network {
 namespace {
@@ -17,6 +18,9 @@ using Cell = LatticeCell;
 
 constexpr double kFewestPascalPerMetre = 1e-6;
 constexpr double kMostPascalPerMetre = 1e15;
+
+/// Beyond this a cell would be stiffer than the contact of a tool.
+constexpr double kMostInversionResistance = 1000;
 
 Cell operator+(Cell a, Cell b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 Cell operator-(Cell a, Cell b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -70,6 +74,10 @@ Errors check_organ(const FilledOrgan& organ, const OrganSettings& settings) {
     check_material(errors, where_layer, layer.material, settings.structure);
   }
   check_material(errors, where, settings.material, settings.structure);
+  if (!(settings.inversion_resistance >= 0 && settings.inversion_resistance <= kMostInversionResistance))
+    errors.push_back(
+        {where, "inversion resistance: got " + std::to_string(settings.inversion_resistance) + ", must be in [0, 1000]",
+         ""});
   const auto check_sphere = [&](const char* what, std::int32_t sphere) {
     if (sphere < 0 || std::size_t(sphere) >= organ.centre.size())
       errors.push_back({where, std::string(what) + " sphere " + std::to_string(sphere) + " does not exist", ""});
@@ -96,6 +104,14 @@ Stiffness stiffness_of(const Material& m, double spacing) {
   // The triples beside C stretch when C dips and add their own 2 P2 (1 - cos theta) u; K' counts both.
   return {m.spring * area, m.kelvin * area, m.viscosity * area, (m.constraint - series(m.kelvin, m.spring)) * area,
           1 - m.prestrain};
+}
+
+/// Stiffness of a spring two of which in series are as stiff as one slow triple.
+double single_spring(const Stiffness& s) { return 2 * series(s.kelvin_k, s.spring_k); }
+
+/// Static stiffness of an element along a lattice axis [N/m].
+double slow_edge_k(Structure structure, const Stiffness& s) {
+  return structure == Structure::tpm ? series(s.kelvin_k, s.spring_k) : single_spring(s);
 }
 
 /// Area that an element stands for when a cut crosses it at right angles [m^2]. Per area, a plane with the unit normal
@@ -179,9 +195,6 @@ class LineTiler {
     return {mean(&Stiffness::spring_k), mean(&Stiffness::kelvin_k), mean(&Stiffness::kelvin_c),
             mean(&Stiffness::constraint_k), mean(&Stiffness::rest_part)};
   }
-
-  /// Stiffness of a spring two of which in series are as stiff as one slow triple.
-  static double single_spring(const Stiffness& s) { return 2 * series(s.kelvin_k, s.spring_k); }
 
   void tile_run(const Run& run, double rest_length) {
     switch (settings_.structure) {
@@ -341,9 +354,7 @@ void set_foundation(OrganRange& range, const FilledOrgan& organ, const OrganSett
   for (auto layer = settings.layers.rbegin(); layer != settings.layers.rend(); ++layer)
     if (layer->to_depth > 0.5 * organ.spacing) material = &layer->material;
   const Stiffness s = stiffness_of(*material, organ.spacing);
-  const bool is_half =
-      settings.structure == Structure::tpm;  // its elements are as stiff as a triple, not as half of one
-  range.modulus = (is_half ? 1.25 : 2.5) * 2 * series(s.kelvin_k, s.spring_k) / organ.spacing;
+  range.modulus = kYoungOverEdge * slow_edge_k(settings.structure, s) / organ.spacing;
   if (settings.structure != Structure::tpm && settings.structure != Structure::ctpm) return;
   range.instant_ratio = 1 + s.spring_k / s.kelvin_k;
   range.kelvin_time = s.kelvin_c / s.kelvin_k;
@@ -399,6 +410,12 @@ Result<Done> add_organ(Model& model, const FilledOrgan& organ, const OrganSettin
     }
   const bool softens = settings.structure == Structure::ctpm && settings.has_softening && model.constraints.size() > 0;
   model.has_softening = model.has_softening || softens;
+  if (settings.inversion_resistance > 0) {
+    std::vector<double> edge_k;
+    for (std::size_t i = 0; i < organ.centre.size(); ++i)
+      edge_k.push_back(slow_edge_k(settings.structure, stiffness_of(material_of(organ, settings, i), organ.spacing)));
+    add_tissue_cells(model, organ, first_sphere, settings.inversion_resistance, edge_k);
+  }
   leave_out_unused(model);
   return Done{};
 }

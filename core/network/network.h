@@ -79,6 +79,9 @@ struct OrganSettings {
   };
   std::vector<Guide> guides;  ///< spheres that run on rails or planes, for rigs
   double damage_depth = 0;    ///< [m]; 0: no limit
+  /// kappa over Young's modulus, with which the organ's cells resist being turned inside out [1], >= 0; 0: they do not.
+  /// See TissueCells.
+  double inversion_resistance = 0;
 };
 
 /// Stiffness of an element per unit of modulus at `spacing` [m^2]: S0_cal (s / s_cal) times the stiffness scale.

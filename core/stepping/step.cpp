@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "core/contact/contacts.h"
+#include "core/inversion/resistance.h"
 #include "core/stepping/backward_euler.h"
 #include "core/stepping/blade_sweep.h"
 #include "core/stepping/implicit_solve.h"
@@ -41,6 +42,7 @@ struct Stepper::Parts {
         team(options.threads),
         elements(m, team, options.instruction_set),
         contacts(m, kernels),
+        resistance(m, elements.slabs(), team, kernels),
         next(m) {
     if (m.has_scalpel()) blade.emplace(m);
     if (choice.integrator == Integrator::leapfrog) {
@@ -64,7 +66,8 @@ struct Stepper::Parts {
   parallel::Team team;
   elements::Elements elements;
   contact::Contacts contacts;
-  StepContext context{model, kernels, team, elements, contacts};
+  inversion::Resistance resistance;
+  StepContext context{model, kernels, team, elements, contacts, resistance};
   std::optional<ImplicitSolve> implicit_solve;  ///< empty for leapfrog
   AnyIntegrator integrator;
   std::optional<BladeSweep> blade;  ///< empty if the Model has no scalpel
@@ -139,6 +142,7 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
     return refused;
   }
   if (cuts) parts.blade->report_pieces(current, report);
+  report.inverted = parts.resistance.count_inverted(current);
   if (!changes_once) std::swap(state, parts.trial);
   state.last_inputs = inputs;
   ++state.tick;

@@ -3,6 +3,7 @@
 #include "core/contact/contacts.h"
 #include "core/elements/elements.h"
 #include "core/elements/kernels/kernels.h"
+#include "core/inversion/resistance.h"
 #include "core/model/model.h"
 #include "core/parallel/team.h"
 #include "core/stepping/motion.h"
@@ -25,6 +26,7 @@ struct StepContext {
   parallel::Team& team;
   elements::Elements& elements;
   contact::Contacts& contacts;
+  inversion::Resistance& resistance;
 };
 
 /// Ends the contacts of a substep with the spheres in `to`: reports them, and notes what a ball touches.

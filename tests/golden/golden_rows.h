@@ -45,11 +45,14 @@ inline constexpr GoldenRow kGoldenRevision2[] = {
     {"full, auto", {0x2b05c06b95a472fe, 0xf6c28450b5acbc90, 0x7b9fe33a665c0de2, 0x78610f9db02a43ec}},
     {"full, sdirk2", {0xea86a8ae0f8bddae, 0xfa46db8e64a30568, 0x0ae7c9f8858c5ac7, 0x249274725f3a0cb6}},
     {"ctpm, sdirk2", {0xab9834e13ef5e03a, 0x83d99c0f5e0da13c, 0x85d8915798f0e007, 0x0b5167087a7f4849}},
+    {"resisting, auto", {0xbb124eda2f240214, 0xdfe8b98aae02605f, 0xe446fe0f5ad7b914, 0x10fb69679ebe86f4}},
+    {"resisting, sdirk2", {0xab9834e13ef5e03a, 0xf38ffa1848083a8e, 0xb8f730df8f9faaea, 0xc366d0a97ddd782c}},
+    {"soft and resisting, auto", {0x1e00b91af1a7bb42, 0x83631150db64ee10, 0x6a1ba2c793ddf520, 0x39f104a02fd8cd3d}},
 };
 
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09},
-    {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
+    {2, kGoldenRevision2, 0xffcc5de1d0480484},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

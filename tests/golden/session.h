@@ -51,6 +51,15 @@ inline Model make_full_model(int ni, int nj, int nk) {
   return model;
 }
 
+/// A block of CTPM that resists inversion with `resistance`; soft enough for leapfrog if `is_soft`.
+inline Model make_resisting_model(int ni, int nj, int nk, bool is_soft, double resistance = 10) {
+  network::Material material = liver_material();
+  if (is_soft) material.viscosity = 5e3, material.stiffness_scale = 0.29;
+  Model model = make_block_model(ni, nj, nk, network::Structure::ctpm, material, 0.012, resistance);
+  model.tools = {ball(0.006), scalpel(0.06)};
+  return model;
+}
+
 /// Simulates `ticks` ticks, sampled evenly from the golden session, of a Model with a ball, a scalpel and perhaps a
 /// pin.
 inline GoldenRun run_golden(Model model, int ticks, std::optional<Integrator> integrator,
