@@ -21,8 +21,8 @@ namespace ctpm::importers {
 namespace {
 
 constexpr double kMostRows = 6e5;  // lattice rows; bounds memory
-// A surface point farther than this from every sphere with a full share of tissue marks a thin part.
-constexpr double kThinInSpacings = 1.5, kFullShare = 0.95;
+// A surface point farther than this from every sphere with so much tissue marks a thin part.
+constexpr double kThinInSpacings = 2, kFullShare = 0.6;
 constexpr double kLongestEdge = 0.25;  // of the drawn surface, in spacings
 
 constexpr std::int64_t kFewestTriangles = 100;  // a coarser surface no longer resembles its organ
@@ -224,8 +224,8 @@ void measure_surface(const Cover& cover, const CheckedMesh& mesh, int threads, F
   if (thin == 0) return;
   const auto worst = std::max_element(to_full.begin(), to_full.end()) - to_full.begin();
   report.findings.push_back({"thin", thin, mesh.vertex[std::size_t(worst)],
-                             counted(thin, "part") + " of the organ thinner than two spacings (" +
-                                 mm_text(2 * spacing) + "), one at " + place_text(mesh.vertex[std::size_t(worst)]),
+                             counted(thin, "part") + " of the organ thinner than about a spacing (" + mm_text(spacing) +
+                                 "), one at " + place_text(mesh.vertex[std::size_t(worst)]),
                              "none", "a thin part bends too easily or too hard; a smaller sphere radius fills it"});
 }
 

@@ -63,15 +63,12 @@ BallContact::BallContact(const Model& model, const elements::Kernels& kernels)
     bare_.emplace_back(first, first + std::size_t(model.organs[i].count));
   }
   if (model.organs.empty()) bare_.emplace_back(0, model.sphere_count());
-  for (const auto& [first, last] : bare_)
+  capacity_.first = vertices;
+  for (std::size_t v = 0; v < vertices; ++v) capacity_.second += surface_.follower(std::int32_t(v)).sphere.size();
+  for (const auto& [first, last] : bare_) {
+    capacity_.first += last - first, capacity_.second += last - first;
     for (std::size_t i = first; i < last; ++i) largest_radius_ = std::max(largest_radius_, model.contact_radius[i]);
-}
-
-std::pair<std::size_t, std::size_t> BallContact::capacity() const {
-  std::size_t contacts = surface_.vertex_count(), entries = 0;
-  for (std::size_t v = 0; v < surface_.vertex_count(); ++v) entries += surface_.follower(std::int32_t(v)).sphere.size();
-  for (const auto& [first, last] : bare_) contacts += last - first, entries += last - first;
-  return {contacts, entries};
+  }
 }
 
 void BallContact::find(const StateView& state, const BallMotion& ball, PointContacts& contacts) {
@@ -199,6 +196,7 @@ void BallContact::add(const StateView& state, const BallMotion& ball, PointConta
   const double leaving = std::clamp(dot(start, normal), -contact.dent / ball.h, ball.radius / ball.h);
   contact.start = across(start) + leaving * normal;
   contact.grip_k = model_.contact_friction > 0 ? contact.k : 0.0;
+  contact.grip_c = 2 * std::sqrt(contact.grip_k / contacts.mobility(carriers));  // critical
   contact.most_grip = model_.contact_friction * pressure;
   contact.anchor = before < 0 ? contact.found : state.grip[std::size_t(before)];
   contact.gripped = across(contact.found - contact.anchor);

@@ -41,10 +41,15 @@ class BallContact {
   BallContact(const Model& model, const elements::Kernels& kernels);
 
   /// Capacity that find() needs: contacts, and entries of their carriers.
-  std::pair<std::size_t, std::size_t> capacity() const;
+  std::pair<std::size_t, std::size_t> capacity() const { return capacity_; }
 
   /// Adds the contacts of a ball, in ascending order of their points.
   void find(const StateView& state, const BallMotion& ball, PointContacts& contacts);
+
+  /// Depth of the dent under a contact [m], 0 for that of a bare sphere.
+  double dent_of(const PointContact& contact) const {
+    return contact.point < std::int32_t(surface_.vertex_count()) ? contact.dent : 0.0;
+  }
 
   /// Where the tissue was at rest that a contact touches [m].
   Vec3 rest_of(const PointContact& contact) const;
@@ -75,6 +80,7 @@ class BallContact {
   /// Spheres [first, last) of the organs without a surface.
   std::vector<std::pair<std::size_t, std::size_t>> bare_;
   double largest_radius_ = 0;  ///< of a sphere [m]
+  std::pair<std::size_t, std::size_t> capacity_{};
 };
 
 }  // namespace ctpm::contact

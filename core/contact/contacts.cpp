@@ -76,19 +76,27 @@ double ContactSet::depth(const Vec3Array& position) const {
   double depth = 0;
   for (const PointContact& c : contacts_->points_.all())
     if (c.point >= 0)
-      depth = std::max(depth,
-                       dot(c.axis, weighted(contacts_->points_.carriers(c), position) - contacts_->ball_.rest_of(c)));
+      depth = std::max(
+          depth, contacts_->ball_.dent_of(c) +
+                     dot(c.axis, weighted(contacts_->points_.carriers(c), position) - contacts_->ball_.rest_of(c)));
   return depth;
+}
+
+void Contacts::reserve(Touched& touched) const {
+  const std::size_t count = ball_.capacity().first;
+  touched.point.reserve(count), touched.kelvin_dent.reserve(count);
+  for (auto* axis : {&touched.grip.x, &touched.grip.y, &touched.grip.z}) axis->reserve(count);
 }
 
 void ContactSet::note_touched(Vec3 centre, const Vec3Array& position, Touched& touched) const {
   touched.point.clear(), touched.grip.resize(0), touched.kelvin_dent.clear();
+  contacts_->reserve(touched);
   for (const PointContact& c : contacts_->points_.all()) {
     if (c.point < 0) continue;
     const Vec3 place = weighted(contacts_->points_.carriers(c), position), on_ball = place - centre,
                from_anchor = on_ball - c.anchor;
     const Vec3 elongation = from_anchor - dot(from_anchor, c.axis) * c.axis;
-    const double held = c.grip_k > 0 ? stiffness_of_grip(c, elongation) / c.grip_k : 0.0;
+    const double held = c.grip_k > 0 ? share_of_grip(c, elongation, {}) : 0.0;
     const double dent = std::max(0.0, c.dent - dot(c.axis, on_ball - c.found));
     touched.point.push_back(c.point);
     touched.grip.push_back(on_ball - held * elongation);

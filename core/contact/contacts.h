@@ -58,6 +58,9 @@ class Contacts {
   /// The pin's contact in a step of `h` [s] from `position` [m] to the hand at `share` of the tick.
   static Pin pin(const HeldTool& tool, const Vec3Array& position, double share, double h);
 
+  /// Reserves memory for all that a ball can touch, so that a tick never allocates.
+  void reserve(Touched& touched) const;
+
   /// Detects the contacts of an explicit step in its middle, and changes the `velocity` [m/s] that spheres have after
   /// the step without contacts. Those that would pull do not act.
   [[nodiscard]] ExplicitContacts push_apart(const StateView& middle, const HeldTool& tool, const ContactStep& step,

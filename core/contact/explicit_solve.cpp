@@ -55,12 +55,13 @@ ExplicitSolve::Linear ExplicitSolve::linearise(const PointContact& c, Carriers a
   const Vec3 old = weighted(at, before), start = c.point >= 0 ? c.start : old;
   const Vec3 relative = start + weighted(at, velocity) - old;
   // The grip acts at its elongation at the end of the step.
-  const double reach = 0.5 * h, grip = stiffness_of_grip(c, c.gripped + reach * across(relative + change));
+  const Vec3 slip = across(relative + change);
+  const double reach = 0.5 * h, grip = share_of_grip(c, c.gripped + reach * slip, slip);
   Linear linear;
   linear.along = h * c.k * share.after + c.damping * share.damped_after;
-  linear.across = c.drag + grip * reach;
+  linear.across = c.drag + grip * (c.grip_k * reach + c.grip_c);
   linear.slip = across(relative);
-  linear.force = c.force - grip * c.gripped - linear.across * linear.slip;
+  linear.force = c.force - grip * c.grip_k * c.gripped - linear.across * linear.slip;
   linear.force += ((h * c.k * share.before - c.damping * share.damped_before) * dot(c.axis, start) -
                    linear.along * dot(c.axis, relative)) *
                   c.axis;

@@ -10,9 +10,9 @@ Vec3 weighted(Carriers at, const Vec3Array& values) {
   return sum;
 }
 
-double stiffness_of_grip(const PointContact& contact, Vec3 elongation) {
-  const double force = contact.grip_k * norm(elongation);
-  return force > contact.most_grip ? contact.most_grip / norm(elongation) : contact.grip_k;
+double share_of_grip(const PointContact& contact, Vec3 elongation, Vec3 slip) {
+  const double force = norm(contact.grip_k * elongation + contact.grip_c * slip);
+  return force > contact.most_grip ? contact.most_grip / force : 1.0;
 }
 
 PointContacts::PointContacts(const Model& model, std::size_t contacts, std::size_t entries) : model_(model) {
@@ -52,9 +52,10 @@ std::int32_t PointContacts::tool_count() const {
 void PointContacts::begin_implicit(double h, const Vec3Array* velocity) {
   for (PointContact& c : contacts_) {
     if (c.point >= 0) {
-      const double grip = stiffness_of_grip(c, c.gripped + h * c.slip_guess);
-      c.force -= c.damping * dot(c.axis, c.start) * c.axis + grip * c.gripped;
-      c.drag = h * grip;
+      const Vec3 slip = c.start - dot(c.axis, c.start) * c.axis;
+      const double share = share_of_grip(c, c.gripped + h * c.slip_guess, slip + c.slip_guess);
+      c.force -= c.damping * dot(c.axis, c.start) * c.axis + share * (c.grip_k * c.gripped + c.grip_c * slip);
+      c.drag = share * (h * c.grip_k + c.grip_c);
     } else if (velocity != nullptr && c.drag > 0) {
       const Vec3 u = weighted(carriers(c), *velocity);
       c.force -= c.drag * (u - dot(c.axis, u) * c.axis);

@@ -27,6 +27,7 @@ struct PointContact {
   std::int32_t point = -1;  ///< number of the point in State::touched; -1: not a ball's contact
   Vec3 start{};             ///< velocity of the point relative to the ball at the start of the solve [m/s]
   double grip_k = 0;        ///< stiffness of the grip across the axis [N/m]
+  double grip_c = 0;        ///< damping of the grip [N s/m]
   double most_grip = 0;     ///< friction cone: coefficient times pressure [N]
   Vec3 anchor{};            ///< where on the ball the point is held, from the ball's centre [m]
   Vec3 gripped{};           ///< elongation of the grip at the start of the solve, across the axis [m]
@@ -48,9 +49,9 @@ struct Carriers {
 /// Sum of weight times value over the spheres.
 Vec3 weighted(Carriers at, const Vec3Array& values);
 
-/// Stiffness of a grip at an elongation [N/m]: less than its own where it would leave the friction cone, so that its
-/// force has the size of the cone.
-double stiffness_of_grip(const PointContact& contact, Vec3 elongation);
+/// Share of a grip's stiffness and damping that acts at an elongation [m] and slip [m/s]: less than 1 where its force
+/// would leave the friction cone, so that it has the size of the cone.
+double share_of_grip(const PointContact& contact, Vec3 elongation, Vec3 slip);
 
 /// All point contacts of a step. Detectors add contacts; only Contacts (contacts.h) and ExplicitSolve call the rest.
 class PointContacts {

@@ -45,6 +45,8 @@ struct Stepper::Parts {
         resistance(m, elements.slabs(), team, kernels),
         next(m) {
     if (m.has_scalpel()) blade.emplace(m);
+    contacts.reserve(next.touched);
+    reserve(trial);
     if (choice.integrator == Integrator::leapfrog) {
       integrator.emplace<Leapfrog>(context);
       return;
@@ -59,6 +61,7 @@ struct Stepper::Parts {
   contact::HeldTool hold(const Inputs& last, const Inputs& inputs) const;
   bool advance(const State& from, const contact::HeldTool& tool, const Substep& part, StepReport& report);
   bool run_substeps(State& state, const contact::HeldTool& tool, StepReport& report);
+  void reserve(State& state) const;
 
   const Model& model;
   IntegratorChoice choice;
@@ -82,6 +85,14 @@ contact::HeldTool Stepper::Parts::hold(const Inputs& last, const Inputs& inputs)
   tool.tool = inputs.tool >= 0 ? &model.tools[std::size_t(inputs.tool)] : nullptr;
   tool.from = last.position, tool.to = inputs.position;
   return tool;
+}
+
+/// Reserves memory for what a ball can touch.
+void Stepper::Parts::reserve(State& state) const {
+  contact::Touched touched{std::move(state.touched), std::move(state.grip), std::move(state.kelvin_dent)};
+  contacts.reserve(touched);
+  state.touched = std::move(touched.point), state.grip = std::move(touched.grip),
+  state.kelvin_dent = std::move(touched.kelvin_dent);
 }
 
 /// One substep into `next`. False: it is refused.
@@ -128,6 +139,7 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
   const Inputs last = inputs.tool >= 0 && state.last_inputs.tool == inputs.tool ? state.last_inputs : inputs;
   contact::HeldTool tool = parts.hold(last, inputs);
   const bool cuts = tool.is(ToolKind::scalpel);
+  parts.reserve(state);
   // An integrator leaves State unchanged until its substep is committed. Ticks that change State more than once work on
   // the trial state.
   const bool changes_once = !cuts && parts.choice.substeps == 1;

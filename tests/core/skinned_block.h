@@ -43,14 +43,16 @@ inline void add_faces(FilledOrgan& organ, double edge) {
   surface::bind_surface(organ);
 }
 
-/// A block as make_block_model() makes it, with a surface through its outermost spheres. Its shares are those of a
-/// lattice that ends there.
+/// A block as make_block_model() makes it, with a surface through its outermost spheres, of triangles with legs of
+/// about `edge` [m].
 inline Model make_skinned_block(int ni, int nj, int nk, network::Structure structure = network::Structure::mass_spring,
-                                double edge = 0.003) {
+                                double edge = 0.003, network::Material material = liver_material(),
+                                network::Tiling tiling = network::Tiling::three_spheres) {
   FilledOrgan organ = make_block(ni, nj, nk);
   add_faces(organ, edge);
   network::OrganSettings settings;
-  settings.name = "block", settings.structure = structure, settings.material = liver_material();
+  settings.name = "block", settings.structure = structure, settings.material = material;
+  settings.tiling = tiling;
   for (int i = 0; i < ni * nj; ++i) settings.anchored.push_back(i);
   Model model;
   CTPM_CHECK(bool(network::add_organ(model, organ, settings)), "a test's own block is valid");

@@ -45,14 +45,31 @@ inline constexpr GoldenRow kGoldenRevision2[] = {
     {"full, auto", {0x2b05c06b95a472fe, 0xf6c28450b5acbc90, 0x7b9fe33a665c0de2, 0x78610f9db02a43ec}},
     {"full, sdirk2", {0xea86a8ae0f8bddae, 0xfa46db8e64a30568, 0x0ae7c9f8858c5ac7, 0x249274725f3a0cb6}},
     {"ctpm, sdirk2", {0xab9834e13ef5e03a, 0x83d99c0f5e0da13c, 0x85d8915798f0e007, 0x0b5167087a7f4849}},
-    {"resisting, auto", {0xbb124eda2f240214, 0xdfe8b98aae02605f, 0xe446fe0f5ad7b914, 0x10fb69679ebe86f4}},
-    {"resisting, sdirk2", {0xab9834e13ef5e03a, 0xf38ffa1848083a8e, 0xb8f730df8f9faaea, 0xc366d0a97ddd782c}},
-    {"soft and resisting, auto", {0x1e00b91af1a7bb42, 0x83631150db64ee10, 0x6a1ba2c793ddf520, 0x39f104a02fd8cd3d}},
+};
+
+inline constexpr GoldenRow kGoldenRevision3[] = {
+    {"mass-spring, auto", {0x95d2d9ed84496164, 0x206615a0a4e256f9, 0x85c07239cd1c6b4f, 0x674aa9cf2d8e54d6}},
+    {"angle-mass-spring, auto", {0xe6c8fd33a066d50e, 0x343764838bbcc44a, 0xee4b0636122ce15e, 0xba759da161679f3c}},
+    {"tpm, auto", {0xcabcbe130cc1b826, 0x41a8a62e6dded655, 0x84e3eb22769faa4b, 0x79d982d02af23a0a}},
+    {"ctpm, auto", {0x82e654ed00f5d17f, 0xd40f1d30888879f6, 0x116fb8f535ac5d4d, 0xba8e5e85b027fd8c}},
+    {"tpm, backward-euler", {0x26b72390ecf2bfbc, 0x1c5dbfa5152cccfe, 0xcf5b3e77cc4ef88f, 0xea171f72a431e856}},
+    {"angle-mass-spring, backward-euler",
+     {0xb8d9c62c17abeba7, 0xc84c97cb99ff6371, 0x5ee223bb405a0954, 0x7540c5eaa79723ca}},
+    {"full, auto", {0x9bdf607e3db0b064, 0x163daea5f0d300ad, 0x8e2c0b52c632235d, 0x560f9b4fd577287e}},
+    {"full, sdirk2", {0xdb93d8730dab7087, 0x40d8f2babb95f301, 0x8cea5fc399f34f59, 0xd337ba7b5be6420c}},
+    {"ctpm, sdirk2", {0x05ceca875199c5c2, 0x430468061160fd0e, 0xf52a5a2a0716fc07, 0xe6d70a7d59cd4f48}},
+    {"resisting, auto", {0x82e654ed00f5d17f, 0x35d648c6509574b1, 0x932f052297f2d620, 0xf3e3ad1a37ac5d27}},
+    {"resisting, sdirk2", {0x05ceca875199c5c2, 0x7c70648a793e7e40, 0x983af1b0ec8eeb07, 0xb7b900c3d736182f}},
+    {"soft and resisting, auto", {0xc44c69b28b39cc02, 0x206b305d8b9253b3, 0x6587752c17ad20e8, 0x55accdb4fb2a1250}},
+    {"skinned, auto", {0x8a431a1c2f4e313a, 0xfc9adb430a5538d7, 0x744bc96c71a1854a, 0xd2db3ab2d5fac421}},
+    {"skinned, sdirk2", {0xf2b3811e167f678e, 0x3fa37be3fa28c5a7, 0x2afd04d3fcd05705, 0x31777ec59104a5d7}},
+    {"soft and skinned, auto", {0xffc9bec4713e9af0, 0x47e54d3f66b74a3d, 0xbd4eb096ab64c10e, 0xb42506dd240beb9b}},
 };
 
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09},
-    {2, kGoldenRevision2, 0xffcc5de1d0480484},
+    {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
+    {3, kGoldenRevision3, 0xf7ce4be8ac275a3c},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

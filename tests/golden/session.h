@@ -8,7 +8,7 @@
 
 #include "core/stepping/step.h"
 #include "recordings/state_hash.h"
-#include "tests/core/blocks.h"
+#include "tests/core/skinned_block.h"
 
 namespace ctpm::testing {
 
@@ -56,6 +56,15 @@ inline Model make_resisting_model(int ni, int nj, int nk, bool is_soft, double r
   network::Material material = liver_material();
   if (is_soft) material.viscosity = 5e3, material.stiffness_scale = 0.29;
   Model model = make_block_model(ni, nj, nk, network::Structure::ctpm, material, 0.012, resistance);
+  model.tools = {ball(0.006), scalpel(0.06)};
+  return model;
+}
+
+/// A block with a surface, which the ball touches and grips; soft enough for leapfrog if `is_soft`.
+inline Model make_skinned_model(int ni, int nj, int nk, bool is_soft) {
+  network::Material material = liver_material();
+  if (is_soft) material.viscosity = 5e3, material.stiffness_scale = 0.29;
+  Model model = make_skinned_block(ni, nj, nk, network::Structure::ctpm, 0.003, material, network::Tiling::two_spheres);
   model.tools = {ball(0.006), scalpel(0.06)};
   return model;
 }

@@ -300,8 +300,11 @@ TEST(Fill, QuarterTurnTurnsTheSpheres) {
     const FilledOrgan turned = filled(checked(zoo::moved(dyadic(), turn)), dyadic_options()).organ;
     const auto key = [](Vec3 p) { return std::array{p.x + 0.0, p.y + 0.0, p.z + 0.0}; };
     std::map<std::array<double, 3>, double> wanted, got;
-    for (std::size_t n = 0; n < plain.centre.size(); ++n) wanted.emplace(key(turn(plain.centre[n])), plain.depth[n]);
-    for (std::size_t n = 0; n < turned.centre.size(); ++n) got.emplace(key(turned.centre[n]), turned.depth[n]);
+    // Spheres inside: beyond the surface, cells near the limit of slivers are sampled along other lines.
+    for (std::size_t n = 0; n < plain.centre.size(); ++n)
+      if (plain.depth[n] > 0) wanted.emplace(key(turn(plain.centre[n])), plain.depth[n]);
+    for (std::size_t n = 0; n < turned.centre.size(); ++n)
+      if (turned.depth[n] > 0) got.emplace(key(turned.centre[n]), turned.depth[n]);
     ASSERT_EQ(wanted.size(), got.size());
     for (auto a = wanted.begin(), b = got.begin(); a != wanted.end(); ++a, ++b) {
       ASSERT_EQ(a->first, b->first);

@@ -97,7 +97,7 @@ TEST_P(SurfaceContact, OfASmallBallGoesDeeperThanTheLatticeFollows) {
 }
 
 TEST_P(SurfaceContact, HoldsForTenSecondsWhatItGrips) {
-  const Model model = pressed_block(GetParam(), 0.01, network::Structure::ctpm);
+  const Model model = pressed_block(GetParam(), 0.01);
   stepping::Stepper stepper(model);
   State state = rest_state(model);
   for (int i = 0; i <= 40; ++i) (void)stepper.step(state, at({0, 0, kTop + 0.01 - 1e-4 * i}));
