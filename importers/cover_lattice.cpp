@@ -58,27 +58,39 @@ void add_line(CellShares& cell, double begin, double end, double y, double z, do
     }
 }
 
-/// Shares of all cells, by cell number i + nx (j + ny k).
-std::vector<CellShares> integrate(const CheckedMesh& mesh, const Lattice& cells) {
+/// Shares of all cells, by cell number i + nx (j + ny k), and their volume as it should be, in cells.
+struct Integrals {
+  std::vector<CellShares> shares;
+  double volume = 0;
+};
+
+Integrals integrate(const CheckedMesh& mesh, const Lattice& cells) {
   const bool is_fine = double(cells.row_count()) * kFine * kFine <= kMostRows;
   const int n = is_fine ? kFine : kCoarse;
   const Lattice fine{cells.centre, cells.spacing / n, {cells.count[0] * n, cells.count[1] * n, cells.count[2] * n}};
   const RowLines lines{fine, is_fine ? shift_of<kFine, kFinePermutation> : shift_of<kCoarse, kCoarsePermutation>};
   const Vec3 origin = cells.at({0, 0, 0}) - 0.5 * cells.spacing * Vec3{1, 1, 1};
   std::vector<CellShares> shares(std::size_t(cells.count[0]) * std::size_t(cells.row_count()));
-  spans_inside(mesh.vertex, mesh.triangle, lines, [&](std::int32_t j, std::int32_t k, const std::vector<Span>& spans) {
-    const Vec3 line = (lines.at(j, k) - origin) / cells.spacing;
-    const Cell row{0, j / n, k / n};
-    const double y = line.y - row[1], z = line.z - row[2];
-    CellShares* of_row = &shares[std::size_t(cells.row_of(row)) * std::size_t(cells.count[0])];
-    for (const Span& span : spans) {
-      const double begin = std::clamp((span.begin - origin.x) / cells.spacing, 0.0, double(cells.count[0]));
-      const double end = std::clamp((span.end - origin.x) / cells.spacing, 0.0, double(cells.count[0]));
-      for (auto i = std::int32_t(begin); i < end && i < cells.count[0]; ++i)
-        add_line(of_row[i], std::max(begin - i, 0.0), std::min(end - i, 1.0), y, z, 1.0 / (n * n));
-    }
-  });
-  return shares;
+  const bool overlaps = spans_inside(
+      mesh.vertex, mesh.triangle, lines, [&](std::int32_t j, std::int32_t k, const std::vector<Span>& spans) {
+        const Vec3 line = (lines.at(j, k) - origin) / cells.spacing;
+        const Cell row{0, j / n, k / n};
+        const double y = line.y - row[1], z = line.z - row[2];
+        CellShares* of_row = &shares[std::size_t(cells.row_of(row)) * std::size_t(cells.count[0])];
+        for (const Span& span : spans) {
+          const double begin = std::clamp((span.begin - origin.x) / cells.spacing, 0.0, double(cells.count[0]));
+          const double end = std::clamp((span.end - origin.x) / cells.spacing, 0.0, double(cells.count[0]));
+          for (auto i = std::int32_t(begin); i < end && i < cells.count[0]; ++i)
+            add_line(of_row[i], std::max(begin - i, 0.0), std::min(end - i, 1.0), y, z, 1.0 / (n * n));
+        }
+      });
+  // Parts that overlap count twice in the mesh's volume, but once in the cells.
+  double volume = mesh.volume / (cells.spacing * cells.spacing * cells.spacing);
+  if (overlaps) {
+    volume = 0;
+    for (const CellShares& cell : shares) volume += cell.volume();
+  }
+  return {std::move(shares), volume};
 }
 
 /// Leaves out slivers, makes full cells exact, and scales cut cells so that the volume is the mesh's.
@@ -95,7 +107,7 @@ void balance(std::vector<CellShares>& shares, double volume_in_cells) {
   }
   if (cut <= 0) return;
   const double factor = (volume_in_cells - full) / cut;
-  if (!(factor > 1 / kPlausible && factor < kPlausible)) return;  // the surface crosses itself
+  if (!(factor > 1 / kPlausible && factor < kPlausible)) return;  // the surface turns inside out somewhere
   for (CellShares& cell : shares)
     if (cell.volume() < kFull) cell.scale(factor);
 }
@@ -192,8 +204,8 @@ void share_volume(const CellLookup& lookup, const std::vector<Cell>& cell, Tissu
 }  // namespace
 
 Cover cover_with_cells(const CheckedMesh& mesh, const Lattice& cells) {
-  std::vector<CellShares> of_cell = integrate(mesh, cells);
-  balance(of_cell, mesh.volume / (cells.spacing * cells.spacing * cells.spacing));
+  auto [of_cell, volume] = integrate(mesh, cells);
+  balance(of_cell, volume);
 
   Cover cover;
   cover.lattice = {cells.centre, cells.spacing, {cells.count[0] + 1, cells.count[1] + 1, cells.count[2] + 1}};

@@ -70,7 +70,7 @@ Vec3 RowLines::at(std::int32_t j, std::int32_t k) const {
   return point;
 }
 
-void spans_inside(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle, const RowLines& lines,
+bool spans_inside(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle, const RowLines& lines,
                   const std::function<void(std::int32_t, std::int32_t, const std::vector<Span>&)>& on_row) {
   const Lattice& lattice = lines.lattice;
   // Store the crossings of each row contiguously: count first, then place.
@@ -84,6 +84,7 @@ void spans_inside(const std::vector<Vec3>& vertex, const std::vector<Triangle>& 
   });
 
   std::vector<Span> spans;
+  bool overlaps = false;
   for (std::int32_t k = 0; k < lattice.count[2]; ++k)
     for (std::int32_t j = 0; j < lattice.count[1]; ++j) {
       const std::size_t row = std::size_t(lattice.row_of({0, j, k}));
@@ -96,11 +97,13 @@ void spans_inside(const std::vector<Vec3>& vertex, const std::vector<Triangle>& 
       for (auto crossing = begin; crossing != end; ++crossing) {
         const std::int32_t before = winding;
         winding += crossing->enters;
+        overlaps = overlaps || winding > 1;
         if (before <= 0 && winding > 0) spans.push_back({crossing->x, crossing->x});
         if (before > 0 && winding <= 0) spans.back().end = crossing->x;
       }
       on_row(j, k, spans);
     }
+  return overlaps;
 }
 
 std::vector<Cell> cells_inside(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle,

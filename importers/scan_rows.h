@@ -23,8 +23,8 @@ struct RowLines {
 };
 
 /// Calls `on_row(j, k, spans)` for each line that meets a closed, outward surface, in the order of rows. Spans are
-/// where the winding number is above 0, in ascending x.
-void spans_inside(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle, const RowLines& lines,
+/// where the winding number is above 0, in ascending x. Returns whether the surface encloses any of them twice.
+bool spans_inside(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle, const RowLines& lines,
                   const std::function<void(std::int32_t j, std::int32_t k, const std::vector<Span>&)>& on_row);
 
 /// The cells whose centres lie inside a closed, outward surface (winding number above 0), sorted by (k, j, i). Each

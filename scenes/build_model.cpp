@@ -142,10 +142,12 @@ void set_solver(Model& model, const SolverSpec& solver) {
   model.solver.substeps = solver.substeps.value_or(standard.substeps);
 }
 
-double softest_spring(const Model& model) {
-  double k = INFINITY;
-  for (const double spring : model.axial.k) k = std::min(k, spring);
-  return k;
+/// Elements at the surface stand for little tissue and are softer than the tissue is.
+double median_spring(const Model& model) {
+  std::vector<double> k = model.axial.k;
+  if (k.empty()) return 0;
+  std::nth_element(k.begin(), k.begin() + std::ptrdiff_t(k.size() / 2), k.end());
+  return k[k.size() / 2];
 }
 
 /// What only a blade needs.
@@ -155,7 +157,7 @@ void add_cutting(Model& model, const SceneSpec& scene) {
   if (!cuts)
     model.cut_resistance = {};
   else if (scene.lips_meet)
-    model.lip_k = softest_spring(model),
+    model.lip_k = median_spring(model),
     model.cut_face_stiffening = scene.cut_face_stiffening.value_or(model.cut_face_stiffening);
 }
 

@@ -174,7 +174,7 @@ TEST(ThinBridges, OfLongTrianglesCarryNoSphereAndTheSmallerEndIsToldAndDropped) 
   const importers::CheckedMesh mesh = repaired(balls_on_a_needle());
   EXPECT_EQ(summary(mesh.findings), "");
   importers::FillOptions options;
-  options.sphere_radius = 0.01 / 3;
+  options.sphere_radius = 0.02 / 3;
   const Result<importers::Filling> filling = importers::fill_organ(mesh, options);
   ASSERT_TRUE(filling) << text_of(filling.errors());
   const importers::Finding* island = find(filling->report.findings, "island");

@@ -76,7 +76,7 @@ inline Inputs scripted_inputs(std::int64_t tick, double top) {
   const double t = 1e-3 * static_cast<double>(tick);
   if (tick % 700 < 400) {
     inputs.tool = 0;
-    inputs.position = {0.001, 0.0005, top + 0.012 - 0.004 * std::sin(4 * t) * std::sin(4 * t)};
+    inputs.position = {0.001, 0.0005, top + 0.007 - 0.004 * std::sin(4 * t) * std::sin(4 * t)};
   } else {
     inputs.tool = 1;
     inputs.position = {-0.03 + 2e-4 * static_cast<double>(tick % 700 - 400), 0.0061, top - 0.01};

@@ -74,7 +74,7 @@ TEST(CutSurface, PiecesOfAFullCutMoveApartWithoutStretchingATriangle) {
     render::CutSurface cut_surface(scene->model, 0, scene->model.surfaces[0]);
     ASSERT_TRUE(cut_surface.update(state));
     spread(state, scene->model, [&](Vec3 p) { return p.x > lean * p.y ? Vec3{0.05, 0.01, 0} : Vec3{}; });
-    EXPECT_LT(worst_stretch(cut_surface, state), 1e-12) << "lean " << lean;  // rounding only
+    EXPECT_LT(worst_stretch(cut_surface, state), 1e-11) << "lean " << lean;  // rounding only
   }
 }
 
@@ -90,7 +90,7 @@ TEST(CutSurface, NothingSpansThePiecesWhereASideCutMeetsTheCut) {
         render::CutSurface cut_surface(scene->model, 0, scene->model.surfaces[0]);
         ASSERT_TRUE(cut_surface.update(state));
         spread(state, scene->model, [&](Vec3 p) { return p.x > x ? Vec3{0.05, 0.01, 0} : Vec3{}; });
-        EXPECT_LT(worst_stretch(cut_surface, state), 1e-12) << "side cut at " << x << ", " << y << " to " << bottom;
+        EXPECT_LT(worst_stretch(cut_surface, state), 1e-11) << "side cut at " << x << ", " << y << " to " << bottom;
       }
 }
 
