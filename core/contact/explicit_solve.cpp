@@ -10,7 +10,7 @@ namespace {
 constexpr int kMostRounds = 5;        ///< of dropping contacts that pull and of following the friction cone
 constexpr int kFrictionRounds = 3;    ///< at least, where something grips
 constexpr int kMostIterations = 200;  ///< of conjugate gradients
-constexpr double kSolved = 1e-22;     ///< squared residual relative to the first
+constexpr double kSolved = 1e-16;     ///< squared residual relative to the first
 
 Vec3 times(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
@@ -87,7 +87,7 @@ void ExplicitSolve::assemble(double h, const PointContacts& contacts) {
       diagonal_[p] += at.weight[e] * at.weight[e] * block;
     }
   }
-  for (std::size_t p = 0; p < touched_.size(); ++p) residual_[p] = times(residual_[p], free_[p]), change_[p] = {};
+  for (std::size_t p = 0; p < touched_.size(); ++p) residual_[p] = times(residual_[p], free_[p]);
 }
 
 /// product = matrix times direction.
@@ -117,8 +117,12 @@ void ExplicitSolve::run_conjugate_gradients(double h, const PointContacts& conta
     for (std::size_t p = 0; p < n; ++p) sum += dot(residual_[p], conditioned(p));
     return sum;
   };
+  const double enough = energy_of_residual() * kSolved;
+  // Starts from the change of the round before.
+  for (std::size_t p = 0; p < n; ++p) direction_[p] = change_[p];
+  multiply(h, contacts);
+  for (std::size_t p = 0; p < n; ++p) residual_[p] -= product_[p];
   double energy = energy_of_residual();
-  const double enough = energy * kSolved;
   for (std::size_t p = 0; p < n; ++p) direction_[p] = conditioned(p);
   for (int i = 0; i < kMostIterations && energy > enough; ++i) {
     multiply(h, contacts);

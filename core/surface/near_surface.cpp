@@ -8,6 +8,9 @@ namespace {
 
 constexpr NearSurface::Index kTrianglesPerPatch = 32, kPatchesPerGroup = 8;
 
+/// Bindings put a vertex at its place at rest only up to rounding and regularisation [m].
+constexpr double kRounding = 1e-4;
+
 /// Spreads the low 10 bits of a number to every third bit.
 std::uint32_t spread_bits(std::uint32_t n) {
   n = (n | n << 16) & 0x030000ff;
@@ -18,7 +21,7 @@ std::uint32_t spread_bits(std::uint32_t n) {
 
 }  // namespace
 
-NearSurface::NearSurface(const Model& model, bool is_wanted) {
+NearSurface::NearSurface(const Model& model, bool is_wanted) : sphere_rest_(model.rest_position) {
   if (!is_wanted) return;
   first_.push_back(0);
   for (std::size_t i = 0; i < model.surfaces.size(); ++i) add_organ(model.surfaces[i], model.organs[i]);
@@ -84,9 +87,13 @@ void NearSurface::sort_triangles() {
 NearSurface::Bound NearSurface::bound_of(Index first, Index last, Index first_triangle, Index last_triangle) {
   std::vector<Index> spheres;
   double widen = 0;
+  Vec3 least = rest(triangles_[std::size_t(first_triangle)].corner[0]), most = least;
   for (Index t = first_triangle; t < last_triangle; ++t)
     for (const Index corner : triangles_[std::size_t(t)].corner) {
       const Follower follows = follower(corner);
+      const Vec3 p = rest(corner);
+      least = {std::min(least.x, p.x), std::min(least.y, p.y), std::min(least.z, p.z)};
+      most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, p.z)};
       spheres.insert(spheres.end(), follows.sphere.begin(), follows.sphere.end());
       double negative = 0;
       for (const double w : follows.weight) negative -= std::min(w, 0.0);
@@ -96,21 +103,27 @@ NearSurface::Bound NearSurface::bound_of(Index first, Index last, Index first_tr
   spheres.erase(std::unique(spheres.begin(), spheres.end()), spheres.end());
   const auto begin = Index(bound_spheres_.size());
   bound_spheres_.insert(bound_spheres_.end(), spheres.begin(), spheres.end());
-  return {first, last, begin, Index(bound_spheres_.size()), widen};
+  return {first, last, begin, Index(bound_spheres_.size()), least, most, widen};
 }
 
 bool NearSurface::is_near(const Bound& bound, const Vec3Array& position, Vec3 centre, double radius) const {
-  const auto is_near_along = [&](const std::vector<double>& values, double at) {
-    double least = values[std::size_t(bound_spheres_[std::size_t(bound.first_sphere)])], most = least;
-    for (Index s = bound.first_sphere; s < bound.last_sphere; ++s) {
-      const double value = values[std::size_t(bound_spheres_[std::size_t(s)])];
-      least = std::min(least, value), most = std::max(most, value);
+  const auto is_near_along = [&](const std::vector<double>& values, const std::vector<double>& rest, double low,
+                                 double high, double at) {
+    const auto moved = [&](Index s) {
+      const auto sphere = std::size_t(bound_spheres_[std::size_t(s)]);
+      return values[sphere] - rest[sphere];
+    };
+    double least = moved(bound.first_sphere), most = least;
+    for (Index s = bound.first_sphere + 1; s < bound.last_sphere; ++s) {
+      const double by = moved(s);
+      least = std::min(least, by), most = std::max(most, by);
     }
-    const double margin = radius + bound.widen * (most - least);
-    return at >= least - margin && at <= most + margin;
+    const double margin = radius + bound.widen * (most - least) + kRounding;
+    return at >= low + least - margin && at <= high + most + margin;
   };
-  return is_near_along(position.x, centre.x) && is_near_along(position.y, centre.y) &&
-         is_near_along(position.z, centre.z);
+  return is_near_along(position.x, sphere_rest_.x, bound.least.x, bound.most.x, centre.x) &&
+         is_near_along(position.y, sphere_rest_.y, bound.least.y, bound.most.y, centre.y) &&
+         is_near_along(position.z, sphere_rest_.z, bound.least.z, bound.most.z, centre.z);
 }
 
 Vec3 NearSurface::place(Index vertex, const Vec3Array& position) {

@@ -23,8 +23,8 @@ struct Follower {
 };
 
 /// The surfaces of all organs of a Model as one, and which part of it is near a ball. Vertices are numbered through all
-/// organs. Only near parts are computed: triangles form patches, patches form groups, and each is bounded by the boxes
-/// of the spheres that it follows.
+/// organs. Only near parts are computed: triangles form patches, patches form groups, and each is bounded by
+/// how far the spheres that it follows have moved.
 class NearSurface {
  public:
   using Index = std::int32_t;
@@ -57,8 +57,9 @@ class NearSurface {
   struct Bound {
     Index first, last;                ///< triangles, or patches
     Index first_sphere, last_sphere;  ///< in bound_spheres_
-    /// A weighted sum with weights that sum to 1 lies within the spheres' box, widened on each side by this part of it:
-    /// the largest sum of negative weights.
+    Vec3 least, most;                 ///< box of the vertices at rest [m]
+    /// A vertex moves by a weighted sum of the spheres' displacements, with weights that sum to 1. It lies within their
+    /// range, widened on each side by this part of it: the largest sum of negative weights.
     double widen;
   };
 
@@ -68,6 +69,7 @@ class NearSurface {
   bool is_near(const Bound& bound, const Vec3Array& position, Vec3 centre, double radius) const;
   Vec3 place(Index vertex, const Vec3Array& position);
 
+  const Vec3Array& sphere_rest_;
   std::vector<Index> first_, sphere_;  ///< binding of all vertices, as in SurfaceBinding
   std::vector<double> weight_;
   std::vector<Vec3> rest_;           ///< [m]
