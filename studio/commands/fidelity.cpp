@@ -60,11 +60,8 @@ Command add_fidelity(CLI::App& program) {
   CLI::App* app = program.add_subcommand(
       "fidelity", "Measures what a filled organ does against finite elements, closed forms and plain requirements.");
   app->footer(
-      "Examples: ctpm fidelity -o out/fidelity\n"
-      "          ctpm fidelity -o out/fidelity --only tension,drag --quick\n"
-      "          ctpm fidelity -o out/my-liver my/liver.json\n"
-      "Exit code 1 if a goal is missed.\n"
-      "Recipes: " +
+      "Examples: ctpm fidelity -o out/fidelity\n          ctpm fidelity -o out/fidelity --only tension,drag "
+      "--quick\n          ctpm fidelity -o out/my-liver my/liver.json\nExit code 1 if a goal is missed.\nRecipes: " +
       recipe_names());
   app->add_option(
       "scene", arguments->scene,

@@ -29,6 +29,7 @@ struct Specimen {
   Pace pace = Pace::slow;
   std::optional<scenes::PlaneRegion> clamp;  ///< tissue behind this plane never moves
   Vec3 gravity;                              ///< [m/s^2]
+  std::optional<double> density;             ///< [kg/m^3]; unset: the preset\'s
   std::vector<double> balls;                 ///< radii of the tools [m]
   double friction = 0.3;                     ///< of the tools, the default of a scene
   Quat turn;                                 ///< of the body against the lattice

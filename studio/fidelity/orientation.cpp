@@ -84,7 +84,8 @@ void add_scatter(Chapter& chapter, const std::vector<OrientationResult::Row>& ro
                                .measured = spread.ratio(),
                                .reference = 1.0,
                                .source = "a body without a lattice",
-                               .goal = Goal{{}, 1.2}});
+                               .goal = Goal{{}, 1.2},
+                               .note = spread.least > 0 ? "" : "without a force at some of the " + over});
   }
   chapter.section.tables.push_back(table);
 }
@@ -94,8 +95,7 @@ Chapter chapter_of(const OrientationResult& result) {
   chapter.section.key = "orientation", chapter.section.title = "Orientation of the lattice";
   chapter.section.paragraphs = {
       "A ball organ of 40 mm radius whose lowest 12 mm are anchored; a ball of 10 mm presses its pole. Body, anchors "
-      "and "
-      "tool are turned together against the lattice, " +
+      "and tool are turned together against the lattice, " +
       std::to_string(result.rows.empty() ? 0 : result.rows[0].forces.size()) +
       " times. The scatter is the standard deviation over the mean."};
   add_scatter(chapter, result.rows, "turns");

@@ -122,7 +122,7 @@ struct DragResult {
     std::vector<double> way;                 ///< from the block's middle [m]      (tick_count)
     std::vector<double> normal, tangential;  ///< forces on the ball [N]           (tick_count)
     std::int64_t lost_ticks = 0;             ///< ticks without contact
-    Spread ripple;                           ///< of the normal force
+    Spread ripple;                           ///< of the normal force without its trend
     double peak_to_peak = 0;                 ///< of the normal force over its mean [share]
     double most_friction = 0;                ///< largest tangential over normal force
   };
@@ -139,7 +139,7 @@ struct GripResult {
     double friction;  ///< tangential over normal force [1]
   };
   std::vector<Sample> held;               ///< while it waits
-  std::vector<Sample> slips;              ///< while it moves on by 30 mm; times since it began
+  std::vector<Sample> slips;              ///< while it moves on by 24 mm; times since it began
   double radius = 0;                      ///< [m]
   double coefficient = 0;                 ///< Coulomb coefficient of the scene
   double friction_at(double time) const;  ///< of `held`, at the sample nearest to `time`
@@ -168,6 +168,7 @@ struct RelaxationResult {
   struct Row {
     double radius = 0;           ///< [m]
     double ramp = 0;             ///< [s]
+    double final_force = 0;      ///< mean over the places [N]
     std::vector<double> ratios;  ///< force at the ramp's end over the final force, one a place
     reports::Series force;       ///< at the first place, over time [s]: over the final force
   };

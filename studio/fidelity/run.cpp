@@ -170,7 +170,7 @@ Result<FidelityResults> run_fidelity(const FidelityOptions& options, const Fidel
     if (const Result<SceneOrgan> organ = read_scene_organ(*options.scene, options.allow_outside_paths); !organ)
       return organ.errors();
   FidelityResults results;
-  results.is_quick = options.is_quick;
+  results.is_quick = options.is_quick, results.scene = options.scene;
   Errors errors;
   std::int64_t done = 0;
   for (const Recipe& recipe : *chosen) {

@@ -182,8 +182,8 @@ Chapter places_chapter(const SceneResult& result, const std::string& key, const 
                                 std::to_string(result.contacts.size()) + " places over one lattice spacing (" +
                                 output::short_number(1e3 * result.spacing) +
                                 " mm). Depths count from where the ball touches the drawn surface, so a smooth organ "
-                                "answers alike but for its own "
-                                "curvature; the first contact is the depth at which a force is felt."};
+                                "answers alike but for its own curvature; the first contact is the depth at which a "
+                                "force is felt."};
   add_scatter(chapter, result.places, "places");
   add_contacts(chapter, {{result.radius, 0, result.contacts}});
   return chapter;

@@ -79,7 +79,9 @@ void add_contacts(Chapter& chapter, const std::vector<FirstContactResult::Row>& 
          .reference = 0.0,
          .source = "the drawn surface",
          .goal = Goal{{}, 0.1},
-         .note = unfelt > 0 ? "no force at " + std::to_string(unfelt) + " places" : ""});
+         .note = unfelt > 0
+                     ? "no force at " + std::to_string(unfelt) + " of " + std::to_string(row.depths.size()) + " places"
+                     : ""});
   }
   chapter.section.tables.push_back(table);
 }
