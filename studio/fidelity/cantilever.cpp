@@ -94,6 +94,17 @@ Chapter chapter_of(const CantileverResult& result) {
                                .note = row.rests ? "" : "still moved"});
   }
   section.tables = {table};
+  std::vector<double> radii, errors;
+  for (const CantileverResult::Row& row : result.rows)
+    if (row.pose == result.rows[0].pose)
+      radii.push_back(row.radius), errors.push_back(std::abs(row.sag / kCantileverSag.value - 1));
+  if (radii.size() > 1)
+    chapter.figures.push_back({.recipe = "cantilever",
+                               .name = "order of convergence, " + result.rows[0].pose,
+                               .measured = order_of(radii, errors),
+                               .reference = 2.0,
+                               .source = "linear elements",
+                               .goal = Goal{1.5, {}}});
   return chapter;
 }
 

@@ -98,6 +98,17 @@ Chapter chapter_of(const IndentationResult& result) {
                                .goal = Goal{{}, 5}});
   }
   section.tables = {table};
+  for (const Indentation& reference : kIndentations) {
+    std::vector<double> radii, errors;
+    for (const IndentationResult::Row& row : result.rows)
+      if (row.depth == reference.depth)
+        radii.push_back(row.radius), errors.push_back(std::abs(spread_of(row.forces).mean / reference.force.value - 1));
+    if (radii.size() > 1)
+      chapter.figures.push_back(
+          {.recipe = "indentation",
+           .name = "order of convergence at " + output::short_number(1e3 * reference.depth) + " mm",
+           .measured = order_of(radii, errors)});
+  }
   return chapter;
 }
 

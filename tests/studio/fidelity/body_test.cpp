@@ -103,6 +103,30 @@ TEST(Press, IsTheSameAQuarterTurnAround) {
   for (const std::size_t d : {0, 1}) EXPECT_NEAR(forces[1][d] / forces[0][d], 1, 1e-3);
 }
 
+TEST(Pace, SlowAndLiveBodiesRestUnderTheSameForce) {
+  // Dashpots, ticks and tolerances decide how a body comes to rest, and not where.
+  double forces[2];
+  for (const Pace pace : {Pace::slow, Pace::live}) {
+    Specimen specimen = block({72e-3, 72e-3, 48e-3}, 4e-3, pace, {20e-3});
+    specimen.friction = 0;
+    const Result<Body> body = make_body(specimen);
+    ASSERT_TRUE(bool(body)) << to_string(body.errors()[0]);
+    const PressSite site{{0, 0, 48e-3}, {0, 0, -1}};
+    const double depth[] = {3e-3};
+    if (pace == Pace::slow) {
+      forces[0] = press(*body, 0, site, depth)[0].force;
+      continue;
+    }
+    stepping::Stepper stepper(body->model);
+    State state = rest_state(body->model);
+    for (int tick = 1; tick <= 3000; ++tick)
+      forces[1] =
+          stepper.step(state, ball_at(0, ball_centre(*body, 0, site, std::min(3e-3, 1e-5 * tick)))).tool_force.z;
+  }
+  EXPECT_GT(forces[0], 0.1);
+  EXPECT_NEAR(forces[1] / forces[0], 1, 2e-3);
+}
+
 TEST(Spread, KnowsMeanScatterAndRatio) {
   const Spread spread = spread_of({1, 3});
   EXPECT_DOUBLE_EQ(spread.mean, 2);
