@@ -36,6 +36,7 @@ struct Indentation {
   double depth;      ///< [m]
   Reference force;   ///< geometrically linear finite elements [N]
   double on_coarse;  ///< the same with elements of 2.4 mm [N]
+  double svk;        ///< with large strains of St. Venant and Kirchhoff's law, which is softer in compression [N]
   double hertz;      ///< closed form of a half space [N]
 };
 extern const Indentation kIndentations[3];

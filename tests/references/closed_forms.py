@@ -2,8 +2,8 @@
 """Closed forms that `ctpm fidelity` compares with: python3 closed_forms.py
 
 Material: E = 39270 Pa and nu = 1/4 at rest; G(t) = G(inf) (1 + exp(-t / tau)), tau = v1 / (K1 + K2) = 5 / (15 + 15) s,
-the shipped liver's: a triple holds a spring K2 in series with a Kelvin unit K1, v1; before the dashpot yields it has the
-stiffness K2, at rest K1 K2 / (K1 + K2), half of it.
+the shipped liver's: a triple holds a spring K2 in series with a Kelvin unit K1, v1; before the dashpot yields it has
+the stiffness K2, at rest K1 K2 / (K1 + K2), half of it.
 """
 import math
 

@@ -1,6 +1,6 @@
 """Boxes of 20-node hexahedra for CalculiX (C3D20R): the mesh, its node sets and the run.
 
-Lengths in mm, forces in N, stresses in MPa, densities in t/mm^3: the consistent set of CalculiX that keeps numbers near 1.
+Lengths in mm, forces in N, stresses in MPa, densities in t/mm^3: a consistent set of units for CalculiX.
 """
 import itertools
 import pathlib

@@ -7,7 +7,8 @@ tissue, exact shape of the ball. A quarter is meshed (x, y >= 0) with symmetry a
 
 The ball is a cap of C3D20R elements whose nodes are all prescribed. Contact is CalculiX's surface-to-surface penalty
 with PENALTY MPa per mm of penetration; "penalty x 2" shows what doubling it changes. The check `hertz` presses a block
-of 320 x 320 x 160 mm by 0.25 mm and compares with Hertz.
+of 320 x 320 x 160 mm by 0.25 mm and compares with Hertz. "large strains" is NLGEOM, for information: the law of St.
+Venant and Kirchhoff, which is softer in compression.
 """
 import math
 import sys
@@ -26,7 +27,7 @@ def cap(reach, size):
     return box
 
 
-def forces(folder, name, half, height, depths, reach, size, penalty=PENALTY, growth=1.35):
+def forces(folder, name, half, height, depths, reach, size, penalty=PENALTY, growth=1.35, nlgeom=False):
     """Forces [N] at the depths [mm]; elements of `size` mm where the ball may touch (within `reach` mm)."""
     across = graded(0, reach, half, size, growth)
     down = [-z for z in reversed(graded(0, reach / 2, height, size, growth))]
@@ -45,8 +46,8 @@ def forces(folder, name, half, height, depths, reach, size, penalty=PENALTY, gro
               "*CONTACT PAIR, INTERACTION=SLIDING, TYPE=SURFACE TO SURFACE", "TOP, UNDER",
               "*BOUNDARY", "BOTTOM, 1, 3", "MIRROR_X, 1, 1", "MIRROR_Y, 2, 2", "CAP, 1, 2"]
     for depth in depths:
-        lines += ["*STEP, INC=1000", "*STATIC", "0.5, 1.", "*BOUNDARY", f"CAP, 3, 3, {-depth}",
-                  "*NODE PRINT, NSET=BOTTOM, TOTALS=ONLY, FREQUENCY=1000", "RF", "*END STEP"]
+        lines += ["*STEP, INC=1000" + (", NLGEOM" if nlgeom else ""), "*STATIC", "0.5, 1.",
+                  "*BOUNDARY", f"CAP, 3, 3, {-depth}", "*NODE PRINT, NSET=BOTTOM, TOTALS=ONLY, FREQUENCY=1000", "RF", "*END STEP"]
     text = run(folder, name, lines)
     tables = numbers_after(text, "total force")
     assert len(tables) == len(depths), text[-2000:]
@@ -62,5 +63,7 @@ if __name__ == "__main__":
     checked = forces(where, "hertz", 160, 160, [0.25], 4, 0.5, growth=1.6)[0]
     print(f"hertz, 0.25 mm: {checked:.6f} N, closed form {hertz(0.25):.6f} N", flush=True)
     for step in (2.4, 1.5):
-        print(f"elements of {step} mm:", forces(where, f"indentation_{step:g}", 48, 60, [1, 2, 4], 12, step), flush=True)
+        name = f"indentation_{step:g}"
+        print(f"elements of {step} mm:", forces(where, name, 48, 60, [1, 2, 4], 12, step), flush=True)
     print("penalty x 2:", forces(where, "penalty", 48, 60, [1, 2, 4], 12, 2.4, 2 * PENALTY), flush=True)
+    print("large strains:", forces(where, "nlgeom", 48, 60, [1, 2, 4], 12, 2.4, nlgeom=True), flush=True)
