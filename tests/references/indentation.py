@@ -47,7 +47,8 @@ def forces(folder, name, half, height, depths, reach, size, penalty=PENALTY, gro
               "*BOUNDARY", "BOTTOM, 1, 3", "MIRROR_X, 1, 1", "MIRROR_Y, 2, 2", "CAP, 1, 2"]
     for depth in depths:
         lines += ["*STEP, INC=1000" + (", NLGEOM" if nlgeom else ""), "*STATIC", "0.5, 1.",
-                  "*BOUNDARY", f"CAP, 3, 3, {-depth}", "*NODE PRINT, NSET=BOTTOM, TOTALS=ONLY, FREQUENCY=1000", "RF", "*END STEP"]
+                  "*BOUNDARY", f"CAP, 3, 3, {-depth}", "*NODE PRINT, NSET=BOTTOM, TOTALS=ONLY, FREQUENCY=1000",
+                  "RF", "*END STEP"]
     text = run(folder, name, lines)
     tables = numbers_after(text, "total force")
     assert len(tables) == len(depths), text[-2000:]
