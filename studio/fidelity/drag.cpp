@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "studio/fidelity/recipes.h"
@@ -52,7 +53,8 @@ std::vector<double> without_trend(const std::vector<double>& values) {
 
 void judge(DragResult::Row& row) {
   row.ripple = spread_of(without_trend(row.normal));
-  row.peak_to_peak = (row.ripple.most - row.ripple.least) / row.ripple.mean;
+  row.peak_to_peak = row.ripple.mean > 0 ? (row.ripple.most - row.ripple.least) / row.ripple.mean
+                                         : std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < row.normal.size(); ++i)
     if (row.normal[i] > kLeastForce) row.most_friction = std::max(row.most_friction, row.tangential[i] / row.normal[i]);
 }

@@ -10,7 +10,7 @@ namespace {
 /// Vertices by their place on an integer grid, so that faces share those of their edges.
 class BoxMesher {
  public:
-  BoxMesher(Vec3 least, Vec3 most, double edge) : least_(least) {
+  BoxMesher(Vec3 least, Vec3 most, double edge) : least_(least), most_(most) {
     const Vec3 size = most - least;
     for (int axis = 0; axis < 3; ++axis) {
       const double length = axis == 0 ? size.x : axis == 1 ? size.y : size.z;
@@ -28,8 +28,15 @@ class BoxMesher {
  private:
   std::int32_t vertex(std::array<int, 3> at) {
     const auto [it, is_new] = known_.try_emplace(at, std::int32_t(mesh_.vertex.size()));
-    if (is_new) mesh_.vertex.push_back(least_ + Vec3{at[0] * step_[0], at[1] * step_[1], at[2] * step_[2]});
+    if (is_new)
+      mesh_.vertex.push_back(
+          {along(0, at, least_.x, most_.x), along(1, at, least_.y, most_.y), along(2, at, least_.z, most_.z)});
     return it->second;
+  }
+
+  /// The far end is exact: a box that is longer by a rounding error can hold another layer of cells.
+  double along(int axis, const std::array<int, 3>& at, double least, double most) const {
+    return at[axis] == count_[axis] ? most : least + at[axis] * step_[axis];
   }
 
   void add_face(int axis, int end) {
@@ -50,7 +57,7 @@ class BoxMesher {
       }
   }
 
-  Vec3 least_;
+  Vec3 least_, most_;
   int count_[3];
   double step_[3];
   std::map<std::array<int, 3>, std::int32_t> known_;

@@ -28,6 +28,15 @@ TEST(Meshes, ABoxIsClosedOrientedOutwardsAndExact) {
   EXPECT_NEAR(volume_of(box), 0.06 * 0.04 * 0.05, 1e-15);
 }
 
+TEST(Meshes, ABoxEndsExactlyWhereItShould) {
+  // 36 steps of 2 mm do not sum to 72 mm in binary.
+  const importers::RawMesh box = box_mesh({-0.036, -0.036, -0.036}, {0.036, 0.036, 0.036}, 2e-3);
+  for (const Vec3& v : box.vertex) EXPECT_LE(std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}), 0.036);
+  const Result<Body> body = make_body(block({72e-3, 72e-3, 48e-3}, 4e-3, Pace::slow, {}));
+  ASSERT_TRUE(bool(body)) << to_string(body.errors()[0]);
+  EXPECT_GE(body->model.sphere_count(), 6u * 6u * 4u) << "spacings along its edges";
+}
+
 TEST(Meshes, ABallIsClosedAndItsEdgesAreShort) {
   const importers::RawMesh ball = ball_mesh(40e-3, 2e-3);
   EXPECT_EQ(importers::count_mesh(ball.vertex, ball.triangle).open_edges, 0);
