@@ -34,7 +34,7 @@ scenes::SceneSpec slow_scene(const scenes::SceneSpec& scene, const scenes::ToolS
   slow.name = scene.name, slow.gravity = {};
   slow.organs = {scene.organs[0]}, slow.tools = {ball};
   slow.contact_stiffness = scene.contact_stiffness, slow.contact_friction = scene.contact_friction;
-  slow.contact_damping = scene.contact_damping, slow.contact_stick_time = scene.contact_stick_time;
+  slow.contact_damping = scene.contact_damping;
   scenes::OrganSpec& organ = slow.organs[0];
   organ.anchors.clear();
   organ.material.viscosity = 0;
