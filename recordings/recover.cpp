@@ -74,6 +74,9 @@ Result<Done> salvage_start(SessionStore& store, Salvage& salvage, RecoverReport&
   auto initial = initial_state(store, salvage.start.model, report);
   if (!initial) return initial.errors();
   salvage.start.initial_state = std::move(*initial);
+  auto surfaces = store.surfaces(salvage.start.model);
+  if (!surfaces) return surfaces.errors();  // tools touch them
+  salvage.start.model.surfaces = std::move(*surfaces);
 
   const auto take = [&](auto result, auto& place) {
     if (result)
@@ -83,7 +86,6 @@ Result<Done> salvage_start(SessionStore& store, Salvage& salvage, RecoverReport&
   };
   take(store.scene(), salvage.start.scene_text);
   take(store.look(), salvage.start.look);
-  take(store.surfaces(salvage.start.model), salvage.start.model.surfaces);
   take(store.metadata(), salvage.start.metadata);
   take(store.finish(), salvage.finish);
   salvage.start.build_fingerprint = store.identity().build;

@@ -106,6 +106,23 @@ void find_followed(const FilledOrgan& organ, const CellIndex& index, Vec3 point,
   found.resize(count);
 }
 
+/// Leaves out spheres that hardly count: each costs time in every tick and room in every session. At least the fewest
+/// stay, with the largest weights.
+void keep_strong(std::vector<Candidate>& followed, std::vector<Vec3>& centres, std::vector<double>& trust,
+                 const std::vector<double>& weights) {
+  constexpr double kWeak = 0.02;  // of the largest weight
+  double largest = 0;
+  for (const double w : weights) largest = std::max(largest, std::abs(w));
+  const auto is_strong = [&](std::size_t i) { return std::abs(weights[i]) > kWeak * largest; };
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i) count += is_strong(i) ? 1 : 0;
+  if (count < kFewestFollowed) return;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    if (is_strong(i)) followed[next] = followed[i], centres[next] = centres[i], trust[next] = trust[i], ++next;
+  followed.resize(next), centres.resize(next), trust.resize(next);
+}
+
 /// Bindings of a run of vertices; `binding.first` begins at 0.
 void bind_run(const FilledOrgan& organ, const CellIndex& index, std::size_t begin, std::size_t end,
               SurfaceBinding& binding) {
@@ -119,9 +136,12 @@ void bind_run(const FilledOrgan& organ, const CellIndex& index, std::size_t begi
     for (const Candidate& c : followed) {
       centres.push_back(organ.centre[std::size_t(c.sphere)]);
       trust.push_back(organ.shares.of_sphere(std::size_t(c.sphere)));
-      binding.sphere.push_back(c.sphere);
     }
-    const std::vector<double> weights = follow_weights(vertex, centres, trust, kBindingReach * organ.spacing);
+    std::vector<double> weights = follow_weights(vertex, centres, trust, kBindingReach * organ.spacing);
+    keep_strong(followed, centres, trust, weights);
+    if (centres.size() < weights.size())
+      weights = follow_weights(vertex, centres, trust, kBindingReach * organ.spacing);
+    for (const Candidate& c : followed) binding.sphere.push_back(c.sphere);
     binding.weight.insert(binding.weight.end(), weights.begin(), weights.end());
     binding.first.push_back(std::int32_t(binding.sphere.size()));
   }

@@ -106,7 +106,7 @@ stepping::StepReport settle(stepping::Stepper& stepper, State& state, const Inpu
 
 std::vector<Vec3> drawn_at(const Body& body, const State& state) {
   std::vector<Vec3> vertex;
-  surface::deform_surface(body.organ.surface, state.position, 0, vertex);
+  surface::place_surface(body.model, 0, body.organ.surface, state, vertex);
   return vertex;
 }
 
