@@ -41,7 +41,7 @@ struct Filling {
 /// Fills a closed mesh with equal spheres on a cubic lattice that covers it, and binds the mesh to them. The lattice is
 /// symmetric about the centre of the bounding box. Spheres and elements at the surface have the share of tissue that
 /// they stand for (cover_lattice.h). A sphere's layer is 1 + the whole spacings of its depth; empty layers are skipped,
-/// and spheres outside are in layer 1. The drawn surface is refined until its edges are at most a quarter of a spacing.
+/// and spheres outside are in layer 1. The drawn surface is refined until its edges are at most a third of a spacing.
 /// Errors: options out of range, no sphere fits, more spheres than allowed.
 Result<Filling> fill_organ(const CheckedMesh& mesh, const FillOptions& options);
 

@@ -23,7 +23,7 @@ namespace {
 constexpr double kMostRows = 6e5;  // lattice rows; bounds memory
 // A surface point farther than this from every sphere with so much tissue marks a thin part.
 constexpr double kThinInSpacings = 2, kFullShare = 0.6;
-constexpr double kLongestEdge = 0.25;  // of the drawn surface, in spacings
+constexpr double kLongestEdge = 1.0 / 3;  // of the drawn surface, in spacings
 
 constexpr std::int64_t kFewestTriangles = 100;  // a coarser surface no longer resembles its organ
 

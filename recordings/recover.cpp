@@ -71,12 +71,12 @@ Result<Done> salvage_start(SessionStore& store, Salvage& salvage, RecoverReport&
   if (!model) return model.errors();
   salvage.start.model = std::move(*model);
   if (auto r = store.read_columns(); !r) return r.errors();
-  auto initial = initial_state(store, salvage.start.model, report);
-  if (!initial) return initial.errors();
-  salvage.start.initial_state = std::move(*initial);
   auto surfaces = store.surfaces(salvage.start.model);
   if (!surfaces) return surfaces.errors();  // tools touch them
   salvage.start.model.surfaces = std::move(*surfaces);
+  auto initial = initial_state(store, salvage.start.model, report);
+  if (!initial) return initial.errors();
+  salvage.start.initial_state = std::move(*initial);
 
   const auto take = [&](auto result, auto& place) {
     if (result)
