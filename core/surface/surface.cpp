@@ -106,21 +106,26 @@ void find_followed(const FilledOrgan& organ, const CellIndex& index, Vec3 point,
   found.resize(count);
 }
 
-/// Leaves out spheres that hardly count: each costs time in every tick and room in every session. At least the fewest
-/// stay, with the largest weights.
-void keep_strong(std::vector<Candidate>& followed, std::vector<Vec3>& centres, std::vector<double>& trust,
-                 const std::vector<double>& weights) {
-  constexpr double kWeak = 0.02;  // of the largest weight
+/// Leaves out spheres that hardly count: each costs time in every tick and room in every session. All stay where the
+/// rest would not span space.
+void leave_out_weak(Vec3 vertex, double spacing, std::vector<Candidate>& followed, std::vector<Vec3>& centres,
+                    std::vector<double>& trust, std::vector<double>& weights) {
+  constexpr double kWeak = 0.02, kOff = 1e-10;  // of the largest weight; of a spacing
   double largest = 0;
   for (const double w : weights) largest = std::max(largest, std::abs(w));
-  const auto is_strong = [&](std::size_t i) { return std::abs(weights[i]) > kWeak * largest; };
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < weights.size(); ++i) count += is_strong(i) ? 1 : 0;
-  if (count < kFewestFollowed) return;
-  std::size_t next = 0;
+  std::vector<Candidate> strong;
+  std::vector<Vec3> strong_centres;
+  std::vector<double> strong_trust;
   for (std::size_t i = 0; i < weights.size(); ++i)
-    if (is_strong(i)) followed[next] = followed[i], centres[next] = centres[i], trust[next] = trust[i], ++next;
-  followed.resize(next), centres.resize(next), trust.resize(next);
+    if (std::abs(weights[i]) > kWeak * largest)
+      strong.push_back(followed[i]), strong_centres.push_back(centres[i]), strong_trust.push_back(trust[i]);
+  if (strong.size() < kFewestFollowed || strong.size() == followed.size()) return;
+  const std::vector<double> strong_weights =
+      follow_weights(vertex, strong_centres, strong_trust, kBindingReach * spacing);
+  Vec3 off = -vertex;
+  for (std::size_t i = 0; i < strong.size(); ++i) off += strong_weights[i] * strong_centres[i];
+  if (norm(off) > kOff * spacing) return;
+  followed = strong, centres = strong_centres, trust = strong_trust, weights = strong_weights;
 }
 
 /// Bindings of a run of vertices; `binding.first` begins at 0.
@@ -138,9 +143,7 @@ void bind_run(const FilledOrgan& organ, const CellIndex& index, std::size_t begi
       trust.push_back(organ.shares.of_sphere(std::size_t(c.sphere)));
     }
     std::vector<double> weights = follow_weights(vertex, centres, trust, kBindingReach * organ.spacing);
-    keep_strong(followed, centres, trust, weights);
-    if (centres.size() < weights.size())
-      weights = follow_weights(vertex, centres, trust, kBindingReach * organ.spacing);
+    leave_out_weak(vertex, organ.spacing, followed, centres, trust, weights);
     for (const Candidate& c : followed) binding.sphere.push_back(c.sphere);
     binding.weight.insert(binding.weight.end(), weights.begin(), weights.end());
     binding.first.push_back(std::int32_t(binding.sphere.size()));

@@ -80,7 +80,7 @@ TEST(PlanCommand, WarnsWhereAnOrganIsTooThinForItsSpheres) {
   write(R"({"radius_mm": 4, "gap_mm": 4})");
   const ProgramOutcome coarse = run_ctpm({"plan", "slab.json"}, folder.path());
   EXPECT_EQ(coarse.code, 0) << coarse.err;
-  EXPECT_NE(coarse.err.find("slab.json:3:23: warning: /organs/0/fill: 200 of 200 spheres lie in tissue thinner"),
+  EXPECT_NE(coarse.err.find("slab.json:3:23: warning: /organs/0/fill: 363 of 363 spheres lie in tissue thinner"),
             std::string::npos)
       << coarse.err;
   EXPECT_NE(coarse.err.find("16 mm"), std::string::npos) << coarse.err;
