@@ -13,6 +13,7 @@ namespace ctpm::importers {
 struct FillOptions {
   double sphere_radius = 0.004;           ///< r [m], > 0
   double gap = -1;                        ///< between the surfaces of neighbours [m], >= 0; negative: r
+  Vec3 lattice_shift;                     ///< of the lattice against the mesh, in spacings, each in [-1/2, 1/2]
   bool keep_islands = false;              ///< keeps spheres that are not connected to the largest network
   std::int64_t most_spheres = 2'000'000;  ///< limit, checked before memory is allocated, > 0
   std::int64_t most_triangles = 0;        ///< a drawn surface with more is coarsened; 0: never
@@ -23,9 +24,9 @@ struct FillOptions {
 /// Quality figures of a filling.
 struct FillReport {
   std::int64_t spheres = 0;
-  std::int64_t edges = 0;                       ///< pairs of neighbours over the 18 directions of the lattice
+  std::int64_t edges = 0;                       ///< elements between neighbours
   std::vector<std::int64_t> spheres_per_layer;  ///< layer 1 first (layer_count)
-  double filled_volume = 0;                     ///< number of spheres times spacing cubed [m^3]
+  double filled_volume = 0;                     ///< tissue that the spheres stand for [m^3]
   double largest_distance = 0;         ///< largest distance from a surface vertex to the nearest sphere centre [m]
   double mean_distance = 0;            ///< mean of this distance over the surface vertices [m]
   std::int64_t surface_triangles = 0;  ///< triangles of the drawn surface
@@ -37,9 +38,11 @@ struct Filling {
   FillReport report;
 };
 
-/// Fills a closed mesh with equal spheres on a cubic lattice and binds the mesh to them. The lattice is symmetric about
-/// the centre of the bounding box. A sphere is kept if its centre is inside. Its layer is 1 + the whole spacings of its
-/// depth; empty layers are skipped. Errors: options out of range, no sphere fits, more spheres than allowed.
+/// Fills a closed mesh with equal spheres on a cubic lattice that covers it, and binds the mesh to them. The lattice is
+/// symmetric about the centre of the bounding box. Spheres and elements at the surface have the share of tissue that
+/// they stand for (cover_lattice.h). A sphere's layer is 1 + the whole spacings of its depth; empty layers are skipped,
+/// and spheres outside are in layer 1. The drawn surface is refined until its edges are at most a third of a spacing.
+/// Errors: options out of range, no sphere fits, more spheres than allowed.
 Result<Filling> fill_organ(const CheckedMesh& mesh, const FillOptions& options);
 
 }  // namespace ctpm::importers

@@ -8,8 +8,10 @@
 
 #include "core/surface/surface.h"
 #include "importers/coarsen.h"
+#include "importers/cover_lattice.h"
 #include "importers/fill.h"
 #include "importers/lattice.h"
+#include "importers/refine.h"
 #include "importers/scan_rows.h"
 #include "importers/surface_index.h"
 #include "importers/text.h"
@@ -18,9 +20,10 @@
 namespace ctpm::importers {
 namespace {
 
-constexpr double kOnSurface = 1e-6;      // of the spacing: a centre nearer to the surface does not count as inside
-constexpr double kMostRows = 1e7;        // lattice rows; bounds memory
-constexpr double kThinInSpacings = 2.0;  // a surface point farther than this from every sphere marks a thin part
+constexpr double kMostRows = 6e5;  // lattice rows; bounds memory
+// A surface point farther than this from every sphere with so much tissue marks a thin part.
+constexpr double kThinInSpacings = 2, kFullShare = 0.6;
+constexpr double kLongestEdge = 1.0 / 3;  // of the drawn surface, in spacings
 
 constexpr std::int64_t kFewestTriangles = 100;  // a coarser surface no longer resembles its organ
 
@@ -46,6 +49,8 @@ Errors check(const CheckedMesh& mesh, const FillOptions& options) {
   if (!(std::isfinite(options.sphere_radius) && options.sphere_radius > 0))
     errors.push_back({"", "the sphere radius must be above 0 mm, got " + number(options.sphere_radius), ""});
   if (!std::isfinite(options.gap)) errors.push_back({"", "the gap must be a number of millimetres", ""});
+  for (const double shift : {options.lattice_shift.x, options.lattice_shift.y, options.lattice_shift.z})
+    if (!(std::abs(shift) <= 0.5)) errors.push_back({"", "the lattice can be shifted by half a spacing at most", ""});
   if (options.threads < 1)
     errors.push_back({"", "at least one thread is needed, got " + std::to_string(options.threads), ""});
   if (options.most_triangles != 0 && options.most_triangles < kFewestTriangles)
@@ -58,12 +63,15 @@ Errors check(const CheckedMesh& mesh, const FillOptions& options) {
   return errors;
 }
 
-/// A lattice that covers the mesh's box, symmetric about its centre. Error: far more spheres than allowed, more than
-/// kMostRows rows, or more than 1e6 cells along an axis.
-Result<Lattice> lay_lattice(const CheckedMesh& mesh, double spacing, const FillOptions& options) {
-  const Vec3 extent = mesh.box_most - mesh.box_least;
-  const auto cells = [&](double length) { return std::max(1.0, std::ceil(length / spacing)); };
-  const double nx = cells(extent.x), ny = cells(extent.y), nz = cells(extent.z);
+/// A lattice of cubic cells that covers the mesh's box, symmetric about its centre but for the shift. Error: far more
+/// spheres than allowed, more than kMostRows rows, or more than 1e6 cells along an axis.
+Result<Lattice> lay_cells(const CheckedMesh& mesh, double spacing, const FillOptions& options) {
+  const Vec3 extent = mesh.box_most - mesh.box_least, shift = options.lattice_shift;
+  constexpr double kRounding = 1e-9;  // of a spacing: a box of whole spacings needs no further cell
+  const auto cells = [&](double length, double moved) {
+    return std::max(1.0, std::ceil(length / spacing - kRounding)) + (moved == 0 ? 0 : 2);
+  };
+  const double nx = cells(extent.x, shift.x), ny = cells(extent.y, shift.y), nz = cells(extent.z, shift.z);
   const double expected = mesh.volume / (spacing * spacing * spacing);
   if (expected > 1.2 * double(options.most_spheres) || ny * nz > kMostRows || std::max({nx, ny, nz}) > 1e6) {
     char count[32];
@@ -74,34 +82,28 @@ Result<Lattice> lay_lattice(const CheckedMesh& mesh, double spacing, const FillO
             std::to_string(options.most_spheres) + " are allowed",
         "take a larger sphere radius, or check the unit of the mesh: it is " + mm_text(norm(extent)) + " across"};
   }
-  return Lattice{
-      0.5 * (mesh.box_least + mesh.box_most), spacing, {std::int32_t(nx), std::int32_t(ny), std::int32_t(nz)}};
+  return Lattice{0.5 * (mesh.box_least + mesh.box_most) + spacing * shift,
+                 spacing,
+                 {std::int32_t(nx), std::int32_t(ny), std::int32_t(nz)}};
 }
 
-/// Depth of every cell centre below the surface [m].
-std::vector<double> find_depths(const SurfaceIndex& index, const Lattice& lattice, const std::vector<Cell>& cell,
-                                int threads) {
-  std::vector<double> depth(cell.size());
-  in_pieces(cell.size(), threads, [&](std::size_t begin, std::size_t end) {
+/// Depth of every sphere's centre below the surface [m]; negative outside.
+std::vector<double> find_depths(const CheckedMesh& mesh, const Cover& cover, int threads) {
+  const SurfaceIndex index(mesh.vertex, mesh.triangle);
+  std::vector<double> depth(cover.cell.size());
+  in_pieces(depth.size(), threads, [&](std::size_t begin, std::size_t end) {
     // Neighbours in a row have similar nearest triangles.
     std::int32_t guess = 0;
     for (std::size_t n = begin; n < end; ++n) {
-      const auto nearest = index.nearest(lattice.at(cell[n]), guess);
+      const auto nearest = index.nearest(cover.lattice.at(cover.cell[n]), guess);
       guess = nearest.block;
-      depth[n] = std::sqrt(nearest.squared_distance);
+      depth[n] = -std::sqrt(nearest.squared_distance);
     }
   });
+  const CellLookup lookup(cover.lattice, cover.cell);
+  for (const Cell& cell : cells_inside(mesh.vertex, mesh.triangle, cover.lattice))
+    if (const std::int32_t n = lookup.find(cell); n >= 0) depth[std::size_t(n)] *= -1;
   return depth;
-}
-
-/// Keeps the cells for which `keep` is true, and their depths.
-template <class Keep>
-void keep_only(std::vector<Cell>& cell, std::vector<double>& depth, const Keep& keep) {
-  std::size_t next = 0;
-  for (std::size_t n = 0; n < cell.size(); ++n)
-    if (keep(n)) cell[next] = cell[n], depth[next] = depth[n], ++next;
-  cell.resize(next);
-  depth.resize(next);
 }
 
 struct Islands {
@@ -109,58 +111,70 @@ struct Islands {
   std::vector<std::int64_t> size;
 };
 
-/// Connected groups of neighbouring cells.
-Islands find_islands(const CellLookup& lookup, const std::vector<Cell>& cell) {
-  Islands islands;
-  islands.of_cell.assign(cell.size(), -1);
-  std::vector<std::int32_t> waiting;
-  for (std::size_t start = 0; start < cell.size(); ++start) {
-    if (islands.of_cell[start] >= 0) continue;
-    const std::int32_t island = std::int32_t(islands.size.size());
-    islands.size.push_back(0);
-    islands.of_cell[start] = island;
-    waiting.push_back(std::int32_t(start));
-    while (!waiting.empty()) {
-      const Cell c = cell[std::size_t(waiting.back())];
-      waiting.pop_back();
-      ++islands.size.back();
-      for (const Cell& d : kLaterNeighbours)
-        for (const int sign : {1, -1}) {
-          const std::int32_t n = lookup.find({c[0] + sign * d[0], c[1] + sign * d[1], c[2] + sign * d[2]});
-          if (n < 0 || islands.of_cell[std::size_t(n)] >= 0) continue;
-          islands.of_cell[std::size_t(n)] = island;
-          waiting.push_back(n);
-        }
+/// Calls `visit(a, b)` for the two spheres of every element.
+template <class Visit>
+void for_each_element(const Cover& cover, const Visit& visit) {
+  const CellLookup lookup(cover.lattice, cover.cell);
+  for (std::size_t n = 0; n < cover.cell.size(); ++n)
+    for (std::size_t d = 0; d < kLatticeDirections.size(); ++d) {
+      if (cover.shares.element[d][n] == 0) continue;
+      const Cell &c = cover.cell[n], &step = kLatticeDirections[d];
+      visit(n, std::size_t(lookup.find({c[0] + step[0], c[1] + step[1], c[2] + step[2]})));
     }
+}
+
+/// Groups of spheres that elements join.
+Islands find_islands(const Cover& cover) {
+  std::vector<std::int32_t> lowest(cover.cell.size());
+  std::iota(lowest.begin(), lowest.end(), 0);
+  const auto root = [&](std::size_t n) {
+    auto at = std::int32_t(n);
+    while (lowest[std::size_t(at)] != at) at = lowest[std::size_t(at)] = lowest[std::size_t(lowest[std::size_t(at)])];
+    return at;
+  };
+  for_each_element(cover, [&](std::size_t a, std::size_t b) {
+    const std::int32_t p = root(a), q = root(b);
+    lowest[std::size_t(std::max(p, q))] = std::min(p, q);
+  });
+  Islands islands;
+  islands.of_cell.assign(cover.cell.size(), -1);
+  for (std::size_t n = 0; n < cover.cell.size(); ++n) {
+    const auto first = std::size_t(root(n));
+    if (first == n) islands.of_cell[n] = std::int32_t(islands.size.size()), islands.size.push_back(0);
+    islands.of_cell[n] = islands.of_cell[first];
+    ++islands.size[std::size_t(islands.of_cell[n])];
   }
   return islands;
 }
 
 /// Drops all islands but the largest (the first of equal ones), or only reports them.
-void treat_islands(const Lattice& lattice, std::vector<Cell>& cell, std::vector<double>& depth, bool keeps_islands,
-                   std::vector<Finding>& findings) {
-  const Islands islands = find_islands(CellLookup(lattice, cell), cell);
+void treat_islands(Cover& cover, bool keeps_islands, std::vector<Finding>& findings) {
+  const Islands islands = find_islands(cover);
   if (islands.size.size() < 2) return;
   const auto largest = std::int32_t(std::max_element(islands.size.begin(), islands.size.end()) - islands.size.begin());
-  const std::int64_t loose = std::int64_t(cell.size()) - islands.size[std::size_t(largest)];
+  const std::int64_t loose = std::int64_t(cover.cell.size()) - islands.size[std::size_t(largest)];
+  std::vector<char> is_kept(cover.cell.size());
   Finding finding;
   finding.code = "island";
   finding.count = std::int64_t(islands.size.size()) - 1;
-  for (std::size_t n = 0; n < cell.size() && !finding.place; ++n)
-    if (islands.of_cell[n] != largest) finding.place = lattice.at(cell[n]);
+  for (std::size_t n = 0; n < cover.cell.size(); ++n) {
+    is_kept[n] = islands.of_cell[n] == largest;
+    if (!is_kept[n] && !finding.place) finding.place = cover.lattice.at(cover.cell[n]);
+  }
   finding.found = counted(finding.count, "group") + " of spheres (" + counted(loose, "sphere") +
                   ") not joined to the rest, the first at " + place_text(*finding.place);
   finding.done = keeps_islands ? "kept" : "dropped";
   if (keeps_islands) finding.remains = "the organ is not one connected network";
   findings.push_back(finding);
-  if (!keeps_islands) keep_only(cell, depth, [&](std::size_t n) { return islands.of_cell[n] == largest; });
+  if (!keeps_islands) keep_only(cover, is_kept);
 }
 
 /// Numbers the layers: 1 + the whole spacings of depth, renumbered without empty layers.
 std::vector<std::int32_t> number_layers(const std::vector<double>& depth, double spacing,
                                         std::vector<std::int64_t>& spheres_per_layer) {
   std::vector<std::int32_t> layer;
-  for (const double d : depth) layer.push_back(1 + std::int32_t(std::floor(d / spacing)));
+  constexpr double kRounding = 1e-6;  // of a spacing: a sphere just at a whole depth belongs to the next layer
+  for (const double d : depth) layer.push_back(1 + std::int32_t(std::floor(std::max(d, 0.0) / spacing + kRounding)));
   std::vector<std::int64_t> count(std::size_t(*std::max_element(layer.begin(), layer.end())) + 1, 0);
   for (const std::int32_t l : layer) ++count[std::size_t(l)];
   std::vector<std::int32_t> new_number(count.size(), 0);
@@ -171,13 +185,6 @@ std::vector<std::int32_t> number_layers(const std::vector<double>& depth, double
     }
   for (std::int32_t& l : layer) l = new_number[std::size_t(l)];
   return layer;
-}
-
-std::int64_t count_edges(const CellLookup& lookup, const std::vector<Cell>& cell) {
-  std::int64_t edges = 0;
-  for (const Cell& c : cell)
-    for (const Cell& d : kLaterNeighbours) edges += lookup.find({c[0] + d[0], c[1] + d[1], c[2] + d[2]}) >= 0;
-  return edges;
 }
 
 /// Number of groups of marked vertices that triangles connect.
@@ -195,40 +202,42 @@ std::int64_t count_groups(const std::vector<Triangle>& triangle, const std::vect
   return count_joined(marked);
 }
 
-/// Measures the distance from the surface to the spheres, and finds parts too thin to hold spheres.
-void measure_surface(const CellLookup& lookup, const CheckedMesh& mesh, double spacing, int threads,
-                     FillReport& report) {
-  std::vector<double> distance(mesh.vertex.size());
+/// Measures the distance from the surface to the spheres, and finds parts too thin to hold one full of tissue.
+void measure_surface(const Cover& cover, const CheckedMesh& mesh, int threads, FillReport& report) {
+  const double spacing = cover.lattice.spacing;
+  std::vector<Cell> full;
+  for (std::size_t n = 0; n < cover.cell.size(); ++n)
+    if (cover.shares.sphere[n] > kFullShare) full.push_back(cover.cell[n]);
+  const CellLookup all(cover.lattice, cover.cell), inner(cover.lattice, full);
+  std::vector<double> distance(mesh.vertex.size()), to_full(mesh.vertex.size());
   in_pieces(distance.size(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) distance[v] = std::sqrt(lookup.nearest_squared_distance(mesh.vertex[v]));
+    for (std::size_t v = begin; v < end; ++v) {
+      distance[v] = std::sqrt(all.nearest_squared_distance(mesh.vertex[v]));
+      to_full[v] = std::sqrt(inner.nearest_squared_distance(mesh.vertex[v]));
+    }
   });
-  const auto worst = std::max_element(distance.begin(), distance.end());
-  report.largest_distance = *worst;
+  report.largest_distance = *std::max_element(distance.begin(), distance.end());
   report.mean_distance = std::accumulate(distance.begin(), distance.end(), 0.0) / double(distance.size());
   std::vector<char> is_thin(distance.size(), 0);
-  for (std::size_t v = 0; v < distance.size(); ++v) is_thin[v] = distance[v] > kThinInSpacings * spacing;
+  for (std::size_t v = 0; v < distance.size(); ++v) is_thin[v] = to_full[v] > kThinInSpacings * spacing;
   const std::int64_t thin = count_groups(mesh.triangle, is_thin);
   if (thin == 0) return;
-  const Vec3 place = mesh.vertex[std::size_t(worst - distance.begin())];
-  report.findings.push_back({"thin", thin, place,
-                             counted(thin, "part") + " of the surface too thin for a sphere, the farthest point " +
-                                 mm_text(*worst) + " from one, at " + place_text(place),
-                             "none", "what is thin follows the nearest spheres; a smaller sphere radius fills it"});
+  const auto worst = std::max_element(to_full.begin(), to_full.end()) - to_full.begin();
+  report.findings.push_back({"thin", thin, mesh.vertex[std::size_t(worst)],
+                             counted(thin, "part") + " of the organ thinner than about a spacing (" + mm_text(spacing) +
+                                 "), one at " + place_text(mesh.vertex[std::size_t(worst)]),
+                             "none", "a thin part bends too easily or too hard; a smaller sphere radius fills it"});
 }
 
-/// The drawn surface: the mesh, or a coarser one if requested.
-Surface take_surface(const CheckedMesh& mesh, std::int64_t most_triangles, std::vector<Finding>& findings) {
-  Surface surface;
-  surface.vertex = mesh.vertex;
-  surface.triangle = mesh.triangle;
-  if (most_triangles == 0 || std::int64_t(mesh.triangle.size()) <= most_triangles) return surface;
-  Soup coarse = coarsen({mesh.vertex, mesh.triangle}, most_triangles);
+/// Coarsens a drawn surface that has more triangles than requested.
+void coarsen_surface(const CheckedMesh& mesh, std::int64_t most_triangles, Soup& surface,
+                     std::vector<Finding>& findings) {
+  if (most_triangles == 0 || std::int64_t(mesh.triangle.size()) <= most_triangles) return;
+  surface = coarsen(surface, most_triangles);
   // Distance of the mesh's vertices from the coarser surface.
-  const SurfaceIndex index(coarse.vertex, coarse.triangle);
+  const SurfaceIndex index(surface.vertex, surface.triangle);
   double off = 0;
   for (const Vec3& p : mesh.vertex) off = std::max(off, index.nearest(p).squared_distance);
-  surface.vertex = std::move(coarse.vertex);
-  surface.triangle = std::move(coarse.triangle);
   const std::int64_t count = std::int64_t(surface.triangle.size());
   findings.push_back({"coarsened",
                       std::int64_t(mesh.triangle.size()) - count,
@@ -237,6 +246,20 @@ Surface take_surface(const CheckedMesh& mesh, std::int64_t most_triangles, std::
                           std::to_string(most_triangles) + " that may be drawn",
                       "drawn with " + std::to_string(count) + ", at most " + mm_text(std::sqrt(off)) + " off",
                       count > most_triangles ? "fewer would turn triangles over" : ""});
+}
+
+/// The drawn surface: the mesh, coarser if requested, with edges short enough to bend around a tool unless that takes
+/// more triangles than requested.
+Surface take_surface(const CheckedMesh& mesh, double spacing, std::int64_t most_triangles,
+                     std::vector<Finding>& findings) {
+  Soup soup{mesh.vertex, mesh.triangle};
+  coarsen_surface(mesh, most_triangles, soup, findings);
+  if (Soup fine = refine(soup, kLongestEdge * spacing);
+      most_triangles == 0 || std::int64_t(fine.triangle.size()) <= most_triangles)
+    soup = std::move(fine);
+  Surface surface;
+  surface.vertex = std::move(soup.vertex);
+  surface.triangle = std::move(soup.triangle);
   return surface;
 }
 
@@ -273,43 +296,38 @@ Result<Filling> fill_organ(const CheckedMesh& mesh, const FillOptions& options) 
     if (options.progress) options.progress(std::string("fill: ") + stage, fraction);
   };
   tell("lattice", 0);
-  const Result<Lattice> laid = lay_lattice(mesh, spacing, options);
+  const Result<Lattice> laid = lay_cells(mesh, spacing, options);
   if (!laid) return laid.errors();
-  const Lattice& lattice = *laid;
-  std::vector<Cell> cell = cells_inside(mesh.vertex, mesh.triangle, lattice);
-  tell("depth", 0.2);
-  const SurfaceIndex index(mesh.vertex, mesh.triangle);
-  std::vector<double> depth = find_depths(index, lattice, cell, options.threads);
-  keep_only(cell, depth, [&](std::size_t n) { return depth[n] > kOnSurface * spacing; });
-  if (cell.empty())
+  Cover cover = cover_with_cells(mesh, *laid);
+  if (cover.cell.empty())
     return Error{"",
                  "no sphere fits: the mesh is " + mm_text(norm(mesh.box_most - mesh.box_least)) +
                      " across and the spheres are " + mm_text(spacing) + " apart",
                  "take a smaller sphere radius, or check the unit of the mesh"};
-  if (std::int64_t(cell.size()) > options.most_spheres)
+  if (std::int64_t(cover.cell.size()) > options.most_spheres)
     return Error{"",
-                 std::to_string(cell.size()) + " spheres fit, but at most " + std::to_string(options.most_spheres) +
-                     " are allowed",
+                 std::to_string(cover.cell.size()) + " spheres are needed, but at most " +
+                     std::to_string(options.most_spheres) + " are allowed",
                  "take a larger sphere radius, or check the unit of the mesh"};
 
   Filling filling;
   FillReport& report = filling.report;
-  tell("network", 0.6);
-  treat_islands(lattice, cell, depth, options.keep_islands, report.findings);
+  treat_islands(cover, options.keep_islands, report.findings);
+  tell("depth", 0.2);
   FilledOrgan& organ = filling.organ;
   organ.sphere_radius = radius;
   organ.spacing = spacing;
-  for (const Cell& c : cell) organ.centre.push_back(lattice.at(c));
-  organ.layer = number_layers(depth, spacing, report.spheres_per_layer);
-  const CellLookup lookup(lattice, cell);
-  report.spheres = std::int64_t(cell.size());
-  report.edges = count_edges(lookup, cell);
-  report.filled_volume = double(report.spheres) * spacing * spacing * spacing;
-  measure_surface(lookup, mesh, spacing, options.threads, report);
-  organ.cell = cell;
-  organ.depth = std::move(depth);
+  for (const Cell& c : cover.cell) organ.centre.push_back(cover.lattice.at(c));
+  organ.depth = find_depths(mesh, cover, options.threads);
+  organ.layer = number_layers(organ.depth, spacing, report.spheres_per_layer);
+  report.spheres = std::int64_t(cover.cell.size());
+  for_each_element(cover, [&](std::size_t, std::size_t) { ++report.edges; });
+  for (const double share : cover.shares.sphere) report.filled_volume += share * spacing * spacing * spacing;
+  measure_surface(cover, mesh, options.threads, report);
+  organ.cell = std::move(cover.cell);
+  organ.shares = std::move(cover.shares);
   tell("surface", 0.7);
-  organ.surface = take_surface(mesh, options.most_triangles, report.findings);
+  organ.surface = take_surface(mesh, spacing, options.most_triangles, report.findings);
   report.surface_triangles = std::int64_t(organ.surface.triangle.size());
   tell("binding", 0.8);
   surface::bind_surface(organ, options.threads);

@@ -43,8 +43,4 @@ class CellLookup {
   std::vector<std::int32_t> first_;  ///< index of the first sphere of each row (row_count + 1)
 };
 
-/// Of the 18 neighbours of a cell, the 9 that follow it in (k, j, i) order.
-inline constexpr std::array<Cell, 9> kLaterNeighbours{
-    {{1, 0, 0}, {-1, 1, 0}, {0, 1, 0}, {1, 1, 0}, {0, -1, 1}, {-1, 0, 1}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
-
 }  // namespace ctpm::importers

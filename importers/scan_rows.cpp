@@ -34,8 +34,9 @@ double height_over(Vec3 a, Vec3 b, Vec3 c, double y, double z) {
 
 /// Calls `on_crossing(row, crossing)` for every crossing of a lattice row and a triangle, triangle by triangle.
 template <class OnCrossing>
-void for_each_crossing(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle, const Lattice& lattice,
+void for_each_crossing(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle, const RowLines& lines,
                        const OnCrossing& on_crossing) {
+  const Lattice& lattice = lines.lattice;
   const Vec3 origin = lattice.at({0, 0, 0});
   const auto first_row = [&](double least, double from, int axis) {
     return std::int32_t(
@@ -51,7 +52,7 @@ void for_each_crossing(const std::vector<Vec3>& vertex, const std::vector<Triang
     const std::int32_t k_end = last_row(std::max({a.z, b.z, c.z}), origin.z, 2);
     for (std::int32_t k = first_row(std::min({a.z, b.z, c.z}), origin.z, 2); k <= k_end; ++k)
       for (std::int32_t j = first_row(std::min({a.y, b.y, c.y}), origin.y, 1); j <= j_end; ++j) {
-        const Vec3 line = lattice.at({0, j, k});
+        const Vec3 line = lines.at(j, k);
         const int turns = passes(a, b, line.y, line.z) + passes(b, c, line.y, line.z) + passes(c, a, line.y, line.z);
         // If the corners run counter-clockwise seen from +x, the outside is towards +x.
         if (turns != 0) on_crossing(lattice.row_of({0, j, k}), Crossing{height_over(a, b, c, line.y, line.z), -turns});
@@ -61,19 +62,29 @@ void for_each_crossing(const std::vector<Vec3>& vertex, const std::vector<Triang
 
 }  // namespace
 
-std::vector<Cell> cells_inside(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle,
-                               const Lattice& lattice) {
+Vec3 RowLines::at(std::int32_t j, std::int32_t k) const {
+  Vec3 point = lattice.at({0, j, k});
+  if (shift == nullptr) return point;
+  const auto [y, z] = shift(j, k);
+  point.y += y * lattice.spacing, point.z += z * lattice.spacing;
+  return point;
+}
+
+bool spans_inside(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle, const RowLines& lines,
+                  const std::function<void(std::int32_t, std::int32_t, const std::vector<Span>&)>& on_row) {
+  const Lattice& lattice = lines.lattice;
   // Store the crossings of each row contiguously: count first, then place.
   std::vector<std::int64_t> first(std::size_t(lattice.row_count()) + 1, 0);
-  for_each_crossing(vertex, triangle, lattice, [&](std::int64_t row, Crossing) { ++first[std::size_t(row) + 1]; });
+  for_each_crossing(vertex, triangle, lines, [&](std::int64_t row, Crossing) { ++first[std::size_t(row) + 1]; });
   for (std::size_t row = 1; row < first.size(); ++row) first[row] += first[row - 1];
   std::vector<Crossing> crossings(std::size_t(first.back()));
   std::vector<std::int64_t> next(first.begin(), first.end() - 1);
-  for_each_crossing(vertex, triangle, lattice, [&](std::int64_t row, Crossing crossing) {
+  for_each_crossing(vertex, triangle, lines, [&](std::int64_t row, Crossing crossing) {
     crossings[std::size_t(next[std::size_t(row)]++)] = crossing;
   });
 
-  std::vector<Cell> cells;
+  std::vector<Span> spans;
+  bool overlaps = false;
   for (std::int32_t k = 0; k < lattice.count[2]; ++k)
     for (std::int32_t j = 0; j < lattice.count[1]; ++j) {
       const std::size_t row = std::size_t(lattice.row_of({0, j, k}));
@@ -81,14 +92,32 @@ std::vector<Cell> cells_inside(const std::vector<Vec3>& vertex, const std::vecto
       if (begin == end) continue;
       std::sort(begin, end,
                 [](const Crossing& a, const Crossing& b) { return a.x != b.x ? a.x < b.x : a.enters < b.enters; });
+      spans.clear();
       std::int32_t winding = 0;
-      auto crossing = begin;
-      for (std::int32_t i = 0; i < lattice.count[0]; ++i) {
-        const double x = lattice.at({i, j, k}).x;
-        for (; crossing != end && crossing->x < x; ++crossing) winding += crossing->enters;
-        if (winding > 0) cells.push_back({i, j, k});
+      for (auto crossing = begin; crossing != end; ++crossing) {
+        const std::int32_t before = winding;
+        winding += crossing->enters;
+        overlaps = overlaps || winding > 1;
+        if (before <= 0 && winding > 0) spans.push_back({crossing->x, crossing->x});
+        if (before > 0 && winding <= 0) spans.back().end = crossing->x;
       }
+      on_row(j, k, spans);
     }
+  return overlaps;
+}
+
+std::vector<Cell> cells_inside(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle,
+                               const Lattice& lattice) {
+  std::vector<Cell> cells;
+  spans_inside(vertex, triangle, {lattice}, [&](std::int32_t j, std::int32_t k, const std::vector<Span>& spans) {
+    auto span = spans.begin();
+    for (std::int32_t i = 0; i < lattice.count[0]; ++i) {
+      const double x = lattice.at({i, j, k}).x;
+      while (span != spans.end() && span->end < x) ++span;
+      if (span == spans.end()) break;
+      if (span->begin < x) cells.push_back({i, j, k});
+    }
+  });
   return cells;
 }
 

@@ -56,6 +56,10 @@ const char* name_of(EventKind kind) {
       return "press gave up";
     case EventKind::step_refused:
       return "step refused";
+    case EventKind::turned_inside_out:
+      return "turned inside out";
+    case EventKind::came_back:
+      return "came back";
   }
   return "unknown";
 }
@@ -90,8 +94,22 @@ std::string describe(const Event& event, const Model& model) {
     case EventKind::step_refused:
       return "the step was refused, status " + std::to_string(event.status) + ", worst sphere " +
              std::to_string(event.sphere);
+    case EventKind::turned_inside_out:
+      return "tissue turned inside out; cells in the first tick: " + std::to_string(event.cells);
+    case EventKind::came_back:
+      return "no tissue is inside out any more; cells at most: " + std::to_string(event.cells);
   }
   return "";
+}
+
+std::int32_t cells_inside_out(const std::vector<Event>& events, std::int64_t end) {
+  std::int32_t cells = 0;
+  for (const Event& event : events) {
+    if (event.tick >= end) continue;
+    if (event.kind == EventKind::turned_inside_out) cells = event.cells;
+    if (event.kind == EventKind::came_back) cells = 0;
+  }
+  return cells;
 }
 
 std::int64_t pieces_came_loose(const std::vector<Event>& events, std::int64_t end) {

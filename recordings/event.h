@@ -23,6 +23,8 @@ enum class EventKind : std::int32_t {
   press_reached_force = 10,
   press_gave_up = 11,
   step_refused = 12,
+  turned_inside_out = 13,
+  came_back = 14,
 };
 
 /// One event of a session. Only the fields of its kind are set and stored; for_each_value() lists them.
@@ -43,6 +45,7 @@ struct Event {
   std::int32_t pieces = 0;           ///< increase in the number of loose pieces over the tick
   std::int32_t status = 0;           ///< StepStatus of a step that was refused
   std::int32_t sphere = -1;          ///< StepReport::worst_sphere of that step
+  std::int32_t cells = 0;            ///< tissue cells inside out: in the first tick, or the most in one tick
   std::string text = {};             ///< text of a note; for an old event without fields, its sentence
   std::vector<double> values = {};   ///< numbers of an old event without fields; `text` explains them
 
@@ -55,7 +58,7 @@ template <class Event_, class Visit>
 requires std::is_same_v<std::remove_const_t<Event_>, Event>
 void for_each_value(Event_& e, Visit&& visit) {
   const EventKind kind = e.kind;
-  const bool is_unknown = kind < EventKind::contact_begins || kind > EventKind::step_refused;
+  const bool is_unknown = kind < EventKind::contact_begins || kind > EventKind::came_back;
   const auto give = [&](auto... kinds) { return is_unknown || ((kind == kinds) || ...); };
   if (give(EventKind::contact_begins, EventKind::contact_ends, EventKind::cut)) visit("tool", e.tool);
   if (give(EventKind::cut)) visit("severed", e.severed);
@@ -77,6 +80,7 @@ void for_each_value(Event_& e, Visit&& visit) {
     visit("status", e.status);
     visit("sphere", e.sphere);
   }
+  if (give(EventKind::turned_inside_out, EventKind::came_back)) visit("cells", e.cells);
 }
 
 /// Name of a kind in tables and JSON.
@@ -84,6 +88,10 @@ const char* name_of(EventKind kind);
 
 /// One readable sentence, made from the event's fields. A note or an old event without fields returns its stored text.
 std::string describe(const Event& event, const Model& model);
+
+/// Number of tissue cells inside out when tissue turned inside out for the last time before `end`; 0 if it has come
+/// back since then, or never turned.
+std::int32_t cells_inside_out(const std::vector<Event>& events, std::int64_t end);
 
 /// Number of tissue pieces that came loose in ticks before `end`.
 std::int64_t pieces_came_loose(const std::vector<Event>& events, std::int64_t end);

@@ -71,6 +71,9 @@ Result<Done> salvage_start(SessionStore& store, Salvage& salvage, RecoverReport&
   if (!model) return model.errors();
   salvage.start.model = std::move(*model);
   if (auto r = store.read_columns(); !r) return r.errors();
+  auto surfaces = store.surfaces(salvage.start.model);
+  if (!surfaces) return surfaces.errors();  // tools touch them
+  salvage.start.model.surfaces = std::move(*surfaces);
   auto initial = initial_state(store, salvage.start.model, report);
   if (!initial) return initial.errors();
   salvage.start.initial_state = std::move(*initial);
@@ -83,7 +86,6 @@ Result<Done> salvage_start(SessionStore& store, Salvage& salvage, RecoverReport&
   };
   take(store.scene(), salvage.start.scene_text);
   take(store.look(), salvage.start.look);
-  take(store.surfaces(salvage.start.model), salvage.start.surfaces);
   take(store.metadata(), salvage.start.metadata);
   take(store.finish(), salvage.finish);
   salvage.start.build_fingerprint = store.identity().build;

@@ -21,8 +21,7 @@ namespace ctpm::recordings {
 struct SessionStart {
   std::string scene_text;                            ///< scene text as read; opaque to this folder
   std::string look;                                  ///< organ colours and names for rendering; opaque to this folder
-  Model model;                                       ///< the built network
-  std::vector<Surface> surfaces;                     ///< one per organ of the Model, or empty
+  Model model;                                       ///< the built network and its surfaces
   State initial_state;                               ///< State before tick 0
   std::string build_fingerprint;                     ///< identifies the build of the recording program
   std::int32_t physics_revision = kPhysicsRevision;  ///< of the recording program; 0: not stored, an old session

@@ -63,7 +63,7 @@ Result<Done> SessionReader::Impl::read_start() {
   const std::size_t before_model = errors.size();
   take(store.model(), start.model);
   if (errors.size() == before_model) {
-    take(store.surfaces(start.model), start.surfaces);
+    take(store.surfaces(start.model), start.model.surfaces);
     std::optional<Keyframe> first;
     const std::size_t before_state = errors.size();
     take(store.keyframe_at(0, start.model), first);

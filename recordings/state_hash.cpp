@@ -42,7 +42,8 @@ struct Hasher {
   /// Arrays added to State after the first sessions were recorded. They are not hashed while empty, so that those
   /// sessions keep their hashes.
   static bool is_newer(std::string_view name) {
-    return name == "axial_crossing" || name.starts_with("blade_trail") || name.starts_with("acceleration");
+    return name == "axial_crossing" || name.starts_with("blade_trail") || name.starts_with("acceleration") ||
+           name == "touched" || name.starts_with("grip.") || name == "kelvin_dent";
   }
 
   template <class T>

@@ -48,8 +48,11 @@ Result<std::vector<std::int32_t>> select_anchored(const FilledOrgan& organ, cons
                                                   Vec3 gravity, const std::string& where,
                                                   std::vector<std::int32_t>* counts) {
   if (organ.centre.empty()) return Error{where, "the organ has no spheres", ""};
-  double lowest = height(organ.centre.front(), gravity);
-  for (const Vec3& p : organ.centre) lowest = std::min(lowest, height(p, gravity));
+  // The lattice covers the surface, so its lowest spheres lie below the organ.
+  double lowest = INFINITY;
+  for (const Vec3& p : organ.surface.vertex) lowest = std::min(lowest, height(p, gravity));
+  if (organ.surface.vertex.empty())
+    for (const Vec3& p : organ.centre) lowest = std::min(lowest, height(p, gravity));
   std::vector<std::int32_t> selected, caught(anchors.size(), 0);
   for (std::size_t i = 0; i < organ.centre.size(); ++i) {
     bool is_anchored = false;

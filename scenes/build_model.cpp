@@ -6,14 +6,22 @@
 
 #include "core/network/network.h"
 #include "core/stepping/integrator.h"
+#include "core/surface/surface.h"
 #include "scenes/anchors.h"
 #include "scenes/presets.h"
 
 namespace ctpm::scenes {
 namespace {
 
+/// Of an organ from a mesh, unless the scene says otherwise (our choice: presses, strokes and jumping tools left no
+/// cell inside out).
+constexpr double kInversionResistance = 10;
+
 /// A tool is so much stiffer than the stiffest edge of the tissue, unless the scene says otherwise.
 constexpr double kContactOverEdge = 20;
+
+/// Of the heaviest sphere: lighter ones stand for less than half a cell of tissue and are no place to hold it.
+constexpr double kHalfFull = 0.5;
 
 std::vector<network::OrganSettings::Guide> guides_of(const OrganSpec& spec, const FilledOrgan& organ) {
   std::vector<network::OrganSettings::Guide> guides;
@@ -109,14 +117,18 @@ bool add_scene_organ(BuiltScene& built, const SceneSpec& scene, std::size_t inde
   }
   network::OrganSettings settings;
   settings.name = spec.name, settings.structure = spec.structure, settings.lattice = spec.lattice;
+  const bool shares_by_three =
+      spec.tiling == TilingSpec::automatic ? spec.rig.has_value() : spec.tiling == TilingSpec::three_spheres;
+  settings.tiling = shares_by_three ? network::Tiling::three_spheres : network::Tiling::two_spheres;
   settings.has_softening = spec.softening, settings.material = resolve_material(spec.material).material;
   settings.damage_depth = spec.damage_depth, settings.guides = guides_of(spec, organ);
+  settings.inversion_resistance = inversion_resistance_of(spec);
   settings.layers = layers_of(spec, organ, at, problems);
   settings.anchored = anchored_in(organ, spec.anchors, scene.gravity, at, problems);
   built.anchored_count.push_back(std::int32_t(settings.anchored.size()));
   const auto is_good = [&] {
-    return can_be_filled(problems, index) &&
-           problems.are_good(at, {"rig", "model", "lattice", "softening", "material", "layers", "anchors"});
+    return can_be_filled(problems, index) && problems.are_good(at, {"rig", "model", "lattice", "softening", "material",
+                                                                    "layers", "anchors", "inversion_resistance"});
   };
   add_network(built.model, organ, is_good() ? settings : stand_in_for(settings), spec.rig.has_value(), at, problems);
   return is_good();
@@ -130,10 +142,12 @@ void set_solver(Model& model, const SolverSpec& solver) {
   model.solver.substeps = solver.substeps.value_or(standard.substeps);
 }
 
-double softest_spring(const Model& model) {
-  double k = INFINITY;
-  for (const double spring : model.axial.k) k = std::min(k, spring);
-  return k;
+/// Elements at the surface stand for little tissue and are softer than the tissue is.
+double median_spring(const Model& model) {
+  std::vector<double> k = model.axial.k;
+  if (k.empty()) return 0;
+  std::nth_element(k.begin(), k.begin() + std::ptrdiff_t(k.size() / 2), k.end());
+  return k[k.size() / 2];
 }
 
 /// What only a blade needs.
@@ -143,7 +157,7 @@ void add_cutting(Model& model, const SceneSpec& scene) {
   if (!cuts)
     model.cut_resistance = {};
   else if (scene.lips_meet)
-    model.lip_k = softest_spring(model),
+    model.lip_k = median_spring(model),
     model.cut_face_stiffening = scene.cut_face_stiffening.value_or(model.cut_face_stiffening);
 }
 
@@ -170,7 +184,6 @@ void add_tools(Model& model, const SceneSpec& scene) {
   model.contact_k = scene.contact_stiffness.value_or(kContactOverEdge * stiffest_spring(model));
   model.contact_friction = scene.contact_friction;
   model.contact_damping = scene.contact_damping.value_or(model.contact_damping);
-  model.contact_stick_time = scene.contact_stick_time.value_or(model.contact_stick_time);
 }
 
 /// What the scene asks for; none: core chooses.
@@ -189,6 +202,10 @@ std::optional<Integrator> integrator_of(IntegratorSpec spec) {
 }
 
 }  // namespace
+
+double inversion_resistance_of(const OrganSpec& organ) {
+  return organ.inversion_resistance.value_or(organ.rig ? 0.0 : kInversionResistance);
+}
 
 FilledOrgan fill_rig(const OrganSpec& organ) {
   FilledOrgan filled;
@@ -224,12 +241,47 @@ FilledOrgan fill_rig(const OrganSpec& organ) {
 std::int32_t nearest_sphere(const Model& model, Vec3 point) {
   std::int32_t nearest = -1;
   double least = INFINITY;
-  for (std::size_t i = 0; i < model.sphere_count(); ++i) {
-    const Vec3 apart = model.rest_position[i] - point;
-    if (dot(apart, apart) < least) least = dot(apart, apart), nearest = std::int32_t(i);
+  for (const OrganRange& organ : model.organs) {
+    const auto first = std::size_t(organ.first), last = first + std::size_t(organ.count);
+    const double heaviest =
+        *std::max_element(model.mass.begin() + organ.first, model.mass.begin() + organ.first + organ.count);
+    for (std::size_t i = first; i < last; ++i) {
+      const Vec3 apart = model.rest_position[i] - point;
+      if (model.mass[i] < kHalfFull * heaviest || dot(apart, apart) >= least) continue;
+      least = dot(apart, apart), nearest = std::int32_t(i);
+    }
   }
   return nearest;
 }
+
+namespace {
+
+/// Adds a load at a point of the tissue: in an organ with a surface, to the spheres around it as a surface there would.
+void add_load(Model& model, const LoadSpec& load) {
+  const std::int32_t nearest = nearest_sphere(model, load.at);
+  std::vector<std::int32_t> spheres{nearest};
+  std::vector<double> weights{1};
+  for (std::size_t o = 0; o < model.organs.size(); ++o) {
+    const OrganRange& organ = model.organs[o];
+    if (nearest < organ.first || nearest >= organ.first + organ.count || model.surfaces[o].triangle.empty()) continue;
+    const double reach = surface::kBindingReach * organ.spacing;
+    std::vector<Vec3> centres;
+    std::vector<double> trust;
+    std::vector<std::int32_t> around;
+    for (std::int32_t i = organ.first; i < organ.first + organ.count; ++i)
+      if (const Vec3 centre = model.rest_position[std::size_t(i)]; norm(centre - load.at) < reach)
+        around.push_back(i), centres.push_back(centre), trust.push_back(model.mass[std::size_t(i)]);
+    if (around.size() < 4) continue;
+    spheres = around, weights = surface::follow_weights(load.at, centres, trust, reach);
+  }
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    model.loads.sphere.push_back(spheres[i]);
+    model.loads.force.push_back(weights[i] * load.force);
+    model.loads.start.push_back(load.start), model.loads.ramp.push_back(load.ramp);
+  }
+}
+
+}  // namespace
 
 bool can_be_filled(const Problems& problems, std::size_t index) {
   const std::string at = "/organs/" + std::to_string(index);
@@ -249,11 +301,7 @@ std::optional<BuiltScene> build_model(const SceneSpec& scene, std::span<const Fi
   if (!has_all_organs) return std::nullopt;
   add_tools(model, scene);
   add_cutting(model, scene);
-  for (const LoadSpec& load : scene.loads) {
-    model.loads.sphere.push_back(nearest_sphere(model, load.at));
-    model.loads.force.push_back(load.force);
-    model.loads.start.push_back(load.start), model.loads.ramp.push_back(load.ramp);
-  }
+  for (const LoadSpec& load : scene.loads) add_load(model, load);
   for (const ProbeSpec& probe : scene.probes) built.probe_sphere.push_back(nearest_sphere(model, probe.at));
   set_solver(model, scene.solver);
   if (problems.are_good("", {"tick_s", "solver"})) {

@@ -26,6 +26,9 @@ struct BuiltScene {
 /// The spheres of an organ that is given as a rig instead of by a mesh. It has no surface to draw.
 FilledOrgan fill_rig(const OrganSpec& organ);
 
+/// OrganSettings::inversion_resistance of an organ: its own, or else 10 with a mesh and 0 as a rig.
+double inversion_resistance_of(const OrganSpec& organ);
+
 /// Builds the Model. `organs` are the filled organs in the scene's order. Errors, each with the JSON pointer of its
 /// cause: an anchor that holds no sphere; a layer deeper than the organ or without spheres; moduli out of range;
 /// spheres of which no two are neighbours; an integrator that is unstable for the scene.

@@ -31,6 +31,14 @@ inline std::span<const Choice<network::Structure>> choices_of<network::Structure
   return choices;
 }
 template <>
+inline std::span<const Choice<TilingSpec>> choices_of<TilingSpec>() {
+  static constexpr Choice<TilingSpec> choices[] = {{"auto", TilingSpec::automatic},
+                                                   {"two-spheres", TilingSpec::two_spheres},
+                                                   {"three-spheres", TilingSpec::three_spheres}};
+  return choices;
+}
+
+template <>
 inline std::span<const Choice<network::LatticeKind>> choices_of<network::LatticeKind>() {
   static constexpr Choice<network::LatticeKind> choices[] = {{"cubic-18", network::LatticeKind::cubic_18},
                                                              {"cubic-6", network::LatticeKind::cubic_6}};
@@ -154,7 +162,7 @@ inline RecordInfo info_of(const AnchorSpec&) {
 }
 template <class V>
 void describe_fields(V& v, AnchorSpec& anchor) {
-  v.number(Key{"lowest_mm", "Centres at most this far above the lowest one, against gravity."}, anchor.lowest,
+  v.number(Key{"lowest_mm", "Centres at most this far above the organ's lowest point, against gravity."}, anchor.lowest,
            units::millimetre, within(0, 100000));
   v.record(Key{"box", "Centres in a box."}, anchor.box);
   v.record(Key{"sphere", "Centres in a ball."}, anchor.sphere);
@@ -212,6 +220,12 @@ void describe_fields(V& v, OrganSpec& organ) {
   v.choice(Key{"model", "Structure that joins the spheres."}, organ.structure);
   v.choice(Key{"lattice", "Neighbours that are joined; cubic-6 has no shear stiffness and is for rigs."},
            organ.lattice);
+  v.choice(
+      Key{"tiling",
+          "For model ctpm: `three-spheres`, as in the paper, where three spheres share a spring and a Kelvin unit, or "
+          "`two-spheres`, where every element is a whole three-parameter model of the same static stiffness and all "
+          "spheres are damped alike. `auto`: two spheres in a mesh, three in a rig."},
+      organ.tiling);
   v.flag(Key{"softening", "Forces of triples and constraints are divided by 1 + tan(theta), Eq. 8; for model ctpm."},
          organ.softening);
   v.record(Key{"fill", "The spheres."}, organ.fill);
@@ -223,6 +237,12 @@ void describe_fields(V& v, OrganSpec& organ) {
            organ.damage_depth, units::millimetre, within(0, 1000));
   v.number(Key{"damage_force_n", "Force on a tool beyond which the tissue counts as damaged; 0: no limit."},
            organ.damage_force, units::newton, within(0, 1e6));
+  v.number(
+      Key{"inversion_resistance",
+          "Stiffness over Young's modulus with which tissue that is pressed to less than 0.4 of its volume resists "
+          "being turned inside out; 0: it does not, and costs nothing.",
+          false, "10, or 0 for a rig"},
+      organ.inversion_resistance, units::none, within(0, 1000));
   v.point(Key{"surface_color", "Red, green and blue of the outside."}, organ.surface_color, units::none, within(0, 1));
   v.point(Key{"inner_color", "Red, green and blue of cut faces and spheres."}, organ.inner_color, units::none,
           within(0, 1));
@@ -323,9 +343,9 @@ void describe_fields(V& v, SceneSpec& scene) {
            units::second, within(0, 60));
   v.list(required("organs", "The tissue."), scene.organs, 1);
   v.list(Key{"tools", "The tools."}, scene.tools, 0);
-  v.number(
-      Key{"contact_stiffness_n_per_m", "Stiffness of a tool against one sphere.", false, "20 times the stiffest edge"},
-      scene.contact_stiffness, units::newton_per_metre, within(1e-6, 1e12));
+  v.number(Key{"contact_stiffness_n_per_m", "Stiffness of a tool against one sphere of a rig.", false,
+               "20 times the stiffest edge"},
+           scene.contact_stiffness, units::newton_per_metre, within(1e-6, 1e12));
   v.number(Key{"contact_friction", "Coulomb coefficient between tool and tissue."}, scene.contact_friction, units::none,
            within(0, 10));
   v.number(Key{"contact_damping_s_per_m",
@@ -333,10 +353,6 @@ void describe_fields(V& v, SceneSpec& scene) {
                "s/m an impact at 30 mm/s keeps 25 % of its kinetic energy.",
                false, "50"},
            scene.contact_damping, units::second_per_metre, within(0, 1e4));
-  v.number(Key{"contact_stick_time_s",
-               "While tool and tissue stick, the drag between them is the contact's stiffness times this time.", false,
-               "0.1"},
-           scene.contact_stick_time, units::second, within(0, 100));
   v.flag(Key{"lips_meet", "The two sides of a cut meet again without passing through each other."}, scene.lips_meet);
   v.number(
       Key{"cut_face_stiffening",

@@ -87,7 +87,7 @@ struct PlaneRegion {
 
 /// A region whose spheres never move. Exactly one member is set.
 struct AnchorSpec {
-  std::optional<double> lowest;  ///< centres at most this far above the organ's lowest centre, against gravity [m]
+  std::optional<double> lowest;  ///< centres at most this far above the organ's lowest point, against gravity [m]
   std::optional<BoxRegion> box;
   std::optional<SphereRegion> sphere;
   std::optional<PlaneRegion> plane;
@@ -121,6 +121,9 @@ struct LayerSpec {
   friend bool operator==(const LayerSpec&, const LayerSpec&) = default;
 };
 
+/// Scene key `tiling`, of `ctpm`; automatic: two spheres in a mesh, three in a rig, as in the paper.
+enum class TilingSpec { automatic, two_spheres, three_spheres };
+
 struct OrganSpec {
   std::string name;
   std::string mesh;  ///< path, relative to the scene's folder, with '/'; empty: the organ is a rig
@@ -130,13 +133,17 @@ struct OrganSpec {
   std::optional<std::int32_t> most_triangles;  ///< of the drawn surface, which is made coarser if it has more
   network::Structure structure = network::Structure::ctpm;  ///< which elements join the spheres; the key is `model`
   network::LatticeKind lattice = network::LatticeKind::cubic_18;
+  TilingSpec tiling = TilingSpec::automatic;
   bool softening = true;  ///< Eq. 8
   FillSpec fill;
   MaterialSpec material;          ///< below the last layer
   std::vector<LayerSpec> layers;  ///< outermost first, depths ascending
   std::vector<AnchorSpec> anchors;
-  double damage_depth = 0;               ///< [m]; 0: no limit
-  double damage_force = 0;               ///< on the tool [N]; 0: no limit
+  double damage_depth = 0;  ///< [m]; 0: no limit
+  double damage_force = 0;  ///< on the tool [N]; 0: no limit
+  /// kappa over Young's modulus, with which tissue resists being turned inside out [1]; 0: it does not; unset: see
+  /// inversion_resistance_of().
+  std::optional<double> inversion_resistance{};
   Vec3 surface_color{0.62, 0.24, 0.20};  ///< red, green, blue in [0, 1]
   Vec3 inner_color{0.80, 0.42, 0.36};    ///< of cut faces and spheres
 
@@ -159,7 +166,7 @@ struct ToolSpec {
 
 /// An external force on one sphere.
 struct LoadSpec {
-  Vec3 at;           ///< acts on the sphere nearest to here at rest [m]
+  Vec3 at;           ///< acts on the tissue here, or on a rig's nearest sphere [m]
   Vec3 force;        ///< [N]
   double start = 0;  ///< [s]
   double ramp = 0;   ///< time in which it rises linearly from zero [s]
@@ -205,10 +212,9 @@ struct SceneSpec {
   double settle = 1.0;        ///< longest time for the scene to come to rest before the first tick [s]
   std::vector<OrganSpec> organs;
   std::vector<ToolSpec> tools;
-  std::optional<double> contact_stiffness;    ///< of a tool against one sphere [N/m]
+  std::optional<double> contact_stiffness;    ///< of a tool against one sphere of a rig [N/m]
   double contact_friction = 0.3;              ///< Coulomb coefficient between tool and tissue
   std::optional<double> contact_damping;      ///< Hunt-Crossley damping [s/m]; unset: that of core's Model
-  std::optional<double> contact_stick_time;   ///< [s]; unset: that of core's Model
   std::optional<double> cut_face_stiffening;  ///< [1]; unset: that of core's Model
   bool lips_meet = false;                     ///< the two sides of a cut meet again without passing through each other
   std::vector<LoadSpec> loads;

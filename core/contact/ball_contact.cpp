@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/contact/contact_law.h"
+#include "core/surface/surface.h"
 
 namespace ctpm::contact {
 namespace {
@@ -11,164 +12,203 @@ namespace {
 /// Spheres per block. A block is checked as a whole before its spheres are checked one by one.
 constexpr std::size_t kLookedAtOnce = 128;
 
+/// Triangles are divided into parts with edges of at most this part of the ball's radius, but into no more than
+/// kMostDivisions squared.
+constexpr double kLongestPart = 0.25;
+constexpr int kMostDivisions = 8;
+
+/// A surface that the ball left farther behind than so many of its radii is not touched any more.
+constexpr double kDeepest = 12;
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Where tool and tissue coincide, no direction is better than another.
+Vec3 unit_or_down(Vec3 v, double least) {
+  const double length = norm(v);
+  return length > least ? v / length : Vec3{0, 0, -1};
+}
+
+/// Calls `visit(w0, w1, w2)` with the barycentric coordinates of the centre of each of n^2 equal parts of a triangle.
+template <class Visit>
+void for_each_part(int n, const Visit& visit) {
+  const double unit = 1.0 / (3 * n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; i + j < n; ++j) {
+      visit((3 * (n - i - j) - 2) * unit, (3 * i + 1) * unit, (3 * j + 1) * unit);
+      if (i + j + 1 < n) visit((3 * (n - i - j) - 4) * unit, (3 * i + 2) * unit, (3 * j + 2) * unit);
+    }
+}
+
+bool may_touch(const Vec3* corners, Vec3 centre, double radius) {
+  const auto is_apart = [&](double a, double b, double c, double at) {
+    return std::min({a, b, c}) > at + radius || std::max({a, b, c}) < at - radius;
+  };
+  return !is_apart(corners[0].x, corners[1].x, corners[2].x, centre.x) &&
+         !is_apart(corners[0].y, corners[1].y, corners[2].y, centre.y) &&
+         !is_apart(corners[0].z, corners[1].z, corners[2].z, centre.z);
+}
+
 }  // namespace
 
-BallContact::BallContact(const Model& model, const elements::Kernels& kernels) : model_(model), kernels_(kernels) {
-  if (model.has_tool(ToolKind::ball)) contacts_.reserve(model.sphere_count());
-  for (const double radius : model.contact_radius) largest_radius_ = std::max(largest_radius_, radius);
-}
-
-void BallContact::find(const StateView& state, Vec3 centre, double radius, Vec3 velocity, double h,
-                       bool from_velocity) {
-  clear();
-  velocity_ = velocity;
-  const double farthest = (radius + largest_radius_) * (radius + largest_radius_),
-               at[3] = {centre.x, centre.y, centre.z};
-  for (std::size_t begin = 0; begin < state.position.size(); begin += kLookedAtOnce) {
-    const std::size_t end = std::min(begin + kLookedAtOnce, state.position.size());
-    const double nearest = kernels_.nearest_squared(state.position.x.data(), state.position.y.data(),
-                                                    state.position.z.data(), at, begin, end);
-    if (nearest < farthest) find_among(state, centre, radius, h, from_velocity, begin, end);
+BallContact::BallContact(const Model& model, const elements::Kernels& kernels)
+    : model_(model), kernels_(kernels), is_wanted_(model.has_tool(ToolKind::ball)), surface_(model, is_wanted_) {
+  if (!is_wanted_) return;
+  const std::size_t vertices = surface_.vertex_count();
+  pressed_.resize(vertices), touched_.reserve(vertices), was_touched_.assign(vertices, 0);
+  for (std::size_t i = 0; i < model.surfaces.size(); ++i)
+    organ_of_.resize(organ_of_.size() + model.surfaces[i].vertex.size(), std::int32_t(i));
+  for (std::size_t i = 0; i < model.organs.size(); ++i) {
+    if (i < model.surfaces.size() && !model.surfaces[i].triangle.empty()) continue;
+    const auto first = std::size_t(model.organs[i].first);
+    bare_.emplace_back(first, first + std::size_t(model.organs[i].count));
+  }
+  if (model.organs.empty()) bare_.emplace_back(0, model.sphere_count());
+  capacity_.first = vertices;
+  for (std::size_t v = 0; v < vertices; ++v) capacity_.second += surface_.follower(std::int32_t(v)).sphere.size();
+  for (const auto& [first, last] : bare_) {
+    capacity_.first += last - first, capacity_.second += last - first;
+    for (std::size_t i = first; i < last; ++i) largest_radius_ = std::max(largest_radius_, model.contact_radius[i]);
   }
 }
 
-void BallContact::find_among(const StateView& state, Vec3 centre, double radius, double h, bool from_velocity,
-                             std::size_t begin, std::size_t end) {
-  const Vec3 velocity = velocity_;
-  for (std::size_t i = begin; i < end; ++i) {
-    if (model_.held_axes[i] == kAnchored) continue;
-    const Vec3 apart = state.position[i] - centre;
-    const double reach = radius + model_.contact_radius[i];
-    const double distance_squared = dot(apart, apart);
-    if (distance_squared >= reach * reach) continue;
+void BallContact::find(const StateView& state, const BallMotion& ball, PointContacts& contacts) {
+  if (!surface_.empty()) find_on_surfaces(state, ball, contacts);
+  find_on_spheres(state, ball, contacts);
+}
+
+/// Largest distance from the ball's centre to a vertex that it touched at the start of the substep [m].
+double BallContact::farthest_touched(const StateView& state, const BallMotion& ball) const {
+  double farthest = 0;
+  for (const std::int32_t point : state.touched)
+    if (std::size_t(point) < surface_.vertex_count())
+      farthest = std::max(farthest, norm(surface_.follower(point).of(state.position) - ball.centre));
+  return farthest;
+}
+
+void BallContact::find_on_surfaces(const StateView& state, const BallMotion& ball, PointContacts& contacts) {
+  const auto mark = [&](std::uint8_t value) {
+    for (const std::int32_t point : state.touched)
+      if (std::size_t(point) < was_touched_.size()) was_touched_[std::size_t(point)] = value;
+  };
+  mark(1);
+  pressed_area_ = {};
+  const double reach = std::max(ball.radius, std::min(farthest_touched(state, ball), kDeepest * ball.radius));
+  surface_.near(state.position, ball.centre, reach,
+                [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
+                  if (may_touch(corners, ball.centre, reach)) press(triangle, corners, ball);
+                });
+  mark(0);
+  const double a = std::sqrt(norm(pressed_area_) / kPi);
+  std::sort(touched_.begin(), touched_.end());
+  for (const std::int32_t vertex : touched_) {
+    Pressed& pressed = pressed_[std::size_t(vertex)];
+    const surface::Follower follows = surface_.follower(vertex);
+    const Carriers carriers{follows.sphere, follows.weight};
+    const OrganRange& organ = model_.organs[std::size_t(organ_of_[std::size_t(vertex)])];
+    const double volume = norm(pressed.volume);
+    if (volume > 0 && contacts.mobility(carriers) > 0) {
+      const double k = dent_stiffness(organ.modulus, a, surface::kUnresolvedLength * organ.spacing) * pressed.area;
+      add(state, ball,
+          {.axis = pressed.volume / volume,
+           .point = vertex,
+           .dent = volume / pressed.area,
+           .foundation = Foundation(organ, k, ball.elapsed)},
+          carriers, follows.of(state.position), contacts);
+    }
+    pressed = {};
+  }
+  touched_.clear();
+}
+
+/// Adds a triangle's part under the ball to its corners.
+void BallContact::press(const surface::NearSurface::Triangle& triangle, const Vec3* corners, const BallMotion& ball) {
+  const Vec3 across = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const double size = norm(across), squared = ball.radius * ball.radius;
+  if (!(size > 0)) return;
+  const Vec3 outward = across / size;
+  const bool was_touched = was_touched_[std::size_t(triangle.corner[0])] ||
+                           was_touched_[std::size_t(triangle.corner[1])] ||
+                           was_touched_[std::size_t(triangle.corner[2])];
+  const int n = std::clamp(int(std::ceil(triangle.longest_edge / (kLongestPart * ball.radius))), 1, kMostDivisions);
+  const double area = triangle.rest_area / (n * n);
+  for_each_part(n, [&](double w0, double w1, double w2) {
+    const Vec3 apart = w0 * corners[0] + w1 * corners[1] + w2 * corners[2] - ball.centre;
+    // Along the line inwards, the far side of the ball is `through` away.
+    const double distance_squared = dot(apart, apart), height = dot(apart, outward);
+    const double half_chord_squared = height * height - distance_squared + squared;
+    // A surface outside the ball touches only where the ball has gone in deeper than the lattice follows.
+    if (half_chord_squared <= 0 || (distance_squared >= squared && !(was_touched && height > 0))) return;
+    const double half_chord = std::sqrt(half_chord_squared), through = height + half_chord;
+    const Vec3 normal = (apart - through * outward) / ball.radius;
+    const Vec3 volume = area * through * (half_chord / ball.radius) * normal;
+    const double weights[3] = {w0, w1, w2};
+    for (std::size_t c = 0; c < 3; ++c) {
+      Pressed& pressed = pressed_[std::size_t(triangle.corner[c])];
+      if (pressed.area == 0) touched_.push_back(triangle.corner[c]);
+      pressed.area += weights[c] * area, pressed.volume += weights[c] * volume;
+    }
+    pressed_area_ += area * normal;
+  });
+}
+
+void BallContact::find_on_spheres(const StateView& state, const BallMotion& ball, PointContacts& contacts) {
+  const double farthest = (ball.radius + largest_radius_) * (ball.radius + largest_radius_),
+               at[3] = {ball.centre.x, ball.centre.y, ball.centre.z};
+  const auto look_at = [&](std::size_t i) {
+    if (model_.held_axes[i] == kAnchored) return;
+    const Vec3 apart = state.position[i] - ball.centre;
+    const double reach = ball.radius + model_.contact_radius[i], distance_squared = dot(apart, apart);
+    if (distance_squared >= reach * reach) return;
     const double distance = std::sqrt(distance_squared);
     // A sphere whose centre coincides with that of the ball is pushed in the direction of the ball's motion.
-    const Vec3 fallback = norm(velocity) > 0 ? velocity / norm(velocity) : Vec3{0, 0, -1};
-    const Vec3 normal = distance > 1e-9 * reach ? apart / distance : fallback;
-    const double penetration = reach - distance;
-    const Vec3 slip = state.velocity[i] - velocity;
-    const double speed = norm(slip - dot(slip, normal) * normal);
-    const double drag = contact_drag(model_, penetration, speed);
-    const Vec3 from = from_velocity ? slip : -velocity;
-    const double towards = dot(from, normal),
-                 damping = contact_damping(model_.contact_damping, model_.contact_k, model_.mass[i], penetration);
-    contacts_.push_back({std::int32_t(i), normal, penetration, damping, drag,
-                         std::clamp(-towards, -reach / h, penetration / h), from - towards * normal});
-  }
+    const Vec3 normal = distance > 1e-9 * reach ? apart / distance : unit_or_down(ball.velocity, 0);
+    const auto sphere = std::int32_t(i);
+    const double whole = 1, depth = reach - distance;
+    PointContact contact{.axis = normal, .point = std::int32_t(surface_.vertex_count()) + sphere, .dent = depth};
+    contact.foundation.k = model_.contact_k;
+    contact.damping = contact_damping(model_.contact_damping, model_.contact_k, model_.mass[i], depth);
+    add(state, ball, contact, {{&sphere, 1}, {&whole, 1}}, state.position[i], contacts);
+  };
+  for (const auto& [first, last] : bare_)
+    for (std::size_t begin = first; begin < last; begin += kLookedAtOnce) {
+      const std::size_t end = std::min(begin + kLookedAtOnce, last);
+      if (kernels_.nearest_squared(state.position.x.data(), state.position.y.data(), state.position.z.data(), at, begin,
+                                   end) < farthest)
+        for (std::size_t i = begin; i < end; ++i) look_at(i);
+    }
 }
 
-void BallContact::linearise(double h, elements::Coordinates& force, elements::DiagonalBlocks& blocks) {
-  const std::size_t spheres = model_.sphere_count();
-  for (SphereContact& contact : contacts_) {
-    const auto i = std::size_t(contact.sphere);
-    for (std::size_t k = 0; k < 3; ++k) contact.without[k] = force[k * spheres + i];
-    for (std::size_t k = 0; k < 6; ++k) contact.without[3 + k] = blocks[k * spheres + i];
-    const Vec3 n = contact.normal;
-    const Vec3 push =
-        (model_.contact_k * contact.penetration + contact.damping * contact.approach) * n - contact.drag * contact.slip;
-    force[i] += push.x, force[spheres + i] += push.y, force[2 * spheres + i] += push.z;
-    const double across = h * contact.drag, along = coupling_along(contact, h) - across;
-    double* block = &blocks[i];
-    block[0] += along * n.x * n.x + across, block[spheres] += along * n.x * n.y,
-        block[2 * spheres] += along * n.x * n.z;
-    block[3 * spheres] += along * n.y * n.y + across, block[4 * spheres] += along * n.y * n.z;
-    block[5 * spheres] += along * n.z * n.z + across;
-  }
+/// Adds the contact of a point at `place` [m], of which the detectors have set axis, point, dent, foundation and
+/// damping.
+void BallContact::add(const StateView& state, const BallMotion& ball, PointContact contact, Carriers carriers,
+                      Vec3 place, PointContacts& contacts) const {
+  const Vec3 velocity = weighted(carriers, state.velocity), normal = contact.axis;
+  const auto across = [&](Vec3 v) { return v - dot(v, normal) * normal; };
+  const std::ptrdiff_t before = state.find_touched(contact.point);
+  contact.only_pushes = contact.is_tool = true;
+  contact.found = place - ball.centre;
+  contact.kelvin_dent = before < 0 ? 0 : state.kelvin_dent[std::size_t(before)];
+  contact.k = contact.foundation.k;
+  const double pressure = std::max(0.0, contact.foundation.force(contact.dent, contact.kelvin_dent));
+  contact.force = pressure * normal;
+  // However far the hand jumps, the approach leads to the dent, or out of contact, in one step.
+  const Vec3 start = ball.from_velocity ? velocity - ball.velocity : -ball.velocity;
+  const double leaving = std::clamp(dot(start, normal), -contact.dent / ball.h, ball.radius / ball.h);
+  contact.start = across(start) + leaving * normal;
+  contact.grip_k = model_.contact_friction > 0 ? contact.k : 0.0;
+  contact.grip_c = 2 * std::sqrt(contact.grip_k / contacts.mobility(carriers));  // critical
+  contact.most_grip = model_.contact_friction * pressure;
+  contact.anchor = before < 0 ? contact.found : state.grip[std::size_t(before)];
+  contact.gripped = across(contact.found - contact.anchor);
+  // Over one step the point is expected to go on with its velocity.
+  contact.slip_guess = ball.from_velocity ? Vec3{} : across(velocity);
+  contacts.add(contact, carriers);
 }
 
-void BallContact::undo_linearise(elements::Coordinates& force, elements::DiagonalBlocks& blocks) const {
-  const std::size_t spheres = model_.sphere_count();
-  for (const SphereContact& contact : contacts_) {
-    const auto i = std::size_t(contact.sphere);
-    for (std::size_t k = 0; k < 3; ++k) force[k * spheres + i] = contact.without[k];
-    for (std::size_t k = 0; k < 6; ++k) blocks[k * spheres + i] = contact.without[3 + k];
-  }
-}
-
-Vec3 BallContact::push_apart(double h, const Pin& pin, const Vec3Array& before, Vec3Array& velocity) {
-  const double k = model_.contact_k, stick = model_.contact_friction > 0 ? model_.contact_stick_time * k : 0.0;
-  std::vector<double>* const axes[3] = {&velocity.x, &velocity.y, &velocity.z};
-  Vec3 on_ball;
-  std::erase_if(contacts_, [&](const SphereContact& contact) {
-    const auto i = std::size_t(contact.sphere);
-    const double mass = model_.mass[i], damping = contact.damping;
-    const ContactShares share(h * h * k / mass, h * damping / mass);
-    const Vec3 n = contact.normal, change = velocity[i] - before[i];
-    const double old = -contact.approach, free = mass * (old + dot(n, change));
-    const double push = k * (contact.penetration + h * share.before * old) - damping * share.damped_before * old;
-    const double along = (free + h * push) / (mass + h * (h * k * share.after + damping * share.damped_after));
-    const double pressure = (mass * along - free) / h;
-    if (pressure < 0) return true;
-    const Vec3 across = mass * (contact.slip + change - dot(n, change) * n);
-    const double limit = model_.contact_friction * k * contact.penetration, size = norm(across);
-    const bool sticks = stick * size <= (mass + h * stick) * limit;
-    const Vec3 acting = pressure * n - (sticks ? stick / (mass + h * stick) : limit / size) * across;
-    const double kick[3] = {acting.x, acting.y, acting.z};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if ((pin.held_axes(model_, i) >> axis & 1) == 0) (*axes[axis])[i] += h / mass * kick[axis];
-    on_ball -= acting;
-    return false;
-  });
-  return on_ball;
-}
-
-template <class Real>
-double BallContact::apply(double h, const Real* v, Real* result) const {
-  const std::size_t spheres = model_.sphere_count();
-  double energy = 0;
-  for (const SphereContact& contact : contacts_) {
-    const auto i = std::size_t(contact.sphere);
-    const Vec3 n = contact.normal, u{v[i], v[spheres + i], v[2 * spheres + i]};
-    const double across = h * contact.drag, along = coupling_along(contact, h) - across;
-    const Vec3 q = along * dot(n, u) * n + across * u;
-    result[i] += Real(q.x), result[spheres + i] += Real(q.y), result[2 * spheres + i] += Real(q.z);
-    energy += dot(u, q);
-  }
-  return energy;
-}
-template double BallContact::apply(double h, const float* v, float* result) const;
-template double BallContact::apply(double h, const double* v, double* result) const;
-
-Vec3 BallContact::change_of(const SphereContact& contact, const elements::Coordinates& v) const {
-  const std::size_t spheres = model_.sphere_count(), i = std::size_t(contact.sphere);
-  return {v[i], v[spheres + i], v[2 * spheres + i]};
-}
-
-/// Factor of the normal velocity in the matrix of a step of `h` [kg].
-double BallContact::coupling_along(const SphereContact& contact, double h) const {
-  return h * (h * model_.contact_k + contact.damping);
-}
-
-double BallContact::pressure(const SphereContact& contact, double h, const elements::Coordinates& v) const {
-  return model_.contact_k * contact.penetration + contact.damping * contact.approach -
-         coupling_along(contact, h) / h * dot(contact.normal, change_of(contact, v));
-}
-
-bool BallContact::has_pulling(double h, const elements::Coordinates& v) const {
-  return std::any_of(contacts_.begin(), contacts_.end(),
-                     [&](const SphereContact& contact) { return pressure(contact, h, v) < 0; });
-}
-
-void BallContact::drop_pulling(double h, const elements::Coordinates& v) {
-  std::erase_if(contacts_, [&](const SphereContact& contact) { return pressure(contact, h, v) < 0; });
-}
-
-Vec3 BallContact::force_on_tool(double h, const elements::Coordinates& v) const {
-  Vec3 force;
-  for (const SphereContact& contact : contacts_) {
-    const Vec3 n = contact.normal, change = change_of(contact, v), slip = contact.slip + change - dot(change, n) * n;
-    force += contact.drag * slip - std::max(pressure(contact, h, v), 0.0) * n;
-  }
-  return force;
-}
-
-double BallContact::depth(const Vec3Array& position) const {
-  double depth = 0;
-  for (const SphereContact& contact : contacts_) {
-    const auto i = std::size_t(contact.sphere);
-    depth = std::max(depth, dot(contact.normal, position[i] - model_.rest_position[i]));
-  }
-  return depth;
+Vec3 BallContact::rest_of(const PointContact& contact) const {
+  const auto vertices = std::int32_t(surface_.vertex_count());
+  return contact.point < vertices ? surface_.rest(contact.point)
+                                  : model_.rest_position[std::size_t(contact.point - vertices)];
 }
 
 }  // namespace ctpm::contact

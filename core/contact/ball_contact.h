@@ -2,90 +2,85 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
-#include "core/contact/pin.h"
-#include "core/elements/axial.h"
+#include "core/contact/point_contact.h"
 #include "core/elements/kernels/kernels.h"
 #include "core/model/model.h"
 #include "core/model/state_view.h"
+#include "core/surface/near_surface.h"
 
 namespace ctpm::contact {
 
-/// Contact of a ball with one sphere: a penalty spring with damping along the line between the centres
-/// (contact_damping), and drag across it (contact_drag). Both are solved implicitly.
-struct SphereContact {
-  std::int32_t sphere;
-  Vec3 normal;         ///< unit vector from the ball to the sphere
-  double penetration;  ///< depth of the sphere in the ball at detection [m], > 0
-  double damping;      ///< along the normal [N s/m], >= 0
-  double drag;         ///< across the normal [N s/m], >= 0
-  /// Speed of approach along the normal at the start of the solve [m/s]. It is clamped to what leads to the
-  /// penetration, or out of contact, in one step, however far the hand jumps.
-  double approach;
-  Vec3 slip;  ///< velocity across the normal at the start of the solve, relative to the ball [m/s]
-  std::array<double, 9> without{};  ///< force and diagonal block of its sphere before linearise()
+/// A ball in one step.
+struct BallMotion {
+  Vec3 centre;         ///< at detection [m]
+  Vec3 velocity;       ///< [m/s]
+  double radius;       ///< [m]
+  double h;            ///< length of the step [s]
+  double elapsed;      ///< from the start of the substep to the end of this step [s]
+  bool from_velocity;  ///< whether the solve starts from StateView::velocity; else from rest
 };
 
-/// Contacts of a rigid ball with spheres. Only Contacts (contacts.h) calls it.
+/// Contact of a rigid ball with the surfaces of organs: no part of a surface is inside the ball. Where the surface that
+/// the lattice carries would be, the ball dents it, with a pressure of dent_stiffness() times the dent's depth, which
+/// relaxes as the tissue does (Foundation). The depth is measured inwards from the surface to the far side of the ball,
+/// and counts across the ball there; small balls may therefore go deeper than the lattice follows. The pressure is
+/// integrated over the triangles and gathered at their corners, one contact each; from there it goes to the spheres
+/// with the weights of the binding.
+///
+/// Organs without a surface (rigs) are touched at their spheres, with Model::contact_k each, and damped as Hunt &
+/// Crossley say (contact_damping).
+///
+/// Friction: each point is held by a spring at a place on the ball, up to the friction cone; beyond it the place slides
+/// (Cundall & Strack, "A discrete numerical model for granular assemblies", Geotechnique 29, 1979). A contact at rest
+/// therefore stays where it is.
 class BallContact {
  public:
   BallContact(const Model& model, const elements::Kernels& kernels);
 
+  /// Capacity that find() needs: contacts, and entries of their carriers.
+  std::pair<std::size_t, std::size_t> capacity() const { return capacity_; }
+
+  /// Adds the contacts of a ball, in ascending order of their points.
+  void find(const StateView& state, const BallMotion& ball, PointContacts& contacts);
+
+  /// Depth of the dent under a contact [m], 0 for that of a bare sphere.
+  double dent_of(const PointContact& contact) const {
+    return contact.point < std::int32_t(surface_.vertex_count()) ? contact.dent : 0.0;
+  }
+
+  /// Where the tissue was at rest that a contact touches [m].
+  Vec3 rest_of(const PointContact& contact) const;
+
  private:
-  friend class Contacts;
-  friend class ContactSet;
-  friend class LinearisedContacts;
+  /// What presses on one vertex of a surface.
+  struct Pressed {
+    double area = 0;  ///< that the vertex stands for, under the ball [m^2]
+    Vec3 volume;      ///< depth times area, along the ball's radius [m^3]
+  };
 
-  /// Finds the spheres that overlap, in a step of `h` [s], a ball of `radius` [m] at `centre` that moves with
-  /// `velocity` [m/s]. The solve starts from StateView::velocity if `from_velocity`, else from rest. Velocities `v`
-  /// below are changes from that start.
-  void find(const StateView& state, Vec3 centre, double radius, Vec3 velocity, double h, bool from_velocity);
-
-  /// Adds contact forces [N] and their linearisation for a step of `h` [s].
-  void linearise(double h, elements::Coordinates& force, elements::DiagonalBlocks& blocks);
-
-  /// Restores `force` and `blocks` to the bit as they were before the last linearise().
-  void undo_linearise(elements::Coordinates& force, elements::DiagonalBlocks& blocks) const;
-
-  /// Adds the contacts, found in the middle of an explicit step of `h` [s], to the `velocity` [m/s] that the step
-  /// reached without them. Each contact is solved implicitly by itself; those that would pull are dropped. `before`:
-  /// velocity [m/s] at the start. Spheres keep their velocity along held axes, and so does the sphere of `pin`. Returns
-  /// the force on the ball [N].
-  Vec3 push_apart(double h, const Pin& pin, const Vec3Array& before, Vec3Array& velocity);
-
-  /// result += coupling of a step of `h` [s] times `v`, in the precision of `v`, float or double.
-  /// Returns v . coupling . v.
-  template <class Real>
-  double apply(double h, const Real* v, Real* result) const;
-
-  /// Whether a contact would pull its sphere after a step of `h` [s] with velocity `v` [m/s].
-  bool has_pulling(double h, const elements::Coordinates& v) const;
-
-  /// Removes the contacts that would pull.
-  void drop_pulling(double h, const elements::Coordinates& v);
-
-  /// Force on the ball [N] after an implicit step.
-  Vec3 force_on_tool(double h, const elements::Coordinates& v) const;
-
-  /// Largest displacement from rest at `position` of a touched sphere along its contact [m], 0 without contact.
-  double depth(const Vec3Array& position) const;
-
-  std::int32_t count() const { return std::int32_t(contacts_.size()); }
-  void clear() { contacts_.clear(); }
-
-  void find_among(const StateView& state, Vec3 centre, double radius, double h, bool from_velocity, std::size_t begin,
-                  std::size_t end);
-  Vec3 change_of(const SphereContact& contact, const elements::Coordinates& v) const;
-  double coupling_along(const SphereContact& contact, double h) const;
-  double pressure(const SphereContact& contact, double h, const elements::Coordinates& v) const;
+  double farthest_touched(const StateView& state, const BallMotion& ball) const;
+  void press(const surface::NearSurface::Triangle& triangle, const Vec3* corners, const BallMotion& ball);
+  void find_on_surfaces(const StateView& state, const BallMotion& ball, PointContacts& contacts);
+  void find_on_spheres(const StateView& state, const BallMotion& ball, PointContacts& contacts);
+  void add(const StateView& state, const BallMotion& ball, PointContact contact, Carriers carriers, Vec3 place,
+           PointContacts& contacts) const;
 
   const Model& model_;
   const elements::Kernels& kernels_;
+  bool is_wanted_;
+  surface::NearSurface surface_;
+  std::vector<std::int32_t> organ_of_;  ///< (vertex_count, like the next two)
+  std::vector<Pressed> pressed_;
+  std::vector<std::uint8_t> was_touched_;  ///< at the start of the substep
+  std::vector<std::int32_t> touched_;      ///< vertices with an area
+  Vec3 pressed_area_;                      ///< sum over the pressed areas, each along the ball's radius [m^2]
+  /// Spheres [first, last) of the organs without a surface.
+  std::vector<std::pair<std::size_t, std::size_t>> bare_;
   double largest_radius_ = 0;  ///< of a sphere [m]
-  Vec3 velocity_;              ///< of the ball [m/s]
-  /// Capacity for every sphere if the scene has a ball, so that a tick never allocates.
-  std::vector<SphereContact> contacts_;
+  std::pair<std::size_t, std::size_t> capacity_{};
 };
 
 }  // namespace ctpm::contact

@@ -57,7 +57,7 @@ cutting::Box BladeForce::around(const Tool& tool, const BladeMotion& motion) con
 }
 
 void BladeForce::find(const StateView& state, const cutting::NearElements& near, const Tool& tool,
-                      const BladeMotion& motion, PairContacts& contacts) const {
+                      const BladeMotion& motion, PointContacts& contacts) const {
   const double reach = this->reach(tool);
   const Vec3 beyond = 0.5 * reach * unit(motion.to.heel - motion.to.tip);
   const Vec3 tip = motion.to.tip - beyond, heel = motion.to.heel + beyond, ht = unit(motion.heading_tip),
@@ -82,11 +82,7 @@ void BladeForce::find(const StateView& state, const cutting::NearElements& near,
     const double facing = length > 0 ? std::abs(dot(normal, q - p)) / length : 0.0;
     const double held = facing * held_share(hit->across, norm(heel - tip), 0.5 * reach);
     const Vec3 point_velocity = (1 - hit->along) * state.velocity[e.a] + hit->along * state.velocity[e.b];
-    PairContact contact{.a = std::int32_t(e.a),
-                        .b = std::int32_t(e.b),
-                        .weight_a = 1 - hit->along,
-                        .weight_b = hit->along,
-                        .is_tool = true};
+    PointContact contact{.is_tool = true};
     const Vec3 path = between(motion.to.tip - motion.from.tip, motion.to.heel - motion.from.heel, hit->across);
     if (severed) {
       const double on_flank = std::clamp(1 - (length - e.rest_length) / tool.blade_thickness, 0.0, 1.0);
@@ -108,12 +104,12 @@ void BladeForce::find(const StateView& state, const cutting::NearElements& near,
       // Tissue that moves away faster than the blade follows would be dropped later, at the cost of a second solve.
       if (dot(heading, contact.force - model_.tick * contact.k * point_velocity) <= 0) continue;
     }
-    contacts.add(contact);
+    contacts.add(contact, std::int32_t(e.a), std::int32_t(e.b), 1 - hit->along, hit->along);
   }
 }
 
 void BladeForce::add_severed(const StateView& state, const Tool& tool, const BladeMotion& motion,
-                             std::span<const cutting::Crossing> crossings, PairContacts& contacts) const {
+                             std::span<const cutting::Crossing> crossings, PointContacts& contacts) const {
   const double reach = this->reach(tool);
   for (const cutting::Crossing& crossing : crossings) {
     const Element e = element(std::size_t(crossing.element));
@@ -127,13 +123,8 @@ void BladeForce::add_severed(const StateView& state, const Tool& tool, const Bla
     const double held = facing * held_share(across, blade, 0.5 * reach);
     const double remaining = e.to_open(held, apart) * (1 - resisted * resisted);
     if (remaining == 0) continue;
-    contacts.add({.a = std::int32_t(e.a),
-                  .b = std::int32_t(e.b),
-                  .weight_a = 1 - crossing.along,
-                  .weight_b = crossing.along,
-                  .axis = path / length,
-                  .force = remaining / (length * length) * path,
-                  .is_tool = true});
+    contacts.add({.axis = path / length, .force = remaining / (length * length) * path, .is_tool = true},
+                 std::int32_t(e.a), std::int32_t(e.b), 1 - crossing.along, crossing.along);
   }
 }
 

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "core/contact/blade_motion.h"
-#include "core/contact/pair_contact.h"
+#include "core/contact/point_contact.h"
 #include "core/cutting/cutting.h"
 #include "core/cutting/near_elements.h"
 #include "core/model/state_view.h"
@@ -41,12 +41,12 @@ class BladeForce {
   /// Adds the contacts of the blade, at the end of its motion, with the elements that are `near`: unsevered ones ahead
   /// of its edge, and severed ones on its flanks.
   void find(const StateView& state, const cutting::NearElements& near, const Tool& tool, const BladeMotion& motion,
-            PairContacts& contacts) const;
+            PointContacts& contacts) const;
 
   /// Adds the elements that were severed in this tick before they had resisted over the whole reach. Each resists with
   /// its remaining energy, spread over the blade's path in the tick.
   void add_severed(const StateView& state, const Tool& tool, const BladeMotion& motion,
-                   std::span<const cutting::Crossing> crossings, PairContacts& contacts) const;
+                   std::span<const cutting::Crossing> crossings, PointContacts& contacts) const;
 
  private:
   struct Element;

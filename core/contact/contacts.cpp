@@ -1,15 +1,28 @@
 #include "core/contact/contacts.h"
 
+#include <algorithm>
+
 #include "core/model/result.h"
 
 namespace ctpm::contact {
+
+namespace {
+
+/// Contacts and entries of a Model's pairs, those of blades and cut faces.
+std::size_t pairs_of(const Model& model, const BladeForce& blade, const CutFaceContact& cut_faces) {
+  return model.has_scalpel() ? blade.capacity() + cut_faces.capacity() : 0;
+}
+
+}  // namespace
 
 Contacts::Contacts(const Model& model, const elements::Kernels& kernels)
     : model_(model),
       ball_(model, kernels),
       blade_(model),
       cut_faces_(model),
-      pairs_(model, model.has_scalpel() ? blade_.capacity() + cut_faces_.capacity() : 0) {}
+      points_(model, ball_.capacity().first + pairs_of(model, blade_, cut_faces_),
+              ball_.capacity().second + 2 * pairs_of(model, blade_, cut_faces_)),
+      explicit_solve_(model, model.solver.integrator == Integrator::leapfrog ? points_.capacity() : 0) {}
 
 Pin Contacts::pin(const HeldTool& tool, const Vec3Array& position, double share, double h) {
   if (!tool.is(ToolKind::pin)) return {};
@@ -17,32 +30,27 @@ Pin Contacts::pin(const HeldTool& tool, const Vec3Array& position, double share,
   return {sphere, (tool.at(share) - position[std::size_t(sphere)]) / h};
 }
 
-/// Finds the contacts of the blade and those between cut faces.
-void Contacts::find_pairs(const StateView& state, const HeldTool& tool) {
-  pairs_.clear();
+void Contacts::find(const StateView& state, const HeldTool& tool, const ContactStep& step, bool from_velocity) {
+  points_.clear();
+  if (tool.is(ToolKind::ball))
+    ball_.find(state,
+               {tool.at(step.share), (tool.to - tool.from) / model_.tick, tool.tool->radius, step.h, step.elapsed,
+                from_velocity},
+               points_);
   if (tool.is(ToolKind::scalpel) && blade_.any()) {
     CTPM_CHECK(tool.near != nullptr, "a blade has swept before its contacts are detected");
     tool.near->follow(state.position);
-    blade_.find(state, *tool.near, *tool.tool, tool.blade, pairs_);
-    blade_.add_severed(state, *tool.tool, tool.blade, tool.swept, pairs_);
+    blade_.find(state, *tool.near, *tool.tool, tool.blade, points_);
+    blade_.add_severed(state, *tool.tool, tool.blade, tool.swept, points_);
   }
-  if (cut_faces_.is_wanted()) cut_faces_.find(state, pairs_);
-}
-
-void Contacts::find_ball(const StateView& state, const HeldTool& tool, const ContactStep& step, bool from_velocity) {
-  ball_.clear();
-  if (tool.is(ToolKind::ball))
-    ball_.find(state, tool.at(step.share), tool.tool->radius, (tool.to - tool.from) / model_.tick, step.h,
-               from_velocity);
+  if (cut_faces_.is_wanted()) cut_faces_.find(state, points_);
 }
 
 ExplicitContacts Contacts::push_apart(const StateView& middle, const HeldTool& tool, const ContactStep& step,
                                       Vec3Array& velocity) {
   ExplicitContacts set(*this, step);
-  find_pairs(middle, tool);
-  find_ball(middle, tool, step, true);
-  const Vec3 on_ball = ball_.push_apart(step.h, step.pin, middle.velocity, velocity);
-  set.tool_force_ = on_ball + pairs_.push_apart(step.h, step.pin, middle.velocity, velocity);
+  find(middle, tool, step, true);
+  set.tool_force_ = explicit_solve_.solve(step.h, step.pin, middle.velocity, velocity, points_);
   return set;
 }
 
@@ -50,9 +58,8 @@ ImplicitContacts Contacts::detect(const StateView& state, const HeldTool& tool, 
                                   Linearisation about) {
   ImplicitContacts set(*this, step);
   const bool from_velocity = about == Linearisation::velocity;
-  find_pairs(state, tool);
-  if (from_velocity) pairs_.start_from(state.velocity);
-  find_ball(state, tool, step, from_velocity);
+  find(state, tool, step, from_velocity);
+  points_.begin_implicit(step.h, from_velocity ? &state.velocity : nullptr);
   return set;
 }
 
@@ -61,14 +68,40 @@ ContactSet::ContactSet(Contacts& contacts, const ContactStep& step) : contacts_(
   contacts.is_locked_ = true;
 }
 
-std::int32_t ContactSet::touched() const {
-  return step_.pin.is_held() ? 1 : contacts_->ball_.count() + contacts_->pairs_.tool_count();
-}
+std::int32_t ContactSet::touched() const { return step_.pin.is_held() ? 1 : contacts_->points_.tool_count(); }
 
 double ContactSet::depth(const Vec3Array& position) const {
   const Pin& pin = step_.pin;
   if (pin.is_held()) return norm(position[pin.index()] - contacts_->model_.rest_position[pin.index()]);
-  return contacts_->ball_.depth(position);
+  double depth = 0;
+  for (const PointContact& c : contacts_->points_.all())
+    if (c.point >= 0)
+      depth = std::max(
+          depth, contacts_->ball_.dent_of(c) +
+                     dot(c.axis, weighted(contacts_->points_.carriers(c), position) - contacts_->ball_.rest_of(c)));
+  return depth;
+}
+
+void Contacts::reserve(Touched& touched) const {
+  const std::size_t count = ball_.capacity().first;
+  touched.point.reserve(count), touched.kelvin_dent.reserve(count);
+  for (auto* axis : {&touched.grip.x, &touched.grip.y, &touched.grip.z}) axis->reserve(count);
+}
+
+void ContactSet::note_touched(Vec3 centre, const Vec3Array& position, Touched& touched) const {
+  touched.point.clear(), touched.grip.resize(0), touched.kelvin_dent.clear();
+  contacts_->reserve(touched);
+  for (const PointContact& c : contacts_->points_.all()) {
+    if (c.point < 0) continue;
+    const Vec3 place = weighted(contacts_->points_.carriers(c), position), on_ball = place - centre,
+               from_anchor = on_ball - c.anchor;
+    const Vec3 elongation = from_anchor - dot(from_anchor, c.axis) * c.axis;
+    const double held = c.grip_k > 0 ? share_of_grip(c, elongation, {}) : 0.0;
+    const double dent = std::max(0.0, c.dent - dot(c.axis, on_ball - c.found));
+    touched.point.push_back(c.point);
+    touched.grip.push_back(on_ball - held * elongation);
+    touched.kelvin_dent.push_back(c.foundation.kelvin_after(dent, c.kelvin_dent));
+  }
 }
 
 LinearisedContacts ImplicitContacts::linearise(elements::Coordinates& force, elements::DiagonalBlocks& blocks) & {
@@ -80,30 +113,24 @@ LinearisedContacts::LinearisedContacts(Contacts& contacts, double h, elements::C
     : contacts_(contacts), h_(h), force_(force), blocks_(blocks) {
   CTPM_CHECK(!contacts_.is_linearised_, "contacts are linearised while they are in a linear system");
   contacts_.is_linearised_ = true;
-  contacts_.ball_.linearise(h_, force_, blocks_);
-  contacts_.pairs_.linearise(h_, force_, blocks_);
+  contacts_.points_.linearise(h_, force_, blocks_);
 }
 
-/// Takes contacts out in the opposite order, since a sphere may have several.
 void LinearisedContacts::take_back() {
   if (!is_in_system_) return;
-  contacts_.pairs_.undo_linearise(force_, blocks_);
-  contacts_.ball_.undo_linearise(force_, blocks_);
+  contacts_.points_.undo_linearise(force_, blocks_);
   is_in_system_ = contacts_.is_linearised_ = false;
 }
 
-bool LinearisedContacts::pulls(const elements::Coordinates& v) const {
-  return contacts_.ball_.has_pulling(h_, v) || contacts_.pairs_.has_pulling(h_, v);
-}
+bool LinearisedContacts::pulls(const elements::Coordinates& v) const { return contacts_.points_.has_pulling(h_, v); }
 
 Vec3 LinearisedContacts::tool_force(const elements::Coordinates& v) const {
-  return contacts_.ball_.force_on_tool(h_, v) + contacts_.pairs_.force_on_tool(h_, v);
+  return contacts_.points_.force_on_tool(h_, v);
 }
 
 void LinearisedContacts::drop_pulling(const elements::Coordinates& v) && {
   take_back();
-  contacts_.ball_.drop_pulling(h_, v);
-  contacts_.pairs_.drop_pulling(h_, v);
+  contacts_.points_.drop_pulling(h_, v);
 }
 
 }  // namespace ctpm::contact

@@ -2,13 +2,15 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "core/contact/ball_contact.h"
 #include "core/contact/blade_force.h"
 #include "core/contact/cut_face_contact.h"
+#include "core/contact/explicit_solve.h"
 #include "core/contact/held_tool.h"
-#include "core/contact/pair_contact.h"
 #include "core/contact/pin.h"
+#include "core/contact/point_contact.h"
 #include "core/elements/axial.h"
 #include "core/elements/kernels/kernels.h"
 #include "core/model/model.h"
@@ -22,9 +24,17 @@ class ImplicitContacts;
 
 /// The step for which contacts are detected.
 struct ContactStep {
-  double h;      ///< length [s]
-  double share;  ///< part of the tick's tool motion that is done at detection, 0 to 1
-  Pin pin;       ///< of this step
+  double h;        ///< length [s]
+  double elapsed;  ///< from the start of the substep to the end of this step [s]
+  double share;    ///< part of the tick's tool motion that is done at detection, 0 to 1
+  Pin pin;         ///< of this step
+};
+
+/// What State remembers of a ball's contacts: State::touched, grip and kelvin_dent.
+struct Touched {
+  std::vector<std::int32_t> point;
+  Vec3Array grip;                   ///< [m]
+  std::vector<double> kelvin_dent;  ///< [m]
 };
 
 /// The motion about which an implicit step is linearised. Its velocities are changes from that motion.
@@ -48,9 +58,11 @@ class Contacts {
   /// The pin's contact in a step of `h` [s] from `position` [m] to the hand at `share` of the tick.
   static Pin pin(const HeldTool& tool, const Vec3Array& position, double share, double h);
 
+  /// Reserves memory for all that a ball can touch, so that a tick never allocates.
+  void reserve(Touched& touched) const;
+
   /// Detects the contacts of an explicit step in its middle, and changes the `velocity` [m/s] that spheres have after
-  /// the step without contacts. Contacts are solved one after the other, each implicitly by itself; those that would
-  /// pull do not act.
+  /// the step without contacts. Those that would pull do not act.
   [[nodiscard]] ExplicitContacts push_apart(const StateView& middle, const HeldTool& tool, const ContactStep& step,
                                             Vec3Array& velocity);
 
@@ -64,14 +76,14 @@ class Contacts {
   friend class ImplicitContacts;
   friend class LinearisedContacts;
 
-  void find_pairs(const StateView& state, const HeldTool& tool);
-  void find_ball(const StateView& state, const HeldTool& tool, const ContactStep& step, bool from_velocity);
+  void find(const StateView& state, const HeldTool& tool, const ContactStep& step, bool from_velocity);
 
   const Model& model_;
   BallContact ball_;
   BladeForce blade_;
   CutFaceContact cut_faces_;
-  PairContacts pairs_;          ///< of the blade and of cut faces
+  PointContacts points_;
+  ExplicitSolve explicit_solve_;
   bool is_locked_ = false;      ///< a set exists
   bool is_linearised_ = false;  ///< the set is in a linear system
 };
@@ -81,12 +93,16 @@ class ContactSet {
  public:
   const ContactStep& step() const { return step_; }
 
-  /// Number of spheres that the tool touches; for a blade, of elements ahead of its edge or on its flanks.
+  /// Number of points that a ball touches; for a blade, of elements ahead of its edge or on its flanks.
   std::int32_t touched() const;
 
-  /// Largest displacement from rest [m], at `position`, of a sphere that a ball touches, along its contact; for a pin,
+  /// Largest displacement from rest [m], at `position`, of a point that a ball touches, along its contact; for a pin,
   /// that of its sphere. 0 without contact and for a blade.
   double depth(const Vec3Array& position) const;
+
+  /// Notes what a ball with its centre at `centre` [m] touches, with the spheres at `position` [m] at the end of the
+  /// substep.
+  void note_touched(Vec3 centre, const Vec3Array& position, Touched& touched) const;
 
  protected:
   ContactSet(Contacts& contacts, const ContactStep& step);
@@ -122,8 +138,7 @@ class LinearisedContacts {
   /// result += coupling times `v`, in the precision of `v`, float or double; returns v . coupling . v.
   template <class Real>
   double apply(const Real* v, Real* result) const {
-    const double of_ball = contacts_.ball_.apply(h_, v, result);
-    return of_ball + contacts_.pairs_.apply(h_, v, result);
+    return contacts_.points_.apply(h_, v, result);
   }
 
   /// Whether a contact pulls after a step with velocity `v`.

@@ -50,24 +50,18 @@ bool CutFaceContact::are_joined(const StateView& state, std::int32_t a, std::int
   return false;
 }
 
-void CutFaceContact::add_pair(const StateView& state, std::int32_t a, std::int32_t b, PairContacts& contacts) const {
+void CutFaceContact::add_pair(const StateView& state, std::int32_t a, std::int32_t b, PointContacts& contacts) const {
   const Vec3 apart = state.position[std::size_t(b)] - state.position[std::size_t(a)];
   const double spacing = spacing_[std::size_t(a)], squared = dot(apart, apart);
   if (squared >= spacing * spacing || squared == 0 || are_joined(state, a, b)) return;
   const double distance = std::sqrt(squared), p = spacing - distance;
   const double grown = model_.cut_face_stiffening * p / spacing, k = model_.lip_k * (1 + 3 * grown * grown);
   const Vec3 axis = apart / distance;
-  contacts.add({.a = a,
-                .b = b,
-                .weight_a = -1,
-                .weight_b = 1,
-                .axis = axis,
-                .force = model_.lip_k * p * (1 + grown * grown) * axis,
-                .k = k,
-                .only_pushes = true});
+  contacts.add({.axis = axis, .force = model_.lip_k * p * (1 + grown * grown) * axis, .k = k, .only_pushes = true}, a,
+               b, -1, 1);
 }
 
-void CutFaceContact::find(const StateView& state, PairContacts& contacts) {
+void CutFaceContact::find(const StateView& state, PointContacts& contacts) {
   if (state.axial_severed.empty()) return;
   gather(state);
   std::size_t added = 0;

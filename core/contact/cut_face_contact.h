@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/contact/pair_contact.h"
+#include "core/contact/point_contact.h"
 #include "core/model/state_view.h"
 
 namespace ctpm::contact {
@@ -27,14 +27,14 @@ class CutFaceContact {
   std::size_t capacity() const { return is_wanted() ? kMostPerSphere * model_.sphere_count() : 0; }
 
   /// Adds the contacts of `state`, in an order that depends on it alone.
-  void find(const StateView& state, PairContacts& contacts);
+  void find(const StateView& state, PointContacts& contacts);
 
  private:
   static constexpr std::size_t kMostPerSphere = 13;  ///< pairs of one sphere closer than a spacing, each pair once
 
   void gather(const StateView& state);
   bool are_joined(const StateView& state, std::int32_t a, std::int32_t b) const;
-  void add_pair(const StateView& state, std::int32_t a, std::int32_t b, PairContacts& contacts) const;
+  void add_pair(const StateView& state, std::int32_t a, std::int32_t b, PointContacts& contacts) const;
 
   const Model& model_;
   std::vector<std::int32_t> first_;  ///< where a sphere's entries in joins_ begin (sphere_count + 1)

@@ -19,6 +19,8 @@ enum class EntryOf : std::int32_t {
   load,
   tool,
   blade_end,  ///< tip and heel
+  touchable,  ///< vertices of the surfaces through all organs, and after them spheres
+  tissue_cell,
 };
 
 /// Shape and range of one field of a Model or a State. Built from the constants below: `positive.per(EntryOf::sphere)`.

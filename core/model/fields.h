@@ -49,6 +49,9 @@ void for_each_field(State_& s, Visit&& visit) {
               finite.per(EntryOf::blade_end).or_empty(), give);
   give_points("acceleration.x", "acceleration.y", "acceleration.z", s.acceleration,
               finite.per(EntryOf::sphere).or_empty(), give);
+  give("touched", s.touched, index(EntryOf::touchable));
+  give_points("grip.x", "grip.y", "grip.z", s.grip, finite, give);
+  give("kelvin_dent", s.kelvin_dent, finite);
 }
 
 template <class Tool_, class Visit>
@@ -81,6 +84,9 @@ void for_each_field(Organ_& o, Visit&& visit) {
   give("spacing", o.spacing, finite);
   give("damage_depth", o.damage_depth, finite);
   give("layer_count", o.layer_count, any);
+  give("modulus", o.modulus, not_negative);
+  give("instant_ratio", o.instant_ratio, finite);
+  give("kelvin_time", o.kelvin_time, not_negative);
 }
 
 /// As above. `organs` and `tools` are vectors of structs; for_each_field visits their fields in turn.
@@ -142,8 +148,14 @@ void for_each_field(Model_& m, Visit&& visit) {
   give("cut_resistance.friction", m.cut_resistance.friction, not_negative.per(EntryOf::axial).or_empty());
   give("lip_k", m.lip_k, not_negative);
   give("contact_damping", m.contact_damping, not_negative);
-  give("contact_stick_time", m.contact_stick_time, not_negative);
   give("cut_face_stiffening", m.cut_face_stiffening, not_negative);
+  constexpr const char* corners[8] = {"tissue_cells.corner0", "tissue_cells.corner1", "tissue_cells.corner2",
+                                      "tissue_cells.corner3", "tissue_cells.corner4", "tissue_cells.corner5",
+                                      "tissue_cells.corner6", "tissue_cells.corner7"};
+  for (std::size_t c = 0; c < 8; ++c)
+    give(corners[c], m.tissue_cells.corner[c], index(EntryOf::sphere).per(EntryOf::tissue_cell));
+  give("tissue_cells.k", m.tissue_cells.k, positive.per(EntryOf::tissue_cell));
+  give("inversion_threshold", m.inversion_threshold, between(0, 1));
 }
 
 }  // namespace ctpm

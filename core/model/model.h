@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/model/axial_law.h"
+#include "core/model/organ.h"
 #include "core/model/vec3.h"
 
 namespace ctpm {
@@ -70,6 +71,21 @@ struct CutResistance {
   std::vector<double> energy;    ///< fracture toughness J_c times area [J], >= 0                    (axial_count)
   std::vector<double> friction;  ///< friction of the blade's two flanks, stress times area [N], >= 0 (axial_count)
   bool any() const { return !energy.empty(); }
+};
+
+/// Tissue cells that resist inversion. A tissue cell is a cube of an organ's lattice whose eight corner spheres all
+/// exist. Each corner spans a tetrahedron with its three neighbours along the lattice's axes; J is its signed volume
+/// over that at rest. The energy of a tetrahedron is k / 2 (J0 - J)^2 where J < J0 = Model::inversion_threshold, and
+/// 0 elsewhere (our choice; without it a lattice that was pushed through itself stays inside out). Empty if no organ
+/// asks for it.
+struct TissueCells {
+  /// Corner spheres: bits 0, 1, 2 of an index are set where lattice coordinate i, j, k is the larger one; the
+  /// tetrahedra have positive volumes at rest (cell_count each).
+  std::array<std::vector<std::int32_t>, 8> corner;
+  /// kappa times an eighth of the tissue's volume in the cell [J], > 0; kappa [Pa] is the organ's inversion resistance
+  /// times its Young's modulus (cell_count).
+  std::vector<double> k;
+  std::size_t size() const { return k.size(); }
 };
 
 enum class ToolKind : std::int32_t {
@@ -140,6 +156,11 @@ struct OrganRange {
   double spacing = 0;                 ///< s [m]
   double damage_depth = 0;            ///< depth beyond which the tissue is damaged [m]; 0: no limit
   std::int32_t layer_count = 0;
+  // The tissue just below the surface, of which a tool dents what the lattice does not resolve; see
+  // contact::Foundation.
+  double modulus = 0;        ///< static Young's modulus [Pa], >= 0
+  double instant_ratio = 1;  ///< stiffness at once over static stiffness, >= 1
+  double kelvin_time = 0;    ///< viscosity over stiffness of the Kelvin unit [s], >= 0
 };
 
 /// Method of time integration. Session files store the numbers; 0 (automatic), 1 (symplectic Euler) and 3 (extrapolated
@@ -170,10 +191,14 @@ struct Model {
   Vec3Array rest_position;              ///< [m]                                                     (sphere_count)
   std::vector<double> mass;             ///< [kg], > 0                                               (sphere_count)
   std::vector<std::uint8_t> held_axes;  ///< bits 0, 1, 2: x, y, z never changes; 7: anchored (sphere_count)
-  std::vector<double> contact_radius;   ///< distance at which a tool touches the sphere [m], > 0    (sphere_count)
-  std::vector<std::int32_t> layer;      ///< 1 = outermost (sphere_count)
-  LatticeCells cell;                    ///< in the lattice of the sphere's organ (sphere_count)
+  /// Distance at which a tool touches the sphere, in an organ without a surface [m], > 0 (sphere_count)
+  std::vector<double> contact_radius;
+  std::vector<std::int32_t> layer;  ///< 1 = outermost (sphere_count)
+  LatticeCells cell;                ///< in the lattice of the sphere's organ (sphere_count)
   std::vector<OrganRange> organs;
+  /// The organs' surfaces: drawn, and touched by tools; one without vertices where an organ has none (a rig). Empty if
+  /// no organ has one, else (organ_count).
+  std::vector<Surface> surfaces;
 
   AxialElements axial;
   Constraints constraints;
@@ -183,14 +208,11 @@ struct Model {
   Loads loads;
 
   std::vector<Tool> tools;
-  double contact_k = 0;         ///< stiffness of a tool's contact with one sphere [N/m], > 0 if a tool presses
+  double contact_k = 0;  ///< stiffness of a tool's contact with one sphere of an organ without a surface [N/m], >= 0
   double contact_friction = 0;  ///< Coulomb coefficient between tool and tissue, >= 0
   /// Hunt-Crossley damping of a tool's contact [s/m], >= 0. Default: an impact at 30 mm/s keeps 25 % of its kinetic
   /// energy (our choice).
   double contact_damping = 50;
-  /// Drag of a contact whose surfaces stick, divided by contact_k [s], >= 0. Default: a sphere under a resting tool
-  /// creeps over seconds (our choice).
-  double contact_stick_time = 0.1;
 
   SolverSettings solver;
 
@@ -201,6 +223,11 @@ struct Model {
   /// Growth of that stiffness with penetration: factor b in 1 + (b p / s)^2, p the penetration and s the spacing [1],
   /// >= 0. Default: our choice, large enough that nothing slips through.
   double cut_face_stiffening = 8;
+
+  TissueCells tissue_cells;
+  /// J0: volume ratio below which the tetrahedra of tissue cells resist [1], in (0, 1). Default: our choice, below what
+  /// a press reaches without buckling, and far enough above 0 that nothing turns over.
+  double inversion_threshold = 0.4;
 
   std::size_t sphere_count() const { return mass.size(); }
   bool has_tool(ToolKind kind) const {

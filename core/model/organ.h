@@ -25,14 +25,40 @@ struct Surface {
   SurfaceBinding binding;                             ///< which spheres the vertices follow; indices within the organ
 };
 
-/// The inside of an organ, filled with layered spheres of equal radius on a cubic lattice.
+/// Directions from a sphere to the neighbours that elements join it to: three axes, six face diagonals. In each, the
+/// last non-zero component is positive, so that the neighbour comes later in the (k, j, i) order.
+inline constexpr std::array<std::array<std::int32_t, 3>, 9> kLatticeDirections{
+    {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {-1, 1, 0}, {1, 0, 1}, {-1, 0, 1}, {0, 1, 1}, {0, -1, 1}}};
+inline constexpr std::size_t kAxisDirectionCount = 3;  ///< of kLatticeDirections, which begins with the axes
+
+/// Which part of a full lattice's material each cell, element and sphere stands for. The lattice covers the organ, so
+/// cells at the surface hold tissue only in part. Empty arrays: everything is full, as in a rig.
+struct TissueShares {
+  /// Of the cubic cell of which the sphere is the lowest corner, filled part; 0: no cell              (sphere_count)
+  std::vector<double> cell;
+  /// Of the element from the sphere along each of kLatticeDirections; 0: no element                   (sphere_count)
+  std::array<std::vector<double>, kLatticeDirections.size()> element;
+  /// Volume that moves with the sphere, in spacings cubed: half of each of its elements' part, so that no sphere is
+  /// much lighter than its elements are stiff. Their sum is the organ's volume                          (sphere_count)
+  std::vector<double> sphere;
+
+  bool empty() const { return sphere.empty(); }
+  double of_element(std::size_t sphere_index, std::size_t direction) const {
+    return empty() ? 1 : element[direction][sphere_index];
+  }
+  double of_sphere(std::size_t sphere_index) const { return empty() ? 1 : sphere[sphere_index]; }
+};
+
+/// An organ filled with layered spheres of equal radius on a cubic lattice that covers it.
 struct FilledOrgan {
   double sphere_radius = 0;                       ///< r [m], > 0
   double spacing = 0;                             ///< s = 2 r + gap, centre to centre along a lattice axis [m], > 0
   std::vector<Vec3> centre;                       ///< rest positions [m], sorted by (k, j, i)        (sphere_count)
   std::vector<std::array<std::int32_t, 3>> cell;  ///< lattice coordinates i, j, k of each sphere     (sphere_count)
   std::vector<std::int32_t> layer;                ///< 1 = outermost, counted inwards by depth        (sphere_count)
-  std::vector<double> depth;                      ///< distance of the centre below the surface [m]   (sphere_count)
+  /// Distance of the centre below the surface [m]; negative outside                                   (sphere_count)
+  std::vector<double> depth;
+  TissueShares shares;
   Surface surface;
 };
 

@@ -24,7 +24,12 @@ struct State {
   std::vector<std::uint8_t> axial_crossing;
   /// Points towed behind a blade's tip and heel, which give its heading [m]; empty if the scene has no scalpel (2).
   Vec3Array blade_trail;
-  Inputs last_inputs;  ///< those of the previous tick, where a blade's sweep begins
+  /// Points that a ball touches, ascending: vertices of the surfaces through all organs, and after them spheres. Empty
+  /// without a ball                                                                               (touched_count)
+  std::vector<std::int32_t> touched;
+  Vec3Array grip;                   ///< where on the ball each of them is held, from its centre [m] (touched_count)
+  std::vector<double> kelvin_dent;  ///< Kelvin unit's part of the dent at each of them [m]          (touched_count)
+  Inputs last_inputs;               ///< those of the previous tick, where a blade's sweep begins
 };
 
 /// The state at rest: rest positions, no motion, nothing severed, no tool.

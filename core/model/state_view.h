@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -13,9 +15,18 @@ struct StateView {
   const Vec3Array& position;                       ///< [m]    (sphere_count)
   const Vec3Array& velocity;                       ///< [m/s]  (sphere_count)
   const std::vector<double>& kelvin_elongation;    ///< [m]    (internal_count)
-  const std::vector<std::uint8_t>& axial_severed;  ///< as in State, like the next two
+  const std::vector<std::uint8_t>& axial_severed;  ///< as in State, like the next five
   const std::vector<std::uint8_t>& constraint_severed;
   const std::vector<std::uint8_t>& angle_severed;
+  const std::vector<std::int32_t>& touched;
+  const Vec3Array& grip;
+  const std::vector<double>& kelvin_dent;
+
+  /// Index of a point in `touched`; -1 if the ball did not touch it at the start of the step.
+  std::ptrdiff_t find_touched(std::int32_t point) const {
+    const auto found = std::lower_bound(touched.begin(), touched.end(), point);
+    return found == touched.end() || *found != point ? -1 : found - touched.begin();
+  }
 
   StateView(const State& s) : StateView(s, s.position, s.velocity, s.kelvin_elongation) {}  // implicit on purpose
 
@@ -28,7 +39,10 @@ struct StateView {
         kelvin_elongation(kelvin_elongation_),
         axial_severed(state.axial_severed),
         constraint_severed(state.constraint_severed),
-        angle_severed(state.angle_severed) {}
+        angle_severed(state.angle_severed),
+        touched(state.touched),
+        grip(state.grip),
+        kelvin_dent(state.kelvin_dent) {}
 };
 
 }  // namespace ctpm

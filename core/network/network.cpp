@@ -9,20 +9,18 @@
 #include <utility>
 
 #include "core/network/axial_rows.h"
+#include "core/network/tissue_cells.h"
 
 namespace ctpm::network {
 namespace {
 
 using Cell = LatticeCell;
 
-// Lattice directions. In each, the first non-zero component in the order k, j, i is positive, so that the second sphere
-// of an element always comes later in the (k, j, i) order than the first.
-constexpr std::array<Cell, 3> kAxisDirections{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-constexpr std::array<Cell, 6> kDiagonalDirections{
-    {{1, 1, 0}, {-1, 1, 0}, {1, 0, 1}, {-1, 0, 1}, {0, 1, 1}, {0, -1, 1}}};
-
 constexpr double kFewestPascalPerMetre = 1e-6;
 constexpr double kMostPascalPerMetre = 1e15;
+
+/// Beyond this a cell would be stiffer than the contact of a tool.
+constexpr double kMostInversionResistance = 1000;
 
 Cell operator+(Cell a, Cell b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 Cell operator-(Cell a, Cell b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -76,6 +74,10 @@ Errors check_organ(const FilledOrgan& organ, const OrganSettings& settings) {
     check_material(errors, where_layer, layer.material, settings.structure);
   }
   check_material(errors, where, settings.material, settings.structure);
+  if (!(settings.inversion_resistance >= 0 && settings.inversion_resistance <= kMostInversionResistance))
+    errors.push_back(
+        {where, "inversion resistance: got " + std::to_string(settings.inversion_resistance) + ", must be in [0, 1000]",
+         ""});
   const auto check_sphere = [&](const char* what, std::int32_t sphere) {
     if (sphere < 0 || std::size_t(sphere) >= organ.centre.size())
       errors.push_back({where, std::string(what) + " sphere " + std::to_string(sphere) + " does not exist", ""});
@@ -104,6 +106,14 @@ Stiffness stiffness_of(const Material& m, double spacing) {
           1 - m.prestrain};
 }
 
+/// Stiffness of a spring two of which in series are as stiff as one slow triple.
+double single_spring(const Stiffness& s) { return 2 * series(s.kelvin_k, s.spring_k); }
+
+/// Static stiffness of an element along a lattice axis [N/m].
+double slow_edge_k(Structure structure, const Stiffness& s) {
+  return structure == Structure::tpm ? series(s.kelvin_k, s.spring_k) : single_spring(s);
+}
+
 /// Area that an element stands for when a cut crosses it at right angles [m^2]. Per area, a plane with the unit normal
 /// n crosses |n . D| / s^3 elements of direction D. Each counts with this area times |n . D| / |D|. The sum is 1 for
 /// every n, since the squared components of all directions add up to a multiple of |n|^2.
@@ -122,16 +132,24 @@ class LineTiler {
       stiffness_.push_back(stiffness_of(material_of(organ, settings, i), organ.spacing));
   }
 
-  void tile(Cell direction) {
+  /// Tiles all lines along kLatticeDirections[`direction`].
+  void tile(std::size_t direction) {
+    const Cell step = kLatticeDirections[direction];
+    const auto share_from = [&](const Cell& cell) {
+      const auto it = sphere_at_.find(cell);
+      if (it == sphere_at_.end() || !sphere_at_.contains(cell + step)) return 0.0;
+      return organ_.shares.of_element(std::size_t(it->second), direction);
+    };
     for (const Cell& start : organ_.cell) {
-      if (sphere_at_.contains(start - direction) || !sphere_at_.contains(start + direction)) continue;
-      std::vector<std::int32_t> run;
-      for (Cell cell = start;; cell = cell + direction) {
-        const auto it = sphere_at_.find(cell);
-        if (it == sphere_at_.end()) break;
-        run.push_back(it->second + first_sphere_);
+      if (share_from(start - step) > 0 || !(share_from(start) > 0)) continue;
+      Run run;
+      run.sphere.push_back(sphere_at_.at(start) + first_sphere_);
+      for (Cell cell = start; share_from(cell) > 0;) {
+        run.share.push_back(share_from(cell));
+        cell = cell + step;
+        run.sphere.push_back(sphere_at_.at(cell) + first_sphere_);
       }
-      tile_run(run, length_of(direction, organ_.spacing));
+      tile_run(run, length_of(step, organ_.spacing));
     }
     flush_direction();
   }
@@ -140,7 +158,18 @@ class LineTiler {
   const std::vector<AxialRow>& tpms() const { return tpms_; }
 
  private:
-  struct Spring {
+  /// A line of spheres that elements join one to the next.
+  struct Run {
+    std::vector<std::int32_t> sphere;
+    std::vector<double> share;  ///< of the element from each sphere to the next (one less than spheres)
+
+    std::size_t size() const { return sphere.size(); }
+    /// The least share of `count` elements.
+    double least_share(std::size_t first, std::size_t count) const {
+      return *std::min_element(share.begin() + std::ptrdiff_t(first), share.begin() + std::ptrdiff_t(first + count));
+    }
+  };
+  struct Element {
     AxialRow row;
     std::int32_t line_number;  ///< position in the order of tiling, by which constraints refer to their elements
   };
@@ -149,15 +178,14 @@ class LineTiler {
     double k;
   };
   struct Constraint {
-    std::int32_t a, middle, e;
+    std::int32_t a, middle, e, line_number;  ///< line number of the first of its four elements
     double k;
-    std::array<std::int32_t, 4> line_number;
   };
 
   /// Mean over `count` spheres of a run; exact if all are equal.
-  Stiffness mean_over(const std::vector<std::int32_t>& run, std::size_t first, std::size_t count) const {
+  Stiffness mean_over(const Run& run, std::size_t first, std::size_t count) const {
     const auto of = [&](std::size_t i) -> const Stiffness& {
-      return stiffness_[std::size_t(run[first + i] - first_sphere_)];
+      return stiffness_[std::size_t(run.sphere[first + i] - first_sphere_)];
     };
     const auto mean = [&](double Stiffness::*value) {
       double sum = 0;
@@ -168,81 +196,98 @@ class LineTiler {
             mean(&Stiffness::constraint_k), mean(&Stiffness::rest_part)};
   }
 
-  /// Stiffness of a spring two of which in series are as stiff as one slow triple.
-  static double single_spring(const Stiffness& s) { return 2 * series(s.kelvin_k, s.spring_k); }
-
-  void tile_run(const std::vector<std::int32_t>& run, double rest_length) {
+  void tile_run(const Run& run, double rest_length) {
     switch (settings_.structure) {
       case Structure::mass_spring:
         tile_springs(run, rest_length);
         break;
       case Structure::angle_mass_spring:
         for (std::size_t i = 0; i + 2 < run.size(); ++i)
-          angles_.push_back({run[i], run[i + 1], run[i + 2], next_line_number_ + std::int32_t(i),
-                             single_spring(mean_over(run, i, 3))});
+          angles_.push_back({run.sphere[i], run.sphere[i + 1], run.sphere[i + 2], next_line_number_ + std::int32_t(i),
+                             run.least_share(i, 2) * single_spring(mean_over(run, i, 3))});
         tile_springs(run, rest_length);
         break;
       case Structure::tpm:
-        for (std::size_t i = 0; i + 1 < run.size(); ++i) add_tpm(run, i, rest_length);
+        for (std::size_t i = 0; i + 1 < run.size(); ++i) add_tpm(run, i, rest_length, 1);
         break;
       case Structure::ctpm:
-        tile_triples(run, rest_length);
+        if (settings_.tiling == Tiling::three_spheres)
+          tile_triples(run, rest_length);
+        else
+          tile_tpms(run, rest_length);
         break;
     }
   }
 
-  void tile_springs(const std::vector<std::int32_t>& run, double rest_length) {
+  void tile_springs(const Run& run, double rest_length) {
     for (std::size_t i = 0; i + 1 < run.size(); ++i) {
       const Stiffness s = mean_over(run, i, 2);
-      add_spring(run[i], run[i + 1], -1, s.rest_part * rest_length, single_spring(s), 0);
+      add_spring(run, i, -1, s.rest_part * rest_length, single_spring(s), 0);
     }
   }
 
   /// Triples A-B-C, C-B-A, A-B-C ... that share ends. Where two share C, the five spheres carry a constraint.
-  void tile_triples(const std::vector<std::int32_t>& run, double rest_length) {
+  void tile_triples(const Run& run, double rest_length) {
     const std::size_t triple_count = (run.size() - 1) / 2;
     for (std::size_t t = 0; t < triple_count; ++t) {
-      const std::int32_t p = run[2 * t], q = run[2 * t + 1], r = run[2 * t + 2];
+      const std::int32_t p = run.sphere[2 * t], r = run.sphere[2 * t + 2];
       const bool starts_at_a = t % 2 == 0;
-      const std::int32_t line_number = next_line_number_;
       const Stiffness s = mean_over(run, 2 * t, 3);
       const double length = s.rest_part * rest_length;
       if (starts_at_a) {
-        add_spring(p, q, r, length, s.spring_k, 0);
-        add_spring(q, r, p, length, s.kelvin_k, s.kelvin_c);
+        add_spring(run, 2 * t, r, length, s.spring_k, 0);
+        add_spring(run, 2 * t + 1, p, length, s.kelvin_k, s.kelvin_c);
       } else {
-        add_spring(p, q, r, length, s.kelvin_k, s.kelvin_c);
-        add_spring(q, r, p, length, s.spring_k, 0);
-        constraints_.push_back({run[2 * t - 2],
-                                p,
-                                r,
-                                mean_over(run, 2 * t - 2, 5).constraint_k,
-                                {line_number - 2, line_number - 1, line_number, line_number + 1}});
+        add_constraint(run, 2 * t - 2, next_line_number_ - 2);
+        add_spring(run, 2 * t, r, length, s.kelvin_k, s.kelvin_c);
+        add_spring(run, 2 * t + 1, p, length, s.spring_k, 0);
       }
     }
-    if (run.size() % 2 == 0) add_tpm(run, run.size() - 2, rest_length);
+    if (run.size() % 2 == 0) add_tpm(run, run.size() - 2, rest_length, 1);
   }
 
-  /// A spring, or a Kelvin unit if it is damped.
-  void add_spring(std::int32_t a, std::int32_t b, std::int32_t third, double rest_length, double k, double c) {
+  /// A two-sphere TPM at every element, twice as stiff as a triple, so that two in series are as stiff; and the
+  /// constraints of the same five-sphere lines that triples would carry.
+  void tile_tpms(const Run& run, double rest_length) {
+    const std::int32_t first_line_number = next_line_number_;
+    for (std::size_t i = 0; i + 1 < run.size(); ++i) add_tpm(run, i, rest_length, 2);
+    for (std::size_t i = 0; i + 4 < run.size(); i += 4) add_constraint(run, i, first_line_number + std::int32_t(i));
+  }
+
+  /// The constraint of the five spheres from `first`, whose first element has the line number given.
+  void add_constraint(const Run& run, std::size_t first, std::int32_t line_number) {
+    constraints_.push_back({run.sphere[first], run.sphere[first + 2], run.sphere[first + 4], line_number,
+                            run.least_share(first, 4) * mean_over(run, first, 5).constraint_k});
+  }
+
+  /// A spring between a sphere of a run and the next, or a Kelvin unit if it is damped.
+  void add_spring(const Run& run, std::size_t at, std::int32_t third, double rest_length, double k, double c) {
     const AxialLaw law = c > 0 ? AxialLaw::kelvin_unit : AxialLaw::spring;
-    const auto [energy, friction] = cut_resistance_of(a, b);
-    springs_.push_back({{a, b, law, rest_length, k, c, 0, third, energy, friction}, next_line_number_++});
+    const double share = run.share[at];
+    const auto [energy, friction] = cut_resistance_of(run, at);
+    springs_.push_back(
+        {{run.sphere[at], run.sphere[at + 1], law, rest_length, share * k, share * c, 0, third, energy, friction},
+         next_line_number_++});
   }
 
-  void add_tpm(const std::vector<std::int32_t>& run, std::size_t first, double rest_length) {
-    const Stiffness s = mean_over(run, first, 2);
-    const std::int32_t a = run[first], b = run[first + 1];
-    const auto [energy, friction] = cut_resistance_of(a, b);
-    tpms_of_direction_.push_back({a, b, AxialLaw::two_sphere_tpm, s.rest_part * rest_length, s.spring_k, s.kelvin_c,
-                                  s.kelvin_k, -1, energy, friction});
+  /// A two-sphere TPM between a sphere of a run and the next, `times` as stiff as a triple.
+  void add_tpm(const Run& run, std::size_t at, double rest_length, double times) {
+    const Stiffness s = mean_over(run, at, 2);
+    const double share = times * run.share[at];
+    const auto [energy, friction] = cut_resistance_of(run, at);
+    tpms_of_direction_.push_back(
+        {{run.sphere[at], run.sphere[at + 1], AxialLaw::two_sphere_tpm, s.rest_part * rest_length, share * s.spring_k,
+          share * s.kelvin_c, share * s.kelvin_k, -1, energy, friction},
+         next_line_number_++});
   }
 
-  /// Resistance of an element between two spheres to a blade: energy [J] and friction [N], as in CutResistance.
-  std::pair<double, double> cut_resistance_of(std::int32_t a, std::int32_t b) const {
-    const double area = crossed_area(settings_.lattice, organ_.spacing);
-    const Material& p = material_of(organ_, settings_, std::size_t(a - first_sphere_));
-    const Material& q = material_of(organ_, settings_, std::size_t(b - first_sphere_));
+  /// Resistance to a blade of the element after a sphere of a run: energy [J] and friction [N], as in CutResistance.
+  std::pair<double, double> cut_resistance_of(const Run& run, std::size_t at) const {
+    const double area = run.share[at] * crossed_area(settings_.lattice, organ_.spacing);
+    const auto material = [&](std::size_t i) -> const Material& {
+      return material_of(organ_, settings_, std::size_t(run.sphere[i] - first_sphere_));
+    };
+    const Material &p = material(at), &q = material(at + 1);
     const double friction = 2 * area * 0.5 * (p.blade_friction + q.blade_friction);  // two flanks
     return {area * 0.5 * (p.fracture_toughness + q.fracture_toughness), friction};
   }
@@ -250,23 +295,26 @@ class LineTiler {
   /// Moves the elements of one direction into the Model, sorted by their first sphere. Along a lattice row both ends
   /// then advance by one from element to element, and the element loops gather no indices.
   void flush_direction() {
-    std::stable_sort(springs_.begin(), springs_.end(),
-                     [](const Spring& p, const Spring& q) { return p.row.a < q.row.a; });
-    std::stable_sort(tpms_of_direction_.begin(), tpms_of_direction_.end(),
-                     [](const AxialRow& p, const AxialRow& q) { return p.a < q.a; });
+    const auto by_first = [](const Element& p, const Element& q) { return p.row.a < q.row.a; };
+    std::stable_sort(springs_.begin(), springs_.end(), by_first);
+    std::stable_sort(tpms_of_direction_.begin(), tpms_of_direction_.end(), by_first);
     const auto by_middle = [](const auto& p, const auto& q) { return p.middle < q.middle; };
     std::stable_sort(constraints_.begin(), constraints_.end(), by_middle);
     std::stable_sort(angles_.begin(), angles_.end(), by_middle);
-    std::vector<std::int32_t> element_of_line_number(std::size_t(next_line_number_), -1);
-    for (const Spring& spring : springs_) {
+    // Two-sphere TPMs get their place in the table at the end: here they count backwards from -1.
+    std::vector<std::int32_t> element_of_line_number(std::size_t(next_line_number_), 0);
+    for (const Element& spring : springs_) {
       element_of_line_number[std::size_t(spring.line_number)] = std::int32_t(model_.axial.size());
       append(model_, spring.row);
     }
-    tpms_.insert(tpms_.end(), tpms_of_direction_.begin(), tpms_of_direction_.end());
+    for (const Element& tpm : tpms_of_direction_) {
+      element_of_line_number[std::size_t(tpm.line_number)] = -1 - std::int32_t(tpms_.size());
+      tpms_.push_back(tpm.row);
+    }
     for (const Constraint& c : constraints_) {
       Constraints& all = model_.constraints;
       all.a.push_back(c.a), all.c.push_back(c.middle), all.e.push_back(c.e), all.k.push_back(c.k);
-      for (std::size_t i = 0; i < 4; ++i) all.edge[i].push_back(element_of_line_number[std::size_t(c.line_number[i])]);
+      for (std::size_t i = 0; i < 4; ++i) all.edge[i].push_back(element_of_line_number[std::size_t(c.line_number) + i]);
     }
     for (const Angle& angle : angles_) {
       AngleSprings& all = model_.angle_springs;
@@ -284,9 +332,9 @@ class LineTiler {
   const OrganSettings& settings_;
   std::int32_t first_sphere_;
   std::map<Cell, std::int32_t> sphere_at_;
-  std::vector<Stiffness> stiffness_;         // (sphere_count)
-  std::vector<Spring> springs_;              // of the direction
-  std::vector<AxialRow> tpms_of_direction_;  // of the direction
+  std::vector<Stiffness> stiffness_;        // (sphere_count)
+  std::vector<Element> springs_;            // of the direction
+  std::vector<Element> tpms_of_direction_;  // of the direction
   std::vector<AxialRow> tpms_;
   std::vector<Constraint> constraints_;
   std::vector<Angle> angles_;
@@ -300,6 +348,18 @@ double contact_radius_of(const FilledOrgan& organ, std::size_t sphere) {
   return std::clamp(organ.depth[sphere], organ.sphere_radius, organ.spacing);
 }
 
+/// The tissue that a tool dents: that half a spacing below the surface, with the static modulus of the full lattice.
+void set_foundation(OrganRange& range, const FilledOrgan& organ, const OrganSettings& settings) {
+  const Material* material = &settings.material;
+  for (auto layer = settings.layers.rbegin(); layer != settings.layers.rend(); ++layer)
+    if (layer->to_depth > 0.5 * organ.spacing) material = &layer->material;
+  const Stiffness s = stiffness_of(*material, organ.spacing);
+  range.modulus = kYoungOverEdge * slow_edge_k(settings.structure, s) / organ.spacing;
+  if (settings.structure != Structure::tpm && settings.structure != Structure::ctpm) return;
+  range.instant_ratio = 1 + s.spring_k / s.kelvin_k;
+  range.kelvin_time = s.kelvin_c / s.kelvin_k;
+}
+
 void add_spheres(Model& model, const FilledOrgan& organ, const OrganSettings& settings) {
   const std::size_t first = model.sphere_count();
   for (std::size_t i = 0; i < organ.centre.size(); ++i) {
@@ -307,7 +367,8 @@ void add_spheres(Model& model, const FilledOrgan& organ, const OrganSettings& se
     model.contact_radius.push_back(contact_radius_of(organ, i));
     model.layer.push_back(organ.layer[i]);
     model.cell.push_back(organ.cell[i] - organ.cell[0]);
-    model.mass.push_back(material_of(organ, settings, i).density * organ.spacing * organ.spacing * organ.spacing);
+    const double volume = organ.shares.of_sphere(i) * organ.spacing * organ.spacing * organ.spacing;
+    model.mass.push_back(material_of(organ, settings, i).density * volume);
   }
   model.held_axes.resize(first + organ.centre.size(), 0);
   for (const OrganSettings::Guide& guide : settings.guides)
@@ -316,6 +377,10 @@ void add_spheres(Model& model, const FilledOrgan& organ, const OrganSettings& se
   const int layers = *std::max_element(organ.layer.begin(), organ.layer.end());
   model.organs.push_back({settings.name, std::int32_t(first), std::int32_t(organ.centre.size()), organ.sphere_radius,
                           organ.spacing, settings.damage_depth, layers});
+  set_foundation(model.organs.back(), organ, settings);
+  // Organs that were added without a surface have an empty one.
+  model.surfaces.resize(model.organs.size());
+  model.surfaces.back() = organ.surface;
 }
 
 }  // namespace
@@ -328,16 +393,29 @@ Result<Done> add_organ(Model& model, const FilledOrgan& organ, const OrganSettin
   if (Errors errors = check_organ(organ, settings); !errors.empty()) return errors;
   bring_back_unused(model);
   const std::vector<AxialRow> earlier_tpms = take_tpms(model);
+  const std::size_t earlier_springs = model.axial.size(), earlier_constraints = model.constraints.size();
   const auto first_sphere = std::int32_t(model.sphere_count());
   add_spheres(model, organ, settings);
   LineTiler tiler(model, organ, settings, first_sphere);
-  for (const Cell& direction : kAxisDirections) tiler.tile(direction);
-  if (settings.lattice == LatticeKind::cubic_18)
-    for (const Cell& direction : kDiagonalDirections) tiler.tile(direction);
+  const bool has_diagonals = settings.lattice == LatticeKind::cubic_18;
+  for (std::size_t d = 0; d < (has_diagonals ? kLatticeDirections.size() : kAxisDirectionCount); ++d) tiler.tile(d);
+  const auto added_springs = std::int32_t(model.axial.size() - earlier_springs);
   for (const AxialRow& tpm : earlier_tpms) append(model, tpm);
+  const auto first_tpm = std::int32_t(model.axial.size());
   for (const AxialRow& tpm : tiler.tpms()) append(model, tpm);
+  for (auto& edge : model.constraints.edge)
+    for (std::size_t i = 0; i < edge.size(); ++i) {
+      if (i < earlier_constraints && edge[i] >= std::int32_t(earlier_springs)) edge[i] += added_springs;
+      if (edge[i] < 0) edge[i] = first_tpm - 1 - edge[i];
+    }
   const bool softens = settings.structure == Structure::ctpm && settings.has_softening && model.constraints.size() > 0;
   model.has_softening = model.has_softening || softens;
+  if (settings.inversion_resistance > 0) {
+    std::vector<double> edge_k;
+    for (std::size_t i = 0; i < organ.centre.size(); ++i)
+      edge_k.push_back(slow_edge_k(settings.structure, stiffness_of(material_of(organ, settings, i), organ.spacing)));
+    add_tissue_cells(model, organ, first_sphere, settings.inversion_resistance, edge_k);
+  }
   leave_out_unused(model);
   return Done{};
 }

@@ -19,6 +19,12 @@ enum class Structure : std::int32_t {
   ctpm = 3,               ///< triples, constraints, softening
 };
 
+/// How a `ctpm` structure lays three-parameter models along its lines (scene key `tiling`).
+enum class Tiling : std::int32_t {
+  three_spheres = 0,  ///< the paper's: three spheres share one, so a spring and a Kelvin unit take turns
+  two_spheres = 1,    ///< every element is one, so that all spheres are damped alike; the same static stiffness
+};
+
 /// Which lines of the lattice carry elements (scene key `lattice`).
 enum class LatticeKind : std::int32_t {
   cubic_6 = 0,   ///< 3 axis lines; no shear stiffness, for rigs only
@@ -52,7 +58,9 @@ struct LayerMaterial {
 /// How one filled organ becomes part of a Model.
 ///
 /// A sphere belongs to the first layer whose `to_depth` is more than its own depth, or to `material` if there is none.
-/// The mass of a sphere is that of its material. An element takes the mean of its spheres' materials for each of
+/// The mass of a sphere is that of its material in the volume that moves with it (FilledOrgan::shares), and stiffness,
+/// damping and resistance to a blade are those of the element's share of a full lattice. A constraint or angle spring
+/// has the least share of its elements. An element takes the mean of its spheres' materials for each of
 /// stiffness, damping and prestrain. These spheres are the two ends of a spring or two-sphere TPM, the three spheres of
 /// a triple or angle spring (so both elements of a triple have the same K1, K2, v1), and the five spheres of a
 /// constraint's line for K' - P2.
@@ -60,16 +68,20 @@ struct OrganSettings {
   std::string name;
   Structure structure = Structure::ctpm;
   LatticeKind lattice = LatticeKind::cubic_18;
-  bool has_softening = true;           ///< Eq. 8, for `ctpm`; without it the network gives the TPM column of Table 1
-  Material material;                   ///< below the last layer
-  std::vector<LayerMaterial> layers;   ///< outermost first, `to_depth` ascending
-  std::vector<std::int32_t> anchored;  ///< spheres of the organ that never move, by index within the organ
+  Tiling tiling = Tiling::three_spheres;  ///< of `ctpm`
+  bool has_softening = true;              ///< Eq. 8, for `ctpm`; without it the network gives the TPM column of Table 1
+  Material material;                      ///< below the last layer
+  std::vector<LayerMaterial> layers;      ///< outermost first, `to_depth` ascending
+  std::vector<std::int32_t> anchored;     ///< spheres of the organ that never move, by index within the organ
   struct Guide {
     std::int32_t sphere;  ///< index within the organ
     std::uint8_t axes;    ///< axes along which it is held, as in Model::held_axes
   };
   std::vector<Guide> guides;  ///< spheres that run on rails or planes, for rigs
   double damage_depth = 0;    ///< [m]; 0: no limit
+  /// kappa over Young's modulus, with which the organ's cells resist being turned inside out [1], >= 0; 0: they do not.
+  /// See TissueCells.
+  double inversion_resistance = 0;
 };
 
 /// Stiffness of an element per unit of modulus at `spacing` [m^2]: S0_cal (s / s_cal) times the stiffness scale.

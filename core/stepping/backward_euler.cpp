@@ -6,12 +6,12 @@ bool BackwardEuler::step(const State& from, const contact::HeldTool& tool, const
                          StepReport& report) {
   const contact::Pin pin = contact::Contacts::pin(tool, from.position, part.share, part.h);
   contact::ImplicitContacts contacts =
-      context_.contacts.detect(from, tool, {part.h, part.share, pin}, contact::Linearisation::rest);
+      context_.contacts.detect(from, tool, {part.h, part.h, part.share, pin}, contact::Linearisation::rest);
   const elements::Coordinates& velocity = solve_.solve(from, part, contacts, report);
   commit_velocity(context_.elements.slabs(), context_.team, velocity, from.position, part.h, to);
   if (!check_.passes(to.velocity, report)) return false;
   context_.elements.find_kelvin(part.h, {from, to.position, to.velocity, from.kelvin_elongation}, to.kelvin_elongation);
-  report_contacts(contacts, to.position, report);
+  finish_contacts(contacts, tool, part, to, report);
   return true;
 }
 

@@ -36,7 +36,8 @@ const elements::Coordinates& ImplicitSolve::solve(const StateView& start, const 
   const ExternalLoads loads{context_.model, part.time, part.has_loads};
   context_.elements.linearise(start, part.h, false, force_, blocks_,
                               [&](int slab) { begin(start, contacts.step().pin, loads, slab), begin_blocks(slab); });
-  solve_contacts({start.velocity}, contacts, velocity_, report);
+  const auto resistance = context_.resistance.linearise(start, part.h, force_, blocks_);
+  solve_contacts({start.velocity}, contacts, resistance, velocity_, report);
   return velocity_;
 }
 
@@ -51,8 +52,9 @@ const elements::Coordinates& ImplicitSolve::solve_near(const StateView& predicte
   else
     context_.elements.linearise(predicted, part.h, true, force_, blocks_,
                                 [&](int slab) { begin_slab(slab), begin_blocks(slab); });
+  const auto resistance = context_.resistance.linearise(predicted, part.h, force_, blocks_);
   std::fill(change.begin(), change.end(), 0.0);
-  solve_contacts({before, &predicted.velocity, energy_of(velocity_)}, contacts, change, report);
+  solve_contacts({before, &predicted.velocity, energy_of(velocity_)}, contacts, resistance, change, report);
   for (std::size_t i = 0; i < velocity_.size(); ++i) velocity_[i] += change[i];
   return velocity_;
 }
@@ -83,7 +85,8 @@ void ImplicitSolve::begin_blocks(int slab) {
 
 /// Solves until no contact pulls. `change` is the velocity itself, or its change from a predictor.
 void ImplicitSolve::solve_contacts(const Beginning& beginning, contact::ImplicitContacts& contacts,
-                                   elements::Coordinates& change, StepReport& report) {
+                                   const inversion::LinearisedResistance& resistance, elements::Coordinates& change,
+                                   StepReport& report) {
   const parallel::Slabs& slabs = context_.elements.slabs();
   const contact::ContactStep& step = contacts.step();
   for (int round = 0;; ++round) {
@@ -94,7 +97,8 @@ void ImplicitSolve::solve_contacts(const Beginning& beginning, contact::Implicit
         solver_.solve(momentum_, change, round == 0 ? beginning.prediction_energy : std::nullopt, limits_,
                       [&](const auto* in, auto* out, auto&& after) {
                         context_.elements.apply(in, out, after);
-                        return linearised.apply(in, out);
+                        const double of_cells = resistance.apply(in, out);
+                        return of_cells + linearised.apply(in, out);
                       });
     report.iterations += outcome.iterations;
     report.residual = outcome.residual;
@@ -103,7 +107,7 @@ void ImplicitSolve::solve_contacts(const Beginning& beginning, contact::Implicit
       std::move(linearised).drop_pulling(change);
       continue;
     }
-    report.tool_force = step.pin.is_held() ? force_on_pin(beginning.before[step.pin.index()], step, change)
+    report.tool_force = step.pin.is_held() ? force_on_pin(beginning.before[step.pin.index()], step, resistance, change)
                                            : linearised.tool_force(change);
     return;
   }
@@ -127,11 +131,14 @@ void ImplicitSolve::find_momentum(const Beginning& beginning, double h, int slab
 }
 
 /// The momentum balance of the pin's sphere, with opposite sign; `before` is its velocity at the start.
-Vec3 ImplicitSolve::force_on_pin(Vec3 before, const contact::ContactStep& step, const elements::Coordinates& change) {
+Vec3 ImplicitSolve::force_on_pin(Vec3 before, const contact::ContactStep& step,
+                                 const inversion::LinearisedResistance& resistance,
+                                 const elements::Coordinates& change) {
   const Model& model = context_.model;
   const std::size_t n = model.sphere_count(), i = step.pin.index();
   std::fill(momentum_.begin(), momentum_.end(), 0.0);
   context_.elements.apply(static_cast<const double*>(change.data()), momentum_.data(), [](int) {});
+  (void)resistance.apply(static_cast<const double*>(change.data()), momentum_.data());
   const Vec3 coupling{momentum_[i], momentum_[n + i], momentum_[2 * n + i]},
       own{force_[i], force_[n + i], force_[2 * n + i]};
   return (model.mass[i] * (before - step.pin.velocity) - coupling) / step.h + own;

@@ -44,10 +44,12 @@ class ImplicitSolve {
 
   void begin(const StateView& state, const contact::Pin& pin, const ExternalLoads& loads, int slab);
   void begin_blocks(int slab);
-  void solve_contacts(const Beginning& beginning, contact::ImplicitContacts& contacts, elements::Coordinates& change,
+  void solve_contacts(const Beginning& beginning, contact::ImplicitContacts& contacts,
+                      const inversion::LinearisedResistance& resistance, elements::Coordinates& change,
                       StepReport& report);
   void find_momentum(const Beginning& beginning, double h, int slab);
-  Vec3 force_on_pin(Vec3 before, const contact::ContactStep& step, const elements::Coordinates& change);
+  Vec3 force_on_pin(Vec3 before, const contact::ContactStep& step, const inversion::LinearisedResistance& resistance,
+                    const elements::Coordinates& change);
 
   const StepContext& context_;
   HeldSpheres held_;

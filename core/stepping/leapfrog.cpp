@@ -28,19 +28,20 @@ bool Leapfrog::step(const State& from, const contact::HeldTool& tool, const Subs
 
   const StateView middle(from, to.position, velocity, to.kelvin_elongation);
   kick(middle, pin, part, to.velocity);
+  const Vec3 on_pin = context_.resistance.push_out(middle, part.h, pin, to.velocity);
   const contact::ExplicitContacts contacts =
-      context_.contacts.push_apart(middle, tool, {part.h, part.share - half / model.tick, pin}, to.velocity);
+      context_.contacts.push_apart(middle, tool, {part.h, part.h, part.share - half / model.tick, pin}, to.velocity);
   report.tool_force = contacts.tool_force();
   if (pin.is_held()) {
     const std::size_t i = pin.index(), n = model.sphere_count();
     const Vec3 own{force_[i], force_[n + i], force_[2 * n + i]};
-    report.tool_force = own + model.mass[i] * (from.velocity[i] - pin.velocity) / part.h;
+    report.tool_force = own + on_pin + model.mass[i] * (from.velocity[i] - pin.velocity) / part.h;
   }
   if (!check_.passes(to.velocity, report)) return false;
 
   elements.finish_kelvin(part.h, from.kelvin_elongation, to.kelvin_elongation);
   drift(slabs, context_.team, to.velocity, half, to.position);
-  report_contacts(contacts, to.position, report);
+  finish_contacts(contacts, tool, part, to, report);
   return true;
 }
 

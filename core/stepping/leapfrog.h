@@ -12,7 +12,8 @@ namespace ctpm::stepping {
 /// Leapfrog (position Verlet): half a step of drift with the old velocity, a kick v' = v + h M^-1 f, and half a step of
 /// drift with the new velocity. Second order with one evaluation of the forces (Leimkuhler & Reich, "Simulating
 /// Hamiltonian dynamics", 2004, ch. 4); first order in the dashpots, which see the old velocity. It is explicit in the
-/// elements and solves each contact implicitly by itself. Stable for steps up to stable_step_bound() (integrator.h).
+/// elements and solves each contact and each tetrahedron that resists inversion implicitly by itself. Stable for steps
+/// up to stable_step_bound() (integrator.h).
 class Leapfrog {
  public:
   explicit Leapfrog(const StepContext& context);

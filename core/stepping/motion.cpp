@@ -12,6 +12,8 @@ constexpr std::vector<double> Vec3Array::*kAxes[3] = {&Vec3Array::x, &Vec3Array:
 void commit(Motion& motion, State& state) {
   std::swap(state.position, motion.position), std::swap(state.velocity, motion.velocity);
   std::swap(state.kelvin_elongation, motion.kelvin_elongation);
+  std::swap(state.touched, motion.touched.point), std::swap(state.grip, motion.touched.grip);
+  std::swap(state.kelvin_dent, motion.touched.kelvin_dent);
   if (motion.acceleration.size() > 0) std::swap(state.acceleration, motion.acceleration);
 }
 

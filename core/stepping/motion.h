@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/contact/contacts.h"
 #include "core/elements/axial.h"
 #include "core/model/model.h"
 #include "core/model/state.h"
@@ -21,6 +22,7 @@ struct Motion {
   Vec3Array position, velocity;           ///< [m], [m/s]  (sphere_count)
   Vec3Array acceleration;                 ///< [m/s^2]; empty unless the integrator is SDIRK2 (sphere_count)
   std::vector<double> kelvin_elongation;  ///< [m] (internal_count)
+  contact::Touched touched;               ///< State::touched and what belongs to it
 };
 
 /// Swaps the arrays of `motion` with those of `state`. Never allocates.

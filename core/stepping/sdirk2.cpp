@@ -111,13 +111,14 @@ bool Sdirk2::dirk_stage(const StateView& start, const contact::HeldTool& tool, c
                          predicted_.kelvin_elongation);
   const std::vector<double>& kelvin = is_second ? predicted_.kelvin_elongation : start.kelvin_elongation;
   const StateView predicted(start, predicted_.position, predicted_.velocity, kelvin);
-  contact::ImplicitContacts contacts =
-      context_.contacts.detect(predicted, tool, {part.h, part.share, stage_pin_}, contact::Linearisation::velocity);
+  const double elapsed = is_second ? part.h / kStage : part.h;  // the second stage ends with the step
+  contact::ImplicitContacts contacts = context_.contacts.detect(
+      predicted, tool, {part.h, elapsed, part.share, stage_pin_}, contact::Linearisation::velocity);
   stage_velocity_ = &solve_.solve_near(predicted, start.velocity, is_second, part, contacts, change_, report);
   commit_velocity(slabs, context_.team, *stage_velocity_, start.position, part.h, to);
   if (!check_.passes(to.velocity, report)) return false;
   elements.find_kelvin(part.h, {start, to.position, to.velocity, start.kelvin_elongation}, to.kelvin_elongation);
-  report_contacts(contacts, to.position, report);
+  finish_contacts(contacts, tool, part, to, report);
   return true;
 }
 

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "core/contact/contacts.h"
+#include "core/inversion/resistance.h"
 #include "core/stepping/backward_euler.h"
 #include "core/stepping/blade_sweep.h"
 #include "core/stepping/implicit_solve.h"
@@ -41,8 +42,11 @@ struct Stepper::Parts {
         team(options.threads),
         elements(m, team, options.instruction_set),
         contacts(m, kernels),
+        resistance(m, elements.slabs(), team, kernels),
         next(m) {
     if (m.has_scalpel()) blade.emplace(m);
+    contacts.reserve(next.touched);
+    reserve(trial);
     if (choice.integrator == Integrator::leapfrog) {
       integrator.emplace<Leapfrog>(context);
       return;
@@ -57,6 +61,7 @@ struct Stepper::Parts {
   contact::HeldTool hold(const Inputs& last, const Inputs& inputs) const;
   bool advance(const State& from, const contact::HeldTool& tool, const Substep& part, StepReport& report);
   bool run_substeps(State& state, const contact::HeldTool& tool, StepReport& report);
+  void reserve(State& state) const;
 
   const Model& model;
   IntegratorChoice choice;
@@ -64,7 +69,8 @@ struct Stepper::Parts {
   parallel::Team team;
   elements::Elements elements;
   contact::Contacts contacts;
-  StepContext context{model, kernels, team, elements, contacts};
+  inversion::Resistance resistance;
+  StepContext context{model, kernels, team, elements, contacts, resistance};
   std::optional<ImplicitSolve> implicit_solve;  ///< empty for leapfrog
   AnyIntegrator integrator;
   std::optional<BladeSweep> blade;  ///< empty if the Model has no scalpel
@@ -79,6 +85,14 @@ contact::HeldTool Stepper::Parts::hold(const Inputs& last, const Inputs& inputs)
   tool.tool = inputs.tool >= 0 ? &model.tools[std::size_t(inputs.tool)] : nullptr;
   tool.from = last.position, tool.to = inputs.position;
   return tool;
+}
+
+/// Reserves memory for what a ball can touch.
+void Stepper::Parts::reserve(State& state) const {
+  contact::Touched touched{std::move(state.touched), std::move(state.grip), std::move(state.kelvin_dent)};
+  contacts.reserve(touched);
+  state.touched = std::move(touched.point), state.grip = std::move(touched.grip),
+  state.kelvin_dent = std::move(touched.kelvin_dent);
 }
 
 /// One substep into `next`. False: it is refused.
@@ -125,6 +139,7 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
   const Inputs last = inputs.tool >= 0 && state.last_inputs.tool == inputs.tool ? state.last_inputs : inputs;
   contact::HeldTool tool = parts.hold(last, inputs);
   const bool cuts = tool.is(ToolKind::scalpel);
+  parts.reserve(state);
   // An integrator leaves State unchanged until its substep is committed. Ticks that change State more than once work on
   // the trial state.
   const bool changes_once = !cuts && parts.choice.substeps == 1;
@@ -139,6 +154,7 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
     return refused;
   }
   if (cuts) parts.blade->report_pieces(current, report);
+  report.inverted = parts.resistance.count_inverted(current);
   if (!changes_once) std::swap(state, parts.trial);
   state.last_inputs = inputs;
   ++state.tick;

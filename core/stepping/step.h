@@ -36,6 +36,9 @@ struct StepReport {
   std::int32_t contacts = 0;    ///< spheres touched; for a blade, elements ahead of its edge or on its flanks
   std::int32_t severed = 0;     ///< elements, constraints and angle springs severed in this tick
   std::int32_t came_loose = 0;  ///< pieces that came loose in this tick: the increase of their number
+  /// Tissue cells that are inside out at the end of the tick (a corner tetrahedron with J < 0); those that a blade cut
+  /// do not count. 0 if the Model has no tissue cells.
+  std::int32_t inverted = 0;
 };
 
 /// What a Stepper may use of the machine. No option changes a bit of the result.

@@ -3,8 +3,10 @@
 #include "core/contact/contacts.h"
 #include "core/elements/elements.h"
 #include "core/elements/kernels/kernels.h"
+#include "core/inversion/resistance.h"
 #include "core/model/model.h"
 #include "core/parallel/team.h"
+#include "core/stepping/motion.h"
 #include "core/stepping/step.h"
 
 namespace ctpm::stepping {
@@ -24,11 +26,14 @@ struct StepContext {
   parallel::Team& team;
   elements::Elements& elements;
   contact::Contacts& contacts;
+  inversion::Resistance& resistance;
 };
 
-/// Reports the contacts at the end of a substep, with the spheres at `position` [m].
-inline void report_contacts(const contact::ContactSet& contacts, const Vec3Array& position, StepReport& report) {
-  report.depth = contacts.depth(position), report.contacts = contacts.touched();
+/// Ends the contacts of a substep with the spheres in `to`: reports them, and notes what a ball touches.
+inline void finish_contacts(const contact::ContactSet& contacts, const contact::HeldTool& tool, const Substep& part,
+                            Motion& to, StepReport& report) {
+  report.depth = contacts.depth(to.position), report.contacts = contacts.touched();
+  contacts.note_touched(tool.at(part.share), to.position, to.touched);
 }
 
 }  // namespace ctpm::stepping

@@ -14,13 +14,14 @@
 namespace ctpm::surface {
 namespace {
 
-constexpr double kReachInSpacings = 2.2;
 constexpr std::size_t kFewestFollowed = 8;
 
-/// C1 bump that falls from 1 at the point to 0 at the reach.
+/// C2 bump that falls from 1 at the point to almost 0 at the reach. It never vanishes, so that the nearest few spheres
+/// span space wherever the point is.
 double kernel(double distance, double reach) {
-  const double q = distance / reach;
-  return q >= 1 ? 0.0 : (1 - q * q) * (1 - q * q);
+  constexpr double kBeyond = 1e-6;
+  const double q = distance / reach, bump = std::max(1 - q * q, kBeyond);
+  return bump * bump * bump;
 }
 
 /// A sphere and its distance from the point to be bound.
@@ -90,25 +91,41 @@ class CellIndex {
 };
 
 /// Finds the spheres of the binding of a vertex: all within reach, or the nearest few if the reach holds too few.
-void find_followed(const FilledOrgan& organ, const CellIndex& index, Vec3 point, std::vector<Candidate>& found,
-                   double& reach) {
-  // If the nearest few lie just within the reach, they stretch it by this factor.
-  constexpr double kStretch = 1.05;
-  const double usual = kReachInSpacings * organ.spacing;
+void find_followed(const FilledOrgan& organ, const CellIndex& index, Vec3 point, std::vector<Candidate>& found) {
+  const double reach = kBindingReach * organ.spacing;
   const std::size_t fewest = std::min(organ.centre.size(), kFewestFollowed);
-  int rings = int(std::ceil(kReachInSpacings)) + 1;
-  index.near(point, rings, kStretch * usual, found);
-  if (found.size() < fewest || std::size_t(std::count_if(found.begin(), found.end(), [&](const Candidate& c) {
-                                 return c.distance < usual;
-                               })) < fewest) {
+  int rings = int(std::ceil(kBindingReach)) + 1;
+  index.near(point, rings, reach, found);
+  if (found.size() < fewest) {
     found.clear();
     for (; found.size() < fewest; rings *= 2) index.near(point, rings, std::numeric_limits<double>::infinity(), found);
   }
   std::sort(found.begin(), found.end());
-  reach = std::max(usual, kStretch * found[fewest - 1].distance);
   std::size_t count = fewest;
   while (count < found.size() && found[count].distance < reach) ++count;
   found.resize(count);
+}
+
+/// Leaves out spheres that hardly count: each costs time in every tick and room in every session. All stay where the
+/// rest would not span space.
+void leave_out_weak(Vec3 vertex, double spacing, std::vector<Candidate>& followed, std::vector<Vec3>& centres,
+                    std::vector<double>& trust, std::vector<double>& weights) {
+  constexpr double kWeak = 0.02, kOff = 1e-10;  // of the largest weight; of a spacing
+  double largest = 0;
+  for (const double w : weights) largest = std::max(largest, std::abs(w));
+  std::vector<Candidate> strong;
+  std::vector<Vec3> strong_centres;
+  std::vector<double> strong_trust;
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    if (std::abs(weights[i]) > kWeak * largest)
+      strong.push_back(followed[i]), strong_centres.push_back(centres[i]), strong_trust.push_back(trust[i]);
+  if (strong.size() < kFewestFollowed || strong.size() == followed.size()) return;
+  const std::vector<double> strong_weights =
+      follow_weights(vertex, strong_centres, strong_trust, kBindingReach * spacing);
+  Vec3 off = -vertex;
+  for (std::size_t i = 0; i < strong.size(); ++i) off += strong_weights[i] * strong_centres[i];
+  if (norm(off) > kOff * spacing) return;
+  followed = strong, centres = strong_centres, trust = strong_trust, weights = strong_weights;
 }
 
 /// Bindings of a run of vertices; `binding.first` begins at 0.
@@ -116,16 +133,18 @@ void bind_run(const FilledOrgan& organ, const CellIndex& index, std::size_t begi
               SurfaceBinding& binding) {
   std::vector<Candidate> followed;
   std::vector<Vec3> centres;
+  std::vector<double> trust;
   for (std::size_t v = begin; v < end; ++v) {
     const Vec3 vertex = organ.surface.vertex[v];
-    double reach = 0;
-    find_followed(organ, index, vertex, followed, reach);
-    centres.clear();
+    find_followed(organ, index, vertex, followed);
+    centres.clear(), trust.clear();
     for (const Candidate& c : followed) {
       centres.push_back(organ.centre[std::size_t(c.sphere)]);
-      binding.sphere.push_back(c.sphere);
+      trust.push_back(organ.shares.of_sphere(std::size_t(c.sphere)));
     }
-    const std::vector<double> weights = follow_weights(vertex, centres, reach);
+    std::vector<double> weights = follow_weights(vertex, centres, trust, kBindingReach * organ.spacing);
+    leave_out_weak(vertex, organ.spacing, followed, centres, trust, weights);
+    for (const Candidate& c : followed) binding.sphere.push_back(c.sphere);
     binding.weight.insert(binding.weight.end(), weights.begin(), weights.end());
     binding.first.push_back(std::int32_t(binding.sphere.size()));
   }
@@ -133,33 +152,29 @@ void bind_run(const FilledOrgan& organ, const CellIndex& index, std::size_t begi
 
 }  // namespace
 
-std::vector<double> follow_weights(Vec3 point, std::span<const Vec3> candidates, double radius) {
-  CTPM_CHECK(!candidates.empty() && radius > 0, "a point needs something to follow");
+std::vector<double> follow_weights(Vec3 point, std::span<const Vec3> candidates, std::span<const double> trust,
+                                   double reach) {
+  CTPM_CHECK(!candidates.empty() && candidates.size() == trust.size() && reach > 0,
+             "a point needs something to follow");
   std::vector<double> weight(candidates.size());
   double total = 0;
-  for (std::size_t i = 0; i < candidates.size(); ++i) total += weight[i] = kernel(norm(candidates[i] - point), radius);
-  if (total <= 0) {
-    // Nothing is in reach: follow the nearest sphere alone.
-    std::size_t nearest = 0;
-    for (std::size_t i = 1; i < candidates.size(); ++i)
-      if (norm(candidates[i] - point) < norm(candidates[nearest] - point)) nearest = i;
-    std::fill(weight.begin(), weight.end(), 0.0);
-    weight[nearest] = 1;
-    return weight;
-  }
-  // Moments of the kernel in the basis (1, p - point), lengths in units of the radius.
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    total += weight[i] = kernel(norm(candidates[i] - point), reach) * trust[i];
+  // Moments of the kernel in the basis (1, p - point), lengths in units of the reach.
   Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
   const auto basis = [&](std::size_t i) {
-    const Vec3 d = (candidates[i] - point) / radius;
+    const Vec3 d = (candidates[i] - point) / reach;
     return Eigen::Vector4d(1, d.x, d.y, d.z);
   };
   for (std::size_t i = 0; i < candidates.size(); ++i) moments += weight[i] / total * basis(i) * basis(i).transpose();
   const Eigen::FullPivLU<Eigen::Matrix4d> lu(moments);
-  constexpr double kSpansSpace = 1e-4;  // smallest pivot relative to the largest; below it the weights would explode
+  constexpr double kSpansSpace = 1e-8;  // smallest pivot relative to the largest; below it the weights would explode
   const bool spans_space = std::abs(lu.matrixLU()(3, 3)) > kSpansSpace * std::abs(lu.matrixLU()(0, 0));
   const Eigen::Vector4d correction =
       spans_space ? Eigen::Vector4d(lu.solve(Eigen::Vector4d::UnitX())) : Eigen::Vector4d::UnitX();
-  for (std::size_t i = 0; i < candidates.size(); ++i) weight[i] *= correction.dot(basis(i)) / total;
+  double sum = 0;
+  for (std::size_t i = 0; i < candidates.size(); ++i) sum += weight[i] *= correction.dot(basis(i)) / total;
+  for (double& w : weight) w /= sum;  // away with rounding
   return weight;
 }
 
@@ -201,6 +216,38 @@ void deform_surface(const Surface& surface, const Vec3Array& position, std::int3
     for (std::int32_t entry = binding.first[v]; entry < binding.first[v + 1]; ++entry)
       vertex[v] +=
           binding.weight[std::size_t(entry)] * position[std::size_t(first_sphere + binding.sphere[std::size_t(entry)])];
+}
+
+void place_surface(const Model& model, std::size_t organ, const Surface& surface, const State& state,
+                   std::vector<Vec3>& vertex) {
+  deform_surface(surface, state.position, model.organs[organ].first, vertex);
+  const Inputs& inputs = state.last_inputs;
+  if (state.touched.empty() || inputs.tool < 0) return;
+  const Tool& tool = model.tools[std::size_t(inputs.tool)];
+  if (tool.kind != ToolKind::ball || organ >= model.surfaces.size()) return;
+  std::int64_t first = 0;
+  for (std::size_t i = 0; i < organ; ++i) first += std::int64_t(model.surfaces[i].vertex.size());
+  const std::int64_t last = first + std::int64_t(model.surfaces[organ].vertex.size());
+  // Normals of the touched vertices: sums over their triangles, weighted by area.
+  std::vector<char> is_touched(vertex.size(), 0);
+  for (const std::int32_t point : state.touched)
+    if (point >= first && point < last && std::size_t(point - first) < vertex.size())
+      is_touched[std::size_t(point - first)] = 1;
+  std::vector<Vec3> normal(vertex.size());
+  for (const auto& t : surface.triangle) {
+    const auto a = std::size_t(t[0]), b = std::size_t(t[1]), c = std::size_t(t[2]);
+    if (!is_touched[a] && !is_touched[b] && !is_touched[c]) continue;
+    const Vec3 n = cross(vertex[b] - vertex[a], vertex[c] - vertex[a]);
+    normal[a] += n, normal[b] += n, normal[c] += n;
+  }
+  for (std::size_t v = 0; v < vertex.size(); ++v) {
+    const double size = norm(normal[v]);
+    if (!is_touched[v] || !(size > 0)) continue;
+    // Inwards to the far side of the ball, as contact::BallContact measures the dent.
+    const Vec3 apart = vertex[v] - inputs.position, outward = normal[v] / size;
+    const double height = dot(apart, outward), chord = height * height - dot(apart, apart) + tool.radius * tool.radius;
+    if (chord > 0) vertex[v] -= std::max(0.0, height + std::sqrt(chord)) * outward;
+  }
 }
 
 }  // namespace ctpm::surface

@@ -168,6 +168,9 @@ void get_model(ByteReader& in, Model& model, std::string& problem) {
     is_earlier = set.find("edges.a") != nullptr, has_cells = set.find("cell.i") != nullptr;
     if (is_earlier && set.find("axial.a") != nullptr) problem = kBoth;
     if (is_earlier) read_edges(reader, edges), read_tpms(reader, tpms);
+    // Retired with physics revision 3, where a grip takes the place of a sticking drag.
+    double stick_time = 0;
+    if (set.find("contact_stick_time") != nullptr) reader("contact_stick_time", stick_time);
     for_each_field(model, reader);
   });
   if (!problem.empty()) return;

@@ -1,5 +1,7 @@
 #include "recordings/internal/legacy_values.h"
 
+#include <algorithm>
+
 #include "core/stepping/integrator.h"
 #include "recordings/internal/model_check.h"
 
@@ -41,6 +43,18 @@ Result<Done> update_integrator(Model& model, std::int32_t physics_revision, std:
                     std::string(stepping::name_of(choice.integrator)) + " with " + std::to_string(choice.substeps) +
                     (choice.substeps == 1 ? " substep" : " substeps") + " a tick");
   return Done{};
+}
+
+void give_modulus(Model& model) {
+  constexpr double kYoungOverEdge = 2.5;  // of k / s, network::LatticeKind::cubic_18
+  for (OrganRange& organ : model.organs) {
+    if (organ.modulus != 0 || !(organ.spacing > 0)) continue;
+    double stiffest = 0;
+    for (std::size_t i = 0; i < model.axial.size(); ++i)
+      if (model.axial.a[i] >= organ.first && model.axial.a[i] < organ.first + organ.count)
+        stiffest = std::max(stiffest, model.axial.slow_k(i));
+    organ.modulus = kYoungOverEdge * stiffest / organ.spacing;
+  }
 }
 
 void update_event(Event& event) {

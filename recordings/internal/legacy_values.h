@@ -17,6 +17,9 @@ const char* retired_integrator(std::int32_t number);
 /// Updates the Model of an older file. `automatic` becomes the integrator and substeps that this build chooses, and
 /// `remarks` reports the choice. `physics_revision` is that of the file; a file that stores it never holds `automatic`.
 /// Error: a retired integrator, by name.
+/// Gives organs with a surface the modulus that tools dent, which sessions of physics revisions before 3 do not store.
+void give_modulus(Model& model);
+
 Result<Done> update_integrator(Model& model, std::int32_t physics_revision, std::vector<std::string>& remarks);
 
 /// Changes a loose piece that is stored as a cut with a sentence to its own kind. Leaves all other events unchanged.

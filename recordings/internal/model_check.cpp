@@ -64,6 +64,13 @@ std::size_t count_of(const Model& model, EntryOf entry) {
       return model.tools.size();
     case EntryOf::blade_end:
       return 2;
+    case EntryOf::touchable: {
+      std::size_t count = model.sphere_count();
+      for (const Surface& surface : model.surfaces) count += surface.vertex.size();
+      return count;
+    }
+    case EntryOf::tissue_cell:
+      return model.tissue_cells.size();
   }
   return 0;
 }
@@ -244,6 +251,28 @@ void check_cut_resistance(Checker& check, const Model& model) {
   check.length("cut_resistance.friction", cut.friction.size(), model.axial.size());
 }
 
+/// The corner tetrahedra of a tissue cell must have positive volumes at rest, by which they are divided.
+void check_tissue_cells(Checker& check, const Model& model) {
+  const TissueCells& cells = model.tissue_cells;
+  const auto is_sphere = [&](std::int32_t sphere) {
+    return sphere >= 0 && std::size_t(sphere) < std::min({model.rest_position.x.size(), model.rest_position.y.size(),
+                                                          model.rest_position.z.size()});
+  };
+  for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+    for (const auto& corner : cells.corner)
+      if (cell >= corner.size() || !is_sphere(corner[cell])) return;  // reported by the field check
+    for (std::size_t c = 0; c < 8; ++c) {
+      const auto edge = [&](std::size_t axis) {
+        const std::size_t bit = std::size_t{1} << axis;
+        return model.rest_position[std::size_t(cells.corner[c | bit][cell])] -
+               model.rest_position[std::size_t(cells.corner[c & ~bit][cell])];
+      };
+      if (dot(edge(0), cross(edge(1), edge(2))) > 0) continue;
+      return check.require(false, "tissue_cells" + place(cell), "is inside out or flat at rest");
+    }
+  }
+}
+
 void check_organs(Checker& check, const Model& model) {
   const auto spheres = static_cast<std::int64_t>(model.sphere_count());
   std::int32_t end = 0;
@@ -271,6 +300,7 @@ Errors check_model(const Model& model) {
   check_cells(check, model);
   check_axial(check, model);
   check_cut_resistance(check, model);
+  check_tissue_cells(check, model);
   for (std::size_t i = 0; i < model.tools.size(); ++i)
     check.require(model.tools[i].kind != ToolKind::pin || model.tools[i].sphere >= 0, "tools" + place(i),
                   "is a pin that holds no sphere");
@@ -282,6 +312,10 @@ Errors check_state(const Model& model, const State& state) {
   for_each_field(state, FieldCheck(check, model));
   check_together(check, "blade_trail", state.blade_trail);
   check_together(check, "acceleration", state.acceleration);
+  check.length("grip", state.grip.size(), state.touched.size());
+  check_together(check, "grip", state.grip);
+  check.length("kelvin_dent", state.kelvin_dent.size(), state.touched.size());
+  check.require(std::is_sorted(state.touched.begin(), state.touched.end()), "touched", "must ascend");
 
   // The arrays of severed elements must all exist or all be empty. Older sessions do not store crossings.
   const bool cuts = !state.axial_severed.empty() || !state.constraint_severed.empty() || !state.angle_severed.empty() ||

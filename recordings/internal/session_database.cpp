@@ -92,7 +92,7 @@ std::vector<NamedContent> start_parts(const SessionStart& start, const SessionId
   add_text("scene", start.scene_text);
   add_text("look", start.look);
   add_fields("model", [&](FieldWriter& w) { for_each_field(start.model, w); });
-  add_fields("surfaces", [&](FieldWriter& w) { w("surfaces", start.surfaces); });
+  add_fields("surfaces", [&](FieldWriter& w) { w("surfaces", start.model.surfaces); });
   add_fields("metadata", [&](FieldWriter& w) {
     for (const auto& [key, value] : start.metadata) w(key, value);
   });

@@ -202,6 +202,7 @@ Result<Model> SessionStore::model() {
   if (const auto updated = update_integrator(model, identity_.physics_revision, remarks_); !updated)
     return Error{database_.path(), updated.errors().front().message, updated.errors().front().hint};
   if (const Errors errors = check_model(model); !errors.empty()) return at_file(database_.path(), errors);
+  if (identity_.physics_revision < 3) give_modulus(model);
   return model;
 }
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <set>
-#include <tuple>
 
 #include "core/stepping/step.h"
 #include "scenes/build_model.h"
@@ -18,16 +16,10 @@ namespace {
 constexpr double kDepths[] = {2e-3, 4e-3, 6e-3, 8e-3, 10e-3, 12e-3};  ///< of Table 1 [m]
 constexpr double kFitDepth = 12e-3;
 
-/// The ball has slipped off if the sphere is not at the depth of the fit after this much more displacement of the ball
-/// [m].
-constexpr double kLongestWay = 30e-3;
-
-/// Largest number of spheres to try.
-constexpr std::size_t kMostTries = 8;
-
 /// Largest difference from Table 1 at the depth of the fit [share].
 constexpr double kFitBound = 0.002;
 constexpr int kMostRounds = 4;
+constexpr double kFirstSpeed = 20e-3;  ///< of the ball in the first round [m/s]
 
 Vec3 up_in(const scenes::SceneSpec& scene) {
   return norm(scene.gravity) > 0 ? -1.0 * scene.gravity / norm(scene.gravity) : Vec3{0, 0, 1};
@@ -53,20 +45,63 @@ scenes::SceneSpec slow_scene(const scenes::SceneSpec& scene, std::size_t organ, 
   return slow;
 }
 
-/// Force [N] at each of kDepths; none if the ball slips off or a step fails.
-std::optional<std::vector<double>> press(const Model& model, std::int32_t sphere, Vec3 up, double speed) {
-  const auto c = std::size_t(sphere);
-  const Vec3 touch = model.rest_position[c] + (model.tools[0].radius + model.contact_radius[c]) * up;
+/// Highest point of the surface on the line along `up` through `point`; none if the line misses it.
+std::optional<Vec3> surface_above(const Surface& surface, Vec3 point, Vec3 up) {
+  std::optional<double> highest;
+  for (const auto& t : surface.triangle) {
+    const Vec3 a = surface.vertex[std::size_t(t[0])], b = surface.vertex[std::size_t(t[1])],
+               c = surface.vertex[std::size_t(t[2])];
+    const Vec3 normal = cross(b - a, c - a);
+    const double facing = dot(normal, up);
+    if (facing <= 0) continue;
+    const double height = dot(normal, a - point) / facing;
+    const Vec3 hit = point + height * up;
+    const bool is_inside = dot(cross(b - a, hit - a), normal) >= 0 && dot(cross(c - b, hit - b), normal) >= 0 &&
+                           dot(cross(a - c, hit - c), normal) >= 0;
+    if (is_inside && (!highest || height > *highest)) highest = height;
+  }
+  if (!highest) return std::nullopt;
+  return point + *highest * up;
+}
+
+/// Points that the ball touches first: nine over one lattice cell at the top of the surface, or the top of a rig's
+/// highest sphere that can move. Empty if nothing can move there.
+std::vector<Vec3> places_at_top(const Model& model, const FilledOrgan& filled, Vec3 up) {
+  const auto height = [&](Vec3 p) { return dot(p, up); };
+  std::optional<std::size_t> sphere;
+  for (std::size_t i = 0; i < model.sphere_count(); ++i)
+    if (filled.layer[i] == 1 && model.held_axes[i] == 0 &&
+        (!sphere || height(model.rest_position[i]) > height(model.rest_position[*sphere]) + 1e-9))
+      sphere = i;
+  if (!sphere) return {};
+  const Surface& surface = filled.surface;
+  if (surface.triangle.empty()) return {model.rest_position[*sphere] + model.contact_radius[*sphere] * up};
+  const Vec3 top = *std::max_element(surface.vertex.begin(), surface.vertex.end(),
+                                     [&](Vec3 p, Vec3 q) { return height(p) < height(q); });
+  const Vec3 beside = std::abs(up.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 u = cross(up, beside) / norm(cross(up, beside)), v = cross(up, u);
+  std::vector<Vec3> places;
+  for (const int i : {-1, 0, 1})
+    for (const int j : {-1, 0, 1})
+      if (const auto place = surface_above(surface, top + filled.spacing / 3 * (double(i) * u + double(j) * v), up))
+        places.push_back(*place);
+  return places;
+}
+
+/// Force [N] at each of kDepths below `place`; none if the ball loses the organ or a step fails.
+std::optional<std::vector<double>> press(const Model& model, Vec3 place, Vec3 up, double speed) {
   stepping::Stepper stepper(model);
   State state = rest_state(model);
   std::vector<double> forces;
   double last_depth = 0, last_force = 0;
-  for (double way = 0; way < kFitDepth + kLongestWay && forces.size() < std::size(kDepths); way += speed * model.tick) {
+  while (forces.size() < std::size(kDepths)) {
+    const double depth = last_depth + speed * model.tick;
     Inputs inputs;
-    inputs.tool = 0, inputs.position = touch - way * up;
+    inputs.tool = 0, inputs.position = place + (model.tools[0].radius - depth) * up;
     const stepping::StepReport report = stepper.step(state, inputs);
     if (report.status != stepping::StepStatus::ok) return std::nullopt;
-    const double depth = dot(model.rest_position[c] - state.position[c], up), force = dot(report.tool_force, up);
+    const double force = dot(report.tool_force, up);
+    if (force <= 0 && depth > 1e-3) return std::nullopt;
     // Interpolates linearly between two ticks.
     while (forces.size() < std::size(kDepths) && depth >= kDepths[forces.size()]) {
       const double share = (kDepths[forces.size()] - last_depth) / (depth - last_depth);
@@ -74,58 +109,26 @@ std::optional<std::vector<double>> press(const Model& model, std::int32_t sphere
     }
     last_depth = depth, last_force = force;
   }
-  if (forces.size() < std::size(kDepths)) return std::nullopt;
   return forces;
 }
 
-/// Number of spheres in the eight cells one and two steps beside each sphere, perpendicular to `up`; the paper's C has
-/// all eight. -1 for a sphere below another one, which the ball would touch first.
-std::vector<int> neighbours_across(const FilledOrgan& filled, Vec3 up) {
-  const std::set<std::array<std::int32_t, 3>> cells(filled.cell.begin(), filled.cell.end());
-  const double along[3] = {up.x, up.y, up.z};
-  const auto up_axis = std::size_t(
-      std::max_element(along, along + 3, [](double p, double q) { return std::abs(p) < std::abs(q); }) - along);
-  std::vector<int> counts;
-  for (const std::array<std::int32_t, 3>& cell : filled.cell) {
-    int count = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (const int step : {-2, -1, 1, 2}) {
-        std::array<std::int32_t, 3> beside = cell;
-        beside[axis] += step;
-        count += axis != up_axis && cells.contains(beside) ? 1 : 0;
-      }
-    std::array<std::int32_t, 3> above = cell;
-    above[up_axis] += along[up_axis] > 0 ? 1 : -1;
-    if (cells.contains(above)) count = -1;
-    counts.push_back(count);
+/// Mean and scatter over the places; none if a press fails.
+std::optional<std::vector<FitRow>> press_all(const Model& model, const std::vector<Vec3>& places, Vec3 up,
+                                             const rig::Site& site, double speed) {
+  std::vector<std::vector<double>> all;
+  for (const Vec3& place : places) {
+    const auto forces = press(model, place, up, speed);
+    if (!forces) return std::nullopt;
+    all.push_back(*forces);
   }
-  return counts;
-}
-
-/// Outermost spheres near the top that can move. Those with the most neighbours come first, as for the paper's C,
-/// because a protruding sphere moves sideways; then the highest, then the nearest to the organ's middle.
-std::vector<std::int32_t> top_spheres(const Model& model, const FilledOrgan& filled, Vec3 up) {
-  Vec3 middle;
-  for (const Vec3& centre : filled.centre) middle += centre / double(filled.centre.size());
-  const auto level = [&](std::int32_t i) {
-    return std::lround(2 * dot(model.rest_position[std::size_t(i)] - middle, up) / filled.spacing);
-  };
-  std::vector<std::int32_t> spheres;
-  for (std::size_t i = 0; i < model.sphere_count(); ++i)
-    if (filled.layer[i] == 1 && model.held_axes[i] == 0) spheres.push_back(std::int32_t(i));
-  if (spheres.empty()) return spheres;
-  const long top = level(*std::max_element(spheres.begin(), spheres.end(),
-                                           [&](std::int32_t p, std::int32_t q) { return level(p) < level(q); }));
-  const std::vector<int> neighbours = neighbours_across(filled, up);
-  // Near the top: within two spacings.
-  std::erase_if(spheres, [&](std::int32_t i) { return level(i) < top - 4 || neighbours[std::size_t(i)] < 0; });
-  const auto order = [&](std::int32_t i) {
-    const Vec3 apart = model.rest_position[std::size_t(i)] - middle;
-    return std::tuple(-neighbours[std::size_t(i)], -level(i), norm(apart - dot(apart, up) * up));
-  };
-  std::stable_sort(spheres.begin(), spheres.end(), [&](std::int32_t p, std::int32_t q) { return order(p) < order(q); });
-  spheres.resize(std::min(spheres.size(), kMostTries));
-  return spheres;
+  std::vector<FitRow> rows;
+  for (std::size_t d = 0; d < std::size(kDepths); ++d) {
+    double mean = 0, square = 0;
+    for (const auto& forces : all) mean += forces[d] / double(all.size());
+    for (const auto& forces : all) square += (forces[d] - mean) * (forces[d] - mean) / double(all.size());
+    rows.push_back({kDepths[d], mean, std::sqrt(square) / mean, rig::table_force(site, 1e3 * kDepths[d], true)});
+  }
+  return rows;
 }
 
 }  // namespace
@@ -136,39 +139,32 @@ Result<StiffnessFit> fit_stiffness(const scenes::SceneSpec& scene, std::size_t o
   const std::vector<FilledOrgan> only{filled};
   const Vec3 up = up_in(scene);
   const rig::Site site = rig::site_of(spec);
-  const double wanted = rig::table_force(site, 1e3 * kFitDepth, true);
   const auto build = [&](double factor) { return scenes::build_model(slow_scene(scene, organ, factor), only); };
 
   const Result<scenes::BuiltScene> first = build(1);
   if (!first) return first.errors();
-  const std::vector<std::int32_t> tries = top_spheres(first->model, filled, up);
-  if (tries.empty())
+  const std::vector<Vec3> places = places_at_top(first->model, filled, up);
+  if (places.empty())
     return Error{where, "no outermost sphere can move, so nothing can be pressed", "anchor less of it"};
   StiffnessFit fit;
-  for (const std::int32_t sphere : tries) {
-    std::optional<std::vector<double>> forces = press(first->model, sphere, up, 20e-3);
-    if (!forces || !(forces->back() > 0)) continue;
-    fit.factor = 1;
-    // Force is proportional to the scale except for inertia, because mass is not scaled; the next round corrects this.
-    for (int round = 0; round < kMostRounds; ++round) {
-      fit.factor *= wanted / forces->back();
-      const Result<scenes::BuiltScene> scaled = build(fit.factor);
-      if (!scaled) return scaled.errors();
-      forces = press(scaled->model, sphere, up, 10e-3);
-      if (!forces || std::abs(forces->back() / wanted - 1) <= kFitBound) break;
-    }
-    if (!forces || std::abs(forces->back() / wanted - 1) > kFitBound) continue;
-    fit.scale = fit.factor * scenes::resolve_material(spec.material).material.stiffness_scale;
-    fit.fitted_for = {first->model.rest_position[std::size_t(sphere)], first->model.tools[0].radius,
-                      filled.sphere_radius, kFitDepth, forces->back()};
-    for (std::size_t i = 0; i < std::size(kDepths); ++i)
-      fit.rows.push_back({kDepths[i], (*forces)[i], rig::table_force(site, 1e3 * kDepths[i], true)});
-    return fit;
+  std::optional<std::vector<FitRow>> rows = press_all(first->model, places, up, site, kFirstSpeed);
+  // Force is proportional to the scale except for inertia, because mass is not scaled; the next round corrects this.
+  for (int round = 0; round < kMostRounds && rows; ++round) {
+    fit.factor *= rows->back().closed_form / rows->back().force;
+    const Result<scenes::BuiltScene> scaled = build(fit.factor);
+    if (!scaled) return scaled.errors();
+    rows = press_all(scaled->model, places, up, site, 0.5 * kFirstSpeed);
+    if (rows && std::abs(rows->back().error()) <= kFitBound) break;
   }
-  return Error{where,
-               "the ball of " + output::fixed(site.ball_radius, 1) + " mm slips off each of " +
-                   std::to_string(tries.size()) + " spheres at the top before it is 12 mm deep",
-               "the organ may be too thin or its spheres too small"};
+  if (!rows || std::abs(rows->back().error()) > kFitBound)
+    return Error{where,
+                 "the ball of " + output::fixed(site.ball_radius, 1) + " mm loses the organ before it is 12 mm deep",
+                 "the organ may be too thin or its spheres too small"};
+  fit.scale = fit.factor * scenes::resolve_material(spec.material).material.stiffness_scale;
+  fit.fitted_for = {places[places.size() / 2], first->model.tools[0].radius, filled.sphere_radius, kFitDepth,
+                    rows->back().force};
+  fit.rows = *rows;
+  return fit;
 }
 
 void apply_fit(scenes::OrganSpec& organ, const StiffnessFit& fit) {

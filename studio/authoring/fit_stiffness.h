@@ -11,8 +11,9 @@ namespace ctpm::authoring {
 
 /// One depth of the paper's Table 1.
 struct FitRow {
-  double depth = 0;        ///< of the pressed sphere below its rest position [m]
-  double force = 0;        ///< of the organ on the ball [N]
+  double depth = 0;        ///< of the ball below first contact [m]
+  double force = 0;        ///< of the organ on the ball, mean over the places [N]
+  double scatter = 0;      ///< standard deviation over the places, relative to the mean [share]
   double closed_form = 0;  ///< CTPM force of Table 1 [N]
 
   double error() const { return force / closed_form - 1; }  ///< [share]
@@ -26,12 +27,12 @@ struct StiffnessFit {
   std::vector<FitRow> rows;          ///< at 2, 4, ... 12 mm, with the scale applied
 };
 
-/// Fits the stiffness scale of `organ` so that the force at 12 mm equals the CTPM force of the paper's Table 1 to 0.2
-/// %. The ball of the calibration presses an outermost sphere near the top, without gravity and viscosity, and so
-/// slowly that inertia is negligible. Force is nearly proportional to the scale: one run gives the scale, and up to
-/// four more check and correct it. The other depths show the error of the curve's shape. Errors: those of
-/// build_model(); no outermost sphere can move; none of the eight spheres tried can be pressed to 12 mm, because the
-/// ball slips off or a run fails.
+/// Fits the stiffness scale of `organ` so that the mean force at 12 mm equals the CTPM force of the paper's Table 1 to
+/// 0.2 %. The ball of the calibration presses the top of the surface at nine places over one lattice cell, without
+/// gravity and viscosity, and so slowly that inertia is negligible; in a rig, it presses the highest sphere that can
+/// move. Force is nearly proportional to the scale: one round gives the scale, and up to four more check and correct
+/// it. The other depths show the error of the curve's shape. Errors: those of build_model(); nothing at the top can
+/// move; the ball loses the organ before 12 mm; a run fails.
 Result<StiffnessFit> fit_stiffness(const scenes::SceneSpec& scene, std::size_t organ, const FilledOrgan& filled);
 
 /// Stores a fit in a scene's organ: its scale, and the contact point and ball for which it holds.

@@ -30,5 +30,6 @@ Command add_fit(CLI::App& program);
 Command add_paper(CLI::App& program);
 Command add_bench(CLI::App& program);
 Command add_stability(CLI::App& program);
+Command add_fidelity(CLI::App& program);
 
 }  // namespace ctpm::commands

@@ -23,6 +23,7 @@ constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"export.allow_diverged", "--allow-diverged"},
     {"export.fps", "--fps"},
     {"export.speed", "--speed"},
+    {"fidelity.recipes", "--only"},
     {"import.organ", "--organ"},
     {"look.by", "--by"},
     {"look.camera", "--camera"},

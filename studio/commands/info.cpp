@@ -52,7 +52,13 @@ void print_json(recordings::SessionReader& reader, const recordings::SessionStat
   json.member("elements", model.element_count())
       .member("keyframes", s.keyframes)
       .member("severed", s.severed)
-      .member("pieces_came_loose", recordings::pieces_came_loose(events, reader.tick_count()));
+      .member("pieces_came_loose", recordings::pieces_came_loose(events, reader.tick_count()))
+      .member("tissue_cells", model.tissue_cells.size());
+  json.key("ends_inside_out");
+  if (model.tissue_cells.size() == 0)
+    json.null();  // nobody looked
+  else
+    json.value(recordings::cells_inside_out(events, reader.tick_count()) > 0);
   json.member("late_ticks", s.late_ticks)
       .member("tick_time_p50_s", s.tick_time_p50)
       .member("tick_time_p99_s", s.tick_time_p99);
@@ -130,6 +136,9 @@ void print_text(recordings::SessionReader& reader, const recordings::SessionStat
   std::printf("at most    %.3f N, %.2f mm deep; %lld elements severed, %lld pieces came loose\n", s.max_force,
               s.max_depth * 1e3, (long long)s.severed,
               (long long)recordings::pieces_came_loose(events, reader.tick_count()));
+  if (model.tissue_cells.size() > 0)
+    std::printf("inside out %s at the end\n",
+                recordings::cells_inside_out(events, reader.tick_count()) > 0 ? "TISSUE IS INSIDE OUT" : "no tissue");
   print_events(events, model);
 }
 

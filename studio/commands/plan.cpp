@@ -6,8 +6,10 @@
 
 #include "core/model/fields.h"
 #include "core/stepping/step.h"
+#include "importers/text.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
+#include "studio/fidelity/thickness.h"
 #include "studio/loading/loaded_scene.h"
 #include "studio/output/json_writer.h"
 
@@ -79,6 +81,8 @@ std::vector<Feature> features_of(const scenes::SceneSpec& scene, const Model& m,
        bytes_of(axial.third)},
       {"angle springs", m.angle_springs.size() > 0, counted(m.angle_springs.size(), "springs", "the model has none"),
        bytes_of_fields(m, "angle_springs.")},
+      {"resistance to inversion", m.tissue_cells.size() > 0,
+       counted(m.tissue_cells.size(), "tissue cells", "no organ asks for it"), bytes_of_fields(m, "tissue_cells.")},
       {"gravity", !(m.gravity == Vec3{}), m.gravity == Vec3{} ? "the scene has none" : "the scene asks for it", 0},
       {"ball contact", m.has_tool(ToolKind::ball), m.has_tool(ToolKind::ball) ? "a tool presses" : "no tool presses",
        0},
@@ -118,10 +122,35 @@ std::string solver_of(const Model& model, const stepping::IntegratorChoice& choi
   return words + limits;
 }
 
+/// Tissue that is thinner than its spheres can carry, and parts without spheres: one warning an organ and kind.
+Errors thin_parts_of(const loading::LoadedScene& scene) {
+  Errors warnings;
+  for (std::size_t i = 0; i < scene.organs.size(); ++i) {
+    const FilledOrgan& organ = scene.organs[i];
+    const std::string at = "/organs/" + std::to_string(i) + "/fill";
+    const fidelity::ThinParts thin = fidelity::find_thin_parts(organ);
+    if (thin.spheres > 0)
+      warnings.push_back(scene.scene.places.error_at(
+          at,
+          std::to_string(thin.spheres) + " of " + std::to_string(organ.centre.size()) +
+              " spheres lie in tissue thinner than two spacings (" +
+              importers::mm_text(fidelity::kLeastSpacingsAcross * organ.spacing) +
+              "), which they cannot carry; the thinnest is " + importers::mm_text(thin.thinnest) + " at " +
+              importers::place_text(thin.place),
+          "a smaller radius_mm carries more of it"));
+    for (const importers::Finding& finding : scene.reports[i].fill.findings)
+      if (finding.code == "thin" || finding.code == "flat")
+        warnings.push_back(scene.scene.places.error_at(at, finding.found, finding.remains));
+  }
+  return warnings;
+}
+
 int run_plan(const PlanArguments& arguments) {
   const Result<loading::LoadedScene> scene = loading::load_whole_scene(arguments.scene, arguments.load);
   if (!scene) return print_errors(scene.errors());
   print_warnings(scene->scene.warnings);
+  const Errors thin_parts = thin_parts_of(*scene);
+  print_warnings(thin_parts);
   const Model& model = scene->built.model;
   const std::vector<Feature> features = features_of(scene->scene.spec, model, rest_state(model));
   std::size_t total = 0;
@@ -145,6 +174,8 @@ int run_plan(const PlanArguments& arguments) {
           .member("why", f.why)
           .member("bytes", f.bytes)
           .end_object();
+    json.end_list().key("thin_parts").begin_list();
+    for (const Error& warning : thin_parts) json.value(std::string_view(warning.where + ": " + warning.message));
     std::fputs(json.end_list().end_object().text().c_str(), stdout);
     return exit_good;
   }
@@ -167,8 +198,9 @@ int run_plan(const PlanArguments& arguments) {
 
 Command add_plan(CLI::App& program) {
   auto arguments = std::make_shared<PlanArguments>();
-  CLI::App* app =
-      program.add_subcommand("plan", "Says what a scene needs and what is left out, memory, time and solver.");
+  CLI::App* app = program.add_subcommand(
+      "plan",
+      "Says what a scene needs and what is left out, memory, time, solver, and tissue too thin for its spheres.");
   app->footer("Example: ctpm plan scenes/liver.json");
   app->add_option("scene", arguments->scene, "Scene file (.json)")->required();
   app->add_flag("--json", arguments->json, "Print JSON");

@@ -34,7 +34,7 @@ int run_preview(const PreviewArguments& arguments) {
   // With --spheres the surface stands on the left half and the layered spheres on the right.
   const int width = arguments.spheres ? size->width / 2 : size->width;
   const Model& model = scene->built.model;
-  render::SceneView view = views::view_of(scene->scene.spec, model, loading::surfaces_of(scene->organs));
+  render::SceneView view = views::view_of(scene->scene.spec, model);
   const Result<views::Look> look =
       views::find_look(arguments.look, scene->scene.spec, view, double(width) / size->height);
   if (!look) return print_errors(look.errors());

@@ -187,7 +187,7 @@ Vec3 rest_middle(const Model& model, std::size_t element) {
 }
 
 std::optional<double> cut_depth(const SessionTrack& track, const recordings::SessionStart& start) {
-  session::CutDepth depth(start.model, start.surfaces);
+  session::CutDepth depth(start.model);
   const std::size_t axial_count = ElementPlaces(start.model).constraints;
   for (std::size_t i = 0; i < axial_count; ++i)
     if (track.severed_at[i] >= 0) depth.add(i);

@@ -86,7 +86,7 @@ Result<Reel> make_reel(recordings::SessionReader& session, const session::TickRa
   if (!film) return film.errors();
   reel.film = std::move(*film);
   const Model& model = reel.film->model();
-  render::SceneView view = views::view_of(reel.film->scene(), model, session.start().surfaces);
+  render::SceneView view = views::view_of(reel.film->scene(), model);
   const int height = options.size.height;
   const Result<views::Look> look = views::find_look(options.look, reel.film->scene(), view, double(width) / height);
   if (!look) return look.errors();

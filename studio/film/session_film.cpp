@@ -39,7 +39,7 @@ SessionFilm::SessionFilm(recordings::SessionReader& reader, scenes::SceneSpec sc
       range_(range),
       allow_diverged_(allow_diverged),
       cursor_(std::move(cursor)),
-      cut_depth_(reader.start().model, reader.start().surfaces) {}
+      cut_depth_(reader.start().model) {}
 
 Result<std::unique_ptr<SessionFilm>> SessionFilm::create(recordings::SessionReader& reader,
                                                          const session::TickRange& range, bool allow_diverged) {
@@ -83,6 +83,7 @@ Result<Done> SessionFilm::begin() {
   const Result<std::vector<recordings::Event>> events = reader_.events();
   if (!events) return events.errors();
   overlay_.loose = recordings::pieces_came_loose(*events, range_.from);
+  overlay_.inside_out = recordings::cells_inside_out(*events, range_.from);
   overlay_.tick = range_.from, overlay_.time = double(range_.from) * model.tick;
   return cursor_.seek(range_.from);
 }
@@ -94,6 +95,7 @@ void SessionFilm::take_tick() {
   overlay_.force = norm(cursor_.report().tool_force);
   overlay_.depth = cursor_.report().depth;
   overlay_.loose += cursor_.report().came_loose;
+  overlay_.inside_out = cursor_.report().inverted;
   keep_inputs(cursor_.record().inputs);
   std::vector<render::ForcePoint>& history = overlay_.history;
   if (overlay_.tick % plot_every_ == 0) history.push_back({overlay_.time, overlay_.force});
@@ -116,6 +118,7 @@ std::vector<Inputs> SessionFilm::moments() const {
 }
 
 std::string SessionFilm::verdict() const {
+  if (is_same() && overlay_.inside_out > 0) return "replay same as recorded, but TISSUE IS INSIDE OUT";
   return is_same() ? "replay same as recorded"
                    : "REPLAY DIFFERS from the recording since " +
                          output::fixed(double(first_different_) * model().tick, 3) + " s";
@@ -148,7 +151,8 @@ Result<Shot> SessionFilm::shoot(std::int64_t tick) {
   }
   show_cut_depth();
   overlay_.verdict = verdict();
-  overlay_.verdict_tone = is_same() ? render::VerdictTone::good : render::VerdictTone::bad;
+  const bool is_good = is_same() && overlay_.inside_out == 0;
+  overlay_.verdict_tone = is_good ? render::VerdictTone::good : render::VerdictTone::bad;
   return Shot{cursor_.state(), overlay_, moments()};
 }
 

@@ -39,6 +39,9 @@ class SessionFilm {
   /// Pieces of tissue that came loose from the session's start to the last shot.
   std::int64_t pieces_loose() const { return overlay_.loose; }
 
+  /// Tissue cells that are inside out in the last shot.
+  std::int32_t cells_inside_out() const { return overlay_.inside_out; }
+
   const scenes::SceneSpec& scene() const { return scene_; }
   const Model& model() const { return reader_.start().model; }
   const recordings::SessionReader& reader() const { return reader_; }

@@ -51,6 +51,7 @@ Result<Done> write_session(output::JsonWriter& json, const SidecarSession& sessi
   json.member("tick_s", tick).member("first_tick", film.range().from).member("last_tick", film.range().to);
   json.member("from_s", double(film.range().from) * tick).member("to_s", double(film.range().to) * tick);
   json.member("pieces_came_loose", film.pieces_loose());
+  json.member("cells_inside_out_at_end", film.cells_inside_out());
   const render::DrawOptions& draw = session.look->draw;
   json.key("camera").begin_object().member("name", session.look->camera);
   json.member("follows_tool", session.look->follows);

@@ -72,12 +72,6 @@ Result<scenes::BuiltScene> build_changed(const LoadedScene& scene,
   return scenes::build_model(spec, scene.organs);
 }
 
-std::vector<Surface> surfaces_of(const std::vector<FilledOrgan>& organs) {
-  std::vector<Surface> surfaces;
-  for (const FilledOrgan& organ : organs) surfaces.push_back(organ.surface);
-  return surfaces;
-}
-
 double damage_force_of(const scenes::SceneSpec& scene) {
   double least = 0;
   for (const scenes::OrganSpec& organ : scene.organs)

@@ -34,9 +34,6 @@ Result<LoadedScene> load_whole_scene(const std::string& path, const scenes::Load
 Result<scenes::BuiltScene> build_changed(const LoadedScene& scene,
                                          const std::function<void(scenes::SceneSpec&)>& change);
 
-/// The surfaces of the organs, in their order.
-std::vector<Surface> surfaces_of(const std::vector<FilledOrgan>& organs);
-
 /// Smallest damage limit of the organs for the force on a tool [N]; 0 if no organ has one. The depth limits are in the
 /// Model (OrganRange::damage_depth).
 double damage_force_of(const scenes::SceneSpec& scene);

@@ -61,7 +61,11 @@ void add_box_surface(FilledOrgan& block, int steps) {
 Result<std::vector<reports::Picture>> draw_shots(const scenes::SceneSpec& scene, const std::vector<FilledOrgan>& organs,
                                                  const Model& model, const render::Camera& camera,
                                                  const std::vector<PaperShot>& shots) {
-  render::SceneView view = views::view_of(scene, model, loading::surfaces_of(organs));
+  // A rig has no surface of its own; blocks are drawn with the faces that were bound to their spheres.
+  Model drawn = model;
+  drawn.surfaces.clear();
+  for (const FilledOrgan& organ : organs) drawn.surfaces.push_back(organ.surface);
+  render::SceneView view = views::view_of(scene, drawn);
   Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(kWidth, kHeight, std::move(view));
   if (!renderer) return renderer.errors();
   std::vector<reports::Picture> pictures;

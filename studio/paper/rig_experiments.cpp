@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "core/stepping/step.h"
 #include "studio/output/number_text.h"
@@ -14,8 +16,12 @@ namespace {
 
 constexpr const char* kOrgans[] = {"skin", "kidney", "liver"};
 
-/// Bounds of what must hold [share].
+/// Bounds of the network's error to the closed forms [share].
 constexpr double kStaticBound = 1e-3, kLambdaBound = 0.025, kMovingBound = 0.01;
+/// Bounds within which a closed form meets print [share]. Table 1 prints lambda with two or three digits.
+constexpr double kForceInPrint = 0.10, kLambdaInPrint = 0.025;
+constexpr const char *kLambdas = "lambda of Table 1", *kForces = "forces of Table 1, Figs. 5 and 6",
+                     *kMeasured = "measured ranges of Fig. 8";
 
 struct Reading {
   const char* name;
@@ -23,9 +29,11 @@ struct Reading {
 };
 constexpr Reading kReadings[] = {{"kPa s", 1.0}, {"Pa s", 1e-3}};
 
-/// Reads the first organ's viscosity in the other unit, with its preset's twin.
-void read_viscosity(scenes::SceneSpec& scene, const Reading& reading) {
+/// Reads the first organ's viscosity in the other unit, with its preset's twin. Both readings are integrated alike:
+/// backward Euler also damps the swinging of the spheres beside C, which no law here has.
+void prepare(scenes::SceneSpec& scene, const Reading& reading) {
   if (reading.factor != 1.0) scene.organs[0].material.preset += "-pa-s";
+  scene.solver.integrator = scenes::IntegratorSpec::backward_euler;
 }
 
 /// Plot of one organ's Table 1, as in Figs. 5 and 6.
@@ -69,11 +77,11 @@ reports::Table table_1_layout() {
                    {"tpm_paper_n", "TPM paper [N]"},
                    {"tpm_closed_n", "closed form", 4},
                    {"tpm_network_n", "network", 4},
-                   {"tpm_off_percent", "off paper [%]", 2},
+                   {"tpm_off_percent", "closed form off paper [%]", 2},
                    {"ctpm_paper_n", "CTPM paper [N]"},
                    {"ctpm_closed_n", "closed form", 4},
                    {"ctpm_network_n", "network", 4},
-                   {"ctpm_off_percent", "off paper [%]", 2}};
+                   {"ctpm_off_percent", "closed form off paper [%]", 2}};
   return table;
 }
 
@@ -88,14 +96,24 @@ Result<OrganForces> press_organ(const std::string& scenes, const std::string& or
   if (!scene) return scene.errors();
   OrganForces out{organ, rig::site_of(scene->scene.spec.organs[0]), {}, {}};
   for (const bool softens : {false, true}) {
-    const Result<scenes::BuiltScene> built =
-        loading::build_changed(*scene, [&](scenes::SceneSpec& s) { s.organs[0].softening = softens; });
+    const Result<scenes::BuiltScene> built = loading::build_changed(
+        *scene, [&](scenes::SceneSpec& s) { prepare(s, kReadings[0]), s.organs[0].softening = softens; });
     if (!built) return built.errors();
     Result<std::vector<double>> force = rig::press_rig(built->model, scene->path, rig::printed_table(organ));
     if (!force) return force.errors();
     (softens ? out.ctpm : out.tpm) = std::move(*force);
   }
   return out;
+}
+
+/// The network with the closed form, and the closed form with print.
+void add_value(Experiment& experiment, Claim claim, const char* figure, double bound, double bound_in_print) {
+  const std::optional<double> printed = std::exchange(claim.paper, {});
+  claim.bound = bound;
+  experiment.claims.push_back(claim);
+  claim.kind = ClaimKind::print, claim.figure = figure;
+  claim.network = {}, claim.paper = printed, claim.bound = bound_in_print;
+  experiment.claims.push_back(claim);
 }
 
 void add_table_1(Experiment& experiment, const OrganForces& forces) {
@@ -110,19 +128,18 @@ void add_table_1(Experiment& experiment, const OrganForces& forces) {
                 .quantity = "lambda" + at + " [kPa/mm]",
                 .paper = row.lambda,
                 .closed_form = law,
-                .network = own,
-                .paper_bound = kLambdaBound};
-    experiment.claims.push_back(claim);
+                .network = own};
+    add_value(experiment, claim, kLambdas, kLambdaBound, kLambdaInPrint);
     const double closed_tpm = rig::table_force(forces.site, row.depth, false),
                  closed_ctpm = rig::table_force(forces.site, row.depth, true);
-    claim.quantity = "force" + at + " [N]", claim.closed_form_bound = kStaticBound, claim.paper_bound = {};
+    claim.quantity = "force" + at + " [N]";
     claim.paper = row.tpm, claim.closed_form = closed_tpm, claim.network = forces.tpm[i];
-    experiment.claims.push_back(claim);
+    add_value(experiment, claim, kForces, kStaticBound, kForceInPrint);
     claim.structure = "CTPM", claim.paper = row.ctpm, claim.closed_form = closed_ctpm, claim.network = forces.ctpm[i];
-    experiment.claims.push_back(claim);
+    add_value(experiment, claim, kForces, kStaticBound, kForceInPrint);
     experiment.section.tables[0].rows.push_back({forces.organ, row.depth, row.lambda, law, own, row.tpm, closed_tpm,
-                                                 forces.tpm[i], 100 * (forces.tpm[i] / row.tpm - 1), row.ctpm,
-                                                 closed_ctpm, forces.ctpm[i], 100 * (forces.ctpm[i] / row.ctpm - 1)});
+                                                 forces.tpm[i], 100 * (closed_tpm / row.tpm - 1), row.ctpm, closed_ctpm,
+                                                 forces.ctpm[i], 100 * (closed_ctpm / row.ctpm - 1)});
   }
 }
 
@@ -205,7 +222,7 @@ Result<Done> add_relaxation(Experiment& experiment, const loading::LoadedScene& 
   for (const bool softens : {true, false}) {
     if (!softens && !is_plotted) continue;
     const Result<scenes::BuiltScene> built = loading::build_changed(
-        scene, [&](scenes::SceneSpec& s) { read_viscosity(s, reading), s.organs[0].softening = softens; });
+        scene, [&](scenes::SceneSpec& s) { prepare(s, reading), s.organs[0].softening = softens; });
     if (!built) return built.errors();
     Result<reports::Series> force = press_over_time(built->model, scene.path, relaxation_depth, kDuration, kEvery);
     if (!force) return force.errors();
@@ -219,20 +236,20 @@ Result<Done> add_relaxation(Experiment& experiment, const loading::LoadedScene& 
                 .structure = "CTPM",
                 .viscosity = reading.name,
                 .quantity = "force over 5 s, largest difference [share of largest]",
-                .closed_form_error = found.share(),
-                .closed_form_bound = kMovingBound,
+                .own_error = found.share(),
+                .bound = kMovingBound,
                 .note = "against Eq. 10 integrated"};
     experiment.claims.push_back(claim);
-    claim.closed_form_error = {}, claim.note = "Eq. 14";
+    claim.own_error = {}, claim.note = "Eq. 14";
     claim.quantity = "force at rest at 4 mm [N]", claim.closed_form = rig::table_force(site, kPressDepth, true),
     claim.network = force->y.back();
     experiment.claims.push_back(claim);
     const double peak = *std::max_element(force->y.begin(), force->y.end());
     claim.quantity = "force lost after the peak [share of peak]", claim.note = "how much there is to relax",
-    claim.closed_form_bound = {};
+    claim.bound = {};
     const double law_peak = *std::max_element(law.begin(), law.end());
     claim.closed_form = 1 - law.back() / law_peak, claim.network = 1 - force->y.back() / peak;
-    claim.closed_form_error = *claim.network - *claim.closed_form;
+    claim.own_error = *claim.network - *claim.closed_form;
     experiment.claims.push_back(claim);
     if (is_plotted)
       plot.series.push_back(law_series(reading.factor == 1.0 ? "CTPM, Eq. 10 integrated" : "", samples, law, 6));
@@ -256,6 +273,21 @@ std::vector<double> depths_of(const std::vector<rig::Sample>& samples) {
   return depths;
 }
 
+/// The law's depth at rest against the range that the paper quotes from measurements.
+Claim measured_range(const CreepLoad& load, double depth) {
+  return {.kind = ClaimKind::print,
+          .experiment = "creep",
+          .figure = kMeasured,
+          .organ = "liver",
+          .structure = "CTPM",
+          .quantity = "depth after 33 s under " + output::short_number(load.newton) + " N [mm]",
+          .closed_form = depth,
+          .paper_low = load.measured_low,
+          .paper_high = load.measured_high,
+          .bound = 0,
+          .note = "measured on pig liver; 0 % is inside"};
+}
+
 /// One load and reading of Fig. 8.
 Result<Done> add_creep(Experiment& experiment, const loading::LoadedScene& scene, const CreepLoad& load,
                        const Reading& reading, reports::Plot& plot) {
@@ -270,7 +302,7 @@ Result<Done> add_creep(Experiment& experiment, const loading::LoadedScene& scene
   const std::vector<double> law = depths_of(samples);
   for (const bool softens : {true, false}) {
     const Result<scenes::BuiltScene> built = loading::build_changed(scene, [&](scenes::SceneSpec& s) {
-      read_viscosity(s, reading), s.organs[0].softening = softens, s.loads[0].force = {0, 0, -load.newton};
+      prepare(s, reading), s.organs[0].softening = softens, s.loads[0].force = {0, 0, -load.newton};
     });
     if (!built) return built.errors();
     Result<reports::Series> depth = creep_over_time(*built, scene.path, kDuration, kEvery);
@@ -286,28 +318,25 @@ Result<Done> add_creep(Experiment& experiment, const loading::LoadedScene& scene
                 .viscosity = reading.name,
                 .quantity = "depth over 33 s under " + output::short_number(load.newton) +
                             " N, largest difference [share of largest]",
-                .closed_form_error = compare(*depth, law).share(),
-                .closed_form_bound = kMovingBound,
+                .own_error = compare(*depth, law).share(),
+                .bound = kMovingBound,
                 .note = "against Eq. 10 integrated"};
     if (is_slow && is_large)
-      claim.closed_form_bound = {},
-      claim.note +=
-          ": more than the 1 % that hold elsewhere, while it moves. Eq. 10 treats lambda as constant and "
-          "elastic; in the network P2/K' of it comes from the line's own triples, which creep (next row)";
+      claim.bound = {}, claim.note +=
+                        ": more than the 1 % that hold elsewhere, while it moves. Eq. 10 treats lambda as constant and "
+                        "elastic; in the network P2/K' of it comes from the line's own triples, which creep (next row)";
     experiment.claims.push_back(claim);
     if (is_slow)
-      claim.closed_form_error = compare(*depth, depths_of(creep_with(rig::Law::eqs_3_to_8_rig))).share(),
-      claim.closed_form_bound = kMovingBound,
-      claim.note = "against Eqs. 3 to 8 of all three triples of the rig, integrated",
+      claim.own_error = compare(*depth, depths_of(creep_with(rig::Law::eqs_3_to_8_rig))).share(),
+      claim.bound = kMovingBound, claim.note = "against Eqs. 3 to 8 of all three triples of the rig, integrated",
       experiment.claims.push_back(claim);
-    claim.closed_form_error = {}, claim.closed_form_bound = kMovingBound;
+    claim.own_error = {}, claim.bound = kMovingBound;
     claim.quantity = "depth after 33 s under " + output::short_number(load.newton) + " N [mm]",
     claim.closed_form = rig::slow_depth(site, stress), claim.network = depth->y.back();
-    const bool is_inside = depth->y.back() >= load.measured_low && depth->y.back() <= load.measured_high;
-    claim.note = "measured on pig liver " + output::short_number(load.measured_low) + " to " +
-                 output::short_number(load.measured_high) +
-                 " mm: " + (is_inside ? "inside" : "outside, shown as it is");
+    claim.note = "limit of Eq. 12";
     experiment.claims.push_back(claim);
+    // The depth at rest depends on no viscosity, so print is asked once.
+    if (is_slow) experiment.claims.push_back(measured_range(load, rig::slow_depth(site, stress)));
     plot.series.push_back(law_series(reading.factor == 1.0 ? "CTPM, Eq. 10 integrated" : "", samples, law, 6));
   }
   return Done{};
@@ -338,16 +367,21 @@ Result<Experiment> run_table_1(const std::string& scenes) {
     section.plots.push_back(force_plot(organ, forces->site, forces->tpm, forces->ctpm));
     add_table_1(experiment, *forces);
   }
-  int close = 0;
-  for (const Claim& c : experiment.claims) close += c.closed_form_bound && std::abs(c.error_to_paper()) <= 0.10 ? 1 : 0;
+  const auto close = [&](const char* figure) {
+    std::int64_t met = 0, all = 0;
+    for (const Claim& c : experiment.claims)
+      if (c.figure == figure) ++all, met += c.verdict() == reports::ReportVerdict::met ? 1 : 0;
+    return std::to_string(met) + " of " + std::to_string(all);
+  };
   section.paragraphs = {
-      "Sphere C of the rig (Fig. 3) is pressed from depth to depth at 10 mm/s and held for 12 s at each. The "
-      "closed forms are F = (P2 + lambda) x S0 for the TPM column, divided by "
-      "1 + tan(theta) for the CTPM column. The moduli are used in kPa/mm and the arm |AC| is 6 r: neither is "
-      "said in the paper, both follow from its numbers.",
-      "All 18 lambdas agree with print. Of the 36 printed forces " + std::to_string(close) +
-          " lie within 10 % of the network; skin at 2 mm, kidney at 4 mm and the liver's CTPM column from 4 "
-          "to 10 mm do not, which is the paper's own scatter and is not tuned to."};
+      "Sphere C of the rig (Fig. 3) is pressed from depth to depth at 10 mm/s and held for 12 s at each. The closed "
+      "forms are F = (P2 + lambda) x S0 for the TPM column, divided by 1 + tan(theta) for the CTPM column. The moduli "
+      "are used in kPa/mm and the arm |AC| is 6 r: neither is said in the paper, both follow from its numbers.",
+      "Two questions are kept apart. The network must meet the closed forms: within 0.1 % in force, and 2.5 % in "
+      "lambda, which is the small rest after P2 is taken off. Whether the closed forms meet print is counted: " +
+          close(kLambdas) + " lambdas lie within 2.5 % of print and " + close(kForces) +
+          " forces within 10 %. The others are the paper's own scatter, to which nothing is tuned; the table below the "
+          "plots gives each one's distance."};
   return experiment;
 }
 
@@ -365,10 +399,11 @@ Result<Experiment> run_relaxation(const std::string& scenes) {
   }
   section.plots = {plot};
   section.paragraphs = {
-      "C is pressed at 2 mm/s to 4 mm within 2 s, then held for 3 s. The network is compared with Eq. 10 "
-      "integrated over time; after the ramp that is Eq. 11. With the viscosity in kPa s/mm "
-      "the time constant v1/(K1 + K2) is 0.17 s and the force relaxes in sight; with Pa s, as printed, it is "
-      "0.17 ms and the force follows the depth without delay."};
+      "C is pressed at 2 mm/s to 4 mm within 2 s, then held for 3 s. The network is compared with Eq. 10 integrated "
+      "over time; after the ramp that is Eq. 11. With the viscosity in kPa s/mm the time constant v1/(K1 + K2) is 0.17 "
+      "s and the force relaxes in sight; with Pa s, as printed, it is 0.17 ms and the force follows the depth without "
+      "delay. All runs of the rig are integrated alike, with backward Euler: the closed forms have no mass, and its "
+      "damping takes away the swinging of the spheres beside C, which they do not have."};
   return experiment;
 }
 
@@ -389,18 +424,17 @@ Result<Experiment> run_creep(const std::string& scenes) {
     section.plots.push_back(plot);
   }
   section.paragraphs = {
-      "The load comes on within 0.5 s and stays; 33 s are run. The paper's sentence names the measured "
-      "ranges for the two forces the wrong way round: 3.8 to 6.65 mm can only belong to "
-      "0.196 N, 9.6 to 11.9 mm to 0.98 N. Under 0.196 N the law, and with it the network, stays below the "
-      "measured range; under 0.98 N it lies inside.",
-      "While C moves fast under 0.98 N, with the viscosity in kPa s, the network is 2.3 % stiffer than Eq. "
-      "10: "
-      "that is shown and not called met. Eq. 10 follows from Eqs. 3 to 8 only while lambda is constant, and "
-      "takes all of lambda as elastic. In the network a share of P2/K' of lambda comes from the two triples "
-      "of the line A to E, which are stretched when C dips and creep like every triple. Eqs. 3 to 8 written "
-      "for all three triples of the rig are what the network follows.",
-      "The depth at rest is the limit of Eq. 12, sigma0 (1 + tan theta)(K1 + K2) / (lambda (K1 + K2) + K1 "
-      "K2). The first term that Eq. 16 prints before it does not belong there."};
+      "The load comes on within 0.5 s and stays; 33 s are run. The paper's sentence names the measured ranges for the "
+      "two forces the wrong way round: 3.8 to 6.65 mm can only belong to 0.196 N, 9.6 to 11.9 mm to 0.98 N. Under "
+      "0.196 N the law, and with it the network, stays below the measured range and misses it; under 0.98 N it lies "
+      "inside and meets it.",
+      "While C moves fast under 0.98 N, with the viscosity in kPa s, the network is 2.3 % stiffer than Eq. 10: that is "
+      "shown and not called met. Eq. 10 follows from Eqs. 3 to 8 only while lambda is constant, and takes all of "
+      "lambda as elastic. In the network a share of P2/K' of lambda comes from the two triples of the line A to E, "
+      "which are stretched when C dips and creep like every triple. Eqs. 3 to 8 written for all three triples of the "
+      "rig are what the network follows.",
+      "The depth at rest is the limit of Eq. 12, sigma0 (1 + tan theta)(K1 + K2) / (lambda (K1 + K2) + K1 K2). The "
+      "first term that Eq. 16 prints before it does not belong there."};
   return experiment;
 }
 

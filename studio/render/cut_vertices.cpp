@@ -8,7 +8,6 @@
 namespace ctpm::render {
 namespace {
 
-constexpr double kReachInSpacings = 2.2;  // as a whole surface is bound
 constexpr std::size_t kFewestFollowed = 8;
 
 bool holds(const std::vector<std::int32_t>& sorted, std::int32_t value) {
@@ -54,14 +53,16 @@ void CutVertices::follow(Vec3 rest, Index home) {
   const auto last_of_fewest = near_.begin() + std::ptrdiff_t(std::min(near_.size(), kFewestFollowed) - 1);
   std::nth_element(near_.begin(), last_of_fewest, near_.end());
   std::vector<Vec3> centres;
-  std::vector<double> weights;
-  for (double reach = std::max(kReachInSpacings * links_.spacing(), 1.05 * last_of_fewest->first);; reach *= kWiden) {
+  std::vector<double> trust, weights;
+  for (double reach = std::max(surface::kBindingReach * links_.spacing(), 1.05 * last_of_fewest->first);;
+       reach *= kWiden) {
     // Only spheres within reach are sorted, nearest first.
     const auto known = near_.begin() + std::ptrdiff_t(centres.size());
     const auto within = std::partition(known, near_.end(), [&](const auto& n) { return n.first < reach; });
     std::sort(known, within);
-    for (auto n = known; n != within; ++n) centres.push_back(links_.rest(n->second));
-    weights = surface::follow_weights(rest, centres, reach);
+    for (auto n = known; n != within; ++n)
+      centres.push_back(links_.rest(n->second)), trust.push_back(links_.mass(n->second));
+    weights = surface::follow_weights(rest, centres, trust, reach);
     Vec3 held = -rest;
     for (std::size_t i = 0; i < centres.size(); ++i) held += weights[i] * centres[i];
     if (norm(held) < kHeld * links_.spacing() || within == near_.end()) break;

@@ -47,6 +47,7 @@ class CutWall {
 
  private:
   Corner make_corner(Cell cube) const;
+  bool is_wall(Index a, int axis) const;
   void find_corners();
   void smooth_corners();
   Index wall_copy(Corner& corner, Index piece);
@@ -73,7 +74,7 @@ Corner CutWall::make_corner(Cell cube) const {
   Corner corner;
   for (Index n = 0; n < 8; ++n) {
     const Index s = links_.at({cube[0] + (n & 1), cube[1] + (n >> 1 & 1), cube[2] + (n >> 2)});
-    if (s < 0)
+    if (s < 0 || !links_.is_inside(s))
       corner.at_border = true;
     else
       corner.spheres.push_back(s), corner.piece.push_back(s);
@@ -103,10 +104,16 @@ std::array<Cell, 4> corners_around(Cell cell, int axis) {
   return around;
 }
 
+/// Whether a wall crosses the link from sphere `a` along an axis.
+bool CutWall::is_wall(Index a, int axis) const {
+  return links_.is_cut(a) && links_.is_severed(a, 2 * axis) && links_.is_inside(a) &&
+         links_.is_inside(links_.neighbour(a, 2 * axis));
+}
+
 void CutWall::find_corners() {
   for (Index a = 0; a < links_.count(); ++a)
     for (int axis = 0; axis < 3; ++axis) {
-      if (!links_.is_cut(a) || !links_.is_severed(a, 2 * axis)) continue;
+      if (!is_wall(a, axis)) continue;
       const auto around = corners_around(links_.cell(a), axis);
       for (std::size_t i = 0; i < 4; ++i) {
         Corner& corner = corners_.try_emplace(around[i]).first->second;
@@ -158,7 +165,7 @@ Index CutWall::wall_copy(Corner& corner, Index piece) {
 void CutWall::add_facets() {
   for (Index a = 0; a < links_.count(); ++a)
     for (int axis = 0; axis < 3; ++axis) {
-      if (!links_.is_cut(a) || !links_.is_severed(a, 2 * axis)) continue;
+      if (!is_wall(a, axis)) continue;
       const Index b = links_.neighbour(a, 2 * axis);
       std::array<Index, 4> at_a{}, at_b{};
       const auto around = corners_around(links_.cell(a), axis);

@@ -12,6 +12,9 @@ namespace {
 /// Length of the longest element between lattice neighbours; angle springs are longer.
 constexpr double kLongestLinkInSpacings = 1.6;
 
+/// Part of the heaviest sphere's mass from which a sphere counts as inside: one on a flat surface has half.
+constexpr double kInsideShare = 0.45;
+
 int step_back(int step) {
   const auto& steps = LatticeLinks::steps();
   const auto& s = steps[std::size_t(step)];
@@ -47,7 +50,9 @@ LatticeLinks::LatticeLinks(const Model& model, std::size_t organ) {
   const OrganRange& range = model.organs[organ];
   first_ = range.first, spacing_ = range.spacing;
   for (std::int32_t i = first_; i < first_ + range.count; ++i)
-    rest_.push_back(model.rest_position[std::size_t(i)]), cell_.push_back(model.cell[std::size_t(i)]);
+    rest_.push_back(model.rest_position[std::size_t(i)]), cell_.push_back(model.cell[std::size_t(i)]),
+        mass_.push_back(model.mass[std::size_t(i)]);
+  for (const double mass : mass_) inside_mass_ = std::max(inside_mass_, kInsideShare * mass);
   build_table();
   find_axes();
 

@@ -28,6 +28,9 @@ class LatticeLinks {
   std::int32_t first() const { return first_; }
   double spacing() const { return spacing_; }
   Vec3 rest(std::int32_t sphere) const { return rest_[std::size_t(sphere)]; }
+  double mass(std::int32_t sphere) const { return mass_[std::size_t(sphere)]; }  ///< [kg]
+  /// Whether the sphere lies in the tissue: the lattice reaches beyond the surface, where spheres stand for little.
+  bool is_inside(std::int32_t sphere) const { return mass(sphere) >= inside_mass_; }
   Cell cell(std::int32_t sphere) const { return cell_[std::size_t(sphere)]; }
 
   /// Rest position [m] of a point in cell coordinates, which need not be integers.
@@ -80,6 +83,8 @@ class LatticeLinks {
   Vec3 origin_;
   Vec3 axis_[3];  ///< one cell along each axis [m], from spheres in neighbouring cells
   std::vector<Vec3> rest_;
+  std::vector<double> mass_;
+  double inside_mass_ = 0;
   std::vector<Cell> cell_;
   Cell low_{}, extent_{};
   std::vector<std::int32_t> sphere_at_;  ///< dense over the box of cells

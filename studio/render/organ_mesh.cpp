@@ -25,8 +25,8 @@ void OrganMesh::set_surface(const Surface& surface, const std::vector<std::uint8
   for (float& x : per_neighbour_) x = x > 0 ? 1 / x : 0;
 }
 
-void OrganMesh::update(const Surface& surface, const State& state, std::int32_t first_sphere) {
-  surface::deform_surface(surface, state.position, first_sphere, position_);
+void OrganMesh::update(const Model& model, std::size_t organ, const Surface& surface, const State& state) {
+  surface::place_surface(model, organ, surface, state, position_);
   const std::size_t count = position_.size();
   // Normals: the sum over the triangles at a vertex, weighted by their area.
   normal_.assign(count, Vec3{});

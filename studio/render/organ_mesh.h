@@ -18,7 +18,7 @@ class OrganMesh {
   void set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip, const std::vector<float>& rind);
 
   /// Deforms the surface and fills vertices(). `first_sphere`: index of the organ's first sphere in the State.
-  void update(const Surface& surface, const State& state, std::int32_t first_sphere);
+  void update(const Model& model, std::size_t organ, const Surface& surface, const State& state);
 
   /// Interleaved floats (vertex_count x kOrganVertexFloats). The crevice is negative in hollows and positive
   /// on ridges.

@@ -25,8 +25,8 @@ Result<Done> OrganPainter::create(const Gl& gl, const SceneView& scene) {
       if (!made) return made.errors();
       programs_[std::size_t(pass)][cutaway] = *made;
     }
-  for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
-    organs_.push_back({CutSurface(*scene.model, i, scene.surfaces[i]), {}, {}, false});
+  for (std::size_t i = 0; i < scene.model->surfaces.size(); ++i) {
+    organs_.push_back({CutSurface(*scene.model, i, scene.model->surfaces[i]), {}, {}, false});
     VertexArray& array = organs_.back().array;
     array.create(gl);
     array.attribute(gl, 0, 3, 0, kOrganVertexFloats), array.attribute(gl, 1, 3, 3, kOrganVertexFloats);
@@ -42,7 +42,7 @@ void OrganPainter::update(const Gl& gl, const SceneView& scene, const State& sta
     const Surface& surface = organ.cut.surface();
     if (changed || !organ.is_set) organ.mesh.set_surface(surface, organ.cut.is_lip(), organ.cut.rind());
     organ.is_set = true;
-    organ.mesh.update(surface, state, scene.model->organs[i].first);
+    organ.mesh.update(*scene.model, i, surface, state);
     organ.array.set_stream(gl, organ.mesh.vertices());
   }
 }

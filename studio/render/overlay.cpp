@@ -182,7 +182,7 @@ struct Overlay::Parts {
   Font small, large;
 };
 
-/// Top left: title, time, tick, force, depth, pieces that came loose.
+/// Top left: title, time, tick, force, depth, pieces that came loose, cells that are inside out.
 void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
   const int pad = px(16), step = px(28), x = px(20) + pad, inner = px(300);
   int y = px(20) + pad;
@@ -190,18 +190,21 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
     plan.lines.push_back(line(large, large.shortened(data.title, inner), x, y, kWhite));
     y += px(38);
   }
-  const std::array<std::pair<std::string, std::string>, 7> facts{
+  const std::array<std::pair<std::string, std::string>, 8> facts{
       {{"session", small.shortened_inside(data.session, px(195))},
        {"model", small.shortened(data.model, px(195))},
        {data.is_over ? "ended" : "time", output::fixed(data.time, 3) + " s"},
        {"tick", std::to_string(data.tick)},
        {"force", output::fixed(data.force, 3) + " N"},
        {data.is_blade ? "cut depth" : "depth", output::fixed(1000 * data.depth, 2) + " mm"},
-       {"loose", data.loose == 0 ? "" : std::to_string(data.loose) + (data.loose == 1 ? " piece" : " pieces")}}};
+       {"loose", data.loose == 0 ? "" : std::to_string(data.loose) + (data.loose == 1 ? " piece" : " pieces")},
+       {"inside out",
+        data.inside_out == 0 ? "" : std::to_string(data.inside_out) + (data.inside_out == 1 ? " cell" : " cells")}}};
   for (const auto& [name, value] : facts) {
     if (value.empty()) continue;
     plan.lines.push_back(line(small, name, x, y, kGrey));
-    const bool is_bad = (name == "depth" && is_too_deep(data)) || (name == "force" && is_too_strong(data));
+    const bool is_bad =
+        name == "inside out" || (name == "depth" && is_too_deep(data)) || (name == "force" && is_too_strong(data));
     Line shown = line(small, value, 0, y, is_bad ? kRed : kWhite);
     shown.placed.box.x = x + inner - shown.placed.box.width;  // right-aligned, so that digits stand still
     plan.lines.push_back(shown);

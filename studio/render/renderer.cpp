@@ -141,7 +141,7 @@ void Renderer::Parts::place_ground() {
   const Bounds box = rest_bounds(scene);
   size = std::max(box.diagonal(), 1e-6);
   double lowest = dot(box.centre(), up);
-  for (const Surface& surface : scene.surfaces)
+  for (const Surface& surface : scene.model->surfaces)
     for (const Vec3& p : surface.vertex) lowest = std::min(lowest, dot(p, up));
   // A little below the lowest point, since organs sag.
   ground_height = lowest - 0.015 * size;
@@ -295,7 +295,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(int width, int height, SceneV
     errors.push_back({"picture size",
                       "got " + std::to_string(width) + "x" + std::to_string(height) + ", each must be in [16, 8192]",
                       ""});
-  if (!scene.model || scene.model->organs.size() != scene.surfaces.size())
+  if (!scene.model || scene.model->organs.size() != scene.model->surfaces.size())
     errors.push_back({"scene", "a picture needs a model and one surface for each of its organs", ""});
   if (!errors.empty()) return errors;
   for (std::size_t i = scene.looks.size(); i < scene.model->organs.size(); ++i)

@@ -19,7 +19,7 @@ OrganLook look_of(std::string_view organ_name) {
 
 Bounds rest_bounds(const SceneView& scene) {
   std::vector<Vec3> points;
-  for (const Surface& surface : scene.surfaces)
+  for (const Surface& surface : scene.model->surfaces)
     points.insert(points.end(), surface.vertex.begin(), surface.vertex.end());
   return bounds_of(points);
 }
@@ -36,7 +36,7 @@ Camera default_camera(const SceneView& scene, double aspect) {
   const Vec3 right = cross(up, side);
   const Vec3 from = side + 0.45 * -right + 0.62 * up;
   std::vector<Vec3> points;
-  for (const Surface& surface : scene.surfaces)
+  for (const Surface& surface : scene.model->surfaces)
     points.insert(points.end(), surface.vertex.begin(), surface.vertex.end());
   return fit_camera(points, -from, up, 32, aspect);
 }

@@ -30,9 +30,8 @@ OrganLook look_of(std::string_view organ_name);
 
 /// The scene to draw: a Model, and one surface and look for each of its organs.
 struct SceneView {
-  const Model* model = nullptr;   ///< must outlive the Renderer
-  std::vector<Surface> surfaces;  ///< bound to the spheres of their organ    (organ_count)
-  std::vector<OrganLook> looks;   ///< empty: look_of() each organ's name     (organ_count)
+  const Model* model = nullptr;  ///< must outlive the Renderer
+  std::vector<OrganLook> looks;  ///< empty: look_of() each organ's name     (organ_count)
 };
 
 /// The box around everything at rest [m].

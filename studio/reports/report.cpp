@@ -17,7 +17,7 @@ h2 { font-size: 1.25rem; margin: 2.4rem 0 .5rem; padding-top: .8rem; border-top:
 .subtitle, .caption { color: #555; }
 .caption { font-size: 13px; margin: .3rem 0 0; max-width: 62em; }
 .head { font-weight: 600; margin: .8rem 0 .3rem; }
-.verdict { padding: .5rem .8rem; border-left: 5px solid; background: #f6f6f6; font-weight: 600; }
+.verdict { padding: .5rem .8rem; border-left: 5px solid #999; background: #f6f6f6; font-weight: 600; }
 .verdict.good { border-color: #009e73; } .verdict.bad { border-color: #c0392b; }
 .row { display: flex; flex-wrap: wrap; gap: 1.2rem; margin: .8rem 0; }
 figure { margin: 0; flex: 0 1 520px; max-width: 100%; }
@@ -76,6 +76,7 @@ void Report::add_paragraph(const std::string& text) { body_ += "<p>" + escape_ht
 void Report::add_verdict(bool is_good, const std::string& text) {
   body_ += std::string("<p class=\"verdict ") + (is_good ? "good" : "bad") + "\">" + escape_html(text) + "</p>\n";
 }
+void Report::add_remark(const std::string& text) { body_ += "<p class=\"verdict\">" + escape_html(text) + "</p>\n"; }
 void Report::add_table(const Table& table) { body_ += to_html(table); }
 
 void Report::add_plots(const std::vector<Plot>& plots) {

@@ -5,9 +5,8 @@
 
 namespace ctpm::session {
 
-CutDepth::CutDepth(const Model& model, const std::vector<Surface>& surfaces)
-    : model_(model), is_added_(model.axial.size()) {
-  for (const Surface& surface : surfaces)
+CutDepth::CutDepth(const Model& model) : model_(model), is_added_(model.axial.size()) {
+  for (const Surface& surface : model.surfaces)
     if (!surface.triangle.empty()) surfaces_.emplace_back(surface.vertex, surface.triangle);
 }
 

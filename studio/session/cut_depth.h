@@ -16,7 +16,7 @@ namespace ctpm::session {
 class CutDepth {
  public:
   /// `surfaces` at rest. `model` must outlive this.
-  CutDepth(const Model& model, const std::vector<Surface>& surfaces);
+  explicit CutDepth(const Model& model);
 
   /// Adds the severed elements of a later State of the same session.
   void add(const State& state);

@@ -19,7 +19,6 @@ recordings::SessionStart start_session(const loading::LoadedScene& scene) {
   recordings::SessionStart start;
   start.scene_text = scene.scene.text;
   start.model = scene.built.model;
-  start.surfaces = loading::surfaces_of(scene.organs);
   start.initial_state = rest_state(start.model);
   stepping::Stepper(start.model).settle(start.initial_state, std::llround(scene.scene.spec.settle / start.model.tick));
   start.build_fingerprint = version::build_fingerprint();

@@ -1,5 +1,6 @@
 #include "studio/session/run_session.h"
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <thread>
@@ -39,6 +40,12 @@ class EventWatch {
     if (report.came_loose > 0)
       writer_.event({.tick = tick, .kind = recordings::EventKind::piece_came_loose, .pieces = report.came_loose});
     look_for_damage(tick, report);
+    look_for_inversion(tick, report);
+  }
+
+  /// Call it after the last tick.
+  void finish(std::int64_t end) {
+    if (inside_out_.goes_on && inside_out_.last_tick + 1 < end) tell_that_it_came_back();
   }
 
  private:
@@ -76,11 +83,26 @@ class EventWatch {
     ends(too_strong_, tick);
   }
 
+  void look_for_inversion(std::int64_t tick, const stepping::StepReport& report) {
+    if (begins(inside_out_, tick, report.inverted > 0)) {
+      writer_.event({.tick = tick, .kind = recordings::EventKind::turned_inside_out, .cells = report.inverted});
+      most_inverted_ = 0;
+    }
+    most_inverted_ = std::max(most_inverted_, report.inverted);
+    if (ends(inside_out_, tick)) tell_that_it_came_back();
+  }
+
+  void tell_that_it_came_back() {
+    writer_.event(
+        {.tick = inside_out_.last_tick + 1, .kind = recordings::EventKind::came_back, .cells = most_inverted_});
+  }
+
   recordings::SessionWriter& writer_;
   double depth_limit_ = 0, force_limit_ = 0;  // [m], [N]; 0: no limit
   std::int32_t organ_ = -1;                   // whose depth limit it is
   std::int32_t tool_ = -1;                    // of the present contact
-  Spell contact_, cut_, too_deep_, too_strong_;
+  std::int32_t most_inverted_ = 0;            // cells in one tick of the present spell
+  Spell contact_, cut_, too_deep_, too_strong_, inside_out_;
 };
 
 }  // namespace
@@ -131,6 +153,7 @@ RunOutcome run_session(const Model& model, State& state, sources::InputSource& s
     if (options.progress)
       options.progress(outcome.ticks, options.most_ticks ? options.most_ticks : source.tick_count());
   }
+  watch.finish(outcome.ticks);
   outcome.fault = source.fault();
   return outcome;
 }

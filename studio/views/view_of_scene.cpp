@@ -4,10 +4,9 @@
 
 namespace ctpm::views {
 
-render::SceneView view_of(const scenes::SceneSpec& scene, const Model& model, std::vector<Surface> surfaces) {
+render::SceneView view_of(const scenes::SceneSpec& scene, const Model& model) {
   render::SceneView view;
   view.model = &model;
-  view.surfaces = std::move(surfaces);
   for (const scenes::OrganSpec& organ : scene.organs) {
     render::OrganLook look = render::look_of(organ.name);
     look.name = organ.name;

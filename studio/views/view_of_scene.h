@@ -10,6 +10,6 @@
 namespace ctpm::views {
 
 /// The renderer's view of a scene: its surfaces in the organs' colours. `model` must outlive the view.
-render::SceneView view_of(const scenes::SceneSpec& scene, const Model& model, std::vector<Surface> surfaces);
+render::SceneView view_of(const scenes::SceneSpec& scene, const Model& model);
 
 }  // namespace ctpm::views

@@ -21,25 +21,32 @@ TEST_P(EveryIntegrator, AllocatesNothingAfterTheFirstTick) {
   network::Material material = testing::liver_material();
   if (GetParam() == Integrator::leapfrog) material.viscosity = 5e3, material.stiffness_scale = 0.3;
   for (const int threads : {1, 2}) {
-    Model model = testing::make_block_model(12, 12, 12, network::Structure::ctpm, material);
+    Model model = testing::make_block_model(12, 12, 12, network::Structure::ctpm, material, 0.012, 10);
     model.tools = {testing::ball(0.02), testing::scalpel(0.1)};
     testing::use_integrator(model, GetParam());
     stepping::Stepper stepper(model, {threads, elements::best_instruction_set()});
     State state = rest_state(model);
-    std::int32_t contacts = 0, severed = 0;
+    std::int32_t contacts = 0, severed = 0, inverted = 0;
     // The first tick with each tool may allocate.
     long before = 0;
     for (int tick = 0; tick < 24; ++tick) {
       Inputs inputs;
       inputs.tool = tick < 12 ? 0 : 1;
-      inputs.position = tick < 12 ? Vec3{0, 0, 0.156 - 0.0006 * tick} : Vec3{0.0007, -0.1 + 0.01 * (tick - 12), 0.1};
+      // The ball jumps into the block, so that cells turn inside out.
+      inputs.position = tick < 12 ? Vec3{0, 0, tick < 6 ? 0.156 - 0.0006 * tick : 0.12}
+                                  : Vec3{0.0007, -0.1 + 0.01 * (tick - 12), 0.1};
+      // For some ticks the block is inside out.
+      if (tick == 6)
+        for (double& z : state.position.z) z = -z;
+      if (tick == 12) state = rest_state(model);
       if (tick == 1 || tick == 13) before = allocations;
       const stepping::StepReport report = stepper.step(state, inputs);
       if (tick != 0 && tick != 12) {
         ASSERT_EQ(allocations, before) << "tick " << tick << ", " << threads << " threads";
       }
-      contacts += report.contacts, severed += report.severed;
+      contacts += report.contacts, severed += report.severed, inverted += report.inverted;
     }
+    EXPECT_GT(inverted, 0);
     EXPECT_GT(contacts, 0);
     EXPECT_GT(severed, 0);
   }
@@ -106,6 +113,12 @@ TEST(SpringsOnly, StepperHoldsPositionForceVelocityMassAndTheBatchesOfElements) 
     for (double& k : m.constraints.k) k *= 1e-3;
   };
   EXPECT_GT(taken_by(constraints), room);
+  const auto cells = [](Model& m) {
+    m.tissue_cells =
+        testing::make_block_model(11, 11, 11, network::Structure::mass_spring, testing::liver_material(), 0.012, 10)
+            .tissue_cells;
+  };
+  EXPECT_GT(taken_by(cells), room);
   const auto softening = [](Model& m) { m.has_softening = true, m.axial.third.assign(m.axial.size(), -1); };
   EXPECT_GT(taken_by(softening), room);
 }

@@ -42,12 +42,14 @@ inline FilledOrgan make_block(int ni, int nj, int nk, double spacing = 0.012) {
 
 /// A Model of one block whose lowest spheres are anchored.
 inline Model make_block_model(int ni, int nj, int nk, network::Structure structure = network::Structure::ctpm,
-                              network::Material material = liver_material(), double spacing = 0.012) {
+                              network::Material material = liver_material(), double spacing = 0.012,
+                              double inversion_resistance = 0) {
   const FilledOrgan organ = make_block(ni, nj, nk, spacing);
   network::OrganSettings settings;
   settings.name = "block";
   settings.structure = structure;
   settings.material = material;
+  settings.inversion_resistance = inversion_resistance;
   for (int i = 0; i < ni * nj; ++i) settings.anchored.push_back(i);
   Model model;
   const Result<Done> added = network::add_organ(model, organ, settings);

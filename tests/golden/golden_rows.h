@@ -47,9 +47,29 @@ inline constexpr GoldenRow kGoldenRevision2[] = {
     {"ctpm, sdirk2", {0xab9834e13ef5e03a, 0x83d99c0f5e0da13c, 0x85d8915798f0e007, 0x0b5167087a7f4849}},
 };
 
+inline constexpr GoldenRow kGoldenRevision3[] = {
+    {"mass-spring, auto", {0xff5959e6840950ea, 0xcafb19a134d3b3b0, 0x099b982dd8f9516a, 0x7ada6582e12ec694}},
+    {"angle-mass-spring, auto", {0x42a8b7602b5e1cb4, 0x9269fe90d5e9297c, 0xc464acc9693a81a3, 0xdf2b9bf8b016ab7e}},
+    {"tpm, auto", {0x336807a55bfc0e06, 0xe66969782c08d880, 0x30a58a1c8809e978, 0x89abeb9e362f3f56}},
+    {"ctpm, auto", {0x82e654ed00f5d17f, 0xd40f1d30888879f6, 0x116fb8f535ac5d4d, 0xba8e5e85b027fd8c}},
+    {"tpm, backward-euler", {0x26b72390ecf2bfbc, 0x1c5dbfa5152cccfe, 0xcf5b3e77cc4ef88f, 0xea171f72a431e856}},
+    {"angle-mass-spring, backward-euler",
+     {0xb8d9c62c17abeba7, 0xc84c97cb99ff6371, 0x5ee223bb405a0954, 0x7540c5eaa79723ca}},
+    {"full, auto", {0x9bdf607e3db0b064, 0x163daea5f0d300ad, 0x8e2c0b52c632235d, 0x560f9b4fd577287e}},
+    {"full, sdirk2", {0xdb93d8730dab7087, 0x40d8f2babb95f301, 0x8cea5fc399f34f59, 0xd337ba7b5be6420c}},
+    {"ctpm, sdirk2", {0x05ceca875199c5c2, 0x430468061160fd0e, 0xf52a5a2a0716fc07, 0xe6d70a7d59cd4f48}},
+    {"resisting, auto", {0x82e654ed00f5d17f, 0x35d648c6509574b1, 0x932f052297f2d620, 0xf3e3ad1a37ac5d27}},
+    {"resisting, sdirk2", {0x05ceca875199c5c2, 0x7c70648a793e7e40, 0x983af1b0ec8eeb07, 0xb7b900c3d736182f}},
+    {"soft and resisting, auto", {0x4a67bab17f0abbbd, 0x21788022db3accde, 0x3583b1eefaba43ab, 0x94c6a1517c13ea49}},
+    {"skinned, auto", {0xf6be77f9eea6d6d8, 0x2962f33910c9a807, 0x47785013c0d248be, 0x824d2aa39507701c}},
+    {"skinned, sdirk2", {0x9f8994731b53bb51, 0x25a080b294e3dd1b, 0x75e208187401f02e, 0xfb6c54689f2c84de}},
+    {"soft and skinned, auto", {0xffc9bec4713e9af0, 0x8e00795e5c2a228c, 0x642fcb2bf6e7171f, 0x9049deb96907ebf7}},
+};
+
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09},
     {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
+    {3, kGoldenRevision3, 0xe38c0b55dc5ae189},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

@@ -41,6 +41,26 @@ constexpr Session kFullSessions[] = {
     {"full, sdirk2", network::Structure::ctpm, Integrator::sdirk2},
 };
 
+/// Of make_resisting_model().
+struct ResistingSession {
+  const char* name;
+  bool is_soft;
+  std::optional<Integrator> integrator;
+};
+
+constexpr ResistingSession kResistingSessions[] = {
+    {"resisting, auto", false, std::nullopt},
+    {"resisting, sdirk2", false, Integrator::sdirk2},
+    {"soft and resisting, auto", true, std::nullopt},
+};
+
+/// Of make_skinned_model().
+constexpr ResistingSession kSkinnedSessions[] = {
+    {"skinned, auto", false, std::nullopt},
+    {"skinned, sdirk2", false, Integrator::sdirk2},
+    {"soft and skinned, auto", true, std::nullopt},
+};
+
 std::string to_text(const std::array<std::uint64_t, 4>& hash) {
   char text[128];
   std::snprintf(text, sizeof text, "{0x%016llx, 0x%016llx, 0x%016llx, 0x%016llx}", (unsigned long long)hash[0],
@@ -67,7 +87,8 @@ void expect_row(const testing::GoldenRun& run, const GoldenRow& row) {
 TEST(Golden, ASmallSessionGivesTheSameBitsInEveryBuild) {
   const GoldenRevision& present = *std::rbegin(kGoldenRevisions);
   ASSERT_EQ(present.revision, kPhysicsRevision) << "golden_rows.h needs the rows of the present physics revision";
-  EXPECT_EQ(present.rows.size(), std::size(kSessions) + std::size(kFullSessions));
+  EXPECT_EQ(present.rows.size(), std::size(kSessions) + std::size(kFullSessions) + std::size(kResistingSessions) +
+                                     std::size(kSkinnedSessions));
   for (const Session& session : kSessions) {
     const GoldenRow* row = find_row(present, session.name);
     ASSERT_NE(row, nullptr) << session.name;
@@ -77,6 +98,26 @@ TEST(Golden, ASmallSessionGivesTheSameBitsInEveryBuild) {
     const GoldenRow* row = find_row(present, session.name);
     ASSERT_NE(row, nullptr) << session.name;
     expect_row(testing::run_golden(testing::make_full_model(6, 5, 5), 400, session.integrator), *row);
+  }
+  for (const ResistingSession& session : kResistingSessions) {
+    const GoldenRow* row = find_row(present, session.name);
+    ASSERT_NE(row, nullptr) << session.name;
+    const auto run = [&](double resistance) {
+      return testing::run_golden(testing::make_resisting_model(6, 5, 5, session.is_soft, resistance), 400,
+                                 session.integrator);
+    };
+    expect_row(run(10), *row);
+    EXPECT_NE(run(0).hash, row->hash) << session.name << ": nothing is pressed below the threshold";
+  }
+}
+
+TEST(Golden, TouchedSurfacesGiveTheSameBitsInEveryBuild) {
+  const GoldenRevision& present = *std::rbegin(kGoldenRevisions);
+  for (const ResistingSession& session : kSkinnedSessions) {
+    const GoldenRow* row = find_row(present, session.name);
+    ASSERT_NE(row, nullptr) << session.name;
+    expect_row(testing::run_golden(testing::make_skinned_model(6, 5, 5, session.is_soft), 400, session.integrator),
+               *row);
   }
 }
 

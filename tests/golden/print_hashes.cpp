@@ -14,6 +14,8 @@ struct Session {
   int ni, nj, nk, ticks;
   network::Structure structure;
   std::optional<Integrator> integrator;
+  bool resists = false;
+  bool has_surface = false;  ///< inversion
 };
 
 constexpr Session kSessions[] = {
@@ -24,6 +26,10 @@ constexpr Session kSessions[] = {
     {"ctpm, second order", 6, 5, 5, 400, network::Structure::ctpm, Integrator::sdirk2},
     {"ctpm in slabs", 13, 12, 12, 40, network::Structure::ctpm, std::nullopt},
     {"mass-spring in slabs", 13, 12, 12, 40, network::Structure::mass_spring, std::nullopt},
+    {"resisting", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, true},
+    {"resisting in slabs", 13, 12, 12, 40, network::Structure::ctpm, Integrator::sdirk2, true},
+    {"skinned", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true},
+    {"skinned in slabs", 13, 12, 12, 40, network::Structure::ctpm, Integrator::sdirk2, false, true},
 };
 
 }  // namespace
@@ -32,6 +38,12 @@ int main() {
   bool all_equal = true;
   for (const Session& session : kSessions) {
     const auto run = [&](const stepping::StepperOptions& options) {
+      if (session.has_surface)
+        return testing::run_golden(testing::make_skinned_model(session.ni, session.nj, session.nk, false),
+                                   session.ticks, session.integrator, options);
+      if (session.resists)
+        return testing::run_golden(testing::make_resisting_model(session.ni, session.nj, session.nk, false),
+                                   session.ticks, session.integrator, options);
       return testing::run_golden(session.ni, session.nj, session.nk, session.ticks, session.structure,
                                  session.integrator, options);
     };

@@ -8,7 +8,7 @@
 
 #include "core/stepping/step.h"
 #include "recordings/state_hash.h"
-#include "tests/core/blocks.h"
+#include "tests/core/skinned_block.h"
 
 namespace ctpm::testing {
 
@@ -48,6 +48,24 @@ inline Model make_full_model(int ni, int nj, int nk) {
   model.loads.sphere = {last}, model.loads.start = {0.02}, model.loads.ramp = {0.05};
   model.loads.force.push_back({0.05, 0, -0.1});
   model.tools = {ball(0.006), scalpel(0.06), {"pin", ToolKind::pin, 0, 0, last - 4}};
+  return model;
+}
+
+/// A block of CTPM that resists inversion with `resistance`; soft enough for leapfrog if `is_soft`.
+inline Model make_resisting_model(int ni, int nj, int nk, bool is_soft, double resistance = 10) {
+  network::Material material = liver_material();
+  if (is_soft) material.viscosity = 5e3, material.stiffness_scale = 0.29;
+  Model model = make_block_model(ni, nj, nk, network::Structure::ctpm, material, 0.012, resistance);
+  model.tools = {ball(0.006), scalpel(0.06)};
+  return model;
+}
+
+/// A block with a surface, which the ball touches and grips; soft enough for leapfrog if `is_soft`.
+inline Model make_skinned_model(int ni, int nj, int nk, bool is_soft) {
+  network::Material material = liver_material();
+  if (is_soft) material.viscosity = 5e3, material.stiffness_scale = 0.29;
+  Model model = make_skinned_block(ni, nj, nk, network::Structure::ctpm, 0.003, material, network::Tiling::two_spheres);
+  model.tools = {ball(0.006), scalpel(0.06)};
   return model;
 }
 

@@ -216,7 +216,7 @@ TEST(FuzzRepair, DamagedMeshesComeOutSoundOrAreRefused) {
     const Result<importers::Filling> filling = importers::fill_organ(*mesh, fill);
     if (!filling) continue;
     for (const double weight : filling->organ.surface.binding.weight) ASSERT_TRUE(std::isfinite(weight));
-    for (const double depth : filling->organ.depth) ASSERT_TRUE(std::isfinite(depth) && depth > 0);
+    for (const double depth : filling->organ.depth) ASSERT_TRUE(std::isfinite(depth));
   }
   EXPECT_GT(closed, kRounds / 10) << "most of the damage can be mended";
 }

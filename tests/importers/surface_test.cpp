@@ -47,7 +47,7 @@ TEST(Coarsen, OnlyTheDrawnSurfaceOfAnOrganIsCoarser) {
   ASSERT_TRUE(fine && coarse) << text_of(coarse.errors());
   EXPECT_EQ(fine->organ.centre, coarse->organ.centre);
   EXPECT_EQ(fine->organ.depth, coarse->organ.depth);
-  EXPECT_EQ(fine->report.surface_triangles, 25600);
+  EXPECT_GE(fine->report.surface_triangles, 25600) << "refined where edges are longer than a third of a spacing";
   EXPECT_LE(coarse->report.surface_triangles, 1500);
   EXPECT_EQ(coarse->organ.surface.binding.first.size(), coarse->organ.surface.vertex.size() + 1);
   const importers::Finding* finding = find(coarse->report.findings, "coarsened");

@@ -24,9 +24,9 @@ constexpr bool kNamespacesAreRooms = true;
 constexpr int kMostLines = 500;  ///< of a source file
 
 /// All rooms of core in their order.
-inline const std::vector<std::string> kCore{"core/model",   "core/parallel", "core/network",
-                                            "core/surface", "core/elements", "core/cutting",
-                                            "core/contact", "core/solver",   "core/stepping"};
+inline const std::vector<std::string> kCore{"core/model",    "core/parallel", "core/network", "core/surface",
+                                            "core/elements", "core/cutting",  "core/contact", "core/inversion",
+                                            "core/solver",   "core/stepping"};
 
 inline std::vector<std::string> core_and(std::vector<std::string> more) {
   more.insert(more.begin(), kCore.begin(), kCore.end());
@@ -41,10 +41,11 @@ inline const std::vector<Room> kRooms{
     {"core/surface", {"core/model"}, "ctpm::surface"},
     {"core/elements", {"core/model", "core/parallel"}, "ctpm::elements"},
     {"core/cutting", {"core/model", "core/parallel", "core/elements"}, "ctpm::cutting"},
-    {"core/contact", {"core/model", "core/parallel", "core/elements", "core/cutting"}, "ctpm::contact"},
+    {"core/contact", {"core/model", "core/parallel", "core/surface", "core/elements", "core/cutting"}, "ctpm::contact"},
+    {"core/inversion", {"core/model", "core/parallel", "core/elements", "core/contact"}, "ctpm::inversion"},
     {"core/solver", {"core/model", "core/parallel", "core/elements"}, "ctpm::solver"},
     {"core/stepping",
-     {"core/model", "core/parallel", "core/elements", "core/cutting", "core/contact", "core/solver"},
+     {"core/model", "core/parallel", "core/elements", "core/cutting", "core/contact", "core/inversion", "core/solver"},
      "ctpm::stepping"},
     {"importers", core_and({}), "ctpm::importers"},
     {"scenes", core_and({}), "ctpm::scenes"},
@@ -77,10 +78,13 @@ inline const std::vector<Room> kRooms{
     {"studio/stability", core_and({"scenes", "recordings", "studio/output", "studio/reports"}), "ctpm::stability"},
     {"studio/bench", core_and({"scenes", "studio/output", "studio/reports", "studio/rig", "studio/loading"}),
      "ctpm::bench"},
+    {"studio/fidelity", core_and({"scenes", "importers", "studio/output", "studio/reports", "studio/loading"}),
+     "ctpm::fidelity"},
     {"studio/commands",
      core_and({"scenes", "importers", "recordings", "studio/output", "studio/version", "studio/render", "studio/views",
                "studio/reports", "studio/loading", "studio/sources", "studio/devices", "studio/session", "studio/film",
-               "studio/compare", "studio/authoring", "studio/paper", "studio/stability", "studio/bench"}),
+               "studio/compare", "studio/authoring", "studio/paper", "studio/stability", "studio/bench",
+               "studio/fidelity"}),
      "ctpm::commands"},
     {"studio/main.cpp", {"core/model", "studio/commands"}, "ctpm"},
 };

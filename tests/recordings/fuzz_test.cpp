@@ -158,7 +158,7 @@ TEST(Fuzz, AStateIsRefusedOrCanBeSimulated) {
 
 TEST(Fuzz, ASurfaceIsRefusedOrCanBeDrawn) {
   const recordings::SessionStart start = tiny_start();
-  const Bytes whole = bytes_of(start.surfaces[0]);
+  const Bytes whole = bytes_of(start.model.surfaces[0]);
   Mutator mutate(3);
   int refused = 0, drawn = 0;
   std::vector<Vec3> vertex;

@@ -17,7 +17,7 @@ using recordings::session_file::check_state;
 
 /// A Model with an entry in every array.
 Model rich_model() {
-  Model model = make_block_model(5, 3, 3, network::Structure::ctpm);
+  Model model = make_block_model(5, 3, 3, network::Structure::ctpm, liver_material(), 0.012, 10);
   model.tools = {ball(0.006), scalpel(0.02), {"pin", ToolKind::pin, 0, 0, 3}};
   model.angle_springs.a = {0}, model.angle_springs.b = {1}, model.angle_springs.c = {2};
   model.angle_springs.k = {1}, model.angle_springs.edge[0] = {0}, model.angle_springs.edge[1] = {1};
@@ -145,6 +145,11 @@ TEST(ModelCheck, NamesTheFieldAndWhatItMustBe) {
       {"solver.max_iterations must be in [1, 1000000]", [](Model& m) { m.solver.max_iterations = 0; }},
       {"solver.substeps must be in [1, 10000]", [](Model& m) { m.solver.substeps = 10001; }},
       {"solver.integrator is of an unknown kind", [](Model& m) { m.solver.integrator = static_cast<Integrator>(3); }},
+      {"tissue_cells.k[1] must be finite and above 0", [](Model& m) { m.tissue_cells.k[1] = 0; }},
+      {"tissue_cells.corner7[0] is 45, must be in [0, 45)", [](Model& m) { m.tissue_cells.corner[7][0] = 45; }},
+      {"tissue_cells[2] is inside out or flat at rest",
+       [](Model& m) { std::swap(m.tissue_cells.corner[0][2], m.tissue_cells.corner[1][2]); }},
+      {"inversion_threshold must be in (0, 1)", [](Model& m) { m.inversion_threshold = 1; }},
       {"cut_resistance.friction has 0 entries, expected ", [](Model& m) { m.cut_resistance.friction.clear(); }},
   };
   for (const Case& one : cases) {

@@ -57,6 +57,7 @@ TEST(OldFiles, EachOpensAndGivesAllThatItHolds) {
       EXPECT_EQ(recordings::state_hash(keyframe->state), (*ticks)[std::size_t(tick - 1)].state_hash) << tick;
     }
     expect_cells_of_neighbours(reader->start().model);
+    EXPECT_EQ(reader->start().model.tissue_cells.size(), 0u) << "no program of that time resisted inversion";
     EXPECT_TRUE(reader->events());
     EXPECT_TRUE(reader->statistics());
     EXPECT_EQ(reader->start().physics_revision, 0) << "recorded before revisions were stored";
@@ -76,7 +77,7 @@ TEST(OldFiles, AFileOfVersion1GivesWhatWasRecorded) {
   ASSERT_TRUE(reader) << text_of(reader.errors());
   EXPECT_EQ(reader->start().scene_text, "{ \"scene\": \"a block\" }\n");
   EXPECT_EQ(reader->start().metadata.at("user"), "a trainee");
-  EXPECT_EQ(reader->start().surfaces.at(0).triangle.size(), 4u);
+  EXPECT_EQ(reader->start().model.surfaces.at(0).triangle.size(), 4u);
   ASSERT_EQ(reader->tick_count(), 600);
   const auto ticks = reader->ticks(0, 600);
   ASSERT_TRUE(ticks) << text_of(ticks.errors());

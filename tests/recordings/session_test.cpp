@@ -70,8 +70,8 @@ TEST(Session, WhatWasWrittenIsRead) {
   EXPECT_EQ(reader->start().physics_revision, kPhysicsRevision);
   EXPECT_TRUE(bytes_of(reader->start().model) == bytes_of(start.model));
   EXPECT_TRUE(bytes_of(reader->start().initial_state) == bytes_of(start.initial_state));
-  ASSERT_EQ(reader->start().surfaces.size(), 1u);
-  expect_same_surface(reader->start().surfaces[0], start.surfaces[0]);
+  ASSERT_EQ(reader->start().model.surfaces.size(), 1u);
+  expect_same_surface(reader->start().model.surfaces[0], start.model.surfaces[0]);
   EXPECT_EQ(reader->session_id().size(), 32u);
   EXPECT_TRUE(reader->ended_cleanly());
   ASSERT_EQ(reader->tick_count(), 1234);
@@ -129,7 +129,18 @@ recordings::Event full_event(std::int32_t kind) {
   event.tick = 3, event.tool = 1, event.severed = 4, event.organ = 0, event.pieces = 2, event.status = 3;
   event.depth = 0.01, event.depth_limit = 0.008, event.force = 1.5, event.force_limit = 1.25, event.late = 1e-3;
   event.reason = "it hung up", event.held = 0.4, event.refused_samples = 7, event.sphere = 5;
+  event.cells = 6;
   return event;
+}
+
+TEST(Event, TissueIsInsideOutFromOneEventToTheOther) {
+  using recordings::EventKind;
+  const std::vector<recordings::Event> events{{.tick = 3, .kind = EventKind::turned_inside_out, .cells = 2},
+                                              {.tick = 5, .kind = EventKind::contact_ends},
+                                              {.tick = 7, .kind = EventKind::came_back, .cells = 9},
+                                              {.tick = 9, .kind = EventKind::turned_inside_out, .cells = 4}};
+  for (const auto& [end, cells] : {std::pair{3, 0}, {4, 2}, {7, 2}, {8, 0}, {9, 0}, {10, 4}, {1000, 4}})
+    EXPECT_EQ(recordings::cells_inside_out(events, end), cells) << end;
 }
 
 TEST(Session, AnEventStoresTheFieldsOfItsKindAndNoOthers) {
@@ -138,7 +149,7 @@ TEST(Session, AnEventStoresTheFieldsOfItsKindAndNoOthers) {
   auto writer = recordings::SessionWriter::create(folder / "a.ctpm", start, {.wait_when_full = true});
   ASSERT_TRUE(writer);
   live(start, 5, [&](const State& after, const recordings::TickRecord& record) { writer->append(after, record); });
-  constexpr std::int32_t kUnknown = 40, kLast = 12;
+  constexpr std::int32_t kUnknown = 40, kLast = 14;
   for (std::int32_t kind = 1; kind <= kLast; ++kind) writer->event(full_event(kind));
   writer->event(full_event(kUnknown));
   ASSERT_TRUE(writer->finish());
@@ -147,7 +158,7 @@ TEST(Session, AnEventStoresTheFieldsOfItsKindAndNoOthers) {
   ASSERT_TRUE(reader);
   const auto events = reader->events();
   ASSERT_TRUE(events) << text_of(events.errors());
-  ASSERT_EQ(events->size(), 13u);
+  ASSERT_EQ(events->size(), 15u);
   std::set<std::string> sentences;
   for (std::int32_t kind = 1; kind <= kLast; ++kind) {
     const recordings::Event& event = (*events)[static_cast<std::size_t>(kind - 1)];
@@ -167,6 +178,10 @@ TEST(Session, AnEventStoresTheFieldsOfItsKindAndNoOthers) {
         break;
       case recordings::EventKind::late_tick:
         expected.late = full.late;
+        break;
+      case recordings::EventKind::turned_inside_out:
+      case recordings::EventKind::came_back:
+        expected.cells = full.cells;
         break;
       case recordings::EventKind::device_lost:
         expected.reason = full.reason;
@@ -190,8 +205,8 @@ TEST(Session, AnEventStoresTheFieldsOfItsKindAndNoOthers) {
     EXPECT_EQ(event, expected) << kind;
     sentences.insert(recordings::describe(event, start.model));
   }
-  EXPECT_EQ(sentences.size(), 12u) << "each kind has its own sentence, a note without text none";
-  EXPECT_EQ((*events)[12], full_event(kUnknown)) << "a kind that this program does not know keeps every field";
+  EXPECT_EQ(sentences.size(), 14u) << "each kind has its own sentence, a note without text none";
+  EXPECT_EQ((*events)[14], full_event(kUnknown)) << "a kind that this program does not know keeps every field";
   EXPECT_EQ(recordings::describe((*events)[0], start.model), "scalpel touches the tissue");
   EXPECT_EQ(recordings::describe({.kind = recordings::EventKind::cut, .tool = 99}, start.model),
             "tool 99 begins to sever; elements in the first tick: 0")
@@ -451,7 +466,7 @@ TEST(StateHash, DependsOnEveryFieldAndEveryBit) {
     }
     ++fields;
   });
-  EXPECT_EQ(fields, 22);
+  EXPECT_EQ(fields, 27);
   EXPECT_EQ(recordings::state_hash(state), before);
 }
 

@@ -17,7 +17,7 @@
 #include "recordings/session_reader.h"
 #include "recordings/session_writer.h"
 #include "recordings/state_hash.h"
-#include "tests/core/blocks.h"
+#include "tests/core/skinned_block.h"
 
 namespace ctpm::testing {
 
@@ -57,25 +57,13 @@ inline std::string text_of(const Errors& errors) {
   return text;
 }
 
-/// A tetrahedron around a few spheres, bound to the first four.
-inline Surface small_surface() {
-  Surface surface;
-  surface.vertex = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0, 0, 0.01}};
-  surface.triangle = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
-  surface.binding.first = {0, 1, 2, 3, 5};
-  surface.binding.sphere = {0, 1, 2, 3, 0};
-  surface.binding.weight = {1, 1, 1, 0.25, 0.75};
-  return surface;
-}
-
 /// Start of a session on a small block with a ball and a scalpel.
 inline recordings::SessionStart small_start(int ni = 3, int nj = 3, int nk = 3) {
   recordings::SessionStart start;
   start.scene_text = "{ \"scene\": \"a block\" }\n";
   start.look = "block rose";
-  start.model = make_block_model(ni, nj, nk);
+  start.model = make_skinned_block(ni, nj, nk, network::Structure::ctpm, 0.006);
   start.model.tools = {ball(0.006), scalpel(0.02)};
-  start.surfaces = {small_surface()};
   start.initial_state = rest_state(start.model);
   start.build_fingerprint = "test build";
   start.metadata = {{"user", "a trainee"}, {"empty", ""}};
@@ -88,7 +76,7 @@ inline Inputs scripted_inputs(std::int64_t tick, double top) {
   const double t = 1e-3 * static_cast<double>(tick);
   if (tick % 700 < 400) {
     inputs.tool = 0;
-    inputs.position = {0.001, 0.0005, top + 0.012 - 0.004 * std::sin(4 * t) * std::sin(4 * t)};
+    inputs.position = {0.001, 0.0005, top + 0.007 - 0.004 * std::sin(4 * t) * std::sin(4 * t)};
   } else {
     inputs.tool = 1;
     inputs.position = {-0.03 + 2e-4 * static_cast<double>(tick % 700 - 400), 0.0061, top - 0.01};

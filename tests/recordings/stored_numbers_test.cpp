@@ -97,6 +97,10 @@ const char* name_in_file(recordings::EventKind value) {
       return "press_gave_up";
     case recordings::EventKind::step_refused:
       return "step_refused";
+    case recordings::EventKind::turned_inside_out:
+      return "turned_inside_out";
+    case recordings::EventKind::came_back:
+      return "came_back";
   }
   return nullptr;
 }
@@ -169,7 +173,9 @@ TEST(StoredNumbers, OfEventsKeepTheirMeaning) {
                                                           {9, "piece_came_loose"},
                                                           {10, "press_reached_force"},
                                                           {11, "press_gave_up"},
-                                                          {12, "step_refused"}}));
+                                                          {12, "step_refused"},
+                                                          {13, "turned_inside_out"},
+                                                          {14, "came_back"}}));
 }
 
 // A session from before these fields has none of them and gets the defaults: the constants that its program computed
@@ -177,8 +183,9 @@ TEST(StoredNumbers, OfEventsKeepTheirMeaning) {
 TEST(StoredNumbers, DefaultsOfFieldsThatEarlierSessionsLackAreForEver) {
   const Model model;
   EXPECT_EQ(model.contact_damping, 50);
-  EXPECT_EQ(model.contact_stick_time, 0.1);
   EXPECT_EQ(model.cut_face_stiffening, 8);
+  EXPECT_EQ(model.tissue_cells.size(), 0u);
+  EXPECT_EQ(model.inversion_threshold, 0.4);
   const Tool tool;
   EXPECT_EQ(tool.trail_distance, 0.5e-3);
   EXPECT_EQ(tool.blade_reach, 9e-3);

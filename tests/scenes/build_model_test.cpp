@@ -138,7 +138,6 @@ TEST(BuildModel, TheLawsOfContactAreTheScenesOrElseThoseOfTheCore) {
   const scenes::BuiltScene plain = build(block_scene("", kTools + R"(}], "lips_meet": true)"));
   const Model standard;
   EXPECT_EQ(plain.model.contact_damping, standard.contact_damping);
-  EXPECT_EQ(plain.model.contact_stick_time, standard.contact_stick_time);
   EXPECT_EQ(plain.model.cut_face_stiffening, standard.cut_face_stiffening);
   const Tool blade = plain.model.tools.at(1), other;
   EXPECT_EQ(blade.blade_reach, other.blade_reach);
@@ -147,13 +146,29 @@ TEST(BuildModel, TheLawsOfContactAreTheScenesOrElseThoseOfTheCore) {
 
   const scenes::BuiltScene own =
       build(block_scene("", kTools + R"(, "blade_reach_mm": 4, "flank_height_mm": 7, "blade_thickness_mm": 0.25}],
-      "lips_meet": true, "contact_damping_s_per_m": 20, "contact_stick_time_s": 0.5, "cut_face_stiffening": 3)"));
+      "lips_meet": true, "contact_damping_s_per_m": 20, "cut_face_stiffening": 3)"));
   EXPECT_EQ(own.model.contact_damping, 20);
-  EXPECT_EQ(own.model.contact_stick_time, 0.5);
   EXPECT_EQ(own.model.cut_face_stiffening, 3);
   EXPECT_EQ(own.model.tools.at(1).blade_reach, 0.004);
   EXPECT_EQ(own.model.tools.at(1).flank_height, 0.007);
   EXPECT_EQ(own.model.tools.at(1).blade_thickness, 0.00025);
+}
+
+TEST(BuildModel, OrgansFromAMeshResistInversionAndRigsOnlyIfAsked) {
+  EXPECT_EQ(build(block_scene("")).model.tissue_cells.size(), 0u);
+  const scenes::BuiltScene asked = build(block_scene(R"(, "inversion_resistance": 4)"));
+  ASSERT_GT(asked.model.tissue_cells.size(), 0u);
+  const scenes::BuiltScene twice = build(block_scene(R"(, "inversion_resistance": 8)"));
+  EXPECT_NEAR(twice.model.tissue_cells.k.at(0), 2 * asked.model.tissue_cells.k.at(0), 1e-12);
+
+  scenes::OrganSpec organ;
+  organ.mesh = "a.obj";
+  EXPECT_EQ(scenes::inversion_resistance_of(organ), 10);
+  organ.inversion_resistance = 0;
+  EXPECT_EQ(scenes::inversion_resistance_of(organ), 0);
+  scenes::OrganSpec rig;
+  rig.rig.emplace();
+  EXPECT_EQ(scenes::inversion_resistance_of(rig), 0);
 }
 
 TEST(BuildModel, TheOrgansKeysReachTheNetwork) {

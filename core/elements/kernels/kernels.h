@@ -91,6 +91,28 @@ struct LineArrays {
   float *along_x, *along_y, *along_z, *isotropic;  ///< linearised coupling (place_count)
 };
 
+/// Tissue cells all of whose corners advance by one sphere from cell to cell.
+struct CellBatch {
+  std::int32_t count;      ///< in [1, kBatch]
+  std::int32_t cell;       ///< first row of Model::tissue_cells
+  std::int32_t corner[8];  ///< corners of the first cell
+};
+
+/// Capacity of a row of edges.
+inline constexpr std::int32_t kEdges = 32;
+
+/// Lattice edges along one axis of the world. Both ends advance by one sphere from edge to edge.
+struct EdgeRow {
+  std::int32_t count;  ///< in [1, kEdges]
+  std::int32_t axis;   ///< 0, 1, 2: x, y, z
+  std::int32_t a, b;   ///< ends of the first edge
+};
+
+/// Positions [m] (sphere_count each).
+struct Points {
+  const double *x, *y, *z;
+};
+
 /// Arrays that the loops of the solver read and write. Vectors are (3 x sphere_count), `inverse` is (6 x sphere_count).
 template <class Real>
 struct SolverArrays {
@@ -141,6 +163,10 @@ struct Kernels {
                             std::size_t end);
   /// Largest squared speed of spheres [begin, end) with velocities x, y, z, infinity if one is not a number.
   double (*fastest_squared)(const double* x, const double* y, const double* z, std::size_t begin, std::size_t end);
+  /// least[row] = the least d - |d'| - |d''| [m] of a row's edges: d along its axis, d' and d'' along the others.
+  void (*least_of_edges)(const Points&, const EdgeRow* first, const EdgeRow* last, double* least);
+  /// least[i] = six times the least signed volume [m^3] of a cell's eight corner tetrahedra.
+  void (*least_of_cells)(const Points&, const CellBatch&, double* least);
 };
 
 template <class Real>

@@ -88,6 +88,7 @@ void add_to_blocks(const SlabTarget<double>& blocks, int32_t sphere, int32_t cou
 }  // namespace ctpm::elements::CTPM_KERNELS
 
 #include "core/elements/kernels/axial_loops.h"
+#include "core/elements/kernels/cell_loops.h"
 #include "core/elements/kernels/line_loops.h"
 #include "core/elements/kernels/solver_loops.h"
 
@@ -98,7 +99,8 @@ constexpr SolverKernels<Real> solver{apply_axial<Real>, apply_line<Real>, invert
                                      turn<Real>,        curvature<Real>,  descend<Real>};
 
 extern const Kernels kernels;
-const Kernels kernels{add_axial_forces, linearise_axial, measure_line,  add_line_forces, linearise_line, solver<float>,
-                      solver<double>,   multiply_mass,   residual_from, nearest_squared, fastest_squared};
+const Kernels kernels{add_axial_forces, linearise_axial, measure_line,  add_line_forces, linearise_line,
+                      solver<float>,    solver<double>,  multiply_mass, residual_from,   nearest_squared,
+                      fastest_squared,  least_of_edges,  least_of_cells};
 
 }  // namespace ctpm::elements::CTPM_KERNELS

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "core/elements/elements.h"
+#include "core/inversion/resistance.h"
 #include "core/model/fields.h"
 #include "core/stepping/step.h"
 #include "tests/core/blocks.h"
@@ -18,14 +19,17 @@
 namespace ctpm {
 namespace {
 
+constexpr double kPascal = 5e3, kKilopascal = 5e6;  // v1 of the liver in both readings of its unit [Pa s/m]
+
 /// Spheres along one edge of a cubic block of about `spheres` spheres.
 int edge_of(std::int64_t spheres) { return int(std::lround(std::cbrt(double(spheres)))); }
 
-Model make_model(std::int64_t spheres, network::Structure structure, double viscosity) {
+Model make_model(std::int64_t spheres, network::Structure structure, double viscosity,
+                 double inversion_resistance = 0) {
   network::Material material = testing::liver_material();
   material.viscosity = viscosity, material.stiffness_scale = 0.29;
   const int n = edge_of(spheres);
-  Model model = testing::make_block_model(n, n, n, structure, material);
+  Model model = testing::make_block_model(n, n, n, structure, material, 0.012, inversion_resistance);
   model.tools = {testing::ball(0.006)};
   return model;
 }
@@ -97,8 +101,9 @@ std::optional<SolverSettings> at_residual(double tolerance) {
 
 /// A ball presses at 20 mm/s, each solve starting from the last velocities; percentiles of the tick, iterations of its
 /// solves, and ticks with a solve that stopped at its count.
-void ticks(benchmark::State& run, double viscosity, const std::optional<SolverSettings>& solver) {
-  Model model = make_model(run.range(0), network::Structure::ctpm, viscosity);
+void ticks(benchmark::State& run, double viscosity, const std::optional<SolverSettings>& solver,
+           double inversion_resistance = 0) {
+  Model model = make_model(run.range(0), network::Structure::ctpm, viscosity, inversion_resistance);
   if (solver) model.solver = *solver;
   const double top = 0.012 * (edge_of(run.range(0)) - 1) + 0.006 + 0.006;
   stepping::Stepper stepper(model, {.threads = int(run.range(1))});
@@ -122,6 +127,23 @@ void ticks(benchmark::State& run, double viscosity, const std::optional<SolverSe
   report(run, model);
 }
 
+/// Search for cells that are turned inside out, of which there are none. Turned tissue takes the slower of two passes.
+void inverted_cells(benchmark::State& run, bool is_turned) {
+  const Model model = make_model(run.range(0), network::Structure::ctpm, kPascal, 10);
+  parallel::Team team(int(run.range(1)));
+  elements::Elements elements(model, team);
+  inversion::Resistance resistance(model, elements.slabs(), team,
+                                   elements::kernels_for(elements::best_instruction_set()));
+  State state = rest_state(model);
+  testing::shake(state, 1e-4);
+  if (is_turned)
+    for (std::size_t i = 0; i < model.sphere_count(); ++i)
+      state.position.set(i, rotate({0.8, 0, 0.6, 0}, state.position[i]));
+  for (auto _ : run) benchmark::DoNotOptimize(resistance.count_inverted(state));
+  report(run, model);
+  run.counters["cells"] = double(model.tissue_cells.size());
+}
+
 /// Bytes of Model and State per sphere, with all tissue features and with none.
 void memory(benchmark::State& run, network::Structure structure, double viscosity) {
   const Model model = make_model(run.range(0), structure, viscosity);
@@ -133,8 +155,6 @@ void memory(benchmark::State& run, network::Structure structure, double viscosit
   for (auto _ : run) bytes = 0, for_each_field(model, count), for_each_field(state, count);
   run.counters["bytes_per_sphere"] = bytes / double(model.sphere_count());
 }
-
-constexpr double kPascal = 5e3, kKilopascal = 5e6;  // v1 of the liver in both readings of its unit [Pa s/m]
 
 BENCHMARK(plain_springs)->Arg(1000)->Arg(10000)->Arg(100000);
 BENCHMARK(streaming)->Arg(1000)->Arg(10000)->Arg(100000);
@@ -163,6 +183,16 @@ BENCHMARK_CAPTURE(ticks, liver_not_stiff, kPascal, as_scenes())
     ->ArgsProduct({{4913, 29791}, {1, 2}})
     ->Iterations(500)
     ->UseRealTime();
+BENCHMARK_CAPTURE(ticks, stiff_liver_resisting, kKilopascal, as_scenes(), 10.0)
+    ->ArgsProduct({{729, 4913}, {1, 2}})
+    ->Iterations(500)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(ticks, liver_not_stiff_resisting, kPascal, as_scenes(), 10.0)
+    ->ArgsProduct({{4913, 29791}, {1, 2}})
+    ->Iterations(500)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(inverted_cells, upright, false)->ArgsProduct({{4913, 29791}, {1, 2}})->UseRealTime();
+BENCHMARK_CAPTURE(inverted_cells, turned, true)->ArgsProduct({{4913, 29791}, {1, 2}})->UseRealTime();
 BENCHMARK_CAPTURE(memory, springs, network::Structure::mass_spring, 0.0)->Arg(5000);
 BENCHMARK_CAPTURE(memory, ctpm, network::Structure::ctpm, kKilopascal)->Arg(5000);
 

@@ -13,6 +13,14 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
+struct SphereContact {
+  std::size_t sphere;
+  Vec3 normal;         ///< from the ball to the sphere
+  double penetration;  ///< [m]
+  double damping;      ///< [N s/m]
+  double approach;     ///< speed along the normal [m/s]
+};
+
 }  // namespace
 
 Vec3 Press::centre(double time) const {
@@ -71,7 +79,7 @@ void NetworkOde::add_loads(double time) {
   }
 }
 
-/// Calls touch(contact, slip) for every sphere that the ball overlaps; slip is its tangential velocity.
+/// Calls touch(contact) for every sphere that the ball overlaps. Without friction: a grip is no state of an equation.
 template <class Touch>
 void NetworkOde::for_each_touched(double time, Touch&& touch) const {
   if (press_.radius == 0) return;
@@ -82,11 +90,9 @@ void NetworkOde::for_each_touched(double time, Touch&& touch) const {
     if (model_.held_axes[i] == kAnchored || squared >= reach * reach) continue;
     const double distance = std::sqrt(squared), penetration = reach - distance;
     const Vec3 normal = apart / distance, past = state_.velocity[i] - velocity;
-    const Vec3 slip = past - dot(past, normal) * normal;
-    const double drag = contact::contact_drag(model_, penetration, norm(slip));
     const double damping =
         contact::contact_damping(model_.contact_damping, model_.contact_k, model_.mass[i], penetration);
-    touch(contact::SphereContact{std::int32_t(i), normal, penetration, damping, drag, -dot(past, normal), slip}, slip);
+    touch(SphereContact{i, normal, penetration, damping, -dot(past, normal)});
   }
 }
 
@@ -95,10 +101,10 @@ void NetworkOde::derive(double time, const double* y, double* derivative) {
   stepping::ExternalLoads{model_, time, false}.set(0, spheres_, force_);
   elements_.add_forces(state_, force_);
   add_loads(time);
-  for_each_touched(time, [&](const contact::SphereContact& contact, Vec3 slip) {
+  for_each_touched(time, [&](const SphereContact& contact) {
     const double pressure = model_.contact_k * contact.penetration + contact.damping * contact.approach;
-    const Vec3 push = std::max(0.0, pressure) * contact.normal - contact.drag * slip;
-    const auto i = std::size_t(contact.sphere);
+    const Vec3 push = std::max(0.0, pressure) * contact.normal;
+    const std::size_t i = contact.sphere;
     force_[i] += push.x, force_[spheres_ + i] += push.y, force_[2 * spheres_ + i] += push.z;
   });
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -125,12 +131,12 @@ void NetworkOde::take_blocks(double time, double gamma, const double* y) {
     for (std::size_t i = 0; i < spheres_; ++i)
       blocks_[k * spheres_ + i] = k == 0 || k == 3 || k == 5 ? model_.mass[i] : 0.0;
   elements_.linearise(state_, gamma, false, force_, blocks_, [](int) {});
-  for_each_touched(time, [&](const contact::SphereContact& contact, Vec3) {
+  for_each_touched(time, [&](const SphereContact& contact) {
     const Vec3 n = contact.normal;
-    const double across = gamma * contact.drag, along = gamma * (gamma * model_.contact_k + contact.damping) - across;
-    const double own[6] = {along * n.x * n.x + across, along * n.x * n.y, along * n.x * n.z,
-                           along * n.y * n.y + across, along * n.y * n.z, along * n.z * n.z + across};
-    for (std::size_t k = 0; k < 6; ++k) blocks_[k * spheres_ + std::size_t(contact.sphere)] += own[k];
+    const double along = gamma * (gamma * model_.contact_k + contact.damping);
+    const double own[6] = {along * n.x * n.x, along * n.x * n.y, along * n.x * n.z,
+                           along * n.y * n.y, along * n.y * n.z, along * n.z * n.z};
+    for (std::size_t k = 0; k < 6; ++k) blocks_[k * spheres_ + contact.sphere] += own[k];
   });
   elements::kernels_for(elements::best_instruction_set())
       .full.invert_blocks(spheres_, blocks_.data(), inverse_.data(), 0, spheres_);

@@ -54,22 +54,32 @@ TEST_P(AContact, BouncesByHuntAndCrossleysLawForEachDamping) {
   EXPECT_NEAR(rebound(GetParam(), 0), 0.03, 3e-4) << "without damping nothing is lost";
 }
 
-TEST_P(AContact, CreepsUnderAStickingToolAsItsStickTimeSays) {
-  // The drag coefficient stick_time * k balances the load: the sphere creeps at load / (stick_time * k).
-  const double radius = 100, press = 0.05, push = 0.002;
-  for (const double stick_time : {0.05, 0.1, 0.4}) {
+TEST_P(AContact, HoldsWhatItGripsAndSlidesBeyondTheCone) {
+  const double radius = 100, press = 0.05;
+  for (const double share : {0.5, 0.9, 1.5}) {  // of the friction cone
     Model model = make_free_sphere(GetParam(), 1e-4);
-    model.tools = {ball(radius)}, model.contact_stick_time = stick_time;
+    const double push = share * model.contact_friction * press;
+    model.tools = {ball(radius)};
     model.loads.sphere = {0}, model.loads.force.push_back({push, 0, press});
-    model.loads.start = {0}, model.loads.ramp = {0};
+    model.loads.start = {0}, model.loads.ramp = {0.02};
     State state = rest_state(model);
-    state.position.z[0] = press / model.contact_k;
     stepping::Stepper stepper(model);
-    for (int i = 0; i < 200; ++i)
-      ASSERT_EQ(stepper.step(state, tool_at({0, 0, radius + model.contact_radius[0]})).status,
-                stepping::StepStatus::ok);
-    const double creep = push / (stick_time * model.contact_k);
-    EXPECT_NEAR(state.velocity.x[0], creep, 1e-3 * creep) << stick_time << " s";
+    const Inputs still = tool_at({0, 0, radius + model.contact_radius[0]});
+    stepping::StepReport report;
+    for (int i = 0; i < 1000; ++i) report = stepper.step(state, still);
+    const Vec3 early = state.position[0];
+    for (int i = 0; i < 3000; ++i) report = stepper.step(state, still);
+    const double moved = state.position.x[0] - early.x;
+    if (share < 1) {
+      EXPECT_NEAR(moved, 0, 1e-9) << "nothing creeps under " << share << " of the cone";
+      EXPECT_NEAR(report.tool_force.x, push, 1e-3 * push);
+      EXPECT_LT(state.position.x[0], 2 * model.contact_friction * press / model.contact_k);
+    } else {
+      // The rest of the push accelerates it for 0.4 s, but for the ramp.
+      const double rest = push - model.contact_friction * press, fast = state.velocity.x[0];
+      EXPECT_NEAR(report.tool_force.x, model.contact_friction * press, 0.02 * push);
+      EXPECT_NEAR(fast * model.mass[0], rest * 0.39, 0.03 * rest);
+    }
   }
 }
 
@@ -90,12 +100,16 @@ TEST_P(AContact, SlidesUnderCoulombsLawAndThenSticks) {
   while ((double(state.tick) + 1) * model.tick < 0.9 * stops) {
     const stepping::StepReport report = stepper.step(state, still);
     ASSERT_EQ(report.status, stepping::StepStatus::ok);
-    EXPECT_NEAR(state.velocity.x[0], speed - slowing * double(state.tick) * model.tick, 0.02 * speed);
-    EXPECT_NEAR(report.tool_force.x, model.contact_friction * press, 0.05 * press);
+    EXPECT_NEAR(state.velocity.x[0], speed - slowing * double(state.tick) * model.tick, 0.05 * speed);
+    if (double(state.tick) * model.tick > 0.2 * stops) {  // the grip has reached the cone
+      EXPECT_NEAR(report.tool_force.x, model.contact_friction * press, 0.05 * press);
+    }
   }
   for (int i = 0; i < 5000; ++i) ASSERT_EQ(stepper.step(state, still).status, stepping::StepStatus::ok);
   EXPECT_NEAR(state.velocity.x[0], 0, 1e-3 * speed);
-  EXPECT_NEAR(state.position.x[0], 0.5 * speed * stops, 0.05 * speed * stops);
+  // Where it stops, the grip recoils.
+  const double recoil = model.contact_friction * press / model.contact_k;
+  EXPECT_NEAR(state.position.x[0], 0.5 * speed * stops - recoil, 0.05 * speed * stops);
 }
 
 TEST_P(AContact, IsTheSameInSubstepsAsInTicks) {
@@ -191,7 +205,7 @@ TEST(Contact, HasOneLawUnderEveryIntegrator) {
   };
   const Vec3Array reference = press(Integrator::sdirk2), rest = make_block_model(4, 4, 4).rest_position;
   const double moved = distance(reference, rest);
-  EXPECT_LT(distance(press(Integrator::leapfrog), reference), 1e-3 * moved);
+  EXPECT_LT(distance(press(Integrator::leapfrog), reference), 2e-3 * moved);
   EXPECT_LT(distance(press(Integrator::backward_euler), reference), 2e-2 * moved);
 }
 

@@ -147,14 +147,14 @@ TEST_F(Measures, DepthOfACutIsThatOfItsDeepestEdge) {
   recordings::SessionStart scene = scene_;
   const Vec3 middle = compare::rest_middle(scene.model, 0);
   const double top = middle.z + 0.007;
-  scene.surfaces = {Surface{}};
-  scene.surfaces[0].vertex = {{-1, -1, top}, {3, -1, top}, {-1, 3, top}};
-  scene.surfaces[0].triangle = {{0, 1, 2}};
+  scene.model.surfaces = {Surface{}};
+  scene.model.surfaces[0].vertex = {{-1, -1, top}, {3, -1, top}, {-1, 3, top}};
+  scene.model.surfaces[0].triangle = {{0, 1, 2}};
   compare::SessionTrack track = press();
   track.severed_at[0] = 10, track.severed[10] = 1, track.cuts = {{10, 11}};
   EXPECT_NEAR(compare::cut_depth(track, scene).value(), 0.007, 1e-12);
   EXPECT_FALSE(compare::cut_depth(press(), scene));
-  scene.surfaces.clear();
+  scene.model.surfaces.clear();
   EXPECT_FALSE(compare::cut_depth(track, scene));
 }
 

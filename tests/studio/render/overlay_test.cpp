@@ -14,7 +14,7 @@ render::OverlayData full_data() {
   render::OverlayData data;
   data.title = "Liver", data.model = "CTPM", data.session = "press";
   data.time = 12.345, data.tick = 12345, data.force = 1.234, data.depth = 0.0134, data.damage_depth = 0.012;
-  data.loose = 2;
+  data.loose = 2, data.inside_out = 3;
   data.verdict = "Replay identical: 12345 of 12345 ticks", data.verdict_tone = render::VerdictTone::good;
   data.legend = {"stretch [%]", "-20", "+20", {{0.1, 0.2, 0.7}, {0.8, 0.8, 0.8}, {0.8, 0.1, 0.1}}, false};
   for (int i = 0; i <= 12345; i += 5) data.history.push_back({i * 1e-3, 1 + std::sin(i * 0.003)});
@@ -140,6 +140,9 @@ TEST(Overlay, ShowsOnlyWhatThereIs) {
   EXPECT_TRUE(says("1 piece"));
   data.loose = 0;
   EXPECT_FALSE(says("loose") || says("piece"));
+  EXPECT_TRUE(says("inside out") && says("3 cells"));
+  data.inside_out = 0;
+  EXPECT_FALSE(says("inside out") || says("cell"));
   EXPECT_TRUE(says("12.345 s") && says("12345") && says("1.234 N") && says("12.10 mm"));
 }
 

@@ -55,7 +55,7 @@ TEST(Picture, SilhouetteIsThatOfTheProjectedMesh) {
   render::DrawOptions away = options;  // the backdrop does not depend on the camera
   away.camera.target = options.camera.eye + (options.camera.eye - options.camera.target);
   const render::Frame backdrop = renderer->draw(state, away);
-  const std::vector<bool> mask = projected_mask(scene->view.surfaces[0], options.camera);
+  const std::vector<bool> mask = projected_mask(scene->model.surfaces[0], options.camera);
   int covered = 0, wrong = 0;
   for (std::size_t i = 0; i < mask.size(); ++i) {
     covered += mask[i];
@@ -75,7 +75,7 @@ TEST(Picture, FollowsTheSpheres) {
   const Vec3 shift{0.02, 0, 0};
   for (std::size_t i = 0; i < scene->model.sphere_count(); ++i) state.position.add(i, shift);
   const render::Frame moved = renderer->draw(state, options);
-  Surface surface = scene->view.surfaces[0];
+  Surface surface = scene->model.surfaces[0];
   for (Vec3& v : surface.vertex) v += shift;
   const std::vector<bool> mask = projected_mask(surface, options.camera);
   int covered = 0, red = 0;
@@ -169,9 +169,8 @@ TEST(Picture, BadSizeOrSceneIsAnErrorNotAPicture) {
     ASSERT_FALSE(made);
     EXPECT_EQ(made.errors()[0].where, "picture size");
   }
-  render::SceneView incomplete = scene->view;
-  incomplete.surfaces.clear();
-  const auto made = render::Renderer::create(100, 100, incomplete);
+  scene->model.surfaces.clear();
+  const auto made = render::Renderer::create(100, 100, scene->view);
   ASSERT_FALSE(made);
   EXPECT_EQ(made.errors()[0].where, "scene");
 }

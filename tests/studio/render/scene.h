@@ -97,7 +97,6 @@ inline std::unique_ptr<TestScene> make_scene(const FilledOrgan& organ, const std
   const auto added = network::add_organ(scene->model, organ, settings);
   EXPECT_TRUE(added) << to_string(added ? Error{} : added.errors()[0]);
   scene->view.model = &scene->model;
-  scene->view.surfaces = {organ.surface};
   return scene;
 }
 

@@ -1,0 +1,201 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "studio/fidelity/body.h"
+#include "studio/fidelity/fidelity.h"
+#include "studio/fidelity/press.h"
+
+// The recipes: each measures one thing and returns plain numbers; chapter_of() puts them into words and tables.
+namespace ctpm::fidelity {
+
+/// A bar of 48 x 48 x 96 mm, both ends held along z only, 1 % longer.
+struct TensionResult {
+  struct Row {
+    double radius = 0;  ///< [m]
+    std::size_t spheres = 0;
+    double force = 0;          ///< through the bar [N]
+    double modulus_ratio = 0;  ///< E / E0 [1]
+    double poisson = 0;        ///< of the drawn sides at half length [1]
+  };
+  std::vector<Row> rows;  ///< coarsest first
+};
+Result<TensionResult> measure_tension(std::span<const double> radii);
+Chapter chapter_of(const TensionResult& result);
+
+/// A beam of 24 x 24 x 120 mm under a hundredth of its weight, clamped over its first 12 mm.
+struct CantileverResult {
+  /// How the beam lies in the lattice.
+  struct Pose {
+    std::string name;
+    Quat turn;
+    Vec3 shift;  ///< [spacings]
+  };
+  struct Row {
+    double radius = 0;  ///< [m]
+    std::string pose;
+    std::size_t spheres = 0;
+    double sag = 0;  ///< of the end's middle [m]
+    bool rests = true;
+  };
+  std::vector<Row> rows;  ///< coarsest first
+};
+Result<CantileverResult> measure_cantilever(std::span<const double> radii);
+Chapter chapter_of(const CantileverResult& result);
+
+/// A block of 96 x 96 x 60 mm, bottom held, frictionless ball of 20 mm at places over one lattice cell.
+struct IndentationResult {
+  struct Row {
+    double radius = 0;           ///< [m]
+    double depth = 0;            ///< [m]
+    std::vector<double> forces;  ///< one a place [N]
+    bool rests = true;
+  };
+  int places = 0;  ///< along each side of the cell
+  std::vector<Row> rows;
+};
+Result<IndentationResult> measure_indentation(std::span<const double> radii, int places);
+Chapter chapter_of(const IndentationResult& result);
+
+/// A ball organ of 40 mm radius, its lower cap (12 mm) held, pressed at its pole by a ball of 10 mm, turned against the
+/// lattice.
+struct OrientationResult {
+  struct Row {
+    double radius = 0;           ///< [m]
+    double depth = 0;            ///< [m]
+    std::vector<double> forces;  ///< one a turn [N]
+    bool rests = true;
+  };
+  std::vector<Row> rows;
+};
+Result<OrientationResult> measure_orientation(std::span<const double> radii, std::span<const Quat> turns);
+Chapter chapter_of(const OrientationResult& result);
+
+/// Presses of one body as rows, one a depth.
+std::vector<OrientationResult::Row> rows_of(const std::vector<std::vector<PressPoint>>& presses, double radius,
+                                            std::span<const double> depths);
+
+/// Adds the scatter of forces over `over` ("turns", "places"): a table to the section, and figures for each row.
+void add_scatter(Chapter& chapter, const std::vector<OrientationResult::Row>& rows, const std::string& over);
+
+/// The first contact of balls of 4 and 10 mm that come down on a flat block at places over one lattice cell.
+struct FirstContactResult {
+  struct Row {
+    double radius = 0, ball = 0;  ///< [m]
+    std::vector<double> depths;  ///< of the ball below the drawn surface at the first force, one a place [m]; NaN: none
+  };
+  std::vector<Row> rows;
+};
+Result<FirstContactResult> measure_first_contact(std::span<const double> radii, int places);
+
+/// Depth of a ball below the drawn surface at the first force [m], as it comes down; NaN if there is none before 15 mm.
+double first_contact(const Body& body, std::int32_t tool, const PressSite& site);
+
+/// Adds the rows as a table, and a figure for each.
+void add_contacts(Chapter& chapter, const std::vector<FirstContactResult::Row>& rows);
+Chapter chapter_of(const FirstContactResult& result);
+
+/// What a press shows: the drawn surface inside a ball of 10 mm, and the force on a ball of 2 mm, at places over a
+/// cell.
+struct SurfaceResult {
+  struct Inside {
+    double radius = 0, depth = 0;  ///< [m]
+    std::vector<double> inside;    ///< depth of the drawn surface in the ball, one a place [m]
+  };
+  struct Small {
+    double radius = 0;           ///< [m]
+    std::vector<double> forces;  ///< on the ball of 2 mm at 8 mm, one a place [N]
+  };
+  std::vector<Inside> inside;
+  std::vector<Small> small;
+};
+Result<SurfaceResult> measure_surface(std::span<const double> radii, int places);
+Chapter chapter_of(const SurfaceResult& result);
+
+/// A ball that is drawn over a flat block at constant depth.
+struct DragResult {
+  struct Row {
+    double radius = 0, ball = 0, depth = 0;  ///< [m]
+    double angle = 0;                        ///< of the way against the lattice [rad]
+    std::vector<double> way;                 ///< from the block's middle [m]      (tick_count)
+    std::vector<double> normal, tangential;  ///< forces on the ball [N]           (tick_count)
+    std::int64_t lost_ticks = 0;             ///< ticks without contact
+    Spread ripple;                           ///< of the normal force without its trend
+    double peak_to_peak = 0;                 ///< of the normal force over its mean [share]
+    double most_friction = 0;                ///< largest tangential over normal force
+  };
+  double friction = 0;  ///< Coulomb coefficient
+  std::vector<Row> rows;
+};
+Result<DragResult> measure_drag(std::span<const double> radii, bool is_quick);
+Chapter chapter_of(const DragResult& result);
+
+/// A ball of 10 mm, 4 mm deep, that moves sideways by 0.3 mm, far below the cone, waits for 10 s, and then slips.
+struct GripResult {
+  struct Sample {
+    double time;      ///< since the ball stopped [s]
+    double friction;  ///< tangential over normal force [1]
+  };
+  std::vector<Sample> held;               ///< while it waits
+  std::vector<Sample> slips;              ///< while it moves on by 24 mm; times since it began
+  double radius = 0;                      ///< [m]
+  double coefficient = 0;                 ///< Coulomb coefficient of the scene
+  double friction_at(double time) const;  ///< of `held`, at the sample nearest to `time`
+};
+Result<GripResult> measure_grip(double radius);
+Chapter chapter_of(const GripResult& result);
+
+/// A block of 72 x 72 x 48 mm after four kinds of abuse, 4 s after they ended.
+struct RecoveryResult {
+  struct Row {
+    double radius = 0;  ///< [m]
+    std::string name;
+    double reach = 0;     ///< largest distance of a sphere from rest during the abuse [m]
+    double residual = 0;  ///< largest distance 4 s later [m]
+    std::int64_t cells = 0, worst_inside_out = 0, inside_out = 0;  ///< all; most during the abuse; 4 s later
+    std::int64_t refused_ticks = 0;
+    reports::Series distance;  ///< over time [s]: largest distance from rest [mm]
+  };
+  std::vector<Row> rows;
+};
+Result<RecoveryResult> measure_recovery(std::span<const double> radii);
+Chapter chapter_of(const RecoveryResult& result);
+
+/// A ball of 20 mm that enters a block by 4 mm in a ramp and stays.
+struct RelaxationResult {
+  struct Row {
+    double radius = 0;           ///< [m]
+    double ramp = 0;             ///< [s]
+    double final_force = 0;      ///< mean over the places [N]
+    std::vector<double> ratios;  ///< force at the ramp's end over the final force, one a place
+    reports::Series force;       ///< at the first place, over time [s]: over the final force
+  };
+  std::vector<Row> rows;
+};
+Result<RelaxationResult> measure_relaxation(std::span<const double> radii, std::span<const double> ramps);
+Chapter chapter_of(const RelaxationResult& result);
+
+/// Free bodies: a ball organ of 40 mm radius that spins at 10 rad/s for 1 s, and one that falls for 0.3 s.
+struct FreeMotionResult {
+  double radius = 0;            ///< [m]
+  std::string integrator;       ///< that `auto` took
+  double angular_momentum = 0;  ///< after the spin, over that before [1]
+  double energy = 0;            ///< kinetic energy after the spin, over that before [1]
+  double fall = 0;              ///< of the centre of mass, over g t^2 / 2 [1]
+  double shape = 0;             ///< largest deviation from a rigid fall [m]
+};
+Result<FreeMotionResult> measure_free_motion(double radius);
+Chapter chapter_of(const FreeMotionResult& result);
+
+/// Order of convergence of errors at radii, from a least-squares line through the logarithms; NaN with fewer than two.
+double order_of(const std::vector<double>& radii, const std::vector<double>& errors);
+
+/// A block of liver that stands on z = 0, centred over the origin, its bottom held. `size` [m].
+Specimen block(Vec3 size, double radius, Pace pace, const std::vector<double>& balls);
+
+/// A ball organ of 40 mm radius about the origin, nothing held.
+Specimen ball_organ(double radius, Pace pace);
+
+}  // namespace ctpm::fidelity

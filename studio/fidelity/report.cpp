@@ -1,0 +1,135 @@
+// The page: goals first, then what each recipe found.
+
+#include <algorithm>
+#include <cmath>
+
+#include "studio/fidelity/fidelity.h"
+#include "studio/output/number_text.h"
+#include "studio/reports/report.h"
+
+namespace ctpm::fidelity {
+namespace {
+
+reports::Cell cell(double value) { return std::isfinite(value) ? reports::Cell(value) : reports::Cell(); }
+
+/// What a reader of the page needs of the figures of one chapter; results.csv has them all.
+reports::Table goals_of(const Chapter& chapter) {
+  reports::Table table;
+  table.columns = {{"name", "figure"}, {"radius_mm", "r [mm]", 3}, {"measured", "measured"},
+                   {"unit", "unit"},   {"reference", "reference"}, {"error_percent", "error [%]", 3},
+                   {"goal", "goal"},   {"verdict", "verdict"},     {"source", "reference from"}};
+  for (const Figure& f : chapter.figures)
+    table.rows.push_back({f.name + (f.note.empty() ? "" : " (" + f.note + ")"),
+                          f.radius > 0 ? reports::Cell(1e3 * f.radius) : reports::Cell(), cell(f.measured),
+                          f.unit == "1" ? std::string() : f.unit, f.reference ? cell(*f.reference) : reports::Cell(),
+                          cell(100 * f.error()), f.goal ? f.goal->text(f.unit) : std::string(), f.verdict(), f.source});
+  return table;
+}
+
+std::string subtitle_of(const FidelityResults& results) {
+  const std::string bodies =
+      results.scene
+          ? "The first organ of " + *results.scene +
+                " under its first ball, against what an organ without a lattice would do."
+          : "Bodies of the paper's liver (E0 = 39.3 kPa, Poisson's ratio 1/4) are meshed, filled and built as "
+            "an author's scene is, and compared with finite elements, closed forms and plain requirements. The gap "
+            "between spheres is their radius r.";
+  return bodies + (results.is_quick ? " Short form: coarse fillings, few places and turns." : "");
+}
+
+/// How many goals each recipe meets.
+reports::Table overview(const FidelityResults& results) {
+  reports::Table table;
+  table.columns = {{"recipe", "recipe"}, {"met", "goals met"}, {"missed", "goals missed"}, {"verdict", "verdict"}};
+  for (const Chapter& chapter : results.chapters) {
+    std::int64_t met = 0, missed = 0;
+    for (const Figure& figure : chapter.figures) {
+      met += figure.verdict() == reports::ReportVerdict::met;
+      missed += figure.verdict() == reports::ReportVerdict::missed;
+    }
+    const reports::ReportVerdict verdict = missed > 0 ? reports::ReportVerdict::missed
+                                           : met > 0  ? reports::ReportVerdict::met
+                                                      : reports::ReportVerdict::shown;
+    table.rows.push_back({chapter.section.title, met, missed, verdict});
+  }
+  return table;
+}
+
+std::string results_json(const FidelityResults& results) {
+  output::JsonWriter json;
+  json.begin_object()
+      .member("format", "ctpm-fidelity-results")
+      .member("version", 1)
+      .member("program_version", CTPM_VERSION)
+      .member("scene", results.scene.value_or(""))
+      .member("is_quick", results.is_quick)
+      .member("goals_met", results.count(reports::ReportVerdict::met))
+      .member("goals_missed", results.count(reports::ReportVerdict::missed));
+  json.key("figures");
+  reports::write_rows(json, figures_table(results.chapters));
+  json.key("recipes").begin_list();
+  for (const Chapter& chapter : results.chapters) {
+    const reports::Section& section = chapter.section;
+    json.begin_object().member("key", std::string_view(section.key)).member("title", std::string_view(section.title));
+    json.key("tables").begin_list();
+    for (const reports::Table& table : section.tables) {
+      json.begin_object().member("title", std::string_view(table.title)).key("rows");
+      reports::write_rows(json, table);
+      json.end_object();
+    }
+    json.end_list().key("plots").begin_list();
+    for (const reports::Plot& plot : section.plots) reports::write_points(json, plot);
+    json.end_list().end_object();
+  }
+  return json.end_list().end_object().text();
+}
+
+}  // namespace
+
+reports::Table figures_table(const std::vector<Chapter>& chapters) {
+  reports::Table table;
+  table.columns = {{"recipe", "recipe"},
+                   {"figure", "figure"},
+                   {"radius_mm", "r [mm]"},
+                   {"measured", "measured"},
+                   {"unit", "unit"},
+                   {"reference", "reference"},
+                   {"source", "reference from"},
+                   {"error_percent", "error [%]"},
+                   {"goal_least", "goal, least"},
+                   {"goal_most", "goal, most"},
+                   {"verdict", "verdict"},
+                   {"note", "note"}};
+  const auto optional = [](const std::optional<double>& value) { return value ? cell(*value) : reports::Cell(); };
+  for (const Chapter& chapter : chapters)
+    for (const Figure& f : chapter.figures)
+      table.rows.push_back({f.recipe, f.name, f.radius > 0 ? reports::Cell(1e3 * f.radius) : reports::Cell(),
+                            cell(f.measured), f.unit, optional(f.reference), f.source, cell(100 * f.error()),
+                            f.goal ? optional(f.goal->least) : reports::Cell(),
+                            f.goal ? optional(f.goal->most) : reports::Cell(), f.verdict(), f.note});
+  return table;
+}
+
+Result<Done> write_fidelity_report(const std::string& folder, const FidelityResults& results) {
+  reports::Report report("Fidelity: what a filled organ does against what it should do", subtitle_of(results));
+  const std::int64_t met = results.count(reports::ReportVerdict::met),
+                     missed = results.count(reports::ReportVerdict::missed);
+  report.add_verdict(
+      missed == 0, missed == 0 ? "All " + std::to_string(met) + " goals are met."
+                               : std::to_string(missed) + " of " + std::to_string(met + missed) + " goals are missed.");
+  report.add_table(overview(results));
+  report.add_heading("Goals");
+  for (const Chapter& chapter : results.chapters) {
+    if (chapter.figures.empty()) continue;
+    reports::Table goals = goals_of(chapter);
+    goals.title = chapter.section.title;
+    report.add_table(goals);
+  }
+  for (const Chapter& chapter : results.chapters)
+    if (const Result<Done> added = report.add(chapter.section); !added) return added;
+  return reports::write_report(folder, {{"results.json", results_json(results)},
+                                        {"results.csv", reports::to_csv(figures_table(results.chapters))},
+                                        {"report.html", report.html()}});
+}
+
+}  // namespace ctpm::fidelity

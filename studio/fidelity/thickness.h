@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/model/organ.h"
+
+// Where an organ is too thin for its spheres.
+namespace ctpm::fidelity {
+
+/// Tissue needs two spacings across to resist bending: one sheet of spheres folds like cloth.
+inline constexpr double kLeastSpacingsAcross = 2;
+
+/// Thickness of the tissue at each sphere [m], from the depths of the spheres: along the lattice line that follows the
+/// steepest growth of depth, its run of spheres and the depths of its two ends. In the middle of a sheet and at corners
+/// depth does not grow, and the shortest of the three axis lines counts. Known to about half a spacing (sphere_count).
+std::vector<double> local_thickness(const FilledOrgan& organ);
+
+/// Spheres in tissue that is thinner than kLeastSpacingsAcross.
+struct ThinParts {
+  std::int64_t spheres = 0;
+  double share = 0;     ///< of all spheres of the organ
+  double thinnest = 0;  ///< [m]; 0 if there are none
+  Vec3 place;           ///< of the thinnest [m]
+};
+ThinParts find_thin_parts(const FilledOrgan& organ);
+
+}  // namespace ctpm::fidelity

@@ -1,0 +1,144 @@
+// A ball touches the surface that is drawn.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/contact/contact_law.h"
+#include "core/stepping/step.h"
+#include "core/surface/surface.h"
+#include "tests/core/skinned_block.h"
+
+namespace ctpm {
+namespace {
+
+constexpr double kTop = 0.036;  // of a block of four layers [m]
+
+Inputs at(Vec3 position) {
+  Inputs inputs;
+  inputs.tool = 0, inputs.position = position;
+  return inputs;
+}
+
+Model pressed_block(Integrator integrator, double radius,
+                    network::Structure structure = network::Structure::mass_spring) {
+  Model model = testing::make_skinned_block(5, 5, 4, structure);
+  model.tools = {testing::ball(radius)};
+  model.solver.integrator = integrator, model.solver.substeps = integrator == Integrator::leapfrog ? 4 : 1;
+  model.solver.tolerance = 1e-9, model.solver.velocity_floor = 1e-12;
+  return model;
+}
+
+class SurfaceContact : public ::testing::TestWithParam<Integrator> {};
+
+TEST_P(SurfaceContact, BeginsWhereTheSurfaceIsAtAnyPlace) {
+  for (const double radius : {0.004, 0.01})
+    for (const Vec3 place : {Vec3{0, 0, 0}, Vec3{0.006, 0, 0}, Vec3{0.006, 0.006, 0}, Vec3{0.0037, 0.0051, 0}}) {
+      const Model model = pressed_block(GetParam(), radius);
+      stepping::Stepper stepper(model);
+      State state = rest_state(model);
+      const auto force_at = [&](double height) {
+        state = rest_state(model);
+        return norm(stepper.step(state, at(place + Vec3{0, 0, kTop + radius + height})).tool_force);
+      };
+      EXPECT_EQ(force_at(1e-6), 0) << radius;
+      EXPECT_GT(force_at(-1e-4), 0) << radius;
+    }
+}
+
+TEST_P(SurfaceContact, GivesThePressesForceBackToTheHand) {
+  const Model model = pressed_block(GetParam(), 0.01);
+  stepping::Stepper stepper(model);
+  State state = rest_state(model);
+  stepping::StepReport report;
+  Vec3 before, kicked;
+  for (int i = 0; i < 20; ++i) {
+    before = {};
+    for (std::size_t n = 0; n < model.sphere_count(); ++n) before += model.mass[n] * state.velocity[n];
+    report = stepper.step(state, at({0.002, 0.001, kTop + 0.01 - 1e-4 * i}));
+    ASSERT_EQ(report.status, stepping::StepStatus::ok);
+  }
+  EXPECT_GT(report.tool_force.z, 0.01) << "tissue pushes the ball out";
+  EXPECT_GT(report.contacts, 3);
+  EXPECT_NEAR(report.depth, 19e-4, 6e-4);
+}
+
+TEST_P(SurfaceContact, DrawsTheSurfaceOnTheBall) {
+  const double radius = 0.01;
+  const Model model = pressed_block(GetParam(), radius);
+  stepping::Stepper stepper(model);
+  State state = rest_state(model);
+  for (int i = 0; i <= 60; ++i)
+    ASSERT_EQ(stepper.step(state, at({0.002, 0.001, kTop + radius - 1e-4 * i})).status, stepping::StepStatus::ok);
+  std::vector<Vec3> vertex;
+  surface::place_surface(model, 0, model.surfaces[0], state, vertex);
+  double deepest = 0;
+  for (const Vec3& p : vertex) deepest = std::max(deepest, radius - norm(p - state.last_inputs.position));
+  EXPECT_LT(deepest, 1e-4) << "no vertex is seen inside the ball";
+  EXPECT_GT(deepest, -1e-3) << "but it is seen to touch";
+}
+
+TEST_P(SurfaceContact, OfASmallBallGoesDeeperThanTheLatticeFollows) {
+  // A ball of a sixth of the spacing, eight of its radii deep... four: the force grows and never turns round.
+  const double radius = 0.002;
+  const Model model = pressed_block(GetParam(), radius);
+  stepping::Stepper stepper(model);
+  State state = rest_state(model);
+  double last = 0;
+  for (int step = 1; step <= 8; ++step) {
+    stepping::StepReport report;
+    for (int i = 0; i < 40; ++i)
+      report = stepper.step(state, at({0.003, 0.004, kTop + radius - 1e-3 * (step - 1 + (i + 1) / 40.0)}));
+    for (int i = 0; i < 200; ++i) report = stepper.step(state, state.last_inputs);
+    EXPECT_GT(report.tool_force.z, last) << step << " mm";
+    last = report.tool_force.z;
+  }
+}
+
+TEST_P(SurfaceContact, HoldsForTenSecondsWhatItGrips) {
+  const Model model = pressed_block(GetParam(), 0.01);
+  stepping::Stepper stepper(model);
+  State state = rest_state(model);
+  for (int i = 0; i <= 40; ++i) (void)stepper.step(state, at({0, 0, kTop + 0.01 - 1e-4 * i}));
+  for (int i = 0; i < 500; ++i) (void)stepper.step(state, state.last_inputs);
+  for (int i = 1; i <= 20; ++i) (void)stepper.step(state, at({2e-5 * i, 0, kTop + 0.006}));
+  double early = 0, late = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double force = stepper.step(state, state.last_inputs).tool_force.x;
+    if (i == 1500) early = force;
+    late = force;
+  }
+  EXPECT_LT(early, -0.005) << "the tissue pulls the ball back";
+  EXPECT_NEAR(late / early, 1, 0.02) << "and does not let go";
+}
+
+INSTANTIATE_TEST_SUITE_P(Under, SurfaceContact,
+                         ::testing::Values(Integrator::leapfrog, Integrator::backward_euler, Integrator::sdirk2));
+
+TEST(Foundation, IsAThreeParameterModel) {
+  OrganRange organ;
+  organ.instant_ratio = 2.5, organ.kelvin_time = 0.2;
+  // At once K2, after long the static stiffness; between them the force follows exp(-t / tau), tau = c / (K1 + K2).
+  const double k = 7, h = 1e-5, dent = 1e-3, tau = organ.kelvin_time / organ.instant_ratio;
+  double kelvin = 0, time = 0;
+  const contact::Foundation step(organ, k, h);
+  EXPECT_NEAR(step.force(dent, 0), 2.5 * k * dent, 1e-3 * k * dent);
+  while (time < 3 * tau) kelvin = step.kelvin_after(dent, kelvin), time += h;
+  const double expected = k * dent * (1 + 1.5 * std::exp(-time / tau));
+  EXPECT_NEAR(2.5 * k * (dent - kelvin), expected, 1e-3 * expected);
+  OrganRange elastic;
+  EXPECT_EQ(contact::Foundation(elastic, k, h).force(dent, 0), k * dent);
+}
+
+TEST(DentStiffness, IsHertzWhereTheLatticeIsCoarseAndVanishesWhereItIsFine) {
+  // A ball of R 1 at d 1e-4 dents where it overlaps: force k pi R d^2 against 4/3 E' sqrt(R) d^1.5.
+  const double modulus = 4e4, radius = 1, depth = 1e-4, a = std::sqrt(2 * radius * depth);
+  const double k = contact::dent_stiffness(modulus, a, 1e3 * a);
+  const double hertz = 4.0 / 3 * modulus / (1 - 1.0 / 16) * std::sqrt(radius) * std::pow(depth, 1.5);
+  EXPECT_NEAR(k * std::numbers::pi * radius * depth * depth, hertz, 0.002 * hertz);
+  EXPECT_GT(contact::dent_stiffness(modulus, a, 0.01 * a), 1000 * k);
+}
+
+}  // namespace
+}  // namespace ctpm
