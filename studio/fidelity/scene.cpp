@@ -111,6 +111,7 @@ Result<Body> make_body(const SceneOrgan& organ, Quat turn) {
   // Anchors are regions of the scene, so they choose among spheres that are turned back.
   FilledOrgan back = body->organ;
   for (Vec3& centre : back.centre) centre = body->to_body(centre);
+  for (Vec3& vertex : back.surface.vertex) vertex = body->to_body(vertex);
   const Result<std::vector<std::int32_t>> anchored =
       scenes::select_anchored(back, organ.anchors, organ.gravity, "the turned organ");
   if (!anchored) return anchored.errors();
