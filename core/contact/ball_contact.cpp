@@ -194,7 +194,11 @@ void BallContact::add(const StateView& state, const BallMotion& ball, PointConta
   // However far the hand jumps, the approach leads to the dent, or out of contact, in one step.
   const Vec3 start = ball.from_velocity ? velocity - ball.velocity : -ball.velocity;
   const double leaving = std::clamp(dot(start, normal), -contact.dent / ball.h, ball.radius / ball.h);
-  contact.start = across(start) + leaving * normal;
+  // Nor does the slip pass the ball in one step; a device's jump by 1e300 m must not overflow.
+  const double fastest = ball.radius / ball.h;
+  const auto bounded = [&](double x) { return std::clamp(x, -fastest, fastest); };
+  const Vec3 slip = across(start);
+  contact.start = Vec3{bounded(slip.x), bounded(slip.y), bounded(slip.z)} + leaving * normal;
   contact.grip_k = model_.contact_friction > 0 ? contact.k : 0.0;
   contact.grip_c = 2 * std::sqrt(contact.grip_k / contacts.mobility(carriers));  // critical
   contact.most_grip = model_.contact_friction * pressure;
