@@ -43,7 +43,8 @@ struct Hasher {
   /// sessions keep their hashes.
   static bool is_newer(std::string_view name) {
     return name == "axial_crossing" || name.starts_with("blade_trail") || name.starts_with("acceleration") ||
-           name == "touched" || name.starts_with("grip.") || name == "kelvin_dent";
+           name == "touched" || name.starts_with("grip.") || name == "kelvin_dent" || name == "edge_organ" ||
+           name.starts_with("swept");
   }
 
   template <class T>

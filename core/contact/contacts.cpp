@@ -1,6 +1,7 @@
 #include "core/contact/contacts.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/model/result.h"
 
@@ -8,9 +9,11 @@ namespace ctpm::contact {
 
 namespace {
 
-/// Contacts and entries of a Model's pairs, those of blades and cut faces.
-std::size_t pairs_of(const Model& model, const BladeForce& blade, const CutFaceContact& cut_faces) {
-  return model.has_scalpel() ? blade.capacity() + cut_faces.capacity() : 0;
+/// Contacts of a Model's blades and cut faces, and entries of their carriers.
+std::pair<std::size_t, std::size_t> of_cuts(const Model& model, const BladeForce& blade,
+                                            const CutFaceContact& cut_faces) {
+  if (!model.has_scalpel()) return {0, 0};
+  return {blade.capacity() + cut_faces.capacity(), blade.entries() + 2 * cut_faces.capacity()};
 }
 
 }  // namespace
@@ -20,8 +23,8 @@ Contacts::Contacts(const Model& model, const elements::Kernels& kernels)
       ball_(model, kernels),
       blade_(model),
       cut_faces_(model),
-      points_(model, ball_.capacity().first + pairs_of(model, blade_, cut_faces_),
-              ball_.capacity().second + 2 * pairs_of(model, blade_, cut_faces_)),
+      points_(model, ball_.capacity().first + of_cuts(model, blade_, cut_faces_).first,
+              ball_.capacity().second + of_cuts(model, blade_, cut_faces_).second),
       explicit_solve_(model, model.solver.integrator == Integrator::leapfrog ? points_.capacity() : 0) {}
 
 Pin Contacts::pin(const HeldTool& tool, const Vec3Array& position, double share, double h) {
@@ -38,10 +41,8 @@ void Contacts::find(const StateView& state, const HeldTool& tool, const ContactS
                 from_velocity},
                points_);
   if (tool.is(ToolKind::scalpel) && blade_.any()) {
-    CTPM_CHECK(tool.near != nullptr, "a blade has swept before its contacts are detected");
-    tool.near->follow(state.position);
-    blade_.find(state, *tool.near, *tool.tool, tool.blade, points_);
-    blade_.add_severed(state, *tool.tool, tool.blade, tool.swept, points_);
+    CTPM_CHECK(tool.front != nullptr, "the front of a cut is known before the blade's contacts are detected");
+    blade_.find(state, *tool.tool, *tool.front, tool.edge_at(step.share), step.h, from_velocity, points_);
   }
   if (cut_faces_.is_wanted()) cut_faces_.find(state, points_);
 }

@@ -46,12 +46,15 @@ void for_each_field(State_& s, Visit&& visit) {
   give("last_inputs.buttons", s.last_inputs.buttons, any);
   give("axial_crossing", s.axial_crossing, any.per(EntryOf::axial).or_empty());
   give_points("blade_trail.x", "blade_trail.y", "blade_trail.z", s.blade_trail,
-              finite.per(EntryOf::blade_end).or_empty(), give);
+              finite, give);
   give_points("acceleration.x", "acceleration.y", "acceleration.z", s.acceleration,
               finite.per(EntryOf::sphere).or_empty(), give);
   give("touched", s.touched, index(EntryOf::touchable));
   give_points("grip.x", "grip.y", "grip.z", s.grip, finite, give);
   give("kelvin_dent", s.kelvin_dent, finite);
+  give("edge_organ", s.edge_organ, any);
+  give_points("swept.x", "swept.y", "swept.z", s.swept, finite, give);
+  give("swept_organ", s.swept_organ, any);
 }
 
 template <class Tool_, class Visit>

@@ -307,10 +307,33 @@ Errors check_model(const Model& model) {
   return check.take();
 }
 
+/// The front of the cut and the swept surface. Before physics revision 4 a blade had two towed points instead.
+void check_edge(Checker& check, const Model& model, const State& state) {
+  constexpr std::size_t kEarlierTrail = 2;
+  const std::size_t nodes = state.edge_organ.empty() ? kEarlierTrail : kEdgeNodes;
+  check.length("edge_organ", state.edge_organ.size(), state.edge_organ.empty() ? 0 : kEdgeNodes);
+  if (!state.blade_trail.x.empty()) check.length("blade_trail", state.blade_trail.x.size(), nodes);
+  const auto organs = std::int64_t(model.organs.size());
+  for (const std::int32_t organ : state.edge_organ)
+    if (organ < -1 || organ >= organs) {
+      check.require(false, "edge_organ", "names an organ that does not exist");
+      break;
+    }
+  check_together(check, "swept", state.swept);
+  check.length("swept_organ", state.swept_organ.size(), state.swept.x.size());
+  check.require(state.swept.x.size() % kEdgeNodes == 0, "swept", "must hold whole rows");
+  for (const std::uint8_t organ : state.swept_organ)
+    if (organ > organs) {
+      check.require(false, "swept_organ", "names an organ that does not exist");
+      break;
+    }
+}
+
 Errors check_state(const Model& model, const State& state) {
   Checker check("state");
   for_each_field(state, FieldCheck(check, model));
   check_together(check, "blade_trail", state.blade_trail);
+  check_edge(check, model, state);
   check_together(check, "acceleration", state.acceleration);
   check.length("grip", state.grip.size(), state.touched.size());
   check_together(check, "grip", state.grip);
