@@ -10,7 +10,7 @@ namespace {
 
 /// Tissue is whole ahead of the front if the swept surface is farther than kCut from a place kAhead of it, and in full
 /// if it is farther than kWhole [m].
-constexpr double kAhead = 0.3e-3, kCut = 0.05e-3, kWhole = 0.25e-3;
+constexpr double kAhead = 0.3e-3, kCut = 0.02e-3, kWhole = 0.1e-3;
 
 /// A node is followed from this far outside an organ [m], and at least from two nodes' distance.
 constexpr double kNear = 3e-3;
@@ -87,13 +87,11 @@ void CutFront::track(std::size_t node, Vec3 from, Vec3 to, bool is_taken, State&
   double deepest = organ >= 0 ? depth_.at(std::size_t(organ), state.blade_trail[node]) : -INFINITY;
   for (std::size_t o = 0; o < box_.size(); ++o) {
     if (std::int32_t(o) == organ || !box_[o].meets(way)) continue;
-    const std::optional<Vec3> rest = map_.rest_of(o, state.position, to, reach_[o]);
-    if (!rest) continue;
-    const double depth = depth_.at(o, *rest);
+    const Vec3 rest = map_.rest_of(o, state.position, to, reach_[o]);
+    const double depth = depth_.at(o, rest);
     if (depth <= deepest) continue;
     deepest = depth, organ = std::int32_t(o);
-    const std::optional<Vec3> before = is_taken ? rest : map_.rest_of(o, state.position, from, reach_[o]);
-    state.blade_trail.set(node, before.value_or(*rest + (from - to)));
+    state.blade_trail.set(node, is_taken ? rest : map_.rest_of(o, state.position, from, reach_[o]));
   }
 }
 
@@ -130,12 +128,8 @@ void CutFront::begin_substep(const State& state) {
     if (node.organ < 0) continue;
     const auto organ = std::size_t(node.organ);
     map_.find(organ, front_[n], reach_[organ], node.place);
-    if (node.place.count == 0) {
-      node.organ = -1;
-      continue;
-    }
     node.depth = depth_.at(organ, front_[n]);
-    if (!resists_) continue;
+    if (!resists_ || node.place.count == 0) continue;
     double total = 0;
     for (std::size_t i = 0; i < std::size_t(node.place.count); ++i) {
       const double weight = std::max(0.0, node.place.weight[i]);
@@ -222,6 +216,13 @@ std::int32_t CutFront::follow(const Tool& scalpel, const BladeEdge& edge, State&
   for (std::size_t n = 0; n < kEdgeNodes; ++n) {
     const Node& node = nodes_[n];
     if (node.organ < 0) continue;
+    if (node.place.count == 0) {
+      // Nothing holds a node far outside.
+      const auto organ = std::size_t(node.organ);
+      to[n] = map_.rest_of(organ, state.position, at_node(edge, n), reach_[organ]);
+      is_new[n] = newness(node.organ, front_[n], to[n] - front_[n]);
+      continue;
+    }
     const Vec3 apart = at_node(edge, n) - node.place.at(state.position);
     const double distance = norm(apart);
     if (!(distance > 0)) continue;

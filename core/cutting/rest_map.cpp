@@ -193,9 +193,8 @@ void RestMap::find(std::size_t organ, Vec3 rest, double reach, Place& place) con
   }
 }
 
-std::optional<Vec3> RestMap::rest_of(std::size_t organ, const Vec3Array& position, Vec3 point, double reach) const {
+Vec3 RestMap::rest_of(std::size_t organ, const Vec3Array& position, Vec3 point, double reach) const {
   const Lattice& lattice = lattices_[organ];
-  if (lattice.count == 0) return std::nullopt;
   const auto first = std::size_t(lattice.first), last = first + std::size_t(lattice.count);
   std::size_t nearest = first;
   double least = INFINITY;
@@ -208,7 +207,7 @@ std::optional<Vec3> RestMap::rest_of(std::size_t organ, const Vec3Array& positio
   Place place;
   for (int step = 0; step < kMostSteps; ++step) {
     find(organ, rest, reach, place);
-    if (place.count == 0) return std::nullopt;
+    if (place.count == 0) break;
     Vec3 move = place.at_rest(position, point - place.at(position));
     const double length = norm(move), most = 0.5 * lattice.spacing;
     if (length > most) move = most / length * move;

@@ -7,7 +7,6 @@
 #include "core/model/fields.h"
 #include "recordings/replay.h"
 #include "recordings/state_hash.h"
-#include "studio/session/cut_depth.h"
 
 namespace ctpm::compare {
 namespace {
@@ -43,6 +42,9 @@ Result<Done> find_severed(recordings::SessionReader& session, SessionTrack& trac
     }
     track.replays = track.replays && cursor->same_so_far();
   }
+  session::CutMeasures measures(session.start().model);
+  measures.measure(cursor->state());
+  track.cut = measures.size();
   return Done{};
 }
 
@@ -184,14 +186,6 @@ Vec3 rest_middle(const Model& model, std::size_t element) {
   if (element < places.constraints) return middle(model.axial.a[element], model.axial.b[element]);
   if (element < places.angle_springs) return rest[std::size_t(model.constraints.c[element - places.constraints])];
   return rest[std::size_t(model.angle_springs.b[element - places.angle_springs])];
-}
-
-std::optional<double> cut_depth(const SessionTrack& track, const recordings::SessionStart& start) {
-  session::CutDepth depth(start.model);
-  const std::size_t axial_count = ElementPlaces(start.model).constraints;
-  for (std::size_t i = 0; i < axial_count; ++i)
-    if (track.severed_at[i] >= 0) depth.add(i);
-  return depth.deepest();
 }
 
 }  // namespace ctpm::compare
