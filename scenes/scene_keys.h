@@ -264,9 +264,9 @@ void describe_fields(V& v, ToolSpec& tool) {
   v.point(Key{"holds_mm", "A pin holds the sphere nearest to here; needed by a pin, not allowed for others."},
           tool.holds, units::millimetre, any_coordinate_mm);
   v.number(Key{"blade_reach_mm",
-               "Least distance ahead of a scalpel's edge over which tissue resists; at least 0.75 spacings of the "
-               "widest organ are taken; not allowed for others.",
-               false, "9"},
+               "Radius of the tissue around a scalpel's edge that takes up its force; at least 1.5 spacings of the "
+               "organ are taken; not allowed for others.",
+               false, "15"},
            tool.blade_reach, units::millimetre, within(0.01, 100));
   v.number(Key{"flank_height_mm",
                "Height of a scalpel's flanks behind the edge, along which cut faces rub; not allowed for others.",

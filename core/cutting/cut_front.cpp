@@ -15,6 +15,10 @@ constexpr double kAhead = 0.3e-3, kCut = 0.02e-3, kWhole = 0.1e-3;
 /// A node is followed from this far outside an organ [m], and at least from two nodes' distance.
 constexpr double kNear = 3e-3;
 
+/// The spheres within this many spacings span space wherever the front is. Sessions before physics revision 4 store
+/// less, for another law.
+constexpr double kLeastReach = 1.5;
+
 /// Length over which a flank that leaves the tissue comes off it [m].
 constexpr double kFlankEnds = 1e-3;
 constexpr int kFlankPoints = 3;
@@ -107,7 +111,8 @@ void CutFront::begin_tick(const Tool& scalpel, const BladeEdge& from, const Blad
     const auto first = std::size_t(model_.organs[o].first), last = first + std::size_t(model_.organs[o].count);
     Box box(state.position[first]);
     for (std::size_t i = first; i < last; ++i) box.add(state.position[i]);
-    reach_[o] = std::max(scalpel.blade_reach, scalpel.blade_reach_spacings * model_.organs[o].spacing);
+    reach_[o] =
+        std::max(scalpel.blade_reach, std::max(scalpel.blade_reach_spacings, kLeastReach) * model_.organs[o].spacing);
     box_[o] = box.grown(std::max(kNear, 2 * apart));
     is_near = is_near || box_[o].meets(edge);
   }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/cutting/lattice_frame.h"
+
 namespace ctpm::cutting {
 namespace {
 
@@ -75,7 +77,9 @@ RestMap::Lattice RestMap::make_lattice(const OrganRange& organ) const {
   Lattice lattice;
   lattice.first = organ.first, lattice.count = organ.count, lattice.spacing = organ.spacing;
   if (organ.count == 0 || !(organ.spacing > 0)) return lattice;
-  find_axes(organ, lattice);
+  const LatticeFrame frame = lattice_frame(model_, organ);
+  lattice.origin = frame.origin;
+  for (std::size_t a = 0; a < 3; ++a) lattice.axis[a] = frame.axis[a];
   const auto first = std::size_t(organ.first), last = first + std::size_t(organ.count);
   LatticeCell high = lattice.low = model_.cell[first];
   for (std::size_t i = first; i < last; ++i) {
@@ -95,41 +99,6 @@ RestMap::Lattice RestMap::make_lattice(const OrganRange& organ) const {
     lattice.sphere_at[at] = std::int32_t(i);
   }
   return lattice;
-}
-
-/// The lattice's axes from the first two of its spheres that lie along each; an organ may be turned in its scene. Axes
-/// along which it has one layer are perpendicular to the others.
-void RestMap::find_axes(const OrganRange& organ, Lattice& lattice) const {
-  const auto first = std::size_t(organ.first), last = first + std::size_t(organ.count);
-  bool known[3] = {};
-  for (std::size_t i = first; i + 1 < last; ++i) {
-    const LatticeCell a = model_.cell[i], b = model_.cell[i + 1];
-    if (b[0] == a[0] + 1 && b[1] == a[1] && b[2] == a[2] && !known[0])
-      lattice.axis[0] = model_.rest_position[i + 1] - model_.rest_position[i], known[0] = true;
-  }
-  for (std::size_t i = first; i < last && !(known[1] && known[2]); ++i)
-    for (std::size_t j = i + 1; j < last && !(known[1] && known[2]); ++j) {
-      const LatticeCell a = model_.cell[i], b = model_.cell[j];
-      if (b[2] > a[2] + 1) break;  // sorted by (k, j, i)
-      for (std::size_t axis : {std::size_t{1}, std::size_t{2}}) {
-        LatticeCell beside = a;
-        ++beside[axis];
-        if (known[axis] || b != beside) continue;
-        lattice.axis[axis] = model_.rest_position[j] - model_.rest_position[i], known[axis] = true;
-      }
-    }
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (known[a]) lattice.axis[a] = lattice.axis[a] / norm(lattice.axis[a]);
-    const Vec3 own{a == 0 ? 1.0 : 0.0, a == 1 ? 1.0 : 0.0, a == 2 ? 1.0 : 0.0};
-    if (!known[a]) lattice.axis[a] = own;
-  }
-  for (std::size_t a = 0; a < 3; ++a) {
-    const std::size_t p = (a + 1) % 3, q = (a + 2) % 3;
-    if (!known[a] && known[p] && known[q]) lattice.axis[a] = cross(lattice.axis[p], lattice.axis[q]);
-  }
-  const LatticeCell c = model_.cell[first];
-  lattice.origin = model_.rest_position[first] -
-                   organ.spacing * (c[0] * lattice.axis[0] + c[1] * lattice.axis[1] + c[2] * lattice.axis[2]);
 }
 
 std::int32_t RestMap::Lattice::at(std::int32_t i, std::int32_t j, std::int32_t k) const {

@@ -60,7 +60,6 @@ class RestMap {
     Vec3 in_cells(Vec3 rest) const;
   };
   Lattice make_lattice(const OrganRange& organ) const;
-  void find_axes(const OrganRange& organ, Lattice& lattice) const;
 
   const Model& model_;
   std::vector<Lattice> lattices_;

@@ -228,11 +228,21 @@ void place_surface(const Model& model, std::size_t organ, const Surface& surface
   std::int64_t first = 0;
   for (std::size_t i = 0; i < organ; ++i) first += std::int64_t(model.surfaces[i].vertex.size());
   const std::int64_t last = first + std::int64_t(model.surfaces[organ].vertex.size());
-  // Normals of the touched vertices: sums over their triangles, weighted by area.
+  // Normals of the touched vertices: sums over their triangles, weighted by area. A cut surface has vertices of its
+  // own, of which the ball dents those in it.
+  const Surface& own = model.surfaces[organ];
+  const bool is_own = surface.vertex.size() == own.vertex.size() && surface.vertex == own.vertex;
   std::vector<char> is_touched(vertex.size(), 0);
-  for (const std::int32_t point : state.touched)
-    if (point >= first && point < last && std::size_t(point - first) < vertex.size())
+  for (const std::int32_t point : state.touched) {
+    if (point < first || point >= last) continue;
+    if (is_own) {
       is_touched[std::size_t(point - first)] = 1;
+      continue;
+    }
+    for (std::size_t v = 0; v < vertex.size(); ++v)
+      is_touched[v] = norm(vertex[v] - inputs.position) < tool.radius;
+    break;
+  }
   std::vector<Vec3> normal(vertex.size());
   for (const auto& t : surface.triangle) {
     const auto a = std::size_t(t[0]), b = std::size_t(t[1]), c = std::size_t(t[2]);

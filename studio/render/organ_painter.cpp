@@ -26,7 +26,7 @@ Result<Done> OrganPainter::create(const Gl& gl, const SceneView& scene) {
       programs_[std::size_t(pass)][cutaway] = *made;
     }
   for (std::size_t i = 0; i < scene.model->surfaces.size(); ++i) {
-    organs_.push_back({CutSurface(*scene.model, i, scene.model->surfaces[i]), {}, {}, false});
+    organs_.push_back({CutSurface(*scene.model, i), {}, {}, false});
     VertexArray& array = organs_.back().array;
     array.create(gl);
     array.attribute(gl, 0, 3, 0, kOrganVertexFloats), array.attribute(gl, 1, 3, 3, kOrganVertexFloats);

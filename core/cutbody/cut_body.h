@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/cutbody/cut_grid.h"
+#include "core/cutbody/cut_mesh.h"
+#include "core/model/model.h"
+#include "core/model/organ.h"
+#include "core/model/state.h"
+
+namespace ctpm::cutbody {
+
+/// The surface of an organ that may be cut: a pure function of the Model at rest and of the swept surface. It is closed,
+/// with one component for each piece of tissue, and each of its vertices follows only spheres of its own side of the
+/// cut. Where those do not span space, as in a strip thinner than a spacing, it follows the spheres around it as if
+/// nothing were cut.
+class CutBody {
+ public:
+  /// `model` must outlive the CutBody. The organ must have a surface.
+  CutBody(const Model& model, std::size_t organ);
+
+  /// Follows the swept surface of `state`. Returns whether surface() changed.
+  bool update(const State& state);
+
+  /// Outer triangles first, then the walls of the cut, which have their own vertices, so that normals break at the edge
+  /// of a cut. Until something is cut it is the organ's own surface. Vertices are at rest, where both sides of a cut
+  /// coincide.
+  const Surface& surface() const { return surface_; }
+  std::size_t outer_triangle_count() const { return outer_triangles_; }
+  std::size_t outer_vertex_count() const { return outer_vertices_; }
+  bool is_cut() const { return is_cut_; }
+  const CutGrid& grid() const { return grid_; }
+
+ private:
+  using Index = CutGrid::Index;
+  struct Binding {
+    std::vector<Index> sphere;
+    std::vector<double> weight;
+  };
+  struct Key {
+    Index side;
+    double x, y, z;
+    friend auto operator<=>(const Key&, const Key&) = default;
+  };
+
+  void rebuild();
+  bool is_near(CutGrid::NodeBox box, Index node) const;
+  void forget_near(CutGrid::NodeBox box);
+  std::vector<Index> spheres_near(Index node) const;
+  const std::vector<Index>& seen_from(Index node);
+  Binding bind(Vec3 rest, Index side);
+  Binding follow(Vec3 rest, const std::vector<Index>& spheres, double reach) const;
+  std::vector<Index> spheres_around(Vec3 rest) const;
+
+  const Model& model_;
+  const OrganRange& organ_;
+  CutGrid grid_;
+  Surface whole_, surface_;
+  std::size_t outer_triangles_ = 0, outer_vertices_ = 0;
+  bool is_cut_ = false;
+  CutGrid::NodeBox cut_box_;  ///< around all crossings of the cut
+  std::map<Key, Binding> bound_;              ///< bindings of the vertices of the last mesh
+  std::map<Index, std::vector<Index>> seen_;  ///< spheres that a node of the grid sees
+
+  // Scratch memory of seen_from().
+  std::vector<std::uint32_t> visited_;  ///< number of the call that visited a node
+  std::vector<std::pair<Index, Index>> queue_;
+  std::uint32_t call_ = 0;
+};
+
+}  // namespace ctpm::cutbody

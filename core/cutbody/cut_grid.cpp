@@ -1,0 +1,167 @@
+#include "core/cutbody/cut_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/cutting/blade_geometry.h"
+#include "core/cutting/lattice_frame.h"
+
+namespace ctpm::cutbody {
+namespace {
+
+/// Crossings stay this far from an edge's ends, so that no triangle is a sliver.
+constexpr double kFromEnd = 0.06;
+
+/// Where the edge p-q crosses a triangle, from 0 at p to 1 at q; negative: nowhere. A node in the triangle's plane
+/// counts as above it, so that no node is parted from both sides. Edges that touch the triangle's rim are crossed.
+double crossing_of(Vec3 p, Vec3 q, Vec3 a, Vec3 b, Vec3 c) {
+  const Vec3 normal = cross(b - a, c - a);
+  const double at_p = dot(normal, p - a), at_q = dot(normal, q - a);
+  if ((at_p >= 0) == (at_q >= 0)) return -1;
+  const auto volume = [&](Vec3 u, Vec3 v) { return dot(q - p, cross(u - p, v - p)); };
+  const double ab = volume(a, b), bc = volume(b, c), ca = volume(c, a);
+  if (!((ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0))) return -1;
+  return at_p / (at_p - at_q);
+}
+
+}  // namespace
+
+CutGrid::CutGrid(const Model& model, std::size_t organ) : organ_(std::int32_t(organ)) {
+  find_frame(model, model.organs[organ]);
+  find_surface(model, organ);
+  place_spheres(model, model.organs[organ]);
+  box_ = {extent_, {-1, -1, -1}};
+}
+
+/// The grid's axes are those of the lattice. It reaches a spacing beyond the spheres.
+void CutGrid::find_frame(const Model& model, const OrganRange& organ) {
+  const auto first = std::size_t(organ.first), last = first + std::size_t(organ.count);
+  step_ = organ.spacing / kPerSpacing;
+  const cutting::LatticeFrame frame = cutting::lattice_frame(model, organ);
+  LatticeCell low = model.cell[first], high = low;
+  for (std::size_t i = first; i < last; ++i)
+    for (std::size_t a = 0; a < 3; ++a)
+      low[a] = std::min(low[a], model.cell[i][a]), high[a] = std::max(high[a], model.cell[i][a]);
+  origin_ = frame.origin;
+  for (std::size_t a = 0; a < 3; ++a) {
+    axis_[a] = frame.axis[a];
+    origin_ += organ.spacing * (low[a] - 1) * frame.axis[a];
+    extent_[a] = kPerSpacing * (high[a] - low[a] + 2) + 1;
+  }
+}
+
+Vec3 CutGrid::rest(Index i) const {
+  const Node n = node(i);
+  return origin_ + step_ * (n[0] * axis_[0] + n[1] * axis_[1] + n[2] * axis_[2]);
+}
+
+/// Which nodes are in tissue, and where edges leave it.
+void CutGrid::find_surface(const Model& model, std::size_t organ) {
+  constexpr int kHalvings = 10;
+  const cutting::RestMap map(model);
+  const cutting::TissueDepth depth(model, map);
+  const auto nodes = std::size_t(extent_[0]) * std::size_t(extent_[1]) * std::size_t(extent_[2]);
+  in_tissue_.assign(nodes, 0), outer_.assign(nodes * kDirections, 0.0f);
+  for (Index i = 0; i < Index(nodes); ++i) in_tissue_[std::size_t(i)] = depth.at(organ, rest(i)) > 0;
+  for (Index i = 0; i < Index(nodes); ++i)
+    for (int d = 1; d < kDirections; ++d) {
+      const Node n = node(i), other{n[0] + (d & 1), n[1] + (d >> 1 & 1), n[2] + (d >> 2)};
+      if (!contains(other) || in_tissue(i) == in_tissue(at(other))) continue;
+      const Vec3 p = rest(i), q = rest(at(other));
+      double inside = in_tissue(i) ? 0 : 1, outside = 1 - inside;
+      for (int h = 0; h < kHalvings; ++h) {
+        const double middle = 0.5 * (inside + outside);
+        (depth.at(organ, p + middle * (q - p)) > 0 ? inside : outside) = middle;
+      }
+      outer_[edge(i, d)] = float(std::clamp(0.5 * (inside + outside), kFromEnd, 1 - kFromEnd));
+    }
+  crossing_ = outer_;
+}
+
+/// The lattice covers the organ: a sphere outside the tissue belongs to the nearest node inside.
+void CutGrid::place_spheres(const Model& model, const OrganRange& organ) {
+  constexpr Index kReach = 2 * kPerSpacing;
+  const auto nodes = std::size_t(count());
+  LatticeCell low = model.cell[std::size_t(organ.first)];
+  for (Index s = organ.first; s < organ.first + organ.count; ++s)
+    for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], model.cell[std::size_t(s)][a]);
+  first_sphere_.assign(nodes + 1, 0);
+  for (Index s = 0; s < organ.count; ++s) {
+    const LatticeCell cell = model.cell[std::size_t(organ.first + s)];
+    Node middle;
+    for (std::size_t a = 0; a < 3; ++a) middle[a] = kPerSpacing * (cell[a] - low[a] + 1);
+    Index best = -1, least = 3 * kReach * kReach;
+    for (Index k = -kReach; k <= kReach; ++k)
+      for (Index j = -kReach; j <= kReach; ++j)
+        for (Index i = -kReach; i <= kReach; ++i) {
+          const Node n{middle[0] + i, middle[1] + j, middle[2] + k};
+          const Index distance = i * i + j * j + k * k;
+          if (distance < least && contains(n) && in_tissue(at(n))) least = distance, best = at(n);
+        }
+    node_of_sphere_.push_back(best);
+    if (best >= 0) ++first_sphere_[std::size_t(best) + 1];
+  }
+  for (std::size_t i = 0; i < nodes; ++i) first_sphere_[i + 1] += first_sphere_[i];
+  sphere_.resize(std::size_t(first_sphere_[nodes]));
+  std::vector<Index> next(first_sphere_.begin(), first_sphere_.end() - 1);
+  for (Index s = 0; s < organ.count; ++s)
+    if (const Index n = node_of_sphere_[std::size_t(s)]; n >= 0) sphere_[std::size_t(next[std::size_t(n)]++)] = s;
+}
+
+/// Severs the edges in tissue that a triangle of the swept surface crosses.
+void CutGrid::sever(Vec3 a, Vec3 b, Vec3 c) {
+  Node from, to;
+  double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (const Vec3 corner : {a, b, c})
+    for (std::size_t x = 0; x < 3; ++x) {
+      const double at = dot(corner - origin_, axis_[x]) / step_;
+      least[x] = std::min(least[x], at), most[x] = std::max(most[x], at);
+    }
+  for (std::size_t x = 0; x < 3; ++x) {
+    if (!(most[x] > -1 && least[x] < extent_[x])) return;
+    from[x] = std::max(0, Index(std::floor(least[x])) - 1), to[x] = std::min(extent_[x] - 1, Index(std::ceil(most[x])));
+  }
+  for (Index k = from[2]; k <= to[2]; ++k)
+    for (Index j = from[1]; j <= to[1]; ++j)
+      for (Index i = from[0]; i <= to[0]; ++i)
+        for (int d = 1; d < kDirections; ++d) {
+          const Node n{i, j, k}, other{i + (d & 1), j + (d >> 1 & 1), k + (d >> 2)};
+          if (!contains(other)) continue;
+          const Index p = at(n), q = at(other);
+          if (!in_tissue(p) || !in_tissue(q) || crossing_[edge(p, d)] != 0) continue;
+          const double along = crossing_of(rest(p), rest(q), a, b, c);
+          if (along < 0) continue;
+          crossing_[edge(p, d)] = float(std::clamp(along, kFromEnd, 1 - kFromEnd));
+          anything_cut_ = changed_ = true;
+          for (std::size_t x = 0; x < 3; ++x)
+            box_.low[x] = std::min(box_.low[x], n[x]), box_.high[x] = std::max(box_.high[x], other[x]);
+        }
+}
+
+void CutGrid::reset() {
+  if (anything_cut_) changed_ = true, box_ = {{0, 0, 0}, extent_};
+  crossing_ = outer_, anything_cut_ = false, rows_ = 0;
+}
+
+bool CutGrid::update(const State& state) {
+  const std::size_t rows = cutting::swept_rows(state);
+  changed_ = false;
+  const bool goes_on = rows >= rows_ && (rows_ == 0 || state.swept[(rows_ - 1) * kEdgeNodes] == last_);
+  if (!goes_on) reset();
+  for (std::size_t row = std::max<std::size_t>(rows_, 1); row < rows; ++row)
+    for (std::size_t node = 0; node + 1 < kEdgeNodes; ++node)
+      if (const cutting::SweptQuad quad = cutting::swept_quad(state, row, node); quad.organ == organ_)
+        sever(quad.from, quad.to, quad.from2), sever(quad.to, quad.to2, quad.from2);
+  // The last row may still move.
+  rows_ = rows > 0 ? rows - 1 : 0;
+  if (rows_ > 0) last_ = state.swept[(rows_ - 1) * kEdgeNodes];
+  return changed_;
+}
+
+CutGrid::NodeBox CutGrid::take_changed() {
+  const NodeBox box = box_;
+  box_ = {extent_, {-1, -1, -1}};
+  return box;
+}
+
+}  // namespace ctpm::cutbody

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/cutting/rest_map.h"
+#include "core/cutting/swept_surface.h"
+#include "core/cutting/tissue_depth.h"
+#include "core/model/model.h"
+#include "core/model/state.h"
+
+namespace ctpm::cutbody {
+
+/// A grid over an organ at rest, four times as fine as its lattice, whose cubes are divided into six tetrahedra each
+/// (Kuhn 1960). It knows which of its nodes are in tissue, where its edges leave the organ, and where the swept surface
+/// crosses them.
+class CutGrid {
+ public:
+  using Index = std::int32_t;
+  using Node = std::array<Index, 3>;
+
+  static constexpr int kPerSpacing = 4;
+  /// Edges from a node: to the nodes that are farther by 1 along the axes of the bits set in 1 to 7.
+  static constexpr int kDirections = 8;
+
+  /// An organ that has a surface. `model` must outlive the CutGrid.
+  CutGrid(const Model& model, std::size_t organ);
+
+  /// Follows the swept surface of `state`. Returns whether any edge's crossing changed. Fast where the State goes on
+  /// from that of the last call.
+  bool update(const State& state);
+  bool anything_cut() const { return anything_cut_; }
+
+  Index count() const { return Index(in_tissue_.size()); }
+  const Node& extent() const { return extent_; }
+  double step() const { return step_; }
+  Index at(Node n) const { return n[0] + extent_[0] * (n[1] + extent_[1] * n[2]); }
+  Node node(Index i) const { return {i % extent_[0], i / extent_[0] % extent_[1], i / extent_[0] / extent_[1]}; }
+  bool contains(Node n) const {
+    return n[0] >= 0 && n[1] >= 0 && n[2] >= 0 && n[0] < extent_[0] && n[1] < extent_[1] && n[2] < extent_[2];
+  }
+  Vec3 rest(Index i) const;
+  bool in_tissue(Index i) const { return in_tissue_[std::size_t(i)] != 0; }
+
+  /// The node at the other end of an edge.
+  Index end(Index node, int direction) const {
+    return node + (direction & 1) + extent_[0] * ((direction >> 1 & 1) + extent_[1] * (direction >> 2));
+  }
+  /// Whether the surface of the organ or of the cut crosses an edge.
+  bool is_parted(Index node, int direction) const { return crossing_[edge(node, direction)] != 0; }
+  /// Where: from 0 at the edge's lower node to 1.
+  double crossing(Index node, int direction) const { return double(crossing_[edge(node, direction)]); }
+  bool is_severed(Index node, int direction) const {
+    return is_parted(node, direction) && in_tissue(node) && in_tissue(end(node, direction));
+  }
+
+  /// The node in tissue at a sphere, or the nearest one to it; -1 if there is none near. Counted within the organ.
+  Index node_of_sphere(Index sphere) const { return node_of_sphere_[std::size_t(sphere)]; }
+  /// Spheres whose node is this one.
+  std::span<const Index> spheres_at(Index node) const {
+    const auto begin = std::size_t(first_sphere_[std::size_t(node)]),
+               end = std::size_t(first_sphere_[std::size_t(node) + 1]);
+    return {sphere_.data() + begin, end - begin};
+  }
+
+  /// Spheres of a run of nodes.
+  std::span<const Index> spheres_in_row(Index first, Index last) const {
+    const auto begin = std::size_t(first_sphere_[std::size_t(first)]),
+               end = std::size_t(first_sphere_[std::size_t(last) + 1]);
+    return {sphere_.data() + begin, end - begin};
+  }
+
+  /// Box of the nodes whose edges' crossings changed since the last call of this; empty if low > high.
+  struct NodeBox {
+    Node low, high;
+  };
+  NodeBox take_changed();
+
+ private:
+  std::size_t edge(Index node, int direction) const {
+    return std::size_t(node) * kDirections + std::size_t(direction);
+  }
+  void find_frame(const Model& model, const OrganRange& organ);
+  void find_surface(const Model& model, std::size_t organ);
+  void place_spheres(const Model& model, const OrganRange& organ);
+  void sever(Vec3 a, Vec3 b, Vec3 c);
+  void reset();
+
+  std::int32_t organ_;
+  double step_ = 0;
+  Vec3 origin_, axis_[3];  ///< of node 0 0 0 [m]; unit vectors
+  Node extent_{};
+  std::vector<std::uint8_t> in_tissue_;
+  std::vector<float> outer_, crossing_;  ///< of the edges: of the organ's surface alone, and of the cut too; 0: none
+  std::vector<Index> node_of_sphere_, first_sphere_, sphere_;
+  std::size_t rows_ = 0;  ///< of the swept surface that have been looked at and no longer move
+  Vec3 last_;             ///< first place of the last of them [m]
+  bool anything_cut_ = false, changed_ = false;
+  NodeBox box_{};
+};
+
+}  // namespace ctpm::cutbody

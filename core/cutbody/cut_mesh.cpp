@@ -1,0 +1,307 @@
+#include "core/cutbody/cut_mesh.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <unordered_map>
+
+namespace ctpm::cutbody {
+namespace {
+
+using Index = CutGrid::Index;
+
+/// Directions to the corners of the six tetrahedra of a cube, which share its diagonal.
+constexpr int kTetrahedra[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
+/// Corners of the faces, seen from outside counter-clockwise if the tetrahedron's volume is positive.
+constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+
+/// Vertices by what they lie on, and which of them are the same.
+class Vertices {
+ public:
+  explicit Vertices(const CutGrid& grid) : grid_(grid) {}
+
+  /// The vertex on the simplex of `count` nodes (ascending; 2: an edge, 3: a face, 4: a tetrahedron) on the side of
+  /// `side`.
+  Index at(const Index* nodes, int count, Index side, Vec3 rest) {
+    const auto [found, is_new] = number_.try_emplace(key(nodes, count, side), Index(all_.size()));
+    if (is_new) all_.push_back({rest, side}), root_.push_back(found->second);
+    return found->second;
+  }
+  void join(Index a, Index b) {
+    a = root(a), b = root(b);
+    root_[std::size_t(std::max(a, b))] = std::min(a, b);
+  }
+  Index root(Index v) {
+    while (root_[std::size_t(v)] != v) v = root_[std::size_t(v)] = root_[std::size_t(root_[std::size_t(v)])];
+    return v;
+  }
+  const CutMesh::Vertex& operator[](Index v) const { return all_[std::size_t(v)]; }
+  std::size_t count() const { return all_.size(); }
+
+ private:
+  /// A simplex is known by its lowest node and the directions from it to the others.
+  std::uint64_t key(const Index* nodes, int count, Index side) const {
+    std::uint64_t result = std::uint64_t(nodes[0]) * 8;
+    const CutGrid::Node low = grid_.node(nodes[0]);
+    const auto direction = [&](Index n) {
+      const CutGrid::Node at = grid_.node(n);
+      return std::uint64_t((at[0] - low[0]) | (at[1] - low[1]) << 1 | (at[2] - low[2]) << 2);
+    };
+    for (int i = 1; i < 4; ++i) result = result * 8 + (i < count ? direction(nodes[i]) : 0);
+    return result * 8 + direction(side);
+  }
+
+  const CutGrid& grid_;
+  std::unordered_map<std::uint64_t, Index> number_;
+  std::vector<CutMesh::Vertex> all_;
+  std::vector<Index> root_;
+};
+
+/// A point of the surface in a tetrahedron, on the simplex of `count` of the grid's nodes, in ascending order.
+struct Point {
+  Index nodes[4];
+  int count;
+  Vec3 rest;
+};
+
+class Mesher {
+ public:
+  explicit Mesher(const CutGrid& grid) : grid_(grid), vertices_(grid) {}
+
+  CutMesh run() {
+    const CutGrid::Node e = grid_.extent();
+    for (Index k = 0; k + 1 < e[2]; ++k)
+      for (Index j = 0; j + 1 < e[1]; ++j)
+        for (Index i = 0; i + 1 < e[0]; ++i) {
+          const Index cube = grid_.at({i, j, k});
+          if (!is_parted(cube)) continue;
+          for (const auto& corners : kTetrahedra) tetrahedron(cube, corners);
+        }
+    return collect();
+  }
+
+ private:
+  using Triangle = std::array<Index, 3>;
+
+  /// A segment of the line in which the surface crosses a face: it parts node a from node b. From p to q, a triangle
+  /// with an apex inside the tetrahedron faces a.
+  struct Segment {
+    Point p, q;
+    int a_at_p, b_at_p, a_at_q, b_at_q;  ///< nodes on either side, at the segment's ends
+  };
+
+  bool is_parted(Index cube) const;
+  void tetrahedron(Index cube, const int* corners);
+  void find_labels();
+  Point on_edge(int a, int b) const;
+  Point on_face(int a, int b, int c) const;
+  void join_where_the_cut_ends();
+  void trace_face(const int* face);
+  void close_simply();
+  void close_from_the_middle();
+  Index vertex(const Point& p, int side) { return vertices_.at(p.nodes, p.count, node_[side], p.rest); }
+  void push(bool is_outer, Index a, Index b, Index c) { (is_outer ? outer_ : walls_).push_back({a, b, c}); }
+  CutMesh collect();
+
+  const CutGrid& grid_;
+  Vertices vertices_;
+  std::vector<Triangle> outer_, walls_;
+
+  // Of the present tetrahedron.
+  Index node_[4];
+  bool in_[4];    ///< tissue
+  int label_[4];  ///< nodes of one label are joined; -1: outside
+  bool parted_[4][4];
+  double along_[4][4];  ///< crossing of an edge from the first node to the second
+  Segment segments_[12];
+  int segment_count_ = 0;
+  bool has_middle_ = false;  ///< three parts meet on a face
+};
+
+/// Whether any edge of a cube's tetrahedra is parted.
+bool Mesher::is_parted(Index cube) const {
+  for (int from = 0; from < 7; ++from)
+    for (int to = from + 1; to < 8; ++to)
+      if ((from & to) == from && grid_.is_parted(grid_.end(cube, from), to ^ from)) return true;
+  return false;
+}
+
+/// Nodes joined by whole edges share the label of the first of them.
+void Mesher::find_labels() {
+  for (int i = 0; i < 4; ++i) label_[i] = in_[i] ? i : -1;
+  for (int round = 0; round < 3; ++round)
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j)
+        if (i != j && in_[i] && in_[j] && !parted_[i][j]) label_[i] = label_[j] = std::min(label_[i], label_[j]);
+}
+
+Point Mesher::on_edge(int a, int b) const {
+  if (node_[a] > node_[b]) std::swap(a, b);
+  const Vec3 p = grid_.rest(node_[a]), q = grid_.rest(node_[b]);
+  return {{node_[a], node_[b], 0, 0}, 2, p + along_[a][b] * (q - p)};
+}
+
+/// Where three parts meet on a face: in the middle of the crossings; on the organ's surface, if that is one of them.
+Point Mesher::on_face(int a, int b, int c) const {
+  int corner[3] = {a, b, c};
+  std::sort(corner, corner + 3, [&](int p, int q) { return node_[p] < node_[q]; });
+  Point face{{node_[corner[0]], node_[corner[1]], node_[corner[2]], 0}, 3, {}};
+  const bool any_outside = !in_[a] || !in_[b] || !in_[c];
+  int count = 0;
+  for (int i = 0; i < 3; ++i) {
+    const int p = corner[i], q = corner[(i + 1) % 3];
+    if (any_outside && in_[p] && in_[q]) continue;
+    face.rest += on_edge(p, q).rest, ++count;
+  }
+  face.rest = face.rest / double(count);
+  return face;
+}
+
+/// Sides that are joined within the tetrahedron share their vertices on its edges and faces.
+void Mesher::join_where_the_cut_ends() {
+  for (int a = 0; a < 4; ++a)
+    for (int b = a + 1; b < 4; ++b) {
+      if (!in_[a] || !in_[b] || label_[a] != label_[b] || !parted_[a][b]) continue;
+      const Point edge = on_edge(a, b);
+      vertices_.join(vertex(edge, a), vertex(edge, b));
+      for (int c = 0; c < 4; ++c) {
+        if (c == a || c == b || !parted_[a][c] || !parted_[b][c]) continue;
+        const Point face = on_face(a, b, c);
+        vertices_.join(vertex(face, a), vertex(face, b));
+      }
+    }
+}
+
+/// Finds the segments on a face whose corners run counter-clockwise seen from outside.
+void Mesher::trace_face(const int* face) {
+  const int parted = parted_[face[0]][face[1]] + parted_[face[1]][face[2]] + parted_[face[2]][face[0]];
+  for (int i = 0; i < 3; ++i) {
+    const int a = face[i], b = face[(i + 1) % 3], c = face[(i + 2) % 3];
+    if (parted == 3 && label_[a] != label_[b])
+      segments_[segment_count_++] = {on_edge(a, b), on_face(a, b, c), a, b, a, b}, has_middle_ = true;
+    if (parted == 2 && !parted_[b][c] && label_[a] != label_[b])
+      segments_[segment_count_++] = {on_edge(a, b), on_edge(a, c), a, b, a, c};
+  }
+}
+
+/// Two parts whose border crosses only edges: a triangle or a quadrilateral, once for each part.
+void Mesher::close_simply() {
+  // All segments from the same part's side.
+  const int label = label_[segments_[0].a_at_p];
+  for (int i = 0; i < segment_count_; ++i) {
+    Segment& s = segments_[i];
+    if (label_[s.a_at_p] != label) s = {s.q, s.p, s.b_at_q, s.a_at_q, s.b_at_p, s.a_at_p};
+  }
+  const auto same = [](const Point& p, const Point& q) { return p.nodes[0] == q.nodes[0] && p.nodes[1] == q.nodes[1]; };
+  for (int i = 0; i + 1 < segment_count_; ++i)
+    for (int j = i + 1; j < segment_count_; ++j)
+      if (same(segments_[j].p, segments_[i].q)) {
+        std::swap(segments_[i + 1], segments_[j]);
+        break;
+      }
+  const bool in_a = in_[segments_[0].a_at_p], in_b = in_[segments_[0].b_at_p];
+  for (int i = 1; i + 1 < segment_count_; ++i) {
+    const Segment &s = segments_[0], &t = segments_[i], &u = segments_[i + 1];
+    if (in_a) push(!in_b, vertex(u.p, u.a_at_p), vertex(t.p, t.a_at_p), vertex(s.p, s.a_at_p));
+    if (in_b) push(!in_a, vertex(s.p, s.b_at_p), vertex(t.p, t.b_at_p), vertex(u.p, u.b_at_p));
+  }
+}
+
+/// Any number of parts: triangles from their borders on the faces to a point in the middle.
+void Mesher::close_from_the_middle() {
+  Point apex{{node_[0], node_[1], node_[2], node_[3]}, 4, {}};
+  std::sort(apex.nodes, apex.nodes + 4);
+  for (int i = 0; i < segment_count_; ++i)
+    apex.rest += (segments_[i].p.rest + segments_[i].q.rest) / (2.0 * segment_count_);
+  for (int i = 0; i < segment_count_; ++i) {
+    const Segment& s = segments_[i];
+    const int a = label_[s.a_at_p], b = label_[s.b_at_p];
+    if (a >= 0) push(b < 0, vertex(s.q, s.a_at_q), vertex(s.p, s.a_at_p), vertex(apex, a));
+    if (b >= 0) push(a < 0, vertex(s.p, s.b_at_p), vertex(s.q, s.b_at_q), vertex(apex, b));
+  }
+}
+
+void Mesher::tetrahedron(Index cube, const int* corners) {
+  bool any = false;
+  for (int i = 0; i < 4; ++i) node_[i] = grid_.end(cube, corners[i]), in_[i] = grid_.in_tissue(node_[i]);
+  for (int a = 0; a < 4; ++a)
+    for (int b = 0; b < 4; ++b) {
+      if (node_[a] >= node_[b]) continue;
+      const int direction = corners[b] ^ corners[a];
+      parted_[a][b] = parted_[b][a] = grid_.is_parted(node_[a], direction);
+      along_[a][b] = grid_.crossing(node_[a], direction), along_[b][a] = 1 - along_[a][b];
+      any = any || parted_[a][b];
+    }
+  if (!any) return;
+  find_labels();
+  join_where_the_cut_ends();
+  segment_count_ = 0, has_middle_ = false;
+  for (const auto& face : kFaces) trace_face(face);
+  if (segment_count_ == 0) return;
+  int parts = 0;
+  for (int i = 0; i < 4; ++i) {
+    bool is_first = true;
+    for (int j = 0; j < i; ++j) is_first = is_first && label_[j] != label_[i];
+    parts += is_first;
+  }
+  if (parts == 2 && !has_middle_)
+    close_simply();
+  else
+    close_from_the_middle();
+}
+
+/// Numbers the vertices, leaves out walls whose two sides are one, and puts the outer triangles first.
+CutMesh Mesher::collect() {
+  CutMesh mesh;
+  std::vector<Index> number(vertices_.count(), -1);
+  for (std::vector<Triangle>* list : {&outer_, &walls_})
+    for (Triangle& t : *list)
+      for (Index& v : t) v = vertices_.root(v);
+  const auto sorted = [](Triangle t) {
+    std::sort(t.begin(), t.end());
+    return t;
+  };
+  std::map<Triangle, int> copies;
+  for (const Triangle& t : walls_) ++copies[sorted(t)];
+  const auto add = [&](Triangle t) {
+    for (Index& v : t) {
+      if (number[std::size_t(v)] < 0) number[std::size_t(v)] = Index(mesh.vertex.size()), mesh.vertex.push_back(vertices_[v]);
+      v = number[std::size_t(v)];
+    }
+    mesh.triangle.push_back(t);
+  };
+  for (const Triangle& t : outer_) add(t);
+  mesh.outer_triangles = mesh.triangle.size();
+  for (const Triangle& t : walls_)
+    if (copies[sorted(t)] == 1) add(t);
+  return mesh;
+}
+
+}  // namespace
+
+CutMesh make_mesh(const CutGrid& grid) { return Mesher(grid).run(); }
+
+std::int32_t count_pieces(const CutGrid& grid) {
+  std::vector<Index> root(std::size_t(grid.count()));
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](Index n) {
+    while (root[std::size_t(n)] != n) n = root[std::size_t(n)] = root[std::size_t(root[std::size_t(n)])];
+    return n;
+  };
+  const CutGrid::Node e = grid.extent();
+  std::int32_t count = 0;
+  for (Index i = 0; i < grid.count(); ++i) count += grid.in_tissue(i);
+  for (Index i = 0; i < grid.count(); ++i)
+    for (int d = 1; d < CutGrid::kDirections; ++d) {
+      const CutGrid::Node n = grid.node(i);
+      if (n[0] + (d & 1) >= e[0] || n[1] + (d >> 1 & 1) >= e[1] || n[2] + (d >> 2) >= e[2]) continue;
+      const Index other = grid.end(i, d);
+      if (!grid.in_tissue(i) || !grid.in_tissue(other) || grid.is_parted(i, d)) continue;
+      const Index a = find(i), b = find(other);
+      if (a == b) continue;
+      root[std::size_t(std::max(a, b))] = std::min(a, b), --count;
+    }
+  return count;
+}
+
+}  // namespace ctpm::cutbody
