@@ -109,7 +109,7 @@ void CutGrid::place_spheres(const Model& model, const OrganRange& organ) {
 }
 
 /// Severs the edges in tissue that a triangle of the swept surface crosses.
-void CutGrid::sever(Vec3 a, Vec3 b, Vec3 c) {
+void CutGrid::sever(Vec3 a, Vec3 b, Vec3 c, bool may_move) {
   Node from, to;
   double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
   for (const Vec3 corner : {a, b, c})
@@ -132,6 +132,8 @@ void CutGrid::sever(Vec3 a, Vec3 b, Vec3 c) {
           const double along = crossing_of(rest(p), rest(q), a, b, c);
           if (along < 0) continue;
           crossing_[edge(p, d)] = float(std::clamp(along, kFromEnd, 1 - kFromEnd));
+          normal_[edge(p, d)] = cross(b - a, c - a);
+          if (may_move) by_last_.push_back(edge(p, d));
           anything_cut_ = changed_ = true;
           for (std::size_t x = 0; x < 3; ++x)
             box_.low[x] = std::min(box_.low[x], n[x]), box_.high[x] = std::max(box_.high[x], other[x]);
@@ -140,21 +142,30 @@ void CutGrid::sever(Vec3 a, Vec3 b, Vec3 c) {
 
 void CutGrid::reset() {
   if (anything_cut_) changed_ = true, box_ = {{0, 0, 0}, extent_};
-  crossing_ = outer_, anything_cut_ = false, rows_ = 0;
+  crossing_ = outer_, anything_cut_ = false, rows_ = 0, by_last_.clear(), normal_.clear();
 }
 
 bool CutGrid::update(const State& state) {
   const std::size_t rows = cutting::swept_rows(state);
+  const auto place = [&](std::size_t row, std::size_t node) { return state.swept[row * kEdgeNodes + node]; };
   changed_ = false;
-  const bool goes_on = rows >= rows_ && (rows_ == 0 || state.swept[(rows_ - 1) * kEdgeNodes] == last_);
-  if (!goes_on) reset();
-  for (std::size_t row = std::max<std::size_t>(rows_, 1); row < rows; ++row)
-    for (std::size_t node = 0; node + 1 < kEdgeNodes; ++node)
-      if (const cutting::SweptQuad quad = cutting::swept_quad(state, row, node); quad.organ == organ_)
-        sever(quad.from, quad.to, quad.from2), sever(quad.to, quad.to2, quad.from2);
-  // The last row may still move.
-  rows_ = rows > 0 ? rows - 1 : 0;
-  if (rows_ > 0) last_ = state.swept[(rows_ - 1) * kEdgeNodes];
+  bool is_same = rows == rows_;
+  for (std::size_t n = 0; n < kEdgeNodes && is_same && rows > 0; ++n) is_same = place(rows - 1, n) == last_[n];
+  if (is_same) return false;
+  if (rows < rows_ || (rows_ > 1 && place(rows_ - 2, 0) != before_)) reset();
+  // The last row has moved: what it severed is found again, so that the result depends on `state` alone.
+  for (const std::size_t e : by_last_) crossing_[e] = 0, normal_.erase(e);
+  by_last_.clear();
+  for (std::size_t row = std::max<std::size_t>(rows_, 2) - 1; row < rows; ++row)
+    for (std::size_t node = 0; node + 1 < kEdgeNodes; ++node) {
+      const cutting::SweptQuad quad = cutting::swept_quad(state, row, node);
+      if (quad.organ != organ_) continue;
+      const bool may_move = row + 1 == rows;
+      sever(quad.from, quad.to, quad.from2, may_move), sever(quad.to, quad.to2, quad.from2, may_move);
+    }
+  rows_ = rows;
+  if (rows > 1) before_ = place(rows - 2, 0);
+  for (std::size_t n = 0; n < kEdgeNodes && rows > 0; ++n) last_[n] = place(rows - 1, n);
   return changed_;
 }
 

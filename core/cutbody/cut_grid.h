@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "core/cutting/rest_map.h"
@@ -52,6 +53,11 @@ class CutGrid {
   bool is_parted(Index node, int direction) const { return crossing_[edge(node, direction)] != 0; }
   /// Where: from 0 at the edge's lower node to 1.
   double crossing(Index node, int direction) const { return double(crossing_[edge(node, direction)]); }
+  /// Normal of the swept surface where it crosses an edge, of any length; 0 where it does not.
+  Vec3 cut_normal(Index node, int direction) const {
+    const auto found = normal_.find(edge(node, direction));
+    return found == normal_.end() ? Vec3{} : found->second;
+  }
   bool is_severed(Index node, int direction) const {
     return is_parted(node, direction) && in_tissue(node) && in_tissue(end(node, direction));
   }
@@ -85,7 +91,7 @@ class CutGrid {
   void find_frame(const Model& model, const OrganRange& organ);
   void find_surface(const Model& model, std::size_t organ);
   void place_spheres(const Model& model, const OrganRange& organ);
-  void sever(Vec3 a, Vec3 b, Vec3 c);
+  void sever(Vec3 a, Vec3 b, Vec3 c, bool may_move);
   void reset();
 
   std::int32_t organ_;
@@ -94,9 +100,12 @@ class CutGrid {
   Node extent_{};
   std::vector<std::uint8_t> in_tissue_;
   std::vector<float> outer_, crossing_;  ///< of the edges: of the organ's surface alone, and of the cut too; 0: none
+  std::unordered_map<std::size_t, Vec3> normal_;  ///< of the cut at the edges that it crosses
   std::vector<Index> node_of_sphere_, first_sphere_, sphere_;
-  std::size_t rows_ = 0;  ///< of the swept surface that have been looked at and no longer move
-  Vec3 last_;             ///< first place of the last of them [m]
+  std::size_t rows_ = 0;     ///< of the swept surface that have been looked at
+  cutting::Front last_{};    ///< the last of them, which may still move [m]
+  Vec3 before_;              ///< first place of the one before it [m]
+  std::vector<std::size_t> by_last_;  ///< edges that only the last row severs
   bool anything_cut_ = false, changed_ = false;
   NodeBox box_{};
 };

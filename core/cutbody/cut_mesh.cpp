@@ -99,6 +99,7 @@ class Mesher {
   void trace_face(const int* face);
   void close_simply();
   void close_from_the_middle();
+  Vec3 middle() const;
   Index vertex(const Point& p, int side) { return vertices_.at(p.nodes, p.count, node_[side], p.rest); }
   void push(bool is_outer, Index a, Index b, Index c) { (is_outer ? outer_ : walls_).push_back({a, b, c}); }
   CutMesh collect();
@@ -112,6 +113,7 @@ class Mesher {
   bool in_[4];    ///< tissue
   int label_[4];  ///< nodes of one label are joined; -1: outside
   bool parted_[4][4];
+  int direction_[4][4];  ///< of the edge from the lower node to the other
   double along_[4][4];  ///< crossing of an edge from the first node to the second
   Segment segments_[12];
   int segment_count_ = 0;
@@ -141,19 +143,23 @@ Point Mesher::on_edge(int a, int b) const {
   return {{node_[a], node_[b], 0, 0}, 2, p + along_[a][b] * (q - p)};
 }
 
-/// Where three parts meet on a face: in the middle of the crossings; on the organ's surface, if that is one of them.
+/// Where three parts meet on a face: in the middle of the crossings. If one part is outside, on the organ's surface,
+/// which the cut divides as it divides the edge between the other two.
 Point Mesher::on_face(int a, int b, int c) const {
   int corner[3] = {a, b, c};
   std::sort(corner, corner + 3, [&](int p, int q) { return node_[p] < node_[q]; });
   Point face{{node_[corner[0]], node_[corner[1]], node_[corner[2]], 0}, 3, {}};
-  const bool any_outside = !in_[a] || !in_[b] || !in_[c];
-  int count = 0;
   for (int i = 0; i < 3; ++i) {
-    const int p = corner[i], q = corner[(i + 1) % 3];
-    if (any_outside && in_[p] && in_[q]) continue;
-    face.rest += on_edge(p, q).rest, ++count;
+    const int outside = corner[i], p = corner[i == 0 ? 1 : 0], q = corner[i == 2 ? 1 : 2];
+    if (in_[outside]) continue;
+    const Vec3 at_p = on_edge(p, outside).rest, at_q = on_edge(q, outside).rest;
+    const Vec3 normal = grid_.cut_normal(node_[p], direction_[p][q]);
+    const double across = dot(normal, at_q - at_p);
+    const double t = across != 0 ? dot(normal, on_edge(p, q).rest - at_p) / across : along_[p][q];
+    face.rest = at_p + std::clamp(t, 0.05, 0.95) * (at_q - at_p);
+    return face;
   }
-  face.rest = face.rest / double(count);
+  for (int i = 0; i < 3; ++i) face.rest += on_edge(corner[i], corner[(i + 1) % 3]).rest / 3.0;
   return face;
 }
 
@@ -207,12 +213,30 @@ void Mesher::close_simply() {
   }
 }
 
+/// The point in which the parts of a tetrahedron meet: in the middle of those on its faces, of which those on the
+/// organ's surface count first.
+Vec3 Mesher::middle() const {
+  for (const bool at_surface : {true, false}) {
+    Vec3 sum;
+    int count = 0;
+    for (int i = 0; i < segment_count_; ++i) {
+      const Segment& s = segments_[i];
+      if (s.q.count != 3 || (at_surface && in_[s.a_at_p] && in_[s.b_at_p])) continue;
+      sum += s.q.rest, ++count;
+    }
+    if (count > 0) return sum / double(count);
+  }
+  Vec3 sum;
+  for (int i = 0; i < segment_count_; ++i)
+    sum += (segments_[i].p.rest + segments_[i].q.rest) / (2.0 * segment_count_);
+  return sum;
+}
+
 /// Any number of parts: triangles from their borders on the faces to a point in the middle.
 void Mesher::close_from_the_middle() {
   Point apex{{node_[0], node_[1], node_[2], node_[3]}, 4, {}};
   std::sort(apex.nodes, apex.nodes + 4);
-  for (int i = 0; i < segment_count_; ++i)
-    apex.rest += (segments_[i].p.rest + segments_[i].q.rest) / (2.0 * segment_count_);
+  apex.rest = middle();
   for (int i = 0; i < segment_count_; ++i) {
     const Segment& s = segments_[i];
     const int a = label_[s.a_at_p], b = label_[s.b_at_p];
@@ -227,7 +251,7 @@ void Mesher::tetrahedron(Index cube, const int* corners) {
   for (int a = 0; a < 4; ++a)
     for (int b = 0; b < 4; ++b) {
       if (node_[a] >= node_[b]) continue;
-      const int direction = corners[b] ^ corners[a];
+      const int direction = direction_[a][b] = corners[b] ^ corners[a];
       parted_[a][b] = parted_[b][a] = grid_.is_parted(node_[a], direction);
       along_[a][b] = grid_.crossing(node_[a], direction), along_[b][a] = 1 - along_[a][b];
       any = any || parted_[a][b];
