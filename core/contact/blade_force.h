@@ -12,9 +12,9 @@ namespace ctpm::contact {
 /// (Atkins & Mai, "Elastic and plastic fracture", 1985; Mahvash & Hayward, "Haptic rendering of cutting: a fracture
 /// mechanics approach", Haptics-e 2 (3), 2001; Chanthasopeephan, Desai & Lau, Ann. Biomed. Eng. 31, 2003, for liver).
 ///
-/// Each node of the edge pulls at the front of the cut (cutting::CutFront) like a spring, up to the force with which the
-/// tissue holds it: J_c times the length of the edge that the node stands for, and the friction of the flanks. Then the
-/// front goes on, with that force, and what it sweeps is the area of the cut. The force rises before a cut, is as
+/// Each node of the edge pulls at the front of the cut (cutting::CutFront) like a spring, up to the force with which
+/// the tissue holds it: J_c times the length of the edge that the node stands for, and the friction of the flanks. Then
+/// the front goes on, with that force, and what it sweeps is the area of the cut. The force rises before a cut, is as
 /// steady as the tissue while cutting, and falls after it, whatever the lattice.
 ///
 /// The force opposes the blade's motion, so a blade that is also drawn along its edge needs less push (Atkins, Xu &

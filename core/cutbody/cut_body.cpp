@@ -121,7 +121,8 @@ CutBody::Binding CutBody::follow(Vec3 rest, const std::vector<Index>& spheres, d
   binding.weight = surface::follow_weights(rest, centres, trust, reach);
   Vec3 off = -rest;
   double sum = 0;
-  for (std::size_t i = 0; i < centres.size(); ++i) off += binding.weight[i] * centres[i], sum += std::abs(binding.weight[i]);
+  for (std::size_t i = 0; i < centres.size(); ++i)
+    off += binding.weight[i] * centres[i], sum += std::abs(binding.weight[i]);
   if (!(norm(off) < kOff * organ_.spacing) || !(sum < kLargestSum)) return {};
   return binding;
 }
@@ -136,8 +137,8 @@ std::vector<CutBody::Index> CutBody::spheres_around(Vec3 rest) const {
 CutBody::Binding CutBody::bind(Vec3 rest, Index side) {
   const double reach = surface::kBindingReach * organ_.spacing;
   for (const double wider : {1.0, 1.5}) {
-    Binding own =
-        is_near(cut_box_, side) ? follow(rest, seen_from(side), wider * reach) : follow(rest, spheres_near(side), reach);
+    Binding own = is_near(cut_box_, side) ? follow(rest, seen_from(side), wider * reach)
+                                          : follow(rest, spheres_near(side), reach);
     if (!own.sphere.empty()) return own;
   }
   const std::vector<Index> around = spheres_around(rest);

@@ -15,10 +15,10 @@
 
 namespace ctpm::cutbody {
 
-/// The surface of an organ that may be cut: a pure function of the Model at rest and of the swept surface. It is closed,
-/// with one component for each piece of tissue, and each of its vertices follows only spheres of its own side of the
-/// cut. Where those do not span space, as in a strip thinner than a spacing, it follows the spheres around it as if
-/// nothing were cut.
+/// The surface of an organ that may be cut: a pure function of the Model at rest and of the swept surface. It is
+/// closed, with one component for each piece of tissue, and each of its vertices follows only spheres of its own side
+/// of the cut. Where those do not span space, as in a strip thinner than a spacing, it follows the spheres around it as
+/// if nothing were cut.
 class CutBody {
  public:
   /// `model` must outlive the CutBody. The organ must have a surface.
@@ -63,7 +63,7 @@ class CutBody {
   Surface whole_, surface_;
   std::size_t outer_triangles_ = 0, outer_vertices_ = 0;
   bool is_cut_ = false;
-  CutGrid::NodeBox cut_box_;  ///< around all crossings of the cut
+  CutGrid::NodeBox cut_box_;                  ///< around all crossings of the cut
   std::map<Key, Binding> bound_;              ///< bindings of the vertices of the last mesh
   std::map<Index, std::vector<Index>> seen_;  ///< spheres that a node of the grid sees
 

@@ -85,9 +85,7 @@ class CutGrid {
   NodeBox take_changed();
 
  private:
-  std::size_t edge(Index node, int direction) const {
-    return std::size_t(node) * kDirections + std::size_t(direction);
-  }
+  std::size_t edge(Index node, int direction) const { return std::size_t(node) * kDirections + std::size_t(direction); }
   void find_frame(const Model& model, const OrganRange& organ);
   void find_surface(const Model& model, std::size_t organ);
   void place_spheres(const Model& model, const OrganRange& organ);
@@ -102,9 +100,9 @@ class CutGrid {
   std::vector<float> outer_, crossing_;  ///< of the edges: of the organ's surface alone, and of the cut too; 0: none
   std::unordered_map<std::size_t, Vec3> normal_;  ///< of the cut at the edges that it crosses
   std::vector<Index> node_of_sphere_, first_sphere_, sphere_;
-  std::size_t rows_ = 0;     ///< of the swept surface that have been looked at
-  cutting::Front last_{};    ///< the last of them, which may still move [m]
-  Vec3 before_;              ///< first place of the one before it [m]
+  std::size_t rows_ = 0;              ///< of the swept surface that have been looked at
+  cutting::Front last_{};             ///< the last of them, which may still move [m]
+  Vec3 before_;                       ///< first place of the one before it [m]
   std::vector<std::size_t> by_last_;  ///< edges that only the last row severs
   bool anything_cut_ = false, changed_ = false;
   NodeBox box_{};

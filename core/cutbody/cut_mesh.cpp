@@ -114,7 +114,7 @@ class Mesher {
   int label_[4];  ///< nodes of one label are joined; -1: outside
   bool parted_[4][4];
   int direction_[4][4];  ///< of the edge from the lower node to the other
-  double along_[4][4];  ///< crossing of an edge from the first node to the second
+  double along_[4][4];   ///< crossing of an edge from the first node to the second
   Segment segments_[12];
   int segment_count_ = 0;
   bool has_middle_ = false;  ///< three parts meet on a face
@@ -227,8 +227,7 @@ Vec3 Mesher::middle() const {
     if (count > 0) return sum / double(count);
   }
   Vec3 sum;
-  for (int i = 0; i < segment_count_; ++i)
-    sum += (segments_[i].p.rest + segments_[i].q.rest) / (2.0 * segment_count_);
+  for (int i = 0; i < segment_count_; ++i) sum += (segments_[i].p.rest + segments_[i].q.rest) / (2.0 * segment_count_);
   return sum;
 }
 
@@ -289,7 +288,8 @@ CutMesh Mesher::collect() {
   for (const Triangle& t : walls_) ++copies[sorted(t)];
   const auto add = [&](Triangle t) {
     for (Index& v : t) {
-      if (number[std::size_t(v)] < 0) number[std::size_t(v)] = Index(mesh.vertex.size()), mesh.vertex.push_back(vertices_[v]);
+      if (number[std::size_t(v)] < 0)
+        number[std::size_t(v)] = Index(mesh.vertex.size()), mesh.vertex.push_back(vertices_[v]);
       v = number[std::size_t(v)];
     }
     mesh.triangle.push_back(t);

@@ -42,7 +42,8 @@ double share_inside(Vec3 p, Vec3 q, double at_p, double at_q, Depth&& depth) {
 CutFront::CutFront(const Model& model)
     : model_(model), map_(model), depth_(model, map_), swept_(model), elements_(model) {
   CTPM_CHECK(model.organs.size() < 255, "the swept surface names organs by a byte");
-  for (const OrganRange& organ : model.organs) reach_.push_back(0), box_.emplace_back(model.rest_position[std::size_t(organ.first)]);
+  for (const OrganRange& organ : model.organs)
+    reach_.push_back(0), box_.emplace_back(model.rest_position[std::size_t(organ.first)]);
   find_materials();
 }
 
@@ -207,8 +208,7 @@ double CutFront::hold(std::size_t n, const Tool& scalpel, const StateView& state
     const double area = norm(cross(node.edge, at_rest)) / norm(node.edge);
     per_length += node.toughness * area * newness(node.organ, front_[n], at_rest);
   }
-  if (node.flank_stress > 0)
-    per_length += 2 * node.flank_stress * rubbed_height(n, scalpel, state, edge, way);
+  if (node.flank_stress > 0) per_length += 2 * node.flank_stress * rubbed_height(n, scalpel, state, edge, way);
   return node.length * per_length;
 }
 

@@ -46,9 +46,9 @@ class CutFront {
   /// Finds what holds the front, at the start of a substep.
   void begin_substep(const State& state);
 
-  /// Largest force with which the tissue holds a node [N] when the edge, along the unit vector `edge`, is drawn from the
-  /// front towards the unit vector `way`: toughness times the length that goes through whole tissue across the edge, and
-  /// friction of the flanks.
+  /// Largest force with which the tissue holds a node [N] when the edge, along the unit vector `edge`, is drawn from
+  /// the front towards the unit vector `way`: toughness times the length that goes through whole tissue across the
+  /// edge, and friction of the flanks.
   double hold(std::size_t node, const Tool& scalpel, const StateView& state, Vec3 edge, Vec3 way) const;
 
   /// Draws the front after the edge at the end of a substep. What it sweeps is added to the swept surface, and elements
@@ -74,10 +74,10 @@ class CutFront {
   bool resists_ = false;
   std::vector<Material> material_;  ///< (sphere_count, or empty)
   std::array<Node, kEdgeNodes> nodes_;
-  Front front_;                     ///< at the start of the substep
-  std::vector<double> reach_;       ///< of the spheres that carry the front, in each organ [m]
-  std::vector<Box> box_;            ///< around the spheres of each organ, at the start of the tick
-  const State* state_ = nullptr;    ///< of the substep, whose swept surface swept_ follows
+  Front front_;                   ///< at the start of the substep
+  std::vector<double> reach_;     ///< of the spheres that carry the front, in each organ [m]
+  std::vector<Box> box_;          ///< around the spheres of each organ, at the start of the tick
+  const State* state_ = nullptr;  ///< of the substep, whose swept surface swept_ follows
 };
 
 /// A node's place along the edge.

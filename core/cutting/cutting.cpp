@@ -50,7 +50,8 @@ std::uint8_t stored_crossing(double along) {
 
 double crossing_of(std::uint8_t stored) { return stored == 0 ? 0.5 : (stored - 1) * kCrossingUnit; }
 
-RestElements::RestElements(const Model& model) : first_(model.sphere_count() + 1, 0), elements_(2 * model.axial.size()) {
+RestElements::RestElements(const Model& model)
+    : first_(model.sphere_count() + 1, 0), elements_(2 * model.axial.size()) {
   const AxialElements& axial = model.axial;
   for (std::size_t e = 0; e < axial.size(); ++e)
     ++first_[std::size_t(axial.a[e]) + 1], ++first_[std::size_t(axial.b[e]) + 1];

@@ -32,8 +32,8 @@ LatticeFrame lattice_frame(const Model& model, const OrganRange& organ) {
     if (!known[a] && known[p] && known[q]) frame.axis[a] = cross(frame.axis[p], frame.axis[q]);
   }
   const LatticeCell c = model.cell[first];
-  frame.origin = model.rest_position[first] -
-                 organ.spacing * (c[0] * frame.axis[0] + c[1] * frame.axis[1] + c[2] * frame.axis[2]);
+  frame.origin =
+      model.rest_position[first] - organ.spacing * (c[0] * frame.axis[0] + c[1] * frame.axis[1] + c[2] * frame.axis[2]);
   return frame;
 }
 

@@ -94,8 +94,8 @@ RestMap::Lattice RestMap::make_lattice(const OrganRange& organ) const {
   for (std::size_t i = first; i < last; ++i) {
     const LatticeCell c = model_.cell[i];
     const auto at = std::size_t(c[0] - lattice.low[0]) +
-                    std::size_t(e[0]) * (std::size_t(c[1] - lattice.low[1]) +
-                                         std::size_t(e[1]) * std::size_t(c[2] - lattice.low[2]));
+                    std::size_t(e[0]) *
+                        (std::size_t(c[1] - lattice.low[1]) + std::size_t(e[1]) * std::size_t(c[2] - lattice.low[2]));
     lattice.sphere_at[at] = std::int32_t(i);
   }
   return lattice;
@@ -157,7 +157,8 @@ void RestMap::find(std::size_t organ, Vec3 rest, double reach, Place& place) con
     }
     Row share{};
     for (std::size_t p = 0; p < 4; ++p)
-      share[p] = w * (inverse[p][0] + inverse[p][1] * apart[i].x + inverse[p][2] * apart[i].y + inverse[p][3] * apart[i].z);
+      share[p] =
+          w * (inverse[p][0] + inverse[p][1] * apart[i].x + inverse[p][2] * apart[i].y + inverse[p][3] * apart[i].z);
     place.weight[i] = share[0], place.slope[i] = Vec3{share[1], share[2], share[3]} / reach;
   }
 }

@@ -38,8 +38,8 @@ class RestMap {
   /// The spheres within `reach` [m] that carry a place at rest [m] of an organ.
   void find(std::size_t organ, Vec3 rest, double reach, Place& place) const;
 
-  /// The place at rest that spheres within `reach` [m] carry to `point` when they are at `position` [m]; where no sphere
-  /// is near, the nearest one carries it.
+  /// The place at rest that spheres within `reach` [m] carry to `point` when they are at `position` [m]; where no
+  /// sphere is near, the nearest one carries it.
   Vec3 rest_of(std::size_t organ, const Vec3Array& position, Vec3 point, double reach) const;
 
   /// Signed distance of a place at rest from the boundary of an organ's whole lattice cells, inside positive [m], up to

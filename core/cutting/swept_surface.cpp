@@ -9,8 +9,7 @@ namespace {
 constexpr double kLongestRow = 1e-3, kInLine = 2e-5;  // [m]
 
 void push_row(State& state, const Front& front, const NewlySwept& newly) {
-  for (std::size_t n = 0; n < kEdgeNodes; ++n)
-    state.swept.push_back(front[n]), state.swept_organ.push_back(newly[n]);
+  for (std::size_t n = 0; n < kEdgeNodes; ++n) state.swept.push_back(front[n]), state.swept_organ.push_back(newly[n]);
 }
 
 double squared_distance(Vec3 p, const SweptQuad& q) {
@@ -40,14 +39,14 @@ void add_swept(State& state, const Front& from, const Front& to, const NewlySwep
   for (std::size_t n = 0; n < kEdgeNodes && is_in_line; ++n) {
     const bool was_swept = state.swept_organ[last + n] != 0;
     if (was_swept && newly[n] != 0) is_in_line = state.swept_organ[last + n] == newly[n];
-    const bool borders = newly[n] != 0 || (n > 0 && newly[n - 1] != 0) || was_swept ||
-                         (n > 0 && state.swept_organ[last + n - 1] != 0);
+    const bool borders =
+        newly[n] != 0 || (n > 0 && newly[n - 1] != 0) || was_swept || (n > 0 && state.swept_organ[last + n - 1] != 0);
     if (!borders || !is_in_line) continue;
     // A part that rests while others go on must not be drawn along.
     if (was_swept && newly[n] == 0 && !(to[n] == state.swept[last + n] && to[n + 1] == state.swept[last + n + 1]))
       is_in_line = false;
-    if (!was_swept && newly[n] != 0 && !(state.swept[last - kEdgeNodes + n] == from[n] &&
-                                         state.swept[last - kEdgeNodes + n + 1] == from[n + 1]))
+    if (!was_swept && newly[n] != 0 &&
+        !(state.swept[last - kEdgeNodes + n] == from[n] && state.swept[last - kEdgeNodes + n + 1] == from[n + 1]))
       is_in_line = false;
     const Vec3 begin = state.swept[last - kEdgeNodes + n], way = to[n] - begin, middle = state.swept[last + n] - begin;
     const double length2 = dot(way, way), along = length2 > 0 ? dot(middle, way) / length2 : 0.0;
@@ -75,7 +74,8 @@ SweptIndex::SweptIndex(const Model& model) {
   box = box.grown(spacing);
   low_ = box.low;
   const Vec3 size = box.high - box.low;
-  extent_ = {1 + std::int64_t(size.x / kBucket), 1 + std::int64_t(size.y / kBucket), 1 + std::int64_t(size.z / kBucket)};
+  extent_ = {1 + std::int64_t(size.x / kBucket), 1 + std::int64_t(size.y / kBucket),
+             1 + std::int64_t(size.z / kBucket)};
   head_.assign(std::size_t(extent_[0] * extent_[1] * extent_[2]), -1);
   const std::size_t points = kMostSweptRows * kEdgeNodes;
   entries_.reserve(2 * points), organ_.reserve(points);

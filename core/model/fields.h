@@ -45,8 +45,7 @@ void for_each_field(State_& s, Visit&& visit) {
   give("last_inputs.world_from_tool", s.last_inputs.world_from_tool, any);
   give("last_inputs.buttons", s.last_inputs.buttons, any);
   give("axial_crossing", s.axial_crossing, any.per(EntryOf::axial).or_empty());
-  give_points("blade_trail.x", "blade_trail.y", "blade_trail.z", s.blade_trail,
-              finite, give);
+  give_points("blade_trail.x", "blade_trail.y", "blade_trail.z", s.blade_trail, finite, give);
   give_points("acceleration.x", "acceleration.y", "acceleration.z", s.acceleration,
               finite.per(EntryOf::sphere).or_empty(), give);
   give("touched", s.touched, index(EntryOf::touchable));

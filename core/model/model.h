@@ -107,8 +107,8 @@ struct Tool {
   /// How far the front of a cut is behind the edge while it goes through tissue that resists [m], > 0. Default: our
   /// choice; what is pressed ahead of a sharp edge before it cuts.
   double trail_distance = 0.2e-3;
-  /// Radius of the tissue around the edge that takes up its force [m], > 0. Default: our choice. It must not shrink with
-  /// the lattice: soft, tough tissue would be crushed at the edge, and dragged along before it is cut.
+  /// Radius of the tissue around the edge that takes up its force [m], > 0. Default: our choice. It must not shrink
+  /// with the lattice: soft, tough tissue would be crushed at the edge, and dragged along before it is cut.
   double blade_reach = 15e-3;
   /// The same radius in spacings of the organ; the larger of the two applies [1], > 0. Default: all corners of the cell
   /// around the edge, and little more, so that the edge hardly follows the faces that gape behind it.

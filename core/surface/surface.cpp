@@ -239,8 +239,7 @@ void place_surface(const Model& model, std::size_t organ, const Surface& surface
       is_touched[std::size_t(point - first)] = 1;
       continue;
     }
-    for (std::size_t v = 0; v < vertex.size(); ++v)
-      is_touched[v] = norm(vertex[v] - inputs.position) < tool.radius;
+    for (std::size_t v = 0; v < vertex.size(); ++v) is_touched[v] = norm(vertex[v] - inputs.position) < tool.radius;
     break;
   }
   std::vector<Vec3> normal(vertex.size());

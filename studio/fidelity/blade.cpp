@@ -105,8 +105,8 @@ void judge(BladeResult::Row& row, double per_tick) {
 }
 
 std::string name_of(const BladeResult::Row& row) {
-  return output::short_number(row.toughness) + " J/m^2, " +
-         output::short_number(row.angle * 180 / std::numbers::pi) + " degrees to the lattice";
+  return output::short_number(row.toughness) + " J/m^2, " + output::short_number(row.angle * 180 / std::numbers::pi) +
+         " degrees to the lattice";
 }
 
 }  // namespace
@@ -134,8 +134,10 @@ Chapter chapter_of(const BladeResult& result) {
   reports::Section& section = chapter.section;
   section.key = "blade", section.title = "A blade through a block";
   section.paragraphs = {
-      "A block of 72 x 72 x 36 mm, held below and at its sides. A blade of 50 mm goes through it at 30 mm/s, 20 mm deep. "
-      "The hand's work should be the toughness times the area of the cut, which is measured on the surface that the edge "
+      "A block of 72 x 72 x 36 mm, held below and at its sides. A blade of 50 mm goes through it at 30 mm/s, 20 mm "
+      "deep. "
+      "The hand's work should be the toughness times the area of the cut, which is measured on the surface that the "
+      "edge "
       "swept, and what the tissue's Kelvin units dissipate. Force, chatter (RMS about a moving mean of 6 mm) and the "
       "largest change in one tick are read over the middle 30 mm."};
   reports::Table table;

@@ -136,8 +136,7 @@ Error SessionFilm::differs() const {
 void SessionFilm::show_cut_depth() {
   cut_.measure(cursor_.state());
   const std::int32_t tool = cursor_.state().last_inputs.tool;
-  overlay_.is_blade =
-      tool < 0 ? cut_.size().has_value() : model().tools[std::size_t(tool)].kind == ToolKind::scalpel;
+  overlay_.is_blade = tool < 0 ? cut_.size().has_value() : model().tools[std::size_t(tool)].kind == ToolKind::scalpel;
   if (overlay_.is_blade) overlay_.depth = cut_.size().value_or(session::CutSize{}).depth;
 }
 

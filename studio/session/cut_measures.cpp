@@ -36,7 +36,8 @@ void CutMeasures::add(const cutting::SweptQuad& quad, CutSize& size) const {
   std::array<double, 4> depth;
   for (std::size_t i = 0; i < 4; ++i) {
     depth[i] = depth_.at(organ, corner[i]);
-    if (depth[i] > 0) size.depth = std::max(size.depth, std::sqrt(surfaces_[organ]->nearest(corner[i]).squared_distance));
+    if (depth[i] > 0)
+      size.depth = std::max(size.depth, std::sqrt(surfaces_[organ]->nearest(corner[i]).squared_distance));
   }
   size.length += line_in_triangle({corner[0], corner[1], corner[2]}, {depth[0], depth[1], depth[2]}) +
                  line_in_triangle({corner[1], corner[3], corner[2]}, {depth[1], depth[3], depth[2]});

@@ -77,7 +77,8 @@ inline double swept_area(const State& state, Vec3 low, Vec3 high) {
   constexpr int kParts = 8;
   double area = 0;
   cutting::for_each_swept(state, [&](const cutting::SweptQuad& q) {
-    const double whole = 0.5 * (norm(cross(q.to - q.from, q.from2 - q.from)) + norm(cross(q.to2 - q.to, q.from2 - q.to)));
+    const double whole =
+        0.5 * (norm(cross(q.to - q.from, q.from2 - q.from)) + norm(cross(q.to2 - q.to, q.from2 - q.to)));
     for (int i = 0; i < kParts; ++i)
       for (int j = 0; j < kParts; ++j) {
         const double u = (i + 0.5) / kParts, v = (j + 0.5) / kParts;

@@ -24,9 +24,9 @@ constexpr bool kNamespacesAreRooms = true;
 constexpr int kMostLines = 500;  ///< of a source file
 
 /// All rooms of core in their order.
-inline const std::vector<std::string> kCore{"core/model",    "core/parallel", "core/network", "core/surface",
-                                            "core/elements", "core/cutting",  "core/cutbody", "core/contact",   "core/inversion",
-                                            "core/solver",   "core/stepping"};
+inline const std::vector<std::string> kCore{"core/model",     "core/parallel", "core/network", "core/surface",
+                                            "core/elements",  "core/cutting",  "core/cutbody", "core/contact",
+                                            "core/inversion", "core/solver",   "core/stepping"};
 
 inline std::vector<std::string> core_and(std::vector<std::string> more) {
   more.insert(more.begin(), kCore.begin(), kCore.end());

@@ -139,7 +139,8 @@ TEST(BladeForce, IsTheTissuesAndNotTheLattices) {
       double least = INFINITY, most = 0;
       for (const double degrees : {0.0, 30.0, 45.0}) {
         const Cut cut = cut_block(spacing, toughness, degrees);
-        const auto where = ::testing::Message() << spacing << " m, " << toughness << " J/m^2, " << degrees << " degrees";
+        const auto where = ::testing::Message()
+                           << spacing << " m, " << toughness << " J/m^2, " << degrees << " degrees";
         EXPECT_NEAR(cut.ratio, 1, 0.05) << where;
         EXPECT_LT(cut.chatter, most_chatter) << where;
         EXPECT_LT(cut.jump, 0.05) << where;

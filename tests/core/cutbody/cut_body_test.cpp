@@ -26,11 +26,12 @@ using Way = std::function<cutting::Front(double)>;
 void sweep(State& state, const Way& way, int steps = 60) {
   cutting::NewlySwept newly;
   newly.fill(1), newly.back() = 0;
-  for (int i = 0; i < steps; ++i)
-    cutting::add_swept(state, way(double(i) / steps), way(double(i + 1) / steps), newly);
+  for (int i = 0; i < steps; ++i) cutting::add_swept(state, way(double(i) / steps), way(double(i + 1) / steps), newly);
 }
 
-cutting::Front upright(double x, double y, double from = kBelow) { return straight_front({x, y, from}, {x, y, kAbove}); }
+cutting::Front upright(double x, double y, double from = kBelow) {
+  return straight_front({x, y, from}, {x, y, kAbove});
+}
 double along(double share) { return -0.06 + 0.12 * share; }
 
 /// A case: what is swept, and the pieces that it leaves.
@@ -45,7 +46,8 @@ Way straight(double x, double from = kBelow) {
 }
 Way ellipse(double from) {
   // A little more than once around.
-  return [=](double t) { return upright(0.021 * std::cos(1.03 * kTurn * t), 0.0133 * std::sin(1.03 * kTurn * t), from); };
+  return
+      [=](double t) { return upright(0.021 * std::cos(1.03 * kTurn * t), 0.0133 * std::sin(1.03 * kTurn * t), from); };
 }
 
 std::vector<Case> cases() {
