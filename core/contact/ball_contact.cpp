@@ -199,6 +199,16 @@ void BallContact::add(const StateView& state, const BallMotion& ball, PointConta
   contacts.add(contact, carriers);
 }
 
+std::int32_t BallContact::organ_of(const PointContact& contact) const {
+  const auto vertices = std::int32_t(surface_.vertex_count());
+  if (contact.point < vertices) return organ_of_[std::size_t(contact.point)];
+  const std::int32_t sphere = contact.point - vertices;
+  for (std::size_t i = 0; i < model_.organs.size(); ++i)
+    if (sphere >= model_.organs[i].first && sphere < model_.organs[i].first + model_.organs[i].count)
+      return std::int32_t(i);
+  return -1;
+}
+
 Vec3 BallContact::rest_of(const PointContact& contact) const {
   const auto vertices = std::int32_t(surface_.vertex_count());
   return contact.point < vertices ? surface_.rest(contact.point)

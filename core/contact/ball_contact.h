@@ -51,6 +51,9 @@ class BallContact {
   /// Where the tissue was at rest that a contact touches [m].
   Vec3 rest_of(const PointContact& contact) const;
 
+  /// The organ that a contact touches, in Model::organs; -1: none.
+  std::int32_t organ_of(const PointContact& contact) const;
+
  private:
   /// What presses on one vertex of a surface.
   struct Pressed {

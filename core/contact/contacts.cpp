@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/model/result.h"
+#include "core/surface/rigid_motion.h"
 
 namespace ctpm::contact {
 
@@ -25,7 +26,12 @@ Contacts::Contacts(const Model& model, const elements::Kernels& kernels)
       cut_faces_(model),
       points_(model, pressed_capacity().first + pairs_of(model, blade_, cut_faces_),
               pressed_capacity().second + 2 * pairs_of(model, blade_, cut_faces_)),
-      explicit_solve_(model, points_) {}
+      explicit_solve_(model, points_) {
+  for (const OrganRange& organ : model.organs) {
+    const auto first = model.held_axes.begin() + organ.first;
+    is_free_.push_back(std::all_of(first, first + organ.count, [](std::uint8_t axes) { return axes == 0; }));
+  }
+}
 
 Pin Contacts::pin(const HeldTool& tool, const Vec3Array& position, double share, double h) {
   if (!tool.is(ToolKind::pin)) return {};
@@ -76,12 +82,20 @@ std::int32_t ContactSet::touched() const { return step_.pin.is_held() ? 1 : cont
 double ContactSet::depth(const Vec3Array& position) const {
   const Pin& pin = step_.pin;
   if (pin.is_held()) return norm(position[pin.index()] - contacts_->model_.rest_position[pin.index()]);
+  const BallContact& ball = contacts_->ball_;
   double depth = 0;
-  for (const PointContact& c : contacts_->points_.all())
-    if (c.point >= 0 && c.is_tool)
-      depth = std::max(
-          depth, contacts_->ball_.dent_of(c) +
-                     dot(c.axis, weighted(contacts_->points_.carriers(c), position) - contacts_->ball_.rest_of(c)));
+  surface::RigidMotion motion;
+  std::int32_t moved = -1;  // organ that `motion` is of
+  for (const PointContact& c : contacts_->points_.all()) {
+    if (c.point < 0 || !c.is_tool) continue;
+    Vec3 rest = ball.rest_of(c);
+    if (const std::int32_t organ = ball.organ_of(c); organ >= 0 && contacts_->is_free_[std::size_t(organ)]) {
+      if (organ != moved)
+        motion = surface::rigid_motion(contacts_->model_, contacts_->model_.organs[std::size_t(organ)], position);
+      moved = organ, rest = motion(rest);
+    }
+    depth = std::max(depth, ball.dent_of(c) + dot(c.axis, weighted(contacts_->points_.carriers(c), position) - rest));
+  }
   return depth;
 }
 

@@ -91,8 +91,9 @@ class Contacts {
   CutFaceContact cut_faces_;
   PointContacts points_;
   ExplicitSolve explicit_solve_;
-  bool is_locked_ = false;      ///< a set exists
-  bool is_linearised_ = false;  ///< the set is in a linear system
+  std::vector<std::uint8_t> is_free_;  ///< nothing holds the organ (organ_count)
+  bool is_locked_ = false;             ///< a set exists
+  bool is_linearised_ = false;         ///< the set is in a linear system
 };
 
 /// The contacts of one step, until it is destroyed. Move-only.
@@ -104,7 +105,8 @@ class ContactSet {
   std::int32_t touched() const;
 
   /// Largest displacement from rest [m], at `position`, of a point that a ball touches, along its contact; for a pin,
-  /// that of its sphere. 0 without contact and for a blade.
+  /// that of its sphere. 0 without contact and for a blade. Where nothing holds an organ, its motion as a whole does
+  /// not count.
   double depth(const Vec3Array& position) const;
 
   /// Notes what is touched, with the spheres at `position` [m] and the centre of a ball at `centre` [m] at the end of

@@ -7,6 +7,7 @@
 
 #include "core/stepping/step.h"
 #include "core/surface/inside.h"
+#include "core/surface/rigid_motion.h"
 #include "core/surface/surface.h"
 #include "tests/core/skinned_block.h"
 
@@ -240,6 +241,23 @@ TEST_P(Meeting, AnOrganAloneDoesNotMeetItself) {
   EXPECT_TRUE(meets.touched.empty());
 }
 
+TEST_P(Meeting, ThreadsAndInstructionSetsChangeNoBit) {
+  Model model;
+  add(model, block_at(6, 6, 3, {}));
+  add(model, block_at(4, 3, 3, {0.002, 0.001, 0.0245}));
+  model.organs_meet = true, model.organs[0].meets_itself = true;
+  model.obstacles = {{"ground", ObstacleKind::plane, {0, 0, -1e-4}, slope(3), {}},
+                     {"wall", ObstacleKind::box, {0.06, 0, 0}, {}, {0.0302, 0.1, 0.1}}};
+  finish(model, GetParam());
+  State one = rest_state(model), two = one;
+  stepping::Stepper single(model, {1, elements::InstructionSet::baseline}), team(model, {2});
+  for (int i = 0; i < 60; ++i) (void)single.step(one, {}), (void)team.step(two, {});
+  EXPECT_GT(one.touched.size(), 20u);
+  EXPECT_EQ(one.position, two.position);
+  EXPECT_EQ(one.touched, two.touched);
+  EXPECT_EQ(one.grip, two.grip);
+}
+
 INSTANTIATE_TEST_SUITE_P(Integrators, Meeting,
                          ::testing::Values(Integrator::leapfrog, Integrator::backward_euler, Integrator::sdirk2),
                          [](const auto& of) {
@@ -247,6 +265,38 @@ INSTANTIATE_TEST_SUITE_P(Integrators, Meeting,
                                   : of.param == Integrator::backward_euler ? "BackwardEuler"
                                                                            : "Sdirk2";
                          });
+
+TEST(RigidMotion, IsFoundUnderDeformation) {
+  Model model;
+  add(model, block_at(4, 4, 3, {0.01, 0.02, 0.03}));
+  const Quat turn{0.5, 0.5, -0.1, 0.7};  // a unit quaternion
+  State state = rest_state(model);
+  const Vec3 from = centre_of(model, state), to{0.3, -0.1, 0.2};
+  for (std::size_t i = 0; i < model.sphere_count(); ++i) {
+    Vec3 p = state.position[i] - from;
+    p = {1.1 * p.x, 0.8 * p.y, p.z};  // a stretch along the axes does not turn
+    state.position.set(i, to + rotate(turn, p));
+  }
+  const surface::RigidMotion motion = surface::rigid_motion(model, model.organs[0], state.position);
+  for (const Vec3 p : {Vec3{0.01, 0, 0}, Vec3{0, 0.02, 0}, Vec3{0.01, -0.01, 0.03}})
+    EXPECT_NEAR(norm(motion(from + p) - (to + rotate(turn, p))), 0, 1e-14);
+}
+
+TEST(RigidMotion, AFreeOrgansDepthDoesNotCountItsOwnWay) {
+  Model model;
+  add(model, block_at(4, 4, 3, {}));
+  model.tools = {testing::ball(0.01)};
+  finish(model, Integrator::leapfrog, 0);
+  State state = rest_state(model);
+  for (double& v : state.velocity.x) v = 0.1;
+  run(model, state, 500);  // 50 mm away
+  stepping::Stepper stepper(model);
+  Inputs inputs;
+  inputs.tool = 0, inputs.position = {0.05, 0, 0.024 + 0.01 - 0.001};
+  const stepping::StepReport report = stepper.step(state, inputs);
+  EXPECT_GT(report.contacts, 0);
+  EXPECT_NEAR(report.depth, 0.001, 0.0002);
+}
 
 TEST(Obstacle, SaysHowDeepAPointIsAndTheShortestWayOut) {
   const Obstacle plane{"plane", ObstacleKind::plane, {0, 0, 0.1}, slope(90), {}};  // normal along x
