@@ -1,6 +1,6 @@
-import { CallFailed, type Frame, type Problem, readBinary, type ToolShapes, type Triangles } from "./protocol";
+import { CallFailed, type Problem, readBinary, type ToolShapes, type Triangles, type WaitingFrame } from "./protocol";
 
-export type Binary = Triangles | Frame | ToolShapes;
+export type Binary = Triangles | WaitingFrame | ToolShapes;
 
 interface Running {
   done(result: unknown): void;

@@ -80,7 +80,7 @@ export function ExportForm({ connection, player }: { connection: Connection; pla
       <button type="button" onClick={around}>1 s around {seconds(player.time, 2)}</button>
       <div class="pair">
         {field("times real speed", speed, setSpeed, "number")}
-        {choice("camera", camera, setCamera, [["", "the scene's first"], ["follow", "follow the tool"], ...session.view.cameras.map((c): [string, string] => [c.name, c.name])])}
+        {choice("camera", camera, setCamera, [["", "first"], ["follow", "follow"], ...session.view.cameras.map((c): [string, string] => [c.name, c.name])])}
       </div>
       <div class="pair">
         {choice("view", view, setView, ["surface", "spheres", "both", "elements"].map((v): [string, string] => [v, v]))}
@@ -92,6 +92,7 @@ export function ExportForm({ connection, player }: { connection: Connection; pla
       {result && (
         <p class="good" role="status">{result.path}: {result.frames} frames, {result.codec}, {bytes(result.bytes)}, in {seconds(result.elapsed_s, 1)}; replay {result.same_as_recorded ? "same as recorded" : "DIFFERS"}{result.note && `; ${result.note}`}</p>
       )}
+      {beside && player.offset !== 0 && <p class="hint">A video runs both sessions from their beginnings, not aligned as here.</p>}
       <ShownCommand text={shown} />
     </Section>
   );

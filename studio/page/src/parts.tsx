@@ -21,11 +21,13 @@ export function Problems({ error }: { error: Error | null }) {
   if (!error) return null;
   const lines = error instanceof CallFailed ? error.problems.map(problemText) : [error.message];
   return (
-    <ul class="problems" role="alert">
-      {lines.map((line, i) => (
-        <li key={i}>{line}</li>
-      ))}
-    </ul>
+    <div class="problems" role="alert">
+      <ul>
+        {lines.map((line, i) => (
+          <li key={i}>{line}</li>
+        ))}
+      </ul>
+    </div>
   );
 }
 

@@ -48,6 +48,7 @@ export class Player {
     const track: Track = { stage, session, timeline: null, scene: new StageScene(session.view) };
     const tools = this.tools.get(stage); // they come before the answer
     if (tools) track.scene.setTools(tools);
+    track.scene.onFrame = (frame) => this.drew(stage, frame);
     this.tracks.set(stage, track);
     this.viewer.set(stage, track.scene);
     if (stage === 0) {
@@ -78,7 +79,7 @@ export class Player {
   }
 
   move(time: number): void {
-    this.time = Math.min(Math.max(time, 0), this.duration);
+    this.time = Math.min(Math.max(Math.round(1e6 * time) / 1e6, 0), this.duration); // whole microseconds
     this.movedAt = performance.now();
     this.pictureAfter = null;
     this.ask();
@@ -148,15 +149,14 @@ export class Player {
     const track = this.tracks.get(stage);
     if (!track) return;
     if (message.kind === "triangles") track.scene.setTriangles(message);
-    else if (message.kind === "frame" && track.scene.setFrame(message)) this.took(stage, message);
+    else if (message.kind === "waiting") track.scene.wait(message), this.viewer.draw();
   }
 
-  private took(stage: number, frame: Frame): void {
+  private drew(stage: number, frame: Frame): void {
     if (this.waiting.get(stage) === frame.request) this.waiting.delete(stage);
-    this.viewer.draw();
     if (this.waiting.size === 0 && this.pictureAfter === null)
-      requestAnimationFrame(() => {
-        this.pictureAfter ??= performance.now() - this.movedAt;
+      setTimeout(() => {
+        this.pictureAfter ??= performance.now() - this.movedAt; // the picture is drawn by now
         this.onTime();
       });
     this.onTime();

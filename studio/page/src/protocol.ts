@@ -303,12 +303,26 @@ function readTools(r: Reader): ToolShapes {
   return { kind: "tools", stage, tools };
 }
 
-/** Reads a binary message. Throws a RangeError for one that is not whole. */
-export function readBinary(bytes: ArrayBuffer): Triangles | Frame | ToolShapes {
+/** The head of a frame, for its stage and request; the rest may never be needed. */
+export interface WaitingFrame {
+  kind: "waiting";
+  stage: number;
+  request: number;
+  bytes: ArrayBuffer;
+}
+
+export function readWaitingFrame(message: WaitingFrame): Frame {
+  const reader = new Reader(message.bytes);
+  reader.u32();
+  return readFrame(reader);
+}
+
+/** Reads a binary message; of a frame its head alone. Throws a RangeError for one that is not whole. */
+export function readBinary(bytes: ArrayBuffer): Triangles | WaitingFrame | ToolShapes {
   const reader = new Reader(bytes);
   const kind = reader.u32();
   if (kind === 1) return readTriangles(reader);
-  if (kind === 2) return readFrame(reader);
+  if (kind === 2) return { kind: "waiting", stage: reader.u32(), request: (reader.at = 16, reader.u32()), bytes };
   if (kind === 3) return readTools(reader);
   throw new RangeError(`unknown kind of message ${kind}`);
 }

@@ -12,6 +12,7 @@ const kKeyStep = 0.001; // for a press of a key [m]
 const kTurnStep = Math.PI / 36;
 const kHalfGain = 6; // force at which the hand follows the pointer half as far [N]
 const kEdge = 0.93; // of the picture that the hand may reach
+const kSteep = 0.85; // cosine between up and the line of sight, beyond which the viewer looks from above
 const kLookAhead = 1, kAhead = 0.25; // of the expert's motion [s]
 const kNear = 0.03; // to the expert's path, to have reached it [m]
 const kMargin = 0.06; // around the organs that the hand may use [m]
@@ -57,6 +58,7 @@ export class Trainer {
       { scene, output, stage: kTrainStage, most_speed_m_per_s: kGuardSpeed }, { signal });
     this.view = begun.view;
     this.scene = new StageScene(begun.view);
+    this.scene.onFrame = (frame) => this.showGhost(frame);
     this.viewer.set(kTrainStage, this.scene);
     const camera = begun.view.cameras[0];
     if (camera) this.viewer.look(camera);
@@ -84,7 +86,7 @@ export class Trainer {
     this.send();
   }
 
-  /** Moves the hand in the plane that faces the viewer, by pixels of the picture. */
+  /** Moves the hand in its plane, by pixels of the picture. */
   movePixels(right: number, down: number): void {
     const { camera, canvas } = this.viewer;
     const away = camera.position.distanceTo(this.hand);
@@ -124,12 +126,20 @@ export class Trainer {
 
   private moveBy(right: number, up: number, deep: number): void {
     if (!this.isRunning) return;
-    const axes = [new three.Vector3(), new three.Vector3(), new three.Vector3()];
-    this.viewer.camera.matrixWorld.extractBasis(axes[0], axes[1], axes[2]);
-    this.target.addScaledVector(axes[0], right).addScaledVector(axes[1], up).addScaledVector(axes[2], -deep);
+    const axes = this.handAxes();
+    this.target.addScaledVector(axes.right, right).addScaledVector(axes.up, up).addScaledVector(axes.deep, deep);
     this.box.clampPoint(this.target, this.target);
     this.keepInView();
     this.send();
+  }
+
+  /** Directions of the hand: an upright plane that faces the viewer, so that down presses; from above, the picture's. */
+  private handAxes(): { right: three.Vector3; up: three.Vector3; deep: three.Vector3 } {
+    const right = new three.Vector3(), upInPicture = new three.Vector3(), back = new three.Vector3();
+    this.viewer.camera.matrixWorld.extractBasis(right, upInPicture, back);
+    const up = new three.Vector3(...this.view!.up);
+    if (Math.abs(up.dot(back)) > kSteep) up.copy(upInPicture);
+    return { right, up, deep: new three.Vector3().crossVectors(up, right).normalize() };
   }
 
   /** The hand stays in the picture, where it can be seen. */
@@ -184,7 +194,7 @@ export class Trainer {
     const scene = this.scene!;
     if (message.kind === "tools") scene.setTools(message);
     else if (message.kind === "triangles") scene.setTriangles(message);
-    else if (scene.setFrame(message)) this.showGhost(message);
+    else scene.wait(message), this.viewer.draw();
   }
 
   /** The expert's pose a little ahead of the place on the path that the tool has reached; it never goes back. */
@@ -201,7 +211,6 @@ export class Trainer {
 
   private showGhost(frame: Frame): void {
     if (this.motion && this.scene) this.scene.setGhost(this.expertNear(frame.position));
-    this.viewer.draw();
     this.onFrame();
   }
 }

@@ -1,19 +1,22 @@
 import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import type { CameraView, Frame, SceneView, ToolShapes, Triangles, Vector } from "./protocol";
+import { type CameraView, type Frame, readWaitingFrame, type SceneView, type ToolShapes, type Triangles, type Vector, type WaitingFrame } from "./protocol";
 import { OrganMesh } from "./organ_mesh";
 
-const kArrowPerNewton = 0.012; // [m/N]
-const kLongestArrow = 0.09; // [m]
+const kArrowPerNewton = 0.007; // [m/N]
+const kLongestArrow = 0.06; // [m]
 const kSteel: Vector = [0.5, 0.53, 0.57];
 const kHandle: Vector = [0.05, 0.055, 0.065];
 
 /** One scene with its organs, tool and force. */
 export class StageScene {
   readonly scene = new three.Scene();
-  frame: Frame | null = null;
+  frame: Frame | null = null; // the one that is drawn
+  onFrame: (frame: Frame) => void = () => {};
+  private waiting: WaitingFrame | null = null;
   private organs: OrganMesh[] = [];
   private topology = -1;
+  private next: Triangles | null = null; // until their first frame is drawn
   private tools: three.Mesh[] = [];
   private readonly arrow = makeArrow();
   private ghost: three.Mesh | null = null;
@@ -43,16 +46,31 @@ export class StageScene {
     });
   }
 
+  /** Triangles of the frames that follow. */
   setTriangles(triangles: Triangles): void {
+    this.next = triangles;
+  }
+
+  private useTriangles(triangles: Triangles): void {
     for (const organ of this.organs) this.scene.remove(organ.mesh), organ.dispose();
     this.organs = triangles.organs.map((organ, i) => new OrganMesh(organ, this.view.organs[i]));
     for (const organ of this.organs) this.scene.add(organ.mesh);
     this.topology = triangles.topology;
+    this.next = null;
   }
 
-  /** False: the frame belongs to triangles that are not here. */
-  setFrame(frame: Frame): boolean {
-    if (frame.topology !== this.topology) return false;
+  /** Takes the newest frame, which is read when it is drawn: a slow browser leaves out those in between. */
+  wait(frame: WaitingFrame): void {
+    this.waiting = frame;
+  }
+
+  /** Moves everything to the frame that waits. False: there is none. */
+  takeFrame(): boolean {
+    if (!this.waiting) return false;
+    const frame = readWaitingFrame(this.waiting);
+    this.waiting = null;
+    if (frame.topology === this.next?.topology) this.useTriangles(this.next);
+    if (frame.topology !== this.topology) return false; // of triangles that are not here
     this.frame = frame;
     frame.organs.forEach((positions, i) => this.organs[i]?.update(positions));
     this.tools.forEach((tool, i) => {
@@ -62,6 +80,7 @@ export class StageScene {
       tool.quaternion.set(x, y, z, w);
     });
     this.showForce(frame);
+    this.onFrame(frame);
     return true;
   }
 
@@ -166,6 +185,7 @@ export class Viewer {
   private drawNow(): void {
     const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
     if (width === 0 || height === 0) return;
+    for (const stage of this.stages.values()) stage.takeFrame();
     const ratio = Math.min(devicePixelRatio, 2);
     if (this.renderer.getPixelRatio() !== ratio) this.renderer.setPixelRatio(ratio);
     const size = this.renderer.getSize(new three.Vector2());
