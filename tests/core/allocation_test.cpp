@@ -70,7 +70,7 @@ TEST_P(EveryIntegrator, AllocatesNothingWhereBodiesMeet) {
   }
   model.organs_meet = true, model.contact_friction = 0.3, model.gravity = {0, 0, -9.81};
   model.obstacles = {{"ground", ObstacleKind::plane, {0, 0, -1e-4}, {}, {}},
-                     {"wall", ObstacleKind::box, {0.05, 0, 0}, {}, {0.03, 0.1, 0.1}}};
+                     {"wall", ObstacleKind::box, {0.0479, 0, 0}, {}, {0.03, 0.1, 0.1}}};
   testing::use_integrator(model, GetParam());
   stepping::Stepper stepper(model);
   State state = rest_state(model);
