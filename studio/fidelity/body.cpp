@@ -47,6 +47,7 @@ scenes::SceneSpec scene_of(const Specimen& specimen) {
   scene.contact_friction = specimen.friction;
   scenes::OrganSpec organ;
   organ.name = "body", organ.mesh = specimen.mesh.path;
+  organ.tiling = specimen.tiling;
   organ.material.preset = "liver", organ.material.density = specimen.density;
   organ.fill.radius = organ.fill.gap = specimen.radius;
   if (specimen.clamp) {

@@ -27,6 +27,7 @@ struct Specimen {
   importers::RawMesh mesh;  ///< [m]
   double radius = 4e-3;     ///< r of the spheres [m]; the gap is r, so the spacing is 3 r
   Pace pace = Pace::slow;
+  scenes::TilingSpec tiling = scenes::TilingSpec::automatic;
   std::optional<scenes::PlaneRegion> clamp;  ///< tissue behind this plane never moves
   Vec3 gravity;                              ///< [m/s^2]
   std::optional<double> density;             ///< [kg/m^3]; unset: the preset\'s
