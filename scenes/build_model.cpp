@@ -9,6 +9,7 @@
 #include "core/stepping/integrator.h"
 #include "core/surface/surface.h"
 #include "scenes/anchors.h"
+#include "scenes/json_text.h"
 #include "scenes/presets.h"
 
 namespace ctpm::scenes {
