@@ -1,4 +1,4 @@
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
 import { Problems, Section, ShownCommand, Working } from "./parts";
 import type { Player } from "./player";
@@ -19,11 +19,11 @@ function number(text: string): number | undefined {
   return text.trim() === "" ? undefined : Number(text);
 }
 
-/** A video of what is seen. */
+/** A video of what is seen. It keeps what was typed, so each session needs a form of its own (its path as the key). */
 export function ExportForm({ connection, player }: { connection: Connection; player: Player }) {
   const { session } = player.tracks.get(0)!;
   const beside = player.tracks.get(1)?.session.path;
-  const [output, setOutput] = useState("");
+  const [output, setOutput] = useState(session.path.replace(/\.ctpm$/, "") + ".mp4");
   const [from, setFrom] = useState("0"), [to, setTo] = useState("");
   const [speed, setSpeed] = useState("1"), [camera, setCamera] = useState("");
   const [view, setView] = useState("surface"), [cutaway, setCutaway] = useState("");
@@ -31,7 +31,6 @@ export function ExportForm({ connection, player }: { connection: Connection; pla
   const [result, setResult] = useState<Exported | null>(null);
   const [error, setError] = useState<Error | null>(null);
   const stop = useRef<AbortController | null>(null);
-  useEffect(() => setOutput(session.path.replace(/\.ctpm$/, "") + ".mp4"), [session.path]);
 
   const start = async () => {
     stop.current = new AbortController();

@@ -215,7 +215,7 @@ export function Review({ connection, listing, place, onPlace }: {
                   onBeside={(path) => open(1, path)} />
               )}
               {panel === "notes" && <NotesPanel connection={connection} player={player} onNotes={setNotes} />}
-              {panel === "export" && <ExportForm connection={connection} player={player} />}
+              {panel === "export" && <ExportForm key={player.tracks.get(0)!.session.path} connection={connection} player={player} />}
             </div>
           </>
         ) : (
