@@ -1,4 +1,4 @@
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
 import { Problems, Section, ShownCommand, Working } from "./parts";
 import type { Player } from "./player";
@@ -23,7 +23,7 @@ function number(text: string): number | undefined {
 export function ExportForm({ connection, player }: { connection: Connection; player: Player }) {
   const { session } = player.tracks.get(0)!;
   const beside = player.tracks.get(1)?.session.path;
-  const [output, setOutput] = useState("");
+  const [output, setOutput] = useState(() => session.path.replace(/\.ctpm$/, "") + ".mp4");
   const [from, setFrom] = useState("0"), [to, setTo] = useState("");
   const [speed, setSpeed] = useState("1"), [camera, setCamera] = useState("");
   const [view, setView] = useState("surface"), [cutaway, setCutaway] = useState("");
@@ -31,7 +31,6 @@ export function ExportForm({ connection, player }: { connection: Connection; pla
   const [result, setResult] = useState<Exported | null>(null);
   const [error, setError] = useState<Error | null>(null);
   const stop = useRef<AbortController | null>(null);
-  useEffect(() => setOutput(session.path.replace(/\.ctpm$/, "") + ".mp4"), [session.path]);
 
   const start = async () => {
     stop.current = new AbortController();
@@ -50,7 +49,7 @@ export function ExportForm({ connection, player }: { connection: Connection; pla
   };
   const around = () => {
     setFrom(Math.max(0, player.time - 1).toFixed(2));
-    setTo(Math.min(player.duration, player.time + 1).toFixed(2));
+    setTo(Math.min(session.info.duration_s, player.time + 1).toFixed(2));
   };
   const shown = command("export", session.path, "-o", output, ...(beside ? ["--beside", beside] : []),
     ...(number(from) ? ["--from-s", from] : []), ...(number(to) !== undefined ? ["--to-s", to] : []),
