@@ -18,6 +18,12 @@ Result<std::string> export_session(Parameters& parameters, const CallContext& co
 Result<std::string> session_motion(Parameters& parameters, const CallContext& context);
 Result<std::string> begin_training(Parameters& parameters, const CallContext& context);
 Result<std::string> end_training(Parameters& parameters, const CallContext& context);
+Result<std::string> read_scene(Parameters& parameters, const CallContext& context);
+Result<std::string> write_scene(Parameters& parameters, const CallContext& context);
+Result<std::string> check_scene(Parameters& parameters, const CallContext& context);
+Result<std::string> show_scene(Parameters& parameters, const CallContext& context);
+Result<std::string> import_mesh(Parameters& parameters, const CallContext& context);
+Result<std::string> list_presets(Parameters& parameters, const CallContext& context);
 Result<std::string> read_notes(Parameters& parameters, const CallContext& context);
 Result<std::string> write_notes(Parameters& parameters, const CallContext& context);
 

@@ -16,6 +16,9 @@ class Desk {
  public:
   explicit Desk(std::shared_ptr<Outbox> outbox) : outbox_(std::move(outbox)) {}
 
+  /// The way to the page.
+  Outbox& outbox() { return *outbox_; }
+
   /// Opens a session as stage `number`, in place of what was there. Errors: the session cannot be read.
   Result<Done> open(const std::string& file, std::uint32_t number);
   void close(std::uint32_t number);

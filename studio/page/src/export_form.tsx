@@ -19,11 +19,11 @@ function number(text: string): number | undefined {
   return text.trim() === "" ? undefined : Number(text);
 }
 
-/** A video of what is seen. It keeps what was typed, so each session needs a form of its own (its path as the key). */
+/** A video of what is seen. */
 export function ExportForm({ connection, player }: { connection: Connection; player: Player }) {
   const { session } = player.tracks.get(0)!;
   const beside = player.tracks.get(1)?.session.path;
-  const [output, setOutput] = useState(session.path.replace(/\.ctpm$/, "") + ".mp4");
+  const [output, setOutput] = useState(() => session.path.replace(/\.ctpm$/, "") + ".mp4");
   const [from, setFrom] = useState("0"), [to, setTo] = useState("");
   const [speed, setSpeed] = useState("1"), [camera, setCamera] = useState("");
   const [view, setView] = useState("surface"), [cutaway, setCutaway] = useState("");
@@ -49,7 +49,7 @@ export function ExportForm({ connection, player }: { connection: Connection; pla
   };
   const around = () => {
     setFrom(Math.max(0, player.time - 1).toFixed(2));
-    setTo(Math.min(player.duration, player.time + 1).toFixed(2));
+    setTo(Math.min(session.info.duration_s, player.time + 1).toFixed(2));
   };
   const shown = command("export", session.path, "-o", output, ...(beside ? ["--beside", beside] : []),
     ...(number(from) ? ["--from-s", from] : []), ...(number(to) !== undefined ? ["--to-s", to] : []),

@@ -1,19 +1,20 @@
 import { render } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { Connection, takeToken } from "./connection";
+import { Author } from "./author";
 import { Empty } from "./parts";
 import type { Listing } from "./protocol";
 import { type Place, Review } from "./review";
 import { Train } from "./train";
 
-type Room = "train" | "review";
-const kRooms: [Room, string][] = [["train", "Train"], ["review", "Review"]];
+type Room = "author" | "train" | "review";
+const kRooms: [Room, string][] = [["author", "Author"], ["train", "Train"], ["review", "Review"]];
 
 function readPlace(): { room: Room; place: Place } {
   const hash = new URLSearchParams(location.hash.slice(1));
   const time = hash.get("t");
   return {
-    room: kRooms.find(([room]) => room === hash.get("room"))?.[0] ?? "review",
+    room: kRooms.find(([room]) => room === hash.get("room"))?.[0] ?? "author",
     place: { session: hash.get("session") ?? undefined, beside: hash.get("beside") ?? undefined, time: time === null ? undefined : Number(time) || 0 },
   };
 }
@@ -66,8 +67,10 @@ function App() {
         ) : connection && listing ? (
           room === "review" ? (
             <Review connection={connection} listing={listing} place={place} onPlace={(there) => writePlace("review", there)} />
+          ) : room === "author" ? (
+            <Author connection={connection} listing={listing} onChanged={list} onTry={(scene) => go("train", { scene })} />
           ) : (
-            <Train connection={connection} listing={listing} onChanged={list}
+            <Train connection={connection} listing={listing} tryScene={place.scene} onChanged={list}
               onReview={(session, beside, time) => go("review", beside ? { session, beside, besideTime: time } : { session, time })} />
           )
         ) : (

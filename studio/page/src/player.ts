@@ -69,8 +69,11 @@ export class Player {
     this.onChange();
   }
 
-  get duration(): number {
-    return this.tracks.get(0)?.session.info.duration_s ?? 0;
+  /** The times that can be shown, of stage 0: until both sessions have ended, and from where the first of them begins. */
+  get span(): { from: number; to: number } {
+    const first = this.tracks.get(0)?.session.info.duration_s ?? 0, second = this.tracks.get(1)?.session.info.duration_s;
+    if (second === undefined) return { from: 0, to: first };
+    return { from: Math.min(0, -this.offset), to: Math.max(first, second - this.offset) };
   }
 
   /** The time of a stage's own session. */
@@ -79,7 +82,8 @@ export class Player {
   }
 
   move(time: number): void {
-    this.time = Math.min(Math.max(Math.round(1e6 * time) / 1e6, 0), this.duration); // whole microseconds
+    const { from, to } = this.span;
+    this.time = Math.min(Math.max(Math.round(1e6 * time) / 1e6, from), to); // whole microseconds
     this.movedAt = performance.now();
     this.pictureAfter = null;
     this.ask();
@@ -103,7 +107,7 @@ export class Player {
 
   play(): void {
     if (this.isPlaying || !this.tracks.has(0)) return;
-    if (this.time >= this.duration) this.time = 0;
+    if (this.time >= this.span.to) this.time = this.span.from;
     this.isPlaying = true;
     this.playedAt = performance.now();
     this.steps = [];
@@ -122,14 +126,14 @@ export class Player {
     if (this.waiting.size === 0) {
       const by = Math.min((now - this.playedAt) / 1e3, kLongestStep) * this.speed;
       this.playedAt = now;
-      this.time = Math.min(this.time + by, this.duration);
+      this.time = Math.min(this.time + by, this.span.to);
       this.steps.push([now, by]);
       while (this.steps.length > 2 && now - this.steps[0][0] > 1000) this.steps.shift();
       const span = (now - this.steps[0][0]) / 1e3;
       this.reached = span > 0.3 ? this.steps.slice(1).reduce((sum, [, far]) => sum + far, 0) / span : this.speed;
       this.ask();
       this.onTime();
-      if (this.time >= this.duration) return this.pause();
+      if (this.time >= this.span.to) return this.pause();
     }
     requestAnimationFrame(this.step);
   };

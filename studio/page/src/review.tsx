@@ -16,6 +16,7 @@ type Panel = (typeof kPanels)[number];
 
 /** Where the page is, in its address. */
 export interface Place {
+  scene?: string; // to try at once, in Train
   session?: string;
   beside?: string;
   time?: number;
@@ -118,8 +119,8 @@ export function Review({ connection, listing, place, onPlace }: {
       if (event.key === " " && !target.closest("button")) player.isPlaying ? player.pause() : player.play();
       else if (event.key === "ArrowLeft") player.pause(), player.move(player.time - by);
       else if (event.key === "ArrowRight") player.pause(), player.move(player.time + by);
-      else if (event.key === "Home") player.move(0);
-      else if (event.key === "End") player.move(player.duration);
+      else if (event.key === "Home") player.move(player.span.from);
+      else if (event.key === "End") player.move(player.span.to);
       else if (event.key === "n") setPanel("notes");
       else return;
       event.preventDefault();
@@ -190,7 +191,7 @@ export function Review({ connection, listing, place, onPlace }: {
                   {first.session.view.cameras.map((camera, i) => <option key={camera.name} value={i}>{camera.name}</option>)}
                 </select>
               </label>
-              <output class="clock">{seconds(player.time)} <small>of {seconds(player.duration)}</small></output>
+              <output class="clock">{seconds(player.time)} <small>of {seconds(first.session.info.duration_s)}</small></output>
               {player.isPlaying && player.reached < 0.9 * player.speed && (
                 <span class="hint">plays at {player.reached.toFixed(2)} ×: this machine simulates no faster</span>
               )}
@@ -215,7 +216,7 @@ export function Review({ connection, listing, place, onPlace }: {
                   onBeside={(path) => open(1, path)} />
               )}
               {panel === "notes" && <NotesPanel connection={connection} player={player} onNotes={setNotes} />}
-              {panel === "export" && <ExportForm key={player.tracks.get(0)!.session.path} connection={connection} player={player} />}
+              {panel === "export" && <ExportForm key={first.session.path} connection={connection} player={player} />}
             </div>
           </>
         ) : (

@@ -23,6 +23,7 @@ const kRows: Row[] = [
   { title: "speed", unit: "mm/s", scale: 1e3, of: (data) => data.speed_m_per_s },
 ];
 const kAxis = 64, kRight = 14, kHeight = 54; // [px]
+const kPoints = 3000; // of a curve
 const kFirst = "#7cc0ff", kSecond = "#ffb35c", kDifference = "#c9a2ff";
 
 /** The value of a timeline at a time; null outside of the session. */
@@ -51,13 +52,14 @@ function options(width: number, colours: string[]): uPlot.Options {
 export function Timeline({ player, marks, version }: { player: Player; marks: Mark[]; version: number }) {
   const box = useRef<HTMLDivElement>(null), head = useRef<HTMLDivElement>(null), slider = useRef<HTMLInputElement>(null);
   const first = player.tracks.get(0)?.timeline ?? null, second = player.tracks.get(1)?.timeline ?? null;
-  const duration = player.duration, offset = player.offset;
+  const { from, to } = player.span, offset = player.offset;
+  const shareOf = (time: number) => (to > from ? (time - from) / (to - from) : 0);
 
   useEffect(() => {
     const holder = box.current;
     if (!holder || !first) return;
-    const step = first.duration_s / first.points;
-    const times = Array.from({ length: first.points }, (_, i) => (i + 0.5) * step);
+    const step = (to - from) / kPoints;
+    const times = Array.from({ length: kPoints }, (_, i) => from + (i + 0.5) * step);
     const plots: uPlot[] = [];
     const add = (title: string, series: (number | null)[][], colours: string[]) => {
       const row = holder.appendChild(document.createElement("div"));
@@ -67,18 +69,18 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
     const isEmpty = (data: TimelineData | null, row: Row) => !data || row.of(data).every((value) => value === 0);
     for (const row of kRows) {
       if (isEmpty(first, row) && isEmpty(second, row)) continue; // a blade has no depth
-      const series: (number | null)[][] = [row.of(first).map((v) => v * row.scale)];
-      if (second)
-        series.push(times.map((t) => {
-          const value = valueAt(row.of(second), second.duration_s, t + offset);
-          return value === null ? null : value * row.scale;
-        }));
+      const over = (data: TimelineData, ahead: number) => times.map((t) => {
+        const value = valueAt(row.of(data), data.duration_s, t + ahead);
+        return value === null ? null : value * row.scale;
+      });
+      const series = [over(first, 0)];
+      if (second) series.push(over(second, offset));
       add(`${row.title} [${row.unit}]`, series, [kFirst, kSecond]);
     }
     if (second)
-      add("difference of force [N]", [times.map((t, i) => {
-        const other = valueAt(second.force_n, second.duration_s, t + offset);
-        return other === null ? null : other - first.force_n[i];
+      add("difference of force [N]", [times.map((t) => {
+        const own = valueAt(first.force_n, first.duration_s, t), other = valueAt(second.force_n, second.duration_s, t + offset);
+        return own === null || other === null ? null : other - own;
       })], [kDifference]);
     const observer = new ResizeObserver(() => {
       for (const plot of plots) plot.setSize({ width: holder.clientWidth, height: kHeight });
@@ -89,11 +91,11 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
       for (const plot of plots) plot.destroy();
       holder.replaceChildren();
     };
-  }, [first, second, offset]);
+  }, [first, second, from, to, offset]);
 
   useEffect(() => {
     const place = () => {
-      const share = duration > 0 ? player.time / duration : 0;
+      const share = shareOf(player.time);
       head.current?.style.setProperty("--at", String(share));
       if (slider.current && document.activeElement !== slider.current) slider.current.value = String(player.time);
       slider.current?.setAttribute("aria-valuetext", seconds(player.time));
@@ -101,7 +103,7 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
     place();
     const timer = setInterval(place, 40);
     return () => clearInterval(timer);
-  }, [player, duration, version]);
+  }, [player, from, to, version]);
 
   const shareAt = (event: PointerEvent) => {
     const box = (event.currentTarget as HTMLElement).getBoundingClientRect();
@@ -110,10 +112,10 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
   const press = (event: PointerEvent) => {
     (event.currentTarget as HTMLElement).setPointerCapture(event.pointerId);
     player.pause();
-    player.move(shareAt(event) * duration);
+    player.move(from + shareAt(event) * (to - from));
   };
   const drag = (event: PointerEvent) => {
-    if (event.buttons & 1) player.move(shareAt(event) * duration);
+    if (event.buttons & 1) player.move(from + shareAt(event) * (to - from));
   };
 
   return (
@@ -121,14 +123,14 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
       <div class="marks" aria-hidden="true">
         {marks.map((mark, i) => (
           <button key={i} type="button" tabIndex={-1} class={`mark ${mark.kind.replaceAll(" ", "-")}`} title={`${seconds(mark.time)} ${mark.text}`}
-            style={{ "--at": String(duration > 0 ? mark.time / duration : 0) }} onClick={() => player.move(mark.time)} />
+            style={{ "--at": String(shareOf(mark.time)) }} onClick={() => player.move(mark.time)} />
         ))}
       </div>
       <div class="plots" onPointerDown={press} onPointerMove={drag}>
         <div ref={box} />
         <div ref={head} class="playhead" />
       </div>
-      <input ref={slider} class="scrub" type="range" min={0} max={duration} step={0.001} aria-label="Moment of the session"
+      <input ref={slider} class="scrub" type="range" min={from} max={to} step={0.001} aria-label="Moment of the session"
         onInput={(event) => {
           player.pause();
           player.move(Number(event.currentTarget.value));

@@ -15,9 +15,10 @@ function freeName(listing: Listing): string {
   for (let i = 1; ; ++i) if (!taken.has(`mine-${i}.ctpm`)) return `mine-${i}.ctpm`;
 }
 
-export function Train({ connection, listing, onReview, onChanged }: {
+export function Train({ connection, listing, tryScene, onReview, onChanged }: {
   connection: Connection;
   listing: Listing;
+  tryScene: string | undefined; // at once, and nothing is recorded
   onReview: (session: string, beside: string | undefined, time: number) => void;
   onChanged: () => void;
 }) {
@@ -25,7 +26,7 @@ export function Train({ connection, listing, onReview, onChanged }: {
   const [trainer, setTrainer] = useState<Trainer | null>(null);
   const [phase, setPhase] = useState<Phase>("choose");
   const [scene, setScene] = useState("");
-  const [output, setOutput] = useState(() => freeName(listing));
+  const [output, setOutput] = useState(() => (tryScene ? "" : freeName(listing)));
   const [expert, setExpert] = useState("");
   const [ended, setEnded] = useState<EndedTraining | null>(null);
   const [error, setError] = useState<Error | null>(null);
@@ -72,6 +73,10 @@ export function Train({ connection, listing, onReview, onChanged }: {
       setPhase("choose");
     }
   }, [trainer, output]);
+
+  useEffect(() => {
+    if (trainer && tryScene) void begin(tryScene);
+  }, [trainer]);
 
   useEffect(() => {
     if (!trainer) return;

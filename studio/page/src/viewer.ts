@@ -148,6 +148,7 @@ export class Viewer {
 
   constructor(readonly canvas: HTMLCanvasElement) {
     this.renderer = new three.WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.renderer.setClearColor(0x000000, 0); // the page's ground shows
     this.renderer.setScissorTest(true);
     this.renderer.autoClear = false;
     this.controls = new OrbitControls(this.camera, canvas);
