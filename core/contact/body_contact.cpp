@@ -18,8 +18,6 @@ constexpr double kApartAtRest = 2, kApartOverDepth = 4;
 /// spheres.
 constexpr double kPatchesApart = 1;
 
-Box segment_box(Vec3 from, Vec3 to) { return Box(from, to); }
-
 }  // namespace
 
 BodyContact::BodyContact(const Model& model, std::vector<Body>& bodies)
@@ -123,7 +121,7 @@ void BodyContact::look_at_patches(const Vec3Array& position, std::size_t body, s
       hit.inwards = -own.facets.normal(vertex, place);
       hit_vertices_.push_back(vertex);
     }
-    if (!segment_box(from, from + reach * hit.inwards).meets(box)) continue;
+    if (!Box(from, from + reach * hit.inwards).meets(box)) continue;
     for (std::int32_t t = bound.first; t < bound.last; ++t) meet(position, from, reach, bodies_[other], t, hit);
   }
 }
@@ -136,7 +134,7 @@ void BodyContact::meet(const Vec3Array& position, Vec3 from, double reach, Body&
   const auto& corner = surface.triangles()[std::size_t(triangle)].corner;
   const Vec3 a = surface.place(corner[0], position), b = surface.place(corner[1], position),
              c = surface.place(corner[2], position);
-  if (!segment_box(from, from + reach * hit.inwards).meets(Box(a, b, c))) return;
+  if (!Box(from, from + reach * hit.inwards).meets(Box(a, b, c))) return;
   const Vec3 ab = b - a, ac = c - a, p = cross(hit.inwards, ac);
   const double facing = dot(ab, p);
   if (facing == 0) return;
