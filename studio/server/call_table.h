@@ -2,11 +2,19 @@
 
 #include <string>
 
+#include "recordings/session_reader.h"
 #include "studio/server/calls.h"
 #include "studio/server/text.h"
 
 // One function for each call; PROTOCOL.md says what they take and return. Each checks its parameters first.
 namespace ctpm::server {
+
+/// Opens the session of that path in the folder.
+inline Result<recordings::SessionReader> open_reader(const CallContext& context, const std::string& path) {
+  const Result<std::string> file = context.folder.find(path);
+  if (!file) return file.errors();
+  return recordings::SessionReader::open(*file);
+}
 
 Result<std::string> list_folder(Parameters& parameters, const CallContext& context);
 Result<std::string> open_session(Parameters& parameters, const CallContext& context);

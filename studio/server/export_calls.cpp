@@ -32,9 +32,7 @@ Result<std::string> export_session(Parameters& parameters, const CallContext& co
   std::vector<recordings::SessionReader> readers;
   for (const std::string& name : {path, beside}) {
     if (name.empty()) continue;
-    const Result<std::string> file = context.folder.find(name);
-    if (!file) return file.errors();
-    Result<recordings::SessionReader> reader = recordings::SessionReader::open(*file);
+    Result<recordings::SessionReader> reader = open_reader(context, name);
     if (!reader) return reader.errors();
     readers.push_back(std::move(*reader));
   }

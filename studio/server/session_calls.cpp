@@ -68,9 +68,7 @@ Result<std::string> session_timeline(Parameters& parameters, const CallContext& 
   const std::string path = parameters.text("path");
   const double points = parameters.number("points", 2, 20000);
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
-  const Result<std::string> file = context.folder.find(path);
-  if (!file) return file.errors();
-  Result<recordings::SessionReader> reader = recordings::SessionReader::open(*file);
+  Result<recordings::SessionReader> reader = open_reader(context, path);
   if (!reader) return reader.errors();
   const Result<compare::SessionTrack> track = compare::read_recorded(*reader);
   if (!track) return track.errors();
@@ -96,9 +94,7 @@ Result<std::string> session_timeline(Parameters& parameters, const CallContext& 
 Result<std::string> verify_session(Parameters& parameters, const CallContext& context) {
   const std::string path = parameters.text("path");
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
-  const Result<std::string> file = context.folder.find(path);
-  if (!file) return file.errors();
-  Result<recordings::SessionReader> reader = recordings::SessionReader::open(*file);
+  Result<recordings::SessionReader> reader = open_reader(context, path);
   if (!reader) return reader.errors();
   recordings::VerifyOptions options;
   options.progress = context.progress;

@@ -51,9 +51,7 @@ Result<std::string> session_motion(Parameters& parameters, const CallContext& co
   const std::string path = parameters.text("path");
   const double rate = parameters.number("rate_hz", 1, 1000);
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
-  const Result<std::string> file = context.folder.find(path);
-  if (!file) return file.errors();
-  Result<recordings::SessionReader> reader = recordings::SessionReader::open(*file);
+  Result<recordings::SessionReader> reader = open_reader(context, path);
   if (!reader) return reader.errors();
   const std::int64_t every = std::max<std::int64_t>(1, std::llround(1 / (rate * reader->start().model.tick)));
   constexpr std::int64_t kMost = 200000;  // poses
