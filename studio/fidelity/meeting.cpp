@@ -27,16 +27,12 @@ struct Organs {
 Result<Organs> make_organs(scenes::SceneSpec scene, const std::vector<importers::RawMesh>& meshes, double radius) {
   Organs organs;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
-    const Result<importers::CheckedMesh> checked = importers::repair_mesh(meshes[i], 1.0, {});
-    if (!checked) return checked.errors();
-    importers::FillOptions options;
-    options.sphere_radius = options.gap = radius, options.threads = 1;
-    Result<importers::Filling> filling = importers::fill_organ(*checked, options);
+    scenes::OrganSpec& organ = scene.organs[i];
+    organ.name = "organ " + std::to_string(i + 1), organ.mesh = meshes[i].path, organ.material.preset = "liver";
+    organ.fill.radius = organ.fill.gap = radius;
+    Result<importers::Filling> filling = fill_mesh(organ, meshes[i]);
     if (!filling) return filling.errors();
     organs.filled.push_back(std::move(filling->organ));
-    scene.organs[i].name = "organ " + std::to_string(i + 1), scene.organs[i].mesh = meshes[i].path;
-    scene.organs[i].material.preset = "liver";
-    scene.organs[i].fill.radius = scene.organs[i].fill.gap = radius;
   }
   scene.name = "fidelity", scene.contact_friction = kFriction;
   Result<scenes::BuiltScene> built = scenes::build_model(scene, organs.filled);
@@ -62,11 +58,6 @@ importers::RawMesh moved(importers::RawMesh mesh, Vec3 by) {
 
 importers::RawMesh ball_at_place(Vec3 centre, double radius) {
   return moved(ball_mesh(kBallRadius, 0.75 * radius), centre);
-}
-
-void run_for(const Model& model, State& state, double time) {
-  stepping::Stepper stepper(model);
-  for (std::int64_t t = 0; t < std::llround(time / model.tick); ++t) (void)stepper.step(state, {});
 }
 
 std::vector<Vec3> drawn(const Organs& organs, const State& state, std::size_t organ) {
@@ -130,10 +121,10 @@ Result<Done> measure_collision(MeetingResult& result) {
   result.integrator = stepping::name_of(model.solver.integrator);
   State state = rest_state(model);
   const auto first = std::size_t(model.organs[0].count);
-  double scale = 0, mass = 0;
+  double scale = 0;
   for (std::size_t i = 0; i < model.sphere_count(); ++i) {
     state.velocity.z[i] = i < first ? kSpeed : -kSpeed;
-    if (i < first) scale += model.mass[i] * kSpeed, mass += model.mass[i];
+    if (i < first) scale += model.mass[i] * kSpeed;
   }
   const auto momentum = [&] {
     std::pair<Vec3, Vec3> sum;
@@ -167,15 +158,9 @@ Result<double> measure_slide(double degrees, double time, double radius) {
   run_for(model, state, 1.0);
   const double angle = degrees * std::numbers::pi / 180;
   model.gravity = {kGravity * std::sin(angle), 0, -kGravity * std::cos(angle)};
-  const auto centre = [&] {
-    double sum = 0, mass = 0;
-    for (std::size_t i = 0; i < model.sphere_count(); ++i)
-      sum += model.mass[i] * state.position.x[i], mass += model.mass[i];
-    return sum / mass;
-  };
-  const double before = centre();
+  const double before = centre_of_mass(model, state.position).x;
   run_for(model, state, time);
-  return centre() - before;
+  return centre_of_mass(model, state.position).x - before;
 }
 
 }  // namespace
