@@ -133,14 +133,16 @@ Errors thin_parts_of(const loading::LoadedScene& scene) {
     const FilledOrgan& organ = scene.organs[i];
     const std::string at = "/organs/" + std::to_string(i) + "/fill";
     const fidelity::ThinParts thin = fidelity::find_thin_parts(organ);
+    const double known = fidelity::kThicknessError * organ.spacing;
     if (thin.spheres > 0)
       warnings.push_back(scene.scene.places.error_at(
           at,
           std::to_string(thin.spheres) + " of " + std::to_string(organ.centre.size()) +
               " spheres lie in tissue thinner than two spacings (" +
               importers::mm_text(fidelity::kLeastSpacingsAcross * organ.spacing) +
-              "), which they cannot carry; the thinnest is " + importers::mm_text(thin.thinnest) + " at " +
-              importers::place_text(thin.place),
+              "), which they cannot carry; the thinnest is " +
+              (thin.thinnest < known ? "less than " + importers::mm_text(known) : importers::mm_text(thin.thinnest)) +
+              " at " + importers::place_text(thin.place),
           "a smaller radius_mm carries more of it"));
     for (const importers::Finding& finding : scene.reports[i].fill.findings)
       if (finding.code == "thin" || finding.code == "flat")
