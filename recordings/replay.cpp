@@ -67,6 +67,12 @@ Result<Done> ReplayCursor::seek(std::int64_t tick) {
   return Done{};
 }
 
+void ReplayCursor::resume(std::int64_t tick, const State& state) {
+  impl_->state = state;
+  impl_->tick = tick;
+  impl_->same = true;
+}
+
 Result<bool> ReplayCursor::step() {
   Impl& impl = *impl_;
   const std::int64_t count = impl.reader.tick_count();

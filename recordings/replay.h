@@ -23,6 +23,9 @@ class ReplayCursor {
   /// Errors: no such tick, or a chunk on the path is damaged.
   Result<Done> seek(std::int64_t tick);
 
+  /// Moves to `state`, the State before `tick` that a cursor of the same session had.
+  void resume(std::int64_t tick, const State& state);
+
   /// Simulates one tick. Returns false at the end of the session. Error: the tick's chunk is damaged.
   Result<bool> step();
 
@@ -30,7 +33,7 @@ class ReplayCursor {
   const State& state() const;
   const TickRecord& record() const;            ///< recorded values of the last tick done
   const stepping::StepReport& report() const;  ///< simulated values of the last tick done
-  bool same_so_far() const;                    ///< every tick since the last keyframe used matched its recorded hash
+  bool same_so_far() const;  ///< every tick since the last keyframe or resume() matched its recorded hash
 
  private:
   struct Impl;

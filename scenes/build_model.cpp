@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/contact/body_contact.h"
 #include "core/network/network.h"
 #include "core/stepping/integrator.h"
 #include "core/surface/surface.h"
 #include "scenes/anchors.h"
+#include "scenes/json_text.h"
 #include "scenes/presets.h"
 
 namespace ctpm::scenes {
@@ -131,6 +133,7 @@ bool add_scene_organ(BuiltScene& built, const SceneSpec& scene, std::size_t inde
                                                                     "layers", "anchors", "inversion_resistance"});
   };
   add_network(built.model, organ, is_good() ? settings : stand_in_for(settings), spec.rig.has_value(), at, problems);
+  if (is_good() && !built.model.organs.empty()) built.model.organs.back().meets_itself = spec.meets_itself;
   return is_good();
 }
 
@@ -180,10 +183,51 @@ void add_tools(Model& model, const SceneSpec& scene) {
   }
   const bool presses =
       std::any_of(scene.tools.begin(), scene.tools.end(), [](const ToolSpec& t) { return t.kind == ToolKind::ball; });
-  if (!presses) return;
+  if (!presses && !model.has_meeting_bodies()) return;
   model.contact_k = scene.contact_stiffness.value_or(kContactOverEdge * stiffest_spring(model));
   model.contact_friction = scene.contact_friction;
   model.contact_damping = scene.contact_damping.value_or(model.contact_damping);
+}
+
+/// The turn that takes the z axis to `normal`, of any length but zero.
+Quat turn_to(Vec3 normal) {
+  const Vec3 n = normal / norm(normal);
+  if (n.z <= -1 + 1e-12) return {0, 1, 0, 0};
+  const double w = std::sqrt(0.5 * (1 + n.z));
+  return {w, -0.5 * n.y / w, 0.5 * n.x / w, 0};
+}
+
+void add_obstacles(Model& model, const SceneSpec& scene) {
+  model.organs_meet = scene.organs_meet;
+  for (const ObstacleSpec& spec : scene.obstacles) {
+    Obstacle obstacle;
+    obstacle.name = spec.name;
+    if (spec.plane) obstacle.position = spec.plane->point, obstacle.world_from_obstacle = turn_to(spec.plane->normal);
+    if (spec.box) {
+      obstacle.kind = ObstacleKind::box;
+      obstacle.position = 0.5 * (spec.box->min + spec.box->max);
+      obstacle.half_size = 0.5 * (spec.box->max - spec.box->min);
+    }
+    model.obstacles.push_back(obstacle);
+  }
+}
+
+/// Organs that meet push each other apart from the first tick on where the scene has them overlap.
+void warn_of_overlap(const Model& model, Problems& problems) {
+  if (!model.has_meeting_tissue()) return;
+  constexpr double kTouching = 0.5e-3;  // [m]; meshes that lie against each other overlap a little
+  std::vector<contact::Body> bodies = contact::bodies_of(model);
+  const auto deepest = contact::BodyContact(model, bodies).deepest(model.rest_position);
+  if (!deepest || deepest->depth < kTouching) return;
+  char place[96];
+  std::snprintf(place, sizeof place, "(%.4g, %.4g, %.4g) mm", 1e3 * deepest->place.x, 1e3 * deepest->place.y,
+                1e3 * deepest->place.z);
+  const std::string name = model.organs[std::size_t(deepest->organ)].name,
+                    other = model.organs[std::size_t(deepest->other)].name;
+  problems.add_warning("/organs/" + std::to_string(deepest->organ),
+                       "the surfaces of " + in_quotes(name) + " and " + in_quotes(other) + " overlap by " +
+                           in_millimetres(deepest->depth) + " or more at " + place + "; they push each other apart",
+                       "move them apart, or leave out organs_meet");
 }
 
 /// What the scene asks for; none: core chooses.
@@ -299,6 +343,7 @@ std::optional<BuiltScene> build_model(const SceneSpec& scene, std::span<const Fi
   for (std::size_t i = 0; i < organs.size(); ++i)
     has_all_organs = add_scene_organ(built, scene, i, organs[i], problems) && has_all_organs;
   if (!has_all_organs) return std::nullopt;
+  add_obstacles(model, scene);
   add_tools(model, scene);
   add_cutting(model, scene);
   for (const LoadSpec& load : scene.loads) add_load(model, load);
@@ -312,6 +357,7 @@ std::optional<BuiltScene> build_model(const SceneSpec& scene, std::span<const Fi
                         "take `auto`, `backward-euler`, or more substeps");
   }
   if (!problems.is_empty()) return std::nullopt;
+  warn_of_overlap(model, problems);
   return built;
 }
 

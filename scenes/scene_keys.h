@@ -243,6 +243,8 @@ void describe_fields(V& v, OrganSpec& organ) {
           "being turned inside out; 0: it does not, and costs nothing.",
           false, "10, or 0 for a rig"},
       organ.inversion_resistance, units::none, within(0, 1000));
+  v.flag(Key{"meets_itself", "Parts of the organ's surface that lie apart touch each other; for a mesh."},
+         organ.meets_itself);
   v.point(Key{"surface_color", "Red, green and blue of the outside."}, organ.surface_color, units::none, within(0, 1));
   v.point(Key{"inner_color", "Red, green and blue of cut faces and spheres."}, organ.inner_color, units::none,
           within(0, 1));
@@ -277,6 +279,17 @@ void describe_fields(V& v, ToolSpec& tool) {
                "others.",
                false, "1"},
            tool.blade_thickness, units::millimetre, within(0.01, 100));
+}
+
+inline RecordInfo info_of(const ObstacleSpec&) {
+  return {"obstacle",
+          "A rigid ground, table or wall, which tissue touches and does not enter. Give either plane or box."};
+}
+template <class V>
+void describe_fields(V& v, ObstacleSpec& obstacle) {
+  v.text(required("name", "Name of the obstacle, unique in the scene."), obstacle.name);
+  v.record(Key{"plane", "Everything behind a plane."}, obstacle.plane);
+  v.record(Key{"box", "A box."}, obstacle.box);
 }
 
 inline RecordInfo info_of(const LoadSpec&) { return {"load", "An external force on one sphere."}; }
@@ -346,8 +359,8 @@ void describe_fields(V& v, SceneSpec& scene) {
   v.number(Key{"contact_stiffness_n_per_m", "Stiffness of a tool against one sphere of a rig.", false,
                "20 times the stiffest edge"},
            scene.contact_stiffness, units::newton_per_metre, within(1e-6, 1e12));
-  v.number(Key{"contact_friction", "Coulomb coefficient between tool and tissue."}, scene.contact_friction, units::none,
-           within(0, 10));
+  v.number(Key{"contact_friction", "Coulomb coefficient of tissue against tools, obstacles and other tissue."},
+           scene.contact_friction, units::none, within(0, 10));
   v.number(Key{"contact_damping_s_per_m",
                "Hunt-Crossley damping c of a tool's contact: at a penetration p it pushes with k p (1 + c p'); with 50 "
                "s/m an impact at 30 mm/s keeps 25 % of its kinetic energy.",
@@ -360,6 +373,9 @@ void describe_fields(V& v, SceneSpec& scene) {
           "p and a spacing s.",
           false, "8"},
       scene.cut_face_stiffening, units::none, within(0, 1000));
+  v.list(Key{"obstacles", "What tissue lies on or leans against.", false, "none"}, scene.obstacles, 0);
+  v.flag(Key{"organs_meet", "Organs from meshes touch each other; otherwise they pass through each other."},
+         scene.organs_meet);
   v.list(Key{"loads", "External forces."}, scene.loads, 0);
   v.list(Key{"probes", "Points whose motion is recorded."}, scene.probes, 0);
   v.record(Key{"solver", "Settings of the time integration."}, scene.solver);

@@ -102,11 +102,35 @@ void check_rig(Problems& problems, const std::string& at, const RigSpec& rig) {
   check_guides(problems, at, rig, cells);
 }
 
-void check_anchor(Problems& problems, const std::string& at, const AnchorSpec& anchor) {
-  if (anchor.plane) check_direction(problems, at + "/plane/normal", anchor.plane->normal);
-  if (anchor.box && !(anchor.box->min.x <= anchor.box->max.x && anchor.box->min.y <= anchor.box->max.y &&
-                      anchor.box->min.z <= anchor.box->max.z))
+/// `region`: an anchor or an obstacle.
+template <class Region>
+void check_region(Problems& problems, const std::string& at, const Region& region) {
+  if (region.plane) check_direction(problems, at + "/plane/normal", region.plane->normal);
+  if (region.box && !(region.box->min.x <= region.box->max.x && region.box->min.y <= region.box->max.y &&
+                      region.box->min.z <= region.box->max.z))
     problems.add_rule(at + "/box", "min_mm must not be above max_mm in any coordinate");
+}
+
+void check_obstacle(Problems& problems, std::size_t index, const ObstacleSpec& obstacle) {
+  const std::string at = item("/obstacles", index);
+  if (problems.are_good(at, {"plane", "box"}) && obstacle.plane.has_value() == obstacle.box.has_value())
+    problems.add_rule(at, "must have exactly one of plane, box");
+  check_region(problems, at, obstacle);
+  if (!obstacle.box || !problems.is_good(at + "/box")) return;
+  const Vec3 size = obstacle.box->max - obstacle.box->min;
+  if (size.x == 0 || size.y == 0 || size.z == 0) problems.add_rule(at + "/box", "has no volume");
+}
+
+/// What touches what.
+void check_meeting(Problems& problems, const SceneSpec& scene) {
+  std::size_t meshes = 0;
+  for (std::size_t i = 0; i < scene.organs.size(); ++i) {
+    meshes += !scene.organs[i].rig;
+    if (scene.organs[i].rig && scene.organs[i].meets_itself)
+      problems.add_rule(item("/organs", i) + "/meets_itself", "a rig has no surface with which it could meet itself");
+  }
+  if (scene.organs_meet && meshes < 2 && problems.is_good("/organs"))
+    problems.add_warning("/organs_meet", "only organs from meshes meet, and the scene has " + std::to_string(meshes));
 }
 
 void check_organ(Problems& problems, std::size_t index, const OrganSpec& organ) {
@@ -117,7 +141,7 @@ void check_organ(Problems& problems, std::size_t index, const OrganSpec& organ) 
   check_material(problems, at + "/material", organ.material, at, organ.structure);
   check_layers(problems, at, organ);
   for (std::size_t i = 0; i < organ.anchors.size(); ++i)
-    check_anchor(problems, item(at + "/anchors", i), organ.anchors[i]);
+    check_region(problems, item(at + "/anchors", i), organ.anchors[i]);
   if (organ.lattice == network::LatticeKind::cubic_6 && organ.structure != network::Structure::angle_mass_spring &&
       !organ.mesh.empty())
     problems.add_warning(at + "/lattice",
@@ -161,6 +185,9 @@ void check_rules(Problems& problems, const SceneSpec& scene) {
   check_names(problems, "/tools", scene.tools);
   check_names(problems, "/cameras", scene.cameras);
   check_names(problems, "/probes", scene.probes);
+  check_names(problems, "/obstacles", scene.obstacles);
+  check_meeting(problems, scene);
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) check_obstacle(problems, i, scene.obstacles[i]);
   for (std::size_t i = 0; i < scene.organs.size(); ++i) check_organ(problems, i, scene.organs[i]);
   for (std::size_t i = 0; i < scene.tools.size(); ++i) check_tool(problems, i, scene.tools[i]);
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) check_camera(problems, i, scene.cameras[i]);

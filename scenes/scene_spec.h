@@ -144,6 +144,7 @@ struct OrganSpec {
   /// kappa over Young's modulus, with which tissue resists being turned inside out [1]; 0: it does not; unset: see
   /// inversion_resistance_of().
   std::optional<double> inversion_resistance{};
+  bool meets_itself = false;             ///< parts of the surface that lie apart touch each other
   Vec3 surface_color{0.62, 0.24, 0.20};  ///< red, green, blue in [0, 1]
   Vec3 inner_color{0.80, 0.42, 0.36};    ///< of cut faces and spheres
 
@@ -205,6 +206,15 @@ struct CameraSpec {
   friend bool operator==(const CameraSpec&, const CameraSpec&) = default;
 };
 
+/// A rigid thing that never moves and that tissue cannot enter. Exactly one of plane and box is set.
+struct ObstacleSpec {
+  std::string name;
+  std::optional<PlaneRegion> plane;
+  std::optional<BoxRegion> box;
+
+  friend bool operator==(const ObstacleSpec&, const ObstacleSpec&) = default;
+};
+
 struct SceneSpec {
   std::string name;
   Vec3 gravity{0, 0, -9.81};  ///< [m/s^2]
@@ -213,10 +223,12 @@ struct SceneSpec {
   std::vector<OrganSpec> organs;
   std::vector<ToolSpec> tools;
   std::optional<double> contact_stiffness;    ///< of a tool against one sphere of a rig [N/m]
-  double contact_friction = 0.3;              ///< Coulomb coefficient between tool and tissue
+  double contact_friction = 0.3;              ///< Coulomb coefficient of tissue against everything that it touches
   std::optional<double> contact_damping;      ///< Hunt-Crossley damping [s/m]; unset: that of core's Model
   std::optional<double> cut_face_stiffening;  ///< [1]; unset: that of core's Model
   bool lips_meet = false;                     ///< the two sides of a cut meet again without passing through each other
+  std::vector<ObstacleSpec> obstacles;
+  bool organs_meet = false;  ///< organs touch each other instead of passing through each other
   std::vector<LoadSpec> loads;
   std::vector<ProbeSpec> probes;
   SolverSpec solver;

@@ -51,7 +51,10 @@ bool may_touch(const Vec3* corners, Vec3 centre, double radius) {
 }  // namespace
 
 BallContact::BallContact(const Model& model, const elements::Kernels& kernels)
-    : model_(model), kernels_(kernels), is_wanted_(model.has_tool(ToolKind::ball)), surface_(model, is_wanted_) {
+    : model_(model),
+      kernels_(kernels),
+      is_wanted_(model.has_tool(ToolKind::ball)),
+      surface_(model, 0, is_wanted_ ? model.surfaces.size() : 0) {
   if (!is_wanted_) return;
   const std::size_t vertices = surface_.vertex_count();
   pressed_.resize(vertices), touched_.reserve(vertices), was_touched_.assign(vertices, 0);
@@ -93,9 +96,9 @@ void BallContact::find_on_surfaces(const StateView& state, const BallMotion& bal
   mark(1);
   pressed_area_ = {};
   const double reach = std::max(ball.radius, std::min(farthest_touched(state, ball), kDeepest * ball.radius));
-  surface_.near(state.position, ball.centre, reach,
+  surface_.near(state.position, Box(ball.centre).grown(reach),
                 [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
-                  if (may_touch(corners, ball.centre, reach)) press(triangle, corners, ball);
+                  if (may_touch(corners, ball.centre, reach)) dent(triangle, corners, ball);
                 });
   mark(0);
   const double a = std::sqrt(norm(pressed_area_) / kPi);
@@ -112,7 +115,7 @@ void BallContact::find_on_surfaces(const StateView& state, const BallMotion& bal
           {.axis = pressed.volume / volume,
            .point = vertex,
            .dent = volume / pressed.area,
-           .foundation = Foundation(organ, k, ball.elapsed)},
+           .foundation = Foundation(organ, k, ball.step.elapsed)},
           carriers, follows.of(state.position), contacts);
     }
     pressed = {};
@@ -121,7 +124,7 @@ void BallContact::find_on_surfaces(const StateView& state, const BallMotion& bal
 }
 
 /// Adds a triangle's part under the ball to its corners.
-void BallContact::press(const surface::NearSurface::Triangle& triangle, const Vec3* corners, const BallMotion& ball) {
+void BallContact::dent(const surface::NearSurface::Triangle& triangle, const Vec3* corners, const BallMotion& ball) {
   const Vec3 across = cross(corners[1] - corners[0], corners[2] - corners[0]);
   const double size = norm(across), squared = ball.radius * ball.radius;
   if (!(size > 0)) return;
@@ -182,31 +185,28 @@ void BallContact::find_on_spheres(const StateView& state, const BallMotion& ball
 /// damping.
 void BallContact::add(const StateView& state, const BallMotion& ball, PointContact contact, Carriers carriers,
                       Vec3 place, PointContacts& contacts) const {
-  const Vec3 velocity = weighted(carriers, state.velocity), normal = contact.axis;
-  const auto across = [&](Vec3 v) { return v - dot(v, normal) * normal; };
-  const std::ptrdiff_t before = state.find_touched(contact.point);
-  contact.only_pushes = contact.is_tool = true;
-  contact.found = place - ball.centre;
-  contact.kelvin_dent = before < 0 ? 0 : state.kelvin_dent[std::size_t(before)];
-  contact.k = contact.foundation.k;
-  const double pressure = std::max(0.0, contact.foundation.force(contact.dent, contact.kelvin_dent));
-  contact.force = pressure * normal;
-  // However far the hand jumps, the approach leads to the dent, or out of contact, in one step.
-  const Vec3 start = ball.from_velocity ? velocity - ball.velocity : -ball.velocity;
-  const double leaving = std::clamp(dot(start, normal), -contact.dent / ball.h, ball.radius / ball.h);
-  // Nor does the slip pass the ball in one step; a device's jump by 1e300 m must not overflow.
-  const double fastest = ball.radius / ball.h;
-  const auto bounded = [&](double x) { return std::clamp(x, -fastest, fastest); };
-  const Vec3 slip = across(start);
-  contact.start = Vec3{bounded(slip.x), bounded(slip.y), bounded(slip.z)} + leaving * normal;
-  contact.grip_k = model_.contact_friction > 0 ? contact.k : 0.0;
-  contact.grip_c = 2 * std::sqrt(contact.grip_k / contacts.mobility(carriers));  // critical
-  contact.most_grip = model_.contact_friction * pressure;
-  contact.anchor = before < 0 ? contact.found : state.grip[std::size_t(before)];
-  contact.gripped = across(contact.found - contact.anchor);
-  // Over one step the point is expected to go on with its velocity.
-  contact.slip_guess = ball.from_velocity ? Vec3{} : across(velocity);
+  const Vec3 velocity = weighted(carriers, state.velocity);
+  const bool moves = ball.step.from_velocity;
+  // Over one step, the point is expected to go on with its velocity. However far the hand jumps, the approach leads to
+  // the dent, or out of contact, in one step, and the slip does not pass the ball.
+  const Approach approach{.place = place - ball.centre,
+                          .start = moves ? velocity - ball.velocity : -ball.velocity,
+                          .slip_guess = moves ? Vec3{} : velocity,
+                          .nearer = contact.dent,
+                          .farther = ball.radius};
+  contact.is_tool = true;
+  press(state, model_.contact_friction, contacts.mobility(carriers), approach, ball.step, contact);
   contacts.add(contact, carriers);
+}
+
+std::int32_t BallContact::organ_of(const PointContact& contact) const {
+  const auto vertices = std::int32_t(surface_.vertex_count());
+  if (contact.point < vertices) return organ_of_[std::size_t(contact.point)];
+  const std::int32_t sphere = contact.point - vertices;
+  for (std::size_t i = 0; i < model_.organs.size(); ++i)
+    if (sphere >= model_.organs[i].first && sphere < model_.organs[i].first + model_.organs[i].count)
+      return std::int32_t(i);
+  return -1;
 }
 
 Vec3 BallContact::rest_of(const PointContact& contact) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/contact/point_contact.h"
+#include "core/contact/pressed_point.h"
 #include "core/elements/kernels/kernels.h"
 #include "core/model/model.h"
 #include "core/model/state_view.h"
@@ -15,12 +16,10 @@ namespace ctpm::contact {
 
 /// A ball in one step.
 struct BallMotion {
-  Vec3 centre;         ///< at detection [m]
-  Vec3 velocity;       ///< [m/s]
-  double radius;       ///< [m]
-  double h;            ///< length of the step [s]
-  double elapsed;      ///< from the start of the substep to the end of this step [s]
-  bool from_velocity;  ///< whether the solve starts from StateView::velocity; else from rest
+  Vec3 centre;    ///< at detection [m]
+  Vec3 velocity;  ///< [m/s]
+  double radius;  ///< [m]
+  PressStep step;
 };
 
 /// Contact of a rigid ball with the surfaces of organs: no part of a surface is inside the ball. Where the surface that
@@ -33,9 +32,7 @@ struct BallMotion {
 /// Organs without a surface (rigs) are touched at their spheres, with Model::contact_k each, and damped as Hunt &
 /// Crossley say (contact_damping).
 ///
-/// Friction: each point is held by a spring at a place on the ball, up to the friction cone; beyond it the place slides
-/// (Cundall & Strack, "A discrete numerical model for granular assemblies", Geotechnique 29, 1979). A contact at rest
-/// therefore stays where it is.
+/// Friction holds each point at a place on the ball, up to the friction cone (pressed_point.h).
 class BallContact {
  public:
   BallContact(const Model& model, const elements::Kernels& kernels);
@@ -54,6 +51,9 @@ class BallContact {
   /// Where the tissue was at rest that a contact touches [m].
   Vec3 rest_of(const PointContact& contact) const;
 
+  /// The organ that a contact touches, in Model::organs; -1: none.
+  std::int32_t organ_of(const PointContact& contact) const;
+
  private:
   /// What presses on one vertex of a surface.
   struct Pressed {
@@ -62,7 +62,7 @@ class BallContact {
   };
 
   double farthest_touched(const StateView& state, const BallMotion& ball) const;
-  void press(const surface::NearSurface::Triangle& triangle, const Vec3* corners, const BallMotion& ball);
+  void dent(const surface::NearSurface::Triangle& triangle, const Vec3* corners, const BallMotion& ball);
   void find_on_surfaces(const StateView& state, const BallMotion& ball, PointContacts& contacts);
   void find_on_spheres(const StateView& state, const BallMotion& ball, PointContacts& contacts);
   void add(const StateView& state, const BallMotion& ball, PointContact contact, Carriers carriers, Vec3 place,

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/model/result.h"
+#include "core/surface/rigid_motion.h"
 
 namespace ctpm::contact {
 
@@ -20,12 +21,20 @@ std::pair<std::size_t, std::size_t> of_cuts(const Model& model, const BladeForce
 
 Contacts::Contacts(const Model& model, const elements::Kernels& kernels)
     : model_(model),
+      bodies_(bodies_of(model)),
       ball_(model, kernels),
+      body_contact_(model, bodies_),
+      obstacles_(model, bodies_),
       blade_(model),
       cut_faces_(model),
-      points_(model, ball_.capacity().first + of_cuts(model, blade_, cut_faces_).first,
-              ball_.capacity().second + of_cuts(model, blade_, cut_faces_).second),
-      explicit_solve_(model, model.solver.integrator == Integrator::leapfrog ? points_.capacity() : 0) {}
+      points_(model, pressed_capacity().first + of_cuts(model, blade_, cut_faces_).first,
+              pressed_capacity().second + of_cuts(model, blade_, cut_faces_).second),
+      explicit_solve_(model, points_) {
+  for (const OrganRange& organ : model.organs) {
+    const auto first = model.held_axes.begin() + organ.first;
+    is_free_.push_back(std::all_of(first, first + organ.count, [](std::uint8_t axes) { return axes == 0; }));
+  }
+}
 
 Pin Contacts::pin(const HeldTool& tool, const Vec3Array& position, double share, double h) {
   if (!tool.is(ToolKind::pin)) return {};
@@ -35,11 +44,11 @@ Pin Contacts::pin(const HeldTool& tool, const Vec3Array& position, double share,
 
 void Contacts::find(const StateView& state, const HeldTool& tool, const ContactStep& step, bool from_velocity) {
   points_.clear();
+  const PressStep press{step.h, step.elapsed, step.ahead, from_velocity};
   if (tool.is(ToolKind::ball))
-    ball_.find(state,
-               {tool.at(step.share), (tool.to - tool.from) / model_.tick, tool.tool->radius, step.h, step.elapsed,
-                from_velocity},
-               points_);
+    ball_.find(state, {tool.at(step.share), (tool.to - tool.from) / model_.tick, tool.tool->radius, press}, points_);
+  body_contact_.find(state, press, points_);
+  obstacles_.find(state, press, points_);
   if (tool.is(ToolKind::scalpel) && blade_.any()) {
     CTPM_CHECK(tool.front != nullptr, "the front of a cut is known before the blade's contacts are detected");
     blade_.find(state, *tool.tool, *tool.front, tool.edge_at(step.share), step.h, from_velocity, points_);
@@ -74,17 +83,31 @@ std::int32_t ContactSet::touched() const { return step_.pin.is_held() ? 1 : cont
 double ContactSet::depth(const Vec3Array& position) const {
   const Pin& pin = step_.pin;
   if (pin.is_held()) return norm(position[pin.index()] - contacts_->model_.rest_position[pin.index()]);
+  const BallContact& ball = contacts_->ball_;
   double depth = 0;
-  for (const PointContact& c : contacts_->points_.all())
-    if (c.point >= 0)
-      depth = std::max(
-          depth, contacts_->ball_.dent_of(c) +
-                     dot(c.axis, weighted(contacts_->points_.carriers(c), position) - contacts_->ball_.rest_of(c)));
+  surface::RigidMotion motion;
+  std::int32_t moved = -1;  // organ that `motion` is of
+  for (const PointContact& c : contacts_->points_.all()) {
+    if (c.point < 0 || !c.is_tool) continue;
+    Vec3 rest = ball.rest_of(c);
+    if (const std::int32_t organ = ball.organ_of(c); organ >= 0 && contacts_->is_free_[std::size_t(organ)]) {
+      if (organ != moved)
+        motion = surface::rigid_motion(contacts_->model_, contacts_->model_.organs[std::size_t(organ)], position);
+      moved = organ, rest = motion(rest);
+    }
+    depth = std::max(depth, ball.dent_of(c) + dot(c.axis, weighted(contacts_->points_.carriers(c), position) - rest));
+  }
   return depth;
 }
 
+/// Contacts of all pressed points, and entries of their carriers.
+std::pair<std::size_t, std::size_t> Contacts::pressed_capacity() const {
+  const auto ball = ball_.capacity(), bodies = body_contact_.capacity(), obstacles = obstacles_.capacity();
+  return {ball.first + bodies.first + obstacles.first, ball.second + bodies.second + obstacles.second};
+}
+
 void Contacts::reserve(Touched& touched) const {
-  const std::size_t count = ball_.capacity().first;
+  const std::size_t count = pressed_capacity().first;
   touched.point.reserve(count), touched.kelvin_dent.reserve(count);
   for (auto* axis : {&touched.grip.x, &touched.grip.y, &touched.grip.z}) axis->reserve(count);
 }
@@ -94,13 +117,13 @@ void ContactSet::note_touched(Vec3 centre, const Vec3Array& position, Touched& t
   contacts_->reserve(touched);
   for (const PointContact& c : contacts_->points_.all()) {
     if (c.point < 0) continue;
-    const Vec3 place = weighted(contacts_->points_.carriers(c), position), on_ball = place - centre,
-               from_anchor = on_ball - c.anchor;
+    const Vec3 carried = weighted(contacts_->points_.carriers(c), position),
+               place = c.is_tool ? carried - centre : carried, from_anchor = place - c.anchor;
     const Vec3 elongation = from_anchor - dot(from_anchor, c.axis) * c.axis;
     const double held = c.grip_k > 0 ? share_of_grip(c, elongation, {}) : 0.0;
-    const double dent = std::max(0.0, c.dent - dot(c.axis, on_ball - c.found));
+    const double dent = std::max(0.0, c.dent - dot(c.axis, place - c.found));
     touched.point.push_back(c.point);
-    touched.grip.push_back(on_ball - held * elongation);
+    touched.grip.push_back(c.is_tool ? place - held * elongation : held * elongation);
     touched.kelvin_dent.push_back(c.foundation.kelvin_after(dent, c.kelvin_dent));
   }
 }

@@ -6,9 +6,11 @@
 
 #include "core/contact/ball_contact.h"
 #include "core/contact/blade_force.h"
+#include "core/contact/body_contact.h"
 #include "core/contact/cut_face_contact.h"
 #include "core/contact/explicit_solve.h"
 #include "core/contact/held_tool.h"
+#include "core/contact/obstacle_contact.h"
 #include "core/contact/pin.h"
 #include "core/contact/point_contact.h"
 #include "core/elements/axial.h"
@@ -26,11 +28,12 @@ class ImplicitContacts;
 struct ContactStep {
   double h;        ///< length [s]
   double elapsed;  ///< from the start of the substep to the end of this step [s]
+  double ahead;    ///< from the start of the substep to the positions at detection [s]
   double share;    ///< part of the tick's tool motion that is done at detection, 0 to 1
   Pin pin;         ///< of this step
 };
 
-/// What State remembers of a ball's contacts: State::touched, grip and kelvin_dent.
+/// What State remembers of what is touched: State::touched, grip and kelvin_dent.
 struct Touched {
   std::vector<std::int32_t> point;
   Vec3Array grip;                   ///< [m]
@@ -43,10 +46,10 @@ enum class Linearisation {
   velocity,  ///< spheres that move with StateView::velocity
 };
 
-/// All contacts of a Model: of a ball, a blade and a pin, and between the two faces of a cut. Its capacity is fixed at
-/// construction, so that a tick never allocates. Detection returns a set; the type of the set says what a step may do
-/// with its contacts. A Contacts serves one set at a time: a second detection before the first set is destroyed is a
-/// bug and aborts.
+/// All contacts of a Model: of a ball, a blade and a pin, between tissue and obstacles, and between tissue. Its
+/// capacity is fixed at construction, so that a tick never allocates. Detection returns a set; the type of the set says
+/// what a step may do with its contacts. A Contacts serves one set at a time: a second detection before the first set
+/// is destroyed is a bug and aborts.
 class Contacts {
  public:
   /// `model` must outlive the Contacts.
@@ -55,7 +58,7 @@ class Contacts {
   /// The pin's contact in a step of `h` [s] from `position` [m] to the hand at `share` of the tick.
   static Pin pin(const HeldTool& tool, const Vec3Array& position, double share, double h);
 
-  /// Reserves memory for all that a ball can touch, so that a tick never allocates.
+  /// Reserves memory for all that can be touched, so that a tick never allocates.
   void reserve(Touched& touched) const;
 
   /// Detects the contacts of an explicit step in its middle, and changes the `velocity` [m/s] that spheres have after
@@ -73,16 +76,21 @@ class Contacts {
   friend class ImplicitContacts;
   friend class LinearisedContacts;
 
+  std::pair<std::size_t, std::size_t> pressed_capacity() const;
   void find(const StateView& state, const HeldTool& tool, const ContactStep& step, bool from_velocity);
 
   const Model& model_;
+  std::vector<Body> bodies_;
   BallContact ball_;
+  BodyContact body_contact_;
+  ObstacleContact obstacles_;
   BladeForce blade_;
   CutFaceContact cut_faces_;
   PointContacts points_;
   ExplicitSolve explicit_solve_;
-  bool is_locked_ = false;      ///< a set exists
-  bool is_linearised_ = false;  ///< the set is in a linear system
+  std::vector<std::uint8_t> is_free_;  ///< nothing holds the organ (organ_count)
+  bool is_locked_ = false;             ///< a set exists
+  bool is_linearised_ = false;         ///< the set is in a linear system
 };
 
 /// The contacts of one step, until it is destroyed. Move-only.
@@ -94,11 +102,12 @@ class ContactSet {
   std::int32_t touched() const;
 
   /// Largest displacement from rest [m], at `position`, of a point that a ball touches, along its contact; for a pin,
-  /// that of its sphere. 0 without contact and for a blade.
+  /// that of its sphere. 0 without contact and for a blade. Where nothing holds an organ, its motion as a whole does
+  /// not count.
   double depth(const Vec3Array& position) const;
 
-  /// Notes what a ball with its centre at `centre` [m] touches, with the spheres at `position` [m] at the end of the
-  /// substep.
+  /// Notes what is touched, with the spheres at `position` [m] and the centre of a ball at `centre` [m] at the end of
+  /// the substep.
   void note_touched(Vec3 centre, const Vec3Array& position, Touched& touched) const;
 
  protected:

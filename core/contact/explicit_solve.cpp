@@ -16,10 +16,10 @@ Vec3 times(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
 }  // namespace
 
-ExplicitSolve::ExplicitSolve(const Model& model, std::size_t contacts) : model_(model) {
-  if (contacts == 0) return;
+ExplicitSolve::ExplicitSolve(const Model& model, const PointContacts& contacts) : model_(model) {
+  if (model.solver.integrator != Integrator::leapfrog || contacts.capacity() == 0) return;
   const std::size_t n = model.sphere_count();
-  linear_.reserve(contacts);
+  linear_.reserve(contacts.capacity()), place_.resize(contacts.sphere_.capacity());
   index_.assign(n, -1);
   touched_.reserve(n);
   for (auto* array : {&free_, &diagonal_, &residual_, &change_, &direction_, &product_}) array->resize(n);
@@ -29,22 +29,33 @@ ExplicitSolve::ExplicitSolve(const Model& model, std::size_t contacts) : model_(
 void ExplicitSolve::gather(const Pin& pin, const PointContacts& contacts) {
   touched_.clear();
   for (const PointContact& contact : contacts.all())
-    for (const std::int32_t sphere : contacts.carriers(contact).sphere) {
+    for (auto e = std::size_t(contact.first); e < std::size_t(contact.first + contact.count); ++e) {
+      const std::int32_t sphere = contacts.sphere_[e];
       const auto i = std::size_t(sphere);
-      if (index_[i] >= 0) continue;
+      if (index_[i] >= 0) {
+        place_[e] = index_[i];
+        continue;
+      }
       const std::size_t place = touched_.size();
-      index_[i] = std::int32_t(place);
+      place_[e] = index_[i] = std::int32_t(place);
       touched_.push_back(sphere);
       const std::uint8_t held = pin.held_axes(model_, i);
       free_[place] = {held & 1 ? 0.0 : 1.0, held & 2 ? 0.0 : 1.0, held & 4 ? 0.0 : 1.0};
     }
 }
 
-Vec3 ExplicitSolve::change_at(Carriers at, const std::vector<Vec3>& values) const {
+/// Sum of weight times value over a contact's spheres; `values`: of the touched spheres.
+Vec3 ExplicitSolve::change_at(const PointContact& contact, Carriers at, const std::vector<Vec3>& values) const {
+  const std::int32_t* place = &place_[std::size_t(contact.first)];
   Vec3 sum;
-  for (std::size_t i = 0; i < at.sphere.size(); ++i)
-    sum += at.weight[i] * values[std::size_t(index_[std::size_t(at.sphere[i])])];
+  for (std::size_t i = 0; i < at.weight.size(); ++i) sum += at.weight[i] * values[std::size_t(place[i])];
   return sum;
+}
+
+/// Adds weight times `value` to those of a contact's spheres.
+void ExplicitSolve::spread(const PointContact& contact, Carriers at, Vec3 value, std::vector<Vec3>& values) const {
+  const std::int32_t* place = &place_[std::size_t(contact.first)];
+  for (std::size_t i = 0; i < at.weight.size(); ++i) values[std::size_t(place[i])] += at.weight[i] * value;
 }
 
 /// `change`: of the point's velocity by the contacts, as far as it is known, from which friction follows.
@@ -82,7 +93,7 @@ void ExplicitSolve::assemble(double h, const PointContacts& contacts) {
     const Vec3 block{more * c.axis.x * c.axis.x + isotropic, more * c.axis.y * c.axis.y + isotropic,
                      more * c.axis.z * c.axis.z + isotropic};
     for (std::size_t e = 0; e < at.sphere.size(); ++e) {
-      const auto p = std::size_t(index_[std::size_t(at.sphere[e])]);
+      const auto p = std::size_t(place_[std::size_t(c.first) + e]);
       residual_[p] += h * at.weight[e] * linear.force;
       diagonal_[p] += at.weight[e] * at.weight[e] * block;
     }
@@ -97,10 +108,9 @@ void ExplicitSolve::multiply(double h, const PointContacts& contacts) {
     const PointContact& c = contacts.all()[i];
     const Linear& linear = linear_[i];
     const Carriers at = contacts.carriers(c);
-    const Vec3 u = change_at(at, direction_);
+    const Vec3 u = change_at(c, at, direction_);
     const Vec3 q = h * ((linear.along - linear.across) * dot(c.axis, u) * c.axis + linear.across * u);
-    for (std::size_t e = 0; e < at.sphere.size(); ++e)
-      product_[std::size_t(index_[std::size_t(at.sphere[e])])] += at.weight[e] * q;
+    spread(c, at, q, product_);
   }
   for (std::size_t p = 0; p < touched_.size(); ++p) product_[p] = times(product_[p], free_[p]);
 }
@@ -147,7 +157,7 @@ Vec3 ExplicitSolve::solve(double h, const Pin& pin, const Vec3Array& before, Vec
     linear_.clear();
     for (const PointContact& c : contacts.all()) {
       const Carriers at = contacts.carriers(c);
-      linear_.push_back(linearise(c, at, h, before, velocity, change_at(at, change_), contacts.mobility(at)));
+      linear_.push_back(linearise(c, at, h, before, velocity, change_at(c, at, change_), contacts.mobility(at)));
     }
     assemble(h, contacts);
     run_conjugate_gradients(h, contacts);
@@ -157,14 +167,13 @@ Vec3 ExplicitSolve::solve(double h, const Pin& pin, const Vec3Array& before, Vec
     bool grips = false;
     for (std::size_t i = 0; i < contacts.count(); ++i) {
       PointContact& c = contacts.contacts_[i];
-      const Vec3 u = change_at(contacts.carriers(c), change_);
+      const Vec3 u = change_at(c, contacts.carriers(c), change_);
       const Vec3 acting =
           linear_[i].force - (linear_[i].along - linear_[i].across) * dot(c.axis, u) * c.axis - linear_[i].across * u;
       if (c.only_pushes && dot(c.axis, acting) < 0 && round < kMostRounds) continue;
       if (c.is_tool) on_tool -= acting;
       const Carriers at = contacts.carriers(c);
-      for (std::size_t e = 0; e < at.sphere.size(); ++e)
-        product_[std::size_t(index_[std::size_t(at.sphere[e])])] += at.weight[e] * acting;
+      spread(c, at, acting, product_);
       grips = grips || c.grip_k > 0;
       contacts.contacts_[next++] = c;
     }

@@ -13,8 +13,9 @@ namespace ctpm::contact {
 /// touched spheres only. Contacts may therefore be much stiffer than the elements.
 class ExplicitSolve {
  public:
-  /// Reserves memory for so many contacts, so that a tick never allocates; 0: it is never used.
-  ExplicitSolve(const Model& model, std::size_t contacts);
+  /// Reserves memory for as many contacts as `contacts` has room for, if leapfrog steps the Model, so that a tick never
+  /// allocates.
+  ExplicitSolve(const Model& model, const PointContacts& contacts);
 
   /// Adds the contacts, found in the middle of a step of `h` [s], to the `velocity` [m/s] that the step reached without
   /// them. Those that would pull are dropped. `before`: velocity [m/s] at the start. Spheres keep their velocity along
@@ -36,11 +37,13 @@ class ExplicitSolve {
   void assemble(double h, const PointContacts& contacts);
   void multiply(double h, const PointContacts& contacts);
   void run_conjugate_gradients(double h, const PointContacts& contacts);
-  Vec3 change_at(Carriers at, const std::vector<Vec3>& values) const;
+  Vec3 change_at(const PointContact& contact, Carriers at, const std::vector<Vec3>& values) const;
+  void spread(const PointContact& contact, Carriers at, Vec3 value, std::vector<Vec3>& values) const;
 
   const Model& model_;
   std::vector<std::int32_t> index_;    ///< place of a sphere among the touched ones; -1: untouched (sphere_count)
   std::vector<std::int32_t> touched_;  ///< spheres
+  std::vector<std::int32_t> place_;    ///< index_ of each entry of the contacts' carriers
   std::vector<Vec3> free_;             ///< 1 along axes that may move, else 0  (touched_count, like all below)
   std::vector<Vec3> diagonal_;         ///< of the matrix [kg]
   std::vector<Vec3> residual_, change_, direction_, product_;

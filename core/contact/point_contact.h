@@ -23,15 +23,16 @@ struct PointContact {
   double drag = 0;           ///< decrease of the force across the axis per velocity across it [N s/m], >= 0
   bool only_pushes = false;  ///< is dropped when it would pull the point against the axis
   bool is_tool = false;      ///< a tool bears the opposite force
-  // Of a ball, which also grips the points that it touches.
-  std::int32_t point = -1;  ///< number of the point in State::touched; -1: not a ball's contact
-  Vec3 start{};             ///< velocity of the point relative to the ball at the start of the solve [m/s]
+  // Of a point that something presses: a ball, an obstacle or other tissue. It also grips the point. Places and
+  // velocities are relative to what presses: for a ball to its centre, for an obstacle to the world.
+  std::int32_t point = -1;  ///< number of the point in State::touched; -1: not a pressed point
+  Vec3 start{};             ///< velocity of the point at the start of the solve [m/s]
   double grip_k = 0;        ///< stiffness of the grip across the axis [N/m]
   double grip_c = 0;        ///< damping of the grip [N s/m]
   double most_grip = 0;     ///< friction cone: coefficient times pressure [N]
-  Vec3 anchor{};            ///< where on the ball the point is held, from the ball's centre [m]
+  Vec3 anchor{};            ///< where the point is held [m]
   Vec3 gripped{};           ///< elongation of the grip at the start of the solve, across the axis [m]
-  Vec3 found{};             ///< place of the point at detection, from the ball's centre [m]
+  Vec3 found{};             ///< place of the point at detection [m]
   double dent = 0;          ///< depth of the dent at detection [m]
   double kelvin_dent = 0;   ///< the Kelvin unit's part of it at the start of the substep [m]
   Foundation foundation{};  ///< of the dent, over the substep

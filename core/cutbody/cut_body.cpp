@@ -28,19 +28,20 @@ std::int32_t hops_between(CutGrid::Node p, CutGrid::Node q) {
 }  // namespace
 
 CutBody::CutBody(const Model& model, std::size_t organ)
-    : model_(model),
-      organ_(model.organs[organ]),
-      grid_(model, organ),
-      whole_(model.surfaces[organ]),
-      cut_box_{grid_.extent(), {-1, -1, -1}},
-      visited_(std::size_t(grid_.count()), 0) {
+    : model_(model), organ_(model.organs[organ]), index_(organ), whole_(model.surfaces[organ]) {
   rebuild();
 }
 
 bool CutBody::update(const State& state) {
-  if (!grid_.update(state)) return false;
-  const CutGrid::NodeBox changed = grid_.take_changed();
-  if (!grid_.anything_cut()) cut_box_ = {grid_.extent(), {-1, -1, -1}};
+  if (!grid_) {
+    if (cutting::swept_rows(state) == 0) return false;
+    grid_.emplace(model_, index_);
+    cut_box_ = {grid_->extent(), {-1, -1, -1}};
+    visited_.assign(std::size_t(grid_->count()), 0);
+  }
+  if (!grid_->update(state)) return false;
+  const CutGrid::NodeBox changed = grid_->take_changed();
+  if (!grid_->anything_cut()) cut_box_ = {grid_->extent(), {-1, -1, -1}};
   for (std::size_t a = 0; a < 3; ++a)
     cut_box_.low[a] = std::min(cut_box_.low[a], changed.low[a]),
     cut_box_.high[a] = std::max(cut_box_.high[a], changed.high[a]);
@@ -51,7 +52,7 @@ bool CutBody::update(const State& state) {
 
 /// Whether what a node sees may depend on crossings within a box.
 bool CutBody::is_near(CutGrid::NodeBox box, Index node) const {
-  const CutGrid::Node n = grid_.node(node);
+  const CutGrid::Node n = grid_->node(node);
   for (std::size_t a = 0; a < 3; ++a)
     if (n[a] < box.low[a] - kMostHops || n[a] > box.high[a] + kMostHops) return false;
   return true;
@@ -65,13 +66,13 @@ void CutBody::forget_near(CutGrid::NodeBox box) {
 
 /// Spheres around a node far from any cut, ascending.
 std::vector<CutBody::Index> CutBody::spheres_near(Index node) const {
-  const CutGrid::Node n = grid_.node(node), e = grid_.extent();
+  const CutGrid::Node n = grid_->node(node), e = grid_->extent();
   std::vector<Index> spheres;
   const auto from = [&](std::size_t a) { return std::max(0, n[a] - kMostHops); };
   const auto to = [&](std::size_t a) { return std::min(e[a] - 1, n[a] + kMostHops); };
   for (Index k = from(2); k <= to(2); ++k)
     for (Index j = from(1); j <= to(1); ++j) {
-      const std::span<const Index> row = grid_.spheres_in_row(grid_.at({from(0), j, k}), grid_.at({to(0), j, k}));
+      const std::span<const Index> row = grid_->spheres_in_row(grid_->at({from(0), j, k}), grid_->at({to(0), j, k}));
       spheres.insert(spheres.end(), row.begin(), row.end());
     }
   std::sort(spheres.begin(), spheres.end());
@@ -84,23 +85,23 @@ const std::vector<CutBody::Index>& CutBody::seen_from(Index node) {
   std::vector<Index>& seen = found->second;
   if (!is_new) return seen;
   ++call_;
-  const CutGrid::Node home = grid_.node(node);
+  const CutGrid::Node home = grid_->node(node);
   queue_.assign(1, {node, 0}), visited_[std::size_t(node)] = call_;
   for (std::size_t next = 0; next < queue_.size(); ++next) {
     const auto [at, hops] = queue_[next];
-    const CutGrid::Node here = grid_.node(at);
+    const CutGrid::Node here = grid_->node(at);
     if (hops <= hops_between(home, here) + kDetour)
-      for (const Index sphere : grid_.spheres_at(at)) seen.push_back(sphere);
+      for (const Index sphere : grid_->spheres_at(at)) seen.push_back(sphere);
     if (hops == kMostHops) continue;
     const auto go = [&](Index to) {
-      if (visited_[std::size_t(to)] == call_ || !grid_.in_tissue(to)) return;
+      if (visited_[std::size_t(to)] == call_ || !grid_->in_tissue(to)) return;
       visited_[std::size_t(to)] = call_, queue_.emplace_back(to, hops + 1);
     };
     for (int d = 1; d < CutGrid::kDirections; ++d) {
       const CutGrid::Node up{here[0] + (d & 1), here[1] + (d >> 1 & 1), here[2] + (d >> 2)},
           down{here[0] - (d & 1), here[1] - (d >> 1 & 1), here[2] - (d >> 2)};
-      if (grid_.contains(up) && !grid_.is_parted(at, d)) go(grid_.at(up));
-      if (grid_.contains(down) && !grid_.is_parted(grid_.at(down), d)) go(grid_.at(down));
+      if (grid_->contains(up) && !grid_->is_parted(at, d)) go(grid_->at(up));
+      if (grid_->contains(down) && !grid_->is_parted(grid_->at(down), d)) go(grid_->at(down));
     }
   }
   std::sort(seen.begin(), seen.end());
@@ -155,13 +156,13 @@ CutBody::Binding CutBody::bind(Vec3 rest, Index side) {
 }
 
 void CutBody::rebuild() {
-  is_cut_ = grid_.anything_cut();
+  is_cut_ = grid_ && grid_->anything_cut();
   if (!is_cut_) {
     surface_ = whole_, bound_.clear(), seen_.clear();
     outer_triangles_ = whole_.triangle.size(), outer_vertices_ = whole_.vertex.size();
     return;
   }
-  CutMesh mesh = make_mesh(grid_);
+  CutMesh mesh = make_mesh(*grid_);
   // Vertices of the walls that also belong to the outer surface are doubled.
   std::vector<std::uint8_t> is_outer(mesh.vertex.size(), 0);
   for (std::size_t t = 0; t < mesh.outer_triangles; ++t)

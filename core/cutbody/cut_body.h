@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -34,7 +35,8 @@ class CutBody {
   std::size_t outer_triangle_count() const { return outer_triangles_; }
   std::size_t outer_vertex_count() const { return outer_vertices_; }
   bool is_cut() const { return is_cut_; }
-  const CutGrid& grid() const { return grid_; }
+  /// Pieces of tissue that the cuts leave; 1 until something is cut.
+  std::int32_t piece_count() const { return is_cut_ ? count_pieces(*grid_) : 1; }
 
  private:
   using Index = CutGrid::Index;
@@ -59,7 +61,8 @@ class CutBody {
 
   const Model& model_;
   const OrganRange& organ_;
-  CutGrid grid_;
+  const std::size_t index_;
+  std::optional<CutGrid> grid_;  ///< made when something is cut
   Surface whole_, surface_;
   std::size_t outer_triangles_ = 0, outer_vertices_ = 0;
   bool is_cut_ = false;

@@ -9,8 +9,8 @@
 namespace ctpm::cutbody {
 namespace {
 
-/// Crossings stay this far from an edge's ends, so that no triangle is a sliver.
-constexpr double kFromEnd = 0.06;
+/// Crossings of the cut and of the organ's surface stay this far from an edge's ends, so that no two vertices coincide.
+constexpr float kFromEnd = 0.03f, kOuterFromEnd = 0.002f;
 
 /// Where the edge p-q crosses a triangle, from 0 at p to 1 at q; negative: nowhere. A node in the triangle's plane
 /// counts as above it, so that no node is parted from both sides. Edges that touch the triangle's rim are crossed.
@@ -26,9 +26,10 @@ double crossing_of(Vec3 p, Vec3 q, Vec3 a, Vec3 b, Vec3 c) {
 
 }  // namespace
 
-CutGrid::CutGrid(const Model& model, std::size_t organ) : organ_(std::int32_t(organ)) {
+CutGrid::CutGrid(const Model& model, std::size_t organ)
+    : model_(model), organ_(std::int32_t(organ)), map_(model), depth_(model, map_) {
   find_frame(model, model.organs[organ]);
-  find_surface(model, organ);
+  find_surface();
   place_spheres(model, model.organs[organ]);
   box_ = {extent_, {-1, -1, -1}};
 }
@@ -56,13 +57,12 @@ Vec3 CutGrid::rest(Index i) const {
 }
 
 /// Which nodes are in tissue, and where edges leave it.
-void CutGrid::find_surface(const Model& model, std::size_t organ) {
-  constexpr int kHalvings = 10;
-  const cutting::RestMap map(model);
-  const cutting::TissueDepth depth(model, map);
+void CutGrid::find_surface() {
+  constexpr int kHalvings = 12;
+  const auto organ = std::size_t(organ_);
   const auto nodes = std::size_t(extent_[0]) * std::size_t(extent_[1]) * std::size_t(extent_[2]);
-  in_tissue_.assign(nodes, 0), outer_.assign(nodes * kDirections, 0.0f);
-  for (Index i = 0; i < Index(nodes); ++i) in_tissue_[std::size_t(i)] = depth.at(organ, rest(i)) > 0;
+  in_tissue_.assign(nodes, 0), parted_.assign(nodes, 0);
+  for (Index i = 0; i < Index(nodes); ++i) in_tissue_[std::size_t(i)] = depth_.at(organ, rest(i)) > 0;
   for (Index i = 0; i < Index(nodes); ++i)
     for (int d = 1; d < kDirections; ++d) {
       const Node n = node(i), other{n[0] + (d & 1), n[1] + (d >> 1 & 1), n[2] + (d >> 2)};
@@ -71,11 +71,11 @@ void CutGrid::find_surface(const Model& model, std::size_t organ) {
       double inside = in_tissue(i) ? 0 : 1, outside = 1 - inside;
       for (int h = 0; h < kHalvings; ++h) {
         const double middle = 0.5 * (inside + outside);
-        (depth.at(organ, p + middle * (q - p)) > 0 ? inside : outside) = middle;
+        (depth_.at(organ, p + middle * (q - p)) > 0 ? inside : outside) = middle;
       }
-      outer_[edge(i, d)] = float(std::clamp(0.5 * (inside + outside), kFromEnd, 1 - kFromEnd));
+      outer_[edge(i, d)] = std::clamp(float(0.5 * (inside + outside)), kOuterFromEnd, 1 - kOuterFromEnd);
+      parted_[std::size_t(i)] |= std::uint8_t(1 << d);
     }
-  crossing_ = outer_;
 }
 
 /// The lattice covers the organ: a sphere outside the tissue belongs to the nearest node inside.
@@ -128,21 +128,69 @@ void CutGrid::sever(Vec3 a, Vec3 b, Vec3 c, bool may_move) {
           const Node n{i, j, k}, other{i + (d & 1), j + (d >> 1 & 1), k + (d >> 2)};
           if (!contains(other)) continue;
           const Index p = at(n), q = at(other);
-          if (!in_tissue(p) || !in_tissue(q) || crossing_[edge(p, d)] != 0) continue;
+          if (!in_tissue(p) && !in_tissue(q)) continue;
           const double along = crossing_of(rest(p), rest(q), a, b, c);
           if (along < 0) continue;
-          crossing_[edge(p, d)] = float(std::clamp(along, kFromEnd, 1 - kFromEnd));
-          normal_[edge(p, d)] = cross(b - a, c - a);
-          if (may_move) by_last_.push_back(edge(p, d));
-          anything_cut_ = changed_ = true;
-          for (std::size_t x = 0; x < 3; ++x)
-            box_.low[x] = std::min(box_.low[x], n[x]), box_.high[x] = std::max(box_.high[x], other[x]);
+          sever_edge(p, d, std::clamp(float(along), kFromEnd, 1 - kFromEnd), cross(b - a, c - a), may_move);
         }
+}
+
+void CutGrid::sever_edge(Index node, int direction, float along, Vec3 normal, bool may_move) {
+  const std::size_t e = edge(node, direction);
+  const auto [found, is_new] = cuts_.try_emplace(e, Cut{along, along, normal, normal});
+  Cut& cut = found->second;
+  if (!is_new && along >= cut.low && along <= cut.high) return;
+  if (may_move) by_last_.emplace_back(e, is_new ? std::nullopt : std::optional(cut));
+  if (along < cut.low) cut.low = along, cut.normal_low = normal;
+  if (along > cut.high) cut.high = along, cut.normal_high = normal;
+  parted_[std::size_t(node)] |= std::uint8_t(1 << direction);
+  if (in_tissue(node) && in_tissue(end(node, direction))) anything_cut_ = true;
+  changed_ = true;
+  box_.add(this->node(node)), box_.add(this->node(end(node, direction)));
+}
+
+void CutGrid::take_back_last_row() {
+  for (auto change = by_last_.rbegin(); change != by_last_.rend(); ++change) {
+    const auto& [e, before] = *change;
+    const auto node = Index(e / kDirections);
+    const int direction = int(e % kDirections);
+    if (before)
+      cuts_.at(e) = *before;
+    else
+      cuts_.erase(e);
+    if (!before && !outer_.contains(e)) parted_[std::size_t(node)] &= std::uint8_t(~(1 << direction));
+    changed_ = true;
+    box_.add(this->node(node)), box_.add(this->node(end(node, direction)));
+  }
+  by_last_.clear();
 }
 
 void CutGrid::reset() {
   if (anything_cut_) changed_ = true, box_ = {{0, 0, 0}, extent_};
-  crossing_ = outer_, anything_cut_ = false, rows_ = 0, by_last_.clear(), normal_.clear();
+  for (const auto& [e, cut] : cuts_) parted_[e / kDirections] &= std::uint8_t(~(1 << int(e % kDirections)));
+  cuts_.clear(), by_last_.clear(), anything_cut_ = false, rows_ = 0;
+}
+
+void CutGrid::NodeBox::add(Node n) {
+  for (std::size_t x = 0; x < 3; ++x) low[x] = std::min(low[x], n[x]), high[x] = std::max(high[x], n[x]);
+}
+
+std::optional<CutGrid::Crossing> CutGrid::cut_crossing(Index node, int direction, bool nearest_to_upper) const {
+  const auto found = cuts_.find(edge(node, direction));
+  if (found == cuts_.end()) return std::nullopt;
+  const Cut& cut = found->second;
+  return nearest_to_upper ? Crossing{cut.high, cut.normal_high} : Crossing{cut.low, cut.normal_low};
+}
+
+CutGrid::Crossing CutGrid::outer_crossing(Index node, int direction) const {
+  const double along = outer_.at(edge(node, direction));
+  const Vec3 p = rest(node);
+  const Index triangle = nearest_triangle(p + along * (rest(end(node, direction)) - p));
+  if (triangle < 0) return {along, {}};
+  const Surface& surface = model_.surfaces[std::size_t(organ_)];
+  const auto& t = surface.triangle[std::size_t(triangle)];
+  const Vec3 a = surface.vertex[std::size_t(t[0])];
+  return {along, cross(surface.vertex[std::size_t(t[1])] - a, surface.vertex[std::size_t(t[2])] - a)};
 }
 
 bool CutGrid::update(const State& state) {
@@ -154,8 +202,7 @@ bool CutGrid::update(const State& state) {
   if (is_same) return false;
   if (rows < rows_ || (rows_ > 1 && place(rows_ - 2, 0) != before_)) reset();
   // The last row has moved: what it severed is found again, so that the result depends on `state` alone.
-  for (const std::size_t e : by_last_) crossing_[e] = 0, normal_.erase(e);
-  by_last_.clear();
+  take_back_last_row();
   for (std::size_t row = std::max<std::size_t>(rows_, 2) - 1; row < rows; ++row)
     for (std::size_t node = 0; node + 1 < kEdgeNodes; ++node) {
       const cutting::SweptQuad quad = cutting::swept_quad(state, row, node);

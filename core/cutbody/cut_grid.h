@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "core/cutting/rest_map.h"
@@ -50,14 +52,18 @@ class CutGrid {
     return node + (direction & 1) + extent_[0] * ((direction >> 1 & 1) + extent_[1] * (direction >> 2));
   }
   /// Whether the surface of the organ or of the cut crosses an edge.
-  bool is_parted(Index node, int direction) const { return crossing_[edge(node, direction)] != 0; }
-  /// Where: from 0 at the edge's lower node to 1.
-  double crossing(Index node, int direction) const { return double(crossing_[edge(node, direction)]); }
-  /// Normal of the swept surface where it crosses an edge, of any length; 0 where it does not.
-  Vec3 cut_normal(Index node, int direction) const {
-    const auto found = normal_.find(edge(node, direction));
-    return found == normal_.end() ? Vec3{} : found->second;
-  }
+  bool is_parted(Index node, int direction) const { return (parted_[std::size_t(node)] >> direction & 1) != 0; }
+  struct Crossing {
+    double along;  ///< from 0 at the lower node to 1
+    Vec3 normal;   ///< of any length
+  };
+  /// The triangle of the organ's own surface that is nearest to a place at rest near it; -1: none is near.
+  Index nearest_triangle(Vec3 rest) const { return depth_.nearest_triangle(std::size_t(organ_), rest); }
+  /// Where the organ's own surface crosses an edge that leaves the tissue.
+  Crossing outer_crossing(Index node, int direction) const;
+  /// The crossing of an edge with the swept surface that is nearest to its lower node or to its upper one, for it may
+  /// cross more than once; none if it does not.
+  std::optional<Crossing> cut_crossing(Index node, int direction, bool nearest_to_upper) const;
   bool is_severed(Index node, int direction) const {
     return is_parted(node, direction) && in_tissue(node) && in_tissue(end(node, direction));
   }
@@ -81,29 +87,40 @@ class CutGrid {
   /// Box of the nodes whose edges' crossings changed since the last call of this; empty if low > high.
   struct NodeBox {
     Node low, high;
+    void add(Node n);
   };
   NodeBox take_changed();
 
  private:
   std::size_t edge(Index node, int direction) const { return std::size_t(node) * kDirections + std::size_t(direction); }
   void find_frame(const Model& model, const OrganRange& organ);
-  void find_surface(const Model& model, std::size_t organ);
+  void find_surface();
   void place_spheres(const Model& model, const OrganRange& organ);
+  struct Cut {
+    float low, high;  ///< crossings nearest to the lower and to the upper node
+    Vec3 normal_low, normal_high;
+  };
   void sever(Vec3 a, Vec3 b, Vec3 c, bool may_move);
+  void sever_edge(Index node, int direction, float along, Vec3 normal, bool may_move);
+  void take_back_last_row();
   void reset();
 
+  const Model& model_;
   std::int32_t organ_;
+  cutting::RestMap map_;
+  cutting::TissueDepth depth_;
   double step_ = 0;
   Vec3 origin_, axis_[3];  ///< of node 0 0 0 [m]; unit vectors
   Node extent_{};
   std::vector<std::uint8_t> in_tissue_;
-  std::vector<float> outer_, crossing_;  ///< of the edges: of the organ's surface alone, and of the cut too; 0: none
-  std::unordered_map<std::size_t, Vec3> normal_;  ///< of the cut at the edges that it crosses
+  std::vector<std::uint8_t> parted_;              ///< of each node: a bit for each direction
+  std::unordered_map<std::size_t, float> outer_;  ///< crossings of edges with the organ's surface
+  std::unordered_map<std::size_t, Cut> cuts_;
   std::vector<Index> node_of_sphere_, first_sphere_, sphere_;
-  std::size_t rows_ = 0;              ///< of the swept surface that have been looked at
-  cutting::Front last_{};             ///< the last of them, which may still move [m]
-  Vec3 before_;                       ///< first place of the one before it [m]
-  std::vector<std::size_t> by_last_;  ///< edges that only the last row severs
+  std::size_t rows_ = 0;                                             ///< of the swept surface that have been looked at
+  cutting::Front last_{};                                            ///< the last of them, which may still move [m]
+  Vec3 before_;                                                      ///< first place of the one before it [m]
+  std::vector<std::pair<std::size_t, std::optional<Cut>>> by_last_;  ///< what the last row changed, as it was before
   bool anything_cut_ = false, changed_ = false;
   NodeBox box_{};
 };

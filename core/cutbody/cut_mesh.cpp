@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <unordered_map>
 
 namespace ctpm::cutbody {
@@ -15,16 +16,22 @@ constexpr int kTetrahedra[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0,
 /// Corners of the faces, seen from outside counter-clockwise if the tetrahedron's volume is positive.
 constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
+Vec3 unit(Vec3 v) {
+  const double size = norm(v);
+  return size > 0 ? v / size : Vec3{};
+}
+
 /// Vertices by what they lie on, and which of them are the same.
 class Vertices {
  public:
   explicit Vertices(const CutGrid& grid) : grid_(grid) {}
 
   /// The vertex on the simplex of `count` nodes (ascending; 2: an edge, 3: a face, 4: a tetrahedron) on the side of
-  /// `side`.
-  Index at(const Index* nodes, int count, Index side, Vec3 rest) {
+  /// `side`. `place()` gives its place at rest if it is new.
+  template <class Place>
+  Index at(const Index* nodes, int count, Index side, Place&& place) {
     const auto [found, is_new] = number_.try_emplace(key(nodes, count, side), Index(all_.size()));
-    if (is_new) all_.push_back({rest, side}), root_.push_back(found->second);
+    if (is_new) all_.push_back({place(), side}), root_.push_back(found->second);
     return found->second;
   }
   void join(Index a, Index b) {
@@ -57,12 +64,37 @@ class Vertices {
   std::vector<Index> root_;
 };
 
-/// A point of the surface in a tetrahedron, on the simplex of `count` of the grid's nodes, in ascending order.
+/// A point of the surface in a tetrahedron, on the simplex of `count` of its corners, whose nodes ascend. Each part of
+/// the tissue that meets there has its own place for it: that of the swept surface which is nearest to the part.
 struct Point {
-  Index nodes[4];
+  int corner[4];
   int count;
-  Vec3 rest;
+  bool operator==(const Point& other) const {
+    return count == other.count && std::equal(corner, corner + count, other.corner);
+  }
 };
+
+struct Plane {
+  Vec3 point, normal;
+};
+
+/// The point that lies on planes as well as possible (least squares), and otherwise is near `start`: where two parts of
+/// the swept surface meet, on the line between them (Ju et al., "Dual contouring of Hermite data", 2002).
+Vec3 meeting_point(Vec3 start, const Plane* planes, int count) {
+  constexpr double kStay = 1e-3;
+  double a[3][3] = {{kStay, 0, 0}, {0, kStay, 0}, {0, 0, kStay}};
+  Vec3 b;
+  for (int i = 0; i < count; ++i) {
+    const Vec3 n = unit(planes[i].normal);
+    const double c[3] = {n.x, n.y, n.z};
+    for (int r = 0; r < 3; ++r)
+      for (int k = 0; k < 3; ++k) a[r][k] += c[r] * c[k];
+    b += dot(n, planes[i].point - start) * n;
+  }
+  const Vec3 u{a[0][0], a[1][0], a[2][0]}, v{a[0][1], a[1][1], a[2][1]}, w{a[0][2], a[1][2], a[2][2]};
+  const double volume = dot(u, cross(v, w));
+  return start + Vec3{dot(b, cross(v, w)), dot(u, cross(b, w)), dot(u, cross(v, b))} / volume;
+}
 
 class Mesher {
  public:
@@ -93,14 +125,19 @@ class Mesher {
   bool is_parted(Index cube) const;
   void tetrahedron(Index cube, const int* corners);
   void find_labels();
-  Point on_edge(int a, int b) const;
-  Point on_face(int a, int b, int c) const;
+  template <class... Corners>
+  Point on(Corners... corners) const;
+  Plane crossing(int a, int b) const;
+  Vec3 place(const Point& point, int side) const;
+  Vec3 on_surface(const Plane& surface, const Plane& cut) const;
+  Vec3 place_on_face(const Point& face, int side) const;
+  Vec3 place_within(int side) const;
+  Vec3 kept_within(const Point& simplex, Vec3 from, Vec3 to) const;
   void join_where_the_cut_ends();
   void trace_face(const int* face);
   void close_simply();
   void close_from_the_middle();
-  Vec3 middle() const;
-  Index vertex(const Point& p, int side) { return vertices_.at(p.nodes, p.count, node_[side], p.rest); }
+  Index vertex(const Point& p, int side);
   void push(bool is_outer, Index a, Index b, Index c) { (is_outer ? outer_ : walls_).push_back({a, b, c}); }
   CutMesh collect();
 
@@ -114,7 +151,6 @@ class Mesher {
   int label_[4];  ///< nodes of one label are joined; -1: outside
   bool parted_[4][4];
   int direction_[4][4];  ///< of the edge from the lower node to the other
-  double along_[4][4];   ///< crossing of an edge from the first node to the second
   Segment segments_[12];
   int segment_count_ = 0;
   bool has_middle_ = false;  ///< three parts meet on a face
@@ -137,30 +173,113 @@ void Mesher::find_labels() {
         if (i != j && in_[i] && in_[j] && !parted_[i][j]) label_[i] = label_[j] = std::min(label_[i], label_[j]);
 }
 
-Point Mesher::on_edge(int a, int b) const {
-  if (node_[a] > node_[b]) std::swap(a, b);
-  const Vec3 p = grid_.rest(node_[a]), q = grid_.rest(node_[b]);
-  return {{node_[a], node_[b], 0, 0}, 2, p + along_[a][b] * (q - p)};
+template <class... Corners>
+Point Mesher::on(Corners... corners) const {
+  Point point{{corners...}, int(sizeof...(Corners))};
+  std::sort(point.corner, point.corner + point.count, [&](int p, int q) { return node_[p] < node_[q]; });
+  return point;
 }
 
-/// Where three parts meet on a face: in the middle of the crossings. If one part is outside, on the organ's surface,
-/// which the cut divides as it divides the edge between the other two.
-Point Mesher::on_face(int a, int b, int c) const {
-  int corner[3] = {a, b, c};
-  std::sort(corner, corner + 3, [&](int p, int q) { return node_[p] < node_[q]; });
-  Point face{{node_[corner[0]], node_[corner[1]], node_[corner[2]], 0}, 3, {}};
-  for (int i = 0; i < 3; ++i) {
-    const int outside = corner[i], p = corner[i == 0 ? 1 : 0], q = corner[i == 2 ? 1 : 2];
-    if (in_[outside]) continue;
-    const Vec3 at_p = on_edge(p, outside).rest, at_q = on_edge(q, outside).rest;
-    const Vec3 normal = grid_.cut_normal(node_[p], direction_[p][q]);
-    const double across = dot(normal, at_q - at_p);
-    const double t = across != 0 ? dot(normal, on_edge(p, q).rest - at_p) / across : along_[p][q];
-    face.rest = at_p + std::clamp(t, 0.05, 0.95) * (at_q - at_p);
-    return face;
+/// Where the surface crosses the edge between two corners, nearest to the first of them, which is in tissue. If the
+/// second is outside, that is on the organ's surface, but not beyond a cut that crosses the edge too.
+Plane Mesher::crossing(int a, int b) const {
+  const bool a_is_lower = node_[a] < node_[b];
+  const Index lower = std::min(node_[a], node_[b]), upper = std::max(node_[a], node_[b]);
+  const int direction = a_is_lower ? direction_[a][b] : direction_[b][a];
+  const Vec3 p = grid_.rest(lower), way = grid_.rest(upper) - p;
+  const std::optional<CutGrid::Crossing> cut = grid_.cut_crossing(lower, direction, !a_is_lower);
+  if (in_[b]) return {p + cut->along * way, cut->normal};
+  const CutGrid::Crossing outer = grid_.outer_crossing(lower, direction);
+  const Plane surface{p + outer.along * way, outer.normal};
+  if (!cut || (cut->along < outer.along) != a_is_lower) return surface;
+  return {on_surface(surface, {p + cut->along * way, cut->normal}), surface.normal};
+}
+
+/// From a place on the organ's surface along it to the cut, unless that is far.
+Vec3 Mesher::on_surface(const Plane& surface, const Plane& cut) const {
+  constexpr double kFar = 1.5;  // in steps of the grid
+  const Plane planes[2] = {surface, cut};
+  const Vec3 there = meeting_point(surface.point, planes, 2);
+  return norm(there - surface.point) < kFar * grid_.step() ? there : surface.point;
+}
+
+Index Mesher::vertex(const Point& p, int side) {
+  Index nodes[4]{};
+  for (int i = 0; i < p.count; ++i) nodes[i] = node_[p.corner[i]];
+  return vertices_.at(nodes, p.count, node_[side], [&] { return place(p, side); });
+}
+
+Vec3 Mesher::place(const Point& p, int side) const {
+  if (p.count == 2) return crossing(side, p.corner[p.corner[0] == side ? 1 : 0]).point;
+  return p.count == 3 ? place_on_face(p, side) : place_within(side);
+}
+
+/// Goes from a place in a simplex towards another, as far as that is in it too.
+Vec3 Mesher::kept_within(const Point& simplex, Vec3 from, Vec3 to) const {
+  constexpr double kMargin = 0.02;
+  const auto corner = [&](int i) { return grid_.rest(node_[simplex.corner[i]]); };
+  double most = 1;
+  for (int i = 0; i < simplex.count; ++i) {
+    // Height over the side opposite of a corner.
+    const Vec3 p = corner((i + 1) % simplex.count), q = corner((i + 2) % simplex.count), edge = q - p;
+    Vec3 normal;
+    if (simplex.count == 3)
+      normal = corner(i) - p, normal = normal - dot(normal, edge) / dot(edge, edge) * edge;
+    else
+      normal = cross(edge, corner((i + 3) % 4) - p);
+    const double whole = dot(normal, corner(i) - p), before = dot(normal, from - p) / whole,
+                 after = dot(normal, to - p) / whole;
+    if (after < kMargin && after < before) most = std::min(most, std::max(0.0, (before - kMargin) / (before - after)));
   }
-  for (int i = 0; i < 3; ++i) face.rest += on_edge(corner[i], corner[(i + 1) % 3]).rest / 3.0;
-  return face;
+  return from + most * (to - from);
+}
+
+/// Where three parts meet on a face. If one is outside, on the organ's surface, which the cut divides as it divides the
+/// edge between the other two.
+Vec3 Mesher::place_on_face(const Point& face, int side) const {
+  const int other[2] = {face.corner[face.corner[0] == side ? 1 : 0], face.corner[face.corner[2] == side ? 1 : 2]};
+  for (int i = 0; i < 2; ++i) {
+    const int outside = other[i], q = other[1 - i];
+    if (in_[outside]) continue;
+    const Plane at_side = crossing(side, outside), at_q = crossing(q, outside), cut = crossing(side, q);
+    const Vec3 between = at_q.point - at_side.point;
+    const double across = dot(cut.normal, between);
+    const double t = across != 0 ? std::clamp(dot(cut.normal, cut.point - at_side.point) / across, 0.0, 1.0) : 0.5;
+    return on_surface({at_side.point + t * between, (1 - t) * unit(at_side.normal) + t * unit(at_q.normal)}, cut);
+  }
+  Plane planes[2] = {crossing(side, other[0]), crossing(side, other[1])};
+  const Vec3 p = grid_.rest(node_[side]),
+             normal = cross(grid_.rest(node_[other[0]]) - p, grid_.rest(node_[other[1]]) - p);
+  for (Plane& plane : planes) plane.normal = plane.normal - dot(plane.normal, normal) / dot(normal, normal) * normal;
+  const Vec3 start = 0.5 * (planes[0].point + planes[1].point);
+  return kept_within(face, start, meeting_point(start, planes, 2));
+}
+
+/// Where the parts of a tetrahedron meet, for the part with the label `side`: on the organ's surface, if one is
+/// outside.
+Vec3 Mesher::place_within(int side) const {
+  Vec3 at_surface, sum, to_outside;
+  int of_surface = 0, count = 0, of_outside = 0;
+  for (int i = 0; i < segment_count_; ++i) {
+    const Segment& s = segments_[i];
+    if (s.q.count != 3) continue;
+    if (!in_[s.b_at_q] && label_[s.a_at_q] == side) at_surface += place(s.q, s.a_at_q), ++of_surface;
+    if (!in_[s.a_at_q] && label_[s.b_at_q] == side) at_surface += place(s.q, s.b_at_q), ++of_surface;
+  }
+  if (of_surface > 0) return at_surface / double(of_surface);
+  Plane planes[12];
+  for (int a = 0; a < 4; ++a)
+    for (int b = 0; b < 4; ++b) {
+      if (label_[a] != side || label_[b] == side || !parted_[a][b]) continue;
+      const Plane at = crossing(a, b);
+      if (in_[b])
+        planes[count++] = at, sum += at.point;
+      else
+        to_outside += at.point, ++of_outside;
+    }
+  if (count == 0) return to_outside / double(of_outside);
+  const Vec3 start = sum / double(count);
+  return kept_within(on(0, 1, 2, 3), start, meeting_point(start, planes, count));
 }
 
 /// Sides that are joined within the tetrahedron share their vertices on its edges and faces.
@@ -168,11 +287,11 @@ void Mesher::join_where_the_cut_ends() {
   for (int a = 0; a < 4; ++a)
     for (int b = a + 1; b < 4; ++b) {
       if (!in_[a] || !in_[b] || label_[a] != label_[b] || !parted_[a][b]) continue;
-      const Point edge = on_edge(a, b);
+      const Point edge = on(a, b);
       vertices_.join(vertex(edge, a), vertex(edge, b));
       for (int c = 0; c < 4; ++c) {
         if (c == a || c == b || !parted_[a][c] || !parted_[b][c]) continue;
-        const Point face = on_face(a, b, c);
+        const Point face = on(a, b, c);
         vertices_.join(vertex(face, a), vertex(face, b));
       }
     }
@@ -184,9 +303,9 @@ void Mesher::trace_face(const int* face) {
   for (int i = 0; i < 3; ++i) {
     const int a = face[i], b = face[(i + 1) % 3], c = face[(i + 2) % 3];
     if (parted == 3 && label_[a] != label_[b])
-      segments_[segment_count_++] = {on_edge(a, b), on_face(a, b, c), a, b, a, b}, has_middle_ = true;
+      segments_[segment_count_++] = {on(a, b), on(a, b, c), a, b, a, b}, has_middle_ = true;
     if (parted == 2 && !parted_[b][c] && label_[a] != label_[b])
-      segments_[segment_count_++] = {on_edge(a, b), on_edge(a, c), a, b, a, c};
+      segments_[segment_count_++] = {on(a, b), on(a, c), a, b, a, c};
   }
 }
 
@@ -198,10 +317,9 @@ void Mesher::close_simply() {
     Segment& s = segments_[i];
     if (label_[s.a_at_p] != label) s = {s.q, s.p, s.b_at_q, s.a_at_q, s.b_at_p, s.a_at_p};
   }
-  const auto same = [](const Point& p, const Point& q) { return p.nodes[0] == q.nodes[0] && p.nodes[1] == q.nodes[1]; };
   for (int i = 0; i + 1 < segment_count_; ++i)
     for (int j = i + 1; j < segment_count_; ++j)
-      if (same(segments_[j].p, segments_[i].q)) {
+      if (segments_[j].p == segments_[i].q) {
         std::swap(segments_[i + 1], segments_[j]);
         break;
       }
@@ -213,29 +331,9 @@ void Mesher::close_simply() {
   }
 }
 
-/// The point in which the parts of a tetrahedron meet: in the middle of those on its faces, of which those on the
-/// organ's surface count first.
-Vec3 Mesher::middle() const {
-  for (const bool at_surface : {true, false}) {
-    Vec3 sum;
-    int count = 0;
-    for (int i = 0; i < segment_count_; ++i) {
-      const Segment& s = segments_[i];
-      if (s.q.count != 3 || (at_surface && in_[s.a_at_p] && in_[s.b_at_p])) continue;
-      sum += s.q.rest, ++count;
-    }
-    if (count > 0) return sum / double(count);
-  }
-  Vec3 sum;
-  for (int i = 0; i < segment_count_; ++i) sum += (segments_[i].p.rest + segments_[i].q.rest) / (2.0 * segment_count_);
-  return sum;
-}
-
 /// Any number of parts: triangles from their borders on the faces to a point in the middle.
 void Mesher::close_from_the_middle() {
-  Point apex{{node_[0], node_[1], node_[2], node_[3]}, 4, {}};
-  std::sort(apex.nodes, apex.nodes + 4);
-  apex.rest = middle();
+  const Point apex = on(0, 1, 2, 3);
   for (int i = 0; i < segment_count_; ++i) {
     const Segment& s = segments_[i];
     const int a = label_[s.a_at_p], b = label_[s.b_at_p];
@@ -250,9 +348,8 @@ void Mesher::tetrahedron(Index cube, const int* corners) {
   for (int a = 0; a < 4; ++a)
     for (int b = 0; b < 4; ++b) {
       if (node_[a] >= node_[b]) continue;
-      const int direction = direction_[a][b] = corners[b] ^ corners[a];
-      parted_[a][b] = parted_[b][a] = grid_.is_parted(node_[a], direction);
-      along_[a][b] = grid_.crossing(node_[a], direction), along_[b][a] = 1 - along_[a][b];
+      direction_[a][b] = corners[b] ^ corners[a];
+      parted_[a][b] = parted_[b][a] = grid_.is_parted(node_[a], direction_[a][b]);
       any = any || parted_[a][b];
     }
   if (!any) return;

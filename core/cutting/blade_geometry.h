@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/model/box.h"
 #include "core/model/vec3.h"
 
 namespace ctpm::cutting {
@@ -20,24 +21,6 @@ std::optional<SweepHit> meet_sweep(Vec3 p, Vec3 q, Vec3 from, Vec3 to, Vec3 from
 /// The point of the triangle a b c that is nearest to p.
 Vec3 nearest_in_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c);
 
-/// An axis-parallel box around points.
-struct Box {
-  Vec3 low, high;
-
-  explicit Box(Vec3 p) : low(p), high(p) {}
-  template <class... Points>
-  explicit Box(Vec3 first, Points... others) : low(first), high(first) {
-    (add(others), ...);
-  }
-  void add(Vec3 p) {
-    low = {p.x < low.x ? p.x : low.x, p.y < low.y ? p.y : low.y, p.z < low.z ? p.z : low.z};
-    high = {p.x > high.x ? p.x : high.x, p.y > high.y ? p.y : high.y, p.z > high.z ? p.z : high.z};
-  }
-  Box grown(double by) const { return Box(low - Vec3{by, by, by}, high + Vec3{by, by, by}); }
-  bool meets(const Box& other) const {
-    return low.x <= other.high.x && other.low.x <= high.x && low.y <= other.high.y && other.low.y <= high.y &&
-           low.z <= other.high.z && other.low.z <= high.z;
-  }
-};
+using ctpm::Box;
 
 }  // namespace ctpm::cutting

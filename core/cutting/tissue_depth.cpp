@@ -73,14 +73,14 @@ void TissueDepth::find_sides(Grid& grid) {
   const std::size_t count = grid.first.size() - 1;
   grid.side.assign(count, 0);
   std::vector<std::size_t> known;
-  std::vector<double> near(count, kFar);
+  std::vector<double> near_middle(count, kFar);
   for (std::size_t b = 0; b < count; ++b) {
     const auto i = std::int32_t(b % std::size_t(e[0])), j = std::int32_t(b / std::size_t(e[0]) % std::size_t(e[1])),
                k = std::int32_t(b / std::size_t(e[0]) / std::size_t(e[1]));
-    near[b] = near_depth(grid, b, grid.low + kBucket * Vec3{i + 0.5, j + 0.5, k + 0.5});
-    if (std::abs(near[b]) < kBand) grid.side[b] = near[b] > 0 ? 1 : -1;
+    near_middle[b] = near(grid, b, grid.low + kBucket * Vec3{i + 0.5, j + 0.5, k + 0.5}).depth;
+    if (std::abs(near_middle[b]) < kBand) grid.side[b] = near_middle[b] > 0 ? 1 : -1;
     // A neighbour farther than the band from the surface is on the same side unless the surface passes close by.
-    if (std::abs(near[b]) < kBand && std::abs(near[b]) > kBucket - kBand + 1e-4) known.push_back(b);
+    if (std::abs(near_middle[b]) < kBand && std::abs(near_middle[b]) > kBucket - kBand + 1e-4) known.push_back(b);
   }
   if (grid.side[0] == 0) grid.side[0] = -1, known.push_back(0);  // a corner of the grid is outside
   for (std::size_t n = 0; n < known.size(); ++n) {
@@ -99,10 +99,11 @@ void TissueDepth::find_sides(Grid& grid) {
   }
 }
 
-/// Signed distance from the triangles of a bucket; infinite if it has none.
-double TissueDepth::near_depth(const Grid& grid, std::size_t bucket, Vec3 rest) {
+/// Signed distance from the triangles of a bucket, and the nearest of them.
+TissueDepth::Near TissueDepth::near(const Grid& grid, std::size_t bucket, Vec3 rest) {
   const Surface& surface = *grid.surface;
   double least2 = kFar, facing = 0;
+  std::int32_t nearest = -1;
   for (auto n = grid.first[bucket]; n < grid.first[bucket + 1]; ++n) {
     const auto& t = surface.triangle[std::size_t(grid.triangle[std::size_t(n)])];
     const Vec3 a = surface.vertex[std::size_t(t[0])], b = surface.vertex[std::size_t(t[1])],
@@ -115,10 +116,10 @@ double TissueDepth::near_depth(const Grid& grid, std::size_t bucket, Vec3 rest) 
     const bool is_nearer = distance2 < least2 * (1 - kSame);
     if (!is_nearer && !(distance2 <= least2 * (1 + kSame) && std::abs(height) > std::abs(facing))) continue;
     if (is_nearer) least2 = distance2;
-    facing = height;
+    facing = height, nearest = grid.triangle[std::size_t(n)];
   }
-  if (least2 == kFar) return kFar;
-  return facing > 0 ? -std::sqrt(least2) : std::sqrt(least2);
+  if (nearest < 0) return {kFar};
+  return {facing > 0 ? -std::sqrt(least2) : std::sqrt(least2), nearest};
 }
 
 double TissueDepth::at(std::size_t organ, Vec3 rest) const {
@@ -126,8 +127,14 @@ double TissueDepth::at(std::size_t organ, Vec3 rest) const {
   if (grid.surface == nullptr) return std::clamp(map_.depth_in_cells(organ, rest), -kBand, kBand);
   const std::int64_t bucket = bucket_of(grid, rest);
   if (bucket < 0) return -kBand;
-  const double near = near_depth(grid, std::size_t(bucket), rest);
-  return std::abs(near) < kBand ? near : grid.side[std::size_t(bucket)] * kBand;
+  const double depth = near(grid, std::size_t(bucket), rest).depth;
+  return std::abs(depth) < kBand ? depth : grid.side[std::size_t(bucket)] * kBand;
+}
+
+std::int32_t TissueDepth::nearest_triangle(std::size_t organ, Vec3 rest) const {
+  const Grid& grid = grids_[organ];
+  const std::int64_t bucket = grid.surface == nullptr ? -1 : bucket_of(grid, rest);
+  return bucket < 0 ? -1 : near(grid, std::size_t(bucket), rest).triangle;
 }
 
 }  // namespace ctpm::cutting

@@ -23,6 +23,9 @@ class TissueDepth {
   /// Signed distance of a place at rest from the surface of an organ [m]: positive inside, in [-kBand, kBand].
   double at(std::size_t organ, Vec3 rest) const;
 
+  /// The triangle of an organ's surface that is nearest to a place at rest; -1: none is within kBand of it.
+  std::int32_t nearest_triangle(std::size_t organ, Vec3 rest) const;
+
  private:
   /// Buckets of a cubic grid over the organ, each with the triangles that come within kBand of it.
   struct Grid {
@@ -35,7 +38,11 @@ class TissueDepth {
   static Grid make_grid(const Surface& surface);
   static void find_sides(Grid& grid);
   static std::int64_t bucket_of(const Grid& grid, Vec3 rest);
-  static double near_depth(const Grid& grid, std::size_t bucket, Vec3 rest);
+  struct Near {
+    double depth;  ///< [m]; infinite: there is none
+    std::int32_t triangle = -1;
+  };
+  static Near near(const Grid& grid, std::size_t bucket, Vec3 rest);
 
   const RestMap& map_;
   std::vector<Grid> grids_;  ///< (organ_count)

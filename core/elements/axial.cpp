@@ -170,17 +170,44 @@ void AxialForces::find_kelvin(double h, const StateView& state, std::vector<doub
   for (std::size_t t = first; t < last; ++t) after[t] = kelvin_after(h, state, t);
 }
 
-void AxialForces::find_acting_kelvin(double h, const StateView& state, std::vector<double>& acting, std::size_t first,
-                                     std::size_t last) const {
-  for (std::size_t t = first; t < last; ++t) acting[t] = kelvin_after(acting_part(h, t) * h, state, t);
+void AxialForces::prepare_acting(double h) {
+  if (acting_.h == h) return;
+  acting_.h = h;
+  for (auto* values : {&acting_.share, &acting_.damping, &acting_.sum}) values->resize(of_internal_.size());
+  const AxialElements& m = model_.axial;
+  for (std::size_t t = 0; t < of_internal_.size(); ++t) {
+    const auto i = std::size_t(of_internal_[t]);
+    acting_.share[t] = acting_part(h, t);
+    acting_.damping[t] = m.damping(i) / (acting_.share[t] * h);
+    acting_.sum[t] = m.k[i] + m.kelvin_k[i] + acting_.damping[t];
+  }
 }
 
-void AxialForces::finish_kelvin(double h, const std::vector<double>& before, std::vector<double>& kelvin,
-                                std::size_t first, std::size_t last) const {
-  for (std::size_t t = first; t < last; ++t) {
-    const double z = before[t];
-    kelvin[t] = z + (kelvin[t] - z) / acting_part(h, t);
+/// As kelvin_after() over a part of the step, in blocks, whose roots and divisions the compiler does several at a time.
+void AxialForces::find_acting_kelvin(const StateView& state, std::vector<double>& acting, std::size_t first,
+                                     std::size_t last) const {
+  constexpr std::size_t kBlock = 64;
+  const AxialElements& m = model_.axial;
+  double squared[kBlock], rest[kBlock], k[kBlock];
+  for (std::size_t begin = first; begin < last; begin += kBlock) {
+    const std::size_t count = std::min(kBlock, last - begin);
+    for (std::size_t j = 0; j < count; ++j) {
+      const auto i = std::size_t(of_internal_[begin + j]);
+      const Vec3 apart = state.position[std::size_t(m.b[i])] - state.position[std::size_t(m.a[i])];
+      squared[j] = dot(apart, apart), rest[j] = m.rest_length[i], k[j] = m.k[i];
+    }
+    const double *z = &state.kelvin_elongation[begin], *damping = &acting_.damping[begin], *sum = &acting_.sum[begin];
+    double* __restrict out = &acting[begin];
+    for (std::size_t j = 0; j < count; ++j)
+      out[j] = (damping[j] * z[j] + k[j] * (std::sqrt(squared[j]) - rest[j])) / sum[j];
   }
+}
+
+void AxialForces::finish_kelvin(const std::vector<double>& before, std::vector<double>& kelvin, std::size_t first,
+                                std::size_t last) const {
+  const double *z = before.data(), *share = acting_.share.data();
+  double* __restrict out = kelvin.data();
+  for (std::size_t t = first; t < last; ++t) out[t] = z[t] + (out[t] - z[t]) / share[t];
 }
 
 }  // namespace ctpm::elements

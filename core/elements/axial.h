@@ -39,12 +39,15 @@ class AxialForces {
   template <class Real>
   void apply(int slab, const Real* v, SlabTarget<Real> result) const;
 
+  /// Prepares find_acting_kelvin() and finish_kelvin() for steps of `h` [s]; allocates at the first call.
+  void prepare_acting(double h);
+
   /// Elements::find_kelvin(), find_acting_kelvin() and finish_kelvin() for internal variables [first, last).
   void find_kelvin(double h, const StateView& state, std::vector<double>& after, std::size_t first,
                    std::size_t last) const;
-  void find_acting_kelvin(double h, const StateView& state, std::vector<double>& acting, std::size_t first,
+  void find_acting_kelvin(const StateView& state, std::vector<double>& acting, std::size_t first,
                           std::size_t last) const;
-  void finish_kelvin(double h, const std::vector<double>& before, std::vector<double>& kelvin, std::size_t first,
+  void finish_kelvin(const std::vector<double>& before, std::vector<double>& kelvin, std::size_t first,
                      std::size_t last) const;
 
  private:
@@ -58,6 +61,14 @@ class AxialForces {
   Run find_run(std::size_t first, const parallel::Slabs& slabs) const;
   std::vector<double> parameters_of(const Run& run) const;
   void add_places(const Run& run);
+  /// What find_acting_kelvin() needs of each internal variable and length of step: divisions that every step repeats.
+  struct Acting {
+    double h = 0;                 ///< step that the rest is for [s]
+    std::vector<double> share;    ///< acting_part() (internal_count)
+    std::vector<double> damping;  ///< over share times h [N/m]
+    std::vector<double> sum;      ///< of both stiffnesses and that [N/m]
+  };
+
   double kelvin_after(double h, const StateView& state, std::size_t variable) const;
   double acting_part(double h, std::size_t variable) const;
 
@@ -71,6 +82,7 @@ class AxialForces {
   std::vector<std::int32_t> third_;
   std::vector<std::int32_t> element_;      ///< AxialArrays::element; empty without a scalpel (place_count)
   std::vector<std::int32_t> of_internal_;  ///< row of Model::axial that has the internal variable (internal_count)
+  Acting acting_;
   std::size_t place_count_ = 0;
   std::vector<float> root_[3];  ///< direction times the root of the axial coupling [kg^1/2]; empty until needed
   std::vector<float> across_;   ///< coupling across the direction: h^2 tension / length [kg], >= 0

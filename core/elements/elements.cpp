@@ -125,14 +125,15 @@ void Elements::find_kelvin(double h, const StateView& state, std::vector<double>
                [&](std::size_t first, std::size_t last) { axial_.find_kelvin(h, state, after, first, last); });
 }
 
-void Elements::find_acting_kelvin(double h, const StateView& state, std::vector<double>& acting) const {
+void Elements::find_acting_kelvin(double h, const StateView& state, std::vector<double>& acting) {
+  axial_.prepare_acting(h);
   for_internal(state.kelvin_elongation.size(),
-               [&](std::size_t first, std::size_t last) { axial_.find_acting_kelvin(h, state, acting, first, last); });
+               [&](std::size_t first, std::size_t last) { axial_.find_acting_kelvin(state, acting, first, last); });
 }
 
-void Elements::finish_kelvin(double h, const std::vector<double>& before, std::vector<double>& kelvin) const {
+void Elements::finish_kelvin(const std::vector<double>& before, std::vector<double>& kelvin) const {
   for_internal(kelvin.size(),
-               [&](std::size_t first, std::size_t last) { axial_.finish_kelvin(h, before, kelvin, first, last); });
+               [&](std::size_t first, std::size_t last) { axial_.finish_kelvin(before, kelvin, first, last); });
 }
 
 }  // namespace ctpm::elements

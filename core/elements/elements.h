@@ -45,11 +45,11 @@ class Elements {
 
   /// Kelvin elongations [m] that act in a step of `h` [s], with the spheres at StateView::position in its middle.
   /// Second order if the step resolves them (internal_count).
-  void find_acting_kelvin(double h, const StateView& state, std::vector<double>& acting) const;
+  void find_acting_kelvin(double h, const StateView& state, std::vector<double>& acting);
 
-  /// Replaces the acting Kelvin elongations [m] of that step by those at its end; `before`: at its start
-  /// (internal_count).
-  void finish_kelvin(double h, const std::vector<double>& before, std::vector<double>& kelvin) const;
+  /// Replaces the acting Kelvin elongations [m] of the last find_acting_kelvin() by those at the end of its step;
+  /// `before`: at its start (internal_count).
+  void finish_kelvin(const std::vector<double>& before, std::vector<double>& kelvin) const;
 
   const parallel::Slabs& slabs() const { return slabs_; }
 

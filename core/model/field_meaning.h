@@ -19,7 +19,7 @@ enum class EntryOf : std::int32_t {
   load,
   tool,
   blade_end,  ///< tip and heel
-  touchable,  ///< vertices of the surfaces through all organs, and after them spheres
+  touchable,  ///< numbers in State::touched
   tissue_cell,
 };
 

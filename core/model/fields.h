@@ -89,9 +89,22 @@ void for_each_field(Organ_& o, Visit&& visit) {
   give("modulus", o.modulus, not_negative);
   give("instant_ratio", o.instant_ratio, finite);
   give("kelvin_time", o.kelvin_time, not_negative);
+  give("meets_itself", o.meets_itself, any);
 }
 
-/// As above. `organs` and `tools` are vectors of structs; for_each_field visits their fields in turn.
+template <class Obstacle_, class Visit>
+requires std::is_same_v<std::remove_const_t<Obstacle_>, Obstacle>
+void for_each_field(Obstacle_& o, Visit&& visit) {
+  using namespace meaning;
+  const auto give = with_meaning(visit);
+  give("name", o.name, any);
+  give("kind", o.kind, one_of({ObstacleKind::plane, ObstacleKind::box}));
+  give("position", o.position, finite);
+  give("world_from_obstacle", o.world_from_obstacle, any);
+  give("half_size", o.half_size, not_negative);
+}
+
+/// As above. `organs`, `tools` and `obstacles` are vectors of structs; for_each_field visits their fields in turn.
 template <class Model_, class Visit>
 requires std::is_same_v<std::remove_const_t<Model_>, Model>
 void for_each_field(Model_& m, Visit&& visit) {
@@ -158,6 +171,8 @@ void for_each_field(Model_& m, Visit&& visit) {
     give(corners[c], m.tissue_cells.corner[c], index(EntryOf::sphere).per(EntryOf::tissue_cell));
   give("tissue_cells.k", m.tissue_cells.k, positive.per(EntryOf::tissue_cell));
   give("inversion_threshold", m.inversion_threshold, between(0, 1));
+  give("obstacles", m.obstacles, any);
+  give("organs_meet", m.organs_meet, any);
 }
 
 }  // namespace ctpm

@@ -154,11 +154,27 @@ struct OrganRange {
   double spacing = 0;                 ///< s [m]
   double damage_depth = 0;            ///< depth beyond which the tissue is damaged [m]; 0: no limit
   std::int32_t layer_count = 0;
-  // The tissue just below the surface, of which a tool dents what the lattice does not resolve; see
+  // The tissue just below the surface, which what presses it dents where the lattice does not resolve that; see
   // contact::Foundation.
   double modulus = 0;        ///< static Young's modulus [Pa], >= 0
   double instant_ratio = 1;  ///< stiffness at once over static stiffness, >= 1
   double kelvin_time = 0;    ///< viscosity over stiffness of the Kelvin unit [s], >= 0
+  /// Whether parts of the organ's surface that lie apart touch each other (contact::BodyContact).
+  bool meets_itself = false;
+};
+
+enum class ObstacleKind : std::int32_t {
+  plane = 0,  ///< the half space z <= 0 of the obstacle's frame
+  box = 1,    ///< centred in the obstacle's frame
+};
+
+/// A rigid thing that never moves and that the surfaces of organs cannot enter: a ground, a table.
+struct Obstacle {
+  std::string name;
+  ObstacleKind kind = ObstacleKind::plane;
+  Vec3 position;             ///< of the frame's origin [m]
+  Quat world_from_obstacle;  ///< orientation of the frame, unit length
+  Vec3 half_size;            ///< of a box [m], > 0
 };
 
 /// Method of time integration. Session files store the numbers; 0 (automatic), 1 (symplectic Euler) and 3 (extrapolated
@@ -207,8 +223,8 @@ struct Model {
 
   std::vector<Tool> tools;
   double contact_k = 0;  ///< stiffness of a tool's contact with one sphere of an organ without a surface [N/m], >= 0
-  double contact_friction = 0;  ///< Coulomb coefficient between tool and tissue, >= 0
-  /// Hunt-Crossley damping of a tool's contact [s/m], >= 0. Default: an impact at 30 mm/s keeps 25 % of its kinetic
+  double contact_friction = 0;  ///< Coulomb coefficient of every contact of tissue, >= 0
+  /// Hunt-Crossley damping of contacts [s/m], >= 0. Default: an impact at 30 mm/s keeps 25 % of its kinetic
   /// energy (our choice).
   double contact_damping = 50;
 
@@ -227,10 +243,26 @@ struct Model {
   /// a press reaches without buckling, and far enough above 0 that nothing turns over.
   double inversion_threshold = 0.4;
 
+  std::vector<Obstacle> obstacles;
+  bool organs_meet = false;  ///< whether the surfaces of different organs touch each other
+
   std::size_t sphere_count() const { return mass.size(); }
+  /// Number of points that can be touched: the vertices of the surfaces through all organs, and after them the spheres.
+  std::size_t touchable_count() const {
+    std::size_t count = sphere_count();
+    for (const Surface& surface : surfaces) count += surface.vertex.size();
+    return count;
+  }
   bool has_tool(ToolKind kind) const {
     return std::any_of(tools.begin(), tools.end(), [kind](const Tool& tool) { return tool.kind == kind; });
   }
+  /// Whether tissue touches tissue.
+  bool has_meeting_tissue() const {
+    return organs_meet ||
+           std::any_of(organs.begin(), organs.end(), [](const OrganRange& organ) { return organ.meets_itself; });
+  }
+  /// Whether tissue touches anything but tools.
+  bool has_meeting_bodies() const { return has_meeting_tissue() || !obstacles.empty(); }
   bool has_scalpel() const { return has_tool(ToolKind::scalpel); }
   std::size_t element_count() const { return axial.size() + constraints.size() + angle_springs.size(); }
 };

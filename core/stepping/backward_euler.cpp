@@ -6,7 +6,7 @@ bool BackwardEuler::step(const State& from, const contact::HeldTool& tool, const
                          StepReport& report) {
   const contact::Pin pin = contact::Contacts::pin(tool, from.position, part.share, part.h);
   contact::ImplicitContacts contacts =
-      context_.contacts.detect(from, tool, {part.h, part.h, part.share, pin}, contact::Linearisation::rest);
+      context_.contacts.detect(from, tool, {part.h, part.h, 0, part.share, pin}, contact::Linearisation::rest);
   const elements::Coordinates& velocity = solve_.solve(from, part, contacts, report);
   commit_velocity(context_.elements.slabs(), context_.team, velocity, from.position, part.h, to);
   if (!check_.passes(to.velocity, report)) return false;

@@ -29,8 +29,8 @@ bool Leapfrog::step(const State& from, const contact::HeldTool& tool, const Subs
   const StateView middle(from, to.position, velocity, to.kelvin_elongation);
   kick(middle, pin, part, to.velocity);
   const Vec3 on_pin = context_.resistance.push_out(middle, part.h, pin, to.velocity);
-  const contact::ExplicitContacts contacts =
-      context_.contacts.push_apart(middle, tool, {part.h, part.h, part.share - half / model.tick, pin}, to.velocity);
+  const contact::ExplicitContacts contacts = context_.contacts.push_apart(
+      middle, tool, {part.h, part.h, half, part.share - half / model.tick, pin}, to.velocity);
   report.tool_force = contacts.tool_force();
   if (pin.is_held()) {
     const std::size_t i = pin.index(), n = model.sphere_count();
@@ -39,7 +39,7 @@ bool Leapfrog::step(const State& from, const contact::HeldTool& tool, const Subs
   }
   if (!check_.passes(to.velocity, report)) return false;
 
-  elements.finish_kelvin(part.h, from.kelvin_elongation, to.kelvin_elongation);
+  elements.finish_kelvin(from.kelvin_elongation, to.kelvin_elongation);
   drift(slabs, context_.team, to.velocity, half, to.position);
   finish_contacts(contacts, tool, part, to, report);
   return true;

@@ -113,7 +113,7 @@ bool Sdirk2::dirk_stage(const StateView& start, const contact::HeldTool& tool, c
   const StateView predicted(start, predicted_.position, predicted_.velocity, kelvin);
   const double elapsed = is_second ? part.h / kStage : part.h;  // the second stage ends with the step
   contact::ImplicitContacts contacts = context_.contacts.detect(
-      predicted, tool, {part.h, elapsed, part.share, stage_pin_}, contact::Linearisation::velocity);
+      predicted, tool, {part.h, elapsed, elapsed, part.share, stage_pin_}, contact::Linearisation::velocity);
   stage_velocity_ = &solve_.solve_near(predicted, start.velocity, is_second, part, contacts, change_, report);
   commit_velocity(slabs, context_.team, *stage_velocity_, start.position, part.h, to);
   if (!check_.passes(to.velocity, report)) return false;

@@ -30,8 +30,8 @@ struct StepReport {
   double residual = 0;             ///< of the last solve, relative to its first guess
   std::int32_t iterations = 0;     ///< of all solves of the tick
   Vec3 tool_force;                 ///< force of the tissue on the tool: ball, pin or blade [N]
-  /// Largest displacement from rest of a sphere that a ball touches, along its contact; of a pin, that of its sphere
-  /// [m].
+  /// Largest displacement from rest of a point that a ball touches, along its contact, without the motion as a whole of
+  /// an organ that nothing holds; of a pin, that of its sphere [m].
   double depth = 0;
   std::int32_t contacts = 0;    ///< spheres touched; for a blade, nodes of its edge that tissue holds
   std::int32_t severed = 0;     ///< elements, constraints and angle springs severed in this tick

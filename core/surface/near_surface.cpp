@@ -21,10 +21,14 @@ std::uint32_t spread_bits(std::uint32_t n) {
 
 }  // namespace
 
-NearSurface::NearSurface(const Model& model, bool is_wanted) : sphere_rest_(model.rest_position) {
-  if (!is_wanted) return;
+NearSurface::NearSurface(const Model& model, std::size_t first_organ, std::size_t last_organ)
+    : sphere_rest_(model.rest_position),
+      first_of_all_(first_organ < last_organ ? std::size_t(model.organs[first_organ].first) : 0),
+      last_of_all_(first_organ < last_organ
+                       ? std::size_t(model.organs[last_organ - 1].first + model.organs[last_organ - 1].count)
+                       : 0) {
   first_.push_back(0);
-  for (std::size_t i = 0; i < model.surfaces.size(); ++i) add_organ(model.surfaces[i], model.organs[i]);
+  for (std::size_t i = first_organ; i < last_organ; ++i) add_organ(model.surfaces[i], model.organs[i]);
   if (triangles_.empty()) return;
   sort_triangles();
   const auto count = Index(triangles_.size());
@@ -60,12 +64,10 @@ void NearSurface::add_organ(const Surface& surface, const OrganRange& organ) {
 
 /// Sorts the triangles along a Morton curve, so that runs of them are compact.
 void NearSurface::sort_triangles() {
-  Vec3 least = rest_.front(), most = least;
-  for (const Vec3& p : rest_) {
-    least = {std::min(least.x, p.x), std::min(least.y, p.y), std::min(least.z, p.z)};
-    most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, p.z)};
-  }
-  const double size = std::max({most.x - least.x, most.y - least.y, most.z - least.z});
+  Box box(rest_.front());
+  for (const Vec3& p : rest_) box.add(p);
+  const Vec3 span = box.high - box.low;
+  const double size = std::max({span.x, span.y, span.z});
   const double scale = size > 0 ? 1023 / size : 0;
   struct Key {
     std::uint32_t code;
@@ -73,7 +75,7 @@ void NearSurface::sort_triangles() {
   };
   std::vector<Key> keys;
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    const Vec3 p = rest(triangles_[t].corner[0]) - least;
+    const Vec3 p = rest(triangles_[t].corner[0]) - box.low;
     const auto part = [&](double x) { return spread_bits(std::uint32_t(x * scale)); };
     keys.push_back({part(p.x) | part(p.y) << 1 | part(p.z) << 2, Index(t)});
   }
@@ -87,13 +89,11 @@ void NearSurface::sort_triangles() {
 NearSurface::Bound NearSurface::bound_of(Index first, Index last, Index first_triangle, Index last_triangle) {
   std::vector<Index> spheres;
   double widen = 0;
-  Vec3 least = rest(triangles_[std::size_t(first_triangle)].corner[0]), most = least;
+  Box box(rest(triangles_[std::size_t(first_triangle)].corner[0]));
   for (Index t = first_triangle; t < last_triangle; ++t)
     for (const Index corner : triangles_[std::size_t(t)].corner) {
       const Follower follows = follower(corner);
-      const Vec3 p = rest(corner);
-      least = {std::min(least.x, p.x), std::min(least.y, p.y), std::min(least.z, p.z)};
-      most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, p.z)};
+      box.add(rest(corner));
       spheres.insert(spheres.end(), follows.sphere.begin(), follows.sphere.end());
       double negative = 0;
       for (const double w : follows.weight) negative -= std::min(w, 0.0);
@@ -103,32 +103,69 @@ NearSurface::Bound NearSurface::bound_of(Index first, Index last, Index first_tr
   spheres.erase(std::unique(spheres.begin(), spheres.end()), spheres.end());
   const auto begin = Index(bound_spheres_.size());
   bound_spheres_.insert(bound_spheres_.end(), spheres.begin(), spheres.end());
-  return {first, last, begin, Index(bound_spheres_.size()), least, most, widen};
+  return {first, last, begin, Index(bound_spheres_.size()), box, widen};
 }
 
-bool NearSurface::is_near(const Bound& bound, const Vec3Array& position, Vec3 centre, double radius) const {
-  const auto is_near_along = [&](const std::vector<double>& values, const std::vector<double>& rest, double low,
-                                 double high, double at) {
-    const auto moved = [&](Index s) {
-      const auto sphere = std::size_t(bound_spheres_[std::size_t(s)]);
-      return values[sphere] - rest[sphere];
-    };
-    double least = moved(bound.first_sphere), most = least;
-    for (Index s = bound.first_sphere + 1; s < bound.last_sphere; ++s) {
-      const double by = moved(s);
+/// Range of a bound along one axis, from its spheres' coordinates `values` and its own range at rest.
+NearSurface::Range NearSurface::range_along(const Bound& bound, const std::vector<double>& values,
+                                            const std::vector<double>& rest, double low, double high) const {
+  const auto moved = [&](Index s) {
+    const auto sphere = std::size_t(bound_spheres_[std::size_t(s)]);
+    return values[sphere] - rest[sphere];
+  };
+  double least = moved(bound.first_sphere), most = least;
+  for (Index s = bound.first_sphere + 1; s < bound.last_sphere; ++s) {
+    const double by = moved(s);
+    least = std::min(least, by), most = std::max(most, by);
+  }
+  const double margin = bound.widen * (most - least) + kRounding;
+  return {low + least - margin, high + most + margin};
+}
+
+Box NearSurface::box_of(const Bound& bound, const Vec3Array& position) const {
+  const Box& rest = bound.rest;
+  const Range x = range_along(bound, position.x, sphere_rest_.x, rest.low.x, rest.high.x),
+              y = range_along(bound, position.y, sphere_rest_.y, rest.low.y, rest.high.y),
+              z = range_along(bound, position.z, sphere_rest_.z, rest.low.z, rest.high.z);
+  return Box(Vec3{x.low, y.low, z.low}, Vec3{x.high, y.high, z.high});
+}
+
+Box NearSurface::displacements(const Vec3Array& position) const {
+  const auto along = [&](const std::vector<double>& values, const std::vector<double>& rest) {
+    double least = values[first_of_all_] - rest[first_of_all_], most = least;
+    for (std::size_t i = first_of_all_ + 1; i < last_of_all_; ++i) {
+      const double by = values[i] - rest[i];
       least = std::min(least, by), most = std::max(most, by);
     }
-    const double margin = radius + bound.widen * (most - least) + kRounding;
-    return at >= low + least - margin && at <= high + most + margin;
+    return Range{least, most};
   };
-  return is_near_along(position.x, sphere_rest_.x, bound.least.x, bound.most.x, centre.x) &&
-         is_near_along(position.y, sphere_rest_.y, bound.least.y, bound.most.y, centre.y) &&
-         is_near_along(position.z, sphere_rest_.z, bound.least.z, bound.most.z, centre.z);
+  const Range x = along(position.x, sphere_rest_.x), y = along(position.y, sphere_rest_.y),
+              z = along(position.z, sphere_rest_.z);
+  return Box(Vec3{x.low, y.low, z.low}, Vec3{x.high, y.high, z.high});
+}
+
+Box NearSurface::rough_box_of(const Bound& bound, const Box& moved) const {
+  const Vec3 range = moved.high - moved.low, rounding{kRounding, kRounding, kRounding};
+  return Box(bound.rest.low + moved.low - bound.widen * range - rounding,
+             bound.rest.high + moved.high + bound.widen * range + rounding);
+}
+
+/// As box_of(), but stops at the first axis that parts them.
+bool NearSurface::is_near(const Bound& bound, const Vec3Array& position, const Box& region) const {
+  const auto is_near_along = [&](const std::vector<double>& values, const std::vector<double>& rest, double low,
+                                 double high, double region_low, double region_high) {
+    const Range range = range_along(bound, values, rest, low, high);
+    return region_high >= range.low && region_low <= range.high;
+  };
+  const Box& rest = bound.rest;
+  return is_near_along(position.x, sphere_rest_.x, rest.low.x, rest.high.x, region.low.x, region.high.x) &&
+         is_near_along(position.y, sphere_rest_.y, rest.low.y, rest.high.y, region.low.y, region.high.y) &&
+         is_near_along(position.z, sphere_rest_.z, rest.low.z, rest.high.z, region.low.z, region.high.z);
 }
 
 Vec3 NearSurface::place(Index vertex, const Vec3Array& position) {
   const auto v = std::size_t(vertex);
-  if (placed_in_[v] != call_) placed_in_[v] = call_, placed_[v] = follower(vertex).of(position);
+  if (placed_in_[v] != round_) placed_in_[v] = round_, placed_[v] = follower(vertex).of(position);
   return placed_[v];
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/model/box.h"
 #include "core/model/model.h"
 #include "core/model/vec3.h"
 
@@ -22,8 +23,20 @@ struct Follower {
   }
 };
 
-/// The surfaces of all organs of a Model as one, and which part of it is near a ball. Vertices are numbered through all
-/// organs. Only near parts are computed: triangles form patches, patches form groups, and each is bounded by
+/// The half of space behind a plane.
+struct HalfSpace {
+  Vec3 point;   ///< of the plane [m]
+  Vec3 normal;  ///< unit vector, away from the half space
+
+  bool meets(const Box& box) const {
+    const Vec3 deepest{normal.x > 0 ? box.low.x : box.high.x, normal.y > 0 ? box.low.y : box.high.y,
+                       normal.z > 0 ? box.low.z : box.high.z};
+    return dot(deepest - point, normal) <= 0;
+  }
+};
+
+/// The surfaces of organs of a Model as one, and which part of it is near something. Vertices are numbered through
+/// these organs. Only near parts are computed: triangles form patches, patches form groups, and each is bounded by
 /// how far the spheres that it follows have moved.
 class NearSurface {
  public:
@@ -35,8 +48,18 @@ class NearSurface {
     double longest_edge;  ///< at rest [m]
   };
 
-  /// `model` must outlive the NearSurface. Builds nothing unless `is_wanted`.
-  NearSurface(const Model& model, bool is_wanted);
+  /// A run of triangles (a patch) or of patches (a group), and the spheres that they follow.
+  struct Bound {
+    Index first, last;                ///< triangles, or patches
+    Index first_sphere, last_sphere;  ///< in bound_spheres_
+    Box rest;                         ///< of the vertices [m]
+    /// A vertex moves by a weighted sum of the spheres' displacements, with weights that sum to 1. It lies within their
+    /// range, widened on each side by this part of it: the largest sum of negative weights.
+    double widen;
+  };
+
+  /// Surfaces of organs [first_organ, last_organ). `model` must outlive the NearSurface.
+  NearSurface(const Model& model, std::size_t first_organ, std::size_t last_organ);
 
   bool empty() const { return triangles_.empty(); }
   std::size_t vertex_count() const { return first_.empty() ? 0 : first_.size() - 1; }
@@ -47,48 +70,67 @@ class NearSurface {
   }
   Vec3 rest(Index vertex) const { return rest_[std::size_t(vertex)]; }
 
-  /// Calls `visit(triangle, corners)` for every triangle whose patch may come within `radius` [m] of `centre`, with the
-  /// positions of its corners, in a fixed order.
-  template <class Visit>
-  void near(const Vec3Array& position, Vec3 centre, double radius, Visit&& visit);
+  const std::vector<Bound>& patches() const { return patches_; }
+  const std::vector<Bound>& groups() const { return groups_; }
+  const std::vector<Triangle>& triangles() const { return triangles_; }  ///< by patch
+
+  /// Box that contains a patch or group [m].
+  Box box_of(const Bound& bound, const Vec3Array& position) const;
+
+  /// Begins a round with other positions, in which place() computes each vertex once.
+  void begin() { ++round_; }
+  /// Where a vertex is [m]; `position` is the same in one round.
+  Vec3 place(Index vertex, const Vec3Array& position);
+
+  /// Begins a round, and calls `visit(triangle, corners)` for every triangle whose patch may meet `region`, with the
+  /// positions of its corners, in a fixed order. `region`: a Box or a HalfSpace.
+  template <class Region, class Visit>
+  void near(const Vec3Array& position, const Region& region, Visit&& visit);
 
  private:
-  /// A run of triangles or of patches, and the spheres that they follow.
-  struct Bound {
-    Index first, last;                ///< triangles, or patches
-    Index first_sphere, last_sphere;  ///< in bound_spheres_
-    Vec3 least, most;                 ///< box of the vertices at rest [m]
-    /// A vertex moves by a weighted sum of the spheres' displacements, with weights that sum to 1. It lies within their
-    /// range, widened on each side by this part of it: the largest sum of negative weights.
-    double widen;
+  /// Range of a bound along one axis.
+  struct Range {
+    double low, high;
   };
 
+  /// Least and largest displacement of all spheres from rest [m].
+  Box displacements(const Vec3Array& position) const;
+  /// Box that contains a bound if its spheres moved by displacements in `moved`: wider than box_of(), but found at
+  /// once.
+  Box rough_box_of(const Bound& bound, const Box& moved) const;
   void add_organ(const Surface& surface, const OrganRange& organ);
   void sort_triangles();
   Bound bound_of(Index first, Index last, Index first_triangle, Index last_triangle);
-  bool is_near(const Bound& bound, const Vec3Array& position, Vec3 centre, double radius) const;
-  Vec3 place(Index vertex, const Vec3Array& position);
+  Range range_along(const Bound& bound, const std::vector<double>& values, const std::vector<double>& rest, double low,
+                    double high) const;
+  bool is_near(const Bound& bound, const Vec3Array& position, const Box& region) const;
+  bool is_near(const Bound& bound, const Vec3Array& position, const HalfSpace& region) const {
+    return region.meets(box_of(bound, position));
+  }
 
   const Vec3Array& sphere_rest_;
-  std::vector<Index> first_, sphere_;  ///< binding of all vertices, as in SurfaceBinding
+  std::size_t first_of_all_, last_of_all_;  ///< spheres of the organs
+  std::vector<Index> first_, sphere_;       ///< binding of all vertices, as in SurfaceBinding
   std::vector<double> weight_;
   std::vector<Vec3> rest_;           ///< [m]
   std::vector<Triangle> triangles_;  ///< by patch
   std::vector<Bound> patches_, groups_;
   std::vector<Index> bound_spheres_;
-  std::vector<Vec3> placed_;              ///< positions of the vertices that the present call placed [m]
-  std::vector<std::uint32_t> placed_in_;  ///< call that placed a vertex
-  std::uint32_t call_ = 0;
+  std::vector<Vec3> placed_;              ///< positions of the vertices that the present round placed [m]
+  std::vector<std::uint32_t> placed_in_;  ///< round that placed a vertex
+  std::uint32_t round_ = 0;
 };
 
-template <class Visit>
-void NearSurface::near(const Vec3Array& position, Vec3 centre, double radius, Visit&& visit) {
-  ++call_;
+template <class Region, class Visit>
+void NearSurface::near(const Vec3Array& position, const Region& region, Visit&& visit) {
+  begin();
+  if (groups_.empty()) return;
+  const Box moved = displacements(position);
   for (const Bound& group : groups_) {
-    if (!is_near(group, position, centre, radius)) continue;
+    if (!region.meets(rough_box_of(group, moved)) || !is_near(group, position, region)) continue;
     for (Index p = group.first; p < group.last; ++p) {
       const Bound& patch = patches_[std::size_t(p)];
-      if (!is_near(patch, position, centre, radius)) continue;
+      if (!is_near(patch, position, region)) continue;
       for (Index t = patch.first; t < patch.last; ++t) {
         const Triangle& triangle = triangles_[std::size_t(t)];
         const Vec3 corners[3] = {place(triangle.corner[0], position), place(triangle.corner[1], position),

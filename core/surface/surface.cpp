@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "core/model/result.h"
+#include "core/surface/inside.h"
 
 namespace ctpm::surface {
 namespace {
@@ -218,9 +219,11 @@ void deform_surface(const Surface& surface, const Vec3Array& position, std::int3
           binding.weight[std::size_t(entry)] * position[std::size_t(first_sphere + binding.sphere[std::size_t(entry)])];
 }
 
-void place_surface(const Model& model, std::size_t organ, const Surface& surface, const State& state,
-                   std::vector<Vec3>& vertex) {
-  deform_surface(surface, state.position, model.organs[organ].first, vertex);
+namespace {
+
+/// Moves the vertices that a ball dents onto the ball.
+void put_on_ball(const Model& model, std::size_t organ, const Surface& surface, const State& state,
+                 std::vector<Vec3>& vertex) {
   const Inputs& inputs = state.last_inputs;
   if (state.touched.empty() || inputs.tool < 0) return;
   const Tool& tool = model.tools[std::size_t(inputs.tool)];
@@ -257,6 +260,17 @@ void place_surface(const Model& model, std::size_t organ, const Surface& surface
     const double height = dot(apart, outward), chord = height * height - dot(apart, apart) + tool.radius * tool.radius;
     if (chord > 0) vertex[v] -= std::max(0.0, height + std::sqrt(chord)) * outward;
   }
+}
+
+}  // namespace
+
+void place_surface(const Model& model, std::size_t organ, const Surface& surface, const State& state,
+                   std::vector<Vec3>& vertex) {
+  deform_surface(surface, state.position, model.organs[organ].first, vertex);
+  put_on_ball(model, organ, surface, state, vertex);
+  for (const Obstacle& obstacle : model.obstacles)
+    for (Vec3& v : vertex)
+      if (const Inside inside = find_inside(obstacle, v); inside.depth > 0) v += inside.depth * inside.outward;
 }
 
 }  // namespace ctpm::surface

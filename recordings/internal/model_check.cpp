@@ -64,11 +64,8 @@ std::size_t count_of(const Model& model, EntryOf entry) {
       return model.tools.size();
     case EntryOf::blade_end:
       return 2;
-    case EntryOf::touchable: {
-      std::size_t count = model.sphere_count();
-      for (const Surface& surface : model.surfaces) count += surface.vertex.size();
-      return count;
-    }
+    case EntryOf::touchable:
+      return model.touchable_count() * (2 + model.obstacles.size());
     case EntryOf::tissue_cell:
       return model.tissue_cells.size();
   }
@@ -273,6 +270,21 @@ void check_tissue_cells(Checker& check, const Model& model) {
   }
 }
 
+void check_obstacles(Checker& check, const Model& model) {
+  // Contacts are reserved for each obstacle, and numbers in State::touched count them all.
+  constexpr std::size_t most = 100;
+  check.require(model.obstacles.size() <= most, "obstacles", "are more than " + std::to_string(most));
+  for (std::size_t i = 0; i < model.obstacles.size(); ++i) {
+    const Obstacle& obstacle = model.obstacles[i];
+    const Quat q = obstacle.world_from_obstacle;
+    const double length = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+    check.require(std::abs(length - 1) < 1e-6, "obstacles" + place(i) + ".world_from_obstacle", "has no unit length");
+    const Vec3 half = obstacle.half_size;
+    check.require(obstacle.kind != ObstacleKind::box || (half.x > 0 && half.y > 0 && half.z > 0),
+                  "obstacles" + place(i) + ".half_size", "must be above 0 of a box");
+  }
+}
+
 void check_organs(Checker& check, const Model& model) {
   const auto spheres = static_cast<std::int64_t>(model.sphere_count());
   std::int32_t end = 0;
@@ -301,6 +313,7 @@ Errors check_model(const Model& model) {
   check_axial(check, model);
   check_cut_resistance(check, model);
   check_tissue_cells(check, model);
+  check_obstacles(check, model);
   for (std::size_t i = 0; i < model.tools.size(); ++i)
     check.require(model.tools[i].kind != ToolKind::pin || model.tools[i].sphere >= 0, "tools" + place(i),
                   "is a pin that holds no sphere");

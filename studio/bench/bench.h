@@ -12,7 +12,7 @@
 #include "studio/loading/loaded_scene.h"
 #include "studio/reports/report.h"
 
-// Error against run time, in time, space and structure.
+// Error against run time, in time, space, structure and tiling.
 namespace ctpm::bench {
 
 struct BenchOptions {
@@ -40,6 +40,9 @@ Result<BenchStudy> run_bench_space(const BenchOptions& options, const BenchProgr
 
 /// The four structures on the paper's rig against the closed forms and the paper's Table 1.
 Result<BenchStudy> run_bench_structure(const BenchOptions& options, const BenchProgress& progress);
+
+/// The two tilings of the CTPM on a block that a ball enters, against Lee & Radok.
+Result<BenchStudy> run_bench_tiling(const BenchOptions& options, const BenchProgress& progress);
 
 /// Writes report.html, results.json and results.csv into a folder.
 Result<Done> write_bench_report(const std::string& folder, const std::vector<BenchStudy>& studies);

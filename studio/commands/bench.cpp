@@ -27,7 +27,8 @@ Result<std::vector<bench::BenchStudy>> run_studies(const bench::BenchOptions& op
   }
   if (!options.scenes.empty()) return studies;
   for (const auto& [title, run] :
-       {std::pair{"sphere radius", &bench::run_bench_space}, std::pair{"structure", &bench::run_bench_structure}}) {
+       {std::pair{"sphere radius", &bench::run_bench_space}, std::pair{"structure", &bench::run_bench_structure},
+        std::pair{"tiling", &bench::run_bench_tiling}}) {
     ProgressLine progress(title);
     Result<bench::BenchStudy> study = run(options, line(progress));
     if (!study) return study.errors();
@@ -55,7 +56,7 @@ Command add_bench(CLI::App& program) {
   arguments->options.take_warnings = print_warnings;
   arguments->options.shipped = std::string(CTPM_SOURCE_DIR) + "/scenes";
   CLI::App* app = program.add_subcommand(
-      "bench", "Measures error against run time: integrators and steps, sphere radius, structure.");
+      "bench", "Measures error against run time: integrators and steps, sphere radius, structure, tiling.");
   app->footer(
       "Examples: ctpm bench -o out/bench\n"
       "          ctpm bench my/liver.json -o out/bench");

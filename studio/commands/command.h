@@ -31,5 +31,6 @@ Command add_paper(CLI::App& program);
 Command add_bench(CLI::App& program);
 Command add_stability(CLI::App& program);
 Command add_fidelity(CLI::App& program);
+Command add_studio(CLI::App& program);
 
 }  // namespace ctpm::commands

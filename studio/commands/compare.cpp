@@ -1,12 +1,13 @@
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "studio/commands/command.h"
 #include "studio/commands/comparison_text.h"
 #include "studio/commands/console.h"
 #include "studio/commands/physics_warning.h"
-#include "studio/compare/report.h"
-#include "studio/loading/loaded_scene.h"
+#include "studio/compare/compare_files.h"
 #include "studio/reports/report.h"
 
 namespace ctpm::commands {
@@ -21,32 +22,17 @@ struct CompareArguments {
 int run_compare(const CompareArguments& arguments) {
   if (arguments.has_force_limit && !(arguments.force_limit_n > 0))
     return print_errors({{"--force-limit", "must be above 0 N", ""}});
-  Result<recordings::SessionReader> expert = recordings::SessionReader::open(arguments.expert);
-  Result<recordings::SessionReader> trainee = recordings::SessionReader::open(arguments.trainee);
-  Errors errors;
-  for (const auto* session : {&expert, &trainee})
-    if (!*session) errors.insert(errors.end(), session->errors().begin(), session->errors().end());
-  if (!errors.empty()) return print_errors(errors);
-  if (const Result<Done> same = compare::check_same_scene(*expert, *trainee); !same) return print_errors(same.errors());
-  warn_of_physics(*expert), warn_of_physics(*trainee);
-  const Result<compare::SessionTrack> expert_track = compare::read_track(*expert);
-  const Result<compare::SessionTrack> trainee_track = compare::read_track(*trainee);
-  for (const auto* track : {&expert_track, &trainee_track})
-    if (!*track) errors.insert(errors.end(), track->errors().begin(), track->errors().end());
-  if (!errors.empty()) return print_errors(errors);
+  Result<compare::OpenedFiles> opened = compare::open_files(arguments.expert, arguments.trainee);
+  if (!opened) return print_errors(opened.errors());
+  warn_of_physics(opened->expert), warn_of_physics(opened->trainee);
+  const Result<compare::ComparedFiles> files = compare::compare_files(
+      std::move(*opened), arguments.has_force_limit ? std::optional(arguments.force_limit_n) : std::nullopt);
+  if (!files) return print_errors(files.errors());
   // Created only now, so that refused sessions leave no folder behind.
   if (!arguments.folder.empty())
     if (const Result<Done> ready = reports::prepare_folder(arguments.folder); !ready)
       return print_errors(ready.errors());
-
-  compare::CompareOptions options;
-  if (arguments.has_force_limit) options.force_limit = arguments.force_limit_n;
-  const recordings::SessionStart& scene = expert->start();
-  // A scene text of another version may be unreadable; only the limit is needed from it.
-  if (const Result<scenes::SceneText> text = scenes::read_scene(scene.scene_text, arguments.expert); text)
-    options.damage_force = loading::damage_force_of(text->spec);
-  const compare::Comparison comparison = compare::compare_sessions(*expert_track, *trainee_track, scene, options);
-  const compare::ComparedSessions compared{*expert_track, *trainee_track, scene, comparison};
+  const compare::ComparedSessions compared = files->sessions();
   const std::string to_see_worst = worst_moment_command(compared);
   if (!arguments.folder.empty())
     if (const Result<Done> written = compare::write_comparison(arguments.folder, compared, to_see_worst); !written)

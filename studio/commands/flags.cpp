@@ -32,6 +32,7 @@ constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"look.view", "--view"},
     {"picture.size", "--size"},
     {"report.folder", "-o"},
+    {"studio.port", "--port"},
     {"time_range.from_s", "--from-s"},
     {"time_range.to_s", "--to-s"},
 };

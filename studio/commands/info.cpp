@@ -1,12 +1,11 @@
-#include <algorithm>
-#include <ctime>
+#include <cstdio>
 #include <memory>
 #include <string>
 
 #include "recordings/session_reader.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
-#include "studio/output/json_writer.h"
+#include "studio/session/session_info.h"
 
 namespace ctpm::commands {
 namespace {
@@ -15,68 +14,6 @@ struct InfoArguments {
   std::string file;
   bool json = false;
 };
-
-std::string utc(double unix_s) {
-  const std::time_t whole = std::time_t(unix_s);
-  std::tm parts{};
-  gmtime_r(&whole, &parts);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text;
-}
-
-void write_event(output::JsonWriter& json, const recordings::Event& event, const Model& model) {
-  json.begin_object().member("tick", event.tick).member("kind", recordings::name_of(event.kind));
-  recordings::for_each_value(event, [&](const char* name, const auto& value) { json.member(name, value); });
-  json.member("text", recordings::describe(event, model));
-  if (!event.values.empty()) {
-    json.key("values").begin_list();
-    for (const double value : event.values) json.value(value);
-    json.end_list();
-  }
-  json.end_object();
-}
-
-void print_json(recordings::SessionReader& reader, const recordings::SessionStatistics& s,
-                const std::vector<recordings::Event>& events) {
-  const Model& model = reader.start().model;
-  output::JsonWriter json;
-  json.begin_object().member("session_id", reader.session_id()).member("format_version", reader.format_version());
-  json.member("created_utc", utc(reader.created_unix_s())).member("ended_cleanly", reader.ended_cleanly());
-  const std::int32_t revision = reader.start().physics_revision;
-  json.member("build", reader.start().build_fingerprint).member("physics_revision", revision);
-  json.member("physics_remark", recordings::physics_remark(revision))
-      .member("tick_s", model.tick)
-      .member("ticks", reader.tick_count());
-  json.member("duration_s", double(reader.tick_count()) * model.tick).member("spheres", model.sphere_count());
-  json.member("elements", model.element_count())
-      .member("keyframes", s.keyframes)
-      .member("severed", s.severed)
-      .member("pieces_came_loose", recordings::pieces_came_loose(events, reader.tick_count()))
-      .member("tissue_cells", model.tissue_cells.size());
-  json.key("ends_inside_out");
-  if (model.tissue_cells.size() == 0)
-    json.null();  // nobody looked
-  else
-    json.value(recordings::cells_inside_out(events, reader.tick_count()) > 0);
-  json.member("late_ticks", s.late_ticks)
-      .member("tick_time_p50_s", s.tick_time_p50)
-      .member("tick_time_p99_s", s.tick_time_p99);
-  json.member("tick_time_p999_s", s.tick_time_p999).member("tick_time_max_s", s.tick_time_max);
-  json.member("input_age_p50_s", s.input_age_p50)
-      .member("input_age_p99_s", s.input_age_p99)
-      .member("input_age_max_s", s.input_age_max);
-  json.member("max_force_n", s.max_force).member("max_depth_m", s.max_depth);
-  json.key("values").begin_object();
-  for (const auto& [name, value] : s.values) json.member(name, value);
-  json.end_object().key("remarks").begin_list();
-  for (const std::string& remark : reader.remarks()) json.value(remark);
-  json.end_list().key("metadata").begin_object();
-  for (const auto& [key, value] : reader.start().metadata) json.member(key, value);
-  json.end_object().key("events").begin_list();
-  for (const recordings::Event& event : events) write_event(json, event, model);
-  std::fputs(json.end_list().end_object().text().c_str(), stdout);
-}
 
 std::string metadata_of(const recordings::SessionReader& reader, const char* key) {
   const auto& metadata = reader.start().metadata;
@@ -115,7 +52,8 @@ void print_physics(const recordings::SessionReader& reader) {
 void print_text(recordings::SessionReader& reader, const recordings::SessionStatistics& s,
                 const std::vector<recordings::Event>& events) {
   const Model& model = reader.start().model;
-  std::printf("session    %s, recorded %s%s\n", reader.session_id().c_str(), utc(reader.created_unix_s()).c_str(),
+  std::printf("session    %s, recorded %s%s\n", reader.session_id().c_str(),
+              session::utc_text(reader.created_unix_s()).c_str(),
               reader.ended_cleanly() ? "" : ", without a clean end");
   std::printf("build      %s\n", reader.start().build_fingerprint.c_str());
   print_physics(reader);
@@ -145,13 +83,12 @@ void print_text(recordings::SessionReader& reader, const recordings::SessionStat
 int run_info(const InfoArguments& arguments) {
   Result<recordings::SessionReader> reader = recordings::SessionReader::open(arguments.file);
   if (!reader) return print_errors(reader.errors());
-  const Result<recordings::SessionStatistics> statistics = reader->statistics();
-  if (!statistics) return print_errors(statistics.errors());
-  Result<std::vector<recordings::Event>> events = reader->events();
-  if (!events) return print_errors(events.errors());
-  // An end is detected, and recorded, only a while later.
-  std::ranges::stable_sort(*events, {}, &recordings::Event::tick);
-  (arguments.json ? print_json : print_text)(*reader, *statistics, *events);
+  const Result<session::SessionInfo> info = session::read_info(*reader);
+  if (!info) return print_errors(info.errors());
+  if (arguments.json)
+    std::fputs(session::info_json(*reader, *info).c_str(), stdout);
+  else
+    print_text(*reader, info->statistics, info->events);
   return exit_good;
 }
 

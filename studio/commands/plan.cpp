@@ -86,6 +86,10 @@ std::vector<Feature> features_of(const scenes::SceneSpec& scene, const Model& m,
       {"gravity", !(m.gravity == Vec3{}), m.gravity == Vec3{} ? "the scene has none" : "the scene asks for it", 0},
       {"ball contact", m.has_tool(ToolKind::ball), m.has_tool(ToolKind::ball) ? "a tool presses" : "no tool presses",
        0},
+      {"contact with obstacles", !m.obstacles.empty(), counted(m.obstacles.size(), "obstacles", "the scene has none"),
+       bytes_of_fields(m, "obstacles")},
+      {"contact of tissue with tissue", m.has_meeting_tissue(),
+       m.has_meeting_tissue() ? "organs meet each other or themselves" : "organs pass through each other", 0},
       {"pin", m.has_tool(ToolKind::pin), m.has_tool(ToolKind::pin) ? "a tool holds a sphere" : "no tool holds a sphere",
        0},
       {"cutting", cuts, cuts ? "a tool cuts" : "no tool cuts",
@@ -129,14 +133,16 @@ Errors thin_parts_of(const loading::LoadedScene& scene) {
     const FilledOrgan& organ = scene.organs[i];
     const std::string at = "/organs/" + std::to_string(i) + "/fill";
     const fidelity::ThinParts thin = fidelity::find_thin_parts(organ);
+    const double known = fidelity::kThicknessError * organ.spacing;
     if (thin.spheres > 0)
       warnings.push_back(scene.scene.places.error_at(
           at,
           std::to_string(thin.spheres) + " of " + std::to_string(organ.centre.size()) +
               " spheres lie in tissue thinner than two spacings (" +
               importers::mm_text(fidelity::kLeastSpacingsAcross * organ.spacing) +
-              "), which they cannot carry; the thinnest is " + importers::mm_text(thin.thinnest) + " at " +
-              importers::place_text(thin.place),
+              "), which they cannot carry; the thinnest is " +
+              (thin.thinnest < known ? "less than " + importers::mm_text(known) : importers::mm_text(thin.thinnest)) +
+              " at " + importers::place_text(thin.place),
           "a smaller radius_mm carries more of it"));
     for (const importers::Finding& finding : scene.reports[i].fill.findings)
       if (finding.code == "thin" || finding.code == "flat")

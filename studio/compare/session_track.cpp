@@ -126,8 +126,7 @@ ElementPlaces::ElementPlaces(const Model& model)
       angle_springs(constraints + model.constraints.size()),
       count(angle_springs + model.angle_springs.size()) {}
 
-Result<SessionTrack> read_track(recordings::SessionReader& session) {
-  if (const Result<Done> whole = session.check_all(); !whole) return whole.errors();
+Result<SessionTrack> read_recorded(recordings::SessionReader& session) {
   const recordings::SessionStart& start = session.start();
   SessionTrack track;
   track.path = session.path(), track.session_id = session.session_id(), track.tick = start.model.tick;
@@ -148,9 +147,16 @@ Result<SessionTrack> read_track(recordings::SessionReader& session) {
     }
   }
   track.strokes = strokes_of(track.tool);
-  if (track.strokes.empty()) return Error{session.path(), "no tool is ever in the hand", ""};
   track.cuts = cuts_of(track, start.model);
-  if (const Result<Done> found = find_severed(session, track); !found) return found.errors();
+  return track;
+}
+
+Result<SessionTrack> read_track(recordings::SessionReader& session) {
+  if (const Result<Done> whole = session.check_all(); !whole) return whole.errors();
+  Result<SessionTrack> track = read_recorded(session);
+  if (!track) return track.errors();
+  if (track->strokes.empty()) return Error{session.path(), "no tool is ever in the hand", ""};
+  if (const Result<Done> found = find_severed(session, *track); !found) return found.errors();
   return track;
 }
 

@@ -42,6 +42,9 @@ struct SessionTrack {
   double seconds(std::size_t ticks) const { return double(ticks) * tick; }
 };
 
+/// Reads the ticks of a session without replaying any: severed_at stays empty. Errors: a damaged block, named.
+Result<SessionTrack> read_recorded(recordings::SessionReader& session);
+
 /// Reads a whole session and replays each cut from the keyframe before it. Errors: those of reading; a damaged block,
 /// named; no tool is ever held.
 Result<SessionTrack> read_track(recordings::SessionReader& session);

@@ -47,6 +47,7 @@ scenes::SceneSpec scene_of(const Specimen& specimen) {
   scene.contact_friction = specimen.friction;
   scenes::OrganSpec organ;
   organ.name = "body", organ.mesh = specimen.mesh.path;
+  organ.tiling = specimen.tiling;
   organ.material.preset = "liver", organ.material.density = specimen.density;
   organ.fill.radius = organ.fill.gap = specimen.radius;
   if (specimen.clamp) {
@@ -64,17 +65,21 @@ scenes::SceneSpec scene_of(const Specimen& specimen) {
   return scene;
 }
 
+Result<importers::Filling> fill_mesh(const scenes::OrganSpec& organ, const importers::RawMesh& mesh,
+                                     importers::FillOptions options) {
+  importers::RepairOptions repair;
+  repair.all_parts = organ.all_parts;
+  const Result<importers::CheckedMesh> checked = importers::repair_mesh(mesh, 1.0, repair);
+  if (!checked) return checked.errors();
+  options.sphere_radius = organ.fill.radius, options.gap = organ.fill.gap, options.threads = 1;
+  return importers::fill_organ(*checked, options);
+}
+
 Result<Body> make_body(const scenes::SceneSpec& scene, const importers::RawMesh& mesh, Quat turn, Vec3 shift,
                        importers::FillOptions options) {
   importers::RawMesh placed = mesh;
   for (Vec3& v : placed.vertex) v = rotate(turn, v) + shift;
-  importers::RepairOptions repair;
-  repair.all_parts = scene.organs[0].all_parts;
-  const Result<importers::CheckedMesh> checked = importers::repair_mesh(placed, 1.0, repair);
-  if (!checked) return checked.errors();
-  options.sphere_radius = scene.organs[0].fill.radius, options.gap = scene.organs[0].fill.gap;
-  options.threads = 1;
-  Result<importers::Filling> filling = importers::fill_organ(*checked, options);
+  Result<importers::Filling> filling = fill_mesh(scene.organs[0], placed, options);
   if (!filling) return filling.errors();
   Result<scenes::BuiltScene> built = scenes::build_model(scene, {&filling->organ, 1});
   if (!built) return built.errors();
@@ -102,6 +107,18 @@ stepping::StepReport settle(stepping::Stepper& stepper, State& state, const Inpu
   }
   report.status = stepping::StepStatus::not_converged;
   return report;
+}
+
+void run_for(const Model& model, State& state, double time) {
+  stepping::Stepper stepper(model);
+  for (std::int64_t t = 0; t < std::llround(time / model.tick); ++t) (void)stepper.step(state, {});
+}
+
+Vec3 centre_of_mass(const Model& model, const Vec3Array& position) {
+  Vec3 sum;
+  double mass = 0;
+  for (std::size_t i = 0; i < model.sphere_count(); ++i) sum += model.mass[i] * position[i], mass += model.mass[i];
+  return sum / mass;
 }
 
 std::vector<Vec3> drawn_at(const Body& body, const State& state) {

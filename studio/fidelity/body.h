@@ -27,6 +27,7 @@ struct Specimen {
   importers::RawMesh mesh;  ///< [m]
   double radius = 4e-3;     ///< r of the spheres [m]; the gap is r, so the spacing is 3 r
   Pace pace = Pace::slow;
+  scenes::TilingSpec tiling = scenes::TilingSpec::automatic;
   std::optional<scenes::PlaneRegion> clamp;  ///< tissue behind this plane never moves
   Vec3 gravity;                              ///< [m/s^2]
   std::optional<double> density;             ///< [kg/m^3]; unset: the preset\'s
@@ -55,6 +56,10 @@ scenes::SceneSpec scene_of(const Specimen& specimen);
 /// Gives a scene long ticks and tight residuals, for one state of rest after the other.
 void use_slow_pace(scenes::SceneSpec& scene);
 
+/// Checks a mesh in the world [m] and fills it as the organ says. Radius and gap of `options` are those of the organ.
+Result<importers::Filling> fill_mesh(const scenes::OrganSpec& organ, const importers::RawMesh& mesh,
+                                     importers::FillOptions options = {});
+
 /// Checks the mesh, fills it and builds the Model. Errors: those of importers and scenes.
 Result<Body> make_body(const Specimen& specimen);
 
@@ -70,6 +75,11 @@ void hold(Model& model, const std::vector<std::int32_t>& spheres, std::uint8_t a
 /// Returns the last report; its status is `not_converged` if the body still moves after `most` ticks.
 stepping::StepReport settle(stepping::Stepper& stepper, State& state, const Inputs& hand, std::int64_t most = 400,
                             double still = 1e-8);
+
+/// Ticks without a tool for `time` [s].
+void run_for(const Model& model, State& state, double time);
+
+Vec3 centre_of_mass(const Model& model, const Vec3Array& position);
 
 /// Vertices of the drawn surface [m].
 std::vector<Vec3> drawn_at(const Body& body, const State& state);

@@ -11,13 +11,6 @@ namespace {
 
 constexpr double kSpin = 10, kSpinTime = 1.0, kFallTime = 0.3, kGravity = 9.81;
 
-Vec3 centre_of_mass(const Model& model, const Vec3Array& position) {
-  Vec3 sum;
-  double mass = 0;
-  for (std::size_t i = 0; i < model.sphere_count(); ++i) sum += model.mass[i] * position[i], mass += model.mass[i];
-  return sum / mass;
-}
-
 /// Angular momentum about the centre of mass along z [kg m^2/s], and kinetic energy [J].
 std::pair<double, double> spin_of(const Model& model, const State& state) {
   const Vec3 centre = centre_of_mass(model, state.position);
@@ -28,11 +21,6 @@ std::pair<double, double> spin_of(const Model& model, const State& state) {
     energy += 0.5 * model.mass[i] * dot(v, v);
   }
   return {momentum, energy};
-}
-
-void run_for(const Model& model, State& state, double time) {
-  stepping::Stepper stepper(model);
-  for (std::int64_t t = 0; t < std::llround(time / model.tick); ++t) (void)stepper.step(state, {});
 }
 
 }  // namespace

@@ -207,6 +207,25 @@ struct FreeMotionResult {
 Result<FreeMotionResult> measure_free_motion(double radius);
 Chapter chapter_of(const FreeMotionResult& result);
 
+/// Organs that fall on the ground and on each other, collide, and lie on slopes.
+struct MeetingResult {
+  struct Rest {
+    std::string on;
+    double overlap = 0;  ///< largest depth of the drawn surface inside what it lies on; negative: a gap [m]
+    double speed = 0;    ///< of the fastest sphere [m/s]
+  };
+  double radius = 0;       ///< [m]
+  std::string integrator;  ///< that `auto` took for the collision
+  std::vector<Rest> rests;
+  double momentum = 0;          ///< change in the collision, over that of one organ before [1]
+  double angular_momentum = 0;  ///< the same, over that of one organ at the other's surface [1]
+  double rebound = 0;           ///< speed after over before the collision, of one organ's centre [1]
+  double creep = 0;             ///< way down a slope that friction holds [m]
+  double slide = 0;             ///< way down a steep slope, over Coulomb's [1]
+};
+Result<MeetingResult> measure_meeting(double radius);
+Chapter chapter_of(const MeetingResult& result);
+
 /// Order of convergence of errors at radii, from a least-squares line through the logarithms; NaN with fewer than two.
 double order_of(const std::vector<double>& radii, const std::vector<double>& errors);
 

@@ -45,7 +45,8 @@ class Lines {
       }
       length += organ_.depth[last];
     }
-    return length;
+    // Spheres of the covering lattice may lie outside; then the sum can fall below 0.
+    return std::max(0.0, length);
   }
 
   /// Growth of the depth by way, from the neighbours along all lines [1].

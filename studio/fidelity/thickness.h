@@ -11,9 +11,13 @@ namespace ctpm::fidelity {
 /// Tissue needs two spacings across to resist bending: one sheet of spheres folds like cloth.
 inline constexpr double kLeastSpacingsAcross = 2;
 
+/// Error of local_thickness(), in spacings: that of a lattice line which misses the thinnest place.
+inline constexpr double kThicknessError = 0.5;
+
 /// Thickness of the tissue at each sphere [m], from the depths of the spheres: along the lattice line that follows the
 /// steepest growth of depth, its run of spheres and the depths of its two ends. In the middle of a sheet and at corners
-/// depth does not grow, and the shortest of the three axis lines counts. Known to about half a spacing (sphere_count).
+/// depth does not grow, and the shortest of the three axis lines counts. Known to about kThicknessError; 0 or more
+/// (sphere_count).
 std::vector<double> local_thickness(const FilledOrgan& organ);
 
 /// Spheres in tissue that is thinner than kLeastSpacingsAcross.

@@ -9,6 +9,7 @@
 #include "studio/render/element_values.h"
 #include "studio/render/gl_context.h"
 #include "studio/render/gl_objects.h"
+#include "studio/render/obstacle_mesh.h"
 #include "studio/render/organ_painter.h"
 #include "studio/render/shaders.h"
 #include "studio/render/tool_mesh.h"
@@ -73,6 +74,8 @@ struct Renderer::Parts {
   OrganPainter organs;
   std::vector<ToolMesh> tool_meshes;
   std::vector<VertexArray> tools;
+  std::vector<ToolMesh> obstacle_meshes;
+  std::vector<VertexArray> obstacles;
   VertexArray spheres, rods;
   std::vector<float> instances;
   std::vector<ElementValue> elements;
@@ -99,7 +102,9 @@ struct Renderer::Parts {
   void set_light(const Program& program, const State& state, const DrawOptions& options);
   void draw_spheres(const State& state, const DrawOptions& options);
   void draw_elements(const State& state, const DrawOptions& options);
+  VertexArray array_of(const ToolMesh& mesh) const;
   void draw_tool(const State& state, const DrawOptions& options);
+  void draw_obstacles(const State& state, const DrawOptions& options);
   void draw_behind(const DrawOptions& options);
   void read_frame();
 };
@@ -128,12 +133,22 @@ void Renderer::Parts::create_arrays() {
   rods.attribute(g, 2, 1, 6, 10, 1), rods.attribute(g, 3, 3, 7, 10, 1);
   for (const Tool& kind : scene.model->tools) {
     tool_meshes.push_back(make_tool_mesh(kind));
-    VertexArray array;
-    array.create(g);
-    array.attribute(g, 0, 3, 0, 7), array.attribute(g, 1, 3, 3, 7), array.attribute(g, 2, 1, 6, 7);
-    array.set_stream(g, tool_meshes.back().vertex), array.set_indices(g, tool_meshes.back().index);
-    tools.push_back(array);
+    tools.push_back(array_of(tool_meshes.back()));
   }
+  for (const Obstacle& obstacle : scene.model->obstacles) {
+    if (is_level_ground(obstacle, up)) continue;
+    obstacle_meshes.push_back(make_obstacle_mesh(obstacle, ground_centre, kGroundExtent * size));
+    obstacles.push_back(array_of(obstacle_meshes.back()));
+  }
+}
+
+VertexArray Renderer::Parts::array_of(const ToolMesh& mesh) const {
+  const Gl& g = gl();
+  VertexArray array;
+  array.create(g);
+  array.attribute(g, 0, 3, 0, 7), array.attribute(g, 1, 3, 3, 7), array.attribute(g, 2, 1, 6, 7);
+  array.set_stream(g, mesh.vertex), array.set_indices(g, mesh.index);
+  return array;
 }
 
 void Renderer::Parts::place_ground() {
@@ -145,6 +160,8 @@ void Renderer::Parts::place_ground() {
     for (const Vec3& p : surface.vertex) lowest = std::min(lowest, dot(p, up));
   // A little below the lowest point, since organs sag.
   ground_height = lowest - 0.015 * size;
+  for (const Obstacle& obstacle : scene.model->obstacles)
+    if (is_level_ground(obstacle, up)) ground_height = dot(obstacle.position, up);
   ground_centre = box.centre() + (ground_height - dot(box.centre(), up)) * up;
   const double half = 0.5 * kGroundExtent * size;
   ground_x = half * unit(cross(std::abs(up.y) < 0.9 ? Vec3{0, 1, 0} : Vec3{1, 0, 0}, up));
@@ -177,6 +194,9 @@ PixelRect Renderer::Parts::footprint(const State& state, const DrawOptions& opti
           for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
             print.add(p + side * range.sphere_radius * axis);
         }
+  for (const ToolMesh& mesh : obstacle_meshes)
+    for (std::size_t i = 0; i < mesh.vertex.size(); i += 7)
+      print.add({mesh.vertex[i], mesh.vertex[i + 1], mesh.vertex[i + 2]});
   if (held_tool(state, options)) {
     const std::vector<float>& v = tool_meshes[std::size_t(state.last_inputs.tool)].vertex;
     for (std::size_t i = 0; i < v.size(); i += 7)
@@ -244,6 +264,14 @@ void Renderer::Parts::draw_tool(const State& state, const DrawOptions& options) 
   set_light(tool, state, options);
   tool.set("world_from_tool", rigid(state.last_inputs.world_from_tool, state.last_inputs.position));
   gl().BindVertexArray(array.id), gl().DrawElements(GL_TRIANGLES, array.index_count, GL_UNSIGNED_INT, nullptr);
+}
+
+void Renderer::Parts::draw_obstacles(const State& state, const DrawOptions& options) {
+  if (obstacles.empty()) return;
+  set_light(tool, state, options);
+  tool.set("world_from_tool", rigid({}, {}));
+  for (const VertexArray& array : obstacles)
+    gl().BindVertexArray(array.id), gl().DrawElements(GL_TRIANGLES, array.index_count, GL_UNSIGNED_INT, nullptr);
 }
 
 /// The backdrop and the ground's shadow.
@@ -326,6 +354,7 @@ Frame Renderer::draw(const State& state, const DrawOptions& options) {
   if (options.view == View::spheres || options.view == View::both) p.draw_spheres(state, options);
   if (options.view == View::elements) p.draw_elements(state, options);
   p.draw_tool(state, options);
+  p.draw_obstacles(state, options);
   if (options.view == View::surface || options.view == View::both) {
     for (const Program* program : p.organs.programs(options)) p.set_light(*program, state, options);
     p.organs.draw(gl, p.scene, options);

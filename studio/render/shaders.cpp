@@ -234,6 +234,8 @@ void main() {
   vec3 c;
   if (piece < 0.5)
     c = vec3(0.62, 0.65, 0.69) * (0.30 * diffuse_light(m, vec3(0.0), 1.0) + 0.85 * mirrored);
+  else if (piece > 1.5)
+    c = vec3(0.09, 0.20, 0.22) * diffuse_light(m, vec3(0.0), 1.0);
   else
     c = vec3(0.055, 0.075, 0.10) * diffuse_light(m, vec3(0.0), 1.0) + 1.3 * fresnel(dot(m, v)) * mirrored;
   colour = vec4(to_srgb(c), 1.0);

@@ -7,8 +7,8 @@
 
 namespace ctpm::render {
 
-/// The material of one part of a tool.
-enum class ToolPart : std::int32_t { steel = 0, handle = 1 };
+/// The material of one part of a tool, or of an obstacle.
+enum class ToolPart : std::int32_t { steel = 0, handle = 1, cloth = 2 };
 
 /// A tool in its own frame. The floats of a vertex are position [m], normal, part.
 struct ToolMesh {

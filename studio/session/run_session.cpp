@@ -140,8 +140,9 @@ RunOutcome run_session(const Model& model, State& state, sources::InputSource& s
                     .sphere = report.worst_sphere});
       break;
     }
-    writer.append(
-        state, recordings::make_record(*inputs, report, tick_time, recordings::state_hash(state), source.input_age()));
+    const recordings::TickRecord record =
+        recordings::make_record(*inputs, report, tick_time, recordings::state_hash(state), source.input_age());
+    writer.append(state, record);
     watch.look(tick, inputs->tool, report);
     deadline += tick_length;
     if (options.in_real_time && Clock::now() > deadline) {
@@ -150,6 +151,7 @@ RunOutcome run_session(const Model& model, State& state, sources::InputSource& s
       deadline = Clock::now();  // the next ticks do not make up for a late one
     }
     ++outcome.ticks;
+    if (options.watch) options.watch(state, record, outcome);
     if (options.progress)
       options.progress(outcome.ticks, options.most_ticks ? options.most_ticks : source.tick_count());
   }

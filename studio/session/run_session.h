@@ -12,18 +12,6 @@
 
 namespace ctpm::session {
 
-struct RunOptions {
-  bool in_real_time = true;     ///< true: ticks start at absolute wall-clock deadlines; false: without pauses
-  double damage_force = 0;      ///< force on the tool above which a damage event is recorded [N]; 0: no limit
-  std::int64_t most_ticks = 0;  ///< the session ends after this many ticks; 0: when the source ends
-  int threads = 1;              ///< threads of a tick, >= 1; the result does not depend on it
-  std::function<void(std::int64_t done, std::int64_t total)> progress;
-  std::function<bool()> should_stop;  ///< called every tick, for Ctrl-C
-};
-
-/// Number of threads that pays off for a model on this machine: 2 with several cores and at least 3000 spheres, else 1.
-int threads_for(const Model& model);
-
 /// The result of a run.
 struct RunOutcome {
   std::int64_t ticks = 0;
@@ -32,6 +20,20 @@ struct RunOutcome {
   std::int32_t worst_sphere = -1;
   std::string fault;  ///< why the source ended the session early; empty if it did not
 };
+
+struct RunOptions {
+  bool in_real_time = true;     ///< true: ticks start at absolute wall-clock deadlines; false: without pauses
+  double damage_force = 0;      ///< force on the tool above which a damage event is recorded [N]; 0: no limit
+  std::int64_t most_ticks = 0;  ///< the session ends after this many ticks; 0: when the source ends
+  int threads = 1;              ///< threads of a tick, >= 1; the result does not depend on it
+  std::function<void(std::int64_t done, std::int64_t total)> progress;
+  std::function<bool()> should_stop;  ///< called every tick, for Ctrl-C
+  /// Called after each tick, with its State; must not wait.
+  std::function<void(const State& state, const recordings::TickRecord& record, const RunOutcome& so_far)> watch;
+};
+
+/// Number of threads that pays off for a model on this machine: 2 with several cores and at least 3000 spheres, else 1.
+int threads_for(const Model& model);
 
 /// Runs one session from `state`: source -> step -> writer, tick by tick.
 RunOutcome run_session(const Model& model, State& state, sources::InputSource& source,

@@ -7,8 +7,8 @@
 
 #include "core/model/fields.h"
 #include "core/stepping/step.h"
-#include "tests/core/blocks.h"
 #include "tests/core/counting_allocator.h"
+#include "tests/core/skinned_block.h"
 
 namespace ctpm {
 namespace {
@@ -54,6 +54,38 @@ TEST_P(EveryIntegrator, AllocatesNothingAfterTheFirstTick) {
 
 INSTANTIATE_TEST_SUITE_P(All, EveryIntegrator,
                          ::testing::Values(Integrator::leapfrog, Integrator::backward_euler, Integrator::sdirk2));
+
+TEST_P(EveryIntegrator, AllocatesNothingWhereBodiesMeet) {
+  network::Material material = testing::liver_material();
+  if (GetParam() == Integrator::leapfrog) material.viscosity = 5e3, material.stiffness_scale = 0.3;
+  Model model;
+  for (const double height : {0.0, 0.0241}) {
+    FilledOrgan organ = testing::make_block(4, 4, 3);
+    for (Vec3& centre : organ.centre) centre.z += height;
+    testing::add_faces(organ, 0.004);
+    network::OrganSettings settings;
+    settings.name = "block", settings.structure = network::Structure::mass_spring, settings.material = material;
+    ASSERT_TRUE(bool(network::add_organ(model, organ, settings)));
+    model.organs.back().meets_itself = true;
+  }
+  model.organs_meet = true, model.contact_friction = 0.3, model.gravity = {0, 0, -9.81};
+  model.obstacles = {{"ground", ObstacleKind::plane, {0, 0, -1e-4}, {}, {}},
+                     {"wall", ObstacleKind::box, {0.0479, 0, 0}, {}, {0.03, 0.1, 0.1}}};
+  testing::use_integrator(model, GetParam());
+  stepping::Stepper stepper(model);
+  State state = rest_state(model);
+  long before = 0;
+  for (int tick = 0; tick < 60; ++tick) {
+    if (tick == 1) before = allocations;
+    ASSERT_EQ(stepper.step(state, {}).status, stepping::StepStatus::ok);
+  }
+  EXPECT_EQ(allocations, before);
+  const auto points = std::int32_t(model.touchable_count());
+  for (std::int32_t kind = 1; kind <= 3; ++kind)
+    EXPECT_TRUE(std::any_of(state.touched.begin(), state.touched.end(), [&](std::int32_t point) {
+      return point / points == kind;
+    })) << kind;
+}
 
 Model springs_only() {
   network::Material material = testing::liver_material();

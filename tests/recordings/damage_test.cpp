@@ -27,6 +27,8 @@ std::uint64_t hash_of(const Model& model) {
     using T = std::decay_t<decltype(value)>;
     if constexpr (std::is_same_v<T, Vec3>)
       all.kelvin_elongation.insert(all.kelvin_elongation.end(), {value.x, value.y, value.z});
+    else if constexpr (std::is_same_v<T, Quat>)
+      all.kelvin_elongation.insert(all.kelvin_elongation.end(), {value.w, value.x, value.y, value.z});
     else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
       all.kelvin_elongation.push_back(static_cast<double>(value));
     else if constexpr (requires { value.begin(); })

@@ -22,6 +22,21 @@ std::string errors_of(const std::string& text) {
 }
 const std::string kMesh = R"("mesh": "a.obj", )", kLiver = R"("material": {"preset": "liver"})";
 
+TEST(BadInput, AnObstacleIsAPlaneOrABoxAndHasAPlaceAndASize) {
+  const std::string text = errors_of(scene_with(kMesh + kLiver, R"(, "obstacles": [
+{"name": "a"},
+{"name": "a", "plane": {"point_mm": [0, 0, 0], "normal": [0, 0, 0]}},
+{"name": "b", "box": {"min_mm": [0, 0, 0], "max_mm": [1, 0, 1]}},
+{"name": "c", "box": {"min_mm": [0, 0, 9], "max_mm": [1, 1, 1]}}], "organs_meet": 1)"));
+  for (const char* part : {"t.json:4:1: error: /obstacles/0: must have exactly one of plane, box",
+                           "t.json:5:10: error: /obstacles/1/name: got \"a\", which is taken already",
+                           "t.json:5:", "/obstacles/1/plane/normal", "/obstacles/2/box: has no volume",
+                           "/obstacles/3/box: min_mm must not be above max_mm", "/organs_meet"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  const std::string rig = errors_of(scene_with(R"("rig": {"block": [2, 2, 2]}, "meets_itself": true, )" + kLiver));
+  EXPECT_NE(rig.find("/organs/0/meets_itself: a rig has no surface"), std::string::npos) << rig;
+}
+
 /// A number that an author writes, with its key's range.
 struct Field {
   const char* pointer;

@@ -154,6 +154,27 @@ TEST(BuildModel, TheLawsOfContactAreTheScenesOrElseThoseOfTheCore) {
   EXPECT_EQ(own.model.tools.at(1).blade_thickness, 0.00025);
 }
 
+TEST(BuildModel, ObstaclesLieWhereTheSceneSaysAndTouchWithItsFriction) {
+  const scenes::BuiltScene built = build(block_scene("", R"(, "contact_friction": 0.4, "obstacles": [
+      {"name": "slope", "plane": {"point_mm": [1, 2, 3], "normal": [0, 3, 4]}},
+      {"name": "ceiling", "plane": {"point_mm": [0, 0, 500], "normal": [0, 0, -2]}},
+      {"name": "table", "box": {"min_mm": [-10, -20, -40], "max_mm": [10, 20, -30]}}])"));
+  const std::vector<Obstacle>& obstacles = built.model.obstacles;
+  ASSERT_EQ(obstacles.size(), 3u);
+  EXPECT_EQ(obstacles[0].kind, ObstacleKind::plane);
+  EXPECT_EQ(obstacles[0].position, (Vec3{0.001, 0.002, 0.003}));
+  const Vec3 up{0, 0, 1}, normal = rotate(obstacles[0].world_from_obstacle, up);
+  EXPECT_NEAR(norm(normal - Vec3{0, 0.6, 0.8}), 0, 1e-15);
+  EXPECT_NEAR(norm(rotate(obstacles[1].world_from_obstacle, up) + up), 0, 1e-15);
+  EXPECT_EQ(obstacles[2].kind, ObstacleKind::box);
+  EXPECT_NEAR(norm(obstacles[2].position - Vec3{0, 0, -0.035}), 0, 1e-15);
+  EXPECT_NEAR(norm(obstacles[2].half_size - Vec3{0.01, 0.02, 0.005}), 0, 1e-15);
+  EXPECT_EQ(built.model.contact_friction, 0.4);
+  EXPECT_GT(built.model.contact_k, 0) << "a rig touches with its spheres";
+  EXPECT_FALSE(built.model.organs_meet);
+  EXPECT_TRUE(build(block_scene()).model.obstacles.empty());
+}
+
 TEST(BuildModel, OrgansFromAMeshResistInversionAndRigsOnlyIfAsked) {
   EXPECT_EQ(build(block_scene("")).model.tissue_cells.size(), 0u);
   const scenes::BuiltScene asked = build(block_scene(R"(, "inversion_resistance": 4)"));

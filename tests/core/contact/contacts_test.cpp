@@ -35,7 +35,7 @@ class CutAndPressed : public ::testing::Test {
   }
 
   contact::ImplicitContacts detect() {
-    return contacts_->detect(state_, tool_, {1e-3, 1e-3, 1.0, {}}, contact::Linearisation::rest);
+    return contacts_->detect(state_, tool_, {1e-3, 1e-3, 0, 1.0, {}}, contact::Linearisation::rest);
   }
 
   Model model_ = testing::free_block(6, 4, 4, testing::resisting(0));
@@ -112,7 +112,7 @@ TEST_F(CutAndPressed, AnExplicitStepKeepsTheMomentumThatTheToolDoesNotTake) {
   };
   const double h = 1e-4;
   Vec3Array velocity = state_.velocity;
-  const contact::ExplicitContacts set = contacts_->push_apart(state_, tool_, {h, h, 1.0, {}}, velocity);
+  const contact::ExplicitContacts set = contacts_->push_apart(state_, tool_, {h, h, 0.5 * h, 1.0, {}}, velocity);
   EXPECT_GT(set.touched(), 0);
   EXPECT_GT(norm(set.tool_force()), 0);
   const Vec3 gained = momentum(velocity) - momentum(state_.velocity);
@@ -125,7 +125,7 @@ TEST_F(CutAndPressed, APinIsAContactThatFollowsTheHand) {
   pin.tool = &holding;
   pin.from = model_.rest_position[5], pin.to = pin.from + Vec3{0, 0, 2e-3};
   const double h = 1e-3;
-  const contact::ContactStep step{h, h, 1.0, contact::Contacts::pin(pin, state_.position, 1.0, h)};
+  const contact::ContactStep step{h, h, 0, 1.0, contact::Contacts::pin(pin, state_.position, 1.0, h)};
   EXPECT_NEAR(norm(state_.position[5] + h * step.pin.velocity - pin.to), 0, 1e-15);
   const contact::ImplicitContacts set = contacts_->detect(state_, pin, step, contact::Linearisation::rest);
   EXPECT_EQ(set.touched(), 1);

@@ -141,9 +141,11 @@ TEST(CutBody, WallsLieOnTheSweptSurface) {
           nearest = std::min({nearest, norm(cutting::nearest_in_triangle(p, q.from, q.to, q.from2) - p),
                               norm(cutting::nearest_in_triangle(p, q.to, q.to2, q.from2) - p)});
         });
+        if (nearest > 0.0012) printf("  %g %g %g: %g\n", p.x*1e3, p.y*1e3, p.z*1e3, nearest*1e3);
         farthest = std::max(farthest, nearest);
       }
     EXPECT_LT(farthest, 0.1 * kSpacing) << each.name;
+    printf("%s %g mm\n", each.name, farthest*1e3);
   }
 }
 

@@ -37,7 +37,7 @@ TEST(Flags, EveryFieldThatAnErrorNamesHasAFlagOfTheProgram) {
   EXPECT_GT(fields.size(), 20u);
   const testing::TemporaryFolder folder;
   std::string help;
-  for (const char* command : {"import", "record", "replay", "export", "preview", "paper", "fidelity"})
+  for (const char* command : {"import", "record", "replay", "export", "preview", "paper", "fidelity", "studio"})
     help += testing::run_ctpm({command, "--help"}, folder.path()).out;
   for (const std::string& field : fields) {
     const std::string flag = commands::flag_of(field);

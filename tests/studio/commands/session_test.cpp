@@ -49,6 +49,20 @@ TEST(ShippedSessions, EachIsTheSameToTheBitWithAnyNumberOfThreads) {
   }
 }
 
+TEST(SessionProgram, AnOrganThatLiesOnATableReplaysToTheBit) {
+  const TemporaryFolder folder;
+  const ProgramOutcome recorded =
+      run_ctpm({"record", kScenes + "/kidney-on-table.json", "--script", kScenes + "/scripts/kidney-on-table-push.json",
+                "-o", "push.ctpm", "--fast", "--duration-s", "1.5"},
+               folder.path());
+  ASSERT_EQ(recorded.code, 0) << recorded.err;
+  const ProgramOutcome verified = run_ctpm({"verify", "push.ctpm", "--threads", "2"}, folder.path());
+  EXPECT_EQ(verified.code, 0) << verified.out << verified.err;
+  EXPECT_TRUE(holds(verified.out, ": same: ")) << verified.out;
+  const ProgramOutcome planned = run_ctpm({"plan", kScenes + "/kidney-on-table.json"}, folder.path());
+  EXPECT_TRUE(holds(planned.out, "contact with obstacles")) << planned.out;
+}
+
 TEST(ShippedSessions, EachScriptOfAnExpertHasAClumsyCounterpart) {
   for (const fs::path& path : shipped_sessions()) {
     std::string name = path.filename().string();

@@ -66,6 +66,11 @@ TEST(ThinParts, AreASlabOfLessThanTwoSpacingsAndNotOneOfThree) {
   EXPECT_EQ(find_thin_parts(fill(slab(36e-3))).spheres, 0);
 }
 
+TEST(LocalThickness, IsNeverNegativeWhereTheLatticeLiesOutside) {
+  for (const double height : {3e-3, 6e-3, 9e-3})
+    for (const double thickness : local_thickness(fill(slab(height)))) EXPECT_GE(thickness, 0) << height;
+}
+
 TEST(ThinParts, AreNotTheCapsOfABall) { EXPECT_EQ(find_thin_parts(fill(ball_mesh(50e-3, 4e-3))).spheres, 0); }
 
 TEST(PlanCommand, WarnsWhereAnOrganIsTooThinForItsSpheres) {

@@ -19,7 +19,7 @@ TEST(CutPicture, AClosedCutIsALineAndChangesNothingElse) {
   options.camera = render::fit_camera(render::rest_bounds(scene->view), {0.1, 0.35, -1}, {0, 1, 0});
   const State rest = rest_state(scene->model), severed = cut_along_y(scene->model, 0.001, 0.02, -0.005);
   const render::Frame whole = (*made)->draw(rest, options), closed = (*made)->draw(severed, options);
-  render::CutSurface cut_surface(scene->model, 0, scene->model.surfaces[0]);
+  render::CutSurface cut_surface(scene->model, 0);
   ASSERT_TRUE(cut_surface.update(severed));
   std::vector<bool> near_lip(kWidth * kHeight);
   for (std::size_t v = 0; v < cut_surface.outer_vertex_count(); ++v) {

@@ -25,7 +25,7 @@ double area(const Surface& surface, std::size_t triangles) {
 
 TEST(CutSurface, WithoutACutIsTheWholeSurface) {
   const auto scene = make_blob_scene();
-  render::CutSurface cut_surface(scene->model, 0, scene->model.surfaces[0]);
+  render::CutSurface cut_surface(scene->model, 0);
   EXPECT_FALSE(cut_surface.update(rest_state(scene->model)));
   EXPECT_EQ(cut_surface.surface().triangle, scene->model.surfaces[0].triangle);
   const State severed = cut_along_y(scene->model, 0, 0.1, 0);
@@ -40,7 +40,7 @@ TEST(CutSurface, SplitTrianglesKeepTheWholeArea) {
   const auto scene = make_blob_scene();
   const double whole = area(scene->model.surfaces[0], scene->model.surfaces[0].triangle.size());
   for (const double bottom : {-0.1, 0.0, 0.01}) {
-    render::CutSurface cut_surface(scene->model, 0, scene->model.surfaces[0]);
+    render::CutSurface cut_surface(scene->model, 0);
     State state = cut_along_y(scene->model, 0.001, 0.02, bottom);
     cut(scene->model, state, {{-0.1, 0, bottom}, {-0.1, 0.01, 0.1}},
         {{0.1, 0, bottom}, {0.1, 0.01, 0.1}});  // a second cut, across
@@ -71,7 +71,7 @@ TEST(CutSurface, PiecesOfAFullCutMoveApartWithoutStretchingATriangle) {
     State state = rest_state(scene->model);
     cut(scene->model, state, {{-0.1 * lean, -0.1, -0.1}, {-0.1 * lean, -0.1, 0.1}},
         {{0.1 * lean, 0.1, -0.1}, {0.1 * lean, 0.1, 0.1}});
-    render::CutSurface cut_surface(scene->model, 0, scene->model.surfaces[0]);
+    render::CutSurface cut_surface(scene->model, 0);
     ASSERT_TRUE(cut_surface.update(state));
     spread(state, scene->model, [&](Vec3 p) { return p.x > lean * p.y ? Vec3{0.05, 0.01, 0} : Vec3{}; });
     EXPECT_LT(worst_stretch(cut_surface, state), 1e-11) << "lean " << lean;  // rounding only
@@ -87,7 +87,7 @@ TEST(CutSurface, NothingSpansThePiecesWhereASideCutMeetsTheCut) {
         cut(scene->model, state, {{x, -0.1, -0.1}, {x, -0.1, 0.1}}, {{x, 0.1, -0.1}, {x, 0.1, 0.1}});
         cut(scene->model, state, {{x - 0.0001, y, bottom}, {x - 0.0001, y, 0.1}},
             {{x + 0.009, y + 0.002, bottom}, {x + 0.009, y + 0.002, 0.1}});
-        render::CutSurface cut_surface(scene->model, 0, scene->model.surfaces[0]);
+        render::CutSurface cut_surface(scene->model, 0);
         ASSERT_TRUE(cut_surface.update(state));
         spread(state, scene->model, [&](Vec3 p) { return p.x > x ? Vec3{0.05, 0.01, 0} : Vec3{}; });
         EXPECT_LT(worst_stretch(cut_surface, state), 1e-11) << "side cut at " << x << ", " << y << " to " << bottom;
@@ -192,7 +192,7 @@ TEST(CutSurface, IsWatertightWhateverTheCut) {
     EXPECT_EQ(open_edges(scene->model.surfaces[0]), 0);
     for (const NamedWays& kind : cuts_of_all_kinds()) {
       const State state = cut_along(scene->model, kind.ways);
-      render::CutSurface cut_surface(scene->model, 0, scene->model.surfaces[0]);
+      render::CutSurface cut_surface(scene->model, 0);
       if (!cut_surface.update(state)) continue;
       ++severed_scenes;
       EXPECT_EQ(open_edges(cut_surface.surface()), 0) << kind.name << ", " << scene->model.sphere_count() << " spheres";
@@ -208,7 +208,7 @@ TEST(CutSurface, WallAndLipsStandWhereTheBladePassed) {
       State state = rest_state(scene->model);
       cut(scene->model, state, {{x - 0.1 * lean, -0.1, -0.1}, {x - 0.1 * lean, -0.1, 0.1}},
           {{x + 0.1 * lean, 0.1, -0.1}, {x + 0.1 * lean, 0.1, 0.1}});
-      render::CutSurface cut_surface(scene->model, 0, scene->model.surfaces[0]);
+      render::CutSurface cut_surface(scene->model, 0);
       ASSERT_TRUE(cut_surface.update(state));
       const Surface& surface = cut_surface.surface();
       std::vector<double> off;
@@ -237,7 +237,7 @@ TEST(CutSurface, NormalsAndColourContinueOverTheClosedCut) {
   const State rest = rest_state(scene->model);
   State state = cut_along_y(scene->model, 0.001, 0.02, -0.005);
   cut(scene->model, state, {{-0.1, 0, 0}, {-0.1, 0.01, 0.1}}, {{0.1, 0, 0}, {0.1, 0.01, 0.1}});
-  render::CutSurface cut_surface(scene->model, 0, scene->model.surfaces[0]);
+  render::CutSurface cut_surface(scene->model, 0);
   ASSERT_TRUE(cut_surface.update(state));
   const Surface &whole = scene->model.surfaces[0], &surface = cut_surface.surface();
   render::OrganMesh uncut, mesh;

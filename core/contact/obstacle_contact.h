@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "core/contact/facet_press.h"
+#include "core/contact/point_contact.h"
+#include "core/contact/pressed_point.h"
+#include "core/model/model.h"
+#include "core/model/state_view.h"
+
+namespace ctpm::contact {
+
+/// Contact of tissue with obstacles: of the surfaces of organs, and of the spheres of organs without one, at
+/// Model::contact_radius and with Model::contact_k each.
+class ObstacleContact {
+ public:
+  /// `bodies` must outlive the ObstacleContact.
+  ObstacleContact(const Model& model, std::vector<Body>& bodies);
+
+  /// Capacity that find() needs: contacts, and entries of their carriers.
+  std::pair<std::size_t, std::size_t> capacity() const { return capacity_; }
+
+  /// Adds the contacts, in ascending order of their points.
+  void find(const StateView& state, const PressStep& step, PointContacts& contacts);
+
+ private:
+  void find_on_surface(const StateView& state, const PressStep& step, const Obstacle& obstacle,
+                       std::int32_t first_point, Body& body, PointContacts& contacts);
+  void find_on_spheres(const StateView& state, const PressStep& step, const Obstacle& obstacle,
+                       std::int32_t first_point, PointContacts& contacts) const;
+
+  const Model& model_;
+  std::vector<Body>& bodies_;
+  FacetPress press_;
+  std::int32_t vertex_count_ = 0;       ///< through all organs
+  std::vector<std::int32_t> bare_;      ///< spheres of organs without a surface
+  std::vector<std::uint32_t> seen_in_;  ///< round in which a vertex was looked at
+  std::uint32_t round_ = 0;
+  std::vector<Overlap> overlaps_;
+  std::pair<std::size_t, std::size_t> capacity_{};
+};
+
+}  // namespace ctpm::contact

@@ -1,0 +1,109 @@
+import { useState } from "preact/hooks";
+import type { Connection } from "./connection";
+import { Problems, Section, ShownCommand } from "./parts";
+import { firstOf, type Player } from "./player";
+import type { ComparisonResult, Listing } from "./protocol";
+import { command, seconds, short } from "./text";
+
+/** The session beside: which one, how the two are aligned, and how they differ. */
+export function Compare({ connection, player, listing, comparison, onComparison, onBeside }: {
+  connection: Connection;
+  player: Player;
+  listing: Listing;
+  comparison: ComparisonResult | null;
+  onComparison: (result: ComparisonResult | null) => void;
+  onBeside: (path: string | undefined) => Promise<void>;
+}) {
+  const [error, setError] = useState<Error | null>(null);
+  const [isBusy, setBusy] = useState(false);
+  const first = player.tracks.get(0)!.session, second = player.tracks.get(1)?.session;
+
+  const align = (kind: string) => {
+    const time = player.alignAt(kind);
+    if (time !== null) player.move(time);
+  };
+  const choose = async (path: string) => {
+    await onBeside(path || undefined);
+    align("contact begins");
+  };
+  const compare = async () => {
+    setError(null);
+    setBusy(true);
+    try {
+      onComparison(await connection.call<ComparisonResult>("session.compare", { expert: first.path, trainee: second!.path }));
+    } catch (failure) {
+      setError(failure as Error);
+    }
+    setBusy(false);
+  };
+  const can = (kind: string) => !!second && firstOf(first.info, kind) !== null && firstOf(second.info, kind) !== null;
+
+  return (
+    <>
+      <Section title="Two sessions">
+        <label class="field">
+          <span>beside <b class="first">{first.path}</b></span>
+          <select value={second?.path ?? ""} onChange={(e) => void choose(e.currentTarget.value)}>
+            <option value="">nothing</option>
+            {listing.sessions.filter((s) => s.path !== first.path).map((s) => <option key={s.path} value={s.path}>{s.path}</option>)}
+          </select>
+        </label>
+        {!second && <p class="hint">Review the expert's session and choose a trainee's here. They run side by side, and differences are drawn below.</p>}
+        {second && (
+          <>
+            <div class="buttons" role="group" aria-label="Align at">
+              <button type="button" disabled={!can("contact begins")} onClick={() => align("contact begins")}>first contact</button>
+              <button type="button" disabled={!can("cut")} onClick={() => align("cut")}>first cut</button>
+            </div>
+            <label class="field">
+              <span>by hand: the one beside is ahead by [s]</span>
+              <input type="number" step="0.01" value={Number(player.offset.toFixed(3))} onChange={(e) => player.setOffset(Number(e.currentTarget.value) || 0)} />
+            </label>
+            <button type="button" class="main" disabled={isBusy} onClick={() => void compare()}>{isBusy ? "comparing…" : "Compare"}</button>
+            <ShownCommand text={command("compare", first.path, second.path, "-o", "report")} />
+          </>
+        )}
+        <Problems error={error} />
+      </Section>
+      {second && comparison && <Result comparison={comparison} onMoment={(time) => player.move(time - player.offset)} />}
+    </>
+  );
+}
+
+/** The worst moments and the measures; `onMoment` gets a time of the trainee's session. */
+export function Result({ comparison, onMoment }: { comparison: ComparisonResult; onMoment: (time: number) => void }) {
+  const { moments, measures } = comparison.comparison;
+  return (
+    <>
+      {comparison.remarks.map((remark) => <p key={remark} class="warning">{remark}</p>)}
+      <Section title="Worst moments">
+        {moments.length === 0 && <p class="good">No moment goes beyond a limit.</p>}
+        <ul class="jumps">
+          {moments.map((moment, i) => (
+            <li key={i}>
+              <button type="button" onClick={() => onMoment(moment.worst_s)}>
+                <span class="number">{seconds(moment.worst_s, 2)}</span> {moment.what}: {short(moment.value, 3)} {moment.unit}
+                {moment.limit != null && `, limit ${short(moment.limit, 3)}`}
+              </button>
+            </li>
+          ))}
+        </ul>
+      </Section>
+      <Section title="Measures">
+        <table>
+          <thead><tr><th scope="col">measure</th><th scope="col">expert</th><th scope="col">trainee</th><th scope="col">is</th></tr></thead>
+          <tbody>
+            {measures.map((row) => (
+              <tr key={row.key} title={row.meaning}>
+                <th scope="row">{row.measure} {row.unit !== "1" && <small>{row.unit}</small>}</th>
+                <td>{short(row.expert, 3)}</td>
+                <td>{short(row.trainee, 3)}</td>
+                <td class={row.trainee_is}>{row.trainee_is}</td>
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </Section>
+    </>
+  );
+}

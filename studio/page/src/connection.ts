@@ -1,0 +1,115 @@
+import { CallFailed, type Problem, readBinary, type ToolShapes, type Triangles, type WaitingFrame } from "./protocol";
+
+export type Binary = Triangles | WaitingFrame | ToolShapes;
+
+interface Running {
+  done(result: unknown): void;
+  failed(error: Error): void;
+  progress?(done: number, total: number): void;
+}
+
+export interface CallOptions {
+  progress?(done: number, total: number): void;
+  signal?: AbortSignal;
+}
+
+/** The WebSocket to the program that serves the page. */
+export class Connection {
+  private readonly socket: WebSocket;
+  private readonly calls = new Map<number, Running>();
+  private readonly stages = new Map<number, (message: Binary) => void>();
+  private readonly events = new Map<string, (content: unknown) => void>();
+  private next = 1;
+
+  constructor(private readonly token: string, onOpen: () => void, onClose: () => void) {
+    this.socket = new WebSocket(`ws://${location.host}/socket`, ["ctpm.studio.1", `token.${token}`]);
+    this.socket.binaryType = "arraybuffer";
+    this.socket.onopen = onOpen;
+    this.socket.onclose = () => {
+      for (const call of this.calls.values()) call.failed(new Error("the studio has ended"));
+      this.calls.clear();
+      onClose();
+    };
+    this.socket.onmessage = (message) => this.take(message.data as string | ArrayBuffer);
+  }
+
+  /** Calls the program; rejects with CallFailed if it refuses. */
+  call<T>(name: string, params: object = {}, options: CallOptions = {}): Promise<T> {
+    const id = this.next++;
+    return new Promise<T>((resolve, reject) => {
+      this.calls.set(id, { done: (result) => resolve(result as T), failed: reject, progress: options.progress });
+      options.signal?.addEventListener("abort", () => this.send({ cancel: id }));
+      this.send({ id, call: name, params });
+    });
+  }
+
+  /** A message that has no answer. */
+  send(message: object): void {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+
+  onStage(stage: number, take: (message: Binary) => void): void {
+    this.stages.set(stage, take);
+  }
+
+  onEvent(name: string, take: (content: unknown) => void): void {
+    this.events.set(name, take);
+  }
+
+  /** Stores a file of this machine below the folder. `progress` in [0, 1]. */
+  upload(name: string, file: Blob, progress: (share: number) => void, signal: AbortSignal): Promise<void> {
+    return new Promise((resolve, reject) => {
+      const request = new XMLHttpRequest();
+      request.open("PUT", `/upload/${encodeURIComponent(name)}`);
+      request.setRequestHeader("Authorization", `Bearer ${this.token}`);
+      request.setRequestHeader("Content-Type", "application/octet-stream");
+      request.upload.onprogress = (event) => progress(event.total ? event.loaded / event.total : 0);
+      request.onload = () => {
+        if (request.status === 201) return resolve();
+        const answer = JSON.parse(request.responseText) as { errors: Problem[] };
+        reject(new CallFailed(answer.errors));
+      };
+      request.onerror = () => reject(new Error("the upload broke off"));
+      request.onabort = () => reject(new Error("stopped"));
+      signal.addEventListener("abort", () => request.abort());
+      request.send(file);
+    });
+  }
+
+  private take(data: string | ArrayBuffer): void {
+    if (typeof data !== "string") {
+      const message = readBinary(data);
+      this.stages.get(message.stage)?.(message);
+      return;
+    }
+    const message = JSON.parse(data) as {
+      id?: number;
+      result?: unknown;
+      errors?: Problem[];
+      progress?: { done: number; total: number };
+      event?: string;
+      content?: unknown;
+    };
+    if (message.event !== undefined) return this.events.get(message.event)?.(message.content);
+    const call = message.id === undefined ? undefined : this.calls.get(message.id);
+    if (!call || message.id === undefined) return;
+    if (message.progress) return call.progress?.(message.progress.done, message.progress.total);
+    this.calls.delete(message.id);
+    if (message.errors) call.failed(new CallFailed(message.errors));
+    else call.done(message.result);
+  }
+}
+
+const kTokenKey = "ctpm.token";
+
+/** The token of the address, or of this address before; it is taken out of what the address bar shows. */
+export function takeToken(): string {
+  const given = new URLSearchParams(location.hash.slice(1));
+  const token = given.get("token");
+  if (token) {
+    localStorage.setItem(kTokenKey, token);
+    given.delete("token");
+    history.replaceState(null, "", `#${given.toString()}`);
+  }
+  return token ?? localStorage.getItem(kTokenKey) ?? "";
+}

@@ -1,0 +1,84 @@
+import { render } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import { Connection, takeToken } from "./connection";
+import { Author } from "./author";
+import { Empty } from "./parts";
+import type { Listing } from "./protocol";
+import { type Place, Review } from "./review";
+import { Train } from "./train";
+
+type Room = "author" | "train" | "review";
+const kRooms: [Room, string][] = [["author", "Author"], ["train", "Train"], ["review", "Review"]];
+
+function readPlace(): { room: Room; place: Place } {
+  const hash = new URLSearchParams(location.hash.slice(1));
+  const time = hash.get("t");
+  return {
+    room: kRooms.find(([room]) => room === hash.get("room"))?.[0] ?? "author",
+    place: { session: hash.get("session") ?? undefined, beside: hash.get("beside") ?? undefined, time: time === null ? undefined : Number(time) || 0 },
+  };
+}
+
+function writePlace(room: Room, place: Place): void {
+  const hash = new URLSearchParams({ room });
+  if (place.session) hash.set("session", place.session);
+  if (place.beside) hash.set("beside", place.beside);
+  if (place.time !== undefined) hash.set("t", place.time.toFixed(3));
+  history.replaceState(null, "", `#${hash.toString()}`);
+}
+
+const token = takeToken();
+const start = readPlace();
+
+function App() {
+  const [connection, setConnection] = useState<Connection | null>(null);
+  const [isClosed, setClosed] = useState(false);
+  const [listing, setListing] = useState<Listing | null>(null);
+  const [room, setRoom] = useState<Room>(start.room);
+
+  useEffect(() => {
+    const made: Connection = new Connection(token, () => setConnection(made), () => setClosed(true));
+  }, []);
+  const [place, setPlace] = useState<Place>(start.place);
+  const list = () => void connection?.call<Listing>("folder.list").then(setListing, () => {});
+  useEffect(list, [connection, room]);
+  const go = (to: Room, there: Place) => {
+    setPlace(there);
+    setRoom(to);
+    writePlace(to, there);
+  };
+
+  return (
+    <>
+      <header>
+        <h1>ctpm <span>studio</span></h1>
+        <nav aria-label="Rooms">
+          {kRooms.map(([name, title]) => (
+            <button key={name} type="button" aria-current={room === name ? "page" : undefined} onClick={() => go(name, {})}>{title}</button>
+          ))}
+        </nav>
+        <span class="folder" title="The folder that the studio was started in">{listing?.folder ?? ""}</span>
+      </header>
+      <main>
+        {isClosed ? (
+          <Empty title={connection ? "The studio has ended" : "This address is of another run"}>
+            <p>{connection ? "Start it again" : "Open the address that the program printed, or start it"}: <code>ctpm studio</code></p>
+          </Empty>
+        ) : connection && listing ? (
+          room === "review" ? (
+            <Review connection={connection} listing={listing} place={place} onPlace={(there) => writePlace("review", there)} />
+          ) : room === "author" ? (
+            <Author connection={connection} listing={listing} onChanged={list} onTry={(scene) => go("train", { scene })} />
+          ) : (
+            <Train connection={connection} listing={listing} tryScene={place.scene} onChanged={list}
+              onReview={(session, beside, time) => go("review", beside ? { session, beside, besideTime: time } : { session, time })} />
+          )
+        ) : (
+          <Empty title="Connecting"><p>to the program on this machine.</p></Empty>
+        )}
+      </main>
+    </>
+  );
+}
+
+render(<App />, document.getElementById("app")!);

@@ -1,0 +1,74 @@
+import { useEffect, useState } from "preact/hooks";
+import type { Connection } from "./connection";
+import { Problems, Section } from "./parts";
+import type { Player } from "./player";
+import type { Note, Notes } from "./protocol";
+import { seconds } from "./text";
+
+/** Notes at moments of a session, kept in a file beside it. */
+export function NotesPanel({ connection, player, onNotes }: { connection: Connection; player: Player; onNotes: (notes: Note[]) => void }) {
+  const path = player.tracks.get(0)!.session.path;
+  const [notes, setNotes] = useState<Notes | null>(null);
+  const [text, setText] = useState("");
+  const [error, setError] = useState<Error | null>(null);
+  const [copied, setCopied] = useState("");
+  const take = (read: Notes) => {
+    setNotes(read);
+    onNotes(read.notes);
+  };
+  useEffect(() => {
+    connection.call<Notes>("notes.read", { path }).then(take, setError);
+  }, [path]);
+
+  const write = async (list: Note[]) => {
+    setError(null);
+    try {
+      take(await connection.call<Notes>("notes.write", { path, revision: notes!.revision, notes: list }));
+      return true;
+    } catch (failure) {
+      setError(failure as Error);
+      return false;
+    }
+  };
+  const add = async () => {
+    if (!text.trim() || !notes) return;
+    const list = [...notes.notes, { time_s: player.time, text: text.trim() }].sort((a, b) => a.time_s - b.time_s);
+    if (await write(list)) setText("");
+  };
+  const copyLink = () => {
+    const place = new URLSearchParams({ room: "review", session: path, t: player.time.toFixed(3) });
+    const link = `${location.origin}/#${place.toString()}`;
+    setCopied(link);
+    void navigator.clipboard?.writeText(link).catch(() => {});
+  };
+
+  return (
+    <>
+      <Section title="Notes">
+        <label class="field">
+          <span>at {seconds(player.time)}</span>
+          <textarea rows={3} value={text} onInput={(e) => setText(e.currentTarget.value)}
+            onKeyDown={(e) => {
+              if (e.key === "Enter" && (e.ctrlKey || e.metaKey)) void add();
+            }} />
+        </label>
+        <button type="button" class="main" disabled={!text.trim() || !notes} onClick={() => void add()}>Add note</button>
+        <Problems error={error} />
+        {notes?.notes.length === 0 && <p class="hint">No notes yet. They are kept in a file beside the session, which never changes.</p>}
+        <ul class="jumps">
+          {notes?.notes.map((note, i) => (
+            <li key={i}>
+              <button type="button" onClick={() => player.move(note.time_s)}><span class="number">{seconds(note.time_s)}</span> {note.text}</button>
+              <button type="button" class="quiet" aria-label={`Delete the note at ${seconds(note.time_s)}`}
+                onClick={() => void write(notes.notes.filter((_, k) => k !== i))}>×</button>
+            </li>
+          ))}
+        </ul>
+      </Section>
+      <Section title="Link to this moment">
+        <button type="button" onClick={copyLink}>Copy the link</button>
+        {copied && <p class="hint" role="status">Opens this moment in this browser while the studio runs: <code>{copied}</code></p>}
+      </Section>
+    </>
+  );
+}

@@ -1,0 +1,98 @@
+import * as three from "three";
+import type { OrganTriangles, OrganView } from "./protocol";
+
+/** sRGB as linear light. */
+function linear(c: number): number {
+  return c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
+}
+
+/** The moving surface of one organ, with the walls of its cuts. */
+export class OrganMesh {
+  readonly mesh: three.Mesh;
+  private readonly position: Float32Array;
+  private readonly normal: Float32Array;
+  private readonly index: Uint32Array;
+  private isColoured = false;
+
+  constructor(private readonly triangles: OrganTriangles, private readonly look: OrganView) {
+    this.index = triangles.index;
+    this.position = new Float32Array(3 * triangles.vertexCount);
+    this.normal = new Float32Array(3 * triangles.vertexCount);
+    const geometry = new three.BufferGeometry();
+    geometry.setIndex(new three.BufferAttribute(this.index, 1));
+    geometry.setAttribute("position", new three.BufferAttribute(this.position, 3));
+    geometry.setAttribute("normal", new three.BufferAttribute(this.normal, 3));
+    geometry.setAttribute("color", new three.BufferAttribute(new Float32Array(3 * triangles.vertexCount), 3));
+    const shine = 0.04 + 0.09 * look.wetness;
+    const material = new three.MeshPhongMaterial({
+      vertexColors: true, shininess: 34, specular: new three.Color(shine, shine, shine), side: three.DoubleSide,
+    });
+    this.mesh = new three.Mesh(geometry, material);
+    this.mesh.frustumCulled = false;
+  }
+
+  update(position: Float32Array): void {
+    this.position.set(position);
+    this.computeNormals();
+    if (!this.isColoured) this.colour();
+    const { geometry } = this.mesh;
+    geometry.attributes.position.needsUpdate = true;
+    geometry.attributes.normal.needsUpdate = true;
+  }
+
+  dispose(): void {
+    this.mesh.geometry.dispose();
+    (this.mesh.material as three.Material).dispose();
+  }
+
+  /** Normals of the vertices: the sum over their triangles, weighted by area. */
+  private computeNormals(): void {
+    const { position: p, normal: n, index } = this;
+    n.fill(0);
+    for (let t = 0; t < index.length; t += 3) {
+      const a = 3 * index[t], b = 3 * index[t + 1], c = 3 * index[t + 2];
+      const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
+      const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
+      const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+      n[a] += x, n[a + 1] += y, n[a + 2] += z;
+      n[b] += x, n[b + 1] += y, n[b + 2] += z;
+      n[c] += x, n[c + 1] += y, n[c + 2] += z;
+    }
+    for (let v = 0; v < n.length; v += 3) {
+      const length = Math.hypot(n[v], n[v + 1], n[v + 2]) || 1;
+      n[v] /= length, n[v + 1] /= length, n[v + 2] /= length;
+    }
+  }
+
+  /** Colours by vertex: stained tissue outside, darker in hollows; the inside's colour on the walls of cuts. */
+  private colour(): void {
+    this.isColoured = true;
+    const colours = this.mesh.geometry.attributes.color as three.BufferAttribute;
+    const outer = this.look.outer.map(linear), inner = this.look.inner.map(linear);
+    const hollow = this.hollows();
+    for (let v = 0; v < this.triangles.vertexCount; ++v) {
+      const isWall = v >= this.triangles.outerVertexCount;
+      const stain = 1 + 0.16 * (this.triangles.stain[v] / 127.5 - 1);
+      const shade = isWall ? 1 : stain * Math.min(1.15, Math.max(0.55, 1 + 1.6 * hollow[v]));
+      const lip = this.triangles.lip[v] > 0 ? 0.75 : 1;
+      const base = isWall ? inner : outer;
+      colours.setXYZ(v, base[0] * shade * lip, base[1] * shade * lip, base[2] * shade * lip);
+    }
+    colours.needsUpdate = true;
+  }
+
+  /** Height of a vertex above its neighbours over their distance: negative in hollows. */
+  private hollows(): Float32Array {
+    const { position: p, normal: n, index } = this;
+    const sum = new Float32Array(this.triangles.vertexCount), count = new Float32Array(this.triangles.vertexCount);
+    for (let t = 0; t < index.length; t += 3)
+      for (let k = 0; k < 3; ++k) {
+        const v = index[t + k], a = 3 * v, b = 3 * index[t + ((k + 1) % 3)];
+        const x = p[b] - p[a], y = p[b + 1] - p[a + 1], z = p[b + 2] - p[a + 2];
+        sum[v] -= (x * n[a] + y * n[a + 1] + z * n[a + 2]) / (Math.hypot(x, y, z) || 1);
+        count[v] += 1;
+      }
+    for (let v = 0; v < sum.length; ++v) sum[v] /= count[v] || 1;
+    return sum;
+  }
+}

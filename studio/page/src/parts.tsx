@@ -1,0 +1,81 @@
+import type { ComponentChildren } from "preact";
+import { useState } from "preact/hooks";
+import { CallFailed, problemText } from "./protocol";
+
+/** Numbers in a column, each with its unit. */
+export function Readings({ rows }: { rows: [string, string][] }) {
+  return (
+    <dl class="readings">
+      {rows.map(([name, value]) => (
+        <div key={name}>
+          <dt>{name}</dt>
+          <dd>{value}</dd>
+        </div>
+      ))}
+    </dl>
+  );
+}
+
+/** What went wrong, in the program's words. */
+export function Problems({ error }: { error: Error | null }) {
+  if (!error) return null;
+  const lines = error instanceof CallFailed ? error.problems.map(problemText) : [error.message];
+  return (
+    <div class="problems" role="alert">
+      <ul>
+        {lines.map((line, i) => (
+          <li key={i}>{line}</li>
+        ))}
+      </ul>
+    </div>
+  );
+}
+
+/** The command that does the same in a terminal. */
+export function ShownCommand({ text }: { text: string }) {
+  const [copied, setCopied] = useState(false);
+  const copy = () => {
+    void navigator.clipboard?.writeText(text).then(() => setCopied(true), () => setCopied(false));
+  };
+  return (
+    <div class="command">
+      <code>{text}</code>
+      <button type="button" class="quiet" onClick={copy} aria-label={`Copy the command ${text}`}>
+        {copied ? "copied" : "copy"}
+      </button>
+    </div>
+  );
+}
+
+/** Work that goes on: how far it is, and how to end it. */
+export function Working({ what, done, total, onCancel }: { what: string; done: number; total: number; onCancel?: () => void }) {
+  const share = total > 0 ? done / total : 0;
+  return (
+    <div class="working">
+      <label>
+        <span>{what} {Math.round(100 * share)} %</span>
+        <progress max={1} value={share} />
+      </label>
+      {onCancel && <button type="button" class="quiet" onClick={onCancel}>cancel</button>}
+    </div>
+  );
+}
+
+export function Section({ title, children, aside }: { title: string; children: ComponentChildren; aside?: ComponentChildren }) {
+  return (
+    <section>
+      <h2>{title}{aside}</h2>
+      {children}
+    </section>
+  );
+}
+
+/** What to do where there is nothing yet. */
+export function Empty({ title, children }: { title: string; children: ComponentChildren }) {
+  return (
+    <div class="empty">
+      <h2>{title}</h2>
+      {children}
+    </div>
+  );
+}

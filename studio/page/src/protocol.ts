@@ -1,0 +1,328 @@
+// The messages of studio/server/PROTOCOL.md. Lengths in metres, forces in newtons, times in seconds.
+
+export type Vector = [number, number, number];
+
+export interface Problem {
+  where: string;
+  message: string;
+  hint: string;
+}
+
+export class CallFailed extends Error {
+  constructor(readonly problems: Problem[]) {
+    super(problems.map(problemText).join("\n"));
+  }
+}
+
+export function problemText(problem: Problem): string {
+  const where = problem.where ? `${problem.where}: ` : "";
+  return `${where}${problem.message}${problem.hint ? ` (${problem.hint})` : ""}`;
+}
+
+export interface FileEntry {
+  path: string;
+  bytes: number;
+  modified_s: number;
+}
+
+export interface Listing {
+  folder: string;
+  sessions: FileEntry[];
+  scenes: FileEntry[];
+}
+
+export interface SessionEvent {
+  tick: number;
+  kind: string;
+  text: string;
+}
+
+export interface SessionInfo {
+  session_id: string;
+  created_utc: string;
+  physics_remark: string;
+  tick_s: number;
+  ticks: number;
+  duration_s: number;
+  spheres: number;
+  elements: number;
+  severed: number;
+  late_ticks: number;
+  tick_time_p50_s: number;
+  tick_time_p99_s: number;
+  max_force_n: number;
+  max_depth_m: number;
+  remarks: string[];
+  events: SessionEvent[];
+}
+
+export interface OrganView {
+  name: string;
+  spheres: number;
+  layers: number;
+  damage_depth_m: number;
+  outer: Vector;
+  inner: Vector;
+  wetness: number;
+}
+
+export interface ToolView {
+  name: string;
+  kind: "ball" | "scalpel" | "pin";
+  radius_m: number;
+  blade_m: number;
+}
+
+export interface CameraView {
+  name: string;
+  eye: Vector;
+  target: Vector;
+  up: Vector;
+  fov_deg: number;
+}
+
+export interface SceneView {
+  name: string;
+  organs: OrganView[];
+  tools: ToolView[];
+  cameras: CameraView[];
+  damage_force_n: number;
+  least: Vector;
+  most: Vector;
+  up: Vector;
+}
+
+export interface OpenedSession {
+  path: string;
+  info: SessionInfo;
+  view: SceneView;
+}
+
+export interface TimelineData {
+  duration_s: number;
+  points: number;
+  force_n: number[];
+  depth_m: number[];
+  speed_m_per_s: number[];
+}
+
+export interface Note {
+  time_s: number;
+  text: string;
+}
+
+export interface Notes {
+  revision: string;
+  notes: Note[];
+}
+
+export interface Moment {
+  worst_s: number;
+  from_s: number;
+  to_s: number;
+  what: string;
+  value: number;
+  limit: number | null;
+  unit: string;
+  severity: number;
+}
+
+export interface MeasureRow {
+  key: string;
+  measure: string;
+  expert: number | null;
+  trainee: number | null;
+  unit: string;
+  better_is: string;
+  trainee_is: string;
+  meaning: string;
+}
+
+export interface ComparisonResult {
+  comparison: { scene: string; force_limit_n?: number; force_limit_from?: string; measures: MeasureRow[]; moments: Moment[] };
+  remarks: string[];
+  path_s: [number, number][];
+}
+
+export interface Motion {
+  interval_s: number;
+  poses: number[][]; // tool, position, orientation w x y z
+}
+
+export interface BegunTraining {
+  scene: string;
+  view: SceneView;
+  warnings: Problem[];
+}
+
+/** Event train_ended. */
+export interface EndedTraining {
+  path: string; // empty: nothing was kept
+  errors: Problem[];
+  ticks?: number;
+  late_ticks?: number;
+  fault?: string;
+  refused?: boolean;
+  max_force_n?: number;
+  max_depth_m?: number;
+  severed?: number;
+  tick_time_p50_s?: number;
+  tick_time_p99_s?: number;
+  input_age_p50_s?: number;
+  input_age_p99_s?: number;
+}
+
+export interface OrganTriangles {
+  vertexCount: number;
+  outerVertexCount: number;
+  outerTriangleCount: number;
+  index: Uint32Array;
+  stain: Uint8Array;
+  lip: Uint8Array;
+}
+
+export interface Triangles {
+  kind: "triangles";
+  stage: number;
+  topology: number;
+  organs: OrganTriangles[];
+}
+
+export interface ToolShape {
+  vertex: Float32Array; // position, normal, part of each vertex
+  index: Uint32Array;
+}
+
+export interface ToolShapes {
+  kind: "tools";
+  stage: number;
+  tools: ToolShape[];
+}
+
+export interface Frame {
+  kind: "frame";
+  stage: number;
+  topology: number;
+  missed: number;
+  request: number;
+  isSame: boolean;
+  isLive: boolean;
+  time: number;
+  tick: number;
+  tool: number;
+  position: Vector;
+  orientation: [number, number, number, number]; // w x y z
+  force: Vector;
+  depth: number;
+  contacts: number;
+  severed: number;
+  hand: Vector;
+  tickTime: number;
+  lateTicks: number;
+  organs: Float32Array[]; // x y z of each vertex
+}
+
+class Reader {
+  at = 0;
+  readonly view: DataView;
+  constructor(readonly bytes: ArrayBuffer) {
+    this.view = new DataView(bytes);
+  }
+  u32(): number {
+    return this.view.getUint32((this.at += 4) - 4, true);
+  }
+  i32(): number {
+    return this.view.getInt32((this.at += 4) - 4, true);
+  }
+  f32(): number {
+    return this.view.getFloat32((this.at += 4) - 4, true);
+  }
+  f64(): number {
+    return this.view.getFloat64((this.at += 8) - 8, true);
+  }
+  vector(): Vector {
+    return [this.f32(), this.f32(), this.f32()];
+  }
+  // Typed arrays read the machine's own byte order, which is little-endian wherever browsers run.
+  array<T>(make: new (buffer: ArrayBuffer, at: number, count: number) => T, size: number, count: number): T {
+    if (this.at + size * count > this.bytes.byteLength) throw new RangeError("a message is shorter than it says");
+    const values = new make(this.bytes, this.at, count);
+    this.at += size * count;
+    return values;
+  }
+  pad(): void {
+    this.at += (4 - (this.at % 4)) % 4;
+  }
+}
+
+function readTriangles(r: Reader): Triangles {
+  const stage = r.u32(), topology = r.u32(), count = r.u32();
+  const organs: OrganTriangles[] = [];
+  for (let i = 0; i < count; ++i) {
+    const vertexCount = r.u32(), outerVertexCount = r.u32(), triangleCount = r.u32(), outerTriangleCount = r.u32();
+    const index = r.array(Uint32Array, 4, 3 * triangleCount);
+    for (const v of index) if (v >= vertexCount) throw new RangeError("a triangle names a vertex that is not there");
+    const stain = r.array(Uint8Array, 1, vertexCount), lip = r.array(Uint8Array, 1, vertexCount);
+    r.pad();
+    organs.push({ vertexCount, outerVertexCount, outerTriangleCount, index, stain, lip });
+  }
+  return { kind: "triangles", stage, topology, organs };
+}
+
+function readFrame(r: Reader): Frame {
+  const stage = r.u32(), topology = r.u32(), missed = r.u32(), request = r.u32(), flags = r.u32();
+  const time = r.f64(), tick = r.f64(), tool = r.i32(), position = r.vector();
+  const orientation: Frame["orientation"] = [r.f32(), r.f32(), r.f32(), r.f32()];
+  const force = r.vector(), depth = r.f32(), contacts = r.i32(), severed = r.u32(), hand = r.vector();
+  const tickTime = r.f32(), lateTicks = r.u32(), count = r.u32();
+  const organs: Float32Array[] = [];
+  for (let i = 0; i < count; ++i) {
+    const vertices = r.u32(), least = r.vector(), size = r.vector();
+    const numbers = r.array(Uint16Array, 2, 3 * vertices);
+    r.pad();
+    const position = new Float32Array(3 * vertices);
+    for (let c = 0; c < 3; ++c) {
+      const from = least[c], step = size[c] / 65535;
+      for (let k = c; k < numbers.length; k += 3) position[k] = from + step * numbers[k];
+    }
+    organs.push(position);
+  }
+  return {
+    kind: "frame", stage, topology, missed, request, isSame: (flags & 1) !== 0, isLive: (flags & 2) !== 0, time, tick,
+    tool, position, orientation, force, depth, contacts, severed, hand, tickTime, lateTicks, organs,
+  };
+}
+
+function readTools(r: Reader): ToolShapes {
+  const stage = r.u32(), count = r.u32();
+  const tools: ToolShape[] = [];
+  for (let i = 0; i < count; ++i) {
+    const vertices = r.u32(), indices = r.u32();
+    tools.push({ vertex: r.array(Float32Array, 4, 7 * vertices), index: r.array(Uint32Array, 4, indices) });
+  }
+  return { kind: "tools", stage, tools };
+}
+
+/** The head of a frame, for its stage and request; the rest may never be needed. */
+export interface WaitingFrame {
+  kind: "waiting";
+  stage: number;
+  request: number;
+  bytes: ArrayBuffer;
+}
+
+export function readWaitingFrame(message: WaitingFrame): Frame {
+  const reader = new Reader(message.bytes);
+  reader.u32();
+  return readFrame(reader);
+}
+
+/** Reads a binary message; of a frame its head alone. Throws a RangeError for one that is not whole. */
+export function readBinary(bytes: ArrayBuffer): Triangles | WaitingFrame | ToolShapes {
+  const reader = new Reader(bytes);
+  const kind = reader.u32();
+  if (kind === 1) return readTriangles(reader);
+  if (kind === 2) return { kind: "waiting", stage: reader.u32(), request: (reader.at = 16, reader.u32()), bytes };
+  if (kind === 3) return readTools(reader);
+  throw new RangeError(`unknown kind of message ${kind}`);
+}

@@ -1,0 +1,293 @@
+import { useCallback, useEffect, useMemo, useRef, useState } from "preact/hooks";
+import type { Connection } from "./connection";
+import { Compare } from "./compare";
+import { ExportForm } from "./export_form";
+import { NotesPanel } from "./notes";
+import { Empty, Problems, Readings, Section, ShownCommand, Working } from "./parts";
+import { Player } from "./player";
+import type { ComparisonResult, Listing, Note, SessionEvent } from "./protocol";
+import { Mark, Timeline } from "./timeline";
+import { bytes, command, millimetres, newtons, seconds } from "./text";
+import { Viewer } from "./viewer";
+
+const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4];
+const kPanels = ["moment", "compare", "notes", "export"] as const;
+type Panel = (typeof kPanels)[number];
+
+/** Where the page is, in its address. */
+export interface Place {
+  scene?: string; // to try at once, in Train
+  session?: string;
+  beside?: string;
+  time?: number;
+  besideTime?: number; // in place of time: of the session beside, aligned at first contact [s]
+}
+
+/** What happened in a session; late ticks are counted elsewhere. */
+function shownEvents(events: SessionEvent[]): SessionEvent[] {
+  return events.filter((event) => event.kind !== "late tick");
+}
+
+export function Review({ connection, listing, place, onPlace }: {
+  connection: Connection;
+  listing: Listing;
+  place: Place;
+  onPlace: (place: Place) => void;
+}) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const [player, setPlayer] = useState<Player | null>(null);
+  const [, setTick] = useState(0);
+  const [version, setVersion] = useState(0);
+  const [error, setError] = useState<Error | null>(null);
+  const [panel, setPanel] = useState<Panel>("moment");
+  const [notes, setNotes] = useState<Note[]>([]);
+  const [comparison, setComparison] = useState<ComparisonResult | null>(null);
+
+  useEffect(() => {
+    if (!canvas.current) return;
+    const viewer = new Viewer(canvas.current);
+    const made = new Player(connection, viewer);
+    made.onChange = () => setVersion((v) => v + 1);
+    let wanted = false;
+    made.onTime = () => {
+      if (wanted) return;
+      wanted = true;
+      setTimeout(() => {
+        wanted = false;
+        setTick((t) => t + 1);
+      }, 50);
+    };
+    connection.onEvent("stage_failed", (content) => {
+      const { errors } = content as { errors: { message: string }[] };
+      setError(new Error(errors.map((e) => e.message).join("\n")));
+    });
+    setPlayer(made);
+    return () => {
+      made.pause();
+      for (const stage of [1, 0]) made.close(stage);
+      viewer.dispose();
+    };
+  }, [connection]);
+
+  const open = useCallback(async (stage: number, path: string | undefined) => {
+    if (!player) return;
+    setError(null);
+    setComparison(null);
+    try {
+      if (path === undefined) {
+        player.close(stage);
+        player.setOffset(0);
+        return;
+      }
+      if (stage === 0) player.close(1);
+      await player.open(stage, path);
+      setVersion((v) => v + 1);
+    } catch (failure) {
+      setError(failure as Error);
+    }
+  }, [player]);
+
+  // The address names a session and a moment: a link leads there.
+  useEffect(() => {
+    if (!player || !place.session || player.tracks.get(0)?.session.path === place.session) return;
+    void (async () => {
+      await open(0, place.session);
+      if (place.beside) await open(1, place.beside);
+      if (place.beside) player.alignAt("contact begins");
+      if (place.besideTime !== undefined) player.move(place.besideTime - player.offset);
+      else if (place.time !== undefined) player.move(place.time);
+    })();
+  }, [player]);
+
+  const first = player?.tracks.get(0), second = player?.tracks.get(1);
+  const frame = first?.scene.frame ?? null, other = second?.scene.frame ?? null;
+
+  useEffect(() => {
+    if (!player || !first) return;
+    const timer = setInterval(() => {
+      if (!player.isPlaying) onPlace({ session: first.session.path, beside: second?.session.path, time: player.time });
+    }, 300);
+    return () => clearInterval(timer);
+  }, [player, first, second]);
+
+  useEffect(() => {
+    if (!player) return;
+    const press = (event: KeyboardEvent) => {
+      const target = event.target as HTMLElement;
+      if (target.closest("input:not([type=range]), textarea, select") || event.ctrlKey || event.metaKey || event.altKey) return;
+      const by = event.shiftKey ? 0.1 : 0.01;
+      if (event.key === " " && !target.closest("button")) player.isPlaying ? player.pause() : player.play();
+      else if (event.key === "ArrowLeft") player.pause(), player.move(player.time - by);
+      else if (event.key === "ArrowRight") player.pause(), player.move(player.time + by);
+      else if (event.key === "Home") player.move(player.span.from);
+      else if (event.key === "End") player.move(player.span.to);
+      else if (event.key === "n") setPanel("notes");
+      else return;
+      event.preventDefault();
+    };
+    addEventListener("keydown", press);
+    return () => removeEventListener("keydown", press);
+  }, [player]);
+
+  const marks = useMemo<Mark[]>(() => {
+    if (!first) return [];
+    const { events, tick_s } = first.session.info;
+    return [
+      ...shownEvents(events).map((e) => ({ time: e.tick * tick_s, kind: e.kind, text: e.text })),
+      ...notes.map((note) => ({ time: note.time_s, kind: "note", text: note.text })),
+    ];
+  }, [first, notes]);
+
+  return (
+    <div class="room review">
+      <nav class="list" aria-label="Sessions">
+        <h2>Sessions</h2>
+        {listing.sessions.length === 0 && <p class="hint">No session in this folder yet. Record one in Train, or with <code>ctpm record</code>.</p>}
+        <ul>
+          {listing.sessions.map((entry) => (
+            <li key={entry.path}>
+              <button type="button" aria-current={first?.session.path === entry.path} onClick={() => void open(0, entry.path)}>
+                <span>{entry.path.replace(/\.ctpm$/, "")}</span>
+                <small>{bytes(entry.bytes)}</small>
+              </button>
+            </li>
+          ))}
+        </ul>
+      </nav>
+      <div class="view">
+        <canvas ref={canvas} aria-label={first ? `The scene ${first.session.view.name}` : "No scene"} tabIndex={0} />
+        {!first && (
+          <Empty title="Choose a session">
+            <p>Its force, depth and speed appear below; any moment is a press away.</p>
+          </Empty>
+        )}
+        {first && (
+          <div class="captions">
+            <span class="first">{first.session.path}</span>
+            {second && <span class="second">{second.session.path}</span>}
+          </div>
+        )}
+        <Problems error={error} />
+      </div>
+      <div class="time">
+        {player && first && (
+          <>
+            <div class="transport">
+              <button type="button" class="main" onClick={() => (player.isPlaying ? player.pause() : player.play())}>
+                {player.isPlaying ? "Pause" : "Play"}
+              </button>
+              <label>
+                speed
+                <select value={player.speed} onChange={(e) => {
+                  player.speed = Number(e.currentTarget.value);
+                  setVersion((v) => v + 1);
+                }}>
+                  {kSpeeds.map((speed) => <option key={speed} value={speed}>{speed} ×</option>)}
+                </select>
+              </label>
+              <label>
+                camera
+                <select onChange={(e) => player.viewer.look(first.session.view.cameras[Number(e.currentTarget.value)])}>
+                  {first.session.view.cameras.map((camera, i) => <option key={camera.name} value={i}>{camera.name}</option>)}
+                </select>
+              </label>
+              <output class="clock">{seconds(player.time)} <small>of {seconds(first.session.info.duration_s)}</small></output>
+              {player.isPlaying && player.reached < 0.9 * player.speed && (
+                <span class="hint">plays at {player.reached.toFixed(2)} ×: this machine simulates no faster</span>
+              )}
+            </div>
+            <Timeline player={player} marks={marks} version={version} />
+          </>
+        )}
+      </div>
+      <aside class="side">
+        {player && first ? (
+          <>
+            <div class="tabs" role="tablist" aria-label="Panels">
+              {kPanels.map((name) => (
+                <button key={name} type="button" role="tab" id={`tab-${name}`} aria-selected={panel === name} aria-controls="panel"
+                  onClick={() => setPanel(name)}>{name}</button>
+              ))}
+            </div>
+            <div id="panel" role="tabpanel" aria-labelledby={`tab-${panel}`}>
+              {panel === "moment" && <Moment connection={connection} player={player} frame={frame} other={other} />}
+              {panel === "compare" && (
+                <Compare connection={connection} player={player} listing={listing} comparison={comparison} onComparison={setComparison}
+                  onBeside={(path) => open(1, path)} />
+              )}
+              {panel === "notes" && <NotesPanel connection={connection} player={player} onNotes={setNotes} />}
+              {panel === "export" && <ExportForm key={first.session.path} connection={connection} player={player} />}
+            </div>
+          </>
+        ) : (
+          <p class="hint">Space plays, ← and → move by 10 ms, with Shift by 100 ms.</p>
+        )}
+      </aside>
+    </div>
+  );
+}
+
+type ShownFrame = { force: number[]; depth: number; contacts: number; severed: number; isSame: boolean; missed: number; tick: number } | null;
+
+function Moment({ connection, player, frame, other }: { connection: Connection; player: Player; frame: ShownFrame; other: ShownFrame }) {
+  const [verdict, setVerdict] = useState<{ same: boolean; text: string } | null>(null);
+  const [progress, setProgress] = useState<[number, number] | null>(null);
+  const [error, setError] = useState<Error | null>(null);
+  const { path, info } = player.tracks.get(0)!.session;
+  useEffect(() => setVerdict(null), [path]);
+
+  const verify = async () => {
+    setError(null);
+    setProgress([0, 1]);
+    try {
+      setVerdict(await connection.call("session.verify", { path }, { progress: (done, total) => setProgress([done, total]) }));
+    } catch (failure) {
+      setError(failure as Error);
+    }
+    setProgress(null);
+  };
+  const rows = (shown: ShownFrame): [string, string][] => shown ? [
+    ["force", newtons(Math.hypot(...shown.force))],
+    ["depth", millimetres(shown.depth, 2)],
+    ["touched", `${shown.contacts} points`],
+    ["severed", `${shown.severed} elements`],
+    ["replay", shown.isSame ? "as recorded" : "DIFFERS"],
+  ] : [];
+  return (
+    <>
+      <Section title="This moment">
+        <Readings rows={[["tick", String(frame?.tick ?? 0)], ...rows(frame),
+          ["picture after", player.pictureAfter === null ? "…" : `${player.pictureAfter.toFixed(0)} ms`]]} />
+      </Section>
+      {other && <Section title="Beside"><Readings rows={rows(other)} /></Section>}
+      <Section title="Events">
+        <ul class="jumps">
+          {shownEvents(info.events).map((event, i) => (
+            <li key={i}>
+              <button type="button" onClick={() => player.move(event.tick * info.tick_s)}>
+                <span class="number">{seconds(event.tick * info.tick_s)}</span> {event.text}
+              </button>
+            </li>
+          ))}
+        </ul>
+        {info.events.length === 0 && <p class="hint">Nothing was touched in this session.</p>}
+      </Section>
+      <Section title="Session">
+        <Readings rows={[
+          ["recorded", info.created_utc.replace("T", " ").replace("Z", " UTC")],
+          ["network", `${info.spheres} spheres`],
+          ["largest force", newtons(info.max_force_n)],
+          ["largest depth", millimetres(info.max_depth_m, 2)],
+          ["tick p50, p99", `${(1e3 * info.tick_time_p50_s).toFixed(2)}, ${(1e3 * info.tick_time_p99_s).toFixed(2)} ms`],
+          ["late ticks", String(info.late_ticks)],
+        ]} />
+        {[info.physics_remark, ...info.remarks].filter(Boolean).map((remark) => <p key={remark} class="warning">{remark}</p>)}
+        {progress ? <Working what="verifying" done={progress[0]} total={progress[1]} />
+          : <button type="button" onClick={() => void verify()}>Verify the replay</button>}
+        {verdict && <p class={verdict.same ? "good" : "warning"} role="status">{verdict.text}</p>}
+        <Problems error={error} />
+        <ShownCommand text={command("verify", path)} />
+      </Section>
+    </>
+  );
+}

@@ -1,0 +1,31 @@
+// Numbers and commands as people read them.
+
+export function millimetres(metres: number, digits = 1): string {
+  return `${(1e3 * metres).toFixed(digits)} mm`;
+}
+
+export function newtons(force: number, digits = 2): string {
+  return `${force.toFixed(digits)} N`;
+}
+
+export function seconds(time: number, digits = 3): string {
+  return `${time.toFixed(digits)} s`;
+}
+
+export function short(value: number | null | undefined, significant = 4): string {
+  return value === null || value === undefined ? "–" : String(Number(value.toPrecision(significant)));
+}
+
+export function bytes(count: number): string {
+  return count < 1e6 ? `${(count / 1e3).toFixed(0)} kB` : `${(count / 1e6).toFixed(1)} MB`;
+}
+
+/** A word of a shell command, quoted where the shell needs it. */
+export function word(text: string): string {
+  return /^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`;
+}
+
+/** `ctpm NAME WORDS...`; undefined words are left out. */
+export function command(name: string, ...words: (string | undefined)[]): string {
+  return ["ctpm", name, ...words.filter((w) => w !== undefined).map((w) => word(w))].join(" ");
+}

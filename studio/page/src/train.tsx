@@ -1,0 +1,291 @@
+import { useCallback, useEffect, useRef, useState } from "preact/hooks";
+import { Result } from "./compare";
+import type { Connection } from "./connection";
+import { Empty, Problems, Readings, Section, ShownCommand, Working } from "./parts";
+import { type ComparisonResult, type EndedTraining, type Listing, type Motion, problemText } from "./protocol";
+import { command, millimetres, newtons, seconds } from "./text";
+import { Trainer } from "./trainer";
+import { Viewer } from "./viewer";
+
+type Phase = "choose" | "loading" | "running" | "ended";
+
+/** A name for a session that does not exist yet: mine-1.ctpm ... */
+function freeName(listing: Listing): string {
+  const taken = new Set(listing.sessions.map((s) => s.path));
+  for (let i = 1; ; ++i) if (!taken.has(`mine-${i}.ctpm`)) return `mine-${i}.ctpm`;
+}
+
+export function Train({ connection, listing, tryScene, onReview, onChanged }: {
+  connection: Connection;
+  listing: Listing;
+  tryScene: string | undefined; // at once, and nothing is recorded
+  onReview: (session: string, beside: string | undefined, time: number) => void;
+  onChanged: () => void;
+}) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const [trainer, setTrainer] = useState<Trainer | null>(null);
+  const [phase, setPhase] = useState<Phase>("choose");
+  const [scene, setScene] = useState("");
+  const [output, setOutput] = useState(() => (tryScene ? "" : freeName(listing)));
+  const [expert, setExpert] = useState("");
+  const [ended, setEnded] = useState<EndedTraining | null>(null);
+  const [error, setError] = useState<Error | null>(null);
+  const [, setTick] = useState(0);
+  const last = useRef<{ x: number; y: number } | null>(null);
+  const loading = useRef<AbortController | null>(null);
+
+  useEffect(() => {
+    if (!canvas.current) return;
+    const viewer = new Viewer(canvas.current);
+    viewer.controls.enableZoom = false;
+    viewer.controls.enablePan = false;
+    viewer.controls.mouseButtons = { LEFT: null, MIDDLE: null, RIGHT: 0 };
+    const made = new Trainer(connection, viewer);
+    let last = 0;
+    made.onFrame = () => {
+      if (performance.now() - last < 50) return;
+      last = performance.now();
+      setTick((t) => t + 1);
+    };
+    made.onEnded = (content) => {
+      document.exitPointerLock?.();
+      setEnded(content);
+      setPhase("ended");
+      onChanged();
+    };
+    setTrainer(made);
+    return () => {
+      void made.end().catch(() => {});
+      viewer.dispose();
+    };
+  }, [connection]);
+
+  const begin = useCallback(async (path: string) => {
+    if (!trainer) return;
+    setScene(path), setError(null), setEnded(null), setPhase("loading");
+    loading.current = new AbortController();
+    try {
+      await trainer.begin(path, output || undefined, loading.current.signal);
+      setPhase("running");
+      canvas.current?.focus();
+    } catch (failure) {
+      setError(failure as Error);
+      setPhase("choose");
+    }
+  }, [trainer, output]);
+
+  useEffect(() => {
+    if (trainer && tryScene) void begin(tryScene);
+  }, [trainer]);
+
+  useEffect(() => {
+    if (!trainer) return;
+    trainer.setExpert(null);
+    if (expert) connection.call<Motion>("session.motion", { path: expert, rate_hz: 60 }).then((motion) => trainer.setExpert(motion), setError);
+  }, [trainer, expert]);
+
+  useEffect(() => {
+    if (!trainer || phase !== "running") return;
+    const press = (event: KeyboardEvent) => {
+      if ((event.target as HTMLElement).closest("input, textarea, select") || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (event.key === "Escape") void trainer.end();
+      else if (!trainer.press(event.key, event.shiftKey)) return;
+      event.preventDefault();
+    };
+    addEventListener("keydown", press);
+    return () => removeEventListener("keydown", press);
+  }, [trainer, phase]);
+
+  useEffect(() => {
+    const target = canvas.current;
+    if (!trainer || !target || phase !== "running") return;
+    const wheel = (event: WheelEvent) => {
+      event.preventDefault();
+      trainer.moveDeep(-Math.sign(event.deltaY));
+    };
+    target.addEventListener("wheel", wheel, { passive: false });
+    return () => target.removeEventListener("wheel", wheel);
+  }, [trainer, phase]);
+
+  const move = (event: PointerEvent) => {
+    if (phase !== "running" || (event.buttons & 2) !== 0) return;
+    if (event.pointerType === "touch" && event.buttons === 0) return;
+    // A pointer that comes from elsewhere does not carry the hand along.
+    const from = last.current;
+    last.current = { x: event.clientX, y: event.clientY };
+    if (document.pointerLockElement === canvas.current) trainer?.movePixels(event.movementX, event.movementY);
+    else if (from) trainer?.movePixels(event.clientX - from.x, event.clientY - from.y);
+  };
+  const leave = () => (last.current = null);
+  const lock = (event: PointerEvent) => {
+    if (phase === "running" && event.button === 0 && event.pointerType === "mouse")
+      void Promise.resolve(canvas.current?.requestPointerLock?.()).catch(() => {});
+  };
+
+  const again = () => {
+    setOutput(freeName(listing));
+    setPhase("choose");
+    setEnded(null);
+  };
+  const frame = trainer?.scene?.frame ?? null, view = trainer?.scene?.view ?? null;
+  const force = frame ? Math.hypot(...frame.force) : 0;
+  const limit = view?.damage_force_n || 10;
+
+  return (
+    <div class="room train">
+      <nav class="list" aria-label="Scenes">
+        <h2>Scenes</h2>
+        {listing.scenes.length === 0 && <p class="hint">No scene in this folder yet. Make one with <code>ctpm import</code>.</p>}
+        <ul>
+          {listing.scenes.map((entry) => (
+            <li key={entry.path}>
+              <button type="button" aria-current={scene === entry.path} disabled={phase === "running" || phase === "loading"} onClick={() => void begin(entry.path)}>
+                <span>{entry.path.replace(/\.json$/, "")}</span>
+              </button>
+            </li>
+          ))}
+        </ul>
+      </nav>
+      <div class={`view ${phase}`}>
+        <canvas ref={canvas} tabIndex={0} aria-label={view ? `The scene ${view.name}; arrow keys move the tool` : "No scene"}
+          onPointerMove={move} onPointerDown={lock} onPointerLeave={leave} onContextMenu={(e) => e.preventDefault()} />
+        {phase === "choose" && (
+          <Empty title="Choose a scene to train in">
+            <p>The tool follows the mouse. The session is recorded, and measured against an expert's when you end it.</p>
+          </Empty>
+        )}
+        {phase === "loading" && (
+          <Empty title={`Loading ${scene}`}>
+            <p>Its organs are filled with spheres and settle under gravity.</p>
+          </Empty>
+        )}
+        {phase === "running" && frame && (
+          <div class="force-bar" role="meter" aria-label="Force" aria-valuemin={0} aria-valuemax={limit} aria-valuenow={Number(force.toFixed(2))}>
+            <div style={{ height: `${Math.min(100, (100 * force) / limit)}%` }} class={force > limit ? "over" : ""} />
+            <output>{newtons(force)}</output>
+          </div>
+        )}
+        <Problems error={error} />
+      </div>
+      <div class="time">
+        {phase === "running" && trainer && view && (
+          <div class="transport">
+            <button type="button" class="main" onClick={() => void trainer.end()}>End</button>
+            <div class="buttons" role="group" aria-label="Tool">
+              {view.tools.map((tool, i) => (
+                <button key={tool.name} type="button" aria-pressed={trainer.tool === i} onClick={() => trainer.setTool(i)}>
+                  <kbd>{i + 1}</kbd> {tool.name}
+                </button>
+              ))}
+            </div>
+            <span class="hint">mouse: move · wheel: depth · Q E, W S, A D: turn · right button: look around · Esc: end</span>
+            <output class="clock">{seconds(frame?.time ?? 0, 1)}</output>
+          </div>
+        )}
+      </div>
+      <aside class="side">
+        {phase !== "running" && phase !== "ended" && (
+          <Section title="Session">
+            <label class="field">
+              <span>record as (empty: nothing is recorded)</span>
+              <input value={output} disabled={phase === "loading"} onInput={(e) => setOutput(e.currentTarget.value)} />
+            </label>
+            <ExpertChoice listing={listing} expert={expert} onExpert={setExpert} />
+            {phase === "loading" && <button type="button" onClick={() => loading.current?.abort()}>Cancel</button>}
+          </Section>
+        )}
+        {phase === "running" && (
+          <>
+            <Section title="Now">
+              <Readings rows={[
+                ["force", newtons(force)],
+                ["depth", millimetres(frame?.depth ?? 0, 2)],
+                ["touched", `${frame?.contacts ?? 0} points`],
+                ["severed", `${frame?.severed ?? 0} elements`],
+                ["last tick", `${(1e3 * (frame?.tickTime ?? 0)).toFixed(2)} ms`],
+                ["late ticks", String(frame?.lateTicks ?? 0)],
+                ["frames missed", String(frame?.missed ?? 0)],
+              ]} />
+            </Section>
+            <Section title="Expert"><ExpertChoice listing={listing} expert={expert} onExpert={setExpert} /></Section>
+          </>
+        )}
+        {phase === "ended" && ended && (
+          <Ended connection={connection} listing={listing} ended={ended} expert={expert} onExpert={setExpert} onReview={onReview} onAgain={again} />
+        )}
+      </aside>
+    </div>
+  );
+}
+
+function ExpertChoice({ listing, expert, onExpert }: { listing: Listing; expert: string; onExpert: (path: string) => void }) {
+  return (
+    <label class="field">
+      <span>the expert's session, shown as a ghost</span>
+      <select value={expert} onChange={(e) => onExpert(e.currentTarget.value)}>
+        <option value="">none</option>
+        {listing.sessions.map((s) => <option key={s.path} value={s.path}>{s.path}</option>)}
+      </select>
+    </label>
+  );
+}
+
+/** What became of a session: its numbers, its verdict, and how it compares with the expert's. */
+function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain }: {
+  connection: Connection;
+  listing: Listing;
+  ended: EndedTraining;
+  expert: string;
+  onExpert: (path: string) => void;
+  onReview: (session: string, beside: string | undefined, time: number) => void;
+  onAgain: () => void;
+}) {
+  const [verdict, setVerdict] = useState<{ same: boolean; text: string } | null>(null);
+  const [comparison, setComparison] = useState<ComparisonResult | null>(null);
+  const [progress, setProgress] = useState<[number, number] | null>(null);
+  const [error, setError] = useState<Error | null>(null);
+
+  const compare = async () => {
+    setError(null), setComparison(null), setProgress([0, 1]);
+    try {
+      setVerdict(await connection.call("session.verify", { path: ended.path }, { progress: (done, total) => setProgress([done, total]) }));
+      if (expert) setComparison(await connection.call<ComparisonResult>("session.compare", { expert, trainee: ended.path }));
+    } catch (failure) {
+      setError(failure as Error);
+    }
+    setProgress(null);
+  };
+  return (
+    <>
+      <Section title={ended.path || "Not recorded"}>
+        {ended.errors.map((problem, i) => <p key={i} class="warning" role="alert">{problemText(problem)}</p>)}
+        {ended.fault && <p class="warning">{ended.fault}</p>}
+        {ended.refused && <p class="warning">The simulation was refused; what came before is saved.</p>}
+        {ended.ticks !== undefined && (
+          <Readings rows={[
+            ["duration", seconds(ended.ticks / 1e3, 1)],
+            ["largest force", newtons(ended.max_force_n ?? 0)],
+            ["largest depth", millimetres(ended.max_depth_m ?? 0, 2)],
+            ["severed", `${ended.severed} elements`],
+            ["late ticks", String(ended.late_ticks)],
+            ["tick p50, p99", `${(1e3 * (ended.tick_time_p50_s ?? 0)).toFixed(2)}, ${(1e3 * (ended.tick_time_p99_s ?? 0)).toFixed(2)} ms`],
+            ["hand to tick p50, p99", `${(1e3 * (ended.input_age_p50_s ?? 0)).toFixed(1)}, ${(1e3 * (ended.input_age_p99_s ?? 0)).toFixed(1)} ms`],
+          ]} />
+        )}
+        <button type="button" onClick={onAgain}>Train again</button>
+        {ended.path && <button type="button" onClick={() => onReview(ended.path, undefined, 0)}>Open in Review</button>}
+      </Section>
+      {ended.path && (
+        <Section title="Verify and compare">
+          <ExpertChoice listing={listing} expert={expert} onExpert={onExpert} />
+          {progress ? <Working what={verdict ? "comparing" : "verifying"} done={progress[0]} total={progress[1]} />
+            : <button type="button" class="main" onClick={() => void compare()}>{expert ? "Verify and compare" : "Verify"}</button>}
+          {verdict && <p class={verdict.same ? "good" : "warning"} role="status">{verdict.text}</p>}
+          <Problems error={error} />
+          <ShownCommand text={expert ? command("compare", expert, ended.path, "-o", "report") : command("verify", ended.path)} />
+        </Section>
+      )}
+      {comparison && <Result comparison={comparison} onMoment={(time) => onReview(expert, ended.path, time)} />}
+    </>
+  );
+}

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+
+#include "recordings/session_reader.h"
+#include "studio/server/calls.h"
+#include "studio/server/text.h"
+
+// One function for each call; PROTOCOL.md says what they take and return. Each checks its parameters first.
+namespace ctpm::server {
+
+/// Opens the session of that path in the folder.
+inline Result<recordings::SessionReader> open_reader(const CallContext& context, const std::string& path) {
+  const Result<std::string> file = context.folder.find(path);
+  if (!file) return file.errors();
+  return recordings::SessionReader::open(*file);
+}
+
+Result<std::string> list_folder(Parameters& parameters, const CallContext& context);
+Result<std::string> open_session(Parameters& parameters, const CallContext& context);
+Result<std::string> close_session(Parameters& parameters, const CallContext& context);
+Result<std::string> session_timeline(Parameters& parameters, const CallContext& context);
+Result<std::string> verify_session(Parameters& parameters, const CallContext& context);
+Result<std::string> compare_sessions(Parameters& parameters, const CallContext& context);
+Result<std::string> export_session(Parameters& parameters, const CallContext& context);
+Result<std::string> session_motion(Parameters& parameters, const CallContext& context);
+Result<std::string> begin_training(Parameters& parameters, const CallContext& context);
+Result<std::string> end_training(Parameters& parameters, const CallContext& context);
+Result<std::string> read_scene(Parameters& parameters, const CallContext& context);
+Result<std::string> write_scene(Parameters& parameters, const CallContext& context);
+Result<std::string> check_scene(Parameters& parameters, const CallContext& context);
+Result<std::string> show_scene(Parameters& parameters, const CallContext& context);
+Result<std::string> import_mesh(Parameters& parameters, const CallContext& context);
+Result<std::string> list_presets(Parameters& parameters, const CallContext& context);
+Result<std::string> read_notes(Parameters& parameters, const CallContext& context);
+Result<std::string> write_notes(Parameters& parameters, const CallContext& context);
+
+}  // namespace ctpm::server

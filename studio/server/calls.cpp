@@ -1,0 +1,58 @@
+#include "studio/server/calls.h"
+
+#include <utility>
+
+#include "studio/server/call_table.h"
+
+namespace ctpm::server {
+namespace {
+
+using Call = Result<std::string> (*)(Parameters&, const CallContext&);
+
+constexpr std::pair<const char*, Call> kCalls[] = {
+    {"folder.list", list_folder},           {"session.open", open_session},     {"session.close", close_session},
+    {"session.timeline", session_timeline}, {"session.verify", verify_session}, {"session.compare", compare_sessions},
+    {"session.export", export_session},     {"notes.read", read_notes},         {"notes.write", write_notes},
+    {"session.motion", session_motion},     {"scene.read", read_scene},         {"scene.write", write_scene},
+    {"scene.check", check_scene},           {"scene.show", show_scene},         {"scene.import", import_mesh},
+    {"scene.presets", list_presets},        {"train.begin", begin_training},    {"train.end", end_training},
+};
+
+void write_entries(output::JsonWriter& json, const char* key, const std::vector<FolderEntry>& entries) {
+  json.key(key).begin_list();
+  for (const FolderEntry& entry : entries)
+    json.begin_object()
+        .member("path", std::string_view(entry.path))
+        .member("bytes", std::int64_t(entry.bytes))
+        .member("modified_s", entry.modified_s)
+        .end_object();
+  json.end_list();
+}
+
+bool is_beside(const std::string& path, const char* ending) { return path.ends_with(ending); }
+
+}  // namespace
+
+Result<std::string> run_call(const std::string& name, Parameters& parameters, const CallContext& context) {
+  for (const auto& [known, call] : kCalls)
+    if (name == known) return call(parameters, context);
+  return Error{name, "there is no such call", ""};
+}
+
+Result<std::string> list_folder(Parameters& parameters, const CallContext& context) {
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  std::vector<FolderEntry> scenes = context.folder.list(".json");
+  // Scripts, notes and the sidecars of videos are no scenes.
+  std::erase_if(scenes, [](const FolderEntry& entry) {
+    for (const char* ending : {".script.json", ".notes.json", ".mp4.json", ".avi.json", "results.json", ".schema.json"})
+      if (is_beside(entry.path, ending)) return true;
+    return entry.path.starts_with("scripts/") || entry.path.find("/scripts/") != std::string::npos;
+  });
+  output::JsonWriter json;
+  json.begin_object().member("folder", context.folder.root().string());
+  write_entries(json, "sessions", context.folder.list(".ctpm"));
+  write_entries(json, "scenes", scenes);
+  return json.end_object().text();
+}
+
+}  // namespace ctpm::server

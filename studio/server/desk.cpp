@@ -1,0 +1,63 @@
+#include "studio/server/desk.h"
+
+#include <utility>
+
+namespace ctpm::server {
+
+Result<Done> Desk::open(const std::string& file, std::uint32_t number) {
+  close(number);
+  Result<std::unique_ptr<Stage>> opened = Stage::open(file, number, outbox_);
+  if (!opened) return opened.errors();
+  std::shared_ptr<Stage> before;  // ends outside of the lock
+  const std::lock_guard lock(mutex_);
+  before = std::exchange(stages_[number], std::move(*opened));
+  return Done{};
+}
+
+void Desk::close(std::uint32_t number) {
+  std::shared_ptr<Stage> closed;
+  const std::lock_guard lock(mutex_);
+  if (const auto it = stages_.find(number); it != stages_.end()) closed = std::move(it->second), stages_.erase(it);
+}
+
+std::shared_ptr<Stage> Desk::stage(std::uint32_t number) {
+  const std::lock_guard lock(mutex_);
+  const auto it = stages_.find(number);
+  return it == stages_.end() ? nullptr : it->second;
+}
+
+void Desk::show(std::uint32_t number, std::int64_t tick, std::uint32_t request) {
+  if (const std::shared_ptr<Stage> found = stage(number)) found->show(tick, request);
+}
+
+double Desk::prepared(std::uint32_t number) {
+  const std::shared_ptr<Stage> found = stage(number);
+  return found ? found->prepared() : 0;
+}
+
+Result<Done> Desk::train(std::shared_ptr<const recordings::SessionStart> start, const TrainingRequest& request,
+                         std::uint32_t number) {
+  end_training();
+  Result<std::unique_ptr<Training>> begun = Training::begin(std::move(start), request, number, outbox_);
+  if (!begun) return begun.errors();
+  const std::lock_guard lock(mutex_);
+  training_ = std::move(*begun);
+  return Done{};
+}
+
+void Desk::end_training() {
+  std::shared_ptr<Training> ended;
+  const std::lock_guard lock(mutex_);
+  ended = std::exchange(training_, nullptr);
+}
+
+void Desk::move(const devices::Pose& pose, std::uint32_t buttons, double sent_s) {
+  std::shared_ptr<Training> running;
+  {
+    const std::lock_guard lock(mutex_);
+    running = training_;
+  }
+  if (running) running->move(pose, buttons, sent_s);
+}
+
+}  // namespace ctpm::server

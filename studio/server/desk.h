@@ -1,0 +1,53 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "studio/server/outbox.h"
+#include "studio/server/stage.h"
+#include "studio/server/training.h"
+
+namespace ctpm::server {
+
+/// What one page has open.
+class Desk {
+ public:
+  explicit Desk(std::shared_ptr<Outbox> outbox) : outbox_(std::move(outbox)) {}
+
+  /// The way to the page.
+  Outbox& outbox() { return *outbox_; }
+
+  /// Opens a session as stage `number`, in place of what was there. Errors: the session cannot be read.
+  Result<Done> open(const std::string& file, std::uint32_t number);
+  void close(std::uint32_t number);
+
+  /// Asks a stage for a moment; nothing happens without such a stage.
+  void show(std::uint32_t number, std::int64_t tick, std::uint32_t request);
+
+  /// See Stage::prepared(); 0 without such a stage.
+  double prepared(std::uint32_t number);
+
+  /// Begins a session that the page leads, in place of one that runs. Errors: those of Training::begin().
+  Result<Done> train(std::shared_ptr<const recordings::SessionStart> start, const TrainingRequest& request,
+                     std::uint32_t number);
+
+  /// Ends it, if one runs, and waits until it is saved.
+  void end_training();
+
+  /// Moves the hand of a running session; called from one thread.
+  void move(const devices::Pose& pose, std::uint32_t buttons, double sent_s);
+
+  static constexpr std::uint32_t kMostStages = 4;
+
+ private:
+  std::shared_ptr<Stage> stage(std::uint32_t number);
+
+  std::shared_ptr<Outbox> outbox_;
+  std::mutex mutex_;
+  std::map<std::uint32_t, std::shared_ptr<Stage>> stages_;
+  std::shared_ptr<Training> training_;
+};
+
+}  // namespace ctpm::server

@@ -1,0 +1,58 @@
+#include <filesystem>
+
+#include "recordings/session_reader.h"
+#include "studio/film/export_video.h"
+#include "studio/output/json_writer.h"
+#include "studio/server/call_table.h"
+
+namespace ctpm::server {
+
+Result<std::string> export_session(Parameters& parameters, const CallContext& context) {
+  const std::string path = parameters.text("path"), output = parameters.text("output");
+  const std::string beside = parameters.text_if("beside").value_or("");
+  film::ExportOptions options;
+  const std::string size = parameters.text_if("size").value_or("1280x720");
+  options.fps = parameters.number_if("fps", 1, 240).value_or(options.fps);
+  options.speed = parameters.number_if("speed", 0.001, 1000).value_or(options.speed);
+  options.range.from_s = parameters.number_if("from_s", 0, 1e9).value_or(0);
+  options.range.to_s = parameters.number_if("to_s", 0, 1e9);
+  options.look.view = parameters.text_if("view").value_or(options.look.view);
+  options.look.by = parameters.text_if("by").value_or("");
+  options.look.cutaway = parameters.text_if("cutaway").value_or("");
+  options.look.camera = parameters.text_if("camera").value_or("");
+  options.allow_diverged = parameters.flag("allow_diverged", false);
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  const Result<render::PictureSize> parsed = render::parse_picture_size(size);
+  if (!parsed) return parsed.errors();
+  options.size = *parsed;
+  const Result<std::string> place = context.folder.place(output);
+  if (!place) return place.errors();
+  std::error_code ignored;
+  if (std::filesystem::exists(*place, ignored)) return Error{output, "exists already", "choose another name"};
+  std::vector<recordings::SessionReader> readers;
+  for (const std::string& name : {path, beside}) {
+    if (name.empty()) continue;
+    Result<recordings::SessionReader> reader = open_reader(context, name);
+    if (!reader) return reader.errors();
+    readers.push_back(std::move(*reader));
+  }
+  std::vector<recordings::SessionReader*> sessions;
+  for (recordings::SessionReader& reader : readers) sessions.push_back(&reader);
+  options.progress = context.progress;
+  options.should_stop = context.should_stop;
+  const Result<film::ExportOutcome> outcome = film::export_video(sessions, *place, options);
+  if (!outcome) return outcome.errors();
+  output::JsonWriter json;
+  json.begin_object()
+      .member("path", std::string_view(output))
+      .member("frames", outcome->video.frames)
+      .member("bytes", std::int64_t(outcome->video.bytes))
+      .member("codec", outcome->video.codec)
+      .member("same_as_recorded", outcome->same_as_recorded())
+      .member("elapsed_s", outcome->times.elapsed)
+      .member("note", outcome->video.note)
+      .end_object();
+  return json.text();
+}
+
+}  // namespace ctpm::server

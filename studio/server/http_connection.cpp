@@ -1,0 +1,225 @@
+#include "studio/server/http_connection.h"
+
+#include <boost/asio/post.hpp>
+#include <boost/beast/websocket.hpp>
+#include <filesystem>
+#include <limits>
+
+#include "studio/server/calls.h"
+#include "studio/server/page.h"
+#include "studio/server/text.h"
+#include "studio/server/web_client.h"
+
+namespace ctpm::server {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+
+namespace {
+
+std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
+
+/// The token of an Authorization header, or of the second subprotocol of a WebSocket handshake.
+std::string token_of(const http::request<http::empty_body>& request) {
+  constexpr std::string_view kBearer = "Bearer ", kPrefix = "token.";
+  const std::string_view given = view_of(request[http::field::authorization]);
+  if (given.starts_with(kBearer)) return std::string(given.substr(kBearer.size()));
+  const std::string offered(view_of(request[http::field::sec_websocket_protocol]));
+  const std::size_t at = offered.find(kPrefix);
+  if (at == std::string::npos) return "";
+  const std::size_t from = at + kPrefix.size();
+  return offered.substr(from, offered.find_first_of(", ", from) - from);
+}
+
+bool offers_subprotocol(const http::request<http::empty_body>& request) {
+  return http::token_list(request[http::field::sec_websocket_protocol]).exists(kSubprotocol);
+}
+
+Knock knock_of(const http::request<http::empty_body>& request, const std::string& token) {
+  Knock knock{view_of(request[http::field::host]), {}, token};
+  if (request.find(http::field::origin) != request.end()) knock.origin = view_of(request[http::field::origin]);
+  return knock;
+}
+
+/// The name behind "/upload/"; percent signs are decoded. None: no such target.
+std::optional<std::string> upload_name(std::string_view target) {
+  constexpr std::string_view kUpload = "/upload/";
+  if (!target.starts_with(kUpload)) return std::nullopt;
+  std::string name;
+  for (std::size_t i = kUpload.size(); i < target.size(); ++i) {
+    const auto digit = [&](std::size_t at) -> int {
+      const char c = at < target.size() ? target[at] : '?';
+      return c >= '0' && c <= '9'   ? c - '0'
+             : c >= 'a' && c <= 'f' ? c - 'a' + 10
+             : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                    : -1;
+    };
+    if (target[i] == '%' && digit(i + 1) >= 0 && digit(i + 2) >= 0)
+      name += char(16 * digit(i + 1) + digit(i + 2)), i += 2;
+    else
+      name += target[i];
+  }
+  return name;
+}
+
+}  // namespace
+
+HttpConnection::HttpConnection(Services& services, asio::ip::tcp::socket socket)
+    : services_(services), counted_(std::make_shared<CountedConnection>(services)), stream_(std::move(socket)) {}
+
+void HttpConnection::start() {
+  stream_.expires_after(services_.limits.handshake);
+  head_.emplace();
+  head_->header_limit(std::uint32_t(services_.limits.most_header));
+  head_->body_limit(std::numeric_limits<std::uint64_t>::max());  // each target sets its own
+  http::async_read_header(stream_, buffer_, *head_,
+                          [self = shared_from_this()](beast::error_code failure, std::size_t) {
+                            if (!failure) self->take_head();
+                          });
+}
+
+void HttpConnection::take_head() {
+  const http::request<http::empty_body>& request = head_->get();
+  const std::string target(view_of(request.target())), token = token_of(request);
+  const Knock knock = knock_of(request, token);
+  const bool is_socket = beast::websocket::is_upgrade(request);
+  if (request.method() == http::verb::get && !is_socket && page_file(target)) {
+    const std::string why = services_.access.refuses_page(knock);
+    return why.empty() ? send_page() : refuse(http::status::forbidden, why);
+  }
+  if (const std::string why = services_.access.refuses(knock); !why.empty())
+    return refuse(http::status::forbidden, why);
+  if (is_socket) {
+    if (target != "/socket") return refuse(http::status::not_found, "there is nothing at " + target);
+    if (!offers_subprotocol(request))
+      return refuse(http::status::bad_request, std::string("the WebSocket protocol must be ") + kSubprotocol);
+    return std::make_shared<WebClient>(services_, std::move(stream_), std::move(counted_))->start(request);
+  }
+  const std::optional<std::string> upload = upload_name(target);
+  if (upload && request.method() == http::verb::put) return take_upload(*upload);
+  if (target != "/call") return refuse(http::status::not_found, "there is nothing at " + target);
+  if (request.method() != http::verb::post) return refuse(http::status::method_not_allowed, "calls are made by POST");
+  if (view_of(request[http::field::content_type]).substr(0, 16) != "application/json")
+    return refuse(http::status::unsupported_media_type, "calls are application/json");
+  take_call();
+}
+
+/// Refuses a body that is announced larger than `most` [bytes]; one that grows larger is refused while it is read.
+bool HttpConnection::refuses_length(std::uint64_t most) {
+  const auto length = head_->content_length();
+  if (!length || *length <= most) return false;
+  refuse(http::status::payload_too_large, "at most " + std::to_string(most) + " bytes are taken");
+  return true;
+}
+
+void HttpConnection::take_call() {
+  if (refuses_length(services_.limits.most_message)) return;
+  auto body = std::make_shared<http::request_parser<http::string_body>>(std::move(*head_));
+  body->body_limit(services_.limits.most_message);
+  http::async_read(stream_, buffer_, *body, [self = shared_from_this(), body](beast::error_code failure, std::size_t) {
+    if (failure == http::error::body_limit)
+      return self->refuse(http::status::payload_too_large,
+                          "at most " + std::to_string(self->services_.limits.most_message) + " bytes are taken");
+    if (!failure) self->answer_call(body->get().body());
+  });
+}
+
+/// Runs the call in the pool; the connection waits.
+void HttpConnection::answer_call(const std::string& body) {
+  stream_.expires_never();
+  asio::post(services_.pool, [self = shared_from_this(), body] {
+    const auto finish = [&](http::status status, std::string text) {
+      asio::post(self->services_.network, [self, status, text = as_utf8(std::move(text))]() mutable {
+        self->send(status, "application/json", std::move(text));
+      });
+    };
+    Result<Parameters> message = Parameters::parse(body);
+    if (!message) return finish(http::status::bad_request, answer(0, message.errors()));
+    const std::int64_t id = std::int64_t(message->number_if("id", 0, 9e15).value_or(0));
+    const std::string name = message->text("call");
+    std::optional<Parameters> given = message->object_if("params");
+    Parameters parameters = given ? *given : *Parameters::parse("{}");
+    CallContext context{self->services_.folder};
+    context.should_stop = [&] { return self->services_.ends.load(); };
+    const Result<std::string> result = run_call(name, parameters, context);
+    finish(result ? http::status::ok : http::status::unprocessable_entity,
+           result ? answer(id, *result) : answer(id, result.errors()));
+  });
+}
+
+/// Streams the body into a temporary file, which takes its name when it is whole.
+void HttpConnection::take_upload(const std::string& name) {
+  if (refuses_length(services_.limits.most_upload)) return;
+  const Result<std::string> place = services_.folder.place(name);
+  std::error_code ignored;
+  if (!place) return refuse(http::status::forbidden, to_string(place.errors().front()));
+  if (std::filesystem::exists(*place, ignored)) return refuse(http::status::conflict, name + " exists already");
+  auto body = std::make_shared<http::request_parser<http::file_body>>(std::move(*head_));
+  body->body_limit(services_.limits.most_upload);
+  const std::string part = *place + ".part-" + make_token().substr(0, 8);
+  beast::error_code failure;
+  body->get().body().open(part.c_str(), beast::file_mode::write_new, failure);
+  if (failure) return refuse(http::status::forbidden, name + " cannot be written: " + failure.message());
+  stream_.expires_after(services_.limits.upload);
+  http::async_read(stream_, buffer_, *body,
+                   [self = shared_from_this(), body, part, to = *place](beast::error_code broken, std::size_t) {
+                     std::error_code problem;
+                     body->get().body().close();
+                     if (!broken) std::filesystem::rename(part, to, problem);
+                     if (broken || problem) std::filesystem::remove(part, problem);
+                     if (broken == http::error::body_limit)
+                       return self->refuse(http::status::payload_too_large, "the file is larger than the limit");
+                     if (broken) return;  // the connection is gone
+                     output::JsonWriter json;
+                     json.begin_object().member("path", self->services_.folder.relative(to)).end_object();
+                     self->send(http::status::created, "application/json", as_utf8(json.text()));
+                   });
+}
+
+void HttpConnection::send_page() {
+  const std::optional<PageFile> file = page_file(view_of(head_->get().target()));
+  send(http::status::ok, file->type, std::string(file->bytes), true);
+}
+
+void HttpConnection::refuse(http::status status, const std::string& why) {
+  output::JsonWriter json;
+  json.begin_object().key("errors");
+  write_errors(json, {{"", why, ""}});
+  send(status, "application/json", as_utf8(json.end_object().text()));
+}
+
+void HttpConnection::send(http::status status, const std::string& type, std::string body, bool is_compressed) {
+  auto response = std::make_shared<http::response<http::string_body>>(status, 11);
+  response->set(http::field::content_type, type);
+  if (is_compressed) response->set(http::field::content_encoding, "gzip");
+  response->set(http::field::cache_control, "no-store");
+  response->set(
+      "Content-Security-Policy",
+      "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; "
+      "base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+  response->set("X-Content-Type-Options", "nosniff");
+  response->set("Referrer-Policy", "no-referrer");
+  response->set("Cross-Origin-Opener-Policy", "same-origin");
+  response->set("Cross-Origin-Resource-Policy", "same-origin");
+  response->keep_alive(false);
+  response->body() = std::move(body);
+  response->prepare_payload();
+  stream_.expires_after(services_.limits.handshake);
+  http::async_write(stream_, *response, [self = shared_from_this(), response](beast::error_code, std::size_t) {
+    beast::error_code ignored;
+    self->stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+    self->drain();
+  });
+}
+
+/// Takes what still comes, for a moment: closing with unread bytes would make the system withdraw the response.
+void HttpConnection::drain() {
+  buffer_.clear();
+  stream_.async_read_some(buffer_.prepare(64 << 10),
+                          [self = shared_from_this()](beast::error_code failure, std::size_t) {
+                            if (!failure) self->drain();
+                          });
+}
+
+}  // namespace ctpm::server

@@ -1,0 +1,97 @@
+#include "studio/server/moments.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace ctpm::server {
+namespace {
+
+std::size_t bytes_of(const State& s) {
+  std::size_t bytes = sizeof s;
+  for (const Vec3Array* a : {&s.position, &s.velocity, &s.acceleration, &s.grip}) bytes += 24 * a->size();
+  bytes += 8 * (s.kelvin_elongation.size() + s.kelvin_dent.size()) + 4 * s.touched.size();
+  return bytes + s.axial_severed.size() + s.constraint_severed.size() + s.angle_severed.size() +
+         s.axial_crossing.size();
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Moments>> Moments::open(const std::string& file) {
+  Result<recordings::SessionReader> reader = recordings::SessionReader::open(file);
+  if (!reader) return reader.errors();
+  const Result<std::vector<std::int64_t>> keyframes = reader->keyframe_ticks();
+  if (!keyframes) return keyframes.errors();
+  return std::unique_ptr<Moments>(new Moments(std::move(*reader), *keyframes));
+}
+
+Moments::Moments(recordings::SessionReader reader, std::vector<std::int64_t> keyframes)
+    : reader_(std::move(reader)), keyframes_(std::move(keyframes)), is_done_(keyframes_.size()) {
+  const std::int64_t ticks = reader_.tick_count();
+  const std::size_t state_bytes = bytes_of(reader_.start().initial_state);
+  spacing_ = std::max(kSpacing, std::int64_t(double(ticks) * double(state_bytes) / double(kMostBytes)) + 1);
+  moments_.resize(std::size_t(ticks / spacing_) + 1);
+  thread_ = std::thread([this] { work(); });
+}
+
+Moments::~Moments() {
+  ends_ = true;
+  thread_.join();
+}
+
+std::pair<std::int64_t, std::shared_ptr<const Moment>> Moments::before(std::int64_t tick) const {
+  const auto next = std::upper_bound(keyframes_.begin(), keyframes_.end(), tick);
+  const std::int64_t least = next == keyframes_.begin() ? 0 : *std::prev(next);
+  const std::lock_guard lock(mutex_);
+  for (std::int64_t i = tick / spacing_; i >= 0 && i * spacing_ > least; --i)
+    if (const auto& moment = moments_[std::size_t(i)]) return {i * spacing_, moment};
+  return {least, nullptr};
+}
+
+double Moments::share() const {
+  const std::lock_guard lock(mutex_);
+  return is_done_.empty() ? 1 : double(std::count(is_done_.begin(), is_done_.end(), true)) / double(is_done_.size());
+}
+
+/// The nearest interval that is not done; their number if all are.
+std::size_t Moments::next_interval() const {
+  const std::int64_t aim = aim_;
+  std::size_t best = keyframes_.size();
+  std::int64_t nearest = std::numeric_limits<std::int64_t>::max();
+  const std::lock_guard lock(mutex_);
+  for (std::size_t i = 0; i < keyframes_.size(); ++i) {
+    const std::int64_t middle = keyframes_[i] + 500, away = middle > aim ? middle - aim : aim - middle;
+    if (!is_done_[i] && away < nearest) best = i, nearest = away;
+  }
+  return best;
+}
+
+/// Replays one interval. False if it is to stop.
+bool Moments::fill(recordings::ReplayCursor& cursor, std::size_t interval) {
+  const std::int64_t end = interval + 1 < keyframes_.size() ? keyframes_[interval + 1] : reader_.tick_count();
+  if (!cursor.seek(keyframes_[interval])) return true;  // a damaged part has no moments
+  while (cursor.tick() < end) {
+    if (ends_) return false;
+    if (const Result<bool> went_on = cursor.step(); !went_on || !*went_on) break;
+    if (cursor.tick() % spacing_ != 0 || cursor.tick() >= end) continue;
+    auto moment = std::make_shared<const Moment>(Moment{cursor.state(), cursor.same_so_far()});
+    const std::lock_guard lock(mutex_);
+    moments_[std::size_t(cursor.tick() / spacing_)] = std::move(moment);
+  }
+  return true;
+}
+
+void Moments::work() {
+  setpriority(PRIO_PROCESS, id_t(gettid()), 15);
+  Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(reader_);
+  if (!cursor) return;
+  for (std::size_t next; !ends_ && (next = next_interval()) < keyframes_.size();) {
+    if (!fill(*cursor, next)) return;
+    const std::lock_guard lock(mutex_);
+    is_done_[next] = true;
+  }
+}
+
+}  // namespace ctpm::server

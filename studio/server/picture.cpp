@@ -1,0 +1,126 @@
+#include "studio/server/picture.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "core/surface/surface.h"
+#include "studio/render/camera.h"
+#include "studio/render/noise.h"
+#include "studio/render/tool_mesh.h"
+
+namespace ctpm::server {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "messages are little-endian");
+
+enum Kind : std::uint32_t { kTriangles = 1, kFrame = 2, kTools = 3 };
+
+/// Appends plain values to a message.
+class MessageBytes {
+ public:
+  template <class T>
+  void add(T value) {
+    add_all(&value, 1);
+  }
+  void add(Vec3 v) {
+    for (const double x : {v.x, v.y, v.z}) add(float(x));
+  }
+  template <class T>
+  void add_all(const T* values, std::size_t count) {
+    text.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+  }
+  void pad() { text.append((4 - text.size() % 4) % 4, '\0'); }
+
+  std::string text;
+};
+
+/// Positions as shares of their box, which spans the 16-bit numbers.
+void add_positions(MessageBytes& out, const std::vector<Vec3>& vertex) {
+  const render::Bounds box = render::bounds_of(vertex);
+  const Vec3 size = box.max - box.min;
+  out.add(std::uint32_t(vertex.size()));
+  out.add(box.min), out.add(size);
+  const auto step = [](double extent) { return extent > 0 ? 65535 / extent : 0; };
+  const Vec3 scale{step(size.x), step(size.y), step(size.z)};
+  std::vector<std::uint16_t> numbers;
+  numbers.reserve(3 * vertex.size());
+  for (const Vec3& p : vertex) {
+    numbers.push_back(std::uint16_t((p.x - box.min.x) * scale.x + 0.5));
+    numbers.push_back(std::uint16_t((p.y - box.min.y) * scale.y + 0.5));
+    numbers.push_back(std::uint16_t((p.z - box.min.z) * scale.z + 0.5));
+  }
+  out.add_all(numbers.data(), numbers.size());
+  out.pad();
+}
+
+}  // namespace
+
+PictureMaker::PictureMaker(const Model& model, std::uint32_t stage) : model_(model), stage_(stage) {
+  for (std::size_t i = 0; i < model.surfaces.size(); ++i) surfaces_.emplace_back(model, i);
+}
+
+void PictureMaker::make_triangles() {
+  static std::atomic<std::uint32_t> made{0};
+  topology_ = ++made;
+  constexpr double kStainsPerMetre = 72;  // as in videos
+  MessageBytes out;
+  out.add(std::uint32_t(kTriangles)), out.add(stage_), out.add(topology_), out.add(std::uint32_t(surfaces_.size()));
+  for (const render::CutSurface& cut : surfaces_) {
+    const Surface& surface = cut.surface();
+    out.add(std::uint32_t(surface.vertex.size())), out.add(std::uint32_t(cut.outer_vertex_count()));
+    out.add(std::uint32_t(surface.triangle.size())), out.add(std::uint32_t(cut.outer_triangle_count()));
+    out.add_all(surface.triangle.data(), surface.triangle.size());
+    for (const Vec3& p : surface.vertex)
+      out.add(std::uint8_t(std::clamp(127.5 + 127.5 * render::noise_at(kStainsPerMetre * p), 0.0, 255.0)));
+    for (std::size_t v = 0; v < surface.vertex.size(); ++v)
+      out.add(std::uint8_t(v < cut.is_lip().size() && cut.is_lip()[v] ? 255 : 0));
+    out.pad();
+  }
+  triangles_ = std::make_shared<const std::string>(std::move(out.text));
+}
+
+Picture PictureMaker::make(const State& state, const FrameFacts& facts) {
+  bool changed = !triangles_;
+  for (render::CutSurface& cut : surfaces_) changed = cut.update(state) || changed;
+  if (changed) make_triangles();
+
+  const Inputs& in = state.last_inputs;
+  MessageBytes out;
+  out.add(std::uint32_t(kFrame)), out.add(stage_), out.add(topology_), out.add(std::uint32_t(0));
+  out.add(facts.request), out.add(std::uint32_t((facts.is_same ? 1 : 0) | (facts.is_live ? 2 : 0)));
+  out.add(double(facts.tick) * model_.tick), out.add(double(facts.tick));
+  out.add(in.tool), out.add(in.position);
+  for (const double x : {in.world_from_tool.w, in.world_from_tool.x, in.world_from_tool.y, in.world_from_tool.z})
+    out.add(float(x));
+  out.add(facts.force), out.add(float(facts.depth)), out.add(facts.contacts), out.add(std::uint32_t(facts.severed));
+  out.add(facts.hand), out.add(float(facts.tick_time)), out.add(std::uint32_t(facts.late_ticks));
+  out.add(std::uint32_t(surfaces_.size()));
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    surface::place_surface(model_, i, surfaces_[i].surface(), state, vertex_);
+    add_positions(out, vertex_);
+  }
+  return {stage_, topology_, triangles_, std::move(out.text)};
+}
+
+std::int64_t severed_in(const State& state) {
+  std::int64_t count = 0;
+  for (const auto* flags : {&state.axial_severed, &state.constraint_severed, &state.angle_severed})
+    count += std::count_if(flags->begin(), flags->end(), [](std::uint8_t flag) { return flag != 0; });
+  return count;
+}
+
+std::string tools_message(const Model& model, std::uint32_t stage) {
+  MessageBytes out;
+  out.add(std::uint32_t(kTools)), out.add(stage), out.add(std::uint32_t(model.tools.size()));
+  for (const Tool& tool : model.tools) {
+    const render::ToolMesh mesh = tool.kind == ToolKind::pin ? render::ToolMesh{} : render::make_tool_mesh(tool);
+    out.add(std::uint32_t(mesh.vertex.size() / 7)), out.add(std::uint32_t(mesh.index.size()));
+    out.add_all(mesh.vertex.data(), mesh.vertex.size()), out.add_all(mesh.index.data(), mesh.index.size());
+  }
+  return std::move(out.text);
+}
+
+}  // namespace ctpm::server

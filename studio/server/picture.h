@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/model/model.h"
+#include "core/model/state.h"
+#include "core/stepping/step.h"
+#include "studio/render/cut_surface.h"
+
+namespace ctpm::server {
+
+/// What a frame says besides where the surfaces are. PROTOCOL.md gives its bytes.
+struct FrameFacts {
+  std::uint32_t request = 0;    ///< number of the request that it answers; 0: none
+  bool is_same = true;          ///< the replay is as recorded so far
+  bool is_live = false;         ///< of a running session
+  std::int64_t tick = 0;        ///< ticks done
+  Vec3 force;                   ///< of the tissue on the tool [N]
+  double depth = 0;             ///< [m]
+  std::int32_t contacts = 0;    ///< spheres touched
+  std::int64_t severed = 0;     ///< elements severed so far
+  Vec3 hand;                    ///< position of the hand that leads the tool [m]; of a replay: the tool's
+  double tick_time = 0;         ///< computing time of the last tick [s]; 0: not measured
+  std::int64_t late_ticks = 0;  ///< so far
+};
+
+/// One moment as bytes for a page.
+struct Picture {
+  std::uint32_t stage = 0;                       ///< where the page shows it
+  std::uint32_t topology = 0;                    ///< number of the triangles that the frame belongs to; never reused
+  std::shared_ptr<const std::string> triangles;  ///< message of that topology
+  std::string frame;                             ///< message; its count of missed frames is still 0
+};
+
+/// Byte offset of the count of missed frames in a frame.
+inline constexpr std::size_t kMissedOffset = 12;
+
+/// Turns States of one Model into pictures.
+class PictureMaker {
+ public:
+  /// `model` must outlive this.
+  PictureMaker(const Model& model, std::uint32_t stage);
+
+  /// The picture of a State. The triangles are made again only when a cut changed them.
+  Picture make(const State& state, const FrameFacts& facts);
+
+ private:
+  void make_triangles();
+
+  const Model& model_;
+  std::uint32_t stage_, topology_ = 0;
+  std::vector<render::CutSurface> surfaces_;
+  std::shared_ptr<const std::string> triangles_;
+  std::vector<Vec3> vertex_;
+};
+
+/// Number of elements that are severed in a State.
+std::int64_t severed_in(const State& state);
+
+/// Message with the shapes of a Model's tools, in the order of Model::tools.
+std::string tools_message(const Model& model, std::uint32_t stage);
+
+}  // namespace ctpm::server

@@ -1,0 +1,79 @@
+#include "studio/server/scene_text.h"
+
+#include "studio/loading/loaded_scene.h"
+#include "studio/server/text.h"
+#include "studio/views/look.h"
+#include "studio/views/view_of_scene.h"
+
+namespace ctpm::server {
+namespace {
+
+void write_colour(output::JsonWriter& json, const char* key, const render::Colour& colour) {
+  json.key(key).begin_list();
+  for (const double part : colour) json.value(part);
+  json.end_list();
+}
+
+void write_camera(output::JsonWriter& json, const std::string& name, const render::Camera& camera) {
+  json.begin_object().member("name", name).key("eye");
+  write_vector(json, camera.eye);
+  json.key("target");
+  write_vector(json, camera.target);
+  json.key("up");
+  write_vector(json, camera.up);
+  json.member("fov_deg", camera.fov_deg).end_object();
+}
+
+const char* name_of(ToolKind kind) {
+  return kind == ToolKind::ball ? "ball" : kind == ToolKind::scalpel ? "scalpel" : "pin";
+}
+
+}  // namespace
+
+std::string json_text(const std::string& text) {
+  output::JsonWriter json;
+  std::string quoted = json.value(text).text();
+  quoted.pop_back();  // the newline
+  return quoted;
+}
+
+std::string view_json(const scenes::SceneSpec& scene, const Model& model) {
+  const render::SceneView view = views::view_of(scene, model);
+  output::JsonWriter json;
+  json.begin_object().member("name", scene.name).key("organs").begin_list();
+  for (std::size_t i = 0; i < model.organs.size(); ++i) {
+    const OrganRange& organ = model.organs[i];
+    json.begin_object().member("name", organ.name).member("spheres", std::int64_t(organ.count));
+    json.member("layers", std::int64_t(organ.layer_count)).member("damage_depth_m", organ.damage_depth);
+    if (i < view.looks.size()) {
+      write_colour(json, "outer", view.looks[i].outer), write_colour(json, "inner", view.looks[i].inner);
+      json.member("wetness", view.looks[i].wetness);
+    }
+    json.end_object();
+  }
+  json.end_list().key("tools").begin_list();
+  for (const Tool& tool : model.tools)
+    json.begin_object()
+        .member("name", tool.name)
+        .member("kind", name_of(tool.kind))
+        .member("radius_m", tool.radius)
+        .member("blade_m", tool.blade_length)
+        .end_object();
+  json.end_list().key("cameras").begin_list();
+  constexpr double kAspect = 16.0 / 9;
+  for (const scenes::CameraSpec& camera : scene.cameras) {
+    views::LookRequest request;
+    request.camera = camera.name;
+    if (const Result<views::Look> look = views::find_look(request, scene, view, kAspect))
+      write_camera(json, camera.name, look->draw.camera);
+  }
+  write_camera(json, "fitted", render::default_camera(view, kAspect));
+  json.end_list().member("damage_force_n", loading::damage_force_of(scene));
+  const render::Bounds bounds = render::rest_bounds(view);
+  json.key("least"), write_vector(json, bounds.min);
+  json.key("most"), write_vector(json, bounds.max);
+  json.key("up"), write_vector(json, render::up_of(model));
+  return json.end_object().text();
+}
+
+}  // namespace ctpm::server

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "studio/server/access.h"
+#include "studio/server/folder.h"
+#include "studio/server/limits.h"
+
+namespace ctpm::server {
+
+/// What all connections share. The network has one thread, which never computes; calls run in the pool.
+struct Services {
+  Services(Folder folder_, Access access_, const Limits& limits_)
+      : folder(std::move(folder_)), access(std::move(access_)), limits(limits_) {}
+
+  Folder folder;
+  Access access;
+  Limits limits;
+  std::size_t connections = 0;                           ///< open now; of the network's thread
+  std::map<const void*, std::function<void()>> clients;  ///< closes each page; of the network's thread
+  std::atomic<bool> ends{false};                         ///< the server is about to stop: calls must end
+  boost::asio::io_context network{1};
+  boost::asio::thread_pool pool{4};
+};
+
+/// Counts a connection while it lives.
+class CountedConnection {
+ public:
+  explicit CountedConnection(Services& services) : services_(services) { ++services_.connections; }
+  ~CountedConnection() { --services_.connections; }
+  CountedConnection(const CountedConnection&) = delete;
+  CountedConnection& operator=(const CountedConnection&) = delete;
+
+ private:
+  Services& services_;
+};
+
+}  // namespace ctpm::server

@@ -1,0 +1,143 @@
+#include <algorithm>
+#include <cmath>
+
+#include "recordings/replay.h"
+#include "recordings/session_reader.h"
+#include "scenes/scene_file.h"
+#include "studio/compare/compare_files.h"
+#include "studio/compare/session_track.h"
+#include "studio/output/json_writer.h"
+#include "studio/server/call_table.h"
+#include "studio/server/scene_text.h"
+#include "studio/session/session_info.h"
+#include "studio/views/view_of_scene.h"
+
+namespace ctpm::server {
+namespace {
+
+constexpr double kSpeedRate = 100;  ///< at which the hand's speed is measured, as in a comparison [Hz]
+
+/// The extremes of consecutive values, at most `most` of them.
+std::vector<double> thinned(const std::vector<double>& values, std::size_t most) {
+  const std::size_t group = std::max<std::size_t>(1, (values.size() + most - 1) / std::max<std::size_t>(most, 1));
+  std::vector<double> result;
+  for (std::size_t from = 0; from < values.size(); from += group)
+    result.push_back(*std::max_element(values.begin() + std::ptrdiff_t(from),
+                                       values.begin() + std::ptrdiff_t(std::min(values.size(), from + group))));
+  return result;
+}
+
+/// Numbers with the digits that a plot can show.
+void write_values(output::JsonWriter& json, const char* key, const std::vector<double>& values) {
+  json.key(key).begin_list();
+  for (const double value : values) json.value(double(float(value)));
+  json.end_list();
+}
+
+}  // namespace
+
+Result<std::string> open_session(Parameters& parameters, const CallContext& context) {
+  const std::string path = parameters.text("path");
+  const std::optional<double> stage = parameters.number_if("stage", 0, Desk::kMostStages - 1);
+  if (stage && !context.desk) parameters.refuse("stage", "only a page with a WebSocket has stages");
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  const Result<std::string> file = context.folder.find(path);
+  if (!file) return file.errors();
+  Result<recordings::SessionReader> reader = recordings::SessionReader::open(*file);
+  if (!reader) return reader.errors();
+  const Result<session::SessionInfo> info = session::read_info(*reader);
+  if (!info) return info.errors();
+  const Result<scenes::SceneText> scene = scenes::read_scene(reader->start().scene_text, path + " (its scene)");
+  if (!scene) return scene.errors();
+  if (stage)
+    if (const Result<Done> opened = context.desk->open(*file, std::uint32_t(*stage)); !opened) return opened.errors();
+  const std::string view = view_json(scene->spec, reader->start().model);
+  return "{\"path\": " + json_text(path) + ", \"info\": " + session::info_json(*reader, *info) + ", \"view\": " + view +
+         "}";
+}
+
+Result<std::string> close_session(Parameters& parameters, const CallContext& context) {
+  const double stage = parameters.number("stage", 0, Desk::kMostStages - 1);
+  if (!context.desk) parameters.refuse("stage", "only a page with a WebSocket has stages");
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  context.desk->close(std::uint32_t(stage));
+  return std::string("{}");
+}
+
+Result<std::string> session_timeline(Parameters& parameters, const CallContext& context) {
+  const std::string path = parameters.text("path");
+  const double points = parameters.number("points", 2, 20000);
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  Result<recordings::SessionReader> reader = open_reader(context, path);
+  if (!reader) return reader.errors();
+  const Result<compare::SessionTrack> track = compare::read_recorded(*reader);
+  if (!track) return track.errors();
+  // A tool that was just taken up has no speed yet.
+  const std::size_t group = std::size_t(std::max(1.0, std::round(1 / (kSpeedRate * track->tick))));
+  std::vector<double> speed(track->tick_count(), 0.0);
+  for (const compare::Spell& stroke : track->strokes) {
+    const std::span<const Vec3> tips(track->tip.data() + stroke.first, stroke.last - stroke.first);
+    const std::vector<double> along =
+        compare::speed_along(compare::mean_of_each(tips, group), 1 / (double(group) * track->tick));
+    for (std::size_t i = 0; i < along.size() * group; ++i) speed[stroke.first + i] = along[i / group];
+  }
+  output::JsonWriter json;
+  json.begin_object().member("duration_s", track->seconds(track->tick_count()));
+  const std::vector<double> force = thinned(track->force, std::size_t(points));
+  json.member("points", force.size());
+  write_values(json, "force_n", force);
+  write_values(json, "depth_m", thinned(track->depth, std::size_t(points)));
+  write_values(json, "speed_m_per_s", thinned(speed, std::size_t(points)));
+  return json.end_object().text();
+}
+
+Result<std::string> verify_session(Parameters& parameters, const CallContext& context) {
+  const std::string path = parameters.text("path");
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  Result<recordings::SessionReader> reader = open_reader(context, path);
+  if (!reader) return reader.errors();
+  recordings::VerifyOptions options;
+  options.progress = context.progress;
+  const Result<recordings::Verdict> verdict = recordings::verify_session(*reader, options);
+  if (!verdict) return verdict.errors();
+  output::JsonWriter json;
+  json.begin_object()
+      .member("same", verdict->same)
+      .member("text", recordings::to_string(*verdict))
+      .member("ticks", verdict->ticks_compared)
+      .member("first_different_s",
+              verdict->first_tick < 0 ? NAN : double(verdict->first_tick) * reader->start().model.tick);
+  return json.end_object().text();
+}
+
+Result<std::string> compare_sessions(Parameters& parameters, const CallContext& context) {
+  const std::string expert = parameters.text("expert"), trainee = parameters.text("trainee");
+  const std::optional<double> force_limit = parameters.number_if("force_limit_n", 1e-6, 1e6);
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  const Result<std::string> expert_file = context.folder.find(expert), trainee_file = context.folder.find(trainee);
+  for (const auto* file : {&expert_file, &trainee_file})
+    if (!*file) return file->errors();
+  Result<compare::OpenedFiles> opened = compare::open_files(*expert_file, *trainee_file);
+  if (!opened) return opened.errors();
+  const Result<compare::ComparedFiles> files = compare::compare_files(std::move(*opened), force_limit);
+  if (!files) return files.errors();
+  const compare::ComparedSessions compared = files->sessions();
+  output::JsonWriter json;
+  json.begin_list();
+  for (const std::string& remark : compare::remarks_of(compared)) json.value(remark);
+  json.end_list();
+  // Moments of both sessions that belong together, along the path.
+  output::JsonWriter path;
+  path.begin_list();
+  const compare::Comparison& comparison = files->comparison;
+  const std::size_t every = std::max<std::size_t>(1, comparison.alignment.pairs.size() / 500);
+  for (std::size_t i = 0; i < comparison.alignment.pairs.size(); i += every) {
+    const compare::AlignedPair& pair = comparison.alignment.pairs[i];
+    path.begin_list().value(comparison.expert_time[pair.a]).value(comparison.trainee_time[pair.b]).end_list();
+  }
+  path.end_list();
+  return "{\"comparison\": " + compare::comparison_json(compared) + ", \"remarks\": " + json.text() +
+         ", \"path_s\": " + path.text() + "}";
+}
+
+}  // namespace ctpm::server

@@ -1,0 +1,78 @@
+#include <algorithm>
+#include <filesystem>
+
+#include "recordings/session_reader.h"
+#include "scenes/scene_file.h"
+#include "studio/loading/loaded_scene.h"
+#include "studio/server/call_table.h"
+#include "studio/server/scene_text.h"
+#include "studio/session/record_session.h"
+
+namespace ctpm::server {
+
+Result<std::string> begin_training(Parameters& parameters, const CallContext& context) {
+  const std::string scene_path = parameters.text("scene");
+  const std::optional<std::string> output = parameters.text_if("output");
+  const std::uint32_t stage = std::uint32_t(parameters.number("stage", 0, Desk::kMostStages - 1));
+  TrainingRequest request;
+  request.most_speed = parameters.number_if("most_speed_m_per_s", 0.01, 100).value_or(request.most_speed);
+  if (!context.desk) parameters.refuse("stage", "only a page with a WebSocket has stages");
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  context.desk->end_training();
+  const Result<std::string> file = context.folder.find(scene_path);
+  if (!file) return file.errors();
+  if (output) {
+    const Result<std::string> place = context.folder.place(*output);
+    if (!place) return place.errors();
+    std::error_code ignored;
+    if (std::filesystem::path(*place).extension() != ".ctpm")
+      return Error{*output, "a session's name must end in .ctpm", ""};
+    if (std::filesystem::exists(*place, ignored)) return Error{*output, "exists already", "choose another name"};
+    request.file = *place, request.shown = *output;
+  }
+  const Result<loading::LoadedScene> scene = loading::load_whole_scene(*file);
+  if (!scene) return scene.errors();
+  if (context.should_stop()) return Error{scene_path, "stopped", ""};
+  auto start = std::make_shared<const recordings::SessionStart>(session::start_session(*scene));
+  const std::string view = view_json(scene->scene.spec, start->model);
+  if (const Result<Done> begun = context.desk->train(start, request, stage); !begun) return begun.errors();
+  output::JsonWriter warnings;
+  write_errors(warnings, scene->scene.warnings);
+  return "{\"scene\": " + json_text(scene_path) + ", \"view\": " + view + ", \"warnings\": " + warnings.text() + "}";
+}
+
+Result<std::string> end_training(Parameters& parameters, const CallContext& context) {
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  if (context.desk) context.desk->end_training();
+  return std::string("{}");
+}
+
+Result<std::string> session_motion(Parameters& parameters, const CallContext& context) {
+  const std::string path = parameters.text("path");
+  const double rate = parameters.number("rate_hz", 1, 1000);
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  Result<recordings::SessionReader> reader = open_reader(context, path);
+  if (!reader) return reader.errors();
+  const std::int64_t every = std::max<std::int64_t>(1, std::llround(1 / (rate * reader->start().model.tick)));
+  constexpr std::int64_t kMost = 200000;  // poses
+  if (reader->tick_count() / every > kMost) return Error{path, "is too long for this rate", ""};
+  output::JsonWriter json;
+  json.begin_object().member("interval_s", double(every) * reader->start().model.tick).key("poses").begin_list();
+  constexpr std::int64_t kRead = 10000;  // ticks held in memory
+  for (std::int64_t from = 0; from < reader->tick_count(); from += kRead) {
+    const auto records = reader->ticks(from, std::min(from + kRead, reader->tick_count()));
+    if (!records) return records.errors();
+    for (std::int64_t tick = (from + every - 1) / every * every; tick < from + std::int64_t(records->size());
+         tick += every) {
+      const Inputs& in = (*records)[std::size_t(tick - from)].inputs;
+      const Quat q = in.world_from_tool;
+      json.begin_list().value(in.tool);
+      for (const double x : {in.position.x, in.position.y, in.position.z, q.w, q.x, q.y, q.z})
+        json.value(double(float(x)));
+      json.end_list();
+    }
+  }
+  return json.end_list().end_object().text();
+}
+
+}  // namespace ctpm::server

@@ -1,0 +1,146 @@
+#include "studio/server/training.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <vector>
+
+#include "studio/devices/open_device.h"
+#include "studio/output/json_writer.h"
+#include "studio/server/picture.h"
+#include "studio/server/text.h"
+#include "studio/session/record_session.h"
+
+namespace ctpm::server {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr auto kPictureInterval = std::chrono::microseconds(16667);
+
+/// A file that goes with the object, for sessions that nobody keeps.
+class Unkept {
+ public:
+  Unkept() {
+    std::string name = (fs::temp_directory_path() / "ctpm-try-XXXXXX").string();
+    if (mkdtemp(name.data())) folder_ = name;
+  }
+  ~Unkept() {
+    std::error_code ignored;
+    if (!folder_.empty()) fs::remove_all(folder_, ignored);
+  }
+  Unkept(const Unkept&) = delete;
+  Unkept& operator=(const Unkept&) = delete;
+  std::string file() const { return (folder_ / "try.ctpm").string(); }
+
+ private:
+  fs::path folder_;
+};
+
+/// Button n is pressed while tool n is in the hand.
+std::vector<std::string> buttons_of(const Model& model) {
+  std::vector<std::string> buttons;
+  for (std::size_t i = 0; i < std::min<std::size_t>(32, model.tools.size()); ++i)
+    buttons.push_back(std::to_string(i) + "=" + model.tools[i].name);
+  return buttons;
+}
+
+std::string ended_text(const std::string& shown, const Result<session::RecordOutcome>& outcome) {
+  output::JsonWriter json;
+  json.begin_object().member("path", std::string_view(shown)).key("errors");
+  write_errors(json, outcome ? Errors{} : outcome.errors());
+  if (outcome) {
+    const recordings::SessionStatistics& s = outcome->statistics;
+    json.member("ticks", outcome->run.ticks)
+        .member("late_ticks", outcome->run.late_ticks)
+        .member("fault", std::string_view(outcome->run.fault))
+        .member("refused", stepping::is_refused(outcome->run.status))
+        .member("max_force_n", s.max_force)
+        .member("max_depth_m", s.max_depth)
+        .member("severed", s.severed)
+        .member("tick_time_p50_s", s.tick_time_p50)
+        .member("tick_time_p99_s", s.tick_time_p99)
+        .member("input_age_p50_s", s.input_age_p50)
+        .member("input_age_p99_s", s.input_age_p99);
+  }
+  return event_text("train_ended", json.end_object().text());
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Training>> Training::begin(std::shared_ptr<const recordings::SessionStart> start,
+                                                  const TrainingRequest& request, std::uint32_t stage,
+                                                  std::shared_ptr<Outbox> outbox) {
+  std::unique_ptr<Training> training(new Training(start, request, stage, std::move(outbox)));
+  devices::DeviceRequest device;
+  device.buttons = buttons_of(start->model);
+  device.most_speed_mm_per_s = 1e3 * request.most_speed;
+  device.timeout_s = 1e5;  // a hidden page sends nothing; its reader ends the session
+  auto hand = std::make_unique<PageHand>();
+  training->hand_ = hand.get();
+  Result<devices::FollowedDevice> followed = devices::follow_device(device, std::move(hand), start->model);
+  if (!followed) return followed.errors();
+  training->source_ = std::move(followed->source);
+  auto named = std::make_shared<recordings::SessionStart>(*start);
+  for (const auto& [key, value] : followed->metadata) named->metadata[key] = value;
+  named->metadata["source"] = "studio";
+  training->start_ = std::move(named);
+  training->outbox_->send_bytes(tools_message(start->model, stage));
+  training->ticks_ = std::thread([t = training.get()] { t->tick(); });
+  training->pictures_ = std::thread([t = training.get()] { t->show(); });
+  return training;
+}
+
+Training::Training(std::shared_ptr<const recordings::SessionStart> start, const TrainingRequest& request,
+                   std::uint32_t stage, std::shared_ptr<Outbox> outbox)
+    : start_(std::move(start)), request_(request), stage_(stage), outbox_(std::move(outbox)) {}
+
+Training::~Training() {
+  ends_ = true;
+  if (ticks_.joinable()) ticks_.join();
+  if (pictures_.joinable()) pictures_.join();
+}
+
+void Training::tick() {
+  // The browser draws on the same processors. Only a privileged user may ask for this; others do without.
+  setpriority(PRIO_PROCESS, id_t(gettid()), -15);
+  const auto should_stop = [this] { return ends_.load(); };
+  if (source_->wait_for_first_pose(should_stop)) {
+    session::RunOptions options;
+    options.threads = session::threads_for(start_->model);
+    options.should_stop = should_stop;
+    options.watch = [this](const State& state, const recordings::TickRecord& record,
+                           const session::RunOutcome& so_far) { newest_.offer(state, record, so_far.late_ticks); };
+    const Unkept unkept;
+    const std::string file = request_.file.empty() ? unkept.file() : request_.file;
+    const Result<session::RecordOutcome> outcome = session::record_session(*start_, *source_, file, false, options);
+    outbox_->send(ended_text(request_.file.empty() ? "" : request_.shown, outcome));
+  } else {
+    outbox_->send(ended_text("", Error{request_.shown, "ended before the hand moved; nothing was recorded", ""}));
+  }
+  has_ended_ = true;
+}
+
+void Training::show() {
+  PictureMaker maker(start_->model, stage_);
+  FrameFacts facts;
+  facts.is_live = true;
+  outbox_->show(maker.make(start_->initial_state, facts));
+  while (!has_ended_) {
+    const auto next = std::chrono::steady_clock::now() + kPictureInterval;
+    newest_.take([&](const LiveTick& tick) {
+      facts.tick = tick.state.tick, facts.force = tick.record.tool_force, facts.depth = tick.record.depth;
+      facts.contacts = tick.record.contacts, facts.tick_time = tick.record.tick_time;
+      facts.severed = severed_in(tick.state), facts.late_ticks = tick.late_ticks;
+      facts.hand = tick.record.inputs.position;
+      outbox_->show(maker.make(tick.state, facts));
+    });
+    std::this_thread::sleep_until(next);
+  }
+}
+
+}  // namespace ctpm::server

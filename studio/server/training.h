@@ -1,0 +1,58 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "core/model/result.h"
+#include "recordings/session.h"
+#include "studio/devices/device_source.h"
+#include "studio/server/newest_state.h"
+#include "studio/server/outbox.h"
+#include "studio/server/page_hand.h"
+
+namespace ctpm::server {
+
+/// What a page asks for when it begins to train.
+struct TrainingRequest {
+  std::string file;       ///< session file to write; it must not exist. Empty: nothing is kept
+  std::string shown;      ///< its name as the page knows it
+  double most_speed = 1;  ///< of the hand; faster motion counts as a jump [m/s]
+};
+
+/// A running session that a page leads. One thread ticks, in real time; another one makes pictures for the page.
+class Training {
+ public:
+  /// Starts with the State of `start`, and ticks from the hand's first pose on. Errors: the scene has no tool.
+  static Result<std::unique_ptr<Training>> begin(std::shared_ptr<const recordings::SessionStart> start,
+                                                 const TrainingRequest& request, std::uint32_t stage,
+                                                 std::shared_ptr<Outbox> outbox);
+
+  /// Ends the session and waits until it is saved.
+  ~Training();
+
+  /// A message of the page; from one thread.
+  void move(const devices::Pose& pose, std::uint32_t buttons, double sent_s) { hand_->move(pose, buttons, sent_s); }
+
+  /// Ends the session; the event "train_ended" follows.
+  void end() { ends_ = true; }
+
+ private:
+  Training(std::shared_ptr<const recordings::SessionStart> start, const TrainingRequest& request, std::uint32_t stage,
+           std::shared_ptr<Outbox> outbox);
+  void tick();
+  void show();
+
+  std::shared_ptr<const recordings::SessionStart> start_;
+  TrainingRequest request_;
+  std::uint32_t stage_;
+  std::shared_ptr<Outbox> outbox_;
+  PageHand* hand_ = nullptr;  ///< of source_
+  std::unique_ptr<devices::DeviceSource> source_;
+  NewestState newest_;
+  std::atomic<bool> ends_{false}, has_ended_{false};
+  std::thread ticks_, pictures_;
+};
+
+}  // namespace ctpm::server

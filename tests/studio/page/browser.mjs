@@ -1,0 +1,85 @@
+// A studio and a browser that shows it.
+import { spawn, spawnSync } from "node:child_process";
+import { cpSync, mkdirSync, mkdtempSync, readdirSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+
+const [program, source, packages, sessions, pictures] = process.argv.slice(2);
+export const paths = { program, source, packages, sessions, pictures };
+const require = createRequire(join(packages, "package.json"));
+const { chromium } = require("playwright-core");
+const axe = require.resolve("axe-core/axe.min.js");
+
+const kFlags = [
+  "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
+  "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
+];
+
+/** A folder with the shipped scenes and the sessions that are named. */
+export function makeFolder(...names) {
+  const folder = mkdtempSync(join(tmpdir(), "ctpm-page-"));
+  mkdirSync(join(folder, "organs"));
+  for (const file of readdirSync(join(source, "scenes", "organs"))) cpSync(join(source, "scenes", "organs", file), join(folder, "organs", file));
+  for (const name of names) cpSync(name.endsWith(".json") ? join(source, "scenes", name) : join(sessions, name), join(folder, name));
+  return folder;
+}
+
+/** Runs the program in a folder. */
+export function ctpm(folder, ...words) {
+  const done = spawnSync(program, words, { cwd: folder, encoding: "utf8" });
+  return { code: done.status, out: done.stdout, err: done.stderr };
+}
+
+/** Serves `folder` and opens its page. */
+export async function openStudio(folder) {
+  const server = spawn(program, ["studio", folder, "--no-open", "--port", "0"], { stdio: ["ignore", "pipe", "ignore"] });
+  const address = await new Promise((resolve) => server.stdout.once("data", (data) => resolve(String(data).trim())));
+  const profile = mkdtempSync(join(tmpdir(), "ctpm-profile-"));
+  const context = await chromium.launchPersistentContext(profile, {
+    executablePath: "/usr/bin/chromium", headless: true, viewport: { width: 1280, height: 720 }, args: kFlags,
+  });
+  context.setDefaultTimeout(150000);
+  const page = context.pages()[0];
+  const complaints = [];
+  page.on("pageerror", (error) => complaints.push(error.message));
+  page.on("console", (message) => {
+    if (message.type() === "error") complaints.push(message.text());
+  });
+  page.on("dialog", (dialog) => complaints.push(`dialog: ${dialog.message()}`));
+  await page.goto(address);
+  await page.waitForSelector("header nav button");
+  const close = async () => {
+    await context.close();
+    const ended = new Promise((resolve) => server.once("exit", resolve));
+    server.kill("SIGINT");
+    const code = await ended;
+    rmSync(profile, { recursive: true, force: true });
+    return code;
+  };
+  return { page, address, complaints, close };
+}
+
+/** What axe-core finds that is serious. */
+export async function seriousFindings(page) {
+  await page.evaluate((await import("node:fs")).readFileSync(axe, "utf8") + ";0");
+  const { violations } = await page.evaluate(() => globalThis.axe.run());
+  return violations.filter((v) => v.impact === "serious" || v.impact === "critical")
+    .map((v) => `${v.id}: ${v.nodes.map((n) => n.html).join(" | ")}`);
+}
+
+export async function picture(page, name) {
+  mkdirSync(pictures, { recursive: true });
+  await page.screenshot({ path: join(pictures, `${name}.png`) });
+}
+
+/** How far the page is wider than its window [px]. */
+export function overflow(page) {
+  return page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+}
+
+/** The number in the reading of that name. */
+export async function reading(page, name) {
+  const text = await page.locator(`.readings div:has(dt:text-is("${name}")) dd`).first().innerText();
+  return Number.parseFloat(text);
+}

@@ -1,0 +1,173 @@
+// A reviewer in a browser: review_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
+import assert from "node:assert/strict";
+import { existsSync, readFileSync, rmSync } from "node:fs";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { ctpm, makeFolder, openStudio, overflow, picture, reading, seriousFindings } from "./browser.mjs";
+
+const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm";
+let folder, studio, page, expert, clumsy;
+
+/** When an event of that kind first happened [s]. */
+function firstOf(info, kind) {
+  return info.events.find((event) => event.kind === kind).tick * info.tick_s;
+}
+
+before(async () => {
+  folder = makeFolder(kExpert, kClumsy, "liver-press-expert.ctpm");
+  [expert, clumsy] = [kExpert, kClumsy].map((name) => JSON.parse(ctpm(folder, "info", name, "--json").out));
+  studio = await openStudio(folder);
+  page = studio.page;
+  await page.click("header nav button:has-text('Review')");
+});
+
+after(async () => {
+  assert.equal(await studio.close(), 0);
+  rmSync(folder, { recursive: true });
+});
+
+const clock = async () => Number.parseFloat(await page.locator(".clock").innerText());
+const drawn = () => page.locator(".view canvas").screenshot();
+const quiet = () => page.waitForFunction(() => /\d+ ms/.test([...document.querySelectorAll(".readings div")].find((d) => d.textContent.includes("picture after"))?.textContent ?? ""));
+
+test("the token leaves the address bar, and an empty page says what to do", async () => {
+  assert.ok(!page.url().includes("token"));
+  assert.match(await page.locator(".view .empty").innerText(), /Choose a session/);
+  assert.deepEqual(await seriousFindings(page), []);
+  await picture(page, "review-empty");
+});
+
+test("a session opens, and any moment of it is a press away", async () => {
+  await page.click(".list button:has-text('kidney-cut-expert')");
+  await page.waitForSelector(".uplot");
+  await quiet();
+  const start = await drawn();
+  const plots = await page.locator(".plots").boundingBox();
+  await page.mouse.click(plots.x + 64 + 0.55 * (plots.width - 78), plots.y + 20);
+  await quiet();
+  assert.ok(Math.abs((await clock()) - 0.55 * expert.duration_s) < 0.05);
+  assert.ok((await reading(page, "severed")) > 20);
+  assert.ok(!start.equals(await drawn()));
+  // The numbers of this moment are those of the command.
+  const tick = await reading(page, "tick");
+  const csv = ctpm(folder, "replay", kExpert, "--csv", "replay.csv");
+  assert.equal(csv.code, 0);
+  const row = readFileSync(join(folder, "replay.csv"), "utf8").split("\n")[tick].split(",");
+  assert.equal(row[0], String(tick - 1));
+  assert.equal((await reading(page, "force")).toFixed(2), Number(row[14]).toFixed(2));
+  assert.deepEqual(await seriousFindings(page), []);
+  await picture(page, "review-moment");
+});
+
+test("keys move and play it", async () => {
+  const before = await clock();
+  await page.locator(".view canvas").focus();
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("Shift+ArrowRight");
+  await page.waitForFunction((t) => Math.abs(Number.parseFloat(document.querySelector(".clock").textContent) - t - 0.11) < 0.002, before);
+  await page.keyboard.press("Home");
+  await page.keyboard.press("Space");
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector(".clock").textContent) > 0.5);
+  await page.keyboard.press("Space");
+  const paused = await clock();
+  await page.waitForTimeout(300);
+  assert.equal(await clock(), paused);
+  await page.keyboard.press("End");
+  await page.waitForFunction((seconds) => Math.abs(Number.parseFloat(document.querySelector(".clock").textContent) - seconds) < 1e-3, expert.duration_s);
+});
+
+test("scrubbing", async () => {
+  const times = [];
+  for (let i = 0; i < 25; ++i) {
+    const time = ((i * 7919) % 5000) / 1000;
+    await page.locator(".scrub").evaluate((slider, value) => {
+      slider.value = String(value);
+      slider.dispatchEvent(new Event("input", { bubbles: true }));
+    }, time);
+    await quiet();
+    times.push(await reading(page, "picture after"));
+  }
+  times.sort((a, b) => a - b);
+  console.log(`scrubbing: p50 ${times[12]} ms, p95 ${times[23]} ms from release to picture (286 spheres, software WebGL)`);
+});
+
+test("two sessions beside each other, compared", async () => {
+  await page.click("#tab-compare");
+  await page.locator("#panel select").selectOption(kClumsy);
+  await page.waitForFunction(() => document.querySelectorAll(".uplot").length === 3);
+  const ahead = async () => Number(await page.locator("#panel input[type=number]").inputValue());
+  const offsetAt = (kind) => Number((firstOf(clumsy, kind) - firstOf(expert, kind)).toFixed(3));
+  assert.equal(await ahead(), offsetAt("contact begins"));
+  await page.click("#panel button:has-text('first cut')");
+  const offset = offsetAt("cut");
+  assert.equal(await ahead(), offset);
+  await page.click("#panel button.main");
+  await page.waitForSelector("#panel table");
+  const worst = await page.locator("#panel .jumps button").first().innerText();
+  await page.locator("#panel .jumps button").first().click();
+  await page.waitForFunction((seconds) => Math.abs(Number.parseFloat(document.querySelector(".clock").textContent) - seconds) < 0.01, Number.parseFloat(worst) - offset);
+  // The command that it shows prints the same.
+  const shown = (await page.locator("#panel .command code").first().innerText()).split(" ");
+  const printed = ctpm(folder, ...shown.slice(1)).out;
+  for (const row of await page.locator("#panel tbody th").allInnerTexts()) assert.ok(printed.includes(row.split("\n")[0].split(" ").slice(0, 2).join(" ")), row);
+  assert.ok(printed.includes(worst.replace(/^[\d.]+ s\s*/, "").split(":")[0]));
+  await page.waitForTimeout(500);
+  assert.deepEqual(await seriousFindings(page), []);
+  await picture(page, "review-compare");
+});
+
+test("notes stay, and a link leads to the moment", async () => {
+  const session = readFileSync(join(folder, kExpert));
+  await page.click("#tab-notes");
+  await page.locator(".view canvas").focus();
+  await page.keyboard.press("Home");
+  for (let i = 0; i < 20; ++i) await page.keyboard.press("Shift+ArrowRight");
+  await page.fill("#panel textarea", "<b>too steep</b> here");
+  await page.click("#panel button.main");
+  await page.waitForSelector("#panel .jumps button:has-text('<b>too steep</b>')");
+  const time = await clock(); // of the first session; the one beside may begin earlier
+  const notes = JSON.parse(readFileSync(join(folder, "kidney-cut-expert.notes.json"), "utf8"));
+  assert.deepEqual(notes.notes, [{ time_s: time, text: "<b>too steep</b> here" }]);
+  assert.ok(readFileSync(join(folder, kExpert)).equals(session));
+  await page.click("#panel button:has-text('Copy the link')");
+  const link = await page.locator("#panel .hint code").innerText();
+  assert.ok(!link.includes("token"));
+  await picture(page, "review-notes");
+  await page.goto("about:blank");
+  await page.goto(link);
+  await page.waitForFunction((shown) => document.querySelector(".clock")?.textContent.startsWith(shown), time.toFixed(3));
+});
+
+test("an export is the one that the shown command makes, and can be cancelled", async () => {
+  await page.click("#tab-export");
+  const field = (label) => page.locator(`#panel .field:has-text("${label}") input`);
+  await field("file in the folder").fill("page.avi");
+  await field("from [s]").fill("2.2");
+  await field("to [s]").fill("2.5");
+  const shown = await page.locator("#panel .command code").innerText();
+  await page.click("#panel button.main");
+  await page.waitForSelector("#panel .good");
+  await picture(page, "review-export");
+  const words = shown.split(" ").slice(1).map((word) => (word === "page.avi" ? "command.avi" : word));
+  assert.equal(ctpm(folder, ...words).code, 0);
+  assert.ok(readFileSync(join(folder, "page.avi")).equals(readFileSync(join(folder, "command.avi"))));
+  await field("file in the folder").fill("long.avi");
+  await field("from [s]").fill("0");
+  await field("to [s]").fill("");
+  await page.click("#panel button.main");
+  await page.click("#panel .working button");
+  await page.waitForSelector("#panel .problems");
+  assert.ok(!existsSync(join(folder, "long.avi")));
+});
+
+test("it fits a desk, a large screen and a tablet", async () => {
+  for (const [width, height] of [[1280, 720], [1920, 1080], [820, 1180]]) {
+    await page.setViewportSize({ width, height });
+    await page.waitForTimeout(400);
+    assert.ok((await overflow(page)) <= 0, `${width}x${height}`);
+    await picture(page, `review-${width}x${height}`);
+  }
+  assert.deepEqual(await seriousFindings(page), []);
+});
+
+test("nothing was complained about", () => assert.deepEqual(studio.complaints, []));

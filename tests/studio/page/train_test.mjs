@@ -1,0 +1,111 @@
+// A trainee in a browser: train_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
+import assert from "node:assert/strict";
+import { readFileSync, rmSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { ctpm, makeFolder, openStudio, overflow, picture, reading, seriousFindings } from "./browser.mjs";
+
+const kExpert = "kidney-cut-expert.ctpm";
+let folder, studio, page;
+
+before(async () => {
+  folder = makeFolder("kidney.json", kExpert);
+  // A scene whose names are HTML.
+  const scene = JSON.parse(readFileSync(join(folder, "kidney.json"), "utf8"));
+  scene.name = scene.organs[0].name = "<img src=x onerror=alert(1)>";
+  scene.tools[0].name = "<b onclick=alert(2)>ball</b>";
+  writeFileSync(join(folder, "html.json"), JSON.stringify(scene));
+  studio = await openStudio(folder);
+  page = studio.page;
+  await page.click("header nav button:has-text('Train')");
+});
+
+after(async () => {
+  assert.equal(await studio.close(), 0);
+  rmSync(folder, { recursive: true });
+});
+
+/** Moves the mouse by steps of some pixels. */
+async function drag(from, by, steps) {
+  for (let i = 0; i <= steps; ++i) {
+    await page.mouse.move(from.x + (by.x * i) / steps, from.y + (by.y * i) / steps);
+    await page.waitForTimeout(12);
+  }
+}
+
+test("an empty room says what to do", async () => {
+  assert.match(await page.locator(".view .empty").innerText(), /Choose a scene/);
+  assert.deepEqual(await seriousFindings(page), []);
+  await picture(page, "train-empty");
+});
+
+test("names in a scene are text", async () => {
+  await page.locator("aside input").first().fill("");
+  await page.click(".list button:has-text('html')");
+  await page.waitForSelector(".view.running");
+  assert.equal(await page.locator(".transport button:has-text('<b onclick=alert(2)>ball</b>')").count(), 1);
+  await page.click("button:has-text('End')");
+  await page.waitForSelector("button:has-text('Train again')");
+  assert.equal(await page.locator("main img").count(), 0);
+  await page.click("button:has-text('Train again')");
+});
+
+test("the mouse presses, cuts and records", async () => {
+  await page.locator("aside input").first().fill("mine.ctpm");
+  await page.locator("aside select").first().selectOption(kExpert);
+  await page.click(".list button:has-text('kidney')");
+  await page.waitForSelector(".view.running");
+  const box = await page.locator(".view canvas").boundingBox();
+  const middle = { x: box.x + box.width / 2, y: box.y + 60 };
+  // Down onto the organ until it resists.
+  await drag(middle, { x: 0, y: 150 }, 60);
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector(".force-bar output").textContent) > 0.1);
+  await picture(page, "train-press");
+  assert.deepEqual(await seriousFindings(page), []);
+  await drag({ x: middle.x, y: middle.y + 150 }, { x: 0, y: -150 }, 40);
+  // The blade, with keys and mouse: down into the organ, and along.
+  await page.keyboard.press("2");
+  await drag({ x: middle.x, y: middle.y }, { x: -20, y: 170 }, 60);
+  for (let i = 0; i < 12; ++i) await page.keyboard.press("ArrowDown");
+  for (let i = 0; i < 40; ++i) {
+    await page.keyboard.press("ArrowRight");
+    await page.waitForTimeout(20);
+  }
+  await page.waitForFunction(() => [...document.querySelectorAll(".readings div")].some((d) => /severed[1-9]/.test(d.textContent)));
+  await picture(page, "train-cut");
+  console.log(`training: ${await reading(page, "late ticks")} late ticks, last tick ${await reading(page, "last tick")} ms, while a browser draws on the same processors`);
+  await page.keyboard.press("Escape");
+  await page.waitForSelector("button:has-text('Train again')");
+});
+
+test("the session verifies to the bit, and is compared at once", async () => {
+  await page.click("aside button.main");
+  await page.waitForSelector("aside table");
+  assert.match(await page.locator("aside .good").first().innerText(), /no difference/);
+  assert.deepEqual(await seriousFindings(page), []);
+  await picture(page, "train-ended");
+  const verdict = ctpm(folder, "verify", "mine.ctpm");
+  assert.equal(verdict.code, 0, verdict.out + verdict.err);
+  const info = JSON.parse(ctpm(folder, "info", "mine.ctpm", "--json").out);
+  assert.equal(info.metadata.source, "studio");
+  assert.ok(info.severed > 0);
+  console.log(`training: pose to tick p50 ${(1e3 * info.input_age_p50_s).toFixed(1)} ms, p99 ${(1e3 * info.input_age_p99_s).toFixed(1)} ms`);
+});
+
+test("a worst moment leads to the timeline", async () => {
+  await page.locator("aside .jumps button").first().click();
+  await page.waitForFunction(() => document.querySelectorAll(".uplot").length >= 3);
+  await page.waitForTimeout(1500);
+  assert.match(await page.locator(".captions").innerText(), /kidney-cut-expert.*mine/s);
+  await picture(page, "train-to-review");
+});
+
+test("it fits a tablet", async () => {
+  await page.click("header nav button:has-text('Train')");
+  await page.setViewportSize({ width: 820, height: 1180 });
+  await page.waitForTimeout(300);
+  assert.ok((await overflow(page)) <= 0);
+  await picture(page, "train-820x1180");
+});
+
+test("nothing was complained about", () => assert.deepEqual(studio.complaints, []));

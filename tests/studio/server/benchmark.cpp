@@ -1,0 +1,135 @@
+// Measures the studio's server as a page sees it, without a browser:
+//   ctpm_studio_benchmark review FOLDER SESSION      opening, and seeks all over the session
+//   ctpm_studio_benchmark train FOLDER SCENE         late ticks with more and more pages, one of which stops reading
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+#include "tests/studio/server/serving.h"
+
+namespace ctpm {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using testing::Serving;
+using testing::SocketClient;
+using testing::value_at;
+
+double ms_since(Clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+void print_times(const char* what, std::vector<double> times) {
+  std::sort(times.begin(), times.end());
+  const auto rank = [&](double share) { return times[std::size_t(std::ceil(share * double(times.size()))) - 1]; };
+  std::printf("%-34s p50 %.1f ms, p95 %.1f ms, max %.1f ms (%zu)\n", what, rank(0.5), rank(0.95), times.back(),
+              times.size());
+}
+
+/// Times from a request to its frame, at places all over a session.
+std::vector<double> seek(SocketClient& client, std::int64_t ticks, int count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<double> times;
+  for (int i = 0; i < count; ++i) {
+    const std::uint32_t request = seed * 100000 + std::uint32_t(i) + 1;
+    const Clock::time_point begin = Clock::now();
+    client.send({{"show", {{"stage", 0}, {"tick", random() % std::uint64_t(ticks)}, {"request", request}}}});
+    while (value_at<std::uint32_t>(client.frame(), 16) != request) {
+    }
+    times.push_back(ms_since(begin));
+  }
+  return times;
+}
+
+int review(const std::string& folder, const std::string& session) {
+  const Serving serving(folder);
+  SocketClient client(serving);
+  Clock::time_point begin = Clock::now();
+  const nlohmann::json opened = client.call("session.open", {{"path", session}, {"stage", 0}});
+  if (!opened.contains("result")) return std::printf("%s\n", opened.dump().c_str()), 2;
+  const std::int64_t ticks = opened["result"]["info"]["ticks"];
+  client.send({{"show", {{"stage", 0}, {"tick", 0}, {"request", 1}}}});
+  client.frame();
+  std::printf("%s: %.1f s, %lld spheres\n", session.c_str(), opened["result"]["info"]["duration_s"].get<double>(),
+              (long long)opened["result"]["info"]["spheres"]);
+  std::printf("%-34s %.0f ms\n", "opened, first picture after", ms_since(begin));
+  begin = Clock::now();
+  client.call("session.timeline", {{"path", session}, {"points", 3000}});
+  std::printf("%-34s %.0f ms\n", "timeline after", ms_since(begin));
+  print_times("seeks, just opened", seek(client, ticks, 60, 1));
+  const double wait_s = std::min(20.0, 3 * opened["result"]["info"]["duration_s"].get<double>());
+  std::this_thread::sleep_for(std::chrono::duration<double>(wait_s));
+  print_times(("seeks, " + std::to_string(int(wait_s)) + " s later").c_str(), seek(client, ticks, 60, 2));
+  return 0;
+}
+
+/// Trains for some seconds beside further pages, and prints the late ticks. False: the scene cannot be loaded.
+bool train_beside(const Serving& serving, const std::string& scene, int pages, bool one_stops, double seconds) {
+  SocketClient client(serving);
+  const nlohmann::json begun = client.call("train.begin", {{"scene", scene}, {"stage", 2}});
+  if (!begun.contains("result")) return std::printf("%s\n", begun.dump().c_str()), false;
+  const nlohmann::json& view = begun["result"]["view"];
+  const double x = 0.5 * (view["least"][0].get<double>() + view["most"][0].get<double>());
+  const double y = 0.5 * (view["least"][1].get<double>() + view["most"][1].get<double>());
+  const double top = view["most"][2].get<double>() + 0.03;
+  std::atomic<bool> ends{false};
+  std::vector<std::thread> others;
+  for (int i = 0; i < pages; ++i)
+    others.emplace_back([&, i] {
+      SocketClient page(serving);
+      while (!ends) {
+        page.send({{"id", 1}, {"call", "folder.list"}, {"params", nlohmann::json::object()}});
+        if (!(one_stops && i == 0)) page.receive();
+        std::this_thread::sleep_for(std::chrono::milliseconds(16));
+      }
+    });
+  std::thread reader([&] {
+    try {
+      while (true) {
+        const auto message = client.receive();
+        if (message.is_text && message.bytes.find("train_ended") != std::string::npos) {
+          const nlohmann::json content = nlohmann::json::parse(message.bytes)["content"];
+          std::printf("pages %d%s: %lld ticks, %lld late\n", pages, one_stops ? ", one stops reading" : "",
+                      (long long)content["ticks"], (long long)content["late_ticks"]);
+          return;
+        }
+      }
+    } catch (const std::exception& error) {
+      std::printf("the page was disconnected: %s\n", error.what());
+    }
+  });
+  const Clock::time_point begin = Clock::now();
+  for (int i = 0; ms_since(begin) < 1e3 * seconds; ++i) {
+    const double z = top - 0.02 * (1 - std::cos(0.01 * i));
+    client.send({{"hand",
+                  {{"position", {x, y, z}},
+                   {"orientation", {1, 0, 0, 0}},
+                   {"buttons", 1},
+                   {"time_s", 1 + 1e-3 * ms_since(begin)}}}});
+    std::this_thread::sleep_for(std::chrono::milliseconds(8));
+  }
+  client.send({{"id", 9}, {"call", "train.end"}, {"params", nlohmann::json::object()}});
+  reader.join();
+  ends = true;
+  for (std::thread& other : others) other.join();
+  return true;
+}
+
+int train(const std::string& folder, const std::string& scene) {
+  const Serving serving(folder);
+  for (const auto& [pages, one_stops] : {std::pair{0, false}, {1, false}, {4, false}, {4, true}})
+    if (!train_beside(serving, scene, pages, one_stops, 8)) return 2;
+  return 0;
+}
+
+}  // namespace
+}  // namespace ctpm
+
+int main(int argc, char** argv) {
+  if (argc == 4 && std::string(argv[1]) == "review") return ctpm::review(argv[2], argv[3]);
+  if (argc == 4 && std::string(argv[1]) == "train") return ctpm::train(argv[2], argv[3]);
+  std::fprintf(stderr, "usage: ctpm_studio_benchmark review FOLDER SESSION | train FOLDER SCENE\n");
+  return 2;
+}

@@ -1,0 +1,244 @@
+// What a client of the protocol sees of a session.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+
+#include "core/surface/surface.h"
+#include "recordings/replay.h"
+#include "recordings/session_reader.h"
+#include "tests/studio/server/serving.h"
+
+namespace ctpm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Serving;
+using testing::SocketClient;
+using testing::value_at;
+
+constexpr std::size_t kFrameHead = 120;
+
+const std::string kPress = "liver-press-expert.ctpm", kCut = "kidney-cut-expert.ctpm";
+
+class Reviewing : public ::testing::Test {
+ protected:
+  Reviewing() {
+    for (const std::string& name : {kPress, kCut})
+      fs::copy(fs::path(CTPM_SHIPPED_SESSIONS) / name, folder_.path() / name);
+  }
+  std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
+
+  testing::TemporaryFolder folder_;
+};
+
+std::string frame_of(SocketClient& client, std::int64_t tick, std::uint32_t request) {
+  client.send({{"show", {{"stage", 0}, {"tick", tick}, {"request", request}}}});
+  for (;;) {
+    std::string frame = client.frame();
+    if (value_at<std::uint32_t>(frame, 16) == request) return frame;
+  }
+}
+
+TEST_F(Reviewing, AFrameIsTheReplayedMoment) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  const nlohmann::json opened = client.call("session.open", {{"path", kPress}, {"stage", 0}});
+  ASSERT_TRUE(opened.contains("result")) << opened;
+
+  auto reader = recordings::SessionReader::open(file(kPress));
+  const std::int64_t end = reader->tick_count();
+  EXPECT_EQ(opened["result"]["info"]["ticks"], end);
+  auto cursor = recordings::ReplayCursor::create(*reader);
+  std::uint32_t request = 0;
+  // Forwards, backwards, onto a keyframe, to both ends.
+  for (const std::int64_t tick : {std::int64_t{1500}, std::int64_t{1510}, std::int64_t{900}, std::int64_t{2000},
+                                  std::int64_t{1}, end, std::int64_t{0}}) {
+    const std::string frame = frame_of(client, tick, ++request);
+    ASSERT_TRUE(cursor->seek(std::max<std::int64_t>(0, tick - 1)));
+    if (tick > 0) {
+      ASSERT_TRUE(cursor->step());
+    }
+    EXPECT_EQ(value_at<double>(frame, 32), double(tick));
+    EXPECT_EQ(value_at<std::uint32_t>(frame, 20) & 1u, 1u);
+    const Vec3 force = tick > 0 ? cursor->report().tool_force : Vec3{};
+    EXPECT_FLOAT_EQ(value_at<float>(frame, 72), float(force.x));
+    EXPECT_FLOAT_EQ(value_at<float>(frame, 80), float(force.z));
+    if (tick > 0) {
+      EXPECT_FLOAT_EQ(value_at<float>(frame, 84), float(cursor->report().depth));
+    }
+    // Positions are exact to half a step of 16 bits in their box.
+    const Model& model = reader->start().model;
+    std::vector<Vec3> vertex;
+    surface::place_surface(model, 0, model.surfaces[0], cursor->state(), vertex);
+    ASSERT_EQ(value_at<std::uint32_t>(frame, 116), 1u);
+    ASSERT_EQ(value_at<std::uint32_t>(frame, kFrameHead), vertex.size());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double least = value_at<float>(frame, kFrameHead + 4 + 4 * axis);
+      const double size = value_at<float>(frame, kFrameHead + 16 + 4 * axis);
+      double worst = 0;
+      for (std::size_t v = 0; v < vertex.size(); ++v) {
+        const double at = least + size * value_at<std::uint16_t>(frame, kFrameHead + 28 + 2 * (3 * v + axis)) / 65535;
+        const double exact = axis == 0 ? vertex[v].x : axis == 1 ? vertex[v].y : vertex[v].z;
+        worst = std::max(worst, std::abs(at - exact));
+      }
+      EXPECT_LT(worst, 0.51 * size / 65535 + 1e-8) << "tick " << tick;
+    }
+  }
+}
+
+TEST_F(Reviewing, TrianglesComeBeforeTheirFrameAndOnlyWhenACutChangedThem) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  client.call("session.open", {{"path", kCut}, {"stage", 0}});
+  std::map<std::uint32_t, std::uint32_t> triangles;  // count by topology
+  std::uint32_t request = 0;
+  int frames = 0;
+  for (const std::int64_t tick : {100, 200, 300, 3300, 3400, 100}) {
+    client.send({{"show", {{"stage", 0}, {"tick", tick}, {"request", ++request}}}});
+    for (bool done = false; !done;) {
+      const auto message = client.receive();
+      ASSERT_FALSE(message.is_text) << message.bytes;
+      const std::uint32_t kind = value_at<std::uint32_t>(message.bytes, 0),
+                          topology = value_at<std::uint32_t>(message.bytes, 8);
+      if (kind == 1) {
+        EXPECT_FALSE(triangles.contains(topology));
+        triangles[topology] = value_at<std::uint32_t>(message.bytes, 16 + 8);
+      } else if (kind == 2) {
+        EXPECT_TRUE(triangles.contains(topology));
+        ++frames;
+        done = value_at<std::uint32_t>(message.bytes, 16) == request;
+      }
+    }
+  }
+  EXPECT_EQ(frames, 6);
+  ASSERT_EQ(triangles.size(), 3u);  // whole, cut, whole again
+  std::vector<std::uint32_t> counts;
+  for (const auto& [topology, count] : triangles) counts.push_back(count);
+  EXPECT_GT(counts[1], counts[0]);
+  EXPECT_EQ(counts[2], counts[0]);
+}
+
+TEST_F(Reviewing, APageThatDoesNotReadHoldsUpNobodyAndIsToldWhatItMissed) {
+  const Serving serving(folder_.path());
+  SocketClient slow(serving), other(serving);
+  slow.call("session.open", {{"path", kPress}, {"stage", 0}});
+  other.call("session.open", {{"path", kPress}, {"stage", 0}});
+  std::uint32_t request = 0;
+  for (int i = 0; i < 400; ++i) {
+    slow.send({{"show", {{"stage", 0}, {"tick", 1000 + i % 100}, {"request", ++request}}}});
+    if (i % 20 == 0) frame_of(other, 1000 + i % 100, request);
+  }
+  frame_of(other, 2000, ++request);
+  std::uint64_t missed = 0, frames = 0, newest = 0;
+  while (newest < 400) {
+    const std::string frame = slow.frame();
+    ++frames, missed += value_at<std::uint32_t>(frame, 12);
+    newest = std::max<std::uint64_t>(newest, value_at<std::uint32_t>(frame, 16));
+  }
+  EXPECT_LT(frames, 400u);
+  EXPECT_GE(frames, 1u);
+}
+
+TEST_F(Reviewing, TimelineInfoAndComparisonAreThoseOfTheCommands) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  const nlohmann::json timeline = client.call("session.timeline", {{"path", kPress}, {"points", 500}})["result"];
+  const testing::ProgramOutcome info = testing::run_ctpm({"info", kPress, "--json"}, folder_.path());
+  const nlohmann::json said = nlohmann::json::parse(info.out);
+  const auto most = [&](const char* key) {
+    double value = 0;
+    for (const double v : timeline[key]) value = std::max(value, v);
+    return value;
+  };
+  EXPECT_FLOAT_EQ(most("force_n"), said["max_force_n"].get<double>());
+  EXPECT_FLOAT_EQ(most("depth_m"), said["max_depth_m"].get<double>());
+  EXPECT_EQ(client.call("session.open", {{"path", kPress}})["result"]["info"], said);
+
+  const nlohmann::json compared = client.call("session.compare", {{"expert", kCut}, {"trainee", kCut}})["result"];
+  const testing::ProgramOutcome compare = testing::run_ctpm({"compare", kCut, kCut, "--json"}, folder_.path());
+  nlohmann::json page = compared["comparison"], command = nlohmann::json::parse(compare.out);
+  for (nlohmann::json* json : {&page, &command}) (*json)["expert"].erase("file"), (*json)["trainee"].erase("file");
+  EXPECT_EQ(page, command);
+
+  const nlohmann::json verdict = client.call("session.verify", {{"path", kCut}})["result"];
+  const testing::ProgramOutcome verify = testing::run_ctpm({"verify", kCut}, folder_.path());
+  EXPECT_NE(verify.out.find(verdict["text"].get<std::string>()), std::string::npos) << verify.out;
+}
+
+TEST_F(Reviewing, NotesLieBesideTheSessionWhichNeverChanges) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  const std::string before = testing::slurp(file(kCut));
+  const nlohmann::json none = client.call("notes.read", {{"path", kCut}})["result"];
+  EXPECT_EQ(none["notes"].size(), 0u);
+  const nlohmann::json notes = {{{"time_s", 1.25}, {"text", "too \"deep\" <b>here</b>\n\xc3\xa4"}}};
+  const nlohmann::json written =
+      client.call("notes.write", {{"path", kCut}, {"revision", none["revision"]}, {"notes", notes}});
+  ASSERT_TRUE(written.contains("result")) << written;
+  EXPECT_EQ(client.call("notes.read", {{"path", kCut}})["result"]["notes"], notes);
+  // Who read an older version does not overwrite the newer one.
+  EXPECT_TRUE(
+      client.call("notes.write", {{"path", kCut}, {"revision", none["revision"]}, {"notes", nlohmann::json::array()}})
+          .contains("errors"));
+  EXPECT_EQ(client.call("notes.read", {{"path", kCut}})["result"]["notes"], notes);
+  EXPECT_EQ(testing::slurp(file(kCut)), before);
+  EXPECT_TRUE(fs::exists(folder_.path() / "kidney-cut-expert.notes.json"));
+  // A broken file is named, and left alone.
+  std::ofstream(folder_.path() / "liver-press-expert.notes.json") << "{";
+  const nlohmann::json broken = client.call("notes.read", {{"path", kPress}});
+  EXPECT_NE(broken["errors"].dump().find("liver-press-expert.notes.json"), std::string::npos) << broken;
+  EXPECT_TRUE(
+      client.call("notes.write", {{"path", kPress}, {"revision", "none"}, {"notes", notes}}).contains("errors"));
+  EXPECT_EQ(testing::slurp(folder_.path() / "liver-press-expert.notes.json"), "{");
+}
+
+TEST_F(Reviewing, AnExportIsTheCommandsAndCanBeCancelled) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  const nlohmann::json request = {{"path", kCut}, {"output", "page.avi"}, {"from_s", 2},
+                                  {"to_s", 2.2},  {"size", "320x180"},    {"view", "both"}};
+  const nlohmann::json done = client.call("session.export", request);
+  ASSERT_TRUE(done.contains("result")) << done;
+  const testing::ProgramOutcome command = testing::run_ctpm(
+      {"export", kCut, "-o", "command.avi", "--from-s", "2", "--to-s", "2.2", "--size", "320x180", "--view", "both"},
+      folder_.path());
+  ASSERT_EQ(command.code, 0) << command.err;
+  EXPECT_EQ(testing::slurp(file("page.avi")), testing::slurp(file("command.avi")));
+  EXPECT_NE(client.call("session.export", request)["errors"].dump().find("exists already"), std::string::npos);
+
+  client.send({{"id", 1000}, {"call", "session.export"}, {"params", {{"path", kCut}, {"output", "long.avi"}}}});
+  for (;;) {
+    const nlohmann::json message = nlohmann::json::parse(client.receive().bytes);
+    if (message["id"] != 1000) continue;
+    if (message.contains("progress")) {
+      client.send({{"cancel", 1000}});
+      continue;
+    }
+    EXPECT_TRUE(message.contains("errors")) << message;
+    break;
+  }
+  for (const auto& entry : fs::directory_iterator(folder_.path()))
+    EXPECT_EQ(entry.path().filename().string().find("long"), std::string::npos) << entry.path();
+}
+
+TEST_F(Reviewing, ADamagedSessionIsSaidSo) {
+  const Serving serving(folder_.path());
+  std::ofstream(folder_.path() / "broken.ctpm") << "this is no session";
+  SocketClient client(serving);
+  EXPECT_TRUE(client.call("session.open", {{"path", "broken.ctpm"}, {"stage", 0}}).contains("errors"));
+  EXPECT_TRUE(client.call("session.open", {{"path", "none.ctpm"}, {"stage", 0}}).contains("errors"));
+  EXPECT_TRUE(client.call("session.open", {{"path", kCut}, {"stage", 0}}).contains("result"));
+}
+
+TEST(StudioProgram, PrintsItsAddressAndEndsByCtrlC) {
+  const testing::TemporaryFolder folder;
+  const testing::ProgramOutcome missing = testing::run_ctpm({"studio", "nowhere", "--no-open"}, folder.path());
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_NE(missing.err.find("nowhere: error: does not exist"), std::string::npos) << missing.err;
+}
+
+}  // namespace
+}  // namespace ctpm

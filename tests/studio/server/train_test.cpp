@@ -1,0 +1,159 @@
+// A session that a client of the protocol leads.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "studio/server/page_hand.h"
+#include "tests/studio/server/serving.h"
+
+namespace ctpm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Serving;
+using testing::SocketClient;
+using testing::value_at;
+
+class TrainingTest : public ::testing::Test {
+ protected:
+  TrainingTest() {
+    fs::create_directories(folder_.path() / "organs");
+    fs::copy(fs::path(CTPM_SOURCE_DIR) / "scenes/kidney.json", folder_.path() / "kidney.json");
+    fs::copy(fs::path(CTPM_SOURCE_DIR) / "scenes/organs/kidney.obj", folder_.path() / "organs/kidney.obj");
+  }
+  nlohmann::json info_of(const std::string& file) {
+    return nlohmann::json::parse(testing::run_ctpm({"info", file, "--json"}, folder_.path()).out);
+  }
+
+  testing::TemporaryFolder folder_;
+};
+
+/// Holds the ball for `ticks` of 8 ms on its way down onto the organ. The messages are sent `at_once` many together,
+/// each with the time at which a hand was there.
+void press(SocketClient& client, const nlohmann::json& view, int ticks, int at_once) {
+  const double x = 0.5 * (view["least"][0].get<double>() + view["most"][0].get<double>());
+  const double y = 0.5 * (view["least"][1].get<double>() + view["most"][1].get<double>());
+  const double top = view["most"][2].get<double>() + 0.02;
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < ticks; ++i) {
+    if (i % at_once == 0) std::this_thread::sleep_until(begin + std::chrono::milliseconds(8 * (i + at_once - 1)));
+    const double z = top - 0.03 * (1 - std::cos(3.14159 * i / ticks)) / 2;
+    client.send(
+        {{"hand",
+          {{"position", {x, y, z}}, {"orientation", {1, 0, 0, 0}}, {"buttons", 1}, {"time_s", 100 + 0.008 * i}}}});
+  }
+}
+
+/// The content of the next event of that name.
+nlohmann::json event_of(SocketClient& client, const std::string& name, int* live_frames = nullptr) {
+  for (;;) {
+    const auto message = client.receive();
+    if (!message.is_text) {
+      if (live_frames && value_at<std::uint32_t>(message.bytes, 0) == 2)
+        *live_frames += (value_at<std::uint32_t>(message.bytes, 20) & 2u) != 0;
+      continue;
+    }
+    const nlohmann::json json = nlohmann::json::parse(message.bytes);
+    if (json.value("event", "") == name) return json["content"];
+  }
+}
+
+TEST_F(TrainingTest, WhatTheHandDidIsRecordedAndReplaysToTheBit) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  const nlohmann::json begun =
+      client.call("train.begin", {{"scene", "kidney.json"}, {"output", "mine.ctpm"}, {"stage", 2}});
+  ASSERT_TRUE(begun.contains("result")) << begun;
+  press(client, begun["result"]["view"], 200, 1);
+  client.send({{"id", 99}, {"call", "train.end"}, {"params", nlohmann::json::object()}});
+  int live_frames = 0;
+  const nlohmann::json ended = event_of(client, "train_ended", &live_frames);
+  EXPECT_EQ(ended["path"], "mine.ctpm") << ended;
+  EXPECT_TRUE(ended["errors"].empty()) << ended;
+  EXPECT_GT(ended["max_force_n"].get<double>(), 0.05) << ended;
+  EXPECT_GT(live_frames, 10);
+
+  const testing::ProgramOutcome verdict = testing::run_ctpm({"verify", "mine.ctpm"}, folder_.path());
+  EXPECT_EQ(verdict.code, 0) << verdict.out << verdict.err;
+  const nlohmann::json info = info_of("mine.ctpm");
+  EXPECT_EQ(info["metadata"]["source"], "studio");
+  EXPECT_TRUE(info["ended_cleanly"].get<bool>());
+  EXPECT_EQ(info["ticks"], ended["ticks"]);
+  EXPECT_EQ(info["values"]["device_samples_refused"], 0);
+  // The same name is not used twice.
+  EXPECT_NE(client.call("train.begin", {{"scene", "kidney.json"}, {"output", "mine.ctpm"}, {"stage", 2}})
+                .dump()
+                .find("exists already"),
+            std::string::npos);
+}
+
+TEST_F(TrainingTest, WhatNobodyKeepsLeavesNothing) {
+  const Serving serving(folder_.path());
+  const std::string before = folder_.list();
+  SocketClient client(serving);
+  const nlohmann::json begun = client.call("train.begin", {{"scene", "kidney.json"}, {"stage", 2}});
+  ASSERT_TRUE(begun.contains("result")) << begun;
+  press(client, begun["result"]["view"], 30, 1);
+  client.send({{"id", 99}, {"call", "train.end"}, {"params", nlohmann::json::object()}});
+  EXPECT_EQ(event_of(client, "train_ended")["path"], "");
+  EXPECT_EQ(folder_.list(), before);
+}
+
+TEST_F(TrainingTest, APageThatGoesAwayLeavesAWholeSession) {
+  {
+    const Serving serving(folder_.path());
+    SocketClient client(serving);
+    const nlohmann::json begun =
+        client.call("train.begin", {{"scene", "kidney.json"}, {"output", "left.ctpm"}, {"stage", 2}});
+    press(client, begun["result"]["view"], 60, 1);
+  }
+  EXPECT_TRUE(info_of("left.ctpm")["ended_cleanly"].get<bool>());
+  EXPECT_EQ(testing::run_ctpm({"verify", "left.ctpm"}, folder_.path()).code, 0);
+}
+
+TEST_F(TrainingTest, BadRequestsAreToldWhy) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  const auto errors = [&](const nlohmann::json& parameters) { return client.call("train.begin", parameters).dump(); };
+  EXPECT_NE(errors({{"scene", "../kidney.json"}, {"stage", 2}}).find("lies outside the folder"), std::string::npos);
+  EXPECT_NE(
+      errors({{"scene", "kidney.json"}, {"stage", 2}, {"output", "../mine.ctpm"}}).find("lies outside the folder"),
+      std::string::npos);
+  EXPECT_NE(errors({{"scene", "kidney.json"}, {"stage", 2}, {"output", "mine.mp4"}}).find("must end in .ctpm"),
+            std::string::npos);
+  std::ofstream(folder_.path() / "bad.json") << "{\"name\": 7}";
+  EXPECT_NE(errors({{"scene", "bad.json"}, {"stage", 2}}).find("bad.json:1:"), std::string::npos);
+}
+
+TEST(PageHand, MessagesThatArriveTogetherCountFromWhenTheyWereSent) {
+  server::PageHand hand;
+  hand.move({}, 0, 10.000);
+  std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  for (int i = 1; i <= 5; ++i) hand.move({}, 0, 10.000 + 0.010 * i);
+  double first = 0, last = 0;
+  devices::DeviceReport report;
+  ASSERT_TRUE(hand.next(report));
+  first = report.arrival;
+  for (int i = 1; i <= 5; ++i) {
+    ASSERT_TRUE(hand.next(report));
+    EXPECT_EQ(report.news, devices::DeviceNews::pose);
+    EXPECT_NEAR(report.arrival - first, 0.010 * i, 1e-6);
+    last = report.arrival;
+  }
+  EXPECT_FALSE(hand.next(report));
+  EXPECT_LE(last, devices::device_clock());
+  // Buttons come before the pose that goes with them, and only when they change.
+  hand.move({}, 2, 10.2), hand.move({}, 2, 10.3);
+  ASSERT_TRUE(hand.next(report));
+  EXPECT_EQ(report.news, devices::DeviceNews::buttons);
+  EXPECT_EQ(report.buttons, 2u);
+  ASSERT_TRUE(hand.next(report));
+  ASSERT_TRUE(hand.next(report));
+  EXPECT_EQ(report.news, devices::DeviceNews::pose);
+  EXPECT_FALSE(hand.next(report));
+}
+
+}  // namespace
+}  // namespace ctpm
