@@ -29,7 +29,7 @@ std::int32_t hops_between(CutGrid::Node p, CutGrid::Node q) {
 
 CutBody::CutBody(const Model& model, std::size_t organ)
     : model_(model), organ_(model.organs[organ]), index_(organ), whole_(model.surfaces[organ]) {
-  rebuild();
+  show_whole();
 }
 
 bool CutBody::update(const State& state) {
@@ -46,7 +46,7 @@ bool CutBody::update(const State& state) {
     cut_box_.low[a] = std::min(cut_box_.low[a], changed.low[a]),
     cut_box_.high[a] = std::max(cut_box_.high[a], changed.high[a]);
   forget_near(changed);
-  rebuild();
+  rebuild(state);
   return true;
 }
 
@@ -155,14 +155,15 @@ CutBody::Binding CutBody::bind(Vec3 rest, Index side) {
   return {{nearest}, {1.0}};
 }
 
-void CutBody::rebuild() {
+void CutBody::show_whole() {
+  surface_ = whole_, bound_.clear(), seen_.clear();
+  outer_triangles_ = whole_.triangle.size(), outer_vertices_ = whole_.vertex.size();
+}
+
+void CutBody::rebuild(const State& state) {
   is_cut_ = grid_ && grid_->anything_cut();
-  if (!is_cut_) {
-    surface_ = whole_, bound_.clear(), seen_.clear();
-    outer_triangles_ = whole_.triangle.size(), outer_vertices_ = whole_.vertex.size();
-    return;
-  }
-  CutMesh mesh = make_mesh(*grid_);
+  if (!is_cut_) return show_whole();
+  CutMesh mesh = make_mesh(*grid_, state);
   // Vertices of the walls that also belong to the outer surface are doubled.
   std::vector<std::uint8_t> is_outer(mesh.vertex.size(), 0);
   for (std::size_t t = 0; t < mesh.outer_triangles; ++t)

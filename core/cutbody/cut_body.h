@@ -50,7 +50,8 @@ class CutBody {
     friend auto operator<=>(const Key&, const Key&) = default;
   };
 
-  void rebuild();
+  void show_whole();
+  void rebuild(const State& state);
   bool is_near(CutGrid::NodeBox box, Index node) const;
   void forget_near(CutGrid::NodeBox box);
   std::vector<Index> spheres_near(Index node) const;

@@ -36,6 +36,7 @@ class CutGrid {
   bool update(const State& state);
   bool anything_cut() const { return anything_cut_; }
 
+  Index organ() const { return organ_; }
   Index count() const { return Index(in_tissue_.size()); }
   const Node& extent() const { return extent_; }
   double step() const { return step_; }

@@ -24,8 +24,8 @@ struct CutMesh {
 /// share one label, and a surface separates each two labels, and each from what is outside, once for each side. The
 /// surface goes through the crossings of the edges. Where two labels are joined beyond an edge or a face of the
 /// tetrahedron, the cut ends there, and its two sides meet. Every edge therefore belongs to two triangles: the mesh is
-/// watertight, and has a closed component for each piece of tissue.
-CutMesh make_mesh(const CutGrid& grid);
+/// watertight, and has a closed component for each piece of tissue. `state`: that of the grid's last update.
+CutMesh make_mesh(const CutGrid& grid, const State& state);
 
 /// Number of pieces of tissue: components of the grid's nodes.
 std::int32_t count_pieces(const CutGrid& grid);

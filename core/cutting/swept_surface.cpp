@@ -65,6 +65,32 @@ void add_swept(State& state, const Front& from, const Front& to, const NewlySwep
   push_row(state, to, newly);
 }
 
+std::optional<Vec3> nearest_swept(const State& state, std::int32_t organ, Vec3 rest, double reach) {
+  std::optional<Vec3> nearest;
+  double least = reach;
+  const auto look_at = [&](Vec3 point) {
+    if (const double distance = norm(point - rest); distance < least) least = distance, nearest = point;
+  };
+  const auto row_box = [&](std::size_t row) {
+    Box box(state.swept[row * kEdgeNodes]);
+    for (std::size_t n = 1; n < kEdgeNodes; ++n) box.add(state.swept[row * kEdgeNodes + n]);
+    return box;
+  };
+  for (std::size_t row = 1; row < swept_rows(state); ++row) {
+    Box box = row_box(row);
+    const Box before = row_box(row - 1);
+    box.add(before.low), box.add(before.high);
+    if (!box.grown(least).meets(Box(rest))) continue;
+    for (std::size_t n = 0; n + 1 < kEdgeNodes; ++n) {
+      const SweptQuad q = swept_quad(state, row, n);
+      if (q.organ != organ || !Box(q.from, q.to, q.from2, q.to2).grown(least).meets(Box(rest))) continue;
+      look_at(nearest_in_triangle(rest, q.from, q.to, q.from2));
+      look_at(nearest_in_triangle(rest, q.to, q.to2, q.from2));
+    }
+  }
+  return nearest;
+}
+
 SweptIndex::SweptIndex(const Model& model) {
   if (model.sphere_count() == 0) return;
   Box box(model.rest_position[0]);

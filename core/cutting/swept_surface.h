@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/cutting/blade_geometry.h"
@@ -42,6 +43,9 @@ void for_each_swept(const State& state, Visit&& visit) {
 /// moved instead of adding another: rows are at most 1 mm apart, and leave out nothing that is farther than some
 /// hundredths of a millimetre from the surface between them.
 void add_swept(State& state, const Front& from, const Front& to, const NewlySwept& newly);
+
+/// The point of the swept surface in an organ that is nearest to a place at rest [m]; none within `reach` [m].
+std::optional<Vec3> nearest_swept(const State& state, std::int32_t organ, Vec3 rest, double reach);
 
 /// Finds the part of the swept surface near a place.
 class SweptIndex {
