@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cutting/blade_geometry.h"
 #include "core/surface/surface.h"
 
 namespace ctpm::cutbody {
@@ -128,35 +129,91 @@ CutBody::Binding CutBody::follow(Vec3 rest, const std::vector<Index>& spheres, d
   return binding;
 }
 
-std::vector<CutBody::Index> CutBody::spheres_around(Vec3 rest) const {
+/// Spheres of a piece within reach; -1: of all pieces.
+std::vector<CutBody::Index> CutBody::spheres_around(Vec3 rest, double reach, Index piece) const {
   std::vector<Index> spheres;
-  for (Index s = 0; s < organ_.count; ++s)
-    if (norm(model_.rest_position[std::size_t(organ_.first + s)] - rest) < 3 * organ_.spacing) spheres.push_back(s);
+  for (Index s = 0; s < organ_.count; ++s) {
+    const Index node = grid_->node_of_sphere(s);
+    if (piece >= 0 && (node < 0 || piece_[std::size_t(node)] != piece)) continue;
+    if (norm(model_.rest_position[std::size_t(organ_.first + s)] - rest) < reach) spheres.push_back(s);
+  }
   return spheres;
 }
 
-CutBody::Binding CutBody::bind(Vec3 rest, Index side) {
+/// Where a place lies on the organ's own surface, if it does.
+CutBody::Origin CutBody::origin_of(Vec3 rest) const {
+  constexpr double kOnSurface = 2e-3;  // in spacings
+  const Index triangle = grid_->nearest_triangle(rest);
+  if (triangle < 0) return {-1, {}};
+  const auto& t = whole_.triangle[std::size_t(triangle)];
+  const Vec3 a = whole_.vertex[std::size_t(t[0])], b = whole_.vertex[std::size_t(t[1])],
+             c = whole_.vertex[std::size_t(t[2])], p = cutting::nearest_in_triangle(rest, a, b, c);
+  const Vec3 normal = cross(b - a, c - a);
+  const double area2 = dot(normal, normal);
+  if (norm(p - rest) > kOnSurface * organ_.spacing || !(area2 > 0)) return {-1, {}};
+  const double of_b = dot(normal, cross(p - a, c - a)) / area2, of_c = dot(normal, cross(b - a, p - a)) / area2;
+  return {triangle, {1 - of_b - of_c, of_b, of_c}};
+}
+
+/// Moves with the organ's own surface.
+CutBody::Binding CutBody::follow_whole(const Origin& origin) const {
+  std::map<Index, double> sum;
+  const SurfaceBinding& whole = whole_.binding;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto v = std::size_t(whole_.triangle[std::size_t(origin.triangle)][i]);
+    for (auto e = std::size_t(whole.first[v]); e < std::size_t(whole.first[v + 1]); ++e)
+      sum[whole.sphere[e]] += origin.weight[i] * whole.weight[e];
+  }
+  Binding binding;
+  for (const auto& [sphere, weight] : sum) binding.sphere.push_back(sphere), binding.weight.push_back(weight);
+  return binding;
+}
+
+bool CutBody::is_own_side(const Binding& binding, Index side) {
+  if (!is_near(cut_box_, side)) return true;
+  const std::vector<Index>& seen = seen_from(side);
+  return std::all_of(binding.sphere.begin(), binding.sphere.end(),
+                     [&](Index s) { return std::binary_search(seen.begin(), seen.end(), s); });
+}
+
+CutBody::Bound CutBody::bind(const CutMesh::Vertex& vertex, bool is_outer) {
+  Bound bound{vertex.rest, {}, {-1, {}}};
+  if (is_outer) bound.origin = origin_of(vertex.rest);
+  if (bound.origin.triangle >= 0) {
+    bound.binding = follow_whole(bound.origin);
+    bound.rest = {};
+    const auto& t = whole_.triangle[std::size_t(bound.origin.triangle)];
+    for (std::size_t i = 0; i < 3; ++i) bound.rest += bound.origin.weight[i] * whole_.vertex[std::size_t(t[i])];
+    if (is_own_side(bound.binding, vertex.side)) return bound;
+  }
+  bound.binding = bind_to_own_side(bound.rest, vertex.side);
+  return bound;
+}
+
+CutBody::Binding CutBody::bind_to_own_side(Vec3 rest, Index side) {
   const double reach = surface::kBindingReach * organ_.spacing;
-  for (const double wider : {1.0, 1.5}) {
-    Binding own = is_near(cut_box_, side) ? follow(rest, seen_from(side), wider * reach)
-                                          : follow(rest, spheres_near(side), reach);
-    if (!own.sphere.empty()) return own;
+  const std::vector<Index>& seen = seen_from(side);
+  for (const double wider : {1.0, 1.5})
+    if (Binding own = follow(rest, seen, wider * reach); !own.sphere.empty()) return own;
+  if (piece_.empty()) piece_ = grid_->find_pieces();
+  for (const Index piece : {piece_[std::size_t(side)], Index(-1)}) {
+    for (const double wider : {1.0, 1.5, 2.5, 4.0}) {
+      const std::vector<Index> around = spheres_around(rest, wider * reach, piece);
+      if (Binding any = follow(rest, around, wider * reach); !any.sphere.empty()) return any;
+    }
+    // Spheres in a plane, or fewer than four.
+    const std::vector<Index> around = spheres_around(rest, 4 * reach, piece);
+    if (around.empty()) continue;
+    const auto distance = [&](Index s) { return norm(model_.rest_position[std::size_t(organ_.first + s)] - rest); };
+    return {
+        {*std::min_element(around.begin(), around.end(), [&](Index s, Index t) { return distance(s) < distance(t); })},
+        {1.0}};
   }
-  const std::vector<Index> around = spheres_around(rest);
-  for (const double wider : {1.0, 1.5}) {
-    Binding any = follow(rest, around, wider * reach);
-    if (!any.sphere.empty()) return any;
-  }
-  // A body of a few spheres in a plane.
-  Index nearest = 0;
-  const auto distance = [&](Index s) { return norm(model_.rest_position[std::size_t(organ_.first + s)] - rest); };
-  for (Index s = 1; s < organ_.count; ++s)
-    if (distance(s) < distance(nearest)) nearest = s;
-  return {{nearest}, {1.0}};
+  return {{0}, {1.0}};
 }
 
 void CutBody::show_whole() {
-  surface_ = whole_, bound_.clear(), seen_.clear();
+  surface_ = whole_, bound_.clear(), seen_.clear(), origin_.clear();
   outer_triangles_ = whole_.triangle.size(), outer_vertices_ = whole_.vertex.size();
 }
 
@@ -179,21 +236,22 @@ void CutBody::rebuild(const State& state) {
     for (Index& v : mesh.triangle[t]) v = place(v, t < mesh.outer_triangles ? number : wall_number);
   }
   if (mesh.triangle.size() == mesh.outer_triangles) outer_vertices_ = source.size();
-  surface_ = {};
+  surface_ = {}, origin_.clear(), piece_.clear();
   surface_.triangle = std::move(mesh.triangle);
   surface_.binding.first.push_back(0);
-  std::map<Key, Binding> bound;
+  std::map<Key, Bound> bound;
   for (const Index v : source) {
     const CutMesh::Vertex& vertex = mesh.vertex[std::size_t(v)];
     const Key key{vertex.side, vertex.rest.x, vertex.rest.y, vertex.rest.z};
     auto found = bound.find(key);
     if (found == bound.end()) {
       auto known = bound_.extract(key);
-      found = known.empty() ? bound.emplace(key, bind(vertex.rest, vertex.side)).first
+      found = known.empty() ? bound.emplace(key, bind(vertex, is_outer[std::size_t(v)] != 0)).first
                             : bound.insert(std::move(known)).position;
     }
-    const Binding& binding = found->second;
-    surface_.vertex.push_back(vertex.rest);
+    const Binding& binding = found->second.binding;
+    if (surface_.vertex.size() < outer_vertices_) origin_.push_back(found->second.origin);
+    surface_.vertex.push_back(found->second.rest);
     surface_.binding.sphere.insert(surface_.binding.sphere.end(), binding.sphere.begin(), binding.sphere.end());
     surface_.binding.weight.insert(surface_.binding.weight.end(), binding.weight.begin(), binding.weight.end());
     surface_.binding.first.push_back(Index(surface_.binding.sphere.size()));

@@ -18,8 +18,8 @@ namespace ctpm::cutbody {
 
 /// The surface of an organ that may be cut: a pure function of the Model at rest and of the swept surface. It is
 /// closed, with one component for each piece of tissue, and each of its vertices follows only spheres of its own side
-/// of the cut. Where those do not span space, as in a strip thinner than a spacing, it follows the spheres around it as
-/// if nothing were cut.
+/// of the cut. Where those do not span space it follows the spheres of its piece. A piece without spheres, as a strip
+/// thinner than a spacing may be, follows the spheres around it as if nothing were cut.
 class CutBody {
  public:
   /// `model` must outlive the CutBody. The organ must have a surface.
@@ -35,6 +35,14 @@ class CutBody {
   std::size_t outer_triangle_count() const { return outer_triangles_; }
   std::size_t outer_vertex_count() const { return outer_vertices_; }
   bool is_cut() const { return is_cut_; }
+
+  /// Where a vertex lies on the organ's own surface: in the middle of a triangle's corners with these weights.
+  struct Origin {
+    std::int32_t triangle;  ///< -1: it does not, and belongs to a wall or a lip
+    std::array<double, 3> weight;
+  };
+  /// Of the outer vertices; empty until something is cut (outer_vertex_count).
+  const std::vector<Origin>& origin() const { return origin_; }
   /// Pieces of tissue that the cuts leave; 1 until something is cut.
   std::int32_t piece_count() const { return is_cut_ ? count_pieces(*grid_) : 1; }
 
@@ -43,6 +51,11 @@ class CutBody {
   struct Binding {
     std::vector<Index> sphere;
     std::vector<double> weight;
+  };
+  struct Bound {
+    Vec3 rest;  ///< [m]
+    Binding binding;
+    Origin origin{-1, {}};
   };
   struct Key {
     Index side;
@@ -56,9 +69,13 @@ class CutBody {
   void forget_near(CutGrid::NodeBox box);
   std::vector<Index> spheres_near(Index node) const;
   const std::vector<Index>& seen_from(Index node);
-  Binding bind(Vec3 rest, Index side);
+  Origin origin_of(Vec3 rest) const;
+  Binding follow_whole(const Origin& origin) const;
+  bool is_own_side(const Binding& binding, Index side);
+  Bound bind(const CutMesh::Vertex& vertex, bool is_outer);
+  Binding bind_to_own_side(Vec3 rest, Index side);
   Binding follow(Vec3 rest, const std::vector<Index>& spheres, double reach) const;
-  std::vector<Index> spheres_around(Vec3 rest) const;
+  std::vector<Index> spheres_around(Vec3 rest, double reach, Index piece) const;
 
   const Model& model_;
   const OrganRange& organ_;
@@ -67,8 +84,10 @@ class CutBody {
   Surface whole_, surface_;
   std::size_t outer_triangles_ = 0, outer_vertices_ = 0;
   bool is_cut_ = false;
+  std::vector<Origin> origin_;
+  std::vector<Index> piece_;                  ///< of each node of the grid; empty until it is asked for after a change
   CutGrid::NodeBox cut_box_;                  ///< around all crossings of the cut
-  std::map<Key, Binding> bound_;              ///< bindings of the vertices of the last mesh
+  std::map<Key, Bound> bound_;                ///< bindings of the vertices of the last mesh
   std::map<Index, std::vector<Index>> seen_;  ///< spheres that a node of the grid sees
 
   // Scratch memory of seen_from().

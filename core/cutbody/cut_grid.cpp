@@ -34,7 +34,7 @@ CutGrid::CutGrid(const Model& model, std::size_t organ)
   box_ = {extent_, {-1, -1, -1}};
 }
 
-/// The grid's axes are those of the lattice. It reaches a spacing beyond the spheres.
+/// The grid's axes are those of the lattice. It reaches a spacing beyond the spheres, and beyond the organ's surface.
 void CutGrid::find_frame(const Model& model, const OrganRange& organ) {
   const auto first = std::size_t(organ.first), last = first + std::size_t(organ.count);
   step_ = organ.spacing / kPerSpacing;
@@ -43,7 +43,12 @@ void CutGrid::find_frame(const Model& model, const OrganRange& organ) {
   for (std::size_t i = first; i < last; ++i)
     for (std::size_t a = 0; a < 3; ++a)
       low[a] = std::min(low[a], model.cell[i][a]), high[a] = std::max(high[a], model.cell[i][a]);
-  origin_ = frame.origin;
+  for (const Vec3& v : model.surfaces[std::size_t(organ_)].vertex)
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double at = dot(v - frame.origin, frame.axis[a]) / organ.spacing;
+      low[a] = std::min(low[a], Index(std::floor(at))), high[a] = std::max(high[a], Index(std::ceil(at)));
+    }
+  origin_ = frame.origin, first_cell_ = low;
   for (std::size_t a = 0; a < 3; ++a) {
     axis_[a] = frame.axis[a];
     origin_ += organ.spacing * (low[a] - 1) * frame.axis[a];
@@ -82,14 +87,11 @@ void CutGrid::find_surface() {
 void CutGrid::place_spheres(const Model& model, const OrganRange& organ) {
   constexpr Index kReach = 2 * kPerSpacing;
   const auto nodes = std::size_t(count());
-  LatticeCell low = model.cell[std::size_t(organ.first)];
-  for (Index s = organ.first; s < organ.first + organ.count; ++s)
-    for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], model.cell[std::size_t(s)][a]);
   first_sphere_.assign(nodes + 1, 0);
   for (Index s = 0; s < organ.count; ++s) {
     const LatticeCell cell = model.cell[std::size_t(organ.first + s)];
     Node middle;
-    for (std::size_t a = 0; a < 3; ++a) middle[a] = kPerSpacing * (cell[a] - low[a] + 1);
+    for (std::size_t a = 0; a < 3; ++a) middle[a] = kPerSpacing * (cell[a] - first_cell_[a] + 1);
     Index best = -1, least = 3 * kReach * kReach;
     for (Index k = -kReach; k <= kReach; ++k)
       for (Index j = -kReach; j <= kReach; ++j)
@@ -214,6 +216,27 @@ bool CutGrid::update(const State& state) {
   if (rows > 1) before_ = place(rows - 2, 0);
   for (std::size_t n = 0; n < kEdgeNodes && rows > 0; ++n) last_[n] = place(rows - 1, n);
   return changed_;
+}
+
+std::vector<CutGrid::Index> CutGrid::find_pieces() const {
+  std::vector<Index> root(in_tissue_.size(), -1);
+  const auto find = [&](Index n) {
+    while (root[std::size_t(n)] != n) n = root[std::size_t(n)] = root[std::size_t(root[std::size_t(n)])];
+    return n;
+  };
+  for (Index i = 0; i < count(); ++i) {
+    if (in_tissue(i)) root[std::size_t(i)] = i;
+    const Node n = node(i);
+    for (int d = 1; d < kDirections && in_tissue(i); ++d) {
+      const Node before{n[0] - (d & 1), n[1] - (d >> 1 & 1), n[2] - (d >> 2)};
+      if (!contains(before) || !in_tissue(at(before)) || is_parted(at(before), d)) continue;
+      const Index a = find(i), b = find(at(before));
+      root[std::size_t(std::max(a, b))] = std::min(a, b);
+    }
+  }
+  for (Index i = 0; i < count(); ++i)
+    if (in_tissue(i)) root[std::size_t(i)] = find(i);
+  return root;
 }
 
 CutGrid::NodeBox CutGrid::take_changed() {

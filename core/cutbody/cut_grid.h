@@ -71,6 +71,9 @@ class CutGrid {
 
   /// The node in tissue at a sphere, or the nearest one to it; -1 if there is none near. Counted within the organ.
   Index node_of_sphere(Index sphere) const { return node_of_sphere_[std::size_t(sphere)]; }
+  /// Numbers the pieces of tissue: for each node the lowest node of its piece; -1 outside.
+  std::vector<Index> find_pieces() const;
+
   /// Spheres whose node is this one.
   std::span<const Index> spheres_at(Index node) const {
     const auto begin = std::size_t(first_sphere_[std::size_t(node)]),
@@ -113,6 +116,7 @@ class CutGrid {
   double step_ = 0;
   Vec3 origin_, axis_[3];  ///< of node 0 0 0 [m]; unit vectors
   Node extent_{};
+  LatticeCell first_cell_{};  ///< lowest cell of the lattice that the grid covers, a spacing inside it
   std::vector<std::uint8_t> in_tissue_;
   std::vector<std::uint8_t> parted_;              ///< of each node: a bit for each direction
   std::unordered_map<std::size_t, float> outer_;  ///< crossings of edges with the organ's surface

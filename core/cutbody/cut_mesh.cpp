@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <unordered_map>
 
@@ -416,25 +415,9 @@ CutMesh Mesher::collect(const State& state) {
 CutMesh make_mesh(const CutGrid& grid, const State& state) { return Mesher(grid).run(state); }
 
 std::int32_t count_pieces(const CutGrid& grid) {
-  std::vector<Index> root(std::size_t(grid.count()));
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](Index n) {
-    while (root[std::size_t(n)] != n) n = root[std::size_t(n)] = root[std::size_t(root[std::size_t(n)])];
-    return n;
-  };
-  const CutGrid::Node e = grid.extent();
+  const std::vector<Index> pieces = grid.find_pieces();
   std::int32_t count = 0;
-  for (Index i = 0; i < grid.count(); ++i) count += grid.in_tissue(i);
-  for (Index i = 0; i < grid.count(); ++i)
-    for (int d = 1; d < CutGrid::kDirections; ++d) {
-      const CutGrid::Node n = grid.node(i);
-      if (n[0] + (d & 1) >= e[0] || n[1] + (d >> 1 & 1) >= e[1] || n[2] + (d >> 2) >= e[2]) continue;
-      const Index other = grid.end(i, d);
-      if (!grid.in_tissue(i) || !grid.in_tissue(other) || grid.is_parted(i, d)) continue;
-      const Index a = find(i), b = find(other);
-      if (a == b) continue;
-      root[std::size_t(std::max(a, b))] = std::min(a, b), --count;
-    }
+  for (std::size_t i = 0; i < pieces.size(); ++i) count += pieces[i] == Index(i);
   return count;
 }
 
