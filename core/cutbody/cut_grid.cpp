@@ -52,7 +52,7 @@ void CutGrid::find_frame(const Model& model, const OrganRange& organ) {
   for (std::size_t a = 0; a < 3; ++a) {
     axis_[a] = frame.axis[a];
     origin_ += organ.spacing * (low[a] - 1) * frame.axis[a];
-    extent_[a] = kPerSpacing * (high[a] - low[a] + 2) + 1;
+    extent_[a] = kPerSpacing * (high[a] - low[a] + 2) + 1, blocks_[a] = high[a] - low[a] + 3;
   }
 }
 
@@ -216,6 +216,29 @@ bool CutGrid::update(const State& state) {
   if (rows > 1) before_ = place(rows - 2, 0);
   for (std::size_t n = 0; n < kEdgeNodes && rows > 0; ++n) last_[n] = place(rows - 1, n);
   return changed_;
+}
+
+std::vector<std::uint8_t> CutGrid::cut_blocks() const {
+  std::vector<std::uint8_t> blocks(std::size_t(block_count()), 0);
+  for (const auto& [e, cut] : cuts_) {
+    const auto from = Index(e / kDirections);
+    blocks[std::size_t(block(from))] = blocks[std::size_t(block(end(from, int(e % kDirections))))] = 1;
+  }
+  return blocks;
+}
+
+std::vector<std::uint8_t> CutGrid::widened(const std::vector<std::uint8_t>& blocks) const {
+  std::vector<std::uint8_t> wider(blocks.size(), 0);
+  for (Index k = 0; k < blocks_[2]; ++k)
+    for (Index j = 0; j < blocks_[1]; ++j)
+      for (Index i = 0; i < blocks_[0]; ++i) {
+        if (!blocks[std::size_t(i + blocks_[0] * (j + blocks_[1] * k))]) continue;
+        for (Index z = std::max(0, k - 1); z <= std::min(blocks_[2] - 1, k + 1); ++z)
+          for (Index y = std::max(0, j - 1); y <= std::min(blocks_[1] - 1, j + 1); ++y)
+            for (Index x = std::max(0, i - 1); x <= std::min(blocks_[0] - 1, i + 1); ++x)
+              wider[std::size_t(x + blocks_[0] * (y + blocks_[1] * z))] = 1;
+      }
+  return wider;
 }
 
 std::vector<CutGrid::Index> CutGrid::find_pieces() const {

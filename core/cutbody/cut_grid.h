@@ -71,6 +71,17 @@ class CutGrid {
 
   /// The node in tissue at a sphere, or the nearest one to it; -1 if there is none near. Counted within the organ.
   Index node_of_sphere(Index sphere) const { return node_of_sphere_[std::size_t(sphere)]; }
+  /// Blocks of a lattice cell's size divide the grid: that of a node, or of the cube above it.
+  Index block_count() const { return blocks_[0] * blocks_[1] * blocks_[2]; }
+  Index block(Index node) const {
+    const Node n = this->node(node);
+    return n[0] / kPerSpacing + blocks_[0] * (n[1] / kPerSpacing + blocks_[1] * (n[2] / kPerSpacing));
+  }
+  /// Marks the blocks of cut edges (block_count).
+  std::vector<std::uint8_t> cut_blocks() const;
+  /// Marks the blocks around those that are marked, too.
+  std::vector<std::uint8_t> widened(const std::vector<std::uint8_t>& blocks) const;
+
   /// Numbers the pieces of tissue: for each node the lowest node of its piece; -1 outside.
   std::vector<Index> find_pieces() const;
 
@@ -115,7 +126,7 @@ class CutGrid {
   cutting::TissueDepth depth_;
   double step_ = 0;
   Vec3 origin_, axis_[3];  ///< of node 0 0 0 [m]; unit vectors
-  Node extent_{};
+  Node extent_{}, blocks_{};
   LatticeCell first_cell_{};  ///< lowest cell of the lattice that the grid covers, a spacing inside it
   std::vector<std::uint8_t> in_tissue_;
   std::vector<std::uint8_t> parted_;              ///< of each node: a bit for each direction

@@ -99,16 +99,18 @@ class Mesher {
  public:
   explicit Mesher(const CutGrid& grid) : grid_(grid), vertices_(grid) {}
 
-  CutMesh run(const State& state) {
+  CutMesh run(const std::vector<std::uint8_t>& blocks) {
     const CutGrid::Node e = grid_.extent();
     for (Index k = 0; k + 1 < e[2]; ++k)
       for (Index j = 0; j + 1 < e[1]; ++j)
         for (Index i = 0; i + 1 < e[0]; ++i) {
           const Index cube = grid_.at({i, j, k});
+          if (!blocks.empty() && !blocks[std::size_t(grid_.block(cube))]) continue;
           if (!is_parted(cube)) continue;
           for (const auto& corners : kTetrahedra) tetrahedron(cube, corners);
+          outer_cube_.resize(outer_.size(), cube);
         }
-    return collect(state);
+    return collect();
   }
 
  private:
@@ -138,12 +140,12 @@ class Mesher {
   void close_from_the_middle();
   Index vertex(const Point& p, int side);
   void push(bool is_outer, Index a, Index b, Index c) { (is_outer ? outer_ : walls_).push_back({a, b, c}); }
-  CutMesh collect(const State& state);
-  Vec3 near_cut(Vec3 rest, const State& state) const;
+  CutMesh collect();
 
   const CutGrid& grid_;
   Vertices vertices_;
   std::vector<Triangle> outer_, walls_;
+  std::vector<Index> outer_cube_;
 
   // Of the present tetrahedron.
   Index node_[4];
@@ -370,15 +372,8 @@ void Mesher::tetrahedron(Index cube, const int* corners) {
     close_from_the_middle();
 }
 
-/// Takes a place of a wall back to the swept surface if it is off it, as beyond the end of a cut.
-Vec3 Mesher::near_cut(Vec3 rest, const State& state) const {
-  constexpr double kOff = 0.15, kReach = 1.5;  // in steps of the grid
-  const std::optional<Vec3> there = cutting::nearest_swept(state, grid_.organ(), rest, kReach * grid_.step());
-  return there && norm(*there - rest) > kOff * grid_.step() ? *there : rest;
-}
-
 /// Numbers the vertices, leaves out walls whose two sides are one, and puts the outer triangles first.
-CutMesh Mesher::collect(const State& state) {
+CutMesh Mesher::collect() {
   CutMesh mesh;
   std::vector<Index> number(vertices_.count(), -1);
   for (std::vector<Triangle>* list : {&outer_, &walls_})
@@ -402,17 +397,13 @@ CutMesh Mesher::collect(const State& state) {
   mesh.outer_triangles = mesh.triangle.size();
   for (const Triangle& t : walls_)
     if (copies[sorted(t)] == 1) add(t);
-  std::vector<std::uint8_t> is_wall(mesh.vertex.size(), 0);
-  for (std::size_t t = mesh.outer_triangles; t < mesh.triangle.size(); ++t)
-    for (const Index v : mesh.triangle[t]) is_wall[std::size_t(v)] = 1;
-  for (std::size_t v = 0; v < mesh.vertex.size(); ++v)
-    if (is_wall[v]) mesh.vertex[v].rest = near_cut(mesh.vertex[v].rest, state);
+  mesh.outer_cube = std::move(outer_cube_);
   return mesh;
 }
 
 }  // namespace
 
-CutMesh make_mesh(const CutGrid& grid, const State& state) { return Mesher(grid).run(state); }
+CutMesh make_mesh(const CutGrid& grid, const std::vector<std::uint8_t>& blocks) { return Mesher(grid).run(blocks); }
 
 std::int32_t count_pieces(const CutGrid& grid) {
   const std::vector<Index> pieces = grid.find_pieces();

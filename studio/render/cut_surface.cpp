@@ -25,6 +25,7 @@ struct CutSurface::Parts {
 
   void find_lips();
   void find_rind();
+  void find_shading();
 
   const Surface& whole;
   const bool is_layered;
@@ -32,6 +33,7 @@ struct CutSurface::Parts {
   std::optional<cutbody::CutBody> body;
   std::vector<std::uint8_t> is_lip;
   std::vector<float> rind;
+  Shading of_whole, at_rest;
 };
 
 /// Outer vertices at whose place the wall has one too.
@@ -59,6 +61,24 @@ void CutSurface::Parts::find_rind() {
   }
 }
 
+void CutSurface::Parts::find_shading() {
+  if (of_whole.normal.empty()) {
+    find_normals(whole, whole.vertex, of_whole);
+    find_crevices(whole, whole.vertex, count_neighbours(whole), of_whole);
+  }
+  at_rest.normal.assign(body->outer_vertex_count(), Vec3{}), at_rest.crevice.assign(body->outer_vertex_count(), 0.0f);
+  for (std::size_t v = 0; v < at_rest.normal.size(); ++v) {
+    const cutbody::CutBody::Origin& origin = body->origin()[v];
+    if (origin.triangle < 0) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto corner = std::size_t(whole.triangle[std::size_t(origin.triangle)][i]);
+      at_rest.normal[v] += origin.weight[i] * of_whole.normal[corner];
+      at_rest.crevice[v] += float(origin.weight[i]) * of_whole.crevice[corner];
+    }
+    at_rest.normal[v] = at_rest.normal[v] / norm(at_rest.normal[v]);
+  }
+}
+
 CutSurface::CutSurface(const Model& model, std::size_t organ) : parts_(std::make_unique<Parts>(model, organ)) {}
 CutSurface::~CutSurface() = default;
 CutSurface::CutSurface(CutSurface&&) noexcept = default;
@@ -66,8 +86,8 @@ CutSurface::CutSurface(CutSurface&&) noexcept = default;
 bool CutSurface::update(const State& state) {
   Parts& parts = *parts_;
   if (!parts.body || !parts.body->update(state)) return false;
-  parts.is_lip.clear(), parts.rind.clear();
-  if (parts.body->is_cut()) parts.find_lips(), parts.find_rind();
+  parts.is_lip.clear(), parts.rind.clear(), parts.at_rest = {};
+  if (parts.body->is_cut()) parts.find_lips(), parts.find_rind(), parts.find_shading();
   return true;
 }
 
@@ -77,6 +97,7 @@ std::size_t CutSurface::outer_triangle_count() const {
 }
 const std::vector<std::uint8_t>& CutSurface::is_lip() const { return parts_->is_lip; }
 const std::vector<float>& CutSurface::rind() const { return parts_->rind; }
+const Shading& CutSurface::at_rest() const { return parts_->at_rest; }
 std::size_t CutSurface::outer_vertex_count() const {
   return parts_->body ? parts_->body->outer_vertex_count() : parts_->whole.vertex.size();
 }

@@ -8,6 +8,7 @@
 #include "core/model/model.h"
 #include "core/model/organ.h"
 #include "core/model/state.h"
+#include "studio/render/shading.h"
 
 namespace ctpm::render {
 
@@ -35,6 +36,10 @@ class CutSurface {
   /// Share of the outermost layer in a vertex of the wall: 1 in that layer, 0 in the second and below. 0 for outer
   /// vertices, and in organs of one layer                           (vertex_count, or empty without a cut)
   const std::vector<float>& rind() const;
+
+  /// The shading of the organ's own surface at rest, at the outer vertices; normals are 0 where it is not known
+  /// (outer_vertex_count, or empty without a cut)
+  const Shading& at_rest() const;
 
  private:
   struct Parts;

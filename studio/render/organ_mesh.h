@@ -5,6 +5,7 @@
 
 #include "core/model/organ.h"
 #include "core/model/state.h"
+#include "studio/render/shading.h"
 
 namespace ctpm::render {
 
@@ -14,8 +15,9 @@ constexpr int kOrganVertexFloats = 13;
 /// The moving vertices of one surface, computed for every picture.
 class OrganMesh {
  public:
-  /// Takes over a surface whose vertices or triangles changed. `is_lip`, `rind`: as in CutSurface.
-  void set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip, const std::vector<float>& rind);
+  /// Takes over a surface whose vertices or triangles changed. `is_lip`, `rind`, `at_rest`: as in CutSurface.
+  void set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip, const std::vector<float>& rind,
+                   const Shading& at_rest);
 
   /// Deforms the surface and fills vertices(). `first_sphere`: index of the organ's first sphere in the State.
   void update(const Model& model, std::size_t organ, const Surface& surface, const State& state);
@@ -26,9 +28,22 @@ class OrganMesh {
   const std::vector<Vec3>& positions() const { return position_; }  ///< [m]
 
  private:
-  std::vector<Vec3> position_, normal_;
+  void find_corrections(const Surface& surface, const Shading& at_rest);
+  void correct();
+
+  std::vector<Vec3> position_;
+  Shading shading_;
   std::vector<Vec3> stained_;  ///< rest positions for which stain_ was computed [m]
-  std::vector<float> crevice_, per_neighbour_, stain_, lip_, rind_;
+  std::vector<float> per_neighbour_, stain_, lip_, rind_;
+
+  /// What is added so that the shading at rest is that of the organ's own surface, whose triangles are others: along
+  /// the way to a neighbour, and across it.
+  struct Correction {
+    std::size_t neighbour;
+    double along, across;
+    float crevice;
+  };
+  std::vector<Correction> corrections_;  ///< of the first vertices; empty without a cut
   std::vector<float> data_;
 };
 

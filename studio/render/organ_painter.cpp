@@ -40,7 +40,8 @@ void OrganPainter::update(const Gl& gl, const SceneView& scene, const State& sta
     Organ& organ = organs_[i];
     const bool changed = organ.cut.update(state);
     const Surface& surface = organ.cut.surface();
-    if (changed || !organ.is_set) organ.mesh.set_surface(surface, organ.cut.is_lip(), organ.cut.rind());
+    if (changed || !organ.is_set)
+      organ.mesh.set_surface(surface, organ.cut.is_lip(), organ.cut.rind(), organ.cut.at_rest());
     organ.is_set = true;
     organ.mesh.update(*scene.model, i, surface, state);
     organ.array.set_stream(gl, organ.mesh.vertices());

@@ -111,7 +111,7 @@ TEST(CutBody, IsWatertightWithAComponentForEachPieceWhateverTheCut) {
     for (const Way& way : each.ways) sweep(state, way);
     cutbody::CutGrid grid(model, 0);
     (void)grid.update(state);
-    const cutbody::CutMesh mesh = cutbody::make_mesh(grid, state);
+    const cutbody::CutMesh mesh = cutbody::make_mesh(grid);
     EXPECT_EQ(open_edges(mesh.triangle), 0) << each.name;
     EXPECT_EQ(components(mesh.triangle), each.pieces) << each.name;
     EXPECT_EQ(cutbody::count_pieces(grid), each.pieces) << each.name;
@@ -129,20 +129,18 @@ TEST(CutBody, WallsLieOnTheSweptSurface) {
   for (const Case& each : cases()) {
     State state = rest_state(model);
     for (const Way& way : each.ways) sweep(state, way);
-    cutbody::CutGrid grid(model, 0);
-    (void)grid.update(state);
-    const cutbody::CutMesh mesh = cutbody::make_mesh(grid, state);
+    cutbody::CutBody body(model, 0);
+    ASSERT_TRUE(body.update(state));
     double farthest = 0;
-    for (std::size_t t = mesh.outer_triangles; t < mesh.triangle.size(); t += 13)
-      for (const std::int32_t v : mesh.triangle[t]) {
-        const Vec3 p = mesh.vertex[std::size_t(v)].rest;
-        double nearest = INFINITY;
-        cutting::for_each_swept(state, [&](const cutting::SweptQuad& q) {
-          nearest = std::min({nearest, norm(cutting::nearest_in_triangle(p, q.from, q.to, q.from2) - p),
-                              norm(cutting::nearest_in_triangle(p, q.to, q.to2, q.from2) - p)});
-        });
-        farthest = std::max(farthest, nearest);
-      }
+    for (std::size_t v = body.outer_vertex_count(); v < body.surface().vertex.size(); v += 3) {
+      const Vec3 p = body.surface().vertex[v];
+      double nearest = INFINITY;
+      cutting::for_each_swept(state, [&](const cutting::SweptQuad& q) {
+        nearest = std::min({nearest, norm(cutting::nearest_in_triangle(p, q.from, q.to, q.from2) - p),
+                            norm(cutting::nearest_in_triangle(p, q.to, q.to2, q.from2) - p)});
+      });
+      farthest = std::max(farthest, nearest);
+    }
     EXPECT_LT(farthest, 0.1 * kSpacing) << each.name;
   }
 }
