@@ -169,7 +169,8 @@ void CutGrid::take_back_last_row() {
 
 void CutGrid::reset() {
   if (anything_cut_) changed_ = true, box_ = {{0, 0, 0}, extent_};
-  for (const auto& [e, cut] : cuts_) parted_[e / kDirections] &= std::uint8_t(~(1 << int(e % kDirections)));
+  for (const auto& [e, cut] : cuts_)
+    if (!outer_.contains(e)) parted_[e / kDirections] &= std::uint8_t(~(1 << int(e % kDirections)));
   cuts_.clear(), by_last_.clear(), anything_cut_ = false, rows_ = 0;
 }
 

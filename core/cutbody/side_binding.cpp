@@ -36,7 +36,6 @@ SideBinding::SideBinding(const Model& model, const CutGrid& grid)
       organ_(model.organs[std::size_t(grid.organ())]),
       whole_(model.surfaces[std::size_t(grid.organ())]),
       grid_(grid),
-      cut_box_{grid.extent(), {-1, -1, -1}},
       visited_(std::size_t(grid.count()), 0) {}
 
 /// Whether what a node sees may depend on crossings within a box.
@@ -48,17 +47,14 @@ bool SideBinding::is_near(CutGrid::NodeBox box, Index node) const {
 }
 
 void SideBinding::forget_near(CutGrid::NodeBox changed) {
-  if (!grid_.anything_cut()) cut_box_ = {grid_.extent(), {-1, -1, -1}};
-  if (changed.low[0] <= changed.high[0]) cut_box_.add(changed.low), cut_box_.add(changed.high);
   std::erase_if(bound_, [&](const auto& entry) { return is_near(changed, entry.first.side); });
   std::erase_if(seen_, [&](const auto& entry) { return is_near(changed, entry.first); });
   piece_.clear();
 }
 
-/// Spheres on the side of a node, ascending.
-const std::vector<SideBinding::Index>& SideBinding::seen_from(Index node) {
+const SideBinding::Seen& SideBinding::seen_from(Index node) {
   const auto [found, is_new] = seen_.try_emplace(node);
-  std::vector<Index>& seen = found->second;
+  Seen& seen = found->second;
   if (!is_new) return seen;
   ++call_;
   const CutGrid::Node home = grid_.node(node);
@@ -67,20 +63,24 @@ const std::vector<SideBinding::Index>& SideBinding::seen_from(Index node) {
     const auto [at, hops] = queue_[next];
     const CutGrid::Node here = grid_.node(at);
     if (hops <= hops_between(home, here) + kDetour)
-      for (const Index sphere : grid_.spheres_at(at)) seen.push_back(sphere);
+      for (const Index sphere : grid_.spheres_at(at)) seen.sphere.push_back(sphere);
     if (hops == kMostHops) continue;
     const auto go = [&](Index to) {
       if (visited_[std::size_t(to)] == call_ || !grid_.in_tissue(to)) return;
       visited_[std::size_t(to)] = call_, queue_.emplace_back(to, hops + 1);
     };
+    const auto pass = [&](Index lower, int direction, Index to) {
+      if (!grid_.is_parted(lower, direction)) return go(to);
+      seen.has_cut = seen.has_cut || grid_.is_severed(lower, direction);
+    };
     for (int d = 1; d < CutGrid::kDirections; ++d) {
       const CutGrid::Node up{here[0] + (d & 1), here[1] + (d >> 1 & 1), here[2] + (d >> 2)},
           down{here[0] - (d & 1), here[1] - (d >> 1 & 1), here[2] - (d >> 2)};
-      if (grid_.contains(up) && !grid_.is_parted(at, d)) go(grid_.at(up));
-      if (grid_.contains(down) && !grid_.is_parted(grid_.at(down), d)) go(grid_.at(down));
+      if (grid_.contains(up)) pass(at, d, grid_.at(up));
+      if (grid_.contains(down)) pass(grid_.at(down), d, grid_.at(down));
     }
   }
-  std::sort(seen.begin(), seen.end());
+  std::sort(seen.sphere.begin(), seen.sphere.end());
   return seen;
 }
 
@@ -150,10 +150,11 @@ SideBinding::Binding SideBinding::follow_whole(const Origin& origin) const {
 }
 
 bool SideBinding::is_own_side(const Binding& binding, Index side) {
-  if (side < 0 || !is_near(cut_box_, side)) return true;
-  const std::vector<Index>& seen = seen_from(side);
+  if (side < 0) return true;
+  const Seen& seen = seen_from(side);
+  if (!seen.has_cut) return true;
   return std::all_of(binding.sphere.begin(), binding.sphere.end(),
-                     [&](Index s) { return std::binary_search(seen.begin(), seen.end(), s); });
+                     [&](Index s) { return std::binary_search(seen.sphere.begin(), seen.sphere.end(), s); });
 }
 
 /// Takes a place of a wall back to the swept surface if it is off it, as beyond the end of a cut.
@@ -184,7 +185,7 @@ const SideBinding::Bound& SideBinding::bind(const CutMesh::Vertex& vertex, bool 
 
 SideBinding::Binding SideBinding::bind_to_own_side(Vec3 rest, Index side) {
   const double reach = surface::kBindingReach * organ_.spacing;
-  const std::vector<Index>& seen = seen_from(side);
+  const std::vector<Index>& seen = seen_from(side).sphere;
   for (const double wider : {1.0, 1.5})
     if (Binding own = follow(rest, seen, wider * reach); !own.sphere.empty()) return own;
   if (piece_.empty()) piece_ = grid_.find_pieces();

@@ -55,8 +55,14 @@ class SideBinding {
     friend auto operator<=>(const Key&, const Key&) = default;
   };
 
+  /// What a node sees.
+  struct Seen {
+    std::vector<Index> sphere;  ///< ascending
+    bool has_cut = false;       ///< between them
+  };
+
   bool is_near(CutGrid::NodeBox box, Index node) const;
-  const std::vector<Index>& seen_from(Index node);
+  const Seen& seen_from(Index node);
   Vec3 near_cut(Vec3 rest, const State& state) const;
   Origin origin_of(Vec3 rest) const;
   Vec3 place_of(const Origin& origin) const;
@@ -70,10 +76,9 @@ class SideBinding {
   const OrganRange& organ_;
   const Surface& whole_;
   const CutGrid& grid_;
-  CutGrid::NodeBox cut_box_;  ///< around all crossings of the cut
   std::map<Key, Bound> bound_;
-  std::map<Index, std::vector<Index>> seen_;  ///< spheres that a node of the grid sees
-  std::vector<Index> piece_;                  ///< of each node of the grid; empty until it is asked for after a change
+  std::map<Index, Seen> seen_;
+  std::vector<Index> piece_;  ///< of each node of the grid; empty until it is asked for after a change
 
   // Scratch memory of seen_from().
   std::vector<std::uint32_t> visited_;  ///< number of the call that visited a node

@@ -40,36 +40,56 @@ void OrganMesh::find_corrections(const Surface& surface, const Shading& at_rest)
   if (at_rest.normal.empty()) return;
   Shading own;
   find_normals(surface, surface.vertex, own), find_crevices(surface, surface.vertex, per_neighbour_, own);
+  constexpr double kFolded = 0.5;  // cosine
+  const std::size_t count = at_rest.normal.size();
+  std::vector<std::uint8_t> is_steady(count, 0);
+  for (std::size_t v = 0; v < count; ++v) is_steady[v] = dot(at_rest.normal[v], own.normal[v]) > kFolded;
   // The farthest neighbour gives the steadiest direction.
-  corrections_.assign(at_rest.normal.size(), {0, 0, 0, 0});
-  std::vector<double> farthest(corrections_.size(), 0.0);
-  for (const auto& t : surface.triangle)
-    for (std::size_t i = 0; i < 3; ++i)
-      for (const std::size_t j : {(i + 1) % 3, (i + 2) % 3}) {
-        const auto v = std::size_t(t[i]), other = std::size_t(t[j]);
-        if (v >= corrections_.size()) continue;
-        const double distance = norm(surface.vertex[other] - surface.vertex[v]);
-        if (distance > farthest[v]) farthest[v] = distance, corrections_[v].neighbour = other;
-      }
-  for (std::size_t v = 0; v < corrections_.size(); ++v) {
+  corrections_.assign(count, {});
+  std::vector<double> farthest(count, 0.0);
+  const auto for_each_pair = [&](auto&& visit) {
+    for (const auto& t : surface.triangle)
+      for (std::size_t i = 0; i < 3; ++i)
+        for (const std::size_t j : {(i + 1) % 3, (i + 2) % 3})
+          if (std::size_t(t[i]) < count) visit(std::size_t(t[i]), std::size_t(t[j]));
+  };
+  for_each_pair([&](std::size_t v, std::size_t other) {
+    const double distance = norm(surface.vertex[other] - surface.vertex[v]);
+    if (is_steady[v] && distance > farthest[v]) farthest[v] = distance, corrections_[v].neighbour = other;
+  });
+  // A folded vertex goes by a steady one near it.
+  constexpr int kRounds = 4;
+  std::vector<std::uint8_t> is_known = is_steady;
+  for (int round = 0; round < kRounds; ++round) {
+    const std::vector<std::uint8_t> before = is_known;
+    for_each_pair([&](std::size_t v, std::size_t other) {
+      if (is_known[v] || other >= count || !before[other]) return;
+      corrections_[v].neighbour = corrections_[other].is_copy ? corrections_[other].neighbour : other;
+      corrections_[v].is_copy = true, is_known[v] = 1;
+    });
+  }
+  for (std::size_t v = 0; v < count; ++v) {
     Correction& correction = corrections_[v];
-    const Vec3 wanted = at_rest.normal[v], normal = own.normal[v];
-    const double facing = dot(wanted, normal);
-    if (!(facing > 0.5)) continue;  // none is known, or the vertex is at a fold
-    const auto [along, across] = tangents(normal, surface.vertex[correction.neighbour] - surface.vertex[v]);
-    correction.along = dot(wanted, along) / facing, correction.across = dot(wanted, across) / facing;
     correction.crevice = at_rest.crevice[v] - own.crevice[v];
+    if (!is_steady[v]) continue;
+    const Vec3 wanted = at_rest.normal[v];
+    const double facing = dot(wanted, own.normal[v]);
+    const auto [along, across] = tangents(own.normal[v], surface.vertex[correction.neighbour] - surface.vertex[v]);
+    correction.along = dot(wanted, along) / facing, correction.across = dot(wanted, across) / facing;
   }
 }
 
 void OrganMesh::correct() {
   for (std::size_t v = 0; v < corrections_.size(); ++v) {
     const Correction& correction = corrections_[v];
+    if (correction.is_copy) continue;
     Vec3& normal = shading_.normal[v];
     const auto [along, across] = tangents(normal, position_[correction.neighbour] - position_[v]);
     normal += correction.along * along + correction.across * across;
     normal = normal / norm(normal);
   }
+  for (std::size_t v = 0; v < corrections_.size(); ++v)
+    if (corrections_[v].is_copy) shading_.normal[v] = shading_.normal[corrections_[v].neighbour];
 }
 
 void OrganMesh::update(const Model& model, std::size_t organ, const Surface& surface, const State& state) {

@@ -39,9 +39,10 @@ class OrganMesh {
   /// What is added so that the shading at rest is that of the organ's own surface, whose triangles are others: along
   /// the way to a neighbour, and across it.
   struct Correction {
-    std::size_t neighbour;
-    double along, across;
-    float crevice;
+    std::size_t neighbour = 0;
+    double along = 0, across = 0;
+    float crevice = 0;
+    bool is_copy = false;  ///< the neighbour's normal is taken, since the vertex's own triangles are folded
   };
   std::vector<Correction> corrections_;  ///< of the first vertices; empty without a cut
   std::vector<float> data_;

@@ -183,6 +183,14 @@ TEST(CutBody, IsAFunctionOfTheSweptSurfaceAlone) {
   EXPECT_EQ(followed.surface().vertex, fresh.surface().vertex);
   EXPECT_EQ(followed.surface().binding.sphere, fresh.surface().binding.sphere);
   EXPECT_EQ(followed.surface().binding.weight, fresh.surface().binding.weight);
+  // Back in time, as a reviewer scrubs.
+  State before = rest_state(model);
+  sweep(before, straight(0.0013, 0.01), 40);
+  EXPECT_TRUE(followed.update(before));
+  cutbody::CutBody first(model, 0);
+  (void)first.update(before);
+  EXPECT_EQ(followed.surface().triangle, first.surface().triangle);
+  EXPECT_EQ(followed.surface().binding.weight, first.surface().binding.weight);
   EXPECT_TRUE(followed.update(rest_state(model)));
   EXPECT_EQ(followed.surface().triangle, model.surfaces[0].triangle);
 }
