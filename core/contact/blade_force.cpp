@@ -11,9 +11,6 @@ Vec3 across(Vec3 way, Vec3 v) { return v - dot(way, v) * way; }
 
 void BladeForce::find(const StateView& state, const Tool& tool, const cutting::CutFront& front,
                       const cutting::BladeEdge& edge, double h, bool is_predicted, PointContacts& contacts) const {
-  const Vec3 along = edge.heel - edge.tip;
-  const double length = norm(along);
-  if (!(length > 0)) return;
   for (std::size_t n = 0; n < kEdgeNodes; ++n) {
     const cutting::CutFront::Node& node = front.nodes()[n];
     if (node.length == 0) continue;
@@ -24,7 +21,8 @@ void BladeForce::find(const StateView& state, const Tool& tool, const cutting::C
     const double distance = norm(expected);
     if (!(distance > 0)) continue;
     const Vec3 way = expected / distance;
-    const double most = front.hold(n, tool, state, along / length, way);
+    if (!cutting::leads(edge, n, way)) continue;
+    const double most = front.hold(n, tool, state, along_node(edge, n), way);
     if (most == 0) continue;
     PointContact contact{.axis = way, .is_tool = true};
     const double k = most / tool.trail_distance;

@@ -16,7 +16,8 @@ struct HeldTool {
   Vec3 at(double share) const { return from + share * (to - from); }
   cutting::BladeEdge edge_at(double share) const {
     return {edge_from.tip + share * (edge_to.tip - edge_from.tip),
-            edge_from.heel + share * (edge_to.heel - edge_from.heel)};
+            edge_from.heel + share * (edge_to.heel - edge_from.heel),
+            edge_from.back + share * (edge_to.back - edge_from.back)};
   }
 
   bool is(ToolKind kind) const { return tool != nullptr && tool->kind == kind; }

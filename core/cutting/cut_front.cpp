@@ -37,6 +37,21 @@ double share_inside(Vec3 p, Vec3 q, double at_p, double at_q, Depth&& depth) {
   return std::abs(0.5 * (inside + outside) - (at_p > 0 ? 0 : 1));
 }
 
+/// Mass of a sphere inside an organ that fills its surface [kg]; 0 if it has none.
+double whole_mass(const Model& model, std::size_t organ) {
+  if (organ >= model.surfaces.size() || model.surfaces[organ].triangle.empty()) return 0;
+  const OrganRange& range = model.organs[organ];
+  double mass = 0, volume = 0;
+  for (std::int32_t i = range.first; i < range.first + range.count; ++i) mass += model.mass[std::size_t(i)];
+  const Surface& surface = model.surfaces[organ];
+  const Vec3 origin = surface.vertex.front();
+  for (const auto& t : surface.triangle) {
+    const auto at = [&](std::size_t c) { return surface.vertex[std::size_t(t[c])] - origin; };
+    volume += dot(at(0), cross(at(1), at(2))) / 6;
+  }
+  return volume > 0 ? mass / volume * range.spacing * range.spacing * range.spacing : 0.0;
+}
+
 }  // namespace
 
 CutFront::CutFront(const Model& model)
@@ -54,13 +69,16 @@ void CutFront::find_materials() {
   if (!cut.any()) return;
   resists_ = true;
   material_.resize(model_.sphere_count());
-  for (const OrganRange& organ : model_.organs) {
+  for (std::size_t o = 0; o < model_.organs.size(); ++o) {
+    const OrganRange& organ = model_.organs[o];
     const auto first = std::size_t(organ.first), last = first + std::size_t(organ.count);
-    double heaviest = 0;
+    const double of_surface = whole_mass(model_, o);
+    double heaviest = of_surface;
     std::size_t most = 0;
     bool has_diagonals = false;
     for (std::size_t i = first; i < last; ++i) {
-      heaviest = std::max(heaviest, model_.mass[i]), most = std::max(most, elements_.of(i).size());
+      if (of_surface == 0) heaviest = std::max(heaviest, model_.mass[i]);
+      most = std::max(most, elements_.of(i).size());
       for (const std::int32_t e : elements_.of(i)) {
         const Vec3 d = model_.rest_position[std::size_t(model_.axial.b[std::size_t(e)])] -
                        model_.rest_position[std::size_t(model_.axial.a[std::size_t(e)])];
@@ -77,6 +95,8 @@ void CutFront::find_materials() {
         most_friction = std::max(most_friction, cut.friction[std::size_t(e)]);
       }
       const double whole = area * double(most) * model_.mass[i] / heaviest;
+      // Without a surface every sphere is whole, and one at the boundary has fewer elements.
+      if (of_surface > 0) most_energy = most_friction = 0;
       material_[i].toughness = std::max(most_energy / area, energy / whole);
       material_[i].flank_stress = 0.5 * std::max(most_friction / area, friction / whole);
     }
@@ -105,8 +125,8 @@ void CutFront::begin_tick(const Tool& scalpel, const BladeEdge& from, const Blad
   if (state.edge_organ.size() != kEdgeNodes || state.blade_trail.size() != kEdgeNodes)
     state.blade_trail.resize(kEdgeNodes), state.edge_organ.assign(kEdgeNodes, -1);
   if (is_taken) std::fill(state.edge_organ.begin(), state.edge_organ.end(), -1);
-  const double apart = norm(to.heel - to.tip) / double(kEdgeNodes - 1);
-  const Box edge(from.tip, from.heel, to.tip, to.heel);
+  const double apart = norm(to.heel - to.tip) / double(kEdgeNodes - 1 - kPointNodes);
+  const Box edge(from.tip, from.heel, from.back, to.tip, to.heel, to.back);
   bool is_near = false;
   for (std::size_t o = 0; o < model_.organs.size(); ++o) {
     const auto first = std::size_t(model_.organs[o].first), last = first + std::size_t(model_.organs[o].count);
@@ -208,14 +228,13 @@ double CutFront::hold(std::size_t n, const Tool& scalpel, const StateView& state
     const double area = norm(cross(node.edge, at_rest)) / norm(node.edge);
     per_length += node.toughness * area * newness(node.organ, front_[n], at_rest);
   }
-  if (node.flank_stress > 0) per_length += 2 * node.flank_stress * rubbed_height(n, scalpel, state, edge, way);
+  if (node.flank_stress > 0 && n >= kPointNodes)
+    per_length += 2 * node.flank_stress * rubbed_height(n, scalpel, state, edge, way);
   return node.length * per_length;
 }
 
 std::int32_t CutFront::follow(const Tool& scalpel, const BladeEdge& edge, State& state,
                               std::vector<Crossing>& crossings) {
-  const Vec3 along = edge.heel - edge.tip;
-  const double length = norm(along);
   Front to = front_;
   std::array<double, kEdgeNodes> is_new{};
   for (std::size_t n = 0; n < kEdgeNodes; ++n) {
@@ -231,10 +250,12 @@ std::int32_t CutFront::follow(const Tool& scalpel, const BladeEdge& edge, State&
     const Vec3 apart = at_node(edge, n) - node.place.at(state.position);
     const double distance = norm(apart);
     if (!(distance > 0)) continue;
-    const double held = hold(n, scalpel, state, along / length, apart / distance) > 0 ? scalpel.trail_distance : 0.0;
+    const bool cuts = leads(edge, n, apart);
+    const double held =
+        cuts && hold(n, scalpel, state, along_node(edge, n), apart / distance) > 0 ? scalpel.trail_distance : 0.0;
     if (distance <= held) continue;
     to[n] = front_[n] + node.place.at_rest(state.position, (1 - held / distance) * apart);
-    is_new[n] = newness(node.organ, front_[n], to[n] - front_[n]);
+    if (cuts) is_new[n] = newness(node.organ, front_[n], to[n] - front_[n]);
   }
   NewlySwept newly{};
   bool moved = false;
@@ -242,7 +263,7 @@ std::int32_t CutFront::follow(const Tool& scalpel, const BladeEdge& edge, State&
     moved = moved || to[n] != front_[n];
     state.blade_trail.set(n, to[n]);
     if (n + 1 == kEdgeNodes || nodes_[n].organ < 0 || nodes_[n].organ != nodes_[n + 1].organ) continue;
-    if (std::max(is_new[n], is_new[n + 1]) < 0.5) continue;
+    if ((n < kPointNodes ? is_new[n] : std::max(is_new[n], is_new[n + 1])) < 0.5) continue;
     const auto is_in = [&](std::size_t m) {
       const auto organ = std::size_t(nodes_[m].organ);
       return nodes_[m].depth > 0 || depth_.at(organ, to[m]) > 0 || depth_.at(organ, 0.5 * (front_[m] + to[m])) > 0;
@@ -251,7 +272,8 @@ std::int32_t CutFront::follow(const Tool& scalpel, const BladeEdge& edge, State&
   }
   if (!moved) return 0;
   std::array<std::int32_t, kEdgeNodes> organ;
-  for (std::size_t n = 0; n < kEdgeNodes; ++n) organ[n] = nodes_[n].organ;
+  const bool stabs = std::any_of(newly.begin(), newly.begin() + kPointNodes, [](std::uint8_t o) { return o != 0; });
+  for (std::size_t n = 0; n < kEdgeNodes; ++n) organ[n] = n < kPointNodes && !stabs ? -1 : nodes_[n].organ;
   if (std::any_of(newly.begin(), newly.end(), [](std::uint8_t o) { return o != 0; }))
     add_swept(state, front_, to, newly);
   return sever_swept(model_, elements_, front_, to, organ, state, crossings);

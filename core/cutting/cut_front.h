@@ -80,9 +80,4 @@ class CutFront {
   const State* state_ = nullptr;  ///< of the substep, whose swept surface swept_ follows
 };
 
-/// A node's place along the edge.
-inline Vec3 at_node(const BladeEdge& edge, std::size_t node) {
-  return edge.tip + double(node) / double(kEdgeNodes - 1) * (edge.heel - edge.tip);
-}
-
 }  // namespace ctpm::cutting

@@ -41,7 +41,15 @@ std::optional<double> crossing(std::span<const Sweep> sweeps, Vec3 p, Vec3 q) {
 }  // namespace
 
 BladeEdge blade_edge(const Tool& scalpel, const Inputs& inputs) {
-  return {inputs.position, inputs.position + rotate(inputs.world_from_tool, {0, 0, scalpel.blade_length})};
+  // The blade cuts towards x of the tool. Its point is ground at 45 degrees, as that of a blade No. 11 about is.
+  const double height = std::min(scalpel.flank_height, scalpel.blade_length);
+  return {inputs.position, inputs.position + rotate(inputs.world_from_tool, {0, 0, scalpel.blade_length}),
+          inputs.position + rotate(inputs.world_from_tool, {-height, 0, height})};
+}
+
+Vec3 at_node(const BladeEdge& edge, std::size_t node) {
+  if (node < kPointNodes) return edge.back + double(node) / double(kPointNodes) * (edge.tip - edge.back);
+  return edge.tip + double(node - kPointNodes) / double(kEdgeNodes - 1 - kPointNodes) * (edge.heel - edge.tip);
 }
 
 std::uint8_t stored_crossing(double along) {

@@ -10,10 +10,27 @@
 
 namespace ctpm::cutting {
 
-/// The edge of a blade in the world.
+/// What a blade cuts with, in the world: its edge from the tip to the heel, and the point from the tip to its back,
+/// with which a stab along the edge cuts a slit as wide as the blade.
 struct BladeEdge {
-  Vec3 tip, heel;  ///< both ends [m]
+  Vec3 tip, heel, back;  ///< [m]
 };
+
+/// Nodes of State::blade_trail up to the tip: the first is at the blade's back, the last of all at the heel.
+inline constexpr std::size_t kPointNodes = 6;
+
+/// Place of a node.
+Vec3 at_node(const BladeEdge& edge, std::size_t node);
+/// Direction of the edge or the point at a node, of any length; that of the edge at the tip.
+inline Vec3 along_node(const BladeEdge& edge, std::size_t node) {
+  return node < kPointNodes ? edge.tip - edge.back : edge.heel - edge.tip;
+}
+/// Whether a node that goes `way` cuts. The point only trails behind the edge, unless the blade goes forwards along it.
+inline bool leads(const BladeEdge& edge, std::size_t node, Vec3 way) {
+  if (node >= kPointNodes) return true;
+  const Vec3 point = edge.tip - edge.back, up = edge.heel - edge.tip;
+  return dot(way, up - dot(up, point) / dot(point, point) * point) < 0;
+}
 
 /// The edge of a scalpel at the pose of `inputs`.
 BladeEdge blade_edge(const Tool& scalpel, const Inputs& inputs);

@@ -25,8 +25,8 @@ struct State {
   /// Crossing of each severed element, coded by cutting::stored_crossing(); 0: not severed; empty if the scene has no
   /// scalpel (axial_count).
   std::vector<std::uint8_t> axial_crossing;
-  /// The front of the cut: where, in the tissue at rest, the nodes of a blade's edge are, tip first [m]; empty if the
-  /// scene has no scalpel (kEdgeNodes).
+  /// The front of the cut: where, in the tissue at rest, the nodes of a blade's edge are, from its back over the tip to
+  /// the heel [m]; empty if the scene has no scalpel (kEdgeNodes).
   Vec3Array blade_trail;
   std::vector<std::int32_t> edge_organ;  ///< organ that each of them is in or near; -1: none          (kEdgeNodes)
   /// The swept surface: rows of kEdgeNodes places at rest, through which the front went, in the order of time [m].

@@ -78,7 +78,7 @@ void cut(const Model& model, BladeResult::Row& row) {
   stepping::Stepper stepper(model);
   State state = rest_state(model), before = state;
   Inputs hand;
-  hand.tool = 0;
+  hand.tool = 0, hand.world_from_tool = turn_about({0, 0, 1}, std::numbers::pi / 2 - row.angle);
   const double per_tick = kSpeed * model.tick;
   for (double way = -kHalfWay; way < kHalfWay; way += per_tick) {
     before = state;

@@ -150,6 +150,22 @@ struct BladeResult {
 Result<BladeResult> measure_blade(std::span<const double> radii, std::span<const double> toughnesses);
 Chapter chapter_of(const BladeResult& result);
 
+/// Cuts of eleven kinds through the shipped kidney, skin and liver at rest.
+struct CutsResult {
+  struct Row {
+    std::string organ, cut;
+    double radius = 0;                   ///< [m]
+    int pieces = 0;                      ///< of tissue
+    int components = 0, open_edges = 0;  ///< of the drawn surface
+    double off = 0;                      ///< largest distance of a wall from the swept surface [spacings]
+    std::size_t triangles = 0;
+  };
+  std::vector<Row> rows;
+};
+/// `shipped`: folder of the shipped scenes. `is_quick`: only at their own filling, else also at half its radius.
+Result<CutsResult> measure_cuts(const std::string& shipped, bool is_quick);
+Chapter chapter_of(const CutsResult& result);
+
 /// A ball of 10 mm, 4 mm deep, that moves sideways by 0.3 mm, far below the cone, waits for 10 s, and then slips.
 struct GripResult {
   struct Sample {

@@ -22,7 +22,7 @@ inline network::Material resisting(double toughness = kToughness, double frictio
 inline Model block_with_blade(int ni, int nj, int nk, const network::Material& material,
                               network::Structure structure = network::Structure::ctpm) {
   Model model = make_block_model(ni, nj, nk, structure, material);
-  model.tools = {scalpel(0.2)};
+  model.tools = {scalpel(0.1)};
   model.solver.tolerance = 1e-11, model.solver.velocity_floor = 1e-14, model.solver.max_iterations = 2000;
   return model;
 }
@@ -74,7 +74,7 @@ inline std::int32_t sever(const Model& model, const cutting::Front& from, const 
 
 /// Area of the swept surface within a box at rest [m^2].
 inline double swept_area(const State& state, Vec3 low, Vec3 high) {
-  constexpr int kParts = 8;
+  constexpr int kParts = 16;
   double area = 0;
   cutting::for_each_swept(state, [&](const cutting::SweptQuad& q) {
     const double whole =

@@ -308,5 +308,23 @@ TEST(BladeForce, TissueNeverGainsMoreEnergyThanTheHandGives) {
   }
 }
 
+TEST(BladeForce, AStabAlongTheBladeCutsASlitAsWideAsTheBlade) {
+  const Model model = testing::held_block(9, 9, 6);
+  const double height = model.tools[0].flank_height, deep = 0.03;
+  Vec3 low = model.rest_position[0], high = low;
+  for (std::size_t i = 0; i < model.sphere_count(); ++i) {
+    const Vec3 p = model.rest_position[i];
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const Vec3 above{0.5 * (low.x + high.x) + 0.0013, 0.5 * (low.y + high.y) + 0.0021, high.z + 0.02};
+  const testing::Work work = testing::cut_through(model, 2e-5, above, {0, 0, -(0.02 + deep)});
+  const double area = testing::swept_area(work.state, low, high);
+  // The point is ground at 45 degrees: its corner is missing from the slit.
+  EXPECT_NEAR(area, height * deep - 0.5 * height * height, 0.1 * height * deep);
+  EXPECT_NEAR(work.by_hand, testing::kToughness * area, 0.1 * testing::kToughness * area);
+  EXPECT_GT(std::count(work.state.axial_severed.begin(), work.state.axial_severed.end(), 1), 0);
+}
+
 }  // namespace
 }  // namespace ctpm

@@ -109,7 +109,8 @@ inline std::unique_ptr<TestScene> make_blob_scene(double radius = 0.003, int row
 inline void cut(const Model& model, State& state, const cutting::BladeEdge& from, const cutting::BladeEdge& to) {
   const auto front = [](const cutting::BladeEdge& edge) {
     cutting::Front nodes;
-    for (std::size_t n = 0; n < kEdgeNodes; ++n) nodes[n] = cutting::at_node(edge, n);
+    for (std::size_t n = 0; n < kEdgeNodes; ++n)
+      nodes[n] = edge.tip + double(n) / double(kEdgeNodes - 1) * (edge.heel - edge.tip);
     return nodes;
   };
   cutting::NewlySwept newly;

@@ -96,7 +96,7 @@ TEST_F(Reviewing, TrianglesComeBeforeTheirFrameAndOnlyWhenACutChangedThem) {
   std::map<std::uint32_t, std::uint32_t> triangles;  // count by topology
   std::uint32_t request = 0;
   int frames = 0;
-  for (const std::int64_t tick : {100, 200, 300, 3300, 3400, 100}) {
+  for (const std::int64_t tick : {100, 200, 300, 4900, 5000, 100}) {
     client.send({{"show", {{"stage", 0}, {"tick", tick}, {"request", ++request}}}});
     for (bool done = false; !done;) {
       const auto message = client.receive();
