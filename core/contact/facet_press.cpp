@@ -9,8 +9,7 @@
 namespace ctpm::contact {
 namespace {
 
-/// Radius of a facet, in spacings (our choice): the spheres do not resolve a pressure over less.
-constexpr double kFacetRadius = 0.5;
+using surface::Body, surface::Overlap;
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -22,20 +21,6 @@ std::size_t most_followed(const Body& body) {
 }
 
 }  // namespace
-
-std::vector<Body> bodies_of(const Model& model) {
-  std::vector<Body> bodies;
-  if (!model.has_meeting_bodies()) return bodies;
-  std::size_t first_vertex = 0;
-  for (std::size_t i = 0; i < model.surfaces.size(); ++i) {
-    const Surface& surface = model.surfaces[i];
-    if (!surface.triangle.empty())
-      bodies.push_back({std::int32_t(i), std::int32_t(first_vertex), surface::NearSurface(model, i, i + 1),
-                        surface::Facets(surface, kFacetRadius * model.organs[i].spacing)});
-    first_vertex += surface.vertex.size();
-  }
-  return bodies;
-}
 
 std::pair<std::size_t, std::size_t> FacetPress::capacity(const Body& body, const std::vector<Body>& bodies) {
   std::size_t facets = 0, entries = 0, others = 0;

@@ -188,6 +188,19 @@ TEST_P(Meeting, AnOrganRestsOnAnOrgan) {
   EXPECT_LT(std::abs(gap), 1.5e-3) << gap << ": the lower one's rim stands a little above the place pressed";
 }
 
+TEST_P(Meeting, AFastOrganDoesNotPassThroughAnother) {
+  Model model;
+  add(model, block_at(6, 6, 3, {}), 36);
+  add(model, block_at(4, 4, 3, {0.002, 0.001, 0.024 + 0.005}));
+  model.organs_meet = true;
+  finish(model, GetParam());
+  State state = rest_state(model);
+  for (std::size_t i = std::size_t(model.organs[1].first); i < model.sphere_count(); ++i) state.velocity.z[i] = -3;
+  run(model, state, 100);
+  EXPECT_GT(lowest(surface_of(model, state, 1)), 0.008) << "the lower one is 24 mm high and gives way";
+  EXPECT_GT(momentum_of(model, state).linear.z, -0.02) << "it had -0.26 kg m/s";
+}
+
 TEST_P(Meeting, TwoOrgansThatCollideKeepTheirMomentum) {
   Model model;
   add(model, block_at(3, 3, 3, {}));
