@@ -13,13 +13,21 @@
 
 namespace ctpm::contact {
 
+/// Radius of a disc of the area of all overlaps of `body` [m].
+double radius_of(const surface::Body& body, std::span<const surface::Overlap> overlaps);
+
+/// Part of an overlap of `body` with `other` by which `body` is dented; `other` is by the rest. `radius` [m]: as above.
+double share_of_dent(const Model& model, const surface::Body& body, const surface::Body& other, double radius);
+
 /// Turns the overlaps of a body into contacts, one for each facet, at its centre of pressure. The pressure is that of a
 /// dent (dent_stiffness); two bodies are dented both, and since each vertex of both is looked at, each counts half.
-/// Forces are equal and opposite, on one line.
+/// Forces are equal and opposite, at one place, where the two dents meet.
 class FacetPress {
  public:
   explicit FacetPress(const Model& model)
-      : model_(model), carriers_(model.has_meeting_bodies() ? model.sphere_count() : 0) {}
+      : model_(model),
+        carriers_(model.has_meeting_bodies() ? model.sphere_count() : 0),
+        others_(model.has_meeting_tissue() ? model.sphere_count() : 0) {}
 
   /// Capacity that add() needs for all overlaps of `body`, with other bodies among `bodies` or without: contacts, and
   /// entries of their carriers.
@@ -34,10 +42,11 @@ class FacetPress {
  private:
   void add_facet(const StateView& state, const PressStep& step, const surface::Body& body, std::int32_t point,
                  double radius, std::span<const surface::Overlap> overlaps, PointContacts& contacts);
-  double stiffness(const surface::Body& body, double radius) const;
+  void add_carriers(const StateView& state, double radius, const surface::Body& body,
+                    std::span<const surface::Overlap> overlaps);
 
   const Model& model_;
-  CarrierSum carriers_;
+  CarrierSum carriers_, others_;  ///< of a facet; of what it touches
 };
 
 }  // namespace ctpm::contact

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "core/surface/surface.h"
 #include "studio/render/noise.h"
 
 namespace ctpm::render {
@@ -25,8 +24,8 @@ void OrganMesh::set_surface(const Surface& surface, const std::vector<std::uint8
   for (float& x : per_neighbour_) x = x > 0 ? 1 / x : 0;
 }
 
-void OrganMesh::update(const Model& model, std::size_t organ, const Surface& surface, const State& state) {
-  surface::place_surface(model, organ, surface, state, position_);
+void OrganMesh::update(contact::DrawnSurfaces& drawn, std::size_t organ, const Surface& surface, const State& state) {
+  drawn.place(organ, surface, state, position_);
   const std::size_t count = position_.size();
   // Normals: the sum over the triangles at a vertex, weighted by their area.
   normal_.assign(count, Vec3{});
