@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/contact/body_contact.h"
 #include "core/network/network.h"
 #include "core/stepping/integrator.h"
+#include "core/surface/body_overlaps.h"
 #include "core/surface/surface.h"
 #include "scenes/anchors.h"
 #include "scenes/json_text.h"
@@ -216,8 +216,7 @@ void add_obstacles(Model& model, const SceneSpec& scene) {
 void warn_of_overlap(const Model& model, Problems& problems) {
   if (!model.has_meeting_tissue()) return;
   constexpr double kTouching = 0.5e-3;  // [m]; meshes that lie against each other overlap a little
-  std::vector<contact::Body> bodies = contact::bodies_of(model);
-  const auto deepest = contact::BodyContact(model, bodies).deepest(model.rest_position);
+  const auto deepest = surface::deepest_overlap(model, model.rest_position);
   if (!deepest || deepest->depth < kTouching) return;
   char place[96];
   std::snprintf(place, sizeof place, "(%.4g, %.4g, %.4g) mm", 1e3 * deepest->place.x, 1e3 * deepest->place.y,

@@ -21,8 +21,8 @@ std::pair<std::size_t, std::size_t> of_cuts(const Model& model, const BladeForce
 
 Contacts::Contacts(const Model& model, const elements::Kernels& kernels)
     : model_(model),
-      bodies_(bodies_of(model)),
-      ball_(model, kernels),
+      bodies_(surface::bodies_of(model)),
+      ball_(model, bodies_, kernels),
       body_contact_(model, bodies_),
       obstacles_(model, bodies_),
       blade_(model),
@@ -44,6 +44,7 @@ Pin Contacts::pin(const HeldTool& tool, const Vec3Array& position, double share,
 
 void Contacts::find(const StateView& state, const HeldTool& tool, const ContactStep& step, bool from_velocity) {
   points_.clear();
+  for (surface::Body& body : bodies_) body.surface.begin(state.position);
   const PressStep press{step.h, step.elapsed, step.ahead, from_velocity};
   if (tool.is(ToolKind::ball))
     ball_.find(state, {tool.at(step.share), (tool.to - tool.from) / model_.tick, tool.tool->radius, press}, points_);

@@ -80,7 +80,7 @@ class Contacts {
   void find(const StateView& state, const HeldTool& tool, const ContactStep& step, bool from_velocity);
 
   const Model& model_;
-  std::vector<Body> bodies_;
+  std::vector<surface::Body> bodies_;
   BallContact ball_;
   BodyContact body_contact_;
   ObstacleContact obstacles_;

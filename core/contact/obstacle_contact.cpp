@@ -24,7 +24,7 @@ Box bounds_of(const Obstacle& box) {
 
 }  // namespace
 
-ObstacleContact::ObstacleContact(const Model& model, std::vector<Body>& bodies)
+ObstacleContact::ObstacleContact(const Model& model, std::vector<surface::Body>& bodies)
     : model_(model), bodies_(bodies), press_(model) {
   if (model.obstacles.empty()) return;
   for (const Surface& surface : model.surfaces) vertex_count_ += std::int32_t(surface.vertex.size());
@@ -35,7 +35,7 @@ ObstacleContact::ObstacleContact(const Model& model, std::vector<Body>& bodies)
     for (std::int32_t s = 0; s < model.organs[i].count; ++s) bare_.push_back(model.organs[i].first + s);
   }
   capacity_ = {bare_.size(), bare_.size()};
-  for (const Body& body : bodies) {
+  for (const surface::Body& body : bodies) {
     const auto [contacts, entries] = FacetPress::capacity(body, {});
     capacity_.first += contacts, capacity_.second += entries;
   }
@@ -47,13 +47,14 @@ void ObstacleContact::find(const StateView& state, const PressStep& step, PointC
   for (std::size_t o = 0; o < model_.obstacles.size(); ++o) {
     const Obstacle& obstacle = model_.obstacles[o];
     const auto first_point = std::int32_t(2 + o) * points;
-    for (Body& body : bodies_) find_on_surface(state, step, obstacle, first_point + body.first_vertex, body, contacts);
+    for (surface::Body& body : bodies_)
+      find_on_surface(state, step, obstacle, first_point + body.first_vertex, body, contacts);
     find_on_spheres(state, step, obstacle, first_point + vertex_count_, contacts);
   }
 }
 
 void ObstacleContact::find_on_surface(const StateView& state, const PressStep& step, const Obstacle& obstacle,
-                                      std::int32_t first_point, Body& body, PointContacts& contacts) {
+                                      std::int32_t first_point, surface::Body& body, PointContacts& contacts) {
   ++round_;
   const auto look_at = [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -66,9 +67,9 @@ void ObstacleContact::find_on_surface(const StateView& state, const PressStep& s
     }
   };
   if (obstacle.kind == ObstacleKind::box)
-    body.surface.near(state.position, bounds_of(obstacle), look_at);
+    body.surface.near(bounds_of(obstacle), look_at);
   else
-    body.surface.near(state.position, half_space_of(obstacle), look_at);
+    body.surface.near(half_space_of(obstacle), look_at);
   press_.add(state, step, body, first_point, overlaps_, contacts);
 }
 

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/surface/surface.h"
 #include "studio/render/noise.h"
 
 namespace ctpm::render {
@@ -92,8 +91,8 @@ void OrganMesh::correct() {
     if (corrections_[v].is_copy) shading_.normal[v] = shading_.normal[corrections_[v].neighbour];
 }
 
-void OrganMesh::update(const Model& model, std::size_t organ, const Surface& surface, const State& state) {
-  surface::place_surface(model, organ, surface, state, position_);
+void OrganMesh::update(contact::DrawnSurfaces& drawn, std::size_t organ, const Surface& surface, const State& state) {
+  drawn.place(organ, surface, state, position_);
   const std::size_t count = position_.size();
   find_normals(surface, position_, shading_), find_crevices(surface, position_, per_neighbour_, shading_);
   correct();

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/contact/drawn_surfaces.h"
 #include "core/model/organ.h"
 #include "core/model/state.h"
 #include "studio/render/shading.h"
@@ -19,8 +20,8 @@ class OrganMesh {
   void set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip, const std::vector<float>& rind,
                    const Shading& at_rest);
 
-  /// Deforms the surface and fills vertices(). `first_sphere`: index of the organ's first sphere in the State.
-  void update(const Model& model, std::size_t organ, const Surface& surface, const State& state);
+  /// Places the surface, that of organ `organ` of the Model of `drawn`, and fills vertices().
+  void update(contact::DrawnSurfaces& drawn, std::size_t organ, const Surface& surface, const State& state);
 
   /// Interleaved floats (vertex_count x kOrganVertexFloats). The crevice is negative in hollows and positive
   /// on ridges.

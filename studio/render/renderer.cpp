@@ -347,7 +347,7 @@ Frame Renderer::draw(const State& state, const DrawOptions& options) {
   p.context->make_current();
   const Gl& gl = p.gl();
   p.clip = p.clip_from_world(options.camera);
-  p.organs.update(gl, p.scene, state);
+  p.organs.update(gl, state);
   p.rect = p.footprint(state, options);
   p.target.begin(gl, p.rect);
   gl.Enable(GL_DEPTH_TEST), gl.DepthFunc(GL_LEQUAL);

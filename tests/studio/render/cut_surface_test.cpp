@@ -240,10 +240,11 @@ TEST(CutSurface, NormalsAndColourContinueOverTheClosedCut) {
   render::CutSurface cut_surface(scene->model, 0);
   ASSERT_TRUE(cut_surface.update(state));
   const Surface &whole = scene->model.surfaces[0], &surface = cut_surface.surface();
+  contact::DrawnSurfaces drawn(scene->model);
   render::OrganMesh uncut, mesh;
-  uncut.set_surface(whole, {}, {}, {}), uncut.update(scene->model, 0, whole, rest);
+  uncut.set_surface(whole, {}, {}, {}), uncut.update(drawn, 0, whole, rest);
   mesh.set_surface(surface, cut_surface.is_lip(), cut_surface.rind(), cut_surface.at_rest()),
-      mesh.update(scene->model, 0, surface, state);
+      mesh.update(drawn, 0, surface, state);
   const auto normal = [](const render::OrganMesh& m, std::size_t v) {
     const float* f = &m.vertices()[v * render::kOrganVertexFloats];
     return Vec3{f[3], f[4], f[5]};
