@@ -256,7 +256,6 @@ Result<RecoverReport> recover_session(const std::string& in, const std::string& 
   // Read the new file back and verify it.
   auto reader = SessionReader::open(out);
   if (!reader) return reader.errors();
-  if (auto r = reader->check_all(); !r) return r.errors();
   auto verdict = verify_session(*reader);
   if (!verdict) return verdict.errors();
   report.verdict = *verdict;

@@ -1,5 +1,7 @@
 #include "recordings/replay.h"
 
+#include <time.h>
+
 #include <algorithm>
 
 #include "core/stepping/step.h"
@@ -9,7 +11,18 @@ namespace ctpm::recordings {
 
 namespace {
 constexpr std::int64_t read_ahead = 1000;  // ticks read at a time
+
+// Computing time that a replay may take: `free_time`, and for each tick `patience` times its length or the computing
+// time that the session states for it.
+constexpr double free_time = 5, patience = 10, longest_stated = 1;  // [s], [1], [s]
+
+/// Computing time of this thread [s].
+double computing_time() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
+}  // namespace
 
 struct ReplayCursor::Impl {
   explicit Impl(SessionReader& reader_)
@@ -24,6 +37,7 @@ struct ReplayCursor::Impl {
   TickRecord record;
   stepping::StepReport report;
   bool same = true;
+  double spent = 0, allowed = free_time;  ///< computing time of all ticks [s]
 
   Result<Keyframe> keyframe_for(std::int64_t target);
 };
@@ -88,7 +102,15 @@ Result<bool> ReplayCursor::step() {
     impl.ahead_first = impl.tick;
   }
   impl.record = impl.ahead[impl.tick - impl.ahead_first];
+  const double before = computing_time();
   impl.report = impl.stepper.step(impl.state, impl.record.inputs);
+  impl.spent += computing_time() - before;
+  impl.allowed += patience * std::max(impl.reader.start().model.tick, std::min(impl.record.tick_time, longest_stated));
+  if (impl.spent > impl.allowed)
+    return Error{impl.reader.path(),
+                 "tick " + std::to_string(impl.tick) + ": the replay takes " + std::to_string(int(patience)) +
+                     " times as long as the session was lived or states that it computed",
+                 "its model or its inputs ask for work that no session needs"};
   impl.same = impl.same && state_hash(impl.state) == impl.record.state_hash;
   ++impl.tick;
   return true;

@@ -55,7 +55,7 @@ struct VerifyOptions {
 
 /// Result of comparing a new simulation with the recording.
 struct Verdict {
-  bool same = true;
+  bool same = true;                   ///< nothing differs; false if no tick was compared
   std::int32_t physics_revision = 0;  ///< revision of the recording; 0: recorded before revisions were stored
   std::int64_t ticks_compared = 0;
   std::int64_t ticks_different = 0;

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "recordings/internal/session_check.h"
 #include "recordings/internal/session_store.h"
 #include "recordings/internal/statistics.h"
 
@@ -17,6 +18,7 @@ struct SessionReader::Impl {
   std::string path;
   SessionStore store;
   SessionStart start;
+  std::vector<std::string> remarks;
   std::int64_t tick_count = 0, event_count = 0;
   std::optional<SessionStatistics> finish;
   Run<TickRecord> cached;  ///< the last chunk read
@@ -40,6 +42,10 @@ Result<SessionReader> SessionReader::open(const std::string& path) {
   impl->store = std::move(*store);
   if (auto r = impl->read_start(); !r) return r.errors();
   if (auto r = impl->read_ends(); !r) return r.errors();
+  impl->remarks = impl->store.remarks();
+  if (impl->store.lacks_log() && !impl->finish)
+    impl->remarks.push_back("has no clean end, and its log " + path +
+                            "-wal is not beside it: the ticks in it are missing");
   return SessionReader(std::move(impl));
 }
 
@@ -84,6 +90,8 @@ Result<Done> SessionReader::Impl::read_ends() {
   const auto last_events = store.events_at(last_key);
   if (!last_events) return last_events.errors();
   if (*last_events) event_count = (*last_events)->end();
+  if (static_cast<std::uint64_t>(event_count) > store.memory_limit() / sizeof(Event))
+    return error("has more events than its size explains");
   if (!finish) return Done{};
   if (finish->ticks != tick_count)
     return error("is cut short: " + std::to_string(tick_count) + " of " + std::to_string(finish->ticks) +
@@ -99,7 +107,7 @@ const SessionStart& SessionReader::start() const { return impl_->start; }
 const std::string& SessionReader::session_id() const { return impl_->store.identity().id; }
 double SessionReader::created_unix_s() const { return impl_->store.identity().created_unix_s; }
 int SessionReader::format_version() const { return impl_->store.version(); }
-const std::vector<std::string>& SessionReader::remarks() const { return impl_->store.remarks(); }
+const std::vector<std::string>& SessionReader::remarks() const { return impl_->remarks; }
 std::int64_t SessionReader::tick_count() const { return impl_->tick_count; }
 bool SessionReader::ended_cleanly() const { return impl_->finish.has_value(); }
 
@@ -168,44 +176,7 @@ Result<SessionStatistics> SessionReader::statistics() {
 }
 
 Result<Done> SessionReader::check_all() {
-  Errors errors;
-  const auto note = [&](const Errors& found) { errors.insert(errors.end(), found.begin(), found.end()); };
-
-  // Read every chunk in order. Skip a damaged one by its key.
-  const auto chunk_keys = impl_->store.keys("chunk");
-  if (!chunk_keys) return chunk_keys.errors();
-  std::int64_t next = 0;
-  for (const std::int64_t key : *chunk_keys) {
-    if (key > next)
-      errors.push_back(
-          impl_->error("ticks " + std::to_string(next) + " to " + std::to_string(key - 1) + " are missing"));
-    const auto chunk = impl_->store.chunk_at(key);
-    if (!chunk)
-      note(chunk.errors());
-    else if (!*chunk || (*chunk)->first != key || key < next)
-      errors.push_back(impl_->error("the chunk of tick " + std::to_string(key) + " is out of place"));
-    else
-      next = (*chunk)->end();
-  }
-  if (next != tick_count()) errors.push_back(impl_->error("its chunks end at tick " + std::to_string(next)));
-
-  const auto keyframe_keys = impl_->store.keys("keyframe");
-  if (!keyframe_keys) return keyframe_keys.errors();
-  for (const std::int64_t key : *keyframe_keys) {
-    const auto keyframe = impl_->store.keyframe_at(key, impl_->start.model);
-    if (!keyframe)
-      note(keyframe.errors());
-    else if (!*keyframe || (*keyframe)->tick != key || key > tick_count())
-      errors.push_back(impl_->error("the keyframe of tick " + std::to_string(key) + " is out of place"));
-  }
-  const auto keyframes = static_cast<std::int64_t>(keyframe_keys->size()) - 1;
-  if (impl_->finish && impl_->finish->keyframes != keyframes)
-    errors.push_back(impl_->error(std::to_string(keyframes) + " of " + std::to_string(impl_->finish->keyframes) +
-                                  " keyframes are left"));
-
-  if (const auto all_events = events(); !all_events) note(all_events.errors());
-  if (!errors.empty()) return errors;
-  return Done{};
+  return check_session(impl_->store, {impl_->path, impl_->start.model, impl_->finish, impl_->tick_count});
 }
 
 }  // namespace ctpm::recordings

@@ -29,7 +29,7 @@ class SessionReader {
   double created_unix_s() const;  ///< start of recording, in seconds since 1970
   int format_version() const;
   std::int64_t tick_count() const;  ///< at the time of open()
-  /// Choices that this program made where an old file leaves them open, one sentence each.
+  /// One sentence each: choices that this program made where an old file leaves them open, and a missing log.
   const std::vector<std::string>& remarks() const;
   bool ended_cleanly() const;  ///< false: recording was interrupted or still runs
 
@@ -48,7 +48,8 @@ class SessionReader {
   /// Statistics stored at the end; for a session without an end, computed from its ticks and events.
   Result<SessionStatistics> statistics();
 
-  /// Verifies every block and that none is missing. Errors: every damaged block.
+  /// Verifies the container, every block, that none is missing or out of place, the links of events, and the stored
+  /// statistics. Errors: everything that is wrong.
   Result<Done> check_all();
 
  private:

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "recordings/internal/field_codec.h"
 #include "recordings/internal/model_check.h"
@@ -28,6 +29,7 @@ namespace {
 
 constexpr auto poll_interval = std::chrono::milliseconds(5);
 constexpr auto retry_interval = std::chrono::milliseconds(200);
+constexpr auto checkpoint_interval = std::chrono::seconds(1);
 constexpr std::size_t chunks_per_commit = 32;  // limit with a backlog
 constexpr std::size_t keyframe_slots = 4;
 
@@ -45,13 +47,16 @@ struct SessionWriter::Impl {
       : options(options_),
         records(options_.queue_ticks, TickRecord{}),
         keyframes(keyframe_slots, Keyframe{0, start.initial_state}) {}
-  ~Impl() { stop(); }
+  ~Impl() {
+    stop();
+    (void)tables.close();  // so that one file remains, which says that it is whole
+  }
 
   // Set before the threads start.
   std::string path;
   SessionIdentity identity;
   WriterOptions options;
-  SessionTables tables;
+  SessionTables tables, checkpoints;  // each of its own connection: the syncing thread makes the checkpoints
   int log_file = -1;
 
   // From the tick's thread to the writing thread.
@@ -233,6 +238,9 @@ Result<Done> SessionWriter::Impl::begin() {
   auto opened = SessionTables::open_for_writing(path);
   if (!opened) return opened.errors();
   tables = std::move(*opened);
+  auto second = SessionTables::open_for_writing(path);
+  if (!second) return second.errors();
+  checkpoints = std::move(*second);
   // An empty transaction makes SQLite create the log.
   if (auto r = tables.begin(); !r) return r;
   if (auto r = tables.commit(); !r) return r;
@@ -377,16 +385,32 @@ Result<Done> SessionWriter::Impl::write_rows() {
   return Done{};
 }
 
+/// Makes commits durable, and copies the log into the file from time to time, so that the file alone holds all but
+/// seconds of the session.
 void SessionWriter::Impl::sync_until_stopped() {
+  Clock::time_point copied = Clock::now();
+  bool is_behind = false;  // the file, behind its log
   std::unique_lock lock(wake_mutex);
   while (true) {
-    wake_syncer.wait(lock, [this] { return sync_wanted || sync_stops; });
-    if (!sync_wanted) return;
-    sync_wanted = false;
+    const auto is_woken = [this] { return sync_wanted || sync_stops; };
+    if (is_behind)
+      wake_syncer.wait_until(lock, copied + checkpoint_interval, is_woken);
+    else
+      wake_syncer.wait(lock, is_woken);
+    if (sync_stops && !sync_wanted) break;
+    is_behind = is_behind || sync_wanted;
+    const bool syncs = std::exchange(sync_wanted, false);
     lock.unlock();
-    if (::fdatasync(log_file) != 0) set_error(std::string("the disk did not confirm: ") + std::strerror(errno));
+    if (syncs && ::fdatasync(log_file) != 0)
+      set_error(std::string("the disk did not confirm: ") + std::strerror(errno));
+    if (Clock::now() - copied >= checkpoint_interval) {
+      copied = Clock::now();
+      // What cannot be copied now stays in the log until the next time.
+      is_behind = !checkpoints.checkpoint();
+    }
     lock.lock();
   }
+  checkpoints = {};
 }
 
 void SessionWriter::Impl::set_error(const std::string& text) {

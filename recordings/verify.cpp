@@ -236,6 +236,10 @@ Result<Verdict> verify_session(SessionReader& reader, const VerifyOptions& optio
                  "has no ticks " + std::to_string(options.from) + " to " + std::to_string(to) + ", it has " +
                      std::to_string(reader.tick_count()),
                  ""};
+  // Of a whole session everything is checked, not only what a replay reads.
+  const bool is_whole = options.from == 0 && to == reader.tick_count();
+  if (is_whole)
+    if (auto r = reader.check_all(); !r) return r.errors();
   const auto keyframes = reader.keyframe_ticks();
   if (!keyframes) return keyframes.errors();
 
@@ -257,13 +261,17 @@ Result<Verdict> verify_session(SessionReader& reader, const VerifyOptions& optio
   verify_next(reader, work, progress);
   for (std::thread& thread : running) thread.join();
   Result<Verdict> verdict = merge(work.outcomes);
-  if (verdict) verdict->physics_revision = reader.start().physics_revision;
+  if (verdict) {
+    verdict->physics_revision = reader.start().physics_revision;
+    verdict->same = verdict->same && verdict->ticks_compared > 0;
+  }
   return verdict;
 }
 
 std::string to_string(const Verdict& verdict) {
   std::ostringstream text;
   text.precision(17);
+  if (verdict.ticks_compared == 0) return "no verdict: there is no tick to compare";
   if (verdict.same) {
     text << "same: " << verdict.ticks_compared << " ticks compared, no difference";
     return text.str();

@@ -56,14 +56,24 @@ struct FieldMeaning {
 namespace meaning {
 
 inline constexpr FieldMeaning any{};
-inline constexpr FieldMeaning finite{.range = FieldMeaning::Range::number};
-inline constexpr FieldMeaning positive{.range = FieldMeaning::Range::number, .lowest = 0, .is_open = true};
-inline constexpr FieldMeaning not_negative{.range = FieldMeaning::Range::number, .lowest = 0};
 
 /// In [lowest, highest].
 constexpr FieldMeaning within(double lowest, double highest) {
   return {.range = FieldMeaning::Range::number, .lowest = lowest, .highest = highest};
 }
+
+// In SI units, wider than every scene. Numbers beyond are damage or deceit, and their products would overflow.
+inline constexpr double kLargest = 1e18, kSmallest = 1e-18;
+inline constexpr FieldMeaning finite = within(-kLargest, kLargest);
+inline constexpr FieldMeaning positive = within(kSmallest, kLargest);
+inline constexpr FieldMeaning not_negative = within(0, kLargest);
+inline constexpr FieldMeaning place = within(-1e3, 1e3);        ///< of what rests [m]
+inline constexpr FieldMeaning moved_place = within(-1e6, 1e6);  ///< of what moves [m]
+inline constexpr FieldMeaning speed = within(-1e6, 1e6);        ///< [m/s]; a step beyond 10^4 m/s is refused
+inline constexpr FieldMeaning length = within(1e-9, 1e3);       ///< [m]
+inline constexpr FieldMeaning length_or_none = within(0, 1e3);  ///< [m]
+inline constexpr FieldMeaning time = within(0, 1e9);            ///< [s]: 30 years
+
 /// In (lowest, highest).
 constexpr FieldMeaning between(double lowest, double highest) {
   return {.range = FieldMeaning::Range::number, .lowest = lowest, .highest = highest, .is_open = true};

@@ -19,6 +19,9 @@ namespace ctpm {
 /// Largest solver settings that a file may ask for: iterations of a solve, substeps of a tick.
 inline constexpr std::int32_t kMostIterations = 1'000'000, kMostSubsteps = 10'000;
 
+/// Most layers of an organ: more than fit between two sides of any lattice that is stored.
+inline constexpr std::int32_t kMostLayers = 10'000;
+
 /// Largest magnitude of a lattice coordinate: more than any organ has, and well within 32 bits.
 inline constexpr std::int32_t kFarthestCell = 1 << 20;
 
@@ -33,9 +36,9 @@ requires std::is_same_v<std::remove_const_t<State_>, State>
 void for_each_field(State_& s, Visit&& visit) {
   using namespace meaning;
   const auto give = with_meaning(visit);
-  give("tick", s.tick, any);
-  give_points("position.x", "position.y", "position.z", s.position, finite.per(EntryOf::sphere), give);
-  give_points("velocity.x", "velocity.y", "velocity.z", s.velocity, finite.per(EntryOf::sphere), give);
+  give("tick", s.tick, within(0, 1e15));
+  give_points("position.x", "position.y", "position.z", s.position, moved_place.per(EntryOf::sphere), give);
+  give_points("velocity.x", "velocity.y", "velocity.z", s.velocity, speed.per(EntryOf::sphere), give);
   give("kelvin_elongation", s.kelvin_elongation, finite.per(EntryOf::internal_variable));
   give("axial_severed", s.axial_severed, bits(1).per(EntryOf::axial).or_empty());
   give("constraint_severed", s.constraint_severed, bits(1).per(EntryOf::constraint).or_empty());
@@ -63,15 +66,15 @@ void for_each_field(Tool_& t, Visit&& visit) {
   const auto give = with_meaning(visit);
   give("name", t.name, any);
   give("kind", t.kind, one_of({ToolKind::ball, ToolKind::scalpel, ToolKind::pin}));
-  give("radius", t.radius, not_negative);
-  give("blade_length", t.blade_length, not_negative);
+  give("radius", t.radius, length_or_none);
+  give("blade_length", t.blade_length, length_or_none);
   give("sphere", t.sphere, index(EntryOf::sphere, -1));
-  give("trail_distance", t.trail_distance, positive);
-  give("blade_reach", t.blade_reach, positive);
-  give("blade_reach_spacings", t.blade_reach_spacings, not_negative);
-  give("flank_height", t.flank_height, not_negative);
-  give("blade_thickness", t.blade_thickness, positive);
-  give("slowest_slip", t.slowest_slip, positive);
+  give("trail_distance", t.trail_distance, length);
+  give("blade_reach", t.blade_reach, length);
+  give("blade_reach_spacings", t.blade_reach_spacings, within(0, 1e3));
+  give("flank_height", t.flank_height, length_or_none);
+  give("blade_thickness", t.blade_thickness, length);
+  give("slowest_slip", t.slowest_slip, within(1e-9, 1e6));
 }
 
 template <class Organ_, class Visit>
@@ -82,13 +85,13 @@ void for_each_field(Organ_& o, Visit&& visit) {
   give("name", o.name, any);
   give("first", o.first, any);
   give("count", o.count, any);
-  give("sphere_radius", o.sphere_radius, finite);
-  give("spacing", o.spacing, finite);
-  give("damage_depth", o.damage_depth, finite);
-  give("layer_count", o.layer_count, any);
+  give("sphere_radius", o.sphere_radius, length_or_none);
+  give("spacing", o.spacing, length_or_none);
+  give("damage_depth", o.damage_depth, length_or_none);
+  give("layer_count", o.layer_count, within(0, kMostLayers));
   give("modulus", o.modulus, not_negative);
-  give("instant_ratio", o.instant_ratio, finite);
-  give("kelvin_time", o.kelvin_time, not_negative);
+  give("instant_ratio", o.instant_ratio, not_negative);
+  give("kelvin_time", o.kelvin_time, time);
   give("meets_itself", o.meets_itself, any);
 }
 
@@ -99,9 +102,9 @@ void for_each_field(Obstacle_& o, Visit&& visit) {
   const auto give = with_meaning(visit);
   give("name", o.name, any);
   give("kind", o.kind, one_of({ObstacleKind::plane, ObstacleKind::box}));
-  give("position", o.position, finite);
+  give("position", o.position, place);
   give("world_from_obstacle", o.world_from_obstacle, any);
-  give("half_size", o.half_size, not_negative);
+  give("half_size", o.half_size, length_or_none);
 }
 
 /// As above. `organs`, `tools` and `obstacles` are vectors of structs; for_each_field visits their fields in turn.
@@ -110,14 +113,14 @@ requires std::is_same_v<std::remove_const_t<Model_>, Model>
 void for_each_field(Model_& m, Visit&& visit) {
   using namespace meaning;
   const auto give = with_meaning(visit);
-  give("tick", m.tick, positive);
-  give("gravity", m.gravity, finite);
-  give_points("rest_position.x", "rest_position.y", "rest_position.z", m.rest_position, finite.per(EntryOf::sphere),
+  give("tick", m.tick, within(1e-7, 1));
+  give("gravity", m.gravity, within(-1e4, 1e4));
+  give_points("rest_position.x", "rest_position.y", "rest_position.z", m.rest_position, place.per(EntryOf::sphere),
               give);
   give("mass", m.mass, positive.per(EntryOf::sphere));
   give("held_axes", m.held_axes, bits(kAnchored).per(EntryOf::sphere));
-  give("contact_radius", m.contact_radius, positive.per(EntryOf::sphere));
-  give("layer", m.layer, any.per(EntryOf::sphere));
+  give("contact_radius", m.contact_radius, length.per(EntryOf::sphere));
+  give("layer", m.layer, within(0, kMostLayers).per(EntryOf::sphere));
   for (const auto& [name, coordinate] : {std::pair{"cell.i", &m.cell.i}, {"cell.j", &m.cell.j}, {"cell.k", &m.cell.k}})
     give(name, *coordinate, within(-kFarthestCell, kFarthestCell).per(EntryOf::sphere));
   give("organs", m.organs, any);
@@ -125,7 +128,7 @@ void for_each_field(Model_& m, Visit&& visit) {
   give("axial.b", m.axial.b, index(EntryOf::sphere).per(EntryOf::axial));
   give("axial.law", m.axial.law,
        one_of({AxialLaw::spring, AxialLaw::kelvin_unit, AxialLaw::two_sphere_tpm}).per(EntryOf::axial));
-  give("axial.rest_length", m.axial.rest_length, positive.per(EntryOf::axial));
+  give("axial.rest_length", m.axial.rest_length, length.per(EntryOf::axial));
   give("axial.k", m.axial.k, positive.per(EntryOf::axial));
   give("axial.c", m.axial.c, not_negative.per(EntryOf::axial).or_empty());
   give("axial.kelvin_k", m.axial.kelvin_k, not_negative.per(EntryOf::axial).or_empty());
@@ -148,13 +151,13 @@ void for_each_field(Model_& m, Visit&& visit) {
   give("has_softening", m.has_softening, any);
   give("loads.sphere", m.loads.sphere, index(EntryOf::sphere).per(EntryOf::load));
   give_points("loads.force.x", "loads.force.y", "loads.force.z", m.loads.force, finite.per(EntryOf::load), give);
-  give("loads.start", m.loads.start, not_negative.per(EntryOf::load));
-  give("loads.ramp", m.loads.ramp, not_negative.per(EntryOf::load));
+  give("loads.start", m.loads.start, time.per(EntryOf::load));
+  give("loads.ramp", m.loads.ramp, time.per(EntryOf::load));
   give("tools", m.tools, any);
   give("contact_k", m.contact_k, not_negative);
-  give("contact_friction", m.contact_friction, not_negative);
-  give("solver.tolerance", m.solver.tolerance, between(0, 1));
-  give("solver.velocity_floor", m.solver.velocity_floor, positive);
+  give("contact_friction", m.contact_friction, within(0, 1e3));
+  give("solver.tolerance", m.solver.tolerance, between(1e-16, 1));
+  give("solver.velocity_floor", m.solver.velocity_floor, within(1e-15, 1e3));
   give("solver.max_iterations", m.solver.max_iterations, within(1, kMostIterations));
   give("solver.substeps", m.solver.substeps, within(1, kMostSubsteps));
   give("solver.integrator", m.solver.integrator,
@@ -163,7 +166,7 @@ void for_each_field(Model_& m, Visit&& visit) {
   give("cut_resistance.friction", m.cut_resistance.friction, not_negative.per(EntryOf::axial).or_empty());
   give("lip_k", m.lip_k, not_negative);
   give("contact_damping", m.contact_damping, not_negative);
-  give("cut_face_stiffening", m.cut_face_stiffening, not_negative);
+  give("cut_face_stiffening", m.cut_face_stiffening, within(0, 1e6));
   constexpr const char* corners[8] = {"tissue_cells.corner0", "tissue_cells.corner1", "tissue_cells.corner2",
                                       "tissue_cells.corner3", "tissue_cells.corner4", "tissue_cells.corner5",
                                       "tissue_cells.corner6", "tissue_cells.corner7"};

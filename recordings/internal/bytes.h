@@ -72,6 +72,8 @@ class ByteReader {
   }
 
   std::uint64_t budget() const { return budget_; }
+  /// Hands back what a reader of nested bytes left of this reader's budget.
+  void set_budget(std::uint64_t left) { budget_ = left; }
 
  private:
   ByteView bytes_;

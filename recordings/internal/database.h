@@ -66,6 +66,7 @@ class Database {
   Result<Statement> prepare(const std::string& sql);
   Result<Done> close();
 
+  bool is_open() const { return connection_ != nullptr; }
   std::string problem() const;  ///< message of the last failed call
   bool is_corrupt() const;      ///< the last failure was damaged file content
   bool is_full() const;         ///< the last failure was lack of space or a device error

@@ -172,7 +172,8 @@ struct FieldView {
 /// A field set read from untrusted bytes.
 class FieldSet {
  public:
-  /// The reader must be at the set's first byte. Fails with the reader and sets `problem`.
+  /// The reader must be at the set's first byte. Takes the memory of the views from its budget. Fails with the reader
+  /// and sets `problem`.
   FieldSet(ByteReader& in, std::string& problem);
 
   const std::vector<FieldView>& fields() const { return fields_; }
@@ -180,6 +181,7 @@ class FieldSet {
 
  private:
   std::vector<FieldView> fields_;
+  std::vector<std::uint32_t> by_name_;  ///< indices of the fields in the order of their names
 };
 
 template <class S>
@@ -263,6 +265,7 @@ class FieldReader {
     for (std::uint64_t i = 0; i < field.count && !in.failed() && problem_.empty(); ++i) {
       ByteReader one(in.take(in.get<std::uint32_t>()), in.budget());
       get_fields(one, structures.emplace_back(), problem_);
+      in.set_budget(one.budget());
     }
     if (in.failed() || !in.at_end()) complain(field.name, "cannot be decoded");
     budget_ = in.budget();
@@ -280,6 +283,7 @@ void take_field_set(ByteReader& in, std::string& problem, Take&& take) {
   FieldSet set(in, problem);
   FieldReader reader(set, in.budget(), problem);
   if (problem.empty()) take(set, reader);
+  in.set_budget(reader.budget());
   for (const FieldView& field : set.fields())
     if (problem.empty() && !field.used) problem = "unknown field " + field.name + ", written by a newer program";
   if (problem.empty() && !in.at_end()) problem = "bytes are left over";

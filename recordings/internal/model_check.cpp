@@ -5,9 +5,13 @@
 #include <cstdio>
 
 #include "core/model/fields.h"
+#include "recordings/internal/size_check.h"
 
 namespace ctpm::recordings::session_file {
 namespace {
+
+constexpr double kFarthestVertex = 1e3;  // [m]
+constexpr double kLargestWeight = 1e3;   // of a binding
 
 /// "[i]", an index in an array.
 std::string place(std::size_t i) { return std::string("[").append(std::to_string(i)).append("]"); }
@@ -271,9 +275,6 @@ void check_tissue_cells(Checker& check, const Model& model) {
 }
 
 void check_obstacles(Checker& check, const Model& model) {
-  // Contacts are reserved for each obstacle, and numbers in State::touched count them all.
-  constexpr std::size_t most = 100;
-  check.require(model.obstacles.size() <= most, "obstacles", "are more than " + std::to_string(most));
   for (std::size_t i = 0; i < model.obstacles.size(); ++i) {
     const Obstacle& obstacle = model.obstacles[i];
     const Quat q = obstacle.world_from_obstacle;
@@ -307,6 +308,7 @@ void check_together(Checker& check, const std::string& name, const Vec3Array& po
 
 Errors check_model(const Model& model) {
   Checker check("model");
+  if (Errors errors = check_sizes(model); !errors.empty()) return errors;
   for_each_field(model, FieldCheck(check, model));
   check_organs(check, model);
   check_cells(check, model);
@@ -353,9 +355,8 @@ Errors check_state(const Model& model, const State& state) {
   check.length("kelvin_dent", state.kelvin_dent.size(), state.touched.size());
   check.require(std::is_sorted(state.touched.begin(), state.touched.end()), "touched", "must ascend");
 
-  // The arrays of severed elements must all exist or all be empty. Older sessions do not store crossings.
-  const bool cuts = !state.axial_severed.empty() || !state.constraint_severed.empty() || !state.angle_severed.empty() ||
-                    model.has_scalpel();
+  // The arrays of severed elements exist where a tool can cut. Older sessions do not store crossings.
+  const bool cuts = model.has_scalpel();
   check.length("axial_severed", state.axial_severed.size(), cuts ? model.axial.size() : 0);
   check.length("constraint_severed", state.constraint_severed.size(), cuts ? model.constraints.size() : 0);
   check.length("angle_severed", state.angle_severed.size(), cuts ? model.angle_springs.size() : 0);
@@ -374,8 +375,8 @@ Errors check_surfaces(const Model& model, const std::vector<Surface>& surfaces) 
     const std::string name = place(i) + ".";
     const auto vertices = static_cast<std::int32_t>(surface.vertex.size());
     for (const Vec3& vertex : surface.vertex)
-      if (!is_finite(vertex)) {
-        check.require(false, name + "vertex", "is not finite");
+      if (!is_finite(vertex) || norm(vertex) > kFarthestVertex) {
+        check.require(false, name + "vertex", "is not finite, or farther than 1 km");
         break;
       }
     std::vector<std::int32_t> corners;
@@ -386,8 +387,9 @@ Errors check_surfaces(const Model& model, const std::vector<Surface>& surfaces) 
     const auto entries = static_cast<std::int64_t>(binding.sphere.size());
     check.indices(name + "binding.sphere", binding.sphere, 0, model.organs[i].count);
     check.length(name + "binding.weight", binding.weight.size(), binding.sphere.size());
-    check.require(std::all_of(binding.weight.begin(), binding.weight.end(), [](double w) { return std::isfinite(w); }),
-                  name + "binding.weight", "must be finite");
+    check.require(std::all_of(binding.weight.begin(), binding.weight.end(),
+                              [](double w) { return std::abs(w) <= kLargestWeight; }),
+                  name + "binding.weight", "must be in [-1000, 1000]");
     if (surface.vertex.empty() && binding.first.empty()) continue;
     if (check.length(name + "binding.first", binding.first.size(), surface.vertex.size() + 1)) {
       check.indices(name + "binding.first", binding.first, 0, entries + 1);

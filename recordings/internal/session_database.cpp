@@ -224,6 +224,7 @@ Result<Done> SessionTables::insert_events(std::int64_t first, std::int64_t count
 }
 
 Result<Done> SessionTables::close() {
+  if (!database_.is_open()) return Done{};
   part_ = {}, chunk_ = {}, keyframe_ = {}, event_ = {};
   // Fails while another process reads the file. The file is then still complete, with its log beside it.
   if (auto r = database_.run("PRAGMA wal_checkpoint(TRUNCATE); PRAGMA journal_mode=DELETE;"); !r) return r;

@@ -64,6 +64,9 @@ class SessionTables {
   Result<Done> insert_keyframe(std::int64_t tick, const Block& block);
   Result<Done> insert_events(std::int64_t first, std::int64_t count, const Block& block);
 
+  /// Copies what the log holds into the file, without waiting for other connections.
+  Result<Done> checkpoint() { return database_.run("PRAGMA wal_checkpoint(PASSIVE)"); }
+
   /// Checkpoints the log, so that one file remains.
   Result<Done> close();
 

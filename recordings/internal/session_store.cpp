@@ -19,7 +19,26 @@
 namespace ctpm::recordings::session_file {
 namespace {
 
-constexpr std::size_t sqlite_header_size = 100;  // [bytes]
+constexpr std::size_t sqlite_header_size = 100;             // [bytes]
+constexpr double latest_unix_s = 1e11;                      // the year 5138
+constexpr std::int64_t last_place = 1'000'000'000'000'000;  // ticks and events; sums stay within 64 bits
+
+bool is_id(const std::string& id) {
+  return id.size() == 32 && id.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+// Sessions need a twentieth of it.
+constexpr std::uint64_t free_memory = 64ull << 20, memory_per_byte = 64;  // [bytes], [1]
+
+/// SessionStore::memory_limit() of the file at `path` with its log.
+std::uint64_t memory_limit_of(const std::string& path) {
+  std::uint64_t size = 0;
+  for (const char* ending : {"", "-wal"}) {
+    struct stat info {};
+    if (::stat((path + ending).c_str(), &info) == 0) size += static_cast<std::uint64_t>(info.st_size);
+  }
+  return std::min(max_part_size, free_memory + memory_per_byte * size);
+}
 
 /// Adds the file's path to the errors of a check.
 Errors at_file(const std::string& path, const Errors& errors) {
@@ -32,8 +51,9 @@ std::uint32_t big_endian(const std::uint8_t* bytes) {
   return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 | std::uint32_t{bytes[2]} << 8 | bytes[3];
 }
 
-/// Rejects files that are not sessions with a clear message, before SQLite opens them.
-Result<Done> check_file(const std::string& path, bool salvage) {
+/// Rejects files that are not sessions with a clear message, before SQLite opens them. Returns whether the file names a
+/// log that is missing.
+Result<bool> check_file(const std::string& path, bool salvage) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) {
     if (errno == ENOENT) return Error{path, "does not exist", ""};
@@ -60,7 +80,8 @@ Result<Done> check_file(const std::string& path, bool salvage) {
     return Error{path,
                  "is cut short: " + std::to_string(info.st_size) + " of " + std::to_string(stated) + " bytes are left",
                  "try to recover it"};
-  return Done{};
+  constexpr std::uint8_t with_log = 2;  // SQLite's journal mode
+  return header[18] == with_log && ::access((path + "-wal").c_str(), F_OK) != 0;
 }
 
 }  // namespace
@@ -68,11 +89,14 @@ Result<Done> check_file(const std::string& path, bool salvage) {
 Error SessionStore::database_error(const std::string& what) const { return error(what + ": " + database_.problem()); }
 
 Result<SessionStore> SessionStore::open(const std::string& path, bool salvage) {
-  if (auto r = check_file(path, salvage); !r) return r.errors();
+  const auto lacks_log = check_file(path, salvage);
+  if (!lacks_log) return lacks_log.errors();
   auto database = Database::open(path, salvage ? Database::Access::salvage : Database::Access::read);
   if (!database) return database.errors();
   SessionStore store;
   store.database_ = std::move(*database);
+  store.lacks_log_ = *lacks_log;
+  store.memory_limit_ = memory_limit_of(path);
   if (auto r = store.check_header(salvage); !r) return r.errors();
   if (auto r = store.check_schema(); !r) return r.errors();
   if (auto r = store.prepare(); !r) return r.errors();
@@ -147,7 +171,7 @@ Result<std::optional<Bytes>> SessionStore::part_if_there(const std::string& name
   if (outcome == Statement::Outcome::done) return std::optional<Bytes>{};
   if (!part_.is_integer(0) || !part_.is_integer(1) || !part_.is_blob(2)) return error(part_name(name) + ": is damaged");
   const std::uint64_t seed = name == "session" ? 0 : identity_.seed;
-  auto content = unpack(part_name(name), part_.integer(0), part_.integer(1), part_.blob(2), seed, max_part_size);
+  auto content = unpack(part_name(name), part_.integer(0), part_.integer(1), part_.blob(2), seed, memory_limit_);
   if (!content) return error(content.errors().front().message);
   return std::optional<Bytes>(std::move(*content));
 }
@@ -159,11 +183,28 @@ Result<Bytes> SessionStore::part(const std::string& name) {
   return std::move(**content);
 }
 
+Result<std::vector<std::string>> SessionStore::part_names() {
+  auto statement = database_.prepare("SELECT name FROM part ORDER BY 1");
+  if (!statement) return statement.errors();
+  std::vector<std::string> names;
+  Statement::Outcome outcome;
+  while ((outcome = statement->step()) == Statement::Outcome::row) names.push_back(statement->text(0));
+  if (outcome == Statement::Outcome::failed) return database_error("the table part cannot be read");
+  return names;
+}
+
+Result<Done> SessionStore::check_container() {
+  auto statement = database_.prepare("PRAGMA integrity_check(1)");
+  if (!statement || statement->step() != Statement::Outcome::row) return database_error("its pages cannot be checked");
+  if (const std::string found = statement->text(0); found != "ok") return error("is damaged: " + found);
+  return Done{};
+}
+
 /// Runs `fill(reader, problem)` over a field set.
 template <class Fill>
 Result<Done> SessionStore::decode_fields(const std::string& name, const Bytes& content, Fill&& fill) const {
   std::string problem;
-  ByteReader in(content, max_part_size);
+  ByteReader in(content, memory_limit_);
   fill(in, problem);
   if (!problem.empty()) return error(name + ": " + problem);
   return Done{};
@@ -175,6 +216,9 @@ Result<Done> SessionStore::read_identity() {
   return decode_fields("part session", *content, [&](ByteReader& in, std::string& problem) {
     get_fields(in, identity_, problem);
     if (problem.empty() && identity_.physics_revision < 0) problem = "physics_revision must not be below 0";
+    if (problem.empty() && !is_id(identity_.id)) problem = "id must be 32 hexadecimal digits";
+    if (problem.empty() && !(identity_.created_unix_s >= 0 && identity_.created_unix_s <= latest_unix_s))
+      problem = "created_unix_s must be in [0, 1e11]";
   });
 }
 
@@ -288,10 +332,10 @@ Result<std::optional<Run<TickRecord>>> SessionStore::chunk_at(std::int64_t at) {
   chunk_.reset();
   chunk_.bind(1, at);
   std::int64_t first = 0, count = 0;
-  const auto content = block_of(chunk_, "chunk", true, max_chunk_size, first, count);
+  const auto content = block_of(chunk_, "chunk", true, std::min(max_chunk_size, memory_limit_), first, count);
   if (!content) return content.errors();
   if (!*content) return std::optional<Run<TickRecord>>{};
-  if (first < 0 || count < 1 || count > chunk_ticks)
+  if (first < 0 || first > last_place || count < 1 || count > chunk_ticks)
     return error(chunk_name(first, count) + ": has an impossible place");
   auto records = decoder_.decode(**content, count);
   if (!records) return error(chunk_name(first, count) + ": " + records.errors().front().message);
@@ -302,7 +346,7 @@ Result<std::optional<Run<Event>>> SessionStore::events_at(std::int64_t at) {
   event_.reset();
   event_.bind(1, at);
   std::int64_t first = 0, count = 0;
-  const auto content = block_of(event_, "event", true, max_chunk_size, first, count);
+  const auto content = block_of(event_, "event", true, std::min(max_chunk_size, memory_limit_), first, count);
   if (!content) return content.errors();
   if (!*content) return std::optional<Run<Event>>{};
   Run<Event> run{first, {}};
@@ -315,7 +359,8 @@ Result<std::optional<Run<Event>>> SessionStore::events_at(std::int64_t at) {
       problem = "holds another number of events";
   });
   if (!decoded) return decoded.errors();
-  if (first < 0 || count < 1) return error(event_name(first, count) + ": has an impossible place");
+  if (first < 0 || first > last_place || count < 1)
+    return error(event_name(first, count) + ": has an impossible place");
   return std::optional(std::move(run));
 }
 
@@ -323,7 +368,7 @@ Result<std::optional<Keyframe>> SessionStore::keyframe_at(std::int64_t at, const
   keyframe_.reset();
   keyframe_.bind(1, at);
   std::int64_t tick = 0, one = 0;
-  const auto content = block_of(keyframe_, "keyframe", false, max_part_size, tick, one);
+  const auto content = block_of(keyframe_, "keyframe", false, memory_limit_, tick, one);
   if (!content) return content.errors();
   if (!*content) return std::optional<Keyframe>{};
   Keyframe keyframe;

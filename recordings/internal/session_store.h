@@ -29,10 +29,20 @@ class SessionStore {
 
   int version() const { return version_; }
   const SessionIdentity& identity() const { return identity_; }
+  /// Memory that one block, or the list of all events, may take before and after decoding [bytes]. FORMAT.md
+  /// section 11.
+  std::uint64_t memory_limit() const { return memory_limit_; }
+  /// Whether the file was left while it was recorded, and its log (`-wal`) is not beside it.
+  bool lacks_log() const { return lacks_log_; }
 
   Result<Bytes> part(const std::string& name);
   /// None if the session has no such part; only `finish` may be missing.
   Result<std::optional<Bytes>> part_if_there(const std::string& name);
+
+  /// The names of all parts, known or not.
+  Result<std::vector<std::string>> part_names();
+  /// Errors: what SQLite finds wrong with its own pages and tables.
+  Result<Done> check_container();
 
   Result<std::string> scene();
   Result<std::string> look();
@@ -68,6 +78,8 @@ class SessionStore {
   Database database_;
   Statement part_, chunk_, keyframe_, event_;
   int version_ = 0;
+  bool lacks_log_ = false;
+  std::uint64_t memory_limit_ = 0;  ///< of one block, decoded [bytes]
   SessionIdentity identity_;
   std::vector<std::string> remarks_;
   RecordDecoder decoder_;

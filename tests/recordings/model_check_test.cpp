@@ -104,7 +104,7 @@ TEST(ModelCheck, NoFieldOfAModelTakesNaNAnotherLengthOrAnIndexBeyondItsArray) {
   EXPECT_EQ(of_other_length, std::set<std::string>{});
   EXPECT_GT(arrays, 40);
   const auto [too_large, integers] = unnoticed(Harm::far_too_large, whole, notices);
-  EXPECT_EQ(too_large, (std::set<std::string>{"layer", "layer_count"})) << "nothing is looked up by these";
+  EXPECT_EQ(too_large, std::set<std::string>{});
   EXPECT_GT(integers, 20);
 }
 
@@ -128,24 +128,24 @@ struct Case {
 
 TEST(ModelCheck, NamesTheFieldAndWhatItMustBe) {
   const Case cases[] = {
-      {"tick must be finite and above 0", [](Model& m) { m.tick = 0; }},
-      {"mass[2] must be finite and above 0", [](Model& m) { m.mass[2] = 0; }},
+      {"tick must be in [1e-07, 1]", [](Model& m) { m.tick = 0; }},
+      {"mass[2] must be in [1e-18, 1e+18]", [](Model& m) { m.mass[2] = 0; }},
       {"held_axes[1] has unknown bits", [](Model& m) { m.held_axes[1] = 8; }},
-      {"contact_friction must be finite and not below 0", [](Model& m) { m.contact_friction = -0.1; }},
-      {"gravity must be finite", [](Model& m) { m.gravity.z = -INFINITY; }},
-      {"axial.k[0] must be finite and above 0", [](Model& m) { m.axial.k[0] = -1; }},
-      {"loads.ramp[0] must be finite and not below 0", [](Model& m) { m.loads.ramp[0] = -1e-9; }},
+      {"contact_friction must be in [0, 1000]", [](Model& m) { m.contact_friction = -0.1; }},
+      {"gravity must be in [-10000, 10000]", [](Model& m) { m.gravity.z = -INFINITY; }},
+      {"axial.k[0] must be in [1e-18, 1e+18]", [](Model& m) { m.axial.k[0] = -1; }},
+      {"loads.ramp[0] must be in [0, 1000000000]", [](Model& m) { m.loads.ramp[0] = -1e-9; }},
       {"constraints.edge3[0] is -1, must be in [0, ", [](Model& m) { m.constraints.edge[3][0] = -1; }},
-      {"tools[0].radius must be finite and not below 0", [](Model& m) { m.tools[0].radius = -1; }},
+      {"tools[0].radius must be in [0, 1000]", [](Model& m) { m.tools[0].radius = -1; }},
       {"tools[2] is a pin that holds no sphere", [](Model& m) { m.tools[2].sphere = -1; }},
       {"tools[1].kind is of an unknown kind", [](Model& m) { m.tools[1].kind = static_cast<ToolKind>(3); }},
       {"organs[0] is not a range of spheres", [](Model& m) { ++m.organs[0].count; }},
       {"axial[0] joins a sphere with itself", [](Model& m) { m.axial.b[0] = m.axial.a[0]; }},
-      {"solver.tolerance must be in (0, 1)", [](Model& m) { m.solver.tolerance = 1; }},
+      {"solver.tolerance must be in (1e-16, 1)", [](Model& m) { m.solver.tolerance = 1; }},
       {"solver.max_iterations must be in [1, 1000000]", [](Model& m) { m.solver.max_iterations = 0; }},
       {"solver.substeps must be in [1, 10000]", [](Model& m) { m.solver.substeps = 10001; }},
       {"solver.integrator is of an unknown kind", [](Model& m) { m.solver.integrator = static_cast<Integrator>(3); }},
-      {"tissue_cells.k[1] must be finite and above 0", [](Model& m) { m.tissue_cells.k[1] = 0; }},
+      {"tissue_cells.k[1] must be in [1e-18, 1e+18]", [](Model& m) { m.tissue_cells.k[1] = 0; }},
       {"tissue_cells.corner7[0] is 45, must be in [0, 45)", [](Model& m) { m.tissue_cells.corner[7][0] = 45; }},
       {"tissue_cells[2] is inside out or flat at rest",
        [](Model& m) { std::swap(m.tissue_cells.corner[0][2], m.tissue_cells.corner[1][2]); }},

@@ -424,8 +424,8 @@ TEST(Session, AnErrorAtCreationLeavesNothingBehind) {
   const auto unlawful = recordings::SessionWriter::create(folder / "a.ctpm", broken);
   ASSERT_FALSE(unlawful);
   ASSERT_EQ(unlawful.errors().size(), 2u);
-  EXPECT_EQ(unlawful.errors()[0].message, "tools[0].blade_thickness must be finite and above 0");
-  EXPECT_EQ(unlawful.errors()[1].message, "contact_damping must be finite and not below 0");
+  EXPECT_EQ(unlawful.errors()[0].message, "tools[0].blade_thickness must be in [1e-09, 1000]");
+  EXPECT_EQ(unlawful.errors()[1].message, "contact_damping must be in [0, 1e+18]");
 
   EXPECT_FALSE(recordings::SessionWriter::create(folder.path(), small_start()));
   EXPECT_FALSE(recordings::SessionWriter::create("/proc/a.ctpm", small_start()));

@@ -117,7 +117,7 @@ TEST(Verify, AKeyframeThatIsNotItsTicksStateIsAnError) {
   EXPECT_NE(verdict.errors()[0].message.find("keyframe 100"), std::string::npos);
 }
 
-TEST(Verify, ASessionWithoutTicksIsTheSame) {
+TEST(Verify, NothingComparedIsNoGoodVerdict) {
   const Folder folder;
   record_session(folder / "a.ctpm", small_start(), 0);
   auto reader = recordings::SessionReader::open(folder / "a.ctpm");
@@ -126,8 +126,9 @@ TEST(Verify, ASessionWithoutTicksIsTheSame) {
   EXPECT_TRUE(reader->ended_cleanly());
   const auto verdict = recordings::verify_session(*reader);
   ASSERT_TRUE(verdict) << text_of(verdict.errors());
-  EXPECT_TRUE(verdict->same);
+  EXPECT_FALSE(verdict->same);
   EXPECT_EQ(verdict->ticks_compared, 0);
+  EXPECT_EQ(recordings::to_string(*verdict), "no verdict: there is no tick to compare");
 }
 
 TEST(Verify, TheVerdictDoesNotDependOnTheThreads) {

@@ -1,0 +1,10 @@
+#pragma once
+
+namespace ctpm::testing {
+
+/// Makes `count` session files, each with some fields, rows or lists changed and every checksum made right again, and
+/// opens, lists and verifies each in a process of its own. None may crash, abort, take 1 GB of memory or 10 s of
+/// computing time, and none whose ticks, keyframes, events or statistics changed may be "same". Seeded.
+void verify_forgeries(int count, unsigned seed);
+
+}  // namespace ctpm::testing
