@@ -124,9 +124,9 @@ int open_edges(const Surface& surface) {
 }
 
 /// Ways of a blade: each entry is where its edge is, one after the other.
-using Way = std::vector<cutting::BladeEdge>;
+using Way = std::vector<Edge>;
 
-cutting::BladeEdge upright(double x, double y, double bottom) { return {{x, y, bottom}, {x, y, 0.1}}; }
+Edge upright(double x, double y, double bottom) { return {{x, y, bottom}, {x, y, 0.1}}; }
 
 struct NamedWays {
   const char* name;

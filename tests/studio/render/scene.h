@@ -105,9 +105,14 @@ inline std::unique_ptr<TestScene> make_blob_scene(double radius = 0.003, int row
   return make_scene(fill(blob, star_surface(blob, rows), radius));
 }
 
+/// A straight edge.
+struct Edge {
+  Vec3 tip, heel;  ///< [m]
+};
+
 /// Cuts what a straight edge sweeps through the tissue at rest, from one place to the other.
-inline void cut(const Model& model, State& state, const cutting::BladeEdge& from, const cutting::BladeEdge& to) {
-  const auto front = [](const cutting::BladeEdge& edge) {
+inline void cut(const Model& model, State& state, const Edge& from, const Edge& to) {
+  const auto front = [](const Edge& edge) {
     cutting::Front nodes;
     for (std::size_t n = 0; n < kEdgeNodes; ++n)
       nodes[n] = edge.tip + double(n) / double(kEdgeNodes - 1) * (edge.heel - edge.tip);
