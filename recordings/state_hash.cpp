@@ -8,6 +8,7 @@
 #include <xxhash.h>
 
 #include "core/model/fields.h"
+#include "core/model/state.h"
 
 namespace ctpm::recordings {
 namespace {
@@ -47,10 +48,16 @@ struct Hasher {
            name.starts_with("swept");
   }
 
+  /// Rows of the swept surface that the last two follow never change: they were hashed when they were the last.
+  static std::uint64_t hashed_of(std::string_view name, std::uint64_t count) {
+    return name.starts_with("swept") ? std::min<std::uint64_t>(count, 2 * kEdgeNodes) : count;
+  }
+
   template <class T>
   void array(std::string_view name, const T* values, std::uint64_t count) {
     if (count == 0 && is_newer(name)) return;
     XXH3_64bits_update(&hash, &count, sizeof count);
+    values += count - hashed_of(name, count), count = hashed_of(name, count);
     XXH3_64bits_update(&hash, values, count * sizeof(T));
   }
 };

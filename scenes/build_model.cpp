@@ -197,9 +197,10 @@ Quat turn_to(Vec3 normal) {
   return {w, -0.5 * n.y / w, 0.5 * n.x / w, 0};
 }
 
-void add_obstacles(Model& model, const SceneSpec& scene) {
+void add_obstacles(Model& model, const SceneSpec& scene, std::span<const ObstacleMesh> meshes, Problems& problems) {
   model.organs_meet = scene.organs_meet;
-  for (const ObstacleSpec& spec : scene.obstacles) {
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+    const ObstacleSpec& spec = scene.obstacles[i];
     Obstacle obstacle;
     obstacle.name = spec.name;
     if (spec.plane) obstacle.position = spec.plane->point, obstacle.world_from_obstacle = turn_to(spec.plane->normal);
@@ -208,7 +209,17 @@ void add_obstacles(Model& model, const SceneSpec& scene) {
       obstacle.position = 0.5 * (spec.box->min + spec.box->max);
       obstacle.half_size = 0.5 * (spec.box->max - spec.box->min);
     }
-    model.obstacles.push_back(obstacle);
+    if (!spec.mesh.empty()) {
+      obstacle.kind = ObstacleKind::mesh;
+      const std::string at = "/obstacles/" + std::to_string(i) + "/mesh";
+      if (i >= meshes.size() || meshes[i].triangle.empty()) {
+        if (problems.is_good(at)) problems.add_rule(at, "was not read", "");
+        continue;
+      }
+      for (const Vec3& v : meshes[i].vertex) obstacle.vertex.push_back(v);
+      for (const auto& t : meshes[i].triangle) obstacle.corner.insert(obstacle.corner.end(), t.begin(), t.end());
+    }
+    model.obstacles.push_back(std::move(obstacle));
   }
 }
 
@@ -332,7 +343,8 @@ bool can_be_filled(const Problems& problems, std::size_t index) {
          problems.are_good(at + "/rig", {"cells", "block"});
 }
 
-std::optional<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrgan> organs, Problems& problems) {
+std::optional<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrgan> organs, Problems& problems,
+                                      std::span<const ObstacleMesh> meshes) {
   CTPM_CHECK(organs.size() == scene.organs.size(), "one filled organ for each organ of the scene");
   BuiltScene built;
   Model& model = built.model;
@@ -342,7 +354,7 @@ std::optional<BuiltScene> build_model(const SceneSpec& scene, std::span<const Fi
   for (std::size_t i = 0; i < organs.size(); ++i)
     has_all_organs = add_scene_organ(built, scene, i, organs[i], problems) && has_all_organs;
   if (!has_all_organs) return std::nullopt;
-  add_obstacles(model, scene);
+  add_obstacles(model, scene, meshes, problems);
   add_tools(model, scene);
   add_cutting(model, scene);
   for (const LoadSpec& load : scene.loads) add_load(model, load);
@@ -360,9 +372,10 @@ std::optional<BuiltScene> build_model(const SceneSpec& scene, std::span<const Fi
   return built;
 }
 
-Result<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrgan> organs) {
+Result<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrgan> organs,
+                               std::span<const ObstacleMesh> meshes) {
   Problems problems;
-  std::optional<BuiltScene> built = build_model(scene, organs, problems);
+  std::optional<BuiltScene> built = build_model(scene, organs, problems, meshes);
   if (!built) return problems.errors();
   return *std::move(built);
 }

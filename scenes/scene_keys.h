@@ -283,13 +283,17 @@ void describe_fields(V& v, ToolSpec& tool) {
 
 inline RecordInfo info_of(const ObstacleSpec&) {
   return {"obstacle",
-          "A rigid ground, table or wall, which tissue touches and does not enter. Give either plane or box."};
+          "A rigid ground, table or wall, which tissue touches and does not enter. Give one of plane, box and mesh."};
 }
 template <class V>
 void describe_fields(V& v, ObstacleSpec& obstacle) {
   v.text(required("name", "Name of the obstacle, unique in the scene."), obstacle.name);
   v.record(Key{"plane", "Everything behind a plane."}, obstacle.plane);
   v.record(Key{"box", "A box."}, obstacle.box);
+  v.text(Key{"mesh",
+             "Path of a mesh file, as of an organ. The mesh is repaired as an organ's is, and must be closed then."},
+         obstacle.mesh);
+  v.choice(Key{"mesh_unit", "Unit of the mesh file's coordinates."}, obstacle.mesh_unit);
 }
 
 inline RecordInfo info_of(const LoadSpec&) { return {"load", "An external force on one sphere."}; }

@@ -7,7 +7,6 @@
 #include <map>
 
 #include "core/contact/facet_press.h"
-#include "core/surface/inside.h"
 #include "core/surface/surface.h"
 
 namespace ctpm::contact {
@@ -35,16 +34,19 @@ std::vector<std::int32_t> find_own_vertices(const Surface& surface, const Surfac
 }  // namespace
 
 DrawnSurfaces::DrawnSurfaces(const Model& model)
-    : model_(model), bodies_(surface::bodies_of(model)), overlaps_(model, bodies_) {}
+    : model_(model),
+      bodies_(surface::bodies_of(model)),
+      obstacles_(model.obstacles.begin(), model.obstacles.end()),
+      overlaps_(model, bodies_) {}
 
 void DrawnSurfaces::place(std::size_t organ, const Surface& surface, const State& state, std::vector<Vec3>& vertex) {
   surface::deform_surface(surface, state.position, model_.organs[organ].first, vertex);
   put_between_organs(organ, surface, state, vertex);
   put_on_ball(organ, surface, state, vertex);
-  for (const Obstacle& obstacle : model_.obstacles)
+  for (const surface::ObstacleShape& obstacle : obstacles_)
     for (Vec3& v : vertex)
-      if (const surface::Inside inside = surface::find_inside(obstacle, v); inside.depth > 0)
-        v += inside.depth * inside.outward;
+      if (obstacle.meets(Box(v)))
+        if (const surface::Inside inside = obstacle.inside(v); inside.depth > 0) v += inside.depth * inside.outward;
 }
 
 /// Moves the vertices that other tissue dents.

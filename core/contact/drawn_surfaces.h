@@ -9,6 +9,7 @@
 #include "core/model/vec3.h"
 #include "core/surface/bodies.h"
 #include "core/surface/body_overlaps.h"
+#include "core/surface/obstacle_shape.h"
 
 namespace ctpm::contact {
 
@@ -31,6 +32,7 @@ class DrawnSurfaces {
 
   const Model& model_;
   std::vector<surface::Body> bodies_;
+  std::vector<surface::ObstacleShape> obstacles_;
   surface::BodyOverlaps overlaps_;
   std::vector<surface::Overlap> found_;
 };

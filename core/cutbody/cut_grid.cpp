@@ -200,10 +200,13 @@ bool CutGrid::update(const State& state) {
   const std::size_t rows = cutting::swept_rows(state);
   const auto place = [&](std::size_t row, std::size_t node) { return state.swept[row * kEdgeNodes + node]; };
   changed_ = false;
-  bool is_same = rows == rows_;
-  for (std::size_t n = 0; n < kEdgeNodes && is_same && rows > 0; ++n) is_same = place(rows - 1, n) == last_[n];
-  if (is_same) return false;
-  if (rows < rows_ || (rows_ > 1 && place(rows_ - 2, 0) != before_)) reset();
+  const auto is_row = [&](std::size_t row, const cutting::Front& front) {
+    for (std::size_t n = 0; n < kEdgeNodes; ++n)
+      if (!(place(row, n) == front[n])) return false;
+    return true;
+  };
+  if (rows == rows_ && (rows == 0 || is_row(rows - 1, last_))) return false;
+  if (rows < rows_ || (rows_ > 1 && !is_row(rows_ - 2, before_))) reset();
   // The last row has moved: what it severed is found again, so that the result depends on `state` alone.
   take_back_last_row();
   for (std::size_t row = std::max<std::size_t>(rows_, 2) - 1; row < rows; ++row)
@@ -214,8 +217,10 @@ bool CutGrid::update(const State& state) {
       sever(quad.from, quad.to, quad.from2, may_move), sever(quad.to, quad.to2, quad.from2, may_move);
     }
   rows_ = rows;
-  if (rows > 1) before_ = place(rows - 2, 0);
-  for (std::size_t n = 0; n < kEdgeNodes && rows > 0; ++n) last_[n] = place(rows - 1, n);
+  for (std::size_t n = 0; n < kEdgeNodes; ++n) {
+    if (rows > 1) before_[n] = place(rows - 2, n);
+    if (rows > 0) last_[n] = place(rows - 1, n);
+  }
   return changed_;
 }
 

@@ -135,7 +135,7 @@ class CutGrid {
   std::vector<Index> node_of_sphere_, first_sphere_, sphere_;
   std::size_t rows_ = 0;                                             ///< of the swept surface that have been looked at
   cutting::Front last_{};                                            ///< the last of them, which may still move [m]
-  Vec3 before_;                                                      ///< first place of the one before it [m]
+  cutting::Front before_{};                                          ///< the one before it [m]
   std::vector<std::pair<std::size_t, std::optional<Cut>>> by_last_;  ///< what the last row changed, as it was before
   bool anything_cut_ = false, changed_ = false;
   NodeBox box_{};

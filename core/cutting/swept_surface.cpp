@@ -8,8 +8,17 @@ namespace {
 
 constexpr double kLongestRow = 1e-3, kInLine = 2e-5;  // [m]
 
-void push_row(State& state, const Front& front, const NewlySwept& newly) {
-  for (std::size_t n = 0; n < kEdgeNodes; ++n) state.swept.push_back(front[n]), state.swept_organ.push_back(newly[n]);
+/// Whether the surface newly swept goes through a node.
+bool borders(const NewlySwept& newly, std::size_t node) {
+  return newly[node] != 0 || (node > 0 && newly[node - 1] != 0);
+}
+
+/// Nodes of which nothing is asked are 0, so that sessions stay small.
+void push_row(State& state, const Front& front, const NewlySwept& newly, const NewlySwept& next) {
+  for (std::size_t n = 0; n < kEdgeNodes; ++n) {
+    state.swept.push_back(borders(newly, n) || borders(next, n) ? front[n] : Vec3{});
+    state.swept_organ.push_back(newly[n]);
+  }
 }
 
 double squared_distance(Vec3 p, const SweptQuad& q) {
@@ -32,16 +41,14 @@ void add_swept(State& state, const Front& from, const Front& to, const NewlySwep
   // Nodes that border on what is newly swept must go on from the last row.
   bool goes_on = rows > 0;
   for (std::size_t n = 0; n < kEdgeNodes && goes_on; ++n) {
-    const bool borders = newly[n] != 0 || (n > 0 && newly[n - 1] != 0);
-    goes_on = !borders || state.swept[last + n] == from[n];
+    goes_on = !borders(newly, n) || state.swept[last + n] == from[n];
   }
   bool is_in_line = goes_on && rows > 1;
   for (std::size_t n = 0; n < kEdgeNodes && is_in_line; ++n) {
     const bool was_swept = state.swept_organ[last + n] != 0;
     if (was_swept && newly[n] != 0) is_in_line = state.swept_organ[last + n] == newly[n];
-    const bool borders =
-        newly[n] != 0 || (n > 0 && newly[n - 1] != 0) || was_swept || (n > 0 && state.swept_organ[last + n - 1] != 0);
-    if (!borders || !is_in_line) continue;
+    const bool matters = borders(newly, n) || was_swept || (n > 0 && state.swept_organ[last + n - 1] != 0);
+    if (!matters || !is_in_line) continue;
     // A part that rests while others go on must not be drawn along.
     if (was_swept && newly[n] == 0 && !(to[n] == state.swept[last + n] && to[n + 1] == state.swept[last + n + 1]))
       is_in_line = false;
@@ -55,14 +62,15 @@ void add_swept(State& state, const Front& from, const Front& to, const NewlySwep
   }
   if (is_in_line) {
     for (std::size_t n = 0; n < kEdgeNodes; ++n) {
-      state.swept.set(last + n, to[n]);
       if (newly[n] != 0) state.swept_organ[last + n] = newly[n];
+      const bool is_asked = state.swept_organ[last + n] != 0 || (n > 0 && state.swept_organ[last + n - 1] != 0);
+      state.swept.set(last + n, is_asked ? to[n] : Vec3{});
     }
     return;
   }
   if (rows + 2 > kMostSweptRows) return;
-  if (!goes_on) push_row(state, from, {});
-  push_row(state, to, newly);
+  if (!goes_on) push_row(state, from, {}, newly);
+  push_row(state, to, newly, {});
 }
 
 std::optional<Vec3> nearest_swept(const State& state, std::int32_t organ, Vec3 rest, double reach) {

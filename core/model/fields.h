@@ -101,10 +101,12 @@ void for_each_field(Obstacle_& o, Visit&& visit) {
   using namespace meaning;
   const auto give = with_meaning(visit);
   give("name", o.name, any);
-  give("kind", o.kind, one_of({ObstacleKind::plane, ObstacleKind::box}));
+  give("kind", o.kind, one_of({ObstacleKind::plane, ObstacleKind::box, ObstacleKind::mesh}));
   give("position", o.position, place);
   give("world_from_obstacle", o.world_from_obstacle, any);
   give("half_size", o.half_size, length_or_none);
+  give_points("vertex.x", "vertex.y", "vertex.z", o.vertex, place, give);
+  give("corner", o.corner, any);
 }
 
 /// As above. `organs`, `tools` and `obstacles` are vectors of structs; for_each_field visits their fields in turn.

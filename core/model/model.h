@@ -166,15 +166,19 @@ struct OrganRange {
 enum class ObstacleKind : std::int32_t {
   plane = 0,  ///< the half space z <= 0 of the obstacle's frame
   box = 1,    ///< centred in the obstacle's frame
+  mesh = 2,   ///< a closed mesh
 };
 
-/// A rigid thing that never moves and that the surfaces of organs cannot enter: a ground, a table.
+/// A rigid thing that never moves and that the surfaces of organs cannot enter: a ground, a table, a bowl.
 struct Obstacle {
   std::string name;
   ObstacleKind kind = ObstacleKind::plane;
   Vec3 position;             ///< of the frame's origin [m]
   Quat world_from_obstacle;  ///< orientation of the frame, unit length
   Vec3 half_size;            ///< of a box [m], > 0
+  Vec3Array vertex{};        ///< of a mesh, in the obstacle's frame [m]
+  /// Of a mesh: vertices of its triangles, three of each, counter-clockwise seen from outside.
+  std::vector<std::int32_t> corner{};
 };
 
 /// Method of time integration. Session files store the numbers; 0 (automatic), 1 (symplectic Euler) and 3 (extrapolated

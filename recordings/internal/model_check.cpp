@@ -274,6 +274,17 @@ void check_tissue_cells(Checker& check, const Model& model) {
   }
 }
 
+void check_obstacle_mesh(Checker& check, const std::string& name, const Obstacle& obstacle) {
+  const std::size_t vertices = obstacle.vertex.x.size();
+  if (!check.length(name + "vertex.y", obstacle.vertex.y.size(), vertices) ||
+      !check.length(name + "vertex.z", obstacle.vertex.z.size(), vertices))
+    return;
+  const bool is_mesh = obstacle.kind == ObstacleKind::mesh;
+  check.require(obstacle.corner.size() % 3 == 0 && obstacle.corner.empty() != is_mesh, name + "corner",
+                is_mesh ? "must have three entries for each triangle of a mesh" : "must be empty but of a mesh");
+  check.indices(name + "corner", obstacle.corner, 0, static_cast<std::int64_t>(vertices));
+}
+
 void check_obstacles(Checker& check, const Model& model) {
   for (std::size_t i = 0; i < model.obstacles.size(); ++i) {
     const Obstacle& obstacle = model.obstacles[i];
@@ -283,6 +294,7 @@ void check_obstacles(Checker& check, const Model& model) {
     const Vec3 half = obstacle.half_size;
     check.require(obstacle.kind != ObstacleKind::box || (half.x > 0 && half.y > 0 && half.z > 0),
                   "obstacles" + place(i) + ".half_size", "must be above 0 of a box");
+    check_obstacle_mesh(check, "obstacles" + place(i) + ".", obstacle);
   }
 }
 

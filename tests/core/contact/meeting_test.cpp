@@ -7,7 +7,7 @@
 
 #include "core/contact/drawn_surfaces.h"
 #include "core/stepping/step.h"
-#include "core/surface/inside.h"
+#include "core/surface/obstacle_shape.h"
 #include "core/surface/rigid_motion.h"
 #include "core/surface/surface.h"
 #include "tests/core/skinned_block.h"
@@ -343,14 +343,14 @@ TEST(RigidMotion, AFreeOrgansDepthDoesNotCountItsOwnWay) {
 
 TEST(Obstacle, SaysHowDeepAPointIsAndTheShortestWayOut) {
   const Obstacle plane{"plane", ObstacleKind::plane, {0, 0, 0.1}, slope(90), {}};  // normal along x
-  EXPECT_NEAR(surface::find_inside(plane, {-0.02, 5, 7}).depth, 0.02, 1e-14);
-  EXPECT_NEAR(surface::find_inside(plane, {0.03, 0, 0}).depth, -0.03, 1e-14);
-  EXPECT_NEAR(surface::find_inside(plane, {0, 0, 0}).outward.x, 1, 1e-14);
+  EXPECT_NEAR(surface::ObstacleShape(plane).inside({-0.02, 5, 7}).depth, 0.02, 1e-14);
+  EXPECT_NEAR(surface::ObstacleShape(plane).inside({0.03, 0, 0}).depth, -0.03, 1e-14);
+  EXPECT_NEAR(surface::ObstacleShape(plane).inside({0, 0, 0}).outward.x, 1, 1e-14);
   const Obstacle box{"box", ObstacleKind::box, {1, 2, 3}, slope(90), {0.1, 0.2, 0.3}};  // its z is the world's x
-  const surface::Inside inside = surface::find_inside(box, {1.25, 2.1, 3});
+  const surface::Inside inside = surface::ObstacleShape(box).inside({1.25, 2.1, 3});
   EXPECT_NEAR(inside.depth, 0.05, 1e-12);
   EXPECT_NEAR(norm(inside.outward - Vec3{1, 0, 0}), 0, 1e-12);
-  const surface::Inside corner = surface::find_inside(box, {1.33, 2.24, 3});
+  const surface::Inside corner = surface::ObstacleShape(box).inside({1.33, 2.24, 3});
   EXPECT_NEAR(corner.depth, -0.05, 1e-12);
   EXPECT_NEAR(norm(corner.outward - Vec3{0.6, 0.8, 0}), 0, 1e-12);
 }
