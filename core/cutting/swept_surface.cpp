@@ -112,8 +112,7 @@ SweptIndex::SweptIndex(const Model& model) {
              1 + std::int64_t(size.z / kBucket)};
   head_.assign(std::size_t(extent_[0] * extent_[1] * extent_[2]), -1);
   const std::size_t points = kMostSweptRows * kEdgeNodes;
-  entries_.reserve(2 * points), organ_.reserve(points);
-  for (auto* axis : {&swept_.x, &swept_.y, &swept_.z}) axis->reserve(points);
+  entries_.reserve(2 * points);
 }
 
 std::int64_t SweptIndex::bucket_of(Vec3 rest) const {
@@ -124,20 +123,19 @@ std::int64_t SweptIndex::bucket_of(Vec3 rest) const {
   return std::int64_t(at.x) + extent_[0] * (std::int64_t(at.y) + extent_[1] * std::int64_t(at.z));
 }
 
+/// Two swept surfaces that agree in one row, to the bit, agree in those before it.
 bool SweptIndex::goes_on_from(const State& state) const {
-  const auto count = std::ptrdiff_t(rows_ * kEdgeNodes);
-  if (std::ptrdiff_t(state.swept.size()) < count) return false;
-  const auto same = [&](const auto& own, const auto& other) {
-    return std::equal(own.begin(), own.begin() + count, other.begin());
-  };
-  return same(swept_.x, state.swept.x) && same(swept_.y, state.swept.y) && same(swept_.z, state.swept.z) &&
-         same(organ_, state.swept_organ);
+  if (swept_rows(state) < rows_) return false;
+  const std::size_t from = rows_ > 0 ? (rows_ - 1) * kEdgeNodes : 0;
+  for (std::size_t n = from; n < rows_ * kEdgeNodes; ++n)
+    if (!(state.swept[n] == last_[n - from]) || state.swept_organ[n] != last_organ_[n - from]) return false;
+  return true;
 }
 
 void SweptIndex::update(const State& state) {
   if (!goes_on_from(state)) {
     std::fill(head_.begin(), head_.end(), -1);
-    entries_.clear(), swept_.resize(0), organ_.clear(), rows_ = 0;
+    entries_.clear(), rows_ = 0;
   }
   for (; rows_ + 1 < swept_rows(state); ++rows_) insert(state, rows_);
 }
@@ -145,7 +143,7 @@ void SweptIndex::update(const State& state) {
 void SweptIndex::insert(const State& state, std::size_t row) {
   for (std::size_t n = 0; n < kEdgeNodes; ++n) {
     const std::size_t at = row * kEdgeNodes + n;
-    swept_.push_back(state.swept[at]), organ_.push_back(state.swept_organ[at]);
+    last_[n] = state.swept[at], last_organ_[n] = state.swept_organ[at];
     if (row == 0 || n + 1 == kEdgeNodes || state.swept_organ[at] == 0) continue;
     const SweptQuad quad = swept_quad(state, row, n);
     const Box box = Box(quad.from, quad.to, quad.from2, quad.to2).grown(kFar);

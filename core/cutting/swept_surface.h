@@ -75,8 +75,8 @@ class SweptIndex {
   std::vector<std::int32_t> head_;  ///< first entry of a bucket; -1: none
   std::vector<Entry> entries_;
   std::size_t rows_ = 0;  ///< that are in the index; the last row of a State never is, since it may still move
-  Vec3Array swept_;       ///< copy of these
-  std::vector<std::uint8_t> organ_;
+  Front last_{};          ///< the last of these [m]
+  NewlySwept last_organ_{};
 };
 
 }  // namespace ctpm::cutting

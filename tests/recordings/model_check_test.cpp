@@ -151,7 +151,7 @@ TEST(ModelCheck, NamesTheFieldAndWhatItMustBe) {
        [](Model& m) {
          m.obstacles[1].corner = {0, 0, 0};
        }},
-      {"obstacles[0].vertex.y[2] must be finite", [](Model& m) { m.obstacles[0].vertex.y[2] = INFINITY; }},
+      {"obstacles[0].vertex.y[2] must be in [-1000, 1000]", [](Model& m) { m.obstacles[0].vertex.y[2] = INFINITY; }},
       {"solver.tolerance must be in (1e-16, 1)", [](Model& m) { m.solver.tolerance = 1; }},
       {"solver.max_iterations must be in [1, 1000000]", [](Model& m) { m.solver.max_iterations = 0; }},
       {"solver.substeps must be in [1, 10000]", [](Model& m) { m.solver.substeps = 10001; }},
