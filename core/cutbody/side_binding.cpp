@@ -10,8 +10,10 @@ namespace ctpm::cutbody {
 namespace {
 
 /// Spheres are seen over this many of the grid's edges at most, and over one more than the shortest way: what can only
-/// be reached around the end of a cut is on its other side.
-constexpr std::int32_t kMostHops = 2 * CutGrid::kPerSpacing + 1, kDetour = 1;
+/// be reached around the end of a cut is on its other side. No edge goes along the diagonal of a square from one axis
+/// to the other, so the reach of a binding takes up to sqrt(2) times its steps.
+constexpr std::int32_t kMostHops = 12, kDetour = 1;
+static_assert(kMostHops >= 1.4143 * surface::kBindingReach * CutGrid::kPerSpacing);
 
 /// Bindings whose weights are larger than this in sum would throw their vertex far out.
 constexpr double kLargestSum = 4;
