@@ -12,6 +12,17 @@ namespace {
 /// if it is farther than kWhole [m].
 constexpr double kAhead = 0.3e-3, kCut = 0.02e-3, kWhole = 0.1e-3;
 
+/// Where an edge begins to cut tissue that is as whole as this, and goes on to cut it: they differ, so that an edge
+/// along an earlier cut does not begin again in each tick.
+constexpr double kBegins = 0.8, kGoesOn = 0.2;
+
+/// Whether the last row of the swept surface ends at a node's front, and was cut there.
+bool was_swept(const State& state, std::size_t node, Vec3 front) {
+  if (state.swept_organ.empty()) return false;
+  const std::size_t at = state.swept_organ.size() - kEdgeNodes + node;
+  return state.swept_organ[at] != 0 && state.swept[at] == stored_place(front);
+}
+
 /// A node is followed from this far outside an organ [m], and at least from two nodes' distance.
 constexpr double kNear = 3e-3;
 
@@ -263,7 +274,8 @@ std::int32_t CutFront::follow(const Tool& scalpel, const BladeEdge& edge, State&
     moved = moved || to[n] != front_[n];
     state.blade_trail.set(n, to[n]);
     if (n + 1 == kEdgeNodes || nodes_[n].organ < 0 || nodes_[n].organ != nodes_[n + 1].organ) continue;
-    if ((n < kPointNodes ? is_new[n] : std::max(is_new[n], is_new[n + 1])) < 0.5) continue;
+    const double is_whole = n < kPointNodes ? is_new[n] : std::max(is_new[n], is_new[n + 1]);
+    if (is_whole < (was_swept(state, n, front_[n]) ? kGoesOn : kBegins)) continue;
     const auto is_in = [&](std::size_t m) {
       const auto organ = std::size_t(nodes_[m].organ);
       return nodes_[m].depth > 0 || depth_.at(organ, to[m]) > 0 || depth_.at(organ, 0.5 * (front_[m] + to[m])) > 0;

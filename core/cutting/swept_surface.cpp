@@ -36,18 +36,30 @@ SweptQuad swept_quad(const State& state, std::size_t row, std::size_t node) {
           state.swept[at + 1]};
 }
 
-void add_swept(State& state, const Front& from, const Front& to, const NewlySwept& newly) {
+Vec3 stored_place(Vec3 rest) {
+  constexpr double kUnit = 1.0 / 131072;  // [m], a power of 2
+  const auto stored = [](double x) { return kUnit * std::floor(x / kUnit + 0.5); };
+  return {stored(rest.x), stored(rest.y), stored(rest.z)};
+}
+
+void add_swept(State& state, const Front& exact_from, const Front& exact_to, const NewlySwept& newly) {
+  Front from, to;
+  for (std::size_t n = 0; n < kEdgeNodes; ++n) from[n] = stored_place(exact_from[n]), to[n] = stored_place(exact_to[n]);
   const std::size_t rows = swept_rows(state), last = (rows - 1) * kEdgeNodes;
-  // Nodes that border on what is newly swept must go on from the last row.
+  // Nodes that border on what is newly swept must go on from the last row, which may not have asked for them yet.
+  const auto is_asked = [&](std::size_t n) {
+    return state.swept_organ[last + n] != 0 || (n > 0 && state.swept_organ[last + n - 1] != 0);
+  };
   bool goes_on = rows > 0;
-  for (std::size_t n = 0; n < kEdgeNodes && goes_on; ++n) {
-    goes_on = !borders(newly, n) || state.swept[last + n] == from[n];
-  }
+  for (std::size_t n = 0; n < kEdgeNodes && goes_on; ++n)
+    goes_on = !borders(newly, n) || !is_asked(n) || state.swept[last + n] == from[n];
+  for (std::size_t n = 0; n < kEdgeNodes && goes_on; ++n)
+    if (borders(newly, n) && !is_asked(n)) state.swept.set(last + n, from[n]);
   bool is_in_line = goes_on && rows > 1;
   for (std::size_t n = 0; n < kEdgeNodes && is_in_line; ++n) {
     const bool was_swept = state.swept_organ[last + n] != 0;
     if (was_swept && newly[n] != 0) is_in_line = state.swept_organ[last + n] == newly[n];
-    const bool matters = borders(newly, n) || was_swept || (n > 0 && state.swept_organ[last + n - 1] != 0);
+    const bool matters = borders(newly, n) || is_asked(n);
     if (!matters || !is_in_line) continue;
     // A part that rests while others go on must not be drawn along.
     if (was_swept && newly[n] == 0 && !(to[n] == state.swept[last + n] && to[n + 1] == state.swept[last + n + 1]))
@@ -63,8 +75,7 @@ void add_swept(State& state, const Front& from, const Front& to, const NewlySwep
   if (is_in_line) {
     for (std::size_t n = 0; n < kEdgeNodes; ++n) {
       if (newly[n] != 0) state.swept_organ[last + n] = newly[n];
-      const bool is_asked = state.swept_organ[last + n] != 0 || (n > 0 && state.swept_organ[last + n - 1] != 0);
-      state.swept.set(last + n, is_asked ? to[n] : Vec3{});
+      state.swept.set(last + n, is_asked(n) ? to[n] : Vec3{});
     }
     return;
   }

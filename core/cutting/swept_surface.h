@@ -39,6 +39,9 @@ void for_each_swept(const State& state, Visit&& visit) {
       if (const SweptQuad quad = swept_quad(state, row, node); quad.organ >= 0) visit(quad);
 }
 
+/// A place as State::swept holds it: to some micrometres, so that sessions stay small.
+Vec3 stored_place(Vec3 rest);
+
 /// Adds what the front swept while it went `from`-`to`. Where the last row and the new one lie in line, the row is
 /// moved instead of adding another: rows are at most 1 mm apart, and leave out nothing that is farther than some
 /// hundredths of a millimetre from the surface between them.
