@@ -69,7 +69,8 @@ class CutGrid {
     return is_parted(node, direction) && in_tissue(node) && in_tissue(end(node, direction));
   }
 
-  /// The node in tissue at a sphere, or the nearest one to it; -1 if there is none near. Counted within the organ.
+  /// The node in tissue at a sphere, or the fewest edges from it on its side of the cut; -1 if there is none near.
+  /// Counted within the organ.
   Index node_of_sphere(Index sphere) const { return node_of_sphere_[std::size_t(sphere)]; }
   /// Blocks of a lattice cell's size divide the grid: that of a node, or of the cube above it.
   Index block_count() const { return blocks_[0] * blocks_[1] * blocks_[2]; }
@@ -115,6 +116,10 @@ class CutGrid {
     float low, high;  ///< crossings nearest to the lower and to the upper node
     Vec3 normal_low, normal_high;
   };
+  void index_spheres();
+  Index find_home(Index sphere) const;
+  void find_homes_outside();
+  void sever_row(const State& state, std::size_t row);
   void sever(Vec3 a, Vec3 b, Vec3 c, bool may_move);
   void sever_edge(Index node, int direction, float along, Vec3 normal, bool may_move);
   void take_back_last_row();
@@ -131,7 +136,8 @@ class CutGrid {
   std::vector<std::uint8_t> in_tissue_;
   std::vector<std::uint8_t> parted_;              ///< of each node: a bit for each direction
   std::unordered_map<std::size_t, float> outer_;  ///< crossings of edges with the organ's surface
-  std::unordered_map<std::size_t, Cut> cuts_;
+  std::unordered_map<std::size_t, Cut> cuts_;     ///< crossings of edges, outside the tissue too
+  std::vector<Index> own_node_;                   ///< the node where a sphere is
   std::vector<Index> node_of_sphere_, first_sphere_, sphere_;
   std::size_t rows_ = 0;                                             ///< of the swept surface that have been looked at
   cutting::Front last_{};                                            ///< the last of them, which may still move [m]
