@@ -113,7 +113,7 @@ CutGrid::Index CutGrid::find_home(Index sphere) const {
     std::vector<Index> next;
     Index best = -1;
     const auto go = [&](Index to, std::size_t by) {
-      if (cuts_.contains(by) || std::find(seen.begin(), seen.end(), to) != seen.end()) return;
+      if (cuts_.contains(by) || outside_.contains(by) || std::find(seen.begin(), seen.end(), to) != seen.end()) return;
       seen.push_back(to), next.push_back(to);
       if (!in_tissue(to)) return;
       if (best < 0 || std::pair(squared_distance(to), to) < std::pair(squared_distance(best), best)) best = to;
@@ -183,17 +183,19 @@ void CutGrid::sever_row(const State& state, std::size_t row) {
   for (std::size_t n = 0; n < kEdgeNodes; ++n)
     if (newly[n] != 0 || (n > 0 && newly[n - 1] != 0))
       is_outside[n] = depth_.at(organ, from[n]) <= 0 && depth_.at(organ, to[n]) <= 0;
-  for (cutting::Front* front : {&from, &to})
-    cutting::go_on_outside(depth_, organ, newly, is_outside, kPerSpacing * step_, *front);
   const bool may_move = row + 1 == cutting::swept_rows(state);
-  for (std::size_t n = 0; n + 1 < kEdgeNodes; ++n) {
-    if (newly[n] == 0) continue;
-    sever(from[n], from[n + 1], to[n], may_move), sever(from[n + 1], to[n + 1], to[n], may_move);
+  for (const bool outside : {false, true}) {
+    for (std::size_t n = 0; n + 1 < kEdgeNodes; ++n) {
+      if (newly[n] == 0) continue;
+      sever(from[n], from[n + 1], to[n], outside, may_move), sever(from[n + 1], to[n + 1], to[n], outside, may_move);
+    }
+    for (cutting::Front* front : {&from, &to})
+      cutting::go_on_outside(depth_, organ, newly, is_outside, kPerSpacing * step_, *front);
   }
 }
 
-/// Severs the edges that a triangle of the swept surface crosses.
-void CutGrid::sever(Vec3 a, Vec3 b, Vec3 c, bool may_move) {
+/// Severs the edges in tissue that a triangle of the swept surface crosses, or those that leave it or are outside.
+void CutGrid::sever(Vec3 a, Vec3 b, Vec3 c, bool outside, bool may_move) {
   Node from, to;
   double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
   for (const Vec3 corner : {a, b, c})
@@ -212,9 +214,14 @@ void CutGrid::sever(Vec3 a, Vec3 b, Vec3 c, bool may_move) {
           const Node n{i, j, k}, other{i + (d & 1), j + (d >> 1 & 1), k + (d >> 2)};
           if (!contains(other)) continue;
           const Index p = at(n), q = at(other);
+          const int ends_in = int(in_tissue(p)) + int(in_tissue(q));
+          if (outside ? ends_in == 2 : ends_in == 0) continue;
           const double along = crossing_of(rest(p), rest(q), a, b, c);
           if (along < 0) continue;
-          sever_edge(p, d, std::clamp(float(along), kFromEnd, 1 - kFromEnd), cross(b - a, c - a), may_move);
+          if (outside)
+            sever_outside(p, d, may_move);
+          else
+            sever_edge(p, d, std::clamp(float(along), kFromEnd, 1 - kFromEnd), cross(b - a, c - a), may_move);
         }
 }
 
@@ -226,14 +233,21 @@ void CutGrid::sever_edge(Index node, int direction, float along, Vec3 normal, bo
   if (may_move) by_last_.emplace_back(e, is_new ? std::nullopt : std::optional(cut));
   if (along < cut.low) cut.low = along, cut.normal_low = normal;
   if (along > cut.high) cut.high = along, cut.normal_high = normal;
-  const bool begins = in_tissue(node), ends = in_tissue(end(node, direction));
-  if (begins || ends) parted_[std::size_t(node)] |= std::uint8_t(1 << direction);
-  if (begins && ends) anything_cut_ = true;
+  parted_[std::size_t(node)] |= std::uint8_t(1 << direction);
+  if (in_tissue(node) && in_tissue(end(node, direction))) anything_cut_ = true;
   changed_ = true;
   box_.add(this->node(node)), box_.add(this->node(end(node, direction)));
 }
 
+void CutGrid::sever_outside(Index node, int direction, bool may_move) {
+  if (!outside_.insert(edge(node, direction)).second) return;
+  if (may_move) outside_by_last_.push_back(edge(node, direction));
+  box_.add(this->node(node));
+}
+
 void CutGrid::take_back_last_row() {
+  for (const std::size_t e : outside_by_last_) outside_.erase(e), box_.add(node(Index(e / kDirections)));
+  outside_by_last_.clear();
   for (auto change = by_last_.rbegin(); change != by_last_.rend(); ++change) {
     const auto& [e, before] = *change;
     const auto node = Index(e / kDirections);
@@ -253,7 +267,7 @@ void CutGrid::reset() {
   if (anything_cut_) changed_ = true, box_ = {{0, 0, 0}, extent_};
   for (const auto& [e, cut] : cuts_)
     if (!outer_.contains(e)) parted_[e / kDirections] &= std::uint8_t(~(1 << int(e % kDirections)));
-  cuts_.clear(), by_last_.clear(), anything_cut_ = false, rows_ = 0;
+  cuts_.clear(), by_last_.clear(), outside_.clear(), outside_by_last_.clear(), anything_cut_ = false, rows_ = 0;
 }
 
 void CutGrid::NodeBox::add(Node n) {
@@ -305,7 +319,7 @@ std::vector<std::uint8_t> CutGrid::cut_blocks() const {
   std::vector<std::uint8_t> blocks(std::size_t(block_count()), 0);
   for (const auto& [e, cut] : cuts_) {
     const auto from = Index(e / kDirections), to = end(from, int(e % kDirections));
-    if (in_tissue(from) || in_tissue(to)) blocks[std::size_t(block(from))] = blocks[std::size_t(block(to))] = 1;
+    blocks[std::size_t(block(from))] = blocks[std::size_t(block(to))] = 1;
   }
   return blocks;
 }

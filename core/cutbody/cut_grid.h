@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -120,7 +121,8 @@ class CutGrid {
   Index find_home(Index sphere) const;
   void find_homes_outside();
   void sever_row(const State& state, std::size_t row);
-  void sever(Vec3 a, Vec3 b, Vec3 c, bool may_move);
+  void sever(Vec3 a, Vec3 b, Vec3 c, bool outside, bool may_move);
+  void sever_outside(Index node, int direction, bool may_move);
   void sever_edge(Index node, int direction, float along, Vec3 normal, bool may_move);
   void take_back_last_row();
   void reset();
@@ -136,13 +138,16 @@ class CutGrid {
   std::vector<std::uint8_t> in_tissue_;
   std::vector<std::uint8_t> parted_;              ///< of each node: a bit for each direction
   std::unordered_map<std::size_t, float> outer_;  ///< crossings of edges with the organ's surface
-  std::unordered_map<std::size_t, Cut> cuts_;     ///< crossings of edges, outside the tissue too
-  std::vector<Index> own_node_;                   ///< the node where a sphere is
+  std::unordered_map<std::size_t, Cut> cuts_;
+  /// Edges that the swept surface crosses outside the tissue, where it goes on among the spheres there.
+  std::unordered_set<std::size_t> outside_;
+  std::vector<Index> own_node_;  ///< the node where a sphere is
   std::vector<Index> node_of_sphere_, first_sphere_, sphere_;
   std::size_t rows_ = 0;                                             ///< of the swept surface that have been looked at
   cutting::Front last_{};                                            ///< the last of them, which may still move [m]
   cutting::Front before_{};                                          ///< the one before it [m]
   std::vector<std::pair<std::size_t, std::optional<Cut>>> by_last_;  ///< what the last row changed, as it was before
+  std::vector<std::size_t> outside_by_last_;
   bool anything_cut_ = false, changed_ = false;
   NodeBox box_{};
 };
