@@ -11,6 +11,7 @@
 #include "core/model/fields.h"
 #include "core/stepping/step.h"
 #include "recordings/replay.h"
+#include "recordings/signature.h"
 #include "recordings/state_hash.h"
 
 namespace ctpm::recordings {
@@ -238,8 +239,11 @@ Result<Verdict> verify_session(SessionReader& reader, const VerifyOptions& optio
                  ""};
   // Of a whole session everything is checked, not only what a replay reads.
   const bool is_whole = options.from == 0 && to == reader.tick_count();
-  if (is_whole)
+  if (is_whole) {
     if (auto r = reader.check_all(); !r) return r.errors();
+    if (can_sign())
+      if (const auto signature = check_signature(reader.path()); !signature) return signature.errors();
+  }
   const auto keyframes = reader.keyframe_ticks();
   if (!keyframes) return keyframes.errors();
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <string>
 #include <thread>
 #include <utility>
@@ -13,6 +14,9 @@ namespace ctpm::session {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+/// Delay that the following ticks make up for [s].
+constexpr double kMostDelay = 0.1;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -118,8 +122,11 @@ RunOutcome run_session(const Model& model, State& state, sources::InputSource& s
   EventWatch watch(model, options.damage_force, writer);
   RunOutcome outcome;
   stepping::StepReport report;
+  bool is_failing = false;
   const auto tick_length = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(model.tick));
-  Clock::time_point deadline = Clock::now();
+  const Clock::time_point began = Clock::now();
+  Clock::time_point deadline = began;  // of the next tick's start, and of the present one's end
+  double delay = 0;                    // of the tick before [s]
   for (std::int64_t tick = 0; options.most_ticks == 0 || tick < options.most_ticks; ++tick) {
     if (options.should_stop && options.should_stop()) break;
     if (options.in_real_time) std::this_thread::sleep_until(deadline);
@@ -130,6 +137,10 @@ RunOutcome run_session(const Model& model, State& state, sources::InputSource& s
     }
     if (!inputs) break;
     const Clock::time_point start = Clock::now();
+    if (options.in_real_time) {
+      const double slip = std::chrono::duration<double>(start - began - tick * tick_length).count();
+      outcome.slip = std::floor(1e3 * std::max(0.0, slip)) / 1e3;
+    }
     report = stepper.step(state, *inputs);
     const double tick_time = seconds_since(start);
     outcome.status = report.status, outcome.worst_sphere = report.worst_sphere;
@@ -140,23 +151,38 @@ RunOutcome run_session(const Model& model, State& state, sources::InputSource& s
                     .sphere = report.worst_sphere});
       break;
     }
-    const recordings::TickRecord record =
-        recordings::make_record(*inputs, report, tick_time, recordings::state_hash(state), source.input_age());
+    const recordings::TickRecord record = recordings::make_record(
+        *inputs, report, tick_time, recordings::state_hash(state), source.input_age(), outcome.slip);
     writer.append(state, record);
     watch.look(tick, inputs->tool, report);
     deadline += tick_length;
-    if (options.in_real_time && Clock::now() > deadline) {
-      ++outcome.late_ticks;
-      writer.event({.tick = tick, .kind = recordings::EventKind::late_tick, .late = seconds_since(deadline)});
-      deadline = Clock::now();  // the next ticks do not make up for a late one
+    if (options.in_real_time) {
+      // A tick that catches up ends after its deadline as well, but is not what was late.
+      const double before = std::exchange(delay, std::max(0.0, seconds_since(deadline)));
+      if (delay > before) {
+        ++outcome.late_ticks;
+        writer.event({.tick = tick, .kind = recordings::EventKind::late_tick, .late = delay});
+      }
+      if (delay > kMostDelay) {
+        const auto lost =
+            std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(delay - kMostDelay));
+        deadline += lost;
+        delay = kMostDelay;
+      }
     }
     ++outcome.ticks;
+    if (writer.has_error() != std::exchange(is_failing, writer.has_error()) && is_failing && options.tell)
+      options.tell(writer.status().error);
+    if (writer.is_removed()) {
+      outcome.fault = writer.status().error;
+      break;
+    }
     if (options.watch) options.watch(state, record, outcome);
     if (options.progress)
       options.progress(outcome.ticks, options.most_ticks ? options.most_ticks : source.tick_count());
   }
   watch.finish(outcome.ticks);
-  outcome.fault = source.fault();
+  if (outcome.fault.empty()) outcome.fault = source.fault();
   return outcome;
 }
 
