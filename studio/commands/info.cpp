@@ -72,9 +72,7 @@ void print_text(recordings::SessionReader& reader, const recordings::SessionStat
   if (s.input_age_max > 0)
     print("input age  p50 %.3f ms, p99 %.3f ms, max %.3f ms\n", s.input_age_p50 * 1e3, s.input_age_p99 * 1e3,
           s.input_age_max * 1e3);
-  if (s.slip_max > 0)
-    print("clock      %.3f s behind real time at the end, %.3f s at most: so much of the hand's time is missing\n",
-          s.slip, s.slip_max);
+  if (s.slip_max > 0) print("clock      %.3f s behind real time at the end, %.3f s at most\n", s.slip, s.slip_max);
   for (const auto& [name, value] : s.values) print("value      %s = %g\n", printable(name).c_str(), value);
   print("at most    %.3f N, %.2f mm deep; %lld elements severed, %lld pieces came loose\n", s.max_force,
         s.max_depth * 1e3, (long long)s.severed, (long long)recordings::pieces_came_loose(events, reader.tick_count()));
