@@ -114,4 +114,12 @@ Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions&
   return imported;
 }
 
+Result<CheckedMesh> import_mesh(const std::string& path, double unit_in_metres) {
+  const Result<RawMesh> raw = read_mesh(path);
+  if (!raw) return raw.errors();
+  RepairOptions repair;
+  repair.all_parts = true;
+  return repair_mesh(*raw, unit_in_metres, repair);
+}
+
 }  // namespace ctpm::importers

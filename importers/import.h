@@ -53,6 +53,10 @@ struct ImportedOrgan {
 /// range together.
 Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions& options = {});
 
+/// Runs read_mesh and repair_mesh, for a closed mesh that is not filled. `unit_in_metres`: length of one unit of the
+/// file [m], > 0. Errors: those of these functions.
+Result<CheckedMesh> import_mesh(const std::string& path, double unit_in_metres);
+
 /// The report as lines of plain text for readers who do not know mesh terms.
 std::string to_text(const ImportReport& report);
 

@@ -8,6 +8,7 @@
 #include <xxhash.h>
 
 #include "core/model/fields.h"
+#include "core/model/state.h"
 
 namespace ctpm::recordings {
 namespace {
@@ -43,13 +44,20 @@ struct Hasher {
   /// sessions keep their hashes.
   static bool is_newer(std::string_view name) {
     return name == "axial_crossing" || name.starts_with("blade_trail") || name.starts_with("acceleration") ||
-           name == "touched" || name.starts_with("grip.") || name == "kelvin_dent";
+           name == "touched" || name.starts_with("grip.") || name == "kelvin_dent" || name == "edge_organ" ||
+           name.starts_with("swept");
+  }
+
+  /// Rows of the swept surface that the last two follow never change: they were hashed when they were the last.
+  static std::uint64_t hashed_of(std::string_view name, std::uint64_t count) {
+    return name.starts_with("swept") ? std::min<std::uint64_t>(count, 2 * kEdgeNodes) : count;
   }
 
   template <class T>
   void array(std::string_view name, const T* values, std::uint64_t count) {
     if (count == 0 && is_newer(name)) return;
     XXH3_64bits_update(&hash, &count, sizeof count);
+    values += count - hashed_of(name, count), count = hashed_of(name, count);
     XXH3_64bits_update(&hash, values, count * sizeof(T));
   }
 };

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/contact/body_contact.h"
 #include "core/network/network.h"
 #include "core/stepping/integrator.h"
+#include "core/surface/body_overlaps.h"
 #include "core/surface/surface.h"
 #include "scenes/anchors.h"
 #include "scenes/json_text.h"
@@ -197,9 +197,10 @@ Quat turn_to(Vec3 normal) {
   return {w, -0.5 * n.y / w, 0.5 * n.x / w, 0};
 }
 
-void add_obstacles(Model& model, const SceneSpec& scene) {
+void add_obstacles(Model& model, const SceneSpec& scene, std::span<const ObstacleMesh> meshes, Problems& problems) {
   model.organs_meet = scene.organs_meet;
-  for (const ObstacleSpec& spec : scene.obstacles) {
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+    const ObstacleSpec& spec = scene.obstacles[i];
     Obstacle obstacle;
     obstacle.name = spec.name;
     if (spec.plane) obstacle.position = spec.plane->point, obstacle.world_from_obstacle = turn_to(spec.plane->normal);
@@ -208,7 +209,17 @@ void add_obstacles(Model& model, const SceneSpec& scene) {
       obstacle.position = 0.5 * (spec.box->min + spec.box->max);
       obstacle.half_size = 0.5 * (spec.box->max - spec.box->min);
     }
-    model.obstacles.push_back(obstacle);
+    if (!spec.mesh.empty()) {
+      obstacle.kind = ObstacleKind::mesh;
+      const std::string at = "/obstacles/" + std::to_string(i) + "/mesh";
+      if (i >= meshes.size() || meshes[i].triangle.empty()) {
+        if (problems.is_good(at)) problems.add_rule(at, "was not read", "");
+        continue;
+      }
+      for (const Vec3& v : meshes[i].vertex) obstacle.vertex.push_back(v);
+      for (const auto& t : meshes[i].triangle) obstacle.corner.insert(obstacle.corner.end(), t.begin(), t.end());
+    }
+    model.obstacles.push_back(std::move(obstacle));
   }
 }
 
@@ -216,8 +227,7 @@ void add_obstacles(Model& model, const SceneSpec& scene) {
 void warn_of_overlap(const Model& model, Problems& problems) {
   if (!model.has_meeting_tissue()) return;
   constexpr double kTouching = 0.5e-3;  // [m]; meshes that lie against each other overlap a little
-  std::vector<contact::Body> bodies = contact::bodies_of(model);
-  const auto deepest = contact::BodyContact(model, bodies).deepest(model.rest_position);
+  const auto deepest = surface::deepest_overlap(model, model.rest_position);
   if (!deepest || deepest->depth < kTouching) return;
   char place[96];
   std::snprintf(place, sizeof place, "(%.4g, %.4g, %.4g) mm", 1e3 * deepest->place.x, 1e3 * deepest->place.y,
@@ -333,7 +343,8 @@ bool can_be_filled(const Problems& problems, std::size_t index) {
          problems.are_good(at + "/rig", {"cells", "block"});
 }
 
-std::optional<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrgan> organs, Problems& problems) {
+std::optional<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrgan> organs, Problems& problems,
+                                      std::span<const ObstacleMesh> meshes) {
   CTPM_CHECK(organs.size() == scene.organs.size(), "one filled organ for each organ of the scene");
   BuiltScene built;
   Model& model = built.model;
@@ -343,7 +354,7 @@ std::optional<BuiltScene> build_model(const SceneSpec& scene, std::span<const Fi
   for (std::size_t i = 0; i < organs.size(); ++i)
     has_all_organs = add_scene_organ(built, scene, i, organs[i], problems) && has_all_organs;
   if (!has_all_organs) return std::nullopt;
-  add_obstacles(model, scene);
+  add_obstacles(model, scene, meshes, problems);
   add_tools(model, scene);
   add_cutting(model, scene);
   for (const LoadSpec& load : scene.loads) add_load(model, load);
@@ -361,9 +372,10 @@ std::optional<BuiltScene> build_model(const SceneSpec& scene, std::span<const Fi
   return built;
 }
 
-Result<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrgan> organs) {
+Result<BuiltScene> build_model(const SceneSpec& scene, std::span<const FilledOrgan> organs,
+                               std::span<const ObstacleMesh> meshes) {
   Problems problems;
-  std::optional<BuiltScene> built = build_model(scene, organs, problems);
+  std::optional<BuiltScene> built = build_model(scene, organs, problems, meshes);
   if (!built) return problems.errors();
   return *std::move(built);
 }

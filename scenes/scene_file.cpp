@@ -36,22 +36,25 @@ bool is_linked_outside(const std::string& path, const std::string& scene_path) {
 /// Checks the files that a scene names.
 void check_files(Problems& problems, const SceneSpec& scene, const std::string& scene_path,
                  const LoadOptions& options) {
-  for (std::size_t i = 0; i < scene.organs.size(); ++i) {
-    if (scene.organs[i].mesh.empty()) continue;
-    const std::string at = "/organs/" + std::to_string(i) + "/mesh", path = mesh_path(scene_path, scene.organs[i]);
+  const auto check = [&](const std::string& at, const std::string& mesh) {
+    if (mesh.empty()) return;
+    const std::string path = mesh_path(scene_path, mesh);
     std::error_code ignored;
-    if (leaves_folder(scene.organs[i].mesh) && !options.allow_outside_paths)
-      problems.add_rule(at, "got " + in_quotes(scene.organs[i].mesh) + ", which leaves the scene's folder",
+    if (leaves_folder(mesh) && !options.allow_outside_paths)
+      problems.add_rule(at, "got " + in_quotes(mesh) + ", which leaves the scene's folder",
                         "put the mesh beside the scene, or allow meshes outside it");
     else if (!options.allow_outside_paths && is_linked_outside(path, scene_path))
       problems.add_rule(at, in_quotes(scene.organs[i].mesh) + " is a link that leaves the scene's folder",
                         "put the mesh beside the scene, or allow meshes outside it");
     else if (!fs::exists(path, ignored))
-      problems.add_rule(at, "there is no file " + in_quotes(scene.organs[i].mesh) + " in the scene's folder",
-                        "looked for " + path);
+      problems.add_rule(at, "there is no file " + in_quotes(mesh) + " in the scene's folder", "looked for " + path);
     else if (!fs::is_regular_file(path, ignored))
-      problems.add_rule(at, in_quotes(scene.organs[i].mesh) + " is not a file");
-  }
+      problems.add_rule(at, in_quotes(mesh) + " is not a file");
+  };
+  for (std::size_t i = 0; i < scene.organs.size(); ++i)
+    check("/organs/" + std::to_string(i) + "/mesh", scene.organs[i].mesh);
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i)
+    check("/obstacles/" + std::to_string(i) + "/mesh", scene.obstacles[i].mesh);
 }
 
 /// The scene if nothing is wrong with it.
@@ -100,8 +103,8 @@ Result<SceneText> load_scene(const std::string& path, const LoadOptions& options
   return without_errors(load_draft(path, options));
 }
 
-std::string mesh_path(const std::string& scene_path, const OrganSpec& organ) {
-  return (fs::path(scene_path).parent_path() / organ.mesh).lexically_normal().string();
+std::string mesh_path(const std::string& scene_path, const std::string& mesh) {
+  return (fs::path(scene_path).parent_path() / mesh).lexically_normal().string();
 }
 
 std::string write_scene(const SceneSpec& spec) {

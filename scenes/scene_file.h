@@ -42,7 +42,7 @@ Result<SceneDraft> read_draft(std::string_view text, const std::string& file_nam
 Result<SceneDraft> load_draft(const std::string& path, const LoadOptions& options = {});
 
 /// Path of an organ's mesh, relative to the program's working directory.
-std::string mesh_path(const std::string& scene_path, const OrganSpec& organ);
+std::string mesh_path(const std::string& scene_path, const std::string& mesh);
 
 /// Text of a scene. The same spec gives the same text, and read_scene gives the same spec again.
 std::string write_scene(const SceneSpec& spec);

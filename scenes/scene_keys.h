@@ -266,9 +266,9 @@ void describe_fields(V& v, ToolSpec& tool) {
   v.point(Key{"holds_mm", "A pin holds the sphere nearest to here; needed by a pin, not allowed for others."},
           tool.holds, units::millimetre, any_coordinate_mm);
   v.number(Key{"blade_reach_mm",
-               "Least distance ahead of a scalpel's edge over which tissue resists; at least 0.75 spacings of the "
-               "widest organ are taken; not allowed for others.",
-               false, "9"},
+               "Radius of the tissue around a scalpel's edge that takes up its force; at least 1.5 spacings of the "
+               "organ are taken; not allowed for others.",
+               false, "15"},
            tool.blade_reach, units::millimetre, within(0.01, 100));
   v.number(Key{"flank_height_mm",
                "Height of a scalpel's flanks behind the edge, along which cut faces rub; not allowed for others.",
@@ -283,13 +283,17 @@ void describe_fields(V& v, ToolSpec& tool) {
 
 inline RecordInfo info_of(const ObstacleSpec&) {
   return {"obstacle",
-          "A rigid ground, table or wall, which tissue touches and does not enter. Give either plane or box."};
+          "A rigid ground, table or wall, which tissue touches and does not enter. Give one of plane, box and mesh."};
 }
 template <class V>
 void describe_fields(V& v, ObstacleSpec& obstacle) {
   v.text(required("name", "Name of the obstacle, unique in the scene."), obstacle.name);
   v.record(Key{"plane", "Everything behind a plane."}, obstacle.plane);
   v.record(Key{"box", "A box."}, obstacle.box);
+  v.text(Key{"mesh",
+             "Path of a mesh file, as of an organ. The mesh is repaired as an organ's is, and must be closed then."},
+         obstacle.mesh);
+  v.choice(Key{"mesh_unit", "Unit of the mesh file's coordinates."}, obstacle.mesh_unit);
 }
 
 inline RecordInfo info_of(const LoadSpec&) { return {"load", "An external force on one sphere."}; }

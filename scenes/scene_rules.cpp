@@ -113,8 +113,9 @@ void check_region(Problems& problems, const std::string& at, const Region& regio
 
 void check_obstacle(Problems& problems, std::size_t index, const ObstacleSpec& obstacle) {
   const std::string at = item("/obstacles", index);
-  if (problems.are_good(at, {"plane", "box"}) && obstacle.plane.has_value() == obstacle.box.has_value())
-    problems.add_rule(at, "must have exactly one of plane, box");
+  const int kinds = obstacle.plane.has_value() + obstacle.box.has_value() + !obstacle.mesh.empty();
+  if (problems.are_good(at, {"plane", "box", "mesh"}) && kinds != 1)
+    problems.add_rule(at, "must have exactly one of plane, box, mesh");
   check_region(problems, at, obstacle);
   if (!obstacle.box || !problems.is_good(at + "/box")) return;
   const Vec3 size = obstacle.box->max - obstacle.box->min;

@@ -206,11 +206,13 @@ struct CameraSpec {
   friend bool operator==(const CameraSpec&, const CameraSpec&) = default;
 };
 
-/// A rigid thing that never moves and that tissue cannot enter. Exactly one of plane and box is set.
+/// A rigid thing that never moves and that tissue cannot enter. Exactly one of plane, box and mesh is set.
 struct ObstacleSpec {
   std::string name;
   std::optional<PlaneRegion> plane;
   std::optional<BoxRegion> box;
+  std::string mesh{};  ///< path, as that of an organ; empty: none
+  LengthUnit mesh_unit = LengthUnit::millimetre;
 
   friend bool operator==(const ObstacleSpec&, const ObstacleSpec&) = default;
 };

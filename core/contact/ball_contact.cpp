@@ -50,13 +50,15 @@ bool may_touch(const Vec3* corners, Vec3 centre, double radius) {
 
 }  // namespace
 
-BallContact::BallContact(const Model& model, const elements::Kernels& kernels)
+BallContact::BallContact(const Model& model, std::vector<surface::Body>& bodies, const elements::Kernels& kernels)
     : model_(model),
       kernels_(kernels),
-      is_wanted_(model.has_tool(ToolKind::ball)),
-      surface_(model, 0, is_wanted_ ? model.surfaces.size() : 0) {
-  if (!is_wanted_) return;
-  const std::size_t vertices = surface_.vertex_count();
+      own_(model, 0, model.has_tool(ToolKind::ball) && bodies.empty() ? model.surfaces.size() : 0) {
+  if (!model.has_tool(ToolKind::ball)) return;
+  if (!own_.empty()) parts_.push_back({0, &own_});
+  for (surface::Body& body : bodies) parts_.push_back({body.first_vertex, &body.surface});
+  for (const Surface& surface : model.surfaces) vertex_count_ += std::int32_t(surface.vertex.size());
+  const auto vertices = std::size_t(vertex_count_);
   pressed_.resize(vertices), touched_.reserve(vertices), was_touched_.assign(vertices, 0);
   for (std::size_t i = 0; i < model.surfaces.size(); ++i)
     organ_of_.resize(organ_of_.size() + model.surfaces[i].vertex.size(), std::int32_t(i));
@@ -67,15 +69,26 @@ BallContact::BallContact(const Model& model, const elements::Kernels& kernels)
   }
   if (model.organs.empty()) bare_.emplace_back(0, model.sphere_count());
   capacity_.first = vertices;
-  for (std::size_t v = 0; v < vertices; ++v) capacity_.second += surface_.follower(std::int32_t(v)).sphere.size();
+  for (std::size_t v = 0; v < vertices; ++v) capacity_.second += follower(std::int32_t(v)).sphere.size();
   for (const auto& [first, last] : bare_) {
     capacity_.first += last - first, capacity_.second += last - first;
     for (std::size_t i = first; i < last; ++i) largest_radius_ = std::max(largest_radius_, model.contact_radius[i]);
   }
 }
 
+const BallContact::Part& BallContact::part_of(std::int32_t vertex) const {
+  std::size_t part = parts_.size() - 1;
+  while (parts_[part].first_vertex > vertex) --part;
+  return parts_[part];
+}
+
+surface::Follower BallContact::follower(std::int32_t vertex) const {
+  const Part& part = part_of(vertex);
+  return part.surface->follower(vertex - part.first_vertex);
+}
+
 void BallContact::find(const StateView& state, const BallMotion& ball, PointContacts& contacts) {
-  if (!surface_.empty()) find_on_surfaces(state, ball, contacts);
+  if (!parts_.empty()) find_on_surfaces(state, ball, contacts);
   find_on_spheres(state, ball, contacts);
 }
 
@@ -83,8 +96,7 @@ void BallContact::find(const StateView& state, const BallMotion& ball, PointCont
 double BallContact::farthest_touched(const StateView& state, const BallMotion& ball) const {
   double farthest = 0;
   for (const std::int32_t point : state.touched)
-    if (std::size_t(point) < surface_.vertex_count())
-      farthest = std::max(farthest, norm(surface_.follower(point).of(state.position) - ball.centre));
+    if (point < vertex_count_) farthest = std::max(farthest, norm(follower(point).of(state.position) - ball.centre));
   return farthest;
 }
 
@@ -96,16 +108,18 @@ void BallContact::find_on_surfaces(const StateView& state, const BallMotion& bal
   mark(1);
   pressed_area_ = {};
   const double reach = std::max(ball.radius, std::min(farthest_touched(state, ball), kDeepest * ball.radius));
-  surface_.near(state.position, Box(ball.centre).grown(reach),
-                [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
-                  if (may_touch(corners, ball.centre, reach)) dent(triangle, corners, ball);
-                });
+  if (!own_.empty()) own_.begin(state.position);
+  for (const Part& part : parts_)
+    part.surface->near(Box(ball.centre).grown(reach),
+                       [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
+                         if (may_touch(corners, ball.centre, reach)) dent(part, triangle, corners, ball);
+                       });
   mark(0);
   const double a = std::sqrt(norm(pressed_area_) / kPi);
   std::sort(touched_.begin(), touched_.end());
   for (const std::int32_t vertex : touched_) {
     Pressed& pressed = pressed_[std::size_t(vertex)];
-    const surface::Follower follows = surface_.follower(vertex);
+    const surface::Follower follows = follower(vertex);
     const Carriers carriers{follows.sphere, follows.weight};
     const OrganRange& organ = model_.organs[std::size_t(organ_of_[std::size_t(vertex)])];
     const double volume = norm(pressed.volume);
@@ -124,14 +138,16 @@ void BallContact::find_on_surfaces(const StateView& state, const BallMotion& bal
 }
 
 /// Adds a triangle's part under the ball to its corners.
-void BallContact::dent(const surface::NearSurface::Triangle& triangle, const Vec3* corners, const BallMotion& ball) {
+void BallContact::dent(const Part& part, const surface::NearSurface::Triangle& triangle, const Vec3* corners,
+                       const BallMotion& ball) {
   const Vec3 across = cross(corners[1] - corners[0], corners[2] - corners[0]);
   const double size = norm(across), squared = ball.radius * ball.radius;
   if (!(size > 0)) return;
   const Vec3 outward = across / size;
-  const bool was_touched = was_touched_[std::size_t(triangle.corner[0])] ||
-                           was_touched_[std::size_t(triangle.corner[1])] ||
-                           was_touched_[std::size_t(triangle.corner[2])];
+  std::int32_t vertex[3];
+  for (std::size_t c = 0; c < 3; ++c) vertex[c] = part.first_vertex + triangle.corner[c];
+  const bool was_touched = was_touched_[std::size_t(vertex[0])] || was_touched_[std::size_t(vertex[1])] ||
+                           was_touched_[std::size_t(vertex[2])];
   const int n = std::clamp(int(std::ceil(triangle.longest_edge / (kLongestPart * ball.radius))), 1, kMostDivisions);
   const double area = triangle.rest_area / (n * n);
   for_each_part(n, [&](double w0, double w1, double w2) {
@@ -146,8 +162,8 @@ void BallContact::dent(const surface::NearSurface::Triangle& triangle, const Vec
     const Vec3 volume = area * through * (half_chord / ball.radius) * normal;
     const double weights[3] = {w0, w1, w2};
     for (std::size_t c = 0; c < 3; ++c) {
-      Pressed& pressed = pressed_[std::size_t(triangle.corner[c])];
-      if (pressed.area == 0) touched_.push_back(triangle.corner[c]);
+      Pressed& pressed = pressed_[std::size_t(vertex[c])];
+      if (pressed.area == 0) touched_.push_back(vertex[c]);
       pressed.area += weights[c] * area, pressed.volume += weights[c] * volume;
     }
     pressed_area_ += area * normal;
@@ -167,7 +183,7 @@ void BallContact::find_on_spheres(const StateView& state, const BallMotion& ball
     const Vec3 normal = distance > 1e-9 * reach ? apart / distance : unit_or_down(ball.velocity, 0);
     const auto sphere = std::int32_t(i);
     const double whole = 1, depth = reach - distance;
-    PointContact contact{.axis = normal, .point = std::int32_t(surface_.vertex_count()) + sphere, .dent = depth};
+    PointContact contact{.axis = normal, .point = vertex_count_ + sphere, .dent = depth};
     contact.foundation.k = model_.contact_k;
     contact.damping = contact_damping(model_.contact_damping, model_.contact_k, model_.mass[i], depth);
     add(state, ball, contact, {{&sphere, 1}, {&whole, 1}}, state.position[i], contacts);
@@ -200,9 +216,8 @@ void BallContact::add(const StateView& state, const BallMotion& ball, PointConta
 }
 
 std::int32_t BallContact::organ_of(const PointContact& contact) const {
-  const auto vertices = std::int32_t(surface_.vertex_count());
-  if (contact.point < vertices) return organ_of_[std::size_t(contact.point)];
-  const std::int32_t sphere = contact.point - vertices;
+  if (contact.point < vertex_count_) return organ_of_[std::size_t(contact.point)];
+  const std::int32_t sphere = contact.point - vertex_count_;
   for (std::size_t i = 0; i < model_.organs.size(); ++i)
     if (sphere >= model_.organs[i].first && sphere < model_.organs[i].first + model_.organs[i].count)
       return std::int32_t(i);
@@ -210,9 +225,9 @@ std::int32_t BallContact::organ_of(const PointContact& contact) const {
 }
 
 Vec3 BallContact::rest_of(const PointContact& contact) const {
-  const auto vertices = std::int32_t(surface_.vertex_count());
-  return contact.point < vertices ? surface_.rest(contact.point)
-                                  : model_.rest_position[std::size_t(contact.point - vertices)];
+  if (contact.point >= vertex_count_) return model_.rest_position[std::size_t(contact.point - vertex_count_)];
+  const Part& part = part_of(contact.point);
+  return part.surface->rest(contact.point - part.first_vertex);
 }
 
 }  // namespace ctpm::contact

@@ -10,6 +10,7 @@
 #include "core/elements/kernels/kernels.h"
 #include "core/model/model.h"
 #include "core/model/state_view.h"
+#include "core/surface/bodies.h"
 #include "core/surface/near_surface.h"
 
 namespace ctpm::contact {
@@ -35,18 +36,17 @@ struct BallMotion {
 /// Friction holds each point at a place on the ball, up to the friction cone (pressed_point.h).
 class BallContact {
  public:
-  BallContact(const Model& model, const elements::Kernels& kernels);
+  /// `bodies`, those of the Model, must outlive the BallContact.
+  BallContact(const Model& model, std::vector<surface::Body>& bodies, const elements::Kernels& kernels);
 
   /// Capacity that find() needs: contacts, and entries of their carriers.
   std::pair<std::size_t, std::size_t> capacity() const { return capacity_; }
 
-  /// Adds the contacts of a ball, in ascending order of their points.
+  /// Adds the contacts of a ball, in ascending order of their points. A round of the bodies' surfaces must have begun.
   void find(const StateView& state, const BallMotion& ball, PointContacts& contacts);
 
   /// Depth of the dent under a contact [m], 0 for that of a bare sphere.
-  double dent_of(const PointContact& contact) const {
-    return contact.point < std::int32_t(surface_.vertex_count()) ? contact.dent : 0.0;
-  }
+  double dent_of(const PointContact& contact) const { return contact.point < vertex_count_ ? contact.dent : 0.0; }
 
   /// Where the tissue was at rest that a contact touches [m].
   Vec3 rest_of(const PointContact& contact) const;
@@ -62,7 +62,16 @@ class BallContact {
   };
 
   double farthest_touched(const StateView& state, const BallMotion& ball) const;
-  void dent(const surface::NearSurface::Triangle& triangle, const Vec3* corners, const BallMotion& ball);
+  /// A surface that vertices from `first_vertex` on belong to.
+  struct Part {
+    std::int32_t first_vertex;
+    surface::NearSurface* surface;
+  };
+
+  const Part& part_of(std::int32_t vertex) const;
+  surface::Follower follower(std::int32_t vertex) const;
+  void dent(const Part& part, const surface::NearSurface::Triangle& triangle, const Vec3* corners,
+            const BallMotion& ball);
   void find_on_surfaces(const StateView& state, const BallMotion& ball, PointContacts& contacts);
   void find_on_spheres(const StateView& state, const BallMotion& ball, PointContacts& contacts);
   void add(const StateView& state, const BallMotion& ball, PointContact contact, Carriers carriers, Vec3 place,
@@ -70,8 +79,9 @@ class BallContact {
 
   const Model& model_;
   const elements::Kernels& kernels_;
-  bool is_wanted_;
-  surface::NearSurface surface_;
+  surface::NearSurface own_;  ///< all organs as one; empty where there are bodies
+  std::vector<Part> parts_;   ///< own_, or the surfaces of the bodies
+  std::int32_t vertex_count_ = 0;
   std::vector<std::int32_t> organ_of_;  ///< (vertex_count, like the next two)
   std::vector<Pressed> pressed_;
   std::vector<std::uint8_t> was_touched_;  ///< at the start of the substep

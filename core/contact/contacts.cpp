@@ -1,6 +1,7 @@
 #include "core/contact/contacts.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/model/result.h"
 #include "core/surface/rigid_motion.h"
@@ -9,23 +10,25 @@ namespace ctpm::contact {
 
 namespace {
 
-/// Contacts and entries of a Model's pairs, those of blades and cut faces.
-std::size_t pairs_of(const Model& model, const BladeForce& blade, const CutFaceContact& cut_faces) {
-  return model.has_scalpel() ? blade.capacity() + cut_faces.capacity() : 0;
+/// Contacts of a Model's blades and cut faces, and entries of their carriers.
+std::pair<std::size_t, std::size_t> of_cuts(const Model& model, const BladeForce& blade,
+                                            const CutFaceContact& cut_faces) {
+  if (!model.has_scalpel()) return {0, 0};
+  return {blade.capacity() + cut_faces.capacity(), blade.entries() + 2 * cut_faces.capacity()};
 }
 
 }  // namespace
 
 Contacts::Contacts(const Model& model, const elements::Kernels& kernels)
     : model_(model),
-      bodies_(bodies_of(model)),
-      ball_(model, kernels),
+      bodies_(surface::bodies_of(model)),
+      ball_(model, bodies_, kernels),
       body_contact_(model, bodies_),
       obstacles_(model, bodies_),
       blade_(model),
       cut_faces_(model),
-      points_(model, pressed_capacity().first + pairs_of(model, blade_, cut_faces_),
-              pressed_capacity().second + 2 * pairs_of(model, blade_, cut_faces_)),
+      points_(model, pressed_capacity().first + of_cuts(model, blade_, cut_faces_).first,
+              pressed_capacity().second + of_cuts(model, blade_, cut_faces_).second),
       explicit_solve_(model, points_) {
   for (const OrganRange& organ : model.organs) {
     const auto first = model.held_axes.begin() + organ.first;
@@ -41,16 +44,15 @@ Pin Contacts::pin(const HeldTool& tool, const Vec3Array& position, double share,
 
 void Contacts::find(const StateView& state, const HeldTool& tool, const ContactStep& step, bool from_velocity) {
   points_.clear();
+  for (surface::Body& body : bodies_) body.surface.begin(state.position);
   const PressStep press{step.h, step.elapsed, step.ahead, from_velocity};
   if (tool.is(ToolKind::ball))
     ball_.find(state, {tool.at(step.share), (tool.to - tool.from) / model_.tick, tool.tool->radius, press}, points_);
   body_contact_.find(state, press, points_);
   obstacles_.find(state, press, points_);
   if (tool.is(ToolKind::scalpel) && blade_.any()) {
-    CTPM_CHECK(tool.near != nullptr, "a blade has swept before its contacts are detected");
-    tool.near->follow(state.position);
-    blade_.find(state, *tool.near, *tool.tool, tool.blade, points_);
-    blade_.add_severed(state, *tool.tool, tool.blade, tool.swept, points_);
+    CTPM_CHECK(tool.front != nullptr, "the front of a cut is known before the blade's contacts are detected");
+    blade_.find(state, *tool.tool, *tool.front, tool.edge_at(step.share), step.h, from_velocity, points_);
   }
   if (cut_faces_.is_wanted()) cut_faces_.find(state, points_);
 }

@@ -55,9 +55,6 @@ class Contacts {
   /// `model` must outlive the Contacts.
   Contacts(const Model& model, const elements::Kernels& kernels);
 
-  /// Box that contains everything that a blade can meet in this tick.
-  cutting::Box around(const HeldTool& tool) const { return blade_.around(*tool.tool, tool.blade); }
-
   /// The pin's contact in a step of `h` [s] from `position` [m] to the hand at `share` of the tick.
   static Pin pin(const HeldTool& tool, const Vec3Array& position, double share, double h);
 
@@ -83,7 +80,7 @@ class Contacts {
   void find(const StateView& state, const HeldTool& tool, const ContactStep& step, bool from_velocity);
 
   const Model& model_;
-  std::vector<Body> bodies_;
+  std::vector<surface::Body> bodies_;
   BallContact ball_;
   BodyContact body_contact_;
   ObstacleContact obstacles_;
@@ -101,7 +98,7 @@ class ContactSet {
  public:
   const ContactStep& step() const { return step_; }
 
-  /// Number of points that a ball touches; for a blade, of elements ahead of its edge or on its flanks.
+  /// Number of points that a ball touches; for a blade, of nodes of its edge that tissue holds.
   std::int32_t touched() const;
 
   /// Largest displacement from rest [m], at `position`, of a point that a ball touches, along its contact; for a pin,

@@ -1,10 +1,6 @@
 #pragma once
 
-#include <span>
-
-#include "core/contact/blade_motion.h"
-#include "core/cutting/cutting.h"
-#include "core/cutting/near_elements.h"
+#include "core/cutting/cut_front.h"
 #include "core/model/model.h"
 
 namespace ctpm::contact {
@@ -13,12 +9,16 @@ namespace ctpm::contact {
 struct HeldTool {
   const Tool* tool = nullptr;                ///< null: no tool is held
   Vec3 from, to;                             ///< the tool's origin at the start and the end of the tick [m]
-  BladeMotion blade;                         ///< of a scalpel
-  cutting::NearElements* near = nullptr;     ///< elements that a scalpel can meet in this tick
-  std::span<const cutting::Crossing> swept;  ///< elements that a scalpel severed by its own motion in this tick
+  cutting::BladeEdge edge_from, edge_to;     ///< the same of a scalpel's edge
+  const cutting::CutFront* front = nullptr;  ///< of the cut that a scalpel makes
 
   /// Where the tool's origin is at `share` of the tick, 0 to 1 [m].
   Vec3 at(double share) const { return from + share * (to - from); }
+  cutting::BladeEdge edge_at(double share) const {
+    return {edge_from.tip + share * (edge_to.tip - edge_from.tip),
+            edge_from.heel + share * (edge_to.heel - edge_from.heel),
+            edge_from.back + share * (edge_to.back - edge_from.back)};
+  }
 
   bool is(ToolKind kind) const { return tool != nullptr && tool->kind == kind; }
 };

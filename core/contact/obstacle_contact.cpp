@@ -3,30 +3,12 @@
 #include <algorithm>
 
 #include "core/contact/contact_law.h"
-#include "core/surface/inside.h"
 
 namespace ctpm::contact {
-namespace {
-
-surface::HalfSpace half_space_of(const Obstacle& plane) {
-  return {plane.position, rotate(plane.world_from_obstacle, {0, 0, 1})};
-}
-
-Box bounds_of(const Obstacle& box) {
-  Box bounds(box.position);
-  for (const double x : {-1.0, 1.0})
-    for (const double y : {-1.0, 1.0})
-      for (const double z : {-1.0, 1.0})
-        bounds.add(box.position +
-                   rotate(box.world_from_obstacle, {x * box.half_size.x, y * box.half_size.y, z * box.half_size.z}));
-  return bounds;
-}
-
-}  // namespace
-
-ObstacleContact::ObstacleContact(const Model& model, std::vector<Body>& bodies)
+ObstacleContact::ObstacleContact(const Model& model, std::vector<surface::Body>& bodies)
     : model_(model), bodies_(bodies), press_(model) {
   if (model.obstacles.empty()) return;
+  for (const Obstacle& obstacle : model.obstacles) shapes_.emplace_back(obstacle);
   for (const Surface& surface : model.surfaces) vertex_count_ += std::int32_t(surface.vertex.size());
   seen_in_.assign(std::size_t(vertex_count_), 0);
   overlaps_.reserve(std::size_t(vertex_count_));
@@ -35,7 +17,7 @@ ObstacleContact::ObstacleContact(const Model& model, std::vector<Body>& bodies)
     for (std::int32_t s = 0; s < model.organs[i].count; ++s) bare_.push_back(model.organs[i].first + s);
   }
   capacity_ = {bare_.size(), bare_.size()};
-  for (const Body& body : bodies) {
+  for (const surface::Body& body : bodies) {
     const auto [contacts, entries] = FacetPress::capacity(body, {});
     capacity_.first += contacts, capacity_.second += entries;
   }
@@ -44,16 +26,17 @@ ObstacleContact::ObstacleContact(const Model& model, std::vector<Body>& bodies)
 
 void ObstacleContact::find(const StateView& state, const PressStep& step, PointContacts& contacts) {
   const auto points = std::int32_t(model_.touchable_count());
-  for (std::size_t o = 0; o < model_.obstacles.size(); ++o) {
-    const Obstacle& obstacle = model_.obstacles[o];
+  for (std::size_t o = 0; o < shapes_.size(); ++o) {
     const auto first_point = std::int32_t(2 + o) * points;
-    for (Body& body : bodies_) find_on_surface(state, step, obstacle, first_point + body.first_vertex, body, contacts);
-    find_on_spheres(state, step, obstacle, first_point + vertex_count_, contacts);
+    for (surface::Body& body : bodies_)
+      find_on_surface(state, step, shapes_[o], first_point + body.first_vertex, body, contacts);
+    find_on_spheres(state, step, shapes_[o], first_point + vertex_count_, contacts);
   }
 }
 
-void ObstacleContact::find_on_surface(const StateView& state, const PressStep& step, const Obstacle& obstacle,
-                                      std::int32_t first_point, Body& body, PointContacts& contacts) {
+void ObstacleContact::find_on_surface(const StateView& state, const PressStep& step,
+                                      const surface::ObstacleShape& shape, std::int32_t first_point,
+                                      surface::Body& body, PointContacts& contacts) {
   ++round_;
   const auto look_at = [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -61,23 +44,21 @@ void ObstacleContact::find_on_surface(const StateView& state, const PressStep& s
       std::uint32_t& seen_in = seen_in_[std::size_t(body.first_vertex + vertex)];
       if (seen_in == round_) continue;
       seen_in = round_;
-      const surface::Inside inside = surface::find_inside(obstacle, corners[c]);
+      const surface::Inside inside = shape.inside(corners[c]);
       if (inside.depth > 0) overlaps_.push_back({body.facets.facet_of(vertex), vertex, inside.depth, inside.outward});
     }
   };
-  if (obstacle.kind == ObstacleKind::box)
-    body.surface.near(state.position, bounds_of(obstacle), look_at);
-  else
-    body.surface.near(state.position, half_space_of(obstacle), look_at);
+  body.surface.near(shape, look_at);
   press_.add(state, step, body, first_point, overlaps_, contacts);
 }
 
-void ObstacleContact::find_on_spheres(const StateView& state, const PressStep& step, const Obstacle& obstacle,
-                                      std::int32_t first_point, PointContacts& contacts) const {
+void ObstacleContact::find_on_spheres(const StateView& state, const PressStep& step,
+                                      const surface::ObstacleShape& shape, std::int32_t first_point,
+                                      PointContacts& contacts) const {
   for (const std::int32_t sphere : bare_) {
     const auto i = std::size_t(sphere);
     if (model_.held_axes[i] == kAnchored) continue;
-    const surface::Inside inside = surface::find_inside(obstacle, state.position[i]);
+    const surface::Inside inside = shape.inside(state.position[i]);
     const double depth = inside.depth + model_.contact_radius[i], whole = 1;
     if (depth <= 0) continue;
     PointContact contact{.axis = inside.outward, .point = first_point + sphere, .dent = depth};

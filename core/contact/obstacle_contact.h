@@ -9,6 +9,7 @@
 #include "core/contact/pressed_point.h"
 #include "core/model/model.h"
 #include "core/model/state_view.h"
+#include "core/surface/obstacle_shape.h"
 
 namespace ctpm::contact {
 
@@ -17,28 +18,29 @@ namespace ctpm::contact {
 class ObstacleContact {
  public:
   /// `bodies` must outlive the ObstacleContact.
-  ObstacleContact(const Model& model, std::vector<Body>& bodies);
+  ObstacleContact(const Model& model, std::vector<surface::Body>& bodies);
 
   /// Capacity that find() needs: contacts, and entries of their carriers.
   std::pair<std::size_t, std::size_t> capacity() const { return capacity_; }
 
-  /// Adds the contacts, in ascending order of their points.
+  /// Adds the contacts, in ascending order of their points. A round of the bodies' surfaces must have begun.
   void find(const StateView& state, const PressStep& step, PointContacts& contacts);
 
  private:
-  void find_on_surface(const StateView& state, const PressStep& step, const Obstacle& obstacle,
-                       std::int32_t first_point, Body& body, PointContacts& contacts);
-  void find_on_spheres(const StateView& state, const PressStep& step, const Obstacle& obstacle,
+  void find_on_surface(const StateView& state, const PressStep& step, const surface::ObstacleShape& shape,
+                       std::int32_t first_point, surface::Body& body, PointContacts& contacts);
+  void find_on_spheres(const StateView& state, const PressStep& step, const surface::ObstacleShape& shape,
                        std::int32_t first_point, PointContacts& contacts) const;
 
   const Model& model_;
-  std::vector<Body>& bodies_;
+  std::vector<surface::Body>& bodies_;
   FacetPress press_;
-  std::int32_t vertex_count_ = 0;       ///< through all organs
-  std::vector<std::int32_t> bare_;      ///< spheres of organs without a surface
-  std::vector<std::uint32_t> seen_in_;  ///< round in which a vertex was looked at
+  std::vector<surface::ObstacleShape> shapes_;  ///< of Model::obstacles
+  std::int32_t vertex_count_ = 0;               ///< through all organs
+  std::vector<std::int32_t> bare_;              ///< spheres of organs without a surface
+  std::vector<std::uint32_t> seen_in_;          ///< round in which a vertex was looked at
   std::uint32_t round_ = 0;
-  std::vector<Overlap> overlaps_;
+  std::vector<surface::Overlap> overlaps_;
   std::pair<std::size_t, std::size_t> capacity_{};
 };
 

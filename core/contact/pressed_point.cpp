@@ -42,7 +42,7 @@ void CarrierSum::clear() {
   sphere_.clear(), weight_.clear();
 }
 
-void CarrierSum::add(const surface::Follower& point, double weight) {
+void CarrierSum::add(Carriers point, double weight) {
   for (std::size_t i = 0; i < point.sphere.size(); ++i) {
     std::int32_t& place = place_[std::size_t(point.sphere[i])];
     if (place < 0) {
@@ -51,6 +51,24 @@ void CarrierSum::add(const surface::Follower& point, double weight) {
     }
     weight_[std::size_t(place)] += weight * point.weight[i];
   }
+}
+
+void CarrierSum::move(const Vec3Array& position, Vec3 by) {
+  Vec3 mean;
+  for (const std::int32_t sphere : sphere_) mean += position[std::size_t(sphere)];
+  mean = mean / double(std::max<std::size_t>(sphere_.size(), 1));
+  // Second moments of the places, and the gradient of the change, by Cramer's rule.
+  Vec3 x, y, z;
+  for (const std::int32_t sphere : sphere_) {
+    const Vec3 d = position[std::size_t(sphere)] - mean;
+    x += d.x * d, y += d.y * d, z += d.z * d;
+  }
+  constexpr double kFlat = 1e-9;
+  const double determinant = dot(x, cross(y, z)), size = x.x + y.y + z.z;
+  if (!(determinant > kFlat * size * size * size)) return;
+  const Vec3 gradient = Vec3{dot(by, cross(y, z)), dot(by, cross(z, x)), dot(by, cross(x, y))} / determinant;
+  for (std::size_t i = 0; i < sphere_.size(); ++i)
+    weight_[i] += dot(position[std::size_t(sphere_[i])] - mean, gradient);
 }
 
 }  // namespace ctpm::contact

@@ -42,7 +42,11 @@ class CarrierSum {
   explicit CarrierSum(std::size_t spheres) : place_(spheres, -1) { sphere_.reserve(spheres), weight_.reserve(spheres); }
 
   void clear();
-  void add(const surface::Follower& point, double weight);
+  void add(const surface::Follower& point, double weight) { add(Carriers{point.sphere, point.weight}, weight); }
+  void add(Carriers point, double weight);
+  /// Changes the weights as little as a linear function of the place does, so that their sum stays and the point moves
+  /// by `by` [m] with the spheres at `position` [m]. Where the spheres do not span space, it stays.
+  void move(const Vec3Array& position, Vec3 by);
   Carriers get() const { return {sphere_, weight_}; }  ///< until the next add() or clear()
 
  private:

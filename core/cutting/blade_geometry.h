@@ -18,6 +18,9 @@ struct SweepHit {
 /// Touching an edge or corner of a triangle counts as crossing; a segment in the plane of a triangle does not cross it.
 std::optional<SweepHit> meet_sweep(Vec3 p, Vec3 q, Vec3 from, Vec3 to, Vec3 from2, Vec3 to2);
 
+/// The point of the triangle a b c that is nearest to p.
+Vec3 nearest_in_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c);
+
 using ctpm::Box;
 
 }  // namespace ctpm::cutting

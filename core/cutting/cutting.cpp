@@ -1,47 +1,55 @@
 #include "core/cutting/cutting.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "core/cutting/blade_geometry.h"
 
 namespace ctpm::cutting {
 namespace {
 
-/// Severs the unsevered elements among those `near` for which `meet(a, b)` finds a crossing, then the constraints and
-/// angle springs that have lost an element.
-template <class Meet>
-std::int32_t sever(const Model& model, const NearElements& near, State& state, std::vector<Crossing>& crossings,
-                   Meet&& meet) {
+/// Severs the constraints and angle springs that have lost an element, and returns their number.
+template <class Lines>
+std::int32_t sever_lines(const Lines& lines, const std::vector<std::uint8_t>& axial_severed,
+                         std::vector<std::uint8_t>& severed) {
   std::int32_t count = 0;
-  const AxialElements& axial = model.axial;
-  for (const std::int32_t element : near.elements()) {
-    const auto i = std::size_t(element);
-    if (state.axial_severed[i]) continue;
-    std::optional<Crossing> crossed = meet(std::size_t(axial.a[i]), std::size_t(axial.b[i]));
-    if (!crossed) continue;
-    state.axial_severed[i] = 1, ++count;
-    if (!state.axial_crossing.empty()) state.axial_crossing[i] = stored_crossing(crossed->along);
-    crossed->element = element;
-    crossings.push_back(*crossed);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const bool lost =
+        std::any_of(std::begin(lines.edge), std::end(lines.edge),
+                    [&](const std::vector<std::int32_t>& edge) { return axial_severed[std::size_t(edge[i])] != 0; });
+    if (lost && !severed[i]) severed[i] = 1, ++count;
   }
-  if (count == 0) return 0;
-  const auto sever_lines = [&](const auto& lines, std::vector<std::uint8_t>& severed) {
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      const bool lost = std::any_of(
-          std::begin(lines.edge), std::end(lines.edge),
-          [&](const std::vector<std::int32_t>& edge) { return state.axial_severed[std::size_t(edge[i])] != 0; });
-      if (lost && !severed[i]) severed[i] = 1, ++count;
-    }
-  };
-  sever_lines(model.constraints, state.constraint_severed);
-  sever_lines(model.angle_springs, state.angle_severed);
   return count;
+}
+
+/// What the front sweeps between two nodes.
+struct Sweep {
+  Vec3 from, to, from2, to2;
+  Box box{Vec3{}};
+};
+
+/// Where the element p-q crosses one of the sweeps, from 0 at p to 1 at q.
+std::optional<double> crossing(std::span<const Sweep> sweeps, Vec3 p, Vec3 q) {
+  const Box box(p, q);
+  for (const Sweep& s : sweeps) {
+    if (!s.box.meets(box)) continue;
+    if (const auto hit = meet_sweep(p, q, s.from, s.to, s.from2, s.to2)) return hit->along;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
 BladeEdge blade_edge(const Tool& scalpel, const Inputs& inputs) {
-  return {inputs.position, inputs.position + rotate(inputs.world_from_tool, {0, 0, scalpel.blade_length})};
+  // The blade cuts towards x of the tool. Its point is ground at 45 degrees, as that of a blade No. 11 about is.
+  const double height = std::min(scalpel.flank_height, scalpel.blade_length);
+  return {inputs.position, inputs.position + rotate(inputs.world_from_tool, {0, 0, scalpel.blade_length}),
+          inputs.position + rotate(inputs.world_from_tool, {-height, 0, height})};
+}
+
+Vec3 at_node(const BladeEdge& edge, std::size_t node) {
+  if (node < kPointNodes) return edge.back + double(node) / double(kPointNodes) * (edge.tip - edge.back);
+  return edge.tip + double(node - kPointNodes) / double(kEdgeNodes - 1 - kPointNodes) * (edge.heel - edge.tip);
 }
 
 std::uint8_t stored_crossing(double along) {
@@ -50,29 +58,58 @@ std::uint8_t stored_crossing(double along) {
 
 double crossing_of(std::uint8_t stored) { return stored == 0 ? 0.5 : (stored - 1) * kCrossingUnit; }
 
-std::int32_t sever_swept_by_blade(const Model& model, const NearElements& near, const BladeEdge& before,
-                                  const BladeEdge& after, const Vec3Array& position, State& state,
-                                  std::vector<Crossing>& crossings) {
-  const Box sweep(before.tip, before.heel, after.tip, after.heel);
-  return sever(model, near, state, crossings, [&](std::size_t a, std::size_t b) -> std::optional<Crossing> {
-    const Vec3 p = position[a], q = position[b];
-    if (!sweep.meets(Box(p, q))) return std::nullopt;
-    const auto hit = meet_sweep(p, q, before.tip, before.heel, after.tip, after.heel);
-    if (!hit) return std::nullopt;
-    return Crossing{-1, hit->along, hit->across, hit->share};
-  });
+RestElements::RestElements(const Model& model)
+    : first_(model.sphere_count() + 1, 0), elements_(2 * model.axial.size()) {
+  const AxialElements& axial = model.axial;
+  for (std::size_t e = 0; e < axial.size(); ++e)
+    ++first_[std::size_t(axial.a[e]) + 1], ++first_[std::size_t(axial.b[e]) + 1];
+  for (std::size_t i = 0; i + 1 < first_.size(); ++i) first_[i + 1] += first_[i];
+  std::vector<std::int32_t> next(first_.begin(), first_.end() - 1);
+  for (std::size_t e = 0; e < axial.size(); ++e)
+    for (const std::int32_t sphere : {axial.a[e], axial.b[e]})
+      elements_[std::size_t(next[std::size_t(sphere)]++)] = std::int32_t(e);
 }
 
-std::int32_t sever_moved_through_blade(const Model& model, const NearElements& near, const BladeEdge& blade,
-                                       const Vec3Array& from, const Vec3Array& to, State& state,
-                                       std::vector<Crossing>& crossings) {
-  const Box edge(blade.tip, blade.heel);
-  return sever(model, near, state, crossings, [&](std::size_t a, std::size_t b) -> std::optional<Crossing> {
-    if (!edge.meets(Box(from[a], from[b], to[a], to[b]))) return std::nullopt;
-    const auto hit = meet_sweep(blade.tip, blade.heel, from[a], from[b], to[a], to[b]);
-    if (!hit) return std::nullopt;
-    return Crossing{-1, hit->across, hit->along, hit->share};
-  });
+std::int32_t sever_swept(const Model& model, const RestElements& elements, const Front& from, const Front& to,
+                         std::span<const std::int32_t> organ, State& state, std::vector<Crossing>& crossings) {
+  std::array<Sweep, kEdgeNodes - 1> all;
+  std::int32_t severed = 0;
+  const AxialElements& axial = model.axial;
+  for (std::size_t o = 0; o < model.organs.size(); ++o) {
+    std::size_t count = 0;
+    std::optional<Box> around;
+    for (std::size_t n = 0; n + 1 < kEdgeNodes; ++n) {
+      if (organ[n] != std::int32_t(o) || organ[n + 1] != organ[n]) continue;
+      if (from[n] == to[n] && from[n + 1] == to[n + 1]) continue;
+      const Box box(from[n], from[n + 1], to[n], to[n + 1]);
+      all[count++] = {from[n], from[n + 1], to[n], to[n + 1], box};
+      if (around) around->add(box.low), around->add(box.high);
+      if (!around) around = box;
+    }
+    if (count == 0) continue;
+    const std::span<const Sweep> sweeps(all.data(), count);
+    // Elements are no longer than the diagonal of a lattice cell.
+    const OrganRange& range = model.organs[o];
+    const Box near = around->grown(1.5 * range.spacing);
+    const auto first = std::size_t(range.first), last = first + std::size_t(range.count);
+    for (std::size_t i = first; i < last; ++i) {
+      const Vec3 p = model.rest_position[i];
+      if (!near.meets(Box(p))) continue;
+      for (const std::int32_t element : elements.of(i)) {
+        const auto e = std::size_t(element);
+        if (state.axial_severed[e] || axial.a[e] != std::int32_t(i)) continue;
+        const std::optional<double> along = crossing(sweeps, p, model.rest_position[std::size_t(axial.b[e])]);
+        if (!along) continue;
+        state.axial_severed[e] = 1, ++severed;
+        if (!state.axial_crossing.empty()) state.axial_crossing[e] = stored_crossing(*along);
+        crossings.push_back({element, *along});
+      }
+    }
+  }
+  if (severed == 0) return 0;
+  severed += sever_lines(model.constraints, state.axial_severed, state.constraint_severed);
+  severed += sever_lines(model.angle_springs, state.axial_severed, state.angle_severed);
+  return severed;
 }
 
 }  // namespace ctpm::cutting

@@ -1,45 +1,68 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "core/cutting/near_elements.h"
+#include "core/cutting/swept_surface.h"
 #include "core/model/model.h"
 #include "core/model/state.h"
 
 namespace ctpm::cutting {
 
-/// The edge of a blade in the world.
+/// What a blade cuts with, in the world: its edge from the tip to the heel, and the point from the tip to its back,
+/// with which a stab along the edge cuts a slit as wide as the blade.
 struct BladeEdge {
-  Vec3 tip, heel;  ///< both ends [m]
+  Vec3 tip, heel, back;  ///< [m]
 };
+
+/// Nodes of State::blade_trail up to the tip: the first is at the blade's back, the last of all at the heel.
+inline constexpr std::size_t kPointNodes = 6;
+
+/// Place of a node.
+Vec3 at_node(const BladeEdge& edge, std::size_t node);
+/// Direction of the edge or the point at a node, of any length; that of the edge at the tip.
+inline Vec3 along_node(const BladeEdge& edge, std::size_t node) {
+  return node < kPointNodes ? edge.tip - edge.back : edge.heel - edge.tip;
+}
+/// Whether a node that goes `way` cuts. The point only trails behind the edge, unless the blade goes forwards along it.
+inline bool leads(const BladeEdge& edge, std::size_t node, Vec3 way) {
+  if (node >= kPointNodes) return true;
+  const Vec3 point = edge.tip - edge.back, up = edge.heel - edge.tip;
+  return dot(way, up - dot(up, point) / dot(point, point) * point) < 0;
+}
 
 /// The edge of a scalpel at the pose of `inputs`.
 BladeEdge blade_edge(const Tool& scalpel, const Inputs& inputs);
 
-/// The crossing of an element by the blade that has just severed it.
+/// The crossing of an element by the front of a cut, which has just severed it.
 struct Crossing {
   std::int32_t element;  ///< row of Model::axial
   double along;          ///< position along the element, 0 at its first sphere to 1 at its second
-  double across = 0;     ///< position along the blade, 0 at the tip to 1 at the heel
-  /// Part of the motion that was done at the crossing, 0 to 1: of the blade in the tick, or of the tissue in the
-  /// substep.
-  double share = 0;
 };
 
-/// Severs every element among those `near` that the blade crosses while it moves from `before` to `after` through the
-/// resting network at `position`, then every constraint and angle spring that has lost an element. The moving edge
-/// sweeps the two triangles (tip, heel, tip') and (heel, heel', tip'). Touching counts as crossing, so nothing slips
-/// between two ticks. Appends the severed elements to `crossings`; returns the number of severed elements, constraints
-/// and angle springs.
-std::int32_t sever_swept_by_blade(const Model& model, const NearElements& near, const BladeEdge& before,
-                                  const BladeEdge& after, const Vec3Array& position, State& state,
-                                  std::vector<Crossing>& crossings);
+/// The axial elements by the spheres that they begin at.
+class RestElements {
+ public:
+  explicit RestElements(const Model& model);
 
-/// As above, for elements that move through the resting `blade` while the network goes from `from` to `to`.
-std::int32_t sever_moved_through_blade(const Model& model, const NearElements& near, const BladeEdge& blade,
-                                       const Vec3Array& from, const Vec3Array& to, State& state,
-                                       std::vector<Crossing>& crossings);
+  /// Rows of Model::axial that begin or end at a sphere.
+  std::span<const std::int32_t> of(std::size_t sphere) const {
+    const auto begin = std::size_t(first_[sphere]), end = std::size_t(first_[sphere + 1]);
+    return {elements_.data() + begin, end - begin};
+  }
+
+ private:
+  std::vector<std::int32_t> first_, elements_;
+};
+
+/// Severs every element of the tissue at rest that the front crosses while it goes `from`-`to` with all nodes between
+/// which it is in an organ (`organ` of both is the same and not -1), then every constraint and angle spring that has
+/// lost an element. Between two nodes the front sweeps the two triangles (p, q, p') and (q, q', p'). Touching counts as
+/// crossing, so nothing slips between two ticks or two nodes. Appends the severed elements to `crossings`; returns the
+/// number of severed elements, constraints and angle springs.
+std::int32_t sever_swept(const Model& model, const RestElements& elements, const Front& from, const Front& to,
+                         std::span<const std::int32_t> organ, State& state, std::vector<Crossing>& crossings);
 
 /// Unit of State::axial_crossing, as a fraction of the element: 1 is at its first sphere, 255 at its second.
 inline constexpr double kCrossingUnit = 1.0 / 254;

@@ -17,6 +17,8 @@ struct Box {
     low = {p.x < low.x ? p.x : low.x, p.y < low.y ? p.y : low.y, p.z < low.z ? p.z : low.z};
     high = {p.x > high.x ? p.x : high.x, p.y > high.y ? p.y : high.y, p.z > high.z ? p.z : high.z};
   }
+  /// The box that contains this one moved by each displacement in `by`.
+  Box moved(const Box& by) const { return Box(low + by.low, high + by.high); }
   Box grown(double by) const { return Box(low - Vec3{by, by, by}, high + Vec3{by, by, by}); }
   bool meets(const Box& other) const {
     return low.x <= other.high.x && other.low.x <= high.x && low.y <= other.high.y && other.low.y <= high.y &&

@@ -48,13 +48,15 @@ void for_each_field(State_& s, Visit&& visit) {
   give("last_inputs.world_from_tool", s.last_inputs.world_from_tool, any);
   give("last_inputs.buttons", s.last_inputs.buttons, any);
   give("axial_crossing", s.axial_crossing, any.per(EntryOf::axial).or_empty());
-  give_points("blade_trail.x", "blade_trail.y", "blade_trail.z", s.blade_trail,
-              finite.per(EntryOf::blade_end).or_empty(), give);
+  give_points("blade_trail.x", "blade_trail.y", "blade_trail.z", s.blade_trail, finite, give);
   give_points("acceleration.x", "acceleration.y", "acceleration.z", s.acceleration,
               finite.per(EntryOf::sphere).or_empty(), give);
   give("touched", s.touched, index(EntryOf::touchable));
   give_points("grip.x", "grip.y", "grip.z", s.grip, finite, give);
   give("kelvin_dent", s.kelvin_dent, finite);
+  give("edge_organ", s.edge_organ, any);
+  give_points("swept.x", "swept.y", "swept.z", s.swept, finite, give);
+  give("swept_organ", s.swept_organ, any);
 }
 
 template <class Tool_, class Visit>
@@ -99,10 +101,12 @@ void for_each_field(Obstacle_& o, Visit&& visit) {
   using namespace meaning;
   const auto give = with_meaning(visit);
   give("name", o.name, any);
-  give("kind", o.kind, one_of({ObstacleKind::plane, ObstacleKind::box}));
+  give("kind", o.kind, one_of({ObstacleKind::plane, ObstacleKind::box, ObstacleKind::mesh}));
   give("position", o.position, place);
   give("world_from_obstacle", o.world_from_obstacle, any);
   give("half_size", o.half_size, length_or_none);
+  give_points("vertex.x", "vertex.y", "vertex.z", o.vertex, place, give);
+  give("corner", o.corner, any);
 }
 
 /// As above. `organs`, `tools` and `obstacles` are vectors of structs; for_each_field visits their fields in turn.

@@ -104,22 +104,20 @@ struct Tool {
 
   // Contact of a scalpel with tissue; other tools do not use these values.
 
-  /// Length of the tow that gives the heading [m], > 0: a point is towed this far behind each end of the blade, and the
-  /// heading points from it to the end. Default: our choice, longer than the tremor of a hand.
-  double trail_distance = 0.5e-3;
-  /// Least distance ahead of the edge over which an element resists [m], > 0. Default: our choice. It must not shrink
-  /// with the lattice: soft tissue would be dragged farther along before it is cut.
-  double blade_reach = 9e-3;
-  /// The same distance in spacings of the widest lattice; the larger of the two applies [1], >= 0. Default: lattice
-  /// rows are half a spacing apart, so the next one resists before one is severed.
-  double blade_reach_spacings = 0.75;
+  /// How far the front of a cut is behind the edge while it goes through tissue that resists [m], > 0. Default: our
+  /// choice; what is pressed ahead of a sharp edge before it cuts.
+  double trail_distance = 0.2e-3;
+  /// Radius of the tissue around the edge that takes up its force [m], > 0. Default: our choice. It must not shrink
+  /// with the lattice: soft, tough tissue would be crushed at the edge, and dragged along before it is cut.
+  double blade_reach = 15e-3;
+  /// The same radius in spacings of the organ; the larger of the two applies [1], > 0. Default: all corners of the cell
+  /// around the edge, and little more, so that the edge hardly follows the faces that gape behind it.
+  double blade_reach_spacings = 1.5;
   /// Height of the flanks behind the edge [m], >= 0. Default: about that of a surgical blade No. 10 (estimate).
   double flank_height = 6e-3;
   /// Cut faces that are open wider than this do not touch the flanks [m], > 0. Default: estimate.
   double blade_thickness = 1e-3;
-  /// Speed below which the friction of the flanks falls linearly to 0 [m/s], > 0. Default: our choice, so that a
-  /// resting blade creeps and does not chatter.
-  double slowest_slip = 1e-3;
+  double slowest_slip = 1e-3;  ///< retired with physics revision 4, where the front is held as a ball grips
 };
 
 /// External forces on spheres. Each rises linearly from 0 at `start` to its full size at `start + ramp`, and then
@@ -168,15 +166,19 @@ struct OrganRange {
 enum class ObstacleKind : std::int32_t {
   plane = 0,  ///< the half space z <= 0 of the obstacle's frame
   box = 1,    ///< centred in the obstacle's frame
+  mesh = 2,   ///< a closed mesh
 };
 
-/// A rigid thing that never moves and that the surfaces of organs cannot enter: a ground, a table.
+/// A rigid thing that never moves and that the surfaces of organs cannot enter: a ground, a table, a bowl.
 struct Obstacle {
   std::string name;
   ObstacleKind kind = ObstacleKind::plane;
   Vec3 position;             ///< of the frame's origin [m]
   Quat world_from_obstacle;  ///< orientation of the frame, unit length
   Vec3 half_size;            ///< of a box [m], > 0
+  Vec3Array vertex{};        ///< of a mesh, in the obstacle's frame [m]
+  /// Of a mesh: vertices of its triangles, three of each, counter-clockwise seen from outside.
+  std::vector<std::int32_t> corner{};
 };
 
 /// Method of time integration. Session files store the numbers; 0 (automatic), 1 (symplectic Euler) and 3 (extrapolated

@@ -13,7 +13,8 @@ State rest_state(const Model& model) {
     state.constraint_severed.assign(model.constraints.size(), 0);
     state.angle_severed.assign(model.angle_springs.size(), 0);
     state.axial_crossing.assign(model.axial.size(), 0);
-    state.blade_trail.resize(2);
+    state.blade_trail.resize(kEdgeNodes);
+    state.edge_organ.assign(kEdgeNodes, -1);
   }
   return state;
 }

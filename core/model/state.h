@@ -9,6 +9,9 @@
 
 namespace ctpm {
 
+/// Nodes along a blade's edge, at equal distances from the tip to the heel.
+inline constexpr std::size_t kEdgeNodes = 33;
+
 /// Everything that the next tick depends on, to the bit. The velocity is also the warm start of the implicit solve.
 struct State {
   std::int64_t tick = 0;   ///< ticks done
@@ -22,8 +25,15 @@ struct State {
   /// Crossing of each severed element, coded by cutting::stored_crossing(); 0: not severed; empty if the scene has no
   /// scalpel (axial_count).
   std::vector<std::uint8_t> axial_crossing;
-  /// Points towed behind a blade's tip and heel, which give its heading [m]; empty if the scene has no scalpel (2).
+  /// The front of the cut: where, in the tissue at rest, the nodes of a blade's edge are, from its back over the tip to
+  /// the heel [m]; empty if the scene has no scalpel (kEdgeNodes).
   Vec3Array blade_trail;
+  std::vector<std::int32_t> edge_organ;  ///< organ that each of them is in or near; -1: none          (kEdgeNodes)
+  /// The swept surface: rows of kEdgeNodes places at rest, through which the front went, in the order of time [m].
+  Vec3Array swept;
+  /// For each node of a row: 1 + the organ in which the front went from the row before to this one, between this node
+  /// and the next, through tissue that was whole; 0: it did not                              (as many as `swept`)
+  std::vector<std::uint8_t> swept_organ;
   /// Points of the tissue that are touched, ascending. With n = Model::touchable_count(), [0, n) are touched by
   /// a ball, [n, 2 n) by tissue, [(2 + i) n, (3 + i) n) by obstacle i. Empty where nothing touches (touched_count)
   std::vector<std::int32_t> touched;

@@ -2,30 +2,20 @@
 
 namespace ctpm::stepping {
 
-BladeSweep::BladeSweep(const Model& model) : model_(model), near_(model), pieces_(model) {
+BladeSweep::BladeSweep(const Model& model) : front_(model), pieces_(model) {
   crossings_.reserve(model.axial.size());
   pieces_.reserve();
 }
 
-void BladeSweep::sweep(const contact::Contacts& contacts, const Inputs& last, const Inputs& inputs,
-                       contact::HeldTool& tool, State& state, StepReport& report) {
+void BladeSweep::begin_tick(const Inputs& last, const Inputs& inputs, contact::HeldTool& tool, State& state) {
   crossings_.clear();
-  tool.blade.from = cutting::blade_edge(*tool.tool, last), tool.blade.to = cutting::blade_edge(*tool.tool, inputs);
-  if (!state.blade_trail.x.empty()) {
-    if (state.last_inputs.tool != inputs.tool)
-      state.blade_trail.set(0, tool.blade.to.tip), state.blade_trail.set(1, tool.blade.to.heel);
-    contact::tow(*tool.tool, state.blade_trail, tool.blade);
-  }
-  near_.find(state.position, contacts.around(tool));
-  report.severed =
-      cutting::sever_swept_by_blade(model_, near_, tool.blade.from, tool.blade.to, state.position, state, crossings_);
-  tool.near = &near_, tool.swept = crossings_;
+  tool.edge_from = cutting::blade_edge(*tool.tool, last), tool.edge_to = cutting::blade_edge(*tool.tool, inputs);
+  tool.front = &front_;
+  front_.begin_tick(*tool.tool, tool.edge_from, tool.edge_to, state.last_inputs.tool != inputs.tool, state);
 }
 
-void BladeSweep::sever_moved(const contact::HeldTool& tool, const Vec3Array& before, State& state, StepReport& report) {
-  near_.follow(state.position);
-  report.severed +=
-      cutting::sever_moved_through_blade(model_, near_, tool.blade.to, before, state.position, state, crossings_);
+void BladeSweep::end_substep(const contact::HeldTool& tool, double share, State& state, StepReport& report) {
+  report.severed += front_.follow(*tool.tool, tool.edge_at(share), state, crossings_);
 }
 
 void BladeSweep::report_pieces(const State& state, StepReport& report) {

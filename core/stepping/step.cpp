@@ -91,6 +91,11 @@ contact::HeldTool Stepper::Parts::hold(const Inputs& last, const Inputs& inputs)
 void Stepper::Parts::reserve(State& state) const {
   contact::Touched touched{std::move(state.touched), std::move(state.grip), std::move(state.kelvin_dent)};
   contacts.reserve(touched);
+  if (model.has_scalpel()) {
+    const std::size_t points = cutting::kMostSweptRows * kEdgeNodes;
+    for (auto* axis : {&state.swept.x, &state.swept.y, &state.swept.z}) axis->reserve(points);
+    state.swept_organ.reserve(points);
+  }
   state.touched = std::move(touched.point), state.grip = std::move(touched.grip),
   state.kelvin_dent = std::move(touched.kelvin_dent);
 }
@@ -114,10 +119,11 @@ bool Stepper::Parts::run_substeps(State& state, const contact::HeldTool& tool, S
   const double h = model.tick / substeps;
   for (std::int32_t k = 1; k <= substeps; ++k) {
     const double share = double(k) / substeps, time = (double(state.tick) + share) * model.tick;
+    const bool cuts = tool.is(ToolKind::scalpel);
+    if (cuts) blade->begin_substep(state);
     if (!advance(state, tool, {h, time, share, has_loads}, report)) return false;
     commit(next, state);
-    // `next` now holds the positions before the substep.
-    if (tool.is(ToolKind::scalpel)) blade->sever_moved(tool, next.position, state, report);
+    if (cuts) blade->end_substep(tool, share, state, report);
   }
   return true;
 }
@@ -145,7 +151,7 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
   const bool changes_once = !cuts && parts.choice.substeps == 1;
   if (!changes_once) parts.trial = state;
   State& current = changes_once ? state : parts.trial;
-  if (cuts) parts.blade->sweep(parts.contacts, last, inputs, tool, current, report);
+  if (cuts) parts.blade->begin_tick(last, inputs, tool, current);
   if (!parts.run_substeps(current, tool, report)) {
     // Nothing of a refused tick has happened.
     StepReport refused;

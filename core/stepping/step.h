@@ -33,7 +33,7 @@ struct StepReport {
   /// Largest displacement from rest of a point that a ball touches, along its contact, without the motion as a whole of
   /// an organ that nothing holds; of a pin, that of its sphere [m].
   double depth = 0;
-  std::int32_t contacts = 0;    ///< spheres touched; for a blade, elements ahead of its edge or on its flanks
+  std::int32_t contacts = 0;    ///< spheres touched; for a blade, nodes of its edge that tissue holds
   std::int32_t severed = 0;     ///< elements, constraints and angle springs severed in this tick
   std::int32_t came_loose = 0;  ///< pieces that came loose in this tick: the increase of their number
   /// Tissue cells that are inside out at the end of the tick (a corner tetrahedron with J < 0); those that a blade cut

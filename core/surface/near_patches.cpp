@@ -2,11 +2,8 @@
 
 namespace ctpm::surface {
 
-NearPatches::NearPatches(const NearSurface& surface)
-    : surface_(surface),
-      groups_(surface.groups().size(), Box(Vec3{})),
-      patches_(surface.patches().size(), Box(Vec3{})),
-      found_in_(surface.patches().size(), 0) {
+NearPatches::NearPatches(const NearSurface& surface) : surface_(surface) {
+  groups_.place.resize(surface.groups().size()), patches_.place.resize(surface.patches().size());
   std::vector<std::uint8_t> is_taken(surface.vertex_count(), 0);
   first_vertex_.push_back(0);
   for (const NearSurface::Bound& patch : surface.patches()) {
@@ -18,22 +15,24 @@ NearPatches::NearPatches(const NearSurface& surface)
       }
     first_vertex_.push_back(Index(vertices_.size()));
   }
-}
-
-void NearPatches::begin(const Vec3Array& position) {
-  position_ = &position;
-  ++round_;
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    groups_[g] = surface_.box_of(surface_.groups()[g], position);
-    if (g == 0) all_ = groups_[g];
-    all_.add(groups_[g].low), all_.add(groups_[g].high);
+  static_assert(NearSurface::kTrianglesPerPatch % kTrianglesPerRun == 0, "a run belongs to one patch");
+  for (const NearSurface::Triangle& t : surface.triangles()) {
+    const Box rest(surface.rest(t.corner[0]), surface.rest(t.corner[1]), surface.rest(t.corner[2]));
+    if (triangle_rest_.size() % kTrianglesPerRun == 0) run_rest_.push_back(rest);
+    triangle_rest_.push_back(rest);
+    run_rest_.back().add(rest.low), run_rest_.back().add(rest.high);
   }
 }
 
-const Box& NearPatches::patch(Index index) {
-  const auto p = std::size_t(index);
-  if (found_in_[p] != round_) found_in_[p] = round_, patches_[p] = surface_.box_of(surface_.patches()[p], *position_);
-  return patches_[p];
+const NearPatches::Place& NearPatches::Places::find(const NearPatches& of,
+                                                    const std::vector<NearSurface::Bound>& bounds, Index index) {
+  Place& found = place[std::size_t(index)];
+  if (found.round != of.round_) {
+    const NearSurface::Bound& bound = bounds[std::size_t(index)];
+    found.round = of.round_, found.displacements = of.surface_.displacements(bound);
+    found.box = bound.rest.moved(found.displacements);
+  }
+  return found;
 }
 
 }  // namespace ctpm::surface

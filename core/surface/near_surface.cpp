@@ -6,10 +6,14 @@
 namespace ctpm::surface {
 namespace {
 
-constexpr NearSurface::Index kTrianglesPerPatch = 32, kPatchesPerGroup = 8;
-
 /// Bindings put a vertex at its place at rest only up to rounding and regularisation [m].
 constexpr double kRounding = 1e-4;
+
+/// Displacements of vertices whose spheres' displacements lie in `range` [m]; `widen`: see NearSurface::Bound.
+Box widened(const Box& range, double widen) {
+  const Vec3 margin = widen * (range.high - range.low) + Vec3{kRounding, kRounding, kRounding};
+  return Box(range.low - margin, range.high + margin);
+}
 
 /// Spreads the low 10 bits of a number to every third bit.
 std::uint32_t spread_bits(std::uint32_t n) {
@@ -41,6 +45,10 @@ NearSurface::NearSurface(const Model& model, std::size_t first_organ, std::size_
     const Index last = std::min(p + kPatchesPerGroup, patches);
     groups_.push_back(bound_of(p, last, patches_[std::size_t(p)].first, patches_[std::size_t(last) - 1].last));
   }
+  rest_box_ = Box(rest_.front());
+  for (const Vec3& p : rest_) rest_box_.add(p);
+  for (const Bound& group : groups_) widen_ = std::max(widen_, group.widen);
+  moved_.resize(last_of_all_ - first_of_all_);
   placed_.resize(vertex_count()), placed_in_.assign(vertex_count(), 0);
 }
 
@@ -94,7 +102,7 @@ NearSurface::Bound NearSurface::bound_of(Index first, Index last, Index first_tr
     for (const Index corner : triangles_[std::size_t(t)].corner) {
       const Follower follows = follower(corner);
       box.add(rest(corner));
-      spheres.insert(spheres.end(), follows.sphere.begin(), follows.sphere.end());
+      for (const Index sphere : follows.sphere) spheres.push_back(sphere - Index(first_of_all_));
       double negative = 0;
       for (const double w : follows.weight) negative -= std::min(w, 0.0);
       widen = std::max(widen, negative);
@@ -106,66 +114,25 @@ NearSurface::Bound NearSurface::bound_of(Index first, Index last, Index first_tr
   return {first, last, begin, Index(bound_spheres_.size()), box, widen};
 }
 
-/// Range of a bound along one axis, from its spheres' coordinates `values` and its own range at rest.
-NearSurface::Range NearSurface::range_along(const Bound& bound, const std::vector<double>& values,
-                                            const std::vector<double>& rest, double low, double high) const {
-  const auto moved = [&](Index s) {
-    const auto sphere = std::size_t(bound_spheres_[std::size_t(s)]);
-    return values[sphere] - rest[sphere];
-  };
-  double least = moved(bound.first_sphere), most = least;
-  for (Index s = bound.first_sphere + 1; s < bound.last_sphere; ++s) {
-    const double by = moved(s);
-    least = std::min(least, by), most = std::max(most, by);
-  }
-  const double margin = bound.widen * (most - least) + kRounding;
-  return {low + least - margin, high + most + margin};
+void NearSurface::begin(const Vec3Array& position) {
+  position_ = &position, ++round_;
+  if (empty()) return;
+  for (std::size_t i = first_of_all_; i < last_of_all_; ++i) moved_[i - first_of_all_] = position[i] - sphere_rest_[i];
+  Box range(moved_.front());
+  for (const Vec3& by : moved_) range.add(by);
+  displacements_ = widened(range, widen_);
 }
 
-Box NearSurface::box_of(const Bound& bound, const Vec3Array& position) const {
-  const Box& rest = bound.rest;
-  const Range x = range_along(bound, position.x, sphere_rest_.x, rest.low.x, rest.high.x),
-              y = range_along(bound, position.y, sphere_rest_.y, rest.low.y, rest.high.y),
-              z = range_along(bound, position.z, sphere_rest_.z, rest.low.z, rest.high.z);
-  return Box(Vec3{x.low, y.low, z.low}, Vec3{x.high, y.high, z.high});
+Box NearSurface::displacements(const Bound& bound) const {
+  const auto moved = [&](Index s) { return moved_[std::size_t(bound_spheres_[std::size_t(s)])]; };
+  Box range(moved(bound.first_sphere));
+  for (Index s = bound.first_sphere + 1; s < bound.last_sphere; ++s) range.add(moved(s));
+  return widened(range, bound.widen);
 }
 
-Box NearSurface::displacements(const Vec3Array& position) const {
-  const auto along = [&](const std::vector<double>& values, const std::vector<double>& rest) {
-    double least = values[first_of_all_] - rest[first_of_all_], most = least;
-    for (std::size_t i = first_of_all_ + 1; i < last_of_all_; ++i) {
-      const double by = values[i] - rest[i];
-      least = std::min(least, by), most = std::max(most, by);
-    }
-    return Range{least, most};
-  };
-  const Range x = along(position.x, sphere_rest_.x), y = along(position.y, sphere_rest_.y),
-              z = along(position.z, sphere_rest_.z);
-  return Box(Vec3{x.low, y.low, z.low}, Vec3{x.high, y.high, z.high});
-}
-
-Box NearSurface::rough_box_of(const Bound& bound, const Box& moved) const {
-  const Vec3 range = moved.high - moved.low, rounding{kRounding, kRounding, kRounding};
-  return Box(bound.rest.low + moved.low - bound.widen * range - rounding,
-             bound.rest.high + moved.high + bound.widen * range + rounding);
-}
-
-/// As box_of(), but stops at the first axis that parts them.
-bool NearSurface::is_near(const Bound& bound, const Vec3Array& position, const Box& region) const {
-  const auto is_near_along = [&](const std::vector<double>& values, const std::vector<double>& rest, double low,
-                                 double high, double region_low, double region_high) {
-    const Range range = range_along(bound, values, rest, low, high);
-    return region_high >= range.low && region_low <= range.high;
-  };
-  const Box& rest = bound.rest;
-  return is_near_along(position.x, sphere_rest_.x, rest.low.x, rest.high.x, region.low.x, region.high.x) &&
-         is_near_along(position.y, sphere_rest_.y, rest.low.y, rest.high.y, region.low.y, region.high.y) &&
-         is_near_along(position.z, sphere_rest_.z, rest.low.z, rest.high.z, region.low.z, region.high.z);
-}
-
-Vec3 NearSurface::place(Index vertex, const Vec3Array& position) {
+Vec3 NearSurface::place(Index vertex) {
   const auto v = std::size_t(vertex);
-  if (placed_in_[v] != round_) placed_in_[v] = round_, placed_[v] = follower(vertex).of(position);
+  if (placed_in_[v] != round_) placed_in_[v] = round_, placed_[v] = follower(vertex).of(*position_);
   return placed_[v];
 }
 

@@ -41,6 +41,7 @@ struct HalfSpace {
 class NearSurface {
  public:
   using Index = std::int32_t;
+  static constexpr Index kTrianglesPerPatch = 32, kPatchesPerGroup = 8;
 
   struct Triangle {
     Index corner[3];
@@ -74,39 +75,26 @@ class NearSurface {
   const std::vector<Bound>& groups() const { return groups_; }
   const std::vector<Triangle>& triangles() const { return triangles_; }  ///< by patch
 
-  /// Box that contains a patch or group [m].
-  Box box_of(const Bound& bound, const Vec3Array& position) const;
+  /// Box that contains all vertices at rest [m].
+  const Box& rest_box() const { return rest_box_; }
 
-  /// Begins a round with other positions, in which place() computes each vertex once.
-  void begin() { ++round_; }
-  /// Where a vertex is [m]; `position` is the same in one round.
-  Vec3 place(Index vertex, const Vec3Array& position);
+  /// Begins a round with the spheres at `position` [m], which must outlive it. In a round, each vertex is placed once.
+  void begin(const Vec3Array& position);
+  /// Displacements from rest within which those of all vertices lie, or those of a patch or group [m].
+  const Box& displacements() const { return displacements_; }
+  Box displacements(const Bound& bound) const;
+  /// Where a vertex is [m].
+  Vec3 place(Index vertex);
 
-  /// Begins a round, and calls `visit(triangle, corners)` for every triangle whose patch may meet `region`, with the
-  /// positions of its corners, in a fixed order. `region`: a Box or a HalfSpace.
+  /// Calls `visit(triangle, corners)` for every triangle whose patch may meet `region`, with the positions of its
+  /// corners, in a fixed order. `region`: a Box or a HalfSpace.
   template <class Region, class Visit>
-  void near(const Vec3Array& position, const Region& region, Visit&& visit);
+  void near(const Region& region, Visit&& visit);
 
  private:
-  /// Range of a bound along one axis.
-  struct Range {
-    double low, high;
-  };
-
-  /// Least and largest displacement of all spheres from rest [m].
-  Box displacements(const Vec3Array& position) const;
-  /// Box that contains a bound if its spheres moved by displacements in `moved`: wider than box_of(), but found at
-  /// once.
-  Box rough_box_of(const Bound& bound, const Box& moved) const;
   void add_organ(const Surface& surface, const OrganRange& organ);
   void sort_triangles();
   Bound bound_of(Index first, Index last, Index first_triangle, Index last_triangle);
-  Range range_along(const Bound& bound, const std::vector<double>& values, const std::vector<double>& rest, double low,
-                    double high) const;
-  bool is_near(const Bound& bound, const Vec3Array& position, const Box& region) const;
-  bool is_near(const Bound& bound, const Vec3Array& position, const HalfSpace& region) const {
-    return region.meets(box_of(bound, position));
-  }
 
   const Vec3Array& sphere_rest_;
   std::size_t first_of_all_, last_of_all_;  ///< spheres of the organs
@@ -115,26 +103,29 @@ class NearSurface {
   std::vector<Vec3> rest_;           ///< [m]
   std::vector<Triangle> triangles_;  ///< by patch
   std::vector<Bound> patches_, groups_;
-  std::vector<Index> bound_spheres_;
+  std::vector<Index> bound_spheres_;  ///< counted from first_of_all_
+  Box rest_box_{Vec3{}};
+  double widen_ = 0;                     ///< the largest of all bounds
+  const Vec3Array* position_ = nullptr;  ///< of the present round
+  std::vector<Vec3> moved_;              ///< displacements of the spheres in the present round [m]
+  Box displacements_{Vec3{}};
   std::vector<Vec3> placed_;              ///< positions of the vertices that the present round placed [m]
   std::vector<std::uint32_t> placed_in_;  ///< round that placed a vertex
   std::uint32_t round_ = 0;
 };
 
 template <class Region, class Visit>
-void NearSurface::near(const Vec3Array& position, const Region& region, Visit&& visit) {
-  begin();
+void NearSurface::near(const Region& region, Visit&& visit) {
   if (groups_.empty()) return;
-  const Box moved = displacements(position);
   for (const Bound& group : groups_) {
-    if (!region.meets(rough_box_of(group, moved)) || !is_near(group, position, region)) continue;
+    if (!region.meets(group.rest.moved(displacements_)) || !region.meets(group.rest.moved(displacements(group))))
+      continue;
     for (Index p = group.first; p < group.last; ++p) {
       const Bound& patch = patches_[std::size_t(p)];
-      if (!is_near(patch, position, region)) continue;
+      if (!region.meets(patch.rest.moved(displacements(patch)))) continue;
       for (Index t = patch.first; t < patch.last; ++t) {
         const Triangle& triangle = triangles_[std::size_t(t)];
-        const Vec3 corners[3] = {place(triangle.corner[0], position), place(triangle.corner[1], position),
-                                 place(triangle.corner[2], position)};
+        const Vec3 corners[3] = {place(triangle.corner[0]), place(triangle.corner[1]), place(triangle.corner[2])};
         visit(triangle, corners);
       }
     }

@@ -10,7 +10,6 @@
 #include <limits>
 
 #include "core/model/result.h"
-#include "core/surface/inside.h"
 
 namespace ctpm::surface {
 namespace {
@@ -217,51 +216,6 @@ void deform_surface(const Surface& surface, const Vec3Array& position, std::int3
     for (std::int32_t entry = binding.first[v]; entry < binding.first[v + 1]; ++entry)
       vertex[v] +=
           binding.weight[std::size_t(entry)] * position[std::size_t(first_sphere + binding.sphere[std::size_t(entry)])];
-}
-
-namespace {
-
-/// Moves the vertices that a ball dents onto the ball.
-void put_on_ball(const Model& model, std::size_t organ, const Surface& surface, const State& state,
-                 std::vector<Vec3>& vertex) {
-  const Inputs& inputs = state.last_inputs;
-  if (state.touched.empty() || inputs.tool < 0) return;
-  const Tool& tool = model.tools[std::size_t(inputs.tool)];
-  if (tool.kind != ToolKind::ball || organ >= model.surfaces.size()) return;
-  std::int64_t first = 0;
-  for (std::size_t i = 0; i < organ; ++i) first += std::int64_t(model.surfaces[i].vertex.size());
-  const std::int64_t last = first + std::int64_t(model.surfaces[organ].vertex.size());
-  // Normals of the touched vertices: sums over their triangles, weighted by area.
-  std::vector<char> is_touched(vertex.size(), 0);
-  for (const std::int32_t point : state.touched)
-    if (point >= first && point < last && std::size_t(point - first) < vertex.size())
-      is_touched[std::size_t(point - first)] = 1;
-  std::vector<Vec3> normal(vertex.size());
-  for (const auto& t : surface.triangle) {
-    const auto a = std::size_t(t[0]), b = std::size_t(t[1]), c = std::size_t(t[2]);
-    if (!is_touched[a] && !is_touched[b] && !is_touched[c]) continue;
-    const Vec3 n = cross(vertex[b] - vertex[a], vertex[c] - vertex[a]);
-    normal[a] += n, normal[b] += n, normal[c] += n;
-  }
-  for (std::size_t v = 0; v < vertex.size(); ++v) {
-    const double size = norm(normal[v]);
-    if (!is_touched[v] || !(size > 0)) continue;
-    // Inwards to the far side of the ball, as contact::BallContact measures the dent.
-    const Vec3 apart = vertex[v] - inputs.position, outward = normal[v] / size;
-    const double height = dot(apart, outward), chord = height * height - dot(apart, apart) + tool.radius * tool.radius;
-    if (chord > 0) vertex[v] -= std::max(0.0, height + std::sqrt(chord)) * outward;
-  }
-}
-
-}  // namespace
-
-void place_surface(const Model& model, std::size_t organ, const Surface& surface, const State& state,
-                   std::vector<Vec3>& vertex) {
-  deform_surface(surface, state.position, model.organs[organ].first, vertex);
-  put_on_ball(model, organ, surface, state, vertex);
-  for (const Obstacle& obstacle : model.obstacles)
-    for (Vec3& v : vertex)
-      if (const Inside inside = find_inside(obstacle, v); inside.depth > 0) v += inside.depth * inside.outward;
 }
 
 }  // namespace ctpm::surface

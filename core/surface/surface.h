@@ -6,7 +6,6 @@
 
 #include "core/model/model.h"
 #include "core/model/organ.h"
-#include "core/model/state.h"
 #include "core/model/vec3.h"
 
 namespace ctpm::surface {
@@ -35,11 +34,5 @@ void bind_surface(FilledOrgan& organ, int threads = 1);
 /// (vertex_count).
 void deform_surface(const Surface& surface, const Vec3Array& position, std::int32_t first_sphere,
                     std::vector<Vec3>& vertex);
-
-/// Positions of the vertices [m] as they are seen and touched: those of deform_surface(), where a ball dents them, on
-/// the ball, and where an obstacle does, on the obstacle. `surface` is that of organ `organ`, whose first vertices are
-/// those of Model::surfaces; it may be cut (vertex_count).
-void place_surface(const Model& model, std::size_t organ, const Surface& surface, const State& state,
-                   std::vector<Vec3>& vertex);
 
 }  // namespace ctpm::surface

@@ -274,6 +274,17 @@ void check_tissue_cells(Checker& check, const Model& model) {
   }
 }
 
+void check_obstacle_mesh(Checker& check, const std::string& name, const Obstacle& obstacle) {
+  const std::size_t vertices = obstacle.vertex.x.size();
+  if (!check.length(name + "vertex.y", obstacle.vertex.y.size(), vertices) ||
+      !check.length(name + "vertex.z", obstacle.vertex.z.size(), vertices))
+    return;
+  const bool is_mesh = obstacle.kind == ObstacleKind::mesh;
+  check.require(obstacle.corner.size() % 3 == 0 && obstacle.corner.empty() != is_mesh, name + "corner",
+                is_mesh ? "must have three entries for each triangle of a mesh" : "must be empty but of a mesh");
+  check.indices(name + "corner", obstacle.corner, 0, static_cast<std::int64_t>(vertices));
+}
+
 void check_obstacles(Checker& check, const Model& model) {
   for (std::size_t i = 0; i < model.obstacles.size(); ++i) {
     const Obstacle& obstacle = model.obstacles[i];
@@ -283,6 +294,7 @@ void check_obstacles(Checker& check, const Model& model) {
     const Vec3 half = obstacle.half_size;
     check.require(obstacle.kind != ObstacleKind::box || (half.x > 0 && half.y > 0 && half.z > 0),
                   "obstacles" + place(i) + ".half_size", "must be above 0 of a box");
+    check_obstacle_mesh(check, "obstacles" + place(i) + ".", obstacle);
   }
 }
 
@@ -322,10 +334,33 @@ Errors check_model(const Model& model) {
   return check.take();
 }
 
+/// The front of the cut and the swept surface. Before physics revision 4 a blade had two towed points instead.
+void check_edge(Checker& check, const Model& model, const State& state) {
+  constexpr std::size_t kEarlierTrail = 2;
+  const std::size_t nodes = state.edge_organ.empty() ? kEarlierTrail : kEdgeNodes;
+  check.length("edge_organ", state.edge_organ.size(), state.edge_organ.empty() ? 0 : kEdgeNodes);
+  if (!state.blade_trail.x.empty()) check.length("blade_trail", state.blade_trail.x.size(), nodes);
+  const auto organs = std::int64_t(model.organs.size());
+  for (const std::int32_t organ : state.edge_organ)
+    if (organ < -1 || organ >= organs) {
+      check.require(false, "edge_organ", "names an organ that does not exist");
+      break;
+    }
+  check_together(check, "swept", state.swept);
+  check.length("swept_organ", state.swept_organ.size(), state.swept.x.size());
+  check.require(state.swept.x.size() % kEdgeNodes == 0, "swept", "must hold whole rows");
+  for (const std::uint8_t organ : state.swept_organ)
+    if (organ > organs) {
+      check.require(false, "swept_organ", "names an organ that does not exist");
+      break;
+    }
+}
+
 Errors check_state(const Model& model, const State& state) {
   Checker check("state");
   for_each_field(state, FieldCheck(check, model));
   check_together(check, "blade_trail", state.blade_trail);
+  check_edge(check, model, state);
   check_together(check, "acceleration", state.acceleration);
   check.length("grip", state.grip.size(), state.touched.size());
   check_together(check, "grip", state.grip);

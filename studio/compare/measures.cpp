@@ -130,8 +130,12 @@ constexpr Measure kCutHausdorff{"cut_path_hausdorff_mm",
                                 "the farthest that a point of either path is from the other",
                                 kHuttenlocher};
 constexpr Measure kCutDepth{
-    "cut_depth_mm", "depth of the cut", "mm", nearer, "of the deepest severed edge below the surface, at rest",
+    "cut_depth_mm", "depth of the cut", "mm", nearer, "of the deepest place that the blade's edge cut, at rest",
     kNetwork};
+constexpr Measure kCutLength{
+    "cut_length_mm", "length of the cut", "mm", nearer, "along the surface at rest, of all cuts", kNetwork};
+constexpr Measure kCutArea{
+    "cut_area_mm2", "area of the cut", "mm^2", nearer, "that the blade's edge swept in the tissue at rest", kNetwork};
 constexpr Measure kAlignedMean{"aligned_deviation_mean_mm",
                                "mean deviation of the aligned paths",
                                "mm",
@@ -275,8 +279,7 @@ void add_depth(Comparison& comparison, const SessionTrack& expert, const Session
     comparison.values.push_back({.measure = &kBeyondDamage, .note = "no organ has a damage limit"});
 }
 
-void add_cut(Comparison& comparison, const SessionTrack& expert, const SessionTrack& trainee,
-             const recordings::SessionStart& scene) {
+void add_cut(Comparison& comparison, const SessionTrack& expert, const SessionTrack& trainee) {
   if (expert.cuts.empty() && trainee.cuts.empty()) return;
   double both = 0, expert_only = 0, trainee_only = 0;
   for (std::size_t i = 0; i < expert.severed_at.size(); ++i) {
@@ -289,11 +292,6 @@ void add_cut(Comparison& comparison, const SessionTrack& expert, const SessionTr
   values.push_back({.measure = &kSeveredExpert, .trainee = expert_only});
   values.push_back({.measure = &kSeveredTrainee, .trainee = trainee_only});
   values.push_back({.measure = &kOverlap, .trainee = 2 * both / (2 * both + expert_only + trainee_only)});
-  const auto millimetres = [](std::optional<double> metres) {
-    return metres ? std::optional(kMillimetres * *metres) : std::nullopt;
-  };
-  const std::optional<double> depth_a = millimetres(cut_depth(expert, scene)),
-                              depth_b = millimetres(cut_depth(trainee, scene));
   if (expert.cuts.empty() || trainee.cuts.empty()) {
     const std::string note = std::string("the ") + (expert.cuts.empty() ? "expert" : "trainee") + " did not cut";
     for (const Measure* measure : {&kCutMean, &kCutHausdorff}) values.push_back({.measure = measure, .note = note});
@@ -302,7 +300,16 @@ void add_cut(Comparison& comparison, const SessionTrack& expert, const SessionTr
     values.push_back({.measure = &kCutMean, .trainee = kMillimetres * distance.mean});
     values.push_back({.measure = &kCutHausdorff, .trainee = kMillimetres * distance.hausdorff});
   }
-  values.push_back({&kCutDepth, depth_a, depth_b});
+  const auto add_size = [&](const Measure& measure, double session::CutSize::*size, double scale) {
+    const auto of = [&](const SessionTrack& track) {
+      return track.cut ? std::optional(scale * (*track.cut).*size) : std::nullopt;
+    };
+    values.push_back({&measure, of(expert), of(trainee)});
+    if (!trainee.cut) values.back().note = "nothing was cut, or no organ has a surface";
+  };
+  add_size(kCutDepth, &session::CutSize::depth, kMillimetres);
+  add_size(kCutLength, &session::CutSize::length, kMillimetres);
+  add_size(kCutArea, &session::CutSize::area, kMillimetres * kMillimetres);
 }
 
 /// The force limit: the given one, else the scene's, else the expert's peak.
@@ -335,7 +342,7 @@ Comparison compare_sessions(const SessionTrack& expert, const SessionTrack& trai
   add_motion(comparison, expert, trainee);
   add_force(comparison, expert, trainee);
   add_depth(comparison, expert, trainee);
-  add_cut(comparison, expert, trainee, scene);
+  add_cut(comparison, expert, trainee);
 
   collect_path(expert, comparison.expert_path, comparison.expert_time);
   collect_path(trainee, comparison.trainee_path, comparison.trainee_time);

@@ -7,7 +7,6 @@
 #include "core/model/fields.h"
 #include "recordings/replay.h"
 #include "recordings/state_hash.h"
-#include "studio/session/cut_depth.h"
 
 namespace ctpm::compare {
 namespace {
@@ -51,6 +50,13 @@ Result<Done> replay_ticks(recordings::ReplayCursor& cursor, std::int64_t from, s
   return Done{};
 }
 
+/// Stores the size of all cuts of the State where the replay stands.
+void measure_cut(const Model& model, const recordings::ReplayCursor& cursor, SessionTrack& track) {
+  session::CutMeasures measures(model);
+  measures.measure(cursor.state());
+  track.cut = measures.size();
+}
+
 /// Replays every tick. If all are as recorded, takes what the tool did to the tissue from the replay: the recorded
 /// numbers have no hash of their own.
 Result<Done> replay_all(recordings::SessionReader& session, SessionTrack& track) {
@@ -65,6 +71,7 @@ Result<Done> replay_all(recordings::SessionReader& session, SessionTrack& track)
         severed[tick] = report.severed;
       });
   if (!replayed) return replayed.errors();
+  measure_cut(session.start().model, *cursor, track);
   track.is_verified = track.replays;
   if (track.is_verified) track.force = force, track.depth = depth, track.severed = severed;
   track.cuts = cuts_of(track, session.start().model);
@@ -82,6 +89,7 @@ Result<Done> replay_cuts(recordings::SessionReader& session, SessionTrack& track
                                                    [](std::size_t, const stepping::StepReport&) {});
         !replayed)
       return replayed.errors();
+  measure_cut(session.start().model, *cursor, track);
   return Done{};
 }
 
@@ -235,14 +243,6 @@ Vec3 rest_middle(const Model& model, std::size_t element) {
   if (element < places.constraints) return middle(model.axial.a[element], model.axial.b[element]);
   if (element < places.angle_springs) return rest[std::size_t(model.constraints.c[element - places.constraints])];
   return rest[std::size_t(model.angle_springs.b[element - places.angle_springs])];
-}
-
-std::optional<double> cut_depth(const SessionTrack& track, const recordings::SessionStart& start) {
-  session::CutDepth depth(start.model);
-  const std::size_t axial_count = ElementPlaces(start.model).constraints;
-  for (std::size_t i = 0; i < axial_count; ++i)
-    if (track.severed_at[i] >= 0) depth.add(i);
-  return depth.deepest();
 }
 
 }  // namespace ctpm::compare

@@ -11,6 +11,7 @@
 #include "recordings/session_reader.h"
 #include "studio/compare/motion.h"
 #include "studio/compare/path_distance.h"
+#include "studio/session/cut_measures.h"
 
 namespace ctpm::compare {
 
@@ -32,6 +33,7 @@ struct SessionTrack {
   std::vector<Spell> strokes;            ///< ticks in which one tool is held without a break
   std::vector<Spell> cuts;               ///< ticks from the first to the last severed element of each cut
   std::vector<std::int64_t> severed_at;  ///< tick in which each element was severed; -1: never  (ElementPlaces::count)
+  std::optional<session::CutSize> cut;   ///< none if nothing was cut, or without surfaces
   std::uint64_t initial_state = 0;       ///< hash of the State before the first tick
   bool has_end = true;                   ///< false: the session is incomplete, or still being recorded
   double slip = 0;                       ///< largest TickRecord::slip [s]: real time that the session lacks
@@ -68,9 +70,5 @@ std::vector<Path> cut_paths(const SessionTrack& track);
 
 /// Middle of an element at rest [m].
 Vec3 rest_middle(const Model& model, std::size_t element);
-
-/// Rest depth of the deepest severed axial element below the organs' surfaces [m]. None if nothing was severed or the
-/// session has no surfaces.
-std::optional<double> cut_depth(const SessionTrack& track, const recordings::SessionStart& start);
 
 }  // namespace ctpm::compare

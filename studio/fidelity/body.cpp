@@ -8,8 +8,8 @@
 #include <numbers>
 #include <thread>
 
+#include "core/contact/drawn_surfaces.h"
 #include "core/stepping/integrator.h"
-#include "core/surface/surface.h"
 #include "importers/mesh.h"
 #include "scenes/build_model.h"
 
@@ -123,7 +123,7 @@ Vec3 centre_of_mass(const Model& model, const Vec3Array& position) {
 
 std::vector<Vec3> drawn_at(const Body& body, const State& state) {
   std::vector<Vec3> vertex;
-  surface::place_surface(body.model, 0, body.organ.surface, state, vertex);
+  contact::DrawnSurfaces(body.model).place(0, body.organ.surface, state, vertex);
   return vertex;
 }
 

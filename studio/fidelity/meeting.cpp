@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/contact/drawn_surfaces.h"
 #include "core/stepping/integrator.h"
-#include "core/surface/surface.h"
 #include "scenes/build_model.h"
 #include "studio/fidelity/meshes.h"
 #include "studio/fidelity/recipes.h"
@@ -62,7 +62,7 @@ importers::RawMesh ball_at_place(Vec3 centre, double radius) {
 
 std::vector<Vec3> drawn(const Organs& organs, const State& state, std::size_t organ) {
   std::vector<Vec3> vertex;
-  surface::place_surface(organs.model, organ, organs.filled[organ].surface, state, vertex);
+  contact::DrawnSurfaces(organs.model).place(organ, organs.filled[organ].surface, state, vertex);
   return vertex;
 }
 

@@ -132,6 +132,40 @@ struct DragResult {
 Result<DragResult> measure_drag(std::span<const double> radii, bool is_quick);
 Chapter chapter_of(const DragResult& result);
 
+/// A blade that cuts a straight line through a block of 72 x 72 x 36 mm, 20 mm deep.
+struct BladeResult {
+  struct Row {
+    double radius = 0, toughness = 0;  ///< [m], [J/m^2]
+    double angle = 0;                  ///< of the way against the lattice [rad]
+    std::vector<double> way, force;    ///< [m] from the block's middle, [N] against the way      (tick_count)
+    double work = 0;                   ///< of the hand [J]
+    double area = 0;                   ///< of the cut [m^2]
+    double viscous = 0;                ///< energy that Kelvin units dissipated [J]
+    double mean = 0;                   ///< force in the middle 30 mm [N]
+    double chatter = 0;                ///< of that force about its moving mean over 6 mm, RMS over mean [share]
+    double jump = 0;                   ///< its largest change in one tick over the mean [share]
+  };
+  std::vector<Row> rows;
+};
+Result<BladeResult> measure_blade(std::span<const double> radii, std::span<const double> toughnesses);
+Chapter chapter_of(const BladeResult& result);
+
+/// Cuts of eleven kinds through the shipped kidney, skin and liver at rest.
+struct CutsResult {
+  struct Row {
+    std::string organ, cut;
+    double radius = 0;                   ///< [m]
+    int pieces = 0;                      ///< of tissue
+    int components = 0, open_edges = 0;  ///< of the drawn surface
+    double off = 0;                      ///< largest distance of a wall from the swept surface [spacings]
+    std::size_t triangles = 0;
+  };
+  std::vector<Row> rows;
+};
+/// `shipped`: folder of the shipped scenes. `is_quick`: only at their own filling, else also at half its radius.
+Result<CutsResult> measure_cuts(const std::string& shipped, bool is_quick);
+Chapter chapter_of(const CutsResult& result);
+
 /// A ball of 10 mm, 4 mm deep, that moves sideways by 0.3 mm, far below the cone, waits for 10 s, and then slips.
 struct GripResult {
   struct Sample {

@@ -69,6 +69,14 @@ std::vector<Recipe> recipes() {
        [](const FidelityOptions& o) {
          return told(measure_drag(o.is_quick ? Radii{4e-3} : Radii{4e-3, 2e-3}, o.is_quick));
        }},
+      {{"blade", "A blade through a block", false},
+       [](const FidelityOptions& o) {
+         const std::vector<double> toughnesses{20, 200, 1000};
+         return told(measure_blade(o.is_quick ? Radii{4e-3} : Radii{4e-3, 2e-3},
+                                   std::span(toughnesses).first(o.is_quick ? 2 : toughnesses.size())));
+       }},
+      {{"cuts", "Cuts of every kind", false},
+       [](const FidelityOptions& o) { return told(measure_cuts(o.shipped, o.is_quick)); }},
       {{"grip", "Grip", false}, [](const FidelityOptions&) { return told(measure_grip(4e-3)); }},
       {{"recovery", "Recovery from abuse", false},
        [](const FidelityOptions& o) {

@@ -39,7 +39,7 @@ SessionFilm::SessionFilm(recordings::SessionReader& reader, scenes::SceneSpec sc
       range_(range),
       allow_diverged_(allow_diverged),
       cursor_(std::move(cursor)),
-      cut_depth_(reader.start().model) {}
+      cut_(reader.start().model) {}
 
 Result<std::unique_ptr<SessionFilm>> SessionFilm::create(recordings::SessionReader& reader,
                                                          const session::TickRange& range, bool allow_diverged) {
@@ -135,11 +135,10 @@ Error SessionFilm::differs() const {
 
 /// While a blade is held, and after it was put away after a cut, the depth is that of the cut.
 void SessionFilm::show_cut_depth() {
-  cut_depth_.add(cursor_.state());
+  cut_.measure(cursor_.state());
   const std::int32_t tool = cursor_.state().last_inputs.tool;
-  overlay_.is_blade =
-      tool < 0 ? cut_depth_.deepest().has_value() : model().tools[std::size_t(tool)].kind == ToolKind::scalpel;
-  if (overlay_.is_blade) overlay_.depth = cut_depth_.deepest().value_or(0);
+  overlay_.is_blade = tool < 0 ? cut_.size().has_value() : model().tools[std::size_t(tool)].kind == ToolKind::scalpel;
+  if (overlay_.is_blade) overlay_.depth = cut_.size().value_or(session::CutSize{}).depth;
 }
 
 Result<Shot> SessionFilm::shoot(std::int64_t tick) {

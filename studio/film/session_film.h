@@ -12,7 +12,7 @@
 #include "recordings/session_reader.h"
 #include "scenes/scene_spec.h"
 #include "studio/render/overlay.h"
-#include "studio/session/cut_depth.h"
+#include "studio/session/cut_measures.h"
 #include "studio/session/time_range.h"
 
 namespace ctpm::film {
@@ -66,7 +66,7 @@ class SessionFilm {
   bool allow_diverged_;
   recordings::ReplayCursor cursor_;
   render::OverlayData overlay_;
-  session::CutDepth cut_depth_;
+  session::CutMeasures cut_;
   std::int64_t plot_every_ = 1;   ///< ticks between two points of the force plot
   std::size_t moment_every_ = 1;  ///< ticks between two moments of a following camera
   std::deque<Inputs> inputs_;     ///< of the last ticks, as many as the moments need

@@ -20,17 +20,29 @@ importers::ImportOptions import_options_of(const scenes::OrganSpec& organ) {
   return options;
 }
 
-/// The errors of an organ's mesh, at the place where the scene names it.
-void add_mesh_errors(scenes::Problems& problems, std::size_t organ, const Errors& errors) {
-  const std::string at = "/organs/" + std::to_string(organ) + "/mesh";
+/// The errors of a mesh, at the place where the scene names it: in `list`, an organ or an obstacle.
+void add_mesh_errors(scenes::Problems& problems, const std::string& list, std::size_t index, const Errors& errors) {
+  const std::string at = list + "/" + std::to_string(index) + "/mesh";
   for (const Error& error : errors)
     problems.add(at, (error.where.empty() ? "" : error.where + ": ") + error.message, error.hint, at);
+}
+
+/// The mesh of an obstacle; empty for one of another kind, and where it cannot be read.
+scenes::ObstacleMesh mesh_of(const std::string& scene_path, const scenes::ObstacleSpec& obstacle, std::size_t index,
+                             scenes::Problems& problems) {
+  const std::string at = "/obstacles/" + std::to_string(index);
+  if (obstacle.mesh.empty() || !problems.are_good(at, {"mesh", "mesh_unit"})) return {};
+  Result<importers::CheckedMesh> mesh =
+      importers::import_mesh(scenes::mesh_path(scene_path, obstacle.mesh), scenes::metres_of(obstacle.mesh_unit));
+  if (mesh) return {std::move(mesh->vertex), std::move(mesh->triangle)};
+  add_mesh_errors(problems, "/obstacles", index, mesh.errors());
+  return {};
 }
 
 }  // namespace
 
 Result<importers::ImportedOrgan> fill_of(const std::string& scene_path, const scenes::OrganSpec& organ) {
-  if (!organ.rig) return importers::import_organ(scenes::mesh_path(scene_path, organ), import_options_of(organ));
+  if (!organ.rig) return importers::import_organ(scenes::mesh_path(scene_path, organ.mesh), import_options_of(organ));
   // A rig has no mesh; its surface is empty and bound to nothing.
   importers::ImportedOrgan filled;
   filled.organ = scenes::fill_rig(organ);
@@ -53,12 +65,14 @@ Result<LoadedScene> load_whole_scene(const std::string& path, const scenes::Load
       if (imported)
         filled = *std::move(imported);
       else
-        add_mesh_errors(problems, i, imported.errors());
+        add_mesh_errors(problems, "/organs", i, imported.errors());
     }
     loaded.organs.push_back(std::move(filled.organ));
     loaded.reports.push_back(std::move(filled.report));
   }
-  std::optional<scenes::BuiltScene> built = scenes::build_model(scene.spec, loaded.organs, problems);
+  for (std::size_t i = 0; i < scene.spec.obstacles.size(); ++i)
+    loaded.obstacles.push_back(mesh_of(path, scene.spec.obstacles[i], i, problems));
+  std::optional<scenes::BuiltScene> built = scenes::build_model(scene.spec, loaded.organs, problems, loaded.obstacles);
   if (!built) return problems.errors();
   loaded.built = *std::move(built);
   loaded.scene = std::move(scene);
@@ -69,7 +83,7 @@ Result<scenes::BuiltScene> build_changed(const LoadedScene& scene,
                                          const std::function<void(scenes::SceneSpec&)>& change) {
   scenes::SceneSpec spec = scene.scene.spec;
   change(spec);
-  return scenes::build_model(spec, scene.organs);
+  return scenes::build_model(spec, scene.organs, scene.obstacles);
 }
 
 double damage_force_of(const scenes::SceneSpec& scene) {

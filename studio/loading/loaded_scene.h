@@ -19,6 +19,7 @@ struct LoadedScene {
   scenes::SceneText scene;
   std::vector<FilledOrgan> organs;               ///< (organ_count)
   std::vector<importers::ImportReport> reports;  ///< of organs from meshes; empty for rigs (organ_count)
+  std::vector<scenes::ObstacleMesh> obstacles;   ///< (obstacle_count)
   scenes::BuiltScene built;
 };
 

@@ -8,19 +8,20 @@
 #include "core/model/model.h"
 #include "core/model/organ.h"
 #include "core/model/state.h"
+#include "studio/render/shading.h"
 
 namespace ctpm::render {
 
-/// An organ's surface as it is drawn: split along the cut, with each edge bound to its own side, and closed by the
-/// walls of the cut. Only the severed links are kept between calls, so the States may come in any order.
+/// An organ's surface as it is drawn: cutbody::CutBody, and what its colours need. In a scene without a blade it is the
+/// organ's own surface. The States may come in any order.
 class CutSurface {
  public:
-  /// `whole` is the uncut surface of organ `organ`, bound to its spheres.
-  CutSurface(const Model& model, std::size_t organ, const Surface& whole);
+  /// `model` must outlive the CutSurface.
+  CutSurface(const Model& model, std::size_t organ);
   ~CutSurface();
   CutSurface(CutSurface&&) noexcept;
 
-  /// Takes over the severed links of `state`. Returns whether surface() changed.
+  /// Takes over the cuts of `state`. Returns whether surface() changed.
   bool update(const State& state);
 
   /// Outer triangles first, then the wall's. The wall has its own vertices, so that normals break at the cut edge.
@@ -35,6 +36,10 @@ class CutSurface {
   /// Share of the outermost layer in a vertex of the wall: 1 in that layer, 0 in the second and below. 0 for outer
   /// vertices, and in organs of one layer                           (vertex_count, or empty without a cut)
   const std::vector<float>& rind() const;
+
+  /// The shading of the organ's own surface at rest, at the outer vertices; normals are 0 where it is not known
+  /// (outer_vertex_count, or empty without a cut)
+  const Shading& at_rest() const;
 
  private:
   struct Parts;

@@ -99,6 +99,13 @@ float GroundShadow::darkness(float u, float v) const {
   return (1 - t) * ((1 - s) * row[0] + s * row[1]) + t * ((1 - s) * row[kSize] + s * row[kSize + 1]);
 }
 
+float GroundShadow::darkness_at(Vec3 p) const {
+  const Vec3 d = p - centre_;
+  // The outermost texels reach half a texel less far than the ground.
+  const auto texel = [](double at) { return std::clamp(float((0.5 + 0.5 * at) * kSize - 0.5), 0.0f, kSize - 1.001f); };
+  return darkness(texel(dot(d, x_)), texel(dot(d, y_)));
+}
+
 /// The part of the picture that the ground square covers, in knots: columns [left, right), rows [top, bottom).
 GroundShadow::KnotRange GroundShadow::find_range(const Frame& frame, const Mat4& m) const {
   const KnotRange all{0, 0, frame.width / kStep + 2, frame.height / kStep + 2};

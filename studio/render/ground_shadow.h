@@ -22,6 +22,9 @@ class GroundShadow {
   void clear();
   /// Adds the first `triangle_count` triangles of a surface whose vertices are at `position`.
   void add(const Surface& surface, std::span<const Vec3> position, std::size_t triangle_count);
+  /// Darkness at a point of the ground [m], 0 to 1, of what was added before find_darkness(); 0 beyond its border.
+  float darkness_at(Vec3 p) const;
+  void find_darkness();
   /// Darkens `frame`, a picture of the empty ground seen with `clip_from_world`. A narrow shadow shows contact, a wide
   /// one the ambient light.
   void draw(Frame& frame, const Mat4& clip_from_world);
@@ -39,7 +42,6 @@ class GroundShadow {
     int rows() const { return bottom - top; }
   };
   float darkness(float u, float v) const;
-  void find_darkness();
   KnotRange find_range(const Frame& frame, const Mat4& clip_from_world) const;
   void darken_row(Frame& frame, const KnotRange& range, int y);
   void find_knots(const Frame& frame, const Mat4& clip_from_world, const KnotRange& range);

@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/contact/drawn_surfaces.h"
 #include "core/model/organ.h"
 #include "core/model/state.h"
+#include "studio/render/shading.h"
 
 namespace ctpm::render {
 
@@ -14,11 +16,12 @@ constexpr int kOrganVertexFloats = 13;
 /// The moving vertices of one surface, computed for every picture.
 class OrganMesh {
  public:
-  /// Takes over a surface whose vertices or triangles changed. `is_lip`, `rind`: as in CutSurface.
-  void set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip, const std::vector<float>& rind);
+  /// Takes over a surface whose vertices or triangles changed. `is_lip`, `rind`, `at_rest`: as in CutSurface.
+  void set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip, const std::vector<float>& rind,
+                   const Shading& at_rest);
 
-  /// Deforms the surface and fills vertices(). `first_sphere`: index of the organ's first sphere in the State.
-  void update(const Model& model, std::size_t organ, const Surface& surface, const State& state);
+  /// Places the surface, that of organ `organ` of the Model of `drawn`, and fills vertices().
+  void update(contact::DrawnSurfaces& drawn, std::size_t organ, const Surface& surface, const State& state);
 
   /// Interleaved floats (vertex_count x kOrganVertexFloats). The crevice is negative in hollows and positive
   /// on ridges.
@@ -26,9 +29,23 @@ class OrganMesh {
   const std::vector<Vec3>& positions() const { return position_; }  ///< [m]
 
  private:
-  std::vector<Vec3> position_, normal_;
+  void find_corrections(const Surface& surface, const Shading& at_rest);
+  void correct();
+
+  std::vector<Vec3> position_;
+  Shading shading_;
   std::vector<Vec3> stained_;  ///< rest positions for which stain_ was computed [m]
-  std::vector<float> crevice_, per_neighbour_, stain_, lip_, rind_;
+  std::vector<float> per_neighbour_, stain_, lip_, rind_;
+
+  /// What is added so that the shading at rest is that of the organ's own surface, whose triangles are others: along
+  /// the way to a neighbour, and across it.
+  struct Correction {
+    std::size_t neighbour = 0;
+    double along = 0, across = 0;
+    float crevice = 0;
+    bool is_copy = false;  ///< the neighbour's normal is taken, since the vertex's own triangles are folded
+  };
+  std::vector<Correction> corrections_;  ///< of the first vertices; empty without a cut
   std::vector<float> data_;
 };
 

@@ -25,8 +25,9 @@ Result<Done> OrganPainter::create(const Gl& gl, const SceneView& scene) {
       if (!made) return made.errors();
       programs_[std::size_t(pass)][cutaway] = *made;
     }
+  drawn_ = std::make_unique<contact::DrawnSurfaces>(*scene.model);
   for (std::size_t i = 0; i < scene.model->surfaces.size(); ++i) {
-    organs_.push_back({CutSurface(*scene.model, i, scene.model->surfaces[i]), {}, {}, false});
+    organs_.push_back({CutSurface(*scene.model, i), {}, {}, false});
     VertexArray& array = organs_.back().array;
     array.create(gl);
     array.attribute(gl, 0, 3, 0, kOrganVertexFloats), array.attribute(gl, 1, 3, 3, kOrganVertexFloats);
@@ -35,14 +36,15 @@ Result<Done> OrganPainter::create(const Gl& gl, const SceneView& scene) {
   return Done{};
 }
 
-void OrganPainter::update(const Gl& gl, const SceneView& scene, const State& state) {
+void OrganPainter::update(const Gl& gl, const State& state) {
   for (std::size_t i = 0; i < organs_.size(); ++i) {
     Organ& organ = organs_[i];
     const bool changed = organ.cut.update(state);
     const Surface& surface = organ.cut.surface();
-    if (changed || !organ.is_set) organ.mesh.set_surface(surface, organ.cut.is_lip(), organ.cut.rind());
+    if (changed || !organ.is_set)
+      organ.mesh.set_surface(surface, organ.cut.is_lip(), organ.cut.rind(), organ.cut.at_rest());
     organ.is_set = true;
-    organ.mesh.update(*scene.model, i, surface, state);
+    organ.mesh.update(*drawn_, i, surface, state);
     organ.array.set_stream(gl, organ.mesh.vertices());
   }
 }

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "core/contact/drawn_surfaces.h"
 #include "studio/render/cut_surface.h"
 #include "studio/render/gl_objects.h"
 #include "studio/render/ground_shadow.h"
@@ -21,7 +23,7 @@ class OrganPainter {
   Result<Done> create(const Gl& gl, const SceneView& scene);
 
   /// Deforms and splits the surfaces according to the state.
-  void update(const Gl& gl, const SceneView& scene, const State& state);
+  void update(const Gl& gl, const State& state);
   void add_shadows(GroundShadow& shadow) const;
 
   /// The programs that draw() will use. The caller sets the light of each first.
@@ -49,6 +51,7 @@ class OrganPainter {
   };
   Order sort_triangles(const Organ& organ, Vec3 eye, bool needs_averted);
 
+  std::unique_ptr<contact::DrawnSurfaces> drawn_;
   std::vector<Organ> organs_;
   std::vector<std::uint32_t> indices_, averted_;
   const Program& program(OrganPass pass, const DrawOptions& options) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "studio/render/backdrop.h"
 #include "studio/render/edge_smoothing.h"
@@ -74,8 +75,12 @@ struct Renderer::Parts {
   OrganPainter organs;
   std::vector<ToolMesh> tool_meshes;
   std::vector<VertexArray> tools;
-  std::vector<ToolMesh> obstacle_meshes;
-  std::vector<VertexArray> obstacles;
+  struct DrawnObstacle {
+    ObstacleMesh mesh;
+    VertexArray array;
+    std::optional<GroundShadow> shadow;  ///< on its level top
+  };
+  std::vector<DrawnObstacle> obstacles;
   VertexArray spheres, rods;
   std::vector<float> instances;
   std::vector<ElementValue> elements;
@@ -105,6 +110,7 @@ struct Renderer::Parts {
   VertexArray array_of(const ToolMesh& mesh) const;
   void draw_tool(const State& state, const DrawOptions& options);
   void draw_obstacles(const State& state, const DrawOptions& options);
+  void cast_shadow(DrawnObstacle& obstacle);
   void draw_behind(const DrawOptions& options);
   void read_frame();
 };
@@ -137,8 +143,10 @@ void Renderer::Parts::create_arrays() {
   }
   for (const Obstacle& obstacle : scene.model->obstacles) {
     if (is_level_ground(obstacle, up)) continue;
-    obstacle_meshes.push_back(make_obstacle_mesh(obstacle, ground_centre, kGroundExtent * size));
-    obstacles.push_back(array_of(obstacle_meshes.back()));
+    DrawnObstacle& drawn = obstacles.emplace_back();
+    drawn.mesh = make_obstacle_mesh(obstacle, up, ground_centre, kGroundExtent * size);
+    drawn.array = array_of(drawn.mesh.mesh);
+    if (const auto top = level_top_of(obstacle, up)) drawn.shadow.emplace(top->centre, top->x, top->y, up, 0.10 * size);
   }
 }
 
@@ -194,9 +202,10 @@ PixelRect Renderer::Parts::footprint(const State& state, const DrawOptions& opti
           for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
             print.add(p + side * range.sphere_radius * axis);
         }
-  for (const ToolMesh& mesh : obstacle_meshes)
-    for (std::size_t i = 0; i < mesh.vertex.size(); i += 7)
-      print.add({mesh.vertex[i], mesh.vertex[i + 1], mesh.vertex[i + 2]});
+  for (const DrawnObstacle& obstacle : obstacles) {
+    const std::vector<float>& v = obstacle.mesh.mesh.vertex;
+    for (std::size_t i = 0; i < v.size(); i += 7) print.add({v[i], v[i + 1], v[i + 2]});
+  }
   if (held_tool(state, options)) {
     const std::vector<float>& v = tool_meshes[std::size_t(state.last_inputs.tool)].vertex;
     for (std::size_t i = 0; i < v.size(); i += 7)
@@ -270,8 +279,24 @@ void Renderer::Parts::draw_obstacles(const State& state, const DrawOptions& opti
   if (obstacles.empty()) return;
   set_light(tool, state, options);
   tool.set("world_from_tool", rigid({}, {}));
-  for (const VertexArray& array : obstacles)
-    gl().BindVertexArray(array.id), gl().DrawElements(GL_TRIANGLES, array.index_count, GL_UNSIGNED_INT, nullptr);
+  for (DrawnObstacle& obstacle : obstacles) {
+    if (obstacle.shadow) cast_shadow(obstacle);
+    gl().BindVertexArray(obstacle.array.id);
+    gl().DrawElements(GL_TRIANGLES, obstacle.array.index_count, GL_UNSIGNED_INT, nullptr);
+  }
+}
+
+/// Darkens the vertices of a level top where organs are above it.
+void Renderer::Parts::cast_shadow(DrawnObstacle& obstacle) {
+  obstacle.shadow->clear();
+  organs.add_shadows(*obstacle.shadow);
+  obstacle.shadow->find_darkness();
+  std::vector<float>& vertex = obstacle.mesh.mesh.vertex;
+  for (std::size_t i = 0; i < obstacle.mesh.top_vertices; ++i) {
+    float* const v = &vertex[7 * i];
+    v[6] = float(ToolPart::cloth) + obstacle.shadow->darkness_at({v[0], v[1], v[2]});
+  }
+  obstacle.array.set_stream(gl(), vertex);
 }
 
 /// The backdrop and the ground's shadow.
@@ -347,7 +372,7 @@ Frame Renderer::draw(const State& state, const DrawOptions& options) {
   p.context->make_current();
   const Gl& gl = p.gl();
   p.clip = p.clip_from_world(options.camera);
-  p.organs.update(gl, p.scene, state);
+  p.organs.update(gl, state);
   p.rect = p.footprint(state, options);
   p.target.begin(gl, p.rect);
   gl.Enable(GL_DEPTH_TEST), gl.DepthFunc(GL_LEQUAL);

@@ -214,7 +214,7 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in float part;
 uniform mat4 clip_from_world, world_from_tool;
 out vec3 p, n;
-flat out float piece;
+out float piece;
 void main() {
   vec4 w = world_from_tool * vec4(position, 1.0);
   p = w.xyz; n = mat3(world_from_tool) * normal; piece = part;
@@ -224,7 +224,7 @@ void main() {
 
 const char* const kToolFragment = R"(
 in vec3 p, n;
-flat in float piece;
+in float piece;
 out vec4 colour;
 void main() {
   vec3 v = normalize(eye - p);
@@ -234,8 +234,10 @@ void main() {
   vec3 c;
   if (piece < 0.5)
     c = vec3(0.62, 0.65, 0.69) * (0.30 * diffuse_light(m, vec3(0.0), 1.0) + 0.85 * mirrored);
-  else if (piece > 1.5)
-    c = vec3(0.09, 0.20, 0.22) * diffuse_light(m, vec3(0.0), 1.0);
+  else if (piece > 1.5) {
+    float lit = clamp(3.0 - piece, 0.0, 1.0);  // of the picture's colour, which is the root of the light
+    c = lit * lit * vec3(0.09, 0.20, 0.22) * diffuse_light(m, vec3(0.0), 1.0);
+  }
   else
     c = vec3(0.055, 0.075, 0.10) * diffuse_light(m, vec3(0.0), 1.0) + 1.3 * fresnel(dot(m, v)) * mirrored;
   colour = vec4(to_srgb(c), 1.0);

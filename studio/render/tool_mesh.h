@@ -10,7 +10,8 @@ namespace ctpm::render {
 /// The material of one part of a tool, or of an obstacle.
 enum class ToolPart : std::int32_t { steel = 0, handle = 1, cloth = 2 };
 
-/// A tool in its own frame. The floats of a vertex are position [m], normal, part.
+/// A tool in its own frame. The floats of a vertex are position [m], normal, part; for cloth, the part and how much
+/// darker a shadow makes it, in [0, 1).
 struct ToolMesh {
   std::vector<float> vertex;         ///< (vertex_count x 7)
   std::vector<std::uint32_t> index;  ///< (3 triangle_count)

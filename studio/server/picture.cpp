@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/surface/surface.h"
 #include "studio/render/camera.h"
 #include "studio/render/noise.h"
 #include "studio/render/tool_mesh.h"
@@ -58,8 +57,9 @@ void add_positions(MessageBytes& out, const std::vector<Vec3>& vertex) {
 
 }  // namespace
 
-PictureMaker::PictureMaker(const Model& model, std::uint32_t stage) : model_(model), stage_(stage) {
-  for (std::size_t i = 0; i < model.surfaces.size(); ++i) surfaces_.emplace_back(model, i, model.surfaces[i]);
+PictureMaker::PictureMaker(const Model& model, std::uint32_t stage)
+    : model_(model), stage_(stage), drawn_(std::make_unique<contact::DrawnSurfaces>(model)) {
+  for (std::size_t i = 0; i < model.surfaces.size(); ++i) surfaces_.emplace_back(model, i);
 }
 
 void PictureMaker::make_triangles() {
@@ -99,7 +99,7 @@ Picture PictureMaker::make(const State& state, const FrameFacts& facts) {
   out.add(facts.hand), out.add(float(facts.tick_time)), out.add(std::uint32_t(facts.late_ticks));
   out.add(std::uint32_t(surfaces_.size()));
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-    surface::place_surface(model_, i, surfaces_[i].surface(), state, vertex_);
+    drawn_->place(i, surfaces_[i].surface(), state, vertex_);
     add_positions(out, vertex_);
   }
   return {stage_, topology_, triangles_, std::move(out.text)};

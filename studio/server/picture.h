@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/contact/drawn_surfaces.h"
 #include "core/model/model.h"
 #include "core/model/state.h"
 #include "core/stepping/step.h"
@@ -52,6 +53,7 @@ class PictureMaker {
 
   const Model& model_;
   std::uint32_t stage_, topology_ = 0;
+  std::unique_ptr<contact::DrawnSurfaces> drawn_;
   std::vector<render::CutSurface> surfaces_;
   std::shared_ptr<const std::string> triangles_;
   std::vector<Vec3> vertex_;

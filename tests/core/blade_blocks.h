@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/cutting/cutting.h"
 #include "core/stepping/step.h"
 #include "tests/core/blocks.h"
 
@@ -21,7 +22,7 @@ inline network::Material resisting(double toughness = kToughness, double frictio
 inline Model block_with_blade(int ni, int nj, int nk, const network::Material& material,
                               network::Structure structure = network::Structure::ctpm) {
   Model model = make_block_model(ni, nj, nk, structure, material);
-  model.tools = {scalpel(0.2)};
+  model.tools = {scalpel(0.1)};
   model.solver.tolerance = 1e-11, model.solver.velocity_floor = 1e-14, model.solver.max_iterations = 2000;
   return model;
 }
@@ -57,20 +58,41 @@ inline Vec3 momentum(const Model& model, const State& state) {
   return sum;
 }
 
-/// Energy of opening the plane with this normal at the severed elements [J].
-inline double fracture_energy(const Model& model, const State& state, Vec3 normal) {
-  double sum = 0;
-  const AxialElements& axial = model.axial;
-  for (std::size_t e = 0; e < axial.size(); ++e) {
-    const Vec3 d = model.rest_position[std::size_t(axial.b[e])] - model.rest_position[std::size_t(axial.a[e])];
-    if (state.axial_severed[e]) sum += model.cut_resistance.energy[e] * std::abs(dot(normal, d)) / norm(d);
-  }
-  return sum;
+/// A front that lies along a straight edge.
+inline cutting::Front straight_front(Vec3 tip, Vec3 heel) {
+  cutting::Front front;
+  for (std::size_t n = 0; n < kEdgeNodes; ++n) front[n] = tip + double(n) / double(kEdgeNodes - 1) * (heel - tip);
+  return front;
 }
 
-/// Work of the hand along its path through a held block, and fracture energy of the severed elements [J].
+/// Severs what a straight front crosses in the first organ.
+inline std::int32_t sever(const Model& model, const cutting::Front& from, const cutting::Front& to, State& state,
+                          std::vector<cutting::Crossing>& crossings) {
+  const std::vector<std::int32_t> organ(kEdgeNodes, 0);
+  return cutting::sever_swept(model, cutting::RestElements(model), from, to, organ, state, crossings);
+}
+
+/// Area of the swept surface within a box at rest [m^2].
+inline double swept_area(const State& state, Vec3 low, Vec3 high) {
+  constexpr int kParts = 16;
+  double area = 0;
+  cutting::for_each_swept(state, [&](const cutting::SweptQuad& q) {
+    const double whole =
+        0.5 * (norm(cross(q.to - q.from, q.from2 - q.from)) + norm(cross(q.to2 - q.to, q.from2 - q.to)));
+    for (int i = 0; i < kParts; ++i)
+      for (int j = 0; j < kParts; ++j) {
+        const double u = (i + 0.5) / kParts, v = (j + 0.5) / kParts;
+        const Vec3 p = (1 - v) * ((1 - u) * q.from + u * q.to) + v * ((1 - u) * q.from2 + u * q.to2);
+        if (p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z)
+          area += whole / (kParts * kParts);
+      }
+  });
+  return area;
+}
+
+/// Work of the hand along its path [J].
 struct Work {
-  double by_hand = 0, of_fracture = 0;
+  double by_hand = 0;
   State state;
 };
 
@@ -86,8 +108,6 @@ inline Work cut_through(const Model& model, double per_tick, Vec3 start, Vec3 wa
     if (i > 0) work.by_hand -= per_tick * dot(report.tool_force, direction);
     EXPECT_LE(dot(report.tool_force, direction), 0) << "the blade is never drawn in";
   }
-  const Vec3 across = cross(direction, {0, 0, 1});
-  work.of_fracture = fracture_energy(model, work.state, across / norm(across));
   return work;
 }
 

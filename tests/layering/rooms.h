@@ -24,9 +24,9 @@ constexpr bool kNamespacesAreRooms = true;
 constexpr int kMostLines = 500;  ///< of a source file
 
 /// All rooms of core in their order.
-inline const std::vector<std::string> kCore{"core/model",    "core/parallel", "core/network", "core/surface",
-                                            "core/elements", "core/cutting",  "core/contact", "core/inversion",
-                                            "core/solver",   "core/stepping"};
+inline const std::vector<std::string> kCore{"core/model",     "core/parallel", "core/network", "core/surface",
+                                            "core/elements",  "core/cutting",  "core/cutbody", "core/contact",
+                                            "core/inversion", "core/solver",   "core/stepping"};
 
 inline std::vector<std::string> core_and(std::vector<std::string> more) {
   more.insert(more.begin(), kCore.begin(), kCore.end());
@@ -41,6 +41,7 @@ inline const std::vector<Room> kRooms{
     {"core/surface", {"core/model"}, "ctpm::surface"},
     {"core/elements", {"core/model", "core/parallel"}, "ctpm::elements"},
     {"core/cutting", {"core/model", "core/parallel", "core/elements"}, "ctpm::cutting"},
+    {"core/cutbody", {"core/model", "core/surface", "core/cutting"}, "ctpm::cutbody"},
     {"core/contact", {"core/model", "core/parallel", "core/surface", "core/elements", "core/cutting"}, "ctpm::contact"},
     {"core/inversion", {"core/model", "core/parallel", "core/elements", "core/contact"}, "ctpm::inversion"},
     {"core/solver", {"core/model", "core/parallel", "core/elements"}, "ctpm::solver"},

@@ -25,6 +25,10 @@ Model rich_model() {
   model.loads.force = Vec3Array(1);
   CutResistance& cut = model.cut_resistance;
   cut.energy.assign(model.axial.size(), 1), cut.friction.assign(model.axial.size(), 1);
+  Obstacle mesh{"mesh", ObstacleKind::mesh, {}, {}, {}};
+  for (const Vec3 v : {Vec3{}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) mesh.vertex.push_back(v);
+  mesh.corner = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+  model.obstacles = {mesh, {"box", ObstacleKind::box, {}, {}, {1, 1, 1}}};
   return model;
 }
 
@@ -141,6 +145,13 @@ TEST(ModelCheck, NamesTheFieldAndWhatItMustBe) {
       {"tools[1].kind is of an unknown kind", [](Model& m) { m.tools[1].kind = static_cast<ToolKind>(3); }},
       {"organs[0] is not a range of spheres", [](Model& m) { ++m.organs[0].count; }},
       {"axial[0] joins a sphere with itself", [](Model& m) { m.axial.b[0] = m.axial.a[0]; }},
+      {"obstacles[0].corner[1] is 4, must be in [0, 4)", [](Model& m) { m.obstacles[0].corner[1] = 4; }},
+      {"obstacles[0].corner must have three entries", [](Model& m) { m.obstacles[0].corner.clear(); }},
+      {"obstacles[1].corner must be empty but of a mesh",
+       [](Model& m) {
+         m.obstacles[1].corner = {0, 0, 0};
+       }},
+      {"obstacles[0].vertex.y[2] must be in [-1000, 1000]", [](Model& m) { m.obstacles[0].vertex.y[2] = INFINITY; }},
       {"solver.tolerance must be in (1e-16, 1)", [](Model& m) { m.solver.tolerance = 1; }},
       {"solver.max_iterations must be in [1, 1000000]", [](Model& m) { m.solver.max_iterations = 0; }},
       {"solver.substeps must be in [1, 10000]", [](Model& m) { m.solver.substeps = 10001; }},

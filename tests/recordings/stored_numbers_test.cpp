@@ -179,7 +179,7 @@ TEST(StoredNumbers, OfEventsKeepTheirMeaning) {
 }
 
 // A session from before these fields has none of them and gets the defaults: the constants that its program computed
-// with.
+// with. Since physics revision 4 the first three of a tool mean something else.
 TEST(StoredNumbers, DefaultsOfFieldsThatEarlierSessionsLackAreForEver) {
   const Model model;
   EXPECT_EQ(model.contact_damping, 50);
@@ -187,9 +187,9 @@ TEST(StoredNumbers, DefaultsOfFieldsThatEarlierSessionsLackAreForEver) {
   EXPECT_EQ(model.tissue_cells.size(), 0u);
   EXPECT_EQ(model.inversion_threshold, 0.4);
   const Tool tool;
-  EXPECT_EQ(tool.trail_distance, 0.5e-3);
-  EXPECT_EQ(tool.blade_reach, 9e-3);
-  EXPECT_EQ(tool.blade_reach_spacings, 0.75);
+  EXPECT_EQ(tool.trail_distance, 0.2e-3);
+  EXPECT_EQ(tool.blade_reach, 15e-3);
+  EXPECT_EQ(tool.blade_reach_spacings, 1.5);
   EXPECT_EQ(tool.flank_height, 6e-3);
   EXPECT_EQ(tool.blade_thickness, 1e-3);
   EXPECT_EQ(tool.slowest_slip, 1e-3);

@@ -28,7 +28,7 @@ TEST(BadInput, AnObstacleIsAPlaneOrABoxAndHasAPlaceAndASize) {
 {"name": "a", "plane": {"point_mm": [0, 0, 0], "normal": [0, 0, 0]}},
 {"name": "b", "box": {"min_mm": [0, 0, 0], "max_mm": [1, 0, 1]}},
 {"name": "c", "box": {"min_mm": [0, 0, 9], "max_mm": [1, 1, 1]}}], "organs_meet": 1)"));
-  for (const char* part : {"t.json:4:1: error: /obstacles/0: must have exactly one of plane, box",
+  for (const char* part : {"t.json:4:1: error: /obstacles/0: must have exactly one of plane, box, mesh",
                            "t.json:5:10: error: /obstacles/1/name: got \"a\", which is taken already",
                            "t.json:5:", "/obstacles/1/plane/normal", "/obstacles/2/box: has no volume",
                            "/obstacles/3/box: min_mm must not be above max_mm", "/organs_meet"})

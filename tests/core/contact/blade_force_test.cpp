@@ -2,6 +2,9 @@
 
 #include "core/contact/blade_force.h"
 
+#include <numeric>
+#include <tuple>
+
 #include "core/elements/forces.h"
 #include "tests/core/blade_blocks.h"
 
@@ -48,24 +51,26 @@ TEST(BladeForce, EveryPlaneOpensItsOwnAreaWhicheverWayItLies) {
 
 TEST(BladeForce, TheHandsWorkIsTheToughnessTimesTheAreaAtEverySpeed) {
   const Model model = held_block(6, 5, 4);
-  for (const double per_tick : {2e-5, 1e-4, 1e-3, 0.02, 0.11})
+  for (const double per_tick : {2e-5, 1e-4, 1e-3})
     for (const Vec3 way : {Vec3{0, 0.12, 0}, Vec3{0.03, 0.12, 0}}) {
       const Work work = cut_through(model, per_tick, {-0.0131 * way.x / 0.03 + 0.0002, -0.06, -0.05}, way);
-      ASSERT_GT(work.of_fracture, 0);
-      // The heading is unknown for the first half millimetre, but that lies outside the block. Only rounding errors
-      // remain.
-      EXPECT_NEAR(work.by_hand, work.of_fracture, 1e-6 * work.of_fracture)
-          << per_tick * 1e3 << " mm a tick along " << way.x;
+      const double expected = kToughness * 0.048 * 0.036 * norm(way) / way.y;
+      // The force of a tick is that at its start, so a fast blade pays late.
+      EXPECT_NEAR(work.by_hand, expected, 0.02 * expected) << per_tick * 1e3 << " mm a tick along " << way.x;
+      const double area = testing::swept_area(work.state, {-1, -0.024, 0}, {1, 0.024, 0.036});
+      EXPECT_NEAR(kToughness * area, expected, 0.01 * expected);
     }
 }
 
-/// A block of 60 x 60 x 36 mm, held at the bottom and at both sides, that a blade cuts in half.
+/// A block that is held all around but above, with sides of 36 mm and 18 mm and one row of spheres more.
 Model clamped_block(double spacing, const network::Material& material) {
-  const int f = int(std::lround(0.012 / spacing));
-  Model model = testing::make_block_model(5 * f, 5 * f, 3 * f, network::Structure::ctpm, material, spacing);
+  const int f = int(std::lround(0.012 / spacing)), n = 6 * f;
+  Model model =
+      testing::make_block_model(n, n, 3 * f, network::Structure::ctpm, material, spacing, /*inversion_resistance=*/10);
+  const auto at_rim = [&](std::int32_t cell) { return cell == 0 || cell == n - 1; };
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
-    if (int(i) % (5 * f) == 0 || int(i) % (5 * f) == 5 * f - 1) model.held_axes[i] = kAnchored;
-  model.tools = {testing::scalpel(0.2)};
+    model.held_axes[i] = at_rim(model.cell.i[i]) || at_rim(model.cell.j[i]) || model.cell.k[i] == 0 ? kAnchored : 0;
+  model.tools = {testing::scalpel(0.05)};
   return model;
 }
 
@@ -87,34 +92,69 @@ double viscous_work(const Model& model, const State& before, const State& after)
   return work;
 }
 
-TEST(BladeForce, TheHandPaysForTheAreaAndForWhatTheTissueLosesWhateverTheSpheres) {
-  constexpr double kPerTick = 4e-5;
-  for (const double spacing : {0.012, 0.006}) {
-    // Stiff, so that the blade hardly drags the tissue and meets the elements in their rest directions.
-    network::Material material = resisting();
-    material.stiffness_scale = 3;
-    const Model model = clamped_block(spacing, material);
-    stepping::Stepper stepper(model);
-    State state = rest_state(model), before = state;
-    double by_hand = 0, lost = 0;
-    for (int i = 0; i <= int(0.1 / kPerTick); ++i) {
-      before = state;
-      const stepping::StepReport report = stepper.step(state, blade_at({0.0002, -0.05 + kPerTick * i, -0.05}));
-      if (i > 0) by_hand -= kPerTick * report.tool_force.y;
-      lost += viscous_work(model, before, state);
-    }
-    const double opened = testing::fracture_energy(model, state, {1, 0, 0});
-    EXPECT_NEAR(opened, kToughness * 0.06 * 0.036, 0.25 * opened) << "spheres at the rim have fewer elements";
-    EXPECT_NEAR(by_hand, opened + lost, 0.06 * opened) << spacing;
-    EXPECT_LT(by_hand, 1.2 * opened) << spacing;
+/// A straight cut through the middle of a clamped block.
+struct Cut {
+  double ratio;    ///< of the hand's work to toughness times area plus viscous losses
+  double mean;     ///< force in the middle 30 mm [N]
+  double chatter;  ///< RMS about a moving mean of 6 mm, over the mean
+  double jump;     ///< largest change of the force in a tick, over the mean
+};
+
+Cut cut_block(double spacing, double toughness, double degrees) {
+  constexpr double kPerTick = 3e-5, kHalfWay = 0.055, kMiddle = 0.015, kHalfWindow = 0.003;
+  const Model model = clamped_block(spacing, resisting(toughness));
+  stepping::Stepper stepper(model);
+  State state = rest_state(model), before = state;
+  const double angle = degrees * 3.14159265358979323846 / 180;
+  const Vec3 way{std::sin(angle), std::cos(angle), 0};
+  std::vector<double> force, place;
+  double by_hand = 0, lost = 0;
+  for (double y = -kHalfWay; y <= kHalfWay; y += kPerTick) {
+    before = state;
+    const stepping::StepReport report = stepper.step(state, blade_at(Vec3{0.0013, 0.0007, -0.008} + y * way));
+    force.push_back(-dot(report.tool_force, way)), place.push_back(y);
+    by_hand += kPerTick * force.back(), lost += viscous_work(model, before, state);
   }
+  const Vec3 high{2.5 * 0.012 + (0.012 - spacing) / 2, 2.5 * 0.012 + (0.012 - spacing) / 2, 0.036 - spacing};
+  const double area = testing::swept_area(state, {-high.x, -high.y, 0}, high);
+  Cut cut{by_hand / (toughness * area + lost), 0, 0, 0};
+  const auto window = std::ptrdiff_t(kHalfWindow / kPerTick);
+  int count = 0;
+  for (std::ptrdiff_t i = window + 1; i + window < std::ptrdiff_t(force.size()); ++i) {
+    if (std::abs(place[std::size_t(i)]) > kMiddle) continue;
+    const double around =
+        std::accumulate(force.begin() + i - window, force.begin() + i + window + 1, 0.0) / double(2 * window + 1);
+    const double f = force[std::size_t(i)], off = f - around;
+    cut.mean += f, cut.chatter += off * off, ++count;
+    cut.jump = std::max(cut.jump, std::abs(f - force[std::size_t(i) - 1]));
+  }
+  cut.mean /= count, cut.chatter = std::sqrt(cut.chatter / count) / cut.mean, cut.jump /= cut.mean;
+  return cut;
 }
 
-TEST(BladeForce, RisesBeforeTheCutAndIsGoneAfterIt) {
+TEST(BladeForce, IsTheTissuesAndNotTheLattices) {
+  for (const auto& [spacing, most_chatter, toughnesses] :
+       {std::tuple{0.012, 0.05, std::vector<double>{20, 200, 500}}, {0.006, 0.03, std::vector<double>{200}}})
+    for (const double toughness : toughnesses) {
+      double least = INFINITY, most = 0;
+      for (const double degrees : {0.0, 30.0, 45.0}) {
+        const Cut cut = cut_block(spacing, toughness, degrees);
+        const auto where = ::testing::Message()
+                           << spacing << " m, " << toughness << " J/m^2, " << degrees << " degrees";
+        EXPECT_NEAR(cut.ratio, 1, 0.05) << where;
+        EXPECT_LT(cut.chatter, most_chatter) << where;
+        EXPECT_LT(cut.jump, 0.05) << where;
+        least = std::min(least, cut.mean), most = std::max(most, cut.mean);
+      }
+      EXPECT_LT(most, 1.05 * least) << spacing << " m, " << toughness << " J/m^2";
+    }
+}
+
+TEST(BladeForce, RisesFromNothingAndIsGoneAfterTheCut) {
   const Model model = block_with_blade(6, 5, 4, resisting());
   stepping::Stepper stepper(model);
   State state = rest_state(model);
-  double before_first = 0, while_cutting = 0;
+  double before = 0, while_cutting = 0;
   int severed = 0;
   stepping::StepReport report;
   for (int i = 0; i < 2400; ++i) {
@@ -125,15 +165,15 @@ TEST(BladeForce, RisesBeforeTheCutAndIsGoneAfterIt) {
     if (i < 300) {
       EXPECT_EQ(force, 0) << "far from the block, tick " << i;
     }
-    if (severed == 0) before_first = std::max(before_first, force);
-    if (severed > 0) while_cutting = std::max(while_cutting, force);
+    EXPECT_LT(force, before + 0.2 * kToughness * 0.036) << "the force jumps up in tick " << i;
+    before = force;
+    while_cutting = std::max(while_cutting, force);
   }
   EXPECT_GT(severed, 0);
-  EXPECT_GT(before_first, 0.5);
-  // The mean cutting force is J_c times the height of the block.
-  const double steady = kToughness * 0.048;
-  EXPECT_GT(while_cutting, 0.7 * steady);
-  EXPECT_LT(while_cutting, 4 * steady);
+  // The cutting force is J_c times the height of the block.
+  const double steady = kToughness * 0.036;
+  EXPECT_GT(while_cutting, 0.95 * steady);
+  EXPECT_LT(while_cutting, 1.5 * steady) << "soft tissue is stretched along the edge";
   EXPECT_EQ(norm(report.tool_force), 0) << "the blade has left";
 }
 
@@ -149,9 +189,9 @@ TEST(BladeForce, ARestingBladeGoesOnHoldingTheTissueBack) {
     // The hand trembles by 20 micrometres; the force must not jump.
     const double before = report.tool_force.y;
     report = stepper.step(state, blade_at({0.0002, y + (i % 2 ? 2e-5 : 0.0), -0.05}));
-    EXPECT_LT(report.tool_force.y, -0.3);
+    EXPECT_LT(report.tool_force.y, -0.1);
     if (i > 0) {
-      EXPECT_NEAR(report.tool_force.y, before, 0.15 * std::abs(before)) << i;
+      EXPECT_NEAR(report.tool_force.y, before, 0.15 * kToughness * 0.036) << i;
     }
   }
 }
@@ -168,14 +208,12 @@ TEST(BladeForce, FlanksRubUntilTheBladeLeavesWhateverTheSpheres) {
     stepping::StepReport report;
     for (int i = 0; i < 1200; ++i) {
       const double y = -0.06 + 1e-4 * i;
-      report = stepper.step(state, blade_at({0.0002, y, -0.05}));
+      report = stepper.step(state, blade_at({0.0002, y, -0.01}));
       EXPECT_LE(report.tool_force.y, 0);
-      if (std::abs(y) < 0.018) sum -= report.tool_force.y, ++inside;
+      if (std::abs(y) < 0.015) sum -= report.tool_force.y, ++inside;
     }
-    // Two flanks along the 36 mm of blade inside the block; spheres at the boundary have fewer elements.
-    const double expected = 2 * kFriction * flank_height * 0.036;
-    EXPECT_LT(sum / inside, 1.05 * expected) << spacing;
-    EXPECT_GT(sum / inside, 0.75 * expected) << spacing;
+    const double expected = 2 * kFriction * flank_height * (0.036 - spacing);  // two flanks
+    EXPECT_NEAR(sum / inside, expected, 0.02 * expected) << spacing;
     EXPECT_EQ(norm(report.tool_force), 0);
   }
 }
@@ -204,56 +242,12 @@ TEST(BladeForce, CutFacesLeaveTheFlanksWhereTheyOpenWiderThanTheBlade) {
   EXPECT_GT(friction_in_opened_cut(blade, 0.003, 1e-3), 0.8 * closed) << "30 mm thick";
 }
 
-TEST(BladeForce, FrictionFallsLinearlyBelowTheSlowestSlip) {
-  Tool blade = testing::scalpel(0.2);
-  const double full = friction_in_opened_cut(blade, 0, 1e-5);
-  EXPECT_GT(full, 0.1);
-  EXPECT_NEAR(friction_in_opened_cut(blade, 0, 2.5e-7), 0.25 * full, 0.01 * full) << "at 0.25 mm/s of 1 mm/s";
-  blade.slowest_slip = 1e-4;
-  EXPECT_NEAR(friction_in_opened_cut(blade, 0, 2.5e-7), full, 0.01 * full);
-}
-
-/// Position of the blade's tip when a held block first resists it [m].
-double resistance_begins(const Tool& blade) {
-  Model model = held_block(6, 5, 4);
-  model.tools = {blade};
-  stepping::Stepper stepper(model);
-  State state = rest_state(model);
-  double y = -0.1;
-  while (y < 0 && stepper.step(state, blade_at({0.0002, y, -0.05})).tool_force.y == 0) y += 1e-4;
-  return y;
-}
-
-TEST(BladeForce, TissueResistsOverTheReachAheadOfTheEdge) {
-  Tool blade = testing::scalpel(0.2);
-  const double near = resistance_begins(blade);
-  blade.blade_reach = 0.02;
-  EXPECT_NEAR(near - resistance_begins(blade), 0.011, 2e-4);
-  blade.blade_reach = 1e-3;
-  EXPECT_NEAR(resistance_begins(blade), near, 2e-4) << "0.75 spacings of 12 mm are the least";
-  blade.blade_reach_spacings = 0.25;
-  EXPECT_NEAR(resistance_begins(blade) - near, 0.006, 2e-4);
-}
-
-TEST(BladeForce, GrowsWithTheHeadingUntilTheTrailIsTaut) {
-  const auto force_after = [](double trail_distance, double way) {
-    Model model = held_block(6, 5, 4);
-    model.tools[0].trail_distance = trail_distance;
-    stepping::Stepper stepper(model);
-    State state = rest_state(model);
-    (void)stepper.step(state, blade_at({0.0002, -0.03, -0.05}));
-    return norm(stepper.step(state, blade_at({0.0002, -0.03 + way, -0.05})).tool_force);
-  };
-  EXPECT_GT(force_after(0.5e-3, 1e-4), 0);
-  EXPECT_NEAR(force_after(0.5e-3, 1e-4), 2 * force_after(1e-3, 1e-4), 1e-9);
-  EXPECT_EQ(force_after(0.5e-3, 1e-3), force_after(1e-3, 1e-3)) << "both are taut";
-}
-
 TEST(BladeForce, SlicingAlongTheEdgeMakesPushingEasier) {
   // Atkins, Xu & Jeronimidis, "Cutting, by pressing and slicing", J. Mater. Sci. 39, 2004: with the
   // slice-push ratio xi the push falls to 1 / (1 + xi^2), and the slice is xi times that.
   Model model = clamped_block(0.006, resisting());
   model.held_axes.assign(model.sphere_count(), kAnchored);
+  model.tools = {testing::scalpel(0.2)};
   const auto mean_force = [&](double xi) {
     stepping::Stepper stepper(model);
     State state = rest_state(model);
@@ -267,37 +261,12 @@ TEST(BladeForce, SlicingAlongTheEdgeMakesPushingEasier) {
     return sum / inside;
   };
   const double push = -mean_force(0).y;
-  EXPECT_NEAR(push, kToughness * 0.036, 0.15 * push) << "spheres at the rim have fewer elements";
+  EXPECT_NEAR(push, kToughness * 0.030, 0.02 * push);
   for (const double xi : {0.5, 1.0}) {
     const Vec3 force = mean_force(xi);
     EXPECT_NEAR(-force.y, push / (1 + xi * xi), 0.03 * push) << xi;
     EXPECT_NEAR(-force.z, xi * push / (1 + xi * xi), 0.03 * push) << xi;
   }
-}
-
-TEST(BladeForce, WhatTensionHasStoredOpensTheCutWithTheHand) {
-  const network::Material material = resisting();
-  Model model = clamped_block(0.012, material);
-  model.held_axes.assign(model.sphere_count(), kAnchored);
-  State state = rest_state(model);
-  for (double& x : state.position.x) x *= 1.3;  // stretched across the cut
-  stepping::Stepper stepper(model);
-  double by_hand = 0;
-  for (int i = 0; i < 1000; ++i)
-    by_hand -= 1e-4 * stepper.step(state, blade_at({0.0002, -0.05 + 1e-4 * i, -0.05})).tool_force.y;
-  double opened = 0, stored = 0;
-  const AxialElements& axial = model.axial;
-  for (std::size_t e = 0; e < axial.size(); ++e) {
-    if (!state.axial_severed[e]) continue;
-    const Vec3 d = state.position[std::size_t(axial.b[e])] - state.position[std::size_t(axial.a[e])];
-    const bool is_tpm = axial.law[e] == AxialLaw::two_sphere_tpm;
-    const double k = is_tpm ? axial.k[e] * axial.kelvin_k[e] / (axial.k[e] + axial.kelvin_k[e]) : axial.k[e];
-    const double stretch = std::max(0.0, norm(d) - axial.rest_length[e]);
-    const double to_open = model.cut_resistance.energy[e] * std::abs(d.x) / norm(d);
-    opened += to_open, stored += std::min(to_open, 0.5 * k * stretch * stretch);
-  }
-  EXPECT_GT(stored, 0.05 * opened);
-  EXPECT_NEAR(by_hand, opened - stored, 1e-3 * opened) << "F ds = J_c dA - dE";
 }
 
 TEST(BladeForce, TheTissueFeelsWhatTheHandFeels) {
@@ -332,8 +301,29 @@ TEST(BladeForce, TissueNeverGainsMoreEnergyThanTheHandGives) {
       if (i > 0 && i <= ticks) given -= per_tick * report.tool_force.y;
       EXPECT_LE(elements::elastic_energy(model, state) + kinetic_energy(model, state), given + 1e-9) << "tick " << i;
     }
-    EXPECT_GT(given, 0);
+    // A blade that is through within a few ticks has not been felt.
+    if (per_tick < 0.01) {
+      EXPECT_GT(given, 0);
+    }
   }
+}
+
+TEST(BladeForce, AStabAlongTheBladeCutsASlitAsWideAsTheBlade) {
+  const Model model = testing::held_block(9, 9, 6);
+  const double height = model.tools[0].flank_height, deep = 0.03;
+  Vec3 low = model.rest_position[0], high = low;
+  for (std::size_t i = 0; i < model.sphere_count(); ++i) {
+    const Vec3 p = model.rest_position[i];
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const Vec3 above{0.5 * (low.x + high.x) + 0.0013, 0.5 * (low.y + high.y) + 0.0021, high.z + 0.02};
+  const testing::Work work = testing::cut_through(model, 2e-5, above, {0, 0, -(0.02 + deep)});
+  const double area = testing::swept_area(work.state, low, high);
+  // The point is ground at 45 degrees: its corner is missing from the slit.
+  EXPECT_NEAR(area, height * deep - 0.5 * height * height, 0.1 * height * deep);
+  EXPECT_NEAR(work.by_hand, testing::kToughness * area, 0.1 * testing::kToughness * area);
+  EXPECT_GT(std::count(work.state.axial_severed.begin(), work.state.axial_severed.end(), 1), 0);
 }
 
 }  // namespace

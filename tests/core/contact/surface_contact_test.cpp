@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/contact/contact_law.h"
+#include "core/contact/drawn_surfaces.h"
 #include "core/stepping/step.h"
 #include "core/surface/surface.h"
 #include "tests/core/skinned_block.h"
@@ -72,7 +73,7 @@ TEST_P(SurfaceContact, DrawsTheSurfaceOnTheBall) {
   for (int i = 0; i <= 60; ++i)
     ASSERT_EQ(stepper.step(state, at({0.002, 0.001, kTop + radius - 1e-4 * i})).status, stepping::StepStatus::ok);
   std::vector<Vec3> vertex;
-  surface::place_surface(model, 0, model.surfaces[0], state, vertex);
+  contact::DrawnSurfaces(model).place(0, model.surfaces[0], state, vertex);
   double deepest = 0;
   for (const Vec3& p : vertex) deepest = std::max(deepest, radius - norm(p - state.last_inputs.position));
   EXPECT_LT(deepest, 1e-4) << "no vertex is seen inside the ball";

@@ -18,6 +18,7 @@ using testing::kinetic_energy;
 using testing::momentum;
 using testing::resisting;
 using testing::shake;
+using testing::straight_front;
 
 TEST(Severing, ConservesMomentumAndNeverAddsEnergy) {
   for (const network::Structure structure : {network::Structure::mass_spring, network::Structure::angle_mass_spring,
@@ -27,9 +28,8 @@ TEST(Severing, ConservesMomentumAndNeverAddsEnergy) {
     shake(state, 0.002, 0.5);
     const State before = state;
     std::vector<cutting::Crossing> crossings;
-    EXPECT_GT(cutting::sever_swept_by_blade(
-                  model, cutting::NearElements(model), {{0.0002, -0.06, -0.05}, {0.0002, -0.06, 0.15}},
-                  {{0.0032, 0.01, -0.05}, {0.0012, 0.02, 0.15}}, state.position, state, crossings),
+    EXPECT_GT(testing::sever(model, straight_front({0.0002, -0.06, -0.05}, {0.0002, -0.06, 0.15}),
+                             straight_front({0.0032, 0.01, -0.05}, {0.0012, 0.02, 0.15}), state, crossings),
               0);
     EXPECT_EQ(state.velocity, before.velocity);
     EXPECT_EQ(state.position, before.position);
@@ -98,38 +98,6 @@ TEST(Severing, ATripleThatLostOneEdgeKeepsTheOther) {
   }
 }
 
-TEST(Severing, LooksOnlyNearTheBladeAndMissesNothing) {
-  const Model model = held_block(7, 6, 5);
-  State tissue = rest_state(model);
-  shake(tissue, 0.003);
-  testing::Noise noise;
-  cutting::NearElements near(model);
-  std::size_t looked_at = 0, all = 0;
-  std::int32_t severed = 0;
-  for (int trial = 0; trial < 200; ++trial) {
-    const auto place = [&] { return Vec3{0, 0, 0.024} + 0.05 * noise.next_vec3(); };
-    const cutting::BladeEdge from{place(), place()},
-        to{from.tip + 0.01 * noise.next_vec3(), from.heel + 0.01 * noise.next_vec3()};
-    State whole = tissue, part = tissue;
-    Vec3Array moved = tissue.position;
-    for (std::size_t i = 0; i < moved.size(); ++i) moved.add(i, (trial % 4 == 0 ? 0.02 : 0.001) * noise.next_vec3());
-    std::vector<cutting::Crossing> of_whole, of_part;
-    near.find(tissue.position, cutting::Box(from.tip, from.heel, to.tip, to.heel));
-    looked_at += near.elements().size(), all += model.axial.size();
-    const cutting::NearElements everything(model);
-    severed += cutting::sever_swept_by_blade(model, everything, from, to, tissue.position, whole, of_whole);
-    (void)cutting::sever_swept_by_blade(model, near, from, to, tissue.position, part, of_part);
-    near.follow(moved);
-    severed += cutting::sever_moved_through_blade(model, everything, to, tissue.position, moved, whole, of_whole);
-    (void)cutting::sever_moved_through_blade(model, near, to, tissue.position, moved, part, of_part);
-    EXPECT_EQ(whole.axial_crossing, part.axial_crossing) << trial;
-    EXPECT_EQ(whole.constraint_severed, part.constraint_severed) << trial;
-    EXPECT_EQ(of_whole.size(), of_part.size());
-  }
-  EXPECT_GT(severed, 0);
-  EXPECT_LT(looked_at, all / 2) << "it leaves out what is far";
-}
-
 /// Moves along a closed polygon around `middle`, with `ticks_per_side` ticks per side.
 std::int32_t cut_around(stepping::Stepper& stepper, State& state, Vec3 middle, double radius, int ticks_per_side) {
   constexpr int kSides = 64;
@@ -171,8 +139,8 @@ TEST(Severing, FollowsACurveAndCutsAPlugOut) {
 Vec3Array forces_after_cut(const Model& model, double x) {
   State state = rest_state(model);
   std::vector<cutting::Crossing> crossings;
-  EXPECT_GT(cutting::sever_swept_by_blade(model, cutting::NearElements(model), {{x, -0.05, -0.05}, {x, -0.05, 0.05}},
-                                          {{x, 0.05, -0.05}, {x, 0.05, 0.05}}, state.position, state, crossings),
+  EXPECT_GT(testing::sever(model, straight_front({x, -0.05, -0.05}, {x, -0.05, 0.05}),
+                           straight_front({x, 0.05, -0.05}, {x, 0.05, 0.05}), state, crossings),
             1)
       << "an edge and the constraint over it";
   EXPECT_EQ(crossings.size(), 1u);

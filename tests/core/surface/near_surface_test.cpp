@@ -16,7 +16,8 @@ using surface::NearSurface;
 std::set<std::array<std::int32_t, 3>> visited(NearSurface& near, const Vec3Array& position, Vec3 centre, double radius,
                                               double inside_of) {
   std::set<std::array<std::int32_t, 3>> found;
-  near.near(position, Box(centre).grown(radius), [&](const NearSurface::Triangle& t, const Vec3* corners) {
+  near.begin(position);
+  near.near(Box(centre).grown(radius), [&](const NearSurface::Triangle& t, const Vec3* corners) {
     for (int c = 0; c < 3; ++c)
       if (norm(corners[c] - centre) < inside_of) {
         found.insert({t.corner[0], t.corner[1], t.corner[2]});
@@ -55,7 +56,8 @@ TEST(NearSurface, FindsEveryTriangleBehindAPlane) {
   for (const auto& t : model.surfaces[0].triangle)
     for (const std::int32_t v : t)
       if (dot(vertex[std::size_t(v)] - half.point, half.normal) < 0) wanted.insert(t);
-  near.near(state.position, half, [&](const NearSurface::Triangle& t, const Vec3* corners) {
+  near.begin(state.position);
+  near.near(half, [&](const NearSurface::Triangle& t, const Vec3* corners) {
     for (int c = 0; c < 3; ++c)
       if (dot(corners[c] - half.point, half.normal) < 0) found.insert({t.corner[0], t.corner[1], t.corner[2]});
   });

@@ -142,20 +142,31 @@ TEST_F(Measures, OverlapOfCutsIsTheDiceCoefficientOfTheirElements) {
   EXPECT_NEAR(comparison.moments[0].severity, 5.0 / 20, 1e-12);
 }
 
-TEST_F(Measures, DepthOfACutIsThatOfItsDeepestEdge) {
-  // A box from z = 0 up to 0.1 m, far wider than deep; the first edge lies 7 mm below its top.
+TEST_F(Measures, CutsAreMeasuredOnTheSweptSurfaceToAHundredthOfAMillimetre) {
+  // The surface z = 0.1 m, with tissue below; the edge sweeps a plane askew to it, 7 mm deep and 30 mm long.
   recordings::SessionStart scene = scene_;
-  const Vec3 middle = compare::rest_middle(scene.model, 0);
-  const double top = middle.z + 0.007;
-  scene.model.surfaces = {Surface{}};
-  scene.model.surfaces[0].vertex = {{-1, -1, top}, {3, -1, top}, {-1, 3, top}};
-  scene.model.surfaces[0].triangle = {{0, 1, 2}};
-  compare::SessionTrack track = press();
-  track.severed_at[0] = 10, track.severed[10] = 1, track.cuts = {{10, 11}};
-  EXPECT_NEAR(compare::cut_depth(track, scene).value(), 0.007, 1e-12);
-  EXPECT_FALSE(compare::cut_depth(press(), scene));
-  scene.model.surfaces.clear();
-  EXPECT_FALSE(compare::cut_depth(track, scene));
+  scene.model.surfaces.assign(scene.model.organs.size(), Surface{});
+  scene.model.surfaces[0].vertex = {{-0.1, -0.1, 0.1}, {0.3, -0.1, 0.1}, {-0.1, 0.3, 0.1}, {-0.1, -0.1, -0.3}};
+  scene.model.surfaces[0].triangle = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
+  State state = rest_state(scene.model);
+  const auto front = [&](double along) {
+    cutting::Front front;
+    for (std::size_t n = 0; n < kEdgeNodes; ++n)
+      front[n] = Vec3{0.02 + along, 0.021, 0.093} + 0.0008 * double(n) * Vec3{0.6, 0, 0.8};
+    return front;
+  };
+  cutting::NewlySwept newly;
+  newly.fill(1), newly.back() = 0;
+  for (int i = 0; i < 300; ++i) cutting::add_swept(state, front(1e-4 * i), front(1e-4 * (i + 1)), newly);
+  EXPECT_LE(cutting::swept_rows(state), 40u) << "rows in line are one";
+  session::CutMeasures measures(scene.model);
+  measures.measure(state);
+  ASSERT_TRUE(measures.size());
+  EXPECT_NEAR(measures.size()->depth, 0.007, 1e-5);
+  EXPECT_NEAR(measures.size()->length, 0.03, 1e-5);
+  EXPECT_NEAR(measures.size()->area, 0.03 * 0.007, 0.03 * 1e-4);
+  measures.measure(rest_state(scene.model));
+  EXPECT_FALSE(measures.size());
 }
 
 TEST_F(Measures, APathBesideTheExpertsIsThatFarAwayWhateverItsPace) {
@@ -184,7 +195,7 @@ TEST_F(Measures, EachHasAUnitADirectionAMeaningAndASource) {
   compare::SessionTrack cutting = press();
   cutting.severed_at[0] = 10, cutting.severed[10] = 1, cutting.cuts = {{10, 11}};
   const compare::Comparison comparison = compare::compare_sessions(cutting, cutting, scene_);
-  EXPECT_EQ(comparison.values.size(), 22u);
+  EXPECT_EQ(comparison.values.size(), 24u);
   for (const compare::MeasuredValue& value : comparison.values) {
     EXPECT_NE(std::string(value.measure->unit), "") << value.measure->key;
     EXPECT_NE(std::string(compare::to_word(value.measure->direction)), "") << value.measure->key;

@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/cutting/cut_front.h"
 #include "core/cutting/cutting.h"
 #include "core/model/state.h"
 #include "core/network/network.h"
@@ -104,10 +105,25 @@ inline std::unique_ptr<TestScene> make_blob_scene(double radius = 0.003, int row
   return make_scene(fill(blob, star_surface(blob, rows), radius));
 }
 
-/// Severs what a blade through `tip`-`heel` sweeps on its way to the other end.
-inline void cut(const Model& model, State& state, const cutting::BladeEdge& from, const cutting::BladeEdge& to) {
+/// A straight edge.
+struct Edge {
+  Vec3 tip, heel;  ///< [m]
+};
+
+/// Cuts what a straight edge sweeps through the tissue at rest, from one place to the other.
+inline void cut(const Model& model, State& state, const Edge& from, const Edge& to) {
+  const auto front = [](const Edge& edge) {
+    cutting::Front nodes;
+    for (std::size_t n = 0; n < kEdgeNodes; ++n)
+      nodes[n] = edge.tip + double(n) / double(kEdgeNodes - 1) * (edge.heel - edge.tip);
+    return nodes;
+  };
+  cutting::NewlySwept newly;
+  newly.fill(1), newly.back() = 0;
+  cutting::add_swept(state, front(from), front(to), newly);
   std::vector<cutting::Crossing> crossings;
-  cutting::sever_swept_by_blade(model, cutting::NearElements(model), from, to, state.position, state, crossings);
+  cutting::sever_swept(model, cutting::RestElements(model), front(from), front(to),
+                       std::vector<std::int32_t>(kEdgeNodes, 0), state, crossings);
 }
 
 /// Moves the spheres apart on both sides of the plane through `point` with the given normal, more the nearer

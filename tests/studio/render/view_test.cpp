@@ -70,6 +70,28 @@ TEST(View, CutawayShowsASolidSectionAndNothingBeyondIt) {
   EXPECT_EQ(none, (*renderer)->draw(state, options)) << "only the backdrop is left";
 }
 
+TEST(View, AnOrganOnABoxCastsItsShadowOnTheTop) {
+  const auto scene = make_blob_scene(0.004, 12);
+  scene->model.obstacles = {{"table", ObstacleKind::box, {0, 0, -0.04}, {}, {0.2, 0.2, 0.01}}};
+  auto renderer = render::Renderer::create(480, 270, scene->view);
+  ASSERT_TRUE(renderer);
+  render::DrawOptions options;
+  options.camera = {{0, -0.6, 0.4}, {0, -0.05, -0.03}, {0, 0, 1}, 32};
+  State state = rest_state(scene->model);
+  const render::Frame on_it = (*renderer)->draw(state, options);
+  for (double& z : state.position.z) z += 5;
+  const render::Frame alone = (*renderer)->draw(state, options);
+  const auto light_at = [&](const render::Frame& frame, Vec3 p) {
+    const render::Pixel at = render::project(options.camera, 480, 270, p);
+    const std::size_t i = (std::size_t(at.y) * 480 + std::size_t(at.x)) * 3;
+    return double(frame.rgb[i]) + frame.rgb[i + 1] + frame.rgb[i + 2];
+  };
+  // Under the organ's edge, and far aside.
+  const Vec3 near{0, -0.045, -0.03}, far{0.17, -0.17, -0.03};
+  EXPECT_LT(light_at(on_it, near), 0.9 * light_at(alone, near));
+  EXPECT_NEAR(light_at(on_it, far), light_at(alone, far), 0.02 * light_at(alone, far));
+}
+
 TEST(View, ElementsShowColoursOfTheirLegend) {
   const auto scene = make_blob_scene(0.004, 12);
   auto renderer = render::Renderer::create(480, 270, scene->view);

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <map>
 
-#include "core/surface/surface.h"
+#include "core/contact/drawn_surfaces.h"
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
 #include "tests/studio/server/serving.h"
@@ -72,7 +72,7 @@ TEST_F(Reviewing, AFrameIsTheReplayedMoment) {
     // Positions are exact to half a step of 16 bits in their box.
     const Model& model = reader->start().model;
     std::vector<Vec3> vertex;
-    surface::place_surface(model, 0, model.surfaces[0], cursor->state(), vertex);
+    contact::DrawnSurfaces(model).place(0, model.surfaces[0], cursor->state(), vertex);
     ASSERT_EQ(value_at<std::uint32_t>(frame, 116), 1u);
     ASSERT_EQ(value_at<std::uint32_t>(frame, kFrameHead), vertex.size());
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -96,7 +96,7 @@ TEST_F(Reviewing, TrianglesComeBeforeTheirFrameAndOnlyWhenACutChangedThem) {
   std::map<std::uint32_t, std::uint32_t> triangles;  // count by topology
   std::uint32_t request = 0;
   int frames = 0;
-  for (const std::int64_t tick : {100, 200, 300, 3300, 3400, 100}) {
+  for (const std::int64_t tick : {100, 200, 300, 4900, 5000, 100}) {
     client.send({{"show", {{"stage", 0}, {"tick", tick}, {"request", ++request}}}});
     for (bool done = false; !done;) {
       const auto message = client.receive();

@@ -1,0 +1,277 @@
+#include "core/cutbody/cut_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/cutting/blade_geometry.h"
+#include "core/cutting/lattice_frame.h"
+
+namespace ctpm::cutbody {
+namespace {
+
+/// Crossings of the cut and of the organ's surface stay this far from an edge's ends, so that no two vertices coincide.
+constexpr float kFromEnd = 0.03f, kOuterFromEnd = 0.002f;
+
+/// Where the edge p-q crosses a triangle, from 0 at p to 1 at q; negative: nowhere. A node in the triangle's plane
+/// counts as above it, so that no node is parted from both sides. Edges that touch the triangle's rim are crossed.
+double crossing_of(Vec3 p, Vec3 q, Vec3 a, Vec3 b, Vec3 c) {
+  const Vec3 normal = cross(b - a, c - a);
+  const double at_p = dot(normal, p - a), at_q = dot(normal, q - a);
+  if ((at_p >= 0) == (at_q >= 0)) return -1;
+  const auto volume = [&](Vec3 u, Vec3 v) { return dot(q - p, cross(u - p, v - p)); };
+  const double ab = volume(a, b), bc = volume(b, c), ca = volume(c, a);
+  if (!((ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0))) return -1;
+  return at_p / (at_p - at_q);
+}
+
+}  // namespace
+
+CutGrid::CutGrid(const Model& model, std::size_t organ)
+    : model_(model), organ_(std::int32_t(organ)), map_(model), depth_(model, map_) {
+  find_frame(model, model.organs[organ]);
+  find_surface();
+  place_spheres(model, model.organs[organ]);
+  box_ = {extent_, {-1, -1, -1}};
+}
+
+/// The grid's axes are those of the lattice. It reaches a spacing beyond the spheres, and beyond the organ's surface.
+void CutGrid::find_frame(const Model& model, const OrganRange& organ) {
+  const auto first = std::size_t(organ.first), last = first + std::size_t(organ.count);
+  step_ = organ.spacing / kPerSpacing;
+  const cutting::LatticeFrame frame = cutting::lattice_frame(model, organ);
+  LatticeCell low = model.cell[first], high = low;
+  for (std::size_t i = first; i < last; ++i)
+    for (std::size_t a = 0; a < 3; ++a)
+      low[a] = std::min(low[a], model.cell[i][a]), high[a] = std::max(high[a], model.cell[i][a]);
+  for (const Vec3& v : model.surfaces[std::size_t(organ_)].vertex)
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double at = dot(v - frame.origin, frame.axis[a]) / organ.spacing;
+      low[a] = std::min(low[a], Index(std::floor(at))), high[a] = std::max(high[a], Index(std::ceil(at)));
+    }
+  origin_ = frame.origin, first_cell_ = low;
+  for (std::size_t a = 0; a < 3; ++a) {
+    axis_[a] = frame.axis[a];
+    origin_ += organ.spacing * (low[a] - 1) * frame.axis[a];
+    extent_[a] = kPerSpacing * (high[a] - low[a] + 2) + 1, blocks_[a] = high[a] - low[a] + 3;
+  }
+}
+
+Vec3 CutGrid::rest(Index i) const {
+  const Node n = node(i);
+  return origin_ + step_ * (n[0] * axis_[0] + n[1] * axis_[1] + n[2] * axis_[2]);
+}
+
+/// Which nodes are in tissue, and where edges leave it.
+void CutGrid::find_surface() {
+  constexpr int kHalvings = 12;
+  const auto organ = std::size_t(organ_);
+  const auto nodes = std::size_t(extent_[0]) * std::size_t(extent_[1]) * std::size_t(extent_[2]);
+  in_tissue_.assign(nodes, 0), parted_.assign(nodes, 0);
+  for (Index i = 0; i < Index(nodes); ++i) in_tissue_[std::size_t(i)] = depth_.at(organ, rest(i)) > 0;
+  for (Index i = 0; i < Index(nodes); ++i)
+    for (int d = 1; d < kDirections; ++d) {
+      const Node n = node(i), other{n[0] + (d & 1), n[1] + (d >> 1 & 1), n[2] + (d >> 2)};
+      if (!contains(other) || in_tissue(i) == in_tissue(at(other))) continue;
+      const Vec3 p = rest(i), q = rest(at(other));
+      double inside = in_tissue(i) ? 0 : 1, outside = 1 - inside;
+      for (int h = 0; h < kHalvings; ++h) {
+        const double middle = 0.5 * (inside + outside);
+        (depth_.at(organ, p + middle * (q - p)) > 0 ? inside : outside) = middle;
+      }
+      outer_[edge(i, d)] = std::clamp(float(0.5 * (inside + outside)), kOuterFromEnd, 1 - kOuterFromEnd);
+      parted_[std::size_t(i)] |= std::uint8_t(1 << d);
+    }
+}
+
+/// The lattice covers the organ: a sphere outside the tissue belongs to the nearest node inside.
+void CutGrid::place_spheres(const Model& model, const OrganRange& organ) {
+  constexpr Index kReach = 2 * kPerSpacing;
+  const auto nodes = std::size_t(count());
+  first_sphere_.assign(nodes + 1, 0);
+  for (Index s = 0; s < organ.count; ++s) {
+    const LatticeCell cell = model.cell[std::size_t(organ.first + s)];
+    Node middle;
+    for (std::size_t a = 0; a < 3; ++a) middle[a] = kPerSpacing * (cell[a] - first_cell_[a] + 1);
+    Index best = -1, least = 3 * kReach * kReach;
+    for (Index k = -kReach; k <= kReach; ++k)
+      for (Index j = -kReach; j <= kReach; ++j)
+        for (Index i = -kReach; i <= kReach; ++i) {
+          const Node n{middle[0] + i, middle[1] + j, middle[2] + k};
+          const Index distance = i * i + j * j + k * k;
+          if (distance < least && contains(n) && in_tissue(at(n))) least = distance, best = at(n);
+        }
+    node_of_sphere_.push_back(best);
+    if (best >= 0) ++first_sphere_[std::size_t(best) + 1];
+  }
+  for (std::size_t i = 0; i < nodes; ++i) first_sphere_[i + 1] += first_sphere_[i];
+  sphere_.resize(std::size_t(first_sphere_[nodes]));
+  std::vector<Index> next(first_sphere_.begin(), first_sphere_.end() - 1);
+  for (Index s = 0; s < organ.count; ++s)
+    if (const Index n = node_of_sphere_[std::size_t(s)]; n >= 0) sphere_[std::size_t(next[std::size_t(n)]++)] = s;
+}
+
+/// Severs the edges in tissue that a triangle of the swept surface crosses.
+void CutGrid::sever(Vec3 a, Vec3 b, Vec3 c, bool may_move) {
+  Node from, to;
+  double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (const Vec3 corner : {a, b, c})
+    for (std::size_t x = 0; x < 3; ++x) {
+      const double at = dot(corner - origin_, axis_[x]) / step_;
+      least[x] = std::min(least[x], at), most[x] = std::max(most[x], at);
+    }
+  for (std::size_t x = 0; x < 3; ++x) {
+    if (!(most[x] > -1 && least[x] < extent_[x])) return;
+    from[x] = std::max(0, Index(std::floor(least[x])) - 1), to[x] = std::min(extent_[x] - 1, Index(std::ceil(most[x])));
+  }
+  for (Index k = from[2]; k <= to[2]; ++k)
+    for (Index j = from[1]; j <= to[1]; ++j)
+      for (Index i = from[0]; i <= to[0]; ++i)
+        for (int d = 1; d < kDirections; ++d) {
+          const Node n{i, j, k}, other{i + (d & 1), j + (d >> 1 & 1), k + (d >> 2)};
+          if (!contains(other)) continue;
+          const Index p = at(n), q = at(other);
+          if (!in_tissue(p) && !in_tissue(q)) continue;
+          const double along = crossing_of(rest(p), rest(q), a, b, c);
+          if (along < 0) continue;
+          sever_edge(p, d, std::clamp(float(along), kFromEnd, 1 - kFromEnd), cross(b - a, c - a), may_move);
+        }
+}
+
+void CutGrid::sever_edge(Index node, int direction, float along, Vec3 normal, bool may_move) {
+  const std::size_t e = edge(node, direction);
+  const auto [found, is_new] = cuts_.try_emplace(e, Cut{along, along, normal, normal});
+  Cut& cut = found->second;
+  if (!is_new && along >= cut.low && along <= cut.high) return;
+  if (may_move) by_last_.emplace_back(e, is_new ? std::nullopt : std::optional(cut));
+  if (along < cut.low) cut.low = along, cut.normal_low = normal;
+  if (along > cut.high) cut.high = along, cut.normal_high = normal;
+  parted_[std::size_t(node)] |= std::uint8_t(1 << direction);
+  if (in_tissue(node) && in_tissue(end(node, direction))) anything_cut_ = true;
+  changed_ = true;
+  box_.add(this->node(node)), box_.add(this->node(end(node, direction)));
+}
+
+void CutGrid::take_back_last_row() {
+  for (auto change = by_last_.rbegin(); change != by_last_.rend(); ++change) {
+    const auto& [e, before] = *change;
+    const auto node = Index(e / kDirections);
+    const int direction = int(e % kDirections);
+    if (before)
+      cuts_.at(e) = *before;
+    else
+      cuts_.erase(e);
+    if (!before && !outer_.contains(e)) parted_[std::size_t(node)] &= std::uint8_t(~(1 << direction));
+    changed_ = true;
+    box_.add(this->node(node)), box_.add(this->node(end(node, direction)));
+  }
+  by_last_.clear();
+}
+
+void CutGrid::reset() {
+  if (anything_cut_) changed_ = true, box_ = {{0, 0, 0}, extent_};
+  for (const auto& [e, cut] : cuts_)
+    if (!outer_.contains(e)) parted_[e / kDirections] &= std::uint8_t(~(1 << int(e % kDirections)));
+  cuts_.clear(), by_last_.clear(), anything_cut_ = false, rows_ = 0;
+}
+
+void CutGrid::NodeBox::add(Node n) {
+  for (std::size_t x = 0; x < 3; ++x) low[x] = std::min(low[x], n[x]), high[x] = std::max(high[x], n[x]);
+}
+
+std::optional<CutGrid::Crossing> CutGrid::cut_crossing(Index node, int direction, bool nearest_to_upper) const {
+  const auto found = cuts_.find(edge(node, direction));
+  if (found == cuts_.end()) return std::nullopt;
+  const Cut& cut = found->second;
+  return nearest_to_upper ? Crossing{cut.high, cut.normal_high} : Crossing{cut.low, cut.normal_low};
+}
+
+CutGrid::Crossing CutGrid::outer_crossing(Index node, int direction) const {
+  const double along = outer_.at(edge(node, direction));
+  const Vec3 p = rest(node);
+  const Index triangle = nearest_triangle(p + along * (rest(end(node, direction)) - p));
+  if (triangle < 0) return {along, {}};
+  const Surface& surface = model_.surfaces[std::size_t(organ_)];
+  const auto& t = surface.triangle[std::size_t(triangle)];
+  const Vec3 a = surface.vertex[std::size_t(t[0])];
+  return {along, cross(surface.vertex[std::size_t(t[1])] - a, surface.vertex[std::size_t(t[2])] - a)};
+}
+
+bool CutGrid::update(const State& state) {
+  const std::size_t rows = cutting::swept_rows(state);
+  const auto place = [&](std::size_t row, std::size_t node) { return state.swept[row * kEdgeNodes + node]; };
+  changed_ = false;
+  const auto is_row = [&](std::size_t row, const cutting::Front& front) {
+    for (std::size_t n = 0; n < kEdgeNodes; ++n)
+      if (!(place(row, n) == front[n])) return false;
+    return true;
+  };
+  if (rows == rows_ && (rows == 0 || is_row(rows - 1, last_))) return false;
+  if (rows < rows_ || (rows_ > 1 && !is_row(rows_ - 2, before_))) reset();
+  // The last row has moved: what it severed is found again, so that the result depends on `state` alone.
+  take_back_last_row();
+  for (std::size_t row = std::max<std::size_t>(rows_, 2) - 1; row < rows; ++row)
+    for (std::size_t node = 0; node + 1 < kEdgeNodes; ++node) {
+      const cutting::SweptQuad quad = cutting::swept_quad(state, row, node);
+      if (quad.organ != organ_) continue;
+      const bool may_move = row + 1 == rows;
+      sever(quad.from, quad.to, quad.from2, may_move), sever(quad.to, quad.to2, quad.from2, may_move);
+    }
+  rows_ = rows;
+  for (std::size_t n = 0; n < kEdgeNodes; ++n) {
+    if (rows > 1) before_[n] = place(rows - 2, n);
+    if (rows > 0) last_[n] = place(rows - 1, n);
+  }
+  return changed_;
+}
+
+std::vector<std::uint8_t> CutGrid::cut_blocks() const {
+  std::vector<std::uint8_t> blocks(std::size_t(block_count()), 0);
+  for (const auto& [e, cut] : cuts_) {
+    const auto from = Index(e / kDirections);
+    blocks[std::size_t(block(from))] = blocks[std::size_t(block(end(from, int(e % kDirections))))] = 1;
+  }
+  return blocks;
+}
+
+std::vector<std::uint8_t> CutGrid::widened(const std::vector<std::uint8_t>& blocks) const {
+  std::vector<std::uint8_t> wider(blocks.size(), 0);
+  for (Index k = 0; k < blocks_[2]; ++k)
+    for (Index j = 0; j < blocks_[1]; ++j)
+      for (Index i = 0; i < blocks_[0]; ++i) {
+        if (!blocks[std::size_t(i + blocks_[0] * (j + blocks_[1] * k))]) continue;
+        for (Index z = std::max(0, k - 1); z <= std::min(blocks_[2] - 1, k + 1); ++z)
+          for (Index y = std::max(0, j - 1); y <= std::min(blocks_[1] - 1, j + 1); ++y)
+            for (Index x = std::max(0, i - 1); x <= std::min(blocks_[0] - 1, i + 1); ++x)
+              wider[std::size_t(x + blocks_[0] * (y + blocks_[1] * z))] = 1;
+      }
+  return wider;
+}
+
+std::vector<CutGrid::Index> CutGrid::find_pieces() const {
+  std::vector<Index> root(in_tissue_.size(), -1);
+  const auto find = [&](Index n) {
+    while (root[std::size_t(n)] != n) n = root[std::size_t(n)] = root[std::size_t(root[std::size_t(n)])];
+    return n;
+  };
+  for (Index i = 0; i < count(); ++i) {
+    if (in_tissue(i)) root[std::size_t(i)] = i;
+    const Node n = node(i);
+    for (int d = 1; d < kDirections && in_tissue(i); ++d) {
+      const Node before{n[0] - (d & 1), n[1] - (d >> 1 & 1), n[2] - (d >> 2)};
+      if (!contains(before) || !in_tissue(at(before)) || is_parted(at(before), d)) continue;
+      const Index a = find(i), b = find(at(before));
+      root[std::size_t(std::max(a, b))] = std::min(a, b);
+    }
+  }
+  for (Index i = 0; i < count(); ++i)
+    if (in_tissue(i)) root[std::size_t(i)] = find(i);
+  return root;
+}
+
+CutGrid::NodeBox CutGrid::take_changed() {
+  const NodeBox box = box_;
+  box_ = {extent_, {-1, -1, -1}};
+  return box;
+}
+
+}  // namespace ctpm::cutbody

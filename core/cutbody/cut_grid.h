@@ -1,0 +1,144 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "core/cutting/rest_map.h"
+#include "core/cutting/swept_surface.h"
+#include "core/cutting/tissue_depth.h"
+#include "core/model/model.h"
+#include "core/model/state.h"
+
+namespace ctpm::cutbody {
+
+/// A grid over an organ at rest, four times as fine as its lattice, whose cubes are divided into six tetrahedra each
+/// (Kuhn 1960). It knows which of its nodes are in tissue, where its edges leave the organ, and where the swept surface
+/// crosses them.
+class CutGrid {
+ public:
+  using Index = std::int32_t;
+  using Node = std::array<Index, 3>;
+
+  static constexpr int kPerSpacing = 4;
+  /// Edges from a node: to the nodes that are farther by 1 along the axes of the bits set in 1 to 7.
+  static constexpr int kDirections = 8;
+
+  /// An organ that has a surface. `model` must outlive the CutGrid.
+  CutGrid(const Model& model, std::size_t organ);
+
+  /// Follows the swept surface of `state`. Returns whether any edge's crossing changed. Fast where the State goes on
+  /// from that of the last call.
+  bool update(const State& state);
+  bool anything_cut() const { return anything_cut_; }
+
+  Index organ() const { return organ_; }
+  Index count() const { return Index(in_tissue_.size()); }
+  const Node& extent() const { return extent_; }
+  double step() const { return step_; }
+  Index at(Node n) const { return n[0] + extent_[0] * (n[1] + extent_[1] * n[2]); }
+  Node node(Index i) const { return {i % extent_[0], i / extent_[0] % extent_[1], i / extent_[0] / extent_[1]}; }
+  bool contains(Node n) const {
+    return n[0] >= 0 && n[1] >= 0 && n[2] >= 0 && n[0] < extent_[0] && n[1] < extent_[1] && n[2] < extent_[2];
+  }
+  Vec3 rest(Index i) const;
+  bool in_tissue(Index i) const { return in_tissue_[std::size_t(i)] != 0; }
+
+  /// The node at the other end of an edge.
+  Index end(Index node, int direction) const {
+    return node + (direction & 1) + extent_[0] * ((direction >> 1 & 1) + extent_[1] * (direction >> 2));
+  }
+  /// Whether the surface of the organ or of the cut crosses an edge.
+  bool is_parted(Index node, int direction) const { return (parted_[std::size_t(node)] >> direction & 1) != 0; }
+  struct Crossing {
+    double along;  ///< from 0 at the lower node to 1
+    Vec3 normal;   ///< of any length
+  };
+  /// The triangle of the organ's own surface that is nearest to a place at rest near it; -1: none is near.
+  Index nearest_triangle(Vec3 rest) const { return depth_.nearest_triangle(std::size_t(organ_), rest); }
+  /// Where the organ's own surface crosses an edge that leaves the tissue.
+  Crossing outer_crossing(Index node, int direction) const;
+  /// The crossing of an edge with the swept surface that is nearest to its lower node or to its upper one, for it may
+  /// cross more than once; none if it does not.
+  std::optional<Crossing> cut_crossing(Index node, int direction, bool nearest_to_upper) const;
+  bool is_severed(Index node, int direction) const {
+    return is_parted(node, direction) && in_tissue(node) && in_tissue(end(node, direction));
+  }
+
+  /// The node in tissue at a sphere, or the nearest one to it; -1 if there is none near. Counted within the organ.
+  Index node_of_sphere(Index sphere) const { return node_of_sphere_[std::size_t(sphere)]; }
+  /// Blocks of a lattice cell's size divide the grid: that of a node, or of the cube above it.
+  Index block_count() const { return blocks_[0] * blocks_[1] * blocks_[2]; }
+  Index block(Index node) const {
+    const Node n = this->node(node);
+    return n[0] / kPerSpacing + blocks_[0] * (n[1] / kPerSpacing + blocks_[1] * (n[2] / kPerSpacing));
+  }
+  /// Marks the blocks of cut edges (block_count).
+  std::vector<std::uint8_t> cut_blocks() const;
+  /// Marks the blocks around those that are marked, too.
+  std::vector<std::uint8_t> widened(const std::vector<std::uint8_t>& blocks) const;
+
+  /// Numbers the pieces of tissue: for each node the lowest node of its piece; -1 outside.
+  std::vector<Index> find_pieces() const;
+
+  /// Spheres whose node is this one.
+  std::span<const Index> spheres_at(Index node) const {
+    const auto begin = std::size_t(first_sphere_[std::size_t(node)]),
+               end = std::size_t(first_sphere_[std::size_t(node) + 1]);
+    return {sphere_.data() + begin, end - begin};
+  }
+
+  /// Spheres of a run of nodes.
+  std::span<const Index> spheres_in_row(Index first, Index last) const {
+    const auto begin = std::size_t(first_sphere_[std::size_t(first)]),
+               end = std::size_t(first_sphere_[std::size_t(last) + 1]);
+    return {sphere_.data() + begin, end - begin};
+  }
+
+  /// Box of the nodes whose edges' crossings changed since the last call of this; empty if low > high.
+  struct NodeBox {
+    Node low, high;
+    void add(Node n);
+  };
+  NodeBox take_changed();
+
+ private:
+  std::size_t edge(Index node, int direction) const { return std::size_t(node) * kDirections + std::size_t(direction); }
+  void find_frame(const Model& model, const OrganRange& organ);
+  void find_surface();
+  void place_spheres(const Model& model, const OrganRange& organ);
+  struct Cut {
+    float low, high;  ///< crossings nearest to the lower and to the upper node
+    Vec3 normal_low, normal_high;
+  };
+  void sever(Vec3 a, Vec3 b, Vec3 c, bool may_move);
+  void sever_edge(Index node, int direction, float along, Vec3 normal, bool may_move);
+  void take_back_last_row();
+  void reset();
+
+  const Model& model_;
+  std::int32_t organ_;
+  cutting::RestMap map_;
+  cutting::TissueDepth depth_;
+  double step_ = 0;
+  Vec3 origin_, axis_[3];  ///< of node 0 0 0 [m]; unit vectors
+  Node extent_{}, blocks_{};
+  LatticeCell first_cell_{};  ///< lowest cell of the lattice that the grid covers, a spacing inside it
+  std::vector<std::uint8_t> in_tissue_;
+  std::vector<std::uint8_t> parted_;              ///< of each node: a bit for each direction
+  std::unordered_map<std::size_t, float> outer_;  ///< crossings of edges with the organ's surface
+  std::unordered_map<std::size_t, Cut> cuts_;
+  std::vector<Index> node_of_sphere_, first_sphere_, sphere_;
+  std::size_t rows_ = 0;                                             ///< of the swept surface that have been looked at
+  cutting::Front last_{};                                            ///< the last of them, which may still move [m]
+  cutting::Front before_{};                                          ///< the one before it [m]
+  std::vector<std::pair<std::size_t, std::optional<Cut>>> by_last_;  ///< what the last row changed, as it was before
+  bool anything_cut_ = false, changed_ = false;
+  NodeBox box_{};
+};
+
+}  // namespace ctpm::cutbody

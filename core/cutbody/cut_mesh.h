@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/cutbody/cut_grid.h"
+#include "core/model/vec3.h"
+
+namespace ctpm::cutbody {
+
+/// The closed surface of an organ after its cuts, at rest.
+struct CutMesh {
+  struct Vertex {
+    Vec3 rest;            ///< [m]
+    CutGrid::Index side;  ///< node of the grid whose tissue the vertex belongs to
+  };
+  std::vector<Vertex> vertex;
+  std::vector<std::array<std::int32_t, 3>> triangle;  ///< counter-clockwise seen from outside; outer ones first
+  std::size_t outer_triangles = 0;                    ///< those of the organ's own surface; the others are walls
+  std::vector<CutGrid::Index> outer_cube;             ///< cube of the grid that each outer triangle is in
+};
+
+/// Divides the grid's tissue along the swept surface: the nodes of a tetrahedron that are joined by edges within it
+/// share one label, and a surface separates each two labels, and each from what is outside, once for each side. The
+/// surface goes through the crossings of the edges. Where two labels are joined beyond an edge or a face of the
+/// tetrahedron, the cut ends there, and its two sides meet. Every edge therefore belongs to two triangles: the mesh is
+/// watertight, and has a closed component for each piece of tissue. `blocks`: those of the grid that are meant, all if
+/// it is empty (CutGrid::block_count).
+CutMesh make_mesh(const CutGrid& grid, const std::vector<std::uint8_t>& blocks = {});
+
+/// Number of pieces of tissue: components of the grid's nodes.
+std::int32_t count_pieces(const CutGrid& grid);
+
+}  // namespace ctpm::cutbody

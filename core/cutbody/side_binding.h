@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "core/cutbody/cut_grid.h"
+#include "core/cutbody/cut_mesh.h"
+#include "core/model/model.h"
+#include "core/model/organ.h"
+#include "core/model/state.h"
+
+namespace ctpm::cutbody {
+
+/// The spheres that the vertices of a CutMesh follow: those of the organ's own surface where the cut lets them, else
+/// spheres of their own side, else of their piece.
+class SideBinding {
+ public:
+  using Index = CutGrid::Index;
+
+  struct Binding {
+    std::vector<Index> sphere;
+    std::vector<double> weight;  ///< sum to 1
+  };
+  /// The place on the organ's own surface that is nearest to a vertex: in the middle of a triangle's corners with these
+  /// weights.
+  struct Origin {
+    Index triangle = -1;  ///< -1: none is near
+    std::array<double, 3> weight{};
+  };
+  struct Bound {
+    Vec3 rest;  ///< [m]
+    Binding binding;
+    Origin origin;
+  };
+
+  /// Both must outlive the SideBinding.
+  SideBinding(const Model& model, const CutGrid& grid);
+
+  /// Forgets what may depend on edges in the box.
+  void forget_near(CutGrid::NodeBox changed);
+
+  /// What a vertex follows, and where it is: on the organ's own surface or on the swept surface of `state`. It is
+  /// remembered. A vertex whose side is -1 is far from all cuts.
+  const Bound& bind(const CutMesh::Vertex& vertex, bool is_outer, bool is_wall, const State& state);
+
+ private:
+  struct Key {
+    Index side;
+    double x, y, z;
+    bool is_outer, is_wall;
+    friend auto operator<=>(const Key&, const Key&) = default;
+  };
+
+  /// What a node sees.
+  struct Seen {
+    std::vector<Index> sphere;  ///< ascending
+    bool has_cut = false;       ///< between them
+  };
+
+  bool is_near(CutGrid::NodeBox box, Index node) const;
+  const Seen& seen_from(Index node);
+  Vec3 near_cut(Vec3 rest, const State& state) const;
+  Origin origin_of(Vec3 rest) const;
+  Vec3 place_of(const Origin& origin) const;
+  Binding follow_whole(const Origin& origin) const;
+  bool is_own_side(const Binding& binding, Index side);
+  Binding bind_to_own_side(Vec3 rest, Index side);
+  Binding follow(Vec3 rest, const std::vector<Index>& spheres, double reach) const;
+  std::vector<Index> spheres_around(Vec3 rest, double reach, Index piece) const;
+
+  const Model& model_;
+  const OrganRange& organ_;
+  const Surface& whole_;
+  const CutGrid& grid_;
+  std::map<Key, Bound> bound_;
+  std::map<Index, Seen> seen_;
+  std::vector<Index> piece_;  ///< of each node of the grid; empty until it is asked for after a change
+
+  // Scratch memory of seen_from().
+  std::vector<std::uint32_t> visited_;  ///< number of the call that visited a node
+  std::vector<std::pair<Index, Index>> queue_;
+  std::uint32_t call_ = 0;
+};
+
+}  // namespace ctpm::cutbody

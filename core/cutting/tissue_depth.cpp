@@ -1,0 +1,140 @@
+#include "core/cutting/tissue_depth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/cutting/blade_geometry.h"
+
+namespace ctpm::cutting {
+namespace {
+
+constexpr double kBucket = 2.4e-3;  ///< half its diagonal is within the band [m]
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+Vec3 least_of(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
+Vec3 most_of(Vec3 a, Vec3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
+
+}  // namespace
+
+TissueDepth::TissueDepth(const Model& model, const RestMap& map) : map_(map), grids_(model.organs.size()) {
+  for (std::size_t o = 0; o < std::min(grids_.size(), model.surfaces.size()); ++o)
+    if (!model.surfaces[o].triangle.empty()) grids_[o] = make_grid(model.surfaces[o]);
+}
+
+std::int64_t TissueDepth::bucket_of(const Grid& grid, Vec3 rest) {
+  const Vec3 at = (rest - grid.low) / kBucket;
+  const auto& e = grid.extent;
+  if (!(at.x >= 0 && at.y >= 0 && at.z >= 0 && at.x < e[0] && at.y < e[1] && at.z < e[2])) return -1;
+  return std::int64_t(at.x) + e[0] * (std::int64_t(at.y) + e[1] * std::int64_t(at.z));
+}
+
+TissueDepth::Grid TissueDepth::make_grid(const Surface& surface) {
+  Grid grid;
+  grid.surface = &surface;
+  Vec3 low = surface.vertex.front(), high = low;
+  for (const Vec3& v : surface.vertex) low = least_of(low, v), high = most_of(high, v);
+  const double margin = kBand + kBucket;
+  grid.low = low - Vec3{margin, margin, margin};
+  const Vec3 size = high - low + Vec3{2 * margin, 2 * margin, 2 * margin};
+  grid.extent = {1 + std::int32_t(size.x / kBucket), 1 + std::int32_t(size.y / kBucket),
+                 1 + std::int32_t(size.z / kBucket)};
+  const auto& e = grid.extent;
+  const std::size_t count = std::size_t(e[0]) * std::size_t(e[1]) * std::size_t(e[2]);
+  const auto for_each_bucket_of = [&](const std::array<std::int32_t, 3>& t, auto&& visit) {
+    const Vec3 a = surface.vertex[std::size_t(t[0])], b = surface.vertex[std::size_t(t[1])],
+               c = surface.vertex[std::size_t(t[2])], band{kBand, kBand, kBand};
+    const Vec3 from = (least_of(least_of(a, b), c) - band - grid.low) / kBucket,
+               to = (most_of(most_of(a, b), c) + band - grid.low) / kBucket;
+    const double reach = kBand + 0.8661 * kBucket;
+    for (auto k = std::int32_t(from.z); k <= std::min(std::int32_t(to.z), e[2] - 1); ++k)
+      for (auto j = std::int32_t(from.y); j <= std::min(std::int32_t(to.y), e[1] - 1); ++j)
+        for (auto i = std::int32_t(from.x); i <= std::min(std::int32_t(to.x), e[0] - 1); ++i) {
+          const Vec3 middle = grid.low + kBucket * Vec3{i + 0.5, j + 0.5, k + 0.5};
+          if (norm(nearest_in_triangle(middle, a, b, c) - middle) > reach) continue;
+          visit(std::size_t(i) + std::size_t(e[0]) * (std::size_t(j) + std::size_t(e[1]) * std::size_t(k)));
+        }
+  };
+  grid.first.assign(count + 1, 0);
+  for (const auto& t : surface.triangle) for_each_bucket_of(t, [&](std::size_t b) { ++grid.first[b + 1]; });
+  for (std::size_t b = 0; b < count; ++b) grid.first[b + 1] += grid.first[b];
+  grid.triangle.resize(std::size_t(grid.first[count]));
+  std::vector<std::int32_t> next(grid.first.begin(), grid.first.end() - 1);
+  for (std::size_t t = 0; t < surface.triangle.size(); ++t)
+    for_each_bucket_of(surface.triangle[t],
+                       [&](std::size_t b) { grid.triangle[std::size_t(next[b]++)] = std::int32_t(t); });
+  find_sides(grid);
+  return grid;
+}
+
+/// Sides of the buckets' middles: near ones from their triangles, the others from their neighbours.
+void TissueDepth::find_sides(Grid& grid) {
+  const auto& e = grid.extent;
+  const std::size_t count = grid.first.size() - 1;
+  grid.side.assign(count, 0);
+  std::vector<std::size_t> known;
+  std::vector<double> near_middle(count, kFar);
+  for (std::size_t b = 0; b < count; ++b) {
+    const auto i = std::int32_t(b % std::size_t(e[0])), j = std::int32_t(b / std::size_t(e[0]) % std::size_t(e[1])),
+               k = std::int32_t(b / std::size_t(e[0]) / std::size_t(e[1]));
+    near_middle[b] = near(grid, b, grid.low + kBucket * Vec3{i + 0.5, j + 0.5, k + 0.5}).depth;
+    if (std::abs(near_middle[b]) < kBand) grid.side[b] = near_middle[b] > 0 ? 1 : -1;
+    // A neighbour farther than the band from the surface is on the same side unless the surface passes close by.
+    if (std::abs(near_middle[b]) < kBand && std::abs(near_middle[b]) > kBucket - kBand + 1e-4) known.push_back(b);
+  }
+  if (grid.side[0] == 0) grid.side[0] = -1, known.push_back(0);  // a corner of the grid is outside
+  for (std::size_t n = 0; n < known.size(); ++n) {
+    const std::size_t b = known[n];
+    const std::int32_t at[3] = {std::int32_t(b % std::size_t(e[0])),
+                                std::int32_t(b / std::size_t(e[0]) % std::size_t(e[1])),
+                                std::int32_t(b / std::size_t(e[0]) / std::size_t(e[1]))};
+    const std::size_t step[3] = {1, std::size_t(e[0]), std::size_t(e[0]) * std::size_t(e[1])};
+    for (std::size_t a = 0; a < 3; ++a)
+      for (const bool up : {false, true}) {
+        if (up ? at[a] + 1 >= e[a] : at[a] == 0) continue;
+        const std::size_t other = up ? b + step[a] : b - step[a];
+        if (grid.side[other] != 0) continue;
+        grid.side[other] = grid.side[b], known.push_back(other);
+      }
+  }
+}
+
+/// Signed distance from the triangles of a bucket, and the nearest of them.
+TissueDepth::Near TissueDepth::near(const Grid& grid, std::size_t bucket, Vec3 rest) {
+  const Surface& surface = *grid.surface;
+  double least2 = kFar, facing = 0;
+  std::int32_t nearest = -1;
+  for (auto n = grid.first[bucket]; n < grid.first[bucket + 1]; ++n) {
+    const auto& t = surface.triangle[std::size_t(grid.triangle[std::size_t(n)])];
+    const Vec3 a = surface.vertex[std::size_t(t[0])], b = surface.vertex[std::size_t(t[1])],
+               c = surface.vertex[std::size_t(t[2])];
+    const Vec3 apart = rest - nearest_in_triangle(rest, a, b, c), normal = cross(b - a, c - a);
+    const double distance2 = dot(apart, apart);
+    // Where triangles share the nearest point, the one that the place lies most straight above decides the side.
+    const double size = norm(normal), height = size > 0 ? dot(apart, normal) / size : 0.0;
+    constexpr double kSame = 1e-9;
+    const bool is_nearer = distance2 < least2 * (1 - kSame);
+    if (!is_nearer && !(distance2 <= least2 * (1 + kSame) && std::abs(height) > std::abs(facing))) continue;
+    if (is_nearer) least2 = distance2;
+    facing = height, nearest = grid.triangle[std::size_t(n)];
+  }
+  if (nearest < 0) return {kFar};
+  return {facing > 0 ? -std::sqrt(least2) : std::sqrt(least2), nearest};
+}
+
+double TissueDepth::at(std::size_t organ, Vec3 rest) const {
+  const Grid& grid = grids_[organ];
+  if (grid.surface == nullptr) return std::clamp(map_.depth_in_cells(organ, rest), -kBand, kBand);
+  const std::int64_t bucket = bucket_of(grid, rest);
+  if (bucket < 0) return -kBand;
+  const double depth = near(grid, std::size_t(bucket), rest).depth;
+  return std::abs(depth) < kBand ? depth : grid.side[std::size_t(bucket)] * kBand;
+}
+
+std::int32_t TissueDepth::nearest_triangle(std::size_t organ, Vec3 rest) const {
+  const Grid& grid = grids_[organ];
+  const std::int64_t bucket = grid.surface == nullptr ? -1 : bucket_of(grid, rest);
+  return bucket < 0 ? -1 : near(grid, std::size_t(bucket), rest).triangle;
+}
+
+}  // namespace ctpm::cutting

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/cutting/rest_map.h"
+#include "core/model/model.h"
+#include "core/model/vec3.h"
+
+namespace ctpm::cutting {
+
+/// How deep places at rest are below an organ's drawn surface; in an organ without one, below the boundary of
+/// its whole lattice cells.
+class TissueDepth {
+ public:
+  /// Distance beyond which depths are cut off [m]. The far parts of a grid know only their side.
+  static constexpr double kBand = 2.2e-3;
+
+  /// `model` and `map` must outlive the TissueDepth.
+  TissueDepth(const Model& model, const RestMap& map);
+
+  /// Signed distance of a place at rest from the surface of an organ [m]: positive inside, in [-kBand, kBand].
+  double at(std::size_t organ, Vec3 rest) const;
+
+  /// The triangle of an organ's surface that is nearest to a place at rest; -1: none is within kBand of it.
+  std::int32_t nearest_triangle(std::size_t organ, Vec3 rest) const;
+
+ private:
+  /// Buckets of a cubic grid over the organ, each with the triangles that come within kBand of it.
+  struct Grid {
+    const Surface* surface = nullptr;
+    Vec3 low;
+    std::array<std::int32_t, 3> extent{};
+    std::vector<std::int32_t> first, triangle;  ///< CSR by bucket
+    std::vector<std::int8_t> side;              ///< of a bucket's middle: 1 inside, -1 outside
+  };
+  static Grid make_grid(const Surface& surface);
+  static void find_sides(Grid& grid);
+  static std::int64_t bucket_of(const Grid& grid, Vec3 rest);
+  struct Near {
+    double depth;  ///< [m]; infinite: there is none
+    std::int32_t triangle = -1;
+  };
+  static Near near(const Grid& grid, std::size_t bucket, Vec3 rest);
+
+  const RestMap& map_;
+  std::vector<Grid> grids_;  ///< (organ_count)
+};
+
+}  // namespace ctpm::cutting

@@ -1,0 +1,217 @@
+#include "core/surface/body_overlaps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace ctpm::surface {
+namespace {
+
+/// How deep surfaces may overlap and still be found, in spacings (our choice): tissue at 10 m/s comes so far in a tick.
+constexpr double kReach = 1;
+
+/// The same where nothing touched before, besides the way that surfaces may have come (our choice), and how many times
+/// the way of the fastest sphere that is: a surface may run ahead of its spheres.
+constexpr double kNewReach = 0.1, kAhead = 2;
+
+/// An organ meets parts of itself that were at rest this many spacings away, and this many times the overlap's depth
+/// (our choice).
+constexpr double kApartAtRest = 2, kApartOverDepth = 4;
+
+/// Patches of one organ that are nearer than this at rest do not meet, in spacings: a fold so sharp is beyond the
+/// spheres.
+constexpr double kPatchesApart = 1;
+
+double fastest(const OrganRange& organ, const Vec3Array& velocity) {
+  double squared = 0;
+  for (std::int32_t i = organ.first; i < organ.first + organ.count; ++i) {
+    const Vec3 v = velocity[std::size_t(i)];
+    squared = std::max(squared, dot(v, v));
+  }
+  return std::sqrt(squared);
+}
+
+}  // namespace
+
+BodyOverlaps::BodyOverlaps(const Model& model, std::vector<Body>& bodies) : model_(model), bodies_(bodies) {
+  bool meets = false;
+  for (std::size_t a = 0; a < bodies.size(); ++a)
+    for (std::size_t b = 0; b < bodies.size(); ++b) meets = meets || may_meet(a, b);
+  if (!meets) return;
+  std::size_t most_vertices = 0, most_patches = 0;
+  for (const Body& body : bodies) {
+    patches_.emplace_back(body.surface);
+    PatchFacets& facets = facets_.emplace_back();
+    for (std::size_t p = 0; p < body.surface.patches().size(); ++p) {
+      std::set<std::int32_t> touching;
+      for (const std::int32_t vertex : patches_.back().vertices(std::int32_t(p)))
+        touching.insert(body.facets.facet_of(vertex));
+      facets.facet.insert(facets.facet.end(), touching.begin(), touching.end());
+      facets.first.push_back(std::int32_t(facets.facet.size()));
+    }
+    most_vertices = std::max(most_vertices, body.surface.vertex_count());
+    most_patches = std::max(most_patches, body.surface.patches().size());
+    is_touched_.resize(std::size_t(body.first_vertex) + body.surface.vertex_count());
+  }
+  hits_.resize(most_vertices), hit_vertices_.reserve(most_vertices);
+  way_.resize(bodies.size()), reach_.reserve(most_patches), triangles_.reserve(NearSurface::kTrianglesPerPatch);
+}
+
+bool BodyOverlaps::may_meet(std::size_t body, std::size_t other) const {
+  return body == other ? model_.organs[std::size_t(bodies_[body].organ)].meets_itself : model_.organs_meet;
+}
+
+void BodyOverlaps::begin() {
+  reaches_far_ = true;
+  for (NearPatches& patches : patches_) patches.begin();
+}
+
+void BodyOverlaps::begin(const StateView& state, double h) {
+  begin();
+  reaches_far_ = false;
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    way_[b] = h * fastest(model_.organs[std::size_t(bodies_[b].organ)], state.velocity);
+  std::fill(is_touched_.begin(), is_touched_.end(), std::uint8_t(0));
+  const auto points = std::int32_t(model_.touchable_count());
+  for (const std::int32_t point : state.touched)
+    if (point >= points && point < points + std::int32_t(is_touched_.size()))
+      is_touched_[std::size_t(point - points)] = 1;
+}
+
+void BodyOverlaps::find(std::size_t body, std::vector<Overlap>& overlaps) {
+  const Body& own = bodies_[body];
+  ++round_;
+  hit_vertices_.clear();
+  for (std::size_t other = 0; other < bodies_.size(); ++other)
+    if (may_meet(body, other)) look(body, other);
+  for (const std::int32_t vertex : hit_vertices_) {
+    const Hit& hit = hits_[std::size_t(vertex)];
+    if (hit.body == nullptr || !hit.is_exit || !is_far_at_rest(own, vertex, hit)) continue;
+    overlaps.push_back({own.facets.facet_of(vertex),
+                        vertex,
+                        hit.distance,
+                        hit.inwards,
+                        hit.body,
+                        hit.triangle,
+                        {hit.at[0], hit.at[1], hit.at[2]}});
+  }
+}
+
+/// Sets how deep overlaps of each patch of `body` with `other` are looked for [m].
+void BodyOverlaps::set_reach(std::size_t body, std::size_t other) {
+  const Body& own = bodies_[body];
+  const double spacing =
+      std::min(model_.organs[std::size_t(own.organ)].spacing, model_.organs[std::size_t(bodies_[other].organ)].spacing);
+  const double far = kReach * spacing, near = std::min(far, kNewReach * spacing + kAhead * (way_[body] + way_[other]));
+  const auto was_touched = [&](std::int32_t facet) { return is_touched_[std::size_t(own.first_vertex + facet)] != 0; };
+  const PatchFacets& facets = facets_[body];
+  reach_.clear();
+  for (std::size_t p = 0; p < own.surface.patches().size(); ++p) {
+    const auto first = facets.facet.begin() + facets.first[p], last = facets.facet.begin() + facets.first[p + 1];
+    reach_.push_back(reaches_far_ || std::any_of(first, last, was_touched) ? far : near);
+  }
+}
+
+/// Looks where the vertices of a body are inside another one, or inside itself.
+void BodyOverlaps::look(std::size_t body, std::size_t other) {
+  set_reach(body, other);
+  const double apart = kPatchesApart * model_.organs[std::size_t(bodies_[body].organ)].spacing;
+  const auto &own = bodies_[body].surface.patches(), &others = bodies_[other].surface.patches();
+  patches_[body].for_each_near(patches_[other], reach_, [&](std::int32_t p, std::int32_t q) {
+    if (body == other && gap(own[std::size_t(p)].rest, others[std::size_t(q)].rest) < apart) return;
+    look_at_patches(body, p, other, q);
+  });
+}
+
+/// Where a vertex may be and where the line from it may cross triangles is checked at rest, moved by what the patches
+/// have moved by at most: most vertices and triangles need not be placed then.
+void BodyOverlaps::look_at_patches(std::size_t body, std::int32_t patch, std::size_t other, std::int32_t other_patch) {
+  NearSurface& own = bodies_[body].surface;
+  NearPatches& others = patches_[other];
+  const double reach = reach_[std::size_t(patch)];
+  const Box &by = patches_[body].displacements(patch), &others_by = others.displacements(other_patch);
+  const Box back(-others_by.high, -others_by.low);
+  const Box near = patches_[body].box(patch).grown(reach).moved(back);
+  triangles_.clear();
+  Box all = near;
+  others.for_each_triangle(other_patch, near, [&](std::int32_t t) {
+    const Box& rest = others.rest_of_triangle(t);
+    if (triangles_.empty()) all = rest;
+    triangles_.push_back(t), all.add(rest.low), all.add(rest.high);
+  });
+  if (triangles_.empty()) return;
+  for (const std::int32_t vertex : patches_[body].vertices(patch)) {
+    const Box around = Box(own.rest(vertex)).moved(by).grown(reach).moved(back);
+    if (!around.meets(all)) continue;
+    const auto first = std::find_if(triangles_.begin(), triangles_.end(),
+                                    [&](std::int32_t t) { return others.rest_of_triangle(t).meets(around); });
+    if (first == triangles_.end()) continue;
+    Hit& hit = hit_of(body, vertex);
+    const Vec3 from = own.place(vertex);
+    const Box line = Box(from, from + reach * hit.inwards).moved(back);
+    for (auto t = first; t != triangles_.end(); ++t)
+      if (others.rest_of_triangle(*t).meets(line)) meet(from, reach, bodies_[other], *t, hit);
+  }
+}
+
+/// The hit of a vertex in this round, whose search begins here if it has not begun.
+BodyOverlaps::Hit& BodyOverlaps::hit_of(std::size_t body, std::int32_t vertex) {
+  Hit& hit = hits_[std::size_t(vertex)];
+  if (hit.round == round_) return hit;
+  Body& own = bodies_[body];
+  hit.round = round_, hit.body = nullptr, hit.distance = std::numeric_limits<double>::infinity();
+  hit.inwards = -own.facets.normal(vertex, [&](std::int32_t v) { return own.surface.place(v); });
+  hit_vertices_.push_back(vertex);
+  return hit;
+}
+
+/// Updates `hit` if the line from `from` [m] meets a triangle nearer than before and nearer than `reach` [m] (Moller &
+/// Trumbore, "Fast, minimum storage ray/triangle intersection", 1997).
+void BodyOverlaps::meet(Vec3 from, double reach, Body& other, std::int32_t triangle, Hit& hit) const {
+  NearSurface& surface = other.surface;
+  const auto& corner = surface.triangles()[std::size_t(triangle)].corner;
+  const Vec3 a = surface.place(corner[0]), b = surface.place(corner[1]), c = surface.place(corner[2]);
+  if (!Box(from, from + reach * hit.inwards).meets(Box(a, b, c))) return;
+  const Vec3 ab = b - a, ac = c - a, p = cross(hit.inwards, ac);
+  const double facing = dot(ab, p);
+  if (facing == 0) return;
+  const Vec3 t = from - a, q = cross(t, ab);
+  const double v = dot(t, p) / facing, w = dot(hit.inwards, q) / facing, distance = dot(ac, q) / facing;
+  if (v < 0 || w < 0 || v + w > 1 || distance <= 0 || distance > reach || distance >= hit.distance) return;
+  hit.distance = distance, hit.body = &other, hit.triangle = triangle;
+  hit.at[0] = 1 - v - w, hit.at[1] = v, hit.at[2] = w;
+  hit.is_exit = facing < 0;
+}
+
+/// Whether what a vertex meets is no part of its own surroundings or of its organ's far side.
+bool BodyOverlaps::is_far_at_rest(const Body& body, std::int32_t vertex, const Hit& hit) const {
+  if (hit.body != &body) return true;
+  const auto& corner = body.surface.triangles()[std::size_t(hit.triangle)].corner;
+  Vec3 met;
+  for (std::size_t c = 0; c < 3; ++c) met += hit.at[c] * body.surface.rest(corner[c]);
+  const double apart = norm(met - body.surface.rest(vertex));
+  return apart >=
+         std::max(kApartAtRest * model_.organs[std::size_t(body.organ)].spacing, kApartOverDepth * hit.distance);
+}
+
+std::optional<DeepestOverlap> deepest_overlap(const Model& model, const Vec3Array& position) {
+  std::vector<Body> bodies = bodies_of(model);
+  BodyOverlaps overlaps(model, bodies);
+  std::optional<DeepestOverlap> deepest;
+  if (overlaps.empty()) return deepest;
+  for (Body& body : bodies) body.surface.begin(position);
+  overlaps.begin();
+  std::vector<Overlap> found;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    found.clear();
+    overlaps.find(b, found);
+    for (const Overlap& overlap : found)
+      if (!deepest || overlap.depth > deepest->depth)
+        deepest = DeepestOverlap{bodies[b].organ, overlap.other->organ, overlap.depth,
+                                 bodies[b].surface.place(overlap.vertex)};
+  }
+  return deepest;
+}
+
+}  // namespace ctpm::surface
