@@ -44,7 +44,7 @@ void check_files(Problems& problems, const SceneSpec& scene, const std::string& 
       problems.add_rule(at, "got " + in_quotes(mesh) + ", which leaves the scene's folder",
                         "put the mesh beside the scene, or allow meshes outside it");
     else if (!options.allow_outside_paths && is_linked_outside(path, scene_path))
-      problems.add_rule(at, in_quotes(scene.organs[i].mesh) + " is a link that leaves the scene's folder",
+      problems.add_rule(at, in_quotes(mesh) + " is a link that leaves the scene's folder",
                         "put the mesh beside the scene, or allow meshes outside it");
     else if (!fs::exists(path, ignored))
       problems.add_rule(at, "there is no file " + in_quotes(mesh) + " in the scene's folder", "looked for " + path);

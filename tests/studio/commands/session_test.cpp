@@ -157,7 +157,9 @@ void record_with_other_physics(const std::string& path, std::int32_t revision = 
 TEST(Texts, OfAFileCannotSteerTheTerminal) {
   const TemporaryFolder folder;
   recordings::SessionStart start = testing::small_start();
-  start.build_fingerprint = "build \x1b]0;title\x07\nverdict: same\xc2\x9b1m \xe2\x80\xae";
+  start.build_fingerprint =
+      "build \x1b]0;title\x07\nverdict: same\xc2\x9b"
+      "1m \xe2\x80\xae";
   start.metadata["source"] = "a\x1b[2J";
   auto writer = recordings::SessionWriter::create((folder.path() / "a.ctpm").string(), start, {.wait_when_full = true});
   writer->event({.kind = recordings::EventKind::note, .text = "note\x1b[31m\r"});
