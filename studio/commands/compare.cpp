@@ -60,8 +60,10 @@ Command add_compare(CLI::App& program) {
   const CLI::Option* limit =
       app->add_option("--force-limit", arguments->force_limit_n,
                       "Force that should not be passed [N]; if not given the scene's, or the expert's peak");
-  app->add_flag("--verify,!--no-verify", arguments->verify,
-                "Replay the sessions and take forces and depths from the replay; by default up to 30 s");
+  const auto choose = [arguments](bool verifies) { return [=] { arguments->verify = verifies; }; };
+  app->add_flag_callback("--verify", choose(true),
+                         "Replay the sessions and take forces and depths from the replay; by default up to 30 s");
+  app->add_flag_callback("--no-verify", choose(false), "Believe the forces and depths that the sessions state");
   app->add_flag("--json", arguments->json, "Print the results as JSON");
   return {app, [arguments, limit] {
             arguments->has_force_limit = limit->count() > 0;

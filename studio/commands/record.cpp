@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -13,6 +12,7 @@
 #include "studio/loading/loaded_scene.h"
 #include "studio/output/files.h"
 #include "studio/output/number_text.h"
+#include "studio/session/recent_times.h"
 #include "studio/session/record_session.h"
 
 namespace ctpm::commands {
@@ -112,15 +112,6 @@ int print_outcome(const std::string& path, const Model& model, const session::Re
   return was_refused || !outcome.run.fault.empty() ? exit_bad_verdict : exit_good;
 }
 
-constexpr std::int64_t kWatchedTicks = 500;  // between two looks at the clock
-
-/// The 99th percentile of the last ticks' computing times, and how far the session is behind.
-std::string clock_text(std::vector<double> times, double slip) {
-  const auto place = times.begin() + std::ptrdiff_t(times.size() * 99 / 100);
-  std::nth_element(times.begin(), place, times.end());
-  return "tick p99 " + output::fixed(1e3 * *place, 2) + " ms, clock " + output::fixed(slip, 3) + " s behind";
-}
-
 int run_record(const RecordArguments& arguments) {
   if (const Errors errors = check(arguments); !errors.empty()) return print_errors(errors);
   const StopSignal stop;
@@ -150,10 +141,11 @@ int run_record(const RecordArguments& arguments) {
   const Result<session::RecordOutcome> outcome = [&] {
     ProgressLine progress("recording");
     options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
-    std::vector<double> times(kWatchedTicks);
+    session::RecentTimes times;
     options.watch = [&](const State&, const recordings::TickRecord& record, const session::RunOutcome& so_far) {
-      times[std::size_t(so_far.ticks) % times.size()] = record.tick_time;
-      if (so_far.ticks % kWatchedTicks == 0) progress.add(clock_text(times, so_far.slip));
+      if (times.add(record.tick_time))
+        progress.add("tick p99 " + output::fixed(1e3 * times.p99(), 2) + " ms, clock " + output::fixed(so_far.slip, 3) +
+                     " s behind");
     };
     options.tell = [&](const std::string& problem) {
       print_remark(arguments.output + ": error: recording fails now: " + problem);

@@ -97,7 +97,7 @@ std::vector<std::string> remarks_of(const ComparedSessions& compared) {
           "else from the recording");
     else if (!track->is_verified)
       remarks.push_back(track->path +
-                        " is too long to be replayed unasked: its forces and depths are those that it states");
+                        " was not replayed: its forces and depths are those that it states (--verify replays it)");
     if (!track->is_timed)
       remarks.push_back(track->path + " lacks " + output::fixed(track->slip, 3) +
                         " s of the real time, because ticks were late: no measure of time or smoothness is given");

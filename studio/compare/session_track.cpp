@@ -12,6 +12,7 @@ namespace ctpm::compare {
 namespace {
 
 constexpr std::int64_t kReadTicks = 10000;  // held in memory at a time
+constexpr std::int32_t kFirstSwept = 4;     // physics revision
 constexpr double kCutSpacings = 3;          // a tip that moves farther without severing begins another cut
 
 /// The severed flags of a State in the order of ElementPlaces.
@@ -89,6 +90,10 @@ Result<Done> replay_cuts(recordings::SessionReader& session, SessionTrack& track
                                                    [](std::size_t, const stepping::StepReport&) {});
         !replayed)
       return replayed.errors();
+  // A blade goes on where nothing is left to sever. Keyframes of earlier revisions do not hold what it swept.
+  if (session.start().physics_revision >= kFirstSwept)
+    if (const Result<Done> ended = cursor->seek(session.tick_count()); !ended) return ended.errors();
+  track.replays = track.replays && cursor->same_so_far();
   measure_cut(session.start().model, *cursor, track);
   return Done{};
 }
