@@ -82,7 +82,7 @@ Result<Descriptor> listen_on(const std::string& host, int port) {
   for (const addrinfo* address = addresses->get(); address; address = address->ai_next) {
     Descriptor socket = new_socket(*address);
     switch_on(socket, SOL_SOCKET, SO_REUSEADDR);  // allows reuse of the port right after a session
-    constexpr int kWaiting = 4;
+    constexpr int kWaiting = 64;                  // a port scan must not keep a device waiting
     if (socket && ::bind(socket.number(), address->ai_addr, address->ai_addrlen) == 0 &&
         ::listen(socket.number(), kWaiting) == 0)
       return socket;
