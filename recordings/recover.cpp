@@ -224,7 +224,10 @@ Result<Done> write_salvage(const std::string& out, Salvage& salvage, SessionStor
 
 Result<RecoverReport> recover_session(const std::string& in, const std::string& out) {
   RecoverReport report;
-  const std::string copy = out + ".salvage";
+  std::error_code ignored;
+  if (std::filesystem::exists(out, ignored)) return Error{out, "exists already", "choose another name"};
+  std::string copy = out + ".salvage";
+  while (std::filesystem::exists(copy, ignored)) copy += "-";
   struct Remover {
     const std::string& path;
     ~Remover() { remove_with_companions(path); }
@@ -245,11 +248,8 @@ Result<RecoverReport> recover_session(const std::string& in, const std::string& 
   report.complete = report.losses.empty() && salvage.finish.has_value();
   if (!salvage.finish) report.losses.push_back("the session was cut off: it has no end");
 
-  std::error_code ignored;
-  const bool existed = std::filesystem::exists(out, ignored);
   if (auto r = write_salvage(out, salvage, *store, report); !r) {
-    // A file that already existed stays.
-    if (!existed) remove_with_companions(out);
+    remove_with_companions(out);
     return r.errors();
   }
 

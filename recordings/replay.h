@@ -51,6 +51,8 @@ struct VerifyOptions {
   std::int64_t to = -1;   ///< one past the last tick to compare; -1: to the end
   int threads = 1;        ///< >= 1; the verdict does not depend on it
   std::function<void(std::int64_t done, std::int64_t total)> progress = {};  ///< called from time to time; may be empty
+  /// Called for each simulated tick, unless empty; with several threads from each of them, at any time.
+  std::function<void(std::int64_t tick, const stepping::StepReport& report)> look = {};
 };
 
 /// Result of comparing a new simulation with the recording.

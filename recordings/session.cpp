@@ -12,7 +12,7 @@ std::string physics_remark(std::int32_t recorded) {
 }
 
 TickRecord make_record(const Inputs& inputs, const stepping::StepReport& report, double tick_time_s,
-                       std::uint64_t state_hash, double input_age_s) {
+                       std::uint64_t state_hash, double input_age_s, double slip_s) {
   TickRecord record;
   record.inputs = inputs;
   record.tool_force = report.tool_force;
@@ -23,6 +23,7 @@ TickRecord make_record(const Inputs& inputs, const stepping::StepReport& report,
   record.severed = report.severed;
   record.tick_time = tick_time_s;
   record.input_age = input_age_s;
+  record.slip = slip_s;
   record.state_hash = state_hash;
   return record;
 }

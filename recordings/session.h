@@ -49,6 +49,8 @@ struct TickRecord {
   double tick_time = 0;         ///< computing time of the tick [s], stored to 1 ns; 0: not measured
   double input_age = 0;  ///< age of the device sample used for the inputs when the tick began [s], stored to 1 ns; 0:
                          ///< inputs come from no device
+  double slip = 0;       ///< real time since the start of recording, less the time of the session, when the tick began
+                         ///< [s], stored to 1 ms; 0: on time, or not recorded in real time
   std::uint64_t state_hash = 0;  ///< state_hash() of the State after the tick
 
   friend bool operator==(const TickRecord&, const TickRecord&) = default;
@@ -56,7 +58,7 @@ struct TickRecord {
 
 /// Makes the record of the tick just done.
 TickRecord make_record(const Inputs& inputs, const stepping::StepReport& report, double tick_time_s,
-                       std::uint64_t state_hash, double input_age_s = 0);
+                       std::uint64_t state_hash, double input_age_s = 0, double slip_s = 0);
 
 /// The full State before tick `tick`.
 struct Keyframe {
@@ -80,6 +82,8 @@ struct SessionStatistics {
   double input_age_p50 = 0;        ///< [s]
   double input_age_p99 = 0;        ///< [s]
   double input_age_max = 0;        ///< [s]
+  double slip = 0;                 ///< TickRecord::slip of the last tick [s]
+  double slip_max = 0;             ///< [s]
   double max_force = 0;            ///< [N]
   double max_depth = 0;            ///< [m]
   std::vector<NamedValue> values;  ///< further numbers passed to SessionWriter::finish; the name contains the unit

@@ -1,6 +1,8 @@
 #include "recordings/session_writer.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -30,6 +32,7 @@ namespace {
 constexpr auto poll_interval = std::chrono::milliseconds(5);
 constexpr auto retry_interval = std::chrono::milliseconds(200);
 constexpr auto checkpoint_interval = std::chrono::seconds(1);
+constexpr const char* removed = "the file was removed or replaced while it was being recorded";
 constexpr std::size_t chunks_per_commit = 32;  // limit with a backlog
 constexpr std::size_t keyframe_slots = 4;
 
@@ -58,6 +61,8 @@ struct SessionWriter::Impl {
   WriterOptions options;
   SessionTables tables, checkpoints;  // each of its own connection: the syncing thread makes the checkpoints
   int log_file = -1;
+  dev_t device = 0;  ///< with `inode`, the file that is written
+  ino_t inode = 0;
 
   // From the tick's thread to the writing thread.
   Ring<TickRecord> records;
@@ -83,7 +88,7 @@ struct SessionWriter::Impl {
   // From both threads to any caller.
   mutable std::mutex error_mutex;
   std::string error;
-  std::atomic<bool> has_error{false};
+  std::atomic<bool> has_error{false}, is_removed{false};
 
   std::mutex wake_mutex;
   std::condition_variable wake_writer, wake_syncer;
@@ -103,6 +108,7 @@ struct SessionWriter::Impl {
   void gather_events();
   Result<Done> write_rows();
   bool save(bool all);
+  bool is_in_place() const;
   void set_error(const std::string& text);
   void clear_error();
 };
@@ -199,6 +205,12 @@ WriterStatus SessionWriter::status() const {
   return status;
 }
 
+bool SessionWriter::has_error() const {
+  return impl_->has_error.load(std::memory_order_acquire) || impl_->refused.load(std::memory_order_relaxed) > 0;
+}
+
+bool SessionWriter::is_removed() const { return impl_->is_removed.load(std::memory_order_acquire); }
+
 const std::string& SessionWriter::session_id() const { return impl_->identity.id; }
 
 Result<SessionStatistics> SessionWriter::finish(const std::vector<NamedValue>& values) {
@@ -209,6 +221,7 @@ Result<SessionStatistics> SessionWriter::finish(const std::vector<NamedValue>& v
 
   SessionStatistics statistics = impl.counter.result();
   statistics.values = values;
+  if (!impl.is_in_place()) return Error{impl.path, removed, "nothing of the session is left under this name"};
   const WriterStatus now = status();
   if (now.lost > 0)
     return Error{
@@ -246,6 +259,10 @@ Result<Done> SessionWriter::Impl::begin() {
   if (auto r = tables.commit(); !r) return r;
   log_file = ::open((path + "-wal").c_str(), O_RDONLY | O_CLOEXEC);
   if (log_file < 0) return Error{path + "-wal", std::string("cannot be opened: ") + std::strerror(errno), ""};
+  // The lock tells others that this session is being recorded; it ends with the process.
+  if (::flock(log_file, LOCK_EX | LOCK_NB) != 0) return Error{path, "is being recorded by another process", ""};
+  struct stat info {};
+  if (::stat(path.c_str(), &info) == 0) device = info.st_dev, inode = info.st_ino;
   writer = std::thread([this] { write_until_stopped(); });
   syncer = std::thread([this] { sync_until_stopped(); });
   return Done{};
@@ -401,6 +418,7 @@ void SessionWriter::Impl::sync_until_stopped() {
     is_behind = is_behind || sync_wanted;
     const bool syncs = std::exchange(sync_wanted, false);
     lock.unlock();
+    if (!is_in_place()) set_error(removed), is_removed = true;
     if (syncs && ::fdatasync(log_file) != 0)
       set_error(std::string("the disk did not confirm: ") + std::strerror(errno));
     if (Clock::now() - copied >= checkpoint_interval) {
@@ -413,6 +431,12 @@ void SessionWriter::Impl::sync_until_stopped() {
   checkpoints = {};
 }
 
+/// Whether the file under the session's name is still the one that is written.
+bool SessionWriter::Impl::is_in_place() const {
+  struct stat info {};
+  return ::stat(path.c_str(), &info) == 0 && info.st_dev == device && info.st_ino == inode;
+}
+
 void SessionWriter::Impl::set_error(const std::string& text) {
   const std::lock_guard lock(error_mutex);
   if (error.empty()) error = text;
@@ -420,7 +444,7 @@ void SessionWriter::Impl::set_error(const std::string& text) {
 }
 
 void SessionWriter::Impl::clear_error() {
-  if (!has_error || refused.load() > 0) return;
+  if (!has_error || refused.load() > 0 || is_removed) return;
   const std::lock_guard lock(error_mutex);
   error.clear();
   has_error = false;

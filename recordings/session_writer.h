@@ -50,6 +50,12 @@ class SessionWriter {
   /// May be called from any thread.
   WriterStatus status() const;
 
+  /// Whether status() has an error, without waiting, for every tick.
+  bool has_error() const;
+
+  /// Whether somebody removed or replaced the file: nothing more can be saved.
+  bool is_removed() const;
+
   /// 32 hexadecimal digits, random.
   const std::string& session_id() const;
 

@@ -11,6 +11,7 @@
 #include "core/model/fields.h"
 #include "core/stepping/step.h"
 #include "recordings/replay.h"
+#include "recordings/signature.h"
 #include "recordings/state_hash.h"
 
 namespace ctpm::recordings {
@@ -146,7 +147,7 @@ class Progress {
 };
 
 Result<Verdict> verify_stretch(SessionReader& reader, ReplayCursor& cursor, const Stretch& stretch,
-                               Progress& progress) {
+                               const VerifyOptions& options, Progress& progress) {
   Verdict verdict;
   if (stretch.from == stretch.to) return verdict;
   if (auto r = cursor.seek(stretch.from); !r) return r.errors();
@@ -156,6 +157,7 @@ Result<Verdict> verify_stretch(SessionReader& reader, ReplayCursor& cursor, cons
     const auto stepped = cursor.step();
     if (!stepped) return stepped.errors();
     const bool same_hash = state_hash(cursor.state()) == cursor.record().state_hash;
+    if (options.look) options.look(tick, cursor.report());
     const std::vector<Pair> pairs = outcomes(cursor.record(), cursor.report());
     const bool same = same_hash && std::all_of(pairs.begin(), pairs.end(), [](const Pair& p) { return p.same(); });
     if (!same) note_difference(tick, same_hash, pairs, verdict);
@@ -182,7 +184,7 @@ struct Work {
 };
 
 /// One thread's work: takes the next stretch until none is left.
-void verify_next(SessionReader& reader, Work& work, Progress& progress) {
+void verify_next(SessionReader& reader, Work& work, const VerifyOptions& options, Progress& progress) {
   std::optional<ReplayCursor> cursor;
   for (std::size_t i; (i = work.next.fetch_add(1)) < work.stretches.size();) {
     // A diverged cursor cannot return to the recorded State by stepping on.
@@ -194,7 +196,7 @@ void verify_next(SessionReader& reader, Work& work, Progress& progress) {
         work.outcomes[i].errors = fresh.errors();
     }
     if (!work.outcomes[i].errors.empty()) continue;
-    const auto verdict = verify_stretch(reader, *cursor, work.stretches[i], progress);
+    const auto verdict = verify_stretch(reader, *cursor, work.stretches[i], options, progress);
     if (verdict)
       work.outcomes[i].verdict = *verdict;
     else
@@ -238,8 +240,11 @@ Result<Verdict> verify_session(SessionReader& reader, const VerifyOptions& optio
                  ""};
   // Of a whole session everything is checked, not only what a replay reads.
   const bool is_whole = options.from == 0 && to == reader.tick_count();
-  if (is_whole)
+  if (is_whole) {
     if (auto r = reader.check_all(); !r) return r.errors();
+    if (can_sign())
+      if (const auto signature = check_signature(reader.path()); !signature) return signature.errors();
+  }
   const auto keyframes = reader.keyframe_ticks();
   if (!keyframes) return keyframes.errors();
 
@@ -257,8 +262,8 @@ Result<Verdict> verify_session(SessionReader& reader, const VerifyOptions& optio
     readers.push_back(std::move(*another));
   }
   std::vector<std::thread> running;
-  for (SessionReader& another : readers) running.emplace_back([&] { verify_next(another, work, progress); });
-  verify_next(reader, work, progress);
+  for (SessionReader& another : readers) running.emplace_back([&] { verify_next(another, work, options, progress); });
+  verify_next(reader, work, options, progress);
   for (std::thread& thread : running) thread.join();
   Result<Verdict> verdict = merge(work.outcomes);
   if (verdict) {

@@ -10,21 +10,22 @@ namespace ctpm::scenes {
 namespace {
 
 constexpr int max_depth = 64;
+constexpr std::size_t most_values = 200'000;  // of a text; a node of the tree takes some hundred bytes
 
 /// Checks the grammar and the depth; keeps the first error. Builds nothing.
 class GrammarCheck : public nlohmann::json_sax<nlohmann::json> {
  public:
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
-  bool binary(binary_t&) override { return true; }
-  bool start_object(std::size_t) override { return ++depth_ <= max_depth; }
+  bool null() override { return count(); }
+  bool boolean(bool) override { return count(); }
+  bool number_integer(number_integer_t) override { return count(); }
+  bool number_unsigned(number_unsigned_t) override { return count(); }
+  bool number_float(number_float_t, const string_t&) override { return count(); }
+  bool string(string_t&) override { return count(); }
+  bool binary(binary_t&) override { return count(); }
+  bool start_object(std::size_t) override { return ++depth_ <= max_depth && count(); }
   bool key(string_t&) override { return true; }
   bool end_object() override { return --depth_, true; }
-  bool start_array(std::size_t) override { return ++depth_ <= max_depth; }
+  bool start_array(std::size_t) override { return ++depth_ <= max_depth && count(); }
   bool end_array() override { return --depth_, true; }
   bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& problem) override {
     // `position` is behind the first character that does not fit; the token before it may begin long before.
@@ -33,11 +34,16 @@ class GrammarCheck : public nlohmann::json_sax<nlohmann::json> {
     return false;
   }
 
+  bool has_too_many() const { return values_ > most_values; }
+
   std::size_t offset = 0;
   std::string message;
 
  private:
+  bool count() { return ++values_ <= most_values; }
+
   int depth_ = 0;
+  std::size_t values_ = 0;
 };
 
 /// The package's message without its own name and place, which we give ourselves.
@@ -203,12 +209,19 @@ std::string describe(const JsonNode& node) {
   return "";
 }
 
+Error too_long(const std::string& file_name, std::uintmax_t bytes) {
+  return {file_name, "has " + std::to_string(bytes) + " bytes, at most " + std::to_string(kMostTextBytes) + " are read",
+          ""};
+}
+
 Result<JsonNode> parse_json(std::string_view text, const std::string& file_name) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
 
+  if (text.size() > kMostTextBytes) return too_long(file_name, text.size());
   GrammarCheck check;
   if (!nlohmann::json::sax_parse(text, &check)) {
+    if (check.has_too_many()) return Error{file_name, "holds more than " + std::to_string(most_values) + " values", ""};
     if (check.message.empty())
       return Error{at(file_name, too_deep_place(text)), "nested deeper than " + std::to_string(max_depth) + " levels",
                    ""};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,7 +29,13 @@ struct JsonNode {
 /// "the number 4", "the text "abc"", "a list of 3" ...: what was got, for messages.
 std::string describe(const JsonNode& node);
 
-/// Error: one, at the place where the text stops being JSON, or is nested deeper than 64 levels.
+/// Longest text that is read [bytes]; shipped scenes have some thousand.
+inline constexpr std::size_t kMostTextBytes = 16 << 20;
+/// The error of a longer one.
+Error too_long(const std::string& file_name, std::uintmax_t bytes);
+
+/// Error: one, at the place where the text stops being JSON, or is nested deeper than 64 levels; a text longer than
+/// kMostTextBytes or of more than 200,000 values.
 Result<JsonNode> parse_json(std::string_view text, const std::string& file_name);
 
 /// `text` in quotes, escaped.

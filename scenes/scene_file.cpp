@@ -23,6 +23,16 @@ bool leaves_folder(const std::string& path) {
   return normal.is_absolute() || (!normal.empty() && *normal.begin() == "..");
 }
 
+/// Whether a file lies outside the scene's folder once symbolic links are followed.
+bool is_linked_outside(const std::string& path, const std::string& scene_path) {
+  std::error_code failure;
+  const fs::path parent = fs::path(scene_path).parent_path(),
+                 folder = fs::weakly_canonical(parent.empty() ? fs::path(".") : parent, failure);
+  if (failure) return true;
+  const fs::path file = fs::weakly_canonical(path, failure);
+  return failure || leaves_folder(file.lexically_relative(folder).string());
+}
+
 /// Checks the files that a scene names.
 void check_files(Problems& problems, const SceneSpec& scene, const std::string& scene_path,
                  const LoadOptions& options) {
@@ -32,6 +42,9 @@ void check_files(Problems& problems, const SceneSpec& scene, const std::string& 
     std::error_code ignored;
     if (leaves_folder(mesh) && !options.allow_outside_paths)
       problems.add_rule(at, "got " + in_quotes(mesh) + ", which leaves the scene's folder",
+                        "put the mesh beside the scene, or allow meshes outside it");
+    else if (!options.allow_outside_paths && is_linked_outside(path, scene_path))
+      problems.add_rule(at, in_quotes(mesh) + " is a link that leaves the scene's folder",
                         "put the mesh beside the scene, or allow meshes outside it");
     else if (!fs::exists(path, ignored))
       problems.add_rule(at, "there is no file " + in_quotes(mesh) + " in the scene's folder", "looked for " + path);
@@ -75,6 +88,8 @@ Result<SceneDraft> load_draft(const std::string& path, const LoadOptions& option
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return Error{path, "does not exist", ""};
   if (!fs::is_regular_file(path, ignored)) return Error{path, "is not a file", ""};
+  if (const std::uintmax_t bytes = fs::file_size(path, ignored); !ignored && bytes > kMostTextBytes)
+    return too_long(path, bytes);
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();

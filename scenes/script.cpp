@@ -186,7 +186,7 @@ void ScriptPlayer::plan(std::size_t first_step, std::int32_t tool, Quat orientat
     if (step.wait) add_stretch(i, tool, orientation, {hand}, *step.wait);
     if (step.put_away) {
       tool = -1;
-      add_stretch(i, tool, {}, {Vec3{}}, tick_);
+      add_stretch(i, tool, orientation, {hand}, tick_);  // the hand stays where it is
     }
   }
 }

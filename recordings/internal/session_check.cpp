@@ -15,7 +15,7 @@ namespace {
 constexpr double time_error = 1e-9, relative_time_error = 1e-6;  // [s], [1]
 
 bool is_same(std::string_view name, double stored, double counted) {
-  const bool is_time = name.starts_with("tick_time") || name.starts_with("input_age");
+  const bool is_time = name.starts_with("tick_time") || name.starts_with("input_age") || name.starts_with("slip");
   return stored == counted ||
          (is_time && std::abs(stored - counted) <= time_error + relative_time_error * std::abs(counted));
 }

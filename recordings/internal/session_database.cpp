@@ -1,16 +1,20 @@
 #include "recordings/internal/session_database.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
+#include <sys/file.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 
 #include "recordings/internal/field_codec.h"
 #include "recordings/internal/schema.h"
@@ -65,12 +69,32 @@ Result<Done> check_place(const std::string& path, bool overwrite) {
   if (::access(folder_of(path).c_str(), W_OK) != 0)
     return Error{path, "the folder " + folder_of(path) + " cannot be written", ""};
   if (::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode)) return Error{path, "is not a regular file", ""};
+  if (is_being_recorded(path)) return Error{path, "is being recorded by another process", ""};
   if (overwrite) return Done{};
   if (exists(path)) return Error{path, "exists already", "choose another name, or allow it to be replaced"};
   if (exists(path + "-wal"))
     return Error{path + "-wal", "is left over from another session of that name",
                  "move it to its session file, or delete it"};
   return Done{};
+}
+
+constexpr std::string_view part_ending = ".part";
+
+/// Removes the unfinished files of `path` whose process is gone: `PATH.PID-HEX.part`.
+void remove_left_behind(const std::string& path) {
+  const std::string prefix = std::filesystem::path(path).filename().string() + ".";
+  std::error_code failure;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_of(path), failure)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(prefix) || !name.ends_with(part_ending)) continue;
+    pid_t process = 0;
+    const char* const end = name.data() + name.size();
+    const auto [last, problem] = std::from_chars(name.data() + prefix.size(), end, process);
+    // The name is as long as it says, so that it is no other file of a user.
+    const bool is_ours = problem == std::errc() && *last == '-' && end - last == 1 + 8 + std::ssize(part_ending);
+    if (is_ours && process > 0 && ::kill(process, 0) != 0 && errno == ESRCH)
+      remove_with_companions(entry.path().string());
+  }
 }
 
 struct NamedContent {
@@ -111,6 +135,14 @@ std::string sql_of_new_file() {
 }
 
 }  // namespace
+
+bool is_being_recorded(const std::string& path) {
+  const int log = ::open((path + "-wal").c_str(), O_RDONLY | O_CLOEXEC);
+  if (log < 0) return false;
+  const bool is_locked = ::flock(log, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(log);
+  return is_locked;
+}
 
 void remove_with_companions(const std::string& path) {
   for (const char* ending : {"", "-journal", "-wal", "-shm"}) ::unlink((path + ending).c_str());
@@ -234,7 +266,9 @@ Result<Done> SessionTables::close() {
 Result<Done> create_session_file(const std::string& path, const SessionStart& start, const SessionIdentity& identity,
                                  bool overwrite, int level) {
   if (auto r = check_place(path, overwrite); !r) return r;
-  const std::string temporary = path + "." + identity.id.substr(0, 8) + ".part";
+  remove_left_behind(path);
+  const std::string temporary =
+      path + "." + std::to_string(::getpid()) + "-" + identity.id.substr(0, 8) + std::string(part_ending);
   const auto write = [&]() -> Result<Done> {
     auto database = Database::open(temporary, Database::Access::create);
     if (!database) return database.errors();

@@ -38,8 +38,12 @@ std::string chunk_name(std::int64_t first, std::int64_t count);
 std::string keyframe_name(std::int64_t tick);
 std::string event_name(std::int64_t first, std::int64_t count);
 
+/// Whether a process records the session at `path` now. Its writer holds a lock on the log.
+bool is_being_recorded(const std::string& path);
+
 /// Makes a complete session file without ticks at `path`: writes a temporary file beside it, syncs and renames it. An
-/// error leaves no file behind. `overwrite` replaces an existing file.
+/// error leaves no file behind, nor do the unfinished files of starts that were killed. `overwrite` replaces an
+/// existing file, unless it is being recorded.
 Result<Done> create_session_file(const std::string& path, const SessionStart& start, const SessionIdentity& identity,
                                  bool overwrite, int level);
 

@@ -193,6 +193,25 @@ Result<std::vector<std::string>> SessionStore::part_names() {
   return names;
 }
 
+Result<Done> SessionStore::for_each_row(const std::function<void(const std::string&, std::int64_t, ByteView)>& visit) {
+  for (const auto& [table, columns] : {std::pair{"part", "name, ''"},
+                                       {"chunk", "first, count"},
+                                       {"keyframe", "tick, ''"},
+                                       {"event", "first, count"}}) {
+    auto statement = database_.prepare(std::string("SELECT ") + columns + ", size, data FROM " + table + " ORDER BY 1");
+    if (!statement) return statement.errors();
+    Statement::Outcome outcome;
+    while ((outcome = statement->step()) == Statement::Outcome::row) {
+      std::string label = std::string(table) + " " + statement->text(0);
+      if (!statement->text(1).empty()) label += " " + statement->text(1);
+      visit(label, statement->integer(2), statement->blob(3));
+    }
+    if (outcome == Statement::Outcome::failed)
+      return database_error(std::string("the table ") + table + " cannot be read");
+  }
+  return Done{};
+}
+
 Result<Done> SessionStore::check_container() {
   auto statement = database_.prepare("PRAGMA integrity_check(1)");
   if (!statement || statement->step() != Statement::Outcome::row) return database_error("its pages cannot be checked");

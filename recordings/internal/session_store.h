@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,6 +42,10 @@ class SessionStore {
 
   /// The names of all parts, known or not.
   Result<std::vector<std::string>> part_names();
+  /// Calls `visit(label, size, data)` for each row of each table, in the order of tables and keys. The label is that of
+  /// the checksum without the size; checksums are not verified.
+  Result<Done> for_each_row(
+      const std::function<void(const std::string& label, std::int64_t size, ByteView data)>& visit);
   /// Errors: what SQLite finds wrong with its own pages and tables.
   Result<Done> check_container();
 

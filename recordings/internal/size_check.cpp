@@ -29,8 +29,12 @@ Errors check_sizes(const Model& model) {
   at_most(double(model.obstacles.size()), most_obstacles, "obstacles");
   at_most(double(model.loads.size()), most_loads, "loads");
   const auto names = [&](const auto& things, const char* what) {
-    for (const auto& thing : things)
+    for (const auto& thing : things) {
+      const bool is_plain = std::none_of(thing.name.begin(), thing.name.end(),
+                                         [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+      if (!is_plain) errors.push_back({"model", std::string(what) + ": a name holds control characters", ""});
       at_most(double(thing.name.size()), longest_name, std::string("letters in the name of a thing among ") + what);
+    }
   };
   names(model.organs, "organs"), names(model.tools, "tools"), names(model.obstacles, "obstacles");
   const double passed = double(model.sphere_count() + model.element_count() + model.tissue_cells.size());

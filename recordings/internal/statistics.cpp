@@ -27,6 +27,8 @@ void StatisticsCounter::add(const TickRecord& record) {
   sum_.max_depth = std::max(sum_.max_depth, record.depth);
   sum_.tick_time_max = std::max(sum_.tick_time_max, record.tick_time);
   sum_.input_age_max = std::max(sum_.input_age_max, record.input_age);
+  sum_.slip = std::floor(record.slip * 1e3 + 1e-6) / 1e3;  // as it is stored
+  sum_.slip_max = std::max(sum_.slip_max, sum_.slip);
   if (record.input_age > 0) input_ages_.push_back(static_cast<float>(record.input_age));
   if (record.tick_time > 0) tick_times_.push_back(static_cast<float>(record.tick_time));
 }

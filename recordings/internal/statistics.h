@@ -38,6 +38,8 @@ void for_each_field(S& s, Visit&& visit) {
   visit("input_age_p50_s", s.input_age_p50);
   visit("input_age_p99_s", s.input_age_p99);
   visit("input_age_max_s", s.input_age_max);
+  visit("slip_s", s.slip);
+  visit("slip_max_s", s.slip_max);
   visit("max_force_n", s.max_force);
   visit("max_depth_m", s.max_depth);
 }

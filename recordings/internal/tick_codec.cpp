@@ -42,7 +42,8 @@ void set_bits(T& value, std::uint64_t bits) {
         [](TickRecord& r, std::uint64_t bits) { set_bits(r.member, bits); } \
   }
 
-constexpr double nanoseconds = 1e9;  // in a second
+constexpr double nanoseconds = 1e9;               // in a second
+constexpr std::uint64_t millisecond = 1'000'000;  // [ns]
 
 std::uint64_t to_nanoseconds(double seconds) {
   return seconds > 0 ? static_cast<std::uint64_t>(std::llround(std::min(seconds, 1e9) * nanoseconds)) : 0;
@@ -71,6 +72,8 @@ const std::array columns = {
     CTPM_COLUMN("state_hash", state_hash),
     Column{"input_age_ns", FieldType::u64, [](const TickRecord& r) { return to_nanoseconds(r.input_age); },
            [](TickRecord& r, std::uint64_t ns) { r.input_age = static_cast<double>(ns) / nanoseconds; }},
+    Column{"slip_ms", FieldType::u64, [](const TickRecord& r) { return to_nanoseconds(r.slip) / millisecond; },
+           [](TickRecord& r, std::uint64_t ms) { r.slip = static_cast<double>(ms) / 1000; }},
 };
 
 const char* type_name(FieldType type) {

@@ -128,17 +128,21 @@ Result<ImportOutcome> import_scene(const ImportRequest& request) {
   if (!preset) return preset.errors();
   if (fs::path(request.scene).extension() != ".json")
     return Error{request.scene, "a scene's name must end in .json", ""};
-  if (const Result<Done> writable = output::check_writable(request.scene); !writable) return writable.errors();
   const fs::path folder = fs::path(request.scene).parent_path();
   const std::string name = fs::path(request.scene).stem().string();
   ImportOutcome outcome;
   outcome.scene_file = request.scene;
   outcome.mesh_file = (folder / (name + ".obj")).string();
   outcome.script_file = (folder / (name + ".script.json")).string();
+  Errors errors;
+  for (const std::string& file : {outcome.scene_file, outcome.mesh_file, outcome.script_file})
+    if (const Result<Done> is_new = output::check_new(file, request.overwrite); !is_new)
+      errors.insert(errors.end(), is_new.errors().begin(), is_new.errors().end());
   std::error_code ignored;
   if (fs::equivalent(outcome.mesh_file, request.mesh, ignored))
     return Error{outcome.mesh_file, "the repaired mesh would replace the mesh that is imported",
                  "give the scene another name or folder"};
+  if (!errors.empty()) return errors;
 
   importers::ImportOptions options;
   options.unit_in_metres = request.unit_in_metres;

@@ -20,6 +20,7 @@ struct ImportRequest {
   std::optional<double> gap;             ///< [m]; unset: the radius
   std::string part;
   bool all_parts = false;
+  bool overwrite = false;              ///< replaces an existing scene, mesh or script
   std::optional<double> largest_hole;  ///< holes up to this diameter are filled [m]; unset: a tenth of the diagonal
   std::optional<std::int32_t> most_triangles;  ///< of the drawn surface; unset: as many as the mesh has
   std::vector<scenes::AnchorSpec> anchors;     ///< empty: the lowest eighth of its spheres
@@ -39,8 +40,8 @@ struct ImportOutcome {
 
 /// Imports a mesh and writes a scene that runs without changes: `NAME.json` with its stiffness fitted, the repaired
 /// mesh `NAME.obj` in millimetres, and a script `NAME.script.json` that presses and cuts it. Errors: those of the
-/// import, an unknown organ, an anchor without spheres, a folder that cannot be written. The scene is written last, so
-/// that it never names a missing file.
+/// import, an unknown organ, an anchor without spheres, a folder that cannot be written, a file that exists already.
+/// The scene is written last, so that it never names a missing file.
 Result<ImportOutcome> import_scene(const ImportRequest& request);
 
 }  // namespace ctpm::authoring

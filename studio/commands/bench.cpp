@@ -44,8 +44,8 @@ int run_bench(const BenchArguments& arguments) {
   if (const Result<Done> written = bench::write_bench_report(arguments.folder, *studies); !written)
     return print_errors(written.errors());
   for (const bench::BenchStudy& study : *studies)
-    for (const std::string& sentence : study.sentences) std::printf("%s\n", sentence.c_str());
-  std::printf("written: %s/report.html, results.json, results.csv\n", arguments.folder.c_str());
+    for (const std::string& sentence : study.sentences) print("%s\n", sentence.c_str());
+  print("written: %s/report.html, results.json, results.csv\n", arguments.folder.c_str());
   return exit_good;
 }
 

@@ -23,8 +23,8 @@ int run_check(const CheckArguments& arguments) {
       continue;
     }
     print_warnings(scene->scene.warnings);
-    std::printf("%s: good, %zu spheres, %zu elements\n", path.c_str(), scene->built.model.sphere_count(),
-                scene->built.model.element_count());
+    print("%s: good, %zu spheres, %zu elements\n", path.c_str(), scene->built.model.sphere_count(),
+          scene->built.model.element_count());
   }
   return code;
 }

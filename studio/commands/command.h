@@ -24,6 +24,8 @@ Command add_verify(CLI::App& program);
 Command add_info(CLI::App& program);
 Command add_compare(CLI::App& program);
 Command add_recover(CLI::App& program);
+Command add_sign(CLI::App& program);
+Command add_key(CLI::App& program);
 Command add_export(CLI::App& program);
 Command add_demo(CLI::App& program);
 Command add_fit(CLI::App& program);

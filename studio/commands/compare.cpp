@@ -17,6 +17,7 @@ struct CompareArguments {
   std::string expert, trainee, folder;
   double force_limit_n = 0;
   bool has_force_limit = false, json = false;
+  std::optional<bool> verify;
 };
 
 int run_compare(const CompareArguments& arguments) {
@@ -26,7 +27,10 @@ int run_compare(const CompareArguments& arguments) {
   if (!opened) return print_errors(opened.errors());
   warn_of_physics(opened->expert), warn_of_physics(opened->trainee);
   const Result<compare::ComparedFiles> files = compare::compare_files(
-      std::move(*opened), arguments.has_force_limit ? std::optional(arguments.force_limit_n) : std::nullopt);
+      std::move(*opened), arguments.has_force_limit ? std::optional(arguments.force_limit_n) : std::nullopt,
+      !arguments.verify   ? compare::Replaying::short_ones
+      : *arguments.verify ? compare::Replaying::all
+                          : compare::Replaying::none);
   if (!files) return print_errors(files.errors());
   // Created only now, so that refused sessions leave no folder behind.
   if (!arguments.folder.empty())
@@ -38,8 +42,7 @@ int run_compare(const CompareArguments& arguments) {
     if (const Result<Done> written = compare::write_comparison(arguments.folder, compared, to_see_worst); !written)
       return print_errors(written.errors());
   for (const std::string& remark : compare::remarks_of(compared)) print_remark("warning: " + remark);
-  std::fputs((arguments.json ? compare::comparison_json(compared) : comparison_text(compared, to_see_worst)).c_str(),
-             stdout);
+  print("%s", (arguments.json ? compare::comparison_json(compared) : comparison_text(compared, to_see_worst)).c_str());
   if (!arguments.folder.empty()) print_remark("written: " + arguments.folder + "/report.html, results.json");
   return exit_good;
 }
@@ -57,6 +60,10 @@ Command add_compare(CLI::App& program) {
   const CLI::Option* limit =
       app->add_option("--force-limit", arguments->force_limit_n,
                       "Force that should not be passed [N]; if not given the scene's, or the expert's peak");
+  const auto choose = [arguments](bool verifies) { return [=] { arguments->verify = verifies; }; };
+  app->add_flag_callback("--verify", choose(true),
+                         "Replay the sessions and take forces and depths from the replay; by default up to 30 s");
+  app->add_flag_callback("--no-verify", choose(false), "Believe the forces and depths that the sessions state");
   app->add_flag("--json", arguments->json, "Print the results as JSON");
   return {app, [arguments, limit] {
             arguments->has_force_limit = limit->count() > 0;

@@ -2,16 +2,19 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdarg>
 #include <cstdio>
 
 #include "studio/commands/flags.h"
 #include "studio/output/option_name.h"
+#include "studio/output/printable.h"
 
 namespace ctpm::commands {
 
 int print_errors(const Errors& errors) {
   for (const Error& error : output::name_options(errors, flag_of))
-    std::fprintf(stderr, "%s\n", to_string(error).c_str());
+    std::fprintf(stderr, "%s\n", output::printable(to_string(error)).c_str());
   return exit_bad_input;
 }
 
@@ -21,7 +24,19 @@ void print_warnings(const Errors& warnings) {
                  (warning.hint.empty() ? "" : " (" + warning.hint + ")"));
 }
 
-void print_remark(const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); }
+void print_remark(const std::string& text) { std::fprintf(stderr, "%s\n", output::printable(text, true).c_str()); }
+
+void print(const char* format, ...) {
+  va_list arguments, again;
+  va_start(arguments, format);
+  va_copy(again, arguments);
+  std::string text(std::size_t(std::max(0, std::vsnprintf(nullptr, 0, format, arguments))) + 1, '\0');
+  std::vsnprintf(text.data(), text.size(), format, again);
+  va_end(again);
+  va_end(arguments);
+  text.pop_back();
+  std::fputs(output::printable(text, true).c_str(), stdout);
+}
 
 ProgressLine::ProgressLine(std::string what)
     : what_(std::move(what)), is_terminal_(isatty(STDERR_FILENO) == 1), start_(Clock::now()), last_(start_) {}
@@ -32,11 +47,15 @@ ProgressLine::~ProgressLine() {
 
 void ProgressLine::show(std::int64_t done, std::int64_t total) {
   const Clock::time_point now = Clock::now();
-  if (!is_terminal_ || total <= 0 || done <= 0 || now - last_ < std::chrono::milliseconds(200)) return;
+  if (!is_terminal_ || done <= 0 || now - last_ < std::chrono::milliseconds(200)) return;
   last_ = now;
   const double spent = std::chrono::duration<double>(now - start_).count();
-  std::fprintf(stderr, "\r\033[K%s: %3.0f %%, %.0f s left", what_.c_str(), 100.0 * double(done) / double(total),
-               spent * double(total - done) / double(done));
+  if (total > 0)
+    std::fprintf(stderr, "\r\033[K%s: %3.0f %%, %.0f s left", what_.c_str(), 100.0 * double(done) / double(total),
+                 spent * double(total - done) / double(done));
+  else
+    std::fprintf(stderr, "\r\033[K%s: %.0f s", what_.c_str(), spent);
+  if (!added_.empty()) std::fprintf(stderr, ", %s", added_.c_str());
 }
 
 }  // namespace ctpm::commands

@@ -22,10 +22,15 @@ int print_errors(const Errors& errors);
 /// Prints the warnings of a scene to stderr, one per line.
 void print_warnings(const Errors& warnings);
 
+/// Prints to stdout like printf, with control characters but newlines written out: names and texts of files reach the
+/// terminal only through this. A text that may hold newlines is made printable first.
+[[gnu::format(printf, 1, 2)]] void print(const char* format, ...);
+
 /// Prints a line to stderr, for progress and remarks; results go to stdout.
 void print_remark(const std::string& text);
 
-/// A progress line on stderr with the remaining time; silent if stderr is not a terminal.
+/// A progress line on stderr with the remaining time, or the count so far if the total is unknown; silent if stderr is
+/// not a terminal.
 class ProgressLine {
  public:
   explicit ProgressLine(std::string what);
@@ -34,10 +39,12 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   void show(std::int64_t done, std::int64_t total);
+  /// Shows `text` behind it from now on.
+  void add(std::string text) { added_ = std::move(text); }
 
  private:
   using Clock = std::chrono::steady_clock;
-  std::string what_;
+  std::string what_, added_;
   bool is_terminal_;
   Clock::time_point start_, last_;
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,7 +27,20 @@ namespace fs = std::filesystem;
 
 struct DemoArguments {
   std::string folder = "out";
+  bool overwrite = false;
 };
+
+/// Whether the folder's files may be replaced: an earlier demo made them, which left its mark, or the user says so.
+/// Leaves the mark in a folder that has none of these files.
+bool may_replace(const fs::path& folder, const std::vector<std::string>& files, bool overwrite) {
+  const fs::path mark = folder / ".ctpm-demo", earlier = folder / "demo.mp4.json";
+  std::error_code ignored;
+  const auto exists = [&](const fs::path& file) { return fs::exists(file, ignored); };
+  const bool is_ours = overwrite || exists(mark) || exists(earlier);
+  if (!is_ours && std::any_of(files.begin(), files.end(), exists)) return false;
+  std::ofstream{mark};
+  return true;
+}
 
 /// Runs this program with other arguments in a separate process and returns its exit code.
 int run_in_new_process(const std::vector<std::string>& arguments) {
@@ -55,6 +69,9 @@ int run_demo(const DemoArguments& arguments) {
   if (failure) return print_errors({{arguments.folder, "cannot be made: " + failure.message(), ""}});
   const std::string scene_file = (folder / "liver.json").string(), session_file = (folder / "demo.ctpm").string(),
                     video_file = (folder / "demo.mp4").string();
+  if (!may_replace(folder, {scene_file, session_file, video_file}, arguments.overwrite))
+    return print_errors({{arguments.folder, "holds files of these names that no demo made",
+                          "choose another folder with -o; --overwrite replaces them"}});
   const auto start = std::chrono::steady_clock::now();
 
   say_step(1, "importing the shipped liver mesh and filling it with spheres");
@@ -62,6 +79,7 @@ int run_demo(const DemoArguments& arguments) {
   request.mesh = std::string(CTPM_SOURCE_DIR) + "/scenes/organs/liver.obj";
   request.scene = scene_file;
   request.unit_in_metres = 1e-3;
+  request.overwrite = true;
   const Result<authoring::ImportOutcome> imported = authoring::import_scene(request);
   if (!imported) return print_errors(imported.errors());
 
@@ -90,6 +108,7 @@ int run_demo(const DemoArguments& arguments) {
   if (!reader) return print_errors(reader.errors());
   film::ExportOptions exporting;
   exporting.should_stop = options.should_stop;
+  exporting.overwrite = true;
   const Result<film::ExportOutcome> exported = [&] {
     ProgressLine progress("exporting");
     exporting.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
@@ -101,17 +120,17 @@ int run_demo(const DemoArguments& arguments) {
   say_step(5, "done in " + output::fixed(seconds, 1) + " s");
   const Model& model = scene->built.model;
   const recordings::SessionStatistics& s = recorded->statistics;
-  std::printf("spheres         %zu in %d layers\n", model.sphere_count(), model.organs.front().layer_count);
-  std::printf("elements        %zu, of which %lld severed\n", model.element_count(), (long long)s.severed);
-  std::printf("tick time       p50 %.3f ms, p99 %.3f ms; %lld of %lld ticks late\n", s.tick_time_p50 * 1e3,
-              s.tick_time_p99 * 1e3, (long long)recorded->run.late_ticks, (long long)s.ticks);
-  std::printf("ticks compared  %lld\n", (long long)s.ticks);
-  std::printf("verdict         %s\n",
-              verified == exit_good ? "same as recorded, to the bit" : "DIFFERENT from what was recorded");
-  std::printf("video           %lld frames, %s, %dx%d\n", (long long)exported->video.frames,
-              exported->video.codec.c_str(), exported->video.width, exported->video.height);
-  std::printf("files           %s, %s, %s, %s, %s\n", scene_file.c_str(), imported->mesh_file.c_str(),
-              imported->script_file.c_str(), session_file.c_str(), exported->video.path.c_str());
+  print("spheres         %zu in %d layers\n", model.sphere_count(), model.organs.front().layer_count);
+  print("elements        %zu, of which %lld severed\n", model.element_count(), (long long)s.severed);
+  print("tick time       p50 %.3f ms, p99 %.3f ms; %lld of %lld ticks late\n", s.tick_time_p50 * 1e3,
+        s.tick_time_p99 * 1e3, (long long)recorded->run.late_ticks, (long long)s.ticks);
+  print("ticks compared  %lld\n", (long long)s.ticks);
+  print("verdict         %s\n",
+        verified == exit_good ? "same as recorded, to the bit" : "DIFFERENT from what was recorded");
+  print("video           %lld frames, %s, %dx%d\n", (long long)exported->video.frames, exported->video.codec.c_str(),
+        exported->video.width, exported->video.height);
+  print("files           %s, %s, %s, %s, %s\n", scene_file.c_str(), imported->mesh_file.c_str(),
+        imported->script_file.c_str(), session_file.c_str(), exported->video.path.c_str());
   return verified == exit_good && exported->same_as_recorded() ? exit_good : exit_bad_verdict;
 }
 
@@ -123,6 +142,7 @@ Command add_demo(CLI::App& program) {
       program.add_subcommand("demo", "The main job, start to end: mesh, scene, session, verified replay, video.");
   app->footer("Example: ctpm demo");
   app->add_option("-o,--output", arguments->folder, "Folder for what it makes")->capture_default_str();
+  app->add_flag("--overwrite", arguments->overwrite, "Replace files of the same names that no demo made");
   return {app, [arguments] { return run_demo(*arguments); }};
 }
 

@@ -23,10 +23,9 @@ struct ExportArguments {
 
 void print_outcome(const film::ExportOutcome& outcome) {
   const video::VideoFacts& video = outcome.video;
-  std::printf("%s: %lld frames, %dx%d, %g frames/s, %s, %.1f MB; replay %s\n", video.path.c_str(),
-              (long long)video.frames, video.width, video.height, video.fps, video.codec.c_str(),
-              double(video.bytes) / 1e6,
-              outcome.same_as_recorded() ? "same as recorded" : "DIFFERS from what was recorded; every frame says so");
+  print("%s: %lld frames, %dx%d, %g frames/s, %s, %.1f MB; replay %s\n", video.path.c_str(), (long long)video.frames,
+        video.width, video.height, video.fps, video.codec.c_str(), double(video.bytes) / 1e6,
+        outcome.same_as_recorded() ? "same as recorded" : "DIFFERS from what was recorded; every frame says so");
   const film::StageTimes& times = outcome.times;
   const auto share = [&](double part) { return output::fixed(100 * part / times.work(), 0) + " %"; };
   print_remark("exported in " + output::fixed(times.elapsed, 1) + " s, " +
@@ -86,6 +85,7 @@ Command add_export(CLI::App& program) {
   app->add_option("--speed", options.speed, "Times real speed")->capture_default_str();
   add_time_range(*app, options.range);
   add_look(*app, options.look);
+  app->add_flag("--overwrite", arguments->options.overwrite, "Replace an existing video");
   app->add_flag("--allow-diverged", options.allow_diverged,
                 "Export although the replay differs, and say so on every frame; it is verified first");
   return {app, [arguments] { return run_export(*arguments); }};

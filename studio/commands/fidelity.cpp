@@ -22,8 +22,8 @@ void print_missed(const fidelity::FidelityResults& results) {
       if (f.verdict() != reports::ReportVerdict::missed) continue;
       const std::string radius = f.radius > 0 ? ", r = " + output::short_number(1e3 * f.radius) + " mm" : "";
       const std::string unit = f.unit == "1" ? "" : " " + f.unit;
-      std::printf("missed: %s: %s%s: %s%s, should be %s\n", f.recipe.c_str(), f.name.c_str(), radius.c_str(),
-                  output::short_number(f.measured).c_str(), unit.c_str(), f.goal->text(f.unit).c_str());
+      print("missed: %s: %s%s: %s%s, should be %s\n", f.recipe.c_str(), f.name.c_str(), radius.c_str(),
+            output::short_number(f.measured).c_str(), unit.c_str(), f.goal->text(f.unit).c_str());
     }
 }
 
@@ -40,8 +40,8 @@ int run_fidelity_command(FidelityArguments arguments) {
   print_missed(*results);
   const std::int64_t met = results->count(reports::ReportVerdict::met),
                      missed = results->count(reports::ReportVerdict::missed);
-  std::printf("%lld goals met, %lld missed\nwritten: %s/report.html, results.json, results.csv\n", (long long)met,
-              (long long)missed, arguments.folder.c_str());
+  print("%lld goals met, %lld missed\nwritten: %s/report.html, results.json, results.csv\n", (long long)met,
+        (long long)missed, arguments.folder.c_str());
   return missed == 0 ? exit_good : exit_bad_verdict;
 }
 

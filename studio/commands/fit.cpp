@@ -28,14 +28,14 @@ Result<std::size_t> find_organ(const scenes::SceneSpec& scene, const std::string
 
 void print_fit(const scenes::OrganSpec& organ, const authoring::StiffnessFit& fit) {
   const scenes::FittedForSpec& f = fit.fitted_for;
-  std::printf("%s: stiffness_scale %.6g\n", organ.name.c_str(), fit.scale);
-  std::printf("fitted with a ball of %.2f mm on spheres of %.2f mm, around (%.2f, %.2f, %.2f) mm\n\n",
-              1e3 * f.ball_radius, 1e3 * f.sphere_radius, 1e3 * f.place.x, 1e3 * f.place.y, 1e3 * f.place.z);
-  std::printf("depth [mm]   force [N]   scatter [%%]   Table 1, CTPM [N]   error [%%]\n");
+  print("%s: stiffness_scale %.6g\n", organ.name.c_str(), fit.scale);
+  print("fitted with a ball of %.2f mm on spheres of %.2f mm, around (%.2f, %.2f, %.2f) mm\n\n", 1e3 * f.ball_radius,
+        1e3 * f.sphere_radius, 1e3 * f.place.x, 1e3 * f.place.y, 1e3 * f.place.z);
+  print("depth [mm]   force [N]   scatter [%%]   Table 1, CTPM [N]   error [%%]\n");
   for (const authoring::FitRow& row : fit.rows)
-    std::printf("%10.0f %11.4f %13.1f %19.4f %11.1f\n", 1e3 * row.depth, row.force, 100 * row.scatter, row.closed_form,
-                100 * row.error());
-  std::printf("\nThe scale is fitted at 12 mm only; the other depths show how the shape of the curve differs.\n");
+    print("%10.0f %11.4f %13.1f %19.4f %11.1f\n", 1e3 * row.depth, row.force, 100 * row.scatter, row.closed_form,
+          100 * row.error());
+  print("\nThe scale is fitted at 12 mm only; the other depths show how the shape of the curve differs.\n");
 }
 
 int run_fit(const FitArguments& arguments) {
@@ -59,7 +59,7 @@ int run_fit(const FitArguments& arguments) {
   authoring::apply_fit(spec.organs[*organ], *fit);
   if (const Result<Done> written = output::write_text_file(arguments.scene, scenes::write_scene(spec)); !written)
     return print_errors(written.errors());
-  std::printf("written: %s\n", arguments.scene.c_str());
+  print("written: %s\n", arguments.scene.c_str());
   return exit_good;
 }
 

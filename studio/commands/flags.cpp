@@ -9,6 +9,7 @@ namespace {
 constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"continue.at_s", "--at"},
     {"device.address", "--igtl"},
+    {"device.allowed", "--igtl-allow"},
     {"device.buttons", "--device-button"},
     {"device.listen_port", "--igtl-listen"},
     {"device.most_force_n", "--device-force-n"},
@@ -30,6 +31,7 @@ constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"look.cutaway", "--cutaway"},
     {"look.full_scale", "--full-scale"},
     {"look.view", "--view"},
+    {"overwrite", "--overwrite"},
     {"picture.size", "--size"},
     {"report.folder", "-o"},
     {"studio.port", "--port"},

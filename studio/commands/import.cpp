@@ -58,7 +58,7 @@ Errors complete(ImportArguments& a) {
       errors.push_back({"--anchor", anchor.errors().front().message, ""});
   }
   if (!a.report.empty())
-    if (const Result<Done> writable = output::check_writable(a.report); !writable)
+    if (const Result<Done> writable = output::check_new(a.report, a.request.overwrite); !writable)
       errors.insert(errors.end(), writable.errors().begin(), writable.errors().end());
   return errors;
 }
@@ -104,8 +104,8 @@ void suggest_radius(const importers::ImportReport& report) {
   constexpr double kFew = 200, kLively = 800;
   if (double(report.fill.spheres) >= kFew) return;
   const double radius = report.sphere_radius * 1e3 * std::cbrt(double(report.fill.spheres) / kLively);
-  std::printf("note: %lld spheres are few for this organ; --radius-mm %.1f would give about %.0f\n",
-              (long long)report.fill.spheres, std::max(0.1, std::floor(radius * 10) / 10), kLively);
+  print("note: %lld spheres are few for this organ; --radius-mm %.1f would give about %.0f\n",
+        (long long)report.fill.spheres, std::max(0.1, std::floor(radius * 10) / 10), kLively);
 }
 
 int run_import(ImportArguments& arguments) {
@@ -120,19 +120,18 @@ int run_import(ImportArguments& arguments) {
     if (const Result<Done> written = output::write_text_file(arguments.report, report_json(outcome->report, *outcome));
         !written)
       return print_errors(written.errors());
-  std::printf("%s", importers::to_text(outcome->report).c_str());
-  std::printf("anchored: %zu spheres never move\n", outcome->anchored);
+  print("%s", importers::to_text(outcome->report).c_str());
+  print("anchored: %zu spheres never move\n", outcome->anchored);
   if (outcome->stiffness_scale)
-    std::printf("stiffness_scale: %.6g, fitted so that the paper's ball meets its Table 1 at 12 mm\n",
-                *outcome->stiffness_scale);
+    print("stiffness_scale: %.6g, fitted so that the paper's ball meets its Table 1 at 12 mm\n",
+          *outcome->stiffness_scale);
   else
-    std::printf("stiffness_scale: not fitted, the preset's moduli stay: %s%s\n", outcome->fit_problem.c_str(),
-                outcome->can_be_fitted_later ? ("; run ctpm fit " + outcome->scene_file + " --write").c_str() : "");
+    print("stiffness_scale: not fitted, the preset's moduli stay: %s%s\n", outcome->fit_problem.c_str(),
+          outcome->can_be_fitted_later ? ("; run ctpm fit " + outcome->scene_file + " --write").c_str() : "");
   suggest_radius(outcome->report);
   const std::string scene = arguments.request.scene, stem = scene.substr(0, scene.size() - 5);
-  std::printf("written: %s, %s, %s\n", scene.c_str(), outcome->mesh_file.c_str(), outcome->script_file.c_str());
-  std::printf("next: ctpm record %s --script %s -o %s.ctpm\n", scene.c_str(), outcome->script_file.c_str(),
-              stem.c_str());
+  print("written: %s, %s, %s\n", scene.c_str(), outcome->mesh_file.c_str(), outcome->script_file.c_str());
+  print("next: ctpm record %s --script %s -o %s.ctpm\n", scene.c_str(), outcome->script_file.c_str(), stem.c_str());
   return exit_good;
 }
 
@@ -158,6 +157,7 @@ Command add_import(CLI::App& program) {
   app->add_option("--anchor", arguments->anchors,
                   "What never moves: lowest:MM, box:..., sphere:..., plane:... (repeatable)");
   app->add_option("--report", arguments->report, "Write the report as JSON");
+  app->add_flag("--overwrite", arguments->request.overwrite, "Replace existing files");
   return {app, [arguments] { return run_import(*arguments); }};
 }
 

@@ -5,10 +5,13 @@
 #include "recordings/session_reader.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
+#include "studio/output/printable.h"
 #include "studio/session/session_info.h"
 
 namespace ctpm::commands {
 namespace {
+
+using output::printable;
 
 struct InfoArguments {
   std::string file;
@@ -23,10 +26,10 @@ std::string metadata_of(const recordings::SessionReader& reader, const char* key
 
 void print_origin(const recordings::SessionReader& reader) {
   if (const std::string source = metadata_of(reader, "source"); !source.empty())
-    std::printf("source     %s\n", source.c_str());
+    print("source     %s\n", printable(source).c_str());
   if (const std::string parent = metadata_of(reader, recordings::parent_session_key); !parent.empty())
-    std::printf("parent     %s, from tick %s on\n", parent.c_str(),
-                metadata_of(reader, recordings::parent_tick_key).c_str());
+    print("parent     %s, from tick %s on\n", printable(parent).c_str(),
+          printable(metadata_of(reader, recordings::parent_tick_key)).c_str());
 }
 
 /// Lists the events. Late ticks are only counted, because on a busy machine they would hide the others.
@@ -35,48 +38,47 @@ void print_events(const std::vector<recordings::Event>& events, const Model& mod
   std::int64_t count = 0;
   for (const recordings::Event& event : events) {
     if (event.kind == recordings::EventKind::late_tick || count++ >= kMostShown) continue;
-    std::printf("event      %8.3f s  %s: %s\n", double(event.tick) * model.tick, recordings::name_of(event.kind),
-                recordings::describe(event, model).c_str());
+    print("event      %8.3f s  %s: %s\n", double(event.tick) * model.tick, recordings::name_of(event.kind),
+          printable(recordings::describe(event, model)).c_str());
   }
-  if (count > kMostShown) std::printf("           and %lld more events\n", (long long)(count - kMostShown));
+  if (count > kMostShown) print("           and %lld more events\n", (long long)(count - kMostShown));
 }
 
 void print_physics(const recordings::SessionReader& reader) {
   const std::int32_t revision = reader.start().physics_revision;
   if (const std::string remark = recordings::physics_remark(revision); !remark.empty())
-    std::printf("physics    %s\n", remark.c_str());
+    print("physics    %s\n", remark.c_str());
   else
-    std::printf("physics    revision %d, as this build computes it\n", revision);
+    print("physics    revision %d, as this build computes it\n", revision);
 }
 
 void print_text(recordings::SessionReader& reader, const recordings::SessionStatistics& s,
                 const std::vector<recordings::Event>& events) {
   const Model& model = reader.start().model;
-  std::printf("session    %s, recorded %s%s\n", reader.session_id().c_str(),
-              session::utc_text(reader.created_unix_s()).c_str(),
-              reader.ended_cleanly() ? "" : ", without a clean end");
-  std::printf("build      %s\n", reader.start().build_fingerprint.c_str());
+  print("session    %s, recorded %s%s\n", reader.session_id().c_str(),
+        session::utc_text(reader.created_unix_s()).c_str(), reader.ended_cleanly() ? "" : ", without a clean end");
+  print("build      %s\n", printable(reader.start().build_fingerprint).c_str());
   print_physics(reader);
-  for (const std::string& remark : reader.remarks()) std::printf("note       %s\n", remark.c_str());
+  for (const std::string& remark : reader.remarks()) print("note       %s\n", remark.c_str());
   print_origin(reader);
-  std::printf("duration   %.3f s, %lld ticks of %g ms\n", double(reader.tick_count()) * model.tick,
-              (long long)reader.tick_count(), model.tick * 1e3);
+  print("duration   %.3f s, %lld ticks of %g ms\n", double(reader.tick_count()) * model.tick,
+        (long long)reader.tick_count(), model.tick * 1e3);
   for (const OrganRange& organ : model.organs)
-    std::printf("organ      %s: %d spheres in %d layers, radius %g mm, spacing %g mm\n", organ.name.c_str(),
-                organ.count, organ.layer_count, organ.sphere_radius * 1e3, organ.spacing * 1e3);
-  std::printf("network    %zu spheres, %zu elements\n", model.sphere_count(), model.element_count());
-  std::printf("tick time  p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms; %lld late\n", s.tick_time_p50 * 1e3,
-              s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3, (long long)s.late_ticks);
+    print("organ      %s: %d spheres in %d layers, radius %g mm, spacing %g mm\n", organ.name.c_str(), organ.count,
+          organ.layer_count, organ.sphere_radius * 1e3, organ.spacing * 1e3);
+  print("network    %zu spheres, %zu elements\n", model.sphere_count(), model.element_count());
+  print("tick time  p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms; %lld late\n", s.tick_time_p50 * 1e3,
+        s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3, (long long)s.late_ticks);
   if (s.input_age_max > 0)
-    std::printf("input age  p50 %.3f ms, p99 %.3f ms, max %.3f ms\n", s.input_age_p50 * 1e3, s.input_age_p99 * 1e3,
-                s.input_age_max * 1e3);
-  for (const auto& [name, value] : s.values) std::printf("value      %s = %g\n", name.c_str(), value);
-  std::printf("at most    %.3f N, %.2f mm deep; %lld elements severed, %lld pieces came loose\n", s.max_force,
-              s.max_depth * 1e3, (long long)s.severed,
-              (long long)recordings::pieces_came_loose(events, reader.tick_count()));
+    print("input age  p50 %.3f ms, p99 %.3f ms, max %.3f ms\n", s.input_age_p50 * 1e3, s.input_age_p99 * 1e3,
+          s.input_age_max * 1e3);
+  if (s.slip_max > 0) print("clock      %.3f s behind real time at the end, %.3f s at most\n", s.slip, s.slip_max);
+  for (const auto& [name, value] : s.values) print("value      %s = %g\n", printable(name).c_str(), value);
+  print("at most    %.3f N, %.2f mm deep; %lld elements severed, %lld pieces came loose\n", s.max_force,
+        s.max_depth * 1e3, (long long)s.severed, (long long)recordings::pieces_came_loose(events, reader.tick_count()));
   if (model.tissue_cells.size() > 0)
-    std::printf("inside out %s at the end\n",
-                recordings::cells_inside_out(events, reader.tick_count()) > 0 ? "TISSUE IS INSIDE OUT" : "no tissue");
+    print("inside out %s at the end\n",
+          recordings::cells_inside_out(events, reader.tick_count()) > 0 ? "TISSUE IS INSIDE OUT" : "no tissue");
   print_events(events, model);
 }
 

@@ -24,10 +24,10 @@ int run_paper(const PaperArguments& arguments) {
     return print_errors(written.errors());
   for (const paper::Claim& claim : results->claims)
     if (paper::must_hold(claim.kind) && claim.verdict() == reports::ReportVerdict::missed)
-      std::printf("missed: %s, %s %s %s: %s\n", claim.experiment.c_str(), claim.organ.c_str(), claim.structure.c_str(),
-                  claim.viscosity.c_str(), claim.quantity.c_str());
-  for (const paper::Sentence& sentence : paper::headline(results->claims)) std::printf("%s\n", sentence.text.c_str());
-  std::printf("written: %s/report.html, results.json, results.csv\n", arguments.folder.c_str());
+      print("missed: %s, %s %s %s: %s\n", claim.experiment.c_str(), claim.organ.c_str(), claim.structure.c_str(),
+            claim.viscosity.c_str(), claim.quantity.c_str());
+  for (const paper::Sentence& sentence : paper::headline(results->claims)) print("%s\n", sentence.text.c_str());
+  print("written: %s/report.html, results.json, results.csv\n", arguments.folder.c_str());
   return paper::network_holds(results->claims) ? exit_good : exit_bad_verdict;
 }
 

@@ -186,17 +186,17 @@ int run_plan(const PlanArguments& arguments) {
     return exit_good;
   }
   for (const bool is_in : {true, false}) {
-    std::printf(is_in ? "needed:\n" : "left out:\n");
+    print(is_in ? "needed:\n" : "left out:\n");
     for (const Feature& f : features)
       if (f.is_in == is_in)
-        std::printf("  %-26s %10s  %s\n", f.name.c_str(),
-                    f.bytes > 0 ? (std::to_string((f.bytes + 1023) / 1024) + " KiB").c_str() : "", f.why.c_str());
+        print("  %-26s %10s  %s\n", f.name.c_str(),
+              f.bytes > 0 ? (std::to_string((f.bytes + 1023) / 1024) + " KiB").c_str() : "", f.why.c_str());
   }
-  std::printf("memory: %.1f KiB, %zu bytes a sphere\n", double(total) / 1024,
-              total / std::max<std::size_t>(1, model.sphere_count()));
-  std::printf("solver: %s\n        because %s\n", solver.c_str(), choice.reason.c_str());
-  std::printf("time: %.3f ms a tick of %g ms at rest, measured now on this machine (median of 41)\n", tick * 1e3,
-              model.tick * 1e3);
+  print("memory: %.1f KiB, %zu bytes a sphere\n", double(total) / 1024,
+        total / std::max<std::size_t>(1, model.sphere_count()));
+  print("solver: %s\n        because %s\n", solver.c_str(), choice.reason.c_str());
+  print("time: %.3f ms a tick of %g ms at rest, measured now on this machine (median of 41)\n", tick * 1e3,
+        model.tick * 1e3);
   return exit_good;
 }
 

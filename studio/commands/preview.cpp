@@ -18,7 +18,7 @@ namespace {
 
 struct PreviewArguments {
   std::string scene, output, size = "1280x720";
-  bool spheres = false;
+  bool spheres = false, overwrite = false;
   views::LookRequest look;
   scenes::LoadOptions load;
 };
@@ -26,7 +26,7 @@ struct PreviewArguments {
 int run_preview(const PreviewArguments& arguments) {
   const Result<render::PictureSize> size = render::parse_picture_size(arguments.size);
   if (!size) return print_errors(size.errors());
-  if (const Result<Done> writable = output::check_writable(arguments.output); !writable)
+  if (const Result<Done> writable = output::check_new(arguments.output, arguments.overwrite); !writable)
     return print_errors(writable.errors());
   const Result<loading::LoadedScene> scene = loading::load_whole_scene(arguments.scene, arguments.load);
   if (!scene) return print_errors(scene.errors());
@@ -49,7 +49,7 @@ int run_preview(const PreviewArguments& arguments) {
   }
   if (const Result<Done> written = render::write_png(arguments.output, picture); !written)
     return print_errors(written.errors());
-  std::printf("%s: %dx%d\n", arguments.output.c_str(), picture.width, picture.height);
+  print("%s: %dx%d\n", arguments.output.c_str(), picture.width, picture.height);
   return exit_good;
 }
 
@@ -63,6 +63,7 @@ Command add_preview(CLI::App& program) {
   app->add_option("-o,--output", arguments->output, "Picture (.png)")->required();
   app->add_flag("--spheres", arguments->spheres, "Beside the surface, the spheres coloured by layer");
   app->add_option("--size", arguments->size, "Width x height in pixels")->capture_default_str();
+  app->add_flag("--overwrite", arguments->overwrite, "Replace an existing picture");
   add_look(*app, arguments->look);
   app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths,
                 "Meshes may lie outside the scene's folder");

@@ -11,6 +11,8 @@
 #include "studio/commands/stop_signal.h"
 #include "studio/loading/loaded_scene.h"
 #include "studio/output/files.h"
+#include "studio/output/number_text.h"
+#include "studio/session/recent_times.h"
 #include "studio/session/record_session.h"
 
 namespace ctpm::commands {
@@ -97,13 +99,16 @@ int print_outcome(const std::string& path, const Model& model, const session::Re
     print_remark(path + ": error: the simulation was refused at tick " + std::to_string(outcome.run.ticks) +
                  ", sphere " + std::to_string(outcome.run.worst_sphere) + "; what came before is saved");
   if (!outcome.run.fault.empty()) print_remark(path + ": error: " + outcome.run.fault + "; what came before is saved");
-  std::printf("%s: %.3f s in %lld ticks, at most %.3f N and %.2f mm deep, %lld elements severed\n", path.c_str(),
-              double(s.ticks) * model.tick, (long long)s.ticks, s.max_force, s.max_depth * 1e3, (long long)s.severed);
-  std::printf("tick time p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms, %lld late\n", s.tick_time_p50 * 1e3,
-              s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3, (long long)outcome.run.late_ticks);
+  print("%s: %.3f s in %lld ticks, at most %.3f N and %.2f mm deep, %lld elements severed\n", path.c_str(),
+        double(s.ticks) * model.tick, (long long)s.ticks, s.max_force, s.max_depth * 1e3, (long long)s.severed);
+  print("tick time p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms, %lld late\n", s.tick_time_p50 * 1e3,
+        s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3, (long long)outcome.run.late_ticks);
+  if (s.slip_max > 0)
+    print("clock %.3f s behind real time at the end, %.3f s at most%s\n", s.slip, s.slip_max,
+          s.slip > 0.1 ? ": THE SESSION IS SHORTER THAN THE HAND'S TIME" : "");
   if (s.input_age_max > 0)
-    std::printf("input age p50 %.3f ms, p99 %.3f ms, max %.3f ms\n", s.input_age_p50 * 1e3, s.input_age_p99 * 1e3,
-                s.input_age_max * 1e3);
+    print("input age p50 %.3f ms, p99 %.3f ms, max %.3f ms\n", s.input_age_p50 * 1e3, s.input_age_p99 * 1e3,
+          s.input_age_max * 1e3);
   return was_refused || !outcome.run.fault.empty() ? exit_bad_verdict : exit_good;
 }
 
@@ -123,7 +128,8 @@ int run_record(const RecordArguments& arguments) {
   for (const auto& [key, value] : opened->metadata) start.metadata[key] = value;
   if (opened->device) {
     print_remark(place + "; Ctrl-C ends it");
-    if (!opened->device->wait_for_first_pose(should_stop))
+    const auto tell = [&](const std::string& text) { print_remark(place + ": " + text); };
+    if (!opened->device->wait_for_first_pose(should_stop, tell))
       return print_errors({{place, "stopped before a pose came; nothing was recorded", ""}});
   }
 
@@ -135,6 +141,15 @@ int run_record(const RecordArguments& arguments) {
   const Result<session::RecordOutcome> outcome = [&] {
     ProgressLine progress("recording");
     options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
+    session::RecentTimes times;
+    options.watch = [&](const State&, const recordings::TickRecord& record, const session::RunOutcome& so_far) {
+      if (times.add(record.tick_time))
+        progress.add("tick p99 " + output::fixed(1e3 * times.p99(), 2) + " ms, clock " + output::fixed(so_far.slip, 3) +
+                     " s behind");
+    };
+    options.tell = [&](const std::string& problem) {
+      print_remark(arguments.output + ": error: recording fails now: " + problem);
+    };
     return session::record_session(start, *opened->source, arguments.output, arguments.overwrite, options);
   }();
   if (!outcome) return print_errors(outcome.errors());

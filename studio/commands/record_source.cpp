@@ -18,6 +18,8 @@ void add_device_options(CLI::App& app, devices::DeviceRequest& device) {
       "Address of this machine to listen on; others than this machine's own let in "
       "whoever can reach it")
       ->capture_default_str();
+  add("--igtl-allow", device.allowed,
+      "Address that may connect, alone or as 192.168.1.0/24; needed beyond this machine");
   add("--igtl-name", device.name, "Takes poses of the device of this name alone");
   add("--device-tool", device.tool, "Tool in the hand; the scene's first if not given");
   add("--device-button", device.buttons, "BUTTON=TOOL: while the button is pressed, this tool is; none after =");

@@ -15,11 +15,11 @@ struct RecoverArguments {
 int run_recover(const RecoverArguments& arguments) {
   const Result<recordings::RecoverReport> report = recordings::recover_session(arguments.in, arguments.out);
   if (!report) return print_errors(report.errors());
-  std::printf("%s: %lld ticks, %lld keyframes, %lld events saved\n", arguments.out.c_str(),
-              (long long)report->ticks_saved, (long long)report->keyframes_saved, (long long)report->events_saved);
-  for (const std::string& repair : report->repairs) std::printf("mended: %s\n", repair.c_str());
-  for (const std::string& loss : report->losses) std::printf("lost: %s\n", loss.c_str());
-  std::printf("%s\n", recordings::to_string(report->verdict).c_str());
+  print("%s: %lld ticks, %lld keyframes, %lld events saved\n", arguments.out.c_str(), (long long)report->ticks_saved,
+        (long long)report->keyframes_saved, (long long)report->events_saved);
+  for (const std::string& repair : report->repairs) print("mended: %s\n", repair.c_str());
+  for (const std::string& loss : report->losses) print("lost: %s\n", loss.c_str());
+  print("%s\n", recordings::to_string(report->verdict).c_str());
   if (!report->verdict.same) return exit_bad_verdict;
   return report->complete ? exit_good : exit_partly_recovered;
 }

@@ -17,6 +17,7 @@ namespace {
 
 struct ReplayArguments {
   std::string file, csv;
+  bool overwrite = false;
   session::TimeRange range;
 };
 
@@ -48,7 +49,7 @@ int run_replay(const ReplayArguments& arguments) {
   const Result<session::TickRange> range = arguments.range.in_ticks(arguments.file, model.tick, reader->tick_count());
   if (!range) return print_errors(range.errors());
   if (!arguments.csv.empty())
-    if (const Result<Done> writable = output::check_writable(arguments.csv); !writable)
+    if (const Result<Done> writable = output::check_new(arguments.csv, arguments.overwrite); !writable)
       return print_errors(writable.errors());
 
   warn_of_physics(*reader);
@@ -69,10 +70,10 @@ int run_replay(const ReplayArguments& arguments) {
   if (!arguments.csv.empty())
     if (const Result<Done> written = output::write_text_file(arguments.csv, rows); !written)
       return print_errors(written.errors());
-  std::printf("%s: %lld ticks replayed, at most %.3f N and %.2f mm deep, %s%s%s\n", arguments.file.c_str(),
-              (long long)(range->to - range->from), most_force, most_depth * 1e3,
-              cursor->same_so_far() ? "as recorded" : "NOT as recorded", arguments.csv.empty() ? "" : "; written to ",
-              arguments.csv.c_str());
+  print("%s: %lld ticks replayed, at most %.3f N and %.2f mm deep, %s%s%s\n", arguments.file.c_str(),
+        (long long)(range->to - range->from), most_force, most_depth * 1e3,
+        cursor->same_so_far() ? "as recorded" : "NOT as recorded", arguments.csv.empty() ? "" : "; written to ",
+        arguments.csv.c_str());
   return cursor->same_so_far() ? exit_good : exit_bad_verdict;
 }
 
@@ -86,6 +87,7 @@ Command add_replay(CLI::App& program) {
   app->add_option("session", arguments->file, "Session file (.ctpm)")->required();
   add_time_range(*app, arguments->range);
   app->add_option("--csv", arguments->csv, "Table with time, tool, force and depth of each tick");
+  app->add_flag("--overwrite", arguments->overwrite, "Replace an existing table");
   return {app, [arguments] { return run_replay(*arguments); }};
 }
 

@@ -39,13 +39,12 @@ void print_runs(const std::vector<stability::StabilityRow>& rows) {
     for (const stability::StabilityRun& run : row.runs) {
       ++counts[int(run.verdict)];
       if (run.verdict == reports::ReportVerdict::missed)
-        std::printf("missed: %s under %s: %s\n", row.what->title.c_str(), stepping::name_of(run.asked),
-                    run.reason.c_str());
+        print("missed: %s under %s: %s\n", row.what->title.c_str(), stepping::name_of(run.asked), run.reason.c_str());
     }
-  std::printf("%zu cases, %zu integrators: %lld runs hold, %lld were refused beforehand, %lld fail\n", rows.size(),
-              std::size(stability::kStabilityIntegrators), (long long)counts[int(reports::ReportVerdict::met)],
-              (long long)counts[int(reports::ReportVerdict::refused)],
-              (long long)counts[int(reports::ReportVerdict::missed)]);
+  print("%zu cases, %zu integrators: %lld runs hold, %lld were refused beforehand, %lld fail\n", rows.size(),
+        std::size(stability::kStabilityIntegrators), (long long)counts[int(reports::ReportVerdict::met)],
+        (long long)counts[int(reports::ReportVerdict::refused)],
+        (long long)counts[int(reports::ReportVerdict::missed)]);
 }
 
 int run_stability_command(const StabilityArguments& arguments) {
@@ -59,7 +58,7 @@ int run_stability_command(const StabilityArguments& arguments) {
   if (const Result<Done> written = stability::write_stability_report(arguments.folder, rows); !written)
     return print_errors(written.errors());
   print_runs(rows);
-  std::printf("written: %s/report.html, results.json, results.csv\n", arguments.folder.c_str());
+  print("written: %s/report.html, results.json, results.csv\n", arguments.folder.c_str());
   return stability::count_failures(rows) == 0 ? exit_good : exit_bad_verdict;
 }
 

@@ -40,7 +40,7 @@ int run_studio(const StudioArguments& arguments) {
   const Result<std::unique_ptr<server::Server>> server = server::Server::open(arguments.options);
   if (!server) return print_errors(server.errors());
   const std::string address = (*server)->address();
-  std::printf("%s\n", address.c_str());
+  print("%s\n", address.c_str());
   std::fflush(stdout);
   print_remark(
       "the studio is at this address, for this machine alone; whoever has the address can use it; Ctrl-C ends it");

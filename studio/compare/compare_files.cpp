@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "scenes/scene_file.h"
+#include "studio/compare/slip.h"
 #include "studio/loading/loaded_scene.h"
 
 namespace ctpm::compare {
@@ -18,8 +19,8 @@ Result<OpenedFiles> open_files(const std::string& expert, const std::string& tra
   return OpenedFiles{std::move(*a), std::move(*b)};
 }
 
-Result<ComparedFiles> compare_files(OpenedFiles files, std::optional<double> force_limit) {
-  Result<SessionTrack> expert = read_track(files.expert), trainee = read_track(files.trainee);
+Result<ComparedFiles> compare_files(OpenedFiles files, std::optional<double> force_limit, Replaying replaying) {
+  Result<SessionTrack> expert = read_track(files.expert, replaying), trainee = read_track(files.trainee, replaying);
   Errors errors;
   for (const auto* track : {&expert, &trainee})
     if (!*track) errors.insert(errors.end(), track->errors().begin(), track->errors().end());
@@ -31,6 +32,7 @@ Result<ComparedFiles> compare_files(OpenedFiles files, std::optional<double> for
   if (const Result<scenes::SceneText> text = scenes::read_scene(scene.scene_text, files.expert.path()); text)
     options.damage_force = loading::damage_force_of(text->spec);
   Comparison comparison = compare_sessions(*expert, *trainee, scene, options);
+  refuse_times(comparison, *expert, *trainee);
   return ComparedFiles{std::move(files.expert), std::move(files.trainee), std::move(*expert), std::move(*trainee),
                        std::move(comparison)};
 }

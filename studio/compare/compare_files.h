@@ -26,7 +26,9 @@ struct OpenedFiles {
 };
 Result<OpenedFiles> open_files(const std::string& expert, const std::string& trainee);
 
-/// Compares them. `force_limit` [N]: see CompareOptions. Errors: a damaged session; no tool is ever held.
-Result<ComparedFiles> compare_files(OpenedFiles files, std::optional<double> force_limit);
+/// Compares them. `force_limit` [N]: see CompareOptions. `replaying`: see read_track(). Errors: a damaged session; no
+/// tool is ever held.
+Result<ComparedFiles> compare_files(OpenedFiles files, std::optional<double> force_limit,
+                                    Replaying replaying = Replaying::short_ones);
 
 }  // namespace ctpm::compare

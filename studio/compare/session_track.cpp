@@ -12,6 +12,7 @@ namespace ctpm::compare {
 namespace {
 
 constexpr std::int64_t kReadTicks = 10000;  // held in memory at a time
+constexpr std::int32_t kFirstSwept = 4;     // physics revision
 constexpr double kCutSpacings = 3;          // a tip that moves farther without severing begins another cut
 
 /// The severed flags of a State in the order of ElementPlaces.
@@ -22,29 +23,78 @@ std::vector<std::uint8_t> severed_flags(const State& state) {
   return flags;
 }
 
-/// Replays each cut and stores the tick in which each element was severed.
-Result<Done> find_severed(recordings::SessionReader& session, SessionTrack& track) {
+std::vector<Spell> cuts_of(const SessionTrack& track, const Model& model);
+
+/// Whether a script or a file moved the tool, whose times do not depend on the clock.
+bool is_scripted(const recordings::SessionStart& start) {
+  const auto source = start.metadata.find("source");
+  return source != start.metadata.end() && (source->second == "script" || source->second == "motion");
+}
+
+/// Replays ticks [from, to) and stores the tick in which each element was severed. `look(tick, report)` sees each tick.
+template <class Look>
+Result<Done> replay_ticks(recordings::ReplayCursor& cursor, std::int64_t from, std::int64_t to, SessionTrack& track,
+                          Look&& look) {
+  if (const Result<Done> found = cursor.seek(from); !found) return found.errors();
+  std::vector<std::uint8_t> before = severed_flags(cursor.state());
+  while (cursor.tick() < to) {
+    const std::int64_t tick = cursor.tick();
+    if (const Result<bool> stepped = cursor.step(); !stepped) return stepped.errors();
+    look(std::size_t(tick), cursor.report());
+    if (cursor.report().severed == 0) continue;
+    const std::vector<std::uint8_t> now = severed_flags(cursor.state());
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (now[i] && !before[i]) track.severed_at[i] = tick;
+    before = now;
+  }
+  track.replays = track.replays && cursor.same_so_far();
+  return Done{};
+}
+
+/// Stores the size of all cuts of the State where the replay stands.
+void measure_cut(const Model& model, const recordings::ReplayCursor& cursor, SessionTrack& track) {
+  session::CutMeasures measures(model);
+  measures.measure(cursor.state());
+  track.cut = measures.size();
+}
+
+/// Replays every tick. If all are as recorded, takes what the tool did to the tissue from the replay: the recorded
+/// numbers have no hash of their own.
+Result<Done> replay_all(recordings::SessionReader& session, SessionTrack& track) {
+  track.severed_at.assign(ElementPlaces(session.start().model).count, -1);
+  Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(session);
+  if (!cursor) return cursor.errors();
+  std::vector<double> force = track.force, depth = track.depth;
+  std::vector<std::int32_t> severed = track.severed;
+  const Result<Done> replayed =
+      replay_ticks(*cursor, 0, session.tick_count(), track, [&](std::size_t tick, const stepping::StepReport& report) {
+        force[tick] = norm(report.tool_force), depth[tick] = report.depth;
+        severed[tick] = report.severed;
+      });
+  if (!replayed) return replayed.errors();
+  measure_cut(session.start().model, *cursor, track);
+  track.is_verified = track.replays;
+  if (track.is_verified) track.force = force, track.depth = depth, track.severed = severed;
+  track.cuts = cuts_of(track, session.start().model);
+  return Done{};
+}
+
+/// Replays the cuts alone.
+Result<Done> replay_cuts(recordings::SessionReader& session, SessionTrack& track) {
   track.severed_at.assign(ElementPlaces(session.start().model).count, -1);
   if (track.cuts.empty()) return Done{};
   Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(session);
   if (!cursor) return cursor.errors();
-  for (const Spell& cut : track.cuts) {
-    if (const Result<Done> found = cursor->seek(std::int64_t(cut.first)); !found) return found.errors();
-    std::vector<std::uint8_t> before = severed_flags(cursor->state());
-    while (cursor->tick() < std::int64_t(cut.last)) {
-      const std::int64_t tick = cursor->tick();
-      if (const Result<bool> stepped = cursor->step(); !stepped) return stepped.errors();
-      if (cursor->report().severed == 0) continue;
-      const std::vector<std::uint8_t> now = severed_flags(cursor->state());
-      for (std::size_t i = 0; i < now.size(); ++i)
-        if (now[i] && !before[i]) track.severed_at[i] = tick;
-      before = now;
-    }
-    track.replays = track.replays && cursor->same_so_far();
-  }
-  session::CutMeasures measures(session.start().model);
-  measures.measure(cursor->state());
-  track.cut = measures.size();
+  for (const Spell& cut : track.cuts)
+    if (const Result<Done> replayed = replay_ticks(*cursor, std::int64_t(cut.first), std::int64_t(cut.last), track,
+                                                   [](std::size_t, const stepping::StepReport&) {});
+        !replayed)
+      return replayed.errors();
+  // A blade goes on where nothing is left to sever. Keyframes of earlier revisions do not hold what it swept.
+  if (session.start().physics_revision >= kFirstSwept)
+    if (const Result<Done> ended = cursor->seek(session.tick_count()); !ended) return ended.errors();
+  track.replays = track.replays && cursor->same_so_far();
+  measure_cut(session.start().model, *cursor, track);
   return Done{};
 }
 
@@ -144,19 +194,25 @@ Result<SessionTrack> read_recorded(recordings::SessionReader& session) {
       track.force.push_back(norm(record.tool_force));
       track.depth.push_back(record.depth);
       track.severed.push_back(record.severed);
+      track.slip = std::max(track.slip, record.slip);
     }
   }
+  constexpr double kSlipShare = 0.01;
+  track.is_timed = is_scripted(start) || track.slip <= kSlipShare * track.seconds(track.tick_count());
   track.strokes = strokes_of(track.tool);
   track.cuts = cuts_of(track, start.model);
   return track;
 }
 
-Result<SessionTrack> read_track(recordings::SessionReader& session) {
+Result<SessionTrack> read_track(recordings::SessionReader& session, Replaying replaying) {
   if (const Result<Done> whole = session.check_all(); !whole) return whole.errors();
   Result<SessionTrack> track = read_recorded(session);
   if (!track) return track.errors();
   if (track->strokes.empty()) return Error{session.path(), "no tool is ever in the hand", ""};
-  if (const Result<Done> found = find_severed(session, *track); !found) return found.errors();
+  const bool is_short = track->seconds(track->tick_count()) <= kShortSession;
+  const bool all = replaying == Replaying::all || (replaying == Replaying::short_ones && is_short);
+  const Result<Done> replayed = all ? replay_all(session, *track) : replay_cuts(session, *track);
+  if (!replayed) return replayed.errors();
   return track;
 }
 

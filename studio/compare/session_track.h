@@ -36,7 +36,11 @@ struct SessionTrack {
   std::optional<session::CutSize> cut;   ///< none if nothing was cut, or without surfaces
   std::uint64_t initial_state = 0;       ///< hash of the State before the first tick
   bool has_end = true;                   ///< false: the session is incomplete, or still being recorded
-  bool replays = true;  ///< replaying the cuts gave the recorded hashes; false: severed_at is that of the replay
+  double slip = 0;                       ///< largest TickRecord::slip [s]: real time that the session lacks
+  bool is_timed =
+      true;  ///< its times are those of the hand: no hand moved it, or it lacks at most 1 % of the real time
+  bool is_verified = false;  ///< every tick replayed as recorded: force, depth and severed are those of the replay
+  bool replays = true;       ///< replaying the cuts gave the recorded hashes; false: severed_at is that of the replay
 
   std::size_t tick_count() const { return tool.size(); }
   double seconds(std::size_t ticks) const { return double(ticks) * tick; }
@@ -45,9 +49,17 @@ struct SessionTrack {
 /// Reads the ticks of a session without replaying any: severed_at stays empty. Errors: a damaged block, named.
 Result<SessionTrack> read_recorded(recordings::SessionReader& session);
 
-/// Reads a whole session and replays each cut from the keyframe before it. Errors: those of reading; a damaged block,
-/// named; no tool is ever held.
-Result<SessionTrack> read_track(recordings::SessionReader& session);
+/// Which sessions are replayed whole before they are measured.
+enum class Replaying {
+  short_ones,  ///< those up to kShortSession
+  all,
+  none,  ///< of cuts alone
+};
+inline constexpr double kShortSession = 30;  ///< [s]
+
+/// Reads a whole session and replays it, or each cut alone from the keyframe before it. Errors: those of reading; a
+/// damaged block, named; no tool is ever held.
+Result<SessionTrack> read_track(recordings::SessionReader& session, Replaying replaying = Replaying::short_ones);
 
 /// Checks that both sessions have the same Model: network, tools and physics. Values that do not act on the tissue
 /// (cameras, colours) may differ. Errors: the first difference.

@@ -11,6 +11,8 @@ namespace ctpm::devices {
 namespace {
 
 constexpr double kLengthTolerance = 0.1;  // of a quaternion
+constexpr const char *kBackwards = "time goes backwards", *kLeapsAhead = "time leaps ahead",
+                     *kJump = "jumps farther than a hand moves";
 
 std::string seconds(double value) {
   char text[32];
@@ -25,11 +27,46 @@ const char* DeviceGuard::problem_with(const DeviceReport& report) const {
   if (!is_finite(report.pose.position) || !sources::is_finite(report.pose.orientation)) return "pose is not finite";
   if (!(std::abs(sources::length_of(report.pose.orientation) - 1) <= kLengthTolerance))
     return "orientation is no rotation";
+  if (!(norm(report.pose.position - settings_.centre) <= settings_.farthest)) return "pose lies far outside the scene";
   if (!has_pose_) return nullptr;
-  if (report.device_time > 0 && report.device_time < device_time_) return "time goes backwards";
+  if (report.device_time > 0 && report.device_time < device_time_) return kBackwards;
+  if (report.device_time > 0 && device_time_ > 0 &&
+      report.device_time - device_time_ > report.arrival - arrival_ + kMostLead)
+    return kLeapsAhead;
   const double reach = settings_.most_speed * (report.arrival - arrival_) + settings_.slack;
-  if (norm(report.pose.position - pose_.position) > reach) return "jumps farther than a hand moves";
+  if (norm(report.pose.position - pose_.position) > reach) return kJump;
   return nullptr;
+}
+
+/// Whether a hand can have moved from one sample to the next.
+bool DeviceGuard::agree(const DeviceReport& before, const DeviceReport& report) const {
+  const double passed = report.arrival - before.arrival;
+  const bool is_later =
+      report.device_time == 0 || before.device_time == 0 ||
+      (report.device_time >= before.device_time && report.device_time - before.device_time <= passed + kMostLead);
+  return passed <= kMostPause && is_later &&
+         norm(report.pose.position - before.pose.position) <= settings_.most_speed * passed + settings_.slack;
+}
+
+/// Adds a pose to those that agree. True if there are enough of them to be believed.
+bool DeviceGuard::follow_track(const DeviceReport& report) {
+  if (track_.count > 0 && agree(track_.last, report))
+    ++track_.count;
+  else
+    track_.count = 1, track_.since = report.arrival;
+  track_.last = report;
+  if (!has_pose_) return track_.count >= 2;
+  return track_.count >= kForgivenSamples && report.arrival - track_.since >= kForgiven;
+}
+
+void DeviceGuard::accept(const DeviceReport& report) {
+  interval_ = has_pose_ ? std::max(0.0, report.arrival - arrival_) : 0;
+  counts_.longest_gap = std::max(counts_.longest_gap, interval_);
+  has_pose_ = true;
+  pose_ = {report.pose.position, sources::normalised(report.pose.orientation)};
+  arrival_ = report.arrival;
+  device_time_ = report.device_time > 0 ? report.device_time : device_time_;
+  track_.count = 0;
 }
 
 bool DeviceGuard::take(const DeviceReport& report) {
@@ -41,7 +78,11 @@ bool DeviceGuard::take(const DeviceReport& report) {
       buttons_ = report.buttons;
       return false;
     case DeviceNews::turned_away:
-      events_.push_back({.kind = recordings::EventKind::note, .text = "a second device came and was turned away"});
+      ++counts_.turned_away;
+      if (report.arrival - last_note_ >= kNotes) {
+        last_note_ = report.arrival;
+        add({.kind = recordings::EventKind::note, .text = report.text});
+      }
       return false;
     case DeviceNews::bad_message:
       ++counts_.unread;
@@ -54,18 +95,20 @@ bool DeviceGuard::take(const DeviceReport& report) {
       break;
   }
   ++counts_.samples;
-  if (const char* problem = problem_with(report)) {
+  const char* const problem = problem_with(report);
+  if (!problem && has_pose_) return accept(report), true;
+  const bool may_be_right = !problem || problem == kBackwards || problem == kLeapsAhead || problem == kJump;
+  if (may_be_right && follow_track(report)) {
+    leapt_ = problem == kJump;
+    if (problem) device_time_ = 0;
+    accept(report);
+    return true;
+  }
+  if (problem) {
     fault(problem, report.arrival);
     ++counts_.refused;
-    return false;
   }
-  interval_ = has_pose_ ? std::max(0.0, report.arrival - arrival_) : 0;
-  counts_.longest_gap = std::max(counts_.longest_gap, interval_);
-  has_pose_ = true;
-  pose_ = {report.pose.position, sources::normalised(report.pose.orientation)};
-  arrival_ = report.arrival;
-  device_time_ = std::max(device_time_, report.device_time);
-  return true;
+  return false;
 }
 
 void DeviceGuard::look(double now) {
@@ -75,19 +118,27 @@ void DeviceGuard::look(double now) {
   if (silence > settings_.give_up_after && verdict_.empty())
     verdict_ = "the device was lost: nothing usable came for " + seconds(silence) + " (" + faults_.front() + ")";
   if (!faults_.empty() && arrival_ > last_fault_ && now - last_fault_ > kQuiet) {
-    events_.push_back({.kind = recordings::EventKind::device_back,
-                       .held = last_fault_ - spell_began_,
-                       .refused_samples = counts_.refused - refused_before_spell_});
+    add({.kind = recordings::EventKind::device_back,
+         .held = last_fault_ - spell_began_,
+         .refused_samples = counts_.refused - refused_before_spell_});
     faults_.clear();
   }
 }
 
 void DeviceGuard::fault(const char* text, double now) {
-  last_fault_ = now;
+  last_fault_ = now, last_fault_text_ = text;
   if (faults_.empty()) spell_began_ = now, refused_before_spell_ = counts_.refused;
   if (std::find(faults_.begin(), faults_.end(), text) != faults_.end()) return;
   faults_.push_back(text);
-  events_.push_back({.kind = recordings::EventKind::device_lost, .reason = text});
+  add({.kind = recordings::EventKind::device_lost, .reason = text});
+}
+
+/// A device that fails again and again fills no session.
+void DeviceGuard::add(recordings::Event event) {
+  if (++event_count_ > kMostEvents) return;
+  if (event_count_ == kMostEvents)
+    event = {.kind = recordings::EventKind::note, .text = "further faults of the device are only counted"};
+  events_.push_back(std::move(event));
 }
 
 std::vector<recordings::Event> DeviceGuard::take_events() { return std::exchange(events_, {}); }

@@ -14,6 +14,10 @@ double device_clock() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+namespace {
+constexpr int kMostReports = 512;  // taken in one tick
+}
+
 DeviceSource::DeviceSource(std::unique_ptr<Device> device, const DeviceSettings& settings, double tick, Clock clock)
     : device_(std::move(device)),
       settings_(settings),
@@ -23,11 +27,21 @@ DeviceSource::DeviceSource(std::unique_ptr<Device> device, const DeviceSettings&
       coupling_(settings.coupling, tick),
       passive_(settings.most_force) {}
 
-bool DeviceSource::wait_for_first_pose(const std::function<bool()>& should_stop) {
+bool DeviceSource::wait_for_first_pose(const std::function<bool()>& should_stop,
+                                       const std::function<void(const std::string&)>& tell) {
+  constexpr double kPatience = 5;  // [s]
   // Poses from before this call are too old.
   const double began = clock_();
+  double told = began;
+  std::string said;
   while (!guard_.has_pose() || guard_.pose_arrival() < began) {
     if (should_stop()) return false;
+    const std::string fault = guard_.last_fault();
+    if (tell && (fault != said || clock_() - told > kPatience)) {
+      const std::int64_t refused = guard_.counts().refused;
+      tell(fault.empty() ? "nothing has come yet" : fault + "; samples refused so far: " + std::to_string(refused));
+      said = fault, told = clock_();
+    }
     if (!take_reports()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return true;
@@ -37,7 +51,9 @@ bool DeviceSource::wait_for_first_pose(const std::function<bool()>& should_stop)
 bool DeviceSource::take_reports() {
   bool has_new_pose = false;
   const std::int64_t refused_before = guard_.counts().refused + guard_.counts().unread;
-  for (DeviceReport report; device_->next(report);)
+  // Those of a flood are left for the next ticks: a tick never waits for a sender.
+  DeviceReport report;
+  for (int i = 0; i < kMostReports && device_->next(report); ++i)
     if (guard_.take(report)) has_new_pose = true;
   saw_fault_ = guard_.counts().refused + guard_.counts().unread != refused_before;
   return has_new_pose;
@@ -60,6 +76,9 @@ std::optional<Inputs> DeviceSource::next(std::int64_t, const stepping::StepRepor
   const bool has_new_pose = take_reports();
   guard_.look(now);
   if (!guard_.verdict().empty()) return std::nullopt;
+  // A pose that no hand moved to is where the tool is put down and taken up again.
+  const bool leapt = guard_.take_leap();
+  if (leapt) hand_.reset();
   if (has_new_pose || !hand_) aim(now);
   if (ticks_left_ > 0) {
     const double share = double(ticks_whole_ - --ticks_left_) / double(ticks_whole_);
@@ -67,7 +86,7 @@ std::optional<Inputs> DeviceSource::next(std::int64_t, const stepping::StepRepor
                  sources::turned_towards(from_.orientation, to_.orientation, share)};
   }
   // A tool that was just picked up starts at the hand.
-  const std::int32_t tool = settings_.map.tool_for(guard_.buttons());
+  const std::int32_t tool = leapt ? -1 : settings_.map.tool_for(guard_.buttons());
   if (tool != tool_ || tool < 0)
     coupling_.reset(*hand_);
   else
@@ -100,6 +119,7 @@ std::vector<recordings::NamedValue> DeviceSource::statistics() const {
   const DeviceGuard::Counts& counts = guard_.counts();
   return {{"device_samples", double(counts.samples)},
           {"device_samples_refused", double(counts.refused)},
+          {"device_connections_refused", double(counts.turned_away)},
           {"device_messages_unread", double(counts.unread)},
           {"device_forces_sent", double(forces_)},
           {"device_longest_gap_s", counts.longest_gap}};

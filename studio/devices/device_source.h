@@ -31,8 +31,10 @@ class DeviceSource : public sources::InputSource {
   /// `tick` [s]. `clock` must be the clock of the reports' arrival times.
   DeviceSource(std::unique_ptr<Device> device, const DeviceSettings& settings, double tick, Clock clock = device_clock);
 
-  /// Waits for the first good pose. False if `should_stop` returned true before.
-  bool wait_for_first_pose(const std::function<bool()>& should_stop);
+  /// Waits for the first good pose. `tell` hears why samples are refused meanwhile, and every 5 s that nothing comes.
+  /// False if `should_stop` returned true before.
+  bool wait_for_first_pose(const std::function<bool()>& should_stop,
+                           const std::function<void(const std::string&)>& tell = {});
 
   std::optional<Inputs> next(std::int64_t tick, const stepping::StepReport& last) override;
   double input_age() const override { return age_; }

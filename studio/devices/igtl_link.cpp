@@ -4,8 +4,11 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <thread>
@@ -14,6 +17,7 @@
 #include "studio/devices/hand_over.h"
 #include "studio/devices/igtl_message.h"
 #include "studio/devices/socket.h"
+#include "studio/sources/rotation.h"
 
 namespace ctpm::devices {
 namespace {
@@ -21,7 +25,25 @@ namespace {
 constexpr double kConnectTimeout = 3;   // [s]
 constexpr int kCallAgainAfter = 200;    // [ms]
 constexpr std::size_t kReports = 4096;  // capacity towards the tick's thread: seconds of a fast device
-constexpr std::size_t kForces = 64;     // capacity towards this thread
+constexpr double kSilent = 0.5;         // without a pose, a connection may be displaced [s]
+constexpr double kMostWaiting = 10;     // of a connection that sends no pose while it waits [s]
+constexpr std::size_t kCandidates = 4;  // connections that wait
+constexpr int kAcceptedAtOnce = 16;     // before the other sockets are looked at again
+constexpr auto kFloodPause = std::chrono::milliseconds(1);  // after a full buffer: the sender waits, not the tick
+constexpr std::size_t kForces = 64;                         // capacity towards this thread
+
+/// A connection that waits for the place of a silent one.
+struct Candidate {
+  Descriptor socket;
+  IgtlStream stream;
+  double since;  ///< [s]
+};
+
+bool is_good_pose(const DeviceReport& report) {
+  const Pose& pose = report.pose;
+  return report.news == DeviceNews::pose && is_finite(pose.position) && sources::is_finite(pose.orientation) &&
+         std::abs(sources::length_of(pose.orientation) - 1) < 0.1;
+}
 
 }  // namespace
 
@@ -38,6 +60,8 @@ struct IgtlLink::Impl {
 
   // The thread's own.
   Descriptor listener, connection;
+  double connected_at = 0, last_pose = 0;  ///< of the connection [s]; 0: it has sent no pose
+  std::vector<Candidate> candidates;
   IgtlStream stream;
   IgtlForceMessage message;
   std::optional<Vec3> newest;        ///< next force to send
@@ -49,6 +73,8 @@ struct IgtlLink::Impl {
   void tell(DeviceReport report) { (void)reports.push(report); }  // if full, the session has stopped reading
   void tell(DeviceNews news, const char* text = "");
   void take_connection(Descriptor socket);
+  void turn_away(const char* text);
+  void read_candidates(std::span<const pollfd> waiting);
   void hang_up(const char* reason);
   void accept_all();
   void read();
@@ -105,6 +131,7 @@ void IgtlLink::Impl::tell(DeviceNews news, const char* text) {
 
 void IgtlLink::Impl::take_connection(Descriptor socket) {
   connection = std::move(socket);
+  connected_at = device_clock(), last_pose = 0;
   stream.begin_again();
   newest.reset(), unsent.clear();
   tell(DeviceNews::connected);
@@ -119,14 +146,16 @@ void IgtlLink::Impl::run() {
   while (!stopping) {
     const short wanted = short(POLLIN | (unsent.empty() ? 0 : POLLOUT));
     // poll() ignores negative descriptors.
-    std::array<pollfd, 3> waiting{
-        {{wake.number(), POLLIN, 0}, {listener.number(), POLLIN, 0}, {connection.number(), wanted, 0}}};
+    std::vector<pollfd> waiting{
+        {wake.number(), POLLIN, 0}, {listener.number(), POLLIN, 0}, {connection.number(), wanted, 0}};
+    for (const Candidate& candidate : candidates) waiting.push_back({candidate.socket.number(), POLLIN, 0});
     const bool calls_again = !settings.listens && !connection;
-    if (::poll(waiting.data(), waiting.size(), calls_again ? kCallAgainAfter : -1) < 0) continue;
+    if (::poll(waiting.data(), waiting.size(), calls_again || !candidates.empty() ? kCallAgainAfter : -1) < 0) continue;
     if (calls_again && waiting[0].revents == 0)
       if (Result<Descriptor> socket = connect_to(settings.host, settings.port, 0.1); socket)
         take_connection(std::move(*socket));
     if (waiting[2].revents & (POLLIN | POLLHUP | POLLERR)) read();
+    read_candidates(std::span(waiting).subspan(3));
     if (waiting[1].revents) accept_all();
     if (waiting[0].revents) take_forces();
     send_newest();
@@ -136,21 +165,66 @@ void IgtlLink::Impl::run() {
 }
 
 void IgtlLink::Impl::accept_all() {
-  while (Descriptor socket = accept_from(listener)) {
-    if (connection)
-      tell(DeviceNews::turned_away);
-    else
+  for (int i = 0; i < kAcceptedAtOnce; ++i) {
+    Descriptor socket = accept_from(listener);
+    if (!socket) return;
+    if (!settings.allowed.is_empty() && !settings.allowed.holds(peer_of(socket)))
+      turn_away("a connection from an address that may not connect was refused");
+    else if (!connection)
       take_connection(std::move(socket));
+    else if (device_clock() - last_pose < kSilent || candidates.size() >= kCandidates)
+      turn_away("a second device came and was turned away");
+    else
+      candidates.push_back({std::move(socket), IgtlStream(settings.device_name), device_clock()});
   }
+  std::this_thread::sleep_for(kFloodPause);
+}
+
+void IgtlLink::Impl::turn_away(const char* text) { tell(DeviceNews::turned_away, text); }
+
+/// Reads those that wait. The first with a good pose takes the place of a connection that is silent.
+void IgtlLink::Impl::read_candidates(std::span<const pollfd> waiting) {
+  const double now = device_clock();
+  std::optional<std::size_t> taken;
+  DeviceReport pose;
+  std::vector<Candidate> left;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    Candidate& candidate = candidates[i];
+    bool stays = now - candidate.since < kMostWaiting;
+    if (stays && i < waiting.size() && waiting[i].revents) {
+      const int count = receive(candidate.socket, buffer);
+      const auto look = [&](const DeviceReport& report) {
+        if (is_good_pose(report)) pose = report, taken = i;
+      };
+      stays = count >= 0 && candidate.stream.take(std::span(buffer).first(std::size_t(count)), now, look);
+    }
+    const bool may_displace = !connection || now - std::max(last_pose, connected_at) >= kSilent;
+    if (stays && taken == i && may_displace) {
+      if (connection) hang_up("it was silent, and another device that sends poses took its place");
+      take_connection(std::move(candidate.socket));
+      stream = candidate.stream;
+      last_pose = now;
+      tell(pose);
+    } else if (stays && (now - last_pose >= kSilent || taken != i)) {
+      left.push_back(std::move(candidate));
+    } else {
+      turn_away("a second device came and was turned away");
+    }
+  }
+  candidates = std::move(left);
 }
 
 void IgtlLink::Impl::read() {
   if (!connection) return;
   const int count = receive(connection, buffer);
   if (count < 0) return hang_up("it hung up");
-  const auto pass_on = [this](const DeviceReport& report) { tell(report); };
+  const auto pass_on = [this](const DeviceReport& report) {
+    if (is_good_pose(report)) last_pose = report.arrival;
+    tell(report);
+  };
   if (!stream.take(std::span(buffer).first(std::size_t(count)), device_clock(), pass_on))
     hang_up("what it sends is not OpenIGTLink");
+  if (std::size_t(count) == buffer.size()) std::this_thread::sleep_for(kFloodPause);
 }
 
 /// Sends the rest of a message. True if nothing is left. Reading detects the end of a connection.

@@ -117,17 +117,58 @@ std::optional<std::uint32_t> buttons_of_sensor(std::span<const std::uint8_t> con
 
 }  // namespace
 
-void IgtlStream::begin_again() { header_size_ = body_size_ = 0, body_left_ = 0; }
+void IgtlStream::begin_again() {
+  header_size_ = body_size_ = 0, body_left_ = 0;
+  searches_ = is_too_large_ = false;
+}
+
+/// Moves the header on through `bytes` until it is sure to be one; false if it is not yet.
+bool IgtlStream::search(std::span<const std::uint8_t>& bytes) {
+  while (!bytes.empty()) {
+    if (header_size_ == kHeaderSize) std::copy(header_.begin() + 1, header_.end(), header_.begin()), --header_size_;
+    header_[header_size_++] = bytes.front();
+    bytes = bytes.subspan(1);
+    if (header_size_ == kHeaderSize && is_sure_header()) {
+      searches_ = false;
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Whether the header announces a message that is read, of a size that it can have.
+bool IgtlStream::is_sure_header() const {
+  if (header_[0] != 0 || header_[1] < 1 || header_[1] > 3) return false;
+  const igtl_header header = decode(header_);
+  const std::string_view type = text_of(header.name);
+  const bool is_read = type == "TRANSFORM" || type == "POSITION" || type == "QTRANS" || type == "SENSOR";
+  return is_read && header.body_size > 0 && header.body_size <= kMostBody;
+}
+
+void IgtlStream::refuse(const char* text, double now, const Tell& tell) {
+  DeviceReport report;
+  report.arrival = now, report.news = DeviceNews::bad_message, report.text = text;
+  tell(report);
+}
 
 bool IgtlStream::take(std::span<const std::uint8_t> bytes, double now, const Tell& tell) {
   while (!bytes.empty()) {
-    if (header_size_ < kHeaderSize) {
+    if (header_size_ == kHeaderSize && now - began_ > kMostBodyTime) begin_again(), searches_ = true;
+    if (searches_) {
+      if (!search(bytes)) return true;
+      if (!begin_body(now)) return false;
+    } else if (header_size_ < kHeaderSize) {
       const std::size_t count = std::min(bytes.size(), kHeaderSize - header_size_);
       std::copy_n(bytes.begin(), count, header_.begin() + std::ptrdiff_t(header_size_));
       header_size_ += count;
       bytes = bytes.subspan(count);
       if (header_size_ < kHeaderSize) return true;
-      if (!begin_body()) return false;
+      if (!begin_body(now)) return false;
+    }
+    if (is_too_large_) {
+      refuse("a message of a wrong size", now, tell);
+      begin_again(), searches_ = true;
+      continue;
     }
     const std::size_t count = std::size_t(std::min<std::uint64_t>(bytes.size(), body_left_));
     if (is_kept_) {
@@ -144,7 +185,8 @@ bool IgtlStream::take(std::span<const std::uint8_t> bytes, double now, const Tel
 }
 
 /// Decides from the header whether to read or skip a message. False if the header is invalid.
-bool IgtlStream::begin_body() {
+bool IgtlStream::begin_body(double now) {
+  began_ = now;
   const igtl_header header = decode(header_);
   const std::string_view type = text_of(header.name);
   const bool is_text = std::all_of(type.begin(), type.end(), [](char c) { return c >= ' ' && c <= '~'; });
@@ -164,11 +206,7 @@ bool IgtlStream::begin_body() {
 void IgtlStream::end_body(double now, const Tell& tell) const {
   DeviceReport report;
   report.arrival = now;
-  const auto refuse = [&](const char* text) {
-    report.news = DeviceNews::bad_message, report.text = text;
-    tell(report);
-  };
-  if (is_too_large_) return refuse("a message of a wrong size");
+  const auto refuse = [&](const char* text) { IgtlStream::refuse(text, now, tell); };
   if (!is_kept_) return;
   const igtl_header header = decode(header_);
   if (crc64(const_cast<unsigned char*>(body_.data()), body_size_, 0) != header.crc)

@@ -80,6 +80,22 @@ Result<DeviceMap> map_of(const DeviceRequest& request, const Model& model) {
   return map;
 }
 
+/// Poses beyond ten times the size of the scene are no hand's.
+void limit_reach(DeviceSettings& settings, const Model& model) {
+  constexpr double kTimes = 10, kLeast = 1;  // [1], [m]
+  if (model.rest_position.x.empty()) return;
+  Vec3 low = model.rest_position[0], high = low;
+  for (std::size_t i = 1; i < model.sphere_count(); ++i) {
+    const Vec3 p = model.rest_position[i];
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const DeviceMap& map = settings.map;
+  const Vec3 centre = 0.5 * (low + high);
+  settings.guard.centre = (1 / map.scale) * rotate(sources::inverse(map.scene_from_device), centre - map.offset);
+  settings.guard.farthest = kTimes * std::max(kLeast, norm(high - low)) / map.scale;
+}
+
 /// The device's map into the scene as session metadata.
 std::string describe(const DeviceRequest& request, const DeviceMap& map) {
   char text[512];
@@ -116,6 +132,13 @@ Errors check_device(const DeviceRequest& request) {
     need(equals != std::string::npos && whole_number(entry.substr(0, equals), 0, 31), "device.buttons",
          "got '" + entry + "', must be BUTTON=TOOL with a button in [0, 31]");
   }
+  const Result<AddressList> allowed = AddressList::read(request.allowed);
+  if (!allowed)
+    for (const Error& error : allowed.errors()) need(false, "device.allowed", error.message);
+  const bool is_own =
+      request.interface == "localhost" || request.interface == "::1" || request.interface.starts_with("127.");
+  need(!request.listen_port || is_own || !request.allowed.empty(), "device.allowed",
+       "name the addresses that may connect, because others than this machine's own are listened on");
   need(is_within(request.scale, 1e-3, 1e3), "device.scale", "must be in [0.001, 1000]");
   need(are_finite(request.offset_mm), "device.offset_mm", "must be in [-1e6, 1e6]");
   need(are_finite(request.rotation) &&
@@ -137,6 +160,7 @@ Result<OpenedDevice> open_device(const DeviceRequest& request) {
   OpenedDevice opened;
   if (request.listen_port) {
     settings.listens = true, settings.host = request.interface, settings.port = *request.listen_port;
+    if (const Result<AddressList> allowed = AddressList::read(request.allowed)) settings.allowed = *allowed;
   } else if (const auto address = address_of(request.address)) {
     settings.host = address->host, settings.port = address->port;
   } else {
@@ -157,6 +181,7 @@ Result<FollowedDevice> follow_device(const DeviceRequest& request, std::unique_p
   settings.map = *map;
   settings.guard.most_speed = 1e-3 * request.most_speed_mm_per_s;
   settings.guard.give_up_after = request.timeout_s;
+  limit_reach(settings, model);
   settings.coupling.stiffness = request.stiffness_n_per_m;
   settings.most_force = request.most_force_n;
   FollowedDevice followed;

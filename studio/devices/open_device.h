@@ -17,6 +17,7 @@ struct DeviceRequest {
   std::string address;                           ///< HOST:PORT to connect to; empty: none
   std::optional<int> listen_port;                ///< port to listen on instead; 0: any free port
   std::string interface = "127.0.0.1";           ///< address to listen on
+  std::vector<std::string> allowed;              ///< addresses that may connect, as AddressList reads them; empty: all
   std::string name;                              ///< takes only poses of this name; empty: all poses
   std::string tool;                              ///< tool without a button; empty: the scene's first
   std::vector<std::string> buttons;              ///< each BUTTON=TOOL; BUTTON= alone: no tool

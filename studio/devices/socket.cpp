@@ -1,5 +1,6 @@
 #include "studio/devices/socket.h"
 
+#include <arpa/inet.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -8,9 +9,11 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <cstring>
 #include <memory>
+#include <optional>
 
 namespace ctpm::devices {
 namespace {
@@ -36,6 +39,16 @@ Descriptor new_socket(const addrinfo& address) {
 void switch_on(const Descriptor& socket, int level, int option) {
   const int on = 1;
   ::setsockopt(socket.number(), level, option, &on, sizeof on);
+}
+
+/// Sends at once, and notices within seconds that the other side is gone without a word.
+void prepare(const Descriptor& socket) {
+  switch_on(socket, IPPROTO_TCP, TCP_NODELAY);
+  switch_on(socket, SOL_SOCKET, SO_KEEPALIVE);
+  const auto set = [&](int option, int value) {
+    ::setsockopt(socket.number(), IPPROTO_TCP, option, &value, sizeof value);
+  };
+  set(TCP_KEEPIDLE, 1), set(TCP_KEEPINTVL, 1), set(TCP_KEEPCNT, 3), set(TCP_USER_TIMEOUT, 4000);
 }
 
 /// Result of a pending connection: 0 if it is established, else the error.
@@ -69,7 +82,7 @@ Result<Descriptor> listen_on(const std::string& host, int port) {
   for (const addrinfo* address = addresses->get(); address; address = address->ai_next) {
     Descriptor socket = new_socket(*address);
     switch_on(socket, SOL_SOCKET, SO_REUSEADDR);  // allows reuse of the port right after a session
-    constexpr int kWaiting = 4;
+    constexpr int kWaiting = 64;                  // a port scan must not keep a device waiting
     if (socket && ::bind(socket.number(), address->ai_addr, address->ai_addrlen) == 0 &&
         ::listen(socket.number(), kWaiting) == 0)
       return socket;
@@ -93,7 +106,7 @@ Result<Descriptor> connect_to(const std::string& host, int port, double timeout_
     const bool is_done = ::connect(socket.number(), address->ai_addr, address->ai_addrlen) == 0;
     problem = is_done ? 0 : errno == EINPROGRESS ? outcome_of(socket, timeout_s) : errno;
     if (problem != 0) continue;
-    switch_on(socket, IPPROTO_TCP, TCP_NODELAY);
+    prepare(socket);
     return socket;
   }
   return Error{place(host, port), std::string("cannot connect: ") + std::strerror(problem),
@@ -102,8 +115,69 @@ Result<Descriptor> connect_to(const std::string& host, int port, double timeout_
 
 Descriptor accept_from(const Descriptor& listener) {
   Descriptor socket(::accept4(listener.number(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
-  if (socket) switch_on(socket, IPPROTO_TCP, TCP_NODELAY);
+  if (socket) prepare(socket);
   return socket;
+}
+
+std::string peer_of(const Descriptor& socket) {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  char text[NI_MAXHOST] = {};
+  auto* const generic = reinterpret_cast<sockaddr*>(&address);
+  if (::getpeername(socket.number(), generic, &size) != 0 ||
+      getnameinfo(generic, size, text, sizeof text, nullptr, 0, NI_NUMERICHOST) != 0)
+    return "";
+  return text;
+}
+
+namespace {
+
+/// An address as IPv6, IPv4 mapped into it; none if `text` is no address.
+std::optional<std::array<std::uint8_t, 16>> bytes_of(const std::string& text) {
+  std::array<std::uint8_t, 16> bytes{};
+  const std::string bare = text.substr(0, text.find('%'));  // without the interface of a link-local address
+  if (::inet_pton(AF_INET6, bare.c_str(), bytes.data()) == 1) return bytes;
+  bytes[10] = bytes[11] = 0xff;
+  if (::inet_pton(AF_INET, bare.c_str(), bytes.data() + 12) == 1) return bytes;
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<AddressList> AddressList::read(const std::vector<std::string>& entries) {
+  AddressList list;
+  Errors errors;
+  for (const std::string& entry : entries) {
+    const std::size_t slash = entry.find('/');
+    const auto bytes = bytes_of(entry.substr(0, slash));
+    const bool is_short = entry.find(':') == std::string::npos;
+    int prefix = is_short ? 32 : 128;
+    const int most = prefix;
+    bool is_good = bytes.has_value();
+    if (slash != std::string::npos) {
+      const char* const end = entry.data() + entry.size();
+      const auto [last, problem] = std::from_chars(entry.data() + slash + 1, end, prefix);
+      is_good = is_good && problem == std::errc() && last == end && prefix >= 0 && prefix <= most;
+    }
+    if (is_good)
+      list.entries_.push_back({*bytes, is_short ? 96 + prefix : prefix});
+    else
+      errors.push_back(
+          {"", "got '" + entry + "', must be an address, or one with a prefix such as 192.168.1.0/24", ""});
+  }
+  if (!errors.empty()) return errors;
+  return list;
+}
+
+bool AddressList::holds(const std::string& address) const {
+  const auto bytes = bytes_of(address);
+  if (!bytes) return false;
+  for (const Entry& entry : entries_) {
+    int bit = 0;
+    while (bit < entry.prefix && !((((*bytes)[bit / 8] ^ entry.bytes[bit / 8]) >> (7 - bit % 8)) & 1)) ++bit;
+    if (bit == entry.prefix) return true;
+  }
+  return false;
 }
 
 int port_of(const Descriptor& socket) {

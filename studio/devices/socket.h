@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/model/result.h"
 
@@ -39,6 +41,27 @@ Result<Descriptor> connect_to(const std::string& host, int port, double timeout_
 
 /// The next waiting connection of a listening socket, ready to use; empty if there is none.
 Descriptor accept_from(const Descriptor& listener);
+
+/// The numeric address of the other side; empty if it is gone.
+std::string peer_of(const Descriptor& socket);
+
+/// Addresses that may connect: IPv4 or IPv6, each alone or with the length of a prefix, such as 192.168.1.0/24.
+class AddressList {
+ public:
+  /// Errors: each entry that is no address.
+  static Result<AddressList> read(const std::vector<std::string>& entries);
+
+  bool is_empty() const { return entries_.empty(); }
+  /// Whether the numeric `address` is in the list.
+  bool holds(const std::string& address) const;
+
+ private:
+  struct Entry {
+    std::array<std::uint8_t, 16> bytes;  ///< IPv4 as IPv6
+    int prefix;                          ///< [bits]
+  };
+  std::vector<Entry> entries_;
+};
 
 /// The local port.
 int port_of(const Descriptor& socket);

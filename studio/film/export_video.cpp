@@ -20,6 +20,13 @@ namespace {
 
 void append(Errors& errors, const Errors& more) { errors.insert(errors.end(), more.begin(), more.end()); }
 
+/// Where a video's sidecar lies: beside the file, or in the folder of pictures.
+std::string sidecar_of(const std::string& video) {
+  std::error_code ignored;
+  const bool is_folder = video.ends_with('/') || std::filesystem::is_directory(video, ignored);
+  return is_folder ? (std::filesystem::path(video) / "video.json").string() : video + ".json";
+}
+
 Errors check_options(const std::string& path, const ExportOptions& options) {
   Errors errors;
   const bool is_good_rate = options.fps >= 1 && options.fps <= 240;
@@ -29,6 +36,11 @@ Errors check_options(const std::string& path, const ExportOptions& options) {
   if (!(options.speed >= 0.001 && options.speed <= 1000))
     errors.push_back({output::option_name("export.speed"),
                       "got " + output::fixed(options.speed, 3) + ", must be in [0.001, 1000]", ""});
+  // A folder must not exist yet, which the writer checks.
+  for (const std::string& file : {path, sidecar_of(path)})
+    if (!path.ends_with('/'))
+      if (const Result<Done> is_new = output::check_new(file, options.overwrite); !is_new)
+        append(errors, is_new.errors());
   append(errors, video::VideoWriter::check(path, options.size.width, options.size.height,
                                            is_good_rate ? options.fps : ExportOptions().fps));
   return errors;
@@ -174,7 +186,7 @@ Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>
   const Result<std::string> sidecar =
       sidecar_text(shown, {*video, *times, outcome.pixels_hash, options.speed, reels[0].renderer->opengl()});
   const Result<Done> written =
-      sidecar ? output::write_text_file(video->path + ".json", *sidecar) : Result<Done>(sidecar.errors());
+      sidecar ? output::write_text_file(sidecar_of(video->path), *sidecar) : Result<Done>(sidecar.errors());
   if (written) return outcome;
   std::error_code ignored;
   std::filesystem::remove_all(video->path, ignored);

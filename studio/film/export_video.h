@@ -21,6 +21,7 @@ struct ExportOptions {
   double speed = 1;             ///< playback speed relative to real time, in [0.001, 1000]
   views::LookRequest look;      ///< view and camera
   session::TimeRange range;     ///< part that is shown; by default to the end of the longest session
+  bool overwrite = false;       ///< replaces an existing video or sidecar
   bool allow_diverged = false;  ///< continue if the replay differs from the recording
   std::function<void(std::int64_t done, std::int64_t total)> progress;
   std::function<bool()> should_stop;  ///< asked at every frame
@@ -45,10 +46,10 @@ struct ExportOutcome {
   }
 };
 
-/// Replays one session, or two synchronised side by side, into a video with overlay. Writes a sidecar `<video>.json`
-/// with the video's content and origin (studio/film/README.md). Errors: options out of range, an unknown camera or
-/// view, a damaged session, a replay that differs (unless allowed), an output that cannot be written, stopped. After an
-/// error no file is left behind.
+/// Replays one session, or two synchronised side by side, into a video with overlay. Writes a sidecar `<video>.json`,
+/// or `video.json` in a folder of pictures, with the video's content and origin (studio/film/README.md). Errors:
+/// options out of range, an unknown camera or view, a damaged session, a replay that differs (unless allowed), an
+/// output that exists already or cannot be written, stopped. After an error no file is left behind.
 Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>& sessions, const std::string& path,
                                    const ExportOptions& options);
 

@@ -96,6 +96,7 @@ void SessionFilm::take_tick() {
   overlay_.depth = cursor_.report().depth;
   overlay_.loose += cursor_.report().came_loose;
   overlay_.inside_out = cursor_.report().inverted;
+  overlay_.slip = cursor_.record().slip;
   keep_inputs(cursor_.record().inputs);
   std::vector<render::ForcePoint>& history = overlay_.history;
   if (overlay_.tick % plot_every_ == 0) history.push_back({overlay_.time, overlay_.force});

@@ -1,13 +1,18 @@
 #include "studio/output/files.h"
 
+#include <signal.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 #include <system_error>
+
+#include "studio/output/option_name.h"
 
 namespace ctpm::output {
 namespace {
@@ -17,6 +22,24 @@ namespace fs = std::filesystem;
 std::string folder_of(const std::string& path) {
   const std::string folder = fs::path(path).parent_path().string();
   return folder.empty() ? "." : folder;
+}
+
+/// Between a file's name and the process that writes it.
+constexpr std::string_view kPart = ".part-";
+
+/// Removes unfinished files of `path` whose process is gone.
+void remove_left_behind(const std::string& path) {
+  const std::string prefix = fs::path(path).filename().string().append(kPart);
+  std::error_code failure;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_of(path), failure)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(prefix)) continue;
+    pid_t process = 0;
+    const char* const end = name.data() + name.size();
+    const auto [last, problem] = std::from_chars(name.data() + prefix.size(), end, process);
+    if (problem == std::errc() && last == end && process > 0 && kill(process, 0) != 0 && errno == ESRCH)
+      fs::remove(entry.path(), failure);
+  }
 }
 
 }  // namespace
@@ -42,9 +65,18 @@ Result<Done> check_writable(const std::string& path) {
   return Done{};
 }
 
+Result<Done> check_new(const std::string& path, bool overwrite) {
+  if (Result<Done> writable = check_writable(path); !writable) return writable;
+  std::error_code ignored;
+  if (!overwrite && fs::exists(fs::symlink_status(path, ignored)))
+    return Error{path, "exists already", option_name("overwrite") + " replaces it"};
+  return Done{};
+}
+
 Result<Done> write_text_file(const std::string& path, const std::string& text) {
   if (Result<Done> writable = check_writable(path); !writable) return writable;
-  const std::string temporary = path + ".part-" + std::to_string(getpid());
+  remove_left_behind(path);
+  const std::string temporary = std::string(path).append(kPart) + std::to_string(getpid());
   std::ofstream out(temporary, std::ios::binary);
   out << text;
   out.close();

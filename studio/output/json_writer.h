@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "studio/output/printable.h"
+
 namespace ctpm::output {
 
 /// Writes JSON for programs. Numbers keep all digits; non-finite numbers become null.
@@ -75,22 +77,7 @@ class JsonWriter {
     is_first_ = false;
   }
   void new_line() { text_.append("\n").append(std::size_t(2 * depth_), ' '); }
-  void write_text(std::string_view text) {
-    text_ += '"';
-    for (const char c : text) {
-      if (c == '"' || c == '\\') {
-        text_ += '\\';
-        text_ += c;
-      } else if (static_cast<unsigned char>(c) < 0x20) {
-        char code[8];
-        std::snprintf(code, sizeof code, "\\u%04x", unsigned(c));
-        text_ += code;
-      } else {
-        text_ += c;
-      }
-    }
-    text_ += '"';
-  }
+  void write_text(std::string_view text) { text_ += json_string(text); }
 
   std::string text_;
   int depth_ = 0;

@@ -190,10 +190,11 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
     plan.lines.push_back(line(large, large.shortened(data.title, inner), x, y, kWhite));
     y += px(38);
   }
-  const std::array<std::pair<std::string, std::string>, 8> facts{
+  const std::array<std::pair<std::string, std::string>, 9> facts{
       {{"session", small.shortened_inside(data.session, px(195))},
        {"model", small.shortened(data.model, px(195))},
        {data.is_over ? "ended" : "time", output::fixed(data.time, 3) + " s"},
+       {"clock behind", data.slip < 0.01 ? "" : output::fixed(data.slip, 2) + " s"},
        {"tick", std::to_string(data.tick)},
        {"force", output::fixed(data.force, 3) + " N"},
        {data.is_blade ? "cut depth" : "depth", output::fixed(1000 * data.depth, 2) + " mm"},
@@ -203,8 +204,8 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
   for (const auto& [name, value] : facts) {
     if (value.empty()) continue;
     plan.lines.push_back(line(small, name, x, y, kGrey));
-    const bool is_bad =
-        name == "inside out" || (name == "depth" && is_too_deep(data)) || (name == "force" && is_too_strong(data));
+    const bool is_bad = name == "inside out" || name == "clock behind" || (name == "depth" && is_too_deep(data)) ||
+                        (name == "force" && is_too_strong(data));
     Line shown = line(small, value, 0, y, is_bad ? kRed : kWhite);
     shown.placed.box.x = x + inner - shown.placed.box.width;  // right-aligned, so that digits stand still
     plan.lines.push_back(shown);

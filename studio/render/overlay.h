@@ -31,6 +31,7 @@ struct OverlayData {
   bool is_blade = false;        ///< the depth is that of the cut, which has no limit
   std::int64_t loose = 0;       ///< pieces of tissue that came loose; not shown if 0
   std::int32_t inside_out = 0;  ///< tissue cells that are inside out; not shown if 0
+  double slip = 0;              ///< real time that the session lacks up to now [s]; not shown below 10 ms
   double damage_depth = 0;      ///< depth beyond which the tissue is damaged [m]; 0: no limit
   double damage_force = 0;      ///< force beyond which the tissue is damaged [N]; 0: no limit
   std::string verdict;          ///< result of the replay, one line

@@ -1,6 +1,7 @@
 #include "studio/reports/report.h"
 
 #include <filesystem>
+#include <fstream>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
@@ -9,6 +10,9 @@
 
 namespace ctpm::reports {
 namespace {
+
+/// By which a report of this program is known.
+constexpr const char* kGenerator = "<meta name=\"generator\" content=\"ctpm\"/>";
 
 constexpr const char* kStyle = R"(
 body { font: 15px/1.5 system-ui, "Liberation Sans", "DejaVu Sans", sans-serif; color: #222; background: #fff; max-width: 1120px; margin: 2rem auto; padding: 0 1.5rem; }
@@ -97,7 +101,8 @@ Result<Done> Report::add_pictures(const std::vector<Picture>& pictures) {
 }
 
 std::string Report::html() const {
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"/><meta name=\"viewport\" "
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"/>" + std::string(kGenerator) +
+         "<meta name=\"viewport\" "
          "content=\"width=device-width\"/><title>" +
          escape_html(title_) + "</title><style>" + kStyle + "</style></head>\n<body>\n<h1>" + escape_html(title_) +
          "</h1>\n<p class=\"subtitle\">" + escape_html(subtitle_) + "</p>\n" + body_ + "</body>\n</html>\n";
@@ -117,11 +122,31 @@ Result<std::string> to_data_uri(const render::Frame& frame) {
   return "data:image/png;base64," + base64(png);
 }
 
+namespace {
+
+/// The first file that a report would replace in a folder which holds no report of this program; empty if none.
+std::string file_of_others(const std::string& folder) {
+  const std::filesystem::path place = folder;
+  std::string head(2000, '\0');
+  std::ifstream page(place / "report.html", std::ios::binary);
+  page.read(head.data(), std::streamsize(head.size()));
+  if (head.find(kGenerator) != std::string::npos) return "";
+  std::error_code ignored;
+  for (const char* name : {"report.html", "results.json", "results.csv"})
+    if (std::filesystem::exists(place / name, ignored)) return (place / name).string();
+  return "";
+}
+
+}  // namespace
+
 Result<Done> prepare_folder(const std::string& folder) {
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
   if (failure)
     return Error{folder, "cannot be made: " + failure.message(),
+                 "give another folder with " + output::option_name("report.folder")};
+  if (const std::string other = file_of_others(folder); !other.empty())
+    return Error{other, "exists already, and no report of this program lies beside it",
                  "give another folder with " + output::option_name("report.folder")};
   return output::check_writable((std::filesystem::path(folder) / "report.html").string());
 }

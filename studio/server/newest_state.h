@@ -12,6 +12,7 @@ struct LiveTick {
   State state;
   recordings::TickRecord record;
   std::int64_t late_ticks = 0;
+  double tick_p99 = 0;  ///< session::RecentTimes::p99() [s]
 };
 
 /// One slot between the thread of the ticks, which never waits, and one that makes pictures: a tick is copied only
@@ -19,9 +20,9 @@ struct LiveTick {
 class NewestState {
  public:
   /// Called after each tick.
-  void offer(const State& state, const recordings::TickRecord& record, std::int64_t late_ticks) {
+  void offer(const State& state, const recordings::TickRecord& record, std::int64_t late_ticks, double tick_p99) {
     if (is_full_.load(std::memory_order_acquire)) return;
-    tick_.state = state, tick_.record = record, tick_.late_ticks = late_ticks;
+    tick_.state = state, tick_.record = record, tick_.late_ticks = late_ticks, tick_.tick_p99 = tick_p99;
     is_full_.store(true, std::memory_order_release);
   }
 

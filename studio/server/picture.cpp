@@ -97,6 +97,7 @@ Picture PictureMaker::make(const State& state, const FrameFacts& facts) {
     out.add(float(x));
   out.add(facts.force), out.add(float(facts.depth)), out.add(facts.contacts), out.add(std::uint32_t(facts.severed));
   out.add(facts.hand), out.add(float(facts.tick_time)), out.add(std::uint32_t(facts.late_ticks));
+  out.add(float(facts.tick_p99)), out.add(float(facts.slip));
   out.add(std::uint32_t(surfaces_.size()));
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     drawn_->place(i, surfaces_[i].surface(), state, vertex_);

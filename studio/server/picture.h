@@ -26,6 +26,8 @@ struct FrameFacts {
   Vec3 hand;                    ///< position of the hand that leads the tool [m]; of a replay: the tool's
   double tick_time = 0;         ///< computing time of the last tick [s]; 0: not measured
   std::int64_t late_ticks = 0;  ///< so far
+  double tick_p99 = 0;          ///< of the computing times of the last ticks [s]; 0: not known
+  double slip = 0;              ///< TickRecord::slip of the last tick [s]
 };
 
 /// One moment as bytes for a page.

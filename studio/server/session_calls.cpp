@@ -10,6 +10,7 @@
 #include "studio/server/call_table.h"
 #include "studio/server/scene_text.h"
 #include "studio/session/session_info.h"
+#include "studio/session/whole_verdict.h"
 #include "studio/views/view_of_scene.h"
 
 namespace ctpm::server {
@@ -98,15 +99,15 @@ Result<std::string> verify_session(Parameters& parameters, const CallContext& co
   if (!reader) return reader.errors();
   recordings::VerifyOptions options;
   options.progress = context.progress;
-  const Result<recordings::Verdict> verdict = recordings::verify_session(*reader, options);
+  const Result<session::WholeVerdict> verdict = session::verify_whole(*reader, options);
   if (!verdict) return verdict.errors();
   output::JsonWriter json;
   json.begin_object()
-      .member("same", verdict->same)
-      .member("text", recordings::to_string(*verdict))
-      .member("ticks", verdict->ticks_compared)
+      .member("same", verdict->same())
+      .member("text", verdict->text())
+      .member("ticks", verdict->ticks.ticks_compared)
       .member("first_different_s",
-              verdict->first_tick < 0 ? NAN : double(verdict->first_tick) * reader->start().model.tick);
+              verdict->ticks.first_tick < 0 ? NAN : double(verdict->ticks.first_tick) * reader->start().model.tick);
   return json.end_object().text();
 }
 

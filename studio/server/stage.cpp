@@ -89,7 +89,7 @@ FrameFacts Stage::facts(const recordings::ReplayCursor& cursor, std::uint32_t re
   if (cursor.tick() == 0) return facts;  // nothing was simulated yet
   facts.force = cursor.report().tool_force, facts.depth = cursor.report().depth;
   facts.contacts = cursor.report().contacts;
-  facts.tick_time = cursor.record().tick_time;
+  facts.tick_time = cursor.record().tick_time, facts.slip = cursor.record().slip;
   return facts;
 }
 

@@ -13,6 +13,7 @@
 #include "studio/output/json_writer.h"
 #include "studio/server/picture.h"
 #include "studio/server/text.h"
+#include "studio/session/recent_times.h"
 #include "studio/session/record_session.h"
 
 namespace ctpm::server {
@@ -57,6 +58,8 @@ std::string ended_text(const std::string& shown, const Result<session::RecordOut
     const recordings::SessionStatistics& s = outcome->statistics;
     json.member("ticks", outcome->run.ticks)
         .member("late_ticks", outcome->run.late_ticks)
+        .member("slip_s", s.slip)
+        .member("slip_max_s", s.slip_max)
         .member("fault", std::string_view(outcome->run.fault))
         .member("refused", stepping::is_refused(outcome->run.status))
         .member("max_force_n", s.max_force)
@@ -113,8 +116,16 @@ void Training::tick() {
     session::RunOptions options;
     options.threads = session::threads_for(start_->model);
     options.should_stop = should_stop;
-    options.watch = [this](const State& state, const recordings::TickRecord& record,
-                           const session::RunOutcome& so_far) { newest_.offer(state, record, so_far.late_ticks); };
+    session::RecentTimes times;
+    options.watch = [&](const State& state, const recordings::TickRecord& record, const session::RunOutcome& so_far) {
+      times.add(record.tick_time);
+      newest_.offer(state, record, so_far.late_ticks, times.p99());
+    };
+    options.tell = [this](const std::string& problem) {
+      outbox_->send(event_text(
+          "train_fails",
+          output::JsonWriter().begin_object().member("text", std::string_view(problem)).end_object().text()));
+    };
     const Unkept unkept;
     const std::string file = request_.file.empty() ? unkept.file() : request_.file;
     const Result<session::RecordOutcome> outcome = session::record_session(*start_, *source_, file, false, options);
@@ -136,6 +147,7 @@ void Training::show() {
       facts.tick = tick.state.tick, facts.force = tick.record.tool_force, facts.depth = tick.record.depth;
       facts.contacts = tick.record.contacts, facts.tick_time = tick.record.tick_time;
       facts.severed = severed_in(tick.state), facts.late_ticks = tick.late_ticks;
+      facts.tick_p99 = tick.tick_p99, facts.slip = tick.record.slip;
       facts.hand = tick.record.inputs.position;
       outbox_->show(maker.make(tick.state, facts));
     });

@@ -18,6 +18,7 @@ struct RunOutcome {
   std::int64_t late_ticks = 0;                             ///< ticks that ended after their deadline, in real time only
   stepping::StepStatus status = stepping::StepStatus::ok;  ///< of the last tick; a diverged tick ends the run
   std::int32_t worst_sphere = -1;
+  double slip = 0;    ///< real time less session time at the start of the last tick [s]; 0 if not in real time
   std::string fault;  ///< why the source ended the session early; empty if it did not
 };
 
@@ -27,6 +28,8 @@ struct RunOptions {
   std::int64_t most_ticks = 0;  ///< the session ends after this many ticks; 0: when the source ends
   int threads = 1;              ///< threads of a tick, >= 1; the result does not depend on it
   std::function<void(std::int64_t done, std::int64_t total)> progress;
+  /// Called in the tick in which recording begins to fail, with the reason; must not wait.
+  std::function<void(const std::string& problem)> tell;
   std::function<bool()> should_stop;  ///< called every tick, for Ctrl-C
   /// Called after each tick, with its State; must not wait.
   std::function<void(const State& state, const recordings::TickRecord& record, const RunOutcome& so_far)> watch;
@@ -35,7 +38,8 @@ struct RunOptions {
 /// Number of threads that pays off for a model on this machine: 2 with several cores and at least 3000 spheres, else 1.
 int threads_for(const Model& model);
 
-/// Runs one session from `state`: source -> step -> writer, tick by tick.
+/// Runs one session from `state`: source -> step -> writer, tick by tick. Ticks after a late one follow without pause
+/// until they have caught up; of a delay beyond 0.1 s the rest is lost to the session and stays in TickRecord::slip.
 RunOutcome run_session(const Model& model, State& state, sources::InputSource& source,
                        recordings::SessionWriter& writer, const RunOptions& options);
 

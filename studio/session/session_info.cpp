@@ -71,6 +71,7 @@ std::string info_json(const recordings::SessionReader& reader, const SessionInfo
   json.member("input_age_p50_s", s.input_age_p50)
       .member("input_age_p99_s", s.input_age_p99)
       .member("input_age_max_s", s.input_age_max);
+  json.member("slip_s", s.slip).member("slip_max_s", s.slip_max);
   json.member("max_force_n", s.max_force).member("max_depth_m", s.max_depth);
   json.key("values").begin_object();
   for (const auto& [name, value] : s.values) json.member(name, value);

@@ -198,6 +198,8 @@ Inputs motion_at(const Motion& motion, double time) {
   if (next == samples.begin()) return samples.front().inputs;
   const MotionSample& a = *(next - 1);
   if (next == samples.end() || moment <= a.time + kRounding) return a.inputs;
+  // Between two tools no hand moved either of them: the first stays where it was last seen.
+  if (next->inputs.tool != a.inputs.tool) return a.inputs;
   const double share = (moment - a.time) / (next->time - a.time);
   Inputs inputs = a.inputs;
   inputs.position = a.inputs.position + share * (next->inputs.position - a.inputs.position);

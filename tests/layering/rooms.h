@@ -106,6 +106,7 @@ inline const std::vector<Package> kPackages{
     {"nlohmann/", {"scenes", "studio/server"}},
     {"sqlite3", {"recordings"}},
     {"zstd", {"recordings"}},
+    {"openssl/", {"recordings"}},
     {"xxhash", {"recordings"}},
     {"CLI/", {"studio/commands", "studio/main.cpp"}},
     {"GL/", {"studio/render"}},

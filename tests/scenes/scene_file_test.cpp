@@ -116,6 +116,45 @@ TEST(SceneFile, AMeshIsInTheScenesFolderOrNamedAtItsPlace) {
   EXPECT_TRUE(load_with_mesh("../outside.obj", scenes::LoadOptions{.allow_outside_paths = true}));
 }
 
+TEST(SceneFile, ALinkThatLeavesTheFolderIsRefusedLikeItsPlace) {
+  namespace fs = std::filesystem;
+  std::string pattern = (fs::temp_directory_path() / "ctpm-links-XXXXXX").string();
+  ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
+  const fs::path folder = pattern;
+  fs::create_directories(folder / "inside/below");
+  fs::copy_file(std::string(CTPM_SOURCE_DIR) + "/scenes/organs/skin.obj", folder / "outside.obj");
+  fs::copy_file(folder / "outside.obj", folder / "inside/below/skin.obj");
+  fs::create_symlink("../outside.obj", folder / "inside/linked.obj");
+  fs::create_directory_symlink("..", folder / "inside/up");
+  fs::create_symlink("below/skin.obj", folder / "inside/good.obj");
+  const auto load = [&](const std::string& mesh, bool outside) {
+    std::ofstream(folder / "inside/scene.json")
+        << R"({"format": "ctpm-scene", "version": 1, "name": "a", "organs": [{"name": "a", "mesh": ")" << mesh
+        << R"(", "fill": {"radius_mm": 3}, "material": {"preset": "skin"}}]})";
+    return scenes::load_scene((folder / "inside/scene.json").string(), {.allow_outside_paths = outside});
+  };
+  EXPECT_TRUE(load("good.obj", false));
+  for (const char* mesh : {"linked.obj", "up/outside.obj"}) {
+    const Result<scenes::SceneText> scene = load(mesh, false);
+    ASSERT_FALSE(scene) << mesh;
+    EXPECT_NE(scene.errors()[0].message.find("is a link that leaves the scene's folder"), std::string::npos);
+    EXPECT_TRUE(load(mesh, true)) << mesh;
+  }
+  fs::remove_all(folder);
+}
+
+TEST(SceneFile, ALongTextIsRefusedByItsSizeAndByItsValues) {
+  const std::string spaces(17 << 20, ' ');
+  const Result<scenes::SceneText> longer = scenes::read_scene("{}" + spaces, "long.json");
+  ASSERT_FALSE(longer);
+  EXPECT_EQ(to_string(longer.errors()[0]), "long.json: error: has 17825794 bytes, at most 16777216 are read");
+  std::string lists = "[[]";
+  for (int i = 0; i < 300000; ++i) lists += ",[]";
+  const Result<scenes::SceneText> many = scenes::read_scene(lists + "]", "many.json");
+  ASSERT_FALSE(many);
+  EXPECT_EQ(to_string(many.errors()[0]), "many.json: error: holds more than 200000 values");
+}
+
 TEST(SceneFile, Cubic6InAnOrganIsWarnedOf) {
   const Result<scenes::SceneText> scene =
       scenes::read_scene(scene_with("\"material\": {\"preset\": \"liver\"}, \"lattice\": \"cubic-6\""), "test.json");

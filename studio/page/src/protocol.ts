@@ -48,6 +48,8 @@ export interface SessionInfo {
   elements: number;
   severed: number;
   late_ticks: number;
+  slip_s: number;
+  slip_max_s: number;
   tick_time_p50_s: number;
   tick_time_p99_s: number;
   max_force_n: number;
@@ -161,6 +163,8 @@ export interface EndedTraining {
   errors: Problem[];
   ticks?: number;
   late_ticks?: number;
+  slip_s?: number;
+  slip_max_s?: number;
   fault?: string;
   refused?: boolean;
   max_force_n?: number;
@@ -219,6 +223,8 @@ export interface Frame {
   hand: Vector;
   tickTime: number;
   lateTicks: number;
+  tickP99: number;
+  slip: number;
   organs: Float32Array[]; // x y z of each vertex
 }
 
@@ -274,7 +280,7 @@ function readFrame(r: Reader): Frame {
   const time = r.f64(), tick = r.f64(), tool = r.i32(), position = r.vector();
   const orientation: Frame["orientation"] = [r.f32(), r.f32(), r.f32(), r.f32()];
   const force = r.vector(), depth = r.f32(), contacts = r.i32(), severed = r.u32(), hand = r.vector();
-  const tickTime = r.f32(), lateTicks = r.u32(), count = r.u32();
+  const tickTime = r.f32(), lateTicks = r.u32(), tickP99 = r.f32(), slip = r.f32(), count = r.u32();
   const organs: Float32Array[] = [];
   for (let i = 0; i < count; ++i) {
     const vertices = r.u32(), least = r.vector(), size = r.vector();
@@ -289,7 +295,7 @@ function readFrame(r: Reader): Frame {
   }
   return {
     kind: "frame", stage, topology, missed, request, isSame: (flags & 1) !== 0, isLive: (flags & 2) !== 0, time, tick,
-    tool, position, orientation, force, depth, contacts, severed, hand, tickTime, lateTicks, organs,
+    tool, position, orientation, force, depth, contacts, severed, hand, tickTime, lateTicks, tickP99, slip, organs,
   };
 }
 

@@ -7,7 +7,7 @@ import { Empty, Problems, Readings, Section, ShownCommand, Working } from "./par
 import { Player } from "./player";
 import type { ComparisonResult, Listing, Note, SessionEvent } from "./protocol";
 import { Mark, Timeline } from "./timeline";
-import { bytes, command, millimetres, newtons, seconds } from "./text";
+import { behind, bytes, command, millimetres, newtons, seconds } from "./text";
 import { Viewer } from "./viewer";
 
 const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4];
@@ -280,6 +280,7 @@ function Moment({ connection, player, frame, other }: { connection: Connection; 
           ["largest depth", millimetres(info.max_depth_m, 2)],
           ["tick p50, p99", `${(1e3 * info.tick_time_p50_s).toFixed(2)}, ${(1e3 * info.tick_time_p99_s).toFixed(2)} ms`],
           ["late ticks", String(info.late_ticks)],
+          ["behind the clock", behind(info.slip_s, info.slip_max_s)],
         ]} />
         {[info.physics_remark, ...info.remarks].filter(Boolean).map((remark) => <p key={remark} class="warning">{remark}</p>)}
         {progress ? <Working what="verifying" done={progress[0]} total={progress[1]} />

@@ -12,6 +12,11 @@ export function seconds(time: number, digits = 3): string {
   return `${time.toFixed(digits)} s`;
 }
 
+/** How far a session fell behind real time. */
+export function behind(atEnd: number, atMost: number): string {
+  return atMost > 0 ? `${seconds(atEnd)} at the end, ${seconds(atMost)} at most` : "never";
+}
+
 export function short(value: number | null | undefined, significant = 4): string {
   return value === null || value === undefined ? "–" : String(Number(value.toPrecision(significant)));
 }

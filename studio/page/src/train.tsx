@@ -3,7 +3,7 @@ import { Result } from "./compare";
 import type { Connection } from "./connection";
 import { Empty, Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import { type ComparisonResult, type EndedTraining, type Listing, type Motion, problemText } from "./protocol";
-import { command, millimetres, newtons, seconds } from "./text";
+import { behind, command, millimetres, newtons, seconds } from "./text";
 import { Trainer } from "./trainer";
 import { Viewer } from "./viewer";
 
@@ -47,6 +47,7 @@ export function Train({ connection, listing, tryScene, onReview, onChanged }: {
       last = performance.now();
       setTick((t) => t + 1);
     };
+    made.onFailing = (problem) => setError(new Error(`Recording fails now: ${problem}`));
     made.onEnded = (content) => {
       document.exitPointerLock?.();
       setEnded(content);
@@ -202,8 +203,9 @@ export function Train({ connection, listing, tryScene, onReview, onChanged }: {
                 ["depth", millimetres(frame?.depth ?? 0, 2)],
                 ["touched", `${frame?.contacts ?? 0} points`],
                 ["severed", `${frame?.severed ?? 0} elements`],
-                ["last tick", `${(1e3 * (frame?.tickTime ?? 0)).toFixed(2)} ms`],
+                ["last tick, p99", `${(1e3 * (frame?.tickTime ?? 0)).toFixed(2)}, ${(1e3 * (frame?.tickP99 ?? 0)).toFixed(2)} ms`],
                 ["late ticks", String(frame?.lateTicks ?? 0)],
+                ["behind the clock", seconds(frame?.slip ?? 0, 3)],
                 ["frames missed", String(frame?.missed ?? 0)],
               ]} />
             </Section>
@@ -268,6 +270,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
             ["largest depth", millimetres(ended.max_depth_m ?? 0, 2)],
             ["severed", `${ended.severed} elements`],
             ["late ticks", String(ended.late_ticks)],
+            ["behind the clock", behind(ended.slip_s ?? 0, ended.slip_max_s ?? 0)],
             ["tick p50, p99", `${(1e3 * (ended.tick_time_p50_s ?? 0)).toFixed(2)}, ${(1e3 * (ended.tick_time_p99_s ?? 0)).toFixed(2)} ms`],
             ["hand to tick p50, p99", `${(1e3 * (ended.input_age_p50_s ?? 0)).toFixed(1)}, ${(1e3 * (ended.input_age_p99_s ?? 0)).toFixed(1)} ms`],
           ]} />

@@ -25,6 +25,7 @@ export class Trainer {
   poses = 0; // sent so far
   onFrame: () => void = () => {};
   onEnded: (ended: EndedTraining) => void = () => {};
+  onFailing: (problem: string) => void = () => {}; // what is recorded cannot be saved now
   private view: SceneView | null = null;
   private readonly target = new three.Vector3();
   private readonly hand = new three.Vector3();
@@ -42,6 +43,7 @@ export class Trainer {
       this.release();
       this.onEnded(content as EndedTraining);
     });
+    connection.onEvent("train_fails", (content) => this.onFailing((content as { text: string }).text));
   }
 
   get isRunning(): boolean {

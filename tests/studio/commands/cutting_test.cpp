@@ -47,7 +47,8 @@ TEST(CuttingSession, TellsTheForceAndThePieceThatComesLoose) {
   // The video says so too, whether or not the moment itself is shown.
   for (const char* from : {"0", "1.1"}) {
     const auto exported = run_ctpm(
-        {"export", "cut.ctpm", "-o", "cut.avi", "--size", "320x180", "--fps", "5", "--from-s", from}, folder.path());
+        {"export", "cut.ctpm", "-o", "cut.avi", "--size", "320x180", "--fps", "5", "--from-s", from, "--overwrite"},
+        folder.path());
     ASSERT_EQ(exported.code, 0) << exported.err;
     EXPECT_TRUE(holds(testing::slurp(folder.path() / "cut.avi.json"), "\"pieces_came_loose\": 1")) << from;
   }

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 /// Fields that studio's libraries name in errors.
 std::set<std::string> named_fields() {
-  const std::regex name(R"re("([a-z_]+\.[a-z_]+)")re");
+  const std::regex name(R"re("([a-z_]+\.[a-z_]+)")re"), file("\\.(h|html|json|csv)$");
   std::set<std::string> fields;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(fs::path(CTPM_SOURCE_DIR) / "studio")) {
     const std::string path = entry.path().generic_string();
@@ -27,7 +27,7 @@ std::set<std::string> named_fields() {
     const std::string source = text.str();
     if (source.find("option_name(") == std::string::npos || path.find("/option_name.") != std::string::npos) continue;
     for (std::sregex_iterator it(source.begin(), source.end(), name), end; it != end; ++it)
-      if (const std::string field = (*it)[1]; !field.ends_with(".h") && !field.ends_with(".html")) fields.insert(field);
+      if (const std::string field = (*it)[1]; !std::regex_search(field, file)) fields.insert(field);
   }
   return fields;
 }

@@ -55,7 +55,7 @@ TEST_F(ImportProgram, ACoarserSurfaceIsDrawnAroundTheSameSpheres) {
   EXPECT_GE(triangles(), 5120) << "as fine as the mesh, or finer where a tool must bend it";
   expect_says(fine.out, {"drawn with " + std::to_string(triangles()) + " triangles"});
   const std::string fine_mesh = testing::slurp(folder_.path() / "scene.obj");
-  const auto coarse = import("bean.obj", {"--unit", "mm", "--most-triangles", "800"});
+  const auto coarse = import("bean.obj", {"--unit", "mm", "--most-triangles", "800", "--overwrite"});
   ASSERT_EQ(coarse.code, 0) << coarse.err;
   expect_says(report(), {"\"surface_triangles\": 800", "\"code\": \"coarsened\""});
   expect_says(coarse.out, {"drawn with 800 triangles"});
@@ -72,7 +72,7 @@ TEST_F(ImportProgram, AllPartsAreInTheSceneAsWell) {
   write("two.obj", zoo::to_obj_text(two));
   ASSERT_EQ(import("two.obj", {"--unit", "mm"}).code, 0);
   const auto one = run_ctpm({"check", "scene.json"}, folder_.path());
-  ASSERT_EQ(import("two.obj", {"--unit", "mm", "--all-parts"}).code, 0);
+  ASSERT_EQ(import("two.obj", {"--unit", "mm", "--all-parts", "--overwrite"}).code, 0);
   const auto both = run_ctpm({"check", "scene.json"}, folder_.path());
   const auto spheres = [](const std::string& text) { return std::stoi(text.substr(text.find("good, ") + 6)); };
   EXPECT_EQ(spheres(both.out), 2 * spheres(one.out)) << one.out << both.out;

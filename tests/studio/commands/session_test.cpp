@@ -154,6 +154,34 @@ void record_with_other_physics(const std::string& path, std::int32_t revision = 
   CTPM_CHECK(bool(writer->finish()), "a test's session can be finished");
 }
 
+TEST(Texts, OfAFileCannotSteerTheTerminal) {
+  const TemporaryFolder folder;
+  recordings::SessionStart start = testing::small_start();
+  start.build_fingerprint =
+      "build \x1b]0;title\x07\nverdict: same\xc2\x9b"
+      "1m \xe2\x80\xae";
+  start.metadata["source"] = "a\x1b[2J";
+  auto writer = recordings::SessionWriter::create((folder.path() / "a.ctpm").string(), start, {.wait_when_full = true});
+  writer->event({.kind = recordings::EventKind::note, .text = "note\x1b[31m\r"});
+  testing::live(start, 20, [&](const State& after, const recordings::TickRecord& r) { writer->append(after, r); });
+  CTPM_CHECK(bool(writer->finish({{"value\x1b", 1}})), "a test's session can be finished");
+  const auto is_plain = [](const std::string& text) {
+    return std::none_of(text.begin(), text.end(), [](char c) {
+      return (static_cast<unsigned char>(c) < 0x20 && c != '\n') || static_cast<unsigned char>(c) >= 0x7f;
+    });
+  };
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"info", "a.ctpm"},
+                                                  {"info", "a.ctpm", "--json"},
+                                                  {"verify", "a.ctpm"},
+                                                  {"check", "no\x1b[31m.json"},
+                                                  {"info", "no\x1b[31m.ctpm"}}) {
+    const auto outcome = run_ctpm(command, folder.path());
+    EXPECT_TRUE(is_plain(outcome.out) && is_plain(outcome.err)) << command[0] << ": " << outcome.out << outcome.err;
+    EXPECT_FALSE(holds(outcome.out, "\nverdict: same")) << command[0];
+  }
+  EXPECT_TRUE(holds(run_ctpm({"info", "a.ctpm"}, folder.path()).out, "build \\x1b]0;title\\x07\\x0averdict: same"));
+}
+
 TEST(OtherPhysics, ASessionStillOpensAndGivesItsDataAndTheVerdictNamesBothBuilds) {
   const TemporaryFolder folder;
   record_with_other_physics((folder.path() / "a.ctpm").string());

@@ -223,8 +223,99 @@ TEST_F(DeviceSession, AFaultThatComesAndGoesIsNotedAFewTimesASecondAtMost) {
   EXPECT_EQ(events_.size(), 2u) << story();
 }
 
+/// The device's first pose is where optical trackers put an instrument that they do not see, or anywhere else.
+TEST_F(DeviceSession, OneWildFirstPoseOrTimeStampDoesNotKeepTheDeviceOut) {
+  devices::DeviceSettings settings;
+  settings.guard.farthest = 10;
+  for (const Vec3 wild : {Vec3{-3.7e25, -3.7e25, -3.7e25}, Vec3{9, 0, 0}, Vec3{-0.4, 0, 0}}) {
+    start(settings);
+    device_->waiting.clear();
+    tell(wild);
+    for (int i = 0; i < 1000; ++i) {
+      now_ += kTick;
+      tell(kHome);
+    }
+    EXPECT_TRUE(source_->wait_for_first_pose([] { return false; }));
+    EXPECT_NEAR(norm(tick()->position - kHome), 0, 1e-12) << wild.x;
+  }
+  start(settings);
+  device_->waiting.clear();
+  devices::DeviceReport stamped = report(kHome);
+  stamped.device_time = 86400 + 5;
+  device_->waiting.push_back(stamped);
+  tick();
+  int accepted_after = -1;
+  for (int i = 0; i < 1000 && accepted_after < 0; ++i) {
+    stamped = report(kHome + Vec3{0.001, 0, 0});
+    stamped.device_time = 5 + now_ - 1000;
+    device_->waiting.push_back(stamped);
+    tick();
+    if (source_->input_age() < 2 * kTick) accepted_after = i;
+  }
+  EXPECT_GE(accepted_after, 0);
+  EXPECT_LT(accepted_after, 1000);
+}
+
+TEST_F(DeviceSession, OneTimeStampADayAheadIsRefusedAndTheNextIsNot) {
+  for (int i = 0; i < 300; ++i) {
+    devices::DeviceReport stamped = report(kHome);
+    stamped.device_time = 5 + i * kTick + (i == 150 ? 86400 : 0);
+    device_->waiting.push_back(stamped);
+    tick();
+  }
+  EXPECT_EQ(source_->statistics().at(1).second, 1) << story();
+  EXPECT_EQ(story(), "lost: time leaps ahead; the pose is held\nback\n");
+}
+
+/// What was held was wrong, and the hand is far away: no tool may go through the tissue on the way.
+TEST_F(DeviceSession, AHandThatStaysElsewhereIsBelievedAndItsToolIsPutDownOnTheWay) {
+  hold(kHome, 100);
+  const Vec3 far = kHome + Vec3{3, 0, 0};
+  bool was_away = false;
+  int ticks = 0;
+  for (; ticks < 1000; ++ticks) {
+    tell(far);
+    const auto inputs = tick();
+    ASSERT_TRUE(inputs);
+    was_away = was_away || inputs->tool < 0;
+    const double off = std::min(norm(inputs->position - kHome), norm(inputs->position - far));
+    ASSERT_TRUE(inputs->tool < 0 || off < 1e-6) << "tick " << ticks;
+    if (inputs->tool >= 0 && norm(inputs->position - far) < 1e-6) break;
+  }
+  EXPECT_LT(ticks, 1000) << "believed within a second";
+  EXPECT_TRUE(was_away);
+}
+
+TEST_F(DeviceSession, WhatAFloodBringsIsBoundedInATickAndInTheSession) {
+  class Endless : public devices::Device {
+   public:
+    bool next(devices::DeviceReport& report) override {
+      report = {};
+      report.news = ++told % 2 == 0 ? devices::DeviceNews::turned_away : devices::DeviceNews::pose;
+      report.text = "a second device came and was turned away";
+      report.arrival = 1000 + 1e-6 * told, report.pose.position = kHome;
+      return true;
+    }
+    void send_force(Vec3) override {}
+    int told = 0;
+  };
+  auto device = std::make_unique<Endless>();
+  Endless& endless = *device;
+  devices::DeviceSettings settings;
+  settings.map.tool = 0;
+  devices::DeviceSource source(std::move(device), settings, kTick, [this] { return now_; });
+  std::size_t events = 0;
+  for (int i = 0; i < 100; ++i, now_ += kTick) {
+    const int before = endless.told;
+    ASSERT_TRUE(source.next(i, {}));
+    EXPECT_LE(endless.told - before, 1000);
+    events += source.take_events().size();
+  }
+  EXPECT_LE(events, 5u);
+}
+
 TEST_F(DeviceSession, ASecondDeviceIsNotedAndNothingElse) {
-  tell(devices::DeviceNews::turned_away);
+  tell(devices::DeviceNews::turned_away, "a second device came and was turned away");
   hold(kHome, 10);
   EXPECT_EQ(story(), "note: a second device came and was turned away\n");
 }

@@ -45,10 +45,12 @@ inline std::string sensor_bytes(const std::vector<double>& values) {
 class IgtlPeer {
  public:
   explicit IgtlPeer(igtl::ClientSocket::Pointer socket) : socket_(socket), reader_([this] { read(); }) {}
-  static IgtlPeer connect(int port) {
+  explicit IgtlPeer(int port) : IgtlPeer(connected(port)) {}
+  static IgtlPeer connect(int port) { return IgtlPeer(connected(port)); }
+  static igtl::ClientSocket::Pointer connected(int port) {
     igtl::ClientSocket::Pointer socket = igtl::ClientSocket::New();
     socket->ConnectToServer("127.0.0.1", port);
-    return IgtlPeer(socket);
+    return socket;
   }
   ~IgtlPeer() { hang_up(); }
   IgtlPeer(const IgtlPeer&) = delete;

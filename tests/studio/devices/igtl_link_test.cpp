@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <string>
 #include <thread>
@@ -84,6 +85,51 @@ TEST(IgtlLink, WhoeverHangsUpIsReportedAndTheNextOneTaken) {
     }
     EXPECT_EQ(next_of(*link).news, devices::DeviceNews::lost);
   }
+}
+
+/// The reports until one of `news`, for which it waits.
+devices::DeviceReport wait_for(devices::IgtlLink& link, devices::DeviceNews news) {
+  devices::DeviceReport report;
+  for (int i = 0; i < 2000; ++i) {
+    report = next_of(link);
+    if (report.news == news) break;
+  }
+  EXPECT_EQ(report.news, news);
+  return report;
+}
+
+TEST(IgtlLink, ASilentHolderIsDisplacedByOneThatSendsPosesAndThatIsSaid) {
+  auto link = listen();
+  IgtlPeer silent = IgtlPeer::connect(link->port());  // a port scan, or a device that lost its power
+  EXPECT_EQ(next_of(*link).news, devices::DeviceNews::connected);
+  std::atomic<bool> is_over{false};
+  std::thread device([&] {
+    IgtlPeer peer = IgtlPeer::connect(link->port());
+    while (!is_over && peer.send(transform_bytes({7, 0, 0}))) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  });
+  EXPECT_NE(std::string(wait_for(*link, devices::DeviceNews::lost).text).find("silent"), std::string::npos);
+  wait_for(*link, devices::DeviceNews::connected);
+  for (int i = 0; i < 10; ++i) EXPECT_NEAR(wait_for(*link, devices::DeviceNews::pose).pose.position.x, 0.007, 1e-9);
+  silent.wait_for_end();
+  is_over = true;
+  device.join();
+}
+
+TEST(IgtlLink, OnlyAddressesOfTheListMayConnect) {
+  devices::IgtlSettings settings;
+  settings.listens = true;
+  for (const auto& [entry, may] : std::vector<std::pair<std::string, bool>>{
+           {"192.0.2.7", false}, {"127.0.0.1", true}, {"127.0.0.0/8", true}, {"::1", false}}) {
+    const Result<devices::AddressList> allowed = devices::AddressList::read({entry});
+    ASSERT_TRUE(allowed);
+    settings.allowed = *allowed;
+    Result<std::unique_ptr<devices::IgtlLink>> link = devices::IgtlLink::open(settings);
+    ASSERT_TRUE(link);
+    IgtlPeer peer = IgtlPeer::connect((*link)->port());
+    EXPECT_EQ(next_of(**link).news, may ? devices::DeviceNews::connected : devices::DeviceNews::turned_away) << entry;
+  }
+  EXPECT_FALSE(devices::AddressList::read({"10.0.0.0/33"}));
+  EXPECT_FALSE(devices::AddressList::read({"tracker"}));
 }
 
 }  // namespace

@@ -218,6 +218,21 @@ TEST(IgtlStream, ASizeThatNobodyMeansEndsTheConnectionAndALargeOneIsSkippedWitho
   EXPECT_EQ(told, 1);
 }
 
+TEST(IgtlStream, AHeaderThatClaimsTooMuchSwallowsNothingOfWhatFollows) {
+  const Heard heard = hear(message(1, "TRANSFORM", 1ull << 31, "") + transform_bytes({1, 2, 3}), 64);
+  EXPECT_TRUE(heard.is_good);
+  ASSERT_EQ(heard.reports.size(), 2u);
+  EXPECT_EQ(heard.reports[0].news, devices::DeviceNews::bad_message);
+  EXPECT_EQ(heard.reports[1].news, devices::DeviceNews::pose);
+  // An image that never ends, between poses at 100 Hz.
+  devices::IgtlStream stream("");
+  int told = 0;
+  const auto tell = [&](const devices::DeviceReport& report) { told += report.news == devices::DeviceNews::pose; };
+  EXPECT_TRUE(stream.take(view(message(1, "IMAGE", 1ull << 31, "")), 0, tell));
+  for (int i = 1; i <= 100; ++i) EXPECT_TRUE(stream.take(view(transform_bytes({1, 2, 3})), 0.01 * i, tell));
+  EXPECT_GE(told, 45);
+}
+
 TEST(IgtlStream, NoChangedCutOrRandomStreamDoesAnythingButReadOrRefuse) {
   const std::string further = wire(12, 2) + wire(6, 2) + wire(9, 4) + wire(77, 4);
   const std::string pose = transform_bytes({4, 5, 6}).substr(devices::IgtlStream::kHeaderSize);

@@ -147,17 +147,17 @@ TEST_F(Export, TheVideoOfACutShowsItsDepthWhetherOrNotTheCutIsShown) {
 TEST_F(Export, ThePixelsAreTheSameAtAnyNumberOfThreads) {
   std::string first;
   for (const char* threads : {"0", "1", "2", "5"}) {
-    const auto exported =
-        export_to("a.mp4", {"--from-s", "0.5", "--to-s", "1"}, {std::string("LP_NUM_THREADS=") + threads});
+    const auto exported = export_to("a.mp4", {"--from-s", "0.5", "--to-s", "1", "--overwrite"},
+                                    {std::string("LP_NUM_THREADS=") + threads});
     ASSERT_EQ(exported.code, 0) << exported.err;
     const std::string pixels = value_of(sidecar("a.mp4"), "pixels_xxh3");
     EXPECT_EQ(pixels.size(), 18u) << pixels;
     if (first.empty()) first = pixels;
     EXPECT_EQ(pixels, first) << threads << " threads";
   }
-  ASSERT_EQ(export_to("a.mp4", {"--from-s", "0.5", "--to-s", "1"}, {"taskset", "-c", "0"}).code, 0);
+  ASSERT_EQ(export_to("a.mp4", {"--from-s", "0.5", "--to-s", "1", "--overwrite"}, {"taskset", "-c", "0"}).code, 0);
   EXPECT_EQ(value_of(sidecar("a.mp4"), "pixels_xxh3"), first) << "one core";
-  ASSERT_EQ(export_to("a.mp4", {"--from-s", "0.5", "--to-s", "1.1"}).code, 0);
+  ASSERT_EQ(export_to("a.mp4", {"--from-s", "0.5", "--to-s", "1.1", "--overwrite"}).code, 0);
   EXPECT_NE(value_of(sidecar("a.mp4"), "pixels_xxh3"), first) << "other pixels have another hash";
 }
 
@@ -180,9 +180,9 @@ TEST_F(Export, AMissingCodecIsReplacedAndThatIsSaidAloud) {
   const auto pictures = export_to("b.mp4", {}, {no_ffmpeg, no_motion_jpeg});
   EXPECT_EQ(pictures.code, 0) << pictures.err;
   EXPECT_TRUE(holds(pictures.err, "a folder of PNG pictures was written instead")) << pictures.err;
-  EXPECT_EQ(value_of(sidecar("b-frames"), "codec"), "\"PNG\"");
+  EXPECT_EQ(value_of(sidecar("b-frames/video"), "codec"), "\"PNG\"");
   EXPECT_EQ(picture("b-frames", 36).width, 320);
-  EXPECT_EQ(folder_.list(), "a.avi a.avi.json b-frames b-frames.json press.ctpm");
+  EXPECT_EQ(folder_.list(), "a.avi a.avi.json b-frames press.ctpm");
 }
 
 TEST_F(Export, CtrlCLeavesNothingBehind) {
@@ -268,8 +268,8 @@ TEST_F(Export, ASessionThatDiffersIsRefusedOrMarkedOnEveryFrame) {
       run_ctpm({"export", "false.ctpm", "-o", "marked/", "--size", "640x360", "--allow-diverged"}, folder_.path());
   EXPECT_EQ(marked.code, 1) << marked.err;
   EXPECT_TRUE(holds(marked.out, "DIFFERS")) << marked.out;
-  EXPECT_EQ(value_of(sidecar("marked"), "verdict"), "\"different\"");
-  EXPECT_EQ(value_of(sidecar("marked"), "first_different_tick"), "700");
+  EXPECT_EQ(value_of(sidecar("marked/video"), "verdict"), "\"different\"");
+  EXPECT_EQ(value_of(sidecar("marked/video"), "first_different_tick"), "700");
   // The banner at the top right is amber on dark in every frame, also before the difference.
   for (int i = 1; i <= 36; ++i) {
     const render::Frame frame = picture("marked", i);

@@ -73,7 +73,7 @@ test("the mouse presses, cuts and records", async () => {
   }
   await page.waitForFunction(() => [...document.querySelectorAll(".readings div")].some((d) => /severed[1-9]/.test(d.textContent)));
   await picture(page, "train-cut");
-  console.log(`training: ${await reading(page, "late ticks")} late ticks, last tick ${await reading(page, "last tick")} ms, while a browser draws on the same processors`);
+  console.log(`training: ${await reading(page, "late ticks")} late ticks, last tick ${await reading(page, "last tick, p99")}, while a browser draws on the same processors`);
   await page.keyboard.press("Escape");
   await page.waitForSelector("button:has-text('Train again')");
 });

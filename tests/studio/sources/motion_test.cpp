@@ -126,19 +126,33 @@ TEST(MotionAt, PositionsLieOnTheStraightLineAndTurnsAreEvenWhateverTheRate) {
   // A quarter turn about z in 0.1 s, sampled at its ends alone.
   const double half = std::sqrt(0.5);
   sources::Motion motion;
-  motion.samples = {{5.0, {0, {0, 0, 0}, {1, 0, 0, 0}, 1}}, {5.1, {1, {0.02, 0, -0.01}, {-half, 0, 0, -half}, 2}}};
+  motion.samples = {{5.0, {0, {0, 0, 0}, {1, 0, 0, 0}, 1}}, {5.1, {0, {0.02, 0, -0.01}, {-half, 0, 0, -half}, 2}}};
   EXPECT_EQ(sources::motion_tick_count(motion, 1e-3), 101);
   for (int tick = 0; tick < 100; ++tick) {
     const Inputs inputs = sources::motion_at(motion, tick * 1e-3);
     EXPECT_NEAR(norm(inputs.position - tick / 100.0 * Vec3{0.02, 0, -0.01}), 0, 1e-12);
     EXPECT_NEAR(sources::angle_between(Quat{}, inputs.world_from_tool), tick / 100.0 * std::numbers::pi / 2, 1e-6)
         << tick;
-    EXPECT_EQ(inputs.tool, 0) << "tool and buttons are held until the next sample";
-    EXPECT_EQ(inputs.buttons, 1u);
+    EXPECT_EQ(inputs.buttons, 1u) << "buttons are held until the next sample";
   }
-  EXPECT_EQ(sources::motion_at(motion, 0.1).tool, 1);
+  EXPECT_EQ(sources::motion_at(motion, 0.1).buttons, 2u);
   EXPECT_EQ(sources::motion_at(motion, 7), motion.samples.back().inputs);
   EXPECT_EQ(sources::motion_at(motion, -1), motion.samples.front().inputs);
+}
+
+/// Else the replayed blade would go through the tissue on a way on which no hand moved it.
+TEST(MotionAt, AToolStaysWhereItWasLastSeenUntilAnotherOrNoneIsHeld) {
+  sources::Motion motion;
+  motion.samples = {{0, {0, {0.05, 0, 0.1}, {1, 0, 0, 0}, 0}},
+                    {0.015, {1, {-0.05, 0, 0.1}, {1, 0, 0, 0}, 0}},
+                    {0.03, {-1, {0, 0, 0}, {1, 0, 0, 0}, 0}}};
+  for (int tick = 0; tick < 15; ++tick) {
+    const Inputs first = sources::motion_at(motion, tick * 1e-3),
+                 second = sources::motion_at(motion, 0.015 + tick * 1e-3);
+    EXPECT_EQ(first, motion.samples[0].inputs) << tick;
+    EXPECT_EQ(second, motion.samples[1].inputs) << tick;
+  }
+  EXPECT_EQ(sources::motion_at(motion, 0.03).tool, -1);
 }
 
 TEST(MotionAt, AMotionSampledAtTheTicksIsTakenAsItIs) {

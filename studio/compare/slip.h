@@ -1,0 +1,11 @@
+#pragma once
+
+#include "studio/compare/measures.h"
+
+namespace ctpm::compare {
+
+/// Takes back the measures that depend on time from a comparison in which a session lacks real time, with the reason in
+/// their notes: a hand looks faster and smoother than it was.
+void refuse_times(Comparison& comparison, const SessionTrack& expert, const SessionTrack& trainee);
+
+}  // namespace ctpm::compare

@@ -1,0 +1,88 @@
+#include "studio/session/event_watch.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace ctpm::session {
+
+using recordings::EventKind;
+
+EventWatch::EventWatch(const Model& model, double damage_force, Tell tell)
+    : tell_(std::move(tell)), force_limit_(damage_force) {
+  for (std::size_t i = 0; i < model.organs.size(); ++i) {
+    const double limit = model.organs[i].damage_depth;
+    if (limit > 0 && (depth_limit_ == 0 || limit < depth_limit_)) depth_limit_ = limit, organ_ = std::int32_t(i);
+  }
+}
+
+bool EventWatch::begins(Spell& spell, std::int64_t tick, bool is_seen) {
+  if (!is_seen) return false;
+  const bool is_new = !spell.goes_on;
+  spell = {true, tick};
+  return is_new;
+}
+
+bool EventWatch::ends(Spell& spell, std::int64_t tick) {
+  if (!spell.goes_on || tick - spell.last_tick < kPause) return false;
+  spell.goes_on = false;
+  return true;
+}
+
+void EventWatch::look(std::int64_t tick, std::int32_t tool, const stepping::StepReport& report) {
+  if (begins(contact_, tick, report.contacts > 0)) {
+    tool_ = tool;
+    tell_({.tick = tick, .kind = EventKind::contact_begins, .tool = tool});
+  }
+  if (ends(contact_, tick)) tell_({.tick = contact_.last_tick, .kind = EventKind::contact_ends, .tool = tool_});
+  if (begins(cut_, tick, report.severed > 0))
+    tell_({.tick = tick, .kind = EventKind::cut, .tool = tool, .severed = report.severed});
+  ends(cut_, tick);
+  if (report.came_loose > 0) tell_({.tick = tick, .kind = EventKind::piece_came_loose, .pieces = report.came_loose});
+  look_for_damage(tick, report);
+  look_for_inversion(tick, report);
+}
+
+void EventWatch::finish(std::int64_t end) {
+  if (inside_out_.goes_on && inside_out_.last_tick + 1 < end) tell_that_it_came_back();
+}
+
+void EventWatch::look_for_damage(std::int64_t tick, const stepping::StepReport& report) {
+  if (begins(too_deep_, tick, depth_limit_ > 0 && report.depth > depth_limit_))
+    tell_(
+        {.tick = tick, .kind = EventKind::damage, .organ = organ_, .depth = report.depth, .depth_limit = depth_limit_});
+  ends(too_deep_, tick);
+  const double force = norm(report.tool_force);
+  if (begins(too_strong_, tick, force_limit_ > 0 && force > force_limit_))
+    tell_({.tick = tick, .kind = EventKind::damage, .force = force, .force_limit = force_limit_});
+  ends(too_strong_, tick);
+}
+
+void EventWatch::look_for_inversion(std::int64_t tick, const stepping::StepReport& report) {
+  if (begins(inside_out_, tick, report.inverted > 0)) {
+    tell_({.tick = tick, .kind = EventKind::turned_inside_out, .cells = report.inverted});
+    most_inverted_ = 0;
+  }
+  most_inverted_ = std::max(most_inverted_, report.inverted);
+  if (ends(inside_out_, tick)) tell_that_it_came_back();
+}
+
+void EventWatch::tell_that_it_came_back() {
+  tell_({.tick = inside_out_.last_tick + 1, .kind = EventKind::came_back, .cells = most_inverted_});
+}
+
+bool follows_from_ticks(EventKind kind) {
+  switch (kind) {
+    case EventKind::contact_begins:
+    case EventKind::contact_ends:
+    case EventKind::cut:
+    case EventKind::piece_came_loose:
+    case EventKind::damage:
+    case EventKind::turned_inside_out:
+    case EventKind::came_back:
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace ctpm::session
