@@ -91,7 +91,8 @@ inline constexpr GoldenRow kGoldenRevision5[] = {
     {"tpm, auto", {0x95b2c39bf88f10f5, 0xe850d989fe7fca2b, 0xd04c81a983ad18c0, 0x427f026c417d2c6c}},
     {"ctpm, auto", {0x86612b474b543844, 0xd54cb124532ed93a, 0xb1d62b15ff828ba6, 0xf4784d58b7e74bca}},
     {"tpm, backward-euler", {0xd96fed922634d73e, 0x6b3212ffa72f2cc6, 0x89ac000358af6e59, 0xe7b60d5029355512}},
-    {"angle-mass-spring, backward-euler", {0x97dc04d8b3a9dd1f, 0x03412e9ed39fb7c8, 0x53f14ae9795e3024, 0xfcdc4c05e9cd5793}},
+    {"angle-mass-spring, backward-euler",
+     {0x97dc04d8b3a9dd1f, 0x03412e9ed39fb7c8, 0x53f14ae9795e3024, 0xfcdc4c05e9cd5793}},
     {"full, auto", {0xb6c71a93224b3c05, 0x532dc5c79cc197c6, 0x27ab0222c21021f4, 0xbff991f257064f24}},
     {"full, sdirk2", {0x2a0b2e3c0646e61e, 0x4b236292430c12aa, 0x58062e74f2597d8a, 0x47a8580d56181e35}},
     {"ctpm, sdirk2", {0xc81ac1fb69f16b20, 0x1a92a362ee9ad4e8, 0x976200844ede8504, 0x60c510ce851d690b}},
@@ -104,10 +105,8 @@ inline constexpr GoldenRow kGoldenRevision5[] = {
 };
 
 inline constexpr GoldenRevision kGoldenRevisions[] = {
-    {1, kGoldenRevision1, 0x002bb904fcccbc09},
-    {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
-    {3, kGoldenRevision3, 0xe38c0b55dc5ae189},
-    {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
+    {1, kGoldenRevision1, 0x002bb904fcccbc09}, {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
+    {3, kGoldenRevision3, 0xe38c0b55dc5ae189}, {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
     {5, kGoldenRevision5, 0x04b576de440a40ad},
 };
 
