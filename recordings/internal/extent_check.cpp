@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cutting/lattice_frame.h"
 #include "core/cutting/swept_surface.h"
 #include "core/model/box.h"
+#include "core/model/fields.h"
 
 namespace ctpm::recordings::session_file {
 namespace {
@@ -48,13 +50,29 @@ std::string problem_of_rest(const Model& model) {
   return cells_in(box.grown(spacing), rest_cell) <= most_cells ? "" : "the box around all spheres is too large";
 }
 
-std::string problem_of_surface(const OrganRange& organ, const Surface& surface) {
+/// In the axes of the organ's lattice, as the grid that cuts are drawn on.
+std::string problem_of_surface(const Model& model, const OrganRange& organ, const Surface& surface) {
   if (surface.vertex.empty()) return "";
+  if (organ.count == 0 || !(organ.spacing > 0)) return "belongs to an organ without a lattice";
   Box box(surface.vertex[0]);
   for (const Vec3& vertex : surface.vertex) box.add(vertex);
-  if (!(organ.spacing > 0)) return "belongs to an organ without a spacing";
-  const bool fits = cells_in(box, surface_cell) <= most_cells && cells_in(box, organ.spacing) <= sites_for(organ.count);
-  return fits ? "" : "its box is too large for the organ";
+  const cutting::LatticeFrame frame = cutting::lattice_frame(model, organ);
+  const auto first = std::size_t(organ.first), last = first + std::size_t(organ.count);
+  double sites = 1;
+  bool is_near = true;  // false as well where neighbours lie at one place, which gives no axis
+  for (std::size_t a = 0; a < 3; ++a) {
+    double low = model.cell[first][a], high = low;
+    const auto add = [&](double at) {
+      is_near = is_near && std::abs(at) <= 2 * double(kFarthestCell);
+      low = std::min(low, at), high = std::max(high, at);
+    };
+    for (std::size_t i = first; i < last; ++i) add(model.cell[i][a]);
+    for (const Vec3& vertex : surface.vertex) add(dot(vertex - frame.origin, frame.axis[a]) / organ.spacing);
+    sites *= high - low + 3;
+  }
+  if (!is_near) return "lies far from the organ's lattice";
+  const bool fits = cells_in(box, surface_cell) <= most_cells && sites <= sites_for(organ.count);
+  return fits ? "" : "has a larger box than the organ's spheres explain";
 }
 
 std::string problem_of_swept(const State& state) {

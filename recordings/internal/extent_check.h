@@ -12,7 +12,7 @@ namespace ctpm::recordings::session_file {
 
 std::string problem_of_lattice(const Model& model, const OrganRange& organ);
 std::string problem_of_rest(const Model& model);
-std::string problem_of_surface(const OrganRange& organ, const Surface& surface);
+std::string problem_of_surface(const Model& model, const OrganRange& organ, const Surface& surface);
 std::string problem_of_swept(const State& state);
 
 }  // namespace ctpm::recordings::session_file

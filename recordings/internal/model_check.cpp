@@ -421,7 +421,7 @@ Errors check_surfaces(const Model& model, const std::vector<Surface>& surfaces) 
     check.require(std::all_of(binding.weight.begin(), binding.weight.end(),
                               [](double w) { return std::abs(w) <= kLargestWeight; }),
                   name + "binding.weight", "must be in [-1000, 1000]");
-    const std::string problem = problem_of_surface(model.organs[i], surface);
+    const std::string problem = problem_of_surface(model, model.organs[i], surface);
     check.require(problem.empty(), name + "vertex", problem);
     if (surface.vertex.empty() && binding.first.empty()) continue;
     if (check.length(name + "binding.first", binding.first.size(), surface.vertex.size() + 1)) {

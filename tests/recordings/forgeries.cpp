@@ -6,6 +6,7 @@
 #include <bit>
 #include <random>
 
+#include "core/cutbody/cut_body.h"
 #include "recordings/internal/tick_codec.h"
 #include "recordings/replay.h"
 #include "tests/recordings/field_tree.h"
@@ -226,6 +227,17 @@ class Forger {
 /// What a process that read a file said, by its exit code.
 enum Said : int { said_same = 0, said_different = 1, said_refused = 2, said_not_opened = 3, threw };
 
+/// Makes the drawn surfaces of the last keyframe, as a video does.
+void draw(recordings::SessionReader& reader) {
+  const Model& model = reader.start().model;
+  const auto keyframe = reader.keyframe_at_or_before(reader.tick_count());
+  for (std::size_t organ = 0; keyframe && organ < model.surfaces.size(); ++organ) {
+    if (model.surfaces[organ].triangle.empty() || !model.has_scalpel()) continue;
+    cutbody::CutBody body(model, organ);
+    body.update(keyframe->state);
+  }
+}
+
 int read_everything(const std::string& path) {
   auto reader = recordings::SessionReader::open(path);
   if (!reader) return said_not_opened;
@@ -233,6 +245,7 @@ int read_everything(const std::string& path) {
   if (const auto events = reader->events())
     for (const recordings::Event& event : *events) (void)recordings::describe(event, reader->start().model);
   const auto verdict = recordings::verify_session(*reader);
+  draw(*reader);
   if (!verdict) return said_refused;
   return verdict->same ? said_same : said_different;
 }

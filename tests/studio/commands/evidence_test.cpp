@@ -101,6 +101,14 @@ TEST_F(Evidence, AnEventThatIsAddedChangedOrTakenAwayIsFoundThoughEveryCountIsMa
   }
 }
 
+TEST_F(Evidence, NothingComparedIsNoGoodVerdict) {
+  auto writer = recordings::SessionWriter::create(path("none.ctpm"), testing::small_start());
+  ASSERT_TRUE(writer && writer->finish());
+  const ProgramOutcome verified = ctpm({"verify", "none.ctpm"});
+  EXPECT_EQ(verified.code, 1);
+  EXPECT_TRUE(holds(verified.out, "no verdict: there is no tick to compare")) << verified.out;
+}
+
 TEST_F(Evidence, AnExamIsSignedAndVerifyingNamesItsKey) {
   record();
   const ProgramOutcome made = ctpm({"key", "me.pem"});
