@@ -126,7 +126,7 @@ Result<SessionWriter> SessionWriter::create(const std::string& path, const Sessi
   CTPM_CHECK(options.compression_level >= 1 && options.compression_level <= 19, "WriterOptions out of range");
   Errors errors = check_model(start.model);
   if (errors.empty()) errors = check_state(start.model, start.initial_state);
-  for (Error& error : check_surfaces(start.model, start.model.surfaces)) errors.push_back(std::move(error));
+  if (errors.empty()) errors = check_surfaces(start.model, start.model.surfaces);
   if (!errors.empty()) return errors;
 
   auto impl = std::make_unique<Impl>(start, options);

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "core/model/fields.h"
+#include "recordings/internal/extent_check.h"
 #include "recordings/internal/size_check.h"
 
 namespace ctpm::recordings::session_file {
@@ -310,6 +311,16 @@ void check_organs(Checker& check, const Model& model) {
   }
 }
 
+/// Grids over an organ or a surface have bounded sizes.
+void check_extents(Checker& check, const Model& model) {
+  for (std::size_t i = 0; i < model.organs.size(); ++i) {
+    const std::string problem = problem_of_lattice(model, model.organs[i]);
+    check.require(problem.empty(), "organs" + place(i), problem);
+  }
+  const std::string problem = problem_of_rest(model);
+  check.require(problem.empty(), "rest_position", problem);
+}
+
 /// The coordinates of an optional array must all exist or all be empty.
 void check_together(Checker& check, const std::string& name, const Vec3Array& points) {
   check.require(points.x.size() == points.y.size() && points.x.size() == points.z.size(), name,
@@ -331,6 +342,8 @@ Errors check_model(const Model& model) {
   for (std::size_t i = 0; i < model.tools.size(); ++i)
     check.require(model.tools[i].kind != ToolKind::pin || model.tools[i].sphere >= 0, "tools" + place(i),
                   "is a pin that holds no sphere");
+  if (Errors errors = check.take(); !errors.empty()) return errors;
+  check_extents(check, model);
   return check.take();
 }
 
@@ -352,8 +365,14 @@ void check_edge(Checker& check, const Model& model, const State& state) {
   for (const std::uint8_t organ : state.swept_organ)
     if (organ > organs) {
       check.require(false, "swept_organ", "names an organ that does not exist");
-      break;
+      return;
     }
+  const Vec3Array& swept = state.swept;
+  if (swept.y.size() != swept.x.size() || swept.z.size() != swept.x.size() ||
+      state.swept_organ.size() != swept.x.size())
+    return;
+  const std::string problem = problem_of_swept(state);
+  check.require(problem.empty(), "swept", problem);
 }
 
 Errors check_state(const Model& model, const State& state) {
@@ -402,6 +421,8 @@ Errors check_surfaces(const Model& model, const std::vector<Surface>& surfaces) 
     check.require(std::all_of(binding.weight.begin(), binding.weight.end(),
                               [](double w) { return std::abs(w) <= kLargestWeight; }),
                   name + "binding.weight", "must be in [-1000, 1000]");
+    const std::string problem = problem_of_surface(model, model.organs[i], surface);
+    check.require(problem.empty(), name + "vertex", problem);
     if (surface.vertex.empty() && binding.first.empty()) continue;
     if (check.length(name + "binding.first", binding.first.size(), surface.vertex.size() + 1)) {
       check.indices(name + "binding.first", binding.first, 0, entries + 1);

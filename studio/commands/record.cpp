@@ -105,7 +105,7 @@ int print_outcome(const std::string& path, const Model& model, const session::Re
         s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3, (long long)outcome.run.late_ticks);
   if (s.slip_max > 0)
     print("clock %.3f s behind real time at the end, %.3f s at most%s\n", s.slip, s.slip_max,
-          s.slip > 0.1 ? ": THE SESSION IS SHORTER THAN THE HAND'S TIME" : "");
+          s.slip > 0.1 ? ": THE SESSION IS SHORTER THAN THE TIME IT TOOK" : "");
   if (s.input_age_max > 0)
     print("input age p50 %.3f ms, p99 %.3f ms, max %.3f ms\n", s.input_age_p50 * 1e3, s.input_age_p99 * 1e3,
           s.input_age_max * 1e3);

@@ -77,6 +77,7 @@ struct IgtlLink::Impl {
   void read_candidates(std::span<const pollfd> waiting);
   void hang_up(const char* reason);
   void accept_all();
+  void read_to_the_end();
   void read();
   void take_forces();
   void send_newest();
@@ -164,10 +165,17 @@ void IgtlLink::Impl::run() {
   send_newest();
 }
 
+/// Reads what a device sent before it hung up, so that it is not in the way when it comes back at once.
+void IgtlLink::Impl::read_to_the_end() {
+  pollfd hung_up{connection.number(), POLLRDHUP, 0};
+  while (connection && ::poll(&hung_up, 1, 0) == 1) read();
+}
+
 void IgtlLink::Impl::accept_all() {
   for (int i = 0; i < kAcceptedAtOnce; ++i) {
     Descriptor socket = accept_from(listener);
     if (!socket) return;
+    read_to_the_end();
     if (!settings.allowed.is_empty() && !settings.allowed.holds(peer_of(socket)))
       turn_away("a connection from an address that may not connect was refused");
     else if (!connection)

@@ -16,10 +16,69 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Delay that the following ticks make up for [s].
-constexpr double kMostDelay = 0.1;
-
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// When ticks begin in real time. Those behind a late one follow without a pause until they have caught up.
+class TickClock {
+ public:
+  explicit TickClock(double tick)
+      : length_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(tick))) {}
+
+  void wait_for_tick() const { std::this_thread::sleep_until(deadline_); }
+
+  /// Real time less session time at the start of a tick, in whole milliseconds [s].
+  double slip(Clock::time_point start, std::int64_t tick) const {
+    const double slip = std::chrono::duration<double>(start - began_ - tick * length_).count();
+    return std::floor(1e3 * std::max(0.0, slip)) / 1e3;
+  }
+
+  /// Ends a tick. How late it is [s]; 0 if it is not, or if it is less late than the one before, which was what was
+  /// late.
+  double end_tick() {
+    deadline_ += length_;
+    const double before = std::exchange(delay_, std::max(0.0, seconds_since(deadline_)));
+    const double late = delay_ > before ? delay_ : 0;
+    if (delay_ > kMostDelay) {
+      deadline_ += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(delay_ - kMostDelay));
+      delay_ = kMostDelay;
+    }
+    return late;
+  }
+
+ private:
+  static constexpr double kMostDelay = 0.1;  ///< that the following ticks make up for [s]; the rest is lost
+
+  Clock::duration length_;
+  Clock::time_point began_ = Clock::now();
+  Clock::time_point deadline_ = began_;  ///< of the next tick's start, and of the present one's end
+  double delay_ = 0;                     ///< of the tick before [s]
+};
+
+/// Tells when recording begins to fail. Returns why it cannot go on; empty if it can.
+class FailureWatch {
+ public:
+  FailureWatch(const recordings::SessionWriter& writer, const std::function<void(const std::string&)>& tell)
+      : writer_(writer), tell_(tell) {}
+  std::string look() {
+    const bool fails = writer_.has_error(), is_new = fails && !is_failing_;
+    is_failing_ = fails;
+    if (is_new && tell_) tell_(writer_.status().error);
+    return writer_.is_removed() ? writer_.status().error : std::string();
+  }
+
+ private:
+  const recordings::SessionWriter& writer_;
+  const std::function<void(const std::string&)>& tell_;
+  bool is_failing_ = false;
+};
+
+/// Hands the events of the source over, as those of a tick.
+void take_events(sources::InputSource& source, std::int64_t tick, recordings::SessionWriter& writer) {
+  for (recordings::Event& event : source.take_events()) {
+    event.tick = tick;
+    writer.event(std::move(event));
+  }
+}
 
 }  // namespace
 
@@ -32,27 +91,18 @@ RunOutcome run_session(const Model& model, State& state, sources::InputSource& s
                        recordings::SessionWriter& writer, const RunOptions& options) {
   stepping::Stepper stepper(model, {.threads = options.threads});
   EventWatch watch(model, options.damage_force, [&](recordings::Event event) { writer.event(std::move(event)); });
+  FailureWatch failure(writer, options.tell);
   RunOutcome outcome;
   stepping::StepReport report;
-  bool is_failing = false;
-  const auto tick_length = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(model.tick));
-  const Clock::time_point began = Clock::now();
-  Clock::time_point deadline = began;  // of the next tick's start, and of the present one's end
-  double delay = 0;                    // of the tick before [s]
+  TickClock clock(model.tick);
   for (std::int64_t tick = 0; options.most_ticks == 0 || tick < options.most_ticks; ++tick) {
     if (options.should_stop && options.should_stop()) break;
-    if (options.in_real_time) std::this_thread::sleep_until(deadline);
+    if (options.in_real_time) clock.wait_for_tick();
     const std::optional<Inputs> inputs = source.next(tick, report);
-    for (recordings::Event& event : source.take_events()) {
-      event.tick = tick;
-      writer.event(std::move(event));
-    }
+    take_events(source, tick, writer);
     if (!inputs) break;
     const Clock::time_point start = Clock::now();
-    if (options.in_real_time) {
-      const double slip = std::chrono::duration<double>(start - began - tick * tick_length).count();
-      outcome.slip = std::floor(1e3 * std::max(0.0, slip)) / 1e3;
-    }
+    if (options.in_real_time) outcome.slip = clock.slip(start, tick);
     report = stepper.step(state, *inputs);
     const double tick_time = seconds_since(start);
     outcome.status = report.status, outcome.worst_sphere = report.worst_sphere;
@@ -67,28 +117,13 @@ RunOutcome run_session(const Model& model, State& state, sources::InputSource& s
         *inputs, report, tick_time, recordings::state_hash(state), source.input_age(), outcome.slip);
     writer.append(state, record);
     watch.look(tick, inputs->tool, report);
-    deadline += tick_length;
-    if (options.in_real_time) {
-      // A tick that catches up ends after its deadline as well, but is not what was late.
-      const double before = std::exchange(delay, std::max(0.0, seconds_since(deadline)));
-      if (delay > before) {
-        ++outcome.late_ticks;
-        writer.event({.tick = tick, .kind = recordings::EventKind::late_tick, .late = delay});
-      }
-      if (delay > kMostDelay) {
-        const auto lost =
-            std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(delay - kMostDelay));
-        deadline += lost;
-        delay = kMostDelay;
-      }
+    if (const double late = options.in_real_time ? clock.end_tick() : 0; late > 0) {
+      ++outcome.late_ticks;
+      writer.event({.tick = tick, .kind = recordings::EventKind::late_tick, .late = late});
     }
     ++outcome.ticks;
-    if (writer.has_error() != std::exchange(is_failing, writer.has_error()) && is_failing && options.tell)
-      options.tell(writer.status().error);
-    if (writer.is_removed()) {
-      outcome.fault = writer.status().error;
-      break;
-    }
+    outcome.fault = failure.look();
+    if (!outcome.fault.empty()) break;
     if (options.watch) options.watch(state, record, outcome);
     if (options.progress)
       options.progress(outcome.ticks, options.most_ticks ? options.most_ticks : source.tick_count());

@@ -4,118 +4,12 @@
 #include "core/model/fields.h"
 #include "recordings/recover.h"
 #include "recordings/replay.h"
-#include "tests/recordings/sessions.h"
+#include "tests/recordings/truth.h"
 
 namespace ctpm {
 namespace {
 
 using namespace ctpm::testing;
-
-/// Content of an undamaged session, for comparison.
-struct Truth {
-  recordings::SessionStart start;
-  std::vector<recordings::TickRecord> records;
-  std::vector<recordings::Event> events;
-  std::vector<std::uint64_t> state_hashes;  ///< before each tick and after the last
-  std::uint64_t model_hash = 0;
-};
-
-/// Hash of a whole Model: the hash of a State that holds all its numbers in one array.
-std::uint64_t hash_of(const Model& model) {
-  State all;
-  const auto add = [&](const auto& self, const auto& value) -> void {
-    using T = std::decay_t<decltype(value)>;
-    if constexpr (std::is_same_v<T, Vec3>)
-      all.kelvin_elongation.insert(all.kelvin_elongation.end(), {value.x, value.y, value.z});
-    else if constexpr (std::is_same_v<T, Quat>)
-      all.kelvin_elongation.insert(all.kelvin_elongation.end(), {value.w, value.x, value.y, value.z});
-    else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
-      all.kelvin_elongation.push_back(static_cast<double>(value));
-    else if constexpr (requires { value.begin(); })
-      for (const auto& item : value) self(self, item);
-    else
-      for_each_field(value, [&](std::string_view, const auto& member) { self(self, member); });
-  };
-  add(add, model);
-  return recordings::state_hash(all);
-}
-
-Truth truth_of(const std::string& path, const recordings::SessionStart& start, const Lived& lived) {
-  Truth truth;
-  truth.start = start;
-  truth.records = lived.records;
-  truth.state_hashes.push_back(recordings::state_hash(start.initial_state));
-  for (const recordings::TickRecord& record : lived.records) truth.state_hashes.push_back(record.state_hash);
-  truth.model_hash = hash_of(start.model);
-  auto reader = recordings::SessionReader::open(path);
-  CTPM_CHECK(bool(reader), "the undamaged session opens");
-  truth.events = *reader->events();
-  return truth;
-}
-
-/// Result of reading one damaged file.
-struct Finding {
-  bool opened = false;
-  bool complained = false;  ///< open() or a later call returned an error
-};
-
-/// Everything that the reader returns must be true, and every error must name the file.
-Finding expect_error_or_truth(const std::string& path, const Truth& truth, const std::string& what) {
-  Finding finding;
-  const auto complain = [&](const Errors& errors) {
-    finding.complained = true;
-    for (const Error& error : errors) {
-      EXPECT_EQ(error.where, path) << what;
-      EXPECT_FALSE(error.message.empty()) << what;
-    }
-  };
-  auto reader = recordings::SessionReader::open(path);
-  if (!reader) {
-    complain(reader.errors());
-    return finding;
-  }
-  finding.opened = true;
-  EXPECT_EQ(reader->start().scene_text, truth.start.scene_text) << what;
-  EXPECT_EQ(reader->start().look, truth.start.look) << what;
-  EXPECT_EQ(reader->start().metadata, truth.start.metadata) << what;
-  EXPECT_EQ(reader->start().build_fingerprint, truth.start.build_fingerprint) << what;
-  EXPECT_EQ(hash_of(reader->start().model), truth.model_hash) << what;
-  EXPECT_EQ(recordings::state_hash(reader->start().initial_state), truth.state_hashes[0]) << what;
-
-  const std::int64_t count = reader->tick_count();
-  EXPECT_LE(count, static_cast<std::int64_t>(truth.records.size())) << what;
-  if (reader->ended_cleanly()) {
-    EXPECT_EQ(count, static_cast<std::int64_t>(truth.records.size())) << what;
-  }
-  const std::int64_t known = std::min<std::int64_t>(count, truth.records.size());
-  for (std::int64_t from = 0; from < known; from += 50) {
-    const std::int64_t to = std::min(from + 50, known);
-    const auto records = reader->ticks(from, to);
-    if (records) {
-      EXPECT_TRUE(
-          std::equal(records->begin(), records->end(), truth.records.begin() + from, truth.records.begin() + to))
-          << what;
-    } else {
-      complain(records.errors());
-    }
-    const auto keyframe = reader->keyframe_at_or_before(to);
-    if (keyframe) {
-      EXPECT_EQ(recordings::state_hash(keyframe->state), truth.state_hashes.at(keyframe->tick)) << what;
-    } else {
-      complain(keyframe.errors());
-    }
-  }
-  if (const auto events = reader->events(); !events) {
-    complain(events.errors());
-  } else {
-    const std::size_t expected = reader->ended_cleanly() ? truth.events.size() : events->size();
-    EXPECT_TRUE(events->size() == expected && expected <= truth.events.size() &&
-                std::equal(events->begin(), events->end(), truth.events.begin()))
-        << what;
-  }
-  if (const auto all = reader->check_all(); !all) complain(all.errors());
-  return finding;
-}
 
 /// One small session with its bytes and true content, made once.
 struct Sample {
@@ -191,6 +85,8 @@ TEST(Damage, AFlippedBitAnywhereIsFoundOrWithoutEffect) {
   for (std::size_t place = 0; place < sample().bytes.size(); place += 7) places.insert(place);
   flip_each(places, false);
 }
+
+TEST(Damage, VerifyingAfterAHundredFlippedBitsIsNeverWrong) { verify_flipped_bits(100, 1); }
 
 TEST(Damage, AFlippedBitInAnyBlockIsFound) {
   const std::set<std::size_t> places = frame_heads(sample().bytes);

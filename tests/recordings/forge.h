@@ -70,6 +70,22 @@ class Forge {
     CTPM_CHECK(update->step() == session_file::Statement::Outcome::done, "a forged keyframe");
   }
 
+  /// Gives the run of events at `first` another count, with the checksum that it has then.
+  void recount_events(std::int64_t first, std::int64_t count) {
+    const std::string at = " WHERE first = " + std::to_string(first);
+    auto row = database_.prepare("SELECT size, checksum, data, count FROM event" + at);
+    CTPM_CHECK(row && row->step() == session_file::Statement::Outcome::row, "events to forge");
+    const std::string name = "event " + std::to_string(first) + " ";
+    const auto content = session_file::unpack(name + std::to_string(row->integer(3)), row->integer(0), row->integer(1),
+                                              row->blob(2), seed_, 1ull << 30);
+    CTPM_CHECK(bool(content), "good events to forge");
+    row->reset();
+    const session_file::Block block = session_file::pack(name + std::to_string(count), *content, seed_, 3);
+    auto update = database_.prepare("UPDATE event SET count = ?1, checksum = ?2, data = ?3" + at);
+    update->bind(1, count).bind(2, block.checksum).bind(3, session_file::ByteView(block.data));
+    CTPM_CHECK(update->step() == session_file::Statement::Outcome::done, "forged events");
+  }
+
  private:
   std::uint64_t seed_ = 0;
   session_file::Database database_;

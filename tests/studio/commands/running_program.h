@@ -47,6 +47,13 @@ class RunningProgram {
 
   void interrupt() const { ::kill(child_, SIGINT); }
 
+  /// Lets no thread of it run for a while.
+  void stop_for(std::chrono::milliseconds time) const {
+    ::kill(child_, SIGSTOP);
+    std::this_thread::sleep_for(time);
+    ::kill(child_, SIGCONT);
+  }
+
   /// Waits until it has ended.
   ProgramOutcome outcome() {
     int status = 0;

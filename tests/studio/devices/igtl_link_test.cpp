@@ -87,6 +87,18 @@ TEST(IgtlLink, WhoeverHangsUpIsReportedAndTheNextOneTaken) {
   }
 }
 
+TEST(IgtlLink, ADeviceThatHangsUpAndComesBackAtOnceIsNotTurnedAway) {
+  auto link = listen();
+  for (int i = 0; i < 200; ++i) {
+    IgtlPeer peer = IgtlPeer::connect(link->port());
+    EXPECT_EQ(next_of(*link).news, devices::DeviceNews::connected) << i;
+    peer.send(transform_bytes({7, 0, 0}));
+    peer.hang_up();
+    EXPECT_EQ(next_of(*link).news, devices::DeviceNews::pose) << i;
+    EXPECT_EQ(next_of(*link).news, devices::DeviceNews::lost) << i;
+  }
+}
+
 /// The reports until one of `news`, for which it waits.
 devices::DeviceReport wait_for(devices::IgtlLink& link, devices::DeviceNews news) {
   devices::DeviceReport report;

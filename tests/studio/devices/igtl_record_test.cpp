@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <openigtlink/igtlServerSocket.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -362,8 +363,13 @@ void IgtlRecord::faults_are_forgiven(int count) {
   for (int i = 0; i < count; ++i) {
     random = random * 6364136223846793005ull + 1442695040888963407ull;
     faults[count <= int(faults.size()) ? std::size_t(i) : std::size_t(random >> 33) % faults.size()]();
-    std::thread device([&] { stay(*peer, kHome, 1000); });
+    std::atomic<bool> is_verified{false};
+    std::thread device([&] {
+      do stay(*peer, kHome, 1000);
+      while (!is_verified);
+    });
     const std::string verdict = ctpm({"verify", "a.ctpm"});
+    is_verified = true;
     device.join();
     EXPECT_TRUE(holds(verdict, "same: ")) << "after fault " << i << ": " << verdict;
     ASSERT_TRUE(peer->send(transform_bytes(kHome))) << "turned away after fault " << i;

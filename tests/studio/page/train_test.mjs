@@ -74,8 +74,11 @@ test("the mouse presses, cuts and records", async () => {
   await page.waitForFunction(() => [...document.querySelectorAll(".readings div")].some((d) => /severed[1-9]/.test(d.textContent)));
   await picture(page, "train-cut");
   console.log(`training: ${await reading(page, "late ticks")} late ticks, last tick ${await reading(page, "last tick, p99")}, while a browser draws on the same processors`);
+  const behind = await reading(page, "behind the clock"), p99 = await reading(page, "last tick, p99");
+  assert.ok(behind >= 0 && p99 > 0, `${behind} s behind, tick of ${p99} ms`);
   await page.keyboard.press("Escape");
   await page.waitForSelector("button:has-text('Train again')");
+  assert.match(await page.locator(".readings div:has(dt:text-is('behind the clock')) dd").first().innerText(), /never|at most/);
 });
 
 test("the session verifies to the bit, and is compared at once", async () => {

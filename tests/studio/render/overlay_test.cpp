@@ -42,6 +42,21 @@ TEST(Overlay, TextsNeitherOverlapNorLeaveThePicture) {
     }
 }
 
+TEST(Overlay, TimeThatTheSessionLostIsShown) {
+  render::Overlay overlay(1280, 720);
+  render::OverlayData data = full_data();
+  const auto is_shown = [&] {
+    const auto texts = overlay.layout(data);
+    const auto shows = [&](const char* text) {
+      return std::ranges::any_of(texts, [&](const render::PlacedText& placed) { return placed.text == text; });
+    };
+    return shows("clock behind") && shows("2.32 s");
+  };
+  EXPECT_FALSE(is_shown());
+  data.slip = 2.324;
+  EXPECT_TRUE(is_shown());
+}
+
 TEST(Overlay, EveryTextLeavesInkInItsPlace) {
   render::Overlay overlay(1280, 720);
   const render::OverlayData data = full_data();

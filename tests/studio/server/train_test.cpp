@@ -113,6 +113,24 @@ TEST_F(TrainingTest, APageThatGoesAwayLeavesAWholeSession) {
   EXPECT_EQ(testing::run_ctpm({"verify", "left.ctpm"}, folder_.path()).code, 0);
 }
 
+TEST_F(TrainingTest, AFileThatIsRemovedWhileItIsRecordedIsToldAtOnceAndEndsTheSession) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  const nlohmann::json begun =
+      client.call("train.begin", {{"scene", "kidney.json"}, {"output", "mine.ctpm"}, {"stage", 2}});
+  ASSERT_TRUE(begun.contains("result")) << begun;
+  press(client, begun["result"]["view"], 30, 1);
+  for (int i = 0; i < 3000 && !fs::exists(folder_.path() / "mine.ctpm-wal"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  fs::remove(folder_.path() / "mine.ctpm");
+  press(client, begun["result"]["view"], 30, 1);
+  const nlohmann::json told = event_of(client, "train_fails");
+  EXPECT_NE(told["text"].get<std::string>().find("the file was removed"), std::string::npos) << told;
+  // Nobody ends the session.
+  const nlohmann::json ended = event_of(client, "train_ended");
+  EXPECT_FALSE(ended["errors"].empty()) << ended;
+}
+
 TEST_F(TrainingTest, BadRequestsAreToldWhy) {
   const Serving serving(folder_.path());
   SocketClient client(serving);
