@@ -86,69 +86,97 @@ void CutBody::add(const SideBinding::Bound& bound) {
   to.first.push_back(Index(to.sphere.size()));
 }
 
-void CutBody::rebuild(const State& state) {
-  const CutGrid& grid = parts_->grid;
-  if (!grid.anything_cut()) return show_whole();
-  is_cut_ = true;
-  const std::vector<std::uint8_t> near = grid.widened(grid.cut_blocks()), meshed = grid.widened(near);
-  const CutMesh mesh = make_mesh(grid, meshed);
-  const std::size_t count = mesh.vertex.size();
-  std::vector<std::uint8_t> is_outer(count, 0), is_wall(count, 0);
-  for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
-    for (const Index v : mesh.triangle[t]) (t < mesh.outer_triangles ? is_outer : is_wall)[std::size_t(v)] = 1;
+/// Makes surface_ anew: near the cut of the mesh of the grid, elsewhere of the organ's own vertices.
+class CutBody::Rebuilding {
+ public:
+  Rebuilding(CutBody& body, const State& state)
+      : body_(body),
+        grid_(body.parts_->grid),
+        state_(state),
+        near_(grid_.widened(grid_.cut_blocks())),
+        meshed_(grid_.widened(near_)),
+        mesh_(make_mesh(grid_, meshed_)),
+        of_corner_(body.whole_.vertex.size(), -1),
+        outer_(mesh_.vertex.size(), -1),
+        wall_(mesh_.vertex.size(), -1),
+        is_outer_(mesh_.vertex.size(), 0),
+        is_wall_(mesh_.vertex.size(), 0) {
+    for (std::size_t t = 0; t < mesh_.triangle.size(); ++t)
+      for (const Index v : mesh_.triangle[t]) (t < mesh_.outer_triangles ? is_outer_ : is_wall_)[std::size_t(v)] = 1;
+  }
 
-  surface_ = {}, origin_.clear(), surface_.binding.first.push_back(0);
-  // Far from the cut, vertices of the organ's own surface stand for those of the grid.
-  std::vector<Index> of_corner(whole_.vertex.size(), -1), number(count, -1), wall_number(count, -1);
-  const auto add_corner = [&](Index corner, Index side) {
-    Index& known = of_corner[std::size_t(corner)];
-    if (known >= 0) return known;
-    known = Index(surface_.vertex.size());
-    const SideBinding::Bound& bound =
-        parts_->binding.bind({whole_.vertex[std::size_t(corner)], side}, true, false, state);
-    add(bound), origin_.push_back(bound.origin);
-    return known;
-  };
-  const auto add_outer = [&](Index v) {
-    const CutMesh::Vertex& vertex = mesh.vertex[std::size_t(v)];
-    if (number[std::size_t(v)] >= 0) return number[std::size_t(v)];
-    if (!near[std::size_t(grid.block(vertex.side))])
-      if (const Index corner = nearest_corner(vertex.rest); corner >= 0)
-        return number[std::size_t(v)] = add_corner(corner, vertex.side);
-    const SideBinding::Bound& bound = parts_->binding.bind(vertex, true, is_wall[std::size_t(v)] != 0, state);
-    number[std::size_t(v)] = Index(surface_.vertex.size());
-    add(bound), origin_.push_back(bound.origin);
-    return number[std::size_t(v)];
-  };
-  const auto push = [&](Index a, Index b, Index c) {
-    if (a != b && b != c && c != a) surface_.triangle.push_back({a, b, c});
-  };
-  for (std::size_t t = 0; t < mesh.outer_triangles; ++t) {
-    const Triangle& v = mesh.triangle[t];
-    const Index a = add_outer(v[0]), b = add_outer(v[1]), c = add_outer(v[2]);
-    push(a, b, c);
-  }
-  for (Index b = 0; b < grid.block_count(); ++b) {
-    if (meshed[std::size_t(b)]) continue;
-    for (Index t = parts_->first_far[std::size_t(b)]; t < parts_->first_far[std::size_t(b) + 1]; ++t) {
-      const Triangle& v = parts_->far[std::size_t(t)];
-      const Index p = add_corner(v[0], -1), q = add_corner(v[1], -1), r = add_corner(v[2], -1);
-      push(p, q, r);
+  void add_outer() {
+    for (std::size_t t = 0; t < mesh_.outer_triangles; ++t) {
+      const Triangle& v = mesh_.triangle[t];
+      const Index a = outer(v[0]), b = outer(v[1]), c = outer(v[2]);
+      push(a, b, c);
     }
-  }
-  outer_triangles_ = surface_.triangle.size(), outer_vertices_ = surface_.vertex.size();
-  for (std::size_t t = mesh.outer_triangles; t < mesh.triangle.size(); ++t) {
-    Triangle corners = mesh.triangle[t];
-    for (Index& v : corners) {
-      Index& known = wall_number[std::size_t(v)];
-      if (known < 0) {
-        known = Index(surface_.vertex.size());
-        add(parts_->binding.bind(mesh.vertex[std::size_t(v)], is_outer[std::size_t(v)] != 0, true, state));
+    for (Index block = 0; block < grid_.block_count(); ++block) {
+      if (meshed_[std::size_t(block)]) continue;
+      const std::vector<Index>& first = body_.parts_->first_far;
+      for (Index t = first[std::size_t(block)]; t < first[std::size_t(block) + 1]; ++t) {
+        const Triangle& v = body_.parts_->far[std::size_t(t)];
+        const Index a = corner(v[0], -1), b = corner(v[1], -1), c = corner(v[2], -1);
+        push(a, b, c);
       }
-      v = known;
     }
-    surface_.triangle.push_back(corners);
   }
+
+  void add_walls() {
+    for (std::size_t t = mesh_.outer_triangles; t < mesh_.triangle.size(); ++t) {
+      const Triangle& v = mesh_.triangle[t];
+      const Index a = wall(v[0]), b = wall(v[1]), c = wall(v[2]);
+      body_.surface_.triangle.push_back({a, b, c});
+    }
+  }
+
+ private:
+  Index count() const { return Index(body_.surface_.vertex.size()); }
+  void push(Index a, Index b, Index c) {
+    if (a != b && b != c && c != a) body_.surface_.triangle.push_back({a, b, c});
+  }
+  Index add_outer(const CutMesh::Vertex& vertex, bool is_wall) {
+    const SideBinding::Bound& bound = body_.parts_->binding.bind(vertex, true, is_wall, state_);
+    body_.add(bound), body_.origin_.push_back(bound.origin);
+    return count() - 1;
+  }
+  /// A vertex of the organ's own surface.
+  Index corner(Index own, Index side) {
+    Index& known = of_corner_[std::size_t(own)];
+    if (known < 0) known = add_outer({body_.whole_.vertex[std::size_t(own)], side}, false);
+    return known;
+  }
+  Index outer(Index v) {
+    const CutMesh::Vertex& vertex = mesh_.vertex[std::size_t(v)];
+    Index& known = outer_[std::size_t(v)];
+    if (known >= 0) return known;
+    const Index own = near_[std::size_t(grid_.block(vertex.side))] ? -1 : body_.nearest_corner(vertex.rest);
+    return known = own >= 0 ? corner(own, vertex.side) : add_outer(vertex, is_wall_[std::size_t(v)] != 0);
+  }
+  Index wall(Index v) {
+    Index& known = wall_[std::size_t(v)];
+    if (known >= 0) return known;
+    body_.add(body_.parts_->binding.bind(mesh_.vertex[std::size_t(v)], is_outer_[std::size_t(v)] != 0, true, state_));
+    return known = count() - 1;
+  }
+
+  CutBody& body_;
+  const CutGrid& grid_;
+  const State& state_;
+  std::vector<std::uint8_t> near_, meshed_;  ///< blocks around the cut, and around those
+  CutMesh mesh_;
+  std::vector<Index> of_corner_, outer_, wall_;   ///< vertices of surface_ made so far, or -1
+  std::vector<std::uint8_t> is_outer_, is_wall_;  ///< vertices of the mesh
+};
+
+void CutBody::rebuild(const State& state) {
+  if (!parts_->grid.anything_cut()) return show_whole();
+  is_cut_ = true;
+  surface_ = {}, origin_.clear(), surface_.binding.first.push_back(0);
+  Rebuilding rebuilding(*this, state);
+  rebuilding.add_outer();
+  outer_triangles_ = surface_.triangle.size(), outer_vertices_ = surface_.vertex.size();
+  rebuilding.add_walls();
 }
 
 }  // namespace ctpm::cutbody

@@ -50,6 +50,7 @@ class CutBody {
 
  private:
   struct Parts;
+  class Rebuilding;
   void show_whole();
   void rebuild(const State& state);
   void add(const SideBinding::Bound& bound);
