@@ -38,4 +38,21 @@ double elastic_energy(const Model& model, const State& state) {
   return energy;
 }
 
+double viscous_work(const Model& model, const State& before, const State& after) {
+  double work = 0;
+  const AxialElements& axial = model.axial;
+  for (std::size_t e = 0; e < axial.size(); ++e) {
+    if (after.axial_severed[e]) continue;
+    const auto a = std::size_t(axial.a[e]), b = std::size_t(axial.b[e]);
+    const Vec3 d = before.position[b] - before.position[a];
+    double rate = dot(after.velocity[b] - after.velocity[a], d) / norm(d);
+    if (axial.law[e] == AxialLaw::two_sphere_tpm) {
+      const auto t = std::size_t(axial.internal[e]);
+      rate = (after.kelvin_elongation[t] - before.kelvin_elongation[t]) / model.tick;
+    }
+    work += model.tick * axial.damping(e) * rate * rate;
+  }
+  return work;
+}
+
 }  // namespace ctpm::elements

@@ -13,4 +13,8 @@ Vec3Array internal_forces(const Model& model, const State& state);
 /// springs of two-sphere TPMs. Constraints are not counted, and softening (Eq. 8) has no energy.
 double elastic_energy(const Model& model, const State& state);
 
+/// Energy that dashpots and Kelvin units dissipate in the tick from `before` to `after` [J], without elements that are
+/// severed in it.
+double viscous_work(const Model& model, const State& before, const State& after);
+
 }  // namespace ctpm::elements

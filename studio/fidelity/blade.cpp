@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/cutting/swept_surface.h"
+#include "core/elements/forces.h"
 #include "studio/fidelity/recipes.h"
 #include "studio/output/number_text.h"
 
@@ -32,24 +33,6 @@ Result<Body> make_block(double radius, double toughness) {
   }
   hold(body->model, sides, kAnchored);
   return body;
-}
-
-/// Energy that Kelvin units dissipate in a tick [J].
-double viscous_work(const Model& model, const State& before, const State& after) {
-  double work = 0;
-  const AxialElements& axial = model.axial;
-  for (std::size_t e = 0; e < axial.size(); ++e) {
-    if (after.axial_severed[e]) continue;
-    const auto a = std::size_t(axial.a[e]), b = std::size_t(axial.b[e]);
-    const Vec3 d = before.position[b] - before.position[a];
-    double rate = dot(after.velocity[b] - after.velocity[a], d) / norm(d);
-    if (axial.law[e] == AxialLaw::two_sphere_tpm) {
-      const auto t = std::size_t(axial.internal[e]);
-      rate = (after.kelvin_elongation[t] - before.kelvin_elongation[t]) / model.tick;
-    }
-    work += model.tick * axial.damping(e) * rate * rate;
-  }
-  return work;
 }
 
 /// Area of the swept surface inside the block [m^2].
@@ -85,7 +68,7 @@ void cut(const Model& model, BladeResult::Row& row) {
     hand.position = middle + way * along;
     const stepping::StepReport report = stepper.step(state, hand);
     row.way.push_back(way), row.force.push_back(-dot(report.tool_force, along));
-    row.work += per_tick * row.force.back(), row.viscous += viscous_work(model, before, state);
+    row.work += per_tick * row.force.back(), row.viscous += elements::viscous_work(model, before, state);
   }
   row.area = area_in_block(state);
 }

@@ -74,24 +74,6 @@ Model clamped_block(double spacing, const network::Material& material) {
   return model;
 }
 
-/// Energy that Kelvin units dissipate in a tick [J].
-double viscous_work(const Model& model, const State& before, const State& after) {
-  double work = 0;
-  const AxialElements& axial = model.axial;
-  for (std::size_t e = 0; e < axial.size(); ++e) {
-    if (after.axial_severed[e]) continue;
-    const auto a = std::size_t(axial.a[e]), b = std::size_t(axial.b[e]);
-    const Vec3 d = before.position[b] - before.position[a];
-    double rate = dot(after.velocity[b] - after.velocity[a], d) / norm(d);
-    if (axial.law[e] == AxialLaw::two_sphere_tpm) {
-      const auto t = std::size_t(axial.internal[e]);
-      rate = (after.kelvin_elongation[t] - before.kelvin_elongation[t]) / model.tick;
-    }
-    work += model.tick * axial.c[e] * rate * rate;
-  }
-  return work;
-}
-
 /// A straight cut through the middle of a clamped block.
 struct Cut {
   double ratio;    ///< of the hand's work to toughness times area plus viscous losses
@@ -113,7 +95,7 @@ Cut cut_block(double spacing, double toughness, double degrees) {
     before = state;
     const stepping::StepReport report = stepper.step(state, blade_at(Vec3{0.0013, 0.0007, -0.008} + y * way));
     force.push_back(-dot(report.tool_force, way)), place.push_back(y);
-    by_hand += kPerTick * force.back(), lost += viscous_work(model, before, state);
+    by_hand += kPerTick * force.back(), lost += elements::viscous_work(model, before, state);
   }
   const Vec3 high{2.5 * 0.012 + (0.012 - spacing) / 2, 2.5 * 0.012 + (0.012 - spacing) / 2, 0.036 - spacing};
   const double area = testing::swept_area(state, {-high.x, -high.y, 0}, high);
