@@ -115,8 +115,8 @@ bool is_said_same(const std::string& path) {
 void verify_flipped_bits(int count, unsigned seed) {
   const Folder folder;
   const std::string path = folder / "a.ctpm";
-  const recordings::SessionStart start = small_start(3, 2, 2);
-  const Lived lived = record_session(path, start, 730, 200);
+  const recordings::SessionStart start = small_start(6, 5, 5);
+  const Lived lived = record_session(path, start, 100, 50);
   const Truth truth = truth_of(path, start, lived);
   const std::vector<char> bytes = read_bytes(path);
   std::mt19937 random(seed);
