@@ -22,7 +22,9 @@ void BodyContact::find(const StateView& state, const PressStep& step, PointConta
   overlaps_.begin(state, step.h);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     overlaps_.find(b, found_);
-    press_.add(state, step, bodies_[b], points + bodies_[b].first_vertex, found_, contacts);
+    press_.add(state, step, bodies_[b], points + bodies_[b].first_vertex, found_, radius_of(bodies_[b], found_),
+               contacts);
+    found_.clear();
   }
 }
 

@@ -1,0 +1,256 @@
+#include "core/cutbody/cut_patches.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/cutbody/cut_mesh.h"
+#include "core/cutbody/cut_points.h"
+#include "core/cutbody/side_binding.h"
+#include "core/cutting/swept_surface.h"
+
+namespace ctpm::cutbody {
+namespace {
+
+using Triangle = std::array<std::int32_t, 3>;
+
+/// Bins of so many blocks along each axis: what is in one follows spheres in the bins around it (our choice; bindings
+/// reach two blocks, or three where two do not span space).
+constexpr CutGrid::Index kPerBin = 3;
+
+/// Patches move within the range of the spheres around them, widened on each side by this part of it, and by so many
+/// steps of the grid: weights may be negative, and walls are put onto the swept surface.
+constexpr double kWiden = 1, kMargin = 2;
+
+/// Vertices of two walls are opposite if they are nearer than this at rest, in steps of the grid, and face each other.
+constexpr double kSamePlace = 0.35, kFacing = -0.3;
+
+/// Where the areas around a vertex cancel to less than this part, both walls meet in it.
+constexpr double kCancelled = 0.5;
+
+CutGrid::Node bins_of(const CutGrid& grid) {
+  CutGrid::Node bins;
+  for (std::size_t a = 0; a < 3; ++a) bins[a] = (grid.extent()[a] - 1) / (kPerBin * CutGrid::kPerSpacing) + 1;
+  return bins;
+}
+
+CutGrid::Index bin_of(const CutGrid& grid, CutGrid::Node node) {
+  const CutGrid::Node bins = bins_of(grid);
+  for (CutGrid::Index& n : node) n /= kPerBin * CutGrid::kPerSpacing;
+  return node[0] + bins[0] * (node[1] + bins[1] * node[2]);
+}
+
+/// Areas around each vertex: as vectors, and their sizes.
+struct Areas {
+  std::vector<Vec3> sum;
+  std::vector<double> size;
+
+  explicit Areas(const Surface& part) : sum(part.vertex.size()), size(part.vertex.size(), 0) {
+    for (const Triangle& t : part.triangle) {
+      const Vec3 a = part.vertex[std::size_t(t[0])];
+      const Vec3 area = cross(part.vertex[std::size_t(t[1])] - a, part.vertex[std::size_t(t[2])] - a);
+      for (const std::int32_t v : t) sum[std::size_t(v)] += area, size[std::size_t(v)] += norm(area);
+    }
+  }
+};
+
+std::vector<std::int32_t> find_opposite(const Surface& part, std::int32_t first_wall, double same_place) {
+  const Areas areas(part);
+  std::vector<std::int32_t> opposite(part.vertex.size(), CutPatch::kNone);
+  for (auto v = std::size_t(first_wall); v < opposite.size(); ++v) {
+    const double own = norm(areas.sum[v]);
+    if (own < kCancelled * areas.size[v]) opposite[v] = CutPatch::kCutEnds;
+    double least = same_place;
+    for (auto u = std::size_t(first_wall); u < opposite.size() && opposite[v] != CutPatch::kCutEnds; ++u) {
+      const double distance = norm(part.vertex[u] - part.vertex[v]);
+      if (u == v || distance >= least) continue;
+      if (dot(areas.sum[u], areas.sum[v]) > kFacing * norm(areas.sum[u]) * own) continue;
+      least = distance, opposite[v] = std::int32_t(u);
+    }
+  }
+  return opposite;
+}
+
+}  // namespace
+
+double CutPatch::opening(std::int32_t vertex) {
+  const std::int32_t other = opposite[std::size_t(vertex)];
+  if (other == kNone) return std::numeric_limits<double>::infinity();
+  if (other == kCutEnds) return 0;
+  const auto place = [&](std::int32_t v) { return body.surface.place(v); };
+  const Vec3 apart = place(other) - place(vertex);
+  return std::max(0.0, dot(apart, body.facets.normal(vertex, place)));
+}
+
+struct CutPatches::Parts {
+  Parts(const Model& model, std::size_t organ) : grid(model, organ), binding(model, grid) {
+    const OrganRange& range = model.organs[organ];
+    for (std::int32_t s = 0; s < range.count; ++s) {
+      const Index node = grid.node_of_sphere(s);
+      bin_of_sphere.push_back(node < 0 ? -1 : bin_of(grid, grid.node(node)));
+    }
+  }
+
+  CutGrid grid;
+  SideBinding binding;
+  std::vector<Index> bin_of_sphere;
+  State seen;  ///< only with a swept surface: what is followed
+};
+
+CutPatches::CutPatches(const Model& model, std::size_t organ) : model_(model), organ_(organ) {}
+CutPatches::~CutPatches() = default;
+CutPatches::CutPatches(CutPatches&&) noexcept = default;
+
+void CutPatches::prepare() {
+  if (!parts_) parts_ = std::make_unique<Parts>(model_, organ_);
+}
+
+bool CutPatches::follow(const State& state, std::size_t rows) {
+  if (!parts_ && rows == 0) return false;
+  prepare();
+  State& seen = parts_->seen;
+  const std::size_t points = rows * kEdgeNodes;
+  // Two swept surfaces that agree in their last rows agree in those before them.
+  bool is_same = seen.swept.size() == points;
+  for (std::size_t n = points - std::min(points, 2 * kEdgeNodes); n < points && is_same; ++n)
+    is_same = seen.swept[n] == state.swept[n] && seen.swept_organ[n] == state.swept_organ[n];
+  if (is_same) return false;
+  seen.swept = state.swept, seen.swept.resize(points);
+  seen.swept_organ.assign(state.swept_organ.begin(), state.swept_organ.begin() + std::ptrdiff_t(points));
+  (void)parts_->grid.update(seen);
+  const CutGrid::Node extent = parts_->grid.extent();
+  parts_->binding.forget_near({{0, 0, 0}, extent});
+  cover();
+  return true;
+}
+
+void CutPatches::cover() {
+  const CutGrid& grid = parts_->grid;
+  covered_.clear(), index_of_.clear();
+  if (!grid.anything_cut()) return;
+  const std::vector<std::uint8_t> blocks = grid.widened(grid.widened(grid.cut_blocks()));
+  index_of_.assign(blocks.size(), -1);
+  for (Index block = 0; block < grid.block_count(); ++block) {
+    if (!blocks[std::size_t(block)]) continue;
+    const CutGrid::Node low = grid.first_node(block);
+    CutGrid::Node high = low;
+    for (std::size_t a = 0; a < 3; ++a) high[a] += CutGrid::kPerSpacing;
+    // The lattice may be turned in the scene.
+    const Vec3 x = grid.place({high[0], low[1], low[2]}) - grid.place(low),
+               y = grid.place({low[0], high[1], low[2]}) - grid.place(low),
+               z = grid.place({low[0], low[1], high[2]}) - grid.place(low), at = grid.place(low);
+    const Box rest = Box(at, at + x, at + y, at + z, at + x + y, at + x + z, at + y + z, at + x + y + z)
+                         .grown(kMargin * grid.step());
+    if (covered_.empty()) all_ = rest;
+    all_.add(rest.low), all_.add(rest.high);
+    index_of_[std::size_t(block)] = Index(covered_.size());
+    covered_.push_back({block, bin_of(grid, low), rest});
+  }
+}
+
+bool CutPatches::covers(Vec3 rest) const {
+  if (!is_cut()) return false;
+  const Index block = parts_->grid.block_at(rest);
+  return block >= 0 && index_of_[std::size_t(block)] >= 0;
+}
+
+void CutPatches::begin(const Vec3Array& position) { position_ = &position, ++round_; }
+
+/// Finds for each bin within what range the spheres in it and in those around it have moved.
+void CutPatches::find_displacements() {
+  const CutGrid::Node bins = bins_of(parts_->grid);
+  struct Range {
+    bool any = false;
+    Box box{Vec3{}};
+    void add(Vec3 by) { any ? box.add(by) : void(box = Box(by)), any = true; }
+    void add(const Range& other) {
+      if (other.any) add(other.box.low), add(other.box.high);
+    }
+  };
+  std::vector<Range> own(std::size_t(bins[0]) * std::size_t(bins[1]) * std::size_t(bins[2]));
+  const OrganRange& organ = model_.organs[organ_];
+  Range all;
+  for (std::int32_t s = 0; s < organ.count; ++s) {
+    const auto i = std::size_t(organ.first + s);
+    const Vec3 by = (*position_)[i] - model_.rest_position[i];
+    all.add(by);
+    if (const Index bin = parts_->bin_of_sphere[std::size_t(s)]; bin >= 0) own[std::size_t(bin)].add(by);
+  }
+  const auto widened = [](const Range& range) {
+    const Vec3 margin = kWiden * (range.box.high - range.box.low);
+    return Box(range.box.low - margin, range.box.high + margin);
+  };
+  all_displacements_ = widened(all);
+  displacements_.clear();
+  for (Index k = 0; k < bins[2]; ++k)
+    for (Index j = 0; j < bins[1]; ++j)
+      for (Index i = 0; i < bins[0]; ++i) {
+        Range around;
+        for (Index z = std::max(0, k - 1); z <= std::min(bins[2] - 1, k + 1); ++z)
+          for (Index y = std::max(0, j - 1); y <= std::min(bins[1] - 1, j + 1); ++y)
+            for (Index x = std::max(0, i - 1); x <= std::min(bins[0] - 1, i + 1); ++x)
+              around.add(own[std::size_t(x + bins[0] * (y + bins[1] * z))]);
+        displacements_.push_back(around.any ? widened(around) : all_displacements_);
+      }
+  found_in_ = round_;
+}
+
+CutPatch* CutPatches::patch(Index block) {
+  if (!is_cut() || block < 0 || std::size_t(block) >= index_of_.size()) return nullptr;
+  const Index index = index_of_[std::size_t(block)];
+  return index < 0 ? nullptr : made(covered_[std::size_t(index)]);
+}
+
+CutPatch* CutPatches::made(Covered& covered) {
+  if (!covered.is_made) covered.patch = make(covered.block), covered.is_made = true;
+  CutPatch* const patch = covered.patch.get();
+  if (patch && patch->round != round_) patch->round = round_, patch->body.surface.begin(*position_);
+  return patch;
+}
+
+std::unique_ptr<CutPatch> CutPatches::make(Index block) {
+  const CutGrid& grid = parts_->grid;
+  const CutMesh mesh = make_mesh_around(grid, block);
+  const std::size_t count = mesh.vertex.size();
+  std::vector<std::uint8_t> is_outer(count, 0), is_wall(count, 0);
+  for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
+    for (const Index v : mesh.triangle[t]) (t < mesh.outer_triangles ? is_outer : is_wall)[std::size_t(v)] = 1;
+
+  Surface part;
+  part.binding.first.push_back(0);
+  std::vector<Index> number(count, -1);
+  const auto add = [&](Index v, bool in_wall) {
+    const auto i = std::size_t(v);
+    if (number[i] >= 0 || part.vertex.size() == std::size_t(CutPoints::kPerBlock)) return number[i];
+    const SideBinding::Bound& bound =
+        parts_->binding.bind(mesh.vertex[i], !in_wall || is_outer[i] != 0, in_wall || is_wall[i] != 0, parts_->seen);
+    SurfaceBinding& to = part.binding;
+    part.vertex.push_back(bound.rest);
+    to.sphere.insert(to.sphere.end(), bound.binding.sphere.begin(), bound.binding.sphere.end());
+    to.weight.insert(to.weight.end(), bound.binding.weight.begin(), bound.binding.weight.end());
+    to.first.push_back(Index(to.sphere.size()));
+    return number[i] = Index(part.vertex.size()) - 1;
+  };
+  const auto add_triangles = [&](std::size_t first, std::size_t last, bool in_wall) {
+    for (std::size_t t = first; t < last; ++t) {
+      if (grid.block(mesh.cube[t]) != block) continue;
+      Triangle corners;
+      for (std::size_t c = 0; c < 3; ++c) corners[c] = add(mesh.triangle[t][c], in_wall);
+      if (std::min({corners[0], corners[1], corners[2]}) >= 0) part.triangle.push_back(corners);
+    }
+  };
+  add_triangles(0, mesh.outer_triangles, false);
+  const auto first_wall = std::int32_t(part.vertex.size());
+  std::fill(number.begin(), number.end(), -1);
+  add_triangles(mesh.outer_triangles, mesh.triangle.size(), true);
+  if (part.triangle.empty()) return nullptr;
+  std::vector<std::int32_t> opposite = find_opposite(part, first_wall, kSamePlace * grid.step());
+  const double spacing = model_.organs[organ_].spacing;
+  surface::Body body{std::int32_t(organ_), 0, surface::NearSurface(model_, organ_, part),
+                     surface::Facets(part, surface::kFacetRadius * spacing)};
+  return std::make_unique<CutPatch>(CutPatch{std::move(body), block, first_wall, std::move(opposite)});
+}
+
+}  // namespace ctpm::cutbody

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/cutbody/cut_grid.h"
+#include "core/model/box.h"
+#include "core/model/model.h"
+#include "core/model/state.h"
+#include "core/surface/bodies.h"
+
+namespace ctpm::cutbody {
+
+/// What cuts make of the surface of one block of the grid, as a body that is touched.
+struct CutPatch {
+  surface::Body body;
+  std::int32_t block;
+  std::int32_t first_wall;             ///< the first of the vertices that belong to walls
+  std::vector<std::int32_t> opposite;  ///< vertex of the other wall at the place of one, at rest; -1: none; see below
+  std::uint32_t round = 0;             ///< in which the surface was last placed
+
+  /// Values of `opposite` besides vertices.
+  static constexpr std::int32_t kNone = -1,  ///< nothing is on the other side
+      kCutEnds = -2;                         ///< both walls end there
+
+  /// How far the wall at a vertex is from the other one [m]; 0 where they touch or overlap, infinite where nothing is
+  /// on the other side.
+  double opening(std::int32_t vertex);
+};
+
+/// The surface of an organ near its cuts as CutBody draws it, in patches that are made when they are asked for, one for
+/// each block of the grid that is within two blocks of a cut: covers(). Elsewhere the organ's own surface stands. Both
+/// fit together: no part of the body's surface is in both or in none. A function of the Model and of the swept surface
+/// alone, however it was followed.
+class CutPatches {
+ public:
+  using Index = CutGrid::Index;
+
+  /// `model` must outlive the CutPatches. The organ must have a surface.
+  CutPatches(const Model& model, std::size_t organ);
+  ~CutPatches();
+  CutPatches(CutPatches&&) noexcept;
+
+  /// Does at once what the first cut needs: a grid over the organ.
+  void prepare();
+
+  /// Follows the first `rows` rows of the swept surface of `state`. Returns whether anything changed.
+  bool follow(const State& state, std::size_t rows);
+  bool is_cut() const { return !covered_.empty(); }
+
+  /// Whether patches stand for the organ's own surface at a place at rest.
+  bool covers(Vec3 rest) const;
+
+  /// Begins a round with the spheres at `position` [m], which must outlive it.
+  void begin(const Vec3Array& position);
+  /// Calls `visit(patch)` for the patches that may meet `region`, by ascending block. `region`: anything with
+  /// `meets(Box)`.
+  template <class Region, class Visit>
+  void near(const Region& region, Visit&& visit);
+  /// The patch of a block; null: it has none.
+  CutPatch* patch(Index block);
+
+ private:
+  struct Parts;
+  /// A block that is covered.
+  struct Covered {
+    Index block, bin;
+    Box rest{Vec3{}};  ///< around it [m]
+    bool is_made = false;
+    std::unique_ptr<CutPatch> patch{};  ///< null: not made, or there is no surface in it
+  };
+  void cover();
+  void find_displacements();
+  CutPatch* made(Covered& covered);
+  std::unique_ptr<CutPatch> make(Index block);
+
+  const Model& model_;
+  const std::size_t organ_;
+  std::unique_ptr<Parts> parts_;        ///< made by prepare()
+  std::vector<Covered> covered_;        ///< by block
+  std::vector<std::int32_t> index_of_;  ///< of a block in covered_; -1: not covered (block_count, or empty)
+  Box all_{Vec3{}};                     ///< around them at rest [m]
+  std::uint32_t round_ = 0, found_in_ = 0;
+  const Vec3Array* position_ = nullptr;
+  std::vector<Box>
+      displacements_;  ///< within which those of what is in a bin lie, in round `found_in_` [m] (bin_count)
+  Box all_displacements_{Vec3{}};
+};
+
+template <class Region, class Visit>
+void CutPatches::near(const Region& region, Visit&& visit) {
+  if (!is_cut()) return;
+  if (found_in_ != round_) find_displacements();
+  if (!region.meets(all_.moved(all_displacements_))) return;
+  for (Covered& covered : covered_) {
+    if (!region.meets(covered.rest.moved(displacements_[std::size_t(covered.bin)]))) continue;
+    if (CutPatch* patch = made(covered)) visit(*patch);
+  }
+}
+
+}  // namespace ctpm::cutbody
