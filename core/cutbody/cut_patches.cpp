@@ -27,6 +27,10 @@ constexpr double kWiden = 1, kMargin = 2;
 /// Vertices of two walls are opposite if they are nearer than this at rest, in steps of the grid, and face each other.
 constexpr double kSamePlace = 0.35, kFacing = -0.3;
 
+/// Radius of a facet of a patch, in spacings (our choice): it ends where the block ends, so that about as many facets
+/// lie on a wall as on skin.
+constexpr double kFacetRadius = 1;
+
 /// Where the areas around a vertex cancel to less than this part, both walls meet in it.
 constexpr double kCancelled = 0.5;
 
@@ -161,22 +165,14 @@ void CutPatches::begin(const Vec3Array& position) { position_ = &position, ++rou
 /// Finds for each bin within what range the spheres in it and in those around it have moved.
 void CutPatches::find_displacements() {
   const CutGrid::Node bins = bins_of(parts_->grid);
-  struct Range {
-    bool any = false;
-    Box box{Vec3{}};
-    void add(Vec3 by) { any ? box.add(by) : void(box = Box(by)), any = true; }
-    void add(const Range& other) {
-      if (other.any) add(other.box.low), add(other.box.high);
-    }
-  };
-  std::vector<Range> own(std::size_t(bins[0]) * std::size_t(bins[1]) * std::size_t(bins[2]));
+  ranges_.assign(std::size_t(bins[0]) * std::size_t(bins[1]) * std::size_t(bins[2]), {});
   const OrganRange& organ = model_.organs[organ_];
   Range all;
   for (std::int32_t s = 0; s < organ.count; ++s) {
     const auto i = std::size_t(organ.first + s);
     const Vec3 by = (*position_)[i] - model_.rest_position[i];
     all.add(by);
-    if (const Index bin = parts_->bin_of_sphere[std::size_t(s)]; bin >= 0) own[std::size_t(bin)].add(by);
+    if (const Index bin = parts_->bin_of_sphere[std::size_t(s)]; bin >= 0) ranges_[std::size_t(bin)].add(by);
   }
   const auto widened = [](const Range& range) {
     const Vec3 margin = kWiden * (range.box.high - range.box.low);
@@ -191,7 +187,7 @@ void CutPatches::find_displacements() {
         for (Index z = std::max(0, k - 1); z <= std::min(bins[2] - 1, k + 1); ++z)
           for (Index y = std::max(0, j - 1); y <= std::min(bins[1] - 1, j + 1); ++y)
             for (Index x = std::max(0, i - 1); x <= std::min(bins[0] - 1, i + 1); ++x)
-              around.add(own[std::size_t(x + bins[0] * (y + bins[1] * z))]);
+              around.add(ranges_[std::size_t(x + bins[0] * (y + bins[1] * z))]);
         displacements_.push_back(around.any ? widened(around) : all_displacements_);
       }
   found_in_ = round_;
@@ -249,7 +245,7 @@ std::unique_ptr<CutPatch> CutPatches::make(Index block) {
   std::vector<std::int32_t> opposite = find_opposite(part, first_wall, kSamePlace * grid.step());
   const double spacing = model_.organs[organ_].spacing;
   surface::Body body{std::int32_t(organ_), 0, surface::NearSurface(model_, organ_, part),
-                     surface::Facets(part, surface::kFacetRadius * spacing)};
+                     surface::Facets(part, kFacetRadius * spacing)};
   return std::make_unique<CutPatch>(CutPatch{std::move(body), block, first_wall, std::move(opposite)});
 }
 

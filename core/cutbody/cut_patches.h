@@ -70,6 +70,18 @@ class CutPatches {
     bool is_made = false;
     std::unique_ptr<CutPatch> patch{};  ///< null: not made, or there is no surface in it
   };
+  /// Where some spheres are, from rest.
+  struct Range {
+    bool any = false;
+    Box box{Vec3{}};
+    void add(Vec3 by) {
+      if (any) return box.add(by);
+      any = true, box = Box(by);
+    }
+    void add(const Range& other) {
+      if (other.any) add(other.box.low), add(other.box.high);
+    }
+  };
   void cover();
   void find_displacements();
   CutPatch* made(Covered& covered);
@@ -83,8 +95,10 @@ class CutPatches {
   Box all_{Vec3{}};                     ///< around them at rest [m]
   std::uint32_t round_ = 0, found_in_ = 0;
   const Vec3Array* position_ = nullptr;
-  std::vector<Box>
-      displacements_;  ///< within which those of what is in a bin lie, in round `found_in_` [m] (bin_count)
+  /// Of each bin in round `found_in_`: where its spheres are, and within which box the displacements of what is in it
+  /// lie [m].
+  std::vector<Range> ranges_;
+  std::vector<Box> displacements_;
   Box all_displacements_{Vec3{}};
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace ctpm::surface {
 namespace {
@@ -109,19 +110,21 @@ void NearSurface::sort_triangles() {
 
 NearSurface::Bound NearSurface::bound_of(Index first, Index last, Index first_triangle, Index last_triangle) {
   std::vector<Index> spheres;
+  std::vector<std::uint8_t> is_known(std::size_t(spheres_.back() - spheres_.front()) + 1, 0);
   double widen = 0;
   Box box(rest(triangles_[std::size_t(first_triangle)].corner[0]));
   for (Index t = first_triangle; t < last_triangle; ++t)
     for (const Index corner : triangles_[std::size_t(t)].corner) {
       const Follower follows = follower(corner);
       box.add(rest(corner));
-      spheres.insert(spheres.end(), follows.sphere.begin(), follows.sphere.end());
+      for (const Index sphere : follows.sphere)
+        if (!std::exchange(is_known[std::size_t(sphere - spheres_.front())], std::uint8_t(1)))
+          spheres.push_back(sphere);
       double negative = 0;
       for (const double w : follows.weight) negative -= std::min(w, 0.0);
       widen = std::max(widen, negative);
     }
   std::sort(spheres.begin(), spheres.end());
-  spheres.erase(std::unique(spheres.begin(), spheres.end()), spheres.end());
   const auto begin = Index(bound_spheres_.size());
   for (const Index sphere : spheres)
     bound_spheres_.push_back(Index(std::lower_bound(spheres_.begin(), spheres_.end(), sphere) - spheres_.begin()));

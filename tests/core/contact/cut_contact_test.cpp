@@ -3,9 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
+#include "core/cutbody/cut_points.h"
 #include "core/cutting/blade_geometry.h"
-#include "core/cutting/pieces.h"
 #include "core/stepping/step.h"
 #include "tests/core/cut_blocks.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 using testing::cut_along, testing::DrawnCut, testing::straight_front;
 
-constexpr double kSpacing = 0.012, kTop = 0.036;
+constexpr double kTop = 0.036;  // of the block [m]
 
 Inputs at(Vec3 position) {
   Inputs inputs;
@@ -127,6 +128,7 @@ TEST(CutContact, ABallPushesALoosePieceByItsCutFace) {
   const double radius = 0.006;
   Model model = testing::block_to_cut(6, 6, 4, radius);
   model.held_axes.assign(model.sphere_count(), 0);
+  testing::use_integrator(model, Integrator::backward_euler);  // one substep: the report's force is that of the tick
   model.solver.tolerance = 1e-10, model.solver.velocity_floor = 1e-13, model.solver.max_iterations = 2000;
   State state = rest_state(model);
   cut_along(
@@ -194,6 +196,81 @@ TEST(CutContact, ACapRestsOnTheGroundWithItsCutFace) {
   EXPECT_LT(dropped.fastest, 2e-3);
   EXPECT_LT(dropped.inside, 0.5e-3);
   EXPECT_GT(dropped.inside, 0);
+}
+
+/// A blade cuts a cap off, which falls on the ground, and a ball comes down on its cut face.
+Inputs cut_and_press(int tick) {
+  Inputs inputs;
+  if (tick < 150) {
+    // The edge lies across the block.
+    inputs.tool = 1, inputs.position = {-0.05, -0.06 + 8e-4 * tick, 0.019};
+    inputs.world_from_tool = {std::sqrt(0.5), 0, std::sqrt(0.5), 0};
+  } else {
+    inputs.tool = 0, inputs.position = {0.003, 0.002, 0.05 - 2e-4 * (tick - 150)};
+  }
+  return inputs;
+}
+
+Model block_on_ground(Integrator integrator) {
+  Model model = testing::block_to_cut(5, 5, 4, 0.008);
+  model.solver.integrator = integrator, model.solver.substeps = integrator == Integrator::leapfrog ? 8 : 1;
+  model.gravity = {0, 0, -9.81};
+  model.obstacles = {{"ground", ObstacleKind::plane, {0, 0, -0.006}, {}, {}}};
+  return model;
+}
+
+class CutContactUnder : public ::testing::TestWithParam<Integrator> {};
+
+TEST_P(CutContactUnder, NeitherThreadsNorAFreshStartChangeABit) {
+  constexpr int kTicks = 420;
+  const Model model = block_on_ground(GetParam());
+  const cutbody::CutPoints points(model);
+  std::vector<State> runs;
+  bool ball_touches = false, ground_touches = false;
+  for (const auto& [threads, from_keyframes] : {std::pair{1, false}, {3, false}, {1, true}}) {
+    State state = rest_state(model);
+    std::optional<stepping::Stepper> stepper;
+    stepper.emplace(model, stepping::StepperOptions{threads});
+    for (int tick = 0; tick < kTicks; ++tick) {
+      if (from_keyframes && tick % 70 == 69) stepper.emplace(model);
+      ASSERT_FALSE(stepping::is_refused(stepper->step(state, cut_and_press(tick)).status)) << tick;
+      for (const std::int32_t point : state.touched) {
+        if (!points.contains(point)) continue;
+        (points.is_of_ball(point) ? ball_touches : ground_touches) = true;
+      }
+    }
+    runs.push_back(std::move(state));
+  }
+  EXPECT_TRUE(ball_touches && ground_touches);
+  for (const State& other : {runs[1], runs[2]}) {
+    EXPECT_EQ(runs[0].position, other.position);
+    EXPECT_EQ(runs[0].velocity, other.velocity);
+    EXPECT_EQ(runs[0].touched, other.touched);
+    EXPECT_EQ(runs[0].grip, other.grip);
+    EXPECT_EQ(runs[0].kelvin_dent, other.kelvin_dent);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, CutContactUnder,
+                         ::testing::Values(Integrator::leapfrog, Integrator::backward_euler, Integrator::sdirk2));
+
+TEST(CutContact, ABallOnAClosedCutDoesNotWedgeItOpen) {
+  const Model model = testing::block_to_cut(8, 8, 4, 0.01);
+  const auto press = [&](const State& from) {
+    stepping::Stepper stepper(model);
+    State state = from;
+    stepping::StepReport report;
+    for (int i = 0; i <= 200; ++i)
+      report = stepper.step(state, at({0.0013, 0.002, kTop + 0.01 - 2e-3 * std::min(1.0, i / 100.0)}));
+    return report.tool_force.z;
+  };
+  State cut = rest_state(model);
+  cut_along(
+      model, [&](double t) { return upright(t, 0.0013, 0.012); }, cut);
+  const double of_cut = press(cut), of_whole = press(rest_state(model));
+  std::printf("on a closed cut %.4f N, on whole tissue %.4f N\n", of_cut, of_whole);
+  EXPECT_GT(of_cut / of_whole, 0.5);
+  EXPECT_LT(of_cut / of_whole, 1.0);
 }
 
 }  // namespace
