@@ -102,7 +102,7 @@ surface::Follower BallContact::follower(std::int32_t slot) const {
 /// Adds a patch to the parts that are looked at. What it holds is found again in each step.
 void BallContact::add_patch(const StateView& state, cutbody::CutPatch& patch) {
   const auto first_slot = std::int32_t(pressed_.size());
-  const std::int32_t first_point = cuts_.points().at(0, std::size_t(patch.body.organ), patch.block);
+  const std::int32_t first_point = cuts_.first_point(0, patch);
   const auto vertices = std::int32_t(patch.body.surface.vertex_count());
   const auto slots = std::size_t(first_slot + vertices);
   parts_.push_back({first_slot, first_point, &patch.body.surface, &patch});
@@ -137,9 +137,8 @@ double BallContact::farthest_touched(const StateView& state, const BallMotion& b
     if (point < vertex_count_) look_at(follower(point).of(state.position));
     if (!cuts_.any() || !cuts_.points().is_of_ball(point)) continue;
     const cutbody::CutPoints::Place at = cuts_.points().place(point);
-    cutbody::CutPatch* const patch = cuts_.patch(at);
-    if (patch != nullptr && std::size_t(at.vertex) < patch->body.surface.vertex_count())
-      look_at(patch->body.surface.place(at.vertex));
+    if (cutbody::CutPatch* const patch = cuts_.patch(at))
+      look_at(patch->body.surface.place(at.vertex - patch->body.first_vertex));
   }
   return farthest;
 }
@@ -298,7 +297,8 @@ std::int32_t BallContact::organ_of(const PointContact& contact) const {
 Vec3 BallContact::rest_of(const PointContact& contact) const {
   if (cuts_.points().contains(contact.point)) {
     const cutbody::CutPoints::Place at = cuts_.points().place(contact.point);
-    return cuts_.patch(at)->body.surface.rest(at.vertex);
+    const surface::Body& body = cuts_.patch(at)->body;
+    return body.surface.rest(at.vertex - body.first_vertex);
   }
   if (contact.point >= vertex_count_) return model_.rest_position[std::size_t(contact.point - vertex_count_)];
   const Part& part = part_of(contact.point);

@@ -38,7 +38,7 @@ Contacts::Contacts(const Model& model, const elements::Kernels& kernels)
       bodies_(surface::bodies_of(model)),
       cuts_(model),
       ball_(model, bodies_, cuts_, kernels),
-      body_contact_(model, bodies_),
+      body_contact_(model, bodies_, cuts_),
       obstacles_(model, bodies_, cuts_),
       blade_(model),
       cut_faces_(model),

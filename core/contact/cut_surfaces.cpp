@@ -47,12 +47,14 @@ void CutSurfaces::begin_tick(const State& state, bool cuts) {
     if (follows && organ->follow(state, rows)) changed = true;
   }
   if (!changed) return;
+  ++version_;
   is_cut_ = std::any_of(organs_.begin(), organs_.end(), [](const auto& organ) { return organ && organ->is_cut(); });
   find_hidden();
 }
 
 void CutSurfaces::find_hidden() {
   hidden_.clear();
+  if (!is_cut_) return;
   for (std::size_t organ = 0; organ < model_.surfaces.size(); ++organ)
     for (const Vec3& vertex : model_.surfaces[organ].vertex) hidden_.push_back(covers(organ, vertex));
 }
@@ -64,7 +66,7 @@ void CutSurfaces::begin(const Vec3Array& position) {
 }
 
 cutbody::CutPatch* CutSurfaces::patch(const cutbody::CutPoints::Place& place) {
-  return organs_[place.organ] ? organs_[place.organ]->patch(place.block) : nullptr;
+  return organs_[place.organ] ? organs_[place.organ]->patch(place.block, place.vertex) : nullptr;
 }
 
 }  // namespace ctpm::contact

@@ -25,11 +25,27 @@ class CutSurfaces {
   /// Whether anything that can be touched is cut.
   bool any() const { return is_cut_; }
   const cutbody::CutPoints& points() const { return points_; }
+  /// Number in State::touched of a patch's first vertex.
+  std::int32_t first_point(std::int32_t kind, const cutbody::CutPatch& patch) const {
+    return points_.at(kind, std::size_t(patch.body.organ), patch.block) + patch.body.first_vertex;
+  }
 
-  /// Whether patches stand for the organ's own surface at one of its vertices, numbered through all organs.
+  /// For each vertex through all organs, whether patches stand there for the organ's own surface (vertex_count, or
+  /// empty).
+  const std::vector<std::uint8_t>& hidden() const { return hidden_; }
+  /// Whether they do at one of them.
   bool hides(std::int32_t vertex) const { return is_cut_ && hidden_[std::size_t(vertex)] != 0; }
   /// The same at a place of its surface at rest.
   bool covers(std::size_t organ, Vec3 rest) const { return organs_[organ] && organs_[organ]->covers(rest); }
+
+  /// How often what is cut has changed.
+  std::uint32_t version() const { return version_; }
+  /// Whether the cuts of an organ are touched and leave more than one piece.
+  bool has_pieces(std::size_t organ) const { return is_cut_ && organs_[organ] && organs_[organ]->has_pieces(); }
+  /// Lowest node of the piece that each sphere of an organ belongs to; see cutbody::CutPatches. Only where it is cut.
+  const std::vector<std::int32_t>& piece_of_sphere(std::size_t organ) const {
+    return organs_[organ]->piece_of_sphere();
+  }
 
   /// Begins a round with the spheres at `position` [m], which must outlive it.
   void begin(const Vec3Array& position);
@@ -55,6 +71,7 @@ class CutSurfaces {
   cutbody::CutPoints points_;
   std::vector<std::optional<cutbody::CutPatches>> organs_;  ///< empty where an organ's cuts are not touched
   bool is_cut_ = false;
+  std::uint32_t version_ = 0;
   std::vector<std::uint8_t> hidden_;  ///< (vertex_count through all organs, or empty)
 };
 

@@ -67,8 +67,8 @@ void ObstacleContact::find_on_surface(const StateView& state, const PressStep& s
   press_.add(state, step, body, kind * std::int32_t(model_.touchable_count()) + body.first_vertex, all.first(own),
              radius, contacts);
   for (const auto& [patch, first, last] : patches_)
-    press_.add(state, step, patch->body, cuts_.points().at(kind, std::size_t(body.organ), patch->block),
-               all.subspan(first, last - first), radius, contacts);
+    press_.add(state, step, patch->body, cuts_.first_point(kind, *patch), all.subspan(first, last - first), radius,
+               contacts);
   overlaps_.clear(), patches_.clear();
 }
 

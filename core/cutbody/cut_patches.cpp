@@ -60,31 +60,41 @@ struct Areas {
   }
 };
 
-std::vector<std::int32_t> find_opposite(const Surface& part, std::int32_t first_wall, double same_place) {
-  const Areas areas(part);
-  std::vector<std::int32_t> opposite(part.vertex.size(), CutPatch::kNone);
-  for (auto v = std::size_t(first_wall); v < opposite.size(); ++v) {
-    const double own = norm(areas.sum[v]);
-    if (own < kCancelled * areas.size[v]) opposite[v] = CutPatch::kCutEnds;
-    double least = same_place;
-    for (auto u = std::size_t(first_wall); u < opposite.size() && opposite[v] != CutPatch::kCutEnds; ++u) {
-      const double distance = norm(part.vertex[u] - part.vertex[v]);
-      if (u == v || distance >= least) continue;
-      if (dot(areas.sum[u], areas.sum[v]) > kFacing * norm(areas.sum[u]) * own) continue;
-      least = distance, opposite[v] = std::int32_t(u);
+/// The surface of a block, and what is known of its vertices.
+struct BlockSurface {
+  Surface part;
+  std::vector<std::int32_t> piece;
+  std::int32_t first_wall = 0;
+
+  /// For each vertex of a wall the one at its place on the other wall: itself where both end; -1: none.
+  std::vector<std::int32_t> find_opposite(double same_place) const {
+    const Areas areas(part);
+    std::vector<std::int32_t> opposite(part.vertex.size(), -1);
+    for (auto v = std::size_t(first_wall); v < opposite.size(); ++v) {
+      const double own = norm(areas.sum[v]);
+      if (own < kCancelled * areas.size[v]) {
+        opposite[v] = std::int32_t(v);
+        continue;
+      }
+      double least = same_place;
+      for (auto u = std::size_t(first_wall); u < opposite.size(); ++u) {
+        const double distance = norm(part.vertex[u] - part.vertex[v]);
+        if (u == v || distance >= least) continue;
+        if (dot(areas.sum[u], areas.sum[v]) > kFacing * norm(areas.sum[u]) * own) continue;
+        least = distance, opposite[v] = std::int32_t(u);
+      }
     }
+    return opposite;
   }
-  return opposite;
-}
+};
 
 }  // namespace
 
 double CutPatch::opening(std::int32_t vertex) {
-  const std::int32_t other = opposite[std::size_t(vertex)];
-  if (other == kNone) return std::numeric_limits<double>::infinity();
-  if (other == kCutEnds) return 0;
+  const Opposite& other = opposite[std::size_t(vertex)];
+  if (other.patch == nullptr) return std::numeric_limits<double>::infinity();
   const auto place = [&](std::int32_t v) { return body.surface.place(v); };
-  const Vec3 apart = place(other) - place(vertex);
+  const Vec3 apart = other.patch->body.surface.place(other.vertex) - place(vertex);
   return std::max(0.0, dot(apart, body.facets.normal(vertex, place)));
 }
 
@@ -132,8 +142,15 @@ bool CutPatches::follow(const State& state, std::size_t rows) {
 
 void CutPatches::cover() {
   const CutGrid& grid = parts_->grid;
-  covered_.clear(), index_of_.clear();
+  covered_.clear(), index_of_.clear(), piece_.clear(), piece_of_sphere_.clear(), has_pieces_ = false;
   if (!grid.anything_cut()) return;
+  piece_ = grid.find_pieces();
+  for (std::int32_t s = 0; s < model_.organs[organ_].count; ++s) {
+    const Index node = grid.node_of_sphere(s);
+    piece_of_sphere_.push_back(node < 0 ? -1 : piece_[std::size_t(node)]);
+  }
+  const Index first = *std::find_if(piece_.begin(), piece_.end(), [](Index piece) { return piece >= 0; });
+  has_pieces_ = std::any_of(piece_.begin(), piece_.end(), [&](Index piece) { return piece >= 0 && piece != first; });
   const std::vector<std::uint8_t> blocks = grid.widened(grid.widened(grid.cut_blocks()));
   index_of_.assign(blocks.size(), -1);
   for (Index block = 0; block < grid.block_count(); ++block) {
@@ -193,60 +210,102 @@ void CutPatches::find_displacements() {
   found_in_ = round_;
 }
 
-CutPatch* CutPatches::patch(Index block) {
+CutPatch* CutPatches::patch(Index block, std::int32_t vertex) {
   if (!is_cut() || block < 0 || std::size_t(block) >= index_of_.size()) return nullptr;
   const Index index = index_of_[std::size_t(block)];
-  return index < 0 ? nullptr : made(covered_[std::size_t(index)]);
+  if (index < 0) return nullptr;
+  for (const auto& patch : made(covered_[std::size_t(index)])) {
+    const std::int32_t own = vertex - patch->body.first_vertex;
+    if (own >= 0 && std::size_t(own) < patch->body.surface.vertex_count()) return patch.get();
+  }
+  return nullptr;
 }
 
-CutPatch* CutPatches::made(Covered& covered) {
-  if (!covered.is_made) covered.patch = make(covered.block), covered.is_made = true;
-  CutPatch* const patch = covered.patch.get();
-  if (patch && patch->round != round_) patch->round = round_, patch->body.surface.begin(*position_);
-  return patch;
+std::vector<std::unique_ptr<CutPatch>>& CutPatches::made(Covered& covered) {
+  if (!covered.is_made) covered.patches = make(covered.block), covered.is_made = true;
+  if (std::exchange(covered.round, round_) != round_)
+    for (const auto& patch : covered.patches) patch->body.surface.begin(*position_);
+  return covered.patches;
 }
 
-std::unique_ptr<CutPatch> CutPatches::make(Index block) {
-  const CutGrid& grid = parts_->grid;
+/// The surface in a block. What is at its border is as in the blocks around it.
+static BlockSurface surface_of_block(const CutGrid& grid, CutGrid::Index block,
+                                     const std::vector<CutGrid::Index>& piece, SideBinding& binding,
+                                     const State& seen) {
   const CutMesh mesh = make_mesh_around(grid, block);
   const std::size_t count = mesh.vertex.size();
   std::vector<std::uint8_t> is_outer(count, 0), is_wall(count, 0);
   for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
-    for (const Index v : mesh.triangle[t]) (t < mesh.outer_triangles ? is_outer : is_wall)[std::size_t(v)] = 1;
+    for (const auto v : mesh.triangle[t]) (t < mesh.outer_triangles ? is_outer : is_wall)[std::size_t(v)] = 1;
 
-  Surface part;
+  BlockSurface result;
+  Surface& part = result.part;
   part.binding.first.push_back(0);
-  std::vector<Index> number(count, -1);
-  const auto add = [&](Index v, bool in_wall) {
+  std::vector<CutGrid::Index> number(count, -1);
+  const auto add = [&](CutGrid::Index v, bool in_wall) {
     const auto i = std::size_t(v);
     if (number[i] >= 0 || part.vertex.size() == std::size_t(CutPoints::kPerBlock)) return number[i];
     const SideBinding::Bound& bound =
-        parts_->binding.bind(mesh.vertex[i], !in_wall || is_outer[i] != 0, in_wall || is_wall[i] != 0, parts_->seen);
+        binding.bind(mesh.vertex[i], !in_wall || is_outer[i] != 0, in_wall || is_wall[i] != 0, seen);
+    part.vertex.push_back(bound.rest), result.piece.push_back(piece[std::size_t(mesh.vertex[i].side)]);
     SurfaceBinding& to = part.binding;
-    part.vertex.push_back(bound.rest);
     to.sphere.insert(to.sphere.end(), bound.binding.sphere.begin(), bound.binding.sphere.end());
     to.weight.insert(to.weight.end(), bound.binding.weight.begin(), bound.binding.weight.end());
-    to.first.push_back(Index(to.sphere.size()));
-    return number[i] = Index(part.vertex.size()) - 1;
+    to.first.push_back(std::int32_t(to.sphere.size()));
+    return number[i] = std::int32_t(part.vertex.size()) - 1;
   };
   const auto add_triangles = [&](std::size_t first, std::size_t last, bool in_wall) {
     for (std::size_t t = first; t < last; ++t) {
       if (grid.block(mesh.cube[t]) != block) continue;
       Triangle corners;
       for (std::size_t c = 0; c < 3; ++c) corners[c] = add(mesh.triangle[t][c], in_wall);
-      if (std::min({corners[0], corners[1], corners[2]}) >= 0) part.triangle.push_back(corners);
+      if (*std::min_element(corners.begin(), corners.end()) >= 0) part.triangle.push_back(corners);
     }
   };
   add_triangles(0, mesh.outer_triangles, false);
-  const auto first_wall = std::int32_t(part.vertex.size());
+  result.first_wall = std::int32_t(part.vertex.size());
   std::fill(number.begin(), number.end(), -1);
   add_triangles(mesh.outer_triangles, mesh.triangle.size(), true);
-  if (part.triangle.empty()) return nullptr;
-  std::vector<std::int32_t> opposite = find_opposite(part, first_wall, kSamePlace * grid.step());
-  const double spacing = model_.organs[organ_].spacing;
-  surface::Body body{std::int32_t(organ_), 0, surface::NearSurface(model_, organ_, part),
-                     surface::Facets(part, kFacetRadius * spacing)};
-  return std::make_unique<CutPatch>(CutPatch{std::move(body), block, first_wall, std::move(opposite)});
+  return result;
+}
+
+std::vector<std::unique_ptr<CutPatch>> CutPatches::make(Index block) {
+  const BlockSurface all = surface_of_block(parts_->grid, block, piece_, parts_->binding, parts_->seen);
+  std::vector<std::int32_t> pieces(all.piece);
+  std::sort(pieces.begin(), pieces.end());
+  pieces.erase(std::unique(pieces.begin(), pieces.end()), pieces.end());
+  std::vector<std::unique_ptr<CutPatch>> patches;
+  std::vector<CutPatch::Opposite> place(all.piece.size());  // where each vertex is now
+  std::int32_t first_vertex = 0;
+  for (const std::int32_t piece : pieces) {
+    Surface part;
+    std::int32_t first_wall = 0;
+    part.binding.first.push_back(0);
+    const SurfaceBinding& from = all.part.binding;
+    std::vector<std::size_t> vertices;
+    for (std::size_t v = 0; v < all.piece.size(); ++v) {
+      if (all.piece[v] != piece) continue;
+      place[v].vertex = std::int32_t(vertices.size()), vertices.push_back(v);
+      first_wall += std::int32_t(v) < all.first_wall;
+      part.vertex.push_back(all.part.vertex[v]);
+      for (auto e = std::size_t(from.first[v]); e < std::size_t(from.first[v + 1]); ++e)
+        part.binding.sphere.push_back(from.sphere[e]), part.binding.weight.push_back(from.weight[e]);
+      part.binding.first.push_back(std::int32_t(part.binding.sphere.size()));
+    }
+    for (const Triangle& t : all.part.triangle) {
+      const auto number = [&](std::size_t c) { return place[std::size_t(t[c])].vertex; };
+      if (all.piece[std::size_t(t[0])] == piece) part.triangle.push_back({number(0), number(1), number(2)});
+    }
+    surface::Body body{std::int32_t(organ_), first_vertex, surface::NearSurface(model_, organ_, part),
+                       surface::Facets(part, kFacetRadius * model_.organs[organ_].spacing)};
+    patches.push_back(std::make_unique<CutPatch>(CutPatch{std::move(body), block, piece, first_wall}));
+    for (const std::size_t v : vertices) place[v].patch = patches.back().get();
+    first_vertex += std::int32_t(vertices.size());
+  }
+  const std::vector<std::int32_t> opposite = all.find_opposite(kSamePlace * parts_->grid.step());
+  for (std::size_t v = 0; v < place.size(); ++v)
+    place[v].patch->opposite.push_back(opposite[v] < 0 ? CutPatch::Opposite{} : place[std::size_t(opposite[v])]);
+  return patches;
 }
 
 }  // namespace ctpm::cutbody

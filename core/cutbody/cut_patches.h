@@ -12,17 +12,19 @@
 
 namespace ctpm::cutbody {
 
-/// What cuts make of the surface of one block of the grid, as a body that is touched.
+/// What cuts make of the surface of one piece of tissue in one block of the grid, as a body that is touched.
 struct CutPatch {
-  surface::Body body;
-  std::int32_t block;
-  std::int32_t first_wall;             ///< the first of the vertices that belong to walls
-  std::vector<std::int32_t> opposite;  ///< vertex of the other wall at the place of one, at rest; -1: none; see below
-  std::uint32_t round = 0;             ///< in which the surface was last placed
+  /// A vertex of another wall, or of the same one.
+  struct Opposite {
+    CutPatch* patch = nullptr;
+    std::int32_t vertex = -1;
+  };
 
-  /// Values of `opposite` besides vertices.
-  static constexpr std::int32_t kNone = -1,  ///< nothing is on the other side
-      kCutEnds = -2;                         ///< both walls end there
+  surface::Body body;  ///< its first vertex is counted within the block
+  std::int32_t block;
+  std::int32_t piece;                ///< lowest node of the grid that is in it
+  std::int32_t first_wall;           ///< the first of the vertices that belong to walls
+  std::vector<Opposite> opposite{};  ///< at the place of a vertex at rest; a vertex is its own where both walls end
 
   /// How far the wall at a vertex is from the other one [m]; 0 where they touch or overlap, infinite where nothing is
   /// on the other side.
@@ -30,9 +32,9 @@ struct CutPatch {
 };
 
 /// The surface of an organ near its cuts as CutBody draws it, in patches that are made when they are asked for, one for
-/// each block of the grid that is within two blocks of a cut: covers(). Elsewhere the organ's own surface stands. Both
-/// fit together: no part of the body's surface is in both or in none. A function of the Model and of the swept surface
-/// alone, however it was followed.
+/// each piece of tissue in each block of the grid that is within two blocks of a cut: covers(). Elsewhere the organ's
+/// own surface stands. Both fit together: no part of the body's surface is in both or in none. A function of the Model
+/// and of the swept surface alone, however it was followed.
 class CutPatches {
  public:
   using Index = CutGrid::Index;
@@ -48,6 +50,10 @@ class CutPatches {
   /// Follows the first `rows` rows of the swept surface of `state`. Returns whether anything changed.
   bool follow(const State& state, std::size_t rows);
   bool is_cut() const { return !covered_.empty(); }
+  /// For each sphere of the organ the lowest node of its piece; -1: it is in none (sphere_count, or empty).
+  const std::vector<Index>& piece_of_sphere() const { return piece_of_sphere_; }
+  /// Whether the cuts leave more than one piece.
+  bool has_pieces() const { return has_pieces_; }
 
   /// Whether patches stand for the organ's own surface at a place at rest.
   bool covers(Vec3 rest) const;
@@ -58,8 +64,8 @@ class CutPatches {
   /// `meets(Box)`.
   template <class Region, class Visit>
   void near(const Region& region, Visit&& visit);
-  /// The patch of a block; null: it has none.
-  CutPatch* patch(Index block);
+  /// The patch that a vertex of a block is in; null: there is none.
+  CutPatch* patch(Index block, std::int32_t vertex);
 
  private:
   struct Parts;
@@ -68,7 +74,8 @@ class CutPatches {
     Index block, bin;
     Box rest{Vec3{}};  ///< around it [m]
     bool is_made = false;
-    std::unique_ptr<CutPatch> patch{};  ///< null: not made, or there is no surface in it
+    std::vector<std::unique_ptr<CutPatch>> patches{};
+    std::uint32_t round = 0;  ///< in which they were placed
   };
   /// Where some spheres are, from rest.
   struct Range {
@@ -84,13 +91,16 @@ class CutPatches {
   };
   void cover();
   void find_displacements();
-  CutPatch* made(Covered& covered);
-  std::unique_ptr<CutPatch> make(Index block);
+  std::vector<std::unique_ptr<CutPatch>>& made(Covered& covered);
+  std::vector<std::unique_ptr<CutPatch>> make(Index block);
 
   const Model& model_;
   const std::size_t organ_;
-  std::unique_ptr<Parts> parts_;        ///< made by prepare()
-  std::vector<Covered> covered_;        ///< by block
+  std::unique_ptr<Parts> parts_;  ///< made by prepare()
+  std::vector<Covered> covered_;  ///< by block
+  std::vector<Index> piece_;      ///< of each node of the grid
+  std::vector<Index> piece_of_sphere_;
+  bool has_pieces_ = false;
   std::vector<std::int32_t> index_of_;  ///< of a block in covered_; -1: not covered (block_count, or empty)
   Box all_{Vec3{}};                     ///< around them at rest [m]
   std::uint32_t round_ = 0, found_in_ = 0;
@@ -109,7 +119,7 @@ void CutPatches::near(const Region& region, Visit&& visit) {
   if (!region.meets(all_.moved(all_displacements_))) return;
   for (Covered& covered : covered_) {
     if (!region.meets(covered.rest.moved(displacements_[std::size_t(covered.bin)]))) continue;
-    if (CutPatch* patch = made(covered)) visit(*patch);
+    for (const auto& patch : made(covered)) visit(*patch);
   }
 }
 

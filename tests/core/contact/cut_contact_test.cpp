@@ -198,6 +198,36 @@ TEST(CutContact, ACapRestsOnTheGroundWithItsCutFace) {
   EXPECT_GT(dropped.inside, 0);
 }
 
+TEST(CutContact, ACapRestsOnTheBedThatItWasCutFromWhereTheOrganMeetsItself) {
+  Model model = testing::block_to_cut(5, 5, 4, 0.01);
+  model.gravity = {0, 0, -9.81};
+  model.organs[0].meets_itself = true;
+  State state = rest_state(model);
+  const auto flat = [](double t) {
+    const double y = -0.06 + 0.12 * t;
+    return straight_front({-0.06, y, 0.018}, {0.06, y, 0.018});
+  };
+  cut_along(model, flat, state);
+  for (std::size_t i = 0; i < model.sphere_count(); ++i)
+    if (model.rest_position.z[i] > 0.018) state.position.add(i, {0.002, 0.001, 0.005});
+  stepping::Stepper stepper(model);
+  for (int i = 0; i < 4000; ++i) ASSERT_EQ(stepper.step(state, Inputs{}).status, stepping::StepStatus::ok);
+  double fastest = 0, sunk = 0, aside = 0;
+  for (std::size_t i = 0; i < model.sphere_count(); ++i) {
+    fastest = std::max(fastest, norm(state.velocity[i]));
+    const Vec3 by = state.position[i] - model.rest_position[i];
+    if (model.rest_position.z[i] > 0.018) sunk = std::max(sunk, -by.z), aside = std::max(aside, std::hypot(by.x, by.y));
+  }
+  std::printf("fastest %.3f mm/s, %.2f mm down, %.2f mm aside\n", 1e3 * fastest, 1e3 * sunk, 1e3 * aside);
+  EXPECT_LT(fastest, 2e-3);
+  EXPECT_LT(sunk, 2e-3);
+  EXPECT_LT(aside, 4e-3);
+  model.organs[0].meets_itself = false;
+  stepping::Stepper passes(model);
+  for (int i = 0; i < 300; ++i) (void)passes.step(state, Inputs{});
+  EXPECT_LT(state.position.z.back(), 0.0) << "without it, pieces pass through each other";
+}
+
 /// A blade cuts a cap off, which falls on the ground, and a ball comes down on its cut face.
 Inputs cut_and_press(int tick) {
   Inputs inputs;
