@@ -203,8 +203,10 @@ void BallContact::dent(const Part& part, const surface::NearSurface::Triangle& t
   const Vec3 outward = across / size;
   std::int32_t vertex[3];
   for (std::size_t c = 0; c < 3; ++c) vertex[c] = part.first_slot + triangle.corner[c];
-  const bool was_touched = was_touched_[std::size_t(vertex[0])] || was_touched_[std::size_t(vertex[1])] ||
-                           was_touched_[std::size_t(vertex[2])];
+  std::int32_t slot[3];
+  for (std::size_t c = 0; c < 3; ++c) slot[c] = part.gathers_at(triangle.corner[c]);
+  const bool was_touched = was_touched_[std::size_t(slot[0])] || was_touched_[std::size_t(slot[1])] ||
+                           was_touched_[std::size_t(slot[2])];
   const int n = std::clamp(int(std::ceil(triangle.longest_edge / (kLongestPart * ball.radius))), 1, kMostDivisions);
   const bool may_be_hidden = is_hidden(part, triangle);
   for_each_part(n, [&](double w0, double w1, double w2) {
@@ -231,8 +233,8 @@ void BallContact::dent(const Part& part, const surface::NearSurface::Triangle& t
     if (!(area > 0)) return;
     const Vec3 volume = area * through * (half_chord / ball.radius) * normal;
     for (std::size_t c = 0; c < 3; ++c) {
-      Pressed& pressed = pressed_[std::size_t(vertex[c])];
-      if (pressed.area == 0) touched_.push_back(vertex[c]);
+      Pressed& pressed = pressed_[std::size_t(slot[c])];
+      if (pressed.area == 0) touched_.push_back(slot[c]);
       pressed.area += weights[c] * area, pressed.volume += weights[c] * volume;
     }
     pressed_area_ += area * normal;

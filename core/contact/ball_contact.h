@@ -71,6 +71,11 @@ class BallContact {
     std::int32_t first_slot, first_point;
     surface::NearSurface* surface;
     cutbody::CutPatch* patch = nullptr;  ///< null: whole organs
+
+    /// The slot at which what presses on a vertex is gathered.
+    std::int32_t gathers_at(std::int32_t vertex) const {
+      return first_slot + (patch == nullptr ? vertex : patch->gathers_at[std::size_t(vertex)]);
+    }
   };
 
   const Part& part_of(std::int32_t slot) const;

@@ -13,7 +13,11 @@ namespace {
 using surface::Body, surface::NearSurface, surface::Overlap;
 
 /// How deep surfaces may overlap and still be found, in spacings (our choice).
-constexpr double kReach = 0.5;
+constexpr double kReach = 0.25;
+
+/// Lines leave tissue through triangles that they meet at less than 60 degrees from their normals (our choice): near the
+/// sharp rims of cuts others lead along a wall.
+constexpr double kStraightOut = 0.5;
 
 constexpr std::size_t kPerRun = 16;
 
@@ -121,7 +125,9 @@ void CutOverlaps::look_from(Vec3 place, Vec3 inwards, double reach, Hit& hit) co
       if (!met || met->distance >= hit.overlap.depth) continue;
       Overlap& overlap = hit.overlap;
       overlap.depth = met->distance, overlap.axis = inwards;
-      overlap.other = candidate.body, overlap.triangle = candidate.triangle, hit.is_exit = met->is_exit;
+      overlap.other = candidate.body, overlap.triangle = candidate.triangle;
+      const Vec3 normal = cross(candidate.corner[1] - candidate.corner[0], candidate.corner[2] - candidate.corner[0]);
+      hit.is_exit = dot(normal, inwards) > kStraightOut * norm(normal);
       std::copy(std::begin(met->at), std::end(met->at), std::begin(overlap.at));
     }
   }
@@ -142,7 +148,10 @@ const std::vector<CutOverlaps::OfPatch>& CutOverlaps::find_on_patches(std::size_
     if (candidates_.empty()) return;
     const std::size_t first = overlaps.size();
     const auto place = [&](std::int32_t v) { return patch.body.surface.place(v); };
+    Box around = runs_.front().box;
+    for (const Run& run : runs_) around.add(run.box.low), around.add(run.box.high);
     for (std::int32_t v = 0; std::size_t(v) < body.surface.vertex_count(); ++v) {
+      if (!around.meets(Box(place(v)).grown(reach))) continue;
       Hit hit(body, v);
       look_from(place(v), -body.facets.normal(v, place), reach, hit);
       if (hit.is_exit) overlaps.push_back(hit.overlap);

@@ -59,6 +59,7 @@ void NearSurface::find_bounds() {
     const Index last = std::min(p + kPatchesPerGroup, patches);
     groups_.push_back(bound_of(p, last, patches_[std::size_t(p)].first, patches_[std::size_t(last) - 1].last));
   }
+  patch_places_.resize(patches_.size()), group_places_.resize(groups_.size());
   rest_box_ = Box(rest_.front());
   for (const Vec3& p : rest_) rest_box_.add(p);
   for (const Bound& group : groups_) widen_ = std::max(widen_, group.widen);

@@ -94,6 +94,15 @@ class NearSurface {
   void near(const Region& region, Visit&& visit);
 
  private:
+  /// Where a patch or group is.
+  struct Place {
+    std::uint32_t round = 0;  ///< in which it was found
+    Box box{Vec3{}};          ///< [m]
+  };
+  const Box& place_of(const Bound& bound, Place& place) const {
+    if (place.round != round_) place = {round_, bound.rest.moved(displacements(bound))};
+    return place.box;
+  }
   void add_organ(const Surface& surface, const OrganRange& organ);
   void find_bounds();
   void sort_triangles();
@@ -106,6 +115,7 @@ class NearSurface {
   std::vector<Vec3> rest_;           ///< [m]
   std::vector<Triangle> triangles_;  ///< by patch
   std::vector<Bound> patches_, groups_;
+  std::vector<Place> patch_places_, group_places_;
   std::vector<Index> bound_spheres_;  ///< in spheres_
   Box rest_box_{Vec3{}};
   double widen_ = 0;                     ///< the largest of all bounds
@@ -121,11 +131,12 @@ template <class Region, class Visit>
 void NearSurface::near(const Region& region, Visit&& visit) {
   if (groups_.empty()) return;
   for (const Bound& group : groups_) {
-    if (!region.meets(group.rest.moved(displacements_)) || !region.meets(group.rest.moved(displacements(group))))
+    if (!region.meets(group.rest.moved(displacements_)) ||
+        !region.meets(place_of(group, group_places_[std::size_t(&group - groups_.data())])))
       continue;
     for (Index p = group.first; p < group.last; ++p) {
       const Bound& patch = patches_[std::size_t(p)];
-      if (!region.meets(patch.rest.moved(displacements(patch)))) continue;
+      if (!region.meets(place_of(patch, patch_places_[std::size_t(p)]))) continue;
       for (Index t = patch.first; t < patch.last; ++t) {
         const Triangle& triangle = triangles_[std::size_t(t)];
         const Vec3 corners[3] = {place(triangle.corner[0]), place(triangle.corner[1]), place(triangle.corner[2])};
