@@ -205,8 +205,8 @@ void BallContact::dent(const Part& part, const surface::NearSurface::Triangle& t
   for (std::size_t c = 0; c < 3; ++c) vertex[c] = part.first_slot + triangle.corner[c];
   std::int32_t slot[3];
   for (std::size_t c = 0; c < 3; ++c) slot[c] = part.gathers_at(triangle.corner[c]);
-  const bool was_touched = was_touched_[std::size_t(slot[0])] || was_touched_[std::size_t(slot[1])] ||
-                           was_touched_[std::size_t(slot[2])];
+  const bool was_touched =
+      was_touched_[std::size_t(slot[0])] || was_touched_[std::size_t(slot[1])] || was_touched_[std::size_t(slot[2])];
   const int n = std::clamp(int(std::ceil(triangle.longest_edge / (kLongestPart * ball.radius))), 1, kMostDivisions);
   const bool may_be_hidden = is_hidden(part, triangle);
   for_each_part(n, [&](double w0, double w1, double w2) {

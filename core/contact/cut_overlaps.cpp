@@ -15,8 +15,8 @@ using surface::Body, surface::NearSurface, surface::Overlap;
 /// How deep surfaces may overlap and still be found, in spacings (our choice).
 constexpr double kReach = 0.25;
 
-/// Lines leave tissue through triangles that they meet at less than 60 degrees from their normals (our choice): near the
-/// sharp rims of cuts others lead along a wall.
+/// Lines leave tissue through triangles that they meet at less than 60 degrees from their normals (our choice): near
+/// the sharp rims of cuts others lead along a wall.
 constexpr double kStraightOut = 0.5;
 
 constexpr std::size_t kPerRun = 16;
