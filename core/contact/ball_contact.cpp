@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/contact/contact_law.h"
 #include "core/surface/surface.h"
@@ -19,6 +20,10 @@ constexpr int kMostDivisions = 8;
 
 /// A surface that the ball left farther behind than so many of its radii is not touched any more.
 constexpr double kDeepest = 12;
+
+/// Where the walls of a cut are nearer to each other than this part of the ball's radius, they count less, and not at
+/// all where they touch (our choice): a ball that presses on a closed cut dents its lips, and does not wedge it open.
+constexpr double kOpen = 0.1;
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -50,13 +55,16 @@ bool may_touch(const Vec3* corners, Vec3 centre, double radius) {
 
 }  // namespace
 
-BallContact::BallContact(const Model& model, std::vector<surface::Body>& bodies, const elements::Kernels& kernels)
+BallContact::BallContact(const Model& model, std::vector<surface::Body>& bodies, CutSurfaces& cuts,
+                         const elements::Kernels& kernels)
     : model_(model),
       kernels_(kernels),
+      cuts_(cuts),
       own_(model, 0, model.has_tool(ToolKind::ball) && bodies.empty() ? model.surfaces.size() : 0) {
   if (!model.has_tool(ToolKind::ball)) return;
-  if (!own_.empty()) parts_.push_back({0, &own_});
-  for (surface::Body& body : bodies) parts_.push_back({body.first_vertex, &body.surface});
+  if (!own_.empty()) parts_.push_back({0, 0, &own_});
+  for (surface::Body& body : bodies) parts_.push_back({body.first_vertex, body.first_vertex, &body.surface});
+  whole_parts_ = parts_.size();
   for (const Surface& surface : model.surfaces) vertex_count_ += std::int32_t(surface.vertex.size());
   const auto vertices = std::size_t(vertex_count_);
   pressed_.resize(vertices), touched_.reserve(vertices), was_touched_.assign(vertices, 0);
@@ -76,15 +84,44 @@ BallContact::BallContact(const Model& model, std::vector<surface::Body>& bodies,
   }
 }
 
-const BallContact::Part& BallContact::part_of(std::int32_t vertex) const {
+const BallContact::Part& BallContact::part_of(std::int32_t slot) const {
   std::size_t part = parts_.size() - 1;
-  while (parts_[part].first_vertex > vertex) --part;
+  while (parts_[part].first_slot > slot) --part;
   return parts_[part];
 }
 
-surface::Follower BallContact::follower(std::int32_t vertex) const {
-  const Part& part = part_of(vertex);
-  return part.surface->follower(vertex - part.first_vertex);
+std::int32_t BallContact::organ_of(const Part& part, std::int32_t slot) const {
+  return part.patch != nullptr ? part.patch->body.organ : organ_of_[std::size_t(slot)];
+}
+
+surface::Follower BallContact::follower(std::int32_t slot) const {
+  const Part& part = part_of(slot);
+  return part.surface->follower(slot - part.first_slot);
+}
+
+/// Adds a patch to the parts that are looked at. What it holds is found again in each step.
+void BallContact::add_patch(const StateView& state, cutbody::CutPatch& patch) {
+  const auto first_slot = std::int32_t(pressed_.size());
+  const std::int32_t first_point = cuts_.first_point(0, patch);
+  const auto vertices = std::int32_t(patch.body.surface.vertex_count());
+  const auto slots = std::size_t(first_slot + vertices);
+  parts_.push_back({first_slot, first_point, &patch.body.surface, &patch});
+  pressed_.resize(slots), was_touched_.resize(slots, 0), opening_.resize(slots - std::size_t(vertex_count_), -1.0);
+  auto point = std::lower_bound(state.touched.begin(), state.touched.end(), first_point);
+  for (; point != state.touched.end() && *point < first_point + vertices; ++point)
+    was_touched_[std::size_t(first_slot + *point - first_point)] = 1;
+}
+
+void BallContact::remove_patches() {
+  const auto vertices = std::size_t(vertex_count_);
+  parts_.resize(whole_parts_), pressed_.resize(vertices), was_touched_.resize(vertices), opening_.clear();
+}
+
+/// Whether patches may stand for parts of a triangle.
+bool BallContact::is_hidden(const Part& part, const surface::NearSurface::Triangle& triangle) const {
+  return part.patch == nullptr && cuts_.any() &&
+         std::any_of(std::begin(triangle.corner), std::end(triangle.corner),
+                     [&](std::int32_t corner) { return cuts_.hides(part.first_slot + corner); });
 }
 
 void BallContact::find(const StateView& state, const BallMotion& ball, PointContacts& contacts) {
@@ -95,46 +132,66 @@ void BallContact::find(const StateView& state, const BallMotion& ball, PointCont
 /// Largest distance from the ball's centre to a vertex that it touched at the start of the substep [m].
 double BallContact::farthest_touched(const StateView& state, const BallMotion& ball) const {
   double farthest = 0;
-  for (const std::int32_t point : state.touched)
-    if (point < vertex_count_) farthest = std::max(farthest, norm(follower(point).of(state.position) - ball.centre));
+  const auto look_at = [&](Vec3 place) { farthest = std::max(farthest, norm(place - ball.centre)); };
+  for (const std::int32_t point : state.touched) {
+    if (point < vertex_count_) look_at(follower(point).of(state.position));
+    if (!cuts_.any() || !cuts_.points().is_of_ball(point)) continue;
+    const cutbody::CutPoints::Place at = cuts_.points().place(point);
+    if (cutbody::CutPatch* const patch = cuts_.patch(at))
+      look_at(patch->body.surface.place(at.vertex - patch->body.first_vertex));
+  }
   return farthest;
 }
 
 void BallContact::find_on_surfaces(const StateView& state, const BallMotion& ball, PointContacts& contacts) {
   const auto mark = [&](std::uint8_t value) {
     for (const std::int32_t point : state.touched)
-      if (std::size_t(point) < was_touched_.size()) was_touched_[std::size_t(point)] = value;
+      if (point < vertex_count_) was_touched_[std::size_t(point)] = value;
   };
   mark(1);
   pressed_area_ = {};
   const double reach = std::max(ball.radius, std::min(farthest_touched(state, ball), kDeepest * ball.radius));
   if (!own_.empty()) own_.begin(state.position);
+  const Box region = Box(ball.centre).grown(reach);
+  cuts_.near(region, [&](cutbody::CutPatch& patch) { add_patch(state, patch); });
   for (const Part& part : parts_)
-    part.surface->near(Box(ball.centre).grown(reach),
-                       [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
-                         if (may_touch(corners, ball.centre, reach)) dent(part, triangle, corners, ball);
-                       });
+    part.surface->near(region, [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
+      if (may_touch(corners, ball.centre, reach)) dent(part, triangle, corners, ball);
+    });
   mark(0);
   const double a = std::sqrt(norm(pressed_area_) / kPi);
   std::sort(touched_.begin(), touched_.end());
-  for (const std::int32_t vertex : touched_) {
-    Pressed& pressed = pressed_[std::size_t(vertex)];
-    const surface::Follower follows = follower(vertex);
-    const Carriers carriers{follows.sphere, follows.weight};
-    const OrganRange& organ = model_.organs[std::size_t(organ_of_[std::size_t(vertex)])];
-    const double volume = norm(pressed.volume);
-    if (volume > 0 && contacts.mobility(carriers) > 0) {
-      const double k = dent_stiffness(organ.modulus, a, surface::kUnresolvedLength * organ.spacing) * pressed.area;
-      add(state, ball,
-          {.axis = pressed.volume / volume,
-           .point = vertex,
-           .dent = volume / pressed.area,
-           .foundation = Foundation(organ, k, ball.step.elapsed)},
-          carriers, follows.of(state.position), contacts);
-    }
-    pressed = {};
-  }
+  for (const std::int32_t slot : touched_) press_slot(state, ball, slot, a, contacts);
   touched_.clear();
+  if (cuts_.any()) remove_patches();
+}
+
+/// Adds the contact of what was gathered at a slot, with the radius of all that the ball touches [m].
+void BallContact::press_slot(const StateView& state, const BallMotion& ball, std::int32_t slot, double radius,
+                             PointContacts& contacts) {
+  const Part& part = part_of(slot);
+  const Pressed pressed = std::exchange(pressed_[std::size_t(slot)], Pressed{});
+  const surface::Follower follows = part.surface->follower(slot - part.first_slot);
+  const Carriers carriers{follows.sphere, follows.weight};
+  const double volume = norm(pressed.volume);
+  if (!(volume > 0) || !(contacts.mobility(carriers) > 0)) return;
+  const OrganRange& organ = model_.organs[std::size_t(organ_of(part, slot))];
+  const double k = dent_stiffness(organ.modulus, radius, surface::kUnresolvedLength * organ.spacing) * pressed.area;
+  add(state, ball,
+      {.axis = pressed.volume / volume,
+       .point = slot - part.first_slot + part.first_point,
+       .dent = volume / pressed.area,
+       .foundation = Foundation(organ, k, ball.step.elapsed)},
+      carriers, follows.of(state.position), contacts);
+}
+
+/// Part with which the wall of a cut counts at a vertex.
+double BallContact::share_of(const Part& part, std::int32_t slot, double radius) {
+  const std::int32_t vertex = slot - part.first_slot;
+  if (vertex < part.patch->first_wall) return 1;
+  double& opening = opening_[std::size_t(slot - vertex_count_)];
+  if (opening < 0) opening = part.patch->opening(vertex);
+  return std::min(1.0, opening / (kOpen * radius));
 }
 
 /// Adds a triangle's part under the ball to its corners.
@@ -145,11 +202,13 @@ void BallContact::dent(const Part& part, const surface::NearSurface::Triangle& t
   if (!(size > 0)) return;
   const Vec3 outward = across / size;
   std::int32_t vertex[3];
-  for (std::size_t c = 0; c < 3; ++c) vertex[c] = part.first_vertex + triangle.corner[c];
-  const bool was_touched = was_touched_[std::size_t(vertex[0])] || was_touched_[std::size_t(vertex[1])] ||
-                           was_touched_[std::size_t(vertex[2])];
+  for (std::size_t c = 0; c < 3; ++c) vertex[c] = part.first_slot + triangle.corner[c];
+  std::int32_t slot[3];
+  for (std::size_t c = 0; c < 3; ++c) slot[c] = part.gathers_at(triangle.corner[c]);
+  const bool was_touched =
+      was_touched_[std::size_t(slot[0])] || was_touched_[std::size_t(slot[1])] || was_touched_[std::size_t(slot[2])];
   const int n = std::clamp(int(std::ceil(triangle.longest_edge / (kLongestPart * ball.radius))), 1, kMostDivisions);
-  const double area = triangle.rest_area / (n * n);
+  const bool may_be_hidden = is_hidden(part, triangle);
   for_each_part(n, [&](double w0, double w1, double w2) {
     const Vec3 apart = w0 * corners[0] + w1 * corners[1] + w2 * corners[2] - ball.centre;
     // Along the line inwards, the far side of the ball is `through` away.
@@ -159,11 +218,23 @@ void BallContact::dent(const Part& part, const surface::NearSurface::Triangle& t
     if (half_chord_squared <= 0 || (distance_squared >= squared && !(was_touched && height > 0))) return;
     const double half_chord = std::sqrt(half_chord_squared), through = height + half_chord;
     const Vec3 normal = (apart - through * outward) / ball.radius;
-    const Vec3 volume = area * through * (half_chord / ball.radius) * normal;
     const double weights[3] = {w0, w1, w2};
+    double share = 1;
+    if (part.patch != nullptr) {
+      share = 0;
+      for (std::size_t c = 0; c < 3; ++c) share += weights[c] * share_of(part, vertex[c], ball.radius);
+    }
+    if (may_be_hidden) {
+      Vec3 rest;
+      for (std::size_t c = 0; c < 3; ++c) rest += weights[c] * part.surface->rest(triangle.corner[c]);
+      if (cuts_.covers(std::size_t(organ_of(part, vertex[0])), rest)) return;
+    }
+    const double area = share * triangle.rest_area / (n * n);
+    if (!(area > 0)) return;
+    const Vec3 volume = area * through * (half_chord / ball.radius) * normal;
     for (std::size_t c = 0; c < 3; ++c) {
-      Pressed& pressed = pressed_[std::size_t(vertex[c])];
-      if (pressed.area == 0) touched_.push_back(vertex[c]);
+      Pressed& pressed = pressed_[std::size_t(slot[c])];
+      if (pressed.area == 0) touched_.push_back(slot[c]);
       pressed.area += weights[c] * area, pressed.volume += weights[c] * volume;
     }
     pressed_area_ += area * normal;
@@ -217,6 +288,7 @@ void BallContact::add(const StateView& state, const BallMotion& ball, PointConta
 
 std::int32_t BallContact::organ_of(const PointContact& contact) const {
   if (contact.point < vertex_count_) return organ_of_[std::size_t(contact.point)];
+  if (cuts_.points().contains(contact.point)) return std::int32_t(cuts_.points().place(contact.point).organ);
   const std::int32_t sphere = contact.point - vertex_count_;
   for (std::size_t i = 0; i < model_.organs.size(); ++i)
     if (sphere >= model_.organs[i].first && sphere < model_.organs[i].first + model_.organs[i].count)
@@ -225,9 +297,14 @@ std::int32_t BallContact::organ_of(const PointContact& contact) const {
 }
 
 Vec3 BallContact::rest_of(const PointContact& contact) const {
+  if (cuts_.points().contains(contact.point)) {
+    const cutbody::CutPoints::Place at = cuts_.points().place(contact.point);
+    const surface::Body& body = cuts_.patch(at)->body;
+    return body.surface.rest(at.vertex - body.first_vertex);
+  }
   if (contact.point >= vertex_count_) return model_.rest_position[std::size_t(contact.point - vertex_count_)];
   const Part& part = part_of(contact.point);
-  return part.surface->rest(contact.point - part.first_vertex);
+  return part.surface->rest(contact.point - part.first_point);
 }
 
 }  // namespace ctpm::contact

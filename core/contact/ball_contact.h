@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/contact/cut_surfaces.h"
 #include "core/contact/point_contact.h"
 #include "core/contact/pressed_point.h"
 #include "core/elements/kernels/kernels.h"
@@ -36,8 +37,9 @@ struct BallMotion {
 /// Friction holds each point at a place on the ball, up to the friction cone (pressed_point.h).
 class BallContact {
  public:
-  /// `bodies`, those of the Model, must outlive the BallContact.
-  BallContact(const Model& model, std::vector<surface::Body>& bodies, const elements::Kernels& kernels);
+  /// `bodies`, those of the Model, and `cuts` must outlive the BallContact.
+  BallContact(const Model& model, std::vector<surface::Body>& bodies, CutSurfaces& cuts,
+              const elements::Kernels& kernels);
 
   /// Capacity that find() needs: contacts, and entries of their carriers.
   std::pair<std::size_t, std::size_t> capacity() const { return capacity_; }
@@ -46,7 +48,9 @@ class BallContact {
   void find(const StateView& state, const BallMotion& ball, PointContacts& contacts);
 
   /// Depth of the dent under a contact [m], 0 for that of a bare sphere.
-  double dent_of(const PointContact& contact) const { return contact.point < vertex_count_ ? contact.dent : 0.0; }
+  double dent_of(const PointContact& contact) const {
+    return contact.point < vertex_count_ || cuts_.points().contains(contact.point) ? contact.dent : 0.0;
+  }
 
   /// Where the tissue was at rest that a contact touches [m].
   Vec3 rest_of(const PointContact& contact) const;
@@ -62,16 +66,29 @@ class BallContact {
   };
 
   double farthest_touched(const StateView& state, const BallMotion& ball) const;
-  /// A surface that vertices from `first_vertex` on belong to.
+  /// A surface whose vertices have the slots from `first_slot` on, and the points from `first_point` on.
   struct Part {
-    std::int32_t first_vertex;
+    std::int32_t first_slot, first_point;
     surface::NearSurface* surface;
+    cutbody::CutPatch* patch = nullptr;  ///< null: whole organs
+
+    /// The slot at which what presses on a vertex is gathered.
+    std::int32_t gathers_at(std::int32_t vertex) const {
+      return first_slot + (patch == nullptr ? vertex : patch->gathers_at[std::size_t(vertex)]);
+    }
   };
 
-  const Part& part_of(std::int32_t vertex) const;
-  surface::Follower follower(std::int32_t vertex) const;
+  const Part& part_of(std::int32_t slot) const;
+  std::int32_t organ_of(const Part& part, std::int32_t slot) const;
+  surface::Follower follower(std::int32_t slot) const;
+  void add_patch(const StateView& state, cutbody::CutPatch& patch);
+  void remove_patches();
+  bool is_hidden(const Part& part, const surface::NearSurface::Triangle& triangle) const;
+  double share_of(const Part& part, std::int32_t slot, double radius);
   void dent(const Part& part, const surface::NearSurface::Triangle& triangle, const Vec3* corners,
             const BallMotion& ball);
+  void press_slot(const StateView& state, const BallMotion& ball, std::int32_t slot, double radius,
+                  PointContacts& contacts);
   void find_on_surfaces(const StateView& state, const BallMotion& ball, PointContacts& contacts);
   void find_on_spheres(const StateView& state, const BallMotion& ball, PointContacts& contacts);
   void add(const StateView& state, const BallMotion& ball, PointContact contact, Carriers carriers, Vec3 place,
@@ -79,13 +96,16 @@ class BallContact {
 
   const Model& model_;
   const elements::Kernels& kernels_;
+  CutSurfaces& cuts_;
   surface::NearSurface own_;  ///< all organs as one; empty where there are bodies
-  std::vector<Part> parts_;   ///< own_, or the surfaces of the bodies
+  std::vector<Part> parts_;   ///< own_, or the surfaces of the bodies; in find() patches of cuts follow
+  std::size_t whole_parts_ = 0;
   std::int32_t vertex_count_ = 0;
-  std::vector<std::int32_t> organ_of_;  ///< (vertex_count, like the next two)
-  std::vector<Pressed> pressed_;
+  std::vector<std::int32_t> organ_of_;     ///< (vertex_count)
+  std::vector<Pressed> pressed_;           ///< (slot_count, like the next: vertices, and in find() those of patches)
   std::vector<std::uint8_t> was_touched_;  ///< at the start of the substep
-  std::vector<std::int32_t> touched_;      ///< vertices with an area
+  std::vector<double> opening_;            ///< at the vertices of patches [m]
+  std::vector<std::int32_t> touched_;      ///< slots with an area
   Vec3 pressed_area_;                      ///< sum over the pressed areas, each along the ball's radius [m^2]
   /// Spheres [first, last) of the organs without a surface.
   std::vector<std::pair<std::size_t, std::size_t>> bare_;

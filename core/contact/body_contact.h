@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/contact/cut_overlaps.h"
 #include "core/contact/facet_press.h"
 #include "core/contact/point_contact.h"
 #include "core/contact/pressed_point.h"
@@ -14,11 +15,12 @@
 namespace ctpm::contact {
 
 /// Contact between the surfaces of organs (Model::organs_meet), and of an organ's surface with itself
-/// (OrganRange::meets_itself), where they overlap (surface::BodyOverlaps).
+/// (OrganRange::meets_itself), where they overlap (surface::BodyOverlaps). Of an organ that meets itself, pieces that a
+/// cut has parted meet, too (CutOverlaps).
 class BodyContact {
  public:
-  /// `bodies` must outlive the BodyContact.
-  BodyContact(const Model& model, std::vector<surface::Body>& bodies);
+  /// `bodies` and `cuts` must outlive the BodyContact.
+  BodyContact(const Model& model, std::vector<surface::Body>& bodies, CutSurfaces& cuts);
 
   /// Capacity that find() needs: contacts, and entries of their carriers.
   std::pair<std::size_t, std::size_t> capacity() const { return capacity_; }
@@ -30,8 +32,10 @@ class BodyContact {
   const Model& model_;
   std::vector<surface::Body>& bodies_;
   FacetPress press_;
+  CutSurfaces& cuts_;
   surface::BodyOverlaps overlaps_;
-  std::vector<surface::Overlap> found_;
+  CutOverlaps cut_overlaps_;
+  std::vector<surface::Overlap> found_, found_on_patches_;
   std::pair<std::size_t, std::size_t> capacity_{};
 };
 

@@ -1,6 +1,7 @@
 #include "core/contact/contacts.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "core/model/result.h"
@@ -17,14 +18,28 @@ std::pair<std::size_t, std::size_t> of_cuts(const Model& model, const BladeForce
   return {blade.capacity() + cut_faces.capacity(), blade.entries() + 2 * cut_faces.capacity()};
 }
 
+void sort_by_point(Touched& touched) {
+  if (std::is_sorted(touched.point.begin(), touched.point.end())) return;
+  std::vector<std::size_t> order(touched.point.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return touched.point[a] < touched.point[b]; });
+  const Touched found = touched;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    touched.point[i] = found.point[order[i]], touched.kelvin_dent[i] = found.kelvin_dent[order[i]];
+    touched.grip.set(i, found.grip[order[i]]);
+  }
+}
+
 }  // namespace
 
 Contacts::Contacts(const Model& model, const elements::Kernels& kernels)
     : model_(model),
       bodies_(surface::bodies_of(model)),
-      ball_(model, bodies_, kernels),
-      body_contact_(model, bodies_),
-      obstacles_(model, bodies_),
+      cuts_(model),
+      ball_(model, bodies_, cuts_, kernels),
+      body_contact_(model, bodies_, cuts_),
+      obstacles_(model, bodies_, cuts_),
       blade_(model),
       cut_faces_(model),
       points_(model, pressed_capacity().first + of_cuts(model, blade_, cut_faces_).first,
@@ -45,6 +60,7 @@ Pin Contacts::pin(const HeldTool& tool, const Vec3Array& position, double share,
 void Contacts::find(const StateView& state, const HeldTool& tool, const ContactStep& step, bool from_velocity) {
   points_.clear();
   for (surface::Body& body : bodies_) body.surface.begin(state.position);
+  cuts_.begin(state.position);
   const PressStep press{step.h, step.elapsed, step.ahead, from_velocity};
   if (tool.is(ToolKind::ball))
     ball_.find(state, {tool.at(step.share), (tool.to - tool.from) / model_.tick, tool.tool->radius, press}, points_);
@@ -127,6 +143,8 @@ void ContactSet::note_touched(Vec3 centre, const Vec3Array& position, Touched& t
     touched.grip.push_back(c.is_tool ? place - held * elongation : held * elongation);
     touched.kelvin_dent.push_back(c.foundation.kelvin_after(dent, c.kelvin_dent));
   }
+  // Points of cuts are found among those of whole surfaces, but numbered after them.
+  if (contacts_->cuts_.any()) sort_by_point(touched);
 }
 
 LinearisedContacts ImplicitContacts::linearise(elements::Coordinates& force, elements::DiagonalBlocks& blocks) & {

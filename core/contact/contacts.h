@@ -8,6 +8,7 @@
 #include "core/contact/blade_force.h"
 #include "core/contact/body_contact.h"
 #include "core/contact/cut_face_contact.h"
+#include "core/contact/cut_surfaces.h"
 #include "core/contact/explicit_solve.h"
 #include "core/contact/held_tool.h"
 #include "core/contact/obstacle_contact.h"
@@ -58,7 +59,10 @@ class Contacts {
   /// The pin's contact in a step of `h` [s] from `position` [m] to the hand at `share` of the tick.
   static Pin pin(const HeldTool& tool, const Vec3Array& position, double share, double h);
 
-  /// Reserves memory for all that can be touched, so that a tick never allocates.
+  /// Follows what is cut, at the start of a tick from `state`. `cuts`: a blade is held.
+  void begin_tick(const State& state, bool cuts) { cuts_.begin_tick(state, cuts); }
+
+  /// Reserves memory for all that can be touched, so that a tick does not allocate unless it touches a cut.
   void reserve(Touched& touched) const;
 
   /// Detects the contacts of an explicit step in its middle, and changes the `velocity` [m/s] that spheres have after
@@ -81,6 +85,7 @@ class Contacts {
 
   const Model& model_;
   std::vector<surface::Body> bodies_;
+  CutSurfaces cuts_;
   BallContact ball_;
   BodyContact body_contact_;
   ObstacleContact obstacles_;

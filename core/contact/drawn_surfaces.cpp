@@ -37,7 +37,8 @@ DrawnSurfaces::DrawnSurfaces(const Model& model)
     : model_(model),
       bodies_(surface::bodies_of(model)),
       obstacles_(model.obstacles.begin(), model.obstacles.end()),
-      overlaps_(model, bodies_) {}
+      overlaps_(model, bodies_),
+      cut_points_(model) {}
 
 void DrawnSurfaces::place(std::size_t organ, const Surface& surface, const State& state, std::vector<Vec3>& vertex) {
   surface::deform_surface(surface, state.position, model_.organs[organ].first, vertex);
@@ -82,7 +83,10 @@ void DrawnSurfaces::put_on_ball(std::size_t organ, const Surface& surface, const
   std::int64_t first = 0;
   for (std::size_t i = 0; i < organ; ++i) first += std::int64_t(model_.surfaces[i].vertex.size());
   const std::int64_t last = first + std::int64_t(model_.surfaces[organ].vertex.size());
-  const auto is_of_organ = [&](std::int32_t point) { return point >= first && point < last; };
+  const auto is_of_organ = [&](std::int32_t point) {
+    return (point >= first && point < last) ||
+           (cut_points_.is_of_ball(point) && cut_points_.place(point).organ == organ);
+  };
   // A cut surface has vertices of its own, of which the ball dents those in it.
   std::vector<char> is_touched(vertex.size(), 0);
   if (is_whole(surface, model_.surfaces[organ])) {

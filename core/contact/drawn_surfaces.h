@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/cutbody/cut_points.h"
 #include "core/model/model.h"
 #include "core/model/organ.h"
 #include "core/model/state.h"
@@ -34,6 +35,7 @@ class DrawnSurfaces {
   std::vector<surface::Body> bodies_;
   std::vector<surface::ObstacleShape> obstacles_;
   surface::BodyOverlaps overlaps_;
+  cutbody::CutPoints cut_points_;
   std::vector<surface::Overlap> found_;
 };
 

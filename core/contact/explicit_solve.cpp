@@ -28,6 +28,7 @@ ExplicitSolve::ExplicitSolve(const Model& model, const PointContacts& contacts) 
 /// Numbers the spheres that contacts touch.
 void ExplicitSolve::gather(const Pin& pin, const PointContacts& contacts) {
   touched_.clear();
+  place_.resize(std::max(place_.size(), contacts.sphere_.size()));  // a cut may add to what was reserved
   for (const PointContact& contact : contacts.all())
     for (auto e = std::size_t(contact.first); e < std::size_t(contact.first + contact.count); ++e) {
       const std::int32_t sphere = contacts.sphere_[e];

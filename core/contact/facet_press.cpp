@@ -28,11 +28,14 @@ double stiffness(const Model& model, const Body& body, double radius) {
 
 }  // namespace
 
-double radius_of(const Body& body, std::span<const Overlap> overlaps) {
+double area_of(const Body& body, std::span<const Overlap> overlaps) {
   double area = 0;
   for (const Overlap& overlap : overlaps) area += body.facets.area(overlap.vertex);
-  return std::sqrt(area / kPi);
+  return area;
 }
+
+double radius_of(double area) { return std::sqrt(area / kPi); }
+double radius_of(const Body& body, std::span<const Overlap> overlaps) { return radius_of(area_of(body, overlaps)); }
 
 double share_of_dent(const Model& model, const Body& body, const Body& other, double radius) {
   const double own = stiffness(model, body, radius), others = stiffness(model, other, radius);
@@ -51,19 +54,17 @@ std::pair<std::size_t, std::size_t> FacetPress::capacity(const Body& body, const
 }
 
 void FacetPress::add(const StateView& state, const PressStep& step, const Body& body, std::int32_t first_point,
-                     std::vector<Overlap>& overlaps, PointContacts& contacts) {
+                     std::span<Overlap> overlaps, double radius, PointContacts& contacts) {
   std::sort(overlaps.begin(), overlaps.end(), [](const Overlap& a, const Overlap& b) {
     return a.facet != b.facet ? a.facet < b.facet : a.vertex < b.vertex;
   });
-  const double radius = radius_of(body, overlaps);
   for (std::size_t begin = 0; begin < overlaps.size();) {
     std::size_t end = begin + 1;
     while (end < overlaps.size() && overlaps[end].facet == overlaps[begin].facet) ++end;
-    add_facet(state, step, body, first_point + overlaps[begin].facet, radius,
-              std::span(overlaps).subspan(begin, end - begin), contacts);
+    add_facet(state, step, body, first_point + overlaps[begin].facet, radius, overlaps.subspan(begin, end - begin),
+              contacts);
     begin = end;
   }
-  overlaps.clear();
 }
 
 /// Gathers what carries the contact of a facet: the mean of its vertices' places, weighted with volumes, minus that of

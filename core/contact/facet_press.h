@@ -13,7 +13,9 @@
 
 namespace ctpm::contact {
 
-/// Radius of a disc of the area of all overlaps of `body` [m].
+/// Area of all overlaps of `body` [m^2], and radius of a disc of it [m].
+double area_of(const surface::Body& body, std::span<const surface::Overlap> overlaps);
+double radius_of(double area);
 double radius_of(const surface::Body& body, std::span<const surface::Overlap> overlaps);
 
 /// Part of an overlap of `body` with `other` by which `body` is dented; `other` is by the rest. `radius` [m]: as above.
@@ -34,10 +36,10 @@ class FacetPress {
   static std::pair<std::size_t, std::size_t> capacity(const surface::Body& body,
                                                       const std::vector<surface::Body>& bodies);
 
-  /// Adds the contacts of `overlaps` of `body`, which it sorts and clears, in ascending order of their points.
-  /// `first_point`: number in State::touched of the body's first vertex.
+  /// Adds the contacts of `overlaps` of `body`, which it sorts, in ascending order of their points. `first_point`:
+  /// number in State::touched of the body's first vertex. `radius` [m]: of all that is touched there with them.
   void add(const StateView& state, const PressStep& step, const surface::Body& body, std::int32_t first_point,
-           std::vector<surface::Overlap>& overlaps, PointContacts& contacts);
+           std::span<surface::Overlap> overlaps, double radius, PointContacts& contacts);
 
  private:
   void add_facet(const StateView& state, const PressStep& step, const surface::Body& body, std::int32_t point,

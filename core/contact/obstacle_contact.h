@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/contact/cut_surfaces.h"
 #include "core/contact/facet_press.h"
 #include "core/contact/point_contact.h"
 #include "core/contact/pressed_point.h"
@@ -17,8 +18,8 @@ namespace ctpm::contact {
 /// Model::contact_radius and with Model::contact_k each.
 class ObstacleContact {
  public:
-  /// `bodies` must outlive the ObstacleContact.
-  ObstacleContact(const Model& model, std::vector<surface::Body>& bodies);
+  /// `bodies` and `cuts` must outlive the ObstacleContact.
+  ObstacleContact(const Model& model, std::vector<surface::Body>& bodies, CutSurfaces& cuts);
 
   /// Capacity that find() needs: contacts, and entries of their carriers.
   std::pair<std::size_t, std::size_t> capacity() const { return capacity_; }
@@ -27,20 +28,28 @@ class ObstacleContact {
   void find(const StateView& state, const PressStep& step, PointContacts& contacts);
 
  private:
-  void find_on_surface(const StateView& state, const PressStep& step, const surface::ObstacleShape& shape,
-                       std::int32_t first_point, surface::Body& body, PointContacts& contacts);
+  void find_on_surface(const StateView& state, const PressStep& step, std::size_t obstacle, surface::Body& body,
+                       PointContacts& contacts);
   void find_on_spheres(const StateView& state, const PressStep& step, const surface::ObstacleShape& shape,
                        std::int32_t first_point, PointContacts& contacts) const;
 
   const Model& model_;
   std::vector<surface::Body>& bodies_;
+  CutSurfaces& cuts_;
   FacetPress press_;
   std::vector<surface::ObstacleShape> shapes_;  ///< of Model::obstacles
   std::int32_t vertex_count_ = 0;               ///< through all organs
   std::vector<std::int32_t> bare_;              ///< spheres of organs without a surface
   std::vector<std::uint32_t> seen_in_;          ///< round in which a vertex was looked at
   std::uint32_t round_ = 0;
+  std::vector<std::uint8_t> is_seen_;  ///< whether a vertex of a patch was looked at
   std::vector<surface::Overlap> overlaps_;
+  /// A patch, and which of the overlaps are its.
+  struct PatchOverlaps {
+    cutbody::CutPatch* patch;
+    std::size_t first, last;
+  };
+  std::vector<PatchOverlaps> patches_;
   std::pair<std::size_t, std::size_t> capacity_{};
 };
 

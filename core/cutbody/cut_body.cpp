@@ -53,13 +53,13 @@ void CutBody::prepare() {
   std::vector<Index>& first = parts_->first_far;
   first.assign(std::size_t(parts_->grid.block_count()) + 1, 0);
   for (std::size_t t = 0; t < mesh.outer_triangles; ++t)
-    first[std::size_t(parts_->grid.block(mesh.outer_cube[t])) + 1] += is_one(corners(t));
+    first[std::size_t(parts_->grid.block(mesh.cube[t])) + 1] += is_one(corners(t));
   for (std::size_t b = 0; b + 1 < first.size(); ++b) first[b + 1] += first[b];
   parts_->far.resize(std::size_t(first.back()));
   std::vector<Index> next(first.begin(), first.end() - 1);
   for (std::size_t t = 0; t < mesh.outer_triangles; ++t)
     if (const Triangle triangle = corners(t); is_one(triangle))
-      parts_->far[std::size_t(next[std::size_t(parts_->grid.block(mesh.outer_cube[t]))]++)] = triangle;
+      parts_->far[std::size_t(next[std::size_t(parts_->grid.block(mesh.cube[t]))]++)] = triangle;
 }
 
 bool CutBody::update(const State& state) {

@@ -25,7 +25,30 @@ double crossing_of(Vec3 p, Vec3 q, Vec3 a, Vec3 b, Vec3 c) {
   return at_p / (at_p - at_q);
 }
 
+/// The lattice cells from which to which an organ's spheres and its surface reach.
+std::pair<LatticeCell, LatticeCell> cells_of(const Model& model, std::size_t index,
+                                             const cutting::LatticeFrame& frame) {
+  const OrganRange& organ = model.organs[index];
+  const auto first = std::size_t(organ.first), last = first + std::size_t(organ.count);
+  LatticeCell low = model.cell[first], high = low;
+  for (std::size_t i = first; i < last; ++i)
+    for (std::size_t a = 0; a < 3; ++a)
+      low[a] = std::min(low[a], model.cell[i][a]), high[a] = std::max(high[a], model.cell[i][a]);
+  for (const Vec3& v : model.surfaces[index].vertex)
+    for (std::size_t a = 0; a < 3; ++a) {
+      constexpr double kFarthest = 1 << 21;  // beyond any cell that is stored
+      const double at = std::clamp(dot(v - frame.origin, frame.axis[a]) / organ.spacing, -kFarthest, kFarthest);
+      low[a] = std::min(low[a], std::int32_t(std::floor(at))), high[a] = std::max(high[a], std::int32_t(std::ceil(at)));
+    }
+  return {low, high};
+}
+
 }  // namespace
+
+CutGrid::Node CutGrid::blocks_of(const Model& model, std::size_t organ) {
+  const auto [low, high] = cells_of(model, organ, cutting::lattice_frame(model, model.organs[organ]));
+  return {high[0] - low[0] + 3, high[1] - low[1] + 3, high[2] - low[2] + 3};
+}
 
 CutGrid::CutGrid(const Model& model, std::size_t organ)
     : model_(model), organ_(std::int32_t(organ)), map_(model), depth_(model, map_) {
@@ -37,18 +60,9 @@ CutGrid::CutGrid(const Model& model, std::size_t organ)
 
 /// The grid's axes are those of the lattice. It reaches a spacing beyond the spheres, and beyond the organ's surface.
 void CutGrid::find_frame(const Model& model, const OrganRange& organ) {
-  const auto first = std::size_t(organ.first), last = first + std::size_t(organ.count);
   step_ = organ.spacing / kPerSpacing;
   const cutting::LatticeFrame frame = cutting::lattice_frame(model, organ);
-  LatticeCell low = model.cell[first], high = low;
-  for (std::size_t i = first; i < last; ++i)
-    for (std::size_t a = 0; a < 3; ++a)
-      low[a] = std::min(low[a], model.cell[i][a]), high[a] = std::max(high[a], model.cell[i][a]);
-  for (const Vec3& v : model.surfaces[std::size_t(organ_)].vertex)
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double at = dot(v - frame.origin, frame.axis[a]) / organ.spacing;
-      low[a] = std::min(low[a], Index(std::floor(at))), high[a] = std::max(high[a], Index(std::ceil(at)));
-    }
+  const auto [low, high] = cells_of(model, std::size_t(organ_), frame);
   origin_ = frame.origin, first_cell_ = low;
   for (std::size_t a = 0; a < 3; ++a) {
     axis_[a] = frame.axis[a];
@@ -57,9 +71,14 @@ void CutGrid::find_frame(const Model& model, const OrganRange& organ) {
   }
 }
 
-Vec3 CutGrid::rest(Index i) const {
-  const Node n = node(i);
-  return origin_ + step_ * (n[0] * axis_[0] + n[1] * axis_[1] + n[2] * axis_[2]);
+CutGrid::Index CutGrid::block_at(Vec3 rest) const {
+  Index block = 0;
+  for (std::size_t a = 3; a-- > 0;) {
+    const double at = dot(rest - origin_, axis_[a]) / (kPerSpacing * step_);
+    if (!(at >= 0 && at < blocks_[a])) return -1;
+    block = block * blocks_[a] + Index(at);
+  }
+  return block;
 }
 
 /// Which nodes are in tissue, and where edges leave it.

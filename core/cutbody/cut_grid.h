@@ -46,7 +46,9 @@ class CutGrid {
   bool contains(Node n) const {
     return n[0] >= 0 && n[1] >= 0 && n[2] >= 0 && n[0] < extent_[0] && n[1] < extent_[1] && n[2] < extent_[2];
   }
-  Vec3 rest(Index i) const;
+  Vec3 rest(Index i) const { return place(node(i)); }
+  /// Where a node is at rest, of the grid or beyond it [m].
+  Vec3 place(Node n) const { return origin_ + step_ * (n[0] * axis_[0] + n[1] * axis_[1] + n[2] * axis_[2]); }
   bool in_tissue(Index i) const { return in_tissue_[std::size_t(i)] != 0; }
 
   /// The node at the other end of an edge.
@@ -79,6 +81,15 @@ class CutGrid {
     const Node n = this->node(node);
     return n[0] / kPerSpacing + blocks_[0] * (n[1] / kPerSpacing + blocks_[1] * (n[2] / kPerSpacing));
   }
+  /// The lowest node of a block.
+  Node first_node(Index block) const {
+    return {kPerSpacing * (block % blocks_[0]), kPerSpacing * (block / blocks_[0] % blocks_[1]),
+            kPerSpacing * (block / blocks_[0] / blocks_[1])};
+  }
+  /// The block that a place at rest is in; -1: none.
+  Index block_at(Vec3 rest) const;
+  /// Number of blocks along each axis in the grid of an organ that has a surface.
+  static Node blocks_of(const Model& model, std::size_t organ);
   /// Marks the blocks of cut edges (block_count).
   std::vector<std::uint8_t> cut_blocks() const;
   /// Marks the blocks around those that are marked, too.

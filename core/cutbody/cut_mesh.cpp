@@ -99,16 +99,18 @@ class Mesher {
  public:
   explicit Mesher(const CutGrid& grid) : grid_(grid), vertices_(grid) {}
 
-  CutMesh run(const std::vector<std::uint8_t>& blocks) {
-    const CutGrid::Node e = grid_.extent();
-    for (Index k = 0; k + 1 < e[2]; ++k)
-      for (Index j = 0; j + 1 < e[1]; ++j)
-        for (Index i = 0; i + 1 < e[0]; ++i) {
+  /// Of the cubes at nodes [low, high) of the grid.
+  CutMesh run(CutGrid::Node low, CutGrid::Node high, const std::vector<std::uint8_t>& blocks) {
+    for (std::size_t a = 0; a < 3; ++a)
+      low[a] = std::max(low[a], 0), high[a] = std::min(high[a], grid_.extent()[a] - 1);
+    for (Index k = low[2]; k < high[2]; ++k)
+      for (Index j = low[1]; j < high[1]; ++j)
+        for (Index i = low[0]; i < high[0]; ++i) {
           const Index cube = grid_.at({i, j, k});
           if (!blocks.empty() && !blocks[std::size_t(grid_.block(cube))]) continue;
           if (!is_parted(cube)) continue;
           for (const auto& corners : kTetrahedra) tetrahedron(cube, corners);
-          outer_cube_.resize(outer_.size(), cube);
+          outer_cube_.resize(outer_.size(), cube), wall_cube_.resize(walls_.size(), cube);
         }
     return collect();
   }
@@ -145,7 +147,7 @@ class Mesher {
   const CutGrid& grid_;
   Vertices vertices_;
   std::vector<Triangle> outer_, walls_;
-  std::vector<Index> outer_cube_;
+  std::vector<Index> outer_cube_, wall_cube_;
 
   // Of the present tetrahedron.
   Index node_[4];
@@ -395,15 +397,23 @@ CutMesh Mesher::collect() {
   };
   for (const Triangle& t : outer_) add(t);
   mesh.outer_triangles = mesh.triangle.size();
-  for (const Triangle& t : walls_)
-    if (copies[sorted(t)] == 1) add(t);
-  mesh.outer_cube = std::move(outer_cube_);
+  mesh.cube = std::move(outer_cube_);
+  for (std::size_t t = 0; t < walls_.size(); ++t)
+    if (copies[sorted(walls_[t])] == 1) add(walls_[t]), mesh.cube.push_back(wall_cube_[t]);
   return mesh;
 }
 
 }  // namespace
 
-CutMesh make_mesh(const CutGrid& grid, const std::vector<std::uint8_t>& blocks) { return Mesher(grid).run(blocks); }
+CutMesh make_mesh(const CutGrid& grid, const std::vector<std::uint8_t>& blocks) {
+  return Mesher(grid).run({0, 0, 0}, grid.extent(), blocks);
+}
+
+CutMesh make_mesh_around(const CutGrid& grid, CutGrid::Index block) {
+  CutGrid::Node low = grid.first_node(block), high = low;
+  for (std::size_t a = 0; a < 3; ++a) low[a] -= 1, high[a] += CutGrid::kPerSpacing + 1;
+  return Mesher(grid).run(low, high, {});
+}
 
 std::int32_t count_pieces(const CutGrid& grid) {
   const std::vector<Index> pieces = grid.find_pieces();

@@ -18,7 +18,7 @@ struct CutMesh {
   std::vector<Vertex> vertex;
   std::vector<std::array<std::int32_t, 3>> triangle;  ///< counter-clockwise seen from outside; outer ones first
   std::size_t outer_triangles = 0;                    ///< those of the organ's own surface; the others are walls
-  std::vector<CutGrid::Index> outer_cube;             ///< cube of the grid that each outer triangle is in
+  std::vector<CutGrid::Index> cube;                   ///< of the grid, that each triangle is in
 };
 
 /// Divides the grid's tissue along the swept surface: the nodes of a tetrahedron that are joined by edges within it
@@ -28,6 +28,10 @@ struct CutMesh {
 /// watertight, and has a closed component for each piece of tissue. `blocks`: those of the grid that are meant, all if
 /// it is empty (CutGrid::block_count).
 CutMesh make_mesh(const CutGrid& grid, const std::vector<std::uint8_t>& blocks = {});
+
+/// The same of one block of the grid and the cubes around it: within the block, vertices and triangles are those of the
+/// whole mesh.
+CutMesh make_mesh_around(const CutGrid& grid, CutGrid::Index block);
 
 /// Number of pieces of tissue: components of the grid's nodes.
 std::int32_t count_pieces(const CutGrid& grid);

@@ -51,7 +51,7 @@ bool SideBinding::is_near(CutGrid::NodeBox box, Index node) const {
 void SideBinding::forget_near(CutGrid::NodeBox changed) {
   std::erase_if(bound_, [&](const auto& entry) { return is_near(changed, entry.first.side); });
   std::erase_if(seen_, [&](const auto& entry) { return is_near(changed, entry.first); });
-  piece_.clear();
+  piece_.clear(), row_boxes_.clear();
 }
 
 const SideBinding::Seen& SideBinding::seen_from(Index node) {
@@ -160,10 +160,15 @@ bool SideBinding::is_own_side(const Binding& binding, Index side) {
 }
 
 /// Takes a place of a wall back to the swept surface if it is off it, as beyond the end of a cut.
-Vec3 SideBinding::near_cut(Vec3 rest, const State& state) const {
+Vec3 SideBinding::near_cut(Vec3 rest, const State& state) {
   constexpr double kOffCut = 0.15, kReach = 1.5;  // in steps of the grid
-  const std::optional<Vec3> there = cutting::nearest_swept(state, grid_.organ(), rest, kReach * grid_.step());
-  return there && norm(*there - rest) > kOffCut * grid_.step() ? *there : rest;
+  if (row_boxes_.size() + 1 != cutting::swept_rows(state)) row_boxes_ = cutting::boxes_of_rows(state);
+  const auto nearest = [&](double steps) {
+    return cutting::nearest_swept(state, row_boxes_, grid_.organ(), rest, steps * grid_.step());
+  };
+  // Most places are on it, which is found fast.
+  if (nearest(kOffCut)) return rest;
+  return nearest(kReach).value_or(rest);
 }
 
 const SideBinding::Bound& SideBinding::bind(const CutMesh::Vertex& vertex, bool is_outer, bool is_wall,

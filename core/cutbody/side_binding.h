@@ -63,7 +63,7 @@ class SideBinding {
 
   bool is_near(CutGrid::NodeBox box, Index node) const;
   const Seen& seen_from(Index node);
-  Vec3 near_cut(Vec3 rest, const State& state) const;
+  Vec3 near_cut(Vec3 rest, const State& state);
   Origin origin_of(Vec3 rest) const;
   Vec3 place_of(const Origin& origin) const;
   Binding follow_whole(const Origin& origin) const;
@@ -77,6 +77,7 @@ class SideBinding {
   const Surface& whole_;
   const CutGrid& grid_;
   std::map<Key, Bound> bound_;
+  std::vector<Box> row_boxes_;  ///< of the swept surface; see cutting::boxes_of_rows()
   std::map<Index, Seen> seen_;
   std::vector<Index> piece_;  ///< of each node of the grid; empty until it is asked for after a change
 

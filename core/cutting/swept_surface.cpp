@@ -21,6 +21,12 @@ void push_row(State& state, const Front& front, const NewlySwept& newly, const N
   }
 }
 
+Box box_of_row(const State& state, std::size_t row) {
+  Box box(state.swept[row * kEdgeNodes]);
+  for (std::size_t n = 1; n < kEdgeNodes; ++n) box.add(state.swept[row * kEdgeNodes + n]);
+  return box;
+}
+
 double squared_distance(Vec3 p, const SweptQuad& q) {
   const Vec3 a = nearest_in_triangle(p, q.from, q.to, q.from2) - p,
              b = nearest_in_triangle(p, q.to, q.to2, q.from2) - p;
@@ -84,20 +90,22 @@ void add_swept(State& state, const Front& exact_from, const Front& exact_to, con
   push_row(state, to, newly, {});
 }
 
-std::optional<Vec3> nearest_swept(const State& state, std::int32_t organ, Vec3 rest, double reach) {
+std::vector<Box> boxes_of_rows(const State& state) {
+  std::vector<Box> boxes;
+  for (std::size_t row = 0; row + 1 < swept_rows(state); ++row) boxes.push_back(box_of_row(state, row));
+  return boxes;
+}
+
+std::optional<Vec3> nearest_swept(const State& state, const std::vector<Box>& boxes, std::int32_t organ, Vec3 rest,
+                                  double reach) {
   std::optional<Vec3> nearest;
   double least = reach;
   const auto look_at = [&](Vec3 point) {
     if (const double distance = norm(point - rest); distance < least) least = distance, nearest = point;
   };
-  const auto row_box = [&](std::size_t row) {
-    Box box(state.swept[row * kEdgeNodes]);
-    for (std::size_t n = 1; n < kEdgeNodes; ++n) box.add(state.swept[row * kEdgeNodes + n]);
-    return box;
-  };
   for (std::size_t row = 1; row < swept_rows(state); ++row) {
-    Box box = row_box(row);
-    const Box before = row_box(row - 1);
+    Box box = row < boxes.size() ? boxes[row] : box_of_row(state, row);
+    const Box& before = boxes[row - 1];
     box.add(before.low), box.add(before.high);
     if (!box.grown(least).meets(Box(rest))) continue;
     for (std::size_t n = 0; n + 1 < kEdgeNodes; ++n) {

@@ -47,8 +47,13 @@ Vec3 stored_place(Vec3 rest);
 /// hundredths of a millimetre from the surface between them.
 void add_swept(State& state, const Front& from, const Front& to, const NewlySwept& newly);
 
-/// The point of the swept surface in an organ that is nearest to a place at rest [m]; none within `reach` [m].
-std::optional<Vec3> nearest_swept(const State& state, std::int32_t organ, Vec3 rest, double reach);
+/// Boxes around the rows of a swept surface but its last one, which may still move [m].
+std::vector<Box> boxes_of_rows(const State& state);
+
+/// The point of the swept surface in an organ that is nearest to a place at rest [m]; none within `reach` [m]. `boxes`:
+/// boxes_of_rows().
+std::optional<Vec3> nearest_swept(const State& state, const std::vector<Box>& boxes, std::int32_t organ, Vec3 rest,
+                                  double reach);
 
 /// Finds the part of the swept surface near a place.
 class SweptIndex {

@@ -151,6 +151,7 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
   const bool changes_once = !cuts && parts.choice.substeps == 1;
   if (!changes_once) parts.trial = state;
   State& current = changes_once ? state : parts.trial;
+  parts.contacts.begin_tick(current, cuts);
   if (cuts) parts.blade->begin_tick(last, inputs, tool, current);
   if (!parts.run_substeps(current, tool, report)) {
     // Nothing of a refused tick has happened.

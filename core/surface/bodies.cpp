@@ -1,13 +1,6 @@
 #include "core/surface/bodies.h"
 
 namespace ctpm::surface {
-namespace {
-
-/// Radius of a facet, in spacings (our choice): the spheres do not resolve a pressure over less.
-constexpr double kFacetRadius = 0.5;
-
-}  // namespace
-
 std::vector<Body> bodies_of(const Model& model) {
   std::vector<Body> bodies;
   if (!model.has_meeting_bodies()) return bodies;

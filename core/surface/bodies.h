@@ -9,6 +9,9 @@
 
 namespace ctpm::surface {
 
+/// Radius of a facet, in spacings (our choice): the spheres do not resolve a pressure over less.
+inline constexpr double kFacetRadius = 0.5;
+
 /// The surface of one organ as a body that touches obstacles and other bodies.
 struct Body {
   std::int32_t organ;         ///< in Model::organs

@@ -5,6 +5,8 @@
 #include <limits>
 #include <set>
 
+#include "core/surface/line_hit.h"
+
 namespace ctpm::surface {
 namespace {
 
@@ -87,7 +89,9 @@ void BodyOverlaps::find(std::size_t body, std::vector<Overlap>& overlaps) {
     if (may_meet(body, other)) look(body, other);
   for (const std::int32_t vertex : hit_vertices_) {
     const Hit& hit = hits_[std::size_t(vertex)];
-    if (hit.body == nullptr || !hit.is_exit || !is_far_at_rest(own, vertex, hit)) continue;
+    if (hit.body == nullptr || !hit.is_exit || !is_far_at_rest(own, vertex, hit) || is_hidden(own, vertex)) continue;
+    const auto& met = hit.body->surface.triangles()[std::size_t(hit.triangle)].corner;
+    if (std::all_of(std::begin(met), std::end(met), [&](std::int32_t v) { return is_hidden(*hit.body, v); })) continue;
     overlaps.push_back({own.facets.facet_of(vertex),
                         vertex,
                         hit.distance,
@@ -166,22 +170,16 @@ BodyOverlaps::Hit& BodyOverlaps::hit_of(std::size_t body, std::int32_t vertex) {
   return hit;
 }
 
-/// Updates `hit` if the line from `from` [m] meets a triangle nearer than before and nearer than `reach` [m] (Moller &
-/// Trumbore, "Fast, minimum storage ray/triangle intersection", 1997).
+/// Updates `hit` if the line from `from` [m] meets a triangle nearer than before and nearer than `reach` [m].
 void BodyOverlaps::meet(Vec3 from, double reach, Body& other, std::int32_t triangle, Hit& hit) const {
   NearSurface& surface = other.surface;
   const auto& corner = surface.triangles()[std::size_t(triangle)].corner;
   const Vec3 a = surface.place(corner[0]), b = surface.place(corner[1]), c = surface.place(corner[2]);
   if (!Box(from, from + reach * hit.inwards).meets(Box(a, b, c))) return;
-  const Vec3 ab = b - a, ac = c - a, p = cross(hit.inwards, ac);
-  const double facing = dot(ab, p);
-  if (facing == 0) return;
-  const Vec3 t = from - a, q = cross(t, ab);
-  const double v = dot(t, p) / facing, w = dot(hit.inwards, q) / facing, distance = dot(ac, q) / facing;
-  if (v < 0 || w < 0 || v + w > 1 || distance <= 0 || distance > reach || distance >= hit.distance) return;
-  hit.distance = distance, hit.body = &other, hit.triangle = triangle;
-  hit.at[0] = 1 - v - w, hit.at[1] = v, hit.at[2] = w;
-  hit.is_exit = facing < 0;
+  const std::optional<LineHit> met = meet_line(from, hit.inwards, reach, a, b, c);
+  if (!met || met->distance >= hit.distance) return;
+  hit.distance = met->distance, hit.body = &other, hit.triangle = triangle, hit.is_exit = met->is_exit;
+  std::copy(std::begin(met->at), std::end(met->at), std::begin(hit.at));
 }
 
 /// Whether what a vertex meets is no part of its own surroundings or of its organ's far side.

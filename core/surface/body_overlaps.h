@@ -41,6 +41,10 @@ class BodyOverlaps {
   /// may have come since then; only near those that did are overlaps of up to a spacing looked for.
   void begin(const StateView& state, double h);
 
+  /// Vertices that do not count from now on, numbered through all organs (vertex_count, or empty: all count). It must
+  /// outlive this.
+  void hide(const std::vector<std::uint8_t>& vertices) { hidden_ = &vertices; }
+
   /// Adds the overlaps of `bodies[body]`.
   void find(std::size_t body, std::vector<Overlap>& overlaps);
 
@@ -61,6 +65,9 @@ class BodyOverlaps {
     std::vector<std::int32_t> first{0}, facet;
   };
 
+  bool is_hidden(const Body& body, std::int32_t vertex) const {
+    return hidden_ != nullptr && !hidden_->empty() && (*hidden_)[std::size_t(body.first_vertex + vertex)] != 0;
+  }
   bool may_meet(std::size_t body, std::size_t other) const;
   void set_reach(std::size_t body, std::size_t other);
   void look(std::size_t body, std::size_t other);
@@ -76,6 +83,7 @@ class BodyOverlaps {
   std::vector<Hit> hits_;                   ///< of the vertices of one body
   std::vector<std::int32_t> hit_vertices_;  ///< with a hit, or looked at without one
   std::uint32_t round_ = 0;
+  const std::vector<std::uint8_t>* hidden_ = nullptr;
   bool reaches_far_ = true;               ///< everywhere
   std::vector<double> way_;               ///< that each body may have come in the step [m]
   std::vector<std::uint8_t> is_touched_;  ///< facets, by their first vertices through all organs

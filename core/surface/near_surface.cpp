@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace ctpm::surface {
 namespace {
@@ -26,13 +27,26 @@ std::uint32_t spread_bits(std::uint32_t n) {
 }  // namespace
 
 NearSurface::NearSurface(const Model& model, std::size_t first_organ, std::size_t last_organ)
-    : sphere_rest_(model.rest_position),
-      first_of_all_(first_organ < last_organ ? std::size_t(model.organs[first_organ].first) : 0),
-      last_of_all_(first_organ < last_organ
-                       ? std::size_t(model.organs[last_organ - 1].first + model.organs[last_organ - 1].count)
-                       : 0) {
+    : sphere_rest_(model.rest_position) {
   first_.push_back(0);
-  for (std::size_t i = first_organ; i < last_organ; ++i) add_organ(model.surfaces[i], model.organs[i]);
+  for (std::size_t i = first_organ; i < last_organ; ++i) {
+    add_organ(model.surfaces[i], model.organs[i]);
+    for (Index s = 0; s < model.organs[i].count; ++s) spheres_.push_back(model.organs[i].first + s);
+  }
+  find_bounds();
+}
+
+NearSurface::NearSurface(const Model& model, std::size_t organ, const Surface& part)
+    : sphere_rest_(model.rest_position) {
+  first_.push_back(0);
+  add_organ(part, model.organs[organ]);
+  spheres_ = sphere_;
+  std::sort(spheres_.begin(), spheres_.end());
+  spheres_.erase(std::unique(spheres_.begin(), spheres_.end()), spheres_.end());
+  find_bounds();
+}
+
+void NearSurface::find_bounds() {
   if (triangles_.empty()) return;
   sort_triangles();
   const auto count = Index(triangles_.size());
@@ -45,10 +59,11 @@ NearSurface::NearSurface(const Model& model, std::size_t first_organ, std::size_
     const Index last = std::min(p + kPatchesPerGroup, patches);
     groups_.push_back(bound_of(p, last, patches_[std::size_t(p)].first, patches_[std::size_t(last) - 1].last));
   }
+  patch_places_.resize(patches_.size()), group_places_.resize(groups_.size());
   rest_box_ = Box(rest_.front());
   for (const Vec3& p : rest_) rest_box_.add(p);
   for (const Bound& group : groups_) widen_ = std::max(widen_, group.widen);
-  moved_.resize(last_of_all_ - first_of_all_);
+  moved_.resize(spheres_.size());
   placed_.resize(vertex_count()), placed_in_.assign(vertex_count(), 0);
 }
 
@@ -96,28 +111,32 @@ void NearSurface::sort_triangles() {
 
 NearSurface::Bound NearSurface::bound_of(Index first, Index last, Index first_triangle, Index last_triangle) {
   std::vector<Index> spheres;
+  std::vector<std::uint8_t> is_known(std::size_t(spheres_.back() - spheres_.front()) + 1, 0);
   double widen = 0;
   Box box(rest(triangles_[std::size_t(first_triangle)].corner[0]));
   for (Index t = first_triangle; t < last_triangle; ++t)
     for (const Index corner : triangles_[std::size_t(t)].corner) {
       const Follower follows = follower(corner);
       box.add(rest(corner));
-      for (const Index sphere : follows.sphere) spheres.push_back(sphere - Index(first_of_all_));
+      for (const Index sphere : follows.sphere)
+        if (!std::exchange(is_known[std::size_t(sphere - spheres_.front())], std::uint8_t(1)))
+          spheres.push_back(sphere);
       double negative = 0;
       for (const double w : follows.weight) negative -= std::min(w, 0.0);
       widen = std::max(widen, negative);
     }
   std::sort(spheres.begin(), spheres.end());
-  spheres.erase(std::unique(spheres.begin(), spheres.end()), spheres.end());
   const auto begin = Index(bound_spheres_.size());
-  bound_spheres_.insert(bound_spheres_.end(), spheres.begin(), spheres.end());
+  for (const Index sphere : spheres)
+    bound_spheres_.push_back(Index(std::lower_bound(spheres_.begin(), spheres_.end(), sphere) - spheres_.begin()));
   return {first, last, begin, Index(bound_spheres_.size()), box, widen};
 }
 
 void NearSurface::begin(const Vec3Array& position) {
   position_ = &position, ++round_;
   if (empty()) return;
-  for (std::size_t i = first_of_all_; i < last_of_all_; ++i) moved_[i - first_of_all_] = position[i] - sphere_rest_[i];
+  for (std::size_t i = 0; i < spheres_.size(); ++i)
+    moved_[i] = position[std::size_t(spheres_[i])] - sphere_rest_[std::size_t(spheres_[i])];
   Box range(moved_.front());
   for (const Vec3& by : moved_) range.add(by);
   displacements_ = widened(range, widen_);

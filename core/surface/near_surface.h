@@ -61,6 +61,8 @@ class NearSurface {
 
   /// Surfaces of organs [first_organ, last_organ). `model` must outlive the NearSurface.
   NearSurface(const Model& model, std::size_t first_organ, std::size_t last_organ);
+  /// Part of the surface of an organ; its cost is that of the spheres that it follows.
+  NearSurface(const Model& model, std::size_t organ, const Surface& part);
 
   bool empty() const { return triangles_.empty(); }
   std::size_t vertex_count() const { return first_.empty() ? 0 : first_.size() - 1; }
@@ -92,22 +94,33 @@ class NearSurface {
   void near(const Region& region, Visit&& visit);
 
  private:
+  /// Where a patch or group is.
+  struct Place {
+    std::uint32_t round = 0;  ///< in which it was found
+    Box box{Vec3{}};          ///< [m]
+  };
+  const Box& place_of(const Bound& bound, Place& place) const {
+    if (place.round != round_) place = {round_, bound.rest.moved(displacements(bound))};
+    return place.box;
+  }
   void add_organ(const Surface& surface, const OrganRange& organ);
+  void find_bounds();
   void sort_triangles();
   Bound bound_of(Index first, Index last, Index first_triangle, Index last_triangle);
 
   const Vec3Array& sphere_rest_;
-  std::size_t first_of_all_, last_of_all_;  ///< spheres of the organs
-  std::vector<Index> first_, sphere_;       ///< binding of all vertices, as in SurfaceBinding
+  std::vector<Index> spheres_;         ///< that bounds are about, ascending: all of the organs, or those followed
+  std::vector<Index> first_, sphere_;  ///< binding of all vertices, as in SurfaceBinding
   std::vector<double> weight_;
   std::vector<Vec3> rest_;           ///< [m]
   std::vector<Triangle> triangles_;  ///< by patch
   std::vector<Bound> patches_, groups_;
-  std::vector<Index> bound_spheres_;  ///< counted from first_of_all_
+  std::vector<Place> patch_places_, group_places_;
+  std::vector<Index> bound_spheres_;  ///< in spheres_
   Box rest_box_{Vec3{}};
   double widen_ = 0;                     ///< the largest of all bounds
   const Vec3Array* position_ = nullptr;  ///< of the present round
-  std::vector<Vec3> moved_;              ///< displacements of the spheres in the present round [m]
+  std::vector<Vec3> moved_;              ///< displacements of spheres_ in the present round [m]
   Box displacements_{Vec3{}};
   std::vector<Vec3> placed_;              ///< positions of the vertices that the present round placed [m]
   std::vector<std::uint32_t> placed_in_;  ///< round that placed a vertex
@@ -118,11 +131,12 @@ template <class Region, class Visit>
 void NearSurface::near(const Region& region, Visit&& visit) {
   if (groups_.empty()) return;
   for (const Bound& group : groups_) {
-    if (!region.meets(group.rest.moved(displacements_)) || !region.meets(group.rest.moved(displacements(group))))
+    if (!region.meets(group.rest.moved(displacements_)) ||
+        !region.meets(place_of(group, group_places_[std::size_t(&group - groups_.data())])))
       continue;
     for (Index p = group.first; p < group.last; ++p) {
       const Bound& patch = patches_[std::size_t(p)];
-      if (!region.meets(patch.rest.moved(displacements(patch)))) continue;
+      if (!region.meets(place_of(patch, patch_places_[std::size_t(p)]))) continue;
       for (Index t = patch.first; t < patch.last; ++t) {
         const Triangle& triangle = triangles_[std::size_t(t)];
         const Vec3 corners[3] = {place(triangle.corner[0]), place(triangle.corner[1]), place(triangle.corner[2])};

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/cutbody/cut_points.h"
 #include "core/model/fields.h"
 #include "recordings/internal/extent_check.h"
 #include "recordings/internal/size_check.h"
@@ -70,7 +71,7 @@ std::size_t count_of(const Model& model, EntryOf entry) {
     case EntryOf::blade_end:
       return 2;
     case EntryOf::touchable:
-      return model.touchable_count() * (2 + model.obstacles.size());
+      return std::size_t(cutbody::CutPoints(model).end());
     case EntryOf::tissue_cell:
       return model.tissue_cells.size();
   }

@@ -1,7 +1,6 @@
 // Cuts of every kind through the shipped organs at rest: what is drawn is closed, whole, and where the blade was.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -9,9 +8,8 @@
 #include "core/cutbody/cut_body.h"
 #include "core/cutting/blade_geometry.h"
 #include "core/cutting/swept_surface.h"
-#include "core/surface/surface.h"
-#include "importers/mesh.h"
 #include "studio/fidelity/recipes.h"
+#include "studio/fidelity/topology.h"
 #include "studio/loading/loaded_scene.h"
 
 namespace ctpm::fidelity {
@@ -96,17 +94,6 @@ State cut_along(const Model& model, const std::vector<Way>& ways) {
   return state;
 }
 
-void count_topology(const Surface& surface, CutsResult::Row& row) {
-  const std::vector<std::int32_t> number = surface::welded(surface);
-  std::vector<std::array<std::int32_t, 3>> triangle;
-  for (const auto& t : surface.triangle) {
-    const auto [a, b, c] = std::array{number[std::size_t(t[0])], number[std::size_t(t[1])], number[std::size_t(t[2])]};
-    if (a != b && b != c && c != a) triangle.push_back({a, b, c});
-  }
-  const importers::MeshCounts counts = importers::count_mesh(surface.vertex, triangle);
-  row.open_edges = int(counts.open_edges), row.components = int(counts.parts);
-}
-
 /// Largest distance of a wall's vertices from the swept surface [m].
 double farthest_wall(const cutbody::CutBody& body, const State& state) {
   double farthest = 0;
@@ -156,7 +143,8 @@ Result<CutsResult> measure_cuts(const std::string& shipped, bool is_quick) {
         cutbody::CutBody body(*model, 0);
         (void)body.update(state);
         row.pieces = body.piece_count(), row.triangles = body.surface().triangle.size();
-        count_topology(body.surface(), row);
+        const Topology topology = topology_of(body.surface());
+        row.components = topology.components, row.open_edges = topology.open_edges;
         row.off = farthest_wall(body, state) / place.spacing;
       });
       result.rows.insert(result.rows.end(), rows.begin(), rows.end());

@@ -166,6 +166,24 @@ struct CutsResult {
 Result<CutsResult> measure_cuts(const std::string& shipped, bool is_quick);
 Chapter chapter_of(const CutsResult& result);
 
+/// Blocks of liver of which a blade cuts pieces, which fall on the ground.
+struct PiecesResult {
+  struct Row {
+    std::string cut;
+    double radius = 0;   ///< [m]
+    int pieces = 0;      ///< that should be there
+    int of_tissue = 0;   ///< of spheres, when all is at rest
+    int came_loose = 0;  ///< as ticks told
+    int wrong = 0;       ///< looks at which the drawn surface had other components than there were pieces, or was open
+    int looks = 0;
+    double speed = 0, inside = 0;  ///< at rest: of the fastest sphere [m/s]; of the surface below the ground [m]
+    bool on_ground = false;        ///< every piece but the anchored one lies on it
+  };
+  std::vector<Row> rows;
+};
+Result<PiecesResult> measure_pieces(double radius);
+Chapter chapter_of(const PiecesResult& result);
+
 /// A ball of 10 mm, 4 mm deep, that moves sideways by 0.3 mm, far below the cone, waits for 10 s, and then slips.
 struct GripResult {
   struct Sample {

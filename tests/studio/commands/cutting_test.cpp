@@ -101,6 +101,7 @@ TEST(CuttingSession, SeversWhatTheBladeSweptAndLeavesNoSphereWithoutTissue) {
   // Elements are crossed where the swept surface is, or outside the organ within a spacing of its end.
   const cutting::RestMap map(model);
   const cutting::TissueDepth depth(model, map);
+  const std::vector<Box> boxes = cutting::boxes_of_rows(state);
   const double spacing = model.organs[0].spacing;
   std::vector<int> before(model.sphere_count(), 0), after(model.sphere_count(), 0);
   int severed = 0;
@@ -114,7 +115,7 @@ TEST(CuttingSession, SeversWhatTheBladeSweptAndLeavesNoSphereWithoutTissue) {
     const Vec3 p = model.rest_position[a], q = model.rest_position[b];
     const Vec3 crossing = p + cutting::crossing_of(state.axial_crossing[e]) * (q - p);
     const double far = depth.at(0, crossing) > 0 ? cutting::kCrossingUnit * spacing + 1e-4 : 1.5 * spacing;
-    EXPECT_TRUE(cutting::nearest_swept(state, 0, crossing, far)) << e;
+    EXPECT_TRUE(cutting::nearest_swept(state, boxes, 0, crossing, far)) << e;
     ++severed;
   }
   EXPECT_GT(severed, 100);
@@ -127,7 +128,7 @@ TEST(CuttingSession, SeversWhatTheBladeSweptAndLeavesNoSphereWithoutTissue) {
   for (std::size_t i = 0; i < model.sphere_count(); ++i) {
     const std::int32_t home = grid.node_of_sphere(std::int32_t(i));
     const Vec3 p = model.rest_position[i];
-    const auto swept = cutting::nearest_swept(state, 0, p, 0.4 * spacing);
+    const auto swept = cutting::nearest_swept(state, boxes, 0, p, 0.4 * spacing);
     if (home < 0 || depth.at(0, p) > 0 || !swept || std::abs(p.y - swept->y) < 1e-4) continue;
     EXPECT_EQ(p.y > swept->y, grid.rest(home).y > swept->y) << "sphere " << i;
     ++looked_at;

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/cutbody/cut_patches.h"
+#include "core/cutbody/cut_points.h"
+#include "core/model/model.h"
+#include "core/model/state.h"
+
+namespace ctpm::contact {
+
+/// The surfaces that cuts open, as they are touched: patches (cutbody::CutPatches) that stand for parts of the organs'
+/// own surfaces near a cut. A cut is touched when the blade has left it: while a blade goes on cutting, the surface
+/// that it sweeps is not.
+class CutSurfaces {
+ public:
+  /// `model` must outlive the CutSurfaces. Nothing is built until something is cut, or a blade is held.
+  explicit CutSurfaces(const Model& model);
+
+  /// Follows the cuts of `state` at the start of a tick. `cuts`: a blade is held.
+  void begin_tick(const State& state, bool cuts);
+
+  /// Whether anything that can be touched is cut.
+  bool any() const { return is_cut_; }
+  const cutbody::CutPoints& points() const { return points_; }
+  /// Number in State::touched of a patch's first vertex.
+  std::int32_t first_point(std::int32_t kind, const cutbody::CutPatch& patch) const {
+    return points_.at(kind, std::size_t(patch.body.organ), patch.block) + patch.body.first_vertex;
+  }
+
+  /// For each vertex through all organs, whether patches stand there for the organ's own surface (vertex_count, or
+  /// empty).
+  const std::vector<std::uint8_t>& hidden() const { return hidden_; }
+  /// Whether they do at one of them.
+  bool hides(std::int32_t vertex) const { return is_cut_ && hidden_[std::size_t(vertex)] != 0; }
+  /// The same at a place of its surface at rest.
+  bool covers(std::size_t organ, Vec3 rest) const { return organs_[organ] && organs_[organ]->covers(rest); }
+
+  /// How often what is cut has changed.
+  std::uint32_t version() const { return version_; }
+  /// Whether the cuts of an organ are touched and leave more than one piece.
+  bool has_pieces(std::size_t organ) const { return is_cut_ && organs_[organ] && organs_[organ]->has_pieces(); }
+  /// Lowest node of the piece that each sphere of an organ belongs to; see cutbody::CutPatches. Only where it is cut.
+  const std::vector<std::int32_t>& piece_of_sphere(std::size_t organ) const {
+    return organs_[organ]->piece_of_sphere();
+  }
+
+  /// Begins a round with the spheres at `position` [m], which must outlive it.
+  void begin(const Vec3Array& position);
+  /// Calls `visit(patch)` for the patches that may meet `region`, in a fixed order.
+  template <class Region, class Visit>
+  void near(const Region& region, Visit&& visit) {
+    if (!is_cut_) return;
+    for (auto& organ : organs_)
+      if (organ) organ->near(region, visit);
+  }
+  /// The same for one organ.
+  template <class Region, class Visit>
+  void near(std::size_t organ, const Region& region, Visit&& visit) {
+    if (is_cut_ && organs_[organ]) organs_[organ]->near(region, visit);
+  }
+  /// The patch that a point of a cut belongs to; null: it is not there any more.
+  cutbody::CutPatch* patch(const cutbody::CutPoints::Place& place);
+
+ private:
+  void find_hidden();
+
+  const Model& model_;
+  cutbody::CutPoints points_;
+  std::vector<std::optional<cutbody::CutPatches>> organs_;  ///< empty where an organ's cuts are not touched
+  bool is_cut_ = false;
+  std::uint32_t version_ = 0;
+  std::vector<std::uint8_t> hidden_;  ///< (vertex_count through all organs, or empty)
+};
+
+}  // namespace ctpm::contact

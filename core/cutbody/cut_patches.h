@@ -1,0 +1,130 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/cutbody/cut_grid.h"
+#include "core/model/box.h"
+#include "core/model/model.h"
+#include "core/model/state.h"
+#include "core/surface/bodies.h"
+
+namespace ctpm::cutbody {
+
+/// What cuts make of the surface of one piece of tissue in one block of the grid, as a body that is touched.
+struct CutPatch {
+  /// A vertex of another wall, or of the same one.
+  struct Opposite {
+    CutPatch* patch = nullptr;
+    std::int32_t vertex = -1;
+  };
+
+  surface::Body body;  ///< its first vertex is counted within the block
+  std::int32_t block;
+  std::int32_t piece;                ///< lowest node of the grid that is in it
+  std::int32_t first_wall;           ///< the first of the vertices that belong to walls
+  std::vector<Opposite> opposite{};  ///< at the place of a vertex at rest; a vertex is its own where both walls end
+
+  /// The vertex at which a ball's pressure on each vertex is gathered: the middle one of those around it that face the
+  /// same way. The grid is finer than what the spheres resolve.
+  std::vector<std::int32_t> gathers_at{};
+
+  /// How far the wall at a vertex is from the other one [m]; 0 where they touch or overlap, infinite where nothing is
+  /// on the other side.
+  double opening(std::int32_t vertex);
+};
+
+/// The surface of an organ near its cuts as CutBody draws it, in patches that are made when they are asked for, one for
+/// each piece of tissue in each block of the grid that is within two blocks of a cut: covers(). Elsewhere the organ's
+/// own surface stands. Both fit together: no part of the body's surface is in both or in none. A function of the Model
+/// and of the swept surface alone, however it was followed.
+class CutPatches {
+ public:
+  using Index = CutGrid::Index;
+
+  /// `model` must outlive the CutPatches. The organ must have a surface.
+  CutPatches(const Model& model, std::size_t organ);
+  ~CutPatches();
+  CutPatches(CutPatches&&) noexcept;
+
+  /// Does at once what the first cut needs: a grid over the organ.
+  void prepare();
+
+  /// Follows the first `rows` rows of the swept surface of `state`. Returns whether anything changed.
+  bool follow(const State& state, std::size_t rows);
+  bool is_cut() const { return !covered_.empty(); }
+  /// For each sphere of the organ the lowest node of its piece; -1: it is in none (sphere_count, or empty).
+  const std::vector<Index>& piece_of_sphere() const { return piece_of_sphere_; }
+  /// Whether the cuts leave more than one piece.
+  bool has_pieces() const { return has_pieces_; }
+
+  /// Whether patches stand for the organ's own surface at a place at rest.
+  bool covers(Vec3 rest) const;
+
+  /// Begins a round with the spheres at `position` [m], which must outlive it.
+  void begin(const Vec3Array& position);
+  /// Calls `visit(patch)` for the patches that may meet `region`, by ascending block. `region`: anything with
+  /// `meets(Box)`.
+  template <class Region, class Visit>
+  void near(const Region& region, Visit&& visit);
+  /// The patch that a vertex of a block is in; null: there is none.
+  CutPatch* patch(Index block, std::int32_t vertex);
+
+ private:
+  struct Parts;
+  /// A block that is covered.
+  struct Covered {
+    Index block, bin;
+    Box rest{Vec3{}};  ///< around it [m]
+    bool is_made = false;
+    std::vector<std::unique_ptr<CutPatch>> patches{};
+    std::uint32_t round = 0;  ///< in which they were placed
+  };
+  /// Where some spheres are, from rest.
+  struct Range {
+    bool any = false;
+    Box box{Vec3{}};
+    void add(Vec3 by) {
+      if (any) return box.add(by);
+      any = true, box = Box(by);
+    }
+    void add(const Range& other) {
+      if (other.any) add(other.box.low), add(other.box.high);
+    }
+  };
+  void cover();
+  void find_displacements();
+  std::vector<std::unique_ptr<CutPatch>>& made(Covered& covered);
+  std::vector<std::unique_ptr<CutPatch>> make(Index block);
+
+  const Model& model_;
+  const std::size_t organ_;
+  std::unique_ptr<Parts> parts_;  ///< made by prepare()
+  std::vector<Covered> covered_;  ///< by block
+  std::vector<Index> piece_;      ///< of each node of the grid
+  std::vector<Index> piece_of_sphere_;
+  bool has_pieces_ = false;
+  std::vector<std::int32_t> index_of_;  ///< of a block in covered_; -1: not covered (block_count, or empty)
+  Box all_{Vec3{}};                     ///< around them at rest [m]
+  std::uint32_t round_ = 0, found_in_ = 0;
+  const Vec3Array* position_ = nullptr;
+  /// Of each bin in round `found_in_`: where its spheres are, and within which box the displacements of what is in it
+  /// lie [m].
+  std::vector<Range> ranges_;
+  std::vector<Box> displacements_;
+  Box all_displacements_{Vec3{}};
+};
+
+template <class Region, class Visit>
+void CutPatches::near(const Region& region, Visit&& visit) {
+  if (!is_cut()) return;
+  if (found_in_ != round_) find_displacements();
+  if (!region.meets(all_.moved(all_displacements_))) return;
+  for (Covered& covered : covered_) {
+    if (!region.meets(covered.rest.moved(displacements_[std::size_t(covered.bin)]))) continue;
+    for (const auto& patch : made(covered)) visit(*patch);
+  }
+}
+
+}  // namespace ctpm::cutbody

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+
+#include "core/cutbody/cut_body.h"
+#include "core/surface/surface.h"
+#include "tests/core/blade_blocks.h"
+#include "tests/core/skinned_block.h"
+
+namespace ctpm::testing {
+
+/// Cuts the first organ along the way of a front from 0 to 1: severs its elements and adds to the swept surface.
+inline void cut_along(const Model& model, const std::function<cutting::Front(double)>& way, State& state) {
+  constexpr int kSteps = 60;
+  cutting::NewlySwept newly;
+  newly.fill(1), newly.back() = 0;
+  std::vector<cutting::Crossing> crossings;
+  for (int i = 0; i < kSteps; ++i) {
+    const cutting::Front from = way(double(i) / kSteps), to = way(double(i + 1) / kSteps);
+    (void)sever(model, from, to, state, crossings);
+    cutting::add_swept(state, from, to, newly);
+  }
+}
+
+/// A block with a surface, a ball and a scalpel.
+inline Model block_to_cut(int ni, int nj, int nk, double ball_radius,
+                          network::Structure structure = network::Structure::ctpm) {
+  network::Material material = liver_material();
+  material.viscosity = 1e5;
+  Model model = make_skinned_block(ni, nj, nk, structure, 0.003, material, network::Tiling::two_spheres);
+  model.tools = {ball(ball_radius), scalpel(0.1)};
+  return model;
+}
+
+/// The surface after the cuts of `state`, and where its vertices are.
+struct DrawnCut {
+  Surface surface;
+  std::vector<Vec3> vertex;
+  std::size_t outer_triangles = 0;
+  int pieces = 0;
+
+  DrawnCut(const Model& model, const State& state) {
+    cutbody::CutBody body(model, 0);
+    (void)body.update(state);
+    surface = body.surface(), outer_triangles = body.outer_triangle_count(), pieces = body.piece_count();
+    surface::deform_surface(surface, state.position, model.organs[0].first, vertex);
+  }
+};
+
+}  // namespace ctpm::testing
