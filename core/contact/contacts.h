@@ -59,6 +59,8 @@ class Contacts {
   /// The pin's contact in a step of `h` [s] from `position` [m] to the hand at `share` of the tick.
   static Pin pin(const HeldTool& tool, const Vec3Array& position, double share, double h);
 
+  /// Does at once what the first tick with a blade needs.
+  void prepare() { cuts_.prepare(); }
   /// Follows what is cut, at the start of a tick from `state`. `cuts`: a blade is held.
   void begin_tick(const State& state, bool cuts) { cuts_.begin_tick(state, cuts); }
 

@@ -36,14 +36,19 @@ CutSurfaces::CutSurfaces(const Model& model) : model_(model), points_(model) {
   }
 }
 
+void CutSurfaces::prepare() {
+  for (auto& organ : organs_)
+    if (organ) organ->prepare();
+}
+
 void CutSurfaces::begin_tick(const State& state, bool cuts) {
   // Nothing but tissue and obstacles touches cuts while a blade is held.
   const bool follows = !cuts || model_.has_meeting_bodies();
   const std::size_t rows = rows_left_behind(state, cuts);
   bool changed = false;
+  if (cuts) prepare();
   for (auto& organ : organs_) {
     if (!organ) continue;
-    if (cuts) organ->prepare();
     if (follows && organ->follow(state, rows)) changed = true;
   }
   if (!changed) return;

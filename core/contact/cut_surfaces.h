@@ -19,6 +19,9 @@ class CutSurfaces {
   /// `model` must outlive the CutSurfaces. Nothing is built until something is cut, or a blade is held.
   explicit CutSurfaces(const Model& model);
 
+  /// Builds at once what the first tick with a blade needs.
+  void prepare();
+
   /// Follows the cuts of `state` at the start of a tick. `cuts`: a blade is held.
   void begin_tick(const State& state, bool cuts);
 

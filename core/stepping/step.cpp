@@ -135,6 +135,10 @@ Stepper::Stepper(Stepper&&) noexcept = default;
 
 const IntegratorChoice& Stepper::integrator() const { return parts_->choice; }
 
+void Stepper::prepare() {
+  if (model_.has_scalpel()) parts_->contacts.prepare();
+}
+
 StepReport Stepper::step(State& state, const Inputs& inputs) {
   Parts& parts = *parts_;
   StepReport report;

@@ -57,6 +57,9 @@ class Stepper {
   ~Stepper();
   Stepper(Stepper&&) noexcept;
 
+  /// Does at once what the first tick with a scalpel would have to do, which may take a tenth of a second.
+  void prepare();
+
   /// One tick. The same Model, State and Inputs give the same bits on every machine.
   StepReport step(State& state, const Inputs& inputs);
 

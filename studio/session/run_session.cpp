@@ -90,6 +90,7 @@ int threads_for(const Model& model) {
 RunOutcome run_session(const Model& model, State& state, sources::InputSource& source,
                        recordings::SessionWriter& writer, const RunOptions& options) {
   stepping::Stepper stepper(model, {.threads = options.threads});
+  if (options.in_real_time) stepper.prepare();
   EventWatch watch(model, options.damage_force, [&](recordings::Event event) { writer.event(std::move(event)); });
   FailureWatch failure(writer, options.tell);
   RunOutcome outcome;
