@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cutting/beyond_skin.h"
 #include "core/cutting/blade_geometry.h"
 #include "core/cutting/lattice_frame.h"
 
@@ -83,35 +84,118 @@ void CutGrid::find_surface() {
     }
 }
 
-/// The lattice covers the organ: a sphere outside the tissue belongs to the nearest node inside.
+/// The lattice covers the organ: a sphere outside the tissue belongs to a node inside.
 void CutGrid::place_spheres(const Model& model, const OrganRange& organ) {
-  constexpr Index kReach = 2 * kPerSpacing;
-  const auto nodes = std::size_t(count());
-  first_sphere_.assign(nodes + 1, 0);
   for (Index s = 0; s < organ.count; ++s) {
     const LatticeCell cell = model.cell[std::size_t(organ.first + s)];
-    Node middle;
-    for (std::size_t a = 0; a < 3; ++a) middle[a] = kPerSpacing * (cell[a] - first_cell_[a] + 1);
-    Index best = -1, least = 3 * kReach * kReach;
-    for (Index k = -kReach; k <= kReach; ++k)
-      for (Index j = -kReach; j <= kReach; ++j)
-        for (Index i = -kReach; i <= kReach; ++i) {
-          const Node n{middle[0] + i, middle[1] + j, middle[2] + k};
-          const Index distance = i * i + j * j + k * k;
-          if (distance < least && contains(n) && in_tissue(at(n))) least = distance, best = at(n);
-        }
-    node_of_sphere_.push_back(best);
-    if (best >= 0) ++first_sphere_[std::size_t(best) + 1];
+    Node node;
+    for (std::size_t a = 0; a < 3; ++a) node[a] = kPerSpacing * (cell[a] - first_cell_[a] + 1);
+    own_node_.push_back(at(node));
+    node_of_sphere_.push_back(find_home(s));
   }
+  index_spheres();
+}
+
+/// The node in tissue that is the fewest edges from a sphere, none of which the swept surface crosses; of such nodes
+/// the nearest one.
+CutGrid::Index CutGrid::find_home(Index sphere) const {
+  const Index own = own_node_[std::size_t(sphere)];
+  if (in_tissue(own)) return own;
+  constexpr Index kReach = 2 * kPerSpacing;
+  const auto squared_distance = [&](Index i) {
+    const Node p = node(own), q = node(i);
+    Index sum = 0;
+    for (std::size_t a = 0; a < 3; ++a) sum += (q[a] - p[a]) * (q[a] - p[a]);
+    return sum;
+  };
+  std::vector<Index> front{own}, seen{own};
+  for (Index hops = 0; hops < kReach && !front.empty(); ++hops) {
+    std::vector<Index> next;
+    Index best = -1;
+    const auto go = [&](Index to, std::size_t by) {
+      if (cuts_.contains(by) || outside_.contains(by) || std::find(seen.begin(), seen.end(), to) != seen.end()) return;
+      seen.push_back(to), next.push_back(to);
+      if (!in_tissue(to)) return;
+      if (best < 0 || std::pair(squared_distance(to), to) < std::pair(squared_distance(best), best)) best = to;
+    };
+    for (const Index from : front) {
+      const Node here = node(from);
+      for (int d = 1; d < kDirections; ++d) {
+        const Node up{here[0] + (d & 1), here[1] + (d >> 1 & 1), here[2] + (d >> 2)},
+            down{here[0] - (d & 1), here[1] - (d >> 1 & 1), here[2] - (d >> 2)};
+        if (contains(up)) go(at(up), edge(from, d));
+        if (contains(down)) go(at(down), edge(at(down), d));
+      }
+    }
+    if (best >= 0) return best;
+    front = std::move(next);
+  }
+  return -1;
+}
+
+/// Finds the homes again of spheres outside the tissue near edges whose crossings changed.
+void CutGrid::find_homes_outside() {
+  constexpr Index kReach = 2 * kPerSpacing;
+  const NodeBox changed = box_;
+  bool moved = false;
+  for (Index s = 0; s < Index(own_node_.size()); ++s) {
+    const Node own = node(own_node_[std::size_t(s)]);
+    bool is_near = !in_tissue(own_node_[std::size_t(s)]);
+    for (std::size_t a = 0; a < 3; ++a)
+      is_near = is_near && own[a] >= changed.low[a] - kReach && own[a] <= changed.high[a] + kReach;
+    if (!is_near) continue;
+    Index& home = node_of_sphere_[std::size_t(s)];
+    const Index found = find_home(s);
+    if (found == home) continue;
+    for (const Index i : {home, found})
+      if (i >= 0) box_.add(node(i));
+    home = found, moved = changed_ = true;
+  }
+  if (moved) index_spheres();
+}
+
+void CutGrid::index_spheres() {
+  const auto nodes = std::size_t(count());
+  first_sphere_.assign(nodes + 1, 0);
+  for (const Index home : node_of_sphere_)
+    if (home >= 0) ++first_sphere_[std::size_t(home) + 1];
   for (std::size_t i = 0; i < nodes; ++i) first_sphere_[i + 1] += first_sphere_[i];
   sphere_.resize(std::size_t(first_sphere_[nodes]));
   std::vector<Index> next(first_sphere_.begin(), first_sphere_.end() - 1);
-  for (Index s = 0; s < organ.count; ++s)
+  for (Index s = 0; s < Index(node_of_sphere_.size()); ++s)
     if (const Index n = node_of_sphere_[std::size_t(s)]; n >= 0) sphere_[std::size_t(next[std::size_t(n)]++)] = s;
 }
 
-/// Severs the edges in tissue that a triangle of the swept surface crosses.
-void CutGrid::sever(Vec3 a, Vec3 b, Vec3 c, bool may_move) {
+/// Severs what a row of the swept surface crosses.
+void CutGrid::sever_row(const State& state, std::size_t row) {
+  cutting::Front from, to;
+  cutting::NewlySwept newly{};
+  std::array<bool, kEdgeNodes> is_outside{};
+  bool any = false;
+  for (std::size_t n = 0; n < kEdgeNodes; ++n) {
+    from[n] = state.swept[(row - 1) * kEdgeNodes + n], to[n] = state.swept[row * kEdgeNodes + n];
+    newly[n] = state.swept_organ[row * kEdgeNodes + n];
+    if (newly[n] != organ_ + 1) newly[n] = 0;
+    any = any || newly[n] != 0;
+  }
+  if (!any) return;
+  const auto organ = std::size_t(organ_);
+  for (std::size_t n = 0; n < kEdgeNodes; ++n)
+    if (newly[n] != 0 || (n > 0 && newly[n - 1] != 0))
+      is_outside[n] = depth_.at(organ, from[n]) <= 0 && depth_.at(organ, to[n]) <= 0;
+  const bool may_move = row + 1 == cutting::swept_rows(state);
+  for (const bool outside : {false, true}) {
+    for (std::size_t n = 0; n + 1 < kEdgeNodes; ++n) {
+      if (newly[n] == 0) continue;
+      sever(from[n], from[n + 1], to[n], outside, may_move), sever(from[n + 1], to[n + 1], to[n], outside, may_move);
+    }
+    for (cutting::Front* front : {&from, &to})
+      cutting::go_on_outside(depth_, organ, newly, is_outside, kPerSpacing * step_, *front);
+  }
+}
+
+/// Severs the edges in tissue that a triangle of the swept surface crosses, or those that leave it or are outside.
+void CutGrid::sever(Vec3 a, Vec3 b, Vec3 c, bool outside, bool may_move) {
   Node from, to;
   double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
   for (const Vec3 corner : {a, b, c})
@@ -130,10 +214,14 @@ void CutGrid::sever(Vec3 a, Vec3 b, Vec3 c, bool may_move) {
           const Node n{i, j, k}, other{i + (d & 1), j + (d >> 1 & 1), k + (d >> 2)};
           if (!contains(other)) continue;
           const Index p = at(n), q = at(other);
-          if (!in_tissue(p) && !in_tissue(q)) continue;
+          const int ends_in = int(in_tissue(p)) + int(in_tissue(q));
+          if (outside ? ends_in == 2 : ends_in == 0) continue;
           const double along = crossing_of(rest(p), rest(q), a, b, c);
           if (along < 0) continue;
-          sever_edge(p, d, std::clamp(float(along), kFromEnd, 1 - kFromEnd), cross(b - a, c - a), may_move);
+          if (outside)
+            sever_outside(p, d, may_move);
+          else
+            sever_edge(p, d, std::clamp(float(along), kFromEnd, 1 - kFromEnd), cross(b - a, c - a), may_move);
         }
 }
 
@@ -151,7 +239,15 @@ void CutGrid::sever_edge(Index node, int direction, float along, Vec3 normal, bo
   box_.add(this->node(node)), box_.add(this->node(end(node, direction)));
 }
 
+void CutGrid::sever_outside(Index node, int direction, bool may_move) {
+  if (!outside_.insert(edge(node, direction)).second) return;
+  if (may_move) outside_by_last_.push_back(edge(node, direction));
+  box_.add(this->node(node));
+}
+
 void CutGrid::take_back_last_row() {
+  for (const std::size_t e : outside_by_last_) outside_.erase(e), box_.add(node(Index(e / kDirections)));
+  outside_by_last_.clear();
   for (auto change = by_last_.rbegin(); change != by_last_.rend(); ++change) {
     const auto& [e, before] = *change;
     const auto node = Index(e / kDirections);
@@ -171,7 +267,7 @@ void CutGrid::reset() {
   if (anything_cut_) changed_ = true, box_ = {{0, 0, 0}, extent_};
   for (const auto& [e, cut] : cuts_)
     if (!outer_.contains(e)) parted_[e / kDirections] &= std::uint8_t(~(1 << int(e % kDirections)));
-  cuts_.clear(), by_last_.clear(), anything_cut_ = false, rows_ = 0;
+  cuts_.clear(), by_last_.clear(), outside_.clear(), outside_by_last_.clear(), anything_cut_ = false, rows_ = 0;
 }
 
 void CutGrid::NodeBox::add(Node n) {
@@ -209,13 +305,8 @@ bool CutGrid::update(const State& state) {
   if (rows < rows_ || (rows_ > 1 && !is_row(rows_ - 2, before_))) reset();
   // The last row has moved: what it severed is found again, so that the result depends on `state` alone.
   take_back_last_row();
-  for (std::size_t row = std::max<std::size_t>(rows_, 2) - 1; row < rows; ++row)
-    for (std::size_t node = 0; node + 1 < kEdgeNodes; ++node) {
-      const cutting::SweptQuad quad = cutting::swept_quad(state, row, node);
-      if (quad.organ != organ_) continue;
-      const bool may_move = row + 1 == rows;
-      sever(quad.from, quad.to, quad.from2, may_move), sever(quad.to, quad.to2, quad.from2, may_move);
-    }
+  for (std::size_t row = std::max<std::size_t>(rows_, 2) - 1; row < rows; ++row) sever_row(state, row);
+  find_homes_outside();
   rows_ = rows;
   for (std::size_t n = 0; n < kEdgeNodes; ++n) {
     if (rows > 1) before_[n] = place(rows - 2, n);
@@ -227,8 +318,8 @@ bool CutGrid::update(const State& state) {
 std::vector<std::uint8_t> CutGrid::cut_blocks() const {
   std::vector<std::uint8_t> blocks(std::size_t(block_count()), 0);
   for (const auto& [e, cut] : cuts_) {
-    const auto from = Index(e / kDirections);
-    blocks[std::size_t(block(from))] = blocks[std::size_t(block(end(from, int(e % kDirections))))] = 1;
+    const auto from = Index(e / kDirections), to = end(from, int(e % kDirections));
+    blocks[std::size_t(block(from))] = blocks[std::size_t(block(to))] = 1;
   }
   return blocks;
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -69,7 +70,8 @@ class CutGrid {
     return is_parted(node, direction) && in_tissue(node) && in_tissue(end(node, direction));
   }
 
-  /// The node in tissue at a sphere, or the nearest one to it; -1 if there is none near. Counted within the organ.
+  /// The node in tissue at a sphere, or the fewest edges from it on its side of the cut; -1 if there is none near.
+  /// Counted within the organ.
   Index node_of_sphere(Index sphere) const { return node_of_sphere_[std::size_t(sphere)]; }
   /// Blocks of a lattice cell's size divide the grid: that of a node, or of the cube above it.
   Index block_count() const { return blocks_[0] * blocks_[1] * blocks_[2]; }
@@ -115,7 +117,12 @@ class CutGrid {
     float low, high;  ///< crossings nearest to the lower and to the upper node
     Vec3 normal_low, normal_high;
   };
-  void sever(Vec3 a, Vec3 b, Vec3 c, bool may_move);
+  void index_spheres();
+  Index find_home(Index sphere) const;
+  void find_homes_outside();
+  void sever_row(const State& state, std::size_t row);
+  void sever(Vec3 a, Vec3 b, Vec3 c, bool outside, bool may_move);
+  void sever_outside(Index node, int direction, bool may_move);
   void sever_edge(Index node, int direction, float along, Vec3 normal, bool may_move);
   void take_back_last_row();
   void reset();
@@ -132,11 +139,15 @@ class CutGrid {
   std::vector<std::uint8_t> parted_;              ///< of each node: a bit for each direction
   std::unordered_map<std::size_t, float> outer_;  ///< crossings of edges with the organ's surface
   std::unordered_map<std::size_t, Cut> cuts_;
+  /// Edges that the swept surface crosses outside the tissue, where it goes on among the spheres there.
+  std::unordered_set<std::size_t> outside_;
+  std::vector<Index> own_node_;  ///< the node where a sphere is
   std::vector<Index> node_of_sphere_, first_sphere_, sphere_;
   std::size_t rows_ = 0;                                             ///< of the swept surface that have been looked at
   cutting::Front last_{};                                            ///< the last of them, which may still move [m]
   cutting::Front before_{};                                          ///< the one before it [m]
   std::vector<std::pair<std::size_t, std::optional<Cut>>> by_last_;  ///< what the last row changed, as it was before
+  std::vector<std::size_t> outside_by_last_;
   bool anything_cut_ = false, changed_ = false;
   NodeBox box_{};
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cutting/beyond_skin.h"
 #include "core/model/result.h"
 
 namespace ctpm::cutting {
@@ -70,6 +71,8 @@ CutFront::CutFront(const Model& model)
   CTPM_CHECK(model.organs.size() < 255, "the swept surface names organs by a byte");
   for (const OrganRange& organ : model.organs)
     reach_.push_back(0), box_.emplace_back(model.rest_position[std::size_t(organ.first)]);
+  for (std::size_t o = 0; o < model.organs.size(); ++o)
+    has_volume_.push_back((o < model.surfaces.size() && !model.surfaces[o].triangle.empty()) || map_.has_cells(o));
   find_materials();
 }
 
@@ -133,6 +136,7 @@ void CutFront::track(std::size_t node, Vec3 from, Vec3 to, bool is_taken, State&
 
 void CutFront::begin_tick(const Tool& scalpel, const BladeEdge& from, const BladeEdge& to, bool is_taken,
                           State& state) {
+  last_edge_ = from;
   if (state.edge_organ.size() != kEdgeNodes || state.blade_trail.size() != kEdgeNodes)
     state.blade_trail.resize(kEdgeNodes), state.edge_organ.assign(kEdgeNodes, -1);
   if (is_taken) std::fill(state.edge_organ.begin(), state.edge_organ.end(), -1);
@@ -244,51 +248,107 @@ double CutFront::hold(std::size_t n, const Tool& scalpel, const StateView& state
   return node.length * per_length;
 }
 
-std::int32_t CutFront::follow(const Tool& scalpel, const BladeEdge& edge, State& state,
-                              std::vector<Crossing>& crossings) {
-  Front to = front_;
-  std::array<double, kEdgeNodes> is_new{};
+/// Draws each node after the edge, up to the distance at which the tissue holds it.
+CutFront::Step CutFront::draw(const Tool& scalpel, const BladeEdge& edge, const State& state) const {
+  Step step{front_, {}};
   for (std::size_t n = 0; n < kEdgeNodes; ++n) {
     const Node& node = nodes_[n];
     if (node.organ < 0) continue;
+    const auto organ = std::size_t(node.organ);
     if (node.place.count == 0) {
       // Nothing holds a node far outside.
-      const auto organ = std::size_t(node.organ);
-      to[n] = map_.rest_of(organ, state.position, at_node(edge, n), reach_[organ]);
-      is_new[n] = newness(node.organ, front_[n], to[n] - front_[n]);
-      continue;
+      step.to[n] = map_.rest_of(organ, state.position, at_node(edge, n), reach_[organ]);
+      step.cuts[n] = true;
+    } else {
+      const Vec3 apart = at_node(edge, n) - node.place.at(state.position);
+      const double distance = norm(apart);
+      if (!(distance > 0)) continue;
+      const bool cuts = leads(edge, n, apart);
+      const double held =
+          cuts && hold(n, scalpel, state, along_node(edge, n), apart / distance) > 0 ? scalpel.trail_distance : 0.0;
+      if (distance <= held) continue;
+      step.to[n] = front_[n] + node.place.at_rest(state.position, (1 - held / distance) * apart);
+      const bool is_outside = node.depth <= 0 && depth_.at(organ, step.to[n]) <= 0;
+      const Vec3 by_blade = at_node(edge, n) - at_node(last_edge_, n);
+      step.cuts[n] = cuts && (!is_outside || 2 * dot(apart, by_blade) > distance * distance);
     }
-    const Vec3 apart = at_node(edge, n) - node.place.at(state.position);
-    const double distance = norm(apart);
-    if (!(distance > 0)) continue;
-    const bool cuts = leads(edge, n, apart);
-    const double held =
-        cuts && hold(n, scalpel, state, along_node(edge, n), apart / distance) > 0 ? scalpel.trail_distance : 0.0;
-    if (distance <= held) continue;
-    to[n] = front_[n] + node.place.at_rest(state.position, (1 - held / distance) * apart);
-    if (cuts) is_new[n] = newness(node.organ, front_[n], to[n] - front_[n]);
   }
+  return step;
+}
+
+/// Where the step goes through tissue that was whole.
+NewlySwept CutFront::newly_swept(const Step& step, const State& state) const {
+  std::array<double, kEdgeNodes> is_new{};
+  for (std::size_t n = 0; n < kEdgeNodes; ++n)
+    if (step.cuts[n]) is_new[n] = newness(nodes_[n].organ, front_[n], step.to[n] - front_[n]);
+  const auto is_in = [&](std::size_t n) {
+    const auto organ = std::size_t(nodes_[n].organ);
+    return nodes_[n].depth > 0 || depth_.at(organ, step.to[n]) > 0 ||
+           depth_.at(organ, 0.5 * (front_[n] + step.to[n])) > 0;
+  };
   NewlySwept newly{};
-  bool moved = false;
-  for (std::size_t n = 0; n < kEdgeNodes; ++n) {
-    moved = moved || to[n] != front_[n];
-    state.blade_trail.set(n, to[n]);
-    if (n + 1 == kEdgeNodes || nodes_[n].organ < 0 || nodes_[n].organ != nodes_[n + 1].organ) continue;
+  for (std::size_t n = 0; n + 1 < kEdgeNodes; ++n) {
+    if (nodes_[n].organ < 0 || nodes_[n].organ != nodes_[n + 1].organ) continue;
     const double is_whole = n < kPointNodes ? is_new[n] : std::max(is_new[n], is_new[n + 1]);
     if (is_whole < (was_swept(state, n, front_[n]) ? kGoesOn : kBegins)) continue;
-    const auto is_in = [&](std::size_t m) {
-      const auto organ = std::size_t(nodes_[m].organ);
-      return nodes_[m].depth > 0 || depth_.at(organ, to[m]) > 0 || depth_.at(organ, 0.5 * (front_[m] + to[m])) > 0;
-    };
-    if (is_in(n) || is_in(n + 1)) newly[n] = std::uint8_t(1 + nodes_[n].organ);
+    const bool has_volume = has_volume_[std::size_t(nodes_[n].organ)] != 0;
+    if (!has_volume || is_in(n) || is_in(n + 1)) newly[n] = std::uint8_t(1 + nodes_[n].organ);
   }
-  if (!moved) return 0;
-  std::array<std::int32_t, kEdgeNodes> organ;
-  const bool stabs = std::any_of(newly.begin(), newly.begin() + kPointNodes, [](std::uint8_t o) { return o != 0; });
-  for (std::size_t n = 0; n < kEdgeNodes; ++n) organ[n] = n < kPointNodes && !stabs ? -1 : nodes_[n].organ;
-  if (std::any_of(newly.begin(), newly.end(), [](std::uint8_t o) { return o != 0; }))
-    add_swept(state, front_, to, newly);
-  return sever_swept(model_, elements_, front_, to, organ, state, crossings);
+  return newly;
+}
+
+/// Severs what the front crosses where it sweeps newly; outside the organ's surface also around the ends of the part of
+/// the edge that is in tissue, behind the place where it enters, and before that where it leaves.
+std::int32_t CutFront::sever(const Step& step, const BladeEdge& edge, const NewlySwept& newly, State& state,
+                             std::vector<Crossing>& crossings) const {
+  std::array<bool, kEdgeNodes> was_in{}, is_in{}, is_outside{};
+  for (std::size_t n = 0; n < kEdgeNodes; ++n) {
+    if (nodes_[n].organ < 0) continue;
+    was_in[n] = nodes_[n].depth > 0, is_in[n] = depth_.at(std::size_t(nodes_[n].organ), step.to[n]) > 0;
+    is_outside[n] = !was_in[n] && !is_in[n];
+  }
+  std::int32_t severed = 0;
+  for (std::size_t first = 0, last; first + 1 < kEdgeNodes; first = last + 1) {
+    // A run of parts that are newly swept, all of them in one organ.
+    NewlySwept run{}, enters{};
+    bool any_enters = false, is_any_in = false;
+    for (last = first; newly[last] != 0 && newly[last] == newly[first]; ++last) {
+      run[last] = newly[last];
+      if (!was_in[last] && !was_in[last + 1]) enters[last] = newly[last], any_enters = true;
+      is_any_in = is_any_in || is_in[last] || is_in[last + 1];
+    }
+    if (first == last) continue;
+    const auto organ = std::size_t(newly[first] - 1);
+    const double reach = model_.organs[organ].spacing;
+    Front from = front_, to = step.to;
+    for (Front* front : {&from, &to}) go_on_outside(depth_, organ, run, is_outside, reach, *front);
+    severed += sever_swept(model_, elements_, from, to, run, state, crossings);
+    if (!any_enters && is_any_in) continue;
+    Front before = from, after = to;
+    for (std::size_t n = first; n <= last; ++n) {
+      const Vec3 by_blade = at_node(edge, n) - at_node(last_edge_, n);
+      const Vec3 way = nodes_[n].place.count > 0 ? nodes_[n].place.at_rest(state.position, by_blade) : by_blade;
+      before[n] = beyond_skin(depth_, organ, from[n], -1 * way, reach);
+      after[n] = beyond_skin(depth_, organ, to[n], way, reach);
+    }
+    if (any_enters) severed += sever_swept(model_, elements_, before, from, enters, state, crossings);
+    if (!is_any_in) severed += sever_swept(model_, elements_, to, after, run, state, crossings);
+  }
+  return severed;
+}
+
+std::int32_t CutFront::follow(const Tool& scalpel, const BladeEdge& edge, State& state,
+                              std::vector<Crossing>& crossings) {
+  const Step step = draw(scalpel, edge, state);
+  const NewlySwept newly = newly_swept(step, state);
+  for (std::size_t n = 0; n < kEdgeNodes; ++n) state.blade_trail.set(n, step.to[n]);
+  std::int32_t severed = 0;
+  if (std::any_of(newly.begin(), newly.end(), [](std::uint8_t organ) { return organ != 0; })) {
+    add_swept(state, front_, step.to, newly);
+    severed = sever(step, edge, newly, state, crossings);
+  }
+  last_edge_ = edge;
+  return severed;
 }
 
 }  // namespace ctpm::cutting

@@ -60,9 +60,19 @@ class CutFront {
   struct Material {
     double toughness = 0, flank_stress = 0;  ///< [J/m^2], [Pa]
   };
+  struct Step {
+    Front to;
+    /// Whether a node cuts on its way. Outside, the front is where the tissue would be if it went on: what it goes
+    /// there because the tissue moves, and not the blade, cuts nothing.
+    std::array<bool, kEdgeNodes> cuts;
+  };
   void find_materials();
   void track(std::size_t node, Vec3 from, Vec3 to, bool is_taken, State& state) const;
   double newness(std::int32_t organ, Vec3 rest, Vec3 way_at_rest) const;
+  Step draw(const Tool& scalpel, const BladeEdge& edge, const State& state) const;
+  NewlySwept newly_swept(const Step& step, const State& state) const;
+  std::int32_t sever(const Step& step, const BladeEdge& edge, const NewlySwept& newly, State& state,
+                     std::vector<Crossing>& crossings) const;
   double rubbed_height(std::size_t node, const Tool& scalpel, const StateView& state, Vec3 edge, Vec3 way) const;
   double opening(const Place& at, const StateView& state, Vec3 across) const;
 
@@ -72,8 +82,10 @@ class CutFront {
   SweptIndex swept_;
   RestElements elements_;
   bool resists_ = false;
-  std::vector<Material> material_;  ///< (sphere_count, or empty)
+  std::vector<Material> material_;        ///< (sphere_count, or empty)
+  std::vector<std::uint8_t> has_volume_;  ///< of each organ: it has a surface or lattice cells, and so an inside
   std::array<Node, kEdgeNodes> nodes_;
+  BladeEdge last_edge_;           ///< at the end of the last substep
   Front front_;                   ///< at the start of the substep
   std::vector<double> reach_;     ///< of the spheres that carry the front, in each organ [m]
   std::vector<Box> box_;          ///< around the spheres of each organ, at the start of the tick

@@ -71,7 +71,7 @@ RestElements::RestElements(const Model& model)
 }
 
 std::int32_t sever_swept(const Model& model, const RestElements& elements, const Front& from, const Front& to,
-                         std::span<const std::int32_t> organ, State& state, std::vector<Crossing>& crossings) {
+                         const NewlySwept& newly, State& state, std::vector<Crossing>& crossings) {
   std::array<Sweep, kEdgeNodes - 1> all;
   std::int32_t severed = 0;
   const AxialElements& axial = model.axial;
@@ -79,7 +79,7 @@ std::int32_t sever_swept(const Model& model, const RestElements& elements, const
     std::size_t count = 0;
     std::optional<Box> around;
     for (std::size_t n = 0; n + 1 < kEdgeNodes; ++n) {
-      if (organ[n] != std::int32_t(o) || organ[n + 1] != organ[n]) continue;
+      if (newly[n] != o + 1) continue;
       if (from[n] == to[n] && from[n + 1] == to[n + 1]) continue;
       const Box box(from[n], from[n + 1], to[n], to[n + 1]);
       all[count++] = {from[n], from[n + 1], to[n], to[n + 1], box};

@@ -56,13 +56,13 @@ class RestElements {
   std::vector<std::int32_t> first_, elements_;
 };
 
-/// Severs every element of the tissue at rest that the front crosses while it goes `from`-`to` with all nodes between
-/// which it is in an organ (`organ` of both is the same and not -1), then every constraint and angle spring that has
-/// lost an element. Between two nodes the front sweeps the two triangles (p, q, p') and (q, q', p'). Touching counts as
-/// crossing, so nothing slips between two ticks or two nodes. Appends the severed elements to `crossings`; returns the
-/// number of severed elements, constraints and angle springs.
+/// Severs every element of the tissue at rest that the front crosses where it is `newly` swept while it goes
+/// `from`-`to`, so that the elements are those that the swept surface crosses; then every constraint and angle spring
+/// that has lost an element. Between two nodes the front sweeps the two triangles (p, q, p') and (q, q', p'). Touching
+/// counts as crossing, so nothing slips between two ticks or two nodes. Appends the severed elements to `crossings`;
+/// returns the number of severed elements, constraints and angle springs.
 std::int32_t sever_swept(const Model& model, const RestElements& elements, const Front& from, const Front& to,
-                         std::span<const std::int32_t> organ, State& state, std::vector<Crossing>& crossings);
+                         const NewlySwept& newly, State& state, std::vector<Crossing>& crossings);
 
 /// Unit of State::axial_crossing, as a fraction of the element: 1 is at its first sphere, 255 at its second.
 inline constexpr double kCrossingUnit = 1.0 / 254;

@@ -187,6 +187,21 @@ Vec3 RestMap::rest_of(std::size_t organ, const Vec3Array& position, Vec3 point, 
   return rest;
 }
 
+bool RestMap::has_cells(std::size_t organ) const {
+  const Lattice& lattice = lattices_[organ];
+  if (lattice.sphere_at.empty()) return false;
+  for (std::int32_t k = 0; k + 1 < lattice.extent[2]; ++k)
+    for (std::int32_t j = 0; j + 1 < lattice.extent[1]; ++j)
+      for (std::int32_t i = 0; i + 1 < lattice.extent[0]; ++i) {
+        std::int32_t n = 0;
+        while (n < 8 && lattice.at(lattice.low[0] + i + (n & 1), lattice.low[1] + j + (n >> 1 & 1),
+                                   lattice.low[2] + k + (n >> 2)) >= 0)
+          ++n;
+        if (n == 8) return true;
+      }
+  return false;
+}
+
 double RestMap::depth_in_cells(std::size_t organ, Vec3 rest) const {
   const Lattice& lattice = lattices_[organ];
   if (lattice.sphere_at.empty()) return -INFINITY;

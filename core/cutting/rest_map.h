@@ -46,6 +46,9 @@ class RestMap {
   /// half a spacing: the depth in an organ that has no surface.
   double depth_in_cells(std::size_t organ, Vec3 rest) const;
 
+  /// Whether an organ has whole lattice cells: a sheet of spheres has none.
+  bool has_cells(std::size_t organ) const;
+
   double spacing(std::size_t organ) const { return lattices_[organ].spacing; }
 
  private:

@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <future>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "core/model/result.h"
 
@@ -206,6 +208,21 @@ void bind_surface(FilledOrgan& organ, int threads) {
     binding.weight.insert(binding.weight.end(), run.weight.begin(), run.weight.end());
     run = {};
   }
+}
+
+std::vector<std::int32_t> welded(const Surface& surface) {
+  std::map<std::pair<std::array<double, 3>, std::vector<double>>, std::int32_t> known;
+  std::vector<std::int32_t> number;
+  const SurfaceBinding& b = surface.binding;
+  for (std::size_t v = 0; v < surface.vertex.size(); ++v) {
+    const Vec3 p = surface.vertex[v];
+    std::vector<double> followed;
+    for (auto e = std::size_t(b.first[v]); e < std::size_t(b.first[v + 1]); ++e)
+      followed.push_back(b.sphere[e]), followed.push_back(b.weight[e]);
+    number.push_back(
+        known.try_emplace({{p.x, p.y, p.z}, std::move(followed)}, std::int32_t(known.size())).first->second);
+  }
+  return number;
 }
 
 void deform_surface(const Surface& surface, const Vec3Array& position, std::int32_t first_sphere,

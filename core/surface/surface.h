@@ -30,6 +30,10 @@ std::vector<double> follow_weights(Vec3 point, std::span<const Vec3> candidates,
 /// as the tissue that it stands for (FilledOrgan::shares). The result does not depend on `threads`, >= 1.
 void bind_surface(FilledOrgan& organ, int threads = 1);
 
+/// A number for each vertex, the same for vertices in one place that follow the same spheres in the same way, and so
+/// are together wherever the tissue goes (vertex_count).
+std::vector<std::int32_t> welded(const Surface& surface);
+
 /// Positions of the surface's vertices [m] when the organ's spheres are at `position[first_sphere + ...]`
 /// (vertex_count).
 void deform_surface(const Surface& surface, const Vec3Array& position, std::int32_t first_sphere,

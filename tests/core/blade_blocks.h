@@ -68,8 +68,9 @@ inline cutting::Front straight_front(Vec3 tip, Vec3 heel) {
 /// Severs what a straight front crosses in the first organ.
 inline std::int32_t sever(const Model& model, const cutting::Front& from, const cutting::Front& to, State& state,
                           std::vector<cutting::Crossing>& crossings) {
-  const std::vector<std::int32_t> organ(kEdgeNodes, 0);
-  return cutting::sever_swept(model, cutting::RestElements(model), from, to, organ, state, crossings);
+  cutting::NewlySwept newly;
+  newly.fill(1);
+  return cutting::sever_swept(model, cutting::RestElements(model), from, to, newly, state, crossings);
 }
 
 /// Area of the swept surface within a box at rest [m^2].

@@ -11,10 +11,13 @@
 #include "core/surface/surface.h"
 #include "tests/core/blade_blocks.h"
 #include "tests/core/skinned_block.h"
+#include "tests/core/topology.h"
 
 namespace ctpm {
 namespace {
 
+using testing::components;
+using testing::open_edges;
 using testing::straight_front;
 
 constexpr double kSpacing = 0.012, kBelow = -0.01, kAbove = 0.05;  // of the block, and heights of an edge outside it
@@ -72,30 +75,6 @@ std::vector<Case> cases() {
           {"parallel, 0.5 spacings", {straight(0.0013), straight(0.0073)}, 3},
           {"parallel, 0.3 spacings", {straight(0.0013), straight(0.0049)}, 3},
           {"tremor", {tremor}, 2}};
-}
-
-/// Edges that do not belong to as many triangles in one direction as in the other.
-int open_edges(const std::vector<std::array<std::int32_t, 3>>& triangles) {
-  std::map<std::pair<int, int>, int> edges;
-  for (const auto& t : triangles)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const int a = t[i], b = t[(i + 1) % 3];
-      edges[std::minmax(a, b)] += a < b ? 1 : -1;
-    }
-  return int(std::count_if(edges.begin(), edges.end(), [](const auto& e) { return e.second != 0; }));
-}
-
-int components(const std::vector<std::array<std::int32_t, 3>>& triangles) {
-  std::map<int, int> parent;
-  const std::function<int(int)> root = [&](int v) {
-    const auto it = parent.try_emplace(v, v).first;
-    return it->second == v ? v : it->second = root(it->second);
-  };
-  for (const auto& t : triangles)
-    for (std::size_t i = 0; i < 3; ++i) parent[root(t[i])] = root(t[(i + 1) % 3]);
-  std::set<int> roots;
-  for (const auto& [v, p] : parent) roots.insert(root(v));
-  return int(roots.size());
 }
 
 Model block_with_skin() {

@@ -7,6 +7,9 @@
 #include <sstream>
 #include <string>
 
+#include "core/cutbody/cut_grid.h"
+#include "core/cutting/cutting.h"
+#include "recordings/session_reader.h"
 #include "tests/studio/commands/run_program.h"
 
 namespace ctpm {
@@ -77,6 +80,59 @@ TEST(CuttingSession, TellsTheForceAndThePieceThatComesLoose) {
   const double most = *std::max_element(force.begin(), force.end());
   EXPECT_GT(most, 1);  // 164 J/m^2 times 36 mm is 6 N
   EXPECT_LT(most, 40);
+}
+
+/// The shipped incision: under its tense capsule tissue slides sideways along the blade, and the cut lies within a
+/// third of a millimetre of a row of spheres.
+TEST(CuttingSession, SeversWhatTheBladeSweptAndLeavesNoSphereWithoutTissue) {
+  const std::string scenes = std::string(CTPM_SOURCE_DIR) + "/scenes/";
+  const TemporaryFolder folder;
+  const auto recorded = run_ctpm({"record", scenes + "incision.json", "--script", scenes + "scripts/incision-cut.json",
+                                  "-o", "cut.ctpm", "--fast", "--duration-s", "4.5"},
+                                 folder.path());
+  ASSERT_EQ(recorded.code, 0) << recorded.err;
+  auto reader = recordings::SessionReader::open((folder.path() / "cut.ctpm").string());
+  ASSERT_TRUE(reader);
+  const auto keyframe = reader->keyframe_at_or_before(1'000'000);
+  ASSERT_TRUE(keyframe);
+  const Model& model = reader->start().model;
+  const State& state = keyframe->state;
+
+  // Elements are crossed where the swept surface is, or outside the organ within a spacing of its end.
+  const cutting::RestMap map(model);
+  const cutting::TissueDepth depth(model, map);
+  const double spacing = model.organs[0].spacing;
+  std::vector<int> before(model.sphere_count(), 0), after(model.sphere_count(), 0);
+  int severed = 0;
+  for (std::size_t e = 0; e < model.axial.size(); ++e) {
+    const auto a = std::size_t(model.axial.a[e]), b = std::size_t(model.axial.b[e]);
+    ++before[a], ++before[b];
+    if (!state.axial_severed[e]) {
+      ++after[a], ++after[b];
+      continue;
+    }
+    const Vec3 p = model.rest_position[a], q = model.rest_position[b];
+    const Vec3 crossing = p + cutting::crossing_of(state.axial_crossing[e]) * (q - p);
+    const double far = depth.at(0, crossing) > 0 ? cutting::kCrossingUnit * spacing + 1e-4 : 1.5 * spacing;
+    EXPECT_TRUE(cutting::nearest_swept(state, 0, crossing, far)) << e;
+    ++severed;
+  }
+  EXPECT_GT(severed, 100);
+  for (std::size_t i = 0; i < model.sphere_count(); ++i) EXPECT_GE(4 * after[i], before[i]) << "sphere " << i;
+
+  // What is drawn follows spheres of its own side, also those that lie outside the organ.
+  cutbody::CutGrid grid(model, 0);
+  (void)grid.update(state);
+  int looked_at = 0;
+  for (std::size_t i = 0; i < model.sphere_count(); ++i) {
+    const std::int32_t home = grid.node_of_sphere(std::int32_t(i));
+    const Vec3 p = model.rest_position[i];
+    const auto swept = cutting::nearest_swept(state, 0, p, 0.4 * spacing);
+    if (home < 0 || depth.at(0, p) > 0 || !swept || std::abs(p.y - swept->y) < 1e-4) continue;
+    EXPECT_EQ(p.y > swept->y, grid.rest(home).y > swept->y) << "sphere " << i;
+    ++looked_at;
+  }
+  EXPECT_GT(looked_at, 3);
 }
 
 }  // namespace

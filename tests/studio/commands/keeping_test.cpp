@@ -122,9 +122,10 @@ TEST_F(Keeping, AFileThatIsRemovedWhileItIsRecordedIsToldAtOnceAndEndsTheSession
 }
 
 TEST_F(Keeping, AFullDiskIsToldWhileTheSessionRuns) {
-  // No file may grow beyond 150 KiB; the signal of that is ignored, so that writing fails as on a full disk.
+  // A session of 4 s takes some 95 KiB. No file may grow beyond 60 KiB; the signal of that is ignored, so that writing
+  // fails as on a full disk.
   const ProgramOutcome outcome = testing::run({"bash", "-c",
-                                               "trap '' XFSZ; ulimit -f 150; exec " + std::string(CTPM_PROGRAM) +
+                                               "trap '' XFSZ; ulimit -f 60; exec " + std::string(CTPM_PROGRAM) +
                                                    " record block.json --script wait.json --duration-s 4 -o a.ctpm"},
                                               folder_.path());
   EXPECT_EQ(outcome.code, 2) << outcome.out << outcome.err;

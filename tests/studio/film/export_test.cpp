@@ -231,7 +231,7 @@ TEST_F(Export, BesideShowsTwoSessionsInStep) {
   };
   EXPECT_EQ(differing(15), 0);
   EXPECT_GT(differing(36), 100);
-  const std::string json = sidecar("both");
+  const std::string json = sidecar("both/video");
   EXPECT_TRUE(holds(json, "\"file\": \"press.ctpm\"") && holds(json, "\"file\": \"short.ctpm\"")) << json;
   EXPECT_TRUE(holds(json, "\"last_tick\": 1200") && holds(json, "\"last_tick\": 600")) << json;
 }

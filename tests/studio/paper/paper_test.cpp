@@ -181,14 +181,14 @@ TEST(Paper, AfterACutDampedModelsStayUndampedMassSpringWandersAndOnlyATenseCapsu
   };
   for (const char* point : {"A", "B", "C", "D"}) {
     // Without numerical damping. Under sdirk2 the swing of the present, stiffer scene is too fast for its steps.
-    EXPECT_GT(spread("mass-spring", "", "yes", "leapfrog", point), 0.05) << point;
+    EXPECT_GT(spread("mass-spring", "", "yes", "leapfrog", point), 0.1) << point;
     EXPECT_LT(spread("CTPM", "kPa s", "yes", "sdirk2", point), 1e-3) << point;
     EXPECT_LT(spread("CTPM", "kPa s", "no", "sdirk2", point), 1e-3) << point;
     EXPECT_LT(spread("damped mass-spring", "kPa s", "yes", "sdirk2", point), 1e-3) << point;
   }
   for (const char* side : {"opening between A and C", "opening between B and D"}) {
     EXPECT_LT(network_of(*experiment, std::string(side) + ", no tension", "kPa s"), 0);
-    EXPECT_GT(network_of(*experiment, std::string(side) + ", capsule", "kPa s"), 3);
+    EXPECT_GT(network_of(*experiment, std::string(side) + ", capsule", "kPa s"), 5);
   }
 }
 

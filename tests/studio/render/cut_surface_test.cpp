@@ -2,11 +2,13 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
 
 #include "core/stepping/step.h"
+#include "core/surface/surface.h"
 #include "studio/render/cut_surface.h"
-#include "studio/render/open_edges.h"
 #include "studio/render/organ_mesh.h"
+#include "tests/core/topology.h"
 #include "tests/studio/render/scene.h"
 
 namespace ctpm::render_test {
@@ -95,34 +97,15 @@ TEST(CutSurface, NothingSpansThePiecesWhereASideCutMeetsTheCut) {
       }
 }
 
-/// A number for each vertex; those that have the same place and follow the same spheres have the same one: the wall
-/// has its own vertices along the lips.
-std::vector<std::int32_t> weld(const Surface& surface) {
-  using Key = std::pair<std::array<double, 3>, std::vector<double>>;
-  std::map<Key, std::int32_t> known;
-  std::vector<std::int32_t> welded;
-  const SurfaceBinding& b = surface.binding;
-  for (std::size_t v = 0; v < surface.vertex.size(); ++v) {
-    const Vec3 p = surface.vertex[v];
-    Key key{{p.x, p.y, p.z}, {}};
-    for (std::int32_t e = b.first[v]; e < b.first[v + 1]; ++e)
-      key.second.push_back(b.sphere[std::size_t(e)]), key.second.push_back(b.weight[std::size_t(e)]);
-    welded.push_back(known.try_emplace(key, std::int32_t(known.size())).first->second);
-  }
-  return welded;
+testing::Triangles welded(const Surface& surface) {
+  const std::vector<std::int32_t> number = surface::welded(surface);
+  testing::Triangles triangles;
+  for (const auto& t : surface.triangle)
+    triangles.push_back({number[std::size_t(t[0])], number[std::size_t(t[1])], number[std::size_t(t[2])]});
+  return triangles;
 }
 
-int open_edges(const Surface& surface) {
-  const std::vector<std::int32_t> vertex = weld(surface);
-  render::OpenEdges open;
-  for (const auto& t : surface.triangle)
-    for (std::size_t i = 0; i < 3; ++i)
-      if (vertex[std::size_t(t[i])] != vertex[std::size_t(t[(i + 1) % 3])])
-        open.add(vertex[std::size_t(t[i])], vertex[std::size_t(t[(i + 1) % 3])]);
-  int count = 0;
-  for (const auto& loop : open.take_loops()) count += int(loop.size());
-  return count;
-}
+int open_edges(const Surface& surface) { return testing::open_edges(welded(surface)); }
 
 /// Ways of a blade: each entry is where its edge is, one after the other.
 using Way = std::vector<Edge>;

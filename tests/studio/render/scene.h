@@ -122,8 +122,7 @@ inline void cut(const Model& model, State& state, const Edge& from, const Edge& 
   newly.fill(1), newly.back() = 0;
   cutting::add_swept(state, front(from), front(to), newly);
   std::vector<cutting::Crossing> crossings;
-  cutting::sever_swept(model, cutting::RestElements(model), front(from), front(to),
-                       std::vector<std::int32_t>(kEdgeNodes, 0), state, crossings);
+  cutting::sever_swept(model, cutting::RestElements(model), front(from), front(to), newly, state, crossings);
 }
 
 /// Moves the spheres apart on both sides of the plane through `point` with the given normal, more the nearer
