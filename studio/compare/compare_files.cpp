@@ -1,5 +1,6 @@
 #include "studio/compare/compare_files.h"
 
+#include <future>
 #include <utility>
 
 #include "scenes/scene_file.h"
@@ -20,7 +21,10 @@ Result<OpenedFiles> open_files(const std::string& expert, const std::string& tra
 }
 
 Result<ComparedFiles> compare_files(OpenedFiles files, std::optional<double> force_limit, Replaying replaying) {
-  Result<SessionTrack> expert = read_track(files.expert, replaying), trainee = read_track(files.trainee, replaying);
+  // Each replay takes one processor.
+  std::future<Result<SessionTrack>> other =
+      std::async(std::launch::async, [&] { return read_track(files.expert, replaying); });
+  Result<SessionTrack> trainee = read_track(files.trainee, replaying), expert = other.get();
   Errors errors;
   for (const auto* track : {&expert, &trainee})
     if (!*track) errors.insert(errors.end(), track->errors().begin(), track->errors().end());
