@@ -243,7 +243,9 @@ void describe_fields(V& v, OrganSpec& organ) {
           "being turned inside out; 0: it does not, and costs nothing.",
           false, "10, or 0 for a rig"},
       organ.inversion_resistance, units::none, within(0, 1000));
-  v.flag(Key{"meets_itself", "Parts of the organ's surface that lie apart touch each other; for a mesh."},
+  v.flag(Key{"meets_itself",
+             "Parts of the organ's surface that lie apart touch each other, and so do the pieces into which it was "
+             "cut; for a mesh."},
          organ.meets_itself);
   v.point(Key{"surface_color", "Red, green and blue of the outside."}, organ.surface_color, units::none, within(0, 1));
   v.point(Key{"inner_color", "Red, green and blue of cut faces and spheres."}, organ.inner_color, units::none,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/cutting/beyond_skin.h"
 #include "core/model/result.h"
 
 namespace ctpm::cutting {
@@ -67,7 +66,7 @@ double whole_mass(const Model& model, std::size_t organ) {
 }  // namespace
 
 CutFront::CutFront(const Model& model)
-    : model_(model), map_(model), depth_(model, map_), swept_(model), elements_(model) {
+    : model_(model), map_(model), depth_(model, map_), swept_(model), elements_(model, depth_) {
   CTPM_CHECK(model.organs.size() < 255, "the swept surface names organs by a byte");
   for (const OrganRange& organ : model.organs)
     reach_.push_back(0), box_.emplace_back(model.rest_position[std::size_t(organ.first)]);
@@ -297,58 +296,15 @@ NewlySwept CutFront::newly_swept(const Step& step, const State& state) const {
   return newly;
 }
 
-/// Severs what the front crosses where it sweeps newly; outside the organ's surface also around the ends of the part of
-/// the edge that is in tissue, behind the place where it enters, and before that where it leaves.
-std::int32_t CutFront::sever(const Step& step, const BladeEdge& edge, const NewlySwept& newly, State& state,
-                             std::vector<Crossing>& crossings) const {
-  std::array<bool, kEdgeNodes> was_in{}, is_in{}, is_outside{};
-  for (std::size_t n = 0; n < kEdgeNodes; ++n) {
-    if (nodes_[n].organ < 0) continue;
-    was_in[n] = nodes_[n].depth > 0, is_in[n] = depth_.at(std::size_t(nodes_[n].organ), step.to[n]) > 0;
-    is_outside[n] = !was_in[n] && !is_in[n];
-  }
-  std::int32_t severed = 0;
-  for (std::size_t first = 0, last; first + 1 < kEdgeNodes; first = last + 1) {
-    // A run of parts that are newly swept, all of them in one organ.
-    NewlySwept run{}, enters{};
-    bool any_enters = false, is_any_in = false;
-    for (last = first; newly[last] != 0 && newly[last] == newly[first]; ++last) {
-      run[last] = newly[last];
-      if (!was_in[last] && !was_in[last + 1]) enters[last] = newly[last], any_enters = true;
-      is_any_in = is_any_in || is_in[last] || is_in[last + 1];
-    }
-    if (first == last) continue;
-    const auto organ = std::size_t(newly[first] - 1);
-    const double reach = model_.organs[organ].spacing;
-    Front from = front_, to = step.to;
-    for (Front* front : {&from, &to}) go_on_outside(depth_, organ, run, is_outside, reach, *front);
-    severed += sever_swept(model_, elements_, from, to, run, state, crossings);
-    if (!any_enters && is_any_in) continue;
-    Front before = from, after = to;
-    for (std::size_t n = first; n <= last; ++n) {
-      const Vec3 by_blade = at_node(edge, n) - at_node(last_edge_, n);
-      const Vec3 way = nodes_[n].place.count > 0 ? nodes_[n].place.at_rest(state.position, by_blade) : by_blade;
-      before[n] = beyond_skin(depth_, organ, from[n], -1 * way, reach);
-      after[n] = beyond_skin(depth_, organ, to[n], way, reach);
-    }
-    if (any_enters) severed += sever_swept(model_, elements_, before, from, enters, state, crossings);
-    if (!is_any_in) severed += sever_swept(model_, elements_, to, after, run, state, crossings);
-  }
-  return severed;
-}
-
 std::int32_t CutFront::follow(const Tool& scalpel, const BladeEdge& edge, State& state,
                               std::vector<Crossing>& crossings) {
   const Step step = draw(scalpel, edge, state);
   const NewlySwept newly = newly_swept(step, state);
   for (std::size_t n = 0; n < kEdgeNodes; ++n) state.blade_trail.set(n, step.to[n]);
-  std::int32_t severed = 0;
-  if (std::any_of(newly.begin(), newly.end(), [](std::uint8_t organ) { return organ != 0; })) {
-    add_swept(state, front_, step.to, newly);
-    severed = sever(step, edge, newly, state, crossings);
-  }
   last_edge_ = edge;
-  return severed;
+  if (std::none_of(newly.begin(), newly.end(), [](std::uint8_t organ) { return organ != 0; })) return 0;
+  add_swept(state, front_, step.to, newly);
+  return sever_swept(model_, elements_, front_, step.to, newly, state, crossings);
 }
 
 }  // namespace ctpm::cutting

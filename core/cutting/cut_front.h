@@ -71,8 +71,6 @@ class CutFront {
   double newness(std::int32_t organ, Vec3 rest, Vec3 way_at_rest) const;
   Step draw(const Tool& scalpel, const BladeEdge& edge, const State& state) const;
   NewlySwept newly_swept(const Step& step, const State& state) const;
-  std::int32_t sever(const Step& step, const BladeEdge& edge, const NewlySwept& newly, State& state,
-                     std::vector<Crossing>& crossings) const;
   double rubbed_height(std::size_t node, const Tool& scalpel, const StateView& state, Vec3 edge, Vec3 way) const;
   double opening(const Place& at, const StateView& state, Vec3 across) const;
 

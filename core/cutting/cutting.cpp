@@ -1,6 +1,7 @@
 #include "core/cutting/cutting.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "core/cutting/blade_geometry.h"
@@ -38,6 +39,35 @@ std::optional<double> crossing(std::span<const Sweep> sweeps, Vec3 p, Vec3 q) {
   return std::nullopt;
 }
 
+/// How far inside the tissue of a sphere at the boundary is taken to be, in spacings.
+constexpr double kInside = 0.1;
+
+/// The place under a surface that is nearest to a point outside [m].
+Vec3 under_surface(const Surface& surface, Vec3 point, double spacing) {
+  double least = INFINITY;
+  Vec3 nearest = point;
+  for (const auto& t : surface.triangle) {
+    const Vec3 a = surface.vertex[std::size_t(t[0])], b = surface.vertex[std::size_t(t[1])],
+               c = surface.vertex[std::size_t(t[2])];
+    if (!Box(a, b, c).grown(least).meets(Box(point))) continue;
+    const Vec3 there = nearest_in_triangle(point, a, b, c);
+    if (const double distance = norm(there - point); distance < least) least = distance, nearest = there;
+  }
+  return least > 0 ? nearest + kInside * spacing / least * (nearest - point) : nearest;
+}
+
+/// A sphere's place, moved inside where it has no neighbours on one side [m].
+Vec3 towards_neighbours(const Model& model, const RestElements& elements, std::size_t sphere) {
+  Vec3 sum;
+  for (const std::int32_t e : elements.of(sphere)) {
+    const Vec3 a = model.rest_position[std::size_t(model.axial.a[std::size_t(e)])],
+               b = model.rest_position[std::size_t(model.axial.b[std::size_t(e)])];
+    sum += std::size_t(model.axial.a[std::size_t(e)]) == sphere ? b - a : a - b;
+  }
+  const auto count = double(elements.of(sphere).size());
+  return model.rest_position[sphere] + (count > 0 ? kInside / count : 0.0) * sum;
+}
+
 }  // namespace
 
 BladeEdge blade_edge(const Tool& scalpel, const Inputs& inputs) {
@@ -68,6 +98,21 @@ RestElements::RestElements(const Model& model)
   for (std::size_t e = 0; e < axial.size(); ++e)
     for (const std::int32_t sphere : {axial.a[e], axial.b[e]})
       elements_[std::size_t(next[std::size_t(sphere)]++)] = std::int32_t(e);
+  for (std::size_t i = 0; i < model.sphere_count(); ++i) place_.push_back(model.rest_position[i]);
+}
+
+RestElements::RestElements(const Model& model, const TissueDepth& depth) : RestElements(model) {
+  for (std::size_t o = 0; o < model.organs.size(); ++o) {
+    const OrganRange& organ = model.organs[o];
+    const bool has_surface = o < model.surfaces.size() && !model.surfaces[o].triangle.empty();
+    for (auto i = std::size_t(organ.first); i < std::size_t(organ.first + organ.count); ++i) {
+      const Vec3 centre = model.rest_position[i];
+      if (!has_surface)
+        place_[i] = towards_neighbours(model, *this, i);
+      else if (!(depth.at(o, centre) > 0))
+        place_[i] = under_surface(model.surfaces[o], centre, organ.spacing);
+    }
+  }
 }
 
 std::int32_t sever_swept(const Model& model, const RestElements& elements, const Front& from, const Front& to,
@@ -88,17 +133,17 @@ std::int32_t sever_swept(const Model& model, const RestElements& elements, const
     }
     if (count == 0) continue;
     const std::span<const Sweep> sweeps(all.data(), count);
-    // Elements are no longer than the diagonal of a lattice cell.
+    // Elements are no longer than the diagonal of a lattice cell, and their ends are within a spacing of the spheres.
     const OrganRange& range = model.organs[o];
-    const Box near = around->grown(1.5 * range.spacing);
+    const Box near = around->grown(3 * range.spacing);
     const auto first = std::size_t(range.first), last = first + std::size_t(range.count);
     for (std::size_t i = first; i < last; ++i) {
-      const Vec3 p = model.rest_position[i];
+      const Vec3 p = elements.place(i);
       if (!near.meets(Box(p))) continue;
       for (const std::int32_t element : elements.of(i)) {
         const auto e = std::size_t(element);
         if (state.axial_severed[e] || axial.a[e] != std::int32_t(i)) continue;
-        const std::optional<double> along = crossing(sweeps, p, model.rest_position[std::size_t(axial.b[e])]);
+        const std::optional<double> along = crossing(sweeps, p, elements.place(std::size_t(axial.b[e])));
         if (!along) continue;
         state.axial_severed[e] = 1, ++severed;
         if (!state.axial_crossing.empty()) state.axial_crossing[e] = stored_crossing(*along);

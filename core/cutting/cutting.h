@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/cutting/swept_surface.h"
+#include "core/cutting/tissue_depth.h"
 #include "core/model/model.h"
 #include "core/model/state.h"
 
@@ -41,10 +42,17 @@ struct Crossing {
   double along;          ///< position along the element, 0 at its first sphere to 1 at its second
 };
 
-/// The axial elements by the spheres that they begin at.
+/// The axial elements by the spheres that they begin at, and where the tissue is that they stand for.
 class RestElements {
  public:
+  /// Elements lie between the spheres at rest.
   explicit RestElements(const Model& model);
+  /// A lattice covers its organ: a sphere outside the organ's surface, or on the boundary of an organ without one,
+  /// stands for the tissue next to it inside. So elements lie between places that are in tissue.
+  RestElements(const Model& model, const TissueDepth& depth);
+
+  /// Where the tissue of a sphere is at rest [m].
+  Vec3 place(std::size_t sphere) const { return place_[sphere]; }
 
   /// Rows of Model::axial that begin or end at a sphere.
   std::span<const std::int32_t> of(std::size_t sphere) const {
@@ -54,13 +62,14 @@ class RestElements {
 
  private:
   std::vector<std::int32_t> first_, elements_;
+  std::vector<Vec3> place_;  ///< (sphere_count)
 };
 
-/// Severs every element of the tissue at rest that the front crosses where it is `newly` swept while it goes
-/// `from`-`to`, so that the elements are those that the swept surface crosses; then every constraint and angle spring
-/// that has lost an element. Between two nodes the front sweeps the two triangles (p, q, p') and (q, q', p'). Touching
-/// counts as crossing, so nothing slips between two ticks or two nodes. Appends the severed elements to `crossings`;
-/// returns the number of severed elements, constraints and angle springs.
+/// Severs every element, between the places of its spheres, that the front crosses where it is `newly` swept while it
+/// goes `from`-`to`, so that the elements are those that the swept surface crosses; then every constraint and angle
+/// spring that has lost an element. Between two nodes the front sweeps the two triangles (p, q, p') and (q, q', p').
+/// Touching counts as crossing, so nothing slips between two ticks or two nodes. Appends the severed elements to
+/// `crossings`; returns the number of severed elements, constraints and angle springs.
 std::int32_t sever_swept(const Model& model, const RestElements& elements, const Front& from, const Front& to,
                          const NewlySwept& newly, State& state, std::vector<Crossing>& crossings);
 

@@ -98,10 +98,11 @@ TEST(CuttingSession, SeversWhatTheBladeSweptAndLeavesNoSphereWithoutTissue) {
   const Model& model = reader->start().model;
   const State& state = keyframe->state;
 
-  // Elements are crossed where the swept surface is, or outside the organ within a spacing of its end.
+  // Elements are crossed where the swept surface is.
   const cutting::RestMap map(model);
   const cutting::TissueDepth depth(model, map);
   const std::vector<Box> boxes = cutting::boxes_of_rows(state);
+  const cutting::RestElements elements(model, depth);
   const double spacing = model.organs[0].spacing;
   std::vector<int> before(model.sphere_count(), 0), after(model.sphere_count(), 0);
   int severed = 0;
@@ -112,9 +113,9 @@ TEST(CuttingSession, SeversWhatTheBladeSweptAndLeavesNoSphereWithoutTissue) {
       ++after[a], ++after[b];
       continue;
     }
-    const Vec3 p = model.rest_position[a], q = model.rest_position[b];
+    const Vec3 p = elements.place(a), q = elements.place(b);
     const Vec3 crossing = p + cutting::crossing_of(state.axial_crossing[e]) * (q - p);
-    const double far = depth.at(0, crossing) > 0 ? cutting::kCrossingUnit * spacing + 1e-4 : 1.5 * spacing;
+    const double far = cutting::kCrossingUnit * norm(q - p) + 1e-4;
     EXPECT_TRUE(cutting::nearest_swept(state, boxes, 0, crossing, far)) << e;
     ++severed;
   }
