@@ -55,7 +55,7 @@ CutGrid::CutGrid(const Model& model, std::size_t organ)
   find_frame(model, model.organs[organ]);
   find_surface();
   place_spheres(model, model.organs[organ]);
-  box_ = {extent_, {-1, -1, -1}};
+  box_ = last_box_ = {extent_, {-1, -1, -1}};
 }
 
 /// The grid's axes are those of the lattice. It reaches a spacing beyond the spheres, and beyond the organ's surface.
@@ -226,6 +226,14 @@ void CutGrid::sever(Vec3 a, Vec3 b, Vec3 c, bool outside, bool may_move) {
     if (!(most[x] > -1 && least[x] < extent_[x])) return;
     from[x] = std::max(0, Index(std::floor(least[x])) - 1), to[x] = std::min(extent_[x] - 1, Index(std::ceil(most[x])));
   }
+  if (!outside) {
+    // Walls are put onto the triangle even where it crosses no other edge than the one before it.
+    changed_ = true;
+    for (const Node& corner : {from, to}) {
+      box_.add(corner);
+      if (may_move) last_box_.add(corner);
+    }
+  }
   for (Index k = from[2]; k <= to[2]; ++k)
     for (Index j = from[1]; j <= to[1]; ++j)
       for (Index i = from[0]; i <= to[0]; ++i)
@@ -265,6 +273,8 @@ void CutGrid::sever_outside(Index node, int direction, bool may_move) {
 }
 
 void CutGrid::take_back_last_row() {
+  if (last_box_.low[0] <= last_box_.high[0]) box_.add(last_box_.low), box_.add(last_box_.high);
+  last_box_ = {extent_, {-1, -1, -1}};
   for (const std::size_t e : outside_by_last_) outside_.erase(e), box_.add(node(Index(e / kDirections)));
   outside_by_last_.clear();
   for (auto change = by_last_.rbegin(); change != by_last_.rend(); ++change) {

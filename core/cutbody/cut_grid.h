@@ -160,7 +160,7 @@ class CutGrid {
   std::vector<std::pair<std::size_t, std::optional<Cut>>> by_last_;  ///< what the last row changed, as it was before
   std::vector<std::size_t> outside_by_last_;
   bool anything_cut_ = false, changed_ = false;
-  NodeBox box_{};
+  NodeBox box_{}, last_box_{};  ///< of what changed, and of what the last row swept
 };
 
 }  // namespace ctpm::cutbody

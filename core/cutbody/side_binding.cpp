@@ -49,7 +49,8 @@ bool SideBinding::is_near(CutGrid::NodeBox box, Index node) const {
 }
 
 void SideBinding::forget_near(CutGrid::NodeBox changed) {
-  std::erase_if(bound_, [&](const auto& entry) { return is_near(changed, entry.first.side); });
+  // A cut far away may divide the piece that a vertex follows.
+  std::erase_if(bound_, [&](const auto& entry) { return entry.second.by_piece || is_near(changed, entry.first.side); });
   std::erase_if(seen_, [&](const auto& entry) { return is_near(changed, entry.first); });
   piece_.clear(), row_boxes_.clear();
 }
@@ -187,14 +188,22 @@ const SideBinding::Bound& SideBinding::bind(const CutMesh::Vertex& vertex, bool 
     }
   }
   bound.binding = bind_to_own_side(bound.rest, vertex.side);
+  bound.by_piece = bound.binding.sphere.empty();
+  if (bound.by_piece) bound.binding = bind_to_piece(bound.rest, vertex.side);
   return bound;
 }
 
+/// Empty if the spheres of the vertex's side do not span space.
 SideBinding::Binding SideBinding::bind_to_own_side(Vec3 rest, Index side) {
   const double reach = surface::kBindingReach * organ_.spacing;
   const std::vector<Index>& seen = seen_from(side).sphere;
   for (const double wider : {1.0, 1.5})
     if (Binding own = follow(rest, seen, wider * reach); !own.sphere.empty()) return own;
+  return {};
+}
+
+SideBinding::Binding SideBinding::bind_to_piece(Vec3 rest, Index side) {
+  const double reach = surface::kBindingReach * organ_.spacing;
   if (piece_.empty()) piece_ = grid_.find_pieces();
   for (const Index piece : {piece_[std::size_t(side)], Index(-1)}) {
     for (const double wider : {1.0, 1.5, 2.5, 4.0}) {

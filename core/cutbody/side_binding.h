@@ -35,6 +35,7 @@ class SideBinding {
     Vec3 rest;  ///< [m]
     Binding binding;
     Origin origin;
+    bool by_piece = false;  ///< the spheres of its own side do not span space
   };
 
   /// Both must outlive the SideBinding.
@@ -69,6 +70,7 @@ class SideBinding {
   Binding follow_whole(const Origin& origin) const;
   bool is_own_side(const Binding& binding, Index side);
   Binding bind_to_own_side(Vec3 rest, Index side);
+  Binding bind_to_piece(Vec3 rest, Index side);
   Binding follow(Vec3 rest, const std::vector<Index>& spheres, double reach) const;
   std::vector<Index> spheres_around(Vec3 rest, double reach, Index piece) const;
 
