@@ -189,7 +189,7 @@ int run_plan(const PlanArguments& arguments) {
     print(is_in ? "needed:\n" : "left out:\n");
     for (const Feature& f : features)
       if (f.is_in == is_in)
-        print("  %-26s %10s  %s\n", f.name.c_str(),
+        print("  %-30s %10s  %s\n", f.name.c_str(),
               f.bytes > 0 ? (std::to_string((f.bytes + 1023) / 1024) + " KiB").c_str() : "", f.why.c_str());
   }
   print("memory: %.1f KiB, %zu bytes a sphere\n", double(total) / 1024,
