@@ -418,7 +418,7 @@ void SessionWriter::Impl::sync_until_stopped() {
     is_behind = is_behind || sync_wanted;
     const bool syncs = std::exchange(sync_wanted, false);
     lock.unlock();
-    if (!is_in_place()) set_error(removed), is_removed = true;
+    if (!is_in_place()) set_error(removed);
     if (syncs && ::fdatasync(log_file) != 0)
       set_error(std::string("the disk did not confirm: ") + std::strerror(errno));
     if (Clock::now() - copied >= checkpoint_interval) {
@@ -438,8 +438,14 @@ bool SessionWriter::Impl::is_in_place() const {
 }
 
 void SessionWriter::Impl::set_error(const std::string& text) {
+  // Whatever fails first once the file is gone, that is the reason.
+  const bool is_gone = !is_in_place();
   const std::lock_guard lock(error_mutex);
-  if (error.empty()) error = text;
+  if (is_gone)
+    error = removed;
+  else if (error.empty())
+    error = text;
+  if (is_gone) is_removed = true;
   has_error = true;
 }
 
