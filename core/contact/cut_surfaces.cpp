@@ -42,8 +42,8 @@ void CutSurfaces::prepare() {
 }
 
 void CutSurfaces::begin_tick(const State& state, bool cuts) {
-  // Nothing but tissue and obstacles touches cuts while a blade is held.
-  const bool follows = !cuts || model_.has_meeting_bodies();
+  // Nothing but tissue, obstacles and a ball in the other hand touches cuts while a blade is held.
+  const bool follows = !cuts || model_.has_meeting_bodies() || model_.hands > 1;
   const std::size_t rows = rows_left_behind(state, cuts);
   bool changed = false;
   if (cuts) prepare();

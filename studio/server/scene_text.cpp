@@ -59,7 +59,7 @@ std::string view_json(const scenes::SceneSpec& scene, const Model& model) {
         .member("radius_m", tool.radius)
         .member("blade_m", tool.blade_length)
         .end_object();
-  json.end_list().key("cameras").begin_list();
+  json.end_list().member("hands", std::int64_t(model.hands)).key("cameras").begin_list();
   constexpr double kAspect = 16.0 / 9;
   for (const scenes::CameraSpec& camera : scene.cameras) {
     views::LookRequest request;

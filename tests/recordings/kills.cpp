@@ -108,7 +108,7 @@ void kill_together(std::span<Shared* const> memory, const recordings::SessionSta
 
 void kill_recorders(int count) {
   constexpr int together = 2;
-  const recordings::SessionStart start = small_start(3, 2, 2);
+  const recordings::SessionStart starts[] = {small_start(3, 2, 2), small_start(3, 2, 2, 2)};
   std::mt19937 random(12345);
   void* memory = ::mmap(nullptr, together * sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   ASSERT_NE(memory, MAP_FAILED);
@@ -116,7 +116,8 @@ void kill_recorders(int count) {
   for (int i = 0; i < together; ++i) places.push_back(static_cast<Shared*>(memory) + i);
   for (int killed = 0; killed < count && !::testing::Test::HasFailure(); killed += together) {
     SCOPED_TRACE("kills from " + std::to_string(killed));
-    kill_together(std::span(places).first(std::size_t(std::min(together, count - killed))), start, random);
+    kill_together(std::span(places).first(std::size_t(std::min(together, count - killed))),
+                  starts[killed / together % 2], random);
   }
   ::munmap(memory, together * sizeof(Shared));
 }

@@ -1,6 +1,6 @@
 import * as three from "three";
 import type { Binary, Connection } from "./connection";
-import type { BegunTraining, EndedTraining, Frame, Motion, SceneView, Vector } from "./protocol";
+import type { BegunTraining, EndedTraining, Frame, HandFrame, Motion, SceneView, Vector } from "./protocol";
 import { StageScene, Viewer } from "./viewer";
 
 export const kTrainStage = 2;
@@ -16,20 +16,29 @@ const kSteep = 0.85; // cosine between up and the line of sight, beyond which th
 const kLookAhead = 1, kAhead = 0.25; // of the expert's motion [s]
 const kNear = 0.03; // to the expert's path, to have reached it [m]
 const kMargin = 0.06; // around the organs that the hand may use [m]
+const kApart = 0.03; // of two hands from the middle [m]
+
+/** A hand as the page leads it. */
+interface LedHand {
+  target: three.Vector3; // where the pointer wants it
+  hand: three.Vector3;
+  turn: three.Quaternion;
+  tool: number; // -1: none
+}
+
+const makeHand = (): LedHand => ({ target: new three.Vector3(), hand: new three.Vector3(), turn: new three.Quaternion(), tool: 0 });
 
 /** A session that mouse and keys lead. */
 export class Trainer {
   scene: StageScene | null = null;
-  tool = 0; // -1: none
+  led = 0; // hand that mouse and keys lead; the other one stays where it was left
   started: number | null = null; // when the hand was taken up [ms]
   poses = 0; // sent so far
   onFrame: () => void = () => {};
   onEnded: (ended: EndedTraining) => void = () => {};
   onFailing: (problem: string) => void = () => {}; // what is recorded cannot be saved now
   private view: SceneView | null = null;
-  private readonly target = new three.Vector3();
-  private readonly hand = new three.Vector3();
-  private readonly turn = new three.Quaternion();
+  private readonly hands = [makeHand(), makeHand()];
   private readonly box = new three.Box3();
   private motion: Motion | null = null;
   private reached = 0; // pose of the expert's motion
@@ -48,6 +57,37 @@ export class Trainer {
 
   get isRunning(): boolean {
     return this.timer !== null;
+  }
+
+  private get own(): LedHand {
+    return this.hands[this.led];
+  }
+
+  /** The tool in the hand that is led; -1: none. */
+  get tool(): number {
+    return this.own.tool;
+  }
+
+  /** Whether the other hand holds a tool, or one that does not go with it: one blade cuts at a time. */
+  isTaken(tool: number): boolean {
+    if (this.handCount < 2) return false;
+    const tools = this.view!.tools, other = this.hands[1 - this.led].tool;
+    return other === tool || (tools[other]?.kind === "scalpel" && tools[tool]?.kind === "scalpel");
+  }
+
+  get handCount(): number {
+    return this.view?.hands ?? 1;
+  }
+
+  /** What the newest frame says of the hand that is led. */
+  get ownFrame(): HandFrame | null {
+    const frame = this.scene?.frame ?? null;
+    return this.led === 1 ? (frame?.second ?? null) : frame;
+  }
+
+  /** Mouse and keys lead the other hand from now on. */
+  lead(hand: number): void {
+    if (hand < this.handCount) this.led = hand;
   }
 
   /** Loads a scene and takes the tool in the hand. `output` undefined: nothing is recorded. */
@@ -84,14 +124,14 @@ export class Trainer {
 
   setTool(tool: number): void {
     const count = this.view?.tools.length ?? 0;
-    if (tool < count) this.tool = tool;
+    if (tool < count && !this.isTaken(tool)) this.own.tool = tool;
     this.send();
   }
 
   /** Moves the hand in its plane, by pixels of the picture. */
   movePixels(right: number, down: number): void {
     const { camera, canvas } = this.viewer;
-    const away = camera.position.distanceTo(this.hand);
+    const away = camera.position.distanceTo(this.own.hand);
     const metres = ((2 * away * Math.tan((camera.fov * Math.PI) / 360)) / canvas.clientHeight) * this.gain();
     this.moveBy(right * metres, -down * metres, 0);
   }
@@ -113,7 +153,8 @@ export class Trainer {
     };
     const move = moves[key], turn = turns[key.toLowerCase()];
     if (move) this.moveBy(...move);
-    else if (turn) this.turn.multiply(new three.Quaternion().setFromAxisAngle(new three.Vector3(...turn), kTurnStep * (isFine ? 0.25 : 1)));
+    else if (turn) this.own.turn.multiply(new three.Quaternion().setFromAxisAngle(new three.Vector3(...turn), kTurnStep * (isFine ? 0.25 : 1)));
+    else if (key.toLowerCase() === "x" && this.handCount > 1) this.lead(1 - this.led);
     else if (/^[1-9]$/.test(key)) this.setTool(Number(key) - 1);
     else return false;
     this.send();
@@ -122,15 +163,16 @@ export class Trainer {
 
   /** The hand follows the pointer less where the tissue resists. */
   private gain(): number {
-    const frame = this.scene?.frame;
+    const frame = this.ownFrame;
     return frame ? 1 / (1 + Math.hypot(...frame.force) / kHalfGain) : 1;
   }
 
   private moveBy(right: number, up: number, deep: number): void {
     if (!this.isRunning) return;
     const axes = this.handAxes();
-    this.target.addScaledVector(axes.right, right).addScaledVector(axes.up, up).addScaledVector(axes.deep, deep);
-    this.box.clampPoint(this.target, this.target);
+    const { target } = this.own;
+    target.addScaledVector(axes.right, right).addScaledVector(axes.up, up).addScaledVector(axes.deep, deep);
+    this.box.clampPoint(target, target);
     this.keepInView();
     this.send();
   }
@@ -147,12 +189,13 @@ export class Trainer {
   /** The hand stays in the picture, where it can be seen. */
   private keepInView(): void {
     const { camera } = this.viewer;
-    const seen = this.target.clone().project(camera);
+    const { target } = this.own;
+    const seen = target.clone().project(camera);
     const x = Math.min(Math.max(seen.x, -kEdge), kEdge), y = Math.min(Math.max(seen.y, -kEdge), kEdge);
-    if (x !== seen.x || y !== seen.y) this.target.set(x, y, seen.z).unproject(camera);
+    if (x !== seen.x || y !== seen.y) target.set(x, y, seen.z).unproject(camera);
   }
 
-  /** Puts the hand above the organs. */
+  /** Puts the hands above the organs, two beside each other. */
   private takeUp(): void {
     const view = this.view!;
     const up = new three.Vector3(...view.up);
@@ -160,11 +203,19 @@ export class Trainer {
     const middle = this.box.getCenter(new three.Vector3()), size = this.box.getSize(new three.Vector3());
     const height = Math.abs(up.x) * size.x + Math.abs(up.y) * size.y + Math.abs(up.z) * size.z;
     const radius = view.tools[0]?.radius_m ?? 0;
-    this.target.copy(middle).addScaledVector(up, height / 2 + radius + 0.02);
-    this.hand.copy(this.target);
+    const right = new three.Vector3().setFromMatrixColumn(this.viewer.camera.matrixWorld, 0);
+    this.hands.forEach((own, i) => {
+      own.target.copy(middle).addScaledVector(up, height / 2 + radius + 0.02);
+      if (this.handCount > 1) own.target.addScaledVector(right, i === 0 ? kApart : -kApart);
+      own.hand.copy(own.target);
+      own.turn.setFromUnitVectors(new three.Vector3(0, 0, 1), up);
+      own.tool = -1;
+    });
     this.box.expandByScalar(kMargin);
-    this.turn.setFromUnitVectors(new three.Vector3(0, 0, 1), up);
-    this.tool = view.tools.findIndex((tool) => tool.kind !== "pin");
+    for (this.led = this.handCount - 1; ; --this.led) {
+      this.own.tool = view.tools.findIndex((tool, i) => tool.kind !== "pin" && !this.isTaken(i) && i >= this.led);
+      if (this.led === 0) break;
+    }
     this.started = performance.now();
     this.sentAt = performance.now();
     this.poses = 0;
@@ -182,14 +233,13 @@ export class Trainer {
     if (!this.isRunning) return;
     const now = performance.now();
     const reach = (kMostSpeed * Math.min(now - this.sentAt, 50)) / 1e3;
-    const way = new three.Vector3().subVectors(this.target, this.hand);
-    this.hand.add(way.clampLength(0, reach));
     this.sentAt = now;
     ++this.poses;
-    const { x, y, z, w } = this.turn;
-    this.connection.send({
-      hand: { position: this.hand.toArray(), orientation: [w, x, y, z], buttons: this.tool >= 0 ? 2 ** this.tool : 0, time_s: now / 1e3 },
+    const [first, second] = this.hands.map(({ target, hand, turn, tool }) => {
+      hand.add(new three.Vector3().subVectors(target, hand).clampLength(0, reach));
+      return { position: hand.toArray(), orientation: [turn.w, turn.x, turn.y, turn.z], buttons: tool >= 0 ? 2 ** tool : 0 };
     });
+    this.connection.send({ hand: { ...first, time_s: now / 1e3, ...(this.handCount > 1 ? { second } : {}) } });
   }
 
   private take(message: Binary): void {

@@ -266,7 +266,7 @@ TEST_P(CutContactUnder, NeitherThreadsNorAFreshStartChangeABit) {
       ASSERT_FALSE(stepping::is_refused(stepper->step(state, cut_and_press(tick)).status)) << tick;
       for (const std::int32_t point : state.touched) {
         if (!points.contains(point)) continue;
-        (points.is_of_ball(point) ? ball_touches : ground_touches) = true;
+        (points.is_of_ball(point, 0) ? ball_touches : ground_touches) = true;
       }
     }
     runs.push_back(std::move(state));
