@@ -240,14 +240,13 @@ void Overlay::Parts::plan_plot(const OverlayData& data, Plan& plan) {
   plan.top_force = round_up(std::max(data.least_top_force, largest_force(data)));
   const int pad = px(16), w = px(332), h = px(160);
   plan.plot = {px(20), height - px(20) - h, w, h};
-  plan.lines.push_back(line(small, "force [N]", plan.plot.x + pad, plan.plot.y + px(12), kGrey));
+  const int title_x = plan.plot.x + pad, title_y = plan.plot.y + px(12);
   if (data.second) {
-    Line hands = line(small, "hand 2", 0, plan.plot.y + px(12), kBlue);
-    hands.placed.box.x = plan.plot.x + w - pad - hands.placed.box.width;
-    plan.lines.push_back(hands);
-    Line first = line(small, "hand 1", 0, plan.plot.y + px(12), kAmber);
-    first.placed.box.x = hands.placed.box.x - px(16) - first.placed.box.width;
-    plan.lines.push_back(first);
+    const std::string first = "hand 1 [N]";
+    plan.lines.push_back(line(small, first, title_x, title_y, kAmber));
+    plan.lines.push_back(line(small, "hand 2 [N]", title_x + small.width(first) + px(16), title_y, kBlue));
+  } else {
+    plan.lines.push_back(line(small, "force [N]", title_x, title_y, kGrey));
   }
   const std::string scale_text = output::fixed(plan.top_force, plan.top_force < 0.1 ? 2 : plan.top_force < 1 ? 1 : 0);
   const int label = pad + std::max(small.width("0.02"), small.width(scale_text)) + px(8);
