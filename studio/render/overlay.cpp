@@ -206,8 +206,11 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
     return Fact{name, output::fixed(hand.force, 3) + " N", is_too_strong(data, hand)};
   };
   const auto depth_of = [&](const std::string& which, const HandLoad& hand) {
-    return Fact{(hand.is_blade ? "cut depth" : "depth") + which, output::fixed(1000 * hand.depth, 2) + " mm",
-                is_too_deep(data, hand)};
+    return Fact{(!hand.is_blade  ? "depth"
+                 : which.empty() ? "cut depth"
+                                 : "cut") +
+                    which,
+                output::fixed(1000 * hand.depth, 2) + " mm", is_too_deep(data, hand)};
   };
   const std::array<Fact, 11> facts{
       {{"session", small.shortened_inside(data.session, px(195))},

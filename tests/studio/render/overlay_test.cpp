@@ -184,7 +184,7 @@ TEST(Overlay, ShowsForceAndDepthOfBothHands) {
   data.hand.depth = 0, data.second->depth = 0.0123;
   EXPECT_TRUE(says(1280, "DAMAGE: 12.3 mm")) << "either hand does damage";
   data.second->is_blade = true;
-  EXPECT_TRUE(says(1280, "cut depth 2"));
+  EXPECT_TRUE(says(1280, "cut 2"));
   EXPECT_FALSE(says(1280, "DAMAGE"));
 }
 

@@ -159,7 +159,8 @@ TEST(MotionAt, AToolStaysWhereItWasLastSeenUntilAnotherOrNoneIsHeld) {
 TEST(MotionAt, AMotionSampledAtTheTicksIsTakenAsItIs) {
   sources::Motion motion;
   for (int i = 0; i < 5000; ++i)
-    motion.samples.push_back({17 + i * 1e-3, {0, {std::sin(i * 0.7), std::cos(i * 1.3), i * 1e-3}, {1, 0, 0, 0}, 0}});
+    motion.samples.push_back(
+        {17 + i * 1e-3, {{0, {std::sin(i * 0.7), std::cos(i * 1.3), i * 1e-3}, {1, 0, 0, 0}, 0}, {}}});
   ASSERT_EQ(sources::motion_tick_count(motion, 1e-3), 5000);
   for (int i = 0; i < 5000; ++i)
     ASSERT_EQ(sources::motion_at(motion, i * 1e-3), motion.samples[std::size_t(i)].inputs) << i;
