@@ -213,7 +213,7 @@ TEST(PageHand, MessagesThatArriveTogetherCountFromWhenTheyWereSent) {
   EXPECT_FALSE(hand.next(report));
   EXPECT_LE(last, devices::device_clock());
   // Buttons come before the pose that goes with them, and only when they change.
-  hand.move({.buttons = 2}, 10.2), hand.move({.buttons = 2}, 10.3);
+  hand.move({{}, 2}, 10.2), hand.move({{}, 2}, 10.3);
   ASSERT_TRUE(hand.next(report));
   EXPECT_EQ(report.news, devices::DeviceNews::buttons);
   EXPECT_EQ(report.buttons, 2u);
