@@ -214,6 +214,9 @@ void BallContact::dent(const Part& part, const surface::NearSurface::Triangle& t
       was_touched_[std::size_t(slot[0])] || was_touched_[std::size_t(slot[1])] || was_touched_[std::size_t(slot[2])];
   // A surface outside the ball touches only where the ball has gone in deeper than the lattice follows.
   if (!may_touch(corners, ball.centre, was_touched ? reach : ball.radius)) return;
+  double shares[3] = {1, 1, 1};
+  for (std::size_t c = 0; c < 3 && part.patch != nullptr; ++c) shares[c] = share_of(part, vertex[c], ball.radius);
+  if (shares[0] == 0 && shares[1] == 0 && shares[2] == 0) return;
   const Vec3 across = cross(corners[1] - corners[0], corners[2] - corners[0]);
   const double size = norm(across), squared = ball.radius * ball.radius;
   if (!(size > 0)) return;
@@ -229,16 +232,12 @@ void BallContact::dent(const Part& part, const surface::NearSurface::Triangle& t
     const double half_chord = std::sqrt(half_chord_squared), through = height + half_chord;
     const Vec3 normal = (apart - through * outward) / ball.radius;
     const double weights[3] = {w0, w1, w2};
-    double share = 1;
-    if (part.patch != nullptr) {
-      share = 0;
-      for (std::size_t c = 0; c < 3; ++c) share += weights[c] * share_of(part, vertex[c], ball.radius);
-    }
     if (may_be_hidden) {
       Vec3 rest;
       for (std::size_t c = 0; c < 3; ++c) rest += weights[c] * part.surface->rest(triangle.corner[c]);
       if (cuts_.covers(std::size_t(organ_of(part, vertex[0])), rest)) return;
     }
+    const double share = part.patch == nullptr ? 1 : w0 * shares[0] + w1 * shares[1] + w2 * shares[2];
     const double area = share * triangle.rest_area / (n * n);
     if (!(area > 0)) return;
     const Vec3 volume = area * through * (half_chord / ball.radius) * normal;
