@@ -5,6 +5,7 @@
 #include "recordings/session_reader.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
+#include "studio/commands/extremes_text.h"
 #include "studio/output/printable.h"
 #include "studio/session/session_info.h"
 
@@ -74,8 +75,9 @@ void print_text(recordings::SessionReader& reader, const recordings::SessionStat
           s.input_age_max * 1e3);
   if (s.slip_max > 0) print("clock      %.3f s behind real time at the end, %.3f s at most\n", s.slip, s.slip_max);
   for (const auto& [name, value] : s.values) print("value      %s = %g\n", printable(name).c_str(), value);
-  print("at most    %.3f N, %.2f mm deep; %lld elements severed, %lld pieces came loose\n", s.max_force,
-        s.max_depth * 1e3, (long long)s.severed, (long long)recordings::pieces_came_loose(events, reader.tick_count()));
+  print("tissue     %s; %lld elements severed, %lld pieces came loose\n",
+        extremes_text(s.max_force, s.max_depth).c_str(), (long long)s.severed,
+        (long long)recordings::pieces_came_loose(events, reader.tick_count()));
   if (model.tissue_cells.size() > 0)
     print("inside out %s at the end\n",
           recordings::cells_inside_out(events, reader.tick_count()) > 0 ? "TISSUE IS INSIDE OUT" : "no tissue");

@@ -7,6 +7,7 @@
 #include "recordings/session_reader.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
+#include "studio/commands/extremes_text.h"
 #include "studio/commands/flags.h"
 #include "studio/commands/physics_warning.h"
 #include "studio/output/files.h"
@@ -70,10 +71,9 @@ int run_replay(const ReplayArguments& arguments) {
   if (!arguments.csv.empty())
     if (const Result<Done> written = output::write_text_file(arguments.csv, rows); !written)
       return print_errors(written.errors());
-  print("%s: %lld ticks replayed, at most %.3f N and %.2f mm deep, %s%s%s\n", arguments.file.c_str(),
-        (long long)(range->to - range->from), most_force, most_depth * 1e3,
-        cursor->same_so_far() ? "as recorded" : "NOT as recorded", arguments.csv.empty() ? "" : "; written to ",
-        arguments.csv.c_str());
+  print("%s: %lld ticks replayed, %s, %s%s%s\n", arguments.file.c_str(), (long long)(range->to - range->from),
+        extremes_text(most_force, most_depth).c_str(), cursor->same_so_far() ? "as recorded" : "NOT as recorded",
+        arguments.csv.empty() ? "" : "; written to ", arguments.csv.c_str());
   return cursor->same_so_far() ? exit_good : exit_bad_verdict;
 }
 
