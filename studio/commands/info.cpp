@@ -65,8 +65,8 @@ void print_text(recordings::SessionReader& reader, const recordings::SessionStat
   print("duration   %.3f s, %lld ticks of %g ms\n", double(reader.tick_count()) * model.tick,
         (long long)reader.tick_count(), model.tick * 1e3);
   for (const OrganRange& organ : model.organs)
-    print("organ      %s: %d spheres in %d layers, radius %g mm, spacing %g mm\n", organ.name.c_str(), organ.count,
-          organ.layer_count, organ.sphere_radius * 1e3, organ.spacing * 1e3);
+    print("organ      %s: %d spheres in %d layers, radius %g mm, spacing %g mm\n", printable(organ.name).c_str(),
+          organ.count, organ.layer_count, organ.sphere_radius * 1e3, organ.spacing * 1e3);
   print("network    %zu spheres, %zu elements\n", model.sphere_count(), model.element_count());
   print("tick time  p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms; %lld late\n", s.tick_time_p50 * 1e3,
         s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3, (long long)s.late_ticks);

@@ -269,11 +269,13 @@ class IgtlHalfOpen : public IgtlFaults {
       if (::send(device, bytes.data(), bytes.size(), MSG_NOSIGNAL) <= 0) return 3;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
+    // Every force that was sent is acknowledged: nothing of the program's waits for an answer.
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
     if (!network.cut_off()) return 4;
     // The kernel of the dead machine says no more. That the connection is dead comes from the program's own probes.
     bool is_noted = false;
-    for (int i = 0; i < 300 && !is_noted; ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    for (int i = 0; i < 60 && !is_noted; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(500));
       is_noted = holds(testing::run_ctpm({"info", "a.ctpm"}, folder_.path()).out, "it hung up; the pose is held");
     }
     if (!is_noted) return 5;
