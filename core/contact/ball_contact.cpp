@@ -129,18 +129,28 @@ void BallContact::find(const StateView& state, const BallMotion& ball, PointCont
   find_on_spheres(state, ball, contacts);
 }
 
-/// Largest distance from the ball's centre to a vertex that it touched at the start of the substep [m].
-double BallContact::farthest_touched(const StateView& state, const BallMotion& ball) const {
-  double farthest = 0;
-  const auto look_at = [&](Vec3 place) { farthest = std::max(farthest, norm(place - ball.centre)); };
+/// What is near a ball, or was touched by it at the start of the substep.
+BallContact::Reach BallContact::reach_of(const StateView& state, const BallMotion& ball) const {
+  const Box around = Box(ball.centre).grown(ball.radius);
+  Reach reach{ball.radius, around};
+  const auto add = [&](Vec3 place) {
+    reach.distance = std::max(reach.distance, norm(place - ball.centre)), reach.region.add(place);
+  };
   for (const std::int32_t point : state.touched) {
-    if (point < vertex_count_) look_at(follower(point).of(state.position));
+    if (point < vertex_count_) add(follower(point).of(state.position));
     if (!cuts_.any() || !cuts_.points().is_of_ball(point)) continue;
     const cutbody::CutPoints::Place at = cuts_.points().place(point);
-    if (cutbody::CutPatch* const patch = cuts_.patch(at))
-      look_at(patch->body.surface.place(at.vertex - patch->body.first_vertex));
+    cutbody::CutPatch* const patch = cuts_.patch(at);
+    if (patch == nullptr) continue;
+    const std::int32_t own = at.vertex - patch->body.first_vertex;
+    add(patch->body.surface.place(own));
+    // The pressure on all vertices of its facet was gathered at this one.
+    for (std::size_t v = 0; v < patch->gathers_at.size(); ++v)
+      if (patch->gathers_at[v] == own) reach.region.add(patch->body.surface.place(std::int32_t(v)));
   }
-  return farthest;
+  const double deepest = kDeepest * ball.radius;
+  if (reach.distance > deepest) reach = {deepest, Box(ball.centre).grown(deepest)};
+  return reach;
 }
 
 void BallContact::find_on_surfaces(const StateView& state, const BallMotion& ball, PointContacts& contacts) {
@@ -150,13 +160,15 @@ void BallContact::find_on_surfaces(const StateView& state, const BallMotion& bal
   };
   mark(1);
   pressed_area_ = {};
-  const double reach = std::max(ball.radius, std::min(farthest_touched(state, ball), kDeepest * ball.radius));
-  if (!own_.empty()) own_.begin(state.position);
-  const Box region = Box(ball.centre).grown(reach);
-  cuts_.near(region, [&](cutbody::CutPatch& patch) { add_patch(state, patch); });
+  if (!own_.empty()) {
+    own_.begin(state.position);
+    cuts_.wait_near(reach_of(state, ball).region, state, own_.rest_box(), own_.displacements());
+  }
+  const Reach reach = reach_of(state, ball);
+  cuts_.near(reach.region, [&](cutbody::CutPatch& patch) { add_patch(state, patch); });
   for (const Part& part : parts_)
-    part.surface->near(region, [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
-      if (may_touch(corners, ball.centre, reach)) dent(part, triangle, corners, ball);
+    part.surface->near(reach.region, [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
+      dent(part, triangle, corners, ball, reach.distance);
     });
   mark(0);
   const double a = std::sqrt(norm(pressed_area_) / kPi);
@@ -194,19 +206,24 @@ double BallContact::share_of(const Part& part, std::int32_t slot, double radius)
   return std::min(1.0, opening / (kOpen * radius));
 }
 
-/// Adds a triangle's part under the ball to its corners.
+/// Adds a triangle's part under the ball to its corners. `reach`: of the ball where it touched before [m].
 void BallContact::dent(const Part& part, const surface::NearSurface::Triangle& triangle, const Vec3* corners,
-                       const BallMotion& ball) {
-  const Vec3 across = cross(corners[1] - corners[0], corners[2] - corners[0]);
-  const double size = norm(across), squared = ball.radius * ball.radius;
-  if (!(size > 0)) return;
-  const Vec3 outward = across / size;
+                       const BallMotion& ball, double reach) {
   std::int32_t vertex[3];
   for (std::size_t c = 0; c < 3; ++c) vertex[c] = part.first_slot + triangle.corner[c];
   std::int32_t slot[3];
   for (std::size_t c = 0; c < 3; ++c) slot[c] = part.gathers_at(triangle.corner[c]);
   const bool was_touched =
       was_touched_[std::size_t(slot[0])] || was_touched_[std::size_t(slot[1])] || was_touched_[std::size_t(slot[2])];
+  // A surface outside the ball touches only where the ball has gone in deeper than the lattice follows.
+  if (!may_touch(corners, ball.centre, was_touched ? reach : ball.radius)) return;
+  double shares[3] = {1, 1, 1};
+  for (std::size_t c = 0; c < 3 && part.patch != nullptr; ++c) shares[c] = share_of(part, vertex[c], ball.radius);
+  if (shares[0] == 0 && shares[1] == 0 && shares[2] == 0) return;
+  const Vec3 across = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const double size = norm(across), squared = ball.radius * ball.radius;
+  if (!(size > 0)) return;
+  const Vec3 outward = across / size;
   const int n = std::clamp(int(std::ceil(triangle.longest_edge / (kLongestPart * ball.radius))), 1, kMostDivisions);
   const bool may_be_hidden = is_hidden(part, triangle);
   for_each_part(n, [&](double w0, double w1, double w2) {
@@ -214,21 +231,16 @@ void BallContact::dent(const Part& part, const surface::NearSurface::Triangle& t
     // Along the line inwards, the far side of the ball is `through` away.
     const double distance_squared = dot(apart, apart), height = dot(apart, outward);
     const double half_chord_squared = height * height - distance_squared + squared;
-    // A surface outside the ball touches only where the ball has gone in deeper than the lattice follows.
     if (half_chord_squared <= 0 || (distance_squared >= squared && !(was_touched && height > 0))) return;
     const double half_chord = std::sqrt(half_chord_squared), through = height + half_chord;
     const Vec3 normal = (apart - through * outward) / ball.radius;
     const double weights[3] = {w0, w1, w2};
-    double share = 1;
-    if (part.patch != nullptr) {
-      share = 0;
-      for (std::size_t c = 0; c < 3; ++c) share += weights[c] * share_of(part, vertex[c], ball.radius);
-    }
     if (may_be_hidden) {
       Vec3 rest;
       for (std::size_t c = 0; c < 3; ++c) rest += weights[c] * part.surface->rest(triangle.corner[c]);
       if (cuts_.covers(std::size_t(organ_of(part, vertex[0])), rest)) return;
     }
+    const double share = part.patch == nullptr ? 1 : w0 * shares[0] + w1 * shares[1] + w2 * shares[2];
     const double area = share * triangle.rest_area / (n * n);
     if (!(area > 0)) return;
     const Vec3 volume = area * through * (half_chord / ball.radius) * normal;

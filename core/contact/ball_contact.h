@@ -65,7 +65,12 @@ class BallContact {
     Vec3 volume;      ///< depth times area, along the ball's radius [m^3]
   };
 
-  double farthest_touched(const StateView& state, const BallMotion& ball) const;
+  /// Where a ball may touch.
+  struct Reach {
+    double distance;  ///< from its centre, of what it touched before; its radius elsewhere [m]
+    Box region;
+  };
+  Reach reach_of(const StateView& state, const BallMotion& ball) const;
   /// A surface whose vertices have the slots from `first_slot` on, and the points from `first_point` on.
   struct Part {
     std::int32_t first_slot, first_point;
@@ -86,7 +91,7 @@ class BallContact {
   bool is_hidden(const Part& part, const surface::NearSurface::Triangle& triangle) const;
   double share_of(const Part& part, std::int32_t slot, double radius);
   void dent(const Part& part, const surface::NearSurface::Triangle& triangle, const Vec3* corners,
-            const BallMotion& ball);
+            const BallMotion& ball, double reach);
   void press_slot(const StateView& state, const BallMotion& ball, std::int32_t slot, double radius,
                   PointContacts& contacts);
   void find_on_surfaces(const StateView& state, const BallMotion& ball, PointContacts& contacts);

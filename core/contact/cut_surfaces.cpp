@@ -1,11 +1,18 @@
 #include "core/contact/cut_surfaces.h"
 
 #include <algorithm>
+#include <new>
+#include <utility>
 
 #include "core/cutting/swept_surface.h"
 
 namespace ctpm::contact {
 namespace {
+
+/// Patches stand for the organ's own surface up to so many spacings from a cut, along each axis of the lattice: in the
+/// cut's block and the two next to it, and up to half a block beyond.
+constexpr double kFarthestPatch = 3.75;
+constexpr double kDiagonal = 1.7321;  ///< of a cube: the lattice may be turned
 
 /// Rows of the swept surface that the blade has left: all of them, unless the last row is where the front is now.
 /// Then those before the sheet that it goes on with, which begins with a row to which nothing was swept.
@@ -28,6 +35,16 @@ std::size_t rows_left_behind(const State& state, bool cuts) {
 
 }  // namespace
 
+/// Whether a surface is the first `rows` rows of that of `state`. Two that agree in their last rows agree in those
+/// before them.
+static bool is_same(const State& surface, const State& state, std::size_t rows) {
+  const std::size_t points = rows * kEdgeNodes;
+  if (surface.swept.size() != points) return false;
+  for (std::size_t n = points - std::min(points, 2 * kEdgeNodes); n < points; ++n)
+    if (!(surface.swept[n] == state.swept[n]) || surface.swept_organ[n] != state.swept_organ[n]) return false;
+  return true;
+}
+
 CutSurfaces::CutSurfaces(const Model& model) : model_(model), points_(model) {
   if (!model.has_tool(ToolKind::ball) && !model.has_meeting_bodies()) return;
   for (std::size_t organ = 0; organ < model.organs.size(); ++organ) {
@@ -37,34 +54,89 @@ CutSurfaces::CutSurfaces(const Model& model) : model_(model), points_(model) {
 }
 
 void CutSurfaces::prepare() {
+  wait();
   for (auto& organ : organs_)
     if (organ) organ->prepare();
 }
 
 void CutSurfaces::begin_tick(const State& state, bool cuts) {
   // Nothing but tissue and obstacles touches cuts while a blade is held.
-  const bool follows = !cuts || model_.has_meeting_bodies();
+  if (organs_.empty() || (cuts && !model_.has_meeting_bodies())) return;
   const std::size_t rows = rows_left_behind(state, cuts);
-  bool changed = false;
-  if (cuts) prepare();
-  for (auto& organ : organs_) {
-    if (!organ) continue;
-    if (follows && organ->follow(state, rows)) changed = true;
-  }
-  if (!changed) return;
-  ++version_;
-  is_cut_ = std::any_of(organs_.begin(), organs_.end(), [](const auto& organ) { return organ && organ->is_cut(); });
-  find_hidden();
+  if (followed_ ? !is_same(*followed_, state, rows) : rows > 0) start(state, rows);
+  if (model_.has_meeting_bodies()) wait();
 }
 
-void CutSurfaces::find_hidden() {
-  hidden_.clear();
-  if (!is_cut_) return;
+/// Has the worker follow the first `rows` rows of the swept surface of `state`.
+void CutSurfaces::start(const State& state, std::size_t rows) {
+  const auto surface = std::make_shared<State>();
+  surface->swept = state.swept, surface->swept.resize(rows * kEdgeNodes);
+  surface->swept_organ.assign(state.swept_organ.begin(),
+                              state.swept_organ.begin() + std::ptrdiff_t(surface->swept.size()));
+  if (rows > 0) around_ = Box(surface->swept[0]);
+  for (std::size_t n = 0; n < surface->swept.size(); ++n) around_.add(surface->swept[n]);
+  double spacing = 0;
+  for (const OrganRange& organ : model_.organs) spacing = std::max(spacing, organ.spacing);
+  around_ = around_.grown(kDiagonal * kFarthestPatch * spacing);
+  followed_ = surface, is_cut_ = false;
+
+  std::promise<std::vector<std::uint8_t>> hidden;
+  follows_ = hidden.get_future();
+  worker_.request_stop();
+  worker_ = std::jthread(
+      [this, surface, before = std::move(worker_), hidden = std::move(hidden)](const std::stop_token& stop) mutable {
+        if (before.joinable()) before.join();
+        try {
+          for (auto& organ : organs_)
+            if (organ) organ->follow(surface);
+          hidden.set_value(find_hidden());
+        } catch (...) {
+          hidden.set_exception(std::current_exception());
+          return;
+        }
+        try {
+          for (auto& organ : organs_)
+            if (organ) organ->make_all(stop);
+        } catch (const std::bad_alloc&) {  // the tick that needs the patch makes it
+        }
+      });
+}
+
+void CutSurfaces::wait_near(const Box& region, const StateView& state, const Box& at_rest, const Box& displacements) {
+  if (!follows_.valid()) return;
+  // Weights near a cut may be negative.
+  const Vec3 size = displacements.high - displacements.low;
+  const Box by(displacements.low - size, displacements.high + size);
+  const bool is_near = region.meets(around_.moved(by)) && region.meets(at_rest.moved(by));
+  if (is_near || std::any_of(state.touched.begin(), state.touched.end(),
+                             [&](std::int32_t point) { return points_.contains(point); }))
+    wait();
+}
+
+/// Takes organs_ over from the worker, which goes on with their patches.
+void CutSurfaces::wait() {
+  if (!follows_.valid()) return;
+  try {
+    hidden_ = follows_.get();
+  } catch (...) {
+    followed_ = nullptr;
+    throw;
+  }
+  ++version_, is_cut_ = !hidden_.empty();
+  if (position_ != nullptr) begin(*position_);
+}
+
+std::vector<std::uint8_t> CutSurfaces::find_hidden() const {
+  std::vector<std::uint8_t> hidden;
+  if (std::none_of(organs_.begin(), organs_.end(), [](const auto& organ) { return organ && organ->is_cut(); }))
+    return hidden;
   for (std::size_t organ = 0; organ < model_.surfaces.size(); ++organ)
-    for (const Vec3& vertex : model_.surfaces[organ].vertex) hidden_.push_back(covers(organ, vertex));
+    for (const Vec3& vertex : model_.surfaces[organ].vertex) hidden.push_back(covers(organ, vertex));
+  return hidden;
 }
 
 void CutSurfaces::begin(const Vec3Array& position) {
+  position_ = &position;
   if (!is_cut_) return;
   for (auto& organ : organs_)
     if (organ) organ->begin(position);

@@ -1,29 +1,44 @@
 #pragma once
 
 #include <cstdint>
+#include <future>
+#include <memory>
 #include <optional>
+#include <thread>
 #include <vector>
 
 #include "core/cutbody/cut_patches.h"
 #include "core/cutbody/cut_points.h"
+#include "core/model/box.h"
 #include "core/model/model.h"
 #include "core/model/state.h"
+#include "core/model/state_view.h"
 
 namespace ctpm::contact {
 
 /// The surfaces that cuts open, as they are touched: patches (cutbody::CutPatches) that stand for parts of the organs'
 /// own surfaces near a cut. A cut is touched when the blade has left it: while a blade goes on cutting, the surface
 /// that it sweeps is not.
+///
+/// A thread of their own follows the cut and makes the patches, which takes longer than a tick. Ticks wait for it where
+/// something may touch the cut, so that results do not depend on how fast it is.
 class CutSurfaces {
  public:
   /// `model` must outlive the CutSurfaces. Nothing is built until something is cut, or a blade is held.
   explicit CutSurfaces(const Model& model);
+  CutSurfaces(const CutSurfaces&) = delete;
+  CutSurfaces& operator=(const CutSurfaces&) = delete;
 
-  /// Builds at once what the first tick with a blade needs.
+  /// Builds at once what the first cut needs.
   void prepare();
 
-  /// Follows the cuts of `state` at the start of a tick. `cuts`: a blade is held.
+  /// Follows the cuts of `state` from the start of a tick on. `cuts`: a blade is held.
   void begin_tick(const State& state, bool cuts);
+
+  /// Waits for the cuts if something in `region` may touch them, or touched them at the start of the substep; what is
+  /// farther may go on as if nothing were cut. `at_rest`: around the organs at rest [m]; `displacements`: how far their
+  /// surfaces have moved [m].
+  void wait_near(const Box& region, const StateView& state, const Box& at_rest, const Box& displacements);
 
   /// Whether anything that can be touched is cut.
   bool any() const { return is_cut_; }
@@ -68,7 +83,9 @@ class CutSurfaces {
   cutbody::CutPatch* patch(const cutbody::CutPoints::Place& place);
 
  private:
-  void find_hidden();
+  void start(const State& state, std::size_t rows);
+  void wait();
+  std::vector<std::uint8_t> find_hidden() const;
 
   const Model& model_;
   cutbody::CutPoints points_;
@@ -76,6 +93,13 @@ class CutSurfaces {
   bool is_cut_ = false;
   std::uint32_t version_ = 0;
   std::vector<std::uint8_t> hidden_;  ///< (vertex_count through all organs, or empty)
+  const Vec3Array* position_ = nullptr;
+
+  std::shared_ptr<const State> followed_;  ///< only with a swept surface; null: nothing was cut
+  Box around_{Vec3{}};                     ///< what patches stand for at rest [m]
+  /// What will be in hidden_. While it is valid the worker has organs_ to itself.
+  std::future<std::vector<std::uint8_t>> follows_;
+  std::jthread worker_;
 };
 
 }  // namespace ctpm::contact

@@ -121,27 +121,36 @@ CutGrid::Index CutGrid::find_home(Index sphere) const {
   const Index own = own_node_[std::size_t(sphere)];
   if (in_tissue(own)) return own;
   constexpr Index kReach = 2 * kPerSpacing;
+  const Node here = node(own);
   const auto squared_distance = [&](Index i) {
-    const Node p = node(own), q = node(i);
+    const Node n = node(i);
     Index sum = 0;
-    for (std::size_t a = 0; a < 3; ++a) sum += (q[a] - p[a]) * (q[a] - p[a]);
+    for (std::size_t a = 0; a < 3; ++a) sum += (n[a] - here[a]) * (n[a] - here[a]);
     return sum;
   };
-  std::vector<Index> front{own}, seen{own};
+  constexpr Index kSide = 2 * kReach + 1;
+  std::vector<std::uint8_t> seen(std::size_t(kSide * kSide * kSide), 0);
+  const auto was_seen = [&](Index i) -> std::uint8_t& {
+    const Node n = node(i);
+    return seen[std::size_t(n[0] - here[0] + kReach +
+                            kSide * (n[1] - here[1] + kReach + kSide * (n[2] - here[2] + kReach)))];
+  };
+  std::vector<Index> front{own};
+  was_seen(own) = 1;
   for (Index hops = 0; hops < kReach && !front.empty(); ++hops) {
     std::vector<Index> next;
     Index best = -1;
     const auto go = [&](Index to, std::size_t by) {
-      if (cuts_.contains(by) || outside_.contains(by) || std::find(seen.begin(), seen.end(), to) != seen.end()) return;
-      seen.push_back(to), next.push_back(to);
+      if (was_seen(to) != 0 || cuts_.contains(by) || outside_.contains(by)) return;
+      was_seen(to) = 1, next.push_back(to);
       if (!in_tissue(to)) return;
       if (best < 0 || std::pair(squared_distance(to), to) < std::pair(squared_distance(best), best)) best = to;
     };
     for (const Index from : front) {
-      const Node here = node(from);
+      const Node n = node(from);
       for (int d = 1; d < kDirections; ++d) {
-        const Node up{here[0] + (d & 1), here[1] + (d >> 1 & 1), here[2] + (d >> 2)},
-            down{here[0] - (d & 1), here[1] - (d >> 1 & 1), here[2] - (d >> 2)};
+        const Node up{n[0] + (d & 1), n[1] + (d >> 1 & 1), n[2] + (d >> 2)},
+            down{n[0] - (d & 1), n[1] - (d >> 1 & 1), n[2] - (d >> 2)};
         if (contains(up)) go(at(up), edge(from, d));
         if (contains(down)) go(at(down), edge(at(down), d));
       }

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <utility>
 
 #include "core/cutbody/cut_mesh.h"
@@ -113,6 +115,18 @@ struct BlockSurface {
   }
 };
 
+/// Has make_all() let another thread go first.
+class Wanted {
+ public:
+  explicit Wanted(std::atomic<bool>& is_wanted) : is_wanted_(is_wanted) { is_wanted_ = true; }
+  ~Wanted() { is_wanted_ = false, is_wanted_.notify_one(); }
+  Wanted(const Wanted&) = delete;
+  Wanted& operator=(const Wanted&) = delete;
+
+ private:
+  std::atomic<bool>& is_wanted_;
+};
+
 }  // namespace
 
 double CutPatch::opening(std::int32_t vertex) {
@@ -135,7 +149,9 @@ struct CutPatches::Parts {
   CutGrid grid;
   SideBinding binding;
   std::vector<Index> bin_of_sphere;
-  State seen;  ///< only with a swept surface: what is followed
+  std::shared_ptr<const State> seen;    ///< what is followed
+  std::mutex making;                    ///< of patches, by whom has it
+  std::atomic<bool> is_wanted = false;  ///< somebody waits for a patch
 };
 
 CutPatches::CutPatches(const Model& model, std::size_t organ) : model_(model), organ_(organ) {}
@@ -146,23 +162,29 @@ void CutPatches::prepare() {
   if (!parts_) parts_ = std::make_unique<Parts>(model_, organ_);
 }
 
-bool CutPatches::follow(const State& state, std::size_t rows) {
-  if (!parts_ && rows == 0) return false;
+void CutPatches::follow(std::shared_ptr<const State> state) {
   prepare();
-  State& seen = parts_->seen;
-  const std::size_t points = rows * kEdgeNodes;
-  // Two swept surfaces that agree in their last rows agree in those before them.
-  bool is_same = seen.swept.size() == points;
-  for (std::size_t n = points - std::min(points, 2 * kEdgeNodes); n < points && is_same; ++n)
-    is_same = seen.swept[n] == state.swept[n] && seen.swept_organ[n] == state.swept_organ[n];
-  if (is_same) return false;
-  seen.swept = state.swept, seen.swept.resize(points);
-  seen.swept_organ.assign(state.swept_organ.begin(), state.swept_organ.begin() + std::ptrdiff_t(points));
-  (void)parts_->grid.update(seen);
+  parts_->seen = std::move(state);
+  (void)parts_->grid.update(*parts_->seen);
   const CutGrid::Node extent = parts_->grid.extent();
   parts_->binding.forget_near({{0, 0, 0}, extent});
   cover();
-  return true;
+}
+
+void CutPatches::make_all(const std::stop_token& stop) {
+  for (Covered& covered : covered_) {
+    parts_->is_wanted.wait(true);
+    if (stop.stop_requested()) return;
+    make_once(covered);
+  }
+}
+
+void CutPatches::make_once(Covered& covered) {
+  const std::lock_guard lock(parts_->making);
+  const std::atomic_ref is_made(covered.is_made);
+  if (is_made.load(std::memory_order_relaxed)) return;
+  covered.patches = make(covered.block);
+  is_made.store(true, std::memory_order_release);
 }
 
 void CutPatches::cover() {
@@ -247,7 +269,10 @@ CutPatch* CutPatches::patch(Index block, std::int32_t vertex) {
 }
 
 std::vector<std::unique_ptr<CutPatch>>& CutPatches::made(Covered& covered) {
-  if (!covered.is_made) covered.patches = make(covered.block), covered.is_made = true;
+  if (!std::atomic_ref(covered.is_made).load(std::memory_order_acquire)) {
+    const Wanted wanted(parts_->is_wanted);
+    make_once(covered);
+  }
   if (std::exchange(covered.round, round_) != round_)
     for (const auto& patch : covered.patches) patch->body.surface.begin(*position_);
   return covered.patches;
@@ -295,7 +320,7 @@ static BlockSurface surface_of_block(const CutGrid& grid, CutGrid::Index block,
 }
 
 std::vector<std::unique_ptr<CutPatch>> CutPatches::make(Index block) {
-  const BlockSurface all = surface_of_block(parts_->grid, block, piece_, parts_->binding, parts_->seen);
+  const BlockSurface all = surface_of_block(parts_->grid, block, piece_, parts_->binding, *parts_->seen);
   std::vector<std::int32_t> pieces(all.piece);
   std::sort(pieces.begin(), pieces.end());
   pieces.erase(std::unique(pieces.begin(), pieces.end()), pieces.end());

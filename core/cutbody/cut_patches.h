@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <stop_token>
 #include <vector>
 
 #include "core/cutbody/cut_grid.h"
@@ -51,8 +52,11 @@ class CutPatches {
   /// Does at once what the first cut needs: a grid over the organ.
   void prepare();
 
-  /// Follows the first `rows` rows of the swept surface of `state`. Returns whether anything changed.
-  bool follow(const State& state, std::size_t rows);
+  /// Follows the swept surface of `state`.
+  void follow(std::shared_ptr<const State> state);
+  /// Makes the patches that nobody has asked for yet, until it is told to stop. Other threads may ask for patches
+  /// meanwhile; they do not wait for more than one block.
+  void make_all(const std::stop_token& stop);
   bool is_cut() const { return !covered_.empty(); }
   /// For each sphere of the organ the lowest node of its piece; -1: it is in none (sphere_count, or empty).
   const std::vector<Index>& piece_of_sphere() const { return piece_of_sphere_; }
@@ -76,8 +80,8 @@ class CutPatches {
   /// A block that is covered.
   struct Covered {
     Index block, bin;
-    Box rest{Vec3{}};  ///< around it [m]
-    bool is_made = false;
+    Box rest{Vec3{}};      ///< around it [m]
+    bool is_made = false;  ///< read and written as an atomic
     std::vector<std::unique_ptr<CutPatch>> patches{};
     std::uint32_t round = 0;  ///< in which they were placed
   };
@@ -96,6 +100,7 @@ class CutPatches {
   void cover();
   void find_displacements();
   std::vector<std::unique_ptr<CutPatch>>& made(Covered& covered);
+  void make_once(Covered& covered);
   std::vector<std::unique_ptr<CutPatch>> make(Index block);
 
   const Model& model_;

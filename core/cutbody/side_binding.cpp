@@ -9,12 +9,6 @@
 namespace ctpm::cutbody {
 namespace {
 
-/// Spheres are seen over this many of the grid's edges at most, and over one more than the shortest way: what can only
-/// be reached around the end of a cut is on its other side. No edge goes along the diagonal of a square from one axis
-/// to the other, so the reach of a binding takes up to sqrt(2) times its steps.
-constexpr std::int32_t kMostHops = 12, kDetour = 1;
-static_assert(kMostHops >= 1.4143 * surface::kBindingReach * CutGrid::kPerSpacing);
-
 /// Bindings whose weights are larger than this in sum would throw their vertex far out.
 constexpr double kLargestSum = 4;
 
@@ -24,13 +18,6 @@ constexpr double kOff = 1e-6;
 /// Vertices this near to the organ's own surface are put onto it, in spacings.
 constexpr double kOnSurface = 2e-3;
 
-/// Number of the grid's edges on the shortest way between two nodes.
-std::int32_t hops_between(CutGrid::Node p, CutGrid::Node q) {
-  std::int32_t up = 0, down = 0;
-  for (std::size_t a = 0; a < 3; ++a) up = std::max(up, q[a] - p[a]), down = std::max(down, p[a] - q[a]);
-  return up + down;
-}
-
 }  // namespace
 
 SideBinding::SideBinding(const Model& model, const CutGrid& grid)
@@ -38,13 +25,13 @@ SideBinding::SideBinding(const Model& model, const CutGrid& grid)
       organ_(model.organs[std::size_t(grid.organ())]),
       whole_(model.surfaces[std::size_t(grid.organ())]),
       grid_(grid),
-      visited_(std::size_t(grid.count()), 0) {}
+      sight_(grid) {}
 
 /// Whether what a node sees may depend on crossings within a box.
 bool SideBinding::is_near(CutGrid::NodeBox box, Index node) const {
   const CutGrid::Node n = grid_.node(node);
   for (std::size_t a = 0; a < 3; ++a)
-    if (n[a] < box.low[a] - kMostHops || n[a] > box.high[a] + kMostHops) return false;
+    if (n[a] < box.low[a] - Sight::kMostHops || n[a] > box.high[a] + Sight::kMostHops) return false;
   return true;
 }
 
@@ -53,38 +40,13 @@ void SideBinding::forget_near(CutGrid::NodeBox changed) {
   std::erase_if(bound_, [&](const auto& entry) { return entry.second.by_piece || is_near(changed, entry.first.side); });
   std::erase_if(seen_, [&](const auto& entry) { return is_near(changed, entry.first); });
   piece_.clear(), row_boxes_.clear();
+  sight_.update(changed);
 }
 
-const SideBinding::Seen& SideBinding::seen_from(Index node) {
+const Sight::Seen& SideBinding::seen_from(Index node) {
   const auto [found, is_new] = seen_.try_emplace(node);
-  Seen& seen = found->second;
-  if (!is_new) return seen;
-  ++call_;
-  const CutGrid::Node home = grid_.node(node);
-  queue_.assign(1, {node, 0}), visited_[std::size_t(node)] = call_;
-  for (std::size_t next = 0; next < queue_.size(); ++next) {
-    const auto [at, hops] = queue_[next];
-    const CutGrid::Node here = grid_.node(at);
-    if (hops <= hops_between(home, here) + kDetour)
-      for (const Index sphere : grid_.spheres_at(at)) seen.sphere.push_back(sphere);
-    if (hops == kMostHops) continue;
-    const auto go = [&](Index to) {
-      if (visited_[std::size_t(to)] == call_ || !grid_.in_tissue(to)) return;
-      visited_[std::size_t(to)] = call_, queue_.emplace_back(to, hops + 1);
-    };
-    const auto pass = [&](Index lower, int direction, Index to) {
-      if (!grid_.is_parted(lower, direction)) return go(to);
-      seen.has_cut = seen.has_cut || grid_.is_severed(lower, direction);
-    };
-    for (int d = 1; d < CutGrid::kDirections; ++d) {
-      const CutGrid::Node up{here[0] + (d & 1), here[1] + (d >> 1 & 1), here[2] + (d >> 2)},
-          down{here[0] - (d & 1), here[1] - (d >> 1 & 1), here[2] - (d >> 2)};
-      if (grid_.contains(up)) pass(at, d, grid_.at(up));
-      if (grid_.contains(down)) pass(grid_.at(down), d, grid_.at(down));
-    }
-  }
-  std::sort(seen.sphere.begin(), seen.sphere.end());
-  return seen;
+  if (is_new) found->second = sight_.from(node);
+  return found->second;
 }
 
 /// Follows the spheres of a list within reach; empty if they do not span space.
@@ -154,7 +116,7 @@ SideBinding::Binding SideBinding::follow_whole(const Origin& origin) const {
 
 bool SideBinding::is_own_side(const Binding& binding, Index side) {
   if (side < 0) return true;
-  const Seen& seen = seen_from(side);
+  const Sight::Seen& seen = seen_from(side);
   if (!seen.has_cut) return true;
   return std::all_of(binding.sphere.begin(), binding.sphere.end(),
                      [&](Index s) { return std::binary_search(seen.sphere.begin(), seen.sphere.end(), s); });

@@ -4,11 +4,11 @@
 #include <compare>
 #include <cstdint>
 #include <map>
-#include <utility>
 #include <vector>
 
 #include "core/cutbody/cut_grid.h"
 #include "core/cutbody/cut_mesh.h"
+#include "core/cutbody/sight.h"
 #include "core/model/model.h"
 #include "core/model/organ.h"
 #include "core/model/state.h"
@@ -56,14 +56,8 @@ class SideBinding {
     friend auto operator<=>(const Key&, const Key&) = default;
   };
 
-  /// What a node sees.
-  struct Seen {
-    std::vector<Index> sphere;  ///< ascending
-    bool has_cut = false;       ///< between them
-  };
-
   bool is_near(CutGrid::NodeBox box, Index node) const;
-  const Seen& seen_from(Index node);
+  const Sight::Seen& seen_from(Index node);
   Vec3 near_cut(Vec3 rest, const State& state);
   Origin origin_of(Vec3 rest) const;
   Vec3 place_of(const Origin& origin) const;
@@ -78,15 +72,11 @@ class SideBinding {
   const OrganRange& organ_;
   const Surface& whole_;
   const CutGrid& grid_;
+  Sight sight_;
   std::map<Key, Bound> bound_;
   std::vector<Box> row_boxes_;  ///< of the swept surface; see cutting::boxes_of_rows()
-  std::map<Index, Seen> seen_;
+  std::map<Index, Sight::Seen> seen_;
   std::vector<Index> piece_;  ///< of each node of the grid; empty until it is asked for after a change
-
-  // Scratch memory of seen_from().
-  std::vector<std::uint32_t> visited_;  ///< number of the call that visited a node
-  std::vector<std::pair<Index, Index>> queue_;
-  std::uint32_t call_ = 0;
 };
 
 }  // namespace ctpm::cutbody

@@ -42,18 +42,10 @@ std::optional<double> crossing(std::span<const Sweep> sweeps, Vec3 p, Vec3 q) {
 /// How far inside the tissue of a sphere at the boundary is taken to be, in spacings.
 constexpr double kInside = 0.1;
 
-/// The place under a surface that is nearest to a point outside [m].
-Vec3 under_surface(const Surface& surface, Vec3 point, double spacing) {
-  double least = INFINITY;
-  Vec3 nearest = point;
-  for (const auto& t : surface.triangle) {
-    const Vec3 a = surface.vertex[std::size_t(t[0])], b = surface.vertex[std::size_t(t[1])],
-               c = surface.vertex[std::size_t(t[2])];
-    if (!Box(a, b, c).grown(least).meets(Box(point))) continue;
-    const Vec3 there = nearest_in_triangle(point, a, b, c);
-    if (const double distance = norm(there - point); distance < least) least = distance, nearest = there;
-  }
-  return least > 0 ? nearest + kInside * spacing / least * (nearest - point) : nearest;
+/// The place under a surface of which `nearest` is nearest to a point outside [m].
+Vec3 under_surface(Vec3 point, Vec3 nearest, double spacing) {
+  const double distance = norm(nearest - point);
+  return distance > 0 ? nearest + kInside * spacing / distance * (nearest - point) : nearest;
 }
 
 /// A sphere's place, moved inside where it has no neighbours on one side [m].
@@ -110,7 +102,7 @@ RestElements::RestElements(const Model& model, const TissueDepth& depth) : RestE
       if (!has_surface)
         place_[i] = towards_neighbours(model, *this, i);
       else if (!(depth.at(o, centre) > 0))
-        place_[i] = under_surface(model.surfaces[o], centre, organ.spacing);
+        place_[i] = under_surface(centre, depth.nearest_on_surface(o, centre), organ.spacing);
     }
   }
 }

@@ -3,13 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/cutting/blade_geometry.h"
+#include "core/model/result.h"
 
 namespace ctpm::cutting {
 namespace {
 
 constexpr double kBucket = 2.4e-3;  ///< half its diagonal is within the band [m]
+/// Bounds of triangles are compared with distances that are longer by this factor.
+constexpr double kRounding = 1 + 1e-6;
+
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 Vec3 least_of(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
@@ -29,6 +34,18 @@ std::int64_t TissueDepth::bucket_of(const Grid& grid, Vec3 rest) {
   return std::int64_t(at.x) + e[0] * (std::int64_t(at.y) + e[1] * std::int64_t(at.z));
 }
 
+TissueDepth::Bound TissueDepth::bound_of(const Surface& surface, const std::array<std::int32_t, 3>& t) {
+  const Vec3 a = surface.vertex[std::size_t(t[0])], b = surface.vertex[std::size_t(t[1])],
+             c = surface.vertex[std::size_t(t[2])], middle = (a + b + c) / 3, normal = cross(b - a, c - a);
+  return {middle, std::max({norm(a - middle), norm(b - middle), norm(c - middle)}), normal, dot(normal, normal)};
+}
+
+Vec3 TissueDepth::middle_of(const Grid& grid, std::size_t bucket) {
+  const auto x = std::size_t(grid.extent[0]), y = std::size_t(grid.extent[1]);
+  return grid.low +
+         kBucket * Vec3{double(bucket % x) + 0.5, double(bucket / x % y) + 0.5, double(bucket / x / y) + 0.5};
+}
+
 TissueDepth::Grid TissueDepth::make_grid(const Surface& surface) {
   Grid grid;
   grid.surface = &surface;
@@ -40,8 +57,12 @@ TissueDepth::Grid TissueDepth::make_grid(const Surface& surface) {
   grid.extent = {1 + std::int32_t(size.x / kBucket), 1 + std::int32_t(size.y / kBucket),
                  1 + std::int32_t(size.z / kBucket)};
   const auto& e = grid.extent;
+  for (const auto& t : surface.triangle) grid.bound.push_back(bound_of(surface, t));
   const std::size_t count = std::size_t(e[0]) * std::size_t(e[1]) * std::size_t(e[2]);
-  const auto for_each_bucket_of = [&](const std::array<std::int32_t, 3>& t, auto&& visit) {
+  std::vector<std::pair<std::size_t, std::int32_t>> found;  // a bucket, and a triangle near it
+  grid.first.assign(count + 1, 0);
+  for (std::size_t n = 0; n < surface.triangle.size(); ++n) {
+    const auto& t = surface.triangle[n];
     const Vec3 a = surface.vertex[std::size_t(t[0])], b = surface.vertex[std::size_t(t[1])],
                c = surface.vertex[std::size_t(t[2])], band{kBand, kBand, kBand};
     const Vec3 from = (least_of(least_of(a, b), c) - band - grid.low) / kBucket,
@@ -50,19 +71,18 @@ TissueDepth::Grid TissueDepth::make_grid(const Surface& surface) {
     for (auto k = std::int32_t(from.z); k <= std::min(std::int32_t(to.z), e[2] - 1); ++k)
       for (auto j = std::int32_t(from.y); j <= std::min(std::int32_t(to.y), e[1] - 1); ++j)
         for (auto i = std::int32_t(from.x); i <= std::min(std::int32_t(to.x), e[0] - 1); ++i) {
-          const Vec3 middle = grid.low + kBucket * Vec3{i + 0.5, j + 0.5, k + 0.5};
+          const std::size_t bucket =
+              std::size_t(i) + std::size_t(e[0]) * (std::size_t(j) + std::size_t(e[1]) * std::size_t(k));
+          const Vec3 middle = middle_of(grid, bucket);
+          if (grid.bound[n].is_beyond(middle, kRounding * reach)) continue;
           if (norm(nearest_in_triangle(middle, a, b, c) - middle) > reach) continue;
-          visit(std::size_t(i) + std::size_t(e[0]) * (std::size_t(j) + std::size_t(e[1]) * std::size_t(k)));
+          found.emplace_back(bucket, std::int32_t(n)), ++grid.first[bucket + 1];
         }
-  };
-  grid.first.assign(count + 1, 0);
-  for (const auto& t : surface.triangle) for_each_bucket_of(t, [&](std::size_t b) { ++grid.first[b + 1]; });
+  }
   for (std::size_t b = 0; b < count; ++b) grid.first[b + 1] += grid.first[b];
-  grid.triangle.resize(std::size_t(grid.first[count]));
+  grid.triangle.resize(found.size());
   std::vector<std::int32_t> next(grid.first.begin(), grid.first.end() - 1);
-  for (std::size_t t = 0; t < surface.triangle.size(); ++t)
-    for_each_bucket_of(surface.triangle[t],
-                       [&](std::size_t b) { grid.triangle[std::size_t(next[b]++)] = std::int32_t(t); });
+  for (const auto& [bucket, triangle] : found) grid.triangle[std::size_t(next[bucket]++)] = triangle;
   find_sides(grid);
   return grid;
 }
@@ -73,14 +93,13 @@ void TissueDepth::find_sides(Grid& grid) {
   const std::size_t count = grid.first.size() - 1;
   grid.side.assign(count, 0);
   std::vector<std::size_t> known;
-  std::vector<double> near_middle(count, kFar);
+  grid.near_middle.assign(count, kFar);
   for (std::size_t b = 0; b < count; ++b) {
-    const auto i = std::int32_t(b % std::size_t(e[0])), j = std::int32_t(b / std::size_t(e[0]) % std::size_t(e[1])),
-               k = std::int32_t(b / std::size_t(e[0]) / std::size_t(e[1]));
-    near_middle[b] = near(grid, b, grid.low + kBucket * Vec3{i + 0.5, j + 0.5, k + 0.5}).depth;
-    if (std::abs(near_middle[b]) < kBand) grid.side[b] = near_middle[b] > 0 ? 1 : -1;
+    const double depth = near(grid, b, middle_of(grid, b)).depth, distance = std::abs(depth);
+    grid.near_middle[b] = distance;
+    if (distance < kBand) grid.side[b] = depth > 0 ? 1 : -1;
     // A neighbour farther than the band from the surface is on the same side unless the surface passes close by.
-    if (std::abs(near_middle[b]) < kBand && std::abs(near_middle[b]) > kBucket - kBand + 1e-4) known.push_back(b);
+    if (distance < kBand && distance > kBucket - kBand + 1e-4) known.push_back(b);
   }
   if (grid.side[0] == 0) grid.side[0] = -1, known.push_back(0);  // a corner of the grid is outside
   for (std::size_t n = 0; n < known.size(); ++n) {
@@ -103,20 +122,25 @@ void TissueDepth::find_sides(Grid& grid) {
 TissueDepth::Near TissueDepth::near(const Grid& grid, std::size_t bucket, Vec3 rest) {
   const Surface& surface = *grid.surface;
   double least2 = kFar, facing = 0;
+  // The surface is no farther than by way of the bucket's middle.
+  double farthest = kRounding * (grid.near_middle[bucket] + norm(rest - middle_of(grid, bucket)));
   std::int32_t nearest = -1;
   for (auto n = grid.first[bucket]; n < grid.first[bucket + 1]; ++n) {
-    const auto& t = surface.triangle[std::size_t(grid.triangle[std::size_t(n)])];
+    const auto index = std::size_t(grid.triangle[std::size_t(n)]);
+    const Bound& bound = grid.bound[index];
+    if (bound.is_beyond(rest, farthest)) continue;
+    const auto& t = surface.triangle[index];
     const Vec3 a = surface.vertex[std::size_t(t[0])], b = surface.vertex[std::size_t(t[1])],
-               c = surface.vertex[std::size_t(t[2])];
-    const Vec3 apart = rest - nearest_in_triangle(rest, a, b, c), normal = cross(b - a, c - a);
+               c = surface.vertex[std::size_t(t[2])], normal = bound.normal;
+    const Vec3 apart = rest - nearest_in_triangle(rest, a, b, c);
     const double distance2 = dot(apart, apart);
     // Where triangles share the nearest point, the one that the place lies most straight above decides the side.
     const double size = norm(normal), height = size > 0 ? dot(apart, normal) / size : 0.0;
     constexpr double kSame = 1e-9;
     const bool is_nearer = distance2 < least2 * (1 - kSame);
     if (!is_nearer && !(distance2 <= least2 * (1 + kSame) && std::abs(height) > std::abs(facing))) continue;
-    if (is_nearer) least2 = distance2;
-    facing = height, nearest = grid.triangle[std::size_t(n)];
+    if (is_nearer) least2 = distance2, farthest = std::min(farthest, kRounding * std::sqrt(distance2));
+    facing = height, nearest = std::int32_t(index);
   }
   if (nearest < 0) return {kFar};
   return {facing > 0 ? -std::sqrt(least2) : std::sqrt(least2), nearest};
@@ -129,6 +153,26 @@ double TissueDepth::at(std::size_t organ, Vec3 rest) const {
   if (bucket < 0) return -kBand;
   const double depth = near(grid, std::size_t(bucket), rest).depth;
   return std::abs(depth) < kBand ? depth : grid.side[std::size_t(bucket)] * kBand;
+}
+
+Vec3 TissueDepth::nearest_on_surface(std::size_t organ, Vec3 rest) const {
+  const Grid& grid = grids_[organ];
+  CTPM_CHECK(grid.surface != nullptr, "an organ without a surface has no place on it");
+  const Surface& surface = *grid.surface;
+  // A triangle's middle is a place on the surface.
+  double least2 = kFar, least = kFar;
+  for (const Bound& bound : grid.bound) least2 = std::min(least2, dot(rest - bound.middle, rest - bound.middle));
+  double farthest = kRounding * std::sqrt(least2);
+  Vec3 nearest = rest;
+  for (std::size_t n = 0; n < grid.bound.size(); ++n) {
+    if (grid.bound[n].is_beyond(rest, farthest)) continue;
+    const auto& t = surface.triangle[n];
+    const Vec3 there = nearest_in_triangle(rest, surface.vertex[std::size_t(t[0])], surface.vertex[std::size_t(t[1])],
+                                           surface.vertex[std::size_t(t[2])]);
+    const double distance = norm(there - rest);
+    if (distance < least) least = distance, nearest = there, farthest = std::min(farthest, kRounding * distance);
+  }
+  return nearest;
 }
 
 std::int32_t TissueDepth::nearest_triangle(std::size_t organ, Vec3 rest) const {

@@ -26,17 +26,38 @@ class TissueDepth {
   /// The triangle of an organ's surface that is nearest to a place at rest; -1: none is within kBand of it.
   std::int32_t nearest_triangle(std::size_t organ, Vec3 rest) const;
 
+  /// The place on the surface of an organ that is nearest to a place at rest, however far [m].
+  Vec3 nearest_on_surface(std::size_t organ, Vec3 rest) const;
+
  private:
+  /// What shows fast that a triangle is far: a sphere around it, and its plane.
+  struct Bound {
+    Vec3 middle;            ///< [m]
+    double radius;          ///< [m]
+    Vec3 normal;            ///< its size is twice the triangle's area [m^2]
+    double normal_squared;  ///< [m^4]
+
+    /// Whether every point of the triangle is farther from a place than `distance` [m], but for rounding.
+    bool is_beyond(Vec3 place, double distance) const {
+      const Vec3 apart = place - middle;
+      const double most = distance + radius, above = dot(apart, normal);
+      return dot(apart, apart) > most * most || above * above > distance * distance * normal_squared;
+    }
+  };
   /// Buckets of a cubic grid over the organ, each with the triangles that come within kBand of it.
   struct Grid {
     const Surface* surface = nullptr;
     Vec3 low;
     std::array<std::int32_t, 3> extent{};
     std::vector<std::int32_t> first, triangle;  ///< CSR by bucket
+    std::vector<Bound> bound;                   ///< of each triangle of the surface
+    std::vector<double> near_middle;            ///< distance of a bucket's middle from the surface, or infinite [m]
     std::vector<std::int8_t> side;              ///< of a bucket's middle: 1 inside, -1 outside
   };
   static Grid make_grid(const Surface& surface);
   static void find_sides(Grid& grid);
+  static Bound bound_of(const Surface& surface, const std::array<std::int32_t, 3>& triangle);
+  static Vec3 middle_of(const Grid& grid, std::size_t bucket);
   static std::int64_t bucket_of(const Grid& grid, Vec3 rest);
   struct Near {
     double depth;  ///< [m]; infinite: there is none

@@ -43,7 +43,8 @@ struct StepReport {
 
 /// What a Stepper may use of the machine. No option changes a bit of the result.
 struct StepperOptions {
-  int threads = 1;  ///< >= 1; more threads help from some thousand spheres on
+  /// >= 1; more threads help from some thousand spheres on. Cuts that a tool can touch have one of their own.
+  int threads = 1;
   elements::InstructionSet instruction_set = elements::best_instruction_set();
 };
 

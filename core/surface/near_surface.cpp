@@ -63,7 +63,8 @@ void NearSurface::find_bounds() {
   rest_box_ = Box(rest_.front());
   for (const Vec3& p : rest_) rest_box_.add(p);
   for (const Bound& group : groups_) widen_ = std::max(widen_, group.widen);
-  moved_.resize(spheres_.size());
+  for (const Index sphere : sphere_) in_spheres_.push_back(place_in_spheres(sphere));
+  position_.resize(spheres_.size()), moved_.resize(spheres_.size());
   placed_.resize(vertex_count()), placed_in_.assign(vertex_count(), 0);
 }
 
@@ -127,16 +128,21 @@ NearSurface::Bound NearSurface::bound_of(Index first, Index last, Index first_tr
     }
   std::sort(spheres.begin(), spheres.end());
   const auto begin = Index(bound_spheres_.size());
-  for (const Index sphere : spheres)
-    bound_spheres_.push_back(Index(std::lower_bound(spheres_.begin(), spheres_.end(), sphere) - spheres_.begin()));
+  for (const Index sphere : spheres) bound_spheres_.push_back(place_in_spheres(sphere));
   return {first, last, begin, Index(bound_spheres_.size()), box, widen};
 }
 
+NearSurface::Index NearSurface::place_in_spheres(Index sphere) const {
+  return Index(std::lower_bound(spheres_.begin(), spheres_.end(), sphere) - spheres_.begin());
+}
+
 void NearSurface::begin(const Vec3Array& position) {
-  position_ = &position, ++round_;
+  ++round_;
   if (empty()) return;
-  for (std::size_t i = 0; i < spheres_.size(); ++i)
-    moved_[i] = position[std::size_t(spheres_[i])] - sphere_rest_[std::size_t(spheres_[i])];
+  for (std::size_t i = 0; i < spheres_.size(); ++i) {
+    position_[i] = position[std::size_t(spheres_[i])];
+    moved_[i] = position_[i] - sphere_rest_[std::size_t(spheres_[i])];
+  }
   Box range(moved_.front());
   for (const Vec3& by : moved_) range.add(by);
   displacements_ = widened(range, widen_);
@@ -151,8 +157,12 @@ Box NearSurface::displacements(const Bound& bound) const {
 
 Vec3 NearSurface::place(Index vertex) {
   const auto v = std::size_t(vertex);
-  if (placed_in_[v] != round_) placed_in_[v] = round_, placed_[v] = follower(vertex).of(*position_);
-  return placed_[v];
+  if (placed_in_[v] == round_) return placed_[v];
+  placed_in_[v] = round_;
+  Vec3 sum;
+  for (auto e = std::size_t(first_[v]); e < std::size_t(first_[v + 1]); ++e)
+    sum += weight_[e] * position_[std::size_t(in_spheres_[e])];
+  return placed_[v] = sum;
 }
 
 }  // namespace ctpm::surface

@@ -80,7 +80,7 @@ class NearSurface {
   /// Box that contains all vertices at rest [m].
   const Box& rest_box() const { return rest_box_; }
 
-  /// Begins a round with the spheres at `position` [m], which must outlive it. In a round, each vertex is placed once.
+  /// Begins a round with the spheres at `position` [m]. In a round, each vertex is placed once.
   void begin(const Vec3Array& position);
   /// Displacements from rest within which those of all vertices lie, or those of a patch or group [m].
   const Box& displacements() const { return displacements_; }
@@ -104,6 +104,7 @@ class NearSurface {
     return place.box;
   }
   void add_organ(const Surface& surface, const OrganRange& organ);
+  Index place_in_spheres(Index sphere) const;
   void find_bounds();
   void sort_triangles();
   Bound bound_of(Index first, Index last, Index first_triangle, Index last_triangle);
@@ -111,6 +112,7 @@ class NearSurface {
   const Vec3Array& sphere_rest_;
   std::vector<Index> spheres_;         ///< that bounds are about, ascending: all of the organs, or those followed
   std::vector<Index> first_, sphere_;  ///< binding of all vertices, as in SurfaceBinding
+  std::vector<Index> in_spheres_;      ///< place of each of sphere_ in spheres_
   std::vector<double> weight_;
   std::vector<Vec3> rest_;           ///< [m]
   std::vector<Triangle> triangles_;  ///< by patch
@@ -118,9 +120,8 @@ class NearSurface {
   std::vector<Place> patch_places_, group_places_;
   std::vector<Index> bound_spheres_;  ///< in spheres_
   Box rest_box_{Vec3{}};
-  double widen_ = 0;                     ///< the largest of all bounds
-  const Vec3Array* position_ = nullptr;  ///< of the present round
-  std::vector<Vec3> moved_;              ///< displacements of spheres_ in the present round [m]
+  double widen_ = 0;                    ///< the largest of all bounds
+  std::vector<Vec3> position_, moved_;  ///< of spheres_ in the present round, and how far they are from rest [m]
   Box displacements_{Vec3{}};
   std::vector<Vec3> placed_;              ///< positions of the vertices that the present round placed [m]
   std::vector<std::uint32_t> placed_in_;  ///< round that placed a vertex

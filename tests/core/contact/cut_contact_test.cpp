@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <optional>
+#include <thread>
+#include <vector>
 
 #include "core/cutbody/cut_points.h"
 #include "core/cutting/blade_geometry.h"
@@ -251,34 +254,62 @@ Model block_on_ground(Integrator integrator) {
 
 class CutContactUnder : public ::testing::TestWithParam<Integrator> {};
 
-TEST_P(CutContactUnder, NeitherThreadsNorAFreshStartChangeABit) {
-  constexpr int kTicks = 420;
-  const Model model = block_on_ground(GetParam());
+/// The end of cut_and_press(); `before(tick, stepper)` is called at the start of each tick.
+template <class Before>
+State run_cut_and_press(const Model& model, int threads, bool& ball_touches, bool& ground_touches,
+                        const Before& before) {
   const cutbody::CutPoints points(model);
-  std::vector<State> runs;
+  State state = rest_state(model);
+  std::optional<stepping::Stepper> stepper;
+  stepper.emplace(model, stepping::StepperOptions{threads});
+  for (int tick = 0; tick < 420; ++tick) {
+    before(tick, stepper);
+    EXPECT_FALSE(stepping::is_refused(stepper->step(state, cut_and_press(tick)).status)) << tick;
+    for (const std::int32_t point : state.touched)
+      if (points.contains(point)) (points.is_of_ball(point) ? ball_touches : ground_touches) = true;
+  }
+  return state;
+}
+
+void expect_same(const State& one, const State& other) {
+  EXPECT_EQ(one.position, other.position);
+  EXPECT_EQ(one.velocity, other.velocity);
+  EXPECT_EQ(one.touched, other.touched);
+  EXPECT_EQ(one.grip, other.grip);
+  EXPECT_EQ(one.kelvin_dent, other.kelvin_dent);
+}
+
+TEST_P(CutContactUnder, NeitherThreadsNorAFreshStartChangeABit) {
+  const Model model = block_on_ground(GetParam());
   bool ball_touches = false, ground_touches = false;
-  for (const auto& [threads, from_keyframes] : {std::pair{1, false}, {3, false}, {1, true}}) {
-    State state = rest_state(model);
-    std::optional<stepping::Stepper> stepper;
-    stepper.emplace(model, stepping::StepperOptions{threads});
-    for (int tick = 0; tick < kTicks; ++tick) {
-      if (from_keyframes && tick % 70 == 69) stepper.emplace(model);
-      ASSERT_FALSE(stepping::is_refused(stepper->step(state, cut_and_press(tick)).status)) << tick;
-      for (const std::int32_t point : state.touched) {
-        if (!points.contains(point)) continue;
-        (points.is_of_ball(point) ? ball_touches : ground_touches) = true;
-      }
-    }
-    runs.push_back(std::move(state));
-  }
+  std::vector<State> runs;
+  for (const auto& [threads, from_keyframes] : {std::pair{1, false}, {3, false}, {1, true}})
+    runs.push_back(run_cut_and_press(model, threads, ball_touches, ground_touches,
+                                     [&, fresh = from_keyframes](int tick, std::optional<stepping::Stepper>& stepper) {
+                                       if (fresh && tick % 70 == 69) stepper.emplace(model);
+                                     }));
   EXPECT_TRUE(ball_touches && ground_touches);
-  for (const State& other : {runs[1], runs[2]}) {
-    EXPECT_EQ(runs[0].position, other.position);
-    EXPECT_EQ(runs[0].velocity, other.velocity);
-    EXPECT_EQ(runs[0].touched, other.touched);
-    EXPECT_EQ(runs[0].grip, other.grip);
-    EXPECT_EQ(runs[0].kelvin_dent, other.kelvin_dent);
-  }
+  expect_same(runs[0], runs[1]), expect_same(runs[0], runs[2]);
+}
+
+TEST_P(CutContactUnder, HowFastACutIsFollowedChangesNoBit) {
+  Model model = block_on_ground(GetParam());
+  model.obstacles.clear(), model.gravity = {};
+  bool ball_touches = false, ground_touches = false;
+  // The cut is followed from tick 150 on, and is touched some 100 ticks later.
+  const State at_once =
+      run_cut_and_press(model, 1, ball_touches, ground_touches, [](int, std::optional<stepping::Stepper>&) {});
+  EXPECT_TRUE(ball_touches);
+  const State with_time =
+      run_cut_and_press(model, 1, ball_touches, ground_touches, [](int tick, std::optional<stepping::Stepper>&) {
+        if (tick == 151) std::this_thread::sleep_for(std::chrono::milliseconds(500));
+      });
+  expect_same(at_once, with_time);
+  const State late =
+      run_cut_and_press(model, 1, ball_touches, ground_touches, [&](int tick, std::optional<stepping::Stepper>& fresh) {
+        if (tick >= 150 && tick % 15 == 0) fresh.emplace(model);
+      });
+  expect_same(at_once, late);
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, CutContactUnder,
