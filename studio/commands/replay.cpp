@@ -7,9 +7,12 @@
 #include "recordings/session_reader.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
+#include "studio/commands/extremes_text.h"
 #include "studio/commands/flags.h"
 #include "studio/commands/physics_warning.h"
 #include "studio/output/files.h"
+#include "studio/output/number_text.h"
+#include "studio/output/printable.h"
 #include "studio/session/time_range.h"
 
 namespace ctpm::commands {
@@ -30,16 +33,15 @@ std::string csv_row(const Model& model, const recordings::ReplayCursor& cursor) 
   const recordings::TickRecord& record = cursor.record();
   const stepping::StepReport& report = cursor.report();
   const Inputs& in = record.inputs;
-  const std::string tool = in.tool >= 0 ? model.tools[std::size_t(in.tool)].name : "";
+  const std::string tool = in.tool >= 0 ? output::csv_text(model.tools[std::size_t(in.tool)].name) : "";
   const Vec3 p = in.position, f = report.tool_force;
   const Quat q = in.world_from_tool;
-  char row[512];
-  std::snprintf(row, sizeof row,
-                "%lld,%.6f,%s,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%u,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%d,%d\n",
-                (long long)(cursor.tick() - 1), double(cursor.tick() - 1) * model.tick, tool.c_str(), p.x * 1e3,
-                p.y * 1e3, p.z * 1e3, q.w, q.x, q.y, q.z, in.buttons, f.x, f.y, f.z, norm(f), report.depth * 1e3,
-                report.contacts, report.severed, cursor.same_so_far() ? 1 : 0);
-  return row;
+  const std::int64_t tick = cursor.tick() - 1;
+  char numbers[512];
+  std::snprintf(numbers, sizeof numbers, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%u,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%d,%d\n",
+                p.x * 1e3, p.y * 1e3, p.z * 1e3, q.w, q.x, q.y, q.z, in.buttons, f.x, f.y, f.z, norm(f),
+                report.depth * 1e3, report.contacts, report.severed, cursor.same_so_far() ? 1 : 0);
+  return std::to_string(tick) + "," + output::fixed(double(tick) * model.tick, 6) + "," + tool + "," + numbers;
 }
 
 int run_replay(const ReplayArguments& arguments) {
@@ -70,10 +72,9 @@ int run_replay(const ReplayArguments& arguments) {
   if (!arguments.csv.empty())
     if (const Result<Done> written = output::write_text_file(arguments.csv, rows); !written)
       return print_errors(written.errors());
-  print("%s: %lld ticks replayed, at most %.3f N and %.2f mm deep, %s%s%s\n", arguments.file.c_str(),
-        (long long)(range->to - range->from), most_force, most_depth * 1e3,
-        cursor->same_so_far() ? "as recorded" : "NOT as recorded", arguments.csv.empty() ? "" : "; written to ",
-        arguments.csv.c_str());
+  print("%s: %lld ticks replayed, %s, %s%s%s\n", arguments.file.c_str(), (long long)(range->to - range->from),
+        extremes_text(most_force, most_depth).c_str(), cursor->same_so_far() ? "as recorded" : "NOT as recorded",
+        arguments.csv.empty() ? "" : "; written to ", arguments.csv.c_str());
   return cursor->same_so_far() ? exit_good : exit_bad_verdict;
 }
 

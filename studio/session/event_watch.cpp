@@ -7,8 +7,8 @@ namespace ctpm::session {
 
 using recordings::EventKind;
 
-EventWatch::EventWatch(const Model& model, double damage_force, Tell tell)
-    : tell_(std::move(tell)), force_limit_(damage_force) {
+EventWatch::EventWatch(const Model& model, double damage_force, Tell tell, CutEnds cut_ends)
+    : tell_(std::move(tell)), cut_ends_(cut_ends), force_limit_(damage_force) {
   for (std::size_t i = 0; i < model.organs.size(); ++i) {
     const double limit = model.organs[i].damage_depth;
     if (limit > 0 && (depth_limit_ == 0 || limit < depth_limit_)) depth_limit_ = limit, organ_ = std::int32_t(i);
@@ -34,9 +34,7 @@ void EventWatch::look(std::int64_t tick, std::int32_t tool, const stepping::Step
     tell_({.tick = tick, .kind = EventKind::contact_begins, .tool = tool});
   }
   if (ends(contact_, tick)) tell_({.tick = contact_.last_tick, .kind = EventKind::contact_ends, .tool = tool_});
-  if (begins(cut_, tick, report.severed > 0))
-    tell_({.tick = tick, .kind = EventKind::cut, .tool = tool, .severed = report.severed});
-  ends(cut_, tick);
+  look_for_cut(tick, tool, report);
   if (report.came_loose > 0) tell_({.tick = tick, .kind = EventKind::piece_came_loose, .pieces = report.came_loose});
   look_for_damage(tick, report);
   look_for_inversion(tick, report);
@@ -44,6 +42,16 @@ void EventWatch::look(std::int64_t tick, std::int32_t tool, const stepping::Step
 
 void EventWatch::finish(std::int64_t end) {
   if (inside_out_.goes_on && inside_out_.last_tick + 1 < end) tell_that_it_came_back();
+}
+
+/// A blade severs an element now and then, the more rarely the coarser the lattice is; in between it cuts all the same.
+void EventWatch::look_for_cut(std::int64_t tick, std::int32_t tool, const stepping::StepReport& report) {
+  const bool with_contact = cut_ends_ == CutEnds::with_contact;
+  if (with_contact && report.severed > 0 && tool != blade_) cut_.goes_on = false;
+  if (begins(cut_, tick, report.severed > 0))
+    tell_({.tick = tick, .kind = EventKind::cut, .tool = blade_ = tool, .severed = report.severed});
+  if (with_contact && cut_.goes_on && tool == blade_ && report.contacts > 0) cut_.last_tick = tick;
+  ends(cut_, tick);
 }
 
 void EventWatch::look_for_damage(std::int64_t tick, const stepping::StepReport& report) {
