@@ -26,6 +26,17 @@ std::shared_ptr<Stage> Desk::stage(std::uint32_t number) {
   return it == stages_.end() ? nullptr : it->second;
 }
 
+void Desk::keep(std::uint32_t number, std::shared_ptr<const Model> model) {
+  const std::lock_guard lock(mutex_);
+  kept_[number].swap(model);
+}
+
+std::shared_ptr<const Model> Desk::kept(std::uint32_t number) {
+  const std::lock_guard lock(mutex_);
+  const auto it = kept_.find(number);
+  return it == kept_.end() ? nullptr : it->second;
+}
+
 void Desk::show(std::uint32_t number, std::int64_t tick, std::uint32_t request) {
   if (const std::shared_ptr<Stage> found = stage(number)) found->show(tick, request);
 }

@@ -23,6 +23,10 @@ class Desk {
   Result<Done> open(const std::string& file, std::uint32_t number);
   void close(std::uint32_t number);
 
+  /// Keeps the Model of a scene that stage `number` shows at rest; null: none. kept() returns it.
+  void keep(std::uint32_t number, std::shared_ptr<const Model> model);
+  std::shared_ptr<const Model> kept(std::uint32_t number);
+
   /// Asks a stage for a moment; nothing happens without such a stage.
   void show(std::uint32_t number, std::int64_t tick, std::uint32_t request);
 
@@ -47,6 +51,7 @@ class Desk {
   std::shared_ptr<Outbox> outbox_;
   std::mutex mutex_;
   std::map<std::uint32_t, std::shared_ptr<Stage>> stages_;
+  std::map<std::uint32_t, std::shared_ptr<const Model>> kept_;
   std::shared_ptr<Training> training_;
 };
 
