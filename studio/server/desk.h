@@ -9,6 +9,10 @@
 #include "studio/server/stage.h"
 #include "studio/server/training.h"
 
+namespace ctpm::loading {
+struct LoadedScene;
+}
+
 namespace ctpm::server {
 
 /// What one page has open.
@@ -23,9 +27,11 @@ class Desk {
   Result<Done> open(const std::string& file, std::uint32_t number);
   void close(std::uint32_t number);
 
-  /// Keeps the Model of a scene that stage `number` shows at rest; null: none. kept() returns it.
-  void keep(std::uint32_t number, std::shared_ptr<const Model> model);
-  std::shared_ptr<const Model> kept(std::uint32_t number);
+  /// Keeps the scene that stage `number` shows at rest. kept() returns it, or the one that was loaded from that text as
+  /// that file; null: there is none.
+  void keep(std::uint32_t number, std::shared_ptr<const loading::LoadedScene> scene);
+  std::shared_ptr<const loading::LoadedScene> kept(std::uint32_t number);
+  std::shared_ptr<const loading::LoadedScene> kept(const std::string& file, const std::string& text);
 
   /// Asks a stage for a moment; nothing happens without such a stage.
   void show(std::uint32_t number, std::int64_t tick, std::uint32_t request);
@@ -51,7 +57,7 @@ class Desk {
   std::shared_ptr<Outbox> outbox_;
   std::mutex mutex_;
   std::map<std::uint32_t, std::shared_ptr<Stage>> stages_;
-  std::map<std::uint32_t, std::shared_ptr<const Model>> kept_;
+  std::map<std::uint32_t, std::shared_ptr<const loading::LoadedScene>> kept_;
   std::shared_ptr<Training> training_;
 };
 

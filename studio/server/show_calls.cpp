@@ -60,20 +60,20 @@ Result<std::string> show_scene(Parameters& parameters, const CallContext& contex
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
   const Result<std::string> file = options.text ? context.folder.place(path) : context.folder.find(path);
   if (!file) return file.errors();
-  Result<loading::LoadedScene> scene = loading::load_whole_scene(*file, options, {}, context.should_stop);
-  if (!scene) return scene.errors();
+  Result<loading::LoadedScene> loaded = loading::load_whole_scene(*file, options, {}, context.should_stop);
+  if (!loaded) return loaded.errors();
+  const auto scene = std::make_shared<const loading::LoadedScene>(*std::move(loaded));
+  const Model& model = scene->built.model;
   output::JsonWriter organs;
   write_organs(organs, *scene);
-  const std::string view = view_json(scene->scene.spec, scene->built.model);
-  const auto model = std::make_shared<const Model>(std::move(scene->built.model));
-  PictureMaker maker(*model, stage);
-  context.desk->outbox().send_bytes(shapes_message(*model, stage));
-  context.desk->outbox().send_bytes(spheres_message(*model, stage));
-  context.desk->outbox().show(maker.make(rest_state(*model), {}));
-  context.desk->keep(stage, model);
-  return "{\"view\": " + view + ", \"organs\": " + organs.text() +
-         ", \"spheres\": " + std::to_string(model->sphere_count()) +
-         ", \"elements\": " + std::to_string(model->element_count()) +
+  PictureMaker maker(model, stage);
+  context.desk->outbox().send_bytes(shapes_message(model, stage));
+  context.desk->outbox().send_bytes(spheres_message(model, stage));
+  context.desk->outbox().show(maker.make(rest_state(model), {}));
+  context.desk->keep(stage, scene);
+  return "{\"view\": " + view_json(scene->scene.spec, model) + ", \"organs\": " + organs.text() +
+         ", \"spheres\": " + std::to_string(model.sphere_count()) +
+         ", \"elements\": " + std::to_string(model.element_count()) +
          ", \"warnings\": " + errors_json(scene->scene.warnings) + "}";
 }
 
@@ -81,12 +81,12 @@ Result<std::string> show_scene(Parameters& parameters, const CallContext& contex
 Result<std::string> measure_scene(Parameters& parameters, const CallContext& context) {
   const std::uint32_t stage = stage_of(parameters, context);
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
-  const std::shared_ptr<const Model> model = context.desk->kept(stage);
-  if (!model) return Error{"", "no scene is shown there", ""};
-  const std::optional<double> time = loading::measure_tick(*model, context.should_stop);
+  const std::shared_ptr<const loading::LoadedScene> scene = context.desk->kept(stage);
+  if (!scene) return Error{"", "no scene is shown there", ""};
+  const std::optional<double> time = loading::measure_tick(scene->built.model, context.should_stop);
   if (!time) return Error{"", "stopped", ""};
   output::JsonWriter json;
-  json.begin_object().member("measured_tick_time_s", *time).member("tick_s", model->tick);
+  json.begin_object().member("measured_tick_time_s", *time).member("tick_s", scene->built.model.tick);
   return json.member("ticks", loading::kMeasuredTicks).end_object().text();
 }
 

@@ -32,8 +32,13 @@ Result<std::string> begin_training(Parameters& parameters, const CallContext& co
     if (std::filesystem::exists(*place, ignored)) return Error{*output, "exists already", "choose another name"};
     request.file = *place, request.shown = *output;
   }
-  const Result<loading::LoadedScene> scene = loading::load_whole_scene(*file, options, {}, context.should_stop);
-  if (!scene) return scene.errors();
+  // What the page shows of this text need not be loaded again.
+  std::shared_ptr<const loading::LoadedScene> scene = options.text ? context.desk->kept(*file, *options.text) : nullptr;
+  if (!scene) {
+    Result<loading::LoadedScene> loaded = loading::load_whole_scene(*file, options, {}, context.should_stop);
+    if (!loaded) return loaded.errors();
+    scene = std::make_shared<const loading::LoadedScene>(*std::move(loaded));
+  }
   if (context.should_stop()) return Error{scene_path, "stopped", ""};
   auto start = std::make_shared<const recordings::SessionStart>(session::start_session(*scene));
   const std::string view = view_json(scene->scene.spec, start->model);

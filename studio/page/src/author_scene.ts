@@ -105,7 +105,7 @@ export class AuthorScene {
   }
 
   get items(): Item[] {
-    return itemsOf(this.doc?.value, this.shown?.view ?? null, this.middles);
+    return itemsOf(this.doc?.lastValue, this.shown?.view ?? null, this.middles);
   }
 
   /** Errors and warnings of the text, as they are known now. */

@@ -16,6 +16,7 @@ export class SceneDocument {
   onPlace: (path: JSONPath) => void = () => {}; // the cursor was put there by hand
   private before: string | null = null; // a change that goes on began with this
   private gestures = 0; // begun so far
+  private valid: Json | undefined;
   private parsed: { text: string; value: Json | undefined } | null = null;
 
   private constructor(private readonly connection: Connection, readonly path: string, private saved: string, private revision: string, text: string, schema: () => Schema | null) {
@@ -52,9 +53,15 @@ export class SceneDocument {
       } catch {
         value = undefined;
       }
+      this.valid = value ?? this.valid;
       this.parsed = { text, value };
     }
     return this.parsed.value;
+  }
+
+  /** The value of the last text that was JSON. */
+  get lastValue(): Json | undefined {
+    return this.value ?? this.valid;
   }
 
   get isChanged(): boolean {
@@ -74,14 +81,16 @@ export class SceneDocument {
     redo(this.view);
   }
 
-  /** Sets values as one step of the history; undefined removes. */
+  /** Sets values as one step of the history; undefined removes. Nothing happens while the text is no JSON. */
   set(values: [JSONPath, Json | undefined][]): void {
+    if (this.value === undefined) return; // what is no JSON is not changed but by hand
     this.commit();
     this.setText(changed(this.text, values));
   }
 
   /** As set(), for a change that goes on: each call begins with the text before the first; all until commit() are one step. */
   preview(values: [JSONPath, Json | undefined][]): void {
+    if (this.value === undefined) return;
     if (this.before === null) this.before = this.text, ++this.gestures;
     this.setText(changed(this.before, values), this.gestures);
   }

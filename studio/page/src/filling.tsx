@@ -22,7 +22,7 @@ interface Scatter {
 
 /** Radii of the spheres: how many there are then, what a tick costs, how much the force depends on how they lie. */
 export function Filling({ connection, scene }: { connection: Connection; scene: AuthorScene }) {
-  const organs = listOf(scene.doc?.value, "organs");
+  const organs = listOf(scene.doc?.lastValue, "organs");
   return (
     <>
       {organs.map((organ, i) => organ.rig ? null : <OrganFilling key={i} scene={scene} organ={i} name={String(organ.name ?? `organ ${i + 1}`)} />)}
@@ -35,7 +35,7 @@ export function Filling({ connection, scene }: { connection: Connection; scene: 
 function OrganFilling({ scene, organ, name }: { scene: AuthorScene; organ: number; name: string }) {
   const doc = scene.doc!, path = ["organs", organ, "fill"];
   const number = (key: string, otherwise: number) => {
-    const value = findJson(doc.value, [...path, key]);
+    const value = findJson(doc.lastValue, [...path, key]);
     return typeof value === "number" ? value : otherwise;
   };
   const radius = number("radius_mm", 4), gap = number("gap_mm", 4);

@@ -14,7 +14,7 @@ export function Inspector({ scene, item, viewer, onRemove }: { scene: AuthorScen
   }
   const preview = (values: Values) => doc.preview(values), done = () => doc.commit();
   const at = (...more: (string | number)[]) => [...item.path, ...more];
-  const read = (...more: (string | number)[]): Json | undefined => findJson(doc.value, at(...more));
+  const read = (...more: (string | number)[]): Json | undefined => findJson(doc.lastValue, at(...more));
   const vector = (label: string, key: (string | number)[], otherwise: number[], unit = "mm", step = 0.5, least?: number) => {
     const value = read(...key);
     return (

@@ -85,10 +85,10 @@ export function Objects({ scene, viewer, items, selected, onSelect, brushRadius,
           {kind !== "organ" && (
             <div class="buttons add">
               {kNew[kind].map(([shape, name]) => (
-                <button key={shape} type="button" class="quiet" disabled={!scene.shown} onClick={() => onSelect(addItem(scene, viewer, kind, shape))}>+ {name}</button>
+                <button key={shape} type="button" class="quiet" disabled={!scene.shown || scene.doc?.value === undefined} onClick={() => onSelect(addItem(scene, viewer, kind, shape))}>+ {name}</button>
               ))}
               {kind === "anchor" && (
-                <button type="button" class="quiet" disabled={!scene.shown} aria-pressed={brushRadius !== null}
+                <button type="button" class="quiet" disabled={!scene.shown || scene.doc?.value === undefined} aria-pressed={brushRadius !== null}
                   onClick={() => onBrush(brushRadius === null ? 2.5 * least : null)}>paint</button>
               )}
             </div>

@@ -58,12 +58,13 @@ function beginOf(schema: Schema): string {
 /** What may stand at a place of the text. */
 export function offersAt(text: string, at: number, root: Schema): Offer[] {
   const location = getLocation(text, at), node = location.previousNode;
+  const begun = at - /"?\w*$/.exec(text.slice(0, at))![0].length; // of a word that is not a whole value yet
   const inNode = node && at >= node.offset && at <= node.offset + node.length;
   if (location.isAtPropertyKey) {
     const object = schemaAt(root, location.path.slice(0, -1));
     const own = objectAround(parseTree(text), at);
     const present = new Set((own?.children ?? []).map((p) => p.children![0].value as string));
-    const from = inNode && node.type === "string" ? node.offset : at - /\w*$/.exec(text.slice(0, at))![0].length;
+    const from = inNode && node.type === "string" ? node.offset : begun;
     const hasValue = /^"?[^"\n]*"?\s*:/.test(text.slice(at));
     return Object.entries(object?.properties ?? {}).filter(([key]) => !present.has(key) || (inNode && node.value === key)).map(([key, raw]) => {
       const schema = resolved(raw, root)!;
@@ -75,7 +76,7 @@ export function offersAt(text: string, at: number, root: Schema): Offer[] {
   }
   const schema = schemaAt(root, location.path);
   const values = schema?.enum ?? (schema?.const !== undefined ? [schema.const] : schema?.type === "boolean" ? [true, false] : []);
-  const from = inNode && node.type !== "object" && node.type !== "array" ? node.offset : at - /\w*$/.exec(text.slice(0, at))![0].length;
+  const from = inNode && node.type !== "object" && node.type !== "array" ? node.offset : begun;
   return values.map((value) => ({
     label: String(value), insert: JSON.stringify(value), detail: detailOf(schema!), info: schema!.description ?? "", from, isKey: false,
   }));

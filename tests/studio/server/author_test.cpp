@@ -100,7 +100,8 @@ TEST_F(AuthorTest, TheScatterIsThatOfTheCommand) {
   testing::run_ctpm({"fidelity", "kidney.json", "-o", "report", "--quick"}, folder_.path());
   std::ifstream in(folder_.path() / "report/results.json");
   std::vector<double> printed, told;
-  for (const auto& figure : nlohmann::json::parse(in)["figures"])
+  const nlohmann::json report = nlohmann::json::parse(in);
+  for (const auto& figure : report["figures"])
     if (figure["figure"].get<std::string>().starts_with("scatter")) printed.push_back(figure["measured"]);
   for (const char* kind : {"turns", "places"})
     for (const auto& row : answer["result"][kind]) told.push_back(100 * row["scatter"].get<double>());
