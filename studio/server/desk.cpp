@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "studio/loading/loaded_scene.h"
-
 namespace ctpm::server {
 
 Result<Done> Desk::open(const std::string& file, std::uint32_t number) {

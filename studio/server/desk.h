@@ -5,13 +5,10 @@
 #include <mutex>
 #include <string>
 
+#include "studio/loading/loaded_scene.h"
 #include "studio/server/outbox.h"
 #include "studio/server/stage.h"
 #include "studio/server/training.h"
-
-namespace ctpm::loading {
-struct LoadedScene;
-}
 
 namespace ctpm::server {
 
