@@ -55,9 +55,19 @@ void note_unit(const UnitChoice& unit, double diagonal, UsualSize usual, std::ve
 
 /// Maps the progress of one stage to the whole import.
 Progress share_of(const Progress& whole, double begin, double end) {
-  if (!whole) return {};
   return [whole, begin, end](const std::string& stage, double fraction) {
     whole(stage, begin + (end - begin) * fraction);
+  };
+}
+
+/// Ends an import from within the progress of one of its stages; stays in this file.
+struct Stopped {};
+
+/// The progress that the stages get: it tells the caller, and ends the import when the caller asks for that.
+Progress told_to(const ImportOptions& options) {
+  return [&options](const std::string& stage, double fraction) {
+    if (options.should_stop && options.should_stop()) throw Stopped{};
+    if (options.progress) options.progress(stage, fraction);
   };
 }
 
@@ -69,9 +79,10 @@ Errors with_place(Errors errors, const std::string& path) {
 
 }  // namespace
 
-Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions& options) {
+Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions& options) try {
   if (Errors errors = check(options); !errors.empty()) return errors;
-  if (options.progress) options.progress("read", 0);
+  const Progress tell = told_to(options);
+  tell("read", 0);
   ReadOptions reading;
   reading.part = options.part;
   reading.time_limit_s = options.time_limit_s;
@@ -87,7 +98,7 @@ Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions&
   RepairOptions repair;
   repair.all_parts = options.all_parts;
   repair.largest_hole = options.largest_hole;
-  repair.progress = share_of(options.progress, kReadShare, kRepairShare);
+  repair.progress = share_of(tell, kReadShare, kRepairShare);
   Result<CheckedMesh> mesh = repair_mesh(*raw, report.unit.in_metres, repair);
   if (!mesh) return mesh.errors();
   note_unit(report.unit, norm(mesh->box_most - mesh->box_least), options.usual_size, report.findings);
@@ -103,7 +114,7 @@ Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions&
   fill.most_spheres = options.most_spheres;
   fill.most_triangles = options.most_triangles;
   fill.threads = options.threads;
-  fill.progress = share_of(options.progress, kRepairShare, 1);
+  fill.progress = share_of(tell, kRepairShare, 1);
   Result<Filling> filling = fill_organ(*mesh, fill);
   if (!filling) return with_place(filling.errors(), path);
   imported.organ = std::move(filling->organ);
@@ -112,6 +123,8 @@ Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions&
   imported.mesh = std::move(*mesh);
   report.findings.insert(report.findings.end(), report.fill.findings.begin(), report.fill.findings.end());
   return imported;
+} catch (const Stopped&) {
+  return Error{path, "stopped", ""};
 }
 
 Result<CheckedMesh> import_mesh(const std::string& path, double unit_in_metres) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,7 @@ struct ImportOptions {
   std::int64_t most_triangles = 0;        ///< a drawn surface with more is coarsened; 0: never
   int threads = 2;                        ///< >= 1; the result does not depend on it
   double time_limit_s = 120;              ///< limit for reading the file [s]
+  std::function<bool()> should_stop;      ///< asked between two stages; true ends the import with an error
   Progress progress;  ///< receives the stage and the fraction of the whole import; the fraction never falls
 };
 

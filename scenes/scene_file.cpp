@@ -84,7 +84,9 @@ Result<SceneText> read_scene(std::string_view text, const std::string& file_name
   return without_errors(read_draft(text, file_name));
 }
 
-Result<SceneDraft> load_draft(const std::string& path, const LoadOptions& options) {
+namespace {
+
+Result<std::string> text_of_file(const std::string& path) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return Error{path, "does not exist", ""};
   if (!fs::is_regular_file(path, ignored)) return Error{path, "is not a file", ""};
@@ -94,7 +96,15 @@ Result<SceneDraft> load_draft(const std::string& path, const LoadOptions& option
   std::ostringstream text;
   text << in.rdbuf();
   if (!in) return Error{path, std::string("cannot be read: ") + std::strerror(errno), ""};
-  Result<SceneDraft> draft = read_draft(text.str(), path);
+  return text.str();
+}
+
+}  // namespace
+
+Result<SceneDraft> load_draft(const std::string& path, const LoadOptions& options) {
+  const Result<std::string> text = options.text ? Result<std::string>(*options.text) : text_of_file(path);
+  if (!text) return text.errors();
+  Result<SceneDraft> draft = read_draft(*text, path);
   if (draft) check_files(draft->problems, draft->scene.spec, path, options);
   return draft;
 }

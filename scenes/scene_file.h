@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -30,6 +31,7 @@ Result<SceneText> read_scene(std::string_view text, const std::string& file_name
 
 struct LoadOptions {
   bool allow_outside_paths = false;  ///< meshes may lie outside the scene's folder
+  std::optional<std::string> text;   ///< read in place of the file's, which may be missing: an author is still writing
 };
 
 /// Reads a scene file and checks that its meshes exist. Errors: those of read_scene; the file or a mesh is missing; a

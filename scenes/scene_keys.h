@@ -213,6 +213,8 @@ void describe_fields(V& v, OrganSpec& organ) {
          organ.mesh);
   v.record(Key{"rig", "Spheres given one by one, in place of a mesh."}, organ.rig);
   v.choice(Key{"mesh_unit", "Unit of the mesh file's coordinates."}, organ.mesh_unit);
+  v.point(Key{"at_mm", "Place of the mesh file's origin in the scene; not allowed for a rig."}, organ.at,
+          units::millimetre, any_coordinate_mm);
   v.flag(Key{"all_parts", "Keep every closed part of the mesh, not only the largest."}, organ.all_parts);
   v.integer(Key{"most_triangles", "The drawn surface is made coarser if it has more; the spheres stay the same.", false,
                 "as many as the mesh has"},
@@ -281,6 +283,15 @@ void describe_fields(V& v, ToolSpec& tool) {
                "others.",
                false, "1"},
            tool.blade_thickness, units::millimetre, within(0.01, 100));
+  v.point(
+      Key{"at_mm", "Where a hand in the browser takes it up: a ball's centre, a blade's tip; not allowed for a pin.",
+          false, "above the organs"},
+      tool.at, units::millimetre, any_coordinate_mm);
+  v.point(Key{"pointing", "With at_mm: direction from handle to tip; any length but zero.", false, "`[0, 0, -1]`"},
+          tool.pointing, units::none, any_direction);
+  v.point(Key{"facing", "With at_mm: direction of a blade's cutting side; not along pointing.", false,
+              "the shortest turn decides"},
+          tool.facing, units::none, any_direction);
 }
 
 inline RecordInfo info_of(const ObstacleSpec&) {

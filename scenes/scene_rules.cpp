@@ -139,6 +139,7 @@ void check_organ(Problems& problems, std::size_t index, const OrganSpec& organ) 
   if (problems.is_good(at + "/rig") && organ.mesh.empty() == !organ.rig)
     problems.add_rule(at, "must have exactly one of mesh, rig", "", at + "/mesh");
   if (organ.rig) check_rig(problems, at + "/rig", *organ.rig);
+  if (organ.rig && !(organ.at == Vec3{})) problems.add_rule(at + "/at_mm", "only an organ from a mesh has this key");
   check_material(problems, at + "/material", organ.material, at, organ.structure);
   check_layers(problems, at, organ);
   for (std::size_t i = 0; i < organ.anchors.size(); ++i)
@@ -149,6 +150,18 @@ void check_organ(Problems& problems, std::size_t index, const OrganSpec& organ) 
                          "cubic-6 joins neighbours along the axes only and has no shear stiffness: the organ folds up "
                          "under a probe",
                          "use cubic-18, or the model angle-mass-spring");
+}
+
+/// Where a tool is taken up.
+void check_tool_place(Problems& problems, const std::string& at, const ToolSpec& tool) {
+  if (tool.kind == ToolKind::pin && tool.at) problems.add_rule(at + "/at_mm", "a pin is where it holds");
+  if (!tool.at && tool.pointing) problems.add_rule(at + "/pointing", "has no meaning without at_mm");
+  if (!tool.at && tool.facing) problems.add_rule(at + "/facing", "has no meaning without at_mm");
+  if (tool.pointing) check_direction(problems, at + "/pointing", *tool.pointing);
+  const Vec3 pointing = tool.pointing.value_or(Vec3{0, 0, -1});
+  if (tool.facing && problems.are_good(at, {"pointing", "facing"}) &&
+      norm(cross(*tool.facing, pointing)) <= 1e-6 * norm(*tool.facing) * norm(pointing))
+    problems.add_rule(at + "/facing", "must not be zero or along pointing");
 }
 
 void check_tool(Problems& problems, std::size_t index, const ToolSpec& tool) {
@@ -168,6 +181,7 @@ void check_tool(Problems& problems, std::size_t index, const ToolSpec& tool) {
   allow(tool.blade_reach.has_value(), ToolKind::scalpel, "blade_reach_mm", "scalpel");
   allow(tool.flank_height.has_value(), ToolKind::scalpel, "flank_height_mm", "scalpel");
   allow(tool.blade_thickness.has_value(), ToolKind::scalpel, "blade_thickness_mm", "scalpel");
+  check_tool_place(problems, at, tool);
 }
 
 void check_camera(Problems& problems, std::size_t index, const CameraSpec& camera) {

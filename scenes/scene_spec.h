@@ -129,6 +129,7 @@ struct OrganSpec {
   std::string mesh;  ///< path, relative to the scene's folder, with '/'; empty: the organ is a rig
   std::optional<RigSpec> rig;
   LengthUnit mesh_unit = LengthUnit::millimetre;
+  Vec3 at;                                     ///< place of the mesh file's origin in the scene [m]
   bool all_parts = false;                      ///< every closed part of the mesh, not only the largest
   std::optional<std::int32_t> most_triangles;  ///< of the drawn surface, which is made coarser if it has more
   network::Structure structure = network::Structure::ctpm;  ///< which elements join the spheres; the key is `model`
@@ -161,6 +162,10 @@ struct ToolSpec {
   std::optional<double> blade_reach{};      ///< least distance ahead of the edge over which tissue resists [m]
   std::optional<double> flank_height{};     ///< [m]
   std::optional<double> blade_thickness{};  ///< [m]
+  // Where a hand that has no place of its own takes it up; unset: it decides. As ScriptStep::Take.
+  std::optional<Vec3> at{};        ///< of a ball's centre or a blade's tip [m]
+  std::optional<Vec3> pointing{};  ///< from handle to tip; any length but zero; unset: against +z
+  std::optional<Vec3> facing{};    ///< of a blade's cutting side; not along `pointing`
 
   friend bool operator==(const ToolSpec&, const ToolSpec&) = default;
 };

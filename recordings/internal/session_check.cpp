@@ -102,6 +102,7 @@ class SessionCheck {
         complain("the run of event " + std::to_string(key) + " is out of place");
         continue;
       }
+      next = key;
       for (const Event& event : (*run)->items) {
         const std::string problem = problem_of(event, session_.model, last);
         if (!problem.empty()) complain("event " + std::to_string(next) + ": " + problem);

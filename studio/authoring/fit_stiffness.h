@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -32,8 +33,9 @@ struct StiffnessFit {
 /// gravity and viscosity, and so slowly that inertia is negligible; in a rig, it presses the highest sphere that can
 /// move. Force is nearly proportional to the scale: one round gives the scale, and up to four more check and correct
 /// it. The other depths show the error of the curve's shape. Errors: those of build_model(); nothing at the top can
-/// move; the ball loses the organ before 12 mm; a run fails.
-Result<StiffnessFit> fit_stiffness(const scenes::SceneSpec& scene, std::size_t organ, const FilledOrgan& filled);
+/// move; the ball loses the organ before 12 mm; a run fails; `should_stop`, if given, ended it.
+Result<StiffnessFit> fit_stiffness(const scenes::SceneSpec& scene, std::size_t organ, const FilledOrgan& filled,
+                                   const std::function<bool()>& should_stop = {});
 
 /// Stores a fit in a scene's organ: its scale, and the contact point and ball for which it holds.
 void apply_fit(scenes::OrganSpec& organ, const StiffnessFit& fit);

@@ -106,13 +106,14 @@ scenes::SceneSpec make_scene(const ImportRequest& request, const scenes::Materia
 }
 
 /// Fits the organ's stiffness and stores it in the scene; an organ that cannot be fitted keeps the preset's moduli.
-void fit_scene(scenes::SceneSpec& scene, const FilledOrgan& organ, ImportOutcome& outcome) {
+void fit_scene(scenes::SceneSpec& scene, const FilledOrgan& organ, const ImportRequest& request,
+               ImportOutcome& outcome) {
   if (organ.centre.size() > kMostFittedSpheres) {
     outcome.fit_problem = "with " + std::to_string(organ.centre.size()) + " spheres it takes long";
     outcome.can_be_fitted_later = true;
     return;
   }
-  const Result<StiffnessFit> fit = fit_stiffness(scene, 0, organ);
+  const Result<StiffnessFit> fit = fit_stiffness(scene, 0, organ, request.should_stop);
   if (!fit) {
     outcome.fit_problem = fit.errors().front().message;
     return;
@@ -152,7 +153,7 @@ Result<ImportOutcome> import_scene(const ImportRequest& request) {
   options.gap = request.gap.value_or(-1);
   options.largest_hole = request.largest_hole;
   options.most_triangles = request.most_triangles.value_or(0);
-  options.progress = request.progress;
+  options.progress = request.progress, options.should_stop = request.should_stop;
   Result<importers::ImportedOrgan> imported = importers::import_organ(request.mesh, options);
   if (!imported) return imported.errors();
   outcome.report = imported->report;
@@ -163,7 +164,8 @@ Result<ImportOutcome> import_scene(const ImportRequest& request) {
       scenes::select_anchored(organs.front(), scene.organs[0].anchors, scene.gravity, request.mesh);
   if (!anchored) return anchored.errors();
   outcome.anchored = anchored->size();
-  fit_scene(scene, organs.front(), outcome);
+  fit_scene(scene, organs.front(), request, outcome);
+  if (request.should_stop && request.should_stop()) return Error{request.mesh, "stopped", "nothing was written"};
   const importers::CheckedMesh& mesh = imported->mesh;
   if (const Result<Done> written = importers::write_obj(outcome.mesh_file, mesh.vertex, mesh.triangle); !written)
     return written.errors();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,7 @@ struct ImportRequest {
   std::optional<std::int32_t> most_triangles;  ///< of the drawn surface; unset: as many as the mesh has
   std::vector<scenes::AnchorSpec> anchors;     ///< empty: the lowest eighth of its spheres
   importers::Progress progress;
+  std::function<bool()> should_stop{};  ///< true ends the import; nothing is written then
 };
 
 /// The files of an import, and its findings.
@@ -40,8 +42,8 @@ struct ImportOutcome {
 
 /// Imports a mesh and writes a scene that runs without changes: `NAME.json` with its stiffness fitted, the repaired
 /// mesh `NAME.obj` in millimetres, and a script `NAME.script.json` that presses and cuts it. Errors: those of the
-/// import, an unknown organ, an anchor without spheres, a folder that cannot be written, a file that exists already.
-/// The scene is written last, so that it never names a missing file.
+/// import, `should_stop`, an unknown organ, an anchor without spheres, a folder that cannot be written, a file that
+/// exists already. The scene is written last, so that it never names a missing file.
 Result<ImportOutcome> import_scene(const ImportRequest& request);
 
 }  // namespace ctpm::authoring

@@ -5,6 +5,7 @@
 #include "recordings/session_reader.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
+#include "studio/commands/extremes_text.h"
 #include "studio/output/printable.h"
 #include "studio/session/session_info.h"
 
@@ -64,8 +65,8 @@ void print_text(recordings::SessionReader& reader, const recordings::SessionStat
   print("duration   %.3f s, %lld ticks of %g ms\n", double(reader.tick_count()) * model.tick,
         (long long)reader.tick_count(), model.tick * 1e3);
   for (const OrganRange& organ : model.organs)
-    print("organ      %s: %d spheres in %d layers, radius %g mm, spacing %g mm\n", organ.name.c_str(), organ.count,
-          organ.layer_count, organ.sphere_radius * 1e3, organ.spacing * 1e3);
+    print("organ      %s: %d spheres in %d layers, radius %g mm, spacing %g mm\n", printable(organ.name).c_str(),
+          organ.count, organ.layer_count, organ.sphere_radius * 1e3, organ.spacing * 1e3);
   print("network    %zu spheres, %zu elements\n", model.sphere_count(), model.element_count());
   print("tick time  p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms; %lld late\n", s.tick_time_p50 * 1e3,
         s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3, (long long)s.late_ticks);
@@ -74,8 +75,9 @@ void print_text(recordings::SessionReader& reader, const recordings::SessionStat
           s.input_age_max * 1e3);
   if (s.slip_max > 0) print("clock      %.3f s behind real time at the end, %.3f s at most\n", s.slip, s.slip_max);
   for (const auto& [name, value] : s.values) print("value      %s = %g\n", printable(name).c_str(), value);
-  print("at most    %.3f N, %.2f mm deep; %lld elements severed, %lld pieces came loose\n", s.max_force,
-        s.max_depth * 1e3, (long long)s.severed, (long long)recordings::pieces_came_loose(events, reader.tick_count()));
+  print("tissue     %s; %lld elements severed, %lld pieces came loose\n",
+        extremes_text(s.max_force, s.max_depth).c_str(), (long long)s.severed,
+        (long long)recordings::pieces_came_loose(events, reader.tick_count()));
   if (model.tissue_cells.size() > 0)
     print("inside out %s at the end\n",
           recordings::cells_inside_out(events, reader.tick_count()) > 0 ? "TISSUE IS INSIDE OUT" : "no tissue");

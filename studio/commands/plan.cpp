@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "studio/commands/console.h"
 #include "studio/fidelity/thickness.h"
 #include "studio/loading/loaded_scene.h"
+#include "studio/loading/tick_time.h"
 #include "studio/output/json_writer.h"
 
 namespace ctpm::commands {
@@ -101,21 +101,6 @@ std::vector<Feature> features_of(const scenes::SceneSpec& scene, const Model& m,
   };
 }
 
-/// Median time of a tick at rest on this machine, now [s].
-double measure_tick(const Model& model) {
-  constexpr int kWarmUp = 20, kMeasured = 41;
-  State state = rest_state(model);
-  stepping::Stepper stepper(model);
-  std::vector<double> times;
-  for (int i = 0; i < kWarmUp + kMeasured; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    (void)stepper.step(state, {});
-    if (i >= kWarmUp) times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  }
-  std::nth_element(times.begin(), times.begin() + kMeasured / 2, times.end());
-  return times[kMeasured / 2];
-}
-
 /// The integrator and solver of a tick, in words.
 std::string solver_of(const Model& model, const stepping::IntegratorChoice& choice) {
   std::string words = stepping::name_of(choice.integrator);
@@ -162,7 +147,7 @@ int run_plan(const PlanArguments& arguments) {
   const std::vector<Feature> features = features_of(scene->scene.spec, model, rest_state(model));
   std::size_t total = 0;
   for (const Feature& feature : features) total += feature.is_in ? feature.bytes : 0;
-  const double tick = measure_tick(model);
+  const double tick = *loading::measure_tick(model);
   const stepping::IntegratorChoice& choice = scene->built.integrator;
   const std::string solver = solver_of(model, choice);
   if (arguments.json) {
@@ -196,8 +181,8 @@ int run_plan(const PlanArguments& arguments) {
   print("memory: %.1f KiB, %zu bytes a sphere\n", double(total) / 1024,
         total / std::max<std::size_t>(1, model.sphere_count()));
   print("solver: %s\n        because %s\n", solver.c_str(), choice.reason.c_str());
-  print("time: %.3f ms a tick of %g ms at rest, measured now on this machine (median of 41)\n", tick * 1e3,
-        model.tick * 1e3);
+  print("time: %.3f ms a tick of %g ms at rest, measured now on this machine (median of %d)\n", tick * 1e3,
+        model.tick * 1e3, loading::kMeasuredTicks);
   return exit_good;
 }
 

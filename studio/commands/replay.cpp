@@ -7,9 +7,12 @@
 #include "recordings/session_reader.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
+#include "studio/commands/extremes_text.h"
 #include "studio/commands/flags.h"
 #include "studio/commands/physics_warning.h"
 #include "studio/output/files.h"
+#include "studio/output/number_text.h"
+#include "studio/output/printable.h"
 #include "studio/session/time_range.h"
 
 namespace ctpm::commands {
@@ -38,7 +41,7 @@ struct HandCells {
 
 HandCells cells_of(const Model& model, const Hand& in, const stepping::HandReport& report) {
   const bool is_known = in.tool >= 0 && std::size_t(in.tool) < model.tools.size();
-  const std::string tool = is_known ? model.tools[std::size_t(in.tool)].name : "";
+  const std::string tool = is_known ? output::csv_text(model.tools[std::size_t(in.tool)].name) : "";
   const Vec3 p = in.position, f = report.tool_force;
   const Quat q = in.world_from_tool;
   char pose[256], loads[256];
@@ -52,11 +55,10 @@ std::string csv_row(const Model& model, const recordings::ReplayCursor& cursor) 
   const Inputs& inputs = cursor.record().inputs;
   const stepping::StepReport& report = cursor.report();
   const HandCells first = cells_of(model, inputs, report);
-  char time[64];
-  std::snprintf(time, sizeof time, "%lld,%.6f,", (long long)(cursor.tick() - 1),
-                double(cursor.tick() - 1) * model.tick);
-  std::string row = time + first.inputs + "," + first.loads + "," + first.contacts + "," +
-                    std::to_string(report.severed) + "," + (cursor.same_so_far() ? "1" : "0");
+  const std::int64_t tick = cursor.tick() - 1;
+  std::string row = std::to_string(tick) + "," + output::fixed(double(tick) * model.tick, 6) + "," + first.inputs +
+                    "," + first.loads + "," + first.contacts + "," + std::to_string(report.severed) + "," +
+                    (cursor.same_so_far() ? "1" : "0");
   if (model.hands > 1) {
     const HandCells second = cells_of(model, inputs.second, report.second);
     row += "," + second.inputs + "," + second.loads + "," + second.contacts;
@@ -94,10 +96,9 @@ int run_replay(const ReplayArguments& arguments) {
   if (!arguments.csv.empty())
     if (const Result<Done> written = output::write_text_file(arguments.csv, rows); !written)
       return print_errors(written.errors());
-  print("%s: %lld ticks replayed, at most %.3f N and %.2f mm deep, %s%s%s\n", arguments.file.c_str(),
-        (long long)(range->to - range->from), most_force, most_depth * 1e3,
-        cursor->same_so_far() ? "as recorded" : "NOT as recorded", arguments.csv.empty() ? "" : "; written to ",
-        arguments.csv.c_str());
+  print("%s: %lld ticks replayed, %s, %s%s%s\n", arguments.file.c_str(), (long long)(range->to - range->from),
+        extremes_text(most_force, most_depth).c_str(), cursor->same_so_far() ? "as recorded" : "NOT as recorded",
+        arguments.csv.empty() ? "" : "; written to ", arguments.csv.c_str());
   return cursor->same_so_far() ? exit_good : exit_bad_verdict;
 }
 

@@ -22,15 +22,16 @@
 namespace ctpm::devices {
 namespace {
 
-constexpr double kConnectTimeout = 3;   // [s]
-constexpr int kCallAgainAfter = 200;    // [ms]
-constexpr std::size_t kReports = 4096;  // capacity towards the tick's thread: seconds of a fast device
-constexpr double kSilent = 0.5;         // without a pose, a connection may be displaced [s]
-constexpr double kMostWaiting = 10;     // of a connection that sends no pose while it waits [s]
-constexpr std::size_t kCandidates = 4;  // connections that wait
-constexpr int kAcceptedAtOnce = 16;     // before the other sockets are looked at again
+constexpr double kConnectTimeout = 3;    // [s]
+constexpr int kCallAgainAfter = 200;     // [ms]
+constexpr std::size_t kReports = 4096;   // capacity towards the tick's thread: seconds of a fast device
+constexpr double kSilent = 0.5;          // without a pose, a connection may be displaced [s]
+constexpr double kMostWaiting = 10;      // of a connection that sends no pose while it waits [s]
+constexpr std::size_t kCandidates = 32;  // connections that wait: two rounds of those accepted at once
+constexpr int kAcceptedAtOnce = 16;      // before the other sockets are looked at again
 constexpr auto kFloodPause = std::chrono::milliseconds(1);  // after a full buffer: the sender waits, not the tick
 constexpr std::size_t kForces = 64;                         // capacity towards this thread
+constexpr const char* kSecond = "a second device came and was turned away";
 
 /// A connection that waits for the place of a silent one.
 struct Candidate {
@@ -73,6 +74,7 @@ struct IgtlLink::Impl {
   void tell(DeviceReport report) { (void)reports.push(report); }  // if full, the session has stopped reading
   void tell(DeviceNews news, const char* text = "");
   void take_connection(Descriptor socket);
+  void let_wait(Descriptor socket);
   void turn_away(const char* text);
   void read_candidates(std::span<const pollfd> waiting);
   void hang_up(const char* reason);
@@ -180,12 +182,21 @@ void IgtlLink::Impl::accept_all() {
       turn_away("a connection from an address that may not connect was refused");
     else if (!connection)
       take_connection(std::move(socket));
-    else if (device_clock() - last_pose < kSilent || candidates.size() >= kCandidates)
-      turn_away("a second device came and was turned away");
+    else if (device_clock() - last_pose < kSilent)
+      turn_away(kSecond);
     else
-      candidates.push_back({std::move(socket), IgtlStream(settings.device_name), device_clock()});
+      let_wait(std::move(socket));
   }
   std::this_thread::sleep_for(kFloodPause);
+}
+
+/// Whoever has waited longest without a pose makes room, so that silent connections keep no device out.
+void IgtlLink::Impl::let_wait(Descriptor socket) {
+  if (candidates.size() >= kCandidates) {
+    candidates.erase(candidates.begin());
+    turn_away(kSecond);
+  }
+  candidates.push_back({std::move(socket), IgtlStream(settings.device_name), device_clock()});
 }
 
 void IgtlLink::Impl::turn_away(const char* text) { tell(DeviceNews::turned_away, text); }
@@ -216,7 +227,7 @@ void IgtlLink::Impl::read_candidates(std::span<const pollfd> waiting) {
     } else if (stays && (now - last_pose >= kSilent || taken != i)) {
       left.push_back(std::move(candidate));
     } else {
-      turn_away("a second device came and was turned away");
+      turn_away(kSecond);
     }
   }
   candidates = std::move(left);

@@ -166,6 +166,24 @@ struct CutsResult {
 Result<CutsResult> measure_cuts(const std::string& shipped, bool is_quick);
 Chapter chapter_of(const CutsResult& result);
 
+/// Blades that cut the shipped kidney, skin and liver in motion.
+struct StrokesResult {
+  struct Row {
+    std::string organ, stroke;
+    int severed = 0, refused = 0;  ///< elements; ticks
+    int looks = 0;
+    int wrong = 0;  ///< looks at which the drawn surface was open, or had other components than there were pieces
+    int changed_uncut = 0;  ///< looks at which it was another one, but nothing had been swept since the last look
+    double stretch = 0;     ///< of a triangle's longest edge, over that at rest: the largest of all looks
+    int stretched = 0;      ///< triangles of all looks that were stretched more than six times
+    double torn = 0;        ///< how far places that lie together at rest came apart [spacings]
+  };
+  std::vector<Row> rows;
+};
+/// `shipped`: folder of the shipped scenes.
+Result<StrokesResult> measure_strokes(const std::string& shipped);
+Chapter chapter_of(const StrokesResult& result);
+
 /// Blocks of liver of which a blade cuts pieces, which fall on the ground.
 struct PiecesResult {
   struct Row {

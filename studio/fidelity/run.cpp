@@ -19,6 +19,12 @@ struct Recipe {
 
 using Radii = std::vector<double>;
 
+scenes::LoadOptions loading_of(bool allow_outside_paths) {
+  scenes::LoadOptions options;
+  options.allow_outside_paths = allow_outside_paths;
+  return options;
+}
+
 /// A recipe's run from its measurement.
 template <class T>
 Result<Chapter> told(const Result<T>& measured) {
@@ -28,11 +34,11 @@ Result<Chapter> told(const Result<T>& measured) {
 
 Result<Chapter> turned_scene(const FidelityOptions& options, const std::string& path, bool allow_outside_paths,
                              const std::string& key, const std::string& title) {
-  const Result<SceneOrgan> organ = read_scene_organ(path, allow_outside_paths);
+  const Result<SceneOrgan> organ = read_scene_organ(path, loading_of(allow_outside_paths));
   if (!organ) return organ.errors();
   const std::vector<Quat> turns = twelve_turns();
   const Result<SceneResult> result =
-      measure_scene_turns(*organ, std::span(turns).first(options.is_quick ? 4 : turns.size()));
+      measure_scene_turns(*organ, std::span(turns).first(options.is_quick ? kQuickTurns : turns.size()));
   if (!result) return result.errors();
   return turns_chapter(*result, key, title);
 }
@@ -77,6 +83,8 @@ std::vector<Recipe> recipes() {
        }},
       {{"cuts", "Cuts of every kind", false},
        [](const FidelityOptions& o) { return told(measure_cuts(o.shipped, o.is_quick)); }},
+      {{"strokes", "Strokes through the shipped organs", false},
+       [](const FidelityOptions& o) { return told(measure_strokes(o.shipped)); }},
       {{"pieces", "Pieces that fall", false}, [](const FidelityOptions&) { return told(measure_pieces(4e-3)); }},
       {{"grip", "Grip", false}, [](const FidelityOptions&) { return told(measure_grip(4e-3)); }},
       {{"recovery", "Recovery from abuse", false},
@@ -103,9 +111,9 @@ std::vector<Recipe> recipes() {
        }},
       {{"scene-places", "The scene's organ at places over one lattice cell", true},
        [](const FidelityOptions& o) -> Result<Chapter> {
-         const Result<SceneOrgan> organ = read_scene_organ(*o.scene, o.allow_outside_paths);
+         const Result<SceneOrgan> organ = read_scene_organ(*o.scene, loading_of(o.allow_outside_paths));
          if (!organ) return organ.errors();
-         const Result<SceneResult> result = measure_scene_places(*organ, o.is_quick ? 2 : 3);
+         const Result<SceneResult> result = measure_scene_places(*organ, o.is_quick ? kQuickPlaces : 3);
          if (!result) return result.errors();
          return places_chapter(*result, "scene-places", "The scene's organ at places over one lattice cell");
        }},
@@ -177,7 +185,8 @@ Result<FidelityResults> run_fidelity(const FidelityOptions& options, const Fidel
   const Result<std::vector<Recipe>> chosen = chosen_recipes(options);
   if (!chosen) return chosen.errors();
   if (options.scene)
-    if (const Result<SceneOrgan> organ = read_scene_organ(*options.scene, options.allow_outside_paths); !organ)
+    if (const Result<SceneOrgan> organ = read_scene_organ(*options.scene, loading_of(options.allow_outside_paths));
+        !organ)
       return organ.errors();
   FidelityResults results;
   results.is_quick = options.is_quick, results.scene = options.scene;

@@ -1,6 +1,7 @@
 #include "studio/fidelity/scene.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "core/stepping/integrator.h"
@@ -13,6 +14,7 @@
 namespace ctpm::fidelity {
 namespace {
 
+const Errors kStopped{{"", "stopped", ""}};
 constexpr double kDeepest = 12e-3;      // [m]
 constexpr double kShareOfOrgan = 0.25;  // a press goes no deeper than this share of the organ's extent along its way
 
@@ -58,10 +60,8 @@ Surface as_surface(const importers::RawMesh& mesh) {
 
 }  // namespace
 
-Result<SceneOrgan> read_scene_organ(const std::string& path, bool allow_outside_paths) {
-  scenes::LoadOptions load;
-  load.allow_outside_paths = allow_outside_paths;
-  const Result<loading::LoadedScene> loaded = loading::load_whole_scene(path, load);
+Result<SceneOrgan> read_scene_organ(const std::string& path, const scenes::LoadOptions& options) {
+  const Result<loading::LoadedScene> loaded = loading::load_whole_scene(path, options);
   if (!loaded) return loaded.errors();
   const scenes::SceneSpec& spec = loaded->scene.spec;
   const auto ball = std::find_if(spec.tools.begin(), spec.tools.end(),
@@ -119,7 +119,8 @@ Result<Body> make_body(const SceneOrgan& organ, Quat turn) {
   return body;
 }
 
-Result<SceneResult> measure_scene_turns(const SceneOrgan& organ, std::span<const Quat> turns) {
+Result<SceneResult> measure_scene_turns(const SceneOrgan& organ, std::span<const Quat> turns,
+                                        const ShouldStop& should_stop) {
   const PressSite site = *find_touch(organ, {});
   SceneResult result;
   result.name = organ.scene.name + ", organ " + organ.scene.organs[0].name + ", " + organ.scene.tools[0].name + " of " +
@@ -128,6 +129,7 @@ Result<SceneResult> measure_scene_turns(const SceneOrgan& organ, std::span<const
   std::vector<std::vector<PressPoint>> presses(turns.size());
   std::vector<Errors> errors(turns.size());
   in_parallel(turns.size(), [&](std::size_t i) {
+    if (should_stop && should_stop()) return void(errors[i] = kStopped);
     const Result<Body> body = make_body(organ, turns[i]);
     if (!body)
       errors[i] = body.errors();
@@ -141,7 +143,7 @@ Result<SceneResult> measure_scene_turns(const SceneOrgan& organ, std::span<const
   return result;
 }
 
-Result<SceneResult> measure_scene_places(const SceneOrgan& organ, int places) {
+Result<SceneResult> measure_scene_places(const SceneOrgan& organ, int places, const ShouldStop& should_stop) {
   const Result<Body> body = make_body(organ, Quat{});
   if (!body) return body.errors();
   SceneResult result;
@@ -156,10 +158,13 @@ Result<SceneResult> measure_scene_places(const SceneOrgan& organ, int places) {
       if (const auto site = find_touch(organ, result.spacing / places * (i * u + j * v))) sites.push_back(*site);
   std::vector<std::vector<PressPoint>> presses(sites.size());
   result.contacts.resize(sites.size());
+  std::atomic<bool> was_stopped{false};
   in_parallel(sites.size(), [&](std::size_t i) {
+    if (should_stop && should_stop()) return void(was_stopped = true);
     presses[i] = press(*body, 0, sites[i], organ.depths);
     result.contacts[i] = first_contact(*body, 0, sites[i]);
   });
+  if (was_stopped) return kStopped;
   result.places = rows_of(presses, result.radius, organ.depths);
   return result;
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/scene_file.h"
 #include "studio/fidelity/body.h"
 #include "studio/fidelity/press.h"
 #include "studio/fidelity/recipes.h"
@@ -24,7 +25,7 @@ struct SceneOrgan {
 /// Reads a scene and its first organ's mesh. The place is that of the press in the scene's default script (`ctpm demo`
 /// uses the same). Errors: those of the scene and the mesh; an organ that is a rig; no ball among the tools; a press
 /// that misses the organ.
-Result<SceneOrgan> read_scene_organ(const std::string& path, bool allow_outside_paths);
+Result<SceneOrgan> read_scene_organ(const std::string& path, const scenes::LoadOptions& options);
 
 /// The organ turned about its middle against the lattice, with its anchors. Errors: those of importers and scenes.
 Result<Body> make_body(const SceneOrgan& organ, Quat turn);
@@ -41,8 +42,15 @@ struct SceneResult {
   std::vector<OrientationResult::Row> places;  ///< one a depth
   std::vector<double> contacts;                ///< depth below the drawn surface at the first force, one a place [m]
 };
-Result<SceneResult> measure_scene_turns(const SceneOrgan& organ, std::span<const Quat> turns);
-Result<SceneResult> measure_scene_places(const SceneOrgan& organ, int places);
+/// `should_stop`, if given, ends a measurement with an error; any thread calls it.
+using ShouldStop = std::function<bool()>;
+Result<SceneResult> measure_scene_turns(const SceneOrgan& organ, std::span<const Quat> turns,
+                                        const ShouldStop& should_stop = {});
+Result<SceneResult> measure_scene_places(const SceneOrgan& organ, int places, const ShouldStop& should_stop = {});
+
+/// Turns and places along each side of the lattice cell, in the short form.
+inline constexpr std::size_t kQuickTurns = 4;
+inline constexpr int kQuickPlaces = 2;
 
 /// Chapters of both; `key` and `title` name the recipe.
 Chapter turns_chapter(const SceneResult& result, const std::string& key, const std::string& title);

@@ -20,6 +20,13 @@ importers::ImportOptions import_options_of(const scenes::OrganSpec& organ) {
   return options;
 }
 
+/// Moves an organ after it was filled, so that its spheres lie in it alike wherever it is.
+void move(importers::ImportedOrgan& imported, Vec3 by) {
+  for (auto* places : {&imported.organ.centre, &imported.organ.surface.vertex, &imported.mesh.vertex})
+    for (Vec3& place : *places) place = place + by;
+  for (Vec3* corner : {&imported.mesh.box_least, &imported.mesh.box_most}) *corner = *corner + by;
+}
+
 /// The errors of a mesh, at the place where the scene names it: in `list`, an organ or an obstacle.
 void add_mesh_errors(scenes::Problems& problems, const std::string& list, std::size_t index, const Errors& errors) {
   const std::string at = list + "/" + std::to_string(index) + "/mesh";
@@ -41,8 +48,16 @@ scenes::ObstacleMesh mesh_of(const std::string& scene_path, const scenes::Obstac
 
 }  // namespace
 
-Result<importers::ImportedOrgan> fill_of(const std::string& scene_path, const scenes::OrganSpec& organ) {
-  if (!organ.rig) return importers::import_organ(scenes::mesh_path(scene_path, organ.mesh), import_options_of(organ));
+Result<importers::ImportedOrgan> fill_of(const std::string& scene_path, const scenes::OrganSpec& organ,
+                                         const std::function<bool()>& should_stop) {
+  if (!organ.rig) {
+    importers::ImportOptions options = import_options_of(organ);
+    options.should_stop = should_stop;
+    Result<importers::ImportedOrgan> filled =
+        importers::import_organ(scenes::mesh_path(scene_path, organ.mesh), options);
+    if (filled) move(*filled, organ.at);
+    return filled;
+  }
   // A rig has no mesh; its surface is empty and bound to nothing.
   importers::ImportedOrgan filled;
   filled.organ = scenes::fill_rig(organ);
@@ -51,7 +66,8 @@ Result<importers::ImportedOrgan> fill_of(const std::string& scene_path, const sc
 }
 
 Result<LoadedScene> load_whole_scene(const std::string& path, const scenes::LoadOptions& options,
-                                     const std::function<void(scenes::SceneSpec&)>& change) {
+                                     const std::function<void(scenes::SceneSpec&)>& change,
+                                     const std::function<bool()>& should_stop) {
   Result<scenes::SceneDraft> draft = scenes::load_draft(path, options);
   if (!draft) return draft.errors();
   auto& [scene, problems] = *draft;
@@ -61,7 +77,7 @@ Result<LoadedScene> load_whole_scene(const std::string& path, const scenes::Load
   for (std::size_t i = 0; i < scene.spec.organs.size(); ++i) {
     importers::ImportedOrgan filled;
     if (scenes::can_be_filled(problems, i)) {
-      Result<importers::ImportedOrgan> imported = fill_of(path, scene.spec.organs[i]);
+      Result<importers::ImportedOrgan> imported = fill_of(path, scene.spec.organs[i], should_stop);
       if (imported)
         filled = *std::move(imported);
       else
@@ -72,6 +88,7 @@ Result<LoadedScene> load_whole_scene(const std::string& path, const scenes::Load
   }
   for (std::size_t i = 0; i < scene.spec.obstacles.size(); ++i)
     loaded.obstacles.push_back(mesh_of(path, scene.spec.obstacles[i], i, problems));
+  if (should_stop && should_stop()) return Error{path, "stopped", ""};
   std::optional<scenes::BuiltScene> built = scenes::build_model(scene.spec, loaded.organs, problems, loaded.obstacles);
   if (!built) return problems.errors();
   loaded.built = *std::move(built);

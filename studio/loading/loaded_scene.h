@@ -23,13 +23,17 @@ struct LoadedScene {
   scenes::BuiltScene built;
 };
 
-/// Fills one organ of a scene: its mesh, or its rig. Errors: those of the mesh.
-Result<importers::ImportedOrgan> fill_of(const std::string& scene_path, const scenes::OrganSpec& organ);
+/// Fills one organ of a scene: its mesh, or its rig. Places in the report of a mesh are those of its file. Errors:
+/// those of the mesh. `should_stop`, if given, ends it with an error.
+Result<importers::ImportedOrgan> fill_of(const std::string& scene_path, const scenes::OrganSpec& organ,
+                                         const std::function<bool()>& should_stop = {});
 
 /// Reads a scene, imports its meshes and builds its Model. `change` may alter the scene between reading and importing.
-/// Warnings are in LoadedScene::scene. Errors: those of the scene, its meshes and its Model, all at once, with places.
+/// `should_stop`, if given, ends it with an error. Warnings are in LoadedScene::scene. Errors: those of the scene, its
+/// meshes and its Model, all at once, with places.
 Result<LoadedScene> load_whole_scene(const std::string& path, const scenes::LoadOptions& options = {},
-                                     const std::function<void(scenes::SceneSpec&)>& change = {});
+                                     const std::function<void(scenes::SceneSpec&)>& change = {},
+                                     const std::function<bool()>& should_stop = {});
 
 /// The Model of a loaded scene after `change`; the meshes are not read again. Errors: those of build_model().
 Result<scenes::BuiltScene> build_changed(const LoadedScene& scene,

@@ -13,4 +13,7 @@ std::string printable(std::string_view text, bool lines = false);
 /// `text` as a JSON string with its quotes. The same characters are escaped; bytes that are no UTF-8 become U+FFFD.
 std::string json_string(std::string_view text);
 
+/// `text` as a value of a CSV table: in quotes if it holds a comma, a quote or the end of a line.
+std::string csv_text(const std::string& text);
+
 }  // namespace ctpm::output

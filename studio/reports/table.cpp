@@ -4,6 +4,7 @@
 
 #include "core/model/result.h"
 #include "studio/output/number_text.h"
+#include "studio/output/printable.h"
 #include "studio/reports/plot.h"
 
 namespace ctpm::reports {
@@ -26,15 +27,8 @@ std::string html_cell(const Cell& cell, int digits) {
   return "<td></td>";
 }
 
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::string csv_cell(const Cell& cell) {
-  if (const auto* text = std::get_if<std::string>(&cell)) return csv_text(*text);
+  if (const auto* text = std::get_if<std::string>(&cell)) return output::csv_text(*text);
   if (const auto* value = std::get_if<double>(&cell)) return whole_number(*value);
   if (const auto* count = std::get_if<std::int64_t>(&cell)) return std::to_string(*count);
   if (const auto* verdict = std::get_if<ReportVerdict>(&cell)) return to_word(*verdict);
@@ -81,7 +75,7 @@ std::string to_html(const Table& table) {
 std::string to_csv(const Table& table) {
   check_shape(table);
   std::string csv;
-  for (std::size_t i = 0; i < table.columns.size(); ++i) csv += (i ? "," : "") + csv_text(table.columns[i].key);
+  for (std::size_t i = 0; i < table.columns.size(); ++i) csv += (i ? "," : "") + output::csv_text(table.columns[i].key);
   csv += "\n";
   for (const auto& row : table.rows) {
     for (std::size_t i = 0; i < row.size(); ++i) csv += (i ? "," : "") + csv_cell(row[i]);

@@ -1,15 +1,13 @@
 #include <filesystem>
 #include <string>
 
-#include "core/model/state.h"
 #include "recordings/byte_hash.h"
 #include "scenes/presets.h"
 #include "scenes/scene_file.h"
+#include "scenes/schema.h"
 #include "studio/authoring/import_scene.h"
-#include "studio/loading/loaded_scene.h"
 #include "studio/output/files.h"
 #include "studio/server/call_table.h"
-#include "studio/server/picture.h"
 #include "studio/server/scene_text.h"
 
 namespace ctpm::server {
@@ -26,12 +24,6 @@ std::string revision_of(const std::string& text) {
 Result<std::string> place_of_scene(const Folder& folder, const std::string& path) {
   if (!path.ends_with(".json")) return Error{path, "a scene's name must end in .json", ""};
   return folder.place(path);
-}
-
-std::string errors_json(const Errors& errors) {
-  output::JsonWriter json;
-  write_errors(json, errors);
-  return json.text();
 }
 
 }  // namespace
@@ -74,36 +66,6 @@ Result<std::string> check_scene(Parameters& parameters, const CallContext& conte
          ", \"warnings\": " + errors_json(scene ? scene->warnings : Errors{}) + "}";
 }
 
-/// Loads a scene with its meshes, as `check` does, and shows it at rest.
-Result<std::string> show_scene(Parameters& parameters, const CallContext& context) {
-  const std::string path = parameters.text("path");
-  const std::uint32_t stage = std::uint32_t(parameters.number("stage", 0, Desk::kMostStages - 1));
-  if (!context.desk) parameters.refuse("stage", "only a page with a WebSocket has stages");
-  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
-  const Result<std::string> file = context.folder.find(path);
-  if (!file) return file.errors();
-  const Result<loading::LoadedScene> scene = loading::load_whole_scene(*file);
-  if (!scene) return scene.errors();
-  const Model& model = scene->built.model;
-  PictureMaker maker(model, stage);
-  context.desk->outbox().send_bytes(tools_message(model, stage));
-  context.desk->outbox().show(maker.make(rest_state(model), {}));
-  output::JsonWriter json;
-  json.begin_list();
-  for (std::size_t i = 0; i < scene->organs.size(); ++i) {
-    const bool has_mesh = i < scene->reports.size() && !scene->reports[i].path.empty();
-    json.begin_object()
-        .member("spheres", scene->organs[i].centre.size())
-        .member("report", has_mesh ? importers::to_text(scene->reports[i]) : std::string())
-        .end_object();
-  }
-  json.end_list();
-  return "{\"view\": " + view_json(scene->scene.spec, model) + ", \"organs\": " + json.text() +
-         ", \"spheres\": " + std::to_string(model.sphere_count()) +
-         ", \"elements\": " + std::to_string(model.element_count()) +
-         ", \"warnings\": " + errors_json(scene->scene.warnings) + "}";
-}
-
 Result<std::string> import_mesh(Parameters& parameters, const CallContext& context) {
   const std::string mesh = parameters.text("mesh"), scene = parameters.text("scene");
   authoring::ImportRequest request;
@@ -119,6 +81,7 @@ Result<std::string> import_mesh(Parameters& parameters, const CallContext& conte
   if (std::filesystem::exists(*place, ignored)) return Error{scene, "exists already", "choose another name"};
   request.mesh = *file, request.scene = *place;
   request.progress = [&](const std::string&, double share) { context.progress(std::int64_t(1000 * share), 1000); };
+  request.should_stop = context.should_stop;
   const Result<authoring::ImportOutcome> outcome = authoring::import_scene(request);
   if (!outcome) return outcome.errors();
   output::JsonWriter json;
@@ -126,11 +89,20 @@ Result<std::string> import_mesh(Parameters& parameters, const CallContext& conte
       .member("scene", std::string_view(scene))
       .member("script", context.folder.relative(outcome->script_file))
       .member("report", importers::to_text(outcome->report))
+      .member("unit", importers::unit_name(outcome->report.unit.in_metres))
       .member("spheres", outcome->report.fill.spheres)
       .member("anchored", outcome->anchored);
   if (outcome->stiffness_scale) json.member("stiffness_scale", *outcome->stiffness_scale);
-  json.member("fit_problem", std::string_view(outcome->fit_problem));
+  json.member("fit_problem", std::string_view(outcome->fit_problem)).key("findings");
+  write_findings(json, outcome->report.findings);
+  json.key("least"), write_vector(json, outcome->report.box_least);
+  json.key("most"), write_vector(json, outcome->report.box_most);
   return json.end_object().text();
+}
+
+Result<std::string> show_schema(Parameters& parameters, const CallContext&) {
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  return scenes::scene_schema();
 }
 
 Result<std::string> list_presets(Parameters& parameters, const CallContext&) {

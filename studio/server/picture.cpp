@@ -8,6 +8,8 @@
 
 #include "studio/render/camera.h"
 #include "studio/render/noise.h"
+#include "studio/render/obstacle_mesh.h"
+#include "studio/render/scene_view.h"
 #include "studio/render/tool_mesh.h"
 
 namespace ctpm::server {
@@ -15,7 +17,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "messages are little-endian");
 
-enum Kind : std::uint32_t { kTriangles = 1, kFrame = 2, kTools = 3 };
+enum Kind : std::uint32_t { kTriangles = 1, kFrame = 2, kShapes = 3, kSpheres = 4 };
 
 /// Appends plain values to a message.
 class MessageBytes {
@@ -122,13 +124,37 @@ std::int64_t severed_in(const State& state) {
   return count;
 }
 
-std::string tools_message(const Model& model, std::uint32_t stage) {
+std::string shapes_message(const Model& model, std::uint32_t stage) {
   MessageBytes out;
-  out.add(std::uint32_t(kTools)), out.add(stage), out.add(std::uint32_t(model.tools.size()));
-  for (const Tool& tool : model.tools) {
-    const render::ToolMesh mesh = tool.kind == ToolKind::pin ? render::ToolMesh{} : render::make_tool_mesh(tool);
+  const auto add_shape = [&](const render::ToolMesh& mesh) {
     out.add(std::uint32_t(mesh.vertex.size() / 7)), out.add(std::uint32_t(mesh.index.size()));
     out.add_all(mesh.vertex.data(), mesh.vertex.size()), out.add_all(mesh.index.data(), mesh.index.size());
+  };
+  out.add(std::uint32_t(kShapes)), out.add(stage), out.add(std::uint32_t(model.tools.size()));
+  for (const Tool& tool : model.tools)
+    add_shape(tool.kind == ToolKind::pin ? render::ToolMesh{} : render::make_tool_mesh(tool));
+  render::SceneView view;
+  view.model = &model;
+  const render::Bounds box = render::rest_bounds(view);
+  constexpr double kGround = 1.45;  // side of a plane against the scene's size, as in videos
+  out.add(std::uint32_t(model.obstacles.size()));
+  for (const Obstacle& obstacle : model.obstacles)
+    add_shape(
+        render::make_obstacle_mesh(obstacle, render::up_of(model), box.centre(), kGround * norm(box.max - box.min))
+            .mesh);
+  return std::move(out.text);
+}
+
+std::string spheres_message(const Model& model, std::uint32_t stage) {
+  MessageBytes out;
+  out.add(std::uint32_t(kSpheres)), out.add(stage), out.add(std::uint32_t(model.organs.size()));
+  for (const OrganRange& organ : model.organs) {
+    const std::size_t first = std::size_t(organ.first), end = first + std::size_t(organ.count);
+    out.add(std::uint32_t(organ.count)), out.add(float(organ.sphere_radius));
+    for (std::size_t i = first; i < end; ++i) out.add(model.rest_position[i]);
+    for (std::size_t i = first; i < end; ++i) out.add(std::uint8_t(std::min(model.layer[i], 255)));
+    for (std::size_t i = first; i < end; ++i) out.add(std::uint8_t(model.held_axes[i] == kAnchored ? 1 : 0));
+    out.pad();
   }
   return std::move(out.text);
 }

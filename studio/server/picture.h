@@ -71,7 +71,10 @@ class PictureMaker {
 /// Number of elements that are severed in a State.
 std::int64_t severed_in(const State& state);
 
-/// Message with the shapes of a Model's tools, in the order of Model::tools.
-std::string tools_message(const Model& model, std::uint32_t stage);
+/// Message with the shapes of a Model's tools and obstacles, in the Model's order.
+std::string shapes_message(const Model& model, std::uint32_t stage);
+
+/// Message with the spheres of a Model at rest.
+std::string spheres_message(const Model& model, std::uint32_t stage);
 
 }  // namespace ctpm::server

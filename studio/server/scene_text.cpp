@@ -24,6 +24,14 @@ void write_camera(output::JsonWriter& json, const std::string& name, const rende
   json.member("fov_deg", camera.fov_deg).end_object();
 }
 
+/// Where a tool is taken up, if its author says that.
+void write_place(output::JsonWriter& json, const scenes::ToolSpec& tool) {
+  if (!tool.at) return;
+  json.key("at"), write_vector(json, *tool.at);
+  json.key("pointing"), write_vector(json, tool.pointing.value_or(Vec3{0, 0, -1}));
+  if (tool.facing) json.key("facing"), write_vector(json, *tool.facing);
+}
+
 const char* name_of(ToolKind kind) {
   return kind == ToolKind::ball ? "ball" : kind == ToolKind::scalpel ? "scalpel" : "pin";
 }
@@ -35,6 +43,18 @@ std::string json_text(const std::string& text) {
   std::string quoted = json.value(text).text();
   quoted.pop_back();  // the newline
   return quoted;
+}
+
+void write_findings(output::JsonWriter& json, const std::vector<importers::Finding>& findings) {
+  json.begin_list();
+  for (const importers::Finding& finding : findings)
+    json.begin_object()
+        .member("code", std::string_view(finding.code))
+        .member("found", std::string_view(finding.found))
+        .member("done", std::string_view(finding.done))
+        .member("remains", std::string_view(finding.remains))
+        .end_object();
+  json.end_list();
 }
 
 std::string view_json(const scenes::SceneSpec& scene, const Model& model) {
@@ -49,16 +69,23 @@ std::string view_json(const scenes::SceneSpec& scene, const Model& model) {
       write_colour(json, "outer", view.looks[i].outer), write_colour(json, "inner", view.looks[i].inner);
       json.member("wetness", view.looks[i].wetness);
     }
+    json.key("layer_colours").begin_list();
+    for (int layer = 1; layer <= organ.layer_count; ++layer) {
+      json.begin_list();
+      for (const double part : render::layer_colour(layer, organ.layer_count)) json.value(part);
+      json.end_list();
+    }
+    json.end_list();
     json.end_object();
   }
   json.end_list().key("tools").begin_list();
-  for (const Tool& tool : model.tools)
-    json.begin_object()
-        .member("name", tool.name)
-        .member("kind", name_of(tool.kind))
-        .member("radius_m", tool.radius)
-        .member("blade_m", tool.blade_length)
-        .end_object();
+  for (std::size_t i = 0; i < model.tools.size(); ++i) {
+    const Tool& tool = model.tools[i];
+    json.begin_object().member("name", tool.name).member("kind", name_of(tool.kind));
+    json.member("radius_m", tool.radius).member("blade_m", tool.blade_length);
+    if (i < scene.tools.size()) write_place(json, scene.tools[i]);
+    json.end_object();
+  }
   json.end_list().member("hands", std::int64_t(model.hands)).key("cameras").begin_list();
   constexpr double kAspect = 16.0 / 9;
   for (const scenes::CameraSpec& camera : scene.cameras) {

@@ -1,14 +1,20 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/model/model.h"
+#include "importers/mesh.h"
 #include "scenes/scene_spec.h"
+#include "studio/output/json_writer.h"
 
 namespace ctpm::server {
 
 /// A text as JSON.
 std::string json_text(const std::string& text);
+
+/// Writes what an import found in a mesh: code, found, done, remains.
+void write_findings(output::JsonWriter& json, const std::vector<importers::Finding>& findings);
 
 /// What a page needs to draw a scene: its organs' looks, tools, cameras, limits, box and direction up, as JSON.
 std::string view_json(const scenes::SceneSpec& scene, const Model& model);

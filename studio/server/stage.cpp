@@ -21,7 +21,7 @@ Result<std::unique_ptr<Stage>> Stage::open(const std::string& file, std::uint32_
   if (!reader) return reader.errors();
   Result<std::unique_ptr<Moments>> moments = Moments::open(file);
   if (!moments) return moments.errors();
-  outbox->send_bytes(tools_message(reader->start().model, number));
+  outbox->send_bytes(shapes_message(reader->start().model, number));
   return std::unique_ptr<Stage>(new Stage(std::move(*reader), std::move(*moments), number, std::move(outbox)));
 }
 

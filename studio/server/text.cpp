@@ -51,6 +51,12 @@ void write_errors(output::JsonWriter& json, const Errors& errors) {
   json.end_list();
 }
 
+std::string errors_json(const Errors& errors) {
+  output::JsonWriter json;
+  write_errors(json, errors);
+  return json.text();
+}
+
 void write_vector(output::JsonWriter& json, Vec3 v) { json.begin_list().value(v.x).value(v.y).value(v.z).end_list(); }
 
 std::string answer(std::int64_t id, const std::string& result) {

@@ -14,6 +14,9 @@ namespace ctpm::server {
 /// Writes a list of errors: where, message, hint.
 void write_errors(output::JsonWriter& json, const Errors& errors);
 
+/// The same as JSON.
+std::string errors_json(const Errors& errors);
+
 /// Writes [x, y, z].
 void write_vector(output::JsonWriter& json, Vec3 v);
 

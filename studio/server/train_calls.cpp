@@ -36,13 +36,15 @@ Result<Done> write_poses(recordings::SessionReader& reader, std::size_t hand, st
 Result<std::string> begin_training(Parameters& parameters, const CallContext& context) {
   const std::string scene_path = parameters.text("scene");
   const std::optional<std::string> output = parameters.text_if("output");
+  scenes::LoadOptions options;
+  options.text = parameters.text_if("text");
   const std::uint32_t stage = std::uint32_t(parameters.number("stage", 0, Desk::kMostStages - 1));
   TrainingRequest request;
   request.most_speed = parameters.number_if("most_speed_m_per_s", 0.01, 100).value_or(request.most_speed);
   if (!context.desk) parameters.refuse("stage", "only a page with a WebSocket has stages");
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
   context.desk->end_training();
-  const Result<std::string> file = context.folder.find(scene_path);
+  const Result<std::string> file = options.text ? context.folder.place(scene_path) : context.folder.find(scene_path);
   if (!file) return file.errors();
   if (output) {
     const Result<std::string> place = context.folder.place(*output);
@@ -53,8 +55,13 @@ Result<std::string> begin_training(Parameters& parameters, const CallContext& co
     if (std::filesystem::exists(*place, ignored)) return Error{*output, "exists already", "choose another name"};
     request.file = *place, request.shown = *output;
   }
-  const Result<loading::LoadedScene> scene = loading::load_whole_scene(*file);
-  if (!scene) return scene.errors();
+  // What the page shows of this text need not be loaded again.
+  std::shared_ptr<const loading::LoadedScene> scene = options.text ? context.desk->kept(*file, *options.text) : nullptr;
+  if (!scene) {
+    Result<loading::LoadedScene> loaded = loading::load_whole_scene(*file, options, {}, context.should_stop);
+    if (!loaded) return loaded.errors();
+    scene = std::make_shared<const loading::LoadedScene>(*std::move(loaded));
+  }
   if (context.should_stop()) return Error{scene_path, "stopped", ""};
   auto start = std::make_shared<const recordings::SessionStart>(session::start_session(*scene));
   const std::string view = view_json(scene->scene.spec, start->model);

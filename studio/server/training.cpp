@@ -85,7 +85,7 @@ Result<std::unique_ptr<Training>> Training::begin(std::shared_ptr<const recordin
   if (!metadata) return metadata.errors();
   for (const auto& [key, value] : *metadata) named->metadata[key] = value;
   named->metadata["source"] = "studio";
-  training->outbox_->send_bytes(tools_message(start->model, stage));
+  training->outbox_->send_bytes(shapes_message(start->model, stage));
   training->ticks_ = std::thread([t = training.get()] { t->tick(); });
   training->pictures_ = std::thread([t = training.get()] { t->show(); });
   return training;

@@ -7,8 +7,8 @@ namespace ctpm::session {
 
 using recordings::EventKind;
 
-EventWatch::EventWatch(const Model& model, double damage_force, Tell tell)
-    : tell_(std::move(tell)), force_limit_(damage_force) {
+EventWatch::EventWatch(const Model& model, double damage_force, Tell tell, CutEnds cut_ends)
+    : tell_(std::move(tell)), cut_ends_(cut_ends), force_limit_(damage_force) {
   for (const Tool& tool : model.tools) is_scalpel_.push_back(tool.kind == ToolKind::scalpel);
   for (std::size_t i = 0; i < model.organs.size(); ++i) {
     const double limit = model.organs[i].damage_depth;
@@ -32,19 +32,16 @@ bool EventWatch::ends(Spell& spell, std::int64_t tick) {
 void EventWatch::look(std::int64_t tick, const Inputs& inputs, const stepping::StepReport& report) {
   for (std::size_t i = 0; i < kMostHands; ++i)
     look_for_contact(tick, inputs.hand(i).tool, report.of_hand(i), hands_[i]);
-  if (begins(cut_, tick, report.severed > 0))
-    tell_({.tick = tick, .kind = EventKind::cut, .tool = cutting_tool(inputs), .severed = report.severed});
-  ends(cut_, tick);
+  look_for_cut(tick, inputs, report);
   if (report.came_loose > 0) tell_({.tick = tick, .kind = EventKind::piece_came_loose, .pieces = report.came_loose});
   for (std::size_t i = 0; i < kMostHands; ++i) look_for_damage(tick, report.of_hand(i), hands_[i]);
   look_for_inversion(tick, report);
 }
 
-/// The tool that cuts: one hand at most holds a scalpel.
-std::int32_t EventWatch::cutting_tool(const Inputs& inputs) const {
+/// The hand that cuts: one at most holds a scalpel.
+std::size_t EventWatch::cutting_hand(const Inputs& inputs) const {
   const std::int32_t second = inputs.second.tool;
-  const bool is_second = second >= 0 && std::size_t(second) < is_scalpel_.size() && is_scalpel_[std::size_t(second)];
-  return is_second ? second : inputs.tool;
+  return second >= 0 && std::size_t(second) < is_scalpel_.size() && is_scalpel_[std::size_t(second)] ? 1 : 0;
 }
 
 void EventWatch::finish(std::int64_t end) {
@@ -59,6 +56,18 @@ void EventWatch::look_for_contact(std::int64_t tick, std::int32_t tool, const st
   }
   if (ends(hand.contact, tick))
     tell_({.tick = hand.contact.last_tick, .kind = EventKind::contact_ends, .tool = hand.tool});
+}
+
+/// A blade severs an element now and then, the more rarely the coarser the lattice is; in between it cuts all the same.
+void EventWatch::look_for_cut(std::int64_t tick, const Inputs& inputs, const stepping::StepReport& report) {
+  const std::size_t hand = cutting_hand(inputs);
+  const std::int32_t tool = inputs.hand(hand).tool;
+  const bool with_contact = cut_ends_ == CutEnds::with_contact;
+  if (with_contact && report.severed > 0 && tool != blade_) cut_.goes_on = false;
+  if (begins(cut_, tick, report.severed > 0))
+    tell_({.tick = tick, .kind = EventKind::cut, .tool = blade_ = tool, .severed = report.severed});
+  if (with_contact && cut_.goes_on && tool == blade_ && report.of_hand(hand).contacts > 0) cut_.last_tick = tick;
+  ends(cut_, tick);
 }
 
 void EventWatch::look_for_damage(std::int64_t tick, const stepping::HandReport& report, OfHand& hand) {

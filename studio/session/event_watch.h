@@ -12,6 +12,12 @@
 
 namespace ctpm::session {
 
+/// When a cut ends.
+enum class CutEnds {
+  with_contact,  ///< when the blade has left the tissue
+  unsevered,     ///< when nothing was severed for kPause, as in older sessions: a slow stroke begins again and again
+};
+
 /// Finds the events of a simulation that reviewers look for: the moments at which something begins or ends. They follow
 /// from the ticks alone, so that a replay finds the same ones.
 class EventWatch {
@@ -19,7 +25,7 @@ class EventWatch {
   using Tell = std::function<void(recordings::Event)>;
 
   /// `damage_force`: force on a tool that damages [N]; 0: no limit. `tell` receives each event when it is known.
-  EventWatch(const Model& model, double damage_force, Tell tell);
+  EventWatch(const Model& model, double damage_force, Tell tell, CutEnds cut_ends = CutEnds::with_contact);
 
   /// Call it after each tick, in their order.
   void look(std::int64_t tick, const Inputs& inputs, const stepping::StepReport& report);
@@ -44,15 +50,18 @@ class EventWatch {
   static bool begins(Spell& spell, std::int64_t tick, bool is_seen);
   static bool ends(Spell& spell, std::int64_t tick);
   void look_for_contact(std::int64_t tick, std::int32_t tool, const stepping::HandReport& report, OfHand& hand);
+  void look_for_cut(std::int64_t tick, const Inputs& inputs, const stepping::StepReport& report);
   void look_for_damage(std::int64_t tick, const stepping::HandReport& report, OfHand& hand);
-  std::int32_t cutting_tool(const Inputs& inputs) const;
+  std::size_t cutting_hand(const Inputs& inputs) const;
   void look_for_inversion(std::int64_t tick, const stepping::StepReport& report);
   void tell_that_it_came_back();
 
   Tell tell_;
+  CutEnds cut_ends_;
   double depth_limit_ = 0, force_limit_ = 0;  // [m], [N]; 0: no limit
   std::int32_t organ_ = -1;                   // whose depth limit it is
   std::vector<std::uint8_t> is_scalpel_;      // (tool_count)
+  std::int32_t blade_ = -1;                   // of the present cut
   std::int32_t most_inverted_ = 0;            // cells in one tick of the present spell
   std::array<OfHand, kMostHands> hands_;
   Spell cut_, inside_out_;

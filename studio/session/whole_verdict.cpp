@@ -29,12 +29,13 @@ struct TissueNews {
 using NewsByTick = std::map<std::int64_t, TissueNews>;
 
 /// The events that follow from the ticks.
-Result<std::vector<Event>> find_events(recordings::SessionReader& reader, const NewsByTick& news) {
+Result<std::vector<Event>> find_events(recordings::SessionReader& reader, const NewsByTick& news, CutEnds cut_ends) {
   const recordings::SessionStart& start = reader.start();
   const Result<scenes::SceneText> scene = scenes::read_scene(start.scene_text, reader.path());
   std::vector<Event> found;
-  EventWatch watch(start.model, scene ? loading::damage_force_of(scene->spec) : 0,
-                   [&](Event event) { found.push_back(std::move(event)); });
+  EventWatch watch(
+      start.model, scene ? loading::damage_force_of(scene->spec) : 0,
+      [&](Event event) { found.push_back(std::move(event)); }, cut_ends);
   const std::int64_t count = reader.tick_count();
   for (std::int64_t from = 0; from < count; from += kReadTicks) {
     const auto records = reader.ticks(from, std::min(from + kReadTicks, count));
@@ -58,8 +59,8 @@ std::string shown(const Event& event, const Model& model) {
 }
 
 /// The first stored event that is not found anew, or the first found one that is not stored; empty if there is none.
-Result<std::string> find_wrong_event(recordings::SessionReader& reader, const NewsByTick& news) {
-  const Result<std::vector<Event>> found = find_events(reader, news);
+Result<std::string> find_wrong_event(recordings::SessionReader& reader, const NewsByTick& news, CutEnds cut_ends) {
+  const Result<std::vector<Event>> found = find_events(reader, news, cut_ends);
   if (!found) return found.errors();
   Result<std::vector<Event>> stored = reader.events();
   if (!stored) return stored.errors();
@@ -98,8 +99,13 @@ Result<WholeVerdict> verify_whole(recordings::SessionReader& reader, const recor
   if (!ticks) return ticks.errors();
   WholeVerdict verdict{*ticks, ""};
   if (!ticks->same || reader.start().physics_revision != kPhysicsRevision) return verdict;
-  Result<std::string> wrong = find_wrong_event(reader, news);
+  Result<std::string> wrong = find_wrong_event(reader, news, CutEnds::with_contact);
   if (!wrong) return wrong.errors();
+  if (!wrong->empty()) {
+    const Result<std::string> as_before = find_wrong_event(reader, news, CutEnds::unsevered);
+    if (!as_before) return as_before.errors();
+    if (as_before->empty()) wrong->clear();
+  }
   verdict.wrong_event = std::move(*wrong);
   return verdict;
 }

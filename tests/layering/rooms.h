@@ -89,7 +89,7 @@ inline const std::vector<Room> kRooms{
     {"studio/server",
      core_and({"scenes", "importers", "recordings", "studio/output", "studio/version", "studio/render", "studio/views",
                "studio/reports", "studio/loading", "studio/sources", "studio/devices", "studio/session", "studio/film",
-               "studio/compare", "studio/authoring"}),
+               "studio/compare", "studio/authoring", "studio/fidelity"}),
      "ctpm::server"},
     {"studio/commands",
      core_and({"scenes",         "importers",        "recordings",     "studio/output",   "studio/version",

@@ -31,10 +31,14 @@ int on_a_full_disk(rlim_t bytes, const std::function<int()>& work) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 255;
 }
 
-void give_space() {
-  const rlimit limit{RLIM_INFINITY, RLIM_INFINITY};
+void give_space(rlim_t bytes = RLIM_INFINITY) {
+  const rlimit limit{bytes, RLIM_INFINITY};
   ::setrlimit(RLIMIT_FSIZE, &limit);
 }
+
+/// Each file has a limit of its own, so that the writer finds space again when it moves the log into the file. On a
+/// full disk it does not.
+void take_space() { give_space(4 << 10); }
 
 constexpr rlim_t full_at = 400 << 10;  // [bytes]
 
@@ -60,6 +64,8 @@ TEST(FullDisk, IsToldByStatusAndByTheEndAndWhatFitsIsGood) {
     auto writer = recordings::SessionWriter::create(path, start, {.keyframe_ticks = 100});
     if (!writer) return 2;
     if (append_until_full(*writer, start) == 0) return 3;
+    take_space();
+    for (int i = 0; i < 300; ++i) writer->append(start.initial_state, {});
     const auto ended = writer->finish();
     if (ended) return 4;
     const recordings::WriterStatus status = writer->status();

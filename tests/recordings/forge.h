@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "recordings/internal/field_codec.h"
 #include "recordings/internal/session_store.h"
@@ -28,6 +29,15 @@ class Forge {
   void run(const std::string& sql) {
     const auto done = database_.run(sql);
     CTPM_CHECK(bool(done), "SQL of a forgery");
+  }
+
+  /// The first column of a query.
+  std::vector<std::int64_t> integers(const std::string& sql) {
+    std::vector<std::int64_t> all;
+    auto row = database_.prepare(sql);
+    CTPM_CHECK(bool(row), "a query of a forgery");
+    while (row->step() == session_file::Statement::Outcome::row) all.push_back(row->integer(0));
+    return all;
   }
 
   /// Replaces the content of the block in `table` with the key `key` by `change(content)`. False if there is no such

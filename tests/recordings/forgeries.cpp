@@ -11,7 +11,6 @@
 #include "recordings/replay.h"
 #include "tests/recordings/field_tree.h"
 #include "tests/recordings/forge.h"
-#include "tests/recordings/forgeries.h"
 
 namespace ctpm::testing {
 
@@ -22,15 +21,14 @@ namespace {
 constexpr double most_seconds = 10;            // computing time of one file
 constexpr std::int64_t most_memory = 1000000;  // of its process [kB]
 
-constexpr std::int64_t ticks = 200, keyframe_ticks = 50;
+constexpr std::int64_t ticks = 200;
 
 /// A session in which a ball presses and a blade cuts, with events.
 void record_to_forge(const std::string& path, bool meets, std::int32_t hands) {
   recordings::SessionStart start = small_start(4, 3, 3, hands);
   start.model.organs[0].meets_itself = meets;
   start.model.organs_meet = meets;
-  auto writer =
-      recordings::SessionWriter::create(path, start, {.wait_when_full = true, .keyframe_ticks = keyframe_ticks});
+  auto writer = recordings::SessionWriter::create(path, start, {.wait_when_full = true, .keyframe_ticks = 50});
   CTPM_CHECK(bool(writer), "a session to forge");
   State state = start.initial_state;
   stepping::Stepper stepper(start.model);
@@ -77,8 +75,7 @@ class Forger {
                            what),
                false;
       case 4:
-        return change_tree(forge, "keyframe", std::to_string(keyframe_ticks * pick(ticks / keyframe_ticks)), what),
-               false;
+        return change_keyframe(forge, what), false;
       case 5:
         return change_record(forge, what);
       case 6:
@@ -116,6 +113,12 @@ class Forger {
       pick(5) == 0 ? change_shape(tree, what) : change_numbers(tree, what);
       content = write_tree(tree);
     });
+  }
+
+  void change_keyframe(Forge& forge, std::string& what) {
+    const std::vector<std::int64_t> ticks = forge.integers("SELECT tick FROM keyframe ORDER BY tick");
+    if (!ticks.empty())
+      change_tree(forge, "keyframe", std::to_string(ticks[std::size_t(pick(std::int64_t(ticks.size())))]), what);
   }
 
   void change_numbers(FieldTree& tree, std::string& what) {
@@ -216,12 +219,12 @@ class Forger {
 
   bool change_row(Forge& forge, std::string& what) {
     static const char* const changes[] = {
-        "DELETE FROM keyframe WHERE tick = 100",
+        "DELETE FROM keyframe WHERE tick = (SELECT max(tick) FROM keyframe)",
         "DELETE FROM chunk WHERE first = (SELECT max(first) FROM chunk)",
         "DELETE FROM event WHERE first = 0",
         "UPDATE chunk SET first = 9223372036854775807 WHERE first = (SELECT max(first) FROM chunk)",
         "UPDATE chunk SET count = -1 WHERE first = 0",
-        "UPDATE keyframe SET tick = -9223372036854775808 WHERE tick = 50",
+        "UPDATE keyframe SET tick = -9223372036854775808 WHERE tick = (SELECT max(tick) FROM keyframe)",
         "UPDATE event SET count = 9223372036854775807",
         "DELETE FROM part WHERE name = 'model'",
         "DELETE FROM keyframe",
@@ -262,7 +265,18 @@ int read_everything(const std::string& path) {
   return verdict->same ? said_same : said_different;
 }
 
+std::int32_t hands_of(const std::string& path) {
+  const auto reader = recordings::SessionReader::open(path);
+  CTPM_CHECK(bool(reader), "a session to forge");
+  return reader->start().model.hands;
+}
+
 }  // namespace
+
+bool forge_session(const std::string& path, unsigned seed, std::string& what) {
+  what = "seed " + std::to_string(seed) + ":";
+  return Forger(seed, hands_of(path))(path, what);
+}
 
 void verify_forgeries(int count, unsigned seed) {
   const Folder folder;
@@ -276,11 +290,10 @@ void verify_forgeries(int count, unsigned seed) {
   for (int i = 0; i < count; ++i) {
     const std::string path = folder / "forged.ctpm";
     std::filesystem::copy_file(folder / names[i % 4], path, std::filesystem::copy_options::overwrite_existing);
-    Forger forger(seed + unsigned(i), i % 4 == 1 ? 2 : 1);
-    std::string what = "seed " + std::to_string(seed + unsigned(i)) + ":";
+    std::string what;
     bool is_false = false;
     try {
-      is_false = forger(path, what);
+      is_false = forge_session(path, seed + unsigned(i), what);
     } catch (const std::exception& problem) {
       FAIL() << what << problem.what();
     }

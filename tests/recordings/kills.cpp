@@ -48,7 +48,9 @@ std::int64_t now_ns() { return Clock::now().time_since_epoch() / std::chrono::na
   while (true) ::pause();
 }
 
-void check_what_is_left(const std::string& path, const Shared& shared, std::int64_t killed_at_ns) {
+/// `most_lost_ns`: the most that any of them lost so far.
+void check_what_is_left(const std::string& path, const Shared& shared, std::int64_t killed_at_ns,
+                        std::int64_t& most_lost_ns) {
   if (!shared.created && !std::filesystem::exists(path)) return;
   auto reader = recordings::SessionReader::open(path);
   ASSERT_TRUE(reader) << text_of(reader.errors());
@@ -58,6 +60,7 @@ void check_what_is_left(const std::string& path, const Shared& shared, std::int6
   ASSERT_LE(shared.appended, kept + session_ticks);
   if (kept < shared.appended) {
     const std::int64_t lost_ns = killed_at_ns - shared.appended_at_ns[kept];
+    most_lost_ns = std::max(most_lost_ns, lost_ns);
     EXPECT_LE(lost_ns, allowed_loss / std::chrono::nanoseconds(1))
         << "kept " << kept << " of " << shared.appended << " ticks";
   }
@@ -77,7 +80,8 @@ struct Victim {
 };
 
 /// Several concurrent recorders, each killed at its own moment. They mostly sleep, so they do not slow each other down.
-void kill_together(std::span<Shared* const> memory, const recordings::SessionStart& start, std::mt19937& random) {
+void kill_together(std::span<Shared* const> memory, const recordings::SessionStart& start, std::mt19937& random,
+                   std::int64_t& most_lost_ns) {
   std::uniform_int_distribution<int> life_us(500, 430000);
   std::vector<Victim> victims(memory.size());
   for (std::size_t i = 0; i < victims.size(); ++i) {
@@ -100,7 +104,7 @@ void kill_together(std::span<Shared* const> memory, const recordings::SessionSta
     int status = 0;
     ASSERT_EQ(::waitpid(victim.child, &status, 0), victim.child);
     ASSERT_TRUE(WIFSIGNALED(status)) << "the recorder ended by itself";
-    check_what_is_left(victim.folder / "a.ctpm", *victim.shared, victim.killed_at_ns);
+    check_what_is_left(victim.folder / "a.ctpm", *victim.shared, victim.killed_at_ns, most_lost_ns);
   }
 }
 
@@ -114,11 +118,13 @@ void kill_recorders(int count) {
   ASSERT_NE(memory, MAP_FAILED);
   std::vector<Shared*> places;
   for (int i = 0; i < together; ++i) places.push_back(static_cast<Shared*>(memory) + i);
+  std::int64_t most_lost_ns = 0;
   for (int killed = 0; killed < count && !::testing::Test::HasFailure(); killed += together) {
     SCOPED_TRACE("kills from " + std::to_string(killed));
     kill_together(std::span(places).first(std::size_t(std::min(together, count - killed))),
-                  starts[killed / together % 2], random);
+                  starts[killed / together % 2], random, most_lost_ns);
   }
+  std::printf("%d killed recorders: at most %.1f ms lost\n", count, 1e-6 * double(most_lost_ns));
   ::munmap(memory, together * sizeof(Shared));
 }
 

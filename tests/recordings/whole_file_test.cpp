@@ -57,6 +57,9 @@ TEST_F(WholeFile, EventsAreChecked) {
   expect_named([](Forge& f) { f.run("DELETE FROM event WHERE first = (SELECT max(first) FROM event)"); },
                "events are left");
   expect_named([](Forge& f) { f.run("DELETE FROM event WHERE first = 0"); }, "event");
+  // Only what is missing is said to be.
+  const std::string path = *folder_ / "bad.ctpm";
+  EXPECT_EQ(verify(path).text.find("missing"), verify(path).text.rfind("missing")) << verify(path).text;
 }
 
 /// The events of the first run, with right checksums.

@@ -23,6 +23,12 @@ std::string scene_with(const std::string& organ_keys, const std::string& more = 
          organ_keys + "}]" + more + "\n}\n";
 }
 
+scenes::LoadOptions allowing_outside(bool allow) {
+  scenes::LoadOptions options;
+  options.allow_outside_paths = allow;
+  return options;
+}
+
 /// The only error of a text, with its place.
 std::string error_of(const std::string& text) {
   const Result<scenes::SceneText> scene = scenes::read_scene(text, "test.json");
@@ -47,6 +53,19 @@ TEST(SceneFile, EveryShippedSceneIsWrittenAndReadBackEqual) {
 TEST(SceneFile, AValueOutOfRangeIsNamedWithItsPlaceAndRange) {
   EXPECT_EQ(error_of(scene_with("\"material\": {\"preset\": \"liver\"}, \"fill\": {\"radius_mm\": -4}")),
             "test.json:3:98: error: /organs/0/fill/radius_mm: got -4, must be in [0.01, 100] mm\n");
+}
+
+TEST(SceneFile, AToolsPlaceIsJudged) {
+  const auto with_tool = [](const std::string& keys) {
+    return error_of(scene_with("\"material\": {\"preset\": \"liver\"}",
+                               ",\n\"tools\": [{\"name\": \"b\", \"kind\": \"ball\", \"radius_mm\": 4" + keys + "}]"));
+  };
+  EXPECT_EQ(with_tool(", \"at_mm\": [0, 0, 9], \"pointing\": [1, 0, 0], \"facing\": [0, 1, 0]"), "no error");
+  EXPECT_NE(with_tool(", \"pointing\": [1, 0, 0]").find("/tools/0/pointing: has no meaning without at_mm"),
+            std::string::npos);
+  EXPECT_NE(with_tool(", \"at_mm\": [0, 0, 9], \"pointing\": [0, 0, 0]").find("/tools/0/pointing"), std::string::npos);
+  EXPECT_NE(with_tool(", \"at_mm\": [0, 0, 9], \"facing\": [0, 0, 2]").find("/tools/0/facing: must not be"),
+            std::string::npos);
 }
 
 TEST(SceneFile, AnUnknownKeyNamesTheNearestOne) {
@@ -113,7 +132,7 @@ TEST(SceneFile, AMeshIsInTheScenesFolderOrNamedAtItsPlace) {
     EXPECT_EQ(scene.errors()[0].message.find("/organs/0/mesh: "), 0u);
     EXPECT_NE(scene.errors()[0].message.find(message), std::string::npos) << scene.errors()[0].message;
   }
-  EXPECT_TRUE(load_with_mesh("../outside.obj", scenes::LoadOptions{.allow_outside_paths = true}));
+  EXPECT_TRUE(load_with_mesh("../outside.obj", allowing_outside(true)));
 }
 
 TEST(SceneFile, ALinkThatLeavesTheFolderIsRefusedLikeItsPlace) {
@@ -131,7 +150,7 @@ TEST(SceneFile, ALinkThatLeavesTheFolderIsRefusedLikeItsPlace) {
     std::ofstream(folder / "inside/scene.json")
         << R"({"format": "ctpm-scene", "version": 1, "name": "a", "organs": [{"name": "a", "mesh": ")" << mesh
         << R"(", "fill": {"radius_mm": 3}, "material": {"preset": "skin"}}]})";
-    return scenes::load_scene((folder / "inside/scene.json").string(), {.allow_outside_paths = outside});
+    return scenes::load_scene((folder / "inside/scene.json").string(), allowing_outside(outside));
   };
   EXPECT_TRUE(load("good.obj", false));
   for (const char* mesh : {"linked.obj", "up/outside.obj"}) {

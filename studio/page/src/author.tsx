@@ -1,161 +1,204 @@
-import { useCallback, useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
+import { AuthorScene } from "./author_scene";
+import { Brush } from "./brush";
 import type { Connection } from "./connection";
-import { Empty, Problems, Readings, Section, ShownCommand, Working } from "./parts";
-import { CallFailed, type Listing, type Problem, problemText, type SceneView, type ToolShapes, type Triangles, type WaitingFrame } from "./protocol";
+import { Filling } from "./filling";
+import { type GizmoMode, Gizmos, modesOf } from "./gizmos";
+import { type Imported, Findings, ImportForm, ImportResult } from "./import_form";
+import { Inspector } from "./inspector";
+import type { Item } from "./items";
+import { Objects } from "./objects";
+import { Empty, Problems, Readings, Section, ShownCommand } from "./parts";
+import type { Listing } from "./protocol";
 import { SceneEditor } from "./scene_editor";
-import { command, millimetres } from "./text";
-import { StageScene, Viewer } from "./viewer";
+import type { Shown } from "./stage_scene";
+import { command } from "./text";
+import { Viewer } from "./viewer";
 
-export const kAuthorStage = 3;
 const kMeshes = ".stl,.obj,.ply,.off,.gltf,.glb,.dae,.fbx,.3ds,.3mf,.vtk";
+type Panel = "place" | "filling" | "scene";
 
-interface ShownScene {
-  view: SceneView;
-  organs: { spheres: number; report: string }[];
-  spheres: number;
-  elements: number;
-  warnings: Problem[];
+/** What the room works with, made when its canvas is there. */
+interface Desk {
+  viewer: Viewer;
+  scene: AuthorScene;
+  gizmos: Gizmos;
+  brush: Brush;
 }
 
-interface Preset {
-  name: string;
-  organ: string;
-  radius_m: number;
-}
-
-interface Imported {
-  scene: string;
-  script: string;
-  report: string;
-  spheres: number;
-  anchored: number;
-  stiffness_scale?: number;
-  fit_problem: string;
-}
-
-/** Scenes: from a mesh, and as text. */
+/** Scenes: from a mesh, in the picture, and as text. */
 export function Author({ connection, listing, onTry, onChanged }: {
   connection: Connection;
   listing: Listing;
-  onTry: (scene: string) => void;
+  onTry: (scene: string, text: string) => void;
   onChanged: () => void;
 }) {
-  const canvas = useRef<HTMLCanvasElement>(null);
-  const [viewer, setViewer] = useState<Viewer | null>(null);
-  const [path, setPath] = useState("");
-  const [shown, setShown] = useState<ShownScene | null>(null);
+  const canvas = useRef<HTMLCanvasElement>(null), overlay = useRef<HTMLDivElement>(null);
+  const [desk, setDesk] = useState<Desk | null>(null);
+  const [, setVersion] = useState(0);
   const [imported, setImported] = useState<Imported | null>(null);
   const [dropped, setDropped] = useState<File | null>(null);
-  const [panel, setPanel] = useState<"scene" | "text">("scene");
-  const [isLoading, setLoading] = useState(false);
+  const [panel, setPanel] = useState<Panel>("place");
+  const [selected, setSelected] = useState("");
+  const [mode, setMode] = useState<GizmoMode>("move");
+  const [brushRadius, setBrushRadius] = useState<number | null>(null);
   const [error, setError] = useState<Error | null>(null);
+  const scene = desk?.scene ?? null, doc = scene?.doc ?? null;
 
   useEffect(() => {
-    if (!canvas.current) return;
-    const made = new Viewer(canvas.current);
-    setViewer(made);
-    return () => made.dispose();
+    if (!canvas.current || !overlay.current) return;
+    const viewer = new Viewer(canvas.current), made = new AuthorScene(connection, viewer);
+    const gizmos = new Gizmos(viewer, overlay.current), brush = new Brush(viewer);
+    for (const hand of [gizmos, brush]) {
+      hand.onPreview = (values) => made.doc?.preview(values);
+      hand.onCommit = () => made.doc?.commit();
+    }
+    made.onChange = () => setVersion((v) => v + 1);
+    setDesk({ viewer, scene: made, gizmos, brush });
+    return () => {
+      made.onChange = () => {};
+      gizmos.dispose();
+      brush.use(null, []);
+      made.dispose();
+      viewer.dispose();
+    };
   }, [connection]);
 
-  const show = useCallback(async (scene: string) => {
-    if (!viewer) return;
-    setPath(scene), setError(null), setLoading(true), setDropped(null);
-    const early: (ToolShapes | Triangles)[] = [];
-    let made: StageScene | null = null, late: WaitingFrame | null = null;
-    connection.onStage(kAuthorStage, (message) => {
-      if (message.kind === "waiting") late = message;
-      else early.push(message);
-      if (made) use();
-    });
-    const use = () => {
-      for (const message of early.splice(0)) message.kind === "tools" ? made!.setTools(message) : made!.setTriangles(message);
-      if (late) made!.wait(late), (late = null);
-      viewer.draw();
-    };
-    try {
-      const result = await connection.call<ShownScene>("scene.show", { path: scene, stage: kAuthorStage });
-      made = new StageScene(result.view);
-      viewer.set(kAuthorStage, made);
-      const camera = result.view.cameras[0];
-      if (camera) viewer.look(camera);
-      use();
-      setShown(result);
-    } catch (failure) {
-      viewer.set(kAuthorStage, null);
-      setShown(null);
-      setError(failure as Error);
-      setPanel("text");
-    }
-    setLoading(false);
-  }, [connection, viewer]);
-
-  const drop = (event: DragEvent) => {
-    event.preventDefault();
-    const file = event.dataTransfer?.files[0];
-    if (file) setDropped(file), setImported(null);
+  const items = scene?.items ?? [];
+  const item = items.find((candidate) => candidate.key === selected) ?? null;
+  const modes = modesOf(item), used = modes.includes(mode) ? mode : "move";
+  const select = (key: string) => {
+    setSelected(key);
+    setPanel((shown) => (key && shown === "scene" ? "place" : shown));
   };
 
+  // The picture follows the text.
+  useLayoutEffect(() => {
+    if (!desk || !scene) return;
+    desk.gizmos.onSelect = (key) => key !== selected && select(key);
+    desk.gizmos.set(scene.stage, items, brushRadius === null ? selected : "", used);
+    desk.brush.radius = brushRadius ?? desk.brush.radius;
+    desk.brush.use(brushRadius === null ? null : scene.stage, items);
+    items.filter((i) => i.kind === "organ" && i.place).forEach((organ) => {
+      const was = scene.shownOrganPlace(organ.index);
+      if (was && organ.place) scene.stage?.shiftOrgan(organ.index, organ.place.clone().sub(was));
+    });
+  });
+  useEffect(() => {
+    if (doc) doc.onPlace = (path) => {
+      const depth = items.map((i) => i.path).filter((p) => p.every((key, k) => path[k] === key)).sort((a, b) => b.length - a.length)[0];
+      if (depth) select(depth.join("/"));
+    };
+  });
+  useEffect(() => {
+    if (doc && item && !doc.view.hasFocus) doc.reveal(item.path);
+  }, [doc, selected]);
+
+  const open = (path: string) => {
+    setImported(null), setDropped(null), setSelected(""), setBrushRadius(null), setError(null);
+    void scene?.open(path);
+  };
+  const save = () => doc?.save().then(() => setError(null), setError);
+  const remove = (gone: Item) => {
+    doc?.set([[gone.path, undefined]]);
+    select("");
+  };
+
+  useEffect(() => {
+    const press = (event: KeyboardEvent) => {
+      const key = event.key.toLowerCase(), isEditing = (event.target as HTMLElement).closest(".editor") !== null;
+      if (event.key === "Escape" && brushRadius !== null) setBrushRadius(null);
+      else if (event.key === "Delete" && item && item.kind !== "organ" && !(event.target as HTMLElement).closest("input, textarea, select, .editor")) remove(item);
+      else if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
+      else if (key === "s") void save();
+      else if (isEditing) return; // the editor has its own keys
+      else if (key === "z" && !event.shiftKey) doc?.undo();
+      else if (key === "y" || key === "z") doc?.redo();
+      else return;
+      event.preventDefault();
+    };
+    addEventListener("keydown", press);
+    return () => removeEventListener("keydown", press);
+  });
+  // A file that somebody else wrote is noticed when the author comes back to the page.
+  useEffect(() => {
+    const look = () => {
+      if (doc && document.visibilityState === "visible") doc.wasChangedOnDisk().then((was) => was && setError(new Error(`${doc.path} was changed on the disk. "Read again" shows it; undo brings your text back.`)), () => {});
+    };
+    addEventListener("focus", look);
+    return () => removeEventListener("focus", look);
+  }, [doc]);
+
+  const take = (file: File | undefined) => {
+    if (file) setDropped(file), setImported(null);
+  };
+  const path = doc?.path ?? "";
   return (
-    <div class="room author" onDragOver={(e) => e.preventDefault()} onDrop={drop}>
+    <div class="room author" onDragOver={(e) => e.preventDefault()} onDrop={(e) => {
+      e.preventDefault();
+      take(e.dataTransfer?.files[0]);
+    }}>
       <nav class="list" aria-label="Scenes">
         <h2>Scenes</h2>
-        <ul>
+        <ul class="scenes">
           {listing.scenes.map((entry) => (
             <li key={entry.path}>
-              <button type="button" aria-current={path === entry.path} disabled={isLoading} onClick={() => {
-                setImported(null);
-                void show(entry.path);
-              }}><span>{entry.path.replace(/\.json$/, "")}</span></button>
+              <button type="button" aria-current={path === entry.path} onClick={() => open(entry.path)}><span>{entry.path.replace(/\.json$/, "")}</span></button>
             </li>
           ))}
         </ul>
         <label class="pick">
           Import a mesh…
           <input type="file" accept={kMeshes} onChange={(e) => {
-            const file = e.currentTarget.files?.[0];
-            if (file) setDropped(file), setImported(null);
+            take(e.currentTarget.files?.[0]);
             e.currentTarget.value = "";
           }} />
         </label>
+        {scene && doc && (
+          <Objects scene={scene} viewer={desk!.viewer} items={items} selected={selected} onSelect={select} brushRadius={brushRadius} onBrush={setBrushRadius} />
+        )}
       </nav>
       <div class="view">
-        <canvas ref={canvas} tabIndex={0} aria-label={shown ? `The scene ${shown.view.name} at rest` : "No scene"} />
-        {!shown && !isLoading && (
+        <canvas ref={canvas} tabIndex={0} aria-label={scene?.shown ? `The scene ${scene.shown.view.name} at rest` : "No scene"} />
+        <div class="handles" ref={overlay} />
+        {desk && doc && <ViewBar desk={desk} modes={modes} mode={used} onMode={setMode} onVersion={() => setVersion((v) => v + 1)} />}
+        {!doc && !scene?.isLoading && (
           <Empty title="Drop a mesh of an organ here">
             <p>STL, OBJ, PLY and others. It is checked, repaired and filled with spheres, and becomes a scene that runs. Or choose a scene.</p>
           </Empty>
         )}
-        {isLoading && <Empty title={`Loading ${path}`}><p>Its organs are read and filled with spheres.</p></Empty>}
+        {scene?.isLoading && !scene.shown && <Empty title={`Loading ${path}`}><p>Its organs are read and filled with spheres.</p></Empty>}
+        {scene?.isLoading && scene.shown && <p class="busy" role="status">filling …</p>}
+        {scene?.error && !doc && <Problems error={scene.error} />}
       </div>
-      <div class="time" />
+      <div class="time">
+        {desk && scene && doc && <Toolbar scene={scene} onSave={() => void save()}
+          onReread={() => void doc.reread().then(() => setError(null), setError)} onTry={() => onTry(path, doc.text)} error={error} />}
+      </div>
       <aside class="side">
         {dropped ? (
-          <ImportForm connection={connection} file={dropped} onCancel={() => setDropped(null)} onDone={(result) => {
-            setImported(result);
-            onChanged();
-            void show(result.scene);
-          }} />
-        ) : path ? (
+          <div class="panel">
+            <ImportForm key={dropped.name} connection={connection} file={dropped} open={scene?.shown ? scene : null} onCancel={() => setDropped(null)} onDone={(result, isAdded) => {
+              setDropped(null);
+              if (!isAdded) open(result.scene);
+              setImported(result);
+              setPanel("scene");
+              onChanged();
+            }} />
+          </div>
+        ) : scene && doc ? (
           <>
             <div class="tabs" role="tablist" aria-label="Panels">
-              {(["scene", "text"] as const).map((name) => (
-                <button key={name} type="button" role="tab" id={`tab-${name}`} aria-selected={panel === name} aria-controls="panel"
-                  onClick={() => setPanel(name)}>{name}</button>
+              {(["place", "filling", "scene"] as const).map((name) => (
+                <button key={name} type="button" role="tab" id={`tab-${name}`} aria-selected={panel === name} aria-controls="panel" onClick={() => setPanel(name)}>{name}</button>
               ))}
             </div>
-            <div id="panel" role="tabpanel" aria-labelledby={`tab-${panel}`}>
-              {panel === "scene" ? (
-                <>
-                  {imported && <ImportResult imported={imported} />}
-                  {shown && <Shown path={path} shown={shown} onTry={() => onTry(path)} />}
-                  <Problems error={error} />
-                  <ShownCommand text={command("check", path)} />
-                </>
-              ) : (
-                <SceneEditor key={path} connection={connection} path={path} loadProblems={error instanceof CallFailed ? error.problems : []}
-                  onSaved={() => void show(path)} />
-              )}
+            <div id="panel" class="panel" role="tabpanel" aria-labelledby={`tab-${panel}`} tabIndex={0}>
+              {panel === "place" && <Inspector scene={scene} item={item} viewer={desk!.viewer} onRemove={remove} />}
+              {panel === "filling" && <Filling connection={connection} scene={scene} />}
+              {panel === "scene" && <>{imported && <ImportResult imported={imported} />}<About scene={scene} /></>}
             </div>
+            <SceneEditor scene={scene} />
           </>
         ) : <p class="hint">A scene is a JSON file with the unit in every key. It opens here with its organs, and its text beside them.</p>}
       </aside>
@@ -163,109 +206,77 @@ export function Author({ connection, listing, onTry, onChanged }: {
   );
 }
 
-function Shown({ path, shown, onTry }: { path: string; shown: ShownScene; onTry: () => void }) {
+/** What the picture shows, and what dragging in it does. */
+function ViewBar({ desk, modes, mode, onMode, onVersion }: { desk: Desk; modes: GizmoMode[]; mode: GizmoMode; onMode: (mode: GizmoMode) => void; onVersion: () => void }) {
+  const { scene, gizmos } = desk;
+  return (
+    <div class="view-bar">
+      <div class="buttons joined" role="group" aria-label="What is shown">
+        {(["surface", "both", "spheres"] as Shown[]).map((how) => <button key={how} type="button" aria-pressed={scene.how === how} onClick={() => scene.show(how)}>{how}</button>)}
+      </div>
+      <div class="right">
+        {modes.length > 1 && (
+          <div class="buttons joined" role="group" aria-label="What dragging does">
+            {modes.map((name) => <button key={name} type="button" aria-pressed={mode === name} onClick={() => onMode(name)}>{name}</button>)}
+          </div>
+        )}
+        <label title="What is dragged by its handle follows the surface">
+          <input type="checkbox" checked={gizmos.isSnapping} onChange={(e) => {
+            gizmos.isSnapping = e.currentTarget.checked;
+            onVersion();
+          }} /> snap to surface
+        </label>
+      </div>
+    </div>
+  );
+}
+
+/** What is done with the whole scene. */
+function Toolbar({ scene, onSave, onReread, onTry, error }: { scene: AuthorScene; onSave: () => void; onReread: () => void; onTry: () => void; error: Error | null }) {
+  const doc = scene.doc!;
+  const { errors, warnings } = scene.problems;
+  const tools = scene.shown?.view.tools.length ?? 0;
   return (
     <>
-      <Section title={shown.view.name}>
-        <Readings rows={[
-          ...shown.view.organs.map((organ): [string, string] => [organ.name, `${organ.spheres} spheres in ${organ.layers} layers`]),
-          ["elements", String(shown.elements)],
-          ["tools", shown.view.tools.map((tool) => tool.name).join(", ") || "none"],
-        ]} />
-        {shown.warnings.map((warning, i) => <p key={i} class="warning">{problemText(warning)}</p>)}
-        <button type="button" class="main" disabled={shown.view.tools.length === 0} onClick={onTry}>Try it</button>
-      </Section>
-      {shown.organs.filter((organ) => organ.report).map((organ, i) => (
-        <Section key={i} title={`${shown.view.organs[i]?.name ?? path}: its mesh`}><pre>{organ.report}</pre></Section>
-      ))}
+      <div class="transport">
+        <div class="buttons" role="group" aria-label="History">
+          <button type="button" disabled={!doc.canUndo} title="Ctrl+Z" onClick={() => doc.undo()}>Undo</button>
+          <button type="button" disabled={!doc.canRedo} title="Ctrl+Shift+Z" onClick={() => doc.redo()}>Redo</button>
+        </div>
+        <span class={`verdict ${errors.length ? "bad" : "good"}`} role="status">
+          {errors.length ? `${errors.length} error${errors.length > 1 ? "s" : ""}` : warnings.length ? `good, ${warnings.length} warning${warnings.length > 1 ? "s" : ""}` : "good"}
+        </span>
+        <div class="buttons">
+          <button type="button" disabled={!doc.isChanged} title="Ctrl+S" onClick={onSave}>Save</button>
+          <button type="button" class="main" disabled={tools === 0 || errors.length > 0} title={tools === 0 ? "The scene has no tool yet" : "Nothing is recorded"} onClick={onTry}>Try it</button>
+        </div>
+      </div>
+      {error && <div class="conflict"><Problems error={error} /><button type="button" onClick={onReread}>Read again</button></div>}
     </>
   );
 }
 
-function ImportResult({ imported }: { imported: Imported }) {
+/** What the program says of the scene. */
+function About({ scene }: { scene: AuthorScene }) {
+  const { shown, doc } = scene;
   return (
-    <Section title="Imported">
-      <p class="good" role="status">{imported.scene}: {imported.spheres} spheres, {imported.anchored} of them never move</p>
-      <p class="hint">{imported.stiffness_scale !== undefined ? `Stiffness scale ${Number(imported.stiffness_scale.toPrecision(6))}, fitted to the paper's Table 1.`
-        : `Stiffness is not fitted: ${imported.fit_problem}`}</p>
-    </Section>
-  );
-}
-
-/** What is needed to make a scene of a mesh, and how far it is. */
-function ImportForm({ connection, file, onCancel, onDone }: {
-  connection: Connection;
-  file: File;
-  onCancel: () => void;
-  onDone: (imported: Imported) => void;
-}) {
-  const stem = file.name.replace(/\.[^.]*$/, "").replace(/[^\w-]+/g, "-");
-  const [presets, setPresets] = useState<Preset[]>([]);
-  const [organ, setOrgan] = useState("");
-  const [unit, setUnit] = useState("");
-  const [radius, setRadius] = useState("");
-  const [scene, setScene] = useState(`${stem}-scene.json`);
-  const [progress, setProgress] = useState<[string, number] | null>(null);
-  const [error, setError] = useState<Error | null>(null);
-  const stop = useRef(new AbortController());
-  const uploaded = useRef("");
-  useEffect(() => {
-    connection.call<Preset[]>("scene.presets").then((known) => {
-      setPresets(known);
-      setOrgan(known.find((preset) => file.name.toLowerCase().includes(preset.organ))?.name ?? known[0]?.name ?? "");
-    }, setError);
-  }, [connection, file]);
-
-  const start = async () => {
-    setError(null);
-    stop.current = new AbortController();
-    try {
-      if (!uploaded.current) {
-        setProgress(["uploading", 0]);
-        await connection.upload(file.name, file, (share) => setProgress(["uploading", share]), stop.current.signal);
-        uploaded.current = file.name;
-      }
-      setProgress(["importing", 0]);
-      const params = {
-        mesh: uploaded.current, scene, organ, unit_m: unit ? Number(unit) : undefined, radius_m: radius ? Number(radius) / 1e3 : undefined,
-      };
-      onDone(await connection.call<Imported>("scene.import", params,
-        { progress: (done, total) => setProgress(["importing", done / total]) }));
-    } catch (failure) {
-      setError(failure as Error);
-    }
-    setProgress(null);
-  };
-  const usual = presets.find((preset) => preset.name === organ)?.radius_m;
-  const units: Record<string, string> = { "0.001": "mm", "0.01": "cm", "1": "m", "0.0254": "in" };
-  return (
-    <Section title="Import a mesh">
-      <Readings rows={[["file", file.name], ["size", `${(file.size / 1e6).toFixed(2)} MB`]]} />
-      <label class="field"><span>tissue</span>
-        <select value={organ} onChange={(e) => setOrgan(e.currentTarget.value)}>{presets.map((p) => <option key={p.name}>{p.name}</option>)}</select>
-      </label>
-      <label class="field"><span>unit of the file</span>
-        <select value={unit} onChange={(e) => setUnit(e.currentTarget.value)}>
-          <option value="">guessed</option>
-          {Object.entries(units).map(([metres, name]) => <option key={metres} value={metres}>{name}</option>)}
-        </select>
-      </label>
-      <label class="field"><span>radius of the spheres [mm]{usual !== undefined && `, ${millimetres(usual)} if empty`}</span>
-        <input type="number" min="0.1" step="0.1" value={radius} onInput={(e) => setRadius(e.currentTarget.value)} />
-      </label>
-      <label class="field"><span>scene to write</span>
-        <input value={scene} onInput={(e) => setScene(e.currentTarget.value)} />
-      </label>
-      {progress ? <Working what={progress[0]} done={progress[1]} total={1} onCancel={progress[0] === "uploading" ? () => stop.current.abort() : undefined} />
-        : (
-          <div class="buttons">
-            <button type="button" class="main" onClick={() => void start()}>Import</button>
-            <button type="button" onClick={onCancel}>Cancel</button>
-          </div>
-        )}
-      <Problems error={error} />
-      <ShownCommand text={command("import", file.name, "--organ", organ, ...(unit ? ["--unit", units[unit]] : []),
-        ...(radius ? ["--radius-mm", radius] : []), "-o", scene)} />
-    </Section>
+    <>
+      {shown && (
+        <Section title={shown.view.name}>
+          <Readings rows={[
+            ...shown.view.organs.map((organ): [string, string] => [organ.name, `${organ.spheres} spheres in ${organ.layers} layers`]),
+            ["elements", String(shown.elements)],
+            ["tools", shown.view.tools.map((tool) => tool.name).join(", ") || "none"],
+          ]} />
+          <ShownCommand text={command("check", doc!.path)} />
+        </Section>
+      )}
+      {shown?.organs.map((organ, i) => organ.report && (
+        <Section key={i} title={`${shown.view.organs[i].name}: its mesh`}>
+          <Findings findings={organ.findings} />
+          <pre>{organ.report}</pre>
+        </Section>
+      ))}
+    </>
   );
 }

@@ -1,6 +1,6 @@
-import { CallFailed, type Problem, readBinary, type ToolShapes, type Triangles, type WaitingFrame } from "./protocol";
+import { CallFailed, type Problem, readBinary, type Shapes, type Spheres, type Triangles, type WaitingFrame } from "./protocol";
 
-export type Binary = Triangles | WaitingFrame | ToolShapes;
+export type Binary = Triangles | WaitingFrame | Shapes | Spheres;
 
 interface Running {
   done(result: unknown): void;

@@ -68,9 +68,9 @@ function App() {
           room === "review" ? (
             <Review connection={connection} listing={listing} place={place} onPlace={(there) => writePlace("review", there)} />
           ) : room === "author" ? (
-            <Author connection={connection} listing={listing} onChanged={list} onTry={(scene) => go("train", { scene })} />
+            <Author connection={connection} listing={listing} onChanged={list} onTry={(scene, text) => go("train", { scene, text })} />
           ) : (
-            <Train connection={connection} listing={listing} tryScene={place.scene} onChanged={list}
+            <Train connection={connection} listing={listing} tryScene={place.scene} tryText={place.text} onChanged={list}
               onReview={(session, beside, time) => go("review", beside ? { session, beside, besideTime: time } : { session, time })} />
           )
         ) : (

@@ -38,6 +38,28 @@ export class OrganMesh {
     const { geometry } = this.mesh;
     geometry.attributes.position.needsUpdate = true;
     geometry.attributes.normal.needsUpdate = true;
+    geometry.boundingSphere = null; // of positions before
+    this.mesh.position.set(0, 0, 0);
+  }
+
+  /** 0: not drawn, 1: not transparent. */
+  setOpacity(opacity: number): void {
+    const material = this.mesh.material as three.MeshPhongMaterial;
+    this.mesh.visible = opacity > 0;
+    material.opacity = opacity;
+    material.transparent = opacity < 1;
+    material.depthWrite = opacity === 1;
+    material.needsUpdate = true;
+  }
+
+  /** Where a ray meets the surface first, seen or not. */
+  meet(ray: three.Raycaster): three.Intersection | null {
+    const wasVisible = this.mesh.visible;
+    this.mesh.visible = true;
+    this.mesh.updateMatrixWorld();
+    const hit = ray.intersectObject(this.mesh, false)[0] ?? null;
+    this.mesh.visible = wasVisible;
+    return hit;
   }
 
   dispose(): void {

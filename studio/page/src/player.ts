@@ -1,6 +1,7 @@
 import type { Binary, Connection } from "./connection";
-import type { Frame, OpenedSession, SessionInfo, TimelineData, ToolShapes } from "./protocol";
-import { StageScene, Viewer } from "./viewer";
+import type { Frame, OpenedSession, SessionInfo, TimelineData, Shapes } from "./protocol";
+import { StageScene } from "./stage_scene";
+import type { Viewer } from "./viewer";
 
 /** A session on the page. Stage 0 is the one in review, stage 1 the one beside it. */
 export interface Track {
@@ -31,7 +32,7 @@ export class Player {
   onChange: () => void = () => {};
   onTime: () => void = () => {};
   private readonly waiting = new Map<number, number>(); // request of each stage that has no picture yet
-  private readonly tools = new Map<number, ToolShapes>();
+  private readonly tools = new Map<number, Shapes>();
   private request = 0;
   private movedAt = 0;
   private playedAt = 0;
@@ -47,7 +48,7 @@ export class Player {
     const session = await connection.call<OpenedSession>("session.open", { path, stage });
     const track: Track = { stage, session, timeline: null, scene: new StageScene(session.view) };
     const tools = this.tools.get(stage); // they come before the answer
-    if (tools) track.scene.setTools(tools);
+    if (tools) track.scene.setShapes(tools);
     track.scene.onFrame = (frame) => this.drew(stage, frame);
     this.tracks.set(stage, track);
     this.viewer.set(stage, track.scene);
@@ -149,7 +150,7 @@ export class Player {
   }
 
   private take(stage: number, message: Binary): void {
-    if (message.kind === "tools") this.tools.set(stage, message);
+    if (message.kind === "shapes") this.tools.set(stage, message);
     const track = this.tracks.get(stage);
     if (!track) return;
     if (message.kind === "triangles") track.scene.setTriangles(message);

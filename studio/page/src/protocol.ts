@@ -66,6 +66,7 @@ export interface OrganView {
   outer: Vector;
   inner: Vector;
   wetness: number;
+  layer_colours: Vector[]; // sRGB, outermost first
 }
 
 export interface ToolView {
@@ -73,6 +74,9 @@ export interface ToolView {
   kind: "ball" | "scalpel" | "pin";
   radius_m: number;
   blade_m: number;
+  at?: Vector; // where a hand takes it up
+  pointing?: Vector;
+  facing?: Vector;
 }
 
 export interface CameraView {
@@ -198,10 +202,24 @@ export interface ToolShape {
   index: Uint32Array;
 }
 
-export interface ToolShapes {
-  kind: "tools";
+export interface Shapes {
+  kind: "shapes";
   stage: number;
   tools: ToolShape[];
+  obstacles: ToolShape[]; // in the scene's frame
+}
+
+export interface OrganSpheres {
+  radius: number;
+  centre: Float32Array; // x y z of each
+  layer: Uint8Array; // 1: outermost
+  anchored: Uint8Array; // 1: never moves
+}
+
+export interface Spheres {
+  kind: "spheres";
+  stage: number;
+  organs: OrganSpheres[];
 }
 
 /** What a hand holds, and what the tissue does to it. */
@@ -314,14 +332,30 @@ function readFrame(r: Reader): Frame {
   };
 }
 
-function readTools(r: Reader): ToolShapes {
-  const stage = r.u32(), count = r.u32();
-  const tools: ToolShape[] = [];
+function readShapeList(r: Reader): ToolShape[] {
+  const count = r.u32();
+  const shapes: ToolShape[] = [];
   for (let i = 0; i < count; ++i) {
     const vertices = r.u32(), indices = r.u32();
-    tools.push({ vertex: r.array(Float32Array, 4, 7 * vertices), index: r.array(Uint32Array, 4, indices) });
+    shapes.push({ vertex: r.array(Float32Array, 4, 7 * vertices), index: r.array(Uint32Array, 4, indices) });
   }
-  return { kind: "tools", stage, tools };
+  return shapes;
+}
+
+function readShapes(r: Reader): Shapes {
+  const stage = r.u32(), tools = readShapeList(r);
+  return { kind: "shapes", stage, tools, obstacles: readShapeList(r) };
+}
+
+function readSpheres(r: Reader): Spheres {
+  const stage = r.u32(), count = r.u32();
+  const organs: OrganSpheres[] = [];
+  for (let i = 0; i < count; ++i) {
+    const spheres = r.u32(), radius = r.f32(), centre = r.array(Float32Array, 4, 3 * spheres);
+    organs.push({ radius, centre, layer: r.array(Uint8Array, 1, spheres), anchored: r.array(Uint8Array, 1, spheres) });
+    r.pad();
+  }
+  return { kind: "spheres", stage, organs };
 }
 
 /** The head of a frame, for its stage and request; the rest may never be needed. */
@@ -339,11 +373,12 @@ export function readWaitingFrame(message: WaitingFrame): Frame {
 }
 
 /** Reads a binary message; of a frame its head alone. Throws a RangeError for one that is not whole. */
-export function readBinary(bytes: ArrayBuffer): Triangles | WaitingFrame | ToolShapes {
+export function readBinary(bytes: ArrayBuffer): Triangles | WaitingFrame | Shapes | Spheres {
   const reader = new Reader(bytes);
   const kind = reader.u32();
   if (kind === 1) return readTriangles(reader);
   if (kind === 2) return { kind: "waiting", stage: reader.u32(), request: (reader.at = 16, reader.u32()), bytes };
-  if (kind === 3) return readTools(reader);
+  if (kind === 3) return readShapes(reader);
+  if (kind === 4) return readSpheres(reader);
   throw new RangeError(`unknown kind of message ${kind}`);
 }

@@ -17,6 +17,7 @@ type Panel = (typeof kPanels)[number];
 /** Where the page is, in its address. */
 export interface Place {
   scene?: string; // to try at once, in Train
+  text?: string; // of that scene, as its author has it now
   session?: string;
   beside?: string;
   time?: number;

@@ -15,10 +15,11 @@ function freeName(listing: Listing): string {
   for (let i = 1; ; ++i) if (!taken.has(`mine-${i}.ctpm`)) return `mine-${i}.ctpm`;
 }
 
-export function Train({ connection, listing, tryScene, onReview, onChanged }: {
+export function Train({ connection, listing, tryScene, tryText, onReview, onChanged }: {
   connection: Connection;
   listing: Listing;
   tryScene: string | undefined; // at once, and nothing is recorded
+  tryText: string | undefined; // of that scene, as its author has it now
   onReview: (session: string, beside: string | undefined, time: number) => void;
   onChanged: () => void;
 }) {
@@ -66,14 +67,14 @@ export function Train({ connection, listing, tryScene, onReview, onChanged }: {
     setScene(path), setError(null), setEnded(null), setPhase("loading");
     loading.current = new AbortController();
     try {
-      await trainer.begin(path, output || undefined, loading.current.signal);
+      await trainer.begin(path, path === tryScene && !output ? tryText : undefined, output || undefined, loading.current.signal);
       setPhase("running");
       canvas.current?.focus();
     } catch (failure) {
       setError(failure as Error);
       setPhase("choose");
     }
-  }, [trainer, output]);
+  }, [trainer, output, tryScene, tryText]);
 
   useEffect(() => {
     if (trainer && tryScene) void begin(tryScene);
@@ -189,7 +190,7 @@ export function Train({ connection, listing, tryScene, onReview, onChanged }: {
                 </button>
               ))}
             </div>
-            <span class="hint">mouse: move · wheel: depth · Q E, W S, A D: turn · right button: look around · Esc: end</span>
+            <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}mouse: move · wheel: depth · Q E, W S, A D: turn · right button: look around · Esc: end</span>
             <output class="clock">{seconds(frame?.time ?? 0, 1)}</output>
           </div>
         )}

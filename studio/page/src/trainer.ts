@@ -1,7 +1,10 @@
 import * as three from "three";
 import type { Binary, Connection } from "./connection";
+import { readGamepad } from "./gamepad";
+import { orientationOf } from "./pose";
 import type { BegunTraining, EndedTraining, Frame, HandFrame, Motion, SceneView, Vector } from "./protocol";
-import { StageScene, Viewer } from "./viewer";
+import { StageScene } from "./stage_scene";
+import type { Viewer } from "./viewer";
 
 export const kTrainStage = 2;
 const kMostSpeed = 0.4; // of the hand that is sent [m/s]
@@ -10,6 +13,7 @@ const kInterval = 8; // between two poses [ms]
 const kWheelStep = 0.0015; // of depth for a notch [m]
 const kKeyStep = 0.001; // for a press of a key [m]
 const kTurnStep = Math.PI / 36;
+const kPadSpeed = 0.06, kPadTurn = Math.PI / 2; // of a stick or trigger that is fully pressed [m/s], [rad/s]
 const kHalfGain = 6; // force at which the hand follows the pointer half as far [N]
 const kEdge = 0.93; // of the picture that the hand may reach
 const kSteep = 0.85; // cosine between up and the line of sight, beyond which the viewer looks from above
@@ -28,12 +32,13 @@ interface LedHand {
 
 const makeHand = (): LedHand => ({ target: new three.Vector3(), hand: new three.Vector3(), turn: new three.Quaternion(), tool: 0 });
 
-/** A session that mouse and keys lead. */
+/** A session that mouse, keys and gamepad lead. */
 export class Trainer {
   scene: StageScene | null = null;
-  led = 0; // hand that mouse and keys lead; the other one stays where it was left
+  led = 0; // hand that mouse, keys and gamepad lead; the other one stays where it was left
   started: number | null = null; // when the hand was taken up [ms]
   poses = 0; // sent so far
+  hasGamepad = false;
   onFrame: () => void = () => {};
   onEnded: (ended: EndedTraining) => void = () => {};
   onFailing: (problem: string) => void = () => {}; // what is recorded cannot be saved now
@@ -85,19 +90,19 @@ export class Trainer {
     return this.led === 1 ? (frame?.second ?? null) : frame;
   }
 
-  /** Mouse and keys lead the other hand from now on. */
+  /** Mouse, keys and gamepad lead the other hand from now on. */
   lead(hand: number): void {
     if (hand < this.handCount) this.led = hand;
   }
 
-  /** Loads a scene and takes the tool in the hand. `output` undefined: nothing is recorded. */
-  async begin(scene: string, output: string | undefined, signal: AbortSignal): Promise<BegunTraining> {
+  /** Loads a scene and takes the tools in the hands. `text` is taken in place of its file's; `output` undefined: nothing is recorded. */
+  async begin(scene: string, text: string | undefined, output: string | undefined, signal: AbortSignal): Promise<BegunTraining> {
     this.release();
     this.viewer.set(kTrainStage, null);
     this.scene = null;
     this.pending = [];
     const begun = await this.connection.call<BegunTraining>("train.begin",
-      { scene, output, stage: kTrainStage, most_speed_m_per_s: kGuardSpeed }, { signal });
+      { scene, text, output, stage: kTrainStage, most_speed_m_per_s: kGuardSpeed }, { signal });
     this.view = begun.view;
     this.scene = new StageScene(begun.view);
     this.scene.onFrame = (frame) => this.showGhost(frame);
@@ -161,6 +166,28 @@ export class Trainer {
     return true;
   }
 
+  /** Moves the hand as a gamepad asks, for the time since the last pose. */
+  private steer(): void {
+    const pad = readGamepad();
+    this.hasGamepad = pad !== null;
+    if (!pad) return;
+    const time = Math.min(performance.now() - this.sentAt, 50) / 1e3, way = kPadSpeed * time * this.gain();
+    if (pad.right || pad.up || pad.deep) this.shift(way * pad.right, way * pad.up, way * pad.deep);
+    const turn = (axis: Vector, angle: number) => this.own.turn.multiply(new three.Quaternion().setFromAxisAngle(new three.Vector3(...axis), angle));
+    if (pad.turnUp) turn([1, 0, 0], kPadTurn * time * pad.turnUp);
+    if (pad.turnRight) turn([0, 1, 0], kPadTurn * time * pad.turnRight);
+    if (pad.nextTool) this.stepTool(pad.nextTool);
+  }
+
+  /** Takes the next tool, or the previous one, that the other hand leaves free. */
+  private stepTool(by: number): void {
+    const count = this.view?.tools.length ?? 0;
+    for (let i = 0, tool = this.tool; i < count; ++i) {
+      tool = (tool + by + count) % count;
+      if (!this.isTaken(tool)) return void (this.own.tool = tool);
+    }
+  }
+
   /** The hand follows the pointer less where the tissue resists. */
   private gain(): number {
     const frame = this.ownFrame;
@@ -169,12 +196,16 @@ export class Trainer {
 
   private moveBy(right: number, up: number, deep: number): void {
     if (!this.isRunning) return;
+    this.shift(right, up, deep);
+    this.send();
+  }
+
+  private shift(right: number, up: number, deep: number): void {
     const axes = this.handAxes();
     const { target } = this.own;
     target.addScaledVector(axes.right, right).addScaledVector(axes.up, up).addScaledVector(axes.deep, deep);
     this.box.clampPoint(target, target);
     this.keepInView();
-    this.send();
   }
 
   /** Directions of the hand: an upright plane that faces the viewer, so that down presses; from above, the picture's. */
@@ -195,32 +226,37 @@ export class Trainer {
     if (x !== seen.x || y !== seen.y) target.set(x, y, seen.z).unproject(camera);
   }
 
-  /** Puts the hands above the organs, two beside each other. */
+  /** Puts each hand where the scene says that its first tool is taken up, else above the organs, two beside each other. */
   private takeUp(): void {
     const view = this.view!;
     const up = new three.Vector3(...view.up);
     this.box.set(new three.Vector3(...view.least), new three.Vector3(...view.most));
     const middle = this.box.getCenter(new three.Vector3()), size = this.box.getSize(new three.Vector3());
     const height = Math.abs(up.x) * size.x + Math.abs(up.y) * size.y + Math.abs(up.z) * size.z;
-    const radius = view.tools[0]?.radius_m ?? 0;
     const right = new three.Vector3().setFromMatrixColumn(this.viewer.camera.matrixWorld, 0);
-    this.hands.forEach((own, i) => {
-      own.target.copy(middle).addScaledVector(up, height / 2 + radius + 0.02);
-      if (this.handCount > 1) own.target.addScaledVector(right, i === 0 ? kApart : -kApart);
+    for (const own of this.hands) own.tool = -1;
+    for (let hand = this.handCount - 1; hand >= 0; --hand) {
+      this.led = hand;
+      const { own } = this;
+      own.tool = view.tools.findIndex((tool, i) => tool.kind !== "pin" && !this.isTaken(i) && i >= hand);
+      const held = view.tools[own.tool];
+      if (held?.at) {
+        own.target.set(...held.at);
+        own.turn.copy(orientationOf(held.pointing ?? [0, 0, -1], held.facing));
+        this.box.expandByPoint(own.target);
+      } else {
+        own.target.copy(middle).addScaledVector(up, height / 2 + (held?.radius_m ?? 0) + 0.02);
+        if (this.handCount > 1) own.target.addScaledVector(right, hand === 0 ? kApart : -kApart);
+        own.turn.setFromUnitVectors(new three.Vector3(0, 0, 1), up);
+      }
       own.hand.copy(own.target);
-      own.turn.setFromUnitVectors(new three.Vector3(0, 0, 1), up);
-      own.tool = -1;
-    });
-    this.box.expandByScalar(kMargin);
-    for (this.led = this.handCount - 1; ; --this.led) {
-      this.own.tool = view.tools.findIndex((tool, i) => tool.kind !== "pin" && !this.isTaken(i) && i >= this.led);
-      if (this.led === 0) break;
     }
+    this.box.expandByScalar(kMargin);
     this.started = performance.now();
     this.sentAt = performance.now();
     this.poses = 0;
     this.reached = 0;
-    this.timer = setInterval(() => this.send(), kInterval);
+    this.timer = setInterval(() => (this.steer(), this.send()), kInterval);
     this.send();
   }
 
@@ -244,9 +280,9 @@ export class Trainer {
 
   private take(message: Binary): void {
     const scene = this.scene!;
-    if (message.kind === "tools") scene.setTools(message);
+    if (message.kind === "shapes") scene.setShapes(message);
     else if (message.kind === "triangles") scene.setTriangles(message);
-    else scene.wait(message), this.viewer.draw();
+    else if (message.kind === "waiting") scene.wait(message), this.viewer.draw();
   }
 
   /** The expert's pose a little ahead of the place on the path that the tool has reached; it never goes back. */

@@ -1,139 +1,7 @@
 import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { type CameraView, type Frame, type HandFrame, readWaitingFrame, type SceneView, type ToolShapes, type Triangles, type Vector, type WaitingFrame } from "./protocol";
-import { OrganMesh } from "./organ_mesh";
-
-const kArrowPerNewton = 0.007; // [m/N]
-const kLongestArrow = 0.06; // [m]
-const kSteel: Vector = [0.5, 0.53, 0.57];
-const kHandle: Vector = [0.05, 0.055, 0.065];
-
-/** One scene with its organs, tool and force. */
-export class StageScene {
-  readonly scene = new three.Scene();
-  frame: Frame | null = null; // the one that is drawn
-  onFrame: (frame: Frame) => void = () => {};
-  private waiting: WaitingFrame | null = null;
-  private organs: OrganMesh[] = [];
-  private topology = -1;
-  private next: Triangles | null = null; // until their first frame is drawn
-  private tools: three.Mesh[] = [];
-  private readonly arrows = [makeArrow(), makeArrow()]; // of each hand
-  private ghost: three.Mesh | null = null;
-
-  constructor(readonly view: SceneView) {
-    this.scene.add(new three.HemisphereLight(0xdfe8ff, 0x3a2e2a, 1.5), ...this.arrows);
-    for (const arrow of this.arrows) arrow.visible = false;
-  }
-
-  setTools(shapes: ToolShapes): void {
-    for (const tool of this.tools) this.scene.remove(tool);
-    const material = new three.MeshPhongMaterial({ vertexColors: true, specular: 0x777777, shininess: 70, side: three.DoubleSide });
-    this.tools = shapes.tools.map((shape) => {
-      const geometry = new three.BufferGeometry();
-      const interleaved = new three.InterleavedBuffer(shape.vertex, 7);
-      geometry.setAttribute("position", new three.InterleavedBufferAttribute(interleaved, 3, 0));
-      geometry.setAttribute("normal", new three.InterleavedBufferAttribute(interleaved, 3, 3));
-      const count = shape.vertex.length / 7, colours = new Float32Array(3 * count);
-      for (let v = 0; v < count; ++v) colours.set(shape.vertex[7 * v + 6] < 0.5 ? kSteel : kHandle, 3 * v);
-      geometry.setAttribute("color", new three.BufferAttribute(colours, 3));
-      geometry.setIndex(new three.BufferAttribute(shape.index, 1));
-      const mesh = new three.Mesh(geometry, material);
-      mesh.visible = false;
-      mesh.frustumCulled = false;
-      this.scene.add(mesh);
-      return mesh;
-    });
-  }
-
-  /** Triangles of the frames that follow. */
-  setTriangles(triangles: Triangles): void {
-    this.next = triangles;
-  }
-
-  private useTriangles(triangles: Triangles): void {
-    for (const organ of this.organs) this.scene.remove(organ.mesh), organ.dispose();
-    this.organs = triangles.organs.map((organ, i) => new OrganMesh(organ, this.view.organs[i]));
-    for (const organ of this.organs) this.scene.add(organ.mesh);
-    this.topology = triangles.topology;
-    this.next = null;
-  }
-
-  /** Takes the newest frame, which is read when it is drawn: a slow browser leaves out those in between. */
-  wait(frame: WaitingFrame): void {
-    this.waiting = frame;
-  }
-
-  /** Moves everything to the frame that waits. False: there is none. */
-  takeFrame(): boolean {
-    if (!this.waiting) return false;
-    const frame = readWaitingFrame(this.waiting);
-    this.waiting = null;
-    if (frame.topology === this.next?.topology) this.useTriangles(this.next);
-    if (frame.topology !== this.topology) return false; // of triangles that are not here
-    this.frame = frame;
-    frame.organs.forEach((positions, i) => this.organs[i]?.update(positions));
-    this.tools.forEach((tool, i) => {
-      const holding = i === frame.second?.tool ? frame.second : frame; // both hands never hold the same tool
-      tool.visible = i === holding.tool;
-      tool.position.set(...holding.position);
-      const [w, x, y, z] = holding.orientation;
-      tool.quaternion.set(x, y, z, w);
-    });
-    this.showForce(this.arrows[0], frame);
-    if (frame.second) this.showForce(this.arrows[1], frame.second);
-    this.onFrame(frame);
-    return true;
-  }
-
-  /** A pale copy of a tool at a pose (tool, position, orientation w x y z); null: none. */
-  setGhost(pose: number[] | null): void {
-    const [tool, px, py, pz, w, x, y, z] = pose ?? [-1];
-    const like = this.tools[tool];
-    if (this.ghost && this.ghost.userData.tool !== tool) {
-      this.scene.remove(this.ghost);
-      this.ghost = null;
-    }
-    if (!like) return;
-    if (!this.ghost) {
-      const material = new three.MeshBasicMaterial({ color: 0x7cc0ff, transparent: true, opacity: 0.3, depthWrite: false });
-      this.ghost = new three.Mesh(like.geometry, material);
-      this.ghost.frustumCulled = false;
-      this.ghost.userData.tool = tool;
-      this.scene.add(this.ghost);
-    }
-    this.ghost.position.set(px, py, pz);
-    this.ghost.quaternion.set(x, y, z, w);
-  }
-
-  private showForce(arrow: three.Group, frame: HandFrame): void {
-    const force = new three.Vector3(...frame.force), size = force.length();
-    arrow.visible = size > 0.01 && frame.tool >= 0;
-    if (!arrow.visible) return;
-    arrow.position.set(...frame.position);
-    arrow.quaternion.setFromUnitVectors(new three.Vector3(0, 1, 0), force.divideScalar(size));
-    arrow.scale.set(1, Math.min(size * kArrowPerNewton, kLongestArrow) / 0.03, 1);
-  }
-
-  dispose(): void {
-    for (const organ of this.organs) organ.dispose();
-    for (const tool of this.tools) tool.geometry.dispose();
-  }
-}
-
-/** An arrow of 30 mm along +y. */
-function makeArrow(): three.Group {
-  const group = new three.Group();
-  const material = new three.MeshBasicMaterial({ color: 0xffc857, depthTest: false, transparent: true, opacity: 0.95 });
-  const shaft = new three.Mesh(new three.CylinderGeometry(0.0009, 0.0009, 0.022, 10), material);
-  shaft.position.y = 0.011;
-  const head = new three.Mesh(new three.ConeGeometry(0.0028, 0.008, 14), material);
-  head.position.y = 0.026;
-  group.add(shaft, head);
-  group.renderOrder = 2;
-  shaft.renderOrder = head.renderOrder = 2;
-  return group;
-}
+import type { CameraView } from "./protocol";
+import type { StageScene } from "./stage_scene";
 
 /** Draws up to two scenes side by side with one camera, whenever something changed. */
 export class Viewer {
@@ -145,7 +13,8 @@ export class Viewer {
   private readonly key = new three.DirectionalLight(0xfff4e6, 2.2);
   private readonly rim = new three.DirectionalLight(0x9fc2ff, 0.7);
   private readonly observer: ResizeObserver;
-  private fieldOfView = 32; // vertical, in a picture of 16:9 [degrees]
+  onDraw: () => void = () => {}; // before each drawing
+  fieldOfView = 32; // vertical, in a picture of 16:9 [degrees]
   private isWanted = false;
 
   constructor(readonly canvas: HTMLCanvasElement) {
@@ -175,6 +44,21 @@ export class Viewer {
     this.draw();
   }
 
+  /** The ray into the picture at a place of the window [px]. */
+  rayAt(x: number, y: number): three.Raycaster {
+    const box = this.canvas.getBoundingClientRect();
+    const ray = new three.Raycaster();
+    ray.setFromCamera(new three.Vector2((2 * (x - box.left)) / box.width - 1, 1 - (2 * (y - box.top)) / box.height), this.camera);
+    return ray;
+  }
+
+  /** Where a place of the scene is drawn, in pixels of the canvas; null: behind the camera. */
+  pixelOf(place: three.Vector3): { x: number; y: number } | null {
+    const seen = place.clone().project(this.camera);
+    if (seen.z > 1) return null;
+    return { x: (0.5 + 0.5 * seen.x) * this.canvas.clientWidth, y: (0.5 - 0.5 * seen.y) * this.canvas.clientHeight };
+  }
+
   /** Draws with the next frame of the screen. */
   draw(): void {
     if (this.isWanted) return;
@@ -202,6 +86,8 @@ export class Viewer {
     const wide = Math.max(1, 16 / 9 / this.camera.aspect);
     this.camera.fov = (360 / Math.PI) * Math.atan(wide * Math.tan((this.fieldOfView * Math.PI) / 360));
     this.camera.updateProjectionMatrix();
+    this.camera.updateMatrixWorld();
+    this.onDraw();
     const away = new three.Vector3().subVectors(this.camera.position, this.controls.target);
     const right = new three.Vector3().crossVectors(this.camera.up, away).normalize();
     this.key.position.copy(away).addScaledVector(this.camera.up, away.length()).addScaledVector(right, -0.5 * away.length());

@@ -32,6 +32,36 @@ constexpr const char* kScript = R"({
     { "cut": { "path_mm": [[0.2, 60, -15]], "speed_mm_per_s": 100 } },
     { "put_away": true }, { "wait_s": 0.2 }] })";
 
+TEST(CuttingSession, ASlowStrokeIsOneCutHoweverRarelyItSevers) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "bar.json") << kScene;
+  std::ofstream(folder.path() / "script.json") << R"({
+    "format": "ctpm-script", "version": 1, "steps": [
+      { "take": { "tool": "scalpel", "at_mm": [0.2, -30, -15] } },
+      { "cut": { "path_mm": [[0.2, 30, -15]], "speed_mm_per_s": 15 } }, { "put_away": true }] })";
+  const auto recorded =
+      run_ctpm({"record", "bar.json", "--script", "script.json", "-o", "cut.ctpm", "--fast"}, folder.path());
+  ASSERT_EQ(recorded.code, 0) << recorded.err;
+  // Only a ball and a pin have a depth.
+  EXPECT_FALSE(holds(recorded.out, "mm deep")) << recorded.out;
+  const auto info = run_ctpm({"info", "cut.ctpm"}, folder.path());
+  EXPECT_FALSE(holds(info.out, "mm deep")) << info.out;
+  const std::size_t first = info.out.find("begins to sever");
+  ASSERT_NE(first, std::string::npos) << info.out;
+  EXPECT_EQ(info.out.find("begins to sever", first + 1), std::string::npos) << info.out;
+  auto reader = recordings::SessionReader::open((folder.path() / "cut.ctpm").string());
+  ASSERT_TRUE(reader);
+  const auto records = reader->ticks(0, reader->tick_count());
+  ASSERT_TRUE(records);
+  std::vector<std::int64_t> severing;
+  for (std::size_t tick = 0; tick < records->size(); ++tick)
+    if ((*records)[tick].severed > 0) severing.push_back(std::int64_t(tick));
+  std::int64_t longest = 0;
+  for (std::size_t i = 1; i < severing.size(); ++i) longest = std::max(longest, severing[i] - severing[i - 1]);
+  EXPECT_GT(longest, 300) << "else it would be no test";
+  EXPECT_EQ(run_ctpm({"verify", "cut.ctpm"}, folder.path()).code, 0);
+}
+
 TEST(CuttingSession, TellsTheForceAndThePieceThatComesLoose) {
   const TemporaryFolder folder;
   std::ofstream(folder.path() / "bar.json") << kScene;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "recordings/internal/statistics.h"
+#include "recordings/signature.h"
 #include "tests/recordings/forge.h"
 #include "tests/studio/commands/running_program.h"
 
@@ -109,7 +110,24 @@ TEST_F(Evidence, NothingComparedIsNoGoodVerdict) {
   EXPECT_TRUE(holds(verified.out, "no verdict: there is no tick to compare")) << verified.out;
 }
 
+TEST_F(Evidence, ABuildThatCannotSignSaysSo) {
+  if (recordings::can_sign()) GTEST_SKIP() << "built with CTPM_SIGNING";
+  record();
+  std::ofstream(path("me.pem")) << "a key";
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"key", "new.pem"},
+                                                  {"sign", "a.ctpm", "--key", "me.pem"},
+                                                  {"verify", "a.ctpm", "--key", "me.pem"}}) {
+    const ProgramOutcome outcome = ctpm(command);
+    EXPECT_EQ(outcome.code, 2) << command[0];
+    EXPECT_TRUE(holds(outcome.err, "this build cannot sign")) << outcome.err;
+    EXPECT_TRUE(holds(outcome.err, "CTPM_SIGNING=ON")) << outcome.err;
+  }
+  EXPECT_FALSE(fs::exists(path("new.pem")));
+  EXPECT_EQ(ctpm({"verify", "a.ctpm"}).code, 0);
+}
+
 TEST_F(Evidence, AnExamIsSignedAndVerifyingNamesItsKey) {
+  if (!recordings::can_sign()) GTEST_SKIP() << "built without CTPM_SIGNING";
   record();
   const ProgramOutcome made = ctpm({"key", "me.pem"});
   ASSERT_EQ(made.code, 0) << made.err;

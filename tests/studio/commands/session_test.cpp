@@ -193,6 +193,8 @@ TEST(Texts, OfAFileCannotSteerTheTerminal) {
       "build \x1b]0;title\x07\nverdict: same\xc2\x9b"
       "1m \xe2\x80\xae";
   start.metadata["source"] = "a\x1b[2J";
+  start.model.organs[0].name = "organ\xc2\x9b 1m \xe2\x80\xae";
+  start.model.tools[0].name = std::string(900, 'x') + ",\"";
   auto writer = recordings::SessionWriter::create((folder.path() / "a.ctpm").string(), start, {.wait_when_full = true});
   writer->event({.kind = recordings::EventKind::note, .text = "note\x1b[31m\r"});
   testing::live(start, 20, [&](const State& after, const recordings::TickRecord& r) { writer->append(after, r); });
@@ -205,12 +207,24 @@ TEST(Texts, OfAFileCannotSteerTheTerminal) {
   for (const std::vector<std::string>& command : {std::vector<std::string>{"info", "a.ctpm"},
                                                   {"info", "a.ctpm", "--json"},
                                                   {"verify", "a.ctpm"},
+                                                  {"replay", "a.ctpm", "--csv", "a.csv"},
+                                                  {"compare", "a.ctpm", "a.ctpm", "-o", "report"},
                                                   {"check", "no\x1b[31m.json"},
                                                   {"info", "no\x1b[31m.ctpm"}}) {
     const auto outcome = run_ctpm(command, folder.path());
     EXPECT_TRUE(is_plain(outcome.out) && is_plain(outcome.err)) << command[0] << ": " << outcome.out << outcome.err;
     EXPECT_FALSE(holds(outcome.out, "\nverdict: same")) << command[0];
   }
+  // A table of 20 ticks, each in one row of the same length.
+  std::istringstream rows(slurp(folder.path() / "a.csv"));
+  std::string header, row;
+  std::getline(rows, header);
+  for (int tick = 0; tick < 20; ++tick) {
+    std::getline(rows, row);
+    EXPECT_TRUE(holds(row, ",\"" + std::string(900, 'x') + ",\"\"\",")) << row;
+    EXPECT_EQ(std::ranges::count(row, ','), std::ranges::count(header, ',') + 1) << row;
+  }
+  EXPECT_FALSE(std::getline(rows, row)) << row;
   EXPECT_TRUE(holds(run_ctpm({"info", "a.ctpm"}, folder.path()).out, "build \\x1b]0;title\\x07\\x0averdict: same"));
 }
 

@@ -127,6 +127,22 @@ TEST(IgtlLink, ASilentHolderIsDisplacedByOneThatSendsPosesAndThatIsSaid) {
   device.join();
 }
 
+TEST(IgtlLink, HundredsOfSilentConnectionsThatStayKeepNoDeviceOut) {
+  auto link = listen();
+  IgtlPeer holder = IgtlPeer::connect(link->port());
+  EXPECT_EQ(next_of(*link).news, devices::DeviceNews::connected);
+  std::vector<igtl::ClientSocket::Pointer> silent;
+  for (int i = 0; i < 300; ++i) silent.push_back(IgtlPeer::connected(link->port()));
+  IgtlPeer device = IgtlPeer::connect(link->port());
+  devices::DeviceReport report;
+  do {
+    ASSERT_TRUE(device.send(transform_bytes({7, 0, 0}))) << "turned away";
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    while (link->next(report) && report.news != devices::DeviceNews::pose) continue;
+  } while (report.news != devices::DeviceNews::pose);
+  EXPECT_NEAR(report.pose.position.x, 0.007, 1e-9);
+}
+
 TEST(IgtlLink, OnlyAddressesOfTheListMayConnect) {
   devices::IgtlSettings settings;
   settings.listens = true;

@@ -17,52 +17,23 @@
 
 #include "recordings/session_reader.h"
 #include "tests/studio/commands/running_program.h"
-#include "tests/studio/devices/igtl_client.h"
+#include "tests/studio/devices/igtl_record.h"
 
 namespace ctpm {
 namespace {
 
 using testing::IgtlPeer;
+using testing::kHome;
 using testing::ProgramOutcome;
 using testing::run_ctpm;
 using testing::RunningProgram;
 using testing::sensor_bytes;
+using testing::stay;
 using testing::TemporaryFolder;
 using testing::transform_bytes;
 
-/// The device's frame lies 30 mm over the table; the block's uppermost spheres are touched at -6 mm in it.
-const Vec3 kHome{0, 0, 0};
-
-class IgtlRecord : public ::testing::Test {
+class IgtlRecord : public testing::IgtlRecord {
  protected:
-  IgtlRecord() {
-    std::ofstream(folder_.path() / "block.json") << R"({"format": "ctpm-scene", "version": 1, "name": "block",
-      "settle_s": 0, "organs": [{"name": "block", "rig": {"block": [3, 3, 2]}, "material": {"preset": "liver"},
-      "anchors": [{"lowest_mm": 1}]}], "tools": [{"name": "ball", "kind": "ball", "radius_mm": 8},
-      {"name": "scalpel", "kind": "scalpel", "blade_length_mm": 30}]})";
-  }
-  std::vector<std::string> listening(std::vector<std::string> more = {}) const {
-    std::vector<std::string> arguments{"record", "block.json",         "-o", "a.ctpm", "--igtl-listen",
-                                       "0",      "--device-offset-mm", "0",  "0",      "30"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
-  }
-  static int port_of(RunningProgram& program) {
-    return std::atoi(program.wait_for("waiting for a device on 127.0.0.1:").c_str());
-  }
-  std::string ctpm(const std::vector<std::string>& arguments, int code = 0) {
-    const ProgramOutcome outcome = run_ctpm(arguments, folder_.path());
-    EXPECT_EQ(outcome.code, code) << outcome.out << outcome.err;
-    return outcome.out;
-  }
-  static bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-  /// A number of `ctpm info --json`.
-  static double number(const std::string& info, const std::string& key) {
-    const std::size_t at = info.find("\"" + key + "\":");
-    EXPECT_NE(at, std::string::npos) << key << " is not in: " << info;
-    return at == std::string::npos ? 0 : std::atof(info.c_str() + at + key.size() + 3);
-  }
-
   /// Sends poses at 1 kHz for `seconds`, pressing up and down on the block once a second. Returns how many.
   static int press_for(IgtlPeer& peer, double seconds) {
     auto deadline = std::chrono::steady_clock::now();
@@ -113,21 +84,9 @@ class IgtlRecord : public ::testing::Test {
     EXPECT_TRUE(holds(verdict, "same")) << verdict;
     EXPECT_TRUE(holds(verdict, std::to_string(int(number(info, "ticks"))))) << verdict;
   }
-
-  void faults_are_forgiven(int count);
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(IgtlRecord, AClientAtAThousandPosesASecondIsRecordedWholeAndFeelsTheTissue) { a_whole_session_is_recorded(3); }
-
-/// Sends the same pose at 1 kHz for a while, so that a device that was away is back.
-void stay(IgtlPeer& peer, Vec3 position_mm = kHome, int milliseconds = 350) {
-  for (int i = 0; i < milliseconds; ++i) {
-    if (!peer.send(transform_bytes(position_mm))) return;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-}
 
 TEST_F(IgtlRecord, EveryFaultIsHeldAndNotedAndTheSessionGoesOnToACleanEnd) {
   RunningProgram program(listening(), folder_.path());
@@ -290,105 +249,7 @@ TEST_F(IgtlRecord, AServerIsConnectedToCalledAgainAndTakesOverFromAnotherSession
   EXPECT_TRUE(holds(table, ",scalpel,"));
 }
 
-/// The longest run of a session's ticks in which the last good pose was older than 50 ms.
-std::int64_t longest_without_pose(const std::string& path) {
-  auto reader = recordings::SessionReader::open(path);
-  const auto records = reader ? reader->ticks(0, reader->tick_count()) : reader.errors();
-  EXPECT_TRUE(records);
-  std::int64_t longest = 0, now = 0;
-  if (records)
-    for (const recordings::TickRecord& record : *records)
-      longest = std::max(longest, now = record.input_age > 0.05 ? now + 1 : 0);
-  return longest;
-}
-
-/// One session with `count` faults of a device, one after the other. Behind each the device is good again for a second,
-/// and what is there of the session verifies.
-void IgtlRecord::faults_are_forgiven(int count) {
-  RunningProgram program(listening(), folder_.path());
-  const int port = port_of(program);
-  ASSERT_GT(port, 0);
-  auto peer = std::make_unique<IgtlPeer>(port);
-  stay(*peer);
-  const auto reconnect = [&] {
-    peer.reset();  // while this one sends poses, another is turned away
-    peer = std::make_unique<IgtlPeer>(port);
-  };
-  const auto send = [&](std::string bytes) { peer->send(bytes); };
-  const auto with_size = [](const char* kind, char highest) {
-    std::string bytes = transform_bytes(kHome).substr(0, 58);
-    bytes.replace(2, 12, std::string(kind) + std::string(12 - std::string(kind).size(), '\0'));
-    bytes[46] = highest;  // of the lower four bytes of the body's size
-    return bytes;
-  };
-  std::string broken = transform_bytes(kHome);
-  broken[90] = char(broken[90] ^ 4);
-  const std::vector<std::function<void()>> faults{
-      [&] {
-        send(transform_bytes({NAN, 0, 0}));
-      },
-      [&] {
-        send(transform_bytes({-3.7e28, -3.7e28, -3.7e28}));
-      },
-      [&] {
-        send(transform_bytes({500, 0, 0}));
-      },
-      [&] { send(transform_bytes(kHome, 3e9)); },
-      [&] { send(transform_bytes(kHome, 1)); },
-      [&] { send(broken); },
-      [&] { send(with_size("TRANSFORM", '\x7f')); },
-      [&] { send(with_size("IMAGE", '\x7f')); },
-      [&] { send(std::string(200, 'x')), peer->wait_for_end(), reconnect(); },
-      [&] { send(transform_bytes(kHome).substr(0, 70)), reconnect(); },
-      [&] { std::this_thread::sleep_for(std::chrono::milliseconds(300)); },
-      [&] {  // a port scan
-        std::thread scan([&] {
-          for (int i = 0; i < 30; ++i) igtl::ClientSocket::New()->ConnectToServer("127.0.0.1", port);
-        });
-        stay(*peer, kHome, 300);
-        scan.join();
-      },
-      [&] {  // a flood
-        for (int i = 0; i < 20000; ++i) send(transform_bytes(kHome));
-      },
-      [&] {  // the device leaves, and something silent takes its place first
-        peer.reset();
-        igtl::ClientSocket::Pointer silent = igtl::ClientSocket::New();
-        silent->ConnectToServer("127.0.0.1", port);
-        reconnect();
-        stay(*peer, kHome, 900);
-      },
-  };
-  std::uint64_t random = 7;
-  for (int i = 0; i < count; ++i) {
-    random = random * 6364136223846793005ull + 1442695040888963407ull;
-    faults[count <= int(faults.size()) ? std::size_t(i) : std::size_t(random >> 33) % faults.size()]();
-    std::atomic<bool> is_verified{false};
-    std::thread device([&] {
-      do stay(*peer, kHome, 1000);
-      while (!is_verified);
-    });
-    const std::string verdict = ctpm({"verify", "a.ctpm"});
-    is_verified = true;
-    device.join();
-    EXPECT_TRUE(holds(verdict, "same: ")) << "after fault " << i << ": " << verdict;
-    ASSERT_TRUE(peer->send(transform_bytes(kHome))) << "turned away after fault " << i;
-  }
-  program.interrupt();
-  const ProgramOutcome outcome = program.outcome();
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  const std::string info = ctpm({"info", "a.ctpm", "--json"});
-  // In ticks of the session: 0.4 s of the longest fault, and a second.
-  EXPECT_LT(longest_without_pose((folder_.path() / "a.ctpm").string()), 1400) << info;
-  EXPECT_EQ(number(info, "max_force_n"), 0) << "the tool stood where it was all the while";
-  EXPECT_LT(program.most_memory(), 500l << 20);
-  EXPECT_TRUE(holds(ctpm({"verify", "a.ctpm"}), "same"));
-}
-
-TEST_F(IgtlRecord, EachKindOfFaultIsForgivenWithinASecond) { faults_are_forgiven(14); }
-
 class IgtlRecordSlow : public IgtlRecord {};
-TEST_F(IgtlRecordSlow, FiftyFaultsAreEachForgivenWithinASecond) { faults_are_forgiven(50); }
 TEST_F(IgtlRecordSlow, AClientAtAThousandPosesASecondIsRecordedWholeFor20Seconds) { a_whole_session_is_recorded(20); }
 
 }  // namespace

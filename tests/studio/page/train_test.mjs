@@ -134,6 +134,28 @@ test("a worst moment leads to the timeline", async () => {
   await picture(page, "train-to-review");
 });
 
+test("a gamepad leads the tool: the trigger presses, the shoulder changes it", async () => {
+  // No gamepad is plugged into a test's machine; the page sees one as the browser would show it.
+  await page.evaluate(() => {
+    const buttons = Array.from({ length: 17 }, () => ({ pressed: false, touched: false, value: 0 }));
+    globalThis.pad = { connected: true, mapping: "standard", axes: [0, 0, 0, 0], buttons };
+    navigator.getGamepads = () => [globalThis.pad];
+  });
+  await page.click("header nav button:has-text('Train')");
+  await page.locator("aside input").first().fill("");
+  await page.click(".list button:has-text('kidney')");
+  await page.waitForSelector(".view.running .hint:has-text('gamepad')");
+  await page.evaluate(() => (globalThis.pad.buttons[7].value = 1));
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector(".force-bar output").textContent) > 0.1);
+  await page.evaluate(() => (globalThis.pad.buttons[7].value = 0, globalThis.pad.buttons[6].value = 1));
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector(".force-bar output").textContent) === 0);
+  await page.evaluate(() => (globalThis.pad.buttons[6].value = 0, globalThis.pad.buttons[5].value = 1));
+  await page.waitForSelector(".transport button[aria-pressed=true]:has-text('scalpel')");
+  await page.evaluate(() => (navigator.getGamepads = () => []));
+  await page.keyboard.press("Escape");
+  await page.waitForSelector("button:has-text('Train again')");
+});
+
 test("it fits a tablet", async () => {
   await page.click("header nav button:has-text('Train')");
   await page.setViewportSize({ width: 820, height: 1180 });

@@ -1,0 +1,28 @@
+#include "studio/loading/tick_time.h"
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+#include "core/model/state.h"
+#include "core/stepping/step.h"
+
+namespace ctpm::loading {
+
+std::optional<double> measure_tick(const Model& model, const std::function<bool()>& should_stop) {
+  using Clock = std::chrono::steady_clock;
+  constexpr int kWarmUp = 20;
+  State state = rest_state(model);
+  stepping::Stepper stepper(model);
+  std::vector<double> times;
+  for (int i = 0; i < kWarmUp + kMeasuredTicks; ++i) {
+    if (should_stop && should_stop()) return std::nullopt;
+    const Clock::time_point start = Clock::now();
+    (void)stepper.step(state, {});
+    if (i >= kWarmUp) times.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+  }
+  std::nth_element(times.begin(), times.begin() + kMeasuredTicks / 2, times.end());
+  return times[kMeasuredTicks / 2];
+}
+
+}  // namespace ctpm::loading

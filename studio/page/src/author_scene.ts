@@ -1,0 +1,228 @@
+// The scene that an author works on: its text, and what the program makes of it, kept together while the text changes.
+import * as three from "three";
+import type { Connection } from "./connection";
+import { SceneDocument } from "./document";
+import { type Item, itemsOf, listOf } from "./items";
+import type { Json } from "./json_edit";
+import { CallFailed, type Problem, type SceneView, type Shapes, type Spheres, type Triangles, type WaitingFrame } from "./protocol";
+import type { Schema } from "./scene_schema";
+import { StageScene, type Shown } from "./stage_scene";
+import type { Viewer } from "./viewer";
+
+export const kAuthorStage = 3;
+const kCheckAfter = 250, kShowAfter = 300; // without a change [ms]
+
+export interface Finding {
+  code: string;
+  found: string;
+  done: string;
+  remains: string;
+}
+export interface ShownOrgan {
+  spheres: number;
+  anchored: number;
+  report: string;
+  findings: Finding[];
+}
+export interface ShownScene {
+  view: SceneView;
+  organs: ShownOrgan[];
+  spheres: number;
+  elements: number;
+  warnings: Problem[];
+}
+export interface TickTime {
+  measured_tick_time_s: number;
+  tick_s: number;
+  ticks: number;
+}
+interface Checked {
+  errors: Problem[];
+  warnings: Problem[];
+}
+
+/** What the simulation depends on: a change of anything else does not load the scene again. */
+function simulatedPart(value: Json | undefined): string {
+  const { cameras, probes, name, tools, ...rest } = (value ?? {}) as { [key: string]: Json };
+  const shapes = listOf({ tools }, "tools").map(({ at_mm, pointing, facing, ...shape }) => shape);
+  return JSON.stringify([rest, shapes]);
+}
+
+function middleOf(centres: Float32Array): three.Vector3 {
+  const box = new three.Box3().setFromArray(centres);
+  return box.getCenter(new three.Vector3());
+}
+
+export class AuthorScene {
+  onChange: () => void = () => {};
+  doc: SceneDocument | null = null;
+  shown: ShownScene | null = null;
+  stage: StageScene | null = null;
+  how: Shown = "surface";
+  error: Error | null = null; // why the text cannot be loaded
+  isLoading = false;
+  tickTime: TickTime | null = null; // of what is shown; null: not measured yet
+  private checked: Checked | null = null;
+  private schema: Schema | null = null;
+  private readonly documents = new Map<string, SceneDocument>(); // those that were open keep their history
+  private shownPart = "";
+  private wantsShow = false;
+  private running: AbortController | null = null; // a load
+  private measuring: AbortController | null = null;
+  private timers: { check?: ReturnType<typeof setTimeout>; show?: ReturnType<typeof setTimeout> } = {};
+  private received: (Shapes | Spheres | Triangles | WaitingFrame)[] = [];
+  private places: three.Vector3[] = []; // of the organs that are shown
+  private middles: three.Vector3[] = []; // of their spheres, from these places
+  private onFrame: () => void = () => {};
+
+  constructor(private readonly connection: Connection, private readonly viewer: Viewer) {
+    connection.call<Schema>("scene.schema").then((schema) => (this.schema = schema), () => {});
+    connection.onStage(kAuthorStage, (message) => {
+      this.received.push(message);
+      if (message.kind === "waiting") this.onFrame();
+    });
+  }
+
+  /** Opens a scene, with the history that it had if it was open before. */
+  async open(path: string): Promise<void> {
+    this.doc?.commit();
+    const known = this.documents.get(path);
+    this.doc = null, this.shown = null, this.error = null, this.tickTime = null, this.checked = null, this.shownPart = "";
+    this.viewer.set(kAuthorStage, null);
+    this.stage = null;
+    this.isLoading = true;
+    this.onChange();
+    try {
+      const doc = known ?? (await SceneDocument.open(this.connection, path, () => this.schema));
+      this.documents.set(path, doc);
+      doc.onChange = () => this.changed();
+      this.doc = doc;
+      this.changed();
+    } catch (failure) {
+      this.isLoading = false, this.error = failure as Error;
+      this.onChange();
+    }
+  }
+
+  get items(): Item[] {
+    return itemsOf(this.doc?.lastValue, this.shown?.view ?? null, this.middles);
+  }
+
+  /** Errors and warnings of the text, as they are known now. */
+  get problems(): Checked {
+    const load = this.error instanceof CallFailed ? this.error.problems : [];
+    const errors = this.checked?.errors.length ? this.checked.errors : load;
+    return { errors, warnings: errors.length ? this.checked?.warnings ?? [] : this.shown?.warnings ?? this.checked?.warnings ?? [] };
+  }
+
+  /** Where the text that is shown has an organ [m]. */
+  shownOrganPlace(organ: number): three.Vector3 | null {
+    return this.places[organ] ?? null;
+  }
+
+  show(how: Shown): void {
+    this.how = how;
+    this.stage?.show(how);
+    this.viewer.draw();
+    this.onChange();
+  }
+
+  private changed(): void {
+    const { doc } = this;
+    if (!doc) return;
+    clearTimeout(this.timers.check);
+    this.timers.check = setTimeout(() => void this.check(doc), kCheckAfter);
+    if (doc.value !== undefined && simulatedPart(doc.value) !== this.shownPart) {
+      // What is measured or loaded now is outdated.
+      this.measuring?.abort();
+      this.running?.abort();
+      clearTimeout(this.timers.show);
+      this.timers.show = setTimeout(() => void this.load(), this.shown ? kShowAfter : 0);
+    } else clearTimeout(this.timers.show);
+    this.onChange();
+  }
+
+  private async check(doc: SceneDocument): Promise<void> {
+    const { text } = doc;
+    try {
+      const checked = await this.connection.call<Checked>("scene.check", { path: doc.path, text });
+      if (this.doc !== doc || doc.text !== text) return;
+      this.checked = checked;
+    } catch (failure) {
+      this.error = failure as Error;
+    }
+    this.underline();
+    this.onChange();
+  }
+
+  private underline(): void {
+    const { errors, warnings } = this.problems;
+    this.doc?.underline(errors, warnings);
+  }
+
+  /** Loads the text as it is now. One load at a time: its pictures must not mix with those of another. */
+  private async load(): Promise<void> {
+    if (this.running) {
+      this.wantsShow = true;
+      return;
+    }
+    const { doc } = this;
+    if (!doc) return;
+    const stop = (this.running = new AbortController());
+    const part = simulatedPart(doc.value);
+    const places = listOf(doc.value, "organs").map((_, i) => this.items.find((item) => item.key === `organs/${i}`)?.place ?? new three.Vector3());
+    this.isLoading = true, this.received = [];
+    this.onChange();
+    try {
+      const frame = new Promise<void>((resolve) => (this.onFrame = resolve));
+      const shown = await this.connection.call<ShownScene>("scene.show", { path: doc.path, text: doc.text, stage: kAuthorStage }, { signal: stop.signal });
+      await frame;
+      if (this.doc === doc) this.take(shown, part, places);
+    } catch (failure) {
+      if (!stop.signal.aborted && this.doc === doc) this.error = failure as Error, this.shownPart = part;
+    }
+    this.running = null, this.isLoading = false;
+    this.underline();
+    this.onChange();
+    if (this.wantsShow) this.wantsShow = false, void this.load();
+  }
+
+  private take(shown: ShownScene, part: string, places: three.Vector3[]): void {
+    const isFirst = !this.shown, had = this.shown?.view.organs.length ?? 0;
+    const stage = new StageScene(shown.view);
+    for (const message of this.received.splice(0))
+      if (message.kind === "shapes") stage.setShapes(message);
+      else if (message.kind === "spheres") stage.setSpheres(message);
+      else if (message.kind === "triangles") stage.setTriangles(message);
+      else stage.wait(message);
+    stage.takeFrame();
+    stage.show(this.how);
+    this.viewer.set(kAuthorStage, stage);
+    this.stage = stage, this.shown = shown, this.shownPart = part, this.places = places, this.error = null;
+    this.middles = stage.organSpheres.map((organ, i) => middleOf(organ.centre).sub(places[i] ?? new three.Vector3()));
+    // A scene is seen by its first camera; when an organ came, by the one that sees everything.
+    const camera = isFirst ? shown.view.cameras[0] : shown.view.organs.length > had ? shown.view.cameras.at(-1) : undefined;
+    if (camera) this.viewer.look(camera);
+    void this.measure();
+  }
+
+  private async measure(): Promise<void> {
+    this.tickTime = null;
+    const stop = (this.measuring = new AbortController());
+    try {
+      const time = await this.connection.call<TickTime>("scene.measure", { stage: kAuthorStage }, { signal: stop.signal });
+      if (this.measuring === stop && !stop.signal.aborted) this.tickTime = time;
+    } catch {
+      // It was stopped because the scene changed.
+    }
+    this.onChange();
+  }
+
+  dispose(): void {
+    clearTimeout(this.timers.check);
+    clearTimeout(this.timers.show);
+    this.running?.abort();
+    this.measuring?.abort();
+    for (const doc of this.documents.values()) doc.commit(), doc.dispose();
+  }
+}

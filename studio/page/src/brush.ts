@@ -1,0 +1,102 @@
+// Painting anchors on the surface: a stroke is a row of balls whose spheres never move.
+import * as three from "three";
+import type { JSONPath } from "jsonc-parser";
+import type { Values } from "./gizmos";
+import { type Item, mm, mmVector } from "./items";
+import type { StageScene } from "./stage_scene";
+import type { Viewer } from "./viewer";
+
+const kApart = 0.6; // distance of two balls of a stroke, in radii
+
+export class Brush {
+  radius = 0.01; // [m]
+  onPreview: (values: Values) => void = () => {};
+  onCommit: () => void = () => {};
+  private stage: StageScene | null = null;
+  private items: Item[] = []; // of the scene as it was before the stroke
+  private stroke: { organ: number; place: three.Vector3 }[] = [];
+  private erased = new Set<string>();
+  private isDown = false;
+  private readonly cursor: three.Mesh;
+
+  constructor(private readonly viewer: Viewer) {
+    const material = new three.MeshBasicMaterial({ color: 0x7cc0ff, transparent: true, opacity: 0.35, depthTest: false });
+    this.cursor = new three.Mesh(new three.SphereGeometry(1, 24, 16), material);
+    this.cursor.visible = false;
+    this.cursor.renderOrder = 1;
+  }
+
+  /** Paints in this scene; null: no longer. */
+  use(stage: StageScene | null, items: Item[]): void {
+    if (!this.isDown) this.items = items;
+    if (stage === this.stage) return;
+    this.cursor.removeFromParent();
+    stage?.scene.add(this.cursor);
+    if ((stage === null) !== (this.stage === null)) this.listen(stage !== null);
+    this.stage = stage;
+    this.cursor.visible = false;
+    this.viewer.draw();
+  }
+
+  private listen(on: boolean): void {
+    const change = on ? "addEventListener" : "removeEventListener";
+    this.viewer.controls.enabled = !on;
+    this.viewer.canvas[change]("pointerdown", this.down as EventListener);
+    this.viewer.canvas[change]("pointermove", this.move as EventListener);
+    this.viewer.canvas[change]("pointerup", this.up as EventListener);
+  }
+
+  private readonly down = (event: PointerEvent): void => {
+    if (event.button !== 0) return;
+    this.viewer.canvas.setPointerCapture(event.pointerId);
+    this.isDown = true;
+    this.stroke = [], this.erased.clear();
+    this.move(event);
+  };
+
+  private readonly up = (): void => {
+    if (!this.isDown) return;
+    this.isDown = false;
+    if (this.stroke.length > 0 || this.erased.size > 0) this.onCommit();
+  };
+
+  private readonly move = (event: PointerEvent): void => {
+    const hit = this.stage?.meet(this.viewer.rayAt(event.clientX, event.clientY)) ?? null;
+    this.cursor.visible = hit !== null;
+    if (hit) this.cursor.position.copy(hit.place), this.cursor.scale.setScalar(this.radius);
+    this.viewer.draw();
+    if (!hit || !this.isDown) return;
+    if (event.shiftKey) this.erase(hit.place);
+    else this.paint(hit.organ, hit.place);
+  };
+
+  private paint(organ: number, place: three.Vector3): void {
+    if (this.stroke.some((ball) => ball.organ === organ && ball.place.distanceTo(place) < kApart * this.radius)) return;
+    if (!this.holdsSphere(organ, place)) return; // such an anchor is an error
+    this.stroke.push({ organ, place: place.clone() });
+    const counts = new Map<number, number>();
+    const values: Values = this.stroke.map((ball) => {
+      const count = counts.get(ball.organ) ?? this.items.filter((item) => item.kind === "anchor" && item.path[1] === ball.organ).length;
+      counts.set(ball.organ, count + 1);
+      return [["organs", ball.organ, "anchors", count] as JSONPath, { sphere: { centre_mm: mmVector(ball.place), radius_mm: mm(this.radius) } }];
+    });
+    this.onPreview(values);
+  }
+
+  private erase(place: three.Vector3): void {
+    const before = this.erased.size;
+    for (const item of this.items)
+      if (item.shape === "sphere" && item.place && item.place.distanceTo(place) < Math.max(this.radius, item.size.x)) this.erased.add(item.key);
+    if (this.erased.size === before) return;
+    const gone = this.items.filter((item) => this.erased.has(item.key)).reverse(); // the last of a list first
+    this.onPreview(gone.map((item) => [item.path, undefined]));
+  }
+
+  private holdsSphere(organ: number, place: three.Vector3): boolean {
+    const spheres = this.stage?.organSpheres[organ];
+    if (!spheres) return true;
+    for (let i = 0; i < spheres.centre.length; i += 3)
+      if (Math.hypot(spheres.centre[i] - place.x, spheres.centre[i + 1] - place.y, spheres.centre[i + 2] - place.z) <= this.radius) return true;
+    return false;
+  }
+}

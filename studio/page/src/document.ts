@@ -1,0 +1,181 @@
+// A scene's text while its author works on it: one history for everything that changes it, a draft until it is saved.
+import { isolateHistory, redo, redoDepth, undo, undoDepth } from "@codemirror/commands";
+import { EditorState } from "@codemirror/state";
+import { EditorView } from "@codemirror/view";
+import { findNodeAtLocation, getLocation, type JSONPath, parseTree } from "jsonc-parser";
+import type { Connection } from "./connection";
+import { applied, type Change, type Json, removeValue, setValue } from "./json_edit";
+import { editorOf, gesture, rangeOf, underlined } from "./json_editor";
+import type { Problem } from "./protocol";
+import type { Schema } from "./scene_schema";
+
+export class SceneDocument {
+  readonly host = document.createElement("div"); // of the editor, for whoever shows it
+  readonly view: EditorView;
+  onChange: () => void = () => {}; // text, history or what is saved
+  onPlace: (path: JSONPath) => void = () => {}; // the cursor was put there by hand
+  private before: string | null = null; // a change that goes on began with this
+  private gestures = 0; // begun so far
+  private valid: Json | undefined;
+  private parsed: { text: string; value: Json | undefined } | null = null;
+
+  private constructor(private readonly connection: Connection, readonly path: string, private saved: string, private revision: string, text: string, schema: () => Schema | null) {
+    this.host.className = "editor";
+    // In a root of its own, the editor's styles are objects and not elements, which the page's security policy refuses.
+    const root = this.host.attachShadow({ mode: "open" });
+    const listen = EditorView.updateListener.of((update) => {
+      if (update.docChanged) this.keepDraft(), this.onChange();
+      if (update.selectionSet && update.transactions.some((t) => t.isUserEvent("select.pointer")))
+        this.onPlace(getLocation(this.text, update.state.selection.main.head).path);
+    });
+    const extensions = editorOf(`The text of ${path}`, schema, [listen]);
+    this.view = new EditorView({ state: EditorState.create({ doc: saved, extensions }), root, parent: root });
+    if (text !== saved) this.setText(text); // a draft can be undone
+  }
+
+  /** Reads a scene and the draft of it that this browser kept. */
+  static async open(connection: Connection, path: string, schema: () => Schema | null): Promise<SceneDocument> {
+    const file = await connection.call<{ text: string; revision: string }>("scene.read", { path });
+    return new SceneDocument(connection, path, file.text, file.revision, localStorage.getItem(draftKey(path)) ?? file.text, schema);
+  }
+
+  get text(): string {
+    return this.view.state.doc.toString();
+  }
+
+  /** The text's value; undefined: it is no JSON. */
+  get value(): Json | undefined {
+    const { text } = this;
+    if (this.parsed?.text !== text) {
+      let value: Json | undefined;
+      try {
+        value = JSON.parse(text) as Json;
+      } catch {
+        value = undefined;
+      }
+      this.valid = value ?? this.valid;
+      this.parsed = { text, value };
+    }
+    return this.parsed.value;
+  }
+
+  /** The value of the last text that was JSON. */
+  get lastValue(): Json | undefined {
+    return this.value ?? this.valid;
+  }
+
+  get isChanged(): boolean {
+    return this.text !== this.saved;
+  }
+  get canUndo(): boolean {
+    return undoDepth(this.view.state) > 0;
+  }
+  get canRedo(): boolean {
+    return redoDepth(this.view.state) > 0;
+  }
+  undo(): void {
+    this.commit();
+    undo(this.view);
+  }
+  redo(): void {
+    redo(this.view);
+  }
+
+  /** Sets values as one step of the history; undefined removes. Nothing happens while the text is no JSON. */
+  set(values: [JSONPath, Json | undefined][]): void {
+    if (this.value === undefined) return; // what is no JSON is not changed but by hand
+    this.commit();
+    this.setText(changed(this.text, values));
+  }
+
+  /** As set(), for a change that goes on: each call begins with the text before the first; all until commit() are one step. */
+  preview(values: [JSONPath, Json | undefined][]): void {
+    if (this.value === undefined) return;
+    if (this.before === null) this.before = this.text, ++this.gestures;
+    this.setText(changed(this.before, values), this.gestures);
+  }
+  commit(): void {
+    this.before = null;
+  }
+
+  /** Writes the file, unless somebody else did since it was read. */
+  async save(): Promise<void> {
+    this.commit();
+    const { text } = this;
+    if (text === this.saved) return;
+    this.revision = (await this.connection.call<{ revision: string }>("scene.write", { path: this.path, text, revision: this.revision })).revision;
+    this.saved = text;
+    this.keepDraft();
+    this.onChange();
+  }
+
+  /** Goes back to what the file says now; undo brings the changes back. */
+  async reread(): Promise<void> {
+    const file = await this.connection.call<{ text: string; revision: string }>("scene.read", { path: this.path });
+    this.saved = file.text, this.revision = file.revision, this.before = null;
+    this.setText(file.text);
+    this.keepDraft();
+    this.onChange();
+  }
+
+  /** Whether the file is another one than was read, and was not written here. */
+  async wasChangedOnDisk(): Promise<boolean> {
+    return (await this.connection.call<{ revision: string }>("scene.read", { path: this.path })).revision !== this.revision;
+  }
+
+  underline(errors: Problem[], warnings: Problem[]): void {
+    this.view.dispatch(underlined(this.view.state, errors, warnings));
+  }
+
+  /** Puts the cursor where a problem is. */
+  goToProblem(problem: Problem): void {
+    const range = rangeOf(this.view.state.doc, problem);
+    if (!range) return;
+    this.view.dispatch({ selection: { anchor: range.from, head: range.to }, effects: EditorView.scrollIntoView(range.from, { y: "center" }) });
+    this.view.focus();
+  }
+
+  /** Shows and selects the value at a path, without taking the focus. */
+  reveal(path: JSONPath): void {
+    const root = parseTree(this.text), node = root && findNodeAtLocation(root, path);
+    if (!node) return;
+    this.view.dispatch({
+      selection: { anchor: node.offset, head: node.offset + node.length }, effects: EditorView.scrollIntoView(node.offset, { y: "center" }),
+    });
+  }
+
+  dispose(): void {
+    this.view.destroy();
+  }
+
+  /** Changes the text where it differs: as a step of its own, or as a part of a gesture. */
+  private setText(text: string, part?: number): void {
+    const old = this.text;
+    if (text === old) return;
+    let from = 0, tail = 0;
+    while (from < old.length && old[from] === text[from]) ++from;
+    while (tail < Math.min(old.length, text.length) - from && old[old.length - 1 - tail] === text[text.length - 1 - tail]) ++tail;
+    this.view.dispatch({
+      changes: { from, to: old.length - tail, insert: text.slice(from, text.length - tail) },
+      annotations: part === undefined ? isolateHistory.of("full") : gesture.of(part),
+    });
+  }
+
+  private keepDraft(): void {
+    const { text } = this;
+    if (text === this.saved) localStorage.removeItem(draftKey(this.path));
+    else localStorage.setItem(draftKey(this.path), text);
+  }
+}
+
+function draftKey(path: string): string {
+  return `ctpm.draft:${path}`;
+}
+
+function changed(text: string, values: [JSONPath, Json | undefined][]): string {
+  for (const [path, value] of values) {
+    const change: Change | null = value === undefined ? removeValue(text, path) : setValue(text, path, value);
+    if (change) text = applied(text, change);
+  }
+  return text;
+}

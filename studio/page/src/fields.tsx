@@ -1,0 +1,52 @@
+import * as three from "three";
+
+/** A number that the text holds: `onInput` while it is changed, `onDone` when that is over. */
+export function NumberField({ label, value, unit, step, least, onInput, onDone }: {
+  label: string;
+  value: number;
+  unit: string;
+  step: number;
+  least?: number;
+  onInput: (value: number) => void;
+  onDone: () => void;
+}) {
+  return (
+    <label class="number-field">
+      <span>{label}</span>
+      <input type="number" step={step} min={least} value={Number.isFinite(value) ? value : ""} aria-label={`${label} [${unit}]`}
+        onInput={(e) => {
+          const number = e.currentTarget.valueAsNumber;
+          if (Number.isFinite(number)) onInput(number);
+        }}
+        onChange={onDone} />
+    </label>
+  );
+}
+
+/** Three numbers of a place, a size or a direction. */
+export function VectorField({ label, value, unit, step, names = ["x", "y", "z"], least, onInput, onDone }: {
+  label: string;
+  value: number[];
+  unit: string;
+  step: number;
+  names?: string[];
+  least?: number;
+  onInput: (value: number[]) => void;
+  onDone: () => void;
+}) {
+  return (
+    <fieldset class="vector">
+      <legend>{label} <small>{unit}</small></legend>
+      <div>
+        {value.map((x, i) => (
+          <NumberField key={names[i]} label={names[i]} value={x} unit={unit} step={step} least={least} onDone={onDone}
+            onInput={(changed) => onInput(value.map((old, k) => (k === i ? changed : old)))} />
+        ))}
+      </div>
+    </fieldset>
+  );
+}
+
+export function vectorOf(numbers: number[]): three.Vector3 {
+  return new three.Vector3(...numbers);
+}

@@ -1,0 +1,162 @@
+import { useEffect, useRef, useState } from "preact/hooks";
+import * as three from "three";
+import type { AuthorScene, Finding } from "./author_scene";
+import type { Connection } from "./connection";
+import { freeName, listOf, mmVector } from "./items";
+import { findJson, type Json } from "./json_edit";
+import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
+import type { Vector } from "./protocol";
+import { command, millimetres } from "./text";
+
+interface Preset {
+  name: string;
+  organ: string;
+  radius_m: number;
+}
+
+export interface Imported {
+  scene: string;
+  script: string;
+  report: string;
+  unit: string;
+  spheres: number;
+  anchored: number;
+  stiffness_scale?: number;
+  fit_problem: string;
+  findings: Finding[];
+  least: Vector;
+  most: Vector;
+}
+
+const kUnits: Record<string, string> = { "0.001": "mm", "0.01": "cm", "1": "m", "0.0254": "in" };
+const kGap = 0.01; // between an organ that is added and the others [m]
+
+/** What was found in a mesh, what was done about it, and what remains. */
+export function Findings({ findings }: { findings: Finding[] }) {
+  if (findings.length === 0) return <p class="good">Nothing had to be repaired.</p>;
+  return (
+    <ul class="findings" aria-label="Repairs">
+      {findings.map((finding, i) => (
+        <li key={i}>
+          <span>{finding.found}</span>
+          {finding.done && finding.done !== "none" && <span class="good">{finding.done}</span>}
+          {finding.remains && <span class="warning">{finding.remains}</span>}
+        </li>
+      ))}
+    </ul>
+  );
+}
+
+export function ImportResult({ imported }: { imported: Imported }) {
+  return (
+    <Section title="Imported">
+      <p class="good" role="status">{imported.scene}: {imported.spheres} spheres, {imported.anchored} of them never move</p>
+      <p class="hint">{imported.stiffness_scale !== undefined ? `Stiffness scale ${Number(imported.stiffness_scale.toPrecision(6))}, fitted to the paper's Table 1.`
+        : `Stiffness is not fitted: ${imported.fit_problem}`}</p>
+      <Findings findings={imported.findings} />
+    </Section>
+  );
+}
+
+/** Adds the organ of a scene that was imported to the one that is open, beside its organs: one step of its history. */
+async function addOrgan(connection: Connection, open: AuthorScene, imported: Imported): Promise<void> {
+  const { text } = await connection.call<{ text: string }>("scene.read", { path: imported.scene });
+  const organ = findJson(JSON.parse(text) as Json, ["organs", 0]) as { [key: string]: Json };
+  const doc = open.doc!, organs = listOf(doc.value, "organs"), view = open.shown?.view;
+  const at = view ? new three.Vector3(view.most[0] + kGap - imported.least[0], (view.least[1] + view.most[1] - imported.least[1] - imported.most[1]) / 2, view.least[2] - imported.least[2])
+    : new three.Vector3();
+  const { name, mesh, at_mm: _, ...rest } = organ;
+  doc.set([[["organs", organs.length], { name: freeName(organs, String(name)), mesh, at_mm: mmVector(at), ...rest }]]);
+}
+
+/** What is needed to make a scene of a mesh, and how far it is. */
+export function ImportForm({ connection, file, open, onCancel, onDone }: {
+  connection: Connection;
+  file: File;
+  open: AuthorScene | null; // a scene to which the organ can be added
+  onCancel: () => void;
+  onDone: (imported: Imported, isAdded: boolean) => void;
+}) {
+  const stem = file.name.replace(/\.[^.]*$/, "").replace(/[^\w-]+/g, "-");
+  const folder = open?.doc?.path.replace(/[^/]*$/, "") ?? "";
+  const [presets, setPresets] = useState<Preset[]>([]);
+  const [organ, setOrgan] = useState("");
+  const [unit, setUnit] = useState("");
+  const [radius, setRadius] = useState("");
+  const [scene, setScene] = useState(`${stem}-scene.json`);
+  const [isAdded, setAdded] = useState(false);
+  const [progress, setProgress] = useState<[string, number] | null>(null);
+  const [error, setError] = useState<Error | null>(null);
+  const stop = useRef(new AbortController());
+  const uploaded = useRef("");
+  useEffect(() => {
+    connection.call<Preset[]>("scene.presets").then((known) => {
+      setPresets(known);
+      setOrgan(known.find((preset) => file.name.toLowerCase().includes(preset.organ))?.name ?? known[0]?.name ?? "");
+    }, setError);
+    return () => stop.current.abort();
+  }, [connection, file]);
+
+  const target = isAdded ? folder + scene : scene;
+  const start = async () => {
+    setError(null);
+    const { signal } = (stop.current = new AbortController());
+    try {
+      if (!uploaded.current) {
+        setProgress(["uploading", 0]);
+        await connection.upload(file.name, file, (share) => setProgress(["uploading", share]), signal);
+        uploaded.current = file.name;
+      }
+      setProgress(["importing", 0]);
+      const params = {
+        mesh: uploaded.current, scene: target, organ, unit_m: unit ? Number(unit) : undefined, radius_m: radius ? Number(radius) / 1e3 : undefined,
+      };
+      const imported = await connection.call<Imported>("scene.import", params,
+        { progress: (done, total) => setProgress([done < total ? "importing" : "fitting the stiffness", done / total]), signal });
+      if (isAdded && open) await addOrgan(connection, open, imported);
+      onDone(imported, isAdded);
+      return;
+    } catch (failure) {
+      setError(signal.aborted ? new Error("Stopped; nothing was written but the mesh that was uploaded.") : (failure as Error));
+    }
+    setProgress(null);
+  };
+  const usual = presets.find((preset) => preset.name === organ)?.radius_m;
+  return (
+    <Section title="Import a mesh">
+      <Readings rows={[["file", file.name], ["size", `${(file.size / 1e6).toFixed(2)} MB`]]} />
+      {open?.doc && (
+        <fieldset class="choice">
+          <legend>becomes</legend>
+          <label><input type="radio" name="into" checked={!isAdded} onChange={() => setAdded(false)} /> a scene of its own</label>
+          <label><input type="radio" name="into" checked={isAdded} onChange={() => setAdded(true)} /> an organ of {open.doc.path} too</label>
+        </fieldset>
+      )}
+      <label class="field"><span>tissue</span>
+        <select value={organ} onChange={(e) => setOrgan(e.currentTarget.value)}>{presets.map((p) => <option key={p.name}>{p.name}</option>)}</select>
+      </label>
+      <label class="field"><span>unit of the file</span>
+        <select value={unit} onChange={(e) => setUnit(e.currentTarget.value)}>
+          <option value="">guessed</option>
+          {Object.entries(kUnits).map(([metres, name]) => <option key={metres} value={metres}>{name}</option>)}
+        </select>
+      </label>
+      <label class="field"><span>radius of the spheres [mm]{usual !== undefined && `, ${millimetres(usual)} if empty`}</span>
+        <input type="number" min="0.1" step="0.1" value={radius} onInput={(e) => setRadius(e.currentTarget.value)} />
+      </label>
+      <label class="field"><span>scene to write</span>
+        <input value={scene} onInput={(e) => setScene(e.currentTarget.value)} />
+      </label>
+      {progress ? <Working what={progress[0]} done={progress[1]} total={1} onCancel={() => stop.current.abort()} />
+        : (
+          <div class="buttons">
+            <button type="button" class="main" onClick={() => void start()}>Import</button>
+            <button type="button" onClick={onCancel}>Back</button>
+          </div>
+        )}
+      <Problems error={error} />
+      <ShownCommand text={command("import", file.name, "--organ", organ, ...(unit ? ["--unit", kUnits[unit]] : []),
+        ...(radius ? ["--radius-mm", radius] : []), "-o", target)} />
+    </Section>
+  );
+}

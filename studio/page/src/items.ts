@@ -1,0 +1,158 @@
+// The things of a scene that have a place, as the text says them. Lengths of the text are millimetres, here metres.
+import type { JSONPath } from "jsonc-parser";
+import * as three from "three";
+import type { Json } from "./json_edit";
+import { orientationOf } from "./pose";
+import type { SceneView, Vector } from "./protocol";
+
+export type ItemKind = "organ" | "anchor" | "tool" | "probe" | "camera";
+
+export interface Item {
+  key: string; // its path, as text
+  path: JSONPath;
+  kind: ItemKind;
+  name: string;
+  shape: "organ" | "ball" | "scalpel" | "pin" | "probe" | "camera" | "sphere" | "box" | "plane" | "lowest";
+  index: number; // in its list
+  place: three.Vector3 | null; // null: it has none, or the text does not say it well
+  turn: three.Quaternion; // of tools, planes and cameras
+  size: three.Vector3; // of a box anchor its sides; of a sphere anchor or a ball, three times its radius
+  offset: three.Vector3; // from its place to its handle: an organ's place is that of its mesh's origin
+  isWritten: boolean; // the text says the place; else it is where the hand takes it up
+}
+
+type Values = [JSONPath, Json | undefined][];
+type Fields = { [key: string]: Json };
+
+/** A length as it is written [mm]: to a hundredth. */
+export function mm(metres: number): number {
+  return Math.round(metres * 1e5) / 100 + 0;
+}
+export function mmVector(v: three.Vector3): number[] {
+  return [mm(v.x), mm(v.y), mm(v.z)];
+}
+function direction(v: three.Vector3): number[] {
+  return v.toArray().map((x) => Math.round(x * 1e4) / 1e4 + 0);
+}
+
+function isFields(value: Json | undefined): value is Fields {
+  return typeof value === "object" && value !== null && !Array.isArray(value);
+}
+export function listOf(scene: Json | undefined, key: string): Fields[] {
+  const list = isFields(scene) ? scene[key] : undefined;
+  return Array.isArray(list) ? list.map((entry) => (isFields(entry) ? entry : {})) : [];
+}
+function numbersOf(value: Json | undefined): number[] | null {
+  return Array.isArray(value) && value.length === 3 && value.every((x) => typeof x === "number") ? (value as number[]) : null;
+}
+function metresOf(value: Json | undefined): three.Vector3 | null {
+  const numbers = numbersOf(value);
+  return numbers && new three.Vector3(...numbers).multiplyScalar(1e-3);
+}
+function lengthOf(value: Json | undefined, otherwise: number): number {
+  return typeof value === "number" && value > 0 ? value * 1e-3 : otherwise;
+}
+function textOf(value: Json | undefined, otherwise: string): string {
+  return typeof value === "string" && value ? value : otherwise;
+}
+
+/** Everything in a scene that has a place. `view`: as it is shown, for places that the text leaves open. `middles`: of its organs, from their places. */
+export function itemsOf(scene: Json | undefined, view: SceneView | null, middles: three.Vector3[] = []): Item[] {
+  const items: Item[] = [];
+  const add = (path: JSONPath, kind: ItemKind, shape: Item["shape"], name: string, place: three.Vector3 | null, more: Partial<Item> = {}) =>
+    items.push({
+      key: path.join("/"), path, kind, shape, name, place, index: Number(path.at(-1)), turn: new three.Quaternion(), size: new three.Vector3(), offset: new three.Vector3(), isWritten: true, ...more,
+    });
+  const middle = view ? new three.Vector3(...view.least).add(new three.Vector3(...view.most)).multiplyScalar(0.5) : new three.Vector3();
+  listOf(scene, "organs").forEach((organ, i) => {
+    const name = textOf(organ.name, `organ ${i + 1}`);
+    if (!organ.rig) add(["organs", i], "organ", "organ", name, metresOf(organ.at_mm) ?? new three.Vector3(), { isWritten: organ.at_mm !== undefined, offset: middles[i] ?? new three.Vector3() });
+    // The organ is named where there are others.
+    const called = (what: string, k: number) => `${what} ${k + 1}${listOf(scene, "organs").length > 1 ? ` of ${name}` : ""}`;
+    listOf(organ, "anchors").forEach((anchor, k) => {
+      const path = ["organs", i, "anchors", k];
+      if (isFields(anchor.sphere)) {
+        const radius = lengthOf(anchor.sphere.radius_mm, 0);
+        add(path, "anchor", "sphere", called("ball", k), metresOf(anchor.sphere.centre_mm), { size: new three.Vector3(radius, radius, radius) });
+      } else if (isFields(anchor.box)) {
+        const least = metresOf(anchor.box.min_mm), most = metresOf(anchor.box.max_mm);
+        add(path, "anchor", "box", called("box", k), least && most && least.clone().add(most).multiplyScalar(0.5), least && most ? { size: most.clone().sub(least) } : {});
+      } else if (isFields(anchor.plane)) {
+        const normal = numbersOf(anchor.plane.normal) as Vector | null;
+        add(path, "anchor", "plane", called("plane", k), metresOf(anchor.plane.point_mm), { turn: orientationOf(normal && Math.hypot(...normal) > 0 ? normal : [0, 0, 1]) });
+      } else if (anchor.lowest_mm !== undefined) {
+        add(path, "anchor", "lowest", called("lowest part", k), null);
+      }
+    });
+  });
+  listOf(scene, "tools").forEach((tool, i) => {
+    const shape = tool.kind === "pin" ? "pin" : tool.kind === "scalpel" ? "scalpel" : "ball";
+    const radius = lengthOf(tool.radius_mm, 0);
+    const place = metresOf(shape === "pin" ? tool.holds_mm : tool.at_mm);
+    const pointing = numbersOf(tool.pointing) as Vector | null, facing = numbersOf(tool.facing) as Vector | null;
+    const up = view ? new three.Vector3(...view.up) : new three.Vector3(0, 0, 1);
+    const height = view ? Math.abs(up.dot(new three.Vector3(...view.most).sub(new three.Vector3(...view.least)))) : 0;
+    const above = middle.clone().addScaledVector(up, height / 2 + radius + 0.02).addScaledVector(acrossOf(up), 0.03 * (i - (listOf(scene, "tools").length - 1) / 2));
+    add(["tools", i], "tool", shape, textOf(tool.name, `tool ${i + 1}`), place ?? (shape === "pin" ? null : above), {
+      turn: orientationOf(!place ? (up.clone().negate().toArray() as Vector) : pointing && Math.hypot(...pointing) > 0 ? pointing : [0, 0, -1], place && facing ? facing : undefined),
+      size: new three.Vector3(radius, radius, radius), isWritten: place !== null,
+    });
+  });
+  listOf(scene, "probes").forEach((probe, i) => add(["probes", i], "probe", "probe", textOf(probe.name, `probe ${i + 1}`), metresOf(probe.at_mm)));
+  listOf(scene, "cameras").forEach((camera, i) => add(["cameras", i], "camera", "camera", textOf(camera.name, `camera ${i + 1}`), metresOf(camera.eye_mm), { turn: lookOf(camera) }));
+  return items;
+}
+
+/** The orientation of a camera, which looks along its -z. */
+function lookOf(camera: Fields): three.Quaternion {
+  const eye = metresOf(camera.eye_mm), target = metresOf(camera.target_mm), up = numbersOf(camera.up);
+  if (!eye || !target) return new three.Quaternion();
+  return new three.Quaternion().setFromRotationMatrix(new three.Matrix4().lookAt(eye, target, new three.Vector3(...(up ?? [0, 0, 1]))));
+}
+
+function acrossOf(up: three.Vector3): three.Vector3 {
+  const helper = Math.abs(up.x) < 0.9 ? new three.Vector3(1, 0, 0) : new three.Vector3(0, 1, 0);
+  return helper.addScaledVector(up, -helper.dot(up)).normalize();
+}
+
+/** What the text says of an item that was moved. */
+export function placed(item: Item, place: three.Vector3): Values {
+  const at = mmVector(place);
+  if (item.shape === "sphere") return [[[...item.path, "sphere", "centre_mm"], at]];
+  if (item.shape === "plane") return [[[...item.path, "plane", "point_mm"], at]];
+  if (item.shape === "box") return boxed(item, place, item.size);
+  if (item.shape === "pin") return [[[...item.path, "holds_mm"], at]];
+  if (item.shape === "camera") return [[[...item.path, "eye_mm"], at]];
+  const values: Values = [[[...item.path, "at_mm"], at]];
+  if (item.kind === "tool" && !item.isWritten) values.push(...turned(item, item.turn));
+  return values;
+}
+
+/** Of a tool that was turned, with its place. */
+export function turned(item: Item, turn: three.Quaternion): Values {
+  const values: Values = item.isWritten ? [] : [[[...item.path, "at_mm"], mmVector(item.place!)]];
+  values.push([[...item.path, "pointing"], direction(new three.Vector3(0, 0, -1).applyQuaternion(turn))]);
+  if (item.shape === "scalpel") values.push([[...item.path, "facing"], direction(new three.Vector3(1, 0, 0).applyQuaternion(turn))]);
+  return values;
+}
+
+function boxed(item: Item, place: three.Vector3, size: three.Vector3): Values {
+  const half = size.clone().multiplyScalar(0.5);
+  return [
+    [[...item.path, "box", "min_mm"], mmVector(place.clone().sub(half))],
+    [[...item.path, "box", "max_mm"], mmVector(place.clone().add(half))],
+  ];
+}
+
+/** Of an anchor that got another size. */
+export function sized(item: Item, size: three.Vector3): Values {
+  if (item.shape === "sphere") return [[[...item.path, "sphere", "radius_mm"], mm(Math.max(size.x, 1e-4))]];
+  return item.shape === "box" ? boxed(item, item.place!, size.clone().max(new three.Vector3(1e-4, 1e-4, 1e-4))) : [];
+}
+
+/** A name that no entry of the list has yet: probe 1, probe 2 ... */
+export function freeName(list: Fields[], stem: string): string {
+  const taken = new Set(list.map((entry) => entry.name));
+  if (!taken.has(stem)) return stem;
+  for (let i = 2; ; ++i) if (!taken.has(`${stem}-${i}`)) return `${stem}-${i}`;
+}

@@ -1,0 +1,105 @@
+import * as three from "three";
+import type { JSONPath } from "jsonc-parser";
+import type { AuthorScene } from "./author_scene";
+import { onSurface } from "./gizmos";
+import { cameraValues } from "./inspector";
+import { freeName, type Item, type ItemKind, itemsOf, listOf, mm, mmVector } from "./items";
+import { applied, type Json, setValue } from "./json_edit";
+import type { Viewer } from "./viewer";
+
+const kTitles: [ItemKind, string][] = [["organ", "Organs"], ["anchor", "Anchors"], ["tool", "Tools"], ["probe", "Probes"], ["camera", "Cameras"]];
+
+/** What can be added, and what it begins as. */
+const kNew: Record<Exclude<ItemKind, "organ">, [string, string][]> = {
+  anchor: [["sphere", "ball"], ["box", "box"]],
+  tool: [["ball", "ball"], ["scalpel", "scalpel"]],
+  probe: [["probe", "probe"]],
+  camera: [["camera", "this view"]],
+};
+
+/** The place of the surface in the middle of the picture; else in front of the viewer. */
+function middleOf(scene: AuthorScene, viewer: Viewer): { place: three.Vector3; normal: three.Vector3; organ: number } {
+  const box = viewer.canvas.getBoundingClientRect();
+  const ray = viewer.rayAt(box.left + box.width / 2, box.top + box.height / 2);
+  const hit = scene.stage?.meet(ray);
+  if (hit) return hit;
+  // The organ beside the middle is met on the way to its own middle.
+  const { view } = scene.shown!;
+  const middle = new three.Vector3(...view.least).add(new three.Vector3(...view.most)).multiplyScalar(0.5);
+  ray.set(viewer.camera.position, middle.clone().sub(viewer.camera.position).normalize());
+  return scene.stage?.meet(ray) ?? { place: middle, normal: new three.Vector3(...view.up), organ: 0 };
+}
+
+/** Adds a thing where the middle of the picture meets the surface. Returns its key. */
+export function addItem(scene: AuthorScene, viewer: Viewer, kind: Exclude<ItemKind, "organ">, shape: string): string {
+  const doc = scene.doc!, value = doc.value;
+  const { place, normal, organ } = middleOf(scene, viewer);
+  const radius = scene.stage?.organSpheres[organ]?.radius ?? 0.004;
+  let path: JSONPath, entry: Json;
+  if (kind === "anchor") {
+    path = ["organs", organ, "anchors", listOf(listOf(value, "organs")[organ], "anchors").length];
+    const reach = 4 * radius, away = new three.Vector3(reach, reach, reach);
+    entry = shape === "sphere" ? { sphere: { centre_mm: mmVector(place), radius_mm: mm(reach) } }
+      : { box: { min_mm: mmVector(place.clone().sub(away)), max_mm: mmVector(place.clone().add(away)) } };
+  } else {
+    const list = listOf(value, `${kind}s`);
+    path = [`${kind}s`, list.length];
+    entry = { name: freeName(list, kind === "tool" ? shape : kind) };
+    if (shape === "ball") Object.assign(entry, { kind: "ball", radius_mm: mm(2.5 * radius) });
+    if (shape === "scalpel") Object.assign(entry, { kind: "scalpel", blade_length_mm: 40 });
+    if (kind === "probe") Object.assign(entry, { at_mm: mmVector(place) });
+    if (kind === "camera") for (const [key, field] of cameraValues([], viewer)) Object.assign(entry, { [key[0]]: field! });
+  }
+  if (kind === "tool") {
+    // A tool stands on the surface: its entry with its place is one step.
+    const made = setValue(doc.text, path, entry);
+    const item = made && itemsOf(JSON.parse(applied(doc.text, made)) as Json, scene.shown?.view ?? null).find((i) => i.key === path.join("/"));
+    if (item) for (const [key, field] of onSurface(item, place, normal)) Object.assign(entry, { [key.at(-1)!]: field! });
+  }
+  doc.set([[path, entry]]);
+  return path.join("/");
+}
+
+export function Objects({ scene, viewer, items, selected, onSelect, brushRadius, onBrush }: {
+  scene: AuthorScene;
+  viewer: Viewer;
+  items: Item[];
+  selected: string;
+  onSelect: (key: string) => void;
+  brushRadius: number | null; // [m]; null: nothing is painted
+  onBrush: (radius: number | null) => void;
+}) {
+  const least = 1.2 * Math.max(0.001, ...(scene.stage?.organSpheres ?? []).map((organ) => organ.radius));
+  return (
+    <div class="objects">
+      {kTitles.map(([kind, title]) => (
+        <section key={kind}>
+          <h2>{title}</h2>
+          <ul>
+            {items.filter((item) => item.kind === kind).map((item) => (
+              <li key={item.key}>
+                <button type="button" aria-current={item.key === selected} onClick={() => onSelect(item.key)}><i class={`dot ${kind}`} /><span>{item.name}</span></button>
+              </li>
+            ))}
+          </ul>
+          {kind !== "organ" && (
+            <div class="buttons add">
+              {kNew[kind].map(([shape, name]) => (
+                <button key={shape} type="button" class="quiet" disabled={!scene.shown || scene.doc?.value === undefined} onClick={() => onSelect(addItem(scene, viewer, kind, shape))}>+ {name}</button>
+              ))}
+              {kind === "anchor" && (
+                <button type="button" class="quiet" disabled={!scene.shown || scene.doc?.value === undefined} aria-pressed={brushRadius !== null}
+                  onClick={() => onBrush(brushRadius === null ? 2.5 * least : null)}>paint</button>
+              )}
+            </div>
+          )}
+          {kind === "anchor" && brushRadius !== null && (
+            <label class="field brush"><span>brush {mm(brushRadius)} mm; drag paints, Shift erases</span>
+              <input type="range" min={least} max={12 * least} step={0.0005} value={brushRadius} onInput={(e) => onBrush(e.currentTarget.valueAsNumber)} />
+            </label>
+          )}
+        </section>
+      ))}
+    </div>
+  );
+}

@@ -1,0 +1,211 @@
+import * as three from "three";
+import { type Frame, type HandFrame, type OrganSpheres, readWaitingFrame, type SceneView, type Shapes, type Spheres, type ToolShape, type Triangles, type Vector, type WaitingFrame } from "./protocol";
+import { OrganMesh } from "./organ_mesh";
+
+const kArrowPerNewton = 0.007; // [m/N]
+const kLongestArrow = 0.06; // [m]
+const kSteel: Vector = [0.5, 0.53, 0.57];
+const kHandle: Vector = [0.05, 0.055, 0.065];
+const kCloth: Vector = [0.16, 0.22, 0.24]; // of obstacles
+const kAnchored = 0x7fb8ff;
+
+export type Shown = "surface" | "both" | "spheres";
+
+/** One scene with its organs, tools and forces. */
+export class StageScene {
+  readonly scene = new three.Scene();
+  frame: Frame | null = null; // the one that is drawn
+  onFrame: (frame: Frame) => void = () => {};
+  private waiting: WaitingFrame | null = null;
+  private organs: OrganMesh[] = [];
+  private topology = -1;
+  private next: Triangles | null = null; // until their first frame is drawn
+  private tools: three.Mesh[] = [];
+  private obstacles: three.Mesh[] = [];
+  private spheres: three.InstancedMesh[] = [];
+  private shown: Shown = "surface";
+  organSpheres: OrganSpheres[] = [];
+  private readonly arrows = [makeArrow(), makeArrow()]; // of each hand
+  private ghost: three.Mesh | null = null;
+
+  constructor(readonly view: SceneView) {
+    this.scene.add(new three.HemisphereLight(0xdfe8ff, 0x3a2e2a, 1.5), ...this.arrows);
+    for (const arrow of this.arrows) arrow.visible = false;
+  }
+
+  /** The shapes of tools, which frames move, and of obstacles, which never move. */
+  setShapes(shapes: Shapes): void {
+    for (const mesh of [...this.tools, ...this.obstacles]) this.scene.remove(mesh), mesh.geometry.dispose();
+    const steel = new three.MeshPhongMaterial({ vertexColors: true, specular: 0x777777, shininess: 70, side: three.DoubleSide });
+    const cloth = new three.MeshPhongMaterial({ vertexColors: true, specular: 0x111111, side: three.DoubleSide });
+    this.tools = shapes.tools.map((shape) => {
+      const mesh = new three.Mesh(geometryOf(shape), steel);
+      mesh.visible = false;
+      return mesh;
+    });
+    this.obstacles = shapes.obstacles.map((shape) => new three.Mesh(geometryOf(shape), cloth));
+    for (const mesh of [...this.tools, ...this.obstacles]) mesh.frustumCulled = false, this.scene.add(mesh);
+  }
+
+  /** The shape of a tool, for whoever draws a copy of it. */
+  toolShape(tool: number): three.BufferGeometry | null {
+    return this.tools[tool]?.geometry ?? null;
+  }
+
+  /** The spheres at rest, which show() shows. */
+  setSpheres(spheres: Spheres): void {
+    for (const mesh of this.spheres) this.scene.remove(mesh), mesh.dispose();
+    this.spheres = spheres.organs.map((organ, i) => sphereMesh(organ, this.view.organs[i].layer_colours));
+    for (const mesh of this.spheres) this.scene.add(mesh);
+    this.organSpheres = spheres.organs;
+    this.show(this.shown);
+  }
+
+  /** The surfaces, the spheres by layer, or both. */
+  show(shown: Shown): void {
+    this.shown = shown;
+    for (const organ of this.organs) organ.setOpacity(shown === "surface" ? 1 : shown === "both" ? 0.25 : 0);
+    for (const mesh of this.spheres) mesh.visible = shown !== "surface";
+  }
+
+  /** Where a ray from a camera meets an organ first: the place, the normal of the surface there, the organ. */
+  meet(ray: three.Raycaster): { place: three.Vector3; normal: three.Vector3; organ: number } | null {
+    let best: three.Intersection | null = null, organ = -1;
+    this.organs.forEach((candidate, i) => {
+      const hit = candidate.meet(ray);
+      if (hit && (!best || hit.distance < best.distance)) best = hit, organ = i;
+    });
+    if (!best) return null;
+    const { point, face } = best as three.Intersection;
+    const normal = face!.normal.clone();
+    if (normal.dot(ray.ray.direction) > 0) normal.negate();
+    return { place: point.clone(), normal, organ };
+  }
+
+  /** Moves an organ as it is drawn, until its next frame [m]. */
+  shiftOrgan(organ: number, by: three.Vector3): void {
+    this.organs[organ]?.mesh.position.copy(by);
+    this.spheres[organ]?.position.copy(by);
+  }
+
+  /** Triangles of the frames that follow. */
+  setTriangles(triangles: Triangles): void {
+    this.next = triangles;
+  }
+
+  private useTriangles(triangles: Triangles): void {
+    for (const organ of this.organs) this.scene.remove(organ.mesh), organ.dispose();
+    this.organs = triangles.organs.map((organ, i) => new OrganMesh(organ, this.view.organs[i]));
+    for (const organ of this.organs) this.scene.add(organ.mesh);
+    this.topology = triangles.topology;
+    this.next = null;
+    this.show(this.shown);
+  }
+
+  /** Takes the newest frame, which is read when it is drawn: a slow browser leaves out those in between. */
+  wait(frame: WaitingFrame): void {
+    this.waiting = frame;
+  }
+
+  /** Moves everything to the frame that waits. False: there is none. */
+  takeFrame(): boolean {
+    if (!this.waiting) return false;
+    const frame = readWaitingFrame(this.waiting);
+    this.waiting = null;
+    if (frame.topology === this.next?.topology) this.useTriangles(this.next);
+    if (frame.topology !== this.topology) return false; // of triangles that are not here
+    this.frame = frame;
+    frame.organs.forEach((positions, i) => this.organs[i]?.update(positions));
+    this.tools.forEach((tool, i) => {
+      const holding = i === frame.second?.tool ? frame.second : frame; // both hands never hold the same tool
+      tool.visible = i === holding.tool;
+      tool.position.set(...holding.position);
+      const [w, x, y, z] = holding.orientation;
+      tool.quaternion.set(x, y, z, w);
+    });
+    this.showForce(this.arrows[0], frame);
+    if (frame.second) this.showForce(this.arrows[1], frame.second);
+    this.onFrame(frame);
+    return true;
+  }
+
+  /** A pale copy of a tool at a pose (tool, position, orientation w x y z); null: none. */
+  setGhost(pose: number[] | null): void {
+    const [tool, px, py, pz, w, x, y, z] = pose ?? [-1];
+    const like = this.tools[tool];
+    if (this.ghost && this.ghost.userData.tool !== tool) {
+      this.scene.remove(this.ghost);
+      this.ghost = null;
+    }
+    if (!like) return;
+    if (!this.ghost) {
+      const material = new three.MeshBasicMaterial({ color: 0x7cc0ff, transparent: true, opacity: 0.3, depthWrite: false });
+      this.ghost = new three.Mesh(like.geometry, material);
+      this.ghost.frustumCulled = false;
+      this.ghost.userData.tool = tool;
+      this.scene.add(this.ghost);
+    }
+    this.ghost.position.set(px, py, pz);
+    this.ghost.quaternion.set(x, y, z, w);
+  }
+
+  private showForce(arrow: three.Group, frame: HandFrame): void {
+    const force = new three.Vector3(...frame.force), size = force.length();
+    arrow.visible = size > 0.01 && frame.tool >= 0;
+    if (!arrow.visible) return;
+    arrow.position.set(...frame.position);
+    arrow.quaternion.setFromUnitVectors(new three.Vector3(0, 1, 0), force.divideScalar(size));
+    arrow.scale.set(1, Math.min(size * kArrowPerNewton, kLongestArrow) / 0.03, 1);
+  }
+
+  dispose(): void {
+    for (const organ of this.organs) organ.dispose();
+    for (const mesh of [...this.tools, ...this.obstacles, ...this.spheres]) mesh.geometry.dispose();
+  }
+}
+
+function geometryOf(shape: ToolShape): three.BufferGeometry {
+  const geometry = new three.BufferGeometry();
+  const interleaved = new three.InterleavedBuffer(shape.vertex, 7);
+  geometry.setAttribute("position", new three.InterleavedBufferAttribute(interleaved, 3, 0));
+  geometry.setAttribute("normal", new three.InterleavedBufferAttribute(interleaved, 3, 3));
+  const count = shape.vertex.length / 7, colours = new Float32Array(3 * count);
+  for (let v = 0; v < count; ++v) {
+    const part = shape.vertex[7 * v + 6];
+    colours.set(part < 0.5 ? kSteel : part < 1.5 ? kHandle : kCloth, 3 * v);
+  }
+  geometry.setAttribute("color", new three.BufferAttribute(colours, 3));
+  geometry.setIndex(new three.BufferAttribute(shape.index, 1));
+  return geometry;
+}
+
+/** The spheres of an organ in the colours of their layers; those that never move are blue. */
+function sphereMesh(spheres: OrganSpheres, colours: Vector[]): three.InstancedMesh {
+  const count = spheres.layer.length;
+  const shape = new three.SphereGeometry(spheres.radius, 12, 8);
+  const mesh = new three.InstancedMesh(shape, new three.MeshPhongMaterial({ specular: 0x222222 }), count);
+  const place = new three.Matrix4(), colour = new three.Color();
+  for (let i = 0; i < count; ++i) {
+    mesh.setMatrixAt(i, place.makeTranslation(spheres.centre[3 * i], spheres.centre[3 * i + 1], spheres.centre[3 * i + 2]));
+    const layer = colours[Math.min(spheres.layer[i], colours.length) - 1] ?? [0.6, 0.6, 0.6];
+    if (spheres.anchored[i]) colour.set(kAnchored);
+    else colour.setRGB(...layer, three.SRGBColorSpace);
+    mesh.setColorAt(i, colour);
+  }
+  mesh.frustumCulled = false;
+  return mesh;
+}
+
+/** An arrow of 30 mm along +y. */
+function makeArrow(): three.Group {
+  const group = new three.Group();
+  const material = new three.MeshBasicMaterial({ color: 0xffc857, depthTest: false, transparent: true, opacity: 0.95 });
+  const shaft = new three.Mesh(new three.CylinderGeometry(0.0009, 0.0009, 0.022, 10), material);
+  shaft.position.y = 0.011;
+  const head = new three.Mesh(new three.ConeGeometry(0.0028, 0.008, 14), material);
+  head.position.y = 0.026;
+  group.add(shaft, head);
+  group.renderOrder = 2;
+  shaft.renderOrder = head.renderOrder = 2;
+  return group;
+}

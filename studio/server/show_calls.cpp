@@ -1,0 +1,125 @@
+// A scene that is shown while its author works on it, and what can be measured of it.
+
+#include <mutex>
+#include <string>
+
+#include "core/model/state.h"
+#include "studio/fidelity/scene.h"
+#include "studio/loading/loaded_scene.h"
+#include "studio/loading/tick_time.h"
+#include "studio/server/call_table.h"
+#include "studio/server/picture.h"
+#include "studio/server/scene_text.h"
+
+namespace ctpm::server {
+namespace {
+
+std::uint32_t stage_of(Parameters& parameters, const CallContext& context) {
+  const std::uint32_t stage = std::uint32_t(parameters.number("stage", 0, Desk::kMostStages - 1));
+  if (!context.desk) parameters.refuse("stage", "only a page with a WebSocket has stages");
+  return stage;
+}
+
+/// What is known of each organ's mesh and spheres.
+void write_organs(output::JsonWriter& json, const loading::LoadedScene& scene) {
+  const Model& model = scene.built.model;
+  json.begin_list();
+  for (std::size_t i = 0; i < scene.organs.size(); ++i) {
+    const importers::ImportReport& report = scene.reports[i];
+    std::int64_t anchored = 0;
+    const std::int64_t first = model.organs[i].first, end = first + model.organs[i].count;
+    for (std::int64_t sphere = first; sphere < end; ++sphere)
+      anchored += model.held_axes[std::size_t(sphere)] == kAnchored;
+    json.begin_object().member("spheres", scene.organs[i].centre.size()).member("anchored", anchored);
+    json.member("report", report.path.empty() ? std::string() : importers::to_text(report)).key("findings");
+    write_findings(json, report.findings);
+    json.end_object();
+  }
+  json.end_list();
+}
+
+/// Forces on the ball at each depth: mean, scatter, most over least.
+void write_scatter(output::JsonWriter& json, const std::vector<fidelity::OrientationResult::Row>& rows) {
+  json.begin_list();
+  for (const fidelity::OrientationResult::Row& row : rows) {
+    const fidelity::Spread spread = fidelity::spread_of(row.forces);
+    json.begin_object().member("depth_m", row.depth).member("force_n", spread.mean);
+    json.member("scatter", spread.deviation).member("most_over_least", spread.ratio()).end_object();
+  }
+  json.end_list();
+}
+
+}  // namespace
+
+/// Loads a scene with its meshes, as `check` does, and shows it at rest.
+Result<std::string> show_scene(Parameters& parameters, const CallContext& context) {
+  const std::string path = parameters.text("path");
+  scenes::LoadOptions options;
+  options.text = parameters.text_if("text");
+  const std::uint32_t stage = stage_of(parameters, context);
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  const Result<std::string> file = options.text ? context.folder.place(path) : context.folder.find(path);
+  if (!file) return file.errors();
+  Result<loading::LoadedScene> loaded = loading::load_whole_scene(*file, options, {}, context.should_stop);
+  if (!loaded) return loaded.errors();
+  const auto scene = std::make_shared<const loading::LoadedScene>(*std::move(loaded));
+  const Model& model = scene->built.model;
+  output::JsonWriter organs;
+  write_organs(organs, *scene);
+  PictureMaker maker(model, stage);
+  context.desk->outbox().send_bytes(shapes_message(model, stage));
+  context.desk->outbox().send_bytes(spheres_message(model, stage));
+  context.desk->outbox().show(maker.make(rest_state(model), {}));
+  context.desk->keep(stage, scene);
+  return "{\"view\": " + view_json(scene->scene.spec, model) + ", \"organs\": " + organs.text() +
+         ", \"spheres\": " + std::to_string(model.sphere_count()) +
+         ", \"elements\": " + std::to_string(model.element_count()) +
+         ", \"warnings\": " + errors_json(scene->scene.warnings) + "}";
+}
+
+/// The time of a tick of the scene that a stage shows.
+Result<std::string> measure_scene(Parameters& parameters, const CallContext& context) {
+  const std::uint32_t stage = stage_of(parameters, context);
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  const std::shared_ptr<const loading::LoadedScene> scene = context.desk->kept(stage);
+  if (!scene) return Error{"", "no scene is shown there", ""};
+  const std::optional<double> time = loading::measure_tick(scene->built.model, context.should_stop);
+  if (!time) return Error{"", "stopped", ""};
+  output::JsonWriter json;
+  json.begin_object().member("measured_tick_time_s", *time).member("tick_s", scene->built.model.tick);
+  return json.member("ticks", loading::kMeasuredTicks).end_object().text();
+}
+
+/// The scatter of the force on the scene's first ball, as `fidelity SCENE` measures it.
+Result<std::string> measure_scatter(Parameters& parameters, const CallContext& context) {
+  const std::string path = parameters.text("path");
+  scenes::LoadOptions options;
+  options.text = parameters.text_if("text");
+  const bool is_quick = parameters.flag("quick", false);
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  const Result<std::string> file = options.text ? context.folder.place(path) : context.folder.find(path);
+  if (!file) return file.errors();
+  const Result<fidelity::SceneOrgan> organ = fidelity::read_scene_organ(*file, options);
+  if (!organ) return organ.errors();
+  std::vector<Quat> turns = fidelity::twelve_turns();
+  if (is_quick) turns.resize(fidelity::kQuickTurns);
+  const int places = is_quick ? fidelity::kQuickPlaces : 3;
+  std::mutex mutex;
+  std::int64_t begun = 0;
+  const auto next_press = [&] {
+    const std::lock_guard lock(mutex);
+    context.progress(begun++, std::int64_t(turns.size()) + places * places);
+    return context.should_stop();
+  };
+  const Result<fidelity::SceneResult> turned = fidelity::measure_scene_turns(*organ, turns, next_press);
+  if (!turned) return turned.errors();
+  const Result<fidelity::SceneResult> moved = fidelity::measure_scene_places(*organ, places, next_press);
+  if (!moved) return moved.errors();
+  output::JsonWriter json;
+  json.begin_object().member("name", std::string_view(turned->name)).key("turns");
+  write_scatter(json, turned->turns);
+  json.key("places"), write_scatter(json, moved->places);
+  return json.end_object().text();
+}
+
+}  // namespace ctpm::server

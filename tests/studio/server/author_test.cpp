@@ -1,0 +1,149 @@
+// A scene that a client of the protocol works on.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "tests/studio/server/serving.h"
+
+namespace ctpm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Serving;
+using testing::SocketClient;
+using testing::value_at;
+
+constexpr int kStage = 3;
+
+class AuthorTest : public ::testing::Test {
+ protected:
+  AuthorTest() {
+    fs::create_directories(folder_.path() / "organs");
+    for (const char* name : {"kidney", "liver"}) {
+      const std::string mesh = std::string("organs/") + name + ".obj";
+      fs::copy(fs::path(CTPM_SOURCE_DIR) / "scenes" / mesh, folder_.path() / mesh);
+    }
+    const fs::path scene = fs::path(CTPM_SOURCE_DIR) / "scenes/kidney.json";
+    fs::copy(scene, folder_.path() / "kidney.json");
+    std::ifstream in(scene);
+    text_ = nlohmann::json::parse(in);
+  }
+
+  testing::TemporaryFolder folder_;
+  nlohmann::json text_;
+};
+
+/// The last message of a kind among those that came.
+const std::string* last_of(const std::vector<std::string>& messages, std::uint32_t kind) {
+  const std::string* found = nullptr;
+  for (const std::string& message : messages)
+    if (value_at<std::uint32_t>(message, 0) == kind) found = &message;
+  return found;
+}
+
+TEST_F(AuthorTest, TheTextOfAnAuthorIsShownBeforeItIsSaved) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  text_["organs"][0]["at_mm"] = {100, 0, 0};
+  text_["tools"][0]["at_mm"] = {1, 2, 90};
+  std::vector<std::string> before, after;
+  const auto on_disk = client.call("scene.show", {{"path", "kidney.json"}, {"stage", kStage}}, &before);
+  const auto moved =
+      client.call("scene.show", {{"path", "kidney.json"}, {"stage", kStage}, {"text", text_.dump()}}, &after);
+  ASSERT_TRUE(on_disk.contains("result") && moved.contains("result")) << on_disk << moved;
+  const auto& first = on_disk["result"]["view"];
+  const auto& second = moved["result"]["view"];
+  EXPECT_NEAR(second["least"][0].get<double>() - first["least"][0].get<double>(), 0.1, 1e-9);
+  EXPECT_FALSE(first["tools"][0].contains("at"));
+  EXPECT_EQ(second["tools"][0]["at"], nlohmann::json({0.001, 0.002, 0.09}));
+  EXPECT_EQ(second["tools"][0]["pointing"], nlohmann::json({0, 0, -1}));
+  // Its spheres are as many as before, each 100 mm further on.
+  const std::string *here = last_of(before, 4), *there = last_of(after, 4);
+  ASSERT_TRUE(here && there);
+  const std::uint32_t count = value_at<std::uint32_t>(*here, 12);
+  EXPECT_EQ(count, moved["result"]["spheres"].get<std::uint32_t>());
+  ASSERT_EQ(here->size(), there->size());
+  for (std::uint32_t i = 0; i < count; ++i)
+    EXPECT_NEAR(value_at<float>(*there, 20 + 12 * i) - value_at<float>(*here, 20 + 12 * i), 0.1, 1e-6);
+}
+
+TEST_F(AuthorTest, ErrorsOfATextAreThoseOfCheck) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  text_["organs"][0]["mesh"] = "organs/nowhere.obj";
+  const auto answer = client.call("scene.show", {{"path", "kidney.json"}, {"stage", kStage}, {"text", text_.dump(1)}});
+  ASSERT_TRUE(answer.contains("errors")) << answer;
+  std::ofstream(folder_.path() / "other.json") << text_.dump(1);
+  const auto printed = testing::run_ctpm({"check", "other.json"}, folder_.path());
+  for (const auto& error : answer["errors"])
+    EXPECT_NE(printed.err.find(error["message"].get<std::string>()), std::string::npos) << printed.err;
+}
+
+TEST_F(AuthorTest, ATickOfWhatIsShownIsMeasured) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  EXPECT_TRUE(client.call("scene.measure", {{"stage", kStage}}).contains("errors"));
+  client.call("scene.show", {{"path", "kidney.json"}, {"stage", kStage}});
+  const auto measured = client.call("scene.measure", {{"stage", kStage}});
+  ASSERT_TRUE(measured.contains("result")) << measured;
+  EXPECT_GT(measured["result"]["measured_tick_time_s"].get<double>(), 0);
+  EXPECT_EQ(measured["result"]["tick_s"], 1e-3);
+}
+
+TEST_F(AuthorTest, TheScatterIsThatOfTheCommand) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  const auto answer = client.call("scene.scatter", {{"path", "kidney.json"}, {"quick", true}});
+  ASSERT_TRUE(answer.contains("result")) << answer;
+  testing::run_ctpm({"fidelity", "kidney.json", "-o", "report", "--quick"}, folder_.path());
+  std::ifstream in(folder_.path() / "report/results.json");
+  std::vector<double> printed, told;
+  const nlohmann::json report = nlohmann::json::parse(in);
+  for (const auto& figure : report["figures"])
+    if (figure["figure"].get<std::string>().starts_with("scatter")) printed.push_back(figure["measured"]);
+  for (const char* kind : {"turns", "places"})
+    for (const auto& row : answer["result"][kind]) told.push_back(100 * row["scatter"].get<double>());
+  ASSERT_EQ(printed.size(), told.size());
+  for (std::size_t i = 0; i < printed.size(); ++i) EXPECT_NEAR(printed[i], told[i], 1e-9 * printed[i]);
+}
+
+/// Begins a call and ends it at its first progress. Returns its answer.
+nlohmann::json stopped(SocketClient& client, const std::string& call, const nlohmann::json& parameters) {
+  client.send({{"id", 77}, {"call", call}, {"params", parameters}});
+  for (;;) {
+    const auto message = client.receive();
+    if (!message.is_text) continue;
+    const nlohmann::json answer = nlohmann::json::parse(message.bytes);
+    if (answer.value("id", 0) != 77) continue;
+    if (!answer.contains("progress")) return answer;
+    client.send({{"cancel", 77}});
+  }
+}
+
+TEST_F(AuthorTest, WhatTakesLongCanBeStoppedAndLeavesNothing) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  const auto import =
+      stopped(client, "scene.import", {{"mesh", "organs/liver.obj"}, {"scene", "new.json"}, {"radius_m", 0.001}});
+  ASSERT_TRUE(import.contains("errors")) << import;
+  EXPECT_EQ(import["errors"][0]["message"], "stopped");
+  for (const char* name : {"new.json", "new.obj", "new.script.json"}) EXPECT_FALSE(fs::exists(folder_.path() / name));
+  text_["organs"][0]["fill"] = {{"radius_mm", 2}, {"gap_mm", 2}};
+  const auto scatter = stopped(client, "scene.scatter", {{"path", "kidney.json"}, {"text", text_.dump()}});
+  ASSERT_TRUE(scatter.contains("errors")) << scatter;
+}
+
+TEST_F(AuthorTest, ATextOutsideOfTheFolderIsRefused) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  text_["organs"][0]["mesh"] = "../secret.obj";
+  for (const char* path : {"../kidney.json", "/etc/passwd", "kidney.json"}) {
+    const auto answer = client.call("scene.show", {{"path", path}, {"stage", kStage}, {"text", text_.dump()}});
+    EXPECT_TRUE(answer.contains("errors")) << path;
+  }
+}
+
+}  // namespace
+}  // namespace ctpm
