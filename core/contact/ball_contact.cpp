@@ -163,11 +163,11 @@ void BallContact::find_on_surfaces(const StateView& state, const BallMotion& bal
   };
   mark(1);
   pressed_area_ = {};
+  Reach reach = reach_of(state, ball);
   if (!own_.empty()) {
     own_.begin(state.position);
-    cuts_.wait_near(reach_of(state, ball).region, state, own_.rest_box(), own_.displacements());
+    if (cuts_.wait_near(reach.region, state, own_.rest_box(), own_.displacements())) reach = reach_of(state, ball);
   }
-  const Reach reach = reach_of(state, ball);
   cuts_.near(reach.region, [&](cutbody::CutPatch& patch) { add_patch(state, ball.hand, patch); });
   for (const Part& part : parts_)
     part.surface->near(reach.region, [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {

@@ -102,15 +102,17 @@ void CutSurfaces::start(const State& state, std::size_t rows) {
       });
 }
 
-void CutSurfaces::wait_near(const Box& region, const StateView& state, const Box& at_rest, const Box& displacements) {
-  if (!follows_.valid()) return;
+bool CutSurfaces::wait_near(const Box& region, const StateView& state, const Box& at_rest, const Box& displacements) {
+  if (!follows_.valid()) return false;
   // Weights near a cut may be negative.
   const Vec3 size = displacements.high - displacements.low;
   const Box by(displacements.low - size, displacements.high + size);
   const bool is_near = region.meets(around_.moved(by)) && region.meets(at_rest.moved(by));
-  if (is_near || std::any_of(state.touched.begin(), state.touched.end(),
-                             [&](std::int32_t point) { return points_.contains(point); }))
-    wait();
+  if (!is_near && std::none_of(state.touched.begin(), state.touched.end(),
+                               [&](std::int32_t point) { return points_.contains(point); }))
+    return false;
+  wait();
+  return true;
 }
 
 /// Takes organs_ over from the worker, which goes on with their patches.

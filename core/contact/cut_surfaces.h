@@ -37,8 +37,8 @@ class CutSurfaces {
 
   /// Waits for the cuts if something in `region` may touch them, or touched them at the start of the substep; what is
   /// farther may go on as if nothing were cut. `at_rest`: around the organs at rest [m]; `displacements`: how far their
-  /// surfaces have moved [m].
-  void wait_near(const Box& region, const StateView& state, const Box& at_rest, const Box& displacements);
+  /// surfaces have moved [m]. Returns whether it waited.
+  bool wait_near(const Box& region, const StateView& state, const Box& at_rest, const Box& displacements);
 
   /// Whether anything that can be touched is cut.
   bool any() const { return is_cut_; }

@@ -180,8 +180,8 @@ struct StrokesResult {
   };
   std::vector<Row> rows;
 };
-/// `shipped`: folder of the shipped scenes.
-Result<StrokesResult> measure_strokes(const std::string& shipped);
+/// `shipped`: folder of the shipped scenes. `is_quick`: only the straight stroke.
+Result<StrokesResult> measure_strokes(const std::string& shipped, bool is_quick);
 Chapter chapter_of(const StrokesResult& result);
 
 /// Blocks of liver of which a blade cuts pieces, which fall on the ground.

@@ -84,7 +84,7 @@ std::vector<Recipe> recipes() {
       {{"cuts", "Cuts of every kind", false},
        [](const FidelityOptions& o) { return told(measure_cuts(o.shipped, o.is_quick)); }},
       {{"strokes", "Strokes through the shipped organs", false},
-       [](const FidelityOptions& o) { return told(measure_strokes(o.shipped)); }},
+       [](const FidelityOptions& o) { return told(measure_strokes(o.shipped, o.is_quick)); }},
       {{"pieces", "Pieces that fall", false}, [](const FidelityOptions&) { return told(measure_pieces(4e-3)); }},
       {{"grip", "Grip", false}, [](const FidelityOptions&) { return told(measure_grip(4e-3)); }},
       {{"recovery", "Recovery from abuse", false},

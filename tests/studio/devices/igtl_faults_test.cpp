@@ -18,6 +18,7 @@
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <thread>
 #include <vector>
@@ -37,12 +38,14 @@ using testing::transform_bytes;
 
 using Clock = std::chrono::steady_clock;
 
+constexpr std::size_t kKinds = 14;  ///< of faults
+
 /// Where the device stands behind fault `i`, so that the session shows when it was believed again.
 Vec3 place_behind(int i) { return kHome + Vec3{0, 0, 0.5 * (i + 1)}; }
 
 class IgtlFaults : public testing::IgtlRecord {
  protected:
-  void faults_are_forgiven(int count);
+  void faults_are_forgiven(const std::vector<std::size_t>& kinds);
   void expect_forgiven_within_a_second(const std::vector<double>& lasted);
 };
 
@@ -67,10 +70,10 @@ void IgtlFaults::expect_forgiven_within_a_second(const std::vector<double>& last
   std::printf("%zu faults: good poses were believed %.3f s behind their end at the latest\n", fault, worst);
 }
 
-/// One session with `count` faults of a device, one after the other. Behind each the device is good again for a second
-/// or more, and what is there of the session verifies.
-void IgtlFaults::faults_are_forgiven(int count) {
-  RunningProgram program(listening(), folder_.path());
+/// One session with faults of a device of these kinds, one after the other. Behind each the device is good again for a
+/// second or more, and what is there of the session verifies.
+void IgtlFaults::faults_are_forgiven(const std::vector<std::size_t>& kinds) {
+  RunningProgram program(listening({"--overwrite"}), folder_.path());
   const int port = port_of(program);
   ASSERT_GT(port, 0);
   auto peer = std::make_unique<IgtlPeer>(port);
@@ -128,13 +131,12 @@ void IgtlFaults::faults_are_forgiven(int count) {
         reconnect();
       },
   };
-  std::uint64_t random = 7;
+  ASSERT_EQ(faults.size(), kKinds);
   std::vector<double> lasted;
-  for (int i = 0; i < count; ++i) {
-    random = random * 6364136223846793005ull + 1442695040888963407ull;
+  for (int i = 0; i < int(kinds.size()); ++i) {
     send(pose());
     const Clock::time_point began = Clock::now();
-    faults[count <= int(faults.size()) ? std::size_t(i) : std::size_t(random >> 33) % faults.size()]();
+    faults[kinds[std::size_t(i)]]();
     lasted.push_back(std::chrono::duration<double>(Clock::now() - began).count());
     at = place_behind(i);
     std::atomic<bool> is_verified{false};
@@ -157,10 +159,26 @@ void IgtlFaults::faults_are_forgiven(int count) {
   EXPECT_TRUE(holds(ctpm({"verify", "a.ctpm"}), "same"));
 }
 
-TEST_F(IgtlFaults, EachKindOfFaultIsForgivenWithinASecond) { faults_are_forgiven(14); }
+TEST_F(IgtlFaults, EachKindOfFaultIsForgivenWithinASecond) {
+  std::vector<std::size_t> kinds(kKinds);
+  std::iota(kinds.begin(), kinds.end(), std::size_t{0});
+  faults_are_forgiven(kinds);
+}
 
 class IgtlFaultsSlow : public IgtlFaults {};
-TEST_F(IgtlFaultsSlow, FiftyFaultsAreEachForgivenWithinASecond) { faults_are_forgiven(50); }
+TEST_F(IgtlFaultsSlow, FiftyFaultsAreEachForgivenWithinASecond) {
+  // A session grows while it is verified, so ten faults are enough for one.
+  std::uint64_t random = 7;
+  for (int session = 0; session < 5; ++session) {
+    std::vector<std::size_t> kinds;
+    for (int i = 0; i < 10; ++i) {
+      random = random * 6364136223846793005ull + 1442695040888963407ull;
+      kinds.push_back(std::size_t(random >> 33) % kKinds);
+    }
+    faults_are_forgiven(kinds);
+    if (HasFatalFailure()) return;
+  }
+}
 
 /// A device that was followed and then is silent for good, while its connection stays: a computer that hangs.
 TEST_F(IgtlFaults, ADeviceThatHangsIsDisplacedByTheNextAndThatIsNoted) {

@@ -27,7 +27,7 @@ export function makeFolder(...names) {
 
 /** Runs the program in a folder. */
 export function ctpm(folder, ...words) {
-  const done = spawnSync(program, words, { cwd: folder, encoding: "utf8" });
+  const done = spawnSync(program, words, { cwd: folder, encoding: "utf8", maxBuffer: 64 << 20 });
   return { code: done.status, out: done.stdout, err: done.stderr };
 }
 

@@ -144,7 +144,7 @@ test("a gamepad leads the tool: the trigger presses, the shoulder changes it", a
   await page.click("header nav button:has-text('Train')");
   await page.locator("aside input").first().fill("");
   await page.click(".list button:has-text('kidney')");
-  await page.waitForSelector(".view.running .hint:has-text('gamepad')");
+  await page.waitForSelector(".transport .hint:has-text('gamepad')");
   await page.evaluate(() => (globalThis.pad.buttons[7].value = 1));
   await page.waitForFunction(() => Number.parseFloat(document.querySelector(".force-bar output").textContent) > 0.1);
   await page.evaluate(() => (globalThis.pad.buttons[7].value = 0, globalThis.pad.buttons[6].value = 1));
