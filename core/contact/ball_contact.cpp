@@ -62,6 +62,7 @@ BallContact::BallContact(const Model& model, std::vector<surface::Body>& bodies,
       cuts_(cuts),
       own_(model, 0, model.has_tool(ToolKind::ball) && bodies.empty() ? model.surfaces.size() : 0) {
   if (!model.has_tool(ToolKind::ball)) return;
+  touchable_count_ = std::int32_t(model.touchable_count());
   if (!own_.empty()) parts_.push_back({0, 0, &own_});
   for (surface::Body& body : bodies) parts_.push_back({body.first_vertex, body.first_vertex, &body.surface});
   whole_parts_ = parts_.size();
@@ -100,9 +101,9 @@ surface::Follower BallContact::follower(std::int32_t slot) const {
 }
 
 /// Adds a patch to the parts that are looked at. What it holds is found again in each step.
-void BallContact::add_patch(const StateView& state, cutbody::CutPatch& patch) {
+void BallContact::add_patch(const StateView& state, std::size_t hand, cutbody::CutPatch& patch) {
   const auto first_slot = std::int32_t(pressed_.size());
-  const std::int32_t first_point = cuts_.first_point(0, patch);
+  const std::int32_t first_point = cuts_.first_point(cuts_.points().kind_of_ball(hand), patch);
   const auto vertices = std::int32_t(patch.body.surface.vertex_count());
   const auto slots = std::size_t(first_slot + vertices);
   parts_.push_back({first_slot, first_point, &patch.body.surface, &patch});
@@ -136,9 +137,10 @@ BallContact::Reach BallContact::reach_of(const StateView& state, const BallMotio
   const auto add = [&](Vec3 place) {
     reach.distance = std::max(reach.distance, norm(place - ball.centre)), reach.region.add(place);
   };
+  const std::int32_t first = first_point_of(ball.hand);
   for (const std::int32_t point : state.touched) {
-    if (point < vertex_count_) add(follower(point).of(state.position));
-    if (!cuts_.any() || !cuts_.points().is_of_ball(point)) continue;
+    if (point >= first && point - first < vertex_count_) add(follower(point - first).of(state.position));
+    if (!cuts_.any() || !cuts_.points().is_of_ball(point, ball.hand)) continue;
     const cutbody::CutPoints::Place at = cuts_.points().place(point);
     cutbody::CutPatch* const patch = cuts_.patch(at);
     if (patch == nullptr) continue;
@@ -155,8 +157,9 @@ BallContact::Reach BallContact::reach_of(const StateView& state, const BallMotio
 
 void BallContact::find_on_surfaces(const StateView& state, const BallMotion& ball, PointContacts& contacts) {
   const auto mark = [&](std::uint8_t value) {
+    const std::int32_t first = first_point_of(ball.hand);
     for (const std::int32_t point : state.touched)
-      if (point < vertex_count_) was_touched_[std::size_t(point)] = value;
+      if (point >= first && point - first < vertex_count_) was_touched_[std::size_t(point - first)] = value;
   };
   mark(1);
   pressed_area_ = {};
@@ -165,7 +168,7 @@ void BallContact::find_on_surfaces(const StateView& state, const BallMotion& bal
     own_.begin(state.position);
     if (cuts_.wait_near(reach.region, state, own_.rest_box(), own_.displacements())) reach = reach_of(state, ball);
   }
-  cuts_.near(reach.region, [&](cutbody::CutPatch& patch) { add_patch(state, patch); });
+  cuts_.near(reach.region, [&](cutbody::CutPatch& patch) { add_patch(state, ball.hand, patch); });
   for (const Part& part : parts_)
     part.surface->near(reach.region, [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
       dent(part, triangle, corners, ball, reach.distance);
@@ -191,7 +194,7 @@ void BallContact::press_slot(const StateView& state, const BallMotion& ball, std
   const double k = dent_stiffness(organ.modulus, radius, surface::kUnresolvedLength * organ.spacing) * pressed.area;
   add(state, ball,
       {.axis = pressed.volume / volume,
-       .point = slot - part.first_slot + part.first_point,
+       .point = slot - part.first_slot + part.first_point + (part.patch == nullptr ? first_point_of(ball.hand) : 0),
        .dent = volume / pressed.area,
        .foundation = Foundation(organ, k, ball.step.elapsed)},
       carriers, follows.of(state.position), contacts);
@@ -266,7 +269,7 @@ void BallContact::find_on_spheres(const StateView& state, const BallMotion& ball
     const Vec3 normal = distance > 1e-9 * reach ? apart / distance : unit_or_down(ball.velocity, 0);
     const auto sphere = std::int32_t(i);
     const double whole = 1, depth = reach - distance;
-    PointContact contact{.axis = normal, .point = vertex_count_ + sphere, .dent = depth};
+    PointContact contact{.axis = normal, .point = first_point_of(ball.hand) + vertex_count_ + sphere, .dent = depth};
     contact.foundation.k = model_.contact_k;
     contact.damping = contact_damping(model_.contact_damping, model_.contact_k, model_.mass[i], depth);
     add(state, ball, contact, {{&sphere, 1}, {&whole, 1}}, state.position[i], contacts);
@@ -293,15 +296,15 @@ void BallContact::add(const StateView& state, const BallMotion& ball, PointConta
                           .slip_guess = moves ? Vec3{} : velocity,
                           .nearer = contact.dent,
                           .farther = ball.radius};
-  contact.is_tool = true;
+  contact.hand = std::int32_t(ball.hand);
   press(state, model_.contact_friction, contacts.mobility(carriers), approach, ball.step, contact);
   contacts.add(contact, carriers);
 }
 
 std::int32_t BallContact::organ_of(const PointContact& contact) const {
-  if (contact.point < vertex_count_) return organ_of_[std::size_t(contact.point)];
   if (cuts_.points().contains(contact.point)) return std::int32_t(cuts_.points().place(contact.point).organ);
-  const std::int32_t sphere = contact.point - vertex_count_;
+  const std::int32_t point = number_of(contact), sphere = point - vertex_count_;
+  if (point < vertex_count_) return organ_of_[std::size_t(point)];
   for (std::size_t i = 0; i < model_.organs.size(); ++i)
     if (sphere >= model_.organs[i].first && sphere < model_.organs[i].first + model_.organs[i].count)
       return std::int32_t(i);
@@ -314,9 +317,10 @@ Vec3 BallContact::rest_of(const PointContact& contact) const {
     const surface::Body& body = cuts_.patch(at)->body;
     return body.surface.rest(at.vertex - body.first_vertex);
   }
-  if (contact.point >= vertex_count_) return model_.rest_position[std::size_t(contact.point - vertex_count_)];
-  const Part& part = part_of(contact.point);
-  return part.surface->rest(contact.point - part.first_point);
+  const std::int32_t point = number_of(contact);
+  if (point >= vertex_count_) return model_.rest_position[std::size_t(point - vertex_count_)];
+  const Part& part = part_of(point);
+  return part.surface->rest(point - part.first_point);
 }
 
 }  // namespace ctpm::contact

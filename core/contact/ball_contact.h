@@ -22,6 +22,7 @@ struct BallMotion {
   Vec3 velocity;  ///< [m/s]
   double radius;  ///< [m]
   PressStep step;
+  std::size_t hand = 0;  ///< that holds it
 };
 
 /// Contact of a rigid ball with the surfaces of organs: no part of a surface is inside the ball. Where the surface that
@@ -35,13 +36,16 @@ struct BallMotion {
 /// Crossley say (contact_damping).
 ///
 /// Friction holds each point at a place on the ball, up to the friction cone (pressed_point.h).
+///
+/// Two hands may hold a ball each. Each presses by itself, and State tells by the numbers of the points which ball
+/// touches them.
 class BallContact {
  public:
   /// `bodies`, those of the Model, and `cuts` must outlive the BallContact.
   BallContact(const Model& model, std::vector<surface::Body>& bodies, CutSurfaces& cuts,
               const elements::Kernels& kernels);
 
-  /// Capacity that find() needs: contacts, and entries of their carriers.
+  /// Capacity that find() needs for one ball: contacts, and entries of their carriers.
   std::pair<std::size_t, std::size_t> capacity() const { return capacity_; }
 
   /// Adds the contacts of a ball, in ascending order of their points. A round of the bodies' surfaces must have begun.
@@ -49,7 +53,7 @@ class BallContact {
 
   /// Depth of the dent under a contact [m], 0 for that of a bare sphere.
   double dent_of(const PointContact& contact) const {
-    return contact.point < vertex_count_ || cuts_.points().contains(contact.point) ? contact.dent : 0.0;
+    return cuts_.points().contains(contact.point) || number_of(contact) < vertex_count_ ? contact.dent : 0.0;
   }
 
   /// Where the tissue was at rest that a contact touches [m].
@@ -65,6 +69,11 @@ class BallContact {
     Vec3 volume;      ///< depth times area, along the ball's radius [m^3]
   };
 
+  /// Number of the first point that the ball in a hand may touch, and of those before a contact's.
+  std::int32_t first_point_of(std::size_t hand) const { return cuts_.points().kind_of_ball(hand) * touchable_count_; }
+  std::int32_t number_of(const PointContact& contact) const {
+    return contact.point - first_point_of(std::size_t(contact.hand));
+  }
   /// Where a ball may touch.
   struct Reach {
     double distance;  ///< from its centre, of what it touched before; its radius elsewhere [m]
@@ -86,7 +95,7 @@ class BallContact {
   const Part& part_of(std::int32_t slot) const;
   std::int32_t organ_of(const Part& part, std::int32_t slot) const;
   surface::Follower follower(std::int32_t slot) const;
-  void add_patch(const StateView& state, cutbody::CutPatch& patch);
+  void add_patch(const StateView& state, std::size_t hand, cutbody::CutPatch& patch);
   void remove_patches();
   bool is_hidden(const Part& part, const surface::NearSurface::Triangle& triangle) const;
   double share_of(const Part& part, std::int32_t slot, double radius);
@@ -105,7 +114,7 @@ class BallContact {
   surface::NearSurface own_;  ///< all organs as one; empty where there are bodies
   std::vector<Part> parts_;   ///< own_, or the surfaces of the bodies; in find() patches of cuts follow
   std::size_t whole_parts_ = 0;
-  std::int32_t vertex_count_ = 0;
+  std::int32_t vertex_count_ = 0, touchable_count_ = 0;
   std::vector<std::int32_t> organ_of_;     ///< (vertex_count)
   std::vector<Pressed> pressed_;           ///< (slot_count, like the next: vertices, and in find() those of patches)
   std::vector<std::uint8_t> was_touched_;  ///< at the start of the substep

@@ -60,8 +60,8 @@ void CutSurfaces::prepare() {
 }
 
 void CutSurfaces::begin_tick(const State& state, bool cuts) {
-  // Nothing but tissue and obstacles touches cuts while a blade is held.
-  if (organs_.empty() || (cuts && !model_.has_meeting_bodies())) return;
+  // Nothing but tissue, obstacles and a ball in the other hand touches cuts while a blade is held.
+  if (organs_.empty() || (cuts && !model_.has_meeting_bodies() && model_.hands < 2)) return;
   const std::size_t rows = rows_left_behind(state, cuts);
   if (followed_ ? !is_same(*followed_, state, rows) : rows > 0) start(state, rows);
   if (model_.has_meeting_bodies()) wait();
