@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/contact/cut_surfaces.h"
+#include "core/contact/near_triangles.h"
 #include "core/contact/point_contact.h"
 #include "core/contact/pressed_point.h"
 #include "core/elements/kernels/kernels.h"
@@ -74,33 +75,16 @@ class BallContact {
   std::int32_t number_of(const PointContact& contact) const {
     return contact.point - first_point_of(std::size_t(contact.hand));
   }
-  /// Where a ball may touch.
-  struct Reach {
-    double distance;  ///< from its centre, of what it touched before; its radius elsewhere [m]
-    Box region;
-  };
   Reach reach_of(const StateView& state, const BallMotion& ball) const;
-  /// A surface whose vertices have the slots from `first_slot` on, and the points from `first_point` on.
-  struct Part {
-    std::int32_t first_slot, first_point;
-    surface::NearSurface* surface;
-    cutbody::CutPatch* patch = nullptr;  ///< null: whole organs
-
-    /// The slot at which what presses on a vertex is gathered.
-    std::int32_t gathers_at(std::int32_t vertex) const {
-      return first_slot + (patch == nullptr ? vertex : patch->gathers_at[std::size_t(vertex)]);
-    }
-  };
+  using Part = BallPart;
 
   const Part& part_of(std::int32_t slot) const;
   std::int32_t organ_of(const Part& part, std::int32_t slot) const;
   surface::Follower follower(std::int32_t slot) const;
-  void add_patch(const StateView& state, std::size_t hand, cutbody::CutPatch& patch);
-  void remove_patches();
+  void mark_touched(const StateView& state, const BallMotion& ball, std::uint8_t value);
   bool is_hidden(const Part& part, const surface::NearSurface::Triangle& triangle) const;
   double share_of(const Part& part, std::int32_t slot, double radius);
-  void dent(const Part& part, const surface::NearSurface::Triangle& triangle, const Vec3* corners,
-            const BallMotion& ball, double reach);
+  void dent(const Part& part, const surface::NearSurface::Triangle& triangle, const BallMotion& ball, double reach);
   void press_slot(const StateView& state, const BallMotion& ball, std::int32_t slot, double radius,
                   PointContacts& contacts);
   void find_on_surfaces(const StateView& state, const BallMotion& ball, PointContacts& contacts);
@@ -111,9 +95,10 @@ class BallContact {
   const Model& model_;
   const elements::Kernels& kernels_;
   CutSurfaces& cuts_;
-  surface::NearSurface own_;  ///< all organs as one; empty where there are bodies
-  std::vector<Part> parts_;   ///< own_, or the surfaces of the bodies; in find() patches of cuts follow
-  std::size_t whole_parts_ = 0;
+  surface::NearSurface own_;                  ///< all organs as one; empty where there are bodies
+  std::vector<Part> whole_;                   ///< own_, or the surfaces of the bodies
+  std::vector<NearTriangles> near_;           ///< of the ball in each hand
+  const std::vector<Part>* parts_ = &whole_;  ///< in find() with patches of cuts
   std::int32_t vertex_count_ = 0, touchable_count_ = 0;
   std::vector<std::int32_t> organ_of_;     ///< (vertex_count)
   std::vector<Pressed> pressed_;           ///< (slot_count, like the next: vertices, and in find() those of patches)
