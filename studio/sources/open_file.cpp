@@ -15,6 +15,16 @@ OpenedSource play_script(const scenes::Script& script, const Model& model) {
   return opened;
 }
 
+Errors check_script(const std::string& file, const scenes::SceneDraft& scene) {
+  const Result<std::string> text = output::read_text_file(file);
+  if (!text) return text.errors();
+  const bool knows_tools = scene.problems.is_good("/tools");
+  std::vector<std::string> tools;
+  for (const scenes::ToolSpec& tool : scene.scene.spec.tools) tools.push_back(tool.name);
+  const Result<scenes::Script> script = scenes::read_script(*text, file, tools, knows_tools);
+  return script ? Errors{} : script.errors();
+}
+
 Result<OpenedSource> open_script(const std::string& file, const Model& model) {
   const Result<std::string> text = output::read_text_file(file);
   if (!text) return text.errors();
