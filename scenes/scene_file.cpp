@@ -113,6 +113,12 @@ Result<SceneText> load_scene(const std::string& path, const LoadOptions& options
   return without_errors(load_draft(path, options));
 }
 
+SceneDraft unknown_scene(const std::string& path) {
+  SceneDraft draft;
+  draft.problems.add("", {}, path + " cannot be read");
+  return draft;
+}
+
 std::string mesh_path(const std::string& scene_path, const std::string& mesh) {
   return (fs::path(scene_path).parent_path() / mesh).lexically_normal().string();
 }

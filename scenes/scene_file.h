@@ -43,10 +43,17 @@ Result<SceneText> load_scene(const std::string& path, const LoadOptions& options
 Result<SceneDraft> read_draft(std::string_view text, const std::string& file_name);
 Result<SceneDraft> load_draft(const std::string& path, const LoadOptions& options = {});
 
+/// The draft of a scene of which nothing is known: its file cannot be read, or is not JSON.
+SceneDraft unknown_scene(const std::string& path);
+
 /// Path of an organ's mesh, relative to the program's working directory.
 std::string mesh_path(const std::string& scene_path, const std::string& mesh);
 
 /// Text of a scene. The same spec gives the same text, and read_scene gives the same spec again.
 std::string write_scene(const SceneSpec& spec);
+
+/// The text of a scene, changed from `before`, which it says, to `after`: comments, layout and what stays the same are
+/// kept. write_scene(after) where that cannot be done.
+std::string rewrite_scene(const std::string& text, const SceneSpec& before, const SceneSpec& after);
 
 }  // namespace ctpm::scenes

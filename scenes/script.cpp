@@ -27,14 +27,15 @@ void check_tool(Problems& problems, const std::string& at, const ScriptStep::Tak
     problems.add_rule(at + "/take/facing", "must not be zero or along pointing");
 }
 
-void check_steps(Problems& problems, const Script& script, const std::vector<std::string>& tool_names) {
+void check_steps(Problems& problems, const Script& script, const std::vector<std::string>& tool_names,
+                 bool knows_tools) {
   bool has_tool = false;
   for (std::size_t i = 0; i < script.steps.size(); ++i) {
     const ScriptStep& step = script.steps[i];
     const std::string at = "/steps/" + std::to_string(i);
     if (step.take) {
       has_tool = true;
-      check_tool(problems, at, *step.take, tool_names);
+      check_tool(problems, at, *step.take, knows_tools ? tool_names : std::vector{step.take->tool});
     }
     if (step.put_away) has_tool = false;
     // A step without a known key may be a misspelt take, so what follows it is not judged.
@@ -131,14 +132,14 @@ Vec3 way_of(const Stroke& stroke) {
 }  // namespace
 
 Result<Script> read_script(std::string_view text, const std::string& file_name,
-                           const std::vector<std::string>& tool_names) {
+                           const std::vector<std::string>& tool_names, bool knows_tools) {
   Result<JsonNode> parsed = parse_json(text, file_name);
   if (!parsed) return parsed.errors();
   const auto root = std::make_shared<const JsonNode>(*std::move(parsed));
   Script script;
   Problems problems(TextPlaces(root, file_name));
   FieldReader::read_record(*root, "", problems, script);
-  check_steps(problems, script, tool_names);
+  check_steps(problems, script, tool_names, knows_tools);
   if (!problems.is_empty()) return problems.errors();
   return script;
 }

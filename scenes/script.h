@@ -84,9 +84,10 @@ struct Script {
 };
 
 /// Reads a script's text. Reports every error at once, each with `file:line:col`: those of the text and its values; a
-/// tool that the scene does not have; a step that moves a tool before one was taken.
+/// tool that the scene does not have, unless the scene's tools are not known; a step that moves a tool before one was
+/// taken.
 Result<Script> read_script(std::string_view text, const std::string& file_name,
-                           const std::vector<std::string>& tool_names);
+                           const std::vector<std::string>& tool_names, bool knows_tools = true);
 
 /// Text of a script. The same steps give the same text, and read_script gives the same steps again.
 std::string write_script(const Script& script);
