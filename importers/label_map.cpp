@@ -77,17 +77,10 @@ void send_label_map(const std::string& path, const std::string& part, const Send
     return send_refusal({path, "holds " + std::to_string(map->labels.size()) + " labels", "choose one of " + known},
                         send);
   }
-  wire::Writer message;
-  message.put(found < 0 ? wire::Kind::no_such_part : wire::Kind::mesh);
-  message.put<std::uint64_t>(map->labels.size());
-  for (const Label& label : map->labels) message.put_text(label.text());
-  if (found >= 0) {
-    const Soup surface = label_surface(*map, map->labels[std::size_t(found)]);
-    message.put(kMillimetre);
-    message.put_list(surface.vertex);
-    message.put_list(surface.triangle);
-  }
-  send(message.bytes.data(), message.bytes.size());
+  std::vector<std::string> parts;
+  for (const Label& label : map->labels) parts.push_back(label.text());
+  if (found < 0) return send_no_such_part(parts, send);
+  send_soup(parts, kMillimetre, label_surface(*map, map->labels[std::size_t(found)]), send);
 }
 
 }  // namespace ctpm::importers

@@ -35,6 +35,31 @@ Errors check_file(const std::string& path) {
   return {};
 }
 
+namespace {
+
+void put_parts(wire::Writer& message, wire::Kind kind, const std::vector<std::string>& parts) {
+  message.put(kind);
+  message.put<std::uint64_t>(parts.size());
+  for (const std::string& name : parts) message.put_text(name);
+}
+
+}  // namespace
+
+void send_soup(const std::vector<std::string>& parts, double unit_in_metres, const Soup& soup, const Send& send) {
+  wire::Writer message;
+  put_parts(message, wire::Kind::mesh, parts);
+  message.put(unit_in_metres);
+  message.put_list(soup.vertex);
+  message.put_list(soup.triangle);
+  send(message.bytes.data(), message.bytes.size());
+}
+
+void send_no_such_part(const std::vector<std::string>& parts, const Send& send) {
+  wire::Writer message;
+  put_parts(message, wire::Kind::no_such_part, parts);
+  send(message.bytes.data(), message.bytes.size());
+}
+
 void send_refusal(const Error& error, const Send& send) {
   wire::Writer message;
   message.put(wire::Kind::refused);

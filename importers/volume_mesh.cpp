@@ -8,7 +8,6 @@
 
 #include "importers/mesh_file.h"
 #include "importers/topology.h"
-#include "importers/wire.h"
 
 namespace ctpm::importers {
 namespace {
@@ -131,18 +130,10 @@ void send_volume_mesh(const std::string& path, const std::string& part, const Se
   std::set<std::string> parts;
   for (const std::int32_t region : mesh.region) parts.insert(name_of(mesh, region));
   Soup soup{mesh.point, boundary(mesh, part)};
-  wire::Writer message;
-  const bool misses_part = !part.empty() && soup.triangle.empty();
-  message.put(misses_part ? wire::Kind::no_such_part : wire::Kind::mesh);
-  message.put<std::uint64_t>(parts.size());
-  for (const std::string& name : parts) message.put_text(name);
-  if (!misses_part) {
-    drop_unused(soup);
-    message.put(0.0);
-    message.put_list(soup.vertex);
-    message.put_list(soup.triangle);
-  }
-  send(message.bytes.data(), message.bytes.size());
+  const std::vector<std::string> names(parts.begin(), parts.end());
+  if (!part.empty() && soup.triangle.empty()) return send_no_such_part(names, send);
+  drop_unused(soup);
+  send_soup(names, 0, soup, send);
 } catch (const BrokenMesh& broken) {
   send_refusal({path, broken.message, broken.hint}, send);
 }

@@ -105,8 +105,10 @@ std::string rewrite_scene(const std::string& text, const SceneSpec& before, cons
                       end = mark + (edit.end > edit.begin ? origin[edit.end - 1] + 1 : origin[edit.begin]);
     changed.replace(begin, end - begin, edit.text);
   }
-  const Result<SceneText> read = read_scene(changed, "");
-  return read && read->spec == after ? changed : new_text;
+  // Places by meaning stay texts, which stand for nothing here.
+  const Result<SceneDraft> was = read_draft(text, ""), is = read_draft(changed, "");
+  const bool is_sound = was && is && is->problems.is_empty() && is->open_places == was->open_places;
+  return is_sound && (!is->open_places.empty() || is->scene.spec == after) ? changed : new_text;
 }
 
 }  // namespace ctpm::scenes

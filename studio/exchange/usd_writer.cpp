@@ -87,13 +87,14 @@ std::string UsdWriter::text() const {
     std::string moved, turned, seen;
     bool was_held = false, is_used = false;
     for (std::size_t n = 0; n < inputs_.size(); ++n) {
-      const bool is_held = inputs_[n].tool == std::int32_t(tool);
+      const Hand& hand = inputs_[n].hand(inputs_[n].second.tool == std::int32_t(tool) ? 1 : 0);
+      const bool is_held = hand.tool == std::int32_t(tool);
       const std::string code = "            " + std::to_string(n) + ": ";
       if (n == 0 || is_held != was_held) seen += code + (is_held ? "\"inherited\",\n" : "\"invisible\",\n");
       was_held = is_held, is_used = is_used || is_held;
       if (!is_held) continue;
-      const Quat q = inputs_[n].world_from_tool;
-      moved += code + tuple(inputs_[n].position) + ",\n";
+      const Quat q = hand.world_from_tool;
+      moved += code + tuple(hand.position) + ",\n";
       turned += code + "(" + number(q.w) + ", " + number(q.x) + ", " + number(q.y) + ", " + number(q.z) + "),\n";
     }
     if (!is_used) continue;

@@ -17,20 +17,14 @@ OpenedSource play_script(const scenes::Script& script, const Model& model) {
 
 Errors check_script(const std::string& file, const scenes::SceneDraft& scene) {
   const Result<std::string> text = output::read_text_file(file);
-  if (!text) return text.errors();
-  const bool knows_tools = scene.problems.is_good("/tools");
-  std::vector<std::string> tools;
-  for (const scenes::ToolSpec& tool : scene.scene.spec.tools) tools.push_back(tool.name);
-  const Result<scenes::Script> script = scenes::read_script(*text, file, tools, knows_tools);
-  return script ? Errors{} : script.errors();
+  return text ? scenes::check_script(*text, file, scene) : text.errors();
 }
 
-Result<OpenedSource> open_script(const std::string& file, const Model& model) {
+Result<OpenedSource> open_script(const std::string& file, const Model& model, const scenes::SceneSpec& scene) {
   const Result<std::string> text = output::read_text_file(file);
   if (!text) return text.errors();
-  std::vector<std::string> tools;
-  for (const Tool& tool : model.tools) tools.push_back(tool.name);
-  const Result<scenes::Script> script = scenes::read_script(*text, file, tools);
+  scenes::PlaceFinder finder = scenes::finder_of(model, scene);
+  const Result<scenes::Script> script = scenes::read_script_for(*text, file, model, &finder);
   if (!script) return script.errors();
   return play_script(*script, model);
 }

@@ -27,8 +27,9 @@ OpenedSource play_script(const scenes::Script& script, const Model& model);
 /// refused.
 Errors check_script(const std::string& file, const scenes::SceneDraft& scene);
 
-/// The script in `file`. Errors: the file cannot be read; those of read_script(), with places.
-Result<OpenedSource> open_script(const std::string& file, const Model& model);
+/// The script in `file`. `scene` has the probes that its places may name. Errors: the file cannot be read; those of
+/// read_script(), with places.
+Result<OpenedSource> open_script(const std::string& file, const Model& model, const scenes::SceneSpec& scene);
 
 /// The motion in `file`. Errors: the file cannot be read; those of read_motion(), with places. Remark: columns that are
 /// not used.

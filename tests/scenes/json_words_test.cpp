@@ -131,6 +131,22 @@ TEST(Comments, AreKeptWhereAToolRewritesTheScene) {
   EXPECT_EQ(scenes::read_scene(scenes::rewrite_scene(text, scene->spec, after), "t.json")->spec, after);
 }
 
+TEST(Comments, PlacesByMeaningStayTextsWhereASceneIsRewritten) {
+  const std::string text =
+      "{\"format\": \"ctpm-scene\", \"version\": 1, \"name\": \"a\",\n\"organs\": [{\"name\": \"l\", \"mesh\": "
+      "\"a.obj\", "
+      "\"material\": {\"preset\": \"liver\"}}],\n\"probes\": [{\"name\": \"p\", \"at_mm\": \"top of l\"}]}\n";
+  const Surface surface{{{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0.02}}, {{0, 1, 2}}, {}};
+  scenes::PlaceFinder finder({{"l", &surface}}, {0, 0, -9.81});
+  const Result<scenes::SceneDraft> draft = scenes::read_draft(text, "t.json", &finder);
+  ASSERT_TRUE(draft);
+  scenes::SceneSpec after = draft->scene.spec;
+  after.organs[0].material.stiffness_scale = 2;
+  const std::string changed = scenes::rewrite_scene(text, draft->scene.spec, after);
+  EXPECT_NE(changed.find("\"at_mm\": \"top of l\""), std::string::npos) << changed;
+  EXPECT_EQ(scenes::read_draft(changed, "t.json", &finder)->scene.spec, after) << changed;
+}
+
 TEST(Comments, EveryShippedSceneCanBeChangedAndKeepsTheRestOfItsText) {
   for (const std::string name : {"liver", "kidney", "kidney-capsule", "incision", "two-organs"}) {
     SCOPED_TRACE(name);
