@@ -235,7 +235,7 @@ TEST_F(BadInput, ModuliRadiiSpacingsAndViscositiesThatCannotBeAreAllNamedWithThe
           "number",
           "a.json:17:27: error: /organs/0/material/calibration_spacing_mm: got 0, must be in"});
   write("a.json", scene_with(preset, preset + ", \"viscosity_kpa_s_per_mm\": NaN"));
-  refuse({"check", "a.json"}, {"a.json:12:53: error: syntax error"});
+  refuse({"check", "a.json"}, {"a.json:12:53: error: NaN is not a number that a file can hold"});
   for (const auto& [value, message] : {std::pair<std::string, std::string>{"0", "got 0, must be in [0.01, 100] mm"},
                                        {"-7", "got -7, must be in [0.01, 100] mm"},
                                        {"1e9", "got 1e9, must be in [0.01, 100] mm"},
