@@ -202,6 +202,30 @@ class Marching {
   std::unordered_map<std::uint64_t, std::int32_t> known_;  ///< vertex of an edge, by its ends
 };
 
+/// Evens out what is left of the lattice in a closed surface, without shrinking it: each round moves every vertex to
+/// the mean of its neighbours and then away again (Taubin, "A signal processing approach to fair surface design",
+/// 1995).
+void even_out(Soup& soup) {
+  constexpr int kRounds = 12;
+  constexpr double kTowards = 0.5, kAway = -0.53;  // lets pass what is longer than about ten edges
+  std::vector<Vec3> sum(soup.vertex.size());
+  std::vector<double> count(soup.vertex.size());
+  for (int half = 0; half < 2 * kRounds; ++half) {
+    std::fill(sum.begin(), sum.end(), Vec3{});
+    std::fill(count.begin(), count.end(), 0.0);
+    // Each neighbour is met in two triangles.
+    for (const Triangle& t : soup.triangle)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto v = std::size_t(t[c]);
+        sum[v] += soup.vertex[std::size_t(t[(c + 1) % 3])] + soup.vertex[std::size_t(t[(c + 2) % 3])];
+        count[v] += 2;
+      }
+    const double share = half % 2 == 0 ? kTowards : kAway;
+    for (std::size_t v = 0; v < sum.size(); ++v)
+      soup.vertex[v] = soup.vertex[v] + share * (sum[v] / count[v] - soup.vertex[v]);
+  }
+}
+
 }  // namespace
 
 Soup label_surface(const LabelMap& map, const Label& label) {
@@ -214,6 +238,7 @@ Soup label_surface(const LabelMap& map, const Label& label) {
   float level = std::min(0.5f, 0.5f * high);
   for (int round = 0;; ++round) {
     Soup soup = Marching(field, level).take();
+    even_out(soup);
     const double volume = soup.vertex.empty() ? 0 : signed_volume(soup.vertex, soup.triangle, soup.vertex.front());
     if (std::abs(volume / wanted - 1) <= kVolumeBound || round == kMostRounds) return soup;
     (volume > wanted ? low : high) = level;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <map>
@@ -94,6 +95,7 @@ int run_watch(const WatchArguments& arguments) {
       std::strftime(time, sizeof time, "%H:%M:%S", std::localtime(&clock));
       print("--- %s\n", time);
       look_at_scene(arguments);
+      std::fflush(stdout);  // whoever reads it through a pipe waits for this
       print_remark("watching " + arguments.scene + "; Ctrl-C ends it");
     }
     std::this_thread::sleep_for(kEvery);
