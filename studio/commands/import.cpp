@@ -5,6 +5,7 @@
 #include <string>
 
 #include "importers/import.h"
+#include "importers/label_map.h"
 #include "scenes/anchors.h"
 #include "studio/authoring/import_scene.h"
 #include "studio/commands/command.h"
@@ -12,13 +13,14 @@
 #include "studio/output/files.h"
 #include "studio/output/json_writer.h"
 #include "studio/output/number_text.h"
+#include "studio/output/printable.h"
 
 namespace ctpm::commands {
 namespace {
 
 struct ImportArguments {
   authoring::ImportRequest request;
-  std::string unit, report;
+  std::string unit, report, label;
   std::optional<double> radius_mm, gap_mm, largest_hole_mm;
   std::optional<std::int64_t> most_triangles;
   std::vector<std::string> anchors;
@@ -108,7 +110,27 @@ void suggest_radius(const importers::ImportReport& report) {
         (long long)report.fill.spheres, std::max(0.1, std::floor(radius * 10) / 10), kLively);
 }
 
+/// Prints the labels of a segmentation, for an author who has not chosen one.
+int list_labels(const std::string& map) {
+  const Result<std::vector<importers::Label>> labels = importers::list_labels(map);
+  if (!labels) return print_errors(labels.errors());
+  print("%s: %zu labels\n", map.c_str(), labels->size());
+  print("number  volume      name\n");
+  for (const importers::Label& label : *labels)
+    print("%6d  %8.1f ml  %s\n", int(label.number), label.volume * 1e6, label.name.c_str());
+  print("next: ctpm import %s --label %s --organ liver -o my/organ.json\n", output::shell_word(map).c_str(),
+        output::shell_word(labels->front().text()).c_str());
+  return exit_good;
+}
+
 int run_import(ImportArguments& arguments) {
+  const std::string& mesh = arguments.request.mesh;
+  const bool is_map = importers::is_label_map(mesh);
+  if (is_map && arguments.request.scene.empty()) return list_labels(mesh);
+  if (arguments.request.scene.empty()) return print_errors({{"--output", "is required", ""}});
+  if (!is_map && !arguments.label.empty())
+    return print_errors({{"--label", "only label maps (.nii, .nii.gz, .nrrd) have labels", "--part names a mesh"}});
+  if (is_map && !arguments.label.empty()) arguments.request.part = arguments.label;
   if (const Errors errors = complete(arguments); !errors.empty()) return print_errors(errors);
   ProgressLine progress("importing");
   arguments.request.progress = [&](const std::string&, double fraction) {
@@ -141,9 +163,16 @@ Command add_import(CLI::App& program) {
   auto arguments = std::make_shared<ImportArguments>();
   CLI::App* app =
       program.add_subcommand("import", "Checks, repairs and fills a mesh, and writes a scene that runs as it is.");
-  app->footer("Example: ctpm import liver.stl --organ liver --unit mm -o my/liver.json");
-  app->add_option("mesh", arguments->request.mesh, "Mesh file (OBJ, STL, PLY, OFF, glTF, ...)")->required();
-  app->add_option("-o,--output", arguments->request.scene, "Scene file to write (.json)")->required();
+  app->footer(
+      "Examples: ctpm import liver.stl --organ liver --unit mm -o my/liver.json\n"
+      "          ctpm import segmentation.nii.gz\n"
+      "          ctpm import segmentation.nii.gz --label 3 --organ liver -o my/liver.json");
+  app->add_option("mesh", arguments->request.mesh,
+                  "Mesh (OBJ, STL, PLY, glTF, VTK, MSH, ...) or label map (.nii, .nii.gz, .nrrd)")
+      ->required();
+  app->add_option("-o,--output", arguments->request.scene,
+                  "Scene file to write (.json); without it, the labels of a label map are listed");
+  app->add_option("--label", arguments->label, "Name or number of the label to take from a label map");
   app->add_option("--organ", arguments->request.organ, "Material preset: liver, kidney, skin, or with -pa-s");
   app->add_option("--unit", arguments->unit, "Unit of the mesh file: mm, cm, m, in; guessed if not given");
   app->add_option("--radius-mm", arguments->radius_mm, "Radius of the spheres; the preset's if not given");
