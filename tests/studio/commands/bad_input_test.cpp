@@ -144,8 +144,13 @@ TEST_F(BadInput, ASceneAndItsScriptAreRefusedTogether) {
   write("s.json",
         "{\"format\": \"ctpm-script\", \"version\": 1, \"steps\": [\n{\"take\": {\"tool\": \"saw\", \"at_mm\": "
         "[0, 0, 0]}}]}");
-  refuse({"record", "a.json", "--script", "s.json", "-o", "a.ctpm"},
-         {kAnchorError, "s.json:2:19: error: /steps/0/take/tool: the scene has no tool \"saw\" (its tools: ball)"});
+  const std::string saw = "s.json:2:19: error: /steps/0/take/tool: the scene has no tool \"saw\" (its tools: ball)";
+  refuse({"check", "a.json", "--script", "s.json"}, {kAnchorError, saw});
+  // Recording says what a script gets wrong before it fills, and with it what the scene's text does.
+  refuse({"record", "a.json", "--script", "s.json", "-o", "a.ctpm"}, {saw});
+  write("b.json", two_organs(kRig, kRig,
+                             R"("contact_friction": -1, "tools": [{"name": "ball", "kind": "ball", "radius_mm": 5}])"));
+  refuse({"record", "b.json", "--script", "s.json", "-o", "a.ctpm"}, {saw, "/contact_friction: got -1"});
 }
 
 TEST_F(BadInput, AScriptWithAnUnknownTool) {
