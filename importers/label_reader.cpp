@@ -80,6 +80,7 @@ std::string said_by(const itk::ExceptionObject& trouble) {
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
   if (const auto line = text.rfind('\n'); line != std::string::npos) text.erase(0, line + 1);
   if (const auto speaker = text.find(": "); speaker != std::string::npos) text.erase(0, speaker + 2);
+  if (const auto object = text.find("): "); object != std::string::npos) text.erase(0, object + 3);
   return text.substr(0, 200);
 }
 

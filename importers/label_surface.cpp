@@ -13,7 +13,7 @@ using Size = std::array<std::int32_t, 3>;
 /// show.
 constexpr double kCellsAcross = 40;
 constexpr double kVolumeBound = 1e-3;
-constexpr int kMostRounds = 30;
+constexpr int kMostRounds = 12;  // of halving the level
 
 /// A number for each point of a lattice.
 struct Field {
@@ -226,23 +226,41 @@ void even_out(Soup& soup) {
   }
 }
 
+double volume_of(const Soup& soup) {
+  return soup.vertex.empty() ? 0 : signed_volume(soup.vertex, soup.triangle, soup.vertex.front());
+}
+
+/// The surface where the field has the value at which it encloses `wanted` [mm^3].
+Soup surface_of_volume(const Field& field, double wanted) {
+  // The volume falls with the level.
+  float low = 0, high = *std::max_element(field.value.begin(), field.value.end());
+  float level = std::min(0.5f, 0.5f * high);
+  for (int round = 0;; ++round) {
+    Soup soup = Marching(field, level).take();
+    const double volume = volume_of(soup);
+    if (std::abs(volume / wanted - 1) <= 0.5 * kVolumeBound || round == kMostRounds) return soup;
+    (volume > wanted ? low : high) = level;
+    level = 0.5f * (low + high);
+  }
+}
+
 }  // namespace
 
 Soup label_surface(const LabelMap& map, const Label& label) {
   if (label.voxels == 0) return {};
   Field field = shares_of(map, label);
   smooth(field);
-  const double wanted = 1e9 * label.volume;
-  // The volume falls with the level.
-  float low = 0, high = *std::max_element(field.value.begin(), field.value.end());
-  float level = std::min(0.5f, 0.5f * high);
-  for (int round = 0;; ++round) {
-    Soup soup = Marching(field, level).take();
+  constexpr double kCubicMillimetre = 1e-9;  // [m^3]
+  const double volume = label.volume / kCubicMillimetre;
+  // Evening out changes the volume a little; the next round allows for that.
+  constexpr int kMostTries = 3;
+  double wanted = volume;
+  for (int round = 1;; ++round) {
+    Soup soup = surface_of_volume(field, wanted);
     even_out(soup);
-    const double volume = soup.vertex.empty() ? 0 : signed_volume(soup.vertex, soup.triangle, soup.vertex.front());
-    if (std::abs(volume / wanted - 1) <= kVolumeBound || round == kMostRounds) return soup;
-    (volume > wanted ? low : high) = level;
-    level = 0.5f * (low + high);
+    const double got = volume_of(soup);
+    if (std::abs(got / volume - 1) <= kVolumeBound || round == kMostTries || !(got > 0)) return soup;
+    wanted *= volume / got;
   }
 }
 

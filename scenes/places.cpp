@@ -52,22 +52,25 @@ std::string list_of(const std::vector<std::string>& names) {
   return text;
 }
 
-/// Highest point of the surface on the line along z through x, y.
-std::optional<Vec3> surface_at(const Surface& surface, double x, double y) {
-  std::optional<Vec3> highest;
+}  // namespace
+
+std::optional<Vec3> surface_above(const Surface& surface, Vec3 point, Vec3 up) {
+  std::optional<double> highest;
   for (const auto& t : surface.triangle) {
     const Vec3 a = surface.vertex[std::size_t(t[0])], b = surface.vertex[std::size_t(t[1])],
                c = surface.vertex[std::size_t(t[2])];
-    const auto side = [&](Vec3 p, Vec3 q) { return (q.x - p.x) * (y - p.y) - (q.y - p.y) * (x - p.x); };
-    const double u = side(b, c), v = side(c, a), w = side(a, b), sum = u + v + w;
-    if (!(sum > 0) || u < 0 || v < 0 || w < 0) continue;
-    const double z = (u * a.z + v * b.z + w * c.z) / sum;
-    if (!highest || z > highest->z) highest = Vec3{x, y, z};
+    const Vec3 normal = cross(b - a, c - a);
+    const double facing = dot(normal, up);
+    if (facing <= 0) continue;
+    const double height = dot(normal, a - point) / facing;
+    const Vec3 hit = point + height * up;
+    const bool is_inside = dot(cross(b - a, hit - a), normal) >= 0 && dot(cross(c - b, hit - b), normal) >= 0 &&
+                           dot(cross(a - c, hit - c), normal) >= 0;
+    if (is_inside && (!highest || height > *highest)) highest = height;
   }
-  return highest;
+  if (!highest) return std::nullopt;
+  return point + *highest * up;
 }
-
-}  // namespace
 
 Result<PlacePhrase> parse_place(std::string_view text, bool is_direction) {
   PlacePhrase phrase;
@@ -173,7 +176,7 @@ Result<std::optional<Vec3>> PlaceFinder::find(const PlacePhrase& phrase) const {
       place = 0.5 * (low + high);
     }
     if (phrase.kind == Kind::surface) {
-      const std::optional<Vec3> hit = surface_at(*organ->surface, phrase.x, phrase.y);
+      const std::optional<Vec3> hit = surface_above(*organ->surface, {phrase.x, phrase.y, 0}, {0, 0, 1});
       if (!hit)
         return Error{"",
                      "no part of " + in_quotes(phrase.name) + " is over " + double_to_decimal(phrase.x, -3) + " " +

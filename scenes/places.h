@@ -27,6 +27,9 @@ struct PlacePhrase {
   double sign = 1;  ///< of a direction along the outward normal
 };
 
+/// Highest point of the surface on the line along the unit vector `up` through `point` [m]; none if the line misses it.
+std::optional<Vec3> surface_above(const Surface& surface, Vec3 point, Vec3 up);
+
 /// Error: what is wrong with it, without a place.
 Result<PlacePhrase> parse_place(std::string_view text, bool is_direction);
 
