@@ -72,9 +72,10 @@ Sight::Row Sight::row_at(const Bits& bits, CutGrid::Node home, Index j, Index k)
 void Sight::add_spheres(CutGrid::Node home, Index hops, Index j, Index k, Row row, Seen& seen) const {
   for (; row != 0; row &= row - 1) {
     const Index i = std::countr_zero(row) - kMostHops;
-    if (hops > shortest_way({i, j, k}) + kDetour) continue;
-    const auto spheres = grid_.spheres_at(grid_.at({home[0] + i, home[1] + j, home[2] + k}));
-    seen.sphere.insert(seen.sphere.end(), spheres.begin(), spheres.end());
+    const Index detour = hops - shortest_way({i, j, k});
+    if (detour > kMostDetour) continue;
+    for (const Index sphere : grid_.spheres_at(grid_.at({home[0] + i, home[1] + j, home[2] + k})))
+      seen.sphere.push_back({sphere, detour});
   }
 }
 
@@ -109,7 +110,8 @@ Sight::Seen Sight::from(Index node) {
         visited[at(j, k)] |= reached, reached = 0;
       }
   }
-  std::sort(seen.sphere.begin(), seen.sphere.end());
+  std::sort(seen.sphere.begin(), seen.sphere.end(),
+            [](const Seen::Sphere& a, const Seen::Sphere& b) { return a.sphere < b.sphere; });
   return seen;
 }
 
