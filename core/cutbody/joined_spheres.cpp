@@ -13,9 +13,9 @@ constexpr double kBlur = 2;
 constexpr CutGrid::Index kBlurHops = JoinedSpheres::kMostHops - Sight::kMostHops;
 static_assert(kBlurHops >= kBlur);
 
-/// The part of a sphere by how many edges the way to it is longer than the shortest. One more is what a wall beside the
-/// way may cost, which grazes edges of the grid.
-constexpr std::array<double, Sight::kMostDetour + 1> kPart{1, 1, 0.5};
+/// The part of a sphere by how many edges the way to it is longer than the shortest (our choice): one more may be due
+/// to a wall beside the way, which grazes edges of the grid; a spacing more is around the end of a cut.
+constexpr std::array<double, Sight::kMostDetour + 1> kPart{1, 1, 0.75, 0.5, 0.25};
 
 }  // namespace
 

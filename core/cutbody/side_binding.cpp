@@ -10,9 +10,14 @@
 namespace ctpm::cutbody {
 namespace {
 
-/// Bindings whose weights are large in sum throw their vertex far out: they count less from the first sum on, and from
-/// the second on not at all.
-constexpr double kLargeSum = 2.5, kLargestSum = 4;
+/// Spheres on one side of a place throw it far out where their weights are large in sum: up to the first sum a way to
+/// follow them counts in full, from the second on not at all (our choice). Beside a cut, near spheres are soon left for
+/// those in a wider reach, which throw it less; spheres of its own side are followed as far as that is sensible.
+struct Sums {
+  double all, none;
+};
+constexpr Sums kNear{1.3, 2.5}, kFar{4, 8}, kOfPiece{2.5, 4};
+constexpr double kWider = 1.5;
 
 /// A binding must put its vertex in its place at rest within this part of a spacing.
 constexpr double kOff = 1e-6;
@@ -41,11 +46,11 @@ class SideBinding::Mix {
   bool is_whole() const { return missing_ == 0; }
 
   /// Adds as much of a way as its weights allow. An empty one is no way.
-  void add(const Binding& way) {
+  void add(const Binding& way, Sums sums) {
     if (way.sphere.empty()) return;
     double sum = 0;
     for (const double w : way.weight) sum += std::abs(w);
-    const double q = std::clamp((kLargestSum - sum) / (kLargestSum - kLargeSum), 0.0, 1.0), part = q * q * (3 - 2 * q);
+    const double q = std::clamp((sums.none - sum) / (sums.none - sums.all), 0.0, 1.0), part = q * q * (3 - 2 * q);
     add(way, part);
   }
 
@@ -180,8 +185,8 @@ const SideBinding::Bound& SideBinding::bind(const CutMesh::Vertex& vertex, bool 
   }
   const double reach = surface::kBindingReach * organ_.spacing;
   Mix mix;
-  for (const double wider : {1.0, 1.5})
-    if (!mix.is_whole()) mix.add(follow(bound.rest, joined, wider * reach));
+  mix.add(follow(bound.rest, joined, reach), kNear);
+  if (!mix.is_whole()) mix.add(follow(bound.rest, joined, kWider * reach), kFar);
   bound.by_piece = !mix.is_whole();
   if (bound.by_piece) {
     if (piece_.empty()) piece_ = grid_.find_pieces();
@@ -196,7 +201,7 @@ const SideBinding::Bound& SideBinding::bind(const CutMesh::Vertex& vertex, bool 
 void SideBinding::follow_piece(Vec3 rest, Index piece, Mix& mix) const {
   const double reach = surface::kBindingReach * organ_.spacing;
   for (const double wider : {1.0, 1.5, 2.5, 4.0})
-    if (!mix.is_whole()) mix.add(follow(rest, spheres_around(rest, wider * reach, piece), wider * reach));
+    if (!mix.is_whole()) mix.add(follow(rest, spheres_around(rest, wider * reach, piece), wider * reach), kOfPiece);
   if (mix.is_whole()) return;
   // Spheres in a plane, or fewer than four.
   const std::vector<Joined> around = spheres_around(rest, piece >= 0 ? 4 * reach : kAnywhere, piece);

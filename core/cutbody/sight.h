@@ -16,7 +16,7 @@ class Sight {
 
   /// Spheres are seen over this many edges at most, and over so many more than the shortest way: what can only be
   /// reached around the end of a cut is on its other side.
-  static constexpr Index kMostHops = 12, kMostDetour = 2;
+  static constexpr Index kMostHops = 12, kMostDetour = 4;
 
   struct Seen {
     struct Sphere {
