@@ -81,10 +81,13 @@ void join_repeats(RawMesh& mesh) {
 }
 
 bool has_indices_in_range(const RawMesh& mesh) {
-  const std::int32_t count = std::int32_t(mesh.vertex.size());
-  return std::all_of(mesh.triangle.begin(), mesh.triangle.end(), [count](const Triangle& t) {
-    return std::all_of(t.begin(), t.end(), [count](std::int32_t v) { return v >= 0 && v < count; });
-  });
+  const std::int32_t count = std::int32_t(mesh.vertex.size()), parts = std::int32_t(mesh.parts.size());
+  const bool has_parts = mesh.part_of_triangle.size() == mesh.triangle.size() &&
+                         std::all_of(mesh.part_of_triangle.begin(), mesh.part_of_triangle.end(),
+                                     [parts](std::int32_t part) { return part >= 0 && part < parts; });
+  return has_parts && std::all_of(mesh.triangle.begin(), mesh.triangle.end(), [count](const Triangle& t) {
+           return std::all_of(t.begin(), t.end(), [count](std::int32_t v) { return v >= 0 && v < count; });
+         });
 }
 
 }  // namespace
@@ -116,9 +119,13 @@ Result<RawMesh> read_mesh(const std::string& path, const ReadOptions& options) {
   if (kind == wire::Kind::no_such_part)
     return Error{path, "no mesh named \"" + options.part + "\"",
                  mesh.parts.empty() ? "the file holds no mesh" : "the file holds " + listed(mesh.parts)};
+  std::vector<Vec3> colours;
   if (kind != wire::Kind::mesh || !reader.get(mesh.unit_in_metres) || !reader.get_list(mesh.vertex) ||
-      !reader.get_list(mesh.triangle) || !reader.is_at_end() || !has_indices_in_range(mesh))
+      !reader.get_list(mesh.triangle) || !reader.get_list(mesh.part_of_triangle) || !reader.get_list(colours) ||
+      !reader.is_at_end() || !has_indices_in_range(mesh) || colours.size() != mesh.parts.size())
     return broken;
+  for (const Vec3& colour : colours)
+    mesh.part_colour.push_back(is_finite(colour) ? std::optional(colour) : std::nullopt);
   if (!(std::isfinite(mesh.unit_in_metres) && mesh.unit_in_metres > 0)) mesh.unit_in_metres = 0;
   if (mesh.triangle.empty())
     return Error{path, "holds no triangles", "points and lines alone cannot be filled; export the surface"};

@@ -5,6 +5,7 @@
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 #include "studio/loading/loaded_scene.h"
+#include "studio/loading/oddities.h"
 
 namespace ctpm::commands {
 namespace {
@@ -23,6 +24,7 @@ int run_check(const CheckArguments& arguments) {
       continue;
     }
     print_warnings(scene->scene.warnings);
+    print_warnings(*loading::find_oddities(*scene));
     print("%s: good, %zu spheres, %zu elements\n", path.c_str(), scene->built.model.sphere_count(),
           scene->built.model.element_count());
   }
@@ -33,7 +35,8 @@ int run_check(const CheckArguments& arguments) {
 
 Command add_check(CLI::App& program) {
   auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* app = program.add_subcommand("check", "Validates scenes with their meshes; all errors at once.");
+  CLI::App* app = program.add_subcommand(
+      "check", "Validates scenes with their meshes; all errors at once. Settles them, and warns of what is odd.");
   app->footer("Example: ctpm check scenes/liver.json");
   app->add_option("scenes", arguments->scenes, "Scene files (.json)")->required();
   app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths,
