@@ -28,6 +28,8 @@ std::string describe_damage(const Event& event, const Model& model) {
          name_in(model.organs, event.organ, "organ");
 }
 
+std::string of_second_hand(const Event& event) { return event.hand == 0 ? "" : "second hand: "; }
+
 }  // namespace
 
 const char* name_of(EventKind kind) {
@@ -79,18 +81,19 @@ std::string describe(const Event& event, const Model& model) {
     case EventKind::late_tick:
       return with_number("tick ended %.3g ms late", 1e3 * event.late);
     case EventKind::device_lost:
-      return event.reason + "; the pose is held";
+      return of_second_hand(event) + event.reason + "; the pose is held";
     case EventKind::device_back:
-      return with_number("device is back; the pose was held for %.3g s", event.held) +
+      return of_second_hand(event) + with_number("device is back; the pose was held for %.3g s", event.held) +
              ", samples refused: " + std::to_string(event.refused_samples);
     case EventKind::note:
       break;
     case EventKind::piece_came_loose:
       return "pieces that came loose: " + std::to_string(event.pieces);
     case EventKind::press_reached_force:
-      return with_number("press reached its force at %.3g N", event.force);
+      return of_second_hand(event) + with_number("press reached its force at %.3g N", event.force);
     case EventKind::press_gave_up:
-      return with_number("press gave up at its depth with %.3g N, short of its force", event.force);
+      return of_second_hand(event) +
+             with_number("press gave up at its depth with %.3g N, short of its force", event.force);
     case EventKind::step_refused:
       return "the step was refused, status " + std::to_string(event.status) + ", worst sphere " +
              std::to_string(event.sphere);

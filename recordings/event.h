@@ -31,6 +31,7 @@ enum class EventKind : std::int32_t {
 struct Event {
   std::int64_t tick = 0;
   EventKind kind = EventKind::note;
+  std::int32_t hand = 0;             ///< whose device, or whose press: 0 the first, 1 the second
   std::int32_t tool = -1;            ///< tool that touches or cuts: index into Model::tools
   std::int32_t severed = 0;          ///< elements severed in the tick in which the cut begins
   std::int32_t organ = -1;           ///< organ whose damage depth was exceeded: index into Model::organs
@@ -81,6 +82,10 @@ void for_each_value(Event_& e, Visit&& visit) {
     visit("sphere", e.sphere);
   }
   if (give(EventKind::turned_inside_out, EventKind::came_back)) visit("cells", e.cells);
+  // Written only of the second hand, and read from every file.
+  if (give(EventKind::device_lost, EventKind::device_back, EventKind::press_reached_force, EventKind::press_gave_up) &&
+      (!std::is_const_v<Event_> || e.hand != 0))
+    visit("hand", e.hand);
 }
 
 /// Name of a kind in tables and JSON.

@@ -182,7 +182,7 @@ Result<Done> write_salvage(const std::string& out, Salvage& salvage, SessionStor
     const std::vector<TickRecord>& records = (*chunk)->items;
     const auto count = static_cast<std::int64_t>(records.size());
     Bytes content;
-    put_records(content, records);
+    put_records(content, records, salvage.start.model.hands);
     if (auto r =
             tables->insert_chunk(next, count, pack(chunk_name(next, count), content, identity.seed, recover_level));
         !r)

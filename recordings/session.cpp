@@ -25,6 +25,7 @@ TickRecord make_record(const Inputs& inputs, const stepping::StepReport& report,
   record.input_age = input_age_s;
   record.slip = slip_s;
   record.state_hash = state_hash;
+  record.second = report.second;
   return record;
 }
 

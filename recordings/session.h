@@ -47,11 +47,17 @@ struct TickRecord {
   std::int32_t contacts = 0;    ///< spheres touched
   std::int32_t severed = 0;     ///< elements severed in this tick
   double tick_time = 0;         ///< computing time of the tick [s], stored to 1 ns; 0: not measured
-  double input_age = 0;  ///< age of the device sample used for the inputs when the tick began [s], stored to 1 ns; 0:
-                         ///< inputs come from no device
-  double slip = 0;       ///< real time since the start of recording, less the time of the session, when the tick began
-                         ///< [s], stored to 1 ms; 0: on time, or not recorded in real time
+  double input_age = 0;         ///< age of the device sample used for the inputs when the tick began, the oldest of all
+                                ///< devices [s], stored to 1 ns; 0: inputs come from no device
+  double slip = 0;  ///< real time since the start of recording, less the time of the session, when the tick began
+                    ///< [s], stored to 1 ms; 0: on time, or not recorded in real time
   std::uint64_t state_hash = 0;  ///< state_hash() of the State after the tick
+  stepping::HandReport second;   ///< of the second hand; the numbers above are of the first one
+
+  /// The numbers of one hand.
+  stepping::HandReport of_hand(std::size_t hand) const {
+    return hand == 0 ? stepping::HandReport{tool_force, depth, contacts} : second;
+  }
 
   friend bool operator==(const TickRecord&, const TickRecord&) = default;
 };
@@ -84,8 +90,8 @@ struct SessionStatistics {
   double input_age_max = 0;        ///< [s]
   double slip = 0;                 ///< TickRecord::slip of the last tick [s]
   double slip_max = 0;             ///< [s]
-  double max_force = 0;            ///< [N]
-  double max_depth = 0;            ///< [m]
+  double max_force = 0;            ///< of all hands [N]
+  double max_depth = 0;            ///< of all hands [m]
   std::vector<NamedValue> values;  ///< further numbers passed to SessionWriter::finish; the name contains the unit
 };
 

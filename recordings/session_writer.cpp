@@ -48,6 +48,7 @@ struct Row {
 struct SessionWriter::Impl {
   Impl(const SessionStart& start, const WriterOptions& options_)
       : options(options_),
+        hands(start.model.hands),
         records(options_.queue_ticks, TickRecord{}),
         keyframes(keyframe_slots, Keyframe{0, start.initial_state}) {}
   ~Impl() {
@@ -59,6 +60,7 @@ struct SessionWriter::Impl {
   std::string path;
   SessionIdentity identity;
   WriterOptions options;
+  std::int32_t hands;                 ///< Model::hands
   SessionTables tables, checkpoints;  // each of its own connection: the syncing thread makes the checkpoints
   int log_file = -1;
   dev_t device = 0;  ///< with `inode`, the file that is written
@@ -342,7 +344,7 @@ void SessionWriter::Impl::gather_ticks(bool all) {
     for (std::size_t i = 0; i < count; ++i) batch.push_back(records.waiting_at(taken + i));
     const std::int64_t first = next_tick + static_cast<std::int64_t>(taken);
     Bytes content;
-    put_records(content, std::span(batch).last(count));
+    put_records(content, std::span(batch).last(count), hands);
     const auto ticks = static_cast<std::int64_t>(count);
     rows.push_back({Row::Kind::chunk, first, ticks,
                     pack(chunk_name(first, ticks), content, identity.seed, options.compression_level)});

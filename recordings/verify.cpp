@@ -40,7 +40,12 @@ std::vector<Pair> outcomes(const TickRecord& record, const stepping::StepReport&
           {"status", double(record.status), double(report.status)},
           {"contacts", double(record.contacts), double(report.contacts)},
           {"severed", double(record.severed), double(report.severed)},
-          {"iterations", double(record.iterations), double(report.iterations)}};
+          {"iterations", double(record.iterations), double(report.iterations)},
+          {"second.tool_force.x", record.second.tool_force.x, report.second.tool_force.x},
+          {"second.tool_force.y", record.second.tool_force.y, report.second.tool_force.y},
+          {"second.tool_force.z", record.second.tool_force.z, report.second.tool_force.z},
+          {"second.depth", record.second.depth, report.second.depth},
+          {"second.contacts", double(record.second.contacts), double(report.second.contacts)}};
 }
 
 /// Flattens a State to numbers, field by field.
@@ -77,7 +82,8 @@ bool locate(const State& recorded, const State& replayed, Verdict& verdict) {
   for_each_field(recorded, Flatten{before});
   for_each_field(replayed, Flatten{now});
   std::string group;
-  for (std::size_t f = 0; f < before.size(); ++f) {
+  // Only a State whose second hand did something has the fields of it, after all others.
+  for (std::size_t f = 0; f < std::min(before.size(), now.size()); ++f) {
     if (!group.empty() && group_of(before[f].name) != group) break;
     const std::size_t count = std::min(before[f].values.size(), now[f].values.size());
     for (std::size_t i = 0; i < count; ++i) {

@@ -198,7 +198,7 @@ Quat turn_to(Vec3 normal) {
 }
 
 void add_obstacles(Model& model, const SceneSpec& scene, std::span<const ObstacleMesh> meshes, Problems& problems) {
-  model.organs_meet = scene.organs_meet;
+  model.organs_meet = scene.organs_meet, model.hands = scene.hands.value_or(1);
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
     const ObstacleSpec& spec = scene.obstacles[i];
     Obstacle obstacle;

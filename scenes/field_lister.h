@@ -36,6 +36,7 @@ struct RecordRow {
   std::type_index type = typeid(void);
   std::vector<FieldRow> fields;
   bool has_exactly_one = false;  ///< of its fields
+  std::string beside{};          ///< the field that may be given with it
 };
 
 /// Lists the records that can be reached from one, itself first. Visits objects with default values.
@@ -101,7 +102,9 @@ class FieldLister {
     added.record = info_of(T{}).name, added.least = least;
     add_record<T>(records_);
   }
-  void exactly_one() { records_[index_].has_exactly_one = true; }
+  void exactly_one(const char* beside = "") {
+    records_[index_].has_exactly_one = true, records_[index_].beside = beside;
+  }
 
  private:
   FieldLister(std::vector<RecordRow>& records, std::size_t index) : records_(records), index_(index) {}

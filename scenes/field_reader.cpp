@@ -279,9 +279,11 @@ void FieldReader::finish() {
                     child_pointer(pointer_, known.name));
     }
   }
+  std::erase(written, beside_);
   if (needs_exactly_one_ && written.size() != 1) {
     std::string allowed;
-    for (const std::string& name : names) allowed += (allowed.empty() ? "" : ", ") + name;
+    for (const std::string& name : names)
+      if (name != beside_) allowed += (allowed.empty() ? "" : ", ") + name;
     problems_.add(pointer_, object_.place,
                   "got " + std::to_string(written.size()) + " of the keys, must have exactly one of " + allowed);
   }

@@ -69,8 +69,8 @@ class FieldReader {
     }
   }
 
-  /// Exactly one of the keys of this object may be given.
-  void exactly_one() { needs_exactly_one_ = true; }
+  /// Exactly one of the keys of this object may be given, and perhaps the key `beside` with it.
+  void exactly_one(const char* beside = "") { needs_exactly_one_ = true, beside_ = beside; }
 
   /// Reports unknown and repeated keys.
   void finish();
@@ -105,6 +105,7 @@ class FieldReader {
   Problems& problems_;
   std::vector<KnownKey> known_;
   bool needs_exactly_one_ = false;
+  std::string beside_;
 };
 
 }  // namespace ctpm::scenes

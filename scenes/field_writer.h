@@ -70,7 +70,7 @@ class FieldWriter {
     for (T& item : value) items.push_back(record_text(item, depth_ + 2));
     member(key, list_text(items));
   }
-  void exactly_one() {}
+  void exactly_one(const char* = "") {}
 
   /// The object's text. Short ones stand on one line.
   std::string text() const;

@@ -58,7 +58,8 @@ std::string otherwise_of(const FieldRow& row) {
 
 std::string table_of(const RecordRow& record) {
   std::string text = "### " + std::string(record.info.name) + "\n\n" + record.info.meaning;
-  if (record.has_exactly_one) text += " Exactly one of these keys.";
+  if (record.has_exactly_one)
+    text += " Exactly one of these keys" + (record.beside.empty() ? "" : ", beside " + in_code(record.beside)) + ".";
   text += "\n\n| key | value | if not written | meaning |\n| --- | --- | --- | --- |\n";
   for (const FieldRow& row : record.fields)
     text += "| " + in_code(row.key.name) + " | " + value_of(row) + " | " + otherwise_of(row) + " | " + row.key.meaning +

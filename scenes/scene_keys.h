@@ -373,6 +373,11 @@ void describe_fields(V& v, SceneSpec& scene) {
            units::second, within(0, 60));
   v.list(required("organs", "The tissue."), scene.organs, 1);
   v.list(Key{"tools", "The tools."}, scene.tools, 0);
+  v.integer(Key{"hands",
+                "Hands that hold tools at once. Two never hold the same tool, two scalpels, or two pins of the same "
+                "sphere.",
+                false, "1"},
+            scene.hands, within(1, kMostHands));
   v.number(Key{"contact_stiffness_n_per_m", "Stiffness of a tool against one sphere of a rig.", false,
                "20 times the stiffest edge"},
            scene.contact_stiffness, units::newton_per_metre, within(1e-6, 1e12));

@@ -207,6 +207,8 @@ void check_rules(Problems& problems, const SceneSpec& scene) {
   check_names(problems, "/probes", scene.probes);
   check_names(problems, "/obstacles", scene.obstacles);
   check_meeting(problems, scene);
+  if (scene.hands == 2 && scene.tools.size() < 2 && problems.is_good("/tools"))
+    problems.add_warning("/hands", "two hands need two tools, and the scene has " + std::to_string(scene.tools.size()));
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) check_obstacle(problems, i, scene.obstacles[i]);
   for (std::size_t i = 0; i < scene.organs.size(); ++i) check_organ(problems, i, scene.organs[i]);
   for (std::size_t i = 0; i < scene.tools.size(); ++i) check_tool(problems, i, scene.tools[i]);

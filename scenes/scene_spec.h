@@ -229,6 +229,7 @@ struct SceneSpec {
   double settle = 1.0;        ///< longest time for the scene to come to rest before the first tick [s]
   std::vector<OrganSpec> organs;
   std::vector<ToolSpec> tools;
+  std::optional<std::int32_t> hands;          ///< that hold tools at once; unset: 1
   std::optional<double> contact_stiffness;    ///< of a tool against one sphere of a rig [N/m]
   double contact_friction = 0.3;              ///< Coulomb coefficient of tissue against everything that it touches
   std::optional<double> contact_damping;      ///< Hunt-Crossley damping [s/m]; unset: that of core's Model

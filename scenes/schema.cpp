@@ -80,7 +80,10 @@ Json object_of(const RecordRow& record) {
   }
   if (!required.empty()) schema["required"] = std::move(required);
   schema["additionalProperties"] = false;
-  if (record.has_exactly_one) schema["minProperties"] = 1, schema["maxProperties"] = 1;
+  if (record.has_exactly_one && record.beside.empty()) schema["minProperties"] = 1, schema["maxProperties"] = 1;
+  if (!record.beside.empty())
+    for (const FieldRow& row : record.fields)
+      if (row.key.name != record.beside) schema["oneOf"].push_back({{"required", Json::array({row.key.name})}});
   return schema;
 }
 

@@ -1,11 +1,13 @@
 #include "scenes/script.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <tuple>
 #include <utility>
 
+#include "core/stepping/step.h"
 #include "scenes/field_reader.h"
 #include "scenes/field_writer.h"
 #include "scenes/script_keys.h"
@@ -13,37 +15,68 @@
 namespace ctpm::scenes {
 namespace {
 
-void check_tool(Problems& problems, const std::string& at, const ScriptStep::Take& take,
-                const std::vector<std::string>& tool_names) {
-  if (std::find(tool_names.begin(), tool_names.end(), take.tool) == tool_names.end()) {
+/// What a script can use of a scene.
+struct Equipment {
+  std::vector<std::string> tools;
+  std::int32_t hands;
+  const Model* model;  ///< null: not known
+};
+
+/// What a hand holds while steps are checked.
+struct Holding {
+  bool has_tool = false;
+  std::int32_t tool = -1;  ///< in Equipment::tools; -1: none, or none that is known
+};
+using Holdings = std::array<Holding, kMostHands>;
+
+void check_take(Problems& problems, const std::string& at, const ScriptStep& step, const Equipment& equipment,
+                Holdings& holdings) {
+  const ScriptStep::Take& take = *step.take;
+  const std::vector<std::string>& names = equipment.tools;
+  const auto found = std::find(names.begin(), names.end(), take.tool);
+  Holding &holding = holdings[step.hand_number()], &other = holdings[1 - step.hand_number()];
+  holding = {true, found == names.end() ? -1 : std::int32_t(found - names.begin())};
+  if (found == names.end()) {
     std::string known;
-    for (const std::string& name : tool_names) known += (known.empty() ? "" : ", ") + name;
+    for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
     problems.add_rule(at + "/take/tool", "the scene has no tool " + in_quotes(take.tool),
                       known.empty() ? "the scene has no tools" : "its tools: " + known);
   }
+  std::string conflict;
+  if (equipment.model != nullptr)
+    conflict = stepping::hands_conflict(*equipment.model, holding.tool, other.tool);
+  else if (holding.tool >= 0 && holding.tool == other.tool)
+    conflict = "both hands hold the same tool";
+  if (!conflict.empty())
+    problems.add_rule(at + "/take/tool", conflict, "put " + in_quotes(names[std::size_t(other.tool)]) + " away first");
   check_direction(problems, at + "/take/pointing", take.pointing);
   if (take.facing && problems.is_good(at + "/take/pointing") &&
       norm(cross(*take.facing, take.pointing)) <= 1e-6 * norm(*take.facing) * norm(take.pointing))
     problems.add_rule(at + "/take/facing", "must not be zero or along pointing");
 }
 
-void check_steps(Problems& problems, const Script& script, const std::vector<std::string>& tool_names) {
-  bool has_tool = false;
+void check_hand(Problems& problems, const std::string& at, const ScriptStep& step, std::int32_t hands) {
+  if (!step.hand) return;
+  if (step.wait) problems.add_rule(at + "/hand", "both hands hold still", "leave it out");
+  if (*step.hand > hands) problems.add_rule(at + "/hand", "the scene has one hand", "write \"hands\": 2 in the scene");
+}
+
+void check_steps(Problems& problems, const Script& script, const Equipment& equipment) {
+  Holdings holdings;
   for (std::size_t i = 0; i < script.steps.size(); ++i) {
     const ScriptStep& step = script.steps[i];
     const std::string at = "/steps/" + std::to_string(i);
-    if (step.take) {
-      has_tool = true;
-      check_tool(problems, at, *step.take, tool_names);
-    }
-    if (step.put_away) has_tool = false;
+    Holding& holding = holdings[step.hand_number()];
+    check_hand(problems, at, step, equipment.hands);
+    if (step.take) check_take(problems, at, step, equipment, holdings);
+    if (step.put_away) holding = {};
     // A step without a known key may be a misspelt take, so what follows it is not judged.
     if (!(step.take || step.move || step.press || step.release || step.cut || step.wait || step.put_away))
-      has_tool = true;
+      holdings = {Holding{true, -1}, Holding{true, -1}};
     if (step.put_away == false) problems.add_rule(at + "/put_away", "must be true");
     if (step.press) check_direction(problems, at + "/press/direction", step.press->direction);
     if (step.release) check_direction(problems, at + "/release/direction", step.release->direction);
-    if ((step.move || step.press || step.release || step.cut) && !has_tool)
+    if ((step.move || step.press || step.release || step.cut) && !holding.has_tool)
       problems.add(at, "there is no tool in the hand here", "take one first", at);
   }
 }
@@ -128,19 +161,29 @@ Vec3 way_of(const Stroke& stroke) {
   return stroke.distance / norm(stroke.direction) * stroke.direction;
 }
 
-}  // namespace
-
-Result<Script> read_script(std::string_view text, const std::string& file_name,
-                           const std::vector<std::string>& tool_names) {
+Result<Script> read_with(std::string_view text, const std::string& file_name, const Equipment& equipment) {
   Result<JsonNode> parsed = parse_json(text, file_name);
   if (!parsed) return parsed.errors();
   const auto root = std::make_shared<const JsonNode>(*std::move(parsed));
   Script script;
   Problems problems(TextPlaces(root, file_name));
   FieldReader::read_record(*root, "", problems, script);
-  check_steps(problems, script, tool_names);
+  check_steps(problems, script, equipment);
   if (!problems.is_empty()) return problems.errors();
   return script;
+}
+
+}  // namespace
+
+Result<Script> read_script(std::string_view text, const std::string& file_name,
+                           const std::vector<std::string>& tool_names, std::int32_t hands) {
+  return read_with(text, file_name, {tool_names, hands, nullptr});
+}
+
+Result<Script> read_script_for(std::string_view text, const std::string& file_name, const Model& model) {
+  std::vector<std::string> names;
+  for (const Tool& tool : model.tools) names.push_back(tool.name);
+  return read_with(text, file_name, {std::move(names), model.hands, &model});
 }
 
 std::string write_script(const Script& script) {
@@ -150,53 +193,55 @@ std::string write_script(const Script& script) {
 
 ScriptPlayer::ScriptPlayer(const Script& script, std::span<const Tool> tools, double tick)
     : script_(script), tools_(tools.begin(), tools.end()), tick_(tick) {
-  plan(0, -1, {}, {});
+  plan(0, {});
 }
 
-/// Lays out the steps from `first_step` on, from a hand that is at `hand` with `tool`.
-void ScriptPlayer::plan(std::size_t first_step, std::int32_t tool, Quat orientation, Vec3 hand) {
+/// Lays out the steps from `first_step` on, from what the hands do then.
+void ScriptPlayer::plan(std::size_t first_step, Inputs hands) {
   for (std::size_t i = first_step; i < script_.steps.size(); ++i) {
     const ScriptStep& step = script_.steps[i];
+    Hand& hand = hands.hand(step.hand_number());
     const auto follow = [&](std::vector<Vec3> way, double speed) -> Stretch& {
-      hand = way.back();
+      hand.position = way.back();
       const double duration = duration_of(way, speed);
-      return add_stretch(i, tool, orientation, std::move(way), duration);
+      return add_stretch(i, hands, std::move(way), duration);
     };
     if (step.take) {
       const auto it =
           std::find_if(tools_.begin(), tools_.end(), [&](const Tool& t) { return t.name == step.take->tool; });
       CTPM_CHECK(it != tools_.end(), "the script was read with the scene's tools");
-      tool = std::int32_t(it - tools_.begin());
-      orientation = orientation_of(step.take->pointing);
-      if (step.take->facing) orientation = facing(orientation, *step.take->facing);
-      hand = step.take->at;
-      add_stretch(i, tool, orientation, {hand}, tick_);
+      hand.tool = std::int32_t(it - tools_.begin());
+      hand.world_from_tool = orientation_of(step.take->pointing);
+      if (step.take->facing) hand.world_from_tool = facing(hand.world_from_tool, *step.take->facing);
+      hand.position = step.take->at;
+      add_stretch(i, hands, {hand.position}, tick_);
     }
-    if (step.move) follow({hand, step.move->to}, step.move->speed);
+    const Vec3 from = hand.position;
+    if (step.move) follow({from, step.move->to}, step.move->speed);
     if (step.press)
-      follow({hand, hand + way_of(*step.press)}, step.press->speed).until_force = step.press->until_force.value_or(0);
-    if (step.release) follow({hand, hand + way_of(*step.release)}, step.release->speed);
+      follow({from, from + way_of(*step.press)}, step.press->speed).until_force = step.press->until_force.value_or(0);
+    if (step.release) follow({from, from + way_of(*step.release)}, step.release->speed);
     if (step.cut && step.cut->smooth.value_or(false)) {
-      std::vector<Vec3> points{hand};
+      std::vector<Vec3> points{from};
       points.insert(points.end(), step.cut->path.begin(), step.cut->path.end());
       follow(curve_through(points), step.cut->speed);
     } else if (step.cut) {
-      for (const Vec3& point : step.cut->path) follow({hand, point}, step.cut->speed);
+      for (const Vec3& point : step.cut->path) follow({hand.position, point}, step.cut->speed);
     }
-    if (step.wait) add_stretch(i, tool, orientation, {hand}, *step.wait);
+    if (step.wait) add_stretch(i, hands, {hand.position}, *step.wait);
     if (step.put_away) {
-      tool = -1;
-      add_stretch(i, tool, orientation, {hand}, tick_);  // the hand stays where it is
+      hand.tool = -1;
+      add_stretch(i, hands, {hand.position}, tick_);  // the hand stays where it is
     }
   }
 }
 
-ScriptPlayer::Stretch& ScriptPlayer::add_stretch(std::size_t step, std::int32_t tool, Quat orientation,
-                                                 std::vector<Vec3> points, double duration) {
+ScriptPlayer::Stretch& ScriptPlayer::add_stretch(std::size_t step, const Inputs& hands, std::vector<Vec3> points,
+                                                 double duration) {
   Stretch stretch;
   stretch.first = tick_count();
   stretch.count = stretch.planned = std::max<std::int64_t>(1, std::llround(std::ceil(duration / tick_)));
-  stretch.tool = tool, stretch.world_from_tool = orientation, stretch.step = step;
+  stretch.hand = script_.steps[step].hand_number(), stretch.held = hands, stretch.step = step;
   stretch.lengths = lengths_along(points);
   stretch.points = std::move(points);
   return stretches_.emplace_back(std::move(stretch));
@@ -212,24 +257,25 @@ const ScriptPlayer::Stretch& ScriptPlayer::stretch_at(std::int64_t tick) const {
   return next == stretches_.begin() ? *next : *(next - 1);
 }
 
+std::size_t ScriptPlayer::hand_at(std::int64_t tick) const { return stretches_.empty() ? 0 : stretch_at(tick).hand; }
+
 Inputs ScriptPlayer::at(std::int64_t tick) const {
-  Inputs inputs;
-  if (stretches_.empty()) return inputs;
+  if (stretches_.empty()) return {};
   const Stretch& stretch = stretch_at(tick);
-  inputs.tool = stretch.tool;
-  inputs.world_from_tool = stretch.world_from_tool;
+  Inputs inputs = stretch.held;
+  Vec3& position = inputs.hand(stretch.hand).position;
   const std::int64_t done = std::clamp<std::int64_t>(tick - stretch.first + 1, 0, stretch.count);
   const double share = double(done) / double(stretch.planned);
   const auto& [points, lengths] = std::tie(stretch.points, stretch.lengths);
   const double length = eased(share) * lengths.back();
   const auto next = std::upper_bound(lengths.begin(), lengths.end(), length);
   if (next == lengths.end()) {
-    inputs.position = points.back();
+    position = points.back();
     return inputs;
   }
   const std::size_t i = std::size_t(next - lengths.begin());
   const double part = (length - lengths[i - 1]) / (lengths[i] - lengths[i - 1]);
-  inputs.position = points[i - 1] + part * (points[i] - points[i - 1]);
+  position = points[i - 1] + part * (points[i] - points[i - 1]);
   return inputs;
 }
 
@@ -245,7 +291,7 @@ PressEnd ScriptPlayer::feel(std::int64_t tick, Vec3 force) {
   stretch.count = tick - stretch.first + 1;
   const std::size_t next_step = stretch.step + 1;
   stretches_.resize(index + 1);
-  plan(next_step, now.tool, now.world_from_tool, now.position);
+  plan(next_step, now);
   return PressEnd::at_force;
 }
 

@@ -16,7 +16,7 @@
 
 namespace ctpm::scenes {
 
-/// A tool appears in the hand.
+/// A tool appears in a hand.
 struct TakeStep {
   std::string tool;            ///< name of a tool of the scene
   Vec3 at;                     ///< where its frame's origin appears [m]
@@ -73,7 +73,10 @@ struct ScriptStep {
   std::optional<Cut> cut;
   std::optional<double> wait;    ///< [s]
   std::optional<bool> put_away;  ///< no tool from here on
+  /// Which hand does it, 1 or 2; unset: the first. The other one holds still. Not with `wait`.
+  std::optional<std::int32_t> hand;
 
+  std::size_t hand_number() const { return hand == 2 ? 1 : 0; }  ///< in Inputs
   friend bool operator==(const ScriptStep&, const ScriptStep&) = default;
 };
 
@@ -84,9 +87,12 @@ struct Script {
 };
 
 /// Reads a script's text. Reports every error at once, each with `file:line:col`: those of the text and its values; a
-/// tool that the scene does not have; a step that moves a tool before one was taken.
+/// tool or a hand that the scene does not have; a step that moves a tool before one was taken; a tool that both hands
+/// hold.
 Result<Script> read_script(std::string_view text, const std::string& file_name,
-                           const std::vector<std::string>& tool_names);
+                           const std::vector<std::string>& tool_names, std::int32_t hands = 1);
+/// The same for a Model. Also reports other tools that two hands cannot hold at once (stepping::hands_conflict()).
+Result<Script> read_script_for(std::string_view text, const std::string& file_name, const Model& model);
 
 /// Text of a script. The same steps give the same text, and read_script gives the same steps again.
 std::string write_script(const Script& script);
@@ -108,9 +114,9 @@ Script organ_script(const SceneSpec& scene, std::span<const FilledOrgan> organs,
 /// How a press to a force ended.
 enum class PressEnd { none, at_force, at_depth };
 
-/// The inputs of a script, tick by tick. Each stretch starts and ends at rest: speed rises and falls along a cubic; in
-/// between it is the step's speed. A press to a force stops when the force is reached. Uses no transcendental function,
-/// so every machine gives the same inputs.
+/// The inputs of a script, tick by tick, one hand after the other. Each stretch starts and ends at rest: speed rises
+/// and falls along a cubic; in between it is the step's speed. A press to a force stops when the force is reached. Uses
+/// no transcendental function, so every machine gives the same inputs.
 class ScriptPlayer {
  public:
   /// `tick` [s]; the script's tools must be those of `tools`.
@@ -123,24 +129,26 @@ class ScriptPlayer {
   /// A pure function of the tick and of the forces of earlier calls of feel(). After the end the last inputs stay.
   Inputs at(std::int64_t tick) const;
 
-  /// Tells the player the tissue's `force` on the tool [N] in tick `tick`. If that ends a press to a force, the next
-  /// step starts where the tool is. Without these calls each press has its largest length.
+  /// The hand that moves in a tick.
+  std::size_t hand_at(std::int64_t tick) const;
+
+  /// Tells the player the tissue's `force` on the tool in hand_at(tick) [N] in tick `tick`. If that ends a press to a
+  /// force, the next step starts where the tool is. Without these calls each press has its largest length.
   PressEnd feel(std::int64_t tick, Vec3 force);
 
  private:
   struct Stretch {
     std::int64_t first = 0, count = 0;  ///< ticks
     std::int64_t planned = 0;           ///< ticks, had it not ended before
-    std::int32_t tool = -1;
-    Quat world_from_tool;
-    std::vector<Vec3> points;     ///< of the way, straight from one to the next; at least one [m]
-    std::vector<double> lengths;  ///< of the way up to each point [m]
-    std::size_t step = 0;         ///< of the script, to which it belongs
-    double until_force = 0;       ///< [N]; 0: none
+    std::size_t hand = 0;               ///< that moves
+    Inputs held;                        ///< what both hands do, but for the place of the one that moves
+    std::vector<Vec3> points;           ///< of the way, straight from one to the next; at least one [m]
+    std::vector<double> lengths;        ///< of the way up to each point [m]
+    std::size_t step = 0;               ///< of the script, to which it belongs
+    double until_force = 0;             ///< [N]; 0: none
   };
-  void plan(std::size_t first_step, std::int32_t tool, Quat orientation, Vec3 hand);
-  Stretch& add_stretch(std::size_t step, std::int32_t tool, Quat orientation, std::vector<Vec3> points,
-                       double duration);
+  void plan(std::size_t first_step, Inputs hands);
+  Stretch& add_stretch(std::size_t step, const Inputs& hands, std::vector<Vec3> points, double duration);
   const Stretch& stretch_at(std::int64_t tick) const;
 
   Script script_;

@@ -75,7 +75,7 @@ void describe_fields(V& v, ScriptStep::Cut& cut) {
            units::millimetre_per_second, script_ranges::speed_mm_per_s);
 }
 
-inline RecordInfo info_of(const ScriptStep&) { return {"step", "One action of the hand."}; }
+inline RecordInfo info_of(const ScriptStep&) { return {"step", "One action of a hand."}; }
 template <class V>
 void describe_fields(V& v, ScriptStep& step) {
   v.record(Key{"take", "Take a tool."}, step.take);
@@ -85,7 +85,9 @@ void describe_fields(V& v, ScriptStep& step) {
   v.record(Key{"cut", "Cut along a path."}, step.cut);
   v.number(Key{"wait_s", "Hold still."}, step.wait, units::second, within(0, 100000));
   v.flag(Key{"put_away", "Put the tool away; always true."}, step.put_away);
-  v.exactly_one();
+  v.integer(Key{"hand", "Which hand does it, in a scene with two; the other one holds still.", false, "1"}, step.hand,
+            within(1, kMostHands));
+  v.exactly_one("hand");
 }
 
 inline RecordInfo info_of(const Script&) { return {"script", "The whole file."}; }

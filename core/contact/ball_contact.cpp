@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
 #include <utility>
 
 #include "core/contact/contact_law.h"
@@ -24,6 +26,10 @@ constexpr double kDeepest = 12;
 /// Where the walls of a cut are nearer to each other than this part of the ball's radius, they count less, and not at
 /// all where they touch (our choice): a ball that presses on a closed cut dents its lips, and does not wedge it open.
 constexpr double kOpen = 0.1;
+
+/// Triangles are looked for within so many radii of where they may be touched (our choice): at the speed of a hand it
+/// is some ten steps before they are looked for again.
+constexpr double kMargin = 0.1;
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -62,10 +68,12 @@ BallContact::BallContact(const Model& model, std::vector<surface::Body>& bodies,
       cuts_(cuts),
       own_(model, 0, model.has_tool(ToolKind::ball) && bodies.empty() ? model.surfaces.size() : 0) {
   if (!model.has_tool(ToolKind::ball)) return;
-  if (!own_.empty()) parts_.push_back({0, 0, &own_});
-  for (surface::Body& body : bodies) parts_.push_back({body.first_vertex, body.first_vertex, &body.surface});
-  whole_parts_ = parts_.size();
+  touchable_count_ = std::int32_t(model.touchable_count());
+  if (!own_.empty()) whole_.push_back({0, 0, &own_});
+  for (surface::Body& body : bodies) whole_.push_back({body.first_vertex, body.first_vertex, &body.surface});
   for (const Surface& surface : model.surfaces) vertex_count_ += std::int32_t(surface.vertex.size());
+  for (std::size_t hand = 0; hand < std::size_t(model.hands); ++hand)
+    near_.emplace_back(whole_, vertex_count_, cuts, cuts.points().kind_of_ball(hand));
   const auto vertices = std::size_t(vertex_count_);
   pressed_.resize(vertices), touched_.reserve(vertices), was_touched_.assign(vertices, 0);
   for (std::size_t i = 0; i < model.surfaces.size(); ++i)
@@ -85,9 +93,9 @@ BallContact::BallContact(const Model& model, std::vector<surface::Body>& bodies,
 }
 
 const BallContact::Part& BallContact::part_of(std::int32_t slot) const {
-  std::size_t part = parts_.size() - 1;
-  while (parts_[part].first_slot > slot) --part;
-  return parts_[part];
+  const auto after = std::upper_bound(parts_->begin(), parts_->end(), slot,
+                                      [](std::int32_t s, const Part& part) { return s < part.first_slot; });
+  return *(after - 1);
 }
 
 std::int32_t BallContact::organ_of(const Part& part, std::int32_t slot) const {
@@ -99,22 +107,16 @@ surface::Follower BallContact::follower(std::int32_t slot) const {
   return part.surface->follower(slot - part.first_slot);
 }
 
-/// Adds a patch to the parts that are looked at. What it holds is found again in each step.
-void BallContact::add_patch(const StateView& state, cutbody::CutPatch& patch) {
-  const auto first_slot = std::int32_t(pressed_.size());
-  const std::int32_t first_point = cuts_.first_point(0, patch);
-  const auto vertices = std::int32_t(patch.body.surface.vertex_count());
-  const auto slots = std::size_t(first_slot + vertices);
-  parts_.push_back({first_slot, first_point, &patch.body.surface, &patch});
-  pressed_.resize(slots), was_touched_.resize(slots, 0), opening_.resize(slots - std::size_t(vertex_count_), -1.0);
-  auto point = std::lower_bound(state.touched.begin(), state.touched.end(), first_point);
-  for (; point != state.touched.end() && *point < first_point + vertices; ++point)
-    was_touched_[std::size_t(first_slot + *point - first_point)] = 1;
-}
-
-void BallContact::remove_patches() {
-  const auto vertices = std::size_t(vertex_count_);
-  parts_.resize(whole_parts_), pressed_.resize(vertices), was_touched_.resize(vertices), opening_.clear();
+/// Marks what the ball touched at the start of the substep.
+void BallContact::mark_touched(const StateView& state, const BallMotion& ball, std::uint8_t value) {
+  const std::int32_t first = first_point_of(ball.hand);
+  for (const std::int32_t point : state.touched)
+    if (point >= first && point - first < vertex_count_) was_touched_[std::size_t(point - first)] = value;
+  for (const Part& part : std::span(*parts_).subspan(whole_.size())) {
+    auto point = std::lower_bound(state.touched.begin(), state.touched.end(), part.first_point);
+    for (; point != state.touched.end() && *point < part.first_point + part.slots(); ++point)
+      was_touched_[std::size_t(part.first_slot + *point - part.first_point)] = value;
+  }
 }
 
 /// Whether patches may stand for parts of a triangle.
@@ -125,20 +127,18 @@ bool BallContact::is_hidden(const Part& part, const surface::NearSurface::Triang
 }
 
 void BallContact::find(const StateView& state, const BallMotion& ball, PointContacts& contacts) {
-  if (!parts_.empty()) find_on_surfaces(state, ball, contacts);
+  if (!whole_.empty()) find_on_surfaces(state, ball, contacts);
   find_on_spheres(state, ball, contacts);
 }
 
 /// What is near a ball, or was touched by it at the start of the substep.
-BallContact::Reach BallContact::reach_of(const StateView& state, const BallMotion& ball) const {
-  const Box around = Box(ball.centre).grown(ball.radius);
-  Reach reach{ball.radius, around};
-  const auto add = [&](Vec3 place) {
-    reach.distance = std::max(reach.distance, norm(place - ball.centre)), reach.region.add(place);
-  };
+Reach BallContact::reach_of(const StateView& state, const BallMotion& ball) const {
+  Reach reach(ball.centre, ball.radius);
+  const auto add = [&](Vec3 place) { reach.distance = std::max(reach.distance, reach.add(place)); };
+  const std::int32_t first = first_point_of(ball.hand);
   for (const std::int32_t point : state.touched) {
-    if (point < vertex_count_) add(follower(point).of(state.position));
-    if (!cuts_.any() || !cuts_.points().is_of_ball(point)) continue;
+    if (point >= first && point - first < vertex_count_) add(follower(point - first).of(state.position));
+    if (!cuts_.any() || !cuts_.points().is_of_ball(point, ball.hand)) continue;
     const cutbody::CutPoints::Place at = cuts_.points().place(point);
     cutbody::CutPatch* const patch = cuts_.patch(at);
     if (patch == nullptr) continue;
@@ -146,36 +146,38 @@ BallContact::Reach BallContact::reach_of(const StateView& state, const BallMotio
     add(patch->body.surface.place(own));
     // The pressure on all vertices of its facet was gathered at this one.
     for (std::size_t v = 0; v < patch->gathers_at.size(); ++v)
-      if (patch->gathers_at[v] == own) reach.region.add(patch->body.surface.place(std::int32_t(v)));
+      if (patch->gathers_at[v] == own) reach.add(patch->body.surface.place(std::int32_t(v)));
   }
   const double deepest = kDeepest * ball.radius;
-  if (reach.distance > deepest) reach = {deepest, Box(ball.centre).grown(deepest)};
+  if (reach.distance > deepest) {
+    reach = Reach(ball.centre, deepest);
+    reach.farthest = std::numeric_limits<double>::infinity();  // the box bounds it
+  }
   return reach;
 }
 
 void BallContact::find_on_surfaces(const StateView& state, const BallMotion& ball, PointContacts& contacts) {
-  const auto mark = [&](std::uint8_t value) {
-    for (const std::int32_t point : state.touched)
-      if (point < vertex_count_) was_touched_[std::size_t(point)] = value;
-  };
-  mark(1);
-  pressed_area_ = {};
   Reach reach = reach_of(state, ball);
   if (!own_.empty()) {
     own_.begin(state.position);
-    if (cuts_.wait_near(reach.region, state, own_.rest_box(), own_.displacements())) reach = reach_of(state, ball);
+    if (cuts_.wait_near(reach.box, state, own_)) reach = reach_of(state, ball);
   }
-  cuts_.near(reach.region, [&](cutbody::CutPatch& patch) { add_patch(state, patch); });
-  for (const Part& part : parts_)
-    part.surface->near(reach.region, [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
-      dent(part, triangle, corners, ball, reach.distance);
-    });
-  mark(0);
+  NearTriangles& near = near_[ball.hand];
+  near.find(reach, kMargin * ball.radius, state.position);
+  parts_ = &near.parts();
+  const auto slots = std::size_t(near.slots());
+  if (pressed_.size() < slots) pressed_.resize(slots), was_touched_.resize(slots, 0);
+  opening_.assign(slots - std::size_t(vertex_count_), -1.0);
+  mark_touched(state, ball, 1);
+  pressed_area_ = {};
+  for (const auto& [part, triangle] : near.triangles())
+    dent((*parts_)[std::size_t(part)], *triangle, ball, reach.distance);
+  mark_touched(state, ball, 0);
   const double a = std::sqrt(norm(pressed_area_) / kPi);
   std::sort(touched_.begin(), touched_.end());
   for (const std::int32_t slot : touched_) press_slot(state, ball, slot, a, contacts);
   touched_.clear();
-  if (cuts_.any()) remove_patches();
+  parts_ = &whole_;
 }
 
 /// Adds the contact of what was gathered at a slot, with the radius of all that the ball touches [m].
@@ -191,7 +193,7 @@ void BallContact::press_slot(const StateView& state, const BallMotion& ball, std
   const double k = dent_stiffness(organ.modulus, radius, surface::kUnresolvedLength * organ.spacing) * pressed.area;
   add(state, ball,
       {.axis = pressed.volume / volume,
-       .point = slot - part.first_slot + part.first_point,
+       .point = slot - part.first_slot + part.first_point + (part.patch == nullptr ? first_point_of(ball.hand) : 0),
        .dent = volume / pressed.area,
        .foundation = Foundation(organ, k, ball.step.elapsed)},
       carriers, follows.of(state.position), contacts);
@@ -207,8 +209,10 @@ double BallContact::share_of(const Part& part, std::int32_t slot, double radius)
 }
 
 /// Adds a triangle's part under the ball to its corners. `reach`: of the ball where it touched before [m].
-void BallContact::dent(const Part& part, const surface::NearSurface::Triangle& triangle, const Vec3* corners,
-                       const BallMotion& ball, double reach) {
+void BallContact::dent(const Part& part, const surface::NearSurface::Triangle& triangle, const BallMotion& ball,
+                       double reach) {
+  const Vec3 corners[3] = {part.surface->place(triangle.corner[0]), part.surface->place(triangle.corner[1]),
+                           part.surface->place(triangle.corner[2])};
   std::int32_t vertex[3];
   for (std::size_t c = 0; c < 3; ++c) vertex[c] = part.first_slot + triangle.corner[c];
   std::int32_t slot[3];
@@ -266,7 +270,7 @@ void BallContact::find_on_spheres(const StateView& state, const BallMotion& ball
     const Vec3 normal = distance > 1e-9 * reach ? apart / distance : unit_or_down(ball.velocity, 0);
     const auto sphere = std::int32_t(i);
     const double whole = 1, depth = reach - distance;
-    PointContact contact{.axis = normal, .point = vertex_count_ + sphere, .dent = depth};
+    PointContact contact{.axis = normal, .point = first_point_of(ball.hand) + vertex_count_ + sphere, .dent = depth};
     contact.foundation.k = model_.contact_k;
     contact.damping = contact_damping(model_.contact_damping, model_.contact_k, model_.mass[i], depth);
     add(state, ball, contact, {{&sphere, 1}, {&whole, 1}}, state.position[i], contacts);
@@ -293,15 +297,15 @@ void BallContact::add(const StateView& state, const BallMotion& ball, PointConta
                           .slip_guess = moves ? Vec3{} : velocity,
                           .nearer = contact.dent,
                           .farther = ball.radius};
-  contact.is_tool = true;
+  contact.hand = std::int32_t(ball.hand);
   press(state, model_.contact_friction, contacts.mobility(carriers), approach, ball.step, contact);
   contacts.add(contact, carriers);
 }
 
 std::int32_t BallContact::organ_of(const PointContact& contact) const {
-  if (contact.point < vertex_count_) return organ_of_[std::size_t(contact.point)];
   if (cuts_.points().contains(contact.point)) return std::int32_t(cuts_.points().place(contact.point).organ);
-  const std::int32_t sphere = contact.point - vertex_count_;
+  const std::int32_t point = number_of(contact), sphere = point - vertex_count_;
+  if (point < vertex_count_) return organ_of_[std::size_t(point)];
   for (std::size_t i = 0; i < model_.organs.size(); ++i)
     if (sphere >= model_.organs[i].first && sphere < model_.organs[i].first + model_.organs[i].count)
       return std::int32_t(i);
@@ -314,9 +318,10 @@ Vec3 BallContact::rest_of(const PointContact& contact) const {
     const surface::Body& body = cuts_.patch(at)->body;
     return body.surface.rest(at.vertex - body.first_vertex);
   }
-  if (contact.point >= vertex_count_) return model_.rest_position[std::size_t(contact.point - vertex_count_)];
-  const Part& part = part_of(contact.point);
-  return part.surface->rest(contact.point - part.first_point);
+  const std::int32_t point = number_of(contact);
+  if (point >= vertex_count_) return model_.rest_position[std::size_t(point - vertex_count_)];
+  const Part& part = part_of(point);
+  return part.surface->rest(point - part.first_point);
 }
 
 }  // namespace ctpm::contact

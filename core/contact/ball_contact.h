@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/contact/cut_surfaces.h"
+#include "core/contact/near_triangles.h"
 #include "core/contact/point_contact.h"
 #include "core/contact/pressed_point.h"
 #include "core/elements/kernels/kernels.h"
@@ -22,6 +23,7 @@ struct BallMotion {
   Vec3 velocity;  ///< [m/s]
   double radius;  ///< [m]
   PressStep step;
+  std::size_t hand = 0;  ///< that holds it
 };
 
 /// Contact of a rigid ball with the surfaces of organs: no part of a surface is inside the ball. Where the surface that
@@ -35,13 +37,16 @@ struct BallMotion {
 /// Crossley say (contact_damping).
 ///
 /// Friction holds each point at a place on the ball, up to the friction cone (pressed_point.h).
+///
+/// Two hands may hold a ball each. Each presses by itself, and State tells by the numbers of the points which ball
+/// touches them.
 class BallContact {
  public:
   /// `bodies`, those of the Model, and `cuts` must outlive the BallContact.
   BallContact(const Model& model, std::vector<surface::Body>& bodies, CutSurfaces& cuts,
               const elements::Kernels& kernels);
 
-  /// Capacity that find() needs: contacts, and entries of their carriers.
+  /// Capacity that find() needs for one ball: contacts, and entries of their carriers.
   std::pair<std::size_t, std::size_t> capacity() const { return capacity_; }
 
   /// Adds the contacts of a ball, in ascending order of their points. A round of the bodies' surfaces must have begun.
@@ -49,7 +54,7 @@ class BallContact {
 
   /// Depth of the dent under a contact [m], 0 for that of a bare sphere.
   double dent_of(const PointContact& contact) const {
-    return contact.point < vertex_count_ || cuts_.points().contains(contact.point) ? contact.dent : 0.0;
+    return cuts_.points().contains(contact.point) || number_of(contact) < vertex_count_ ? contact.dent : 0.0;
   }
 
   /// Where the tissue was at rest that a contact touches [m].
@@ -65,33 +70,21 @@ class BallContact {
     Vec3 volume;      ///< depth times area, along the ball's radius [m^3]
   };
 
-  /// Where a ball may touch.
-  struct Reach {
-    double distance;  ///< from its centre, of what it touched before; its radius elsewhere [m]
-    Box region;
-  };
+  /// Number of the first point that the ball in a hand may touch, and of those before a contact's.
+  std::int32_t first_point_of(std::size_t hand) const { return cuts_.points().kind_of_ball(hand) * touchable_count_; }
+  std::int32_t number_of(const PointContact& contact) const {
+    return contact.point - first_point_of(std::size_t(contact.hand));
+  }
   Reach reach_of(const StateView& state, const BallMotion& ball) const;
-  /// A surface whose vertices have the slots from `first_slot` on, and the points from `first_point` on.
-  struct Part {
-    std::int32_t first_slot, first_point;
-    surface::NearSurface* surface;
-    cutbody::CutPatch* patch = nullptr;  ///< null: whole organs
-
-    /// The slot at which what presses on a vertex is gathered.
-    std::int32_t gathers_at(std::int32_t vertex) const {
-      return first_slot + (patch == nullptr ? vertex : patch->gathers_at[std::size_t(vertex)]);
-    }
-  };
+  using Part = BallPart;
 
   const Part& part_of(std::int32_t slot) const;
   std::int32_t organ_of(const Part& part, std::int32_t slot) const;
   surface::Follower follower(std::int32_t slot) const;
-  void add_patch(const StateView& state, cutbody::CutPatch& patch);
-  void remove_patches();
+  void mark_touched(const StateView& state, const BallMotion& ball, std::uint8_t value);
   bool is_hidden(const Part& part, const surface::NearSurface::Triangle& triangle) const;
   double share_of(const Part& part, std::int32_t slot, double radius);
-  void dent(const Part& part, const surface::NearSurface::Triangle& triangle, const Vec3* corners,
-            const BallMotion& ball, double reach);
+  void dent(const Part& part, const surface::NearSurface::Triangle& triangle, const BallMotion& ball, double reach);
   void press_slot(const StateView& state, const BallMotion& ball, std::int32_t slot, double radius,
                   PointContacts& contacts);
   void find_on_surfaces(const StateView& state, const BallMotion& ball, PointContacts& contacts);
@@ -102,10 +95,11 @@ class BallContact {
   const Model& model_;
   const elements::Kernels& kernels_;
   CutSurfaces& cuts_;
-  surface::NearSurface own_;  ///< all organs as one; empty where there are bodies
-  std::vector<Part> parts_;   ///< own_, or the surfaces of the bodies; in find() patches of cuts follow
-  std::size_t whole_parts_ = 0;
-  std::int32_t vertex_count_ = 0;
+  surface::NearSurface own_;                  ///< all organs as one; empty where there are bodies
+  std::vector<Part> whole_;                   ///< own_, or the surfaces of the bodies
+  std::vector<NearTriangles> near_;           ///< of the ball in each hand
+  const std::vector<Part>* parts_ = &whole_;  ///< in find() with patches of cuts
+  std::int32_t vertex_count_ = 0, touchable_count_ = 0;
   std::vector<std::int32_t> organ_of_;     ///< (vertex_count)
   std::vector<Pressed> pressed_;           ///< (slot_count, like the next: vertices, and in find() those of patches)
   std::vector<std::uint8_t> was_touched_;  ///< at the start of the substep

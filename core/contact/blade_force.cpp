@@ -10,7 +10,8 @@ Vec3 across(Vec3 way, Vec3 v) { return v - dot(way, v) * way; }
 }  // namespace
 
 void BladeForce::find(const StateView& state, const Tool& tool, const cutting::CutFront& front,
-                      const cutting::BladeEdge& edge, double h, bool is_predicted, PointContacts& contacts) const {
+                      const cutting::BladeEdge& edge, double h, bool is_predicted, std::size_t hand,
+                      PointContacts& contacts) const {
   for (std::size_t n = 0; n < kEdgeNodes; ++n) {
     const cutting::CutFront::Node& node = front.nodes()[n];
     if (node.length == 0) continue;
@@ -24,7 +25,7 @@ void BladeForce::find(const StateView& state, const Tool& tool, const cutting::C
     if (!cutting::leads(edge, n, way)) continue;
     const double most = front.hold(n, tool, state, along_node(edge, n), way);
     if (most == 0) continue;
-    PointContact contact{.axis = way, .is_tool = true};
+    PointContact contact{.axis = way, .hand = std::int32_t(hand)};
     const double k = most / tool.trail_distance;
     if (distance > tool.trail_distance) {
       // The front goes on, and pulls with the same force however far; only its direction may still turn.

@@ -30,11 +30,11 @@ class BladeForce {
   std::size_t capacity() const { return any() ? kEdgeNodes : 0; }
   std::size_t entries() const { return capacity() * cutting::Place::kMost; }
 
-  /// Adds the contacts of a blade with the front of its cut. `edge`: of the blade at the end of a step of `h` [s].
-  /// `is_predicted`: the spheres of `state` are where they are expected at the end of the step; else where they are at
-  /// its start.
+  /// Adds the contacts of the blade in a hand with the front of its cut. `edge`: of the blade at the end of a step of
+  /// `h` [s]. `is_predicted`: the spheres of `state` are where they are expected at the end of the step; else where
+  /// they are at its start.
   void find(const StateView& state, const Tool& tool, const cutting::CutFront& front, const cutting::BladeEdge& edge,
-            double h, bool is_predicted, PointContacts& contacts) const;
+            double h, bool is_predicted, std::size_t hand, PointContacts& contacts) const;
 
  private:
   const Model& model_;

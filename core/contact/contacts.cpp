@@ -51,41 +51,54 @@ Contacts::Contacts(const Model& model, const elements::Kernels& kernels)
   }
 }
 
-Pin Contacts::pin(const HeldTool& tool, const Vec3Array& position, double share, double h) {
-  if (!tool.is(ToolKind::pin)) return {};
-  const std::int32_t sphere = tool.tool->sphere;
-  return {sphere, (tool.at(share) - position[std::size_t(sphere)]) / h};
+Pins Contacts::pins(const HeldTools& tools, const Vec3Array& position, double share, double h) {
+  Pins pins;
+  for (std::size_t hand = 0; hand < kMostHands; ++hand) {
+    if (!tools[hand].is(ToolKind::pin)) continue;
+    const std::int32_t sphere = tools[hand].tool->sphere;
+    pins[hand] = {sphere, (tools[hand].at(share) - position[std::size_t(sphere)]) / h};
+  }
+  return pins;
 }
 
-void Contacts::find(const StateView& state, const HeldTool& tool, const ContactStep& step, bool from_velocity) {
+void Contacts::find(const StateView& state, const HeldTools& tools, const ContactStep& step, bool from_velocity) {
   points_.clear();
   for (surface::Body& body : bodies_) body.surface.begin(state.position);
   cuts_.begin(state.position);
   const PressStep press{step.h, step.elapsed, step.ahead, from_velocity};
-  if (tool.is(ToolKind::ball))
-    ball_.find(state, {tool.at(step.share), (tool.to - tool.from) / model_.tick, tool.tool->radius, press}, points_);
+  const auto find_ball = [&](std::size_t hand) {
+    const HeldTool& tool = tools[hand];
+    if (!tool.is(ToolKind::ball)) return;
+    const Vec3 velocity = (tool.to - tool.from) / model_.tick;
+    ball_.find(state, {tool.at(step.share), velocity, tool.tool->radius, press, hand}, points_);
+  };
+  // In ascending order of points.
+  find_ball(0);
   body_contact_.find(state, press, points_);
   obstacles_.find(state, press, points_);
-  if (tool.is(ToolKind::scalpel) && blade_.any()) {
+  find_ball(1);
+  for (std::size_t hand = 0; hand < kMostHands; ++hand) {
+    const HeldTool& tool = tools[hand];
+    if (!tool.is(ToolKind::scalpel) || !blade_.any()) continue;
     CTPM_CHECK(tool.front != nullptr, "the front of a cut is known before the blade's contacts are detected");
-    blade_.find(state, *tool.tool, *tool.front, tool.edge_at(step.share), step.h, from_velocity, points_);
+    blade_.find(state, *tool.tool, *tool.front, tool.edge_at(step.share), step.h, from_velocity, hand, points_);
   }
   if (cut_faces_.is_wanted()) cut_faces_.find(state, points_);
 }
 
-ExplicitContacts Contacts::push_apart(const StateView& middle, const HeldTool& tool, const ContactStep& step,
+ExplicitContacts Contacts::push_apart(const StateView& middle, const HeldTools& tools, const ContactStep& step,
                                       Vec3Array& velocity) {
   ExplicitContacts set(*this, step);
-  find(middle, tool, step, true);
-  set.tool_force_ = explicit_solve_.solve(step.h, step.pin, middle.velocity, velocity, points_);
+  find(middle, tools, step, true);
+  set.tool_force_ = explicit_solve_.solve(step.h, step.pins, middle.velocity, velocity, points_);
   return set;
 }
 
-ImplicitContacts Contacts::detect(const StateView& state, const HeldTool& tool, const ContactStep& step,
+ImplicitContacts Contacts::detect(const StateView& state, const HeldTools& tools, const ContactStep& step,
                                   Linearisation about) {
   ImplicitContacts set(*this, step);
   const bool from_velocity = about == Linearisation::velocity;
-  find(state, tool, step, from_velocity);
+  find(state, tools, step, from_velocity);
   points_.begin_implicit(step.h, from_velocity ? &state.velocity : nullptr);
   return set;
 }
@@ -95,17 +108,19 @@ ContactSet::ContactSet(Contacts& contacts, const ContactStep& step) : contacts_(
   contacts.is_locked_ = true;
 }
 
-std::int32_t ContactSet::touched() const { return step_.pin.is_held() ? 1 : contacts_->points_.tool_count(); }
+std::int32_t ContactSet::touched(std::size_t hand) const {
+  return step_.pins[hand].is_held() ? 1 : contacts_->points_.tool_count(hand);
+}
 
-double ContactSet::depth(const Vec3Array& position) const {
-  const Pin& pin = step_.pin;
+double ContactSet::depth(std::size_t hand, const Vec3Array& position) const {
+  const Pin& pin = step_.pins[hand];
   if (pin.is_held()) return norm(position[pin.index()] - contacts_->model_.rest_position[pin.index()]);
   const BallContact& ball = contacts_->ball_;
   double depth = 0;
   surface::RigidMotion motion;
   std::int32_t moved = -1;  // organ that `motion` is of
   for (const PointContact& c : contacts_->points_.all()) {
-    if (c.point < 0 || !c.is_tool) continue;
+    if (c.point < 0 || !c.is_of_hand(hand)) continue;
     Vec3 rest = ball.rest_of(c);
     if (const std::int32_t organ = ball.organ_of(c); organ >= 0 && contacts_->is_free_[std::size_t(organ)]) {
       if (organ != moved)
@@ -120,7 +135,8 @@ double ContactSet::depth(const Vec3Array& position) const {
 /// Contacts of all pressed points, and entries of their carriers.
 std::pair<std::size_t, std::size_t> Contacts::pressed_capacity() const {
   const auto ball = ball_.capacity(), bodies = body_contact_.capacity(), obstacles = obstacles_.capacity();
-  return {ball.first + bodies.first + obstacles.first, ball.second + bodies.second + obstacles.second};
+  const auto hands = std::size_t(model_.hands);
+  return {hands * ball.first + bodies.first + obstacles.first, hands * ball.second + bodies.second + obstacles.second};
 }
 
 void Contacts::reserve(Touched& touched) const {
@@ -129,18 +145,19 @@ void Contacts::reserve(Touched& touched) const {
   for (auto* axis : {&touched.grip.x, &touched.grip.y, &touched.grip.z}) axis->reserve(count);
 }
 
-void ContactSet::note_touched(Vec3 centre, const Vec3Array& position, Touched& touched) const {
+void ContactSet::note_touched(const std::array<Vec3, kMostHands>& centre, const Vec3Array& position,
+                              Touched& touched) const {
   touched.point.clear(), touched.grip.resize(0), touched.kelvin_dent.clear();
   contacts_->reserve(touched);
   for (const PointContact& c : contacts_->points_.all()) {
     if (c.point < 0) continue;
     const Vec3 carried = weighted(contacts_->points_.carriers(c), position),
-               place = c.is_tool ? carried - centre : carried, from_anchor = place - c.anchor;
+               place = c.hand >= 0 ? carried - centre[std::size_t(c.hand)] : carried, from_anchor = place - c.anchor;
     const Vec3 elongation = from_anchor - dot(from_anchor, c.axis) * c.axis;
     const double held = c.grip_k > 0 ? share_of_grip(c, elongation, {}) : 0.0;
     const double dent = std::max(0.0, c.dent - dot(c.axis, place - c.found));
     touched.point.push_back(c.point);
-    touched.grip.push_back(c.is_tool ? place - held * elongation : held * elongation);
+    touched.grip.push_back(c.hand >= 0 ? place - held * elongation : held * elongation);
     touched.kelvin_dent.push_back(c.foundation.kelvin_after(dent, c.kelvin_dent));
   }
   // Points of cuts are found among those of whole surfaces, but numbered after them.
@@ -167,8 +184,8 @@ void LinearisedContacts::take_back() {
 
 bool LinearisedContacts::pulls(const elements::Coordinates& v) const { return contacts_.points_.has_pulling(h_, v); }
 
-Vec3 LinearisedContacts::tool_force(const elements::Coordinates& v) const {
-  return contacts_.points_.force_on_tool(h_, v);
+Vec3 LinearisedContacts::tool_force(std::size_t hand, const elements::Coordinates& v) const {
+  return contacts_.points_.force_on_tool(hand, h_, v);
 }
 
 void LinearisedContacts::drop_pulling(const elements::Coordinates& v) && {

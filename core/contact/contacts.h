@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -31,7 +32,7 @@ struct ContactStep {
   double elapsed;  ///< from the start of the substep to the end of this step [s]
   double ahead;    ///< from the start of the substep to the positions at detection [s]
   double share;    ///< part of the tick's tool motion that is done at detection, 0 to 1
-  Pin pin;         ///< of this step
+  Pins pins;       ///< of this step
 };
 
 /// What State remembers of what is touched: State::touched, grip and kelvin_dent.
@@ -47,7 +48,7 @@ enum class Linearisation {
   velocity,  ///< spheres that move with StateView::velocity
 };
 
-/// All contacts of a Model: of a ball, a blade and a pin, between tissue and obstacles, and between tissue. Its
+/// All contacts of a Model: of balls, a blade and pins, between tissue and obstacles, and between tissue. Its
 /// capacity is fixed at construction, so that a tick never allocates. Detection returns a set; the type of the set says
 /// what a step may do with its contacts. A Contacts serves one set at a time: a second detection before the first set
 /// is destroyed is a bug and aborts.
@@ -56,12 +57,12 @@ class Contacts {
   /// `model` must outlive the Contacts.
   Contacts(const Model& model, const elements::Kernels& kernels);
 
-  /// The pin's contact in a step of `h` [s] from `position` [m] to the hand at `share` of the tick.
-  static Pin pin(const HeldTool& tool, const Vec3Array& position, double share, double h);
+  /// The pins' contacts in a step of `h` [s] from `position` [m] to the hands at `share` of the tick.
+  static Pins pins(const HeldTools& tools, const Vec3Array& position, double share, double h);
 
   /// Does at once what the first tick with a blade needs.
   void prepare() { cuts_.prepare(); }
-  /// Follows what is cut, at the start of a tick from `state`. `cuts`: a blade is held.
+  /// Follows what is cut, at the start of a tick from `state`. `cuts`: a hand holds a blade.
   void begin_tick(const State& state, bool cuts) { cuts_.begin_tick(state, cuts); }
 
   /// Reserves memory for all that can be touched, so that a tick does not allocate unless it touches a cut.
@@ -69,11 +70,11 @@ class Contacts {
 
   /// Detects the contacts of an explicit step in its middle, and changes the `velocity` [m/s] that spheres have after
   /// the step without contacts. Those that would pull do not act.
-  [[nodiscard]] ExplicitContacts push_apart(const StateView& middle, const HeldTool& tool, const ContactStep& step,
+  [[nodiscard]] ExplicitContacts push_apart(const StateView& middle, const HeldTools& tools, const ContactStep& step,
                                             Vec3Array& velocity);
 
   /// Detects the contacts of an implicit step.
-  [[nodiscard]] ImplicitContacts detect(const StateView& state, const HeldTool& tool, const ContactStep& step,
+  [[nodiscard]] ImplicitContacts detect(const StateView& state, const HeldTools& tools, const ContactStep& step,
                                         Linearisation about);
 
  private:
@@ -83,7 +84,7 @@ class Contacts {
   friend class LinearisedContacts;
 
   std::pair<std::size_t, std::size_t> pressed_capacity() const;
-  void find(const StateView& state, const HeldTool& tool, const ContactStep& step, bool from_velocity);
+  void find(const StateView& state, const HeldTools& tools, const ContactStep& step, bool from_velocity);
 
   const Model& model_;
   std::vector<surface::Body> bodies_;
@@ -105,17 +106,17 @@ class ContactSet {
  public:
   const ContactStep& step() const { return step_; }
 
-  /// Number of points that a ball touches; for a blade, of nodes of its edge that tissue holds.
-  std::int32_t touched() const;
+  /// Number of points that the ball in a hand touches; for a blade, of nodes of its edge that tissue holds.
+  std::int32_t touched(std::size_t hand) const;
 
-  /// Largest displacement from rest [m], at `position`, of a point that a ball touches, along its contact; for a pin,
-  /// that of its sphere. 0 without contact and for a blade. Where nothing holds an organ, its motion as a whole does
-  /// not count.
-  double depth(const Vec3Array& position) const;
+  /// Largest displacement from rest [m], at `position`, of a point that the ball in a hand touches, along its contact;
+  /// for a pin, that of its sphere. 0 without contact and for a blade. Where nothing holds an organ, its motion as a
+  /// whole does not count.
+  double depth(std::size_t hand, const Vec3Array& position) const;
 
-  /// Notes what is touched, with the spheres at `position` [m] and the centre of a ball at `centre` [m] at the end of
-  /// the substep.
-  void note_touched(Vec3 centre, const Vec3Array& position, Touched& touched) const;
+  /// Notes what is touched, with the spheres at `position` [m] and the hands' tools at `centre` [m] at the end of the
+  /// substep.
+  void note_touched(const std::array<Vec3, kMostHands>& centre, const Vec3Array& position, Touched& touched) const;
 
  protected:
   ContactSet(Contacts& contacts, const ContactStep& step);
@@ -130,14 +131,14 @@ class ContactSet {
 /// Contacts that an explicit step has solved.
 class ExplicitContacts : public ContactSet {
  public:
-  /// Force of the tissue on a ball or a blade [N].
-  Vec3 tool_force() const { return tool_force_; }
+  /// Force of the tissue on the ball or blade in a hand [N].
+  Vec3 tool_force(std::size_t hand) const { return tool_force_[hand]; }
 
  private:
   friend class Contacts;
   ExplicitContacts(Contacts& contacts, const ContactStep& step) : ContactSet(contacts, step) {}
 
-  Vec3 tool_force_;
+  std::array<Vec3, kMostHands> tool_force_;
 };
 
 /// Contacts in the linear system of an implicit step, until it is destroyed. The destructor restores the system to the
@@ -157,8 +158,8 @@ class LinearisedContacts {
   /// Whether a contact pulls after a step with velocity `v`.
   bool pulls(const elements::Coordinates& v) const;
 
-  /// Force of the tissue on a ball or a blade [N] after a step with velocity `v`.
-  Vec3 tool_force(const elements::Coordinates& v) const;
+  /// Force of the tissue on the ball or blade in a hand [N] after a step with velocity `v`.
+  Vec3 tool_force(std::size_t hand, const elements::Coordinates& v) const;
 
   /// Takes all contacts out of the system, and removes from the set those that pull after a step with velocity `v`.
   void drop_pulling(const elements::Coordinates& v) &&;

@@ -60,8 +60,8 @@ void CutSurfaces::prepare() {
 }
 
 void CutSurfaces::begin_tick(const State& state, bool cuts) {
-  // Nothing but tissue and obstacles touches cuts while a blade is held.
-  if (organs_.empty() || (cuts && !model_.has_meeting_bodies())) return;
+  // Nothing but tissue, obstacles and a ball in the other hand touches cuts while a blade is held.
+  if (organs_.empty() || (cuts && !model_.has_meeting_bodies() && model_.hands < 2)) return;
   const std::size_t rows = rows_left_behind(state, cuts);
   if (followed_ ? !is_same(*followed_, state, rows) : rows > 0) start(state, rows);
   if (model_.has_meeting_bodies()) wait();
@@ -78,7 +78,7 @@ void CutSurfaces::start(const State& state, std::size_t rows) {
   double spacing = 0;
   for (const OrganRange& organ : model_.organs) spacing = std::max(spacing, organ.spacing);
   around_ = around_.grown(kDiagonal * kFarthestPatch * spacing);
-  followed_ = surface, is_cut_ = false;
+  followed_ = surface, is_cut_ = false, ++version_;
 
   std::promise<std::vector<std::uint8_t>> hidden;
   follows_ = hidden.get_future();
@@ -102,12 +102,13 @@ void CutSurfaces::start(const State& state, std::size_t rows) {
       });
 }
 
-bool CutSurfaces::wait_near(const Box& region, const StateView& state, const Box& at_rest, const Box& displacements) {
+bool CutSurfaces::wait_near(const Box& region, const StateView& state, const surface::NearSurface& organs) {
   if (!follows_.valid()) return false;
+  const Box displacements = organs.displacements();
   // Weights near a cut may be negative.
   const Vec3 size = displacements.high - displacements.low;
   const Box by(displacements.low - size, displacements.high + size);
-  const bool is_near = region.meets(around_.moved(by)) && region.meets(at_rest.moved(by));
+  const bool is_near = region.meets(around_.moved(by)) && region.meets(organs.rest_box().moved(by));
   if (!is_near && std::none_of(state.touched.begin(), state.touched.end(),
                                [&](std::int32_t point) { return points_.contains(point); }))
     return false;

@@ -36,9 +36,8 @@ class CutSurfaces {
   void begin_tick(const State& state, bool cuts);
 
   /// Waits for the cuts if something in `region` may touch them, or touched them at the start of the substep; what is
-  /// farther may go on as if nothing were cut. `at_rest`: around the organs at rest [m]; `displacements`: how far their
-  /// surfaces have moved [m]. Returns whether it waited.
-  bool wait_near(const Box& region, const StateView& state, const Box& at_rest, const Box& displacements);
+  /// farther may go on as if nothing were cut. `organs`: their surfaces, in a round. Returns whether it waited.
+  bool wait_near(const Box& region, const StateView& state, const surface::NearSurface& organs);
 
   /// Whether anything that can be touched is cut.
   bool any() const { return is_cut_; }
@@ -56,7 +55,7 @@ class CutSurfaces {
   /// The same at a place of its surface at rest.
   bool covers(std::size_t organ, Vec3 rest) const { return organs_[organ] && organs_[organ]->covers(rest); }
 
-  /// How often what is cut has changed.
+  /// How often what is cut has changed, or begun to.
   std::uint32_t version() const { return version_; }
   /// Whether the cuts of an organ are touched and leave more than one piece.
   bool has_pieces(std::size_t organ) const { return is_cut_ && organs_[organ] && organs_[organ]->has_pieces(); }
@@ -79,6 +78,8 @@ class CutSurfaces {
   void near(std::size_t organ, const Region& region, Visit&& visit) {
     if (is_cut_ && organs_[organ]) organs_[organ]->near(region, visit);
   }
+  /// Begins the round for a patch that near() visited before: what is cut has not changed since.
+  void begin(const cutbody::CutPatch& patch) { organs_[std::size_t(patch.body.organ)]->begin(patch); }
   /// The patch that a point of a cut belongs to; null: it is not there any more.
   cutbody::CutPatch* patch(const cutbody::CutPoints::Place& place);
 

@@ -43,7 +43,7 @@ DrawnSurfaces::DrawnSurfaces(const Model& model)
 void DrawnSurfaces::place(std::size_t organ, const Surface& surface, const State& state, std::vector<Vec3>& vertex) {
   surface::deform_surface(surface, state.position, model_.organs[organ].first, vertex);
   put_between_organs(organ, surface, state, vertex);
-  put_on_ball(organ, surface, state, vertex);
+  for (std::size_t hand = 0; hand < kMostHands; ++hand) put_on_ball(hand, organ, surface, state, vertex);
   for (const surface::ObstacleShape& obstacle : obstacles_)
     for (Vec3& v : vertex)
       if (obstacle.meets(Box(v)))
@@ -73,19 +73,19 @@ void DrawnSurfaces::put_between_organs(std::size_t organ, const Surface& surface
   }
 }
 
-/// Moves the vertices that a ball dents onto the ball.
-void DrawnSurfaces::put_on_ball(std::size_t organ, const Surface& surface, const State& state,
+/// Moves the vertices that the ball in a hand dents onto the ball.
+void DrawnSurfaces::put_on_ball(std::size_t hand, std::size_t organ, const Surface& surface, const State& state,
                                 std::vector<Vec3>& vertex) const {
-  const Inputs& inputs = state.last_inputs;
+  const Hand& inputs = state.last_inputs.hand(hand);
   if (state.touched.empty() || inputs.tool < 0) return;
   const Tool& tool = model_.tools[std::size_t(inputs.tool)];
   if (tool.kind != ToolKind::ball || organ >= model_.surfaces.size()) return;
-  std::int64_t first = 0;
+  std::int64_t first = std::int64_t(model_.touchable_count()) * cut_points_.kind_of_ball(hand);
   for (std::size_t i = 0; i < organ; ++i) first += std::int64_t(model_.surfaces[i].vertex.size());
   const std::int64_t last = first + std::int64_t(model_.surfaces[organ].vertex.size());
   const auto is_of_organ = [&](std::int32_t point) {
     return (point >= first && point < last) ||
-           (cut_points_.is_of_ball(point) && cut_points_.place(point).organ == organ);
+           (cut_points_.is_of_ball(point, hand) && cut_points_.place(point).organ == organ);
   };
   // A cut surface has vertices of its own, of which the ball dents those in it.
   std::vector<char> is_touched(vertex.size(), 0);

@@ -29,7 +29,8 @@ class DrawnSurfaces {
 
  private:
   void put_between_organs(std::size_t organ, const Surface& surface, const State& state, std::vector<Vec3>& vertex);
-  void put_on_ball(std::size_t organ, const Surface& surface, const State& state, std::vector<Vec3>& vertex) const;
+  void put_on_ball(std::size_t hand, std::size_t organ, const Surface& surface, const State& state,
+                   std::vector<Vec3>& vertex) const;
 
   const Model& model_;
   std::vector<surface::Body> bodies_;

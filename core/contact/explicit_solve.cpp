@@ -26,7 +26,7 @@ ExplicitSolve::ExplicitSolve(const Model& model, const PointContacts& contacts) 
 }
 
 /// Numbers the spheres that contacts touch.
-void ExplicitSolve::gather(const Pin& pin, const PointContacts& contacts) {
+void ExplicitSolve::gather(const Pins& pins, const PointContacts& contacts) {
   touched_.clear();
   place_.resize(std::max(place_.size(), contacts.sphere_.size()));  // a cut may add to what was reserved
   for (const PointContact& contact : contacts.all())
@@ -40,7 +40,7 @@ void ExplicitSolve::gather(const Pin& pin, const PointContacts& contacts) {
       const std::size_t place = touched_.size();
       place_[e] = index_[i] = std::int32_t(place);
       touched_.push_back(sphere);
-      const std::uint8_t held = pin.held_axes(model_, i);
+      const std::uint8_t held = held_axes(pins, model_, i);
       free_[place] = {held & 1 ? 0.0 : 1.0, held & 2 ? 0.0 : 1.0, held & 4 ? 0.0 : 1.0};
     }
 }
@@ -148,12 +148,12 @@ void ExplicitSolve::run_conjugate_gradients(double h, const PointContacts& conta
   }
 }
 
-Vec3 ExplicitSolve::solve(double h, const Pin& pin, const Vec3Array& before, Vec3Array& velocity,
-                          PointContacts& contacts) {
+std::array<Vec3, kMostHands> ExplicitSolve::solve(double h, const Pins& pins, const Vec3Array& before,
+                                                  Vec3Array& velocity, PointContacts& contacts) {
   if (contacts.count() == 0) return {};
-  gather(pin, contacts);
+  gather(pins, contacts);
   for (std::size_t p = 0; p < touched_.size(); ++p) change_[p] = {};
-  Vec3 on_tool;
+  std::array<Vec3, kMostHands> on_tool;
   for (int round = 1; round <= kMostRounds; ++round) {
     linear_.clear();
     for (const PointContact& c : contacts.all()) {
@@ -172,7 +172,7 @@ Vec3 ExplicitSolve::solve(double h, const Pin& pin, const Vec3Array& before, Vec
       const Vec3 acting =
           linear_[i].force - (linear_[i].along - linear_[i].across) * dot(c.axis, u) * c.axis - linear_[i].across * u;
       if (c.only_pushes && dot(c.axis, acting) < 0 && round < kMostRounds) continue;
-      if (c.is_tool) on_tool -= acting;
+      if (c.hand >= 0) on_tool[std::size_t(c.hand)] -= acting;
       const Carriers at = contacts.carriers(c);
       spread(c, at, acting, product_);
       grips = grips || c.grip_k > 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -19,8 +20,9 @@ class ExplicitSolve {
 
   /// Adds the contacts, found in the middle of a step of `h` [s], to the `velocity` [m/s] that the step reached without
   /// them. Those that would pull are dropped. `before`: velocity [m/s] at the start. Spheres keep their velocity along
-  /// held axes, and so does the sphere of `pin`. Returns the force on the tool [N].
-  Vec3 solve(double h, const Pin& pin, const Vec3Array& before, Vec3Array& velocity, PointContacts& contacts);
+  /// held axes, and so do those of `pins`. Returns the force on each hand's tool [N].
+  std::array<Vec3, kMostHands> solve(double h, const Pins& pins, const Vec3Array& before, Vec3Array& velocity,
+                                     PointContacts& contacts);
 
  private:
   /// A contact linearised about the velocity without contacts: force on the point [N] minus `along` times its change of
@@ -31,7 +33,7 @@ class ExplicitSolve {
     Vec3 slip;             ///< relative to the tool, without contacts [m/s]
   };
 
-  void gather(const Pin& pin, const PointContacts& contacts);
+  void gather(const Pins& pins, const PointContacts& contacts);
   Linear linearise(const PointContact& contact, Carriers at, double h, const Vec3Array& before,
                    const Vec3Array& velocity, Vec3 change, double mobility) const;
   void assemble(double h, const PointContacts& contacts);

@@ -1,13 +1,15 @@
 #pragma once
 
+#include <array>
+
 #include "core/cutting/cut_front.h"
 #include "core/model/model.h"
 
 namespace ctpm::contact {
 
-/// The held tool and its motion over one tick.
+/// The tool that a hand holds, and its motion over one tick.
 struct HeldTool {
-  const Tool* tool = nullptr;                ///< null: no tool is held
+  const Tool* tool = nullptr;                ///< null: the hand is empty
   Vec3 from, to;                             ///< the tool's origin at the start and the end of the tick [m]
   cutting::BladeEdge edge_from, edge_to;     ///< the same of a scalpel's edge
   const cutting::CutFront* front = nullptr;  ///< of the cut that a scalpel makes
@@ -22,5 +24,15 @@ struct HeldTool {
 
   bool is(ToolKind kind) const { return tool != nullptr && tool->kind == kind; }
 };
+
+/// Those of both hands. One of them at most holds a scalpel.
+using HeldTools = std::array<HeldTool, kMostHands>;
+
+/// The scalpel that a hand holds; null: none does.
+inline const HeldTool* held_scalpel(const HeldTools& tools) {
+  for (const HeldTool& tool : tools)
+    if (tool.is(ToolKind::scalpel)) return &tool;
+  return nullptr;
+}
 
 }  // namespace ctpm::contact

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -14,11 +15,17 @@ struct Pin {
 
   bool is_held() const { return sphere >= 0; }
   std::size_t index() const { return std::size_t(sphere); }
-
-  /// Model::held_axes, with the sphere of the pin anchored.
-  std::uint8_t held_axes(const Model& model, std::size_t i) const {
-    return is_held() && i == index() ? kAnchored : model.held_axes[i];
-  }
 };
+
+/// Those of both hands, which hold different spheres.
+using Pins = std::array<Pin, kMostHands>;
+
+inline bool any_held(const Pins& pins) { return pins[0].is_held() || pins[1].is_held(); }
+
+/// Model::held_axes, with the spheres of the pins anchored.
+inline std::uint8_t held_axes(const Pins& pins, const Model& model, std::size_t i) {
+  const auto sphere = std::int32_t(i);
+  return pins[0].sphere == sphere || pins[1].sphere == sphere ? kAnchored : model.held_axes[i];
+}
 
 }  // namespace ctpm::contact

@@ -44,9 +44,9 @@ double PointContacts::mobility(Carriers carriers) const {
   return sum;
 }
 
-std::int32_t PointContacts::tool_count() const {
+std::int32_t PointContacts::tool_count(std::size_t hand) const {
   return std::int32_t(
-      std::count_if(contacts_.begin(), contacts_.end(), [](const PointContact& c) { return c.is_tool; }));
+      std::count_if(contacts_.begin(), contacts_.end(), [&](const PointContact& c) { return c.is_of_hand(hand); }));
 }
 
 void PointContacts::begin_implicit(double h, const Vec3Array* velocity) {
@@ -147,10 +147,10 @@ void PointContacts::drop_pulling(double h, const elements::Coordinates& v) {
   std::erase_if(contacts_, [&](const PointContact& c) { return pulls(c, h, v); });
 }
 
-Vec3 PointContacts::force_on_tool(double h, const elements::Coordinates& v) const {
+Vec3 PointContacts::force_on_tool(std::size_t hand, double h, const elements::Coordinates& v) const {
   Vec3 force;
   for (const PointContact& c : contacts_)
-    if (c.is_tool) force += coupling(c, h, velocity_of(c, v.data())) / h - c.force;
+    if (c.is_of_hand(hand)) force += coupling(c, h, velocity_of(c, v.data())) / h - c.force;
   return force;
 }
 

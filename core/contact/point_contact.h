@@ -22,7 +22,7 @@ struct PointContact {
   double damping = 0;        ///< the same per velocity along it [N s/m], >= 0
   double drag = 0;           ///< decrease of the force across the axis per velocity across it [N s/m], >= 0
   bool only_pushes = false;  ///< is dropped when it would pull the point against the axis
-  bool is_tool = false;      ///< a tool bears the opposite force
+  std::int32_t hand = -1;    ///< whose tool bears the opposite force; -1: no tool does
   // Of a point that something presses: a ball, an obstacle or other tissue. It also grips the point. Places and
   // velocities are relative to what presses: for a ball to its centre, for an obstacle to the world.
   std::int32_t point = -1;  ///< number of the point in State::touched; -1: not a pressed point
@@ -39,6 +39,8 @@ struct PointContact {
   Vec3 slip_guess{};        ///< expected change of the velocity across the axis from the start of the solve [m/s]
 
   std::int32_t first = 0, count = 0;  ///< its entries in PointContacts; set by add()
+
+  bool is_of_hand(std::size_t number) const { return hand == std::int32_t(number); }
 };
 
 /// Where a contact's force acts.
@@ -75,8 +77,8 @@ class PointContacts {
   /// Inverse of the mass that a force on the point moves [1/kg]; 0 if all spheres are anchored.
   double mobility(Carriers carriers) const;
 
-  /// Number of contacts with the tool.
-  std::int32_t tool_count() const;
+  /// Number of contacts with the tool in a hand.
+  std::int32_t tool_count(std::size_t hand) const;
 
   void clear() { contacts_.clear(), sphere_.clear(), weight_.clear(); }
 
@@ -102,8 +104,8 @@ class PointContacts {
   /// Removes the contacts that would pull.
   void drop_pulling(double h, const elements::Coordinates& v);
 
-  /// Force on the tool [N] after an implicit step.
-  Vec3 force_on_tool(double h, const elements::Coordinates& v) const;
+  /// Force on the tool in a hand [N] after an implicit step.
+  Vec3 force_on_tool(std::size_t hand, double h, const elements::Coordinates& v) const;
 
  private:
   friend class ExplicitSolve;

@@ -29,7 +29,7 @@ void press(const StateView& state, double friction, double mobility, const Appro
   // step, so State holds the stretch, to which the motion since then is added.
   if (before < 0)
     contact.anchor = contact.found;
-  else if (contact.is_tool)
+  else if (contact.hand >= 0)
     contact.anchor = state.grip[std::size_t(before)];
   else
     contact.anchor = contact.found - state.grip[std::size_t(before)] - step.ahead * across(approach.start);

@@ -22,9 +22,8 @@ using Triangle = std::array<std::int32_t, 3>;
 /// reach two blocks, or three where two do not span space).
 constexpr CutGrid::Index kPerBin = 3;
 
-/// Patches move within the range of the spheres around them, widened on each side by this part of it, and by so many
-/// steps of the grid: weights may be negative, and walls are put onto the swept surface.
-constexpr double kWiden = 1, kMargin = 2;
+/// At rest, vertices lie at most so many steps of the grid outside their block: walls are put onto the swept surface.
+constexpr double kMargin = 2;
 
 /// Vertices of two walls are opposite if they are nearer than this at rest, in steps of the grid, and face each other.
 constexpr double kSamePlace = 0.35, kFacing = -0.3;

@@ -44,6 +44,10 @@ class CutPatches {
  public:
   using Index = CutGrid::Index;
 
+  /// Patches move within the range of the spheres around them, widened on each side by this part of it: weights may be
+  /// negative. A vertex moves at most kStretch times as far as the farthest sphere.
+  static constexpr double kWiden = 1, kStretch = 1 + 2 * kWiden;
+
   /// `model` must outlive the CutPatches. The organ must have a surface.
   CutPatches(const Model& model, std::size_t organ);
   ~CutPatches();
@@ -72,6 +76,8 @@ class CutPatches {
   /// `meets(Box)`.
   template <class Region, class Visit>
   void near(const Region& region, Visit&& visit);
+  /// Begins the round for a patch that near() visited before.
+  void begin(const CutPatch& patch) { (void)made(covered_[std::size_t(index_of_[std::size_t(patch.block)])]); }
   /// The patch that a vertex of a block is in; null: there is none.
   CutPatch* patch(Index block, std::int32_t vertex);
 

@@ -6,10 +6,15 @@
 #include "core/cutbody/cut_grid.h"
 
 namespace ctpm::cutbody {
+namespace {
+
+std::int64_t kinds_of(const Model& model) { return std::int64_t(2 + model.obstacles.size()) + (model.hands - 1); }
+
+}  // namespace
 
 CutPoints::CutPoints(const Model& model)
-    : begin_(std::int64_t(model.touchable_count() * (2 + model.obstacles.size()))),
-      kinds_(std::int64_t(2 + model.obstacles.size())),
+    : begin_(std::int64_t(model.touchable_count()) * kinds_of(model)),
+      kinds_(kinds_of(model)),
       first_(model.organs.size() + 1, 0) {
   constexpr double kMost = std::numeric_limits<std::int32_t>::max();
   for (std::size_t organ = 0; organ < model.organs.size(); ++organ) {

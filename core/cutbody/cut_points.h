@@ -8,8 +8,8 @@
 namespace ctpm::cutbody {
 
 /// Numbers, in State::touched, of points of the surfaces that cuts change. They come after all others: for each kind of
-/// contact (0: with a ball, 1: with tissue, 2 + i: with obstacle i) those of all organs that a blade can cut, by block
-/// of their grids (CutGrid).
+/// contact (0: with a ball, 1: with tissue, 2 + i: with obstacle i, and last with the second hand's ball) those of all
+/// organs that a blade can cut, by block of their grids (CutGrid).
 class CutPoints {
  public:
   /// Vertices of one block's surface that have numbers; what is beyond them is not touched.
@@ -29,8 +29,13 @@ class CutPoints {
     std::int32_t block, vertex;
   };
   bool contains(std::int32_t point) const { return point >= begin_ && point < end(); }
-  /// Whether a ball touches the point of a cut.
-  bool is_of_ball(std::int32_t point) const { return point >= begin_ && point < begin_ + per_kind(); }
+  /// Whether the ball in a hand touches the point of a cut.
+  bool is_of_ball(std::int32_t point, std::size_t hand) const {
+    const std::int64_t first = begin_ + kind_of_ball(hand) * per_kind();
+    return point >= first && point < first + per_kind();
+  }
+  /// The kind of contact with the ball in a hand. The points of whole surfaces are numbered by the same kinds.
+  std::int32_t kind_of_ball(std::size_t hand) const { return hand == 0 ? 0 : std::int32_t(kinds_ - 1); }
   Place place(std::int32_t point) const;
   /// Number of all points of a Model, of cuts or not: each is below it.
   std::int64_t end() const { return begin_ + kinds_ * per_kind(); }

@@ -62,11 +62,11 @@ Vec3 towards_neighbours(const Model& model, const RestElements& elements, std::s
 
 }  // namespace
 
-BladeEdge blade_edge(const Tool& scalpel, const Inputs& inputs) {
+BladeEdge blade_edge(const Tool& scalpel, const Hand& hand) {
   // The blade cuts towards x of the tool. Its point is ground at 45 degrees, as that of a blade No. 11 about is.
   const double height = std::min(scalpel.flank_height, scalpel.blade_length);
-  return {inputs.position, inputs.position + rotate(inputs.world_from_tool, {0, 0, scalpel.blade_length}),
-          inputs.position + rotate(inputs.world_from_tool, {-height, 0, height})};
+  return {hand.position, hand.position + rotate(hand.world_from_tool, {0, 0, scalpel.blade_length}),
+          hand.position + rotate(hand.world_from_tool, {-height, 0, height})};
 }
 
 Vec3 at_node(const BladeEdge& edge, std::size_t node) {

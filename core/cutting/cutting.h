@@ -33,8 +33,8 @@ inline bool leads(const BladeEdge& edge, std::size_t node, Vec3 way) {
   return dot(way, up - dot(up, point) / dot(point, point) * point) < 0;
 }
 
-/// The edge of a scalpel at the pose of `inputs`.
-BladeEdge blade_edge(const Tool& scalpel, const Inputs& inputs);
+/// The edge of a scalpel at the pose of a hand.
+BladeEdge blade_edge(const Tool& scalpel, const Hand& hand);
 
 /// The crossing of an element by the front of a cut, which has just severed it.
 struct Crossing {

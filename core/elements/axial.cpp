@@ -183,24 +183,10 @@ void AxialForces::prepare_acting(double h) {
   }
 }
 
-/// As kelvin_after() over a part of the step, in blocks, whose roots and divisions the compiler does several at a time.
-void AxialForces::find_acting_kelvin(const StateView& state, std::vector<double>& acting, std::size_t first,
-                                     std::size_t last) const {
-  constexpr std::size_t kBlock = 64;
-  const AxialElements& m = model_.axial;
-  double squared[kBlock], rest[kBlock], k[kBlock];
-  for (std::size_t begin = first; begin < last; begin += kBlock) {
-    const std::size_t count = std::min(kBlock, last - begin);
-    for (std::size_t j = 0; j < count; ++j) {
-      const auto i = std::size_t(of_internal_[begin + j]);
-      const Vec3 apart = state.position[std::size_t(m.b[i])] - state.position[std::size_t(m.a[i])];
-      squared[j] = dot(apart, apart), rest[j] = m.rest_length[i], k[j] = m.k[i];
-    }
-    const double *z = &state.kelvin_elongation[begin], *damping = &acting_.damping[begin], *sum = &acting_.sum[begin];
-    double* __restrict out = &acting[begin];
-    for (std::size_t j = 0; j < count; ++j)
-      out[j] = (damping[j] * z[j] + k[j] * (std::sqrt(squared[j]) - rest[j])) / sum[j];
-  }
+void AxialForces::find_acting_kelvin(const StateView& state, std::vector<double>& acting, int slab) const {
+  const Batches& batches = of_slab_[std::size_t(slab)];
+  kernels_.find_acting_kelvin(arrays(state, nullptr), {acting_.damping.data(), acting_.sum.data(), acting.data()},
+                              batches.data(), batches.data() + batches.size());
 }
 
 void AxialForces::finish_kelvin(const std::vector<double>& before, std::vector<double>& kelvin, std::size_t first,

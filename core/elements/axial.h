@@ -42,11 +42,11 @@ class AxialForces {
   /// Prepares find_acting_kelvin() and finish_kelvin() for steps of `h` [s]; allocates at the first call.
   void prepare_acting(double h);
 
-  /// Elements::find_kelvin(), find_acting_kelvin() and finish_kelvin() for internal variables [first, last).
+  /// Elements::find_acting_kelvin() for the elements whose first sphere is the slab's own.
+  void find_acting_kelvin(const StateView& state, std::vector<double>& acting, int slab) const;
+  /// Elements::find_kelvin() and finish_kelvin() for internal variables [first, last).
   void find_kelvin(double h, const StateView& state, std::vector<double>& after, std::size_t first,
                    std::size_t last) const;
-  void find_acting_kelvin(const StateView& state, std::vector<double>& acting, std::size_t first,
-                          std::size_t last) const;
   void finish_kelvin(const std::vector<double>& before, std::vector<double>& kelvin, std::size_t first,
                      std::size_t last) const;
 

@@ -127,8 +127,8 @@ void Elements::find_kelvin(double h, const StateView& state, std::vector<double>
 
 void Elements::find_acting_kelvin(double h, const StateView& state, std::vector<double>& acting) {
   axial_.prepare_acting(h);
-  for_internal(state.kelvin_elongation.size(),
-               [&](std::size_t first, std::size_t last) { axial_.find_acting_kelvin(state, acting, first, last); });
+  if (state.kelvin_elongation.empty()) return;
+  team_.for_each(slabs_.count(), [&](int slab) { axial_.find_acting_kelvin(state, acting, slab); });
 }
 
 void Elements::finish_kelvin(const std::vector<double>& before, std::vector<double>& kelvin) const {

@@ -92,8 +92,9 @@ std::int32_t Resistance::count_inverted(const StateView& state) {
   return all;
 }
 
-Vec3 Resistance::push_out(const StateView& middle, double h, const contact::Pin& pin, Vec3Array& velocity) {
-  Vec3 on_pin;
+std::array<Vec3, kMostHands> Resistance::push_out(const StateView& middle, double h, const contact::Pins& pins,
+                                                  Vec3Array& velocity) {
+  std::array<Vec3, kMostHands> on_pin;
   if (!any()) return on_pin;
   find_pressed(middle);
   for_each_pressed([&](const Pressed& p) {
@@ -102,7 +103,7 @@ Vec3 Resistance::push_out(const StateView& middle, double h, const contact::Pin&
     for (std::size_t i = 0; i < 4; ++i) {
       const auto sphere = std::size_t(p.sphere[i]);
       const Vec3 g = p.at(i);
-      const std::uint8_t held = pin.held_axes(model_, sphere);
+      const std::uint8_t held = contact::held_axes(pins, model_, sphere);
       const auto free = [&](int axis) { return (held >> axis & 1) != 0 ? 0.0 : 1 / model_.mass[sphere]; };
       gain[i] = {free(0) * g.x, free(1) * g.y, free(2) * g.z};
       speed += dot(g, velocity[sphere]), ease += dot(g, gain[i]);
@@ -111,7 +112,8 @@ Vec3 Resistance::push_out(const StateView& middle, double h, const contact::Pin&
     if (!(impulse > 0)) return;
     for (std::size_t i = 0; i < 4; ++i) {
       velocity.add(std::size_t(p.sphere[i]), impulse * gain[i]);
-      if (p.sphere[i] == pin.sphere) on_pin += impulse / h * p.at(i);
+      for (std::size_t hand = 0; hand < kMostHands; ++hand)
+        if (p.sphere[i] == pins[hand].sphere) on_pin[hand] += impulse / h * p.at(i);
     }
   });
   return on_pin;

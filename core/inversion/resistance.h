@@ -38,8 +38,9 @@ class Resistance {
 
   /// Changes the `velocity` [m/s] that spheres have after an explicit step of `h` [s] without resistance; `middle` is
   /// the middle of the step. Tetrahedra follow one after the other, each solved implicitly; none pulls. Spheres keep
-  /// their velocity along held axes, and so does the sphere of `pin`; returns the force on that sphere [N].
-  Vec3 push_out(const StateView& middle, double h, const contact::Pin& pin, Vec3Array& velocity);
+  /// their velocity along held axes, and so do those of `pins`; returns the force on each pin's sphere [N].
+  std::array<Vec3, kMostHands> push_out(const StateView& middle, double h, const contact::Pins& pins,
+                                        Vec3Array& velocity);
 
   /// Adds the forces [N] at `state` to `force`, and the diagonal of h^2 K [kg] to `blocks` until the result is
   /// destroyed. K is the positive semidefinite part of the second derivative: k g g^T of each tetrahedron, g the

@@ -57,6 +57,13 @@ void for_each_field(State_& s, Visit&& visit) {
   give("edge_organ", s.edge_organ, any);
   give_points("swept.x", "swept.y", "swept.z", s.swept, finite, give);
   give("swept_organ", s.swept_organ, any);
+  // Written and hashed only if the second hand did anything; read from every file.
+  if (!std::is_const_v<State_> || s.last_inputs.second != Hand{}) {
+    give("last_inputs.second.tool", s.last_inputs.second.tool, index(EntryOf::tool, -1));
+    give("last_inputs.second.position", s.last_inputs.second.position, any);
+    give("last_inputs.second.world_from_tool", s.last_inputs.second.world_from_tool, any);
+    give("last_inputs.second.buttons", s.last_inputs.second.buttons, any);
+  }
 }
 
 template <class Tool_, class Visit>
@@ -178,6 +185,8 @@ void for_each_field(Model_& m, Visit&& visit) {
   give("inversion_threshold", m.inversion_threshold, between(0, 1));
   give("obstacles", m.obstacles, any);
   give("organs_meet", m.organs_meet, any);
+  // Written only of a scene with two hands, and read from every file.
+  if (!std::is_const_v<Model_> || m.hands != 1) give("hands", m.hands, within(1, kMostHands));
 }
 
 }  // namespace ctpm

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/model/axial_law.h"
+#include "core/model/inputs.h"
 #include "core/model/organ.h"
 #include "core/model/vec3.h"
 
@@ -94,7 +95,7 @@ enum class ToolKind : std::int32_t {
   pin = 2,      ///< moves one sphere exactly with the hand: the paper's pressed sphere C
 };
 
-/// A tool that Inputs can select. The tool frame's origin is the ball's centre or the blade's tip.
+/// A tool that a hand can hold. The tool frame's origin is the ball's centre or the blade's tip.
 struct Tool {
   std::string name;
   ToolKind kind = ToolKind::ball;
@@ -226,7 +227,8 @@ struct Model {
   Loads loads;
 
   std::vector<Tool> tools;
-  double contact_k = 0;  ///< stiffness of a tool's contact with one sphere of an organ without a surface [N/m], >= 0
+  std::int32_t hands = 1;  ///< that hold tools, 1 or kMostHands
+  double contact_k = 0;    ///< stiffness of a tool's contact with one sphere of an organ without a surface [N/m], >= 0
   double contact_friction = 0;  ///< Coulomb coefficient of every contact of tissue, >= 0
   /// Hunt-Crossley damping of contacts [s/m], >= 0. Default: an impact at 30 mm/s keeps 25 % of its kinetic
   /// energy (our choice).

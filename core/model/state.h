@@ -34,8 +34,9 @@ struct State {
   /// For each node of a row: 1 + the organ in which the front went from the row before to this one, between this node
   /// and the next, through tissue that was whole; 0: it did not                              (as many as `swept`)
   std::vector<std::uint8_t> swept_organ;
-  /// Points of the tissue that are touched, ascending. With n = Model::touchable_count(), [0, n) are touched by a ball,
-  /// [n, 2 n) by tissue, [(2 + i) n, (3 + i) n) by obstacle i, and those of cuts follow (cutbody) (touched_count)
+  /// Points of the tissue that are touched, ascending. With n = Model::touchable_count(), [0, n) are touched by the
+  /// first hand's ball, [n, 2 n) by tissue, [(2 + i) n, (3 + i) n) by obstacle i, where there are two hands the next n
+  /// by the second one's ball, and those of cuts follow (cutbody) (touched_count)
   std::vector<std::int32_t> touched;
   /// Where on a ball each of them is held, from its centre; elsewhere, how far the grip is stretched [m]
   /// (touched_count)

@@ -22,7 +22,7 @@ struct StateView {
   const Vec3Array& grip;
   const std::vector<double>& kelvin_dent;
 
-  /// Index of a point in `touched`; -1 if the ball did not touch it at the start of the step.
+  /// Index of a point in `touched`; -1 if it was not touched at the start of the step.
   std::ptrdiff_t find_touched(std::int32_t point) const {
     const auto found = std::lower_bound(touched.begin(), touched.end(), point);
     return found == touched.end() || *found != point ? -1 : found - touched.begin();

@@ -36,13 +36,13 @@ double LinearSolver::energy_of(const elements::Coordinates& v) {
   });
 }
 
-void LinearSolver::set_blocks(const elements::DiagonalBlocks& blocks, std::int32_t pinned) {
+void LinearSolver::set_blocks(const elements::DiagonalBlocks& blocks, std::span<const std::int32_t> pinned) {
   std::visit([&](auto& gradient) { set_blocks_of(gradient, blocks, pinned); }, gradient_);
 }
 
 template <class Real>
 void LinearSolver::set_blocks_of(ConjugateGradient<Real>& gradient, const elements::DiagonalBlocks& blocks,
-                                 std::int32_t pinned) {
+                                 std::span<const std::int32_t> pinned) {
   const std::size_t n = model_.sphere_count();
   const elements::SolverKernels<Real>& kernels = elements::solver_kernels<Real>(kernels_);
   std::vector<Real>& inverse = gradient.inverse();
@@ -71,7 +71,8 @@ void LinearSolver::set_blocks_of(ConjugateGradient<Real>& gradient, const elemen
     }
     hold(i, model_.held_axes[i]);
   }
-  if (pinned >= 0) hold(std::size_t(pinned), kAnchored);
+  for (const std::int32_t sphere : pinned)
+    if (sphere >= 0) hold(std::size_t(sphere), kAnchored);
 }
 
 }  // namespace ctpm::solver

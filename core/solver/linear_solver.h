@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -42,9 +43,9 @@ class LinearSolver {
   LinearSolver(const Model& model, const parallel::Slabs& slabs, parallel::Team& team, const elements::Kernels& kernels,
                double stiffness_ratio);
 
-  /// Sets the diagonal blocks of A. Coordinates held by Model::held_axes, and the sphere `pinned`, keep the first
-  /// guess: their rows are left out of the system.
-  void set_blocks(const elements::DiagonalBlocks& blocks, std::int32_t pinned);
+  /// Sets the diagonal blocks of A. Coordinates held by Model::held_axes, and the spheres `pinned` (-1: none), keep the
+  /// first guess: their rows are left out of the system.
+  void set_blocks(const elements::DiagonalBlocks& blocks, std::span<const std::int32_t> pinned);
 
   /// `x` is the first guess and the result. `guess_energy` is given if `x` is all zero because it is the change of a
   /// velocity; it is then energy_of() that velocity. `add_coupling` as in ConjugateGradient, for vectors of float and
@@ -58,7 +59,8 @@ class LinearSolver {
 
  private:
   template <class Real>
-  void set_blocks_of(ConjugateGradient<Real>& gradient, const elements::DiagonalBlocks& blocks, std::int32_t pinned);
+  void set_blocks_of(ConjugateGradient<Real>& gradient, const elements::DiagonalBlocks& blocks,
+                     std::span<const std::int32_t> pinned);
 
   /// Factor by which one round with vectors of Real may reduce the energy of the residual; a smaller one is lost in
   /// rounding.

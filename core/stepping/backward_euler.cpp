@@ -2,16 +2,16 @@
 
 namespace ctpm::stepping {
 
-bool BackwardEuler::step(const State& from, const contact::HeldTool& tool, const Substep& part, Motion& to,
+bool BackwardEuler::step(const State& from, const contact::HeldTools& tools, const Substep& part, Motion& to,
                          StepReport& report) {
-  const contact::Pin pin = contact::Contacts::pin(tool, from.position, part.share, part.h);
+  const contact::Pins pins = contact::Contacts::pins(tools, from.position, part.share, part.h);
   contact::ImplicitContacts contacts =
-      context_.contacts.detect(from, tool, {part.h, part.h, 0, part.share, pin}, contact::Linearisation::rest);
+      context_.contacts.detect(from, tools, {part.h, part.h, 0, part.share, pins}, contact::Linearisation::rest);
   const elements::Coordinates& velocity = solve_.solve(from, part, contacts, report);
   commit_velocity(context_.elements.slabs(), context_.team, velocity, from.position, part.h, to);
   if (!check_.passes(to.velocity, report)) return false;
   context_.elements.find_kelvin(part.h, {from, to.position, to.velocity, from.kelvin_elongation}, to.kelvin_elongation);
-  finish_contacts(contacts, tool, part, to, report);
+  finish_contacts(contacts, tools, part, to, report);
   return true;
 }
 

@@ -17,7 +17,7 @@ class BackwardEuler {
   BackwardEuler(const StepContext& context, ImplicitSolve& solve) : context_(context), solve_(solve), check_(context) {}
 
   /// One substep from `from` into `to`. False: the step is refused, `report` says why, and `to` is not usable.
-  bool step(const State& from, const contact::HeldTool& tool, const Substep& part, Motion& to, StepReport& report);
+  bool step(const State& from, const contact::HeldTools& tools, const Substep& part, Motion& to, StepReport& report);
 
  private:
   const StepContext& context_;

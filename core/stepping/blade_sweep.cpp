@@ -7,11 +7,11 @@ BladeSweep::BladeSweep(const Model& model) : front_(model), pieces_(model) {
   pieces_.reserve();
 }
 
-void BladeSweep::begin_tick(const Inputs& last, const Inputs& inputs, contact::HeldTool& tool, State& state) {
+void BladeSweep::begin_tick(const Hand& last, const Hand& hand, bool is_taken, contact::HeldTool& tool, State& state) {
   crossings_.clear();
-  tool.edge_from = cutting::blade_edge(*tool.tool, last), tool.edge_to = cutting::blade_edge(*tool.tool, inputs);
+  tool.edge_from = cutting::blade_edge(*tool.tool, last), tool.edge_to = cutting::blade_edge(*tool.tool, hand);
   tool.front = &front_;
-  front_.begin_tick(*tool.tool, tool.edge_from, tool.edge_to, state.last_inputs.tool != inputs.tool, state);
+  front_.begin_tick(*tool.tool, tool.edge_from, tool.edge_to, is_taken, state);
 }
 
 void BladeSweep::end_substep(const contact::HeldTool& tool, double share, State& state, StepReport& report) {

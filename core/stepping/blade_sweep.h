@@ -18,8 +18,9 @@ class BladeSweep {
   /// `model` must outlive the BladeSweep and have a scalpel.
   explicit BladeSweep(const Model& model);
 
-  /// Begins a tick in which the scalpel moves from `last` to `inputs`, and sets its edge and front in `tool`.
-  void begin_tick(const Inputs& last, const Inputs& inputs, contact::HeldTool& tool, State& state);
+  /// Begins a tick in which the hand with the scalpel goes from `last` to `hand`, and sets its edge and front in
+  /// `tool`. `is_taken`: the scalpel has just been picked up.
+  void begin_tick(const Hand& last, const Hand& hand, bool is_taken, contact::HeldTool& tool, State& state);
 
   /// Begins a substep from `state`.
   void begin_substep(const State& state) { front_.begin_substep(state); }

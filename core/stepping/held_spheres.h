@@ -15,9 +15,9 @@ class HeldSpheres {
  public:
   HeldSpheres(const Model& model, const parallel::Slabs& slabs);
 
-  /// Sets the velocities of a slab's spheres to 0 along held axes, and that of the pin's sphere to the pin's velocity.
-  /// `velocity`: x, y and z [m/s] (sphere_count each).
-  void stop(const contact::Pin& pin, int slab, std::array<double*, 3> velocity) const;
+  /// Sets the velocities of a slab's spheres to 0 along held axes, and those of the pins' spheres to the pins'
+  /// velocities. `velocity`: x, y and z [m/s] (sphere_count each).
+  void stop(const contact::Pins& pins, int slab, std::array<double*, 3> velocity) const;
 
  private:
   const Model& model_;

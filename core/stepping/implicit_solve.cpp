@@ -1,6 +1,7 @@
 #include "core/stepping/implicit_solve.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -35,7 +36,7 @@ const elements::Coordinates& ImplicitSolve::solve(const StateView& start, const 
                                                   contact::ImplicitContacts& contacts, StepReport& report) {
   const ExternalLoads loads{context_.model, part.time, part.has_loads};
   context_.elements.linearise(start, part.h, false, force_, blocks_,
-                              [&](int slab) { begin(start, contacts.step().pin, loads, slab), begin_blocks(slab); });
+                              [&](int slab) { begin(start, contacts.step().pins, loads, slab), begin_blocks(slab); });
   const auto resistance = context_.resistance.linearise(start, part.h, force_, blocks_);
   solve_contacts({start.velocity}, contacts, resistance, velocity_, report);
   return velocity_;
@@ -46,7 +47,7 @@ const elements::Coordinates& ImplicitSolve::solve_near(const StateView& predicte
                                                        contact::ImplicitContacts& contacts,
                                                        elements::Coordinates& change, StepReport& report) {
   const ExternalLoads loads{context_.model, part.time, part.has_loads};
-  const auto begin_slab = [&](int slab) { begin(predicted, contacts.step().pin, loads, slab); };
+  const auto begin_slab = [&](int slab) { begin(predicted, contacts.step().pins, loads, slab); };
   if (keeps_matrix)
     context_.elements.add_forces(predicted, force_, begin_slab, [](int) {});
   else
@@ -60,14 +61,14 @@ const elements::Coordinates& ImplicitSolve::solve_near(const StateView& predicte
 }
 
 /// Writes the external forces, to which the tissue adds its own, and the first guess of the velocity.
-void ImplicitSolve::begin(const StateView& state, const contact::Pin& pin, const ExternalLoads& loads, int slab) {
+void ImplicitSolve::begin(const StateView& state, const contact::Pins& pins, const ExternalLoads& loads, int slab) {
   const parallel::Slabs& slabs = context_.elements.slabs();
   const auto first = std::size_t(slabs.begin(slab)), last = std::size_t(slabs.end(slab));
   const std::size_t n = context_.model.sphere_count();
   const double* now[3] = {state.velocity.x.data(), state.velocity.y.data(), state.velocity.z.data()};
   for (std::size_t axis = 0; axis < 3; ++axis)
     std::copy(now[axis] + first, now[axis] + last, &velocity_[axis * n + first]);
-  held_.stop(pin, slab, {&velocity_[0], &velocity_[n], &velocity_[2 * n]});
+  held_.stop(pins, slab, {&velocity_[0], &velocity_[n], &velocity_[2 * n]});
   loads.set(first, last, force_);
 }
 
@@ -92,7 +93,7 @@ void ImplicitSolve::solve_contacts(const Beginning& beginning, contact::Implicit
   for (int round = 0;; ++round) {
     contact::LinearisedContacts linearised = contacts.linearise(force_, blocks_);
     context_.team.for_each(slabs.count(), [&](int slab) { find_momentum(beginning, step.h, slab); });
-    solver_.set_blocks(blocks_, step.pin.sphere);
+    solver_.set_blocks(blocks_, std::array{step.pins[0].sphere, step.pins[1].sphere});
     const solver::SolverOutcome outcome =
         solver_.solve(momentum_, change, round == 0 ? beginning.prediction_energy : std::nullopt, limits_,
                       [&](const auto* in, auto* out, auto&& after) {
@@ -107,9 +108,7 @@ void ImplicitSolve::solve_contacts(const Beginning& beginning, contact::Implicit
       std::move(linearised).drop_pulling(change);
       continue;
     }
-    report.tool_force = step.pin.is_held() ? force_on_pin(beginning.before[step.pin.index()], step, resistance, change)
-                                           : linearised.tool_force(change);
-    return;
+    return report_forces(beginning, step, linearised, resistance, change, report);
   }
 }
 
@@ -130,18 +129,29 @@ void ImplicitSolve::find_momentum(const Beginning& beginning, double h, int slab
   }
 }
 
-/// The momentum balance of the pin's sphere, with opposite sign; `before` is its velocity at the start.
-Vec3 ImplicitSolve::force_on_pin(Vec3 before, const contact::ContactStep& step,
-                                 const inversion::LinearisedResistance& resistance,
-                                 const elements::Coordinates& change) {
+/// Reports the force on each hand's tool: on a pin, the momentum balance of its sphere, with opposite sign.
+void ImplicitSolve::report_forces(const Beginning& beginning, const contact::ContactStep& step,
+                                  const contact::LinearisedContacts& contacts,
+                                  const inversion::LinearisedResistance& resistance,
+                                  const elements::Coordinates& change, StepReport& report) {
   const Model& model = context_.model;
-  const std::size_t n = model.sphere_count(), i = step.pin.index();
-  std::fill(momentum_.begin(), momentum_.end(), 0.0);
-  context_.elements.apply(static_cast<const double*>(change.data()), momentum_.data(), [](int) {});
-  (void)resistance.apply(static_cast<const double*>(change.data()), momentum_.data());
-  const Vec3 coupling{momentum_[i], momentum_[n + i], momentum_[2 * n + i]},
-      own{force_[i], force_[n + i], force_[2 * n + i]};
-  return (model.mass[i] * (before - step.pin.velocity) - coupling) / step.h + own;
+  const std::size_t n = model.sphere_count();
+  if (contact::any_held(step.pins)) {
+    std::fill(momentum_.begin(), momentum_.end(), 0.0);
+    context_.elements.apply(static_cast<const double*>(change.data()), momentum_.data(), [](int) {});
+    (void)resistance.apply(static_cast<const double*>(change.data()), momentum_.data());
+  }
+  for (std::size_t hand = 0; hand < kMostHands; ++hand) {
+    const contact::Pin& pin = step.pins[hand];
+    if (!pin.is_held()) {
+      report.of_hand(hand).tool_force = contacts.tool_force(hand, change);
+      continue;
+    }
+    const std::size_t i = pin.index();
+    const Vec3 coupling{momentum_[i], momentum_[n + i], momentum_[2 * n + i]},
+        own{force_[i], force_[n + i], force_[2 * n + i]};
+    report.of_hand(hand).tool_force = (model.mass[i] * (beginning.before[i] - pin.velocity) - coupling) / step.h + own;
+  }
 }
 
 }  // namespace ctpm::stepping

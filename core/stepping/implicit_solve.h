@@ -42,14 +42,15 @@ class ImplicitSolve {
     std::optional<double> prediction_energy{};  ///< energy_of() the predictor
   };
 
-  void begin(const StateView& state, const contact::Pin& pin, const ExternalLoads& loads, int slab);
+  void begin(const StateView& state, const contact::Pins& pins, const ExternalLoads& loads, int slab);
   void begin_blocks(int slab);
   void solve_contacts(const Beginning& beginning, contact::ImplicitContacts& contacts,
                       const inversion::LinearisedResistance& resistance, elements::Coordinates& change,
                       StepReport& report);
   void find_momentum(const Beginning& beginning, double h, int slab);
-  Vec3 force_on_pin(Vec3 before, const contact::ContactStep& step, const inversion::LinearisedResistance& resistance,
-                    const elements::Coordinates& change);
+  void report_forces(const Beginning& beginning, const contact::ContactStep& step,
+                     const contact::LinearisedContacts& contacts, const inversion::LinearisedResistance& resistance,
+                     const elements::Coordinates& change, StepReport& report);
 
   const StepContext& context_;
   HeldSpheres held_;

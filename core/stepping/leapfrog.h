@@ -19,18 +19,18 @@ class Leapfrog {
   explicit Leapfrog(const StepContext& context);
 
   /// One substep from `from` into `to`. False: the step is refused, `report` says why, and `to` is not usable.
-  bool step(const State& from, const contact::HeldTool& tool, const Substep& part, Motion& to, StepReport& report);
+  bool step(const State& from, const contact::HeldTools& tools, const Substep& part, Motion& to, StepReport& report);
 
  private:
-  const Vec3Array& start_velocity(const State& from, const contact::Pin& pin);
-  void kick(const StateView& middle, const contact::Pin& pin, const Substep& part, Vec3Array& velocity);
+  const Vec3Array& start_velocity(const State& from, const contact::Pins& pins);
+  void kick(const StateView& middle, const contact::Pins& pins, const Substep& part, Vec3Array& velocity);
 
   const StepContext& context_;
   HeldSpheres held_;
   VelocityCheck check_;
   std::vector<double> per_mass_;  ///< 1 / mass [1/kg]  (sphere_count)
   elements::Coordinates force_;   ///< [N]
-  Vec3Array pinned_velocity_;     ///< of State, with that of the pin; empty if the Model has no pin (sphere_count)
+  Vec3Array pinned_velocity_;     ///< of State, with those of the pins; empty if the Model has no pin (sphere_count)
 };
 
 }  // namespace ctpm::stepping

@@ -59,51 +59,54 @@ Sdirk2::Sdirk2(const StepContext& context, ImplicitSolve& solve)
       second_start_(context.model),
       change_(3 * context.model.sphere_count()) {}
 
-bool Sdirk2::step(const State& from, const contact::HeldTool& tool, const Substep& part, Motion& to,
+bool Sdirk2::step(const State& from, const contact::HeldTools& tools, const Substep& part, Motion& to,
                   StepReport& report) {
   to.acceleration.resize(from.position.size());
   const StepStatus before = report.status;
-  if (is_short(from, tool, part) && two_stages(from, tool, part, to, report) &&
-      predictor_error(stage_pin_) <= kLargestPredictorError) {
+  if (is_short(from, tools, part) && two_stages(from, tools, part, to, report) &&
+      predictor_error(stage_pins_) <= kLargestPredictorError) {
     find_slope(second_start_.velocity, to.velocity, kStage * part.h, to.acceleration);
     return true;
   }
   report.status = before;
-  if (!fallback_.step(from, tool, part, to, report)) return false;
+  if (!fallback_.step(from, tools, part, to, report)) return false;
   find_slope(from.velocity, to.velocity, part.h, to.acceleration);
   return true;
 }
 
 /// Whether every sphere moves so little in the step that a predictor is good enough.
-bool Sdirk2::is_short(const State& from, const contact::HeldTool& tool, const Substep& part) const {
+bool Sdirk2::is_short(const State& from, const contact::HeldTools& tools, const Substep& part) const {
   const double limit = kLongestMove * shortest_element_;
-  const double jump =
-      tool.is(ToolKind::pin) ? norm(tool.at(part.share) - from.position[std::size_t(tool.tool->sphere)]) : 0.0;
+  double jump = 0;
+  for (const contact::HeldTool& tool : tools)
+    if (tool.is(ToolKind::pin))
+      jump = std::max(jump, norm(tool.at(part.share) - from.position[std::size_t(tool.tool->sphere)]));
   return jump <= limit && fastest_squared(from.velocity) * part.h * part.h <= limit * limit;
 }
 
-bool Sdirk2::two_stages(const State& from, const contact::HeldTool& tool, const Substep& part, Motion& to,
+bool Sdirk2::two_stages(const State& from, const contact::HeldTools& tools, const Substep& part, Motion& to,
                         StepReport& report) {
   const double h = kStage * part.h, rest = part.h - h;
   extrapolate(from.velocity, from.acceleration, h, predicted_.velocity);
   const Substep first{h, part.time - rest, part.share - rest / context_.model.tick, part.has_loads};
-  if (!dirk_stage(from, tool, first, false, second_start_, report)) return false;
+  if (!dirk_stage(from, tools, first, false, second_start_, report)) return false;
   predicted_.velocity = second_start_.velocity;
   stretch(from.velocity, part.h / h, predicted_.velocity);
   stretch(from.position, rest / h, second_start_.position), stretch(from.velocity, rest / h, second_start_.velocity);
   stretch(from.kelvin_elongation, rest / h, second_start_.kelvin_elongation);
   const StateView start(from, second_start_.position, second_start_.velocity, second_start_.kelvin_elongation);
-  return dirk_stage(start, tool, {h, part.time, part.share, part.has_loads}, true, to, report);
+  return dirk_stage(start, tools, {h, part.time, part.share, part.has_loads}, true, to, report);
 }
 
 /// One stage from `start` into `to`, linearised about the positions to which the velocity in predicted_ leads. The
 /// second stage reuses the matrix of the first.
-bool Sdirk2::dirk_stage(const StateView& start, const contact::HeldTool& tool, const Substep& part, bool is_second,
+bool Sdirk2::dirk_stage(const StateView& start, const contact::HeldTools& tools, const Substep& part, bool is_second,
                         Motion& to, StepReport& report) {
   elements::Elements& elements = context_.elements;
   const parallel::Slabs& slabs = elements.slabs();
-  stage_pin_ = contact::Contacts::pin(tool, start.position, part.share, part.h);
-  if (stage_pin_.is_held()) predicted_.velocity.set(stage_pin_.index(), stage_pin_.velocity);
+  stage_pins_ = contact::Contacts::pins(tools, start.position, part.share, part.h);
+  for (const contact::Pin& pin : stage_pins_)
+    if (pin.is_held()) predicted_.velocity.set(pin.index(), pin.velocity);
   drift(slabs, context_.team, start.position, predicted_.velocity, part.h, predicted_.position);
   // A new matrix accounts for the change of Kelvin elongations during the step; a reused one needs those at its end.
   if (is_second)
@@ -113,21 +116,22 @@ bool Sdirk2::dirk_stage(const StateView& start, const contact::HeldTool& tool, c
   const StateView predicted(start, predicted_.position, predicted_.velocity, kelvin);
   const double elapsed = is_second ? part.h / kStage : part.h;  // the second stage ends with the step
   contact::ImplicitContacts contacts = context_.contacts.detect(
-      predicted, tool, {part.h, elapsed, elapsed, part.share, stage_pin_}, contact::Linearisation::velocity);
+      predicted, tools, {part.h, elapsed, elapsed, part.share, stage_pins_}, contact::Linearisation::velocity);
   stage_velocity_ = &solve_.solve_near(predicted, start.velocity, is_second, part, contacts, change_, report);
   commit_velocity(slabs, context_.team, *stage_velocity_, start.position, part.h, to);
   if (!check_.passes(to.velocity, report)) return false;
   elements.find_kelvin(part.h, {start, to.position, to.velocity, start.kelvin_elongation}, to.kelvin_elongation);
-  finish_contacts(contacts, tool, part, to, report);
+  finish_contacts(contacts, tools, part, to, report);
   return true;
 }
 
-/// Share of the kinetic energy at the end of the last stage that its predictor missed; the pin's sphere does not count.
-double Sdirk2::predictor_error(const contact::Pin& pin) {
+/// Share of the kinetic energy at the end of the last stage that its predictor missed; the pins' spheres do not count.
+double Sdirk2::predictor_error(const contact::Pins& pins) {
   const std::size_t n = context_.model.sphere_count();
   const elements::Coordinates& velocity = *stage_velocity_;
   double energy = solve_.energy_of(velocity);
-  if (pin.is_held()) {
+  for (const contact::Pin& pin : pins) {
+    if (!pin.is_held()) continue;
     const std::size_t i = pin.index();
     const Vec3 own{velocity[i], velocity[n + i], velocity[2 * n + i]};
     energy -= context_.model.mass[i] * dot(own, own);

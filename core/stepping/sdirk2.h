@@ -20,15 +20,15 @@ class Sdirk2 {
   Sdirk2(const StepContext& context, ImplicitSolve& solve);
 
   /// One substep from `from` into `to`. False: the step is refused, `report` says why, and `to` is not usable.
-  bool step(const State& from, const contact::HeldTool& tool, const Substep& part, Motion& to, StepReport& report);
+  bool step(const State& from, const contact::HeldTools& tools, const Substep& part, Motion& to, StepReport& report);
 
  private:
-  bool is_short(const State& from, const contact::HeldTool& tool, const Substep& part) const;
-  bool two_stages(const State& from, const contact::HeldTool& tool, const Substep& part, Motion& to,
+  bool is_short(const State& from, const contact::HeldTools& tools, const Substep& part) const;
+  bool two_stages(const State& from, const contact::HeldTools& tools, const Substep& part, Motion& to,
                   StepReport& report);
-  bool dirk_stage(const StateView& start, const contact::HeldTool& tool, const Substep& part, bool is_second,
+  bool dirk_stage(const StateView& start, const contact::HeldTools& tools, const Substep& part, bool is_second,
                   Motion& to, StepReport& report);
-  double predictor_error(const contact::Pin& pin);
+  double predictor_error(const contact::Pins& pins);
 
   const StepContext& context_;
   ImplicitSolve& solve_;
@@ -39,7 +39,7 @@ class Sdirk2 {
   Motion second_start_;                                    ///< end of the first stage, then start of the second
   elements::Coordinates change_;                           ///< velocity of the last stage minus its predictor [m/s]
   const elements::Coordinates* stage_velocity_ = nullptr;  ///< solution of the last stage
-  contact::Pin stage_pin_;                                 ///< of the last stage
+  contact::Pins stage_pins_;                               ///< of the last stage
 };
 
 }  // namespace ctpm::stepping

@@ -21,17 +21,40 @@ namespace {
 /// Settling ends when no sphere is faster than this [m/s].
 constexpr double kAtRest = 1e-5;
 
-bool is_usable(const Model& model, const Inputs& inputs) {
-  if (inputs.tool < -1 || inputs.tool >= std::int32_t(model.tools.size())) return false;
-  const Quat q = inputs.world_from_tool;
+bool is_usable(const Model& model, const Hand& hand) {
+  if (hand.tool < -1 || hand.tool >= std::int32_t(model.tools.size())) return false;
+  const Quat q = hand.world_from_tool;
   const double length_squared = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
-  return inputs.tool == -1 || (is_finite(inputs.position) && std::abs(length_squared - 1) < 1e-3);
+  return hand.tool == -1 || (is_finite(hand.position) && std::abs(length_squared - 1) < 1e-3);
+}
+
+bool is_usable(const Model& model, const Inputs& inputs) {
+  if (!is_usable(model, inputs.hand(0))) return false;
+  if (inputs.second == Hand{}) return true;
+  return model.hands > 1 && is_usable(model, inputs.second) &&
+         hands_conflict(model, inputs.tool, inputs.second.tool).empty();
+}
+
+/// What a hand did in the tick before; one that has just picked up its tool has not moved yet.
+const Hand& last_of(const State& state, const Inputs& inputs, std::size_t hand) {
+  const Hand &before = state.last_inputs.hand(hand), &now = inputs.hand(hand);
+  return now.tool >= 0 && before.tool == now.tool ? before : now;
 }
 
 /// One type of integrator, constructed in place.
 using AnyIntegrator = std::variant<std::monostate, Leapfrog, BackwardEuler, Sdirk2>;
 
 }  // namespace
+
+std::string_view hands_conflict(const Model& model, std::int32_t first, std::int32_t second) {
+  if (first < 0 || second < 0) return {};
+  if (first == second) return "both hands hold the same tool";
+  const Tool &a = model.tools[std::size_t(first)], &b = model.tools[std::size_t(second)];
+  if (a.kind != b.kind) return {};
+  if (a.kind == ToolKind::scalpel) return "both hands hold a scalpel, and one blade cuts at a time";
+  if (a.kind == ToolKind::pin && a.sphere == b.sphere) return "the pins in both hands hold the same sphere";
+  return {};
+}
 
 /// Kernels, integrator and scratch memory of one Model.
 struct Stepper::Parts {
@@ -58,9 +81,9 @@ struct Stepper::Parts {
       integrator.emplace<BackwardEuler>(context, *implicit_solve);
   }
 
-  contact::HeldTool hold(const Inputs& last, const Inputs& inputs) const;
-  bool advance(const State& from, const contact::HeldTool& tool, const Substep& part, StepReport& report);
-  bool run_substeps(State& state, const contact::HeldTool& tool, StepReport& report);
+  contact::HeldTool hold(const Hand& last, const Hand& hand) const;
+  bool advance(const State& from, const contact::HeldTools& tools, const Substep& part, StepReport& report);
+  bool run_substeps(State& state, const contact::HeldTools& tools, StepReport& report);
   void reserve(State& state) const;
 
   const Model& model;
@@ -80,10 +103,10 @@ struct Stepper::Parts {
   bool has_loads = true;
 };
 
-contact::HeldTool Stepper::Parts::hold(const Inputs& last, const Inputs& inputs) const {
+contact::HeldTool Stepper::Parts::hold(const Hand& last, const Hand& hand) const {
   contact::HeldTool tool;
-  tool.tool = inputs.tool >= 0 ? &model.tools[std::size_t(inputs.tool)] : nullptr;
-  tool.from = last.position, tool.to = inputs.position;
+  tool.tool = hand.tool >= 0 ? &model.tools[std::size_t(hand.tool)] : nullptr;
+  tool.from = last.position, tool.to = hand.position;
   return tool;
 }
 
@@ -101,29 +124,29 @@ void Stepper::Parts::reserve(State& state) const {
 }
 
 /// One substep into `next`. False: it is refused.
-bool Stepper::Parts::advance(const State& from, const contact::HeldTool& tool, const Substep& part,
+bool Stepper::Parts::advance(const State& from, const contact::HeldTools& tools, const Substep& part,
                              StepReport& report) {
   return std::visit(
       [&]<class Method>(Method& method) {
         if constexpr (std::is_same_v<Method, std::monostate>)
           return false;
         else
-          return method.step(from, tool, part, next, report);
+          return method.step(from, tools, part, next, report);
       },
       integrator);
 }
 
 /// All substeps of a tick. False: one was refused, and `state` is as before that one.
-bool Stepper::Parts::run_substeps(State& state, const contact::HeldTool& tool, StepReport& report) {
+bool Stepper::Parts::run_substeps(State& state, const contact::HeldTools& tools, StepReport& report) {
+  const contact::HeldTool* const scalpel = contact::held_scalpel(tools);
   const std::int32_t substeps = choice.substeps;
   const double h = model.tick / substeps;
   for (std::int32_t k = 1; k <= substeps; ++k) {
     const double share = double(k) / substeps, time = (double(state.tick) + share) * model.tick;
-    const bool cuts = tool.is(ToolKind::scalpel);
-    if (cuts) blade->begin_substep(state);
-    if (!advance(state, tool, {h, time, share, has_loads}, report)) return false;
+    if (scalpel != nullptr) blade->begin_substep(state);
+    if (!advance(state, tools, {h, time, share, has_loads}, report)) return false;
     commit(next, state);
-    if (cuts) blade->end_substep(tool, share, state, report);
+    if (scalpel != nullptr) blade->end_substep(*scalpel, share, state, report);
   }
   return true;
 }
@@ -145,10 +168,10 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
   if (!is_usable(model_, inputs)) report.status = StepStatus::bad_input;
   if (!parts.choice.holds) report.status = StepStatus::too_long;
   if (report.status != StepStatus::ok) return report;
-  // A tool that has just been picked up has not moved yet.
-  const Inputs last = inputs.tool >= 0 && state.last_inputs.tool == inputs.tool ? state.last_inputs : inputs;
-  contact::HeldTool tool = parts.hold(last, inputs);
-  const bool cuts = tool.is(ToolKind::scalpel);
+  contact::HeldTools tools;
+  for (std::size_t hand = 0; hand < kMostHands; ++hand)
+    tools[hand] = parts.hold(last_of(state, inputs, hand), inputs.hand(hand));
+  const bool cuts = contact::held_scalpel(tools) != nullptr;
   parts.reserve(state);
   // An integrator leaves State unchanged until its substep is committed. Ticks that change State more than once work on
   // the trial state.
@@ -156,8 +179,11 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
   if (!changes_once) parts.trial = state;
   State& current = changes_once ? state : parts.trial;
   parts.contacts.begin_tick(current, cuts);
-  if (cuts) parts.blade->begin_tick(last, inputs, tool, current);
-  if (!parts.run_substeps(current, tool, report)) {
+  for (std::size_t hand = 0; hand < kMostHands; ++hand)
+    if (tools[hand].is(ToolKind::scalpel))
+      parts.blade->begin_tick(last_of(state, inputs, hand), inputs.hand(hand),
+                              state.last_inputs.hand(hand).tool != inputs.hand(hand).tool, tools[hand], current);
+  if (!parts.run_substeps(current, tools, report)) {
     // Nothing of a refused tick has happened.
     StepReport refused;
     refused.status = report.status, refused.worst_sphere = report.worst_sphere;

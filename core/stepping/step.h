@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string_view>
 
 #include "core/elements/kernels/kernels.h"
 #include "core/model/inputs.h"
@@ -14,7 +15,8 @@ namespace ctpm::stepping {
 enum class StepStatus : std::int32_t {
   ok = 0,
   not_converged = 1,  ///< the solve reached its iteration limit; State advances with the last iterate
-  /// The tool's index is unknown, its position not finite or its quaternion not of unit length; State is as before.
+  /// A tool's index is unknown, its position not finite or its quaternion not of unit length, or the hands cannot hold
+  /// their tools at once (hands_conflict()); State is as before.
   bad_input = 2,
   diverged = 3,  ///< a sphere is faster than 10^4 m/s or its speed not a number; State is as before
   too_long = 4,  ///< steps are longer than leapfrog is proven stable for; State is as before
@@ -23,23 +25,37 @@ enum class StepStatus : std::int32_t {
 /// Whether the tick was refused, and State is as before it.
 constexpr bool is_refused(StepStatus status) { return status >= StepStatus::bad_input; }
 
-/// Result of one tick. Never thrown, always complete.
-struct StepReport {
+/// What a tick did to the tool in one hand.
+struct HandReport {
+  Vec3 tool_force;  ///< force of the tissue on the tool: ball, pin or blade [N]
+  /// Largest displacement from rest of a point that a ball touches, along its contact, without the motion as a whole of
+  /// an organ that nothing holds; of a pin, that of its sphere [m].
+  double depth = 0;
+  std::int32_t contacts = 0;  ///< spheres touched; for a blade, nodes of its edge that tissue holds
+
+  friend bool operator==(const HandReport&, const HandReport&) = default;
+};
+
+/// Result of one tick, and of the first hand in it. Never thrown, always complete.
+struct StepReport : HandReport {
   StepStatus status = StepStatus::ok;
   std::int32_t worst_sphere = -1;  ///< the sphere that failed or the fastest one; -1: none
   double residual = 0;             ///< of the last solve, relative to its first guess
   std::int32_t iterations = 0;     ///< of all solves of the tick
-  Vec3 tool_force;                 ///< force of the tissue on the tool: ball, pin or blade [N]
-  /// Largest displacement from rest of a point that a ball touches, along its contact, without the motion as a whole of
-  /// an organ that nothing holds; of a pin, that of its sphere [m].
-  double depth = 0;
-  std::int32_t contacts = 0;    ///< spheres touched; for a blade, nodes of its edge that tissue holds
-  std::int32_t severed = 0;     ///< elements, constraints and angle springs severed in this tick
-  std::int32_t came_loose = 0;  ///< pieces that came loose in this tick: the increase of their number
+  std::int32_t severed = 0;        ///< elements, constraints and angle springs severed in this tick
+  std::int32_t came_loose = 0;     ///< pieces that came loose in this tick: the increase of their number
   /// Tissue cells that are inside out at the end of the tick (a corner tetrahedron with J < 0); those that a blade cut
   /// do not count. 0 if the Model has no tissue cells.
   std::int32_t inverted = 0;
+  HandReport second;  ///< of the second hand
+
+  HandReport& of_hand(std::size_t hand) { return hand == 0 ? *this : second; }
+  const HandReport& of_hand(std::size_t hand) const { return hand == 0 ? *this : second; }
 };
+
+/// Why two hands cannot hold these tools at once, as a sentence; empty if they can. `first`, `second`: indices into
+/// Model::tools, or -1.
+std::string_view hands_conflict(const Model& model, std::int32_t first, std::int32_t second);
 
 /// What a Stepper may use of the machine. No option changes a bit of the result.
 struct StepperOptions {

@@ -15,7 +15,7 @@ namespace ctpm::stepping {
 struct Substep {
   double h;               ///< length [s]
   double time;            ///< simulated time at its end [s]
-  double share;           ///< part of the tick's tool motion that is done at its end, 0 to 1
+  double share;           ///< part of the tick's motion of the tools that is done at its end, 0 to 1
   bool has_loads = true;  ///< whether Model::loads act (they do not while a scene settles)
 };
 
@@ -29,11 +29,15 @@ struct StepContext {
   inversion::Resistance& resistance;
 };
 
-/// Ends the contacts of a substep with the spheres in `to`: reports them, and notes what a ball touches.
-inline void finish_contacts(const contact::ContactSet& contacts, const contact::HeldTool& tool, const Substep& part,
+/// Ends the contacts of a substep with the spheres in `to`: reports them, and notes what is touched.
+inline void finish_contacts(const contact::ContactSet& contacts, const contact::HeldTools& tools, const Substep& part,
                             Motion& to, StepReport& report) {
-  report.depth = contacts.depth(to.position), report.contacts = contacts.touched();
-  contacts.note_touched(tool.at(part.share), to.position, to.touched);
+  for (std::size_t hand = 0; hand < kMostHands; ++hand) {
+    if (tools[hand].tool == nullptr) continue;
+    report.of_hand(hand).depth = contacts.depth(hand, to.position);
+    report.of_hand(hand).contacts = contacts.touched(hand);
+  }
+  contacts.note_touched({tools[0].at(part.share), tools[1].at(part.share)}, to.position, to.touched);
 }
 
 }  // namespace ctpm::stepping

@@ -33,7 +33,7 @@ NearSurface::NearSurface(const Model& model, std::size_t first_organ, std::size_
     add_organ(model.surfaces[i], model.organs[i]);
     for (Index s = 0; s < model.organs[i].count; ++s) spheres_.push_back(model.organs[i].first + s);
   }
-  find_bounds();
+  find_bounds(kTrianglesPerPatch);
 }
 
 NearSurface::NearSurface(const Model& model, std::size_t organ, const Surface& part)
@@ -43,15 +43,15 @@ NearSurface::NearSurface(const Model& model, std::size_t organ, const Surface& p
   spheres_ = sphere_;
   std::sort(spheres_.begin(), spheres_.end());
   spheres_.erase(std::unique(spheres_.begin(), spheres_.end()), spheres_.end());
-  find_bounds();
+  find_bounds(kTrianglesPerPatchOfPart);
 }
 
-void NearSurface::find_bounds() {
+void NearSurface::find_bounds(Index triangles_per_patch) {
   if (triangles_.empty()) return;
   sort_triangles();
   const auto count = Index(triangles_.size());
-  for (Index t = 0; t < count; t += kTrianglesPerPatch) {
-    const Index last = std::min(t + kTrianglesPerPatch, count);
+  for (Index t = 0; t < count; t += triangles_per_patch) {
+    const Index last = std::min(t + triangles_per_patch, count);
     patches_.push_back(bound_of(t, last, t, last));
   }
   const auto patches = Index(patches_.size());
@@ -138,17 +138,25 @@ NearSurface::Index NearSurface::place_in_spheres(Index sphere) const {
 
 void NearSurface::begin(const Vec3Array& position) {
   ++round_;
-  if (empty()) return;
-  for (std::size_t i = 0; i < spheres_.size(); ++i) {
-    position_[i] = position[std::size_t(spheres_[i])];
-    moved_[i] = position_[i] - sphere_rest_[std::size_t(spheres_[i])];
-  }
+  for (std::size_t i = 0; i < spheres_.size(); ++i) position_[i] = position[std::size_t(spheres_[i])];
+}
+
+/// Finds how far the spheres have moved, once in a round.
+void NearSurface::find_moved() const {
+  if (std::exchange(moved_in_, round_) == round_ || empty()) return;
+  for (std::size_t i = 0; i < spheres_.size(); ++i) moved_[i] = position_[i] - sphere_rest_[std::size_t(spheres_[i])];
   Box range(moved_.front());
   for (const Vec3& by : moved_) range.add(by);
   displacements_ = widened(range, widen_);
 }
 
+const Box& NearSurface::displacements() const {
+  find_moved();
+  return displacements_;
+}
+
 Box NearSurface::displacements(const Bound& bound) const {
+  find_moved();
   const auto moved = [&](Index s) { return moved_[std::size_t(bound_spheres_[std::size_t(s)])]; };
   Box range(moved(bound.first_sphere));
   for (Index s = bound.first_sphere + 1; s < bound.last_sphere; ++s) range.add(moved(s));

@@ -42,6 +42,7 @@ class NearSurface {
  public:
   using Index = std::int32_t;
   static constexpr Index kTrianglesPerPatch = 32, kPatchesPerGroup = 8;
+  static constexpr Index kTrianglesPerPatchOfPart = 8;  ///< a part is small
 
   struct Triangle {
     Index corner[3];
@@ -83,13 +84,15 @@ class NearSurface {
   /// Begins a round with the spheres at `position` [m]. In a round, each vertex is placed once.
   void begin(const Vec3Array& position);
   /// Displacements from rest within which those of all vertices lie, or those of a patch or group [m].
-  const Box& displacements() const { return displacements_; }
+  const Box& displacements() const;
   Box displacements(const Bound& bound) const;
+  /// A vertex moves at most so many times as far as the farthest of its spheres.
+  double stretch() const { return 1 + 2 * widen_; }
   /// Where a vertex is [m].
   Vec3 place(Index vertex);
 
   /// Calls `visit(triangle, corners)` for every triangle whose patch may meet `region`, with the positions of its
-  /// corners, in a fixed order. `region`: a Box or a HalfSpace.
+  /// corners, in a fixed order. `region`: anything with `meets(Box)`.
   template <class Region, class Visit>
   void near(const Region& region, Visit&& visit);
 
@@ -103,9 +106,10 @@ class NearSurface {
     if (place.round != round_) place = {round_, bound.rest.moved(displacements(bound))};
     return place.box;
   }
+  void find_moved() const;
   void add_organ(const Surface& surface, const OrganRange& organ);
   Index place_in_spheres(Index sphere) const;
-  void find_bounds();
+  void find_bounds(Index triangles_per_patch);
   void sort_triangles();
   Bound bound_of(Index first, Index last, Index first_triangle, Index last_triangle);
 
@@ -120,9 +124,11 @@ class NearSurface {
   std::vector<Place> patch_places_, group_places_;
   std::vector<Index> bound_spheres_;  ///< in spheres_
   Box rest_box_{Vec3{}};
-  double widen_ = 0;                    ///< the largest of all bounds
-  std::vector<Vec3> position_, moved_;  ///< of spheres_ in the present round, and how far they are from rest [m]
-  Box displacements_{Vec3{}};
+  double widen_ = 0;                 ///< the largest of all bounds
+  std::vector<Vec3> position_;       ///< of spheres_ in the present round [m]
+  mutable std::vector<Vec3> moved_;  ///< how far they are from rest, if bounds were asked for [m]
+  mutable Box displacements_{Vec3{}};
+  mutable std::uint32_t moved_in_ = 0;    ///< round in which moved_ and displacements_ were found
   std::vector<Vec3> placed_;              ///< positions of the vertices that the present round placed [m]
   std::vector<std::uint32_t> placed_in_;  ///< round that placed a vertex
   std::uint32_t round_ = 0;
@@ -132,7 +138,7 @@ template <class Region, class Visit>
 void NearSurface::near(const Region& region, Visit&& visit) {
   if (groups_.empty()) return;
   for (const Bound& group : groups_) {
-    if (!region.meets(group.rest.moved(displacements_)) ||
+    if (!region.meets(group.rest.moved(displacements())) ||
         !region.meets(place_of(group, group_places_[std::size_t(&group - groups_.data())])))
       continue;
     for (Index p = group.first; p < group.last; ++p) {

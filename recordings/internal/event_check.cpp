@@ -20,6 +20,7 @@ struct EventCheck {
 
   void operator()(std::string_view name, std::int32_t value) const {
     if (name == "tool") return link(name, value, model.tools.size());
+    if (name == "hand") return link(name, value, kMostHands);
     if (name == "organ") return link(name, value, model.organs.size());
     if (name == "sphere") return link(name, value, model.sphere_count());
     count(name, value);

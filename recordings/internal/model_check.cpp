@@ -387,6 +387,8 @@ Errors check_state(const Model& model, const State& state) {
   check.length("kelvin_dent", state.kelvin_dent.size(), state.touched.size());
   check.require(std::is_sorted(state.touched.begin(), state.touched.end()), "touched", "must ascend");
 
+  check.require(model.hands > 1 || state.last_inputs.second == Hand{}, "last_inputs.second",
+                "must be empty in a scene with one hand");
   // The arrays of severed elements exist where a tool can cut. Older sessions do not store crossings.
   const bool cuts = model.has_scalpel();
   check.length("axial_severed", state.axial_severed.size(), cuts ? model.axial.size() : 0);

@@ -120,7 +120,7 @@ std::vector<NamedContent> start_parts(const SessionStart& start, const SessionId
   add_fields("metadata", [&](FieldWriter& w) {
     for (const auto& [key, value] : start.metadata) w(key, value);
   });
-  add_text("columns", column_text());
+  add_text("columns", column_text(start.model.hands));
   return parts;
 }
 

@@ -23,8 +23,8 @@ double percentile(std::vector<float>& values, double part) {
 void StatisticsCounter::add(const TickRecord& record) {
   ++sum_.ticks;
   sum_.severed += record.severed;
-  sum_.max_force = std::max(sum_.max_force, norm(record.tool_force));
-  sum_.max_depth = std::max(sum_.max_depth, record.depth);
+  sum_.max_force = std::max({sum_.max_force, norm(record.tool_force), norm(record.second.tool_force)});
+  sum_.max_depth = std::max({sum_.max_depth, record.depth, record.second.depth});
   sum_.tick_time_max = std::max(sum_.tick_time_max, record.tick_time);
   sum_.input_age_max = std::max(sum_.input_age_max, record.input_age);
   sum_.slip = std::floor(record.slip * 1e3 + 1e-6) / 1e3;  // as it is stored

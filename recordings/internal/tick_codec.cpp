@@ -74,7 +74,28 @@ const std::array columns = {
            [](TickRecord& r, std::uint64_t ns) { r.input_age = static_cast<double>(ns) / nanoseconds; }},
     Column{"slip_ms", FieldType::u64, [](const TickRecord& r) { return to_nanoseconds(r.slip) / millisecond; },
            [](TickRecord& r, std::uint64_t ms) { r.slip = static_cast<double>(ms) / 1000; }},
+    // From here on, of the second hand: written only of a scene that has one.
+    CTPM_COLUMN_OF("second.tool", FieldType::i32, inputs.second.tool),
+    CTPM_COLUMN_OF("second.buttons", FieldType::u32, inputs.second.buttons),
+    CTPM_COLUMN_OF("second.position.x", FieldType::f64, inputs.second.position.x),
+    CTPM_COLUMN_OF("second.position.y", FieldType::f64, inputs.second.position.y),
+    CTPM_COLUMN_OF("second.position.z", FieldType::f64, inputs.second.position.z),
+    CTPM_COLUMN_OF("second.rotation.w", FieldType::f64, inputs.second.world_from_tool.w),
+    CTPM_COLUMN_OF("second.rotation.x", FieldType::f64, inputs.second.world_from_tool.x),
+    CTPM_COLUMN_OF("second.rotation.y", FieldType::f64, inputs.second.world_from_tool.y),
+    CTPM_COLUMN_OF("second.rotation.z", FieldType::f64, inputs.second.world_from_tool.z),
+    CTPM_COLUMN_OF("second.force.x", FieldType::f64, second.tool_force.x),
+    CTPM_COLUMN_OF("second.force.y", FieldType::f64, second.tool_force.y),
+    CTPM_COLUMN_OF("second.force.z", FieldType::f64, second.tool_force.z),
+    CTPM_COLUMN_OF("second.depth", FieldType::f64, second.depth),
+    CTPM_COLUMN_OF("second.contacts", FieldType::i32, second.contacts),
 };
+constexpr std::size_t second_hand_columns = 14;
+
+/// The columns of a session with so many hands.
+std::span<const Column> columns_of(std::int32_t hands) {
+  return std::span(columns).first(columns.size() - (hands > 1 ? 0 : second_hand_columns));
+}
 
 const char* type_name(FieldType type) {
   switch (type) {
@@ -91,16 +112,16 @@ const char* type_name(FieldType type) {
 
 }  // namespace
 
-std::string column_text() {
+std::string column_text(std::int32_t hands) {
   std::string text;
-  for (const Column& column : columns) text += std::string(column.name) + " " + type_name(column.type) + "\n";
+  for (const Column& column : columns_of(hands)) text += std::string(column.name) + " " + type_name(column.type) + "\n";
   return text;
 }
 
-void put_records(Bytes& out, std::span<const TickRecord> records) {
+void put_records(Bytes& out, std::span<const TickRecord> records, std::int32_t hands) {
   std::vector<std::uint64_t> wide(records.size());
   std::vector<std::uint32_t> narrow(records.size());
-  for (const Column& column : columns) {
+  for (const Column& column : columns_of(hands)) {
     std::transform(records.begin(), records.end(), wide.begin(), column.get);
     if (width_of(column.type) == 8) {
       put_array<std::uint64_t>(out, wide);

@@ -11,11 +11,11 @@
 
 namespace ctpm::recordings::session_file {
 
-/// Content of the part `columns`: the columns that this program writes.
-std::string column_text();
+/// Content of the part `columns`: the columns that this program writes of a session with so many hands (Model::hands).
+std::string column_text(std::int32_t hands);
 
-/// A chunk's content: all columns, FORMAT.md section 5.
-void put_records(Bytes& out, std::span<const TickRecord> records);
+/// A chunk's content: all these columns, FORMAT.md section 5.
+void put_records(Bytes& out, std::span<const TickRecord> records, std::int32_t hands);
 
 /// Reads chunks with the columns that a file names.
 class RecordDecoder {

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,6 +48,10 @@ Errors check(const RecordArguments& arguments) {
   if (arguments.as_fast_as_possible && devices::asks_for_device(arguments.source.device))
     errors.push_back({"--fast", "a device is followed in real time", ""});
   for (Error& error : devices::check_device(arguments.source.device)) errors.push_back(std::move(error));
+  for (Error& error : devices::check_device(second_of(arguments.source)))
+    if (std::find(errors.begin(), errors.end(), error) == errors.end()) errors.push_back(std::move(error));
+  if (devices::asks_for_device(arguments.source.second) && !devices::asks_for_device(arguments.source.device))
+    errors.push_back({"record", "a device for the second hand needs one for the first", "--igtl or --igtl-listen"});
   std::error_code ignored;
   if (const Result<Done> writable = output::check_writable(arguments.output); !writable)
     errors.insert(errors.end(), writable.errors().begin(), writable.errors().end());
@@ -69,7 +75,8 @@ Errors errors_of_script(const RecordArguments& arguments) {
   if (!draft || !draft->problems.is_good("/tools")) return {};
   std::vector<std::string> tools;
   for (const scenes::ToolSpec& tool : draft->scene.spec.tools) tools.push_back(tool.name);
-  const Result<scenes::Script> script = scenes::read_script(*text, arguments.source.script, tools);
+  const Result<scenes::Script> script =
+      scenes::read_script(*text, arguments.source.script, tools, draft->scene.spec.hands.value_or(1));
   return script ? Errors{} : script.errors();
 }
 
@@ -113,26 +120,31 @@ int print_outcome(const std::string& path, const Model& model, const session::Re
   return was_refused || !outcome.run.fault.empty() ? exit_bad_verdict : exit_good;
 }
 
+/// False if `should_stop` returned true before a pose came.
+bool wait_for(const FollowedPlace& one, const std::function<bool()>& should_stop) {
+  return one.device->wait_for_first_pose(should_stop,
+                                         [&](const std::string& text) { print_remark(one.place + ": " + text); });
+}
+
 int run_record(const RecordArguments& arguments) {
   if (const Errors errors = check(arguments); !errors.empty()) return print_errors(errors);
   const StopSignal stop;
   const auto should_stop = [&] { return stop.came(); };
   // Opened first, so that a port in use is reported at once and a device can connect early.
-  Result<devices::OpenedDevice> device = devices::open_device(arguments.source.device);
-  if (!device) return print_errors(device.errors());
-  const std::string place = device->place;
+  Result<OpenedDevices> devices = open_devices(arguments.source);
+  if (!devices) return print_errors(devices.errors());
   Result<Beginning> beginning = begin(arguments);
   if (!beginning) return print_errors(beginning.errors());
   recordings::SessionStart& start = beginning->start;
-  const Result<ReadySource> opened = open_source(arguments.source, std::move(*device), start.model, beginning->script);
+  const Result<ReadySource> opened = open_source(arguments.source, std::move(*devices), start.model, beginning->script);
   if (!opened) return print_errors(opened.errors());
   for (const auto& [key, value] : opened->metadata) start.metadata[key] = value;
-  if (opened->device) {
-    print_remark(place + "; Ctrl-C ends it");
-    const auto tell = [&](const std::string& text) { print_remark(place + ": " + text); };
-    if (!opened->device->wait_for_first_pose(should_stop, tell))
-      return print_errors({{place, "stopped before a pose came; nothing was recorded", ""}});
-  }
+  for (const FollowedPlace& one : opened->devices) print_remark(one.place + "; Ctrl-C ends it");
+  for (const FollowedPlace& one : opened->devices)
+    if (!wait_for(one, should_stop))
+      return print_errors({{one.place, "stopped before a pose came; nothing was recorded", ""}});
+  // What came for the first hand while the second one was awaited is old by now.
+  if (opened->devices.size() > 1 && !wait_for(opened->devices.front(), should_stop)) return exit_bad_verdict;
 
   session::RunOptions options;
   options.in_real_time = !arguments.as_fast_as_possible;

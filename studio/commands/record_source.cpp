@@ -8,9 +8,26 @@
 namespace ctpm::commands {
 namespace {
 
+constexpr const char* kDeviceGroup = "Devices (studio/devices/README.md)";
+
+/// Those that the second hand has of its own; it shares the others with the first.
+void add_second_device_options(CLI::App& app, devices::DeviceRequest& device) {
+  const auto add = [&](const char* name, auto& value, const char* what) {
+    return app.add_option(name, value, what)->group(kDeviceGroup);
+  };
+  add("--igtl-second", device.address, "A second server, for the second hand of a scene with two");
+  add("--igtl-second-listen", device.listen_port, "Waits on this port for the client of the second hand instead");
+  add("--igtl-second-name", device.name, "As --igtl-name, for the second hand");
+  add("--device-second-tool", device.tool, "Tool in the second hand; the scene's second if not given");
+  add("--device-second-button", device.buttons, "As --device-button, for the second hand");
+  add("--device-second-offset-mm", device.offset_mm, "As --device-offset-mm, for the second hand")->expected(3);
+  add("--device-second-rotation", device.rotation, "As --device-rotation, for the second hand")->expected(4);
+  add("--device-second-tip", device.tip, "As --device-tip, for the second hand")->expected(3);
+}
+
 void add_device_options(CLI::App& app, devices::DeviceRequest& device) {
   const auto add = [&](const char* name, auto& value, const char* what) {
-    return app.add_option(name, value, what)->group("Devices (studio/devices/README.md)");
+    return app.add_option(name, value, what)->group(kDeviceGroup);
   };
   add("--igtl", device.address, "Takes what the hand does from an OpenIGTLink server, HOST:PORT");
   add("--igtl-listen", device.listen_port, "Waits on this port for an OpenIGTLink client; 0: any that is free");
@@ -46,6 +63,22 @@ void add_source(CLI::App& app, SourceRequest& request) {
                  "What a hand did (.csv): time_s, tool_x_mm, tool_y_mm, tool_z_mm, and tool_qw to tool_qz, "
                  "buttons, tool; at any rate");
   add_device_options(app, request.device);
+  add_second_device_options(app, request.second);
+}
+
+Result<OpenedDevices> open_devices(const SourceRequest& request) {
+  OpenedDevices opened;
+  Result<devices::OpenedDevice> first = devices::open_device(request.device);
+  if (!first) return first.errors();
+  opened[0] = std::move(*first);
+  Result<devices::OpenedDevice> second = devices::open_device(second_of(request));
+  if (!second) return second.errors();
+  opened[1] = std::move(*second);
+  return opened;
+}
+
+devices::DeviceRequest second_of(const SourceRequest& request) {
+  return devices::as_second_hand(request.second, request.device);
 }
 
 int count_of(const SourceRequest& request) {
@@ -53,13 +86,24 @@ int count_of(const SourceRequest& request) {
          int(request.device.listen_port.has_value());
 }
 
-Result<ReadySource> open_source(const SourceRequest& request, devices::OpenedDevice device, const Model& model,
+Result<ReadySource> open_source(const SourceRequest& request, OpenedDevices devices, const Model& model,
                                 const std::optional<scenes::Script>& otherwise) {
-  if (device.device) {
-    Result<devices::FollowedDevice> followed = devices::follow_device(request.device, std::move(device.device), model);
+  if (devices[1].device) {
+    Result<devices::FollowedPair> pair = devices::follow_devices(
+        request.device, std::move(devices[0].device), second_of(request), std::move(devices[1].device), model);
+    if (!pair) return pair.errors();
+    devices::DevicePair& source = *pair->source;
+    return ReadySource{
+        std::move(pair->source),
+        {{&source.of_hand(0), devices[0].place}, {&source.of_hand(1), "second hand: " + devices[1].place}},
+        std::move(pair->metadata)};
+  }
+  if (devices[0].device) {
+    Result<devices::FollowedDevice> followed =
+        devices::follow_device(request.device, std::move(devices[0].device), model);
     if (!followed) return followed.errors();
     devices::DeviceSource* source = followed->source.get();
-    return ReadySource{std::move(followed->source), source, std::move(followed->metadata)};
+    return ReadySource{std::move(followed->source), {{source, devices[0].place}}, std::move(followed->metadata)};
   }
   if (otherwise) print_remark("no source is given: pressing and cutting at the top of the first organ");
   Result<sources::OpenedSource> opened = otherwise                ? sources::play_script(*otherwise, model)
@@ -67,7 +111,7 @@ Result<ReadySource> open_source(const SourceRequest& request, devices::OpenedDev
                                                                   : sources::open_script(request.script, model);
   if (!opened) return opened.errors();
   for (const std::string& remark : opened->remarks) print_remark(remark);
-  return ReadySource{std::move(opened->source), nullptr, std::move(opened->metadata)};
+  return ReadySource{std::move(opened->source), {}, std::move(opened->metadata)};
 }
 
 }  // namespace ctpm::commands

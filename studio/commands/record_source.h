@@ -1,10 +1,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/model/model.h"
 #include "core/model/result.h"
@@ -19,6 +21,7 @@ struct SourceRequest {
   std::string script;  ///< file of a script
   std::string motion;  ///< file of a motion
   devices::DeviceRequest device;
+  devices::DeviceRequest second;  ///< of the second hand; only beside `device`
 };
 
 /// The flags of the sources, for messages.
@@ -30,16 +33,30 @@ void add_source(CLI::App& app, SourceRequest& request);
 /// Number of requested sources.
 int count_of(const SourceRequest& request);
 
+/// The device of each hand; none where none is requested.
+using OpenedDevices = std::array<devices::OpenedDevice, kMostHands>;
+/// Connects or listens for all requested devices. Errors: those of open_device().
+Result<OpenedDevices> open_devices(const SourceRequest& request);
+
+/// The whole description of the second hand's device.
+devices::DeviceRequest second_of(const SourceRequest& request);
+
+/// A device that a source follows, and where it is.
+struct FollowedPlace {
+  devices::DeviceSource* device;
+  std::string place;
+};
+
 /// A source that is ready for a session.
 struct ReadySource {
   std::unique_ptr<sources::InputSource> source;
-  devices::DeviceSource* device = nullptr;      ///< the source, if it is a device
+  std::vector<FollowedPlace> devices;           ///< of the source, by hand; empty if it follows none
   std::map<std::string, std::string> metadata;  ///< what the session stores about its source
 };
 
-/// Opens the requested source, or plays `otherwise` if there is none. `device` is the result of open_device(). Prints
+/// Opens the requested source, or plays `otherwise` if there is none. `devices` is the result of open_devices(). Prints
 /// remarks. Errors: those of the source's file, with places; tools that the scene does not have.
-Result<ReadySource> open_source(const SourceRequest& request, devices::OpenedDevice device, const Model& model,
+Result<ReadySource> open_source(const SourceRequest& request, OpenedDevices devices, const Model& model,
                                 const std::optional<scenes::Script>& otherwise);
 
 }  // namespace ctpm::commands

@@ -24,24 +24,46 @@ struct ReplayArguments {
   session::TimeRange range;
 };
 
-std::string csv_header() {
-  return "tick,time_s,tool,tool_x_mm,tool_y_mm,tool_z_mm,tool_qw,tool_qx,tool_qy,tool_qz,buttons,"
-         "force_x_n,force_y_n,force_z_n,force_n,depth_mm,contacts,severed,same_as_recorded\n";
+std::string csv_header(const Model& model) {
+  const char* const of_second =
+      ",second_tool,second_x_mm,second_y_mm,second_z_mm,second_qw,second_qx,second_qy,second_qz,second_buttons,"
+      "second_force_x_n,second_force_y_n,second_force_z_n,second_force_n,second_depth_mm,second_contacts";
+  return std::string(
+             "tick,time_s,tool,tool_x_mm,tool_y_mm,tool_z_mm,tool_qw,tool_qx,tool_qy,tool_qz,buttons,"
+             "force_x_n,force_y_n,force_z_n,force_n,depth_mm,contacts,severed,same_as_recorded") +
+         (model.hands > 1 ? of_second : "") + "\n";
+}
+
+/// Tool, pose and buttons of a hand; force and depth; contacts.
+struct HandCells {
+  std::string inputs, loads, contacts;
+};
+
+HandCells cells_of(const Model& model, const Hand& in, const stepping::HandReport& report) {
+  const bool is_known = in.tool >= 0 && std::size_t(in.tool) < model.tools.size();
+  const std::string tool = is_known ? output::csv_text(model.tools[std::size_t(in.tool)].name) : "";
+  const Vec3 p = in.position, f = report.tool_force;
+  const Quat q = in.world_from_tool;
+  char pose[256], loads[256];
+  std::snprintf(pose, sizeof pose, ",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%u", p.x * 1e3, p.y * 1e3, p.z * 1e3, q.w, q.x,
+                q.y, q.z, in.buttons);
+  std::snprintf(loads, sizeof loads, "%.9g,%.9g,%.9g,%.9g,%.9g", f.x, f.y, f.z, norm(f), report.depth * 1e3);
+  return {tool + pose, loads, std::to_string(report.contacts)};
 }
 
 std::string csv_row(const Model& model, const recordings::ReplayCursor& cursor) {
-  const recordings::TickRecord& record = cursor.record();
+  const Inputs& inputs = cursor.record().inputs;
   const stepping::StepReport& report = cursor.report();
-  const Inputs& in = record.inputs;
-  const std::string tool = in.tool >= 0 ? output::csv_text(model.tools[std::size_t(in.tool)].name) : "";
-  const Vec3 p = in.position, f = report.tool_force;
-  const Quat q = in.world_from_tool;
+  const HandCells first = cells_of(model, inputs, report);
   const std::int64_t tick = cursor.tick() - 1;
-  char numbers[512];
-  std::snprintf(numbers, sizeof numbers, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%u,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%d,%d\n",
-                p.x * 1e3, p.y * 1e3, p.z * 1e3, q.w, q.x, q.y, q.z, in.buttons, f.x, f.y, f.z, norm(f),
-                report.depth * 1e3, report.contacts, report.severed, cursor.same_so_far() ? 1 : 0);
-  return std::to_string(tick) + "," + output::fixed(double(tick) * model.tick, 6) + "," + tool + "," + numbers;
+  std::string row = std::to_string(tick) + "," + output::fixed(double(tick) * model.tick, 6) + "," + first.inputs +
+                    "," + first.loads + "," + first.contacts + "," + std::to_string(report.severed) + "," +
+                    (cursor.same_so_far() ? "1" : "0");
+  if (model.hands > 1) {
+    const HandCells second = cells_of(model, inputs.second, report.second);
+    row += "," + second.inputs + "," + second.loads + "," + second.contacts;
+  }
+  return row + "\n";
 }
 
 int run_replay(const ReplayArguments& arguments) {
@@ -59,14 +81,16 @@ int run_replay(const ReplayArguments& arguments) {
   if (!cursor) return print_errors(cursor.errors());
   if (const Result<Done> found = cursor->seek(range->from); !found) return print_errors(found.errors());
   ProgressLine progress("replaying");
-  std::string rows = csv_header();
+  std::string rows = csv_header(model);
   double most_force = 0, most_depth = 0;
   while (cursor->tick() < range->to) {
     const Result<bool> went_on = cursor->step();
     if (!went_on) return print_errors(went_on.errors());
     if (!arguments.csv.empty()) rows += csv_row(model, *cursor);
-    most_force = std::max(most_force, norm(cursor->report().tool_force));
-    most_depth = std::max(most_depth, cursor->report().depth);
+    for (std::size_t hand = 0; hand < kMostHands; ++hand) {
+      most_force = std::max(most_force, norm(cursor->report().of_hand(hand).tool_force));
+      most_depth = std::max(most_depth, cursor->report().of_hand(hand).depth);
+    }
     progress.show(cursor->tick() - range->from, range->to - range->from);
   }
   if (!arguments.csv.empty())

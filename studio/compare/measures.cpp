@@ -79,6 +79,12 @@ constexpr Measure kPeakForce{"peak_force_n", "peak force", "N", lower, "largest 
                              kHoreman};
 constexpr Measure kMeanForce{"mean_force_n", "mean force", "N", lower, "over the time in which there is a force",
                              kHoreman};
+constexpr Measure kOtherPeakForce{"other_hand_peak_force_n",
+                                  "peak force of the other hand",
+                                  "N",
+                                  lower,
+                                  "the same of the hand that does not cut",
+                                  kHoreman};
 constexpr Measure kTimeAbove{
     "time_above_force_limit_s", "time above the force limit", "s", lower, "with a force above the limit", kTrejos};
 constexpr Measure kImpulseAbove{"impulse_above_force_limit_n_s",
@@ -258,6 +264,10 @@ void add_force(Comparison& comparison, const SessionTrack& expert, const Session
   const Force a = force_of(expert, limit), b = force_of(trainee, limit);
   comparison.values.push_back({&kPeakForce, a.peak, b.peak});
   comparison.values.push_back({&kMeanForce, a.mean, b.mean});
+  if (!expert.other_force.empty() && !trainee.other_force.empty())
+    comparison.values.push_back({&kOtherPeakForce,
+                                 *std::max_element(expert.other_force.begin(), expert.other_force.end()),
+                                 *std::max_element(trainee.other_force.begin(), trainee.other_force.end())});
   if (comparison.force_limit) {
     comparison.values.push_back({&kTimeAbove, a.time_above, b.time_above});
     comparison.values.push_back({&kImpulseAbove, a.impulse_above, b.impulse_above});

@@ -1,6 +1,7 @@
 #include "studio/compare/session_track.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -64,17 +65,19 @@ Result<Done> replay_all(recordings::SessionReader& session, SessionTrack& track)
   track.severed_at.assign(ElementPlaces(session.start().model).count, -1);
   Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(session);
   if (!cursor) return cursor.errors();
-  std::vector<double> force = track.force, depth = track.depth;
+  std::vector<double> force = track.force, depth = track.depth, other_force = track.other_force;
   std::vector<std::int32_t> severed = track.severed;
   const Result<Done> replayed =
       replay_ticks(*cursor, 0, session.tick_count(), track, [&](std::size_t tick, const stepping::StepReport& report) {
-        force[tick] = norm(report.tool_force), depth[tick] = report.depth;
+        force[tick] = norm(report.of_hand(track.hand).tool_force), depth[tick] = report.of_hand(track.hand).depth;
+        if (!other_force.empty()) other_force[tick] = norm(report.of_hand(1 - track.hand).tool_force);
         severed[tick] = report.severed;
       });
   if (!replayed) return replayed.errors();
   measure_cut(session.start().model, *cursor, track);
   track.is_verified = track.replays;
-  if (track.is_verified) track.force = force, track.depth = depth, track.severed = severed;
+  if (track.is_verified)
+    track.force = force, track.depth = depth, track.other_force = other_force, track.severed = severed;
   track.cuts = cuts_of(track, session.start().model);
   return Done{};
 }
@@ -165,9 +168,31 @@ std::string difference_in_words(const Model& a, const Model& b) {
   if (list(a.organs) != list(b.organs)) return "its organs are " + list(b.organs) + " instead of " + list(a.organs);
   if (a.sphere_count() != b.sphere_count())
     return "it has " + std::to_string(b.sphere_count()) + " spheres instead of " + std::to_string(a.sphere_count());
+  if (a.hands != b.hands) return "it has " + std::to_string(b.hands) + " hands instead of " + std::to_string(a.hands);
   if (list(a.tools) != list(b.tools)) return "its tools are " + list(b.tools) + " instead of " + list(a.tools);
   return "";
 }
+
+/// What one hand did.
+struct HandTrack {
+  std::vector<std::int32_t> tool;
+  std::vector<Vec3> tip;
+  std::vector<double> force, depth;
+  std::int64_t cuts = 0, holds = 0;  ///< ticks in which it severs, and in which it holds a tool
+
+  void add(const Model& model, const recordings::TickRecord& record, std::size_t number) {
+    const Hand& hand = record.inputs.hand(number);
+    const stepping::HandReport report = record.of_hand(number);
+    tool.push_back(hand.tool), tip.push_back(hand.position);
+    force.push_back(norm(report.tool_force)), depth.push_back(report.depth);
+    const bool holds_tool = hand.tool >= 0 && std::size_t(hand.tool) < model.tools.size();
+    holds += holds_tool;
+    cuts += holds_tool && record.severed > 0 && model.tools[std::size_t(hand.tool)].kind == ToolKind::scalpel;
+  }
+  bool works_more_than(const HandTrack& other) const {
+    return cuts != other.cuts ? cuts > other.cuts : holds > other.holds;
+  }
+};
 
 }  // namespace
 
@@ -184,19 +209,22 @@ Result<SessionTrack> read_recorded(recordings::SessionReader& session) {
   track.initial_state = recordings::state_hash(start.initial_state);
   if (const auto name = start.metadata.find("scene_name"); name != start.metadata.end())
     track.scene_name = name->second;
+  std::array<HandTrack, kMostHands> hands;
   const std::int64_t count = session.tick_count();
   for (std::int64_t from = 0; from < count; from += kReadTicks) {
     const auto records = session.ticks(from, std::min(from + kReadTicks, count));
     if (!records) return records.errors();
     for (const recordings::TickRecord& record : *records) {
-      track.tool.push_back(record.inputs.tool);
-      track.tip.push_back(record.inputs.position);
-      track.force.push_back(norm(record.tool_force));
-      track.depth.push_back(record.depth);
+      for (std::size_t i = 0; i < std::size_t(start.model.hands); ++i) hands[i].add(start.model, record, i);
       track.severed.push_back(record.severed);
       track.slip = std::max(track.slip, record.slip);
     }
   }
+  track.hand = hands[1].works_more_than(hands[0]) ? 1 : 0;
+  HandTrack &works = hands[track.hand], &other = hands[1 - track.hand];
+  track.tool = std::move(works.tool), track.tip = std::move(works.tip);
+  track.force = std::move(works.force), track.depth = std::move(works.depth);
+  track.other_force = std::move(other.force);
   constexpr double kSlipShare = 0.01;
   track.is_timed = is_scripted(start) || track.slip <= kSlipShare * track.seconds(track.tick_count());
   track.strokes = strokes_of(track.tool);

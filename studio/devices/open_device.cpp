@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/stepping/step.h"
 #include "studio/devices/igtl_link.h"
 #include "studio/output/option_name.h"
 #include "studio/sources/rotation.h"
@@ -50,6 +51,11 @@ Result<std::int32_t> tool_index(const std::string& field, const std::string& nam
 
 Vec3 vector_of(const std::vector<double>& numbers) { return {numbers[0], numbers[1], numbers[2]}; }
 
+/// Name of a field in errors; the second hand has its own of some.
+std::string field_of(const DeviceRequest& request, const std::string& field) {
+  return (request.hand == 0 ? "device." : "second.") + field;
+}
+
 Result<DeviceMap> map_of(const DeviceRequest& request, const Model& model) {
   DeviceMap map;
   Errors errors;
@@ -65,16 +71,17 @@ Result<DeviceMap> map_of(const DeviceRequest& request, const Model& model) {
     map.scene_from_device = sources::normalised({q[0], q[1], q[2], q[3]});
   if (!request.tip.empty()) map.tip = vector_of(request.tip) / norm(vector_of(request.tip));
   if (!request.tool.empty())
-    map.tool = find("device.tool", request.tool);
-  else if (model.tools.empty())
-    errors.push_back({output::option_name("device.tool"), "the scene has no tools", ""});
+    map.tool = find(field_of(request, "tool"), request.tool);
+  else if (model.tools.size() <= request.hand)
+    errors.push_back({output::option_name(field_of(request, "tool")),
+                      request.hand == 0 ? "the scene has no tools" : "the scene has no second tool", ""});
   else
-    map.tool = 0;
+    map.tool = std::int32_t(request.hand);
   for (const std::string& entry : request.buttons) {
     const std::size_t equals = entry.find('=');
     const std::string tool = entry.substr(equals + 1);
     map.button_tools.push_back(
-        {*whole_number(entry.substr(0, equals), 0, 31), tool.empty() ? -1 : find("device.buttons", tool)});
+        {*whole_number(entry.substr(0, equals), 0, 31), tool.empty() ? -1 : find(field_of(request, "buttons"), tool)});
   }
   if (!errors.empty()) return errors;
   return map;
@@ -116,20 +123,21 @@ bool asks_for_device(const DeviceRequest& request) {
 
 Errors check_device(const DeviceRequest& request) {
   Errors errors;
-  const auto need = [&](bool holds, const char* field, const std::string& message) {
+  const auto need = [&](bool holds, const std::string& field, const std::string& message) {
     if (!holds) errors.push_back({output::option_name(field), message, ""});
   };
+  const auto own = [&](const char* field) { return field_of(request, field); };
   const auto are_finite = [](const std::vector<double>& numbers) {
     return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::abs(x) <= 1e6; });
   };
   const auto is_within = [](double x, double low, double high) { return x >= low && x <= high; };
   if (!request.address.empty())
-    need(address_of(request.address).has_value(), "device.address", "got '" + request.address + "', must be HOST:PORT");
+    need(address_of(request.address).has_value(), own("address"), "got '" + request.address + "', must be HOST:PORT");
   if (request.listen_port)
-    need(is_within(*request.listen_port, 0, 65535), "device.listen_port", "must be a port in [0, 65535]");
+    need(is_within(*request.listen_port, 0, 65535), own("listen_port"), "must be a port in [0, 65535]");
   for (const std::string& entry : request.buttons) {
     const std::size_t equals = entry.find('=');
-    need(equals != std::string::npos && whole_number(entry.substr(0, equals), 0, 31), "device.buttons",
+    need(equals != std::string::npos && whole_number(entry.substr(0, equals), 0, 31), own("buttons"),
          "got '" + entry + "', must be BUTTON=TOOL with a button in [0, 31]");
   }
   const Result<AddressList> allowed = AddressList::read(request.allowed);
@@ -140,12 +148,12 @@ Errors check_device(const DeviceRequest& request) {
   need(!request.listen_port || is_own || !request.allowed.empty(), "device.allowed",
        "name the addresses that may connect, because others than this machine's own are listened on");
   need(is_within(request.scale, 1e-3, 1e3), "device.scale", "must be in [0.001, 1000]");
-  need(are_finite(request.offset_mm), "device.offset_mm", "must be in [-1e6, 1e6]");
+  need(are_finite(request.offset_mm), own("offset_mm"), "must be in [-1e6, 1e6]");
   need(are_finite(request.rotation) &&
            (request.rotation.empty() || sources::length_of({request.rotation[0], request.rotation[1],
                                                             request.rotation[2], request.rotation[3]}) > 1e-3),
-       "device.rotation", "must be a quaternion w x y z of any length but zero");
-  need(are_finite(request.tip) && (request.tip.empty() || norm(vector_of(request.tip)) > 1e-3), "device.tip",
+       own("rotation"), "must be a quaternion w x y z of any length but zero");
+  need(are_finite(request.tip) && (request.tip.empty() || norm(vector_of(request.tip)) > 1e-3), own("tip"),
        "must be a direction of any length but zero");
   need(is_within(request.most_speed_mm_per_s, 1, 1e5), "device.most_speed_mm_per_s", "must be in [1, 100000]");
   need(is_within(request.timeout_s, 0.2, 1e5), "device.timeout_s", "must be in [0.2, 100000]");
@@ -188,6 +196,37 @@ Result<FollowedDevice> follow_device(const DeviceRequest& request, std::unique_p
   followed.source = std::make_unique<DeviceSource>(std::move(device), settings, model.tick);
   followed.metadata = {{"source", request.listen_port ? "igtl-listen" : "igtl"}, {"device", describe(request, *map)}};
   return followed;
+}
+
+DeviceRequest as_second_hand(DeviceRequest request, const DeviceRequest& first) {
+  request.hand = 1;
+  request.interface = first.interface, request.allowed = first.allowed, request.scale = first.scale;
+  request.most_speed_mm_per_s = first.most_speed_mm_per_s, request.timeout_s = first.timeout_s;
+  request.most_force_n = first.most_force_n, request.stiffness_n_per_m = first.stiffness_n_per_m;
+  return request;
+}
+
+Result<FollowedPair> follow_devices(const DeviceRequest& first, std::unique_ptr<Device> first_device,
+                                    const DeviceRequest& second, std::unique_ptr<Device> second_device,
+                                    const Model& model) {
+  Errors errors;
+  if (model.hands < 2)
+    errors.push_back(
+        {output::option_name("second.address"), "the scene has one hand", "write \"hands\": 2 in the scene"});
+  Result<FollowedDevice> a = follow_device(first, std::move(first_device), model);
+  Result<FollowedDevice> b = follow_device(second, std::move(second_device), model);
+  for (const auto* followed : {&a, &b})
+    if (!*followed) errors.insert(errors.end(), followed->errors().begin(), followed->errors().end());
+  if (!errors.empty()) return errors;
+  const bool may_change = !first.buttons.empty() || !second.buttons.empty();
+  const std::string conflict(stepping::hands_conflict(model, map_of(first, model)->tool, map_of(second, model)->tool));
+  if (!conflict.empty() && !may_change)
+    return Error{output::option_name("second.tool"), conflict, "give the second hand another tool"};
+  FollowedPair pair;
+  pair.source = std::make_unique<DevicePair>(std::move(a->source), std::move(b->source), model);
+  pair.metadata = std::move(a->metadata);
+  for (const auto& [key, value] : b->metadata) pair.metadata["second_" + key] = value;
+  return pair;
 }
 
 }  // namespace ctpm::devices

@@ -8,6 +8,7 @@
 
 #include "core/model/model.h"
 #include "core/model/result.h"
+#include "studio/devices/device_pair.h"
 #include "studio/devices/device_source.h"
 
 namespace ctpm::devices {
@@ -19,18 +20,24 @@ struct DeviceRequest {
   std::string interface = "127.0.0.1";           ///< address to listen on
   std::vector<std::string> allowed;              ///< addresses that may connect, as AddressList reads them; empty: all
   std::string name;                              ///< takes only poses of this name; empty: all poses
-  std::string tool;                              ///< tool without a button; empty: the scene's first
+  std::string tool;                              ///< tool without a button; empty: the scene's first, or second
   std::vector<std::string> buttons;              ///< each BUTTON=TOOL; BUTTON= alone: no tool
   double scale = 1;                              ///< scene length over hand length [1], in [0.001, 1000]
   std::vector<double> offset_mm, rotation, tip;  ///< 3, 4 (w x y z) and 3 numbers, or none
   double most_speed_mm_per_s = 1000, timeout_s = 5;
   double most_force_n = 3, stiffness_n_per_m = 1000;
+  std::size_t hand = 0;  ///< in Inputs
 };
+
+/// The description of a device for the second hand: `request`, with what both hands share taken from `first`: where to
+/// listen and who may connect, scale, speed, timeout, force and stiffness.
+DeviceRequest as_second_hand(DeviceRequest request, const DeviceRequest& first);
 
 /// True if an address or a port is given.
 bool asks_for_device(const DeviceRequest& request);
 
-/// Checks a description by itself, before the scene is known. Errors name the fields as "device.FIELD".
+/// Checks a description by itself, before the scene is known. Errors name the fields as "device.FIELD", those of the
+/// second hand that are its own as "second.FIELD".
 Errors check_device(const DeviceRequest& request);
 
 /// A device that is connected or awaited; the scene is not yet known.
@@ -48,5 +55,16 @@ struct FollowedDevice {
 };
 /// Makes `device` a source for the scene of `model`. Errors: tools that the scene does not have.
 Result<FollowedDevice> follow_device(const DeviceRequest& request, std::unique_ptr<Device> device, const Model& model);
+
+/// Two devices as the source of a session.
+struct FollowedPair {
+  std::unique_ptr<DevicePair> source;
+  std::map<std::string, std::string> metadata;  ///< those of the second hand's device begin with "second_"
+};
+/// The same for both hands; `model` must outlive the source. Errors: also a scene with one hand, or tools that two
+/// hands cannot hold at once.
+Result<FollowedPair> follow_devices(const DeviceRequest& first, std::unique_ptr<Device> first_device,
+                                    const DeviceRequest& second, std::unique_ptr<Device> second_device,
+                                    const Model& model);
 
 }  // namespace ctpm::devices

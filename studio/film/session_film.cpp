@@ -56,6 +56,7 @@ Result<std::unique_ptr<SessionFilm>> SessionFilm::create(recordings::SessionRead
 Result<Done> SessionFilm::begin() {
   const Model& model = this->model();
   overlay_.title = scene_.name;
+  if (model.hands > 1) overlay_.second.emplace();
   overlay_.model = structure_name(scene_);
   overlay_.session = std::filesystem::path(reader_.path()).stem().string();
   overlay_.damage_force = loading::damage_force_of(scene_);
@@ -78,7 +79,8 @@ Result<Done> SessionFilm::begin() {
   for (std::int64_t tick = before + 1; tick <= range_.from; ++tick) {
     const recordings::TickRecord& record = (*earlier)[std::size_t(tick - before - 1)];
     keep_inputs(record.inputs);
-    if (tick % plot_every_ == 0) overlay_.history.push_back({double(tick) * model.tick, norm(record.tool_force)});
+    if (tick % plot_every_ == 0)
+      overlay_.history.push_back({double(tick) * model.tick, norm(record.tool_force), norm(record.second.tool_force)});
   }
   const Result<std::vector<recordings::Event>> events = reader_.events();
   if (!events) return events.errors();
@@ -92,14 +94,18 @@ Result<Done> SessionFilm::begin() {
 void SessionFilm::take_tick() {
   overlay_.tick = cursor_.tick();
   overlay_.time = double(overlay_.tick) * model().tick;
-  overlay_.force = norm(cursor_.report().tool_force);
-  overlay_.depth = cursor_.report().depth;
+  const auto load_of = [&](const stepping::HandReport& report) {
+    return render::HandLoad{norm(report.tool_force), report.depth};
+  };
+  overlay_.hand = load_of(cursor_.report());
+  if (overlay_.second) overlay_.second = load_of(cursor_.report().second);
   overlay_.loose += cursor_.report().came_loose;
   overlay_.inside_out = cursor_.report().inverted;
   overlay_.slip = cursor_.record().slip;
   keep_inputs(cursor_.record().inputs);
   std::vector<render::ForcePoint>& history = overlay_.history;
-  if (overlay_.tick % plot_every_ == 0) history.push_back({overlay_.time, overlay_.force});
+  if (overlay_.tick % plot_every_ == 0)
+    history.push_back({overlay_.time, overlay_.hand.force, overlay_.second.value_or(render::HandLoad{}).force});
   if (history.size() > 2 * kPlotPoints) history.erase(history.begin(), history.end() - kPlotPoints - 1);
   if (first_different_ < 0 && !cursor_.same_so_far()) first_different_ = overlay_.tick - 1;
 }
@@ -136,9 +142,17 @@ Error SessionFilm::differs() const {
 /// While a blade is held, and after it was put away after a cut, the depth is that of the cut.
 void SessionFilm::show_cut_depth() {
   cut_.measure(cursor_.state());
-  const std::int32_t tool = cursor_.state().last_inputs.tool;
-  overlay_.is_blade = tool < 0 ? cut_.size().has_value() : model().tools[std::size_t(tool)].kind == ToolKind::scalpel;
-  if (overlay_.is_blade) overlay_.depth = cut_.size().value_or(session::CutSize{}).depth;
+  const double depth = cut_.size().value_or(session::CutSize{}).depth;
+  const auto holds_blade = [&](const Hand& hand) {
+    return hand.tool >= 0 && model().tools[std::size_t(hand.tool)].kind == ToolKind::scalpel;
+  };
+  const Inputs& inputs = cursor_.state().last_inputs;
+  const bool is_empty = inputs.tool < 0 && inputs.second.tool < 0;
+  overlay_.hand.is_blade = is_empty ? cut_.size().has_value() : holds_blade(inputs);
+  if (overlay_.hand.is_blade) overlay_.hand.depth = depth;
+  if (!overlay_.second) return;
+  overlay_.second->is_blade = holds_blade(inputs.second);
+  if (overlay_.second->is_blade) overlay_.second->depth = depth;
 }
 
 Result<Shot> SessionFilm::shoot(std::int64_t tick) {

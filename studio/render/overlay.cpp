@@ -14,7 +14,7 @@ namespace {
 using Ink = std::array<int, 3>;
 
 constexpr Ink kWhite{240, 243, 246}, kGrey{168, 178, 188}, kAmber{255, 190, 80}, kRed{235, 72, 60},
-    kGreen{96, 205, 140};
+    kBlue{110, 190, 255}, kGreen{96, 205, 140};
 constexpr int kFont = cv::FONT_HERSHEY_DUPLEX;
 constexpr int kOversample = 4;  // strokes are drawn this many times larger and averaged down
 
@@ -129,20 +129,28 @@ double round_up(double value) {
   return 10 * decade;
 }
 
-bool is_too_deep(const OverlayData& data) {
-  return !data.is_blade && data.damage_depth > 0 && data.depth > data.damage_depth;
+bool is_too_deep(const OverlayData& data, const HandLoad& hand) {
+  return !hand.is_blade && data.damage_depth > 0 && hand.depth > data.damage_depth;
 }
-bool is_too_strong(const OverlayData& data) { return data.damage_force > 0 && data.force > data.damage_force; }
+bool is_too_strong(const OverlayData& data, const HandLoad& hand) {
+  return data.damage_force > 0 && hand.force > data.damage_force;
+}
 
 /// The damage warning: the limits that are exceeded; empty if none is.
 std::string damage_text(const OverlayData& data) {
   std::string text;
-  if (is_too_deep(data))
-    text +=
-        " " + output::fixed(1000 * data.depth, 1) + " mm, limit " + output::fixed(1000 * data.damage_depth, 1) + " mm";
-  if (is_too_strong(data))
-    text += (text.empty() ? " " : "; ") + output::fixed(data.force, 2) + " N, limit " +
-            output::fixed(data.damage_force, 2) + " N";
+  double depth = 0, force = 0;  // the largest that are beyond their limits
+  const auto look_at = [&](const HandLoad& hand) {
+    if (is_too_deep(data, hand)) depth = std::max(depth, hand.depth);
+    if (is_too_strong(data, hand)) force = std::max(force, hand.force);
+  };
+  look_at(data.hand);
+  if (data.second) look_at(*data.second);
+  if (depth > 0)
+    text += " " + output::fixed(1000 * depth, 1) + " mm, limit " + output::fixed(1000 * data.damage_depth, 1) + " mm";
+  if (force > 0)
+    text += (text.empty() ? " " : "; ") + output::fixed(force, 2) + " N, limit " + output::fixed(data.damage_force, 2) +
+            " N";
   return text.empty() ? text : "TISSUE DAMAGE:" + text;
 }
 
@@ -151,7 +159,7 @@ std::string damage_text(const OverlayData& data) {
 double largest_force(const OverlayData& data) {
   double largest = 0;
   for (const ForcePoint& p : data.history)
-    if (p.time >= data.time - data.plot_span) largest = std::max(largest, p.force);
+    if (p.time >= data.time - data.plot_span) largest = std::max({largest, p.force, p.second});
   return largest;
 }
 
@@ -190,22 +198,37 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
     plan.lines.push_back(line(large, large.shortened(data.title, inner), x, y, kWhite));
     y += px(38);
   }
-  const std::array<std::pair<std::string, std::string>, 9> facts{
+  struct Fact {
+    std::string name, value;
+    bool is_bad = false;
+  };
+  const auto force_of = [&](const char* name, const HandLoad& hand) {
+    return Fact{name, output::fixed(hand.force, 3) + " N", is_too_strong(data, hand)};
+  };
+  const auto depth_of = [&](const std::string& which, const HandLoad& hand) {
+    return Fact{(!hand.is_blade  ? "depth"
+                 : which.empty() ? "cut depth"
+                                 : "cut") +
+                    which,
+                output::fixed(1000 * hand.depth, 2) + " mm", is_too_deep(data, hand)};
+  };
+  const std::array<Fact, 11> facts{
       {{"session", small.shortened_inside(data.session, px(195))},
        {"model", small.shortened(data.model, px(195))},
        {data.is_over ? "ended" : "time", output::fixed(data.time, 3) + " s"},
-       {"clock behind", data.slip < 0.01 ? "" : output::fixed(data.slip, 2) + " s"},
+       {"clock behind", data.slip < 0.01 ? "" : output::fixed(data.slip, 2) + " s", true},
        {"tick", std::to_string(data.tick)},
-       {"force", output::fixed(data.force, 3) + " N"},
-       {data.is_blade ? "cut depth" : "depth", output::fixed(1000 * data.depth, 2) + " mm"},
+       force_of("force", data.hand),
+       depth_of("", data.hand),
+       data.second ? force_of("force 2", *data.second) : Fact{},
+       data.second ? depth_of(" 2", *data.second) : Fact{},
        {"loose", data.loose == 0 ? "" : std::to_string(data.loose) + (data.loose == 1 ? " piece" : " pieces")},
        {"inside out",
-        data.inside_out == 0 ? "" : std::to_string(data.inside_out) + (data.inside_out == 1 ? " cell" : " cells")}}};
-  for (const auto& [name, value] : facts) {
+        data.inside_out == 0 ? "" : std::to_string(data.inside_out) + (data.inside_out == 1 ? " cell" : " cells"),
+        true}}};
+  for (const auto& [name, value, is_bad] : facts) {
     if (value.empty()) continue;
     plan.lines.push_back(line(small, name, x, y, kGrey));
-    const bool is_bad = name == "inside out" || name == "clock behind" || (name == "depth" && is_too_deep(data)) ||
-                        (name == "force" && is_too_strong(data));
     Line shown = line(small, value, 0, y, is_bad ? kRed : kWhite);
     shown.placed.box.x = x + inner - shown.placed.box.width;  // right-aligned, so that digits stand still
     plan.lines.push_back(shown);
@@ -220,7 +243,14 @@ void Overlay::Parts::plan_plot(const OverlayData& data, Plan& plan) {
   plan.top_force = round_up(std::max(data.least_top_force, largest_force(data)));
   const int pad = px(16), w = px(332), h = px(160);
   plan.plot = {px(20), height - px(20) - h, w, h};
-  plan.lines.push_back(line(small, "force [N]", plan.plot.x + pad, plan.plot.y + px(12), kGrey));
+  const int title_x = plan.plot.x + pad, title_y = plan.plot.y + px(12);
+  if (data.second) {
+    const std::string first = "hand 1 [N]";
+    plan.lines.push_back(line(small, first, title_x, title_y, kAmber));
+    plan.lines.push_back(line(small, "hand 2 [N]", title_x + small.width(first) + px(16), title_y, kBlue));
+  } else {
+    plan.lines.push_back(line(small, "force [N]", title_x, title_y, kGrey));
+  }
   const std::string scale_text = output::fixed(plan.top_force, plan.top_force < 0.1 ? 2 : plan.top_force < 1 ? 1 : 0);
   const int label = pad + std::max(small.width("0.02"), small.width(scale_text)) + px(8);
   plan.curve = {plan.plot.x + label, plan.plot.y + px(46), w - label - pad, h - px(46) - px(34)};
@@ -304,15 +334,17 @@ void Overlay::Parts::draw_curve(cv::Mat& rgb, const OverlayData& data, const Pla
   };
   cv::line(rgb, {c.x, c.y + c.height}, {c.x + c.width, c.y + c.height}, cv::Scalar(120, 130, 140), 1);
   cv::line(rgb, {c.x, c.y}, {c.x + c.width, c.y}, cv::Scalar(70, 78, 86), 1);
-  std::vector<cv::Point> points;
-  for (const ForcePoint& p : data.history)
-    if (p.time >= data.time - data.plot_span && p.time <= data.time)
-      points.push_back(at(p.time, std::max(p.force, 0.0)));
-  if (points.empty()) return;
-  cv::polylines(rgb, points, false, cv::Scalar(kAmber[0], kAmber[1], kAmber[2]), std::max(1, px(2)), cv::LINE_AA,
-                kShift);
-  cv::circle(rgb, points.back(), std::max(1, px(4)) << kShift, cv::Scalar(255, 225, 160), cv::FILLED, cv::LINE_AA,
-             kShift);
+  const auto draw = [&](double ForcePoint::*force, const Ink& ink, const cv::Scalar& end) {
+    std::vector<cv::Point> points;
+    for (const ForcePoint& p : data.history)
+      if (p.time >= data.time - data.plot_span && p.time <= data.time)
+        points.push_back(at(p.time, std::max(p.*force, 0.0)));
+    if (points.empty()) return;
+    cv::polylines(rgb, points, false, cv::Scalar(ink[0], ink[1], ink[2]), std::max(1, px(2)), cv::LINE_AA, kShift);
+    cv::circle(rgb, points.back(), std::max(1, px(4)) << kShift, end, cv::FILLED, cv::LINE_AA, kShift);
+  };
+  if (data.second) draw(&ForcePoint::second, kBlue, {190, 225, 255});
+  draw(&ForcePoint::force, kAmber, {255, 225, 160});
 }
 
 Overlay::Overlay(int width, int height) : parts_(std::make_unique<Parts>(width, height)) {}

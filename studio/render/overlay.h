@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,16 @@ namespace ctpm::render {
 
 /// One point of the running force plot.
 struct ForcePoint {
-  double time = 0;   ///< [s]
-  double force = 0;  ///< [N], >= 0
+  double time = 0;    ///< [s]
+  double force = 0;   ///< [N], >= 0
+  double second = 0;  ///< that of the second hand [N], >= 0
+};
+
+/// What the tissue does to the tool in a hand.
+struct HandLoad {
+  double force = 0;       ///< magnitude on the tool [N]
+  double depth = 0;       ///< indentation of the touched tissue, or depth of the cut [m]
+  bool is_blade = false;  ///< the depth is that of the cut, which has no limit
 };
 
 enum class VerdictTone { none, good, bad };
@@ -26,15 +35,14 @@ struct OverlayData {
   double time = 0;       ///< [s]
   bool is_over = false;  ///< the session has ended at `time`
   std::int64_t tick = 0;
-  double force = 0;             ///< magnitude on the tool [N]
-  double depth = 0;             ///< indentation of the touched tissue, or depth of the cut [m]
-  bool is_blade = false;        ///< the depth is that of the cut, which has no limit
-  std::int64_t loose = 0;       ///< pieces of tissue that came loose; not shown if 0
-  std::int32_t inside_out = 0;  ///< tissue cells that are inside out; not shown if 0
-  double slip = 0;              ///< real time that the session lacks up to now [s]; not shown below 10 ms
-  double damage_depth = 0;      ///< depth beyond which the tissue is damaged [m]; 0: no limit
-  double damage_force = 0;      ///< force beyond which the tissue is damaged [N]; 0: no limit
-  std::string verdict;          ///< result of the replay, one line
+  HandLoad hand;
+  std::optional<HandLoad> second;  ///< of the second hand, in a scene that has two
+  std::int64_t loose = 0;          ///< pieces of tissue that came loose; not shown if 0
+  std::int32_t inside_out = 0;     ///< tissue cells that are inside out; not shown if 0
+  double slip = 0;                 ///< real time that the session lacks up to now [s]; not shown below 10 ms
+  double damage_depth = 0;         ///< depth beyond which the tissue is damaged [m]; 0: no limit
+  double damage_force = 0;         ///< force beyond which the tissue is damaged [N]; 0: no limit
+  std::string verdict;             ///< result of the replay, one line
   VerdictTone verdict_tone = VerdictTone::none;
   std::vector<ForcePoint> history;  ///< in order of time; empty: no plot
   Legend legend;                    ///< of the view; not drawn without a title

@@ -99,7 +99,7 @@ struct Renderer::Parts {
   void create_arrays();
   void place_ground();
   Mat4 clip_from_world(const Camera& camera) const;
-  const Tool* held_tool(const State& state, const DrawOptions& options) const;
+  const Tool* held_tool(const Hand& hand, const DrawOptions& options) const;
   bool sees_ground(const DrawOptions& options) const {
     return options.show_ground && dot(options.camera.eye, up) > ground_height;
   }
@@ -108,7 +108,7 @@ struct Renderer::Parts {
   void draw_spheres(const State& state, const DrawOptions& options);
   void draw_elements(const State& state, const DrawOptions& options);
   VertexArray array_of(const ToolMesh& mesh) const;
-  void draw_tool(const State& state, const DrawOptions& options);
+  void draw_tools(const State& state, const DrawOptions& options);
   void draw_obstacles(const State& state, const DrawOptions& options);
   void cast_shadow(DrawnObstacle& obstacle);
   void draw_behind(const DrawOptions& options);
@@ -183,8 +183,8 @@ Mat4 Renderer::Parts::clip_from_world(const Camera& camera) const {
   return product(projection_matrix(camera, double(frame.width) / frame.height, near, far), view_matrix(camera));
 }
 
-const Tool* Renderer::Parts::held_tool(const State& state, const DrawOptions& options) const {
-  const std::int32_t held = state.last_inputs.tool;
+const Tool* Renderer::Parts::held_tool(const Hand& hand, const DrawOptions& options) const {
+  const std::int32_t held = hand.tool;
   return options.show_tool && held >= 0 && std::size_t(held) < scene.model->tools.size()
              ? &scene.model->tools[std::size_t(held)]
              : nullptr;
@@ -206,10 +206,12 @@ PixelRect Renderer::Parts::footprint(const State& state, const DrawOptions& opti
     const std::vector<float>& v = obstacle.mesh.mesh.vertex;
     for (std::size_t i = 0; i < v.size(); i += 7) print.add({v[i], v[i + 1], v[i + 2]});
   }
-  if (held_tool(state, options)) {
-    const std::vector<float>& v = tool_meshes[std::size_t(state.last_inputs.tool)].vertex;
+  for (std::size_t number = 0; number < kMostHands; ++number) {
+    const Hand& hand = state.last_inputs.hand(number);
+    if (!held_tool(hand, options)) continue;
+    const std::vector<float>& v = tool_meshes[std::size_t(hand.tool)].vertex;
     for (std::size_t i = 0; i < v.size(); i += 7)
-      print.add(state.last_inputs.position + rotate(state.last_inputs.world_from_tool, {v[i], v[i + 1], v[i + 2]}));
+      print.add(hand.position + rotate(hand.world_from_tool, {v[i], v[i + 1], v[i + 2]}));
   }
   return print.pixels();
 }
@@ -224,12 +226,17 @@ void Renderer::Parts::set_light(const Program& program, const State& state, cons
   program.set("fill_light", unit(0.25 * up + 0.9 * right + 0.35 * back));
   program.set("rim_light", unit(0.45 * up + 0.35 * right - 0.8 * back));
   program.set("ground_height", ground_height), program.set("scene_size", size);
-  const Tool* held = held_tool(state, options);
-  const Vec3 tip = state.last_inputs.position;
-  const bool cuts = held && held->kind == ToolKind::scalpel;
-  program.set("tool_tip", tip);
-  program.set("tool_heel", cuts ? tip + rotate(state.last_inputs.world_from_tool, {0, 0, held->blade_length}) : tip);
-  program.set("tool_radius", !held ? 0.0 : cuts ? 0.06 * held->blade_length : held->radius);
+  constexpr std::array<std::array<const char*, 3>, kMostHands> kNames{
+      {{"tool_tip", "tool_heel", "tool_radius"}, {"second_tip", "second_heel", "second_radius"}}};
+  for (std::size_t number = 0; number < kMostHands; ++number) {
+    const Hand& hand = state.last_inputs.hand(number);
+    const Tool* held = held_tool(hand, options);
+    const Vec3 tip = hand.position;
+    const bool cuts = held && held->kind == ToolKind::scalpel;
+    program.set(kNames[number][0], tip);
+    program.set(kNames[number][1], cuts ? tip + rotate(hand.world_from_tool, {0, 0, held->blade_length}) : tip);
+    program.set(kNames[number][2], !held ? 0.0 : cuts ? 0.06 * held->blade_length : held->radius);
+  }
 }
 
 void Renderer::Parts::draw_spheres(const State& state, const DrawOptions& options) {
@@ -267,12 +274,15 @@ void Renderer::Parts::draw_elements(const State& state, const DrawOptions& optio
   g.BindVertexArray(rods.id), g.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(instances.size() / 10));
 }
 
-void Renderer::Parts::draw_tool(const State& state, const DrawOptions& options) {
-  if (!held_tool(state, options)) return;
-  const VertexArray& array = tools[std::size_t(state.last_inputs.tool)];
-  set_light(tool, state, options);
-  tool.set("world_from_tool", rigid(state.last_inputs.world_from_tool, state.last_inputs.position));
-  gl().BindVertexArray(array.id), gl().DrawElements(GL_TRIANGLES, array.index_count, GL_UNSIGNED_INT, nullptr);
+void Renderer::Parts::draw_tools(const State& state, const DrawOptions& options) {
+  for (std::size_t number = 0; number < kMostHands; ++number) {
+    const Hand& hand = state.last_inputs.hand(number);
+    if (!held_tool(hand, options)) continue;
+    const VertexArray& array = tools[std::size_t(hand.tool)];
+    set_light(tool, state, options);
+    tool.set("world_from_tool", rigid(hand.world_from_tool, hand.position));
+    gl().BindVertexArray(array.id), gl().DrawElements(GL_TRIANGLES, array.index_count, GL_UNSIGNED_INT, nullptr);
+  }
 }
 
 void Renderer::Parts::draw_obstacles(const State& state, const DrawOptions& options) {
@@ -378,7 +388,7 @@ Frame Renderer::draw(const State& state, const DrawOptions& options) {
   gl.Enable(GL_DEPTH_TEST), gl.DepthFunc(GL_LEQUAL);
   if (options.view == View::spheres || options.view == View::both) p.draw_spheres(state, options);
   if (options.view == View::elements) p.draw_elements(state, options);
-  p.draw_tool(state, options);
+  p.draw_tools(state, options);
   p.draw_obstacles(state, options);
   if (options.view == View::surface || options.view == View::both) {
     for (const Program* program : p.organs.programs(options)) p.set_light(*program, state, options);

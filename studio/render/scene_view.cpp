@@ -43,10 +43,10 @@ Camera default_camera(const SceneView& scene, double aspect) {
 
 namespace {
 
-/// Nearness of the held tool to the organs: 0 far away, 1 at work.
-double nearness(const Bounds& organs, const Inputs& inputs) {
-  if (inputs.tool < 0) return 0;
-  const Vec3 p = inputs.position;
+/// Nearness of the tool in a hand to the organs: 0 far away, 1 at work.
+double nearness(const Bounds& organs, const Hand& hand) {
+  if (hand.tool < 0) return 0;
+  const Vec3 p = hand.position;
   const auto beyond = [](double low, double high, double x) { return std::max({low - x, x - high, 0.0}); };
   const double away = norm(Vec3{beyond(organs.min.x, organs.max.x, p.x), beyond(organs.min.y, organs.max.y, p.y),
                                 beyond(organs.min.z, organs.max.z, p.z)});
@@ -64,8 +64,11 @@ Camera following_camera(const SceneView& scene, const Camera& base, std::span<co
   Vec3 pull;
   for (std::size_t i = 0; i < moments.size(); ++i) {
     const double age = std::min(1.0, (double(moments.size() - 1 - i) + 0.5) / kFollowedMoments);
-    const double weight = age * (1 - age), part = weight * nearness(organs, moments[i]);
-    sum += weight, near += part, pull += part * (moments[i].position - base.target);
+    const double first = nearness(organs, moments[i]), second = nearness(organs, moments[i].second);
+    Vec3 place = moments[i].position;
+    if (second > 0) place += second / (first + second) * (moments[i].second.position - place);
+    const double weight = age * (1 - age), part = weight * std::max(first, second);
+    sum += weight, near += part, pull += part * (place - base.target);
   }
   if (sum == 0 || near == 0) return base;
   Camera camera = base;

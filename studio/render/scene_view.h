@@ -47,7 +47,8 @@ Camera default_camera(const SceneView& scene, double aspect = 16.0 / 9);
 inline constexpr std::size_t kFollowedMoments = 80;
 inline constexpr double kFollowedEvery = 0.01;  ///< [s]
 
-/// A camera that comes closer as the held tool nears the organs, and looks at the point where it works. `moments` are
+/// A camera that comes closer as a held tool nears the organs, and looks at the point where it works; with two, at one
+/// between them, nearer to the one that is nearer to the organs. `moments` are
 /// the inputs of the last moments, oldest first; fewer at a session's beginning. The average makes the camera's motion
 /// smooth. The camera depends on nothing else, so a video that starts later shows the same pictures. Without a tool:
 /// `base` itself.
@@ -82,7 +83,7 @@ struct DrawOptions {
   ElementQuantity quantity = ElementQuantity::stretch;
   double full_scale = 0;  ///< value of the last colour [1, rad or N]; 0: default_full_scale()
   Cutaway cutaway;
-  bool show_tool = true;    ///< at the pose of State::last_inputs
+  bool show_tool = true;    ///< those of both hands, at the poses of State::last_inputs
   bool show_ground = true;  ///< a soft shadow below the scene
 };
 

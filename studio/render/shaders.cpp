@@ -34,20 +34,23 @@ float fresnel(float c) { float m = 1.0 - clamp(c, 0.0, 1.0); float m2 = m * m; r
 vec3 to_srgb(vec3 c) { return sqrt(max(c * (1.0 + 0.16 * c) / (1.0 + 0.62 * c), vec3(0.0))); }
 )";
 
-// Soft shadows of the tool and of the ground nearby.
+// Soft shadows of the tools and of the ground nearby.
 const char* const kShade = R"(
-uniform vec3 tool_tip, tool_heel;
-uniform float tool_radius;
+uniform vec3 tool_tip, tool_heel, second_tip, second_heel;
+uniform float tool_radius, second_radius;
 uniform float ground_height, scene_size;
 
-float tool_shade(vec3 p, vec3 n) {
-  if (tool_radius <= 0.0) return 1.0;
-  vec3 along = tool_heel - tool_tip;
-  float t = clamp(dot(p - tool_tip, along) / max(dot(along, along), 1e-12), 0.0, 1.0);
-  vec3 d = tool_tip + t * along - p;
+float shade_of(vec3 p, vec3 n, vec3 tip, vec3 heel, float radius) {
+  if (radius <= 0.0) return 1.0;
+  vec3 along = heel - tip;
+  float t = clamp(dot(p - tip, along) / max(dot(along, along), 1e-12), 0.0, 1.0);
+  vec3 d = tip + t * along - p;
   float square = max(dot(d, d), 1e-12);
   float facing = max(dot(n, d) * inversesqrt(square) + 0.15, 0.0);
-  return 1.0 - min(0.85, 1.5 * facing * tool_radius * tool_radius / square);
+  return 1.0 - min(0.85, 1.5 * facing * radius * radius / square);
+}
+float tool_shade(vec3 p, vec3 n) {
+  return shade_of(p, n, tool_tip, tool_heel, tool_radius) * shade_of(p, n, second_tip, second_heel, second_radius);
 }
 float ground_shade(vec3 p, vec3 n) {
   float h = (dot(p, up) - ground_height) / scene_size;

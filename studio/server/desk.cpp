@@ -69,13 +69,13 @@ void Desk::end_training() {
   ended = std::exchange(training_, nullptr);
 }
 
-void Desk::move(const devices::Pose& pose, std::uint32_t buttons, double sent_s) {
+void Desk::move(const HandMoves& moves, double sent_s) {
   std::shared_ptr<Training> running;
   {
     const std::lock_guard lock(mutex_);
     running = training_;
   }
-  if (running) running->move(pose, buttons, sent_s);
+  if (running) running->move(moves, sent_s);
 }
 
 }  // namespace ctpm::server

@@ -43,8 +43,8 @@ class Desk {
   /// Ends it, if one runs, and waits until it is saved.
   void end_training();
 
-  /// Moves the hand of a running session; called from one thread.
-  void move(const devices::Pose& pose, std::uint32_t buttons, double sent_s);
+  /// Moves the hands of a running session; called from one thread.
+  void move(const HandMoves& moves, double sent_s);
 
   static constexpr std::uint32_t kMostStages = 4;
 

@@ -4,7 +4,7 @@
 
 namespace ctpm::server {
 
-void PageHand::move(const devices::Pose& pose, std::uint32_t buttons, double sent_s) {
+void PageHand::move(const HandMove& move, double sent_s) {
   devices::DeviceReport report;
   // Messages that waited on their way arrive together. The page's own clock tells how far apart they were sent; the
   // quickest message so far tells how the two clocks relate.
@@ -12,11 +12,11 @@ void PageHand::move(const devices::Pose& pose, std::uint32_t buttons, double sen
   clock_offset_ = std::min(clock_offset_, now - sent_s);
   report.arrival = std::min(now, sent_s + clock_offset_);
   report.device_time = sent_s;
-  if (buttons != buttons_) {
-    report.news = devices::DeviceNews::buttons, report.buttons = buttons_ = buttons;
+  if (move.buttons != buttons_) {
+    report.news = devices::DeviceNews::buttons, report.buttons = buttons_ = move.buttons;
     reports_.push(report);
   }
-  report.news = devices::DeviceNews::pose, report.pose = pose;
+  report.news = devices::DeviceNews::pose, report.pose = move.pose;
   reports_.push(report);  // full only if no session takes them
 }
 

@@ -91,12 +91,16 @@ Picture PictureMaker::make(const State& state, const FrameFacts& facts) {
 
   const Inputs& in = state.last_inputs;
   MessageBytes out;
+  const auto add_pose = [&](const Hand& hand) {
+    out.add(hand.tool), out.add(hand.position);
+    for (const double x :
+         {hand.world_from_tool.w, hand.world_from_tool.x, hand.world_from_tool.y, hand.world_from_tool.z})
+      out.add(float(x));
+  };
   out.add(std::uint32_t(kFrame)), out.add(stage_), out.add(topology_), out.add(std::uint32_t(0));
   out.add(facts.request), out.add(std::uint32_t((facts.is_same ? 1 : 0) | (facts.is_live ? 2 : 0)));
   out.add(double(facts.tick) * model_.tick), out.add(double(facts.tick));
-  out.add(in.tool), out.add(in.position);
-  for (const double x : {in.world_from_tool.w, in.world_from_tool.x, in.world_from_tool.y, in.world_from_tool.z})
-    out.add(float(x));
+  add_pose(in);
   out.add(facts.force), out.add(float(facts.depth)), out.add(facts.contacts), out.add(std::uint32_t(facts.severed));
   out.add(facts.hand), out.add(float(facts.tick_time)), out.add(std::uint32_t(facts.late_ticks));
   out.add(float(facts.tick_p99)), out.add(float(facts.slip));
@@ -104,6 +108,11 @@ Picture PictureMaker::make(const State& state, const FrameFacts& facts) {
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     drawn_->place(i, surfaces_[i].surface(), state, vertex_);
     add_positions(out, vertex_);
+  }
+  if (model_.hands > 1) {
+    const stepping::HandReport& report = facts.second.report;
+    add_pose(in.second);
+    out.add(report.tool_force), out.add(float(report.depth)), out.add(report.contacts), out.add(facts.second.hand);
   }
   return {stage_, topology_, triangles_, std::move(out.text)};
 }

@@ -13,6 +13,12 @@
 
 namespace ctpm::server {
 
+/// What a frame says of the second hand.
+struct SecondHandFacts {
+  stepping::HandReport report;
+  Vec3 hand;  ///< as FrameFacts::hand [m]
+};
+
 /// What a frame says besides where the surfaces are. PROTOCOL.md gives its bytes.
 struct FrameFacts {
   std::uint32_t request = 0;    ///< number of the request that it answers; 0: none
@@ -28,6 +34,7 @@ struct FrameFacts {
   std::int64_t late_ticks = 0;  ///< so far
   double tick_p99 = 0;          ///< of the computing times of the last ticks [s]; 0: not known
   double slip = 0;              ///< TickRecord::slip of the last tick [s]
+  SecondHandFacts second;       ///< written of a Model with two hands
 };
 
 /// One moment as bytes for a page.

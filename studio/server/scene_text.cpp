@@ -86,7 +86,7 @@ std::string view_json(const scenes::SceneSpec& scene, const Model& model) {
     if (i < scene.tools.size()) write_place(json, scene.tools[i]);
     json.end_object();
   }
-  json.end_list().key("cameras").begin_list();
+  json.end_list().member("hands", std::int64_t(model.hands)).key("cameras").begin_list();
   constexpr double kAspect = 16.0 / 9;
   for (const scenes::CameraSpec& camera : scene.cameras) {
     views::LookRequest request;

@@ -86,9 +86,10 @@ FrameFacts Stage::facts(const recordings::ReplayCursor& cursor, std::uint32_t re
   facts.tick = cursor.tick();
   facts.severed = severed_in(cursor.state());
   facts.hand = cursor.state().last_inputs.position;
+  facts.second.hand = cursor.state().last_inputs.second.position;
   if (cursor.tick() == 0) return facts;  // nothing was simulated yet
   facts.force = cursor.report().tool_force, facts.depth = cursor.report().depth;
-  facts.contacts = cursor.report().contacts;
+  facts.contacts = cursor.report().contacts, facts.second.report = cursor.report().second;
   facts.tick_time = cursor.record().tick_time, facts.slip = cursor.record().slip;
   return facts;
 }

@@ -9,6 +9,29 @@
 #include "studio/session/record_session.h"
 
 namespace ctpm::server {
+namespace {
+
+/// The poses of a hand, in every `every`-th tick.
+Result<Done> write_poses(recordings::SessionReader& reader, std::size_t hand, std::int64_t every,
+                         output::JsonWriter& json) {
+  constexpr std::int64_t kRead = 10000;  // ticks held in memory
+  for (std::int64_t from = 0; from < reader.tick_count(); from += kRead) {
+    const auto records = reader.ticks(from, std::min(from + kRead, reader.tick_count()));
+    if (!records) return records.errors();
+    for (std::int64_t tick = (from + every - 1) / every * every; tick < from + std::int64_t(records->size());
+         tick += every) {
+      const Hand& in = (*records)[std::size_t(tick - from)].inputs.hand(hand);
+      const Quat q = in.world_from_tool;
+      json.begin_list().value(in.tool);
+      for (const double x : {in.position.x, in.position.y, in.position.z, q.w, q.x, q.y, q.z})
+        json.value(double(float(x)));
+      json.end_list();
+    }
+  }
+  return Done{};
+}
+
+}  // namespace
 
 Result<std::string> begin_training(Parameters& parameters, const CallContext& context) {
   const std::string scene_path = parameters.text("scene");
@@ -64,22 +87,13 @@ Result<std::string> session_motion(Parameters& parameters, const CallContext& co
   constexpr std::int64_t kMost = 200000;  // poses
   if (reader->tick_count() / every > kMost) return Error{path, "is too long for this rate", ""};
   output::JsonWriter json;
-  json.begin_object().member("interval_s", double(every) * reader->start().model.tick).key("poses").begin_list();
-  constexpr std::int64_t kRead = 10000;  // ticks held in memory
-  for (std::int64_t from = 0; from < reader->tick_count(); from += kRead) {
-    const auto records = reader->ticks(from, std::min(from + kRead, reader->tick_count()));
-    if (!records) return records.errors();
-    for (std::int64_t tick = (from + every - 1) / every * every; tick < from + std::int64_t(records->size());
-         tick += every) {
-      const Inputs& in = (*records)[std::size_t(tick - from)].inputs;
-      const Quat q = in.world_from_tool;
-      json.begin_list().value(in.tool);
-      for (const double x : {in.position.x, in.position.y, in.position.z, q.w, q.x, q.y, q.z})
-        json.value(double(float(x)));
-      json.end_list();
-    }
+  json.begin_object().member("interval_s", double(every) * reader->start().model.tick);
+  for (std::size_t hand = 0; hand < std::size_t(reader->start().model.hands); ++hand) {
+    json.key(hand == 0 ? "poses" : "second_poses").begin_list();
+    if (const Result<Done> written = write_poses(*reader, hand, every, json); !written) return written.errors();
+    json.end_list();
   }
-  return json.end_list().end_object().text();
+  return json.end_object().text();
 }
 
 }  // namespace ctpm::server

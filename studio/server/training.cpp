@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -78,24 +79,45 @@ std::string ended_text(const std::string& shown, const Result<session::RecordOut
 Result<std::unique_ptr<Training>> Training::begin(std::shared_ptr<const recordings::SessionStart> start,
                                                   const TrainingRequest& request, std::uint32_t stage,
                                                   std::shared_ptr<Outbox> outbox) {
-  std::unique_ptr<Training> training(new Training(start, request, stage, std::move(outbox)));
-  devices::DeviceRequest device;
-  device.buttons = buttons_of(start->model);
-  device.most_speed_mm_per_s = 1e3 * request.most_speed;
-  device.timeout_s = 1e5;  // a hidden page sends nothing; its reader ends the session
-  auto hand = std::make_unique<PageHand>();
-  training->hand_ = hand.get();
-  Result<devices::FollowedDevice> followed = devices::follow_device(device, std::move(hand), start->model);
-  if (!followed) return followed.errors();
-  training->source_ = std::move(followed->source);
   auto named = std::make_shared<recordings::SessionStart>(*start);
-  for (const auto& [key, value] : followed->metadata) named->metadata[key] = value;
+  std::unique_ptr<Training> training(new Training(named, request, stage, std::move(outbox)));
+  const Result<std::map<std::string, std::string>> metadata = training->follow_hands();
+  if (!metadata) return metadata.errors();
+  for (const auto& [key, value] : *metadata) named->metadata[key] = value;
   named->metadata["source"] = "studio";
-  training->start_ = std::move(named);
   training->outbox_->send_bytes(shapes_message(start->model, stage));
   training->ticks_ = std::thread([t = training.get()] { t->tick(); });
   training->pictures_ = std::thread([t = training.get()] { t->show(); });
   return training;
+}
+
+/// Makes the page's hands the source. Returns what the session stores about them.
+Result<std::map<std::string, std::string>> Training::follow_hands() {
+  const Model& model = start_->model;
+  devices::DeviceRequest device;
+  device.buttons = buttons_of(model);
+  device.most_speed_mm_per_s = 1e3 * request_.most_speed;
+  device.timeout_s = 1e5;  // a hidden page sends nothing; its reader ends the session
+  const auto make_hand = [&](std::size_t number) {
+    auto hand = std::make_unique<PageHand>();
+    hands_[number] = hand.get();
+    return hand;
+  };
+  if (model.hands > 1) {
+    devices::DeviceRequest second;
+    second.buttons = device.buttons;
+    Result<devices::FollowedPair> pair =
+        devices::follow_devices(device, make_hand(0), devices::as_second_hand(second, device), make_hand(1), model);
+    if (!pair) return pair.errors();
+    followed_ = {&pair->source->of_hand(0), &pair->source->of_hand(1)};
+    source_ = std::move(pair->source);
+    return std::move(pair->metadata);
+  }
+  Result<devices::FollowedDevice> followed = devices::follow_device(device, make_hand(0), model);
+  if (!followed) return followed.errors();
+  followed_ = {followed->source.get()};
+  source_ = std::move(followed->source);
+  return std::move(followed->metadata);
 }
 
 Training::Training(std::shared_ptr<const recordings::SessionStart> start, const TrainingRequest& request,
@@ -112,7 +134,8 @@ void Training::tick() {
   // The browser draws on the same processors. Only a privileged user may ask for this; others do without.
   setpriority(PRIO_PROCESS, id_t(gettid()), -15);
   const auto should_stop = [this] { return ends_.load(); };
-  if (source_->wait_for_first_pose(should_stop)) {
+  if (std::all_of(followed_.begin(), followed_.end(),
+                  [&](devices::DeviceSource* hand) { return hand->wait_for_first_pose(should_stop); })) {
     session::RunOptions options;
     options.threads = session::threads_for(start_->model);
     options.should_stop = should_stop;
@@ -149,6 +172,7 @@ void Training::show() {
       facts.severed = severed_in(tick.state), facts.late_ticks = tick.late_ticks;
       facts.tick_p99 = tick.tick_p99, facts.slip = tick.record.slip;
       facts.hand = tick.record.inputs.position;
+      facts.second = {tick.record.second, tick.record.inputs.second.position};
       outbox_->show(maker.make(tick.state, facts));
     });
     std::this_thread::sleep_until(next);

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <map>
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "core/model/result.h"
 #include "recordings/session.h"
@@ -33,7 +36,10 @@ class Training {
   ~Training();
 
   /// A message of the page; from one thread.
-  void move(const devices::Pose& pose, std::uint32_t buttons, double sent_s) { hand_->move(pose, buttons, sent_s); }
+  void move(const HandMoves& moves, double sent_s) {
+    for (std::size_t i = 0; i < moves.size(); ++i)
+      if (moves[i] && hands_[i] != nullptr) hands_[i]->move(*moves[i], sent_s);
+  }
 
   /// Ends the session; the event "train_ended" follows.
   void end() { ends_ = true; }
@@ -41,6 +47,7 @@ class Training {
  private:
   Training(std::shared_ptr<const recordings::SessionStart> start, const TrainingRequest& request, std::uint32_t stage,
            std::shared_ptr<Outbox> outbox);
+  Result<std::map<std::string, std::string>> follow_hands();
   void tick();
   void show();
 
@@ -48,8 +55,9 @@ class Training {
   TrainingRequest request_;
   std::uint32_t stage_;
   std::shared_ptr<Outbox> outbox_;
-  PageHand* hand_ = nullptr;  ///< of source_
-  std::unique_ptr<devices::DeviceSource> source_;
+  std::array<PageHand*, kMostHands> hands_{};     ///< of source_; null: the scene has one hand
+  std::vector<devices::DeviceSource*> followed_;  ///< of source_
+  std::unique_ptr<sources::InputSource> source_;
   NewestState newest_;
   std::atomic<bool> ends_{false}, has_ended_{false};
   std::thread ticks_, pictures_;

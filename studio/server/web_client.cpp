@@ -14,6 +14,15 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace websocket = beast::websocket;
 
+namespace {
+
+HandMove move_of(Parameters& hand) {
+  const std::vector<double> p = hand.numbers("position", 3), q = hand.numbers("orientation", 4);
+  return {{{p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]}}, std::uint32_t(hand.number("buttons", 0, 4294967295.0))};
+}
+
+}  // namespace
+
 WebClient::WebClient(Services& services, beast::tcp_stream stream, std::shared_ptr<CountedConnection> counted)
     : services_(services), counted_(std::move(counted)), socket_(std::move(stream)) {}
 
@@ -60,10 +69,11 @@ void WebClient::take(const std::string& text) {
     const std::uint32_t request = std::uint32_t(show->number("request", 0, 4e9));
     if (message->errors().empty()) desk_->show(stage, tick, request);
   } else if (std::optional<Parameters> hand = message->object_if("hand")) {
-    const std::vector<double> p = hand->numbers("position", 3), q = hand->numbers("orientation", 4);
-    const std::uint32_t buttons = std::uint32_t(hand->number("buttons", 0, 4294967295.0));
+    HandMoves moves;
+    moves[0] = move_of(*hand);
     const double time_s = hand->number("time_s", 1e-9, 1e12);
-    if (message->errors().empty()) desk_->move({{p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]}}, buttons, time_s);
+    if (std::optional<Parameters> second = hand->object_if("second")) moves[1] = move_of(*second);
+    if (message->errors().empty()) desk_->move(moves, time_s);
   } else if (const std::optional<double> id = message->number_if("cancel", 0, 9e15)) {
     if (const auto it = calls_.find(std::int64_t(*id)); it != calls_.end()) *it->second = true;
   } else {

@@ -117,7 +117,7 @@ RunOutcome run_session(const Model& model, State& state, sources::InputSource& s
     const recordings::TickRecord record = recordings::make_record(
         *inputs, report, tick_time, recordings::state_hash(state), source.input_age(), outcome.slip);
     writer.append(state, record);
-    watch.look(tick, inputs->tool, report);
+    watch.look(tick, *inputs, report);
     if (const double late = options.in_real_time ? clock.end_tick() : 0; late > 0) {
       ++outcome.late_ticks;
       writer.event({.tick = tick, .kind = recordings::EventKind::late_tick, .late = late});

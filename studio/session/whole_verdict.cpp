@@ -43,10 +43,10 @@ Result<std::vector<Event>> find_events(recordings::SessionReader& reader, const 
     for (std::int64_t tick = from; const recordings::TickRecord& record : *records) {
       stepping::StepReport report;
       report.tool_force = record.tool_force, report.depth = record.depth;
-      report.contacts = record.contacts, report.severed = record.severed;
+      report.contacts = record.contacts, report.severed = record.severed, report.second = record.second;
       if (const auto more = news.find(tick); more != news.end())
         report.came_loose = more->second.came_loose, report.inverted = more->second.inverted;
-      watch.look(tick++, record.inputs.tool, report);
+      watch.look(tick++, record.inputs, report);
     }
   }
   watch.finish(count);

@@ -18,9 +18,7 @@ OpenedSource play_script(const scenes::Script& script, const Model& model) {
 Result<OpenedSource> open_script(const std::string& file, const Model& model) {
   const Result<std::string> text = output::read_text_file(file);
   if (!text) return text.errors();
-  std::vector<std::string> tools;
-  for (const Tool& tool : model.tools) tools.push_back(tool.name);
-  const Result<scenes::Script> script = scenes::read_script(*text, file, tools);
+  const Result<scenes::Script> script = scenes::read_script_for(*text, file, model);
   if (!script) return script.errors();
   return play_script(*script, model);
 }

@@ -15,7 +15,7 @@ class ScriptSource : public InputSource {
   explicit ScriptSource(scenes::ScriptPlayer player) : player_(std::move(player)) {}
 
   std::optional<Inputs> next(std::int64_t tick, const stepping::StepReport& last) override {
-    if (tick > 0) feel(tick - 1, last.tool_force);
+    if (tick > 0) feel(tick - 1, last);
     if (tick >= player_.tick_count()) return std::nullopt;
     return player_.at(tick);
   }
@@ -23,12 +23,15 @@ class ScriptSource : public InputSource {
   std::vector<recordings::Event> take_events() override { return std::exchange(events_, {}); }
 
  private:
-  void feel(std::int64_t tick, Vec3 force) {
+  void feel(std::int64_t tick, const stepping::StepReport& report) {
+    const std::size_t hand = player_.hand_at(tick);
+    const Vec3 force = report.of_hand(hand).tool_force;
+    const auto tell = [&](recordings::EventKind kind) {
+      events_.push_back({.kind = kind, .hand = std::int32_t(hand), .force = norm(force)});
+    };
     const scenes::PressEnd end = player_.feel(tick, force);
-    if (end == scenes::PressEnd::at_force)
-      events_.push_back({.kind = recordings::EventKind::press_reached_force, .force = norm(force)});
-    if (end == scenes::PressEnd::at_depth)
-      events_.push_back({.kind = recordings::EventKind::press_gave_up, .force = norm(force)});
+    if (end == scenes::PressEnd::at_force) tell(recordings::EventKind::press_reached_force);
+    if (end == scenes::PressEnd::at_depth) tell(recordings::EventKind::press_gave_up);
   }
 
   scenes::ScriptPlayer player_;

@@ -87,6 +87,29 @@ TEST_P(EveryIntegrator, AllocatesNothingWhereBodiesMeet) {
     })) << kind;
 }
 
+TEST_P(EveryIntegrator, AllocatesNothingWithTwoHands) {
+  network::Material material = testing::liver_material();
+  if (GetParam() == Integrator::leapfrog) material.viscosity = 5e3, material.stiffness_scale = 0.05;
+  Model model = testing::make_skinned_block(6, 6, 4, network::Structure::mass_spring, 0.003, material);
+  model.tools = {testing::ball(0.01), testing::ball(0.01)}, model.hands = 2;
+  testing::use_integrator(model, GetParam());
+  stepping::Stepper stepper(model);
+  State state = rest_state(model);
+  long before = 0;
+  std::int32_t contacts = 0;
+  for (int tick = 0; tick < 60; ++tick) {
+    if (tick == 1) before = allocations;
+    Inputs inputs;
+    inputs.tool = 0, inputs.position = {-0.006, 0, 0.046 - 5e-5 * tick};
+    inputs.second.tool = 1, inputs.second.position = {0.006, 0, 0.046 - 5e-5 * tick};
+    const stepping::StepReport report = stepper.step(state, inputs);
+    ASSERT_EQ(report.status, stepping::StepStatus::ok);
+    contacts += std::min(report.contacts, report.second.contacts);
+  }
+  EXPECT_EQ(allocations, before);
+  EXPECT_GT(contacts, 0);
+}
+
 Model springs_only() {
   network::Material material = testing::liver_material();
   material.stiffness_scale = 0.29;

@@ -24,8 +24,8 @@ constexpr std::int64_t most_memory = 1000000;  // of its process [kB]
 constexpr std::int64_t ticks = 200;
 
 /// A session in which a ball presses and a blade cuts, with events.
-void record_to_forge(const std::string& path, bool meets) {
-  recordings::SessionStart start = small_start(4, 3, 3);
+void record_to_forge(const std::string& path, bool meets, std::int32_t hands) {
+  recordings::SessionStart start = small_start(4, 3, 3, hands);
   start.model.organs[0].meets_itself = meets;
   start.model.organs_meet = meets;
   auto writer = recordings::SessionWriter::create(path, start, {.wait_when_full = true, .keyframe_ticks = 50});
@@ -34,7 +34,7 @@ void record_to_forge(const std::string& path, bool meets) {
   stepping::Stepper stepper(start.model);
   const double top = start.model.rest_position.z.back();
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
-    const Inputs inputs = scripted_inputs(300 + tick, top);
+    const Inputs inputs = scripted_inputs(300 + tick, top, hands);
     const stepping::StepReport report = stepper.step(state, inputs);
     writer->append(state, recordings::make_record(inputs, report, 3e-4, recordings::state_hash(state), 1e-3));
     if (report.severed > 0)
@@ -47,7 +47,8 @@ void record_to_forge(const std::string& path, bool meets) {
 /// Changes one thing of a session file. Seeded.
 class Forger {
  public:
-  explicit Forger(unsigned seed) : random_(seed) {}
+  /// `hands`: of the session.
+  Forger(unsigned seed, std::int32_t hands) : hands_(hands), random_(seed) {}
 
   /// Changes the file at `path`. True if what it now says is false for sure, so that it must not be "same".
   bool operator()(const std::string& path, std::string& what) {
@@ -176,7 +177,7 @@ class Forger {
   bool change_record(Forge& forge, std::string& what) {
     bool is_false = false;
     forge.change("chunk", "0", [&](Bytes& content) {
-      const auto decoder = RecordDecoder::create(column_text());
+      const auto decoder = RecordDecoder::create(column_text(hands_));
       // A busy machine closes chunks before they are full.
       std::int64_t count = 100;
       while (count > 0 && !decoder->decode(content, count)) --count;
@@ -186,22 +187,32 @@ class Forger {
       const recordings::TickRecord before = record;
       const double number = std::bit_cast<double>(strange(FieldNode::Type::f64));
       const auto integer = std::int32_t(strange(FieldNode::Type::i32));
-      double* const doubles[] = {
-          &record.tool_force.x,      &record.tool_force.z,      &record.depth,
-          &record.inputs.position.x, &record.inputs.position.z, &record.inputs.world_from_tool.w};
-      std::int32_t* const integers[] = {&record.status, &record.iterations, &record.contacts, &record.severed,
-                                        &record.inputs.tool};
-      const std::int64_t choice = pick(12);
-      if (choice < 6)
+      // Those of the second hand come last.
+      double* const doubles[] = {&record.tool_force.x,
+                                 &record.tool_force.z,
+                                 &record.depth,
+                                 &record.inputs.position.x,
+                                 &record.inputs.position.z,
+                                 &record.inputs.world_from_tool.w,
+                                 &record.second.tool_force.y,
+                                 &record.second.depth,
+                                 &record.inputs.second.position.y,
+                                 &record.inputs.second.world_from_tool.x};
+      std::int32_t* const integers[] = {
+          &record.status,      &record.iterations,      &record.contacts,          &record.severed,
+          &record.inputs.tool, &record.second.contacts, &record.inputs.second.tool};
+      const std::int64_t double_count = hands_ > 1 ? 10 : 6, integer_count = hands_ > 1 ? 7 : 5;
+      const std::int64_t choice = pick(double_count + integer_count + 1);
+      if (choice < double_count)
         *doubles[choice] = number;
-      else if (choice < 11)
-        *integers[choice - 6] = integer;
+      else if (choice < double_count + integer_count)
+        *integers[choice - double_count] = integer;
       else
         record.state_hash = strange(FieldNode::Type::u64);
       what += " record field " + std::to_string(choice);
       is_false = std::memcmp(&before, &record, sizeof record) != 0;
       content.clear();
-      put_records(content, *records);
+      put_records(content, *records, hands_);
     });
     return is_false;
   }
@@ -224,6 +235,7 @@ class Forger {
     return true;
   }
 
+  std::int32_t hands_;
   std::mt19937 random_;
 };
 
@@ -253,25 +265,31 @@ int read_everything(const std::string& path) {
   return verdict->same ? said_same : said_different;
 }
 
+std::int32_t hands_of(const std::string& path) {
+  const auto reader = recordings::SessionReader::open(path);
+  CTPM_CHECK(bool(reader), "a session to forge");
+  return reader->start().model.hands;
+}
+
 }  // namespace
 
 bool forge_session(const std::string& path, unsigned seed, std::string& what) {
   what = "seed " + std::to_string(seed) + ":";
-  return Forger(seed)(path, what);
+  return Forger(seed, hands_of(path))(path, what);
 }
 
 void verify_forgeries(int count, unsigned seed) {
   const Folder folder;
-  record_to_forge(folder / "plain.ctpm", false), record_to_forge(folder / "meets.ctpm", true);
-  ASSERT_EQ(read_everything(folder / "plain.ctpm"), said_same);
-  ASSERT_EQ(read_everything(folder / "meets.ctpm"), said_same);
+  const char* const names[] = {"meets.ctpm", "two-hands.ctpm", "plain.ctpm", "plain.ctpm"};
+  record_to_forge(folder / "plain.ctpm", false, 1), record_to_forge(folder / "meets.ctpm", true, 1);
+  record_to_forge(folder / "two-hands.ctpm", false, 2);
+  for (const char* name : names) ASSERT_EQ(read_everything(folder / name), said_same) << name;
   int said[threw] = {};
   double longest = 0;
   std::int64_t largest = 0;
   for (int i = 0; i < count; ++i) {
     const std::string path = folder / "forged.ctpm";
-    std::filesystem::copy_file(folder / (i % 4 == 0 ? "meets.ctpm" : "plain.ctpm"), path,
-                               std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::copy_file(folder / names[i % 4], path, std::filesystem::copy_options::overwrite_existing);
     std::string what;
     bool is_false = false;
     try {

@@ -178,11 +178,12 @@ TEST(Fuzz, ASurfaceIsRefusedOrCanBeDrawn) {
 }
 
 TEST(Fuzz, RecordsAndEventsAreRefusedOrDecoded) {
-  const recordings::SessionStart start = tiny_start();
+  recordings::SessionStart start = tiny_start();
+  start.model.hands = 2, start.model.tools.push_back(ball(0.005));
   const Lived lived = live(start, 100, [](const State&, const recordings::TickRecord&) {});
   Bytes records;
-  put_records(records, lived.records);
-  const auto decoder = RecordDecoder::create(column_text());
+  put_records(records, lived.records, 2);
+  const auto decoder = RecordDecoder::create(column_text(2));
   ASSERT_TRUE(decoder);
   ASSERT_TRUE(decoder->decode(records, 100));
   const Bytes event = bytes_of(recordings::Event{
@@ -203,7 +204,7 @@ TEST(Fuzz, RecordsAndEventsAreRefusedOrDecoded) {
 }
 
 TEST(Fuzz, AListOfColumnsIsRefusedOrKnown) {
-  const std::string known = column_text();
+  const std::string known = column_text(2);
   Mutator mutate(5);
   int refused = 0;
   for (int i = 0; i < 2000; ++i) {

@@ -112,7 +112,7 @@ void kill_together(std::span<Shared* const> memory, const recordings::SessionSta
 
 void kill_recorders(int count) {
   constexpr int together = 2;
-  const recordings::SessionStart start = small_start(3, 2, 2);
+  const recordings::SessionStart starts[] = {small_start(3, 2, 2), small_start(3, 2, 2, 2)};
   std::mt19937 random(12345);
   void* memory = ::mmap(nullptr, together * sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   ASSERT_NE(memory, MAP_FAILED);
@@ -121,8 +121,8 @@ void kill_recorders(int count) {
   std::int64_t most_lost_ns = 0;
   for (int killed = 0; killed < count && !::testing::Test::HasFailure(); killed += together) {
     SCOPED_TRACE("kills from " + std::to_string(killed));
-    kill_together(std::span(places).first(std::size_t(std::min(together, count - killed))), start, random,
-                  most_lost_ns);
+    kill_together(std::span(places).first(std::size_t(std::min(together, count - killed))),
+                  starts[killed / together % 2], random, most_lost_ns);
   }
   std::printf("%d killed recorders: at most %.1f ms lost\n", count, 1e-6 * double(most_lost_ns));
   ::munmap(memory, together * sizeof(Shared));

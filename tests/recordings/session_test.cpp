@@ -466,7 +466,7 @@ TEST(StateHash, DependsOnEveryFieldAndEveryBit) {
     }
     ++fields;
   });
-  EXPECT_EQ(fields, 32);
+  EXPECT_EQ(fields, 36);
   EXPECT_EQ(recordings::state_hash(state), before);
 }
 

@@ -57,21 +57,24 @@ inline std::string text_of(const Errors& errors) {
   return text;
 }
 
-/// Start of a session on a small block with a ball and a scalpel.
-inline recordings::SessionStart small_start(int ni = 3, int nj = 3, int nk = 3) {
+/// Start of a session on a small block with a ball and a scalpel, and another ball for a second hand.
+inline recordings::SessionStart small_start(int ni = 3, int nj = 3, int nk = 3, std::int32_t hands = 1) {
   recordings::SessionStart start;
   start.scene_text = "{ \"scene\": \"a block\" }\n";
   start.look = "block rose";
   start.model = make_skinned_block(ni, nj, nk, network::Structure::ctpm, 0.006);
   start.model.tools = {ball(0.006), scalpel(0.02)};
+  if (hands > 1) start.model.tools.push_back(ball(0.005)), start.model.tools.back().name = "other ball";
+  start.model.hands = hands;
   start.initial_state = rest_state(start.model);
   start.build_fingerprint = "test build";
   start.metadata = {{"user", "a trainee"}, {"empty", ""}};
   return start;
 }
 
-/// Inputs of these tests: the ball presses the block from above, then the scalpel sweeps through it.
-inline Inputs scripted_inputs(std::int64_t tick, double top) {
+/// Inputs of these tests: the ball presses the block from above, then the scalpel sweeps through it. A second hand
+/// presses beside it with the other ball, but for some ticks in which it is empty.
+inline Inputs scripted_inputs(std::int64_t tick, double top, std::int32_t hands = 1) {
   Inputs inputs;
   const double t = 1e-3 * static_cast<double>(tick);
   if (tick % 700 < 400) {
@@ -81,6 +84,10 @@ inline Inputs scripted_inputs(std::int64_t tick, double top) {
     inputs.tool = 1;
     inputs.position = {-0.03 + 2e-4 * static_cast<double>(tick % 700 - 400), 0.0061, top - 0.01};
     inputs.buttons = 1;
+  }
+  if (hands > 1 && tick % 300 > 40) {
+    inputs.second.tool = 2, inputs.second.buttons = 4;
+    inputs.second.position = {-0.008, 0.004, top + 0.005 - 0.003 * std::sin(3 * t) * std::sin(3 * t)};
   }
   return inputs;
 }
@@ -99,7 +106,7 @@ Lived live(const recordings::SessionStart& start, std::int64_t ticks, Each&& eac
   stepping::Stepper stepper(start.model);
   const double top = start.model.rest_position.z.back();
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
-    const Inputs inputs = scripted_inputs(tick, top);
+    const Inputs inputs = scripted_inputs(tick, top, start.model.hands);
     const stepping::StepReport report = stepper.step(lived.last, inputs);
     lived.records.push_back(recordings::make_record(inputs, report, static_cast<double>(250000 + tick % 977) / 1e9,
                                                     recordings::state_hash(lived.last)));

@@ -186,6 +186,7 @@ TEST(StoredNumbers, DefaultsOfFieldsThatEarlierSessionsLackAreForEver) {
   EXPECT_EQ(model.cut_face_stiffening, 8);
   EXPECT_EQ(model.tissue_cells.size(), 0u);
   EXPECT_EQ(model.inversion_threshold, 0.4);
+  EXPECT_EQ(model.hands, 1);
   const Tool tool;
   EXPECT_EQ(tool.trail_distance, 0.2e-3);
   EXPECT_EQ(tool.blade_reach, 15e-3);

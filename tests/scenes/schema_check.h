@@ -57,6 +57,9 @@ class SchemaCheck {
     const auto unless = [&](bool fits) { return fits ? "" : at + ": " + word; };
     const bool is_number = value.kind == scenes::JsonKind::number, is_list = value.kind == scenes::JsonKind::list;
     const double count = double(value.children.size());
+    if (word == "oneOf")
+      return unless(std::count_if(rule.children.begin(), rule.children.end(),
+                                  [&](const scenes::JsonNode& one) { return problem(one, value, at).empty(); }) == 1);
     if (word == "$schema" || word == "title" || word == "description" || word == "default" || word == "$defs")
       return "";
     if (word == "type") return unless(has_type(value, rule.text));

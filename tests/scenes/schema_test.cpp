@@ -105,8 +105,10 @@ TEST(ScriptSchema, RefusesWhatTheReaderRefuses) {
     return R"({"format": "ctpm-script", "version": 1, "steps": [)" + step + "]}";
   };
   ASSERT_EQ(schema.problem_of(script(R"({"wait_s": 1})")), "");
+  EXPECT_EQ(schema.problem_of(script(R"({"put_away": true, "hand": 2})")), "");
   for (const std::string step :
-       {R"({})", R"({"wait_s": 1, "put_away": true})", R"({"wait_s": -1})", R"({"put_away": 1})", R"({"sleep": 1})",
+       {R"({})", R"({"hand": 1})", R"({"put_away": true, "hand": 3})", R"({"put_away": true, "hand": 0})",
+        R"({"wait_s": 1, "put_away": true})", R"({"wait_s": -1})", R"({"put_away": 1})", R"({"sleep": 1})",
         R"({"take": {"tool": "ball"}})", R"({"take": {"tool": "ball", "at_mm": [0, 0, 0], "speed": 1}})"}) {
     EXPECT_NE(schema.problem_of(script(step)), "") << step;
     EXPECT_FALSE(scenes::read_script(script(step), "s.json", {"ball"})) << step;

@@ -74,7 +74,8 @@ std::vector<Shipped> shipped_scripts() {
       tool.name = spec.name, tool.kind = spec.kind;
       tool.radius = spec.radius.value_or(0), tool.blade_length = spec.blade_length.value_or(0);
     }
-    const auto script = scenes::read_script(read_whole(entry.path()), entry.path().string(), names);
+    const auto script =
+        scenes::read_script(read_whole(entry.path()), entry.path().string(), names, scene->spec.hands.value_or(1));
     if (!script) {
       ADD_FAILURE() << to_string(script.errors().front());
       continue;
@@ -89,7 +90,7 @@ std::vector<Shipped> shipped_scripts() {
 
 /// How deep a tool is in the organs at rest: a ball beyond its nearest vertex, a tip below the top around it
 /// [m]. Negative: not in it.
-double depth_of(const Shipped& shipped, const Inputs& inputs) {
+double depth_of(const Shipped& shipped, const Hand& inputs) {
   const Tool& tool = shipped.tools[static_cast<std::size_t>(inputs.tool)];
   double depth = -1;
   for (const Vec3& p : shipped.vertices) {
@@ -105,7 +106,7 @@ double depth_of(const Shipped& shipped, const Inputs& inputs) {
 TEST(ShippedScripts, EachSceneHasOne) {
   std::vector<std::string> names;
   for (const Shipped& shipped : shipped_scripts()) names.push_back(scene_of(shipped.name));
-  for (const std::string scene : {"liver", "kidney", "skin", "incision", "two-organs"})
+  for (const std::string scene : {"liver", "kidney", "skin", "incision", "two-organs", "two-hands"})
     EXPECT_NE(std::find(names.begin(), names.end(), scene), names.end()) << scene;
 }
 
@@ -113,7 +114,8 @@ TEST(ShippedScripts, WrittenAndReadAgainTheyAreTheSame) {
   for (const Shipped& shipped : shipped_scripts()) {
     std::vector<std::string> names;
     for (const Tool& tool : shipped.tools) names.push_back(tool.name);
-    const auto again = scenes::read_script(scenes::write_script(shipped.script), "again.json", names);
+    const auto again =
+        scenes::read_script(scenes::write_script(shipped.script), "again.json", names, shipped.scene.hands.value_or(1));
     ASSERT_TRUE(again) << shipped.name;
     EXPECT_EQ(*again, shipped.script) << shipped.name;
   }
@@ -122,23 +124,25 @@ TEST(ShippedScripts, WrittenAndReadAgainTheyAreTheSame) {
 TEST(ShippedScripts, ToolsAppearOutsideGoWellInAndLeave) {
   for (const Shipped& shipped : shipped_scripts()) {
     const scenes::ScriptPlayer player(shipped.script, shipped.tools, kTick);
-    double deepest = -1, last = 1;
-    std::int32_t held = -1;
-    // Every tenth tick: 0.8 mm of way at the most.
-    for (std::int64_t tick = 0; tick < player.tick_count(); tick += 10) {
-      const Inputs inputs = player.at(tick);
-      if (inputs.tool >= 0) {
-        const double depth = depth_of(shipped, inputs);
-        if (held != inputs.tool) {
-          EXPECT_LT(depth, kTouch) << shipped.name << ": appears in the organ, tick " << tick;
+    for (std::size_t hand = 0; hand < std::size_t(shipped.scene.hands.value_or(1)); ++hand) {
+      double deepest = -1, last = 1;
+      std::int32_t held = -1;
+      // Every tenth tick: 0.8 mm of way at the most.
+      for (std::int64_t tick = 0; tick < player.tick_count(); tick += 10) {
+        const Hand inputs = player.at(tick).hand(hand);
+        if (inputs.tool >= 0) {
+          const double depth = depth_of(shipped, inputs);
+          if (held != inputs.tool) {
+            EXPECT_LT(depth, kTouch) << shipped.name << ": appears in the organ, tick " << tick;
+          }
+          deepest = std::max(deepest, depth), last = depth;
         }
-        deepest = std::max(deepest, depth), last = depth;
+        held = inputs.tool;
       }
-      held = inputs.tool;
+      EXPECT_GT(deepest, kWorthSeeing) << shipped.name << ", hand " << hand;
+      EXPECT_LT(last, 0) << shipped.name << ": still in the organ when it is put away";
+      EXPECT_EQ(player.at(player.tick_count() - 1).hand(hand).tool, -1) << shipped.name;
     }
-    EXPECT_GT(deepest, kWorthSeeing) << shipped.name;
-    EXPECT_LT(last, 0) << shipped.name << ": still in the organ when it is put away";
-    EXPECT_EQ(player.at(player.tick_count() - 1).tool, -1) << shipped.name;
   }
 }
 

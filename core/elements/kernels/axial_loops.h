@@ -95,6 +95,26 @@ void add_axial_forces(const AxialArrays& m, const AxialBatch* first, const Axial
     add_axial_forces_with<false>(m, first, last);
 }
 
+/// The implicit step of c z' = k2 (x - z) - k1 z up to where an elongation acts.
+void find_acting_kelvin(const AxialArrays& m, const ActingKelvin& acting, const AxialBatch* first,
+                        const AxialBatch* last) {
+  for (; first != last; ++first) {
+    if (first->law != AxialLaw::two_sphere_tpm || !first->adds_a) continue;
+    const double *rest = m.parameters + first->parameters, *k = rest + first->count;
+    const double *xa = m.x + first->a, *ya = m.y + first->a, *za = m.z + first->a;
+    const double *xb = m.x + first->b, *yb = m.y + first->b, *zb = m.z + first->b;
+    const double *z = m.kelvin_elongation + first->internal, *damping = acting.damping + first->internal,
+                 *sum = acting.sum + first->internal;
+    double* __restrict out = acting.elongation + first->internal;
+    CTPM_INDEPENDENT
+    for (int32_t i = 0; i < first->count; ++i) {
+      const double dx = xb[i] - xa[i], dy = yb[i] - ya[i], dz = zb[i] - za[i];
+      const double length = root_of(dx * dx + dy * dy + dz * dz);
+      out[i] = (damping[i] * z[i] + k[i] * (length - rest[i])) / sum[i];
+    }
+  }
+}
+
 /// Tension [N] and axial coupling [kg] that act in a step of h.
 void find_tension(const AxialArrays& m, const AxialBatch& batch, const Directions& d, double* __restrict tension,
                   double* __restrict coupling) {

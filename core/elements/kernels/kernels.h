@@ -60,6 +60,12 @@ struct AxialArrays {
   float *root_x, *root_y, *root_z, *across;  ///< linearised coupling (place_count)
 };
 
+/// What the Kelvin elongations follow from that act in a step (internal_count each).
+struct ActingKelvin {
+  const double *damping, *sum;  ///< [N/m]
+  double* elongation;           ///< result [m]
+};
+
 /// Lines of three spheres whose middle is pulled towards the midpoint of its ends: constraints and angle springs.
 ///
 /// If the three spheres all advance by one from line to line, the lines form a row. A row ends before its three ranges
@@ -144,6 +150,7 @@ struct SolverKernels {
 struct Kernels {
   void (*add_axial_forces)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last);
   void (*linearise_axial)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last);
+  void (*find_acting_kelvin)(const AxialArrays&, const ActingKelvin&, const AxialBatch* first, const AxialBatch* last);
 
   /// Computes lambda of lines whose middle spheres are in the slab, and the softness of those spheres (Eq. 8).
   void (*measure_line)(const LineArrays&, const LineBatch&);

@@ -91,6 +91,7 @@ export interface SceneView {
   name: string;
   organs: OrganView[];
   tools: ToolView[];
+  hands: number; // 1 or 2
   cameras: CameraView[];
   damage_force_n: number;
   least: Vector;
@@ -221,7 +222,18 @@ export interface Spheres {
   organs: OrganSpheres[];
 }
 
-export interface Frame {
+/** What a hand holds, and what the tissue does to it. */
+export interface HandFrame {
+  tool: number; // -1: none
+  position: Vector;
+  orientation: [number, number, number, number]; // w x y z
+  force: Vector;
+  depth: number;
+  contacts: number;
+  hand: Vector;
+}
+
+export interface Frame extends HandFrame {
   kind: "frame";
   stage: number;
   topology: number;
@@ -231,14 +243,8 @@ export interface Frame {
   isLive: boolean;
   time: number;
   tick: number;
-  tool: number;
-  position: Vector;
-  orientation: [number, number, number, number]; // w x y z
-  force: Vector;
-  depth: number;
-  contacts: number;
   severed: number;
-  hand: Vector;
+  second: HandFrame | null; // of the second hand, in a scene with two
   tickTime: number;
   lateTicks: number;
   tickP99: number;
@@ -295,8 +301,12 @@ function readTriangles(r: Reader): Triangles {
 
 function readFrame(r: Reader): Frame {
   const stage = r.u32(), topology = r.u32(), missed = r.u32(), request = r.u32(), flags = r.u32();
-  const time = r.f64(), tick = r.f64(), tool = r.i32(), position = r.vector();
-  const orientation: Frame["orientation"] = [r.f32(), r.f32(), r.f32(), r.f32()];
+  const readPose = () => {
+    const tool = r.i32(), position = r.vector();
+    const orientation: HandFrame["orientation"] = [r.f32(), r.f32(), r.f32(), r.f32()];
+    return { tool, position, orientation };
+  };
+  const time = r.f64(), tick = r.f64(), pose = readPose();
   const force = r.vector(), depth = r.f32(), contacts = r.i32(), severed = r.u32(), hand = r.vector();
   const tickTime = r.f32(), lateTicks = r.u32(), tickP99 = r.f32(), slip = r.f32(), count = r.u32();
   const organs: Float32Array[] = [];
@@ -311,9 +321,14 @@ function readFrame(r: Reader): Frame {
     }
     organs.push(position);
   }
+  let second: HandFrame | null = null;
+  if (r.at < r.bytes.byteLength) {
+    const of = readPose();
+    second = { ...of, force: r.vector(), depth: r.f32(), contacts: r.i32(), hand: r.vector() };
+  }
   return {
     kind: "frame", stage, topology, missed, request, isSame: (flags & 1) !== 0, isLive: (flags & 2) !== 0, time, tick,
-    tool, position, orientation, force, depth, contacts, severed, hand, tickTime, lateTicks, tickP99, slip, organs,
+    ...pose, force, depth, contacts, severed, hand, second, tickTime, lateTicks, tickP99, slip, organs,
   };
 }
 

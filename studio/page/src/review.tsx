@@ -228,7 +228,7 @@ export function Review({ connection, listing, place, onPlace }: {
   );
 }
 
-type ShownFrame = { force: number[]; depth: number; contacts: number; severed: number; isSame: boolean; missed: number; tick: number } | null;
+type ShownFrame = { force: number[]; depth: number; contacts: number; severed: number; isSame: boolean; missed: number; tick: number; second: { force: number[]; depth: number } | null } | null;
 
 function Moment({ connection, player, frame, other }: { connection: Connection; player: Player; frame: ShownFrame; other: ShownFrame }) {
   const [verdict, setVerdict] = useState<{ same: boolean; text: string } | null>(null);
@@ -250,6 +250,9 @@ function Moment({ connection, player, frame, other }: { connection: Connection; 
   const rows = (shown: ShownFrame): [string, string][] => shown ? [
     ["force", newtons(Math.hypot(...shown.force))],
     ["depth", millimetres(shown.depth, 2)],
+    ...(shown.second
+      ? ([["force, left", newtons(Math.hypot(...shown.second.force))], ["depth, left", millimetres(shown.second.depth, 2)]] as [string, string][])
+      : []),
     ["touched", `${shown.contacts} points`],
     ["severed", `${shown.severed} elements`],
     ["replay", shown.isSame ? "as recorded" : "DIFFERS"],

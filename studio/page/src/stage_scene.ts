@@ -1,5 +1,5 @@
 import * as three from "three";
-import { type Frame, type OrganSpheres, readWaitingFrame, type SceneView, type Shapes, type Spheres, type ToolShape, type Triangles, type Vector, type WaitingFrame } from "./protocol";
+import { type Frame, type HandFrame, type OrganSpheres, readWaitingFrame, type SceneView, type Shapes, type Spheres, type ToolShape, type Triangles, type Vector, type WaitingFrame } from "./protocol";
 import { OrganMesh } from "./organ_mesh";
 
 const kArrowPerNewton = 0.007; // [m/N]
@@ -11,7 +11,7 @@ const kAnchored = 0x7fb8ff;
 
 export type Shown = "surface" | "both" | "spheres";
 
-/** One scene with its organs, tool and force. */
+/** One scene with its organs, tools and forces. */
 export class StageScene {
   readonly scene = new three.Scene();
   frame: Frame | null = null; // the one that is drawn
@@ -25,12 +25,12 @@ export class StageScene {
   private spheres: three.InstancedMesh[] = [];
   private shown: Shown = "surface";
   organSpheres: OrganSpheres[] = [];
-  private readonly arrow = makeArrow();
+  private readonly arrows = [makeArrow(), makeArrow()]; // of each hand
   private ghost: three.Mesh | null = null;
 
   constructor(readonly view: SceneView) {
-    this.scene.add(new three.HemisphereLight(0xdfe8ff, 0x3a2e2a, 1.5), this.arrow);
-    this.arrow.visible = false;
+    this.scene.add(new three.HemisphereLight(0xdfe8ff, 0x3a2e2a, 1.5), ...this.arrows);
+    for (const arrow of this.arrows) arrow.visible = false;
   }
 
   /** The shapes of tools, which frames move, and of obstacles, which never move. */
@@ -117,12 +117,14 @@ export class StageScene {
     this.frame = frame;
     frame.organs.forEach((positions, i) => this.organs[i]?.update(positions));
     this.tools.forEach((tool, i) => {
-      tool.visible = i === frame.tool;
-      tool.position.set(...frame.position);
-      const [w, x, y, z] = frame.orientation;
+      const holding = i === frame.second?.tool ? frame.second : frame; // both hands never hold the same tool
+      tool.visible = i === holding.tool;
+      tool.position.set(...holding.position);
+      const [w, x, y, z] = holding.orientation;
       tool.quaternion.set(x, y, z, w);
     });
-    this.showForce(frame);
+    this.showForce(this.arrows[0], frame);
+    if (frame.second) this.showForce(this.arrows[1], frame.second);
     this.onFrame(frame);
     return true;
   }
@@ -147,13 +149,13 @@ export class StageScene {
     this.ghost.quaternion.set(x, y, z, w);
   }
 
-  private showForce(frame: Frame): void {
+  private showForce(arrow: three.Group, frame: HandFrame): void {
     const force = new three.Vector3(...frame.force), size = force.length();
-    this.arrow.visible = size > 0.01 && frame.tool >= 0;
-    if (!this.arrow.visible) return;
-    this.arrow.position.set(...frame.position);
-    this.arrow.quaternion.setFromUnitVectors(new three.Vector3(0, 1, 0), force.divideScalar(size));
-    this.arrow.scale.set(1, Math.min(size * kArrowPerNewton, kLongestArrow) / 0.03, 1);
+    arrow.visible = size > 0.01 && frame.tool >= 0;
+    if (!arrow.visible) return;
+    arrow.position.set(...frame.position);
+    arrow.quaternion.setFromUnitVectors(new three.Vector3(0, 1, 0), force.divideScalar(size));
+    arrow.scale.set(1, Math.min(size * kArrowPerNewton, kLongestArrow) / 0.03, 1);
   }
 
   dispose(): void {

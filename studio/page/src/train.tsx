@@ -130,7 +130,8 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
     setEnded(null);
   };
   const frame = trainer?.scene?.frame ?? null, view = trainer?.scene?.view ?? null;
-  const force = frame ? Math.hypot(...frame.force) : 0;
+  const hands = frame?.second ? [frame, frame.second] : frame ? [frame] : [];
+  const force = Math.hypot(...(trainer?.ownFrame?.force ?? [0]));
   const limit = view?.damage_force_n || 10;
 
   return (
@@ -173,9 +174,18 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
         {phase === "running" && trainer && view && (
           <div class="transport">
             <button type="button" class="main" onClick={() => void trainer.end()}>End</button>
+            {trainer.handCount > 1 && (
+              <div class="buttons" role="group" aria-label="Hand">
+                {[0, 1].map((hand) => (
+                  <button key={hand} type="button" aria-pressed={trainer.led === hand} onClick={() => trainer.lead(hand)}>
+                    {trainer.led !== hand && <kbd>X</kbd>} {hand === 0 ? "right hand" : "left hand"}
+                  </button>
+                ))}
+              </div>
+            )}
             <div class="buttons" role="group" aria-label="Tool">
               {view.tools.map((tool, i) => (
-                <button key={tool.name} type="button" aria-pressed={trainer.tool === i} onClick={() => trainer.setTool(i)}>
+                <button key={tool.name} type="button" aria-pressed={trainer.tool === i} disabled={trainer.isTaken(i)} onClick={() => trainer.setTool(i)}>
                   <kbd>{i + 1}</kbd> {tool.name}
                 </button>
               ))}
@@ -200,9 +210,14 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
           <>
             <Section title="Now">
               <Readings rows={[
-                ["force", newtons(force)],
-                ["depth", millimetres(frame?.depth ?? 0, 2)],
-                ["touched", `${frame?.contacts ?? 0} points`],
+                ...hands.flatMap((hand, i): [string, string][] => {
+                  const of = hands.length < 2 ? "" : i === 0 ? ", right" : ", left";
+                  return [
+                    [`force${of}`, newtons(Math.hypot(...hand.force))],
+                    [`depth${of}`, millimetres(hand.depth, 2)],
+                    [`touched${of}`, `${hand.contacts} points`],
+                  ];
+                }),
                 ["severed", `${frame?.severed ?? 0} elements`],
                 ["last tick, p99", `${(1e3 * (frame?.tickTime ?? 0)).toFixed(2)}, ${(1e3 * (frame?.tickP99 ?? 0)).toFixed(2)} ms`],
                 ["late ticks", String(frame?.lateTicks ?? 0)],

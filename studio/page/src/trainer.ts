@@ -2,7 +2,7 @@ import * as three from "three";
 import type { Binary, Connection } from "./connection";
 import { readGamepad } from "./gamepad";
 import { orientationOf } from "./pose";
-import type { BegunTraining, EndedTraining, Frame, Motion, SceneView, Vector } from "./protocol";
+import type { BegunTraining, EndedTraining, Frame, HandFrame, Motion, SceneView, Vector } from "./protocol";
 import { StageScene } from "./stage_scene";
 import type { Viewer } from "./viewer";
 
@@ -20,11 +20,22 @@ const kSteep = 0.85; // cosine between up and the line of sight, beyond which th
 const kLookAhead = 1, kAhead = 0.25; // of the expert's motion [s]
 const kNear = 0.03; // to the expert's path, to have reached it [m]
 const kMargin = 0.06; // around the organs that the hand may use [m]
+const kApart = 0.03; // of two hands from the middle [m]
 
-/** A session that mouse and keys lead. */
+/** A hand as the page leads it. */
+interface LedHand {
+  target: three.Vector3; // where the pointer wants it
+  hand: three.Vector3;
+  turn: three.Quaternion;
+  tool: number; // -1: none
+}
+
+const makeHand = (): LedHand => ({ target: new three.Vector3(), hand: new three.Vector3(), turn: new three.Quaternion(), tool: 0 });
+
+/** A session that mouse, keys and gamepad lead. */
 export class Trainer {
   scene: StageScene | null = null;
-  tool = 0; // -1: none
+  led = 0; // hand that mouse, keys and gamepad lead; the other one stays where it was left
   started: number | null = null; // when the hand was taken up [ms]
   poses = 0; // sent so far
   hasGamepad = false;
@@ -32,9 +43,7 @@ export class Trainer {
   onEnded: (ended: EndedTraining) => void = () => {};
   onFailing: (problem: string) => void = () => {}; // what is recorded cannot be saved now
   private view: SceneView | null = null;
-  private readonly target = new three.Vector3();
-  private readonly hand = new three.Vector3();
-  private readonly turn = new three.Quaternion();
+  private readonly hands = [makeHand(), makeHand()];
   private readonly box = new three.Box3();
   private motion: Motion | null = null;
   private reached = 0; // pose of the expert's motion
@@ -55,7 +64,38 @@ export class Trainer {
     return this.timer !== null;
   }
 
-  /** Loads a scene and takes the tool in the hand. `text` is taken in place of its file's; `output` undefined: nothing is recorded. */
+  private get own(): LedHand {
+    return this.hands[this.led];
+  }
+
+  /** The tool in the hand that is led; -1: none. */
+  get tool(): number {
+    return this.own.tool;
+  }
+
+  /** Whether the other hand holds a tool, or one that does not go with it: one blade cuts at a time. */
+  isTaken(tool: number): boolean {
+    if (this.handCount < 2) return false;
+    const tools = this.view!.tools, other = this.hands[1 - this.led].tool;
+    return other === tool || (tools[other]?.kind === "scalpel" && tools[tool]?.kind === "scalpel");
+  }
+
+  get handCount(): number {
+    return this.view?.hands ?? 1;
+  }
+
+  /** What the newest frame says of the hand that is led. */
+  get ownFrame(): HandFrame | null {
+    const frame = this.scene?.frame ?? null;
+    return this.led === 1 ? (frame?.second ?? null) : frame;
+  }
+
+  /** Mouse, keys and gamepad lead the other hand from now on. */
+  lead(hand: number): void {
+    if (hand < this.handCount) this.led = hand;
+  }
+
+  /** Loads a scene and takes the tools in the hands. `text` is taken in place of its file's; `output` undefined: nothing is recorded. */
   async begin(scene: string, text: string | undefined, output: string | undefined, signal: AbortSignal): Promise<BegunTraining> {
     this.release();
     this.viewer.set(kTrainStage, null);
@@ -89,14 +129,14 @@ export class Trainer {
 
   setTool(tool: number): void {
     const count = this.view?.tools.length ?? 0;
-    if (tool < count) this.tool = tool;
+    if (tool < count && !this.isTaken(tool)) this.own.tool = tool;
     this.send();
   }
 
   /** Moves the hand in its plane, by pixels of the picture. */
   movePixels(right: number, down: number): void {
     const { camera, canvas } = this.viewer;
-    const away = camera.position.distanceTo(this.hand);
+    const away = camera.position.distanceTo(this.own.hand);
     const metres = ((2 * away * Math.tan((camera.fov * Math.PI) / 360)) / canvas.clientHeight) * this.gain();
     this.moveBy(right * metres, -down * metres, 0);
   }
@@ -118,7 +158,8 @@ export class Trainer {
     };
     const move = moves[key], turn = turns[key.toLowerCase()];
     if (move) this.moveBy(...move);
-    else if (turn) this.turn.multiply(new three.Quaternion().setFromAxisAngle(new three.Vector3(...turn), kTurnStep * (isFine ? 0.25 : 1)));
+    else if (turn) this.own.turn.multiply(new three.Quaternion().setFromAxisAngle(new three.Vector3(...turn), kTurnStep * (isFine ? 0.25 : 1)));
+    else if (key.toLowerCase() === "x" && this.handCount > 1) this.lead(1 - this.led);
     else if (/^[1-9]$/.test(key)) this.setTool(Number(key) - 1);
     else return false;
     this.send();
@@ -132,16 +173,24 @@ export class Trainer {
     if (!pad) return;
     const time = Math.min(performance.now() - this.sentAt, 50) / 1e3, way = kPadSpeed * time * this.gain();
     if (pad.right || pad.up || pad.deep) this.shift(way * pad.right, way * pad.up, way * pad.deep);
-    const turn = (axis: Vector, angle: number) => this.turn.multiply(new three.Quaternion().setFromAxisAngle(new three.Vector3(...axis), angle));
+    const turn = (axis: Vector, angle: number) => this.own.turn.multiply(new three.Quaternion().setFromAxisAngle(new three.Vector3(...axis), angle));
     if (pad.turnUp) turn([1, 0, 0], kPadTurn * time * pad.turnUp);
     if (pad.turnRight) turn([0, 1, 0], kPadTurn * time * pad.turnRight);
+    if (pad.nextTool) this.stepTool(pad.nextTool);
+  }
+
+  /** Takes the next tool, or the previous one, that the other hand leaves free. */
+  private stepTool(by: number): void {
     const count = this.view?.tools.length ?? 0;
-    if (pad.nextTool && count > 0) this.tool = (this.tool + pad.nextTool + count) % count;
+    for (let i = 0, tool = this.tool; i < count; ++i) {
+      tool = (tool + by + count) % count;
+      if (!this.isTaken(tool)) return void (this.own.tool = tool);
+    }
   }
 
   /** The hand follows the pointer less where the tissue resists. */
   private gain(): number {
-    const frame = this.scene?.frame;
+    const frame = this.ownFrame;
     return frame ? 1 / (1 + Math.hypot(...frame.force) / kHalfGain) : 1;
   }
 
@@ -153,8 +202,9 @@ export class Trainer {
 
   private shift(right: number, up: number, deep: number): void {
     const axes = this.handAxes();
-    this.target.addScaledVector(axes.right, right).addScaledVector(axes.up, up).addScaledVector(axes.deep, deep);
-    this.box.clampPoint(this.target, this.target);
+    const { target } = this.own;
+    target.addScaledVector(axes.right, right).addScaledVector(axes.up, up).addScaledVector(axes.deep, deep);
+    this.box.clampPoint(target, target);
     this.keepInView();
   }
 
@@ -170,29 +220,37 @@ export class Trainer {
   /** The hand stays in the picture, where it can be seen. */
   private keepInView(): void {
     const { camera } = this.viewer;
-    const seen = this.target.clone().project(camera);
+    const { target } = this.own;
+    const seen = target.clone().project(camera);
     const x = Math.min(Math.max(seen.x, -kEdge), kEdge), y = Math.min(Math.max(seen.y, -kEdge), kEdge);
-    if (x !== seen.x || y !== seen.y) this.target.set(x, y, seen.z).unproject(camera);
+    if (x !== seen.x || y !== seen.y) target.set(x, y, seen.z).unproject(camera);
   }
 
-  /** Puts the hand where the scene says that the first tool is taken up, else above the organs. */
+  /** Puts each hand where the scene says that its first tool is taken up, else above the organs, two beside each other. */
   private takeUp(): void {
     const view = this.view!;
     const up = new three.Vector3(...view.up);
     this.box.set(new three.Vector3(...view.least), new three.Vector3(...view.most));
     const middle = this.box.getCenter(new three.Vector3()), size = this.box.getSize(new three.Vector3());
     const height = Math.abs(up.x) * size.x + Math.abs(up.y) * size.y + Math.abs(up.z) * size.z;
-    this.tool = view.tools.findIndex((tool) => tool.kind !== "pin");
-    const held = view.tools[this.tool];
-    if (held?.at) {
-      this.target.set(...held.at);
-      this.turn.copy(orientationOf(held.pointing ?? [0, 0, -1], held.facing));
-      this.box.expandByPoint(this.target);
-    } else {
-      this.target.copy(middle).addScaledVector(up, height / 2 + (held?.radius_m ?? 0) + 0.02);
-      this.turn.setFromUnitVectors(new three.Vector3(0, 0, 1), up);
+    const right = new three.Vector3().setFromMatrixColumn(this.viewer.camera.matrixWorld, 0);
+    for (const own of this.hands) own.tool = -1;
+    for (let hand = this.handCount - 1; hand >= 0; --hand) {
+      this.led = hand;
+      const { own } = this;
+      own.tool = view.tools.findIndex((tool, i) => tool.kind !== "pin" && !this.isTaken(i) && i >= hand);
+      const held = view.tools[own.tool];
+      if (held?.at) {
+        own.target.set(...held.at);
+        own.turn.copy(orientationOf(held.pointing ?? [0, 0, -1], held.facing));
+        this.box.expandByPoint(own.target);
+      } else {
+        own.target.copy(middle).addScaledVector(up, height / 2 + (held?.radius_m ?? 0) + 0.02);
+        if (this.handCount > 1) own.target.addScaledVector(right, hand === 0 ? kApart : -kApart);
+        own.turn.setFromUnitVectors(new three.Vector3(0, 0, 1), up);
+      }
+      own.hand.copy(own.target);
     }
-    this.hand.copy(this.target);
     this.box.expandByScalar(kMargin);
     this.started = performance.now();
     this.sentAt = performance.now();
@@ -211,14 +269,13 @@ export class Trainer {
     if (!this.isRunning) return;
     const now = performance.now();
     const reach = (kMostSpeed * Math.min(now - this.sentAt, 50)) / 1e3;
-    const way = new three.Vector3().subVectors(this.target, this.hand);
-    this.hand.add(way.clampLength(0, reach));
     this.sentAt = now;
     ++this.poses;
-    const { x, y, z, w } = this.turn;
-    this.connection.send({
-      hand: { position: this.hand.toArray(), orientation: [w, x, y, z], buttons: this.tool >= 0 ? 2 ** this.tool : 0, time_s: now / 1e3 },
+    const [first, second] = this.hands.map(({ target, hand, turn, tool }) => {
+      hand.add(new three.Vector3().subVectors(target, hand).clampLength(0, reach));
+      return { position: hand.toArray(), orientation: [turn.w, turn.x, turn.y, turn.z], buttons: tool >= 0 ? 2 ** tool : 0 };
     });
+    this.connection.send({ hand: { ...first, time_s: now / 1e3, ...(this.handCount > 1 ? { second } : {}) } });
   }
 
   private take(message: Binary): void {

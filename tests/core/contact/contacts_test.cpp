@@ -25,8 +25,8 @@ class CutAndPressed : public ::testing::Test {
     for (int i = 0; i < 100; ++i) (void)stepper.step(state_, testing::blade_at({0.0002, -0.05 + 0.001 * i, -0.05}));
     testing::shake(state_, 1e-3, 0.1);
     model_.solver.integrator = Integrator::leapfrog;  // whose contacts can be both explicit and implicit
-    tool_.tool = &model_.tools[1];
-    tool_.from = tool_.to = {0, 0, 0.048};
+    tools_[0].tool = &model_.tools[1];
+    tools_[0].from = tools_[0].to = {0, 0, 0.048};
     contacts_.emplace(model_, elements::kernels_for(elements::best_instruction_set()));
     force_.resize(3 * model_.sphere_count()), blocks_.resize(6 * model_.sphere_count());
     testing::Noise noise;
@@ -35,12 +35,12 @@ class CutAndPressed : public ::testing::Test {
   }
 
   contact::ImplicitContacts detect() {
-    return contacts_->detect(state_, tool_, {1e-3, 1e-3, 0, 1.0, {}}, contact::Linearisation::rest);
+    return contacts_->detect(state_, tools_, {1e-3, 1e-3, 0, 1.0, {}}, contact::Linearisation::rest);
   }
 
   Model model_ = testing::free_block(6, 4, 4, testing::resisting(0));
   State state_;
-  contact::HeldTool tool_;
+  contact::HeldTools tools_;
   std::optional<contact::Contacts> contacts_;
   elements::Coordinates force_;
   elements::DiagonalBlocks blocks_;
@@ -50,7 +50,7 @@ TEST_F(CutAndPressed, ContactsLeaveALinearSystemToTheBit) {
   const elements::Coordinates force = force_;
   const elements::DiagonalBlocks blocks = blocks_;
   contact::ImplicitContacts set = detect();
-  EXPECT_GT(set.touched(), 0);
+  EXPECT_GT(set.touched(0), 0);
   {
     const contact::LinearisedContacts linearised = set.linearise(force_, blocks_);
     EXPECT_NE(force_, force);
@@ -64,7 +64,7 @@ TEST_F(CutAndPressed, DroppedContactsLeaveTheSystemToTheBitAndDoNotComeBack) {
   const elements::Coordinates force = force_;
   const elements::DiagonalBlocks blocks = blocks_;
   contact::ImplicitContacts set = detect();
-  const std::int32_t touched = set.touched();
+  const std::int32_t touched = set.touched(0);
   // All spheres move away from the ball, faster than any contact can follow.
   elements::Coordinates away(force_.size());
   std::fill(away.begin() + std::ptrdiff_t(2 * model_.sphere_count()), away.end(), -100.0);
@@ -76,7 +76,7 @@ TEST_F(CutAndPressed, DroppedContactsLeaveTheSystemToTheBitAndDoNotComeBack) {
   }
   EXPECT_EQ(blocks_, blocks);
   EXPECT_GT(touched, 0);
-  EXPECT_EQ(set.touched(), 0);
+  EXPECT_EQ(set.touched(0), 0);
   EXPECT_FALSE(set.linearise(force_, blocks_).pulls(away));
 }
 
@@ -112,27 +112,28 @@ TEST_F(CutAndPressed, AnExplicitStepKeepsTheMomentumThatTheToolDoesNotTake) {
   };
   const double h = 1e-4;
   Vec3Array velocity = state_.velocity;
-  const contact::ExplicitContacts set = contacts_->push_apart(state_, tool_, {h, h, 0.5 * h, 1.0, {}}, velocity);
-  EXPECT_GT(set.touched(), 0);
-  EXPECT_GT(norm(set.tool_force()), 0);
+  const contact::ExplicitContacts set = contacts_->push_apart(state_, tools_, {h, h, 0.5 * h, 1.0, {}}, velocity);
+  EXPECT_GT(set.touched(0), 0);
+  EXPECT_GT(norm(set.tool_force(0)), 0);
   const Vec3 gained = momentum(velocity) - momentum(state_.velocity);
-  EXPECT_NEAR(norm(gained + h * set.tool_force()), 0, 1e-12 * norm(gained));
+  EXPECT_NEAR(norm(gained + h * set.tool_force(0)), 0, 1e-12 * norm(gained));
 }
 
 TEST_F(CutAndPressed, APinIsAContactThatFollowsTheHand) {
   const Tool holding{"pin", ToolKind::pin, 0, 0, 5};
-  contact::HeldTool pin;
+  contact::HeldTools tools;
+  contact::HeldTool& pin = tools[0];
   pin.tool = &holding;
   pin.from = model_.rest_position[5], pin.to = pin.from + Vec3{0, 0, 2e-3};
   const double h = 1e-3;
-  const contact::ContactStep step{h, h, 0, 1.0, contact::Contacts::pin(pin, state_.position, 1.0, h)};
-  EXPECT_NEAR(norm(state_.position[5] + h * step.pin.velocity - pin.to), 0, 1e-15);
-  const contact::ImplicitContacts set = contacts_->detect(state_, pin, step, contact::Linearisation::rest);
-  EXPECT_EQ(set.touched(), 1);
+  const contact::ContactStep step{h, h, 0, 1.0, contact::Contacts::pins(tools, state_.position, 1.0, h)};
+  EXPECT_NEAR(norm(state_.position[5] + h * step.pins[0].velocity - pin.to), 0, 1e-15);
+  const contact::ImplicitContacts set = contacts_->detect(state_, tools, step, contact::Linearisation::rest);
+  EXPECT_EQ(set.touched(0), 1);
   Vec3Array end = model_.rest_position;
   end.set(5, pin.to);
-  EXPECT_NEAR(set.depth(end), 2e-3, 1e-15);
-  EXPECT_FALSE(contact::Contacts::pin(tool_, state_.position, 1.0, h).is_held()) << "a ball is no pin";
+  EXPECT_NEAR(set.depth(0, end), 2e-3, 1e-15);
+  EXPECT_FALSE(contact::any_held(contact::Contacts::pins(tools_, state_.position, 1.0, h))) << "a ball is no pin";
 }
 
 using CutAndPressedDeathTest = CutAndPressed;
@@ -145,7 +146,7 @@ TEST_F(CutAndPressedDeathTest, TwoSetsAtATimeAreABug) {
       },
       "while those of another step are in use");
   { const contact::ImplicitContacts first = detect(); }
-  EXPECT_GT(detect().touched(), 0) << "the first has ended";
+  EXPECT_GT(detect().touched(0), 0) << "the first has ended";
 }
 
 TEST_F(CutAndPressedDeathTest, TwoLinearisationsAtATimeAreABug) {

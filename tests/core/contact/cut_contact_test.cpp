@@ -266,7 +266,7 @@ State run_cut_and_press(const Model& model, int threads, bool& ball_touches, boo
     before(tick, stepper);
     EXPECT_FALSE(stepping::is_refused(stepper->step(state, cut_and_press(tick)).status)) << tick;
     for (const std::int32_t point : state.touched)
-      if (points.contains(point)) (points.is_of_ball(point) ? ball_touches : ground_touches) = true;
+      if (points.contains(point)) (points.is_of_ball(point, 0) ? ball_touches : ground_touches) = true;
   }
   return state;
 }

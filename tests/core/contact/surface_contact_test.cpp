@@ -97,6 +97,33 @@ TEST_P(SurfaceContact, OfASmallBallGoesDeeperThanTheLatticeFollows) {
   }
 }
 
+// A stepper remembers which triangles are near the ball. One that is new in each tick has to look for them.
+TEST_P(SurfaceContact, IsTheSameWheneverItsTrianglesWereLookedFor) {
+  for (const double radius : {0.002, 0.01}) {
+    const Model model = pressed_block(GetParam(), radius);
+    stepping::Stepper stepper(model);
+    State state = rest_state(model), other = state;
+    const auto step_both = [&](Vec3 position) {
+      const double force = stepper.step(state, at(position)).tool_force.z;
+      EXPECT_EQ(stepping::Stepper(model).step(other, at(position)).tool_force.z, force);
+      EXPECT_EQ(state.position.x, other.position.x);
+      EXPECT_EQ(state.position.z, other.position.z);
+      EXPECT_EQ(state.touched, other.touched);
+      return force;
+    };
+    // Pressed in, drawn along, fast and slowly, lifted off, and set down elsewhere at once.
+    double most = 0;
+    for (int i = 0; i <= 30; ++i) most = std::max(most, step_both({0, 0, kTop + radius - 1e-4 * i}));
+    for (int i = 0; i <= 40; ++i) most = std::max(most, step_both({i < 20 ? 1e-3 * i : 0.02, 0, kTop + radius - 3e-3}));
+    EXPECT_GT(most, 0);
+    EXPECT_EQ(step_both({0, 0, kTop + 0.05}), 0);
+    most = 0;
+    for (int i = 0; i <= 20; ++i)
+      most = std::max(most, step_both({-0.015, 0.01 - 1e-5 * i, kTop + radius - 1e-3 - 1e-4 * i}));
+    EXPECT_GT(most, 0);
+  }
+}
+
 TEST_P(SurfaceContact, HoldsForTenSecondsWhatItGrips) {
   const Model model = pressed_block(GetParam(), 0.01);
   stepping::Stepper stepper(model);

@@ -30,14 +30,17 @@ class ForgedProgram : public ::testing::Test {
   static constexpr double kMostSeconds = 10;   // of computing time
   static constexpr double kMostMemory = 1000;  // [MiB]
 
-  /// A session of 1.2 s in which a ball presses and a blade cuts, with keyframes and events.
-  void record(const std::string& name, const std::string& more) const {
+  /// A session of 1.2 s in which a ball presses and a blade cuts, with keyframes and events. `more`: of the scene;
+  /// `first_steps`: of the script, each with a comma.
+  void record(const std::string& name, const std::string& more, const std::string& first_steps = "") const {
     std::ofstream(folder_.path() / (name + ".json"))
         << R"({"format": "ctpm-scene", "version": 1, "name": "block", "settle_s": 0, )" << more << R"(
            "organs": [{"name": "block", "rig": {"block": [4, 3, 3]}, "material": {"preset": "liver"},
            "anchors": [{"lowest_mm": 1}]}], "tools": [{"name": "ball", "kind": "ball", "radius_mm": 8},
-           {"name": "scalpel", "kind": "scalpel", "blade_length_mm": 30}]})";
-    std::ofstream(folder_.path() / "script.json") << R"({"format": "ctpm-script", "version": 1, "steps": [
+           {"name": "scalpel", "kind": "scalpel", "blade_length_mm": 30},
+           {"name": "holder", "kind": "ball", "radius_mm": 6}]})";
+    std::ofstream(folder_.path() / "script.json")
+        << R"({"format": "ctpm-script", "version": 1, "steps": [)" << first_steps << R"(
         {"take": {"tool": "ball", "at_mm": [0, 0, 50]}}, {"press": {"distance_mm": 30, "speed_mm_per_s": 120}},
         {"put_away": true}, {"take": {"tool": "scalpel", "at_mm": [-40, 0.2, 20]}},
         {"cut": {"path_mm": [[40, 0.2, 20]], "speed_mm_per_s": 200}}, {"put_away": true}, {"wait_s": 0.4}]})";
@@ -62,11 +65,14 @@ class ForgedProgram : public ::testing::Test {
   void forge(int count, unsigned first_seed) {
     ASSERT_NO_FATAL_FAILURE(record("plain", ""));
     ASSERT_NO_FATAL_FAILURE(record("meets", R"("organs_meet": true,)"));
+    ASSERT_NO_FATAL_FAILURE(record("two-hands", R"("hands": 2,)",
+                                   R"({"take": {"tool": "holder", "at_mm": [20, 8, 40]}, "hand": 2},
+                                      {"press": {"distance_mm": 20, "speed_mm_per_s": 200}, "hand": 2},)"));
+    const char* const names[] = {"meets.ctpm", "two-hands.ctpm", "plain.ctpm", "plain.ctpm"};
     int refused = 0, different = 0, same = 0, exported = 0;
     for (int i = 0; i < count; ++i) {
       const fs::path forged = folder_.path() / "forged.ctpm";
-      fs::copy_file(folder_.path() / (i % 4 == 0 ? "meets.ctpm" : "plain.ctpm"), forged,
-                    fs::copy_options::overwrite_existing);
+      fs::copy_file(folder_.path() / names[i % 4], forged, fs::copy_options::overwrite_existing);
       std::string what;
       const bool is_false = testing::forge_session(forged.string(), first_seed + unsigned(i), what);
       const int verified = run({"verify", "forged.ctpm"}, what);

@@ -63,6 +63,38 @@ TEST(SessionProgram, AnOrganThatLiesOnATableReplaysToTheBit) {
   EXPECT_TRUE(holds(planned.out, "contact with obstacles")) << planned.out;
 }
 
+TEST(SessionProgram, TwoHandsReplayToTheBitAndBothAreToldOf) {
+  const TemporaryFolder folder;
+  const ProgramOutcome recorded =
+      run_ctpm({"record", kScenes + "/two-hands.json", "--script", kScenes + "/scripts/two-hands-cut.json", "-o",
+                "two.ctpm", "--fast", "--duration-s", "5"},
+               folder.path());
+  ASSERT_EQ(recorded.code, 0) << recorded.err;
+  const ProgramOutcome verified = run_ctpm({"verify", "two.ctpm", "--threads", "2"}, folder.path());
+  EXPECT_EQ(verified.code, 0) << verified.out << verified.err;
+  const std::string info = run_ctpm({"info", "two.ctpm"}, folder.path()).out;
+  for (const std::string event : {"holder touches the tissue", "second hand: press reached its force",
+                                  "scalpel touches the tissue", "scalpel begins to sever"})
+    EXPECT_TRUE(holds(info, event)) << event << "\n" << info;
+  ASSERT_EQ(run_ctpm({"replay", "two.ctpm", "--csv", "two.csv"}, folder.path()).code, 0);
+  std::istringstream rows(slurp(folder.path() / "two.csv"));
+  std::string header, row;
+  std::getline(rows, header);
+  EXPECT_TRUE(header.ends_with(",second_force_n,second_depth_mm,second_contacts")) << header;
+  bool both = false;
+  while (std::getline(rows, row))
+    both = both || (holds(row, ",scalpel,") && holds(row, ",holder,") && !row.ends_with(",0"));
+  EXPECT_TRUE(both) << "one hand cuts while the other holds";
+  // What a scene with one hand says to it.
+  const ProgramOutcome refused = run_ctpm(
+      {"record", kScenes + "/liver.json", "--script", kScenes + "/scripts/two-hands-cut.json", "-o", "one.ctpm"},
+      folder.path());
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_TRUE(holds(refused.err, "two-hands-cut.json:5:") && holds(refused.err, "the scene has one hand"))
+      << refused.err;
+  EXPECT_FALSE(fs::exists(folder.path() / "one.ctpm"));
+}
+
 TEST(ShippedSessions, EachScriptOfAnExpertHasAClumsyCounterpart) {
   for (const fs::path& path : shipped_sessions()) {
     std::string name = path.filename().string();

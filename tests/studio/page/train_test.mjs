@@ -15,6 +15,9 @@ before(async () => {
   scene.name = scene.organs[0].name = "<img src=x onerror=alert(1)>";
   scene.tools[0].name = "<b onclick=alert(2)>ball</b>";
   writeFileSync(join(folder, "html.json"), JSON.stringify(scene));
+  const two = JSON.parse(readFileSync(join(folder, "kidney.json"), "utf8"));
+  two.name = "two hands", two.hands = 2;
+  writeFileSync(join(folder, "two.json"), JSON.stringify(two));
   studio = await openStudio(folder);
   page = studio.page;
   await page.click("header nav button:has-text('Train')");
@@ -47,6 +50,34 @@ test("names in a scene are text", async () => {
   await page.click("button:has-text('End')");
   await page.waitForSelector("button:has-text('Train again')");
   assert.equal(await page.locator("main img").count(), 0);
+  await page.click("button:has-text('Train again')");
+});
+
+test("the mouse leads one of two hands, and the other one stays", async () => {
+  await page.locator("aside input").first().fill("two.ctpm");
+  await page.click(".list button:has-text('two')");
+  await page.waitForSelector(".view.running");
+  const pressed = (name) => page.locator(`.transport button:has-text('${name}')`).getAttribute("aria-pressed");
+  assert.equal(await pressed("right hand"), "true");
+  assert.equal(await pressed("ball"), "true");
+  assert.ok(await page.locator(".transport button:has-text('scalpel')").isDisabled(), "it is in the other hand");
+  const box = await page.locator(".view canvas").boundingBox();
+  const middle = { x: box.x + box.width / 2, y: box.y + 60 };
+  await drag(middle, { x: 0, y: 150 }, 60);
+  await page.waitForFunction(() => [...document.querySelectorAll(".readings div")].some((d) => /force, right0?\.?0*[1-9]/.test(d.textContent)));
+  await page.keyboard.press("x");
+  await page.waitForFunction(() => document.querySelector(".transport button[aria-pressed=true]").textContent.includes("left hand"));
+  assert.equal(await pressed("scalpel"), "true");
+  const held = await reading(page, "force, right");
+  await page.mouse.move(middle.x, middle.y);
+  await drag(middle, { x: -30, y: 80 }, 30);
+  assert.ok((await reading(page, "force, right")) > 0.3 * held, "the ball still presses");
+  await picture(page, "train-two-hands");
+  assert.deepEqual(await seriousFindings(page), []);
+  await page.keyboard.press("Escape");
+  await page.waitForSelector("button:has-text('Train again')");
+  const verdict = ctpm(folder, "verify", "two.ctpm");
+  assert.equal(verdict.code, 0, verdict.out + verdict.err);
   await page.click("button:has-text('Train again')");
 });
 

@@ -13,7 +13,7 @@ namespace {
 render::OverlayData full_data() {
   render::OverlayData data;
   data.title = "Liver", data.model = "CTPM", data.session = "press";
-  data.time = 12.345, data.tick = 12345, data.force = 1.234, data.depth = 0.0134, data.damage_depth = 0.012;
+  data.time = 12.345, data.tick = 12345, data.hand = {1.234, 0.0134}, data.damage_depth = 0.012;
   data.loose = 2, data.inside_out = 3;
   data.verdict = "Replay identical: 12345 of 12345 ticks", data.verdict_tone = render::VerdictTone::good;
   data.legend = {"stretch [%]", "-20", "+20", {{0.1, 0.2, 0.7}, {0.8, 0.8, 0.8}, {0.8, 0.1, 0.1}}, false};
@@ -24,10 +24,12 @@ render::OverlayData full_data() {
 TEST(Overlay, TextsNeitherOverlapNorLeaveThePicture) {
   render::OverlayData long_winded = full_data();
   long_winded.title = std::string(200, 'W'), long_winded.verdict = std::string(300, 'M');
-  long_winded.tick = 999999999, long_winded.time = 99999.999, long_winded.force = 12345.678;
+  long_winded.tick = 999999999, long_winded.time = 99999.999, long_winded.hand.force = 12345.678;
+  render::OverlayData two_hands = long_winded;
+  two_hands.second = render::HandLoad{12345.678, 0.0134, true}, two_hands.slip = 99.9;
   for (const auto& [width, height] :
        {std::pair{1280, 720}, {640, 360}, {1920, 1080}, {1080, 1080}, {854, 480}, {640, 720}, {360, 640}})
-    for (const render::OverlayData& data : {full_data(), long_winded}) {
+    for (const render::OverlayData& data : {full_data(), long_winded, two_hands}) {
       render::Overlay overlay(width, height);
       const auto texts = overlay.layout(data);
       EXPECT_GT(texts.size(), 10u);
@@ -127,19 +129,19 @@ TEST(Overlay, LongNamesOfAPairCanBeToldApart) {
 TEST(Overlay, ShowsOnlyWhatThereIs) {
   render::Overlay overlay(1280, 720);
   render::OverlayData data = full_data();
-  data.depth = 0.002;
+  data.hand.depth = 0.002;
   const auto says = [&](const std::string& word) {
     for (const render::PlacedText& text : overlay.layout(data))
       if (text.text.find(word) != std::string::npos) return true;
     return false;
   };
   EXPECT_FALSE(says("DAMAGE"));
-  data.depth = 0.0121;
+  data.hand.depth = 0.0121;
   EXPECT_TRUE(says("DAMAGE"));
-  data.is_blade = true;  // a cut is no damage
+  data.hand.is_blade = true;  // a cut is no damage
   EXPECT_FALSE(says("DAMAGE"));
   EXPECT_TRUE(says("cut depth"));
-  data.is_blade = false;
+  data.hand.is_blade = false;
   EXPECT_FALSE(says("cut depth"));
   data.damage_depth = 0;  // a scene without a limit
   EXPECT_FALSE(says("DAMAGE"));
@@ -159,6 +161,31 @@ TEST(Overlay, ShowsOnlyWhatThereIs) {
   data.inside_out = 0;
   EXPECT_FALSE(says("inside out") || says("cell"));
   EXPECT_TRUE(says("12.345 s") && says("12345") && says("1.234 N") && says("12.10 mm"));
+}
+
+TEST(Overlay, ShowsForceAndDepthOfBothHands) {
+  const render_test::GlyphReader reader(1280, 720);
+  render::OverlayData data = full_data();
+  const auto says = [&](int width, const std::string& word) {
+    for (const render::PlacedText& text : render::Overlay(width, 720).layout(data))
+      if (text.text.find(word) != std::string::npos) return true;
+    return false;
+  };
+  EXPECT_FALSE(says(1280, "force 2") || says(1280, "hand 2")) << "a scene with one hand";
+  data.second = render::HandLoad{0.567, 0.0089, false};
+  for (render::ForcePoint& point : data.history) point.second = 0.5;
+  render::Frame frame = render::blank_frame(1280, 720, 0, 0, 0);
+  render::Overlay(1280, 720).draw(frame, data);
+  EXPECT_EQ(reader.read_after(frame, "force"), "1.234 N");
+  EXPECT_EQ(reader.read_after(frame, "force 2"), "0.567 N");
+  EXPECT_EQ(reader.read_after(frame, "depth 2"), "8.90 mm");
+  EXPECT_TRUE(says(640, "hand 1") && says(640, "hand 2")) << "the curves are named";
+  EXPECT_TRUE(says(1280, "DAMAGE: 13.4 mm"));
+  data.hand.depth = 0, data.second->depth = 0.0123;
+  EXPECT_TRUE(says(1280, "DAMAGE: 12.3 mm")) << "either hand does damage";
+  data.second->is_blade = true;
+  EXPECT_TRUE(says(1280, "cut 2"));
+  EXPECT_FALSE(says(1280, "DAMAGE"));
 }
 
 TEST(Overlay, SameDataGivesSamePixels) {

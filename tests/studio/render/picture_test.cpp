@@ -107,6 +107,24 @@ TEST(Picture, ShowsTheToolWhereItIs) {
   }
 }
 
+TEST(Picture, ShowsTheToolOfEitherHandAlike) {
+  const auto scene = make_blob_scene();
+  auto renderer = make_renderer(*scene);
+  render::DrawOptions options;
+  options.camera = render::default_camera(scene->view);
+  State first = rest_state(scene->model), second = first, both = first;
+  const render::Frame without = renderer->draw(first, options);
+  first.last_inputs.tool = 0, first.last_inputs.position = {0, 0, 0.04};
+  second.last_inputs.second = first.last_inputs;
+  both.last_inputs.second = first.last_inputs;
+  both.last_inputs.tool = 1, both.last_inputs.position = {0.03, 0, 0.04};
+  const render::Frame of_first = renderer->draw(first, options), of_second = renderer->draw(second, options),
+                      of_both = renderer->draw(both, options);
+  EXPECT_NE(of_first, without);
+  EXPECT_EQ(of_first, of_second) << "with its shadow";
+  EXPECT_NE(of_both, of_second);
+}
+
 TEST(Picture, SameStateGivesSamePixelsWhateverWasDrawnBefore) {
   const auto scene = make_blob_scene();
   render::DrawOptions options;

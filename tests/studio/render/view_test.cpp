@@ -140,6 +140,13 @@ TEST(View, FollowingCameraNearsTheToolThatWorks) {
   }
   inputs.position = {0.05, 0, 0.02};
   EXPECT_LT(norm(follow().target - inputs.position), norm(base.target - inputs.position) / 2);
+  // The second hand is followed alike, and two hands at a place between them.
+  const render::Camera first = follow();
+  inputs.second = inputs, static_cast<Hand&>(inputs) = {};
+  EXPECT_EQ(follow().target, first.target);
+  EXPECT_EQ(follow().eye, first.eye);
+  inputs.tool = 0, inputs.position = {-0.05, 0, 0.02}, inputs.second.tool = 1;
+  EXPECT_LT(std::abs(follow().target.x - base.target.x), 5e-3);
 }
 
 TEST(View, FollowingCameraMovesSoftlyWhenTheToolIsPutAwayAtTheTissue) {

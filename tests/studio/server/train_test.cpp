@@ -89,6 +89,56 @@ TEST_F(TrainingTest, WhatTheHandDidIsRecordedAndReplaysToTheBit) {
             std::string::npos);
 }
 
+TEST_F(TrainingTest, TwoHandsAreLedAndRecordedAndShown) {
+  nlohmann::json scene = nlohmann::json::parse(std::ifstream(folder_.path() / "kidney.json"));
+  scene["hands"] = 2;
+  std::ofstream(folder_.path() / "two.json") << scene;
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  const nlohmann::json begun =
+      client.call("train.begin", {{"scene", "two.json"}, {"output", "two.ctpm"}, {"stage", 2}});
+  ASSERT_TRUE(begun.contains("result")) << begun;
+  const nlohmann::json view = begun["result"]["view"];
+  EXPECT_EQ(view["hands"], 2);
+  const auto middle = [&](int axis) {
+    return 0.5 * (view["least"][axis].get<double>() + view["most"][axis].get<double>());
+  };
+  const double top = view["most"][2].get<double>();
+  const auto first = std::find_if(view["tools"].begin(), view["tools"].end(),
+                                  [](const nlohmann::json& tool) { return tool["kind"] == "ball"; }) -
+                     view["tools"].begin();
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < 150; ++i) {
+    std::this_thread::sleep_until(begin + std::chrono::milliseconds(8 * i));
+    const double z = top + 0.02 - 0.03 * (1 - std::cos(3.14159 * i / 150)) / 2;
+    client.send({{"hand",
+                  {{"position", {middle(0), middle(1), z}},
+                   {"orientation", {1, 0, 0, 0}},
+                   {"buttons", 1 << first},
+                   {"time_s", 100 + 0.008 * i},
+                   {"second",
+                    {{"position", {middle(0) + 0.05, middle(1), top + 0.08}},
+                     {"orientation", {1, 0, 0, 0}},
+                     {"buttons", 1 << (1 - first)}}}}}});
+  }
+  client.send({{"id", 99}, {"call", "train.end"}, {"params", nlohmann::json::object()}});
+  float x = 0;
+  for (;;) {
+    const auto message = client.receive();
+    if (message.is_text && nlohmann::json::parse(message.bytes).value("event", "") == "train_ended") break;
+    constexpr std::size_t kSecond = 64;  // bytes at the end of a frame
+    if (!message.is_text && value_at<std::uint32_t>(message.bytes, 0) == 2 &&
+        value_at<std::int32_t>(message.bytes, message.bytes.size() - kSecond) == 1 - first)
+      x = value_at<float>(message.bytes, message.bytes.size() - kSecond + 4);
+  }
+  EXPECT_NEAR(x, middle(0) + 0.05, 2e-3) << "frames show the second hand's tool";
+  EXPECT_EQ(testing::run_ctpm({"verify", "two.ctpm"}, folder_.path()).code, 0);
+  const nlohmann::json poses = client.call("session.motion", {{"path", "two.ctpm"}, {"rate_hz", 100}})["result"];
+  ASSERT_FALSE(poses["second_poses"].empty());
+  EXPECT_EQ(poses["second_poses"].back()[0], 1 - first);
+  EXPECT_EQ(info_of("two.ctpm")["values"]["second_device_samples_refused"], 0);
+}
+
 TEST_F(TrainingTest, WhatNobodyKeepsLeavesNothing) {
   const Serving serving(folder_.path());
   const std::string before = folder_.list();
@@ -147,9 +197,9 @@ TEST_F(TrainingTest, BadRequestsAreToldWhy) {
 
 TEST(PageHand, MessagesThatArriveTogetherCountFromWhenTheyWereSent) {
   server::PageHand hand;
-  hand.move({}, 0, 10.000);
+  hand.move({}, 10.000);
   std::this_thread::sleep_for(std::chrono::milliseconds(60));
-  for (int i = 1; i <= 5; ++i) hand.move({}, 0, 10.000 + 0.010 * i);
+  for (int i = 1; i <= 5; ++i) hand.move({}, 10.000 + 0.010 * i);
   double first = 0, last = 0;
   devices::DeviceReport report;
   ASSERT_TRUE(hand.next(report));
@@ -163,7 +213,7 @@ TEST(PageHand, MessagesThatArriveTogetherCountFromWhenTheyWereSent) {
   EXPECT_FALSE(hand.next(report));
   EXPECT_LE(last, devices::device_clock());
   // Buttons come before the pose that goes with them, and only when they change.
-  hand.move({}, 2, 10.2), hand.move({}, 2, 10.3);
+  hand.move({{}, 2}, 10.2), hand.move({{}, 2}, 10.3);
   ASSERT_TRUE(hand.next(report));
   EXPECT_EQ(report.news, devices::DeviceNews::buttons);
   EXPECT_EQ(report.buttons, 2u);

@@ -126,7 +126,8 @@ TEST(MotionAt, PositionsLieOnTheStraightLineAndTurnsAreEvenWhateverTheRate) {
   // A quarter turn about z in 0.1 s, sampled at its ends alone.
   const double half = std::sqrt(0.5);
   sources::Motion motion;
-  motion.samples = {{5.0, {0, {0, 0, 0}, {1, 0, 0, 0}, 1}}, {5.1, {0, {0.02, 0, -0.01}, {-half, 0, 0, -half}, 2}}};
+  motion.samples = {{5.0, {{0, {0, 0, 0}, {1, 0, 0, 0}, 1}, {}}},
+                    {5.1, {{0, {0.02, 0, -0.01}, {-half, 0, 0, -half}, 2}, {}}}};
   EXPECT_EQ(sources::motion_tick_count(motion, 1e-3), 101);
   for (int tick = 0; tick < 100; ++tick) {
     const Inputs inputs = sources::motion_at(motion, tick * 1e-3);
@@ -143,9 +144,9 @@ TEST(MotionAt, PositionsLieOnTheStraightLineAndTurnsAreEvenWhateverTheRate) {
 /// Else the replayed blade would go through the tissue on a way on which no hand moved it.
 TEST(MotionAt, AToolStaysWhereItWasLastSeenUntilAnotherOrNoneIsHeld) {
   sources::Motion motion;
-  motion.samples = {{0, {0, {0.05, 0, 0.1}, {1, 0, 0, 0}, 0}},
-                    {0.015, {1, {-0.05, 0, 0.1}, {1, 0, 0, 0}, 0}},
-                    {0.03, {-1, {0, 0, 0}, {1, 0, 0, 0}, 0}}};
+  motion.samples = {{0, {{0, {0.05, 0, 0.1}, {1, 0, 0, 0}, 0}, {}}},
+                    {0.015, {{1, {-0.05, 0, 0.1}, {1, 0, 0, 0}, 0}, {}}},
+                    {0.03, {{-1, {0, 0, 0}, {1, 0, 0, 0}, 0}, {}}}};
   for (int tick = 0; tick < 15; ++tick) {
     const Inputs first = sources::motion_at(motion, tick * 1e-3),
                  second = sources::motion_at(motion, 0.015 + tick * 1e-3);
@@ -158,7 +159,8 @@ TEST(MotionAt, AToolStaysWhereItWasLastSeenUntilAnotherOrNoneIsHeld) {
 TEST(MotionAt, AMotionSampledAtTheTicksIsTakenAsItIs) {
   sources::Motion motion;
   for (int i = 0; i < 5000; ++i)
-    motion.samples.push_back({17 + i * 1e-3, {0, {std::sin(i * 0.7), std::cos(i * 1.3), i * 1e-3}, {1, 0, 0, 0}, 0}});
+    motion.samples.push_back(
+        {17 + i * 1e-3, {{0, {std::sin(i * 0.7), std::cos(i * 1.3), i * 1e-3}, {1, 0, 0, 0}, 0}, {}}});
   ASSERT_EQ(sources::motion_tick_count(motion, 1e-3), 5000);
   for (int i = 0; i < 5000; ++i)
     ASSERT_EQ(sources::motion_at(motion, i * 1e-3), motion.samples[std::size_t(i)].inputs) << i;
