@@ -160,13 +160,7 @@ class Import {
     scene.probes.clear(), scene.loads.clear(), scene.obstacles.clear(), scene.tools = tools_for(organs);
     const Result<scenes::BuiltScene> built = scenes::build_model(scene, organs);
     if (!built) return {};
-    // The least of a few medians: other programs only make it longer.
-    std::optional<double> least;
-    for (int i = 0; i < 3; ++i)
-      if (const std::optional<double> time = loading::measure_tick(built->model, request_.should_stop);
-          time && (!least || *time < *least))
-        least = time;
-    return least;
+    return loading::measure_tick_work(built->model, request_.should_stop);
   }
 
   Errors make_drafts(const importers::RepairedFile& file, const Tissue& whole,

@@ -86,8 +86,9 @@ std::optional<ScriptTrial> try_script(const Model& model, const State& state, co
     times.push_back(std::chrono::duration<double>(Clock::now() - start).count());
     trial.is_refused = stepping::is_refused(report.status);
     if (trial.is_refused) break;
-    player.feel(tick, report.tool_force);
-    trial.most_force = std::max(trial.most_force, norm(report.tool_force));
+    player.feel(tick, report.of_hand(player.hand_at(tick)).tool_force);
+    for (const std::size_t hand : {0, 1})
+      trial.most_force = std::max(trial.most_force, norm(report.of_hand(hand).tool_force));
     trial.severed += report.severed;
     if (now.swept_organ.size() < seen) seen = 0;  // rows of a full memory were let go
     for (; seen < now.swept_organ.size(); ++seen)
