@@ -2,27 +2,28 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <system_error>
 
 #include "importers/assimp_reader.h"
 #include "importers/child_process.h"
+#include "importers/label_map.h"
 #include "importers/mesh.h"
+#include "importers/mesh_file.h"
 #include "importers/topology.h"
+#include "importers/volume_mesh.h"
 #include "importers/wire.h"
 
 namespace ctpm::importers {
-namespace {
-
-constexpr const char* kKnownFormats = "OBJ, STL, PLY, OFF, glTF, GLB, 3DS, DAE and FBX files are read, among others";
 
 std::string suffix_of(const std::string& path) {
   std::string suffix = std::filesystem::path(path).extension().string();
   if (!suffix.empty()) suffix.erase(0, 1);
   std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  if (suffix == "gz" && is_label_map(path)) return "nii";
   return suffix;
 }
 
-/// Checks that need no reader.
 Errors check_file(const std::string& path) {
   std::error_code trouble;
   const auto status = std::filesystem::status(path, trouble);
@@ -34,6 +35,48 @@ Errors check_file(const std::string& path) {
   if (size == 0) return {{path, "is empty", "export the mesh again"}};
   return {};
 }
+
+namespace {
+
+void put_parts(wire::Writer& message, wire::Kind kind, const std::vector<std::string>& parts) {
+  message.put(kind);
+  message.put<std::uint64_t>(parts.size());
+  for (const std::string& name : parts) message.put_text(name);
+}
+
+}  // namespace
+
+void send_soup(const std::vector<std::string>& parts, std::size_t part, double unit_in_metres, const Soup& soup,
+               const Send& send) {
+  wire::Writer message;
+  put_parts(message, wire::Kind::mesh, parts);
+  message.put(unit_in_metres);
+  message.put_list(soup.vertex);
+  message.put_list(soup.triangle);
+  message.put_list(std::vector<std::int32_t>(soup.triangle.size(), std::int32_t(part)));
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  message.put_list(std::vector<Vec3>(parts.size(), Vec3{kNone, kNone, kNone}));
+  send(message.bytes.data(), message.bytes.size());
+}
+
+void send_no_such_part(const std::vector<std::string>& parts, const Send& send) {
+  wire::Writer message;
+  put_parts(message, wire::Kind::no_such_part, parts);
+  send(message.bytes.data(), message.bytes.size());
+}
+
+void send_refusal(const Error& error, const Send& send) {
+  wire::Writer message;
+  message.put(wire::Kind::refused);
+  message.put_text(error.message);
+  message.put_text(error.hint);
+  send(message.bytes.data(), message.bytes.size());
+}
+
+namespace {
+
+constexpr const char* kKnownFormats =
+    "OBJ, STL, PLY, OFF, glTF, GLB, 3DS, DAE, FBX, VTK, VTU, MSH, NIfTI and NRRD files are read, among others";
 
 std::string listed(const std::vector<std::string>& names) {
   constexpr std::size_t kMostShown = 40;
@@ -98,7 +141,10 @@ Result<RawMesh> read_mesh(const std::string& path, const ReadOptions& options) {
   limits.time_s = options.time_limit_s;
   limits.memory_mib = options.memory_limit_mib;
   limits.output_mib = options.memory_limit_mib;
-  const ChildResult child = run_in_child(limits, [&](const Send& send) { send_mesh_file(path, options.part, send); });
+  const auto reader_of_file = is_label_map(path)     ? send_label_map
+                              : is_volume_mesh(path) ? send_volume_mesh
+                                                     : send_mesh_file;
+  const ChildResult child = run_in_child(limits, [&](const Send& send) { reader_of_file(path, options.part, send); });
   if (!child.is_whole)
     return Error{path, "the reader " + child.trouble,
                  "the file may be damaged; try to open it elsewhere and export it again"};
@@ -110,8 +156,12 @@ Result<RawMesh> read_mesh(const std::string& path, const ReadOptions& options) {
   wire::Reader reader(child.output);
   wire::Kind kind{};
   if (!reader.get(kind)) return broken;
+  std::string text, hint;
+  if (kind == wire::Kind::refused) {
+    if (!reader.get_text(text) || !reader.get_text(hint)) return broken;
+    return Error{path, text, hint};
+  }
   if (kind == wire::Kind::failed) {
-    std::string text;
     if (!reader.get_text(text)) return broken;
     return Error{path, "is not a mesh that can be read: " + text, kKnownFormats};
   }

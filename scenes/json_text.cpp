@@ -5,6 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
+
+#include "scenes/json_words.h"
 
 namespace ctpm::scenes {
 namespace {
@@ -76,6 +79,7 @@ class Walker {
     skip_space();
     JsonNode node;
     node.place = place_;
+    node.begin = next_;
     switch (peek()) {
       case '{':
         container(node, JsonKind::object, '}');
@@ -96,6 +100,7 @@ class Walker {
       default:
         node.kind = JsonKind::number, node.raw = scalar();
     }
+    node.end = next_;
     return node;
   }
 
@@ -214,19 +219,23 @@ Error too_long(const std::string& file_name, std::uintmax_t bytes) {
           ""};
 }
 
-Result<JsonNode> parse_json(std::string_view text, const std::string& file_name) {
+Result<JsonNode> parse_json(std::string_view commented, const std::string& file_name) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+  if (commented.starts_with(byte_order_mark)) commented.remove_prefix(byte_order_mark.size());
 
-  if (text.size() > kMostTextBytes) return too_long(file_name, text.size());
+  if (commented.size() > kMostTextBytes) return too_long(file_name, commented.size());
+  const std::string text = without_comments(commented);
   GrammarCheck check;
   if (!nlohmann::json::sax_parse(text, &check)) {
     if (check.has_too_many()) return Error{file_name, "holds more than " + std::to_string(most_values) + " values", ""};
     if (check.message.empty())
       return Error{at(file_name, too_deep_place(text)), "nested deeper than " + std::to_string(max_depth) + " levels",
                    ""};
+    const std::optional<JsonMistake> mistake = find_json_mistake(text);
+    const std::size_t offset = mistake ? mistake->offset : check.offset;
     Place place;
-    for (std::size_t i = 0; i < std::min(check.offset, text.size()); ++i) advance(place, text[i]);
+    for (std::size_t i = 0; i < std::min(offset, text.size()); ++i) advance(place, text[i]);
+    if (mistake) return Error{at(file_name, place), mistake->message, mistake->hint};
     return Error{at(file_name, place), plain_message(check.message), ""};
   }
   return Walker(text).value();

@@ -15,7 +15,8 @@ enum class JsonKind { null, boolean, number, text, list, object };
 
 struct JsonNode {
   JsonKind kind = JsonKind::null;
-  Place place;       ///< of the value's first character
+  Place place;                     ///< of the value's first character
+  std::size_t begin = 0, end = 0;  ///< bytes of the value in the text without comments: [begin, end)
   std::string raw;   ///< a scalar as it is written; numbers are converted from this text, not from a double
   std::string text;  ///< a text without quotes and escapes
   std::vector<std::string> keys;   ///< of an object, in the order of the text, repeated ones included (child_count)
@@ -34,9 +35,9 @@ inline constexpr std::size_t kMostTextBytes = 16 << 20;
 /// The error of a longer one.
 Error too_long(const std::string& file_name, std::uintmax_t bytes);
 
-/// Error: one, at the place where the text stops being JSON, or is nested deeper than 64 levels; a text longer than
-/// kMostTextBytes or of more than 200,000 values.
-Result<JsonNode> parse_json(std::string_view text, const std::string& file_name);
+/// Comments, // and /* */, count as spaces. Error: one, at the place where the text stops being JSON, or is nested
+/// deeper than 64 levels; a text longer than kMostTextBytes or of more than 200,000 values.
+Result<JsonNode> parse_json(std::string_view commented, const std::string& file_name);
 
 /// `text` in quotes, escaped.
 std::string in_quotes(std::string_view text);

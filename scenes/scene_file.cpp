@@ -10,6 +10,7 @@
 #include "scenes/field_reader.h"
 #include "scenes/field_writer.h"
 #include "scenes/json_text.h"
+#include "scenes/place_texts.h"
 #include "scenes/scene_keys.h"
 #include "scenes/scene_rules.h"
 
@@ -60,20 +61,25 @@ void check_files(Problems& problems, const SceneSpec& scene, const std::string& 
 /// The scene if nothing is wrong with it.
 Result<SceneText> without_errors(Result<SceneDraft> draft) {
   if (!draft) return draft.errors();
+  for (const std::string& pointer : draft->open_places)
+    draft->problems.add_rule(pointer, "is a place on an organ, which is not known here", "write its coordinates");
   if (!draft->problems.is_empty()) return draft->problems.errors();
   return std::move(draft->scene);
 }
 
 }  // namespace
 
-Result<SceneDraft> read_draft(std::string_view text, const std::string& file_name) {
+Result<SceneDraft> read_draft(std::string_view text, const std::string& file_name, PlaceFinder* finder) {
   Result<JsonNode> parsed = parse_json(text, file_name);
   if (!parsed) return parsed.errors();
-  const auto root = std::make_shared<const JsonNode>(*std::move(parsed));
+  const auto root = std::make_shared<JsonNode>(*std::move(parsed));
   SceneDraft draft;
   draft.scene.text = std::string(text);
   draft.scene.places = TextPlaces(root, file_name);
   draft.problems = Problems(draft.scene.places);
+  PlaceTexts places = find_places(*root, false, finder, draft.problems);
+  draft.scene.found_text = with_coordinates(text, places.found);
+  draft.open_places = std::move(places.open);
   FieldReader::read_record(*root, "", draft.problems, draft.scene.spec);
   check_rules(draft.problems, draft.scene.spec);
   draft.scene.warnings = draft.problems.warnings();
@@ -101,16 +107,22 @@ Result<std::string> text_of_file(const std::string& path) {
 
 }  // namespace
 
-Result<SceneDraft> load_draft(const std::string& path, const LoadOptions& options) {
+Result<SceneDraft> load_draft(const std::string& path, const LoadOptions& options, PlaceFinder* finder) {
   const Result<std::string> text = options.text ? Result<std::string>(*options.text) : text_of_file(path);
   if (!text) return text.errors();
-  Result<SceneDraft> draft = read_draft(*text, path);
+  Result<SceneDraft> draft = read_draft(*text, path, finder);
   if (draft) check_files(draft->problems, draft->scene.spec, path, options);
   return draft;
 }
 
 Result<SceneText> load_scene(const std::string& path, const LoadOptions& options) {
   return without_errors(load_draft(path, options));
+}
+
+SceneDraft unknown_scene(const std::string& path) {
+  SceneDraft draft;
+  draft.problems.add("", {}, path + " cannot be read");
+  return draft;
 }
 
 std::string mesh_path(const std::string& scene_path, const std::string& mesh) {

@@ -10,6 +10,8 @@
 #include "core/stepping/step.h"
 #include "scenes/field_reader.h"
 #include "scenes/field_writer.h"
+#include "scenes/place_texts.h"
+#include "scenes/scene_file.h"
 #include "scenes/script_keys.h"
 
 namespace ctpm::scenes {
@@ -19,7 +21,9 @@ namespace {
 struct Equipment {
   std::vector<std::string> tools;
   std::int32_t hands;
-  const Model* model;  ///< null: not known
+  const Model* model = nullptr;   ///< null: not known
+  bool knows_tools = true;        ///< otherwise any tool is right
+  PlaceFinder* finder = nullptr;  ///< null: places by meaning are checked as texts alone
 };
 
 /// What a hand holds while steps are checked.
@@ -36,7 +40,7 @@ void check_take(Problems& problems, const std::string& at, const ScriptStep& ste
   const auto found = std::find(names.begin(), names.end(), take.tool);
   Holding &holding = holdings[step.hand_number()], &other = holdings[1 - step.hand_number()];
   holding = {true, found == names.end() ? -1 : std::int32_t(found - names.begin())};
-  if (found == names.end()) {
+  if (found == names.end() && equipment.knows_tools) {
     std::string known;
     for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
     problems.add_rule(at + "/take/tool", "the scene has no tool " + in_quotes(take.tool),
@@ -164,9 +168,10 @@ Vec3 way_of(const Stroke& stroke) {
 Result<Script> read_with(std::string_view text, const std::string& file_name, const Equipment& equipment) {
   Result<JsonNode> parsed = parse_json(text, file_name);
   if (!parsed) return parsed.errors();
-  const auto root = std::make_shared<const JsonNode>(*std::move(parsed));
+  const auto root = std::make_shared<JsonNode>(*std::move(parsed));
   Script script;
   Problems problems(TextPlaces(root, file_name));
+  find_places(*root, true, equipment.finder, problems);
   FieldReader::read_record(*root, "", problems, script);
   check_steps(problems, script, equipment);
   if (!problems.is_empty()) return problems.errors();
@@ -176,14 +181,29 @@ Result<Script> read_with(std::string_view text, const std::string& file_name, co
 }  // namespace
 
 Result<Script> read_script(std::string_view text, const std::string& file_name,
-                           const std::vector<std::string>& tool_names, std::int32_t hands) {
-  return read_with(text, file_name, {tool_names, hands, nullptr});
+                           const std::vector<std::string>& tool_names, std::int32_t hands, PlaceFinder* finder) {
+  return read_with(text, file_name, {.tools = tool_names, .hands = hands, .finder = finder});
 }
 
-Result<Script> read_script_for(std::string_view text, const std::string& file_name, const Model& model) {
+Result<Script> read_script_for(std::string_view text, const std::string& file_name, const Model& model,
+                               PlaceFinder* finder) {
   std::vector<std::string> names;
   for (const Tool& tool : model.tools) names.push_back(tool.name);
-  return read_with(text, file_name, {std::move(names), model.hands, &model});
+  return read_with(text, file_name,
+                   {.tools = std::move(names), .hands = model.hands, .model = &model, .finder = finder});
+}
+
+Errors check_script(std::string_view text, const std::string& file_name, const SceneDraft& scene) {
+  const SceneSpec& spec = scene.scene.spec;
+  PlaceFinder names = names_in(spec);
+  const bool knows_places = scene.problems.is_good("/organs") && scene.problems.is_good("/probes");
+  Equipment equipment{.tools = {},
+                      .hands = scene.problems.is_good("/hands") ? spec.hands.value_or(1) : std::int32_t(kMostHands),
+                      .knows_tools = scene.problems.is_good("/tools"),
+                      .finder = knows_places ? &names : nullptr};
+  for (const ToolSpec& tool : spec.tools) equipment.tools.push_back(tool.name);
+  const Result<Script> script = read_with(text, file_name, equipment);
+  return script ? Errors{} : script.errors();
 }
 
 std::string write_script(const Script& script) {

@@ -12,9 +12,12 @@
 #include "core/model/model.h"
 #include "core/model/organ.h"
 #include "core/model/result.h"
+#include "scenes/places.h"
 #include "scenes/scene_spec.h"
 
 namespace ctpm::scenes {
+
+struct SceneDraft;
 
 /// A tool appears in a hand.
 struct TakeStep {
@@ -88,11 +91,17 @@ struct Script {
 
 /// Reads a script's text. Reports every error at once, each with `file:line:col`: those of the text and its values; a
 /// tool or a hand that the scene does not have; a step that moves a tool before one was taken; a tool that both hands
-/// hold.
+/// hold. Without `finder`, places by meaning are checked as texts, and have coordinates that stand for nothing.
 Result<Script> read_script(std::string_view text, const std::string& file_name,
-                           const std::vector<std::string>& tool_names, std::int32_t hands = 1);
+                           const std::vector<std::string>& tool_names, std::int32_t hands = 1,
+                           PlaceFinder* finder = nullptr);
 /// The same for a Model. Also reports other tools that two hands cannot hold at once (stepping::hands_conflict()).
-Result<Script> read_script_for(std::string_view text, const std::string& file_name, const Model& model);
+Result<Script> read_script_for(std::string_view text, const std::string& file_name, const Model& model,
+                               PlaceFinder* finder = nullptr);
+
+/// The errors of a script for a scene that is not built yet and may have refused values: what those decide is not
+/// judged.
+Errors check_script(std::string_view text, const std::string& file_name, const SceneDraft& scene);
 
 /// Text of a script. The same steps give the same text, and read_script gives the same steps again.
 std::string write_script(const Script& script);

@@ -6,6 +6,7 @@
 
 #include "core/stepping/step.h"
 #include "scenes/build_model.h"
+#include "scenes/places.h"
 #include "scenes/presets.h"
 #include "studio/output/number_text.h"
 #include "studio/rig/site.h"
@@ -45,25 +46,6 @@ scenes::SceneSpec slow_scene(const scenes::SceneSpec& scene, std::size_t organ, 
   return slow;
 }
 
-/// Highest point of the surface on the line along `up` through `point`; none if the line misses it.
-std::optional<Vec3> surface_above(const Surface& surface, Vec3 point, Vec3 up) {
-  std::optional<double> highest;
-  for (const auto& t : surface.triangle) {
-    const Vec3 a = surface.vertex[std::size_t(t[0])], b = surface.vertex[std::size_t(t[1])],
-               c = surface.vertex[std::size_t(t[2])];
-    const Vec3 normal = cross(b - a, c - a);
-    const double facing = dot(normal, up);
-    if (facing <= 0) continue;
-    const double height = dot(normal, a - point) / facing;
-    const Vec3 hit = point + height * up;
-    const bool is_inside = dot(cross(b - a, hit - a), normal) >= 0 && dot(cross(c - b, hit - b), normal) >= 0 &&
-                           dot(cross(a - c, hit - c), normal) >= 0;
-    if (is_inside && (!highest || height > *highest)) highest = height;
-  }
-  if (!highest) return std::nullopt;
-  return point + *highest * up;
-}
-
 /// Points that the ball touches first: nine over one lattice cell at the top of the surface, or the top of a rig's
 /// highest sphere that can move. Empty if nothing can move there.
 std::vector<Vec3> places_at_top(const Model& model, const FilledOrgan& filled, Vec3 up) {
@@ -83,7 +65,8 @@ std::vector<Vec3> places_at_top(const Model& model, const FilledOrgan& filled, V
   std::vector<Vec3> places;
   for (const int i : {-1, 0, 1})
     for (const int j : {-1, 0, 1})
-      if (const auto place = surface_above(surface, top + filled.spacing / 3 * (double(i) * u + double(j) * v), up))
+      if (const auto place =
+              scenes::surface_above(surface, top + filled.spacing / 3 * (double(i) * u + double(j) * v), up))
         places.push_back(*place);
   return places;
 }

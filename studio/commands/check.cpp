@@ -6,21 +6,38 @@
 #include "studio/commands/console.h"
 #include "studio/loading/loaded_scene.h"
 #include "studio/loading/oddities.h"
+#include "studio/sources/open_file.h"
 
 namespace ctpm::commands {
 namespace {
 
 struct CheckArguments {
-  std::vector<std::string> scenes;
+  std::vector<std::string> scenes, scripts;
   scenes::LoadOptions load;
 };
 
+/// The errors of the scripts that belong to a scene.
+Errors errors_of_scripts(const CheckArguments& arguments, const std::string& scene) {
+  const Result<scenes::SceneDraft> draft = scenes::load_draft(scene, arguments.load);
+  Errors all;
+  for (const std::string& script : arguments.scripts) {
+    const Errors errors = sources::check_script(script, draft ? *draft : scenes::unknown_scene(scene));
+    all.insert(all.end(), errors.begin(), errors.end());
+  }
+  return all;
+}
+
 int run_check(const CheckArguments& arguments) {
+  if (!arguments.scripts.empty() && arguments.scenes.size() > 1)
+    return print_errors({{"--script", "belongs to one scene, got " + std::to_string(arguments.scenes.size()), ""}});
   int code = exit_good;
   for (const std::string& path : arguments.scenes) {
+    const Errors of_scripts = errors_of_scripts(arguments, path);
     const Result<loading::LoadedScene> scene = loading::load_whole_scene(path, arguments.load);
-    if (!scene) {
-      code = print_errors(scene.errors());
+    if (!scene || !of_scripts.empty()) {
+      Errors errors = scene ? Errors{} : scene.errors();
+      errors.insert(errors.end(), of_scripts.begin(), of_scripts.end());
+      code = print_errors(errors);
       continue;
     }
     print_warnings(scene->scene.warnings);
@@ -36,9 +53,13 @@ int run_check(const CheckArguments& arguments) {
 Command add_check(CLI::App& program) {
   auto arguments = std::make_shared<CheckArguments>();
   CLI::App* app = program.add_subcommand(
-      "check", "Validates scenes with their meshes; all errors at once. Settles them, and warns of what is odd.");
-  app->footer("Example: ctpm check scenes/liver.json");
+      "check",
+      "Validates scenes with their meshes and scripts; all errors at once. Settles them, and warns of what is odd.");
+  app->footer(
+      "Examples: ctpm check scenes/liver.json\n"
+      "          ctpm check scenes/liver.json --script scenes/scripts/liver-cut.json");
   app->add_option("scenes", arguments->scenes, "Scene files (.json)")->required();
+  app->add_option("--script", arguments->scripts, "Script of the scene (.json; repeatable)");
   app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths,
                 "Meshes may lie outside the scene's folder");
   return {app, [arguments] { return run_check(*arguments); }};

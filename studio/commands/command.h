@@ -18,6 +18,7 @@ Command add_import(CLI::App& program);
 Command add_check(CLI::App& program);
 Command add_plan(CLI::App& program);
 Command add_preview(CLI::App& program);
+Command add_watch(CLI::App& program);
 Command add_record(CLI::App& program);
 Command add_replay(CLI::App& program);
 Command add_verify(CLI::App& program);

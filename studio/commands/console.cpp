@@ -26,16 +26,6 @@ void print_warnings(const Errors& warnings) {
                  (warning.hint.empty() ? "" : " (" + warning.hint + ")"));
 }
 
-std::string shell_quoted(const std::string& word) {
-  const auto is_plain = [](unsigned char c) {
-    return std::isalnum(c) || std::string_view("-_./=:,+@%").find(char(c)) != std::string_view::npos || c >= 0x80;
-  };
-  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
-}
-
 void print_remark(const std::string& text) { std::fprintf(stderr, "%s\n", output::printable(text, true).c_str()); }
 
 void print(const char* format, ...) {

@@ -26,9 +26,6 @@ void print_warnings(const Errors& warnings);
 /// terminal only through this. A text that may hold newlines is made printable first.
 [[gnu::format(printf, 1, 2)]] void print(const char* format, ...);
 
-/// A word of a command line that a shell reads as it is: in quotes where it needs them.
-std::string shell_quoted(const std::string& word);
-
 /// Prints a line to stderr, for progress and remarks; results go to stdout.
 void print_remark(const std::string& text);
 

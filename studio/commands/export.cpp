@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "studio/commands/flags.h"
 #include "studio/commands/physics_warning.h"
 #include "studio/commands/stop_signal.h"
+#include "studio/exchange/export_shapes.h"
 #include "studio/film/export_video.h"
 #include "studio/output/number_text.h"
 #include "studio/render/picture_size.h"
@@ -18,6 +20,7 @@ namespace {
 
 struct ExportArguments {
   std::string file, beside, output, size = "1280x720";
+  std::optional<double> at_s;
   film::ExportOptions options;
 };
 
@@ -34,7 +37,33 @@ void print_outcome(const film::ExportOutcome& outcome) {
                share(times.encoding) + " encoding");
 }
 
+/// Exports the shape of the tissue for other programs.
+int run_shapes(const ExportArguments& arguments) {
+  if (!arguments.beside.empty())
+    return print_errors({{"--beside", "is for videos", arguments.output + " holds the shapes of one session"}});
+  Result<recordings::SessionReader> reader = recordings::SessionReader::open(arguments.file);
+  if (!reader) return print_errors(reader.errors());
+  warn_of_physics(*reader);
+  const StopSignal stop;
+  exchange::ExportOptions options;
+  options.at_s = arguments.at_s, options.range = arguments.options.range, options.fps = arguments.options.fps;
+  options.overwrite = arguments.options.overwrite, options.allow_diverged = arguments.options.allow_diverged;
+  options.should_stop = [&] { return stop.came(); };
+  const Result<exchange::ExportOutcome> outcome = [&] {
+    ProgressLine progress("exporting");
+    options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
+    return exchange::export_shapes(*reader, arguments.output, options);
+  }();
+  if (!outcome) return print_errors(outcome.errors());
+  const bool is_same = outcome->first_different_tick < 0;
+  print("%s: %lld moments in %zu files; replay %s\n", arguments.output.c_str(), (long long)outcome->moments,
+        outcome->files.size(), is_same ? "same as recorded" : "DIFFERS from what was recorded");
+  return is_same ? exit_good : exit_bad_verdict;
+}
+
 int run_export(ExportArguments& arguments) {
+  if (exchange::is_shape_file(arguments.output)) return run_shapes(arguments);
+  if (arguments.at_s) return print_errors({{"--at-s", "is for .vtp, .vtu and .glb, which hold one moment", ""}});
   Errors errors;
   std::vector<recordings::SessionReader> readers;
   for (const std::string& file : {arguments.file, arguments.beside}) {
@@ -70,20 +99,26 @@ int run_export(ExportArguments& arguments) {
 
 Command add_export(CLI::App& program) {
   auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* app = program.add_subcommand("export", "Replays a session off-screen into a video.");
+  CLI::App* app =
+      program.add_subcommand("export", "Replays a session off-screen into a video, or into shapes for other programs.");
   app->footer(
       "Examples: ctpm export out/demo.ctpm -o out/demo.mp4 --from-s 4 --speed 0.5 --camera follow\n"
-      "          ctpm export expert.ctpm --beside trainee.ctpm -o both.mp4 --view elements --by force");
+      "          ctpm export expert.ctpm --beside trainee.ctpm -o both.mp4 --view elements --by force\n"
+      "          ctpm export out/demo.ctpm -o out/demo.pvd --fps 25\n"
+      "          ctpm export out/demo.ctpm -o out/demo.glb --at-s 4");
   film::ExportOptions& options = arguments->options;
   app->add_option("session", arguments->file, "Session file (.ctpm)")->required();
-  app->add_option("-o,--output", arguments->output,
-                  "Video: .mp4 (H.264), .avi (Motion JPEG), or a folder/ of PNG pictures")
+  app->add_option(
+         "-o,--output", arguments->output,
+         "Video: .mp4 (H.264), .avi (Motion JPEG), or a folder/ of PNG pictures; shapes: .pvd (ParaView) or .usda "
+         "of a series, .vtp, .vtu or .glb of a moment")
       ->required();
   app->add_option("--beside", arguments->beside, "Another session, in step on the right half");
   app->add_option("--size", arguments->size, "Width x height in pixels")->capture_default_str();
   app->add_option("--fps", options.fps, "Frames per second")->capture_default_str();
   app->add_option("--speed", options.speed, "Times real speed")->capture_default_str();
   add_time_range(*app, options.range);
+  app->add_option("--at-s", arguments->at_s, "Moment of a .vtp, .vtu or .glb; the end if not given");
   add_look(*app, options.look);
   app->add_flag("--overwrite", arguments->options.overwrite, "Replace an existing video");
   app->add_flag("--allow-diverged", options.allow_diverged,

@@ -57,7 +57,9 @@ int run_fit(const FitArguments& arguments) {
   print_fit(spec.organs[*organ], *fit);
   if (!arguments.write) return exit_good;
   authoring::apply_fit(spec.organs[*organ], *fit);
-  if (const Result<Done> written = output::write_text_file(arguments.scene, scenes::write_scene(spec)); !written)
+  if (const Result<Done> written =
+          output::write_text_file(arguments.scene, scenes::rewrite_scene(scene->scene.text, scene->scene.spec, spec));
+      !written)
     return print_errors(written.errors());
   print("written: %s\n", arguments.scene.c_str());
   return exit_good;
@@ -72,7 +74,7 @@ Command add_fit(CLI::App& program) {
   app->add_option("scene", arguments->scene, "Scene file (.json)")->required();
   app->add_option("--organ", arguments->organ, "Name of the organ; the first if not given");
   app->add_flag("--write", arguments->write,
-                "Store the scale and what it was fitted for in the scene, in the program's own layout");
+                "Store the scale and what it was fitted for in the scene; its comments and layout stay");
   app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths,
                 "Meshes may lie outside the scene's folder");
   return {app, [arguments] { return run_fit(*arguments); }};

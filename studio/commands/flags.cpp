@@ -24,6 +24,7 @@ constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"export.allow_diverged", "--allow-diverged"},
     {"export.fps", "--fps"},
     {"export.speed", "--speed"},
+    {"exchange.at_s", "--at-s"},
     {"fidelity.recipes", "--only"},
     {"import.anchors", "--anchor"},
     {"import.largest_hole_mm", "--largest-hole-mm"},

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "importers/import.h"
+#include "importers/label_map.h"
 #include "scenes/anchors.h"
 #include "studio/authoring/import_scene.h"
 #include "studio/commands/command.h"
@@ -11,13 +12,14 @@
 #include "studio/output/files.h"
 #include "studio/output/json_writer.h"
 #include "studio/output/number_text.h"
+#include "studio/output/printable.h"
 
 namespace ctpm::commands {
 namespace {
 
 struct ImportArguments {
   authoring::ImportRequest request;
-  std::string unit, report, into;
+  std::string unit, report, into, label;
   std::optional<double> radius_mm, gap_mm, largest_hole_mm, size_mm, scale, khz, stiffness_scale;
   std::optional<std::int64_t> most_triangles, spheres;
   std::vector<std::string> anchors;
@@ -138,12 +140,31 @@ void print_organ(const authoring::ImportedPart& organ, const std::string& scene,
           *organ.stiffness_scale);
   else
     print("stiffness_scale: not fitted: %s%s\n", organ.fit_problem.c_str(),
-          organ.can_be_fitted_later ? ("; run ctpm fit " + shell_quoted(scene) + " --write").c_str() : "");
+          organ.can_be_fitted_later ? ("; run ctpm fit " + output::shell_word(scene) + " --write").c_str() : "");
   print("settled: sags by %.2f mm, %.1f %% of its size\n", 1e3 * organ.sag, 100 * organ.sag / organ.size);
   print("script: presses with up to %.2f N, and %s\n", organ.most_force, organ.was_cut ? "cuts" : "DOES NOT CUT");
 }
 
+/// Prints the labels of a segmentation, for an author who has not chosen one.
+int list_labels(const std::string& map) {
+  const Result<std::vector<importers::Label>> labels = importers::list_labels(map);
+  if (!labels) return print_errors(labels.errors());
+  print("%s: %zu labels\n", map.c_str(), labels->size());
+  print("number  volume      name\n");
+  for (const importers::Label& label : *labels)
+    print("%6d  %8.1f ml  %s\n", int(label.number), label.volume * 1e6, label.name.c_str());
+  print("next: ctpm import %s --label %s --organ liver -o my/organ.json\n", output::shell_word(map).c_str(),
+        output::shell_word(labels->front().text()).c_str());
+  return exit_good;
+}
+
 int run_import(ImportArguments& arguments) {
+  const std::string& mesh = arguments.request.mesh;
+  const bool is_map = importers::is_label_map(mesh);
+  if (is_map && arguments.request.scene.empty() && arguments.into.empty()) return list_labels(mesh);
+  if (!is_map && !arguments.label.empty())
+    return print_errors({{"--label", "only label maps (.nii, .nii.gz, .nrrd) have labels", "--part names a mesh"}});
+  if (is_map && !arguments.label.empty()) arguments.request.part = arguments.label;
   if (const Errors errors = complete(arguments); !errors.empty()) return print_errors(errors);
   const StopSignal stop;
   arguments.request.should_stop = [&] { return stop.came(); };
@@ -168,8 +189,8 @@ int run_import(ImportArguments& arguments) {
   }
   print("time: %.2f ms a tick of 1 ms at rest, on this machine now\n", 1e3 * outcome->tick_time);
   print("written: %s%s, %s\n", scene.c_str(), meshes.c_str(), outcome->script_file.c_str());
-  print("next: ctpm record %s --script %s -o %s\n", shell_quoted(scene).c_str(),
-        shell_quoted(outcome->script_file).c_str(), shell_quoted(stem + ".ctpm").c_str());
+  print("next: ctpm record %s --script %s -o %s\n", output::shell_word(scene).c_str(),
+        output::shell_word(outcome->script_file).c_str(), output::shell_word(stem + ".ctpm").c_str());
   return exit_good;
 }
 
@@ -179,9 +200,16 @@ Command add_import(CLI::App& program) {
   auto arguments = std::make_shared<ImportArguments>();
   CLI::App* app =
       program.add_subcommand("import", "Checks, repairs and fills a mesh, and writes a scene that runs as it is.");
-  app->footer("Example: ctpm import liver.stl --organ liver --unit mm -o my/liver.json");
-  app->add_option("mesh", arguments->request.mesh, "Mesh file (OBJ, STL, PLY, OFF, glTF, ...)")->required();
-  app->add_option("-o,--output", arguments->request.scene, "Scene file to write (.json); its folder is made");
+  app->footer(
+      "Examples: ctpm import liver.stl --organ liver --unit mm -o my/liver.json\n"
+      "          ctpm import segmentation.nii.gz\n"
+      "          ctpm import segmentation.nii.gz --label 3 --organ liver -o my/liver.json");
+  app->add_option("mesh", arguments->request.mesh,
+                  "Mesh (OBJ, STL, PLY, glTF, VTK, MSH, ...) or label map (.nii, .nii.gz, .nrrd)")
+      ->required();
+  app->add_option("-o,--output", arguments->request.scene,
+                  "Scene file to write (.json); its folder is made; without it, the labels of a label map are listed");
+  app->add_option("--label", arguments->label, "Name or number of the label to take from a label map");
   app->add_option("--into", arguments->into, "Add the organs to this scene instead of writing a new one");
   app->add_option("--organ", arguments->request.organ,
                   "Material: a preset (liver, kidney, skin, heart, lung, spleen, bladder, fat, muscle, soft-tissue) or "

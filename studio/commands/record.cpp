@@ -17,6 +17,7 @@
 #include "studio/output/number_text.h"
 #include "studio/session/recent_times.h"
 #include "studio/session/record_session.h"
+#include "studio/sources/open_file.h"
 
 namespace ctpm::commands {
 namespace {
@@ -66,18 +67,15 @@ struct Beginning {
   std::optional<scenes::Script> script;
 };
 
-/// The errors of the given script for a scene that cannot be built; they are printed together with those of the scene.
-Errors errors_of_script(const RecordArguments& arguments) {
-  if (arguments.source.script.empty()) return {};
+/// The errors of the given script, and those of the scene's text: all that can be said before the scene is filled.
+Errors errors_before_filling(const RecordArguments& arguments) {
   const Result<scenes::SceneDraft> draft = scenes::load_draft(arguments.scene, arguments.load);
-  const Result<std::string> text = output::read_text_file(arguments.source.script);
-  if (!text) return text.errors();
-  if (!draft || !draft->problems.is_good("/tools")) return {};
-  std::vector<std::string> tools;
-  for (const scenes::ToolSpec& tool : draft->scene.spec.tools) tools.push_back(tool.name);
-  const Result<scenes::Script> script =
-      scenes::read_script(*text, arguments.source.script, tools, draft->scene.spec.hands.value_or(1));
-  return script ? Errors{} : script.errors();
+  if (arguments.source.script.empty() || !draft) return {};
+  Errors errors = sources::check_script(arguments.source.script, *draft);
+  if (errors.empty()) return {};
+  Errors all = draft->problems.errors();
+  all.insert(all.end(), errors.begin(), errors.end());
+  return all;
 }
 
 Result<Beginning> begin(const RecordArguments& arguments) {
@@ -88,12 +86,9 @@ Result<Beginning> begin(const RecordArguments& arguments) {
     beginning.start = std::move(*start);
     return beginning;
   }
+  if (Errors errors = errors_before_filling(arguments); !errors.empty()) return errors;
   const Result<loading::LoadedScene> scene = loading::load_whole_scene(arguments.scene, arguments.load);
-  if (!scene) {
-    Errors errors = scene.errors();
-    for (Error& error : errors_of_script(arguments)) errors.push_back(std::move(error));
-    return errors;
-  }
+  if (!scene) return scene.errors();
   print_warnings(scene->scene.warnings);
   beginning.start = session::start_session(*scene);
   if (count_of(arguments.source) == 0) beginning.script = scenes::default_script(scene->scene.spec, scene->organs);
@@ -136,7 +131,9 @@ int run_record(const RecordArguments& arguments) {
   Result<Beginning> beginning = begin(arguments);
   if (!beginning) return print_errors(beginning.errors());
   recordings::SessionStart& start = beginning->start;
-  const Result<ReadySource> opened = open_source(arguments.source, std::move(*devices), start.model, beginning->script);
+  const Result<scenes::SceneText> scene = scenes::read_scene(start.scene_text, "the session's scene");
+  const Result<ReadySource> opened = open_source(arguments.source, std::move(*devices), start.model,
+                                                 scene ? scene->spec : scenes::SceneSpec{}, beginning->script);
   if (!opened) return print_errors(opened.errors());
   for (const auto& [key, value] : opened->metadata) start.metadata[key] = value;
   for (const FollowedPlace& one : opened->devices) print_remark(one.place + "; Ctrl-C ends it");

@@ -87,7 +87,7 @@ int count_of(const SourceRequest& request) {
 }
 
 Result<ReadySource> open_source(const SourceRequest& request, OpenedDevices devices, const Model& model,
-                                const std::optional<scenes::Script>& otherwise) {
+                                const scenes::SceneSpec& scene, const std::optional<scenes::Script>& otherwise) {
   if (devices[1].device) {
     Result<devices::FollowedPair> pair = devices::follow_devices(
         request.device, std::move(devices[0].device), second_of(request), std::move(devices[1].device), model);
@@ -108,7 +108,7 @@ Result<ReadySource> open_source(const SourceRequest& request, OpenedDevices devi
   if (otherwise) print_remark("no source is given: pressing and cutting at the top of the first organ");
   Result<sources::OpenedSource> opened = otherwise                ? sources::play_script(*otherwise, model)
                                          : request.script.empty() ? sources::open_motion(request.motion, model)
-                                                                  : sources::open_script(request.script, model);
+                                                                  : sources::open_script(request.script, model, scene);
   if (!opened) return opened.errors();
   for (const std::string& remark : opened->remarks) print_remark(remark);
   return ReadySource{std::move(opened->source), {}, std::move(opened->metadata)};

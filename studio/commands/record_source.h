@@ -57,6 +57,6 @@ struct ReadySource {
 /// Opens the requested source, or plays `otherwise` if there is none. `devices` is the result of open_devices(). Prints
 /// remarks. Errors: those of the source's file, with places; tools that the scene does not have.
 Result<ReadySource> open_source(const SourceRequest& request, OpenedDevices devices, const Model& model,
-                                const std::optional<scenes::Script>& otherwise);
+                                const scenes::SceneSpec& scene, const std::optional<scenes::Script>& otherwise);
 
 }  // namespace ctpm::commands

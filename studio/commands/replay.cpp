@@ -2,9 +2,12 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
+#include "scenes/build_model.h"
+#include "scenes/scene_file.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 #include "studio/commands/extremes_text.h"
@@ -24,14 +27,34 @@ struct ReplayArguments {
   session::TimeRange range;
 };
 
-std::string csv_header(const Model& model) {
+/// A probe of the session's scene, and the sphere that it follows.
+struct Probe {
+  std::string name;
+  std::size_t sphere;
+};
+
+/// None where the session's scene cannot be read, which another version may have written.
+std::vector<Probe> probes_of(const recordings::SessionReader& reader) {
+  std::vector<Probe> probes;
+  if (const Result<scenes::SceneText> scene = scenes::read_scene(reader.start().scene_text, reader.path()))
+    for (const scenes::ProbeSpec& probe : scene->spec.probes)
+      probes.push_back({probe.name, std::size_t(scenes::nearest_sphere(reader.start().model, probe.at))});
+  return probes;
+}
+
+std::string csv_header(const Model& model, const std::vector<Probe>& probes) {
+  std::string of_probes;
+  for (const Probe& probe : probes)
+    for (const char* axis : {"_x_mm", "_y_mm", "_z_mm"})
+      of_probes += "," + output::csv_text("probe_" + probe.name + axis);
+
   const char* const of_second =
       ",second_tool,second_x_mm,second_y_mm,second_z_mm,second_qw,second_qx,second_qy,second_qz,second_buttons,"
       "second_force_x_n,second_force_y_n,second_force_z_n,second_force_n,second_depth_mm,second_contacts";
   return std::string(
              "tick,time_s,tool,tool_x_mm,tool_y_mm,tool_z_mm,tool_qw,tool_qx,tool_qy,tool_qz,buttons,"
              "force_x_n,force_y_n,force_z_n,force_n,depth_mm,contacts,severed,same_as_recorded") +
-         (model.hands > 1 ? of_second : "") + "\n";
+         (model.hands > 1 ? of_second : "") + of_probes + "\n";
 }
 
 /// Tool, pose and buttons of a hand; force and depth; contacts.
@@ -51,7 +74,7 @@ HandCells cells_of(const Model& model, const Hand& in, const stepping::HandRepor
   return {tool + pose, loads, std::to_string(report.contacts)};
 }
 
-std::string csv_row(const Model& model, const recordings::ReplayCursor& cursor) {
+std::string csv_row(const Model& model, const recordings::ReplayCursor& cursor, const std::vector<Probe>& probes) {
   const Inputs& inputs = cursor.record().inputs;
   const stepping::StepReport& report = cursor.report();
   const HandCells first = cells_of(model, inputs, report);
@@ -62,6 +85,12 @@ std::string csv_row(const Model& model, const recordings::ReplayCursor& cursor) 
   if (model.hands > 1) {
     const HandCells second = cells_of(model, inputs.second, report.second);
     row += "," + second.inputs + "," + second.loads + "," + second.contacts;
+  }
+  for (const Probe& probe : probes) {
+    const Vec3 at = cursor.state().position[probe.sphere];
+    char place[96];
+    std::snprintf(place, sizeof place, ",%.9g,%.9g,%.9g", at.x * 1e3, at.y * 1e3, at.z * 1e3);
+    row += place;
   }
   return row + "\n";
 }
@@ -81,12 +110,13 @@ int run_replay(const ReplayArguments& arguments) {
   if (!cursor) return print_errors(cursor.errors());
   if (const Result<Done> found = cursor->seek(range->from); !found) return print_errors(found.errors());
   ProgressLine progress("replaying");
-  std::string rows = csv_header(model);
+  const std::vector<Probe> probes = probes_of(*reader);
+  std::string rows = csv_header(model, probes);
   double most_force = 0, most_depth = 0;
   while (cursor->tick() < range->to) {
     const Result<bool> went_on = cursor->step();
     if (!went_on) return print_errors(went_on.errors());
-    if (!arguments.csv.empty()) rows += csv_row(model, *cursor);
+    if (!arguments.csv.empty()) rows += csv_row(model, *cursor, probes);
     for (std::size_t hand = 0; hand < kMostHands; ++hand) {
       most_force = std::max(most_force, norm(cursor->report().of_hand(hand).tool_force));
       most_depth = std::max(most_depth, cursor->report().of_hand(hand).depth);
@@ -111,7 +141,7 @@ Command add_replay(CLI::App& program) {
   app->footer("Example: ctpm replay out/demo.ctpm --from-s 1 --to-s 3 --csv out/demo.csv");
   app->add_option("session", arguments->file, "Session file (.ctpm)")->required();
   add_time_range(*app, arguments->range);
-  app->add_option("--csv", arguments->csv, "Table with time, tool, force and depth of each tick");
+  app->add_option("--csv", arguments->csv, "Table with time, tool, force, depth and probes of each tick");
   app->add_flag("--overwrite", arguments->overwrite, "Replace an existing table");
   return {app, [arguments] { return run_replay(*arguments); }};
 }

@@ -34,6 +34,14 @@ void add_mesh_errors(scenes::Problems& problems, const std::string& list, std::s
     problems.add(at, (error.where.empty() ? "" : error.where + ": ") + error.message, error.hint, at);
 }
 
+/// Finds places on filled organs; those without spheres are not known.
+scenes::PlaceFinder finder_on(const scenes::SceneSpec& scene, const std::vector<FilledOrgan>& organs) {
+  std::vector<scenes::PlaceFinder::Organ> named;
+  for (std::size_t i = 0; i < organs.size(); ++i)
+    named.push_back({scene.organs[i].name, organs[i].centre.empty() ? nullptr : &organs[i].surface});
+  return scenes::PlaceFinder(std::move(named), scene.gravity);
+}
+
 /// The mesh of an obstacle; empty for one of another kind, and where it cannot be read.
 scenes::ObstacleMesh mesh_of(const std::string& scene_path, const scenes::ObstacleSpec& obstacle, std::size_t index,
                              scenes::Problems& problems) {
@@ -70,22 +78,33 @@ Result<LoadedScene> load_whole_scene(const std::string& path, const scenes::Load
                                      const std::function<bool()>& should_stop) {
   Result<scenes::SceneDraft> draft = scenes::load_draft(path, options);
   if (!draft) return draft.errors();
-  auto& [scene, problems] = *draft;
-  if (change && problems.is_empty()) change(scene.spec);
+  if (change && draft->problems.is_empty()) change(draft->scene.spec);
   LoadedScene loaded;
   loaded.path = path;
-  for (std::size_t i = 0; i < scene.spec.organs.size(); ++i) {
+  std::vector<Errors> mesh_errors;
+  for (std::size_t i = 0; i < draft->scene.spec.organs.size(); ++i) {
     importers::ImportedOrgan filled;
-    if (scenes::can_be_filled(problems, i)) {
-      Result<importers::ImportedOrgan> imported = fill_of(path, scene.spec.organs[i], should_stop);
+    mesh_errors.emplace_back();
+    if (scenes::can_be_filled(draft->problems, i)) {
+      Result<importers::ImportedOrgan> imported = fill_of(path, draft->scene.spec.organs[i], should_stop);
       if (imported)
         filled = *std::move(imported);
       else
-        add_mesh_errors(problems, "/organs", i, imported.errors());
+        mesh_errors.back() = imported.errors();
     }
     loaded.organs.push_back(std::move(filled.organ));
     loaded.reports.push_back(std::move(filled.report));
   }
+  if (!draft->open_places.empty()) {
+    // Read again, now that there are organs to find places on.
+    scenes::PlaceFinder finder = finder_on(draft->scene.spec, loaded.organs);
+    draft = scenes::load_draft(path, options, &finder);
+    if (!draft) return draft.errors();
+    if (change && draft->problems.is_empty()) change(draft->scene.spec);
+  }
+  scenes::SceneText& scene = draft->scene;
+  scenes::Problems& problems = draft->problems;
+  for (std::size_t i = 0; i < mesh_errors.size(); ++i) add_mesh_errors(problems, "/organs", i, mesh_errors[i]);
   for (std::size_t i = 0; i < scene.spec.obstacles.size(); ++i)
     loaded.obstacles.push_back(mesh_of(path, scene.spec.obstacles[i], i, problems));
   if (should_stop && should_stop()) return Error{path, "stopped", ""};

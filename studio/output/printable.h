@@ -16,4 +16,7 @@ std::string json_string(std::string_view text);
 /// `text` as a value of a CSV table: in quotes if it holds a comma, a quote or the end of a line.
 std::string csv_text(const std::string& text);
 
+/// `text` as one word of a shell's command line: as it is where that is safe, else in single quotes.
+std::string shell_word(const std::string& text);
+
 }  // namespace ctpm::output

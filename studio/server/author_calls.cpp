@@ -61,9 +61,9 @@ Result<std::string> check_scene(Parameters& parameters, const CallContext& conte
   const std::string path = parameters.text("path"), text = parameters.text("text");
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
   if (const Result<std::string> file = place_of_scene(context.folder, path); !file) return file.errors();
-  const Result<scenes::SceneText> scene = scenes::read_scene(text, path);
-  return "{\"errors\": " + errors_json(scene ? Errors{} : scene.errors()) +
-         ", \"warnings\": " + errors_json(scene ? scene->warnings : Errors{}) + "}";
+  const Result<scenes::SceneDraft> draft = scenes::read_draft(text, path);
+  return "{\"errors\": " + errors_json(draft ? draft->problems.errors() : draft.errors()) +
+         ", \"warnings\": " + errors_json(draft ? draft->scene.warnings : Errors{}) + "}";
 }
 
 Result<std::string> import_mesh(Parameters& parameters, const CallContext& context) {

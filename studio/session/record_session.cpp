@@ -17,7 +17,7 @@ namespace ctpm::session {
 
 recordings::SessionStart start_session(const loading::LoadedScene& scene) {
   recordings::SessionStart start;
-  start.scene_text = scene.scene.text;
+  start.scene_text = scene.scene.found_text;
   start.model = scene.built.model;
   start.initial_state = rest_state(start.model);
   stepping::Stepper(start.model).settle(start.initial_state, std::llround(scene.scene.spec.settle / start.model.tick));

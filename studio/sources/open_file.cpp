@@ -15,10 +15,16 @@ OpenedSource play_script(const scenes::Script& script, const Model& model) {
   return opened;
 }
 
-Result<OpenedSource> open_script(const std::string& file, const Model& model) {
+Errors check_script(const std::string& file, const scenes::SceneDraft& scene) {
+  const Result<std::string> text = output::read_text_file(file);
+  return text ? scenes::check_script(*text, file, scene) : text.errors();
+}
+
+Result<OpenedSource> open_script(const std::string& file, const Model& model, const scenes::SceneSpec& scene) {
   const Result<std::string> text = output::read_text_file(file);
   if (!text) return text.errors();
-  const Result<scenes::Script> script = scenes::read_script_for(*text, file, model);
+  scenes::PlaceFinder finder = scenes::finder_of(model, scene);
+  const Result<scenes::Script> script = scenes::read_script_for(*text, file, model, &finder);
   if (!script) return script.errors();
   return play_script(*script, model);
 }

@@ -7,6 +7,7 @@
 
 #include "core/model/model.h"
 #include "core/model/result.h"
+#include "scenes/scene_file.h"
 #include "scenes/script.h"
 #include "studio/sources/input_source.h"
 
@@ -22,8 +23,13 @@ struct OpenedSource {
 /// A script as a source for `model`.
 OpenedSource play_script(const scenes::Script& script, const Model& model);
 
-/// The script in `file`. Errors: the file cannot be read; those of read_script(), with places.
-Result<OpenedSource> open_script(const std::string& file, const Model& model);
+/// The errors of a script for a scene that may have refused values; its tools are not judged where the scene's are
+/// refused.
+Errors check_script(const std::string& file, const scenes::SceneDraft& scene);
+
+/// The script in `file`. `scene` has the probes that its places may name. Errors: the file cannot be read; those of
+/// read_script(), with places.
+Result<OpenedSource> open_script(const std::string& file, const Model& model, const scenes::SceneSpec& scene);
 
 /// The motion in `file`. Errors: the file cannot be read; those of read_motion(), with places. Remark: columns that are
 /// not used.

@@ -144,8 +144,13 @@ TEST_F(BadInput, ASceneAndItsScriptAreRefusedTogether) {
   write("s.json",
         "{\"format\": \"ctpm-script\", \"version\": 1, \"steps\": [\n{\"take\": {\"tool\": \"saw\", \"at_mm\": "
         "[0, 0, 0]}}]}");
-  refuse({"record", "a.json", "--script", "s.json", "-o", "a.ctpm"},
-         {kAnchorError, "s.json:2:19: error: /steps/0/take/tool: the scene has no tool \"saw\" (its tools: ball)"});
+  const std::string saw = "s.json:2:19: error: /steps/0/take/tool: the scene has no tool \"saw\" (its tools: ball)";
+  refuse({"check", "a.json", "--script", "s.json"}, {kAnchorError, saw});
+  // Recording says what a script gets wrong before it fills, and with it what the scene's text does.
+  refuse({"record", "a.json", "--script", "s.json", "-o", "a.ctpm"}, {saw});
+  write("b.json", two_organs(kRig, kRig,
+                             R"("contact_friction": -1, "tools": [{"name": "ball", "kind": "ball", "radius_mm": 5}])"));
+  refuse({"record", "b.json", "--script", "s.json", "-o", "a.ctpm"}, {saw, "/contact_friction: got -1"});
 }
 
 TEST_F(BadInput, AScriptWithAnUnknownTool) {
@@ -235,7 +240,7 @@ TEST_F(BadInput, ModuliRadiiSpacingsAndViscositiesThatCannotBeAreAllNamedWithThe
           "number",
           "a.json:17:27: error: /organs/0/material/calibration_spacing_mm: got 0, must be in"});
   write("a.json", scene_with(preset, preset + ", \"viscosity_kpa_s_per_mm\": NaN"));
-  refuse({"check", "a.json"}, {"a.json:12:53: error: syntax error"});
+  refuse({"check", "a.json"}, {"a.json:12:53: error: NaN is not a number that a file can hold"});
   for (const auto& [value, message] : {std::pair<std::string, std::string>{"0", "got 0, must be in [0.01, 100] mm"},
                                        {"-7", "got -7, must be in [0.01, 100] mm"},
                                        {"1e9", "got 1e9, must be in [0.01, 100] mm"},

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "importers/label_map.h"
 #include "tests/importers/zoo.h"
 #include "tests/studio/commands/run_program.h"
 
@@ -99,6 +100,36 @@ TEST_F(ImportProgram, CrumbsFarAwayDoNotMakeTheOrganUnusuallyLarge) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   expect_says(report(), {"\"code\": \"unit_guessed\"", "\"code\": \"other_part\""});
   EXPECT_EQ(report().find("unusual_size"), std::string::npos) << outcome.out;
+}
+
+TEST_F(ImportProgram, ALabelMapIsListedAndALabelChosenByNameOrNumber) {
+  if (!importers::reads_label_maps()) GTEST_SKIP() << "this build has no ITK";
+  const std::string map = CTPM_SOURCE_DIR "/tests/importers/maps/names.seg.nrrd";
+  const auto listed = run_ctpm({"import", map}, folder_.path());
+  EXPECT_EQ(listed.code, 0) << listed.err;
+  expect_says(listed.out,
+              {": 2 labels", "     1      37.8 ml  left_kidney", "     7       2.1 ml  stone", "--label left_kidney"});
+  const auto unchosen = import(map, {"--radius-mm", "3"});
+  EXPECT_EQ(unchosen.code, 2);
+  expect_says(unchosen.err, {"holds 2 labels", "choose one of left_kidney, stone"});
+  EXPECT_FALSE(fs::exists(folder_.path() / "scene.json"));
+  for (const std::string label : {"left_kidney", "1"}) {
+    const auto outcome = import(map, {"--label", label, "--radius-mm", "3", "--overwrite"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    expect_says(outcome.out, {"unit: mm (as the file says)", ", 37.8 ml"});
+    EXPECT_EQ(run_ctpm({"check", "scene.json"}, folder_.path()).code, 0);
+  }
+  write("bean.obj", zoo::to_obj_text(bean()));
+  EXPECT_EQ(import("bean.obj", {"--label", "1", "--overwrite"}).code, 2) << "a mesh has no labels";
+  EXPECT_EQ(run_ctpm({"import", "bean.obj"}, folder_.path()).code, 2) << "only a label map needs no scene";
+}
+
+TEST_F(ImportProgram, ATetrahedralMeshBecomesASceneByItsBoundary) {
+  const auto outcome = import(CTPM_SOURCE_DIR "/tests/importers/maps/text41.msh",
+                              {"--part", "core", "--unit", "mm", "--radius-mm", "1"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  expect_says(outcome.out, {", 1.6 ml"});
+  EXPECT_EQ(run_ctpm({"check", "scene.json"}, folder_.path()).code, 0);
 }
 
 TEST_F(ImportProgram, NoOrganNeedsToBeNamedAndTheFolderIsMade) {

@@ -1,0 +1,158 @@
+// What an author uses beside the import: places by meaning, scripts that are checked, probes in tables, marks in
+// previews, and `watch`.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "studio/render/frame.h"
+#include "tests/studio/commands/running_program.h"
+
+namespace ctpm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::run_ctpm;
+
+class AuthorTools : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    fs::copy_file(CTPM_SOURCE_DIR "/scenes/organs/skin.obj", folder_.path() / "skin.obj");
+    write("scene.json", scene());
+    write("script.json", script("ball"));
+  }
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_.path() / name, std::ios::binary) << text;
+  }
+  /// A patch of skin, with places by meaning and a comment.
+  static std::string scene(const std::string& more = "") {
+    return "{\"format\": \"ctpm-scene\", \"version\": 1, \"name\": \"patch\", // of skin\n"
+           "\"organs\": [{\"name\": \"skin\", \"mesh\": \"skin.obj\", \"fill\": {\"radius_mm\": 6, \"gap_mm\": 6},\n"
+           "\"material\": {\"preset\": \"skin\"}, \"anchors\": [{\"lowest_mm\": 4}]}],\n"
+           "\"tools\": [{\"name\": \"ball\", \"kind\": \"ball\", \"radius_mm\": 8, \"at_mm\": \"spot out 20\"}],\n"
+           "\"probes\": [{\"name\": \"spot\", \"at_mm\": \"surface of skin at 5 -5\"}],\n"
+           "\"settle_s\": 0.2" +
+           more + "}\n";
+  }
+  static std::string script(const std::string& tool) {
+    return "{\"format\": \"ctpm-script\", \"version\": 1, \"steps\": [\n{\"take\": {\"tool\": \"" + tool +
+           "\", \"at_mm\": \"spot out 10\", \"pointing\": \"into spot\"}},\n"
+           "{\"press\": {\"distance_mm\": 8, \"direction\": \"into spot\", \"speed_mm_per_s\": 80}}, {\"wait_s\": "
+           "0.1}]}\n";
+  }
+  testing::ProgramOutcome ctpm(const std::vector<std::string>& arguments) {
+    return run_ctpm(arguments, folder_.path());
+  }
+  static void expect_says(const std::string& text, const std::vector<std::string>& parts) {
+    for (const std::string& part : parts)
+      EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in:\n" << text;
+  }
+
+  testing::TemporaryFolder folder_;
+};
+
+TEST_F(AuthorTools, CheckNamesTheMistakesOfASceneAndItsScriptsInOneRun) {
+  const auto good = ctpm({"check", "scene.json", "--script", "script.json"});
+  EXPECT_EQ(good.code, 0) << good.err;
+  write("scene.json", scene(", \"contact_friction\": -1"));
+  write("script.json", script("bell"));
+  write("other.json", "{\"format\": \"ctpm-script\", \"version\": 1,}");
+  const auto bad = ctpm({"check", "scene.json", "--script", "script.json", "--script", "other.json"});
+  EXPECT_EQ(bad.code, 2);
+  expect_says(bad.err, {"scene.json:6:38: error: /contact_friction: got -1",
+                        "script.json:2:19: error: /steps/0/take/tool: the scene has no tool \"bell\" (its tools: ball)",
+                        "other.json:1:39: error: this comma is one too many"});
+  EXPECT_EQ(ctpm({"check", "scene.json", "scene.json", "--script", "script.json"}).code, 2);
+}
+
+TEST_F(AuthorTools, AScriptsMistakesComeBeforeItsSceneIsFilled) {
+  // A mesh that cannot be filled would be found second.
+  write("skin.obj", "v 0 0 0\n");
+  std::string wrong = script("ball");
+  wrong.replace(wrong.find("into spot"), 9, "into spit");
+  write("script.json", wrong);
+  const auto outcome = ctpm({"record", "scene.json", "--script", "script.json", "-o", "a.ctpm", "--fast"});
+  EXPECT_EQ(outcome.code, 2);
+  expect_says(outcome.err, {"script.json:2:", "there is no place \"spit\" (probes: spot"});
+  EXPECT_EQ(outcome.err.find("skin.obj"), std::string::npos) << outcome.err;
+}
+
+TEST_F(AuthorTools, PlacesByMeaningAreRecordedAndProbesAreColumns) {
+  const auto recorded = ctpm({"record", "scene.json", "--script", "script.json", "-o", "a.ctpm", "--fast"});
+  ASSERT_EQ(recorded.code, 0) << recorded.err;
+  ASSERT_EQ(ctpm({"verify", "a.ctpm"}).code, 0);
+  ASSERT_EQ(ctpm({"replay", "a.ctpm", "--csv", "a.csv"}).code, 0);
+  std::istringstream table(testing::slurp(folder_.path() / "a.csv"));
+  std::vector<std::vector<std::string>> rows;
+  for (std::string line; std::getline(table, line);) {
+    std::istringstream cells(line);
+    rows.emplace_back();
+    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+  }
+  const auto column = [&](const std::string& name) {
+    return std::size_t(std::find(rows[0].begin(), rows[0].end(), name) - rows[0].begin());
+  };
+  const std::size_t z = column("probe_spot_z_mm"), force = column("force_n"), x = column("probe_spot_x_mm");
+  ASSERT_LT(z, rows[0].size());
+  EXPECT_EQ(z, x + 2);
+  const auto number = [&](std::size_t row, std::size_t at) { return std::stod(rows[row].at(at)); };
+  EXPECT_NEAR(number(1, x), 5, 12) << "the sphere that is nearest to the place";
+  EXPECT_GT(number(rows.size() - 1, force), 0) << "the ball touches the spot";
+  EXPECT_LT(number(rows.size() - 1, z), number(1, z) - 0.3) << "and the probe goes down with it";
+}
+
+TEST_F(AuthorTools, APreviewShowsMarksAndTheSettledShape) {
+  const auto draw = [&](const std::string& name, std::vector<std::string> more) {
+    more.insert(more.begin(), {"preview", "scene.json", "-o", name, "--size", "640x360"});
+    const auto outcome = ctpm(more);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Result<render::Frame> picture = render::read_picture((folder_.path() / name).string());
+    return picture ? *picture : render::Frame{};
+  };
+  const render::Frame plain = draw("plain.png", {}), marked = draw("marked.png", {"--marks"}),
+                      ways = draw("ways.png", {"--script", "script.json"}),
+                      settled = draw("settled.png", {"--settled"});
+  EXPECT_NE(plain, settled);
+  const auto count = [&](const render::Frame& picture, int red, int green, int blue) {
+    int pixels = 0;
+    for (std::size_t i = 0; i + 2 < picture.rgb.size(); i += 3)
+      pixels += std::abs(picture.rgb[i] - red) < 12 && std::abs(picture.rgb[i + 1] - green) < 12 &&
+                std::abs(picture.rgb[i + 2] - blue) < 12;
+    return pixels;
+  };
+  // The probe's yellow ring, the tool's arrow, the axes.
+  for (const auto& [red, green, blue] : {std::array{255, 217, 64}, {89, 230, 242}, {242, 89, 76}, {102, 217, 102}}) {
+    EXPECT_EQ(count(plain, red, green, blue), 0);
+    EXPECT_GT(count(marked, red, green, blue), 8);
+  }
+  EXPECT_NE(ways, marked) << "the script's way is drawn as well";
+}
+
+TEST_F(AuthorTools, WatchLooksAgainWhenAFileIsSaved) {
+  testing::RunningProgram watching({"watch", "scene.json", "--script", "script.json", "--preview", "scene.png"},
+                                   folder_.path());
+  const auto wait_for = [&](const std::string& file, const std::string& text) {
+    for (int i = 0; i < 3000 && testing::slurp(folder_.path() / file).find(text) == std::string::npos; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_NE(testing::slurp(folder_.path() / file).find(text), std::string::npos)
+        << testing::slurp(folder_.path() / file);
+  };
+  wait_for(".stderr", "watching scene.json");
+  expect_says(testing::slurp(folder_.path() / ".stdout"), {"scene.json: good", "solver:", "scene.png: 1280x720"});
+  EXPECT_TRUE(fs::exists(folder_.path() / "scene.png"));
+  write("scene.json", scene(", \"lips_meet\": 3"));
+  wait_for(".stderr", "/lips_meet: got the number 3");
+  write("scene.json", scene());
+  write("script.json", script("bell"));
+  wait_for(".stderr", "the scene has no tool \"bell\"");
+  watching.interrupt();
+  EXPECT_EQ(watching.outcome().code, 0);
+}
+
+}  // namespace
+}  // namespace ctpm
