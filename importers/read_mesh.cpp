@@ -46,14 +46,14 @@ void put_parts(wire::Writer& message, wire::Kind kind, const std::vector<std::st
 
 }  // namespace
 
-void send_soup(const std::vector<std::string>& parts, std::size_t part, double unit_in_metres, const Soup& soup,
+void send_soup(const std::vector<std::string>& parts, std::ptrdiff_t part, double unit_in_metres, const Soup& soup,
                const Send& send) {
   wire::Writer message;
   put_parts(message, wire::Kind::mesh, parts);
   message.put(unit_in_metres);
   message.put_list(soup.vertex);
   message.put_list(soup.triangle);
-  message.put_list(std::vector<std::int32_t>(soup.triangle.size(), std::int32_t(part)));
+  message.put_list(std::vector<std::int32_t>(part < 0 ? 0 : soup.triangle.size(), std::int32_t(part)));
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   message.put_list(std::vector<Vec3>(parts.size(), Vec3{kNone, kNone, kNone}));
   send(message.bytes.data(), message.bytes.size());
@@ -125,7 +125,7 @@ void join_repeats(RawMesh& mesh) {
 
 bool has_indices_in_range(const RawMesh& mesh) {
   const std::int32_t count = std::int32_t(mesh.vertex.size()), parts = std::int32_t(mesh.parts.size());
-  const bool has_parts = mesh.part_of_triangle.size() == mesh.triangle.size() &&
+  const bool has_parts = (mesh.part_of_triangle.empty() || mesh.part_of_triangle.size() == mesh.triangle.size()) &&
                          std::all_of(mesh.part_of_triangle.begin(), mesh.part_of_triangle.end(),
                                      [parts](std::int32_t part) { return part >= 0 && part < parts; });
   return has_parts && std::all_of(mesh.triangle.begin(), mesh.triangle.end(), [count](const Triangle& t) {
