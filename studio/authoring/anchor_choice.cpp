@@ -64,6 +64,8 @@ Result<AnchorChoice> try_anchors(scenes::SceneSpec& scene, const FilledOrgan& or
 
 }  // namespace
 
+scenes::AnchorSpec usual_anchor(const FilledOrgan& organ) { return anchor_of(kHolds[0], organ); }
+
 Result<AnchorChoice> choose_anchors(scenes::SceneSpec scene, const FilledOrgan& organ,
                                     const std::function<bool()>& should_stop) {
   if (!scene.organs[0].anchors.empty()) {

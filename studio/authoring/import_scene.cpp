@@ -10,6 +10,7 @@
 #include "scenes/scene_file.h"
 #include "scenes/script.h"
 #include "studio/authoring/anchor_choice.h"
+#include "studio/authoring/capsule.h"
 #include "studio/authoring/filling_choice.h"
 #include "studio/authoring/fit_stiffness.h"
 #include "studio/authoring/new_folder.h"
@@ -214,12 +215,14 @@ class Import {
     note_tissue(draft);
     const scenes::MaterialSpec unfitted = draft.spec.material;
     fit(draft);
+    put_under_tension(draft);
     tell("settling", 0.7);
     Result<AnchorChoice> choice = choose_anchors(alone(draft), draft.filled, request_.should_stop);
     if (!choice) return choice.errors();
     if (!choice->standing.stands() && draft.part.stiffness_scale) {
       // The ball of the fit is felt near the surface only; the whole organ may need more than it asks for.
       draft.spec.material = unfitted;
+      put_under_tension(draft);
       Result<AnchorChoice> again = choose_anchors(alone(draft), draft.filled, request_.should_stop);
       if (!again) return again.errors();
       if (again->standing.stands()) {
@@ -230,6 +233,7 @@ class Import {
       choice = std::move(again);
     }
     const loading::OrganStanding& standing = choice->standing.organ[0];
+    note_tension(draft);
     if (!choice->standing.stands())
       return {{request_.mesh,
                "organ " + draft.spec.name + " folds over under its own weight: it sags by " +
@@ -251,6 +255,22 @@ class Import {
     else if (!draft.tissue.is_own && std::string(draft.tissue.preset->source).starts_with("estimate"))
       draft.note("tissue_estimated", "the values of " + draft.spec.material.preset + " are an estimate", "none",
                  draft.tissue.preset->source);
+  }
+
+  void put_under_tension(Draft& draft) const {
+    draft.spec.layers.clear();
+    if (draft.tissue.is_own) return;
+    if (const std::optional<scenes::LayerSpec> capsule = capsule_of(draft.spec.material, draft.filled))
+      draft.spec.layers = {*capsule};
+  }
+
+  void note_tension(Draft& draft) const {
+    if (draft.spec.layers.empty()) return;
+    const scenes::LayerSpec& capsule = draft.spec.layers.front();
+    draft.note("tension", std::string("in the body it is under tension: ") + draft.tissue.preset->in_situ.source,
+               "a layer of " + importers::mm_text(capsule.to_depth) + " under a strain of " +
+                   output::short_number(*capsule.material.prestrain, 3),
+               "cuts gape; without the layer it is as if excised");
   }
 
   /// Fits the organ's stiffness and stores it; an organ that cannot be fitted keeps its moduli.
@@ -275,6 +295,8 @@ class Import {
     }
     if (!part.fit_problem.empty()) return;
     scenes::SceneSpec scene = alone(draft);
+    // The ball would push away what nothing holds.
+    if (scene.organs[0].anchors.empty()) scene.organs[0].anchors = {usual_anchor(draft.filled)};
     const Result<StiffnessFit> fit = fit_stiffness(scene, 0, draft.filled, request_.should_stop);
     if (!fit) {
       part.fit_problem = fit.errors().front().message;

@@ -70,6 +70,16 @@ TEST_F(ImportProgram, ACoarserSurfaceIsDrawnAroundTheSameSpheres) {
   EXPECT_EQ(run_ctpm({"check", "scene.json"}, folder_.path()).code, 0);
 }
 
+TEST_F(ImportProgram, AnOrganOfThePaperIsFittedAndUnderTheTensionOfItsCapsule) {
+  write("bean.obj", zoo::to_obj_text(bean()));
+  const auto done = import("bean.obj", {"--unit", "mm", "--radius-mm", "4"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  expect_says(done.out, {"stiffness_scale: ", "fitted so that the paper's ball meets its Table 1",
+                         "a layer of 12 mm under a strain of 0.0", "cuts gape"});
+  expect_says(report(), {"\"code\": \"tension\""});
+  expect_says(testing::slurp(folder_.path() / "scene.json"), {"\"to_depth_mm\": 12", "\"prestrain\": 0.0"});
+}
+
 TEST_F(ImportProgram, AllPartsAreInTheSceneAsWell) {
   const importers::RawMesh two = zoo::both(bean(), zoo::moved(bean(), [](Vec3 p) { return p + Vec3{120, 0, 0}; }));
   write("two.obj", zoo::to_obj_text(two));
