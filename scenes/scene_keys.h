@@ -121,9 +121,11 @@ void describe_fields(V& v, MaterialSpec& material) {
            material.calibration_spacing, units::millimetre, within(0.01, 1000));
   v.number(Key{"prestrain",
                "In-situ strain: an element's length without force is shorter by this fraction than its length in the "
-               "lattice. A capsule with more prestrain than the tissue below it makes a cut gape.",
+               "lattice; negative where the tissue is pressed. A capsule with more prestrain than the tissue below it "
+               "makes a "
+               "cut gape.",
                false, "0"},
-           material.prestrain, units::none, within(0, 0.5));
+           material.prestrain, units::none, within(-0.2, 0.5));
   v.number(
       Key{"fracture_toughness_j_per_m2", "Fracture energy J_c of a cut per area; 0: a blade cuts without resistance.",
           false, "the preset's, else 0"},

@@ -62,7 +62,7 @@ struct MaterialSpec {
   std::optional<double> stiffness_scale;      ///< multiplies every stiffness and damping
   std::optional<double> calibration_ball;     ///< radius R of the ball the moduli belong to [m]
   std::optional<double> calibration_spacing;  ///< spacing of the site the moduli belong to [m]
-  std::optional<double> prestrain;            ///< in [0, 0.5]
+  std::optional<double> prestrain;            ///< in [-0.2, 0.5]
   std::optional<double> fracture_toughness;   ///< J_c [J/m^2]
   std::optional<double> blade_friction;       ///< [Pa]
   std::optional<FittedForSpec> fitted_for;    ///< for information only

@@ -28,25 +28,32 @@ double radius_of(const Surface& surface) {
 
 }  // namespace
 
-std::optional<scenes::LayerSpec> capsule_of(const scenes::MaterialSpec& material, const FilledOrgan& filled) {
+std::optional<Tension> tension_of(const scenes::MaterialSpec& material, const FilledOrgan& filled) {
   constexpr double kMost = 0.3;  // strain; beyond it the organ is not one of the preset's
   const scenes::MaterialPreset* preset = scenes::find_preset(material.preset);
   if (preset == nullptr || filled.surface.vertex.empty()) return {};
   const double depth = filled.spacing;
-  const auto inside = [&](double d) { return d < depth; };
-  if (std::none_of(filled.depth.begin(), filled.depth.end(), inside) ||
-      std::all_of(filled.depth.begin(), filled.depth.end(), inside))
-    return {};
+  double outer = 0, all = 0;
+  for (std::size_t s = 0; s < filled.depth.size(); ++s) {
+    const double tissue = filled.shares.of_sphere(s);
+    all += tissue, outer += filled.depth[s] < depth ? tissue : 0;
+  }
+  if (!(outer > 0) || !(outer < all)) return {};
   const double modulus = relaxed_modulus(scenes::resolve_material(material).material);
-  const double strain = preset->in_situ.strain > 0 ? preset->in_situ.strain
-                                                   : preset->in_situ.pressure * radius_of(filled.surface) *
-                                                         (1 - kPoisson) / (2 * modulus * depth);
-  scenes::LayerSpec layer;
-  layer.to_depth = depth, layer.material = material;
-  layer.material.fitted_for.reset();
-  layer.material.prestrain = std::round(1e3 * std::min(strain, kMost)) / 1e3;
-  if (!(*layer.material.prestrain > 0)) return {};
-  return layer;
+  Tension tension;
+  tension.strain = preset->in_situ.strain > 0
+                       ? preset->in_situ.strain
+                       : preset->in_situ.pressure * radius_of(filled.surface) * (1 - kPoisson) / (2 * modulus * depth);
+  tension.strain = std::min(tension.strain, kMost);
+  const auto rounded = [](double strain) { return std::round(1e3 * strain) / 1e3; };
+  // Without the tissue inside, the organ would become smaller by this.
+  const double smaller = tension.strain * outer / all, size = 1 - smaller;
+  tension.inside = rounded(1 - 1 / size);
+  tension.capsule.to_depth = depth, tension.capsule.material = material;
+  tension.capsule.material.fitted_for.reset();
+  tension.capsule.material.prestrain = rounded(1 - (1 - tension.strain) / size);
+  if (!(*tension.capsule.material.prestrain > 0)) return {};
+  return tension;
 }
 
 }  // namespace ctpm::authoring

@@ -47,6 +47,7 @@ struct Draft {
   scenes::OrganSpec spec;
   scenes::Script script;
   ImportedPart part;
+  double strain = 0;  ///< of its capsule against what is below it
 
   void note(const char* code, std::string found, std::string done, std::string remains) {
     part.report.findings.push_back({code, 1, {}, std::move(found), std::move(done), std::move(remains)});
@@ -258,19 +259,20 @@ class Import {
   }
 
   void put_under_tension(Draft& draft) const {
-    draft.spec.layers.clear();
+    draft.spec.layers.clear(), draft.spec.material.prestrain.reset(), draft.strain = 0;
     if (draft.tissue.is_own) return;
-    if (const std::optional<scenes::LayerSpec> capsule = capsule_of(draft.spec.material, draft.filled))
-      draft.spec.layers = {*capsule};
+    const std::optional<Tension> tension = tension_of(draft.spec.material, draft.filled);
+    if (!tension) return;
+    draft.spec.layers = {tension->capsule}, draft.spec.material.prestrain = tension->inside;
+    draft.strain = tension->strain;
   }
 
   void note_tension(Draft& draft) const {
-    if (draft.spec.layers.empty()) return;
-    const scenes::LayerSpec& capsule = draft.spec.layers.front();
+    if (!(draft.strain > 0)) return;
     draft.note("tension", std::string("in the body it is under tension: ") + draft.tissue.preset->in_situ.source,
-               "a layer of " + importers::mm_text(capsule.to_depth) + " under a strain of " +
-                   output::short_number(*capsule.material.prestrain, 3),
-               "cuts gape; without the layer it is as if excised");
+               "a layer of " + importers::mm_text(draft.spec.layers.front().to_depth) + " under a strain of " +
+                   output::short_number(draft.strain, 2) + " against the tissue below",
+               "cuts gape; without the layer and the prestrain it is as if excised");
   }
 
   /// Fits the organ's stiffness and stores it; an organ that cannot be fitted keeps its moduli.

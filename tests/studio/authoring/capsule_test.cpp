@@ -4,8 +4,12 @@
 
 #include <cmath>
 
+#include "core/surface/surface.h"
+#include "importers/topology.h"
+#include "scenes/build_model.h"
 #include "studio/authoring/capsule.h"
-#include "tests/core/skinned_block.h"
+#include "studio/loading/loaded_scene.h"
+#include "studio/loading/standing.h"
 
 namespace ctpm {
 namespace {
@@ -30,29 +34,69 @@ scenes::MaterialSpec preset(const char* name, double scale) {
 }
 
 TEST(Capsule, OfALiverHoldsThePressureOfLaplacesLaw) {
-  const std::optional<scenes::LayerSpec> layer = authoring::capsule_of(preset("liver", 0.8), round_organ());
-  ASSERT_TRUE(layer);
-  EXPECT_EQ(layer->to_depth, kSpacing);
-  EXPECT_EQ(layer->material.preset, "liver");
-  EXPECT_EQ(layer->material.stiffness_scale, 0.8);
+  const std::optional<authoring::Tension> tension = authoring::tension_of(preset("liver", 0.8), round_organ());
+  ASSERT_TRUE(tension);
+  EXPECT_EQ(tension->capsule.to_depth, kSpacing);
+  EXPECT_EQ(tension->capsule.material.preset, "liver");
+  EXPECT_EQ(tension->capsule.material.stiffness_scale, 0.8);
   // The paper's liver: K1 = K2 = 15 kPa/mm in series, R = 2 mm, s = 12 mm; Young's modulus of the lattice 2.5 K S0 / s.
   const double modulus = 0.8 * 2.5 * 7.5e6 * M_PI * 4e-6 / 12e-3;
-  const double tension =
-      modulus * kSpacing * *layer->material.prestrain / (1 - 0.25);  // of a sheet, in both directions
-  EXPECT_NEAR(2 * tension / kRadius, 930, 10);
+  const double per_length = modulus * kSpacing * tension->strain / (1 - 0.25);  // of a sheet, in both directions
+  EXPECT_NEAR(2 * per_length / kRadius, 930, 10);
+}
+
+TEST(Capsule, PressesWhatIsInsideSoThatTheOrganKeepsItsSize) {
+  const std::optional<authoring::Tension> tension = authoring::tension_of(preset("liver", 0.8), round_organ());
+  ASSERT_TRUE(tension);
+  const double outer = *tension->capsule.material.prestrain;
+  // Two of three spheres are in the capsule.
+  EXPECT_NEAR(2 * outer + tension->inside, 0, 0.1 * tension->strain);
+  EXPECT_NEAR((1 - outer) / (1 - tension->inside), 1 - tension->strain, 2e-3);
 }
 
 TEST(Capsule, OfSkinHasTheStrainThatExcisedSkinLoses) {
-  const std::optional<scenes::LayerSpec> layer = authoring::capsule_of(preset("skin", 1), round_organ());
-  ASSERT_TRUE(layer);
-  EXPECT_NEAR((1 - *layer->material.prestrain) * (1 - *layer->material.prestrain), 1 - 0.33, 0.005);
+  const std::optional<authoring::Tension> tension = authoring::tension_of(preset("skin", 1), round_organ());
+  ASSERT_TRUE(tension);
+  EXPECT_NEAR((1 - tension->strain) * (1 - tension->strain), 1 - 0.33, 0.005);
 }
 
 TEST(Capsule, IsLeftOutWhereNothingIsKnownOrTheOrganHasNoInside) {
-  EXPECT_FALSE(authoring::capsule_of(preset("spleen", 1), round_organ()));
+  EXPECT_FALSE(authoring::tension_of(preset("spleen", 1), round_organ()));
   FilledOrgan thin = round_organ();
   thin.depth = {0.001, 0.002};
-  EXPECT_FALSE(authoring::capsule_of(preset("liver", 1), thin));
+  EXPECT_FALSE(authoring::tension_of(preset("liver", 1), thin));
+}
+
+/// Volume of a liver's surface once it has settled without gravity, over that of the mesh.
+double settled_size(bool is_pressed_inside) {
+  Result<loading::LoadedScene> loaded = loading::load_whole_scene(std::string(CTPM_SOURCE_DIR) + "/scenes/liver.json");
+  EXPECT_TRUE(loaded);
+  scenes::SceneSpec scene = loaded->scene.spec;
+  scene.gravity = {}, scene.settle = 5;
+  scenes::OrganSpec& organ = scene.organs[0];
+  organ.anchors.clear(), organ.layers.clear();
+  const std::optional<authoring::Tension> tension = authoring::tension_of(organ.material, loaded->organs[0]);
+  EXPECT_TRUE(tension);
+  organ.layers = {tension->capsule};
+  if (is_pressed_inside)
+    organ.material.prestrain = tension->inside;
+  else
+    organ.material.prestrain = 0, organ.layers[0].material.prestrain = tension->strain;
+  for (scenes::MaterialSpec* material : {&organ.material, &organ.layers[0].material}) material->viscosity = 0;
+  const Result<scenes::BuiltScene> built = scenes::build_model(scene, std::span(&loaded->organs[0], 1));
+  EXPECT_TRUE(built);
+  const auto standing = loading::settle_scene(built->model, 5000);
+  const auto volume = [&](const State& state) {
+    std::vector<Vec3> vertex;
+    surface::deform_surface(built->model.surfaces[0], state.position, 0, vertex);
+    return importers::signed_volume(vertex, built->model.surfaces[0].triangle, vertex[0]);
+  };
+  return volume(standing->state) / volume(rest_state(built->model));
+}
+
+TEST(Capsule, LeavesASettledLiverAsLargeAsItsMesh) {
+  EXPECT_NEAR(settled_size(true), 1, 0.05);
+  EXPECT_LT(settled_size(false), 0.9) << "what the tension alone does";
 }
 
 }  // namespace
