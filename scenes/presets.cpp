@@ -76,9 +76,11 @@ constexpr std::array<MaterialPreset, 13> kPresets{
     tissue("bladder", 100e3, 1060, 0.05, 0.20,
            "estimate: Young's modulus 100 kPa of a slack wall; stretched samples reach 1.9 MPa (Martins et al., Int. "
            "Urogynecol. J. 22, 2011)"),
-    tissue("fat", 3.25e3, 920, 0.03, 0.40,
-           "Young's modulus 3.25 kPa of breast fat (Samani, Zubovits & Plewes, Phys. Med. Biol. 52, 2007); density "
-           "920 kg/m^3, an estimate"),
+    tissue(
+        "fat", 3.04e3, 920, 0.03, 0.40,
+        "Young's modulus 3.04 kPa of breast fat and gland in the living (Briot et al., \"In vivo measurement of breast "
+        "tissues stiffness using a light aspiration device\", Clin. Biomech. 99, 2022); density 920 kg/m^3, an "
+        "estimate"),
     tissue("muscle", 20e3, 1060, 0.05, 0.50, "estimate: Young's modulus 20 kPa, across the fibres of relaxed muscle"),
 };
 

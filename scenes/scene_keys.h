@@ -217,6 +217,13 @@ void describe_fields(V& v, OrganSpec& organ) {
   v.choice(Key{"mesh_unit", "Unit of the mesh file's coordinates."}, organ.mesh_unit);
   v.point(Key{"at_mm", "Place of the mesh file's origin in the scene; not allowed for a rig."}, organ.at,
           units::millimetre, any_coordinate_mm);
+  v.point(
+      Key{"turn_deg",
+          "Turns the mesh about its file's origin: about the scene's x, then its y, then its z axis; not allowed for "
+          "a rig."},
+      organ.turn, units::degree, within(-360, 360));
+  v.number(Key{"scale", "Multiplies the size of the mesh, about its file's origin; not allowed for a rig."},
+           organ.scale, units::none, within(0.001, 1000));
   v.flag(Key{"all_parts", "Keep every closed part of the mesh, not only the largest."}, organ.all_parts);
   v.integer(Key{"most_triangles", "The drawn surface is made coarser if it has more; the spheres stay the same.", false,
                 "as many as the mesh has"},

@@ -130,6 +130,8 @@ struct OrganSpec {
   std::optional<RigSpec> rig;
   LengthUnit mesh_unit = LengthUnit::millimetre;
   Vec3 at;                                     ///< place of the mesh file's origin in the scene [m]
+  Vec3 turn;                                   ///< of the mesh about that origin, along x, then y, then z [degrees]
+  double scale = 1;                            ///< of the mesh, about that origin
   bool all_parts = false;                      ///< every closed part of the mesh, not only the largest
   std::optional<std::int32_t> most_triangles;  ///< of the drawn surface, which is made coarser if it has more
   network::Structure structure = network::Structure::ctpm;  ///< which elements join the spheres; the key is `model`
