@@ -94,7 +94,7 @@ TEST_F(ImportProgram, AnOrganOfThePaperIsFittedAndUnderTheTensionOfItsCapsule) {
 TEST_F(ImportProgram, AllPartsAreInTheSceneAsWell) {
   const importers::RawMesh two = zoo::both(bean(), zoo::moved(bean(), [](Vec3 p) { return p + Vec3{120, 0, 0}; }));
   write("two.obj", zoo::to_obj_text(two));
-  const std::vector<std::string> coarse{"--unit", "mm", "--stiffness-scale", "1", "--radius-mm", "6", "--overwrite"};
+  const std::vector<std::string> coarse{"--unit", "mm", "--stiffness-scale", "1", "--radius-mm", "5", "--overwrite"};
   const auto import_as = [&](const std::string& parts) {
     std::vector<std::string> arguments = coarse;
     arguments.push_back(parts);
