@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <assimp/Importer.hpp>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <new>
@@ -22,9 +23,28 @@ namespace {
 /// All triangles of the requested meshes, with node transforms applied.
 struct Collected {
   std::vector<std::string> parts;
+  std::vector<Vec3> part_colour;  ///< NaN where the file says none
   std::vector<Vec3> vertex;
   std::vector<std::array<std::int32_t, 3>> triangle;
+  std::vector<std::int32_t> part_of_triangle;
 };
+
+/// Diffuse colour of a mesh's material; NaN where there is none or only assimp's default grey.
+Vec3 colour_of(const aiScene& scene, const aiMesh& mesh) {
+  const Vec3 none{NAN, NAN, NAN};
+  if (mesh.mMaterialIndex >= scene.mNumMaterials) return none;
+  const aiMaterial& material = *scene.mMaterials[mesh.mMaterialIndex];
+  aiString name;
+  if (material.Get(AI_MATKEY_NAME, name) == AI_SUCCESS && std::string(name.C_Str()) == AI_DEFAULT_MATERIAL_NAME)
+    return none;
+  aiColor3D colour;
+  if (material.Get(AI_MATKEY_COLOR_DIFFUSE, colour) != AI_SUCCESS) return none;
+  const auto is_share = [](float value) { return value >= 0 && value <= 1; };
+  if (!is_share(colour.r) || !is_share(colour.g) || !is_share(colour.b)) return none;
+  // White is what formats hold where a texture gives the colour, or nothing does.
+  if (std::min({colour.r, colour.g, colour.b}) > 0.99f) return none;
+  return {colour.r, colour.g, colour.b};
+}
 
 /// Name of a mesh: its own, else its node's, else its number.
 std::string part_name(const aiMesh& mesh, const aiNode& node, unsigned index) {
@@ -33,7 +53,7 @@ std::string part_name(const aiMesh& mesh, const aiNode& node, unsigned index) {
   return "mesh " + std::to_string(index + 1);
 }
 
-void append(const aiMesh& mesh, const aiMatrix4x4t<double>& world_from_mesh, Collected& out) {
+void append(const aiMesh& mesh, const aiMatrix4x4t<double>& world_from_mesh, std::int32_t part, Collected& out) {
   const std::size_t first = out.vertex.size();
   for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
     const aiVector3t<double> p(mesh.mVertices[v].x, mesh.mVertices[v].y, mesh.mVertices[v].z);
@@ -49,7 +69,7 @@ void append(const aiMesh& mesh, const aiMatrix4x4t<double>& world_from_mesh, Col
       is_in_range = is_in_range && face.mIndices[c] < mesh.mNumVertices;
       triangle[c] = std::int32_t(first + face.mIndices[c]);
     }
-    if (is_in_range) out.triangle.push_back(triangle);
+    if (is_in_range) out.triangle.push_back(triangle), out.part_of_triangle.push_back(part);
   }
 }
 
@@ -63,9 +83,11 @@ void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4t<double
     if (node.mMeshes[i] >= scene.mNumMeshes) continue;
     const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
     const std::string name = part_name(mesh, node, node.mMeshes[i]);
-    if (std::find(out.parts.begin(), out.parts.end(), name) == out.parts.end()) out.parts.push_back(name);
+    const auto known = std::find(out.parts.begin(), out.parts.end(), name);
+    const auto index = std::int32_t(known - out.parts.begin());
+    if (known == out.parts.end()) out.parts.push_back(name), out.part_colour.push_back(colour_of(scene, mesh));
     const bool is_wanted = part.empty() || part == name || part == node.mName.C_Str();
-    if (is_wanted) append(mesh, world_from_node, out);
+    if (is_wanted) append(mesh, world_from_node, index, out);
   }
   for (unsigned i = 0; i < node.mNumChildren; ++i) collect(scene, *node.mChildren[i], world_from_node, part, out);
 }
@@ -133,6 +155,8 @@ void send_mesh_file(const std::string& path, const std::string& part, const Send
     message.put(scene != nullptr ? unit_said_by(*scene, suffix) : 0.0);
     message.put_list(found.vertex);
     message.put_list(found.triangle);
+    message.put_list(found.part_of_triangle);
+    message.put_list(found.part_colour);
   }
   send(message.bytes.data(), message.bytes.size());
 }

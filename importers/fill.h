@@ -38,6 +38,9 @@ struct Filling {
   FillReport report;
 };
 
+/// Radius [m] with which about `spheres` > 0 spheres fill a mesh if the gap is the radius.
+double radius_for(const CheckedMesh& mesh, std::int64_t spheres);
+
 /// Fills a closed mesh with equal spheres on a cubic lattice that covers it, and binds the mesh to them. The lattice is
 /// symmetric about the centre of the bounding box. Spheres and elements at the surface have the share of tissue that
 /// they stand for (cover_lattice.h). A sphere's layer is 1 + the whole spacings of its depth; empty layers are skipped,

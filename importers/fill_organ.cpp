@@ -288,6 +288,27 @@ void note_flat(const FilledOrgan& organ, std::vector<Finding>& findings) {
 
 }  // namespace
 
+double radius_for(const CheckedMesh& mesh, std::int64_t spheres) {
+  // The number falls with the spacing cubed inside and squared at the surface; a step between both converges for
+  // either.
+  constexpr double kPower = 0.4, kNear = 0.03;
+  constexpr int kMostSteps = 12;
+  double spacing = std::cbrt(mesh.volume / double(spheres)), best = spacing, least = INFINITY;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Result<Lattice> cells = lay_cells(mesh, spacing, {});
+    if (!cells) {
+      spacing *= 2;
+      continue;
+    }
+    const double count = std::max<double>(1, double(cover_with_cells(mesh, *cells).cell.size()));
+    const double off = std::abs(std::log(count / double(spheres)));
+    if (off < least) best = spacing, least = off;
+    if (off < kNear) break;
+    spacing *= std::pow(count / double(spheres), kPower);
+  }
+  return best / 3;
+}
+
 Result<Filling> fill_organ(const CheckedMesh& mesh, const FillOptions& options) try {
   if (Errors errors = check(mesh, options); !errors.empty()) return errors;
   const double radius = options.sphere_radius;

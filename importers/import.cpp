@@ -1,8 +1,10 @@
 #include "importers/import.h"
 
 #include <cmath>
+#include <cstdio>
 
 #include "importers/text.h"
+#include "importers/topology.h"
 
 namespace ctpm::importers {
 namespace {
@@ -18,6 +20,8 @@ Errors check(const ImportOptions& options) {
   };
   must(!options.unit_in_metres || (std::isfinite(*options.unit_in_metres) && *options.unit_in_metres > 0),
        "the unit must be a length above 0");
+  must(!options.size || (std::isfinite(*options.size) && *options.size > 0), "the size must be a length above 0");
+  must(std::isfinite(options.scale) && options.scale > 0, "the scale must be a number above 0");
   must(options.usual_size.least > 0 && options.usual_size.most > options.usual_size.least,
        "the usual size must be a range above 0");
   must(!options.largest_hole || *options.largest_hole >= 0, "the largest hole to fill must be at least 0 mm");
@@ -34,15 +38,24 @@ Errors check(const ImportOptions& options) {
 std::string range_text(UsualSize usual) { return mm_text(usual.least) + " to " + mm_text(usual.most); }
 
 /// Adds a finding if the unit was guessed or the size is unusual.
-void note_unit(const UnitChoice& unit, double diagonal, UsualSize usual, std::vector<Finding>& findings) {
-  if (unit.source == UnitSource::guessed)
-    findings.push_back({"unit_guessed",
-                        1,
-                        {},
-                        "the file does not say its unit",
-                        "taken as " + unit_name(unit.in_metres) + ", which makes the organ " + mm_text(diagonal) +
-                            " across (usual: " + range_text(usual) + ")",
-                        "give the unit if that is wrong"});
+void note_unit(const UnitChoice& unit, double unit_of_file, double diagonal, UsualSize usual,
+               std::vector<Finding>& findings) {
+  const std::string across = mm_text(diagonal) + " across (usual: " + range_text(usual) + ")";
+  Finding guess{
+      "unit_guessed", 1, {}, "the file does not say its unit", "", "give the unit or the size if that is wrong"};
+  if (unit_of_file > 0)
+    guess.code = "unit_doubted",
+    guess.found = "the file says that its unit is " + unit_name(unit_of_file) + ", which no such organ would fit";
+  if (unit.source == UnitSource::guessed) {
+    guess.done = "taken as " + unit_name(unit.in_metres) + ", which makes the organ " + across;
+    findings.push_back(guess);
+  }
+  if (unit.source == UnitSource::scaled) {
+    guess.code = "without_scale";
+    guess.found += unit_of_file > 0 ? "" : ", and no unit makes the organ as large as usual";
+    guess.done = "scaled so that the organ is " + across;
+    findings.push_back(guess);
+  }
   // The guess used the whole file; this check uses only the parts kept.
   if (diagonal < usual.least || diagonal > usual.most)
     findings.push_back({"unusual_size",
@@ -51,6 +64,43 @@ void note_unit(const UnitChoice& unit, double diagonal, UsualSize usual, std::ve
                         "the organ is " + mm_text(diagonal) + " across; usual is " + range_text(usual),
                         "none",
                         "check the unit"});
+}
+
+/// Adds a finding if the spheres stand for more or less than the mesh encloses.
+void note_volume(double filled, double enclosed, std::vector<Finding>& findings) {
+  constexpr double kKept = 0.05;
+  if (std::abs(filled / enclosed - 1) <= kKept) return;
+  char text[160];
+  std::snprintf(text, sizeof text, "the spheres stand for %.1f ml, the mesh encloses %.1f ml", 1e6 * filled,
+                1e6 * enclosed);
+  findings.push_back({"volume",
+                      1,
+                      {},
+                      text,
+                      "none",
+                      "tissue that overlaps itself counts once, and groups of spheres apart from the rest are lost"});
+}
+
+/// The unit of a file, as asked for, said or guessed.
+UnitChoice unit_of(const RawMesh& mesh, const ImportOptions& options) {
+  const double diagonal = bounding_box({mesh.vertex, mesh.triangle}).diagonal();
+  std::optional<double> given = options.unit_in_metres;
+  if (options.size && diagonal > 0) given = *options.size / diagonal;
+  UnitChoice unit = choose_unit(mesh, given, options.usual_size);
+  unit.in_metres *= options.scale;
+  return unit;
+}
+
+/// Whether the largest part alone would be given another unit than the whole file was, in which crumbs may lie far away
+/// or many organs beside each other; `unit` is then its own.
+bool is_other_for(const CheckedMesh& largest, const RawMesh& mesh, const ImportOptions& options, UnitChoice& unit) {
+  if (unit.source != UnitSource::guessed && unit.source != UnitSource::scaled) return false;
+  const double diagonal = norm(largest.box_most - largest.box_least) / unit.in_metres;
+  UnitChoice own = choose_unit(diagonal, mesh.unit_in_metres, {}, options.usual_size);
+  own.in_metres *= options.scale;
+  const bool is_other = std::abs(own.in_metres / unit.in_metres - 1) > 1e-6;
+  unit = own;
+  return is_other;
 }
 
 /// Maps the progress of one stage to the whole import.
@@ -79,7 +129,7 @@ Errors with_place(Errors errors, const std::string& path) {
 
 }  // namespace
 
-Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions& options) try {
+Result<RepairedFile> repair_file(const std::string& path, const ImportOptions& options, std::size_t most) try {
   if (Errors errors = check(options); !errors.empty()) return errors;
   const Progress tell = told_to(options);
   tell("read", 0);
@@ -89,23 +139,50 @@ Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions&
   const Result<RawMesh> raw = read_mesh(path, reading);
   if (!raw) return raw.errors();
 
-  ImportedOrgan imported;
-  ImportReport& report = imported.report;
+  RepairedFile file;
+  ImportReport& report = file.report;
   report.path = path;
   report.format = raw->format;
   report.parts = raw->parts;
-  report.unit = choose_unit(*raw, options.unit_in_metres, options.usual_size);
+  report.unit = unit_of(*raw, options);
+  file.part_colour = raw->part_colour;
   RepairOptions repair;
   repair.all_parts = options.all_parts;
   repair.largest_hole = options.largest_hole;
   repair.progress = share_of(tell, kReadShare, kRepairShare);
-  Result<CheckedMesh> mesh = repair_mesh(*raw, report.unit.in_metres, repair);
-  if (!mesh) return mesh.errors();
-  note_unit(report.unit, norm(mesh->box_most - mesh->box_least), options.usual_size, report.findings);
-  report.findings.insert(report.findings.end(), mesh->findings.begin(), mesh->findings.end());
-  report.before = mesh->before, report.after = mesh->after;
-  report.mesh_volume = mesh->volume, report.mesh_area = mesh->area;
-  report.box_least = mesh->box_least, report.box_most = mesh->box_most;
+  if (most > 1) {
+    Result<std::vector<CheckedMesh>> meshes = repair_parts(*raw, report.unit.in_metres, repair, most);
+    if (meshes && is_other_for(meshes->front(), *raw, options, report.unit))
+      meshes = repair_parts(*raw, report.unit.in_metres, repair, most);
+    if (!meshes) return meshes.errors();
+    file.mesh = std::move(*meshes);
+  } else {
+    Result<CheckedMesh> mesh = repair_mesh(*raw, report.unit.in_metres, repair);
+    if (mesh && !options.all_parts && is_other_for(*mesh, *raw, options, report.unit))
+      mesh = repair_mesh(*raw, report.unit.in_metres, repair);
+    if (!mesh) return mesh.errors();
+    file.mesh.push_back(std::move(*mesh));
+  }
+  const CheckedMesh& first = file.mesh.front();
+  note_unit(report.unit, raw->unit_in_metres, norm(first.box_most - first.box_least), options.usual_size,
+            report.findings);
+  return file;
+} catch (const Stopped&) {
+  return Error{path, "stopped", ""};
+}
+
+Result<ImportedOrgan> fill_repaired(const RepairedFile& file, std::size_t index, const ImportOptions& options) try {
+  const Progress tell = told_to(options);
+  ImportedOrgan imported;
+  imported.mesh = file.mesh[index];
+  const CheckedMesh& mesh = imported.mesh;
+  ImportReport& report = imported.report;
+  report = file.report;
+  if (index > 0) report.findings.clear();
+  report.findings.insert(report.findings.end(), mesh.findings.begin(), mesh.findings.end());
+  report.before = mesh.before, report.after = mesh.after;
+  report.mesh_volume = mesh.volume, report.mesh_area = mesh.area;
+  report.box_least = mesh.box_least, report.box_most = mesh.box_most;
 
   FillOptions fill;
   fill.sphere_radius = options.sphere_radius;
@@ -115,16 +192,22 @@ Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions&
   fill.most_triangles = options.most_triangles;
   fill.threads = options.threads;
   fill.progress = share_of(tell, kRepairShare, 1);
-  Result<Filling> filling = fill_organ(*mesh, fill);
-  if (!filling) return with_place(filling.errors(), path);
+  Result<Filling> filling = fill_organ(mesh, fill);
+  if (!filling) return with_place(filling.errors(), report.path);
   imported.organ = std::move(filling->organ);
   report.sphere_radius = imported.organ.sphere_radius, report.spacing = imported.organ.spacing;
   report.fill = std::move(filling->report);
-  imported.mesh = std::move(*mesh);
   report.findings.insert(report.findings.end(), report.fill.findings.begin(), report.fill.findings.end());
+  note_volume(report.fill.filled_volume, report.mesh_volume, report.findings);
   return imported;
 } catch (const Stopped&) {
-  return Error{path, "stopped", ""};
+  return Error{file.report.path, "stopped", ""};
+}
+
+Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions& options) {
+  const Result<RepairedFile> file = repair_file(path, options);
+  if (!file) return file.errors();
+  return fill_repaired(*file, 0, options);
 }
 
 Result<CheckedMesh> import_mesh(const std::string& path, double unit_in_metres) {

@@ -16,6 +16,8 @@ namespace ctpm::importers {
 struct ImportOptions {
   std::optional<double>
       unit_in_metres;                  ///< length of one unit of the file [m], > 0; unset: from the file, else guessed
+  std::optional<double> size;          ///< diagonal of the file's bounding box [m], > 0, in place of a unit
+  double scale = 1;                    ///< multiplies the size that the unit gives, > 0
   UsualSize usual_size;                ///< usual size of this kind of organ, to guess the unit
   std::string part;                    ///< name of the mesh to take; empty: all, joined
   bool all_parts = false;              ///< keeps every closed part and sphere island, not only the largest
@@ -54,6 +56,20 @@ struct ImportedOrgan {
 /// Runs read_mesh, choose_unit, repair_mesh and fill_organ. Errors: those of these functions, and all options out of
 /// range together.
 Result<ImportedOrgan> import_organ(const std::string& path, const ImportOptions& options = {});
+
+/// A file with its meshes repaired, before it is filled.
+struct RepairedFile {
+  ImportReport report;                           ///< without filling; findings of the file and its first mesh
+  std::vector<CheckedMesh> mesh;                 ///< at least one, largest first
+  std::vector<std::optional<Vec3>> part_colour;  ///< RawMesh::part_colour
+};
+
+/// Runs read_mesh, choose_unit and, for one mesh, repair_mesh; for at most `most` > 1, repair_parts. Errors: those of
+/// these functions, and all options out of range together.
+Result<RepairedFile> repair_file(const std::string& path, const ImportOptions& options = {}, std::size_t most = 1);
+
+/// Fills mesh `index` of a file. Errors: those of fill_organ().
+Result<ImportedOrgan> fill_repaired(const RepairedFile& file, std::size_t index, const ImportOptions& options = {});
 
 /// Runs read_mesh and repair_mesh, for a closed mesh that is not filled. `unit_in_metres`: length of one unit of the
 /// file [m], > 0. Errors: those of these functions.

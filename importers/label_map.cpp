@@ -80,7 +80,7 @@ void send_label_map(const std::string& path, const std::string& part, const Send
   std::vector<std::string> parts;
   for (const Label& label : map->labels) parts.push_back(label.text());
   if (found < 0) return send_no_such_part(parts, send);
-  send_soup(parts, kMillimetre, label_surface(*map, map->labels[std::size_t(found)]), send);
+  send_soup(parts, found, kMillimetre, label_surface(*map, map->labels[std::size_t(found)]), send);
 }
 
 }  // namespace ctpm::importers

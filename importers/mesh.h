@@ -20,12 +20,14 @@ using Progress = std::function<void(const std::string& stage, double fraction)>;
 /// Content of a mesh file. Node transforms are applied and polygons are triangulated. Vertices at bit-equal positions
 /// are merged, because readers and some formats repeat a vertex for every face. Nothing else is changed.
 struct RawMesh {
-  std::string path;                ///< the file
-  std::string format;              ///< its suffix in lower case, without the dot
-  std::vector<std::string> parts;  ///< names of all meshes in the file, in its order, each once
+  std::string path;                              ///< the file
+  std::string format;                            ///< its suffix in lower case, without the dot
+  std::vector<std::string> parts;                ///< names of all meshes in the file, in its order, each once
+  std::vector<std::optional<Vec3>> part_colour;  ///< red, green, blue in [0, 1] if the file says it     (part_count)
   std::vector<Vec3> vertex;        ///< finite, in the file's unit                                 (vertex_count)
   std::vector<Triangle> triangle;  ///< indices in range (triangle_count)
-  double unit_in_metres = 0;       ///< length of one unit [m] if the format says it; 0: it does not
+  std::vector<std::int32_t> part_of_triangle;  ///< index in `parts`; empty: not known                (triangle_count)
+  double unit_in_metres = 0;                   ///< length of one unit [m] if the format says it; 0: it does not
 };
 
 struct ReadOptions {
@@ -39,8 +41,8 @@ struct ReadOptions {
 /// (the message lists the names), a reader that crashed or exceeded a limit.
 Result<RawMesh> read_mesh(const std::string& path, const ReadOptions& options = {});
 
-/// Source of a mesh's unit.
-enum class UnitSource : std::int32_t { given = 0, file = 1, guessed = 2 };
+/// Source of a mesh's unit. `scaled`: no unit gives a usual size, so that the mesh is taken as one without scale.
+enum class UnitSource : std::int32_t { given = 0, file = 1, guessed = 2, scaled = 3 };
 
 struct UnitChoice {
   double in_metres = 1;  ///< length of one unit of the file [m], > 0
@@ -54,12 +56,15 @@ struct UsualSize {
   double most = 0.5;    ///< [m], > least
 };
 
-/// Chooses the unit: the given one, else that of the file, else a guess. The guess is the one of m, cm, mm whose
-/// diagonal is nearest, as a ratio, to the geometric mean of the usual range. It is inch only if no metric unit gives a
-/// usual size.
+/// Chooses the unit: the given one; else that of the file, unless the organ would be more than four times smaller or
+/// larger than usual; else the one of m, cm, mm that gives a usual size, nearest, as a ratio, to the geometric mean of
+/// the usual range; else decimetre or inch if one of them does; else the mesh is scaled to that mean.
 UnitChoice choose_unit(const RawMesh& mesh, std::optional<double> given_in_metres, UsualSize usual);
 
-/// "mm", "cm", "m", "inch", or the length in metres where the unit has no name.
+/// As above, for content of that diagonal, in a file that says `unit_of_file` [m]; 0: it does not.
+UnitChoice choose_unit(double diagonal, double unit_of_file, std::optional<double> given_in_metres, UsualSize usual);
+
+/// "mm", "cm", "dm", "m", "inch", or the length in metres where the unit has no name.
 std::string unit_name(double in_metres);
 
 /// A defect of a mesh or its filling.
@@ -83,7 +88,8 @@ struct MeshCounts {
 
 MeshCounts count_mesh(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle);
 
-/// A mesh that bounds a volume: closed, manifold, oriented outwards, without unused vertices.
+/// A mesh that bounds a volume: closed, manifold, oriented outwards, without unused vertices. Shells within its outer
+/// one bound cavities and are oriented inwards.
 struct CheckedMesh {
   std::vector<Vec3> vertex;        ///< [m]                                        (vertex_count)
   std::vector<Triangle> triangle;  ///< counter-clockwise seen from outside        (triangle_count)
@@ -93,6 +99,7 @@ struct CheckedMesh {
   MeshCounts before;               ///< as read
   MeshCounts after;
   std::vector<Finding> findings;
+  std::int32_t part = -1;  ///< index in RawMesh::parts of most of its vertices; -1: not known
 };
 
 struct RepairOptions {
@@ -104,10 +111,16 @@ struct RepairOptions {
 };
 
 /// Welds vertices, drops duplicate and degenerate triangles, closes cracks, drops inner walls, splits non-manifold
-/// edges and vertices, orients, stitches, fills small holes, keeps the largest part and removes small
-/// self-intersections. Errors: a hole above the limit or one that cannot be filled (with size and place), or no
-/// enclosed volume.
+/// edges and vertices, orients, stitches, fills small holes, keeps the largest part with the cavities in it, and
+/// removes small self-intersections. Errors: a hole above the limit or one that cannot be filled (with size and place),
+/// or no enclosed volume.
 Result<CheckedMesh> repair_mesh(const RawMesh& mesh, double unit_in_metres, const RepairOptions& options = {});
+
+/// As repair_mesh(), but every closed part beside the largest is a mesh of its own, largest first: those of at least a
+/// hundredth of the largest volume, at most `most`. What the parts have in common is found in the first. Errors: no
+/// part can be closed.
+Result<std::vector<CheckedMesh>> repair_parts(const RawMesh& mesh, double unit_in_metres, const RepairOptions& options,
+                                              std::size_t most);
 
 /// The mesh as OBJ text in millimetres with six decimals. The same mesh always gives the same bytes.
 std::string to_obj(const std::vector<Vec3>& vertex, const std::vector<Triangle>& triangle);

@@ -15,9 +15,10 @@ std::string suffix_of(const std::string& path);
 /// Checks that need no reader. Errors: no such file, not a file, empty.
 Errors check_file(const std::string& path);
 
-/// Sends the mesh of one part, or that of all: a message of wire::Kind::mesh. `unit_in_metres`: 0 if the file does not
-/// say it.
-void send_soup(const std::vector<std::string>& parts, double unit_in_metres, const Soup& soup, const Send& send);
+/// Sends a mesh that counts as one of `parts`, or as none in particular if `part` is -1: a message of wire::Kind::mesh.
+/// `unit_in_metres`: 0 if the file does not say it.
+void send_soup(const std::vector<std::string>& parts, std::ptrdiff_t part, double unit_in_metres, const Soup& soup,
+               const Send& send);
 
 /// Sends that the file has no part of the requested name: a message of wire::Kind::no_such_part.
 void send_no_such_part(const std::vector<std::string>& parts, const Send& send);

@@ -2,6 +2,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <system_error>
 
 #include "importers/assimp_reader.h"
@@ -45,12 +46,16 @@ void put_parts(wire::Writer& message, wire::Kind kind, const std::vector<std::st
 
 }  // namespace
 
-void send_soup(const std::vector<std::string>& parts, double unit_in_metres, const Soup& soup, const Send& send) {
+void send_soup(const std::vector<std::string>& parts, std::ptrdiff_t part, double unit_in_metres, const Soup& soup,
+               const Send& send) {
   wire::Writer message;
   put_parts(message, wire::Kind::mesh, parts);
   message.put(unit_in_metres);
   message.put_list(soup.vertex);
   message.put_list(soup.triangle);
+  message.put_list(std::vector<std::int32_t>(part < 0 ? 0 : soup.triangle.size(), std::int32_t(part)));
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  message.put_list(std::vector<Vec3>(parts.size(), Vec3{kNone, kNone, kNone}));
   send(message.bytes.data(), message.bytes.size());
 }
 
@@ -119,10 +124,13 @@ void join_repeats(RawMesh& mesh) {
 }
 
 bool has_indices_in_range(const RawMesh& mesh) {
-  const std::int32_t count = std::int32_t(mesh.vertex.size());
-  return std::all_of(mesh.triangle.begin(), mesh.triangle.end(), [count](const Triangle& t) {
-    return std::all_of(t.begin(), t.end(), [count](std::int32_t v) { return v >= 0 && v < count; });
-  });
+  const std::int32_t count = std::int32_t(mesh.vertex.size()), parts = std::int32_t(mesh.parts.size());
+  const bool has_parts = (mesh.part_of_triangle.empty() || mesh.part_of_triangle.size() == mesh.triangle.size()) &&
+                         std::all_of(mesh.part_of_triangle.begin(), mesh.part_of_triangle.end(),
+                                     [parts](std::int32_t part) { return part >= 0 && part < parts; });
+  return has_parts && std::all_of(mesh.triangle.begin(), mesh.triangle.end(), [count](const Triangle& t) {
+           return std::all_of(t.begin(), t.end(), [count](std::int32_t v) { return v >= 0 && v < count; });
+         });
 }
 
 }  // namespace
@@ -161,9 +169,13 @@ Result<RawMesh> read_mesh(const std::string& path, const ReadOptions& options) {
   if (kind == wire::Kind::no_such_part)
     return Error{path, "no mesh named \"" + options.part + "\"",
                  mesh.parts.empty() ? "the file holds no mesh" : "the file holds " + listed(mesh.parts)};
+  std::vector<Vec3> colours;
   if (kind != wire::Kind::mesh || !reader.get(mesh.unit_in_metres) || !reader.get_list(mesh.vertex) ||
-      !reader.get_list(mesh.triangle) || !reader.is_at_end() || !has_indices_in_range(mesh))
+      !reader.get_list(mesh.triangle) || !reader.get_list(mesh.part_of_triangle) || !reader.get_list(colours) ||
+      !reader.is_at_end() || !has_indices_in_range(mesh) || colours.size() != mesh.parts.size())
     return broken;
+  for (const Vec3& colour : colours)
+    mesh.part_colour.push_back(is_finite(colour) ? std::optional(colour) : std::nullopt);
   if (!(std::isfinite(mesh.unit_in_metres) && mesh.unit_in_metres > 0)) mesh.unit_in_metres = 0;
   if (mesh.triangle.empty())
     return Error{path, "holds no triangles", "points and lines alone cannot be filled; export the surface"};

@@ -5,6 +5,7 @@
 
 #include "importers/mesh.h"
 #include "importers/mesh_surgery.h"
+#include "importers/nesting.h"
 #include "importers/seams.h"
 #include "importers/self_crossing.h"
 #include "importers/text.h"
@@ -17,7 +18,13 @@ constexpr double kCutShare = 0.25;     // of the diagonal: largest hole cut to r
 constexpr double kHoleShare = 0.1;     // of the diagonal: default limit of holes to fill
 constexpr double kCrackShare = 1e-3;   // of the diagonal: widest crack to close at T-junctions
 constexpr double kFlat = 1e-9;         // of the diagonal cubed: a smaller volume counts as none
+constexpr double kRoundOff = 1.001;    // a limit that is written in whole millimetres still allows its hole
+constexpr double kLeastOrgan = 0.01;   // of the largest part's volume: smaller ones are no organs
+constexpr double kLeastCavity = 1e-4;  // of the volume around it
 constexpr std::size_t kMostShown = 5;  // holes named one by one
+
+/// Which parts a repair keeps.
+enum class Keep { largest, all_in_one, each };
 
 std::string hole_text(const Hole& hole) {
   return mm_text(hole.diameter) + " wide (" + counted(hole.edges, "edge") + ") at " + place_text(hole.centre);
@@ -45,26 +52,27 @@ Soup take(const Soup& soup, const std::vector<Triangle>& triangles, std::vector<
   return piece;
 }
 
+/// A part of a mesh, and the volume that it encloses; that of an open part includes the cones over its holes.
+struct Piece {
+  Soup soup;
+  double volume = 0;  ///< [m^3], >= 0
+};
+
 /// Splits a mesh into its parts, largest enclosed volume first.
-std::vector<Soup> split_parts(const Soup& soup) {
+std::vector<Piece> split_parts(const Soup& soup) {
   const Parts parts = find_parts(soup.triangle);
   std::vector<std::vector<Triangle>> triangles(std::size_t(parts.count));
   for (std::size_t t = 0; t < soup.triangle.size(); ++t)
     triangles[std::size_t(parts.of_triangle[t])].push_back(soup.triangle[t]);
-  std::vector<Soup> pieces;
-  std::vector<double> volume;
+  std::vector<Piece> pieces;
   std::vector<std::int32_t> new_index(soup.vertex.size(), -1);
   for (const std::vector<Triangle>& part : triangles) {
-    const Soup& piece = pieces.emplace_back(take(soup, part, new_index));
+    Piece& piece = pieces.emplace_back(take(soup, part, new_index));
     // Relative to its own centre, the volume of an open part includes the cones over its holes.
-    volume.push_back(std::abs(signed_volume(piece.vertex, piece.triangle, bounding_box(piece).centre())));
+    piece.volume = std::abs(signed_volume(piece.soup.vertex, piece.soup.triangle, bounding_box(piece.soup).centre()));
   }
-  std::vector<std::size_t> order(pieces.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return volume[a] > volume[b]; });
-  std::vector<Soup> sorted;
-  for (const std::size_t p : order) sorted.push_back(std::move(pieces[p]));
-  return sorted;
+  std::stable_sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.volume > b.volume; });
+  return pieces;
 }
 
 void append(Soup& to, const Soup& piece) {
@@ -76,14 +84,15 @@ void append(Soup& to, const Soup& piece) {
 /// One repair: the current soup and the findings so far.
 class Repair {
  public:
-  Repair(const RawMesh& mesh, double unit, const RepairOptions& options) : path_(mesh.path), options_(options) {
+  Repair(const RawMesh& mesh, double unit, const RepairOptions& options, Keep keep, std::size_t most)
+      : path_(mesh.path), options_(options), keep_(keep), most_(most), parts_(mesh, unit) {
     soup_.triangle = mesh.triangle;
     soup_.vertex.reserve(mesh.vertex.size());
     for (const Vec3& p : mesh.vertex) soup_.vertex.push_back(unit * p);
     out_.before = count_mesh(soup_.vertex, soup_.triangle);
   }
 
-  Result<CheckedMesh> run() {
+  Result<std::vector<CheckedMesh>> run() {
     clean();
     if (soup_.triangle.empty()) return Error{path_, "holds only triangles without area", "export the surface again"};
     tell("looking for cracks and walls", 0.1);
@@ -94,11 +103,20 @@ class Repair {
     split_and_orient();
     tell("closing", 0.5);
     if (Errors errors = keep_closed_parts(); !errors.empty()) return errors;
-    tell("looking for crossings", 0.7);
-    treat_crossings();
-    tell("turning outwards", 0.9);
-    turn_outwards();
-    return finish();
+    std::vector<CheckedMesh> meshes;
+    for (Organ& organ : organs_) {
+      soup_ = std::move(organ.soup), shells_ = organ.shells;
+      tell("looking for crossings", 0.7);
+      treat_crossings();
+      tell("turning outwards", 0.9);
+      turn_outwards();
+      Result<CheckedMesh> mesh = finish();
+      if (!mesh) return mesh.errors();
+      meshes.push_back(std::move(*mesh));
+      out_ = {};
+      out_.before = meshes.front().before;
+    }
+    return meshes;
   }
 
  private:
@@ -162,53 +180,94 @@ class Repair {
     orient_and_stitch(soup_);
   }
 
-  /// Fills holes, part by part from the largest, and selects the parts to keep. Errors: no part can be closed, or with
-  /// all_parts not every one.
+  /// One mesh of the result: its shells, the outer one first.
+  struct Organ {
+    Soup outer;  ///< the outer shell alone
+    double volume = 0;
+    std::vector<Soup> cavities;
+    Soup soup;  ///< all of them
+    std::int64_t shells = 1;
+  };
+
+  /// Fills holes, part by part from the largest, and selects the parts to keep. Errors: no part can be closed, or,
+  /// where only the largest is kept, that one.
   Errors keep_closed_parts() {
-    const std::vector<Soup> parts = split_parts(soup_);
     const double largest_hole = options_.largest_hole.value_or(kHoleShare * diagonal_);
-    Soup kept;
     std::vector<Hole> filled;
     Errors open;
-    std::int64_t kept_parts = 0, dropped = 0, dropped_triangles = 0;
+    std::int64_t dropped = 0, dropped_triangles = 0, cavities = 0;
     Finding drop;
-    for (std::size_t p = 0; p < parts.size(); ++p) {
-      Soup piece = parts[p];
-      const bool is_wanted = p == 0 || options_.all_parts;
-      Errors why;
-      if (is_wanted) {
-        const Closing closing = fill_holes(piece, largest_hole);
-        why = describe(closing, largest_hole);
-        if (why.empty() && is_flat(piece))
+    for (Piece& piece : split_parts(soup_)) {
+      Organ* around = keep_ == Keep::all_in_one ? nullptr : organ_around(piece);
+      if (around != nullptr || is_wanted(piece)) {
+        const Closing closing = fill_holes(piece.soup, largest_hole);
+        Errors why = describe(closing, largest_hole);
+        if (why.empty() && is_flat(piece.soup))
           why = {{path_, "the mesh bounds no volume", "it is a sheet; export a closed surface"}};
-        if (why.empty()) filled.insert(filled.end(), closing.filled.begin(), closing.filled.end());
+        if (why.empty()) {
+          filled.insert(filled.end(), closing.filled.begin(), closing.filled.end());
+          if (around != nullptr) ++cavities;
+          keep_piece(std::move(piece), around);
+          continue;
+        }
+        if (organs_.empty() && keep_ == Keep::largest) return why;
+        if (open.empty()) open = why;
       }
-      if (is_wanted && why.empty()) {
-        append(kept, piece);
-        ++kept_parts;
-        continue;
-      }
-      if (open.empty()) open = why;
-      ++dropped, dropped_triangles += std::int64_t(piece.triangle.size());
-      if (!drop.place) drop.place = bounding_box(piece).centre();
+      ++dropped, dropped_triangles += std::int64_t(piece.soup.triangle.size());
+      if (!drop.place) drop.place = bounding_box(piece.soup).centre();
     }
-    if (kept_parts == 0 || (!options_.all_parts && !open.empty())) return open;
+    if (organs_.empty()) return open;
     if (!filled.empty())
       note({"hole", std::int64_t(filled.size()), widest(filled).centre,
             counted(std::int64_t(filled.size()), "hole") + ", the widest " + hole_text(widest(filled)), "filled", ""});
+    if (cavities > 0)
+      note({"cavity", cavities, bounding_box(organs_.front().outer).centre(),
+            counted(cavities, "shell") + " within another", "taken as the wall of a cavity, which stays empty", ""});
     if (dropped > 0) {
+      const std::size_t kept = organs_.size() + std::size_t(organs_.front().shells) - 1;
       drop.code = "other_part", drop.count = dropped;
-      drop.found = counted(dropped, "part") + " beside the " + (kept_parts == 1 ? "largest" : "closed ones") + " (" +
+      drop.found = counted(dropped, "part") + " beside the " + (kept == 1 ? "largest" : "closed ones") + " (" +
                    counted(dropped_triangles, "triangle") + ", the largest at " + place_text(*drop.place) + ")";
       drop.done = "dropped";
       if (!open.empty()) drop.remains = open[0].message;
       note(drop);
     }
-    if (kept_parts > 1)
-      note({"parts", kept_parts, {}, counted(kept_parts, "closed part"), "kept", "the organ is in pieces"});
-    soup_ = std::move(kept);
-    kept_parts_ = kept_parts;
+    if (keep_ == Keep::all_in_one && organs_.front().shells > 1)
+      note({"parts",
+            organs_.front().shells,
+            {},
+            counted(organs_.front().shells, "closed part"),
+            "kept",
+            "the organ is in pieces"});
     return {};
+  }
+
+  /// Whether a part is an organ, or a part of the only one.
+  bool is_wanted(const Piece& piece) const {
+    if (organs_.empty() || keep_ == Keep::all_in_one) return true;
+    return keep_ == Keep::each && organs_.size() < most_ && piece.volume >= kLeastOrgan * organs_.front().volume;
+  }
+
+  /// The organ within whose tissue a smaller part lies; null: none.
+  Organ* organ_around(const Piece& piece) {
+    for (Organ& organ : organs_) {
+      if (piece.volume < kLeastCavity * organ.volume || !is_inside(piece.soup, organ.outer)) continue;
+      const bool is_in_cavity = std::any_of(organ.cavities.begin(), organ.cavities.end(),
+                                            [&](const Soup& cavity) { return is_inside(piece.soup, cavity); });
+      return is_in_cavity ? nullptr : &organ;
+    }
+    return nullptr;
+  }
+
+  void keep_piece(Piece piece, Organ* around) {
+    const bool is_new = around == nullptr && (organs_.empty() || keep_ == Keep::each);
+    Organ& organ = is_new ? organs_.emplace_back() : around != nullptr ? *around : organs_.front();
+    append(organ.soup, piece.soup);
+    if (!is_new) ++organ.shells;
+    if (around != nullptr)
+      organ.cavities.push_back(std::move(piece.soup));
+    else if (is_new)
+      organ.volume = piece.volume, organ.outer = std::move(piece.soup);
   }
 
   /// Removes small self-intersections and reports the rest.
@@ -226,7 +285,7 @@ class Repair {
                     "none",
                     "the organ is filled wherever the surface is around it at least once"};
     const double widest = kCutShare * diagonal_;
-    if (const std::int64_t cut = kept_parts_ == 1 ? cut_crossing(soup_, crossing, widest) : 0; cut > 0) {
+    if (const std::int64_t cut = shells_ == 1 ? cut_crossing(soup_, crossing, widest) : 0; cut > 0) {
       finding.done = "cut out with what is around them (" + counted(cut, "triangle") + ") and filled again";
       finding.remains = "";
     }
@@ -245,8 +304,11 @@ class Repair {
         errors.push_back(
             {path_, "open beyond repair: " + counted(std::int64_t(sorted.size() - kMostShown), "hole") + " more", ""});
     };
+    if (closing.too_large.empty() && closing.unfillable.empty()) return {};
+    const double wide = closing.too_large.empty() ? 0 : widest(closing.too_large).diameter;
     say(closing.too_large, "is wider than the " + mm_text(largest_hole) + " that may be filled",
-        "close it in a mesh editor, or allow wider holes");
+        "largest_hole_mm " + std::to_string(std::int64_t(std::ceil(1e3 * wide * kRoundOff))) +
+            " allows it to be closed by a cap; else close it in a mesh editor");
     say(closing.unfillable, "cannot be closed by triangles", "close it in a mesh editor");
     return errors;
   }
@@ -258,7 +320,7 @@ class Repair {
   }
 
   void turn_outwards() {
-    if (kept_parts_ > 1) {
+    if (shells_ > 1) {
       orient_parts(soup_);
     } else if (signed_volume(soup_.vertex, soup_.triangle, bounding_box(soup_).centre()) < 0) {
       for (Triangle& t : soup_.triangle) std::swap(t[1], t[2]);
@@ -276,6 +338,7 @@ class Repair {
     out_.volume = signed_volume(soup_.vertex, soup_.triangle, box.centre());
     out_.area = surface_area(soup_.vertex, soup_.triangle);
     out_.after = count_mesh(soup_.vertex, soup_.triangle);
+    out_.part = parts_.part_of(soup_.vertex);
     out_.vertex = std::move(soup_.vertex);
     out_.triangle = std::move(soup_.triangle);
     if (out_.after.open_edges > 0 || out_.after.non_manifold_edges > 0 || !(out_.volume > 0))
@@ -288,15 +351,18 @@ class Repair {
 
   std::string path_;
   const RepairOptions& options_;
+  Keep keep_;
+  std::size_t most_;  ///< organs
+  PartVote parts_;
   Soup soup_, welded_;
   double diagonal_ = 0;
-  std::int64_t kept_parts_ = 0;
+  std::vector<Organ> organs_;
+  std::int64_t shells_ = 1;  ///< of the organ at hand
   CheckedMesh out_;
 };
 
-}  // namespace
-
-Result<CheckedMesh> repair_mesh(const RawMesh& mesh, double unit_in_metres, const RepairOptions& options) {
+Result<std::vector<CheckedMesh>> repair(const RawMesh& mesh, double unit_in_metres, const RepairOptions& options,
+                                        Keep keep, std::size_t most) {
   if (!(std::isfinite(unit_in_metres) && unit_in_metres > 0))
     return Error{mesh.path, "the unit must be a length above 0", "give the length of one unit in metres"};
   if (options.largest_hole && !(*options.largest_hole >= 0))
@@ -304,10 +370,24 @@ Result<CheckedMesh> repair_mesh(const RawMesh& mesh, double unit_in_metres, cons
   if (!(options.weld_distance >= 0 && options.weld_distance < 0.1))
     return Error{mesh.path, "the welding distance must be in [0, 0.1) diagonals", ""};
   try {
-    return Repair(mesh, unit_in_metres, options).run();
+    return Repair(mesh, unit_in_metres, options, keep, most).run();
   } catch (const std::exception& trouble) {
     return Error{mesh.path, std::string("cannot be repaired: ") + trouble.what(), "repair it in a mesh editor"};
   }
+}
+
+}  // namespace
+
+Result<CheckedMesh> repair_mesh(const RawMesh& mesh, double unit_in_metres, const RepairOptions& options) {
+  Result<std::vector<CheckedMesh>> one =
+      repair(mesh, unit_in_metres, options, options.all_parts ? Keep::all_in_one : Keep::largest, 1);
+  if (!one) return one.errors();
+  return std::move(one->front());
+}
+
+Result<std::vector<CheckedMesh>> repair_parts(const RawMesh& mesh, double unit_in_metres, const RepairOptions& options,
+                                              std::size_t most) {
+  return repair(mesh, unit_in_metres, options, Keep::each, most);
 }
 
 }  // namespace ctpm::importers

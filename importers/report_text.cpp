@@ -25,6 +25,8 @@ std::string source_text(UnitSource source) {
       return "as the file says";
     case UnitSource::guessed:
       return "guessed from the size";
+    case UnitSource::scaled:
+      return "scaled to a usual size";
   }
   return "";
 }

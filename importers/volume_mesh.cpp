@@ -133,7 +133,8 @@ void send_volume_mesh(const std::string& path, const std::string& part, const Se
   const std::vector<std::string> names(parts.begin(), parts.end());
   if (!part.empty() && soup.triangle.empty()) return send_no_such_part(names, send);
   drop_unused(soup);
-  send_soup(names, 0, soup, send);
+  const std::ptrdiff_t found = part.empty() ? -1 : std::distance(parts.begin(), parts.find(part));
+  send_soup(names, found, 0, soup, send);
 } catch (const BrokenMesh& broken) {
   send_refusal({path, broken.message, broken.hint}, send);
 }

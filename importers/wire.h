@@ -9,8 +9,9 @@
 namespace ctpm::importers::wire {
 
 /// Message of the reading child: a kind, then its content. `failed`: a text. `refused`: a message and a hint.
-/// `no_such_part`: the parts. `mesh`: the parts, the unit [m], the vertices as x y z doubles and the triangles as three
-/// int32. A uint64 count precedes each list.
+/// `no_such_part`: the parts. `mesh`: the parts, the unit [m], the vertices as x y z doubles, the triangles as three
+/// int32, the part of each triangle as int32, and the parts' colours as three doubles, NaN for none. A uint64 count
+/// precedes each list.
 enum class Kind : std::uint32_t { failed = 1, no_such_part = 2, mesh = 3, refused = 4 };
 
 /// Appends plain values to a message.

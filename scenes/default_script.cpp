@@ -64,6 +64,7 @@ class Top {
     return best;
   }
   Vec3 size() const { return most_ - least_; }
+  Vec3 middle() const { return 0.5 * (least_ + most_); }
 
  private:
   double reach_;
@@ -124,6 +125,15 @@ std::vector<Vec3> cut_path(const Top& top, Vec3 first, double length, double dep
   return best;
 }
 
+/// A straight way of a blade's tip under the organ or near its bottom, from behind it to its front, at the share `u` of
+/// its length.
+std::vector<Vec3> path_through(const Top& top, double u) {
+  constexpr double kBeyond = 0.6, kDeep = 0.9;  // of the size, from the middle and from the top
+  const Vec3 size = top.size(), ridge = top.ridge(u);
+  const double middle = top.middle().y, low = ridge.z - kDeep * size.z;
+  return {{ridge.x, middle + kBeyond * size.y, low}, {ridge.x, middle - kBeyond * size.y, low}};
+}
+
 /// A blade goes in at the path's start and is drawn along it; `depth` below the top.
 void add_cut(Script& script, const ToolSpec& scalpel, const Table& table, const std::vector<Vec3>& path, double depth) {
   const Vec3 down = table.to_world({0, 0, -1}), clear{0, 0, depth + 0.020};
@@ -142,8 +152,15 @@ void add_cut(Script& script, const ToolSpec& scalpel, const Table& table, const 
 
 Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organs) {
   Script script;
+  for (std::size_t i = 0; i < organs.size(); ++i)
+    for (ScriptStep& step : organ_script(scene, organs, i).steps) script.steps.push_back(std::move(step));
+  return script;
+}
+
+Script organ_script(const SceneSpec& scene, std::span<const FilledOrgan> organs, std::size_t index, ScriptPlace at) {
+  Script script;
   const Table table(scene.gravity);
-  const Top top(organs.front(), table);
+  const Top top(organs[index], table);
   // Deep enough to be seen, never through the organ, and no deeper than a hand would cut at once: the force on a blade
   // is the toughness times its length in the tissue, 4 N in liver at 25 mm.
   const Vec3 size = top.size();
@@ -164,11 +181,13 @@ Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organ
     return std::find_if(scene.tools.begin(), scene.tools.end(), [&](const ToolSpec& t) { return t.kind == kind; });
   };
   const auto ball = first_of(ToolKind::ball), scalpel = first_of(ToolKind::scalpel), none = scene.tools.end();
-  if (ball != none) add_press(script, *ball, table, seen(0.35, 0.12), depth, 0.5);
-  if (scalpel != none)
-    add_cut(script, *scalpel, table, cut_path(top, seen(0.42, 0.0), cut_length, cut_depth), cut_depth);
+  if (ball != none) add_press(script, *ball, table, seen(0.35 + at.along, 0.12), depth, 0.5);
+  if (scalpel != none && at.cuts_through)
+    add_cut(script, *scalpel, table, path_through(top, 0.42 + at.along), size.z);
+  else if (scalpel != none)
+    add_cut(script, *scalpel, table, cut_path(top, seen(0.42 + at.along, 0.0), cut_length, cut_depth), cut_depth);
   // Pressing beside the cut opens it.
-  if (ball != none && scalpel != none) add_press(script, *ball, table, seen(0.50, 0.18), 1.6 * depth, 1.0);
+  if (ball != none && scalpel != none) add_press(script, *ball, table, seen(0.50 + at.along, 0.18), 1.6 * depth, 1.0);
   if (script.steps.empty()) script.steps.push_back(wait(1));
   return script;
 }

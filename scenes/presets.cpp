@@ -1,6 +1,8 @@
 #include "scenes/presets.h"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 
 namespace ctpm::scenes {
 namespace {
@@ -30,17 +32,46 @@ constexpr MaterialPreset row(const char* name, const char* organ, double r, doub
   return preset;
 }
 
+/// The lattice of the liver's row has Young's modulus 2.5 K S0 / s_cal (network::LatticeKind::cubic_18).
+constexpr double kModulusPerK = 2.5 * kPi * 2e-3 * 2e-3 / 12e-3;
+
+/// A tissue known by its Young's modulus [Pa]. What the source does not say is the liver's: the ratios of the moduli,
+/// the time in which it creeps, toughness and friction.
+constexpr MaterialPreset tissue(const char* name, double young, double density, double least, double most,
+                                const char* source) {
+  const double k = 1e-6 * young / kModulusPerK;  // [kPa/mm]
+  MaterialPreset preset = row(name, name, 4, 2.0, k, k, 4 * k / 3, k / 3, kOrganToughness, least, most, 0, source);
+  preset.material.density = density;
+  preset.is_of_paper = false;
+  return preset;
+}
+
 constexpr const char* kSlow =
     "Bao & Wu, section 5.1; viscosity read in kPa s/mm, which gives the creep of their Figs. 7 and 8";
 constexpr const char* kPrinted = "Bao & Wu, section 5.1; viscosity as printed, in Pa s (per mm, like the moduli)";
 
-constexpr std::array<MaterialPreset, 6> kPresets{
+constexpr std::array<MaterialPreset, 13> kPresets{
     row("liver", "liver", 4, 2.0, 15, 15, 20, 5, kOrganToughness, 0.08, 0.40, 0.012, kSlow),
     row("kidney", "kidney", 4, 1.5, 58, 58, 106, 4, kOrganToughness, 0.07, 0.20, 0, kSlow),
     row("skin", "skin", 7, 2.8, 82, 82, 164, 3, kSkinToughness, 0.05, 0.50, 0, kSlow),
     row("liver-pa-s", "liver", 4, 2.0, 15, 15, 20, 5e-3, kOrganToughness, 0.08, 0.40, 0.012, kPrinted),
     row("kidney-pa-s", "kidney", 4, 1.5, 58, 58, 106, 4e-3, kOrganToughness, 0.07, 0.20, 0, kPrinted),
     row("skin-pa-s", "skin", 7, 2.8, 82, 82, 164, 3e-3, kSkinToughness, 0.05, 0.50, 0, kPrinted),
+    tissue(kGenericPreset, 20e3, 1060, 0.03, 0.40,
+           "estimate: Young's modulus 20 kPa, between spleen and liver of this table; for tissue of no named organ"),
+    tissue("heart", 20e3, 1060, 0.08, 0.20, "estimate: Young's modulus 20 kPa, relaxed; a beating heart is stiffer"),
+    tissue("lung", 3.42e3, 300, 0.15, 0.40,
+           "Young's modulus 3 times the shear stiffness of 1.14 kPa at residual volume (Mariappan et al., J. Magn. "
+           "Reson. Imaging 33, 2011); density 300 kg/m^3, an estimate"),
+    tissue("spleen", 10.7e3, 1060, 0.07, 0.20,
+           "Young's modulus 3 times the shear stiffness of 3.565 kPa (Mannelli et al., AJR 195, 2010)"),
+    tissue("bladder", 100e3, 1060, 0.05, 0.20,
+           "estimate: Young's modulus 100 kPa of a slack wall; stretched samples reach 1.9 MPa (Martins et al., Int. "
+           "Urogynecol. J. 22, 2011)"),
+    tissue("fat", 3.25e3, 920, 0.03, 0.40,
+           "Young's modulus 3.25 kPa of breast fat (Samani, Zubovits & Plewes, Phys. Med. Biol. 52, 2007); density "
+           "920 kg/m^3, an estimate"),
+    tissue("muscle", 20e3, 1060, 0.05, 0.50, "estimate: Young's modulus 20 kPa, across the fibres of relaxed muscle"),
 };
 
 }  // namespace
@@ -50,6 +81,19 @@ std::span<const MaterialPreset> material_presets() { return kPresets; }
 const MaterialPreset* find_preset(std::string_view name) {
   for (const MaterialPreset& preset : kPresets)
     if (name == preset.name) return &preset;
+  return nullptr;
+}
+
+const MaterialPreset* preset_in_name(std::string_view name) {
+  std::string lower(name);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  const auto is_letter = [&](std::size_t i) { return i < lower.size() && std::isalpha((unsigned char)lower[i]); };
+  for (const MaterialPreset& preset : kPresets) {
+    const std::string_view organ = preset.organ;
+    for (std::size_t at = lower.find(organ); at != std::string::npos; at = lower.find(organ, at + 1))
+      // A short word may be a part of another: "fat" of "father".
+      if (organ.size() > 3 || (!(at > 0 && is_letter(at - 1)) && !is_letter(at + organ.size()))) return &preset;
+  }
   return nullptr;
 }
 

@@ -75,7 +75,8 @@ std::string tables_of(const std::vector<RecordRow>& records) {
 
 std::string preset_table() {
   std::string text =
-      "\n### presets\n\nMaterials of the paper; every modulus in kPa/mm, the viscosity in kPa s/mm.\n\n"
+      "\n### presets\n\nMaterials of the paper, and others by their Young's modulus, which is 2.5 K2 pi R^2 / spacing; "
+      "every modulus in kPa/mm, the viscosity in kPa s/mm.\n\n"
       "| preset | K2 | K1 | K' | v1 | ball R mm | spacing mm | source |\n| --- | --- | --- | --- | --- | --- "
       "| --- | --- |\n";
   for (const MaterialPreset& preset : material_presets()) {

@@ -35,30 +35,17 @@ void check_preset(Problems& problems, const std::string& at, const std::string& 
                     nearest.empty() ? "presets: " + known : "did you mean " + in_quotes(nearest) + "?");
 }
 
-/// `organ` is the pointer of the material's organ.
-void check_material(Problems& problems, const std::string& at, const MaterialSpec& spec, const std::string& organ,
-                    network::Structure structure) {
-  check_preset(problems, at, spec.preset);
-  if (!problems.is_good(at + "/preset")) return;
-  const ResolvedMaterial resolved = resolve_material(spec);
-  for (const std::string& key : resolved.missing)
-    problems.add_rule(at, "the key " + in_quotes(key) + " is missing, and there is no preset to take it from", "",
-                      at + "/" + key);
-  if (!problems.are_good(at, {"spring_kpa_per_mm", "kelvin_kpa_per_mm", "constraint_kpa_per_mm"}) ||
-      !problems.is_good(organ + "/model") || structure != network::Structure::ctpm)
-    return;
-  const network::Material& m = resolved.material;
-  const double p2 = m.kelvin * m.spring / (m.kelvin + m.spring);
-  if (m.constraint < p2)
-    problems.add_rule(at + "/constraint_kpa_per_mm", "got " + double_to_decimal(m.constraint, 6) +
-                                                         " kPa/mm, must be at least K1 K2 / (K1 + K2) = " +
-                                                         double_to_decimal(p2, 6) + ", which the triples already give");
+/// `organ` is the pointer of the material's organ. A structure that is refused is not judged.
+void check_material_of(Problems& problems, const std::string& at, const MaterialSpec& spec, const std::string& organ,
+                       network::Structure structure) {
+  const bool is_known = problems.is_good(organ + "/model");
+  check_material(problems, at, spec, is_known ? structure : network::Structure::tpm);
 }
 
 void check_layers(Problems& problems, const std::string& at, const OrganSpec& organ) {
   for (std::size_t i = 0; i < organ.layers.size(); ++i) {
     const std::string where = item(at + "/layers", i);
-    check_material(problems, where + "/material", organ.layers[i].material, at, organ.structure);
+    check_material_of(problems, where + "/material", organ.layers[i].material, at, organ.structure);
     if (i == 0 || !problems.is_good(item(at + "/layers", i - 1) + "/to_depth_mm")) continue;
     if (!(organ.layers[i].to_depth > organ.layers[i - 1].to_depth))
       problems.add_rule(where + "/to_depth_mm",
@@ -140,7 +127,7 @@ void check_organ(Problems& problems, std::size_t index, const OrganSpec& organ) 
     problems.add_rule(at, "must have exactly one of mesh, rig", "", at + "/mesh");
   if (organ.rig) check_rig(problems, at + "/rig", *organ.rig);
   if (organ.rig && !(organ.at == Vec3{})) problems.add_rule(at + "/at_mm", "only an organ from a mesh has this key");
-  check_material(problems, at + "/material", organ.material, at, organ.structure);
+  check_material_of(problems, at + "/material", organ.material, at, organ.structure);
   check_layers(problems, at, organ);
   for (std::size_t i = 0; i < organ.anchors.size(); ++i)
     check_region(problems, item(at + "/anchors", i), organ.anchors[i]);
@@ -194,6 +181,24 @@ void check_camera(Problems& problems, std::size_t index, const CameraSpec& camer
 }
 
 }  // namespace
+
+void check_material(Problems& problems, const std::string& at, const MaterialSpec& spec, network::Structure structure) {
+  check_preset(problems, at, spec.preset);
+  if (!problems.is_good(at + "/preset")) return;
+  const ResolvedMaterial resolved = resolve_material(spec);
+  for (const std::string& key : resolved.missing)
+    problems.add_rule(at, "the key " + in_quotes(key) + " is missing, and there is no preset to take it from", "",
+                      at + "/" + key);
+  if (!problems.are_good(at, {"spring_kpa_per_mm", "kelvin_kpa_per_mm", "constraint_kpa_per_mm"}) ||
+      structure != network::Structure::ctpm)
+    return;
+  const network::Material& m = resolved.material;
+  const double p2 = m.kelvin * m.spring / (m.kelvin + m.spring);
+  if (m.constraint < p2)
+    problems.add_rule(at + "/constraint_kpa_per_mm", "got " + double_to_decimal(m.constraint, 6) +
+                                                         " kPa/mm, must be at least K1 K2 / (K1 + K2) = " +
+                                                         double_to_decimal(p2, 6) + ", which the triples already give");
+}
 
 void check_rules(Problems& problems, const SceneSpec& scene) {
   check_names(problems, "/organs", scene.organs);

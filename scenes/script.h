@@ -106,9 +106,19 @@ Errors check_script(std::string_view text, const std::string& file_name, const S
 /// Text of a script. The same steps give the same text, and read_script gives the same steps again.
 std::string write_script(const Script& script);
 
-/// A script that presses the top of the first organ with the scene's first ball and cuts across it with its
-/// first scalpel, if the scene has them.
+/// A script that presses the top of each organ with the scene's first ball and cuts across it with its first scalpel,
+/// if the scene has them, one organ after the other.
 Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organs);
+
+/// Where and how the default script works on an organ that is too thin or too soft where it usually does.
+struct ScriptPlace {
+  double along = 0;           ///< moves its places by this share of the organ's length
+  bool cuts_through = false;  ///< the blade is drawn through the whole organ, from back to front
+};
+
+/// The steps of default_script() for organ `index`.
+Script organ_script(const SceneSpec& scene, std::span<const FilledOrgan> organs, std::size_t index,
+                    ScriptPlace place = {});
 
 /// How a press to a force ended.
 enum class PressEnd { none, at_force, at_depth };

@@ -27,8 +27,8 @@ constexpr double kDeepest = 12;
 /// all where they touch (our choice): a ball that presses on a closed cut dents its lips, and does not wedge it open.
 constexpr double kOpen = 0.1;
 
-/// Triangles are looked for within so many radii of where they may be touched (our choice): at the speed of a hand it
-/// is some ten steps before they are looked for again.
+/// Triangles are looked for within so many radii of where they may be touched (our choice): a wider margin looks less
+/// often, at more triangles.
 constexpr double kMargin = 0.1;
 
 constexpr double kPi = 3.14159265358979323846;

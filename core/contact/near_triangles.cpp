@@ -6,7 +6,7 @@ namespace ctpm::contact {
 
 Reach Reach::grown(double by) const {
   Reach wider = *this;
-  wider.distance += by, wider.box = box.grown(by), wider.farthest += by;
+  wider.box = box.grown(by), wider.farthest += by;
   return wider;
 }
 

@@ -138,6 +138,7 @@ NearSurface::Index NearSurface::place_in_spheres(Index sphere) const {
 
 void NearSurface::begin(const Vec3Array& position) {
   ++round_;
+  if (empty()) return;
   for (std::size_t i = 0; i < spheres_.size(); ++i) position_[i] = position[std::size_t(spheres_[i])];
 }
 

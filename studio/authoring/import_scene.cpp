@@ -4,14 +4,21 @@
 #include <cmath>
 #include <filesystem>
 
-#include "scenes/anchors.h"
-#include "scenes/presets.h"
+#include "core/surface/surface.h"
+#include "importers/text.h"
+#include "scenes/build_model.h"
 #include "scenes/scene_file.h"
 #include "scenes/script.h"
+#include "studio/authoring/anchor_choice.h"
+#include "studio/authoring/filling_choice.h"
 #include "studio/authoring/fit_stiffness.h"
+#include "studio/authoring/new_folder.h"
+#include "studio/authoring/scene_parts.h"
+#include "studio/authoring/tissue_choice.h"
+#include "studio/loading/tick_time.h"
 #include "studio/output/files.h"
+#include "studio/output/number_text.h"
 #include "studio/output/option_name.h"
-#include "studio/render/scene_view.h"
 
 namespace ctpm::authoring {
 namespace {
@@ -20,161 +27,366 @@ namespace fs = std::filesystem;
 
 /// Larger organs [spheres] are imported without a fit, which would take longer than a few seconds.
 constexpr std::size_t kMostFittedSpheres = 4000;
+/// Depth of the fit's press, and the part of an organ's height that it may be.
+constexpr double kFitDepth = 0.012, kDeepestShare = 1.0 / 3;
+/// A fitted scale outside of this range says that the press is none of the paper's.
+constexpr double kLeastScale = 0.1, kMostScale = 10;
 
-/// The requested preset, or the one whose organ the mesh's file name contains.
-Result<const scenes::MaterialPreset*> choose_preset(const ImportRequest& request) {
-  std::string known;
-  for (const scenes::MaterialPreset& preset : scenes::material_presets()) {
-    if (request.organ == preset.name) return &preset;
-    known += (known.empty() ? "" : ", ") + std::string(preset.name);
-  }
-  if (!request.organ.empty())
-    return Error{output::option_name("import.organ"), "there is no preset '" + request.organ + "'",
-                 "presets: " + known};
-  const std::string name = fs::path(request.mesh).stem().string();
-  for (const scenes::MaterialPreset& preset : scenes::material_presets())
-    if (name.find(preset.organ) != std::string::npos) return &preset;
-  return Error{output::option_name("import.organ"), "the file's name does not say which organ it is",
-               "give one of " + known};
-}
+/// Where a script is tried: the usual place first, then others, then right through the organ, where what holds it may
+/// be near.
+constexpr scenes::ScriptPlace kPlaces[] = {{},           {0.12},        {-0.12},      {0.24},
+                                           {-0.24},      {0, true},     {0.3, true},  {-0.3, true},
+                                           {0.15, true}, {-0.15, true}, {0.45, true}, {-0.38, true}};
 
-/// A camera that sees the organ from the front, a little from above.
-scenes::CameraSpec front_camera(const FilledOrgan& organ) {
-  Vec3 low = organ.surface.vertex.front(), high = low;
-  for (const Vec3& p : organ.surface.vertex) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  const auto whole_mm = [](Vec3 p) {
-    return Vec3{std::round(p.x * 1e3) * 1e-3, std::round(p.y * 1e3) * 1e-3, std::round(p.z * 1e3) * 1e-3};
-  };
-  const double size = norm(high - low);
-  scenes::CameraSpec camera;
-  camera.name = "front";
-  // The organ is right of the centre, clear of the panels on the left.
-  camera.target = whole_mm(0.5 * (low + high) + size * Vec3{-0.13, 0, 0});
-  camera.eye = whole_mm(camera.target + size * Vec3{0.05, -1.25, 0.95});
-  camera.field_of_view = 32;
-  return camera;
-}
-
-double extent_z(const FilledOrgan& organ) {
-  const auto [low, high] =
-      std::minmax_element(organ.centre.begin(), organ.centre.end(), [](Vec3 a, Vec3 b) { return a.z < b.z; });
-  return high->z - low->z;
-}
-
-/// Height [m] above the lowest sphere that contains at least an eighth of all spheres. An organ anchored by fewer would
-/// tip over while it settles.
-double footing_height(const FilledOrgan& organ) {
-  std::vector<double> heights;
-  for (const Vec3& centre : organ.centre) heights.push_back(centre.z);
-  std::sort(heights.begin(), heights.end());
-  return std::ceil(1e3 * (heights[(heights.size() - 1) / 8] - heights.front()) + 0.5) / 1e3;
-}
-
-scenes::SceneSpec make_scene(const ImportRequest& request, const scenes::MaterialPreset& preset,
-                             const FilledOrgan& organ, const std::string& name) {
-  scenes::SceneSpec scene;
-  scene.name = name;
+/// One organ between its filling and the scene.
+struct Draft {
+  Tissue tissue;
+  FilledOrgan filled;
+  importers::CheckedMesh mesh;
   scenes::OrganSpec spec;
-  spec.name = name;
-  spec.mesh = name + ".obj";
-  spec.all_parts = request.all_parts, spec.most_triangles = request.most_triangles;
-  spec.fill.radius = organ.sphere_radius;
-  spec.fill.gap = organ.spacing - 2 * organ.sphere_radius;
-  spec.material.preset = preset.name;
-  spec.damage_depth = preset.damage_depth;
-  const render::OrganLook look = render::look_of(preset.organ);
-  spec.surface_color = {look.outer[0], look.outer[1], look.outer[2]};
-  spec.inner_color = {look.inner[0], look.inner[1], look.inner[2]};
-  spec.anchors = request.anchors;
-  if (spec.anchors.empty()) {
-    scenes::AnchorSpec lowest;
-    lowest.lowest = footing_height(organ);
-    spec.anchors = {lowest};
-  }
-  scene.organs = {spec};
-  // Tools in proportion to the organ: a ball of 2.5 sphere radii; a blade of 0.7 of the organ's height, at least 40 mm.
-  scenes::ToolSpec ball, scalpel;
-  ball.name = "ball", ball.kind = ToolKind::ball, ball.radius = 2.5 * organ.sphere_radius;
-  scalpel.name = "scalpel", scalpel.kind = ToolKind::scalpel;
-  scalpel.blade_length = std::ceil(1e2 * std::max(0.04, 0.7 * extent_z(organ))) * 1e-2;
-  scene.tools = {ball, scalpel};
-  scene.cameras = {front_camera(organ)};
-  return scene;
-}
+  scenes::Script script;
+  ImportedPart part;
 
-/// Fits the organ's stiffness and stores it in the scene; an organ that cannot be fitted keeps the preset's moduli.
-void fit_scene(scenes::SceneSpec& scene, const FilledOrgan& organ, const ImportRequest& request,
-               ImportOutcome& outcome) {
-  if (organ.centre.size() > kMostFittedSpheres) {
-    outcome.fit_problem = "with " + std::to_string(organ.centre.size()) + " spheres it takes long";
-    outcome.can_be_fitted_later = true;
-    return;
+  void note(const char* code, std::string found, std::string done, std::string remains) {
+    part.report.findings.push_back({code, 1, {}, std::move(found), std::move(done), std::move(remains)});
   }
-  const Result<StiffnessFit> fit = fit_stiffness(scene, 0, organ, request.should_stop);
-  if (!fit) {
-    outcome.fit_problem = fit.errors().front().message;
-    return;
+};
+
+class Import {
+ public:
+  explicit Import(const ImportRequest& request)
+      : request_(request), place_(fs::path(request.scene).parent_path().string()) {}
+
+  Result<ImportOutcome> run() {
+    if (Errors errors = check_files(); !errors.empty()) return errors;
+    if (Errors errors = fill(); !errors.empty()) return errors;
+    for (Draft& draft : drafts_)
+      if (Errors errors = finish(draft); !errors.empty()) return errors;
+    if (stops()) return Error{request_.mesh, "stopped", "nothing was written"};
+    return write();
   }
-  apply_fit(scene.organs[0], *fit);
-  outcome.stiffness_scale = fit->scale;
-}
+
+ private:
+  bool stops() const { return request_.should_stop && request_.should_stop(); }
+  void tell(const char* stage, double fraction) const {
+    if (request_.progress) request_.progress(stage, fraction);
+  }
+
+  /// Checks what can be checked before long work, and reads the scene to which organs are added.
+  Errors check_files() {
+    if (fs::path(request_.scene).extension() != ".json")
+      return {{request_.scene, "a scene's name must end in .json", ""}};
+    stem_ = fs::path(request_.scene).stem().string();
+    if (Errors errors = folder_.make(place_); !errors.empty()) return errors;
+    if (request_.into) {
+      Result<scenes::SceneText> scene = scenes::load_scene(request_.scene);
+      if (!scene) return scene.errors();
+      scene_ = scene->spec;
+      return {};
+    }
+    scene_.name = stem_;
+    if (Errors errors = check_mesh_file(beside(stem_ + ".obj")); !errors.empty()) return errors;
+    Errors errors;
+    for (const std::string& file : {request_.scene, beside(stem_ + ".script.json")})
+      if (const Result<Done> is_new = output::check_new(file, request_.overwrite); !is_new)
+        errors.insert(errors.end(), is_new.errors().begin(), is_new.errors().end());
+    return errors;
+  }
+
+  Errors check_mesh_file(const std::string& file) const {
+    std::error_code ignored;
+    if (fs::equivalent(file, request_.mesh, ignored))
+      return {
+          {file, "the repaired mesh would replace the mesh that is imported", "give the scene another name or folder"}};
+    if (const Result<Done> is_new = output::check_new(file, request_.overwrite); !is_new) return is_new.errors();
+    return {};
+  }
+
+  std::string beside(const std::string& name) const { return (fs::path(place_) / name).string(); }
+
+  /// Reads, repairs and fills the file, and makes a draft of each organ.
+  Errors fill() {
+    const Result<Tissue> whole = choose_tissue(place_, request_.organ, {fs::path(request_.mesh).stem().string()});
+    if (!whole) return whole.errors();
+    importers::ImportOptions options;
+    options.unit_in_metres = request_.unit_in_metres, options.size = request_.size, options.scale = request_.scale;
+    options.usual_size = whole->usual_size();
+    options.part = request_.part, options.all_parts = request_.parts == Parts::all_in_one;
+    options.gap = request_.gap.value_or(-1);
+    options.largest_hole = request_.largest_hole;
+    options.most_triangles = request_.most_triangles.value_or(0);
+    options.should_stop = request_.should_stop;
+    if (request_.progress)
+      options.progress = [&](const std::string& stage, double share) { request_.progress(stage, 0.5 * share); };
+    const Result<importers::RepairedFile> file =
+        importers::repair_file(request_.mesh, options, request_.parts == Parts::each ? kMostOrgans : 1);
+    if (!file) return with_option_names(file.errors());
+    FillingWish wish{request_.sphere_radius, request_.spheres};
+    constexpr int kMostTries = 3;
+    for (int tries = 0;; ++tries) {
+      Result<std::vector<importers::ImportedOrgan>> filled =
+          fill_all(*file, options, wish, whole->preset->sphere_radius);
+      if (!filled) return filled.errors();
+      if (Errors errors = make_drafts(*file, *whole, *std::move(filled)); !errors.empty()) return errors;
+      const std::optional<std::int64_t> better = better_count();
+      if (!better || tries == kMostTries) return {};
+      wish.spheres = better;
+    }
+  }
+
+  /// The number of spheres that holds the wanted rate, if the drafts are too many or, where a rate was asked for, too
+  /// few; none if they are right, or if the author chose.
+  std::optional<std::int64_t> better_count() {
+    if (request_.sphere_radius || request_.spheres) return {};
+    // A press or a cut costs as much again as a tick at rest.
+    constexpr double kRestShare = 0.5, kNear = 0.8, kMostSpheres = 20000, kGrowth = 4;
+    const double budget = kRestShare * 1e-3 / request_.kilohertz.value_or(1);
+    const std::optional<double> time = time_of_tick();
+    if (!time) return {};
+    std::int64_t count = 0;
+    for (const Draft& draft : drafts_) count += draft.part.report.fill.spheres;
+    const double wanted = std::min(kMostSpheres, double(count) * std::min(kGrowth, 0.9 * budget / *time));
+    const bool is_slow = *time > budget, is_coarse = request_.kilohertz && *time < kNear * budget * kNear;
+    if ((!is_slow && !is_coarse) || double(count) == wanted) return {};
+    return std::max(std::int64_t(wanted), kFewestSpheres);
+  }
+
+  /// Time of a tick of all drafts at rest [s]; none if they cannot be built.
+  std::optional<double> time_of_tick() {
+    scenes::SceneSpec scene = scene_;
+    scene.organs.clear();
+    std::vector<FilledOrgan> organs;
+    for (const Draft& draft : drafts_) scene.organs.push_back(draft.spec), organs.push_back(draft.filled);
+    scene.probes.clear(), scene.loads.clear(), scene.obstacles.clear(), scene.tools = tools_for(organs);
+    const Result<scenes::BuiltScene> built = scenes::build_model(scene, organs);
+    if (!built) return {};
+    return loading::measure_tick_work(built->model, request_.should_stop);
+  }
+
+  Errors make_drafts(const importers::RepairedFile& file, const Tissue& whole,
+                     std::vector<importers::ImportedOrgan> filled) {
+    drafts_.clear();
+    std::vector<std::string> names, files;
+    for (const scenes::OrganSpec& organ : scene_.organs) names.push_back(organ.name);
+    for (importers::ImportedOrgan& one : filled) {
+      Draft draft;
+      const std::int32_t part = one.mesh.part;
+      const std::string part_name = part >= 0 ? file.report.parts[std::size_t(part)] : "";
+      draft.tissue = whole;
+      if (request_.organ.empty() && filled.size() > 1) {
+        const Result<Tissue> own = choose_tissue(place_, "", {part_name, fs::path(request_.mesh).stem().string()});
+        if (!own) return own.errors();
+        draft.tissue = *own;
+      }
+      const bool is_alone = filled.size() == 1 && !request_.into;
+      const std::string from_mesh = fs::path(request_.mesh).stem().string();
+      const std::string name = is_alone ? stem_ : file_name_of(filled.size() == 1 ? from_mesh : part_name);
+      draft.part.name = free_name(name, names);
+      names.push_back(draft.part.name);
+      const std::string mesh = (is_alone ? stem_ : stem_ + "-" + file_name_of(draft.part.name)) + ".obj";
+      draft.part.mesh_file = beside(mesh);
+      std::optional<Vec3> colour = part >= 0 ? file.part_colour[std::size_t(part)] : std::nullopt;
+      draft.filled = std::move(one.organ), draft.mesh = std::move(one.mesh), draft.part.report = std::move(one.report);
+      draft.spec = organ_spec(draft.part.name, mesh, draft.tissue, draft.filled, colour);
+      draft.spec.all_parts = request_.parts == Parts::all_in_one, draft.spec.most_triangles = request_.most_triangles;
+      draft.spec.anchors = request_.anchors;
+      if (request_.stiffness_scale) draft.spec.material.stiffness_scale = request_.stiffness_scale;
+      if (Errors errors = check_mesh_file(draft.part.mesh_file); !errors.empty()) return errors;
+      drafts_.push_back(std::move(draft));
+    }
+    return {};
+  }
+
+  /// A scene of one organ alone.
+  scenes::SceneSpec alone(const Draft& draft) const {
+    scenes::SceneSpec scene;
+    scene.name = draft.spec.name;
+    scene.gravity = scene_.gravity, scene.tick = scene_.tick, scene.settle = scene_.settle;
+    scene.solver = scene_.solver;
+    scene.organs = {draft.spec};
+    scene.tools = tools_for({draft.filled});
+    return scene;
+  }
+
+  /// Fits one organ, lets it stand and tries its script.
+  Errors finish(Draft& draft) {
+    tell("fitting the stiffness", 0.5 + 0.1);
+    note_tissue(draft);
+    const scenes::MaterialSpec unfitted = draft.spec.material;
+    fit(draft);
+    tell("settling", 0.7);
+    Result<AnchorChoice> choice = choose_anchors(alone(draft), draft.filled, request_.should_stop);
+    if (!choice) return choice.errors();
+    if (!choice->standing.stands() && draft.part.stiffness_scale) {
+      // The ball of the fit is felt near the surface only; the whole organ may need more than it asks for.
+      draft.spec.material = unfitted;
+      Result<AnchorChoice> again = choose_anchors(alone(draft), draft.filled, request_.should_stop);
+      if (!again) return again.errors();
+      if (again->standing.stands()) {
+        draft.part.fit_problem = "with the fitted scale of " + output::short_number(*draft.part.stiffness_scale) +
+                                 " the organ folds over under its own weight";
+        draft.part.stiffness_scale.reset();
+      }
+      choice = std::move(again);
+    }
+    const loading::OrganStanding& standing = choice->standing.organ[0];
+    if (!choice->standing.stands())
+      return {{request_.mesh,
+               "organ " + draft.spec.name + " folds over under its own weight: it sags by " +
+                   importers::mm_text(standing.sag) + ", " + output::short_number(100 * standing.share(), 2) +
+                   " % of its size" + (request_.anchors.empty() ? ", even where half of it is held" : ""),
+               "hold more of it with " + output::option_name("import.anchors") + ", make it smaller with " +
+                   output::option_name("import.size") + ", or stiffer with " +
+                   output::option_name("import.stiffness_scale")}};
+    draft.spec.anchors = choice->anchors;
+    draft.part.anchored = choice->held, draft.part.sag = standing.sag, draft.part.size = standing.size;
+    tell("trying the script", 0.85);
+    return try_script(draft, *choice);
+  }
+
+  void note_tissue(Draft& draft) const {
+    if (draft.tissue.is_assumed)
+      draft.note("tissue_assumed", "no name says which organ it is", "taken as " + draft.spec.material.preset,
+                 "an estimate; name the organ to have its own values");
+    else if (!draft.tissue.is_own && std::string(draft.tissue.preset->source).starts_with("estimate"))
+      draft.note("tissue_estimated", "the values of " + draft.spec.material.preset + " are an estimate", "none",
+                 draft.tissue.preset->source);
+  }
+
+  /// Fits the organ's stiffness and stores it; an organ that cannot be fitted keeps its moduli.
+  void fit(Draft& draft) const {
+    ImportedPart& part = draft.part;
+    double least = INFINITY, most = -INFINITY;
+    for (const Vec3& p : draft.filled.surface.vertex) least = std::min(least, p.z), most = std::max(most, p.z);
+    if (request_.stiffness_scale) {
+      part.fit_problem = "the scale was given";
+    } else if (draft.tissue.is_own) {
+      part.fit_problem = "the material is the author's own";
+    } else if (!draft.tissue.preset->is_of_paper) {
+      part.fit_problem = "the paper has no forces of this tissue";
+    } else if (kFitDepth > kDeepestShare * (most - least)) {
+      draft.note("press_too_deep", "the organ is " + importers::mm_text(most - least) + " high", "not fitted",
+                 "the press of 12 mm to which a scale is fitted is deeper than a third of it");
+      part.fit_problem = "a press of 12 mm is deeper than a third of the organ, which is " +
+                         importers::mm_text(most - least) + " high";
+    } else if (draft.filled.centre.size() > kMostFittedSpheres) {
+      part.fit_problem = "with " + std::to_string(draft.filled.centre.size()) + " spheres it takes long";
+      part.can_be_fitted_later = true;
+    }
+    if (!part.fit_problem.empty()) return;
+    scenes::SceneSpec scene = alone(draft);
+    const Result<StiffnessFit> fit = fit_stiffness(scene, 0, draft.filled, request_.should_stop);
+    if (!fit) {
+      part.fit_problem = fit.errors().front().message;
+    } else if (!(fit->scale >= kLeastScale && fit->scale <= kMostScale)) {
+      part.fit_problem = "the press would need a scale of " + output::short_number(fit->scale, 3) +
+                         ", outside of 0.1 to 10: the organ is not one of the paper's";
+      draft.note("stiffness_scale", part.fit_problem, "none", "check the organ's unit and size");
+    } else {
+      apply_fit(draft.spec, *fit);
+      part.stiffness_scale = fit->scale;
+    }
+  }
+
+  /// Finds a script that touches and cuts the organ where it has settled.
+  Errors try_script(Draft& draft, const AnchorChoice& choice) const {
+    FilledOrgan settled = draft.filled;
+    surface::deform_surface(draft.filled.surface, choice.standing.state.position, 0, settled.surface.vertex);
+    scenes::SceneSpec scene = alone(draft);
+    scene.tools = tools_for({draft.filled});
+    for (const scenes::ScriptPlace place : kPlaces) {
+      scenes::Script script = scenes::organ_script(scene, std::span(&settled, 1), 0, place);
+      const std::optional<loading::ScriptTrial> trial =
+          loading::try_script(choice.model, choice.standing.state, script, 0, request_.should_stop);
+      if (!trial) return {{request_.mesh, "stopped", "nothing was written"}};
+      const bool is_better =
+          trial->most_force > 0 && !trial->is_refused && (trial->was_cut[0] || draft.script.steps.empty());
+      if (is_better || draft.script.steps.empty()) {
+        draft.part.most_force = trial->most_force, draft.part.was_cut = trial->was_cut[0] && trial->severed > 0;
+        draft.script = std::move(script);
+      }
+      if (draft.part.most_force > 0 && draft.part.was_cut) return {};
+    }
+    draft.note("script_misses",
+               draft.part.most_force > 0 ? "the script touches the organ but does not cut it"
+                                         : "the script does not touch the organ",
+               "none", "edit the script: its places are those of the scene");
+    return {};
+  }
+
+  Result<ImportOutcome> write() {
+    ImportOutcome outcome;
+    outcome.scene_file = request_.scene;
+    std::vector<FilledOrgan> organs;
+    scenes::Script script;
+    for (Draft& draft : drafts_) {
+      organs.push_back(draft.filled);
+      scene_.organs.push_back(draft.spec);
+      script.steps.insert(script.steps.end(), draft.script.steps.begin(), draft.script.steps.end());
+    }
+    if (!request_.into) scene_.tools = tools_for(organs), scene_.cameras = {front_camera(organs)};
+    name_tools(script);
+    const std::string script_name = request_.into ? stem_ + "-" + file_name_of(drafts_.front().part.name) : stem_;
+    outcome.script_file = beside(script_name + ".script.json");
+    if (const Result<Done> is_new = output::check_new(outcome.script_file, request_.overwrite); !is_new)
+      return is_new.errors();
+    outcome.tick_time = time_of_tick().value_or(0);
+    for (Draft& draft : drafts_) {
+      const importers::CheckedMesh& mesh = draft.mesh;
+      if (const Result<Done> written = importers::write_obj(draft.part.mesh_file, mesh.vertex, mesh.triangle); !written)
+        return written.errors();
+      outcome.organs.push_back(std::move(draft.part));
+    }
+    if (const Result<Done> written = output::write_text_file(outcome.script_file, scenes::write_script(script));
+        !written)
+      return written.errors();
+    if (const Result<Done> written = output::write_text_file(request_.scene, scenes::write_scene(scene_)); !written)
+      return written.errors();
+    folder_.keep();
+    return outcome;
+  }
+
+  /// Gives the script the names of a scene's own tools, and the scene those that it lacks.
+  void name_tools(scenes::Script& script) {
+    std::vector<FilledOrgan> organs;
+    for (const Draft& draft : drafts_) organs.push_back(draft.filled);
+    for (scenes::ToolSpec& tool : tools_for(organs)) {
+      const auto own = std::find_if(scene_.tools.begin(), scene_.tools.end(),
+                                    [&](const scenes::ToolSpec& t) { return t.kind == tool.kind; });
+      if (own == scene_.tools.end()) {
+        std::vector<std::string> taken;
+        for (const scenes::ToolSpec& t : scene_.tools) taken.push_back(t.name);
+        const std::string old = tool.name;
+        tool.name = free_name(tool.name, taken);
+        rename(script, old, tool.name);
+        scene_.tools.push_back(tool);
+      } else {
+        rename(script, tool.name, own->name);
+      }
+    }
+  }
+  static void rename(scenes::Script& script, const std::string& from, const std::string& to) {
+    for (scenes::ScriptStep& step : script.steps)
+      if (step.take && step.take->tool == from) step.take->tool = to;
+  }
+
+  /// Errors of importers/, which knows no options, with the option that helps.
+  static Errors with_option_names(Errors errors) {
+    for (Error& error : errors)
+      if (const std::size_t at = error.hint.find("largest_hole_mm"); at != std::string::npos)
+        error.hint.replace(at, 15, output::option_name("import.largest_hole_mm"));
+    return errors;
+  }
+
+  const ImportRequest& request_;
+  std::string place_, stem_;
+  NewFolder folder_;
+  scenes::SceneSpec scene_;
+  std::vector<Draft> drafts_;
+};
 
 }  // namespace
 
-Result<ImportOutcome> import_scene(const ImportRequest& request) {
-  const Result<const scenes::MaterialPreset*> preset = choose_preset(request);
-  if (!preset) return preset.errors();
-  if (fs::path(request.scene).extension() != ".json")
-    return Error{request.scene, "a scene's name must end in .json", ""};
-  const fs::path folder = fs::path(request.scene).parent_path();
-  const std::string name = fs::path(request.scene).stem().string();
-  ImportOutcome outcome;
-  outcome.scene_file = request.scene;
-  outcome.mesh_file = (folder / (name + ".obj")).string();
-  outcome.script_file = (folder / (name + ".script.json")).string();
-  Errors errors;
-  for (const std::string& file : {outcome.scene_file, outcome.mesh_file, outcome.script_file})
-    if (const Result<Done> is_new = output::check_new(file, request.overwrite); !is_new)
-      errors.insert(errors.end(), is_new.errors().begin(), is_new.errors().end());
-  std::error_code ignored;
-  if (fs::equivalent(outcome.mesh_file, request.mesh, ignored))
-    return Error{outcome.mesh_file, "the repaired mesh would replace the mesh that is imported",
-                 "give the scene another name or folder"};
-  if (!errors.empty()) return errors;
-
-  importers::ImportOptions options;
-  options.unit_in_metres = request.unit_in_metres;
-  options.usual_size = {(*preset)->usual_size_least, (*preset)->usual_size_most};
-  options.part = request.part, options.all_parts = request.all_parts;
-  options.sphere_radius = request.sphere_radius.value_or((*preset)->sphere_radius);
-  options.gap = request.gap.value_or(-1);
-  options.largest_hole = request.largest_hole;
-  options.most_triangles = request.most_triangles.value_or(0);
-  options.progress = request.progress, options.should_stop = request.should_stop;
-  Result<importers::ImportedOrgan> imported = importers::import_organ(request.mesh, options);
-  if (!imported) return imported.errors();
-  outcome.report = imported->report;
-
-  const std::vector<FilledOrgan> organs{std::move(imported->organ)};
-  scenes::SceneSpec scene = make_scene(request, **preset, organs.front(), name);
-  const Result<std::vector<std::int32_t>> anchored =
-      scenes::select_anchored(organs.front(), scene.organs[0].anchors, scene.gravity, request.mesh);
-  if (!anchored) return anchored.errors();
-  outcome.anchored = anchored->size();
-  fit_scene(scene, organs.front(), request, outcome);
-  if (request.should_stop && request.should_stop()) return Error{request.mesh, "stopped", "nothing was written"};
-  const importers::CheckedMesh& mesh = imported->mesh;
-  if (const Result<Done> written = importers::write_obj(outcome.mesh_file, mesh.vertex, mesh.triangle); !written)
-    return written.errors();
-  const scenes::Script script = scenes::default_script(scene, organs);
-  if (const Result<Done> written = output::write_text_file(outcome.script_file, scenes::write_script(script)); !written)
-    return written.errors();
-  if (const Result<Done> written = output::write_text_file(request.scene, scenes::write_scene(scene)); !written)
-    return written.errors();
-  return outcome;
-}
+Result<ImportOutcome> import_scene(const ImportRequest& request) { return Import(request).run(); }
 
 }  // namespace ctpm::authoring

@@ -5,6 +5,7 @@
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 #include "studio/loading/loaded_scene.h"
+#include "studio/loading/oddities.h"
 #include "studio/sources/open_file.h"
 
 namespace ctpm::commands {
@@ -40,6 +41,7 @@ int run_check(const CheckArguments& arguments) {
       continue;
     }
     print_warnings(scene->scene.warnings);
+    print_warnings(*loading::find_oddities(*scene));
     print("%s: good, %zu spheres, %zu elements\n", path.c_str(), scene->built.model.sphere_count(),
           scene->built.model.element_count());
   }
@@ -50,8 +52,9 @@ int run_check(const CheckArguments& arguments) {
 
 Command add_check(CLI::App& program) {
   auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* app =
-      program.add_subcommand("check", "Validates scenes with their meshes and scripts; all errors at once.");
+  CLI::App* app = program.add_subcommand(
+      "check",
+      "Validates scenes with their meshes and scripts; all errors at once. Settles them, and warns of what is odd.");
   app->footer(
       "Examples: ctpm check scenes/liver.json\n"
       "          ctpm check scenes/liver.json --script scenes/scripts/liver-cut.json");

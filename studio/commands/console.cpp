@@ -3,8 +3,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdarg>
 #include <cstdio>
+#include <string_view>
 
 #include "studio/commands/flags.h"
 #include "studio/output/option_name.h"
@@ -39,18 +41,23 @@ void print(const char* format, ...) {
 }
 
 ProgressLine::ProgressLine(std::string what)
-    : what_(std::move(what)), is_terminal_(isatty(STDERR_FILENO) == 1), start_(Clock::now()), last_(start_) {}
+    : what_(std::move(what)),
+      is_terminal_(isatty(STDERR_FILENO) == 1),
+      start_(Clock::now()),
+      last_(start_ - std::chrono::seconds(1)) {}
 
 ProgressLine::~ProgressLine() {
-  if (is_terminal_ && last_ != start_) std::fprintf(stderr, "\r\033[K");
+  if (is_terminal_) std::fprintf(stderr, "\r\033[K");
 }
 
 void ProgressLine::show(std::int64_t done, std::int64_t total) {
   const Clock::time_point now = Clock::now();
-  if (!is_terminal_ || done <= 0 || now - last_ < std::chrono::milliseconds(200)) return;
+  if (!is_terminal_ || now - last_ < std::chrono::milliseconds(200)) return;
   last_ = now;
   const double spent = std::chrono::duration<double>(now - start_).count();
-  if (total > 0)
+  if (done <= 0)
+    std::fprintf(stderr, "\r\033[K%s", what_.c_str());
+  else if (total > 0)
     std::fprintf(stderr, "\r\033[K%s: %3.0f %%, %.0f s left", what_.c_str(), 100.0 * double(done) / double(total),
                  spent * double(total - done) / double(done));
   else

@@ -129,7 +129,7 @@ int run_demo(const DemoArguments& arguments) {
         verified == exit_good ? "same as recorded, to the bit" : "DIFFERENT from what was recorded");
   print("video           %lld frames, %s, %dx%d\n", (long long)exported->video.frames, exported->video.codec.c_str(),
         exported->video.width, exported->video.height);
-  print("files           %s, %s, %s, %s, %s\n", scene_file.c_str(), imported->mesh_file.c_str(),
+  print("files           %s, %s, %s, %s, %s\n", scene_file.c_str(), imported->organs.front().mesh_file.c_str(),
         imported->script_file.c_str(), session_file.c_str(), exported->video.path.c_str());
   return verified == exit_good && exported->same_as_recorded() ? exit_good : exit_bad_verdict;
 }

@@ -1,5 +1,3 @@
-#include <cmath>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -10,6 +8,7 @@
 #include "studio/authoring/import_scene.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
+#include "studio/commands/stop_signal.h"
 #include "studio/output/files.h"
 #include "studio/output/json_writer.h"
 #include "studio/output/number_text.h"
@@ -20,47 +19,63 @@ namespace {
 
 struct ImportArguments {
   authoring::ImportRequest request;
-  std::string unit, report, label;
-  std::optional<double> radius_mm, gap_mm, largest_hole_mm;
-  std::optional<std::int64_t> most_triangles;
+  std::string unit, report, into, label;
+  std::optional<double> radius_mm, gap_mm, largest_hole_mm, size_mm, scale, khz, stiffness_scale;
+  std::optional<std::int64_t> most_triangles, spheres;
   std::vector<std::string> anchors;
+  bool largest_part = false, all_parts = false;
 };
+
+/// A number that was given: an error if it is out of range, else `take` gets it.
+template <class T, class Take>
+void take_number(Errors& errors, const char* flag, const std::optional<T>& value, double least, double most,
+                 const Take& take) {
+  if (!value) return;
+  if (double(*value) >= least && double(*value) <= most) return take(*value);
+  errors.push_back({flag,
+                    "got " + output::short_number(double(*value)) + ", must be in [" + output::short_number(least, 8) +
+                        ", " + output::short_number(most, 8) + "]",
+                    ""});
+}
 
 /// Checks the arguments, with all errors at once, and converts them to SI.
 Errors complete(ImportArguments& a) {
   Errors errors;
-  const std::map<std::string, double> units{{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}, {"in", 0.0254}};
+  authoring::ImportRequest& r = a.request;
+  const std::map<std::string, double> units{{"mm", 1e-3}, {"cm", 1e-2}, {"dm", 0.1}, {"m", 1.0}, {"in", 0.0254}};
   if (!a.unit.empty() && !units.contains(a.unit))
-    errors.push_back({"--unit", "got '" + a.unit + "', must be mm, cm, m or in", ""});
+    errors.push_back({"--unit", "got '" + a.unit + "', must be mm, cm, dm, m or in", ""});
   else if (!a.unit.empty())
-    a.request.unit_in_metres = units.at(a.unit);
-  if (a.radius_mm && !(*a.radius_mm > 0 && *a.radius_mm <= 100))
-    errors.push_back({"--radius-mm", "got " + output::fixed(*a.radius_mm, 3) + ", must be in (0, 100]", ""});
-  else if (a.radius_mm)
-    a.request.sphere_radius = 1e-3 * *a.radius_mm;
-  if (a.gap_mm && !(*a.gap_mm >= 0 && *a.gap_mm <= 100))
-    errors.push_back({"--gap-mm", "got " + output::fixed(*a.gap_mm, 3) + ", must be in [0, 100]", ""});
-  else if (a.gap_mm)
-    a.request.gap = 1e-3 * *a.gap_mm;
-  if (a.largest_hole_mm && !(*a.largest_hole_mm >= 0 && *a.largest_hole_mm <= 10000))
-    errors.push_back(
-        {"--largest-hole-mm", "got " + output::fixed(*a.largest_hole_mm, 3) + ", must be in [0, 10000]", ""});
-  else if (a.largest_hole_mm)
-    a.request.largest_hole = 1e-3 * *a.largest_hole_mm;
-  if (a.most_triangles && !(*a.most_triangles >= 100 && *a.most_triangles <= 10'000'000))
-    errors.push_back(
-        {"--most-triangles", "got " + std::to_string(*a.most_triangles) + ", must be in [100, 10000000]", ""});
-  else if (a.most_triangles)
-    a.request.most_triangles = std::int32_t(*a.most_triangles);
+    r.unit_in_metres = units.at(a.unit);
+  if (!a.unit.empty() && a.size_mm)
+    errors.push_back({"--size-mm", "already says how large the mesh is", "leave out --unit"});
+  take_number(errors, "--size-mm", a.size_mm, 0.1, 1e4, [&](double v) { r.size = 1e-3 * v; });
+  take_number(errors, "--scale", a.scale, 1e-6, 1e6, [&](double v) { r.scale = v; });
+  take_number(errors, "--radius-mm", a.radius_mm, 0.01, 100, [&](double v) { r.sphere_radius = 1e-3 * v; });
+  take_number(errors, "--gap-mm", a.gap_mm, 0, 100, [&](double v) { r.gap = 1e-3 * v; });
+  take_number(errors, "--spheres", a.spheres, double(50), 2e6, [&](std::int64_t v) { r.spheres = v; });
+  take_number(errors, "--for-khz", a.khz, 0.05, 20, [&](double v) { r.kilohertz = v; });
+  if ((a.radius_mm ? 1 : 0) + (a.spheres ? 1 : 0) + (a.khz ? 1 : 0) > 1)
+    errors.push_back({"import", "takes one of --radius-mm, --spheres and --for-khz", ""});
+  take_number(errors, "--largest-hole-mm", a.largest_hole_mm, 0, 10000, [&](double v) { r.largest_hole = 1e-3 * v; });
+  take_number(errors, "--stiffness-scale", a.stiffness_scale, 1e-6, 1e6, [&](double v) { r.stiffness_scale = v; });
+  take_number(errors, "--most-triangles", a.most_triangles, 100, 10'000'000,
+              [&](std::int64_t v) { r.most_triangles = std::int32_t(v); });
+  if (a.largest_part && a.all_parts) errors.push_back({"import", "takes one of --largest-part and --all-parts", ""});
+  if (a.largest_part) r.parts = authoring::Parts::largest;
+  if (a.all_parts) r.parts = authoring::Parts::all_in_one;
+  if (r.scene.empty() == a.into.empty())
+    errors.push_back({"import", "needs either -o with a new scene or --into with one that is there", ""});
+  if (!a.into.empty()) r.scene = a.into, r.into = true;
   for (const std::string& text : a.anchors) {
     const Result<scenes::AnchorSpec> anchor = scenes::parse_anchor(text);
     if (anchor)
-      a.request.anchors.push_back(*anchor);
+      r.anchors.push_back(*anchor);
     else
       errors.push_back({"--anchor", anchor.errors().front().message, ""});
   }
   if (!a.report.empty())
-    if (const Result<Done> writable = output::check_new(a.report, a.request.overwrite); !writable)
+    if (const Result<Done> writable = output::check_new(a.report, r.overwrite); !writable)
       errors.insert(errors.end(), writable.errors().begin(), writable.errors().end());
   return errors;
 }
@@ -69,13 +84,11 @@ void write_point(output::JsonWriter& json, const char* name, Vec3 p) {
   json.key(name).begin_list().value(p.x * 1e3).value(p.y * 1e3).value(p.z * 1e3).end_list();
 }
 
-std::string report_json(const importers::ImportReport& r, const authoring::ImportOutcome& outcome) {
-  output::JsonWriter json;
-  json.begin_object()
-      .member("mesh", r.path)
-      .member("format", r.format)
-      .member("unit", importers::unit_name(r.unit.in_metres));
-  const char* sources[] = {"given", "file", "guessed"};
+void write_organ(output::JsonWriter& json, const authoring::ImportedPart& organ) {
+  const importers::ImportReport& r = organ.report;
+  json.member("organ", organ.name).member("mesh", r.path).member("format", r.format);
+  json.member("unit", importers::unit_name(r.unit.in_metres));
+  const char* sources[] = {"given", "file", "guessed", "scaled"};
   json.member("unit_source", sources[int(r.unit.source)]).member("volume_ml", r.mesh_volume * 1e6);
   write_point(json, "box_least_mm", r.box_least), write_point(json, "box_most_mm", r.box_most);
   for (const auto& [name, counts] : {std::pair{"before", r.before}, std::pair{"after", r.after}}) {
@@ -88,26 +101,48 @@ std::string report_json(const importers::ImportReport& r, const authoring::Impor
   json.member("spheres", r.fill.spheres).member("edges", r.fill.edges).member("volume_ml", r.fill.filled_volume * 1e6);
   json.member("largest_distance_mm", r.fill.largest_distance * 1e3)
       .member("mean_distance_mm", r.fill.mean_distance * 1e3);
-  json.member("anchored", outcome.anchored);
-  if (outcome.stiffness_scale) json.member("stiffness_scale", *outcome.stiffness_scale);
+  json.member("anchored", organ.anchored);
+  if (organ.stiffness_scale) json.member("stiffness_scale", *organ.stiffness_scale);
   json.key("spheres_per_layer").begin_list();
   for (const std::int64_t count : r.fill.spheres_per_layer) json.value(count);
-  json.end_list().end_object().key("findings").begin_list();
+  json.end_list().end_object();
+  json.member("sag_mm", organ.sag * 1e3).member("script_force_n", organ.most_force);
+  json.member("script_cuts", organ.was_cut);
+  json.key("findings").begin_list();
   for (const importers::Finding& f : r.findings) {
     json.begin_object().member("code", f.code).member("count", f.count);
     if (f.place) write_point(json, "place_mm", *f.place);
     json.member("found", f.found).member("done", f.done).member("remains", f.remains).end_object();
   }
+  json.end_list();
+}
+
+/// The largest organ's members, and all organs in a list.
+std::string report_json(const authoring::ImportOutcome& outcome) {
+  output::JsonWriter json;
+  json.begin_object();
+  write_organ(json, outcome.organs.front());
+  json.key("organs").begin_list();
+  for (const authoring::ImportedPart& organ : outcome.organs) {
+    json.begin_object();
+    write_organ(json, organ);
+    json.end_object();
+  }
   return json.end_list().end_object().text();
 }
 
-/// If the organ has few spheres, suggests a smaller radius.
-void suggest_radius(const importers::ImportReport& report) {
-  constexpr double kFew = 200, kLively = 800;
-  if (double(report.fill.spheres) >= kFew) return;
-  const double radius = report.sphere_radius * 1e3 * std::cbrt(double(report.fill.spheres) / kLively);
-  print("note: %lld spheres are few for this organ; --radius-mm %.1f would give about %.0f\n",
-        (long long)report.fill.spheres, std::max(0.1, std::floor(radius * 10) / 10), kLively);
+void print_organ(const authoring::ImportedPart& organ, const std::string& scene, bool is_one_of_many) {
+  if (is_one_of_many) print("\norgan %s\n", organ.name.c_str());
+  print("%s", importers::to_text(organ.report).c_str());
+  print("anchored: %zu spheres never move\n", organ.anchored);
+  if (organ.stiffness_scale)
+    print("stiffness_scale: %.6g, fitted so that the paper's ball meets its Table 1 at 12 mm\n",
+          *organ.stiffness_scale);
+  else
+    print("stiffness_scale: not fitted: %s%s\n", organ.fit_problem.c_str(),
+          organ.can_be_fitted_later ? ("; run ctpm fit " + output::shell_word(scene) + " --write").c_str() : "");
+  print("settled: sags by %.2f mm, %.1f %% of its size\n", 1e3 * organ.sag, 100 * organ.sag / organ.size);
+  print("script: presses with up to %.2f N, and %s\n", organ.most_force, organ.was_cut ? "cuts" : "DOES NOT CUT");
 }
 
 /// Prints the labels of a segmentation, for an author who has not chosen one.
@@ -126,34 +161,36 @@ int list_labels(const std::string& map) {
 int run_import(ImportArguments& arguments) {
   const std::string& mesh = arguments.request.mesh;
   const bool is_map = importers::is_label_map(mesh);
-  if (is_map && arguments.request.scene.empty()) return list_labels(mesh);
-  if (arguments.request.scene.empty()) return print_errors({{"--output", "is required", ""}});
+  if (is_map && arguments.request.scene.empty() && arguments.into.empty()) return list_labels(mesh);
   if (!is_map && !arguments.label.empty())
     return print_errors({{"--label", "only label maps (.nii, .nii.gz, .nrrd) have labels", "--part names a mesh"}});
   if (is_map && !arguments.label.empty()) arguments.request.part = arguments.label;
   if (const Errors errors = complete(arguments); !errors.empty()) return print_errors(errors);
-  ProgressLine progress("importing");
-  arguments.request.progress = [&](const std::string&, double fraction) {
-    progress.show(std::int64_t(1000 * fraction), 1000);
-  };
-  const Result<authoring::ImportOutcome> outcome = authoring::import_scene(arguments.request);
+  const StopSignal stop;
+  arguments.request.should_stop = [&] { return stop.came(); };
+  const Result<authoring::ImportOutcome> outcome = [&] {
+    ProgressLine progress("importing");
+    progress.show(0, 1000);
+    arguments.request.progress = [&](const std::string& stage, double fraction) {
+      progress.add(stage);
+      progress.show(std::int64_t(1000 * fraction), 1000);
+    };
+    return authoring::import_scene(arguments.request);
+  }();
   if (!outcome) return print_errors(outcome.errors());
   if (!arguments.report.empty())
-    if (const Result<Done> written = output::write_text_file(arguments.report, report_json(outcome->report, *outcome));
-        !written)
+    if (const Result<Done> written = output::write_text_file(arguments.report, report_json(*outcome)); !written)
       return print_errors(written.errors());
-  print("%s", importers::to_text(outcome->report).c_str());
-  print("anchored: %zu spheres never move\n", outcome->anchored);
-  if (outcome->stiffness_scale)
-    print("stiffness_scale: %.6g, fitted so that the paper's ball meets its Table 1 at 12 mm\n",
-          *outcome->stiffness_scale);
-  else
-    print("stiffness_scale: not fitted, the preset's moduli stay: %s%s\n", outcome->fit_problem.c_str(),
-          outcome->can_be_fitted_later ? ("; run ctpm fit " + outcome->scene_file + " --write").c_str() : "");
-  suggest_radius(outcome->report);
   const std::string scene = arguments.request.scene, stem = scene.substr(0, scene.size() - 5);
-  print("written: %s, %s, %s\n", scene.c_str(), outcome->mesh_file.c_str(), outcome->script_file.c_str());
-  print("next: ctpm record %s --script %s -o %s.ctpm\n", scene.c_str(), outcome->script_file.c_str(), stem.c_str());
+  std::string meshes;
+  for (const authoring::ImportedPart& organ : outcome->organs) {
+    print_organ(organ, scene, outcome->organs.size() > 1);
+    meshes += ", " + organ.mesh_file;
+  }
+  print("time: %.2f ms a tick of 1 ms at rest, on this machine now\n", 1e3 * outcome->tick_time);
+  print("written: %s%s, %s\n", scene.c_str(), meshes.c_str(), outcome->script_file.c_str());
+  print("next: ctpm record %s --script %s -o %s\n", output::shell_word(scene).c_str(),
+        output::shell_word(outcome->script_file).c_str(), output::shell_word(stem + ".ctpm").c_str());
   return exit_good;
 }
 
@@ -171,20 +208,35 @@ Command add_import(CLI::App& program) {
                   "Mesh (OBJ, STL, PLY, glTF, VTK, MSH, ...) or label map (.nii, .nii.gz, .nrrd)")
       ->required();
   app->add_option("-o,--output", arguments->request.scene,
-                  "Scene file to write (.json); without it, the labels of a label map are listed");
+                  "Scene file to write (.json); its folder is made; without it, the labels of a label map are listed");
   app->add_option("--label", arguments->label, "Name or number of the label to take from a label map");
-  app->add_option("--organ", arguments->request.organ, "Material preset: liver, kidney, skin, or with -pa-s");
-  app->add_option("--unit", arguments->unit, "Unit of the mesh file: mm, cm, m, in; guessed if not given");
-  app->add_option("--radius-mm", arguments->radius_mm, "Radius of the spheres; the preset's if not given");
+  app->add_option("--into", arguments->into, "Add the organs to this scene instead of writing a new one");
+  app->add_option("--organ", arguments->request.organ,
+                  "Material: a preset (liver, kidney, skin, heart, lung, spleen, bladder, fat, muscle, soft-tissue) or "
+                  "one of materials.json beside the scene; from names in the file if not given, else soft-tissue");
+  app->add_option("--unit", arguments->unit,
+                  "Unit of the mesh file: mm, cm, dm, m, in; from the file or the organ's usual size if not given");
+  app->add_option("--size-mm", arguments->size_mm, "Diagonal of the box around the mesh, instead of a unit");
+  app->add_option("--scale", arguments->scale, "Multiplies the size that the unit gives");
+  app->add_option("--radius-mm", arguments->radius_mm, "Radius of the spheres");
+  app->add_option("--spheres", arguments->spheres, "About so many spheres in all; the radius follows");
+  app->add_option("--for-khz", arguments->khz,
+                  "As many spheres as this machine holds at this rate; if nothing is given, a few hundred to 1500, and "
+                  "no more than hold 1 kHz");
   app->add_option("--gap-mm", arguments->gap_mm, "Gap between their surfaces; the radius if not given");
   app->add_option("--part", arguments->request.part, "Name of the mesh to take, if the file holds several");
-  app->add_flag("--all-parts", arguments->request.all_parts, "Keep every closed part, not only the largest");
+  app->add_flag("--largest-part", arguments->largest_part,
+                "Keep only the largest closed part; else each of at least 1 % of its volume is an organ");
+  app->add_flag("--all-parts", arguments->all_parts, "Keep every closed part, all as one organ");
   app->add_option("--largest-hole-mm", arguments->largest_hole_mm,
-                  "Holes up to this diameter are filled; a tenth of the mesh's diagonal if not given");
+                  "Holes up to this diameter are closed by a cap; a tenth of the mesh's diagonal if not given");
   app->add_option("--most-triangles", arguments->most_triangles,
                   "Draw a coarser surface if the mesh has more triangles; the spheres stay the same");
+  app->add_option("--stiffness-scale", arguments->stiffness_scale,
+                  "Multiplies every stiffness; fitted to the paper's forces if not given");
   app->add_option("--anchor", arguments->anchors,
-                  "What never moves: lowest:MM, box:..., sphere:..., plane:... (repeatable)");
+                  "What never moves: lowest:MM, box:..., sphere:..., plane:... (repeatable); chosen so that the organ "
+                  "stands if not given");
   app->add_option("--report", arguments->report, "Write the report as JSON");
   app->add_flag("--overwrite", arguments->request.overwrite, "Replace existing files");
   return {app, [arguments] { return run_import(*arguments); }};

@@ -10,14 +10,16 @@
 #include "studio/commands/console.h"
 #include "studio/fidelity/thickness.h"
 #include "studio/loading/loaded_scene.h"
+#include "studio/loading/oddities.h"
 #include "studio/loading/tick_time.h"
+#include "studio/output/files.h"
 #include "studio/output/json_writer.h"
 
 namespace ctpm::commands {
 namespace {
 
 struct PlanArguments {
-  std::string scene;
+  std::string scene, script;
   bool json = false;
   scenes::LoadOptions load;
 };
@@ -143,6 +145,17 @@ int run_plan(const PlanArguments& arguments) {
   print_warnings(scene->scene.warnings);
   const Errors thin_parts = thin_parts_of(*scene);
   print_warnings(thin_parts);
+  Errors oddities = *loading::find_oddities(*scene);
+  if (!arguments.script.empty()) {
+    const Result<std::string> text = output::read_text_file(arguments.script);
+    if (!text) return print_errors(text.errors());
+    std::vector<std::string> tools;
+    for (const Tool& tool : scene->built.model.tools) tools.push_back(tool.name);
+    const Result<scenes::Script> script = scenes::read_script(*text, arguments.script, tools);
+    if (!script) return print_errors(script.errors());
+    for (Error& miss : loading::find_misses(*scene, *script, arguments.script)) oddities.push_back(std::move(miss));
+  }
+  print_warnings(oddities);
   const Model& model = scene->built.model;
   const std::vector<Feature> features = features_of(scene->scene.spec, model, rest_state(model));
   std::size_t total = 0;
@@ -168,6 +181,8 @@ int run_plan(const PlanArguments& arguments) {
           .end_object();
     json.end_list().key("thin_parts").begin_list();
     for (const Error& warning : thin_parts) json.value(std::string_view(warning.where + ": " + warning.message));
+    json.end_list().key("oddities").begin_list();
+    for (const Error& warning : oddities) json.value(std::string_view(warning.where + ": " + warning.message));
     std::fputs(json.end_list().end_object().text().c_str(), stdout);
     return exit_good;
   }
@@ -195,6 +210,7 @@ Command add_plan(CLI::App& program) {
       "Says what a scene needs and what is left out, memory, time, solver, and tissue too thin for its spheres.");
   app->footer("Example: ctpm plan scenes/liver.json");
   app->add_option("scene", arguments->scene, "Scene file (.json)")->required();
+  app->add_option("--script", arguments->script, "Also run this script, and warn if it never touches or cuts");
   app->add_flag("--json", arguments->json, "Print JSON");
   app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths,
                 "Meshes may lie outside the scene's folder");

@@ -1,18 +1,14 @@
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
 
 #include "studio/exchange/writers.h"
+#include "studio/output/number_text.h"
 
 // USD's text format with the schemas UsdGeomMesh, UsdGeomSphere and UsdGeomBasisCurves.
 namespace ctpm::exchange {
 namespace {
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.7g", value);
-  return text;
-}
+std::string number(double value) { return output::short_number(value, 7); }
 
 std::string tuple(Vec3 p) { return "(" + number(p.x) + ", " + number(p.y) + ", " + number(p.z) + ")"; }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <vector>
 
 #include "core/model/state.h"
@@ -23,6 +24,19 @@ std::optional<double> measure_tick(const Model& model, const std::function<bool(
   }
   std::nth_element(times.begin(), times.begin() + kMeasuredTicks / 2, times.end());
   return times[kMeasuredTicks / 2];
+}
+
+std::optional<double> measure_tick_work(const Model& model, const std::function<bool()>& should_stop) {
+  constexpr int kWarmUp = 20;
+  State state = rest_state(model);
+  stepping::Stepper stepper(model);
+  std::clock_t start = 0;
+  for (int i = 0; i < kWarmUp + kMeasuredTicks; ++i) {
+    if (should_stop && should_stop()) return std::nullopt;
+    if (i == kWarmUp) start = std::clock();
+    (void)stepper.step(state, {});
+  }
+  return double(std::clock() - start) / CLOCKS_PER_SEC / kMeasuredTicks;
 }
 
 }  // namespace ctpm::loading

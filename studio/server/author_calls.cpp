@@ -85,18 +85,29 @@ Result<std::string> import_mesh(Parameters& parameters, const CallContext& conte
   const Result<authoring::ImportOutcome> outcome = authoring::import_scene(request);
   if (!outcome) return outcome.errors();
   output::JsonWriter json;
+  // Of several organs, the page shows the largest one's figures and all findings.
+  const authoring::ImportedPart& organ = outcome->organs.front();
+  std::string reports;
+  std::vector<importers::Finding> findings;
+  std::size_t anchored = 0;
+  std::int64_t spheres = 0;
+  for (const authoring::ImportedPart& one : outcome->organs) {
+    reports += importers::to_text(one.report);
+    findings.insert(findings.end(), one.report.findings.begin(), one.report.findings.end());
+    anchored += one.anchored, spheres += one.report.fill.spheres;
+  }
   json.begin_object()
       .member("scene", std::string_view(scene))
       .member("script", context.folder.relative(outcome->script_file))
-      .member("report", importers::to_text(outcome->report))
-      .member("unit", importers::unit_name(outcome->report.unit.in_metres))
-      .member("spheres", outcome->report.fill.spheres)
-      .member("anchored", outcome->anchored);
-  if (outcome->stiffness_scale) json.member("stiffness_scale", *outcome->stiffness_scale);
-  json.member("fit_problem", std::string_view(outcome->fit_problem)).key("findings");
-  write_findings(json, outcome->report.findings);
-  json.key("least"), write_vector(json, outcome->report.box_least);
-  json.key("most"), write_vector(json, outcome->report.box_most);
+      .member("report", reports)
+      .member("unit", importers::unit_name(organ.report.unit.in_metres))
+      .member("spheres", spheres)
+      .member("anchored", anchored);
+  if (organ.stiffness_scale) json.member("stiffness_scale", *organ.stiffness_scale);
+  json.member("fit_problem", std::string_view(organ.fit_problem)).key("findings");
+  write_findings(json, findings);
+  json.key("least"), write_vector(json, organ.report.box_least);
+  json.key("most"), write_vector(json, organ.report.box_most);
   return json.end_object().text();
 }
 

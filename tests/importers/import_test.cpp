@@ -55,7 +55,7 @@ TEST(Import, GuessedUnitIsSaidAloud) {
   EXPECT_EQ(imported->report.unit.in_metres, 0.001);
   const std::string text = importers::to_text(imported->report);
   EXPECT_NE(text.find("unit: mm (guessed from the size)"), std::string::npos) << text;
-  EXPECT_NE(text.find("give the unit if that is wrong"), std::string::npos) << text;
+  EXPECT_NE(text.find("give the unit or the size if that is wrong"), std::string::npos) << text;
 }
 
 TEST(Import, UnusualSizeIsTold) {

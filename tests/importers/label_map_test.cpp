@@ -251,18 +251,11 @@ TEST(LabelMap, DamagedFilesEndAsASurfaceOrAsAnError) {
   SKIP_WITHOUT_ITK();
   const zoo::Folder folder;
   for (const std::string file : {"oblique.nii.gz", "names.seg.nrrd", "plain.nii"}) {
-    std::string bytes = bytes_of(map_path(file));
+    const std::string bytes = bytes_of(map_path(file));
     std::mt19937 random(7);
     for (int round = 0; round < 40; ++round) {
       SCOPED_TRACE(file + ", round " + std::to_string(round));
-      std::string damaged = bytes;
-      if (round % 4 == 0) {
-        damaged.resize(random() % damaged.size() + 1);
-      } else {
-        for (unsigned n = 1 + random() % 8; n > 0; --n)
-          damaged[random() % std::min<std::size_t>(damaged.size(), round % 2 ? 400 : damaged.size())] ^=
-              char(1 << random() % 8);
-      }
+      const std::string damaged = zoo::damaged(bytes, random, round % 4 == 0, round % 2 ? 400 : bytes.size());
       importers::ReadOptions options;
       options.part = "1";
       options.time_limit_s = 20;

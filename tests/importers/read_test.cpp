@@ -195,11 +195,31 @@ TEST(Unit, EachIsGuessedFromAnOrganOfUsualSize) {
     const double side = 0.25 / std::sqrt(3.0) / unit;  // 25 cm from corner to corner
     EXPECT_EQ(importers::choose_unit(zoo::box({side, side, side}), {}, liver).in_metres, unit);
   }
-  // Inches only where no metric unit gives a usual size.
+  // Inches and decimetres only where no other unit gives a usual size.
   const double side = 10.0 / std::sqrt(3.0);
   EXPECT_EQ(importers::choose_unit(zoo::box({side, side, side}), {}, {0.2, 0.3}).in_metres, 0.0254);
+  const double small = 2.0 / std::sqrt(3.0);
+  EXPECT_EQ(importers::choose_unit(zoo::box({small, small, small}), {}, {0.15, 0.3}).in_metres, 0.1);
   EXPECT_EQ(importers::unit_name(0.0254), "inch");
   EXPECT_EQ(importers::unit_name(0.001), "mm");
+}
+
+TEST(Unit, AMeshThatNoUnitMakesAnOrganIsScaled) {
+  // A liver of 6 units is not one of 6 cm.
+  const double side = 6 / std::sqrt(3.0);
+  const importers::UsualSize liver{0.2, 0.3};
+  const importers::UnitChoice choice = importers::choose_unit(zoo::box({side, side, side}), {}, liver);
+  EXPECT_EQ(choice.source, importers::UnitSource::scaled);
+  EXPECT_NEAR(6 * choice.in_metres, std::sqrt(0.2 * 0.3), 1e-12);
+  EXPECT_TRUE(choice.is_usual_size);
+}
+
+TEST(Unit, AFilesUnitIsNotBelievedIfNoOrganIsThatLarge) {
+  importers::RawMesh mesh = zoo::box({100, 100, 100});
+  mesh.unit_in_metres = 1;  // 173 m across, as a format says that means metres whatever was drawn
+  const importers::UnitChoice choice = importers::choose_unit(mesh, {}, {0.05, 0.5});
+  EXPECT_EQ(choice.source, importers::UnitSource::guessed);
+  EXPECT_EQ(choice.in_metres, 0.001);
 }
 
 TEST(Unit, LiverOfASegmentationIsInCentimetresAndItsFoldIsMended) {

@@ -243,6 +243,60 @@ TEST(Repair, OpenPartIsDroppedWithTheReason) {
   EXPECT_NE(mesh->findings[0].remains.find("a hole 60"), std::string::npos) << mesh->findings[0].remains;
 }
 
+TEST(Repair, AShellWithinTheLargestIsACavity) {
+  // A bladder with a wall of 2 mm, the inner shell drawn either way round.
+  for (const bool is_turned : {false, true}) {
+    const importers::RawMesh inner = zoo::sphere(0.028, 3);
+    const importers::RawMesh raw = zoo::both(zoo::sphere(0.03, 3), is_turned ? zoo::flipped(inner, 1) : inner);
+    const Result<importers::CheckedMesh> mesh = importers::repair_mesh(raw, 1);
+    ASSERT_TRUE(mesh) << text_of(mesh.errors());
+    expect_closed(*mesh);
+    EXPECT_NE(find(mesh->findings, "cavity"), nullptr) << summary(mesh->findings);
+    EXPECT_NEAR(mesh->volume, volume_of(zoo::sphere(0.03, 3)) - volume_of(inner), 1e-12);
+  }
+}
+
+TEST(Repair, APartBesideOrAcrossTheLargestIsNoCavity) {
+  for (const double x : {0.2, 0.03}) {
+    const Result<importers::CheckedMesh> mesh =
+        importers::repair_mesh(zoo::both(zoo::sphere(0.03, 3), zoo::sphere(0.01, 3, {x, 0, 0})), 1);
+    ASSERT_TRUE(mesh) << text_of(mesh.errors());
+    EXPECT_EQ(summary(mesh->findings), "other_part x 1");
+  }
+}
+
+TEST(Repair, EveryPartIsAMeshOfItsOwnWithItsName) {
+  // The file's parts are an order of names; the largest mesh comes first.
+  importers::RawMesh raw =
+      zoo::both(zoo::both(zoo::sphere(0.02, 3, {0.1, 0, 0}), zoo::sphere(0.03, 3)), zoo::sphere(0.001, 1, {0, 0.1, 0}));
+  raw.parts = {"spleen", "liver", "crumb"};
+  const std::size_t part_size = zoo::sphere(0.02, 3).triangle.size();
+  for (std::size_t t = 0; t < raw.triangle.size(); ++t)
+    raw.part_of_triangle.push_back(t < part_size ? 0 : t < 2 * part_size ? 1 : 2);
+  const Result<std::vector<importers::CheckedMesh>> meshes = importers::repair_parts(raw, 1, {}, 8);
+  ASSERT_TRUE(meshes) << text_of(meshes.errors());
+  ASSERT_EQ(meshes->size(), 2u) << "a crumb is no organ";
+  EXPECT_EQ(meshes->at(0).part, 1);
+  EXPECT_EQ(meshes->at(1).part, 0);
+  EXPECT_NEAR(meshes->at(0).volume, volume_of(zoo::sphere(0.03, 3)), 1e-12);
+  EXPECT_NEAR(meshes->at(1).volume, volume_of(zoo::sphere(0.02, 3)), 1e-12);
+  for (const importers::CheckedMesh& mesh : *meshes) expect_closed(mesh);
+  EXPECT_NE(find(meshes->at(0).findings, "other_part"), nullptr);
+}
+
+TEST(Repair, AHoleThatIsTooWideNamesTheLimitThatWouldDo) {
+  const importers::RawMesh bowl = zoo::without(zoo::sphere(0.03, 3), [](Vec3 p) { return p.z > 0.01; });
+  const Result<importers::CheckedMesh> refused = importers::repair_mesh(bowl, 1);
+  ASSERT_FALSE(refused);
+  const std::string hint = refused.errors().front().hint;
+  ASSERT_EQ(hint.rfind("largest_hole_mm ", 0), 0u) << hint;
+  importers::RepairOptions options;
+  options.largest_hole = 1e-3 * std::stod(hint.substr(16));
+  const Result<importers::CheckedMesh> capped = importers::repair_mesh(bowl, 1, options);
+  ASSERT_TRUE(capped) << text_of(capped.errors());
+  expect_closed(*capped);
+}
+
 TEST(Repair, CavityStaysACavityWithAllParts) {
   importers::RepairOptions options;
   options.all_parts = true;

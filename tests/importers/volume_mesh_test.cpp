@@ -113,14 +113,7 @@ TEST(VolumeMesh, DamagedFilesEndAsAMeshOrAsAnError) {
     std::mt19937 random(11);
     for (int round = 0; round < kRounds; ++round) {
       SCOPED_TRACE(file + ", round " + std::to_string(round));
-      std::string damaged = bytes;
-      if (round % 3 == 0) {
-        damaged.resize(random() % damaged.size() + 1);
-      } else {
-        for (unsigned n = 1 + random() % 8; n > 0; --n)
-          damaged[random() % std::min<std::size_t>(damaged.size(), round % 2 ? 600 : damaged.size())] ^=
-              char(1 << random() % 8);
-      }
+      const std::string damaged = zoo::damaged(bytes, random, round % 3 == 0, round % 2 ? 600 : bytes.size());
       importers::ReadOptions options;
       options.time_limit_s = 20;
       options.memory_limit_mib = 256;

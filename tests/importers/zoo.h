@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,9 @@ class Folder {
  private:
   std::string path_;
 };
+
+/// The bytes of a file cut off at random, or with a few bits of its first `head` bytes turned over.
+std::string damaged(std::string bytes, std::mt19937& random, bool is_cut, std::size_t head);
 
 /// The mesh as the bytes of a file; its unit is not said in them except where noted.
 std::string to_obj_text(const importers::RawMesh& mesh, const std::string& name = "organ");

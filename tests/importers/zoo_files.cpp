@@ -1,6 +1,7 @@
 // The mesh formats as their specifications give them, written without the reader's package.
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdio>
@@ -85,6 +86,16 @@ std::string Folder::write(const std::string& name, const std::string& bytes) con
   const std::string path = path_ + "/" + name;
   std::ofstream(path, std::ios::binary | std::ios::trunc).write(bytes.data(), std::streamsize(bytes.size()));
   return path;
+}
+
+std::string damaged(std::string bytes, std::mt19937& random, bool is_cut, std::size_t head) {
+  if (is_cut) {
+    bytes.resize(random() % bytes.size() + 1);
+    return bytes;
+  }
+  for (unsigned n = 1 + random() % 8; n > 0; --n)
+    bytes[random() % std::min(bytes.size(), head)] ^= char(1 << random() % 8);
+  return bytes;
 }
 
 std::string to_obj_text(const importers::RawMesh& mesh, const std::string& name) {

@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <string>
-#include <vector>
 
+#include <vector>
+#include "scenes/presets.h"
+
+#include "scenes/presets.h"
 #include "scenes/scene_file.h"
 
 namespace ctpm {
@@ -95,10 +98,11 @@ TEST(BadInput, WhatIsNotANumberIsRefusedWhereItStands) {
 }
 
 TEST(BadInput, APresetThatDoesNotExistIsNamedWithThoseThatDo) {
-  EXPECT_EQ(errors_of(scene_with(kMesh + R"("material": {"preset": "spleen"})")),
-            "t.json:2:41: error: /organs/0/material/preset: there is no preset \"spleen\" (presets: liver, "
-            "kidney, skin, "
-            "liver-pa-s, kidney-pa-s, skin-pa-s)\n");
+  std::string known;
+  for (const std::string& name : scenes::preset_names()) known += (known.empty() ? "" : ", ") + name;
+  EXPECT_EQ(
+      errors_of(scene_with(kMesh + R"("material": {"preset": "pancreas"})")),
+      "t.json:2:41: error: /organs/0/material/preset: there is no preset \"pancreas\" (presets: " + known + ")\n");
   EXPECT_EQ(errors_of(scene_with(kMesh + R"("material": {"preset": "Kidny"})")),
             "t.json:2:41: error: /organs/0/material/preset: there is no preset \"Kidny\" (did you mean "
             "\"kidney\"?)\n");

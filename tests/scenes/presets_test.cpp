@@ -4,6 +4,9 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
+
+#include "scenes/materials_file.h"
 
 namespace ctpm {
 namespace {
@@ -37,7 +40,9 @@ TEST(Presets, HoldThePapersNumbersInBothReadingsOfTheViscosity) {
       EXPECT_DOUBLE_EQ(m.density, 1060);
       EXPECT_EQ(m.stiffness_scale, 1);
     }
-  EXPECT_EQ(scenes::material_presets().size(), 6u);
+  int of_paper = 0;
+  for (const scenes::MaterialPreset& preset : scenes::material_presets()) of_paper += preset.is_of_paper;
+  EXPECT_EQ(of_paper, 6);
 }
 
 TEST(Presets, CreepOverSecondsInOneReadingAndInMicrosecondsInTheOther) {
@@ -64,7 +69,57 @@ TEST(Presets, EachIsFoundByItsNameAndNoOtherIs) {
   for (const scenes::MaterialPreset& preset : scenes::material_presets())
     EXPECT_EQ(scenes::find_preset(preset.name), &preset);
   EXPECT_EQ(scenes::preset_names().size(), scenes::material_presets().size());
-  for (const char* name : {"", "Liver", "liver ", "spleen"}) EXPECT_EQ(scenes::find_preset(name), nullptr);
+  for (const char* name : {"", "Liver", "liver ", "pancreas"}) EXPECT_EQ(scenes::find_preset(name), nullptr);
+}
+
+/// Young's modulus of a filled lattice is 2.5 k / s (LatticeKind::cubic_18), k that of an edge: two triples in series.
+TEST(Presets, OtherTissuesHaveTheYoungsModulusOfTheirSource) {
+  struct Tissue {
+    const char* name;
+    double young;  // [Pa]
+  };
+  // Three times the shear stiffness of elastography, as tissue keeps its volume.
+  for (const Tissue& tissue : {Tissue{"spleen", 3 * 3565}, {"lung", 3 * 1140}, {"fat", 3250}}) {
+    const scenes::MaterialPreset* preset = scenes::find_preset(tissue.name);
+    ASSERT_NE(preset, nullptr) << tissue.name;
+    const network::Material& m = preset->material;
+    for (const double s : {0.006, 0.012}) {
+      const double edge = 2 * m.kelvin * m.spring / (m.kelvin + m.spring) * network::edge_area(m, s);
+      EXPECT_NEAR(2.5 * edge / s, tissue.young, 0.005 * tissue.young) << tissue.name;
+    }
+    EXPECT_FALSE(preset->is_of_paper);
+  }
+  for (const scenes::MaterialPreset& preset : scenes::material_presets())
+    EXPECT_GT(std::string(preset.source).size(), 20u);
+}
+
+TEST(Presets, AnOrganIsFoundInAName) {
+  for (const auto& [name, organ] : {std::pair{"Left Kidney.stl", "kidney"},
+                                    {"patient7_LIVER", "liver"},
+                                    {"subcutaneous-fat", "fat"},
+                                    {"MyHeart2", "heart"}}) {
+    ASSERT_NE(scenes::preset_in_name(name), nullptr) << name;
+    EXPECT_EQ(std::string(scenes::preset_in_name(name)->organ), organ);
+  }
+  for (const char* name : {"", "father", "fate", "elephant"}) EXPECT_EQ(scenes::preset_in_name(name), nullptr) << name;
+}
+
+TEST(Materials, AnAuthorsOwnAreReadAndEveryMistakeIsPlaced) {
+  const std::string head = R"({"format": "ctpm-materials", "version": 1, "materials": [)";
+  const auto own = scenes::read_materials(head + R"({"name": "tumour", "preset": "liver", "stiffness_scale": 4}]})",
+                                          "materials.json");
+  ASSERT_TRUE(own) << to_string(own.errors().front());
+  ASSERT_EQ(own->size(), 1u);
+  EXPECT_EQ(own->front().name, "tumour");
+  EXPECT_EQ(own->front().material.preset, "liver");
+  EXPECT_EQ(own->front().material.stiffness_scale, 4);
+  const auto bad = scenes::read_materials(
+      head + R"({"name": "liver", "preset": "liver"}, {"name": "x"}, {"name": "y", "preset": "livr"}]})", "m.json");
+  ASSERT_FALSE(bad);
+  std::string all;
+  for (const Error& error : bad.errors()) all += to_string(error) + "\n";
+  for (const char* part : {"which is taken already", "spring_kpa_per_mm", "there is no preset", "m.json:1:"})
+    EXPECT_NE(all.find(part), std::string::npos) << part << " in\n" << all;
 }
 
 TEST(ResolveMaterial, OwnValuesTakeThePresetsPlace) {

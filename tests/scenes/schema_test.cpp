@@ -82,7 +82,7 @@ TEST(SceneSchema, RefusesWhatTheReaderRefuses) {
   const std::string liver = R"("material": {"preset": "liver"})";
   ASSERT_EQ(schema.problem_of(organ_with(liver)), "");
   for (const std::string keys :
-       {R"("mesh": "a.obj")", R"("material": {"preset": "spleen"})", R"("material": [])",
+       {R"("mesh": "a.obj")", R"("material": {"preset": "pancreas"})", R"("material": [])",
         R"("material": {"spring_kpa_per_mm": 0})", R"("material": {"preset": "liver"}, "modle": "ctpm")",
         R"("material": {"preset": "liver"}, "model": "cptm")",
         R"("material": {"preset": "liver"}, "fill": {"radius_mm": 101})",

@@ -66,6 +66,15 @@ TEST(NearSurface, FindsEveryTriangleBehindAPlane) {
   EXPECT_EQ(found, wanted);
 }
 
+TEST(NearSurface, OfAnOrganWithoutTrianglesIsEmptyInARoundToo) {
+  Model model = testing::make_skinned_block(4, 4, 4);
+  model.surfaces[0] = {};
+  NearSurface near(model, 0, 1);
+  EXPECT_TRUE(near.empty());
+  near.begin(model.rest_position);
+  near.near(Box(Vec3{}).grown(1), [](const NearSurface::Triangle&, const Vec3*) { FAIL() << "there are none"; });
+}
+
 TEST(NearSurface, HoldsOnlyTheOrgansThatItIsAskedFor) {
   const Model model = testing::make_skinned_block(4, 4, 4);
   EXPECT_TRUE(NearSurface(model, 0, 0).empty());

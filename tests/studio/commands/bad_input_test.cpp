@@ -83,8 +83,8 @@ TEST_F(BadInput, AnImportWithBadOptionsNamesThemAll) {
   refuse({"import", kShipped + "organs/liver.obj", "--unit", "ell", "--radius-mm", "-1", "--anchor", "lowest", "-o",
           "a.json"},
          {"--unit: error: got 'ell'", "--radius-mm: error: got -1", "--anchor: error: got 'lowest'"});
-  refuse({"import", kShipped + "organs/liver.obj", "--organ", "lung", "-o", "a.json"},
-         {"there is no preset 'lung'", "liver, kidney, skin"});
+  refuse({"import", kShipped + "organs/liver.obj", "--organ", "pancreas", "-o", "a.json"},
+         {"there is no preset 'pancreas'", "liver, kidney, skin"});
   refuse({"import", kShipped + "organs/liver.obj", "--anchor", "sphere:900,900,900,5", "-o", "a.json"},
          {"holds no sphere"});
 }
@@ -186,7 +186,7 @@ TEST_F(BadInput, AnOutputFolderThatDoesNotExist) {
       run_ctpm({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"}, folder_.path())
           .code,
       0);
-  refuse({"import", kShipped + "organs/liver.obj", "-o", "no/such/a.json"}, {"no/such"});
+  refuse({"import", kShipped + "organs/liver.obj", "-o", "a.ctpm/such/a.json"}, {"a.ctpm/such", "cannot be made"});
   refuse({"record", kShipped + "skin.json", "-o", "no/such/a.ctpm"}, {"no/such"});
   refuse({"preview", kShipped + "skin.json", "-o", "no/such/a.png"}, {"no/such"});
   refuse({"export", "a.ctpm", "-o", "no/such/a.mp4"}, {"no/such"});

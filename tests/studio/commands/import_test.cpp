@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -50,13 +51,14 @@ void expect_says(const std::string& text, const std::vector<std::string>& parts)
 
 TEST_F(ImportProgram, ACoarserSurfaceIsDrawnAroundTheSameSpheres) {
   write("bean.obj", zoo::to_obj_text(bean()));
-  const auto fine = import("bean.obj", {"--unit", "mm"});
+  const auto fine = import("bean.obj", {"--unit", "mm", "--radius-mm", "4"});
   ASSERT_EQ(fine.code, 0) << fine.err;
   const auto triangles = [&] { return std::stoi(report().substr(report().find("\"surface_triangles\": ") + 21)); };
   EXPECT_GE(triangles(), 5120) << "as fine as the mesh, or finer where a tool must bend it";
   expect_says(fine.out, {"drawn with " + std::to_string(triangles()) + " triangles"});
   const std::string fine_mesh = testing::slurp(folder_.path() / "scene.obj");
-  const auto coarse = import("bean.obj", {"--unit", "mm", "--most-triangles", "800", "--overwrite"});
+  const auto coarse =
+      import("bean.obj", {"--unit", "mm", "--radius-mm", "4", "--most-triangles", "800", "--overwrite"});
   ASSERT_EQ(coarse.code, 0) << coarse.err;
   expect_says(report(), {"\"surface_triangles\": 800", "\"code\": \"coarsened\""});
   expect_says(coarse.out, {"drawn with 800 triangles"});
@@ -71,9 +73,9 @@ TEST_F(ImportProgram, ACoarserSurfaceIsDrawnAroundTheSameSpheres) {
 TEST_F(ImportProgram, AllPartsAreInTheSceneAsWell) {
   const importers::RawMesh two = zoo::both(bean(), zoo::moved(bean(), [](Vec3 p) { return p + Vec3{120, 0, 0}; }));
   write("two.obj", zoo::to_obj_text(two));
-  ASSERT_EQ(import("two.obj", {"--unit", "mm"}).code, 0);
+  ASSERT_EQ(import("two.obj", {"--unit", "mm", "--largest-part", "--radius-mm", "4"}).code, 0);
   const auto one = run_ctpm({"check", "scene.json"}, folder_.path());
-  ASSERT_EQ(import("two.obj", {"--unit", "mm", "--all-parts", "--overwrite"}).code, 0);
+  ASSERT_EQ(import("two.obj", {"--unit", "mm", "--all-parts", "--radius-mm", "4", "--overwrite"}).code, 0);
   const auto both = run_ctpm({"check", "scene.json"}, folder_.path());
   const auto spheres = [](const std::string& text) { return std::stoi(text.substr(text.find("good, ") + 6)); };
   EXPECT_EQ(spheres(both.out), 2 * spheres(one.out)) << one.out << both.out;
@@ -83,7 +85,7 @@ TEST_F(ImportProgram, AHoleWiderThanUsualIsFilledWhenThatIsAskedFor) {
   write("open.obj", zoo::to_obj_text(zoo::without(bean(1, 3), [](Vec3 p) { return p.x > 40; })));
   const auto refused = import("open.obj", {"--unit", "mm"});
   EXPECT_EQ(refused.code, 2);
-  expect_says(refused.err, {"open beyond repair: a hole", "allow wider holes"});
+  expect_says(refused.err, {"open beyond repair: a hole", "--largest-hole-mm "});
   EXPECT_FALSE(fs::exists(folder_.path() / "scene.json"));
   const auto filled = import("open.obj", {"--unit", "mm", "--largest-hole-mm", "60"});
   EXPECT_EQ(filled.code, 0) << filled.err;
@@ -128,6 +130,124 @@ TEST_F(ImportProgram, ATetrahedralMeshBecomesASceneByItsBoundary) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   expect_says(outcome.out, {", 1.6 ml"});
   EXPECT_EQ(run_ctpm({"check", "scene.json"}, folder_.path()).code, 0);
+}
+
+TEST_F(ImportProgram, NoOrganNeedsToBeNamedAndTheFolderIsMade) {
+  write("thing.obj", zoo::to_obj_text(bean()));
+  const auto outcome = run_ctpm({"import", "thing.obj", "-o", "my new/place/thing.json"}, folder_.path());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  expect_says(outcome.out, {"taken as soft-tissue", "an estimate", "script: presses", "and cuts",
+                            "next: ctpm record 'my new/place/thing.json' --script 'my new/place/thing.script.json'"});
+  EXPECT_EQ(run_ctpm({"check", "my new/place/thing.json"}, folder_.path()).err, "");
+}
+
+TEST_F(ImportProgram, ARefusedImportLeavesNoFolderBehind) {
+  write("open.obj", zoo::to_obj_text(zoo::without(bean(1, 3), [](Vec3 p) { return p.x > 0; })));
+  EXPECT_EQ(run_ctpm({"import", "open.obj", "-o", "my/new/scene.json"}, folder_.path()).code, 2);
+  EXPECT_FALSE(fs::exists(folder_.path() / "my"));
+}
+
+TEST_F(ImportProgram, SeparatePartsAreOrgansWhichStandAreTouchedAndCut) {
+  const importers::RawMesh two = zoo::both(bean(), zoo::moved(bean(0.6), [](Vec3 p) { return p + Vec3{120, 0, 0}; }));
+  write("two.obj", zoo::to_obj_text(two));
+  const auto outcome = import("two.obj", {"--unit", "mm", "--spheres", "300"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string text = report();
+  EXPECT_EQ(text.find("\"script_cuts\": false"), std::string::npos);
+  EXPECT_EQ(text.find("\"script_force_n\": 0,"), std::string::npos);
+  const auto check = run_ctpm({"check", "scene.json"}, folder_.path());
+  EXPECT_EQ(check.code, 0) << check.err;
+  EXPECT_EQ(check.err, "");
+  const auto record =
+      run_ctpm({"record", "scene.json", "--script", "scene.script.json", "-o", "cut.ctpm", "--fast"}, folder_.path());
+  EXPECT_EQ(record.code, 0) << record.err;
+  EXPECT_EQ(record.out.find(" 0 elements severed"), std::string::npos) << record.out;
+}
+
+TEST_F(ImportProgram, AnOrganIsAddedToASceneThatIsThere) {
+  write("bean.obj", zoo::to_obj_text(bean()));
+  write("spleen.obj", zoo::to_obj_text(zoo::moved(bean(0.8), [](Vec3 p) { return p + Vec3{0, 120, 0}; })));
+  ASSERT_EQ(import("bean.obj", {"--unit", "mm", "--spheres", "200"}).code, 0);
+  const auto added =
+      run_ctpm({"import", "spleen.obj", "--into", "scene.json", "--unit", "mm", "--spheres", "200"}, folder_.path());
+  ASSERT_EQ(added.code, 0) << added.err;
+  const std::string scene = testing::slurp(folder_.path() / "scene.json");
+  expect_says(scene, {"\"name\": \"scene\"", "\"name\": \"spleen\"", "\"preset\": \"spleen\""});
+  const auto check = run_ctpm({"check", "scene.json"}, folder_.path());
+  EXPECT_EQ(check.code, 0) << check.err;
+}
+
+TEST_F(ImportProgram, TheSizeAndTheNumberOfSpheresAreThoseThatWereAskedFor) {
+  write("bean.obj", zoo::to_obj_text(bean(0.013)));
+  const auto outcome = import("bean.obj", {"--size-mm", "100", "--spheres", "500"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string text = report();
+  const auto number = [&](const std::string& key) {
+    return std::stod(text.substr(text.find("\"" + key + "\": ") + key.size() + 4));
+  };
+  EXPECT_NEAR(number("spheres"), 500, 50);
+  const auto box = [&](const std::string& key) {
+    double x = 0, y = 0, z = 0;
+    std::sscanf(text.c_str() + text.find("\"" + key + "\": ") + key.size() + 4, "[%lf, %lf, %lf]", &x, &y, &z);
+    return Vec3{x, y, z};
+  };
+  EXPECT_NEAR(norm(box("box_most_mm") - box("box_least_mm")), 100, 0.01) << text;
+}
+
+TEST_F(ImportProgram, AnAuthorsOwnMaterialLiesBesideTheScene) {
+  write("bean.obj", zoo::to_obj_text(bean()));
+  write("materials.json", R"({"format": "ctpm-materials", "version": 1,
+    "materials": [{"name": "tumour", "preset": "kidney", "stiffness_scale": 2.5}]})");
+  const auto outcome = run_ctpm({"import", "bean.obj", "--organ", "tumour", "-o", "scene.json"}, folder_.path());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  expect_says(testing::slurp(folder_.path() / "scene.json"), {"\"preset\": \"kidney\"", "\"stiffness_scale\": 2.5"});
+  const auto unknown = run_ctpm({"import", "bean.obj", "--organ", "tumor", "-o", "other.json"}, folder_.path());
+  EXPECT_EQ(unknown.code, 2);
+  expect_says(unknown.err, {"known: tumour, liver"});
+}
+
+TEST_F(ImportProgram, AnOrganThatFoldsOverIsRefusedWithWhatWouldHelp) {
+  // A metre-long rope of fat, held at one end.
+  write("rope.obj", zoo::to_obj_text(zoo::moved(zoo::box({1000, 40, 40}, 20), [](Vec3 p) { return p; })));
+  const auto outcome = run_ctpm({"import", "rope.obj", "--organ", "fat", "--unit", "mm", "--anchor",
+                                 "plane:-450,0,0,1,0,0", "--spheres", "300", "-o", "my/rope.json"},
+                                folder_.path());
+  EXPECT_EQ(outcome.code, 2);
+  expect_says(outcome.err, {"folds over under its own weight", "--anchor", "--size-mm", "--stiffness-scale"});
+  EXPECT_FALSE(fs::exists(folder_.path() / "my"));
+}
+
+TEST_F(ImportProgram, CheckWarnsOfWhatIsOddAndPlanOfAScriptThatMisses) {
+  write("bean.obj", zoo::to_obj_text(bean()));
+  ASSERT_EQ(import("bean.obj", {"--unit", "mm", "--spheres", "200"}).code, 0);
+  const std::string good = testing::slurp(folder_.path() / "scene.json");
+  const auto with = [&](const std::string& key, const std::string& text) {
+    std::string odd = good;
+    const std::size_t at = odd.find("\"" + key + "\": ");
+    odd.insert(at == std::string::npos ? odd.find("\"organs\"") : at, text);
+    return odd;
+  };
+  write("probe.json", with("-", "\"probes\": [{\"name\": \"far\", \"at_mm\": [0, 0, 500]}], "));
+  write("load.json", with("-", "\"loads\": [{\"at_mm\": [0, 900, 0], \"force_n\": [0, 0, 1]}], "));
+  std::string free = good;
+  const std::size_t anchors = free.find("\"anchors\"");
+  const std::size_t lowest = free.find("\"lowest_mm\": ", anchors);
+  free.replace(lowest, free.find('}', lowest) - lowest, "\"lowest_mm\": 999");
+  write("held.json", free);
+  for (const auto& [scene, warning] : {std::pair{"probe.json", "from the nearest tissue"},
+                                       {"load.json", "the nearest tissue would be pulled"},
+                                       {"held.json", "hold every sphere"}}) {
+    const auto check = run_ctpm({"check", scene}, folder_.path());
+    EXPECT_EQ(check.code, 0) << check.err;
+    expect_says(check.err, {warning, std::string(scene) + ":"});
+  }
+  write("miss.json", R"({"format": "ctpm-script", "version": 1, "steps": [
+    {"take": {"tool": "ball", "at_mm": [0, 0, 400]}}, {"wait_s": 0.05}]})");
+  const auto plan = run_ctpm({"plan", "scene.json", "--script", "miss.json"}, folder_.path());
+  EXPECT_EQ(plan.code, 0) << plan.err;
+  expect_says(plan.err, {"miss.json: warning: never touches any tissue"});
+  EXPECT_EQ(run_ctpm({"plan", "scene.json", "--script", "scene.script.json"}, folder_.path()).err.find("never"),
+            std::string::npos);
 }
 
 }  // namespace

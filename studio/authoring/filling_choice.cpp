@@ -1,0 +1,73 @@
+#include "studio/authoring/filling_choice.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "importers/text.h"
+#include "studio/output/number_text.h"
+#include "studio/output/option_name.h"
+
+namespace ctpm::authoring {
+namespace {
+
+/// Spheres without a wish: enough for a press to have a shape, few enough to settle and be fitted in seconds.
+constexpr std::int64_t kFew = 300, kUsual = 800, kMany = 1500;
+constexpr std::int64_t kFewOfOne = 100;  ///< of an organ beside others
+
+double rounded(double radius) { return std::stod(output::short_number(radius, 3)); }
+
+/// Fills one mesh with about that many spheres, and with no fewer than kFewestSpheres where that is at all possible.
+Result<importers::ImportedOrgan> fill_with(const importers::RepairedFile& file, std::size_t index,
+                                           importers::ImportOptions options, std::int64_t spheres) {
+  constexpr int kMostTries = 4;
+  constexpr double kFiner = 0.85;
+  options.sphere_radius = rounded(importers::radius_for(file.mesh[index], spheres));
+  Result<importers::ImportedOrgan> filled = importers::fill_repaired(file, index, options);
+  for (int tries = 1; filled && filled->report.fill.spheres < kFewestSpheres && tries < kMostTries; ++tries) {
+    options.sphere_radius = rounded(kFiner * options.sphere_radius);
+    filled = importers::fill_repaired(file, index, options);
+  }
+  return filled;
+}
+
+}  // namespace
+
+Result<std::vector<importers::ImportedOrgan>> fill_all(const importers::RepairedFile& file,
+                                                       const importers::ImportOptions& options, FillingWish wish,
+                                                       double usual_radius) {
+  double volume = 0;
+  for (const importers::CheckedMesh& mesh : file.mesh) volume += mesh.volume;
+  if (!wish.radius && !wish.spheres) {
+    const double cell = 27 * usual_radius * usual_radius * usual_radius, cells = volume / cell;
+    // Spheres at the surface stand for half a cell, so that there are more of them than cells.
+    constexpr double kLeastSurface = 1.2, kMostSurface = 3;
+    if (file.mesh.size() == 1 && kMostSurface * cells >= double(kFew) && kLeastSurface * cells <= double(kMany)) {
+      importers::ImportOptions usual = options;
+      usual.sphere_radius = usual_radius;
+      Result<importers::ImportedOrgan> filled = importers::fill_repaired(file, 0, usual);
+      if (!filled) return filled.errors();
+      if (filled->report.fill.spheres >= kFew && filled->report.fill.spheres <= kMany)
+        return std::vector<importers::ImportedOrgan>{*std::move(filled)};
+    }
+    wish.spheres = std::clamp(std::int64_t(2 * cells), kUsual, kMany);
+  }
+  std::vector<importers::ImportedOrgan> organs;
+  for (std::size_t i = 0; i < file.mesh.size(); ++i) {
+    importers::ImportOptions own = options;
+    own.sphere_radius = wish.radius.value_or(0);
+    const auto share = wish.spheres ? std::int64_t(double(*wish.spheres) * file.mesh[i].volume / volume) : 0;
+    const std::int64_t least = file.mesh.size() == 1 ? kFewestSpheres : kFewOfOne;
+    Result<importers::ImportedOrgan> filled =
+        wish.radius ? importers::fill_repaired(file, i, own) : fill_with(file, i, options, std::max(share, least));
+    if (!filled) return filled.errors();
+    if (!wish.radius && filled->report.fill.spheres < kFewestSpheres)
+      return Error{file.report.path,
+                   "is filled by only " + importers::counted(filled->report.fill.spheres, "sphere") +
+                       " that hang together: it is too thin or in too many pieces",
+                   output::option_name("import.spheres") + " with a larger number fills thin places"};
+    organs.push_back(*std::move(filled));
+  }
+  return organs;
+}
+
+}  // namespace ctpm::authoring

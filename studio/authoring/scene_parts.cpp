@@ -1,0 +1,95 @@
+#include "studio/authoring/scene_parts.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "studio/render/scene_view.h"
+
+namespace ctpm::authoring {
+namespace {
+
+struct Box {
+  Vec3 least{INFINITY, INFINITY, INFINITY}, most{-INFINITY, -INFINITY, -INFINITY};
+};
+
+Box box_of(const std::vector<FilledOrgan>& organs) {
+  Box box;
+  for (const FilledOrgan& organ : organs)
+    for (const Vec3& p : organ.surface.vertex) {
+      box.least = {std::min(box.least.x, p.x), std::min(box.least.y, p.y), std::min(box.least.z, p.z)};
+      box.most = {std::max(box.most.x, p.x), std::max(box.most.y, p.y), std::max(box.most.z, p.z)};
+    }
+  return box;
+}
+
+/// Up to the next of 1, 1.5, 2, 2.5 ... in the place of the second digit.
+double rounded_up(double length) {
+  const double step = 0.5 * std::pow(10.0, std::floor(std::log10(length)));
+  return std::ceil(length / step - 1e-9) * step;
+}
+
+}  // namespace
+
+scenes::OrganSpec organ_spec(const std::string& name, const std::string& mesh, const Tissue& tissue,
+                             const FilledOrgan& filled, std::optional<Vec3> colour) {
+  scenes::OrganSpec spec;
+  spec.name = name, spec.mesh = mesh;
+  spec.fill.radius = filled.sphere_radius;
+  spec.fill.gap = filled.spacing - 2 * filled.sphere_radius;
+  spec.material = tissue.material;
+  spec.damage_depth = tissue.preset->damage_depth;
+  const render::OrganLook look = render::look_of(tissue.preset->organ);
+  spec.surface_color = colour.value_or(Vec3{look.outer[0], look.outer[1], look.outer[2]});
+  spec.inner_color = {look.inner[0], look.inner[1], look.inner[2]};
+  return spec;
+}
+
+std::vector<scenes::ToolSpec> tools_for(const std::vector<FilledOrgan>& organs) {
+  // A ball of 2.5 sphere radii of the coarsest organ; a blade of 0.7 of the tallest organ's height, but that of a
+  // scalpel at least, 40 mm, and as long as its key allows at most.
+  constexpr double kShortest = 0.04, kLongest = 0.5, kLargestBall = 0.2;
+  double radius = 0, height = 0;
+  for (const FilledOrgan& organ : organs) {
+    const Box box = box_of({organ});
+    radius = std::max(radius, organ.sphere_radius), height = std::max(height, box.most.z - box.least.z);
+  }
+  scenes::ToolSpec ball, scalpel;
+  ball.name = "ball", ball.kind = ToolKind::ball, ball.radius = std::min(kLargestBall, 2.5 * radius);
+  scalpel.name = "scalpel", scalpel.kind = ToolKind::scalpel;
+  scalpel.blade_length = std::clamp(rounded_up(0.7 * height), kShortest, kLongest);
+  return {ball, scalpel};
+}
+
+scenes::CameraSpec front_camera(const std::vector<FilledOrgan>& organs) {
+  const Box box = box_of(organs);
+  const double size = norm(box.most - box.least), step = size > 0.02 ? 1e-3 : 1e-4;
+  const auto rounded = [&](Vec3 p) {
+    return Vec3{std::round(p.x / step) * step, std::round(p.y / step) * step, std::round(p.z / step) * step};
+  };
+  scenes::CameraSpec camera;
+  camera.name = "front";
+  // The organ is right of the centre, clear of the panels on the left.
+  camera.target = rounded(0.5 * (box.least + box.most) + size * Vec3{-0.13, 0, 0});
+  camera.eye = rounded(camera.target + size * Vec3{0.05, -1.25, 0.95});
+  camera.field_of_view = 32;
+  return camera;
+}
+
+std::string file_name_of(const std::string& name) {
+  std::string safe;
+  for (const char c : name) safe += std::isalnum((unsigned char)c) || c == '-' || c == '_' ? c : '-';
+  return safe.substr(0, 60);
+}
+
+std::string free_name(std::string name, const std::vector<std::string>& taken) {
+  if (name.empty()) name = "organ";
+  const auto is_taken = [&](const std::string& text) {
+    return std::find(taken.begin(), taken.end(), text) != taken.end();
+  };
+  if (!is_taken(name)) return name;
+  for (int number = 2;; ++number)
+    if (const std::string next = name + "-" + std::to_string(number); !is_taken(next)) return next;
+}
+
+}  // namespace ctpm::authoring

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/model/organ.h"
+#include "scenes/scene_spec.h"
+#include "studio/authoring/tissue_choice.h"
+
+namespace ctpm::authoring {
+
+/// The organ of a scene, without anchors. `colour`: of its surface; unset: that of the tissue.
+scenes::OrganSpec organ_spec(const std::string& name, const std::string& mesh, const Tissue& tissue,
+                             const FilledOrgan& filled, std::optional<Vec3> colour);
+
+/// A ball and a scalpel in proportion to the organs, within the ranges of their keys.
+std::vector<scenes::ToolSpec> tools_for(const std::vector<FilledOrgan>& organs);
+
+/// A camera that sees all organs from the front, a little from above.
+scenes::CameraSpec front_camera(const std::vector<FilledOrgan>& organs);
+
+/// A name that a file may have everywhere: letters, digits, - and _ of `name`, others as -.
+std::string file_name_of(const std::string& name);
+
+/// `name`, with a number behind it if it is taken; never empty.
+std::string free_name(std::string name, const std::vector<std::string>& taken);
+
+}  // namespace ctpm::authoring

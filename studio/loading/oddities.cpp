@@ -1,0 +1,137 @@
+#include "studio/loading/oddities.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+
+#include "studio/loading/standing.h"
+
+namespace ctpm::loading {
+namespace {
+
+std::string item(const char* list, std::size_t index) { return std::string(list) + "/" + std::to_string(index); }
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+/// Distance from a point to the nearest sphere, and the spacing of that sphere's organ.
+struct Near {
+  double distance = INFINITY, spacing = 0;  ///< [m]
+};
+Near nearest(const Model& model, Vec3 point) {
+  Near near;
+  for (const OrganRange& range : model.organs)
+    for (std::int32_t i = range.first; i < range.first + range.count; ++i)
+      if (const double d = norm(model.rest_position[std::size_t(i)] - point); d < near.distance)
+        near = {d, range.spacing};
+  return near;
+}
+
+class Look {
+ public:
+  explicit Look(const LoadedScene& scene) : scene_(scene), model_(scene.built.model) {}
+
+  void at_points() {
+    const scenes::SceneSpec& spec = scene_.scene.spec;
+    for (std::size_t i = 0; i < spec.probes.size(); ++i)
+      look_at(item("/probes", i) + "/at_mm", spec.probes[i].at, "it would record the nearest sphere");
+    for (std::size_t i = 0; i < spec.loads.size(); ++i)
+      look_at(item("/loads", i) + "/at_mm", spec.loads[i].at, "the nearest tissue would be pulled");
+    for (std::size_t i = 0; i < spec.cameras.size(); ++i) look_through(item("/cameras", i), spec.cameras[i]);
+  }
+
+  void at_anchors(const Standing& standing) {
+    const scenes::SceneSpec& spec = scene_.scene.spec;
+    const bool can_rest = !spec.obstacles.empty() || spec.organs_meet;
+    for (std::size_t i = 0; i < standing.organ.size(); ++i) {
+      const OrganStanding& organ = standing.organ[i];
+      if (spec.organs[i].rig) continue;
+      const std::string at = item("/organs", i);
+      if (organ.held == model_.organs[i].count)
+        warn(at + "/anchors", "hold every sphere of the organ, so that nothing of it can move", "anchor less of it");
+      else if (organ.held == 0 && norm(spec.gravity) > 0 && !can_rest)
+        warn(at, "nothing holds the organ, so that it falls", "give it anchors, or an obstacle to rest on");
+      else if (!organ.stands())
+        warn(at,
+             "sags by " + number(1e3 * organ.sag) + " mm under its weight, " + number(100 * organ.share()) +
+                 " % of its size, before the first tick",
+             "hold more of it, or take a stiffer material");
+    }
+    if (standing.is_refused) warn("/organs", "the scene cannot settle: the integrator gives up", "check its stiffness");
+  }
+
+  Errors warnings;
+
+ private:
+  void warn(const std::string& at, const std::string& message, const std::string& hint) {
+    warnings.push_back(scene_.scene.places.error_at(at, message, hint));
+  }
+
+  void look_at(const std::string& at, Vec3 point, const char* effect) {
+    constexpr double kFar = 2;  // spacings
+    const Near near = nearest(model_, point);
+    if (near.distance <= kFar * near.spacing) return;
+    warn(at, "lies " + number(1e3 * near.distance) + " mm from the nearest tissue", effect);
+  }
+
+  void look_through(const std::string& at, const scenes::CameraSpec& camera) {
+    Vec3 least{INFINITY, INFINITY, INFINITY}, most = -1.0 * least;
+    for (std::size_t i = 0; i < model_.sphere_count(); ++i) {
+      const Vec3 p = model_.rest_position[i];
+      least = {std::min(least.x, p.x), std::min(least.y, p.y), std::min(least.z, p.z)};
+      most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, p.z)};
+    }
+    const Vec3 to_middle = 0.5 * (least + most) - camera.eye, line = camera.target - camera.eye;
+    const double radius = 0.5 * norm(most - least), distance = norm(to_middle);
+    if (distance <= radius) return;
+    // The widest angle of a picture of usual shape is that to its corner.
+    constexpr double kCorner = 2.1;
+    const double half = 0.5 * camera.field_of_view * std::numbers::pi / 180;
+    const double off = std::acos(std::clamp(dot(to_middle, line) / (distance * norm(line)), -1.0, 1.0));
+    if (off > std::atan(kCorner * std::tan(half)) + std::asin(radius / distance))
+      warn(at, "does not look at any tissue", "the middle of the organs is at the other end of its target_mm");
+    else if (radius / distance < 0.02 * std::tan(half))
+      warn(at, "is so far away that the organs are a dot", "move its eye_mm nearer");
+  }
+
+  const LoadedScene& scene_;
+  const Model& model_;
+};
+
+}  // namespace
+
+std::optional<Errors> find_oddities(const LoadedScene& scene, const std::function<bool()>& should_stop) {
+  Look look(scene);
+  look.at_points();
+  const Model& model = scene.built.model;
+  const std::optional<Standing> standing =
+      settle_scene(model, std::llround(scene.scene.spec.settle / model.tick), {}, should_stop);
+  if (!standing) return std::nullopt;
+  if (!standing->organ.empty()) look.at_anchors(*standing);
+  return look.warnings;
+}
+
+Errors find_misses(const LoadedScene& scene, const scenes::Script& script, const std::string& where) {
+  const Model& model = scene.built.model;
+  const std::optional<Standing> standing = settle_scene(model, std::llround(scene.scene.spec.settle / model.tick));
+  const std::optional<ScriptTrial> trial = try_script(model, standing->state, script);
+  Errors misses;
+  const bool cuts = std::any_of(script.steps.begin(), script.steps.end(), [&](const scenes::ScriptStep& step) {
+    return step.take && std::any_of(model.tools.begin(), model.tools.end(), [&](const Tool& tool) {
+             return tool.name == step.take->tool && tool.kind == ToolKind::scalpel;
+           });
+  });
+  if (!(trial->most_force > 0))
+    misses.push_back({where, "never touches any tissue", "its places are those of the scene, in mm"});
+  else if (cuts && trial->severed == 0)
+    misses.push_back({where, "takes up a scalpel but cuts nothing", "its places are those of the scene, in mm"});
+  if (trial->is_refused) misses.push_back({where, "the simulation is refused before its end", ""});
+  return misses;
+}
+
+}  // namespace ctpm::loading

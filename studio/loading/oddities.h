@@ -1,0 +1,21 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "scenes/script.h"
+#include "studio/loading/loaded_scene.h"
+
+namespace ctpm::loading {
+
+/// What is odd about a scene although it can be built, each with its place: an organ that sags by more than a tenth of
+/// its size while it settles; one that is held everywhere, or nowhere with nothing to rest on; a probe, a load or a
+/// camera far from all tissue. Settles the scene. None if `should_stop` ended it.
+std::optional<Errors> find_oddities(const LoadedScene& scene, const std::function<bool()>& should_stop = {});
+
+/// That a script never touches or never cuts, though it takes up a tool that would; empty if all is well.
+/// `where`: the script's file.
+Errors find_misses(const LoadedScene& scene, const scenes::Script& script, const std::string& where);
+
+}  // namespace ctpm::loading

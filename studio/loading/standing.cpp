@@ -1,0 +1,106 @@
+#include "studio/loading/standing.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "core/stepping/step.h"
+
+namespace ctpm::loading {
+namespace {
+
+/// Ticks between two looks at the sag and at `should_stop`.
+constexpr std::int64_t kStretch = 50;
+
+Vec3 way_of(const Model& model, const State& state, std::size_t sphere) {
+  return state.position[sphere] - model.rest_position[sphere];
+}
+
+OrganStanding standing_of(const Model& model, const State& state, const OrganRange& range) {
+  OrganStanding standing;
+  const auto first = std::size_t(range.first), last = first + std::size_t(range.count);
+  if (first == last) return standing;
+  Vec3 least = model.rest_position[first], most = least, mean;
+  for (std::size_t i = first; i < last; ++i) {
+    const Vec3 p = model.rest_position[i];
+    least = {std::min(least.x, p.x), std::min(least.y, p.y), std::min(least.z, p.z)};
+    most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, p.z)};
+    standing.held += model.held_axes[i] == kAnchored;
+    mean = mean + way_of(model, state, i) / double(range.count);
+  }
+  // What nothing holds falls onto something as a whole.
+  if (standing.held > 0) mean = {};
+  for (std::size_t i = first; i < last; ++i)
+    standing.sag = std::max(standing.sag, norm(way_of(model, state, i) - mean));
+  standing.size = norm(most - least);
+  return standing;
+}
+
+}  // namespace
+
+bool Standing::stands() const {
+  return !is_refused && std::all_of(organ.begin(), organ.end(), [](const OrganStanding& o) { return o.stands(); });
+}
+
+std::optional<Standing> settle_scene(const Model& model, std::int64_t ticks, std::optional<double> most_sag,
+                                     const std::function<bool()>& should_stop) {
+  Standing standing;
+  standing.state = rest_state(model);
+  stepping::Stepper stepper(model);
+  const auto look = [&] {
+    standing.organ.clear();
+    for (const OrganRange& range : model.organs) standing.organ.push_back(standing_of(model, standing.state, range));
+  };
+  const auto fastest = [&] {
+    double speed = 0;
+    for (std::size_t i = 0; i < model.sphere_count(); ++i) speed = std::max(speed, norm(standing.state.velocity[i]));
+    return speed;
+  };
+  constexpr double kAtRest = 1e-5;  // [m/s], where Stepper::settle() ends
+  for (std::int64_t done = 0; done < ticks; done += kStretch) {
+    if (should_stop && should_stop()) return std::nullopt;
+    const stepping::StepReport report = stepper.settle(standing.state, std::min(kStretch, ticks - done));
+    standing.is_refused = stepping::is_refused(report.status);
+    look();
+    const bool is_down = most_sag && std::any_of(standing.organ.begin(), standing.organ.end(),
+                                                 [&](const OrganStanding& o) { return o.share() > *most_sag; });
+    if (standing.is_refused || is_down || fastest() < kAtRest) break;
+  }
+  look();
+  return standing;
+}
+
+std::optional<ScriptTrial> try_script(const Model& model, const State& state, const scenes::Script& script,
+                                      std::optional<std::size_t> until_cut, const std::function<bool()>& should_stop) {
+  using Clock = std::chrono::steady_clock;
+  ScriptTrial trial;
+  trial.was_cut.assign(model.organs.size(), 0);
+  State now = state;
+  stepping::Stepper stepper(model);
+  scenes::ScriptPlayer player(script, model.tools, model.tick);
+  std::vector<double> times;
+  std::size_t seen = now.swept_organ.size();
+  for (std::int64_t tick = 0; tick < player.tick_count(); ++tick) {
+    if (tick % kStretch == 0 && should_stop && should_stop()) return std::nullopt;
+    const Clock::time_point start = Clock::now();
+    const stepping::StepReport report = stepper.step(now, player.at(tick));
+    times.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+    trial.is_refused = stepping::is_refused(report.status);
+    if (trial.is_refused) break;
+    player.feel(tick, report.of_hand(player.hand_at(tick)).tool_force);
+    for (const std::size_t hand : {0, 1})
+      trial.most_force = std::max(trial.most_force, norm(report.of_hand(hand).tool_force));
+    trial.severed += report.severed;
+    if (now.swept_organ.size() < seen) seen = 0;  // rows of a full memory were let go
+    for (; seen < now.swept_organ.size(); ++seen)
+      if (const std::size_t organ = now.swept_organ[seen]; organ > 0 && organ <= trial.was_cut.size())
+        trial.was_cut[organ - 1] = 1;
+    if (until_cut && trial.most_force > 0 && trial.severed > 0 && trial.was_cut[*until_cut]) break;
+  }
+  if (!times.empty()) {
+    std::nth_element(times.begin(), times.begin() + std::ptrdiff_t(times.size() / 2), times.end());
+    trial.tick_time = times[times.size() / 2];
+  }
+  return trial;
+}
+
+}  // namespace ctpm::loading
