@@ -157,7 +157,7 @@ test("a gamepad leads the tool: the trigger presses, the shoulder changes it", a
 });
 
 test("a recording is there up to the moment when the program was killed", async () => {
-  await page.click("header nav button:has-text('Train')");
+  await page.click("button:has-text('Train again')");
   await page.locator("aside input").first().fill("killed.ctpm");
   await page.click(".list button:has-text('kidney')");
   await page.waitForSelector(".view.running");
