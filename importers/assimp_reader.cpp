@@ -41,6 +41,9 @@ Vec3 colour_of(const aiScene& scene, const aiMesh& mesh) {
   if (material.Get(AI_MATKEY_COLOR_DIFFUSE, colour) != AI_SUCCESS) return none;
   const auto is_share = [](float value) { return value >= 0 && value <= 1; };
   if (!is_share(colour.r) || !is_share(colour.g) || !is_share(colour.b)) return none;
+  // What assimp gives formats without materials, as OFF.
+  constexpr float kGrey = 0.6F;
+  if (colour.r == kGrey && colour.g == kGrey && colour.b == kGrey) return none;
   // White is what formats hold where a texture gives the colour, or nothing does.
   if (std::min({colour.r, colour.g, colour.b}) > 0.99f) return none;
   return {colour.r, colour.g, colour.b};

@@ -136,8 +136,9 @@ Result<RepairedFile> repair_file(const std::string& path, const ImportOptions& o
   ReadOptions reading;
   reading.part = options.part;
   reading.time_limit_s = options.time_limit_s;
-  const Result<RawMesh> raw = read_mesh(path, reading);
+  Result<RawMesh> raw = read_mesh(path, reading);
   if (!raw) return raw.errors();
+  raw->vertex = turned(std::move(raw->vertex), options.turn);
 
   RepairedFile file;
   ImportReport& report = file.report;
@@ -169,6 +170,15 @@ Result<RepairedFile> repair_file(const std::string& path, const ImportOptions& o
   return file;
 } catch (const Stopped&) {
   return Error{path, "stopped", ""};
+}
+
+RepairedFile turned(RepairedFile file, Vec3 turn) {
+  for (CheckedMesh& mesh : file.mesh) {
+    mesh.vertex = turned(std::move(mesh.vertex), turn);
+    const BoundingBox box = bounding_box({mesh.vertex, mesh.triangle});
+    mesh.box_least = box.least, mesh.box_most = box.most;
+  }
+  return file;
 }
 
 Result<ImportedOrgan> fill_repaired(const RepairedFile& file, std::size_t index, const ImportOptions& options) try {

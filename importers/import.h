@@ -18,6 +18,7 @@ struct ImportOptions {
       unit_in_metres;                  ///< length of one unit of the file [m], > 0; unset: from the file, else guessed
   std::optional<double> size;          ///< diagonal of the file's bounding box [m], > 0, in place of a unit
   double scale = 1;                    ///< multiplies the size that the unit gives, > 0
+  Vec3 turn;                           ///< of the mesh about its origin, see turned() [degrees]
   UsualSize usual_size;                ///< usual size of this kind of organ, to guess the unit
   std::string part;                    ///< name of the mesh to take; empty: all, joined
   bool all_parts = false;              ///< keeps every closed part and sphere island, not only the largest
@@ -67,6 +68,9 @@ struct RepairedFile {
 /// Runs read_mesh, choose_unit and, for one mesh, repair_mesh; for at most `most` > 1, repair_parts. Errors: those of
 /// these functions, and all options out of range together.
 Result<RepairedFile> repair_file(const std::string& path, const ImportOptions& options = {}, std::size_t most = 1);
+
+/// The same with its meshes turned as ImportOptions::turn would have.
+RepairedFile turned(RepairedFile file, Vec3 turn);
 
 /// Fills mesh `index` of a file. Errors: those of fill_organ().
 Result<ImportedOrgan> fill_repaired(const RepairedFile& file, std::size_t index, const ImportOptions& options = {});

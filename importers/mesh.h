@@ -102,6 +102,10 @@ struct CheckedMesh {
   std::int32_t part = -1;  ///< index in RawMesh::parts of most of its vertices; -1: not known
 };
 
+/// Points turned about the origin: about the x axis, then the y axis, then the z axis, by `turn` [degrees]. Quarter
+/// turns are exact; no turn leaves every bit.
+std::vector<Vec3> turned(std::vector<Vec3> points, Vec3 turn);
+
 struct RepairOptions {
   bool all_parts = false;       ///< keeps every closed part, not only the largest
   double weld_distance = 1e-6;  ///< closer vertices are merged, in bounding-box diagonals, >= 0

@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <system_error>
 
@@ -24,6 +26,18 @@ std::string suffix_of(const std::string& path) {
   return suffix;
 }
 
+namespace {
+
+/// DICOM files have any name, and four letters behind a preamble (DICOM PS3.10, section 7.1).
+bool is_dicom(const std::string& path) {
+  constexpr std::streamoff kPreamble = 128;
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 4> mark{};
+  return file.seekg(kPreamble) && file.read(mark.data(), mark.size()) && mark == std::array{'D', 'I', 'C', 'M'};
+}
+
+}  // namespace
+
 Errors check_file(const std::string& path) {
   std::error_code trouble;
   const auto status = std::filesystem::status(path, trouble);
@@ -33,6 +47,9 @@ Errors check_file(const std::string& path) {
   const auto size = std::filesystem::file_size(path, trouble);
   if (trouble) return {{path, "cannot be read: " + trouble.message(), ""}};
   if (size == 0) return {{path, "is empty", "export the mesh again"}};
+  if (is_dicom(path))
+    return {{path, "is a DICOM file, which is not read",
+             "save the segmentation as NRRD or NIfTI, as 3D Slicer does, or export its surface"}};
   return {};
 }
 

@@ -216,7 +216,7 @@ class Repair {
       ++dropped, dropped_triangles += std::int64_t(piece.soup.triangle.size());
       if (!drop.place) drop.place = bounding_box(piece.soup).centre();
     }
-    if (organs_.empty()) return open;
+    if (organs_.empty() || are_crumbs(open)) return open;
     if (!filled.empty())
       note({"hole", std::int64_t(filled.size()), widest(filled).centre,
             counted(std::int64_t(filled.size()), "hole") + ", the widest " + hole_text(widest(filled)), "filled", ""});
@@ -240,6 +240,12 @@ class Repair {
             "kept",
             "the organ is in pieces"});
     return {};
+  }
+
+  /// Whether all that could be closed is little beside the part that could not.
+  bool are_crumbs(const Errors& open) const {
+    constexpr double kCrumb = 0.1;  // of the diagonal of the file
+    return !open.empty() && keep_ == Keep::each && bounding_box(organs_.front().outer).diagonal() < kCrumb * diagonal_;
   }
 
   /// Whether a part is an organ, or a part of the only one.

@@ -339,7 +339,7 @@ void add_load(Model& model, const LoadSpec& load) {
 
 bool can_be_filled(const Problems& problems, std::size_t index) {
   const std::string at = "/organs/" + std::to_string(index);
-  return problems.are_good(at, {"mesh", "mesh_unit", "all_parts", "most_triangles", "fill"}) &&
+  return problems.are_good(at, {"mesh", "mesh_unit", "turn_deg", "scale", "all_parts", "most_triangles", "fill"}) &&
          problems.are_good(at + "/rig", {"cells", "block"});
 }
 

@@ -18,11 +18,19 @@ constexpr double kOrganToughness = 164, kSkinToughness = 1700;
 /// O'Leary, IEEE TBME 51, 2004), over its circumference; for all organs, an estimate.
 constexpr double kBladeFriction = 2040;
 
+/// What an organ's surface is under in the body.
+constexpr MaterialPreset::InSitu kLiverInSitu{
+    930, 0, "7 mmHg, of the normal 5 to 10 mmHg in the portal vein (estimate: what the capsule holds)"};
+constexpr MaterialPreset::InSitu kKidneyInSitu{1060, 0,
+                                               "10.8 cm of water below the capsule, dogs (doi 10.1007/BF00586833)"};
+constexpr MaterialPreset::InSitu kSkinInSitu{
+    0, 0.18, "excised skin of dogs shrinks by 33 % in area, so by 18 % in length (arXiv 1609.07267)"};
+
 /// One row of the paper's section 5.1, in its own numbers: r and R [mm], K1, K2, K' [kPa/mm], v1.
 constexpr MaterialPreset row(const char* name, const char* organ, double r, double ball, double k1, double k2,
                              double constraint, double viscosity_kpa_s_per_mm, double toughness, double least,
-                             double most, double damage, const char* source) {
-  MaterialPreset preset{name, organ, r * 1e-3, ball * 1e-3, {}, least, most, damage, source};
+                             double most, double damage, const char* source, MaterialPreset::InSitu in_situ) {
+  MaterialPreset preset{name, organ, r * 1e-3, ball * 1e-3, {}, least, most, damage, source, true, in_situ};
   network::Material& m = preset.material;
   m.kelvin = k1 * 1e6, m.spring = k2 * 1e6, m.constraint = constraint * 1e6, m.viscosity = viscosity_kpa_s_per_mm * 1e6;
   m.density = 1060;
@@ -40,7 +48,7 @@ constexpr double kModulusPerK = 2.5 * kPi * 2e-3 * 2e-3 / 12e-3;
 constexpr MaterialPreset tissue(const char* name, double young, double density, double least, double most,
                                 const char* source) {
   const double k = 1e-6 * young / kModulusPerK;  // [kPa/mm]
-  MaterialPreset preset = row(name, name, 4, 2.0, k, k, 4 * k / 3, k / 3, kOrganToughness, least, most, 0, source);
+  MaterialPreset preset = row(name, name, 4, 2.0, k, k, 4 * k / 3, k / 3, kOrganToughness, least, most, 0, source, {});
   preset.material.density = density;
   preset.is_of_paper = false;
   return preset;
@@ -51,12 +59,12 @@ constexpr const char* kSlow =
 constexpr const char* kPrinted = "Bao & Wu, section 5.1; viscosity as printed, in Pa s (per mm, like the moduli)";
 
 constexpr std::array<MaterialPreset, 13> kPresets{
-    row("liver", "liver", 4, 2.0, 15, 15, 20, 5, kOrganToughness, 0.08, 0.40, 0.012, kSlow),
-    row("kidney", "kidney", 4, 1.5, 58, 58, 106, 4, kOrganToughness, 0.07, 0.20, 0, kSlow),
-    row("skin", "skin", 7, 2.8, 82, 82, 164, 3, kSkinToughness, 0.05, 0.50, 0, kSlow),
-    row("liver-pa-s", "liver", 4, 2.0, 15, 15, 20, 5e-3, kOrganToughness, 0.08, 0.40, 0.012, kPrinted),
-    row("kidney-pa-s", "kidney", 4, 1.5, 58, 58, 106, 4e-3, kOrganToughness, 0.07, 0.20, 0, kPrinted),
-    row("skin-pa-s", "skin", 7, 2.8, 82, 82, 164, 3e-3, kSkinToughness, 0.05, 0.50, 0, kPrinted),
+    row("liver", "liver", 4, 2.0, 15, 15, 20, 5, kOrganToughness, 0.08, 0.40, 0.012, kSlow, kLiverInSitu),
+    row("kidney", "kidney", 4, 1.5, 58, 58, 106, 4, kOrganToughness, 0.07, 0.20, 0, kSlow, kKidneyInSitu),
+    row("skin", "skin", 7, 2.8, 82, 82, 164, 3, kSkinToughness, 0.05, 0.50, 0, kSlow, kSkinInSitu),
+    row("liver-pa-s", "liver", 4, 2.0, 15, 15, 20, 5e-3, kOrganToughness, 0.08, 0.40, 0.012, kPrinted, kLiverInSitu),
+    row("kidney-pa-s", "kidney", 4, 1.5, 58, 58, 106, 4e-3, kOrganToughness, 0.07, 0.20, 0, kPrinted, kKidneyInSitu),
+    row("skin-pa-s", "skin", 7, 2.8, 82, 82, 164, 3e-3, kSkinToughness, 0.05, 0.50, 0, kPrinted, kSkinInSitu),
     tissue(kGenericPreset, 20e3, 1060, 0.03, 0.40,
            "estimate: Young's modulus 20 kPa, between spleen and liver of this table; for tissue of no named organ"),
     tissue("heart", 20e3, 1060, 0.08, 0.20, "estimate: Young's modulus 20 kPa, relaxed; a beating heart is stiffer"),
@@ -68,9 +76,11 @@ constexpr std::array<MaterialPreset, 13> kPresets{
     tissue("bladder", 100e3, 1060, 0.05, 0.20,
            "estimate: Young's modulus 100 kPa of a slack wall; stretched samples reach 1.9 MPa (Martins et al., Int. "
            "Urogynecol. J. 22, 2011)"),
-    tissue("fat", 3.25e3, 920, 0.03, 0.40,
-           "Young's modulus 3.25 kPa of breast fat (Samani, Zubovits & Plewes, Phys. Med. Biol. 52, 2007); density "
-           "920 kg/m^3, an estimate"),
+    tissue(
+        "fat", 3.04e3, 920, 0.03, 0.40,
+        "Young's modulus 3.04 kPa of breast fat and gland in the living (Briot et al., \"In vivo measurement of breast "
+        "tissues stiffness using a light aspiration device\", Clin. Biomech. 99, 2022); density 920 kg/m^3, an "
+        "estimate"),
     tissue("muscle", 20e3, 1060, 0.05, 0.50, "estimate: Young's modulus 20 kPa, across the fibres of relaxed muscle"),
 };
 

@@ -26,6 +26,13 @@ struct MaterialPreset {
   double damage_depth;         ///< [m]; 0: none is known. Liver: 12 mm (Schwartz et al. 2005)
   const char* source;          ///< where the values come from
   bool is_of_paper = true;     ///< the paper's Table 1 has its forces
+
+  /// What the living organ is under.
+  struct InSitu {
+    double pressure = 0;  ///< that its capsule holds [Pa]; 0: none is known
+    double strain = 0;    ///< of its surface [1]; 0: none is known
+    const char* source = "";
+  } in_situ{};
 };
 
 /// All presets: each organ of the paper with the viscosity in kPa s/mm, and with the paper's own Pa s reading as

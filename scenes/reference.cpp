@@ -77,8 +77,8 @@ std::string preset_table() {
   std::string text =
       "\n### presets\n\nMaterials of the paper, and others by their Young's modulus, which is 2.5 K2 pi R^2 / spacing; "
       "every modulus in kPa/mm, the viscosity in kPa s/mm.\n\n"
-      "| preset | K2 | K1 | K' | v1 | ball R mm | spacing mm | source |\n| --- | --- | --- | --- | --- | --- "
-      "| --- | --- |\n";
+      "| preset | K2 | K1 | K' | v1 | ball R mm | spacing mm | source | in the body |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
   for (const MaterialPreset& preset : material_presets()) {
     const network::Material& m = preset.material;
     text += "| " + in_code(in_quotes(preset.name)) + " | ";
@@ -86,7 +86,7 @@ std::string preset_table() {
       text += double_to_decimal(value, 6) + " | ";
     for (const double length : {preset.ball_radius, m.calibration_spacing})
       text += double_to_decimal(length, -3) + " | ";
-    text += std::string(preset.source) + " |\n";
+    text += std::string(preset.source) + " | " + preset.in_situ.source + " |\n";
   }
   return text;
 }

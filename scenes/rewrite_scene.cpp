@@ -27,11 +27,14 @@ class Rewriter {
     const bool are_objects =
         a.kind == JsonKind::object && b.kind == JsonKind::object && in_text.kind == JsonKind::object;
     const bool are_lists = a.kind == JsonKind::list && b.kind == JsonKind::list && in_text.kind == JsonKind::list &&
-                           a.children.size() == b.children.size() && a.children.size() == in_text.children.size();
+                           a.children.size() <= b.children.size() && a.children.size() == in_text.children.size();
     if (are_objects) return compare_members(a, b, in_text);
     if (!are_lists) return edits.push_back({in_text.begin, in_text.end, text_of(b)}), true;
     for (std::size_t i = 0; i < a.children.size(); ++i)
       if (!compare(a.children[i], b.children[i], in_text.children[i])) return false;
+    std::vector<std::string> added;
+    for (std::size_t i = a.children.size(); i < b.children.size(); ++i) added.push_back(text_of(b.children[i]));
+    add_behind(in_text, added);
     return true;
   }
 
@@ -43,7 +46,7 @@ class Rewriter {
   bool compare_members(const JsonNode& a, const JsonNode& b, const JsonNode& in_text) {
     for (const std::string& key : a.keys)
       if (b.find(key) == nullptr) return false;
-    std::string added;
+    std::vector<std::string> added;
     for (std::size_t i = 0; i < b.keys.size(); ++i) {
       const JsonNode *old = a.find(b.keys[i]), *own = in_text.find(b.keys[i]);
       if (own != nullptr && old != nullptr) {
@@ -51,16 +54,23 @@ class Rewriter {
       } else if (own != nullptr) {
         edits.push_back({own->begin, own->end, text_of(b.children[i])});
       } else if (old == nullptr || before_.substr(old->begin, old->end - old->begin) != text_of(b.children[i])) {
-        added += (added.empty() ? "" : separator(in_text)) + in_quotes(b.keys[i]) + ": " + text_of(b.children[i]);
+        added.push_back(in_quotes(b.keys[i]) + ": " + text_of(b.children[i]));
       }
     }
-    if (added.empty()) return true;
+    add_behind(in_text, added);
+    return true;
+  }
+
+  /// Adds members to an object, or items to a list.
+  void add_behind(const JsonNode& in_text, const std::vector<std::string>& items) {
+    std::string added;
+    for (const std::string& item : items) added += (added.empty() ? "" : separator(in_text)) + item;
+    if (added.empty()) return;
     if (in_text.children.empty()) {
-      edits.push_back({in_text.begin, in_text.end, "{" + added + "}"});
-      return true;
+      const bool is_list = in_text.kind == JsonKind::list;
+      return edits.push_back({in_text.begin, in_text.end, (is_list ? "[" : "{") + added + (is_list ? "]" : "}")});
     }
-    // A comma where the last member ends; the new members before the closing bracket, behind a comment that may stand
-    // there.
+    // A comma where the last one ends; the new ones before the closing bracket, behind a comment that may stand there.
     const std::size_t last = in_text.children.back().end, bracket = in_text.end - 1;
     const std::size_t line = plain_.rfind('\n', bracket);
     const bool has_own_line = plain_.find_first_not_of(" \t", line + 1) == bracket && line >= last;
@@ -73,14 +83,14 @@ class Rewriter {
       edits.push_back({bracket, bracket, " " + added});
       edits.push_back({last, last, ","});
     }
-    return true;
   }
 
-  /// Between two members of this object: in one line if it is, else as its first key stands.
-  std::string separator(const JsonNode& object) const {
-    const std::string_view own = std::string_view(plain_).substr(object.begin, object.end - object.begin);
-    if (object.children.empty() || own.find('\n') == std::string_view::npos) return ", ";
-    return ",\n" + std::string(std::size_t(object.key_places.front().column - 1), ' ');
+  /// Between two members or items: in one line if they are, else as the first one stands.
+  std::string separator(const JsonNode& node) const {
+    const std::string_view own = std::string_view(plain_).substr(node.begin, node.end - node.begin);
+    if (node.children.empty() || own.find('\n') == std::string_view::npos) return ", ";
+    const Place first = node.kind == JsonKind::list ? node.children.front().place : node.key_places.front();
+    return ",\n" + std::string(std::size_t(first.column - 1), ' ');
   }
 
   const std::string &before_, &after_, &plain_;

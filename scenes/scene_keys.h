@@ -121,9 +121,11 @@ void describe_fields(V& v, MaterialSpec& material) {
            material.calibration_spacing, units::millimetre, within(0.01, 1000));
   v.number(Key{"prestrain",
                "In-situ strain: an element's length without force is shorter by this fraction than its length in the "
-               "lattice. A capsule with more prestrain than the tissue below it makes a cut gape.",
+               "lattice; negative where the tissue is pressed. A capsule with more prestrain than the tissue below it "
+               "makes a "
+               "cut gape.",
                false, "0"},
-           material.prestrain, units::none, within(0, 0.5));
+           material.prestrain, units::none, within(-0.2, 0.5));
   v.number(
       Key{"fracture_toughness_j_per_m2", "Fracture energy J_c of a cut per area; 0: a blade cuts without resistance.",
           false, "the preset's, else 0"},
@@ -215,6 +217,13 @@ void describe_fields(V& v, OrganSpec& organ) {
   v.choice(Key{"mesh_unit", "Unit of the mesh file's coordinates."}, organ.mesh_unit);
   v.point(Key{"at_mm", "Place of the mesh file's origin in the scene; not allowed for a rig."}, organ.at,
           units::millimetre, any_coordinate_mm);
+  v.point(
+      Key{"turn_deg",
+          "Turns the mesh about its file's origin: about the scene's x, then its y, then its z axis; not allowed for "
+          "a rig."},
+      organ.turn, units::degree, within(-360, 360));
+  v.number(Key{"scale", "Multiplies the size of the mesh, about its file's origin; not allowed for a rig."},
+           organ.scale, units::none, within(0.001, 1000));
   v.flag(Key{"all_parts", "Keep every closed part of the mesh, not only the largest."}, organ.all_parts);
   v.integer(Key{"most_triangles", "The drawn surface is made coarser if it has more; the spheres stay the same.", false,
                 "as many as the mesh has"},

@@ -126,7 +126,11 @@ void check_organ(Problems& problems, std::size_t index, const OrganSpec& organ) 
   if (problems.is_good(at + "/rig") && organ.mesh.empty() == !organ.rig)
     problems.add_rule(at, "must have exactly one of mesh, rig", "", at + "/mesh");
   if (organ.rig) check_rig(problems, at + "/rig", *organ.rig);
-  if (organ.rig && !(organ.at == Vec3{})) problems.add_rule(at + "/at_mm", "only an organ from a mesh has this key");
+  const auto only_of_mesh = [&](bool is_given, const char* key) {
+    if (organ.rig && is_given) problems.add_rule(at + "/" + key, "only an organ from a mesh has this key");
+  };
+  only_of_mesh(!(organ.at == Vec3{}), "at_mm"), only_of_mesh(!(organ.turn == Vec3{}), "turn_deg");
+  only_of_mesh(organ.scale != 1, "scale");
   check_material_of(problems, at + "/material", organ.material, at, organ.structure);
   check_layers(problems, at, organ);
   for (std::size_t i = 0; i < organ.anchors.size(); ++i)

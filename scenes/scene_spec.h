@@ -62,7 +62,7 @@ struct MaterialSpec {
   std::optional<double> stiffness_scale;      ///< multiplies every stiffness and damping
   std::optional<double> calibration_ball;     ///< radius R of the ball the moduli belong to [m]
   std::optional<double> calibration_spacing;  ///< spacing of the site the moduli belong to [m]
-  std::optional<double> prestrain;            ///< in [0, 0.5]
+  std::optional<double> prestrain;            ///< in [-0.2, 0.5]
   std::optional<double> fracture_toughness;   ///< J_c [J/m^2]
   std::optional<double> blade_friction;       ///< [Pa]
   std::optional<FittedForSpec> fitted_for;    ///< for information only
@@ -130,6 +130,8 @@ struct OrganSpec {
   std::optional<RigSpec> rig;
   LengthUnit mesh_unit = LengthUnit::millimetre;
   Vec3 at;                                     ///< place of the mesh file's origin in the scene [m]
+  Vec3 turn;                                   ///< of the mesh about that origin, along x, then y, then z [degrees]
+  double scale = 1;                            ///< of the mesh, about that origin
   bool all_parts = false;                      ///< every closed part of the mesh, not only the largest
   std::optional<std::int32_t> most_triangles;  ///< of the drawn surface, which is made coarser if it has more
   network::Structure structure = network::Structure::ctpm;  ///< which elements join the spheres; the key is `model`

@@ -118,6 +118,13 @@ class CutGrid {
     void add(Node n);
   };
   NodeBox take_changed();
+  /// Whether a node is at most so many edges from a box.
+  bool is_near(const NodeBox& box, Index node, Index hops) const {
+    const Node n = this->node(node);
+    for (std::size_t a = 0; a < 3; ++a)
+      if (n[a] < box.low[a] - hops || n[a] > box.high[a] + hops) return false;
+    return true;
+  }
 
  private:
   std::size_t edge(Index node, int direction) const { return std::size_t(node) * kDirections + std::size_t(direction); }

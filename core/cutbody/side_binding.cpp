@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/cutting/blade_geometry.h"
 #include "core/surface/surface.h"
@@ -9,8 +10,14 @@
 namespace ctpm::cutbody {
 namespace {
 
-/// Bindings whose weights are larger than this in sum would throw their vertex far out.
-constexpr double kLargestSum = 4;
+/// Spheres on one side of a place throw it far out where their weights are large in sum: up to the first sum a way to
+/// follow them counts in full, from the second on not at all (our choice). Beside a cut, near spheres are soon left for
+/// those in a wider reach, which throw it less; spheres of its own side are followed as far as that is sensible.
+struct Sums {
+  double all, none;
+};
+constexpr Sums kNear{1.3, 2.5}, kFar{4, 8}, kOfPiece{2.5, 4};
+constexpr double kWider = 1.5;
 
 /// A binding must put its vertex in its place at rest within this part of a spacing.
 constexpr double kOff = 1e-6;
@@ -18,64 +25,97 @@ constexpr double kOff = 1e-6;
 /// Vertices this near to the organ's own surface are put onto it, in spacings.
 constexpr double kOnSurface = 2e-3;
 
+constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+
+/// Whether a binding follows spheres that a place is wholly joined to.
+bool is_joined(const SideBinding::Binding& binding, std::span<const JoinedSpheres::Joined> joined) {
+  constexpr double kWhole = 1 - 1e-9;
+  return std::all_of(binding.sphere.begin(), binding.sphere.end(), [&](CutGrid::Index s) {
+    const auto at = std::lower_bound(joined.begin(), joined.end(), s,
+                                     [](const JoinedSpheres::Joined& j, CutGrid::Index i) { return j.sphere < i; });
+    return at != joined.end() && at->sphere == s && at->part > kWhole;
+  });
+}
+
 }  // namespace
+
+/// Several ways to follow spheres, the first ones as far as their weights are small: so that neighbouring places change
+/// from one way to the next smoothly.
+class SideBinding::Mix {
+ public:
+  bool is_whole() const { return missing_ == 0; }
+
+  /// Adds as much of a way as its weights allow. An empty one is no way.
+  void add(const Binding& way, Sums sums) {
+    if (way.sphere.empty()) return;
+    double sum = 0;
+    for (const double w : way.weight) sum += std::abs(w);
+    const double q = std::clamp((sums.none - sum) / (sums.none - sums.all), 0.0, 1.0), part = q * q * (3 - 2 * q);
+    add(way, part);
+  }
+
+  /// Fills up what is missing.
+  void fill(const Binding& way) { add(way, 1); }
+
+  Binding binding() const {
+    Binding all;
+    for (const auto& [sphere, weight] : weight_) all.sphere.push_back(sphere), all.weight.push_back(weight);
+    return all;
+  }
+
+ private:
+  void add(const Binding& way, double part) {
+    if (part == 0) return;
+    for (std::size_t i = 0; i < way.sphere.size(); ++i) weight_[way.sphere[i]] += missing_ * part * way.weight[i];
+    missing_ *= 1 - part;
+  }
+
+  std::map<Index, double> weight_;
+  double missing_ = 1;
+};
 
 SideBinding::SideBinding(const Model& model, const CutGrid& grid)
     : model_(model),
       organ_(model.organs[std::size_t(grid.organ())]),
       whole_(model.surfaces[std::size_t(grid.organ())]),
       grid_(grid),
-      sight_(grid) {}
-
-/// Whether what a node sees may depend on crossings within a box.
-bool SideBinding::is_near(CutGrid::NodeBox box, Index node) const {
-  const CutGrid::Node n = grid_.node(node);
-  for (std::size_t a = 0; a < 3; ++a)
-    if (n[a] < box.low[a] - Sight::kMostHops || n[a] > box.high[a] + Sight::kMostHops) return false;
-  return true;
-}
+      joined_(grid) {}
 
 void SideBinding::forget_near(CutGrid::NodeBox changed) {
   // A cut far away may divide the piece that a vertex follows.
-  std::erase_if(bound_, [&](const auto& entry) { return entry.second.by_piece || is_near(changed, entry.first.side); });
-  std::erase_if(seen_, [&](const auto& entry) { return is_near(changed, entry.first); });
+  std::erase_if(bound_, [&](const auto& entry) {
+    return entry.second.by_piece || grid_.is_near(changed, entry.first.side, JoinedSpheres::kMostHops);
+  });
   piece_.clear(), row_boxes_.clear();
-  sight_.update(changed);
-}
-
-const Sight::Seen& SideBinding::seen_from(Index node) {
-  const auto [found, is_new] = seen_.try_emplace(node);
-  if (is_new) found->second = sight_.from(node);
-  return found->second;
+  joined_.forget_near(changed);
 }
 
 /// Follows the spheres of a list within reach; empty if they do not span space.
-SideBinding::Binding SideBinding::follow(Vec3 rest, const std::vector<Index>& spheres, double reach) const {
+SideBinding::Binding SideBinding::follow(Vec3 rest, std::span<const Joined> spheres, double reach) const {
   Binding binding;
   std::vector<Vec3> centres;
   std::vector<double> trust;
-  for (const Index s : spheres) {
-    const auto sphere = std::size_t(organ_.first + s);
+  for (const Joined& s : spheres) {
+    const auto sphere = std::size_t(organ_.first + s.sphere);
     if (norm(model_.rest_position[sphere] - rest) >= reach) continue;
-    binding.sphere.push_back(s), centres.push_back(model_.rest_position[sphere]), trust.push_back(model_.mass[sphere]);
+    binding.sphere.push_back(s.sphere), centres.push_back(model_.rest_position[sphere]);
+    trust.push_back(s.part * model_.mass[sphere]);
   }
   if (centres.size() < 4) return {};
   binding.weight = surface::follow_weights(rest, centres, trust, reach);
   Vec3 off = -rest;
-  double sum = 0;
-  for (std::size_t i = 0; i < centres.size(); ++i)
-    off += binding.weight[i] * centres[i], sum += std::abs(binding.weight[i]);
-  if (!(norm(off) < kOff * organ_.spacing) || !(sum < kLargestSum)) return {};
+  for (std::size_t i = 0; i < centres.size(); ++i) off += binding.weight[i] * centres[i];
+  if (!(norm(off) < kOff * organ_.spacing)) return {};
   return binding;
 }
 
 /// Spheres of a piece within reach; -1: of all pieces.
-std::vector<SideBinding::Index> SideBinding::spheres_around(Vec3 rest, double reach, Index piece) const {
-  std::vector<Index> spheres;
+std::vector<SideBinding::Joined> SideBinding::spheres_around(Vec3 rest, double reach, Index piece) const {
+  std::vector<Joined> spheres;
   for (Index s = 0; s < organ_.count; ++s) {
     const Index node = grid_.node_of_sphere(s);
     if (piece >= 0 && (node < 0 || piece_[std::size_t(node)] != piece)) continue;
-    if (norm(model_.rest_position[std::size_t(organ_.first + s)] - rest) < reach) spheres.push_back(s);
+    if (norm(model_.rest_position[std::size_t(organ_.first + s)] - rest) < reach) spheres.push_back({s, 1});
   }
   return spheres;
 }
@@ -114,14 +154,6 @@ SideBinding::Binding SideBinding::follow_whole(const Origin& origin) const {
   return binding;
 }
 
-bool SideBinding::is_own_side(const Binding& binding, Index side) {
-  if (side < 0) return true;
-  const Sight::Seen& seen = seen_from(side);
-  if (!seen.has_cut) return true;
-  return std::all_of(binding.sphere.begin(), binding.sphere.end(),
-                     [&](Index s) { return std::binary_search(seen.sphere.begin(), seen.sphere.end(), s); });
-}
-
 /// Takes a place of a wall back to the swept surface if it is off it, as beyond the end of a cut.
 Vec3 SideBinding::near_cut(Vec3 rest, const State& state) {
   constexpr double kOffCut = 0.15, kReach = 1.5;  // in steps of the grid
@@ -142,45 +174,43 @@ const SideBinding::Bound& SideBinding::bind(const CutMesh::Vertex& vertex, bool 
   if (!is_new) return bound;
   bound.rest = is_wall ? near_cut(vertex.rest, state) : vertex.rest;
   if (is_outer) bound.origin = origin_of(bound.rest);
+  std::span<const Joined> joined;
+  if (vertex.side >= 0) joined = joined_.around(bound.rest, vertex.side);
   if (bound.origin.triangle >= 0) {
     const Vec3 place = place_of(bound.origin);
     if (norm(place - bound.rest) <= kOnSurface * organ_.spacing) {
       bound.rest = place, bound.binding = follow_whole(bound.origin);
-      if (is_own_side(bound.binding, vertex.side)) return bound;
+      if (vertex.side < 0 || is_joined(bound.binding, joined)) return bound;
     }
   }
-  bound.binding = bind_to_own_side(bound.rest, vertex.side);
-  bound.by_piece = bound.binding.sphere.empty();
-  if (bound.by_piece) bound.binding = bind_to_piece(bound.rest, vertex.side);
+  const double reach = surface::kBindingReach * organ_.spacing;
+  Mix mix;
+  mix.add(follow(bound.rest, joined, reach), kNear);
+  if (!mix.is_whole()) mix.add(follow(bound.rest, joined, kWider * reach), kFar);
+  bound.by_piece = !mix.is_whole();
+  if (bound.by_piece) {
+    if (piece_.empty()) piece_ = grid_.find_pieces();
+    for (const Index piece : {piece_[std::size_t(vertex.side)], Index(-1)})
+      if (!mix.is_whole()) follow_piece(bound.rest, piece, mix);
+  }
+  bound.binding = mix.binding();
   return bound;
 }
 
-/// Empty if the spheres of the vertex's side do not span space.
-SideBinding::Binding SideBinding::bind_to_own_side(Vec3 rest, Index side) {
+/// Fills a mix up with spheres of a piece, if there are any around.
+void SideBinding::follow_piece(Vec3 rest, Index piece, Mix& mix) const {
   const double reach = surface::kBindingReach * organ_.spacing;
-  const std::vector<Index>& seen = seen_from(side).sphere;
-  for (const double wider : {1.0, 1.5})
-    if (Binding own = follow(rest, seen, wider * reach); !own.sphere.empty()) return own;
-  return {};
-}
-
-SideBinding::Binding SideBinding::bind_to_piece(Vec3 rest, Index side) {
-  const double reach = surface::kBindingReach * organ_.spacing;
-  if (piece_.empty()) piece_ = grid_.find_pieces();
-  for (const Index piece : {piece_[std::size_t(side)], Index(-1)}) {
-    for (const double wider : {1.0, 1.5, 2.5, 4.0}) {
-      const std::vector<Index> around = spheres_around(rest, wider * reach, piece);
-      if (Binding any = follow(rest, around, wider * reach); !any.sphere.empty()) return any;
-    }
-    // Spheres in a plane, or fewer than four.
-    const std::vector<Index> around = spheres_around(rest, 4 * reach, piece);
-    if (around.empty()) continue;
-    const auto distance = [&](Index s) { return norm(model_.rest_position[std::size_t(organ_.first + s)] - rest); };
-    return {
-        {*std::min_element(around.begin(), around.end(), [&](Index s, Index t) { return distance(s) < distance(t); })},
-        {1.0}};
-  }
-  return {{0}, {1.0}};
+  for (const double wider : {1.0, 1.5, 2.5, 4.0})
+    if (!mix.is_whole()) mix.add(follow(rest, spheres_around(rest, wider * reach, piece), wider * reach), kOfPiece);
+  if (mix.is_whole()) return;
+  // Spheres in a plane, or fewer than four.
+  const std::vector<Joined> around = spheres_around(rest, piece >= 0 ? 4 * reach : kAnywhere, piece);
+  const auto distance = [&](const Joined& s) {
+    return norm(model_.rest_position[std::size_t(organ_.first + s.sphere)] - rest);
+  };
+  const auto nearest = std::min_element(around.begin(), around.end(),
+                                        [&](const Joined& s, const Joined& t) { return distance(s) < distance(t); });
+  if (nearest != around.end()) mix.fill({{nearest->sphere}, {1.0}});
 }
 
 }  // namespace ctpm::cutbody

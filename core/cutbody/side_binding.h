@@ -4,11 +4,12 @@
 #include <compare>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "core/cutbody/cut_grid.h"
 #include "core/cutbody/cut_mesh.h"
-#include "core/cutbody/sight.h"
+#include "core/cutbody/joined_spheres.h"
 #include "core/model/model.h"
 #include "core/model/organ.h"
 #include "core/model/state.h"
@@ -35,7 +36,7 @@ class SideBinding {
     Vec3 rest;  ///< [m]
     Binding binding;
     Origin origin;
-    bool by_piece = false;  ///< the spheres of its own side do not span space
+    bool by_piece = false;  ///< the spheres of its own side hardly span space, or do not
   };
 
   /// Both must outlive the SideBinding.
@@ -56,27 +57,25 @@ class SideBinding {
     friend auto operator<=>(const Key&, const Key&) = default;
   };
 
-  bool is_near(CutGrid::NodeBox box, Index node) const;
-  const Sight::Seen& seen_from(Index node);
+  class Mix;
+  using Joined = JoinedSpheres::Joined;
+
   Vec3 near_cut(Vec3 rest, const State& state);
   Origin origin_of(Vec3 rest) const;
   Vec3 place_of(const Origin& origin) const;
   Binding follow_whole(const Origin& origin) const;
-  bool is_own_side(const Binding& binding, Index side);
-  Binding bind_to_own_side(Vec3 rest, Index side);
-  Binding bind_to_piece(Vec3 rest, Index side);
-  Binding follow(Vec3 rest, const std::vector<Index>& spheres, double reach) const;
-  std::vector<Index> spheres_around(Vec3 rest, double reach, Index piece) const;
+  Binding follow(Vec3 rest, std::span<const Joined> spheres, double reach) const;
+  void follow_piece(Vec3 rest, Index piece, Mix& mix) const;
+  std::vector<Joined> spheres_around(Vec3 rest, double reach, Index piece) const;
 
   const Model& model_;
   const OrganRange& organ_;
   const Surface& whole_;
   const CutGrid& grid_;
-  Sight sight_;
+  JoinedSpheres joined_;
   std::map<Key, Bound> bound_;
   std::vector<Box> row_boxes_;  ///< of the swept surface; see cutting::boxes_of_rows()
-  std::map<Index, Sight::Seen> seen_;
-  std::vector<Index> piece_;  ///< of each node of the grid; empty until it is asked for after a change
+  std::vector<Index> piece_;    ///< of each node of the grid; empty until it is asked for after a change
 };
 
 }  // namespace ctpm::cutbody

@@ -72,15 +72,24 @@ Sight::Row Sight::row_at(const Bits& bits, CutGrid::Node home, Index j, Index k)
 void Sight::add_spheres(CutGrid::Node home, Index hops, Index j, Index k, Row row, Seen& seen) const {
   for (; row != 0; row &= row - 1) {
     const Index i = std::countr_zero(row) - kMostHops;
-    if (hops > shortest_way({i, j, k}) + kDetour) continue;
-    const auto spheres = grid_.spheres_at(grid_.at({home[0] + i, home[1] + j, home[2] + k}));
-    seen.sphere.insert(seen.sphere.end(), spheres.begin(), spheres.end());
+    const Index detour = hops - shortest_way({i, j, k});
+    if (detour > kMostDetour) continue;
+    for (const Index sphere : grid_.spheres_at(grid_.at({home[0] + i, home[1] + j, home[2] + k})))
+      seen.sphere.push_back({sphere, detour});
   }
 }
 
 Sight::Seen Sight::from(Index node) {
   const CutGrid::Node home = grid_.node(node);
   const auto at = [](Index j, Index k) { return std::size_t(j + kMostHops + kSide * (k + kMostHops)); };
+  // Rows of edges are asked for at each hop: once from the grid is enough.
+  std::array<Rows, CutGrid::kDirections> open;
+  Rows at_cut;
+  for (Index k = -kMostHops; k <= kMostHops; ++k)
+    for (Index j = -kMostHops; j <= kMostHops; ++j) {
+      for (std::size_t d = 1; d < CutGrid::kDirections; ++d) open[d][at(j, k)] = row_at(is_open_[d], home, j, k);
+      at_cut[at(j, k)] = row_at(at_cut_, home, j, k);
+    }
   Seen seen;
   Rows visited{}, last{}, next{};
   visited[at(0, 0)] = last[at(0, 0)] = Row(1) << kMostHops;
@@ -94,12 +103,12 @@ Sight::Seen Sight::from(Index node) {
       for (Index j = -hops; j <= hops; ++j) {
         const Row row = std::exchange(last[at(j, k)], 0);
         if (row == 0) continue;
-        seen.has_cut = seen.has_cut || (row & row_at(at_cut_, home, j, k)) != 0;
+        seen.has_cut = seen.has_cut || (row & at_cut[at(j, k)]) != 0;
         for (int d = 1; d < CutGrid::kDirections; ++d) {
           const Index dx = d & 1, dy = d >> 1 & 1, dz = d >> 2;
-          const Bits& open = is_open_[std::size_t(d)];
-          next[at(j + dy, k + dz)] |= (row & row_at(open, home, j, k)) << dx;
-          next[at(j - dy, k - dz)] |= row >> dx & row_at(open, home, j - dy, k - dz);
+          const Rows& rows = open[std::size_t(d)];
+          next[at(j + dy, k + dz)] |= (row & rows[at(j, k)]) << dx;
+          next[at(j - dy, k - dz)] |= row >> dx & rows[at(j - dy, k - dz)];
         }
       }
     for (Index k = -hops - 1; k <= hops + 1; ++k)
@@ -109,7 +118,8 @@ Sight::Seen Sight::from(Index node) {
         visited[at(j, k)] |= reached, reached = 0;
       }
   }
-  std::sort(seen.sphere.begin(), seen.sphere.end());
+  std::sort(seen.sphere.begin(), seen.sphere.end(),
+            [](const Seen::Sphere& a, const Seen::Sphere& b) { return a.sphere < b.sphere; });
   return seen;
 }
 

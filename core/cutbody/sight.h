@@ -14,13 +14,16 @@ class Sight {
  public:
   using Index = CutGrid::Index;
 
-  /// Spheres are seen over this many edges at most, and over one more than the shortest way: what can only be reached
-  /// around the end of a cut is on its other side.
-  static constexpr Index kMostHops = 12, kDetour = 1;
+  /// Spheres are seen over this many edges at most, and over so many more than the shortest way: what can only be
+  /// reached around the end of a cut is on its other side.
+  static constexpr Index kMostHops = 12, kMostDetour = 4;
 
   struct Seen {
-    std::vector<Index> sphere;  ///< ascending
-    bool has_cut = false;       ///< an edge that a cut crosses begins or ends at a node fewer edges away than kMostHops
+    struct Sphere {
+      Index sphere, detour;  ///< edges of the way to it beyond the shortest
+    };
+    std::vector<Sphere> sphere;  ///< ascending
+    bool has_cut = false;  ///< an edge that a cut crosses begins or ends at a node fewer edges away than kMostHops
   };
 
   /// `grid` must outlive the Sight.

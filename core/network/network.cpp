@@ -48,8 +48,8 @@ void check_material(Errors& errors, const std::string& where, const Material& m,
                       ""});
   if (!(m.viscosity >= 0) || !std::isfinite(m.viscosity))
     errors.push_back({where, "viscosity v1: got " + std::to_string(m.viscosity) + " Pa s/m, must be 0 or more", ""});
-  if (!(m.prestrain >= 0 && m.prestrain <= 0.5))
-    errors.push_back({where, "prestrain: got " + std::to_string(m.prestrain) + ", must be in [0, 0.5]", ""});
+  if (!(m.prestrain >= -0.2 && m.prestrain <= 0.5))
+    errors.push_back({where, "prestrain: got " + std::to_string(m.prestrain) + ", must be in [-0.2, 0.5]", ""});
   if (!(m.fracture_toughness >= 0 && std::isfinite(m.fracture_toughness) && m.blade_friction >= 0 &&
         std::isfinite(m.blade_friction)))
     errors.push_back({where, "fracture toughness and blade friction must be 0 or more", ""});

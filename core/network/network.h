@@ -41,8 +41,8 @@ struct Material {
   double stiffness_scale = 1;      ///< multiplies every stiffness and damping, > 0
   double calibration_area = 0;     ///< S0 = pi R^2 of the ball with which the moduli were calibrated [m^2], > 0
   double calibration_spacing = 0;  ///< spacing of that site [m], > 0
-  /// In-situ strain: the rest length of an element is shorter than its length in the lattice by this part, in [0, 0.5].
-  /// It makes a cut gape.
+  /// In-situ strain: the rest length of an element is shorter than its length in the lattice by this part, in
+  /// [-0.2, 0.5]. Tissue under more of it than what is below it makes a cut gape; pressed tissue has a negative one.
   double prestrain = 0;
   double fracture_toughness = 0;  ///< J_c: energy to open a unit of area [J/m^2], >= 0
   double blade_friction = 0;      ///< shear stress on each flank of a moving blade [Pa], >= 0

@@ -31,13 +31,14 @@ scenes::AnchorSpec anchor_of(const Hold& hold, const FilledOrgan& organ) {
   for (const Vec3& centre : organ.centre) heights.push_back(-dot(centre, hold.towards));
   std::sort(heights.begin(), heights.end());
   const double last = heights[std::size_t(hold.share * double(heights.size() - 1))];
-  const double step = organ.spacing > 4e-3 ? 1e-3 : 1e-4;
+  const double steps = organ.spacing > 4e-3 ? 1e3 : 1e4;  // of a metre
+  const auto rounded_up = [&](double length) { return std::ceil(length * steps + 0.1) / steps; };
   scenes::AnchorSpec anchor;
   if (hold.towards == kDown) {
-    anchor.lowest = std::ceil((last - heights.front() + 0.1 * step) / step) * step;
+    anchor.lowest = rounded_up(last - heights.front());
     return anchor;
   }
-  const double to = std::ceil((last + 0.1 * step) / step) * step;
+  const double to = rounded_up(last);
   anchor.plane = scenes::PlaneRegion{-to * hold.towards, -1.0 * hold.towards};
   return anchor;
 }
@@ -63,6 +64,8 @@ Result<AnchorChoice> try_anchors(scenes::SceneSpec& scene, const FilledOrgan& or
 }
 
 }  // namespace
+
+scenes::AnchorSpec usual_anchor(const FilledOrgan& organ) { return anchor_of(kHolds[0], organ); }
 
 Result<AnchorChoice> choose_anchors(scenes::SceneSpec scene, const FilledOrgan& organ,
                                     const std::function<bool()>& should_stop) {

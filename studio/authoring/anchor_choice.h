@@ -19,6 +19,9 @@ struct AnchorChoice {
   Model model;
 };
 
+/// The first anchor that choose_anchors() tries: an eighth of the spheres, at the bottom.
+scenes::AnchorSpec usual_anchor(const FilledOrgan& organ);
+
 /// Lets the only organ of `scene` settle on its own anchors, or, if it has none, on the first of several that hold it:
 /// an eighth of its spheres at the bottom, more of them, a side, the top, at most half of them. If none does, the one
 /// under which it sags least. Errors: those of build_model(); an anchor without spheres; `should_stop` ended it.

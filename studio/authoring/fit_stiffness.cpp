@@ -30,14 +30,20 @@ void multiply_scale(scenes::MaterialSpec& material, double factor) {
   material.stiffness_scale = factor * scenes::resolve_material(material).material.stiffness_scale;
 }
 
+/// Tissue that has crept, excised.
+void make_slow(scenes::MaterialSpec& material, double factor) {
+  material.viscosity = 0, material.prestrain = 0;
+  multiply_scale(material, factor);
+}
+
 /// The scene with that organ alone, without gravity and viscosity, and with the calibration's ball as its tool.
 scenes::SceneSpec slow_scene(const scenes::SceneSpec& scene, std::size_t organ, double factor) {
   scenes::SceneSpec slow;
   slow.name = scene.name, slow.gravity = {}, slow.tick = 10e-3;
   slow.organs = {scene.organs[organ]};
   scenes::OrganSpec& own = slow.organs[0];
-  own.material.viscosity = 0, multiply_scale(own.material, factor);
-  for (scenes::LayerSpec& layer : own.layers) layer.material.viscosity = 0, multiply_scale(layer.material, factor);
+  make_slow(own.material, factor);
+  for (scenes::LayerSpec& layer : own.layers) make_slow(layer.material, factor);
   scenes::ToolSpec ball;
   ball.name = "ball", ball.kind = ToolKind::ball, ball.radius = 1e-3 * rig::site_of(own).ball_radius;
   slow.tools = {ball};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 
 #include "core/surface/surface.h"
 #include "importers/text.h"
@@ -10,11 +11,13 @@
 #include "scenes/scene_file.h"
 #include "scenes/script.h"
 #include "studio/authoring/anchor_choice.h"
+#include "studio/authoring/capsule.h"
 #include "studio/authoring/filling_choice.h"
 #include "studio/authoring/fit_stiffness.h"
 #include "studio/authoring/new_folder.h"
 #include "studio/authoring/scene_parts.h"
 #include "studio/authoring/tissue_choice.h"
+#include "studio/loading/loaded_scene.h"
 #include "studio/loading/tick_time.h"
 #include "studio/output/files.h"
 #include "studio/output/number_text.h"
@@ -31,6 +34,8 @@ constexpr std::size_t kMostFittedSpheres = 4000;
 constexpr double kFitDepth = 0.012, kDeepestShare = 1.0 / 3;
 /// A fitted scale outside of this range says that the press is none of the paper's.
 constexpr double kLeastScale = 0.1, kMostScale = 10;
+/// More of an organ within another is told.
+constexpr double kMostOverlap = 0.02;
 
 /// Where a script is tried: the usual place first, then others, then right through the organ, where what holds it may
 /// be near.
@@ -46,6 +51,7 @@ struct Draft {
   scenes::OrganSpec spec;
   scenes::Script script;
   ImportedPart part;
+  double strain = 0;  ///< of its capsule against what is below it
 
   void note(const char* code, std::string found, std::string done, std::string remains) {
     part.report.findings.push_back({code, 1, {}, std::move(found), std::move(done), std::move(remains)});
@@ -79,9 +85,11 @@ class Import {
     stem_ = fs::path(request_.scene).stem().string();
     if (Errors errors = folder_.make(place_); !errors.empty()) return errors;
     if (request_.into) {
-      Result<scenes::SceneText> scene = scenes::load_scene(request_.scene);
+      tell("reading the scene", 0);
+      Result<loading::LoadedScene> scene = loading::load_whole_scene(request_.scene, {}, {}, request_.should_stop);
       if (!scene) return scene.errors();
-      scene_ = scene->spec;
+      present_ = *std::move(scene);
+      scene_ = present_.scene.spec;
       return {};
     }
     scene_.name = stem_;
@@ -111,27 +119,45 @@ class Import {
     importers::ImportOptions options;
     options.unit_in_metres = request_.unit_in_metres, options.size = request_.size, options.scale = request_.scale;
     options.usual_size = whole->usual_size();
-    options.part = request_.part, options.all_parts = request_.parts == Parts::all_in_one;
+    options.all_parts = request_.parts == Parts::all_in_one;
     options.gap = request_.gap.value_or(-1);
     options.largest_hole = request_.largest_hole;
     options.most_triangles = request_.most_triangles.value_or(0);
     options.should_stop = request_.should_stop;
     if (request_.progress)
       options.progress = [&](const std::string& stage, double share) { request_.progress(stage, 0.5 * share); };
-    const Result<importers::RepairedFile> file =
-        importers::repair_file(request_.mesh, options, request_.parts == Parts::each ? kMostOrgans : 1);
+    const Result<importers::RepairedFile> file = repair(options);
     if (!file) return with_option_names(file.errors());
+    const importers::RepairedFile lying = importers::turned(*file, request_.turn);
     FillingWish wish{request_.sphere_radius, request_.spheres};
     constexpr int kMostTries = 3;
     for (int tries = 0;; ++tries) {
       Result<std::vector<importers::ImportedOrgan>> filled =
-          fill_all(*file, options, wish, whole->preset->sphere_radius);
+          fill_all(lying, options, wish, whole->preset->sphere_radius);
       if (!filled) return filled.errors();
       if (Errors errors = make_drafts(*file, *whole, *std::move(filled)); !errors.empty()) return errors;
       const std::optional<std::int64_t> better = better_count();
       if (!better || tries == kMostTries) return {};
       wish.spheres = better;
     }
+  }
+
+  /// The repaired meshes of all names that are asked for.
+  Result<importers::RepairedFile> repair(importers::ImportOptions options) const {
+    const std::size_t most = request_.parts == Parts::each ? kMostOrgans : 1;
+    std::optional<importers::RepairedFile> all;
+    for (const std::string& name : request_.names.empty() ? std::vector<std::string>{""} : request_.names) {
+      options.part = name;
+      Result<importers::RepairedFile> one = importers::repair_file(request_.mesh, options, most);
+      if (!one) return one.errors();
+      if (!all)
+        all = *std::move(one);
+      else
+        std::move(one->mesh.begin(), one->mesh.end(), std::back_inserter(all->mesh));
+      // One unit for all of them, as the file has one.
+      options.unit_in_metres = all->report.unit.in_metres, options.size.reset(), options.scale = 1;
+    }
+    return *std::move(all);
   }
 
   /// The number of spheres that holds the wanted rate, if the drafts are too many or, where a rate was asked for, too
@@ -151,11 +177,12 @@ class Import {
     return std::max(std::int64_t(wanted), kFewestSpheres);
   }
 
-  /// Time of a tick of all drafts at rest [s]; none if they cannot be built.
-  std::optional<double> time_of_tick() {
+  /// Time of a tick of all drafts at rest, or of the whole scene [s]; none if they cannot be built.
+  std::optional<double> time_of_tick(bool is_whole = false) const {
     scenes::SceneSpec scene = scene_;
     scene.organs.clear();
     std::vector<FilledOrgan> organs;
+    if (is_whole) scene.organs = present_.scene.spec.organs, organs = present_.organs;
     for (const Draft& draft : drafts_) scene.organs.push_back(draft.spec), organs.push_back(draft.filled);
     scene.probes.clear(), scene.loads.clear(), scene.obstacles.clear(), scene.tools = tools_for(organs);
     const Result<scenes::BuiltScene> built = scenes::build_model(scene, organs);
@@ -166,33 +193,60 @@ class Import {
   Errors make_drafts(const importers::RepairedFile& file, const Tissue& whole,
                      std::vector<importers::ImportedOrgan> filled) {
     drafts_.clear();
-    std::vector<std::string> names, files;
+    std::vector<std::string> names;
+    const Vec3 at = place_of(filled);
     for (const scenes::OrganSpec& organ : scene_.organs) names.push_back(organ.name);
-    for (importers::ImportedOrgan& one : filled) {
+    for (std::size_t i = 0; i < filled.size(); ++i) {
+      importers::ImportedOrgan& one = filled[i];
+      loading::move_organ(one.organ, at);
       Draft draft;
       const std::int32_t part = one.mesh.part;
       const std::string part_name = part >= 0 ? file.report.parts[std::size_t(part)] : "";
       draft.tissue = whole;
-      if (request_.organ.empty() && filled.size() > 1) {
+      const bool is_one_of_file = filled.size() > 1 || !request_.names.empty();
+      if (request_.organ.empty() && is_one_of_file) {
         const Result<Tissue> own = choose_tissue(place_, "", {part_name, fs::path(request_.mesh).stem().string()});
         if (!own) return own.errors();
         draft.tissue = *own;
       }
       const bool is_alone = filled.size() == 1 && !request_.into;
       const std::string from_mesh = fs::path(request_.mesh).stem().string();
-      const std::string name = is_alone ? stem_ : file_name_of(filled.size() == 1 ? from_mesh : part_name);
+      const std::string name = is_alone ? stem_ : file_name_of(is_one_of_file ? part_name : from_mesh);
       draft.part.name = free_name(name, names);
       names.push_back(draft.part.name);
       const std::string mesh = (is_alone ? stem_ : stem_ + "-" + file_name_of(draft.part.name)) + ".obj";
       draft.part.mesh_file = beside(mesh);
       std::optional<Vec3> colour = part >= 0 ? file.part_colour[std::size_t(part)] : std::nullopt;
-      draft.filled = std::move(one.organ), draft.mesh = std::move(one.mesh), draft.part.report = std::move(one.report);
+      draft.filled = std::move(one.organ), draft.mesh = file.mesh[i], draft.part.report = std::move(one.report);
       draft.spec = organ_spec(draft.part.name, mesh, draft.tissue, draft.filled, colour);
       draft.spec.all_parts = request_.parts == Parts::all_in_one, draft.spec.most_triangles = request_.most_triangles;
       draft.spec.anchors = request_.anchors;
+      draft.spec.at = draft.part.at = at, draft.spec.turn = request_.turn;
+      if (Errors errors = add_layers(draft); !errors.empty()) return errors;
       if (request_.stiffness_scale) draft.spec.material.stiffness_scale = request_.stiffness_scale;
       if (Errors errors = check_mesh_file(draft.part.mesh_file); !errors.empty()) return errors;
       drafts_.push_back(std::move(draft));
+    }
+    return {};
+  }
+
+  /// Where the file's origin comes to lie: as asked for, or so that its organs lie right of those of the scene.
+  Vec3 place_of(const std::vector<importers::ImportedOrgan>& filled) const {
+    if (!request_.beside) return request_.at;
+    std::vector<FilledOrgan> organs;
+    for (const importers::ImportedOrgan& one : filled) organs.push_back(one.organ);
+    return place_beside(present_.organs, organs);
+  }
+
+  Errors add_layers(Draft& draft) const {
+    for (const LayerWish& wish : request_.layers) {
+      const Result<Tissue> tissue = choose_tissue(place_, wish.tissue, {});
+      if (!tissue) {
+        Errors errors = tissue.errors();
+        errors.front().where = output::option_name("import.layers");
+        return errors;
+      }
+      draft.spec.layers.push_back({wish.to_depth, tissue->material});
     }
     return {};
   }
@@ -214,12 +268,14 @@ class Import {
     note_tissue(draft);
     const scenes::MaterialSpec unfitted = draft.spec.material;
     fit(draft);
+    put_under_tension(draft);
     tell("settling", 0.7);
     Result<AnchorChoice> choice = choose_anchors(alone(draft), draft.filled, request_.should_stop);
-    if (!choice) return choice.errors();
+    if (!choice) return with_option_names(choice.errors());
     if (!choice->standing.stands() && draft.part.stiffness_scale) {
       // The ball of the fit is felt near the surface only; the whole organ may need more than it asks for.
       draft.spec.material = unfitted;
+      put_under_tension(draft);
       Result<AnchorChoice> again = choose_anchors(alone(draft), draft.filled, request_.should_stop);
       if (!again) return again.errors();
       if (again->standing.stands()) {
@@ -230,6 +286,7 @@ class Import {
       choice = std::move(again);
     }
     const loading::OrganStanding& standing = choice->standing.organ[0];
+    note_tension(draft);
     if (!choice->standing.stands())
       return {{request_.mesh,
                "organ " + draft.spec.name + " folds over under its own weight: it sags by " +
@@ -251,6 +308,30 @@ class Import {
     else if (!draft.tissue.is_own && std::string(draft.tissue.preset->source).starts_with("estimate"))
       draft.note("tissue_estimated", "the values of " + draft.spec.material.preset + " are an estimate", "none",
                  draft.tissue.preset->source);
+    for (const scenes::OrganSpec& other : present_.scene.spec.organs)
+      if (const double share =
+              overlap(draft.filled, present_.organs[std::size_t(&other - &present_.scene.spec.organs[0])]);
+          share > kMostOverlap)
+        draft.note("overlap",
+                   std::to_string(std::lround(100 * share)) + " % of the organ lies within organ " + other.name, "none",
+                   "they pass through each other; lay it beside, or give it another place");
+  }
+
+  void put_under_tension(Draft& draft) const {
+    if (draft.tissue.is_own || !request_.layers.empty()) return;
+    draft.spec.layers.clear(), draft.spec.material.prestrain.reset(), draft.strain = 0;
+    const std::optional<Tension> tension = tension_of(draft.spec.material, draft.filled);
+    if (!tension) return;
+    draft.spec.layers = {tension->capsule}, draft.spec.material.prestrain = tension->inside;
+    draft.strain = tension->strain;
+  }
+
+  void note_tension(Draft& draft) const {
+    if (!(draft.strain > 0)) return;
+    draft.note("tension", std::string("in the body it is under tension: ") + draft.tissue.preset->in_situ.source,
+               "a layer of " + importers::mm_text(draft.spec.layers.front().to_depth) + " under a strain of " +
+                   output::short_number(draft.strain, 2) + " against the tissue below",
+               "cuts gape; without the layer and the prestrain it is as if excised");
   }
 
   /// Fits the organ's stiffness and stores it; an organ that cannot be fitted keeps its moduli.
@@ -264,6 +345,8 @@ class Import {
       part.fit_problem = "the material is the author's own";
     } else if (!draft.tissue.preset->is_of_paper) {
       part.fit_problem = "the paper has no forces of this tissue";
+    } else if (!request_.layers.empty()) {
+      part.fit_problem = "the paper has no forces of layered tissue";
     } else if (kFitDepth > kDeepestShare * (most - least)) {
       draft.note("press_too_deep", "the organ is " + importers::mm_text(most - least) + " high", "not fitted",
                  "the press of 12 mm to which a scale is fitted is deeper than a third of it");
@@ -275,6 +358,8 @@ class Import {
     }
     if (!part.fit_problem.empty()) return;
     scenes::SceneSpec scene = alone(draft);
+    // The ball would push away what nothing holds.
+    if (scene.organs[0].anchors.empty()) scene.organs[0].anchors = {usual_anchor(draft.filled)};
     const Result<StiffnessFit> fit = fit_stiffness(scene, 0, draft.filled, request_.should_stop);
     if (!fit) {
       part.fit_problem = fit.errors().front().message;
@@ -326,11 +411,16 @@ class Import {
     }
     if (!request_.into) scene_.tools = tools_for(organs), scene_.cameras = {front_camera(organs)};
     name_tools(script);
+    // A camera that an import placed shall see the new organs too; one of the author's own stays.
+    if (request_.into && scene_.cameras == std::vector{front_camera(present_.organs)}) {
+      organs.insert(organs.end(), present_.organs.begin(), present_.organs.end());
+      scene_.cameras = {front_camera(organs)};
+    }
     const std::string script_name = request_.into ? stem_ + "-" + file_name_of(drafts_.front().part.name) : stem_;
     outcome.script_file = beside(script_name + ".script.json");
     if (const Result<Done> is_new = output::check_new(outcome.script_file, request_.overwrite); !is_new)
       return is_new.errors();
-    outcome.tick_time = time_of_tick().value_or(0);
+    outcome.tick_time = time_of_tick(true).value_or(0);
     for (Draft& draft : drafts_) {
       const importers::CheckedMesh& mesh = draft.mesh;
       if (const Result<Done> written = importers::write_obj(draft.part.mesh_file, mesh.vertex, mesh.triangle); !written)
@@ -340,8 +430,9 @@ class Import {
     if (const Result<Done> written = output::write_text_file(outcome.script_file, scenes::write_script(script));
         !written)
       return written.errors();
-    if (const Result<Done> written = output::write_text_file(request_.scene, scenes::write_scene(scene_)); !written)
-      return written.errors();
+    const std::string text = request_.into ? scenes::rewrite_scene(present_.scene.text, present_.scene.spec, scene_)
+                                           : scenes::write_scene(scene_);
+    if (const Result<Done> written = output::write_text_file(request_.scene, text); !written) return written.errors();
     folder_.keep();
     return outcome;
   }
@@ -370,17 +461,23 @@ class Import {
       if (step.take && step.take->tool == from) step.take->tool = to;
   }
 
-  /// Errors of importers/, which knows no options, with the option that helps.
-  static Errors with_option_names(Errors errors) {
-    for (Error& error : errors)
+  /// Errors of importers/ and scenes/, which know no options, with the option that helps.
+  Errors with_option_names(Errors errors) const {
+    for (Error& error : errors) {
       if (const std::size_t at = error.hint.find("largest_hole_mm"); at != std::string::npos)
         error.hint.replace(at, 15, output::option_name("import.largest_hole_mm"));
+      if (error.message.find("/layers/") != std::string::npos || error.where.find("/layers/") != std::string::npos)
+        error.where = request_.mesh, error.hint = "give " + output::option_name("import.layers") +
+                                                  " another depth, or more spheres with " +
+                                                  output::option_name("import.spheres");
+    }
     return errors;
   }
 
   const ImportRequest& request_;
   std::string place_, stem_;
   NewFolder folder_;
+  loading::LoadedScene present_;  ///< to which organs are added; empty: a new scene
   scenes::SceneSpec scene_;
   std::vector<Draft> drafts_;
 };

@@ -21,6 +21,12 @@ enum class Parts {
 /// Organs that an import makes of one file; smaller parts are dropped.
 inline constexpr std::size_t kMostOrgans = 8;
 
+/// A layer that an organ gets.
+struct LayerWish {
+  std::string tissue;   ///< a preset or own material, as ImportRequest::organ
+  double to_depth = 0;  ///< below the surface [m], > 0
+};
+
 /// The options of an import.
 struct ImportRequest {
   std::string mesh;                      ///< mesh file
@@ -34,9 +40,12 @@ struct ImportRequest {
   std::optional<double> gap;             ///< [m]; unset: the radius
   std::optional<std::int64_t> spheres;   ///< wanted in all; unset: see `kilohertz`
   std::optional<double> kilohertz;  ///< as many as hold this rate here; unset: as usual, and no more than hold 1 kHz
-  std::string part;
+  std::vector<std::string> names;   ///< of the meshes or labels to take; empty: all, or the only label
   Parts parts = Parts::each;
-  bool overwrite = false;              ///< replaces an existing scene, mesh or script
+  std::vector<LayerWish> layers;  ///< of every organ, outermost first
+  Vec3 at, turn;                  ///< OrganSpec::at and OrganSpec::turn of every organ
+  bool beside = false;            ///< with `into`, in place of `at`: on the ground of the scene's organs, right of them
+  bool overwrite = false;         ///< replaces an existing scene, mesh or script
   std::optional<double> largest_hole;  ///< holes up to this diameter are filled [m]; unset: a tenth of the diagonal
   std::optional<std::int32_t> most_triangles;  ///< of the drawn surface; unset: as many as the mesh has
   std::optional<double> stiffness_scale;       ///< unset: fitted where the paper gives forces
@@ -56,6 +65,7 @@ struct ImportedPart {
   std::size_t anchored = 0;               ///< spheres that never move
   double sag = 0, size = 0;               ///< largest way of a sphere while it settles; size of the organ [m]
   double most_force = 0;                  ///< of the script on a tool [N]
+  Vec3 at;                                ///< OrganSpec::at [m]
   bool was_cut = false;                   ///< by the script
 };
 
@@ -72,7 +82,7 @@ struct ImportOutcome {
 /// the script is tried: it stands, and is touched and cut, or a finding says that it is not. Makes the scene's folder.
 /// Errors: those of the import, `should_stop`, an unknown organ, an anchor without spheres, an organ that folds over
 /// whatever holds it, a folder that cannot be written, a file that exists already. The scene is written last, so that
-/// it never names a missing file.
+/// it never names a missing file. A scene to which organs are added keeps its comments and its layout.
 Result<ImportOutcome> import_scene(const ImportRequest& request);
 
 }  // namespace ctpm::authoring

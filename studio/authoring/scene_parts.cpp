@@ -29,6 +29,12 @@ double rounded_up(double length) {
   return std::ceil(length / step - 1e-9) * step;
 }
 
+/// To a millimetre, or to a tenth of one near something small: the number that an author would write.
+Vec3 rounded(Vec3 p, double size) {
+  const double steps = size > 0.02 ? 1e3 : 1e4;  // of a metre
+  return {std::round(p.x * steps) / steps, std::round(p.y * steps) / steps, std::round(p.z * steps) / steps};
+}
+
 }  // namespace
 
 scenes::OrganSpec organ_spec(const std::string& name, const std::string& mesh, const Tissue& tissue,
@@ -36,11 +42,14 @@ scenes::OrganSpec organ_spec(const std::string& name, const std::string& mesh, c
   scenes::OrganSpec spec;
   spec.name = name, spec.mesh = mesh;
   spec.fill.radius = filled.sphere_radius;
-  spec.fill.gap = filled.spacing - 2 * filled.sphere_radius;
+  // Without what subtracting leaves behind: an author reads it.
+  spec.fill.gap = std::round(1e9 * (filled.spacing - 2 * filled.sphere_radius)) / 1e9;
   spec.material = tissue.material;
   spec.damage_depth = tissue.preset->damage_depth;
   const render::OrganLook look = render::look_of(tissue.preset->organ);
-  spec.surface_color = colour.value_or(Vec3{look.outer[0], look.outer[1], look.outer[2]});
+  const Vec3 outer = colour.value_or(Vec3{look.outer[0], look.outer[1], look.outer[2]});
+  const auto rounded = [](double part) { return std::round(1e3 * part) / 1e3; };
+  spec.surface_color = {rounded(outer.x), rounded(outer.y), rounded(outer.z)};
   spec.inner_color = {look.inner[0], look.inner[1], look.inner[2]};
   return spec;
 }
@@ -55,7 +64,8 @@ std::vector<scenes::ToolSpec> tools_for(const std::vector<FilledOrgan>& organs) 
     radius = std::max(radius, organ.sphere_radius), height = std::max(height, box.most.z - box.least.z);
   }
   scenes::ToolSpec ball, scalpel;
-  ball.name = "ball", ball.kind = ToolKind::ball, ball.radius = std::min(kLargestBall, 2.5 * radius);
+  ball.name = "ball", ball.kind = ToolKind::ball,
+  ball.radius = std::min(kLargestBall, std::round(2.5e6 * radius) / 1e6);
   scalpel.name = "scalpel", scalpel.kind = ToolKind::scalpel;
   scalpel.blade_length = std::clamp(rounded_up(0.7 * height), kShortest, kLongest);
   return {ball, scalpel};
@@ -63,17 +73,40 @@ std::vector<scenes::ToolSpec> tools_for(const std::vector<FilledOrgan>& organs) 
 
 scenes::CameraSpec front_camera(const std::vector<FilledOrgan>& organs) {
   const Box box = box_of(organs);
-  const double size = norm(box.most - box.least), step = size > 0.02 ? 1e-3 : 1e-4;
-  const auto rounded = [&](Vec3 p) {
-    return Vec3{std::round(p.x / step) * step, std::round(p.y / step) * step, std::round(p.z / step) * step};
-  };
+  const double size = norm(box.most - box.least);
   scenes::CameraSpec camera;
   camera.name = "front";
   // The organ is right of the centre, clear of the panels on the left.
-  camera.target = rounded(0.5 * (box.least + box.most) + size * Vec3{-0.13, 0, 0});
-  camera.eye = rounded(camera.target + size * Vec3{0.05, -1.25, 0.95});
+  camera.target = rounded(0.5 * (box.least + box.most) + size * Vec3{-0.13, 0, 0}, size);
+  camera.eye = rounded(camera.target + size * Vec3{0.05, -1.25, 0.95}, size);
   camera.field_of_view = 32;
   return camera;
+}
+
+Vec3 place_beside(const std::vector<FilledOrgan>& present, const std::vector<FilledOrgan>& added) {
+  constexpr double kGap = 0.1;  // of the size of what is added
+  const Box old = box_of(present), own = box_of(added);
+  const double size = norm(own.most - own.least), y = 0.5 * (old.least.y + old.most.y - own.least.y - own.most.y);
+  const Vec3 place{old.most.x + kGap * size - own.least.x, y, old.least.z - own.least.z};
+  return rounded(place, size);
+}
+
+double overlap(const FilledOrgan& organ, const FilledOrgan& other) {
+  const double reach = 0.5 * other.spacing;
+  const Box box = box_of({other});
+  const auto is_in_box = [&](Vec3 p) {
+    return p.x > box.least.x && p.y > box.least.y && p.z > box.least.z && p.x < box.most.x && p.y < box.most.y &&
+           p.z < box.most.z;
+  };
+  // Within a lattice cell of its own around a sphere, which is in the tissue.
+  const auto is_near = [&](Vec3 p, Vec3 centre) {
+    return std::abs(p.x - centre.x) <= reach && std::abs(p.y - centre.y) <= reach && std::abs(p.z - centre.z) <= reach;
+  };
+  std::size_t within = 0;
+  for (const Vec3& p : organ.centre)
+    within += is_in_box(p) &&
+              std::any_of(other.centre.begin(), other.centre.end(), [&](Vec3 centre) { return is_near(p, centre); });
+  return organ.centre.empty() ? 0 : double(within) / double(organ.centre.size());
 }
 
 std::string file_name_of(const std::string& name) {

@@ -20,6 +20,13 @@ std::vector<scenes::ToolSpec> tools_for(const std::vector<FilledOrgan>& organs);
 /// A camera that sees all organs from the front, a little from above.
 scenes::CameraSpec front_camera(const std::vector<FilledOrgan>& organs);
 
+/// Where the origin of `added` lies so that they are right of all of `present`, clear of them, as deep in the scene as
+/// their middle and on the same ground [m].
+Vec3 place_beside(const std::vector<FilledOrgan>& present, const std::vector<FilledOrgan>& added);
+
+/// The share of an organ's spheres that lie within another organ, by its spheres, in [0, 1].
+double overlap(const FilledOrgan& organ, const FilledOrgan& other);
+
 /// A name that a file may have everywhere: letters, digits, - and _ of `name`, others as -.
 std::string file_name_of(const std::string& name);
 

@@ -28,6 +28,7 @@ constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"fidelity.recipes", "--only"},
     {"import.anchors", "--anchor"},
     {"import.largest_hole_mm", "--largest-hole-mm"},
+    {"import.layers", "--layer"},
     {"import.organ", "--organ"},
     {"import.size", "--size-mm"},
     {"import.spheres", "--spheres"},
@@ -62,7 +63,8 @@ std::string flag_of(std::string_view field) {
 
 void add_look(CLI::App& app, views::LookRequest& request) {
   app.add_option("--view", request.view, "surface, spheres, both or elements")->capture_default_str();
-  app.add_option("--by", request.by, "What colours show: layer of spheres; stretch, tilt or force of elements");
+  app.add_option("--by", request.by,
+                 "What colours show: layer of spheres, in previews also material; stretch, tilt or force of elements");
   app.add_option("--full-scale", request.full_scale, "Value of the last colour of elements [%, deg or N]");
   app.add_option("--cutaway", request.cutaway, "Leave out what is before a plane across x, y or z: y, or y=12.5 in mm");
   app.add_option("--camera", request.camera,

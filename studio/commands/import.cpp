@@ -1,6 +1,9 @@
+#include <cmath>
+#include <cstdlib>
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "importers/import.h"
 #include "importers/label_map.h"
@@ -19,10 +22,11 @@ namespace {
 
 struct ImportArguments {
   authoring::ImportRequest request;
-  std::string unit, report, into, label;
+  std::string unit, report, into;
   std::optional<double> radius_mm, gap_mm, largest_hole_mm, size_mm, scale, khz, stiffness_scale;
   std::optional<std::int64_t> most_triangles, spheres;
-  std::vector<std::string> anchors;
+  std::vector<std::string> anchors, labels, parts, layers;
+  std::vector<double> at_mm, turn_deg;
   bool largest_part = false, all_parts = false;
 };
 
@@ -36,6 +40,34 @@ void take_number(Errors& errors, const char* flag, const std::optional<T>& value
                     "got " + output::short_number(double(*value)) + ", must be in [" + output::short_number(least, 8) +
                         ", " + output::short_number(most, 8) + "]",
                     ""});
+}
+
+/// A layer's text, "skin:6": its material and the depth to which it reaches [mm].
+void take_layer(Errors& errors, const std::string& text, std::vector<authoring::LayerWish>& layers) {
+  const std::size_t colon = text.rfind(':');
+  const std::string number = colon == std::string::npos ? "" : text.substr(colon + 1);
+  char* end = nullptr;
+  const double depth = std::strtod(number.c_str(), &end);
+  const double above = layers.empty() ? 0 : 1e3 * layers.back().to_depth;
+  if (colon == 0 || number.empty() || *end != '\0' || !(depth > above && depth <= 1000))
+    return errors.push_back({"--layer",
+                             "got '" + text +
+                                 "', must be a material and the depth in mm to which it reaches, more than "
+                                 "the layer's before it",
+                             "skin:6"});
+  layers.push_back({text.substr(0, colon), 1e-3 * depth});
+}
+
+/// Three numbers within a range, or none.
+void take_vector(Errors& errors, const char* flag, const std::vector<double>& numbers, double most, double unit,
+                 Vec3& value) {
+  for (const double number : numbers)
+    if (!(std::abs(number) <= most))
+      return errors.push_back({flag,
+                               "got " + output::short_number(number) + ", must be in [" + output::short_number(-most) +
+                                   ", " + output::short_number(most) + "]",
+                               ""});
+  if (numbers.size() == 3) value = unit * Vec3{numbers[0], numbers[1], numbers[2]};
 }
 
 /// Checks the arguments, with all errors at once, and converts them to SI.
@@ -67,6 +99,12 @@ Errors complete(ImportArguments& a) {
   if (r.scene.empty() == a.into.empty())
     errors.push_back({"import", "needs either -o with a new scene or --into with one that is there", ""});
   if (!a.into.empty()) r.scene = a.into, r.into = true;
+  if (r.beside && !r.into) errors.push_back({"--beside", "needs a scene whose organs are there", "--into"});
+  if (r.beside && !a.at_mm.empty()) errors.push_back({"import", "takes one of --beside and --at-mm", ""});
+  take_vector(errors, "--at-mm", a.at_mm, 100000, 1e-3, r.at);
+  take_vector(errors, "--turn-deg", a.turn_deg, 360, 1, r.turn);
+  for (const std::string& text : a.layers) take_layer(errors, text, r.layers);
+  r.names = a.labels.empty() ? a.parts : a.labels;
   for (const std::string& text : a.anchors) {
     const Result<scenes::AnchorSpec> anchor = scenes::parse_anchor(text);
     if (anchor)
@@ -134,6 +172,9 @@ std::string report_json(const authoring::ImportOutcome& outcome) {
 void print_organ(const authoring::ImportedPart& organ, const std::string& scene, bool is_one_of_many) {
   if (is_one_of_many) print("\norgan %s\n", organ.name.c_str());
   print("%s", importers::to_text(organ.report).c_str());
+  if (!(organ.at == Vec3{}))
+    print("placed: the mesh's origin lies at %g, %g, %g mm (at_mm)\n", 1e3 * organ.at.x, 1e3 * organ.at.y,
+          1e3 * organ.at.z);
   print("anchored: %zu spheres never move\n", organ.anchored);
   if (organ.stiffness_scale)
     print("stiffness_scale: %.6g, fitted so that the paper's ball meets its Table 1 at 12 mm\n",
@@ -162,9 +203,8 @@ int run_import(ImportArguments& arguments) {
   const std::string& mesh = arguments.request.mesh;
   const bool is_map = importers::is_label_map(mesh);
   if (is_map && arguments.request.scene.empty() && arguments.into.empty()) return list_labels(mesh);
-  if (!is_map && !arguments.label.empty())
+  if (!is_map && !arguments.labels.empty())
     return print_errors({{"--label", "only label maps (.nii, .nii.gz, .nrrd) have labels", "--part names a mesh"}});
-  if (is_map && !arguments.label.empty()) arguments.request.part = arguments.label;
   if (const Errors errors = complete(arguments); !errors.empty()) return print_errors(errors);
   const StopSignal stop;
   arguments.request.should_stop = [&] { return stop.came(); };
@@ -203,14 +243,26 @@ Command add_import(CLI::App& program) {
   app->footer(
       "Examples: ctpm import liver.stl --organ liver --unit mm -o my/liver.json\n"
       "          ctpm import segmentation.nii.gz\n"
-      "          ctpm import segmentation.nii.gz --label 3 --organ liver -o my/liver.json");
+      "          ctpm import segmentation.nii.gz --label 3 --label 5 -o my/organs.json\n"
+      "          ctpm import kidney.obj --into my/liver.json --beside --layer skin:6");
   app->add_option("mesh", arguments->request.mesh,
                   "Mesh (OBJ, STL, PLY, glTF, VTK, MSH, ...) or label map (.nii, .nii.gz, .nrrd)")
       ->required();
   app->add_option("-o,--output", arguments->request.scene,
                   "Scene file to write (.json); its folder is made; without it, the labels of a label map are listed");
-  app->add_option("--label", arguments->label, "Name or number of the label to take from a label map");
-  app->add_option("--into", arguments->into, "Add the organs to this scene instead of writing a new one");
+  app->add_option("--label", arguments->labels,
+                  "Name or number of a label to take from a label map (repeatable: each is an organ)")
+      ->allow_extra_args(false);
+  app->add_option("--into", arguments->into,
+                  "Add the organs to this scene instead of writing a new one; its comments stay");
+  app->add_flag("--beside", arguments->request.beside,
+                "With --into: place the organs on the same ground, right of those of the scene");
+  app->add_option("--at-mm", arguments->at_mm, "Where the mesh's origin lies in the scene: x y z")->expected(3);
+  app->add_option("--turn-deg", arguments->turn_deg, "Turns the mesh about its origin: about x, then y, then z")
+      ->expected(3);
+  app->add_option("--layer", arguments->layers,
+                  "A layer below the surface, MATERIAL:MM, as skin:6; repeatable, from the surface inwards")
+      ->allow_extra_args(false);
   app->add_option("--organ", arguments->request.organ,
                   "Material: a preset (liver, kidney, skin, heart, lung, spleen, bladder, fat, muscle, soft-tissue) or "
                   "one of materials.json beside the scene; from names in the file if not given, else soft-tissue");
@@ -224,7 +276,9 @@ Command add_import(CLI::App& program) {
                   "As many spheres as this machine holds at this rate; if nothing is given, a few hundred to 1500, and "
                   "no more than hold 1 kHz");
   app->add_option("--gap-mm", arguments->gap_mm, "Gap between their surfaces; the radius if not given");
-  app->add_option("--part", arguments->request.part, "Name of the mesh to take, if the file holds several");
+  app->add_option("--part", arguments->parts,
+                  "Name of a mesh to take, if the file holds several (repeatable: each is an organ)")
+      ->allow_extra_args(false);
   app->add_flag("--largest-part", arguments->largest_part,
                 "Keep only the largest closed part; else each of at least 1 % of its volume is an organ");
   app->add_flag("--all-parts", arguments->all_parts, "Keep every closed part, all as one organ");

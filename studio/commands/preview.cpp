@@ -44,7 +44,7 @@ Result<std::optional<scenes::Script>> script_of(const PreviewArguments& argument
   return std::optional(*script);
 }
 
-int run_preview(const PreviewArguments& arguments) {
+int run_preview(PreviewArguments arguments) {
   const Result<render::PictureSize> size = render::parse_picture_size(arguments.size);
   if (!size) return print_errors(size.errors());
   if (const Result<Done> writable = output::check_new(arguments.output, arguments.overwrite); !writable)
@@ -56,6 +56,12 @@ int run_preview(const PreviewArguments& arguments) {
   const int width = arguments.spheres ? size->width / 2 : size->width;
   const Model& model = scene->built.model;
   render::SceneView view = views::view_of(scene->scene.spec, model);
+  std::vector<std::string> legend;
+  const std::string& drawn = arguments.look.view;
+  if (arguments.look.by == "material" && (arguments.spheres || drawn == "spheres" || drawn == "both")) {
+    legend = views::colour_by_material(scene->scene.spec, scene->organs, view);
+    arguments.look.by.clear();
+  }
   const Result<views::Look> look =
       views::find_look(arguments.look, scene->scene.spec, view, double(width) / size->height);
   if (!look) return print_errors(look.errors());
@@ -80,6 +86,7 @@ int run_preview(const PreviewArguments& arguments) {
   if (const Result<Done> written = render::write_png(arguments.output, picture); !written)
     return print_errors(written.errors());
   print("%s: %dx%d\n", arguments.output.c_str(), picture.width, picture.height);
+  for (const std::string& line : legend) print("  %s\n", line.c_str());
   return exit_good;
 }
 
@@ -88,10 +95,11 @@ int run_preview(const PreviewArguments& arguments) {
 Command add_preview(CLI::App& program) {
   auto arguments = std::make_shared<PreviewArguments>();
   CLI::App* app = program.add_subcommand("preview", "Draws a scene as its meshes are, or settled.");
-  app->footer("Example: ctpm preview scenes/liver.json -o liver.png --spheres");
+  app->footer("Example: ctpm preview scenes/liver.json -o liver.png --spheres --by material --cutaway y");
   app->add_option("scene", arguments->scene, "Scene file (.json)")->required();
   app->add_option("-o,--output", arguments->output, "Picture (.png)")->required();
-  app->add_flag("--spheres", arguments->spheres, "Beside the surface, the spheres coloured by layer");
+  app->add_flag("--spheres", arguments->spheres,
+                "Beside the surface, the spheres coloured by layer, or with --by material by what they are made of");
   app->add_option("--size", arguments->size, "Width x height in pixels")->capture_default_str();
   app->add_flag("--overwrite", arguments->overwrite, "Replace an existing picture");
   app->add_flag("--marks", arguments->marks, "Show axes, anchors, probes, loads, and where tools are taken up");

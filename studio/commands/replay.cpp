@@ -6,8 +6,6 @@
 
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
-#include "scenes/build_model.h"
-#include "scenes/scene_file.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 #include "studio/commands/extremes_text.h"
@@ -16,6 +14,7 @@
 #include "studio/output/files.h"
 #include "studio/output/number_text.h"
 #include "studio/output/printable.h"
+#include "studio/session/probes.h"
 #include "studio/session/time_range.h"
 
 namespace ctpm::commands {
@@ -27,24 +26,9 @@ struct ReplayArguments {
   session::TimeRange range;
 };
 
-/// A probe of the session's scene, and the sphere that it follows.
-struct Probe {
-  std::string name;
-  std::size_t sphere;
-};
-
-/// None where the session's scene cannot be read, which another version may have written.
-std::vector<Probe> probes_of(const recordings::SessionReader& reader) {
-  std::vector<Probe> probes;
-  if (const Result<scenes::SceneText> scene = scenes::read_scene(reader.start().scene_text, reader.path()))
-    for (const scenes::ProbeSpec& probe : scene->spec.probes)
-      probes.push_back({probe.name, std::size_t(scenes::nearest_sphere(reader.start().model, probe.at))});
-  return probes;
-}
-
-std::string csv_header(const Model& model, const std::vector<Probe>& probes) {
+std::string csv_header(const Model& model, const std::vector<session::Probe>& probes) {
   std::string of_probes;
-  for (const Probe& probe : probes)
+  for (const session::Probe& probe : probes)
     for (const char* axis : {"_x_mm", "_y_mm", "_z_mm"})
       of_probes += "," + output::csv_text("probe_" + probe.name + axis);
 
@@ -74,7 +58,8 @@ HandCells cells_of(const Model& model, const Hand& in, const stepping::HandRepor
   return {tool + pose, loads, std::to_string(report.contacts)};
 }
 
-std::string csv_row(const Model& model, const recordings::ReplayCursor& cursor, const std::vector<Probe>& probes) {
+std::string csv_row(const Model& model, const recordings::ReplayCursor& cursor,
+                    const std::vector<session::Probe>& probes) {
   const Inputs& inputs = cursor.record().inputs;
   const stepping::StepReport& report = cursor.report();
   const HandCells first = cells_of(model, inputs, report);
@@ -86,7 +71,7 @@ std::string csv_row(const Model& model, const recordings::ReplayCursor& cursor, 
     const HandCells second = cells_of(model, inputs.second, report.second);
     row += "," + second.inputs + "," + second.loads + "," + second.contacts;
   }
-  for (const Probe& probe : probes) {
+  for (const session::Probe& probe : probes) {
     const Vec3 at = cursor.state().position[probe.sphere];
     char place[96];
     std::snprintf(place, sizeof place, ",%.9g,%.9g,%.9g", at.x * 1e3, at.y * 1e3, at.z * 1e3);
@@ -110,7 +95,7 @@ int run_replay(const ReplayArguments& arguments) {
   if (!cursor) return print_errors(cursor.errors());
   if (const Result<Done> found = cursor->seek(range->from); !found) return print_errors(found.errors());
   ProgressLine progress("replaying");
-  const std::vector<Probe> probes = probes_of(*reader);
+  const std::vector<session::Probe> probes = session::probes_of(*reader);
   std::string rows = csv_header(model, probes);
   double most_force = 0, most_depth = 0;
   while (cursor->tick() < range->to) {

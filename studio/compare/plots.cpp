@@ -123,6 +123,19 @@ std::vector<reports::Plot> plots_over_time(const ComparedSessions& compared) {
   return plots;
 }
 
+std::vector<reports::Plot> plots_of_probes(const ComparedSessions& compared) {
+  const auto& [expert, trainee, scene, comparison] = compared;
+  std::vector<reports::Plot> plots;
+  for (std::size_t i = 0; i < std::min(expert.probes.size(), trainee.probes.size()); ++i) {
+    reports::Plot plot{
+        .title = "Probe " + expert.probes[i].name, .x_title = "time [s]", .y_title = "from its first place [mm]"};
+    plot.series = {curve("expert", expert, expert.probes[i].way, kMillimetres, kExpertColour),
+                   curve("trainee", trainee, trainee.probes[i].way, kMillimetres, kTraineeColour)};
+    plots.push_back(plot);
+  }
+  return plots;
+}
+
 std::vector<reports::Plot> plots_of_paths(const ComparedSessions& compared) {
   std::vector<reports::Plot> plots;
   for (const Plane& plane : kPlanes) {

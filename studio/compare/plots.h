@@ -10,6 +10,9 @@ namespace ctpm::compare {
 /// Force and depth of both sessions over time, where there is any.
 std::vector<reports::Plot> plots_over_time(const ComparedSessions& compared);
 
+/// How far each probe of the scene is moved, over time. Empty if there is none, or a session was not replayed whole.
+std::vector<reports::Plot> plots_of_probes(const ComparedSessions& compared);
+
 /// The tool's paths from above and from the side, and the distance of the aligned paths.
 std::vector<reports::Plot> plots_of_paths(const ComparedSessions& compared);
 

@@ -123,7 +123,8 @@ std::string comparison_json(const ComparedSessions& compared) {
   json.key("moments");
   reports::write_rows(json, moments_table(comparison));
   json.key("plots").begin_list();
-  for (const auto& plots : {plots_over_time(compared), plots_of_paths(compared), plots_of_cut(compared)})
+  for (const auto& plots :
+       {plots_over_time(compared), plots_of_probes(compared), plots_of_paths(compared), plots_of_cut(compared)})
     for (const reports::Plot& plot : plots) reports::write_points(json, plot);
   return json.end_list().end_object().text();
 }
@@ -150,6 +151,10 @@ Result<Done> write_comparison(const std::string& folder, const ComparedSessions&
     report.add_plots(plots);
   else
     report.add_paragraph("No tool met a force.");
+  if (const std::vector<reports::Plot> probes = plots_of_probes(compared); !probes.empty()) {
+    report.add_heading("The tissue at the probes");
+    report.add_plots(probes);
+  }
   if (const std::vector<reports::Plot> cut = plots_of_cut(compared); !cut.empty()) {
     report.add_heading("The cut");
     report.add_plots(cut);

@@ -8,6 +8,7 @@
 #include "core/model/fields.h"
 #include "recordings/replay.h"
 #include "recordings/state_hash.h"
+#include "studio/session/probes.h"
 
 namespace ctpm::compare {
 namespace {
@@ -67,8 +68,13 @@ Result<Done> replay_all(recordings::SessionReader& session, SessionTrack& track)
   if (!cursor) return cursor.errors();
   std::vector<double> force = track.force, depth = track.depth, other_force = track.other_force;
   std::vector<std::int32_t> severed = track.severed;
+  const std::vector<session::Probe> probes = session::probes_of(session);
+  for (const session::Probe& probe : probes) track.probes.push_back({probe.name, {}});
+  const Vec3Array before = session.start().initial_state.position;
   const Result<Done> replayed =
       replay_ticks(*cursor, 0, session.tick_count(), track, [&](std::size_t tick, const stepping::StepReport& report) {
+        for (std::size_t i = 0; i < probes.size(); ++i)
+          track.probes[i].way.push_back(norm(cursor->state().position[probes[i].sphere] - before[probes[i].sphere]));
         force[tick] = norm(report.of_hand(track.hand).tool_force), depth[tick] = report.of_hand(track.hand).depth;
         if (!other_force.empty()) other_force[tick] = norm(report.of_hand(1 - track.hand).tool_force);
         severed[tick] = report.severed;

@@ -21,6 +21,12 @@ struct ElementPlaces {
   explicit ElementPlaces(const Model& model);
 };
 
+/// How far a probe of the scene is from where it was before the first tick.
+struct ProbeWay {
+  std::string name;
+  std::vector<double> way;  ///< [m]   (tick_count)
+};
+
 /// The recorded actions and measurements of a session, tick by tick, of the hand that works: with two hands the one
 /// that cuts, or if none does the one that holds a tool for longer.
 struct SessionTrack {
@@ -37,6 +43,7 @@ struct SessionTrack {
   std::vector<Spell> cuts;            ///< ticks from the first to the last severed element of each cut
   std::vector<std::int64_t> severed_at;  ///< tick in which each element was severed; -1: never  (ElementPlaces::count)
   std::optional<session::CutSize> cut;   ///< none if nothing was cut, or without surfaces
+  std::vector<ProbeWay> probes;          ///< where the session was replayed whole; else empty
   std::uint64_t initial_state = 0;       ///< hash of the State before the first tick
   bool has_end = true;                   ///< false: the session is incomplete, or still being recorded
   double slip = 0;                       ///< largest TickRecord::slip [s]: real time that the session lacks

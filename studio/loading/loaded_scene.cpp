@@ -11,6 +11,7 @@ namespace {
 importers::ImportOptions import_options_of(const scenes::OrganSpec& organ) {
   importers::ImportOptions options;
   options.unit_in_metres = scenes::metres_of(organ.mesh_unit);
+  options.turn = organ.turn, options.scale = organ.scale;
   if (const scenes::MaterialPreset* preset = scenes::find_preset(organ.material.preset))
     options.usual_size = {preset->usual_size_least, preset->usual_size_most};
   options.sphere_radius = organ.fill.radius;
@@ -20,10 +21,9 @@ importers::ImportOptions import_options_of(const scenes::OrganSpec& organ) {
   return options;
 }
 
-/// Moves an organ after it was filled, so that its spheres lie in it alike wherever it is.
 void move(importers::ImportedOrgan& imported, Vec3 by) {
-  for (auto* places : {&imported.organ.centre, &imported.organ.surface.vertex, &imported.mesh.vertex})
-    for (Vec3& place : *places) place = place + by;
+  move_organ(imported.organ, by);
+  for (Vec3& place : imported.mesh.vertex) place = place + by;
   for (Vec3* corner : {&imported.mesh.box_least, &imported.mesh.box_most}) *corner = *corner + by;
 }
 
@@ -55,6 +55,11 @@ scenes::ObstacleMesh mesh_of(const std::string& scene_path, const scenes::Obstac
 }
 
 }  // namespace
+
+void move_organ(FilledOrgan& organ, Vec3 by) {
+  for (auto* places : {&organ.centre, &organ.surface.vertex})
+    for (Vec3& place : *places) place = place + by;
+}
 
 Result<importers::ImportedOrgan> fill_of(const std::string& scene_path, const scenes::OrganSpec& organ,
                                          const std::function<bool()>& should_stop) {

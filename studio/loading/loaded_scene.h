@@ -28,6 +28,9 @@ struct LoadedScene {
 Result<importers::ImportedOrgan> fill_of(const std::string& scene_path, const scenes::OrganSpec& organ,
                                          const std::function<bool()>& should_stop = {});
 
+/// Moves a filled organ [m]: its spheres lie in it alike wherever it is.
+void move_organ(FilledOrgan& organ, Vec3 by);
+
 /// Reads a scene, imports its meshes and builds its Model. `change` may alter the scene between reading and importing.
 /// `should_stop`, if given, ends it with an error. Warnings are in LoadedScene::scene. Errors: those of the scene, its
 /// meshes and its Model, all at once, with places.

@@ -244,8 +244,10 @@ void Renderer::Parts::draw_spheres(const State& state, const DrawOptions& option
   instances.clear();
   for (const OrganRange& range : scene.model->organs)
     for (std::int32_t i = range.first; i < range.first + range.count; ++i) {
-      const Vec3 p = state.position[std::size_t(i)],
-                 c = linear(layer_colour(scene.model->layer[std::size_t(i)], range.layer_count));
+      const auto n = std::size_t(i);
+      const Vec3 p = state.position[n],
+                 c = linear(scene.sphere_colours.empty() ? layer_colour(scene.model->layer[n], range.layer_count)
+                                                         : scene.sphere_colours[n]);
       if (options.cutaway.leaves_out(p)) continue;
       for (const double x : {p.x, p.y, p.z, range.sphere_radius, c.x, c.y, c.z}) instances.push_back(float(x));
     }

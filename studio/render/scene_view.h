@@ -30,8 +30,9 @@ OrganLook look_of(std::string_view organ_name);
 
 /// The scene to draw: a Model, and one surface and look for each of its organs.
 struct SceneView {
-  const Model* model = nullptr;  ///< must outlive the Renderer
-  std::vector<OrganLook> looks;  ///< empty: look_of() each organ's name     (organ_count)
+  const Model* model = nullptr;             ///< must outlive the Renderer
+  std::vector<OrganLook> looks;             ///< empty: look_of() each organ's name     (organ_count)
+  std::vector<Colour> sphere_colours = {};  ///< of each sphere; empty: layer_colour()  (sphere_count)
 };
 
 /// The box around everything at rest [m].

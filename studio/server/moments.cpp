@@ -17,6 +17,11 @@ std::size_t bytes_of(const State& s) {
          s.axial_crossing.size();
 }
 
+std::size_t memory_for_states() {
+  const double installed = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+  return std::max(Moments::kLeastMemory, std::size_t(std::max(0.0, installed / 16)));
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Moments>> Moments::open(const std::string& file) {
@@ -31,7 +36,7 @@ Moments::Moments(recordings::SessionReader reader, std::vector<std::int64_t> key
     : reader_(std::move(reader)), keyframes_(std::move(keyframes)), is_done_(keyframes_.size()) {
   const std::int64_t ticks = reader_.tick_count();
   const std::size_t state_bytes = bytes_of(reader_.start().initial_state);
-  spacing_ = std::max(kSpacing, std::int64_t(double(ticks) * double(state_bytes) / double(kMostBytes)) + 1);
+  spacing_ = std::max(kSpacing, std::int64_t(double(ticks) * double(state_bytes) / double(memory_for_states())) + 1);
   moments_.resize(std::size_t(ticks / spacing_) + 1);
   thread_ = std::thread([this] { work(); });
 }
@@ -41,13 +46,34 @@ Moments::~Moments() {
   thread_.join();
 }
 
-std::pair<std::int64_t, std::shared_ptr<const Moment>> Moments::before(std::int64_t tick) const {
+Moments::Place Moments::before(std::int64_t tick) const {
   const auto next = std::upper_bound(keyframes_.begin(), keyframes_.end(), tick);
   const std::int64_t least = next == keyframes_.begin() ? 0 : *std::prev(next);
   const std::lock_guard lock(mutex_);
   for (std::int64_t i = tick / spacing_; i >= 0 && i * spacing_ > least; --i)
     if (const auto& moment = moments_[std::size_t(i)]) return {i * spacing_, moment};
   return {least, nullptr};
+}
+
+std::optional<Moments::Place> Moments::after(std::int64_t tick) const {
+  const auto next = std::upper_bound(keyframes_.begin(), keyframes_.end(), tick);
+  const std::int64_t most = next == keyframes_.end() ? reader_.tick_count() + 1 : *next;
+  const std::lock_guard lock(mutex_);
+  for (std::int64_t i = tick / spacing_ + 1; i * spacing_ < most && std::size_t(i) < moments_.size(); ++i)
+    if (const auto& moment = moments_[std::size_t(i)]) return Place{i * spacing_, moment};
+  if (next == keyframes_.end()) return std::nullopt;
+  return Place{most, nullptr};
+}
+
+void Moments::keep(std::int64_t tick, const State& state, bool is_same) {
+  if (tick % spacing_ != 0) return;
+  {
+    const std::lock_guard lock(mutex_);
+    if (std::size_t(tick / spacing_) >= moments_.size() || moments_[std::size_t(tick / spacing_)]) return;
+  }
+  auto moment = std::make_shared<const Moment>(Moment{state, is_same});
+  const std::lock_guard lock(mutex_);
+  moments_[std::size_t(tick / spacing_)] = std::move(moment);
 }
 
 double Moments::share() const {
@@ -68,17 +94,25 @@ std::size_t Moments::next_interval() const {
   return best;
 }
 
-/// Replays one interval. False if it is to stop.
+std::int64_t Moments::end_of(std::size_t interval) const {
+  return interval + 1 < keyframes_.size() ? keyframes_[interval + 1] : reader_.tick_count();
+}
+
+/// Replays one interval, from the last State that it has. False: another one is needed first, or nothing more.
 bool Moments::fill(recordings::ReplayCursor& cursor, std::size_t interval) {
-  const std::int64_t end = interval + 1 < keyframes_.size() ? keyframes_[interval + 1] : reader_.tick_count();
-  if (!cursor.seek(keyframes_[interval])) return true;  // a damaged part has no moments
+  const std::int64_t end = end_of(interval);
+  const auto [from, kept] = before(std::max(keyframes_[interval], end - 1));
+  if (kept)
+    cursor.resume(from, kept->state);
+  else if (!cursor.seek(from))
+    return true;  // a damaged part has no moments
+  const bool was_same = !kept || kept->is_same;
   while (cursor.tick() < end) {
     if (ends_) return false;
     if (const Result<bool> went_on = cursor.step(); !went_on || !*went_on) break;
     if (cursor.tick() % spacing_ != 0 || cursor.tick() >= end) continue;
-    auto moment = std::make_shared<const Moment>(Moment{cursor.state(), cursor.same_so_far()});
-    const std::lock_guard lock(mutex_);
-    moments_[std::size_t(cursor.tick() / spacing_)] = std::move(moment);
+    keep(cursor.tick(), cursor.state(), was_same && cursor.same_so_far());
+    if (next_interval() != interval) return false;
   }
   return true;
 }
@@ -88,7 +122,7 @@ void Moments::work() {
   Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(reader_);
   if (!cursor) return;
   for (std::size_t next; !ends_ && (next = next_interval()) < keyframes_.size();) {
-    if (!fill(*cursor, next)) return;
+    if (!fill(*cursor, next)) continue;
     const std::lock_guard lock(mutex_);
     is_done_[next] = true;
   }

@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/model/result.h"
@@ -22,16 +24,25 @@ struct Moment {
   bool is_same = true;  ///< the replay up to here was as recorded
 };
 
-/// Replays a session in the background, at low priority, and keeps States closer together than the session's keyframes
-/// are. A seek then simulates at most spacing() ticks. Begins around aim() and works outwards.
+/// Keeps States of a session closer together than its keyframes are, so that a seek simulates at most spacing() ticks:
+/// replays the session in the background, at low priority, around aim() first, and takes what others simulated.
 class Moments {
  public:
   /// Errors: the session cannot be read.
   static Result<std::unique_ptr<Moments>> open(const std::string& file);
   ~Moments();
 
-  /// The tick of the kept State nearest at or before `tick`, and that State; null: it is a keyframe of the session.
-  std::pair<std::int64_t, std::shared_ptr<const Moment>> before(std::int64_t tick) const;
+  /// A tick, and the State before it; null: it is a keyframe of the session.
+  using Place = std::pair<std::int64_t, std::shared_ptr<const Moment>>;
+
+  /// The nearest kept State at or before `tick`.
+  Place before(std::int64_t tick) const;
+
+  /// The nearest kept State after `tick`; nothing: `tick` is beyond the last one.
+  std::optional<Place> after(std::int64_t tick) const;
+
+  /// Takes the State before `tick`, to which a replay came that began at a kept State, if one is missing there.
+  void keep(std::int64_t tick, const State& state, bool is_same);
 
   /// Moments near `tick` are needed first.
   void aim(std::int64_t tick) { aim_ = tick; }
@@ -39,13 +50,15 @@ class Moments {
   std::int64_t spacing() const { return spacing_; }  ///< [ticks]
   double share() const;                              ///< of the session that was replayed already, in [0, 1]
 
-  static constexpr std::int64_t kSpacing = 50;           ///< ticks between two States where memory allows
-  static constexpr std::size_t kMostBytes = 512u << 20;  ///< of all States
+  static constexpr std::int64_t kSpacing = 50;  ///< ticks between two States where memory allows
+  /// For the States of one session, at least; where there is more memory, a sixteenth of it [bytes].
+  static constexpr std::size_t kLeastMemory = 512u << 20;
 
  private:
   Moments(recordings::SessionReader reader, std::vector<std::int64_t> keyframes);
   void work();
   std::size_t next_interval() const;
+  std::int64_t end_of(std::size_t interval) const;
   bool fill(recordings::ReplayCursor& cursor, std::size_t interval);
 
   recordings::SessionReader reader_;

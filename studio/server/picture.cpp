@@ -60,17 +60,39 @@ void add_positions(MessageBytes& out, const std::vector<Vec3>& vertex) {
 }  // namespace
 
 PictureMaker::PictureMaker(const Model& model, std::uint32_t stage)
-    : model_(model), stage_(stage), drawn_(std::make_unique<contact::DrawnSurfaces>(model)) {
-  for (std::size_t i = 0; i < model.surfaces.size(); ++i) surfaces_.emplace_back(model, i);
+    : model_(model), stage_(stage), places_(std::make_unique<contact::DrawnSurfaces>(model)) {}
+
+/// What is drawn of the cut of `state`: as it was before, or continued from a part of it, or built in a new place or in
+/// that of which the last use is longest ago.
+PictureMaker::Drawn& PictureMaker::drawn_of(const State& state) {
+  constexpr std::size_t kMostKept = 4;
+  auto found = std::find_if(drawn_.begin(), drawn_.end(), [&](const Drawn& drawn) { return drawn.key.is_of(state); });
+  if (found == drawn_.end())
+    found = std::find_if(drawn_.begin(), drawn_.end(),
+                         [&](const Drawn& drawn) { return !drawn.key.is_whole() && drawn.key.is_part_of(state); });
+  if (found == drawn_.end() && drawn_.size() < kMostKept) {
+    Drawn made;
+    for (std::size_t i = 0; i < model_.surfaces.size(); ++i) made.surfaces.emplace_back(model_, i);
+    found = drawn_.insert(drawn_.end(), std::move(made));
+  } else if (found == drawn_.end()) {
+    found =
+        std::min_element(drawn_.begin(), drawn_.end(), [](const Drawn& a, const Drawn& b) { return a.used < b.used; });
+  }
+  bool changed = !found->triangles;
+  for (render::CutSurface& cut : found->surfaces) changed = cut.update(state) || changed;
+  found->key = CutKey(state), found->used = ++uses_;
+  if (changed) make_triangles(*found);
+  return *found;
 }
 
-void PictureMaker::make_triangles() {
+void PictureMaker::make_triangles(Drawn& drawn) const {
   static std::atomic<std::uint32_t> made{0};
-  topology_ = ++made;
+  drawn.topology = ++made;
   constexpr double kStainsPerMetre = 72;  // as in videos
   MessageBytes out;
-  out.add(std::uint32_t(kTriangles)), out.add(stage_), out.add(topology_), out.add(std::uint32_t(surfaces_.size()));
-  for (const render::CutSurface& cut : surfaces_) {
+  out.add(std::uint32_t(kTriangles)), out.add(stage_), out.add(drawn.topology),
+      out.add(std::uint32_t(drawn.surfaces.size()));
+  for (const render::CutSurface& cut : drawn.surfaces) {
     const Surface& surface = cut.surface();
     out.add(std::uint32_t(surface.vertex.size())), out.add(std::uint32_t(cut.outer_vertex_count()));
     out.add(std::uint32_t(surface.triangle.size())), out.add(std::uint32_t(cut.outer_triangle_count()));
@@ -81,14 +103,11 @@ void PictureMaker::make_triangles() {
       out.add(std::uint8_t(v < cut.is_lip().size() && cut.is_lip()[v] ? 255 : 0));
     out.pad();
   }
-  triangles_ = std::make_shared<const std::string>(std::move(out.text));
+  drawn.triangles = std::make_shared<const std::string>(std::move(out.text));
 }
 
 Picture PictureMaker::make(const State& state, const FrameFacts& facts) {
-  bool changed = !triangles_;
-  for (render::CutSurface& cut : surfaces_) changed = cut.update(state) || changed;
-  if (changed) make_triangles();
-
+  const Drawn& drawn = drawn_of(state);
   const Inputs& in = state.last_inputs;
   MessageBytes out;
   const auto add_pose = [&](const Hand& hand) {
@@ -97,16 +116,17 @@ Picture PictureMaker::make(const State& state, const FrameFacts& facts) {
          {hand.world_from_tool.w, hand.world_from_tool.x, hand.world_from_tool.y, hand.world_from_tool.z})
       out.add(float(x));
   };
-  out.add(std::uint32_t(kFrame)), out.add(stage_), out.add(topology_), out.add(std::uint32_t(0));
-  out.add(facts.request), out.add(std::uint32_t((facts.is_same ? 1 : 0) | (facts.is_live ? 2 : 0)));
+  out.add(std::uint32_t(kFrame)), out.add(stage_), out.add(drawn.topology), out.add(std::uint32_t(0));
+  out.add(facts.request),
+      out.add(std::uint32_t((facts.is_same ? 1 : 0) | (facts.is_live ? 2 : 0) | (facts.is_glimpse ? 4 : 0)));
   out.add(double(facts.tick) * model_.tick), out.add(double(facts.tick));
   add_pose(in);
   out.add(facts.force), out.add(float(facts.depth)), out.add(facts.contacts), out.add(std::uint32_t(facts.severed));
   out.add(facts.hand), out.add(float(facts.tick_time)), out.add(std::uint32_t(facts.late_ticks));
   out.add(float(facts.tick_p99)), out.add(float(facts.slip));
-  out.add(std::uint32_t(surfaces_.size()));
-  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-    drawn_->place(i, surfaces_[i].surface(), state, vertex_);
+  out.add(std::uint32_t(drawn.surfaces.size()));
+  for (std::size_t i = 0; i < drawn.surfaces.size(); ++i) {
+    places_->place(i, drawn.surfaces[i].surface(), state, vertex_);
     add_positions(out, vertex_);
   }
   if (model_.hands > 1) {
@@ -114,7 +134,7 @@ Picture PictureMaker::make(const State& state, const FrameFacts& facts) {
     add_pose(in.second);
     out.add(report.tool_force), out.add(float(report.depth)), out.add(report.contacts), out.add(facts.second.hand);
   }
-  return {stage_, topology_, triangles_, std::move(out.text)};
+  return {stage_, drawn.topology, drawn.triangles, std::move(out.text)};
 }
 
 std::int64_t severed_in(const State& state) {

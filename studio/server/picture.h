@@ -10,6 +10,7 @@
 #include "core/model/state.h"
 #include "core/stepping/step.h"
 #include "studio/render/cut_surface.h"
+#include "studio/server/cut_key.h"
 
 namespace ctpm::server {
 
@@ -24,6 +25,7 @@ struct FrameFacts {
   std::uint32_t request = 0;    ///< number of the request that it answers; 0: none
   bool is_same = true;          ///< the replay is as recorded so far
   bool is_live = false;         ///< of a running session
+  bool is_glimpse = false;      ///< the tissue is between two States that are known; the replayed picture follows
   std::int64_t tick = 0;        ///< ticks done
   Vec3 force;                   ///< of the tissue on the tool [N]
   double depth = 0;             ///< [m]
@@ -48,23 +50,33 @@ struct Picture {
 /// Byte offset of the count of missed frames in a frame.
 inline constexpr std::size_t kMissedOffset = 12;
 
-/// Turns States of one Model into pictures.
+/// Turns States of one Model into pictures. Keeps the surfaces of a few cuts, because a cut takes longer to build than
+/// a moment to show.
 class PictureMaker {
  public:
   /// `model` must outlive this.
   PictureMaker(const Model& model, std::uint32_t stage);
 
-  /// The picture of a State. The triangles are made again only when a cut changed them.
+  /// The picture of a State. The triangles are made only when a cut changed them.
   Picture make(const State& state, const FrameFacts& facts);
 
  private:
-  void make_triangles();
+  /// What is drawn of one cut.
+  struct Drawn {
+    CutKey key;
+    std::vector<render::CutSurface> surfaces;
+    std::uint32_t topology = 0;
+    std::shared_ptr<const std::string> triangles;  ///< null: not made yet
+    std::uint64_t used = 0;
+  };
+  Drawn& drawn_of(const State& state);
+  void make_triangles(Drawn& drawn) const;
 
   const Model& model_;
-  std::uint32_t stage_, topology_ = 0;
-  std::unique_ptr<contact::DrawnSurfaces> drawn_;
-  std::vector<render::CutSurface> surfaces_;
-  std::shared_ptr<const std::string> triangles_;
+  std::uint32_t stage_;
+  std::unique_ptr<contact::DrawnSurfaces> places_;
+  std::vector<Drawn> drawn_;
+  std::uint64_t uses_ = 0;
   std::vector<Vec3> vertex_;
 };
 

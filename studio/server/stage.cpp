@@ -1,19 +1,10 @@
 #include "studio/server/stage.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "studio/server/text.h"
 
 namespace ctpm::server {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/// A request that came later replaces the present one, unless the page has waited this long for a picture.
-constexpr auto kPatience = std::chrono::milliseconds(100);
-
-}  // namespace
 
 Result<std::unique_ptr<Stage>> Stage::open(const std::string& file, std::uint32_t number,
                                            std::shared_ptr<Outbox> outbox) {
@@ -50,39 +41,30 @@ void Stage::show(std::int64_t tick, std::uint32_t request) {
   news_.notify_all();
 }
 
-/// Whether the present request need not be finished. A newer one ends it only while it `is_young`.
-bool Stage::is_outdated(bool is_young) {
+/// Whether the present request need not be finished.
+bool Stage::is_outdated() {
   const std::lock_guard lock(mutex_);
-  return ends_ || (is_young && wanted_ >= 0);
+  return ends_ || wanted_ >= 0;
 }
 
-/// Moves the cursor to `tick` from wherever it is nearest. False if a newer request came on the way.
-Result<bool> Stage::go_to(recordings::ReplayCursor& cursor, std::int64_t tick) {
-  const Clock::time_point began = Clock::now();
-  // The last tick is simulated in any case, because its report belongs to the picture.
-  const std::int64_t before = std::max<std::int64_t>(0, tick - 1);
-  const auto [near, kept] = moments_->before(before);
-  if (before < cursor.tick() || near > cursor.tick()) {
-    if (kept)
-      cursor.resume(near, kept->state);
-    else if (const Result<Done> found = cursor.seek(near); !found)
-      return found.errors();
-    was_same_ = !kept || kept->is_same;
-  }
-  constexpr std::int64_t kAsk = 20;  // ticks between two looks for a newer request
-  while (cursor.tick() < tick) {
-    if (cursor.tick() % kAsk == 0 && is_outdated(Clock::now() - began < kPatience)) return false;
-    const Result<bool> stepped = cursor.step();
-    if (!stepped) return stepped.errors();
-    if (!*stepped) break;
-  }
-  return true;
+/// Shows what is known of a moment without a simulation. Damaged parts of the session have no glimpse.
+void Stage::show_glimpse(PictureMaker& maker, Seeker& seeker, std::int64_t tick, std::uint32_t request) {
+  const Result<Seeker::Glimpse> glimpse = seeker.glimpse(tick);
+  if (!glimpse) return;
+  const recordings::TickRecord& record = glimpse->record;
+  FrameFacts facts;
+  facts.request = request, facts.is_glimpse = true, facts.tick = tick, facts.severed = severed_in(glimpse->state);
+  facts.hand = record.inputs.position, facts.force = record.tool_force, facts.depth = record.depth;
+  facts.contacts = record.contacts, facts.tick_time = record.tick_time, facts.slip = record.slip;
+  facts.second = {record.second, record.inputs.second.position};
+  outbox_->show(maker.make(glimpse->state, facts));
 }
 
-FrameFacts Stage::facts(const recordings::ReplayCursor& cursor, std::uint32_t request) {
+FrameFacts Stage::facts(const Seeker& seeker, std::uint32_t request) {
+  const recordings::ReplayCursor& cursor = seeker.cursor();
   FrameFacts facts;
   facts.request = request;
-  facts.is_same = was_same_ && cursor.same_so_far();
+  facts.is_same = seeker.is_same();
   facts.tick = cursor.tick();
   facts.severed = severed_in(cursor.state());
   facts.hand = cursor.state().last_inputs.position;
@@ -95,8 +77,7 @@ FrameFacts Stage::facts(const recordings::ReplayCursor& cursor, std::uint32_t re
 }
 
 void Stage::work() {
-  Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(reader_);
-  if (!cursor) return outbox_->send(stage_failed(number_, cursor.errors()));
+  Seeker seeker(reader_, *moments_);
   PictureMaker maker(reader_.start().model, number_);
   for (;;) {
     std::int64_t tick;
@@ -107,11 +88,12 @@ void Stage::work() {
       if (ends_) return;
       tick = std::exchange(wanted_, -1), request = request_;
     }
-    const Result<bool> there = go_to(*cursor, tick);
+    if (seeker.is_far(tick)) show_glimpse(maker, seeker, tick, request);
+    const Result<bool> there = seeker.go_to(tick, [this] { return is_outdated(); });
     if (!there)
       outbox_->send(stage_failed(number_, there.errors()));
     else if (*there)
-      outbox_->show(maker.make(cursor->state(), facts(*cursor, request)));
+      outbox_->show(maker.make(seeker.cursor().state(), facts(seeker, request)));
   }
 }
 

@@ -8,14 +8,16 @@
 #include <thread>
 
 #include "core/model/result.h"
-#include "recordings/replay.h"
 #include "recordings/session_reader.h"
 #include "studio/server/moments.h"
 #include "studio/server/outbox.h"
+#include "studio/server/picture.h"
+#include "studio/server/seeker.h"
 
 namespace ctpm::server {
 
-/// A session on the page: shows any of its moments on request, in a thread of its own.
+/// A session on the page: shows any of its moments on request, in a thread of its own. What has to be simulated first
+/// is shown by a glimpse at once.
 class Stage {
  public:
   /// Opens `file` as stage `number` of the page behind `outbox` and sends the shapes of its tools. Errors: the session
@@ -34,15 +36,14 @@ class Stage {
   Stage(recordings::SessionReader reader, std::unique_ptr<Moments> moments, std::uint32_t number,
         std::shared_ptr<Outbox> outbox);
   void work();
-  bool is_outdated(bool is_young);
-  Result<bool> go_to(recordings::ReplayCursor& cursor, std::int64_t tick);
-  FrameFacts facts(const recordings::ReplayCursor& cursor, std::uint32_t request);
+  bool is_outdated();
+  void show_glimpse(PictureMaker& maker, Seeker& seeker, std::int64_t tick, std::uint32_t request);
+  FrameFacts facts(const Seeker& seeker, std::uint32_t request);
 
   recordings::SessionReader reader_;
   std::unique_ptr<Moments> moments_;
   std::uint32_t number_;
   std::shared_ptr<Outbox> outbox_;
-  bool was_same_ = true;  ///< up to the moment from which the cursor came
   std::mutex mutex_;
   std::condition_variable news_;
   std::int64_t wanted_ = -1;  ///< tick; -1: none

@@ -1,8 +1,29 @@
 #include "studio/views/view_of_scene.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
+#include "studio/output/number_text.h"
+
 namespace ctpm::views {
+namespace {
+
+struct NamedColour {
+  const char* name;
+  render::Colour colour;
+};
+/// Far from each other, also for the colour-blind (Wong, "Points of view: Color blindness", Nat. Methods 8, 2011).
+constexpr NamedColour kMaterials[] = {{"orange", {0.90, 0.62, 0.00}},    {"blue", {0.00, 0.45, 0.70}},
+                                      {"green", {0.00, 0.62, 0.45}},     {"yellow", {0.94, 0.89, 0.26}},
+                                      {"purple", {0.80, 0.47, 0.65}},    {"light blue", {0.34, 0.71, 0.91}},
+                                      {"vermilion", {0.84, 0.37, 0.00}}, {"grey", {0.60, 0.60, 0.60}}};
+
+std::string name_of(const scenes::MaterialSpec& material) {
+  return material.preset.empty() ? "a material of its own" : material.preset;
+}
+
+}  // namespace
 
 render::SceneView view_of(const scenes::SceneSpec& scene, const Model& model) {
   render::SceneView view;
@@ -15,6 +36,30 @@ render::SceneView view_of(const scenes::SceneSpec& scene, const Model& model) {
     view.looks.push_back(look);
   }
   return view;
+}
+
+std::vector<std::string> colour_by_material(const scenes::SceneSpec& scene, std::span<const FilledOrgan> organs,
+                                            render::SceneView& view) {
+  std::vector<std::string> legend;
+  view.sphere_colours.clear();
+  for (std::size_t o = 0; o < organs.size(); ++o) {
+    const scenes::OrganSpec& organ = scene.organs[o];
+    const std::size_t first = legend.size();
+    const auto colour_of = [](std::size_t number) { return kMaterials[number % std::size(kMaterials)]; };
+    const auto add = [&](const scenes::MaterialSpec& material, const std::string& where) {
+      legend.push_back(std::string(colour_of(legend.size()).name) + ": " + organ.name + ", " + name_of(material) +
+                       where);
+    };
+    for (const scenes::LayerSpec& layer : organ.layers)
+      add(layer.material, " down to " + output::short_number(1e3 * layer.to_depth) + " mm");
+    add(organ.material, organ.layers.empty() ? "" : " below");
+    for (const double depth : organs[o].depth) {
+      const auto layer = std::find_if(organ.layers.begin(), organ.layers.end(),
+                                      [&](const scenes::LayerSpec& l) { return l.to_depth > depth; });
+      view.sphere_colours.push_back(colour_of(first + std::size_t(layer - organ.layers.begin())).colour);
+    }
+  }
+  return legend;
 }
 
 }  // namespace ctpm::views

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+#include <string>
 #include <vector>
 
 #include "core/model/model.h"
@@ -11,5 +13,10 @@ namespace ctpm::views {
 
 /// The renderer's view of a scene: its surfaces in the organs' colours. `model` must outlive the view.
 render::SceneView view_of(const scenes::SceneSpec& scene, const Model& model);
+
+/// Colours a view's spheres by their material: each organ's layers, and the tissue below them, have one of their own.
+/// Returns what each colour is, in the words of a legend. `organs` are those that the Model was built of.
+std::vector<std::string> colour_by_material(const scenes::SceneSpec& scene, std::span<const FilledOrgan> organs,
+                                            render::SceneView& view);
 
 }  // namespace ctpm::views

@@ -41,24 +41,32 @@ constexpr Session kFullSessions[] = {
     {"full, sdirk2", network::Structure::ctpm, Integrator::sdirk2},
 };
 
-/// Of make_resisting_model().
-struct ResistingSession {
+/// Of make_resisting_model() or make_skinned_model().
+struct BlockSession {
   const char* name;
   bool is_soft;
   std::optional<Integrator> integrator;
+  std::int32_t hands = 1;
+  Inputs (*inputs)(int) = testing::golden_inputs;
 };
 
-constexpr ResistingSession kResistingSessions[] = {
+constexpr BlockSession kBlockSessions[] = {
     {"resisting, auto", false, std::nullopt},
     {"resisting, sdirk2", false, Integrator::sdirk2},
     {"soft and resisting, auto", true, std::nullopt},
 };
 
 /// Of make_skinned_model().
-constexpr ResistingSession kSkinnedSessions[] = {
+constexpr BlockSession kSkinnedSessions[] = {
     {"skinned, auto", false, std::nullopt},
     {"skinned, sdirk2", false, Integrator::sdirk2},
     {"soft and skinned, auto", true, std::nullopt},
+    {"touched cut, auto", false, std::nullopt, 1, testing::touched_cut_inputs},
+    {"touched cut, sdirk2", false, Integrator::sdirk2, 1, testing::touched_cut_inputs},
+    {"soft and touched cut, auto", true, std::nullopt, 1, testing::touched_cut_inputs},
+    {"two hands, auto", false, std::nullopt, 2, testing::two_hands_inputs},
+    {"two hands, sdirk2", false, Integrator::sdirk2, 2, testing::two_hands_inputs},
+    {"soft and two hands, auto", true, std::nullopt, 2, testing::two_hands_inputs},
 };
 
 std::string to_text(const std::array<std::uint64_t, 4>& hash) {
@@ -87,8 +95,8 @@ void expect_row(const testing::GoldenRun& run, const GoldenRow& row) {
 TEST(Golden, ASmallSessionGivesTheSameBitsInEveryBuild) {
   const GoldenRevision& present = *std::rbegin(kGoldenRevisions);
   ASSERT_EQ(present.revision, kPhysicsRevision) << "golden_rows.h needs the rows of the present physics revision";
-  EXPECT_EQ(present.rows.size(), std::size(kSessions) + std::size(kFullSessions) + std::size(kResistingSessions) +
-                                     std::size(kSkinnedSessions));
+  EXPECT_EQ(present.rows.size(),
+            std::size(kSessions) + std::size(kFullSessions) + std::size(kBlockSessions) + std::size(kSkinnedSessions));
   for (const Session& session : kSessions) {
     const GoldenRow* row = find_row(present, session.name);
     ASSERT_NE(row, nullptr) << session.name;
@@ -99,7 +107,7 @@ TEST(Golden, ASmallSessionGivesTheSameBitsInEveryBuild) {
     ASSERT_NE(row, nullptr) << session.name;
     expect_row(testing::run_golden(testing::make_full_model(6, 5, 5), 400, session.integrator), *row);
   }
-  for (const ResistingSession& session : kResistingSessions) {
+  for (const BlockSession& session : kBlockSessions) {
     const GoldenRow* row = find_row(present, session.name);
     ASSERT_NE(row, nullptr) << session.name;
     const auto run = [&](double resistance) {
@@ -113,10 +121,11 @@ TEST(Golden, ASmallSessionGivesTheSameBitsInEveryBuild) {
 
 TEST(Golden, TouchedSurfacesGiveTheSameBitsInEveryBuild) {
   const GoldenRevision& present = *std::rbegin(kGoldenRevisions);
-  for (const ResistingSession& session : kSkinnedSessions) {
+  for (const BlockSession& session : kSkinnedSessions) {
     const GoldenRow* row = find_row(present, session.name);
     ASSERT_NE(row, nullptr) << session.name;
-    expect_row(testing::run_golden(testing::make_skinned_model(6, 5, 5, session.is_soft), 400, session.integrator),
+    expect_row(testing::run_golden(testing::make_skinned_model(6, 5, 5, session.is_soft, session.hands), 400,
+                                   session.integrator, {}, session.inputs),
                *row);
   }
 }

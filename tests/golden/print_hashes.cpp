@@ -14,8 +14,10 @@ struct Session {
   int ni, nj, nk, ticks;
   network::Structure structure;
   std::optional<Integrator> integrator;
-  bool resists = false;
-  bool has_surface = false;  ///< inversion
+  bool resists = false;  ///< inversion
+  bool has_surface = false;
+  std::int32_t hands = 1;
+  Inputs (*inputs)(int) = testing::golden_inputs;
 };
 
 constexpr Session kSessions[] = {
@@ -30,6 +32,8 @@ constexpr Session kSessions[] = {
     {"resisting in slabs", 13, 12, 12, 40, network::Structure::ctpm, Integrator::sdirk2, true},
     {"skinned", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true},
     {"skinned in slabs", 13, 12, 12, 40, network::Structure::ctpm, Integrator::sdirk2, false, true},
+    {"touched cut", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true, 1, testing::touched_cut_inputs},
+    {"two hands", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true, 2, testing::two_hands_inputs},
 };
 
 }  // namespace
@@ -39,8 +43,9 @@ int main() {
   for (const Session& session : kSessions) {
     const auto run = [&](const stepping::StepperOptions& options) {
       if (session.has_surface)
-        return testing::run_golden(testing::make_skinned_model(session.ni, session.nj, session.nk, false),
-                                   session.ticks, session.integrator, options);
+        return testing::run_golden(
+            testing::make_skinned_model(session.ni, session.nj, session.nk, false, session.hands), session.ticks,
+            session.integrator, options, session.inputs);
       if (session.resists)
         return testing::run_golden(testing::make_resisting_model(session.ni, session.nj, session.nk, false),
                                    session.ticks, session.integrator, options);

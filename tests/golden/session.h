@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -22,6 +23,21 @@ inline Inputs golden_inputs(int tick) {
     inputs.tool = 1;
     inputs.position = {0.0007, -0.05 + 0.0005 * (tick - 200), 0.020};
   }
+  return inputs;
+}
+
+/// A scalpel cuts through the block for 200 ticks, then a ball presses into the cut.
+inline Inputs touched_cut_inputs(int tick) {
+  Inputs inputs = golden_inputs(tick < 200 ? 200 + tick : 0);
+  if (tick >= 200) inputs.position = {0.0012, 0.001, 0.048 + 0.012 - 0.00008 * (tick - 200)};
+  return inputs;
+}
+
+/// A ball presses, and from tick 100 on a scalpel in the other hand cuts beside it.
+inline Inputs two_hands_inputs(int tick) {
+  Inputs inputs = golden_inputs(std::min(tick, 150));
+  inputs.position.x = 0.012;
+  if (tick >= 100) inputs.second = golden_inputs(200 + tick - 100);
   return inputs;
 }
 
@@ -61,18 +77,18 @@ inline Model make_resisting_model(int ni, int nj, int nk, bool is_soft, double r
 }
 
 /// A block with a surface, which the ball touches and grips; soft enough for leapfrog if `is_soft`.
-inline Model make_skinned_model(int ni, int nj, int nk, bool is_soft) {
+inline Model make_skinned_model(int ni, int nj, int nk, bool is_soft, std::int32_t hands = 1) {
   network::Material material = liver_material();
   if (is_soft) material.viscosity = 5e3, material.stiffness_scale = 0.29;
   Model model = make_skinned_block(ni, nj, nk, network::Structure::ctpm, 0.003, material, network::Tiling::two_spheres);
-  model.tools = {ball(0.006), scalpel(0.06)};
+  model.tools = {ball(0.006), scalpel(0.06)}, model.hands = hands;
   return model;
 }
 
-/// Simulates `ticks` ticks, sampled evenly from the golden session, of a Model with a ball, a scalpel and perhaps a
-/// pin.
+/// Simulates `ticks` ticks, sampled evenly from the 400 of a golden session, of a Model with a ball, a scalpel and
+/// perhaps a pin.
 inline GoldenRun run_golden(Model model, int ticks, std::optional<Integrator> integrator,
-                            const stepping::StepperOptions& options = {}) {
+                            const stepping::StepperOptions& options = {}, Inputs (*inputs_at)(int) = golden_inputs) {
   model.gravity = {0, 0, -9.81};
   model.solver = {};
   stepping::resolve_integrator(model, integrator);
@@ -80,7 +96,7 @@ inline GoldenRun run_golden(Model model, int ticks, std::optional<Integrator> in
   stepping::Stepper stepper(model, options);
   GoldenRun run;
   for (int tick = 0; tick < ticks; ++tick) {
-    Inputs inputs = golden_inputs(tick * 400 / ticks);
+    Inputs inputs = inputs_at(tick * 400 / ticks);
     if (model.has_tool(ToolKind::pin) && tick >= ticks * 3 / 4) {
       const Vec3 held = model.rest_position[std::size_t(model.tools[2].sphere)];
       inputs.tool = 2, inputs.position = held + Vec3{0, 0, 1e-5 * (tick - ticks * 3 / 4)};

@@ -46,6 +46,45 @@ TEST(Import, ShippedOrgansAreSoundAndHaveTheirVolume) {
   }
 }
 
+TEST(Import, QuarterTurnsAreExactAndOthersKeepLengths) {
+  const Vec3 p{1, 2, 3};
+  const auto turned = [&](Vec3 degrees) { return importers::turned({p}, degrees)[0]; };
+  EXPECT_EQ(turned({0, 0, 0}), p);
+  EXPECT_EQ(turned({90, 0, 0}), (Vec3{1, -3, 2}));
+  EXPECT_EQ(turned({0, -90, 0}), (Vec3{-3, 2, 1}));
+  EXPECT_EQ(turned({0, 0, 270}), (Vec3{2, -1, 3}));
+  EXPECT_EQ(turned({180, 0, 90}), (Vec3{2, 1, -3})) << "about x first";
+  EXPECT_EQ(turned({360, -360, 0}), p);
+  EXPECT_LT(norm(turned({0, 0, 30}) - Vec3{std::sqrt(3.0) / 2 - 1, 0.5 + std::sqrt(3.0), 3}), 1e-15);
+  EXPECT_NEAR(norm(turned({12, -34, 56})), norm(p), 1e-15);
+}
+
+TEST(Import, AMeshIsTurnedAndScaledAboutItsOrigin) {
+  const zoo::Folder folder;
+  const std::string path = folder.write("box.obj", zoo::to_obj_text(zoo::box({60, 40, 20}, 4, {100, 0, 0})));
+  importers::ImportOptions options;
+  options.unit_in_metres = 0.001, options.sphere_radius = 0.004;
+  options.turn = {0, 0, 90}, options.scale = 2;
+  const Result<importers::ImportedOrgan> imported = importers::import_organ(path, options);
+  ASSERT_TRUE(imported) << text_of(imported.errors());
+  const importers::ImportReport& report = imported->report;
+  EXPECT_LT(norm(report.box_least - Vec3{-0.04, 0.14, -0.02}), 1e-12);
+  EXPECT_LT(norm(report.box_most - Vec3{0.04, 0.26, 0.02}), 1e-12);
+  EXPECT_NEAR(report.mesh_volume, 8 * 48e-6, 1e-12);
+}
+
+TEST(Import, CrumbsOfAnOpenMeshAreNoOrgans) {
+  // A landscape that cannot be closed, with a closed crumb beside it: what is open is said.
+  const zoo::Folder folder;
+  const importers::RawMesh open = zoo::without(zoo::box({200, 200, 40}, 10), [](Vec3 p) { return p.z > 19; });
+  const std::string path = folder.write("land.obj", zoo::to_obj_text(zoo::both(open, zoo::sphere(2, 2, {150, 0, 0}))));
+  importers::ImportOptions options;
+  options.unit_in_metres = 0.001;
+  const Result<importers::RepairedFile> parts = importers::repair_file(path, options, 8);
+  ASSERT_FALSE(parts);
+  EXPECT_NE(text_of(parts.errors()).find("open beyond repair: a hole"), std::string::npos) << text_of(parts.errors());
+}
+
 TEST(Import, GuessedUnitIsSaidAloud) {
   const zoo::Folder folder;
   const std::string path = folder.write("ball.stl", zoo::to_binary_stl(zoo::sphere(60, 3)));

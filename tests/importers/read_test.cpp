@@ -239,5 +239,25 @@ TEST(Unit, LiverOfASegmentationIsInCentimetresAndItsFoldIsMended) {
   EXPECT_EQ(crossing->remains, "");
 }
 
+TEST(Read, AFormatWithoutColoursSaysNone) {
+  const zoo::Folder folder;
+  for (const auto& [name, bytes] :
+       {std::pair{"a.off", zoo::to_off(sample())}, {"a.stl", zoo::to_binary_stl(sample())}}) {
+    const Result<importers::RawMesh> mesh = importers::read_mesh(folder.write(name, bytes));
+    ASSERT_TRUE(mesh) << text_of(mesh.errors());
+    for (const std::optional<Vec3>& colour : mesh->part_colour) EXPECT_FALSE(colour) << name;
+  }
+}
+
+TEST(Read, ADicomFileIsRefusedWithTheWayOut) {
+  const zoo::Folder folder;
+  const Result<importers::RawMesh> mesh =
+      importers::read_mesh(folder.write("IM0001", std::string(128, '\0') + "DICM" + std::string(500, '\x02')));
+  ASSERT_FALSE(mesh);
+  EXPECT_NE(zoo::text_of(mesh.errors()).find("is a DICOM file, which is not read (save the segmentation as NRRD"),
+            std::string::npos)
+      << zoo::text_of(mesh.errors());
+}
+
 }  // namespace
 }  // namespace ctpm

@@ -131,6 +131,30 @@ TEST(Comments, AreKeptWhereAToolRewritesTheScene) {
   EXPECT_EQ(scenes::read_scene(scenes::rewrite_scene(text, scene->spec, after), "t.json")->spec, after);
 }
 
+TEST(Comments, AreKeptWhereAnOrganIsAdded) {
+  const std::string organ = "{\"name\": \"l\", \"mesh\": \"a.obj\", \"material\": {\"preset\": \"liver\"}}";
+  const std::string head = "{\"format\": \"ctpm-scene\", \"version\": 1, \"name\": \"a\",\n", tail = "// end\n}\n";
+  for (const std::string& list :
+       {"[" + organ + "] /* here */", "[\n  " + organ + " // first\n  // last\n]", "[\n  // only\n  " + organ + "]"}) {
+    const std::string text = head + "\"organs\": " + list + ",\n\"tools\": []\n" + tail;
+    const Result<scenes::SceneText> scene = scenes::read_scene(text, "t.json");
+    ASSERT_TRUE(scene) << text;
+    scenes::SceneSpec after = scene->spec;
+    after.organs.push_back(after.organs[0]);
+    after.organs[1].name = "second", after.organs[1].turn = {0, 0, 90}, after.organs[1].scale = 1.5;
+    scenes::ToolSpec ball;
+    ball.name = "ball", ball.radius = 0.01;
+    after.tools.push_back(ball);
+    const std::string changed = scenes::rewrite_scene(text, scene->spec, after);
+    const Result<scenes::SceneText> again = scenes::read_scene(changed, "t.json");
+    ASSERT_TRUE(again) << changed;
+    EXPECT_EQ(again->spec, after);
+    EXPECT_NE(changed.find(organ), std::string::npos) << changed;
+    for (const char* comment : {"/* here */", "// first", "// last", "// only", "// end"})
+      EXPECT_EQ(changed.find(comment) == std::string::npos, text.find(comment) == std::string::npos) << changed;
+  }
+}
+
 TEST(Comments, PlacesByMeaningStayTextsWhereASceneIsRewritten) {
   const std::string text =
       "{\"format\": \"ctpm-scene\", \"version\": 1, \"name\": \"a\",\n\"organs\": [{\"name\": \"l\", \"mesh\": "

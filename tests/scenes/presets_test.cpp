@@ -79,7 +79,7 @@ TEST(Presets, OtherTissuesHaveTheYoungsModulusOfTheirSource) {
     double young;  // [Pa]
   };
   // Three times the shear stiffness of elastography, as tissue keeps its volume.
-  for (const Tissue& tissue : {Tissue{"spleen", 3 * 3565}, {"lung", 3 * 1140}, {"fat", 3250}}) {
+  for (const Tissue& tissue : {Tissue{"spleen", 3 * 3565}, {"lung", 3 * 1140}, {"fat", 3040}}) {
     const scenes::MaterialPreset* preset = scenes::find_preset(tissue.name);
     ASSERT_NE(preset, nullptr) << tissue.name;
     const network::Material& m = preset->material;

@@ -53,8 +53,10 @@ export function Author({ connection, listing, onTry, onChanged }: {
       hand.onPreview = (values) => made.doc?.preview(values);
       hand.onCommit = () => made.doc?.commit();
     }
+    gizmos.newest = (key) => made.items.find((item) => item.key === key);
     made.onChange = () => setVersion((v) => v + 1);
     setDesk({ viewer, scene: made, gizmos, brush });
+    if (listing.scenes.some((entry) => entry.path === AuthorScene.lastOpen)) void made.open(AuthorScene.lastOpen);
     return () => {
       made.onChange = () => {};
       gizmos.dispose();

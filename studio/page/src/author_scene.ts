@@ -53,6 +53,10 @@ function middleOf(centres: Float32Array): three.Vector3 {
   return box.getCenter(new three.Vector3());
 }
 
+/** Scenes that were open keep their history while the page is there. */
+const documents = new Map<string, SceneDocument>();
+let lastOpen = "";
+
 export class AuthorScene {
   onChange: () => void = () => {};
   doc: SceneDocument | null = null;
@@ -64,7 +68,6 @@ export class AuthorScene {
   tickTime: TickTime | null = null; // of what is shown; null: not measured yet
   private checked: Checked | null = null;
   private schema: Schema | null = null;
-  private readonly documents = new Map<string, SceneDocument>(); // those that were open keep their history
   private shownPart = "";
   private wantsShow = false;
   private running: AbortController | null = null; // a load
@@ -83,10 +86,16 @@ export class AuthorScene {
     });
   }
 
+  /** The scene that was open when the author left the room; empty: none. */
+  static get lastOpen(): string {
+    return lastOpen;
+  }
+
   /** Opens a scene, with the history that it had if it was open before. */
   async open(path: string): Promise<void> {
     this.doc?.commit();
-    const known = this.documents.get(path);
+    const known = documents.get(path);
+    lastOpen = path;
     this.doc = null, this.shown = null, this.error = null, this.tickTime = null, this.checked = null, this.shownPart = "";
     this.viewer.set(kAuthorStage, null);
     this.stage = null;
@@ -94,7 +103,8 @@ export class AuthorScene {
     this.onChange();
     try {
       const doc = known ?? (await SceneDocument.open(this.connection, path, () => this.schema));
-      this.documents.set(path, doc);
+      documents.set(path, doc);
+      doc.connection = this.connection; // the program may have been started again
       doc.onChange = () => this.changed();
       this.doc = doc;
       this.changed();
@@ -223,6 +233,6 @@ export class AuthorScene {
     clearTimeout(this.timers.show);
     this.running?.abort();
     this.measuring?.abort();
-    for (const doc of this.documents.values()) doc.commit(), doc.dispose();
+    for (const doc of documents.values()) doc.commit(), (doc.onChange = () => {});
   }
 }

@@ -16,9 +16,11 @@ export function Compare({ connection, player, listing, comparison, onComparison,
 }) {
   const [error, setError] = useState<Error | null>(null);
   const [isBusy, setBusy] = useState(false);
+  const [aligned, setAligned] = useState(player.path ? "path" : "");
   const first = player.tracks.get(0)!.session, second = player.tracks.get(1)?.session;
 
   const align = (kind: string) => {
+    setAligned(kind);
     const time = player.alignAt(kind);
     if (time !== null) player.move(time);
   };
@@ -30,11 +32,22 @@ export function Compare({ connection, player, listing, comparison, onComparison,
     setError(null);
     setBusy(true);
     try {
-      onComparison(await connection.call<ComparisonResult>("session.compare", { expert: first.path, trainee: second!.path }));
+      const result = await connection.call<ComparisonResult>("session.compare", { expert: first.path, trainee: second!.path });
+      onComparison(result);
+      return result;
     } catch (failure) {
       setError(failure as Error);
+      return null;
+    } finally {
+      setBusy(false);
     }
-    setBusy(false);
+  };
+  const alignAlong = async () => {
+    const result = comparison ?? (await compare());
+    if (!result) return;
+    if (result.path_s.length === 0) return setError(new Error("Both paths have no part in common."));
+    setAligned("path");
+    player.alignAlong(result.path_s);
   };
   const can = (kind: string) => !!second && firstOf(first.info, kind) !== null && firstOf(second.info, kind) !== null;
 
@@ -52,12 +65,16 @@ export function Compare({ connection, player, listing, comparison, onComparison,
         {second && (
           <>
             <div class="buttons" role="group" aria-label="Align at">
-              <button type="button" disabled={!can("contact begins")} onClick={() => align("contact begins")}>first contact</button>
-              <button type="button" disabled={!can("cut")} onClick={() => align("cut")}>first cut</button>
+              <button type="button" aria-pressed={aligned === "contact begins"} disabled={!can("contact begins")} onClick={() => align("contact begins")}>first contact</button>
+              <button type="button" aria-pressed={aligned === "cut"} disabled={!can("cut")} onClick={() => align("cut")}>first cut</button>
+              <button type="button" aria-pressed={aligned === "path"} disabled={isBusy} onClick={() => void alignAlong()}>path</button>
             </div>
             <label class="field">
               <span>by hand: the one beside is ahead by [s]</span>
-              <input type="number" step="0.01" value={Number(player.offset.toFixed(3))} onChange={(e) => player.setOffset(Number(e.currentTarget.value) || 0)} />
+              <input type="number" step="0.01" value={player.path ? "" : Number(player.offset.toFixed(3))} onChange={(e) => {
+                setAligned("");
+                player.setOffset(Number(e.currentTarget.value) || 0);
+              }} />
             </label>
             <button type="button" class="main" disabled={isBusy} onClick={() => void compare()}>{isBusy ? "comparing…" : "Compare"}</button>
             <ShownCommand text={command("compare", first.path, second.path, "-o", "report")} />
@@ -65,7 +82,7 @@ export function Compare({ connection, player, listing, comparison, onComparison,
         )}
         <Problems error={error} />
       </Section>
-      {second && comparison && <Result comparison={comparison} onMoment={(time) => player.move(time - player.offset)} />}
+      {second && comparison && <Result comparison={comparison} onMoment={(time) => player.move(player.firstAt(time))} />}
     </>
   );
 }

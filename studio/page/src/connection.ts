@@ -113,3 +113,12 @@ export function takeToken(): string {
   }
   return token ?? localStorage.getItem(kTokenKey) ?? "";
 }
+
+/** Calls `take` with a token that another page of this address was given: that of the program's next run. */
+export function onNewToken(take: (token: string) => void): () => void {
+  const listen = (event: StorageEvent) => {
+    if (event.key === kTokenKey && event.newValue) take(event.newValue);
+  };
+  addEventListener("storage", listen);
+  return () => removeEventListener("storage", listen);
+}

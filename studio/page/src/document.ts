@@ -4,7 +4,7 @@ import { EditorState } from "@codemirror/state";
 import { EditorView } from "@codemirror/view";
 import { findNodeAtLocation, getLocation, type JSONPath, parseTree } from "jsonc-parser";
 import type { Connection } from "./connection";
-import { applied, type Change, type Json, removeValue, setValue } from "./json_edit";
+import { applied, type Change, type Json, parseJson, removeValue, setValue } from "./json_edit";
 import { editorOf, gesture, rangeOf, underlined } from "./json_editor";
 import type { Problem } from "./protocol";
 import type { Schema } from "./scene_schema";
@@ -19,7 +19,7 @@ export class SceneDocument {
   private valid: Json | undefined;
   private parsed: { text: string; value: Json | undefined } | null = null;
 
-  private constructor(private readonly connection: Connection, readonly path: string, private saved: string, private revision: string, text: string, schema: () => Schema | null) {
+  private constructor(public connection: Connection, readonly path: string, private saved: string, private revision: string, text: string, schema: () => Schema | null) {
     this.host.className = "editor";
     // In a root of its own, the editor's styles are objects and not elements, which the page's security policy refuses.
     const root = this.host.attachShadow({ mode: "open" });
@@ -43,16 +43,11 @@ export class SceneDocument {
     return this.view.state.doc.toString();
   }
 
-  /** The text's value; undefined: it is no JSON. */
+  /** The text's value, without its comments; undefined: it is no JSON. */
   get value(): Json | undefined {
     const { text } = this;
     if (this.parsed?.text !== text) {
-      let value: Json | undefined;
-      try {
-        value = JSON.parse(text) as Json;
-      } catch {
-        value = undefined;
-      }
+      const value = parseJson(text);
       this.valid = value ?? this.valid;
       this.parsed = { text, value };
     }
@@ -142,10 +137,6 @@ export class SceneDocument {
     this.view.dispatch({
       selection: { anchor: node.offset, head: node.offset + node.length }, effects: EditorView.scrollIntoView(node.offset, { y: "center" }),
     });
-  }
-
-  dispose(): void {
-    this.view.destroy();
   }
 
   /** Changes the text where it differs: as a step of its own, or as a part of a gesture. */

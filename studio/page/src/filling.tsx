@@ -2,7 +2,7 @@ import { useRef, useState } from "preact/hooks";
 import type { AuthorScene } from "./author_scene";
 import type { Connection } from "./connection";
 import { listOf } from "./items";
-import { findJson } from "./json_edit";
+import { findJson, parseJson } from "./json_edit";
 import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import { command, millimetres } from "./text";
 
@@ -115,7 +115,7 @@ function ScatterOf({ connection, scene }: { connection: Connection; scene: Autho
     }
     setProgress(null);
   };
-  const isOld = measured !== null && JSON.stringify(findJson(JSON.parse(measured.text), ["organs", 0])) !== JSON.stringify(findJson(doc.value, ["organs", 0]));
+  const isOld = measured !== null && JSON.stringify(findJson(parseJson(measured.text), ["organs", 0])) !== JSON.stringify(findJson(doc.value, ["organs", 0]));
   return (
     <Section title="Scatter of the force">
       <p class="hint">How much the force of the first ball on the first organ changes when the lattice is turned, or the ball moved by less than a spacing. Tissue has none.</p>

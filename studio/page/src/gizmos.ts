@@ -27,6 +27,7 @@ export class Gizmos {
   onSelect: (key: string) => void = () => {};
   onPreview: (values: Values) => void = () => {};
   onCommit: () => void = () => {};
+  newest: (key: string) => Item | undefined = (key) => this.item(key); // as the text has it now, drawn or not
   private stage: StageScene | null = null;
   private items: Item[] = [];
   private selected = "";
@@ -193,7 +194,7 @@ export class Gizmos {
   }
 
   private nudge(key: string, event: KeyboardEvent): void {
-    const item = this.item(key), step = event.shiftKey ? kFineNudge : kNudge;
+    const item = this.newest(key), step = event.shiftKey ? kFineNudge : kNudge; // keys may come faster than pictures
     const ways: Record<string, [number, number, number]> = {
       ArrowLeft: [-step, 0, 0], ArrowRight: [step, 0, 0], ArrowUp: [0, step, 0], ArrowDown: [0, -step, 0], PageUp: [0, 0, -step], PageDown: [0, 0, step],
     };

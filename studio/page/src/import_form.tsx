@@ -3,7 +3,7 @@ import * as three from "three";
 import type { AuthorScene, Finding } from "./author_scene";
 import type { Connection } from "./connection";
 import { freeName, listOf, mmVector } from "./items";
-import { findJson, type Json } from "./json_edit";
+import { findJson, type Json, parseJson } from "./json_edit";
 import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import type { Vector } from "./protocol";
 import { command, millimetres } from "./text";
@@ -61,7 +61,7 @@ export function ImportResult({ imported }: { imported: Imported }) {
 /** Adds the organ of a scene that was imported to the one that is open, beside its organs: one step of its history. */
 async function addOrgan(connection: Connection, open: AuthorScene, imported: Imported): Promise<void> {
   const { text } = await connection.call<{ text: string }>("scene.read", { path: imported.scene });
-  const organ = findJson(JSON.parse(text) as Json, ["organs", 0]) as { [key: string]: Json };
+  const organ = findJson(parseJson(text), ["organs", 0]) as { [key: string]: Json };
   const doc = open.doc!, organs = listOf(doc.value, "organs"), view = open.shown?.view;
   const at = view ? new three.Vector3(view.most[0] + kGap - imported.least[0], (view.least[1] + view.most[1] - imported.least[1] - imported.most[1]) / 2, view.least[2] - imported.least[2])
     : new three.Vector3();

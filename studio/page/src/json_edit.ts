@@ -1,5 +1,5 @@
-// Changes of single values in JSON text, which leave the rest of the text as its author wrote it.
-import { findNodeAtLocation, type JSONPath, type Node, parseTree } from "jsonc-parser";
+// Changes of single values in JSON text, which leave the rest of the text, comments too, as its author wrote it.
+import { createScanner, findNodeAtLocation, type JSONPath, type Node, parse, type ParseError, parseTree, SyntaxKind } from "jsonc-parser";
 
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
 
@@ -8,6 +8,13 @@ export interface Change {
   from: number;
   to: number;
   insert: string;
+}
+
+/** The value of a text with comments; undefined: it is no JSON. */
+export function parseJson(text: string): Json | undefined {
+  const errors: ParseError[] = [];
+  const value = parse(text, errors) as Json | undefined;
+  return errors.length === 0 ? value : undefined;
 }
 
 const kLine = 100; // characters that stay on one line
@@ -30,18 +37,34 @@ function indentAt(text: string, at: number): string {
   return /^[ \t]*/.exec(text.slice(text.lastIndexOf("\n", at - 1) + 1, at))![0];
 }
 
+/** Where the next token of that kind begins, from a place on; -1: there is none. */
+function findToken(text: string, kind: SyntaxKind, from: number, to: number): number {
+  const scanner = createScanner(text.slice(from, to));
+  for (let token = scanner.scan(); token !== SyntaxKind.EOF; token = scanner.scan()) if (token === kind) return from + scanner.getTokenOffset();
+  return -1;
+}
+
+function hasComment(text: string): boolean {
+  return findToken(text, SyntaxKind.LineCommentTrivia, 0, text.length) >= 0 || findToken(text, SyntaxKind.BlockCommentTrivia, 0, text.length) >= 0;
+}
+
 /** Adds a member after the last one of an object or a list. */
 function added(text: string, node: Node, member: (indent: string) => string): Change {
-  const last = node.children?.at(-1);
+  const last = node.children?.at(-1), nodeEnd = node.offset + node.length;
   if (!last) {
     const indent = indentAt(text, node.offset), body = member(indent);
     const [open, close] = node.type === "array" ? ["[", "]"] : ["{ ", " }"];
+    if (hasComment(text.slice(node.offset, nodeEnd))) {
+      const end = node.offset + text.slice(node.offset, nodeEnd - 1).trimEnd().length;
+      return { from: end, to: nodeEnd - 1, insert: `\n${indent}${kStep}${member(indent + kStep)}\n${indent}` };
+    }
     return { from: node.offset, to: node.offset + node.length, insert: open + body + close };
   }
   const end = last.offset + last.length;
   // Members that have lines of their own get a new line.
   const before = text.slice(node.offset, node.children![0].offset);
-  if (!before.includes("\n")) {
+  const isCommented = hasComment(text.slice(node.offset, nodeEnd));
+  if (!before.includes("\n") && !isCommented) {
     const indent = indentAt(text, node.offset), body = member(indent);
     if (node.length + body.length <= kLine) return { from: end, to: end, insert: `, ${body}` };
     // The line would become too long: each member gets a line of its own.
@@ -49,8 +72,10 @@ function added(text: string, node: Node, member: (indent: string) => string): Ch
     const [open, close] = node.type === "array" ? ["[", "]"] : ["{", "}"];
     return { from: node.offset, to: node.offset + node.length, insert: `${open}\n${members.map((m) => indent + kStep + m).join(",\n")}\n${indent}${close}` };
   }
-  const indent = indentAt(text, last.offset);
-  return { from: end, to: end, insert: `,\n${indent}${member(indent)}` };
+  // What is said about the last member on its line stays there.
+  const indent = indentAt(text, last.offset), line = text.indexOf("\n", end);
+  const rest = line >= 0 && line < nodeEnd ? text.slice(end, line).trimEnd() : "";
+  return { from: end, to: end + rest.length, insert: `,${rest}\n${indent}${member(indent)}` };
 }
 
 /** Sets the value at a path; what is missing on the way is made, and a list takes new values at its end. Null: the text cannot take it. */
@@ -58,6 +83,15 @@ export function setValue(text: string, path: JSONPath, value: Json): Change | nu
   const root = parseTree(text);
   if (!root) return null;
   const present = findNodeAtLocation(root, path);
+  if (present?.type === "array" && Array.isArray(value) && value.length === present.children?.length && hasComment(text.slice(present.offset, present.offset + present.length))) {
+    // Comments stand between the numbers.
+    let insert = "", at = present.offset;
+    present.children.forEach((child, i) => {
+      insert += text.slice(at, child.offset) + written(value[i], "");
+      at = child.offset + child.length;
+    });
+    return { from: present.offset, to: present.offset + present.length, insert: insert + text.slice(at, present.offset + present.length) };
+  }
   if (present) return { from: present.offset, to: present.offset + present.length, insert: written(value, indentAt(text, present.offset)) };
   for (let depth = path.length - 1; depth >= 0; --depth) {
     const parent = depth === 0 ? root : findNodeAtLocation(root, path.slice(0, depth));
@@ -82,9 +116,22 @@ export function removeValue(text: string, path: JSONPath): Change | null {
   const member = value.parent?.type === "property" ? value.parent : value;
   const siblings = member.parent?.children ?? [];
   const i = siblings.indexOf(member), end = member.offset + member.length;
-  if (siblings.length === 1) return { from: member.parent!.offset + 1, to: member.parent!.offset + member.parent!.length - 1, insert: "" };
-  if (i > 0) return { from: siblings[i - 1].offset + siblings[i - 1].length, to: end, insert: "" };
-  return { from: member.offset, to: siblings[i + 1].offset, insert: "" };
+  if (siblings.length === 1 && !hasComment(text.slice(member.parent!.offset, member.parent!.offset + member.parent!.length)))
+    return { from: member.parent!.offset + 1, to: member.parent!.offset + member.parent!.length - 1, insert: "" };
+  if (siblings.length === 1) return { from: member.offset, to: end, insert: "" };
+  const isLast = i === siblings.length - 1;
+  const from = i > 0 ? siblings[i - 1].offset + siblings[i - 1].length : member.offset, next = isLast ? end : siblings[i + 1].offset;
+  if (i > 0 && !hasComment(text.slice(from, member.offset))) return { from, to: end, insert: "" };
+  if (!isLast) return { from: member.offset, to: next, insert: withoutComma(text, end, next).trimStart() };
+  // Comments between the two stay; what follows must not become a part of one.
+  const kept = withoutComma(text, from, member.offset).trimEnd();
+  return { from, to: end, insert: /^\s*\n/.test(text.slice(end)) ? kept : `${kept}\n` };
+}
+
+/** A part of a text without its first comma. */
+function withoutComma(text: string, from: number, to: number): string {
+  const comma = findToken(text, SyntaxKind.CommaToken, from, to);
+  return comma < 0 ? text.slice(from, to) : text.slice(from, comma) + text.slice(comma + 1, to);
 }
 
 export function applied(text: string, change: Change): string {

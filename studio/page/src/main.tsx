@@ -1,6 +1,6 @@
 import { render } from "preact";
 import { useEffect, useState } from "preact/hooks";
-import { Connection, takeToken } from "./connection";
+import { Connection, onNewToken, takeToken } from "./connection";
 import { Author } from "./author";
 import { Empty } from "./parts";
 import type { Listing } from "./protocol";
@@ -27,8 +27,9 @@ function writePlace(room: Room, place: Place): void {
   history.replaceState(null, "", `#${hash.toString()}`);
 }
 
-const token = takeToken();
+let token = takeToken();
 const start = readPlace();
+const kAskAgain = 2000; // whether the program is back [ms]
 
 function App() {
   const [connection, setConnection] = useState<Connection | null>(null);
@@ -36,8 +37,26 @@ function App() {
   const [listing, setListing] = useState<Listing | null>(null);
   const [room, setRoom] = useState<Room>(start.room);
 
+  // A program that was ended, or this machine's sleep, ends the connection. It is looked for until it is back.
   useEffect(() => {
-    const made: Connection = new Connection(token, () => setConnection(made), () => setClosed(true));
+    let timer: ReturnType<typeof setTimeout> | undefined, newest: Connection | null = null;
+    const connect = () => {
+      clearTimeout(timer);
+      const made: Connection = new Connection(token, () => {
+        setConnection(made);
+        setClosed(false);
+      }, () => {
+        if (newest !== made) return;
+        setClosed(true);
+        timer = setTimeout(connect, kAskAgain);
+      });
+      newest = made;
+    };
+    connect();
+    return onNewToken((given) => {
+      token = given;
+      connect();
+    });
   }, []);
   const [place, setPlace] = useState<Place>(start.place);
   const list = () => void connection?.call<Listing>("folder.list").then(setListing, () => {});
@@ -62,7 +81,8 @@ function App() {
       <main>
         {isClosed ? (
           <Empty title={connection ? "The studio has ended" : "This address is of another run"}>
-            <p>{connection ? "Start it again" : "Open the address that the program printed, or start it"}: <code>ctpm studio</code></p>
+            <p>{connection ? "Start it again" : "Open the address that the program printed, or start it"}: <code>ctpm studio</code>. Where its address is opened, here or in
+              another tab, this page goes on. Scenes that were not saved are kept as drafts, and a session that was being recorded is there up to its last whole second: <code>ctpm recover</code></p>
           </Empty>
         ) : connection && listing ? (
           room === "review" ? (

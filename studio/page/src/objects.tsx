@@ -4,7 +4,7 @@ import type { AuthorScene } from "./author_scene";
 import { onSurface } from "./gizmos";
 import { cameraValues } from "./inspector";
 import { freeName, type Item, type ItemKind, itemsOf, listOf, mm, mmVector } from "./items";
-import { applied, type Json, setValue } from "./json_edit";
+import { applied, type Json, parseJson, setValue } from "./json_edit";
 import type { Viewer } from "./viewer";
 
 const kTitles: [ItemKind, string][] = [["organ", "Organs"], ["anchor", "Anchors"], ["tool", "Tools"], ["probe", "Probes"], ["camera", "Cameras"]];
@@ -53,7 +53,7 @@ export function addItem(scene: AuthorScene, viewer: Viewer, kind: Exclude<ItemKi
   if (kind === "tool") {
     // A tool stands on the surface: its entry with its place is one step.
     const made = setValue(doc.text, path, entry);
-    const item = made && itemsOf(JSON.parse(applied(doc.text, made)) as Json, scene.shown?.view ?? null).find((i) => i.key === path.join("/"));
+    const item = made && itemsOf(parseJson(applied(doc.text, made)), scene.shown?.view ?? null).find((i) => i.key === path.join("/"));
     if (item) for (const [key, field] of onSurface(item, place, normal)) Object.assign(entry, { [key.at(-1)!]: field! });
   }
   doc.set([[path, entry]]);

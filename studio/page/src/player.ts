@@ -13,6 +13,7 @@ export interface Track {
 
 /** Longest step of a playback [s]: where the program simulates slower, playing becomes slower instead of jumping. */
 const kLongestStep = 0.1;
+const kTimelinePoints = 12000; // so that a part of a long session can be looked at closely
 
 /** When an event of that kind first happened [s]; null: never. */
 export function firstOf(info: SessionInfo, kind: string): number | null {
@@ -27,11 +28,15 @@ export class Player {
   speed = 1;
   offset = 0; // time of stage 1 where that of stage 0 is 0 [s]
   isPlaying = false;
-  pictureAfter: number | null = null; // time from the last move to its picture [ms]
+  pictureAfter: number | null = null; // time from the last move to its picture, a glimpse or not [ms]
+  replayedAfter: number | null = null; // the same, to the replayed one [ms]
+  path: [number, number][] | null = null; // times of both sessions that belong together; null: they differ by `offset` [s]
   reached = 0; // speed of the playback in the last second
   onChange: () => void = () => {};
   onTime: () => void = () => {};
-  private readonly waiting = new Map<number, number>(); // request of each stage that has no picture yet
+  private readonly asked = new Map<number, number>(); // newest request of each stage
+  private readonly unseen = new Set<number>(); // stages of which it has no picture yet
+  private readonly waiting = new Map<number, number>(); // request of each stage that has no replayed picture yet
   private readonly tools = new Map<number, Shapes>();
   private request = 0;
   private movedAt = 0;
@@ -57,14 +62,15 @@ export class Player {
       const camera = session.view.cameras[0];
       if (camera) this.viewer.look(camera);
     }
-    track.timeline = await connection.call<TimelineData>("session.timeline", { path, points: 3000 });
-    this.move(this.time);
+    this.move(this.time); // the picture comes before the curves
+    track.timeline = await connection.call<TimelineData>("session.timeline", { path, points: kTimelinePoints });
     return track;
   }
 
   close(stage: number): void {
     if (!this.tracks.delete(stage)) return;
-    this.waiting.delete(stage);
+    this.waiting.delete(stage), this.unseen.delete(stage), this.asked.delete(stage);
+    if (stage === 1) this.path = null;
     this.viewer.set(stage, null);
     this.connection.call("session.close", { stage }).catch(() => {});
     this.onChange();
@@ -73,26 +79,43 @@ export class Player {
   /** The times that can be shown, of stage 0: until both sessions have ended, and from where the first of them begins. */
   get span(): { from: number; to: number } {
     const first = this.tracks.get(0)?.session.info.duration_s ?? 0, second = this.tracks.get(1)?.session.info.duration_s;
-    if (second === undefined) return { from: 0, to: first };
+    if (second === undefined || this.path) return { from: 0, to: first };
     return { from: Math.min(0, -this.offset), to: Math.max(first, second - this.offset) };
   }
 
   /** The time of a stage's own session. */
   timeOf(stage: number): number {
-    return stage === 0 ? this.time : this.time + this.offset;
+    return stage === 0 ? this.time : this.besideAt(this.time);
+  }
+
+  /** The time of the session beside that belongs to a time of the first one. */
+  besideAt(time: number): number {
+    return this.path ? alongPath(this.path, time, 0) : time + this.offset;
+  }
+
+  /** The time of the first session that belongs to one of the session beside. */
+  firstAt(beside: number): number {
+    return this.path ? alongPath(this.path, beside, 1) : beside - this.offset;
+  }
+
+  /** Aligns both sessions where the tools were at the same place of the path. */
+  alignAlong(path: [number, number][]): void {
+    this.path = path.length > 0 ? path : null;
+    this.move(this.time);
+    this.onChange();
   }
 
   move(time: number): void {
     const { from, to } = this.span;
     this.time = Math.min(Math.max(Math.round(1e6 * time) / 1e6, from), to); // whole microseconds
     this.movedAt = performance.now();
-    this.pictureAfter = null;
+    this.pictureAfter = this.replayedAfter = null;
     this.ask();
     this.onTime();
   }
 
   setOffset(offset: number): void {
-    this.offset = offset;
+    this.offset = offset, this.path = null;
     this.move(this.time);
     this.onChange();
   }
@@ -144,7 +167,7 @@ export class Player {
       const { ticks, tick_s } = track.session.info;
       const tick = Math.min(Math.max(Math.round(this.timeOf(stage) / tick_s), 0), ticks);
       const request = ++this.request;
-      this.waiting.set(stage, request);
+      this.asked.set(stage, request), this.unseen.add(stage), this.waiting.set(stage, request);
       this.connection.send({ show: { stage, tick, request } });
     }
   }
@@ -158,12 +181,29 @@ export class Player {
   }
 
   private drew(stage: number, frame: Frame): void {
-    if (this.waiting.get(stage) === frame.request) this.waiting.delete(stage);
-    if (this.waiting.size === 0 && this.pictureAfter === null)
-      setTimeout(() => {
-        this.pictureAfter ??= performance.now() - this.movedAt; // the picture is drawn by now
-        this.onTime();
-      });
+    if (this.asked.get(stage) === frame.request) this.unseen.delete(stage);
+    if (this.waiting.get(stage) === frame.request && !frame.isGlimpse) this.waiting.delete(stage);
+    setTimeout(() => { // the picture is drawn by now
+      const time = performance.now() - this.movedAt;
+      if (this.unseen.size === 0) this.pictureAfter ??= time;
+      if (this.waiting.size === 0) this.replayedAfter ??= time;
+      this.onTime();
+    });
     this.onTime();
   }
+}
+
+/** The other time of the pair in which one of them is `time`, on straight lines between the pairs; beyond them both go on alike. */
+function alongPath(path: [number, number][], time: number, known: 0 | 1): number {
+  const other = known === 0 ? 1 : 0, last = path[path.length - 1];
+  if (time <= path[0][known]) return path[0][other] + time - path[0][known];
+  if (time >= last[known]) return last[other] + time - last[known];
+  let low = 0, high = path.length - 1; // the pair at `low` is at or before the time
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (path[middle][known] <= time) low = middle;
+    else high = middle;
+  }
+  const from = path[low], to = path[high], span = to[known] - from[known];
+  return span > 0 ? from[other] + ((time - from[known]) / span) * (to[other] - from[other]) : from[other];
 }

@@ -241,6 +241,7 @@ export interface Frame extends HandFrame {
   request: number;
   isSame: boolean;
   isLive: boolean;
+  isGlimpse: boolean; // the replayed frame of this request follows
   time: number;
   tick: number;
   severed: number;
@@ -327,7 +328,8 @@ function readFrame(r: Reader): Frame {
     second = { ...of, force: r.vector(), depth: r.f32(), contacts: r.i32(), hand: r.vector() };
   }
   return {
-    kind: "frame", stage, topology, missed, request, isSame: (flags & 1) !== 0, isLive: (flags & 2) !== 0, time, tick,
+    kind: "frame", stage, topology, missed, request, isSame: (flags & 1) !== 0, isLive: (flags & 2) !== 0,
+    isGlimpse: (flags & 4) !== 0, time, tick,
     ...pose, force, depth, contacts, severed, hand, second, tickTime, lateTicks, tickP99, slip, organs,
   };
 }

@@ -95,7 +95,7 @@ export function Review({ connection, listing, place, onPlace }: {
       await open(0, place.session);
       if (place.beside) await open(1, place.beside);
       if (place.beside) player.alignAt("contact begins");
-      if (place.besideTime !== undefined) player.move(place.besideTime - player.offset);
+      if (place.besideTime !== undefined) player.move(player.firstAt(place.besideTime));
       else if (place.time !== undefined) player.move(place.time);
     })();
   }, [player]);
@@ -228,7 +228,7 @@ export function Review({ connection, listing, place, onPlace }: {
   );
 }
 
-type ShownFrame = { force: number[]; depth: number; contacts: number; severed: number; isSame: boolean; missed: number; tick: number; second: { force: number[]; depth: number } | null } | null;
+type ShownFrame = { force: number[]; depth: number; contacts: number; severed: number; isSame: boolean; isGlimpse: boolean; missed: number; tick: number; second: { force: number[]; depth: number } | null } | null;
 
 function Moment({ connection, player, frame, other }: { connection: Connection; player: Player; frame: ShownFrame; other: ShownFrame }) {
   const [verdict, setVerdict] = useState<{ same: boolean; text: string } | null>(null);
@@ -255,13 +255,14 @@ function Moment({ connection, player, frame, other }: { connection: Connection; 
       : []),
     ["touched", `${shown.contacts} points`],
     ["severed", `${shown.severed} elements`],
-    ["replay", shown.isSame ? "as recorded" : "DIFFERS"],
+    ["replay", shown.isGlimpse ? "is computed…" : shown.isSame ? "as recorded" : "DIFFERS"],
   ] : [];
   return (
     <>
       <Section title="This moment">
         <Readings rows={[["tick", String(frame?.tick ?? 0)], ...rows(frame),
-          ["picture after", player.pictureAfter === null ? "…" : `${player.pictureAfter.toFixed(0)} ms`]]} />
+          ["picture after", player.pictureAfter === null ? "…" : `${player.pictureAfter.toFixed(0)} ms`],
+          ["replayed after", player.replayedAfter === null ? "…" : `${player.replayedAfter.toFixed(0)} ms`]]} />
       </Section>
       {other && <Section title="Beside"><Readings rows={rows(other)} /></Section>}
       <Section title="Events">

@@ -1,4 +1,4 @@
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import uPlot from "uplot";
 import type { Player } from "./player";
 import type { TimelineData } from "./protocol";
@@ -26,10 +26,17 @@ const kAxis = 64, kRight = 14, kHeight = 54; // [px]
 const kPoints = 3000; // of a curve
 const kFirst = "#7cc0ff", kSecond = "#ffb35c", kDifference = "#c9a2ff";
 
-/** The value of a timeline at a time; null outside of the session. */
-function valueAt(values: number[], duration: number, time: number): number | null {
-  if (time < 0 || time > duration || values.length === 0) return null;
-  return values[Math.min(values.length - 1, Math.floor((time / duration) * values.length))];
+const kLeastShown = 0.05; // [s]
+const kZoomStep = 1.5;
+
+/** The largest value of a timeline in a span of time; null outside of the session. */
+function mostIn(values: number[], duration: number, from: number, to: number): number | null {
+  if (to < 0 || from > duration || values.length === 0) return null;
+  const first = Math.max(0, Math.min(values.length - 1, Math.floor((from / duration) * values.length)));
+  const last = Math.max(first, Math.min(values.length - 1, Math.ceil((to / duration) * values.length) - 1));
+  let most = values[first];
+  for (let i = first + 1; i <= last; ++i) most = Math.max(most, values[i]);
+  return most;
 }
 
 function options(width: number, colours: string[]): uPlot.Options {
@@ -48,11 +55,13 @@ function options(width: number, colours: string[]): uPlot.Options {
   };
 }
 
-/** Force, depth and speed over the whole session, with its events; a press anywhere moves there. */
+/** Force, depth and speed over the whole session or a part of it, with its events; a press anywhere moves there. */
 export function Timeline({ player, marks, version }: { player: Player; marks: Mark[]; version: number }) {
   const box = useRef<HTMLDivElement>(null), head = useRef<HTMLDivElement>(null), slider = useRef<HTMLInputElement>(null);
   const first = player.tracks.get(0)?.timeline ?? null, second = player.tracks.get(1)?.timeline ?? null;
-  const { from, to } = player.span, offset = player.offset;
+  const { span, offset, path } = player;
+  const [zoom, setZoom] = useState<{ from: number; to: number } | null>(null); // null: everything is shown
+  const from = Math.max(zoom?.from ?? span.from, span.from), to = Math.max(Math.min(zoom?.to ?? span.to, span.to), from);
   const shareOf = (time: number) => (to > from ? (time - from) / (to - from) : 0);
 
   useEffect(() => {
@@ -66,20 +75,22 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
       row.dataset.title = title;
       plots.push(new uPlot(options(holder.clientWidth, colours.slice(0, series.length)), [times, ...series], row));
     };
+    const half = step / 2;
     const isEmpty = (data: TimelineData | null, row: Row) => !data || row.of(data).every((value) => value === 0);
     for (const row of kRows) {
       if (isEmpty(first, row) && isEmpty(second, row)) continue; // a blade has no depth
-      const over = (data: TimelineData, ahead: number) => times.map((t) => {
-        const value = valueAt(row.of(data), data.duration_s, t + ahead);
+      const over = (data: TimelineData, timeOf: (time: number) => number) => times.map((t) => {
+        const value = mostIn(row.of(data), data.duration_s, timeOf(t - half), timeOf(t + half));
         return value === null ? null : value * row.scale;
       });
-      const series = [over(first, 0)];
-      if (second) series.push(over(second, offset));
+      const series = [over(first, (t) => t)];
+      if (second) series.push(over(second, (t) => player.besideAt(t)));
       add(`${row.title} [${row.unit}]`, series, [kFirst, kSecond]);
     }
     if (second)
       add("difference of force [N]", [times.map((t) => {
-        const own = valueAt(first.force_n, first.duration_s, t), other = valueAt(second.force_n, second.duration_s, t + offset);
+        const own = mostIn(first.force_n, first.duration_s, t - half, t + half);
+        const other = mostIn(second.force_n, second.duration_s, player.besideAt(t - half), player.besideAt(t + half));
         return own === null || other === null ? null : other - own;
       })], [kDifference]);
     const observer = new ResizeObserver(() => {
@@ -91,7 +102,7 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
       for (const plot of plots) plot.destroy();
       holder.replaceChildren();
     };
-  }, [first, second, from, to, offset]);
+  }, [first, second, from, to, offset, path]);
 
   useEffect(() => {
     const place = () => {
@@ -105,11 +116,50 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
     return () => clearInterval(timer);
   }, [player, from, to, version]);
 
-  const shareAt = (event: PointerEvent) => {
+  /** Shows a part that is so many times as long, around a time. */
+  const zoomBy = (factor: number, around: number) => {
+    const length = Math.max((to - from) * factor, kLeastShown), whole = span.to - span.from;
+    if (length >= whole) return setZoom(null);
+    const begin = Math.min(Math.max(around - (around - from) * (length / (to - from)), span.from), span.to - length);
+    setZoom({ from: begin, to: begin + length });
+  };
+  const panBy = (time: number) => {
+    const by = Math.min(Math.max(time, span.from - from), span.to - to);
+    if (by !== 0) setZoom({ from: from + by, to: to + by });
+  };
+  const wheel = (event: WheelEvent) => {
+    event.preventDefault();
+    const sideways = event.shiftKey ? event.deltaY : event.deltaX;
+    if (Math.abs(sideways) > Math.abs(event.shiftKey ? 0 : event.deltaY)) panBy(Math.sign(sideways) * 0.1 * (to - from));
+    else if (event.deltaY !== 0) zoomBy(event.deltaY > 0 ? kZoomStep : 1 / kZoomStep, from + shareAt(event) * (to - from));
+  };
+  // What plays, or is moved to, comes into what is shown.
+  const followed = useRef(player.time);
+  useEffect(() => {
+    const hasMoved = followed.current !== player.time;
+    followed.current = player.time;
+    if (!zoom || !hasMoved || (player.time >= from && player.time <= to)) return;
+    const length = to - from, begin = Math.min(Math.max(player.time - 0.1 * length, span.from), span.to - length);
+    setZoom({ from: begin, to: begin + length });
+  });
+  useEffect(() => {
+    const press = (event: KeyboardEvent) => {
+      if ((event.target as HTMLElement).closest("input:not([type=range]), textarea, select") || event.ctrlKey || event.metaKey || event.altKey) return;
+      const middle = Math.min(Math.max(player.time, from), to);
+      if (event.key === "+") zoomBy(1 / kZoomStep, middle);
+      else if (event.key === "-") zoomBy(kZoomStep, middle);
+      else if (event.key === "0") setZoom(null);
+      else return;
+      event.preventDefault();
+    };
+    addEventListener("keydown", press);
+    return () => removeEventListener("keydown", press);
+  });
+  const shareAt = (event: MouseEvent) => {
     const box = (event.currentTarget as HTMLElement).getBoundingClientRect();
     return (event.clientX - box.left - kAxis) / (box.width - kAxis - kRight);
   };
-  const press = (event: PointerEvent) => {
+  const grab = (event: PointerEvent) => {
     (event.currentTarget as HTMLElement).setPointerCapture(event.pointerId);
     player.pause();
     player.move(from + shareAt(event) * (to - from));
@@ -121,14 +171,20 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
   return (
     <div class="timeline" role="group" aria-label="Timeline">
       <div class="marks" aria-hidden="true">
-        {marks.map((mark, i) => (
+        {marks.filter((mark) => mark.time >= from && mark.time <= to).map((mark, i) => (
           <button key={i} type="button" tabIndex={-1} class={`mark ${mark.kind.replaceAll(" ", "-")}`} title={`${seconds(mark.time)} ${mark.text}`}
             style={{ "--at": String(shareOf(mark.time)) }} onClick={() => player.move(mark.time)} />
         ))}
       </div>
-      <div class="plots" onPointerDown={press} onPointerMove={drag}>
+      <div class="plots" onPointerDown={grab} onPointerMove={drag} onWheel={wheel}>
         <div ref={box} />
-        <div ref={head} class="playhead" />
+        <div ref={head} class="playhead" hidden={player.time < from || player.time > to} />
+      </div>
+      <div class="zoom" role="group" aria-label="Zoom of the timeline">
+        <button type="button" title="+, or the wheel" onClick={() => zoomBy(1 / kZoomStep, Math.min(Math.max(player.time, from), to))}>zoom in</button>
+        <button type="button" title="-" disabled={!zoom} onClick={() => zoomBy(kZoomStep, Math.min(Math.max(player.time, from), to))}>zoom out</button>
+        {zoom && <button type="button" title="0" onClick={() => setZoom(null)}>all</button>}
+        {zoom && <output>{seconds(from)} to {seconds(to)}</output>}
       </div>
       <input ref={slider} class="scrub" type="range" min={from} max={to} step={0.001} aria-label="Moment of the session"
         onInput={(event) => {

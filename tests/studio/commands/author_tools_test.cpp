@@ -104,6 +104,34 @@ TEST_F(AuthorTools, PlacesByMeaningAreRecordedAndProbesAreColumns) {
   EXPECT_NEAR(number(1, x), 5, 12) << "the sphere that is nearest to the place";
   EXPECT_GT(number(rows.size() - 1, force), 0) << "the ball touches the spot";
   EXPECT_LT(number(rows.size() - 1, z), number(1, z) - 0.3) << "and the probe goes down with it";
+  // A comparison shows how far the probe goes in each session.
+  ASSERT_EQ(ctpm({"compare", "a.ctpm", "a.ctpm", "-o", "report"}).code, 0);
+  expect_says(testing::slurp(folder_.path() / "report/report.html"), {"The tissue at the probes", "Probe spot"});
+  const std::string results = testing::slurp(folder_.path() / "report/results.json");
+  expect_says(results, {"Probe spot", "from its first place [mm]"});
+}
+
+TEST_F(AuthorTools, APreviewColoursSpheresByWhatTheyAreMadeOf) {
+  write("scene.json", [] {
+    std::string layered = scene();
+    const std::string coarse = "\"radius_mm\": 6, \"gap_mm\": 6";
+    layered.replace(layered.find(coarse), coarse.size(), "\"radius_mm\": 3, \"gap_mm\": 3");
+    return layered.insert(layered.find("\"anchors\""),
+                          "\"layers\": [{\"to_depth_mm\": 9.5, \"material\": {\"preset\": \"fat\"}}], ");
+  }());
+  const auto colours = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"preview", "scene.json", "-o", "layers.png", "--overwrite"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return ctpm(arguments);
+  };
+  const auto by_layer = colours({"--view", "spheres"});
+  const std::string picture = testing::slurp(folder_.path() / "layers.png");
+  EXPECT_EQ(by_layer.out.find("orange"), std::string::npos) << by_layer.out;
+  const auto by_material = colours({"--view", "spheres", "--by", "material"});
+  EXPECT_EQ(by_material.code, 0) << by_material.err;
+  expect_says(by_material.out, {"orange: skin, fat down to 9.5 mm", "blue: skin, skin below"});
+  EXPECT_NE(testing::slurp(folder_.path() / "layers.png"), picture);
+  EXPECT_EQ(colours({"--by", "material"}).code, 2) << "a surface has its own colours";
 }
 
 TEST_F(AuthorTools, APreviewShowsMarksAndTheSettledShape) {

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,15 @@ class ImportProgram : public ::testing::Test {
     std::vector<std::string> arguments{"import", mesh,         "--organ",  "kidney",
                                        "-o",     "scene.json", "--report", "report.json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_ctpm(arguments, folder_.path());
+  }
+  /// The same with few spheres and no fit, for what depends on neither.
+  testing::ProgramOutcome import_quickly(const std::string& mesh, std::vector<std::string> more = {}) {
+    more.insert(more.end(), {"--stiffness-scale", "1", "--unit", "mm"});
+    if (std::find(more.begin(), more.end(), "--spheres") == more.end()) more.insert(more.end(), {"--spheres", "120"});
+    return import(mesh, more);
+  }
+  testing::ProgramOutcome ctpm(const std::vector<std::string>& arguments) {
     return run_ctpm(arguments, folder_.path());
   }
   std::string report() { return testing::slurp(folder_.path() / "report.json"); }
@@ -70,12 +81,28 @@ TEST_F(ImportProgram, ACoarserSurfaceIsDrawnAroundTheSameSpheres) {
   EXPECT_EQ(run_ctpm({"check", "scene.json"}, folder_.path()).code, 0);
 }
 
+TEST_F(ImportProgram, AnOrganOfThePaperIsFittedAndUnderTheTensionOfItsCapsule) {
+  write("bean.obj", zoo::to_obj_text(bean()));
+  const auto done = import("bean.obj", {"--unit", "mm", "--radius-mm", "4"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  expect_says(done.out, {"stiffness_scale: ", "fitted so that the paper's ball meets its Table 1",
+                         "a layer of 12 mm under a strain of 0.0", "cuts gape"});
+  expect_says(report(), {"\"code\": \"tension\""});
+  expect_says(testing::slurp(folder_.path() / "scene.json"), {"\"to_depth_mm\": 12", "\"prestrain\": 0.0"});
+}
+
 TEST_F(ImportProgram, AllPartsAreInTheSceneAsWell) {
   const importers::RawMesh two = zoo::both(bean(), zoo::moved(bean(), [](Vec3 p) { return p + Vec3{120, 0, 0}; }));
   write("two.obj", zoo::to_obj_text(two));
-  ASSERT_EQ(import("two.obj", {"--unit", "mm", "--largest-part", "--radius-mm", "4"}).code, 0);
+  const std::vector<std::string> coarse{"--unit", "mm", "--stiffness-scale", "1", "--radius-mm", "5", "--overwrite"};
+  const auto import_as = [&](const std::string& parts) {
+    std::vector<std::string> arguments = coarse;
+    arguments.push_back(parts);
+    return import("two.obj", arguments);
+  };
+  ASSERT_EQ(import_as("--largest-part").code, 0);
   const auto one = run_ctpm({"check", "scene.json"}, folder_.path());
-  ASSERT_EQ(import("two.obj", {"--unit", "mm", "--all-parts", "--radius-mm", "4", "--overwrite"}).code, 0);
+  ASSERT_EQ(import_as("--all-parts").code, 0);
   const auto both = run_ctpm({"check", "scene.json"}, folder_.path());
   const auto spheres = [](const std::string& text) { return std::stoi(text.substr(text.find("good, ") + 6)); };
   EXPECT_EQ(spheres(both.out), 2 * spheres(one.out)) << one.out << both.out;
@@ -114,7 +141,7 @@ TEST_F(ImportProgram, ALabelMapIsListedAndALabelChosenByNameOrNumber) {
   expect_says(unchosen.err, {"holds 2 labels", "choose one of left_kidney, stone"});
   EXPECT_FALSE(fs::exists(folder_.path() / "scene.json"));
   for (const std::string label : {"left_kidney", "1"}) {
-    const auto outcome = import(map, {"--label", label, "--radius-mm", "3", "--overwrite"});
+    const auto outcome = import(map, {"--label", label, "--radius-mm", "4", "--stiffness-scale", "1", "--overwrite"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     expect_says(outcome.out, {"unit: mm (as the file says)", ", 37.8 ml"});
     EXPECT_EQ(run_ctpm({"check", "scene.json"}, folder_.path()).code, 0);
@@ -148,9 +175,11 @@ TEST_F(ImportProgram, ARefusedImportLeavesNoFolderBehind) {
 }
 
 TEST_F(ImportProgram, SeparatePartsAreOrgansWhichStandAreTouchedAndCut) {
-  const importers::RawMesh two = zoo::both(bean(), zoo::moved(bean(0.6), [](Vec3 p) { return p + Vec3{120, 0, 0}; }));
+  const importers::RawMesh two = zoo::both(bean(1, 3), zoo::moved(bean(0.6, 3), [](Vec3 p) {
+                                             return p + Vec3{120, 0, 0};
+                                           }));
   write("two.obj", zoo::to_obj_text(two));
-  const auto outcome = import("two.obj", {"--unit", "mm", "--spheres", "300"});
+  const auto outcome = import_quickly("two.obj", {"--spheres", "200"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const std::string text = report();
   EXPECT_EQ(text.find("\"script_cuts\": false"), std::string::npos);
@@ -164,17 +193,139 @@ TEST_F(ImportProgram, SeparatePartsAreOrgansWhichStandAreTouchedAndCut) {
   EXPECT_EQ(record.out.find(" 0 elements severed"), std::string::npos) << record.out;
 }
 
-TEST_F(ImportProgram, AnOrganIsAddedToASceneThatIsThere) {
-  write("bean.obj", zoo::to_obj_text(bean()));
-  write("spleen.obj", zoo::to_obj_text(zoo::moved(bean(0.8), [](Vec3 p) { return p + Vec3{0, 120, 0}; })));
-  ASSERT_EQ(import("bean.obj", {"--unit", "mm", "--spheres", "200"}).code, 0);
-  const auto added =
-      run_ctpm({"import", "spleen.obj", "--into", "scene.json", "--unit", "mm", "--spheres", "200"}, folder_.path());
+TEST_F(ImportProgram, AnOrganIsAddedToASceneThatIsThereAndItsCommentsStay) {
+  write("bean.obj", zoo::to_obj_text(bean(1, 3)));
+  write("spleen.obj", zoo::to_obj_text(bean(0.8, 3)));
+  ASSERT_EQ(import_quickly("bean.obj").code, 0);
+  std::string commented = testing::slurp(folder_.path() / "scene.json");
+  commented.insert(commented.find("\"tick_s\""), "// the author's own\n  ");
+  commented.insert(commented.rfind('}'), "/* to the end */\n");
+  write("scene.json", commented);
+  const auto add = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"import", "spleen.obj", "--into",    "scene.json",
+                                       "--unit", "mm",         "--spheres", "120"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return ctpm(arguments);
+  };
+  // In the same place, which is said; beside; elsewhere and turned.
+  const auto within = add({});
+  ASSERT_EQ(within.code, 0) << within.err;
+  expect_says(within.out, {"% of the organ lies within organ scene", "lay it beside, or give it another place"});
+  write("scene.json", commented);
+  const auto added = add({"--beside", "--overwrite"});
   ASSERT_EQ(added.code, 0) << added.err;
+  EXPECT_EQ(added.out.find("lies within"), std::string::npos) << added.out;
   const std::string scene = testing::slurp(folder_.path() / "scene.json");
-  expect_says(scene, {"\"name\": \"scene\"", "\"name\": \"spleen\"", "\"preset\": \"spleen\""});
-  const auto check = run_ctpm({"check", "scene.json"}, folder_.path());
+  expect_says(scene, {"\"name\": \"scene\"", "\"name\": \"spleen\"", "\"preset\": \"spleen\"", "// the author's own\n",
+                      "/* to the end */"});
+  const auto check = ctpm({"check", "scene.json"});
   EXPECT_EQ(check.code, 0) << check.err;
+  EXPECT_EQ(check.err, "") << "it stands, and the import's camera sees both";
+  // The bean reaches 45 mm along x and stands on z = -25; the spleen, 36 and 20.
+  double x = 0, y = 0, z = 0;
+  ASSERT_EQ(std::sscanf(scene.c_str() + scene.find("\"at_mm\": ", scene.find("\"spleen\"")),
+                        "\"at_mm\": [%lf, %lf, %lf]", &x, &y, &z),
+            3);
+  EXPECT_GT(x - 36, 45);
+  EXPECT_LT(x - 36, 70);
+  EXPECT_NEAR(z - 20, -25, 1.5);
+  const auto placed = add({"--at-mm", "0", "-150", "0", "--turn-deg", "0", "0", "90"});
+  ASSERT_EQ(placed.code, 0) << placed.err;
+  expect_says(testing::slurp(folder_.path() / "scene.json"),
+              {"\"name\": \"spleen-2\"", "\"at_mm\": [0, -150, 0]", "\"turn_deg\": [0, 0, 90]"});
+  EXPECT_EQ(ctpm({"check", "scene.json"}).err, "");
+  EXPECT_EQ(add({"--beside", "--at-mm", "0", "0", "0"}).code, 2);
+}
+
+TEST_F(ImportProgram, AnOrganGetsLayersFromTheSurfaceInwards) {
+  write("bean.obj", zoo::to_obj_text(bean(1, 3)));
+  const auto outcome = import_quickly("bean.obj", {"--layer", "skin:6", "--layer", "fat:14", "--spheres", "300"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string scene = testing::slurp(folder_.path() / "scene.json");
+  expect_says(scene, {"\"to_depth_mm\": 6", "\"preset\": \"skin\"", "\"to_depth_mm\": 14", "\"preset\": \"fat\""});
+  EXPECT_LT(scene.find("\"skin\""), scene.find("\"fat\""));
+  EXPECT_EQ(ctpm({"check", "scene.json"}).err, "");
+  const auto picture = ctpm({"preview", "scene.json", "--spheres", "--by", "material", "-o", "scene.png"});
+  EXPECT_EQ(picture.code, 0) << picture.err;
+  expect_says(picture.out,
+              {"orange: scene, skin down to 6 mm", "blue: scene, fat down to 14 mm", "green: scene, kidney below"});
+  const auto deep = import_quickly("bean.obj", {"--layer", "skin:80", "--overwrite"});
+  EXPECT_EQ(deep.code, 2);
+  expect_says(deep.err, {"--layer", "--spheres"});
+  for (const char* wrong : {"skin", "skin:", "skin:-1", ":5", "skin:x"})
+    EXPECT_EQ(import_quickly("bean.obj", {"--layer", wrong, "--overwrite"}).code, 2) << wrong;
+  expect_says(import_quickly("bean.obj", {"--layer", "hide:5", "--overwrite"}).err, {"--layer", "no preset 'hide'"});
+}
+
+TEST_F(ImportProgram, SeveralLabelsOfAMapAreOrgansOfOneScene) {
+  if (!importers::reads_label_maps()) GTEST_SKIP() << "this build has no ITK";
+  const std::string map = CTPM_SOURCE_DIR "/tests/importers/maps/names.seg.nrrd";
+  const auto outcome = ctpm({"import", map, "--label", "left_kidney", "--label", "7", "--spheres", "300", "-o",
+                             "scene.json", "--report", "report.json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  expect_says(outcome.out, {"organ left_kidney", ", 37.8 ml", "organ stone", ", 2.1 ml"});
+  expect_says(testing::slurp(folder_.path() / "scene.json"), {"\"name\": \"left_kidney\"", "\"preset\": \"kidney\"",
+                                                              "\"name\": \"stone\"", "\"preset\": \"soft-tissue\""});
+  EXPECT_EQ(ctpm({"check", "scene.json"}).code, 0);
+}
+
+TEST_F(ImportProgram, MoreHertzAreFewerSpheres) {
+  write("bean.obj", zoo::to_obj_text(bean(1, 3)));
+  const auto spheres_for = [&](const std::string& khz) {
+    const auto outcome =
+        import("bean.obj", {"--unit", "mm", "--stiffness-scale", "1", "--for-khz", khz, "--overwrite"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return std::stoi(report().substr(report().find("\"spheres\": ") + 11));
+  };
+  const int few = spheres_for("20"), many = spheres_for("2");
+  EXPECT_GE(few, 50);
+  EXPECT_GT(many, 2 * few) << "a tick may take ten times as long";
+  EXPECT_EQ(import("bean.obj", {"--for-khz", "1", "--spheres", "300", "--overwrite"}).code, 2) << "one of them";
+}
+
+TEST_F(ImportProgram, WhatIsOddAboutVolumeAndPressIsAFinding) {
+  // Tissue that overlaps itself counts once in the spheres and twice in the mesh.
+  const importers::RawMesh ball = zoo::sphere(30, 3);
+  write("overlap.obj", zoo::to_obj_text(zoo::both(ball, zoo::moved(ball, [](Vec3 p) { return p + Vec3{25, 0, 0}; }))));
+  ASSERT_EQ(import_quickly("overlap.obj", {"--all-parts"}).code, 0);
+  expect_says(report(), {"\"code\": \"volume\"", "the spheres stand for "});
+  // The paper's press of 12 mm into something 30 mm high.
+  write("flat.obj", zoo::to_obj_text(zoo::moved(bean(1, 3), [](Vec3 p) { return Vec3{p.x, p.y, 0.6 * p.z}; })));
+  const auto flat = import("flat.obj", {"--unit", "mm", "--spheres", "200", "--overwrite"});
+  ASSERT_EQ(flat.code, 0) << flat.err;
+  expect_says(report(), {"\"code\": \"press_too_deep\""});
+  expect_says(flat.out, {"not fitted: a press of 12 mm is deeper than a third of the organ"});
+}
+
+/// The commands of README's first scene, as they stand there.
+std::vector<std::string> first_commands() {
+  const std::string readme = testing::slurp(CTPM_SOURCE_DIR "/README.md");
+  const std::size_t begin = readme.find("```\n", readme.find("first scene of two organs")) + 4;
+  std::vector<std::string> commands;
+  std::istringstream lines(readme.substr(begin, readme.find("```", begin) - begin));
+  for (std::string line; std::getline(lines, line);) commands.push_back(line.substr(0, line.find("  #")));
+  return commands;
+}
+
+TEST_F(ImportProgram, TheFiveCommandsOfTheReadmeMakeASceneOfTwoOrgans) {
+  const std::vector<std::string> commands = first_commands();
+  ASSERT_EQ(commands.size(), 5u);
+  write("my-liver.stl", zoo::to_binary_stl(zoo::moved(bean(2, 3), [](Vec3 p) { return p + Vec3{40, 300, 900}; })));
+  write("my-kidney.obj", zoo::to_obj_text(bean(0.1, 3)));
+  for (const std::string& command : commands) {
+    ASSERT_EQ(command.substr(0, 7), "./ctpm ") << command;
+    std::vector<std::string> arguments;
+    std::istringstream words(command.substr(7));
+    for (std::string word; words >> word;) arguments.push_back(word);
+    const auto outcome = ctpm(arguments);
+    EXPECT_EQ(outcome.code, 0) << command << "\n" << outcome.err;
+    EXPECT_EQ(outcome.err.find("warning"), std::string::npos) << command << "\n" << outcome.err;
+    EXPECT_EQ(outcome.out.find(" 0 elements severed"), std::string::npos) << outcome.out;
+  }
+  expect_says(testing::slurp(folder_.path() / "my/liver.json"),
+              {"\"preset\": \"liver\"", "\"preset\": \"kidney\"", "\"to_depth_mm\""});
+  EXPECT_GT(fs::file_size(folder_.path() / "my/liver.png"), 10000u);
+  EXPECT_EQ(ctpm({"verify", "my/first.ctpm"}).code, 0);
 }
 
 TEST_F(ImportProgram, TheSizeAndTheNumberOfSpheresAreThoseThatWereAskedFor) {
@@ -218,8 +369,8 @@ TEST_F(ImportProgram, AnOrganThatFoldsOverIsRefusedWithWhatWouldHelp) {
 }
 
 TEST_F(ImportProgram, CheckWarnsOfWhatIsOddAndPlanOfAScriptThatMisses) {
-  write("bean.obj", zoo::to_obj_text(bean()));
-  ASSERT_EQ(import("bean.obj", {"--unit", "mm", "--spheres", "200"}).code, 0);
+  write("bean.obj", zoo::to_obj_text(bean(1, 3)));
+  ASSERT_EQ(import_quickly("bean.obj").code, 0);
   const std::string good = testing::slurp(folder_.path() / "scene.json");
   const auto with = [&](const std::string& key, const std::string& text) {
     std::string odd = good;

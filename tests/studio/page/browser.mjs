@@ -31,10 +31,19 @@ export function ctpm(folder, ...words) {
   return { code: done.status, out: done.stdout, err: done.stderr };
 }
 
+/** Serves `folder`; returns the process and the address that it prints. */
+async function serve(folder, port) {
+  const server = spawn(program, ["studio", folder, "--no-open", "--port", String(port)], { stdio: ["ignore", "pipe", "ignore"] });
+  return { server, address: await new Promise((resolve) => server.stdout.once("data", (data) => resolve(String(data).trim()))) };
+}
+
+function ended(server) {
+  return new Promise((resolve) => server.once("exit", resolve));
+}
+
 /** Serves `folder` and opens its page. */
 export async function openStudio(folder) {
-  const server = spawn(program, ["studio", folder, "--no-open", "--port", "0"], { stdio: ["ignore", "pipe", "ignore"] });
-  const address = await new Promise((resolve) => server.stdout.once("data", (data) => resolve(String(data).trim())));
+  let { server, address } = await serve(folder, 0);
   const profile = mkdtempSync(join(tmpdir(), "ctpm-profile-"));
   const context = await chromium.launchPersistentContext(profile, {
     executablePath: "/usr/bin/chromium", headless: true, viewport: { width: 1280, height: 720 }, args: kFlags,
@@ -51,13 +60,24 @@ export async function openStudio(folder) {
   await page.waitForSelector("header nav button");
   const close = async () => {
     await context.close();
-    const ended = new Promise((resolve) => server.once("exit", resolve));
+    const end = ended(server);
     server.kill("SIGINT");
-    const code = await ended;
+    const code = await end;
     rmSync(profile, { recursive: true, force: true });
     return code;
   };
-  return { page, address, complaints, close };
+  /** Kills the server as a crash would. */
+  const kill = async () => {
+    const end = ended(server);
+    server.kill("SIGKILL");
+    await end;
+  };
+  /** Starts it again where it was; returns its new address. */
+  const startAgain = async () => {
+    ({ server, address } = await serve(folder, new URL(address).port));
+    return address;
+  };
+  return { page, address, complaints, close, kill, startAgain };
 }
 
 /** What axe-core finds that is serious. */

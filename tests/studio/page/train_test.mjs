@@ -156,6 +156,31 @@ test("a gamepad leads the tool: the trigger presses, the shoulder changes it", a
   await page.waitForSelector("button:has-text('Train again')");
 });
 
+test("a recording is there up to the moment when the program was killed", async () => {
+  await page.click("button:has-text('Train again')");
+  await page.locator("aside input").first().fill("killed.ctpm");
+  await page.click(".list button:has-text('kidney')");
+  await page.waitForSelector(".view.running");
+  const box = await page.locator(".view canvas").boundingBox();
+  const middle = { x: box.x + box.width / 2, y: box.y + 60 };
+  await drag(middle, { x: 0, y: 150 }, 60);
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector(".clock").textContent) > 2.5);
+  const complaints = studio.complaints.length;
+  await studio.kill();
+  await page.waitForSelector(".empty:has-text('The studio has ended')");
+  await picture(page, "train-killed");
+  const other = await page.context().newPage();
+  await other.goto(await studio.startAgain());
+  await page.waitForSelector(".list button:has-text('kidney')"); // the page goes on
+  await other.close();
+  studio.complaints.splice(complaints); // that nothing answered
+  const recovered = ctpm(folder, "recover", "killed.ctpm", "-o", "recovered.ctpm");
+  assert.equal(recovered.code, 3, recovered.out + recovered.err); // the end was lost
+  assert.match(recovered.out + recovered.err, /cut off.*no difference/s); // it simulates again what it saved
+  const info = JSON.parse(ctpm(folder, "info", "recovered.ctpm", "--json").out);
+  assert.ok(info.duration_s > 1 && info.max_force_n > 0.1, JSON.stringify(info));
+});
+
 test("it fits a tablet", async () => {
   await page.click("header nav button:has-text('Train')");
   await page.setViewportSize({ width: 820, height: 1180 });

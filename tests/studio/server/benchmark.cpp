@@ -1,6 +1,7 @@
 // Measures the studio's server as a page sees it, without a browser:
-//   ctpm_studio_benchmark review FOLDER SESSION      opening, and seeks all over the session
-//   ctpm_studio_benchmark train FOLDER SCENE         late ticks with more and more pages, one of which stops reading
+//   ctpm_studio_benchmark review FOLDER SESSION [WAIT_S]   opening, and seeks all over the session, at once and after a
+//   wait ctpm_studio_benchmark train FOLDER SCENE               late ticks with more and more pages, one of which stops
+//   reading
 
 #include <algorithm>
 #include <cmath>
@@ -24,26 +25,45 @@ double ms_since(Clock::time_point begin) {
 void print_times(const char* what, std::vector<double> times) {
   std::sort(times.begin(), times.end());
   const auto rank = [&](double share) { return times[std::size_t(std::ceil(share * double(times.size()))) - 1]; };
-  std::printf("%-34s p50 %.1f ms, p95 %.1f ms, max %.1f ms (%zu)\n", what, rank(0.5), rank(0.95), times.back(),
+  std::printf("%-48s p50 %.1f ms, p95 %.1f ms, max %.1f ms (%zu)\n", what, rank(0.5), rank(0.95), times.back(),
               times.size());
 }
 
-/// Times from a request to its frame, at places all over a session.
-std::vector<double> seek(SocketClient& client, std::int64_t ticks, int count, unsigned seed) {
+/// Times from requests to what was shown for them, at places all over a session.
+struct SeekTimes {
+  std::vector<double> first, replayed;  ///< until the first picture, glimpse or not; until the replayed one [ms]
+};
+
+/// Seeks in the first `stages` stages at once, which show the same session; a time is that of the last of them.
+SeekTimes seek(SocketClient& client, int stages, std::int64_t ticks, int count, unsigned seed) {
   std::mt19937 random(seed);
-  std::vector<double> times;
+  SeekTimes times;
   for (int i = 0; i < count; ++i) {
     const std::uint32_t request = seed * 100000 + std::uint32_t(i) + 1;
+    const std::uint64_t tick = random() % std::uint64_t(ticks);
     const Clock::time_point begin = Clock::now();
-    client.send({{"show", {{"stage", 0}, {"tick", random() % std::uint64_t(ticks)}, {"request", request}}}});
-    while (value_at<std::uint32_t>(client.frame(), 16) != request) {
+    for (int stage = 0; stage < stages; ++stage)
+      client.send({{"show", {{"stage", stage}, {"tick", tick}, {"request", request}}}});
+    std::vector<double> first(std::size_t(stages), NAN), last = first;
+    while (std::any_of(last.begin(), last.end(), [](double t) { return std::isnan(t); })) {
+      const std::string frame = client.any_frame();
+      const std::size_t stage = value_at<std::uint32_t>(frame, 4);
+      if (value_at<std::uint32_t>(frame, 16) != request) continue;
+      if (std::isnan(first[stage])) first[stage] = ms_since(begin);
+      if (!SocketClient::is_glimpse(frame)) last[stage] = ms_since(begin);
     }
-    times.push_back(ms_since(begin));
+    times.first.push_back(*std::max_element(first.begin(), first.end()));
+    times.replayed.push_back(*std::max_element(last.begin(), last.end()));
   }
   return times;
 }
 
-int review(const std::string& folder, const std::string& session) {
+void print_seeks(const std::string& when, const SeekTimes& times) {
+  print_times((when + ", first picture").c_str(), times.first);
+  print_times((when + ", replayed").c_str(), times.replayed);
+}
+
+int review(const std::string& folder, const std::string& session, double wait_s) {
   const Serving serving(folder);
   SocketClient client(serving);
   Clock::time_point begin = Clock::now();
@@ -54,14 +74,15 @@ int review(const std::string& folder, const std::string& session) {
   client.frame();
   std::printf("%s: %.1f s, %lld spheres\n", session.c_str(), opened["result"]["info"]["duration_s"].get<double>(),
               (long long)opened["result"]["info"]["spheres"]);
-  std::printf("%-34s %.0f ms\n", "opened, first picture after", ms_since(begin));
+  std::printf("%-48s %.0f ms\n", "opened, first picture after", ms_since(begin));
   begin = Clock::now();
   client.call("session.timeline", {{"path", session}, {"points", 3000}});
-  std::printf("%-34s %.0f ms\n", "timeline after", ms_since(begin));
-  print_times("seeks, just opened", seek(client, ticks, 60, 1));
-  const double wait_s = std::min(20.0, 3 * opened["result"]["info"]["duration_s"].get<double>());
+  std::printf("%-48s %.0f ms\n", "timeline after", ms_since(begin));
+  print_seeks("seeks, just opened", seek(client, 1, ticks, 60, 1));
+  client.call("session.open", {{"path", session}, {"stage", 1}});
+  print_seeks("seeks in two sessions beside each other", seek(client, 2, ticks, 60, 2));
   std::this_thread::sleep_for(std::chrono::duration<double>(wait_s));
-  print_times(("seeks, " + std::to_string(int(wait_s)) + " s later").c_str(), seek(client, ticks, 60, 2));
+  print_seeks("seeks, " + std::to_string(int(wait_s)) + " s later", seek(client, 1, ticks, 60, 3));
   return 0;
 }
 
@@ -128,8 +149,9 @@ int train(const std::string& folder, const std::string& scene) {
 }  // namespace ctpm
 
 int main(int argc, char** argv) {
-  if (argc == 4 && std::string(argv[1]) == "review") return ctpm::review(argv[2], argv[3]);
+  if (argc >= 4 && argc <= 5 && std::string(argv[1]) == "review")
+    return ctpm::review(argv[2], argv[3], argc == 5 ? std::atof(argv[4]) : 20);
   if (argc == 4 && std::string(argv[1]) == "train") return ctpm::train(argv[2], argv[3]);
-  std::fprintf(stderr, "usage: ctpm_studio_benchmark review FOLDER SESSION | train FOLDER SCENE\n");
+  std::fprintf(stderr, "usage: ctpm_studio_benchmark review FOLDER SESSION [WAIT_S] | train FOLDER SCENE\n");
   return 2;
 }

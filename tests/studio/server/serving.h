@@ -174,14 +174,25 @@ class SocketClient {
       if (answer.value("id", 0) == id && !answer.contains("progress")) return answer;
     }
   }
-  /// The next frame; what comes before it is dropped.
-  std::string frame() {
+  /// The next frame, glimpse or not; what comes before it is dropped.
+  std::string any_frame() {
     for (;;) {
       Message message = receive();
       std::uint32_t kind = 0;
       std::memcpy(&kind, message.bytes.data(), 4);
       if (!message.is_text && kind == 2) return std::move(message.bytes);
     }
+  }
+  /// The next frame that is no glimpse.
+  std::string frame() {
+    std::string frame = any_frame();
+    while (is_glimpse(frame)) frame = any_frame();
+    return frame;
+  }
+  static bool is_glimpse(const std::string& frame) {
+    std::uint32_t flags = 0;
+    std::memcpy(&flags, frame.data() + 20, 4);
+    return (flags & 4u) != 0;
   }
 
  private:

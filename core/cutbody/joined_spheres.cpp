@@ -1,0 +1,88 @@
+#include "core/cutbody/joined_spheres.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace ctpm::cutbody {
+namespace {
+
+/// A place is joined to what the nodes of its side are joined to that are nearer than this, in steps of the grid (our
+/// choice; its own node may be sqrt(3) steps away). They are found over so many edges.
+constexpr double kBlur = 2;
+constexpr CutGrid::Index kBlurHops = JoinedSpheres::kMostHops - Sight::kMostHops;
+static_assert(kBlurHops >= kBlur);
+
+/// The part of a sphere by how many edges the way to it is longer than the shortest (our choice): one more may be due
+/// to a wall beside the way, which grazes edges of the grid; a spacing more is around the end of a cut.
+constexpr std::array<double, Sight::kMostDetour + 1> kPart{1, 1, 0.75, 0.5, 0.25};
+
+}  // namespace
+
+void JoinedSpheres::forget_near(CutGrid::NodeBox changed) {
+  std::erase_if(seen_, [&](const auto& entry) { return grid_.is_near(changed, entry.first, Sight::kMostHops); });
+  sight_.update(changed);
+}
+
+const Sight::Seen& JoinedSpheres::seen_from(Index node) {
+  const auto [found, is_new] = seen_.try_emplace(node);
+  if (is_new) found->second = sight_.from(node);
+  return found->second;
+}
+
+/// The nodes on the side of `side` around a place, and how much each counts.
+void JoinedSpheres::find_nodes(Vec3 rest, Index side) {
+  constexpr Index kSide = 2 * kBlurHops + 1;
+  std::array<bool, std::size_t(kSide * kSide * kSide)> was_found{};
+  const CutGrid::Node home = grid_.node(side);
+  nodes_.clear();
+  const auto find = [&](CutGrid::Node n) {
+    bool& found = was_found[std::size_t(n[0] - home[0] + kBlurHops +
+                                        kSide * (n[1] - home[1] + kBlurHops + kSide * (n[2] - home[2] + kBlurHops)))];
+    if (std::exchange(found, true)) return;
+    const Vec3 off = grid_.place(n) - rest;
+    const double bump = 1 - dot(off, off) / (kBlur * kBlur * grid_.step() * grid_.step());
+    if (bump > 0) nodes_.push_back({grid_.at(n), bump * bump});
+  };
+  find(home);
+  std::size_t first = 0;
+  for (Index hops = 0; hops < kBlurHops; ++hops)
+    for (const std::size_t last = nodes_.size(); first < last; ++first) {
+      const Index from = nodes_[first].node;
+      const CutGrid::Node n = grid_.node(from);
+      for (int d = 1; d < CutGrid::kDirections; ++d) {
+        const CutGrid::Node up{n[0] + (d & 1), n[1] + (d >> 1 & 1), n[2] + (d >> 2)},
+            down{n[0] - (d & 1), n[1] - (d >> 1 & 1), n[2] - (d >> 2)};
+        const auto is_joined = [&](CutGrid::Node to, CutGrid::Node lower) {
+          return grid_.contains(to) && grid_.in_tissue(grid_.at(to)) && !grid_.is_parted(grid_.at(lower), d);
+        };
+        if (is_joined(up, n)) find(up);
+        if (is_joined(down, down)) find(down);
+      }
+    }
+}
+
+std::span<const JoinedSpheres::Joined> JoinedSpheres::around(Vec3 rest, Index side) {
+  joined_.clear();
+  if (const Sight::Seen& seen = seen_from(side); !seen.has_cut) {
+    for (const Sight::Seen::Sphere& s : seen.sphere) joined_.push_back({s.sphere, 1});
+    return joined_;
+  }
+  find_nodes(rest, side);
+  known_.clear();
+  double total = 0;
+  for (const Weighted& n : nodes_) {
+    total += n.weight;
+    for (const Sight::Seen::Sphere& s : seen_from(n.node).sphere) {
+      if (std::size_t(s.sphere) >= sum_.size()) sum_.resize(std::size_t(s.sphere) + 1, 0);
+      double& sum = sum_[std::size_t(s.sphere)];
+      if (sum == 0) known_.push_back(s.sphere);
+      sum += n.weight * kPart[std::size_t(s.detour)];
+    }
+  }
+  std::sort(known_.begin(), known_.end());
+  for (const Index s : known_) joined_.push_back({s, std::exchange(sum_[std::size_t(s)], 0) / total});
+  return joined_;
+}
+
+}  // namespace ctpm::cutbody

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "core/cutbody/cut_grid.h"
+#include "core/cutbody/sight.h"
+
+namespace ctpm::cutbody {
+
+/// The spheres that a place in cut tissue is joined to, each by a part that changes smoothly along the cut: a sphere
+/// that counts for one place and not for the next would tear the surface between them. (Weights that fall with the way
+/// around the end of a cut: the diffraction method of Organ, Fleming, Terry and Belytschko, "Continuous meshless
+/// approximations for nonconvex bodies by diffraction and transparency", 1996; here of ways along a grid.)
+class JoinedSpheres {
+ public:
+  using Index = CutGrid::Index;
+
+  struct Joined {
+    Index sphere;
+    double part;  ///< 1: without going around a cut's end; down to 0
+  };
+
+  /// What a place is joined to may depend on edges so far from its node.
+  static constexpr Index kMostHops = Sight::kMostHops + 2;
+
+  /// `grid` must outlive the JoinedSpheres.
+  explicit JoinedSpheres(const CutGrid& grid) : grid_(grid), sight_(grid) {}
+
+  /// Forgets what may depend on edges in the box.
+  void forget_near(CutGrid::NodeBox changed);
+
+  /// The spheres of a place at rest [m] on the side of a node in tissue at most sqrt(3) steps of the grid away,
+  /// ascending. Valid until the next call.
+  std::span<const Joined> around(Vec3 rest, Index side);
+
+ private:
+  struct Weighted {
+    Index node;
+    double weight;
+  };
+  void find_nodes(Vec3 rest, Index side);
+  const Sight::Seen& seen_from(Index node);
+
+  const CutGrid& grid_;
+  Sight sight_;
+  std::unordered_map<Index, Sight::Seen> seen_;
+  std::vector<Weighted> nodes_;
+  std::vector<double> sum_;   ///< of each sphere; 0 between calls
+  std::vector<Index> known_;  ///< spheres of which the sum is not 0
+  std::vector<Joined> joined_;
+};
+
+}  // namespace ctpm::cutbody

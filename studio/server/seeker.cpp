@@ -1,0 +1,101 @@
+#include "studio/server/seeker.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "studio/server/cut_key.h"
+#include "studio/server/glimpse.h"
+
+namespace ctpm::server {
+namespace {
+
+constexpr std::int64_t kFar = 50;        ///< ticks
+constexpr std::int64_t kAsk = 20;        ///< ticks between two questions whether to stop
+constexpr std::size_t kMostCursors = 3;  ///< before the first cut, after the last one, and one between
+
+}  // namespace
+
+bool Seeker::is_far(std::int64_t tick) const {
+  const auto is_near = [&](const Cursor& cursor) {
+    return cursor.replay.tick() <= tick && tick - cursor.replay.tick() <= kFar;
+  };
+  return tick - moments_.before(tick).first > kFar && std::none_of(cursors_.begin(), cursors_.end(), is_near);
+}
+
+/// A kept State; in place of a damaged keyframe one that is earlier.
+Result<Seeker::Start> Seeker::start_at(const Moments::Place& place) {
+  if (place.second) return Start{place.first, place.second->state, place.second->is_same};
+  Result<recordings::Keyframe> keyframe = reader_.keyframe_at_or_before(place.first);
+  if (keyframe) return Start{keyframe->tick, std::move(keyframe->state)};
+  if (place.first == 0) return keyframe.errors();
+  return start_at(moments_.before(place.first - 1));
+}
+
+Result<Seeker::Glimpse> Seeker::glimpse(std::int64_t tick) {
+  const Moments::Place before = moments_.before(tick);
+  const std::optional<Moments::Place> after = moments_.after(tick);
+  const Result<std::vector<recordings::TickRecord>> records = reader_.ticks(tick - 1, tick);
+  if (!records) return records.errors();
+  const Result<Start> from = start_at(before);
+  if (!from) return from.errors();
+  const Result<Start> to = after ? start_at(*after) : from;
+  if (!to) return to.errors();
+  const std::int64_t ticks = to->tick - from->tick;
+  const double share = ticks > 0 ? double(tick - from->tick) / double(ticks) : 0;
+  return Glimpse{glimpse_between(from->state, to->state, share, records->front()), records->front()};
+}
+
+/// Takes the cursor that is nearest before `tick`, if no kept State is nearer.
+bool Seeker::goes_on(std::int64_t tick) {
+  std::int64_t nearest = moments_.before(tick).first - 1;
+  const std::size_t none = cursors_.size();
+  std::size_t found = none;
+  for (std::size_t i = 0; i < cursors_.size(); ++i)
+    if (const std::int64_t at = cursors_[i].replay.tick(); at <= tick && at > nearest) nearest = at, found = i;
+  if (found == none) return false;
+  last_ = found;
+  return true;
+}
+
+/// Puts a cursor at a kept State: one that is at the same cut, else a new one or that of which the last use is longest
+/// ago.
+Result<Done> Seeker::begin_at(const Moments::Place& place) {
+  const Result<Start> start = start_at(place);
+  if (!start) return start.errors();
+  const auto same = std::find_if(cursors_.begin(), cursors_.end(), [&](const Cursor& cursor) {
+    return CutKey(cursor.replay.state()).is_of(start->state);
+  });
+  last_ = std::size_t(same - cursors_.begin());
+  if (same == cursors_.end() && cursors_.size() < kMostCursors) {
+    Result<recordings::ReplayCursor> made = recordings::ReplayCursor::create(reader_);
+    if (!made) return made.errors();
+    cursors_.push_back({std::move(*made)});
+  } else if (same == cursors_.end()) {
+    const auto oldest = std::min_element(cursors_.begin(), cursors_.end(),
+                                         [](const Cursor& a, const Cursor& b) { return a.used < b.used; });
+    last_ = std::size_t(oldest - cursors_.begin());
+  }
+  cursors_[last_].replay.resume(start->tick, start->state);
+  cursors_[last_].was_same = start->is_same;
+  return Done{};
+}
+
+Result<bool> Seeker::go_to(std::int64_t tick, const std::function<bool()>& should_stop) {
+  // The last tick is simulated in any case, because its report belongs to the picture.
+  const std::int64_t before = std::max<std::int64_t>(0, tick - 1);
+  if (!goes_on(before))
+    if (const Result<Done> begun = begin_at(moments_.before(before)); !begun) return begun.errors();
+  Cursor& cursor = cursors_[last_];
+  cursor.used = ++uses_;
+  while (cursor.replay.tick() < tick) {
+    if (cursor.replay.tick() % kAsk == 0 && should_stop()) return false;
+    const Result<bool> stepped = cursor.replay.step();
+    if (!stepped) return stepped.errors();
+    if (!*stepped) break;
+    moments_.keep(cursor.replay.tick(), cursor.replay.state(), is_same(cursor));
+  }
+  return true;
+}
+
+}  // namespace ctpm::server

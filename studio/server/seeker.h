@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "recordings/replay.h"
+#include "recordings/session_reader.h"
+#include "studio/server/moments.h"
+
+namespace ctpm::server {
+
+/// Reaches any tick of a session, from the nearest State that is kept. Several cursors stay at different cuts, because
+/// what a cut opens takes longer to build than many ticks.
+class Seeker {
+ public:
+  /// `reader` and `moments`, of the same session, must outlive this.
+  Seeker(recordings::SessionReader& reader, Moments& moments) : reader_(reader), moments_(moments) {}
+
+  /// Whether so many ticks have to be simulated that a glimpse is shown first.
+  bool is_far(std::int64_t tick) const;
+
+  /// What is known of the State before `tick`, > 0, without a simulation; see glimpse_between(). Errors: a damaged
+  /// part.
+  struct Glimpse {
+    State state;
+    recordings::TickRecord record;
+  };
+  Result<Glimpse> glimpse(std::int64_t tick);
+
+  /// Goes to the State before `tick`. False: `should_stop` said so on the way. Errors: the session cannot be replayed.
+  Result<bool> go_to(std::int64_t tick, const std::function<bool()>& should_stop);
+
+  /// Where the last go_to() ended; before the first one there is none.
+  const recordings::ReplayCursor& cursor() const { return cursors_[last_].replay; }
+  bool is_same() const { return is_same(cursors_[last_]); }  ///< everything up to there was as recorded
+
+ private:
+  struct Cursor {
+    recordings::ReplayCursor replay;
+    bool was_same = true;  ///< up to the State from which it came
+    std::uint64_t used = 0;
+  };
+  static bool is_same(const Cursor& cursor) { return cursor.was_same && cursor.replay.same_so_far(); }
+  struct Start {
+    std::int64_t tick = 0;
+    State state;
+    bool is_same = true;
+  };
+  Result<Start> start_at(const Moments::Place& place);
+  bool goes_on(std::int64_t tick);
+  Result<Done> begin_at(const Moments::Place& place);
+
+  recordings::SessionReader& reader_;
+  Moments& moments_;
+  std::vector<Cursor> cursors_;
+  std::size_t last_ = 0;
+  std::uint64_t uses_ = 0;
+};
+
+}  // namespace ctpm::server
