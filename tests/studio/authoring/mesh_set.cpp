@@ -106,7 +106,7 @@ class Trial {
     return {"import", mesh_.string(), "-o", "my/scene.json", "--report", "report.json", "--overwrite"};
   }
 
-  ProgramOutcome run_program(const std::vector<std::string>& arguments, double limit = 30 * kMostSeconds) {
+  ProgramOutcome run_program(const std::vector<std::string>& arguments, double limit = 10 * kMostSeconds) {
     // The wall clock of a loaded machine is no measure; the processor's time is judged below.
     std::vector<std::string> command{"timeout", "-k", "5", std::to_string(int(limit)), program_};
     command.insert(command.end(), arguments.begin(), arguments.end());
@@ -137,7 +137,7 @@ class Trial {
     const double before = row_.seconds;
     const ProgramOutcome record = run_program(
         {"record", "my/scene.json", "--script", "my/scene.script.json", "-o", "cut.ctpm", "--fast", "--overwrite"},
-        60 * kMostSeconds);
+        20 * kMostSeconds);
     row_.seconds = before;  // a session may last longer
     if (record.code != 0) return "record: exit code " + std::to_string(record.code);
     if (record.out.find(" 0 elements severed") != std::string::npos) return "recorded, but nothing is cut";
