@@ -32,6 +32,9 @@ class JoinedSpheres {
   /// Forgets what may depend on edges in the box.
   void forget_near(CutGrid::NodeBox changed);
 
+  /// Whether a cut is so near to a node in tissue that it may part it from spheres.
+  bool is_near_cut(Index side) { return seen_from(side).has_cut; }
+
   /// The spheres of a place at rest [m] on the side of a node in tissue at most sqrt(3) steps of the grid away,
   /// ascending. Valid until the next call.
   std::span<const Joined> around(Vec3 rest, Index side);

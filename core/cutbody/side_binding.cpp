@@ -174,13 +174,14 @@ const SideBinding::Bound& SideBinding::bind(const CutMesh::Vertex& vertex, bool 
   if (!is_new) return bound;
   bound.rest = is_wall ? near_cut(vertex.rest, state) : vertex.rest;
   if (is_outer) bound.origin = origin_of(bound.rest);
+  const bool is_near_cut = vertex.side >= 0 && joined_.is_near_cut(vertex.side);
   std::span<const Joined> joined;
   if (vertex.side >= 0) joined = joined_.around(bound.rest, vertex.side);
   if (bound.origin.triangle >= 0) {
     const Vec3 place = place_of(bound.origin);
     if (norm(place - bound.rest) <= kOnSurface * organ_.spacing) {
       bound.rest = place, bound.binding = follow_whole(bound.origin);
-      if (vertex.side < 0 || is_joined(bound.binding, joined)) return bound;
+      if (!is_near_cut || is_joined(bound.binding, joined)) return bound;
     }
   }
   const double reach = surface::kBindingReach * organ_.spacing;
