@@ -354,16 +354,20 @@ TEST(RecoverProgram, ExitsWith3WhenSomethingIsMissingAndWith0WhenNothingIs) {
 
 TEST(RecoverProgram, SavesTheBeginningOfAFileThatWasCutShort) {
   const TemporaryFolder folder;
-  for (const int percent : {97, 90}) {
-    const std::string name = std::to_string(percent) + ".ctpm", saved = "saved-" + name;
-    const std::string whole = slurp(kPress);
-    std::ofstream(folder.path() / name, std::ios::binary) << whole.substr(0, whole.size() * std::size_t(percent) / 100);
-    EXPECT_EQ(run_ctpm({"verify", name}, folder.path()).code, 2);
-    const auto recovered = run_ctpm({"recover", name, "-o", saved}, folder.path());
-    EXPECT_EQ(recovered.code, 3) << recovered.out << recovered.err;
-    EXPECT_TRUE(holds(recovered.out, "same: ")) << recovered.out;
-    EXPECT_FALSE(recovered.out.starts_with(saved + ": 0 ticks")) << recovered.out;
-  }
+  // The page that leads to the initial state may lie late in a file of about five keyframes, as of the expert's press,
+  // which then is lost as a whole.
+  for (const char* session : {"liver-press-clumsy", "kidney-cut-expert", "kidney-cut-clumsy"})
+    for (const int percent : {97, 90}) {
+      const std::string name = session + std::to_string(percent) + ".ctpm", saved = "saved-" + name;
+      const std::string whole = slurp(kShipped + "/" + session + ".ctpm");
+      std::ofstream(folder.path() / name, std::ios::binary)
+          << whole.substr(0, whole.size() * std::size_t(percent) / 100);
+      EXPECT_EQ(run_ctpm({"verify", name}, folder.path()).code, 2);
+      const auto recovered = run_ctpm({"recover", name, "-o", saved}, folder.path());
+      EXPECT_EQ(recovered.code, 3) << name << recovered.out << recovered.err;
+      EXPECT_TRUE(holds(recovered.out, "same: ")) << recovered.out;
+      EXPECT_FALSE(recovered.out.starts_with(saved + ": 0 ticks")) << recovered.out;
+    }
 }
 
 TEST(KilledProgram, LeavesASessionThatIsSaidToBeUnfinishedAndCanBeRecovered) {
