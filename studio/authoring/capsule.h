@@ -15,11 +15,11 @@ struct Tension {
 };
 
 /// The tension of an organ's capsule (MaterialPreset::InSitu), with which cuts gape. A capsule holds an inner pressure
-/// p with the tension p R / 2 per length, as a sphere of the organ's volume would (Laplace), which relaxed tissue of
-/// depth d, modulus E and Poisson ratio 1/4 has at the strain p R (1 - 1/4) / (2 E d). A mesh has the shape that the
-/// organ has under it: the mean strain of a body without loads is none, so the tissue inside is pressed as much as the
-/// capsule is stretched. Not set if nothing is known of the material's preset, or if the outermost spacing holds no
-/// spheres or all of them.
+/// p with the tension p R / 2 per length (Laplace; R: radius of the sphere of the organ's volume). Relaxed tissue of
+/// depth d, modulus E and Poisson ratio 1/4 has this tension at the strain p R (1 - 1/4) / (2 E d). A mesh has the
+/// shape that the organ has under tension. The mean strain of a body without loads is none, so the tissue inside is
+/// pressed as much as the capsule is stretched. Not set if nothing is known of the material's preset, or if the
+/// outermost spacing holds no spheres or all of them.
 std::optional<Tension> tension_of(const scenes::MaterialSpec& material, const FilledOrgan& filled);
 
 }  // namespace ctpm::authoring
