@@ -176,7 +176,7 @@ const SideBinding::Bound& SideBinding::bind(const CutMesh::Vertex& vertex, bool 
   if (is_outer) bound.origin = origin_of(bound.rest);
   const bool is_near_cut = vertex.side >= 0 && joined_.is_near_cut(vertex.side);
   std::span<const Joined> joined;
-  if (vertex.side >= 0) joined = joined_.around(bound.rest, vertex.side);
+  if (is_near_cut) joined = joined_.around(bound.rest, vertex.side);
   if (bound.origin.triangle >= 0) {
     const Vec3 place = place_of(bound.origin);
     if (norm(place - bound.rest) <= kOnSurface * organ_.spacing) {
@@ -184,6 +184,7 @@ const SideBinding::Bound& SideBinding::bind(const CutMesh::Vertex& vertex, bool 
       if (!is_near_cut || is_joined(bound.binding, joined)) return bound;
     }
   }
+  if (!is_near_cut && vertex.side >= 0) joined = joined_.around(bound.rest, vertex.side);
   const double reach = surface::kBindingReach * organ_.spacing;
   Mix mix;
   mix.add(follow(bound.rest, joined, reach), kNear);
