@@ -6,6 +6,7 @@
 
 #include "core/stepping/step.h"
 #include "recordings/internal/field_codec.h"
+#include "recordings/internal/rescue.h"
 #include "recordings/internal/schema.h"
 #include "recordings/internal/session_store.h"
 #include "recordings/internal/statistics.h"
@@ -24,6 +25,7 @@ constexpr std::int64_t last_key = std::numeric_limits<std::int64_t>::max();
 /// them is too large for memory.
 struct Salvage {
   SessionStart start;
+  std::int64_t parts = 0;                    ///< undamaged parts beside those that a replay needs
   std::vector<std::int64_t> keyframe_ticks;  ///< ticks of the undamaged keyframes
   std::vector<Event> events;
   std::optional<SessionStatistics> finish;
@@ -33,25 +35,16 @@ void note(RecoverReport& report, const Errors& errors) {
   for (const Error& error : errors) report.losses.push_back(error.message);
 }
 
-/// Opens the damaged session; if that fails, opens a copy with a repaired first page.
-Result<SessionStore> open_for_salvage(const std::string& in, const std::string& copy, RecoverReport& report) {
-  auto store = SessionStore::open(in, true);
-  if (store) return store;
-  std::error_code problem;
-  if (!std::filesystem::is_regular_file(in, problem) || std::filesystem::file_size(in, problem) < 2 * 4096)
-    return store;
-  if (!copy_with_new_first_page(in, copy)) return store;
-  auto mended = SessionStore::open(copy, true);
-  if (!mended) return store;
-  report.repairs.push_back("the header and the list of tables were damaged and are written anew");
-  return mended;
-}
-
-/// The State before tick 0. If the stored one is damaged, uses the rest state, provided that the first tick simulated
-/// from it matches its recorded hash. Scenes without gravity start at rest.
+/// The State before tick 0. If both copies of it are damaged, uses the rest state, provided that the first tick
+/// simulated from it matches its recorded hash. Scenes without gravity start at rest.
 Result<State> initial_state(SessionStore& store, const Model& model, RecoverReport& report) {
   auto first = store.keyframe_at(0, model);
   if (first && *first) return std::move((*first)->state);
+  auto copy = store.initial_state(model);
+  if (copy && *copy) {
+    report.repairs.push_back("keyframe 0 was lost; the copy in the part initial is as good");
+    return std::move(**copy);
+  }
   const Errors lost = first ? Errors{{"", "keyframe 0: is missing", ""}} : first.errors();
   const auto chunk = store.chunk_at(0);
   if (!chunk || !*chunk || (*chunk)->first != 0 || (*chunk)->items.empty()) return lost;
@@ -80,7 +73,7 @@ Result<Done> salvage_start(SessionStore& store, Salvage& salvage, RecoverReport&
 
   const auto take = [&](auto result, auto& place) {
     if (result)
-      place = std::move(*result);
+      place = std::move(*result), ++salvage.parts;
     else
       note(report, result.errors());
   };
@@ -220,10 +213,52 @@ Result<Done> write_salvage(const std::string& out, Salvage& salvage, SessionStor
   return tables->close();
 }
 
+/// What one way of reading the damaged session saves.
+struct Attempt {
+  SessionStore store;
+  Salvage salvage;
+  RecoverReport report;
+
+  /// Rows of the database: what a way of reading is judged by.
+  std::int64_t rows() const {
+    return salvage.parts + report.ticks_saved + report.keyframes_saved + report.events_saved;
+  }
+};
+
+Result<Attempt> salvage_all(const std::string& path) {
+  auto store = SessionStore::open(path, true);
+  if (!store) return store.errors();
+  Attempt attempt;
+  attempt.store = std::move(*store);
+  if (auto r = salvage_start(attempt.store, attempt.salvage, attempt.report); !r) {
+    Errors errors = r.errors();
+    for (Error& error : errors) error.where = path;
+    errors.push_back(
+        {path, "cannot be recovered: without the model and the initial state there is nothing to replay", ""});
+    return errors;
+  }
+  salvage_ticks(attempt.store, attempt.salvage, attempt.report);
+  salvage_keyframes(attempt.store, attempt.salvage, attempt.report);
+  salvage_events(attempt.store, attempt.salvage, attempt.report);
+  return attempt;
+}
+
+/// Reads the damaged session as the database that it is and, where something is lost, the blocks on its pages one by
+/// one, in a file `copy`: a lost inner page then loses nothing but itself. Keeps what saves more.
+Result<Attempt> salvage_either_way(const std::string& in, const std::string& copy) {
+  auto plain = salvage_all(in);
+  if (plain && plain->report.losses.empty()) return plain;
+  if (!rescue_rows(in, copy)) return plain;
+  auto rescued = salvage_all(copy);
+  if (!rescued || (plain && rescued->rows() <= plain->rows())) return plain;
+  rescued->report.repairs.push_back(
+      "pages that hold the database together were lost or damaged; what lies on the others is put together anew");
+  return rescued;
+}
+
 }  // namespace
 
 Result<RecoverReport> recover_session(const std::string& in, const std::string& out) {
-  RecoverReport report;
   std::error_code ignored;
   if (std::filesystem::exists(out, ignored)) return Error{out, "exists already", "choose another name"};
   std::string copy = out + ".salvage";
@@ -232,23 +267,12 @@ Result<RecoverReport> recover_session(const std::string& in, const std::string& 
     const std::string& path;
     ~Remover() { remove_with_companions(path); }
   } const remover{copy};
-  auto store = open_for_salvage(in, copy, report);
-  if (!store) return store.errors();
-  Salvage salvage;
-  if (auto r = salvage_start(*store, salvage, report); !r) {
-    Errors errors = r.errors();
-    for (Error& error : errors) error.where = in;
-    errors.push_back(
-        {in, "cannot be recovered: without the model and the initial state there is nothing to replay", ""});
-    return errors;
-  }
-  salvage_ticks(*store, salvage, report);
-  salvage_keyframes(*store, salvage, report);
-  salvage_events(*store, salvage, report);
+  auto attempt = salvage_either_way(in, copy);
+  if (!attempt) return attempt.errors();
+  auto& [store, salvage, report] = *attempt;
   report.complete = report.losses.empty() && salvage.finish.has_value();
   if (!salvage.finish) report.losses.push_back("the session was cut off: it has no end");
-
-  if (auto r = write_salvage(out, salvage, *store, report); !r) {
+  if (auto r = write_salvage(out, salvage, store, report); !r) {
     remove_with_companions(out);
     return r.errors();
   }

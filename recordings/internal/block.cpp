@@ -42,9 +42,13 @@ Block pack(const std::string& name, ByteView content, std::uint64_t seed, int le
   return block;
 }
 
+bool is_intact(const std::string& name, std::int64_t size, std::int64_t checksum, ByteView data, std::uint64_t seed) {
+  return checksum == checksum_of(name, size, data, seed);
+}
+
 Result<Bytes> unpack(const std::string& name, std::int64_t size, std::int64_t checksum, ByteView data,
                      std::uint64_t seed, std::uint64_t max_size) {
-  if (checksum != checksum_of(name, size, data, seed)) return Error{"", name + ": the checksum does not match", ""};
+  if (!is_intact(name, size, checksum, data, seed)) return Error{"", name + ": the checksum does not match", ""};
   if (size < 0 || static_cast<std::uint64_t>(size) > max_size)
     return Error{
         "", name + ": states " + std::to_string(size) + " bytes, at most " + std::to_string(max_size) + " are allowed",

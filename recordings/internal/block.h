@@ -22,6 +22,9 @@ struct Block {
 /// `name` is the label without the size, such as "chunk 300 100".
 Block pack(const std::string& name, ByteView content, std::uint64_t seed, int level);
 
+/// Whether an untrusted block has the checksum of its label and its stored bytes.
+bool is_intact(const std::string& name, std::int64_t size, std::int64_t checksum, ByteView data, std::uint64_t seed);
+
 /// Verifies and decompresses an untrusted block. Errors, each with `name`: wrong checksum, size above `max_size`, or
 /// not decompressible.
 Result<Bytes> unpack(const std::string& name, std::int64_t size, std::int64_t checksum, ByteView data,

@@ -7,6 +7,7 @@
 
 #include "recordings/internal/event_check.h"
 #include "recordings/internal/statistics.h"
+#include "recordings/state_hash.h"
 
 namespace ctpm::recordings::session_file {
 namespace {
@@ -51,6 +52,8 @@ class SessionCheck {
     const auto names = store_.part_names();
     if (!take(names)) return;
     for (const std::string& name : *names) take(store_.part(name));
+    const auto initial = store_.initial_state(session_.model);
+    if (take(initial) && *initial) initial_hash_ = state_hash(**initial);
   }
 
   /// A damaged chunk is skipped by its key.
@@ -82,6 +85,8 @@ class SessionCheck {
         complain("the keyframe of tick " + std::to_string(key) + " is out of place");
       else if (key > 0)
         counter_.add_keyframe();
+      else if (initial_hash_ && *initial_hash_ != state_hash((*keyframe)->state))
+        complain("part initial: is another state than keyframe 0");
     }
     const auto left = static_cast<std::int64_t>(keys->size()) - 1;
     if (session_.finish && session_.finish->keyframes != left)
@@ -133,6 +138,7 @@ class SessionCheck {
 
   SessionStore& store_;
   const OpenedSession& session_;
+  std::optional<std::uint64_t> initial_hash_;  ///< of the part `initial`
   StatisticsCounter counter_;
   Errors errors_;
 };

@@ -13,7 +13,6 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <string_view>
 
 #include "recordings/internal/field_codec.h"
@@ -121,6 +120,8 @@ std::vector<NamedContent> start_parts(const SessionStart& start, const SessionId
     for (const auto& [key, value] : start.metadata) w(key, value);
   });
   add_text("columns", column_text(start.model.hands));
+  parts.push_back({"initial", {}});
+  put_fields(parts.back().content, start.initial_state);
   return parts;
 }
 
@@ -146,31 +147,6 @@ bool is_being_recorded(const std::string& path) {
 
 void remove_with_companions(const std::string& path) {
   for (const char* ending : {"", "-journal", "-wal", "-shm"}) ::unlink((path + ending).c_str());
-}
-
-Result<Done> copy_with_new_first_page(const std::string& damaged, const std::string& repaired) {
-  constexpr std::size_t page_size = 4096;
-  // SQLite makes the page, in a file that becomes the copy.
-  auto database = Database::open(repaired, Database::Access::create);
-  if (!database) return database.errors();
-  if (auto r = database->run(sql_of_new_file()); !r) return r;
-  if (auto r = database->run("COMMIT"); !r) return r;
-  if (auto r = database->close(); !r) return r;
-  std::vector<char> page(page_size);
-  std::ifstream(repaired, std::ios::binary).read(page.data(), page_size);
-
-  std::error_code problem;
-  std::filesystem::copy_file(damaged, repaired, std::filesystem::copy_options::overwrite_existing, problem);
-  if (!problem && std::filesystem::exists(damaged + "-wal"))
-    std::filesystem::copy_file(damaged + "-wal", repaired + "-wal", problem);
-  if (problem) return Error{repaired, "cannot be written: " + problem.message(), ""};
-
-  // The number of pages, big-endian; a truncated last page does not count.
-  const auto pages = static_cast<std::uint32_t>(std::filesystem::file_size(repaired, problem) / page_size);
-  for (int byte = 0; byte < 4; ++byte) page[28 + byte] = static_cast<char>(pages >> (24 - 8 * byte));
-  std::fstream file(repaired, std::ios::binary | std::ios::in | std::ios::out);
-  if (!file.write(page.data(), page_size).flush()) return Error{repaired, "cannot be written", ""};
-  return Done{};
 }
 
 SessionIdentity new_identity(const SessionStart& start) {
@@ -209,6 +185,16 @@ Result<Done> SessionTables::prepare() {
   if (auto r = one(chunk_, "INSERT INTO chunk VALUES(?1,?2,?3,?4,?5)"); !r) return r;
   if (auto r = one(keyframe_, "INSERT INTO keyframe VALUES(?1,?2,?3,?4)"); !r) return r;
   return one(event_, "INSERT INTO event VALUES(?1,?2,?3,?4,?5)");
+}
+
+Result<SessionTables> SessionTables::create(const std::string& path) {
+  auto database = Database::open(path, Database::Access::create);
+  if (!database) return database.errors();
+  SessionTables tables;
+  tables.database_ = std::move(*database);
+  if (auto r = tables.database_.run(sql_of_new_file()); !r) return r.errors();
+  if (auto r = tables.prepare(); !r) return r.errors();
+  return tables;
 }
 
 Result<SessionTables> SessionTables::open_for_writing(const std::string& path) {
@@ -255,6 +241,11 @@ Result<Done> SessionTables::insert_events(std::int64_t first, std::int64_t count
   return insert(event_, 2, block);
 }
 
+Result<Done> SessionTables::close_new() {
+  part_ = {}, chunk_ = {}, keyframe_ = {}, event_ = {};
+  return database_.close();
+}
+
 Result<Done> SessionTables::close() {
   if (!database_.is_open()) return Done{};
   part_ = {}, chunk_ = {}, keyframe_ = {}, event_ = {};
@@ -270,24 +261,19 @@ Result<Done> create_session_file(const std::string& path, const SessionStart& st
   const std::string temporary =
       path + "." + std::to_string(::getpid()) + "-" + identity.id.substr(0, 8) + std::string(part_ending);
   const auto write = [&]() -> Result<Done> {
-    auto database = Database::open(temporary, Database::Access::create);
-    if (!database) return database.errors();
-    SessionTables tables;
-    tables.database_ = std::move(*database);
-    if (auto r = tables.database_.run(sql_of_new_file()); !r) return r;
-    if (auto r = tables.prepare(); !r) return r;
+    auto tables = SessionTables::create(temporary);
+    if (!tables) return tables.errors();
     for (const NamedContent& part : start_parts(start, identity)) {
       const std::uint64_t seed = std::strcmp(part.name, "session") == 0 ? 0 : identity.seed;
       if (part.content.size() > max_part_size)
         return Error{path, part_name(part.name) + " is larger than a session file may hold", ""};
-      if (auto r = tables.insert_part(part.name, pack(part_name(part.name), part.content, seed, level)); !r) return r;
+      if (auto r = tables->insert_part(part.name, pack(part_name(part.name), part.content, seed, level)); !r) return r;
     }
     Bytes state;
     put_fields(state, start.initial_state);
-    if (auto r = tables.insert_keyframe(0, pack(keyframe_name(0), state, identity.seed, level)); !r) return r;
-    if (auto r = tables.commit(); !r) return r;
-    tables.part_ = {}, tables.chunk_ = {}, tables.keyframe_ = {}, tables.event_ = {};
-    return tables.database_.close();
+    if (auto r = tables->insert_keyframe(0, pack(keyframe_name(0), state, identity.seed, level)); !r) return r;
+    if (auto r = tables->commit(); !r) return r;
+    return tables->close_new();
   };
 
   Result<Done> result = write();

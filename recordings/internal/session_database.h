@@ -47,16 +47,14 @@ bool is_being_recorded(const std::string& path);
 Result<Done> create_session_file(const std::string& path, const SessionStart& start, const SessionIdentity& identity,
                                  bool overwrite, int level);
 
-/// Copies the session file `damaged` and its log to `repaired`, with the first page of a new file. That page holds the
-/// header and the list of tables, which are equal in all sessions of this version.
-Result<Done> copy_with_new_first_page(const std::string& damaged, const std::string& repaired);
-
 /// Removes a file and SQLite's files beside it.
 void remove_with_companions(const std::string& path);
 
 /// The tables of an open session file, for writing. All errors name the file's path.
 class SessionTables {
  public:
+  /// The empty tables of a new file, in a transaction that has begun; to be ended by commit() and close_new().
+  static Result<SessionTables> create(const std::string& path);
   static Result<SessionTables> open_for_writing(const std::string& path);
 
   Result<Done> begin() { return database_.run("BEGIN IMMEDIATE"); }
@@ -73,9 +71,10 @@ class SessionTables {
 
   /// Checkpoints the log, so that one file remains.
   Result<Done> close();
+  /// Closes a file that was just created and has no log.
+  Result<Done> close_new();
 
  private:
-  friend Result<Done> create_session_file(const std::string&, const SessionStart&, const SessionIdentity&, bool, int);
   Result<Done> prepare();
   Result<Done> insert(Statement& statement, int bound, const Block& block);
 

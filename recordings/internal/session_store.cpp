@@ -390,19 +390,33 @@ Result<std::optional<Keyframe>> SessionStore::keyframe_at(std::int64_t at, const
   const auto content = block_of(keyframe_, "keyframe", false, memory_limit_, tick, one);
   if (!content) return content.errors();
   if (!*content) return std::optional<Keyframe>{};
-  Keyframe keyframe;
-  keyframe.tick = tick;
-  const auto decoded = decode_fields(keyframe_name(tick), **content, [&](ByteReader& in, std::string& problem) {
-    get_state(in, keyframe.state, problem);
-  });
-  if (!decoded) return decoded.errors();
   if (tick < 0) return error(keyframe_name(tick) + ": has an impossible place");
-  if (const Errors errors = check_state(model, keyframe.state); !errors.empty()) {
+  auto state = state_of(keyframe_name(tick), **content, model);
+  if (!state) return state.errors();
+  return std::optional(Keyframe{tick, std::move(*state)});
+}
+
+Result<std::optional<State>> SessionStore::initial_state(const Model& model) {
+  const auto content = part_if_there("initial");
+  if (!content) return content.errors();
+  if (!*content) return std::optional<State>{};
+  auto state = state_of(part_name("initial"), **content, model);
+  if (!state) return state.errors();
+  return std::optional(std::move(*state));
+}
+
+/// Decodes a State and checks it against the Model.
+Result<State> SessionStore::state_of(const std::string& name, const Bytes& content, const Model& model) const {
+  State state;
+  const auto decoded =
+      decode_fields(name, content, [&](ByteReader& in, std::string& problem) { get_state(in, state, problem); });
+  if (!decoded) return decoded.errors();
+  if (const Errors errors = check_state(model, state); !errors.empty()) {
     Errors placed = at_file(database_.path(), errors);
-    for (Error& e : placed) e.message = keyframe_name(tick) + ": " + e.message;
+    for (Error& e : placed) e.message = name + ": " + e.message;
     return placed;
   }
-  return std::optional(std::move(keyframe));
+  return state;
 }
 
 Result<std::vector<std::int64_t>> SessionStore::keys(const std::string& table) {

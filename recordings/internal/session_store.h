@@ -37,7 +37,7 @@ class SessionStore {
   bool lacks_log() const { return lacks_log_; }
 
   Result<Bytes> part(const std::string& name);
-  /// None if the session has no such part; only `finish` may be missing.
+  /// None if the session has no such part; only `finish` and `initial` may be missing.
   Result<std::optional<Bytes>> part_if_there(const std::string& name);
 
   /// The names of all parts, known or not.
@@ -65,6 +65,9 @@ class SessionStore {
   /// The keyframe with the largest tick at or below `at`, checked against the Model.
   Result<std::optional<Keyframe>> keyframe_at(std::int64_t at, const Model& model);
 
+  /// The part `initial`, a second copy of keyframe 0 that lies early in the file; none in older sessions.
+  Result<std::optional<State>> initial_state(const Model& model);
+
   /// The keys of a table ("chunk", "keyframe" or "event") in ascending order, without reading the blocks.
   Result<std::vector<std::int64_t>> keys(const std::string& table);
 
@@ -77,6 +80,7 @@ class SessionStore {
   Result<Done> read_identity();
   template <class Fill>
   Result<Done> decode_fields(const std::string& name, const Bytes& content, Fill&& fill) const;
+  Result<State> state_of(const std::string& name, const Bytes& content, const Model& model) const;
   Result<std::optional<Bytes>> block_of(Statement& statement, const std::string& what, bool has_count,
                                         std::uint64_t max_size, std::int64_t& first, std::int64_t& count);
 

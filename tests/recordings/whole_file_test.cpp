@@ -130,6 +130,20 @@ TEST_F(WholeFile, ChunksAndPartsAreChecked) {
                "ticks are left");
   expect_named([](Forge& f) { f.run("DELETE FROM chunk WHERE first = 200"); }, "ticks 200 to");
   expect_named([](Forge& f) { f.run("INSERT INTO part VALUES('later', 4, 5, x'00')"); }, "part later");
+  expect_named(
+      [](Forge& f) {
+        f.change("part", "initial", [](session_file::Bytes& content) {
+          State state;
+          std::string problem;
+          session_file::ByteReader in(content, 1 << 30);
+          session_file::get_fields(in, state, problem);
+          CTPM_CHECK(problem.empty(), "a state to forge");
+          state.tick += 1;
+          content.clear();
+          session_file::put_fields(content, state);
+        });
+      },
+      "part initial: is another state than keyframe 0");
 }
 
 /// A recorder that is killed leaves its log beside the file; somebody copies the file alone.
