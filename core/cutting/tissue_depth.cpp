@@ -60,7 +60,7 @@ TissueDepth::Grid TissueDepth::make_grid(const Surface& surface) {
   for (const auto& t : surface.triangle) grid.bound.push_back(bound_of(surface, t));
   const std::size_t count = std::size_t(e[0]) * std::size_t(e[1]) * std::size_t(e[2]);
   std::vector<std::pair<std::size_t, std::int32_t>> found;  // a bucket, and a triangle near it
-  grid.first.assign(count + 1, 0);
+  grid.row.assign(count, 0);                                // at first the number of triangles
   for (std::size_t n = 0; n < surface.triangle.size(); ++n) {
     const auto& t = surface.triangle[n];
     const Vec3 a = surface.vertex[std::size_t(t[0])], b = surface.vertex[std::size_t(t[1])],
@@ -76,13 +76,18 @@ TissueDepth::Grid TissueDepth::make_grid(const Surface& surface) {
           const Vec3 middle = middle_of(grid, bucket);
           if (grid.bound[n].is_beyond(middle, kRounding * reach)) continue;
           if (norm(nearest_in_triangle(middle, a, b, c) - middle) > reach) continue;
-          found.emplace_back(bucket, std::int32_t(n)), ++grid.first[bucket + 1];
+          found.emplace_back(bucket, std::int32_t(n)), ++grid.row[bucket];
         }
   }
-  for (std::size_t b = 0; b < count; ++b) grid.first[b + 1] += grid.first[b];
+  grid.first.assign(1, 0);
+  for (std::int32_t& row : grid.row) {
+    if (row > 0) grid.first.push_back(grid.first.back() + row);
+    row = row > 0 ? std::int32_t(grid.first.size()) - 2 : -1;
+  }
   grid.triangle.resize(found.size());
   std::vector<std::int32_t> next(grid.first.begin(), grid.first.end() - 1);
-  for (const auto& [bucket, triangle] : found) grid.triangle[std::size_t(next[bucket]++)] = triangle;
+  for (const auto& [bucket, triangle] : found)
+    grid.triangle[std::size_t(next[std::size_t(grid.row[bucket])]++)] = triangle;
   find_sides(grid);
   return grid;
 }
@@ -90,42 +95,44 @@ TissueDepth::Grid TissueDepth::make_grid(const Surface& surface) {
 /// Sides of the buckets' middles: near ones from their triangles, the others from their neighbours.
 void TissueDepth::find_sides(Grid& grid) {
   const auto& e = grid.extent;
-  const std::size_t count = grid.first.size() - 1;
-  grid.side.assign(count, 0);
-  std::vector<std::size_t> known;
-  grid.near_middle.assign(count, kFar);
-  for (std::size_t b = 0; b < count; ++b) {
+  grid.side.assign(grid.row.size(), 0);
+  std::vector<std::size_t> known, next;  // all of one distance: in an organ of decimetres there are many
+  grid.near_middle.assign(grid.first.size() - 1, kFar);
+  for (std::size_t b = 0; b < grid.row.size(); ++b) {
+    if (grid.row[b] < 0) continue;
     const double depth = near(grid, b, middle_of(grid, b)).depth, distance = std::abs(depth);
-    grid.near_middle[b] = distance;
+    grid.near_middle[std::size_t(grid.row[b])] = distance;
     if (distance < kBand) grid.side[b] = depth > 0 ? 1 : -1;
     // A neighbour farther than the band from the surface is on the same side unless the surface passes close by.
     if (distance < kBand && distance > kBucket - kBand + 1e-4) known.push_back(b);
   }
   if (grid.side[0] == 0) grid.side[0] = -1, known.push_back(0);  // a corner of the grid is outside
-  for (std::size_t n = 0; n < known.size(); ++n) {
-    const std::size_t b = known[n];
-    const std::int32_t at[3] = {std::int32_t(b % std::size_t(e[0])),
-                                std::int32_t(b / std::size_t(e[0]) % std::size_t(e[1])),
-                                std::int32_t(b / std::size_t(e[0]) / std::size_t(e[1]))};
-    const std::size_t step[3] = {1, std::size_t(e[0]), std::size_t(e[0]) * std::size_t(e[1])};
-    for (std::size_t a = 0; a < 3; ++a)
-      for (const bool up : {false, true}) {
-        if (up ? at[a] + 1 >= e[a] : at[a] == 0) continue;
-        const std::size_t other = up ? b + step[a] : b - step[a];
-        if (grid.side[other] != 0) continue;
-        grid.side[other] = grid.side[b], known.push_back(other);
-      }
-  }
+  for (; !known.empty(); known.swap(next), next.clear())
+    for (const std::size_t b : known) {
+      const std::int32_t at[3] = {std::int32_t(b % std::size_t(e[0])),
+                                  std::int32_t(b / std::size_t(e[0]) % std::size_t(e[1])),
+                                  std::int32_t(b / std::size_t(e[0]) / std::size_t(e[1]))};
+      const std::size_t step[3] = {1, std::size_t(e[0]), std::size_t(e[0]) * std::size_t(e[1])};
+      for (std::size_t a = 0; a < 3; ++a)
+        for (const bool up : {false, true}) {
+          if (up ? at[a] + 1 >= e[a] : at[a] == 0) continue;
+          const std::size_t other = up ? b + step[a] : b - step[a];
+          if (grid.side[other] != 0) continue;
+          grid.side[other] = grid.side[b], next.push_back(other);
+        }
+    }
 }
 
 /// Signed distance from the triangles of a bucket, and the nearest of them.
 TissueDepth::Near TissueDepth::near(const Grid& grid, std::size_t bucket, Vec3 rest) {
+  if (grid.row[bucket] < 0) return {kFar};
+  const auto row = std::size_t(grid.row[bucket]);
   const Surface& surface = *grid.surface;
   double least2 = kFar, facing = 0;
   // The surface is no farther than by way of the bucket's middle.
-  double farthest = kRounding * (grid.near_middle[bucket] + norm(rest - middle_of(grid, bucket)));
+  double farthest = kRounding * (grid.near_middle[row] + norm(rest - middle_of(grid, bucket)));
   std::int32_t nearest = -1;
-  for (auto n = grid.first[bucket]; n < grid.first[bucket + 1]; ++n) {
+  for (auto n = grid.first[row]; n < grid.first[row + 1]; ++n) {
     const auto index = std::size_t(grid.triangle[std::size_t(n)]);
     const Bound& bound = grid.bound[index];
     if (bound.is_beyond(rest, farthest)) continue;

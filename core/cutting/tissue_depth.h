@@ -49,10 +49,11 @@ class TissueDepth {
     const Surface* surface = nullptr;
     Vec3 low;
     std::array<std::int32_t, 3> extent{};
-    std::vector<std::int32_t> first, triangle;  ///< CSR by bucket
+    std::vector<std::int32_t> row;              ///< of each bucket in what follows; -1: no triangle is near it
+    std::vector<std::int32_t> first, triangle;  ///< CSR by row
+    std::vector<double> near_middle;            ///< distance of its middle from the surface, or infinite (rows) [m]
     std::vector<Bound> bound;                   ///< of each triangle of the surface
-    std::vector<double> near_middle;            ///< distance of a bucket's middle from the surface, or infinite [m]
-    std::vector<std::int8_t> side;              ///< of a bucket's middle: 1 inside, -1 outside
+    std::vector<std::int8_t> side;              ///< of each bucket's middle: 1 inside, -1 outside
   };
   static Grid make_grid(const Surface& surface);
   static void find_sides(Grid& grid);
