@@ -2,6 +2,9 @@
 // report says what was found.
 
 #include <gtest/gtest.h>
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -295,6 +298,48 @@ TEST_F(ImportProgram, WhatIsOddAboutVolumeAndPressIsAFinding) {
   ASSERT_EQ(flat.code, 0) << flat.err;
   expect_says(report(), {"\"code\": \"press_too_deep\""});
   expect_says(flat.out, {"not fitted: a press of 12 mm is deeper than a third of the organ"});
+  // A tall egg gives way to the side: only a much stiffer one would resist like the paper's organ.
+  write("egg.obj", zoo::to_obj_text(zoo::moved(zoo::sphere(1, 3), [](Vec3 p) {
+          return Vec3{25 * p.x, 25 * p.y, 100 * p.z};
+        })));
+  const auto egg = import("egg.obj", {"--unit", "mm", "--spheres", "200", "--overwrite"});
+  ASSERT_EQ(egg.code, 0) << egg.err;
+  expect_says(report(), {"\"code\": \"stiffness_scale\"", "outside of 0.1 to 10", "check the organ's unit and size"});
+  EXPECT_EQ(testing::slurp(folder_.path() / "scene.json").find("stiffness_scale"), std::string::npos);
+}
+
+/// What `ctpm` shows on a terminal.
+std::string shown_on_terminal(const std::vector<std::string>& arguments, const fs::path& folder) {
+  int terminal = -1;
+  const pid_t child = ::forkpty(&terminal, nullptr, nullptr, nullptr);
+  if (child == 0) {
+    std::vector<char*> argv{const_cast<char*>(CTPM_PROGRAM)};
+    for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+    argv.push_back(nullptr);
+    if (::chdir(folder.c_str()) == 0) ::execv(argv[0], argv.data());
+    ::_exit(127);
+  }
+  std::string shown;
+  char part[4096];
+  for (ssize_t got; (got = ::read(terminal, part, sizeof part)) > 0;) shown.append(part, std::size_t(got));
+  ::close(terminal), ::waitpid(child, nullptr, 0);
+  return shown;
+}
+
+TEST_F(ImportProgram, OnATerminalItSaysFromTheBeginningWhatItDoes) {
+  write("bean.obj", zoo::to_obj_text(bean()));
+  const std::string shown = shown_on_terminal(
+      {"import", "bean.obj", "--organ", "kidney", "--spheres", "400", "-o", "my/scene.json"}, folder_.path());
+  constexpr const char* kLine = "\r\033[Kimporting";
+  EXPECT_TRUE(shown.starts_with(kLine)) << "before anything else: " << shown;
+  EXPECT_LT(shown.find("settling"), shown.find("written: my/scene.json")) << shown;
+  double last = 0;
+  for (std::size_t at = 0; (at = shown.find(std::string(kLine) + ": ", at)) != std::string::npos; ++at) {
+    const double percent = std::stod(shown.substr(at + std::string(kLine).size() + 2, 5));
+    EXPECT_GE(percent, last);
+    last = percent;
+  }
+  EXPECT_GE(last, 70);
 }
 
 /// The commands of README's first scene, as they stand there.
