@@ -196,7 +196,13 @@ void BallContact::press_slot(const StateView& state, const BallMotion& ball, std
        .point = slot - part.first_slot + part.first_point + (part.patch == nullptr ? first_point_of(ball.hand) : 0),
        .dent = volume / pressed.area,
        .foundation = Foundation(organ, k, ball.step.elapsed)},
-      carriers, follows.of(state.position), contacts);
+      carriers, place_of(part, slot - part.first_slot, state), contacts);
+}
+
+/// Where a vertex is that the ball touches [m].
+Vec3 BallContact::place_of(const Part& part, std::int32_t vertex, const StateView& state) {
+  const Vec3 sum = part.surface->follower(vertex).of(state.position);
+  return part.patch == nullptr ? sum : sum + part.surface->offset(vertex);
 }
 
 /// Part with which the wall of a cut counts at a vertex.

@@ -85,6 +85,7 @@ class BallContact {
   bool is_hidden(const Part& part, const surface::NearSurface::Triangle& triangle) const;
   double share_of(const Part& part, std::int32_t slot, double radius);
   void dent(const Part& part, const surface::NearSurface::Triangle& triangle, const BallMotion& ball, double reach);
+  static Vec3 place_of(const Part& part, std::int32_t vertex, const StateView& state);
   void press_slot(const StateView& state, const BallMotion& ball, std::int32_t slot, double radius,
                   PointContacts& contacts);
   void find_on_surfaces(const StateView& state, const BallMotion& ball, PointContacts& contacts);

@@ -80,10 +80,7 @@ void CutBody::show_whole() {
 
 void CutBody::add(const SideBinding::Bound& bound) {
   surface_.vertex.push_back(bound.rest);
-  SurfaceBinding& to = surface_.binding;
-  to.sphere.insert(to.sphere.end(), bound.binding.sphere.begin(), bound.binding.sphere.end());
-  to.weight.insert(to.weight.end(), bound.binding.weight.begin(), bound.binding.weight.end());
-  to.first.push_back(Index(to.sphere.size()));
+  bound.binding.append_to(surface_.binding);
 }
 
 /// Makes surface_ anew: near the cut of the mesh of the grid, elsewhere of the organ's own vertices.

@@ -55,10 +55,14 @@ class SideBinding::Mix {
   }
 
   /// Fills up what is missing.
-  void fill(const Binding& way) { add(way, 1); }
+  void fill(const Binding& way) {
+    turned_ = way.turned, turned_.offset = missing_ * way.turned.offset;
+    add(way, 1);
+  }
 
   Binding binding() const {
     Binding all;
+    all.turned = turned_;
     for (const auto& [sphere, weight] : weight_) all.sphere.push_back(sphere), all.weight.push_back(weight);
     return all;
   }
@@ -71,8 +75,16 @@ class SideBinding::Mix {
   }
 
   std::map<Index, double> weight_;
+  TurnedOffset turned_;
   double missing_ = 1;
 };
+
+void SideBinding::Binding::append_to(SurfaceBinding& to) const {
+  to.sphere.insert(to.sphere.end(), sphere.begin(), sphere.end());
+  to.weight.insert(to.weight.end(), weight.begin(), weight.end());
+  if (!turned.sphere.empty()) to.turned.push_back(turned), to.turned.back().vertex = Index(to.first.size()) - 1;
+  to.first.push_back(Index(to.sphere.size()));
+}
 
 SideBinding::SideBinding(const Model& model, const CutGrid& grid)
     : model_(model),
@@ -205,14 +217,39 @@ void SideBinding::follow_piece(Vec3 rest, Index piece, Mix& mix) const {
   for (const double wider : {1.0, 1.5, 2.5, 4.0})
     if (!mix.is_whole()) mix.add(follow(rest, spheres_around(rest, wider * reach, piece), wider * reach), kOfPiece);
   if (mix.is_whole()) return;
-  // Spheres in a plane, or fewer than four.
-  const std::vector<Joined> around = spheres_around(rest, piece >= 0 ? 4 * reach : kAnywhere, piece);
-  const auto distance = [&](const Joined& s) {
-    return norm(model_.rest_position[std::size_t(organ_.first + s.sphere)] - rest);
-  };
-  const auto nearest = std::min_element(around.begin(), around.end(),
-                                        [&](const Joined& s, const Joined& t) { return distance(s) < distance(t); });
-  if (nearest != around.end()) mix.fill({{nearest->sphere}, {1.0}});
+  if (const Binding way = follow_rigidly(rest, piece); !way.sphere.empty()) mix.fill(way);
+}
+
+/// Follows spheres of a piece that lie in a plane or on a line, or that are fewer than four, as one stiff body: their
+/// mean, and beside it what turns with them. Empty if there are none around.
+SideBinding::Binding SideBinding::follow_rigidly(Vec3 rest, Index piece) const {
+  constexpr std::size_t kFewest = 3;  // that may turn a place in every way
+  std::vector<Joined> around;
+  double within = 0;
+  for (const double wider : {1.0, 2.0, piece >= 0 ? 4.0 : kAnywhere})
+    if (around.size() < kFewest)
+      within = wider * surface::kBindingReach * organ_.spacing, around = spheres_around(rest, within, piece);
+  const auto centre = [&](const Joined& s) { return model_.rest_position[std::size_t(organ_.first + s.sphere)]; };
+  if (within == kAnywhere) {
+    within = 0;
+    for (const Joined& s : around) within = std::max(within, 2 * norm(centre(s) - rest));
+  }
+  Binding binding;
+  double sum = 0;
+  for (const Joined& s : around) {
+    const Vec3 off = centre(s) - rest;
+    const double bump = 1 - dot(off, off) / (within * within);
+    binding.sphere.push_back(s.sphere);
+    binding.weight.push_back(model_.mass[std::size_t(organ_.first + s.sphere)] * bump * bump);
+    sum += binding.weight.back();
+  }
+  if (!(sum > 0)) return {};
+  Vec3 mean;
+  for (std::size_t i = 0; i < around.size(); ++i)
+    binding.weight[i] /= sum, mean += binding.weight[i] * centre(around[i]);
+  binding.turned = {-1, rest - mean, binding.sphere, binding.weight, {}};
+  for (const Joined& s : around) binding.turned.arm.push_back(centre(s) - mean);
+  return binding;
 }
 
 }  // namespace ctpm::cutbody

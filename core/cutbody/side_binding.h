@@ -25,6 +25,11 @@ class SideBinding {
   struct Binding {
     std::vector<Index> sphere;
     std::vector<double> weight;  ///< sum to 1
+    /// What turns with the spheres of a piece that do not span space; without spheres if there is none.
+    TurnedOffset turned;
+
+    /// Adds it as the binding of the next vertex.
+    void append_to(SurfaceBinding& to) const;
   };
   /// The place on the organ's own surface that is nearest to a vertex: in the middle of a triangle's corners with these
   /// weights.
@@ -65,6 +70,7 @@ class SideBinding {
   Vec3 place_of(const Origin& origin) const;
   Binding follow_whole(const Origin& origin) const;
   Binding follow(Vec3 rest, std::span<const Joined> spheres, double reach) const;
+  Binding follow_rigidly(Vec3 rest, Index piece) const;
   void follow_piece(Vec3 rest, Index piece, Mix& mix) const;
   std::vector<Joined> spheres_around(Vec3 rest, double reach, Index piece) const;
 

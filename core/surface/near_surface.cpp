@@ -4,15 +4,19 @@
 #include <cmath>
 #include <utility>
 
+#include "core/surface/rigid_motion.h"
+
 namespace ctpm::surface {
 namespace {
 
 /// Bindings put a vertex at its place at rest only up to rounding and regularisation [m].
 constexpr double kRounding = 1e-4;
 
-/// Displacements of vertices whose spheres' displacements lie in `range` [m]; `widen`: see NearSurface::Bound.
-Box widened(const Box& range, double widen) {
-  const Vec3 margin = widen * (range.high - range.low) + Vec3{kRounding, kRounding, kRounding};
+/// Displacements of vertices whose spheres' displacements lie in `range` [m]; `widen`, `turned`: see
+/// NearSurface::Bound.
+Box widened(const Box& range, double widen, double turned) {
+  const double more = kRounding + turned;
+  const Vec3 margin = widen * (range.high - range.low) + Vec3{more, more, more};
   return Box(range.low - margin, range.high + margin);
 }
 
@@ -41,6 +45,8 @@ NearSurface::NearSurface(const Model& model, std::size_t organ, const Surface& p
   first_.push_back(0);
   add_organ(part, model.organs[organ]);
   spheres_ = sphere_;
+  for (const TurnedOffset& offset : turned_)
+    spheres_.insert(spheres_.end(), offset.sphere.begin(), offset.sphere.end());
   std::sort(spheres_.begin(), spheres_.end());
   spheres_.erase(std::unique(spheres_.begin(), spheres_.end()), spheres_.end());
   find_bounds(kTrianglesPerPatchOfPart);
@@ -62,8 +68,11 @@ void NearSurface::find_bounds(Index triangles_per_patch) {
   patch_places_.resize(patches_.size()), group_places_.resize(groups_.size());
   rest_box_ = Box(rest_.front());
   for (const Vec3& p : rest_) rest_box_.add(p);
-  for (const Bound& group : groups_) widen_ = std::max(widen_, group.widen);
+  for (const Bound& group : groups_)
+    widen_ = std::max(widen_, group.widen), most_turned_ = std::max(most_turned_, group.turned);
   for (const Index sphere : sphere_) in_spheres_.push_back(place_in_spheres(sphere));
+  for (TurnedOffset& offset : turned_)
+    for (Index& sphere : offset.sphere) sphere = place_in_spheres(sphere);
   position_.resize(spheres_.size()), moved_.resize(spheres_.size());
   placed_.resize(vertex_count()), placed_in_.assign(vertex_count(), 0);
 }
@@ -76,6 +85,12 @@ void NearSurface::add_organ(const Surface& surface, const OrganRange& organ) {
     first_.push_back(first_entry + surface.binding.first[v]);
   for (const Index sphere : surface.binding.sphere) sphere_.push_back(organ.first + sphere);
   weight_.insert(weight_.end(), surface.binding.weight.begin(), surface.binding.weight.end());
+  if (!surface.binding.turned.empty()) turned_of_.resize(vertex_count(), -1);
+  for (const TurnedOffset& offset : surface.binding.turned) {
+    turned_of_[std::size_t(first_vertex + offset.vertex)] = Index(turned_.size());
+    turned_.push_back(offset);
+    for (Index& sphere : turned_.back().sphere) sphere += organ.first;
+  }
   for (const auto& corner : surface.triangle) {
     Triangle triangle{{first_vertex + corner[0], first_vertex + corner[1], first_vertex + corner[2]}, 0, 0};
     const Vec3 a = surface.vertex[std::size_t(corner[0])], b = surface.vertex[std::size_t(corner[1])],
@@ -113,7 +128,7 @@ void NearSurface::sort_triangles() {
 NearSurface::Bound NearSurface::bound_of(Index first, Index last, Index first_triangle, Index last_triangle) {
   std::vector<Index> spheres;
   std::vector<std::uint8_t> is_known(std::size_t(spheres_.back() - spheres_.front()) + 1, 0);
-  double widen = 0;
+  double widen = 0, turned = 0;
   Box box(rest(triangles_[std::size_t(first_triangle)].corner[0]));
   for (Index t = first_triangle; t < last_triangle; ++t)
     for (const Index corner : triangles_[std::size_t(t)].corner) {
@@ -125,11 +140,13 @@ NearSurface::Bound NearSurface::bound_of(Index first, Index last, Index first_tr
       double negative = 0;
       for (const double w : follows.weight) negative -= std::min(w, 0.0);
       widen = std::max(widen, negative);
+      if (const Index t = turned_of(corner); t >= 0)
+        turned = std::max(turned, 2 * norm(turned_[std::size_t(t)].offset));
     }
   std::sort(spheres.begin(), spheres.end());
   const auto begin = Index(bound_spheres_.size());
   for (const Index sphere : spheres) bound_spheres_.push_back(place_in_spheres(sphere));
-  return {first, last, begin, Index(bound_spheres_.size()), box, widen};
+  return {first, last, begin, Index(bound_spheres_.size()), box, widen, turned};
 }
 
 NearSurface::Index NearSurface::place_in_spheres(Index sphere) const {
@@ -148,7 +165,7 @@ void NearSurface::find_moved() const {
   for (std::size_t i = 0; i < spheres_.size(); ++i) moved_[i] = position_[i] - sphere_rest_[std::size_t(spheres_[i])];
   Box range(moved_.front());
   for (const Vec3& by : moved_) range.add(by);
-  displacements_ = widened(range, widen_);
+  displacements_ = widened(range, widen_, most_turned_);
 }
 
 const Box& NearSurface::displacements() const {
@@ -161,7 +178,7 @@ Box NearSurface::displacements(const Bound& bound) const {
   const auto moved = [&](Index s) { return moved_[std::size_t(bound_spheres_[std::size_t(s)])]; };
   Box range(moved(bound.first_sphere));
   for (Index s = bound.first_sphere + 1; s < bound.last_sphere; ++s) range.add(moved(s));
-  return widened(range, bound.widen);
+  return widened(range, bound.widen, bound.turned);
 }
 
 Vec3 NearSurface::place(Index vertex) {
@@ -171,7 +188,14 @@ Vec3 NearSurface::place(Index vertex) {
   Vec3 sum;
   for (auto e = std::size_t(first_[v]); e < std::size_t(first_[v + 1]); ++e)
     sum += weight_[e] * position_[std::size_t(in_spheres_[e])];
+  if (turned_of(vertex) >= 0) sum += offset(vertex);
   return placed_[v] = sum;
+}
+
+Vec3 NearSurface::offset(Index vertex) const {
+  const Index own = turned_of(vertex);
+  if (own < 0) return {};
+  return turned(turned_[std::size_t(own)], [&](Index sphere) { return position_[std::size_t(sphere)]; });
 }
 
 }  // namespace ctpm::surface

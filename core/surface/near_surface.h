@@ -58,6 +58,7 @@ class NearSurface {
     /// A vertex moves by a weighted sum of the spheres' displacements, with weights that sum to 1. It lies within their
     /// range, widened on each side by this part of it: the largest sum of negative weights.
     double widen;
+    double turned;  ///< farther by so much because of what turns with spheres [m]
   };
 
   /// Surfaces of organs [first_organ, last_organ). `model` must outlive the NearSurface.
@@ -90,6 +91,8 @@ class NearSurface {
   double stretch() const { return 1 + 2 * widen_; }
   /// Where a vertex is [m].
   Vec3 place(Index vertex);
+  /// What turns with its spheres and is in no weight [m].
+  Vec3 offset(Index vertex) const;
 
   /// Calls `visit(triangle, corners)` for every triangle whose patch may meet `region`, with the positions of its
   /// corners, in a fixed order. `region`: anything with `meets(Box)`.
@@ -106,6 +109,7 @@ class NearSurface {
     if (place.round != round_) place = {round_, bound.rest.moved(displacements(bound))};
     return place.box;
   }
+  Index turned_of(Index vertex) const { return turned_of_.empty() ? -1 : turned_of_[std::size_t(vertex)]; }
   void find_moved() const;
   void add_organ(const Surface& surface, const OrganRange& organ);
   Index place_in_spheres(Index sphere) const;
@@ -118,15 +122,17 @@ class NearSurface {
   std::vector<Index> first_, sphere_;  ///< binding of all vertices, as in SurfaceBinding
   std::vector<Index> in_spheres_;      ///< place of each of sphere_ in spheres_
   std::vector<double> weight_;
-  std::vector<Vec3> rest_;           ///< [m]
-  std::vector<Triangle> triangles_;  ///< by patch
+  std::vector<TurnedOffset> turned_;  ///< their spheres are places in spheres_
+  std::vector<Index> turned_of_;      ///< of each vertex, -1: none; empty if no vertex has any
+  std::vector<Vec3> rest_;            ///< [m]
+  std::vector<Triangle> triangles_;   ///< by patch
   std::vector<Bound> patches_, groups_;
   std::vector<Place> patch_places_, group_places_;
   std::vector<Index> bound_spheres_;  ///< in spheres_
   Box rest_box_{Vec3{}};
-  double widen_ = 0;                 ///< the largest of all bounds
-  std::vector<Vec3> position_;       ///< of spheres_ in the present round [m]
-  mutable std::vector<Vec3> moved_;  ///< how far they are from rest, if bounds were asked for [m]
+  double widen_ = 0, most_turned_ = 0;  ///< the largest of all bounds
+  std::vector<Vec3> position_;          ///< of spheres_ in the present round [m]
+  mutable std::vector<Vec3> moved_;     ///< how far they are from rest, if bounds were asked for [m]
   mutable Box displacements_{Vec3{}};
   mutable std::uint32_t moved_in_ = 0;    ///< round in which moved_ and displacements_ were found
   std::vector<Vec3> placed_;              ///< positions of the vertices that the present round placed [m]

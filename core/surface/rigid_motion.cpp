@@ -38,12 +38,50 @@ Matrix nearest_rotation(Matrix m) {
   return m;
 }
 
+Vec3 times(const Matrix& m, Vec3 v) {
+  return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
+          m[6] * v.x + m[7] * v.y + m[8] * v.z};
+}
+
+/// Turns a vector by the smallest rotation that takes the direction `from` to the direction `to`, both unit vectors.
+Vec3 turn_least(Vec3 from, Vec3 to, Vec3 v) {
+  constexpr double kOpposite = 1e-9;
+  const Vec3 axis = cross(from, to);
+  const double cosine = dot(from, to);
+  if (1 + cosine > kOpposite) return v + cross(axis, v) + cross(axis, cross(axis, v)) / (1 + cosine);
+  // Half a turn about any axis across.
+  const Vec3 across = std::abs(from.x) < 0.6 ? cross(from, {1, 0, 0}) : cross(from, {0, 1, 0});
+  return 2 * (dot(across, v) / dot(across, across)) * across - v;
+}
+
 }  // namespace
 
-Vec3 RigidMotion::operator()(Vec3 rest) const {
-  const Vec3 d = rest - from;
-  return to + Vec3{turn[0] * d.x + turn[1] * d.y + turn[2] * d.z, turn[3] * d.x + turn[4] * d.y + turn[5] * d.z,
-                   turn[6] * d.x + turn[7] * d.y + turn[8] * d.z};
+Vec3 RigidMotion::operator()(Vec3 rest) const { return to + times(turn, rest - from); }
+
+void add_moment(Matrix& moment, Vec3 now, Vec3 rest) {
+  const double of_now[3] = {now.x, now.y, now.z}, of_rest[3] = {rest.x, rest.y, rest.z};
+  for (std::size_t k = 0; k < 9; ++k) moment[k] += of_now[k / 3] * of_rest[k % 3];
+}
+
+Vec3 turn_of(const Matrix& moment, Vec3 rest) {
+  constexpr double kLine = 1e-3;  // cofactors of a matrix that counts as one of rank 1, to the square of its size
+  const double squared = size_squared(moment);
+  if (!(squared > 0)) return rest;
+  const Matrix cofactor = cofactors(moment).first;
+  const double plane = std::sqrt(size_squared(cofactor));
+  if (plane > kLine * squared) {
+    // In a plane the cofactors are the outer product of its normals now and at rest.
+    Matrix full = moment;
+    for (std::size_t k = 0; k < 9; ++k) full[k] += cofactor[k] / std::sqrt(plane);
+    return times(nearest_rotation(full), rest);
+  }
+  const Vec3 column[3] = {
+      {moment[0], moment[3], moment[6]}, {moment[1], moment[4], moment[7]}, {moment[2], moment[5], moment[8]}};
+  Vec3 to = column[0];
+  for (const Vec3& c : column)
+    if (dot(c, c) > dot(to, to)) to = c;
+  const Vec3 from{dot(column[0], to), dot(column[1], to), dot(column[2], to)};
+  return turn_least(from / norm(from), to / norm(to), rest);
 }
 
 RigidMotion rigid_motion(const Model& model, const OrganRange& organ, const Vec3Array& position) {
@@ -58,8 +96,7 @@ RigidMotion rigid_motion(const Model& model, const OrganRange& organ, const Vec3
   Matrix moment{};
   for (std::size_t i = first; i < last; ++i) {
     const Vec3 now = model.mass[i] * (position[i] - motion.to), rest = model.rest_position[i] - motion.from;
-    const double of_now[3] = {now.x, now.y, now.z}, of_rest[3] = {rest.x, rest.y, rest.z};
-    for (std::size_t k = 0; k < 9; ++k) moment[k] += of_now[k / 3] * of_rest[k % 3];
+    add_moment(moment, now, rest);
   }
   motion.turn = nearest_rotation(moment);
   return motion;

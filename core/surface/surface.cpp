@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/model/result.h"
+#include "core/surface/rigid_motion.h"
 
 namespace ctpm::surface {
 namespace {
@@ -233,6 +234,9 @@ void deform_surface(const Surface& surface, const Vec3Array& position, std::int3
     for (std::int32_t entry = binding.first[v]; entry < binding.first[v + 1]; ++entry)
       vertex[v] +=
           binding.weight[std::size_t(entry)] * position[std::size_t(first_sphere + binding.sphere[std::size_t(entry)])];
+  for (const TurnedOffset& offset : binding.turned)
+    vertex[std::size_t(offset.vertex)] +=
+        turned(offset, [&](std::int32_t sphere) { return position[std::size_t(first_sphere + sphere)]; });
 }
 
 }  // namespace ctpm::surface

@@ -129,10 +129,42 @@ inline constexpr GoldenRow kGoldenRevision6[] = {
     {"soft and two hands, auto", {0x1180d4b4680c1d33, 0x782c33232b01b77d, 0xe7e7da8983e48de9, 0xd0a7e15f2a1b0299}},
 };
 
+inline constexpr GoldenRow kGoldenRevision7[] = {
+    {"mass-spring, auto", {0x4f7c88c0735091e9, 0xcb948e9673393792, 0x8bccdeb0cbf7f750, 0x93683cf2455820b7}},
+    {"angle-mass-spring, auto", {0x53ed69ed47081f4a, 0x3ba5906091f6ab00, 0x03e8daa7c9bc6762, 0x475f7f76876de2b4}},
+    {"tpm, auto", {0x95b2c39bf88f10f5, 0xe850d989fe7fca2b, 0x8183dd2dba40557d, 0x076e54c26db9c121}},
+    {"ctpm, auto", {0x86612b474b543844, 0xd54cb124532ed93a, 0x30f0e63554ad156b, 0x6ef0193a2ca22689}},
+    {"tpm, backward-euler", {0xd96fed922634d73e, 0x6b3212ffa72f2cc6, 0x55969d6760733a80, 0xff90ab7a1118e97d}},
+    {"angle-mass-spring, backward-euler",
+     {0x97dc04d8b3a9dd1f, 0x03412e9ed39fb7c8, 0xd9dba7d24cb77e0c, 0x1725db8166b57d64}},
+    {"full, auto", {0xb6c71a93224b3c05, 0x532dc5c79cc197c6, 0x141ab2cefde9b286, 0x7d1d299ca12ba9be}},
+    {"full, sdirk2", {0x2a0b2e3c0646e61e, 0x4b236292430c12aa, 0xcc19088628cc1b6e, 0x60a7325c51c90af1}},
+    {"ctpm, sdirk2", {0xc81ac1fb69f16b20, 0x1a92a362ee9ad4e8, 0x3a2274f7d1e11ad6, 0xd8c2875e789b636a}},
+    {"resisting, auto", {0x86612b474b543844, 0xa41ce9a9358d8c0f, 0x5b98e4180a65d7f1, 0xc4fe0da4063de6ed}},
+    {"resisting, sdirk2", {0xc81ac1fb69f16b20, 0x97f53f69bf233a0c, 0x6c3d6fb56fba15dd, 0xc76193d62f345267}},
+    {"soft and resisting, auto", {0xe836adcc7b03139a, 0x14ffcbac57e1a446, 0x81ae27b1e6cf5177, 0x337ce2df56e4439d}},
+    {"skinned, auto", {0xf3bffb4aa45235bf, 0xff08ca1f164dc71c, 0xbff79ac19e1b34ad, 0xa16cc9616d726804}},
+    {"skinned, sdirk2", {0xd560509f566aa971, 0x32c0c7be75a46620, 0xda3951a0d5974a4e, 0x34c5f22f2dc1cc00}},
+    {"soft and skinned, auto", {0x2167393320c256c0, 0xb116154d53aabfa1, 0x06c423a451e0c032, 0x23a973f64c5f62ea}},
+    {"touched cut, auto", {0xff890838b753aeda, 0xc2964c266f6d3dfa, 0xb8c9e4911a0fd0cf, 0xb40007e26600f6d0}},
+    {"touched cut, sdirk2", {0xe75fab1ec41d085b, 0x49cacdcdbe8cd0a1, 0x97f9e151eb72a7ad, 0x3dd8cd05a20cf63c}},
+    {"soft and touched cut, auto", {0xd5f884a9e30aa820, 0xa8ca57b2b3f9310e, 0x8c6bf93c08b9a3bd, 0x834f00d86a85c6d2}},
+    {"touched slice, auto", {0xc651e673aaed1229, 0xf5a083e760a53fea, 0x9275339255a1e1b3, 0xaed6550b75c79f8a}},
+    {"touched slice, sdirk2", {0xfc009c869aa9e49a, 0xb6cc0faa904be811, 0xa34b70fa58bf96e4, 0xb48e13798b88ce4e}},
+    {"soft and touched slice, auto", {0x0aebf3b27fba0d04, 0x48f5ebb3b9b1b20b, 0x83d59a6edd6063b3, 0xd798cd88496b9df4}},
+    {"two hands, auto", {0xc6c1d85d1512e690, 0x6d0f09b25ab908fc, 0x84fcef55e94d5d0c, 0xe7ea60bedce57717}},
+    {"two hands, sdirk2", {0x017d86b191843b23, 0xd60070a505fb5dd4, 0xde872fe2c607efdd, 0x0564c2848685cd96}},
+    {"soft and two hands, auto", {0x1180d4b4680c1d33, 0x782c33232b01b77d, 0xe7e7da8983e48de9, 0xd0a7e15f2a1b0299}},
+};
+
 inline constexpr GoldenRevision kGoldenRevisions[] = {
-    {1, kGoldenRevision1, 0x002bb904fcccbc09}, {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
-    {3, kGoldenRevision3, 0xe38c0b55dc5ae189}, {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
-    {5, kGoldenRevision5, 0xde01e1a50a84c47a}, {6, kGoldenRevision6, 0xa6eef089d8c4a783},
+    {1, kGoldenRevision1, 0x002bb904fcccbc09},
+    {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
+    {3, kGoldenRevision3, 0xe38c0b55dc5ae189},
+    {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
+    {5, kGoldenRevision5, 0xde01e1a50a84c47a},
+    {6, kGoldenRevision6, 0xa6eef089d8c4a783},
+    {7, kGoldenRevision7, 0xe9b636c6028e3176},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

@@ -33,6 +33,14 @@ inline Inputs touched_cut_inputs(int tick) {
   return inputs;
 }
 
+/// A scalpel cuts a slice one sphere thick off the block for 200 ticks, then a ball presses on the slice.
+inline Inputs touched_slice_inputs(int tick) {
+  Inputs inputs = touched_cut_inputs(tick);
+  inputs.position.x = tick < 200 ? 0.0247 : 0.0292;
+  if (tick < 200) inputs.position.z = -0.010;
+  return inputs;
+}
+
 /// A ball presses, and from tick 100 on a scalpel in the other hand cuts beside it.
 inline Inputs two_hands_inputs(int tick) {
   Inputs inputs = golden_inputs(std::min(tick, 150));

@@ -1,0 +1,139 @@
+// Pieces whose spheres do not span space keep their shape: a slice of one layer, a rod of two spheres, a crumb of one.
+
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <vector>
+
+#include "core/surface/rigid_motion.h"
+#include "core/surface/surface.h"
+#include "tests/core/cut_blocks.h"
+
+namespace ctpm {
+namespace {
+
+constexpr double kBelow = -0.01, kAbove = 0.05;  // heights of an edge outside the block [m]
+
+using Way = std::function<cutting::Front(double)>;
+
+double along(double share) { return -0.06 + 0.12 * share; }
+/// Upright planes across x and y, and a level one.
+Way at_x(double x) {
+  return [=](double t) { return testing::straight_front({x, along(t), kBelow}, {x, along(t), kAbove}); };
+}
+Way at_y(double y) {
+  return [=](double t) { return testing::straight_front({along(t), y, kBelow}, {along(t), y, kAbove}); };
+}
+Way at_z(double z) {
+  return [=](double t) { return testing::straight_front({-0.06, along(t), z}, {0.06, along(t), z}); };
+}
+
+/// A rotation about an oblique axis and a shift.
+Vec3 move(Vec3 p) {
+  constexpr double kAngle = 0.9;
+  const Vec3 axis = Vec3{1, 2, -0.5} / norm({1, 2, -0.5}), from{0.006, 0.006, 0.03};
+  const Vec3 d = p - from;
+  return from + Vec3{0.05, -0.02, 0.08} + std::cos(kAngle) * d + std::sin(kAngle) * cross(axis, d) +
+         (1 - std::cos(kAngle)) * dot(axis, d) * axis;
+}
+
+/// A cut block of which the spheres in a box have moved as one.
+struct MovedPiece {
+  MovedPiece(const std::vector<Way>& ways, Box box) : model(testing::block_to_cut(8, 8, 4, 0.01)) {
+    State state = rest_state(model);
+    for (const Way& way : ways) testing::cut_along(model, way, state);
+    for (std::size_t i = 0; i < model.sphere_count(); ++i)
+      if (box.meets(Box(model.rest_position[i]))) state.position.set(i, move(model.rest_position[i])), ++spheres;
+    const testing::DrawnCut drawn(model, state);
+    pieces = drawn.pieces;
+    // Vertices strictly inside the box are no walls' and belong to the piece alone.
+    constexpr double kInside = 0.4e-3;
+    const Box inner(box.low + Vec3{kInside, kInside, kInside}, box.high - Vec3{kInside, kInside, kInside});
+    for (std::size_t v = 0; v < drawn.vertex.size(); ++v)
+      if (inner.meets(Box(drawn.surface.vertex[v])))
+        rest.push_back(drawn.surface.vertex[v]), now.push_back(drawn.vertex[v]);
+  }
+
+  /// The largest change of a distance between two vertices [m].
+  double change_of_shape() const {
+    double most = 0;
+    for (std::size_t a = 0; a < rest.size(); a += 3)
+      for (std::size_t b = 0; b < a; b += 5)
+        most = std::max(most, std::abs(norm(now[a] - now[b]) - norm(rest[a] - rest[b])));
+    return most;
+  }
+  /// The farthest vertex from where the piece's motion takes it [m].
+  double off_motion() const {
+    double most = 0;
+    for (std::size_t v = 0; v < rest.size(); ++v) most = std::max(most, norm(now[v] - move(rest[v])));
+    return most;
+  }
+
+  Model model;
+  int spheres = 0, pieces = 0;
+  std::vector<Vec3> rest, now;
+};
+
+TEST(ThinPieces, ASliceOfOneLayerMovesAsItIs) {
+  // The spheres of the slice lie at x = 6 mm.
+  const MovedPiece slice({at_x(0.0023), at_x(0.0093)}, Box(Vec3{0.0023, -1, -1}, Vec3{0.0093, 1, 1}));
+  EXPECT_EQ(slice.pieces, 3);
+  EXPECT_EQ(slice.spheres, 8 * 4);
+  ASSERT_GT(slice.rest.size(), 100u);
+  EXPECT_LT(slice.off_motion(), 1e-6);
+}
+
+TEST(ThinPieces, ARodAndACrumbKeepTheirShape) {
+  const std::vector<Way> column{at_x(0.0013), at_x(0.0123), at_y(0.0011), at_y(0.0117)};
+  for (const auto& [z, count] : {std::pair{0.0171, 2}, {0.0301, 1}}) {
+    std::vector<Way> ways = column;
+    ways.push_back(at_z(z));
+    const MovedPiece piece(ways, Box(Vec3{0.0013, 0.0011, z}, Vec3{0.0123, 0.0117, 1}));
+    EXPECT_EQ(piece.spheres, count);
+    ASSERT_GT(piece.rest.size(), 8u) << count;
+    EXPECT_LT(piece.change_of_shape(), 1e-6) << count;
+  }
+}
+
+/// An offset that turns with spheres at `arms`, each as heavy as the others.
+TurnedOffset offset_with(const std::vector<Vec3>& arms) {
+  TurnedOffset offset;
+  offset.offset = {0.3, -0.2, 0.5};
+  for (std::size_t i = 0; i < arms.size(); ++i) {
+    offset.sphere.push_back(std::int32_t(i));
+    offset.weight.push_back(1 / double(arms.size()));
+    offset.arm.push_back(arms[i]);
+  }
+  return offset;
+}
+
+TEST(TurnedOffset, TurnsWithSpheresInSpaceInAPlaneAndOnALine) {
+  const Vec3 o = move({});
+  const auto moved = [](const TurnedOffset& offset) {
+    return surface::turned(offset, [&](std::int32_t s) { return move(offset.arm[std::size_t(s)]); });
+  };
+  const Vec3 whole = move({0.3, -0.2, 0.5}) - o;
+  const std::vector<Vec3> space{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  const std::vector<Vec3> plane{{1, 0, 0}, {-1, 0, 0}, {0, 0.4, 0.4}, {0, -0.4, -0.4}};
+  const std::vector<Vec3> line{{0, 1, 0}, {0, -1, 0}};
+  EXPECT_LT(norm(moved(offset_with(space)) - whole), 1e-12);
+  EXPECT_LT(norm(moved(offset_with(plane)) - whole), 1e-12);
+  // About the line itself nothing says how far it turned.
+  const TurnedOffset on_line = offset_with(line);
+  const Vec3 direction = move({0, 1, 0}) - o;
+  EXPECT_NEAR(norm(moved(on_line)), norm(on_line.offset), 1e-12);
+  EXPECT_NEAR(dot(moved(on_line), direction), on_line.offset.y, 1e-12);
+  const auto at = [](const std::vector<Vec3>& places) {
+    return [places](std::int32_t s) { return places[std::size_t(s)]; };
+  };
+  const Vec3 half_turn = surface::turned(on_line, at({{0, -1, 0}, {0, 1, 0}}));
+  EXPECT_NEAR(half_turn.y, -on_line.offset.y, 1e-12);
+  EXPECT_NEAR(norm(half_turn), norm(on_line.offset), 1e-12);
+  EXPECT_EQ(surface::turned(offset_with({{0, 0, 0}}), at({{7, 8, 9}})).z, on_line.offset.z);
+  // Turned inside out, a flat set is the same set seen from behind, and stays a rotation.
+  EXPECT_NEAR(norm(surface::turned(offset_with(plane), at({{-1, 0, 0}, {1, 0, 0}, {0, 0.4, 0.4}, {0, -0.4, -0.4}}))),
+              norm(on_line.offset), 1e-12);
+}
+
+}  // namespace
+}  // namespace ctpm
