@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/cutting/extent.h"
 #include "core/network/network.h"
 #include "core/stepping/integrator.h"
 #include "core/surface/body_overlaps.h"
@@ -354,6 +355,8 @@ std::optional<BuiltScene> build_model(const SceneSpec& scene, std::span<const Fi
   for (std::size_t i = 0; i < organs.size(); ++i)
     has_all_organs = add_scene_organ(built, scene, i, organs[i], problems) && has_all_organs;
   if (!has_all_organs) return std::nullopt;
+  if (const std::string problem = cutting::extent_problem(organs); !problem.empty())
+    problems.add_rule("/organs", problem, "make them smaller with `scale`, or lay them closer together with `at_mm`");
   add_obstacles(model, scene, meshes, problems);
   add_tools(model, scene);
   add_cutting(model, scene);

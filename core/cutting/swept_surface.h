@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/cutting/blade_geometry.h"
+#include "core/cutting/extent.h"
 #include "core/model/model.h"
 #include "core/model/state.h"
 #include "core/model/vec3.h"
@@ -70,7 +71,7 @@ class SweptIndex {
   double distance(const State& state, std::int32_t organ, Vec3 rest) const;
 
  private:
-  static constexpr double kBucket = 4e-3;  ///< [m]
+  static constexpr double kBucket = kRestCell;  ///< [m]
   std::int64_t bucket_of(Vec3 rest) const;
   void insert(const State& state, std::size_t row);
   bool goes_on_from(const State& state) const;

@@ -6,12 +6,13 @@
 #include <utility>
 
 #include "core/cutting/blade_geometry.h"
+#include "core/cutting/extent.h"
 #include "core/model/result.h"
 
 namespace ctpm::cutting {
 namespace {
 
-constexpr double kBucket = 2.4e-3;  ///< half its diagonal is within the band [m]
+constexpr double kBucket = kSurfaceCell;  ///< half its diagonal is within the band [m]
 /// Bounds of triangles are compared with distances that are longer by this factor.
 constexpr double kRounding = 1 + 1e-6;
 

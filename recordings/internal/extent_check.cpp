@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cutting/extent.h"
 #include "core/cutting/lattice_frame.h"
 #include "core/cutting/swept_surface.h"
 #include "core/model/box.h"
@@ -11,8 +12,6 @@
 namespace ctpm::recordings::session_file {
 namespace {
 
-// Edges of the cells of core's grids [m], and how many of them there may be: some 200 MB.
-constexpr double rest_cell = 4e-3, surface_cell = 2.4e-3, most_cells = 5e7;
 constexpr double most_swept_cells = 2e7;  // those that one part of a swept surface meets, summed over all
 constexpr double farthest_swept = 1e3;    // from the origin along an axis [m]
 
@@ -20,11 +19,6 @@ constexpr double farthest_swept = 1e3;    // from the origin along an axis [m]
 constexpr double free_sites = 5e5, sites_per_sphere = 100, most_sites = 2e7;
 
 double sites_for(std::int32_t spheres) { return std::min(most_sites, free_sites + sites_per_sphere * spheres); }
-
-double cells_in(const Box& box, double cell) {
-  const Vec3 size = (box.high - box.low) / cell;
-  return (1 + std::ceil(size.x)) * (1 + std::ceil(size.y)) * (1 + std::ceil(size.z));
-}
 
 }  // namespace
 
@@ -47,7 +41,7 @@ std::string problem_of_rest(const Model& model) {
   for (std::size_t i = 1; i < model.sphere_count(); ++i) box.add(model.rest_position[i]);
   double spacing = 0;
   for (const OrganRange& organ : model.organs) spacing = std::max(spacing, organ.spacing);
-  return cells_in(box.grown(spacing), rest_cell) <= most_cells ? "" : "the box around all spheres is too large";
+  return cutting::rest_fits(box, spacing) ? "" : "the box around all spheres is too large";
 }
 
 /// In the axes of the organ's lattice, as the grid that cuts are drawn on.
@@ -71,7 +65,8 @@ std::string problem_of_surface(const Model& model, const OrganRange& organ, cons
     sites *= high - low + 3;
   }
   if (!is_near) return "lies far from the organ's lattice";
-  const bool fits = cells_in(box, surface_cell) <= most_cells && sites <= sites_for(organ.count);
+  const bool fits =
+      cutting::cells_in(box, cutting::kSurfaceCell) <= cutting::kMostCells && sites <= sites_for(organ.count);
   return fits ? "" : "has a larger box than the organ's spheres explain";
 }
 
@@ -87,8 +82,8 @@ std::string problem_of_swept(const State& state) {
     for (std::size_t n = 0; n + 1 < kEdgeNodes; ++n) {
       const std::size_t at = row * kEdgeNodes + n, before = at - kEdgeNodes;
       if (state.swept_organ[at] == 0) continue;
-      cells +=
-          cells_in(Box(state.swept[before], state.swept[before + 1], state.swept[at], state.swept[at + 1]), rest_cell);
+      cells += cutting::cells_in(
+          Box(state.swept[before], state.swept[before + 1], state.swept[at], state.swept[at + 1]), cutting::kRestCell);
     }
   return cells <= most_swept_cells ? "" : "sweeps more than blades can";
 }

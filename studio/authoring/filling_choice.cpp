@@ -30,6 +30,14 @@ Result<importers::ImportedOrgan> fill_with(const importers::RepairedFile& file, 
   return filled;
 }
 
+/// Whether groups of spheres that hang on nothing were left out, and more of the organ with them than may be lost.
+bool comes_apart(const importers::ImportReport& report, double volume) {
+  constexpr double kKept = 0.95;
+  const auto is_island = [](const importers::Finding& finding) { return finding.code == "island"; };
+  return report.fill.filled_volume < kKept * volume &&
+         std::any_of(report.findings.begin(), report.findings.end(), is_island);
+}
+
 }  // namespace
 
 Result<std::vector<importers::ImportedOrgan>> fill_all(const importers::RepairedFile& file,
@@ -64,6 +72,12 @@ Result<std::vector<importers::ImportedOrgan>> fill_all(const importers::Repaired
       return Error{file.report.path,
                    "is filled by only " + importers::counted(filled->report.fill.spheres, "sphere") +
                        " that hang together: it is too thin or in too many pieces",
+                   output::option_name("import.spheres") + " with a larger number fills thin places"};
+    if (!wish.radius && comes_apart(filled->report, file.mesh[i].volume))
+      return Error{file.report.path,
+                   "falls apart where it is thin: the spheres that hang together stand for " +
+                       output::short_number(1e6 * filled->report.fill.filled_volume, 3) + " of its " +
+                       output::short_number(1e6 * file.mesh[i].volume, 3) + " ml",
                    output::option_name("import.spheres") + " with a larger number fills thin places"};
     organs.push_back(*std::move(filled));
   }

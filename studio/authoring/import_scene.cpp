@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <iterator>
 
+#include "core/cutting/extent.h"
 #include "core/surface/surface.h"
 #include "importers/text.h"
 #include "scenes/build_model.h"
@@ -136,10 +137,20 @@ class Import {
           fill_all(lying, options, wish, whole->preset->sphere_radius);
       if (!filled) return filled.errors();
       if (Errors errors = make_drafts(*file, *whole, *std::move(filled)); !errors.empty()) return errors;
+      if (Errors errors = check_extent(); !errors.empty()) return errors;
       const std::optional<std::int64_t> better = better_count();
       if (!better || tries == kMostTries) return {};
       wish.spheres = better;
     }
+  }
+
+  /// Whether the scene can be recorded once the organs are in it.
+  Errors check_extent() const {
+    std::vector<FilledOrgan> organs = present_.organs;
+    for (const Draft& draft : drafts_) organs.push_back(draft.filled);
+    const std::string problem = cutting::extent_problem(organs);
+    if (problem.empty()) return {};
+    return {{request_.mesh, problem, "give a size with " + output::option_name("import.size")}};
   }
 
   /// The repaired meshes of all names that are asked for.

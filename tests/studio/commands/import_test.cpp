@@ -342,6 +342,24 @@ TEST_F(ImportProgram, OnATerminalItSaysFromTheBeginningWhatItDoes) {
   EXPECT_GE(last, 70);
 }
 
+TEST_F(ImportProgram, WhatCannotBeRecordedOrComesApartIsRefusedWithWhatWouldHelp) {
+  write("far.obj", zoo::to_obj_text(zoo::both(bean(1, 3), zoo::moved(bean(1, 3), [](Vec3 p) {
+                                                return p + Vec3{2500, 1500, 1500};
+                                              }))));
+  const auto far = import("far.obj", {"--unit", "mm", "--spheres", "200"});
+  EXPECT_EQ(far.code, 2);
+  expect_says(far.err, {"the organs together are 2.6 x 1.6 x 1.6 m large", "3.2 m^3", "--size-mm"});
+  // Two beads on a thread that is too thin for spheres.
+  write("beads.obj", zoo::to_obj_text(zoo::moved(zoo::sphere(1, 4), [](Vec3 p) {
+          const double thick = std::abs(p.x) < 0.4 ? 0.02 : 20;
+          return Vec3{60 * p.x, thick * p.y, thick * p.z};
+        })));
+  const auto beads = import("beads.obj", {"--unit", "mm", "--spheres", "200"});
+  EXPECT_EQ(beads.code, 2);
+  expect_says(beads.err, {"falls apart where it is thin", "--spheres"});
+  EXPECT_FALSE(fs::exists(folder_.path() / "scene.json"));
+}
+
 /// The commands of README's first scene, as they stand there.
 std::vector<std::string> first_commands() {
   const std::string readme = testing::slurp(CTPM_SOURCE_DIR "/README.md");
