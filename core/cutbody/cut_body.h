@@ -15,8 +15,8 @@ namespace ctpm::cutbody {
 /// The surface of an organ that may be cut: a pure function of the Model at rest and of the swept surface. It is
 /// closed, with one component for each piece of tissue, and each of its vertices follows only spheres of its own side
 /// of the cut. Where those do not span space it follows the spheres of its piece. A piece without spheres, as a strip
-/// thinner than a spacing may be, follows the spheres around it as if nothing were cut. Far from a cut its vertices are
-/// those of the organ's own surface.
+/// thinner than a spacing may be, goes with the piece beside it that it shares most of its walls with. Far from a cut
+/// its vertices are those of the organ's own surface.
 class CutBody {
  public:
   using Index = CutGrid::Index;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/cutting/blade_geometry.h"
 #include "core/surface/surface.h"
@@ -203,12 +204,48 @@ const SideBinding::Bound& SideBinding::bind(const CutMesh::Vertex& vertex, bool 
   if (!mix.is_whole()) mix.add(follow(bound.rest, joined, kWider * reach), kFar);
   bound.by_piece = !mix.is_whole();
   if (bound.by_piece) {
-    if (piece_.empty()) piece_ = grid_.find_pieces();
+    if (piece_.empty()) find_pieces();
     for (const Index piece : {piece_[std::size_t(vertex.side)], Index(-1)})
       if (!mix.is_whole()) follow_piece(bound.rest, piece, mix);
   }
   bound.binding = mix.binding();
   return bound;
+}
+
+/// Finds the pieces that vertices follow. One without spheres, as a strip thinner than a spacing may be, goes with the
+/// piece that it shares most of its walls with: between two pieces that part it would be stretched.
+void SideBinding::find_pieces() {
+  piece_ = grid_.find_pieces();
+  const Index count = Index(piece_.size());
+  std::vector<std::uint8_t> is_led(piece_.size(), 0);  // by their lowest nodes: pieces that have spheres or a host
+  for (Index s = 0; s < organ_.count; ++s)
+    if (const Index node = grid_.node_of_sphere(s); node >= 0 && piece_[std::size_t(node)] >= 0)
+      is_led[std::size_t(piece_[std::size_t(node)])] = 1;
+  std::map<Index, Index> host;
+  do {
+    std::map<std::pair<Index, Index>, Index> shared;  // edges of the grid that a cut parts, by the pieces of both ends
+    const auto add = [&](Index from, Index to) {
+      const auto hosted = host.find(to);
+      if (!is_led[std::size_t(from)] && is_led[std::size_t(to)])
+        ++shared[{from, hosted == host.end() ? to : hosted->second}];
+    };
+    const bool is_alone = std::any_of(piece_.begin(), piece_.end(),
+                                      [&](Index piece) { return piece >= 0 && !is_led[std::size_t(piece)]; });
+    for (Index node = 0; node < count && is_alone; ++node)
+      for (int d = 1; d < CutGrid::kDirections; ++d) {
+        if (!grid_.is_severed(node, d)) continue;
+        const Index a = piece_[std::size_t(node)], b = piece_[std::size_t(grid_.end(node, d))];
+        add(a, b), add(b, a);
+      }
+    if (shared.empty()) break;
+    std::map<Index, Index> most;
+    for (const auto& [pieces, edges] : shared)
+      if (edges > std::exchange(most[pieces.first], std::max(most[pieces.first], edges)))
+        host[pieces.first] = pieces.second;
+    for (const auto& [piece, edges] : most) is_led[std::size_t(piece)] = 1;
+  } while (true);
+  for (Index& piece : piece_)
+    if (const auto hosted = host.find(piece); hosted != host.end()) piece = hosted->second;
 }
 
 /// Fills a mix up with spheres of a piece, if there are any around.

@@ -65,6 +65,7 @@ class SideBinding {
   class Mix;
   using Joined = JoinedSpheres::Joined;
 
+  void find_pieces();
   Vec3 near_cut(Vec3 rest, const State& state);
   Origin origin_of(Vec3 rest) const;
   Vec3 place_of(const Origin& origin) const;
@@ -81,7 +82,7 @@ class SideBinding {
   JoinedSpheres joined_;
   std::map<Key, Bound> bound_;
   std::vector<Box> row_boxes_;  ///< of the swept surface; see cutting::boxes_of_rows()
-  std::vector<Index> piece_;    ///< of each node of the grid; empty until it is asked for after a change
+  std::vector<Index> piece_;    ///< that each node of the grid follows; empty until it is asked for after a change
 };
 
 }  // namespace ctpm::cutbody

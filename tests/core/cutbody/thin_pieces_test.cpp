@@ -95,6 +95,32 @@ TEST(ThinPieces, ARodAndACrumbKeepTheirShape) {
   }
 }
 
+TEST(ThinPieces, AStripWithoutSpheresGoesWithOneSideOfIt) {
+  // No sphere lies between the two cuts; both sides move apart.
+  const Model model = testing::block_to_cut(8, 8, 4, 0.01);
+  State state = rest_state(model);
+  testing::cut_along(model, at_x(0.0013), state), testing::cut_along(model, at_x(0.0049), state);
+  const Vec3 left{-0.02, 0, 0.01}, right{0.05, 0.01, 0};
+  for (std::size_t i = 0; i < model.sphere_count(); ++i)
+    state.position.add(i, model.rest_position[i].x < 0.003 ? left : right);
+  const testing::DrawnCut drawn(model, state);
+  EXPECT_EQ(drawn.pieces, 3);
+  int with_left = 0, with_right = 0, others = 0;
+  for (std::size_t v = 0; v < drawn.vertex.size(); ++v) {
+    const Vec3 rest = drawn.surface.vertex[v], by = drawn.vertex[v] - rest;
+    if (rest.x < 0.0018 || rest.x > 0.0044) continue;
+    if (norm(by - left) < 1e-9)
+      ++with_left;
+    else if (norm(by - right) < 1e-9)
+      ++with_right;
+    else
+      ++others;
+  }
+  EXPECT_EQ(others, 0);
+  EXPECT_GT(with_left + with_right, 50);
+  EXPECT_TRUE(with_left == 0 || with_right == 0) << with_left << " " << with_right;
+}
+
 /// An offset that turns with spheres at `arms`, each as heavy as the others.
 TurnedOffset offset_with(const std::vector<Vec3>& arms) {
   TurnedOffset offset;
