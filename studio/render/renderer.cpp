@@ -19,6 +19,7 @@ namespace ctpm::render {
 namespace {
 
 constexpr double kGroundExtent = 1.45;  // side of the ground that can be shaded, against the scene's size
+constexpr double kLineWidth = 0.004;    // of the line of a cut in a section, against the scene's size
 
 Vec3 unit(Vec3 v) { return v / norm(v); }
 
@@ -110,7 +111,7 @@ struct Renderer::Parts {
   VertexArray array_of(const ToolMesh& mesh) const;
   void draw_tools(const State& state, const DrawOptions& options);
   void draw_obstacles(const State& state, const DrawOptions& options);
-  void cast_shadow(DrawnObstacle& obstacle);
+  void cast_shadow(DrawnObstacle& obstacle, const Cutaway& cutaway);
   void draw_behind(const DrawOptions& options);
   void read_frame();
 };
@@ -292,16 +293,16 @@ void Renderer::Parts::draw_obstacles(const State& state, const DrawOptions& opti
   set_light(tool, state, options);
   tool.set("world_from_tool", rigid({}, {}));
   for (DrawnObstacle& obstacle : obstacles) {
-    if (obstacle.shadow) cast_shadow(obstacle);
+    if (obstacle.shadow) cast_shadow(obstacle, options.cutaway);
     gl().BindVertexArray(obstacle.array.id);
     gl().DrawElements(GL_TRIANGLES, obstacle.array.index_count, GL_UNSIGNED_INT, nullptr);
   }
 }
 
 /// Darkens the vertices of a level top where organs are above it.
-void Renderer::Parts::cast_shadow(DrawnObstacle& obstacle) {
+void Renderer::Parts::cast_shadow(DrawnObstacle& obstacle, const Cutaway& cutaway) {
   obstacle.shadow->clear();
-  organs.add_shadows(*obstacle.shadow);
+  organs.add_shadows(*obstacle.shadow, cutaway);
   obstacle.shadow->find_darkness();
   std::vector<float>& vertex = obstacle.mesh.mesh.vertex;
   for (std::size_t i = 0; i < obstacle.mesh.top_vertices; ++i) {
@@ -316,7 +317,7 @@ void Renderer::Parts::draw_behind(const DrawOptions& options) {
   frame.rgb = backdrop.rgb;
   if (!sees_ground(options)) return;
   shadow->clear();
-  organs.add_shadows(*shadow);
+  organs.add_shadows(*shadow, options.cutaway);
   shadow->draw(frame, clip);
 }
 
@@ -393,6 +394,7 @@ Frame Renderer::draw(const State& state, const DrawOptions& options) {
   p.draw_tools(state, options);
   p.draw_obstacles(state, options);
   if (options.view == View::surface || options.view == View::both) {
+    p.organs.update_sections(gl, state, options, kLineWidth * p.size);
     for (const Program* program : p.organs.programs(options)) p.set_light(*program, state, options);
     p.organs.draw(gl, p.scene, options);
   }
