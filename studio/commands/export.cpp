@@ -10,6 +10,7 @@
 #include "studio/commands/flags.h"
 #include "studio/commands/physics_warning.h"
 #include "studio/commands/stop_signal.h"
+#include "studio/compare/matched_moments.h"
 #include "studio/exchange/export_shapes.h"
 #include "studio/film/export_video.h"
 #include "studio/output/number_text.h"
@@ -19,7 +20,7 @@ namespace ctpm::commands {
 namespace {
 
 struct ExportArguments {
-  std::string file, beside, output, size = "1280x720";
+  std::string file, beside, output, align, size = "1280x720";
   std::optional<double> at_s;
   film::ExportOptions options;
 };
@@ -82,6 +83,11 @@ int run_export(ExportArguments& arguments) {
   if (!errors.empty()) return print_errors(errors);
   std::vector<recordings::SessionReader*> sessions;
   for (recordings::SessionReader& reader : readers) warn_of_physics(reader), sessions.push_back(&reader);
+  if (sessions.size() == 2) {
+    Result<compare::MatchedMoments> matched = compare::match_sessions(*sessions[0], *sessions[1], arguments.align);
+    if (!matched) return print_errors(matched.errors());
+    arguments.options.matched = std::move(*matched);
+  }
   const StopSignal stop;  // Ctrl-C ends the loop, and the unfinished file is removed on the way out
   arguments.options.should_stop = [&] { return stop.came(); };
   const Result<film::ExportOutcome> outcome = [&] {
@@ -113,10 +119,16 @@ Command add_export(CLI::App& program) {
          "Video: .mp4 (H.264), .avi (Motion JPEG), or a folder/ of PNG pictures; shapes: .pvd (ParaView) or .usda "
          "of a series, .vtp, .vtu or .glb of a moment")
       ->required();
-  app->add_option("--beside", arguments->beside, "Another session, in step on the right half");
+  CLI::Option* beside = app->add_option("--beside", arguments->beside, "Another session, in step on the right half");
+  app->add_option("--align", arguments->align,
+                  "What brings both together: path of the tool, first contact, first cut, or clock; the half that is "
+                  "ahead is slowed down. If not given the path, else the contact")
+      ->needs(beside);
   app->add_option("--size", arguments->size, "Width x height in pixels")->capture_default_str();
   app->add_option("--fps", options.fps, "Frames per second")->capture_default_str();
   app->add_option("--speed", options.speed, "Times real speed")->capture_default_str();
+  app->add_option("--overlay", options.overlay, "What stands in the picture: none, small or full")
+      ->capture_default_str();
   add_time_range(*app, options.range);
   app->add_option("--at-s", arguments->at_s, "Moment of a .vtp, .vtu or .glb; the end if not given");
   add_look(*app, options.look);

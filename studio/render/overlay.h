@@ -27,15 +27,21 @@ struct HandLoad {
 
 enum class VerdictTone { none, good, bad };
 
+/// How much the overlay says. A bad verdict is shown at every level.
+enum class OverlayLevel { none, small, full };
+
 /// The content of the overlay. Empty texts are left out; long ones are shortened with an ellipsis.
 struct OverlayData {
-  std::string title;     ///< of the scene
-  std::string model;     ///< structure of the tissue: "CTPM"
-  std::string session;   ///< which recording it is, if there may be several
-  double time = 0;       ///< [s]
-  bool is_over = false;  ///< the session has ended at `time`
+  std::string title;           ///< of the scene
+  std::string model;           ///< structure of the tissue: "CTPM"
+  std::string session;         ///< which recording it is, if there may be several
+  double time = 0;             ///< [s]
+  bool is_over = false;        ///< the session has ended at `time`
+  std::optional<double> pace;  ///< time of the session against that of the film; not shown if unset
   std::int64_t tick = 0;
+  OverlayLevel level = OverlayLevel::full;
   HandLoad hand;
+  HandLoad worst;                  ///< what was beyond a limit before; the warning of it stays
   std::optional<HandLoad> second;  ///< of the second hand, in a scene that has two
   std::int64_t loose = 0;          ///< pieces of tissue that came loose; not shown if 0
   std::int32_t inside_out = 0;     ///< tissue cells that are inside out; not shown if 0
@@ -48,6 +54,7 @@ struct OverlayData {
   Legend legend;                    ///< of the view; not drawn without a title
   double plot_span = 5;             ///< time that the plot covers, up to now [s], > 0
   double least_top_force = 0.1;     ///< smallest upper end of the plot's axis [N], > 0
+  std::vector<Pixel> tools;         ///< points of the tools: panels near them fade
 };
 
 /// The largest force in the running plot [N].

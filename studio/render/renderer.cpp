@@ -343,6 +343,33 @@ void Renderer::Parts::read_frame() {
   }
 }
 
+std::vector<Pixel> Renderer::tool_points(const State& state, const DrawOptions& options) const {
+  constexpr double kApart = 16;  // [pixels]
+  const Parts& p = *parts_;
+  std::vector<Pixel> points, corner;
+  for (std::size_t number = 0; number < kMostHands; ++number) {
+    const Hand& hand = state.last_inputs.hand(number);
+    if (!p.held_tool(hand, options)) continue;
+    const ToolMesh& mesh = p.tool_meshes[std::size_t(hand.tool)];
+    corner.clear();
+    for (std::size_t i = 0; i < mesh.vertex.size(); i += 7) {
+      const Vec3 own{mesh.vertex[i], mesh.vertex[i + 1], mesh.vertex[i + 2]};
+      corner.push_back(project(options.camera, p.backdrop.width, p.backdrop.height,
+                               hand.position + rotate(hand.world_from_tool, own)));
+    }
+    for (std::size_t i = 0; i < mesh.index.size(); i += 3) {
+      const Pixel a = corner[mesh.index[i]], b = corner[mesh.index[i + 1]];
+      if (!(a.depth > 0 && b.depth > 0)) continue;
+      const int parts = int(std::min(std::hypot(b.x - a.x, b.y - a.y) / kApart, 200.0)) + 1;
+      for (int k = 0; k < parts; ++k) {
+        const double t = double(k) / parts;
+        points.push_back({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.depth});
+      }
+    }
+  }
+  return points;
+}
+
 Renderer::Renderer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Renderer::~Renderer() = default;
 const SceneView& Renderer::scene() const { return parts_->scene; }

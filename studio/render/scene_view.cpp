@@ -17,11 +17,21 @@ OrganLook look_of(std::string_view organ_name) {
   return look;
 }
 
-Bounds rest_bounds(const SceneView& scene) {
+namespace {
+
+std::vector<Vec3> rest_points(const SceneView& scene) {
   std::vector<Vec3> points;
   for (const Surface& surface : scene.model->surfaces)
     points.insert(points.end(), surface.vertex.begin(), surface.vertex.end());
-  return bounds_of(points);
+  return points;
+}
+
+}  // namespace
+
+Bounds rest_bounds(const SceneView& scene) { return bounds_of(rest_points(scene)); }
+
+Camera fitted_camera(const SceneView& scene, Vec3 direction, Vec3 up, double fov_deg, double aspect) {
+  return fit_camera(rest_points(scene), direction, up, fov_deg, aspect);
 }
 
 Vec3 up_of(const Model& model) {
@@ -35,10 +45,7 @@ Camera default_camera(const SceneView& scene, double aspect) {
   side = side / norm(side);  // -y when z is up
   const Vec3 right = cross(up, side);
   const Vec3 from = side + 0.45 * -right + 0.62 * up;
-  std::vector<Vec3> points;
-  for (const Surface& surface : scene.model->surfaces)
-    points.insert(points.end(), surface.vertex.begin(), surface.vertex.end());
-  return fit_camera(points, -from, up, 32, aspect);
+  return fitted_camera(scene, -from, up, 32, aspect);
 }
 
 namespace {

@@ -51,6 +51,9 @@ Bounds rest_bounds(const SceneView& scene);
 /// Up in the scene: against gravity, +z without gravity.
 Vec3 up_of(const Model& model);
 
+/// A camera that looks along `direction` and frames all organs at rest.
+Camera fitted_camera(const SceneView& scene, Vec3 direction, Vec3 up, double fov_deg, double aspect);
+
 /// A camera in front of the scene, a little above it and to the right, that frames everything.
 Camera default_camera(const SceneView& scene, double aspect = 16.0 / 9);
 

@@ -99,10 +99,15 @@ Result<render::Camera> find_camera(const scenes::SceneSpec& scene, const render:
   std::string known;
   for (const scenes::CameraSpec& camera : scene.cameras) {
     if (name.empty() || camera.name == name) {
-      // Cameras are set up for 16:9; in a narrower picture they step back to keep the sides visible.
+      // Cameras are set up for 16:9; in a narrower picture they step back to keep the sides visible, but no farther
+      // than shows the organs.
       const double back = std::max(1.0, 16.0 / 9 / aspect);
-      return render::Camera{camera.target + back * (camera.eye - camera.target), camera.target, camera.up,
-                            camera.field_of_view};
+      const render::Camera stepped{camera.target + back * (camera.eye - camera.target), camera.target, camera.up,
+                                   camera.field_of_view};
+      const render::Camera whole =
+          render::fitted_camera(view, camera.target - camera.eye, camera.up, camera.field_of_view, aspect);
+      const auto distance = [](const render::Camera& c) { return norm(c.eye - c.target); };
+      return back > 1 && distance(whole) < distance(stepped) ? whole : stepped;
     }
     known += (known.empty() ? "" : ", ") + camera.name;
   }

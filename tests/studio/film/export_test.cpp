@@ -135,7 +135,7 @@ TEST_F(Export, TheVideoOfACutShowsItsDepthWhetherOrNotTheCutIsShown) {
     const auto exported = run_ctpm(
         {"export", session, "-o", "at-" + to + "/", "--fps", "10", "--from-s", from, "--to-s", to}, folder_.path());
     EXPECT_EQ(exported.code, 0) << exported.err;
-    return reader.read_after(picture("at-" + to, 1), "cut depth");
+    return reader.read_after(picture("at-" + to, 1), "deepest cut");
   };
   EXPECT_EQ(depth_at("0.4", "0.5"), "0.00 mm") << "the blade is in the hand, nothing is severed";
   const double deepest = std::atof(depth_at("3.5", "3.6").c_str());
@@ -199,7 +199,7 @@ TEST_F(Export, CtrlCLeavesNothingBehind) {
 TEST_F(Export, BesideSaysThatASessionHasEnded) {
   record("short.ctpm", "0.6");
   const auto both = run_ctpm({"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--from-s", "0.5",
-                              "--to-s", "0.8", "--speed", "3"},
+                              "--to-s", "0.8", "--speed", "3", "--align", "clock"},
                              folder_.path());
   ASSERT_EQ(both.code, 0) << both.err;
   render::Frame half = picture("both", 3);  // 0.8 s
@@ -214,8 +214,9 @@ TEST_F(Export, BesideSaysThatASessionHasEnded) {
 
 TEST_F(Export, BesideShowsTwoSessionsInStep) {
   record("short.ctpm", "0.6");
-  const auto both =
-      run_ctpm({"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--size", "640x180"}, folder_.path());
+  const auto both = run_ctpm(
+      {"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--size", "640x180", "--align", "clock"},
+      folder_.path());
   ASSERT_EQ(both.code, 0) << both.err;
   EXPECT_EQ(picture("both", 36).width, 640);
   // The same script on both sides: apart from the names the halves are alike, until one of them is over.
@@ -234,6 +235,57 @@ TEST_F(Export, BesideShowsTwoSessionsInStep) {
   const std::string json = sidecar("both/video");
   EXPECT_TRUE(holds(json, "\"file\": \"press.ctpm\"") && holds(json, "\"file\": \"short.ctpm\"")) << json;
   EXPECT_TRUE(holds(json, "\"last_tick\": 1200") && holds(json, "\"last_tick\": 600")) << json;
+}
+
+TEST_F(Export, BesideBringsTogetherWhatHappens) {
+  const std::string shipped = std::string(CTPM_SOURCE_DIR) + "/recordings/shipped/kidney-cut-";
+  const auto both = run_ctpm({"export", shipped + "expert.ctpm", "-o", "both/", "--beside", shipped + "clumsy.ctpm",
+                              "--align", "cut", "--fps", "20", "--from-s", "0.682", "--to-s", "0.782"},
+                             folder_.path());
+  ASSERT_EQ(both.code, 0) << both.err;
+  const render::Frame last =
+      picture("both", int(std::distance(fs::directory_iterator(folder_.path() / "both"), {})) - 1);
+  const render_test::GlyphReader reader(640, 720);
+  const char* names[] = {"expert.ctpm", "clumsy.ctpm"};
+  for (int half = 0; half < 2; ++half) {
+    render::Frame part = render::blank_frame(640, 720, 0, 0, 0);
+    for (int y = 0; y < 720; ++y)
+      std::copy_n(last.rgb.begin() + (y * 1280 + 640 * half) * 3, 640 * 3, part.rgb.begin() + y * 640 * 3);
+    auto session = recordings::SessionReader::open(shipped + names[half]);
+    ASSERT_TRUE(session);
+    const auto events = session->events();
+    const auto cut = std::find_if(events->begin(), events->end(),
+                                  [](const auto& event) { return event.kind == recordings::EventKind::cut; });
+    EXPECT_NEAR(std::atof(reader.read_after(part, "time").c_str()), double(cut->tick) * 1e-3, 1e-3) << names[half];
+    EXPECT_NE(reader.read_after(part, "speed"), "") << "a half that was slowed down says so";
+  }
+  const auto wrong =
+      run_ctpm({"export", "press.ctpm", "-o", "a.mp4", "--beside", "press.ctpm", "--align", "time"}, folder_.path());
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_TRUE(holds(wrong.err, "--align: error: got 'time', must be path, contact, cut or clock")) << wrong.err;
+  const auto none =
+      run_ctpm({"export", "press.ctpm", "-o", "a.mp4", "--beside", "press.ctpm", "--align", "cut"}, folder_.path());
+  EXPECT_EQ(none.code, 2);
+  EXPECT_TRUE(holds(none.err, "press.ctpm: error: has no cut")) << none.err;
+}
+
+TEST_F(Export, TheOverlayCanBeLeftOut) {
+  const render_test::GlyphReader reader(1280, 720);
+  const auto shown = [&](const std::string& level) {
+    const auto exported =
+        run_ctpm({"export", "press.ctpm", "-o", level + "/", "--overlay", level, "--from-s", "1.1", "--to-s", "1.13"},
+                 folder_.path());
+    EXPECT_EQ(exported.code, 0) << exported.err;
+    return picture(level, 1);
+  };
+  const render::Frame none = shown("none"), small = shown("small"), full = shown("full");
+  for (const char* label : {"time", "force", "tick"}) EXPECT_EQ(reader.read_after(none, label), "") << label;
+  EXPECT_EQ(reader.read_after(small, "time"), "1.130 s");
+  EXPECT_EQ(reader.read_after(small, "tick"), "");
+  EXPECT_EQ(reader.read_after(full, "tick"), "1130");
+  const auto wrong = export_to("a.mp4", {"--overlay", "some"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_TRUE(holds(wrong.err, "--overlay: error: got 'some', must be none, small or full")) << wrong.err;
 }
 
 /// A copy of a session in which one tick's state hash is not what the simulation gives.

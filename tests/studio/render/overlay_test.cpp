@@ -120,9 +120,10 @@ TEST(Overlay, LongNamesOfAPairCanBeToldApart) {
   for (const int width : {1280, 640}) {
     EXPECT_EQ(shown("expert", width), "expert");
     const std::string expert = shown("kidney-cut-expert", width), clumsy = shown("kidney-cut-clumsy", width);
-    EXPECT_TRUE(expert.starts_with("kidn") && expert.ends_with("pert")) << expert;
+    EXPECT_EQ(expert, "kidney-cut-expert") << "a name is not cut where there is room";
     EXPECT_NE(expert, clumsy);
-    EXPECT_LT(shown(std::string(200, 'W'), width).size(), 20u);
+    const std::string long_name = shown("expert" + std::string(200, 'W') + "second", width);
+    EXPECT_TRUE(long_name.starts_with("exp") && long_name.ends_with("nd")) << long_name;
   }
 }
 
@@ -140,9 +141,9 @@ TEST(Overlay, ShowsOnlyWhatThereIs) {
   EXPECT_TRUE(says("DAMAGE"));
   data.hand.is_blade = true;  // a cut is no damage
   EXPECT_FALSE(says("DAMAGE"));
-  EXPECT_TRUE(says("cut depth"));
+  EXPECT_TRUE(says("deepest cut"));
   data.hand.is_blade = false;
-  EXPECT_FALSE(says("cut depth"));
+  EXPECT_FALSE(says("deepest cut"));
   data.damage_depth = 0;  // a scene without a limit
   EXPECT_FALSE(says("DAMAGE"));
   data.damage_force = 1.2;
@@ -184,8 +185,54 @@ TEST(Overlay, ShowsForceAndDepthOfBothHands) {
   data.hand.depth = 0, data.second->depth = 0.0123;
   EXPECT_TRUE(says(1280, "DAMAGE: 12.3 mm")) << "either hand does damage";
   data.second->is_blade = true;
-  EXPECT_TRUE(says(1280, "cut 2"));
+  EXPECT_TRUE(says(1280, "deepest 2"));
   EXPECT_FALSE(says(1280, "DAMAGE"));
+}
+
+TEST(Overlay, AWarningOfDamageStays) {
+  render::OverlayData data = full_data();
+  data.hand.depth = 0.002, data.worst.depth = 0.0186;
+  const auto texts = render::Overlay(1280, 720).layout(data);
+  EXPECT_TRUE(std::ranges::any_of(
+      texts, [](const auto& placed) { return placed.text == "TISSUE DAMAGE: 18.6 mm, limit 12.0 mm"; }));
+}
+
+TEST(Overlay, LeavesOutWhatIsNotAskedForButNoBadVerdict) {
+  const auto count = [](const render::OverlayData& data) { return render::Overlay(1280, 720).layout(data).size(); };
+  render::OverlayData data = full_data();
+  const std::size_t full = count(data);
+  data.level = render::OverlayLevel::small;
+  EXPECT_LT(count(data), full - 8);
+  EXPECT_GT(count(data), 5u);
+  data.level = render::OverlayLevel::none;
+  EXPECT_EQ(count(data), 0u);
+  data.verdict_tone = render::VerdictTone::bad;
+  EXPECT_EQ(count(data), 1u);
+}
+
+TEST(Overlay, AToolShowsThroughThePanelBeforeIt) {
+  render::OverlayData data = full_data();
+  const auto change = [&](int x, int y) {
+    const render::Frame before = render::blank_frame(1280, 720, 200, 120, 90);
+    render::Frame frame = before;
+    render::Overlay(1280, 720).draw(frame, data);
+    const std::size_t i = std::size_t(y * 1280 + x) * 3;
+    return std::abs(frame.rgb[i] - before.rgb[i]);
+  };
+  constexpr int kX = 200, kY = 31, kPlotX = 300, kPlotY = 540;  // in panels, beside letters
+  const int facts = change(kX, kY), plot = change(kPlotX, kPlotY);
+  ASSERT_GT(std::min(facts, plot), 80);
+  data.tools = {{210, 100, 0.5}};
+  EXPECT_LT(change(kX, kY), 0.2 * facts);
+  EXPECT_EQ(change(kPlotX, kPlotY), plot) << "the others stay";
+  data.tools = {{800, 300, 0.5}};
+  EXPECT_EQ(change(kX, kY), facts);
+  constexpr int kVerdictX = 1255, kVerdictY = 30;
+  const int verdict = change(kVerdictX, kVerdictY);
+  data.tools = {{1200, 40, 0.5}};
+  EXPECT_LT(change(kVerdictX, kVerdictY), 0.2 * verdict);
+  data.verdict_tone = render::VerdictTone::bad;
+  EXPECT_EQ(change(kVerdictX, kVerdictY), verdict) << "a bad verdict is on every frame";
 }
 
 TEST(Overlay, SameDataGivesSamePixels) {
