@@ -13,6 +13,7 @@
 #include "studio/output/files.h"
 #include "studio/output/number_text.h"
 #include "studio/output/option_name.h"
+#include "studio/render/element_values.h"
 #include "studio/render/overlay.h"
 #include "studio/render/renderer.h"
 #include "studio/views/view_of_scene.h"
@@ -80,6 +81,46 @@ struct Reel {
   }
 };
 
+/// The largest element values of a session [1, rad or N], but for a few, rounded up: the range of their colours. From
+/// keyframes of the whole session, so that a part has the colours of the whole.
+Result<double> range_of(recordings::SessionReader& session, render::ElementQuantity quantity) {
+  constexpr std::size_t kMoments = 12;
+  constexpr double kShown = 0.995;  // of the elements of a moment
+  const Result<std::vector<std::int64_t>> keyframes = session.keyframe_ticks();
+  if (!keyframes) return keyframes.errors();
+  const std::size_t every = std::max<std::size_t>(1, keyframes->size() / kMoments);
+  double largest = 0;
+  std::vector<render::ElementValue> values;
+  for (std::size_t i = 0; i < keyframes->size(); i += every) {
+    const Result<recordings::Keyframe> keyframe = session.keyframe_at_or_before((*keyframes)[i]);
+    if (!keyframe) return keyframe.errors();
+    render::measure_elements(session.start().model, keyframe->state, quantity, values);
+    if (values.empty()) continue;
+    const auto shown = values.begin() + std::ptrdiff_t(kShown * double(values.size() - 1));
+    std::nth_element(values.begin(), shown, values.end(),
+                     [](const auto& a, const auto& b) { return std::abs(a.value) < std::abs(b.value); });
+    largest = std::max(largest, std::abs(shown->value));
+  }
+  return largest;
+}
+
+/// Of all halves the same range of colours, unless one is given.
+Result<Done> find_ranges(std::vector<Reel>& reels, const std::vector<recordings::SessionReader*>& sessions) {
+  render::DrawOptions& first = reels[0].look.draw;
+  if (first.view != render::View::elements || first.full_scale > 0) return Done{};
+  double largest = 0;
+  for (recordings::SessionReader* session : sessions) {
+    const Result<double> found = range_of(*session, first.quantity);
+    if (!found) return found.errors();
+    largest = std::max(largest, *found);
+  }
+  // In the legend's unit, so that its numbers are round.
+  const double unit = views::unit_of(first.quantity);
+  for (Reel& reel : reels)
+    if (largest > 0) reel.look.draw.full_scale = unit * render::round_up(largest / unit);
+  return Done{};
+}
+
 Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, int width, const ExportOptions& options) {
   Reel reel;
   Result<std::unique_ptr<SessionFilm>> film = SessionFilm::create(session, ticks.range, options.allow_diverged);
@@ -88,7 +129,11 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, int
   const Model& model = reel.film->model();
   render::SceneView view = views::view_of(reel.film->scene(), model);
   const int height = options.size.height;
-  const Result<views::Look> look = views::find_look(options.look, reel.film->scene(), view, double(width) / height);
+  // The last keyframe of the session, so that a part is seen as the whole is.
+  const Result<recordings::Keyframe> late = session.keyframe_at_or_before(session.tick_count());
+  if (!late) return late.errors();
+  const Result<views::Look> look =
+      views::find_look(options.look, reel.film->scene(), view, double(width) / height, &late->state);
   if (!look) return look.errors();
   reel.look = *look;
   Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(width, height, std::move(view));
@@ -99,6 +144,13 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, int
   reel.shows_pace = options.speed != 1 || !options.matched.empty();
   reel.level = level_of(options.overlay).value_or(reel.level);
   return reel;
+}
+
+/// Of one scene all halves are seen as the first one is, wherever their wounds are.
+void look_alike(std::vector<Reel>& reels) {
+  const auto box = [](const Reel& reel) { return render::rest_bounds(reel.renderer->scene()); };
+  for (std::size_t i = 1; i < reels.size(); ++i)
+    if (box(reels[i]).min == box(reels[0]).min && box(reels[i]).max == box(reels[0]).max) reels[i].look = reels[0].look;
 }
 
 render::Frame draw_shot(Reel& reel, Shot& shot, double top_force) {
@@ -171,6 +223,8 @@ Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>
       append(errors, reel.errors());
   }
   if (!errors.empty()) return errors;
+  look_alike(reels);
+  if (const Result<Done> found = find_ranges(reels, sessions); !found) return found.errors();
   Result<std::unique_ptr<video::VideoWriter>> writer =
       video::VideoWriter::create(path, width * int(sessions.size()), options.size.height, options.fps);
   if (!writer) return writer.errors();

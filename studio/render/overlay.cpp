@@ -146,14 +146,6 @@ struct Plan {
   double top_force = 1;
 };
 
-/// The next round number at or above `value`: 1, 2 or 5 times a power of ten.
-double round_up(double value) {
-  const double decade = std::pow(10.0, std::floor(std::log10(std::max(value, 1e-3))));
-  for (const double step : {1.0, 2.0, 5.0})
-    if (step * decade >= value * (1 - 1e-9)) return step * decade;
-  return 10 * decade;
-}
-
 bool is_too_deep(const OverlayData& data, const HandLoad& hand) {
   return !hand.is_blade && data.damage_depth > 0 && hand.depth > data.damage_depth;
 }
@@ -215,6 +207,13 @@ std::vector<Fact> facts_of(const OverlayData& data) {
 }
 
 }  // namespace
+
+double round_up(double value) {
+  const double decade = std::pow(10.0, std::floor(std::log10(std::max(value, 1e-3))));
+  for (const double step : {1.0, 2.0, 5.0})
+    if (step * decade >= value * (1 - 1e-9)) return step * decade;
+  return 10 * decade;
+}
 
 double largest_force(const OverlayData& data) {
   double largest = 0;

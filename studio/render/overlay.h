@@ -57,6 +57,9 @@ struct OverlayData {
   std::vector<Pixel> tools;         ///< points of the tools: panels near them fade
 };
 
+/// The next round number at or above `value`, at least 1e-3: 1, 2 or 5 times a power of ten.
+double round_up(double value);
+
 /// The largest force in the running plot [N].
 double largest_force(const OverlayData& data);
 

@@ -133,7 +133,8 @@ TEST_F(Export, TheVideoOfACutShowsItsDepthWhetherOrNotTheCutIsShown) {
   const render_test::GlyphReader reader(1280, 720);
   const auto depth_at = [&](const std::string& from, const std::string& to) {
     const auto exported = run_ctpm(
-        {"export", session, "-o", "at-" + to + "/", "--fps", "10", "--from-s", from, "--to-s", to}, folder_.path());
+        {"export", session, "-o", "at-" + to + "/", "--fps", "10", "--camera", "front", "--from-s", from, "--to-s", to},
+        folder_.path());
     EXPECT_EQ(exported.code, 0) << exported.err;
     return reader.read_after(picture("at-" + to, 1), "deepest cut");
   };
@@ -335,6 +336,21 @@ TEST_F(Export, ASessionThatDiffersIsRefusedOrMarkedOnEveryFrame) {
   }
 }
 
+TEST_F(Export, ElementsAreColouredByTheirOwnRange) {
+  const auto range_of = [&](const std::string& by, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> options{"--view", "elements", "--by", by, "--from-s", "1.1", "--to-s", "1.13"};
+    options.insert(options.end(), more.begin(), more.end());
+    fs::remove_all(folder_.path() / "a");
+    EXPECT_EQ(export_to("a/", options).code, 0);
+    return value_of(sidecar("a/video"), "last_colour");
+  };
+  const std::string tilt = range_of("tilt"), stretch = range_of("stretch");
+  const double degrees = std::atof(tilt.c_str() + 1), percent = std::atof(stretch.c_str() + 1);
+  EXPECT_TRUE(degrees > 0 && degrees < 20) << tilt << ": the skin hardly tilts, 29 degrees would be one colour";
+  EXPECT_TRUE(percent > 0 && percent < 20) << stretch;
+  EXPECT_EQ(range_of("tilt", {"--full-scale", "12"}), "\"12\"") << "unless it is given";
+}
+
 TEST_F(Export, EveryViewShowsSomethingElse) {
   std::vector<render::Frame> seen;
   const std::vector<std::vector<std::string>> looks{
@@ -344,7 +360,7 @@ TEST_F(Export, EveryViewShowsSomethingElse) {
       {"--view", "elements"},
       {"--view", "elements", "--by", "tilt"},
       {"--view", "elements", "--by", "force"},
-      {"--view", "elements", "--by", "force", "--full-scale", "0.5"},
+      {"--view", "elements", "--by", "force", "--full-scale", "0.3"},
       {"--cutaway", "y"},
       {"--cutaway", "y=5"},
       {"--camera", "fitted"},
