@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "recordings/byte_hash.h"
+#include "studio/film/captions.h"
 #include "studio/film/schedule.h"
 #include "studio/film/session_film.h"
 #include "studio/film/sidecar.h"
@@ -66,6 +67,8 @@ struct Reel {
   std::unique_ptr<render::Renderer> renderer;
   std::unique_ptr<render::Overlay> overlay;
   FrameTicks ticks;
+  std::vector<Moment> moments;
+  std::int64_t told = 0;    ///< ticks for which a moment's words are shown
   double speed = 1;         ///< of the film
   bool shows_pace = false;  ///< where it is not that of the clock
   render::OverlayLevel level = render::OverlayLevel::full;
@@ -75,6 +78,7 @@ struct Reel {
     Result<Shot> shot = film->shoot(ticks.tick(frame));
     if (!shot) return shot;
     shot->overlay.level = level;
+    shot->overlay.caption = words_at(moments, ticks.tick(frame), told);
     shot->overlay.is_over = frame >= ticks.ended;
     if (shows_pace) shot->overlay.pace = shot->overlay.is_over ? 0 : speed * ticks.share(frame);
     return shot;
@@ -140,6 +144,9 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, int
   if (!renderer) return renderer.errors();
   reel.renderer = std::move(*renderer);
   reel.overlay = std::make_unique<render::Overlay>(width, height);
+  Result<std::vector<Moment>> moments = moments_of(session, reel.film->scene().name);
+  if (!moments) return moments.errors();
+  reel.moments = std::move(*moments), reel.told = std::llround(kCaptionSeconds * options.speed / model.tick);
   reel.ticks = std::move(ticks), reel.speed = options.speed,
   reel.shows_pace = options.speed != 1 || !options.matched.empty();
   reel.level = level_of(options.overlay).value_or(reel.level);
@@ -232,7 +239,10 @@ Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>
   recordings::ByteHash pixels;
   const Result<StageTimes> times = make_film(reels, **writer, pixels, *top_force, options);
   if (!times) return times.errors();
-  const Result<video::VideoFacts> video = (*writer)->finish();
+  // Two halves have their words in the picture; the track tells of the first.
+  const Reel& first = reels[0];
+  const Result<video::VideoFacts> video =
+      (*writer)->finish(captions_of(first.moments, first.ticks, first.told, options.fps));
   if (!video) return video.errors();
   ExportOutcome outcome{*video, {}, *times, recordings::hash_text(pixels.value())};
   std::vector<SidecarSession> shown;

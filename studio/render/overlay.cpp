@@ -140,7 +140,7 @@ struct Line {
 /// All texts, and the panels behind them.
 struct Plan {
   std::vector<Line> lines;
-  PixelBox names, facts, plot, verdict, warning, legend;
+  PixelBox names, facts, plot, verdict, warning, legend, caption;
   PixelBox bar;    ///< the legend's colours
   PixelBox curve;  ///< inside of the plot
   double top_force = 1;
@@ -348,13 +348,19 @@ void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
     plan.verdict = banner(data.verdict, fits || !is_narrow ? margin : margin + plan.names.height + px(10),
                           fits || !is_narrow, ink);
   }
-  const std::string text = data.level == OverlayLevel::none ? "" : damage_text(data);
-  if (text.empty()) return;
+  if (data.level == OverlayLevel::none) return;
   int bottom = height - margin;
   if (is_narrow)
     for (const PixelBox& box : {plan.facts, plan.plot, plan.legend})
       if (box.height > 0) bottom = std::min(bottom, box.y - px(10));
-  plan.warning = banner(text, bottom - h, !is_narrow, kWhite);
+  if (const std::string text = damage_text(data); !text.empty())
+    plan.warning = banner(text, bottom - h, !is_narrow, kWhite);
+  if (data.caption.empty()) return;
+  // In the middle, between the plot and the legend and above the warning.
+  const std::string text = large.shortened(data.caption, is_narrow ? width - 2 * margin - 2 * pad : px(570));
+  const int wide = large.width(text) + 2 * pad, high = px(23) + 2 * px(13);
+  plan.caption = {(width - wide) / 2, bottom - h - px(10) - high, wide, high};
+  plan.lines.push_back(line(large, text, plan.caption.x + pad, plan.caption.y + px(13), kWhite));
 }
 
 void Overlay::Parts::draw_bar(cv::Mat& rgb, const Legend& legend, const PixelBox& bar) const {
@@ -416,14 +422,15 @@ void Overlay::draw(Frame& frame, const OverlayData& data) {
   const Plan plan = parts_->plan(data);
   const int radius = parts_->px(10);
   std::vector<Beneath> faded;
-  for (const PixelBox* panel : {&plan.names, &plan.facts, &plan.plot, &plan.verdict, &plan.legend, &plan.warning}) {
+  for (const PixelBox* panel :
+       {&plan.names, &plan.facts, &plan.plot, &plan.verdict, &plan.legend, &plan.warning, &plan.caption}) {
     const PixelBox& box = *panel;
     const cv::Rect place = cv::Rect(box.x, box.y, box.width, box.height) & cv::Rect(0, 0, rgb.cols, rgb.rows);
     const bool must_stay = &box == &plan.verdict && data.verdict_tone == VerdictTone::bad;
     const double shown = must_stay ? 1 : share_shown(box, data.tools, parts_->px(40));
     if (shown < 1 && place.area() > 0) faded.push_back({place, rgb(place).clone(), shown});
   }
-  for (const PixelBox& box : {plan.names, plan.facts, plan.plot, plan.verdict, plan.legend})
+  for (const PixelBox& box : {plan.names, plan.facts, plan.plot, plan.verdict, plan.legend, plan.caption})
     draw_panel(rgb, box, {14, 19, 25}, 176, radius);
   draw_panel(rgb, plan.warning, {170, 24, 18}, 224, radius);
   for (const Line& line : plan.lines)

@@ -50,6 +50,7 @@ struct OverlayData {
   double damage_force = 0;         ///< force beyond which the tissue is damaged [N]; 0: no limit
   std::string verdict;             ///< result of the replay, one line
   VerdictTone verdict_tone = VerdictTone::none;
+  std::string caption;              ///< what happens now
   std::vector<ForcePoint> history;  ///< in order of time; empty: no plot
   Legend legend;                    ///< of the view; not drawn without a title
   double plot_span = 5;             ///< time that the plot covers, up to now [s], > 0

@@ -57,11 +57,11 @@ int visible_wound(render::Renderer& renderer, const State& state, const Camera& 
 }
 
 /// The wound, and of the organs what lies around it: at least a part of their size.
-std::vector<Vec3> framed(const render::SceneView& scene, const std::vector<Vec3>& walls) {
-  constexpr double kAround = 0.62;  // of the organs' diagonal
+std::vector<Vec3> framed(const render::SceneView& scene, const std::vector<Vec3>& walls, double aspect) {
+  const double around = aspect < 1.4 ? 0.8 : 0.62;  // of the organs' diagonal; a narrow picture has no room aside
   const render::Bounds organs = render::rest_bounds(scene);
   const Vec3 middle = render::bounds_of(walls).centre();
-  const double reach = 0.5 * kAround * organs.diagonal();
+  const double reach = 0.5 * around * organs.diagonal();
   std::vector<Vec3> points = walls;
   for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
     for (const double sign : {-1.0, 1.0}) points.push_back(middle + sign * reach * axis);
@@ -82,7 +82,7 @@ Result<std::optional<Camera>> wound_camera(const render::SceneView& scene, const
     plain.looks.push_back({organ.name, {0.25, 0.25, 0.25}, {0, 0.9, 0}, 0, {}});
   Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(kWidth, kHeight, plain);
   if (!renderer) return renderer.errors();
-  const std::vector<Vec3> ways = directions(*scene.model, usual), points = framed(scene, walls);
+  const std::vector<Vec3> ways = directions(*scene.model, usual), points = framed(scene, walls, aspect);
   const Vec3 up = render::up_of(*scene.model);
   double best = 0;
   std::optional<Camera> found;

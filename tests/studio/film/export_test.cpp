@@ -270,6 +270,40 @@ TEST_F(Export, BesideBringsTogetherWhatHappens) {
   EXPECT_TRUE(holds(none.err, "press.ctpm: error: has no cut")) << none.err;
 }
 
+TEST_F(Export, CaptionsAreReadBackAsSubtitlesAndChapters) {
+  const std::string session = std::string(CTPM_SOURCE_DIR) + "/recordings/shipped/kidney-cut-expert.ctpm";
+  const auto exported = run_ctpm(
+      {"export", session, "-o", "cut.mp4", "--size", "320x180", "--fps", "20", "--speed", "2"}, folder_.path());
+  ASSERT_EQ(exported.code, 0) << exported.err;
+  EXPECT_EQ(probe("cut.mp4"), "h264,320,180,20/1,54\n") << "the pictures are as many as before";
+  const auto ask = [&](const std::vector<std::string>& what) {
+    std::vector<std::string> command{"ffprobe", "-v", "error"};
+    command.insert(command.end(), what.begin(), what.end());
+    command.insert(command.end(), {"-of", "csv=p=0", "cut.mp4"});
+    const auto asked = run(command, folder_.path());
+    EXPECT_EQ(asked.code, 0) << asked.err;
+    EXPECT_EQ(asked.err, "");
+    return asked.out;
+  };
+  EXPECT_EQ(ask({"-select_streams", "s", "-show_entries", "stream=codec_name"}), "mov_text\n");
+  const std::string chapters = ask({"-show_entries", "chapter=start_time:chapter_tags=title"});
+  auto reader = recordings::SessionReader::open(session);
+  ASSERT_TRUE(reader);
+  const auto events = reader->events();
+  const auto cut = std::find_if(events->begin(), events->end(),
+                                [](const auto& event) { return event.kind == recordings::EventKind::cut; });
+  double start = -1;
+  std::istringstream lines(chapters);
+  for (std::string line; std::getline(lines, line);)
+    if (holds(line, "scalpel cuts")) start = std::atof(line.c_str());
+  EXPECT_NEAR(start, double(cut->tick) * 1e-3 / 2, 1.0 / 20) << chapters;
+  EXPECT_TRUE(holds(chapters, "kidney: kidney-cut-expert") && holds(chapters, "largest force: 4.42 N")) << chapters;
+  const auto words = run({"ffmpeg", "-v", "error", "-i", "cut.mp4", "-map", "0:s:0", "cut.srt"}, folder_.path());
+  ASSERT_EQ(words.code, 0) << words.err;
+  const std::string subtitles = testing::slurp(folder_.path() / "cut.srt");
+  EXPECT_TRUE(holds(subtitles, "scalpel cuts") && holds(subtitles, "00:00:00,350 --> ")) << subtitles;
+}
+
 TEST_F(Export, TheOverlayCanBeLeftOut) {
   const render_test::GlyphReader reader(1280, 720);
   const auto shown = [&](const std::string& level) {

@@ -14,7 +14,7 @@ render::OverlayData full_data() {
   render::OverlayData data;
   data.title = "Liver", data.model = "CTPM", data.session = "press";
   data.time = 12.345, data.tick = 12345, data.hand = {1.234, 0.0134}, data.damage_depth = 0.012;
-  data.loose = 2, data.inside_out = 3;
+  data.loose = 2, data.inside_out = 3, data.caption = "scalpel cuts";
   data.verdict = "Replay identical: 12345 of 12345 ticks", data.verdict_tone = render::VerdictTone::good;
   data.legend = {"stretch [%]", "-20", "+20", {{0.1, 0.2, 0.7}, {0.8, 0.8, 0.8}, {0.8, 0.1, 0.1}}, false};
   for (int i = 0; i <= 12345; i += 5) data.history.push_back({i * 1e-3, 1 + std::sin(i * 0.003)});
@@ -24,6 +24,7 @@ render::OverlayData full_data() {
 TEST(Overlay, TextsNeitherOverlapNorLeaveThePicture) {
   render::OverlayData long_winded = full_data();
   long_winded.title = std::string(200, 'W'), long_winded.verdict = std::string(300, 'M');
+  long_winded.caption = std::string(200, 'W');
   long_winded.tick = 999999999, long_winded.time = 99999.999, long_winded.hand.force = 12345.678;
   render::OverlayData two_hands = long_winded;
   two_hands.second = render::HandLoad{12345.678, 0.0134, true}, two_hands.slip = 99.9;
