@@ -127,6 +127,8 @@ Command add_export(CLI::App& program) {
   app->add_option("--size", arguments->size, "Width x height in pixels")->capture_default_str();
   app->add_option("--fps", options.fps, "Frames per second")->capture_default_str();
   app->add_option("--speed", options.speed, "Times real speed")->capture_default_str();
+  app->add_option("--slow-at", options.slow_at,
+                  "Four times slower around these moments: cut, damage, worst, with commas");
   app->add_option("--overlay", options.overlay, "What stands in the picture: none, small or full")
       ->capture_default_str();
   add_time_range(*app, options.range);

@@ -25,6 +25,7 @@ constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"export.allow_diverged", "--allow-diverged"},
     {"export.fps", "--fps"},
     {"export.overlay", "--overlay"},
+    {"export.slow_at", "--slow-at"},
     {"export.speed", "--speed"},
     {"exchange.at_s", "--at-s"},
     {"fidelity.recipes", "--only"},

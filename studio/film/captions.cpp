@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
+#include <optional>
+#include <sstream>
 
 #include "studio/output/number_text.h"
+#include "studio/output/option_name.h"
 
 namespace ctpm::film {
 namespace {
@@ -65,8 +67,7 @@ Result<Done> add_largest(recordings::SessionReader& session, std::vector<Moment>
 
 }  // namespace
 
-Result<std::vector<Moment>> moments_of(recordings::SessionReader& session, const std::string& scene_name) {
-  constexpr double kApart = 0.7;  // [s]: of two that are nearer, the later in Kind is told
+Result<std::vector<Moment>> all_moments(recordings::SessionReader& session) {
   const Result<std::vector<recordings::Event>> events = session.events();
   if (!events) return events.errors();
   std::vector<Moment> all;
@@ -74,8 +75,13 @@ Result<std::vector<Moment>> moments_of(recordings::SessionReader& session, const
     if (const std::optional<Moment> moment = moment_of(event, session.start().model)) all.push_back(*moment);
   if (const Result<Done> added = add_largest(session, all); !added) return added.errors();
   std::stable_sort(all.begin(), all.end(), [](const Moment& a, const Moment& b) { return a.tick < b.tick; });
-  std::vector<Moment> told{{0, scene_name + ": " + std::filesystem::path(session.path()).stem().string(), Kind::title}};
-  const auto apart = std::int64_t(kApart / session.start().model.tick);
+  return all;
+}
+
+std::vector<Moment> told_moments(const std::vector<Moment>& all, const std::string& title, double tick) {
+  constexpr double kApart = 0.7;  // [s]: of two that are nearer, the later in Kind is told
+  const auto apart = std::int64_t(kApart / tick);
+  std::vector<Moment> told{{0, title, Kind::title}};
   for (const Moment& moment : all) {
     const bool is_near = told.size() > 1 && moment.tick - told.back().tick < apart;
     if (!is_near)
@@ -84,6 +90,36 @@ Result<std::vector<Moment>> moments_of(recordings::SessionReader& session, const
       told.back() = moment;
   }
   return told;
+}
+
+Result<std::vector<std::array<double, 2>>> slow_parts(const std::vector<Moment>& all, const std::string& words,
+                                                      double tick) {
+  constexpr double kBefore = 0.25, kAfter = 0.5;  // [s]
+  std::vector<Kind> kinds;
+  Errors errors;
+  std::istringstream list(words);
+  for (std::string word; std::getline(list, word, ',');) {
+    if (word == "cut")
+      kinds.push_back(Kind::cut);
+    else if (word == "damage")
+      kinds.push_back(Kind::damage);
+    else if (word == "worst")
+      kinds.insert(kinds.end(), {Kind::force, Kind::deepest});
+    else
+      errors.push_back({output::option_name("export.slow_at"),
+                        "got '" + word + "', must be cut, damage or worst, or some of them with commas between", ""});
+  }
+  if (!errors.empty()) return errors;
+  std::vector<std::array<double, 2>> parts;
+  for (const Moment& moment : all) {
+    if (std::find(kinds.begin(), kinds.end(), moment.kind) == kinds.end()) continue;
+    const double at = double(moment.tick) * tick;
+    if (!parts.empty() && at - kBefore <= parts.back()[1])
+      parts.back()[1] = at + kAfter;
+    else
+      parts.push_back({std::max(0.0, at - kBefore), at + kAfter});
+  }
+  return parts;
 }
 
 std::string words_at(const std::vector<Moment>& moments, std::int64_t tick, std::int64_t shown) {

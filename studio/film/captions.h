@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -18,12 +19,19 @@ struct Moment {
   enum class Kind { title, contact, force, deepest, cut, loose, damage, inside_out } kind = Kind::title;
 };
 
+/// Everything that happens, in order of time. Errors: a damaged session.
+Result<std::vector<Moment>> all_moments(recordings::SessionReader& session);
+
+/// The parts of a session around its moments of some kinds, as ScheduleOptions::slow: words out of cut, damage and
+/// worst (the largest force and depth), with commas between. Errors: another word.
+Result<std::vector<std::array<double, 2>>> slow_parts(const std::vector<Moment>& all, const std::string& words,
+                                                      double tick);
+
 /// Seconds of a film at its own speed for which a moment's words are shown.
 inline constexpr double kCaptionSeconds = 2.5;
 
-/// The moments that a film tells of, in order of time and apart enough to be read: its title, contacts, cuts, the
-/// largest force and depth, damage, pieces. Errors: a damaged session.
-Result<std::vector<Moment>> moments_of(recordings::SessionReader& session, const std::string& scene_name);
+/// Those that a film tells of, apart enough to be read, and the title before them.
+std::vector<Moment> told_moments(const std::vector<Moment>& all, const std::string& title, double tick);
 
 /// The words at a tick, `shown` ticks long unless others follow; empty: none.
 std::string words_at(const std::vector<Moment>& moments, std::int64_t tick, std::int64_t shown);

@@ -127,6 +127,8 @@ Result<Done> find_ranges(std::vector<Reel>& reels, const std::vector<recordings:
 
 Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, int width, const ExportOptions& options) {
   Reel reel;
+  const Result<std::vector<Moment>> all = all_moments(session);
+  if (!all) return all.errors();
   Result<std::unique_ptr<SessionFilm>> film = SessionFilm::create(session, ticks.range, options.allow_diverged);
   if (!film) return film.errors();
   reel.film = std::move(*film);
@@ -144,13 +146,24 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, int
   if (!renderer) return renderer.errors();
   reel.renderer = std::move(*renderer);
   reel.overlay = std::make_unique<render::Overlay>(width, height);
-  Result<std::vector<Moment>> moments = moments_of(session, reel.film->scene().name);
-  if (!moments) return moments.errors();
-  reel.moments = std::move(*moments), reel.told = std::llround(kCaptionSeconds * options.speed / model.tick);
+  const std::string title = reel.film->scene().name + ": " + std::filesystem::path(session.path()).stem().string();
+  reel.moments = told_moments(*all, title, model.tick),
+  reel.told = std::llround(kCaptionSeconds * options.speed / model.tick);
   reel.ticks = std::move(ticks), reel.speed = options.speed,
-  reel.shows_pace = options.speed != 1 || !options.matched.empty();
+  reel.shows_pace = options.speed != 1 || !options.matched.empty() || !options.slow_at.empty();
   reel.level = level_of(options.overlay).value_or(reel.level);
   return reel;
+}
+
+/// The parts that are shown slower; empty words: none.
+Result<std::vector<std::array<double, 2>>> slow_parts_of(const std::vector<recordings::SessionReader*>& sessions,
+                                                         const std::string& words) {
+  if (words.empty()) return std::vector<std::array<double, 2>>();
+  if (sessions.size() > 1)
+    return Error{output::option_name("export.slow_at"), "is for one session", "two are slowed down to be matched"};
+  const Result<std::vector<Moment>> all = all_moments(*sessions[0]);
+  if (!all) return all.errors();
+  return slow_parts(*all, words, sessions[0]->start().model.tick);
 }
 
 /// Of one scene all halves are seen as the first one is, wherever their wounds are.
@@ -216,7 +229,10 @@ Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>
                                    const ExportOptions& options) {
   Errors errors = check_options(path, options);
   const double frame_s = errors.empty() ? options.speed / options.fps : 1;
-  Result<std::vector<FrameTicks>> ticks = schedule(sessions, {options.range, frame_s, options.matched});
+  const Result<std::vector<std::array<double, 2>>> slow = slow_parts_of(sessions, options.slow_at);
+  if (!slow) append(errors, slow.errors());
+  Result<std::vector<FrameTicks>> ticks = schedule(
+      sessions, {options.range, frame_s, options.matched, slow ? *slow : std::vector<std::array<double, 2>>()});
   if (!ticks) append(errors, ticks.errors());
   const Result<double> top_force = largest_force(sessions);
   if (!top_force) append(errors, top_force.errors());

@@ -23,9 +23,10 @@ struct ExportOptions {
   views::LookRequest look;                          ///< view and camera
   session::TimeRange range;                         ///< part that is shown, see ScheduleOptions; by default all
   std::vector<std::array<double, 2>> matched = {};  ///< see ScheduleOptions
-  std::string overlay = "full";                     ///< none, small or full: render::OverlayLevel
-  bool overwrite = false;                           ///< replaces an existing video or sidecar
-  bool allow_diverged = false;                      ///< continue if the replay differs from the recording
+  std::string slow_at;           ///< moments of a single session that are shown slower: see slow_parts()
+  std::string overlay = "full";  ///< none, small or full: render::OverlayLevel
+  bool overwrite = false;        ///< replaces an existing video or sidecar
+  bool allow_diverged = false;   ///< continue if the replay differs from the recording
   std::function<void(std::int64_t done, std::int64_t total)> progress;
   std::function<bool()> should_stop;  ///< asked at every frame
 };

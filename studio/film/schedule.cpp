@@ -77,12 +77,26 @@ double along(const std::vector<Knot>& knots, double at, From&& from, To&& to) {
   return to(knots[i - 1]) + share * (to(knots[i]) - to(knots[i - 1]));
 }
 
-Result<std::vector<FrameTicks>> by_what_happens(const Sessions& sessions, const ScheduleOptions& options) {
+/// Through the parts that are slow, to the end.
+std::vector<Knot> knots_of_slow(const recordings::SessionReader& session,
+                                const std::vector<std::array<double, 2>>& slow) {
+  std::vector<Knot> knots(1);
+  const double end = length_of(session);
+  const auto go_on = [&](double to, double slower) {
+    const double passed = std::min(to, end) - knots.back().session[0];
+    if (passed > 0) knots.push_back({knots.back().film + slower * passed, {knots.back().session[0] + passed, 0}});
+  };
+  for (const auto& [from, to] : slow) go_on(from, 1), go_on(to, kSlower);
+  go_on(end, 1);
+  return knots;
+}
+
+Result<std::vector<FrameTicks>> by_knots(const Sessions& sessions, const std::vector<Knot>& knots,
+                                         const ScheduleOptions& options) {
   const double first_tick = sessions[0]->start().model.tick;
   const Result<session::TickRange> shown =
       options.range.in_ticks(sessions[0]->path(), first_tick, sessions[0]->tick_count());
   if (!shown) return shown.errors();
-  const std::vector<Knot> knots = knots_of(sessions, options.matched);
   if (knots.size() < 2) return by_the_clock(sessions, options);  // of no ticks
   const auto film = [](const Knot& knot) { return knot.film; };
   const auto of = [](std::size_t i) { return [i](const Knot& knot) { return knot.session[i]; }; };
@@ -91,7 +105,7 @@ Result<std::vector<FrameTicks>> by_what_happens(const Sessions& sessions, const 
                                                             : along(knots, double(shown->to) * first_tick, of(0), film);
   const auto frames = std::int64_t(std::ceil((end - begin) / options.frame_s * (1 - 1e-12)));
   std::vector<FrameTicks> all;
-  for (std::size_t i = 0; i < 2; ++i) {
+  for (std::size_t i = 0; i < sessions.size(); ++i) {
     const auto tick_at = [knots, film, own = of(i), tick = sessions[i]->start().model.tick,
                           count = sessions[i]->tick_count()](double time) {
       return std::clamp<std::int64_t>(std::llround(along(knots, time, film, own) / tick), 0, count);
@@ -115,8 +129,11 @@ Result<std::vector<FrameTicks>> by_what_happens(const Sessions& sessions, const 
 }  // namespace
 
 Result<std::vector<FrameTicks>> schedule(const Sessions& sessions, const ScheduleOptions& options) {
-  return sessions.size() == 2 && !options.matched.empty() ? by_what_happens(sessions, options)
-                                                          : by_the_clock(sessions, options);
+  if (sessions.size() == 2 && !options.matched.empty())
+    return by_knots(sessions, knots_of(sessions, options.matched), options);
+  if (sessions.size() == 1 && !options.slow.empty())
+    return by_knots(sessions, knots_of_slow(*sessions[0], options.slow), options);
+  return by_the_clock(sessions, options);
 }
 
 }  // namespace ctpm::film

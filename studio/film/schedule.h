@@ -26,7 +26,12 @@ struct ScheduleOptions {
   /// Seconds of two sessions that belong together, neither decreasing. Between two of them the session that is there
   /// sooner is slowed down, so that no half waits and none is faster than it was. Empty: both go by the clock.
   std::vector<std::array<double, 2>> matched;
+  /// Parts of a single session that are shown slower, in order and apart: from and to [s].
+  std::vector<std::array<double, 2>> slow;
 };
+
+/// How many times slower.
+inline constexpr double kSlower = 4;
 
 /// The frames of a film of one session, or of two side by side. Errors: a range outside the session.
 Result<std::vector<FrameTicks>> schedule(const std::vector<recordings::SessionReader*>& sessions,

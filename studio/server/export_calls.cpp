@@ -22,6 +22,7 @@ Result<std::string> export_session(Parameters& parameters, const CallContext& co
   options.look.by = parameters.text_if("by").value_or("");
   options.look.cutaway = parameters.text_if("cutaway").value_or("");
   options.look.camera = parameters.text_if("camera").value_or("");
+  options.slow_at = parameters.text_if("slow_at").value_or("");
   options.overlay = parameters.text_if("overlay").value_or(options.overlay);
   options.allow_diverged = parameters.flag("allow_diverged", false);
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;

@@ -215,9 +215,9 @@ TEST_F(Export, BesideSaysThatASessionHasEnded) {
 
 TEST_F(Export, BesideShowsTwoSessionsInStep) {
   record("short.ctpm", "0.6");
-  const auto both = run_ctpm(
-      {"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--size", "640x180", "--align", "clock"},
-      folder_.path());
+  const auto both = run_ctpm({"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--size", "640x180",
+                              "--align", "clock", "--overlay", "none"},
+                             folder_.path());
   ASSERT_EQ(both.code, 0) << both.err;
   EXPECT_EQ(picture("both", 36).width, 640);
   // The same script on both sides: apart from the names the halves are alike, until one of them is over.
@@ -304,7 +304,7 @@ TEST_F(Export, CaptionsAreReadBackAsSubtitlesAndChapters) {
   EXPECT_TRUE(holds(subtitles, "scalpel cuts") && holds(subtitles, "00:00:00,350 --> ")) << subtitles;
 }
 
-TEST_F(Export, TheOverlayCanBeLeftOut) {
+TEST_F(Export, TheOverlayCanBeLeftOutAndBadWordsAreRefused) {
   const render_test::GlyphReader reader(1280, 720);
   const auto shown = [&](const std::string& level) {
     const auto exported =
@@ -318,6 +318,12 @@ TEST_F(Export, TheOverlayCanBeLeftOut) {
   EXPECT_EQ(reader.read_after(small, "time"), "1.130 s");
   EXPECT_EQ(reader.read_after(small, "tick"), "");
   EXPECT_EQ(reader.read_after(full, "tick"), "1130");
+  for (const std::vector<std::string>& bad :
+       {std::vector<std::string>{"--slow-at", "cut,all"}, {"--slow-at", "cut", "--beside", "press.ctpm"}}) {
+    const auto refused = export_to("a.mp4", bad);
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_TRUE(holds(refused.err, "--slow-at: error: ")) << refused.err;
+  }
   const auto wrong = export_to("a.mp4", {"--overlay", "some"});
   EXPECT_EQ(wrong.code, 2);
   EXPECT_TRUE(holds(wrong.err, "--overlay: error: got 'some', must be none, small or full")) << wrong.err;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "studio/compare/matched_moments.h"
+#include "studio/film/captions.h"
 
 namespace ctpm {
 namespace {
@@ -23,7 +24,7 @@ class Schedule : public ::testing::Test {
   std::vector<film::FrameTicks> by(const std::string& word, const session::TimeRange& range = {}) {
     auto matched = compare::match_sessions(expert_, clumsy_, word);
     EXPECT_TRUE(matched) << word;
-    auto made = film::schedule({&expert_, &clumsy_}, {range, kFrame, *matched});
+    auto made = film::schedule({&expert_, &clumsy_}, {range, kFrame, *matched, {}});
     EXPECT_TRUE(made) << word;
     return *std::move(made);
   }
@@ -89,6 +90,34 @@ TEST_F(Schedule, AlongThePathTheToolsAreNearEachOther) {
     return sum / double(shown[0].frame_count);
   };
   EXPECT_LT(apart(ticks), 0.8 * apart(clock));
+}
+
+TEST_F(Schedule, SlowPartsTakeFourTimesAsLongAndNothingElseDoes) {
+  const auto all = film::all_moments(expert_);
+  ASSERT_TRUE(all);
+  const auto slow = film::slow_parts(*all, "cut,worst", 1e-3);
+  ASSERT_TRUE(slow);
+  ASSERT_EQ(slow->size(), 2u) << "the cut begins, and later the force is largest";
+  const auto ticks = film::schedule({&expert_}, {{}, kFrame, {}, *slow});
+  ASSERT_TRUE(ticks);
+  const film::FrameTicks& shown = ticks->front();
+  const double whole = double(expert_.tick_count()) * 1e-3, slowed = 2 * 0.75;
+  EXPECT_NEAR(double(shown.frame_count) * kFrame, whole + (film::kSlower - 1) * slowed, 2 * kFrame);
+  EXPECT_EQ(shown.tick(shown.frame_count - 1), expert_.tick_count());
+  for (std::int64_t frame = 1; frame + 1 < shown.frame_count; ++frame) {
+    const double at = double(shown.tick(frame)) * 1e-3, passed = double(shown.tick(frame) - shown.tick(frame - 1));
+    bool is_slow = false, is_edge = false;
+    for (const auto& [from, to] : *slow) {
+      is_slow |= at > from && at <= to;
+      for (const double edge : {from, to}) is_edge |= std::abs(at - edge) < 1.1 * kFrame;
+    }
+    if (is_edge) continue;
+    EXPECT_NEAR(passed, 1000 * kFrame / (is_slow ? film::kSlower : 1), 1.01) << at;
+  }
+  for (const auto& [from, to] : *slow) EXPECT_NEAR(to - from, 0.75, 1e-9);
+  EXPECT_NEAR((*slow)[0][0] + 0.25, double(first(expert_, recordings::EventKind::cut)) * 1e-3, 1e-9);
+  EXPECT_FALSE(film::slow_parts(*all, "cut,all", 1e-3));
+  EXPECT_EQ(film::slow_parts(*all, "damage", 1e-3)->size(), 0u);
 }
 
 TEST_F(Schedule, APartIsThatOfTheFirstSession) {
