@@ -223,11 +223,11 @@ double largest_force(const OverlayData& data) {
 }
 
 struct Overlay::Parts {
-  Parts(int w, int h)
+  Parts(int w, int h, double zoom)
       : width(w),
         height(h),
         is_narrow(w < 1.4 * h),
-        scale(std::min(w / (is_narrow ? 720.0 : 1280.0), h / 720.0)),
+        scale(zoom * std::min(w / (is_narrow ? 720.0 : 1280.0), h / 720.0)),
         small(std::max(5, px(17))),
         large(std::max(6, px(23))) {}
 
@@ -353,13 +353,14 @@ void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
   if (is_narrow)
     for (const PixelBox& box : {plan.facts, plan.plot, plan.legend})
       if (box.height > 0) bottom = std::min(bottom, box.y - px(10));
-  if (const std::string text = damage_text(data); !text.empty())
+  const bool is_alone = data.level == OverlayLevel::caption;
+  if (const std::string text = damage_text(data); !text.empty() && !is_alone)
     plan.warning = banner(text, bottom - h, !is_narrow, kWhite);
   if (data.caption.empty()) return;
   // In the middle, between the plot and the legend and above the warning.
-  const std::string text = large.shortened(data.caption, is_narrow ? width - 2 * margin - 2 * pad : px(570));
+  const std::string text = large.shortened(data.caption, is_narrow || is_alone ? width - 2 * pad - px(10) : px(570));
   const int wide = large.width(text) + 2 * pad, high = px(23) + 2 * px(13);
-  plan.caption = {(width - wide) / 2, bottom - h - px(10) - high, wide, high};
+  plan.caption = {(width - wide) / 2, is_alone ? height - high : bottom - h - px(10) - high, wide, high};
   plan.lines.push_back(line(large, text, plan.caption.x + pad, plan.caption.y + px(13), kWhite));
 }
 
@@ -383,7 +384,7 @@ void Overlay::Parts::draw_bar(cv::Mat& rgb, const Legend& legend, const PixelBox
 
 Plan Overlay::Parts::plan(const OverlayData& data) {
   Plan plan;
-  if (data.level != OverlayLevel::none) plan_facts(data, plan), plan_plot(data, plan), plan_legend(data, plan);
+  if (data.level >= OverlayLevel::small) plan_facts(data, plan), plan_plot(data, plan), plan_legend(data, plan);
   plan_banners(data, plan);
   return plan;
 }
@@ -411,7 +412,7 @@ void Overlay::Parts::draw_curve(cv::Mat& rgb, const OverlayData& data, const Pla
   draw(&ForcePoint::force, kAmber, {255, 225, 160});
 }
 
-Overlay::Overlay(int width, int height) : parts_(std::make_unique<Parts>(width, height)) {}
+Overlay::Overlay(int width, int height, double zoom) : parts_(std::make_unique<Parts>(width, height, zoom)) {}
 Overlay::~Overlay() = default;
 Overlay::Overlay(Overlay&&) noexcept = default;
 

@@ -28,7 +28,7 @@ struct HandLoad {
 enum class VerdictTone { none, good, bad };
 
 /// How much the overlay says. A bad verdict is shown at every level.
-enum class OverlayLevel { none, small, full };
+enum class OverlayLevel { none, caption, small, full };
 
 /// The content of the overlay. Empty texts are left out; long ones are shortened with an ellipsis.
 struct OverlayData {
@@ -83,7 +83,8 @@ struct PlacedText {
 /// larger letters and stacked banners.
 class Overlay {
  public:
-  Overlay(int width, int height);
+  /// `zoom`: of letters and panels, for pictures that are looked at in small.
+  Overlay(int width, int height, double zoom = 1);
   ~Overlay();
   Overlay(Overlay&&) noexcept;
 

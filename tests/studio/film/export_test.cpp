@@ -304,6 +304,29 @@ TEST_F(Export, CaptionsAreReadBackAsSubtitlesAndChapters) {
   EXPECT_TRUE(holds(subtitles, "scalpel cuts") && holds(subtitles, "00:00:00,350 --> ")) << subtitles;
 }
 
+TEST_F(Export, AContactSheetShowsMomentsThroughTheSession) {
+  ASSERT_EQ(run_ctpm({"export", "press.ctpm", "-o", "sheet.png"}, folder_.path()).code, 0);
+  ASSERT_EQ(folder_.list(), "press.ctpm sheet.png");
+  const auto page = render::read_picture((folder_.path() / "sheet.png").string());
+  ASSERT_TRUE(page);
+  ASSERT_EQ(page->width * 10000 + page->height, 12800720);
+  const auto tile = [&](int number) {
+    render::Frame part = render::blank_frame(320, 200, 0, 0, 0);  // without the words below
+    for (int y = 0; y < part.height; ++y)
+      std::copy_n(page->rgb.begin() + ((number / 4 * 240 + y) * 1280 + number % 4 * 320) * 3, 320 * 3,
+                  part.rgb.begin() + y * 320 * 3);
+    return part;
+  };
+  // The ball comes down: every picture differs from the one before.
+  for (int number = 1; number < 12; ++number) EXPECT_NE(tile(number), tile(number - 1)) << number;
+  const auto again = export_to("sheet.png");
+  EXPECT_EQ(again.code, 2);
+  EXPECT_TRUE(holds(again.err, "exists already")) << again.err;
+  const auto pair = export_to("pair.png", {"--beside", "press.ctpm"});
+  EXPECT_EQ(pair.code, 2);
+  EXPECT_TRUE(holds(pair.err, "--beside: error: is for videos")) << pair.err;
+}
+
 TEST_F(Export, TheOverlayCanBeLeftOutAndBadWordsAreRefused) {
   const render_test::GlyphReader reader(1280, 720);
   const auto shown = [&](const std::string& level) {
