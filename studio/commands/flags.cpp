@@ -70,10 +70,10 @@ void add_look(CLI::App& app, views::LookRequest& request) {
                  "What colours show: layer of spheres, in previews also material; stretch, tilt or force of elements");
   app.add_option("--full-scale", request.full_scale, "Value of the last colour of elements [%, deg or N]");
   app.add_option("--cutaway", request.cutaway, "Leave out what is before a plane across x, y or z: y, or y=12.5 in mm");
-  app.add_option(
-      "--camera", request.camera,
-      "A camera of the scene, fitted, wound where it is seen best, or follow the tool; if not given the wound, else "
-      "the scene's first");
+  app.add_option("--camera", request.camera,
+                 "A camera of the scene, fitted, wound where it is seen best, or follow the tool; if not given one "
+                 "that sees the section or the wound, else "
+                 "the scene's first");
 }
 
 void add_time_range(CLI::App& app, session::TimeRange& range) {

@@ -103,9 +103,20 @@ Result<render::Camera> find_camera(const scenes::SceneSpec& scene, const render:
                "there are: fitted, wound, follow" + (known.empty() ? "" : ", " + known)};
 }
 
+bool is_axis(const std::string& cutaway) { return !cutaway.empty() && cutaway[0] >= 'x' && cutaway[0] <= 'z'; }
+
+/// Rather straight onto the section across an axis, from the usual camera's side of it.
+render::Camera section_camera(const render::SceneView& view, char axis, const render::Camera& usual, double aspect) {
+  constexpr double kUsual = 0.6;  // share of the usual direction
+  const Vec3 from = (usual.eye - usual.target) / norm(usual.eye - usual.target);
+  Vec3 across{axis == 'x' ? 1.0 : 0.0, axis == 'y' ? 1.0 : 0.0, axis == 'z' ? 1.0 : 0.0};
+  if (dot(from, across) < 0) across = -across;
+  return render::fitted_camera(view, -(across + kUsual * from), usual.up, usual.fov_deg, aspect);
+}
+
 /// Sets the camera of that name; see LookRequest::camera.
-void choose_camera(const std::string& name, const scenes::SceneSpec& scene, const render::SceneView& view,
-                   double aspect, const State* cut, Look& look, Errors& errors) {
+void choose_camera(const std::string& name, const std::string& cutaway, const scenes::SceneSpec& scene,
+                   const render::SceneView& view, double aspect, const State* cut, Look& look, Errors& errors) {
   const auto add = [&](const Errors& more) { errors.insert(errors.end(), more.begin(), more.end()); };
   bool is_the_scenes = false;
   for (const scenes::CameraSpec& camera : scene.cameras) is_the_scenes |= camera.name == name;
@@ -121,6 +132,10 @@ void choose_camera(const std::string& name, const scenes::SceneSpec& scene, cons
   look.draw.camera = *usual;
   if (name.empty()) look.camera = scene.cameras.empty() ? "fitted" : scene.cameras.front().name;
   if (!is_free) return;
+  if (name.empty() && is_axis(cutaway)) {
+    look.draw.camera = section_camera(view, cutaway[0], *usual, aspect), look.camera = "section";
+    return;
+  }
   std::optional<render::Camera> found;
   if (cut) {
     const Result<std::optional<render::Camera>> wound = wound_camera(view, *cut, *usual, aspect);
@@ -171,7 +186,7 @@ Result<Look> find_look(const LookRequest& request, const scenes::SceneSpec& scen
     errors.push_back({output::option_name("look.full_scale"),
                       "got " + output::fixed(request.full_scale, 3) + ", must be more than 0", ""});
   look.draw.full_scale = request.full_scale * unit_of(look.draw.quantity);
-  choose_camera(request.camera, scene, view, aspect, cut, look, errors);
+  choose_camera(request.camera, request.cutaway, scene, view, aspect, cut, look, errors);
   look.draw.cutaway = find_cutaway(request.cutaway, view, look.draw.camera.eye, errors);
   if (!errors.empty()) return errors;
   return look;

@@ -16,8 +16,8 @@ struct LookRequest {
   double full_scale =
       0;  ///< value of the last colour [%, deg or N as in the legend]; 0: in a film its own range, else the default
   std::string cutaway;  ///< axis of the cutting plane, alone or with a position [mm]: y=12.5; empty: no cutaway
-  /// A camera of the scene, `fitted`, `wound` or `follow`. Empty: wound where something is cut, else the scene's first,
-  /// else fitted.
+  /// A camera of the scene, `fitted`, `wound` or `follow`. Empty: with a cutaway one that sees the section, else wound
+  /// where something is cut, else the scene's first, else fitted.
   std::string camera;
 };
 
@@ -25,7 +25,7 @@ struct LookRequest {
 struct Look {
   render::DrawOptions draw;  ///< with the base camera
   bool follows = false;      ///< the camera follows the tool
-  std::string camera;        ///< its name: a camera of the scene, `fitted`, `wound` or `follow`
+  std::string camera;        ///< its name: a camera of the scene, `fitted`, `section`, `wound` or `follow`
 
   /// The options for one moment of the scene. `moments`: see following_camera().
   render::DrawOptions at(const render::SceneView& scene, std::span<const Inputs> moments) const;

@@ -74,6 +74,20 @@ TEST_F(WoundCamera, TheWoundAndTheOrgansMiddleAreInThePicture) {
   }
 }
 
+TEST_F(WoundCamera, ASectionIsSeenFromItsFront) {
+  for (const char* cutaway : {"x", "y=2", "z=30"}) {
+    views::LookRequest request;
+    request.cutaway = cutaway;
+    const auto found = views::find_look(request, scene_, view_, kAspect, &cut_);
+    ASSERT_TRUE(found) << cutaway;
+    const render::Camera& camera = found->draw.camera;
+    EXPECT_GT(dot(camera.eye - camera.target, found->draw.cutaway.normal), 0.8 * norm(camera.eye - camera.target))
+        << cutaway;
+    request.camera = "front";
+    EXPECT_EQ(views::find_look(request, scene_, view_, kAspect, &cut_)->camera, "front") << "unless one is named";
+  }
+}
+
 TEST_F(WoundCamera, IsTheSameEveryTimeAndTheScenesWhereNothingIsCut) {
   const render::Camera one = look("", &cut_).draw.camera, other = look("", &cut_).draw.camera;
   EXPECT_EQ(one.eye, other.eye);
