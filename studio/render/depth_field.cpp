@@ -46,22 +46,4 @@ DepthField::DepthField(const Surface& surface, double reach, double detail) {
   }
 }
 
-double DepthField::at(Vec3 rest) const {
-  const Vec3 d = rest - low;
-  const double place[3] = {d.x / size.x * count[0] - 0.5, d.y / size.y * count[1] - 0.5, d.z / size.z * count[2] - 0.5};
-  double sum = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    double weight = 1;
-    std::size_t index[3];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double x = std::clamp(place[axis], 0.0, count[axis] - 1.0), whole = std::floor(x);
-      const bool up = corner >> axis & 1;
-      weight *= up ? x - whole : 1 - (x - whole);
-      index[axis] = std::size_t(std::min(int(whole) + up, count[axis] - 1));
-    }
-    sum += weight * double(depth[index[0] + std::size_t(count[0]) * (index[1] + std::size_t(count[1]) * index[2])]);
-  }
-  return sum;
-}
-
 }  // namespace ctpm::render

@@ -17,9 +17,6 @@ struct DepthField {
   /// `reach` [m], > 0: how deep is told. `detail` [m], > 0: the thickness of what must be told apart.
   DepthField(const Surface& surface, double reach, double detail);
   DepthField() = default;
-
-  /// As the texture is read: interpolated [m].
-  double at(Vec3 rest) const;
 };
 
 }  // namespace ctpm::render
