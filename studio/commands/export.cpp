@@ -10,7 +10,9 @@
 #include "studio/commands/flags.h"
 #include "studio/commands/physics_warning.h"
 #include "studio/commands/stop_signal.h"
+#include "studio/compare/matched_moments.h"
 #include "studio/exchange/export_shapes.h"
+#include "studio/film/contact_sheet.h"
 #include "studio/film/export_video.h"
 #include "studio/output/number_text.h"
 #include "studio/render/picture_size.h"
@@ -19,7 +21,7 @@ namespace ctpm::commands {
 namespace {
 
 struct ExportArguments {
-  std::string file, beside, output, size = "1280x720";
+  std::string file, beside, output, align, size = "1280x720";
   std::optional<double> at_s;
   film::ExportOptions options;
 };
@@ -61,9 +63,26 @@ int run_shapes(const ExportArguments& arguments) {
   return is_same ? exit_good : exit_bad_verdict;
 }
 
+bool is_sheet(const std::string& path) { return path.ends_with(".png"); }
+
+/// Draws a session on one page.
+int run_sheet(recordings::SessionReader& session, ExportArguments& arguments) {
+  const Result<Done> written = [&] {
+    ProgressLine progress("drawing");
+    arguments.options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
+    return film::write_contact_sheet(session, arguments.output, arguments.options);
+  }();
+  if (!written) return print_errors(written.errors());
+  print("%s: %d moments, %dx%d\n", arguments.output.c_str(), film::kSheetColumns * film::kSheetRows,
+        arguments.options.size.width, arguments.options.size.height);
+  return exit_good;
+}
+
 int run_export(ExportArguments& arguments) {
   if (exchange::is_shape_file(arguments.output)) return run_shapes(arguments);
   if (arguments.at_s) return print_errors({{"--at-s", "is for .vtp, .vtu and .glb, which hold one moment", ""}});
+  if (is_sheet(arguments.output) && !arguments.beside.empty())
+    return print_errors({{"--beside", "is for videos", arguments.output + " shows the moments of one session"}});
   Errors errors;
   std::vector<recordings::SessionReader> readers;
   for (const std::string& file : {arguments.file, arguments.beside}) {
@@ -82,8 +101,14 @@ int run_export(ExportArguments& arguments) {
   if (!errors.empty()) return print_errors(errors);
   std::vector<recordings::SessionReader*> sessions;
   for (recordings::SessionReader& reader : readers) warn_of_physics(reader), sessions.push_back(&reader);
+  if (sessions.size() == 2) {
+    Result<compare::MatchedMoments> matched = compare::match_sessions(*sessions[0], *sessions[1], arguments.align);
+    if (!matched) return print_errors(matched.errors());
+    arguments.options.matched = std::move(*matched);
+  }
   const StopSignal stop;  // Ctrl-C ends the loop, and the unfinished file is removed on the way out
   arguments.options.should_stop = [&] { return stop.came(); };
+  if (is_sheet(arguments.output)) return run_sheet(*sessions[0], arguments);
   const Result<film::ExportOutcome> outcome = [&] {
     ProgressLine progress("exporting");
     arguments.options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
@@ -108,15 +133,23 @@ Command add_export(CLI::App& program) {
       "          ctpm export out/demo.ctpm -o out/demo.glb --at-s 4");
   film::ExportOptions& options = arguments->options;
   app->add_option("session", arguments->file, "Session file (.ctpm)")->required();
-  app->add_option(
-         "-o,--output", arguments->output,
-         "Video: .mp4 (H.264), .avi (Motion JPEG), or a folder/ of PNG pictures; shapes: .pvd (ParaView) or .usda "
-         "of a series, .vtp, .vtu or .glb of a moment")
+  app->add_option("-o,--output", arguments->output,
+                  "Video: .mp4 (H.264), .avi (Motion JPEG), or a folder/ of PNG pictures; .png: a contact sheet; "
+                  "shapes: .pvd (ParaView) or .usda "
+                  "of a series, .vtp, .vtu or .glb of a moment")
       ->required();
-  app->add_option("--beside", arguments->beside, "Another session, in step on the right half");
+  CLI::Option* beside = app->add_option("--beside", arguments->beside, "Another session, in step on the right half");
+  app->add_option("--align", arguments->align,
+                  "What brings both together: path of the tool, first contact, first cut, or clock; the half that is "
+                  "ahead is slowed down. If not given the path, else the contact")
+      ->needs(beside);
   app->add_option("--size", arguments->size, "Width x height in pixels")->capture_default_str();
   app->add_option("--fps", options.fps, "Frames per second")->capture_default_str();
   app->add_option("--speed", options.speed, "Times real speed")->capture_default_str();
+  app->add_option("--slow-at", options.slow_at,
+                  "Four times slower around these moments: cut, damage, worst, with commas");
+  app->add_option("--overlay", options.overlay, "What stands in the picture: none, small or full")
+      ->capture_default_str();
   add_time_range(*app, options.range);
   app->add_option("--at-s", arguments->at_s, "Moment of a .vtp, .vtu or .glb; the end if not given");
   add_look(*app, options.look);

@@ -21,8 +21,11 @@ constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"device.timeout_s", "--device-timeout-s"},
     {"device.tip", "--device-tip"},
     {"device.tool", "--device-tool"},
+    {"export.align", "--align"},
     {"export.allow_diverged", "--allow-diverged"},
     {"export.fps", "--fps"},
+    {"export.overlay", "--overlay"},
+    {"export.slow_at", "--slow-at"},
     {"export.speed", "--speed"},
     {"exchange.at_s", "--at-s"},
     {"fidelity.recipes", "--only"},
@@ -68,7 +71,9 @@ void add_look(CLI::App& app, views::LookRequest& request) {
   app.add_option("--full-scale", request.full_scale, "Value of the last colour of elements [%, deg or N]");
   app.add_option("--cutaway", request.cutaway, "Leave out what is before a plane across x, y or z: y, or y=12.5 in mm");
   app.add_option("--camera", request.camera,
-                 "A camera of the scene, fitted, or follow the tool; its first one, else fitted");
+                 "A camera of the scene, fitted, wound where it is seen best, or follow the tool; if not given one "
+                 "that sees the section or the wound, else "
+                 "the scene's first");
 }
 
 void add_time_range(CLI::App& app, session::TimeRange& range) {

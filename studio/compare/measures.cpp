@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "studio/compare/matched_moments.h"
 #include "studio/compare/moments.h"
 
 namespace ctpm::compare {
 namespace {
 
 constexpr double kMillimetres = 1e3;
-constexpr double kCutPathSpacing = 0.5e-3;    // distance of the points of cut paths that are compared [m]
-constexpr std::size_t kAlignedPoints = 4000;  // largest number per path; time grows with the product of both
-constexpr double kAlignedRate = 50;           // points per second [Hz], fewer above kAlignedPoints
+constexpr double kCutPathSpacing = 0.5e-3;  // distance of the points of cut paths that are compared [m]
 
 constexpr const char* kCotin =
     "Cotin et al., Metrics for laparoscopic skills trainers: the weakest link! MICCAI 2002, 35-43";
@@ -238,17 +238,6 @@ double time_beyond(const SessionTrack& track, double depth) {
       std::size_t(std::count_if(track.depth.begin(), track.depth.end(), [&](double d) { return d > depth; })));
 }
 
-/// The points of the tool to be aligned: of all strokes, fewer per second in a long session.
-void collect_path(const SessionTrack& track, std::vector<Vec3>& path, std::vector<double>& time) {
-  const std::size_t step = std::max(std::size_t(std::llround(1 / (kAlignedRate * track.tick))),
-                                    (track.tick_count() + kAlignedPoints - 1) / kAlignedPoints);
-  const auto add = [&](std::size_t i) { path.push_back(track.tip[i]), time.push_back(track.seconds(i)); };
-  for (const Spell& stroke : track.strokes) {
-    for (std::size_t i = stroke.first; i + 1 < stroke.last; i += std::max<std::size_t>(step, 1)) add(i);
-    add(stroke.last - 1);
-  }
-}
-
 void add_motion(Comparison& comparison, const SessionTrack& expert, const SessionTrack& trainee) {
   const Motion a = motion_of(expert), b = motion_of(trainee);
   comparison.values.push_back({&kCompletionTime, completion_time(expert), completion_time(trainee)});
@@ -354,8 +343,9 @@ Comparison compare_sessions(const SessionTrack& expert, const SessionTrack& trai
   add_depth(comparison, expert, trainee);
   add_cut(comparison, expert, trainee);
 
-  collect_path(expert, comparison.expert_path, comparison.expert_time);
-  collect_path(trainee, comparison.trainee_path, comparison.trainee_time);
+  TimedPath expert_path = tool_path(expert), trainee_path = tool_path(trainee);
+  comparison.expert_path = std::move(expert_path.place), comparison.expert_time = std::move(expert_path.time);
+  comparison.trainee_path = std::move(trainee_path.place), comparison.trainee_time = std::move(trainee_path.time);
   comparison.alignment = align_paths(comparison.expert_path, comparison.trainee_path);
   comparison.values.push_back({.measure = &kAlignedMean, .trainee = kMillimetres * comparison.alignment.mean});
   comparison.values.push_back({.measure = &kAlignedLargest, .trainee = kMillimetres * comparison.alignment.largest});

@@ -4,16 +4,17 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "recordings/byte_hash.h"
+#include "studio/film/captions.h"
+#include "studio/film/reel.h"
+#include "studio/film/schedule.h"
 #include "studio/film/session_film.h"
 #include "studio/film/sidecar.h"
 #include "studio/output/files.h"
 #include "studio/output/number_text.h"
 #include "studio/output/option_name.h"
-#include "studio/render/overlay.h"
-#include "studio/render/renderer.h"
-#include "studio/views/view_of_scene.h"
 
 namespace ctpm::film {
 namespace {
@@ -36,6 +37,9 @@ Errors check_options(const std::string& path, const ExportOptions& options) {
   if (!(options.speed >= 0.001 && options.speed <= 1000))
     errors.push_back({output::option_name("export.speed"),
                       "got " + output::fixed(options.speed, 3) + ", must be in [0.001, 1000]", ""});
+  if (!level_of(options.overlay))
+    errors.push_back(
+        {output::option_name("export.overlay"), "got '" + options.overlay + "', must be none, small or full", ""});
   // A folder must not exist yet, which the writer checks.
   for (const std::string& file : {path, sidecar_of(path)})
     if (!path.ends_with('/'))
@@ -46,101 +50,28 @@ Errors check_options(const std::string& path, const ExportOptions& options) {
   return errors;
 }
 
-/// The ticks of each session that are shown: the same interval of time, up to each session's end.
-Result<std::vector<session::TickRange>> find_ranges(const std::vector<recordings::SessionReader*>& sessions,
-                                                    const session::TimeRange& range) {
-  const auto longer = [](const recordings::SessionReader* a, const recordings::SessionReader* b) {
-    return double(a->tick_count()) * a->start().model.tick < double(b->tick_count()) * b->start().model.tick;
-  };
-  const recordings::SessionReader& longest = **std::max_element(sessions.begin(), sessions.end(), longer);
-  const double tick = longest.start().model.tick;
-  const Result<session::TickRange> shown = range.in_ticks(longest.path(), tick, longest.tick_count());
-  if (!shown) return shown.errors();
-  std::vector<session::TickRange> ranges;
-  for (const recordings::SessionReader* session : sessions) {
-    const auto there = [&](std::int64_t of_longest) {
-      const double ticks = double(of_longest) * tick / session->start().model.tick;
-      return std::min<std::int64_t>(session->tick_count(), std::llround(ticks));
-    };
-    ranges.push_back({there(shown->from), there(shown->to)});
-  }
-  return ranges;
-}
-
-/// One session of the film with its replay, renderer and overlay.
-struct Reel {
-  std::unique_ptr<SessionFilm> film;
-  views::Look look;
-  std::unique_ptr<render::Renderer> renderer;
-  std::unique_ptr<render::Overlay> overlay;
-  double ticks_a_frame = 1;
-
-  /// The tick that a frame shows, at most the last one.
-  std::int64_t tick_of(std::int64_t frame) const {
-    const session::TickRange& range = film->range();
-    return std::min<std::int64_t>(range.to, range.from + std::llround(double(frame + 1) * ticks_a_frame));
-  }
-  /// The shot of a frame. A session that has ended keeps its last State and says so.
-  Result<Shot> shoot(std::int64_t frame) const {
-    Result<Shot> shot = film->shoot(tick_of(frame));
-    if (shot) shot->overlay.is_over = frame >= frame_count();
-    return shot;
-  }
-  std::int64_t frame_count() const {
-    return std::int64_t(std::ceil(double(film->range().to - film->range().from) / ticks_a_frame));
-  }
-};
-
-Result<Reel> make_reel(recordings::SessionReader& session, const session::TickRange& range, int width,
-                       const ExportOptions& options) {
-  Reel reel;
-  Result<std::unique_ptr<SessionFilm>> film = SessionFilm::create(session, range, options.allow_diverged);
-  if (!film) return film.errors();
-  reel.film = std::move(*film);
-  const Model& model = reel.film->model();
-  render::SceneView view = views::view_of(reel.film->scene(), model);
-  const int height = options.size.height;
-  const Result<views::Look> look = views::find_look(options.look, reel.film->scene(), view, double(width) / height);
-  if (!look) return look.errors();
-  reel.look = *look;
-  Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(width, height, std::move(view));
-  if (!renderer) return renderer.errors();
-  reel.renderer = std::move(*renderer);
-  reel.overlay = std::make_unique<render::Overlay>(width, height);
-  reel.ticks_a_frame = options.speed / (options.fps * model.tick);
-  return reel;
-}
-
-render::Frame draw_shot(Reel& reel, Shot& shot, double least_top_force) {
-  const render::DrawOptions draw = reel.look.at(reel.renderer->scene(), shot.moments);
-  render::Frame picture = reel.renderer->draw(shot.state, draw);
-  shot.overlay.legend = render::legend_of(reel.film->model(), draw);
-  shot.overlay.least_top_force = std::max(shot.overlay.least_top_force, least_top_force);
-  reel.overlay->draw(picture, shot.overlay);
-  return picture;
-}
-
-/// All sessions at one moment, side by side; their plots have one scale.
-render::Frame draw_shots(std::vector<Reel>& reels, std::vector<Shot>& shots) {
-  double top_force = 0;
-  for (const Shot& shot : shots) top_force = std::max(top_force, render::largest_force(shot.overlay));
-  render::Frame picture = draw_shot(reels[0], shots[0], top_force);
-  for (std::size_t i = 1; i < reels.size(); ++i)
-    picture = render::join_beside(picture, draw_shot(reels[i], shots[i], top_force));
-  return picture;
+/// The parts that are shown slower; empty words: none.
+Result<std::vector<std::array<double, 2>>> slow_parts_of(const std::vector<recordings::SessionReader*>& sessions,
+                                                         const std::string& words) {
+  if (words.empty()) return std::vector<std::array<double, 2>>();
+  if (sessions.size() > 1)
+    return Error{output::option_name("export.slow_at"), "is for one session", "two are slowed down to be matched"};
+  const Result<std::vector<Moment>> all = all_moments(*sessions[0]);
+  if (!all) return all.errors();
+  return slow_parts(*all, words, sessions[0]->start().model.tick);
 }
 
 Result<StageTimes> make_film(std::vector<Reel>& reels, video::VideoWriter& writer, recordings::ByteHash& pixels,
-                             const ExportOptions& options) {
-  std::int64_t frames = 0, drawn = 0;
-  for (const Reel& reel : reels) frames = std::max(frames, reel.frame_count());
+                             double top_force, const ExportOptions& options) {
+  const std::int64_t frames = reels[0].ticks.frame_count;
+  std::int64_t drawn = 0;
   FilmWork work;
   for (Reel& reel : reels) work.shoot.push_back([&reel](std::int64_t frame) { return reel.shoot(frame); });
   work.draw = [&](std::vector<Shot> shots) -> Result<render::Frame> {
     // Ctrl-C is an error of this export: nothing is left behind.
     if (options.should_stop && options.should_stop())
       return Error{writer.path(), "stopped before the end; no video was written", ""};
-    render::Frame picture = draw_shots(reels, shots);
+    render::Frame picture = draw_shots(reels, shots, top_force);
     if (options.progress) options.progress(++drawn, frames);
     return picture;
   };
@@ -156,26 +87,37 @@ Result<StageTimes> make_film(std::vector<Reel>& reels, video::VideoWriter& write
 Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>& sessions, const std::string& path,
                                    const ExportOptions& options) {
   Errors errors = check_options(path, options);
-  const Result<std::vector<session::TickRange>> ranges = find_ranges(sessions, options.range);
-  if (!ranges) append(errors, ranges.errors());
+  const double frame_s = errors.empty() ? options.speed / options.fps : 1;
+  const Result<std::vector<std::array<double, 2>>> slow = slow_parts_of(sessions, options.slow_at);
+  if (!slow) append(errors, slow.errors());
+  Result<std::vector<FrameTicks>> ticks = schedule(
+      sessions, {options.range, frame_s, options.matched, slow ? *slow : std::vector<std::array<double, 2>>()});
+  if (!ticks) append(errors, ticks.errors());
+  const Result<double> top_force = largest_force(sessions);
+  if (!top_force) append(errors, top_force.errors());
   const int width = options.size.width / int(sessions.size());
   std::vector<Reel> reels;
   for (std::size_t i = 0; i < sessions.size(); ++i) {
-    Result<Reel> reel = make_reel(*sessions[i], ranges ? (*ranges)[i] : session::TickRange{}, width, options);
+    Result<Reel> reel =
+        make_reel(*sessions[i], ticks ? std::move((*ticks)[i]) : FrameTicks{}, {width, options.size.height}, options);
     if (reel)
       reels.push_back(std::move(*reel));
     else
       append(errors, reel.errors());
   }
   if (!errors.empty()) return errors;
+  if (const Result<Done> alike = look_alike(reels, sessions); !alike) return alike.errors();
   Result<std::unique_ptr<video::VideoWriter>> writer =
       video::VideoWriter::create(path, width * int(sessions.size()), options.size.height, options.fps);
   if (!writer) return writer.errors();
 
   recordings::ByteHash pixels;
-  const Result<StageTimes> times = make_film(reels, **writer, pixels, options);
+  const Result<StageTimes> times = make_film(reels, **writer, pixels, *top_force, options);
   if (!times) return times.errors();
-  const Result<video::VideoFacts> video = (*writer)->finish();
+  // Two halves have their words in the picture; the track tells of the first.
+  const Reel& first = reels[0];
+  const Result<video::VideoFacts> video =
+      (*writer)->finish(captions_of(first.moments, first.ticks, first.told, options.fps));
   if (!video) return video.errors();
   ExportOutcome outcome{*video, {}, *times, recordings::hash_text(pixels.value())};
   std::vector<SidecarSession> shown;

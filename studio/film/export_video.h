@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -17,12 +18,15 @@ namespace ctpm::film {
 
 struct ExportOptions {
   render::PictureSize size;
-  double fps = 30;              ///< frames per second, in [1, 240]
-  double speed = 1;             ///< playback speed relative to real time, in [0.001, 1000]
-  views::LookRequest look;      ///< view and camera
-  session::TimeRange range;     ///< part that is shown; by default to the end of the longest session
-  bool overwrite = false;       ///< replaces an existing video or sidecar
-  bool allow_diverged = false;  ///< continue if the replay differs from the recording
+  double fps = 30;                                  ///< frames per second, in [1, 240]
+  double speed = 1;                                 ///< playback speed relative to real time, in [0.001, 1000]
+  views::LookRequest look;                          ///< view and camera
+  session::TimeRange range;                         ///< part that is shown, see ScheduleOptions; by default all
+  std::vector<std::array<double, 2>> matched = {};  ///< see ScheduleOptions
+  std::string slow_at;           ///< moments of a single session that are shown slower: see slow_parts()
+  std::string overlay = "full";  ///< none, small or full: render::OverlayLevel
+  bool overwrite = false;        ///< replaces an existing video or sidecar
+  bool allow_diverged = false;   ///< continue if the replay differs from the recording
   std::function<void(std::int64_t done, std::int64_t total)> progress;
   std::function<bool()> should_stop;  ///< asked at every frame
 };

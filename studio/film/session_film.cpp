@@ -87,7 +87,30 @@ Result<Done> SessionFilm::begin() {
   overlay_.loose = recordings::pieces_came_loose(*events, range_.from);
   overlay_.inside_out = recordings::cells_inside_out(*events, range_.from);
   overlay_.tick = range_.from, overlay_.time = double(range_.from) * model.tick;
+  if (const Result<Done> looked = look_back(); !looked) return looked;
   return cursor_.seek(range_.from);
+}
+
+/// Only what is beyond a limit counts; a blade's depth has none.
+void SessionFilm::keep_worst(double force, double depth) {
+  if (force > overlay_.damage_force) overlay_.worst.force = std::max(overlay_.worst.force, force);
+  if (depth > overlay_.damage_depth) overlay_.worst.depth = std::max(overlay_.worst.depth, depth);
+}
+
+/// What did damage before the part that is shown.
+Result<Done> SessionFilm::look_back() {
+  constexpr std::int64_t kReadTicks = 10000;  // held in memory at a time
+  if (overlay_.damage_force <= 0 && overlay_.damage_depth <= 0) return Done{};
+  for (std::int64_t from = 0; from < range_.from; from += kReadTicks) {
+    const auto records = reader_.ticks(from, std::min(from + kReadTicks, range_.from));
+    if (!records) return records.errors();
+    for (const recordings::TickRecord& record : *records)
+      for (std::size_t hand = 0; hand < std::size_t(model().hands); ++hand) {
+        const stepping::HandReport report = record.of_hand(hand);
+        keep_worst(norm(report.tool_force), holds_blade(record.inputs.hand(hand)) ? 0 : report.depth);
+      }
+  }
+  return Done{};
 }
 
 /// Updates the overlay from the last simulated tick.
@@ -99,6 +122,9 @@ void SessionFilm::take_tick() {
   };
   overlay_.hand = load_of(cursor_.report());
   if (overlay_.second) overlay_.second = load_of(cursor_.report().second);
+  const Inputs& inputs = cursor_.record().inputs;
+  keep_worst(overlay_.hand.force, holds_blade(inputs) ? 0 : overlay_.hand.depth);
+  if (overlay_.second) keep_worst(overlay_.second->force, holds_blade(inputs.second) ? 0 : overlay_.second->depth);
   overlay_.loose += cursor_.report().came_loose;
   overlay_.inside_out = cursor_.report().inverted;
   overlay_.slip = cursor_.record().slip;
@@ -139,13 +165,14 @@ Error SessionFilm::differs() const {
               " exports all the same and says so on every frame"};
 }
 
+bool SessionFilm::holds_blade(const Hand& hand) const {
+  return hand.tool >= 0 && model().tools[std::size_t(hand.tool)].kind == ToolKind::scalpel;
+}
+
 /// While a blade is held, and after it was put away after a cut, the depth is that of the cut.
 void SessionFilm::show_cut_depth() {
   cut_.measure(cursor_.state());
   const double depth = cut_.size().value_or(session::CutSize{}).depth;
-  const auto holds_blade = [&](const Hand& hand) {
-    return hand.tool >= 0 && model().tools[std::size_t(hand.tool)].kind == ToolKind::scalpel;
-  };
   const Inputs& inputs = cursor_.state().last_inputs;
   const bool is_empty = inputs.tool < 0 && inputs.second.tool < 0;
   overlay_.hand.is_blade = is_empty ? cut_.size().has_value() : holds_blade(inputs);

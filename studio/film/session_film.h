@@ -56,6 +56,9 @@ class SessionFilm {
   void take_tick();
   void keep_inputs(const Inputs& inputs);
   void show_cut_depth();
+  void keep_worst(double force, double depth);
+  Result<Done> look_back();
+  bool holds_blade(const Hand& hand) const;
   std::vector<Inputs> moments() const;
   Error differs() const;
   std::string verdict() const;

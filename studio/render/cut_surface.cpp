@@ -15,6 +15,8 @@ constexpr double kRindEnds = 2.0;  // in layers: the middle of the second
 
 }  // namespace
 
+float rind_of_layer(double layer) { return float(std::clamp((kRindEnds - layer) / (kRindEnds - 1), 0.0, 1.0)); }
+
 struct CutSurface::Parts {
   Parts(const Model& model, std::size_t organ)
       : whole(model.surfaces[organ]),
@@ -57,7 +59,7 @@ void CutSurface::Parts::find_rind() {
     double at = 0;
     for (std::size_t e = std::size_t(b.first[v]); e < std::size_t(b.first[v + 1]); ++e)
       at += b.weight[e] * layer[std::size_t(b.sphere[e])];
-    rind[v] = float(std::clamp((kRindEnds - at) / (kRindEnds - 1), 0.0, 1.0));
+    rind[v] = rind_of_layer(at);
   }
 }
 

@@ -12,6 +12,9 @@
 
 namespace ctpm::render {
 
+/// Share of the outermost layer of spheres in tissue of that mean layer: 1 in the first, 0 in the second and below.
+float rind_of_layer(double layer);
+
 /// An organ's surface as it is drawn: cutbody::CutBody, and what its colours need. In a scene without a blade it is the
 /// organ's own surface. The States may come in any order.
 class CutSurface {

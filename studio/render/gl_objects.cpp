@@ -91,7 +91,7 @@ Result<Done> PictureTarget::create(const Gl& gl, int w, int h) {
     gl.RenderbufferStorage(GL_RENDERBUFFER, format, w, h);
     gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, place, GL_RENDERBUFFER, buffer);
   };
-  attach(colour, GL_RGBA8, GL_COLOR_ATTACHMENT0), attach(depth, GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT);
+  attach(colour, GL_RGBA8, GL_COLOR_ATTACHMENT0), attach(depth, GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL_ATTACHMENT);
   if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE || gl.GetError() != GL_NO_ERROR)
     return Error{"OpenGL", "no picture of " + std::to_string(w) + "x" + std::to_string(h) + " can be drawn to",
                  "ask for a smaller picture"};

@@ -26,7 +26,8 @@ GroundShadow::GroundShadow(Vec3 centre, Vec3 x, Vec3 y, Vec3 up, double reach)
 
 void GroundShadow::clear() { std::fill(lowest_.begin(), lowest_.end(), INFINITY); }
 
-void GroundShadow::add_point(Vec3 p) {
+void GroundShadow::add_point(Vec3 p, const Cutaway& cutaway) {
+  if (cutaway.leaves_out(p)) return;
   const Vec3 d = p - centre_;
   const int column = int(std::floor((0.5 + 0.5 * dot(d, x_)) * kSize)),
             row = int(std::floor((0.5 + 0.5 * dot(d, y_)) * kSize));
@@ -35,7 +36,8 @@ void GroundShadow::add_point(Vec3 p) {
   texel = std::min(texel, float(dot(d, up_)));
 }
 
-void GroundShadow::add(const Surface& surface, std::span<const Vec3> position, std::size_t triangle_count) {
+void GroundShadow::add(const Surface& surface, std::span<const Vec3> position, std::size_t triangle_count,
+                       const Cutaway& cutaway) {
   const double texel = 2 / (kSize * norm(x_));  // side of a texel [m]
   for (std::size_t i = 0; i < triangle_count; ++i) {
     const auto& t = surface.triangle[i];
@@ -43,12 +45,12 @@ void GroundShadow::add(const Surface& surface, std::span<const Vec3> position, s
                c = position[std::size_t(t[2])] - a;
     const double longest = std::max({dot(b, b), dot(c, c), dot(b - c, b - c)});
     if (longest < texel * texel) {
-      add_point(a + (b + c) / 3.0);
+      add_point(a + (b + c) / 3.0, cutaway);
       continue;
     }
     const int parts = std::min(int(std::sqrt(longest) / texel) + 1, 64);  // points at most a texel apart
     for (int u = 0; u <= parts; ++u)
-      for (int v = 0; u + v <= parts; ++v) add_point(a + (double(u) / parts) * b + (double(v) / parts) * c);
+      for (int v = 0; u + v <= parts; ++v) add_point(a + (double(u) / parts) * b + (double(v) / parts) * c, cutaway);
   }
 }
 

@@ -7,6 +7,7 @@
 #include "core/model/organ.h"
 #include "studio/render/camera.h"
 #include "studio/render/frame.h"
+#include "studio/render/scene_view.h"
 
 namespace ctpm::render {
 
@@ -20,8 +21,8 @@ class GroundShadow {
   GroundShadow(Vec3 centre, Vec3 x, Vec3 y, Vec3 up, double reach);
 
   void clear();
-  /// Adds the first `triangle_count` triangles of a surface whose vertices are at `position`.
-  void add(const Surface& surface, std::span<const Vec3> position, std::size_t triangle_count);
+  /// Adds the first `triangle_count` triangles of a surface whose vertices are at `position`, but what is left out.
+  void add(const Surface& surface, std::span<const Vec3> position, std::size_t triangle_count, const Cutaway& cutaway);
   /// Darkness at a point of the ground [m], 0 to 1, of what was added before find_darkness(); 0 beyond its border.
   float darkness_at(Vec3 p) const;
   void find_darkness();
@@ -30,7 +31,7 @@ class GroundShadow {
   void draw(Frame& frame, const Mat4& clip_from_world);
 
  private:
-  void add_point(Vec3 p);
+  void add_point(Vec3 p, const Cutaway& cutaway);
   void blur(const std::vector<float>& from, std::vector<float>& to, double width);
 
   Vec3 centre_, half_x_, half_y_;

@@ -20,7 +20,6 @@ std::pair<Vec3, Vec3> tangents(Vec3 normal, Vec3 to_neighbour) {
 
 void OrganMesh::set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip,
                             const std::vector<float>& rind, const Shading& at_rest) {
-  constexpr double kStainsPerMetre = 72;
   lip_.assign(is_lip.begin(), is_lip.end());
   lip_.resize(surface.vertex.size(), 0.0f);
   rind_ = rind;

@@ -13,6 +13,9 @@ namespace ctpm::render {
 /// Floats of one vertex as the organ shader reads them: position, normal, rest position [m], crevice, stain, lip, rind.
 constexpr int kOrganVertexFloats = 13;
 
+/// How often the colour of tissue wanders.
+constexpr double kStainsPerMetre = 72;
+
 /// The moving vertices of one surface, computed for every picture.
 class OrganMesh {
  public:

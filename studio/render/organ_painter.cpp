@@ -25,15 +25,39 @@ Result<Done> OrganPainter::create(const Gl& gl, const SceneView& scene) {
       if (!made) return made.errors();
       programs_[std::size_t(pass)][cutaway] = *made;
     }
+  auto count = Program::create(gl, "count", count_shader().vertex, count_shader().fragment);
+  if (!count) return count.errors();
+  count_ = *count;
   drawn_ = std::make_unique<contact::DrawnSurfaces>(*scene.model);
+  rest_map_ = std::make_unique<cutting::RestMap>(*scene.model);
   for (std::size_t i = 0; i < scene.model->surfaces.size(); ++i) {
-    organs_.push_back({CutSurface(*scene.model, i), {}, {}, false});
-    VertexArray& array = organs_.back().array;
-    array.create(gl);
-    array.attribute(gl, 0, 3, 0, kOrganVertexFloats), array.attribute(gl, 1, 3, 3, kOrganVertexFloats);
-    array.attribute(gl, 2, 3, 6, kOrganVertexFloats), array.attribute(gl, 3, 4, 9, kOrganVertexFloats);
+    organs_.push_back({CutSurface(*scene.model, i), {}, {}, Section(*scene.model, *rest_map_, i), {}, {}, 0, false});
+    Organ& organ = organs_.back();
+    for (VertexArray* array : {&organ.array, &organ.section_array}) {
+      array->create(gl);
+      array->attribute(gl, 0, 3, 0, kOrganVertexFloats), array->attribute(gl, 1, 3, 3, kOrganVertexFloats);
+      array->attribute(gl, 2, 3, 6, kOrganVertexFloats), array->attribute(gl, 3, 4, 9, kOrganVertexFloats);
+    }
+    add_depth(gl, organ, scene.model->surfaces[i], scene.looks[i]);
   }
   return Done{};
+}
+
+/// The texture that tells how deep a place of a layered organ is.
+void OrganPainter::add_depth(const Gl& gl, Organ& organ, const Surface& surface, const OrganLook& look) {
+  if (look.layers.empty() || surface.triangle.empty()) return;
+  double thinnest = look.layers.front().to_depth;
+  for (std::size_t i = 1; i < look.layers.size(); ++i)
+    thinnest = std::min(thinnest, look.layers[i].to_depth - look.layers[i - 1].to_depth);
+  organ.depth = DepthField(surface, look.layers.back().to_depth, thinnest);
+  gl.GenTextures(1, &organ.depth_texture), gl.BindTexture(GL_TEXTURE_3D, organ.depth_texture);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    gl.TexParameteri(GL_TEXTURE_3D, filter, GL_LINEAR);
+  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+    gl.TexParameteri(GL_TEXTURE_3D, wrap, GL_CLAMP_TO_EDGE);
+  gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  gl.TexImage3D(GL_TEXTURE_3D, 0, GL_R32F, organ.depth.count[0], organ.depth.count[1], organ.depth.count[2], 0, GL_RED,
+                GL_FLOAT, organ.depth.depth.data());
 }
 
 void OrganPainter::update(const Gl& gl, const State& state) {
@@ -49,14 +73,26 @@ void OrganPainter::update(const Gl& gl, const State& state) {
   }
 }
 
-void OrganPainter::add_shadows(GroundShadow& shadow) const {
+void OrganPainter::update_sections(const Gl& gl, const State& state, const DrawOptions& options, double line_width) {
+  if (!options.cutaway.is_on() || options.view == View::both) return;
+  for (Organ& organ : organs_) {
+    organ.section.update(state, options.cutaway, organ.cut.surface(), organ.cut.outer_triangle_count(),
+                         organ.mesh.positions(), line_width);
+    organ.section_array.set_stream(gl, organ.section.vertices());
+    organ.section_array.set_indices(gl, organ.section.indices());
+  }
+}
+
+void OrganPainter::add_shadows(GroundShadow& shadow, const Cutaway& cutaway) const {
   for (const Organ& organ : organs_)
-    shadow.add(organ.cut.surface(), organ.mesh.positions(), organ.cut.outer_triangle_count());
+    shadow.add(organ.cut.surface(), organ.mesh.positions(), organ.cut.outer_triangle_count(), cutaway);
 }
 
 std::vector<const Program*> OrganPainter::programs(const DrawOptions& options) const {
   if (options.view == View::both) return {&program(OrganPass::glassy, options)};
-  return {&program(OrganPass::outside, options), &program(OrganPass::inside, options)};
+  std::vector<const Program*> used{&program(OrganPass::outside, options), &program(OrganPass::inside, options)};
+  if (options.cutaway.is_on()) used.insert(used.end(), {&programs_[std::size_t(OrganPass::inside)][false], &count_});
+  return used;
 }
 
 void OrganPainter::set_look(const Program& program, const OrganLook& look, const DrawOptions& options) {
@@ -107,20 +143,57 @@ void OrganPainter::draw(const Gl& gl, const SceneView& scene, const DrawOptions&
   if (glassy) gl.Enable(GL_BLEND), gl.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   for (std::size_t i = 0; i < organs_.size(); ++i) {
     Organ& organ = organs_[i];
-    // Surface and walls are watertight: inner faces are visible only through a cutaway.
-    const Order order = sort_triangles(organ, options.camera.eye, !glassy && options.cutaway.is_on());
+    const bool has_section = !glassy && options.cutaway.is_on();
+    const Order order = sort_triangles(organ, options.camera.eye, has_section);
     organ.array.set_indices(gl, indices_);
-    // Triangles that face the eye come first, because they hide most of the rest.
+    // Triangles that face the eye come first, because they hide most of the rest. Surface and walls are watertight:
+    // nobody sees an inner face.
     set_look(outside, scene.looks[i], options);
     draw_indices(0, order.facing);
-    if (glassy || order.wall + order.averted == 0) continue;
-    set_look(inside, scene.looks[i], options);
-    inside.set("is_wall", 1);
-    draw_indices(order.facing, order.wall);
-    inside.set("is_wall", 0);
-    draw_indices(order.facing + order.wall, order.averted);
+    if (glassy) continue;
+    if (order.wall > 0) {
+      set_look(inside, scene.looks[i], options);
+      set_layers(gl, inside, organ, scene.looks[i]);
+      draw_indices(order.facing, order.wall);
+    }
+    if (has_section) draw_section(gl, organ, scene.looks[i], options);
   }
   gl.Disable(GL_BLEND);
+}
+
+void OrganPainter::set_layers(const Gl& gl, const Program& program, const Organ& organ, const OrganLook& look) {
+  const std::size_t count = organ.depth_texture ? std::min(look.layers.size(), kMostLayerLooks) : 0;
+  program.set("layer_count", int(count));
+  if (count == 0) return;
+  gl.ActiveTexture(GL_TEXTURE0), gl.BindTexture(GL_TEXTURE_3D, organ.depth_texture);
+  program.set("depth_at_rest", 0), program.set("depth_low", organ.depth.low),
+      program.set("depth_size", organ.depth.size);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string at = "[" + std::to_string(i) + "]";
+    program.set(("layer_end" + at).c_str(), look.layers[i].to_depth);
+    program.set(("layer_colour" + at).c_str(), linear(look.layers[i].colour));
+  }
+}
+
+/// The plane is in tissue where the rest of a ray leaves the organ once more than it enters it.
+void OrganPainter::draw_section(const Gl& gl, const Organ& organ, const OrganLook& look, const DrawOptions& options) {
+  if (organ.section.indices().empty()) return;
+  gl.Enable(GL_STENCIL_TEST), gl.Clear(GL_STENCIL_BUFFER_BIT);
+  gl.Disable(GL_DEPTH_TEST), gl.DepthMask(GL_FALSE), gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  gl.StencilFunc(GL_ALWAYS, 0, 255);
+  gl.StencilOpSeparate(GL_FRONT, GL_KEEP, GL_KEEP, GL_DECR_WRAP);
+  gl.StencilOpSeparate(GL_BACK, GL_KEEP, GL_KEEP, GL_INCR_WRAP);
+  set_look(count_, look, options);
+  gl.BindVertexArray(organ.array.id);
+  gl.DrawElements(GL_TRIANGLES, organ.array.index_count, GL_UNSIGNED_INT, nullptr);
+  gl.Enable(GL_DEPTH_TEST), gl.DepthMask(GL_TRUE), gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  gl.StencilFunc(GL_NOTEQUAL, 0, 255), gl.StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  const Program& inside = programs_[std::size_t(OrganPass::inside)][false];
+  set_look(inside, look, options);
+  set_layers(gl, inside, organ, look);
+  gl.BindVertexArray(organ.section_array.id);
+  gl.DrawElements(GL_TRIANGLES, organ.section_array.index_count, GL_UNSIGNED_INT, nullptr);
+  gl.Disable(GL_STENCIL_TEST);
 }
 
 }  // namespace ctpm::render

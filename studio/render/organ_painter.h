@@ -4,11 +4,14 @@
 #include <vector>
 
 #include "core/contact/drawn_surfaces.h"
+#include "core/cutting/rest_map.h"
 #include "studio/render/cut_surface.h"
+#include "studio/render/depth_field.h"
 #include "studio/render/gl_objects.h"
 #include "studio/render/ground_shadow.h"
 #include "studio/render/organ_mesh.h"
 #include "studio/render/scene_view.h"
+#include "studio/render/section.h"
 #include "studio/render/shaders.h"
 
 namespace ctpm::render {
@@ -24,7 +27,9 @@ class OrganPainter {
 
   /// Deforms and splits the surfaces according to the state.
   void update(const Gl& gl, const State& state);
-  void add_shadows(GroundShadow& shadow) const;
+  /// Lays the plane of a cutaway through the organs as update() left them. `line_width` [m]: of the lines of cuts.
+  void update_sections(const Gl& gl, const State& state, const DrawOptions& options, double line_width);
+  void add_shadows(GroundShadow& shadow, const Cutaway& cutaway) const;
 
   /// The programs that draw() will use. The caller sets the light of each first.
   std::vector<const Program*> programs(const DrawOptions& options) const;
@@ -42,24 +47,34 @@ class OrganPainter {
     CutSurface cut;
     OrganMesh mesh;
     VertexArray array;
+    Section section;
+    VertexArray section_array;
+    DepthField depth;  ///< empty without layers
+    GLuint depth_texture = 0;
     bool is_set = false;
   };
 
-  /// Index ranges of one organ: triangles that face the eye, walls of cuts, triangles that face away.
+  /// Index ranges of one organ: triangles that face the eye, walls of cuts, triangles that face away, which only a
+  /// cutaway's section counts.
   struct Order {
     std::size_t facing = 0, wall = 0, averted = 0;  ///< counts of indices
   };
   Order sort_triangles(const Organ& organ, Vec3 eye, bool needs_averted);
 
   std::unique_ptr<contact::DrawnSurfaces> drawn_;
+  std::unique_ptr<cutting::RestMap> rest_map_;
   std::vector<Organ> organs_;
   std::vector<std::uint32_t> indices_, averted_;
   const Program& program(OrganPass pass, const DrawOptions& options) const {
     return programs_[std::size_t(pass)][options.cutaway.is_on()];
   }
   static void set_look(const Program& program, const OrganLook& look, const DrawOptions& options);
+  static void add_depth(const Gl& gl, Organ& organ, const Surface& surface, const OrganLook& look);
+  static void set_layers(const Gl& gl, const Program& program, const Organ& organ, const OrganLook& look);
+  void draw_section(const Gl& gl, const Organ& organ, const OrganLook& look, const DrawOptions& options);
 
   Program programs_[3][2];  ///< [OrganPass][has_cutaway]
+  Program count_;
 };
 
 }  // namespace ctpm::render

@@ -1,5 +1,4 @@
 #include "studio/render/overlay.h"
-#include "studio/output/number_text.h"
 
 #include <algorithm>
 #include <array>
@@ -7,6 +6,8 @@
 #include <map>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "studio/output/number_text.h"
 
 namespace ctpm::render {
 namespace {
@@ -106,6 +107,30 @@ void draw_panel(cv::Mat& rgb, const PixelBox& box, const Ink& tint, int opacity,
   }
 }
 
+/// How much of a panel is shown: less the nearer the tools are, so that they are never hidden.
+double share_shown(const PixelBox& box, const std::vector<Pixel>& tools, double reach) {
+  constexpr double kLeast = 0.12;
+  double nearest = reach;
+  for (const Pixel& p : tools) {
+    const double x = std::max({box.x - p.x, p.x - box.x - box.width, 0.0}),
+                 y = std::max({box.y - p.y, p.y - box.y - box.height, 0.0});
+    nearest = std::min(nearest, std::hypot(x, y));
+  }
+  return kLeast + (1 - kLeast) * nearest / reach;
+}
+
+/// The pixels below a panel, to let them shine through it afterwards.
+struct Beneath {
+  cv::Rect place;
+  cv::Mat before;
+  double shown = 1;
+
+  void shine_through(cv::Mat& rgb) const {
+    cv::Mat drawn = rgb(place);
+    cv::addWeighted(drawn, shown, before, 1 - shown, 0, drawn);
+  }
+};
+
 struct Line {
   PlacedText placed;
   Ink ink;
@@ -115,19 +140,11 @@ struct Line {
 /// All texts, and the panels behind them.
 struct Plan {
   std::vector<Line> lines;
-  PixelBox facts, plot, verdict, warning, legend;
+  PixelBox names, facts, plot, verdict, warning, legend, caption;
   PixelBox bar;    ///< the legend's colours
   PixelBox curve;  ///< inside of the plot
   double top_force = 1;
 };
-
-/// The next round number at or above `value`: 1, 2 or 5 times a power of ten.
-double round_up(double value) {
-  const double decade = std::pow(10.0, std::floor(std::log10(std::max(value, 1e-3))));
-  for (const double step : {1.0, 2.0, 5.0})
-    if (step * decade >= value * (1 - 1e-9)) return step * decade;
-  return 10 * decade;
-}
 
 bool is_too_deep(const OverlayData& data, const HandLoad& hand) {
   return !hand.is_blade && data.damage_depth > 0 && hand.depth > data.damage_depth;
@@ -144,7 +161,7 @@ std::string damage_text(const OverlayData& data) {
     if (is_too_deep(data, hand)) depth = std::max(depth, hand.depth);
     if (is_too_strong(data, hand)) force = std::max(force, hand.force);
   };
-  look_at(data.hand);
+  look_at(data.hand), look_at(data.worst);
   if (data.second) look_at(*data.second);
   if (depth > 0)
     text += " " + output::fixed(1000 * depth, 1) + " mm, limit " + output::fixed(1000 * data.damage_depth, 1) + " mm";
@@ -154,7 +171,49 @@ std::string damage_text(const OverlayData& data) {
   return text.empty() ? text : "TISSUE DAMAGE:" + text;
 }
 
+struct Fact {
+  std::string name, value;
+  bool is_bad = false;
+  bool is_detail = false;  ///< left out where there is little room
+};
+
+std::string counted(std::int64_t count, const std::string& thing) {
+  return count == 0 ? "" : std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+}
+
+/// What the panel says, row by row; rows without a value are left out.
+std::vector<Fact> facts_of(const OverlayData& data) {
+  const auto force_of = [&](const char* name, const HandLoad& hand) {
+    return Fact{name, output::fixed(hand.force, 3) + " N", is_too_strong(data, hand)};
+  };
+  const auto depth_of = [&](const std::string& which, const HandLoad& hand) {
+    return Fact{(!hand.is_blade  ? "depth"
+                 : which.empty() ? "deepest cut"
+                                 : "deepest") +
+                    which,
+                output::fixed(1000 * hand.depth, 2) + " mm", is_too_deep(data, hand)};
+  };
+  return {{"model", data.model, false, true},
+          {data.is_over ? "ended" : "time", output::fixed(data.time, 3) + " s"},
+          {"speed", data.pace ? output::fixed(*data.pace, 2) + " x" : ""},
+          {"clock behind", data.slip < 0.01 ? "" : output::fixed(data.slip, 2) + " s", true},
+          {"tick", std::to_string(data.tick), false, true},
+          force_of("force", data.hand),
+          depth_of("", data.hand),
+          data.second ? force_of("force 2", *data.second) : Fact{},
+          data.second ? depth_of(" 2", *data.second) : Fact{},
+          {"loose", counted(data.loose, "piece")},
+          {"inside out", counted(data.inside_out, "cell"), true}};
+}
+
 }  // namespace
+
+double round_up(double value) {
+  const double decade = std::pow(10.0, std::floor(std::log10(std::max(value, 1e-3))));
+  for (const double step : {1.0, 2.0, 5.0})
+    if (step * decade >= value * (1 - 1e-9)) return step * decade;
+  return 10 * decade;
+}
 
 double largest_force(const OverlayData& data) {
   double largest = 0;
@@ -164,16 +223,17 @@ double largest_force(const OverlayData& data) {
 }
 
 struct Overlay::Parts {
-  Parts(int w, int h)
+  Parts(int w, int h, double zoom)
       : width(w),
         height(h),
         is_narrow(w < 1.4 * h),
-        scale(std::min(w / (is_narrow ? 720.0 : 1280.0), h / 720.0)),
+        scale(zoom * std::min(w / (is_narrow ? 720.0 : 1280.0), h / 720.0)),
         small(std::max(5, px(17))),
         large(std::max(6, px(23))) {}
 
   int px(double at_720) const { return int(std::lround(at_720 * scale)); }
   Plan plan(const OverlayData& data);
+  void add_fact(const Fact& fact, int x, int y, int inner, Plan& plan);
   void plan_facts(const OverlayData& data, Plan& plan);
   void plan_plot(const OverlayData& data, Plan& plan);
   void plan_banners(const OverlayData& data, Plan& plan);
@@ -190,58 +250,47 @@ struct Overlay::Parts {
   Font small, large;
 };
 
-/// Top left: title, time, tick, force, depth, pieces that came loose, cells that are inside out.
+/// A name and its value, right-aligned, so that digits stand still.
+void Overlay::Parts::add_fact(const Fact& fact, int x, int y, int inner, Plan& plan) {
+  plan.lines.push_back(line(small, fact.name, x, y, kGrey));
+  Line shown = line(small, fact.value, 0, y, fact.is_bad ? kRed : kWhite);
+  shown.placed.box.x = x + inner - shown.placed.box.width;
+  plan.lines.push_back(shown);
+}
+
+/// Top left: title, session, time, tick, force, depth, pieces that came loose, cells that are inside out. In a narrow
+/// picture the names stand at the top and the rest is at the bottom right, so that the tool has the room above.
 void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
-  const int pad = px(16), step = px(28), x = px(20) + pad, inner = px(300);
-  int y = px(20) + pad;
-  if (!data.title.empty()) {
-    plan.lines.push_back(line(large, large.shortened(data.title, inner), x, y, kWhite));
-    y += px(38);
+  const int pad = px(16), step = px(28), margin = px(20), gap = px(16);
+  const bool is_short = is_narrow || data.level != OverlayLevel::full;
+  std::vector<Fact> facts = facts_of(data);
+  std::erase_if(facts, [&](const Fact& fact) { return fact.value.empty() || (is_short && fact.is_detail); });
+  const int most = width - 2 * margin - 2 * pad, label = small.width("session") + gap;
+  const std::string title = is_short ? "" : large.shortened(data.title, std::min(px(440), most));
+  const std::string session = small.shortened_inside(data.session, std::min(px(340), most - label));
+  int inner = px(300);
+  if (!is_narrow && !session.empty()) inner = std::max(inner, label + small.width(session));
+  inner = std::max(inner, large.width(title));
+  int x = margin + pad, y = margin + pad;
+  if (is_narrow && !session.empty()) {
+    const int names = label + small.width(session);
+    plan.names = {margin, margin, names + 2 * pad, px(43)};
+    add_fact({"session", session}, x, margin + px(13), names, plan);
+  } else if (!is_narrow) {
+    if (!title.empty()) plan.lines.push_back(line(large, title, x, y, kWhite)), y += px(38);
+    if (!session.empty()) add_fact({"session", session}, x, y, inner, plan), y += step;
   }
-  struct Fact {
-    std::string name, value;
-    bool is_bad = false;
-  };
-  const auto force_of = [&](const char* name, const HandLoad& hand) {
-    return Fact{name, output::fixed(hand.force, 3) + " N", is_too_strong(data, hand)};
-  };
-  const auto depth_of = [&](const std::string& which, const HandLoad& hand) {
-    return Fact{(!hand.is_blade  ? "depth"
-                 : which.empty() ? "cut depth"
-                                 : "cut") +
-                    which,
-                output::fixed(1000 * hand.depth, 2) + " mm", is_too_deep(data, hand)};
-  };
-  const std::array<Fact, 11> facts{
-      {{"session", small.shortened_inside(data.session, px(195))},
-       {"model", small.shortened(data.model, px(195))},
-       {data.is_over ? "ended" : "time", output::fixed(data.time, 3) + " s"},
-       {"clock behind", data.slip < 0.01 ? "" : output::fixed(data.slip, 2) + " s", true},
-       {"tick", std::to_string(data.tick)},
-       force_of("force", data.hand),
-       depth_of("", data.hand),
-       data.second ? force_of("force 2", *data.second) : Fact{},
-       data.second ? depth_of(" 2", *data.second) : Fact{},
-       {"loose", data.loose == 0 ? "" : std::to_string(data.loose) + (data.loose == 1 ? " piece" : " pieces")},
-       {"inside out",
-        data.inside_out == 0 ? "" : std::to_string(data.inside_out) + (data.inside_out == 1 ? " cell" : " cells"),
-        true}}};
-  for (const auto& [name, value, is_bad] : facts) {
-    if (value.empty()) continue;
-    plan.lines.push_back(line(small, name, x, y, kGrey));
-    Line shown = line(small, value, 0, y, is_bad ? kRed : kWhite);
-    shown.placed.box.x = x + inner - shown.placed.box.width;  // right-aligned, so that digits stand still
-    plan.lines.push_back(shown);
-    y += step;
-  }
-  plan.facts = {px(20), px(20), inner + 2 * pad, y - px(20) + pad - px(28 - 21)};
+  const int rows = int(facts.size()) * step + pad - px(7);
+  if (is_narrow) x = width - margin - pad - inner, y = height - margin - rows;
+  plan.facts = {x - pad, is_narrow ? y - pad : margin, inner + 2 * pad, (is_narrow ? pad : y - margin) + rows};
+  for (const Fact& fact : facts) add_fact(fact, x, y, inner, plan), y += step;
 }
 
 /// Bottom left: the force of the last seconds.
 void Overlay::Parts::plan_plot(const OverlayData& data, Plan& plan) {
-  if (data.history.empty()) return;
+  if (data.history.empty() || data.level != OverlayLevel::full) return;
   plan.top_force = round_up(std::max(data.least_top_force, largest_force(data)));
-  const int pad = px(16), w = px(332), h = px(160);
+  const int pad = px(16), w = is_narrow ? px(300) : px(332), h = px(160);
   plan.plot = {px(20), height - px(20) - h, w, h};
   const int title_x = plan.plot.x + pad, title_y = plan.plot.y + px(12);
   if (data.second) {
@@ -266,31 +315,12 @@ void Overlay::Parts::plan_plot(const OverlayData& data, Plan& plan) {
   plan.lines.push_back(now);
 }
 
-/// The verdict: top right, or below the facts. The damage warning: bottom right, or above the plot.
-void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
-  const int pad = px(16), margin = px(20), h = px(17) + 2 * px(13);
-  const auto banner = [&](const std::string& text, int y, const Ink& ink) {
-    const std::string shown = small.shortened(text, std::min(px(640), width - 2 * margin - 2 * pad));
-    const int w = small.width(shown) + 2 * pad;
-    const PixelBox box{is_narrow ? margin : width - margin - w, y, w, h};
-    plan.lines.push_back(line(small, shown, box.x + pad, y + px(13), ink));
-    return box;
-  };
-  if (!data.verdict.empty()) {
-    const Ink ink = data.verdict_tone == VerdictTone::good  ? kGreen
-                    : data.verdict_tone == VerdictTone::bad ? kAmber
-                                                            : kWhite;
-    plan.verdict = banner(data.verdict, is_narrow ? plan.facts.y + plan.facts.height + px(10) : margin, ink);
-  }
-  if (const std::string text = damage_text(data); !text.empty())
-    plan.warning = banner(text, is_narrow ? height - margin - px(160) - px(10) - h : height - margin - h, kWhite);
-}
-
-/// Bottom right, above the place of the warning.
+/// Bottom right, above the place of the warning, or above the facts.
 void Overlay::Parts::plan_legend(const OverlayData& data, Plan& plan) {
   if (data.legend.title.empty()) return;
   const int pad = px(16), w = px(250), h = px(98);
-  plan.legend = {width - px(20) - w, height - px(20) - h - (is_narrow ? 0 : px(43) + px(10)), w, h};
+  const int bottom = is_narrow ? plan.facts.y - px(10) : height - px(20) - px(43) - px(10);
+  plan.legend = {width - px(20) - w, bottom - h, w, h};
   const int x = plan.legend.x + pad, inner = w - 2 * pad, y = plan.legend.y + px(12);
   plan.lines.push_back(line(small, small.shortened(data.legend.title, inner), x, y, kGrey));
   plan.bar = {x, y + px(30), inner, px(16)};
@@ -298,6 +328,40 @@ void Overlay::Parts::plan_legend(const OverlayData& data, Plan& plan) {
   Line high = line(small, data.legend.high, 0, plan.bar.y + px(22), kWhite);
   high.placed.box.x = x + inner - high.placed.box.width;
   plan.lines.push_back(high);
+}
+
+/// The verdict: top right, or in a narrow picture beside or below the names. The damage warning: bottom right, or above
+/// all that stands at the bottom.
+void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
+  const int pad = px(16), margin = px(20), h = px(17) + 2 * px(13);
+  const auto banner = [&](const std::string& text, int y, bool is_right, const Ink& ink) {
+    const std::string shown = small.shortened(text, std::min(px(640), width - 2 * margin - 2 * pad));
+    const int w = small.width(shown) + 2 * pad;
+    const PixelBox box{is_right ? width - margin - w : margin, y, w, h};
+    plan.lines.push_back(line(small, shown, box.x + pad, y + px(13), ink));
+    return box;
+  };
+  const bool is_bad = data.verdict_tone == VerdictTone::bad;
+  if (!data.verdict.empty() && (is_bad || data.level == OverlayLevel::full)) {
+    const Ink ink = data.verdict_tone == VerdictTone::good ? kGreen : is_bad ? kAmber : kWhite;
+    const bool fits = plan.names.x + plan.names.width + px(10) + small.width(data.verdict) + 2 * pad + margin <= width;
+    plan.verdict = banner(data.verdict, fits || !is_narrow ? margin : margin + plan.names.height + px(10),
+                          fits || !is_narrow, ink);
+  }
+  if (data.level == OverlayLevel::none) return;
+  int bottom = height - margin;
+  if (is_narrow)
+    for (const PixelBox& box : {plan.facts, plan.plot, plan.legend})
+      if (box.height > 0) bottom = std::min(bottom, box.y - px(10));
+  const bool is_alone = data.level == OverlayLevel::caption;
+  if (const std::string text = damage_text(data); !text.empty() && !is_alone)
+    plan.warning = banner(text, bottom - h, !is_narrow, kWhite);
+  if (data.caption.empty()) return;
+  // In the middle, between the plot and the legend and above the warning.
+  const std::string text = large.shortened(data.caption, is_narrow || is_alone ? width - 2 * pad - px(10) : px(570));
+  const int wide = large.width(text) + 2 * pad, high = px(23) + 2 * px(13);
+  plan.caption = {(width - wide) / 2, is_alone ? height - high : bottom - h - px(10) - high, wide, high};
+  plan.lines.push_back(line(large, text, plan.caption.x + pad, plan.caption.y + px(13), kWhite));
 }
 
 void Overlay::Parts::draw_bar(cv::Mat& rgb, const Legend& legend, const PixelBox& bar) const {
@@ -320,7 +384,8 @@ void Overlay::Parts::draw_bar(cv::Mat& rgb, const Legend& legend, const PixelBox
 
 Plan Overlay::Parts::plan(const OverlayData& data) {
   Plan plan;
-  plan_facts(data, plan), plan_plot(data, plan), plan_banners(data, plan), plan_legend(data, plan);
+  if (data.level >= OverlayLevel::small) plan_facts(data, plan), plan_plot(data, plan), plan_legend(data, plan);
+  plan_banners(data, plan);
   return plan;
 }
 
@@ -347,7 +412,7 @@ void Overlay::Parts::draw_curve(cv::Mat& rgb, const OverlayData& data, const Pla
   draw(&ForcePoint::force, kAmber, {255, 225, 160});
 }
 
-Overlay::Overlay(int width, int height) : parts_(std::make_unique<Parts>(width, height)) {}
+Overlay::Overlay(int width, int height, double zoom) : parts_(std::make_unique<Parts>(width, height, zoom)) {}
 Overlay::~Overlay() = default;
 Overlay::Overlay(Overlay&&) noexcept = default;
 
@@ -357,14 +422,24 @@ void Overlay::draw(Frame& frame, const OverlayData& data) {
   cv::Mat rgb(frame.height, frame.width, CV_8UC3, frame.rgb.data());
   const Plan plan = parts_->plan(data);
   const int radius = parts_->px(10);
-  for (const PixelBox& box : {plan.facts, plan.plot, plan.verdict, plan.legend})
+  std::vector<Beneath> faded;
+  for (const PixelBox* panel :
+       {&plan.names, &plan.facts, &plan.plot, &plan.verdict, &plan.legend, &plan.warning, &plan.caption}) {
+    const PixelBox& box = *panel;
+    const cv::Rect place = cv::Rect(box.x, box.y, box.width, box.height) & cv::Rect(0, 0, rgb.cols, rgb.rows);
+    const bool must_stay = &box == &plan.verdict && data.verdict_tone == VerdictTone::bad;
+    const double shown = must_stay ? 1 : share_shown(box, data.tools, parts_->px(40));
+    if (shown < 1 && place.area() > 0) faded.push_back({place, rgb(place).clone(), shown});
+  }
+  for (const PixelBox& box : {plan.names, plan.facts, plan.plot, plan.verdict, plan.legend, plan.caption})
     draw_panel(rgb, box, {14, 19, 25}, 176, radius);
   draw_panel(rgb, plan.warning, {170, 24, 18}, 224, radius);
   for (const Line& line : plan.lines)
     (line.is_large ? parts_->large : parts_->small)
         .write(rgb, line.placed.box.x, line.placed.box.y, line.placed.text, line.ink);
-  if (!data.history.empty()) parts_->draw_curve(rgb, data, plan);
-  if (!data.legend.title.empty()) parts_->draw_bar(rgb, data.legend, plan.bar);
+  if (plan.plot.height > 0) parts_->draw_curve(rgb, data, plan);
+  if (plan.legend.height > 0) parts_->draw_bar(rgb, data.legend, plan.bar);
+  for (const Beneath& beneath : faded) beneath.shine_through(rgb);
 }
 
 std::vector<PlacedText> Overlay::layout(const OverlayData& data) {

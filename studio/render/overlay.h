@@ -27,15 +27,21 @@ struct HandLoad {
 
 enum class VerdictTone { none, good, bad };
 
+/// How much the overlay says. A bad verdict is shown at every level.
+enum class OverlayLevel { none, caption, small, full };
+
 /// The content of the overlay. Empty texts are left out; long ones are shortened with an ellipsis.
 struct OverlayData {
-  std::string title;     ///< of the scene
-  std::string model;     ///< structure of the tissue: "CTPM"
-  std::string session;   ///< which recording it is, if there may be several
-  double time = 0;       ///< [s]
-  bool is_over = false;  ///< the session has ended at `time`
+  std::string title;           ///< of the scene
+  std::string model;           ///< structure of the tissue: "CTPM"
+  std::string session;         ///< which recording it is, if there may be several
+  double time = 0;             ///< [s]
+  bool is_over = false;        ///< the session has ended at `time`
+  std::optional<double> pace;  ///< time of the session against that of the film; not shown if unset
   std::int64_t tick = 0;
+  OverlayLevel level = OverlayLevel::full;
   HandLoad hand;
+  HandLoad worst;                  ///< what was beyond a limit before; the warning of it stays
   std::optional<HandLoad> second;  ///< of the second hand, in a scene that has two
   std::int64_t loose = 0;          ///< pieces of tissue that came loose; not shown if 0
   std::int32_t inside_out = 0;     ///< tissue cells that are inside out; not shown if 0
@@ -44,11 +50,16 @@ struct OverlayData {
   double damage_force = 0;         ///< force beyond which the tissue is damaged [N]; 0: no limit
   std::string verdict;             ///< result of the replay, one line
   VerdictTone verdict_tone = VerdictTone::none;
+  std::string caption;              ///< what happens now
   std::vector<ForcePoint> history;  ///< in order of time; empty: no plot
   Legend legend;                    ///< of the view; not drawn without a title
   double plot_span = 5;             ///< time that the plot covers, up to now [s], > 0
   double least_top_force = 0.1;     ///< smallest upper end of the plot's axis [N], > 0
+  std::vector<Pixel> tools;         ///< points of the tools: panels near them fade
 };
+
+/// The next round number at or above `value`, at least 1e-3: 1, 2 or 5 times a power of ten.
+double round_up(double value);
 
 /// The largest force in the running plot [N].
 double largest_force(const OverlayData& data);
@@ -72,7 +83,8 @@ struct PlacedText {
 /// larger letters and stacked banners.
 class Overlay {
  public:
-  Overlay(int width, int height);
+  /// `zoom`: of letters and panels, for pictures that are looked at in small.
+  Overlay(int width, int height, double zoom = 1);
   ~Overlay();
   Overlay(Overlay&&) noexcept;
 

@@ -19,6 +19,7 @@ namespace ctpm::render {
 namespace {
 
 constexpr double kGroundExtent = 1.45;  // side of the ground that can be shaded, against the scene's size
+constexpr double kLineWidth = 0.004;    // of the line of a cut in a section, against the scene's size
 
 Vec3 unit(Vec3 v) { return v / norm(v); }
 
@@ -110,7 +111,7 @@ struct Renderer::Parts {
   VertexArray array_of(const ToolMesh& mesh) const;
   void draw_tools(const State& state, const DrawOptions& options);
   void draw_obstacles(const State& state, const DrawOptions& options);
-  void cast_shadow(DrawnObstacle& obstacle);
+  void cast_shadow(DrawnObstacle& obstacle, const Cutaway& cutaway);
   void draw_behind(const DrawOptions& options);
   void read_frame();
 };
@@ -292,16 +293,16 @@ void Renderer::Parts::draw_obstacles(const State& state, const DrawOptions& opti
   set_light(tool, state, options);
   tool.set("world_from_tool", rigid({}, {}));
   for (DrawnObstacle& obstacle : obstacles) {
-    if (obstacle.shadow) cast_shadow(obstacle);
+    if (obstacle.shadow) cast_shadow(obstacle, options.cutaway);
     gl().BindVertexArray(obstacle.array.id);
     gl().DrawElements(GL_TRIANGLES, obstacle.array.index_count, GL_UNSIGNED_INT, nullptr);
   }
 }
 
 /// Darkens the vertices of a level top where organs are above it.
-void Renderer::Parts::cast_shadow(DrawnObstacle& obstacle) {
+void Renderer::Parts::cast_shadow(DrawnObstacle& obstacle, const Cutaway& cutaway) {
   obstacle.shadow->clear();
-  organs.add_shadows(*obstacle.shadow);
+  organs.add_shadows(*obstacle.shadow, cutaway);
   obstacle.shadow->find_darkness();
   std::vector<float>& vertex = obstacle.mesh.mesh.vertex;
   for (std::size_t i = 0; i < obstacle.mesh.top_vertices; ++i) {
@@ -316,7 +317,7 @@ void Renderer::Parts::draw_behind(const DrawOptions& options) {
   frame.rgb = backdrop.rgb;
   if (!sees_ground(options)) return;
   shadow->clear();
-  organs.add_shadows(*shadow);
+  organs.add_shadows(*shadow, options.cutaway);
   shadow->draw(frame, clip);
 }
 
@@ -340,6 +341,33 @@ void Renderer::Parts::read_frame() {
       for (int c = 0; c < 3; ++c) to[c] = std::uint8_t(std::min(255u, from[c] + (to[c] * rest + 127) / 255));
     }
   }
+}
+
+std::vector<Pixel> Renderer::tool_points(const State& state, const DrawOptions& options) const {
+  constexpr double kApart = 16;  // [pixels]
+  const Parts& p = *parts_;
+  std::vector<Pixel> points, corner;
+  for (std::size_t number = 0; number < kMostHands; ++number) {
+    const Hand& hand = state.last_inputs.hand(number);
+    if (!p.held_tool(hand, options)) continue;
+    const ToolMesh& mesh = p.tool_meshes[std::size_t(hand.tool)];
+    corner.clear();
+    for (std::size_t i = 0; i < mesh.vertex.size(); i += 7) {
+      const Vec3 own{mesh.vertex[i], mesh.vertex[i + 1], mesh.vertex[i + 2]};
+      corner.push_back(project(options.camera, p.backdrop.width, p.backdrop.height,
+                               hand.position + rotate(hand.world_from_tool, own)));
+    }
+    for (std::size_t i = 0; i < mesh.index.size(); i += 3) {
+      const Pixel a = corner[mesh.index[i]], b = corner[mesh.index[i + 1]];
+      if (!(a.depth > 0 && b.depth > 0)) continue;
+      const int parts = int(std::min(std::hypot(b.x - a.x, b.y - a.y) / kApart, 200.0)) + 1;
+      for (int k = 0; k < parts; ++k) {
+        const double t = double(k) / parts;
+        points.push_back({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.depth});
+      }
+    }
+  }
+  return points;
 }
 
 Renderer::Renderer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -393,6 +421,7 @@ Frame Renderer::draw(const State& state, const DrawOptions& options) {
   p.draw_tools(state, options);
   p.draw_obstacles(state, options);
   if (options.view == View::surface || options.view == View::both) {
+    p.organs.update_sections(gl, state, options, kLineWidth * p.size);
     for (const Program* program : p.organs.programs(options)) p.set_light(*program, state, options);
     p.organs.draw(gl, p.scene, options);
   }

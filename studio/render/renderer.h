@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "core/model/result.h"
 #include "core/model/state.h"
@@ -20,6 +21,9 @@ class Renderer {
 
   /// The picture of a state.
   Frame draw(const State& state, const DrawOptions& options);
+
+  /// Points of the tools in that picture, so close that nothing of use fits between.
+  std::vector<Pixel> tool_points(const State& state, const DrawOptions& options) const;
 
   const SceneView& scene() const;
 

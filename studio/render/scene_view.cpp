@@ -17,11 +17,21 @@ OrganLook look_of(std::string_view organ_name) {
   return look;
 }
 
-Bounds rest_bounds(const SceneView& scene) {
+namespace {
+
+std::vector<Vec3> rest_points(const SceneView& scene) {
   std::vector<Vec3> points;
   for (const Surface& surface : scene.model->surfaces)
     points.insert(points.end(), surface.vertex.begin(), surface.vertex.end());
-  return bounds_of(points);
+  return points;
+}
+
+}  // namespace
+
+Bounds rest_bounds(const SceneView& scene) { return bounds_of(rest_points(scene)); }
+
+Camera fitted_camera(const SceneView& scene, Vec3 direction, Vec3 up, double fov_deg, double aspect) {
+  return fit_camera(rest_points(scene), direction, up, fov_deg, aspect);
 }
 
 Vec3 up_of(const Model& model) {
@@ -35,10 +45,7 @@ Camera default_camera(const SceneView& scene, double aspect) {
   side = side / norm(side);  // -y when z is up
   const Vec3 right = cross(up, side);
   const Vec3 from = side + 0.45 * -right + 0.62 * up;
-  std::vector<Vec3> points;
-  for (const Surface& surface : scene.model->surfaces)
-    points.insert(points.end(), surface.vertex.begin(), surface.vertex.end());
-  return fit_camera(points, -from, up, 32, aspect);
+  return fitted_camera(scene, -from, up, 32, aspect);
 }
 
 namespace {
@@ -54,10 +61,20 @@ double nearness(const Bounds& organs, const Hand& hand) {
   return t * t * (3 - 2 * t);
 }
 
+/// Where a hand is seen to work: a blade's tip is inside the tissue.
+Vec3 work_place(const Model& model, const Hand& hand) {
+  constexpr double kUpTheBlade = 0.4;
+  const bool is_blade = hand.tool >= 0 && std::size_t(hand.tool) < model.tools.size() &&
+                        model.tools[std::size_t(hand.tool)].kind == ToolKind::scalpel;
+  if (!is_blade) return hand.position;
+  const double length = model.tools[std::size_t(hand.tool)].blade_length;
+  return hand.position + rotate(hand.world_from_tool, {0, 0, kUpTheBlade * length});
+}
+
 }  // namespace
 
 Camera following_camera(const SceneView& scene, const Camera& base, std::span<const Inputs> moments) {
-  constexpr double kClosest = 0.5;  // of the base camera's distance
+  constexpr double kClosest = 0.6;  // of the base camera's distance
   const Bounds organs = rest_bounds(scene);
   // Weights rise and fall, so that the camera starts and stops smoothly after a sudden change.
   double sum = 0, near = 0;
@@ -65,8 +82,8 @@ Camera following_camera(const SceneView& scene, const Camera& base, std::span<co
   for (std::size_t i = 0; i < moments.size(); ++i) {
     const double age = std::min(1.0, (double(moments.size() - 1 - i) + 0.5) / kFollowedMoments);
     const double first = nearness(organs, moments[i]), second = nearness(organs, moments[i].second);
-    Vec3 place = moments[i].position;
-    if (second > 0) place += second / (first + second) * (moments[i].second.position - place);
+    Vec3 place = work_place(*scene.model, moments[i]);
+    if (second > 0) place += second / (first + second) * (work_place(*scene.model, moments[i].second) - place);
     const double weight = age * (1 - age), part = weight * std::max(first, second);
     sum += weight, near += part, pull += part * (place - base.target);
   }

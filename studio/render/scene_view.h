@@ -17,12 +17,22 @@ namespace ctpm::render {
 /// An sRGB colour, each part in [0, 1].
 using Colour = std::array<double, 3>;
 
+/// How a layer of an organ's tissue looks where it is cut.
+struct LayerLook {
+  double to_depth = 0;  ///< it ends here, below the surface at rest [m]
+  Colour colour{};
+};
+
+/// Most layers that an organ's picture tells apart; the deeper ones look like the inside.
+inline constexpr std::size_t kMostLayerLooks = 8;
+
 /// How one organ looks.
 struct OrganLook {
-  std::string name;                ///< of the organ
-  Colour outer{0.50, 0.17, 0.13};  ///< of its surface
-  Colour inner{0.46, 0.06, 0.06};  ///< of its inside, visible where it is cut
-  double wetness = 1;              ///< strength of specular reflection by a wet film, in [0, 1]
+  std::string name;                 ///< of the organ
+  Colour outer{0.50, 0.17, 0.13};   ///< of its surface
+  Colour inner{0.46, 0.06, 0.06};   ///< of its inside, visible where it is cut
+  double wetness = 1;               ///< strength of specular reflection by a wet film, in [0, 1]
+  std::vector<LayerLook> layers{};  ///< outermost first; empty: the outermost spheres are a little paler
 };
 
 /// The look of the tissue (liver, kidney, skin) that the organ's name contains; plain red for others.
@@ -40,6 +50,9 @@ Bounds rest_bounds(const SceneView& scene);
 
 /// Up in the scene: against gravity, +z without gravity.
 Vec3 up_of(const Model& model);
+
+/// A camera that looks along `direction` and frames all organs at rest.
+Camera fitted_camera(const SceneView& scene, Vec3 direction, Vec3 up, double fov_deg, double aspect);
 
 /// A camera in front of the scene, a little above it and to the right, that frames everything.
 Camera default_camera(const SceneView& scene, double aspect = 16.0 / 9);

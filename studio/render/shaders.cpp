@@ -106,12 +106,13 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 rest;
 layout(location = 3) in vec4 crevice_stain_lip_rind;
 uniform mat4 clip_from_world;
-uniform vec3 outer_colour, inner_colour, rind_colour;
-out vec3 p, q;
+uniform vec3 outer_colour;
+out vec3 p;
 #ifdef INSIDE
-out vec3 n, base;
-out float shadow;
+out vec3 n, at_rest;
+out vec3 shadow_stain_rind;
 #else
+out vec3 q;
 out Smooth slow;
 out float lip;
 #endif
@@ -119,11 +120,11 @@ void main() {
   float hollow = crevice_stain_lip_rind.x, stain = crevice_stain_lip_rind.y;
   float shade = tool_shade(position, normal) * ground_shade(position, normal) *
                 clamp(1.0 + 1.6 * min(hollow, 0.0), 0.35, 1.0);
-  p = position; q = bend(rest);
+  p = position;
 #ifdef INSIDE
-  n = normal; shadow = shade;
-  base = mix(inner_colour, rind_colour, crevice_stain_lip_rind.w) * (1.0 + 0.16 * stain);
+  n = normal; at_rest = rest; shadow_stain_rind = vec3(shade, stain, crevice_stain_lip_rind.w);
 #else
+  q = bend(rest);
   vec3 base = outer_colour * (1.0 + 0.20 * stain);
   base = mix(base, base * vec3(1.12, 0.86, 0.80), clamp(stain, 0.0, 1.0));
   base *= 1.0 + 0.6 * clamp(hollow, 0.0, 0.3);
@@ -150,14 +151,31 @@ vec4 relief(vec3 x) {
 }
 )";
 
+// The inside of an organ: of its outermost spheres and below, or of its layers of tissue by their depth at rest.
+const char* const kTissue = R"(
+uniform vec3 inner_colour, rind_colour;
+uniform int layer_count;
+uniform float layer_end[8];  // [m], ascending
+uniform vec3 layer_colour[8];
+uniform sampler3D depth_at_rest;
+uniform vec3 depth_low, depth_size;
+vec3 tissue_colour(vec3 rest, float rind) {
+  if (layer_count == 0) return mix(inner_colour, rind_colour, rind);
+  float depth = texture(depth_at_rest, (rest - depth_low) / depth_size).r, soft = 0.7 * fwidth(depth) + 1e-5;
+  vec3 c = inner_colour;
+  for (int i = layer_count - 1; i >= 0; --i)
+    c = mix(layer_colour[i], c, smoothstep(layer_end[i] - soft, layer_end[i] + soft, depth));
+  return c;
+}
+)";
+
 const char* const kOrganFragment = R"(
-in vec3 p, q;
+in vec3 p;
 #ifdef INSIDE
-in vec3 n, base;
-in float shadow;
-uniform int is_wall;
-uniform mat4 clip_from_world;
+in vec3 n, at_rest;
+in vec3 shadow_stain_rind;
 #else
+in vec3 q;
 in Smooth slow;
 in float lip;
 uniform vec3 lip_tint;
@@ -168,30 +186,16 @@ void main() {
 #ifdef CUTAWAY
   if (dot(p - cutaway_point, cutaway_normal) > 0.0) discard;
 #endif
-  vec3 place = q;
 #ifdef INSIDE
   const float kRough = 0.09, kStained = 0.13;
-  vec3 at = p, m = normalize(n);
-  float shade = shadow;
-  if (is_wall == 1 ? dot(m, eye - p) < 0.0 : !gl_FrontFacing) m = -m;
-  bool is_section = false;
-#ifdef CUTAWAY
-  // An inner side that one sees through the plane means solid tissue at the plane: draw the section there.
-  float above = dot(eye - cutaway_point, cutaway_normal), below = dot(p - cutaway_point, cutaway_normal);
-  is_section = !gl_FrontFacing && above > 0.0;
-  if (is_section) {
-    at = eye + (p - eye) * (above / (above - below));
-    m = cutaway_normal, place = bend(at), shade = tool_shade(at, m) * ground_shade(at, m);
-  }
-  vec4 clip = clip_from_world * vec4(at, 1.0);
-  gl_FragDepth = 0.5 + 0.5 * clip.z / clip.w;
-#endif
-  if (is_wall == 0 && !is_section) shade *= 0.45;
-  Smooth slow = smooth_light(at, m, base, shade, 0.55);
+  vec3 q = bend(at_rest), m = normalize(n);
+  if (dot(m, eye - p) < 0.0) m = -m;
+  vec3 base = tissue_colour(at_rest, shadow_stain_rind.z) * (1.0 + 0.16 * shadow_stain_rind.y);
+  Smooth slow = smooth_light(p, m, base, shadow_stain_rind.x, 0.55);
 #else
   const float kRough = 0.017, kStained = 0.035;
 #endif
-  vec4 fine = relief(place);
+  vec4 fine = relief(q);
   float to_key = -kRough * dot(fine.xyz, slow.key_side), to_eye = -kRough * dot(fine.xyz, slow.eye_side);
   float facing = slow.turn.x + to_eye;
   vec3 c = slow.body * (1.0 + kStained * fine.a + slow.turn.z * to_key);
@@ -209,6 +213,22 @@ void main() {
   colour = vec4(to_srgb(c), 1.0);
 #endif
 }
+)";
+
+// Counts how often a ray leaves an organ beyond the plane of a cutaway more than it enters it.
+const char* const kCountFragment = R"(
+in vec3 p;
+uniform vec3 cutaway_point, cutaway_normal;
+void main() {
+  if (dot(p - cutaway_point, cutaway_normal) > 0.0) discard;
+}
+)";
+
+const char* const kCountVertex = R"(
+layout(location = 0) in vec3 position;
+uniform mat4 clip_from_world;
+out vec3 p;
+void main() { p = position; gl_Position = clip_from_world * vec4(position, 1.0); }
 )";
 
 const char* const kToolVertex = R"(
@@ -342,8 +362,9 @@ ShaderSource organ_shader(OrganPass pass, bool has_cutaway) {
                                                        : "";
   const char* const cutaway = has_cutaway ? "#define CUTAWAY\n" : "";
   return {join({side, cutaway, kLight, kShade, kSmooth, kBend, kOrganVertex}),
-          join({side, cutaway, kLight, kShade, kSmooth, kBend, kRelief, kOrganFragment})};
+          join({side, cutaway, kLight, kShade, kSmooth, kBend, kRelief, kTissue, kOrganFragment})};
 }
+ShaderSource count_shader() { return {join({kCountVertex}), join({kCountFragment})}; }
 ShaderSource tool_shader() { return {join({kToolVertex}), join({kLight, kToolFragment})}; }
 ShaderSource sphere_shader() { return {join({kSphereVertex}), join({kLight, kShade, kSphereFragment})}; }
 ShaderSource rod_shader() { return {join({kRodVertex}), join({kLight, kShade, kRodFragment})}; }

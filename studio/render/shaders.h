@@ -13,12 +13,13 @@ struct ShaderSource {
 /// omits what it does not need.
 enum class OrganPass {
   outside,  ///< triangles that face the eye
-  inside,   ///< walls of cuts, inner faces, and with a cutaway the section
+  inside,   ///< walls of cuts, and with a cutaway the section
   glassy,   ///< the outside, transparent where it faces the eye
 };
 
 /// The shader's output has premultiplied alpha; the backdrop is composited behind it afterwards.
 ShaderSource organ_shader(OrganPass pass, bool has_cutaway);
+ShaderSource count_shader();  ///< without colour: which pixels show a cutaway's section
 ShaderSource tool_shader();
 ShaderSource sphere_shader();
 ShaderSource rod_shader();  ///< elements

@@ -1,6 +1,7 @@
 #include <filesystem>
 
 #include "recordings/session_reader.h"
+#include "studio/compare/matched_moments.h"
 #include "studio/film/export_video.h"
 #include "studio/output/json_writer.h"
 #include "studio/server/call_table.h"
@@ -10,6 +11,7 @@ namespace ctpm::server {
 Result<std::string> export_session(Parameters& parameters, const CallContext& context) {
   const std::string path = parameters.text("path"), output = parameters.text("output");
   const std::string beside = parameters.text_if("beside").value_or("");
+  const std::string align = parameters.text_if("align").value_or("");
   film::ExportOptions options;
   const std::string size = parameters.text_if("size").value_or("1280x720");
   options.fps = parameters.number_if("fps", 1, 240).value_or(options.fps);
@@ -20,6 +22,8 @@ Result<std::string> export_session(Parameters& parameters, const CallContext& co
   options.look.by = parameters.text_if("by").value_or("");
   options.look.cutaway = parameters.text_if("cutaway").value_or("");
   options.look.camera = parameters.text_if("camera").value_or("");
+  options.slow_at = parameters.text_if("slow_at").value_or("");
+  options.overlay = parameters.text_if("overlay").value_or(options.overlay);
   options.allow_diverged = parameters.flag("allow_diverged", false);
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
   const Result<render::PictureSize> parsed = render::parse_picture_size(size);
@@ -38,6 +42,11 @@ Result<std::string> export_session(Parameters& parameters, const CallContext& co
   }
   std::vector<recordings::SessionReader*> sessions;
   for (recordings::SessionReader& reader : readers) sessions.push_back(&reader);
+  if (sessions.size() == 2) {
+    Result<compare::MatchedMoments> matched = compare::match_sessions(*sessions[0], *sessions[1], align);
+    if (!matched) return matched.errors();
+    options.matched = std::move(*matched);
+  }
   options.progress = context.progress;
   options.should_stop = context.should_stop;
   const Result<film::ExportOutcome> outcome = film::export_video(sessions, *place, options);

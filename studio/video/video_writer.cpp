@@ -256,12 +256,17 @@ Result<Done> VideoWriter::add(const render::Frame& frame) {
   return Done{};
 }
 
-Result<VideoFacts> VideoWriter::finish() {
+Result<VideoFacts> VideoWriter::finish(const std::vector<Caption>& captions) {
   Parts& p = *parts_;
   if (p.is_finished) return Error{p.path, "the video is finished already", ""};
   p.is_finished = true;
   p.writer.release();
   Result<VideoFacts> facts = Error{p.path, "a video needs at least one frame", ""};
+  if (p.frames > 0 && p.path.ends_with(".mp4"))
+    if (const Result<Done> added = add_captions(p.part, captions); !added) {
+      p.discard();
+      return added.errors();
+    }
   if (p.frames > 0) facts = p.format.is_pictures() ? p.check_pictures() : p.check_file();
   if (facts)
     if (Errors errors = differences(*facts, p.frames, p.width, p.height); !errors.empty()) facts = errors;

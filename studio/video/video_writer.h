@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/model/result.h"
 #include "studio/render/frame.h"
+#include "studio/video/captions.h"
 
 namespace ctpm::video {
 
@@ -43,9 +45,9 @@ class VideoWriter {
   /// Appends a frame. Errors: a frame of another size, after finish().
   Result<Done> add(const render::Frame& frame);
 
-  /// Closes the file, reopens it, checks its size and number of frames, and renames it. Errors: no frame was added, the
-  /// file does not contain what was written.
-  Result<VideoFacts> finish();
+  /// Closes the file, gives an MP4 its captions, reopens it, checks its size and number of frames, and renames it.
+  /// Errors: no frame was added, the file does not contain what was written.
+  Result<VideoFacts> finish(const std::vector<Caption>& captions = {});
 
  private:
   struct Parts;

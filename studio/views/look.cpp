@@ -10,6 +10,7 @@
 
 #include "studio/output/number_text.h"
 #include "studio/output/option_name.h"
+#include "studio/views/wound_camera.h"
 
 namespace ctpm::views {
 namespace {
@@ -52,19 +53,6 @@ render::ElementQuantity find_quantity(const std::string& by, render::View view, 
   return render::ElementQuantity::stretch;
 }
 
-/// The legend's unit in SI: %, degrees, N.
-double unit_of(render::ElementQuantity quantity) {
-  switch (quantity) {
-    case render::ElementQuantity::stretch:
-      return 0.01;
-    case render::ElementQuantity::tilt:
-      return std::numbers::pi / 180;
-    case render::ElementQuantity::force:
-      return 1;
-  }
-  return 1;
-}
-
 /// The plane across `x`, `y` or `z`, through the scene's middle or a given position; it hides the side towards the eye.
 render::Cutaway find_cutaway(const std::string& text, const render::SceneView& scene, Vec3 eye, Errors& errors) {
   if (text.empty()) return {};
@@ -99,18 +87,86 @@ Result<render::Camera> find_camera(const scenes::SceneSpec& scene, const render:
   std::string known;
   for (const scenes::CameraSpec& camera : scene.cameras) {
     if (name.empty() || camera.name == name) {
-      // Cameras are set up for 16:9; in a narrower picture they step back to keep the sides visible.
+      // Cameras are set up for 16:9; in a narrower picture they step back to keep the sides visible, but no farther
+      // than shows the organs.
       const double back = std::max(1.0, 16.0 / 9 / aspect);
-      return render::Camera{camera.target + back * (camera.eye - camera.target), camera.target, camera.up,
-                            camera.field_of_view};
+      const render::Camera stepped{camera.target + back * (camera.eye - camera.target), camera.target, camera.up,
+                                   camera.field_of_view};
+      const render::Camera whole =
+          render::fitted_camera(view, camera.target - camera.eye, camera.up, camera.field_of_view, aspect);
+      const auto distance = [](const render::Camera& c) { return norm(c.eye - c.target); };
+      return back > 1 && distance(whole) < distance(stepped) ? whole : stepped;
     }
     known += (known.empty() ? "" : ", ") + camera.name;
   }
   return Error{output::option_name("look.camera"), "the scene has no camera '" + name + "'",
-               "there are: fitted, follow" + (known.empty() ? "" : ", " + known)};
+               "there are: fitted, wound, follow" + (known.empty() ? "" : ", " + known)};
+}
+
+bool is_axis(const std::string& cutaway) { return !cutaway.empty() && cutaway[0] >= 'x' && cutaway[0] <= 'z'; }
+
+/// Rather straight onto the section across an axis, from the usual camera's side of it.
+render::Camera section_camera(const render::SceneView& view, char axis, const render::Camera& usual, double aspect) {
+  constexpr double kUsual = 0.6;  // share of the usual direction
+  const Vec3 from = (usual.eye - usual.target) / norm(usual.eye - usual.target);
+  Vec3 across{axis == 'x' ? 1.0 : 0.0, axis == 'y' ? 1.0 : 0.0, axis == 'z' ? 1.0 : 0.0};
+  if (dot(from, across) < 0) across = -across;
+  return render::fitted_camera(view, -(across + kUsual * from), usual.up, usual.fov_deg, aspect);
+}
+
+/// Sets the camera of that name; see LookRequest::camera.
+void choose_camera(const std::string& name, const std::string& cutaway, const scenes::SceneSpec& scene,
+                   const render::SceneView& view, double aspect, const State* cut, Look& look, Errors& errors) {
+  const auto add = [&](const Errors& more) { errors.insert(errors.end(), more.begin(), more.end()); };
+  bool is_the_scenes = false;
+  for (const scenes::CameraSpec& camera : scene.cameras) is_the_scenes |= camera.name == name;
+  const bool is_fitted = name == "fitted" && !is_the_scenes, is_wound = name == "wound" && !is_the_scenes;
+  look.camera = name, look.follows = name == "follow" && !is_the_scenes;
+  if (is_fitted) {
+    look.draw.camera = render::default_camera(view, aspect);
+    return;
+  }
+  const bool is_free = name.empty() || is_wound || look.follows;
+  const Result<render::Camera> usual = find_camera(scene, view, is_free ? "" : name, aspect);
+  if (!usual) return add(usual.errors());
+  look.draw.camera = *usual;
+  if (name.empty()) look.camera = scene.cameras.empty() ? "fitted" : scene.cameras.front().name;
+  if (!is_free) return;
+  if (name.empty() && is_axis(cutaway)) {
+    look.draw.camera = section_camera(view, cutaway[0], *usual, aspect), look.camera = "section";
+    return;
+  }
+  std::optional<render::Camera> found;
+  if (cut) {
+    const Result<std::optional<render::Camera>> wound = wound_camera(view, *cut, *usual, aspect);
+    if (!wound) return add(wound.errors());
+    found = *wound;
+  }
+  if (!found && is_wound) errors.push_back({output::option_name("look.camera"), "got 'wound', and nothing is cut", ""});
+  if (!found) return;
+  if (look.follows) {
+    // It comes close by itself.
+    render::Camera& camera = look.draw.camera;
+    camera = render::fitted_camera(view, found->target - found->eye, found->up, found->fov_deg, aspect);
+    camera.eye += found->target - camera.target, camera.target = found->target;
+    return;
+  }
+  look.draw.camera = *found, look.camera = "wound";
 }
 
 }  // namespace
+
+double unit_of(render::ElementQuantity quantity) {
+  switch (quantity) {
+    case render::ElementQuantity::stretch:
+      return 0.01;
+    case render::ElementQuantity::tilt:
+      return std::numbers::pi / 180;
+    case render::ElementQuantity::force:
+      return 1;
+  }
+  return 1;
+}
 
 render::DrawOptions Look::at(const render::SceneView& scene, std::span<const Inputs> moments) const {
   render::DrawOptions options = draw;
@@ -119,7 +175,7 @@ render::DrawOptions Look::at(const render::SceneView& scene, std::span<const Inp
 }
 
 Result<Look> find_look(const LookRequest& request, const scenes::SceneSpec& scene, const render::SceneView& view,
-                       double aspect) {
+                       double aspect, const State* cut) {
   Errors errors;
   Look look;
   if (const std::optional<render::View> found = find_view(request.view, errors)) {
@@ -130,20 +186,7 @@ Result<Look> find_look(const LookRequest& request, const scenes::SceneSpec& scen
     errors.push_back({output::option_name("look.full_scale"),
                       "got " + output::fixed(request.full_scale, 3) + ", must be more than 0", ""});
   look.draw.full_scale = request.full_scale * unit_of(look.draw.quantity);
-  bool is_the_scenes = false;
-  for (const scenes::CameraSpec& camera : scene.cameras) is_the_scenes |= camera.name == request.camera;
-  look.camera = request.camera;
-  if (request.camera == "fitted" && !is_the_scenes) {
-    look.draw.camera = render::default_camera(view, aspect);
-  } else {
-    look.follows = request.camera == "follow" && !is_the_scenes;
-    const Result<render::Camera> camera = find_camera(scene, view, look.follows ? "" : request.camera, aspect);
-    if (camera)
-      look.draw.camera = *camera;
-    else
-      errors.insert(errors.end(), camera.errors().begin(), camera.errors().end());
-    if (look.camera.empty()) look.camera = scene.cameras.empty() ? "fitted" : scene.cameras.front().name;
-  }
+  choose_camera(request.camera, request.cutaway, scene, view, aspect, cut, look, errors);
   look.draw.cutaway = find_cutaway(request.cutaway, view, look.draw.camera.eye, errors);
   if (!errors.empty()) return errors;
   return look;

@@ -13,24 +13,32 @@ namespace ctpm::views {
 struct LookRequest {
   std::string view = "surface";  ///< surface, spheres, both or elements
   std::string by;                ///< quantity of the colours: layer (spheres); stretch, tilt or force (elements)
-  double full_scale = 0;         ///< value of the last colour [%, deg or N as in the legend]; 0: the default
+  double full_scale =
+      0;  ///< value of the last colour [%, deg or N as in the legend]; 0: in a film its own range, else the default
   std::string cutaway;  ///< axis of the cutting plane, alone or with a position [mm]: y=12.5; empty: no cutaway
-  std::string camera;   ///< a camera of the scene, `fitted` or `follow`; empty: the scene's first, else fitted
+  /// A camera of the scene, `fitted`, `wound` or `follow`. Empty: with a cutaway one that sees the section, else wound
+  /// where something is cut, else the scene's first, else fitted.
+  std::string camera;
 };
 
 /// The draw options and the camera of one scene.
 struct Look {
   render::DrawOptions draw;  ///< with the base camera
   bool follows = false;      ///< the camera follows the tool
-  std::string camera;        ///< its name: a camera of the scene, `fitted`, or `follow`
+  std::string camera;        ///< its name: a camera of the scene, `fitted`, `section`, `wound` or `follow`
 
   /// The options for one moment of the scene. `moments`: see following_camera().
   render::DrawOptions at(const render::SceneView& scene, std::span<const Inputs> moments) const;
 };
 
-/// Checks a request against a scene. Errors, all at once: an unknown view, quantity or camera (the known ones are
-/// listed); a quantity that the view does not have; a cutaway outside the organs.
+/// The unit of a quantity in legends and requests, in SI: %, degrees, N.
+double unit_of(render::ElementQuantity quantity);
+
+/// Checks a request against a scene. `cut`: a State whose wound a camera may look at; null: there is none. A camera
+/// that follows a tool to a wound sees it from where it is seen best. Errors, all at once: an unknown view, quantity or
+/// camera (the known ones are listed); a quantity that the view does not have; a cutaway outside the organs; `wound`
+/// where nothing is cut.
 Result<Look> find_look(const LookRequest& request, const scenes::SceneSpec& scene, const render::SceneView& view,
-                       double aspect);
+                       double aspect, const State* cut = nullptr);
 
 }  // namespace ctpm::views

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string_view>
 #include <utility>
 
+#include "scenes/presets.h"
 #include "studio/output/number_text.h"
 
 namespace ctpm::views {
@@ -19,6 +21,29 @@ constexpr NamedColour kMaterials[] = {{"orange", {0.90, 0.62, 0.00}},    {"blue"
                                       {"purple", {0.80, 0.47, 0.65}},    {"light blue", {0.34, 0.71, 0.91}},
                                       {"vermilion", {0.84, 0.37, 0.00}}, {"grey", {0.60, 0.60, 0.60}}};
 
+/// Tissues where they are cut, by the organ of their preset.
+constexpr NamedColour kTissues[] = {{"liver", {0.43, 0.07, 0.06}},  {"kidney", {0.56, 0.12, 0.11}},
+                                    {"skin", {0.90, 0.66, 0.58}},   {"fat", {0.93, 0.76, 0.36}},
+                                    {"muscle", {0.52, 0.13, 0.13}}, {"spleen", {0.40, 0.08, 0.14}}};
+
+std::string_view organ_of(const scenes::MaterialSpec& material) {
+  const scenes::MaterialPreset* preset = scenes::find_preset(material.preset);
+  return preset ? preset->organ : std::string_view();
+}
+
+/// A layer of the tissue below it, or of none that has a colour, is pale as a capsule is.
+render::Colour colour_of_layer(const scenes::OrganSpec& organ, std::size_t layer) {
+  const scenes::MaterialSpec& below =
+      layer + 1 < organ.layers.size() ? organ.layers[layer + 1].material : organ.material;
+  const std::string_view tissue = organ_of(organ.layers[layer].material);
+  if (tissue != organ_of(below))
+    for (const auto& [name, colour] : kTissues)
+      if (tissue == name) return colour;
+  constexpr double kPale = 0.25;
+  const auto paler = [](double inner) { return inner + kPale * (0.95 - inner); };
+  return {paler(organ.inner_color.x), paler(organ.inner_color.y), paler(organ.inner_color.z)};
+}
+
 std::string name_of(const scenes::MaterialSpec& material) {
   return material.preset.empty() ? "a material of its own" : material.preset;
 }
@@ -33,6 +58,8 @@ render::SceneView view_of(const scenes::SceneSpec& scene, const Model& model) {
     look.name = organ.name;
     look.outer = {organ.surface_color.x, organ.surface_color.y, organ.surface_color.z};
     look.inner = {organ.inner_color.x, organ.inner_color.y, organ.inner_color.z};
+    for (std::size_t layer = 0; layer < organ.layers.size(); ++layer)
+      look.layers.push_back({organ.layers[layer].to_depth, colour_of_layer(organ, layer)});
     view.looks.push_back(look);
   }
   return view;

@@ -133,9 +133,10 @@ TEST_F(Export, TheVideoOfACutShowsItsDepthWhetherOrNotTheCutIsShown) {
   const render_test::GlyphReader reader(1280, 720);
   const auto depth_at = [&](const std::string& from, const std::string& to) {
     const auto exported = run_ctpm(
-        {"export", session, "-o", "at-" + to + "/", "--fps", "10", "--from-s", from, "--to-s", to}, folder_.path());
+        {"export", session, "-o", "at-" + to + "/", "--fps", "10", "--camera", "front", "--from-s", from, "--to-s", to},
+        folder_.path());
     EXPECT_EQ(exported.code, 0) << exported.err;
-    return reader.read_after(picture("at-" + to, 1), "cut depth");
+    return reader.read_after(picture("at-" + to, 1), "deepest cut");
   };
   EXPECT_EQ(depth_at("0.4", "0.5"), "0.00 mm") << "the blade is in the hand, nothing is severed";
   const double deepest = std::atof(depth_at("3.5", "3.6").c_str());
@@ -199,7 +200,7 @@ TEST_F(Export, CtrlCLeavesNothingBehind) {
 TEST_F(Export, BesideSaysThatASessionHasEnded) {
   record("short.ctpm", "0.6");
   const auto both = run_ctpm({"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--from-s", "0.5",
-                              "--to-s", "0.8", "--speed", "3"},
+                              "--to-s", "0.8", "--speed", "3", "--align", "clock"},
                              folder_.path());
   ASSERT_EQ(both.code, 0) << both.err;
   render::Frame half = picture("both", 3);  // 0.8 s
@@ -214,8 +215,9 @@ TEST_F(Export, BesideSaysThatASessionHasEnded) {
 
 TEST_F(Export, BesideShowsTwoSessionsInStep) {
   record("short.ctpm", "0.6");
-  const auto both =
-      run_ctpm({"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--size", "640x180"}, folder_.path());
+  const auto both = run_ctpm({"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--size", "640x180",
+                              "--align", "clock", "--overlay", "none"},
+                             folder_.path());
   ASSERT_EQ(both.code, 0) << both.err;
   EXPECT_EQ(picture("both", 36).width, 640);
   // The same script on both sides: apart from the names the halves are alike, until one of them is over.
@@ -234,6 +236,120 @@ TEST_F(Export, BesideShowsTwoSessionsInStep) {
   const std::string json = sidecar("both/video");
   EXPECT_TRUE(holds(json, "\"file\": \"press.ctpm\"") && holds(json, "\"file\": \"short.ctpm\"")) << json;
   EXPECT_TRUE(holds(json, "\"last_tick\": 1200") && holds(json, "\"last_tick\": 600")) << json;
+}
+
+TEST_F(Export, BesideBringsTogetherWhatHappens) {
+  const std::string shipped = std::string(CTPM_SOURCE_DIR) + "/recordings/shipped/kidney-cut-";
+  const auto both = run_ctpm({"export", shipped + "expert.ctpm", "-o", "both/", "--beside", shipped + "clumsy.ctpm",
+                              "--align", "cut", "--fps", "20", "--from-s", "0.682", "--to-s", "0.782"},
+                             folder_.path());
+  ASSERT_EQ(both.code, 0) << both.err;
+  const render::Frame last =
+      picture("both", int(std::distance(fs::directory_iterator(folder_.path() / "both"), {})) - 1);
+  const render_test::GlyphReader reader(640, 720);
+  const char* names[] = {"expert.ctpm", "clumsy.ctpm"};
+  for (int half = 0; half < 2; ++half) {
+    render::Frame part = render::blank_frame(640, 720, 0, 0, 0);
+    for (int y = 0; y < 720; ++y)
+      std::copy_n(last.rgb.begin() + (y * 1280 + 640 * half) * 3, 640 * 3, part.rgb.begin() + y * 640 * 3);
+    auto session = recordings::SessionReader::open(shipped + names[half]);
+    ASSERT_TRUE(session);
+    const auto events = session->events();
+    const auto cut = std::find_if(events->begin(), events->end(),
+                                  [](const auto& event) { return event.kind == recordings::EventKind::cut; });
+    EXPECT_NEAR(std::atof(reader.read_after(part, "time").c_str()), double(cut->tick) * 1e-3, 1e-3) << names[half];
+    EXPECT_NE(reader.read_after(part, "speed"), "") << "a half that was slowed down says so";
+  }
+  const auto wrong =
+      run_ctpm({"export", "press.ctpm", "-o", "a.mp4", "--beside", "press.ctpm", "--align", "time"}, folder_.path());
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_TRUE(holds(wrong.err, "--align: error: got 'time', must be path, contact, cut or clock")) << wrong.err;
+  const auto none =
+      run_ctpm({"export", "press.ctpm", "-o", "a.mp4", "--beside", "press.ctpm", "--align", "cut"}, folder_.path());
+  EXPECT_EQ(none.code, 2);
+  EXPECT_TRUE(holds(none.err, "press.ctpm: error: has no cut")) << none.err;
+}
+
+TEST_F(Export, CaptionsAreReadBackAsSubtitlesAndChapters) {
+  const std::string session = std::string(CTPM_SOURCE_DIR) + "/recordings/shipped/kidney-cut-expert.ctpm";
+  const auto exported = run_ctpm(
+      {"export", session, "-o", "cut.mp4", "--size", "320x180", "--fps", "20", "--speed", "2"}, folder_.path());
+  ASSERT_EQ(exported.code, 0) << exported.err;
+  EXPECT_EQ(probe("cut.mp4"), "h264,320,180,20/1,54\n") << "the pictures are as many as before";
+  const auto ask = [&](const std::vector<std::string>& what) {
+    std::vector<std::string> command{"ffprobe", "-v", "error"};
+    command.insert(command.end(), what.begin(), what.end());
+    command.insert(command.end(), {"-of", "csv=p=0", "cut.mp4"});
+    const auto asked = run(command, folder_.path());
+    EXPECT_EQ(asked.code, 0) << asked.err;
+    EXPECT_EQ(asked.err, "");
+    return asked.out;
+  };
+  EXPECT_EQ(ask({"-select_streams", "s", "-show_entries", "stream=codec_name"}), "mov_text\n");
+  const std::string chapters = ask({"-show_entries", "chapter=start_time:chapter_tags=title"});
+  auto reader = recordings::SessionReader::open(session);
+  ASSERT_TRUE(reader);
+  const auto events = reader->events();
+  const auto cut = std::find_if(events->begin(), events->end(),
+                                [](const auto& event) { return event.kind == recordings::EventKind::cut; });
+  double start = -1;
+  std::istringstream lines(chapters);
+  for (std::string line; std::getline(lines, line);)
+    if (holds(line, "scalpel cuts")) start = std::atof(line.c_str());
+  EXPECT_NEAR(start, double(cut->tick) * 1e-3 / 2, 1.0 / 20) << chapters;
+  EXPECT_TRUE(holds(chapters, "kidney: kidney-cut-expert") && holds(chapters, "largest force: 4.42 N")) << chapters;
+  const auto words = run({"ffmpeg", "-v", "error", "-i", "cut.mp4", "-map", "0:s:0", "cut.srt"}, folder_.path());
+  ASSERT_EQ(words.code, 0) << words.err;
+  const std::string subtitles = testing::slurp(folder_.path() / "cut.srt");
+  EXPECT_TRUE(holds(subtitles, "scalpel cuts") && holds(subtitles, "00:00:00,350 --> ")) << subtitles;
+}
+
+TEST_F(Export, AContactSheetShowsMomentsThroughTheSession) {
+  ASSERT_EQ(run_ctpm({"export", "press.ctpm", "-o", "sheet.png"}, folder_.path()).code, 0);
+  ASSERT_EQ(folder_.list(), "press.ctpm sheet.png");
+  const auto page = render::read_picture((folder_.path() / "sheet.png").string());
+  ASSERT_TRUE(page);
+  ASSERT_EQ(page->width * 10000 + page->height, 12800720);
+  const auto tile = [&](int number) {
+    render::Frame part = render::blank_frame(320, 200, 0, 0, 0);  // without the words below
+    for (int y = 0; y < part.height; ++y)
+      std::copy_n(page->rgb.begin() + ((number / 4 * 240 + y) * 1280 + number % 4 * 320) * 3, 320 * 3,
+                  part.rgb.begin() + y * 320 * 3);
+    return part;
+  };
+  // The ball comes down: every picture differs from the one before.
+  for (int number = 1; number < 12; ++number) EXPECT_NE(tile(number), tile(number - 1)) << number;
+  const auto again = export_to("sheet.png");
+  EXPECT_EQ(again.code, 2);
+  EXPECT_TRUE(holds(again.err, "exists already")) << again.err;
+  const auto pair = export_to("pair.png", {"--beside", "press.ctpm"});
+  EXPECT_EQ(pair.code, 2);
+  EXPECT_TRUE(holds(pair.err, "--beside: error: is for videos")) << pair.err;
+}
+
+TEST_F(Export, TheOverlayCanBeLeftOutAndBadWordsAreRefused) {
+  const render_test::GlyphReader reader(1280, 720);
+  const auto shown = [&](const std::string& level) {
+    const auto exported =
+        run_ctpm({"export", "press.ctpm", "-o", level + "/", "--overlay", level, "--from-s", "1.1", "--to-s", "1.13"},
+                 folder_.path());
+    EXPECT_EQ(exported.code, 0) << exported.err;
+    return picture(level, 1);
+  };
+  const render::Frame none = shown("none"), small = shown("small"), full = shown("full");
+  for (const char* label : {"time", "force", "tick"}) EXPECT_EQ(reader.read_after(none, label), "") << label;
+  EXPECT_EQ(reader.read_after(small, "time"), "1.130 s");
+  EXPECT_EQ(reader.read_after(small, "tick"), "");
+  EXPECT_EQ(reader.read_after(full, "tick"), "1130");
+  for (const std::vector<std::string>& bad :
+       {std::vector<std::string>{"--slow-at", "cut,all"}, {"--slow-at", "cut", "--beside", "press.ctpm"}}) {
+    const auto refused = export_to("a.mp4", bad);
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_TRUE(holds(refused.err, "--slow-at: error: ")) << refused.err;
+  }
+  const auto wrong = export_to("a.mp4", {"--overlay", "some"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_TRUE(holds(wrong.err, "--overlay: error: got 'some', must be none, small or full")) << wrong.err;
 }
 
 /// A copy of a session in which one tick's state hash is not what the simulation gives.
@@ -283,6 +399,21 @@ TEST_F(Export, ASessionThatDiffersIsRefusedOrMarkedOnEveryFrame) {
   }
 }
 
+TEST_F(Export, ElementsAreColouredByTheirOwnRange) {
+  const auto range_of = [&](const std::string& by, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> options{"--view", "elements", "--by", by, "--from-s", "1.1", "--to-s", "1.13"};
+    options.insert(options.end(), more.begin(), more.end());
+    fs::remove_all(folder_.path() / "a");
+    EXPECT_EQ(export_to("a/", options).code, 0);
+    return value_of(sidecar("a/video"), "last_colour");
+  };
+  const std::string tilt = range_of("tilt"), stretch = range_of("stretch");
+  const double degrees = std::atof(tilt.c_str() + 1), percent = std::atof(stretch.c_str() + 1);
+  EXPECT_TRUE(degrees > 0 && degrees < 20) << tilt << ": the skin hardly tilts, 29 degrees would be one colour";
+  EXPECT_TRUE(percent > 0 && percent < 20) << stretch;
+  EXPECT_EQ(range_of("tilt", {"--full-scale", "12"}), "\"12\"") << "unless it is given";
+}
+
 TEST_F(Export, EveryViewShowsSomethingElse) {
   std::vector<render::Frame> seen;
   const std::vector<std::vector<std::string>> looks{
@@ -292,7 +423,7 @@ TEST_F(Export, EveryViewShowsSomethingElse) {
       {"--view", "elements"},
       {"--view", "elements", "--by", "tilt"},
       {"--view", "elements", "--by", "force"},
-      {"--view", "elements", "--by", "force", "--full-scale", "0.5"},
+      {"--view", "elements", "--by", "force", "--full-scale", "0.3"},
       {"--cutaway", "y"},
       {"--cutaway", "y=5"},
       {"--camera", "fitted"},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@
 namespace ctpm::render_test {
 
 /// Reads what the overlay wrote out of a picture, by matching each place with pictures of all characters. It
-/// knows what a character looks like, and that labels begin at the left of the upper half.
+/// knows what a character looks like, and how far from the left labels begin.
 class GlyphReader {
  public:
   /// For pictures of this size.
@@ -23,6 +24,7 @@ class GlyphReader {
       render::Frame frame = render::blank_frame(width, height, 60, 60, 60);
       overlay.draw(frame, data);
       for (const render::PlacedText& text : overlay.layout(data)) {
+        if (text.text == "time" || text.text == "session") labels_at_.insert(text.box.x);
         if (text.text != data.session) continue;
         const int space = space_width(width, height);
         glyphs_[c] = patch(frame, text.box.x + space, text.box.y, text.box.width - 2 * space, text.box.height);
@@ -40,8 +42,10 @@ class GlyphReader {
     for (const char c : label) paste(glyphs_.at(c), word, x), x += glyphs_.at(c).width;
     double best = kMatch;
     int at_x = -1, at_y = -1;
-    for (int y = 0; y + word.height < frame.height / 2; ++y)
-      for (int left = 0; left < frame.width / 16; ++left)
+    // In a wide picture all facts are in the upper half, and the plot below has a label of its own.
+    const int end = frame.width < 1.4 * frame.height ? frame.height : frame.height / 2;
+    for (int y = 0; y + word.height < end; ++y)
+      for (const int left : labels_at_)
         if (const double match = similarity(frame, left, y, word); match > best) best = match, at_x = left, at_y = y;
     return at_x < 0 ? "" : read_line(frame, at_x + word.width, at_y);
   }
@@ -123,6 +127,7 @@ class GlyphReader {
   }
 
   std::map<char, Patch> glyphs_;
+  std::set<int> labels_at_;  ///< [pixels] from the left
 };
 
 }  // namespace ctpm::render_test

@@ -14,7 +14,7 @@ render::OverlayData full_data() {
   render::OverlayData data;
   data.title = "Liver", data.model = "CTPM", data.session = "press";
   data.time = 12.345, data.tick = 12345, data.hand = {1.234, 0.0134}, data.damage_depth = 0.012;
-  data.loose = 2, data.inside_out = 3;
+  data.loose = 2, data.inside_out = 3, data.caption = "scalpel cuts";
   data.verdict = "Replay identical: 12345 of 12345 ticks", data.verdict_tone = render::VerdictTone::good;
   data.legend = {"stretch [%]", "-20", "+20", {{0.1, 0.2, 0.7}, {0.8, 0.8, 0.8}, {0.8, 0.1, 0.1}}, false};
   for (int i = 0; i <= 12345; i += 5) data.history.push_back({i * 1e-3, 1 + std::sin(i * 0.003)});
@@ -24,6 +24,7 @@ render::OverlayData full_data() {
 TEST(Overlay, TextsNeitherOverlapNorLeaveThePicture) {
   render::OverlayData long_winded = full_data();
   long_winded.title = std::string(200, 'W'), long_winded.verdict = std::string(300, 'M');
+  long_winded.caption = std::string(200, 'W');
   long_winded.tick = 999999999, long_winded.time = 99999.999, long_winded.hand.force = 12345.678;
   render::OverlayData two_hands = long_winded;
   two_hands.second = render::HandLoad{12345.678, 0.0134, true}, two_hands.slip = 99.9;
@@ -120,9 +121,10 @@ TEST(Overlay, LongNamesOfAPairCanBeToldApart) {
   for (const int width : {1280, 640}) {
     EXPECT_EQ(shown("expert", width), "expert");
     const std::string expert = shown("kidney-cut-expert", width), clumsy = shown("kidney-cut-clumsy", width);
-    EXPECT_TRUE(expert.starts_with("kidn") && expert.ends_with("pert")) << expert;
+    EXPECT_EQ(expert, "kidney-cut-expert") << "a name is not cut where there is room";
     EXPECT_NE(expert, clumsy);
-    EXPECT_LT(shown(std::string(200, 'W'), width).size(), 20u);
+    const std::string long_name = shown("expert" + std::string(200, 'W') + "second", width);
+    EXPECT_TRUE(long_name.starts_with("exp") && long_name.ends_with("nd")) << long_name;
   }
 }
 
@@ -140,9 +142,9 @@ TEST(Overlay, ShowsOnlyWhatThereIs) {
   EXPECT_TRUE(says("DAMAGE"));
   data.hand.is_blade = true;  // a cut is no damage
   EXPECT_FALSE(says("DAMAGE"));
-  EXPECT_TRUE(says("cut depth"));
+  EXPECT_TRUE(says("deepest cut"));
   data.hand.is_blade = false;
-  EXPECT_FALSE(says("cut depth"));
+  EXPECT_FALSE(says("deepest cut"));
   data.damage_depth = 0;  // a scene without a limit
   EXPECT_FALSE(says("DAMAGE"));
   data.damage_force = 1.2;
@@ -184,8 +186,54 @@ TEST(Overlay, ShowsForceAndDepthOfBothHands) {
   data.hand.depth = 0, data.second->depth = 0.0123;
   EXPECT_TRUE(says(1280, "DAMAGE: 12.3 mm")) << "either hand does damage";
   data.second->is_blade = true;
-  EXPECT_TRUE(says(1280, "cut 2"));
+  EXPECT_TRUE(says(1280, "deepest 2"));
   EXPECT_FALSE(says(1280, "DAMAGE"));
+}
+
+TEST(Overlay, AWarningOfDamageStays) {
+  render::OverlayData data = full_data();
+  data.hand.depth = 0.002, data.worst.depth = 0.0186;
+  const auto texts = render::Overlay(1280, 720).layout(data);
+  EXPECT_TRUE(std::ranges::any_of(
+      texts, [](const auto& placed) { return placed.text == "TISSUE DAMAGE: 18.6 mm, limit 12.0 mm"; }));
+}
+
+TEST(Overlay, LeavesOutWhatIsNotAskedForButNoBadVerdict) {
+  const auto count = [](const render::OverlayData& data) { return render::Overlay(1280, 720).layout(data).size(); };
+  render::OverlayData data = full_data();
+  const std::size_t full = count(data);
+  data.level = render::OverlayLevel::small;
+  EXPECT_LT(count(data), full - 8);
+  EXPECT_GT(count(data), 5u);
+  data.level = render::OverlayLevel::none;
+  EXPECT_EQ(count(data), 0u);
+  data.verdict_tone = render::VerdictTone::bad;
+  EXPECT_EQ(count(data), 1u);
+}
+
+TEST(Overlay, AToolShowsThroughThePanelBeforeIt) {
+  render::OverlayData data = full_data();
+  const auto change = [&](int x, int y) {
+    const render::Frame before = render::blank_frame(1280, 720, 200, 120, 90);
+    render::Frame frame = before;
+    render::Overlay(1280, 720).draw(frame, data);
+    const std::size_t i = std::size_t(y * 1280 + x) * 3;
+    return std::abs(frame.rgb[i] - before.rgb[i]);
+  };
+  constexpr int kX = 200, kY = 31, kPlotX = 300, kPlotY = 540;  // in panels, beside letters
+  const int facts = change(kX, kY), plot = change(kPlotX, kPlotY);
+  ASSERT_GT(std::min(facts, plot), 80);
+  data.tools = {{210, 100, 0.5}};
+  EXPECT_LT(change(kX, kY), 0.2 * facts);
+  EXPECT_EQ(change(kPlotX, kPlotY), plot) << "the others stay";
+  data.tools = {{800, 300, 0.5}};
+  EXPECT_EQ(change(kX, kY), facts);
+  constexpr int kVerdictX = 1255, kVerdictY = 30;
+  const int verdict = change(kVerdictX, kVerdictY);
+  data.tools = {{1200, 40, 0.5}};
+  EXPECT_LT(change(kVerdictX, kVerdictY), 0.2 * verdict);
+  data.verdict_tone = render::VerdictTone::bad;
+  EXPECT_EQ(change(kVerdictX, kVerdictY), verdict) << "a bad verdict is on every frame";
 }
 
 TEST(Overlay, SameDataGivesSamePixels) {

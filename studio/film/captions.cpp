@@ -1,0 +1,153 @@
+#include "studio/film/captions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include "studio/output/number_text.h"
+#include "studio/output/option_name.h"
+
+namespace ctpm::film {
+namespace {
+
+using Kind = Moment::Kind;
+
+std::optional<Moment> moment_of(const recordings::Event& event, const Model& model) {
+  using recordings::EventKind;
+  const std::string text = recordings::describe(event, model);
+  const std::string tool = event.tool >= 0 && std::size_t(event.tool) < model.tools.size()
+                               ? model.tools[std::size_t(event.tool)].name
+                               : std::string("tool");
+  switch (event.kind) {
+    case EventKind::contact_begins:
+      return Moment{event.tick, tool + " touches the tissue", Kind::contact};
+    case EventKind::cut:
+      return Moment{event.tick, tool + " cuts", Kind::cut};
+    case EventKind::damage: {
+      std::string limits;
+      if (event.depth > 0) limits = "deeper than " + output::short_number(1000 * event.depth_limit) + " mm";
+      if (event.force > 0)
+        limits +=
+            (limits.empty() ? "" : ", ") + std::string("more than ") + output::short_number(event.force_limit) + " N";
+      return Moment{event.tick, "tissue damage: " + (limits.empty() ? text : limits), Kind::damage};
+    }
+    case EventKind::piece_came_loose:
+      return Moment{event.tick, text, Kind::loose};
+    case EventKind::turned_inside_out:
+      return Moment{event.tick, text, Kind::inside_out};
+    default:
+      return std::nullopt;
+  }
+}
+
+/// The ticks of the largest force, and of the largest depth of a tool that is no blade.
+Result<Done> add_largest(recordings::SessionReader& session, std::vector<Moment>& moments) {
+  constexpr std::int64_t kReadTicks = 10000;  // held in memory at a time
+  const Model& model = session.start().model;
+  double force = 0, depth = 0;
+  std::int64_t force_tick = -1, depth_tick = -1;
+  for (std::int64_t from = 0; from < session.tick_count(); from += kReadTicks) {
+    const auto records = session.ticks(from, std::min(from + kReadTicks, session.tick_count()));
+    if (!records) return records.errors();
+    for (std::size_t i = 0; i < records->size(); ++i)
+      for (std::size_t hand = 0; hand < std::size_t(model.hands); ++hand) {
+        const stepping::HandReport report = (*records)[i].of_hand(hand);
+        const std::int32_t tool = (*records)[i].inputs.hand(hand).tool;
+        const bool is_blade = tool >= 0 && model.tools[std::size_t(tool)].kind == ToolKind::scalpel;
+        if (norm(report.tool_force) > force) force = norm(report.tool_force), force_tick = from + std::int64_t(i);
+        if (!is_blade && report.depth > depth) depth = report.depth, depth_tick = from + std::int64_t(i);
+      }
+  }
+  if (force_tick >= 0) moments.push_back({force_tick, "largest force: " + output::fixed(force, 2) + " N", Kind::force});
+  if (depth_tick >= 0)
+    moments.push_back({depth_tick, "deepest press: " + output::fixed(1000 * depth, 1) + " mm", Kind::deepest});
+  return Done{};
+}
+
+}  // namespace
+
+Result<std::vector<Moment>> all_moments(recordings::SessionReader& session) {
+  const Result<std::vector<recordings::Event>> events = session.events();
+  if (!events) return events.errors();
+  std::vector<Moment> all;
+  for (const recordings::Event& event : *events)
+    if (const std::optional<Moment> moment = moment_of(event, session.start().model)) all.push_back(*moment);
+  if (const Result<Done> added = add_largest(session, all); !added) return added.errors();
+  std::stable_sort(all.begin(), all.end(), [](const Moment& a, const Moment& b) { return a.tick < b.tick; });
+  return all;
+}
+
+std::vector<Moment> told_moments(const std::vector<Moment>& all, const std::string& title, double tick) {
+  constexpr double kApart = 0.7;  // [s]: of two that are nearer, the later in Kind is told
+  const auto apart = std::int64_t(kApart / tick);
+  std::vector<Moment> told{{0, title, Kind::title}};
+  for (const Moment& moment : all) {
+    const bool is_near = told.size() > 1 && moment.tick - told.back().tick < apart;
+    if (!is_near)
+      told.push_back(moment);
+    else if (moment.kind > told.back().kind)
+      told.back() = moment;
+  }
+  return told;
+}
+
+Result<std::vector<std::array<double, 2>>> slow_parts(const std::vector<Moment>& all, const std::string& words,
+                                                      double tick) {
+  constexpr double kBefore = 0.25, kAfter = 0.5;  // [s]
+  std::vector<Kind> kinds;
+  Errors errors;
+  std::istringstream list(words);
+  for (std::string word; std::getline(list, word, ',');) {
+    if (word == "cut")
+      kinds.push_back(Kind::cut);
+    else if (word == "damage")
+      kinds.push_back(Kind::damage);
+    else if (word == "worst")
+      kinds.insert(kinds.end(), {Kind::force, Kind::deepest});
+    else
+      errors.push_back({output::option_name("export.slow_at"),
+                        "got '" + word + "', must be cut, damage or worst, or some of them with commas between", ""});
+  }
+  if (!errors.empty()) return errors;
+  std::vector<std::array<double, 2>> parts;
+  for (const Moment& moment : all) {
+    if (std::find(kinds.begin(), kinds.end(), moment.kind) == kinds.end()) continue;
+    const double at = double(moment.tick) * tick;
+    if (!parts.empty() && at - kBefore <= parts.back()[1])
+      parts.back()[1] = at + kAfter;
+    else
+      parts.push_back({std::max(0.0, at - kBefore), at + kAfter});
+  }
+  return parts;
+}
+
+std::string words_at(const std::vector<Moment>& moments, std::int64_t tick, std::int64_t shown) {
+  const auto next = std::upper_bound(moments.begin(), moments.end(), tick,
+                                     [](std::int64_t now, const Moment& moment) { return now <= moment.tick; });
+  if (next == moments.begin() || tick - (next - 1)->tick > shown) return "";
+  return (next - 1)->text;
+}
+
+std::vector<video::Caption> captions_of(const std::vector<Moment>& moments, const FrameTicks& ticks, std::int64_t shown,
+                                        double fps) {
+  // The first frame after a tick; frames never go back.
+  const auto frame_after = [&](std::int64_t tick) {
+    std::int64_t low = 0, high = ticks.frame_count;
+    while (low < high) {
+      const std::int64_t middle = (low + high) / 2;
+      ticks.tick(middle) > tick ? high = middle : low = middle + 1;
+    }
+    return low;
+  };
+  std::vector<video::Caption> captions;
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    std::int64_t end = moments[i].tick + shown;
+    if (i + 1 < moments.size()) end = std::min(end, moments[i + 1].tick);
+    const std::int64_t from = frame_after(moments[i].tick), to = frame_after(end);
+    if (from < to) captions.push_back({double(from) / fps, double(to) / fps, moments[i].text});
+  }
+  return captions;
+}
+
+}  // namespace ctpm::film

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/model/result.h"
+#include "recordings/session_reader.h"
+#include "studio/film/schedule.h"
+#include "studio/video/captions.h"
+
+namespace ctpm::film {
+
+/// What happens at a moment of a session, in words.
+struct Moment {
+  std::int64_t tick = 0;
+  std::string text;
+  enum class Kind { title, contact, force, deepest, cut, loose, damage, inside_out } kind = Kind::title;
+};
+
+/// Everything that happens, in order of time. Errors: a damaged session.
+Result<std::vector<Moment>> all_moments(recordings::SessionReader& session);
+
+/// The parts of a session around its moments of some kinds, as ScheduleOptions::slow: words out of cut, damage and
+/// worst (the largest force and depth), with commas between. Errors: another word.
+Result<std::vector<std::array<double, 2>>> slow_parts(const std::vector<Moment>& all, const std::string& words,
+                                                      double tick);
+
+/// Seconds of a film at its own speed for which a moment's words are shown.
+inline constexpr double kCaptionSeconds = 2.5;
+
+/// Those that a film tells of, apart enough to be read, and the title before them.
+std::vector<Moment> told_moments(const std::vector<Moment>& all, const std::string& title, double tick);
+
+/// The words at a tick, `shown` ticks long unless others follow; empty: none.
+std::string words_at(const std::vector<Moment>& moments, std::int64_t tick, std::int64_t shown);
+
+/// The same as captions of a film of `fps` frames per second.
+std::vector<video::Caption> captions_of(const std::vector<Moment>& moments, const FrameTicks& ticks, std::int64_t shown,
+                                        double fps);
+
+}  // namespace ctpm::film

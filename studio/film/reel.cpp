@@ -1,0 +1,137 @@
+#include "studio/film/reel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "studio/render/element_values.h"
+#include "studio/views/view_of_scene.h"
+
+namespace ctpm::film {
+namespace {
+
+/// The largest element values of a session [1, rad or N], but for a few, rounded up: the range of their colours. From
+/// keyframes of the whole session, so that a part has the colours of the whole.
+Result<double> range_of(recordings::SessionReader& session, render::ElementQuantity quantity) {
+  constexpr std::size_t kMoments = 12;
+  constexpr double kShown = 0.995;  // of the elements of a moment
+  const Result<std::vector<std::int64_t>> keyframes = session.keyframe_ticks();
+  if (!keyframes) return keyframes.errors();
+  const std::size_t every = std::max<std::size_t>(1, keyframes->size() / kMoments);
+  double largest = 0;
+  std::vector<render::ElementValue> values;
+  for (std::size_t i = 0; i < keyframes->size(); i += every) {
+    const Result<recordings::Keyframe> keyframe = session.keyframe_at_or_before((*keyframes)[i]);
+    if (!keyframe) return keyframe.errors();
+    render::measure_elements(session.start().model, keyframe->state, quantity, values);
+    if (values.empty()) continue;
+    const auto shown = values.begin() + std::ptrdiff_t(kShown * double(values.size() - 1));
+    std::nth_element(values.begin(), shown, values.end(),
+                     [](const auto& a, const auto& b) { return std::abs(a.value) < std::abs(b.value); });
+    largest = std::max(largest, std::abs(shown->value));
+  }
+  return largest;
+}
+
+/// Of all halves the same range of colours, unless one is given.
+Result<Done> find_ranges(std::vector<Reel>& reels, const std::vector<recordings::SessionReader*>& sessions) {
+  render::DrawOptions& first = reels[0].look.draw;
+  if (first.view != render::View::elements || first.full_scale > 0) return Done{};
+  double largest = 0;
+  for (recordings::SessionReader* session : sessions) {
+    const Result<double> found = range_of(*session, first.quantity);
+    if (!found) return found.errors();
+    largest = std::max(largest, *found);
+  }
+  // In the legend's unit, so that its numbers are round.
+  const double unit = views::unit_of(first.quantity);
+  for (Reel& reel : reels)
+    if (largest > 0) reel.look.draw.full_scale = unit * render::round_up(largest / unit);
+  return Done{};
+}
+
+render::Frame draw_shot(Reel& reel, Shot& shot, double top_force) {
+  const render::DrawOptions draw = reel.look.at(reel.renderer->scene(), shot.moments);
+  render::Frame picture = reel.renderer->draw(shot.state, draw);
+  shot.overlay.tools = reel.renderer->tool_points(shot.state, draw);
+  shot.overlay.legend = render::legend_of(reel.film->model(), draw);
+  shot.overlay.least_top_force = std::max(shot.overlay.least_top_force, top_force);
+  reel.overlay->draw(picture, shot.overlay);
+  return picture;
+}
+
+}  // namespace
+
+std::optional<render::OverlayLevel> level_of(const std::string& name) {
+  if (name == "none") return render::OverlayLevel::none;
+  if (name == "small") return render::OverlayLevel::small;
+  if (name == "full") return render::OverlayLevel::full;
+  return std::nullopt;
+}
+
+Result<Shot> Reel::shoot(std::int64_t frame) const {
+  Result<Shot> shot = film->shoot(ticks.tick(frame));
+  if (!shot) return shot;
+  shot->overlay.level = level;
+  shot->overlay.caption = words_at(moments, ticks.tick(frame), told);
+  shot->overlay.is_over = frame >= ticks.ended;
+  if (shows_pace) shot->overlay.pace = shot->overlay.is_over ? 0 : speed * ticks.share(frame);
+  return shot;
+}
+
+Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, const render::PictureSize& size,
+                       const ExportOptions& options) {
+  Reel reel;
+  const Result<std::vector<Moment>> all = all_moments(session);
+  if (!all) return all.errors();
+  Result<std::unique_ptr<SessionFilm>> film = SessionFilm::create(session, ticks.range, options.allow_diverged);
+  if (!film) return film.errors();
+  reel.film = std::move(*film);
+  const Model& model = reel.film->model();
+  render::SceneView view = views::view_of(reel.film->scene(), model);
+  // The last keyframe of the session, so that a part is seen as the whole is.
+  const Result<recordings::Keyframe> late = session.keyframe_at_or_before(session.tick_count());
+  if (!late) return late.errors();
+  const Result<views::Look> look =
+      views::find_look(options.look, reel.film->scene(), view, double(size.width) / size.height, &late->state);
+  if (!look) return look.errors();
+  reel.look = *look;
+  Result<std::unique_ptr<render::Renderer>> renderer =
+      render::Renderer::create(size.width, size.height, std::move(view));
+  if (!renderer) return renderer.errors();
+  reel.renderer = std::move(*renderer);
+  reel.overlay = std::make_unique<render::Overlay>(size.width, size.height);
+  const std::string title = reel.film->scene().name + ": " + std::filesystem::path(session.path()).stem().string();
+  reel.moments = told_moments(*all, title, model.tick);
+  reel.told = std::llround(kCaptionSeconds * options.speed / model.tick);
+  reel.ticks = std::move(ticks), reel.speed = options.speed;
+  reel.shows_pace = options.speed != 1 || !options.matched.empty() || !options.slow_at.empty();
+  reel.level = level_of(options.overlay).value_or(reel.level);
+  return reel;
+}
+
+Result<Done> look_alike(std::vector<Reel>& reels, const std::vector<recordings::SessionReader*>& sessions) {
+  const auto box = [](const Reel& reel) { return render::rest_bounds(reel.renderer->scene()); };
+  for (std::size_t i = 1; i < reels.size(); ++i)
+    if (box(reels[i]).min == box(reels[0]).min && box(reels[i]).max == box(reels[0]).max) reels[i].look = reels[0].look;
+  return find_ranges(reels, sessions);
+}
+
+Result<double> largest_force(const std::vector<recordings::SessionReader*>& sessions) {
+  double largest = 0;
+  for (recordings::SessionReader* session : sessions) {
+    const Result<recordings::SessionStatistics> statistics = session->statistics();
+    if (!statistics) return statistics.errors();
+    largest = std::max(largest, statistics->max_force);
+  }
+  return largest;
+}
+
+render::Frame draw_shots(std::vector<Reel>& reels, std::vector<Shot>& shots, double top_force) {
+  render::Frame picture = draw_shot(reels[0], shots[0], top_force);
+  for (std::size_t i = 1; i < reels.size(); ++i)
+    picture = render::join_beside(picture, draw_shot(reels[i], shots[i], top_force));
+  return picture;
+}
+
+}  // namespace ctpm::film

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/model/result.h"
+#include "recordings/session_reader.h"
+#include "studio/film/captions.h"
+#include "studio/film/export_video.h"
+#include "studio/film/schedule.h"
+#include "studio/film/session_film.h"
+#include "studio/render/overlay.h"
+#include "studio/render/renderer.h"
+#include "studio/views/look.h"
+
+namespace ctpm::film {
+
+/// One session of the film with its replay, renderer and overlay.
+struct Reel {
+  std::unique_ptr<SessionFilm> film;
+  views::Look look;
+  std::unique_ptr<render::Renderer> renderer;
+  std::unique_ptr<render::Overlay> overlay;
+  FrameTicks ticks;
+  std::vector<Moment> moments;
+  std::int64_t told = 0;    ///< ticks for which a moment's words are shown
+  double speed = 1;         ///< of the film
+  bool shows_pace = false;  ///< where it is not that of the clock
+  render::OverlayLevel level = render::OverlayLevel::full;
+
+  /// The shot of a frame. A session that has ended keeps its last State and says so. Errors: see SessionFilm::shoot.
+  Result<Shot> shoot(std::int64_t frame) const;
+};
+
+/// The level of that name; none if there is none of that name.
+std::optional<render::OverlayLevel> level_of(const std::string& name);
+
+/// Errors: a damaged session, a look that the scene does not have, no OpenGL 3.3.
+Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, const render::PictureSize& size,
+                       const ExportOptions& options);
+
+/// Makes the reels of a film alike: of one scene all are seen as the first one is, wherever their wounds are; elements
+/// have one range of colours, that of the sessions unless one is given. Errors: a damaged session.
+Result<Done> look_alike(std::vector<Reel>& reels, const std::vector<recordings::SessionReader*>& sessions);
+
+/// The largest force of whole sessions [N]: a plot whose axis ends there stands still, whatever part is shown. Errors:
+/// a damaged session.
+Result<double> largest_force(const std::vector<recordings::SessionReader*>& sessions);
+
+/// All sessions at one moment, side by side; their plots have one scale.
+render::Frame draw_shots(std::vector<Reel>& reels, std::vector<Shot>& shots, double top_force);
+
+}  // namespace ctpm::film

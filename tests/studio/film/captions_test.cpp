@@ -1,0 +1,66 @@
+#include "studio/film/captions.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/studio/commands/run_program.h"
+
+namespace ctpm {
+namespace {
+
+using Kind = film::Moment::Kind;
+
+TEST(Captions, WordsAreShownAfterTheirMomentUntilOthersFollow) {
+  const std::vector<film::Moment> moments{
+      {0, "title", Kind::title}, {1000, "one", Kind::cut}, {1800, "two", Kind::cut}};
+  EXPECT_EQ(film::words_at(moments, 0, 2000), "");
+  EXPECT_EQ(film::words_at(moments, 1, 2000), "title");
+  EXPECT_EQ(film::words_at(moments, 1000, 2000), "title") << "the State before the tick is shown";
+  EXPECT_EQ(film::words_at(moments, 1001, 2000), "one");
+  EXPECT_EQ(film::words_at(moments, 1001, 500), "one");
+  EXPECT_EQ(film::words_at(moments, 1501, 500), "");
+  EXPECT_EQ(film::words_at(moments, 3800, 2000), "two");
+  EXPECT_EQ(film::words_at(moments, 3801, 2000), "");
+  EXPECT_EQ(film::words_at({}, 5, 2000), "");
+}
+
+TEST(Captions, TrackAndPictureSayTheSameInEveryFrame) {
+  const std::vector<film::Moment> moments{
+      {0, "title", Kind::title}, {333, "one", Kind::cut}, {1500, "two", Kind::cut}, {9999, "beyond", Kind::cut}};
+  // Slow in the middle, as where two sessions are matched.
+  film::FrameTicks ticks{{0, 2000}, 90, 90, {}, {}};
+  ticks.tick = [](std::int64_t frame) {
+    return frame < 20   ? 33 * frame
+           : frame < 60 ? 660 + 5 * (frame - 20)
+                        : std::min<std::int64_t>(860 + 38 * (frame - 60), 2000);
+  };
+  constexpr double kFps = 30;
+  for (const std::int64_t shown : {300, 5000}) {
+    const std::vector<video::Caption> captions = film::captions_of(moments, ticks, shown, kFps);
+    EXPECT_EQ(captions.size(), 3u);
+    for (std::int64_t frame = 0; frame < ticks.frame_count; ++frame) {
+      std::string said;
+      for (const video::Caption& caption : captions)
+        if ((double(frame) + 0.5) / kFps > caption.from_s && (double(frame) + 0.5) / kFps < caption.to_s)
+          said += caption.text;
+      EXPECT_EQ(said, film::words_at(moments, ticks.tick(frame), shown)) << frame;
+    }
+  }
+}
+
+TEST(Captions, AFileOfAnotherFormIsRefusedAndLeftAlone) {
+  const testing::TemporaryFolder folder;
+  const std::string path = (folder.path() / "a.mp4").string();
+  for (const std::string& content :
+       {std::string(), std::string("abc"), std::string(64, 'x'),
+        std::string("\0\0\0\x10moov1234567", 16) + std::string("\0\0\0\x10mdat12345678", 16)}) {
+    std::ofstream(path, std::ios::binary) << content;
+    EXPECT_FALSE(video::add_captions(path, {{0, 1, "words"}}));
+    EXPECT_EQ(testing::slurp(path), content);
+    EXPECT_TRUE(video::add_captions(path, {})) << "nothing to add";
+  }
+}
+
+}  // namespace
+}  // namespace ctpm

@@ -1,0 +1,133 @@
+#include "studio/film/schedule.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "studio/compare/matched_moments.h"
+#include "studio/film/captions.h"
+
+namespace ctpm {
+namespace {
+
+recordings::SessionReader shipped(const std::string& name) {
+  auto reader = recordings::SessionReader::open(std::string(CTPM_SOURCE_DIR) + "/recordings/shipped/" + name);
+  EXPECT_TRUE(reader) << name;
+  return *std::move(reader);
+}
+
+class Schedule : public ::testing::Test {
+ protected:
+  static constexpr double kFrame = 1.0 / 30;
+  recordings::SessionReader expert_ = shipped("kidney-cut-expert.ctpm"), clumsy_ = shipped("kidney-cut-clumsy.ctpm");
+
+  std::vector<film::FrameTicks> by(const std::string& word, const session::TimeRange& range = {}) {
+    auto matched = compare::match_sessions(expert_, clumsy_, word);
+    EXPECT_TRUE(matched) << word;
+    auto made = film::schedule({&expert_, &clumsy_}, {range, kFrame, *matched, {}});
+    EXPECT_TRUE(made) << word;
+    return *std::move(made);
+  }
+  static std::int64_t first(recordings::SessionReader& session, recordings::EventKind kind) {
+    const auto events = session.events();
+    for (const recordings::Event& event : *events)
+      if (event.kind == kind) return event.tick;
+    return -1;
+  }
+};
+
+TEST_F(Schedule, ByTheClockBothAreAtOneTimeUntilOneEnds) {
+  const auto ticks = by("clock");
+  ASSERT_EQ(ticks.size(), 2u);
+  EXPECT_EQ(ticks[0].frame_count, std::llround(std::ceil(double(clumsy_.tick_count()) / 1000 * 30)));
+  for (std::int64_t frame = 0; frame < ticks[0].ended - 1; ++frame)
+    EXPECT_EQ(ticks[0].tick(frame), ticks[1].tick(frame));
+  EXPECT_EQ(ticks[0].tick(ticks[0].ended), expert_.tick_count());
+}
+
+TEST_F(Schedule, WhatHappensIsSeenTogether) {
+  for (const auto& [word, kind] :
+       {std::pair{"contact", recordings::EventKind::contact_begins}, std::pair{"cut", recordings::EventKind::cut}}) {
+    const auto ticks = by(word);
+    std::int64_t frame = 0;
+    while (ticks[0].tick(frame) < first(expert_, kind)) ++frame;
+    EXPECT_NEAR(double(ticks[1].tick(frame)), double(first(clumsy_, kind)), 1000 * kFrame + 1) << word;
+  }
+}
+
+TEST_F(Schedule, NothingIsLeftOutNothingIsHurriedAndNoHalfStandsStillForLong) {
+  for (const char* word : {"path", "contact", "cut", ""}) {
+    const auto ticks = by(word);
+    for (std::size_t half = 0; half < 2; ++half) {
+      const std::int64_t frames = ticks[half].frame_count;
+      EXPECT_EQ(ticks[half].tick(frames - 1), (half ? clumsy_ : expert_).tick_count()) << word;
+      std::int64_t before = 0, still = 0;
+      for (std::int64_t frame = 0; frame < frames; ++frame) {
+        const std::int64_t now = ticks[half].tick(frame), passed = now - before;
+        EXPECT_GE(passed, 0);
+        EXPECT_LE(double(passed), 1000 * kFrame + 1.001) << word << " " << frame;
+        EXPECT_GE(ticks[half].share(frame), 0);
+        EXPECT_LE(ticks[half].share(frame), 1 + 1e-9);
+        still += passed == 0;
+        before = now;
+      }
+      EXPECT_LT(double(still), 0.25 * double(frames)) << word;
+    }
+  }
+}
+
+TEST_F(Schedule, AlongThePathTheToolsAreNearEachOther) {
+  const auto ticks = by("path"), clock = by("clock");
+  const auto apart = [&](const std::vector<film::FrameTicks>& shown) {
+    const auto a = expert_.ticks(0, expert_.tick_count()), b = clumsy_.ticks(0, clumsy_.tick_count());
+    double sum = 0;
+    for (std::int64_t frame = 0; frame < shown[0].frame_count; ++frame) {
+      const auto at = [&](const auto& records, std::int64_t tick) {
+        return (*records)[std::size_t(std::max<std::int64_t>(tick - 1, 0))].inputs.position;
+      };
+      sum += norm(at(a, shown[0].tick(frame)) - at(b, shown[1].tick(frame)));
+    }
+    return sum / double(shown[0].frame_count);
+  };
+  EXPECT_LT(apart(ticks), 0.8 * apart(clock));
+}
+
+TEST_F(Schedule, SlowPartsTakeFourTimesAsLongAndNothingElseDoes) {
+  const auto all = film::all_moments(expert_);
+  ASSERT_TRUE(all);
+  const auto slow = film::slow_parts(*all, "cut,worst", 1e-3);
+  ASSERT_TRUE(slow);
+  ASSERT_EQ(slow->size(), 2u) << "the cut begins, and later the force is largest";
+  const auto ticks = film::schedule({&expert_}, {{}, kFrame, {}, *slow});
+  ASSERT_TRUE(ticks);
+  const film::FrameTicks& shown = ticks->front();
+  const double whole = double(expert_.tick_count()) * 1e-3, slowed = 2 * 0.75;
+  EXPECT_NEAR(double(shown.frame_count) * kFrame, whole + (film::kSlower - 1) * slowed, 2 * kFrame);
+  EXPECT_EQ(shown.tick(shown.frame_count - 1), expert_.tick_count());
+  for (std::int64_t frame = 1; frame + 1 < shown.frame_count; ++frame) {
+    const double at = double(shown.tick(frame)) * 1e-3, passed = double(shown.tick(frame) - shown.tick(frame - 1));
+    bool is_slow = false, is_edge = false;
+    for (const auto& [from, to] : *slow) {
+      is_slow |= at > from && at <= to;
+      for (const double edge : {from, to}) is_edge |= std::abs(at - edge) < 1.1 * kFrame;
+    }
+    if (is_edge) continue;
+    EXPECT_NEAR(passed, 1000 * kFrame / (is_slow ? film::kSlower : 1), 1.01) << at;
+  }
+  for (const auto& [from, to] : *slow) EXPECT_NEAR(to - from, 0.75, 1e-9);
+  EXPECT_NEAR((*slow)[0][0] + 0.25, double(first(expert_, recordings::EventKind::cut)) * 1e-3, 1e-9);
+  EXPECT_FALSE(film::slow_parts(*all, "cut,all", 1e-3));
+  EXPECT_EQ(film::slow_parts(*all, "damage", 1e-3)->size(), 0u);
+}
+
+TEST_F(Schedule, APartIsThatOfTheFirstSession) {
+  const auto whole = by("cut"), part = by("cut", {.from_s = 2, .to_s = 3});
+  EXPECT_EQ(part[0].range.from, 2000);
+  EXPECT_NEAR(double(part[0].tick(part[0].frame_count - 1)), 3000, 1);
+  std::int64_t frame = 0;
+  while (whole[0].tick(frame) < 2000) ++frame;
+  EXPECT_NEAR(double(part[1].range.from), double(whole[1].tick(frame)), 1000 * kFrame + 1);
+}
+
+}  // namespace
+}  // namespace ctpm

@@ -1,0 +1,106 @@
+#include "studio/views/wound_camera.h"
+
+#include <gtest/gtest.h>
+
+#include "recordings/session_reader.h"
+#include "scenes/scene_file.h"
+#include "studio/render/renderer.h"
+#include "studio/views/look.h"
+#include "studio/views/view_of_scene.h"
+
+namespace ctpm {
+namespace {
+
+constexpr double kAspect = 16.0 / 9;
+
+/// The expert's cut, and what shows it: the wound in green, the organ in grey.
+class WoundCamera : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    auto opened =
+        recordings::SessionReader::open(std::string(CTPM_SOURCE_DIR) + "/recordings/shipped/kidney-cut-expert.ctpm");
+    ASSERT_TRUE(opened);
+    reader_ = std::make_unique<recordings::SessionReader>(*std::move(opened));
+    auto text = scenes::read_scene(reader_->start().scene_text, "scene");
+    ASSERT_TRUE(text);
+    scene_ = text->spec;
+    view_ = views::view_of(scene_, reader_->start().model);
+    auto late = reader_->keyframe_at_or_before(reader_->tick_count());
+    ASSERT_TRUE(late);
+    cut_ = late->state;
+  }
+
+  int green(const render::Camera& camera) {
+    render::SceneView plain{view_.model, {{"organ", {0.25, 0.25, 0.25}, {0, 0.9, 0}, 0, {}}}, {}};
+    auto renderer = render::Renderer::create(640, 360, plain);
+    EXPECT_TRUE(renderer);
+    render::DrawOptions options;
+    options.camera = camera, options.show_tool = false;
+    const render::Frame frame = (*renderer)->draw(cut_, options);
+    int count = 0;
+    for (std::size_t i = 0; i < frame.rgb.size(); i += 3)
+      count += frame.rgb[i + 1] > frame.rgb[i] + 25 && frame.rgb[i + 1] > frame.rgb[i + 2] + 25;
+    return count;
+  }
+  views::Look look(const std::string& camera, const State* cut) {
+    views::LookRequest request;
+    request.camera = camera;
+    auto found = views::find_look(request, scene_, view_, kAspect, cut);
+    EXPECT_TRUE(found) << camera;
+    return *found;
+  }
+
+  std::unique_ptr<recordings::SessionReader> reader_;
+  scenes::SceneSpec scene_;
+  render::SceneView view_;
+  State cut_;
+};
+
+TEST_F(WoundCamera, ShowsMoreOfTheCutThanTheScenesCameras) {
+  const views::Look chosen = look("", &cut_);
+  EXPECT_EQ(chosen.camera, "wound");
+  for (const char* name : {"front", "side"})
+    EXPECT_GT(green(chosen.draw.camera), 2 * green(look(name, &cut_).draw.camera)) << name;
+  EXPECT_GT(green(chosen.draw.camera), green(look("cut", &cut_).draw.camera));
+  EXPECT_GT(green(look("follow", &cut_).draw.camera), 2 * green(look("front", &cut_).draw.camera)) << "its base";
+}
+
+TEST_F(WoundCamera, TheWoundAndTheOrgansMiddleAreInThePicture) {
+  const render::Camera camera = look("wound", &cut_).draw.camera;
+  for (std::size_t row = 0; row < cut_.swept.size(); row += 7) {
+    const render::Pixel at = render::project(camera, 1280, 720, cut_.swept[row]);
+    if (cut_.swept[row].z > 0.05) continue;  // above the organ
+    EXPECT_TRUE(at.x > 200 && at.x < 1080 && at.y > 100 && at.y < 620) << at.x << ", " << at.y;
+  }
+}
+
+TEST_F(WoundCamera, ASectionIsSeenFromItsFront) {
+  for (const char* cutaway : {"x", "y=2", "z=30"}) {
+    views::LookRequest request;
+    request.cutaway = cutaway;
+    const auto found = views::find_look(request, scene_, view_, kAspect, &cut_);
+    ASSERT_TRUE(found) << cutaway;
+    const render::Camera& camera = found->draw.camera;
+    EXPECT_GT(dot(camera.eye - camera.target, found->draw.cutaway.normal), 0.8 * norm(camera.eye - camera.target))
+        << cutaway;
+    request.camera = "front";
+    EXPECT_EQ(views::find_look(request, scene_, view_, kAspect, &cut_)->camera, "front") << "unless one is named";
+  }
+}
+
+TEST_F(WoundCamera, IsTheSameEveryTimeAndTheScenesWhereNothingIsCut) {
+  const render::Camera one = look("", &cut_).draw.camera, other = look("", &cut_).draw.camera;
+  EXPECT_EQ(one.eye, other.eye);
+  EXPECT_EQ(one.target, other.target);
+  const State whole = rest_state(reader_->start().model);
+  EXPECT_EQ(look("", &whole).camera, "front");
+  EXPECT_EQ(look("", nullptr).camera, "front");
+  views::LookRequest request;
+  request.camera = "wound";
+  const auto none = views::find_look(request, scene_, view_, kAspect, &whole);
+  ASSERT_FALSE(none);
+  EXPECT_NE(to_string(none.errors()[0]).find("nothing is cut"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ctpm
