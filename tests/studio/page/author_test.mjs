@@ -220,6 +220,19 @@ test("a probe is dragged over the surface", async () => {
   assert.equal((await save()).probes.length, 1);
 });
 
+test("200 nudges make 200 undo steps, and undoing all gives the text back", async () => {
+  const before = await text(), place = async () => (await scene()).probes[0].at_mm, from = await place();
+  const way = async () => Math.hypot(...(await place()).map((x, i) => x - from[i]));
+  await handle("probe").focus();
+  for (let i = 0; i < 200; ++i) await page.keyboard.press("ArrowLeft"); // out of the picture
+  await picture(page, "author-beyond");
+  assert.ok(Math.abs((await way()) - 200) < 2, `${await way()} mm`);
+  for (let i = 0; i < 199; ++i) await page.keyboard.press("Control+z");
+  assert.ok(Math.abs((await way()) - 1) < 0.02, `${await way()} mm`);
+  await page.keyboard.press("Control+z");
+  assert.equal(await text(), before);
+});
+
 test("a tool stands where it was dragged to, and is taken up there", async () => {
   await page.click(".objects button:has-text('scalpel')");
   await drag(await centreOf(handle("scalpel")), { x: 10, y: 130 });
