@@ -17,6 +17,7 @@ class CutKey {
       place_.push_back(state.swept[n]), organ_.push_back(state.swept_organ[n]);
   }
 
+  std::size_t points() const { return points_; }  ///< of the swept surface
   bool is_whole() const { return points_ == 0; }  ///< nothing was cut
   bool is_of(const State& state) const { return points_ == state.swept.size() && is_part_of(state); }
 

@@ -1,7 +1,14 @@
 #pragma once
 
+#include <cstdint>
+#include <map>
+#include <memory>
+
+#include "core/model/result.h"
 #include "core/model/state.h"
 #include "recordings/session.h"
+#include "recordings/session_reader.h"
+#include "studio/server/moments.h"
 
 namespace ctpm::server {
 
@@ -9,5 +16,26 @@ namespace ctpm::server {
 /// straight lines from the State `before` to the State `after`, `share` of the way, in [0, 1]. Where the tissue was cut
 /// between the two, it is as in the nearer one. It is for the eye alone: no replay can go on from it.
 State glimpse_between(const State& before, const State& after, double share, const recordings::TickRecord& record);
+
+/// Finds what is known of the moments of a session without a simulation. Not thread-safe.
+class Glimpses {
+ public:
+  /// `reader` and `moments`, of the same session, must outlive this.
+  Glimpses(recordings::SessionReader& reader, const Moments& moments) : reader_(reader), moments_(moments) {}
+
+  struct Glimpse {
+    State state;
+    recordings::TickRecord record;
+  };
+  /// What is known of the State before `tick`, > 0; see glimpse_between(). Errors: a damaged part.
+  Result<Glimpse> of(std::int64_t tick);
+
+ private:
+  Result<Moments::Place> read(const Moments::Place& place);
+
+  recordings::SessionReader& reader_;
+  const Moments& moments_;
+  std::map<std::int64_t, std::shared_ptr<const Moment>> known_;  ///< keyframes that were read lately
+};
 
 }  // namespace ctpm::server

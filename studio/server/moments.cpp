@@ -65,6 +65,14 @@ std::optional<Moments::Place> Moments::after(std::int64_t tick) const {
   return Place{most, nullptr};
 }
 
+Result<Moments::Place> Moments::read(const Place& place, recordings::SessionReader& reader) const {
+  if (place.second) return place;
+  Result<recordings::Keyframe> keyframe = reader.keyframe_at_or_before(place.first);
+  if (keyframe) return Place{keyframe->tick, std::make_shared<const Moment>(Moment{std::move(keyframe->state)})};
+  if (place.first == 0) return keyframe.errors();
+  return read(before(place.first - 1), reader);
+}
+
 void Moments::keep(std::int64_t tick, const State& state, bool is_same) {
   if (tick % spacing_ != 0) return;
   {

@@ -41,6 +41,10 @@ class Moments {
   /// The nearest kept State after `tick`; nothing: `tick` is beyond the last one.
   std::optional<Place> after(std::int64_t tick) const;
 
+  /// The place with its State; in place of a damaged keyframe one that is earlier. `reader`: the caller's, of this
+  /// session. Errors: the session cannot be read.
+  Result<Place> read(const Place& place, recordings::SessionReader& reader) const;
+
   /// Takes the State before `tick`, to which a replay came that began at a kept State, if one is missing there.
   void keep(std::int64_t tick, const State& state, bool is_same);
 

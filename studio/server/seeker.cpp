@@ -1,11 +1,9 @@
 #include "studio/server/seeker.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "studio/server/cut_key.h"
-#include "studio/server/glimpse.h"
 
 namespace ctpm::server {
 namespace {
@@ -16,34 +14,18 @@ constexpr std::size_t kMostCursors = 3;  ///< before the first cut, after the la
 
 }  // namespace
 
+bool Seeker::has_cursor_at_cut_of(const State& state) const {
+  return std::any_of(cursors_.begin(), cursors_.end(),
+                     [&](const Cursor& cursor) { return CutKey(cursor.replay.state()).is_of(state); });
+}
+
 bool Seeker::is_far(std::int64_t tick) const {
   const auto is_near = [&](const Cursor& cursor) {
     return cursor.replay.tick() <= tick && tick - cursor.replay.tick() <= kFar;
   };
-  return tick - moments_.before(tick).first > kFar && std::none_of(cursors_.begin(), cursors_.end(), is_near);
-}
-
-/// A kept State; in place of a damaged keyframe one that is earlier.
-Result<Seeker::Start> Seeker::start_at(const Moments::Place& place) {
-  if (place.second) return Start{place.first, place.second->state, place.second->is_same};
-  Result<recordings::Keyframe> keyframe = reader_.keyframe_at_or_before(place.first);
-  if (keyframe) return Start{keyframe->tick, std::move(keyframe->state)};
-  if (place.first == 0) return keyframe.errors();
-  return start_at(moments_.before(place.first - 1));
-}
-
-Result<Seeker::Glimpse> Seeker::glimpse(std::int64_t tick) {
+  if (std::any_of(cursors_.begin(), cursors_.end(), is_near)) return false;
   const Moments::Place before = moments_.before(tick);
-  const std::optional<Moments::Place> after = moments_.after(tick);
-  const Result<std::vector<recordings::TickRecord>> records = reader_.ticks(tick - 1, tick);
-  if (!records) return records.errors();
-  const Result<Start> from = start_at(before);
-  if (!from) return from.errors();
-  const Result<Start> to = after ? start_at(*after) : from;
-  if (!to) return to.errors();
-  const std::int64_t ticks = to->tick - from->tick;
-  const double share = ticks > 0 ? double(tick - from->tick) / double(ticks) : 0;
-  return Glimpse{glimpse_between(from->state, to->state, share, records->front()), records->front()};
+  return tick - before.first > kFar || !before.second || !has_cursor_at_cut_of(before.second->state);
 }
 
 /// Takes the cursor that is nearest before `tick`, if no kept State is nearer.
@@ -61,11 +43,11 @@ bool Seeker::goes_on(std::int64_t tick) {
 /// Puts a cursor at a kept State: one that is at the same cut, else a new one or that of which the last use is longest
 /// ago.
 Result<Done> Seeker::begin_at(const Moments::Place& place) {
-  const Result<Start> start = start_at(place);
+  const Result<Moments::Place> start = moments_.read(place, reader_);
   if (!start) return start.errors();
-  const auto same = std::find_if(cursors_.begin(), cursors_.end(), [&](const Cursor& cursor) {
-    return CutKey(cursor.replay.state()).is_of(start->state);
-  });
+  const State& state = start->second->state;
+  const auto same = std::find_if(cursors_.begin(), cursors_.end(),
+                                 [&](const Cursor& cursor) { return CutKey(cursor.replay.state()).is_of(state); });
   last_ = std::size_t(same - cursors_.begin());
   if (same == cursors_.end() && cursors_.size() < kMostCursors) {
     Result<recordings::ReplayCursor> made = recordings::ReplayCursor::create(reader_);
@@ -76,8 +58,8 @@ Result<Done> Seeker::begin_at(const Moments::Place& place) {
                                          [](const Cursor& a, const Cursor& b) { return a.used < b.used; });
     last_ = std::size_t(oldest - cursors_.begin());
   }
-  cursors_[last_].replay.resume(start->tick, start->state);
-  cursors_[last_].was_same = start->is_same;
+  cursors_[last_].replay.resume(start->first, state);
+  cursors_[last_].was_same = start->second->is_same;
   return Done{};
 }
 
