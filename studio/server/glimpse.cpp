@@ -23,29 +23,17 @@ State glimpse_between(const State& before, const State& after, double share, con
   return state;
 }
 
-/// A place with its State, which may have to be read.
-Result<Moments::Place> Glimpses::read(const Moments::Place& place) {
-  constexpr std::size_t kMostKnown = 8;
-  if (place.second) return place;
-  if (const auto known = known_.find(place.first); known != known_.end()) return Moments::Place(*known);
-  const Result<Moments::Place> found = moments_.read(place, reader_);
-  if (!found) return found.errors();
-  if (known_.size() >= kMostKnown) known_.clear();
-  known_.insert(*found);
-  return *found;
-}
-
 Result<Glimpses::Glimpse> Glimpses::of(std::int64_t tick) {
   const Result<std::vector<recordings::TickRecord>> records = reader_.ticks(tick - 1, tick);
   if (!records) return records.errors();
-  const Result<Moments::Place> from = read(moments_.before(tick));
+  const Result<Moment> from = moments_.read(moments_.before(tick), reader_);
   if (!from) return from.errors();
   const std::optional<Moments::Place> after = moments_.after(tick);
-  const Result<Moments::Place> to = after ? read(*after) : from;
+  const Result<Moment> to = after ? moments_.read(*after, reader_) : from;
   if (!to) return to.errors();
-  const std::int64_t ticks = to->first - from->first;
-  const double share = ticks > 0 ? double(tick - from->first) / double(ticks) : 0;
-  return Glimpse{glimpse_between(from->second->state, to->second->state, share, records->front()), records->front()};
+  const std::int64_t ticks = to->tick - from->tick;
+  const double share = ticks > 0 ? double(tick - from->tick) / double(ticks) : 0;
+  return Glimpse{glimpse_between(from->state, to->state, share, records->front()), records->front()};
 }
 
 }  // namespace ctpm::server

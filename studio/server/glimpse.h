@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
-#include <memory>
 
 #include "core/model/result.h"
 #include "core/model/state.h"
@@ -21,7 +19,7 @@ State glimpse_between(const State& before, const State& after, double share, con
 class Glimpses {
  public:
   /// `reader` and `moments`, of the same session, must outlive this.
-  Glimpses(recordings::SessionReader& reader, const Moments& moments) : reader_(reader), moments_(moments) {}
+  Glimpses(recordings::SessionReader& reader, Moments& moments) : reader_(reader), moments_(moments) {}
 
   struct Glimpse {
     State state;
@@ -31,11 +29,8 @@ class Glimpses {
   Result<Glimpse> of(std::int64_t tick);
 
  private:
-  Result<Moments::Place> read(const Moments::Place& place);
-
   recordings::SessionReader& reader_;
-  const Moments& moments_;
-  std::map<std::int64_t, std::shared_ptr<const Moment>> known_;  ///< keyframes that were read lately
+  Moments& moments_;
 };
 
 }  // namespace ctpm::server

@@ -14,18 +14,16 @@ constexpr std::size_t kMostCursors = 3;  ///< before the first cut, after the la
 
 }  // namespace
 
-bool Seeker::has_cursor_at_cut_of(const State& state) const {
-  return std::any_of(cursors_.begin(), cursors_.end(),
-                     [&](const Cursor& cursor) { return CutKey(cursor.replay.state()).is_of(state); });
-}
-
 bool Seeker::is_far(std::int64_t tick) const {
   const auto is_near = [&](const Cursor& cursor) {
     return cursor.replay.tick() <= tick && tick - cursor.replay.tick() <= kFar;
   };
   if (std::any_of(cursors_.begin(), cursors_.end(), is_near)) return false;
   const Moments::Place before = moments_.before(tick);
-  return tick - before.first > kFar || !before.second || !has_cursor_at_cut_of(before.second->state);
+  const auto is_at_its_cut = [&](const Cursor& cursor) {
+    return cursor.replay.state().swept.size() == before.second->swept_points;
+  };
+  return tick - before.first > kFar || !before.second || std::none_of(cursors_.begin(), cursors_.end(), is_at_its_cut);
 }
 
 /// Takes the cursor that is nearest before `tick`, if no kept State is nearer.
@@ -43,11 +41,11 @@ bool Seeker::goes_on(std::int64_t tick) {
 /// Puts a cursor at a kept State: one that is at the same cut, else a new one or that of which the last use is longest
 /// ago.
 Result<Done> Seeker::begin_at(const Moments::Place& place) {
-  const Result<Moments::Place> start = moments_.read(place, reader_);
+  const Result<Moment> start = moments_.read(place, reader_);
   if (!start) return start.errors();
-  const State& state = start->second->state;
-  const auto same = std::find_if(cursors_.begin(), cursors_.end(),
-                                 [&](const Cursor& cursor) { return CutKey(cursor.replay.state()).is_of(state); });
+  const auto same = std::find_if(cursors_.begin(), cursors_.end(), [&](const Cursor& cursor) {
+    return CutKey(cursor.replay.state()).is_of(start->state);
+  });
   last_ = std::size_t(same - cursors_.begin());
   if (same == cursors_.end() && cursors_.size() < kMostCursors) {
     Result<recordings::ReplayCursor> made = recordings::ReplayCursor::create(reader_);
@@ -58,8 +56,8 @@ Result<Done> Seeker::begin_at(const Moments::Place& place) {
                                          [](const Cursor& a, const Cursor& b) { return a.used < b.used; });
     last_ = std::size_t(oldest - cursors_.begin());
   }
-  cursors_[last_].replay.resume(start->first, state);
-  cursors_[last_].was_same = start->second->is_same;
+  cursors_[last_].replay.resume(start->tick, start->state);
+  cursors_[last_].was_same = start->is_same;
   return Done{};
 }
 

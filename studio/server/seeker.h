@@ -34,7 +34,6 @@ class Seeker {
     std::uint64_t used = 0;
   };
   static bool is_same(const Cursor& cursor) { return cursor.was_same && cursor.replay.same_so_far(); }
-  bool has_cursor_at_cut_of(const State& state) const;
   bool goes_on(std::int64_t tick);
   Result<Done> begin_at(const Moments::Place& place);
 
