@@ -19,6 +19,7 @@ const kClearance = 0.002; // between a tool and the surface that it was dragged 
 /** What an item can do besides being moved. */
 export function modesOf(item: Item | null): GizmoMode[] {
   if (!item?.place) return [];
+  if (item.kind === "organ") return ["move", "turn", "size"];
   if (item.shape === "scalpel" || item.shape === "ball") return ["move", "turn"];
   return item.shape === "sphere" || item.shape === "box" ? ["move", "size"] : ["move"];
 }
@@ -109,7 +110,7 @@ export class Gizmos {
     else {
       const { scale } = this.pivot;
       const ratio = [scale.x, scale.y, scale.z].reduce((most, s) => (Math.abs(s - 1) > Math.abs(most - 1) ? s : most), 1);
-      const factor = item.shape === "sphere" ? new three.Vector3(ratio, ratio, ratio) : scale.clone();
+      const factor = item.shape === "sphere" || item.kind === "organ" ? new three.Vector3(ratio, ratio, ratio) : scale.clone();
       this.onPreview(sized(item, item.size.clone().multiply(factor)));
     }
   }

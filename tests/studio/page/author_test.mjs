@@ -387,6 +387,37 @@ test("a second mesh becomes an organ of the scene, which is moved by its handle"
   await settled();
 });
 
+test("an organ is turned by its rings and sized by its cubes, and by its text", async () => {
+  const before = await text(), organ = async () => (await scene()).organs[1];
+  const numbers = (nth) => page.locator("#panel .vector").nth(nth).locator("input").evaluateAll((inputs) => inputs.map((input) => Number(input.value)));
+  await page.click(".objects button:has-text('other-kidney-scene')");
+  await button("turn").click();
+  const middle = await centreOf(handle("other-kidney-scene"));
+  await drag({ x: middle.x + 18, y: middle.y - 14 }, { x: 60, y: 30 });
+  const turned = await organ(), after = await centreOf(handle("other-kidney-scene"));
+  assert.ok(Math.max(...turned.turn_deg.map(Math.abs)) > 10, `${turned.turn_deg}`);
+  assert.ok(Math.hypot(after.x - middle.x, after.y - middle.y) < 2, "its middle stays where it is");
+  assert.deepEqual(await numbers(1), turned.turn_deg);
+  await settled();
+  await picture(page, "author-organ-turned");
+  await button("size").click();
+  const from = await centreOf(handle("other-kidney-scene"));
+  await drag({ x: from.x + 45, y: from.y }, { x: 30, y: 0 });
+  const sized = await organ();
+  assert.ok(sized.scale > 1.2, `${sized.scale}`);
+  await settled();
+  await picture(page, "author-organ-sized");
+  // The same by its text, which the numbers follow; the program takes what was made.
+  await write((await text()).replace(`"scale": ${sized.scale}`, '"scale": 1.1'));
+  await settled();
+  await page.click(".objects button:has-text('other-kidney-scene')");
+  await page.waitForFunction(() => [...document.querySelectorAll("#panel label")].some((label) => label.textContent.startsWith("scale of the mesh") && label.lastChild.value === "1.1"));
+  assert.deepEqual((await save()).organs[1], { ...sized, scale: 1.1 });
+  for (let i = 0; i < 3; ++i) await button("Undo").click();
+  assert.equal(await text(), before);
+  await settled();
+});
+
 test("a scene is tried at once, as it is on the screen, and nothing is kept", async () => {
   await page.click(".objects button:has-text('ball')");
   const files = readdirSync(folder).sort();
