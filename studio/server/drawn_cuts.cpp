@@ -82,7 +82,7 @@ std::shared_ptr<const DrawnCut> DrawnCuts::nearest(const State& state) const {
   std::shared_ptr<const DrawnCut> best;
   for (const auto* kept : {&recent_, &for_good_})
     for (const auto& drawn : *kept)
-      if (drawn->key.is_part_of(state) && (!best || drawn->key.points() > best->key.points())) best = drawn;
+      if (drawn->key.is_part_of(state) && (!best || drawn->key.points() >= best->key.points())) best = drawn;
   return best;
 }
 

@@ -80,16 +80,20 @@ std::optional<Moments::Place> Moments::after(std::int64_t tick) const {
 }
 
 std::shared_ptr<const KeptState> Moments::without_sweep(State state, bool is_same) const {
-  const std::size_t points = state.swept.size();
-  if (points > 0 && last_ && CutKey(state).is_part_of(*last_)) state.swept = {}, state.swept_organ = {};
-  return std::make_shared<const KeptState>(KeptState{std::move(state), points, is_same});
+  std::size_t shared = 0;
+  if (state.swept.size() > kEdgeNodes && last_ && CutKey(state).is_part_of(*last_)) {
+    shared = state.swept.size() - kEdgeNodes;
+    const auto leave = [&](auto& from) { from = {from.begin() + std::ptrdiff_t(shared), from.end()}; };
+    leave(state.swept.x), leave(state.swept.y), leave(state.swept.z), leave(state.swept_organ);
+  }
+  return std::make_shared<const KeptState>(KeptState{std::move(state), shared, is_same});
 }
 
 State Moments::with_sweep(const KeptState& kept) const {
   State state = kept.state;
-  if (state.swept.size() == kept.swept_points) return state;
+  if (kept.shared_points == 0) return state;
   const auto take = [&](const auto& from, auto& to) {
-    to.assign(from.begin(), from.begin() + std::ptrdiff_t(kept.swept_points));
+    to.insert(to.begin(), from.begin(), from.begin() + std::ptrdiff_t(kept.shared_points));
   };
   take(last_->swept.x, state.swept.x), take(last_->swept.y, state.swept.y), take(last_->swept.z, state.swept.z);
   take(last_->swept_organ, state.swept_organ);

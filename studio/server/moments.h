@@ -25,12 +25,14 @@ struct Moment {
   bool is_same = true;  ///< the replay up to here was as recorded
 };
 
-/// A State in memory. Its swept surface is most of it after a long cut, and is the beginning of that of later States,
-/// of which there is one copy.
+/// A State in memory. Its swept surface is most of it after a long cut, and but for the last row it is the beginning of
+/// that of later States, of which there is one copy.
 struct KeptState {
-  State state;               ///< without a swept surface if `swept_points` of the copy are its own
-  std::size_t swept_points;  ///< in any case
-  bool is_same = true;       ///< as Moment::is_same
+  State state;                    ///< without the first `shared_points` points of its swept surface
+  std::size_t shared_points = 0;  ///< those are in the copy
+  bool is_same = true;            ///< as Moment::is_same
+
+  std::size_t swept_points() const { return shared_points + state.swept.size(); }
 };
 
 /// Keeps States of a session closer together than its keyframes are, so that a seek simulates at most spacing() ticks:

@@ -21,7 +21,7 @@ bool Seeker::is_far(std::int64_t tick) const {
   if (std::any_of(cursors_.begin(), cursors_.end(), is_near)) return false;
   const Moments::Place before = moments_.before(tick);
   const auto is_at_its_cut = [&](const Cursor& cursor) {
-    return cursor.replay.state().swept.size() == before.second->swept_points;
+    return cursor.replay.state().swept.size() == before.second->swept_points();
   };
   return tick - before.first > kFar || !before.second || std::none_of(cursors_.begin(), cursors_.end(), is_at_its_cut);
 }

@@ -13,19 +13,15 @@ Result<std::unique_ptr<Stage>> Stage::open(const std::string& file, std::uint32_
                                            std::shared_ptr<Outbox> outbox) {
   Result<recordings::SessionReader> reader = recordings::SessionReader::open(file);
   if (!reader) return reader.errors();
-  Result<recordings::SessionReader> glimpse_reader = recordings::SessionReader::open(file);
-  if (!glimpse_reader) return glimpse_reader.errors();
   Result<std::unique_ptr<Moments>> moments = Moments::open(file);
   if (!moments) return moments.errors();
   outbox->send_bytes(shapes_message(reader->start().model, number));
-  return std::unique_ptr<Stage>(
-      new Stage(std::move(*reader), std::move(*glimpse_reader), std::move(*moments), number, std::move(outbox)));
+  return std::unique_ptr<Stage>(new Stage(std::move(*reader), std::move(*moments), number, std::move(outbox)));
 }
 
-Stage::Stage(recordings::SessionReader reader, recordings::SessionReader glimpse_reader,
-             std::unique_ptr<Moments> moments, std::uint32_t number, std::shared_ptr<Outbox> outbox)
+Stage::Stage(recordings::SessionReader reader, std::unique_ptr<Moments> moments, std::uint32_t number,
+             std::shared_ptr<Outbox> outbox)
     : reader_(std::move(reader)),
-      glimpse_reader_(std::move(glimpse_reader)),
       moments_(std::move(moments)),
       number_(number),
       outbox_(std::move(outbox)),
@@ -99,7 +95,9 @@ void Stage::replay() {
 
 /// Shows what is known of moments without a simulation. Damaged parts of the session and its beginning have no glimpse.
 void Stage::glance() {
-  Glimpses glimpses(glimpse_reader_, *moments_);
+  Result<recordings::SessionReader> reader = recordings::SessionReader::open(reader_.path());
+  if (!reader) return;  // it went away since it was opened: the replay says so
+  Glimpses glimpses(*reader, *moments_);
   PictureMaker maker(reader_.start().model, number_, cuts_);
   while (const std::optional<Wish> wish = next(wants_glimpse_)) {
     if (wish->tick == 0) continue;

@@ -41,8 +41,8 @@ class Stage {
     std::int64_t tick = 0;
     std::uint32_t request = 0;
   };
-  Stage(recordings::SessionReader reader, recordings::SessionReader glimpse_reader, std::unique_ptr<Moments> moments,
-        std::uint32_t number, std::shared_ptr<Outbox> outbox);
+  Stage(recordings::SessionReader reader, std::unique_ptr<Moments> moments, std::uint32_t number,
+        std::shared_ptr<Outbox> outbox);
   void replay();
   void glance();
   std::optional<Wish> next(bool& flag);
@@ -50,7 +50,7 @@ class Stage {
   void show(Picture picture, const Wish& wish, bool is_glimpse);
   FrameFacts facts(const Seeker& seeker, std::uint32_t request);
 
-  recordings::SessionReader reader_, glimpse_reader_;
+  recordings::SessionReader reader_;
   std::unique_ptr<Moments> moments_;
   std::uint32_t number_;
   std::shared_ptr<Outbox> outbox_;
