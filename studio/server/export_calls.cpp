@@ -7,6 +7,36 @@
 
 namespace ctpm::server {
 
+namespace {
+
+views::LookRequest look_of(Parameters& parameters) {
+  views::LookRequest look;
+  look.view = parameters.text_if("view").value_or(look.view);
+  look.by = parameters.text_if("by").value_or("");
+  look.cutaway = parameters.text_if("cutaway").value_or("");
+  look.camera = parameters.text_if("camera").value_or("");
+  return look;
+}
+
+}  // namespace
+
+/// A stage is drawn as a video of it would be; without a size no longer.
+Result<std::string> draw_session(Parameters& parameters, const CallContext& context) {
+  const std::uint32_t stage = std::uint32_t(parameters.number("stage", 0, Desk::kMostStages - 1));
+  const std::optional<std::string> size = parameters.text_if("size");
+  DrawingRequest request{look_of(parameters), {}};
+  if (!context.desk) parameters.refuse("stage", "only a page with a WebSocket has stages");
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  if (size) {
+    const Result<render::PictureSize> parsed = render::parse_picture_size(*size);
+    if (!parsed) return parsed.errors();
+    request.size = *parsed;
+  }
+  const Result<Done> done = context.desk->draw_as(stage, size ? std::optional(request) : std::nullopt);
+  if (!done) return done.errors();
+  return std::string("{}");
+}
+
 Result<std::string> export_session(Parameters& parameters, const CallContext& context) {
   const std::string path = parameters.text("path"), output = parameters.text("output");
   const std::string beside = parameters.text_if("beside").value_or("");
@@ -16,10 +46,7 @@ Result<std::string> export_session(Parameters& parameters, const CallContext& co
   options.speed = parameters.number_if("speed", 0.001, 1000).value_or(options.speed);
   options.range.from_s = parameters.number_if("from_s", 0, 1e9).value_or(0);
   options.range.to_s = parameters.number_if("to_s", 0, 1e9);
-  options.look.view = parameters.text_if("view").value_or(options.look.view);
-  options.look.by = parameters.text_if("by").value_or("");
-  options.look.cutaway = parameters.text_if("cutaway").value_or("");
-  options.look.camera = parameters.text_if("camera").value_or("");
+  options.look = look_of(parameters);
   options.allow_diverged = parameters.flag("allow_diverged", false);
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
   const Result<render::PictureSize> parsed = render::parse_picture_size(size);

@@ -44,6 +44,7 @@ struct Picture {
   std::uint32_t topology = 0;                    ///< number of the triangles that the frame belongs to; never reused
   std::shared_ptr<const std::string> triangles;  ///< message of that topology
   std::string frame;                             ///< message; its count of missed frames is still 0
+  std::string drawing = {};                      ///< message that is sent before the frame; empty: none
 };
 
 /// Byte offset of the count of missed frames in a frame.

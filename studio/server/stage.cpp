@@ -52,6 +52,30 @@ void Stage::show(std::int64_t tick, std::uint32_t request) {
   news_.notify_all();
 }
 
+Result<Done> Stage::draw_as(const std::optional<DrawingRequest>& request) {
+  if (request)
+    if (const Result<Done> good = Drawing::check(reader_, *request); !good) return good.errors();
+  const std::lock_guard lock(mutex_);
+  drawing_request_ = request, has_drawing_request_ = true;
+  return Done{};
+}
+
+/// Makes what draws as it was asked for last, in the thread that replays.
+Result<Done> Stage::follow_request(std::unique_ptr<Drawing>& drawing) {
+  std::optional<DrawingRequest> request;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!std::exchange(has_drawing_request_, false)) return Done{};
+    request = drawing_request_;
+  }
+  drawing.reset();
+  if (!request) return Done{};
+  Result<std::unique_ptr<Drawing>> made = Drawing::create(reader_, *request);
+  if (!made) return made.errors();
+  drawing = std::move(*made);
+  return Done{};
+}
+
 /// Waits for one of the two flags of the newest wish, takes it and returns the wish; nothing: the stage ends.
 std::optional<Stage::Wish> Stage::next(bool& flag) {
   std::unique_lock lock(mutex_);
@@ -79,6 +103,7 @@ void Stage::show(Picture picture, const Wish& wish, bool is_glimpse) {
 void Stage::replay() {
   Seeker seeker(reader_, *moments_);
   PictureMaker maker(reader_.start().model, number_, cuts_);
+  std::unique_ptr<Drawing> drawing;
   while (const std::optional<Wish> wish = next(is_wanted_)) {
     if (seeker.is_far(wish->tick)) {
       const std::lock_guard lock(mutex_);
@@ -86,10 +111,17 @@ void Stage::replay() {
       news_.notify_all();
     }
     const Result<bool> there = seeker.go_to(wish->tick, [this] { return is_outdated(); });
-    if (!there)
-      outbox_->send(stage_failed(number_, there.errors()));
-    else if (*there)
-      show(maker.make(seeker.cursor().state(), facts(seeker, wish->request)), *wish, false);
+    if (!there) outbox_->send(stage_failed(number_, there.errors()));
+    if (!there || !*there) continue;
+    const State& state = seeker.cursor().state();
+    Picture picture = maker.make(state, facts(seeker, wish->request));
+    if (const Result<Done> followed = follow_request(drawing); !followed)
+      outbox_->send(stage_failed(number_, followed.errors()));
+    if (drawing) {
+      Result<std::string> drawn = drawing->draw(state, seeker.cursor().tick(), number_, wish->request);
+      if (drawn) picture.drawing = std::move(*drawn);
+    }
+    show(std::move(picture), *wish, false);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "core/model/result.h"
 #include "recordings/session_reader.h"
 #include "studio/server/cuts_ahead.h"
+#include "studio/server/drawing.h"
 #include "studio/server/drawn_cuts.h"
 #include "studio/server/moments.h"
 #include "studio/server/outbox.h"
@@ -33,6 +34,10 @@ class Stage {
   /// Asks for the State before `tick`, which is moved into the session; a newer request replaces one that waits.
   void show(std::int64_t tick, std::uint32_t request);
 
+  /// Draws the replayed pictures that follow here too, beside their frames; nothing: no longer. Errors: those of
+  /// Drawing::check().
+  Result<Done> draw_as(const std::optional<DrawingRequest>& request);
+
   /// Share of the session that can be reached with a short replay, in [0, 1].
   double prepared() const { return moments_->share(); }
 
@@ -45,6 +50,7 @@ class Stage {
         std::shared_ptr<Outbox> outbox);
   void replay();
   void glance();
+  Result<Done> follow_request(std::unique_ptr<Drawing>& drawing);
   std::optional<Wish> next(bool& flag);
   bool is_outdated();
   void show(Picture picture, const Wish& wish, bool is_glimpse);
@@ -62,6 +68,8 @@ class Stage {
   bool is_wanted_ = false;      ///< `newest_` waits for the replay
   bool wants_glimpse_ = false;  ///< `newest_` waits for a glimpse
   bool is_replaying_ = false;   ///< a request that is not answered yet
+  std::optional<DrawingRequest> drawing_request_;
+  bool has_drawing_request_ = false;  ///< that the replay does not follow yet
   bool ends_ = false;
   std::thread replay_thread_, glimpse_thread_;
 };

@@ -1,7 +1,10 @@
 import { useCallback, useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
 import { Compare } from "./compare";
+import { drawInto, sizeOf } from "./drawing";
 import { ExportForm } from "./export_form";
+import { kPlainLook, type Look } from "./look";
+import { LookFields } from "./look_fields";
 import { NotesPanel } from "./notes";
 import { Empty, Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import { Player } from "./player";
@@ -35,7 +38,7 @@ export function Review({ connection, listing, place, onPlace }: {
   place: Place;
   onPlace: (place: Place) => void;
 }) {
-  const canvas = useRef<HTMLCanvasElement>(null);
+  const canvas = useRef<HTMLCanvasElement>(null), drawn = [useRef<HTMLCanvasElement>(null), useRef<HTMLCanvasElement>(null)];
   const [player, setPlayer] = useState<Player | null>(null);
   const [, setTick] = useState(0);
   const [version, setVersion] = useState(0);
@@ -43,12 +46,14 @@ export function Review({ connection, listing, place, onPlace }: {
   const [panel, setPanel] = useState<Panel>("moment");
   const [notes, setNotes] = useState<Note[]>([]);
   const [comparison, setComparison] = useState<ComparisonResult | null>(null);
+  const [look, setLook] = useState<Look>(kPlainLook);
 
   useEffect(() => {
     if (!canvas.current) return;
     const viewer = new Viewer(canvas.current);
     const made = new Player(connection, viewer);
     made.onChange = () => setVersion((v) => v + 1);
+    made.onDrawing = (stage, drawing) => drawn[stage].current && drawInto(drawn[stage].current!, drawing);
     let wanted = false;
     made.onTime = () => {
       if (wanted) return;
@@ -102,6 +107,20 @@ export function Review({ connection, listing, place, onPlace }: {
 
   const first = player?.tracks.get(0), second = player?.tracks.get(1);
   const frame = first?.scene.frame ?? null, other = second?.scene.frame ?? null;
+
+  // The page draws surfaces as the scene's cameras see them; anything else is drawn as for a video.
+  const camera = first?.session.view.cameras.find((c, i) => (look.camera ? c.name === look.camera : i === 0));
+  const choose = (next: Look) => {
+    const named = first?.session.view.cameras.find((c, i) => (next.camera ? c.name === next.camera : i === 0));
+    if (named && next.camera !== look.camera) player?.viewer.look(named);
+    setLook(next);
+  };
+  const isPlain = look.view === "surface" && !look.cutaway && (camera !== undefined || !look.camera);
+  useEffect(() => {
+    if (!player || !first || !canvas.current) return;
+    const size = sizeOf(canvas.current, player.tracks.size);
+    for (const stage of player.tracks.keys()) player.drawAs(stage, isPlain ? null : look, size).then(() => setError(null), setError);
+  }, [player, first, second, look]);
 
   useEffect(() => {
     if (!player || !first) return;
@@ -157,6 +176,10 @@ export function Review({ connection, listing, place, onPlace }: {
       </nav>
       <div class="view">
         <canvas ref={canvas} aria-label={first ? `The scene ${first.session.view.name}` : "No scene"} tabIndex={0} />
+        <div class={second ? "drawings halves" : "drawings"} aria-hidden="true">
+          <canvas ref={drawn[0]} hidden />
+          {second && <canvas ref={drawn[1]} hidden />}
+        </div>
         {!first && (
           <Empty title="Choose a session">
             <p>Its force, depth and speed appear below; any moment is a press away.</p>
@@ -186,12 +209,7 @@ export function Review({ connection, listing, place, onPlace }: {
                   {kSpeeds.map((speed) => <option key={speed} value={speed}>{speed} ×</option>)}
                 </select>
               </label>
-              <label>
-                camera
-                <select onChange={(e) => player.viewer.look(first.session.view.cameras[Number(e.currentTarget.value)])}>
-                  {first.session.view.cameras.map((camera, i) => <option key={camera.name} value={i}>{camera.name}</option>)}
-                </select>
-              </label>
+              <LookFields look={look} onLook={choose} cameras={first.session.view.cameras} />
               <output class="clock">{seconds(player.time)} <small>of {seconds(first.session.info.duration_s)}</small></output>
               {player.isPlaying && player.reached < 0.9 * player.speed && (
                 <span class="hint">plays at {player.reached.toFixed(2)} ×: this machine simulates no faster</span>
@@ -217,7 +235,7 @@ export function Review({ connection, listing, place, onPlace }: {
                   onBeside={(path) => open(1, path)} />
               )}
               {panel === "notes" && <NotesPanel connection={connection} player={player} onNotes={setNotes} />}
-              {panel === "export" && <ExportForm key={first.session.path} connection={connection} player={player} />}
+              {panel === "export" && <ExportForm key={first.session.path} connection={connection} player={player} look={look} onLook={choose} />}
             </div>
           </>
         ) : (

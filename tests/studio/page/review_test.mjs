@@ -27,7 +27,7 @@ after(async () => {
 });
 
 const clock = async () => Number.parseFloat(await page.locator(".clock").innerText());
-const drawn = () => page.locator(".view canvas").screenshot();
+const drawn = () => page.locator(".view > canvas").screenshot();
 const quiet = () => page.waitForFunction(() => /\d+ ms/.test([...document.querySelectorAll(".readings div")].find((d) => d.textContent.includes("picture after"))?.textContent ?? ""));
 
 const replayedQuiet = () => page.waitForFunction(() => /\d+ ms/.test([...document.querySelectorAll(".readings div")].find((d) => d.textContent.includes("replayed after"))?.textContent ?? ""));
@@ -63,7 +63,7 @@ test("a session opens, and any moment of it is a press away", async () => {
 
 test("keys move and play it", async () => {
   const before = await clock();
-  await page.locator(".view canvas").focus();
+  await page.locator(".view > canvas").focus();
   await page.keyboard.press("ArrowRight");
   await page.keyboard.press("Shift+ArrowRight");
   await page.waitForFunction((t) => Math.abs(Number.parseFloat(document.querySelector(".clock").textContent) - t - 0.11) < 0.002, before);
@@ -96,6 +96,41 @@ test("scrubbing", async () => {
   assert.ok(times.every((time, i) => time <= replayed[i]));
 });
 
+test("views, cutaway and cameras are those of export", async () => {
+  const choose = (label, value) => page.locator(`.transport .look label:has-text("${label}") select`).selectOption(value);
+  const drawing = () => page.waitForSelector(".drawings canvas:not([hidden])");
+  const pixels = () => page.evaluate(() => document.querySelector(".drawings canvas").toDataURL());
+  await page.locator(".scrub").evaluate((slider) => {
+    slider.value = "2.6";
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+  });
+  await choose("view", "spheres");
+  await drawing();
+  const seen = new Set([await pixels()]);
+  await picture(page, "review-spheres");
+  for (const [label, value] of [["view", "elements tilt"], ["view", "surface"], ["cutaway", "y"], ["camera", "follow"]]) {
+    await choose(label, value);
+    if (value === "surface") {
+      await page.waitForSelector(".drawings canvas[hidden]", { state: "attached" });
+      continue;
+    }
+    await page.waitForFunction((known) => {
+      const canvas = document.querySelector(".drawings canvas");
+      return !canvas.hidden && !known.includes(canvas.toDataURL());
+    }, [...seen]);
+    seen.add(await pixels());
+    await picture(page, `review-${value.replace(" ", "-")}`);
+  }
+  assert.deepEqual(await seriousFindings(page), []);
+  // The export has the same words.
+  await page.click("#tab-export");
+  assert.match(await page.locator("#panel .command code").innerText(), /--camera follow --cutaway y/);
+  await choose("camera", "");
+  await choose("cutaway", "");
+  await page.waitForSelector(".drawings canvas[hidden]", { state: "attached" });
+  await page.click("#tab-moment");
+});
+
 test("two sessions beside each other, compared", async () => {
   await page.click("#tab-compare");
   await page.locator("#panel select").selectOption(kClumsy);
@@ -124,7 +159,7 @@ test("two sessions beside each other, compared", async () => {
 test("notes stay, and a link leads to the moment", async () => {
   const session = readFileSync(join(folder, kExpert));
   await page.click("#tab-notes");
-  await page.locator(".view canvas").focus();
+  await page.locator(".view > canvas").focus();
   await page.keyboard.press("Home");
   for (let i = 0; i < 20; ++i) await page.keyboard.press("Shift+ArrowRight");
   await page.fill("#panel textarea", "<b>too steep</b> here");
