@@ -43,10 +43,10 @@ Result<std::vector<Inputs>> moments_before(recordings::SessionReader& reader, st
 
 }  // namespace
 
-Result<Done> Drawing::check(const recordings::SessionReader& reader, const DrawingRequest& request) {
+Result<render::Legend> Drawing::check(const recordings::SessionReader& reader, const DrawingRequest& request) {
   const Result<Found> found = find(reader, request);
   if (!found) return found.errors();
-  return Done{};
+  return render::legend_of(reader.start().model, found->look.draw);
 }
 
 Result<std::unique_ptr<Drawing>> Drawing::create(recordings::SessionReader& reader, const DrawingRequest& request) {

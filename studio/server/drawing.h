@@ -25,8 +25,8 @@ class Drawing {
   /// `reader` must outlive this. Errors: those of views::find_look() and of render::Renderer.
   static Result<std::unique_ptr<Drawing>> create(recordings::SessionReader& reader, const DrawingRequest& request);
 
-  /// Checks a request alone.
-  static Result<Done> check(const recordings::SessionReader& reader, const DrawingRequest& request);
+  /// Checks a request; the legend of its colours, without a title if they need none. Errors: those of find_look().
+  static Result<render::Legend> check(const recordings::SessionReader& reader, const DrawingRequest& request);
 
   /// Message with the picture of the State before `tick`. PROTOCOL.md gives its bytes. Errors: a damaged part.
   Result<std::string> draw(const State& state, std::int64_t tick, std::uint32_t stage, std::uint32_t request);

@@ -32,9 +32,13 @@ Result<std::string> draw_session(Parameters& parameters, const CallContext& cont
     if (!parsed) return parsed.errors();
     request.size = *parsed;
   }
-  const Result<Done> done = context.desk->draw_as(stage, size ? std::optional(request) : std::nullopt);
-  if (!done) return done.errors();
-  return std::string("{}");
+  const Result<render::Legend> legend = context.desk->draw_as(stage, size ? std::optional(request) : std::nullopt);
+  if (!legend) return legend.errors();
+  output::JsonWriter json;
+  json.begin_object().member("title", std::string_view(legend->title)).member("low", std::string_view(legend->low));
+  json.member("high", std::string_view(legend->high)).key("colours").begin_list();
+  for (const render::Colour& colour : legend->colours) write_vector(json, {colour[0], colour[1], colour[2]});
+  return json.end_list().end_object().text();
 }
 
 Result<std::string> export_session(Parameters& parameters, const CallContext& context) {

@@ -52,12 +52,12 @@ void Stage::show(std::int64_t tick, std::uint32_t request) {
   news_.notify_all();
 }
 
-Result<Done> Stage::draw_as(const std::optional<DrawingRequest>& request) {
-  if (request)
-    if (const Result<Done> good = Drawing::check(reader_, *request); !good) return good.errors();
+Result<render::Legend> Stage::draw_as(const std::optional<DrawingRequest>& request) {
+  Result<render::Legend> legend = request ? Drawing::check(reader_, *request) : render::Legend{};
+  if (!legend) return legend;
   const std::lock_guard lock(mutex_);
   drawing_request_ = request, has_drawing_request_ = true;
-  return Done{};
+  return legend;
 }
 
 /// Makes what draws as it was asked for last, in the thread that replays.

@@ -34,9 +34,9 @@ class Stage {
   /// Asks for the State before `tick`, which is moved into the session; a newer request replaces one that waits.
   void show(std::int64_t tick, std::uint32_t request);
 
-  /// Draws the replayed pictures that follow here too, beside their frames; nothing: no longer. Errors: those of
-  /// Drawing::check().
-  Result<Done> draw_as(const std::optional<DrawingRequest>& request);
+  /// Draws the replayed pictures that follow here too, beside their frames; nothing: no longer. Returns their legend.
+  /// Errors: those of Drawing::check().
+  Result<render::Legend> draw_as(const std::optional<DrawingRequest>& request);
 
   /// Share of the session that can be reached with a short replay, in [0, 1].
   double prepared() const { return moments_->share(); }

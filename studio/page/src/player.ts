@@ -1,5 +1,5 @@
 import type { Binary, Connection } from "./connection";
-import type { Drawing, Frame, OpenedSession, SessionInfo, TimelineData, Shapes } from "./protocol";
+import type { Drawing, Frame, Legend, OpenedSession, SessionInfo, TimelineData, Shapes } from "./protocol";
 import { type Look, lookParameters } from "./look";
 import { StageScene } from "./stage_scene";
 import type { Viewer } from "./viewer";
@@ -119,12 +119,13 @@ export class Player {
   }
 
   /** Asks for the pictures of a stage as the program draws them; null: the page draws. */
-  async drawAs(stage: number, look: Look | null, size: string): Promise<void> {
+  async drawAs(stage: number, look: Look | null, size: string): Promise<Legend | null> {
     this.drawings.delete(stage);
-    if (!look && !this.isDrawn.delete(stage)) return;
+    if (!look && !this.isDrawn.delete(stage)) return null;
     if (look) this.isDrawn.add(stage);
-    await this.connection.call("session.draw", look ? { stage, size, ...lookParameters(look) } : { stage });
+    const legend = await this.connection.call<Legend>("session.draw", look ? { stage, size, ...lookParameters(look) } : { stage });
     if (this.tracks.has(stage)) this.move(this.time);
+    return legend.title ? legend : null;
   }
 
   setOffset(offset: number): void {

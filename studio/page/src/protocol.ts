@@ -374,6 +374,14 @@ export function readWaitingFrame(message: WaitingFrame): Frame {
   return readFrame(reader);
 }
 
+/** What the colours of drawings mean; without a title they mean nothing. */
+export interface Legend {
+  title: string;
+  low: string;
+  high: string;
+  colours: Vector[]; // sRGB
+}
+
 /** A moment as the program draws it, in place of the page. */
 export interface Drawing {
   kind: "drawing";

@@ -4,11 +4,11 @@ import { Compare } from "./compare";
 import { drawInto, sizeOf } from "./drawing";
 import { ExportForm } from "./export_form";
 import { kPlainLook, type Look } from "./look";
-import { LookFields } from "./look_fields";
+import { LegendBar, LookFields } from "./look_fields";
 import { NotesPanel } from "./notes";
 import { Empty, Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import { Player } from "./player";
-import type { ComparisonResult, Listing, Note, SessionEvent } from "./protocol";
+import type { ComparisonResult, Legend, Listing, Note, SessionEvent } from "./protocol";
 import { Mark, Timeline } from "./timeline";
 import { behind, bytes, command, millimetres, newtons, seconds } from "./text";
 import { Viewer } from "./viewer";
@@ -47,6 +47,7 @@ export function Review({ connection, listing, place, onPlace }: {
   const [notes, setNotes] = useState<Note[]>([]);
   const [comparison, setComparison] = useState<ComparisonResult | null>(null);
   const [look, setLook] = useState<Look>(kPlainLook);
+  const [legend, setLegend] = useState<Legend | null>(null);
 
   useEffect(() => {
     if (!canvas.current) return;
@@ -119,7 +120,11 @@ export function Review({ connection, listing, place, onPlace }: {
   useEffect(() => {
     if (!player || !first || !canvas.current) return;
     const size = sizeOf(canvas.current, player.tracks.size);
-    for (const stage of player.tracks.keys()) player.drawAs(stage, isPlain ? null : look, size).then(() => setError(null), setError);
+    for (const stage of player.tracks.keys())
+      player.drawAs(stage, isPlain ? null : look, size).then((shown) => {
+        setError(null);
+        if (stage === 0) setLegend(shown);
+      }, setError);
   }, [player, first, second, look]);
 
   useEffect(() => {
@@ -187,8 +192,14 @@ export function Review({ connection, listing, place, onPlace }: {
         )}
         {first && (
           <div class="captions">
-            <span class="first">{first.session.path}</span>
-            {second && <span class="second">{second.session.path}</span>}
+            <span class="first"><b>{first.session.path}</b></span>
+            {second && <span class="second"><b>{second.session.path}</b></span>}
+          </div>
+        )}
+        {first && (
+          <div class="look-bar">
+            {legend && <LegendBar legend={legend} />}
+            <LookFields look={look} onLook={choose} cameras={first.session.view.cameras} />
           </div>
         )}
         <Problems error={error} />
@@ -209,7 +220,6 @@ export function Review({ connection, listing, place, onPlace }: {
                   {kSpeeds.map((speed) => <option key={speed} value={speed}>{speed} ×</option>)}
                 </select>
               </label>
-              <LookFields look={look} onLook={choose} cameras={first.session.view.cameras} />
               <output class="clock">{seconds(player.time)} <small>of {seconds(first.session.info.duration_s)}</small></output>
               {player.isPlaying && player.reached < 0.9 * player.speed && (
                 <span class="hint">plays at {player.reached.toFixed(2)} ×: this machine simulates no faster</span>

@@ -97,7 +97,7 @@ test("scrubbing", async () => {
 });
 
 test("views, cutaway and cameras are those of export", async () => {
-  const choose = (label, value) => page.locator(`.transport .look label:has-text("${label}") select`).selectOption(value);
+  const choose = (label, value) => page.locator(`.look-bar label:has-text("${label}") select`).selectOption(value);
   const drawing = () => page.waitForSelector(".drawings canvas:not([hidden])");
   const pixels = () => page.evaluate(() => document.querySelector(".drawings canvas").toDataURL());
   await page.locator(".scrub").evaluate((slider) => {
@@ -119,6 +119,7 @@ test("views, cutaway and cameras are those of export", async () => {
       return !canvas.hidden && !known.includes(canvas.toDataURL());
     }, [...seen]);
     seen.add(await pixels());
+    if (value.startsWith("elements")) assert.match(await page.locator(".legend").innerText(), /tilt/);
     await picture(page, `review-${value.replace(" ", "-")}`);
   }
   assert.deepEqual(await seriousFindings(page), []);
