@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { ctpm, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings } from "./browser.mjs";
+import { ctpm, ctpmBeside, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings } from "./browser.mjs";
 
 let folder, studio, page;
 
@@ -115,6 +115,10 @@ test("a mesh becomes a scene, as by the command, and what was repaired is listed
   await page.locator("aside label:has-text('radius') input").fill("4");
   await picture(page, "author-import");
   const shown = await page.locator("aside .command code").innerText();
+  // The command that it shows writes the same scene elsewhere, and reports the same repairs.
+  const other = makeFolder();
+  writeFileSync(join(other, "my-kidney.obj"), mesh);
+  const command = ctpmBeside(other, ...shown.split(" ").slice(1));
   await button("Import", "aside").click();
   await page.waitForSelector("aside .good");
   await page.waitForSelector("aside .findings");
@@ -122,10 +126,7 @@ test("a mesh becomes a scene, as by the command, and what was repaired is listed
   assert.deepEqual(await seriousFindings(page), []);
   await picture(page, "author-imported");
   assert.ok(readFileSync(join(folder, "my-kidney.obj")).equals(mesh));
-  // The command that it showed writes the same scene elsewhere, and reports the same repairs.
-  const other = makeFolder();
-  writeFileSync(join(other, "my-kidney.obj"), mesh);
-  const outcome = ctpm(other, ...shown.split(" ").slice(1));
+  const outcome = await command;
   assert.equal(outcome.code, 0, outcome.err);
   assert.equal(onDisk(), readFileSync(join(other, kScene), "utf8"));
   const repairs = await page.locator("aside section:has-text('Imported') .findings li span:first-child").allInnerTexts();
@@ -346,11 +347,12 @@ test("the slider fills again: spheres, time per tick, scatter", async () => {
   assert.equal(Number(/(\d+) spheres/.exec(ctpm(folder, "check", kScene).out)[1]), spheres);
   console.log(`author: ${spheres} spheres, ${time} ms a tick at rest`);
   const started = Date.now();
+  const command = ctpmBeside(folder, "fidelity", kScene, "-o", "fidelity", "--quick");
   await button("Measure, short form", "#panel").click();
   await page.waitForSelector("#panel .scatter");
   console.log(`author: scatter, short form, in ${((Date.now() - started) / 1e3).toFixed(1)} s`);
   const cells = (await page.locator("#panel .scatter td").allInnerTexts()).filter((cell) => cell.endsWith("%")).map(Number.parseFloat);
-  assert.equal(ctpm(folder, "fidelity", kScene, "-o", "fidelity", "--quick").code < 2, true);
+  assert.ok((await command).code < 2);
   const figures = JSON.parse(readFileSync(join(folder, "fidelity", "results.json"), "utf8")).figures.filter((f) => f.figure.startsWith("scatter"));
   assert.deepEqual([...cells].sort(), figures.map((f) => Number.parseFloat(f.measured.toFixed(1))).sort());
   await page.locator("#panel .scatter").scrollIntoViewIfNeeded();
