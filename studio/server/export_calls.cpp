@@ -9,6 +9,8 @@ namespace ctpm::server {
 
 namespace {
 
+constexpr int kMostSide = 4096;  ///< of a drawing, which is sent as it is [pixels]
+
 views::LookRequest look_of(Parameters& parameters) {
   views::LookRequest look;
   look.view = parameters.text_if("view").value_or(look.view);
@@ -30,6 +32,9 @@ Result<std::string> draw_session(Parameters& parameters, const CallContext& cont
   if (size) {
     const Result<render::PictureSize> parsed = render::parse_picture_size(*size);
     if (!parsed) return parsed.errors();
+    if (parsed->width > kMostSide || parsed->height > kMostSide)
+      return Error{"size", "got " + *size + ", a page's drawings have at most " + std::to_string(kMostSide) + " a side",
+                   ""};
     request.size = *parsed;
   }
   const Result<render::Legend> legend = context.desk->draw_as(stage, size ? std::optional(request) : std::nullopt);

@@ -8,9 +8,10 @@
 namespace ctpm::server {
 namespace {
 
-constexpr std::int64_t kFar = 50;        ///< ticks
-constexpr std::int64_t kAsk = 20;        ///< ticks between two questions whether to stop
-constexpr std::size_t kMostCursors = 3;  ///< before the first cut, after the last one, and one between
+constexpr std::int64_t kFar = 50;                  ///< ticks
+constexpr std::int64_t kAsk = 20;                  ///< ticks between two questions whether to stop
+constexpr std::size_t kLittle = 200 * kEdgeNodes;  ///< points of a swept surface
+constexpr std::size_t kMostCursors = 3;            ///< before the first cut, after the last one, and one between
 
 }  // namespace
 
@@ -38,20 +39,29 @@ bool Seeker::goes_on(std::int64_t tick) {
   return true;
 }
 
-/// Puts a cursor at a kept State: one that is at the same cut, else a new one or that of which the last use is longest
-/// ago.
+/// The cursor whose cut is the most of that of `state`, and lacks little of it; their number if there is none.
+std::size_t Seeker::find_at_cut_of(const State& state) const {
+  std::size_t best = cursors_.size(), lacks = kLittle + 1;
+  for (std::size_t i = 0; i < cursors_.size(); ++i) {
+    const CutKey key(cursors_[i].replay.state());
+    const bool is_begun = key.is_whole() ? state.swept.size() == 0 : key.is_part_of(state);
+    if (is_begun && state.swept.size() - key.points() < lacks) best = i, lacks = state.swept.size() - key.points();
+  }
+  return best;
+}
+
+/// Puts a cursor at a kept State: one that is at the same cut, or a little before its end, else a new one or that of
+/// which the last use is longest ago.
 Result<Done> Seeker::begin_at(const Moments::Place& place) {
   const Result<Moment> start = moments_.read(place, reader_);
   if (!start) return start.errors();
-  const auto same = std::find_if(cursors_.begin(), cursors_.end(), [&](const Cursor& cursor) {
-    return CutKey(cursor.replay.state()).is_of(start->state);
-  });
-  last_ = std::size_t(same - cursors_.begin());
-  if (same == cursors_.end() && cursors_.size() < kMostCursors) {
+  last_ = find_at_cut_of(start->state);
+  const bool is_none = last_ == cursors_.size();
+  if (is_none && cursors_.size() < kMostCursors) {
     Result<recordings::ReplayCursor> made = recordings::ReplayCursor::create(reader_);
     if (!made) return made.errors();
     cursors_.push_back({std::move(*made)});
-  } else if (same == cursors_.end()) {
+  } else if (is_none) {
     const auto oldest = std::min_element(cursors_.begin(), cursors_.end(),
                                          [](const Cursor& a, const Cursor& b) { return a.used < b.used; });
     last_ = std::size_t(oldest - cursors_.begin());

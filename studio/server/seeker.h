@@ -35,6 +35,7 @@ class Seeker {
   };
   static bool is_same(const Cursor& cursor) { return cursor.was_same && cursor.replay.same_so_far(); }
   bool goes_on(std::int64_t tick);
+  std::size_t find_at_cut_of(const State& state) const;
   Result<Done> begin_at(const Moments::Place& place);
 
   recordings::SessionReader& reader_;

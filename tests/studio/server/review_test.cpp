@@ -293,6 +293,7 @@ TEST_F(Reviewing, ADrawingIsWhatAVideoShows) {
 
   const nlohmann::json wrong = client.call("session.draw", {{"stage", 0}, {"size", "320x180"}, {"camera", "none"}});
   EXPECT_NE(wrong.dump().find("no camera 'none'"), std::string::npos) << wrong;
+  EXPECT_TRUE(client.call("session.draw", {{"stage", 0}, {"size", "8192x64"}}).contains("errors"));
   EXPECT_TRUE(client.call("session.draw", {{"stage", 2}, {"size", "320x180"}}).contains("errors"));
 }
 
