@@ -19,6 +19,7 @@ inline Result<recordings::SessionReader> open_reader(const CallContext& context,
 Result<std::string> list_folder(Parameters& parameters, const CallContext& context);
 Result<std::string> open_session(Parameters& parameters, const CallContext& context);
 Result<std::string> close_session(Parameters& parameters, const CallContext& context);
+Result<std::string> draw_session(Parameters& parameters, const CallContext& context);
 Result<std::string> session_timeline(Parameters& parameters, const CallContext& context);
 Result<std::string> verify_session(Parameters& parameters, const CallContext& context);
 Result<std::string> compare_sessions(Parameters& parameters, const CallContext& context);

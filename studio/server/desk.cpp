@@ -48,6 +48,12 @@ void Desk::show(std::uint32_t number, std::int64_t tick, std::uint32_t request) 
   if (const std::shared_ptr<Stage> found = stage(number)) found->show(tick, request);
 }
 
+Result<render::Legend> Desk::draw_as(std::uint32_t number, const std::optional<DrawingRequest>& request) {
+  const std::shared_ptr<Stage> found = stage(number);
+  if (!found) return Error{"stage", "shows no session", ""};
+  return found->draw_as(request);
+}
+
 double Desk::prepared(std::uint32_t number) {
   const std::shared_ptr<Stage> found = stage(number);
   return found ? found->prepared() : 0;

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "studio/loading/loaded_scene.h"
@@ -32,6 +33,9 @@ class Desk {
 
   /// Asks a stage for a moment; nothing happens without such a stage.
   void show(std::uint32_t number, std::int64_t tick, std::uint32_t request);
+
+  /// See Stage::draw_as(). Error: there is no such stage.
+  Result<render::Legend> draw_as(std::uint32_t number, const std::optional<DrawingRequest>& request);
 
   /// See Stage::prepared(); 0 without such a stage.
   double prepared(std::uint32_t number);

@@ -8,6 +8,45 @@
 
 namespace ctpm::server {
 
+namespace {
+
+constexpr int kMostSide = 4096;  ///< of a drawing, which is sent as it is [pixels]
+
+views::LookRequest look_of(Parameters& parameters) {
+  views::LookRequest look;
+  look.view = parameters.text_if("view").value_or(look.view);
+  look.by = parameters.text_if("by").value_or("");
+  look.cutaway = parameters.text_if("cutaway").value_or("");
+  look.camera = parameters.text_if("camera").value_or("");
+  return look;
+}
+
+}  // namespace
+
+/// A stage is drawn as a video of it would be; without a size no longer.
+Result<std::string> draw_session(Parameters& parameters, const CallContext& context) {
+  const std::uint32_t stage = std::uint32_t(parameters.number("stage", 0, Desk::kMostStages - 1));
+  const std::optional<std::string> size = parameters.text_if("size");
+  DrawingRequest request{look_of(parameters), {}};
+  if (!context.desk) parameters.refuse("stage", "only a page with a WebSocket has stages");
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  if (size) {
+    const Result<render::PictureSize> parsed = render::parse_picture_size(*size);
+    if (!parsed) return parsed.errors();
+    if (parsed->width > kMostSide || parsed->height > kMostSide)
+      return Error{"size", "got " + *size + ", a page's drawings have at most " + std::to_string(kMostSide) + " a side",
+                   ""};
+    request.size = *parsed;
+  }
+  const Result<render::Legend> legend = context.desk->draw_as(stage, size ? std::optional(request) : std::nullopt);
+  if (!legend) return legend.errors();
+  output::JsonWriter json;
+  json.begin_object().member("title", std::string_view(legend->title)).member("low", std::string_view(legend->low));
+  json.member("high", std::string_view(legend->high)).key("colours").begin_list();
+  for (const render::Colour& colour : legend->colours) write_vector(json, {colour[0], colour[1], colour[2]});
+  return json.end_list().end_object().text();
+}
+
 Result<std::string> export_session(Parameters& parameters, const CallContext& context) {
   const std::string path = parameters.text("path"), output = parameters.text("output");
   const std::string beside = parameters.text_if("beside").value_or("");
@@ -18,10 +57,7 @@ Result<std::string> export_session(Parameters& parameters, const CallContext& co
   options.speed = parameters.number_if("speed", 0.001, 1000).value_or(options.speed);
   options.range.from_s = parameters.number_if("from_s", 0, 1e9).value_or(0);
   options.range.to_s = parameters.number_if("to_s", 0, 1e9);
-  options.look.view = parameters.text_if("view").value_or(options.look.view);
-  options.look.by = parameters.text_if("by").value_or("");
-  options.look.cutaway = parameters.text_if("cutaway").value_or("");
-  options.look.camera = parameters.text_if("camera").value_or("");
+  options.look = look_of(parameters);
   options.slow_at = parameters.text_if("slow_at").value_or("");
   options.overlay = parameters.text_if("overlay").value_or(options.overlay);
   options.allow_diverged = parameters.flag("allow_diverged", false);

@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "studio/server/cut_key.h"
+
 namespace ctpm::server {
 namespace {
 
+/// Of a State without its swept surface.
 std::size_t bytes_of(const State& s) {
   std::size_t bytes = sizeof s;
   for (const Vec3Array* a : {&s.position, &s.velocity, &s.acceleration, &s.grip}) bytes += 24 * a->size();
@@ -29,15 +32,25 @@ Result<std::unique_ptr<Moments>> Moments::open(const std::string& file) {
   if (!reader) return reader.errors();
   const Result<std::vector<std::int64_t>> keyframes = reader->keyframe_ticks();
   if (!keyframes) return keyframes.errors();
-  return std::unique_ptr<Moments>(new Moments(std::move(*reader), *keyframes));
+  Result<recordings::Keyframe> last = reader->keyframe_at_or_before(keyframes->back());
+  std::optional<State> longest;
+  if (last) longest = std::move(last->state);  // a damaged one has no sweep to share
+  return std::unique_ptr<Moments>(new Moments(std::move(*reader), *keyframes, std::move(longest)));
 }
 
-Moments::Moments(recordings::SessionReader reader, std::vector<std::int64_t> keyframes)
-    : reader_(std::move(reader)), keyframes_(std::move(keyframes)), is_done_(keyframes_.size()) {
+Moments::Moments(recordings::SessionReader reader, std::vector<std::int64_t> keyframes, std::optional<State> last)
+    : reader_(std::move(reader)),
+      keyframes_(std::move(keyframes)),
+      last_(std::move(last)),
+      is_done_(keyframes_.size()) {
   const std::int64_t ticks = reader_.tick_count();
   const std::size_t state_bytes = bytes_of(reader_.start().initial_state);
-  spacing_ = std::max(kSpacing, std::int64_t(double(ticks) * double(state_bytes) / double(memory_for_states())) + 1);
+  const double keyframes_bytes = double(keyframes_.size()) * double(state_bytes), memory = double(memory_for_states());
+  keeps_keyframes_ = keyframes_bytes < memory / 2;
+  const double left = memory - (keeps_keyframes_ ? keyframes_bytes : 0);
+  spacing_ = std::max(kSpacing, std::int64_t(double(ticks) * double(state_bytes) / left) + 1);
   moments_.resize(std::size_t(ticks / spacing_) + 1);
+  keyframe_states_.resize(keyframes_.size());
   thread_ = std::thread([this] { work(); });
 }
 
@@ -48,11 +61,12 @@ Moments::~Moments() {
 
 Moments::Place Moments::before(std::int64_t tick) const {
   const auto next = std::upper_bound(keyframes_.begin(), keyframes_.end(), tick);
-  const std::int64_t least = next == keyframes_.begin() ? 0 : *std::prev(next);
+  const std::size_t keyframe = std::size_t(std::max<std::ptrdiff_t>(0, next - keyframes_.begin() - 1));
+  const std::int64_t least = next == keyframes_.begin() ? 0 : keyframes_[keyframe];
   const std::lock_guard lock(mutex_);
   for (std::int64_t i = tick / spacing_; i >= 0 && i * spacing_ > least; --i)
     if (const auto& moment = moments_[std::size_t(i)]) return {i * spacing_, moment};
-  return {least, nullptr};
+  return {least, keyframe_states_[keyframe]};
 }
 
 std::optional<Moments::Place> Moments::after(std::int64_t tick) const {
@@ -62,7 +76,42 @@ std::optional<Moments::Place> Moments::after(std::int64_t tick) const {
   for (std::int64_t i = tick / spacing_ + 1; i * spacing_ < most && std::size_t(i) < moments_.size(); ++i)
     if (const auto& moment = moments_[std::size_t(i)]) return Place{i * spacing_, moment};
   if (next == keyframes_.end()) return std::nullopt;
-  return Place{most, nullptr};
+  return Place{most, keyframe_states_[std::size_t(next - keyframes_.begin())]};
+}
+
+std::shared_ptr<const KeptState> Moments::without_sweep(State state, bool is_same) const {
+  std::size_t shared = 0;
+  if (state.swept.size() > kEdgeNodes && last_ && CutKey(state).is_part_of(*last_)) {
+    shared = state.swept.size() - kEdgeNodes;
+    const auto leave = [&](auto& from) { from = {from.begin() + std::ptrdiff_t(shared), from.end()}; };
+    leave(state.swept.x), leave(state.swept.y), leave(state.swept.z), leave(state.swept_organ);
+  }
+  return std::make_shared<const KeptState>(KeptState{std::move(state), shared, is_same});
+}
+
+State Moments::with_sweep(const KeptState& kept) const {
+  State state = kept.state;
+  if (kept.shared_points == 0) return state;
+  const auto take = [&](const auto& from, auto& to) {
+    to.insert(to.begin(), from.begin(), from.begin() + std::ptrdiff_t(kept.shared_points));
+  };
+  take(last_->swept.x, state.swept.x), take(last_->swept.y, state.swept.y), take(last_->swept.z, state.swept.z);
+  take(last_->swept_organ, state.swept_organ);
+  return state;
+}
+
+Result<Moment> Moments::read(const Place& place, recordings::SessionReader& reader) {
+  if (place.second) return Moment{place.first, with_sweep(*place.second), place.second->is_same};
+  Result<recordings::Keyframe> keyframe = reader.keyframe_at_or_before(place.first);
+  if (!keyframe && place.first == 0) return keyframe.errors();
+  if (!keyframe) return read(before(place.first - 1), reader);
+  const auto at = std::lower_bound(keyframes_.begin(), keyframes_.end(), keyframe->tick);
+  if (keeps_keyframes_ && at != keyframes_.end() && *at == keyframe->tick) {
+    auto kept = without_sweep(keyframe->state, true);
+    const std::lock_guard lock(mutex_);
+    keyframe_states_[std::size_t(at - keyframes_.begin())] = std::move(kept);
+  }
+  return Moment{keyframe->tick, std::move(keyframe->state)};
 }
 
 void Moments::keep(std::int64_t tick, const State& state, bool is_same) {
@@ -71,7 +120,7 @@ void Moments::keep(std::int64_t tick, const State& state, bool is_same) {
     const std::lock_guard lock(mutex_);
     if (std::size_t(tick / spacing_) >= moments_.size() || moments_[std::size_t(tick / spacing_)]) return;
   }
-  auto moment = std::make_shared<const Moment>(Moment{state, is_same});
+  auto moment = without_sweep(state, is_same);
   const std::lock_guard lock(mutex_);
   moments_[std::size_t(tick / spacing_)] = std::move(moment);
 }
@@ -103,7 +152,7 @@ bool Moments::fill(recordings::ReplayCursor& cursor, std::size_t interval) {
   const std::int64_t end = end_of(interval);
   const auto [from, kept] = before(std::max(keyframes_[interval], end - 1));
   if (kept)
-    cursor.resume(from, kept->state);
+    cursor.resume(from, with_sweep(*kept));
   else if (!cursor.seek(from))
     return true;  // a damaged part has no moments
   const bool was_same = !kept || kept->is_same;
@@ -121,6 +170,8 @@ void Moments::work() {
   setpriority(PRIO_PROCESS, id_t(gettid()), 15);
   Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(reader_);
   if (!cursor) return;
+  for (std::size_t i = 0; i < keyframes_.size() && keeps_keyframes_ && !ends_; ++i)
+    if (const Place place = before(keyframes_[i]); !place.second) (void)read(place, reader_);
   for (std::size_t next; !ends_ && (next = next_interval()) < keyframes_.size();) {
     if (!fill(*cursor, next)) continue;
     const std::lock_guard lock(mutex_);

@@ -20,26 +20,42 @@ namespace ctpm::server {
 
 /// A State of a session, from which a replay can go on.
 struct Moment {
+  std::int64_t tick = 0;
   State state;
   bool is_same = true;  ///< the replay up to here was as recorded
 };
 
+/// A State in memory. Its swept surface is most of it after a long cut, and but for the last row it is the beginning of
+/// that of later States, of which there is one copy.
+struct KeptState {
+  State state;                    ///< without the first `shared_points` points of its swept surface
+  std::size_t shared_points = 0;  ///< those are in the copy
+  bool is_same = true;            ///< as Moment::is_same
+
+  std::size_t swept_points() const { return shared_points + state.swept.size(); }
+};
+
 /// Keeps States of a session closer together than its keyframes are, so that a seek simulates at most spacing() ticks:
-/// replays the session in the background, at low priority, around aim() first, and takes what others simulated.
+/// reads the keyframes, replays the session in the background, at low priority, around aim() first, and takes what
+/// others simulated.
 class Moments {
  public:
   /// Errors: the session cannot be read.
   static Result<std::unique_ptr<Moments>> open(const std::string& file);
   ~Moments();
 
-  /// A tick, and the State before it; null: it is a keyframe of the session.
-  using Place = std::pair<std::int64_t, std::shared_ptr<const Moment>>;
+  /// A tick, and the State before it; null: it is a keyframe that is not in memory.
+  using Place = std::pair<std::int64_t, std::shared_ptr<const KeptState>>;
 
   /// The nearest kept State at or before `tick`.
   Place before(std::int64_t tick) const;
 
   /// The nearest kept State after `tick`; nothing: `tick` is beyond the last one.
   std::optional<Place> after(std::int64_t tick) const;
+
+  /// The moment at a place; in place of a damaged keyframe one that is earlier. `reader`: the caller's, of this
+  /// session. Errors: the session cannot be read.
+  Result<Moment> read(const Place& place, recordings::SessionReader& reader);
 
   /// Takes the State before `tick`, to which a replay came that began at a kept State, if one is missing there.
   void keep(std::int64_t tick, const State& state, bool is_same);
@@ -55,18 +71,23 @@ class Moments {
   static constexpr std::size_t kLeastMemory = 512u << 20;
 
  private:
-  Moments(recordings::SessionReader reader, std::vector<std::int64_t> keyframes);
+  Moments(recordings::SessionReader reader, std::vector<std::int64_t> keyframes, std::optional<State> last);
   void work();
   std::size_t next_interval() const;
   std::int64_t end_of(std::size_t interval) const;
   bool fill(recordings::ReplayCursor& cursor, std::size_t interval);
+  std::shared_ptr<const KeptState> without_sweep(State state, bool is_same) const;
+  State with_sweep(const KeptState& kept) const;
 
   recordings::SessionReader reader_;
   std::vector<std::int64_t> keyframes_;  ///< ticks; interval i is from the i-th to the next or the end
+  std::optional<State> last_;            ///< of the last keyframe: its swept surface is the longest
+  bool keeps_keyframes_ = false;         ///< there is memory for all of them
   std::int64_t spacing_ = kSpacing;
   mutable std::mutex mutex_;
-  std::vector<std::shared_ptr<const Moment>> moments_;  ///< of tick i * spacing_
-  std::vector<bool> is_done_;                           ///< each interval
+  std::vector<std::shared_ptr<const KeptState>> moments_;          ///< of tick i * spacing_
+  std::vector<std::shared_ptr<const KeptState>> keyframe_states_;  ///< those that were read, of keyframes_
+  std::vector<bool> is_done_;                                      ///< each interval
   std::atomic<std::int64_t> aim_{0};
   std::atomic<bool> ends_{false};
   std::thread thread_;

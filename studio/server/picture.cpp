@@ -1,42 +1,17 @@
 #include "studio/server/picture.h"
 
 #include <algorithm>
-#include <atomic>
-#include <bit>
 #include <cmath>
-#include <cstring>
+#include <utility>
 
 #include "studio/render/camera.h"
-#include "studio/render/noise.h"
 #include "studio/render/obstacle_mesh.h"
 #include "studio/render/scene_view.h"
 #include "studio/render/tool_mesh.h"
+#include "studio/server/message_bytes.h"
 
 namespace ctpm::server {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "messages are little-endian");
-
-enum Kind : std::uint32_t { kTriangles = 1, kFrame = 2, kShapes = 3, kSpheres = 4 };
-
-/// Appends plain values to a message.
-class MessageBytes {
- public:
-  template <class T>
-  void add(T value) {
-    add_all(&value, 1);
-  }
-  void add(Vec3 v) {
-    for (const double x : {v.x, v.y, v.z}) add(float(x));
-  }
-  template <class T>
-  void add_all(const T* values, std::size_t count) {
-    text.append(reinterpret_cast<const char*>(values), count * sizeof(T));
-  }
-  void pad() { text.append((4 - text.size() % 4) % 4, '\0'); }
-
-  std::string text;
-};
 
 /// Positions as shares of their box, which spans the 16-bit numbers.
 void add_positions(MessageBytes& out, const std::vector<Vec3>& vertex) {
@@ -59,55 +34,42 @@ void add_positions(MessageBytes& out, const std::vector<Vec3>& vertex) {
 
 }  // namespace
 
-PictureMaker::PictureMaker(const Model& model, std::uint32_t stage)
-    : model_(model), stage_(stage), places_(std::make_unique<contact::DrawnSurfaces>(model)) {}
+PictureMaker::PictureMaker(const Model& model, std::uint32_t stage, std::shared_ptr<DrawnCuts> cuts)
+    : model_(model), stage_(stage), cuts_(std::move(cuts)), places_(model) {}
 
-/// What is drawn of the cut of `state`: as it was before, or continued from a part of it, or built in a new place or in
-/// that of which the last use is longest ago.
-PictureMaker::Drawn& PictureMaker::drawn_of(const State& state) {
-  constexpr std::size_t kMostKept = 4;
-  auto found = std::find_if(drawn_.begin(), drawn_.end(), [&](const Drawn& drawn) { return drawn.key.is_of(state); });
-  if (found == drawn_.end())
-    found = std::find_if(drawn_.begin(), drawn_.end(),
-                         [&](const Drawn& drawn) { return !drawn.key.is_whole() && drawn.key.is_part_of(state); });
-  if (found == drawn_.end() && drawn_.size() < kMostKept) {
-    Drawn made;
-    for (std::size_t i = 0; i < model_.surfaces.size(); ++i) made.surfaces.emplace_back(model_, i);
-    found = drawn_.insert(drawn_.end(), std::move(made));
-  } else if (found == drawn_.end()) {
-    found =
-        std::min_element(drawn_.begin(), drawn_.end(), [](const Drawn& a, const Drawn& b) { return a.used < b.used; });
+/// Draws the cut of `state`: follows on from that cut or a part of it, else in a new place, or in that of which the
+/// last use is longest ago.
+std::shared_ptr<const DrawnCut> PictureMaker::draw(const State& state) {
+  constexpr std::size_t kMostFollowed = 4;
+  auto best = followers_.end();
+  for (auto it = followers_.begin(); it != followers_.end(); ++it) {
+    const CutKey& key = it->follower.drawn()->key;
+    if (key.is_part_of(state) && (best == followers_.end() || key.points() > best->follower.drawn()->key.points()))
+      best = it;
   }
-  bool changed = !found->triangles;
-  for (render::CutSurface& cut : found->surfaces) changed = cut.update(state) || changed;
-  found->key = CutKey(state), found->used = ++uses_;
-  if (changed) make_triangles(*found);
-  return *found;
-}
-
-void PictureMaker::make_triangles(Drawn& drawn) const {
-  static std::atomic<std::uint32_t> made{0};
-  drawn.topology = ++made;
-  constexpr double kStainsPerMetre = 72;  // as in videos
-  MessageBytes out;
-  out.add(std::uint32_t(kTriangles)), out.add(stage_), out.add(drawn.topology),
-      out.add(std::uint32_t(drawn.surfaces.size()));
-  for (const render::CutSurface& cut : drawn.surfaces) {
-    const Surface& surface = cut.surface();
-    out.add(std::uint32_t(surface.vertex.size())), out.add(std::uint32_t(cut.outer_vertex_count()));
-    out.add(std::uint32_t(surface.triangle.size())), out.add(std::uint32_t(cut.outer_triangle_count()));
-    out.add_all(surface.triangle.data(), surface.triangle.size());
-    for (const Vec3& p : surface.vertex)
-      out.add(std::uint8_t(std::clamp(127.5 + 127.5 * render::noise_at(kStainsPerMetre * p), 0.0, 255.0)));
-    for (std::size_t v = 0; v < surface.vertex.size(); ++v)
-      out.add(std::uint8_t(v < cut.is_lip().size() && cut.is_lip()[v] ? 255 : 0));
-    out.pad();
-  }
-  drawn.triangles = std::make_shared<const std::string>(std::move(out.text));
+  const bool is_begun = best != followers_.end() && !best->follower.drawn()->key.is_whole();
+  if (!is_begun && followers_.size() < kMostFollowed)
+    best = followers_.insert(followers_.end(), {CutFollower(model_, stage_)});
+  else if (!is_begun)
+    best = std::min_element(followers_.begin(), followers_.end(),
+                            [](const Follower& a, const Follower& b) { return a.used < b.used; });
+  best->used = ++uses_;
+  return best->follower.draw(state);
 }
 
 Picture PictureMaker::make(const State& state, const FrameFacts& facts) {
-  const Drawn& drawn = drawn_of(state);
+  std::shared_ptr<const DrawnCut> drawn = cuts_->of(state);
+  if (!drawn) cuts_->keep(drawn = draw(state));
+  return make(state, facts, drawn);
+}
+
+Picture PictureMaker::make_glimpse(State state, const FrameFacts& facts) {
+  const std::shared_ptr<const DrawnCut> drawn = cuts_->nearest(state);
+  if (!drawn->key.is_of(state)) state.touched.clear();  // of places that these surfaces do not have
+  return make(state, facts, drawn);
+}
+
+Picture PictureMaker::make(const State& state, const FrameFacts& facts, const std::shared_ptr<const DrawnCut>& drawn) {
   const Inputs& in = state.last_inputs;
   MessageBytes out;
   const auto add_pose = [&](const Hand& hand) {
@@ -116,7 +78,7 @@ Picture PictureMaker::make(const State& state, const FrameFacts& facts) {
          {hand.world_from_tool.w, hand.world_from_tool.x, hand.world_from_tool.y, hand.world_from_tool.z})
       out.add(float(x));
   };
-  out.add(std::uint32_t(kFrame)), out.add(stage_), out.add(drawn.topology), out.add(std::uint32_t(0));
+  out.add(std::uint32_t(kFrame)), out.add(stage_), out.add(drawn->topology), out.add(std::uint32_t(0));
   out.add(facts.request),
       out.add(std::uint32_t((facts.is_same ? 1 : 0) | (facts.is_live ? 2 : 0) | (facts.is_glimpse ? 4 : 0)));
   out.add(double(facts.tick) * model_.tick), out.add(double(facts.tick));
@@ -124,9 +86,9 @@ Picture PictureMaker::make(const State& state, const FrameFacts& facts) {
   out.add(facts.force), out.add(float(facts.depth)), out.add(facts.contacts), out.add(std::uint32_t(facts.severed));
   out.add(facts.hand), out.add(float(facts.tick_time)), out.add(std::uint32_t(facts.late_ticks));
   out.add(float(facts.tick_p99)), out.add(float(facts.slip));
-  out.add(std::uint32_t(drawn.surfaces.size()));
-  for (std::size_t i = 0; i < drawn.surfaces.size(); ++i) {
-    places_->place(i, drawn.surfaces[i].surface(), state, vertex_);
+  out.add(std::uint32_t(drawn->surfaces.size()));
+  for (std::size_t i = 0; i < drawn->surfaces.size(); ++i) {
+    places_.place(i, drawn->surfaces[i], state, vertex_);
     add_positions(out, vertex_);
   }
   if (model_.hands > 1) {
@@ -134,7 +96,7 @@ Picture PictureMaker::make(const State& state, const FrameFacts& facts) {
     add_pose(in.second);
     out.add(report.tool_force), out.add(float(report.depth)), out.add(report.contacts), out.add(facts.second.hand);
   }
-  return {stage_, drawn.topology, drawn.triangles, std::move(out.text)};
+  return {stage_, drawn->topology, {drawn, &drawn->triangles}, std::move(out.text)};
 }
 
 std::int64_t severed_in(const State& state) {

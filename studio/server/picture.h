@@ -9,8 +9,7 @@
 #include "core/model/model.h"
 #include "core/model/state.h"
 #include "core/stepping/step.h"
-#include "studio/render/cut_surface.h"
-#include "studio/server/cut_key.h"
+#include "studio/server/drawn_cuts.h"
 
 namespace ctpm::server {
 
@@ -45,37 +44,40 @@ struct Picture {
   std::uint32_t topology = 0;                    ///< number of the triangles that the frame belongs to; never reused
   std::shared_ptr<const std::string> triangles;  ///< message of that topology
   std::string frame;                             ///< message; its count of missed frames is still 0
+  std::string drawing = {};                      ///< message that is sent before the frame; empty: none
 };
 
 /// Byte offset of the count of missed frames in a frame.
 inline constexpr std::size_t kMissedOffset = 12;
 
-/// Turns States of one Model into pictures. Keeps the surfaces of a few cuts, because a cut takes longer to build than
-/// a moment to show.
+/// Turns States of one Model into pictures. Follows a few cuts at once, because a cut takes longer to draw than a
+/// moment to show.
 class PictureMaker {
  public:
-  /// `model` must outlive this.
-  PictureMaker(const Model& model, std::uint32_t stage);
+  /// `model` must outlive this. `cuts`: what others drew of the same session, for the same stage.
+  PictureMaker(const Model& model, std::uint32_t stage, std::shared_ptr<DrawnCuts> cuts);
+  PictureMaker(const Model& model, std::uint32_t stage)
+      : PictureMaker(model, stage, std::make_shared<DrawnCuts>(model, stage)) {}
 
-  /// The picture of a State. The triangles are made only when a cut changed them.
+  /// The picture of a State. A cut that was not drawn yet is drawn now.
   Picture make(const State& state, const FrameFacts& facts);
 
+  /// The picture of a State with what was drawn already of its cut: quick.
+  Picture make_glimpse(State state, const FrameFacts& facts);
+
  private:
-  /// What is drawn of one cut.
-  struct Drawn {
-    CutKey key;
-    std::vector<render::CutSurface> surfaces;
-    std::uint32_t topology = 0;
-    std::shared_ptr<const std::string> triangles;  ///< null: not made yet
+  struct Follower {
+    CutFollower follower;
     std::uint64_t used = 0;
   };
-  Drawn& drawn_of(const State& state);
-  void make_triangles(Drawn& drawn) const;
+  std::shared_ptr<const DrawnCut> draw(const State& state);
+  Picture make(const State& state, const FrameFacts& facts, const std::shared_ptr<const DrawnCut>& drawn);
 
   const Model& model_;
   std::uint32_t stage_;
-  std::unique_ptr<contact::DrawnSurfaces> places_;
-  std::vector<Drawn> drawn_;
+  std::shared_ptr<DrawnCuts> cuts_;
+  contact::DrawnSurfaces places_;
+  std::vector<Follower> followers_;
   std::uint64_t uses_ = 0;
   std::vector<Vec3> vertex_;
 };

@@ -1,18 +1,17 @@
 #include "studio/server/seeker.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "studio/server/cut_key.h"
-#include "studio/server/glimpse.h"
 
 namespace ctpm::server {
 namespace {
 
-constexpr std::int64_t kFar = 50;        ///< ticks
-constexpr std::int64_t kAsk = 20;        ///< ticks between two questions whether to stop
-constexpr std::size_t kMostCursors = 3;  ///< before the first cut, after the last one, and one between
+constexpr std::int64_t kFar = 50;                  ///< ticks
+constexpr std::int64_t kAsk = 20;                  ///< ticks between two questions whether to stop
+constexpr std::size_t kLittle = 200 * kEdgeNodes;  ///< points of a swept surface
+constexpr std::size_t kMostCursors = 3;            ///< before the first cut, after the last one, and one between
 
 }  // namespace
 
@@ -20,30 +19,12 @@ bool Seeker::is_far(std::int64_t tick) const {
   const auto is_near = [&](const Cursor& cursor) {
     return cursor.replay.tick() <= tick && tick - cursor.replay.tick() <= kFar;
   };
-  return tick - moments_.before(tick).first > kFar && std::none_of(cursors_.begin(), cursors_.end(), is_near);
-}
-
-/// A kept State; in place of a damaged keyframe one that is earlier.
-Result<Seeker::Start> Seeker::start_at(const Moments::Place& place) {
-  if (place.second) return Start{place.first, place.second->state, place.second->is_same};
-  Result<recordings::Keyframe> keyframe = reader_.keyframe_at_or_before(place.first);
-  if (keyframe) return Start{keyframe->tick, std::move(keyframe->state)};
-  if (place.first == 0) return keyframe.errors();
-  return start_at(moments_.before(place.first - 1));
-}
-
-Result<Seeker::Glimpse> Seeker::glimpse(std::int64_t tick) {
+  if (std::any_of(cursors_.begin(), cursors_.end(), is_near)) return false;
   const Moments::Place before = moments_.before(tick);
-  const std::optional<Moments::Place> after = moments_.after(tick);
-  const Result<std::vector<recordings::TickRecord>> records = reader_.ticks(tick - 1, tick);
-  if (!records) return records.errors();
-  const Result<Start> from = start_at(before);
-  if (!from) return from.errors();
-  const Result<Start> to = after ? start_at(*after) : from;
-  if (!to) return to.errors();
-  const std::int64_t ticks = to->tick - from->tick;
-  const double share = ticks > 0 ? double(tick - from->tick) / double(ticks) : 0;
-  return Glimpse{glimpse_between(from->state, to->state, share, records->front()), records->front()};
+  const auto is_at_its_cut = [&](const Cursor& cursor) {
+    return cursor.replay.state().swept.size() == before.second->swept_points();
+  };
+  return tick - before.first > kFar || !before.second || std::none_of(cursors_.begin(), cursors_.end(), is_at_its_cut);
 }
 
 /// Takes the cursor that is nearest before `tick`, if no kept State is nearer.
@@ -58,20 +39,29 @@ bool Seeker::goes_on(std::int64_t tick) {
   return true;
 }
 
-/// Puts a cursor at a kept State: one that is at the same cut, else a new one or that of which the last use is longest
-/// ago.
+/// The cursor whose cut is the most of that of `state`, and lacks little of it; their number if there is none.
+std::size_t Seeker::find_at_cut_of(const State& state) const {
+  std::size_t best = cursors_.size(), lacks = kLittle + 1;
+  for (std::size_t i = 0; i < cursors_.size(); ++i) {
+    const CutKey key(cursors_[i].replay.state());
+    const bool is_begun = key.is_whole() ? state.swept.size() == 0 : key.is_part_of(state);
+    if (is_begun && state.swept.size() - key.points() < lacks) best = i, lacks = state.swept.size() - key.points();
+  }
+  return best;
+}
+
+/// Puts a cursor at a kept State: one that is at the same cut, or a little before its end, else a new one or that of
+/// which the last use is longest ago.
 Result<Done> Seeker::begin_at(const Moments::Place& place) {
-  const Result<Start> start = start_at(place);
+  const Result<Moment> start = moments_.read(place, reader_);
   if (!start) return start.errors();
-  const auto same = std::find_if(cursors_.begin(), cursors_.end(), [&](const Cursor& cursor) {
-    return CutKey(cursor.replay.state()).is_of(start->state);
-  });
-  last_ = std::size_t(same - cursors_.begin());
-  if (same == cursors_.end() && cursors_.size() < kMostCursors) {
+  last_ = find_at_cut_of(start->state);
+  const bool is_none = last_ == cursors_.size();
+  if (is_none && cursors_.size() < kMostCursors) {
     Result<recordings::ReplayCursor> made = recordings::ReplayCursor::create(reader_);
     if (!made) return made.errors();
     cursors_.push_back({std::move(*made)});
-  } else if (same == cursors_.end()) {
+  } else if (is_none) {
     const auto oldest = std::min_element(cursors_.begin(), cursors_.end(),
                                          [](const Cursor& a, const Cursor& b) { return a.used < b.used; });
     last_ = std::size_t(oldest - cursors_.begin());

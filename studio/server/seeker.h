@@ -17,16 +17,8 @@ class Seeker {
   /// `reader` and `moments`, of the same session, must outlive this.
   Seeker(recordings::SessionReader& reader, Moments& moments) : reader_(reader), moments_(moments) {}
 
-  /// Whether so many ticks have to be simulated that a glimpse is shown first.
+  /// Whether the way to `tick` is long: many ticks, or a cut at which no cursor is.
   bool is_far(std::int64_t tick) const;
-
-  /// What is known of the State before `tick`, > 0, without a simulation; see glimpse_between(). Errors: a damaged
-  /// part.
-  struct Glimpse {
-    State state;
-    recordings::TickRecord record;
-  };
-  Result<Glimpse> glimpse(std::int64_t tick);
 
   /// Goes to the State before `tick`. False: `should_stop` said so on the way. Errors: the session cannot be replayed.
   Result<bool> go_to(std::int64_t tick, const std::function<bool()>& should_stop);
@@ -42,13 +34,8 @@ class Seeker {
     std::uint64_t used = 0;
   };
   static bool is_same(const Cursor& cursor) { return cursor.was_same && cursor.replay.same_so_far(); }
-  struct Start {
-    std::int64_t tick = 0;
-    State state;
-    bool is_same = true;
-  };
-  Result<Start> start_at(const Moments::Place& place);
   bool goes_on(std::int64_t tick);
+  std::size_t find_at_cut_of(const State& state) const;
   Result<Done> begin_at(const Moments::Place& place);
 
   recordings::SessionReader& reader_;

@@ -1,7 +1,10 @@
 #include "studio/server/stage.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "studio/server/glimpse.h"
+#include "studio/server/seeker.h"
 #include "studio/server/text.h"
 
 namespace ctpm::server {
@@ -18,8 +21,14 @@ Result<std::unique_ptr<Stage>> Stage::open(const std::string& file, std::uint32_
 
 Stage::Stage(recordings::SessionReader reader, std::unique_ptr<Moments> moments, std::uint32_t number,
              std::shared_ptr<Outbox> outbox)
-    : reader_(std::move(reader)), moments_(std::move(moments)), number_(number), outbox_(std::move(outbox)) {
-  thread_ = std::thread([this] { work(); });
+    : reader_(std::move(reader)),
+      moments_(std::move(moments)),
+      number_(number),
+      outbox_(std::move(outbox)),
+      cuts_(std::make_shared<DrawnCuts>(reader_.start().model, number)),
+      ahead_(reader_.path(), reader_.start().model, number, cuts_) {
+  replay_thread_ = std::thread([this] { replay(); });
+  glimpse_thread_ = std::thread([this] { glance(); });
 }
 
 Stage::~Stage() {
@@ -28,36 +37,113 @@ Stage::~Stage() {
     ends_ = true;
   }
   news_.notify_all();
-  thread_.join();
+  replay_thread_.join();
+  glimpse_thread_.join();
 }
 
 void Stage::show(std::int64_t tick, std::uint32_t request) {
   {
     const std::lock_guard lock(mutex_);
-    wanted_ = std::clamp<std::int64_t>(tick, 0, reader_.tick_count());
-    request_ = request;
+    newest_ = {std::clamp<std::int64_t>(tick, 0, reader_.tick_count()), request};
+    is_wanted_ = true;
+    wants_glimpse_ = is_replaying_;  // else the replay says whether it needs one
   }
   moments_->aim(tick);
   news_.notify_all();
 }
 
+Result<render::Legend> Stage::draw_as(const std::optional<DrawingRequest>& request) {
+  Result<render::Legend> legend = request ? Drawing::check(reader_, *request) : render::Legend{};
+  if (!legend) return legend;
+  const std::lock_guard lock(mutex_);
+  drawing_request_ = request, has_drawing_request_ = true;
+  return legend;
+}
+
+/// Makes what draws as it was asked for last, in the thread that replays.
+Result<Done> Stage::follow_request(std::unique_ptr<Drawing>& drawing) {
+  std::optional<DrawingRequest> request;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!std::exchange(has_drawing_request_, false)) return Done{};
+    request = drawing_request_;
+  }
+  drawing.reset();
+  if (!request) return Done{};
+  Result<std::unique_ptr<Drawing>> made = Drawing::create(reader_, *request);
+  if (!made) return made.errors();
+  drawing = std::move(*made);
+  return Done{};
+}
+
+/// Waits for one of the two flags of the newest wish, takes it and returns the wish; nothing: the stage ends.
+std::optional<Stage::Wish> Stage::next(bool& flag) {
+  std::unique_lock lock(mutex_);
+  news_.wait(lock, [&] { return flag || ends_; });
+  if (ends_) return std::nullopt;
+  flag = false;
+  if (&flag == &is_wanted_) is_replaying_ = true;
+  return newest_;
+}
+
 /// Whether the present request need not be finished.
 bool Stage::is_outdated() {
   const std::lock_guard lock(mutex_);
-  return ends_ || wanted_ >= 0;
+  return ends_ || is_wanted_;
 }
 
-/// Shows what is known of a moment without a simulation. Damaged parts of the session have no glimpse.
-void Stage::show_glimpse(PictureMaker& maker, Seeker& seeker, std::int64_t tick, std::uint32_t request) {
-  const Result<Seeker::Glimpse> glimpse = seeker.glimpse(tick);
-  if (!glimpse) return;
-  const recordings::TickRecord& record = glimpse->record;
-  FrameFacts facts;
-  facts.request = request, facts.is_glimpse = true, facts.tick = tick, facts.severed = severed_in(glimpse->state);
-  facts.hand = record.inputs.position, facts.force = record.tool_force, facts.depth = record.depth;
-  facts.contacts = record.contacts, facts.tick_time = record.tick_time, facts.slip = record.slip;
-  facts.second = {record.second, record.inputs.second.position};
-  outbox_->show(maker.make(glimpse->state, facts));
+/// Shows the picture of a wish, unless a newer one came, or the replayed picture was there before the glimpse.
+void Stage::show(Picture picture, const Wish& wish, bool is_glimpse) {
+  const std::lock_guard lock(mutex_);
+  if (wish.request != newest_.request || (is_glimpse && !is_replaying_)) return;
+  if (!is_glimpse) is_replaying_ = wants_glimpse_ = false;
+  outbox_->show(std::move(picture));
+}
+
+void Stage::replay() {
+  Seeker seeker(reader_, *moments_);
+  PictureMaker maker(reader_.start().model, number_, cuts_);
+  std::unique_ptr<Drawing> drawing;
+  while (const std::optional<Wish> wish = next(is_wanted_)) {
+    if (seeker.is_far(wish->tick)) {
+      const std::lock_guard lock(mutex_);
+      wants_glimpse_ = wants_glimpse_ || wish->request == newest_.request;
+      news_.notify_all();
+    }
+    const Result<bool> there = seeker.go_to(wish->tick, [this] { return is_outdated(); });
+    if (!there) outbox_->send(stage_failed(number_, there.errors()));
+    if (!there || !*there) continue;
+    const State& state = seeker.cursor().state();
+    Picture picture = maker.make(state, facts(seeker, wish->request));
+    if (const Result<Done> followed = follow_request(drawing); !followed)
+      outbox_->send(stage_failed(number_, followed.errors()));
+    if (drawing) {
+      Result<std::string> drawn = drawing->draw(state, seeker.cursor().tick(), number_, wish->request);
+      if (drawn) picture.drawing = std::move(*drawn);
+    }
+    show(std::move(picture), *wish, false);
+  }
+}
+
+/// Shows what is known of moments without a simulation. Damaged parts of the session and its beginning have no glimpse.
+void Stage::glance() {
+  Result<recordings::SessionReader> reader = recordings::SessionReader::open(reader_.path());
+  if (!reader) return;  // it went away since it was opened: the replay says so
+  Glimpses glimpses(*reader, *moments_);
+  PictureMaker maker(reader_.start().model, number_, cuts_);
+  while (const std::optional<Wish> wish = next(wants_glimpse_)) {
+    if (wish->tick == 0) continue;
+    Result<Glimpses::Glimpse> glimpse = glimpses.of(wish->tick);
+    if (!glimpse) continue;
+    const recordings::TickRecord& record = glimpse->record;
+    FrameFacts facts;
+    facts.request = wish->request, facts.is_glimpse = true, facts.tick = wish->tick;
+    facts.severed = severed_in(glimpse->state);
+    facts.hand = record.inputs.position, facts.force = record.tool_force, facts.depth = record.depth;
+    facts.contacts = record.contacts, facts.tick_time = record.tick_time, facts.slip = record.slip;
+    facts.second = {record.second, record.inputs.second.position};
+    show(maker.make_glimpse(std::move(glimpse->state), facts), *wish, true);
+  }
 }
 
 FrameFacts Stage::facts(const Seeker& seeker, std::uint32_t request) {
@@ -74,27 +160,6 @@ FrameFacts Stage::facts(const Seeker& seeker, std::uint32_t request) {
   facts.contacts = cursor.report().contacts, facts.second.report = cursor.report().second;
   facts.tick_time = cursor.record().tick_time, facts.slip = cursor.record().slip;
   return facts;
-}
-
-void Stage::work() {
-  Seeker seeker(reader_, *moments_);
-  PictureMaker maker(reader_.start().model, number_);
-  for (;;) {
-    std::int64_t tick;
-    std::uint32_t request;
-    {
-      std::unique_lock lock(mutex_);
-      news_.wait(lock, [&] { return wanted_ >= 0 || ends_; });
-      if (ends_) return;
-      tick = std::exchange(wanted_, -1), request = request_;
-    }
-    if (seeker.is_far(tick)) show_glimpse(maker, seeker, tick, request);
-    const Result<bool> there = seeker.go_to(tick, [this] { return is_outdated(); });
-    if (!there)
-      outbox_->send(stage_failed(number_, there.errors()));
-    else if (*there)
-      outbox_->show(maker.make(seeker.cursor().state(), facts(seeker, request)));
-  }
 }
 
 }  // namespace ctpm::server

@@ -4,20 +4,25 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
 #include "core/model/result.h"
 #include "recordings/session_reader.h"
+#include "studio/server/cuts_ahead.h"
+#include "studio/server/drawing.h"
+#include "studio/server/drawn_cuts.h"
 #include "studio/server/moments.h"
 #include "studio/server/outbox.h"
 #include "studio/server/picture.h"
-#include "studio/server/seeker.h"
 
 namespace ctpm::server {
 
-/// A session on the page: shows any of its moments on request, in a thread of its own. What has to be simulated first
-/// is shown by a glimpse at once.
+class Seeker;
+
+/// A session on the page: shows any of its moments on request. One thread replays; another shows by a glimpse what
+/// takes longer, and waits for nothing.
 class Stage {
  public:
   /// Opens `file` as stage `number` of the page behind `outbox` and sends the shapes of its tools. Errors: the session
@@ -29,27 +34,44 @@ class Stage {
   /// Asks for the State before `tick`, which is moved into the session; a newer request replaces one that waits.
   void show(std::int64_t tick, std::uint32_t request);
 
+  /// Draws the replayed pictures that follow here too, beside their frames; nothing: no longer. Returns their legend.
+  /// Errors: those of Drawing::check().
+  Result<render::Legend> draw_as(const std::optional<DrawingRequest>& request);
+
   /// Share of the session that can be reached with a short replay, in [0, 1].
   double prepared() const { return moments_->share(); }
 
  private:
+  struct Wish {
+    std::int64_t tick = 0;
+    std::uint32_t request = 0;
+  };
   Stage(recordings::SessionReader reader, std::unique_ptr<Moments> moments, std::uint32_t number,
         std::shared_ptr<Outbox> outbox);
-  void work();
+  void replay();
+  void glance();
+  Result<Done> follow_request(std::unique_ptr<Drawing>& drawing);
+  std::optional<Wish> next(bool& flag);
   bool is_outdated();
-  void show_glimpse(PictureMaker& maker, Seeker& seeker, std::int64_t tick, std::uint32_t request);
+  void show(Picture picture, const Wish& wish, bool is_glimpse);
   FrameFacts facts(const Seeker& seeker, std::uint32_t request);
 
   recordings::SessionReader reader_;
   std::unique_ptr<Moments> moments_;
   std::uint32_t number_;
   std::shared_ptr<Outbox> outbox_;
+  std::shared_ptr<DrawnCuts> cuts_;
+  CutsAhead ahead_;
   std::mutex mutex_;
   std::condition_variable news_;
-  std::int64_t wanted_ = -1;  ///< tick; -1: none
-  std::uint32_t request_ = 0;
+  Wish newest_;
+  bool is_wanted_ = false;      ///< `newest_` waits for the replay
+  bool wants_glimpse_ = false;  ///< `newest_` waits for a glimpse
+  bool is_replaying_ = false;   ///< a request that is not answered yet
+  std::optional<DrawingRequest> drawing_request_;
+  bool has_drawing_request_ = false;  ///< that the replay does not follow yet
   bool ends_ = false;
-  std::thread thread_;
+  std::thread replay_thread_, glimpse_thread_;
 };
 
 }  // namespace ctpm::server

@@ -139,8 +139,8 @@ void WebClient::wake() {
   asio::post(services_.network, [self = shared_from_this()] { self->write_next(); });
 }
 
-/// What is sent next: control messages first, then the newest picture of a stage, its triangles before it if the page
-/// does not have them.
+/// What is sent next: control messages first, then the newest picture of a stage, before it its triangles, if the page
+/// does not have them, and its drawing.
 std::optional<WebClient::Message> WebClient::next_message() {
   const std::lock_guard lock(mutex_);
   if (!queue_.empty()) {
@@ -155,6 +155,7 @@ std::optional<WebClient::Message> WebClient::next_message() {
       slot.sent_topology = slot.picture->topology;
       return Message{*slot.picture->triangles, false};
     }
+    if (!slot.picture->drawing.empty()) return Message{std::exchange(slot.picture->drawing, {}), false};
     Message message{std::move(slot.picture->frame), false};
     slot.picture.reset();
     std::memcpy(message.bytes.data() + kMissedOffset, &slot.missed, sizeof slot.missed);

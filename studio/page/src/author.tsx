@@ -81,10 +81,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
     desk.gizmos.set(scene.stage, items, brushRadius === null ? selected : "", used);
     desk.brush.radius = brushRadius ?? desk.brush.radius;
     desk.brush.use(brushRadius === null ? null : scene.stage, items);
-    items.filter((i) => i.kind === "organ" && i.place).forEach((organ) => {
-      const was = scene.shownOrganPlace(organ.index);
-      if (was && organ.place) scene.stage?.shiftOrgan(organ.index, organ.place.clone().sub(was));
-    });
+    scene.poseOrgans();
   });
   useEffect(() => {
     if (doc) doc.onPlace = (path) => {

@@ -2,7 +2,7 @@
 import * as three from "three";
 import type { Connection } from "./connection";
 import { SceneDocument } from "./document";
-import { type Item, itemsOf, listOf } from "./items";
+import { type Item, itemsOf, listOf, type OrganPose, organPoses } from "./items";
 import type { Json } from "./json_edit";
 import { CallFailed, type Problem, type SceneView, type Shapes, type Spheres, type Triangles, type WaitingFrame } from "./protocol";
 import type { Schema } from "./scene_schema";
@@ -74,14 +74,14 @@ export class AuthorScene {
   private measuring: AbortController | null = null;
   private timers: { check?: ReturnType<typeof setTimeout>; show?: ReturnType<typeof setTimeout> } = {};
   private received: (Shapes | Spheres | Triangles | WaitingFrame)[] = [];
-  private places: three.Vector3[] = []; // of the organs that are shown
-  private middles: three.Vector3[] = []; // of their spheres, from these places
+  private poses: OrganPose[] = []; // of the organs that are shown
+  private middles: three.Vector3[] = []; // of their spheres, in their meshes
   private onFrame: () => void = () => {};
 
   constructor(private readonly connection: Connection, private readonly viewer: Viewer) {
     connection.call<Schema>("scene.schema").then((schema) => (this.schema = schema), () => {});
     connection.onStage(kAuthorStage, (message) => {
-      this.received.push(message);
+      if (message.kind !== "drawing") this.received.push(message);
       if (message.kind === "waiting") this.onFrame();
     });
   }
@@ -125,9 +125,10 @@ export class AuthorScene {
     return { errors, warnings: errors.length ? this.checked?.warnings ?? [] : this.shown?.warnings ?? this.checked?.warnings ?? [] };
   }
 
-  /** Where the text that is shown has an organ [m]. */
-  shownOrganPlace(organ: number): three.Vector3 | null {
-    return this.places[organ] ?? null;
+  /** Draws the organs where the text has them by now. */
+  poseOrgans(): void {
+    const poses = organPoses(this.doc?.lastValue);
+    this.poses.forEach((was, i) => poses[i] && this.stage?.poseOrgan(i, was, poses[i]));
   }
 
   show(how: Shown): void {
@@ -180,14 +181,14 @@ export class AuthorScene {
     if (!doc) return;
     const stop = (this.running = new AbortController());
     const part = simulatedPart(doc.value);
-    const places = listOf(doc.value, "organs").map((_, i) => this.items.find((item) => item.key === `organs/${i}`)?.place ?? new three.Vector3());
+    const poses = organPoses(doc.value);
     this.isLoading = true, this.received = [];
     this.onChange();
     try {
       const frame = new Promise<void>((resolve) => (this.onFrame = resolve));
       const shown = await this.connection.call<ShownScene>("scene.show", { path: doc.path, text: doc.text, stage: kAuthorStage }, { signal: stop.signal });
       await frame;
-      if (this.doc === doc) this.take(shown, part, places);
+      if (this.doc === doc) this.take(shown, part, poses);
     } catch (failure) {
       if (!stop.signal.aborted && this.doc === doc) this.error = failure as Error, this.shownPart = part;
     }
@@ -197,7 +198,7 @@ export class AuthorScene {
     if (this.wantsShow) this.wantsShow = false, void this.load();
   }
 
-  private take(shown: ShownScene, part: string, places: three.Vector3[]): void {
+  private take(shown: ShownScene, part: string, poses: OrganPose[]): void {
     const isFirst = !this.shown, had = this.shown?.view.organs.length ?? 0;
     const stage = new StageScene(shown.view);
     for (const message of this.received.splice(0))
@@ -208,8 +209,11 @@ export class AuthorScene {
     stage.takeFrame();
     stage.show(this.how);
     this.viewer.set(kAuthorStage, stage);
-    this.stage = stage, this.shown = shown, this.shownPart = part, this.places = places, this.error = null;
-    this.middles = stage.organSpheres.map((organ, i) => middleOf(organ.centre).sub(places[i] ?? new three.Vector3()));
+    this.stage = stage, this.shown = shown, this.shownPart = part, this.poses = poses, this.error = null;
+    this.middles = stage.organSpheres.map((organ, i) => {
+      const { place, turn, scale } = poses[i];
+      return middleOf(organ.centre).sub(place).applyQuaternion(turn.clone().invert()).divideScalar(scale);
+    });
     // A scene is seen by its first camera; when an organ came, by the one that sees everything.
     const camera = isFirst ? shown.view.cameras[0] : shown.view.organs.length > had ? shown.view.cameras.at(-1) : undefined;
     if (camera) this.viewer.look(camera);

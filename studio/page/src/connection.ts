@@ -1,6 +1,6 @@
-import { CallFailed, type Problem, readBinary, type Shapes, type Spheres, type Triangles, type WaitingFrame } from "./protocol";
+import { CallFailed, type Drawing, type Problem, readBinary, type Shapes, type Spheres, type Triangles, type WaitingFrame } from "./protocol";
 
-export type Binary = Triangles | WaitingFrame | Shapes | Spheres;
+export type Binary = Triangles | WaitingFrame | Shapes | Spheres | Drawing;
 
 interface Running {
   done(result: unknown): void;

@@ -1,5 +1,7 @@
 import { useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
+import { LookFields } from "./look_fields";
+import { type Look, lookParameters, lookWords } from "./look";
 import { Problems, Section, ShownCommand, Working } from "./parts";
 import type { Player } from "./player";
 import { bytes, command, seconds } from "./text";
@@ -20,13 +22,12 @@ function number(text: string): number | undefined {
 }
 
 /** A video of what is seen. */
-export function ExportForm({ connection, player }: { connection: Connection; player: Player }) {
+export function ExportForm({ connection, player, look, onLook }: { connection: Connection; player: Player; look: Look; onLook: (look: Look) => void }) {
   const { session } = player.tracks.get(0)!;
   const beside = player.tracks.get(1)?.session.path;
   const [output, setOutput] = useState(() => session.path.replace(/\.ctpm$/, "") + ".mp4");
   const [from, setFrom] = useState("0"), [to, setTo] = useState("");
-  const [speed, setSpeed] = useState("1"), [camera, setCamera] = useState("");
-  const [view, setView] = useState("surface"), [cutaway, setCutaway] = useState("");
+  const [speed, setSpeed] = useState("1");
   const [progress, setProgress] = useState<[number, number] | null>(null);
   const [result, setResult] = useState<Exported | null>(null);
   const [error, setError] = useState<Error | null>(null);
@@ -37,7 +38,7 @@ export function ExportForm({ connection, player }: { connection: Connection; pla
     setError(null), setResult(null), setProgress([0, 1]);
     const params = {
       path: session.path, beside, output, from_s: number(from), to_s: number(to), speed: number(speed),
-      camera: camera || undefined, view, cutaway: cutaway || undefined,
+      ...lookParameters(look),
     };
     try {
       setResult(await connection.call<Exported>("session.export", params,
@@ -53,20 +54,11 @@ export function ExportForm({ connection, player }: { connection: Connection; pla
   };
   const shown = command("export", session.path, "-o", output, ...(beside ? ["--beside", beside] : []),
     ...(number(from) ? ["--from-s", from] : []), ...(number(to) !== undefined ? ["--to-s", to] : []),
-    ...(number(speed) !== 1 ? ["--speed", speed] : []), ...(camera ? ["--camera", camera] : []),
-    ...(view !== "surface" ? ["--view", view] : []), ...(cutaway ? ["--cutaway", cutaway] : []));
+    ...(number(speed) !== 1 ? ["--speed", speed] : []), ...lookWords(look));
   const field = (label: string, value: string, set: (value: string) => void, type = "text") => (
     <label class="field">
       <span>{label}</span>
       <input type={type} step="any" value={value} onInput={(e) => set(e.currentTarget.value)} />
-    </label>
-  );
-  const choice = (label: string, value: string, set: (value: string) => void, options: [string, string][]) => (
-    <label class="field">
-      <span>{label}</span>
-      <select value={value} onChange={(e) => set(e.currentTarget.value)}>
-        {options.map(([key, name]) => <option key={key} value={key}>{name}</option>)}
-      </select>
     </label>
   );
   return (
@@ -77,14 +69,9 @@ export function ExportForm({ connection, player }: { connection: Connection; pla
         {field("to [s]", to, setTo, "number")}
       </div>
       <button type="button" onClick={around}>1 s around {seconds(player.time, 2)}</button>
-      <div class="pair">
-        {field("times real speed", speed, setSpeed, "number")}
-        {choice("camera", camera, setCamera, [["", "first"], ["follow", "follow"], ...session.view.cameras.map((c): [string, string] => [c.name, c.name])])}
-      </div>
-      <div class="pair">
-        {choice("view", view, setView, ["surface", "spheres", "both", "elements"].map((v): [string, string] => [v, v]))}
-        {choice("cutaway across", cutaway, setCutaway, [["", "none"], ["x", "x"], ["y", "y"], ["z", "z"]])}
-      </div>
+      {field("times real speed", speed, setSpeed, "number")}
+      <p class="hint">A video shows what is seen:</p>
+      <LookFields look={look} onLook={onLook} cameras={session.view.cameras} />
       {progress ? <Working what="exporting" done={progress[0]} total={progress[1]} onCancel={() => stop.current?.abort()} />
         : <button type="button" class="main" disabled={!output} onClick={() => void start()}>Export</button>}
       <Problems error={error} />

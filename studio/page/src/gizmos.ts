@@ -11,6 +11,7 @@ import type { Viewer } from "./viewer";
 export type Values = [JSONPath, Json | undefined][];
 export type GizmoMode = "move" | "turn" | "size";
 
+const kEdge = 12; // where a handle stays whose item is outside the picture [px]
 const kStill = 3; // a press that moves less is a click [px]
 const kNudge = 0.001, kFineNudge = 0.0001; // of an arrow key [m]
 const kClearance = 0.002; // between a tool and the surface that it was dragged to [m]
@@ -18,6 +19,7 @@ const kClearance = 0.002; // between a tool and the surface that it was dragged 
 /** What an item can do besides being moved. */
 export function modesOf(item: Item | null): GizmoMode[] {
   if (!item?.place) return [];
+  if (item.kind === "organ") return ["move", "turn", "size"];
   if (item.shape === "scalpel" || item.shape === "ball") return ["move", "turn"];
   return item.shape === "sphere" || item.shape === "box" ? ["move", "size"] : ["move"];
 }
@@ -108,7 +110,7 @@ export class Gizmos {
     else {
       const { scale } = this.pivot;
       const ratio = [scale.x, scale.y, scale.z].reduce((most, s) => (Math.abs(s - 1) > Math.abs(most - 1) ? s : most), 1);
-      const factor = item.shape === "sphere" ? new three.Vector3(ratio, ratio, ratio) : scale.clone();
+      const factor = item.shape === "sphere" || item.kind === "organ" ? new three.Vector3(ratio, ratio, ratio) : scale.clone();
       this.onPreview(sized(item, item.size.clone().multiply(factor)));
     }
   }
@@ -148,13 +150,19 @@ export class Gizmos {
   private layHandles(): void {
     // A camera through which the viewer looks would frame the picture.
     for (const shape of this.group.children) if (shape.userData.isCamera) shape.visible = shape.position.distanceTo(this.viewer.camera.position) > 0.3 * this.size;
+    const { clientWidth: width, clientHeight: height } = this.viewer.canvas;
     for (const [key, handle] of this.handles) {
       const item = this.item(key), at = item?.place && this.viewer.pixelOf(item.place.clone().add(item.offset));
-      const { clientWidth: width, clientHeight: height } = this.viewer.canvas;
       const isIn = at && at.x > 0 && at.y > 0 && at.x < width && at.y < height;
-      handle.style.display = isIn ? "" : "none";
-      if (isIn) handle.style.transform = `translate(${at.x.toFixed(1)}px, ${at.y.toFixed(1)}px)`;
-      if (isIn) handle.classList.toggle("left", at.x > width - 120);
+      // One that has the keyboard waits at the edge: a hidden one would lose it, and the keys that follow.
+      const isKept = isIn || handle === document.activeElement;
+      handle.style.display = isKept ? "" : "none";
+      handle.classList.toggle("beyond", isKept && !isIn);
+      if (!isKept || !at) continue;
+      const edge = isIn ? 0 : kEdge;
+      const x = three.MathUtils.clamp(at.x, edge, width - edge), y = three.MathUtils.clamp(at.y, edge, height - edge);
+      handle.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+      handle.classList.toggle("left", x > width - 120);
     }
   }
 

@@ -37,7 +37,13 @@ export function Inspector({ scene, item, viewer, onRemove }: { scene: AuthorScen
           <input value={item.name} onInput={(e) => e.currentTarget.value && preview([[at("name"), e.currentTarget.value]])} onChange={done} />
         </label>
       )}
-      {item.kind === "organ" && vector("place of the mesh's origin", ["at_mm"], [0, 0, 0])}
+      {item.kind === "organ" && (
+        <>
+          {vector("place of the mesh's origin", ["at_mm"], [0, 0, 0])}
+          {vector("turned about x, then y, then z", ["turn_deg"], [0, 0, 0], "degrees", 5)}
+          {number("scale of the mesh", ["scale"], 1, "times", 0.05, 0.001)}
+        </>
+      )}
       {(item.shape === "ball" || item.shape === "scalpel") && (
         <>
           {vector(item.isWritten ? "taken up at" : "taken up at (not written: above the organs)", ["at_mm"], place)}

@@ -15,8 +15,8 @@ export interface Item {
   shape: "organ" | "ball" | "scalpel" | "pin" | "probe" | "camera" | "sphere" | "box" | "plane" | "lowest";
   index: number; // in its list
   place: three.Vector3 | null; // null: it has none, or the text does not say it well
-  turn: three.Quaternion; // of tools, planes and cameras
-  size: three.Vector3; // of a box anchor its sides; of a sphere anchor or a ball, three times its radius
+  turn: three.Quaternion; // of organs, tools, planes and cameras
+  size: three.Vector3; // of a box anchor its sides; of a sphere anchor or a ball, three times its radius; of an organ, its scale
   offset: three.Vector3; // from its place to its handle: an organ's place is that of its mesh's origin
   isWritten: boolean; // the text says the place; else it is where the hand takes it up
 }
@@ -56,7 +56,24 @@ function textOf(value: Json | undefined, otherwise: string): string {
   return typeof value === "string" && value ? value : otherwise;
 }
 
-/** Everything in a scene that has a place. `view`: as it is shown, for places that the text leaves open. `middles`: of its organs, from their places. */
+/** How an organ's mesh stands in the scene: sized and turned about its origin, which is then put at its place. */
+export interface OrganPose {
+  place: three.Vector3;
+  turn: three.Quaternion;
+  scale: number;
+}
+function poseOf(organ: Fields): OrganPose {
+  const [x, y, z] = (numbersOf(organ.turn_deg) ?? [0, 0, 0]).map(three.MathUtils.degToRad);
+  return {
+    place: metresOf(organ.at_mm) ?? new three.Vector3(), turn: new three.Quaternion().setFromEuler(new three.Euler(x, y, z, "ZYX")), // about x first
+    scale: typeof organ.scale === "number" && organ.scale > 0 ? organ.scale : 1,
+  };
+}
+export function organPoses(scene: Json | undefined): OrganPose[] {
+  return listOf(scene, "organs").map(poseOf);
+}
+
+/** Everything in a scene that has a place. `view`: as it is shown, for places that the text leaves open. `middles`: of its organs, in their meshes [m]. */
 export function itemsOf(scene: Json | undefined, view: SceneView | null, middles: three.Vector3[] = []): Item[] {
   const items: Item[] = [];
   const add = (path: JSONPath, kind: ItemKind, shape: Item["shape"], name: string, place: three.Vector3 | null, more: Partial<Item> = {}) =>
@@ -66,7 +83,9 @@ export function itemsOf(scene: Json | undefined, view: SceneView | null, middles
   const middle = view ? new three.Vector3(...view.least).add(new three.Vector3(...view.most)).multiplyScalar(0.5) : new three.Vector3();
   listOf(scene, "organs").forEach((organ, i) => {
     const name = textOf(organ.name, `organ ${i + 1}`);
-    if (!organ.rig) add(["organs", i], "organ", "organ", name, metresOf(organ.at_mm) ?? new three.Vector3(), { isWritten: organ.at_mm !== undefined, offset: middles[i] ?? new three.Vector3() });
+    const { place, turn, scale } = poseOf(organ);
+    const offset = (middles[i] ?? new three.Vector3()).clone().multiplyScalar(scale).applyQuaternion(turn);
+    if (!organ.rig) add(["organs", i], "organ", "organ", name, place, { isWritten: organ.at_mm !== undefined, turn, size: new three.Vector3(scale, scale, scale), offset });
     // The organ is named where there are others.
     const called = (what: string, k: number) => `${what} ${k + 1}${listOf(scene, "organs").length > 1 ? ` of ${name}` : ""}`;
     listOf(organ, "anchors").forEach((anchor, k) => {
@@ -128,8 +147,19 @@ export function placed(item: Item, place: three.Vector3): Values {
   return values;
 }
 
-/** Of a tool that was turned, with its place. */
+/** Of an organ that was turned or sized: its middle stays where it is. */
+function kept(item: Item, offset: three.Vector3): Values {
+  const before = mmVector(item.place!), place = item.place!.clone().add(item.offset).sub(offset), after = mmVector(place);
+  return after.some((x, i) => x !== before[i]) ? placed(item, place) : [];
+}
+
+/** Of a tool that was turned, with its place, or of an organ. */
 export function turned(item: Item, turn: three.Quaternion): Values {
+  if (item.kind === "organ") {
+    const { x, y, z } = new three.Euler().setFromQuaternion(turn, "ZYX");
+    const degrees = [x, y, z].map((angle) => Math.round(100 * three.MathUtils.radToDeg(angle)) / 100 + 0);
+    return [[[...item.path, "turn_deg"], degrees], ...kept(item, item.offset.clone().applyQuaternion(item.turn.clone().invert()).applyQuaternion(turn))];
+  }
   const values: Values = item.isWritten ? [] : [[[...item.path, "at_mm"], mmVector(item.place!)]];
   values.push([[...item.path, "pointing"], direction(new three.Vector3(0, 0, -1).applyQuaternion(turn))]);
   if (item.shape === "scalpel") values.push([[...item.path, "facing"], direction(new three.Vector3(1, 0, 0).applyQuaternion(turn))]);
@@ -144,8 +174,12 @@ function boxed(item: Item, place: three.Vector3, size: three.Vector3): Values {
   ];
 }
 
-/** Of an anchor that got another size. */
+/** Of an anchor or an organ that got another size. */
 export function sized(item: Item, size: three.Vector3): Values {
+  if (item.kind === "organ") {
+    const scale = three.MathUtils.clamp(Math.round(1e4 * size.x) / 1e4, 0.001, 1000);
+    return [[[...item.path, "scale"], scale], ...kept(item, item.offset.clone().multiplyScalar(scale / item.size.x))];
+  }
   if (item.shape === "sphere") return [[[...item.path, "sphere", "radius_mm"], mm(Math.max(size.x, 1e-4))]];
   return item.shape === "box" ? boxed(item, item.place!, size.clone().max(new three.Vector3(1e-4, 1e-4, 1e-4))) : [];
 }

@@ -39,7 +39,7 @@ export class OrganMesh {
     geometry.attributes.position.needsUpdate = true;
     geometry.attributes.normal.needsUpdate = true;
     geometry.boundingSphere = null; // of positions before
-    this.mesh.position.set(0, 0, 0);
+    this.mesh.position.set(0, 0, 0), this.mesh.quaternion.identity(), this.mesh.scale.setScalar(1);
   }
 
   /** 0: not drawn, 1: not transparent. */

@@ -1,5 +1,6 @@
 import type { Binary, Connection } from "./connection";
-import type { Frame, OpenedSession, SessionInfo, TimelineData, Shapes } from "./protocol";
+import type { Drawing, Frame, Legend, OpenedSession, SessionInfo, TimelineData, Shapes } from "./protocol";
+import { type Look, lookParameters } from "./look";
 import { StageScene } from "./stage_scene";
 import type { Viewer } from "./viewer";
 
@@ -34,6 +35,9 @@ export class Player {
   reached = 0; // speed of the playback in the last second
   onChange: () => void = () => {};
   onTime: () => void = () => {};
+  onDrawing: (stage: number, drawing: Drawing | null) => void = () => {}; // to show in place of the scene; null: the scene
+  private readonly isDrawn = new Set<number>(); // stages that the program draws
+  private readonly drawings = new Map<number, Drawing>(); // newest of each stage
   private readonly asked = new Map<number, number>(); // newest request of each stage
   private readonly unseen = new Set<number>(); // stages of which it has no picture yet
   private readonly waiting = new Map<number, number>(); // request of each stage that has no replayed picture yet
@@ -114,6 +118,16 @@ export class Player {
     this.onTime();
   }
 
+  /** Asks for the pictures of a stage as the program draws them; null: the page draws. */
+  async drawAs(stage: number, look: Look | null, size: string): Promise<Legend | null> {
+    this.drawings.delete(stage);
+    if (!look && !this.isDrawn.delete(stage)) return null;
+    if (look) this.isDrawn.add(stage);
+    const legend = await this.connection.call<Legend>("session.draw", look ? { stage, size, ...lookParameters(look) } : { stage });
+    if (this.tracks.has(stage)) this.move(this.time);
+    return legend.title ? legend : null;
+  }
+
   setOffset(offset: number): void {
     this.offset = offset, this.path = null;
     this.move(this.time);
@@ -176,11 +190,14 @@ export class Player {
     if (message.kind === "shapes") this.tools.set(stage, message);
     const track = this.tracks.get(stage);
     if (!track) return;
-    if (message.kind === "triangles") track.scene.setTriangles(message);
+    if (message.kind === "drawing") this.drawings.set(stage, message);
+    else if (message.kind === "triangles") track.scene.setTriangles(message);
     else if (message.kind === "waiting") track.scene.wait(message), this.viewer.draw();
   }
 
   private drew(stage: number, frame: Frame): void {
+    const drawing = this.drawings.get(stage);
+    this.onDrawing(stage, drawing?.request === frame.request ? drawing : null);
     if (this.asked.get(stage) === frame.request) this.unseen.delete(stage);
     if (this.waiting.get(stage) === frame.request && !frame.isGlimpse) this.waiting.delete(stage);
     setTimeout(() => { // the picture is drawn by now

@@ -374,13 +374,37 @@ export function readWaitingFrame(message: WaitingFrame): Frame {
   return readFrame(reader);
 }
 
+/** What the colours of drawings mean; without a title they mean nothing. */
+export interface Legend {
+  title: string;
+  low: string;
+  high: string;
+  colours: Vector[]; // sRGB
+}
+
+/** A moment as the program draws it, in place of the page. */
+export interface Drawing {
+  kind: "drawing";
+  stage: number;
+  request: number;
+  width: number;
+  height: number;
+  rgb: Uint8Array;
+}
+
+function readDrawing(r: Reader): Drawing {
+  const stage = r.u32(), request = r.u32(), width = r.u32(), height = r.u32();
+  return { kind: "drawing", stage, request, width, height, rgb: r.array(Uint8Array, 1, 3 * width * height) };
+}
+
 /** Reads a binary message; of a frame its head alone. Throws a RangeError for one that is not whole. */
-export function readBinary(bytes: ArrayBuffer): Triangles | WaitingFrame | Shapes | Spheres {
+export function readBinary(bytes: ArrayBuffer): Triangles | WaitingFrame | Shapes | Spheres | Drawing {
   const reader = new Reader(bytes);
   const kind = reader.u32();
   if (kind === 1) return readTriangles(reader);
   if (kind === 2) return { kind: "waiting", stage: reader.u32(), request: (reader.at = 16, reader.u32()), bytes };
   if (kind === 3) return readShapes(reader);
   if (kind === 4) return readSpheres(reader);
+  if (kind === 5) return readDrawing(reader);
   throw new RangeError(`unknown kind of message ${kind}`);
 }

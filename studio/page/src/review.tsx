@@ -1,11 +1,14 @@
 import { useCallback, useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
 import { Compare } from "./compare";
+import { drawInto, sizeOf } from "./drawing";
 import { ExportForm } from "./export_form";
+import { kPlainLook, type Look } from "./look";
+import { LegendBar, LookFields } from "./look_fields";
 import { NotesPanel } from "./notes";
 import { Empty, Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import { Player } from "./player";
-import type { ComparisonResult, Listing, Note, SessionEvent } from "./protocol";
+import type { ComparisonResult, Legend, Listing, Note, SessionEvent } from "./protocol";
 import { Mark, Timeline } from "./timeline";
 import { behind, bytes, command, millimetres, newtons, seconds } from "./text";
 import { Viewer } from "./viewer";
@@ -35,7 +38,7 @@ export function Review({ connection, listing, place, onPlace }: {
   place: Place;
   onPlace: (place: Place) => void;
 }) {
-  const canvas = useRef<HTMLCanvasElement>(null);
+  const canvas = useRef<HTMLCanvasElement>(null), drawn = [useRef<HTMLCanvasElement>(null), useRef<HTMLCanvasElement>(null)];
   const [player, setPlayer] = useState<Player | null>(null);
   const [, setTick] = useState(0);
   const [version, setVersion] = useState(0);
@@ -43,12 +46,15 @@ export function Review({ connection, listing, place, onPlace }: {
   const [panel, setPanel] = useState<Panel>("moment");
   const [notes, setNotes] = useState<Note[]>([]);
   const [comparison, setComparison] = useState<ComparisonResult | null>(null);
+  const [look, setLook] = useState<Look>(kPlainLook);
+  const [legend, setLegend] = useState<Legend | null>(null);
 
   useEffect(() => {
     if (!canvas.current) return;
     const viewer = new Viewer(canvas.current);
     const made = new Player(connection, viewer);
     made.onChange = () => setVersion((v) => v + 1);
+    made.onDrawing = (stage, drawing) => drawn[stage].current && drawInto(drawn[stage].current!, drawing);
     let wanted = false;
     made.onTime = () => {
       if (wanted) return;
@@ -102,6 +108,24 @@ export function Review({ connection, listing, place, onPlace }: {
 
   const first = player?.tracks.get(0), second = player?.tracks.get(1);
   const frame = first?.scene.frame ?? null, other = second?.scene.frame ?? null;
+
+  // The page draws surfaces as the scene's cameras see them; anything else is drawn as for a video.
+  const camera = first?.session.view.cameras.find((c, i) => (look.camera ? c.name === look.camera : i === 0));
+  const choose = (next: Look) => {
+    const named = first?.session.view.cameras.find((c, i) => (next.camera ? c.name === next.camera : i === 0));
+    if (named && next.camera !== look.camera) player?.viewer.look(named);
+    setLook(next);
+  };
+  const isPlain = look.view === "surface" && !look.cutaway && (camera !== undefined || !look.camera);
+  useEffect(() => {
+    if (!player || !first || !canvas.current) return;
+    const size = sizeOf(canvas.current, player.tracks.size);
+    for (const stage of player.tracks.keys())
+      player.drawAs(stage, isPlain ? null : look, size).then((shown) => {
+        setError(null);
+        if (stage === 0) setLegend(shown);
+      }, setError);
+  }, [player, first, second, look]);
 
   useEffect(() => {
     if (!player || !first) return;
@@ -157,6 +181,10 @@ export function Review({ connection, listing, place, onPlace }: {
       </nav>
       <div class="view">
         <canvas ref={canvas} aria-label={first ? `The scene ${first.session.view.name}` : "No scene"} tabIndex={0} />
+        <div class={second ? "drawings halves" : "drawings"} aria-hidden="true">
+          <canvas ref={drawn[0]} hidden />
+          {second && <canvas ref={drawn[1]} hidden />}
+        </div>
         {!first && (
           <Empty title="Choose a session">
             <p>Its force, depth and speed appear below; any moment is a press away.</p>
@@ -164,8 +192,14 @@ export function Review({ connection, listing, place, onPlace }: {
         )}
         {first && (
           <div class="captions">
-            <span class="first">{first.session.path}</span>
-            {second && <span class="second">{second.session.path}</span>}
+            <span class="first"><b>{first.session.path}</b></span>
+            {second && <span class="second"><b>{second.session.path}</b></span>}
+          </div>
+        )}
+        {first && (
+          <div class="look-bar">
+            {legend && <LegendBar legend={legend} />}
+            <LookFields look={look} onLook={choose} cameras={first.session.view.cameras} />
           </div>
         )}
         <Problems error={error} />
@@ -184,12 +218,6 @@ export function Review({ connection, listing, place, onPlace }: {
                   setVersion((v) => v + 1);
                 }}>
                   {kSpeeds.map((speed) => <option key={speed} value={speed}>{speed} ×</option>)}
-                </select>
-              </label>
-              <label>
-                camera
-                <select onChange={(e) => player.viewer.look(first.session.view.cameras[Number(e.currentTarget.value)])}>
-                  {first.session.view.cameras.map((camera, i) => <option key={camera.name} value={i}>{camera.name}</option>)}
                 </select>
               </label>
               <output class="clock">{seconds(player.time)} <small>of {seconds(first.session.info.duration_s)}</small></output>
@@ -217,7 +245,7 @@ export function Review({ connection, listing, place, onPlace }: {
                   onBeside={(path) => open(1, path)} />
               )}
               {panel === "notes" && <NotesPanel connection={connection} player={player} onNotes={setNotes} />}
-              {panel === "export" && <ExportForm key={first.session.path} connection={connection} player={player} />}
+              {panel === "export" && <ExportForm key={first.session.path} connection={connection} player={player} look={look} onLook={choose} />}
             </div>
           </>
         ) : (

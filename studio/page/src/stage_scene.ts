@@ -1,5 +1,6 @@
 import * as three from "three";
 import { type Frame, type HandFrame, type OrganSpheres, readWaitingFrame, type SceneView, type Shapes, type Spheres, type ToolShape, type Triangles, type Vector, type WaitingFrame } from "./protocol";
+import type { OrganPose } from "./items";
 import { OrganMesh } from "./organ_mesh";
 
 const kArrowPerNewton = 0.007; // [m/N]
@@ -82,10 +83,12 @@ export class StageScene {
     return { place: point.clone(), normal, organ };
   }
 
-  /** Moves an organ as it is drawn, until its next frame [m]. */
-  shiftOrgan(organ: number, by: three.Vector3): void {
-    this.organs[organ]?.mesh.position.copy(by);
-    this.spheres[organ]?.position.copy(by);
+  /** Draws an organ, whose frame has it at the pose `was`, at another one, until its next frame. */
+  poseOrgan(organ: number, was: OrganPose, now: OrganPose): void {
+    const turn = now.turn.clone().multiply(was.turn.clone().invert()), scale = now.scale / was.scale;
+    const place = now.place.clone().sub(was.place.clone().multiplyScalar(scale).applyQuaternion(turn));
+    for (const drawn of [this.organs[organ]?.mesh, this.spheres[organ]])
+      if (drawn) drawn.position.copy(place), drawn.quaternion.copy(turn), drawn.scale.setScalar(scale);
   }
 
   /** Triangles of the frames that follow. */

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { ctpm, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings } from "./browser.mjs";
+import { ctpm, ctpmBeside, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings } from "./browser.mjs";
 
 let folder, studio, page;
 
@@ -115,6 +115,10 @@ test("a mesh becomes a scene, as by the command, and what was repaired is listed
   await page.locator("aside label:has-text('radius') input").fill("4");
   await picture(page, "author-import");
   const shown = await page.locator("aside .command code").innerText();
+  // The command that it shows writes the same scene elsewhere, and reports the same repairs.
+  const other = makeFolder();
+  writeFileSync(join(other, "my-kidney.obj"), mesh);
+  const command = ctpmBeside(other, ...shown.split(" ").slice(1));
   await button("Import", "aside").click();
   await page.waitForSelector("aside .good");
   await page.waitForSelector("aside .findings");
@@ -122,10 +126,7 @@ test("a mesh becomes a scene, as by the command, and what was repaired is listed
   assert.deepEqual(await seriousFindings(page), []);
   await picture(page, "author-imported");
   assert.ok(readFileSync(join(folder, "my-kidney.obj")).equals(mesh));
-  // The command that it showed writes the same scene elsewhere, and reports the same repairs.
-  const other = makeFolder();
-  writeFileSync(join(other, "my-kidney.obj"), mesh);
-  const outcome = ctpm(other, ...shown.split(" ").slice(1));
+  const outcome = await command;
   assert.equal(outcome.code, 0, outcome.err);
   assert.equal(onDisk(), readFileSync(join(other, kScene), "utf8"));
   const repairs = await page.locator("aside section:has-text('Imported') .findings li span:first-child").allInnerTexts();
@@ -218,6 +219,19 @@ test("a probe is dragged over the surface", async () => {
   await page.keyboard.press("ArrowUp");
   assert.notDeepEqual((await scene()).probes[0].at_mm, [3.5, moved[1], moved[2]]);
   assert.equal((await save()).probes.length, 1);
+});
+
+test("200 nudges make 200 undo steps, and undoing all gives the text back", async () => {
+  const before = await text(), place = async () => (await scene()).probes[0].at_mm, from = await place();
+  const way = async () => Math.hypot(...(await place()).map((x, i) => x - from[i]));
+  await handle("probe").focus();
+  for (let i = 0; i < 200; ++i) await page.keyboard.press("ArrowLeft"); // out of the picture
+  await picture(page, "author-beyond");
+  assert.ok(Math.abs((await way()) - 200) < 2, `${await way()} mm`);
+  for (let i = 0; i < 199; ++i) await page.keyboard.press("Control+z");
+  assert.ok(Math.abs((await way()) - 1) < 0.02, `${await way()} mm`);
+  await page.keyboard.press("Control+z");
+  assert.equal(await text(), before);
 });
 
 test("a tool stands where it was dragged to, and is taken up there", async () => {
@@ -333,11 +347,12 @@ test("the slider fills again: spheres, time per tick, scatter", async () => {
   assert.equal(Number(/(\d+) spheres/.exec(ctpm(folder, "check", kScene).out)[1]), spheres);
   console.log(`author: ${spheres} spheres, ${time} ms a tick at rest`);
   const started = Date.now();
+  const command = ctpmBeside(folder, "fidelity", kScene, "-o", "fidelity", "--quick");
   await button("Measure, short form", "#panel").click();
   await page.waitForSelector("#panel .scatter");
   console.log(`author: scatter, short form, in ${((Date.now() - started) / 1e3).toFixed(1)} s`);
   const cells = (await page.locator("#panel .scatter td").allInnerTexts()).filter((cell) => cell.endsWith("%")).map(Number.parseFloat);
-  assert.equal(ctpm(folder, "fidelity", kScene, "-o", "fidelity", "--quick").code < 2, true);
+  assert.ok((await command).code < 2);
   const figures = JSON.parse(readFileSync(join(folder, "fidelity", "results.json"), "utf8")).figures.filter((f) => f.figure.startsWith("scatter"));
   assert.deepEqual([...cells].sort(), figures.map((f) => Number.parseFloat(f.measured.toFixed(1))).sort());
   await page.locator("#panel .scatter").scrollIntoViewIfNeeded();
@@ -371,6 +386,37 @@ test("a second mesh becomes an organ of the scene, which is moved by its handle"
   assert.equal(await text(), before);
   await page.keyboard.press("Control+Shift+z");
   await page.keyboard.press("Control+Shift+z");
+  await settled();
+});
+
+test("an organ is turned by its rings and sized by its cubes, and by its text", async () => {
+  const before = await text(), organ = async () => (await scene()).organs[1];
+  const numbers = (nth) => page.locator("#panel .vector").nth(nth).locator("input").evaluateAll((inputs) => inputs.map((input) => Number(input.value)));
+  await page.click(".objects button:has-text('other-kidney-scene')");
+  await button("turn").click();
+  const middle = await centreOf(handle("other-kidney-scene"));
+  await drag({ x: middle.x + 18, y: middle.y - 14 }, { x: 60, y: 30 });
+  const turned = await organ(), after = await centreOf(handle("other-kidney-scene"));
+  assert.ok(Math.max(...turned.turn_deg.map(Math.abs)) > 10, `${turned.turn_deg}`);
+  assert.ok(Math.hypot(after.x - middle.x, after.y - middle.y) < 2, "its middle stays where it is");
+  assert.deepEqual(await numbers(1), turned.turn_deg);
+  await settled();
+  await picture(page, "author-organ-turned");
+  await button("size").click();
+  const from = await centreOf(handle("other-kidney-scene"));
+  await drag({ x: from.x + 45, y: from.y }, { x: 30, y: 0 });
+  const sized = await organ();
+  assert.ok(sized.scale > 1.2, `${sized.scale}`);
+  await settled();
+  await picture(page, "author-organ-sized");
+  // The same by its text, which the numbers follow; the program takes what was made.
+  await write((await text()).replace(`"scale": ${sized.scale}`, '"scale": 1.1'));
+  await settled();
+  await page.click(".objects button:has-text('other-kidney-scene')");
+  await page.waitForFunction(() => [...document.querySelectorAll("#panel label")].some((label) => label.textContent.startsWith("scale of the mesh") && label.lastChild.value === "1.1"));
+  assert.deepEqual((await save()).organs[1], { ...sized, scale: 1.1 });
+  for (let i = 0; i < 3; ++i) await button("Undo").click();
+  assert.equal(await text(), before);
   await settled();
 });
 

@@ -4,6 +4,7 @@ import { cpSync, mkdirSync, mkdtempSync, readdirSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { text } from "node:stream/consumers";
 
 const [program, source, packages, sessions, pictures] = process.argv.slice(2);
 export const paths = { program, source, packages, sessions, pictures };
@@ -29,6 +30,13 @@ export function makeFolder(...names) {
 export function ctpm(folder, ...words) {
   const done = spawnSync(program, words, { cwd: folder, encoding: "utf8", maxBuffer: 64 << 20 });
   return { code: done.status, out: done.stdout, err: done.stderr };
+}
+
+/** The same while the page works: a promise of what ctpm() returns. */
+export async function ctpmBeside(folder, ...words) {
+  const running = spawn(program, words, { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
+  const [out, err, code] = await Promise.all([text(running.stdout), text(running.stderr), ended(running)]);
+  return { code, out, err };
 }
 
 /** Serves `folder`; returns the process and the address that it prints. */

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { ctpm, makeFolder, openStudio, overflow, picture, reading, seriousFindings } from "./browser.mjs";
+import { ctpm, ctpmBeside, makeFolder, openStudio, overflow, picture, reading, seriousFindings } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm";
 let folder, studio, page, expert, clumsy;
@@ -27,7 +27,7 @@ after(async () => {
 });
 
 const clock = async () => Number.parseFloat(await page.locator(".clock").innerText());
-const drawn = () => page.locator(".view canvas").screenshot();
+const drawn = () => page.locator(".view > canvas").screenshot();
 const quiet = () => page.waitForFunction(() => /\d+ ms/.test([...document.querySelectorAll(".readings div")].find((d) => d.textContent.includes("picture after"))?.textContent ?? ""));
 
 const replayedQuiet = () => page.waitForFunction(() => /\d+ ms/.test([...document.querySelectorAll(".readings div")].find((d) => d.textContent.includes("replayed after"))?.textContent ?? ""));
@@ -40,6 +40,7 @@ test("the token leaves the address bar, and an empty page says what to do", asyn
 });
 
 test("a session opens, and any moment of it is a press away", async () => {
+  const command = ctpmBeside(folder, "replay", kExpert, "--csv", "replay.csv");
   await page.click(".list button:has-text('kidney-cut-expert')");
   await page.waitForSelector(".uplot");
   await quiet();
@@ -52,8 +53,7 @@ test("a session opens, and any moment of it is a press away", async () => {
   assert.ok(!start.equals(await drawn()));
   // The numbers of this moment are those of the command.
   const tick = await reading(page, "tick");
-  const csv = ctpm(folder, "replay", kExpert, "--csv", "replay.csv");
-  assert.equal(csv.code, 0);
+  assert.equal((await command).code, 0);
   const row = readFileSync(join(folder, "replay.csv"), "utf8").split("\n")[tick].split(",");
   assert.equal(row[0], String(tick - 1));
   assert.equal((await reading(page, "force")).toFixed(2), Number(row[14]).toFixed(2));
@@ -63,7 +63,7 @@ test("a session opens, and any moment of it is a press away", async () => {
 
 test("keys move and play it", async () => {
   const before = await clock();
-  await page.locator(".view canvas").focus();
+  await page.locator(".view > canvas").focus();
   await page.keyboard.press("ArrowRight");
   await page.keyboard.press("Shift+ArrowRight");
   await page.waitForFunction((t) => Math.abs(Number.parseFloat(document.querySelector(".clock").textContent) - t - 0.11) < 0.002, before);
@@ -96,6 +96,42 @@ test("scrubbing", async () => {
   assert.ok(times.every((time, i) => time <= replayed[i]));
 });
 
+test("views, cutaway and cameras are those of export", async () => {
+  const choose = (label, value) => page.locator(`.look-bar label:has-text("${label}") select`).selectOption(value);
+  const drawing = () => page.waitForSelector(".drawings canvas:not([hidden])");
+  const pixels = () => page.evaluate(() => document.querySelector(".drawings canvas").toDataURL());
+  await page.locator(".scrub").evaluate((slider) => {
+    slider.value = "2.6";
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+  });
+  await choose("view", "spheres");
+  await drawing();
+  const seen = new Set([await pixels()]);
+  await picture(page, "review-spheres");
+  for (const [label, value] of [["view", "elements tilt"], ["view", "surface"], ["cutaway", "y"], ["camera", "follow"]]) {
+    await choose(label, value);
+    if (value === "surface") {
+      await page.waitForSelector(".drawings canvas[hidden]", { state: "attached" });
+      continue;
+    }
+    await page.waitForFunction((known) => {
+      const canvas = document.querySelector(".drawings canvas");
+      return !canvas.hidden && !known.includes(canvas.toDataURL());
+    }, [...seen]);
+    seen.add(await pixels());
+    if (value.startsWith("elements")) assert.match(await page.locator(".legend").innerText(), /tilt/);
+    await picture(page, `review-${value.replace(" ", "-")}`);
+  }
+  assert.deepEqual(await seriousFindings(page), []);
+  // The export has the same words.
+  await page.click("#tab-export");
+  assert.match(await page.locator("#panel .command code").innerText(), /--camera follow --cutaway y/);
+  await choose("camera", "");
+  await choose("cutaway", "");
+  await page.waitForSelector(".drawings canvas[hidden]", { state: "attached" });
+  await page.click("#tab-moment");
+});
+
 test("two sessions beside each other, compared", async () => {
   await page.click("#tab-compare");
   await page.locator("#panel select").selectOption(kClumsy);
@@ -106,14 +142,14 @@ test("two sessions beside each other, compared", async () => {
   await page.click("#panel button:has-text('first cut')");
   const offset = offsetAt("cut");
   assert.equal(await ahead(), offset);
+  // The command that it shows prints the same.
+  const command = ctpmBeside(folder, ...(await page.locator("#panel .command code").first().innerText()).split(" ").slice(1));
   await page.click("#panel button.main");
   await page.waitForSelector("#panel table");
   const worst = await page.locator("#panel .jumps button").first().innerText();
   await page.locator("#panel .jumps button").first().click();
   await page.waitForFunction((seconds) => Math.abs(Number.parseFloat(document.querySelector(".clock").textContent) - seconds) < 0.01, Number.parseFloat(worst) - offset);
-  // The command that it shows prints the same.
-  const shown = (await page.locator("#panel .command code").first().innerText()).split(" ");
-  const printed = ctpm(folder, ...shown.slice(1)).out;
+  const printed = (await command).out;
   for (const row of await page.locator("#panel tbody th").allInnerTexts()) assert.ok(printed.includes(row.split("\n")[0].split(" ").slice(0, 2).join(" ")), row);
   assert.ok(printed.includes(worst.replace(/^[\d.]+ s\s*/, "").split(":")[0]));
   await page.waitForTimeout(500);
@@ -124,7 +160,7 @@ test("two sessions beside each other, compared", async () => {
 test("notes stay, and a link leads to the moment", async () => {
   const session = readFileSync(join(folder, kExpert));
   await page.click("#tab-notes");
-  await page.locator(".view canvas").focus();
+  await page.locator(".view > canvas").focus();
   await page.keyboard.press("Home");
   for (let i = 0; i < 20; ++i) await page.keyboard.press("Shift+ArrowRight");
   await page.fill("#panel textarea", "<b>too steep</b> here");
@@ -150,11 +186,11 @@ test("an export is the one that the shown command makes, and can be cancelled", 
   await field("from [s]").fill("2.2");
   await field("to [s]").fill("2.5");
   const shown = await page.locator("#panel .command code").innerText();
+  const command = ctpmBeside(folder, ...shown.split(" ").slice(1).map((word) => (word === "page.avi" ? "command.avi" : word)));
   await page.click("#panel button.main");
   await page.waitForSelector("#panel .good");
   await picture(page, "review-export");
-  const words = shown.split(" ").slice(1).map((word) => (word === "page.avi" ? "command.avi" : word));
-  assert.equal(ctpm(folder, ...words).code, 0);
+  assert.equal((await command).code, 0);
   assert.ok(readFileSync(join(folder, "page.avi")).equals(readFileSync(join(folder, "command.avi"))));
   await field("file in the folder").fill("long.avi");
   await field("from [s]").fill("0");

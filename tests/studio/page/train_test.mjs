@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { ctpm, makeFolder, openStudio, overflow, picture, reading, seriousFindings } from "./browser.mjs";
+import { ctpm, ctpmBeside, makeFolder, openStudio, overflow, picture, reading, seriousFindings } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm";
 let folder, studio, page;
@@ -113,12 +113,13 @@ test("the mouse presses, cuts and records", async () => {
 });
 
 test("the session verifies to the bit, and is compared at once", async () => {
+  const command = ctpmBeside(folder, "verify", "mine.ctpm");
   await page.click("aside button.main");
   await page.waitForSelector("aside table");
   assert.match(await page.locator("aside .good").first().innerText(), /no difference/);
   assert.deepEqual(await seriousFindings(page), []);
   await picture(page, "train-ended");
-  const verdict = ctpm(folder, "verify", "mine.ctpm");
+  const verdict = await command;
   assert.equal(verdict.code, 0, verdict.out + verdict.err);
   const info = JSON.parse(ctpm(folder, "info", "mine.ctpm", "--json").out);
   assert.equal(info.metadata.source, "studio");

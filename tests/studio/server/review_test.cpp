@@ -10,6 +10,10 @@
 #include "core/contact/drawn_surfaces.h"
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
+#include "studio/film/session_film.h"
+#include "studio/render/renderer.h"
+#include "studio/views/look.h"
+#include "studio/views/view_of_scene.h"
 #include "tests/studio/server/serving.h"
 
 namespace ctpm {
@@ -256,6 +260,41 @@ TEST_F(Reviewing, AnExportIsTheCommandsAndCanBeCancelled) {
   }
   for (const auto& entry : fs::directory_iterator(folder_.path()))
     EXPECT_EQ(entry.path().filename().string().find("long"), std::string::npos) << entry.path();
+}
+
+TEST_F(Reviewing, ADrawingIsWhatAVideoShows) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  client.call("session.open", {{"path", kCut}, {"stage", 0}});
+  const nlohmann::json look = {{"stage", 0},    {"size", "320x180"}, {"view", "elements"},
+                               {"by", "force"}, {"cutaway", "y"},    {"camera", "follow"}};
+  ASSERT_TRUE(client.call("session.draw", look).contains("result"));
+  const std::int64_t tick = 2600;
+  client.send({{"show", {{"stage", 0}, {"tick", tick}, {"request", 1}}}});
+  std::string drawing;
+  while (drawing.empty())
+    if (const auto message = client.receive(); !message.is_text && value_at<std::uint32_t>(message.bytes, 0) == 5)
+      drawing = message.bytes;
+  EXPECT_EQ(value_at<std::uint32_t>(drawing, 8), 1u);
+  EXPECT_EQ(value_at<std::uint32_t>(drawing, 12), 320u);
+  EXPECT_EQ(value_at<std::uint32_t>(drawing, 16), 180u);
+
+  auto reader = recordings::SessionReader::open(file(kCut));
+  auto film = film::SessionFilm::create(*reader, {tick - 1, tick}, false);
+  ASSERT_TRUE(film);
+  const auto shot = (*film)->shoot(tick);
+  ASSERT_TRUE(shot);
+  render::SceneView view = views::view_of((*film)->scene(), (*film)->model());
+  const auto found = views::find_look({"elements", "force", 0, "y", "follow"}, (*film)->scene(), view, 320.0 / 180);
+  ASSERT_TRUE(found);
+  auto renderer = render::Renderer::create(320, 180, view);
+  const render::Frame frame = (*renderer)->draw(shot->state, found->at(view, shot->moments));
+  EXPECT_EQ(drawing.substr(20, frame.rgb.size()), std::string(frame.rgb.begin(), frame.rgb.end()));
+
+  const nlohmann::json wrong = client.call("session.draw", {{"stage", 0}, {"size", "320x180"}, {"camera", "none"}});
+  EXPECT_NE(wrong.dump().find("no camera 'none'"), std::string::npos) << wrong;
+  EXPECT_TRUE(client.call("session.draw", {{"stage", 0}, {"size", "8192x64"}}).contains("errors"));
+  EXPECT_TRUE(client.call("session.draw", {{"stage", 2}, {"size", "320x180"}}).contains("errors"));
 }
 
 TEST_F(Reviewing, ADamagedSessionIsSaidSo) {

@@ -1,0 +1,104 @@
+#include "studio/server/drawn_cuts.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "studio/render/noise.h"
+#include "studio/server/message_bytes.h"
+
+namespace ctpm::server {
+namespace {
+
+/// The triangles message: corners, stain and lips of every organ's surface.
+std::string triangles_message(const std::vector<render::CutSurface>& surfaces, std::uint32_t stage,
+                              std::uint32_t topology) {
+  constexpr double kStainsPerMetre = 72;  // as in videos
+  MessageBytes out;
+  out.add(std::uint32_t(kTriangles)), out.add(stage), out.add(topology), out.add(std::uint32_t(surfaces.size()));
+  for (const render::CutSurface& cut : surfaces) {
+    const Surface& surface = cut.surface();
+    out.add(std::uint32_t(surface.vertex.size())), out.add(std::uint32_t(cut.outer_vertex_count()));
+    out.add(std::uint32_t(surface.triangle.size())), out.add(std::uint32_t(cut.outer_triangle_count()));
+    out.add_all(surface.triangle.data(), surface.triangle.size());
+    for (const Vec3& p : surface.vertex)
+      out.add(std::uint8_t(std::clamp(127.5 + 127.5 * render::noise_at(kStainsPerMetre * p), 0.0, 255.0)));
+    for (std::size_t v = 0; v < surface.vertex.size(); ++v)
+      out.add(std::uint8_t(v < cut.is_lip().size() && cut.is_lip()[v] ? 255 : 0));
+    out.pad();
+  }
+  return std::move(out.text);
+}
+
+}  // namespace
+
+std::size_t DrawnCut::bytes() const {
+  std::size_t bytes = sizeof *this + triangles.size();
+  for (const Surface& s : surfaces)
+    bytes += sizeof(Vec3) * s.vertex.size() + sizeof s.triangle[0] * s.triangle.size() +
+             sizeof(std::int32_t) * (s.binding.first.size() + s.binding.sphere.size()) +
+             sizeof(double) * s.binding.weight.size();
+  return bytes;
+}
+
+CutFollower::CutFollower(const Model& model, std::uint32_t stage) : stage_(stage) {
+  for (std::size_t i = 0; i < model.surfaces.size(); ++i) surfaces_.emplace_back(model, i);
+}
+
+std::shared_ptr<const DrawnCut> CutFollower::draw(const State& state) {
+  bool changed = !drawn_;
+  for (render::CutSurface& cut : surfaces_) changed = cut.update(state) || changed;
+  if (changed) {
+    draw_surfaces(state);
+  } else if (!drawn_->key.is_of(state)) {  // a blade that changed no surface
+    DrawnCut same = *drawn_;
+    same.key = CutKey(state);
+    drawn_ = std::make_shared<const DrawnCut>(std::move(same));
+  }
+  return drawn_;
+}
+
+void CutFollower::draw_surfaces(const State& state) {
+  static std::atomic<std::uint32_t> made{0};
+  DrawnCut drawn{CutKey(state), {}, ++made, {}};
+  for (const render::CutSurface& cut : surfaces_) drawn.surfaces.push_back(cut.surface());
+  drawn.triangles = triangles_message(surfaces_, stage_, drawn.topology);
+  drawn_ = std::make_shared<const DrawnCut>(std::move(drawn));
+}
+
+DrawnCuts::DrawnCuts(const Model& model, std::uint32_t stage) {
+  keep_for_good(CutFollower(model, stage).draw(rest_state(model)));
+}
+
+std::shared_ptr<const DrawnCut> DrawnCuts::of(const State& state) const {
+  const std::lock_guard lock(mutex_);
+  for (const auto* kept : {&recent_, &for_good_})
+    for (auto drawn = kept->rbegin(); drawn != kept->rend(); ++drawn)
+      if ((*drawn)->key.is_of(state)) return *drawn;
+  return nullptr;
+}
+
+std::shared_ptr<const DrawnCut> DrawnCuts::nearest(const State& state) const {
+  const std::lock_guard lock(mutex_);
+  std::shared_ptr<const DrawnCut> best;
+  for (const auto* kept : {&recent_, &for_good_})
+    for (const auto& drawn : *kept)
+      if (drawn->key.is_part_of(state) && (!best || drawn->key.points() >= best->key.points())) best = drawn;
+  return best;
+}
+
+void DrawnCuts::keep(const std::shared_ptr<const DrawnCut>& drawn) {
+  const std::lock_guard lock(mutex_);
+  if (std::find(recent_.begin(), recent_.end(), drawn) != recent_.end()) return;
+  recent_.push_back(drawn);
+  if (recent_.size() > kMostRecent) recent_.erase(recent_.begin());
+}
+
+bool DrawnCuts::keep_for_good(const std::shared_ptr<const DrawnCut>& drawn) {
+  const std::lock_guard lock(mutex_);
+  if (bytes_ + drawn->bytes() > kMostBytes) return false;
+  bytes_ += drawn->bytes();
+  for_good_.push_back(drawn);
+  return true;
+}
+
+}  // namespace ctpm::server

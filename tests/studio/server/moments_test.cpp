@@ -1,0 +1,77 @@
+// What the server keeps in memory of a session.
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "recordings/replay.h"
+#include "recordings/state_hash.h"
+#include "studio/server/cuts_ahead.h"
+#include "studio/server/glimpse.h"
+#include "studio/server/moments.h"
+
+namespace ctpm::server {
+namespace {
+
+const std::string kCut = std::string(CTPM_SHIPPED_SESSIONS) + "/kidney-cut-expert.ctpm";
+
+/// Waits for a thread of low priority.
+void wait_until(const std::function<bool()>& is_so) {
+  while (!is_so()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+}
+
+TEST(Moments, WhatIsKeptIsWhatTheReplayHasWithItsSweptSurface) {
+  auto moments = Moments::open(kCut);
+  ASSERT_TRUE(moments);
+  auto reader = recordings::SessionReader::open(kCut);
+  auto cursor = recordings::ReplayCursor::create(*reader);
+  std::size_t shared = 0;
+  for (std::int64_t tick = 1000; tick + 10 < reader->tick_count(); tick += 10 * (*moments)->spacing()) {
+    ASSERT_TRUE(cursor->seek(tick));
+    (*moments)->keep(tick, cursor->state(), true);
+    const Moments::Place place = (*moments)->before(tick + 10);
+    ASSERT_EQ(place.first, tick);
+    ASSERT_TRUE(place.second || tick % 1000 == 0);  // keyframes are read in the background
+    const Result<Moment> moment = (*moments)->read(place, *reader);
+    ASSERT_TRUE(moment);
+    EXPECT_EQ(moment->tick, tick);
+    EXPECT_EQ(recordings::state_hash(moment->state), recordings::state_hash(cursor->state())) << "tick " << tick;
+    if (!place.second) continue;
+    EXPECT_EQ(place.second->swept_points(), cursor->state().swept.size());
+    EXPECT_LE(place.second->state.swept.size(), kEdgeNodes) << "tick " << tick;
+    shared += place.second->shared_points > 0;
+  }
+  EXPECT_GT(shared, 1u);
+}
+
+TEST(CutsAhead, EveryKeyframesCutIsDrawnAndAGlimpseHasTheLargestPartOfItsOwn) {
+  auto reader = recordings::SessionReader::open(kCut);
+  const Model& model = reader->start().model;
+  const auto cuts = std::make_shared<DrawnCuts>(model, 0);
+  const std::size_t whole = cuts->nearest(reader->start().initial_state)->surfaces[0].triangle.size();
+  const CutsAhead ahead(kCut, model, 0, cuts);
+  const std::vector<std::int64_t> keyframes = *reader->keyframe_ticks();
+  const State last = reader->keyframe_at_or_before(keyframes.back())->state;
+  wait_until([&] { return cuts->of(last) != nullptr; });
+  EXPECT_GT(cuts->of(last)->surfaces[0].triangle.size(), whole);
+  std::size_t points = 0;
+  for (const std::int64_t tick : keyframes) {
+    const State state = reader->keyframe_at_or_before(tick)->state;
+    const std::shared_ptr<const DrawnCut> drawn = cuts->of(state);
+    ASSERT_TRUE(drawn) << "keyframe " << tick;
+    EXPECT_EQ(drawn, cuts->nearest(state));
+    points = std::max(points, drawn->key.points());
+    // A moment later, in the middle of a cut, there is nothing better yet.
+    auto cursor = recordings::ReplayCursor::create(*reader);
+    if (tick + 200 < reader->tick_count() && cursor->seek(tick + 200) &&
+        cursor->state().swept.size() != state.swept.size()) {
+      EXPECT_EQ(cuts->of(cursor->state()), nullptr);
+      EXPECT_EQ(cuts->nearest(cursor->state()), drawn);
+    }
+  }
+  EXPECT_EQ(points, last.swept.size());
+}
+
+}  // namespace
+}  // namespace ctpm::server
