@@ -158,12 +158,9 @@ inline constexpr GoldenRow kGoldenRevision7[] = {
 };
 
 inline constexpr GoldenRevision kGoldenRevisions[] = {
-    {1, kGoldenRevision1, 0x002bb904fcccbc09},
-    {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
-    {3, kGoldenRevision3, 0xe38c0b55dc5ae189},
-    {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
-    {5, kGoldenRevision5, 0xde01e1a50a84c47a},
-    {6, kGoldenRevision6, 0xa6eef089d8c4a783},
+    {1, kGoldenRevision1, 0x002bb904fcccbc09}, {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
+    {3, kGoldenRevision3, 0xe38c0b55dc5ae189}, {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
+    {5, kGoldenRevision5, 0xde01e1a50a84c47a}, {6, kGoldenRevision6, 0xa6eef089d8c4a783},
     {7, kGoldenRevision7, 0xe9b636c6028e3176},
 };
 
