@@ -1,11 +1,12 @@
 // Imports every mesh of a folder with the program, from outside, and sorts what comes of it: a scene that is good, a
 // refusal that names its cause and what would help, or a fault. Prints a table of all and their number by cause.
 //
-//   ctpm_mesh_set PROGRAM FOLDER OUT [--no-record] [--one-at-a-time] [PART-OF-A-PATH]
+//   ctpm_mesh_set PROGRAM FOLDER OUT [--no-record] [--one-at-a-time] [--from=N] [PART-OF-A-PATH]
 //
 // A scene is good if `check` takes it without a warning about how it stands, the volume of its spheres is within 5 % of
 // the mesh's, and the import's script touches and cuts every organ; without --no-record also a recorded session of it.
-// A refusal that names an option with its value is followed, once. Exit code 1: a fault, or fewer scenes than the goal.
+// --from=N goes on with the N-th mesh, from 0, of a run that was stopped. A refusal that names an option with its value
+// is followed, once. Exit code 1: a fault, or fewer scenes than the goal.
 
 #include <algorithm>
 #include <atomic>
@@ -178,8 +179,15 @@ int main(int argc, char** argv) {
   std::vector<std::string> arguments(argv + 1, argv + argc);
   const bool records = std::erase(arguments, "--no-record") == 0;
   const bool is_alone = std::erase(arguments, "--one-at-a-time") > 0;
+  std::size_t from = 0;
+  std::erase_if(arguments, [&](const std::string& argument) {
+    const bool is_from = argument.starts_with("--from=");
+    if (is_from) from = std::stoul(argument.substr(7));
+    return is_from;
+  });
   if (arguments.size() < 3)
-    return std::fprintf(stderr, "ctpm_mesh_set PROGRAM FOLDER OUT [--no-record] [--one-at-a-time] [PART]\n"), 2;
+    return std::fprintf(stderr, "ctpm_mesh_set PROGRAM FOLDER OUT [--no-record] [--one-at-a-time] [--from=N] [PART]\n"),
+           2;
   std::vector<fs::path> meshes;
   for (const auto& entry : fs::recursive_directory_iterator(arguments[1]))
     if (entry.is_regular_file() && is_mesh(entry.path()) &&
@@ -187,14 +195,16 @@ int main(int argc, char** argv) {
       meshes.push_back(fs::absolute(entry.path()));
   std::sort(meshes.begin(), meshes.end());
   fs::create_directories(arguments[2]);
+  meshes.erase(meshes.begin(), meshes.begin() + std::ptrdiff_t(std::min(from, meshes.size())));
+  const bool is_whole = arguments.size() < 4 && from == 0;
   std::vector<Row> rows(meshes.size());
   std::atomic<std::size_t> next{0};
   const auto work = [&] {
     for (std::size_t i; (i = next++) < meshes.size();) {
-      const fs::path folder = fs::absolute(arguments[2]) / std::to_string(i);
+      const fs::path folder = fs::absolute(arguments[2]) / std::to_string(from + i);
       fs::remove_all(folder);
       rows[i] = Trial(fs::absolute(arguments[0]).string(), meshes[i], folder, records).run();
-      std::printf("%zu\t%s\t%.1f s\t%.0f MiB\t%s\t%s\n", i, kNames[int(rows[i].verdict)], rows[i].seconds,
+      std::printf("%zu\t%s\t%.1f s\t%.0f MiB\t%s\t%s\n", from + i, kNames[int(rows[i].verdict)], rows[i].seconds,
                   rows[i].mebibytes, meshes[i].filename().c_str(), rows[i].cause.c_str());
       std::fflush(stdout);
     }
@@ -213,5 +223,5 @@ int main(int argc, char** argv) {
   const int scenes = count[0] + count[1];
   std::printf("\n%zu meshes: %d scenes, %d more by the option that the refusal names, %d refusals, %d faults\n",
               rows.size(), count[0], count[1], count[2], count[3]);
-  return count[3] > 0 || (arguments.size() < 4 && scenes < kGoal) ? 1 : 0;
+  return count[3] > 0 || (is_whole && scenes < kGoal) ? 1 : 0;
 }
