@@ -30,15 +30,21 @@ Result<importers::ImportedOrgan> fill_with(const importers::RepairedFile& file, 
   return filled;
 }
 
-/// Whether groups of spheres that hang on nothing were left out, and more of the organ with them than may be lost.
-bool comes_apart(const importers::ImportReport& report, double volume) {
-  constexpr double kKept = 0.95;
-  const auto is_island = [](const importers::Finding& finding) { return finding.code == "island"; };
-  return report.fill.filled_volume < kKept * volume &&
-         std::any_of(report.findings.begin(), report.findings.end(), is_island);
-}
-
 }  // namespace
+
+std::string problem_of_volume(const importers::ImportReport& report, double enclosed) {
+  constexpr double kKept = 0.05;
+  const double filled = report.fill.filled_volume;
+  const auto is_island = [](const importers::Finding& finding) { return finding.code == "island"; };
+  const std::string volumes = output::short_number(1e6 * filled, 3) + " ml, the mesh encloses " +
+                              output::short_number(1e6 * enclosed, 3) + " ml";
+  // Groups of spheres that hang on nothing were left out.
+  if (filled < (1 - kKept) * enclosed && std::any_of(report.findings.begin(), report.findings.end(), is_island))
+    return "falls apart where it is thin: the spheres that hang together stand for " + volumes;
+  if (filled > (1 + kKept) * enclosed)
+    return "passes through itself, so that its volume is not certain: its triangles surround " + volumes;
+  return "";
+}
 
 Result<std::vector<importers::ImportedOrgan>> fill_all(const importers::RepairedFile& file,
                                                        const importers::ImportOptions& options, FillingWish wish,
@@ -73,12 +79,11 @@ Result<std::vector<importers::ImportedOrgan>> fill_all(const importers::Repaired
                    "is filled by only " + importers::counted(filled->report.fill.spheres, "sphere") +
                        " that hang together: it is too thin or in too many pieces",
                    output::option_name("import.spheres") + " with a larger number fills thin places"};
-    if (!wish.radius && comes_apart(filled->report, file.mesh[i].volume))
-      return Error{file.report.path,
-                   "falls apart where it is thin: the spheres that hang together stand for " +
-                       output::short_number(1e6 * filled->report.fill.filled_volume, 3) + " of its " +
-                       output::short_number(1e6 * file.mesh[i].volume, 3) + " ml",
-                   output::option_name("import.spheres") + " with a larger number fills thin places"};
+    if (const std::string problem = problem_of_volume(filled->report, file.mesh[i].volume);
+        !wish.radius && !problem.empty())
+      return Error{file.report.path, problem,
+                   output::option_name("import.spheres") + " with a larger number fills thin places, " +
+                       output::option_name("import.names") + " takes other parts of the file"};
     organs.push_back(*std::move(filled));
   }
   return organs;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/model/result.h"
@@ -17,6 +18,10 @@ struct FillingWish {
   std::optional<double> radius;         ///< of every organ [m]
   std::optional<std::int64_t> spheres;  ///< in all organs together
 };
+
+/// Why the spheres of a filling do not stand for what the mesh encloses [m^3]; empty if they do to 5 %, or if tissue
+/// that overlaps itself counts once.
+std::string problem_of_volume(const importers::ImportReport& report, double enclosed);
 
 /// Fills every mesh of a file. Without a wish, `usual_radius` [m] is taken if it gives a few hundred to some 1500
 /// spheres in all, else the radius that does. A wish for spheres is divided by volume; every organ gets some. `options`

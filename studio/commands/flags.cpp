@@ -33,6 +33,7 @@ constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"import.largest_hole_mm", "--largest-hole-mm"},
     {"import.layers", "--layer"},
     {"import.organ", "--organ"},
+    {"import.names", "--part"},
     {"import.size", "--size-mm"},
     {"import.spheres", "--spheres"},
     {"import.stiffness_scale", "--stiffness-scale"},
