@@ -16,7 +16,7 @@ std::optional<Box> box_of(const std::vector<Vec3>& points) {
   return box;
 }
 
-/// "WHAT 1.2 x 0.8 x 0.5 m large; a box of 0.69 m^3 is the most that can be cut and recorded"
+/// "WHAT 1.2 x 0.8 x 0.5 m large; a box of 0.69 m^3 is the most that can be recorded"
 std::string too_large(const char* what, const Box& box, double cell) {
   const Vec3 size = box.high - box.low;
   char text[160];

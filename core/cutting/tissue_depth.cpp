@@ -61,7 +61,8 @@ TissueDepth::Grid TissueDepth::make_grid(const Surface& surface) {
   for (const auto& t : surface.triangle) grid.bound.push_back(bound_of(surface, t));
   const std::size_t count = std::size_t(e[0]) * std::size_t(e[1]) * std::size_t(e[2]);
   std::vector<std::pair<std::size_t, std::int32_t>> found;  // a bucket, and a triangle near it
-  grid.row.assign(count, 0);                                // at first the number of triangles
+  // At first the number of triangles near each bucket.
+  grid.row.assign(count, 0);
   for (std::size_t n = 0; n < surface.triangle.size(); ++n) {
     const auto& t = surface.triangle[n];
     const Vec3 a = surface.vertex[std::size_t(t[0])], b = surface.vertex[std::size_t(t[1])],

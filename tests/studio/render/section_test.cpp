@@ -139,14 +139,20 @@ double light_at(const render::Frame& frame, const render::Camera& camera, Vec3 p
   return double(frame.rgb[i]) + frame.rgb[i + 1] + frame.rgb[i + 2];
 }
 
+/// The section through the middle across y, with nothing around it.
+render::DrawOptions section_from_side(const render::SceneView& view) {
+  render::DrawOptions options;
+  options.show_ground = false;
+  options.camera = render::fit_camera(render::rest_bounds(view), {0, 1, 0}, {0, 0, 1});
+  options.cutaway = {{0, 0, 0}, {0, -1, 0}};
+  return options;
+}
+
 TEST(Section, ItsTextureStaysWithTheTissue) {
   const auto scene = make_blob_scene();
   auto made = render::Renderer::create(kWidth, kHeight, scene->view);
   ASSERT_TRUE(made);
-  render::DrawOptions options;
-  options.show_ground = false;
-  options.camera = render::fit_camera(render::rest_bounds(scene->view), {0, 1, 0}, {0, 0, 1});
-  options.cutaway = {{0, 0, 0}, {0, -1, 0}};
+  render::DrawOptions options = section_from_side(scene->view);
   State state = rest_state(scene->model);
   const render::Frame before = (*made)->draw(state, options);
   const Vec3 shift{0.0137, 0, 0};
@@ -178,11 +184,8 @@ TEST(Section, AClosedCutIsALine) {
   const auto scene = make_blob_scene();
   auto made = render::Renderer::create(kWidth, kHeight, scene->view);
   ASSERT_TRUE(made);
-  render::DrawOptions options;
-  options.show_ground = false;
-  options.camera = render::fit_camera(render::rest_bounds(scene->view), {0, 1, 0}, {0, 0, 1});
+  render::DrawOptions options = section_from_side(scene->view);
   options.camera.fov_deg *= 0.5;
-  options.cutaway = {{0, 0, 0}, {0, -1, 0}};
   const render::Frame whole = (*made)->draw(rest_state(scene->model), options);
   const State cut_open = cut_along_y(scene->model, 0.01, 0.02, 0);
   const render::Frame picture = (*made)->draw(cut_open, options);
