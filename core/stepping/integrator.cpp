@@ -70,6 +70,16 @@ double stiffness_ratio_bound(const Model& model, double h) {
   return ratio;
 }
 
+double loss_rate(const Model& model) {
+  double least = std::numeric_limits<double>::infinity();
+  const AxialElements& axial = model.axial;
+  for (std::size_t i = 0; i < axial.size(); ++i) {
+    if (!(axial.damping(i) > 0)) return 0;
+    if (axial.law[i] == AxialLaw::two_sphere_tpm) least = std::min(least, axial.k[i] / (2 * axial.damping(i)));
+  }
+  return least;
+}
+
 IntegratorChoice choose_integrator(const Model& model) {
   const double longest = stable_step_bound(model);
   const std::int32_t asked = model.solver.substeps;

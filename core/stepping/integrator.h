@@ -18,6 +18,10 @@ double stable_step_bound(const Model& model);
 /// Bound on the largest eigenvalue of M^-1 (h^2 K + h C) for a step of `h` [s], found in the same way [1].
 double stiffness_ratio_bound(const Model& model, double h);
 
+/// Rate at which the tissue's own viscosity damps fast motion at least [1/s]: k2 / 2 c of a two-sphere TPM, whose loss
+/// tangent tends to k2 / (omega c); 0 where axial elements lack dashpots.
+double loss_rate(const Model& model);
+
 /// How a Model is integrated, and why.
 struct IntegratorChoice {
   Integrator integrator = Integrator::backward_euler;

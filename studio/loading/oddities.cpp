@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "studio/loading/script_trial.h"
 #include "studio/loading/standing.h"
 
 namespace ctpm::loading {

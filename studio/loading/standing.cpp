@@ -1,7 +1,6 @@
 #include "studio/loading/standing.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "core/stepping/step.h"
 
@@ -67,40 +66,6 @@ std::optional<Standing> settle_scene(const Model& model, std::int64_t ticks, std
   }
   look();
   return standing;
-}
-
-std::optional<ScriptTrial> try_script(const Model& model, const State& state, const scenes::Script& script,
-                                      std::optional<std::size_t> until_cut, const std::function<bool()>& should_stop) {
-  using Clock = std::chrono::steady_clock;
-  ScriptTrial trial;
-  trial.was_cut.assign(model.organs.size(), 0);
-  State now = state;
-  stepping::Stepper stepper(model);
-  scenes::ScriptPlayer player(script, model.tools, model.tick);
-  std::vector<double> times;
-  std::size_t seen = now.swept_organ.size();
-  for (std::int64_t tick = 0; tick < player.tick_count(); ++tick) {
-    if (tick % kStretch == 0 && should_stop && should_stop()) return std::nullopt;
-    const Clock::time_point start = Clock::now();
-    const stepping::StepReport report = stepper.step(now, player.at(tick));
-    times.push_back(std::chrono::duration<double>(Clock::now() - start).count());
-    trial.is_refused = stepping::is_refused(report.status);
-    if (trial.is_refused) break;
-    player.feel(tick, report.of_hand(player.hand_at(tick)).tool_force);
-    for (const std::size_t hand : {0, 1})
-      trial.most_force = std::max(trial.most_force, norm(report.of_hand(hand).tool_force));
-    trial.severed += report.severed;
-    if (now.swept_organ.size() < seen) seen = 0;  // rows of a full memory were let go
-    for (; seen < now.swept_organ.size(); ++seen)
-      if (const std::size_t organ = now.swept_organ[seen]; organ > 0 && organ <= trial.was_cut.size())
-        trial.was_cut[organ - 1] = 1;
-    if (until_cut && trial.most_force > 0 && trial.severed > 0 && trial.was_cut[*until_cut]) break;
-  }
-  if (!times.empty()) {
-    std::nth_element(times.begin(), times.begin() + std::ptrdiff_t(times.size() / 2), times.end());
-    trial.tick_time = times[times.size() / 2];
-  }
-  return trial;
 }
 
 }  // namespace ctpm::loading

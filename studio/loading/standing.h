@@ -6,7 +6,6 @@
 
 #include "core/model/model.h"
 #include "core/model/state.h"
-#include "scenes/script.h"
 
 namespace ctpm::loading {
 
@@ -35,20 +34,5 @@ struct Standing {
 /// organ sags by more than `most_sag` of its size; unset: never. None if `should_stop` ended it.
 std::optional<Standing> settle_scene(const Model& model, std::int64_t ticks, std::optional<double> most_sag = {},
                                      const std::function<bool()>& should_stop = {});
-
-/// What a script did to a scene.
-struct ScriptTrial {
-  double most_force = 0;      ///< on a tool [N]
-  std::int64_t severed = 0;   ///< elements
-  std::vector<char> was_cut;  ///< whether a blade went through tissue of the organ that was whole (organ_count)
-  bool is_refused = false;    ///< a tick was refused
-  double tick_time = 0;       ///< median of all ticks on this machine [s]
-};
-
-/// Runs a script from `state`. Ends early, where `until_cut` names an organ, when a tool felt force and that organ was
-/// cut. None if `should_stop` ended it.
-std::optional<ScriptTrial> try_script(const Model& model, const State& state, const scenes::Script& script,
-                                      std::optional<std::size_t> until_cut = {},
-                                      const std::function<bool()>& should_stop = {});
 
 }  // namespace ctpm::loading

@@ -182,6 +182,32 @@ TEST(Leapfrog, ALoadThatStartsAtOnceIsOfSecondOrder) {
   EXPECT_NEAR(std::log2(height(4e-4) / height(2e-4)), 2, 0.1);
 }
 
+TEST(LossRate, IsThatOfFastMotion) {
+  network::OrganSettings settings;
+  settings.name = "pair", settings.structure = network::Structure::tpm, settings.material = liver_material();
+  settings.tiling = network::Tiling::two_spheres;
+  Model model;
+  ASSERT_TRUE(bool(network::add_organ(model, testing::make_block(2, 1, 1), settings)));
+  testing::use_integrator(model, Integrator::leapfrog);
+  // Slow dashpots: many swings while they give way.
+  const double k = model.axial.k[0], frequency = std::sqrt(2 * k / model.mass[0]);
+  model.axial.c[0] = 60 * k / frequency, model.axial.kelvin_k[0] = k;
+  model.tick = 0.02 / frequency;
+  State state = rest_state(model);
+  state.velocity.set(0, {0.01, 0, 0}), state.velocity.set(1, {-0.01, 0, 0});
+  const auto energy = [&] {
+    return elements::elastic_energy(model, state) +
+           model.mass[0] * 0.5 *
+               (dot(state.velocity[0], state.velocity[0]) + dot(state.velocity[1], state.velocity[1]));
+  };
+  stepping::Stepper stepper(model);
+  const double before = energy();
+  constexpr int kTicks = 3000;
+  for (int i = 0; i < kTicks; ++i) ASSERT_EQ(stepper.step(state, {}).status, stepping::StepStatus::ok);
+  const double rate = std::log(before / energy()) / (2 * kTicks * model.tick);
+  EXPECT_NEAR(rate / stepping::loss_rate(model), 1, 0.03);
+}
+
 TEST(Automatic, IsExplicitWithoutStiffDashpotsAndImplicitWithThem) {
   network::Material material = liver_material();
   EXPECT_EQ(stepping::choose_integrator(make_block_model(4, 4, 4, network::Structure::ctpm, material)).integrator,

@@ -171,6 +171,20 @@ TEST_F(ImportProgram, NoOrganNeedsToBeNamedAndTheFolderIsMade) {
   EXPECT_EQ(run_ctpm({"check", "my new/place/thing.json"}, folder_.path()).err, "");
 }
 
+TEST_F(ImportProgram, WhereTheTissueHardlyDampsItsFlapsTheIntegratorDoes) {
+  write("bean.obj", zoo::to_obj_text(bean(1, 3)));
+  for (const auto& [organ, is_damped] : {std::pair{"soft-tissue", false}, {"kidney", true}}) {
+    const auto outcome = run_ctpm({"import", "bean.obj", "--organ", organ, "-o", "scene.json", "--unit", "mm",
+                                   "--spheres", "120", "--stiffness-scale", "1", "--overwrite"},
+                                  folder_.path());
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.out.find("backward-euler") == std::string::npos, is_damped) << outcome.out;
+    const std::string scene = testing::slurp(folder_.path() / "scene.json");
+    EXPECT_EQ(scene.find("\"integrator\": \"backward-euler\"") == std::string::npos, is_damped) << scene;
+    EXPECT_EQ(run_ctpm({"check", "scene.json"}, folder_.path()).err, "");
+  }
+}
+
 TEST_F(ImportProgram, ARefusedImportLeavesNoFolderBehind) {
   write("open.obj", zoo::to_obj_text(zoo::without(bean(1, 3), [](Vec3 p) { return p.x > 0; })));
   EXPECT_EQ(run_ctpm({"import", "open.obj", "-o", "my/new/scene.json"}, folder_.path()).code, 2);
