@@ -51,7 +51,7 @@ CutGrid::Node CutGrid::blocks_of(const Model& model, std::size_t organ) {
 }
 
 CutGrid::CutGrid(const Model& model, std::size_t organ)
-    : model_(model), organ_(std::int32_t(organ)), map_(model), depth_(model, map_) {
+    : model_(model), organ_(std::int32_t(organ)), map_(model), depth_(model, map_), torn_tissue_(model, organ, depth_) {
   find_frame(model, model.organs[organ]);
   find_surface();
   place_spheres(model, model.organs[organ]);
@@ -141,7 +141,8 @@ CutGrid::Index CutGrid::find_home(Index sphere) const {
     std::vector<Index> next;
     Index best = -1;
     const auto go = [&](Index to, std::size_t by) {
-      if (was_seen(to) != 0 || cuts_.contains(by) || outside_.contains(by)) return;
+      const bool is_cut = cuts_.contains(by) && !torn_.contains(by);
+      if (was_seen(to) != 0 || is_cut || outside_.contains(by)) return;
       was_seen(to) = 1, next.push_back(to);
       if (!in_tissue(to)) return;
       if (best < 0 || std::pair(squared_distance(to), to) < std::pair(squared_distance(best), best)) best = to;
@@ -212,6 +213,7 @@ void CutGrid::sever_row(const State& state, std::size_t row) {
     if (newly[n] != 0 || (n > 0 && newly[n - 1] != 0))
       is_outside[n] = depth_.at(organ, from[n]) <= 0 && depth_.at(organ, to[n]) <= 0;
   const bool may_move = row + 1 == cutting::swept_rows(state);
+  torn_tissue_.sever(from, to, newly, may_move);
   for (const bool outside : {false, true}) {
     for (std::size_t n = 0; n + 1 < kEdgeNodes; ++n) {
       if (newly[n] == 0) continue;
@@ -263,6 +265,7 @@ void CutGrid::sever(Vec3 a, Vec3 b, Vec3 c, bool outside, bool may_move) {
 
 void CutGrid::sever_edge(Index node, int direction, float along, Vec3 normal, bool may_move) {
   const std::size_t e = edge(node, direction);
+  if (torn_.contains(e)) join(e);
   const auto [found, is_new] = cuts_.try_emplace(e, Cut{along, along, normal, normal});
   Cut& cut = found->second;
   if (!is_new && along >= cut.low && along <= cut.high) return;
@@ -281,7 +284,38 @@ void CutGrid::sever_outside(Index node, int direction, bool may_move) {
   box_.add(this->node(node));
 }
 
+/// Tears the tissue where the network has come apart, and mends what is no longer torn.
+void CutGrid::tear() {
+  std::unordered_map<std::size_t, Vec3> wanted;
+  for (const auto& [node, direction] : torn_tissue_.find(*this))
+    wanted.emplace(edge(node, direction), rest(end(node, direction)) - rest(node));
+  const std::vector<std::size_t> before(torn_.begin(), torn_.end());
+  for (const std::size_t e : before)
+    if (!wanted.contains(e)) join(e);
+  for (const auto& [e, normal] : wanted)
+    if (!torn_.contains(e)) part(e, normal);
+}
+
+void CutGrid::part(std::size_t e, Vec3 normal) {
+  const auto node = Index(e / kDirections);
+  const int direction = int(e % kDirections);
+  torn_.insert(e), cuts_[e] = {0.5f, 0.5f, normal, normal};
+  parted_[std::size_t(node)] |= std::uint8_t(1 << direction);
+  anything_cut_ = changed_ = true;
+  box_.add(this->node(node)), box_.add(this->node(end(node, direction)));
+}
+
+void CutGrid::join(std::size_t e) {
+  const auto node = Index(e / kDirections);
+  const int direction = int(e % kDirections);
+  torn_.erase(e), cuts_.erase(e);
+  parted_[std::size_t(node)] &= std::uint8_t(~(1 << direction));
+  changed_ = true;
+  box_.add(this->node(node)), box_.add(this->node(end(node, direction)));
+}
+
 void CutGrid::take_back_last_row() {
+  torn_tissue_.take_back();
   if (last_box_.low[0] <= last_box_.high[0]) box_.add(last_box_.low), box_.add(last_box_.high);
   last_box_ = {extent_, {-1, -1, -1}};
   for (const std::size_t e : outside_by_last_) outside_.erase(e), box_.add(node(Index(e / kDirections)));
@@ -305,7 +339,8 @@ void CutGrid::reset() {
   if (anything_cut_) changed_ = true, box_ = {{0, 0, 0}, extent_};
   for (const auto& [e, cut] : cuts_)
     if (!outer_.contains(e)) parted_[e / kDirections] &= std::uint8_t(~(1 << int(e % kDirections)));
-  cuts_.clear(), by_last_.clear(), outside_.clear(), outside_by_last_.clear(), anything_cut_ = false, rows_ = 0;
+  cuts_.clear(), by_last_.clear(), outside_.clear(), outside_by_last_.clear(), torn_.clear(), torn_tissue_.reset();
+  anything_cut_ = false, rows_ = 0;
 }
 
 void CutGrid::NodeBox::add(Node n) {
@@ -345,6 +380,7 @@ bool CutGrid::update(const State& state) {
   take_back_last_row();
   for (std::size_t row = std::max<std::size_t>(rows_, 2) - 1; row < rows; ++row) sever_row(state, row);
   find_homes_outside();
+  tear();
   rows_ = rows;
   for (std::size_t n = 0; n < kEdgeNodes; ++n) {
     if (rows > 1) before_[n] = place(rows - 2, n);

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/cutbody/torn_tissue.h"
 #include "core/cutting/rest_map.h"
 #include "core/cutting/swept_surface.h"
 #include "core/cutting/tissue_depth.h"
@@ -18,8 +19,8 @@
 namespace ctpm::cutbody {
 
 /// A grid over an organ at rest, four times as fine as its lattice, whose cubes are divided into six tetrahedra each
-/// (Kuhn 1960). It knows which of its nodes are in tissue, where its edges leave the organ, and where the swept surface
-/// crosses them.
+/// (Kuhn 1960). It knows which of its nodes are in tissue, where its edges leave the organ, where the swept surface
+/// crosses them, and where tissue that the cuts leave without elements tears.
 class CutGrid {
  public:
   using Index = std::int32_t;
@@ -55,8 +56,9 @@ class CutGrid {
   Index end(Index node, int direction) const {
     return node + (direction & 1) + extent_[0] * ((direction >> 1 & 1) + extent_[1] * (direction >> 2));
   }
-  /// Whether the surface of the organ or of the cut crosses an edge.
+  /// Whether the surface of the organ or of the cut crosses an edge, or tissue is torn across it.
   bool is_parted(Index node, int direction) const { return (parted_[std::size_t(node)] >> direction & 1) != 0; }
+  bool is_torn(Index node, int direction) const { return torn_.contains(edge(node, direction)); }
   struct Crossing {
     double along;  ///< from 0 at the lower node to 1
     Vec3 normal;   ///< of any length
@@ -143,6 +145,9 @@ class CutGrid {
   void sever_outside(Index node, int direction, bool may_move);
   void sever_edge(Index node, int direction, float along, Vec3 normal, bool may_move);
   void take_back_last_row();
+  void tear();
+  void part(std::size_t edge, Vec3 normal);
+  void join(std::size_t edge);
   void reset();
 
   const Model& model_;
@@ -159,7 +164,9 @@ class CutGrid {
   std::unordered_map<std::size_t, Cut> cuts_;
   /// Edges that the swept surface crosses outside the tissue, where it goes on among the spheres there.
   std::unordered_set<std::size_t> outside_;
-  std::vector<Index> own_node_;  ///< the node where a sphere is
+  TornTissue torn_tissue_;
+  std::unordered_set<std::size_t> torn_;  ///< edges across which tissue is torn, which have crossings in their middle
+  std::vector<Index> own_node_;           ///< the node where a sphere is
   std::vector<Index> node_of_sphere_, first_sphere_, sphere_;
   std::size_t rows_ = 0;                                             ///< of the swept surface that have been looked at
   cutting::Front last_{};                                            ///< the last of them, which may still move [m]

@@ -107,43 +107,48 @@ RestElements::RestElements(const Model& model, const TissueDepth& depth) : RestE
   }
 }
 
-std::int32_t sever_swept(const Model& model, const RestElements& elements, const Front& from, const Front& to,
-                         const NewlySwept& newly, State& state, std::vector<Crossing>& crossings) {
+void find_severed(const Model& model, const RestElements& elements, std::size_t organ, const Front& from,
+                  const Front& to, const NewlySwept& newly, std::vector<std::uint8_t>& severed,
+                  std::vector<Crossing>& crossings) {
   std::array<Sweep, kEdgeNodes - 1> all;
-  std::int32_t severed = 0;
-  const AxialElements& axial = model.axial;
-  for (std::size_t o = 0; o < model.organs.size(); ++o) {
-    std::size_t count = 0;
-    std::optional<Box> around;
-    for (std::size_t n = 0; n + 1 < kEdgeNodes; ++n) {
-      if (newly[n] != o + 1) continue;
-      if (from[n] == to[n] && from[n + 1] == to[n + 1]) continue;
-      const Box box(from[n], from[n + 1], to[n], to[n + 1]);
-      all[count++] = {from[n], from[n + 1], to[n], to[n + 1], box};
-      if (around) around->add(box.low), around->add(box.high);
-      if (!around) around = box;
-    }
-    if (count == 0) continue;
-    const std::span<const Sweep> sweeps(all.data(), count);
-    // Elements are no longer than the diagonal of a lattice cell, and their ends are within a spacing of the spheres.
-    const OrganRange& range = model.organs[o];
-    const Box near = around->grown(3 * range.spacing);
-    const auto first = std::size_t(range.first), last = first + std::size_t(range.count);
-    for (std::size_t i = first; i < last; ++i) {
-      const Vec3 p = elements.place(i);
-      if (!near.meets(Box(p))) continue;
-      for (const std::int32_t element : elements.of(i)) {
-        const auto e = std::size_t(element);
-        if (state.axial_severed[e] || axial.a[e] != std::int32_t(i)) continue;
-        const std::optional<double> along = crossing(sweeps, p, elements.place(std::size_t(axial.b[e])));
-        if (!along) continue;
-        state.axial_severed[e] = 1, ++severed;
-        if (!state.axial_crossing.empty()) state.axial_crossing[e] = stored_crossing(*along);
-        crossings.push_back({element, *along});
-      }
+  std::size_t count = 0;
+  std::optional<Box> around;
+  for (std::size_t n = 0; n + 1 < kEdgeNodes; ++n) {
+    if (newly[n] != organ + 1) continue;
+    if (from[n] == to[n] && from[n + 1] == to[n + 1]) continue;
+    const Box box(from[n], from[n + 1], to[n], to[n + 1]);
+    all[count++] = {from[n], from[n + 1], to[n], to[n + 1], box};
+    if (around) around->add(box.low), around->add(box.high);
+    if (!around) around = box;
+  }
+  if (count == 0) return;
+  const std::span<const Sweep> sweeps(all.data(), count);
+  // Elements are no longer than the diagonal of a lattice cell, and their ends are within a spacing of the spheres.
+  const OrganRange& range = model.organs[organ];
+  const Box near = around->grown(3 * range.spacing);
+  const auto first = std::size_t(range.first), last = first + std::size_t(range.count);
+  for (std::size_t i = first; i < last; ++i) {
+    const Vec3 p = elements.place(i);
+    if (!near.meets(Box(p))) continue;
+    for (const std::int32_t element : elements.of(i)) {
+      const auto e = std::size_t(element);
+      if (severed[e] != 0 || model.axial.a[e] != std::int32_t(i)) continue;
+      const std::optional<double> along = crossing(sweeps, p, elements.place(std::size_t(model.axial.b[e])));
+      if (along) severed[e] = 1, crossings.push_back({element, *along});
     }
   }
-  if (severed == 0) return 0;
+}
+
+std::int32_t sever_swept(const Model& model, const RestElements& elements, const Front& from, const Front& to,
+                         const NewlySwept& newly, State& state, std::vector<Crossing>& crossings) {
+  const std::size_t before = crossings.size();
+  for (std::size_t organ = 0; organ < model.organs.size(); ++organ)
+    find_severed(model, elements, organ, from, to, newly, state.axial_severed, crossings);
+  if (crossings.size() == before) return 0;
+  if (!state.axial_crossing.empty())
+    for (std::size_t c = before; c < crossings.size(); ++c)
+      state.axial_crossing[std::size_t(crossings[c].element)] = stored_crossing(crossings[c].along);
+  auto severed = std::int32_t(crossings.size() - before);
   severed += sever_lines(model.constraints, state.axial_severed, state.constraint_severed);
   severed += sever_lines(model.angle_springs, state.axial_severed, state.angle_severed);
   return severed;

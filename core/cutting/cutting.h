@@ -65,11 +65,17 @@ class RestElements {
   std::vector<Vec3> place_;  ///< (sphere_count)
 };
 
-/// Severs every element, between the places of its spheres, that the front crosses where it is `newly` swept while it
-/// goes `from`-`to`, so that the elements are those that the swept surface crosses; then every constraint and angle
-/// spring that has lost an element. Between two nodes the front sweeps the two triangles (p, q, p') and (q, q', p').
-/// Touching counts as crossing, so nothing slips between two ticks or two nodes. Appends the severed elements to
-/// `crossings`; returns the number of severed elements, constraints and angle springs.
+/// Marks every element of an organ in `severed`, between the places of its spheres, that the front crosses where it is
+/// `newly` swept while it goes `from`-`to`, so that the elements are those that the swept surface crosses. Between two
+/// nodes the front sweeps the two triangles (p, q, p') and (q, q', p'). Touching counts as crossing, so nothing slips
+/// between two ticks or two nodes. Appends those that were not marked before to `crossings`.
+void find_severed(const Model& model, const RestElements& elements, std::size_t organ, const Front& from,
+                  const Front& to, const NewlySwept& newly, std::vector<std::uint8_t>& severed,
+                  std::vector<Crossing>& crossings);
+
+/// Severs the elements of all organs that find_severed() finds; then every constraint and angle spring that has lost an
+/// element. Appends the severed elements to `crossings`; returns the number of severed elements, constraints and angle
+/// springs.
 std::int32_t sever_swept(const Model& model, const RestElements& elements, const Front& from, const Front& to,
                          const NewlySwept& newly, State& state, std::vector<Crossing>& crossings);
 

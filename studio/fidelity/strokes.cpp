@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kSpeed = 40e-3;         // of the blade [m/s]
 constexpr double kBeyond = 10e-3;        // how far strokes begin and end beside the organ [m]
+constexpr double kLongBlade = 0.25;      // [m]
 constexpr double kWait = 0.5;            // after the last stroke [s]
 constexpr std::int64_t kLookEvery = 25;  // ticks
 constexpr double kMostStretched = 6;
@@ -26,38 +27,106 @@ constexpr double kMostStretched = 6;
 /// which cuts are meshed.
 constexpr double kShort = 0.05;
 
-/// A stroke on a level line, its tip at `bottom` [m]; `beside`: off the line at a way along it [m].
+/// What the blade does in a time.
 struct Stroke {
-  Vec3 from, to;
-  double bottom;
-  std::function<double(double)> beside = [](double) { return 0.0; };
+  std::function<Inputs(double)> at;  ///< at a time from 0 to 1
+  double length;                     ///< [m]
 
-  double ticks(double tick) const { return std::ceil(norm(to - from) / kSpeed / tick); }
-  Inputs at(double t, std::int32_t tool) const {
-    const Vec3 way = to - from, ahead = way / norm(way), left{-ahead.y, ahead.x, 0};
+  double ticks(double tick) const { return std::ceil(length / kSpeed / tick); }
+};
+
+struct Cut {
+  const char* name;
+  std::vector<Stroke> strokes;
+};
+
+/// The strokes over an organ in its box.
+class Strokes {
+ public:
+  Strokes(const Surface& surface, double spacing, std::int32_t tool) : box_(surface.vertex[0]), tool_(tool) {
+    for (const Vec3& v : surface.vertex) box_.add(v);
+    middle_ = 0.5 * (box_.low + box_.high), half_ = 0.5 * (box_.high - box_.low), spacing_ = spacing;
+  }
+
+  std::vector<Cut> cuts() const {
+    const double below = box_.low.z - kBeyond, deep = middle_.z;
+    const Stroke straight = along_y(2e-3, deep);
+    const auto wave = [](double way) { return 0.15 * std::sin(2 * std::numbers::pi * way); };
+    // 1 mm at 8 Hz.
+    const auto tremor = [&](double way) {
+      return 1e-3 / half_.x * std::sin(2 * std::numbers::pi * 8 * way * straight.length / kSpeed);
+    };
+    const auto parallel = [&](double apart) {
+      return std::vector{along_y(2e-3, below), along_y(2e-3 + apart * spacing_, below)};
+    };
+    return {
+        {"straight", {straight}},
+        {"S", {along_y(2e-3, deep, wave)}},
+        {"closed ellipse", {ring(0.35, deep)}},
+        {"X", {straight, along_x(1e-3, deep)}},
+        {"cap", {level(middle_.z + 0.5 * half_.z, box_.high.x + kBeyond, 1.0)}},
+        {"disc",
+         {ring(0.35, middle_.z + 0.25 * half_.z), level(middle_.z + 0.3 * half_.z, middle_.x + 0.7 * half_.x, 0.6)}},
+        {"parallel, 1 spacing", parallel(1)},
+        {"parallel, 0.5 spacings", parallel(0.5)},
+        {"parallel, 0.3 spacings", parallel(0.3)},
+        {"tremor", {along_y(2e-3, deep, tremor)}}};
+  }
+
+ private:
+  /// The blade upright, which cuts towards its x.
+  Inputs upright(Vec3 tip, double angle) const {
     Inputs inputs;
-    inputs.tool = tool, inputs.position = from + t * way + beside(t * norm(way)) * left;
-    inputs.position.z = bottom;
-    // The blade cuts towards its x.
-    const double angle = std::atan2(ahead.y, ahead.x);
+    inputs.tool = tool_, inputs.position = tip;
     inputs.world_from_tool = {std::cos(angle / 2), 0, 0, std::sin(angle / 2)};
     return inputs;
   }
-};
 
-std::vector<std::pair<const char*, std::vector<Stroke>>> strokes_over(const Surface& surface) {
-  Box box(surface.vertex[0]);
-  for (const Vec3& v : surface.vertex) box.add(v);
-  const Vec3 middle = 0.5 * (box.low + box.high);
-  // Half of the organ's thickness deep, where the lines cross.
-  const double bottom = middle.z;
-  const Stroke along{{middle.x + 2e-3, box.low.y - kBeyond, 0}, {middle.x + 2e-3, box.high.y + kBeyond, 0}, bottom},
-      across{{box.low.x - kBeyond, middle.y + 1e-3, 0}, {box.high.x + kBeyond, middle.y + 1e-3, 0}, bottom};
-  Stroke tremor = along;
-  // 1 mm at 8 Hz.
-  tremor.beside = [](double way) { return 1e-3 * std::sin(2 * std::numbers::pi * 8 * way / kSpeed); };
-  return {{"straight", {along}}, {"X", {along, across}}, {"tremor", {tremor}}};
-}
+  /// Along y beside the middle [m], the tip at `bottom` [m]; `beside`: off the line at a part of the way, in halves of
+  /// the box.
+  Stroke along_y(
+      double x, double bottom, std::function<double(double)> beside = [](double) { return 0.0; }) const {
+    const double length = 2 * (half_.y + kBeyond);
+    const auto at = [=, this](double t) {
+      const Vec3 tip{middle_.x + x + beside(t) * half_.x, box_.low.y - kBeyond + t * length, bottom};
+      return upright(tip, std::numbers::pi / 2);
+    };
+    return {at, length};
+  }
+  Stroke along_x(double y, double bottom) const {
+    const double length = 2 * (half_.x + kBeyond);
+    return {[=, this](double t) {
+              return upright({box_.low.x - kBeyond + t * length, middle_.y + y, bottom}, 0);
+            },
+            length};
+  }
+  /// An ellipse around the middle, closed and a little more, of a part of the box.
+  Stroke ring(double size, double bottom) const {
+    const auto at = [=, this](double t) {
+      const double a = 1.03 * 2 * std::numbers::pi * t;
+      const Vec3 way{-half_.x * std::sin(a), half_.y * std::cos(a), 0};
+      return upright({middle_.x + size * half_.x * std::cos(a), middle_.y + size * half_.y * std::sin(a), bottom},
+                     std::atan2(way.y, way.x));
+    };
+    return {at, 2 * std::numbers::pi * size * std::max(half_.x, half_.y)};
+  }
+  /// The blade lies level along x, its tip at `tip` [m] and its heel beyond the organ, and goes along y.
+  Stroke level(double z, double tip, double part) const {
+    const double length = 2 * (part * half_.y + (part < 1 ? 0 : kBeyond));
+    const auto at = [=, this](double t) {
+      Inputs inputs;
+      inputs.tool = tool_, inputs.position = {tip, middle_.y + length * (t - 0.5), z};
+      inputs.world_from_tool = {0.5, -0.5, -0.5, 0.5};  // its edge towards -x, what it cuts towards y
+      return inputs;
+    };
+    return {at, length};
+  }
+
+  Box box_;
+  std::int32_t tool_;
+  Vec3 middle_, half_;  ///< [m]
+  double spacing_ = 0;  ///< [m]
+};
 
 double longest_edge(const Vec3* p) { return std::max({norm(p[1] - p[0]), norm(p[2] - p[1]), norm(p[0] - p[2])}); }
 
@@ -113,7 +182,7 @@ class Look {
   std::vector<Vec3> vertex_;
 };
 
-StrokesResult::Row measure(const Model& model, std::int32_t tool, const std::vector<Stroke>& strokes) {
+StrokesResult::Row measure(const Model& model, const std::vector<Stroke>& strokes) {
   StrokesResult::Row row;
   stepping::Stepper stepper(model);
   State state = rest_state(model);
@@ -125,7 +194,7 @@ StrokesResult::Row measure(const Model& model, std::int32_t tool, const std::vec
   };
   for (const Stroke& stroke : strokes) {
     const double ticks = stroke.ticks(model.tick);
-    for (double i = 0; i <= ticks; ++i) step(stroke.at(i / ticks, tool));
+    for (double i = 0; i <= ticks; ++i) step(stroke.at(i / ticks));
     step({});
   }
   for (std::int64_t i = 0; i < std::int64_t(kWait / model.tick); ++i) step({});
@@ -139,17 +208,20 @@ Result<StrokesResult> measure_strokes(const std::string& shipped, bool is_quick)
   for (const char* organ : {"kidney", "skin", "liver"}) {
     const Result<loading::LoadedScene> loaded = loading::load_whole_scene(shipped + "/" + organ + ".json", {});
     if (!loaded) return loaded.errors();
-    const Model& model = loaded->built.model;
+    Model model = loaded->built.model;
     const auto scalpel = std::find_if(model.tools.begin(), model.tools.end(),
                                       [](const Tool& tool) { return tool.kind == ToolKind::scalpel; });
     if (scalpel == model.tools.end()) return Error{organ, "has no scalpel", ""};
-    auto strokes = strokes_over(model.surfaces[0]);
-    if (is_quick) strokes.erase(strokes.begin() + 1, strokes.end());
+    const Strokes strokes(model.surfaces[0], model.organs[0].spacing, std::int32_t(scalpel - model.tools.begin()));
+    // It reaches through the organ, however it lies.
+    scalpel->blade_length = kLongBlade;
+    std::vector<Cut> cuts = strokes.cuts();
+    if (is_quick) cuts.erase(cuts.begin() + 1, cuts.end());
     const std::size_t first = result.rows.size();
-    result.rows.resize(first + strokes.size());
-    in_parallel(strokes.size(), [&](std::size_t i) {
-      StrokesResult::Row row = measure(model, std::int32_t(scalpel - model.tools.begin()), strokes[i].second);
-      row.organ = organ, row.stroke = strokes[i].first;
+    result.rows.resize(first + cuts.size());
+    in_parallel(cuts.size(), [&](std::size_t i) {
+      StrokesResult::Row row = measure(model, cuts[i].strokes);
+      row.organ = organ, row.stroke = cuts[i].name;
       result.rows[first + i] = row;
     });
   }
@@ -161,8 +233,10 @@ Chapter chapter_of(const StrokesResult& result) {
   reports::Section& section = chapter.section;
   section.key = "strokes", section.title = "Strokes through the shipped organs";
   section.paragraphs = {
-      "The blades of the shipped scenes go through their organs at 40 mm/s, half of the organ's height deep, on a "
-      "straight line, on two that cross, and with a tremor of 1 mm at 8 Hz. Every 25 ticks the drawn surface is looked "
+      "The blades of the shipped scenes, made long enough, go through their organs at 40 mm/s: on a straight line half "
+      "of the organ's height deep, on an S, on a closed ellipse, on two lines that cross, with a tremor of 1 mm at "
+      "8 Hz; they take a cap off, a disc out, and cut strips of 1, 0.5 and 0.3 spacings. Every 25 ticks the drawn "
+      "surface is looked "
       "at: it should be closed, with as many components as there are pieces, change only where the blade went on, and "
       "no triangle should be six times as long as at rest, or as a twentieth of a spacing where it is shorter. Places "
       "that lie together at rest may follow different spheres; how far they came apart is in the last column."};

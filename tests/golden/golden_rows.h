@@ -13,7 +13,7 @@ struct GoldenRow {
   std::array<std::uint64_t, 4> hash;  ///< of State after 100, 200, 300 and 400 ticks
 };
 
-/// All golden sessions of one physics revision.
+/// The golden sessions of one physics revision; from revision 8 on only those that are new or that changed.
 struct GoldenRevision {
   std::int32_t revision;
   std::span<const GoldenRow> rows;
@@ -157,11 +157,16 @@ inline constexpr GoldenRow kGoldenRevision7[] = {
     {"soft and two hands, auto", {0x1180d4b4680c1d33, 0x782c33232b01b77d, 0xe7e7da8983e48de9, 0xd0a7e15f2a1b0299}},
 };
 
+inline constexpr GoldenRow kGoldenRevision8[] = {
+    {"touched tear, auto", {0xc651e673aaed1229, 0x2daa381a3a772e97, 0xbe7502bc1bb26592, 0x8f2d8d102004e736}},
+    {"touched tear, sdirk2", {0xfc009c869aa9e49a, 0x8a72951a4f43bfe3, 0x1365cc7c70347b99, 0x901735766b9c034f}},
+};
+
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09}, {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
     {3, kGoldenRevision3, 0xe38c0b55dc5ae189}, {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
     {5, kGoldenRevision5, 0xde01e1a50a84c47a}, {6, kGoldenRevision6, 0xa6eef089d8c4a783},
-    {7, kGoldenRevision7, 0xe9b636c6028e3176},
+    {7, kGoldenRevision7, 0xe9b636c6028e3176}, {8, kGoldenRevision8, 0x7b7d2031be004e94},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

@@ -33,6 +33,8 @@ constexpr Session kSessions[] = {
     {"skinned", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true},
     {"skinned in slabs", 13, 12, 12, 40, network::Structure::ctpm, Integrator::sdirk2, false, true},
     {"touched cut", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true, 1, testing::touched_cut_inputs},
+    {"touched tear", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true, 1,
+     testing::touched_tear_inputs},
     {"two hands", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true, 2, testing::two_hands_inputs},
 };
 

@@ -41,6 +41,13 @@ inline Inputs touched_slice_inputs(int tick) {
   return inputs;
 }
 
+/// As touched_slice_inputs(), but the scalpel leaves a bridge in which no element runs: the slice tears off there.
+inline Inputs touched_tear_inputs(int tick) {
+  Inputs inputs = touched_slice_inputs(tick);
+  if (tick > 100 && tick < 110) inputs.tool = -1;
+  return inputs;
+}
+
 /// A ball presses, and from tick 100 on a scalpel in the other hand cuts beside it.
 inline Inputs two_hands_inputs(int tick) {
   Inputs inputs = golden_inputs(std::min(tick, 150));

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <vector>
+
+#include "core/cutting/cutting.h"
+#include "core/cutting/swept_surface.h"
+#include "core/cutting/tissue_depth.h"
+#include "core/model/model.h"
+
+namespace ctpm::cutbody {
+
+class CutGrid;
+
+/// Where tissue comes apart because nothing holds it: cuts may sever every element between two spheres and yet leave a
+/// bridge of tissue in which no element runs. It tears in the middle between them where the way from one to the other
+/// along whole elements is long, or there is none. The severed elements are those that the rows of the swept surface
+/// cross, so that the tear is a function of them alone.
+class TornTissue {
+ public:
+  struct Edge {
+    std::int32_t node;  ///< of the grid
+    int direction;
+    friend auto operator<=>(const Edge&, const Edge&) = default;
+  };
+
+  /// `model` must outlive the TornTissue.
+  TornTissue(const Model& model, std::size_t organ, const cutting::TissueDepth& depth);
+
+  /// Severs the elements that a row crosses. What a row crosses that may still move is taken back by take_back().
+  void sever(const cutting::Front& from, const cutting::Front& to, const cutting::NewlySwept& newly, bool may_move);
+  void take_back();
+  void reset();
+
+  /// The edges of the grid in whole tissue across which it is torn, ascending.
+  std::vector<Edge> find(const CutGrid& grid);
+
+ private:
+  std::vector<std::int32_t> around(const std::vector<std::int32_t>& spheres, bool uncut) const;
+  bool is_near(std::int32_t p, std::int32_t q, bool uncut) const;
+  bool has_lost(std::int32_t sphere) const;
+  const Model& model_;
+  std::size_t organ_;
+  cutting::RestElements elements_;
+  std::vector<std::uint8_t> is_severed_;  ///< (axial_count)
+  std::vector<cutting::Crossing> severed_, by_last_;
+};
+
+}  // namespace ctpm::cutbody
