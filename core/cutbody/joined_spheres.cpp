@@ -10,8 +10,7 @@ namespace {
 /// A place is joined to what the nodes of its side are joined to that are nearer than this, in steps of the grid (our
 /// choice; its own node may be sqrt(3) steps away). They are found over so many edges.
 constexpr double kBlur = 2;
-constexpr CutGrid::Index kBlurHops = JoinedSpheres::kMostHops - Sight::kMostHops;
-static_assert(kBlurHops >= kBlur);
+static_assert(JoinedSpheres::kBlurHops >= kBlur);
 
 /// The part of a sphere by how many edges the way to it is longer than the shortest (our choice): one more may be due
 /// to a wall beside the way, which grazes edges of the grid; a spacing more is around the end of a cut.
@@ -20,14 +19,30 @@ constexpr std::array<double, Sight::kMostDetour + 1> kPart{1, 1, 0.75, 0.5, 0.25
 }  // namespace
 
 void JoinedSpheres::forget_near(CutGrid::NodeBox changed) {
-  std::erase_if(seen_, [&](const auto& entry) { return grid_.is_near(changed, entry.first, Sight::kMostHops); });
+  ++round_;
+  for (auto& [node, known] : seen_)
+    if (grid_.is_near(changed, node, Sight::kMostHops)) known.is_old = true;
   sight_.update(changed);
 }
 
-const Sight::Seen& JoinedSpheres::seen_from(Index node) {
+const JoinedSpheres::Known& JoinedSpheres::known_of(Index node) {
   const auto [found, is_new] = seen_.try_emplace(node);
-  if (is_new) found->second = sight_.from(node);
-  return found->second;
+  Known& known = found->second;
+  if (!is_new && !known.is_old) return known;
+  Sight::Seen seen = sight_.from(node);
+  if (is_new || seen != known.seen) known.seen = std::move(seen), known.since = round_;
+  known.is_old = false;
+  return known;
+}
+
+std::vector<JoinedSpheres::Index> JoinedSpheres::nodes() const {
+  std::vector<Index> nodes;
+  for (const Weighted& n : nodes_) nodes.push_back(n.node);
+  return nodes;
+}
+
+bool JoinedSpheres::is_as_in(std::uint32_t round, std::span<const Index> nodes) {
+  return std::all_of(nodes.begin(), nodes.end(), [&](Index node) { return known_of(node).since <= round; });
 }
 
 /// The nodes on the side of `side` around a place, and how much each counts.
@@ -63,7 +78,7 @@ void JoinedSpheres::find_nodes(Vec3 rest, Index side) {
 }
 
 std::span<const JoinedSpheres::Joined> JoinedSpheres::around(Vec3 rest, Index side) {
-  joined_.clear();
+  joined_.clear(), nodes_.assign(1, {side, 1});
   if (const Sight::Seen& seen = seen_from(side); !seen.has_cut) {
     for (const Sight::Seen::Sphere& s : seen.sphere) joined_.push_back({s.sphere, 1});
     return joined_;

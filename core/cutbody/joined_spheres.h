@@ -23,13 +23,14 @@ class JoinedSpheres {
     double part;  ///< 1: without going around a cut's end; down to 0
   };
 
-  /// What a place is joined to may depend on edges so far from its node.
-  static constexpr Index kMostHops = Sight::kMostHops + 2;
+  /// The nodes of a place's own side that say what it is joined to are at most so many edges away; what those see may
+  /// depend on edges so far away.
+  static constexpr Index kBlurHops = 2, kMostHops = Sight::kMostHops + kBlurHops;
 
   /// `grid` must outlive the JoinedSpheres.
   explicit JoinedSpheres(const CutGrid& grid) : grid_(grid), sight_(grid) {}
 
-  /// Forgets what may depend on edges in the box.
+  /// Looks again at what may depend on edges in the box, when it is asked for.
   void forget_near(CutGrid::NodeBox changed);
 
   /// Whether a cut is so near to a node in tissue that it may part it from spheres.
@@ -39,17 +40,31 @@ class JoinedSpheres {
   /// ascending. Valid until the next call.
   std::span<const Joined> around(Vec3 rest, Index side);
 
+  /// Number of calls of forget_near().
+  std::uint32_t round() const { return round_; }
+  /// The nodes on which the result of the last call of around() depends, beside the edges between them.
+  std::vector<Index> nodes() const;
+  /// Whether nodes see what they saw in a round.
+  bool is_as_in(std::uint32_t round, std::span<const Index> nodes);
+
  private:
+  struct Known {
+    Sight::Seen seen;
+    std::uint32_t since = 0;  ///< the round in which it last changed
+    bool is_old = false;      ///< it may have changed
+  };
   struct Weighted {
     Index node;
     double weight;
   };
   void find_nodes(Vec3 rest, Index side);
-  const Sight::Seen& seen_from(Index node);
+  const Known& known_of(Index node);
+  const Sight::Seen& seen_from(Index node) { return known_of(node).seen; }
 
   const CutGrid& grid_;
   Sight sight_;
-  std::unordered_map<Index, Sight::Seen> seen_;
+  std::unordered_map<Index, Known> seen_;
+  std::uint32_t round_ = 0;
   std::vector<Weighted> nodes_;
   std::vector<double> sum_;   ///< of each sphere; 0 between calls
   std::vector<Index> known_;  ///< spheres of which the sum is not 0

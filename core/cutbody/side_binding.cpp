@@ -26,6 +26,9 @@ constexpr double kOff = 1e-6;
 /// Vertices this near to the organ's own surface are put onto it, in spacings.
 constexpr double kOnSurface = 2e-3;
 
+/// Places this near to the swept surface are put onto it; a place's node is so near to it. In steps of the grid.
+constexpr double kOntoCut = 1.5, kSideSteps = 1.7321;
+
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 
 /// Whether a binding follows spheres that a place is wholly joined to.
@@ -95,9 +98,14 @@ SideBinding::SideBinding(const Model& model, const CutGrid& grid)
       joined_(grid) {}
 
 void SideBinding::forget_near(CutGrid::NodeBox changed) {
+  // Edges and rows of the cut beside a place change it; those farther away may change what its nodes see.
+  constexpr Index kBeside = JoinedSpheres::kBlurHops + 2;
+  static_assert(kBeside >= kSideSteps + kOntoCut);
+  for (auto& [key, entry] : bound_)
+    entry.is_old = entry.is_old || grid_.is_near(changed, key.side, JoinedSpheres::kMostHops);
   // A cut far away may divide the piece that a vertex follows.
-  std::erase_if(bound_, [&](const auto& entry) {
-    return entry.second.by_piece || grid_.is_near(changed, entry.first.side, JoinedSpheres::kMostHops);
+  std::erase_if(bound_, [&](const auto& known) {
+    return known.second.by_piece || grid_.is_near(changed, known.first.side, kBeside);
   });
   piece_.clear(), row_boxes_.clear();
   joined_.forget_near(changed);
@@ -169,47 +177,51 @@ SideBinding::Binding SideBinding::follow_whole(const Origin& origin) const {
 
 /// Takes a place of a wall back to the swept surface if it is off it, as beyond the end of a cut.
 Vec3 SideBinding::near_cut(Vec3 rest, const State& state) {
-  constexpr double kOffCut = 0.15, kReach = 1.5;  // in steps of the grid
+  constexpr double kOffCut = 0.15;  // in steps of the grid
   if (row_boxes_.size() + 1 != cutting::swept_rows(state)) row_boxes_ = cutting::boxes_of_rows(state);
-  const auto nearest = [&](double steps) {
-    return cutting::nearest_swept(state, row_boxes_, grid_.organ(), rest, steps * grid_.step());
-  };
   // Most places are on it, which is found fast.
-  if (nearest(kOffCut)) return rest;
-  return nearest(kReach).value_or(rest);
+  if (cutting::is_near_swept(state, row_boxes_, grid_.organ(), rest, kOffCut * grid_.step())) return rest;
+  return cutting::nearest_swept(state, row_boxes_, grid_.organ(), rest, kOntoCut * grid_.step()).value_or(rest);
 }
 
 const SideBinding::Bound& SideBinding::bind(const CutMesh::Vertex& vertex, bool is_outer, bool is_wall,
                                             const State& state) {
   const auto [found, is_new] =
       bound_.try_emplace({vertex.side, vertex.rest.x, vertex.rest.y, vertex.rest.z, is_outer, is_wall});
-  Bound& bound = found->second;
-  if (!is_new) return bound;
+  Entry& entry = found->second;
+  const bool is_known = !is_new && (!entry.is_old || joined_.is_as_in(entry.round, entry.nodes));
+  entry.is_old = false, entry.round = joined_.round();
+  if (is_known) return entry.bound;
+  entry.bound = {}, entry.nodes.clear();
+  bind(vertex, is_outer, is_wall, state, entry);
+  return entry.bound;
+}
+
+void SideBinding::bind(const CutMesh::Vertex& vertex, bool is_outer, bool is_wall, const State& state, Entry& entry) {
+  Bound& bound = entry.bound;
   bound.rest = is_wall ? near_cut(vertex.rest, state) : vertex.rest;
   if (is_outer) bound.origin = origin_of(bound.rest);
   const bool is_near_cut = vertex.side >= 0 && joined_.is_near_cut(vertex.side);
   std::span<const Joined> joined;
-  if (is_near_cut) joined = joined_.around(bound.rest, vertex.side);
+  if (vertex.side >= 0) joined = joined_.around(bound.rest, vertex.side), entry.nodes = joined_.nodes();
   if (bound.origin.triangle >= 0) {
     const Vec3 place = place_of(bound.origin);
     if (norm(place - bound.rest) <= kOnSurface * organ_.spacing) {
       bound.rest = place, bound.binding = follow_whole(bound.origin);
-      if (!is_near_cut || is_joined(bound.binding, joined)) return bound;
+      if (!is_near_cut || is_joined(bound.binding, joined)) return;
     }
   }
-  if (!is_near_cut && vertex.side >= 0) joined = joined_.around(bound.rest, vertex.side);
   const double reach = surface::kBindingReach * organ_.spacing;
   Mix mix;
   mix.add(follow(bound.rest, joined, reach), kNear);
   if (!mix.is_whole()) mix.add(follow(bound.rest, joined, kWider * reach), kFar);
-  bound.by_piece = !mix.is_whole();
-  if (bound.by_piece) {
+  entry.by_piece = !mix.is_whole();
+  if (entry.by_piece) {
     if (piece_.empty()) find_pieces();
     for (const Index piece : {piece_[std::size_t(vertex.side)], Index(-1)})
       if (!mix.is_whole()) follow_piece(bound.rest, piece, mix);
   }
   bound.binding = mix.binding();
-  return bound;
 }
 
 /// Finds the pieces that vertices follow. One without spheres, as a strip thinner than a spacing may be, goes with the

@@ -41,13 +41,12 @@ class SideBinding {
     Vec3 rest;  ///< [m]
     Binding binding;
     Origin origin;
-    bool by_piece = false;  ///< the spheres of its own side hardly span space, or do not
   };
 
   /// Both must outlive the SideBinding.
   SideBinding(const Model& model, const CutGrid& grid);
 
-  /// Forgets what may depend on edges in the box.
+  /// Forgets what depends on edges in the box.
   void forget_near(CutGrid::NodeBox changed);
 
   /// What a vertex follows, and where it is: on the organ's own surface or on the swept surface of `state`. It is
@@ -62,6 +61,13 @@ class SideBinding {
     friend auto operator<=>(const Key&, const Key&) = default;
   };
 
+  struct Entry {
+    Bound bound;
+    std::vector<Index> nodes;  ///< on what these see it depends
+    std::uint32_t round = 0;   ///< of joined_, in which it was so
+    bool is_old = false;       ///< it may depend on what changed since
+    bool by_piece = false;     ///< the spheres of its own side hardly span space, or do not
+  };
   class Mix;
   using Joined = JoinedSpheres::Joined;
 
@@ -69,6 +75,7 @@ class SideBinding {
   Vec3 near_cut(Vec3 rest, const State& state);
   Origin origin_of(Vec3 rest) const;
   Vec3 place_of(const Origin& origin) const;
+  void bind(const CutMesh::Vertex& vertex, bool is_outer, bool is_wall, const State& state, Entry& entry);
   Binding follow_whole(const Origin& origin) const;
   Binding follow(Vec3 rest, std::span<const Joined> spheres, double reach) const;
   Binding follow_rigidly(Vec3 rest, Index piece) const;
@@ -80,9 +87,9 @@ class SideBinding {
   const Surface& whole_;
   const CutGrid& grid_;
   JoinedSpheres joined_;
-  std::map<Key, Bound> bound_;
-  std::vector<Box> row_boxes_;  ///< of the swept surface; see cutting::boxes_of_rows()
-  std::vector<Index> piece_;    ///< that each node of the grid follows; empty until it is asked for after a change
+  std::map<Key, Entry> bound_;
+  cutting::SweptBoxes row_boxes_;  ///< see cutting::boxes_of_rows()
+  std::vector<Index> piece_;       ///< that each node of the grid follows; empty until it is asked for after a change
 };
 
 }  // namespace ctpm::cutbody

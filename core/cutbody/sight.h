@@ -21,9 +21,11 @@ class Sight {
   struct Seen {
     struct Sphere {
       Index sphere, detour;  ///< edges of the way to it beyond the shortest
+      friend bool operator==(const Sphere&, const Sphere&) = default;
     };
     std::vector<Sphere> sphere;  ///< ascending
     bool has_cut = false;  ///< an edge that a cut crosses begins or ends at a node fewer edges away than kMostHops
+    friend bool operator==(const Seen&, const Seen&) = default;
   };
 
   /// `grid` must outlive the Sight.

@@ -21,10 +21,35 @@ void push_row(State& state, const Front& front, const NewlySwept& newly, const N
   }
 }
 
-Box box_of_row(const State& state, std::size_t row) {
-  Box box(state.swept[row * kEdgeNodes]);
-  for (std::size_t n = 1; n < kEdgeNodes; ++n) box.add(state.swept[row * kEdgeNodes + n]);
+Box box_of(const SweptQuad& q) { return Box(q.from, q.to, q.from2, q.to2); }
+
+std::optional<Box> box_of_row(const State& state, std::size_t row) {
+  std::optional<Box> box;
+  for (std::size_t n = 0; row > 0 && n + 1 < kEdgeNodes; ++n) {
+    const SweptQuad quad = swept_quad(state, row, n);
+    if (quad.organ < 0) continue;
+    const Box own = box_of(quad);
+    if (box) box->add(own.low), box->add(own.high);
+    if (!box) box = own;
+  }
   return box;
+}
+
+/// Calls `look_at(point)` for the nearest points to a place of parts of the swept surface that may be within `reach`,
+/// which may become less, until it says that it has seen enough.
+template <class LookAt>
+void for_each_near(const State& state, const SweptBoxes& boxes, std::int32_t organ, Vec3 rest, const double& reach,
+                   LookAt&& look_at) {
+  for (std::size_t row = 1; row < swept_rows(state); ++row) {
+    const std::optional<Box> box = row < boxes.size() ? boxes[row] : box_of_row(state, row);
+    if (!box || !box->grown(reach).meets(Box(rest))) continue;
+    for (std::size_t n = 0; n + 1 < kEdgeNodes; ++n) {
+      const SweptQuad q = swept_quad(state, row, n);
+      if (q.organ != organ || !box_of(q).grown(reach).meets(Box(rest))) continue;
+      if (look_at(nearest_in_triangle(rest, q.from, q.to, q.from2))) return;
+      if (look_at(nearest_in_triangle(rest, q.to, q.to2, q.from2))) return;
+    }
+  }
 }
 
 double squared_distance(Vec3 p, const SweptQuad& q) {
@@ -90,31 +115,26 @@ void add_swept(State& state, const Front& exact_from, const Front& exact_to, con
   push_row(state, to, newly, {});
 }
 
-std::vector<Box> boxes_of_rows(const State& state) {
-  std::vector<Box> boxes;
+SweptBoxes boxes_of_rows(const State& state) {
+  SweptBoxes boxes;
   for (std::size_t row = 0; row + 1 < swept_rows(state); ++row) boxes.push_back(box_of_row(state, row));
   return boxes;
 }
 
-std::optional<Vec3> nearest_swept(const State& state, const std::vector<Box>& boxes, std::int32_t organ, Vec3 rest,
+bool is_near_swept(const State& state, const SweptBoxes& boxes, std::int32_t organ, Vec3 rest, double reach) {
+  bool is_near = false;
+  for_each_near(state, boxes, organ, rest, reach,
+                [&](Vec3 point) { return is_near = is_near || norm(point - rest) < reach; });
+  return is_near;
+}
+
+std::optional<Vec3> nearest_swept(const State& state, const SweptBoxes& boxes, std::int32_t organ, Vec3 rest,
                                   double reach) {
   std::optional<Vec3> nearest;
-  double least = reach;
-  const auto look_at = [&](Vec3 point) {
-    if (const double distance = norm(point - rest); distance < least) least = distance, nearest = point;
-  };
-  for (std::size_t row = 1; row < swept_rows(state); ++row) {
-    Box box = row < boxes.size() ? boxes[row] : box_of_row(state, row);
-    const Box& before = boxes[row - 1];
-    box.add(before.low), box.add(before.high);
-    if (!box.grown(least).meets(Box(rest))) continue;
-    for (std::size_t n = 0; n + 1 < kEdgeNodes; ++n) {
-      const SweptQuad q = swept_quad(state, row, n);
-      if (q.organ != organ || !Box(q.from, q.to, q.from2, q.to2).grown(least).meets(Box(rest))) continue;
-      look_at(nearest_in_triangle(rest, q.from, q.to, q.from2));
-      look_at(nearest_in_triangle(rest, q.to, q.to2, q.from2));
-    }
-  }
+  for_each_near(state, boxes, organ, rest, reach, [&](Vec3 point) {
+    if (const double distance = norm(point - rest); distance < reach) reach = distance, nearest = point;
+    return false;
+  });
   return nearest;
 }
 

@@ -48,12 +48,16 @@ Vec3 stored_place(Vec3 rest);
 /// hundredths of a millimetre from the surface between them.
 void add_swept(State& state, const Front& from, const Front& to, const NewlySwept& newly);
 
-/// Boxes around the rows of a swept surface but its last one, which may still move [m].
-std::vector<Box> boxes_of_rows(const State& state);
+/// Boxes around what was newly swept in each row but the last one, which may still move [m]; none where nothing was.
+using SweptBoxes = std::vector<std::optional<Box>>;
+SweptBoxes boxes_of_rows(const State& state);
+
+/// Whether the swept surface in an organ is within `reach` of a place at rest [m]. `boxes`: boxes_of_rows().
+bool is_near_swept(const State& state, const SweptBoxes& boxes, std::int32_t organ, Vec3 rest, double reach);
 
 /// The point of the swept surface in an organ that is nearest to a place at rest [m]; none within `reach` [m]. `boxes`:
 /// boxes_of_rows().
-std::optional<Vec3> nearest_swept(const State& state, const std::vector<Box>& boxes, std::int32_t organ, Vec3 rest,
+std::optional<Vec3> nearest_swept(const State& state, const SweptBoxes& boxes, std::int32_t organ, Vec3 rest,
                                   double reach);
 
 /// Finds the part of the swept surface near a place.

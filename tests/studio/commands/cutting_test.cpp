@@ -131,7 +131,7 @@ TEST(CuttingSession, SeversWhatTheBladeSweptAndLeavesNoSphereWithoutTissue) {
   // Elements are crossed where the swept surface is.
   const cutting::RestMap map(model);
   const cutting::TissueDepth depth(model, map);
-  const std::vector<Box> boxes = cutting::boxes_of_rows(state);
+  const cutting::SweptBoxes boxes = cutting::boxes_of_rows(state);
   const cutting::RestElements elements(model, depth);
   const double spacing = model.organs[0].spacing;
   std::vector<int> before(model.sphere_count(), 0), after(model.sphere_count(), 0);
