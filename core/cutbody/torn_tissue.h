@@ -5,18 +5,19 @@
 #include <vector>
 
 #include "core/cutting/cutting.h"
+#include "core/cutting/pieces.h"
 #include "core/cutting/swept_surface.h"
 #include "core/cutting/tissue_depth.h"
 #include "core/model/model.h"
+#include "core/model/state.h"
 
 namespace ctpm::cutbody {
 
 class CutGrid;
 
-/// Where tissue comes apart because nothing holds it: cuts may sever every element between two spheres and yet leave a
-/// bridge of tissue in which no element runs. It tears in the middle between them where the way from one to the other
-/// along whole elements is long, or there is none. The severed elements are those that the rows of the swept surface
-/// cross, so that the tear is a function of them alone.
+/// Where tissue comes apart because nothing holds it: cuts may sever every element between two groups of spheres and
+/// yet leave a bridge of tissue in which no element runs. It tears in the middle between the groups. The severed
+/// elements are those that the rows of the swept surface cross, so that the tear is a function of them alone.
 class TornTissue {
  public:
   struct Edge {
@@ -37,13 +38,12 @@ class TornTissue {
   std::vector<Edge> find(const CutGrid& grid);
 
  private:
-  std::vector<std::int32_t> around(const std::vector<std::int32_t>& spheres, bool uncut) const;
-  bool is_near(std::int32_t p, std::int32_t q, bool uncut) const;
-  bool has_lost(std::int32_t sphere) const;
   const Model& model_;
   std::size_t organ_;
   cutting::RestElements elements_;
-  std::vector<std::uint8_t> is_severed_;  ///< (axial_count)
+  State network_;  ///< only the severed elements
+  cutting::Pieces pieces_;
+  std::vector<std::int32_t> whole_;  ///< the first sphere of the piece of each sphere before any cut (sphere_count)
   std::vector<cutting::Crossing> severed_, by_last_;
 };
 
