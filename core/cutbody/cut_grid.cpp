@@ -81,6 +81,20 @@ CutGrid::Index CutGrid::block_at(Vec3 rest) const {
   return block;
 }
 
+std::vector<CutGrid::Index> CutGrid::corners_around(Vec3 rest) const {
+  Node low;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double at = dot(rest - origin_, axis_[a]) / step_;
+    if (!(at >= 0 && at < extent_[a])) return {};
+    low[a] = Index(at);
+  }
+  std::vector<Index> corners;
+  for (int d = 0; d < kDirections; ++d)
+    if (const Node corner{low[0] + (d & 1), low[1] + (d >> 1 & 1), low[2] + (d >> 2)}; contains(corner))
+      corners.push_back(at(corner));
+  return corners;
+}
+
 /// Which nodes are in tissue, and where edges leave it.
 void CutGrid::find_surface() {
   constexpr int kHalvings = 12;
@@ -110,8 +124,9 @@ void CutGrid::place_spheres(const Model& model, const OrganRange& organ) {
     Node node;
     for (std::size_t a = 0; a < 3; ++a) node[a] = kPerSpacing * (cell[a] - first_cell_[a] + 1);
     own_node_.push_back(at(node));
-    node_of_sphere_.push_back(find_home(s));
+    home_.push_back(find_home(s));
   }
+  node_of_sphere_ = home_;
   index_spheres();
 }
 
@@ -166,21 +181,25 @@ CutGrid::Index CutGrid::find_home(Index sphere) const {
 void CutGrid::find_homes_outside() {
   constexpr Index kReach = 2 * kPerSpacing;
   const NodeBox changed = box_;
-  bool moved = false;
   for (Index s = 0; s < Index(own_node_.size()); ++s) {
     const Node own = node(own_node_[std::size_t(s)]);
     bool is_near = !in_tissue(own_node_[std::size_t(s)]);
     for (std::size_t a = 0; a < 3; ++a)
       is_near = is_near && own[a] >= changed.low[a] - kReach && own[a] <= changed.high[a] + kReach;
-    if (!is_near) continue;
-    Index& home = node_of_sphere_[std::size_t(s)];
-    const Index found = find_home(s);
-    if (found == home) continue;
-    for (const Index i : {home, found})
-      if (i >= 0) box_.add(node(i));
-    home = found, moved = changed_ = true;
+    if (is_near) home_[std::size_t(s)] = find_home(s);
   }
-  if (moved) index_spheres();
+}
+
+/// Puts all spheres at their homes but those that carry no tissue.
+void CutGrid::leave_out(const std::vector<Index>& spheres) {
+  std::vector<Index> nodes = home_;
+  for (const Index s : spheres) nodes[std::size_t(s)] = -1;
+  if (nodes == node_of_sphere_) return;
+  for (std::size_t s = 0; s < nodes.size(); ++s)
+    for (const Index i : {nodes[s], node_of_sphere_[s]})
+      if (nodes[s] != node_of_sphere_[s] && i >= 0) box_.add(node(i));
+  node_of_sphere_ = std::move(nodes), changed_ = true;
+  index_spheres();
 }
 
 void CutGrid::index_spheres() {
@@ -285,9 +304,11 @@ void CutGrid::sever_outside(Index node, int direction, bool may_move) {
 }
 
 /// Tears the tissue where the network has come apart, and mends what is no longer torn.
-void CutGrid::tear() {
+void CutGrid::tear(const State& state) {
+  const TornTissue::Tear tear = torn_tissue_.find(*this, state);
+  leave_out(tear.stray);
   std::unordered_map<std::size_t, Vec3> wanted;
-  for (const auto& [node, direction] : torn_tissue_.find(*this))
+  for (const auto& [node, direction] : tear.edge)
     wanted.emplace(edge(node, direction), rest(end(node, direction)) - rest(node));
   const std::vector<std::size_t> before(torn_.begin(), torn_.end());
   for (const std::size_t e : before)
@@ -380,7 +401,7 @@ bool CutGrid::update(const State& state) {
   take_back_last_row();
   for (std::size_t row = std::max<std::size_t>(rows_, 2) - 1; row < rows; ++row) sever_row(state, row);
   find_homes_outside();
-  tear();
+  tear(state);
   rows_ = rows;
   for (std::size_t n = 0; n < kEdgeNodes; ++n) {
     if (rows > 1) before_[n] = place(rows - 2, n);

@@ -76,7 +76,13 @@ class CutGrid {
 
   /// The node in tissue at a sphere, or the fewest edges from it on its side of the cut; -1 if there is none near.
   /// Counted within the organ.
+  Index home_of_sphere(Index sphere) const { return home_[std::size_t(sphere)]; }
+  /// The same; -1 also if the sphere carries no tissue (TornTissue).
   Index node_of_sphere(Index sphere) const { return node_of_sphere_[std::size_t(sphere)]; }
+  /// Whether a sphere is in tissue itself.
+  bool is_inside(Index sphere) const { return in_tissue(own_node_[std::size_t(sphere)]); }
+  /// The nodes at the corners of the cube that a place at rest is in, without those beyond the grid.
+  std::vector<Index> corners_around(Vec3 rest) const;
   /// Blocks of a lattice cell's size divide the grid: that of a node, or of the cube above it.
   Index block_count() const { return blocks_[0] * blocks_[1] * blocks_[2]; }
   Index block(Index node) const {
@@ -145,7 +151,8 @@ class CutGrid {
   void sever_outside(Index node, int direction, bool may_move);
   void sever_edge(Index node, int direction, float along, Vec3 normal, bool may_move);
   void take_back_last_row();
-  void tear();
+  void tear(const State& state);
+  void leave_out(const std::vector<Index>& spheres);
   void part(std::size_t edge, Vec3 normal);
   void join(std::size_t edge);
   void reset();
@@ -167,7 +174,7 @@ class CutGrid {
   TornTissue torn_tissue_;
   std::unordered_set<std::size_t> torn_;  ///< edges across which tissue is torn, which have crossings in their middle
   std::vector<Index> own_node_;           ///< the node where a sphere is
-  std::vector<Index> node_of_sphere_, first_sphere_, sphere_;
+  std::vector<Index> home_, node_of_sphere_, first_sphere_, sphere_;
   std::size_t rows_ = 0;                                             ///< of the swept surface that have been looked at
   cutting::Front last_{};                                            ///< the last of them, which may still move [m]
   cutting::Front before_{};                                          ///< the one before it [m]

@@ -1,5 +1,7 @@
 #include "core/cutbody/torn_tissue.h"
 
+#include <cmath>
+
 #include "core/cutbody/cut_grid.h"
 
 namespace ctpm::cutbody {
@@ -10,32 +12,6 @@ using Index = CutGrid::Index;
 /// Whether tissue goes on across an edge: a tear does not count as a cut.
 bool is_whole(const CutGrid& grid, Index node, int direction) {
   return !grid.is_parted(node, direction) || grid.is_torn(node, direction);
-}
-
-/// For each node in tissue the piece of the spheres that are the fewest edges away in whole tissue; -1: none are.
-std::vector<Index> nearest_pieces(const CutGrid& grid, const OrganRange& organ, const std::vector<Index>& piece) {
-  std::vector<Index> of_node(std::size_t(grid.count()), -1), front, next;
-  for (Index s = 0; s < organ.count; ++s) {
-    const Index node = grid.node_of_sphere(s);
-    if (node < 0 || of_node[std::size_t(node)] >= 0) continue;
-    of_node[std::size_t(node)] = piece[std::size_t(organ.first + s)], front.push_back(node);
-  }
-  for (; !front.empty(); front.swap(next), next.clear())
-    for (const Index from : front) {
-      const CutGrid::Node n = grid.node(from);
-      const auto go = [&](CutGrid::Node to, Index lower, int direction) {
-        const Index i = grid.at(to);
-        if (!grid.in_tissue(i) || of_node[std::size_t(i)] >= 0 || !is_whole(grid, lower, direction)) return;
-        of_node[std::size_t(i)] = of_node[std::size_t(from)], next.push_back(i);
-      };
-      for (int d = 1; d < CutGrid::kDirections; ++d) {
-        const CutGrid::Node up{n[0] + (d & 1), n[1] + (d >> 1 & 1), n[2] + (d >> 2)},
-            down{n[0] - (d & 1), n[1] - (d >> 1 & 1), n[2] - (d >> 2)};
-        if (grid.contains(up)) go(up, from, d);
-        if (grid.contains(down)) go(down, grid.at(down), d);
-      }
-    }
-  return of_node;
 }
 
 }  // namespace
@@ -63,26 +39,72 @@ void TornTissue::reset() {
   by_last_.swap(severed_), take_back();
 }
 
-std::vector<TornTissue::Edge> TornTissue::find(const CutGrid& grid) {
+/// For each node in tissue the piece of the spheres that are the fewest edges away in whole tissue; -1: none are. A
+/// sphere outside the tissue is at the place where its elements are.
+std::vector<Index> TornTissue::nearest_pieces(const CutGrid& grid, const State& state) const {
+  const cutting::SweptBoxes boxes = cutting::boxes_of_rows(state);
+  const auto node_at = [&](Vec3 place) {
+    Index nearest = -1;
+    double least = INFINITY;
+    for (const Index corner : grid.corners_around(place)) {
+      const double distance = norm(grid.rest(corner) - place);
+      if (!grid.in_tissue(corner) || !(distance < least)) continue;
+      if (cutting::is_crossed(state, boxes, grid.organ(), place, grid.rest(corner))) continue;
+      nearest = corner, least = distance;
+    }
+    return nearest;
+  };
+  const OrganRange& organ = model_.organs[organ_];
+  std::vector<Index> of_node(std::size_t(grid.count()), -1), front, next;
+  for (Index s = 0; s < organ.count; ++s) {
+    const auto i = std::size_t(organ.first + s);
+    const Index node = grid.is_inside(s) ? grid.home_of_sphere(s) : node_at(elements_.place(i));
+    if (node < 0 || of_node[std::size_t(node)] >= 0) continue;
+    of_node[std::size_t(node)] = pieces_.piece()[i], front.push_back(node);
+  }
+  for (; !front.empty(); front.swap(next), next.clear())
+    for (const Index from : front) {
+      const CutGrid::Node n = grid.node(from);
+      const auto go = [&](CutGrid::Node to, Index lower, int direction) {
+        const Index i = grid.at(to);
+        if (!grid.in_tissue(i) || of_node[std::size_t(i)] >= 0 || !is_whole(grid, lower, direction)) return;
+        of_node[std::size_t(i)] = of_node[std::size_t(from)], next.push_back(i);
+      };
+      for (int d = 1; d < CutGrid::kDirections; ++d) {
+        const CutGrid::Node up{n[0] + (d & 1), n[1] + (d >> 1 & 1), n[2] + (d >> 2)},
+            down{n[0] - (d & 1), n[1] - (d >> 1 & 1), n[2] - (d >> 2)};
+        if (grid.contains(up)) go(up, from, d);
+        if (grid.contains(down)) go(down, grid.at(down), d);
+      }
+    }
+  return of_node;
+}
+
+TornTissue::Tear TornTissue::find(const CutGrid& grid, const State& state) {
   if (severed_.empty() && by_last_.empty()) return {};
   pieces_.find(network_);
-  const std::vector<Index>& piece = pieces_.piece();
-  if (piece == whole_) return {};
-  const std::vector<Index> nearest = nearest_pieces(grid, model_.organs[organ_], piece);
-  std::vector<Edge> torn;
+  if (pieces_.piece() == whole_) return {};
+  const std::vector<Index> nearest = nearest_pieces(grid, state);
+  // What the network never held together is held by the tissue alone.
+  const auto came_apart = [&](Index p, Index q) {
+    return p >= 0 && q >= 0 && p != q && whole_[std::size_t(p)] == whole_[std::size_t(q)];
+  };
+  Tear tear;
   for (Index i = 0; i < grid.count(); ++i) {
-    const Index own = nearest[std::size_t(i)];
-    if (own < 0) continue;
     const CutGrid::Node n = grid.node(i);
-    for (int d = 1; d < CutGrid::kDirections; ++d) {
+    for (int d = 1; d < CutGrid::kDirections && nearest[std::size_t(i)] >= 0; ++d) {
       if (!grid.contains({n[0] + (d & 1), n[1] + (d >> 1 & 1), n[2] + (d >> 2)})) continue;
-      const Index other = nearest[std::size_t(grid.end(i, d))];
-      if (other < 0 || other == own || !is_whole(grid, i, d)) continue;
-      // What the network never held together is held by the tissue alone.
-      if (whole_[std::size_t(own)] == whole_[std::size_t(other)]) torn.push_back({i, d});
+      const Index end = grid.end(i, d);
+      if (came_apart(nearest[std::size_t(i)], nearest[std::size_t(end)]) && is_whole(grid, i, d))
+        tear.edge.push_back({i, d});
     }
   }
-  return torn;
+  const OrganRange& organ = model_.organs[organ_];
+  for (Index s = 0; s < organ.count; ++s)
+    if (const Index home = grid.home_of_sphere(s); home >= 0 && !grid.is_inside(s))
+      if (came_apart(pieces_.piece()[std::size_t(organ.first + s)], nearest[std::size_t(home)]))
+        tear.stray.push_back(s);
+  return tear;
 }
 
 }  // namespace ctpm::cutbody

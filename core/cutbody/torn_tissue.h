@@ -34,10 +34,17 @@ class TornTissue {
   void take_back();
   void reset();
 
-  /// The edges of the grid in whole tissue across which it is torn, ascending.
-  std::vector<Edge> find(const CutGrid& grid);
+  struct Tear {
+    std::vector<Edge> edge;  ///< of the grid, in whole tissue, across which it is torn; ascending
+    /// Spheres outside the tissue of which the nearest tissue belongs to another piece than they do, counted within the
+    /// organ: they carry none.
+    std::vector<std::int32_t> stray;
+  };
+  /// `state`: of the swept surface.
+  Tear find(const CutGrid& grid, const State& state);
 
  private:
+  std::vector<std::int32_t> nearest_pieces(const CutGrid& grid, const State& state) const;
   const Model& model_;
   std::size_t organ_;
   cutting::RestElements elements_;

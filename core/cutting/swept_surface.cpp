@@ -138,6 +138,19 @@ std::optional<Vec3> nearest_swept(const State& state, const SweptBoxes& boxes, s
   return nearest;
 }
 
+bool is_crossed(const State& state, const SweptBoxes& boxes, std::int32_t organ, Vec3 p, Vec3 q) {
+  const Box line(p, q);
+  for (std::size_t row = 1; row < swept_rows(state); ++row) {
+    const std::optional<Box> box = row < boxes.size() ? boxes[row] : box_of_row(state, row);
+    if (!box || !box->meets(line)) continue;
+    for (std::size_t n = 0; n + 1 < kEdgeNodes; ++n) {
+      const SweptQuad s = swept_quad(state, row, n);
+      if (s.organ == organ && box_of(s).meets(line) && meet_sweep(p, q, s.from, s.to, s.from2, s.to2)) return true;
+    }
+  }
+  return false;
+}
+
 SweptIndex::SweptIndex(const Model& model) {
   if (model.sphere_count() == 0) return;
   Box box(model.rest_position[0]);

@@ -60,6 +60,10 @@ bool is_near_swept(const State& state, const SweptBoxes& boxes, std::int32_t org
 std::optional<Vec3> nearest_swept(const State& state, const SweptBoxes& boxes, std::int32_t organ, Vec3 rest,
                                   double reach);
 
+/// Whether the swept surface in an organ crosses the line between two places at rest [m]; touching counts. `boxes`:
+/// boxes_of_rows().
+bool is_crossed(const State& state, const SweptBoxes& boxes, std::int32_t organ, Vec3 p, Vec3 q);
+
 /// Finds the part of the swept surface near a place.
 class SweptIndex {
  public:
