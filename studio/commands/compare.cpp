@@ -59,7 +59,7 @@ Command add_compare(CLI::App& program) {
   app->add_option("-o,--output", arguments->folder, "Folder for report.html and results.json; made if missing");
   const CLI::Option* limit =
       app->add_option("--force-limit", arguments->force_limit_n,
-                      "Force that should not be passed [N]; if not given the scene's, or the expert's peak");
+                      "Force that should not be passed [N]; if not given the scene's, or 1 % above the expert's peak");
   const auto choose = [arguments](bool verifies) { return [=] { arguments->verify = verifies; }; };
   app->add_flag_callback("--verify", choose(true),
                          "Replay the sessions and take forces and depths from the replay; by default up to 30 s");

@@ -11,7 +11,6 @@
 namespace ctpm::compare {
 namespace {
 
-constexpr double kSame = 0.01;  // values with a smaller relative difference count as the same
 reports::Cell cell_of(std::optional<double> value) { return value ? reports::Cell(*value) : reports::Cell(); }
 
 reports::Table measures_table(const Comparison& comparison) {
@@ -40,13 +39,11 @@ reports::Table moments_table(const Comparison& comparison) {
                           moment.kind == MomentKind::stray_cut ? reports::Cell() : reports::Cell(moment.limit),
                           std::string(moment.unit), moment.severity});
   table.caption =
-      "Times are those of the trainee's session. What harms the tissue comes first. Severity is how far the "
-      "worst value is "
-      "beyond its limit, in limits: of force as in the plot, of depth the scene's, of the path half a sphere "
-      "spacing, of a "
-      "pause the expert's longest and at least 1 s; for cuts it is the number of elements that the expert "
-      "left whole "
-      "over those that the expert severed.";
+      "Times are those of the trainee's session. Severity is how far the worst value is beyond its limit, in limits, "
+      "and less for what lasts less than some tenths of a second: of force as in the plot, of depth the scene's, of "
+      "the path half a sphere spacing, of a pause the expert's longest and at least 1 s; for cuts it is the number of "
+      "elements that the expert left whole over those that the expert severed. What harms the tissue (force, depth, "
+      "cuts) counts five times. The weights are this program's.";
   return table;
 }
 
@@ -78,7 +75,8 @@ void write_session(output::JsonWriter& json, const char* key, const SessionTrack
 std::string standing_of(const MeasuredValue& value) {
   if (!value.expert || !value.trainee) return "";
   const double more = *value.trainee - *value.expert;
-  if (std::abs(more) <= kSame * std::max(std::abs(*value.expert), std::abs(*value.trainee))) return "same";
+  const double share = kSameShare * std::max(std::abs(*value.expert), std::abs(*value.trainee));
+  if (std::abs(more) <= std::max(share, value.measure->rounding)) return "same";
   if (value.measure->direction == Direction::nearer) return "differs";
   return (more < 0) == (value.measure->direction == Direction::lower) ? "better" : "worse";
 }

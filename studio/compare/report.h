@@ -19,8 +19,8 @@ struct ComparedSessions {
 /// Caveats that a reader must know before trusting the numbers; usually none.
 std::vector<std::string> remarks_of(const ComparedSessions& compared);
 
-/// How the trainee's value compares with the expert's: "same" (within 1 %), "better", "worse", "differs". Empty for
-/// measures of the pair.
+/// How the trainee's value compares with the expert's: "same" (within 1 % or the measure's rounding), "better",
+/// "worse", "differs". Empty for measures of the pair.
 std::string standing_of(const MeasuredValue& value);
 
 /// The whole comparison as JSON: sessions, measures with meaning and source, moments, and the points of the plots.
