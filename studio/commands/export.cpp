@@ -14,6 +14,7 @@
 #include "studio/exchange/export_shapes.h"
 #include "studio/film/contact_sheet.h"
 #include "studio/film/export_video.h"
+#include "studio/film/stills.h"
 #include "studio/output/number_text.h"
 #include "studio/render/picture_size.h"
 
@@ -65,8 +66,15 @@ int run_shapes(const ExportArguments& arguments) {
 
 bool is_sheet(const std::string& path) { return path.ends_with(".png"); }
 
-/// Draws a session on one page.
-int run_sheet(recordings::SessionReader& session, ExportArguments& arguments) {
+/// Draws one moment of a session, or all of it on one page.
+int run_picture(recordings::SessionReader& session, ExportArguments& arguments) {
+  if (arguments.at_s) {
+    const Result<Done> written = film::write_still(session, arguments.output, *arguments.at_s, arguments.options);
+    if (!written) return print_errors(written.errors());
+    print("%s: at %g s, %dx%d\n", arguments.output.c_str(), *arguments.at_s, arguments.options.size.width,
+          arguments.options.size.height);
+    return exit_good;
+  }
   const Result<Done> written = [&] {
     ProgressLine progress("drawing");
     arguments.options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
@@ -80,7 +88,8 @@ int run_sheet(recordings::SessionReader& session, ExportArguments& arguments) {
 
 int run_export(ExportArguments& arguments) {
   if (exchange::is_shape_file(arguments.output)) return run_shapes(arguments);
-  if (arguments.at_s) return print_errors({{"--at-s", "is for .vtp, .vtu and .glb, which hold one moment", ""}});
+  if (arguments.at_s && !is_sheet(arguments.output))
+    return print_errors({{"--at-s", "is for .png, .vtp, .vtu and .glb, which hold one moment", ""}});
   if (is_sheet(arguments.output) && !arguments.beside.empty())
     return print_errors({{"--beside", "is for videos", arguments.output + " shows the moments of one session"}});
   Errors errors;
@@ -108,7 +117,7 @@ int run_export(ExportArguments& arguments) {
   }
   const StopSignal stop;  // Ctrl-C ends the loop, and the unfinished file is removed on the way out
   arguments.options.should_stop = [&] { return stop.came(); };
-  if (is_sheet(arguments.output)) return run_sheet(*sessions[0], arguments);
+  if (is_sheet(arguments.output)) return run_picture(*sessions[0], arguments);
   const Result<film::ExportOutcome> outcome = [&] {
     ProgressLine progress("exporting");
     arguments.options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
@@ -151,7 +160,8 @@ Command add_export(CLI::App& program) {
   app->add_option("--overlay", options.overlay, "What stands in the picture: none, small or full")
       ->capture_default_str();
   add_time_range(*app, options.range);
-  app->add_option("--at-s", arguments->at_s, "Moment of a .vtp, .vtu or .glb; the end if not given");
+  app->add_option("--at-s", arguments->at_s,
+                  "Moment of a picture (.png), or of a .vtp, .vtu or .glb, whose end is taken if it is not given");
   add_look(*app, options.look);
   app->add_flag("--overwrite", arguments->options.overwrite, "Replace an existing video");
   app->add_flag("--allow-diverged", options.allow_diverged,

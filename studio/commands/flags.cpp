@@ -28,6 +28,7 @@ constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"export.slow_at", "--slow-at"},
     {"export.speed", "--speed"},
     {"exchange.at_s", "--at-s"},
+    {"export.at_s", "--at-s"},
     {"fidelity.recipes", "--only"},
     {"import.anchors", "--anchor"},
     {"import.largest_hole_mm", "--largest-hole-mm"},

@@ -21,25 +21,26 @@ struct Sentence {
 std::string number(double value) { return output::short_number(value, 3); }
 std::string at(const Moment& moment) { return " at " + output::fixed(moment.worst_s, 2) + " s"; }
 
-/// The worst moment of a kind, in words. `seconds` and `count`: of all moments of the kind.
-std::string to_sentence(const Moment& moment, double seconds, std::size_t count) {
+/// The worst moment of a kind, in words. `seconds`, `sum` (of values) and `count`: of all moments of
+/// the kind.
+std::string to_sentence(const Moment& moment, double seconds, double sum, std::size_t count) {
   const std::string value = number(moment.value) + " " + moment.unit, limit = number(moment.limit) + " " + moment.unit;
-  const std::string in_all = ", " + number(seconds) + " s in all";
+  const std::string in_all = " for " + number(seconds) + " s in all";
   switch (moment.kind) {
     case MomentKind::force:
       return "Press more gently: " + value + at(moment) + ", above the limit of " + limit + in_all + ".";
     case MomentKind::depth:
-      return "Push less deep: " + value + at(moment) + ", beyond the " + limit + " that the tissue bears" + in_all +
-             ".";
+      return "Push less deep: " + value + at(moment) + ", and" + in_all + " beyond the " + limit +
+             " that the tissue bears.";
     case MomentKind::deviation:
-      return "Stay on the expert's path: " + value + " away from it" + at(moment) + ", more than " + limit + in_all +
-             ".";
+      return "Stay on the expert's path: " + value + " away from it" + at(moment) + ", and more than " + limit +
+             in_all + ".";
     case MomentKind::pause:
       return "Go on without stopping: " + value + " of standing still" + at(moment) + ", at most " + limit +
              " are usual" + (count > 1 ? "; " + std::to_string(count) + " such pauses." : ".");
     case MomentKind::stray_cut:
-      return "Cut only where the expert cut: " + number(moment.value) + " elements severed" + at(moment) +
-             " that the expert left whole" + (count > 1 ? "; so in " + std::to_string(count) + " cuts." : ".");
+      return "Cut only where the expert cut: " + number(sum) + " severed elements are ones that the expert left whole" +
+             (count > 1 ? ", " + number(moment.value) + " of them in the cut" : "") + at(moment) + ".";
   }
   return "";
 }
@@ -48,14 +49,14 @@ void add_moments(std::vector<Sentence>& sentences, const std::vector<Moment>& mo
   for (const MomentKind kind :
        {MomentKind::force, MomentKind::depth, MomentKind::deviation, MomentKind::pause, MomentKind::stray_cut}) {
     const Moment* worst = nullptr;
-    double seconds = 0;
+    double seconds = 0, sum = 0;
     std::size_t count = 0;
     for (const Moment& moment : moments)
       if (moment.kind == kind) {
         if (!worst) worst = &moment;  // they are sorted
-        seconds += moment.to_s - moment.from_s, ++count;
+        seconds += moment.to_s - moment.from_s, sum += moment.value, ++count;
       }
-    if (worst) sentences.push_back({worst->severity, to_sentence(*worst, seconds, count)});
+    if (worst) sentences.push_back({worst->severity, to_sentence(*worst, seconds, sum, count)});
   }
 }
 

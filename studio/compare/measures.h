@@ -66,6 +66,9 @@ enum class Way { same, backwards, mirrored_x, mirrored_y };
 /// Values that differ by a smaller share are the same.
 inline constexpr double kSameShare = 0.01;
 
+/// Of the worst moments, those that a page shows in pictures and marks in its plots.
+inline constexpr std::size_t kShownMoments = 4;
+
 /// The whole result of comparing a trainee's session with an expert's.
 struct Comparison {
   std::optional<double> force_limit;  ///< [N]; unset: no limit, and the expert never touched the tissue

@@ -50,16 +50,6 @@ Result<Done> find_ranges(std::vector<Reel>& reels, const std::vector<recordings:
   return Done{};
 }
 
-render::Frame draw_shot(Reel& reel, Shot& shot, double top_force) {
-  const render::DrawOptions draw = reel.look.at(reel.renderer->scene(), shot.moments);
-  render::Frame picture = reel.renderer->draw(shot.state, draw);
-  shot.overlay.tools = reel.renderer->tool_points(shot.state, draw);
-  shot.overlay.legend = render::legend_of(reel.film->model(), draw);
-  shot.overlay.least_top_force = std::max(shot.overlay.least_top_force, top_force);
-  reel.overlay->draw(picture, shot.overlay);
-  return picture;
-}
-
 }  // namespace
 
 std::optional<render::OverlayLevel> level_of(const std::string& name) {
@@ -125,6 +115,16 @@ Result<double> largest_force(const std::vector<recordings::SessionReader*>& sess
     largest = std::max(largest, statistics->max_force);
   }
   return largest;
+}
+
+render::Frame draw_shot(Reel& reel, Shot& shot, double top_force) {
+  const render::DrawOptions draw = reel.look.at(reel.renderer->scene(), shot.moments);
+  render::Frame picture = reel.renderer->draw(shot.state, draw);
+  shot.overlay.tools = reel.renderer->tool_points(shot.state, draw);
+  shot.overlay.legend = render::legend_of(reel.film->model(), draw);
+  shot.overlay.least_top_force = std::max(shot.overlay.least_top_force, top_force);
+  reel.overlay->draw(picture, shot.overlay);
+  return picture;
 }
 
 render::Frame draw_shots(std::vector<Reel>& reels, std::vector<Shot>& shots, double top_force) {

@@ -50,6 +50,9 @@ Result<Done> look_alike(std::vector<Reel>& reels, const std::vector<recordings::
 /// a damaged session.
 Result<double> largest_force(const std::vector<recordings::SessionReader*>& sessions);
 
+/// One session at one moment; its plot goes up to `top_force` [N] at least.
+render::Frame draw_shot(Reel& reel, Shot& shot, double top_force);
+
 /// All sessions at one moment, side by side; their plots have one scale.
 render::Frame draw_shots(std::vector<Reel>& reels, std::vector<Shot>& shots, double top_force);
 

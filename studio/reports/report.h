@@ -14,6 +14,7 @@ namespace ctpm::reports {
 struct Picture {
   render::Frame frame;
   std::string caption;
+  std::string id = {};  ///< by which plots lead to it: "#id"
 };
 
 /// One part of a report: text first, then plots, pictures and tables.
@@ -30,6 +31,10 @@ struct Section {
 class Report {
  public:
   Report(std::string title, std::string subtitle);
+
+  /// The page's conclusion, below its title: the result in one sentence, coloured where it is good or bad, and what a
+  /// reader must know to believe it.
+  void conclude(ReportVerdict verdict, const std::string& sentence, const std::vector<std::string>& points);
 
   void add_heading(const std::string& text);
   void add_paragraph(const std::string& text);
@@ -55,6 +60,7 @@ class Report {
 
  private:
   std::string title_, subtitle_, body_;
+  bool has_plots_ = false;
 };
 
 /// A frame as `data:image/png;base64,...`. Error: an empty frame.

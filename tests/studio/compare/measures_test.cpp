@@ -331,7 +331,7 @@ TEST_F(Measures, AdviceNamesTheWorstFirstWithItsNumbers) {
   };
   const std::vector<std::string> both = advice(track, 2);
   ASSERT_EQ(both.size(), 2u);
-  EXPECT_EQ(both[0], "Press more gently: 4 N at 0.10 s, above the limit of 2 N, 0.499 s in all.");
+  EXPECT_EQ(both[0], "Press more gently: 4 N at 0.10 s, above the limit of 2 N for 0.499 s in all.");
   EXPECT_EQ(both[1].find("Go on without stopping: 2.49 s"), 0u) << both[1];
   EXPECT_EQ(advice(press(), 2), std::vector<std::string>{"Nothing goes beyond a limit."});
   EXPECT_EQ(advice(press(0.8), 2).at(1).find("Most is to be gained in idle time: 0.79 s"), 0u)
