@@ -313,6 +313,25 @@ std::string to_svg(const Plot& plot) {
   return svg + "</svg>\n";
 }
 
+Plot plot_of_bounds(const std::string& what, const std::vector<double>& shares) {
+  constexpr double kLeast = 1e-3;  // what is nearer to perfect is drawn there
+  Plot plot{.title = what + ": of what is allowed, this much is used",
+            .x_title = "in the order of the page",
+            .y_title = "share of the bound",
+            .is_log_y = true};
+  Series met{.name = "within its bound", .stroke = Stroke::marks, .colour = 2},
+      missed{.name = "beyond it", .stroke = Stroke::crosses, .colour = 1};
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    Series& series = shares[i] <= 1 ? met : missed;
+    series.x.push_back(double(i + 1)), series.y.push_back(std::max(shares[i], kLeast));
+  }
+  const Series bound{
+      .name = "bound", .x = {0, double(shares.size() + 1)}, .y = {1, 1}, .stroke = Stroke::dashed, .colour = 6};
+  plot.series = {bound, met, missed};
+  plot.width = 1060, plot.height = 300;
+  return plot;
+}
+
 std::string plot_script() {
   return R"(<script>
 for (const svg of document.querySelectorAll("svg[data-x]")) {
@@ -325,20 +344,20 @@ for (const svg of document.querySelectorAll("svg[data-x]")) {
   if (!lines.some(line => line.points.length)) continue;
   const make = (name, attributes, parent) => { const e = document.createElementNS(svg.namespaceURI, name); for (const k in attributes) e.setAttribute(k, attributes[k]); return parent.appendChild(e); };
   const cursor = make("g", { class: "cursor" }, svg);
-  const near = (points, px, py) => points.reduce((best, p) => { const d = Math.hypot(p[0] - px, p[1] - py); return d < best.d ? { d, p } : best; }, { d: Infinity });
+  const near = (points, px, py) => points.reduce((best, p) => { const d = Math.hypot(p[0] - px, p[1] - py); return best.d > d ? { d, p } : best; }, { d: Infinity });
   const between = (points, px) => {
     const i = points.findIndex(p => p[0] >= px - 0.05), b = points[i], a = points[Math.max(i - 1, 0)];
-    if (i < 0 || a[0] > px + 0.05) return null;
+    if (i == -1 || a[0] > px + 0.05) return null;
     return [px, b[0] > a[0] ? a[1] + (px - a[0]) / (b[0] - a[0]) * (b[1] - a[1]) : b[1]];
   };
   const show = event => {
     const place = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
     cursor.replaceChildren();
-    if (place.x < x.from - 4 || place.x > x.to + 4 || place.y > y.from + 4 || place.y < y.to - 8) return;
+    if (x.from - 4 > place.x || place.x > x.to + 4 || place.y > y.from + 4 || y.to - 8 > place.y) return;
     const drawn = lines.filter(line => line.points.length);
     const found = svg.dataset.along
       ? drawn.map(line => ({ line, p: between(line.points, Math.min(Math.max(place.x, x.from), x.to)) })).filter(one => one.p)
-      : [drawn.map(line => ({ line, ...near(line.points, place.x, place.y) })).reduce((a, b) => a.d < b.d ? a : b)];
+      : [drawn.map(line => ({ line, ...near(line.points, place.x, place.y) })).reduce((a, b) => b.d > a.d ? a : b)];
     if (!found.length) return;
     const at = svg.dataset.along ? Math.min(Math.max(place.x, x.from), x.to) : found[0].p[0];
     const rows = [[xTitle + "  " + value(x, at), "#222"], ...found.map(one => [(one.line.name || yTitle) + "  " + value(y, one.p[1]), one.line.ink])];
@@ -347,7 +366,7 @@ for (const svg of document.querySelectorAll("svg[data-x]")) {
     const box = make("rect", { rx: 3 }, cursor);
     const texts = rows.map(([text, ink]) => { const t = make("text", { fill: ink }, cursor); t.textContent = text; t.style.fill = ink; return t; });
     const width = 16 + Math.max(...texts.map(t => t.getComputedTextLength())), high = 1.35 * parseFloat(getComputedStyle(texts[0]).fontSize);
-    const left = at + 10 + width < x.to ? at + 10 : Math.max(2, at - 10 - width);
+    const left = x.to > at + 10 + width ? at + 10 : Math.max(2, at - 10 - width);
     texts.forEach((t, i) => { t.setAttribute("x", left + 8); t.setAttribute("y", y.to + 8 + high * (i + 0.8)); });
     for (const [k, v] of Object.entries({ x: left, y: y.to + 4, width, height: high * rows.length + 8 })) box.setAttribute(k, v);
   };

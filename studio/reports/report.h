@@ -45,8 +45,6 @@ class Report {
   /// Adds a line with a coloured verdict.
   void add_verdict(bool is_good, const std::string& text);
 
-  /// Adds a line like a verdict that judges nothing.
-  void add_remark(const std::string& text);
   void add_table(const Table& table);
 
   /// Adds plots side by side, as many as fit in a row.
