@@ -92,7 +92,8 @@ void conclude(reports::Report& report, const FidelityResults& results) {
                   missed == 0 ? "All " + std::to_string(met) + " goals are met."
                               : std::to_string(missed) + " of " + std::to_string(met + missed) + " goals are missed.",
                   points);
-  if (!shares.empty()) report.add_plots({reports::plot_of_bounds("Goals", shares)});
+  if (!shares.empty())
+    report.add_plots({reports::plot_of_bounds("Of what the goals allow, this much is used", shares)});
 }
 
 std::string results_json(const FidelityResults& results) {

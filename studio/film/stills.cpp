@@ -80,9 +80,7 @@ Result<Done> write_still(recordings::SessionReader& session, const std::string& 
   Result<Shot> shot = (*reels)[0].shoot(0);
   if (!shot) return shot.errors();
 
-  const Result<double> top_force = largest_force({&session});
-  if (!top_force) return top_force.errors();
-  return render::write_png(path, draw_shot((*reels)[0], *shot, *top_force));
+  return render::write_png(path, draw_shot((*reels)[0], *shot, largest_force({&session})));
 }
 
 }  // namespace ctpm::film

@@ -110,6 +110,8 @@ struct Renderer::Parts {
   void draw_elements(const State& state, const DrawOptions& options);
   VertexArray array_of(const ToolMesh& mesh) const;
   void draw_tools(const State& state, const DrawOptions& options);
+  void draw_tool(const Hand& hand, const State& state, const DrawOptions& options, double ghost);
+  void draw_ghost(const State& state, const DrawOptions& options);
   void draw_obstacles(const State& state, const DrawOptions& options);
   void cast_shadow(DrawnObstacle& obstacle, const Cutaway& cutaway);
   void draw_behind(const DrawOptions& options);
@@ -207,13 +209,14 @@ PixelRect Renderer::Parts::footprint(const State& state, const DrawOptions& opti
     const std::vector<float>& v = obstacle.mesh.mesh.vertex;
     for (std::size_t i = 0; i < v.size(); i += 7) print.add({v[i], v[i + 1], v[i + 2]});
   }
-  for (std::size_t number = 0; number < kMostHands; ++number) {
-    const Hand& hand = state.last_inputs.hand(number);
-    if (!held_tool(hand, options)) continue;
+  const auto add_tool = [&](const Hand& hand) {
+    if (!held_tool(hand, options)) return;
     const std::vector<float>& v = tool_meshes[std::size_t(hand.tool)].vertex;
     for (std::size_t i = 0; i < v.size(); i += 7)
       print.add(hand.position + rotate(hand.world_from_tool, {v[i], v[i + 1], v[i + 2]}));
-  }
+  };
+  for (std::size_t number = 0; number < kMostHands; ++number) add_tool(state.last_inputs.hand(number));
+  if (options.ghost) add_tool(*options.ghost);
   return print.pixels();
 }
 
@@ -278,20 +281,34 @@ void Renderer::Parts::draw_elements(const State& state, const DrawOptions& optio
 }
 
 void Renderer::Parts::draw_tools(const State& state, const DrawOptions& options) {
-  for (std::size_t number = 0; number < kMostHands; ++number) {
-    const Hand& hand = state.last_inputs.hand(number);
-    if (!held_tool(hand, options)) continue;
-    const VertexArray& array = tools[std::size_t(hand.tool)];
-    set_light(tool, state, options);
-    tool.set("world_from_tool", rigid(hand.world_from_tool, hand.position));
-    gl().BindVertexArray(array.id), gl().DrawElements(GL_TRIANGLES, array.index_count, GL_UNSIGNED_INT, nullptr);
-  }
+  for (std::size_t number = 0; number < kMostHands; ++number)
+    draw_tool(state.last_inputs.hand(number), state, options, 0);
+}
+
+void Renderer::Parts::draw_tool(const Hand& hand, const State& state, const DrawOptions& options, double ghost) {
+  if (!held_tool(hand, options)) return;
+  const VertexArray& array = tools[std::size_t(hand.tool)];
+  set_light(tool, state, options);
+  tool.set("world_from_tool", rigid(hand.world_from_tool, hand.position)), tool.set("ghost", ghost);
+  gl().BindVertexArray(array.id), gl().DrawElements(GL_TRIANGLES, array.index_count, GL_UNSIGNED_INT, nullptr);
+}
+
+/// Its nearest surface alone, over all that was drawn: depth first, then colour.
+void Renderer::Parts::draw_ghost(const State& state, const DrawOptions& options) {
+  if (!options.ghost) return;
+  const Gl& g = gl();
+  g.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  draw_tool(*options.ghost, state, options, 1);
+  g.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  g.Enable(GL_BLEND), g.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  draw_tool(*options.ghost, state, options, 1);
+  g.Disable(GL_BLEND);
 }
 
 void Renderer::Parts::draw_obstacles(const State& state, const DrawOptions& options) {
   if (obstacles.empty()) return;
   set_light(tool, state, options);
-  tool.set("world_from_tool", rigid({}, {}));
+  tool.set("world_from_tool", rigid({}, {})), tool.set("ghost", 0.0);
   for (DrawnObstacle& obstacle : obstacles) {
     if (obstacle.shadow) cast_shadow(obstacle, options.cutaway);
     gl().BindVertexArray(obstacle.array.id);
@@ -425,6 +442,7 @@ Frame Renderer::draw(const State& state, const DrawOptions& options) {
     for (const Program* program : p.organs.programs(options)) p.set_light(*program, state, options);
     p.organs.draw(gl, p.scene, options);
   }
+  p.draw_ghost(state, options);
   gl.Flush();  // the driver's threads draw while this one computes the background
   p.draw_behind(options);
   p.read_frame();

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -97,8 +98,9 @@ struct DrawOptions {
   ElementQuantity quantity = ElementQuantity::stretch;
   double full_scale = 0;  ///< value of the last colour [1, rad or N]; 0: default_full_scale()
   Cutaway cutaway;
-  bool show_tool = true;    ///< those of both hands, at the poses of State::last_inputs
-  bool show_ground = true;  ///< a soft shadow below the scene
+  bool show_tool = true;           ///< those of both hands, at the poses of State::last_inputs
+  bool show_ground = true;         ///< a soft shadow below the scene
+  std::optional<Hand> ghost = {};  ///< a tool of another session: it is seen through, and casts nothing
 };
 
 /// Full scale of the colours: 20 % stretch, 0.5 rad tilt, 0.05 N force.

@@ -248,6 +248,7 @@ void main() {
 const char* const kToolFragment = R"(
 in vec3 p, n;
 in float piece;
+uniform float ghost;  // 0: a tool; 1: another session's, which is shown through
 out vec4 colour;
 void main() {
   vec3 v = normalize(eye - p);
@@ -263,7 +264,10 @@ void main() {
   }
   else
     c = vec3(0.055, 0.075, 0.10) * diffuse_light(m, vec3(0.0), 1.0) + 1.3 * fresnel(dot(m, v)) * mirrored;
-  colour = vec4(to_srgb(c), 1.0);
+  // Blue, whatever it is made of; denser at its outline.
+  float edge = 1.0 - abs(dot(m, v)), cover = 1.0 - ghost * (0.72 - 0.4 * edge * edge);
+  c = mix(c, vec3(0.06, 0.30, 0.80) * (0.6 + 0.6 * dot(c, vec3(0.33))), ghost);
+  colour = vec4(cover * to_srgb(c), cover);
 }
 )";
 

@@ -313,12 +313,9 @@ std::string to_svg(const Plot& plot) {
   return svg + "</svg>\n";
 }
 
-Plot plot_of_bounds(const std::string& what, const std::vector<double>& shares) {
+Plot plot_of_bounds(const std::string& title, const std::vector<double>& shares) {
   constexpr double kLeast = 1e-3;  // what is nearer to perfect is drawn there
-  Plot plot{.title = what + ": of what is allowed, this much is used",
-            .x_title = "in the order of the page",
-            .y_title = "share of the bound",
-            .is_log_y = true};
+  Plot plot{.title = title, .x_title = "in the order of the page", .y_title = "share of the bound", .is_log_y = true};
   Series met{.name = "within its bound", .stroke = Stroke::marks, .colour = 2},
       missed{.name = "beyond it", .stroke = Stroke::crosses, .colour = 1};
   for (std::size_t i = 0; i < shares.size(); ++i) {
@@ -328,7 +325,6 @@ Plot plot_of_bounds(const std::string& what, const std::vector<double>& shares) 
   const Series bound{
       .name = "bound", .x = {0, double(shares.size() + 1)}, .y = {1, 1}, .stroke = Stroke::dashed, .colour = 6};
   plot.series = {bound, met, missed};
-  plot.width = 1060, plot.height = 300;
   return plot;
 }
 

@@ -61,7 +61,7 @@ struct Plot {
 std::string to_svg(const Plot& plot);
 
 /// Values as shares of their bounds, one mark each: what is above 1 is missed.
-Plot plot_of_bounds(const std::string& what, const std::vector<double>& shares);
+Plot plot_of_bounds(const std::string& title, const std::vector<double>& shares);
 
 /// A script for pages with plots: the values under a mouse or finger are shown beside it. It loads nothing.
 std::string plot_script();

@@ -28,7 +28,6 @@ h2 { font-size: 1.25rem; margin: 2.4rem 0 .5rem; padding-top: .8rem; border-top:
 .verdict.good { border-color: #009e73; } .verdict.bad { border-color: #c0392b; }
 .row { display: flex; flex-wrap: wrap; gap: 1.2rem; margin: .8rem 0; }
 figure { margin: 0; flex: 0 1 520px; max-width: 100%; }
-figure.wide { flex-basis: 100%; }
 figure svg, figure img { max-width: 100%; height: auto; display: block; }
 figure img { border: 1px solid #ddd; }
 .table { overflow-x: auto; margin: .8rem 0 1.2rem; }
@@ -56,8 +55,6 @@ figure:target { outline: 3px solid #c0392b; outline-offset: 4px; }
 }
 )";
 
-constexpr int kWide = 600;  // a plot that is wider takes the whole width [pixels]
-
 std::string base64(const std::vector<unsigned char>& bytes) {
   constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
@@ -74,12 +71,10 @@ std::string base64(const std::vector<unsigned char>& bytes) {
   return text;
 }
 
-std::string figure(const std::string& content, const std::string& caption, const std::string& id = "",
-                   bool is_wide = false) {
+std::string figure(const std::string& content, const std::string& caption, const std::string& id = "") {
   const std::string words =
       caption.empty() ? "" : "<figcaption class=\"caption\">" + escape_html(caption) + "</figcaption>";
-  return std::string("<figure") + (is_wide ? " class=\"wide\"" : "") +
-         (id.empty() ? "" : " id=\"" + escape_html(id) + "\"") + ">" + content + words + "</figure>\n";
+  return "<figure" + (id.empty() ? "" : " id=\"" + escape_html(id) + "\"") + ">" + content + words + "</figure>\n";
 }
 
 }  // namespace
@@ -114,7 +109,7 @@ void Report::add_table(const Table& table) { body_ += to_html(table); }
 void Report::add_plots(const std::vector<Plot>& plots) {
   body_ += "<div class=\"row\">\n";
   has_plots_ = has_plots_ || !plots.empty();
-  for (const Plot& plot : plots) body_ += figure(to_svg(plot), plot.caption, "", plot.width > kWide);
+  for (const Plot& plot : plots) body_ += figure(to_svg(plot), plot.caption);
   body_ += "</div>\n";
 }
 

@@ -109,7 +109,7 @@ void conclude(reports::Report& report, const std::vector<StabilityRow>& rows) {
   points.push_back("Must hold: every case under the integrator that auto takes.");
   points.push_back("Only shown: integrators that are named. Of their runs " + std::to_string(met) + " hold, " +
                    std::to_string(refused) + " are refused with the reason, " + std::to_string(missed) +
-                   " do not hold and are drawn below.");
+                   " do not hold" + (missed > 0 ? " and are drawn below." : "."));
   report.conclude(failed == 0 ? reports::ReportVerdict::met : reports::ReportVerdict::missed,
                   failed == 0
                       ? "auto holds all " + std::to_string(rows.size()) + " cases."
