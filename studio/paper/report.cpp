@@ -139,7 +139,8 @@ void conclude(reports::Report& report, const std::vector<Claim>& claims) {
   const std::string all = std::to_string(asked);
   report.conclude(missed == 0 ? reports::ReportVerdict::met : reports::ReportVerdict::missed,
                   missed == 0 ? "Everything that must hold does: " + all + " comparisons of the network."
-                              : std::to_string(missed) + " of " + all + " comparisons that must hold is missed.",
+                              : std::to_string(missed) + " of " + all + " comparisons that must hold " +
+                                    (missed == 1 ? "is" : "are") + " missed.",
                   points);
   std::vector<double> shares;
   for (const ClaimKind kind : {ClaimKind::network, ClaimKind::print})

@@ -13,7 +13,8 @@ OrganLook look_of(std::string_view organ_name) {
   const auto has = [&](std::string_view word) { return organ_name.find(word) != std::string_view::npos; };
   if (has("liver")) look.outer = {0.42, 0.15, 0.115}, look.inner = {0.43, 0.07, 0.06};
   if (has("kidney")) look.outer = {0.56, 0.235, 0.20}, look.inner = {0.56, 0.12, 0.11};
-  if (has("skin")) look.outer = {0.86, 0.67, 0.57}, look.inner = {0.76, 0.30, 0.26}, look.wetness = 0.25;
+  if (has("skin"))
+    look.outer = {0.86, 0.67, 0.57}, look.inner = {0.76, 0.30, 0.26}, look.wetness = 0.25, look.blood = 0.7;
   return look;
 }
 

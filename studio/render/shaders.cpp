@@ -174,6 +174,7 @@ in vec3 p;
 #ifdef INSIDE
 in vec3 n, at_rest;
 in vec3 shadow_stain_rind;
+uniform float blood;  // 0: none, as in a section; 1: a fresh wall
 #else
 in vec3 q;
 in Smooth slow;
@@ -187,20 +188,26 @@ void main() {
   if (dot(p - cutaway_point, cutaway_normal) > 0.0) discard;
 #endif
 #ifdef INSIDE
-  const float kRough = 0.09, kStained = 0.13;
+  const float kRough = 0.05, kStained = 0.05;
   vec3 q = bend(at_rest), m = normalize(n);
   if (dot(m, eye - p) < 0.0) m = -m;
   vec3 base = tissue_colour(at_rest, shadow_stain_rind.z) * (1.0 + 0.16 * shadow_stain_rind.y);
-  Smooth slow = smooth_light(p, m, base, shadow_stain_rind.x, 0.55);
+  // A fresh wall bleeds: a wet film of blood, here thicker, there thinner.
+  vec4 fine = relief(q);
+  float film = blood * clamp(0.60 - 0.06 * fine.a + 0.3 * shadow_stain_rind.y, 0.3, 0.9);
+  base = mix(base, vec3(0.40, 0.010, 0.013), film);
+  Smooth slow = smooth_light(p, m, base, shadow_stain_rind.x, 0.55 + 0.25 * film);
 #else
   const float kRough = 0.017, kStained = 0.035;
+vec4 fine = relief(q);
 #endif
-  vec4 fine = relief(q);
   float to_key = -kRough * dot(fine.xyz, slow.key_side), to_eye = -kRough * dot(fine.xyz, slow.eye_side);
   float facing = slow.turn.x + to_eye;
   vec3 c = slow.body * (1.0 + kStained * fine.a + slow.turn.z * to_key);
 #ifndef INSIDE
-  c *= mix(vec3(1.0), lip_tint, 0.9 * smoothstep(0.62, 0.92, lip));  // a closed cut stays visible
+  // Blood oozes out of a cut, further where the relief lets it; a closed cut stays visible.
+  c *= mix(vec3(1.0), vec3(0.72, 0.20, 0.18), 0.8 * smoothstep(0.42, 0.78, lip + 0.15 * fine.a));
+  c *= mix(vec3(1.0), lip_tint, 0.9 * smoothstep(0.62, 0.92, lip));
 #endif
   // The mirrored way turns by twice as much; the film is half as rough as the tissue below.
   float mirrored_key = slow.mirror.x + 1.1 * (to_eye * slow.turn.y + slow.turn.x * to_key);

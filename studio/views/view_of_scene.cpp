@@ -31,6 +31,8 @@ std::string_view organ_of(const scenes::MaterialSpec& material) {
   return preset ? preset->organ : std::string_view();
 }
 
+constexpr render::Colour kCortex{0.66, 0.30, 0.24};  // of a kidney, around the darker medulla
+
 /// A layer of the tissue below it, or of none that has a colour, is pale as a capsule is.
 render::Colour colour_of_layer(const scenes::OrganSpec& organ, std::size_t layer) {
   const scenes::MaterialSpec& below =
@@ -39,9 +41,20 @@ render::Colour colour_of_layer(const scenes::OrganSpec& organ, std::size_t layer
   if (tissue != organ_of(below))
     for (const auto& [name, colour] : kTissues)
       if (tissue == name) return colour;
+  if (organ.name.find("kidney") != std::string::npos) return kCortex;
   constexpr double kPale = 0.25;
   const auto paler = [](double inner) { return inner + kPale * (0.95 - inner); };
   return {paler(organ.inner_color.x), paler(organ.inner_color.y), paler(organ.inner_color.z)};
+}
+
+/// What an organ of one tissue shows where it is cut, as it does in a body: for pictures alone. The inside is the
+/// scene's.
+std::vector<render::LayerLook> anatomy_of(const std::string& organ) {
+  const auto is = [&](std::string_view word) { return organ.find(word) != std::string::npos; };
+  if (is("kidney")) return {{0.0006, {0.82, 0.58, 0.50}}, {0.0075, kCortex}};          // capsule, cortex; medulla
+  if (is("liver")) return {{0.0006, {0.70, 0.46, 0.40}}};                              // capsule; parenchyma
+  if (is("skin")) return {{0.0009, {0.72, 0.48, 0.38}}, {0.004, {0.90, 0.64, 0.58}}};  // epidermis, dermis; fat
+  return {};
 }
 
 std::string name_of(const scenes::MaterialSpec& material) {
@@ -60,6 +73,7 @@ render::SceneView view_of(const scenes::SceneSpec& scene, const Model& model) {
     look.inner = {organ.inner_color.x, organ.inner_color.y, organ.inner_color.z};
     for (std::size_t layer = 0; layer < organ.layers.size(); ++layer)
       look.layers.push_back({organ.layers[layer].to_depth, colour_of_layer(organ, layer)});
+    if (organ.layers.empty()) look.layers = anatomy_of(organ.name);
     view.looks.push_back(look);
   }
   return view;
