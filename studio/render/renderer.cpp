@@ -246,12 +246,15 @@ void Renderer::Parts::set_light(const Program& program, const State& state, cons
 void Renderer::Parts::draw_spheres(const State& state, const DrawOptions& options) {
   const Gl& g = gl();
   instances.clear();
+  const std::vector<std::uint8_t> at_cut = spheres_at_cuts(*scene.model, state);
   for (const OrganRange& range : scene.model->organs)
     for (std::int32_t i = range.first; i < range.first + range.count; ++i) {
       const auto n = std::size_t(i);
       const Vec3 p = state.position[n],
-                 c = linear(scene.sphere_colours.empty() ? layer_colour(scene.model->layer[n], range.layer_count)
-                                                         : scene.sphere_colours[n]);
+                 c = !at_cut.empty() && at_cut[n]
+                         ? linear(kCutColour)
+                         : linear(scene.sphere_colours.empty() ? layer_colour(scene.model->layer[n], range.layer_count)
+                                                               : scene.sphere_colours[n]);
       if (options.cutaway.leaves_out(p)) continue;
       for (const double x : {p.x, p.y, p.z, range.sphere_radius, c.x, c.y, c.z}) instances.push_back(float(x));
     }

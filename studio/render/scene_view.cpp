@@ -129,13 +129,25 @@ Colour layer_colour(int layer, int layer_count) {
   return on_ladder(kLadder, double(layer - 1) / last);
 }
 
+std::vector<std::uint8_t> spheres_at_cuts(const Model& model, const State& state) {
+  std::vector<std::uint8_t> at_cut;
+  for (std::size_t i = 0; i < state.axial_severed.size(); ++i) {
+    if (!state.axial_severed[i]) continue;
+    if (at_cut.empty()) at_cut.assign(model.sphere_count(), 0);
+    at_cut[std::size_t(model.axial.a[i])] = at_cut[std::size_t(model.axial.b[i])] = 1;
+  }
+  return at_cut;
+}
+
 Legend legend_of(const Model& model, const DrawOptions& options) {
   if (options.view == View::surface) return {};
   Legend legend;
   if (options.view != View::elements) {
     int layers = 1;
     for (const OrganRange& organ : model.organs) layers = std::max(layers, int(organ.layer_count));
-    legend = {"layer", "1", std::to_string(layers), {}, true};
+    const bool can_cut =
+        std::ranges::any_of(model.tools, [](const Tool& tool) { return tool.kind == ToolKind::scalpel; });
+    legend = {can_cut ? "layer, red: cut" : "layer", "1", std::to_string(layers), {}, true};
     for (int layer = 1; layer <= layers; ++layer) legend.colours.push_back(layer_colour(layer, layers));
     return legend;
   }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -120,6 +121,12 @@ struct Legend {
 
 /// The legend of the view that the options ask for.
 Legend legend_of(const Model& model, const DrawOptions& options);
+
+/// Of spheres from which a blade has severed an element, whatever their layer.
+inline constexpr Colour kCutColour{0.80, 0.03, 0.06};
+
+/// Which spheres those are (sphere_count); empty: nothing is severed.
+std::vector<std::uint8_t> spheres_at_cuts(const Model& model, const State& state);
 
 /// Colour of a layer, 1 = outermost, of an organ with `layer_count` layers.
 Colour layer_colour(int layer, int layer_count);
