@@ -251,6 +251,8 @@ Command add_export(CLI::App& program) {
                   "Four times slower around these moments: cut, damage, worst, with commas");
   app->add_option("--overlay", options.overlay, "What stands in the picture: none, small or full")
       ->capture_default_str();
+  app->add_option("--inset", options.inset,
+                  "Small pictures in the corner: near (the tool), section (the tissue opened at it)");
   app->add_flag("--strip", options.strip, "The whole session's force, limit and moments on a line below the picture");
   add_time_range(*app, options.range);
   app->add_option("--at-s", arguments->at_s,

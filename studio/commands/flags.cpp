@@ -24,6 +24,7 @@ constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"export.align", "--align"},
     {"export.allow_diverged", "--allow-diverged"},
     {"export.fps", "--fps"},
+    {"export.inset", "--inset"},
     {"export.overlay", "--overlay"},
     {"export.slow_at", "--slow-at"},
     {"export.speed", "--speed"},

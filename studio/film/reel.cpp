@@ -92,6 +92,13 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, con
   reel.look = *look;
   if (options.strip) reel.strip_height = strip_height(size.height);
   const int height = size.height - reel.strip_height;
+  const Result<std::vector<Inset::Kind>> insets = insets_of(options.inset);
+  if (!insets) return insets.errors();
+  for (const Inset::Kind kind : *insets) {
+    Result<Inset> inset = Inset::create(kind, {size.width, height}, view);
+    if (!inset) return inset.errors();
+    reel.insets.push_back(std::move(*inset));
+  }
   Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(size.width, height, std::move(view));
   if (!renderer) return renderer.errors();
   reel.renderer = std::move(*renderer);
@@ -132,6 +139,8 @@ render::Frame draw_shot(Reel& reel, Shot& shot, double top_force) {
   shot.overlay.legend = render::legend_of(reel.film->model(), draw);
   shot.overlay.least_top_force = std::max(shot.overlay.least_top_force, top_force);
   reel.overlay->draw(picture, shot.overlay);
+  for (std::size_t i = 0; i < reel.insets.size(); ++i)
+    reel.insets[i].add(picture, int(i), shot.state, draw, shot.moments);
   if (!reel.strip) return picture;
   reel.strip->now = shot.share, reel.strip->top_force = std::max(reel.strip->top_force, top_force);
   return render::with_strip(picture, reel.strip_height, *reel.strip);

@@ -11,6 +11,7 @@
 #include "studio/film/captions.h"
 #include "studio/film/export_video.h"
 #include "studio/film/ghost.h"
+#include "studio/film/inset.h"
 #include "studio/film/schedule.h"
 #include "studio/film/session_film.h"
 #include "studio/render/overlay.h"
@@ -33,6 +34,7 @@ struct Reel {
   bool shows_pace = false;  ///< where it is not that of the clock
   render::OverlayLevel level = render::OverlayLevel::full;
   std::optional<Ghost> ghost;
+  std::vector<Inset> insets;
   std::optional<render::Strip> strip;
   int strip_height = 0;  ///< [pixels]
 

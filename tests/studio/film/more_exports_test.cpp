@@ -101,6 +101,35 @@ TEST_F(MoreExports, TheStripShowsWhereInTheSessionThePictureIs) {
   EXPECT_NEAR(now(late), 4.1 / whole * 479, 2);
 }
 
+TEST_F(MoreExports, InsetsShowTheToolFromNearAndTheTissueOpenedAtIt) {
+  for (const char* inset : {"", "near", "section", "near,section"}) {
+    std::vector<std::string> options{"--at-s", "2.5", "--overlay", "none"};
+    if (*inset) options.insert(options.end(), {"--inset", inset});
+    const auto shown = export_to(std::string("a") + inset + ".png", {kExpert}, options);
+    ASSERT_EQ(shown.code, 0) << shown.err;
+  }
+  const render::Frame plain = picture("a.png"), near = picture("anear.png"), section = picture("asection.png"),
+                      both = picture("anear,section.png");
+  // The lower right corner, where the first one is, the place above it for the second, and the rest of the picture.
+  const auto differing = [](const render::Frame& a, const render::Frame& b, int left, int top, int right, int bottom) {
+    int count = 0;
+    for (int y = top; y < bottom; ++y)
+      for (int x = left; x < right; ++x) {
+        const std::size_t i = std::size_t(y * 480 + x) * 3;
+        count += a.rgb[i] != b.rgb[i] || a.rgb[i + 1] != b.rgb[i + 1] || a.rgb[i + 2] != b.rgb[i + 2];
+      }
+    return count;
+  };
+  EXPECT_GT(differing(plain, near, 350, 195, 476, 266), 5000);
+  EXPECT_GT(differing(near, section, 350, 195, 476, 266), 2000) << "they show different things";
+  EXPECT_EQ(differing(plain, near, 0, 0, 340, 270), 0);
+  EXPECT_EQ(differing(near, both, 350, 195, 476, 266), 0);
+  EXPECT_GT(differing(near, both, 350, 121, 476, 188), 5000);
+  const auto wrong = export_to("b.png", {kExpert}, {"--at-s", "1", "--inset", "far"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_TRUE(holds(wrong.err, "--inset: error: got 'far', must be near or section")) << wrong.err;
+}
+
 TEST_F(MoreExports, APictureOfAMomentIsThatOfTheFilm) {
   ASSERT_EQ(export_to("moment.png", {kExpert}, {"--at-s", "2"}).code, 0);
   ASSERT_EQ(export_to("film/", {kExpert}, {"--from-s", "1.9", "--to-s", "2", "--fps", "10"}).code, 0);
