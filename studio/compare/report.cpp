@@ -199,7 +199,9 @@ std::string comparison_json(const ComparedSessions& compared) {
     json.member("force_limit_n", *comparison.force_limit).member("force_limit_from", comparison.force_limit_from);
   if (comparison.damage_depth > 0) json.member("damage_depth_mm", 1e3 * comparison.damage_depth);
   json.member("alignment_band", kAlignmentBand);
-  json.key("measures");
+  json.key("advice").begin_list();
+  for (const std::string& sentence : advice_of(compared)) json.value(std::string_view(sentence));
+  json.end_list().key("measures");
   reports::write_rows(json, measures_table(comparison));
   json.key("moments");
   reports::write_rows(json, moments_table(comparison));

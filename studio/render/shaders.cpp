@@ -194,9 +194,9 @@ void main() {
   vec3 base = tissue_colour(at_rest, shadow_stain_rind.z) * (1.0 + 0.16 * shadow_stain_rind.y);
   // A fresh wall bleeds: a wet film of blood, here thicker, there thinner.
   vec4 fine = relief(q);
-  float film = blood * clamp(0.60 - 0.06 * fine.a + 0.3 * shadow_stain_rind.y, 0.3, 0.9);
-  base = mix(base, vec3(0.40, 0.010, 0.013), film);
-  Smooth slow = smooth_light(p, m, base, shadow_stain_rind.x, 0.55 + 0.25 * film);
+  float film = blood * clamp(0.34 - 0.06 * fine.a + 0.35 * shadow_stain_rind.y, 0.15, 0.8);
+  base = mix(base, vec3(0.34, 0.0, 0.006), film);
+  Smooth slow = smooth_light(p, m, base, shadow_stain_rind.x, 0.55 + 0.6 * film);
 #else
   const float kRough = 0.017, kStained = 0.035;
 vec4 fine = relief(q);

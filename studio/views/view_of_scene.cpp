@@ -31,8 +31,6 @@ std::string_view organ_of(const scenes::MaterialSpec& material) {
   return preset ? preset->organ : std::string_view();
 }
 
-constexpr render::Colour kCortex{0.66, 0.30, 0.24};  // of a kidney, around the darker medulla
-
 /// A layer of the tissue below it, or of none that has a colour, is pale as a capsule is.
 render::Colour colour_of_layer(const scenes::OrganSpec& organ, std::size_t layer) {
   const scenes::MaterialSpec& below =
@@ -41,7 +39,6 @@ render::Colour colour_of_layer(const scenes::OrganSpec& organ, std::size_t layer
   if (tissue != organ_of(below))
     for (const auto& [name, colour] : kTissues)
       if (tissue == name) return colour;
-  if (organ.name.find("kidney") != std::string::npos) return kCortex;
   constexpr double kPale = 0.25;
   const auto paler = [](double inner) { return inner + kPale * (0.95 - inner); };
   return {paler(organ.inner_color.x), paler(organ.inner_color.y), paler(organ.inner_color.z)};
@@ -51,9 +48,9 @@ render::Colour colour_of_layer(const scenes::OrganSpec& organ, std::size_t layer
 /// scene's.
 std::vector<render::LayerLook> anatomy_of(const std::string& organ) {
   const auto is = [&](std::string_view word) { return organ.find(word) != std::string::npos; };
-  if (is("kidney")) return {{0.0006, {0.82, 0.58, 0.50}}, {0.0075, kCortex}};          // capsule, cortex; medulla
-  if (is("liver")) return {{0.0006, {0.70, 0.46, 0.40}}};                              // capsule; parenchyma
-  if (is("skin")) return {{0.0009, {0.72, 0.48, 0.38}}, {0.004, {0.90, 0.64, 0.58}}};  // epidermis, dermis; fat
+  if (is("kidney")) return {{0.0006, {0.82, 0.58, 0.50}}, {0.0075, {0.74, 0.42, 0.36}}};  // capsule, cortex; medulla
+  if (is("liver")) return {{0.0006, {0.70, 0.46, 0.40}}};                                 // capsule; parenchyma
+  if (is("skin")) return {{0.0009, {0.72, 0.48, 0.38}}, {0.004, {0.90, 0.64, 0.58}}};     // epidermis, dermis; fat
   return {};
 }
 

@@ -119,6 +119,7 @@ TEST_F(Compare, WritesOnePageThatLoadsNothingAndItsNumbers) {
   for (auto at = page.find("<img"); at != std::string::npos; at = page.find("<img", at + 1)) ++pictures;
   EXPECT_EQ(pictures, 8u);
   const std::string results = slurp(folder_.path() / "report/results.json");
+  EXPECT_LT(results.find("Press more gently: 7.5"), results.find("\"measures\""));
   EXPECT_EQ(results, compare(press_, hard_press_, {"--json"}).out);
 }
 

@@ -132,7 +132,7 @@ TEST(CutPicture, AFreshWallBleedsAndASectionDoesNot) {
       }
     return sum / 3600;
   };
-  EXPECT_GT(redness(picture_of_wall(*scene, bleeding, options)), 1.2 * redness(picture_of_wall(*scene, dry, options)));
+  EXPECT_GT(redness(picture_of_wall(*scene, bleeding, options)), 1.06 * redness(picture_of_wall(*scene, dry, options)));
   options.cutaway = {{0.0, 0, 0}, {1, 0, 0}};
   std::vector<render::Frame> sections;
   for (const render::OrganLook& look : {bleeding, dry}) {
