@@ -2,6 +2,7 @@
 
 #include <sys/utsname.h>
 
+#include <algorithm>
 #include <fstream>
 #include <thread>
 
@@ -85,8 +86,15 @@ Result<Done> write_bench_report(const std::string& folder, const std::vector<Ben
                          "Measured on " + machine() +
                              ", one thread. Run times are wall clock: what else the machine did then is "
                              "in them.");
+  std::vector<std::string> sentences;
   for (const BenchStudy& study : studies)
-    for (const std::string& sentence : study.sentences) report.add_paragraph(sentence);
+    sentences.insert(sentences.end(), study.sentences.begin(), study.sentences.end());
+  if (!sentences.empty()) {
+    const std::string first = sentences.front();
+    sentences.front() = "Nothing here must hold: errors are against the finest run, times are those of this machine.";
+    std::rotate(sentences.begin(), sentences.begin() + 1, sentences.end());
+    report.conclude(reports::ReportVerdict::shown, first, sentences);
+  }
   for (const BenchStudy& study : studies) {
     if (const Result<Done> added = report.add(study.section); !added) return added;
     if (study.section.key == "time") report.add_table(front_of(study));

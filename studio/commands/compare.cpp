@@ -1,4 +1,7 @@
+#include <algorithm>
+#include <cmath>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -8,6 +11,8 @@
 #include "studio/commands/console.h"
 #include "studio/commands/physics_warning.h"
 #include "studio/compare/compare_files.h"
+#include "studio/film/stills.h"
+#include "studio/output/number_text.h"
 #include "studio/reports/report.h"
 
 namespace ctpm::commands {
@@ -20,13 +25,49 @@ struct CompareArguments {
   std::optional<bool> verify;
 };
 
+/// The worst moments of the trainee, and the expert at the same places, as both are seen from one camera.
+Result<std::vector<compare::MomentPictures>> draw_moments(compare::ComparedFiles& files) {
+  const compare::Comparison& comparison = files.comparison;
+  const std::size_t count = std::min(compare::kShownMoments, comparison.moments.size());
+  if (count == 0) return std::vector<compare::MomentPictures>();
+  // Drawn in the order of time, because a replay goes forward; so does the expert along the path.
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return comparison.moments[i].worst_s; });
+  const double tick = files.trainee_track.tick;
+  std::vector<film::StillsRequest> requests(2);
+  for (const std::size_t i : order) {
+    const double at_s = comparison.moments[i].worst_s;
+    requests[0].ticks.push_back(std::llround(at_s / tick));
+    requests[1].ticks.push_back(std::llround(compare::expert_time_at(comparison, at_s) / tick));
+  }
+  film::ExportOptions options;
+  options.size = {640, 360};
+  options.allow_diverged = !files.trainee_track.replays || !files.expert_track.replays;
+  const auto caption = [&](std::int64_t at, const std::string&) { return output::fixed(double(at) * tick, 2) + " s"; };
+  Result<std::vector<std::vector<render::Frame>>> stills =
+      film::draw_stills({&files.trainee, &files.expert}, requests, caption, options);
+  if (!stills) return stills.errors();
+  std::vector<compare::MomentPictures> pictures(count);
+  for (std::size_t i = 0; i < count; ++i) pictures[order[i]] = {std::move((*stills)[0][i]), std::move((*stills)[1][i])};
+  return pictures;
+}
+
+/// A session that cannot be drawn, because another version wrote its scene, has a page without pictures.
+Result<Done> write_page(const std::string& folder, compare::ComparedFiles& files, const std::string& to_see_worst) {
+  Result<std::vector<compare::MomentPictures>> pictures = draw_moments(files);
+  if (!pictures) print_remark("warning: the page has no pictures: " + pictures.errors()[0].message);
+  return compare::write_comparison(folder, files.sessions(),
+                                   pictures ? *pictures : std::vector<compare::MomentPictures>(), to_see_worst);
+}
+
 int run_compare(const CompareArguments& arguments) {
   if (arguments.has_force_limit && !(arguments.force_limit_n > 0))
     return print_errors({{"--force-limit", "must be above 0 N", ""}});
   Result<compare::OpenedFiles> opened = compare::open_files(arguments.expert, arguments.trainee);
   if (!opened) return print_errors(opened.errors());
   warn_of_physics(opened->expert), warn_of_physics(opened->trainee);
-  const Result<compare::ComparedFiles> files = compare::compare_files(
+  Result<compare::ComparedFiles> files = compare::compare_files(
       std::move(*opened), arguments.has_force_limit ? std::optional(arguments.force_limit_n) : std::nullopt,
       !arguments.verify   ? compare::Replaying::short_ones
       : *arguments.verify ? compare::Replaying::all
@@ -39,7 +80,7 @@ int run_compare(const CompareArguments& arguments) {
   const compare::ComparedSessions compared = files->sessions();
   const std::string to_see_worst = worst_moment_command(compared);
   if (!arguments.folder.empty())
-    if (const Result<Done> written = compare::write_comparison(arguments.folder, compared, to_see_worst); !written)
+    if (const Result<Done> written = write_page(arguments.folder, *files, to_see_worst); !written)
       return print_errors(written.errors());
   for (const std::string& remark : compare::remarks_of(compared)) print_remark("warning: " + remark);
   print("%s", (arguments.json ? compare::comparison_json(compared) : comparison_text(compared, to_see_worst)).c_str());
@@ -59,7 +100,7 @@ Command add_compare(CLI::App& program) {
   app->add_option("-o,--output", arguments->folder, "Folder for report.html and results.json; made if missing");
   const CLI::Option* limit =
       app->add_option("--force-limit", arguments->force_limit_n,
-                      "Force that should not be passed [N]; if not given the scene's, or the expert's peak");
+                      "Force that should not be passed [N]; if not given the scene's, or 1 % above the expert's peak");
   const auto choose = [arguments](bool verifies) { return [=] { arguments->verify = verifies; }; };
   app->add_flag_callback("--verify", choose(true),
                          "Replay the sessions and take forces and depths from the replay; by default up to 30 s");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "studio/compare/advice.h"
 #include "studio/output/number_text.h"
 
 namespace ctpm::commands {
@@ -41,6 +42,8 @@ std::string comparison_text(const compare::ComparedSessions& compared, const std
     row.erase(row.find_last_not_of(' ') + 1);
     text += row + "\n";
   }
+  text += "what to do better:\n";
+  for (const std::string& sentence : compare::advice_of(compared)) text += "  " + sentence + "\n";
   text += comparison.moments.empty() ? "no moment goes beyond a limit\n" : "worst moments of the trainee's session:\n";
   for (std::size_t i = 0; i < std::min(kMomentsOnConsole, comparison.moments.size()); ++i)
     text += describe(comparison.moments[i]) + "\n";

@@ -1,4 +1,6 @@
 #include <cstdio>
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,17 +13,22 @@
 #include "studio/commands/physics_warning.h"
 #include "studio/commands/stop_signal.h"
 #include "studio/compare/matched_moments.h"
+#include "studio/compare/session_track.h"
 #include "studio/exchange/export_shapes.h"
 #include "studio/film/contact_sheet.h"
 #include "studio/film/export_video.h"
+#include "studio/film/stills.h"
+#include "studio/output/files.h"
 #include "studio/output/number_text.h"
 #include "studio/render/picture_size.h"
+#include "studio/reports/table.h"
 
 namespace ctpm::commands {
 namespace {
 
 struct ExportArguments {
-  std::string file, beside, output, align, size = "1280x720";
+  std::vector<std::string> files;
+  std::string beside, ghost, output, align, size = "1280x720";
   std::optional<double> at_s;
   film::ExportOptions options;
 };
@@ -43,7 +50,7 @@ void print_outcome(const film::ExportOutcome& outcome) {
 int run_shapes(const ExportArguments& arguments) {
   if (!arguments.beside.empty())
     return print_errors({{"--beside", "is for videos", arguments.output + " holds the shapes of one session"}});
-  Result<recordings::SessionReader> reader = recordings::SessionReader::open(arguments.file);
+  Result<recordings::SessionReader> reader = recordings::SessionReader::open(arguments.files[0]);
   if (!reader) return print_errors(reader.errors());
   warn_of_physics(*reader);
   const StopSignal stop;
@@ -65,8 +72,15 @@ int run_shapes(const ExportArguments& arguments) {
 
 bool is_sheet(const std::string& path) { return path.ends_with(".png"); }
 
-/// Draws a session on one page.
-int run_sheet(recordings::SessionReader& session, ExportArguments& arguments) {
+/// Draws one moment of a session, or all of it on one page.
+int run_picture(recordings::SessionReader& session, ExportArguments& arguments) {
+  if (arguments.at_s) {
+    const Result<Done> written = film::write_still(session, arguments.output, *arguments.at_s, arguments.options);
+    if (!written) return print_errors(written.errors());
+    print("%s: at %g s, %dx%d\n", arguments.output.c_str(), *arguments.at_s, arguments.options.size.width,
+          arguments.options.size.height);
+    return exit_good;
+  }
   const Result<Done> written = [&] {
     ProgressLine progress("drawing");
     arguments.options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
@@ -78,42 +92,123 @@ int run_sheet(recordings::SessionReader& session, ExportArguments& arguments) {
   return exit_good;
 }
 
-int run_export(ExportArguments& arguments) {
-  if (exchange::is_shape_file(arguments.output)) return run_shapes(arguments);
-  if (arguments.at_s) return print_errors({{"--at-s", "is for .vtp, .vtu and .glb, which hold one moment", ""}});
-  if (is_sheet(arguments.output) && !arguments.beside.empty())
-    return print_errors({{"--beside", "is for videos", arguments.output + " shows the moments of one session"}});
+/// What options of one kind of output or number of sessions do with another.
+Errors check_arguments(const ExportArguments& arguments) {
+  Errors errors;
+  const bool is_many = arguments.files.size() > 1, is_picture = is_sheet(arguments.output);
+  if (arguments.at_s && !is_picture)
+    errors.push_back({"--at-s", "is for .png, .vtp, .vtu and .glb, which hold one moment", ""});
+  for (const auto& [flag, other] : {std::pair{"--beside", &arguments.beside}, {"--ghost", &arguments.ghost}}) {
+    if (is_picture && !other->empty())
+      errors.push_back({flag, "is for videos", arguments.output + " shows the moments of one session"});
+    if (is_many && !other->empty()) errors.push_back({flag, "is for one session, and several are given", ""});
+  }
+  if (!arguments.align.empty() && arguments.beside.empty() && arguments.ghost.empty())
+    errors.push_back({"--align", "needs --beside or --ghost", ""});
+  if (is_many && (is_picture || arguments.output.ends_with(".mp4") || arguments.output.ends_with(".avi")))
+    errors.push_back({"--output", "is one file, and several sessions are given", "give a folder: one video each"});
+  return errors;
+}
+
+/// One video of a session, alone, beside another or with its ghost. `arguments` belong to it alone.
+Result<film::ExportOutcome> export_one(ExportArguments arguments, std::vector<recordings::SessionReader>& readers) {
+  std::vector<recordings::SessionReader*> sessions;
+  for (recordings::SessionReader& reader : readers) sessions.push_back(&reader);
+  if (sessions.size() == 2) {
+    Result<compare::MatchedMoments> matched = compare::match_sessions(*sessions[0], *sessions[1], arguments.align);
+    if (!matched) return matched.errors();
+    arguments.options.matched = std::move(*matched);
+  }
+  if (!arguments.ghost.empty()) {
+    if (const Result<Done> same = compare::check_same_scene(*sessions[0], *sessions[1]); !same) return same.errors();
+    arguments.options.ghost = sessions.back();
+    sessions.pop_back();
+  }
+  ProgressLine progress("exporting");
+  arguments.options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
+  return film::export_video(sessions, arguments.output, arguments.options);
+}
+
+Result<std::vector<recordings::SessionReader>> open_all(const std::vector<std::string>& files) {
   Errors errors;
   std::vector<recordings::SessionReader> readers;
-  for (const std::string& file : {arguments.file, arguments.beside}) {
+  for (const std::string& file : files) {
     if (file.empty()) continue;
     Result<recordings::SessionReader> reader = recordings::SessionReader::open(file);
     if (reader)
-      readers.push_back(std::move(*reader));
+      warn_of_physics(*reader), readers.push_back(std::move(*reader));
     else
       errors.insert(errors.end(), reader.errors().begin(), reader.errors().end());
   }
+  if (!errors.empty()) return errors;
+  return readers;
+}
+
+/// A video of each session in a folder, and a table of them. A session that fails leaves the others alone.
+int run_many(const ExportArguments& arguments) {
+  const std::filesystem::path folder = arguments.output;
+  const std::string table_path = (folder / "results.csv").string();
+  Errors errors;
+  std::map<std::string, std::string> names;
+  for (const std::string& file : arguments.files) {
+    const auto [other, is_new] = names.emplace(std::filesystem::path(file).stem().string(), file);
+    if (!is_new) errors.push_back({file, "would have the same video as " + other->second, "rename one of them"});
+  }
+  std::error_code failed;
+  if (std::filesystem::exists(folder, failed))
+    if (const Result<Done> is_new = output::check_new(table_path, arguments.options.overwrite); !is_new)
+      errors.insert(errors.end(), is_new.errors().begin(), is_new.errors().end());
+  if (!errors.empty()) return print_errors(errors);
+  std::filesystem::create_directories(folder, failed);
+  if (failed) return print_errors({{arguments.output, "cannot be made: " + failed.message(), ""}});
+  reports::Table table;
+  table.columns = {{"session", "session"}, {"video", "video"},   {"frames", "frames"}, {"duration_s", "duration [s]"},
+                   {"bytes", "bytes"},     {"replay", "replay"}, {"error", "error"}};
+  int code = exit_good;
+  for (const std::string& file : arguments.files) {
+    if (arguments.options.should_stop()) break;
+    ExportArguments own = arguments;
+    own.output = (folder / (std::filesystem::path(file).stem().string() + ".mp4")).string();
+    Result<std::vector<recordings::SessionReader>> readers = open_all({file});
+    const Result<film::ExportOutcome> outcome =
+        readers ? export_one(own, *readers) : Result<film::ExportOutcome>(readers.errors());
+    std::vector<reports::Cell>& row = table.rows.emplace_back(table.columns.size());
+    row[0] = file;
+    if (!outcome) {
+      row[6] = to_string(outcome.errors()[0]);
+      code = print_errors(outcome.errors());
+      continue;
+    }
+    const video::VideoFacts& video = outcome->video;
+    const bool is_same = outcome->same_as_recorded();
+    row[1] = video.path, row[2] = video.frames, row[3] = double(video.frames) / video.fps, row[4] = video.bytes;
+    row[5] = std::string(is_same ? "same" : "differs");
+    if (!is_same && code == exit_good) code = exit_bad_verdict;
+    print_outcome(*outcome);
+  }
+  if (const Result<Done> written = output::write_text_file(table_path, reports::to_csv(table)); !written)
+    return print_errors(written.errors());
+  print_remark("written: " + table_path);
+  return code;
+}
+
+int run_export(ExportArguments& arguments) {
+  if (exchange::is_shape_file(arguments.output) && arguments.files.size() == 1) return run_shapes(arguments);
+  Errors errors = check_arguments(arguments);
   const Result<render::PictureSize> size = render::parse_picture_size(arguments.size);
   if (size)
     arguments.options.size = *size;
   else
     errors.insert(errors.end(), size.errors().begin(), size.errors().end());
-  if (!errors.empty()) return print_errors(errors);
-  std::vector<recordings::SessionReader*> sessions;
-  for (recordings::SessionReader& reader : readers) warn_of_physics(reader), sessions.push_back(&reader);
-  if (sessions.size() == 2) {
-    Result<compare::MatchedMoments> matched = compare::match_sessions(*sessions[0], *sessions[1], arguments.align);
-    if (!matched) return print_errors(matched.errors());
-    arguments.options.matched = std::move(*matched);
-  }
   const StopSignal stop;  // Ctrl-C ends the loop, and the unfinished file is removed on the way out
   arguments.options.should_stop = [&] { return stop.came(); };
-  if (is_sheet(arguments.output)) return run_sheet(*sessions[0], arguments);
-  const Result<film::ExportOutcome> outcome = [&] {
-    ProgressLine progress("exporting");
-    arguments.options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
-    return film::export_video(sessions, arguments.output, arguments.options);
-  }();
+  if (arguments.files.size() > 1) return errors.empty() ? run_many(arguments) : print_errors(errors);
+  Result<std::vector<recordings::SessionReader>> readers =
+      open_all({arguments.files[0], arguments.beside, arguments.ghost});
+  if (!readers) errors.insert(errors.begin(), readers.errors().begin(), readers.errors().end());
+  if (!errors.empty()) return print_errors(errors);
+  if (is_sheet(arguments.output)) return run_picture((*readers)[0], arguments);
+  const Result<film::ExportOutcome> outcome = export_one(arguments, *readers);
   if (!outcome) return print_errors(outcome.errors());
   if (!outcome->video.note.empty()) print_remark("warning: " + outcome->video.note);
   print_outcome(*outcome);
@@ -128,21 +223,27 @@ Command add_export(CLI::App& program) {
       program.add_subcommand("export", "Replays a session off-screen into a video, or into shapes for other programs.");
   app->footer(
       "Examples: ctpm export out/demo.ctpm -o out/demo.mp4 --from-s 4 --speed 0.5 --camera follow\n"
+      "          ctpm export trainee.ctpm --ghost expert.ctpm --strip -o ghost.mp4\n"
+      "          ctpm export out/*.ctpm -o out/films --size 640x360\n"
       "          ctpm export expert.ctpm --beside trainee.ctpm -o both.mp4 --view elements --by force\n"
       "          ctpm export out/demo.ctpm -o out/demo.pvd --fps 25\n"
       "          ctpm export out/demo.ctpm -o out/demo.glb --at-s 4");
   film::ExportOptions& options = arguments->options;
-  app->add_option("session", arguments->file, "Session file (.ctpm)")->required();
+  app->add_option("session", arguments->files,
+                  "Session file (.ctpm); of several a video each, in a folder, with a table")
+      ->required();
   app->add_option("-o,--output", arguments->output,
                   "Video: .mp4 (H.264), .avi (Motion JPEG), or a folder/ of PNG pictures; .png: a contact sheet; "
                   "shapes: .pvd (ParaView) or .usda "
                   "of a series, .vtp, .vtu or .glb of a moment")
       ->required();
   CLI::Option* beside = app->add_option("--beside", arguments->beside, "Another session, in step on the right half");
+  app->add_option("--ghost", arguments->ghost,
+                  "Another session, whose tool is shown through in the picture, and its way")
+      ->excludes(beside);
   app->add_option("--align", arguments->align,
                   "What brings both together: path of the tool, first contact, first cut, or clock; the half that is "
-                  "ahead is slowed down. If not given the path, else the contact")
-      ->needs(beside);
+                  "ahead is slowed down. If not given the path, else the contact");
   app->add_option("--size", arguments->size, "Width x height in pixels")->capture_default_str();
   app->add_option("--fps", options.fps, "Frames per second")->capture_default_str();
   app->add_option("--speed", options.speed, "Times real speed")->capture_default_str();
@@ -150,8 +251,12 @@ Command add_export(CLI::App& program) {
                   "Four times slower around these moments: cut, damage, worst, with commas");
   app->add_option("--overlay", options.overlay, "What stands in the picture: none, small or full")
       ->capture_default_str();
+  app->add_option("--inset", options.inset,
+                  "Small pictures in the corner: near (the tool), section (the tissue opened at it)");
+  app->add_flag("--strip", options.strip, "The whole session's force, limit and moments on a line below the picture");
   add_time_range(*app, options.range);
-  app->add_option("--at-s", arguments->at_s, "Moment of a .vtp, .vtu or .glb; the end if not given");
+  app->add_option("--at-s", arguments->at_s,
+                  "Moment of a picture (.png), or of a .vtp, .vtu or .glb, whose end is taken if it is not given");
   add_look(*app, options.look);
   app->add_flag("--overwrite", arguments->options.overwrite, "Replace an existing video");
   app->add_flag("--allow-diverged", options.allow_diverged,

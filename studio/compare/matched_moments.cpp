@@ -52,7 +52,36 @@ Result<MatchedMoments> on_the_way(recordings::SessionReader& a, recordings::Sess
   return along_path(align_paths(paths[0].place, paths[1].place), paths[0].time, paths[1].time, kLeastApart);
 }
 
+/// The moments nearest to these between whose neighbours no session goes slower than least_pace() of the other; the
+/// first and the last are kept where that allows them. In how far both have come (a + b), by how much one is ahead (a -
+/// b) may change only so fast: the middle between the lowest and the highest such way through the moments is one.
+MatchedMoments keeping_pace(const MatchedMoments& moments) {
+  const std::array<double, 2> whole{moments.back()[0] - moments[0][0], moments.back()[1] - moments[0][1]};
+  const double least = least_pace(whole[0], whole[1]), steepest = (1 - least) / (1 + least);
+  const auto come = [&](std::size_t i) { return moments[i][0] + moments[i][1]; };
+  const auto ahead = [&](std::size_t i) { return moments[i][0] - moments[i][1]; };
+  MatchedMoments kept = moments;
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    double lowest = INFINITY, highest = -INFINITY;
+    const auto reach = [&](std::size_t j) { return steepest * std::abs(come(i) - come(j)); };
+    for (std::size_t j = 0; j < moments.size(); ++j) {
+      lowest = std::min(lowest, ahead(j) + reach(j));
+      highest = std::max(highest, ahead(j) - reach(j));
+    }
+    double lead = 0.5 * (lowest + highest);
+    for (const std::size_t end : {moments.size() - 1, std::size_t{0}})
+      lead = std::max(std::min(lead, ahead(end) + reach(end)), ahead(end) - reach(end));
+    kept[i] = {0.5 * (come(i) + lead), 0.5 * (come(i) - lead)};
+  }
+  return kept;
+}
+
 }  // namespace
+
+double least_pace(double a_s, double b_s) {
+  const double longer = std::max(a_s, b_s);
+  return longer > 0 ? kLeastPace * std::min(a_s, b_s) / longer : 1;
+}
 
 TimedPath tool_path(const SessionTrack& track) {
   TimedPath path;
@@ -75,6 +104,9 @@ MatchedMoments along_path(const Alignment& alignment, const std::vector<double>&
     if (moments.empty() || std::max(now[0] - moments.back()[0], now[1] - moments.back()[1]) >= least_s)
       moments.push_back(now);
   }
+  if (alignment.pairs.empty()) return moments;
+  const std::array<double, 2> end{time_a[alignment.pairs.back().a], time_b[alignment.pairs.back().b]};
+  if (end != moments.back()) moments.push_back(end);
   // Where one tool waits for the other, it is better seen slowing down.
   for (int round = 0; round < kRounds; ++round) {
     const MatchedMoments rough = moments;
@@ -82,7 +114,7 @@ MatchedMoments along_path(const Alignment& alignment, const std::vector<double>&
       for (std::size_t s = 0; s < 2; ++s)
         moments[i][s] = 0.25 * rough[i - 1][s] + 0.5 * rough[i][s] + 0.25 * rough[i + 1][s];
   }
-  return moments;
+  return keeping_pace(moments);
 }
 
 Result<MatchedMoments> match_sessions(recordings::SessionReader& a, recordings::SessionReader& b,

@@ -22,7 +22,14 @@ TimedPath tool_path(const SessionTrack& track);
 /// Seconds of two sessions that belong together, neither ever decreasing.
 using MatchedMoments = std::vector<std::array<double, 2>>;
 
-/// Those along an alignment of two tools' ways, about `least_s` [s] apart in one of them, smoothed over some of them.
+/// The least pace of either of two sessions along a path, beside that of the other: none crawls or repeats itself while
+/// the other goes on, and what one is behind it makes up for later. It is a share of the pace at which the shorter one
+/// would take as long as the longer one [s].
+inline constexpr double kLeastPace = 0.4;
+double least_pace(double a_s, double b_s);
+
+/// Those along an alignment of two tools' ways, about `least_s` [s] apart in one of them, smoothed over some of them
+/// and no slower than least_pace() from one to the next.
 MatchedMoments along_path(const Alignment& alignment, const std::vector<double>& time_a,
                           const std::vector<double>& time_b, double least_s);
 

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "core/model/box.h"
 #include "studio/compare/matched_moments.h"
 #include "studio/compare/moments.h"
+#include "studio/compare/way.h"
 
 namespace ctpm::compare {
 namespace {
@@ -47,60 +49,83 @@ constexpr const char* kScene = "the scene's damage_depth_mm";
 constexpr const char* kNetwork = "the scene's network";
 
 using enum Direction;
+// Differences that rounding, or the 100 Hz of hands, can make.
+constexpr double kTimeRounding = 0.02, kLengthRounding = 0.1, kForceRounding = 0.01;  // [s], [mm], [N]
 constexpr Measure kCompletionTime{"completion_time_s",
                                   "completion time",
                                   "s",
                                   lower,
                                   "from taking the first tool to putting the last one away",
-                                  kCotin};
-constexpr Measure kPathLength{"path_length_mm", "path length", "mm", lower, "way of the tool's tip", kCotin};
+                                  kCotin,
+                                  kTimeRounding};
+constexpr Measure kPathLength{
+    "path_length_mm", "path length",      "mm", lower, "way of the tool's tip while it is held",
+    kCotin,           5 * kLengthRounding};
 constexpr Measure kEconomy{"economy_of_motion",
                            "economy of motion",
                            "1",
                            higher,
                            "straight lines from taking the tool over touching, deepest point or ends of the "
                            "cut, and leaving, to putting it away, divided by the way between",
-                           kGallagher};
+                           kGallagher,
+                           0.01};
 constexpr Measure kSparc{"spectral_arc_length",
                          "smoothness, spectral arc length",
                          "1",
                          higher,
-                         "of the tip's speed in each movement between two pauses; nearer to 0 is smoother",
-                         kBalasubramanian};
+                         "of the tip's speed in each movement between two rests; nearer to 0 is smoother",
+                         kBalasubramanian,
+                         0.02};
 constexpr Measure kJerk{"log_dimensionless_jerk",
                         "smoothness, log dimensionless jerk",
                         "1",
                         higher,
-                        "of the tip's path in each movement between two pauses; larger is smoother",
-                        kBalasubramanian};
+                        "of the tip's speed in each movement between two rests; larger is smoother",
+                        kBalasubramanian,
+                        0.1};
 constexpr Measure kIdle{
-    "idle_time_s", "idle time", "s", lower, "a tool in the hand, slower than 5 mm/s for at least 0.3 s", kDAngelo};
-constexpr Measure kPeakForce{"peak_force_n", "peak force", "N", lower, "largest force between tool and tissue",
-                             kHoreman};
-constexpr Measure kMeanForce{"mean_force_n", "mean force", "N", lower, "over the time in which there is a force",
-                             kHoreman};
+    "idle_time_s", "idle time",      "s", lower, "a tool in the hand, slower than 5 mm/s for at least 0.3 s",
+    kDAngelo,      2 * kTimeRounding};
+constexpr Measure kPeakForce{"peak_force_n", "peak force",  "N", lower, "largest force between tool and tissue",
+                             kHoreman,       kForceRounding};
+constexpr Measure kMeanForce{"mean_force_n",
+                             "mean force",
+                             "N",
+                             lower,
+                             "over the way of the tool against a force, so that resting in the tissue does not count",
+                             kHoreman,
+                             kForceRounding};
 constexpr Measure kOtherPeakForce{"other_hand_peak_force_n",
                                   "peak force of the other hand",
                                   "N",
                                   lower,
                                   "the same of the hand that does not cut",
-                                  kHoreman};
-constexpr Measure kTimeAbove{
-    "time_above_force_limit_s", "time above the force limit", "s", lower, "with a force above the limit", kTrejos};
+                                  kHoreman,
+                                  kForceRounding};
+constexpr Measure kTimeAbove{"time_above_force_limit_s",
+                             "time above the force limit",
+                             "s",
+                             lower,
+                             "with a force above the limit",
+                             kTrejos,
+                             kTimeRounding};
 constexpr Measure kImpulseAbove{"impulse_above_force_limit_n_s",
                                 "impulse above the force limit",
                                 "N s",
                                 lower,
                                 "integral over time of what is above the limit",
-                                kTrejos};
+                                kTrejos,
+                                kTimeRounding* kForceRounding};
 constexpr Measure kDepth{
-    "largest_depth_mm", "largest depth", "mm", nearer, "how far the tool pushes the tissue from rest", kNetwork};
+    "largest_depth_mm", "largest depth", "mm", nearer, "how far a tool without a blade pushes the tissue from rest",
+    kNetwork,           kLengthRounding};
 constexpr Measure kBeyondDamage{"time_beyond_damage_depth_s",
                                 "time beyond the damage depth",
                                 "s",
                                 lower,
                                 "with tissue pushed deeper than it can bear",
-                                kScene};
+                                kScene,
+                                kTimeRounding};
 constexpr Measure kSevered{
     "elements_severed", "elements severed", "1", nearer, "springs and constraints of the network", kNetwork};
 constexpr Measure kSeveredBoth{
@@ -137,9 +162,10 @@ constexpr Measure kCutHausdorff{"cut_path_hausdorff_mm",
                                 kHuttenlocher};
 constexpr Measure kCutDepth{
     "cut_depth_mm", "depth of the cut", "mm", nearer, "of the deepest place that the blade's edge cut, at rest",
-    kNetwork};
+    kNetwork,       kLengthRounding};
 constexpr Measure kCutLength{
-    "cut_length_mm", "length of the cut", "mm", nearer, "along the surface at rest, of all cuts", kNetwork};
+    "cut_length_mm", "length of the cut", "mm", nearer, "along the surface at rest, of all cuts",
+    kNetwork,        kLengthRounding};
 constexpr Measure kCutArea{
     "cut_area_mm2", "area of the cut", "mm^2", nearer, "that the blade's edge swept in the tissue at rest", kNetwork};
 constexpr Measure kAlignedMean{"aligned_deviation_mean_mm",
@@ -173,6 +199,11 @@ std::vector<std::size_t> stations_of(const SessionTrack& track, const Spell& str
   return at;
 }
 
+/// The tip's way in a stroke, tick by tick, without what a device adds to it.
+Path way_of_hand(const SessionTrack& track, const Spell& stroke) {
+  return low_passed({track.tip.data() + stroke.first, stroke.last - stroke.first}, 1 / track.tick);
+}
+
 /// Measures of the motion of one session.
 struct Motion {
   double path_length = 0, idle_time = 0;  // [m], [s]
@@ -189,22 +220,22 @@ struct WeightedMean {
 };
 
 /// Measures each stroke by itself, because the tool jumps between strokes. Smoothness is defined for movements between
-/// pauses and measured for each. Its means are weighted by time, the economy's by length.
+/// rests and measured for each. Its means are weighted by time, the economy's by length.
 Motion motion_of(const SessionTrack& track) {
   Motion motion;
   WeightedMean economy, arc_length, jerk;
   for (const Spell& stroke : track.strokes) {
-    const std::span<const Vec3> path(track.tip.data() + stroke.first, stroke.last - stroke.first);
+    const Path path = way_of_hand(track, stroke);
     const double length = path_length(path);
     motion.path_length += length;
     economy.add(economy_of_motion(path, stations_of(track, stroke)), length);
     const HandMotion hand = hand_motion(track, stroke);
     for (const Spell& idle : hand.idle) motion.idle_time += double(idle.last - idle.first) / hand.rate_hz;
-    for (const Spell& movement : hand.movements) {
-      const auto places = std::span(hand.path).subspan(movement.first, movement.last - movement.first);
-      const double duration = double(places.size()) / hand.rate_hz;
-      arc_length.add(spectral_arc_length(speed_along(places, hand.rate_hz), hand.rate_hz), duration);
-      jerk.add(log_dimensionless_jerk(places, hand.rate_hz), duration);
+    const std::vector<double> speed = speed_along(low_passed(hand.path, hand.rate_hz), hand.rate_hz);
+    for (const Spell& movement : movements_of(speed)) {
+      const auto part = std::span(speed).subspan(movement.first, movement.last - movement.first);
+      arc_length.add(spectral_arc_length(part, hand.rate_hz), double(part.size()));
+      jerk.add(log_dimensionless_jerk(part, hand.rate_hz), double(part.size()));
     }
   }
   motion.economy = economy.value(), motion.spectral_arc_length = arc_length.value();
@@ -214,18 +245,23 @@ Motion motion_of(const SessionTrack& track) {
 
 /// Measures of the forces of one session.
 struct Force {
-  double peak = 0, mean = 0, time_above = 0, impulse_above = 0;  // [N], [N], [s], [N s]
+  double peak = 0, time_above = 0, impulse_above = 0;  // [N], [s], [N s]
+  std::optional<double> mean;                          // [N]; none: the tool never moved against a force
 };
 
 Force force_of(const SessionTrack& track, double limit) {
   Force force;
-  double sum = 0, count = 0;
   for (const double f : track.force) {
     force.peak = std::max(force.peak, f);
-    if (f > 0) sum += f, ++count;
     if (f > limit) force.time_above += track.tick, force.impulse_above += (f - limit) * track.tick;
   }
-  force.mean = count > 0 ? sum / count : 0;
+  WeightedMean along_way;
+  for (const Spell& stroke : track.strokes) {
+    const Path path = way_of_hand(track, stroke);
+    for (std::size_t i = 1; i < path.size(); ++i)
+      if (const double f = track.force[stroke.first + i]; f > 0) along_way.add(f, norm(path[i] - path[i - 1]));
+  }
+  force.mean = along_way.value();
   return force;
 }
 
@@ -253,6 +289,7 @@ void add_force(Comparison& comparison, const SessionTrack& expert, const Session
   const Force a = force_of(expert, limit), b = force_of(trainee, limit);
   comparison.values.push_back({&kPeakForce, a.peak, b.peak});
   comparison.values.push_back({&kMeanForce, a.mean, b.mean});
+  if (!b.mean) comparison.values.back().note = "the tool never moved against a force";
   if (!expert.other_force.empty() && !trainee.other_force.empty())
     comparison.values.push_back({&kOtherPeakForce,
                                  *std::max_element(expert.other_force.begin(), expert.other_force.end()),
@@ -268,9 +305,13 @@ void add_force(Comparison& comparison, const SessionTrack& expert, const Session
 
 void add_depth(Comparison& comparison, const SessionTrack& expert, const SessionTrack& trainee) {
   const auto deepest = [](const SessionTrack& track) {
-    return kMillimetres * *std::max_element(track.depth.begin(), track.depth.end());
+    const double depth = *std::max_element(track.depth.begin(), track.depth.end());
+    return depth > 0 ? std::optional(kMillimetres * depth) : std::nullopt;
   };
   comparison.values.push_back({&kDepth, deepest(expert), deepest(trainee)});
+  if (!comparison.values.back().trainee)
+    comparison.values.back().note =
+        trainee.cuts.empty() ? "no tissue was pushed" : "a blade cuts: see depth of the cut";
   if (comparison.damage_depth > 0)
     comparison.values.push_back(
         {&kBeyondDamage, time_beyond(expert, comparison.damage_depth), time_beyond(trainee, comparison.damage_depth)});
@@ -311,7 +352,7 @@ void add_cut(Comparison& comparison, const SessionTrack& expert, const SessionTr
   add_size(kCutArea, &session::CutSize::area, kMillimetres * kMillimetres);
 }
 
-/// The force limit: the given one, else the scene's, else the expert's peak.
+/// The force limit: the given one, else the scene's, else the expert's peak and what rounding adds to it.
 void set_force_limit(Comparison& comparison, const SessionTrack& expert, const CompareOptions& options) {
   const double expert_peak = *std::max_element(expert.force.begin(), expert.force.end());
   if (options.force_limit)
@@ -319,7 +360,8 @@ void set_force_limit(Comparison& comparison, const SessionTrack& expert, const C
   else if (options.damage_force > 0)
     comparison.force_limit = options.damage_force, comparison.force_limit_from = "the scene";
   else if (expert_peak > 0)
-    comparison.force_limit = expert_peak, comparison.force_limit_from = "the expert's peak";
+    comparison.force_limit = (1 + kSameShare) * expert_peak,
+    comparison.force_limit_from = "1 % above the expert's peak";
 }
 
 }  // namespace
@@ -350,6 +392,9 @@ Comparison compare_sessions(const SessionTrack& expert, const SessionTrack& trai
   comparison.values.push_back({.measure = &kAlignedMean, .trainee = kMillimetres * comparison.alignment.mean});
   comparison.values.push_back({.measure = &kAlignedLargest, .trainee = kMillimetres * comparison.alignment.largest});
   comparison.moments = worst_moments(comparison, expert, trainee);
+  Box box(scene.model.rest_position[0]);
+  for (std::size_t i = 1; i < scene.model.sphere_count(); ++i) box.add(scene.model.rest_position[i]);
+  comparison.way = way_of(expert, trainee, 0.5 * (box.low + box.high), comparison.path_limit);
   return comparison;
 }
 

@@ -28,6 +28,7 @@ struct Measure {
   Direction direction;
   const char* meaning;  ///< one sentence
   const char* source;   ///< who published it
+  double rounding = 0;  ///< differences up to this are none, in `unit`
 };
 
 /// The values of a measure for both sessions, or one value for the pair.
@@ -48,24 +49,36 @@ struct Moment {
   double from_s = 0, to_s = 0, worst_s = 0;
   double value = 0, limit = 0;  ///< the worst value, and its limit, in `unit`
   const char* unit = "";
-  double severity = 0;  ///< value / limit - 1; stray cuts: worst_moments() says
+  /// (value / limit - 1) T / (T + 0.1 s) for what lasts for T, so that a tick beyond a limit is next to nothing; of a
+  /// stray cut its elements over those that the expert severed. Harm to the tissue counts 5 times.
+  double severity = 0;
 };
 
 struct CompareOptions {
-  /// [N], > 0; unset: the scene's limit, or else the expert's peak force.
+  /// [N], > 0; unset: the scene's limit, or else 1 % above the expert's peak force.
   std::optional<double> force_limit = {};
   double damage_force = 0;  ///< the scene's limit [N]; 0: it has none
 };
 
+/// How the way of the trainee's tool in the tissue runs beside the expert's.
+enum class Way { same, backwards, mirrored_x, mirrored_y };
+
+/// Values that differ by a smaller share are the same.
+inline constexpr double kSameShare = 0.01;
+
+/// Of the worst moments, those that a page shows in pictures and marks in its plots.
+inline constexpr std::size_t kShownMoments = 4;
+
 /// The whole result of comparing a trainee's session with an expert's.
 struct Comparison {
   std::optional<double> force_limit;  ///< [N]; unset: no limit, and the expert never touched the tissue
-  const char* force_limit_from = "";  ///< "given", "the scene", "the expert's peak"
+  const char* force_limit_from = "";  ///< "given", "the scene", "1 % above the expert's peak"
   double damage_depth = 0;            ///< smallest limit of the scene's organs [m]; 0: no limit
   double path_limit = 0;              ///< half of the smallest sphere spacing: beyond it other spheres are nearer [m]
   std::vector<MeasuredValue> values;  ///< in the order of a report
   std::vector<Moment> moments;        ///< worst first
   Alignment alignment;                ///< of the paths below; a: the expert's
+  Way way = Way::same;
   std::vector<Vec3> expert_path, trainee_path;    ///< of the tool, as aligned [m]
   std::vector<double> expert_time, trainee_time;  ///< of the points of these paths [s]
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace ctpm::compare {
 namespace {
@@ -12,6 +13,14 @@ constexpr double kIdleLeast = 0.3;   // [s]
 constexpr double kSameMoment = 0.3;  // shorter gaps do not end a moment [s]
 constexpr double kPauseAllowed = 1;  // [s]
 constexpr double kMillimetres = 1e3;
+constexpr double kHarm = 5;       // what harms the tissue weighs as much as this many times of what costs time or way
+constexpr double kNotable = 0.1;  // what lasts for this time has half the severity of what lasts [s]
+
+/// How bad it is to be `beyond` a limit, in limits, for `seconds`: a tick of it is next to nothing.
+double severity_of(MomentKind kind, double beyond, double seconds) {
+  const bool does_harm = kind == MomentKind::force || kind == MomentKind::depth || kind == MomentKind::stray_cut;
+  return (does_harm ? kHarm : 1) * beyond * seconds / (seconds + kNotable);
+}
 
 /// One moment for each run of values above `limit`; `time[i]` is when `value[i]` was.
 std::vector<Moment> moments_above(MomentKind kind, const std::vector<double>& value, const std::vector<double>& time,
@@ -22,8 +31,9 @@ std::vector<Moment> moments_above(MomentKind kind, const std::vector<double>& va
   for (const Spell& spell : spells_of(is_above, 1, gap)) {
     const auto worst =
         std::max_element(value.begin() + std::ptrdiff_t(spell.first), value.begin() + std::ptrdiff_t(spell.last));
-    moments.push_back({kind, time[spell.first], time[spell.last - 1], time[std::size_t(worst - value.begin())],
-                       scale * *worst, scale * limit, unit, *worst / limit - 1});
+    const double from = time[spell.first], to = time[spell.last - 1];
+    moments.push_back({kind, from, to, time[std::size_t(worst - value.begin())], scale * *worst, scale * limit, unit,
+                       severity_of(kind, *worst / limit - 1, to - from)});
   }
   return moments;
 }
@@ -65,8 +75,8 @@ std::vector<Moment> long_pauses(const SessionTrack& expert, const SessionTrack& 
   for (const Pause& pause : pauses_of(trainee)) {
     const double length = pause.to_s - pause.from_s;
     if (length > allowed)
-      moments.push_back(
-          {MomentKind::pause, pause.from_s, pause.to_s, pause.from_s, length, allowed, "s", length / allowed - 1});
+      moments.push_back({MomentKind::pause, pause.from_s, pause.to_s, pause.from_s, length, allowed, "s",
+                         severity_of(MomentKind::pause, length / allowed - 1, length)});
   }
   return moments;
 }
@@ -87,12 +97,10 @@ std::vector<Moment> stray_cuts(const SessionTrack& expert, const SessionTrack& t
     const double count = double(ticks.size());
     moments.push_back({MomentKind::stray_cut, trainee.seconds(std::size_t(*first)), trainee.seconds(std::size_t(*last)),
                        trainee.seconds(std::size_t(*first)), count, 0, "elements",
-                       count / std::max(1.0, double(by_expert))});
+                       kHarm * count / std::max(1.0, double(by_expert))});
   }
   return moments;
 }
-
-bool does_harm(MomentKind kind) { return kind != MomentKind::deviation && kind != MomentKind::pause; }
 
 }  // namespace
 
@@ -121,10 +129,6 @@ HandMotion hand_motion(const SessionTrack& track, const Spell& stroke) {
   for (const double speed : speed_along(hand.path, hand.rate_hz)) is_slow.push_back(speed < kIdleSpeed);
   const auto least = std::size_t(std::ceil(kIdleLeast * hand.rate_hz));
   hand.idle = spells_of(is_slow, least);
-  std::vector<bool> moves(hand.path.size(), true);
-  for (const Spell& idle : hand.idle)
-    std::fill(moves.begin() + std::ptrdiff_t(idle.first), moves.begin() + std::ptrdiff_t(idle.last), false);
-  hand.movements = spells_of(moves, least);
   return hand;
 }
 
@@ -140,11 +144,9 @@ std::vector<Moment> worst_moments(const Comparison& comparison, const SessionTra
     append(moments,
            moments_above(MomentKind::depth, trainee.depth, time, comparison.damage_depth, gap, kMillimetres, "mm"));
   append(moments, deviations(comparison));
-  append(moments, long_pauses(expert, trainee));
+  if (expert.is_timed && trainee.is_timed) append(moments, long_pauses(expert, trainee));
   append(moments, stray_cuts(expert, trainee));
-  std::stable_sort(moments.begin(), moments.end(), [](const Moment& a, const Moment& b) {
-    return std::pair(does_harm(a.kind), a.severity) > std::pair(does_harm(b.kind), b.severity);
-  });
+  std::ranges::stable_sort(moments, std::greater<>(), &Moment::severity);
   return moments;
 }
 

@@ -6,21 +6,17 @@
 
 namespace ctpm::compare {
 
-/// The motion of one stroke at 100 Hz; each point is the mean of its ticks. Hand motion stays below 20 Hz, and anything
-/// above is noise of the device.
+/// The motion of one stroke at 100 Hz; each point is the mean of its ticks.
 struct HandMotion {
   double rate_hz = 0;
-  std::vector<Vec3> path;        ///< [m]
-  std::vector<Spell> idle;       ///< slower than 5 mm/s for at least 0.3 s; indices into `path`
-  std::vector<Spell> movements;  ///< the rest, where it lasts at least 0.3 s
+  std::vector<Vec3> path;   ///< [m]
+  std::vector<Spell> idle;  ///< slower than 5 mm/s for at least 0.3 s; indices into `path`
 };
 HandMotion hand_motion(const SessionTrack& track, const Spell& stroke);
 
-/// The worst moments of the trainee's session. Harm to the tissue comes first: forces and depths beyond their limits,
-/// and stray cuts, which sever elements that the expert left whole. The severity of a stray cut is the number of these
-/// elements over the number that the expert severed. Then come deviations of more than half a sphere spacing from the
-/// expert's path, and pauses longer than 1 s and than the expert's longest. Each of the two groups is sorted by
-/// severity.
+/// The worst moments of the trainee's session, worst first: forces and depths beyond their limits, stray cuts, which
+/// sever elements that the expert left whole, deviations of more than half a sphere spacing from the expert's path, and
+/// pauses longer than 1 s and than the expert's longest, unless a session lacks real time.
 std::vector<Moment> worst_moments(const Comparison& comparison, const SessionTrack& expert,
                                   const SessionTrack& trainee);
 

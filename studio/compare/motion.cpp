@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <opencv2/core.hpp>
 
 #include "core/model/result.h"
@@ -75,19 +76,49 @@ std::optional<double> spectral_arc_length(std::span<const double> speed, double 
   return -length;
 }
 
-std::optional<double> log_dimensionless_jerk(std::span<const Vec3> path, double rate_hz) {
-  if (path.size() < 4) return std::nullopt;
-  const std::vector<double> speed = speed_along(path, rate_hz);
-  const double peak = *std::max_element(speed.begin(), speed.end());
-  double mean_square = 0;
-  for (std::size_t i = 3; i < path.size(); ++i) {
-    const Vec3 jerk = (rate_hz * rate_hz * rate_hz) * (path[i] - 3 * path[i - 1] + 3 * path[i - 2] - path[i - 3]);
-    mean_square += dot(jerk, jerk) / double(path.size() - 3);
+std::optional<double> log_dimensionless_jerk(std::span<const double> speed, double rate_hz) {
+  if (speed.size() < 4) return std::nullopt;
+  const double peak = *std::max_element(speed.begin(), speed.end()), duration = double(speed.size()) / rate_hz;
+  double integral = 0;
+  for (std::size_t i = 2; i < speed.size(); ++i) {
+    const double jerk = rate_hz * rate_hz * (speed[i] - 2 * speed[i - 1] + speed[i - 2]);
+    integral += jerk * jerk / rate_hz;
   }
-  if (!(peak > 0) || !(mean_square > 0)) return std::nullopt;
-  // The integral is the mean times the duration: third differences end 1.5 samples before the path.
-  const double duration = double(path.size() - 1) / rate_hz;
-  return -std::log(std::pow(duration, 4) / (peak * peak) * mean_square);
+  if (!(peak > 0) || !(integral > 0)) return std::nullopt;
+  return -std::log(std::pow(duration, 3) / (peak * peak) * integral);
+}
+
+std::vector<Vec3> low_passed(std::span<const Vec3> path, double rate_hz) {
+  if (path.empty()) return {};
+  // The bell's transform is a bell: exp(-(2 pi f width)^2 / 2), whose square is 1/2 at the cut-off.
+  const double width = std::sqrt(std::log(2.0)) / (2 * std::numbers::pi * kHandCutoff) * rate_hz;
+  const auto reach = std::ptrdiff_t(std::ceil(4 * width)), last = std::ptrdiff_t(path.size()) - 1;
+  const auto at = [&](std::ptrdiff_t i) {
+    const std::ptrdiff_t inside = std::clamp<std::ptrdiff_t>(i < 0 ? -i : i > last ? 2 * last - i : i, 0, last);
+    const Vec3& there = path[std::size_t(inside)];
+    return i < 0 ? 2 * path.front() - there : i > last ? 2 * path.back() - there : there;
+  };
+  std::vector<Vec3> result;
+  for (std::ptrdiff_t i = 0; i <= last; ++i) {
+    Vec3 sum;
+    double weights = 0;
+    for (std::ptrdiff_t d = -reach; d <= reach; ++d) {
+      const double weight = std::exp(-0.5 * double(d * d) / (width * width));
+      sum += weight * at(i + d), weights += weight;
+    }
+    result.push_back(sum / weights);
+  }
+  return result;
+}
+
+std::vector<Spell> movements_of(std::span<const double> speed) {
+  if (speed.empty()) return {};
+  const double still = kStillSpeed * *std::max_element(speed.begin(), speed.end());
+  std::vector<bool> moves;
+  for (const double v : speed) moves.push_back(v > still);
+  const auto moving = std::count(moves.begin(), moves.end(), true);
+  const auto rest = std::size_t(std::ceil(kRestTime * double(moving)));
+  return spells_of(moves, rest + 1, rest + 1);
 }
 
 std::vector<Spell> spells_of(const std::vector<bool>& holds, std::size_t least, std::size_t least_gap) {

@@ -32,10 +32,21 @@ inline constexpr double kSpectralAmplitude = 0.05;  ///< share of the largest am
 /// Melendez-Calderon, Roby-Brami and Burdet 2015. None for fewer than 4 values or a hand that does not move.
 std::optional<double> spectral_arc_length(std::span<const double> speed, double rate_hz);
 
-/// Smoothness as logarithm of the dimensionless jerk (LDLJ): -ln(T^3 / v^2 times the integral of |jerk|^2), with the
-/// duration T and the largest speed v; larger values are smoother. Balasubramanian et al. 2015. None for fewer than 4
-/// points or a hand that does not move.
-std::optional<double> log_dimensionless_jerk(std::span<const Vec3> path, double rate_hz);
+/// Smoothness as logarithm of the dimensionless jerk (LDLJ): -ln(T^3 / v^2 times the integral of the square of the
+/// speed's second derivative), with the duration T and the largest speed v; larger values are smoother.
+/// Balasubramanian et al. 2015. None for fewer than 4 values, a hand that does not move or one of even speed.
+std::optional<double> log_dimensionless_jerk(std::span<const double> speed, double rate_hz);
+
+/// Frequency of which half the power is left [Hz]: a hand moves and trembles below, devices and rounding are above.
+inline constexpr double kHandCutoff = 10;
+
+/// The path without what is faster than a hand: its mean under a Gaussian bell, and beyond its ends the path turned
+/// about them, so that it begins and ends where it did.
+std::vector<Vec3> low_passed(std::span<const Vec3> path, double rate_hz);
+
+/// What a movement is, as shares of what the hand itself does: so it is the same at any pace.
+inline constexpr double kStillSpeed = 0.05;  ///< of the largest speed: slower is standing still
+inline constexpr double kRestTime = 0.05;    ///< of the time in motion: standing still for longer parts two movements
 
 /// An interval of indices, [first, last).
 struct Spell {
@@ -46,5 +57,9 @@ struct Spell {
 /// The runs of at least `least` values in which `holds` is true. Runs with fewer than `least_gap` values between them
 /// are merged.
 std::vector<Spell> spells_of(const std::vector<bool>& holds, std::size_t least, std::size_t least_gap = 1);
+
+/// The movements between two rests, without standing still before and after; indices into `speed`. What lasts no longer
+/// than a rest is none.
+std::vector<Spell> movements_of(std::span<const double> speed);
 
 }  // namespace ctpm::compare

@@ -31,6 +31,18 @@ reports::Series level(const std::string& name, double from, double to, double va
       .name = name, .x = {from, to}, .y = {value, value}, .stroke = reports::Stroke::dashed, .colour = kNeutralColour};
 }
 
+/// The worst moments of one kind, as events of a plot over the trainee's time.
+std::vector<reports::PlotEvent> events_of(const Comparison& comparison, std::initializer_list<MomentKind> kinds) {
+  std::vector<reports::PlotEvent> events;
+  for (std::size_t i = 0; i < std::min(kShownMoments, comparison.moments.size()); ++i) {
+    const Moment& moment = comparison.moments[i];
+    if (std::ranges::find(kinds, moment.kind) != kinds.end())
+      events.push_back({moment.worst_s, std::to_string(i + 1), to_word(moment.kind), "#" + place_of_moment(i + 1)});
+  }
+  std::ranges::sort(events, {}, &reports::PlotEvent::x);
+  return events;
+}
+
 /// A plane through the scene: from above, or from the side with z up.
 struct Plane {
   const char* title;
@@ -88,12 +100,23 @@ reports::Plot deviation_plot(const Comparison& comparison) {
     series.x.push_back(comparison.trainee_time[pair.b]);
     series.y.push_back(kMillimetres * pair.distance);
   }
+  plot.events = events_of(comparison, {MomentKind::deviation});
   plot.series = {
       series, level("half a sphere spacing", 0, comparison.trainee_time.back(), kMillimetres * comparison.path_limit)};
   return plot;
 }
 
+/// The marks of three kinds of element stand side by side where elements lie behind each other.
+reports::Series marks(const std::string& name, const std::vector<Vec3>& points, const Plane& plane,
+                      reports::Stroke stroke, int colour, double shift) {
+  reports::Series series = in_plane(name, points, plane, stroke, colour);
+  series.shift = shift;
+  return series;
+}
+
 }  // namespace
+
+std::string place_of_moment(std::size_t number) { return "moment-" + std::to_string(number); }
 
 std::vector<reports::Plot> plots_over_time(const ComparedSessions& compared) {
   const auto& [expert, trainee, scene, comparison] = compared;
@@ -110,6 +133,7 @@ std::vector<reports::Plot> plots_over_time(const ComparedSessions& compared) {
     if (comparison.force_limit)
       plot.series.push_back(
           level(std::string("limit: ") + comparison.force_limit_from, 0, end, *comparison.force_limit));
+    plot.events = events_of(comparison, {MomentKind::force, MomentKind::pause, MomentKind::stray_cut});
     plots.push_back(plot);
   }
   if (has_any(expert.depth, trainee.depth)) {
@@ -118,6 +142,14 @@ std::vector<reports::Plot> plots_over_time(const ComparedSessions& compared) {
                    curve("trainee", trainee, trainee.depth, kMillimetres, kTraineeColour)};
     if (comparison.damage_depth > 0)
       plot.series.push_back(level("damage limit", 0, end, kMillimetres * comparison.damage_depth));
+    plot.events = events_of(comparison, {MomentKind::depth});
+    plots.push_back(plot);
+  }
+  if (has_any(expert.blade_depth, trainee.blade_depth)) {
+    reports::Plot plot{.title = "Depth of the blade in the tissue", .x_title = "time [s]", .y_title = "depth [mm]"};
+    plot.series = {curve("expert", expert, expert.blade_depth, kMillimetres, kExpertColour),
+                   curve("trainee", trainee, trainee.blade_depth, kMillimetres, kTraineeColour)};
+    plot.events = events_of(comparison, {MomentKind::stray_cut});
     plots.push_back(plot);
   }
   return plots;
@@ -167,11 +199,15 @@ std::vector<reports::Plot> plots_of_cut(const ComparedSessions& compared) {
       plot.series.push_back(in_plane("", path, plane, reports::Stroke::line, kExpertColour));
     for (const Path& path : cut_paths(trainee))
       plot.series.push_back(in_plane("", path, plane, reports::Stroke::line, kTraineeColour));
-    plot.series.push_back(in_plane("severed by both", both, plane, reports::Stroke::marks, 2));
-    plot.series.push_back(in_plane("by the expert only", expert_only, plane, reports::Stroke::crosses, kExpertColour));
+    constexpr double kBeside = 10;  // [pixels]
+    plot.series.push_back(marks("severed by both", both, plane, reports::Stroke::marks, 2, 0));
     plot.series.push_back(
-        in_plane("by the trainee only", trainee_only, plane, reports::Stroke::crosses, kTraineeColour));
-    plot.caption = "Marks: severed elements at rest. Lines: the blade's tip while it severs.";
+        marks("by the expert only", expert_only, plane, reports::Stroke::crosses, kExpertColour, -kBeside));
+    plot.series.push_back(
+        marks("by the trainee only", trainee_only, plane, reports::Stroke::crosses, kTraineeColour, kBeside));
+    plot.caption =
+        "Marks: severed elements at rest, those of one alone a little to the left (expert) or right (trainee). "
+        "Lines: the blade's tip while it severs.";
     set_equal_scales(plot);
     plots.push_back(plot);
   }

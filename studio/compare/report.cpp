@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "studio/compare/advice.h"
 #include "studio/compare/plots.h"
 #include "studio/output/number_text.h"
 #include "studio/reports/report.h"
@@ -11,15 +12,19 @@
 namespace ctpm::compare {
 namespace {
 
-constexpr double kSame = 0.01;  // values with a smaller relative difference count as the same
 reports::Cell cell_of(std::optional<double> value) { return value ? reports::Cell(*value) : reports::Cell(); }
 
 reports::Table measures_table(const Comparison& comparison) {
   reports::Table table;
-  table.columns = {
-      {"key", "key"},      {"measure", "measure"},     {"expert", "expert"},         {"trainee", "trainee"},
-      {"unit", "unit"},    {"better_is", "better is"}, {"trainee_is", "trainee is"}, {"meaning", "what it is"},
-      {"source", "source"}};
+  table.columns = {{"key", "key"},
+                   {"measure", "measure"},
+                   {"expert", "expert"},
+                   {"trainee", "trainee"},
+                   {"unit", "unit"},
+                   {"better_is", "better is"},
+                   {"trainee_is", "trainee is", 4, true},
+                   {"meaning", "what it is"},
+                   {"source", "source"}};
   for (const MeasuredValue& value : comparison.values) {
     const Measure& m = *value.measure;
     table.rows.push_back({std::string(m.key), std::string(m.title), cell_of(value.expert), cell_of(value.trainee),
@@ -32,21 +37,24 @@ reports::Table measures_table(const Comparison& comparison) {
 
 reports::Table moments_table(const Comparison& comparison) {
   reports::Table table;
-  table.columns = {
-      {"worst_s", "worst at [s]"}, {"from_s", "from [s]"}, {"to_s", "to [s]"}, {"what", "what"},
-      {"value", "value"},          {"limit", "limit"},     {"unit", "unit"},   {"severity", "severity", 3}};
+  table.columns = {{"worst_s", "worst at [s]", 4, true},
+                   {"from_s", "from [s]"},
+                   {"to_s", "to [s]"},
+                   {"what", "what"},
+                   {"value", "value"},
+                   {"limit", "limit"},
+                   {"unit", "unit"},
+                   {"severity", "severity", 3}};
   for (const Moment& moment : comparison.moments)
     table.rows.push_back({moment.worst_s, moment.from_s, moment.to_s, std::string(to_word(moment.kind)), moment.value,
                           moment.kind == MomentKind::stray_cut ? reports::Cell() : reports::Cell(moment.limit),
                           std::string(moment.unit), moment.severity});
   table.caption =
-      "Times are those of the trainee's session. What harms the tissue comes first. Severity is how far the "
-      "worst value is "
-      "beyond its limit, in limits: of force as in the plot, of depth the scene's, of the path half a sphere "
-      "spacing, of a "
-      "pause the expert's longest and at least 1 s; for cuts it is the number of elements that the expert "
-      "left whole "
-      "over those that the expert severed.";
+      "Times are those of the trainee's session. Severity is how far the worst value is beyond its limit, in limits, "
+      "and less for what lasts less than some tenths of a second: of force as in the plot, of depth the scene's, of "
+      "the path half a sphere spacing, of a pause the expert's longest and at least 1 s; for cuts it is the number of "
+      "elements that the expert left whole over those that the expert severed. What harms the tissue (force, depth, "
+      "cuts) counts five times. The weights are this program's.";
   return table;
 }
 
@@ -73,12 +81,85 @@ void write_session(output::JsonWriter& json, const char* key, const SessionTrack
       .end_object();
 }
 
+/// What to do better, what that rests on, and what must be known to believe it.
+void add_conclusion(reports::Report& report, const ComparedSessions& compared) {
+  constexpr std::size_t kPoints = 4;
+  std::vector<std::string> advice = advice_of(compared);
+  const std::string first = advice.front();
+  advice.erase(advice.begin());
+  if (advice.size() > kPoints) advice.resize(kPoints);
+  const bool is_good = compared.comparison.moments.empty() && compared.comparison.way == Way::same;
+  report.conclude(is_good ? reports::ReportVerdict::met : reports::ReportVerdict::missed, first, advice);
+  for (const std::string& remark : remarks_of(compared)) report.add_verdict(false, remark);
+  report.add_paragraph(
+      "This page shows how two hands differ. No measure has a pass mark, and none was validated in this scene.");
+}
+
+/// A moment in one line.
+std::string caption_of(const Moment& moment, std::size_t number) {
+  const bool has_limit = moment.kind != MomentKind::stray_cut;
+  return std::to_string(number) + ". " + to_word(moment.kind) + " at " + output::fixed(moment.worst_s, 2) +
+         " s: " + output::short_number(moment.value) + " " + moment.unit +
+         (has_limit ? ", limit " + output::short_number(moment.limit) : "");
+}
+
+Result<Done> add_moments(reports::Report& report, const Comparison& comparison,
+                         const std::vector<MomentPictures>& pictures, const std::string& to_see_worst) {
+  if (comparison.moments.empty()) return Done{};
+  report.add_heading("Worst moments first");
+  std::vector<reports::Picture> shown;
+  for (std::size_t i = 0; i < std::min(pictures.size(), comparison.moments.size()); ++i) {
+    const Moment& moment = comparison.moments[i];
+    shown.push_back({pictures[i].trainee, caption_of(moment, i + 1), place_of_moment(i + 1)});
+    shown.push_back({pictures[i].expert, "The expert at the same place of the path, at " +
+                                             output::fixed(expert_time_at(comparison, moment.worst_s), 2) + " s"});
+  }
+  if (!shown.empty())
+    if (const Result<Done> added = report.add_pictures(shown); !added) return added.errors();
+  report.add_table(with_columns(moments_table(comparison),
+                                {"what", "worst_s", "value", "unit", "limit", "severity", "from_s", "to_s"}));
+  report.add_paragraph("To see the worst: " + to_see_worst);
+  return Done{};
+}
+
+void add_plots(reports::Report& report, const ComparedSessions& compared) {
+  report.add_heading("Force and depth");
+  if (const std::vector<reports::Plot> plots = plots_over_time(compared); !plots.empty())
+    report.add_plots(plots);
+  else
+    report.add_paragraph("No tool met a force.");
+  if (const std::vector<reports::Plot> cut = plots_of_cut(compared); !cut.empty()) {
+    report.add_heading("The cut");
+    report.add_plots(cut);
+  }
+  report.add_heading("The path of the tool");
+  report.add_plots(plots_of_paths(compared));
+  report.add_paragraph(
+      "The paths are aligned by dynamic time warping: each point of one belongs to a point of the other, in "
+      "order, at most " +
+      output::short_number(100 * kAlignmentBand) +
+      " % of the longer session out of step, so that a slow hand is not taken for a wrong one.");
+  if (const std::vector<reports::Plot> probes = plots_of_probes(compared); !probes.empty()) {
+    report.add_heading("The tissue at the probes");
+    report.add_plots(probes);
+  }
+}
+
+void add_measures(reports::Report& report, const Comparison& comparison) {
+  report.add_heading("Measures");
+  report.add_table(
+      with_columns(measures_table(comparison), {"measure", "trainee_is", "trainee", "expert", "unit", "better_is"}));
+  report.add_heading("What the measures are");
+  report.add_table(with_columns(measures_table(comparison), {"measure", "meaning", "source"}));
+}
+
 }  // namespace
 
 std::string standing_of(const MeasuredValue& value) {
   if (!value.expert || !value.trainee) return "";
   const double more = *value.trainee - *value.expert;
-  if (std::abs(more) <= kSame * std::max(std::abs(*value.expert), std::abs(*value.trainee))) return "same";
+  const double share = kSameShare * std::max(std::abs(*value.expert), std::abs(*value.trainee));
+  if (std::abs(more) <= std::max(share, value.measure->rounding)) return "same";
   if (value.measure->direction == Direction::nearer) return "differs";
   return (more < 0) == (value.measure->direction == Direction::lower) ? "better" : "worse";
 }
@@ -118,7 +199,9 @@ std::string comparison_json(const ComparedSessions& compared) {
     json.member("force_limit_n", *comparison.force_limit).member("force_limit_from", comparison.force_limit_from);
   if (comparison.damage_depth > 0) json.member("damage_depth_mm", 1e3 * comparison.damage_depth);
   json.member("alignment_band", kAlignmentBand);
-  json.key("measures");
+  json.key("advice").begin_list();
+  for (const std::string& sentence : advice_of(compared)) json.value(std::string_view(sentence));
+  json.end_list().key("measures");
   reports::write_rows(json, measures_table(comparison));
   json.key("moments");
   reports::write_rows(json, moments_table(comparison));
@@ -129,45 +212,24 @@ std::string comparison_json(const ComparedSessions& compared) {
   return json.end_list().end_object().text();
 }
 
+double expert_time_at(const Comparison& comparison, double trainee_s) {
+  double nearest = INFINITY, time = 0;
+  for (const AlignedPair& pair : comparison.alignment.pairs)
+    if (const double off = std::abs(comparison.trainee_time[pair.b] - trainee_s); off < nearest)
+      nearest = off, time = comparison.expert_time[pair.a];
+  return time;
+}
+
 Result<Done> write_comparison(const std::string& folder, const ComparedSessions& compared,
-                              const std::string& to_see_worst) {
-  const Comparison& comparison = compared.comparison;
+                              const std::vector<MomentPictures>& pictures, const std::string& to_see_worst) {
   const std::string scene = compared.expert.scene_name.empty() ? "" : "Scene " + compared.expert.scene_name + ". ";
   reports::Report report("A trainee's session beside an expert's",
                          scene + "Expert: " + compared.expert.path + ". Trainee: " + compared.trainee.path + ".");
-  for (const std::string& remark : remarks_of(compared)) report.add_verdict(false, remark);
-  report.add_heading("Worst moments first");
-  if (comparison.moments.empty()) {
-    report.add_verdict(true, "No moment goes beyond a limit.");
-  } else {
-    report.add_table(moments_table(comparison));
-    report.add_paragraph("To see the worst: " + to_see_worst);
-  }
-  report.add_heading("Measures");
-  report.add_table(
-      with_columns(measures_table(comparison), {"measure", "expert", "trainee", "unit", "better_is", "trainee_is"}));
-  report.add_heading("Force and depth");
-  if (const std::vector<reports::Plot> plots = plots_over_time(compared); !plots.empty())
-    report.add_plots(plots);
-  else
-    report.add_paragraph("No tool met a force.");
-  if (const std::vector<reports::Plot> probes = plots_of_probes(compared); !probes.empty()) {
-    report.add_heading("The tissue at the probes");
-    report.add_plots(probes);
-  }
-  if (const std::vector<reports::Plot> cut = plots_of_cut(compared); !cut.empty()) {
-    report.add_heading("The cut");
-    report.add_plots(cut);
-  }
-  report.add_heading("The path of the tool");
-  report.add_paragraph(
-      "The paths are aligned by dynamic time warping: each point of one belongs to a point of the other, in "
-      "order, at most " +
-      output::short_number(100 * kAlignmentBand) +
-      " % of the longer session out of step, so that a slow hand is not taken for a wrong one.");
-  report.add_plots(plots_of_paths(compared));
-  report.add_heading("What the measures are");
-  report.add_table(with_columns(measures_table(comparison), {"measure", "meaning", "source"}));
+  add_conclusion(report, compared);
+  if (const Result<Done> added = add_moments(report, compared.comparison, pictures, to_see_worst); !added)
+    return added.errors();
+  add_plots(report, compared);
+  add_measures(report, compared.comparison);
   return reports::write_report(folder, {{"report.html", report.html()}, {"results.json", comparison_json(compared)}});
 }
 

@@ -33,6 +33,35 @@ bool is_scripted(const recordings::SessionStart& start) {
   return source != start.metadata.end() && (source->second == "script" || source->second == "motion");
 }
 
+/// How deep a held blade is in the tissue, as often as hands are measured.
+class BladeDepth {
+ public:
+  BladeDepth(const Model& model, SessionTrack& track)
+      : model_(model),
+        track_(track),
+        measures_(model),
+        every_(std::max(1ll, std::llround(1 / (kDepthRate * track.tick)))) {}
+
+  void look(std::size_t tick, const State& state) {
+    const std::int32_t tool = track_.tool[tick];
+    if (tool < 0 || model_.tools[std::size_t(tool)].kind != ToolKind::scalpel) return;
+    if (track_.blade_depth.empty()) track_.blade_depth.assign(track_.tick_count(), 0.0);
+    if (tick % std::size_t(every_) == 0) last_ = measures_.edge_depth(state);
+    track_.blade_depth[tick] = last_;
+  }
+
+  /// Stores the size of all cuts of the last State of a replay.
+  void finish(const State& state) { measures_.measure(state), track_.cut = measures_.size(); }
+
+ private:
+  static constexpr double kDepthRate = 100;  // [Hz]
+  const Model& model_;
+  SessionTrack& track_;
+  session::CutMeasures measures_;
+  long long every_;
+  double last_ = 0;
+};
+
 /// Replays ticks [from, to) and stores the tick in which each element was severed. `look(tick, report)` sees each tick.
 template <class Look>
 Result<Done> replay_ticks(recordings::ReplayCursor& cursor, std::int64_t from, std::int64_t to, SessionTrack& track,
@@ -53,13 +82,6 @@ Result<Done> replay_ticks(recordings::ReplayCursor& cursor, std::int64_t from, s
   return Done{};
 }
 
-/// Stores the size of all cuts of the State where the replay stands.
-void measure_cut(const Model& model, const recordings::ReplayCursor& cursor, SessionTrack& track) {
-  session::CutMeasures measures(model);
-  measures.measure(cursor.state());
-  track.cut = measures.size();
-}
-
 /// Replays every tick. If all are as recorded, takes what the tool did to the tissue from the replay: the recorded
 /// numbers have no hash of their own.
 Result<Done> replay_all(recordings::SessionReader& session, SessionTrack& track) {
@@ -71,6 +93,7 @@ Result<Done> replay_all(recordings::SessionReader& session, SessionTrack& track)
   const std::vector<session::Probe> probes = session::probes_of(session);
   for (const session::Probe& probe : probes) track.probes.push_back({probe.name, {}});
   const Vec3Array before = session.start().initial_state.position;
+  BladeDepth blade(session.start().model, track);
   const Result<Done> replayed =
       replay_ticks(*cursor, 0, session.tick_count(), track, [&](std::size_t tick, const stepping::StepReport& report) {
         for (std::size_t i = 0; i < probes.size(); ++i)
@@ -78,9 +101,10 @@ Result<Done> replay_all(recordings::SessionReader& session, SessionTrack& track)
         force[tick] = norm(report.of_hand(track.hand).tool_force), depth[tick] = report.of_hand(track.hand).depth;
         if (!other_force.empty()) other_force[tick] = norm(report.of_hand(1 - track.hand).tool_force);
         severed[tick] = report.severed;
+        blade.look(tick, cursor->state());
       });
   if (!replayed) return replayed.errors();
-  measure_cut(session.start().model, *cursor, track);
+  blade.finish(cursor->state());
   track.is_verified = track.replays;
   if (track.is_verified)
     track.force = force, track.depth = depth, track.other_force = other_force, track.severed = severed;
@@ -94,16 +118,18 @@ Result<Done> replay_cuts(recordings::SessionReader& session, SessionTrack& track
   if (track.cuts.empty()) return Done{};
   Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(session);
   if (!cursor) return cursor.errors();
+  BladeDepth blade(session.start().model, track);
   for (const Spell& cut : track.cuts)
-    if (const Result<Done> replayed = replay_ticks(*cursor, std::int64_t(cut.first), std::int64_t(cut.last), track,
-                                                   [](std::size_t, const stepping::StepReport&) {});
+    if (const Result<Done> replayed =
+            replay_ticks(*cursor, std::int64_t(cut.first), std::int64_t(cut.last), track,
+                         [&](std::size_t tick, const stepping::StepReport&) { blade.look(tick, cursor->state()); });
         !replayed)
       return replayed.errors();
   // A blade goes on where nothing is left to sever. Keyframes of earlier revisions do not hold what it swept.
   if (session.start().physics_revision >= kFirstSwept)
     if (const Result<Done> ended = cursor->seek(session.tick_count()); !ended) return ended.errors();
   track.replays = track.replays && cursor->same_so_far();
-  measure_cut(session.start().model, *cursor, track);
+  blade.finish(cursor->state());
   return Done{};
 }
 

@@ -31,16 +31,18 @@ struct ProbeWay {
 /// that cuts, or if none does the one that holds a tool for longer.
 struct SessionTrack {
   std::string path, session_id, scene_name;
-  double tick = 0;                    ///< [s]
-  std::size_t hand = 0;               ///< that works, in Inputs
-  std::vector<std::int32_t> tool;     ///< held; -1: none                                      (tick_count)
-  std::vector<Vec3> tip;              ///< of the tool: a ball's centre, a blade's tip [m]     (tick_count)
-  std::vector<double> force;          ///< magnitude of the tissue's force on the tool [N]    (tick_count)
-  std::vector<double> depth;          ///< [m]                                                (tick_count)
-  std::vector<double> other_force;    ///< as `force`, on the tool in the other hand; empty: there is none (tick_count)
-  std::vector<std::int32_t> severed;  ///< elements severed in the tick                       (tick_count)
-  std::vector<Spell> strokes;         ///< ticks in which one tool is held without a break
-  std::vector<Spell> cuts;            ///< ticks from the first to the last severed element of each cut
+  double tick = 0;                  ///< [s]
+  std::size_t hand = 0;             ///< that works, in Inputs
+  std::vector<std::int32_t> tool;   ///< held; -1: none                                      (tick_count)
+  std::vector<Vec3> tip;            ///< of the tool: a ball's centre, a blade's tip [m]     (tick_count)
+  std::vector<double> force;        ///< magnitude of the tissue's force on the tool [N]    (tick_count)
+  std::vector<double> depth;        ///< [m]                                                (tick_count)
+  std::vector<double> blade_depth;  ///< of a held blade's edge in the tissue at rest [m], where it was replayed; empty:
+                                    ///< no blade (tick_count)
+  std::vector<double> other_force;  ///< as `force`, on the tool in the other hand; empty: there is none (tick_count)
+  std::vector<std::int32_t> severed;     ///< elements severed in the tick                       (tick_count)
+  std::vector<Spell> strokes;            ///< ticks in which one tool is held without a break
+  std::vector<Spell> cuts;               ///< ticks from the first to the last severed element of each cut
   std::vector<std::int64_t> severed_at;  ///< tick in which each element was severed; -1: never  (ElementPlaces::count)
   std::optional<session::CutSize> cut;   ///< none if nothing was cut, or without surfaces
   std::vector<ProbeWay> probes;          ///< where the session was replayed whole; else empty

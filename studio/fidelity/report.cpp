@@ -55,6 +55,47 @@ reports::Table overview(const FidelityResults& results) {
   return table;
 }
 
+/// How much of what its goal allows a figure uses; above 1 it is missed.
+double share_of_goal(const Figure& figure) {
+  constexpr double kUnknown = 1e3;  // could not be measured
+  const Goal& goal = *figure.goal;
+  const double value = figure.measured;
+  if (!std::isfinite(value)) return kUnknown;
+  const double share = goal.least && goal.most
+                           ? std::abs(2 * value - *goal.least - *goal.most) / (*goal.most - *goal.least)
+                       : goal.most ? value / *goal.most
+                                   : *goal.least / value;
+  return std::isfinite(share) && share > 0 ? share : figure.verdict() == reports::ReportVerdict::met ? 0 : kUnknown;
+}
+
+/// What must hold, what is only shown, and what is missed; then all goals in one picture.
+void conclude(reports::Report& report, const FidelityResults& results) {
+  constexpr std::size_t kNamed = 8;
+  const std::int64_t met = results.count(reports::ReportVerdict::met),
+                     missed = results.count(reports::ReportVerdict::missed),
+                     shown = results.count(reports::ReportVerdict::shown);
+  std::vector<std::string> points;
+  std::vector<double> shares;
+  for (const Chapter& chapter : results.chapters)
+    for (const Figure& f : chapter.figures) {
+      if (f.goal) shares.push_back(share_of_goal(f));
+      if (f.verdict() != reports::ReportVerdict::missed || points.size() >= kNamed) continue;
+      const std::string unit = f.unit == "1" ? "" : " " + f.unit;
+      points.push_back("Missed: " + chapter.section.title + ", " + f.name + ": " + output::short_number(f.measured, 3) +
+                       unit + " where the goal is " + f.goal->text(f.unit) + ".");
+    }
+  if (missed > std::int64_t(points.size()))
+    points.push_back("And " + std::to_string(missed - std::int64_t(points.size())) + " more, marked below.");
+  points.push_back("Must hold: " + std::to_string(met + missed) +
+                   " goals. Only shown, without a goal: " + std::to_string(shown) + " figures.");
+  report.conclude(missed == 0 ? reports::ReportVerdict::met : reports::ReportVerdict::missed,
+                  missed == 0 ? "All " + std::to_string(met) + " goals are met."
+                              : std::to_string(missed) + " of " + std::to_string(met + missed) + " goals are missed.",
+                  points);
+  if (!shares.empty())
+    report.add_plots({reports::plot_of_bounds("Of what the goals allow, this much is used", shares)});
+}
+
 std::string results_json(const FidelityResults& results) {
   output::JsonWriter json;
   json.begin_object()
@@ -112,11 +153,7 @@ reports::Table figures_table(const std::vector<Chapter>& chapters) {
 
 Result<Done> write_fidelity_report(const std::string& folder, const FidelityResults& results) {
   reports::Report report("Fidelity: what a filled organ does against what it should do", subtitle_of(results));
-  const std::int64_t met = results.count(reports::ReportVerdict::met),
-                     missed = results.count(reports::ReportVerdict::missed);
-  report.add_verdict(
-      missed == 0, missed == 0 ? "All " + std::to_string(met) + " goals are met."
-                               : std::to_string(missed) + " of " + std::to_string(met + missed) + " goals are missed.");
+  conclude(report, results);
   report.add_table(overview(results));
   report.add_heading("Goals");
   for (const Chapter& chapter : results.chapters) {

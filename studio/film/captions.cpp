@@ -41,14 +41,15 @@ std::optional<Moment> moment_of(const recordings::Event& event, const Model& mod
   }
 }
 
-/// The ticks of the largest force, and of the largest depth of a tool that is no blade.
-Result<Done> add_largest(recordings::SessionReader& session, std::vector<Moment>& moments) {
+/// The ticks of a part with the largest force, and with the largest depth of a tool that is no blade.
+Result<Done> add_largest(recordings::SessionReader& session, const session::TickRange& part,
+                         std::vector<Moment>& moments) {
   constexpr std::int64_t kReadTicks = 10000;  // held in memory at a time
   const Model& model = session.start().model;
   double force = 0, depth = 0;
   std::int64_t force_tick = -1, depth_tick = -1;
-  for (std::int64_t from = 0; from < session.tick_count(); from += kReadTicks) {
-    const auto records = session.ticks(from, std::min(from + kReadTicks, session.tick_count()));
+  for (std::int64_t from = part.from; from < part.to; from += kReadTicks) {
+    const auto records = session.ticks(from, std::min(from + kReadTicks, part.to));
     if (!records) return records.errors();
     for (std::size_t i = 0; i < records->size(); ++i)
       for (std::size_t hand = 0; hand < std::size_t(model.hands); ++hand) {
@@ -67,13 +68,14 @@ Result<Done> add_largest(recordings::SessionReader& session, std::vector<Moment>
 
 }  // namespace
 
-Result<std::vector<Moment>> all_moments(recordings::SessionReader& session) {
+Result<std::vector<Moment>> all_moments(recordings::SessionReader& session, const session::TickRange& part) {
   const Result<std::vector<recordings::Event>> events = session.events();
   if (!events) return events.errors();
   std::vector<Moment> all;
   for (const recordings::Event& event : *events)
     if (const std::optional<Moment> moment = moment_of(event, session.start().model)) all.push_back(*moment);
-  if (const Result<Done> added = add_largest(session, all); !added) return added.errors();
+  if (!add_largest(session, {0, session.tick_count()}, all))
+    if (const Result<Done> added = add_largest(session, part, all); !added) return added.errors();
   std::stable_sort(all.begin(), all.end(), [](const Moment& a, const Moment& b) { return a.tick < b.tick; });
   return all;
 }
@@ -148,6 +150,29 @@ std::vector<video::Caption> captions_of(const std::vector<Moment>& moments, cons
     if (from < to) captions.push_back({double(from) / fps, double(to) / fps, moments[i].text});
   }
   return captions;
+}
+
+std::vector<video::Caption> captions_of_pair(const std::vector<video::Caption>& left,
+                                             const std::vector<video::Caption>& right) {
+  std::vector<double> ends;
+  for (const auto* half : {&left, &right})
+    for (const video::Caption& caption : *half) ends.push_back(caption.from_s), ends.push_back(caption.to_s);
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  std::vector<video::Caption> track;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    video::Caption caption{ends[i], ends[i + 1], "", false};
+    const auto add = [&](const char* where, const std::vector<video::Caption>& half) {
+      for (const video::Caption& own : half)
+        if (own.from_s <= caption.from_s && own.to_s >= caption.to_s) {
+          caption.text += (caption.text.empty() ? "" : "\n") + std::string(where) + own.text;
+          caption.is_chapter = caption.is_chapter || own.from_s == caption.from_s;
+        }
+    };
+    add("left: ", left), add("right: ", right);
+    if (!caption.text.empty()) track.push_back(caption);
+  }
+  return track;
 }
 
 }  // namespace ctpm::film

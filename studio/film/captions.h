@@ -19,8 +19,9 @@ struct Moment {
   enum class Kind { title, contact, force, deepest, cut, loose, damage, inside_out } kind = Kind::title;
 };
 
-/// Everything that happens, in order of time. Errors: a damaged session.
-Result<std::vector<Moment>> all_moments(recordings::SessionReader& session);
+/// Everything that happens, in order of time. The largest force and depth are those of the whole session, or where it
+/// is damaged elsewhere those of `part`. Errors: `part` is damaged.
+Result<std::vector<Moment>> all_moments(recordings::SessionReader& session, const session::TickRange& part);
 
 /// The parts of a session around its moments of some kinds, as ScheduleOptions::slow: words out of cut, damage and
 /// worst (the largest force and depth), with commas between. Errors: another word.
@@ -39,5 +40,9 @@ std::string words_at(const std::vector<Moment>& moments, std::int64_t tick, std:
 /// The same as captions of a film of `fps` frames per second.
 std::vector<video::Caption> captions_of(const std::vector<Moment>& moments, const FrameTicks& ticks, std::int64_t shown,
                                         double fps);
+
+/// Those of two halves as one track: "left: ..." above "right: ...". A chapter begins where one of them begins.
+std::vector<video::Caption> captions_of_pair(const std::vector<video::Caption>& left,
+                                             const std::vector<video::Caption>& right);
 
 }  // namespace ctpm::film

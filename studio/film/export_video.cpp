@@ -56,9 +56,16 @@ Result<std::vector<std::array<double, 2>>> slow_parts_of(const std::vector<recor
   if (words.empty()) return std::vector<std::array<double, 2>>();
   if (sessions.size() > 1)
     return Error{output::option_name("export.slow_at"), "is for one session", "two are slowed down to be matched"};
-  const Result<std::vector<Moment>> all = all_moments(*sessions[0]);
+  const Result<std::vector<Moment>> all = all_moments(*sessions[0], {0, sessions[0]->tick_count()});
   if (!all) return all.errors();
   return slow_parts(*all, words, sessions[0]->start().model.tick);
+}
+
+/// What the track says: of a pair, of which half it is true.
+std::vector<video::Caption> captions_of_all(const std::vector<Reel>& reels, double fps) {
+  std::vector<std::vector<video::Caption>> all;
+  for (const Reel& reel : reels) all.push_back(captions_of(reel.moments, reel.ticks, reel.told, fps));
+  return all.size() == 1 ? all[0] : captions_of_pair(all[0], all[1]);
 }
 
 Result<StageTimes> make_film(std::vector<Reel>& reels, video::VideoWriter& writer, recordings::ByteHash& pixels,
@@ -88,13 +95,14 @@ Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>
                                    const ExportOptions& options) {
   Errors errors = check_options(path, options);
   const double frame_s = errors.empty() ? options.speed / options.fps : 1;
-  const Result<std::vector<std::array<double, 2>>> slow = slow_parts_of(sessions, options.slow_at);
+  // A ghost is in step as another half would be.
+  std::vector<recordings::SessionReader*> in_step = sessions;
+  if (options.ghost) in_step.push_back(options.ghost);
+  const Result<std::vector<std::array<double, 2>>> slow = slow_parts_of(in_step, options.slow_at);
   if (!slow) append(errors, slow.errors());
-  Result<std::vector<FrameTicks>> ticks = schedule(
-      sessions, {options.range, frame_s, options.matched, slow ? *slow : std::vector<std::array<double, 2>>()});
+  Result<std::vector<FrameTicks>> ticks =
+      schedule(in_step, {options.range, frame_s, options.matched, slow ? *slow : std::vector<std::array<double, 2>>()});
   if (!ticks) append(errors, ticks.errors());
-  const Result<double> top_force = largest_force(sessions);
-  if (!top_force) append(errors, top_force.errors());
   const int width = options.size.width / int(sessions.size());
   std::vector<Reel> reels;
   for (std::size_t i = 0; i < sessions.size(); ++i) {
@@ -106,18 +114,20 @@ Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>
       append(errors, reel.errors());
   }
   if (!errors.empty()) return errors;
+  if (options.ghost) {
+    Result<Ghost> ghost = ghost_of(*options.ghost, ticks->back());
+    if (!ghost) return ghost.errors();
+    reels[0].ghost = std::move(*ghost);
+  }
   if (const Result<Done> alike = look_alike(reels, sessions); !alike) return alike.errors();
   Result<std::unique_ptr<video::VideoWriter>> writer =
       video::VideoWriter::create(path, width * int(sessions.size()), options.size.height, options.fps);
   if (!writer) return writer.errors();
 
   recordings::ByteHash pixels;
-  const Result<StageTimes> times = make_film(reels, **writer, pixels, *top_force, options);
+  const Result<StageTimes> times = make_film(reels, **writer, pixels, largest_force(sessions), options);
   if (!times) return times.errors();
-  // Two halves have their words in the picture; the track tells of the first.
-  const Reel& first = reels[0];
-  const Result<video::VideoFacts> video =
-      (*writer)->finish(captions_of(first.moments, first.ticks, first.told, options.fps));
+  const Result<video::VideoFacts> video = (*writer)->finish(captions_of_all(reels, options.fps));
   if (!video) return video.errors();
   ExportOutcome outcome{*video, {}, *times, recordings::hash_text(pixels.value())};
   std::vector<SidecarSession> shown;

@@ -25,8 +25,12 @@ struct ExportOptions {
   std::vector<std::array<double, 2>> matched = {};  ///< see ScheduleOptions
   std::string slow_at;           ///< moments of a single session that are shown slower: see slow_parts()
   std::string overlay = "full";  ///< none, small or full: render::OverlayLevel
-  bool overwrite = false;        ///< replaces an existing video or sidecar
-  bool allow_diverged = false;   ///< continue if the replay differs from the recording
+  std::string inset = {};        ///< small pictures within the picture: see insets_of()
+  bool strip = false;            ///< the whole session's force and moments on a line below the picture
+  /// Whose tool and way are drawn into the picture of a single session of the same scene; `matched` belongs to both.
+  recordings::SessionReader* ghost = nullptr;
+  bool overwrite = false;       ///< replaces an existing video or sidecar
+  bool allow_diverged = false;  ///< continue if the replay differs from the recording
   std::function<void(std::int64_t done, std::int64_t total)> progress;
   std::function<bool()> should_stop;  ///< asked at every frame
 };

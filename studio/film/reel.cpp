@@ -4,6 +4,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "studio/film/session_strip.h"
+#include "studio/loading/loaded_scene.h"
 #include "studio/render/element_values.h"
 #include "studio/views/view_of_scene.h"
 
@@ -22,7 +24,7 @@ Result<double> range_of(recordings::SessionReader& session, render::ElementQuant
   std::vector<render::ElementValue> values;
   for (std::size_t i = 0; i < keyframes->size(); i += every) {
     const Result<recordings::Keyframe> keyframe = session.keyframe_at_or_before((*keyframes)[i]);
-    if (!keyframe) return keyframe.errors();
+    if (!keyframe) continue;  // damaged: a replay says so where it comes there
     render::measure_elements(session.start().model, keyframe->state, quantity, values);
     if (values.empty()) continue;
     const auto shown = values.begin() + std::ptrdiff_t(kShown * double(values.size() - 1));
@@ -50,16 +52,6 @@ Result<Done> find_ranges(std::vector<Reel>& reels, const std::vector<recordings:
   return Done{};
 }
 
-render::Frame draw_shot(Reel& reel, Shot& shot, double top_force) {
-  const render::DrawOptions draw = reel.look.at(reel.renderer->scene(), shot.moments);
-  render::Frame picture = reel.renderer->draw(shot.state, draw);
-  shot.overlay.tools = reel.renderer->tool_points(shot.state, draw);
-  shot.overlay.legend = render::legend_of(reel.film->model(), draw);
-  shot.overlay.least_top_force = std::max(shot.overlay.least_top_force, top_force);
-  reel.overlay->draw(picture, shot.overlay);
-  return picture;
-}
-
 }  // namespace
 
 std::optional<render::OverlayLevel> level_of(const std::string& name) {
@@ -75,6 +67,7 @@ Result<Shot> Reel::shoot(std::int64_t frame) const {
   shot->overlay.level = level;
   shot->overlay.caption = words_at(moments, ticks.tick(frame), told);
   shot->overlay.is_over = frame >= ticks.ended;
+  if (ghost) shot->ghost = ghost->hand[std::size_t(frame)];
   if (shows_pace) shot->overlay.pace = shot->overlay.is_over ? 0 : speed * ticks.share(frame);
   return shot;
 }
@@ -82,27 +75,37 @@ Result<Shot> Reel::shoot(std::int64_t frame) const {
 Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, const render::PictureSize& size,
                        const ExportOptions& options) {
   Reel reel;
-  const Result<std::vector<Moment>> all = all_moments(session);
+  const Result<std::vector<Moment>> all = all_moments(session, ticks.range);
   if (!all) return all.errors();
   Result<std::unique_ptr<SessionFilm>> film = SessionFilm::create(session, ticks.range, options.allow_diverged);
   if (!film) return film.errors();
   reel.film = std::move(*film);
   const Model& model = reel.film->model();
   render::SceneView view = views::view_of(reel.film->scene(), model);
-  // The last keyframe of the session, so that a part is seen as the whole is.
-  const Result<recordings::Keyframe> late = session.keyframe_at_or_before(session.tick_count());
+  // The last keyframe of the session, so that a part is seen as the whole is; of a damaged one, that of the part.
+  Result<recordings::Keyframe> late = session.keyframe_at_or_before(session.tick_count());
+  if (!late) late = session.keyframe_at_or_before(reel.film->range().to);
   if (!late) return late.errors();
   const Result<views::Look> look =
       views::find_look(options.look, reel.film->scene(), view, double(size.width) / size.height, &late->state);
   if (!look) return look.errors();
   reel.look = *look;
-  Result<std::unique_ptr<render::Renderer>> renderer =
-      render::Renderer::create(size.width, size.height, std::move(view));
+  if (options.strip) reel.strip_height = strip_height(size.height);
+  const int height = size.height - reel.strip_height;
+  const Result<std::vector<Inset::Kind>> insets = insets_of(options.inset);
+  if (!insets) return insets.errors();
+  for (const Inset::Kind kind : *insets) {
+    Result<Inset> inset = Inset::create(kind, {size.width, height}, view);
+    if (!inset) return inset.errors();
+    reel.insets.push_back(std::move(*inset));
+  }
+  Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(size.width, height, std::move(view));
   if (!renderer) return renderer.errors();
   reel.renderer = std::move(*renderer);
-  reel.overlay = std::make_unique<render::Overlay>(size.width, size.height);
+  reel.overlay = std::make_unique<render::Overlay>(size.width, height);
   const std::string title = reel.film->scene().name + ": " + std::filesystem::path(session.path()).stem().string();
   reel.moments = told_moments(*all, title, model.tick);
+  if (options.strip) reel.strip = strip_of(session, *all, loading::damage_force_of(reel.film->scene()));
   reel.told = std::llround(kCaptionSeconds * options.speed / model.tick);
   reel.ticks = std::move(ticks), reel.speed = options.speed;
   reel.shows_pace = options.speed != 1 || !options.matched.empty() || !options.slow_at.empty();
@@ -117,14 +120,30 @@ Result<Done> look_alike(std::vector<Reel>& reels, const std::vector<recordings::
   return find_ranges(reels, sessions);
 }
 
-Result<double> largest_force(const std::vector<recordings::SessionReader*>& sessions) {
+double largest_force(const std::vector<recordings::SessionReader*>& sessions) {
   double largest = 0;
   for (recordings::SessionReader* session : sessions) {
     const Result<recordings::SessionStatistics> statistics = session->statistics();
-    if (!statistics) return statistics.errors();
+    if (!statistics) continue;  // a damaged one without an end
     largest = std::max(largest, statistics->max_force);
   }
   return largest;
+}
+
+render::Frame draw_shot(Reel& reel, Shot& shot, double top_force) {
+  render::DrawOptions draw = reel.look.at(reel.renderer->scene(), shot.moments);
+  draw.ghost = shot.ghost;
+  render::Frame picture = reel.renderer->draw(shot.state, draw);
+  if (reel.ghost) render::draw_marks(picture, draw.camera, reel.ghost->way);
+  shot.overlay.tools = reel.renderer->tool_points(shot.state, draw);
+  shot.overlay.legend = render::legend_of(reel.film->model(), draw);
+  shot.overlay.least_top_force = std::max(shot.overlay.least_top_force, top_force);
+  reel.overlay->draw(picture, shot.overlay);
+  for (std::size_t i = 0; i < reel.insets.size(); ++i)
+    reel.insets[i].add(picture, int(i), shot.state, draw, shot.moments);
+  if (!reel.strip) return picture;
+  reel.strip->now = shot.share, reel.strip->top_force = std::max(reel.strip->top_force, top_force);
+  return render::with_strip(picture, reel.strip_height, *reel.strip);
 }
 
 render::Frame draw_shots(std::vector<Reel>& reels, std::vector<Shot>& shots, double top_force) {

@@ -10,10 +10,13 @@
 #include "recordings/session_reader.h"
 #include "studio/film/captions.h"
 #include "studio/film/export_video.h"
+#include "studio/film/ghost.h"
+#include "studio/film/inset.h"
 #include "studio/film/schedule.h"
 #include "studio/film/session_film.h"
 #include "studio/render/overlay.h"
 #include "studio/render/renderer.h"
+#include "studio/render/strip.h"
 #include "studio/views/look.h"
 
 namespace ctpm::film {
@@ -30,6 +33,10 @@ struct Reel {
   double speed = 1;         ///< of the film
   bool shows_pace = false;  ///< where it is not that of the clock
   render::OverlayLevel level = render::OverlayLevel::full;
+  std::optional<Ghost> ghost;
+  std::vector<Inset> insets;
+  std::optional<render::Strip> strip;
+  int strip_height = 0;  ///< [pixels]
 
   /// The shot of a frame. A session that has ended keeps its last State and says so. Errors: see SessionFilm::shoot.
   Result<Shot> shoot(std::int64_t frame) const;
@@ -46,9 +53,12 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, con
 /// have one range of colours, that of the sessions unless one is given. Errors: a damaged session.
 Result<Done> look_alike(std::vector<Reel>& reels, const std::vector<recordings::SessionReader*>& sessions);
 
-/// The largest force of whole sessions [N]: a plot whose axis ends there stands still, whatever part is shown. Errors:
-/// a damaged session.
-Result<double> largest_force(const std::vector<recordings::SessionReader*>& sessions);
+/// The largest force of whole sessions that can be read [N]: a plot whose axis ends there stands still, whatever part
+/// is shown.
+double largest_force(const std::vector<recordings::SessionReader*>& sessions);
+
+/// One session at one moment; its plot goes up to `top_force` [N] at least.
+render::Frame draw_shot(Reel& reel, Shot& shot, double top_force);
 
 /// All sessions at one moment, side by side; their plots have one scale.
 render::Frame draw_shots(std::vector<Reel>& reels, std::vector<Shot>& shots, double top_force);

@@ -75,8 +75,8 @@ Result<Done> SessionFilm::begin() {
       std::max(kPlotPoints * plot_every_, std::int64_t(render::kFollowedMoments * moment_every_));
   const std::int64_t before = std::max<std::int64_t>(0, range_.from - needed);
   const Result<std::vector<recordings::TickRecord>> earlier = reader_.ticks(before, range_.from);
-  if (!earlier) return earlier.errors();
-  for (std::int64_t tick = before + 1; tick <= range_.from; ++tick) {
+  // What is damaged before the part is not shown; the part itself is read by the replay.
+  for (std::int64_t tick = before + 1; earlier && tick <= range_.from; ++tick) {
     const recordings::TickRecord& record = (*earlier)[std::size_t(tick - before - 1)];
     keep_inputs(record.inputs);
     if (tick % plot_every_ == 0)
@@ -87,7 +87,7 @@ Result<Done> SessionFilm::begin() {
   overlay_.loose = recordings::pieces_came_loose(*events, range_.from);
   overlay_.inside_out = recordings::cells_inside_out(*events, range_.from);
   overlay_.tick = range_.from, overlay_.time = double(range_.from) * model.tick;
-  if (const Result<Done> looked = look_back(); !looked) return looked;
+  look_back(*events);
   return cursor_.seek(range_.from);
 }
 
@@ -98,19 +98,24 @@ void SessionFilm::keep_worst(double force, double depth) {
 }
 
 /// What did damage before the part that is shown.
-Result<Done> SessionFilm::look_back() {
+void SessionFilm::look_back(const std::vector<recordings::Event>& events) {
   constexpr std::int64_t kReadTicks = 10000;  // held in memory at a time
-  if (overlay_.damage_force <= 0 && overlay_.damage_depth <= 0) return Done{};
+  if (overlay_.damage_force <= 0 && overlay_.damage_depth <= 0) return;
   for (std::int64_t from = 0; from < range_.from; from += kReadTicks) {
     const auto records = reader_.ticks(from, std::min(from + kReadTicks, range_.from));
-    if (!records) return records.errors();
+    if (!records) {
+      // Damaged: its events tell at least how each damage began.
+      for (const recordings::Event& event : events)
+        if (event.tick >= from && event.tick < from + kReadTicks && event.tick < range_.from)
+          keep_worst(event.force, event.depth);
+      continue;
+    }
     for (const recordings::TickRecord& record : *records)
       for (std::size_t hand = 0; hand < std::size_t(model().hands); ++hand) {
         const stepping::HandReport report = record.of_hand(hand);
         keep_worst(norm(report.tool_force), holds_blade(record.inputs.hand(hand)) ? 0 : report.depth);
       }
   }
-  return Done{};
 }
 
 /// Updates the overlay from the last simulated tick.
@@ -194,7 +199,9 @@ Result<Shot> SessionFilm::shoot(std::int64_t tick) {
   overlay_.verdict = verdict();
   const bool is_good = is_same() && overlay_.inside_out == 0;
   overlay_.verdict_tone = is_good ? render::VerdictTone::good : render::VerdictTone::bad;
-  return Shot{cursor_.state(), overlay_, moments()};
+  Shot shot{cursor_.state(), overlay_, moments()};
+  if (reader_.tick_count() > 0) shot.share = double(cursor_.tick()) / double(reader_.tick_count());
+  return shot;
 }
 
 }  // namespace ctpm::film

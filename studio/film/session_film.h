@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,9 @@ namespace ctpm::film {
 struct Shot {
   State state;
   render::OverlayData overlay;
-  std::vector<Inputs> moments;  ///< argument of following_camera()
+  std::vector<Inputs> moments;     ///< argument of following_camera()
+  std::optional<Hand> ghost = {};  ///< another session's tool
+  double share = 0;                ///< of the whole session that has passed
 };
 
 /// Replays a session and gives one Shot for each frame.
@@ -57,7 +60,7 @@ class SessionFilm {
   void keep_inputs(const Inputs& inputs);
   void show_cut_depth();
   void keep_worst(double force, double depth);
-  Result<Done> look_back();
+  void look_back(const std::vector<recordings::Event>& events);
   bool holds_blade(const Hand& hand) const;
   std::vector<Inputs> moments() const;
   Error differs() const;

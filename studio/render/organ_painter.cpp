@@ -154,6 +154,7 @@ void OrganPainter::draw(const Gl& gl, const SceneView& scene, const DrawOptions&
     if (order.wall > 0) {
       set_look(inside, scene.looks[i], options);
       set_layers(gl, inside, organ, scene.looks[i]);
+      inside.set("blood", scene.looks[i].blood);
       draw_indices(order.facing, order.wall);
     }
     if (has_section) draw_section(gl, organ, scene.looks[i], options);
@@ -191,6 +192,7 @@ void OrganPainter::draw_section(const Gl& gl, const Organ& organ, const OrganLoo
   const Program& inside = programs_[std::size_t(OrganPass::inside)][false];
   set_look(inside, look, options);
   set_layers(gl, inside, organ, look);
+  inside.set("blood", 0.0);
   gl.BindVertexArray(organ.section_array.id);
   gl.DrawElements(GL_TRIANGLES, organ.section_array.index_count, GL_UNSIGNED_INT, nullptr);
   gl.Disable(GL_STENCIL_TEST);

@@ -110,6 +110,8 @@ struct Renderer::Parts {
   void draw_elements(const State& state, const DrawOptions& options);
   VertexArray array_of(const ToolMesh& mesh) const;
   void draw_tools(const State& state, const DrawOptions& options);
+  void draw_tool(const Hand& hand, const State& state, const DrawOptions& options, double ghost);
+  void draw_ghost(const State& state, const DrawOptions& options);
   void draw_obstacles(const State& state, const DrawOptions& options);
   void cast_shadow(DrawnObstacle& obstacle, const Cutaway& cutaway);
   void draw_behind(const DrawOptions& options);
@@ -207,13 +209,14 @@ PixelRect Renderer::Parts::footprint(const State& state, const DrawOptions& opti
     const std::vector<float>& v = obstacle.mesh.mesh.vertex;
     for (std::size_t i = 0; i < v.size(); i += 7) print.add({v[i], v[i + 1], v[i + 2]});
   }
-  for (std::size_t number = 0; number < kMostHands; ++number) {
-    const Hand& hand = state.last_inputs.hand(number);
-    if (!held_tool(hand, options)) continue;
+  const auto add_tool = [&](const Hand& hand) {
+    if (!held_tool(hand, options)) return;
     const std::vector<float>& v = tool_meshes[std::size_t(hand.tool)].vertex;
     for (std::size_t i = 0; i < v.size(); i += 7)
       print.add(hand.position + rotate(hand.world_from_tool, {v[i], v[i + 1], v[i + 2]}));
-  }
+  };
+  for (std::size_t number = 0; number < kMostHands; ++number) add_tool(state.last_inputs.hand(number));
+  if (options.ghost) add_tool(*options.ghost);
   return print.pixels();
 }
 
@@ -243,12 +246,15 @@ void Renderer::Parts::set_light(const Program& program, const State& state, cons
 void Renderer::Parts::draw_spheres(const State& state, const DrawOptions& options) {
   const Gl& g = gl();
   instances.clear();
+  const std::vector<std::uint8_t> at_cut = spheres_at_cuts(*scene.model, state);
   for (const OrganRange& range : scene.model->organs)
     for (std::int32_t i = range.first; i < range.first + range.count; ++i) {
       const auto n = std::size_t(i);
       const Vec3 p = state.position[n],
-                 c = linear(scene.sphere_colours.empty() ? layer_colour(scene.model->layer[n], range.layer_count)
-                                                         : scene.sphere_colours[n]);
+                 c = !at_cut.empty() && at_cut[n]
+                         ? linear(kCutColour)
+                         : linear(scene.sphere_colours.empty() ? layer_colour(scene.model->layer[n], range.layer_count)
+                                                               : scene.sphere_colours[n]);
       if (options.cutaway.leaves_out(p)) continue;
       for (const double x : {p.x, p.y, p.z, range.sphere_radius, c.x, c.y, c.z}) instances.push_back(float(x));
     }
@@ -278,20 +284,34 @@ void Renderer::Parts::draw_elements(const State& state, const DrawOptions& optio
 }
 
 void Renderer::Parts::draw_tools(const State& state, const DrawOptions& options) {
-  for (std::size_t number = 0; number < kMostHands; ++number) {
-    const Hand& hand = state.last_inputs.hand(number);
-    if (!held_tool(hand, options)) continue;
-    const VertexArray& array = tools[std::size_t(hand.tool)];
-    set_light(tool, state, options);
-    tool.set("world_from_tool", rigid(hand.world_from_tool, hand.position));
-    gl().BindVertexArray(array.id), gl().DrawElements(GL_TRIANGLES, array.index_count, GL_UNSIGNED_INT, nullptr);
-  }
+  for (std::size_t number = 0; number < kMostHands; ++number)
+    draw_tool(state.last_inputs.hand(number), state, options, 0);
+}
+
+void Renderer::Parts::draw_tool(const Hand& hand, const State& state, const DrawOptions& options, double ghost) {
+  if (!held_tool(hand, options)) return;
+  const VertexArray& array = tools[std::size_t(hand.tool)];
+  set_light(tool, state, options);
+  tool.set("world_from_tool", rigid(hand.world_from_tool, hand.position)), tool.set("ghost", ghost);
+  gl().BindVertexArray(array.id), gl().DrawElements(GL_TRIANGLES, array.index_count, GL_UNSIGNED_INT, nullptr);
+}
+
+/// Its nearest surface alone, over all that was drawn: depth first, then colour.
+void Renderer::Parts::draw_ghost(const State& state, const DrawOptions& options) {
+  if (!options.ghost) return;
+  const Gl& g = gl();
+  g.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  draw_tool(*options.ghost, state, options, 1);
+  g.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  g.Enable(GL_BLEND), g.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  draw_tool(*options.ghost, state, options, 1);
+  g.Disable(GL_BLEND);
 }
 
 void Renderer::Parts::draw_obstacles(const State& state, const DrawOptions& options) {
   if (obstacles.empty()) return;
   set_light(tool, state, options);
-  tool.set("world_from_tool", rigid({}, {}));
+  tool.set("world_from_tool", rigid({}, {})), tool.set("ghost", 0.0);
   for (DrawnObstacle& obstacle : obstacles) {
     if (obstacle.shadow) cast_shadow(obstacle, options.cutaway);
     gl().BindVertexArray(obstacle.array.id);
@@ -425,6 +445,7 @@ Frame Renderer::draw(const State& state, const DrawOptions& options) {
     for (const Program* program : p.organs.programs(options)) p.set_light(*program, state, options);
     p.organs.draw(gl, p.scene, options);
   }
+  p.draw_ghost(state, options);
   gl.Flush();  // the driver's threads draw while this one computes the background
   p.draw_behind(options);
   p.read_frame();

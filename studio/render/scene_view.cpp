@@ -13,7 +13,8 @@ OrganLook look_of(std::string_view organ_name) {
   const auto has = [&](std::string_view word) { return organ_name.find(word) != std::string_view::npos; };
   if (has("liver")) look.outer = {0.42, 0.15, 0.115}, look.inner = {0.43, 0.07, 0.06};
   if (has("kidney")) look.outer = {0.56, 0.235, 0.20}, look.inner = {0.56, 0.12, 0.11};
-  if (has("skin")) look.outer = {0.86, 0.67, 0.57}, look.inner = {0.76, 0.30, 0.26}, look.wetness = 0.25;
+  if (has("skin"))
+    look.outer = {0.86, 0.67, 0.57}, look.inner = {0.76, 0.30, 0.26}, look.wetness = 0.25, look.blood = 0.7;
   return look;
 }
 
@@ -128,13 +129,25 @@ Colour layer_colour(int layer, int layer_count) {
   return on_ladder(kLadder, double(layer - 1) / last);
 }
 
+std::vector<std::uint8_t> spheres_at_cuts(const Model& model, const State& state) {
+  std::vector<std::uint8_t> at_cut;
+  for (std::size_t i = 0; i < state.axial_severed.size(); ++i) {
+    if (!state.axial_severed[i]) continue;
+    if (at_cut.empty()) at_cut.assign(model.sphere_count(), 0);
+    at_cut[std::size_t(model.axial.a[i])] = at_cut[std::size_t(model.axial.b[i])] = 1;
+  }
+  return at_cut;
+}
+
 Legend legend_of(const Model& model, const DrawOptions& options) {
   if (options.view == View::surface) return {};
   Legend legend;
   if (options.view != View::elements) {
     int layers = 1;
     for (const OrganRange& organ : model.organs) layers = std::max(layers, int(organ.layer_count));
-    legend = {"layer", "1", std::to_string(layers), {}, true};
+    const bool can_cut =
+        std::ranges::any_of(model.tools, [](const Tool& tool) { return tool.kind == ToolKind::scalpel; });
+    legend = {can_cut ? "layer, red: cut" : "layer", "1", std::to_string(layers), {}, true};
     for (int layer = 1; layer <= layers; ++layer) legend.colours.push_back(layer_colour(layer, layers));
     return legend;
   }

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -32,6 +34,7 @@ struct OrganLook {
   Colour outer{0.50, 0.17, 0.13};   ///< of its surface
   Colour inner{0.46, 0.06, 0.06};   ///< of its inside, visible where it is cut
   double wetness = 1;               ///< strength of specular reflection by a wet film, in [0, 1]
+  double blood = 1;                 ///< on the walls of fresh cuts, not on sections, in [0, 1]; a picture, no physics
   std::vector<LayerLook> layers{};  ///< outermost first; empty: the outermost spheres are a little paler
 };
 
@@ -97,8 +100,9 @@ struct DrawOptions {
   ElementQuantity quantity = ElementQuantity::stretch;
   double full_scale = 0;  ///< value of the last colour [1, rad or N]; 0: default_full_scale()
   Cutaway cutaway;
-  bool show_tool = true;    ///< those of both hands, at the poses of State::last_inputs
-  bool show_ground = true;  ///< a soft shadow below the scene
+  bool show_tool = true;           ///< those of both hands, at the poses of State::last_inputs
+  bool show_ground = true;         ///< a soft shadow below the scene
+  std::optional<Hand> ghost = {};  ///< a tool of another session: it is seen through, and casts nothing
 };
 
 /// Full scale of the colours: 20 % stretch, 0.5 rad tilt, 0.05 N force.
@@ -117,6 +121,12 @@ struct Legend {
 
 /// The legend of the view that the options ask for.
 Legend legend_of(const Model& model, const DrawOptions& options);
+
+/// Of spheres from which a blade has severed an element, whatever their layer.
+inline constexpr Colour kCutColour{0.80, 0.03, 0.06};
+
+/// Which spheres those are (sphere_count); empty: nothing is severed.
+std::vector<std::uint8_t> spheres_at_cuts(const Model& model, const State& state);
 
 /// Colour of a layer, 1 = outermost, of an organ with `layer_count` layers.
 Colour layer_colour(int layer, int layer_count);

@@ -174,6 +174,7 @@ in vec3 p;
 #ifdef INSIDE
 in vec3 n, at_rest;
 in vec3 shadow_stain_rind;
+uniform float blood;  // 0: none, as in a section; 1: a fresh wall
 #else
 in vec3 q;
 in Smooth slow;
@@ -187,20 +188,26 @@ void main() {
   if (dot(p - cutaway_point, cutaway_normal) > 0.0) discard;
 #endif
 #ifdef INSIDE
-  const float kRough = 0.09, kStained = 0.13;
+  const float kRough = 0.05, kStained = 0.05;
   vec3 q = bend(at_rest), m = normalize(n);
   if (dot(m, eye - p) < 0.0) m = -m;
   vec3 base = tissue_colour(at_rest, shadow_stain_rind.z) * (1.0 + 0.16 * shadow_stain_rind.y);
-  Smooth slow = smooth_light(p, m, base, shadow_stain_rind.x, 0.55);
+  // A fresh wall bleeds: a wet film of blood, here thicker, there thinner.
+  vec4 fine = relief(q);
+  float film = blood * clamp(0.34 - 0.06 * fine.a + 0.35 * shadow_stain_rind.y, 0.15, 0.8);
+  base = mix(base, vec3(0.34, 0.0, 0.006), film);
+  Smooth slow = smooth_light(p, m, base, shadow_stain_rind.x, 0.55 + 0.6 * film);
 #else
   const float kRough = 0.017, kStained = 0.035;
+vec4 fine = relief(q);
 #endif
-  vec4 fine = relief(q);
   float to_key = -kRough * dot(fine.xyz, slow.key_side), to_eye = -kRough * dot(fine.xyz, slow.eye_side);
   float facing = slow.turn.x + to_eye;
   vec3 c = slow.body * (1.0 + kStained * fine.a + slow.turn.z * to_key);
 #ifndef INSIDE
-  c *= mix(vec3(1.0), lip_tint, 0.9 * smoothstep(0.62, 0.92, lip));  // a closed cut stays visible
+  // Blood oozes out of a cut, further where the relief lets it; a closed cut stays visible.
+  c *= mix(vec3(1.0), vec3(0.72, 0.20, 0.18), 0.8 * smoothstep(0.42, 0.78, lip + 0.15 * fine.a));
+  c *= mix(vec3(1.0), lip_tint, 0.9 * smoothstep(0.62, 0.92, lip));
 #endif
   // The mirrored way turns by twice as much; the film is half as rough as the tissue below.
   float mirrored_key = slow.mirror.x + 1.1 * (to_eye * slow.turn.y + slow.turn.x * to_key);
@@ -248,6 +255,7 @@ void main() {
 const char* const kToolFragment = R"(
 in vec3 p, n;
 in float piece;
+uniform float ghost;  // 0: a tool; 1: another session's, which is shown through
 out vec4 colour;
 void main() {
   vec3 v = normalize(eye - p);
@@ -263,7 +271,10 @@ void main() {
   }
   else
     c = vec3(0.055, 0.075, 0.10) * diffuse_light(m, vec3(0.0), 1.0) + 1.3 * fresnel(dot(m, v)) * mirrored;
-  colour = vec4(to_srgb(c), 1.0);
+  // Blue, whatever it is made of; denser at its outline.
+  float edge = 1.0 - abs(dot(m, v)), cover = 1.0 - ghost * (0.72 - 0.4 * edge * edge);
+  c = mix(c, vec3(0.06, 0.30, 0.80) * (0.6 + 0.6 * dot(c, vec3(0.33))), ghost);
+  colour = vec4(cover * to_srgb(c), cover);
 }
 )";
 

@@ -48,8 +48,17 @@ class Builder {
       if (norm(n) == 0) n = cross(edge[i + 1] - edge[i], ridge[i + 1] - edge[i]);
       if (n.y * sign < 0) n = -n;
       n = n / norm(n);
-      const auto a = vertex(edge[i], n, ToolPart::steel), b = vertex(edge[i + 1], n, ToolPart::steel);
-      const auto c = vertex(ridge[i + 1], n, ToolPart::steel), d = vertex(ridge[i], n, ToolPart::steel);
+      // Ground hollow: light runs over it, where a flat side would mirror one place of the room.
+      const auto hollow = [&](double along, double across) {
+        const Vec3 bent = n + Vec3{across, 0, along - 0.5};
+        return bent / norm(bent);
+      };
+      const double from = double(i) / double(edge.size() - 1), to = double(i + 1) / double(edge.size() - 1);
+      const double outward = edge[i].x >= ridge[i].x ? 0.45 : -0.45;
+      const auto a = vertex(edge[i], hollow(from, outward), ToolPart::steel),
+                 b = vertex(edge[i + 1], hollow(to, outward), ToolPart::steel);
+      const auto c = vertex(ridge[i + 1], hollow(to, -0.1 * outward), ToolPart::steel),
+                 d = vertex(ridge[i], hollow(from, -0.1 * outward), ToolPart::steel);
       triangle(a, b, c), triangle(a, c, d);
     }
   }

@@ -13,7 +13,7 @@ namespace {
 constexpr std::array<const char*, 7> kPalette{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                               "#e69f00", "#56b4e9", "#4d4d4d"};
 
-constexpr double kLeft = 62, kRight = 14, kTop = 30, kBottom = 46, kLegendRow = 17;
+constexpr double kLeft = 62, kRight = 14, kTop = 30, kBottom = 46, kLegendRow = 17, kEventRow = 16;
 
 const char* colour(int index) { return kPalette[std::size_t(std::max(index, 0)) % kPalette.size()]; }
 
@@ -33,6 +33,11 @@ class Axis {
   double at(double value) const {
     const double u = ((is_log_ ? std::log10(value) : value) - low_) / (high_ - low_);
     return from_ + u * (to_ - from_);
+  }
+  /// For plot_script(): the range, of logarithms if they are, and its pixels.
+  std::string describe() const {
+    return output::short_number(low_, 12) + " " + output::short_number(high_, 12) + " " + number(from_) + " " +
+           number(to_) + (is_log_ ? " 1" : " 0");
   }
   bool can_show(double value) const { return std::isfinite(value) && (!is_log_ || value > 0); }
 
@@ -141,11 +146,12 @@ struct Drawing {
     std::string points;
     std::vector<std::pair<double, double>> places;
     for (std::size_t i = 0; i < series.x.size(); ++i)
-      if (x.can_show(series.x[i]) && y.can_show(series.y[i])) places.emplace_back(x.at(series.x[i]), y.at(series.y[i]));
+      if (x.can_show(series.x[i]) && y.can_show(series.y[i]))
+        places.emplace_back(x.at(series.x[i]) + series.shift, y.at(series.y[i]));
     for (const auto& [px, py] : places) points += number(px) + "," + number(py) + " ";
     if (!has_marks_only(series))
-      svg += "<polyline fill=\"none\" stroke=\"" + std::string(ink) + "\" stroke-linejoin=\"round\" stroke-width=\"" +
-             (series.stroke == Stroke::path ? "1" : "1.8") + "\"" +
+      svg += "<polyline data-name=\"" + escape_html(series.name) + "\" fill=\"none\" stroke=\"" + std::string(ink) +
+             "\" stroke-linejoin=\"round\" stroke-width=\"" + (series.stroke == Stroke::path ? "1" : "1.8") + "\"" +
              (series.stroke == Stroke::dashed ? " stroke-dasharray=\"6 4\"" : "") + " points=\"" + points + "\"/>\n";
     if (series.stroke == Stroke::crosses)
       for (const auto& [px, py] : places) add_cross(px, py, ink);
@@ -153,6 +159,25 @@ struct Drawing {
       for (std::size_t i = 0; i < places.size(); ++i)
         add_mark(places[i].first, places[i].second, series.stroke == Stroke::path && i == 0 ? 4.5 : 3, ink,
                  series.stroke == Stroke::path);
+  }
+
+  /// Labels stand above the plot, one beside the other where they would lie on each other.
+  void add_events() {
+    double free_from = left;
+    for (const PlotEvent& event : plot.events) {
+      if (!x.can_show(event.x) || x.at(event.x) < left - 1 || x.at(event.x) > right + 1) continue;
+      const double px = x.at(event.x), width = 8 + 7 * double(event.label.size());
+      const double label = std::max(px, free_from + 0.5 * width);
+      free_from = label + 0.5 * width + 2;
+      svg +=
+          event.link.empty() ? "<g class=\"event\">" : "<a class=\"event\" href=\"" + escape_html(event.link) + "\">";
+      svg += "<title>" + escape_html(event.text) + "</title>";
+      svg += "<path d=\"M" + number(label) + " " + number(top + 3) + "L" + number(px) + " " + number(top + 10) + "V" +
+             number(bottom) + "\"/><rect x=\"" + number(label - 0.5 * width) + "\" y=\"" + number(top - 12) +
+             "\" width=\"" + number(width) + "\" height=\"15\" rx=\"3\"/>";
+      add_text(svg, label, top - 0.5, "middle", "flag", event.label);
+      svg += event.link.empty() ? "</g>\n" : "</a>\n";
+    }
   }
 
   /// Below the axes, in two columns.
@@ -246,7 +271,8 @@ std::string escape_html(const std::string& text) {
 
 std::string to_svg(const Plot& plot) {
   const int whole_height = plot.height + int(kLegendRow * legend_rows(plot)) + 6;
-  const double left = kLeft, right = plot.width - kRight, top = kTop, bottom = plot.height - kBottom;
+  const double left = kLeft, right = plot.width - kRight, top = kTop + (plot.events.empty() ? 0 : kEventRow),
+               bottom = plot.height - kBottom;
   const Range xs = plot.x_range ? Range{plot.x_range->first, plot.x_range->second} : range_of(plot, false);
   const Range ys = plot.y_range ? Range{plot.y_range->first, plot.y_range->second} : range_of(plot, true);
   Drawing drawing{plot,
@@ -262,7 +288,12 @@ std::string to_svg(const Plot& plot) {
   const std::string clip =
       "c" + std::to_string(std::hash<std::string>{}(plot.title + plot.y_title + std::to_string(plot.series.size())) %
                            1000000007);
-  svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + std::to_string(plot.width) + " " +
+  const bool is_over_x = std::all_of(plot.series.begin(), plot.series.end(), [](const Series& s) {
+    return has_marks_only(s) || std::is_sorted(s.x.begin(), s.x.end());
+  });
+  svg = "<svg data-x=\"" + drawing.x.describe() + "\" data-y=\"" + drawing.y.describe() + "\" data-along=\"" +
+        (is_over_x ? "x" : "") + "\" data-titles=\"" + escape_html(plot.x_title + "|" + plot.y_title) +
+        "\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + std::to_string(plot.width) + " " +
         std::to_string(whole_height) + "\" width=\"" + std::to_string(plot.width) + "\" height=\"" +
         std::to_string(whole_height) + "\" role=\"img\">\n<title>" + escape_html(plot.title) + "</title>\n";
   svg += "<clipPath id=\"" + clip + "\"><rect x=\"" + number(left) + "\" y=\"" + number(top - 5) + "\" width=\"" +
@@ -277,8 +308,68 @@ std::string to_svg(const Plot& plot) {
     drawing.add_series(s, inks.back());
   }
   svg += "</g>\n";
+  drawing.add_events();
   drawing.add_legend(inks);
   return svg + "</svg>\n";
+}
+
+Plot plot_of_bounds(const std::string& title, const std::vector<double>& shares) {
+  constexpr double kLeast = 1e-3;  // what is nearer to perfect is drawn there
+  Plot plot{.title = title, .x_title = "in the order of the page", .y_title = "share of the bound", .is_log_y = true};
+  Series met{.name = "within its bound", .stroke = Stroke::marks, .colour = 2},
+      missed{.name = "beyond it", .stroke = Stroke::crosses, .colour = 1};
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    Series& series = shares[i] <= 1 ? met : missed;
+    series.x.push_back(double(i + 1)), series.y.push_back(std::max(shares[i], kLeast));
+  }
+  const Series bound{
+      .name = "bound", .x = {0, double(shares.size() + 1)}, .y = {1, 1}, .stroke = Stroke::dashed, .colour = 6};
+  plot.series = {bound, met, missed};
+  return plot;
+}
+
+std::string plot_script() {
+  return R"(<script>
+for (const svg of document.querySelectorAll("svg[data-x]")) {
+  const axis = text => { const [low, high, from, to, log] = text.split(" ").map(Number); return { low, high, from, to, log }; };
+  const x = axis(svg.dataset.x), y = axis(svg.dataset.y), [xTitle, yTitle] = svg.dataset.titles.split("|");
+  const value = (a, p) => { const v = a.low + (p - a.from) / (a.to - a.from) * (a.high - a.low); return Number((a.log ? 10 ** v : v).toPrecision(3)); };
+  const lines = [...svg.querySelectorAll("polyline")].map(line => ({
+    name: line.dataset.name, ink: line.getAttribute("stroke"),
+    points: line.getAttribute("points").trim().split(" ").filter(p => p).map(p => p.split(",").map(Number)) }));
+  if (!lines.some(line => line.points.length)) continue;
+  const make = (name, attributes, parent) => { const e = document.createElementNS(svg.namespaceURI, name); for (const k in attributes) e.setAttribute(k, attributes[k]); return parent.appendChild(e); };
+  const cursor = make("g", { class: "cursor" }, svg);
+  const near = (points, px, py) => points.reduce((best, p) => { const d = Math.hypot(p[0] - px, p[1] - py); return best.d > d ? { d, p } : best; }, { d: Infinity });
+  const between = (points, px) => {
+    const i = points.findIndex(p => p[0] >= px - 0.05), b = points[i], a = points[Math.max(i - 1, 0)];
+    if (i == -1 || a[0] > px + 0.05) return null;
+    return [px, b[0] > a[0] ? a[1] + (px - a[0]) / (b[0] - a[0]) * (b[1] - a[1]) : b[1]];
+  };
+  const show = event => {
+    const place = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
+    cursor.replaceChildren();
+    if (x.from - 4 > place.x || place.x > x.to + 4 || place.y > y.from + 4 || y.to - 8 > place.y) return;
+    const drawn = lines.filter(line => line.points.length);
+    const found = svg.dataset.along
+      ? drawn.map(line => ({ line, p: between(line.points, Math.min(Math.max(place.x, x.from), x.to)) })).filter(one => one.p)
+      : [drawn.map(line => ({ line, ...near(line.points, place.x, place.y) })).reduce((a, b) => b.d > a.d ? a : b)];
+    if (!found.length) return;
+    const at = svg.dataset.along ? Math.min(Math.max(place.x, x.from), x.to) : found[0].p[0];
+    const rows = [[xTitle + "  " + value(x, at), "#222"], ...found.map(one => [(one.line.name || yTitle) + "  " + value(y, one.p[1]), one.line.ink])];
+    if (svg.dataset.along) make("path", { d: `M${at} ${y.to}V${y.from}` }, cursor);
+    for (const one of found) make("circle", { cx: one.p[0], cy: one.p[1], r: 3.5, fill: one.line.ink }, cursor);
+    const box = make("rect", { rx: 3 }, cursor);
+    const texts = rows.map(([text, ink]) => { const t = make("text", { fill: ink }, cursor); t.textContent = text; t.style.fill = ink; return t; });
+    const width = 16 + Math.max(...texts.map(t => t.getComputedTextLength())), high = 1.35 * parseFloat(getComputedStyle(texts[0]).fontSize);
+    const left = x.to > at + 10 + width ? at + 10 : Math.max(2, at - 10 - width);
+    texts.forEach((t, i) => { t.setAttribute("x", left + 8); t.setAttribute("y", y.to + 8 + high * (i + 0.8)); });
+    for (const [k, v] of Object.entries({ x: left, y: y.to + 4, width, height: high * rows.length + 8 })) box.setAttribute(k, v);
+  };
+  for (const kind of ["pointermove", "pointerdown"]) svg.addEventListener(kind, show);
+  svg.addEventListener("pointerleave", () => cursor.replaceChildren());
+}
+</script>)";
 }
 
 }  // namespace ctpm::reports

@@ -21,6 +21,9 @@ h2 { font-size: 1.25rem; margin: 2.4rem 0 .5rem; padding-top: .8rem; border-top:
 .subtitle, .caption { color: #555; }
 .caption { font-size: 13px; margin: .3rem 0 0; max-width: 62em; }
 .head { font-weight: 600; margin: .8rem 0 .3rem; }
+.conclusion { padding: .7rem 1.1rem; margin: 1.2rem 0; border-left: 6px solid #777; background: #f6f6f6; }
+.conclusion p { font-size: 1.15rem; font-weight: 600; margin: 0; } .conclusion ul { margin: .4rem 0 0; padding-left: 1.2rem; }
+.conclusion.good { border-color: #009e73; background: #f0f9f5; } .conclusion.bad { border-color: #c0392b; background: #fcf3f1; }
 .verdict { padding: .5rem .8rem; border-left: 5px solid #999; background: #f6f6f6; font-weight: 600; }
 .verdict.good { border-color: #009e73; } .verdict.bad { border-color: #c0392b; }
 .row { display: flex; flex-wrap: wrap; gap: 1.2rem; margin: .8rem 0; }
@@ -37,6 +40,19 @@ td.n { text-align: right; white-space: nowrap; } td { min-width: 2.5em; max-widt
 svg .grid { stroke: #e6e6e6; } svg .axis { stroke: #444; }
 svg text { font: 12px system-ui, "Liberation Sans", "DejaVu Sans", sans-serif; fill: #222; }
 svg .tick { fill: #555; font-size: 11.5px; } svg .head { font-weight: 600; font-size: 13.5px; }
+svg .event path { stroke: #c0392b; stroke-dasharray: 2 3; fill: none; } svg .event rect { fill: #c0392b; } svg .event text { fill: #fff; font-weight: 600; font-size: 11.5px; }
+svg .cursor { pointer-events: none; } svg .cursor path { stroke: #222; } svg .cursor rect { fill: #fff; stroke: #aaa; opacity: .93; }
+figure:target { outline: 3px solid #c0392b; outline-offset: 4px; }
+@media (max-width: 600px) {
+  body { padding: 0 .9rem; margin: 1rem auto; } h1 { font-size: 1.4rem; } .row { gap: .8rem; }
+  figure { flex-basis: 100%; } figure svg { width: 100%; }
+  svg text, svg .tick { font-size: 15px; } svg .head { font-size: 15.5px; } svg .cursor text { font-size: 17px; }
+  .table { overflow-x: visible; } table, tbody { display: block; } thead { display: none; }
+  tr { display: flex; flex-wrap: wrap; gap: 0 1rem; padding: .4rem 0; border-bottom: 1px solid #ddd; }
+  td, td.n { display: block; border: 0; padding: 0; min-width: 0; text-align: left; white-space: normal; order: 2; overflow-wrap: anywhere; }
+  td:empty { display: none; } td:first-child { order: 0; font-weight: 600; flex: 1 0 60%; } td.verdict-cell { order: 1; }
+  td[data-title]:not(:first-child):not(.verdict-cell)::before { content: attr(data-title) " "; color: #666; }
+}
 )";
 
 std::string base64(const std::vector<unsigned char>& bytes) {
@@ -55,10 +71,10 @@ std::string base64(const std::vector<unsigned char>& bytes) {
   return text;
 }
 
-std::string figure(const std::string& content, const std::string& caption) {
+std::string figure(const std::string& content, const std::string& caption, const std::string& id = "") {
   const std::string words =
       caption.empty() ? "" : "<figcaption class=\"caption\">" + escape_html(caption) + "</figcaption>";
-  return "<figure>" + content + words + "</figure>\n";
+  return "<figure" + (id.empty() ? "" : " id=\"" + escape_html(id) + "\"") + ">" + content + words + "</figure>\n";
 }
 
 }  // namespace
@@ -75,16 +91,24 @@ Result<Done> Report::add(const Section& section) {
   return Done{};
 }
 
+void Report::conclude(ReportVerdict verdict, const std::string& sentence, const std::vector<std::string>& points) {
+  const char* tone = verdict == ReportVerdict::met ? " good" : verdict == ReportVerdict::missed ? " bad" : "";
+  body_ += std::string("<div class=\"conclusion") + tone + "\"><p>" + escape_html(sentence) + "</p>";
+  for (std::size_t i = 0; i < points.size(); ++i)
+    body_ += (i ? "" : "<ul>") + ("<li>" + escape_html(points[i]) + "</li>") + (i + 1 < points.size() ? "" : "</ul>");
+  body_ += "</div>\n";
+}
+
 void Report::add_heading(const std::string& text) { body_ += "<h2>" + escape_html(text) + "</h2>\n"; }
 void Report::add_paragraph(const std::string& text) { body_ += "<p>" + escape_html(text) + "</p>\n"; }
 void Report::add_verdict(bool is_good, const std::string& text) {
   body_ += std::string("<p class=\"verdict ") + (is_good ? "good" : "bad") + "\">" + escape_html(text) + "</p>\n";
 }
-void Report::add_remark(const std::string& text) { body_ += "<p class=\"verdict\">" + escape_html(text) + "</p>\n"; }
 void Report::add_table(const Table& table) { body_ += to_html(table); }
 
 void Report::add_plots(const std::vector<Plot>& plots) {
   body_ += "<div class=\"row\">\n";
+  has_plots_ = has_plots_ || !plots.empty();
   for (const Plot& plot : plots) body_ += figure(to_svg(plot), plot.caption);
   body_ += "</div>\n";
 }
@@ -94,7 +118,8 @@ Result<Done> Report::add_pictures(const std::vector<Picture>& pictures) {
   for (const Picture& picture : pictures) {
     const Result<std::string> data = to_data_uri(picture.frame);
     if (!data) return data.errors();
-    row += figure("<img alt=\"" + escape_html(picture.caption) + "\" src=\"" + *data + "\"/>", picture.caption);
+    row += figure("<img alt=\"" + escape_html(picture.caption) + "\" src=\"" + *data + "\"/>", picture.caption,
+                  picture.id);
   }
   body_ += "<div class=\"row\">\n" + row + "</div>\n";
   return Done{};
@@ -105,7 +130,8 @@ std::string Report::html() const {
          "<meta name=\"viewport\" "
          "content=\"width=device-width\"/><title>" +
          escape_html(title_) + "</title><style>" + kStyle + "</style></head>\n<body>\n<h1>" + escape_html(title_) +
-         "</h1>\n<p class=\"subtitle\">" + escape_html(subtitle_) + "</p>\n" + body_ + "</body>\n</html>\n";
+         "</h1>\n<p class=\"subtitle\">" + escape_html(subtitle_) + "</p>\n" + body_ +
+         (has_plots_ ? plot_script() : "") + "</body>\n</html>\n";
 }
 
 Result<std::string> to_data_uri(const render::Frame& frame) {

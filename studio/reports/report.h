@@ -14,6 +14,7 @@ namespace ctpm::reports {
 struct Picture {
   render::Frame frame;
   std::string caption;
+  std::string id = {};  ///< by which plots lead to it: "#id"
 };
 
 /// One part of a report: text first, then plots, pictures and tables.
@@ -31,6 +32,10 @@ class Report {
  public:
   Report(std::string title, std::string subtitle);
 
+  /// The page's conclusion, below its title: the result in one sentence, coloured where it is good or bad, and what a
+  /// reader must know to believe it.
+  void conclude(ReportVerdict verdict, const std::string& sentence, const std::vector<std::string>& points);
+
   void add_heading(const std::string& text);
   void add_paragraph(const std::string& text);
 
@@ -40,8 +45,6 @@ class Report {
   /// Adds a line with a coloured verdict.
   void add_verdict(bool is_good, const std::string& text);
 
-  /// Adds a line like a verdict that judges nothing.
-  void add_remark(const std::string& text);
   void add_table(const Table& table);
 
   /// Adds plots side by side, as many as fit in a row.
@@ -55,6 +58,7 @@ class Report {
 
  private:
   std::string title_, subtitle_, body_;
+  bool has_plots_ = false;
 };
 
 /// A frame as `data:image/png;base64,...`. Error: an empty frame.

@@ -1,5 +1,6 @@
 #include "studio/reports/table.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "core/model/result.h"
@@ -16,14 +17,19 @@ std::string whole_number(double value) {
   return text;
 }
 
-std::string html_cell(const Cell& cell, int digits) {
-  if (const auto* text = std::get_if<std::string>(&cell)) return "<td>" + escape_html(*text) + "</td>";
+/// Names its column, because narrow screens show a row as lines without the table's head.
+std::string html_cell(const Cell& cell, const Column& column, bool is_only_verdict) {
+  const std::string title = " data-title=\"" + escape_html(column.title) + "\">";
+  if (const auto* text = std::get_if<std::string>(&cell))
+    return std::string("<td") + (column.decides ? " class=\"verdict-cell\"" : "") + title + escape_html(*text) +
+           "</td>";
   if (const auto* value = std::get_if<double>(&cell))
-    return "<td class=\"n\">" + output::short_number(*value, digits) + "</td>";
+    return "<td class=\"n\"" + title + output::short_number(*value, column.digits) + "</td>";
   if (const auto* count = std::get_if<std::int64_t>(&cell))
-    return "<td class=\"n\">" + std::to_string(*count) + "</td>";
+    return "<td class=\"n\"" + title + std::to_string(*count) + "</td>";
   if (const auto* verdict = std::get_if<ReportVerdict>(&cell))
-    return std::string("<td><span class=\"v ") + to_word(*verdict) + "\">" + to_word(*verdict) + "</span></td>";
+    return "<td" + (is_only_verdict ? " class=\"verdict-cell\">" : title) + "<span class=\"v " + to_word(*verdict) +
+           "\">" + to_word(*verdict) + "</span></td>";
   return "<td></td>";
 }
 
@@ -63,8 +69,10 @@ std::string to_html(const Table& table) {
   for (const Column& column : table.columns) html += "<th>" + escape_html(column.title) + "</th>";
   html += "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
+    const auto is_verdict = [](const Cell& cell) { return std::holds_alternative<ReportVerdict>(cell); };
+    const bool has_one = std::count_if(row.begin(), row.end(), is_verdict) == 1;
     html += "<tr>";
-    for (std::size_t i = 0; i < row.size(); ++i) html += html_cell(row[i], table.columns[i].digits);
+    for (std::size_t i = 0; i < row.size(); ++i) html += html_cell(row[i], table.columns[i], has_one);
     html += "</tr>\n";
   }
   html += "</tbody></table>";

@@ -21,9 +21,10 @@ enum class ReportVerdict {
 using Cell = std::variant<std::monostate, std::string, double, std::int64_t, ReportVerdict>;
 
 struct Column {
-  std::string key;    ///< name in JSON and CSV, contains the unit (`force_n`)
-  std::string title;  ///< name for people, with the unit
-  int digits = 4;     ///< significant digits in the page; JSON and CSV keep all
+  std::string key;       ///< name in JSON and CSV, contains the unit (`force_n`)
+  std::string title;     ///< name for people, with the unit
+  int digits = 4;        ///< significant digits in the page; JSON and CSV keep all
+  bool decides = false;  ///< stands beside a row's first cell on narrow screens, as verdicts do
 };
 
 /// Rows under named columns, for the page and for programs.

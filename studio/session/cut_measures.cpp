@@ -56,6 +56,18 @@ void CutMeasures::add(const cutting::SweptQuad& quad, CutSize& size) const {
                 norm(cross(quad.to2 - quad.to, quad.from2 - quad.to)));
 }
 
+double CutMeasures::edge_depth(const State& state) const {
+  double deepest = 0;
+  for (std::size_t node = 0; node < state.edge_organ.size(); ++node) {
+    const std::int32_t organ = state.edge_organ[node];
+    if (organ < 0 || !surfaces_[std::size_t(organ)]) continue;
+    const Vec3 place = state.blade_trail[node];
+    if (depth_.at(std::size_t(organ), place) <= 0) continue;
+    deepest = std::max(deepest, surfaces_[std::size_t(organ)]->nearest(place).squared_distance);
+  }
+  return std::sqrt(deepest);
+}
+
 void CutMeasures::measure(const State& state) {
   const std::size_t rows = cutting::swept_rows(state);
   const bool goes_on = rows > rows_ && (rows_ == 0 || state.swept[(rows_ - 1) * kEdgeNodes] == last_);

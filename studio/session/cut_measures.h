@@ -33,6 +33,9 @@ class CutMeasures {
   /// swept surface: of a State of theirs, only what was cut in the present replay is known.
   std::optional<CutSize> size() const { return size_; }
 
+  /// How deep a blade's edge is in an organ of the State, in the tissue at rest [m]; 0 where no node of it is inside.
+  double edge_depth(const State& state) const;
+
  private:
   void add(const cutting::SweptQuad& quad, CutSize& size) const;
 

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 namespace ctpm::video {
 namespace {
@@ -132,20 +133,49 @@ std::string subtitle_track(const std::vector<Sample>& samples, std::uint32_t num
 
 /// Chapters as most players read them (Nero's `chpl`), in units of 100 ns.
 std::string chapter_list(const std::vector<Caption>& captions) {
-  const std::size_t count = std::min(captions.size(), kMostChapters);
+  std::vector<const Caption*> chapters;
+  for (const Caption& caption : captions)
+    if (caption.is_chapter && chapters.size() < kMostChapters) chapters.push_back(&caption);
   Bytes list;
-  list.u32(0x01000000).u32(0).u8(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::string name = captions[i].text.substr(0, 255);
-    list.u64(std::uint64_t(std::llround(captions[i].from_s * 1e7))).u8(name.size()).raw(name);
+  list.u32(0x01000000).u32(0).u8(chapters.size());
+  for (const Caption* chapter : chapters) {
+    std::string name = chapter->text.substr(0, 255);
+    std::replace(name.begin(), name.end(), '\n', ' ');
+    list.u64(std::uint64_t(std::llround(chapter->from_s * 1e7))).u8(name.size()).raw(name);
   }
   return box("chpl", list.text);
+}
+
+/// How the colours of H.264 are coded: primaries and curve of BT.709, the matrix of BT.601, not the full range.
+std::string colour_box() { return box("colr", Bytes().raw("nclx").u16(1).u16(1).u16(6).u8(0).text); }
+
+/// The boxes with what says how colours are coded, in each video track.
+std::string with_colours(const std::string& bytes) {
+  /// Boxes that hold boxes, and what they hold before them.
+  static const std::map<std::string, std::size_t> kHolders{{"trak", 0}, {"mdia", 0}, {"minf", 0},
+                                                           {"stbl", 0}, {"stsd", 8}, {"avc1", 78}};
+  std::string result;
+  for (std::size_t at = 0; at + 8 <= bytes.size();) {
+    const std::size_t size = number(bytes, at, 4);
+    if (size < 8 || at + size > bytes.size()) return bytes;
+    const std::string kind = bytes.substr(at + 4, 4), whole = bytes.substr(at, size);
+    const auto holder = kHolders.find(kind);
+    if (holder == kHolders.end() || size < 8 + holder->second) {
+      result += whole;
+    } else {
+      const std::string inside = with_colours(whole.substr(8 + holder->second));
+      const bool is_bare = kind == "avc1" && find_box(inside, 0, inside.size(), "colr").at == std::string::npos;
+      result += box(kind.c_str(), whole.substr(8, holder->second) + inside + (is_bare ? colour_box() : ""));
+    }
+    at += size;
+  }
+  return result;
 }
 
 /// The index with one more track, and with chapters; empty if it has no header.
 std::string with_captions(const std::string& movie, const std::vector<Caption>& captions,
                           const std::vector<Sample>& samples, std::uint64_t first_byte) {
-  std::string content = movie.substr(8);
+  std::string content = with_colours(movie.substr(8));
   const Place header = find_box(content, 0, content.size(), "mvhd");
   constexpr std::size_t kHeaderSize = 108;  // of version 0
   if (header.size != kHeaderSize) return "";

@@ -44,6 +44,16 @@ render::Colour colour_of_layer(const scenes::OrganSpec& organ, std::size_t layer
   return {paler(organ.inner_color.x), paler(organ.inner_color.y), paler(organ.inner_color.z)};
 }
 
+/// What an organ of one tissue shows where it is cut, as it does in a body: for pictures alone. The inside is the
+/// scene's.
+std::vector<render::LayerLook> anatomy_of(const std::string& organ) {
+  const auto is = [&](std::string_view word) { return organ.find(word) != std::string::npos; };
+  if (is("kidney")) return {{0.0006, {0.82, 0.58, 0.50}}, {0.0075, {0.74, 0.42, 0.36}}};  // capsule, cortex; medulla
+  if (is("liver")) return {{0.0006, {0.70, 0.46, 0.40}}};                                 // capsule; parenchyma
+  if (is("skin")) return {{0.0009, {0.72, 0.48, 0.38}}, {0.004, {0.90, 0.64, 0.58}}};     // epidermis, dermis; fat
+  return {};
+}
+
 std::string name_of(const scenes::MaterialSpec& material) {
   return material.preset.empty() ? "a material of its own" : material.preset;
 }
@@ -60,6 +70,7 @@ render::SceneView view_of(const scenes::SceneSpec& scene, const Model& model) {
     look.inner = {organ.inner_color.x, organ.inner_color.y, organ.inner_color.z};
     for (std::size_t layer = 0; layer < organ.layers.size(); ++layer)
       look.layers.push_back({organ.layers[layer].to_depth, colour_of_layer(organ, layer)});
+    if (organ.layers.empty()) look.layers = anatomy_of(organ.name);
     view.looks.push_back(look);
   }
   return view;

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <random>
+#include <tuple>
 
 #include "studio/compare/alignment.h"
 #include "studio/compare/motion.h"
@@ -21,6 +23,13 @@ compare::Path least_jerk_path(double rate_hz) {
     path.push_back({0, t * t * t * (10 - 15 * t + 6 * t * t), 0});
   }
   return path;
+}
+
+/// exp(-5 t^2) at 100 Hz for t in [-1, 1), the example of the measures' authors.
+std::vector<double> authors_speed() {
+  std::vector<double> speed;
+  for (int i = 0; i < 200; ++i) speed.push_back(std::exp(-5 * std::pow(-1 + 0.01 * i, 2)));
+  return speed;
 }
 
 compare::Path line(Vec3 from, Vec3 to, int count) {
@@ -50,10 +59,8 @@ TEST(Motion, AStraightLineHasEconomyOneAndARightAngleItsDiagonal) {
 }
 
 TEST(Motion, SpectralArcLengthIsThatOfItsAuthorsExample) {
-  // exp(-5 t^2) at 100 Hz for t in [-1, 1): -1.41403 in the text beside the authors' own program.
-  std::vector<double> speed;
-  for (int i = 0; i < 200; ++i) speed.push_back(std::exp(-5 * std::pow(-1 + 0.01 * i, 2)));
-  EXPECT_NEAR(*compare::spectral_arc_length(speed, 100), -1.41403, 5e-6);
+  // -1.41403 in the text beside the authors' own program.
+  EXPECT_NEAR(*compare::spectral_arc_length(authors_speed(), 100), -1.41403, 5e-6);
 }
 
 TEST(Motion, SpectralArcLengthOfLeastJerkIsThatOfItsSpectrum) {
@@ -78,18 +85,27 @@ TEST(Motion, SpectralArcLengthOfLeastJerkIsThatOfItsSpectrum) {
         << rate;
 }
 
+std::optional<double> jerk_of(const compare::Path& path, double rate_hz) {
+  return compare::log_dimensionless_jerk(compare::speed_along(path, rate_hz), rate_hz);
+}
+
+TEST(Motion, LogDimensionlessJerkIsThatOfItsAuthorsExample) {
+  // -5.81636 in the text beside the authors' own program.
+  EXPECT_NEAR(*compare::log_dimensionless_jerk(authors_speed(), 100), -5.81636, 5e-6);
+}
+
 TEST(Motion, LogDimensionlessJerkOfLeastJerkIsItsClosedForm) {
   // Integral of the squared jerk 720, largest speed 15/8: -ln(720 / (15/8)^2) = -ln 204.8.
-  EXPECT_NEAR(*compare::log_dimensionless_jerk(least_jerk_path(10000), 10000), -std::log(204.8), 0.001);
-  EXPECT_NEAR(*compare::log_dimensionless_jerk(least_jerk_path(100), 100), -std::log(204.8), 0.1);
+  EXPECT_NEAR(*jerk_of(least_jerk_path(10000), 10000), -std::log(204.8), 0.001);
+  EXPECT_NEAR(*jerk_of(least_jerk_path(100), 100), -std::log(204.8), 0.1);
 }
 
 TEST(Motion, SmoothnessDependsNeitherOnSizeNorOnDuration) {
   const compare::Path path = least_jerk_path(100);
   compare::Path large = path;
   for (Vec3& p : large) p = 7 * p;
-  EXPECT_NEAR(*compare::log_dimensionless_jerk(large, 100), *compare::log_dimensionless_jerk(path, 100), 1e-9);
-  EXPECT_NEAR(*compare::log_dimensionless_jerk(path, 20), *compare::log_dimensionless_jerk(path, 100), 1e-9);
+  EXPECT_NEAR(*jerk_of(large, 100), *jerk_of(path, 100), 1e-9);
+  EXPECT_NEAR(*jerk_of(path, 20), *jerk_of(path, 100), 1e-9);
   EXPECT_NEAR(*compare::spectral_arc_length(compare::speed_along(large, 100), 100),
               *compare::spectral_arc_length(compare::speed_along(path, 100), 100), 1e-9);
 }
@@ -101,14 +117,45 @@ TEST(Motion, TremorIsLessSmooth) {
     shaking[i].y += 0.01 * std::sin(2 * std::numbers::pi * 4 * double(i) / 100);
   EXPECT_LT(*compare::spectral_arc_length(compare::speed_along(shaking, 100), 100),
             *compare::spectral_arc_length(compare::speed_along(path, 100), 100) - 0.1);
-  EXPECT_LT(*compare::log_dimensionless_jerk(shaking, 100), *compare::log_dimensionless_jerk(path, 100) - 1);
+  EXPECT_LT(*jerk_of(shaking, 100), *jerk_of(path, 100) - 1);
 }
 
 TEST(Motion, AHandThatRestsHasNoSmoothness) {
   const compare::Path still(200, {1, 2, 3});
   EXPECT_FALSE(compare::spectral_arc_length(compare::speed_along(still, 100), 100));
-  EXPECT_FALSE(compare::log_dimensionless_jerk(still, 100));
-  EXPECT_FALSE(compare::log_dimensionless_jerk(compare::Path(3, {0, 0, 0}), 100));
+  EXPECT_FALSE(jerk_of(still, 100));
+  EXPECT_FALSE(jerk_of(compare::Path(3, {0, 0, 0}), 100));
+}
+
+TEST(Motion, ALowPassLeavesLinesAndSlowWaysAndHalvesThePowerOfTheFrequencyNamed) {
+  const compare::Path straight = line({0, 0, 0}, {1, 2, 3}, 50);
+  const compare::Path same = compare::low_passed(straight, 100);
+  ASSERT_EQ(same.size(), straight.size());
+  for (std::size_t i = 0; i < same.size(); ++i) EXPECT_NEAR(norm(same[i] - straight[i]), 0, 1e-12) << i;
+  for (const auto& [frequency, left] :
+       {std::pair{1.0, 0.9965}, {compare::kHandCutoff, std::sqrt(0.5)}, {40.0, 0.004}}) {
+    compare::Path wave;
+    for (int i = 0; i < 2000; ++i) wave.push_back({std::cos(2 * std::numbers::pi * frequency * i / 1000), 0, 0});
+    EXPECT_NEAR(compare::low_passed(wave, 1000)[1000].x, left, 1e-3) << frequency;
+  }
+  EXPECT_TRUE(compare::low_passed({}, 100).empty());
+}
+
+TEST(Motion, MovementsAreTheSameAtAnyPaceAndEndInStandingStill) {
+  const auto speed_at = [](double stretched) {
+    compare::Path path;
+    for (const auto& [seconds, from, to] :
+         {std::tuple{0.5, 0.0, 0.0}, {1.0, 0.0, 0.1}, {0.4, 0.1, 0.1}, {1.0, 0.1, 0.3}})
+      for (const compare::Path& piece = least_jerk_path(100 * seconds * stretched); const Vec3& p : piece)
+        path.push_back({from + (to - from) * p.y, 0, 0});
+    return compare::speed_along(path, 100);
+  };
+  const std::vector<compare::Spell> once = compare::movements_of(speed_at(1)),
+                                    slow = compare::movements_of(speed_at(4));
+  ASSERT_EQ(once.size(), 2u);
+  ASSERT_EQ(slow.size(), 2u);
+  EXPECT_GT(once[0].first, 50u) << "standing still at the start is no part of a movement";
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(double(slow[i].first), 4 * double(once[i].first), 12);
 }
 
 TEST(Motion, SpellsAreRunsThatLastLongEnoughAndGapsThatAreShortAreClosed) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -59,6 +60,15 @@ TEST_F(Compare, AClumsyCutIsWorseInEveryMeasureThatHasAnExpertsValue) {
   EXPECT_EQ(value_of(json, "elements_severed", "expert"),
             value_of(json, "elements_severed_by_both", "trainee") +
                 value_of(json, "elements_severed_by_expert_only", "trainee"));
+  // The blade's depth is that of its edge: its largest is that of the cut, within what it goes in 0.01 s.
+  const auto plot = json.find("Depth of the blade in the tissue"), curve = json.find("\"name\": \"expert\"", plot);
+  ASSERT_NE(plot, std::string::npos);
+  const auto values = json.find("\"y\": [", curve);
+  double deepest = 0;
+  const char* at = json.c_str() + values + 6;
+  for (char* end = nullptr; *at != ']'; at = end) deepest = std::max(deepest, std::strtod(at + 1, &end));
+  EXPECT_NEAR(deepest, value_of(json, "cut_depth_mm", "expert"), 0.5);
+  EXPECT_TRUE(std::isnan(value_of(json, "largest_depth_mm", "trainee"))) << "a blade pushes nothing";
   // The second cut lies 10 to 14 mm beside the first.
   EXPECT_GT(value_of(json, "cut_path_hausdorff_mm", "trainee"), 8);
   EXPECT_TRUE(holds(json, "\"what\": \"cut where the expert did not\"")) << json;
@@ -99,10 +109,17 @@ TEST_F(Compare, WritesOnePageThatLoadsNothingAndItsNumbers) {
   for (const char* part : {"Worst moments first", "Force on the tool", "Path of the tool, from above",
                            "Path of the tool, from the side", "aligned in time", "Balasubramanian"})
     EXPECT_TRUE(holds(page, part)) << part;
-  for (const char* loading : {"src=\"http", "href=\"http", "<script", "@import"})
+  for (const char* loading : {"src=\"http", "href=\"http", "<script src", "@import", "fetch("})
     EXPECT_FALSE(holds(page, loading)) << loading;
-  EXPECT_LT(page.find("force above the limit"), page.find("away from the expert"));  // harm comes first
+  EXPECT_LT(page.find("force above the limit"), page.find("away from the expert"));  // the gravest comes first
+  // What to do better comes before everything else; events of the plots lead to pictures of both hands.
+  EXPECT_LT(page.find("Press more gently: 7.5"), page.find("<h2>"));
+  EXPECT_TRUE(holds(page, "href=\"#moment-1\"") && holds(page, "<figure id=\"moment-1\"><img")) << "a picture of it";
+  std::size_t pictures = 0;
+  for (auto at = page.find("<img"); at != std::string::npos; at = page.find("<img", at + 1)) ++pictures;
+  EXPECT_EQ(pictures, 8u);
   const std::string results = slurp(folder_.path() / "report/results.json");
+  EXPECT_LT(results.find("Press more gently: 7.5"), results.find("\"measures\""));
   EXPECT_EQ(results, compare(press_, hard_press_, {"--json"}).out);
 }
 

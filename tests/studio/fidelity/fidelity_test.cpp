@@ -97,6 +97,9 @@ TEST(FidelityCommand, WritesAReportOfTheRecipesThatAreAskedFor) {
   const std::string page = slurp(folder.path() / "out/report.html");
   EXPECT_NE(page.find("Tension of a bar"), std::string::npos);
   EXPECT_NE(page.find("Short form"), std::string::npos);
+  EXPECT_LT(page.find("Must hold: "), page.find("Of what the goals allow"));
+  EXPECT_LT(page.find("Of what the goals allow"), page.find("<table"));
+  EXPECT_EQ(outcome.code == 0, page.find("<li>Missed: ") == std::string::npos) << "what is missed is named";
   EXPECT_EQ(outcome.code == 0, json.find("\"goals_missed\": 0") != std::string::npos);
 }
 

@@ -92,8 +92,33 @@ TEST_F(Schedule, AlongThePathTheToolsAreNearEachOther) {
   EXPECT_LT(apart(ticks), 0.8 * apart(clock));
 }
 
+TEST_F(Schedule, AlongThePathNoHalfCrawlsWhileTheOtherGoesOn) {
+  const auto ticks = by("path");
+  // Before and after the tools are held only one of them may have something to show.
+  const auto held = [](recordings::SessionReader& session) {
+    const auto records = session.ticks(0, session.tick_count());
+    std::int64_t first = -1, last = 0;
+    for (std::size_t i = 0; i < records->size(); ++i)
+      if ((*records)[i].inputs.tool >= 0) first = first < 0 ? std::int64_t(i) : first, last = std::int64_t(i);
+    return std::pair{first, last};
+  };
+  const auto [from, to] = held(expert_);
+  const auto [clumsy_from, clumsy_to] = held(clumsy_);
+  const double least = compare::least_pace(double(to - from), double(clumsy_to - clumsy_from));
+  EXPECT_GT(least, 0.1);
+  int seen = 0;
+  for (std::int64_t frame = 0; frame < ticks[0].frame_count; ++frame) {
+    const std::int64_t a = ticks[0].tick(frame), b = ticks[1].tick(frame);
+    if (a <= from || a >= to || b <= clumsy_from || b >= clumsy_to) continue;
+    for (const film::FrameTicks& half : ticks) EXPECT_GE(half.share(frame), least - 1e-9) << frame;
+    EXPECT_NEAR(std::max(ticks[0].share(frame), ticks[1].share(frame)), 1, 1e-9) << frame;
+    ++seen;
+  }
+  EXPECT_GT(seen, 200);
+}
+
 TEST_F(Schedule, SlowPartsTakeFourTimesAsLongAndNothingElseDoes) {
-  const auto all = film::all_moments(expert_);
+  const auto all = film::all_moments(expert_, {0, expert_.tick_count()});
   ASSERT_TRUE(all);
   const auto slow = film::slow_parts(*all, "cut,worst", 1e-3);
   ASSERT_TRUE(slow);

@@ -396,6 +396,14 @@ TEST(Report, IsOneBalancedPageThatLoadsNothing) {
   EXPECT_NE(html.find("The network meets the closed forms in 1 of 1"), std::string::npos);
   EXPECT_NE(html.find("The closed forms meet 0 of 1 values"), std::string::npos);
   EXPECT_NE(html.find("Fig. &lt;8&gt;: 0 of 1"), std::string::npos);
+  // The conclusion comes first, with what must hold and what is only counted, then the picture that proves it.
+  const std::size_t conclusion = html.find("Everything that must hold does: 1 comparisons"),
+                    must = html.find("Must hold: "), counted = html.find("Only counted: "),
+                    plot = html.find("of the bounds is used"), table = html.find("<table");
+  EXPECT_LT(conclusion, must);
+  EXPECT_LT(must, counted);
+  EXPECT_LT(counted, plot);
+  EXPECT_LT(plot, table);
   // Nothing but the three files: no temporary ones are left.
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 3);
   fs::remove_all(folder.parent_path());

@@ -73,7 +73,7 @@ TEST(CutPicture, OpensShowsItsWallAndNoBackground) {
   const auto scene = make_blob_scene();
   render::SceneView view = scene->view;
   view.looks = {render::look_of("liver")};
-  view.looks[0].inner = {0.1, 0.7, 0.2};  // green, which is nowhere else
+  view.looks[0].inner = {0.1, 0.7, 0.2}, view.looks[0].blood = 0;  // green, which is nowhere else
   auto made = render::Renderer::create(480, 270, view);
   ASSERT_TRUE(made);
   render::Renderer& renderer = **made;
@@ -114,6 +114,36 @@ render::Frame picture_of_wall(const TestScene& scene, const render::OrganLook& l
   State state = cut_along_y(scene.model, 0, 0.1, -0.1);
   spread(state, scene.model, [](Vec3 p) { return p.x > 0 ? Vec3{0, 0, -1} : Vec3{}; });
   return (*made)->draw(state, options);
+}
+
+TEST(CutPicture, AFreshWallBleedsAndASectionDoesNot) {
+  const auto scene = make_blob_scene(0.002, 60);
+  render::DrawOptions options;
+  options.camera = render::fit_camera(render::rest_bounds(scene->view), {-1, 0, 0}, {0, 0, 1});
+  options.show_ground = false;
+  render::OrganLook bleeding = render::look_of("skin"), dry = bleeding;
+  bleeding.blood = 1, dry.blood = 0, bleeding.wetness = dry.wetness = 0;
+  const auto redness = [](const render::Frame& frame) {
+    double sum = 0;
+    for (int y = 150; y < 210; ++y)
+      for (int x = 210; x < 270; ++x) {
+        const std::uint8_t* p = &frame.rgb[std::size_t(y * frame.width + x) * 3];
+        sum += double(p[0]) / (p[1] + p[2] + 1);
+      }
+    return sum / 3600;
+  };
+  EXPECT_GT(redness(picture_of_wall(*scene, bleeding, options)), 1.06 * redness(picture_of_wall(*scene, dry, options)));
+  options.cutaway = {{0.0, 0, 0}, {1, 0, 0}};
+  std::vector<render::Frame> sections;
+  for (const render::OrganLook& look : {bleeding, dry}) {
+    render::SceneView view = scene->view;
+    view.looks = {look};
+    auto made = render::Renderer::create(480, 360, view);
+    ASSERT_TRUE(made);
+    options.camera = render::fit_camera(render::rest_bounds(scene->view), {-1, 0, 0}, {0, 0, 1});
+    sections.push_back((*made)->draw(rest_state(scene->model), options));
+  }
+  EXPECT_EQ(sections[0], sections[1]);
 }
 
 TEST(CutPicture, ItsWallIsPalerInTheOutermostLayer) {

@@ -187,5 +187,31 @@ TEST(View, BesideKeepsBothPictures) {
     }
 }
 
+TEST(Spheres, AreRedWhereABladeSeveredAnElement) {
+  const auto scene = make_blob_scene(0.004, 30);
+  const State rest = rest_state(scene->model), cut = cut_along_y(scene->model, 0, 0.1, -0.1);
+  EXPECT_TRUE(render::spheres_at_cuts(scene->model, rest).empty());
+  const std::vector<std::uint8_t> at_cut = render::spheres_at_cuts(scene->model, cut);
+  ASSERT_EQ(at_cut.size(), scene->model.sphere_count());
+  for (std::size_t i = 0; i < at_cut.size(); ++i)
+    if (at_cut[i]) {
+      EXPECT_LT(std::abs(scene->model.rest_position.x[i]), 0.02) << "beside the plane of the cut";
+    }
+  EXPECT_GT(std::count(at_cut.begin(), at_cut.end(), 1), 10);
+  auto renderer = render::Renderer::create(320, 240, scene->view);
+  ASSERT_TRUE(renderer);
+  render::DrawOptions options;
+  options.view = render::View::spheres;
+  options.camera = render::fit_camera(render::rest_bounds(scene->view), {0, 0, -1}, {0, 1, 0});
+  const auto red = [](const render::Frame& frame) {
+    int count = 0;
+    for (std::size_t i = 0; i < frame.rgb.size(); i += 3)
+      count += frame.rgb[i] > 90 && frame.rgb[i] > 3 * frame.rgb[i + 1] && frame.rgb[i] > 3 * frame.rgb[i + 2];
+    return count;
+  };
+  EXPECT_EQ(red((*renderer)->draw(rest, options)), 0);
+  EXPECT_GT(red((*renderer)->draw(cut, options)), 300);
+}
+
 }  // namespace
 }  // namespace ctpm::render_test

@@ -1,0 +1,119 @@
+#include "studio/compare/advice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "studio/compare/way.h"
+#include "studio/output/number_text.h"
+
+namespace ctpm::compare {
+namespace {
+
+constexpr double kNotableShare = 0.1;  // of the expert's value: a cut that differs by less is as good
+constexpr double kTurnedSeverity = 100;
+
+struct Sentence {
+  double severity;
+  std::string text;
+};
+
+std::string number(double value) { return output::short_number(value, 3); }
+std::string at(const Moment& moment) { return " at " + output::fixed(moment.worst_s, 2) + " s"; }
+
+/// The worst moment of a kind, in words. `seconds`, `sum` (of values) and `count`: of all moments of
+/// the kind.
+std::string to_sentence(const Moment& moment, double seconds, double sum, std::size_t count) {
+  const std::string value = number(moment.value) + " " + moment.unit, limit = number(moment.limit) + " " + moment.unit;
+  const std::string in_all = " for " + number(seconds) + " s in all";
+  switch (moment.kind) {
+    case MomentKind::force:
+      return "Press more gently: " + value + at(moment) + ", above the limit of " + limit + in_all + ".";
+    case MomentKind::depth:
+      return "Push less deep: " + value + at(moment) + ", and" + in_all + " beyond the " + limit +
+             " that the tissue bears.";
+    case MomentKind::deviation:
+      return "Stay on the expert's path: " + value + " away from it" + at(moment) + ", and more than " + limit +
+             in_all + ".";
+    case MomentKind::pause:
+      return "Go on without stopping: " + value + " of standing still" + at(moment) + ", at most " + limit +
+             " are usual" + (count > 1 ? "; " + std::to_string(count) + " such pauses." : ".");
+    case MomentKind::stray_cut:
+      return "Cut only where the expert cut: " + number(sum) + " severed elements are ones that the expert left whole" +
+             (count > 1 ? ", " + number(moment.value) + " of them in the cut" : "") + at(moment) + ".";
+  }
+  return "";
+}
+
+void add_moments(std::vector<Sentence>& sentences, const std::vector<Moment>& moments) {
+  for (const MomentKind kind :
+       {MomentKind::force, MomentKind::depth, MomentKind::deviation, MomentKind::pause, MomentKind::stray_cut}) {
+    const Moment* worst = nullptr;
+    double seconds = 0, sum = 0;
+    std::size_t count = 0;
+    for (const Moment& moment : moments)
+      if (moment.kind == kind) {
+        if (!worst) worst = &moment;  // they are sorted
+        seconds += moment.to_s - moment.from_s, sum += moment.value, ++count;
+      }
+    if (worst) sentences.push_back({worst->severity, to_sentence(*worst, seconds, sum, count)});
+  }
+}
+
+/// What the trainee's cut lacks beside the expert's.
+void add_cut(std::vector<Sentence>& sentences, const SessionTrack& expert, const SessionTrack& trainee) {
+  if (expert.cuts.empty()) return;
+  double severed = 0, whole = 0;
+  for (std::size_t i = 0; i < expert.severed_at.size(); ++i)
+    if (expert.severed_at[i] >= 0) ++severed, whole += trainee.severed_at[i] < 0;
+  if (trainee.cuts.empty()) {
+    sentences.push_back({kTurnedSeverity, "Cut: the expert severed " + number(severed) + " elements, this hand none."});
+    return;
+  }
+  if (severed > 0 && whole > kNotableShare * severed)
+    sentences.push_back({whole / severed, "Complete the cut: " + number(whole) + " of the " + number(severed) +
+                                              " elements that the expert severed were left whole."});
+  if (!expert.cut || !trainee.cut) return;
+  const double more = trainee.cut->depth - expert.cut->depth;
+  if (std::abs(more) > kNotableShare * expert.cut->depth)
+    sentences.push_back({std::abs(more) / expert.cut->depth, std::string("Cut ") +
+                                                                 (more < 0 ? "deeper: " : "less deep: ") +
+                                                                 number(1e3 * trainee.cut->depth) + " mm, the expert " +
+                                                                 number(1e3 * expert.cut->depth) + " mm."});
+}
+
+/// The worse measure whose value is farthest from the expert's, as a share.
+std::string most_to_gain(const Comparison& comparison) {
+  const MeasuredValue* most = nullptr;
+  double share = 0;
+  for (const MeasuredValue& value : comparison.values) {
+    if (standing_of(value) != "worse") continue;
+    const double largest = std::max(std::abs(*value.expert), std::abs(*value.trainee));
+    const double own = std::abs(*value.trainee - *value.expert) / largest;
+    if (own > share) most = &value, share = own;
+  }
+  if (!most) return "";
+  const std::string unit = std::string_view(most->measure->unit) == "1" ? "" : std::string(" ") + most->measure->unit;
+  return std::string("Most is to be gained in ") + most->measure->title + ": " + number(*most->trainee) + unit +
+         ", the expert " + number(*most->expert) + unit + ".";
+}
+
+}  // namespace
+
+std::vector<std::string> advice_of(const ComparedSessions& compared) {
+  const Comparison& comparison = compared.comparison;
+  std::vector<Sentence> sentences;
+  if (comparison.way != Way::same)
+    sentences.push_back({kTurnedSeverity, std::string("Turn the stroke: ") + to_word(comparison.way) + "."});
+  add_moments(sentences, comparison.moments);
+  add_cut(sentences, compared.expert, compared.trainee);
+  std::ranges::stable_sort(sentences, std::greater<>(), &Sentence::severity);
+  std::vector<std::string> advice;
+  for (const Sentence& sentence : sentences) advice.push_back(sentence.text);
+  if (!advice.empty()) return advice;
+  advice.push_back("Nothing goes beyond a limit.");
+  if (const std::string gain = most_to_gain(comparison); !gain.empty()) advice.push_back(gain);
+  return advice;
+}
+
+}  // namespace ctpm::compare

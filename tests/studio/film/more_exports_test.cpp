@@ -1,0 +1,218 @@
+// Exports that show more than one session's film: ghosts, strips, pictures of a moment, folders of films, and parts of
+// sessions that are damaged elsewhere.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <tuple>
+
+#include "recordings/session_reader.h"
+#include "studio/render/frame.h"
+#include "tests/studio/commands/run_program.h"
+
+namespace ctpm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::run_ctpm;
+using testing::slurp;
+
+const std::string kShipped = std::string(CTPM_SOURCE_DIR) + "/recordings/shipped/";
+const std::string kExpert = kShipped + "kidney-cut-expert.ctpm", kClumsy = kShipped + "kidney-cut-clumsy.ctpm";
+
+bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+class MoreExports : public ::testing::Test {
+ protected:
+  testing::ProgramOutcome export_to(const std::string& output, std::vector<std::string> sessions,
+                                    const std::vector<std::string>& options) {
+    std::vector<std::string> command{"export"};
+    command.insert(command.end(), sessions.begin(), sessions.end());
+    command.insert(command.end(), {"-o", output, "--size", "480x270"});
+    command.insert(command.end(), options.begin(), options.end());
+    return run_ctpm(command, folder_.path());
+  }
+  render::Frame picture(const std::string& name) {
+    const auto read = render::read_picture((folder_.path() / name).string());
+    EXPECT_TRUE(read) << name;
+    return read ? *read : render::Frame{};
+  }
+
+  const testing::TemporaryFolder folder_;
+};
+
+/// Pixels of `now` that are bluer than in `before`, by their share of blue.
+int bluer(const render::Frame& now, const render::Frame& before) {
+  int count = 0;
+  for (std::size_t i = 0; i + 2 < now.rgb.size(); i += 3)
+    count += now.rgb[i + 2] - now.rgb[i] > before.rgb[i + 2] - before.rgb[i] + 12;
+  return count;
+}
+
+TEST_F(MoreExports, AGhostIsSeenThroughWhereTheOtherToolIs) {
+  const std::vector<std::string> part{"--from-s", "2", "--to-s", "2.1", "--fps", "10", "--overlay", "none"};
+  ASSERT_EQ(export_to("plain/", {kClumsy}, part).code, 0);
+  std::vector<std::string> with_ghost = part;
+  with_ghost.insert(with_ghost.end(), {"--ghost", kExpert, "--align", "clock"});
+  const auto shown = export_to("ghost/", {kClumsy}, with_ghost);
+  ASSERT_EQ(shown.code, 0) << shown.err;
+  const render::Frame plain = picture("plain/000001.png"), ghost = picture("ghost/000001.png");
+  ASSERT_EQ(ghost.width, 480);
+  const int blue = bluer(ghost, plain);
+  EXPECT_GT(blue, 800) << "a tool and its way";
+  EXPECT_LT(blue, 480 * 270 / 5) << "and nothing else";
+  // What is behind it is seen through: the picture below the ghost still changes it.
+  EXPECT_EQ(bluer(plain, ghost), 0);
+  // A ghost where the tool itself is covers it, so that less of the picture changes than its own way off.
+  EXPECT_TRUE(holds(slurp(folder_.path() / "ghost/video.json"), "kidney-cut-clumsy"));
+
+  const auto other = export_to("a.mp4", {kClumsy}, {"--ghost", kShipped + "liver-press-expert.ctpm"});
+  EXPECT_EQ(other.code, 2);
+  EXPECT_TRUE(holds(other.err, "is of another scene")) << other.err;
+  EXPECT_EQ(export_to("a.mp4", {kClumsy}, {"--align", "path"}).code, 2);
+  EXPECT_FALSE(fs::exists(folder_.path() / "a.mp4"));
+}
+
+TEST_F(MoreExports, TheStripShowsWhereInTheSessionThePictureIs) {
+  for (const auto& [name, from, to] : {std::tuple{"early/", "1", "1.1"}, {"late/", "4", "4.1"}}) {
+    const auto shown = export_to(name, {kExpert}, {"--strip", "--from-s", from, "--to-s", to, "--fps", "10"});
+    ASSERT_EQ(shown.code, 0) << shown.err;
+  }
+  const render::Frame early = picture("early/000001.png"), late = picture("late/000001.png");
+  ASSERT_EQ(early.width * 1000 + early.height, 480270) << "the strip takes its room from the picture";
+  // The light line through the whole height of the strip.
+  const auto now = [](const render::Frame& frame) {
+    const auto reader = [&](int x, int y) { return &frame.rgb[std::size_t(y * frame.width + x) * 3]; };
+    for (int x = 0; x < frame.width; ++x) {
+      bool all = true;
+      for (int y = frame.height - 23; y < frame.height; ++y) all &= reader(x, y)[0] > 200 && reader(x, y)[2] > 200;
+      if (all) return x;
+    }
+    return -1;
+  };
+  auto reader = recordings::SessionReader::open(kExpert);
+  ASSERT_TRUE(reader);
+  const double whole = double(reader->tick_count()) * 1e-3;
+  EXPECT_NEAR(now(early), 1.1 / whole * 479, 2);
+  EXPECT_NEAR(now(late), 4.1 / whole * 479, 2);
+}
+
+TEST_F(MoreExports, InsetsShowTheToolFromNearAndTheTissueOpenedAtIt) {
+  for (const char* inset : {"", "near", "section", "near,section"}) {
+    std::vector<std::string> options{"--at-s", "2.5", "--overlay", "none"};
+    if (*inset) options.insert(options.end(), {"--inset", inset});
+    const auto shown = export_to(std::string("a") + inset + ".png", {kExpert}, options);
+    ASSERT_EQ(shown.code, 0) << shown.err;
+  }
+  const render::Frame plain = picture("a.png"), near = picture("anear.png"), section = picture("asection.png"),
+                      both = picture("anear,section.png");
+  // The lower right corner, where the first one is, the place above it for the second, and the rest of the picture.
+  const auto differing = [](const render::Frame& a, const render::Frame& b, int left, int top, int right, int bottom) {
+    int count = 0;
+    for (int y = top; y < bottom; ++y)
+      for (int x = left; x < right; ++x) {
+        const std::size_t i = std::size_t(y * 480 + x) * 3;
+        count += a.rgb[i] != b.rgb[i] || a.rgb[i + 1] != b.rgb[i + 1] || a.rgb[i + 2] != b.rgb[i + 2];
+      }
+    return count;
+  };
+  EXPECT_GT(differing(plain, near, 350, 195, 476, 266), 5000);
+  EXPECT_GT(differing(near, section, 350, 195, 476, 266), 2000) << "they show different things";
+  EXPECT_EQ(differing(plain, near, 0, 0, 340, 270), 0);
+  EXPECT_EQ(differing(near, both, 350, 195, 476, 266), 0);
+  EXPECT_GT(differing(near, both, 350, 121, 476, 188), 5000);
+  const auto wrong = export_to("b.png", {kExpert}, {"--at-s", "1", "--inset", "far"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_TRUE(holds(wrong.err, "--inset: error: got 'far', must be near or section")) << wrong.err;
+}
+
+TEST_F(MoreExports, APictureOfAMomentIsThatOfTheFilm) {
+  ASSERT_EQ(export_to("moment.png", {kExpert}, {"--at-s", "2"}).code, 0);
+  ASSERT_EQ(export_to("film/", {kExpert}, {"--from-s", "1.9", "--to-s", "2", "--fps", "10"}).code, 0);
+  EXPECT_EQ(picture("moment.png"), picture("film/000001.png"));
+  const auto late = export_to("late.png", {kExpert}, {"--at-s", "99"});
+  EXPECT_EQ(late.code, 2);
+  EXPECT_TRUE(holds(late.err, "--at-s: error: got 99, must be in [0, ")) << late.err;
+  EXPECT_FALSE(fs::exists(folder_.path() / "late.png"));
+}
+
+TEST_F(MoreExports, SeveralSessionsAreFilmsInAFolderWithATable) {
+  std::ofstream(folder_.path() / "broken.ctpm") << "no session";
+  const std::vector<std::string> quick{"--from-s", "0.5", "--to-s", "0.7", "--fps", "10"};
+  const auto shown = export_to("films", {kExpert, "broken.ctpm", kClumsy}, quick);
+  EXPECT_EQ(shown.code, 2) << "one of them fails, and the others are there";
+  EXPECT_TRUE(fs::exists(folder_.path() / "films/kidney-cut-expert.mp4"));
+  EXPECT_TRUE(fs::exists(folder_.path() / "films/kidney-cut-clumsy.mp4"));
+  const std::string table = slurp(folder_.path() / "films/results.csv");
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 4) << table;
+  EXPECT_TRUE(holds(table, "kidney-cut-expert.mp4,2,0.2")) << table;
+  EXPECT_TRUE(holds(table, ",same,")) << table;
+  EXPECT_TRUE(holds(table, "broken.ctpm,,,,,,")) << table;
+
+  const auto again = export_to("films", {kExpert, kClumsy}, quick);
+  EXPECT_EQ(again.code, 2);
+  EXPECT_TRUE(holds(again.err, "results.csv")) << again.err;
+  const auto one_file = export_to("a.mp4", {kExpert, kClumsy}, quick);
+  EXPECT_EQ(one_file.code, 2);
+  EXPECT_TRUE(holds(one_file.err, "several sessions are given")) << one_file.err;
+  fs::copy_file(kExpert, folder_.path() / "kidney-cut-expert.ctpm");
+  const auto same_name = export_to("more", {kExpert, "kidney-cut-expert.ctpm"}, quick);
+  EXPECT_EQ(same_name.code, 2);
+  EXPECT_TRUE(holds(same_name.err, "would have the same video as")) << same_name.err;
+  EXPECT_FALSE(fs::exists(folder_.path() / "more"));
+}
+
+TEST_F(MoreExports, APartIsShownThoughTheSessionIsDamagedElsewhere) {
+  const std::string whole = slurp(kClumsy);
+  int refused = 0;
+  for (const double place : {0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9}) {
+    std::string bytes = whole;
+    const auto at = std::size_t(place * double(bytes.size()));
+    for (std::size_t i = at; i < at + 64; ++i) bytes[i] = char(bytes[i] ^ 0x55);
+    std::ofstream(folder_.path() / "flipped.ctpm", std::ios::binary) << bytes;
+    auto reader = recordings::SessionReader::open(folder_.path() / "flipped.ctpm");
+    if (!reader || reader->ticks(0, reader->tick_count())) continue;  // no tick is damaged
+    ++refused;
+    EXPECT_EQ(export_to("whole.mp4", {"flipped.ctpm"}, {"--fps", "2"}).code, 2) << place;
+    const auto part = export_to("part/", {"flipped.ctpm"}, {"--from-s", "0", "--to-s", "0.2", "--fps", "10"});
+    EXPECT_EQ(part.code, 0) << place << part.err;
+    std::error_code ignored;
+    fs::remove_all(folder_.path() / "part", ignored);
+  }
+  EXPECT_GE(refused, 1);
+}
+
+TEST_F(MoreExports, AVideoSaysHowItsColoursAreCoded) {
+  ASSERT_EQ(export_to("a.mp4", {kExpert}, {"--to-s", "0.2"}).code, 0);
+  const auto asked = testing::run(
+      {"ffprobe", "-v", "error", "-select_streams", "v", "-show_entries",
+       "stream=color_range,color_space,color_transfer,color_primaries", "-of", "default=noprint_wrappers=1", "a.mp4"},
+      folder_.path());
+  for (const char* said : {"color_range=tv", "color_space=smpte170m", "color_transfer=bt709", "color_primaries=bt709"})
+    EXPECT_TRUE(holds(asked.out, said)) << asked.out;
+  // It is true: decoded as it says, the picture has the colours that were drawn.
+  ASSERT_EQ(export_to("drawn/", {kExpert}, {"--to-s", "0.2"}).code, 0);
+  const auto decode = [&](const std::vector<std::string>& how, const std::string& name) {
+    std::vector<std::string> command{"ffmpeg", "-v", "error", "-i", "a.mp4"};
+    command.insert(command.end(), how.begin(), how.end());
+    command.insert(command.end(), {"-frames:v", "1", name});
+    EXPECT_EQ(testing::run(command, folder_.path()).code, 0);
+    return picture(name);
+  };
+  const render::Frame drawn = picture("drawn/000001.png");
+  const auto error = [&](const render::Frame& frame) {
+    double sum = 0;
+    for (std::size_t i = 0; i < drawn.rgb.size(); ++i) sum += std::abs(double(drawn.rgb[i]) - double(frame.rgb[i]));
+    return sum / double(drawn.rgb.size());
+  };
+  const double as_said = error(decode({}, "said.png")),
+               otherwise = error(decode({"-vf", "scale=in_color_matrix=bt709:out_color_matrix=bt709"}, "other.png"));
+  EXPECT_LT(as_said, 0.8 * otherwise) << as_said << " " << otherwise;
+}
+
+}  // namespace
+}  // namespace ctpm
