@@ -48,7 +48,7 @@ void Desk::show(std::uint32_t number, std::int64_t tick, std::uint32_t request) 
   if (const std::shared_ptr<Stage> found = stage(number)) found->show(tick, request);
 }
 
-Result<render::Legend> Desk::draw_as(std::uint32_t number, const std::optional<DrawingRequest>& request) {
+Result<DrawingPlan> Desk::draw_as(std::uint32_t number, const DrawingRequest& request) {
   const std::shared_ptr<Stage> found = stage(number);
   if (!found) return Error{"stage", "shows no session", ""};
   return found->draw_as(request);

@@ -35,7 +35,7 @@ class Desk {
   void show(std::uint32_t number, std::int64_t tick, std::uint32_t request);
 
   /// See Stage::draw_as(). Error: there is no such stage.
-  Result<render::Legend> draw_as(std::uint32_t number, const std::optional<DrawingRequest>& request);
+  Result<DrawingPlan> draw_as(std::uint32_t number, const DrawingRequest& request);
 
   /// See Stage::prepared(); 0 without such a stage.
   double prepared(std::uint32_t number);

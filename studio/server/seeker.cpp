@@ -72,6 +72,8 @@ Result<Done> Seeker::begin_at(const Moments::Place& place) {
 }
 
 Result<bool> Seeker::go_to(std::int64_t tick, const std::function<bool()>& should_stop) {
+  if (is_there(tick)) return true;
+  has_report_ = false;
   // The last tick is simulated in any case, because its report belongs to the picture.
   const std::int64_t before = std::max<std::int64_t>(0, tick - 1);
   if (!goes_on(before))
@@ -85,6 +87,7 @@ Result<bool> Seeker::go_to(std::int64_t tick, const std::function<bool()>& shoul
     if (!*stepped) break;
     moments_.keep(cursor.replay.tick(), cursor.replay.state(), is_same(cursor));
   }
+  has_report_ = true;
   return true;
 }
 

@@ -52,28 +52,28 @@ void Stage::show(std::int64_t tick, std::uint32_t request) {
   news_.notify_all();
 }
 
-Result<render::Legend> Stage::draw_as(const std::optional<DrawingRequest>& request) {
-  Result<render::Legend> legend = request ? Drawing::check(reader_, *request) : render::Legend{};
-  if (!legend) return legend;
+Result<DrawingPlan> Stage::draw_as(const DrawingRequest& request) {
+  Result<DrawingPlan> plan = plan_drawing(reader_, request, moments_->last());
+  if (!plan) return plan;
   const std::lock_guard lock(mutex_);
-  drawing_request_ = request, has_drawing_request_ = true;
-  return legend;
+  plan_ = *plan, is_plan_new_ = true;
+  return plan;
 }
 
-/// Makes what draws as it was asked for last, in the thread that replays.
-Result<Done> Stage::follow_request(std::unique_ptr<Drawing>& drawing) {
-  std::optional<DrawingRequest> request;
+/// Takes over the newest plan, in the thread that replays. Returns whether there is something to draw.
+Result<bool> Stage::follow_plan(Drawing& drawing) {
+  std::optional<DrawingPlan> plan;
   {
     const std::lock_guard lock(mutex_);
-    if (!std::exchange(has_drawing_request_, false)) return Done{};
-    request = drawing_request_;
+    if (!plan_ || !plan_->size) return false;
+    if (!std::exchange(is_plan_new_, false)) return true;
+    plan = plan_;
   }
-  drawing.reset();
-  if (!request) return Done{};
-  Result<std::unique_ptr<Drawing>> made = Drawing::create(reader_, *request);
-  if (!made) return made.errors();
-  drawing = std::move(*made);
-  return Done{};
+  const Result<Done> followed = drawing.follow(*plan);
+  if (followed) return true;
+  const std::lock_guard lock(mutex_);
+  if (!is_plan_new_) plan_.reset();
+  return followed.errors();
 }
 
 /// Waits for one of the two flags of the newest wish, takes it and returns the wish; nothing: the stage ends.
@@ -103,7 +103,7 @@ void Stage::show(Picture picture, const Wish& wish, bool is_glimpse) {
 void Stage::replay() {
   Seeker seeker(reader_, *moments_);
   PictureMaker maker(reader_.start().model, number_, cuts_);
-  std::unique_ptr<Drawing> drawing;
+  Drawing drawing(reader_);
   while (const std::optional<Wish> wish = next(is_wanted_)) {
     if (seeker.is_far(wish->tick)) {
       const std::lock_guard lock(mutex_);
@@ -115,10 +115,10 @@ void Stage::replay() {
     if (!there || !*there) continue;
     const State& state = seeker.cursor().state();
     Picture picture = maker.make(state, facts(seeker, wish->request));
-    if (const Result<Done> followed = follow_request(drawing); !followed)
-      outbox_->send(stage_failed(number_, followed.errors()));
-    if (drawing) {
-      Result<std::string> drawn = drawing->draw(state, seeker.cursor().tick(), number_, wish->request);
+    const Result<bool> is_drawn = follow_plan(drawing);
+    if (!is_drawn) outbox_->send(stage_failed(number_, is_drawn.errors()));
+    if (is_drawn && *is_drawn) {
+      Result<std::string> drawn = drawing.draw(state, seeker.cursor().tick(), number_, wish->request);
       if (drawn) picture.drawing = std::move(*drawn);
     }
     show(std::move(picture), *wish, false);

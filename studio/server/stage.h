@@ -34,9 +34,9 @@ class Stage {
   /// Asks for the State before `tick`, which is moved into the session; a newer request replaces one that waits.
   void show(std::int64_t tick, std::uint32_t request);
 
-  /// Draws the replayed pictures that follow here too, beside their frames; nothing: no longer. Returns their legend.
-  /// Errors: those of Drawing::check().
-  Result<render::Legend> draw_as(const std::optional<DrawingRequest>& request);
+  /// Draws the replayed pictures that follow here too, beside their frames; without a size no longer. Errors: those of
+  /// plan_drawing().
+  Result<DrawingPlan> draw_as(const DrawingRequest& request);
 
   /// Share of the session that can be reached with a short replay, in [0, 1].
   double prepared() const { return moments_->share(); }
@@ -50,7 +50,7 @@ class Stage {
         std::shared_ptr<Outbox> outbox);
   void replay();
   void glance();
-  Result<Done> follow_request(std::unique_ptr<Drawing>& drawing);
+  Result<bool> follow_plan(Drawing& drawing);
   std::optional<Wish> next(bool& flag);
   bool is_outdated();
   void show(Picture picture, const Wish& wish, bool is_glimpse);
@@ -65,11 +65,11 @@ class Stage {
   std::mutex mutex_;
   std::condition_variable news_;
   Wish newest_;
-  bool is_wanted_ = false;      ///< `newest_` waits for the replay
-  bool wants_glimpse_ = false;  ///< `newest_` waits for a glimpse
-  bool is_replaying_ = false;   ///< a request that is not answered yet
-  std::optional<DrawingRequest> drawing_request_;
-  bool has_drawing_request_ = false;  ///< that the replay does not follow yet
+  bool is_wanted_ = false;           ///< `newest_` waits for the replay
+  bool wants_glimpse_ = false;       ///< `newest_` waits for a glimpse
+  bool is_replaying_ = false;        ///< a request that is not answered yet
+  std::optional<DrawingPlan> plan_;  ///< nothing is drawn before the first one
+  bool is_plan_new_ = false;         ///< the replay does not follow it yet
   bool ends_ = false;
   std::thread replay_thread_, glimpse_thread_;
 };

@@ -22,7 +22,13 @@ function number(text: string): number | undefined {
 }
 
 /** A video of what is seen. */
-export function ExportForm({ connection, player, look, onLook }: { connection: Connection; player: Player; look: Look; onLook: (look: Look) => void }) {
+export function ExportForm({ connection, player, look, onLook, onOtherSide }: {
+  connection: Connection;
+  player: Player;
+  look: Look;
+  onLook: (look: Look) => void;
+  onOtherSide: () => void;
+}) {
   const { session } = player.tracks.get(0)!;
   const beside = player.tracks.get(1)?.session.path;
   const [output, setOutput] = useState(() => session.path.replace(/\.ctpm$/, "") + ".mp4");
@@ -71,7 +77,7 @@ export function ExportForm({ connection, player, look, onLook }: { connection: C
       <button type="button" onClick={around}>1 s around {seconds(player.time, 2)}</button>
       {field("times real speed", speed, setSpeed, "number")}
       <p class="hint">A video shows what is seen:</p>
-      <LookFields look={look} onLook={onLook} cameras={session.view.cameras} />
+      <LookFields look={look} onLook={onLook} onOtherSide={onOtherSide} view={session.view} />
       {progress ? <Working what="exporting" done={progress[0]} total={progress[1]} onCancel={() => stop.current?.abort()} />
         : <button type="button" class="main" disabled={!output} onClick={() => void start()}>Export</button>}
       <Problems error={error} />

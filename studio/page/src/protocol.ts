@@ -382,6 +382,11 @@ export interface Legend {
   colours: Vector[]; // sRGB
 }
 
+/** How the program shows a session: what its colours mean, and from where it is seen. */
+export interface Seen extends Legend {
+  camera: CameraView;
+}
+
 /** A moment as the program draws it, in place of the page. */
 export interface Drawing {
   kind: "drawing";

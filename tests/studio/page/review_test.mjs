@@ -1,6 +1,6 @@
 // A reviewer in a browser: review_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
-import { existsSync, readFileSync, rmSync } from "node:fs";
+import { existsSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { ctpm, ctpmBeside, makeFolder, openStudio, overflow, picture, reading, seriousFindings } from "./browser.mjs";
@@ -125,7 +125,65 @@ test("views, cutaway and cameras are those of export", async () => {
   assert.deepEqual(await seriousFindings(page), []);
   // The export has the same words.
   await page.click("#tab-export");
-  assert.match(await page.locator("#panel .command code").innerText(), /--camera follow --cutaway y/);
+  const shown = () => page.locator("#panel .command code").innerText();
+  assert.match(await shown(), /--camera follow --cutaway y/);
+  // The cutaway's place, the mouse, the wheel, keys and the other side each make another picture.
+  const changed = async (what) => {
+    await page.waitForFunction((known) => {
+      const canvas = document.querySelector(".drawings canvas");
+      return !canvas.hidden && !known.includes(canvas.toDataURL());
+    }, [...seen], { timeout: 20000 }).catch(() => assert.fail(`nothing changed: ${what}`));
+    await page.waitForTimeout(700); // until the last picture of a turn
+    seen.add(await pixels());
+  };
+  await choose("camera", "");
+  await changed("camera");
+  await page.locator(".look-bar .plane input").evaluate((slider) => {
+    slider.value = "-8";
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+  });
+  await changed("place of the cutaway");
+  assert.match(await shown(), /--cutaway y=-8$/);
+  const view = await page.locator(".view > canvas").boundingBox();
+  await page.mouse.move(view.x + 200, view.y + 150);
+  await page.mouse.down();
+  await page.mouse.move(view.x + 320, view.y + 170, { steps: 6 });
+  await page.mouse.up();
+  await changed("mouse");
+  const turned = await shown();
+  assert.match(turned, /--camera [-\d.]+,[-\d.]+,[-\d.]+:/);
+  await page.mouse.wheel(0, -200);
+  await changed("wheel");
+  await page.locator(".view > canvas").focus();
+  await page.keyboard.press("d");
+  await changed("key that turns");
+  await page.keyboard.press("-");
+  await changed("key that moves away");
+  await page.click(".look-bar .plane button");
+  await changed("other side");
+  await picture(page, "review-turned");
+  // The command that it shows sees the same.
+  const size = await page.evaluate(() => [document.querySelector(".drawings canvas").width, document.querySelector(".drawings canvas").height]);
+  const still = "still/";
+  const made = await ctpmBeside(folder, ...(await shown()).split(" ").slice(1).map((word) => (word.endsWith(".mp4") ? still : word)),
+    "--from-s", "2.599", "--to-s", "2.6", "--overlay", "none", "--size", size.join("x"));
+  assert.equal(made.code, 0, made.err);
+  const last = readdirSync(join(folder, still)).filter((name) => name.endsWith(".png")).sort().at(-1);
+  const difference = await page.evaluate(async (bytes) => {
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))])), canvas = document.querySelector(".drawings canvas");
+    const other = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
+    other.drawImage(bitmap, 0, 0);
+    const a = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data, b = other.getImageData(0, 0, canvas.width, canvas.height).data;
+    return a.reduce((most, x, i) => Math.max(most, Math.abs(x - b[i])), 0);
+  }, readFileSync(join(folder, still, last)).toString("base64"));
+  assert.equal(difference, 0, "the film's picture is the page's");
+  // Its size is that of its place.
+  await page.setViewportSize({ width: 1500, height: 900 });
+  await page.waitForFunction((before) => {
+    const canvas = document.querySelector(".drawings canvas"), place = document.querySelector(".view > canvas");
+    return canvas.width !== before && Math.abs(canvas.width - place.clientWidth) <= 1 && Math.abs(canvas.height - place.clientHeight) <= 1;
+  }, size[0]);
+  await page.setViewportSize({ width: 1280, height: 720 });
   await choose("camera", "");
   await choose("cutaway", "");
   await page.waitForSelector(".drawings canvas[hidden]", { state: "attached" });
