@@ -256,7 +256,7 @@ export function Review({ connection, listing, place, onPlace }: {
                   onBeside={(path) => open(1, path)} />
               )}
               {panel === "notes" && <NotesPanel connection={connection} player={player} onNotes={setNotes} />}
-              {panel === "export" && <ExportForm key={first.session.path} connection={connection} player={player} look={look} onLook={setLook} onOtherSide={otherSide} />}
+              {panel === "export" && <ExportForm key={first.session.path} connection={connection} player={player} look={look} />}
             </div>
           </>
         ) : (

@@ -238,18 +238,42 @@ test("notes stay, and a link leads to the moment", async () => {
 });
 
 test("an export is the one that the shown command makes, and can be cancelled", async () => {
-  await page.click("#tab-export");
   const field = (label) => page.locator(`#panel .field:has-text("${label}") input`);
-  await field("file in the folder").fill("page.avi");
+  const choose = (label, value) => page.locator(`#panel .field:has-text("${label}") select`).selectOption(value);
+  const makesWhatItShows = async (name, options) => {
+    const shown = await page.locator("#panel .command code").innerText();
+    for (const option of options) assert.ok(shown.includes(option), shown);
+    const command = ctpmBeside(folder, ...shown.split(" ").slice(1).map((word) => (word === `${name}.avi` ? `${name}-command.avi` : word)));
+    await page.click("#panel button.main");
+    await page.waitForSelector("#panel .good");
+    assert.equal((await command).code, 0);
+    assert.ok(readFileSync(join(folder, `${name}.avi`)).equals(readFileSync(join(folder, `${name}-command.avi`))));
+  };
+  // Two sessions beside each other; the command says no more than what was chosen.
+  await page.click("#tab-compare");
+  await page.locator("#panel select").selectOption(kClumsy);
+  await page.waitForSelector(".captions .second");
+  await page.click("#tab-export");
+  assert.doesNotMatch(await page.locator("#panel .command code").innerText(), /--(align|overlay|slow-at|fps|size|speed|from-s|to-s)/);
+  await field("file in the folder").fill("both.avi");
   await field("from [s]").fill("2.2");
   await field("to [s]").fill("2.5");
-  const shown = await page.locator("#panel .command code").innerText();
-  const command = ctpmBeside(folder, ...shown.split(" ").slice(1).map((word) => (word === "page.avi" ? "command.avi" : word)));
-  await page.click("#panel button.main");
-  await page.waitForSelector("#panel .good");
+  await choose("bring both together", "cut");
+  await choose("overlay", "small");
+  await makesWhatItShows("both", ["--align cut", "--overlay small", `--beside ${kClumsy}`]);
   await picture(page, "review-export");
-  assert.equal((await command).code, 0);
-  assert.ok(readFileSync(join(folder, "page.avi")).equals(readFileSync(join(folder, "command.avi"))));
+  // One of them.
+  await page.click("#tab-compare");
+  await page.locator("#panel select").selectOption("");
+  await page.click("#tab-export");
+  await field("file in the folder").fill("one.avi");
+  await field("from [s]").fill("0.6");
+  await field("to [s]").fill("0.9");
+  await field("pictures a second").fill("10");
+  await choose("size", "854x480");
+  for (const moment of ["damage", "cuts"]) await page.click(`#panel fieldset label:has-text("${moment}")`);
+  await makesWhatItShows("one", ["--slow-at cut,damage", "--fps 10", "--size 854x480"]);
+  await picture(page, "review-export-one");
   await field("file in the folder").fill("long.avi");
   await field("from [s]").fill("0");
   await field("to [s]").fill("");
