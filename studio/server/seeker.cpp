@@ -9,7 +9,6 @@ namespace ctpm::server {
 namespace {
 
 constexpr std::int64_t kFar = 50;                  ///< ticks
-constexpr std::int64_t kAsk = 20;                  ///< ticks between two questions whether to stop
 constexpr std::size_t kLittle = 200 * kEdgeNodes;  ///< points of a swept surface
 constexpr std::size_t kMostCursors = 3;            ///< before the first cut, after the last one, and one between
 
@@ -81,7 +80,7 @@ Result<bool> Seeker::go_to(std::int64_t tick, const std::function<bool()>& shoul
   Cursor& cursor = cursors_[last_];
   cursor.used = ++uses_;
   while (cursor.replay.tick() < tick) {
-    if (cursor.replay.tick() % kAsk == 0 && should_stop()) return false;
+    if (should_stop()) return false;
     const Result<bool> stepped = cursor.replay.step();
     if (!stepped) return stepped.errors();
     if (!*stepped) break;

@@ -82,7 +82,7 @@ std::optional<Stage::Wish> Stage::next(bool& flag) {
   news_.wait(lock, [&] { return flag || ends_; });
   if (ends_) return std::nullopt;
   flag = false;
-  if (&flag == &is_wanted_) is_replaying_ = true;
+  (&flag == &is_wanted_ ? is_replaying_ : is_glancing_) = true;
   return newest_;
 }
 
@@ -100,16 +100,21 @@ void Stage::show(Picture picture, const Wish& wish, bool is_glimpse) {
   outbox_->show(std::move(picture));
 }
 
+/// The replay would only hold up the glimpse, and begins where that read from the file already.
+void Stage::wait_for_glimpse(const Wish& wish) {
+  std::unique_lock lock(mutex_);
+  if (wish.request != newest_.request) return;
+  wants_glimpse_ = true;
+  news_.notify_all();
+  news_.wait(lock, [&] { return (!wants_glimpse_ && !is_glancing_) || is_wanted_ || ends_; });
+}
+
 void Stage::replay() {
   Seeker seeker(reader_, *moments_);
   PictureMaker maker(reader_.start().model, number_, cuts_);
   Drawing drawing(reader_);
   while (const std::optional<Wish> wish = next(is_wanted_)) {
-    if (seeker.is_far(wish->tick)) {
-      const std::lock_guard lock(mutex_);
-      wants_glimpse_ = wants_glimpse_ || wish->request == newest_.request;
-      news_.notify_all();
-    }
+    if (seeker.is_far(wish->tick)) wait_for_glimpse(*wish);
     const Result<bool> there = seeker.go_to(wish->tick, [this] { return is_outdated(); });
     if (!there) outbox_->send(stage_failed(number_, there.errors()));
     if (!there || !*there) continue;
@@ -125,13 +130,24 @@ void Stage::replay() {
   }
 }
 
+void Stage::end_glance() {
+  const std::lock_guard lock(mutex_);
+  is_glancing_ = false;
+  news_.notify_all();
+}
+
 /// Shows what is known of moments without a simulation. Damaged parts of the session and its beginning have no glimpse.
 void Stage::glance() {
   Result<recordings::SessionReader> reader = recordings::SessionReader::open(reader_.path());
-  if (!reader) return;  // it went away since it was opened: the replay says so
+  if (!reader) {  // it went away since it was opened: the replay says so
+    while (next(wants_glimpse_)) end_glance();
+    return;
+  }
   Glimpses glimpses(*reader, *moments_);
   PictureMaker maker(reader_.start().model, number_, cuts_);
-  while (const std::optional<Wish> wish = next(wants_glimpse_)) {
+  for (;; end_glance()) {
+    const std::optional<Wish> wish = next(wants_glimpse_);
+    if (!wish) return;
     if (wish->tick == 0) continue;
     Result<Glimpses::Glimpse> glimpse = glimpses.of(wish->tick);
     if (!glimpse) continue;

@@ -50,6 +50,8 @@ class Stage {
         std::shared_ptr<Outbox> outbox);
   void replay();
   void glance();
+  void end_glance();
+  void wait_for_glimpse(const Wish& wish);
   Result<bool> follow_plan(Drawing& drawing);
   std::optional<Wish> next(bool& flag);
   bool is_outdated();
@@ -67,6 +69,7 @@ class Stage {
   Wish newest_;
   bool is_wanted_ = false;           ///< `newest_` waits for the replay
   bool wants_glimpse_ = false;       ///< `newest_` waits for a glimpse
+  bool is_glancing_ = false;         ///< a glimpse is on its way
   bool is_replaying_ = false;        ///< a request that is not answered yet
   std::optional<DrawingPlan> plan_;  ///< nothing is drawn before the first one
   bool is_plan_new_ = false;         ///< the replay does not follow it yet

@@ -22,7 +22,7 @@ function number(text: string): number | undefined {
 
 /** Choices of the command; the first is its default. */
 const kSizes = ["1280x720", "1920x1080", "854x480", "1080x1080", "720x1280"];
-const kOverlays: [string, string][] = [["full", "full: times, force, plot"], ["small", "small"], ["none", "none"]];
+const kOverlays: [string, string][] = [["full", "full"], ["small", "small"], ["none", "none"]];
 const kAligned: [string, string][] = [["", "path, else first contact"], ["path", "path of the tool"], ["contact", "first contact"], ["cut", "first cut"], ["clock", "clock"]];
 const kSlow: [string, string][] = [["cut", "cuts"], ["damage", "damage"], ["worst", "largest force and depth"]];
 
