@@ -59,14 +59,14 @@ double Desk::prepared(std::uint32_t number) {
   return found ? found->prepared() : 0;
 }
 
-Result<Done> Desk::train(std::shared_ptr<const recordings::SessionStart> start, const TrainingRequest& request,
+Result<std::string> Desk::train(std::shared_ptr<const recordings::SessionStart> start, const TrainingRequest& request,
                          std::uint32_t number) {
   end_training();
   Result<std::unique_ptr<Training>> begun = Training::begin(std::move(start), request, number, outbox_);
   if (!begun) return begun.errors();
   const std::lock_guard lock(mutex_);
   training_ = std::move(*begun);
-  return Done{};
+  return training_->awaited();
 }
 
 void Desk::end_training() {

@@ -40,9 +40,10 @@ class Desk {
   /// See Stage::prepared(); 0 without such a stage.
   double prepared(std::uint32_t number);
 
-  /// Begins a session that the page leads, in place of one that runs. Errors: those of Training::begin().
-  Result<Done> train(std::shared_ptr<const recordings::SessionStart> start, const TrainingRequest& request,
-                     std::uint32_t number);
+  /// Begins a session that the page or a device leads, in place of one that runs. Returns Training::awaited(). Errors:
+  /// those of Training::begin().
+  Result<std::string> train(std::shared_ptr<const recordings::SessionStart> start, const TrainingRequest& request,
+                            std::uint32_t number);
 
   /// Ends it, if one runs, and waits until it is saved.
   void end_training();

@@ -157,6 +157,7 @@ export interface Motion {
 }
 
 export interface BegunTraining {
+  awaited: string; // where a device is awaited
   scene: string;
   view: SceneView;
   warnings: Problem[];
