@@ -52,6 +52,8 @@ constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"second.rotation", "--device-second-rotation"},
     {"second.tip", "--device-second-tip"},
     {"second.tool", "--device-second-tool"},
+    {"studio.behind", "--behind"},
+    {"studio.bind", "--bind"},
     {"studio.port", "--port"},
     {"time_range.from_s", "--from-s"},
     {"time_range.to_s", "--to-s"},
