@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "studio/film/reel.h"
 #include "studio/server/glimpse.h"
 #include "studio/server/seeker.h"
 #include "studio/server/text.h"
@@ -52,9 +53,33 @@ void Stage::show(std::int64_t tick, std::uint32_t request) {
   news_.notify_all();
 }
 
-Result<DrawingPlan> Stage::draw_as(const DrawingRequest& request) {
+/// See film::full_scale_of().
+Result<double> Stage::full_scale(render::ElementQuantity quantity) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto known = full_scales_.find(quantity); known != full_scales_.end()) return known->second;
+  }
+  Result<recordings::SessionReader> reader = recordings::SessionReader::open(reader_.path());  // of this thread
+  if (!reader) return reader.errors();
+  const Result<double> found = film::full_scale_of({&*reader}, quantity);
+  if (!found) return found;
+  const std::lock_guard lock(mutex_);
+  return full_scales_[quantity] = *found;
+}
+
+Result<DrawingPlan> Stage::draw_as(const DrawingRequest& request, const std::vector<std::shared_ptr<Stage>>& shown) {
   Result<DrawingPlan> plan = plan_drawing(reader_, request, moments_->last());
   if (!plan) return plan;
+  if (render::DrawOptions& draw = plan->look.draw; draw.view == render::View::elements) {
+    double largest = 0;
+    for (const std::shared_ptr<Stage>& stage : shown) {
+      const Result<double> found = stage->full_scale(draw.quantity);
+      if (!found) return found.errors();
+      largest = std::max(largest, *found);
+    }
+    draw.full_scale = views::unit_of(draw.quantity) * largest;
+    plan->legend = render::legend_of(reader_.start().model, draw);
+  }
   const std::lock_guard lock(mutex_);
   plan_ = *plan, is_plan_new_ = true;
   return plan;

@@ -137,7 +137,6 @@ test("views, cutaway and cameras are those of export", async () => {
     seen.add(await pixels());
   };
   await choose("camera", "");
-  await changed("camera");
   await page.locator(".look-bar .plane input").evaluate((slider) => {
     slider.value = "-8";
     slider.dispatchEvent(new Event("input", { bubbles: true }));
@@ -161,6 +160,8 @@ test("views, cutaway and cameras are those of export", async () => {
   await changed("key that moves away");
   await page.click(".look-bar .plane button");
   await changed("other side");
+  await choose("view", "elements force");
+  await changed("elements");
   await picture(page, "review-turned");
   // The command that it shows sees the same.
   const size = await page.evaluate(() => [document.querySelector(".drawings canvas").width, document.querySelector(".drawings canvas").height]);
@@ -184,6 +185,7 @@ test("views, cutaway and cameras are those of export", async () => {
     return canvas.width !== before && Math.abs(canvas.width - place.clientWidth) <= 1 && Math.abs(canvas.height - place.clientHeight) <= 1;
   }, size[0]);
   await page.setViewportSize({ width: 1280, height: 720 });
+  await choose("view", "surface");
   await choose("camera", "");
   await choose("cutaway", "");
   await page.waitForSelector(".drawings canvas[hidden]", { state: "attached" });

@@ -10,6 +10,7 @@
 #include "core/contact/drawn_surfaces.h"
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
+#include "studio/film/reel.h"
 #include "studio/film/session_film.h"
 #include "studio/render/renderer.h"
 #include "studio/views/look.h"
@@ -301,7 +302,13 @@ TEST_F(Reviewing, ADrawingIsWhatAVideoShows) {
     EXPECT_EQ(value_at<std::uint32_t>(drawing, 8), number);
     EXPECT_EQ(value_at<std::uint32_t>(drawing, 12), 320u);
     EXPECT_EQ(value_at<std::uint32_t>(drawing, 16), 180u);
-    const auto found = views::find_look(request, (*film)->scene(), view, 320.0 / 180, &late->state);
+    views::LookRequest in_a_film = request;  // elements have the colours of the whole session
+    if (request.view == "elements") {
+      in_a_film.full_scale = *film::full_scale_of({&*reader}, render::ElementQuantity::force);
+      EXPECT_GT(in_a_film.full_scale, 0);
+      EXPECT_NE(in_a_film.full_scale, render::default_full_scale(render::ElementQuantity::force));
+    }
+    const auto found = views::find_look(in_a_film, (*film)->scene(), view, 320.0 / 180, &late->state);
     ASSERT_TRUE(found);
     const render::Frame frame = (*renderer)->draw(shot->state, found->at(view, shot->moments));
     EXPECT_TRUE(drawing.substr(20, frame.rgb.size()) == std::string(frame.rgb.begin(), frame.rgb.end()))
