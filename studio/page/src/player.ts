@@ -2,7 +2,7 @@ import type { Binary, Connection } from "./connection";
 import type { Drawing, Frame, OpenedSession, Seen, SessionInfo, TimelineData, Shapes } from "./protocol";
 import { freeCamera, isPlain, type Look, lookParameters, steppedForward } from "./look";
 import { StageScene } from "./stage_scene";
-import type { Viewer } from "./viewer";
+import { firstCamera, type Viewer } from "./viewer";
 
 /** A session on the page. Stage 0 is the one in review, stage 1 the one beside it. */
 export interface Track {
@@ -65,7 +65,7 @@ export class Player {
     this.viewer.set(stage, track.scene);
     if (stage === 0) {
       this.time = 0;
-      const camera = session.view.cameras[0];
+      const camera = firstCamera(session.view);
       if (camera) this.viewer.look(camera);
     }
     this.move(this.time); // the picture comes before the curves

@@ -4,7 +4,7 @@ import { readGamepad } from "./gamepad";
 import { orientationOf } from "./pose";
 import type { BegunTraining, EndedTraining, Frame, HandFrame, Motion, SceneView, Vector } from "./protocol";
 import { StageScene } from "./stage_scene";
-import type { Viewer } from "./viewer";
+import { firstCamera, type Viewer } from "./viewer";
 
 export const kTrainStage = 2;
 const kMostSpeed = 0.4; // of the hand that is sent [m/s]
@@ -116,7 +116,7 @@ export class Trainer {
     this.scene = new StageScene(begun.view);
     this.scene.onFrame = (frame) => this.showGhost(frame);
     this.viewer.set(kTrainStage, this.scene);
-    const camera = begun.view.cameras[0];
+    const camera = firstCamera(begun.view);
     if (camera) this.viewer.look(camera);
     for (const message of this.pending.splice(0)) this.take(message);
     if (!this.awaited) this.takeUp();

@@ -1,7 +1,25 @@
 import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import type { CameraView, Vector } from "./protocol";
+import type { CameraView, SceneView, Vector } from "./protocol";
 import type { StageScene } from "./stage_scene";
+
+/** Of the cameras of a scene the first one, unless organs lie outside of its picture: then the one that sees everything,
+    which is the last. */
+export function firstCamera(view: SceneView): CameraView | undefined {
+  const first = view.cameras[0];
+  if (!first) return undefined;
+  const camera = new three.PerspectiveCamera(first.fov_deg, 16 / 9, 1e-3, 1e3);
+  camera.up.set(...first.up), camera.position.set(...first.eye);
+  camera.lookAt(...first.target);
+  camera.updateMatrixWorld();
+  const ends = [view.least, view.most];
+  let outside = 0; // corners of the box around everything
+  for (let i = 0; i < 8; ++i) {
+    const corner = new three.Vector3(ends[i & 1][0], ends[(i >> 1) & 1][1], ends[i >> 2][2]).project(camera);
+    outside += Number(Math.abs(corner.x) > 1 || Math.abs(corner.y) > 1 || corner.z > 1);
+  }
+  return outside > 2 ? view.cameras.at(-1) : first;
+}
 
 /** Draws up to two scenes side by side with one camera, whenever something changed. */
 export class Viewer {

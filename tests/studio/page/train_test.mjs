@@ -15,6 +15,7 @@ before(async () => {
   const scene = JSON.parse(readFileSync(join(folder, "kidney.json"), "utf8"));
   scene.name = scene.organs[0].name = "<img src=x onerror=alert(1)>";
   scene.tools[0].name = "<b onclick=alert(2)>ball</b>";
+  scene.cameras[0] = { name: "away", eye_mm: [0, -300, 200], target_mm: [300, -300, 200] }; // sees nothing
   writeFileSync(join(folder, "html.json"), JSON.stringify(scene));
   const two = JSON.parse(readFileSync(join(folder, "kidney.json"), "utf8"));
   two.name = "two hands", two.hands = 2;
@@ -48,6 +49,18 @@ test("names in a scene are text", async () => {
   await page.click(".list button:has-text('html')");
   await page.waitForSelector(".view.running");
   assert.equal(await page.locator(".transport button:has-text('<b onclick=alert(2)>ball</b>')").count(), 1);
+  // The organ is in the picture, although the scene's first camera looks elsewhere.
+  await page.waitForTimeout(500);
+  const red = await page.evaluate(async (bytes) => {
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))]));
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) count += data[i] > data[i + 1] + 40;
+    return count / (data.length / 4);
+  }, (await page.locator(".view canvas").screenshot()).toString("base64"));
+  assert.ok(red > 0.03, `${red} of the picture is tissue`);
   await page.click("button:has-text('End')");
   await page.waitForSelector("button:has-text('Train again')");
   assert.equal(await page.locator("main img").count(), 0);
