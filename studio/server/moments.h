@@ -66,6 +66,9 @@ class Moments {
   /// Moments near `tick` are needed first.
   void aim(std::int64_t tick) { aim_ = tick; }
 
+  /// Reads no keyframes ahead while somebody waits for a picture.
+  void rest(bool on) { rests_ = on; }
+
   std::int64_t spacing() const { return spacing_; }  ///< [ticks]
   double share() const;                              ///< of the session that was replayed already, in [0, 1]
 
@@ -92,7 +95,7 @@ class Moments {
   std::vector<std::shared_ptr<const KeptState>> keyframe_states_;  ///< those that were read, of keyframes_
   std::vector<bool> is_done_;                                      ///< each interval
   std::atomic<std::int64_t> aim_{0};
-  std::atomic<bool> ends_{false};
+  std::atomic<bool> ends_{false}, rests_{false};
   std::thread thread_;
 };
 
