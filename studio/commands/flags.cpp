@@ -54,6 +54,8 @@ constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"second.rotation", "--device-second-rotation"},
     {"second.tip", "--device-second-tip"},
     {"second.tool", "--device-second-tool"},
+    {"studio.behind", "--behind"},
+    {"studio.bind", "--bind"},
     {"studio.port", "--port"},
     {"time_range.from_s", "--from-s"},
     {"time_range.to_s", "--to-s"},
@@ -74,8 +76,8 @@ void add_look(CLI::App& app, views::LookRequest& request) {
   app.add_option("--full-scale", request.full_scale, "Value of the last colour of elements [%, deg or N]");
   app.add_option("--cutaway", request.cutaway, "Leave out what is before a plane across x, y or z: y, or y=12.5 in mm");
   app.add_option("--camera", request.camera,
-                 "A camera of the scene, fitted, wound where it is seen best, or follow the tool; if not given one "
-                 "that sees the section or the wound, else "
+                 "A camera of the scene, fitted, wound where it is seen best, follow the tool, or a place and what it "
+                 "looks at in mm, as 0,-300,200:0,0,20; if not given one that sees the section or the wound, else "
                  "the scene's first");
 }
 

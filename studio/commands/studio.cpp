@@ -42,9 +42,15 @@ int run_studio(const StudioArguments& arguments) {
   const std::string address = (*server)->address();
   print("%s\n", address.c_str());
   std::fflush(stdout);
-  print_remark(
-      "the studio is at this address, for this machine alone; whoever has the address can use it; Ctrl-C ends it");
-  if (!arguments.no_open && has_display()) open_in_browser(address);
+  if (arguments.options.behind.empty())
+    print_remark(
+        "the studio is at this address, for this machine alone; whoever has the address can use it; Ctrl-C ends it");
+  else
+    print_remark("the studio is at this address once a proxy there ends TLS and passes everything on to http://" +
+                 (*server)->listens_on() +
+                 ", with the header Host as it came; whoever has the address can use it, and what goes between the two "
+                 "is not encrypted; Ctrl-C ends it");
+  if (!arguments.no_open && arguments.options.behind.empty() && has_display()) open_in_browser(address);
   const StopSignal stop;
   (*server)->run([&] { return stop.came(); });
   return exit_good;
@@ -55,11 +61,18 @@ int run_studio(const StudioArguments& arguments) {
 Command add_studio(CLI::App& program) {
   auto arguments = std::make_shared<StudioArguments>();
   CLI::App* app = program.add_subcommand("studio", "Opens the studio in the browser: author, train, review.");
-  app->footer("Example: ctpm studio my");
+  app->footer(
+      "Examples: ctpm studio my\n"
+      "          ctpm studio my --behind https://studio.example   # for other machines; studio/server/README.md");
   app->add_option("folder", arguments->options.folder, "Folder with scenes and sessions; nothing outside of it is used")
       ->capture_default_str();
-  app->add_option("--port", arguments->options.port, "Port on 127.0.0.1; 7375 if that is free; 0: any that is free")
+  app->add_option("--port", arguments->options.port, "Port to listen on; 7375 if that is free; 0: any that is free")
       ->check(CLI::Range(0, 65535));
+  app->add_option("--behind", arguments->options.behind,
+                  "Serves other machines too, behind a reverse proxy that ends TLS: https://NAME of that proxy");
+  app->add_option("--bind", arguments->options.bind,
+                  "Address to listen on, where the proxy is another machine; needs --behind")
+      ->capture_default_str();
   app->add_flag("--no-open", arguments->no_open, "Print the address and open no browser");
   return {app, [arguments] { return run_studio(*arguments); }};
 }

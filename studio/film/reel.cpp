@@ -39,16 +39,10 @@ Result<double> range_of(recordings::SessionReader& session, render::ElementQuant
 Result<Done> find_ranges(std::vector<Reel>& reels, const std::vector<recordings::SessionReader*>& sessions) {
   render::DrawOptions& first = reels[0].look.draw;
   if (first.view != render::View::elements || first.full_scale > 0) return Done{};
-  double largest = 0;
-  for (recordings::SessionReader* session : sessions) {
-    const Result<double> found = range_of(*session, first.quantity);
-    if (!found) return found.errors();
-    largest = std::max(largest, *found);
-  }
-  // In the legend's unit, so that its numbers are round.
-  const double unit = views::unit_of(first.quantity);
+  const Result<double> full_scale = full_scale_of(sessions, first.quantity);
+  if (!full_scale) return full_scale.errors();
   for (Reel& reel : reels)
-    if (largest > 0) reel.look.draw.full_scale = unit * render::round_up(largest / unit);
+    if (*full_scale > 0) reel.look.draw.full_scale = views::unit_of(reel.look.draw.quantity) * *full_scale;
   return Done{};
 }
 
@@ -111,6 +105,17 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, con
   reel.shows_pace = options.speed != 1 || !options.matched.empty() || !options.slow_at.empty();
   reel.level = level_of(options.overlay).value_or(reel.level);
   return reel;
+}
+
+Result<double> full_scale_of(const std::vector<recordings::SessionReader*>& sessions,
+                             render::ElementQuantity quantity) {
+  double largest = 0;
+  for (recordings::SessionReader* session : sessions) {
+    const Result<double> found = range_of(*session, quantity);
+    if (!found) return found.errors();
+    largest = std::max(largest, *found);
+  }
+  return largest > 0 ? render::round_up(largest / views::unit_of(quantity)) : 0.0;  // the legend's numbers are round
 }
 
 Result<Done> look_alike(std::vector<Reel>& reels, const std::vector<recordings::SessionReader*>& sessions) {

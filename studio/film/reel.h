@@ -49,6 +49,10 @@ std::optional<render::OverlayLevel> level_of(const std::string& name);
 Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, const render::PictureSize& size,
                        const ExportOptions& options);
 
+/// The value of the last colour of elements in a film of these sessions [the legend's unit]; 0: there are no elements.
+/// Errors: a damaged session.
+Result<double> full_scale_of(const std::vector<recordings::SessionReader*>& sessions, render::ElementQuantity quantity);
+
 /// Makes the reels of a film alike: of one scene all are seen as the first one is, wherever their wounds are; elements
 /// have one range of colours, that of the sessions unless one is given. Errors: a damaged session.
 Result<Done> look_alike(std::vector<Reel>& reels, const std::vector<recordings::SessionReader*>& sessions);

@@ -69,10 +69,8 @@ Result<Done> SessionFilm::begin() {
     first_different_ = verdict->first_tick;
   }
   plot_every_ = std::max<std::int64_t>(1, std::llround(overlay_.plot_span / model.tick) / kPlotPoints);
-  moment_every_ = std::size_t(std::max(1ll, std::llround(render::kFollowedEvery / model.tick)));
   // Fill the plot and the camera's moments from before the range.
-  const std::int64_t needed =
-      std::max(kPlotPoints * plot_every_, std::int64_t(render::kFollowedMoments * moment_every_));
+  const std::int64_t needed = std::max(kPlotPoints * plot_every_, std::int64_t(render::followed_ticks(model.tick)));
   const std::int64_t before = std::max<std::int64_t>(0, range_.from - needed);
   const Result<std::vector<recordings::TickRecord>> earlier = reader_.ticks(before, range_.from);
   // What is damaged before the part is not shown; the part itself is read by the replay.
@@ -143,16 +141,7 @@ void SessionFilm::take_tick() {
 
 void SessionFilm::keep_inputs(const Inputs& inputs) {
   inputs_.push_back(inputs);
-  if (inputs_.size() > render::kFollowedMoments * moment_every_) inputs_.pop_front();
-}
-
-/// Counted back from the last simulated tick.
-std::vector<Inputs> SessionFilm::moments() const {
-  std::vector<Inputs> moments;
-  for (std::size_t back = 0; back < inputs_.size(); back += moment_every_)
-    moments.push_back(inputs_[inputs_.size() - 1 - back]);
-  std::reverse(moments.begin(), moments.end());
-  return moments;
+  if (inputs_.size() > render::followed_ticks(model().tick)) inputs_.pop_front();
 }
 
 std::string SessionFilm::verdict() const {
@@ -199,7 +188,8 @@ Result<Shot> SessionFilm::shoot(std::int64_t tick) {
   overlay_.verdict = verdict();
   const bool is_good = is_same() && overlay_.inside_out == 0;
   overlay_.verdict_tone = is_good ? render::VerdictTone::good : render::VerdictTone::bad;
-  Shot shot{cursor_.state(), overlay_, moments()};
+  const auto of = [&](std::size_t i) -> const Inputs& { return inputs_[i]; };
+  Shot shot{cursor_.state(), overlay_, render::followed_moments(inputs_.size(), model().tick, of)};
   if (reader_.tick_count() > 0) shot.share = double(cursor_.tick()) / double(reader_.tick_count());
   return shot;
 }

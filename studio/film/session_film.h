@@ -62,7 +62,6 @@ class SessionFilm {
   void keep_worst(double force, double depth);
   void look_back(const std::vector<recordings::Event>& events);
   bool holds_blade(const Hand& hand) const;
-  std::vector<Inputs> moments() const;
   Error differs() const;
   std::string verdict() const;
 
@@ -73,9 +72,8 @@ class SessionFilm {
   recordings::ReplayCursor cursor_;
   render::OverlayData overlay_;
   session::CutMeasures cut_;
-  std::int64_t plot_every_ = 1;   ///< ticks between two points of the force plot
-  std::size_t moment_every_ = 1;  ///< ticks between two moments of a following camera
-  std::deque<Inputs> inputs_;     ///< of the last ticks, as many as the moments need
+  std::int64_t plot_every_ = 1;  ///< ticks between two points of the force plot
+  std::deque<Inputs> inputs_;    ///< of the last ticks, as many as a following camera needs
   std::int64_t first_different_ = -1;
 };
 

@@ -72,7 +72,24 @@ Vec3 work_place(const Model& model, const Hand& hand) {
   return hand.position + rotate(hand.world_from_tool, {0, 0, kUpTheBlade * length});
 }
 
+/// Ticks between two moments.
+std::size_t moment_ticks(double tick) {
+  constexpr double kEvery = 0.01;  // [s]
+  return std::size_t(std::max(1ll, std::llround(kEvery / tick)));
+}
+
 }  // namespace
+
+std::size_t followed_ticks(double tick) { return kFollowedMoments * moment_ticks(tick); }
+
+std::vector<Inputs> followed_moments(std::size_t count, double tick,
+                                     const std::function<const Inputs&(std::size_t)>& inputs) {
+  const std::size_t every = moment_ticks(tick), most = std::min(count, followed_ticks(tick));
+  std::vector<Inputs> moments;
+  for (std::size_t back = 0; back < most; back += every) moments.push_back(inputs(count - 1 - back));
+  std::reverse(moments.begin(), moments.end());
+  return moments;
+}
 
 Camera following_camera(const SceneView& scene, const Camera& base, std::span<const Inputs> moments) {
   constexpr double kClosest = 0.6;  // of the base camera's distance

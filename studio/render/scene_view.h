@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -60,9 +61,16 @@ Camera fitted_camera(const SceneView& scene, Vec3 direction, Vec3 up, double fov
 /// A camera in front of the scene, a little above it and to the right, that frames everything.
 Camera default_camera(const SceneView& scene, double aspect = 16.0 / 9);
 
-/// Number of moments that a following camera averages, and their interval: it lags by half of 0.8 s.
+/// Number of moments that a following camera averages, 0.01 s apart: it lags by half of 0.8 s.
 inline constexpr std::size_t kFollowedMoments = 80;
-inline constexpr double kFollowedEvery = 0.01;  ///< [s]
+
+/// Ticks before a moment that a following camera looks back at, at most. `tick`: its length [s].
+std::size_t followed_ticks(double tick);
+
+/// Of the inputs of the `count` last ticks, 0 the oldest, those of the moments that a following camera averages, oldest
+/// first.
+std::vector<Inputs> followed_moments(std::size_t count, double tick,
+                                     const std::function<const Inputs&(std::size_t)>& inputs);
 
 /// A camera that comes closer as a held tool nears the organs, and looks at the point where it works; with two, at one
 /// between them, nearer to the one that is nearer to the organs. `moments` are

@@ -1,6 +1,7 @@
 #include "studio/server/desk.h"
 
 #include <utility>
+#include <vector>
 
 namespace ctpm::server {
 
@@ -48,10 +49,15 @@ void Desk::show(std::uint32_t number, std::int64_t tick, std::uint32_t request) 
   if (const std::shared_ptr<Stage> found = stage(number)) found->show(tick, request);
 }
 
-Result<render::Legend> Desk::draw_as(std::uint32_t number, const std::optional<DrawingRequest>& request) {
+Result<DrawingPlan> Desk::draw_as(std::uint32_t number, const DrawingRequest& request) {
   const std::shared_ptr<Stage> found = stage(number);
   if (!found) return Error{"stage", "shows no session", ""};
-  return found->draw_as(request);
+  std::vector<std::shared_ptr<Stage>> shown;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [each, stage] : stages_) shown.push_back(stage);
+  }
+  return found->draw_as(request, shown);
 }
 
 double Desk::prepared(std::uint32_t number) {
@@ -59,14 +65,14 @@ double Desk::prepared(std::uint32_t number) {
   return found ? found->prepared() : 0;
 }
 
-Result<Done> Desk::train(std::shared_ptr<const recordings::SessionStart> start, const TrainingRequest& request,
-                         std::uint32_t number) {
+Result<std::string> Desk::train(std::shared_ptr<const recordings::SessionStart> start, const TrainingRequest& request,
+                                std::uint32_t number) {
   end_training();
   Result<std::unique_ptr<Training>> begun = Training::begin(std::move(start), request, number, outbox_);
   if (!begun) return begun.errors();
   const std::lock_guard lock(mutex_);
   training_ = std::move(*begun);
-  return Done{};
+  return training_->awaited();
 }
 
 void Desk::end_training() {

@@ -35,14 +35,15 @@ class Desk {
   void show(std::uint32_t number, std::int64_t tick, std::uint32_t request);
 
   /// See Stage::draw_as(). Error: there is no such stage.
-  Result<render::Legend> draw_as(std::uint32_t number, const std::optional<DrawingRequest>& request);
+  Result<DrawingPlan> draw_as(std::uint32_t number, const DrawingRequest& request);
 
   /// See Stage::prepared(); 0 without such a stage.
   double prepared(std::uint32_t number);
 
-  /// Begins a session that the page leads, in place of one that runs. Errors: those of Training::begin().
-  Result<Done> train(std::shared_ptr<const recordings::SessionStart> start, const TrainingRequest& request,
-                     std::uint32_t number);
+  /// Begins a session that the page or a device leads, in place of one that runs. Returns Training::awaited(). Errors:
+  /// those of Training::begin().
+  Result<std::string> train(std::shared_ptr<const recordings::SessionStart> start, const TrainingRequest& request,
+                            std::uint32_t number);
 
   /// Ends it, if one runs, and waits until it is saved.
   void end_training();

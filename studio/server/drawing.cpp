@@ -1,7 +1,6 @@
 #include "studio/server/drawing.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -12,50 +11,48 @@
 namespace ctpm::server {
 namespace {
 
-struct Found {
-  render::SceneView view;
-  views::Look look;
-};
-
-Result<Found> find(const recordings::SessionReader& reader, const DrawingRequest& request) {
-  const Result<scenes::SceneText> scene = scenes::read_scene(reader.start().scene_text, reader.path() + " (its scene)");
-  if (!scene) return scene.errors();
-  Found found{views::view_of(scene->spec, reader.start().model), {}};
-  const double aspect = double(request.size.width) / request.size.height;
-  const Result<views::Look> look = views::find_look(request.look, scene->spec, found.view, aspect);
-  if (!look) return look.errors();
-  found.look = *look;
-  return found;
-}
+constexpr double kPageAspect = 16.0 / 9;  ///< for which a page's own cameras are set up
 
 /// What a following camera follows: the inputs of the last moments, oldest first.
 Result<std::vector<Inputs>> moments_before(recordings::SessionReader& reader, std::int64_t tick) {
-  const auto every = std::max<std::int64_t>(1, std::llround(render::kFollowedEvery / reader.start().model.tick));
-  const std::int64_t from = std::max<std::int64_t>(0, tick - std::int64_t(render::kFollowedMoments) * every);
+  const double seconds = reader.start().model.tick;
+  const std::int64_t from = std::max<std::int64_t>(0, tick - std::int64_t(render::followed_ticks(seconds)));
   const Result<std::vector<recordings::TickRecord>> records = reader.ticks(from, tick);
   if (!records) return records.errors();
-  std::vector<Inputs> moments;
-  for (std::int64_t back = 0; back < std::int64_t(records->size()); back += every)
-    moments.push_back((*records)[records->size() - 1 - std::size_t(back)].inputs);
-  std::reverse(moments.begin(), moments.end());
-  return moments;
+  const auto of = [&](std::size_t i) -> const Inputs& { return (*records)[i].inputs; };
+  return render::followed_moments(records->size(), seconds, of);
+}
+
+Result<scenes::SceneText> scene_of(const recordings::SessionReader& reader) {
+  return scenes::read_scene(reader.start().scene_text, reader.path() + " (its scene)");
 }
 
 }  // namespace
 
-Result<render::Legend> Drawing::check(const recordings::SessionReader& reader, const DrawingRequest& request) {
-  const Result<Found> found = find(reader, request);
-  if (!found) return found.errors();
-  return render::legend_of(reader.start().model, found->look.draw);
+Result<DrawingPlan> plan_drawing(const recordings::SessionReader& reader, const DrawingRequest& request,
+                                 const State* late) {
+  const Result<scenes::SceneText> scene = scene_of(reader);
+  if (!scene) return scene.errors();
+  const Model& model = reader.start().model;
+  const double aspect = request.size ? double(request.size->width) / request.size->height : kPageAspect;
+  Result<views::Look> look =
+      views::find_look(request.look, scene->spec, views::view_of(scene->spec, model), aspect, late);
+  if (!look) return look.errors();
+  render::Legend legend = render::legend_of(model, look->draw);
+  return DrawingPlan{std::move(*look), std::move(legend), request.size};
 }
 
-Result<std::unique_ptr<Drawing>> Drawing::create(recordings::SessionReader& reader, const DrawingRequest& request) {
-  Result<Found> found = find(reader, request);
-  if (!found) return found.errors();
-  Result<std::unique_ptr<render::Renderer>> renderer =
-      render::Renderer::create(request.size.width, request.size.height, std::move(found->view));
-  if (!renderer) return renderer.errors();
-  return std::unique_ptr<Drawing>(new Drawing(reader, std::move(found->look), std::move(*renderer)));
+Result<Done> Drawing::follow(const DrawingPlan& plan) {
+  if (!renderer_ || size_.width != plan.size->width || size_.height != plan.size->height) {
+    const Result<scenes::SceneText> scene = scene_of(reader_);
+    if (!scene) return scene.errors();
+    Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(
+        plan.size->width, plan.size->height, views::view_of(scene->spec, reader_.start().model));
+    if (!renderer) return renderer.errors();
+    renderer_ = std::move(*renderer), size_ = *plan.size;
+  }
+  look_ = plan.look;
+  return Done{};
 }
 
 Result<std::string> Drawing::draw(const State& state, std::int64_t tick, std::uint32_t stage, std::uint32_t request) {

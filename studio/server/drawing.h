@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/model/result.h"
@@ -13,30 +14,41 @@
 
 namespace ctpm::server {
 
-/// How a stage is drawn here instead of by the page: as `export` draws it.
+/// How a page wants to see a session: as `export` shows it.
 struct DrawingRequest {
   views::LookRequest look;
-  render::PictureSize size;
+  std::optional<render::PictureSize> size;  ///< of drawings; none: the page draws
 };
 
-/// Draws moments of one session as a video shows them, without its overlay. One thread may use it, which made it.
+/// A request that was checked, and what it comes to.
+struct DrawingPlan {
+  views::Look look;
+  render::Legend legend;  ///< without a title: the view needs none
+  std::optional<render::PictureSize> size;
+};
+
+/// Checks a request. `late`: a State of the session's end, on whose wound a camera may look; null: none. Errors: those
+/// of views::find_look().
+Result<DrawingPlan> plan_drawing(const recordings::SessionReader& reader, const DrawingRequest& request,
+                                 const State* late);
+
+/// Draws moments of one session as a video shows them, without its overlay. One thread may use it.
 class Drawing {
  public:
-  /// `reader` must outlive this. Errors: those of views::find_look() and of render::Renderer.
-  static Result<std::unique_ptr<Drawing>> create(recordings::SessionReader& reader, const DrawingRequest& request);
+  /// `reader` must outlive this.
+  explicit Drawing(recordings::SessionReader& reader) : reader_(reader) {}
 
-  /// Checks a request; the legend of its colours, without a title if they need none. Errors: those of find_look().
-  static Result<render::Legend> check(const recordings::SessionReader& reader, const DrawingRequest& request);
+  /// Draws as that plan has it, which must have a size. Errors: no OpenGL 3.3.
+  Result<Done> follow(const DrawingPlan& plan);
 
-  /// Message with the picture of the State before `tick`. PROTOCOL.md gives its bytes. Errors: a damaged part.
+  /// Message with the picture of the State before `tick`, after follow(). PROTOCOL.md gives its bytes. Errors: a
+  /// damaged part.
   Result<std::string> draw(const State& state, std::int64_t tick, std::uint32_t stage, std::uint32_t request);
 
  private:
-  Drawing(recordings::SessionReader& reader, views::Look look, std::unique_ptr<render::Renderer> renderer)
-      : reader_(reader), look_(std::move(look)), renderer_(std::move(renderer)) {}
-
   recordings::SessionReader& reader_;
   views::Look look_;
+  render::PictureSize size_;
   std::unique_ptr<render::Renderer> renderer_;
 };
 

@@ -5,6 +5,7 @@
 #include "studio/film/export_video.h"
 #include "studio/output/json_writer.h"
 #include "studio/server/call_table.h"
+#include "studio/server/scene_text.h"
 
 namespace ctpm::server {
 
@@ -23,7 +24,7 @@ views::LookRequest look_of(Parameters& parameters) {
 
 }  // namespace
 
-/// A stage is drawn as a video of it would be; without a size no longer.
+/// A stage is drawn as a video of it would be; without a size by the page, which is told how.
 Result<std::string> draw_session(Parameters& parameters, const CallContext& context) {
   const std::uint32_t stage = std::uint32_t(parameters.number("stage", 0, Desk::kMostStages - 1));
   const std::optional<std::string> size = parameters.text_if("size");
@@ -38,13 +39,15 @@ Result<std::string> draw_session(Parameters& parameters, const CallContext& cont
                    ""};
     request.size = *parsed;
   }
-  const Result<render::Legend> legend = context.desk->draw_as(stage, size ? std::optional(request) : std::nullopt);
-  if (!legend) return legend.errors();
+  const Result<DrawingPlan> plan = context.desk->draw_as(stage, request);
+  if (!plan) return plan.errors();
+  const render::Legend& legend = plan->legend;
   output::JsonWriter json;
-  json.begin_object().member("title", std::string_view(legend->title)).member("low", std::string_view(legend->low));
-  json.member("high", std::string_view(legend->high)).key("colours").begin_list();
-  for (const render::Colour& colour : legend->colours) write_vector(json, {colour[0], colour[1], colour[2]});
-  return json.end_list().end_object().text();
+  json.begin_object().member("title", std::string_view(legend.title)).member("low", std::string_view(legend.low));
+  json.member("high", std::string_view(legend.high)).key("colours").begin_list();
+  for (const render::Colour& colour : legend.colours) write_vector(json, {colour[0], colour[1], colour[2]});
+  json.end_list().key("camera"), write_camera(json, plan->look.camera, plan->look.draw.camera);
+  return json.end_object().text();
 }
 
 Result<std::string> export_session(Parameters& parameters, const CallContext& context) {

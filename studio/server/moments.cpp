@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 
 #include "studio/server/cut_key.h"
@@ -167,11 +168,14 @@ bool Moments::fill(recordings::ReplayCursor& cursor, std::size_t interval) {
 }
 
 void Moments::work() {
+  // Whoever scrubs needs keyframes that are not in memory yet, so they are not read at low priority.
+  for (std::size_t i = 0; i < keyframes_.size() && keeps_keyframes_ && !ends_; ++i) {
+    while (rests_ && !ends_) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    if (const Place place = before(keyframes_[i]); !place.second) (void)read(place, reader_);
+  }
   setpriority(PRIO_PROCESS, id_t(gettid()), 15);
   Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(reader_);
   if (!cursor) return;
-  for (std::size_t i = 0; i < keyframes_.size() && keeps_keyframes_ && !ends_; ++i)
-    if (const Place place = before(keyframes_[i]); !place.second) (void)read(place, reader_);
   for (std::size_t next; !ends_ && (next = next_interval()) < keyframes_.size();) {
     if (!fill(*cursor, next)) continue;
     const std::lock_guard lock(mutex_);

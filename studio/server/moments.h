@@ -57,11 +57,17 @@ class Moments {
   /// session. Errors: the session cannot be read.
   Result<Moment> read(const Place& place, recordings::SessionReader& reader);
 
+  /// The State of the last keyframe, of which the cut is the longest; null: it is damaged.
+  const State* last() const { return last_ ? &*last_ : nullptr; }
+
   /// Takes the State before `tick`, to which a replay came that began at a kept State, if one is missing there.
   void keep(std::int64_t tick, const State& state, bool is_same);
 
   /// Moments near `tick` are needed first.
   void aim(std::int64_t tick) { aim_ = tick; }
+
+  /// Reads no keyframes ahead while somebody waits for a picture.
+  void rest(bool on) { rests_ = on; }
 
   std::int64_t spacing() const { return spacing_; }  ///< [ticks]
   double share() const;                              ///< of the session that was replayed already, in [0, 1]
@@ -81,7 +87,7 @@ class Moments {
 
   recordings::SessionReader reader_;
   std::vector<std::int64_t> keyframes_;  ///< ticks; interval i is from the i-th to the next or the end
-  std::optional<State> last_;            ///< of the last keyframe: its swept surface is the longest
+  std::optional<State> last_;            ///< see last()
   bool keeps_keyframes_ = false;         ///< there is memory for all of them
   std::int64_t spacing_ = kSpacing;
   mutable std::mutex mutex_;
@@ -89,7 +95,7 @@ class Moments {
   std::vector<std::shared_ptr<const KeptState>> keyframe_states_;  ///< those that were read, of keyframes_
   std::vector<bool> is_done_;                                      ///< each interval
   std::atomic<std::int64_t> aim_{0};
-  std::atomic<bool> ends_{false};
+  std::atomic<bool> ends_{false}, rests_{false};
   std::thread thread_;
 };
 

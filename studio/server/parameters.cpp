@@ -91,6 +91,19 @@ std::vector<double> Parameters::numbers(const char* key, std::size_t count) {
   return list;
 }
 
+std::vector<double> Parameters::numbers_if(const char* key, std::size_t count) {
+  return content_->find(key) ? numbers(key, count) : std::vector<double>();
+}
+
+std::vector<std::string> Parameters::texts_if(const char* key) {
+  std::vector<std::string> list;
+  const nlohmann::json* value = content_->find(key);
+  if (!value) return list;
+  if (!value->is_array()) return refuse(key, "must be a list"), list;
+  for (const nlohmann::json& text : *value) list.push_back(content_->take_text(key, text));
+  return list;
+}
+
 std::optional<Parameters> Parameters::object_if(const char* key) {
   const nlohmann::json* value = content_->find(key);
   if (!value) return std::nullopt;

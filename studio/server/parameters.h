@@ -22,7 +22,9 @@ class Parameters {
   double number(const char* key, double least, double most);  ///< required; a finite number
   std::optional<double> number_if(const char* key, double least, double most);
   bool flag(const char* key, bool otherwise);
-  std::vector<double> numbers(const char* key, std::size_t count);  ///< required; `count` finite numbers
+  std::vector<double> numbers(const char* key, std::size_t count);     ///< required; `count` finite numbers
+  std::vector<double> numbers_if(const char* key, std::size_t count);  ///< the same; empty without it
+  std::vector<std::string> texts_if(const char* key);                  ///< a list of texts
   std::optional<Parameters> object_if(const char* key);
   std::vector<Parameters> objects(const char* key);  ///< required: a list of objects
 

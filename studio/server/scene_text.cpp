@@ -14,16 +14,6 @@ void write_colour(output::JsonWriter& json, const char* key, const render::Colou
   json.end_list();
 }
 
-void write_camera(output::JsonWriter& json, const std::string& name, const render::Camera& camera) {
-  json.begin_object().member("name", name).key("eye");
-  write_vector(json, camera.eye);
-  json.key("target");
-  write_vector(json, camera.target);
-  json.key("up");
-  write_vector(json, camera.up);
-  json.member("fov_deg", camera.fov_deg).end_object();
-}
-
 /// Where a tool is taken up, if its author says that.
 void write_place(output::JsonWriter& json, const scenes::ToolSpec& tool) {
   if (!tool.at) return;
@@ -37,6 +27,16 @@ const char* name_of(ToolKind kind) {
 }
 
 }  // namespace
+
+void write_camera(output::JsonWriter& json, const std::string& name, const render::Camera& camera) {
+  json.begin_object().member("name", name).key("eye");
+  write_vector(json, camera.eye);
+  json.key("target");
+  write_vector(json, camera.target);
+  json.key("up");
+  write_vector(json, camera.up);
+  json.member("fov_deg", camera.fov_deg).end_object();
+}
 
 std::string json_text(const std::string& text) {
   output::JsonWriter json;

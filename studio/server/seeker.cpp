@@ -9,7 +9,6 @@ namespace ctpm::server {
 namespace {
 
 constexpr std::int64_t kFar = 50;                  ///< ticks
-constexpr std::int64_t kAsk = 20;                  ///< ticks between two questions whether to stop
 constexpr std::size_t kLittle = 200 * kEdgeNodes;  ///< points of a swept surface
 constexpr std::size_t kMostCursors = 3;            ///< before the first cut, after the last one, and one between
 
@@ -72,6 +71,8 @@ Result<Done> Seeker::begin_at(const Moments::Place& place) {
 }
 
 Result<bool> Seeker::go_to(std::int64_t tick, const std::function<bool()>& should_stop) {
+  if (is_there(tick)) return true;
+  has_report_ = false;
   // The last tick is simulated in any case, because its report belongs to the picture.
   const std::int64_t before = std::max<std::int64_t>(0, tick - 1);
   if (!goes_on(before))
@@ -79,12 +80,13 @@ Result<bool> Seeker::go_to(std::int64_t tick, const std::function<bool()>& shoul
   Cursor& cursor = cursors_[last_];
   cursor.used = ++uses_;
   while (cursor.replay.tick() < tick) {
-    if (cursor.replay.tick() % kAsk == 0 && should_stop()) return false;
+    if (should_stop()) return false;
     const Result<bool> stepped = cursor.replay.step();
     if (!stepped) return stepped.errors();
     if (!*stepped) break;
     moments_.keep(cursor.replay.tick(), cursor.replay.state(), is_same(cursor));
   }
+  has_report_ = true;
   return true;
 }
 

@@ -34,6 +34,7 @@ class Seeker {
     std::uint64_t used = 0;
   };
   static bool is_same(const Cursor& cursor) { return cursor.was_same && cursor.replay.same_so_far(); }
+  bool is_there(std::int64_t tick) const { return has_report_ && cursors_[last_].replay.tick() == tick; }
   bool goes_on(std::int64_t tick);
   std::size_t find_at_cut_of(const State& state) const;
   Result<Done> begin_at(const Moments::Place& place);
@@ -42,6 +43,7 @@ class Seeker {
   Moments& moments_;
   std::vector<Cursor> cursors_;
   std::size_t last_ = 0;
+  bool has_report_ = false;  ///< the last go_to() came to its end
   std::uint64_t uses_ = 0;
 };
 

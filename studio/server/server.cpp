@@ -15,16 +15,44 @@ using asio::ip::tcp;
 
 namespace {
 
-/// Listens on 127.0.0.1. Returns why it failed; empty if it did not.
-std::string listen_on(tcp::acceptor& acceptor, int port) {
+/// Returns why it failed to listen; empty if it did not.
+std::string listen_on(tcp::acceptor& acceptor, const asio::ip::address& address, int port) {
   boost::system::error_code failure;
-  const tcp::endpoint endpoint(asio::ip::address_v4::loopback(), std::uint16_t(port));
+  const tcp::endpoint endpoint(address, std::uint16_t(port));
   acceptor.open(endpoint.protocol(), failure);
   if (!failure) acceptor.set_option(tcp::acceptor::reuse_address(true), failure);
   if (!failure) acceptor.bind(endpoint, failure);
   if (!failure) acceptor.listen(asio::socket_base::max_listen_connections, failure);
   if (failure) acceptor.close();
   return failure ? failure.message() : "";
+}
+
+/// Where a server listens, and who comes from outside.
+struct Place {
+  asio::ip::address address;
+  std::optional<PublicAddress> outside;
+};
+
+Result<Place> find_place(const ServerOptions& options) {
+  Errors errors;
+  boost::system::error_code failure;
+  const Place place{asio::ip::make_address(options.bind, failure), PublicAddress::read(options.behind)};
+  const bool is_own =
+      place.address == asio::ip::address_v4::loopback() || place.address == asio::ip::address_v6::loopback();
+  if (!options.behind.empty() && !place.outside)
+    errors.push_back({output::option_name("studio.behind"),
+                      "got '" + options.behind + "', must be https://NAME or https://NAME:PORT",
+                      "it is the address of the proxy that ends TLS, as browsers open it"});
+  if (failure)
+    errors.push_back({output::option_name("studio.bind"), "got '" + options.bind + "', must be an IP address", ""});
+  else if (!is_own && options.behind.empty())
+    errors.push_back({output::option_name("studio.bind"),
+                      options.bind + ": others could read the token and everything else on its way, and with it use "
+                                     "and overwrite all files of the folder",
+                      "let a reverse proxy end TLS in front of it, and name its address: " +
+                          output::option_name("studio.behind") + " https://NAME"});
+  if (!errors.empty()) return errors;
+  return place;
 }
 
 }  // namespace
@@ -36,6 +64,7 @@ struct Server::Impl {
   std::string token;
   Services services;
   tcp::acceptor acceptor;
+  std::optional<PublicAddress> outside;
   asio::steady_timer timer{services.network};
 
   void accept_next() {
@@ -75,19 +104,33 @@ Server::~Server() {
 
 Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options) {
   Result<Folder> folder = Folder::open(options.folder);
-  if (!folder) return folder.errors();
+  const Result<Place> place = find_place(options);
+  if (!folder || !place) {
+    Errors errors = folder ? Errors{} : folder.errors();
+    if (!place) errors.insert(errors.end(), place.errors().begin(), place.errors().end());
+    return errors;
+  }
   auto impl = std::make_unique<Impl>(std::move(*folder), options.limits, make_token());
-  std::string why = listen_on(impl->acceptor, options.port.value_or(kUsualPort));
-  if (!why.empty() && !options.port) why = listen_on(impl->acceptor, 0);
+  std::string why = listen_on(impl->acceptor, place->address, options.port.value_or(kUsualPort));
+  if (!why.empty() && !options.port) why = listen_on(impl->acceptor, place->address, 0);
   if (!why.empty())
-    return Error{output::option_name("studio.port"), std::to_string(*options.port) + ": " + why,
-                 "0 takes any free port"};
-  impl->services.access = Access(impl->acceptor.local_endpoint().port(), impl->token);
+    return Error{output::option_name(options.port ? "studio.port" : "studio.bind"),
+                 (options.port ? std::to_string(*options.port) : options.bind) + ": " + why,
+                 options.port ? "0 takes any free port" : ""};
+  impl->outside = place->outside;
+  impl->services.access = Access(impl->acceptor.local_endpoint().port(), impl->token, impl->outside);
   return std::unique_ptr<Server>(new Server(std::move(impl)));
 }
 
 std::string Server::address() const {
-  return "http://127.0.0.1:" + std::to_string(impl_->acceptor.local_endpoint().port()) + "/#token=" + impl_->token;
+  const std::string origin = impl_->outside ? impl_->outside->origin() : "http://" + listens_on();
+  return origin + "/#token=" + impl_->token;
+}
+
+std::string Server::listens_on() const {
+  const tcp::endpoint endpoint = impl_->acceptor.local_endpoint();
+  const std::string address = endpoint.address().to_string();
+  return (endpoint.address().is_v6() ? "[" + address + "]" : address) + ":" + std::to_string(endpoint.port());
 }
 
 void Server::run(const std::function<bool()>& should_stop) {

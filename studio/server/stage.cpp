@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "studio/film/reel.h"
 #include "studio/server/glimpse.h"
 #include "studio/server/seeker.h"
 #include "studio/server/text.h"
@@ -48,32 +49,56 @@ void Stage::show(std::int64_t tick, std::uint32_t request) {
     is_wanted_ = true;
     wants_glimpse_ = is_replaying_;  // else the replay says whether it needs one
   }
-  moments_->aim(tick);
+  moments_->aim(tick), moments_->rest(true);
   news_.notify_all();
 }
 
-Result<render::Legend> Stage::draw_as(const std::optional<DrawingRequest>& request) {
-  Result<render::Legend> legend = request ? Drawing::check(reader_, *request) : render::Legend{};
-  if (!legend) return legend;
-  const std::lock_guard lock(mutex_);
-  drawing_request_ = request, has_drawing_request_ = true;
-  return legend;
-}
-
-/// Makes what draws as it was asked for last, in the thread that replays.
-Result<Done> Stage::follow_request(std::unique_ptr<Drawing>& drawing) {
-  std::optional<DrawingRequest> request;
+/// See film::full_scale_of().
+Result<double> Stage::full_scale(render::ElementQuantity quantity) {
   {
     const std::lock_guard lock(mutex_);
-    if (!std::exchange(has_drawing_request_, false)) return Done{};
-    request = drawing_request_;
+    if (const auto known = full_scales_.find(quantity); known != full_scales_.end()) return known->second;
   }
-  drawing.reset();
-  if (!request) return Done{};
-  Result<std::unique_ptr<Drawing>> made = Drawing::create(reader_, *request);
-  if (!made) return made.errors();
-  drawing = std::move(*made);
-  return Done{};
+  Result<recordings::SessionReader> reader = recordings::SessionReader::open(reader_.path());  // of this thread
+  if (!reader) return reader.errors();
+  const Result<double> found = film::full_scale_of({&*reader}, quantity);
+  if (!found) return found;
+  const std::lock_guard lock(mutex_);
+  return full_scales_[quantity] = *found;
+}
+
+Result<DrawingPlan> Stage::draw_as(const DrawingRequest& request, const std::vector<std::shared_ptr<Stage>>& shown) {
+  Result<DrawingPlan> plan = plan_drawing(reader_, request, moments_->last());
+  if (!plan) return plan;
+  if (render::DrawOptions& draw = plan->look.draw; draw.view == render::View::elements) {
+    double largest = 0;
+    for (const std::shared_ptr<Stage>& stage : shown) {
+      const Result<double> found = stage->full_scale(draw.quantity);
+      if (!found) return found.errors();
+      largest = std::max(largest, *found);
+    }
+    draw.full_scale = views::unit_of(draw.quantity) * largest;
+    plan->legend = render::legend_of(reader_.start().model, draw);
+  }
+  const std::lock_guard lock(mutex_);
+  plan_ = *plan, is_plan_new_ = true;
+  return plan;
+}
+
+/// Takes over the newest plan, in the thread that replays. Returns whether there is something to draw.
+Result<bool> Stage::follow_plan(Drawing& drawing) {
+  std::optional<DrawingPlan> plan;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!plan_ || !plan_->size) return false;
+    if (!std::exchange(is_plan_new_, false)) return true;
+    plan = plan_;
+  }
+  const Result<Done> followed = drawing.follow(*plan);
+  if (followed) return true;
+  const std::lock_guard lock(mutex_);
+  if (!is_plan_new_) plan_.reset();
+  return followed.errors();
 }
 
 /// Waits for one of the two flags of the newest wish, takes it and returns the wish; nothing: the stage ends.
@@ -82,7 +107,7 @@ std::optional<Stage::Wish> Stage::next(bool& flag) {
   news_.wait(lock, [&] { return flag || ends_; });
   if (ends_) return std::nullopt;
   flag = false;
-  if (&flag == &is_wanted_) is_replaying_ = true;
+  (&flag == &is_wanted_ ? is_replaying_ : is_glancing_) = true;
   return newest_;
 }
 
@@ -98,40 +123,57 @@ void Stage::show(Picture picture, const Wish& wish, bool is_glimpse) {
   if (wish.request != newest_.request || (is_glimpse && !is_replaying_)) return;
   if (!is_glimpse) is_replaying_ = wants_glimpse_ = false;
   outbox_->show(std::move(picture));
+  moments_->rest(false);
+}
+
+/// The replay would only hold up the glimpse, and begins where that read from the file already.
+void Stage::wait_for_glimpse(const Wish& wish) {
+  std::unique_lock lock(mutex_);
+  if (wish.request != newest_.request) return;
+  wants_glimpse_ = true;
+  news_.notify_all();
+  news_.wait(lock, [&] { return (!wants_glimpse_ && !is_glancing_) || is_wanted_ || ends_; });
 }
 
 void Stage::replay() {
   Seeker seeker(reader_, *moments_);
   PictureMaker maker(reader_.start().model, number_, cuts_);
-  std::unique_ptr<Drawing> drawing;
+  Drawing drawing(reader_);
   while (const std::optional<Wish> wish = next(is_wanted_)) {
-    if (seeker.is_far(wish->tick)) {
-      const std::lock_guard lock(mutex_);
-      wants_glimpse_ = wants_glimpse_ || wish->request == newest_.request;
-      news_.notify_all();
-    }
+    if (seeker.is_far(wish->tick)) wait_for_glimpse(*wish);
     const Result<bool> there = seeker.go_to(wish->tick, [this] { return is_outdated(); });
-    if (!there) outbox_->send(stage_failed(number_, there.errors()));
+    if (!there) outbox_->send(stage_failed(number_, there.errors())), moments_->rest(false);
     if (!there || !*there) continue;
     const State& state = seeker.cursor().state();
     Picture picture = maker.make(state, facts(seeker, wish->request));
-    if (const Result<Done> followed = follow_request(drawing); !followed)
-      outbox_->send(stage_failed(number_, followed.errors()));
-    if (drawing) {
-      Result<std::string> drawn = drawing->draw(state, seeker.cursor().tick(), number_, wish->request);
+    const Result<bool> is_drawn = follow_plan(drawing);
+    if (!is_drawn) outbox_->send(stage_failed(number_, is_drawn.errors()));
+    if (is_drawn && *is_drawn) {
+      Result<std::string> drawn = drawing.draw(state, seeker.cursor().tick(), number_, wish->request);
       if (drawn) picture.drawing = std::move(*drawn);
     }
     show(std::move(picture), *wish, false);
   }
 }
 
+void Stage::end_glance() {
+  const std::lock_guard lock(mutex_);
+  is_glancing_ = false;
+  news_.notify_all();
+}
+
 /// Shows what is known of moments without a simulation. Damaged parts of the session and its beginning have no glimpse.
 void Stage::glance() {
   Result<recordings::SessionReader> reader = recordings::SessionReader::open(reader_.path());
-  if (!reader) return;  // it went away since it was opened: the replay says so
+  if (!reader) {  // it went away since it was opened: the replay says so
+    while (next(wants_glimpse_)) end_glance();
+    return;
+  }
   Glimpses glimpses(*reader, *moments_);
   PictureMaker maker(reader_.start().model, number_, cuts_);
-  while (const std::optional<Wish> wish = next(wants_glimpse_)) {
+  for (;; end_glance()) {
+    const std::optional<Wish> wish = next(wants_glimpse_);
+    if (!wish) return;
     if (wish->tick == 0) continue;
     Result<Glimpses::Glimpse> glimpse = glimpses.of(wish->tick);
     if (!glimpse) continue;

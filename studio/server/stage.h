@@ -2,11 +2,13 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "core/model/result.h"
 #include "recordings/session_reader.h"
@@ -34,9 +36,9 @@ class Stage {
   /// Asks for the State before `tick`, which is moved into the session; a newer request replaces one that waits.
   void show(std::int64_t tick, std::uint32_t request);
 
-  /// Draws the replayed pictures that follow here too, beside their frames; nothing: no longer. Returns their legend.
-  /// Errors: those of Drawing::check().
-  Result<render::Legend> draw_as(const std::optional<DrawingRequest>& request);
+  /// Draws the replayed pictures that follow here too, beside their frames; without a size no longer. Elements have the
+  /// range of colours that a film of all `shown` stages has. Errors: those of plan_drawing(); a damaged session.
+  Result<DrawingPlan> draw_as(const DrawingRequest& request, const std::vector<std::shared_ptr<Stage>>& shown);
 
   /// Share of the session that can be reached with a short replay, in [0, 1].
   double prepared() const { return moments_->share(); }
@@ -50,7 +52,10 @@ class Stage {
         std::shared_ptr<Outbox> outbox);
   void replay();
   void glance();
-  Result<Done> follow_request(std::unique_ptr<Drawing>& drawing);
+  void end_glance();
+  void wait_for_glimpse(const Wish& wish);
+  Result<double> full_scale(render::ElementQuantity quantity);
+  Result<bool> follow_plan(Drawing& drawing);
   std::optional<Wish> next(bool& flag);
   bool is_outdated();
   void show(Picture picture, const Wish& wish, bool is_glimpse);
@@ -65,11 +70,13 @@ class Stage {
   std::mutex mutex_;
   std::condition_variable news_;
   Wish newest_;
-  bool is_wanted_ = false;      ///< `newest_` waits for the replay
-  bool wants_glimpse_ = false;  ///< `newest_` waits for a glimpse
-  bool is_replaying_ = false;   ///< a request that is not answered yet
-  std::optional<DrawingRequest> drawing_request_;
-  bool has_drawing_request_ = false;  ///< that the replay does not follow yet
+  bool is_wanted_ = false;                                 ///< `newest_` waits for the replay
+  bool wants_glimpse_ = false;                             ///< `newest_` waits for a glimpse
+  bool is_glancing_ = false;                               ///< a glimpse is on its way
+  bool is_replaying_ = false;                              ///< a request that is not answered yet
+  std::optional<DrawingPlan> plan_;                        ///< nothing is drawn before the first one
+  bool is_plan_new_ = false;                               ///< the replay does not follow it yet
+  std::map<render::ElementQuantity, double> full_scales_;  ///< of a film of this session alone
   bool ends_ = false;
   std::thread replay_thread_, glimpse_thread_;
 };

@@ -31,6 +31,31 @@ Result<Done> write_poses(recordings::SessionReader& reader, std::size_t hand, st
   return Done{};
 }
 
+/// A device over OpenIGTLink, as the options of `record` describe it.
+devices::DeviceRequest device_of(Parameters& parameters) {
+  devices::DeviceRequest device;
+  device.address = parameters.text_if("address").value_or("");
+  if (const std::optional<double> port = parameters.number_if("listen_port", 0, 65535)) device.listen_port = int(*port);
+  device.interface = parameters.text_if("bind").value_or(device.interface);
+  device.allowed = parameters.texts_if("allow");
+  device.name = parameters.text_if("name").value_or("");
+  device.tool = parameters.text_if("tool").value_or("");
+  device.buttons = parameters.texts_if("buttons");
+  device.scale = parameters.number_if("scale", 1e-3, 1e3).value_or(device.scale);
+  device.offset_mm = parameters.numbers_if("offset_m", 3);
+  for (double& metres : device.offset_mm) metres *= 1e3;
+  device.rotation = parameters.numbers_if("rotation", 4);
+  device.tip = parameters.numbers_if("tip", 3);
+  if (const auto speed = parameters.number_if("most_speed_m_per_s", 1e-3, 100))
+    device.most_speed_mm_per_s = 1e3 * *speed;
+  device.timeout_s = parameters.number_if("timeout_s", 0.2, 1e5).value_or(device.timeout_s);
+  device.most_force_n = parameters.number_if("most_force_n", 1e-3, 1e3).value_or(device.most_force_n);
+  device.stiffness_n_per_m = parameters.number_if("stiffness_n_per_m", 1, 1e5).value_or(device.stiffness_n_per_m);
+  if (device.address.empty() == !device.listen_port.has_value())
+    parameters.refuse("address", "give either an address or a listen_port");
+  return device;
+}
+
 }  // namespace
 
 Result<std::string> begin_training(Parameters& parameters, const CallContext& context) {
@@ -41,8 +66,10 @@ Result<std::string> begin_training(Parameters& parameters, const CallContext& co
   const std::uint32_t stage = std::uint32_t(parameters.number("stage", 0, Desk::kMostStages - 1));
   TrainingRequest request;
   request.most_speed = parameters.number_if("most_speed_m_per_s", 0.01, 100).value_or(request.most_speed);
+  if (std::optional<Parameters> device = parameters.object_if("device")) request.device = device_of(*device);
   if (!context.desk) parameters.refuse("stage", "only a page with a WebSocket has stages");
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  if (const Errors errors = devices::check_device(request.device); !errors.empty()) return errors;
   context.desk->end_training();
   const Result<std::string> file = options.text ? context.folder.place(scene_path) : context.folder.find(scene_path);
   if (!file) return file.errors();
@@ -65,10 +92,12 @@ Result<std::string> begin_training(Parameters& parameters, const CallContext& co
   if (context.should_stop()) return Error{scene_path, "stopped", ""};
   auto start = std::make_shared<const recordings::SessionStart>(session::start_session(*scene));
   const std::string view = view_json(scene->scene.spec, start->model);
-  if (const Result<Done> begun = context.desk->train(start, request, stage); !begun) return begun.errors();
+  const Result<std::string> awaited = context.desk->train(start, request, stage);
+  if (!awaited) return awaited.errors();
   output::JsonWriter warnings;
   write_errors(warnings, scene->scene.warnings);
-  return "{\"scene\": " + json_text(scene_path) + ", \"view\": " + view + ", \"warnings\": " + warnings.text() + "}";
+  return "{\"scene\": " + json_text(scene_path) + ", \"view\": " + view + ", \"warnings\": " + warnings.text() +
+         ", \"awaited\": " + json_text(*awaited) + "}";
 }
 
 Result<std::string> end_training(Parameters& parameters, const CallContext& context) {

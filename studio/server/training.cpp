@@ -10,7 +10,6 @@
 #include <map>
 #include <vector>
 
-#include "studio/devices/open_device.h"
 #include "studio/output/json_writer.h"
 #include "studio/server/picture.h"
 #include "studio/server/text.h"
@@ -81,10 +80,12 @@ Result<std::unique_ptr<Training>> Training::begin(std::shared_ptr<const recordin
                                                   std::shared_ptr<Outbox> outbox) {
   auto named = std::make_shared<recordings::SessionStart>(*start);
   std::unique_ptr<Training> training(new Training(named, request, stage, std::move(outbox)));
-  const Result<std::map<std::string, std::string>> metadata = training->follow_hands();
+  const bool has_device = devices::asks_for_device(request.device);
+  const Result<std::map<std::string, std::string>> metadata =
+      has_device ? training->follow_device() : training->follow_hands();
   if (!metadata) return metadata.errors();
   for (const auto& [key, value] : *metadata) named->metadata[key] = value;
-  named->metadata["source"] = "studio";
+  if (!has_device) named->metadata["source"] = "studio";
   training->outbox_->send_bytes(shapes_message(start->model, stage));
   training->ticks_ = std::thread([t = training.get()] { t->tick(); });
   training->pictures_ = std::thread([t = training.get()] { t->show(); });
@@ -120,6 +121,19 @@ Result<std::map<std::string, std::string>> Training::follow_hands() {
   return std::move(followed->metadata);
 }
 
+/// Makes a device the source, as `record` does. Returns what the session stores about it.
+Result<std::map<std::string, std::string>> Training::follow_device() {
+  Result<devices::OpenedDevice> opened = devices::open_device(request_.device);
+  if (!opened) return opened.errors();
+  Result<devices::FollowedDevice> followed =
+      devices::follow_device(request_.device, std::move(opened->device), start_->model);
+  if (!followed) return followed.errors();
+  awaited_ = opened->place;
+  followed_ = {followed->source.get()};
+  source_ = std::move(followed->source);
+  return std::move(followed->metadata);
+}
+
 Training::Training(std::shared_ptr<const recordings::SessionStart> start, const TrainingRequest& request,
                    std::uint32_t stage, std::shared_ptr<Outbox> outbox)
     : start_(std::move(start)), request_(request), stage_(stage), outbox_(std::move(outbox)) {}
@@ -130,12 +144,20 @@ Training::~Training() {
   if (pictures_.joinable()) pictures_.join();
 }
 
+/// Sends an event with a text.
+void Training::tell(const char* event, const std::string& text) {
+  const output::JsonWriter content =
+      output::JsonWriter().begin_object().member("text", std::string_view(text)).end_object();
+  outbox_->send(event_text(event, content.text()));
+}
+
 void Training::tick() {
   // The browser draws on the same processors. Only a privileged user may ask for this; others do without.
   setpriority(PRIO_PROCESS, id_t(gettid()), -15);
   const auto should_stop = [this] { return ends_.load(); };
-  if (std::all_of(followed_.begin(), followed_.end(),
-                  [&](devices::DeviceSource* hand) { return hand->wait_for_first_pose(should_stop); })) {
+  if (std::all_of(followed_.begin(), followed_.end(), [&](devices::DeviceSource* hand) {
+        return hand->wait_for_first_pose(should_stop, [this](const std::string& why) { tell("train_waits", why); });
+      })) {
     session::RunOptions options;
     options.threads = session::threads_for(start_->model);
     options.should_stop = should_stop;
@@ -144,11 +166,7 @@ void Training::tick() {
       times.add(record.tick_time);
       newest_.offer(state, record, so_far.late_ticks, times.p99());
     };
-    options.tell = [this](const std::string& problem) {
-      outbox_->send(event_text(
-          "train_fails",
-          output::JsonWriter().begin_object().member("text", std::string_view(problem)).end_object().text()));
-    };
+    options.tell = [this](const std::string& problem) { tell("train_fails", problem); };
     const Unkept unkept;
     const std::string file = request_.file.empty() ? unkept.file() : request_.file;
     const Result<session::RecordOutcome> outcome = session::record_session(*start_, *source_, file, false, options);

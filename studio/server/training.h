@@ -11,6 +11,7 @@
 #include "core/model/result.h"
 #include "recordings/session.h"
 #include "studio/devices/device_source.h"
+#include "studio/devices/open_device.h"
 #include "studio/server/newest_state.h"
 #include "studio/server/outbox.h"
 #include "studio/server/page_hand.h"
@@ -19,21 +20,27 @@ namespace ctpm::server {
 
 /// What a page asks for when it begins to train.
 struct TrainingRequest {
-  std::string file;       ///< session file to write; it must not exist. Empty: nothing is kept
-  std::string shown;      ///< its name as the page knows it
-  double most_speed = 1;  ///< of the hand; faster motion counts as a jump [m/s]
+  std::string file;               ///< session file to write; it must not exist. Empty: nothing is kept
+  std::string shown;              ///< its name as the page knows it
+  double most_speed = 1;          ///< of the hand; faster motion counts as a jump [m/s]
+  devices::DeviceRequest device;  ///< that leads in place of the page, if one is asked for
 };
 
-/// A running session that a page leads. One thread ticks, in real time; another one makes pictures for the page.
+/// A running session that a page leads, or a device while a page looks on. One thread ticks, in real time; another one
+/// makes pictures for the page.
 class Training {
  public:
-  /// Starts with the State of `start`, and ticks from the hand's first pose on. Errors: the scene has no tool.
+  /// Starts with the State of `start`, and ticks from the hand's first pose on. Errors: the scene has no tool; those of
+  /// devices::open_device().
   static Result<std::unique_ptr<Training>> begin(std::shared_ptr<const recordings::SessionStart> start,
                                                  const TrainingRequest& request, std::uint32_t stage,
                                                  std::shared_ptr<Outbox> outbox);
 
   /// Ends the session and waits until it is saved.
   ~Training();
+
+  /// Where its device is awaited; empty: the page leads.
+  const std::string& awaited() const { return awaited_; }
 
   /// A message of the page; from one thread.
   void move(const HandMoves& moves, double sent_s) {
@@ -48,6 +55,8 @@ class Training {
   Training(std::shared_ptr<const recordings::SessionStart> start, const TrainingRequest& request, std::uint32_t stage,
            std::shared_ptr<Outbox> outbox);
   Result<std::map<std::string, std::string>> follow_hands();
+  Result<std::map<std::string, std::string>> follow_device();
+  void tell(const char* event, const std::string& text);
   void tick();
   void show();
 
@@ -55,7 +64,8 @@ class Training {
   TrainingRequest request_;
   std::uint32_t stage_;
   std::shared_ptr<Outbox> outbox_;
-  std::array<PageHand*, kMostHands> hands_{};     ///< of source_; null: the scene has one hand
+  std::string awaited_;
+  std::array<PageHand*, kMostHands> hands_{};     ///< of source_; null: the page does not lead it
   std::vector<devices::DeviceSource*> followed_;  ///< of source_
   std::unique_ptr<sources::InputSource> source_;
   NewestState newest_;

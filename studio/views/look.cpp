@@ -79,6 +79,32 @@ render::Cutaway find_cutaway(const std::string& text, const render::SceneView& s
   return {place * axis, axis};
 }
 
+/// Cameras are set up for 16:9; in a narrower picture they step back to keep the sides visible.
+render::Camera stepped_back(render::Camera camera, double aspect) {
+  camera.eye = camera.target + std::max(1.0, 16.0 / 9 / aspect) * (camera.eye - camera.target);
+  return camera;
+}
+
+/// A camera given by two or three places; none: the text gives no such places.
+std::optional<render::Camera> placed_camera(const std::string& text, Vec3 up, double aspect) {
+  std::array<double, 9> number{};
+  std::size_t count = 0;
+  const char* at = text.c_str();
+  for (char* end = nullptr; count < number.size(); at = end + 1) {
+    number[count++] = std::strtod(at, &end);
+    if (end == at || !std::isfinite(number[count - 1])) return std::nullopt;
+    if (*end == 0 && (count == 6 || count == 9)) break;
+    if (*end != (count % 3 == 0 ? ':' : ',') || count == number.size()) return std::nullopt;
+  }
+  const auto triple = [&](std::size_t i) { return Vec3{number[i], number[i + 1], number[i + 2]}; };
+  render::Camera camera{1e-3 * triple(0), 1e-3 * triple(3), count == 9 ? triple(6) : up};
+  const Vec3 sight = camera.target - camera.eye;
+  if (norm(sight) == 0 || norm(camera.up) == 0) return std::nullopt;
+  const auto is_along = [&](Vec3 v) { return norm(cross(sight, v)) < 1e-4 * norm(sight) * norm(v); };
+  if (is_along(camera.up)) camera.up = is_along({0, 1, 0}) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  return stepped_back(camera, aspect);
+}
+
 /// The camera of that name. For an empty name: the scene's first, or one that frames everything. Error: no camera of
 /// that name; lists the known names.
 Result<render::Camera> find_camera(const scenes::SceneSpec& scene, const render::SceneView& view,
@@ -87,20 +113,18 @@ Result<render::Camera> find_camera(const scenes::SceneSpec& scene, const render:
   std::string known;
   for (const scenes::CameraSpec& camera : scene.cameras) {
     if (name.empty() || camera.name == name) {
-      // Cameras are set up for 16:9; in a narrower picture they step back to keep the sides visible, but no farther
-      // than shows the organs.
-      const double back = std::max(1.0, 16.0 / 9 / aspect);
-      const render::Camera stepped{camera.target + back * (camera.eye - camera.target), camera.target, camera.up,
-                                   camera.field_of_view};
+      // No farther back than shows the organs.
+      const render::Camera stepped = stepped_back({camera.eye, camera.target, camera.up, camera.field_of_view}, aspect);
       const render::Camera whole =
           render::fitted_camera(view, camera.target - camera.eye, camera.up, camera.field_of_view, aspect);
       const auto distance = [](const render::Camera& c) { return norm(c.eye - c.target); };
-      return back > 1 && distance(whole) < distance(stepped) ? whole : stepped;
+      return aspect < 16.0 / 9 && distance(whole) < distance(stepped) ? whole : stepped;
     }
     known += (known.empty() ? "" : ", ") + camera.name;
   }
   return Error{output::option_name("look.camera"), "the scene has no camera '" + name + "'",
-               "there are: fitted, wound, follow" + (known.empty() ? "" : ", " + known)};
+               "there are: fitted, wound, follow" + (known.empty() ? "" : ", " + known) +
+                   ", or a place and what it looks at in mm: 0,-300,200:0,0,20"};
 }
 
 bool is_axis(const std::string& cutaway) { return !cutaway.empty() && cutaway[0] >= 'x' && cutaway[0] <= 'z'; }
@@ -124,6 +148,10 @@ void choose_camera(const std::string& name, const std::string& cutaway, const sc
   look.camera = name, look.follows = name == "follow" && !is_the_scenes;
   if (is_fitted) {
     look.draw.camera = render::default_camera(view, aspect);
+    return;
+  }
+  if (const auto placed = placed_camera(name, render::up_of(*view.model), aspect); placed && !is_the_scenes) {
+    look.draw.camera = *placed;
     return;
   }
   const bool is_free = name.empty() || is_wound || look.follows;

@@ -16,8 +16,9 @@ struct LookRequest {
   double full_scale =
       0;  ///< value of the last colour [%, deg or N as in the legend]; 0: in a film its own range, else the default
   std::string cutaway;  ///< axis of the cutting plane, alone or with a position [mm]: y=12.5; empty: no cutaway
-  /// A camera of the scene, `fitted`, `wound` or `follow`. Empty: with a cutaway one that sees the section, else wound
-  /// where something is cut, else the scene's first, else fitted.
+  /// A camera of the scene, `fitted`, `wound` or `follow`, or two places in mm: `X,Y,Z:X,Y,Z` looks from the first at
+  /// the second, and a third triple points up. Empty: with a cutaway one that sees the section, else wound where
+  /// something is cut, else the scene's first, else fitted.
   std::string camera;
 };
 

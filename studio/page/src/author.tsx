@@ -139,6 +139,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
     }}>
       <nav class="list" aria-label="Scenes">
         <h2>Scenes</h2>
+        {listing.scenes.length === 0 && <p class="hint">No scene in this folder yet.</p>}
         <ul class="scenes">
           {listing.scenes.map((entry) => (
             <li key={entry.path}>

@@ -22,7 +22,7 @@ export class Connection {
   private next = 1;
 
   constructor(private readonly token: string, onOpen: () => void, onClose: () => void) {
-    this.socket = new WebSocket(`ws://${location.host}/socket`, ["ctpm.studio.1", `token.${token}`]);
+    this.socket = new WebSocket(`${location.protocol.replace("http", "ws")}//${location.host}/socket`, ["ctpm.studio.1", `token.${token}`]);
     this.socket.binaryType = "arraybuffer";
     this.socket.onopen = onOpen;
     this.socket.onclose = () => {

@@ -11,6 +11,17 @@ export function drawInto(canvas: HTMLCanvasElement, drawing: Drawing | null): vo
   canvas.getContext("2d")!.putImageData(image, 0, 0);
 }
 
+/** The picture of a canvas follows the size of its place. */
+export function watchSize(canvas: HTMLCanvasElement, onSize: () => void): () => void {
+  let timer = 0;
+  const observer = new ResizeObserver(() => {
+    clearTimeout(timer);
+    timer = window.setTimeout(onSize, 100); // until it stays
+  });
+  observer.observe(canvas);
+  return () => (clearTimeout(timer), observer.disconnect());
+}
+
 /** The size of each of some drawings beside each other that fill a canvas: even numbers, which videos need. */
 export function sizeOf(canvas: HTMLCanvasElement, beside: number): string {
   const even = (x: number) => Math.max(64, 2 * Math.round(x / 2));

@@ -1,6 +1,5 @@
 import { useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
-import { LookFields } from "./look_fields";
 import { type Look, lookParameters, lookWords } from "./look";
 import { Problems, Section, ShownCommand, Working } from "./parts";
 import type { Player } from "./player";
@@ -21,24 +20,33 @@ function number(text: string): number | undefined {
   return text.trim() === "" ? undefined : Number(text);
 }
 
+/** Choices of the command; the first is its default. */
+const kSizes = ["1280x720", "1920x1080", "854x480", "1080x1080", "720x1280"];
+const kOverlays: [string, string][] = [["full", "full"], ["small", "small"], ["none", "none"]];
+const kAligned: [string, string][] = [["", "path, else first contact"], ["path", "path of the tool"], ["contact", "first contact"], ["cut", "first cut"], ["clock", "clock"]];
+const kSlow: [string, string][] = [["cut", "cuts"], ["damage", "damage"], ["worst", "largest force and depth"]];
+
 /** A video of what is seen. */
-export function ExportForm({ connection, player, look, onLook }: { connection: Connection; player: Player; look: Look; onLook: (look: Look) => void }) {
+export function ExportForm({ connection, player, look }: { connection: Connection; player: Player; look: Look }) {
   const { session } = player.tracks.get(0)!;
   const beside = player.tracks.get(1)?.session.path;
   const [output, setOutput] = useState(() => session.path.replace(/\.ctpm$/, "") + ".mp4");
   const [from, setFrom] = useState("0"), [to, setTo] = useState("");
-  const [speed, setSpeed] = useState("1");
+  const [speed, setSpeed] = useState("1"), [fps, setFps] = useState("30");
+  const [size, setSize] = useState(kSizes[0]), [overlay, setOverlay] = useState("full"), [align, setAlign] = useState("");
+  const [slow, setSlow] = useState<string[]>([]), [isDifferentShown, showDifferent] = useState(false);
   const [progress, setProgress] = useState<[number, number] | null>(null);
   const [result, setResult] = useState<Exported | null>(null);
   const [error, setError] = useState<Error | null>(null);
   const stop = useRef<AbortController | null>(null);
 
+  const slowAt = beside ? "" : slow.join(",");
   const start = async () => {
     stop.current = new AbortController();
     setError(null), setResult(null), setProgress([0, 1]);
     const params = {
-      path: session.path, beside, output, from_s: number(from), to_s: number(to), speed: number(speed),
-      ...lookParameters(look),
+      path: session.path, beside, output, from_s: number(from), to_s: number(to), speed: number(speed), fps: number(fps), size, overlay,
+      align: (beside && align) || undefined, slow_at: slowAt || undefined, allow_diverged: isDifferentShown, ...lookParameters(look),
     };
     try {
       setResult(await connection.call<Exported>("session.export", params,
@@ -52,33 +60,59 @@ export function ExportForm({ connection, player, look, onLook }: { connection: C
     setFrom(Math.max(0, player.time - 1).toFixed(2));
     setTo(Math.min(session.info.duration_s, player.time + 1).toFixed(2));
   };
-  const shown = command("export", session.path, "-o", output, ...(beside ? ["--beside", beside] : []),
-    ...(number(from) ? ["--from-s", from] : []), ...(number(to) !== undefined ? ["--to-s", to] : []),
-    ...(number(speed) !== 1 ? ["--speed", speed] : []), ...lookWords(look));
+  const words = (flag: string, value: string, usual: string) => (value !== usual && value !== "" ? [flag, value] : []);
+  const shown = command("export", session.path, "-o", output, ...(beside ? ["--beside", beside, ...words("--align", align, "")] : []),
+    ...(number(from) ? ["--from-s", from] : []), ...words("--to-s", to, ""), ...words("--speed", speed, "1"), ...words("--fps", fps, "30"),
+    ...words("--size", size, kSizes[0]), ...words("--overlay", overlay, "full"), ...words("--slow-at", slowAt, ""),
+    ...(isDifferentShown ? ["--allow-diverged"] : []), ...lookWords(look));
   const field = (label: string, value: string, set: (value: string) => void, type = "text") => (
     <label class="field">
       <span>{label}</span>
       <input type={type} step="any" value={value} onInput={(e) => set(e.currentTarget.value)} />
     </label>
   );
+  const choice = (label: string, value: string, set: (value: string) => void, options: [string, string][]) => (
+    <label class="field">
+      <span>{label}</span>
+      <select value={value} onChange={(e) => set(e.currentTarget.value)}>
+        {options.map(([key, name]) => <option key={key} value={key}>{name}</option>)}
+      </select>
+    </label>
+  );
+  const tick = (label: string, isOn: boolean, set: (on: boolean) => void) => (
+    <label class="tick"><input type="checkbox" checked={isOn} onChange={(e) => set(e.currentTarget.checked)} /> {label}</label>
+  );
   return (
     <Section title="Video">
+      <p class="hint">It shows what is seen here: view, cutaway and camera are those below the picture.</p>
       {field("file in the folder: .mp4, .avi", output, setOutput)}
       <div class="pair">
         {field("from [s]", from, setFrom, "number")}
         {field("to [s]", to, setTo, "number")}
       </div>
       <button type="button" onClick={around}>1 s around {seconds(player.time, 2)}</button>
-      {field("times real speed", speed, setSpeed, "number")}
-      <p class="hint">A video shows what is seen:</p>
-      <LookFields look={look} onLook={onLook} cameras={session.view.cameras} />
+      <div class="pair">
+        {field("times real speed", speed, setSpeed, "number")}
+        {field("pictures a second", fps, setFps, "number")}
+      </div>
+      {beside ? choice("bring both together by", align, setAlign, kAligned) : (
+        <fieldset>
+          <legend>four times slower at</legend>
+          {kSlow.map(([key, name]) => tick(name, slow.includes(key), (on) => setSlow(kSlow.map(([k]) => k).filter((k) => (k === key ? on : slow.includes(k))))))}
+        </fieldset>
+      )}
+      <div class="pair">
+        {choice("size", size, setSize, kSizes.map((s): [string, string] => [s, s.replace("x", " × ")]))}
+        {choice("overlay", overlay, setOverlay, kOverlays)}
+      </div>
+      <p class="hint">What happens is told in the picture unless the overlay is none, and in an .mp4 as subtitles and chapters too.</p>
+      {session.info.physics_remark && tick("even if the replay differs, marked on every frame", isDifferentShown, showDifferent)}
       {progress ? <Working what="exporting" done={progress[0]} total={progress[1]} onCancel={() => stop.current?.abort()} />
         : <button type="button" class="main" disabled={!output} onClick={() => void start()}>Export</button>}
       <Problems error={error} />
       {result && (
         <p class="good" role="status">{result.path}: {result.frames} frames, {result.codec}, {bytes(result.bytes)}, in {seconds(result.elapsed_s, 1)}; replay {result.same_as_recorded ? "same as recorded" : "DIFFERS"}{result.note && `; ${result.note}`}</p>
       )}
-      {beside && player.offset !== 0 && <p class="hint">A video runs both sessions from their beginnings, not aligned as here.</p>}
       <ShownCommand text={shown} />
     </Section>
   );

@@ -6,12 +6,11 @@ import { freeName, listOf, mmVector } from "./items";
 import { findJson, type Json, parseJson } from "./json_edit";
 import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import type { Vector } from "./protocol";
-import { command, millimetres } from "./text";
+import { command } from "./text";
 
 interface Preset {
   name: string;
   organ: string;
-  radius_m: number;
 }
 
 export interface Imported {
@@ -121,7 +120,6 @@ export function ImportForm({ connection, file, open, onCancel, onDone }: {
     }
     setProgress(null);
   };
-  const usual = presets.find((preset) => preset.name === organ)?.radius_m;
   return (
     <Section title="Import a mesh">
       <Readings rows={[["file", file.name], ["size", `${(file.size / 1e6).toFixed(2)} MB`]]} />
@@ -141,7 +139,7 @@ export function ImportForm({ connection, file, open, onCancel, onDone }: {
           {Object.entries(kUnits).map(([metres, name]) => <option key={metres} value={metres}>{name}</option>)}
         </select>
       </label>
-      <label class="field"><span>radius of the spheres [mm]{usual !== undefined && `, ${millimetres(usual)} if empty`}</span>
+      <label class="field"><span>radius of the spheres [mm]; empty: as fine as holds 1 kHz here</span>
         <input type="number" min="0.1" step="0.1" value={radius} onInput={(e) => setRadius(e.currentTarget.value)} />
       </label>
       <label class="field"><span>scene to write</span>

@@ -1,10 +1,12 @@
 // What is seen of a session, in the words of `export`.
+import { Vector3 } from "three";
+import type { CameraView, SceneView, Vector } from "./protocol";
 
 export interface Look {
   view: string; // surface, spheres, both, elements
   by: string; // of elements; empty: stretch
-  cutaway: string; // empty: none
-  camera: string; // empty: the scene's first
+  cutaway: string; // an axis and its place in mm, as y=12.5; empty: none
+  camera: string; // its name, or two places as freeCamera() writes them; empty: the one that `export` chooses
 }
 
 export const kPlainLook: Look = { view: "surface", by: "", cutaway: "", camera: "" };
@@ -14,7 +16,9 @@ export const kViews: [string, string][] = [
   ["surface", "surface"], ["spheres", "spheres"], ["both", "both"],
   ["elements stretch", "elements by stretch"], ["elements tilt", "elements by tilt"], ["elements force", "elements by force"],
 ];
-export const kCutaways: [string, string][] = [["", "none"], ["x", "across x"], ["y", "across y"], ["z", "across z"]];
+export const kAxes = ["x", "y", "z"];
+const kFieldOfView = 32; // of cameras that are given by places, vertical [degrees]
+const kWide = 16 / 9; // pictures for which cameras are set up; in narrower ones they step back
 
 export function viewOf(look: Look): string {
   return look.by ? `${look.view} ${look.by}` : look.view;
@@ -22,6 +26,45 @@ export function viewOf(look: Look): string {
 export function withView(look: Look, name: string): Look {
   const [view, by = ""] = name.split(" ");
   return { ...look, view, by };
+}
+
+/** The axis of a cutaway and its place [mm]. */
+export function planeOf(look: Look, view: SceneView): { axis: number; place: number; least: number; most: number } | null {
+  const axis = kAxes.indexOf(look.cutaway.slice(0, 1));
+  if (axis < 0) return null;
+  const least = 1e3 * view.least[axis], most = 1e3 * view.most[axis];
+  return { axis, least, most, place: look.cutaway.length > 2 ? Number(look.cutaway.slice(2)) : (least + most) / 2 };
+}
+
+/** Whether the page draws it; anything else is drawn by the program, as for a video. */
+export function isPlain(look: Look): boolean {
+  return look.view === "surface" && !look.cutaway && look.camera !== "follow";
+}
+
+export function isFree(look: Look): boolean {
+  return look.camera.includes(":");
+}
+
+/** A camera as the text of `--camera`; `up`: that of the scene. */
+export function freeCamera(camera: CameraView, up: Vector): string {
+  const target = new Vector3(...camera.target), eye = new Vector3(...camera.eye);
+  const farther = Math.tan((camera.fov_deg * Math.PI) / 360) / Math.tan((kFieldOfView * Math.PI) / 360);
+  const places = [eye.sub(target).multiplyScalar(farther).add(target), target].map((v) => v.multiplyScalar(1e3));
+  const own = new Vector3(...camera.up).normalize();
+  if (own.dot(new Vector3(...up)) < 0.9999) places.push(own);
+  return places.map((v) => v.toArray().map((x) => Number(x.toFixed(2))).join(",")).join(":");
+}
+
+/** The camera of the page that sees what a camera of a picture of that size sees. */
+export function steppedForward(camera: CameraView, size: string | null): CameraView {
+  const [width, height] = (size ?? "16x9").split("x").map(Number);
+  const back = Math.max(1, kWide / (width / height)), target = new Vector3(...camera.target);
+  return { ...camera, eye: new Vector3(...camera.eye).sub(target).divideScalar(back).add(target).toArray() };
+}
+
+/** A camera that looks along an axis from the other side. */
+export function mirrored(camera: CameraView, axis: number): CameraView {
+  return { ...camera, eye: camera.eye.map((x, i) => (i === axis ? 2 * camera.target[i] - x : x)) as Vector };
 }
 
 export function lookParameters(look: Look): { [key: string]: string | undefined } {

@@ -1,8 +1,8 @@
-import { kCutaways, kViews, type Look, viewOf, withView } from "./look";
-import type { CameraView, Legend } from "./protocol";
+import { isFree, kAxes, kViews, type Look, planeOf, viewOf, withView } from "./look";
+import type { Legend, SceneView } from "./protocol";
 
-/** View, cutaway and camera, as `export` has them. */
-export function LookFields({ look, onLook, cameras }: { look: Look; onLook: (look: Look) => void; cameras: CameraView[] }) {
+/** View, cutaway and camera, as `export` has them. `onOtherSide`: to look at the cutaway's plane from there. */
+export function LookFields({ look, onLook, onOtherSide, view }: { look: Look; onLook: (look: Look) => void; onOtherSide: () => void; view: SceneView }) {
   const choice = (label: string, value: string, set: (value: string) => void, options: [string, string][]) => (
     <label>
       {label}
@@ -11,14 +11,28 @@ export function LookFields({ look, onLook, cameras }: { look: Look; onLook: (loo
       </select>
     </label>
   );
-  const own = cameras.map((camera): [string, string] => [camera.name, camera.name]);
-  const first: [string, string][] = own.length > 0 ? [["", own[0][0]], ...own.slice(1)] : [["", "fitted"]];
-  const others = ["fitted", "follow"].filter((name) => !first.some(([, known]) => known === name)).map((name): [string, string] => [name, name]);
+  const plane = planeOf(look, view);
+  const names = [...new Set([...view.cameras.map((camera) => camera.name), "fitted", "follow"])].map((name): [string, string] => [name, name]);
+  const cameras: [string, string][] = [["", "automatic"], ...names];
+  if (isFree(look)) cameras.push([look.camera, "as turned"]);
   return (
     <div class="look">
       {choice("view", viewOf(look), (name) => onLook(withView(look, name)), kViews)}
-      {choice("cutaway", look.cutaway, (cutaway) => onLook({ ...look, cutaway }), kCutaways)}
-      {choice("camera", look.camera, (camera) => onLook({ ...look, camera }), [...first, ...others])}
+      {choice("cutaway", look.cutaway.slice(0, 1), (cutaway) => onLook({ ...look, cutaway }),
+        [["", "none"], ...kAxes.map((axis): [string, string] => [axis, `across ${axis}`])])}
+      {plane && (
+        <div class="plane">
+          <label>
+            at
+            <input type="range" min={Math.ceil(plane.least)} max={Math.floor(plane.most)} step="0.5" value={plane.place}
+              aria-label={`Place of the cutaway along ${kAxes[plane.axis]}, in mm`}
+              onInput={(e) => onLook({ ...look, cutaway: `${kAxes[plane.axis]}=${Number(e.currentTarget.value)}` })} />
+            <output>{plane.place.toFixed(1)} mm</output>
+          </label>
+          <button type="button" class="quiet" onClick={onOtherSide}>other side</button>
+        </div>
+      )}
+      {choice("camera", look.camera, (camera) => onLook({ ...look, camera }), cameras)}
     </div>
   );
 }

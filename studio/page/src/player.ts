@@ -1,8 +1,8 @@
 import type { Binary, Connection } from "./connection";
-import type { Drawing, Frame, Legend, OpenedSession, SessionInfo, TimelineData, Shapes } from "./protocol";
-import { type Look, lookParameters } from "./look";
+import type { Drawing, Frame, OpenedSession, Seen, SessionInfo, TimelineData, Shapes } from "./protocol";
+import { freeCamera, isPlain, type Look, lookParameters, steppedForward } from "./look";
 import { StageScene } from "./stage_scene";
-import type { Viewer } from "./viewer";
+import { firstCamera, type Viewer } from "./viewer";
 
 /** A session on the page. Stage 0 is the one in review, stage 1 the one beside it. */
 export interface Track {
@@ -36,11 +36,13 @@ export class Player {
   onChange: () => void = () => {};
   onTime: () => void = () => {};
   onDrawing: (stage: number, drawing: Drawing | null) => void = () => {}; // to show in place of the scene; null: the scene
-  private readonly isDrawn = new Set<number>(); // stages that the program draws
   private readonly drawings = new Map<number, Drawing>(); // newest of each stage
   private readonly asked = new Map<number, number>(); // newest request of each stage
   private readonly unseen = new Set<number>(); // stages of which it has no picture yet
   private readonly waiting = new Map<number, number>(); // request of each stage that has no replayed picture yet
+  private whenReplayed: (() => void)[] = []; // what waits until there are none of those
+  private wanted: { look: Look; size: string } | null = null; // newest look that the program does not know yet
+  private isLooking = false;
   private readonly tools = new Map<number, Shapes>();
   private request = 0;
   private movedAt = 0;
@@ -63,7 +65,7 @@ export class Player {
     this.viewer.set(stage, track.scene);
     if (stage === 0) {
       this.time = 0;
-      const camera = session.view.cameras[0];
+      const camera = firstCamera(session.view);
       if (camera) this.viewer.look(camera);
     }
     this.move(this.time); // the picture comes before the curves
@@ -73,8 +75,10 @@ export class Player {
 
   close(stage: number): void {
     if (!this.tracks.delete(stage)) return;
-    this.waiting.delete(stage), this.unseen.delete(stage), this.asked.delete(stage);
+    this.waiting.delete(stage), this.unseen.delete(stage), this.asked.delete(stage), this.drawings.delete(stage);
+    this.goOn();
     if (stage === 1) this.path = null;
+    this.viewer.isCovered = false;
     this.viewer.set(stage, null);
     this.connection.call("session.close", { stage }).catch(() => {});
     this.onChange();
@@ -118,14 +122,40 @@ export class Player {
     this.onTime();
   }
 
-  /** Asks for the pictures of a stage as the program draws them; null: the page draws. */
-  async drawAs(stage: number, look: Look | null, size: string): Promise<Legend | null> {
-    this.drawings.delete(stage);
-    if (!look && !this.isDrawn.delete(stage)) return null;
-    if (look) this.isDrawn.add(stage);
-    const legend = await this.connection.call<Legend>("session.draw", look ? { stage, size, ...lookParameters(look) } : { stage });
-    if (this.tracks.has(stage)) this.move(this.time);
-    return legend.title ? legend : null;
+  /** Sees the sessions as the program says; what the page cannot draw, the program draws in pictures of that size. One
+      picture is asked for at a time, so that a hand that turns the view is followed as fast as they come. */
+  async see(look: Look, size: string, onSeen: (seen: Seen) => void): Promise<void> {
+    this.wanted = { look, size };
+    if (this.isLooking) return;
+    this.isLooking = true;
+    try {
+      while (this.wanted && this.tracks.has(0)) {
+        const { look: newest, size: its } = this.wanted;
+        this.wanted = null;
+        onSeen(await this.lookAt(newest, isPlain(newest) ? null : its));
+      }
+    } finally {
+      this.isLooking = false;
+    }
+  }
+
+  private async lookAt(look: Look, size: string | null): Promise<Seen> {
+    const ask = (stage: number, as: Look) => this.connection.call<Seen>("session.draw", { stage, size: size ?? undefined, ...lookParameters(as) });
+    const first = this.tracks.get(0)!, second = this.tracks.get(1);
+    const seen = await ask(0, look);
+    seen.camera = steppedForward(seen.camera, size);
+    if (second) {
+      // As in a video, all of one scene is seen as the first one is.
+      const isAlike = JSON.stringify([first.session.view.least, first.session.view.most]) === JSON.stringify([second.session.view.least, second.session.view.most]);
+      const camera = isAlike && look.camera !== "follow" ? freeCamera(seen.camera, second.session.view.up) : look.camera;
+      await ask(1, { ...look, camera });
+    }
+    if (size || this.drawings.size > 0) {
+      this.drawings.clear();
+      this.ask();
+      await new Promise<void>((resolve) => this.whenReplayed.push(resolve));
+    }
+    return seen;
   }
 
   setOffset(offset: number): void {
@@ -186,6 +216,12 @@ export class Player {
     }
   }
 
+  /** Lets what waits for replayed pictures go on, if they are there. */
+  private goOn(): void {
+    if (this.waiting.size > 0) return;
+    for (const each of this.whenReplayed.splice(0)) each();
+  }
+
   private take(stage: number, message: Binary): void {
     if (message.kind === "shapes") this.tools.set(stage, message);
     const track = this.tracks.get(stage);
@@ -200,6 +236,8 @@ export class Player {
     this.onDrawing(stage, drawing?.request === frame.request ? drawing : null);
     if (this.asked.get(stage) === frame.request) this.unseen.delete(stage);
     if (this.waiting.get(stage) === frame.request && !frame.isGlimpse) this.waiting.delete(stage);
+    this.viewer.isCovered = [...this.tracks.keys()].every((each) => this.drawings.get(each)?.request === this.tracks.get(each)?.scene.frame?.request);
+    this.goOn();
     setTimeout(() => { // the picture is drawn by now
       const time = performance.now() - this.movedAt;
       if (this.unseen.size === 0) this.pictureAfter ??= time;

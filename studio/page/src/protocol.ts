@@ -157,6 +157,7 @@ export interface Motion {
 }
 
 export interface BegunTraining {
+  awaited: string; // where a device is awaited
   scene: string;
   view: SceneView;
   warnings: Problem[];
@@ -380,6 +381,11 @@ export interface Legend {
   low: string;
   high: string;
   colours: Vector[]; // sRGB
+}
+
+/** How the program shows a session: what its colours mean, and from where it is seen. */
+export interface Seen extends Legend {
+  camera: CameraView;
 }
 
 /** A moment as the program draws it, in place of the page. */

@@ -1,9 +1,9 @@
 import { useCallback, useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
 import { Compare } from "./compare";
-import { drawInto, sizeOf } from "./drawing";
+import { drawInto, sizeOf, watchSize } from "./drawing";
 import { ExportForm } from "./export_form";
-import { kPlainLook, type Look } from "./look";
+import { freeCamera, isFree, kPlainLook, type Look, mirrored, planeOf } from "./look";
 import { LegendBar, LookFields } from "./look_fields";
 import { NotesPanel } from "./notes";
 import { Empty, Problems, Readings, Section, ShownCommand, Working } from "./parts";
@@ -15,6 +15,10 @@ import { Viewer } from "./viewer";
 
 const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4];
 const kPanels = ["moment", "compare", "notes", "export"] as const;
+/** What keys do to the view: right and up [rad], times as far away. */
+const kTurns: { [key: string]: [number, number, number] } = {
+  a: [-0.1, 0, 1], d: [0.1, 0, 1], w: [0, 0.1, 1], s: [0, -0.1, 1], "+": [0, 0, 0.9], "=": [0, 0, 0.9], "-": [0, 0, 1 / 0.9],
+};
 type Panel = (typeof kPanels)[number];
 
 /** Where the page is, in its address. */
@@ -69,7 +73,9 @@ export function Review({ connection, listing, place, onPlace }: {
       setError(new Error(errors.map((e) => e.message).join("\n")));
     });
     setPlayer(made);
+    const stopWatching = watchSize(canvas.current, () => setVersion((v) => v + 1));
     return () => {
+      stopWatching();
       made.pause();
       for (const stage of [1, 0]) made.close(stage);
       viewer.dispose();
@@ -109,23 +115,27 @@ export function Review({ connection, listing, place, onPlace }: {
   const first = player?.tracks.get(0), second = player?.tracks.get(1);
   const frame = first?.scene.frame ?? null, other = second?.scene.frame ?? null;
 
-  // The page draws surfaces as the scene's cameras see them; anything else is drawn as for a video.
-  const camera = first?.session.view.cameras.find((c, i) => (look.camera ? c.name === look.camera : i === 0));
-  const choose = (next: Look) => {
-    const named = first?.session.view.cameras.find((c, i) => (next.camera ? c.name === next.camera : i === 0));
-    if (named && next.camera !== look.camera) player?.viewer.look(named);
-    setLook(next);
-  };
-  const isPlain = look.view === "surface" && !look.cutaway && (camera !== undefined || !look.camera);
+  // The program says from where it is seen, unless a hand has turned the view.
+  const size = canvas.current && player ? sizeOf(canvas.current, player.tracks.size) : "";
   useEffect(() => {
-    if (!player || !first || !canvas.current) return;
-    const size = sizeOf(canvas.current, player.tracks.size);
-    for (const stage of player.tracks.keys())
-      player.drawAs(stage, isPlain ? null : look, size).then((shown) => {
-        setError(null);
-        if (stage === 0) setLegend(shown);
-      }, setError);
-  }, [player, first, second, look]);
+    if (!player || !first) return;
+    player.see(look, size, (seen) => {
+      setError(null);
+      setLegend(seen.title ? seen : null);
+      if (!isFree(look)) player.viewer.look(seen.camera);
+    }).catch(setError);
+  }, [player, first, second, look, size]);
+  useEffect(() => {
+    if (!player || !first) return;
+    const { viewer } = player;
+    viewer.onTurn = () => setLook((now) => ({ ...now, camera: freeCamera(viewer.seen(), first.session.view.up) }));
+  }, [player, first]);
+  const otherSide = () => {
+    const plane = first && planeOf(look, first.session.view);
+    if (!player || !plane) return;
+    player.viewer.look(mirrored(player.viewer.seen(), plane.axis));
+    player.viewer.onTurn();
+  };
 
   useEffect(() => {
     if (!player || !first) return;
@@ -147,6 +157,7 @@ export function Review({ connection, listing, place, onPlace }: {
       else if (event.key === "Home") player.move(player.span.from);
       else if (event.key === "End") player.move(player.span.to);
       else if (event.key === "n") setPanel("notes");
+      else if (event.key in kTurns) player.viewer.turn(...kTurns[event.key]);
       else return;
       event.preventDefault();
     };
@@ -196,10 +207,10 @@ export function Review({ connection, listing, place, onPlace }: {
             {second && <span class="second"><b>{second.session.path}</b></span>}
           </div>
         )}
+        {legend && <LegendBar legend={legend} />}
         {first && (
           <div class="look-bar">
-            {legend && <LegendBar legend={legend} />}
-            <LookFields look={look} onLook={choose} cameras={first.session.view.cameras} />
+            <LookFields look={look} onLook={setLook} onOtherSide={otherSide} view={first.session.view} />
           </div>
         )}
         <Problems error={error} />
@@ -245,11 +256,11 @@ export function Review({ connection, listing, place, onPlace }: {
                   onBeside={(path) => open(1, path)} />
               )}
               {panel === "notes" && <NotesPanel connection={connection} player={player} onNotes={setNotes} />}
-              {panel === "export" && <ExportForm key={first.session.path} connection={connection} player={player} look={look} onLook={choose} />}
+              {panel === "export" && <ExportForm key={first.session.path} connection={connection} player={player} look={look} />}
             </div>
           </>
         ) : (
-          <p class="hint">Space plays, ← and → move by 10 ms, with Shift by 100 ms.</p>
+          <p class="hint">Space plays, ← and → move by 10 ms, with Shift by 100 ms. The mouse turns the view and its wheel comes closer; so do A, D, W, S, + and −.</p>
         )}
       </aside>
     </div>

@@ -1,6 +1,8 @@
 import { useCallback, useEffect, useRef, useState } from "preact/hooks";
 import { Result } from "./compare";
 import type { Connection } from "./connection";
+import { DeviceForm } from "./device";
+import { deviceParameters, deviceWords, storedDevice, storeDevice } from "./device_choice";
 import { Empty, Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import { type ComparisonResult, type EndedTraining, type Listing, type Motion, problemText } from "./protocol";
 import { behind, command, millimetres, newtons, seconds } from "./text";
@@ -29,6 +31,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
   const [scene, setScene] = useState("");
   const [output, setOutput] = useState(() => (tryScene ? "" : freeName(listing)));
   const [expert, setExpert] = useState("");
+  const [device, setDevice] = useState(storedDevice), [waits, setWaits] = useState("");
   const [ended, setEnded] = useState<EndedTraining | null>(null);
   const [error, setError] = useState<Error | null>(null);
   const [, setTick] = useState(0);
@@ -48,6 +51,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
       last = performance.now();
       setTick((t) => t + 1);
     };
+    made.onWaiting = setWaits;
     made.onFailing = (problem) => setError(new Error(`Recording fails now: ${problem}`));
     made.onEnded = (content) => {
       document.exitPointerLock?.();
@@ -64,17 +68,19 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
 
   const begin = useCallback(async (path: string) => {
     if (!trainer) return;
-    setScene(path), setError(null), setEnded(null), setPhase("loading");
+    setScene(path), setError(null), setEnded(null), setWaits(""), setPhase("loading");
+    storeDevice(device);
     loading.current = new AbortController();
     try {
-      await trainer.begin(path, path === tryScene && !output ? tryText : undefined, output || undefined, loading.current.signal);
+      await trainer.begin(path, path === tryScene && !output ? tryText : undefined, output || undefined,
+        path === tryScene ? undefined : deviceParameters(device), loading.current.signal);
       setPhase("running");
       canvas.current?.focus();
     } catch (failure) {
       setError(failure as Error);
       setPhase("choose");
     }
-  }, [trainer, output, tryScene, tryText]);
+  }, [trainer, output, device, tryScene, tryText]);
 
   useEffect(() => {
     if (trainer && tryScene) void begin(tryScene);
@@ -102,6 +108,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
     const target = canvas.current;
     if (!trainer || !target || phase !== "running") return;
     const wheel = (event: WheelEvent) => {
+      if (trainer.awaited) return;
       event.preventDefault();
       trainer.moveDeep(-Math.sign(event.deltaY));
     };
@@ -110,7 +117,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
   }, [trainer, phase]);
 
   const move = (event: PointerEvent) => {
-    if (phase !== "running" || (event.buttons & 2) !== 0) return;
+    if (phase !== "running" || trainer?.awaited || (event.buttons & 2) !== 0) return;
     if (event.pointerType === "touch" && event.buttons === 0) return;
     // A pointer that comes from elsewhere does not carry the hand along.
     const from = last.current;
@@ -120,7 +127,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
   };
   const leave = () => (last.current = null);
   const lock = (event: PointerEvent) => {
-    if (phase === "running" && event.button === 0 && event.pointerType === "mouse")
+    if (phase === "running" && !trainer?.awaited && event.button === 0 && event.pointerType === "mouse")
       void Promise.resolve(canvas.current?.requestPointerLock?.()).catch(() => {});
   };
 
@@ -149,7 +156,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
           ))}
         </ul>
       </nav>
-      <div class={`view ${phase}`}>
+      <div class={`view ${phase}${trainer?.awaited ? " watched" : ""}`}>
         <canvas ref={canvas} tabIndex={0} aria-label={view ? `The scene ${view.name}; arrow keys move the tool` : "No scene"}
           onPointerMove={move} onPointerDown={lock} onPointerLeave={leave} onContextMenu={(e) => e.preventDefault()} />
         {phase === "choose" && (
@@ -160,6 +167,11 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
         {phase === "loading" && (
           <Empty title={`Loading ${scene}`}>
             <p>Its organs are filled with spheres and settle under gravity.</p>
+          </Empty>
+        )}
+        {phase === "running" && trainer?.awaited && !frame?.tick && (
+          <Empty title={`${trainer.awaited[0].toUpperCase()}${trainer.awaited.slice(1)}`}>
+            <p role="status">{waits || "The session begins with its first pose."}</p>
           </Empty>
         )}
         {phase === "running" && frame && (
@@ -174,7 +186,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
         {phase === "running" && trainer && view && (
           <div class="transport">
             <button type="button" class="main" onClick={() => void trainer.end()}>End</button>
-            {trainer.handCount > 1 && (
+            {trainer.handCount > 1 && !trainer.awaited && (
               <div class="buttons" role="group" aria-label="Hand">
                 {[0, 1].map((hand) => (
                   <button key={hand} type="button" aria-pressed={trainer.led === hand} onClick={() => trainer.lead(hand)}>
@@ -183,14 +195,16 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
                 ))}
               </div>
             )}
-            <div class="buttons" role="group" aria-label="Tool">
-              {view.tools.map((tool, i) => (
-                <button key={tool.name} type="button" aria-pressed={trainer.tool === i} disabled={trainer.isTaken(i)} onClick={() => trainer.setTool(i)}>
-                  <kbd>{i + 1}</kbd> {tool.name}
-                </button>
-              ))}
-            </div>
-            <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}mouse: move · wheel: depth · Q E, W S, A D: turn · right button: look around · Esc: end</span>
+            {!trainer.awaited && (
+              <div class="buttons" role="group" aria-label="Tool">
+                {view.tools.map((tool, i) => (
+                  <button key={tool.name} type="button" aria-pressed={trainer.tool === i} disabled={trainer.isTaken(i)} onClick={() => trainer.setTool(i)}>
+                    <kbd>{i + 1}</kbd> {tool.name}
+                  </button>
+                ))}
+              </div>
+            )}
+            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}mouse: move · wheel: depth · Q E, W S, A D: turn · right button: look around · Esc: end</span>}
             <output class="clock">{seconds(frame?.time ?? 0, 1)}</output>
           </div>
         )}
@@ -202,7 +216,9 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
               <span>record as (empty: nothing is recorded)</span>
               <input value={output} disabled={phase === "loading"} onInput={(e) => setOutput(e.currentTarget.value)} />
             </label>
+            <DeviceForm choice={device} onChoice={setDevice} isDisabled={phase === "loading"} />
             <ExpertChoice listing={listing} expert={expert} onExpert={setExpert} />
+            {device.how && output && <ShownCommand text={command("record", scene || "SCENE.json", "-o", output, ...deviceWords(device))} />}
             {phase === "loading" && <button type="button" onClick={() => loading.current?.abort()}>Cancel</button>}
           </Section>
         )}

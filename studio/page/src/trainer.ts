@@ -4,7 +4,7 @@ import { readGamepad } from "./gamepad";
 import { orientationOf } from "./pose";
 import type { BegunTraining, EndedTraining, Frame, HandFrame, Motion, SceneView, Vector } from "./protocol";
 import { StageScene } from "./stage_scene";
-import type { Viewer } from "./viewer";
+import { firstCamera, type Viewer } from "./viewer";
 
 export const kTrainStage = 2;
 const kMostSpeed = 0.4; // of the hand that is sent [m/s]
@@ -32,13 +32,15 @@ interface LedHand {
 
 const makeHand = (): LedHand => ({ target: new three.Vector3(), hand: new three.Vector3(), turn: new three.Quaternion(), tool: 0 });
 
-/** A session that mouse, keys and gamepad lead. */
+/** A session that mouse, keys and gamepad lead, or a device while the page looks on. */
 export class Trainer {
   scene: StageScene | null = null;
   led = 0; // hand that mouse, keys and gamepad lead; the other one stays where it was left
   started: number | null = null; // when the hand was taken up [ms]
   poses = 0; // sent so far
   hasGamepad = false;
+  awaited = ""; // where the device is that leads; empty: the page leads
+  onWaiting: (why: string) => void = () => {}; // the device has sent nothing of use
   onFrame: () => void = () => {};
   onEnded: (ended: EndedTraining) => void = () => {};
   onFailing: (problem: string) => void = () => {}; // what is recorded cannot be saved now
@@ -57,6 +59,7 @@ export class Trainer {
       this.release();
       this.onEnded(content as EndedTraining);
     });
+    connection.onEvent("train_waits", (content) => this.onWaiting((content as { text: string }).text));
     connection.onEvent("train_fails", (content) => this.onFailing((content as { text: string }).text));
   }
 
@@ -95,22 +98,28 @@ export class Trainer {
     if (hand < this.handCount) this.led = hand;
   }
 
-  /** Loads a scene and takes the tools in the hands. `text` is taken in place of its file's; `output` undefined: nothing is recorded. */
-  async begin(scene: string, text: string | undefined, output: string | undefined, signal: AbortSignal): Promise<BegunTraining> {
+  /** Loads a scene and takes the tools in the hands, unless a `device` leads. `text` is taken in place of its file's;
+      `output` undefined: nothing is recorded. */
+  async begin(scene: string, text: string | undefined, output: string | undefined, device: object | undefined, signal: AbortSignal): Promise<BegunTraining> {
     this.release();
     this.viewer.set(kTrainStage, null);
     this.scene = null;
     this.pending = [];
     const begun = await this.connection.call<BegunTraining>("train.begin",
-      { scene, text, output, stage: kTrainStage, most_speed_m_per_s: kGuardSpeed }, { signal });
+      { scene, text, output, device, stage: kTrainStage, most_speed_m_per_s: kGuardSpeed }, { signal });
+    this.awaited = begun.awaited;
+    // A hand that is not led here leaves the mouse free to look around.
+    const { controls } = this.viewer;
+    controls.enableZoom = this.awaited !== "";
+    controls.mouseButtons.LEFT = this.awaited ? three.MOUSE.ROTATE : null;
     this.view = begun.view;
     this.scene = new StageScene(begun.view);
     this.scene.onFrame = (frame) => this.showGhost(frame);
     this.viewer.set(kTrainStage, this.scene);
-    const camera = begun.view.cameras[0];
+    const camera = firstCamera(begun.view);
     if (camera) this.viewer.look(camera);
     for (const message of this.pending.splice(0)) this.take(message);
-    this.takeUp();
+    if (!this.awaited) this.takeUp();
     return begun;
   }
 
@@ -148,6 +157,7 @@ export class Trainer {
 
   /** Does what a key says. False: nothing. */
   press(key: string, isFine: boolean): boolean {
+    if (!this.isRunning) return false;
     const step = kKeyStep * (isFine ? 0.25 : 1);
     const moves: Record<string, [number, number, number]> = {
       ArrowLeft: [-step, 0, 0], ArrowRight: [step, 0, 0], ArrowUp: [0, step, 0], ArrowDown: [0, -step, 0],

@@ -1,7 +1,25 @@
 import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import type { CameraView } from "./protocol";
+import type { CameraView, SceneView, Vector } from "./protocol";
 import type { StageScene } from "./stage_scene";
+
+/** Of the cameras of a scene the first one, unless organs lie outside of its picture: then the one that sees everything,
+    which is the last. */
+export function firstCamera(view: SceneView): CameraView | undefined {
+  const first = view.cameras[0];
+  if (!first) return undefined;
+  const camera = new three.PerspectiveCamera(first.fov_deg, 16 / 9, 1e-3, 1e3);
+  camera.up.set(...first.up), camera.position.set(...first.eye);
+  camera.lookAt(...first.target);
+  camera.updateMatrixWorld();
+  const ends = [view.least, view.most];
+  let outside = 0; // corners of the box around everything
+  for (let i = 0; i < 8; ++i) {
+    const corner = new three.Vector3(ends[i & 1][0], ends[(i >> 1) & 1][1], ends[i >> 2][2]).project(camera);
+    outside += Number(Math.abs(corner.x) > 1 || Math.abs(corner.y) > 1 || corner.z > 1);
+  }
+  return outside > 2 ? view.cameras.at(-1) : first;
+}
 
 /** Draws up to two scenes side by side with one camera, whenever something changed. */
 export class Viewer {
@@ -14,8 +32,11 @@ export class Viewer {
   private readonly rim = new three.DirectionalLight(0x9fc2ff, 0.7);
   private readonly observer: ResizeObserver;
   onDraw: () => void = () => {}; // before each drawing
+  onTurn: () => void = () => {}; // the mouse or keys moved the camera
   fieldOfView = 32; // vertical, in a picture of 16:9 [degrees]
+  isCovered = false; // by other pictures: nothing is drawn
   private isWanted = false;
+  private isTurning = false;
 
   constructor(readonly canvas: HTMLCanvasElement) {
     this.renderer = new three.WebGLRenderer({ canvas, antialias: true, alpha: true });
@@ -23,7 +44,12 @@ export class Viewer {
     this.renderer.setScissorTest(true);
     this.renderer.autoClear = false;
     this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.addEventListener("change", () => this.draw());
+    this.controls.addEventListener("start", () => (this.isTurning = true));
+    this.controls.addEventListener("end", () => (this.isTurning = false));
+    this.controls.addEventListener("change", () => {
+      this.draw();
+      if (this.isTurning) this.onTurn();
+    });
     this.observer = new ResizeObserver(() => this.draw());
     this.observer.observe(canvas);
   }
@@ -36,12 +62,31 @@ export class Viewer {
   }
 
   look(camera: CameraView): void {
+    if (this.isTurning) return; // a hand has it
     this.camera.up.set(...camera.up);
     this.camera.position.set(...camera.eye);
     this.fieldOfView = camera.fov_deg;
     this.controls.target.set(...camera.target);
     this.controls.update();
     this.draw();
+  }
+
+  /** The camera in a picture of 16:9. */
+  seen(): CameraView {
+    const vector = (v: three.Vector3) => v.toArray() as Vector, { camera } = this;
+    return { name: "", eye: vector(camera.position), target: vector(this.controls.target), up: vector(camera.up), fov_deg: this.fieldOfView };
+  }
+
+  /** Turns the camera about its target, to the right and up [rad], and moves it so many times as far away. */
+  turn(right: number, up: number, farther: number): void {
+    const { camera, controls } = this;
+    const upright = new three.Quaternion().setFromUnitVectors(camera.up, new three.Vector3(0, 1, 0));
+    const away = new three.Spherical().setFromVector3(camera.position.clone().sub(controls.target).applyQuaternion(upright));
+    away.theta += right, away.phi -= up, away.radius *= farther;
+    away.makeSafe();
+    camera.position.setFromSpherical(away).applyQuaternion(upright.invert()).add(controls.target);
+    controls.update();
+    this.onTurn();
   }
 
   /** The ray into the picture at a place of the window [px]. */
@@ -88,6 +133,7 @@ export class Viewer {
     this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
     this.onDraw();
+    if (this.isCovered) return;
     const away = new three.Vector3().subVectors(this.camera.position, this.controls.target);
     const right = new three.Vector3().crossVectors(this.camera.up, away).normalize();
     this.key.position.copy(away).addScaledVector(this.camera.up, away.length()).addScaledVector(right, -0.5 * away.length());

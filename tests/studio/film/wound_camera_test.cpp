@@ -74,6 +74,32 @@ TEST_F(WoundCamera, TheWoundAndTheOrgansMiddleAreInThePicture) {
   }
 }
 
+TEST_F(WoundCamera, APlaceAndWhatItLooksAtAreACamera) {
+  const render::Camera camera = look("10,-300,200:0,0.5,20", &cut_).draw.camera;
+  EXPECT_LT(norm(camera.eye - Vec3{0.01, -0.3, 0.2}) + norm(camera.target - Vec3{0, 0.0005, 0.02}), 1e-12);
+  EXPECT_EQ(camera.up, render::up_of(*view_.model));
+  EXPECT_EQ(look("10,-300,200:0,0,20:1,0,0.5", nullptr).draw.camera.up, (Vec3{1, 0, 0.5}));
+  // Straight from above it sees something too.
+  const render::Camera above = look("0,0,400:0,0,20", nullptr).draw.camera;
+  EXPECT_GT(norm(cross(above.up, above.target - above.eye)), 0.1);
+  // A narrow picture keeps the sides: what is at a side's edge of the wide one stays at the edge.
+  views::LookRequest request;
+  request.camera = "0,-300,20:0,0,20";
+  const auto wide = views::find_look(request, scene_, view_, kAspect);
+  const auto narrow = views::find_look(request, scene_, view_, 0.5);
+  ASSERT_TRUE(wide && narrow);
+  const Vec3 aside{0.1, 0, 0.02};
+  EXPECT_NEAR(render::project(wide->draw.camera, 1600, 900, aside).x / 1600,
+              render::project(narrow->draw.camera, 450, 900, aside).x / 450, 1e-9);
+  for (const char* wrong : {"0,0:0,0,20", "0,0,0:0,0,0", "1,2,3:4,5", "1,2,3", "1,2,3:4,5,6:", "1,2,x:4,5,6",
+                            "1,2,inf:4,5,6", "1,2,3:4,5,6:0,0,0", "1,2,3:4,5,6:7,8,9:1"}) {
+    request.camera = wrong;
+    const auto found = views::find_look(request, scene_, view_, kAspect);
+    ASSERT_FALSE(found) << wrong;
+    EXPECT_NE(found.errors()[0].hint.find("0,-300,200:0,0,20"), std::string::npos) << found.errors()[0].hint;
+  }
+}
+
 TEST_F(WoundCamera, ASectionIsSeenFromItsFront) {
   for (const char* cutaway : {"x", "y=2", "z=30"}) {
     views::LookRequest request;

@@ -40,8 +40,8 @@ export async function ctpmBeside(folder, ...words) {
 }
 
 /** Serves `folder`; returns the process and the address that it prints. */
-async function serve(folder, port) {
-  const server = spawn(program, ["studio", folder, "--no-open", "--port", String(port)], { stdio: ["ignore", "pipe", "ignore"] });
+async function serve(folder, port, more = []) {
+  const server = spawn(program, ["studio", folder, "--no-open", "--port", String(port), ...more], { stdio: ["ignore", "pipe", "ignore"] });
   return { server, address: await new Promise((resolve) => server.stdout.once("data", (data) => resolve(String(data).trim()))) };
 }
 
@@ -50,11 +50,12 @@ function ended(server) {
 }
 
 /** Serves `folder` and opens its page. */
-export async function openStudio(folder) {
-  let { server, address } = await serve(folder, 0);
+export async function openStudio(folder, port = 0, ...more) {
+  let { server, address } = await serve(folder, port, more);
   const profile = mkdtempSync(join(tmpdir(), "ctpm-profile-"));
   const context = await chromium.launchPersistentContext(profile, {
     executablePath: "/usr/bin/chromium", headless: true, viewport: { width: 1280, height: 720 }, args: kFlags,
+    ignoreHTTPSErrors: more.includes("--behind"), // a certificate of the test's own
   });
   context.setDefaultTimeout(150000);
   const page = context.pages()[0];

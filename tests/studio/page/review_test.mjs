@@ -1,6 +1,6 @@
 // A reviewer in a browser: review_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
-import { existsSync, readFileSync, rmSync } from "node:fs";
+import { existsSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { ctpm, ctpmBeside, makeFolder, openStudio, overflow, picture, reading, seriousFindings } from "./browser.mjs";
@@ -125,7 +125,67 @@ test("views, cutaway and cameras are those of export", async () => {
   assert.deepEqual(await seriousFindings(page), []);
   // The export has the same words.
   await page.click("#tab-export");
-  assert.match(await page.locator("#panel .command code").innerText(), /--camera follow --cutaway y/);
+  const shown = () => page.locator("#panel .command code").innerText();
+  assert.match(await shown(), /--camera follow --cutaway y/);
+  // The cutaway's place, the mouse, the wheel, keys and the other side each make another picture.
+  const changed = async (what) => {
+    await page.waitForFunction((known) => {
+      const canvas = document.querySelector(".drawings canvas");
+      return !canvas.hidden && !known.includes(canvas.toDataURL());
+    }, [...seen], { timeout: 20000 }).catch(() => assert.fail(`nothing changed: ${what}`));
+    await page.waitForTimeout(700); // until the last picture of a turn
+    seen.add(await pixels());
+  };
+  await choose("camera", "");
+  await page.locator(".look-bar .plane input").evaluate((slider) => {
+    slider.value = "-8";
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+  });
+  await changed("place of the cutaway");
+  assert.match(await shown(), /--cutaway y=-8$/);
+  const view = await page.locator(".view > canvas").boundingBox();
+  await page.mouse.move(view.x + 200, view.y + 150);
+  await page.mouse.down();
+  await page.mouse.move(view.x + 320, view.y + 170, { steps: 6 });
+  await page.mouse.up();
+  await changed("mouse");
+  const turned = await shown();
+  assert.match(turned, /--camera [-\d.]+,[-\d.]+,[-\d.]+:/);
+  await page.mouse.wheel(0, -200);
+  await changed("wheel");
+  await page.locator(".view > canvas").focus();
+  await page.keyboard.press("d");
+  await changed("key that turns");
+  await page.keyboard.press("-");
+  await changed("key that moves away");
+  await page.click(".look-bar .plane button");
+  await changed("other side");
+  await choose("view", "elements force");
+  await changed("elements");
+  await picture(page, "review-turned");
+  // The command that it shows sees the same.
+  const size = await page.evaluate(() => [document.querySelector(".drawings canvas").width, document.querySelector(".drawings canvas").height]);
+  const still = "still/";
+  const made = await ctpmBeside(folder, ...(await shown()).split(" ").slice(1).map((word) => (word.endsWith(".mp4") ? still : word)),
+    "--from-s", "2.599", "--to-s", "2.6", "--overlay", "none", "--size", size.join("x"));
+  assert.equal(made.code, 0, made.err);
+  const last = readdirSync(join(folder, still)).filter((name) => name.endsWith(".png")).sort().at(-1);
+  const difference = await page.evaluate(async (bytes) => {
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))])), canvas = document.querySelector(".drawings canvas");
+    const other = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
+    other.drawImage(bitmap, 0, 0);
+    const a = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data, b = other.getImageData(0, 0, canvas.width, canvas.height).data;
+    return a.reduce((most, x, i) => Math.max(most, Math.abs(x - b[i])), 0);
+  }, readFileSync(join(folder, still, last)).toString("base64"));
+  assert.equal(difference, 0, "the film's picture is the page's");
+  // Its size is that of its place.
+  await page.setViewportSize({ width: 1500, height: 900 });
+  await page.waitForFunction((before) => {
+    const canvas = document.querySelector(".drawings canvas"), place = document.querySelector(".view > canvas");
+    return canvas.width !== before && Math.abs(canvas.width - place.clientWidth) <= 1 && Math.abs(canvas.height - place.clientHeight) <= 1;
+  }, size[0]);
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await choose("view", "surface");
   await choose("camera", "");
   await choose("cutaway", "");
   await page.waitForSelector(".drawings canvas[hidden]", { state: "attached" });
@@ -180,18 +240,42 @@ test("notes stay, and a link leads to the moment", async () => {
 });
 
 test("an export is the one that the shown command makes, and can be cancelled", async () => {
-  await page.click("#tab-export");
   const field = (label) => page.locator(`#panel .field:has-text("${label}") input`);
-  await field("file in the folder").fill("page.avi");
+  const choose = (label, value) => page.locator(`#panel .field:has-text("${label}") select`).selectOption(value);
+  const makesWhatItShows = async (name, options) => {
+    const shown = await page.locator("#panel .command code").innerText();
+    for (const option of options) assert.ok(shown.includes(option), shown);
+    const command = ctpmBeside(folder, ...shown.split(" ").slice(1).map((word) => (word === `${name}.avi` ? `${name}-command.avi` : word)));
+    await page.click("#panel button.main");
+    await page.waitForSelector("#panel .good");
+    assert.equal((await command).code, 0);
+    assert.ok(readFileSync(join(folder, `${name}.avi`)).equals(readFileSync(join(folder, `${name}-command.avi`))));
+  };
+  // Two sessions beside each other; the command says no more than what was chosen.
+  await page.click("#tab-compare");
+  await page.locator("#panel select").selectOption(kClumsy);
+  await page.waitForSelector(".captions .second");
+  await page.click("#tab-export");
+  assert.doesNotMatch(await page.locator("#panel .command code").innerText(), /--(align|overlay|slow-at|fps|size|speed|from-s|to-s)/);
+  await field("file in the folder").fill("both.avi");
   await field("from [s]").fill("2.2");
   await field("to [s]").fill("2.5");
-  const shown = await page.locator("#panel .command code").innerText();
-  const command = ctpmBeside(folder, ...shown.split(" ").slice(1).map((word) => (word === "page.avi" ? "command.avi" : word)));
-  await page.click("#panel button.main");
-  await page.waitForSelector("#panel .good");
+  await choose("bring both together", "cut");
+  await choose("overlay", "small");
+  await makesWhatItShows("both", ["--align cut", "--overlay small", `--beside ${kClumsy}`]);
   await picture(page, "review-export");
-  assert.equal((await command).code, 0);
-  assert.ok(readFileSync(join(folder, "page.avi")).equals(readFileSync(join(folder, "command.avi"))));
+  // One of them.
+  await page.click("#tab-compare");
+  await page.locator("#panel select").selectOption("");
+  await page.click("#tab-export");
+  await field("file in the folder").fill("one.avi");
+  await field("from [s]").fill("0.6");
+  await field("to [s]").fill("0.9");
+  await field("pictures a second").fill("10");
+  await choose("size", "854x480");
+  for (const moment of ["damage", "cuts"]) await page.click(`#panel fieldset label:has-text("${moment}")`);
+  await makesWhatItShows("one", ["--slow-at cut,damage", "--fps 10", "--size 854x480"]);
+  await picture(page, "review-export-one");
   await field("file in the folder").fill("long.avi");
   await field("from [s]").fill("0");
   await field("to [s]").fill("");

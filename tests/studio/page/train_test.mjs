@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
+import { openDevice } from "./igtl.mjs";
 import { ctpm, ctpmBeside, makeFolder, openStudio, overflow, picture, reading, seriousFindings } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm";
@@ -14,6 +15,7 @@ before(async () => {
   const scene = JSON.parse(readFileSync(join(folder, "kidney.json"), "utf8"));
   scene.name = scene.organs[0].name = "<img src=x onerror=alert(1)>";
   scene.tools[0].name = "<b onclick=alert(2)>ball</b>";
+  scene.cameras[0] = { name: "away", eye_mm: [0, -300, 200], target_mm: [300, -300, 200] }; // sees nothing
   writeFileSync(join(folder, "html.json"), JSON.stringify(scene));
   const two = JSON.parse(readFileSync(join(folder, "kidney.json"), "utf8"));
   two.name = "two hands", two.hands = 2;
@@ -47,6 +49,18 @@ test("names in a scene are text", async () => {
   await page.click(".list button:has-text('html')");
   await page.waitForSelector(".view.running");
   assert.equal(await page.locator(".transport button:has-text('<b onclick=alert(2)>ball</b>')").count(), 1);
+  // The organ is in the picture, although the scene's first camera looks elsewhere.
+  await page.waitForTimeout(500);
+  const red = await page.evaluate(async (bytes) => {
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))]));
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) count += data[i] > data[i + 1] + 40;
+    return count / (data.length / 4);
+  }, (await page.locator(".view canvas").screenshot()).toString("base64"));
+  assert.ok(red > 0.03, `${red} of the picture is tissue`);
   await page.click("button:has-text('End')");
   await page.waitForSelector("button:has-text('Train again')");
   assert.equal(await page.locator("main img").count(), 0);
@@ -83,7 +97,7 @@ test("the mouse leads one of two hands, and the other one stays", async () => {
 
 test("the mouse presses, cuts and records", async () => {
   await page.locator("aside input").first().fill("mine.ctpm");
-  await page.locator("aside select").first().selectOption(kExpert);
+  await page.locator("aside .field:has-text('expert') select").selectOption(kExpert);
   await page.click(".list button:has-text('kidney')");
   await page.waitForSelector(".view.running");
   const box = await page.locator(".view canvas").boundingBox();
@@ -153,6 +167,51 @@ test("a gamepad leads the tool: the trigger presses, the shoulder changes it", a
   await page.evaluate(() => (globalThis.pad.buttons[6].value = 0, globalThis.pad.buttons[5].value = 1));
   await page.waitForSelector(".transport button[aria-pressed=true]:has-text('scalpel')");
   await page.evaluate(() => (navigator.getGamepads = () => []));
+  await page.keyboard.press("Escape");
+  await page.waitForSelector("button:has-text('Train again')");
+});
+
+test("a device leads, and the page looks on", async () => {
+  await page.click("button:has-text('Train again')");
+  await page.locator("aside input").first().fill("device.ctpm");
+  const field = (label) => page.locator(`aside .field:has-text("${label}")`);
+  await field("in the hand").locator("select").selectOption("listen");
+  await field("port of this machine").locator("input").fill("0");
+  await page.click("aside summary");
+  await field("its origin").locator("input").fill("0 0 75");
+  await field("tool in the hand").locator("input").fill("saw");
+  assert.match(await page.locator("aside .command code").innerText(), /-o device\.ctpm --igtl-listen 0 --device-offset-mm 0 0 75 --device-tool saw$/);
+  await picture(page, "train-device-form");
+  assert.deepEqual(await seriousFindings(page), []);
+  await page.click(".list button:has-text('kidney')");
+  await page.waitForSelector(".problems:has-text('saw')"); // no tool of the scene
+  await field("tool in the hand").locator("input").fill("");
+  await page.click(".list button:has-text('kidney')");
+  await page.waitForSelector(".view.running .empty:has-text('aiting for a device on 127.0.0.1:')");
+  await picture(page, "train-device-awaited");
+  const device = await openDevice(Number((await page.locator(".empty h2").innerText()).match(/:(\d+)/)[1]));
+  let at = 0;
+  const hand = setInterval(() => device.move([0, 0, -20 * (1 - Math.cos(at++ / 40))]), 10);
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector(".force-bar output").textContent) > 0.1);
+  assert.equal(await page.locator(".view .empty").count(), 0);
+  // The mouse looks around.
+  const box = await page.locator(".view canvas").boundingBox(), drawn = await page.locator(".view canvas").screenshot();
+  await page.mouse.move(box.x + 100, box.y + 100);
+  await page.mouse.down();
+  await drag({ x: box.x + 100, y: box.y + 100 }, { x: 120, y: 0 }, 8);
+  await page.mouse.up();
+  assert.ok(!drawn.equals(await page.locator(".view canvas").screenshot()));
+  await picture(page, "train-device");
+  await page.keyboard.press("Escape");
+  await page.waitForSelector("button:has-text('Train again')");
+  clearInterval(hand), device.close();
+  assert.ok(device.felt() > 0.02, `the device felt ${device.felt()} N`);
+  assert.equal(ctpm(folder, "verify", "device.ctpm").code, 0);
+  // The next time the page leads again, unless it is chosen anew.
+  await page.click("button:has-text('Train again')");
+  await field("in the hand").locator("select").selectOption("");
+  await page.click(".list button:has-text('kidney')");
+  await page.waitForSelector(".view.running");
   await page.keyboard.press("Escape");
   await page.waitForSelector("button:has-text('Train again')");
 });

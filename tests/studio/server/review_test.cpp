@@ -10,6 +10,7 @@
 #include "core/contact/drawn_surfaces.h"
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
+#include "studio/film/reel.h"
 #include "studio/film/session_film.h"
 #include "studio/render/renderer.h"
 #include "studio/views/look.h"
@@ -262,34 +263,64 @@ TEST_F(Reviewing, AnExportIsTheCommandsAndCanBeCancelled) {
     EXPECT_EQ(entry.path().filename().string().find("long"), std::string::npos) << entry.path();
 }
 
+/// The picture of a moment as the program draws it.
+std::string drawing_of(SocketClient& client, std::int64_t tick, std::uint32_t request) {
+  client.send({{"show", {{"stage", 0}, {"tick", tick}, {"request", request}}}});
+  for (;;)
+    if (const auto message = client.receive(); !message.is_text && value_at<std::uint32_t>(message.bytes, 0) == 5)
+      return message.bytes;
+}
+
 TEST_F(Reviewing, ADrawingIsWhatAVideoShows) {
   const Serving serving(folder_.path());
   SocketClient client(serving);
   client.call("session.open", {{"path", kCut}, {"stage", 0}});
-  const nlohmann::json look = {{"stage", 0},    {"size", "320x180"}, {"view", "elements"},
-                               {"by", "force"}, {"cutaway", "y"},    {"camera", "follow"}};
-  ASSERT_TRUE(client.call("session.draw", look).contains("result"));
   const std::int64_t tick = 2600;
-  client.send({{"show", {{"stage", 0}, {"tick", tick}, {"request", 1}}}});
-  std::string drawing;
-  while (drawing.empty())
-    if (const auto message = client.receive(); !message.is_text && value_at<std::uint32_t>(message.bytes, 0) == 5)
-      drawing = message.bytes;
-  EXPECT_EQ(value_at<std::uint32_t>(drawing, 8), 1u);
-  EXPECT_EQ(value_at<std::uint32_t>(drawing, 12), 320u);
-  EXPECT_EQ(value_at<std::uint32_t>(drawing, 16), 180u);
-
   auto reader = recordings::SessionReader::open(file(kCut));
   auto film = film::SessionFilm::create(*reader, {tick - 1, tick}, false);
   ASSERT_TRUE(film);
   const auto shot = (*film)->shoot(tick);
   ASSERT_TRUE(shot);
+  const auto late = reader->keyframe_at_or_before(reader->tick_count());
+  ASSERT_TRUE(late);
   render::SceneView view = views::view_of((*film)->scene(), (*film)->model());
-  const auto found = views::find_look({"elements", "force", 0, "y", "follow"}, (*film)->scene(), view, 320.0 / 180);
-  ASSERT_TRUE(found);
   auto renderer = render::Renderer::create(320, 180, view);
-  const render::Frame frame = (*renderer)->draw(shot->state, found->at(view, shot->moments));
-  EXPECT_EQ(drawing.substr(20, frame.rgb.size()), std::string(frame.rgb.begin(), frame.rgb.end()));
+  std::uint32_t number = 0;
+  // Following, one that the program chooses, one that a reviewer turned, a section at a place.
+  for (const views::LookRequest& request : {views::LookRequest{"elements", "force", 0, "y", "follow"},
+                                            {"both", "", 0, "", ""},
+                                            {"spheres", "", 0, "", "-80,-250,200:0,0,20"},
+                                            {"spheres", "", 0, "y=-6.5", ""}}) {
+    const nlohmann::json answer = client.call("session.draw", {{"stage", 0},
+                                                               {"size", "320x180"},
+                                                               {"view", request.view},
+                                                               {"by", request.by},
+                                                               {"cutaway", request.cutaway},
+                                                               {"camera", request.camera}});
+    ASSERT_TRUE(answer.contains("result")) << answer;
+    const std::string drawing = drawing_of(client, tick, ++number);
+    EXPECT_EQ(value_at<std::uint32_t>(drawing, 8), number);
+    EXPECT_EQ(value_at<std::uint32_t>(drawing, 12), 320u);
+    EXPECT_EQ(value_at<std::uint32_t>(drawing, 16), 180u);
+    views::LookRequest in_a_film = request;  // elements have the colours of the whole session
+    if (request.view == "elements") {
+      in_a_film.full_scale = *film::full_scale_of({&*reader}, render::ElementQuantity::force);
+      EXPECT_GT(in_a_film.full_scale, 0);
+      EXPECT_NE(in_a_film.full_scale, render::default_full_scale(render::ElementQuantity::force));
+    }
+    const auto found = views::find_look(in_a_film, (*film)->scene(), view, 320.0 / 180, &late->state);
+    ASSERT_TRUE(found);
+    const render::Frame frame = (*renderer)->draw(shot->state, found->at(view, shot->moments));
+    EXPECT_TRUE(drawing.substr(20, frame.rgb.size()) == std::string(frame.rgb.begin(), frame.rgb.end()))
+        << request.view << " from " << found->camera;
+    EXPECT_EQ(answer["result"]["camera"]["name"], found->camera);
+    EXPECT_EQ(answer["result"]["camera"]["eye"][0], found->draw.camera.eye.x);
+  }
+  // Without a size the page draws, and is told from where.
+  const nlohmann::json page = client.call("session.draw", {{"stage", 0}});
+  EXPECT_EQ(page["result"]["camera"]["name"], "wound") << page;
+  client.send({{"show", {{"stage", 0}, {"tick", tick}, {"request", ++number}}}});
+  EXPECT_EQ(value_at<std::uint32_t>(client.receive().bytes, 0), 2u);
 
   const nlohmann::json wrong = client.call("session.draw", {{"stage", 0}, {"size", "320x180"}, {"camera", "none"}});
   EXPECT_NE(wrong.dump().find("no camera 'none'"), std::string::npos) << wrong;

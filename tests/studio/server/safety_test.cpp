@@ -66,6 +66,49 @@ TEST_F(Safety, ThePageHoldsNoTokenAndForbidsAllOthers) {
   EXPECT_EQ(serving.token().size(), 64u);
 }
 
+TEST_F(Safety, OtherMachinesComeThroughTheProxyThatIsNamedAlone) {
+  const Serving serving(folder(), {}, "https://Studio.Ward.example:8443/");
+  const auto call = [&](const std::string& host, const std::string& origin, const std::string& token) {
+    return response_to(serving.port(), "POST /call HTTP/1.1\r\nHost: " + host + "\r\nOrigin: " + origin + "\r\n" +
+                                           token + "Content-Type: application/json\r\nContent-Length: " +
+                                           std::to_string(kList.size()) + "\r\n\r\n" + kList);
+  };
+  const std::string host = "studio.ward.example:8443", origin = "https://studio.ward.example:8443";
+  const std::string good = call(host, origin, serving.bearer());
+  EXPECT_EQ(status_of(good), 200) << good;
+  EXPECT_NE(good.find("own.ctpm"), std::string::npos) << good;
+  expect_refused(call(host, origin, ""), 403);
+  expect_refused(call(host, "http://studio.ward.example:8443", serving.bearer()), 403);
+  expect_refused(call(host, serving.origin(), serving.bearer()), 403);
+  expect_refused(call("studio.ward.example", "https://studio.ward.example", serving.bearer()), 403);
+  expect_refused(call("evil.example:8443", "https://evil.example:8443", serving.bearer()), 403);
+  expect_refused(call("x.studio.ward.example:8443", origin, serving.bearer()), 403);
+  expect_refused(call(serving.host(), origin, serving.bearer()), 403);
+  expect_it_goes_on(serving);  // this machine's own page
+}
+
+TEST_F(Safety, NothingIsServedPlainToOtherMachines) {
+  const auto refusal = [&](const std::string& bind, const std::string& behind) {
+    server::ServerOptions options;
+    options.folder = folder().string(), options.port = 0, options.bind = bind, options.behind = behind;
+    const auto opened = server::Server::open(options);
+    return opened ? "opened on " + (*opened)->listens_on() : opened.errors().front().message;
+  };
+  for (const char* bind : {"0.0.0.0", "::", "127.0.0.2"})
+    EXPECT_NE(refusal(bind, "").find("could read the token"), std::string::npos) << bind;
+  EXPECT_NE(refusal("ward", "").find("must be an IP address"), std::string::npos);
+  for (const char* behind : {"http://ward", "ward", "https://", "https://a b", "https://ward:0", "https://ward:99999",
+                             "https://ward/path", "https://user@ward", "https://ward:"})
+    EXPECT_NE(refusal("127.0.0.1", behind).find("must be https://NAME"), std::string::npos) << behind;
+  EXPECT_EQ(refusal("127.0.0.2", "https://ward").substr(0, 20), "opened on 127.0.0.2:");
+  // The command says both at once.
+  const testing::ProgramOutcome command =
+      testing::run_ctpm({"studio", folder().string(), "--no-open", "--bind", "0.0.0.0", "--port", "0"}, outer_.path());
+  EXPECT_EQ(command.code, 2);
+  EXPECT_NE(command.err.find("--bind: error: 0.0.0.0: others could read the token"), std::string::npos) << command.err;
+  EXPECT_NE(command.err.find("--behind https://NAME"), std::string::npos) << command.err;
+}
+
 TEST_F(Safety, AnotherHostIsRefused) {
   const Serving serving(folder());
   const std::string port = std::to_string(serving.port());

@@ -26,15 +26,15 @@ namespace ctpm::testing {
 /// A studio that serves a folder until it goes.
 class Serving {
  public:
-  explicit Serving(const std::filesystem::path& folder, const server::Limits& limits = {}) {
+  explicit Serving(const std::filesystem::path& folder, const server::Limits& limits = {},
+                   const std::string& behind = "") {
     server::ServerOptions options;
-    options.folder = folder.string(), options.port = 0, options.limits = limits;
+    options.folder = folder.string(), options.port = 0, options.limits = limits, options.behind = behind;
     auto opened = server::Server::open(options);
     if (!opened) throw std::runtime_error(to_string(opened.errors().front()));
     server_ = std::move(*opened);
-    const std::string address = server_->address();
-    const std::size_t colon = address.rfind(':'), slash = address.find('/', colon), equals = address.find('=');
-    port_ = std::stoi(address.substr(colon + 1, slash - colon - 1)), token_ = address.substr(equals + 1);
+    const std::string address = server_->address(), place = server_->listens_on();
+    port_ = std::stoi(place.substr(place.rfind(':') + 1)), token_ = address.substr(address.find('=') + 1);
     thread_ = std::thread([this] { server_->run([this] { return ends_.load(); }); });
   }
   ~Serving() {

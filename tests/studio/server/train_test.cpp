@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "studio/server/page_hand.h"
+#include "tests/studio/devices/igtl_client.h"
 #include "tests/studio/server/serving.h"
 
 namespace ctpm {
@@ -179,6 +180,74 @@ TEST_F(TrainingTest, AFileThatIsRemovedWhileItIsRecordedIsToldAtOnceAndEndsTheSe
   // Nobody ends the session.
   const nlohmann::json ended = event_of(client, "train_ended");
   EXPECT_FALSE(ended["errors"].empty()) << ended;
+}
+
+TEST_F(TrainingTest, ADeviceLeadsWhileThePageLooksOn) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  // The device's origin lies 30 mm above the organ's middle.
+  const nlohmann::json rest = client.call("scene.show", {{"path", "kidney.json"}, {"stage", 3}})["result"]["view"];
+  const auto middle = [&](int axis) {
+    return 0.5 * (rest["least"][axis].get<double>() + rest["most"][axis].get<double>());
+  };
+  const nlohmann::json begun =
+      client.call("train.begin", {{"scene", "kidney.json"},
+                                  {"output", "device.ctpm"},
+                                  {"stage", 2},
+                                  {"device",
+                                   {{"listen_port", 0},
+                                    {"offset_m", {middle(0), middle(1), rest["most"][2].get<double>() + 0.03}},
+                                    {"buttons", {"0=scalpel"}}}}});
+  ASSERT_TRUE(begun.contains("result")) << begun;
+  const std::string awaited = begun["result"]["awaited"];
+  ASSERT_NE(awaited.find("waiting for a device on 127.0.0.1:"), std::string::npos) << awaited;
+  const int port = std::atoi(awaited.substr(awaited.rfind(':') + 1).c_str());
+  // What the page itself sends is no hand's.
+  client.send({{"hand", {{"position", {0, 0, 0}}, {"orientation", {1, 0, 0, 0}}, {"buttons", 2}, {"time_s", 1}}}});
+  testing::IgtlPeer device(port);
+  for (int i = 0; i <= 150; ++i) {
+    EXPECT_TRUE(device.send(testing::transform_bytes({0, 0, -40 * std::sin(3.14159 * i / 150)})));
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  client.send({{"id", 99}, {"call", "train.end"}, {"params", nlohmann::json::object()}});
+  int live_frames = 0;
+  const nlohmann::json ended = event_of(client, "train_ended", &live_frames);
+  device.wait_for_end();
+  EXPECT_TRUE(ended["errors"].empty()) << ended;
+  EXPECT_GT(ended["max_force_n"].get<double>(), 0.05) << ended;
+  EXPECT_GT(live_frames, 10);
+  double felt = 0;
+  for (const Vec3 force : device.forces()) felt = std::max(felt, norm(force));
+  EXPECT_GT(felt, 0.02);
+  EXPECT_EQ(testing::run_ctpm({"verify", "device.ctpm"}, folder_.path()).code, 0);
+  const nlohmann::json info = info_of("device.ctpm");
+  EXPECT_EQ(info["metadata"]["source"], "igtl-listen");
+  EXPECT_GT(info["values"]["device_samples"].get<double>(), 100) << info["values"];
+}
+
+TEST_F(TrainingTest, ADeviceThatCannotBeThereIsToldAndAnAwaitedOneMayNeverCome) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  const auto begin = [&](const nlohmann::json& device) {
+    return client.call("train.begin", {{"scene", "kidney.json"}, {"stage", 2}, {"device", device}});
+  };
+  const auto says = [&](const nlohmann::json& device, const char* what) {
+    const std::string answer = begin(device).dump();
+    EXPECT_NE(answer.find("errors"), std::string::npos) << answer;
+    EXPECT_NE(answer.find(what), std::string::npos) << answer;
+  };
+  says(nlohmann::json::object(), "give either an address or a listen_port");
+  says({{"listen_port", 1}, {"address", "127.0.0.1:1"}}, "give either an address or a listen_port");
+  says({{"address", "nowhere"}}, "must be HOST:PORT");
+  says({{"address", "127.0.0.1:1"}}, "127.0.0.1:1");
+  says({{"listen_port", 0}, {"tool", "saw"}}, "saw");
+  says({{"listen_port", 0}, {"offset_m", {1, 2}}}, "offset_m");
+  says({{"listen_port", 0}, {"bind", "0.0.0.0"}}, "name the addresses that may connect");
+  says({{"listen_port", 0}, {"spring", 3}}, "/device/spring");
+  ASSERT_TRUE(begin({{"listen_port", 0}}).contains("result"));
+  client.send({{"id", 99}, {"call", "train.end"}, {"params", nlohmann::json::object()}});
+  const nlohmann::json ended = event_of(client, "train_ended");
+  EXPECT_NE(ended["errors"].dump().find("nothing was recorded"), std::string::npos) << ended;
 }
 
 TEST_F(TrainingTest, BadRequestsAreToldWhy) {
