@@ -6,7 +6,6 @@
 #include <iterator>
 
 #include "core/cutting/extent.h"
-#include "core/stepping/integrator.h"
 #include "core/surface/surface.h"
 #include "importers/text.h"
 #include "scenes/build_model.h"
@@ -14,6 +13,7 @@
 #include "scenes/script.h"
 #include "studio/authoring/anchor_choice.h"
 #include "studio/authoring/capsule.h"
+#include "studio/authoring/damping_choice.h"
 #include "studio/authoring/filling_choice.h"
 #include "studio/authoring/fit_stiffness.h"
 #include "studio/authoring/new_folder.h"
@@ -37,9 +37,6 @@ constexpr std::size_t kMostFittedSpheres = 4000;
 constexpr double kFitDepth = 0.012, kDeepestShare = 1.0 / 3;
 /// A fitted scale outside of this range says that the press is none of the paper's.
 constexpr double kLeastScale = 0.1, kMostScale = 10;
-/// Tissue whose own viscosity damps swinging slower than this [1/s] needs an integrator that damps (our choice: liver
-/// has 1.5, kidney 7; of flaps that hung by a few elements in tissue with 1.5, four of 292 meshes gained energy).
-constexpr double kLeastLoss = 5;
 /// More of an organ within another is told.
 constexpr double kMostOverlap = 0.02;
 
@@ -384,11 +381,9 @@ class Import {
     }
   }
 
-  /// Softening (Eq. 8) gives energy to what swings, and cuts leave flaps that swing. Where the tissue's own viscosity
-  /// hardly damps them, the integrator has to.
+  /// The integrator damps what cuts leave swinging where the tissue hardly does.
   void choose_integrator(Draft& draft, Model& model) {
-    if (scene_.solver.integrator != scenes::IntegratorSpec::automatic || !model.has_softening) return;
-    if (model.solver.integrator != Integrator::leapfrog || stepping::loss_rate(model) >= kLeastLoss) return;
+    if (scene_.solver.integrator != scenes::IntegratorSpec::automatic || !needs_damping(model)) return;
     scene_.solver.integrator = scenes::IntegratorSpec::backward_euler;
     model.solver.integrator = Integrator::backward_euler, model.solver.substeps = 1;
     draft.note("integrator",

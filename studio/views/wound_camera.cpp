@@ -1,12 +1,15 @@
 #include "studio/views/wound_camera.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <numbers>
 #include <vector>
 
 #include "core/contact/drawn_surfaces.h"
+#include "core/model/box.h"
 #include "studio/render/cut_surface.h"
 #include "studio/render/renderer.h"
 
@@ -15,8 +18,14 @@ namespace {
 
 using render::Camera;
 
-/// Where the walls of all cuts are [m].
-std::vector<Vec3> walls_of(const Model& model, const State& state) {
+/// Walls farther from the organs at rest than this part of their size are those of pieces that fell or flew away.
+constexpr double kGone = 0.5;
+
+/// Where the walls of all cuts are [m], without those of pieces that are gone.
+std::vector<Vec3> walls_of(const render::SceneView& scene, const State& state) {
+  const Model& model = *scene.model;
+  const render::Bounds bounds = render::rest_bounds(scene);
+  const Box around = Box(bounds.min, bounds.max).grown(kGone * bounds.diagonal());
   std::vector<Vec3> walls, position;
   contact::DrawnSurfaces drawn(model);
   for (std::size_t organ = 0; organ < model.surfaces.size(); ++organ) {
@@ -24,7 +33,8 @@ std::vector<Vec3> walls_of(const Model& model, const State& state) {
     render::CutSurface cut(model, organ);
     cut.update(state);
     drawn.place(organ, cut.surface(), state, position);
-    walls.insert(walls.end(), position.begin() + std::ptrdiff_t(cut.outer_vertex_count()), position.end());
+    std::copy_if(position.begin() + std::ptrdiff_t(cut.outer_vertex_count()), position.end(), std::back_inserter(walls),
+                 [&](Vec3 p) { return around.meets(Box(p)); });
   }
   return walls;
 }
@@ -75,7 +85,7 @@ Result<std::optional<Camera>> wound_camera(const render::SceneView& scene, const
   constexpr int kWidth = 224, kHeight = 126;
   constexpr double kUsualCounts = 0.5;  // what is seen from the other side counts so much less
   if (state.swept.size() == 0) return std::optional<Camera>();
-  const std::vector<Vec3> walls = walls_of(*scene.model, state);
+  const std::vector<Vec3> walls = walls_of(scene, state);
   if (walls.empty()) return std::optional<Camera>();
   render::SceneView plain{scene.model, {}, {}};
   for (const OrganRange& organ : scene.model->organs)

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "recordings/session_reader.h"
 #include "scenes/scene_file.h"
 #include "studio/render/renderer.h"
@@ -72,6 +74,20 @@ TEST_F(WoundCamera, TheWoundAndTheOrgansMiddleAreInThePicture) {
     if (cut_.swept[row].z > 0.05) continue;  // above the organ
     EXPECT_TRUE(at.x > 200 && at.x < 1080 && at.y > 100 && at.y < 620) << at.x << ", " << at.y;
   }
+}
+
+TEST_F(WoundCamera, APieceThatFliesAwayDoesNotMakeTheRestSmall) {
+  const auto distance = [&](const State& state) {
+    const render::Camera camera = look("wound", &state).draw.camera;
+    return norm(camera.eye - camera.target);
+  };
+  const Model& model = reader_->start().model;
+  State flown = cut_;
+  const auto severed = std::find(cut_.axial_severed.begin(), cut_.axial_severed.end(), 1);
+  ASSERT_NE(severed, cut_.axial_severed.end());
+  const auto sphere = std::size_t(model.axial.a[std::size_t(severed - cut_.axial_severed.begin())]);
+  flown.position.set(sphere, flown.position[sphere] - Vec3{2, 0, 0});
+  EXPECT_LT(distance(flown), 2 * distance(cut_));
 }
 
 TEST_F(WoundCamera, APlaceAndWhatItLooksAtAreACamera) {
