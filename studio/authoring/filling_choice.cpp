@@ -46,6 +46,38 @@ std::string problem_of_volume(const importers::ImportReport& report, double encl
   return "";
 }
 
+std::string problem_of_surface(const importers::ImportReport& report) {
+  // No point of a cell is farther from the sphere in its middle.
+  const double farthest = 0.5 * std::sqrt(3.0) * report.spacing;
+  if (!(report.fill.mean_distance > farthest)) return "";
+  return "is mostly too thin for spheres: its surface is " + importers::mm_text(report.fill.mean_distance) +
+         " from the nearest of them on average, and none of it may be farther than " + importers::mm_text(farthest) +
+         " where it is filled";
+}
+
+namespace {
+
+/// Why a filled mesh is no organ; empty if it is one. An author who asks for a radius may have few spheres, and a
+/// volume that is not the mesh's.
+Errors problems_of(const importers::ImportedOrgan& filled, const importers::RepairedFile& file, std::size_t index,
+                   bool is_asked) {
+  const std::string& path = file.report.path;
+  const std::string finer = output::option_name("import.spheres") + " with a larger number fills thin places";
+  if (!is_asked && filled.report.fill.spheres < kFewestSpheres)
+    return {{path,
+             "is filled by only " + importers::counted(filled.report.fill.spheres, "sphere") +
+                 " that hang together: it is too thin or in too many pieces",
+             finer}};
+  if (const std::string problem = problem_of_volume(filled.report, file.mesh[index].volume);
+      !is_asked && !problem.empty())
+    return {{path, problem, finer + ", " + output::option_name("import.names") + " takes other parts of the file"}};
+  if (const std::string problem = problem_of_surface(filled.report); !problem.empty())
+    return {{path, problem, finer + "; a sheet needs a thickness in a mesh editor first"}};
+  return {};
+}
+
+}  // namespace
+
 Result<std::vector<importers::ImportedOrgan>> fill_all(const importers::RepairedFile& file,
                                                        const importers::ImportOptions& options, FillingWish wish,
                                                        double usual_radius) {
@@ -60,8 +92,10 @@ Result<std::vector<importers::ImportedOrgan>> fill_all(const importers::Repaired
       usual.sphere_radius = usual_radius;
       Result<importers::ImportedOrgan> filled = importers::fill_repaired(file, 0, usual);
       if (!filled) return filled.errors();
-      if (filled->report.fill.spheres >= kFew && filled->report.fill.spheres <= kMany)
+      if (filled->report.fill.spheres >= kFew && filled->report.fill.spheres <= kMany) {
+        if (Errors errors = problems_of(*filled, file, 0, false); !errors.empty()) return errors;
         return std::vector<importers::ImportedOrgan>{*std::move(filled)};
+      }
     }
     wish.spheres = std::clamp(std::int64_t(2 * cells), kUsual, kMany);
   }
@@ -74,16 +108,7 @@ Result<std::vector<importers::ImportedOrgan>> fill_all(const importers::Repaired
     Result<importers::ImportedOrgan> filled =
         wish.radius ? importers::fill_repaired(file, i, own) : fill_with(file, i, options, std::max(share, least));
     if (!filled) return filled.errors();
-    if (!wish.radius && filled->report.fill.spheres < kFewestSpheres)
-      return Error{file.report.path,
-                   "is filled by only " + importers::counted(filled->report.fill.spheres, "sphere") +
-                       " that hang together: it is too thin or in too many pieces",
-                   output::option_name("import.spheres") + " with a larger number fills thin places"};
-    if (const std::string problem = problem_of_volume(filled->report, file.mesh[i].volume);
-        !wish.radius && !problem.empty())
-      return Error{file.report.path, problem,
-                   output::option_name("import.spheres") + " with a larger number fills thin places, " +
-                       output::option_name("import.names") + " takes other parts of the file"};
+    if (Errors errors = problems_of(*filled, file, i, wish.radius.has_value()); !errors.empty()) return errors;
     organs.push_back(*std::move(filled));
   }
   return organs;

@@ -23,9 +23,13 @@ struct FillingWish {
 /// that overlaps itself counts once.
 std::string problem_of_volume(const importers::ImportReport& report, double enclosed);
 
+/// Why the spheres of a filling do not carry the mesh's surface; empty if they do.
+std::string problem_of_surface(const importers::ImportReport& report);
+
 /// Fills every mesh of a file. Without a wish, `usual_radius` [m] is taken if it gives a few hundred to some 1500
 /// spheres in all, else the radius that does. A wish for spheres is divided by volume; every organ gets some. `options`
-/// has the gap and everything else. Errors: those of fill_organ(); an organ of fewer than kFewestSpheres spheres.
+/// has the gap and everything else. Errors: those of fill_organ(); an organ of fewer than kFewestSpheres spheres;
+/// the problems above.
 Result<std::vector<importers::ImportedOrgan>> fill_all(const importers::RepairedFile& file,
                                                        const importers::ImportOptions& options, FillingWish wish,
                                                        double usual_radius);

@@ -30,5 +30,17 @@ TEST(FillingChoice, AFillingThatDoesNotStandForTheMeshIsAProblem) {
       "10 ml");
 }
 
+TEST(FillingChoice, ASurfaceFarFromItsSpheresIsAProblem) {
+  importers::ImportReport report;
+  report.spacing = 3e-3;
+  report.fill.mean_distance = 2.59e-3;
+  EXPECT_EQ(authoring::problem_of_surface(report), "");
+  report.fill.mean_distance = 2.61e-3;
+  EXPECT_EQ(
+      authoring::problem_of_surface(report),
+      "is mostly too thin for spheres: its surface is 2.61 mm from the nearest of them on average, and none of it "
+      "may be farther than 2.598 mm where it is filled");
+}
+
 }  // namespace
 }  // namespace ctpm
