@@ -4,7 +4,8 @@
 //   ctpm_mesh_set PROGRAM FOLDER OUT [--no-record] [--one-at-a-time] [--from=N] [PART-OF-A-PATH]
 //
 // A scene is good if `check` takes it without a warning about how it stands, the volume of its spheres is within 5 % of
-// the mesh's, and the import's script touches and cuts every organ; without --no-record also a recorded session of it.
+// the mesh's, and the import's script touches and cuts every organ; without --no-record also a session that is recorded
+// with it.
 // --from=N goes on with the N-th mesh, from 0, of a run that was stopped. A refusal that names an option with its value
 // is followed, once. Exit code 1: a fault, or fewer scenes than the goal.
 
@@ -20,6 +21,7 @@
 #include <thread>
 #include <vector>
 
+#include "recordings/session_reader.h"
 #include "tests/studio/commands/run_program.h"
 
 namespace {
@@ -141,9 +143,21 @@ class Trial {
         20 * kMostSeconds);
     row_.seconds = before;  // a session may last longer
     if (record.code != 0) return "record: exit code " + std::to_string(record.code);
-    if (record.out.find(" 0 elements severed") != std::string::npos) return "recorded, but nothing is cut";
     if (record.out.find("at most 0.000 N") != std::string::npos) return "recorded, but nothing is touched";
+    const std::string uncut = uncut_organ();
     fs::remove(folder_ / "cut.ctpm");
+    return uncut.empty() ? "" : "recorded, but not cut: " + uncut;
+  }
+
+  /// The first organ of the recorded session that no blade went through, or why the session cannot be read; else empty.
+  std::string uncut_organ() const {
+    auto session = ctpm::recordings::SessionReader::open((folder_ / "cut.ctpm").string());
+    if (!session) return session.errors()[0].message;
+    const auto end = session->keyframe_at_or_before(session->tick_count());
+    if (!end) return end.errors()[0].message;
+    const std::vector<ctpm::OrganRange>& organs = session->start().model.organs;
+    for (std::size_t o = 0; o < organs.size(); ++o)
+      if (std::ranges::count(end->state.swept_organ, o + 1) == 0) return organs[o].name;
     return "";
   }
 
