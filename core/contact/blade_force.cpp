@@ -28,8 +28,10 @@ void BladeForce::find(const StateView& state, const Tool& tool, const cutting::C
     PointContact contact{.axis = way, .hand = std::int32_t(hand)};
     const double k = most / tool.trail_distance;
     if (distance > tool.trail_distance) {
-      // The front goes on, and pulls with the same force however far; only its direction may still turn.
+      // The front goes on, and pulls with the same force however far, but not so that light tissue would overtake the
+      // blade. Only its direction may still turn.
       contact.force = most * way;
+      contact.apart = apart, contact.near_k = k;
       contact.drag = h * most / distance;
       if (!is_predicted) contact.force += contact.drag * across(way, h * velocity) / h;
     } else {

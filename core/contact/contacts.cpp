@@ -182,15 +182,15 @@ void LinearisedContacts::take_back() {
   is_in_system_ = contacts_.is_linearised_ = false;
 }
 
-bool LinearisedContacts::pulls(const elements::Coordinates& v) const { return contacts_.points_.has_pulling(h_, v); }
+bool LinearisedContacts::has_wrong(const elements::Coordinates& v) const { return contacts_.points_.has_wrong(h_, v); }
 
 Vec3 LinearisedContacts::tool_force(std::size_t hand, const elements::Coordinates& v) const {
   return contacts_.points_.force_on_tool(hand, h_, v);
 }
 
-void LinearisedContacts::drop_pulling(const elements::Coordinates& v) && {
+void LinearisedContacts::mend_wrong(const elements::Coordinates& v) && {
   take_back();
-  contacts_.points_.drop_pulling(h_, v);
+  contacts_.points_.mend_wrong(h_, v);
 }
 
 }  // namespace ctpm::contact

@@ -155,14 +155,15 @@ class LinearisedContacts {
     return contacts_.points_.apply(h_, v, result);
   }
 
-  /// Whether a contact pulls after a step with velocity `v`.
-  bool pulls(const elements::Coordinates& v) const;
+  /// Whether a contact pulls, or draws its point too far, in a step with velocity `v`.
+  bool has_wrong(const elements::Coordinates& v) const;
 
   /// Force of the tissue on the ball or blade in a hand [N] after a step with velocity `v`.
   Vec3 tool_force(std::size_t hand, const elements::Coordinates& v) const;
 
-  /// Takes all contacts out of the system, and removes from the set those that pull after a step with velocity `v`.
-  void drop_pulling(const elements::Coordinates& v) &&;
+  /// Takes all contacts out of the system, removes from the set those that pull in a step with velocity `v`, and makes
+  /// springs of those that draw their point too far.
+  void mend_wrong(const elements::Coordinates& v) &&;
 
  private:
   friend class ImplicitContacts;

@@ -7,7 +7,7 @@
 namespace ctpm::contact {
 namespace {
 
-constexpr int kMostRounds = 5;        ///< of dropping contacts that pull and of following the friction cone
+constexpr int kMostRounds = 5;  ///< of mending contacts that pull or draw too far, and of following the friction cone
 constexpr int kFrictionRounds = 3;    ///< at least, where something grips
 constexpr int kMostIterations = 200;  ///< of conjugate gradients
 constexpr double kSolved = 1e-16;     ///< squared residual relative to the first
@@ -165,22 +165,24 @@ std::array<Vec3, kMostHands> ExplicitSolve::solve(double h, const Pins& pins, co
     on_tool = {};
     std::fill(product_.begin(), product_.begin() + std::ptrdiff_t(touched_.size()), Vec3{});
     std::size_t next = 0;
-    bool grips = false;
+    bool grips = false, changed = false;
     for (std::size_t i = 0; i < contacts.count(); ++i) {
       PointContact& c = contacts.contacts_[i];
       const Vec3 u = change_at(c, contacts.carriers(c), change_);
       const Vec3 acting =
           linear_[i].force - (linear_[i].along - linear_[i].across) * dot(c.axis, u) * c.axis - linear_[i].across * u;
       if (c.only_pushes && dot(c.axis, acting) < 0 && round < kMostRounds) continue;
+      if (c.near_k > 0 && round < kMostRounds && c.overtakes(h, weighted(contacts.carriers(c), velocity) + u))
+        c.hold_near(h), changed = true;
       if (c.hand >= 0) on_tool[std::size_t(c.hand)] -= acting;
       const Carriers at = contacts.carriers(c);
       spread(c, at, acting, product_);
       grips = grips || c.grip_k > 0;
       contacts.contacts_[next++] = c;
     }
-    const bool dropped = next < contacts.count();
+    changed = changed || next < contacts.count();
     contacts.contacts_.resize(next);
-    if (!dropped && (!grips || round >= kFrictionRounds)) break;
+    if (!changed && (!grips || round >= kFrictionRounds)) break;
   }
   for (std::size_t p = 0; p < touched_.size(); ++p) {
     const auto i = std::size_t(touched_[p]);

@@ -139,12 +139,19 @@ bool PointContacts::pulls(const PointContact& c, double h, const elements::Coord
   return c.only_pushes && dot(c.axis, c.force - coupling(c, h, velocity_of(c, v.data())) / h) < 0;
 }
 
-bool PointContacts::has_pulling(double h, const elements::Coordinates& v) const {
-  return std::any_of(contacts_.begin(), contacts_.end(), [&](const PointContact& c) { return pulls(c, h, v); });
+bool PointContacts::overtakes(const PointContact& c, double h, const elements::Coordinates& v) const {
+  return c.near_k > 0 && c.overtakes(h, velocity_of(c, v.data()));
 }
 
-void PointContacts::drop_pulling(double h, const elements::Coordinates& v) {
+bool PointContacts::has_wrong(double h, const elements::Coordinates& v) const {
+  return std::any_of(contacts_.begin(), contacts_.end(),
+                     [&](const PointContact& c) { return pulls(c, h, v) || overtakes(c, h, v); });
+}
+
+void PointContacts::mend_wrong(double h, const elements::Coordinates& v) {
   std::erase_if(contacts_, [&](const PointContact& c) { return pulls(c, h, v); });
+  for (PointContact& c : contacts_)
+    if (overtakes(c, h, v)) c.hold_near(h);
 }
 
 Vec3 PointContacts::force_on_tool(std::size_t hand, double h, const elements::Coordinates& v) const {

@@ -22,7 +22,11 @@ struct PointContact {
   double damping = 0;        ///< the same per velocity along it [N s/m], >= 0
   double drag = 0;           ///< decrease of the force across the axis per velocity across it [N s/m], >= 0
   bool only_pushes = false;  ///< is dropped when it would pull the point against the axis
-  std::int32_t hand = -1;    ///< whose tool bears the opposite force; -1: no tool does
+  // Of a point that something draws along the axis with a steady force, as a blade draws the front of its cut. A force
+  // that would draw it past what draws it becomes a spring between the two.
+  Vec3 apart{};            ///< from the point to what draws it, at the start of the solve [m]
+  double near_k = 0;       ///< stiffness of the spring [N/m]; 0: the force stays as it is
+  std::int32_t hand = -1;  ///< whose tool bears the opposite force; -1: no tool does
   // Of a point that something presses: a ball, an obstacle or other tissue. It also grips the point. Places and
   // velocities are relative to what presses: for a ball to its centre, for an obstacle to the world.
   std::int32_t point = -1;  ///< number of the point in State::touched; -1: not a pressed point
@@ -41,6 +45,11 @@ struct PointContact {
   std::int32_t first = 0, count = 0;  ///< its entries in PointContacts; set by add()
 
   bool is_of_hand(std::size_t number) const { return hand == std::int32_t(number); }
+
+  /// Whether a point with velocity `u` [m/s] passes what draws it within `h` [s].
+  bool overtakes(double h, Vec3 u) const { return near_k > 0 && dot(axis, apart) < h * dot(axis, u); }
+  /// Makes a spring of the force, for a solve of `h` [s].
+  void hold_near(double h) { force = near_k * apart, k = near_k, drag = h * near_k, near_k = 0; }
 };
 
 /// Where a contact's force acts.
@@ -98,11 +107,11 @@ class PointContacts {
   template <class Real>
   double apply(double h, const Real* v, Real* result) const;
 
-  /// Whether a contact would pull after a step of `h` [s] with velocity `v` [m/s].
-  bool has_pulling(double h, const elements::Coordinates& v) const;
+  /// Whether a contact would pull, or draw its point too far, in a step of `h` [s] with velocity `v` [m/s].
+  bool has_wrong(double h, const elements::Coordinates& v) const;
 
-  /// Removes the contacts that would pull.
-  void drop_pulling(double h, const elements::Coordinates& v);
+  /// Removes the contacts that would pull, and makes springs of those that would draw their point too far.
+  void mend_wrong(double h, const elements::Coordinates& v);
 
   /// Force on the tool in a hand [N] after an implicit step.
   Vec3 force_on_tool(std::size_t hand, double h, const elements::Coordinates& v) const;
@@ -114,6 +123,7 @@ class PointContacts {
   Vec3 velocity_of(const PointContact& contact, const Real* v) const;
   Vec3 coupling(const PointContact& contact, double h, Vec3 u) const;
   bool pulls(const PointContact& contact, double h, const elements::Coordinates& v) const;
+  bool overtakes(const PointContact& contact, double h, const elements::Coordinates& v) const;
 
   /// Force and diagonal block of a sphere before linearise().
   struct Untouched {

@@ -266,7 +266,11 @@ CutFront::Step CutFront::draw(const Tool& scalpel, const BladeEdge& edge, const 
       const double held =
           cuts && hold(n, scalpel, state, along_node(edge, n), apart / distance) > 0 ? scalpel.trail_distance : 0.0;
       if (distance <= held) continue;
-      step.to[n] = front_[n] + node.place.at_rest(state.position, (1 - held / distance) * apart);
+      Vec3 move = node.place.at_rest(state.position, (1 - held / distance) * apart);
+      // The spheres that carry the front tell nothing of tissue beyond their reach.
+      const double length = norm(move), most = reach_[organ];
+      if (length > most) move = most / length * move;
+      step.to[n] = front_[n] + move;
       const bool is_outside = node.depth <= 0 && depth_.at(organ, step.to[n]) <= 0;
       const Vec3 by_blade = at_node(edge, n) - at_node(last_edge_, n);
       step.cuts[n] = cuts && (!is_outside || 2 * dot(apart, by_blade) > distance * distance);

@@ -64,9 +64,11 @@ Vec3 Place::at_rest(const Vec3Array& position, Vec3 move) const {
   }
   const Vec3 yz = cross(y, z), zx = cross(z, x), xy = cross(x, y);
   const double volume = dot(x, yz);
-  constexpr double kFlat = 0.05;  // volume ratio
+  constexpr double kFlat = 0.05;  // volume ratio, and length ratio along the move
   if (!(volume > kFlat)) return {};
-  return Vec3{dot(yz, move), dot(zx, move), dot(xy, move)} / volume;
+  const Vec3 rest = Vec3{dot(yz, move), dot(zx, move), dot(xy, move)} / volume;
+  const double length = norm(rest), most = norm(move) / kFlat;
+  return length > most ? most / length * rest : rest;
 }
 
 RestMap::RestMap(const Model& model) : model_(model) {

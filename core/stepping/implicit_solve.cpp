@@ -84,7 +84,8 @@ void ImplicitSolve::begin_blocks(int slab) {
   }
 }
 
-/// Solves until no contact pulls. `change` is the velocity itself, or its change from a predictor.
+/// Solves until no contact pulls or draws its point too far. `change` is the velocity itself, or its change from a
+/// predictor.
 void ImplicitSolve::solve_contacts(const Beginning& beginning, contact::ImplicitContacts& contacts,
                                    const inversion::LinearisedResistance& resistance, elements::Coordinates& change,
                                    StepReport& report) {
@@ -104,8 +105,8 @@ void ImplicitSolve::solve_contacts(const Beginning& beginning, contact::Implicit
     report.iterations += outcome.iterations;
     report.residual = outcome.residual;
     if (!outcome.converged) report.status = StepStatus::not_converged;
-    if (round < kContactRounds && linearised.pulls(change)) {
-      std::move(linearised).drop_pulling(change);
+    if (round < kContactRounds && linearised.has_wrong(change)) {
+      std::move(linearised).mend_wrong(change);
       continue;
     }
     return report_forces(beginning, step, linearised, resistance, change, report);

@@ -162,11 +162,17 @@ inline constexpr GoldenRow kGoldenRevision8[] = {
     {"touched tear, sdirk2", {0xfc009c869aa9e49a, 0x8a72951a4f43bfe3, 0x1365cc7c70347b99, 0x901735766b9c034f}},
 };
 
+inline constexpr GoldenRow kGoldenRevision9[] = {
+    {"light, backward-euler", {0xd3d3d238bbc81e70, 0xd3b269e181b3410a, 0xcfc6da4c3120636c, 0x73d7e9a42dfefb5f}},
+    {"light, sdirk2", {0xd26734d372d4df92, 0x24a6390d14dc60ab, 0x1159ae17d99f51b3, 0xfa784d5da425ccfb}},
+};
+
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09}, {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
     {3, kGoldenRevision3, 0xe38c0b55dc5ae189}, {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
     {5, kGoldenRevision5, 0xde01e1a50a84c47a}, {6, kGoldenRevision6, 0xa6eef089d8c4a783},
     {7, kGoldenRevision7, 0xe9b636c6028e3176}, {8, kGoldenRevision8, 0x7b7d2031be004e94},
+    {9, kGoldenRevision9, 0x385f2533c1ddd26c},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

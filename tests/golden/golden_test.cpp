@@ -43,6 +43,12 @@ constexpr Session kFullSessions[] = {
     {"full, sdirk2", network::Structure::ctpm, Integrator::sdirk2},
 };
 
+/// Of make_light_model().
+constexpr Session kLightSessions[] = {
+    {"light, backward-euler", network::Structure::ctpm, Integrator::backward_euler},
+    {"light, sdirk2", network::Structure::ctpm, Integrator::sdirk2},
+};
+
 /// Of make_resisting_model() or make_skinned_model().
 struct BlockSession {
   const char* name;
@@ -115,6 +121,11 @@ TEST(Golden, ASmallSessionGivesTheSameBitsInEveryBuild) {
     const GoldenRow* row = find_row(session.name);
     ASSERT_NE(row, nullptr) << session.name;
     expect_row(testing::run_golden(testing::make_full_model(6, 5, 5), 400, session.integrator), *row);
+  }
+  for (const Session& session : kLightSessions) {
+    const GoldenRow* row = find_row(session.name);
+    ASSERT_NE(row, nullptr) << session.name;
+    expect_row(testing::run_golden(testing::make_light_model(6, 5, 5), 400, session.integrator), *row);
   }
   for (const BlockSession& session : kBlockSessions) {
     const GoldenRow* row = find_row(session.name);

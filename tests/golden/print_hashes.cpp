@@ -18,6 +18,7 @@ struct Session {
   bool has_surface = false;
   std::int32_t hands = 1;
   Inputs (*inputs)(int) = testing::golden_inputs;
+  bool is_light = false;
 };
 
 constexpr Session kSessions[] = {
@@ -36,6 +37,8 @@ constexpr Session kSessions[] = {
     {"touched tear", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true, 1,
      testing::touched_tear_inputs},
     {"two hands", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true, 2, testing::two_hands_inputs},
+    {"light", 6, 5, 5, 400, network::Structure::ctpm, Integrator::backward_euler, false, false, 1,
+     testing::golden_inputs, true},
 };
 
 }  // namespace
@@ -48,6 +51,9 @@ int main() {
         return testing::run_golden(
             testing::make_skinned_model(session.ni, session.nj, session.nk, false, session.hands), session.ticks,
             session.integrator, options, session.inputs);
+      if (session.is_light)
+        return testing::run_golden(testing::make_light_model(session.ni, session.nj, session.nk), session.ticks,
+                                   session.integrator, options);
       if (session.resists)
         return testing::run_golden(testing::make_resisting_model(session.ni, session.nj, session.nk, false),
                                    session.ticks, session.integrator, options);

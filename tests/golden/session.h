@@ -82,6 +82,16 @@ inline Model make_full_model(int ni, int nj, int nk) {
   return model;
 }
 
+/// A block that resists a blade, of spheres so light that the blade's force would throw them past it.
+inline Model make_light_model(int ni, int nj, int nk) {
+  network::Material material = liver_material();
+  material.fracture_toughness = 150, material.blade_friction = 400;
+  Model model = make_block_model(ni, nj, nk, network::Structure::ctpm, material);
+  for (double& mass : model.mass) mass *= 1e-3;
+  model.tools = {ball(0.006), scalpel(0.06)};
+  return model;
+}
+
 /// A block of CTPM that resists inversion with `resistance`; soft enough for leapfrog if `is_soft`.
 inline Model make_resisting_model(int ni, int nj, int nk, bool is_soft, double resistance = 10) {
   network::Material material = liver_material();

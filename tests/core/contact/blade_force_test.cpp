@@ -290,6 +290,26 @@ TEST(BladeForce, TissueNeverGainsMoreEnergyThanTheHandGives) {
   }
 }
 
+TEST(BladeForce, LightTissueIsDrawnAlongAndNotThrownPastTheBlade) {
+  // The force that holds such a sheet would bring it to many times the blade's speed within a tick.
+  for (const Integrator integrator : {Integrator::backward_euler, Integrator::sdirk2}) {
+    Model model = free_block(7, 7, 2);
+    for (double& mass : model.mass) mass *= 1e-3;
+    model.solver.integrator = integrator;
+    stepping::Stepper stepper(model);
+    State state = rest_state(model);
+    constexpr double kPerTick = 5e-4;
+    double fastest = 0;
+    for (int i = 0; i < 200; ++i) {
+      ASSERT_LE(stepper.step(state, blade_at({0.0002, -0.04 + kPerTick * i, -0.05})).status,
+                stepping::StepStatus::not_converged);
+      for (std::size_t s = 0; s < model.sphere_count(); ++s) fastest = std::max(fastest, norm(state.velocity[s]));
+    }
+    EXPECT_GT(fastest, 0) << "the blade never touched";
+    EXPECT_LT(fastest, 2 * kPerTick / model.tick) << int(integrator);
+  }
+}
+
 TEST(BladeForce, AStabAlongTheBladeCutsASlitAsWideAsTheBlade) {
   const Model model = testing::held_block(9, 9, 6);
   const double height = model.tools[0].flank_height, deep = 0.03;

@@ -70,14 +70,14 @@ TEST_F(CutAndPressed, DroppedContactsLeaveTheSystemToTheBitAndDoNotComeBack) {
   std::fill(away.begin() + std::ptrdiff_t(2 * model_.sphere_count()), away.end(), -100.0);
   {
     contact::LinearisedContacts linearised = set.linearise(force_, blocks_);
-    EXPECT_TRUE(linearised.pulls(away));
-    std::move(linearised).drop_pulling(away);
+    EXPECT_TRUE(linearised.has_wrong(away));
+    std::move(linearised).mend_wrong(away);
     EXPECT_EQ(force_, force) << "taken back before contacts are dropped";
   }
   EXPECT_EQ(blocks_, blocks);
   EXPECT_GT(touched, 0);
   EXPECT_EQ(set.touched(0), 0);
-  EXPECT_FALSE(set.linearise(force_, blocks_).pulls(away));
+  EXPECT_FALSE(set.linearise(force_, blocks_).has_wrong(away));
 }
 
 TEST_F(CutAndPressed, TheCouplingIsSymmetricAndHasTheDiagonalThatWasAdded) {
