@@ -17,8 +17,12 @@ namespace {
 struct Sums {
   double all, none;
 };
-constexpr Sums kNear{1.3, 2.5}, kFar{4, 8}, kOfPiece{2.5, 4};
+constexpr Sums kNear{1.3, 2.5}, kFar{2, 3}, kOfPiece{2, 3};
 constexpr double kWider = 1.5;
+
+/// The same for spheres that hardly leave a plane: a single one far beside it would throw a place out and in. In
+/// spacings squared; those of half a space have some 0.1.
+constexpr double kFlat = 0.02, kDeep = 0.06;
 
 /// A binding must put its vertex in its place at rest within this part of a spacing.
 constexpr double kOff = 1e-6;
@@ -29,7 +33,35 @@ constexpr double kOnSurface = 2e-3;
 /// Places this near to the swept surface are put onto it; a place's node is so near to it. In steps of the grid.
 constexpr double kOntoCut = 1.5, kSideSteps = 1.7321;
 
+/// Spheres that may turn a place in every way.
+constexpr std::size_t kSpanPlane = 3;
+
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+
+/// From 0 to 1 where `t` does.
+double smooth(double t) {
+  const double q = std::clamp(t, 0.0, 1.0);
+  return q * q * (3 - 2 * q);
+}
+
+/// Harmonic sum of the three principal variances of points [m^2]: at most the least of them, and at least a third of
+/// it. `weight`: of each.
+double least_variance(std::span<const Vec3> points, std::span<const double> weight) {
+  double sum = 0, xx = 0, yy = 0, zz = 0, xy = 0, yz = 0, zx = 0;
+  Vec3 mean;
+  for (std::size_t i = 0; i < points.size(); ++i) sum += weight[i], mean += weight[i] * points[i];
+  if (!(sum > 0)) return 0;
+  mean = mean / sum;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 d = points[i] - mean;
+    const double w = weight[i] / sum;
+    xx += w * d.x * d.x, yy += w * d.y * d.y, zz += w * d.z * d.z;
+    xy += w * d.x * d.y, yz += w * d.y * d.z, zx += w * d.z * d.x;
+  }
+  const double minors = xx * yy - xy * xy + yy * zz - yz * yz + zz * xx - zx * zx;
+  const double determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * zx) + zx * (xy * yz - yy * zx);
+  return minors > 0 ? std::max(0.0, determinant / minors) : 0.0;
+}
 
 /// Whether a binding follows spheres that a place is wholly joined to.
 bool is_joined(const SideBinding::Binding& binding, std::span<const JoinedSpheres::Joined> joined) {
@@ -54,8 +86,7 @@ class SideBinding::Mix {
     if (way.sphere.empty()) return;
     double sum = 0;
     for (const double w : way.weight) sum += std::abs(w);
-    const double q = std::clamp((sums.none - sum) / (sums.none - sums.all), 0.0, 1.0), part = q * q * (3 - 2 * q);
-    add(way, part);
+    add(way, smooth((sums.none - sum) / (sums.none - sums.all)) * smooth((way.depth - kFlat) / (kDeep - kFlat)));
   }
 
   /// Fills up what is missing.
@@ -115,14 +146,18 @@ void SideBinding::forget_near(CutGrid::NodeBox changed) {
 SideBinding::Binding SideBinding::follow(Vec3 rest, std::span<const Joined> spheres, double reach) const {
   Binding binding;
   std::vector<Vec3> centres;
-  std::vector<double> trust;
+  std::vector<double> trust, near;
   for (const Joined& s : spheres) {
     const auto sphere = std::size_t(organ_.first + s.sphere);
-    if (norm(model_.rest_position[sphere] - rest) >= reach) continue;
+    const double distance = norm(model_.rest_position[sphere] - rest);
+    if (distance >= reach) continue;
     binding.sphere.push_back(s.sphere), centres.push_back(model_.rest_position[sphere]);
     trust.push_back(s.part * model_.mass[sphere]);
+    const double bump = 1 - distance * distance / (reach * reach);
+    near.push_back(trust.back() * bump * bump);
   }
   if (centres.size() < 4) return {};
+  binding.depth = least_variance(centres, near) / (organ_.spacing * organ_.spacing);
   binding.weight = surface::follow_weights(rest, centres, trust, reach);
   Vec3 off = -rest;
   for (std::size_t i = 0; i < centres.size(); ++i) off += binding.weight[i] * centres[i];
@@ -215,6 +250,9 @@ void SideBinding::bind(const CutMesh::Vertex& vertex, bool is_outer, bool is_wal
   Mix mix;
   mix.add(follow(bound.rest, joined, reach), kNear);
   if (!mix.is_whole()) mix.add(follow(bound.rest, joined, kWider * reach), kFar);
+  if (!mix.is_whole())
+    if (const Binding own = follow_stiffly(bound.rest, joined, kWider * reach); own.sphere.size() >= kSpanPlane)
+      mix.fill(own);
   entry.by_piece = !mix.is_whole();
   if (entry.by_piece) {
     if (piece_.empty()) find_pieces();
@@ -269,35 +307,40 @@ void SideBinding::follow_piece(Vec3 rest, Index piece, Mix& mix) const {
   if (const Binding way = follow_rigidly(rest, piece); !way.sphere.empty()) mix.fill(way);
 }
 
-/// Follows spheres of a piece that lie in a plane or on a line, or that are fewer than four, as one stiff body: their
-/// mean, and beside it what turns with them. Empty if there are none around.
+/// Follows spheres of a piece around a place as one stiff body. Empty if there are none.
 SideBinding::Binding SideBinding::follow_rigidly(Vec3 rest, Index piece) const {
-  constexpr std::size_t kFewest = 3;  // that may turn a place in every way
   std::vector<Joined> around;
   double within = 0;
   for (const double wider : {1.0, 2.0, piece >= 0 ? 4.0 : kAnywhere})
-    if (around.size() < kFewest)
+    if (around.size() < kSpanPlane)
       within = wider * surface::kBindingReach * organ_.spacing, around = spheres_around(rest, within, piece);
-  const auto centre = [&](const Joined& s) { return model_.rest_position[std::size_t(organ_.first + s.sphere)]; };
   if (within == kAnywhere) {
     within = 0;
-    for (const Joined& s : around) within = std::max(within, 2 * norm(centre(s) - rest));
+    for (const Joined& s : around)
+      within = std::max(within, 2 * norm(model_.rest_position[std::size_t(organ_.first + s.sphere)] - rest));
   }
+  return follow_stiffly(rest, around, within);
+}
+
+/// Follows those of the spheres that are within reach as one stiff body: their mean, and beside it what turns with
+/// them. Spheres that lie in a plane or on a line, or that are fewer than four, tell no more. Empty if there are none.
+SideBinding::Binding SideBinding::follow_stiffly(Vec3 rest, std::span<const Joined> spheres, double reach) const {
+  const auto centre = [&](Index sphere) { return model_.rest_position[std::size_t(organ_.first + sphere)]; };
   Binding binding;
   double sum = 0;
-  for (const Joined& s : around) {
-    const Vec3 off = centre(s) - rest;
-    const double bump = 1 - dot(off, off) / (within * within);
-    binding.sphere.push_back(s.sphere);
-    binding.weight.push_back(model_.mass[std::size_t(organ_.first + s.sphere)] * bump * bump);
-    sum += binding.weight.back();
+  for (const Joined& s : spheres) {
+    const Vec3 off = centre(s.sphere) - rest;
+    const double bump = 1 - dot(off, off) / (reach * reach);
+    const double weight = s.part * model_.mass[std::size_t(organ_.first + s.sphere)] * bump * bump;
+    if (!(bump > 0) || !(weight > 0)) continue;
+    binding.sphere.push_back(s.sphere), binding.weight.push_back(weight), sum += weight;
   }
   if (!(sum > 0)) return {};
   Vec3 mean;
-  for (std::size_t i = 0; i < around.size(); ++i)
-    binding.weight[i] /= sum, mean += binding.weight[i] * centre(around[i]);
+  for (std::size_t i = 0; i < binding.sphere.size(); ++i)
+    binding.weight[i] /= sum, mean += binding.weight[i] * centre(binding.sphere[i]);
   binding.turned = {-1, rest - mean, binding.sphere, binding.weight, {}};
-  for (const Joined& s : around) binding.turned.arm.push_back(centre(s) - mean);
+  for (const Index sphere : binding.sphere) binding.turned.arm.push_back(centre(sphere) - mean);
   return binding;
 }
 

@@ -25,6 +25,9 @@ class SideBinding {
   struct Binding {
     std::vector<Index> sphere;
     std::vector<double> weight;  ///< sum to 1
+    /// How far the spheres are from lying in a plane: a measure of their least variance along a line, in spacings
+    /// squared.
+    double depth = 0;
     /// What turns with the spheres of a piece that do not span space; without spheres if there is none.
     TurnedOffset turned;
 
@@ -79,6 +82,7 @@ class SideBinding {
   Binding follow_whole(const Origin& origin) const;
   Binding follow(Vec3 rest, std::span<const Joined> spheres, double reach) const;
   Binding follow_rigidly(Vec3 rest, Index piece) const;
+  Binding follow_stiffly(Vec3 rest, std::span<const Joined> spheres, double reach) const;
   void follow_piece(Vec3 rest, Index piece, Mix& mix) const;
   std::vector<Joined> spheres_around(Vec3 rest, double reach, Index piece) const;
 

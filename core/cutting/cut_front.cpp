@@ -300,15 +300,36 @@ NewlySwept CutFront::newly_swept(const Step& step, const State& state) const {
   return newly;
 }
 
+/// The front from which a step sweeps. Tissue that slides past the blade, or that moves under a node outside, takes the
+/// front along and sweeps nothing; where a part goes on whose other node rested, the cut would have a hole.
+Front CutFront::begin_of(const NewlySwept& newly, const State& state) const {
+  Front from = front_;
+  for (std::size_t n = 0; n + 1 < kEdgeNodes; ++n) {
+    if (newly[n] == 0) continue;
+    std::size_t row = swept_rows(state);
+    while (row > 1 && state.swept_organ[(row - 1) * kEdgeNodes + n] != newly[n]) --row;
+    if (row <= 1) continue;
+    const std::size_t at = (row - 1) * kEdgeNodes + n;
+    const bool first_rests = state.swept[at] == stored_place(front_[n]),
+               second_rests = state.swept[at + 1] == stored_place(front_[n + 1]);
+    if (first_rests == second_rests) continue;
+    const std::size_t slid = first_rests ? 1 : 0;
+    const Vec3 before = state.swept[at + slid];
+    if (norm(before - front_[n + slid]) < reach_[std::size_t(newly[n] - 1)]) from[n + slid] = before;
+  }
+  return from;
+}
+
 std::int32_t CutFront::follow(const Tool& scalpel, const BladeEdge& edge, State& state,
                               std::vector<Crossing>& crossings) {
   const Step step = draw(scalpel, edge, state);
   const NewlySwept newly = newly_swept(step, state);
+  const Front from = begin_of(newly, state);
   for (std::size_t n = 0; n < kEdgeNodes; ++n) state.blade_trail.set(n, step.to[n]);
   last_edge_ = edge;
   if (std::none_of(newly.begin(), newly.end(), [](std::uint8_t organ) { return organ != 0; })) return 0;
-  add_swept(state, front_, step.to, newly);
-  return sever_swept(model_, elements_, front_, step.to, newly, state, crossings);
+  add_swept(state, from, step.to, newly);
+  return sever_swept(model_, elements_, from, step.to, newly, state, crossings);
 }
 
 }  // namespace ctpm::cutting

@@ -71,6 +71,7 @@ class CutFront {
   double newness(std::int32_t organ, Vec3 rest, Vec3 way_at_rest) const;
   Step draw(const Tool& scalpel, const BladeEdge& edge, const State& state) const;
   NewlySwept newly_swept(const Step& step, const State& state) const;
+  Front begin_of(const NewlySwept& newly, const State& state) const;
   double rubbed_height(std::size_t node, const Tool& scalpel, const StateView& state, Vec3 edge, Vec3 way) const;
   double opening(const Place& at, const StateView& state, Vec3 across) const;
 

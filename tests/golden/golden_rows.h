@@ -165,6 +165,12 @@ inline constexpr GoldenRow kGoldenRevision8[] = {
 inline constexpr GoldenRow kGoldenRevision9[] = {
     {"light, backward-euler", {0xd3d3d238bbc81e70, 0xd3b269e181b3410a, 0xcfc6da4c3120636c, 0x73d7e9a42dfefb5f}},
     {"light, sdirk2", {0xd26734d372d4df92, 0x24a6390d14dc60ab, 0x1159ae17d99f51b3, 0xfa784d5da425ccfb}},
+    {"touched cut, auto", {0xff890838b753aeda, 0xc2964c266f6d3dfa, 0x82de14cbeeabbe6b, 0xa61f321502892cf8}},
+    {"touched cut, sdirk2", {0xe75fab1ec41d085b, 0x49cacdcdbe8cd0a1, 0x73a2c56abe6cd8e0, 0x29275c598d487113}},
+    {"soft and touched cut, auto", {0xd5f884a9e30aa820, 0xa8ca57b2b3f9310e, 0xc5b9a9db06edb50d, 0x7724460a5538b08f}},
+    {"touched slice, auto", {0xc651e673aaed1229, 0xf5a083e760a53fea, 0x9275339255a1e1b3, 0xd4861a2117eb6113}},
+    {"touched slice, sdirk2", {0xfc009c869aa9e49a, 0xb6cc0faa904be811, 0xa34b70fa58bf96e4, 0x719b1733d6087fc4}},
+    {"soft and touched slice, auto", {0x0aebf3b27fba0d04, 0x48f5ebb3b9b1b20b, 0x83d59a6edd6063b3, 0xae7beaf2056aac23}},
 };
 
 inline constexpr GoldenRevision kGoldenRevisions[] = {
@@ -172,7 +178,7 @@ inline constexpr GoldenRevision kGoldenRevisions[] = {
     {3, kGoldenRevision3, 0xe38c0b55dc5ae189}, {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
     {5, kGoldenRevision5, 0xde01e1a50a84c47a}, {6, kGoldenRevision6, 0xa6eef089d8c4a783},
     {7, kGoldenRevision7, 0xe9b636c6028e3176}, {8, kGoldenRevision8, 0x7b7d2031be004e94},
-    {9, kGoldenRevision9, 0x385f2533c1ddd26c},
+    {9, kGoldenRevision9, 0xb75cb37d4faeb3c5},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.
