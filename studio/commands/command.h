@@ -14,6 +14,7 @@ struct Command {
   Run run;
 };
 
+Command add_anonymise(CLI::App& program);
 Command add_import(CLI::App& program);
 Command add_check(CLI::App& program);
 Command add_plan(CLI::App& program);
