@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "studio/compare/measures.h"
+#include "studio/compare/session_track.h"
+
+namespace ctpm::compare {
+
+/// The value of a measure of one session.
+struct SessionValue {
+  const Measure* measure = nullptr;
+  std::optional<double> value = {};  ///< in the measure's unit
+  std::string note = {};             ///< why there is no value, where that can be said
+};
+
+inline constexpr const char* kNoForceLimit = "no limit is known";
+
+/// The measures of one session by itself, always the same ones in the same order. `force_limit` [N]: unset, none is
+/// known; `damage_depth` [m]: 0, no organ has one.
+std::vector<SessionValue> measure_session(const SessionTrack& track, std::optional<double> force_limit,
+                                          double damage_depth);
+
+/// The smallest damage depth of the organs [m]; 0: none has one.
+double damage_depth_of(const Model& model);
+
+}  // namespace ctpm::compare
