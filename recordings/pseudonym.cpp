@@ -65,19 +65,38 @@ Result<PseudonymKey> PseudonymKey::read_or_make(const std::string& path, bool& i
   return PseudonymKey(std::move(bytes));
 }
 
+namespace {
+std::string hexadecimal(session_file::ByteView bytes) {
+  static constexpr char digit[] = "0123456789abcdef";
+  std::string digits;
+  for (const std::uint8_t byte : bytes) digits += {digit[byte >> 4], digit[byte & 15]};
+  return digits;
+}
+}  // namespace
+
 std::string PseudonymKey::digits(std::string_view kind, std::string_view text, std::size_t count) const {
   std::string whole(kind);
   whole.push_back('\0');
   whole += text;
-  static constexpr char digit[] = "0123456789abcdef";
-  std::string digits;
-  for (const std::uint8_t byte : session_file::keyed_hash(bytes_, session_file::view(whole)))
-    digits += {digit[byte >> 4], digit[byte & 15]};
-  return digits.substr(0, count);
+  return hexadecimal(session_file::keyed_hash(bytes_, session_file::view(whole))).substr(0, count);
 }
 
 std::string PseudonymKey::name(std::string_view kind, std::string_view text) const {
   return std::string(kind) + "-" + digits(kind, text, name_digits);
+}
+
+std::string name_uuid(std::string_view name) {
+  if (!can_sign()) return "";
+  // The namespace of addresses, 6ba7b811-9dad-11d1-80b4-00c04fd430c8.
+  static constexpr unsigned char addresses[] = {0x6b, 0xa7, 0xb8, 0x11, 0x9d, 0xad, 0x11, 0xd1,
+                                                0x80, 0xb4, 0x00, 0xc0, 0x4f, 0xd4, 0x30, 0xc8};
+  session_file::Bytes whole(std::begin(addresses), std::end(addresses));
+  whole.insert(whole.end(), name.begin(), name.end());
+  session_file::Sha1 hash = session_file::sha1(whole);
+  hash[6] = std::uint8_t((hash[6] & 0x0f) | 0x50), hash[8] = std::uint8_t((hash[8] & 0x3f) | 0x80);
+  std::string text = hexadecimal({hash.data(), 16});
+  for (const std::size_t place : {20u, 16u, 12u, 8u}) text.insert(place, "-");
+  return text;
 }
 
 }  // namespace ctpm::recordings

@@ -29,4 +29,8 @@ class PseudonymKey {
   std::vector<unsigned char> bytes_;
 };
 
+/// A UUID of version 5 (RFC 4122) of a name within the namespace of addresses; empty in a build without OpenSSL
+/// (CTPM_SIGNING).
+std::string name_uuid(std::string_view name);
+
 }  // namespace ctpm::recordings

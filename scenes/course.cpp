@@ -18,8 +18,9 @@ void check_mark(Problems& problems, const std::string& at, const MarkSpec& mark,
                 const std::vector<std::string>& measures) {
   if (problems.is_good(at + "/measure") && std::ranges::find(measures, mark.measure) == measures.end()) {
     const std::string nearest = nearest_word(mark.measure, measures);
-    problems.add_rule(at + "/measure", "there is no measure " + in_quotes(mark.measure),
-                      nearest.empty() ? "ctpm compare --json lists them" : "did you mean " + in_quotes(nearest) + "?");
+    problems.add_rule(
+        at + "/measure", "there is no measure " + in_quotes(mark.measure),
+        nearest.empty() ? "the JSON of ctpm compare lists them" : "did you mean " + in_quotes(nearest) + "?");
   }
   const auto in_order = [&](const char* low_key, std::optional<double> low, const char* high_key,
                             std::optional<double> high) {

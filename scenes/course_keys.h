@@ -19,7 +19,7 @@ inline RecordInfo info_of(const MarkSpec&) {
 }
 template <class V>
 void describe_fields(V& v, MarkSpec& mark) {
-  v.text(required("measure", "Key of the measure, as `ctpm compare --json` names it."), mark.measure);
+  v.text(required("measure", "Key of the measure, as the JSON of `ctpm compare` names it."), mark.measure);
   v.number(Key{"low", "Lower end of the range that the educator declares.", false, "none is drawn"}, mark.low,
            units::none, course_ranges::value);
   v.number(Key{"high", "Upper end of that range.", false, "none is drawn"}, mark.high, units::none,

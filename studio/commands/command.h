@@ -24,6 +24,7 @@ Command add_record(CLI::App& program);
 Command add_replay(CLI::App& program);
 Command add_verify(CLI::App& program);
 Command add_info(CLI::App& program);
+Command add_cohort(CLI::App& program);
 Command add_compare(CLI::App& program);
 Command add_recover(CLI::App& program);
 Command add_sign(CLI::App& program);

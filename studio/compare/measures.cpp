@@ -14,34 +14,14 @@
 namespace ctpm::compare {
 namespace {
 
-constexpr double kMillimetres = 1e3;
-constexpr double kCutPathSpacing = 0.5e-3;  // distance of the points of cut paths that are compared [m]
-
-/// Measures of the cuts of both: which elements they have in common, and how far their paths lie apart.
-void add_cut_pair(std::vector<MeasuredValue>& values, const SessionTrack& expert, const SessionTrack& trainee) {
-  double both = 0, expert_only = 0, trainee_only = 0;
-  for (std::size_t i = 0; i < expert.severed_at.size(); ++i) {
-    const bool in_a = expert.severed_at[i] >= 0, in_b = trainee.severed_at[i] >= 0;
-    both += in_a && in_b, expert_only += in_a && !in_b, trainee_only += in_b && !in_a;
-  }
-  values.push_back({.measure = &kSeveredBoth, .trainee = both});
-  values.push_back({.measure = &kSeveredExpert, .trainee = expert_only});
-  values.push_back({.measure = &kSeveredTrainee, .trainee = trainee_only});
-  values.push_back({.measure = &kOverlap, .trainee = 2 * both / (2 * both + expert_only + trainee_only)});
-  if (expert.cuts.empty() || trainee.cuts.empty()) {
-    const std::string note = std::string("the ") + (expert.cuts.empty() ? "expert" : "trainee") + " did not cut";
-    for (const Measure* measure : {&kCutMean, &kCutHausdorff}) values.push_back({.measure = measure, .note = note});
-  } else {
-    const PathDistance distance = distance_between(cut_paths(expert), cut_paths(trainee), kCutPathSpacing);
-    values.push_back({.measure = &kCutMean, .trainee = kMillimetres * distance.mean});
-    values.push_back({.measure = &kCutHausdorff, .trainee = kMillimetres * distance.hausdorff});
-  }
-}
-
 /// The measures of each session beside each other, and those of the pair of cuts behind the first that is of a cut.
 void add_values(Comparison& comparison, const SessionTrack& expert, const SessionTrack& trainee) {
   const std::vector<SessionValue> a = measure_session(expert, comparison.force_limit, comparison.damage_depth),
                                   b = measure_session(trainee, comparison.force_limit, comparison.damage_depth);
+  const auto add_pair = [&](const std::vector<SessionValue>& values) {
+    for (const SessionValue& value : values)
+      comparison.values.push_back({.measure = value.measure, .trainee = value.value, .note = value.note});
+  };
   for (std::size_t i = 0; i < a.size(); ++i) {
     const Measure* measure = a[i].measure;
     const bool is_of_cut =
@@ -51,7 +31,7 @@ void add_values(Comparison& comparison, const SessionTrack& expert, const Sessio
     const bool no_limit = b[i].note == kNoForceLimit;
     comparison.values.push_back({measure, a[i].value, b[i].value,
                                  no_limit ? "no limit: the expert met no force, and none is given" : b[i].note});
-    if (measure == &kSevered) add_cut_pair(comparison.values, expert, trainee);
+    if (measure == &kSevered) add_pair(measure_cut_pair(expert, trainee));
   }
 }
 
@@ -89,8 +69,8 @@ Comparison compare_sessions(const SessionTrack& expert, const SessionTrack& trai
   comparison.expert_path = std::move(expert_path.place), comparison.expert_time = std::move(expert_path.time);
   comparison.trainee_path = std::move(trainee_path.place), comparison.trainee_time = std::move(trainee_path.time);
   comparison.alignment = align_paths(comparison.expert_path, comparison.trainee_path);
-  comparison.values.push_back({.measure = &kAlignedMean, .trainee = kMillimetres * comparison.alignment.mean});
-  comparison.values.push_back({.measure = &kAlignedLargest, .trainee = kMillimetres * comparison.alignment.largest});
+  for (const SessionValue& value : measure_aligned(comparison.alignment))
+    comparison.values.push_back({.measure = value.measure, .trainee = value.value});
   comparison.moments = worst_moments(comparison, expert, trainee);
   Box box(scene.model.rest_position[0]);
   for (std::size_t i = 1; i < scene.model.sphere_count(); ++i) box.add(scene.model.rest_position[i]);

@@ -6,11 +6,14 @@
 
 #include "studio/compare/measure_table.h"
 #include "studio/compare/moments.h"
+#include "studio/compare/slip.h"
+#include "studio/output/number_text.h"
 
 namespace ctpm::compare {
 namespace {
 
 constexpr double kMillimetres = 1e3;
+constexpr double kCutPathSpacing = 0.5e-3;  // distance of the points of cut paths that are compared [m]
 
 /// The stations of a stroke: its ends, the points where the tool met and left the tissue, and the deepest point.
 /// Ascending indices within the stroke.
@@ -171,6 +174,38 @@ std::vector<SessionValue> measure_session(const SessionTrack& track, std::option
   add_depth(values, track, damage_depth);
   add_cut(values, track);
   return values;
+}
+
+std::vector<SessionValue> measure_cut_pair(const SessionTrack& expert, const SessionTrack& trainee) {
+  double both = 0, expert_only = 0, trainee_only = 0;
+  for (std::size_t i = 0; i < expert.severed_at.size(); ++i) {
+    const bool in_a = expert.severed_at[i] >= 0, in_b = trainee.severed_at[i] >= 0;
+    both += in_a && in_b, expert_only += in_a && !in_b, trainee_only += in_b && !in_a;
+  }
+  Values values{{&kSeveredBoth, both},
+                {&kSeveredExpert, expert_only},
+                {&kSeveredTrainee, trainee_only},
+                {&kOverlap, 2 * both / (2 * both + expert_only + trainee_only)}};
+  if (expert.cuts.empty() || trainee.cuts.empty()) {
+    const std::string note = std::string("the ") + (expert.cuts.empty() ? "expert" : "trainee") + " did not cut";
+    for (const Measure* measure : {&kCutMean, &kCutHausdorff}) values.push_back({measure, {}, note});
+  } else {
+    const PathDistance distance = distance_between(cut_paths(expert), cut_paths(trainee), kCutPathSpacing);
+    values.push_back({&kCutMean, kMillimetres * distance.mean});
+    values.push_back({&kCutHausdorff, kMillimetres * distance.hausdorff});
+  }
+  return values;
+}
+
+std::vector<SessionValue> measure_aligned(const Alignment& alignment) {
+  return {{&kAlignedMean, kMillimetres * alignment.mean}, {&kAlignedLargest, kMillimetres * alignment.largest}};
+}
+
+void refuse_times(std::vector<SessionValue>& values, const SessionTrack& track) {
+  if (track.is_timed) return;
+  for (SessionValue& value : values)
+    if (depends_on_time(value.measure->key))
+      value.value.reset(), value.note = "the session lacks " + output::fixed(track.slip, 3) + " s of real time";
 }
 
 double damage_depth_of(const Model& model) {

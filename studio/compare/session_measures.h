@@ -23,6 +23,16 @@ inline constexpr const char* kNoForceLimit = "no limit is known";
 std::vector<SessionValue> measure_session(const SessionTrack& track, std::optional<double> force_limit,
                                           double damage_depth);
 
+/// The measures of the cuts of two sessions of one scene: which elements they have in common, and how far their paths
+/// lie apart. Both were replayed.
+std::vector<SessionValue> measure_cut_pair(const SessionTrack& expert, const SessionTrack& trainee);
+
+/// How far two aligned ways lie apart.
+std::vector<SessionValue> measure_aligned(const Alignment& alignment);
+
+/// Takes back the measures that depend on time where a session lacks real time, with the reason in their notes.
+void refuse_times(std::vector<SessionValue>& values, const SessionTrack& track);
+
 /// The smallest damage depth of the organs [m]; 0: none has one.
 double damage_depth_of(const Model& model);
 

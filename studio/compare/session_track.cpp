@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/model/fields.h"
+#include "recordings/byte_hash.h"
 #include "recordings/replay.h"
 #include "recordings/state_hash.h"
 #include "studio/session/probes.h"
@@ -130,6 +131,22 @@ Result<Done> replay_cuts(recordings::SessionReader& session, SessionTrack& track
     if (const Result<Done> ended = cursor->seek(session.tick_count()); !ended) return ended.errors();
   track.replays = track.replays && cursor->same_so_far();
   blade.finish(cursor->state());
+  return Done{};
+}
+
+/// What is severed in the last State, and the size of its cuts. In which tick something was severed is not known.
+Result<Done> replay_end(recordings::SessionReader& session, SessionTrack& track) {
+  track.severed_at.assign(ElementPlaces(session.start().model).count, -1);
+  if (track.cuts.empty()) return Done{};
+  Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(session);
+  if (!cursor) return cursor.errors();
+  if (const Result<Done> ended = cursor->seek(session.tick_count()); !ended) return ended.errors();
+  const std::vector<std::uint8_t> severed = severed_flags(cursor->state());
+  for (std::size_t i = 0; i < severed.size(); ++i)
+    if (severed[i]) track.severed_at[i] = std::int64_t(track.cuts.back().last) - 1;
+  track.replays = cursor->same_so_far();
+  session::CutMeasures measures(session.start().model);
+  measures.measure(cursor->state()), track.cut = measures.size();
   return Done{};
 }
 
@@ -271,7 +288,9 @@ Result<SessionTrack> read_track(recordings::SessionReader& session, Replaying re
   if (track->strokes.empty()) return Error{session.path(), "no tool is ever in the hand", ""};
   const bool is_short = track->seconds(track->tick_count()) <= kShortSession;
   const bool all = replaying == Replaying::all || (replaying == Replaying::short_ones && is_short);
-  const Result<Done> replayed = all ? replay_all(session, *track) : replay_cuts(session, *track);
+  const Result<Done> replayed = all                            ? replay_all(session, *track)
+                                : replaying == Replaying::ends ? replay_end(session, *track)
+                                                               : replay_cuts(session, *track);
   if (!replayed) return replayed.errors();
   return track;
 }
@@ -290,6 +309,17 @@ Result<Done> check_same_scene(const recordings::SessionReader& expert, const rec
   }
   return Error{trainee.path(), "is of another scene than " + expert.path() + ": " + reason,
                "sessions can be compared if they were recorded in the same scene"};
+}
+
+std::uint64_t scene_hash(const Model& model) {
+  std::vector<std::pair<std::string, std::string>> fields;
+  for_each_field(model, FieldBytes{fields});
+  recordings::ByteHash hash;
+  for (const auto& [name, bytes] : fields) {
+    const std::string head = name + " " + std::to_string(bytes.size()) + "\n";
+    hash.add(head.data(), head.size()), hash.add(bytes.data(), bytes.size());
+  }
+  return hash.value();
 }
 
 std::vector<Path> cut_paths(const SessionTrack& track) {

@@ -66,6 +66,7 @@ enum class Replaying {
   short_ones,  ///< those up to kShortSession
   all,
   none,  ///< of cuts alone
+  ends,  ///< nothing but what comes after the last keyframe: what is severed in the end, and the size of the cuts
 };
 inline constexpr double kShortSession = 30;  ///< [s]
 
@@ -76,6 +77,9 @@ Result<SessionTrack> read_track(recordings::SessionReader& session, Replaying re
 /// Checks that both sessions have the same Model: network, tools and physics. Values that do not act on the tissue
 /// (cameras, colours) may differ. Errors: the first difference.
 Result<Done> check_same_scene(const recordings::SessionReader& expert, const recordings::SessionReader& trainee);
+
+/// A number that two Models share where check_same_scene() finds no difference, and else almost never.
+std::uint64_t scene_hash(const Model& model);
 
 /// The paths of the tool's tip during each cut [m].
 std::vector<Path> cut_paths(const SessionTrack& track);
