@@ -13,8 +13,8 @@ struct RewrittenSession {
   SessionStart start;  ///< network, State and revision are those of the session; texts and names may differ
   std::string id;      ///< 32 hexadecimal digits
   double created_unix_s = 0;
-  std::function<void(Event&)> change_event;  ///< may change the texts of an event; empty: none changes
-  bool keeps_values = true;                  ///< the further named numbers of its end
+  std::function<void(Event&)> change_event = {};  ///< may change the texts of an event; empty: none changes
+  bool keeps_values = true;                       ///< the further named numbers of its end
 };
 
 /// Writes a session anew at `out`, in a new file that shares no page with the old one: ticks, keyframes and their

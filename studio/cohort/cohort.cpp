@@ -58,6 +58,7 @@ Result<ReadSession> read_session(const FoundSession& found, const TaskResult& ta
   attempt.physics_revision = reader->start().physics_revision;
   attempt.values = compare::measure_session(*track, task.force_limit, compare::damage_depth_of(reader->start().model));
   compare::refuse_times(attempt.values, *track);
+  attempt.structures = compare::loads_of(*track, reader->start().model).value_or(std::vector<compare::StructureLoad>());
   if (!track->has_end) attempt.remarks.push_back("has no clean end: what is there is measured");
   if (!track->replays) attempt.remarks.push_back("does not replay as it was recorded");
   if (options.verify && !track->is_verified && track->replays) attempt.remarks.push_back("could not be verified");

@@ -23,6 +23,8 @@ struct Attempt {
   /// All measures, in the order of compare::all_measures(). Those of a pair are means over the experts, of an expert
   /// over the other ones.
   std::vector<compare::SessionValue> values;
+  /// What it did to each organ and forbidden zone; empty: not known.
+  std::vector<compare::StructureLoad> structures;
   StrokeCurve curve;                 ///< along the way of the task's middle expert
   std::optional<bool> passed;        ///< every pass mark; unset: the task has none
   std::vector<std::string> missed;   ///< keys of the measures whose pass marks were missed or have no value

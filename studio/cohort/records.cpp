@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "recordings/pseudonym.h"
+#include "studio/compare/measure_table.h"
 #include "studio/output/json_writer.h"
 #include "studio/session/session_info.h"
 
@@ -86,25 +87,42 @@ std::string statement_of(const Cohort& cohort, const TaskResult& task, const Att
 
 }  // namespace
 
+namespace {
+
+/// The rows of one session: its measures, and those of each organ and forbidden zone.
+void add_rows(reports::Table& table, const Cohort& cohort, const TaskResult& task, const Attempt& attempt,
+              const char* role) {
+  const FoundSession& s = attempt.session;
+  const auto add = [&](const compare::Measure& measure, std::optional<double> value, const std::string& note,
+                       const std::string& structure) {
+    table.rows.push_back({cohort.course.name, task.task.name, std::string(role), s.person, std::int64_t(s.attempt),
+                          s.session_id, s.file, s.begun_s, attempt.duration_s, std::string(measure.key),
+                          std::string(measure.unit), value ? reports::Cell(*value) : reports::Cell(), note,
+                          attempt.passed ? reports::Cell(std::int64_t(*attempt.passed)) : reports::Cell(), structure});
+  };
+  for (const compare::SessionValue& value : attempt.values)
+    add(*value.measure, value.value, value.value ? "" : value.note, "");
+  for (const compare::StructureLoad& load : attempt.structures) {
+    const std::string name = (load.is_zone ? "zone " : "organ ") + load.name;
+    add(compare::kPeakForce, load.peak, "", name);
+    add(compare::kImpulse, load.impulse, "", name);
+    add(compare::kWork, 1e3 * load.work, "", name);
+  }
+}
+
+}  // namespace
+
 reports::Table long_table(const Cohort& cohort) {
   reports::Table table;
   table.columns = {{"course", "course"},     {"task", "task"},         {"role", "role"},
                    {"person", "person"},     {"attempt", "attempt"},   {"session_id", "session"},
                    {"session", "file"},      {"begun_s", "begun [s]"}, {"duration_s", "duration [s]"},
                    {"measure", "measure"},   {"unit", "unit"},         {"value", "value"},
-                   {"no_value", "no value"}, {"passed", "passed"}};
-  for (const TaskResult& task : cohort.tasks)
-    for (const auto* attempts : {&task.experts, &task.attempts})
-      for (const Attempt& attempt : *attempts)
-        for (const compare::SessionValue& value : attempt.values) {
-          const FoundSession& s = attempt.session;
-          table.rows.push_back(
-              {cohort.course.name, task.task.name, std::string(attempts == &task.experts ? "expert" : "trainee"),
-               s.person, std::int64_t(s.attempt), s.session_id, s.file, s.begun_s, attempt.duration_s,
-               std::string(value.measure->key), std::string(value.measure->unit),
-               value.value ? reports::Cell(*value.value) : reports::Cell(), value.value ? std::string() : value.note,
-               attempt.passed ? reports::Cell(std::int64_t(*attempt.passed)) : reports::Cell()});
-        }
+                   {"no_value", "no value"}, {"passed", "passed"},     {"structure", "structure"}};
+  for (const TaskResult& task : cohort.tasks) {
+    for (const Attempt& expert : task.experts) add_rows(table, cohort, task, expert, "expert");
+    for (const Attempt& attempt : task.attempts) add_rows(table, cohort, task, attempt, "trainee");
+  }
   return table;
 }
 

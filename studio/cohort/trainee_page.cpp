@@ -81,6 +81,33 @@ reports::Table latest_table(const TaskResult& task, const Attempt& latest) {
   return table;
 }
 
+/// What the latest attempt did to each organ and forbidden zone, beside the experts.
+reports::Table structures_table(const TaskResult& task, const Attempt& latest) {
+  reports::Table table;
+  table.columns = {{"structure", "structure"},    {"peak", "peak force [N]", 4, true}, {"peak_mean", "experts' mean"},
+                   {"impulse", "impulse [N s]"},  {"impulse_mean", "experts' mean"},   {"work", "work [mJ]"},
+                   {"work_mean", "experts' mean"}};
+  constexpr double kMillijoules = 1e3;
+  for (std::size_t i = 0; i < latest.structures.size(); ++i) {
+    const compare::StructureLoad& load = latest.structures[i];
+    const auto mean = [&](double compare::StructureLoad::*value, double scale) -> reports::Cell {
+      std::vector<double> values;
+      for (const Attempt& expert : task.experts)
+        if (i < expert.structures.size() && expert.structures[i].name == load.name)
+          values.push_back(scale * expert.structures[i].*value);
+      const std::optional<Spread> spread = spread_of(values);
+      return spread ? reports::Cell(spread->mean) : reports::Cell(std::string("insufficient data"));
+    };
+    table.rows.push_back({(load.is_zone ? "forbidden: " : "") + load.name, load.peak,
+                          mean(&compare::StructureLoad::peak, 1), load.impulse,
+                          mean(&compare::StructureLoad::impulse, 1), kMillijoules * load.work,
+                          mean(&compare::StructureLoad::work, kMillijoules)});
+  }
+  table.title = "Each structure";
+  table.caption = "The whole force counts for the organ that the tool touches most.";
+  return table;
+}
+
 reports::Series along(const std::string& name, const std::vector<double>& values, double scale, reports::Stroke stroke,
                       int colour) {
   reports::Series series{.name = name, .stroke = stroke, .colour = colour};
@@ -205,6 +232,7 @@ void add_task(reports::Report& report, const Cohort& cohort, const TaskResult& t
     for (const std::string& remark : attempt->remarks)
       report.add_verdict(false, "Attempt " + std::to_string(attempt->session.attempt) + " " + remark + ".");
   report.add_table(latest_table(task, latest));
+  if (latest.structures.size() > 1) report.add_table(structures_table(task, latest));
   report.add_plots({stroke_plot("Force along the stroke", "force [N]", task.force, latest.curve.force, 1),
                     stroke_plot("Distance from the experts' way", "distance [mm]", task.deviation,
                                 distance_from(task.middle, latest.curve), kMillimetres)});

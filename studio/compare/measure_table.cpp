@@ -34,6 +34,7 @@ constexpr const char* kSakoe =
     "Sakoe and Chiba, Dynamic programming algorithm optimization for spoken word recognition, IEEE Trans "
     "Acoust Speech 26, 1978, 43-49";
 constexpr const char* kScene = "the scene's damage_depth_mm";
+constexpr const char* kOwn = "this program's";
 constexpr const char* kNetwork = "the scene's network";
 
 using enum Direction;
@@ -106,6 +107,39 @@ const Measure kImpulseAbove{"impulse_above_force_limit_n_s",
                             "integral over time of what is above the limit",
                             kTrejos,
                             kTimeRounding* kForceRounding};
+const Measure kImpulse{
+    "impulse_n_s", "impulse", "N s", lower, "integral of the force over time", kTrejos, kTimeRounding* kForceRounding};
+const Measure kWork{"work_on_tissue_mj",
+                    "work on the tissue",
+                    "mJ",
+                    lower,
+                    "of the tool against the force of the tissue, where it moves against it",
+                    kOwn,
+                    kForceRounding* kLengthRounding};
+const Measure kWorkAbove{"work_above_force_limit_mj",
+                         "work above the force limit",
+                         "mJ",
+                         lower,
+                         "the same of the part of the force that is above the limit",
+                         kOwn,
+                         kForceRounding* kLengthRounding};
+const Measure kZoneTime{"time_in_forbidden_zones_s",
+                        "time in forbidden zones",
+                        "s",
+                        lower,
+                        "with the tip in a zone that the scene forbids",
+                        kOwn,
+                        kTimeRounding};
+const Measure kZoneImpulse{"impulse_in_forbidden_zones_n_s",
+                           "impulse in forbidden zones",
+                           "N s",
+                           lower,
+                           "integral of the force over the time in them",
+                           kOwn,
+                           kTimeRounding* kForceRounding};
+const Measure kZoneWork{
+    "work_in_forbidden_zones_mj",   "work in forbidden zones", "mJ", lower, "of the tool on the tissue in them", kOwn,
+    kForceRounding* kLengthRounding};
 const Measure kDepth{
     "largest_depth_mm", "largest depth", "mm", nearer, "how far a tool without a blade pushes the tissue from rest",
     kNetwork,           kLengthRounding};
@@ -172,10 +206,11 @@ const Measure kAlignedLargest{"aligned_deviation_largest_mm",
 
 std::span<const Measure* const> all_measures() {
   static constexpr const Measure* measures[] = {
-      &kCompletionTime, &kPathLength,     &kEconomy,        &kSparc,         &kJerk,    &kIdle,         &kPeakForce,
-      &kMeanForce,      &kOtherPeakForce, &kTimeAbove,      &kImpulseAbove,  &kDepth,   &kBeyondDamage, &kSevered,
-      &kSeveredBoth,    &kSeveredExpert,  &kSeveredTrainee, &kOverlap,       &kCutMean, &kCutHausdorff, &kCutDepth,
-      &kCutLength,      &kCutArea,        &kAlignedMean,    &kAlignedLargest};
+      &kCompletionTime, &kPathLength,     &kEconomy,       &kSparc,        &kJerk,         &kIdle,     &kPeakForce,
+      &kMeanForce,      &kOtherPeakForce, &kTimeAbove,     &kImpulseAbove, &kImpulse,      &kWork,     &kWorkAbove,
+      &kZoneTime,       &kZoneImpulse,    &kZoneWork,      &kDepth,        &kBeyondDamage, &kSevered,  &kSeveredBoth,
+      &kSeveredExpert,  &kSeveredTrainee, &kOverlap,       &kCutMean,      &kCutHausdorff, &kCutDepth, &kCutLength,
+      &kCutArea,        &kAlignedMean,    &kAlignedLargest};
   return measures;
 }
 

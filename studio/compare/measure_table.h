@@ -10,8 +10,9 @@
 namespace ctpm::compare {
 
 extern const Measure kCompletionTime, kPathLength, kEconomy, kSparc, kJerk, kIdle, kPeakForce, kMeanForce,
-    kOtherPeakForce, kTimeAbove, kImpulseAbove, kDepth, kBeyondDamage, kSevered, kSeveredBoth, kSeveredExpert,
-    kSeveredTrainee, kOverlap, kCutMean, kCutHausdorff, kCutDepth, kCutLength, kCutArea, kAlignedMean, kAlignedLargest;
+    kOtherPeakForce, kTimeAbove, kImpulseAbove, kImpulse, kWork, kWorkAbove, kZoneTime, kZoneImpulse, kZoneWork, kDepth,
+    kBeyondDamage, kSevered, kSeveredBoth, kSeveredExpert, kSeveredTrainee, kOverlap, kCutMean, kCutHausdorff,
+    kCutDepth, kCutLength, kCutArea, kAlignedMean, kAlignedLargest;
 
 /// All of them, in the order of a report.
 std::span<const Measure* const> all_measures();

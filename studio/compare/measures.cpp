@@ -27,7 +27,9 @@ void add_values(Comparison& comparison, const SessionTrack& expert, const Sessio
     const bool is_of_cut =
         measure == &kSevered || measure == &kCutDepth || measure == &kCutLength || measure == &kCutArea;
     if (is_of_cut && expert.cuts.empty() && trainee.cuts.empty()) continue;
-    if (measure == &kOtherPeakForce && !(a[i].value && b[i].value)) continue;
+    const bool is_of_some =
+        measure == &kOtherPeakForce || measure == &kZoneTime || measure == &kZoneImpulse || measure == &kZoneWork;
+    if (is_of_some && !(a[i].value && b[i].value)) continue;
     const bool no_limit = b[i].note == kNoForceLimit;
     comparison.values.push_back({measure, a[i].value, b[i].value,
                                  no_limit ? "no limit: the expert met no force, and none is given" : b[i].note});

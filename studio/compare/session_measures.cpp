@@ -12,7 +12,7 @@
 namespace ctpm::compare {
 namespace {
 
-constexpr double kMillimetres = 1e3;
+constexpr double kMillimetres = 1e3, kMillijoules = 1e3;
 constexpr double kCutPathSpacing = 0.5e-3;  // distance of the points of cut paths that are compared [m]
 
 /// The stations of a stroke: its ends, the points where the tool met and left the tissue, and the deepest point.
@@ -136,6 +136,46 @@ void add_force(Values& values, const SessionTrack& track, std::optional<double> 
   }
 }
 
+/// What the tool did in the ticks that `counts` chooses, by the part of the force that is above `limit` [N].
+template <class Counts>
+StructureLoad load_in(const SessionTrack& track, Counts&& counts, double limit = 0) {
+  StructureLoad load;
+  for (std::size_t i = 0; i < track.tick_count(); ++i) {
+    if (!counts(i)) continue;
+    const double force = track.force[i], share = force > limit ? 1 - limit / force : 0;
+    load.seconds += track.tick, load.peak = std::max(load.peak, force);
+    load.impulse += share * force * track.tick;
+    if (!track.work.empty()) load.work += share * std::max(0.0, track.work[i]);
+  }
+  return load;
+}
+
+void add_load(Values& values, const SessionTrack& track, std::optional<double> limit) {
+  const auto always = [](std::size_t) { return true; };
+  const StructureLoad all = load_in(track, always);
+  values.push_back({&kImpulse, all.impulse});
+  const auto add_work = [&](const Measure& measure, double joules) {
+    if (track.work.empty())
+      values.push_back({&measure, {}, "the direction of the force is not known"});
+    else
+      values.push_back({&measure, kMillijoules * joules});
+  };
+  add_work(kWork, all.work);
+  if (limit)
+    add_work(kWorkAbove, load_in(track, always, *limit).work);
+  else
+    values.push_back({&kWorkAbove, {}, kNoForceLimit});
+  if (track.zones.empty()) {
+    for (const Measure* measure : {&kZoneTime, &kZoneImpulse, &kZoneWork})
+      values.push_back({measure, {}, "the scene forbids no zone"});
+    return;
+  }
+  const StructureLoad zones = load_in(track, [&](std::size_t i) { return track.zone[i] >= 0; });
+  values.push_back({&kZoneTime, zones.seconds});
+  values.push_back({&kZoneImpulse, zones.impulse});
+  add_work(kZoneWork, zones.work);
+}
+
 void add_depth(Values& values, const SessionTrack& track, double damage_depth) {
   const double depth = *std::max_element(track.depth.begin(), track.depth.end());
   if (depth > 0)
@@ -171,9 +211,23 @@ std::vector<SessionValue> measure_session(const SessionTrack& track, std::option
   Values values;
   add_motion(values, track);
   add_force(values, track, force_limit);
+  add_load(values, track, force_limit);
   add_depth(values, track, damage_depth);
   add_cut(values, track);
   return values;
+}
+
+std::optional<std::vector<StructureLoad>> loads_of(const SessionTrack& track, const Model& model) {
+  if (track.organ.empty()) return std::nullopt;
+  std::vector<StructureLoad> loads;
+  const auto add = [&](const std::string& name, bool is_zone, const std::vector<std::int32_t>& where,
+                       std::size_t index) {
+    loads.push_back(load_in(track, [&](std::size_t i) { return where[i] == std::int32_t(index); }));
+    loads.back().name = name, loads.back().is_zone = is_zone;
+  };
+  for (std::size_t i = 0; i < model.organs.size(); ++i) add(model.organs[i].name, false, track.organ, i);
+  for (std::size_t i = 0; i < track.zones.size(); ++i) add(track.zones[i], true, track.zone, i);
+  return loads;
 }
 
 std::vector<SessionValue> measure_cut_pair(const SessionTrack& expert, const SessionTrack& trainee) {

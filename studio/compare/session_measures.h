@@ -23,6 +23,19 @@ inline constexpr const char* kNoForceLimit = "no limit is known";
 std::vector<SessionValue> measure_session(const SessionTrack& track, std::optional<double> force_limit,
                                           double damage_depth);
 
+/// What a tool did to a part of the scene: an organ, or a forbidden zone.
+struct StructureLoad {
+  std::string name;
+  bool is_zone = false;
+  double seconds = 0;            ///< with a force on the organ, or with the tip in the zone
+  double peak = 0;               ///< force [N]
+  double impulse = 0, work = 0;  ///< [N s], of the tool on the tissue [J]
+};
+
+/// Of every organ and forbidden zone. None where it is not known what the tool touched: several organs, and the session
+/// was not replayed whole.
+std::optional<std::vector<StructureLoad>> loads_of(const SessionTrack& track, const Model& model);
+
 /// The measures of the cuts of two sessions of one scene: which elements they have in common, and how far their paths
 /// lie apart. Both were replayed.
 std::vector<SessionValue> measure_cut_pair(const SessionTrack& expert, const SessionTrack& trainee);

@@ -99,6 +99,7 @@ class Scrubber {
     for (scenes::ToolSpec& tool : spec.tools) tool.name = named("tool", tool.name);
     for (scenes::CameraSpec& camera : spec.cameras) camera.name = named("camera", camera.name);
     for (scenes::ProbeSpec& probe : spec.probes) probe.name = named("probe", probe.name);
+    for (scenes::ZoneSpec& zone : spec.forbidden) zone.name = named("zone", zone.name);
     // Comments are not in the spec.
     if (text.find("//") != std::string::npos || text.find("/*") != std::string::npos)
       removed_.insert("comments of the scene");

@@ -222,6 +222,49 @@ TEST_F(CohortProgram, AnonymisedSessionsAreOrderedByTheirElapsedTimes) {
   EXPECT_NEAR(force, peak("trainees/Ana/1.ctpm"), 1e-12) << "the earliest attempt is the first";
 }
 
+TEST_F(CohortProgram, ForceIsCountedForTheOrganThatIsTouchedAndForTheZoneThatTheSceneForbids) {
+  // Two livers beside each other; the tool presses the second one, and its tip ends in a zone.
+  const std::string organs = R"({"name": "left", "mesh": "liver.obj", "material": {"preset": "liver"},
+      "fill": {"radius_mm": 12, "gap_mm": 12}, "anchors": [{"lowest_mm": 20}]},
+      {"name": "right", "mesh": "liver.obj", "at_mm": [400, 0, 0], "material": {"preset": "liver"},
+      "fill": {"radius_mm": 12, "gap_mm": 12}, "anchors": [{"lowest_mm": 20}]})";
+  fs::copy_file(std::string(CTPM_SOURCE_DIR) + "/scenes/organs/liver.obj", path("liver.obj"));
+  write("two.json", R"({"format": "ctpm-scene", "version": 1, "name": "two", "settle_s": 0, "organs": [)" + organs +
+                        R"(], "tools": [{"name": "ball", "kind": "ball", "radius_mm": 10}],
+      "forbidden": [{"name": "vessel", "box": {"min_mm": [300, -200, -200], "max_mm": [500, 200, 96]}},
+                    {"name": "nerve", "sphere": {"centre_mm": [0, 0, 500], "radius_mm": 5}}]})");
+  write("two.script.json", R"({"format": "ctpm-script", "version": 1, "steps": [
+      {"take": {"tool": "ball", "at_mm": [357, 31, 130]}}, {"press": {"distance_mm": 40, "speed_mm_per_s": 100}},
+      {"release": {"distance_mm": 30, "speed_mm_per_s": 100}}, {"put_away": true}]})");
+  for (const std::string name : {"two-experts/a", "two-experts/b", "two-trainees/c"}) {
+    fs::create_directories(fs::path(path(name)).parent_path());
+    const ProgramOutcome recorded =
+        ctpm({"record", "two.json", "--script", "two.script.json", "-o", name + ".ctpm", "--fast"});
+    ASSERT_EQ(recorded.code, 0) << recorded.err;
+  }
+  const std::vector<std::string> command{"cohort", "--experts", "two-experts", "--trainees", "two-trainees", "-o"};
+  auto believed = command, verified = command;
+  believed.push_back("two-believed"), verified.insert(verified.end(), {"two-verified", "--verify"});
+  ASSERT_EQ(ctpm(believed).code, 0);
+  const ProgramOutcome done = ctpm(verified);
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_FALSE(holds(slurp(path("two-believed/results.csv")), "organ right")) << "not replayed: nobody knows";
+  const auto of = [&](const std::string& structure, const std::string& measure) {
+    for (const auto& row : rows_of("two-verified"))
+      if (row.size() > 14 && row[3] == "c" && row[9] == measure && row[14] == structure) return std::stod(row[11]);
+    return -1.0;
+  };
+  const double whole = std::stod(value_in("two-verified", "c", 1, "peak_force_n"));
+  EXPECT_GT(whole, 0.1);
+  EXPECT_EQ(of("organ right", "peak_force_n"), whole);
+  EXPECT_EQ(of("organ left", "peak_force_n"), 0);
+  EXPECT_EQ(of("organ right", "impulse_n_s"), std::stod(value_in("two-verified", "c", 1, "impulse_n_s")));
+  EXPECT_GT(of("zone vessel", "impulse_n_s"), 0);
+  EXPECT_EQ(of("zone nerve", "impulse_n_s"), 0);
+  EXPECT_GT(std::stod(value_in("two-verified", "c", 1, "time_in_forbidden_zones_s")), 0.1);
+  EXPECT_TRUE(holds(slurp(path("two-verified/trainee-c.html")), "forbidden: vessel"));
+}
+
 TEST_F(CohortProgram, WhatCannotBeMeasuredIsRefusedWithEveryReason) {
   fs::create_directories(path("one-expert"));
   fs::copy_file(path("experts/e1.ctpm"), path("one-expert/e1.ctpm"));

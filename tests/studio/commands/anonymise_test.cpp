@@ -32,9 +32,9 @@ using session_file::Bytes;
 
 /// Each place of a session has a word of its own, so that a failure tells which one was forgotten.
 const std::vector<std::string> kInContent{
-    "SecretScene",  "SecretComment", "SecretOrgan", "SecretTool",   "SecretCamera", "SecretProbe",
-    "SecretTable",  "SecretLook",    "SecretUser",  "/home/secret", "SecretBuild",  "SecretNote",
-    "SecretReason", "SecretCount",   "SecretOld",   "SecretSigner", "SecretPart"};
+    "SecretScene", "SecretZone",   "SecretComment", "SecretOrgan", "SecretTool",   "SecretCamera",
+    "SecretProbe", "SecretTable",  "SecretLook",    "SecretUser",  "/home/secret", "SecretBuild",
+    "SecretNote",  "SecretReason", "SecretCount",   "SecretOld",   "SecretSigner", "SecretPart"};
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -70,6 +70,7 @@ class Anonymise : public ::testing::Test {
       "tools": [{"name": "SecretTool", "kind": "ball", "radius_mm": 8},
                 {"name": "scalpel", "kind": "scalpel", "blade_length_mm": 30}],
       "obstacles": [{"name": "SecretTable", "plane": {"point_mm": [0, 0, -500], "normal": [0, 0, 1]}}],
+      "forbidden": [{"name": "SecretZone", "sphere": {"centre_mm": [0, 0, -400], "radius_mm": 5}}],
       "probes": [{"name": "SecretProbe", "at_mm": [0, 0, 20]}],
       "cameras": [{"name": "SecretCamera", "eye_mm": [0, -300, 200], "target_mm": [0, 0, 0]}]})";
     std::ofstream(path("press.json")) << R"({"format": "ctpm-script", "version": 1, "steps": [
