@@ -5,11 +5,9 @@
 #include <limits>
 
 #include "core/stepping/step.h"
-#include "recordings/internal/field_codec.h"
 #include "recordings/internal/rescue.h"
-#include "recordings/internal/schema.h"
 #include "recordings/internal/session_store.h"
-#include "recordings/internal/statistics.h"
+#include "recordings/internal/whole_writer.h"
 #include "recordings/state_hash.h"
 
 namespace ctpm::recordings {
@@ -18,7 +16,6 @@ using namespace session_file;
 
 namespace {
 
-constexpr int recover_level = 3;  // zstd
 constexpr std::int64_t last_key = std::numeric_limits<std::int64_t>::max();
 
 /// The readable content of the damaged session. Ticks and keyframes are read again during writing, because an hour of
@@ -163,54 +160,24 @@ Result<Done> write_salvage(const std::string& out, Salvage& salvage, SessionStor
   SessionIdentity identity = new_identity(salvage.start);
   identity.created_unix_s = from.identity().created_unix_s;
   salvage.start.metadata["recovered_from"] = from.identity().id;
-  if (auto r = create_session_file(out, salvage.start, identity, false, recover_level); !r) return r;
-  auto tables = SessionTables::open_for_writing(out);
-  if (!tables) return tables.errors();
-  if (auto r = tables->begin(); !r) return r;
-
-  StatisticsCounter counter;
+  auto writer = WholeWriter::create(out, salvage.start, identity);
+  if (!writer) return writer.errors();
   for (std::int64_t next = 0; next < report.ticks_saved;) {
     const auto chunk = from.chunk_at(next);
     if (!chunk) return chunk.errors();
-    const std::vector<TickRecord>& records = (*chunk)->items;
-    const auto count = static_cast<std::int64_t>(records.size());
-    Bytes content;
-    put_records(content, records, salvage.start.model.hands);
-    if (auto r =
-            tables->insert_chunk(next, count, pack(chunk_name(next, count), content, identity.seed, recover_level));
-        !r)
-      return r;
-    for (const TickRecord& record : records) counter.add(record);
-    next += count;
+    if (auto r = writer->add_ticks((*chunk)->items); !r) return r;
+    next = (*chunk)->end();
   }
   for (const std::int64_t tick : salvage.keyframe_ticks) {
     const auto keyframe = from.keyframe_at(tick, salvage.start.model);
     if (!keyframe) return keyframe.errors();
-    Bytes content;
-    put_fields(content, (*keyframe)->state);
-    if (auto r = tables->insert_keyframe(tick, pack(keyframe_name(tick), content, identity.seed, recover_level)); !r)
-      return r;
-    counter.add_keyframe();
+    if (auto r = writer->add_keyframe(**keyframe); !r) return r;
   }
-  if (!salvage.events.empty()) {
-    Bytes content;
-    put_field_set(content, [&](FieldWriter& writer) { writer("events", salvage.events); });
-    const auto count = static_cast<std::int64_t>(salvage.events.size());
-    if (auto r = tables->insert_events(0, count, pack(event_name(0, count), content, identity.seed, recover_level)); !r)
-      return r;
-    for (const Event& event : salvage.events) counter.add(event);
-  }
+  if (auto r = writer->add_events(salvage.events); !r) return r;
   // Only a complete session gets its end.
-  if (salvage.finish && report.losses.empty()) {
-    SessionStatistics statistics = counter.result();
-    statistics.values = salvage.finish->values;
-    Bytes content;
-    put_finish(content, statistics);
-    if (auto r = tables->insert_part("finish", pack(part_name("finish"), content, identity.seed, recover_level)); !r)
-      return r;
-  }
-  if (auto r = tables->commit(); !r) return r;
-  return tables->close();
+  if (salvage.finish && report.losses.empty())
+    if (auto r = writer->add_end(salvage.finish->values); !r) return r;
+  return writer->close();
 }
 
 /// What one way of reading the damaged session saves.

@@ -1,16 +1,23 @@
 #include "scenes/json_text.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 
 #include "scenes/json_words.h"
 
 namespace ctpm::scenes {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr int max_depth = 64;
 constexpr std::size_t most_values = 200'000;  // of a text; a node of the tree takes some hundred bytes
@@ -217,6 +224,19 @@ std::string describe(const JsonNode& node) {
 Error too_long(const std::string& file_name, std::uintmax_t bytes) {
   return {file_name, "has " + std::to_string(bytes) + " bytes, at most " + std::to_string(kMostTextBytes) + " are read",
           ""};
+}
+
+Result<std::string> text_of_file(const std::string& path) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return Error{path, "does not exist", ""};
+  if (!fs::is_regular_file(path, ignored)) return Error{path, "is not a file", ""};
+  if (const std::uintmax_t bytes = fs::file_size(path, ignored); !ignored && bytes > kMostTextBytes)
+    return too_long(path, bytes);
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in) return Error{path, std::string("cannot be read: ") + std::strerror(errno), ""};
+  return text.str();
 }
 
 Result<JsonNode> parse_json(std::string_view commented, const std::string& file_name) {

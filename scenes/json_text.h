@@ -35,6 +35,9 @@ inline constexpr std::size_t kMostTextBytes = 16 << 20;
 /// The error of a longer one.
 Error too_long(const std::string& file_name, std::uintmax_t bytes);
 
+/// The text of a file. Errors: it does not exist, is no file, is too long or cannot be read.
+Result<std::string> text_of_file(const std::string& path);
+
 /// Comments, // and /* */, count as spaces. Error: one, at the place where the text stops being JSON, or is nested
 /// deeper than 64 levels; a text longer than kMostTextBytes or of more than 200,000 values.
 Result<JsonNode> parse_json(std::string_view commented, const std::string& file_name);

@@ -1,3 +1,4 @@
+#include "scenes/course_keys.h"
 #include "scenes/field_lister.h"
 #include "scenes/presets.h"
 #include "scenes/scene_keys.h"
@@ -96,5 +97,7 @@ std::string preset_table() {
 std::string scene_reference() { return tables_of(FieldLister::list_of<SceneSpec>()) + preset_table(); }
 
 std::string script_reference() { return tables_of(FieldLister::list_of<Script>()); }
+
+std::string course_reference() { return tables_of(FieldLister::list_of<CourseSpec>()); }
 
 }  // namespace ctpm::scenes

@@ -1,11 +1,7 @@
 #include "scenes/scene_file.h"
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <sstream>
 
 #include "scenes/field_reader.h"
 #include "scenes/field_writer.h"
@@ -89,23 +85,6 @@ Result<SceneDraft> read_draft(std::string_view text, const std::string& file_nam
 Result<SceneText> read_scene(std::string_view text, const std::string& file_name) {
   return without_errors(read_draft(text, file_name));
 }
-
-namespace {
-
-Result<std::string> text_of_file(const std::string& path) {
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) return Error{path, "does not exist", ""};
-  if (!fs::is_regular_file(path, ignored)) return Error{path, "is not a file", ""};
-  if (const std::uintmax_t bytes = fs::file_size(path, ignored); !ignored && bytes > kMostTextBytes)
-    return too_long(path, bytes);
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in) return Error{path, std::string("cannot be read: ") + std::strerror(errno), ""};
-  return text.str();
-}
-
-}  // namespace
 
 Result<SceneDraft> load_draft(const std::string& path, const LoadOptions& options, PlaceFinder* finder) {
   const Result<std::string> text = options.text ? Result<std::string>(*options.text) : text_of_file(path);

@@ -318,6 +318,18 @@ void describe_fields(V& v, ObstacleSpec& obstacle) {
   v.choice(Key{"mesh_unit", "Unit of the mesh file's coordinates."}, obstacle.mesh_unit);
 }
 
+inline RecordInfo info_of(const ZoneSpec&) {
+  return {"zone", "A place in space where no tool should be. Nothing that is simulated depends on it."};
+}
+template <class V>
+void describe_fields(V& v, ZoneSpec& zone) {
+  v.text(required("name", "Name of the zone, unique in the scene."), zone.name);
+  v.record(Key{"box", "Points in a box."}, zone.box);
+  v.record(Key{"sphere", "Points in a ball."}, zone.sphere);
+  v.record(Key{"plane", "Points behind a plane."}, zone.plane);
+  v.exactly_one("name");
+}
+
 inline RecordInfo info_of(const LoadSpec&) { return {"load", "An external force on one sphere."}; }
 template <class V>
 void describe_fields(V& v, LoadSpec& load) {
@@ -409,6 +421,7 @@ void describe_fields(V& v, SceneSpec& scene) {
          scene.organs_meet);
   v.list(Key{"loads", "External forces."}, scene.loads, 0);
   v.list(Key{"probes", "Points whose motion is recorded."}, scene.probes, 0);
+  v.list(Key{"forbidden", "Zones in which a tool's tip is counted against whoever leads it."}, scene.forbidden, 0);
   v.record(Key{"solver", "Settings of the time integration."}, scene.solver);
   v.list(Key{"cameras", "Views; commands use the first unless another is named."}, scene.cameras, 0);
 }

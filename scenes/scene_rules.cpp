@@ -109,6 +109,10 @@ void check_obstacle(Problems& problems, std::size_t index, const ObstacleSpec& o
   if (size.x == 0 || size.y == 0 || size.z == 0) problems.add_rule(at + "/box", "has no volume");
 }
 
+void check_zones(Problems& problems, const std::vector<ZoneSpec>& zones) {
+  for (std::size_t i = 0; i < zones.size(); ++i) check_region(problems, item("/forbidden", i), zones[i]);
+}
+
 /// What touches what.
 void check_meeting(Problems& problems, const SceneSpec& scene) {
   std::size_t meshes = 0;
@@ -210,6 +214,8 @@ void check_rules(Problems& problems, const SceneSpec& scene) {
   check_names(problems, "/cameras", scene.cameras);
   check_names(problems, "/probes", scene.probes);
   check_names(problems, "/obstacles", scene.obstacles);
+  check_names(problems, "/forbidden", scene.forbidden);
+  check_zones(problems, scene.forbidden);
   check_meeting(problems, scene);
   if (scene.hands == 2 && scene.tools.size() < 2 && problems.is_good("/tools"))
     problems.add_warning("/hands", "two hands need two tools, and the scene has " + std::to_string(scene.tools.size()));

@@ -190,6 +190,20 @@ struct ProbeSpec {
   friend bool operator==(const ProbeSpec&, const ProbeSpec&) = default;
 };
 
+/// Where no tool should be: a place in space, which changes nothing that is simulated. Exactly one of box, sphere and
+/// plane is set.
+struct ZoneSpec {
+  std::string name;
+  std::optional<BoxRegion> box;
+  std::optional<SphereRegion> sphere;
+  std::optional<PlaneRegion> plane;  ///< everything behind it
+
+  friend bool operator==(const ZoneSpec&, const ZoneSpec&) = default;
+};
+
+/// Whether a point lies in a zone [m].
+bool is_in(const ZoneSpec& zone, Vec3 point);
+
 /// Scene key `solver.integrator`.
 enum class IntegratorSpec { automatic, leapfrog, backward_euler, sdirk2 };
 
@@ -241,6 +255,7 @@ struct SceneSpec {
   bool organs_meet = false;  ///< organs touch each other instead of passing through each other
   std::vector<LoadSpec> loads;
   std::vector<ProbeSpec> probes;
+  std::vector<ZoneSpec> forbidden;  ///< for measures alone
   SolverSpec solver;
   std::vector<CameraSpec> cameras;
 

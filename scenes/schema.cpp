@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "scenes/course_keys.h"
 #include "scenes/field_lister.h"
 #include "scenes/presets.h"
 #include "scenes/scene_keys.h"
@@ -104,6 +105,11 @@ std::string scene_schema() {
 std::string script_schema() {
   return schema_of(FieldLister::list_of<Script>(),
                    std::string(script_format_name) + " " + std::to_string(script_format_version));
+}
+
+std::string course_schema() {
+  return schema_of(FieldLister::list_of<CourseSpec>(),
+                   std::string(course_format_name) + " " + std::to_string(course_format_version));
 }
 
 }  // namespace ctpm::scenes

@@ -68,6 +68,24 @@ Digest Sha512::value() {
   return digest;
 }
 
+KeyedHash keyed_hash(ByteView key, ByteView text) {
+  KeyedHash hash{};
+  std::size_t size = 0;
+  CTPM_CHECK(EVP_Q_mac(nullptr, "HMAC", nullptr, "SHA256", nullptr, key.data(), key.size(), text.data(), text.size(),
+                       hash.data(), hash.size(), &size) != nullptr &&
+                 size == hash.size(),
+             "a keyed hash of the library");
+  return hash;
+}
+
+Sha1 sha1(ByteView bytes) {
+  Sha1 hash{};
+  std::size_t size = hash.size();
+  CTPM_CHECK(EVP_Q_digest(nullptr, "SHA1", nullptr, bytes.data(), bytes.size(), hash.data(), &size) == 1,
+             "a hash of the library");
+  return hash;
+}
+
 Result<Done> write_new_key(const std::string& secret_file, const std::string& public_file) {
   const Key key(EVP_PKEY_Q_keygen(nullptr, nullptr, "ED25519"));
   CTPM_CHECK(bool(key), "a key of the library");

@@ -27,6 +27,14 @@ class Sha512 {
   void* context_;
 };
 
+/// HMAC-SHA-256 (RFC 2104) of a text.
+using KeyedHash = std::array<std::uint8_t, 32>;
+KeyedHash keyed_hash(ByteView key, ByteView text);
+
+/// SHA-1, for names that a standard makes of it; it protects nothing.
+using Sha1 = std::array<std::uint8_t, 20>;
+Sha1 sha1(ByteView bytes);
+
 /// Keys are PEM files, PKCS #8 or SubjectPublicKeyInfo. Errors name the file.
 Result<Done> write_new_key(const std::string& secret_file, const std::string& public_file);
 Result<PublicKey> public_key_of(const std::string& file);

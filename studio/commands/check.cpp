@@ -2,10 +2,13 @@
 #include <string>
 #include <vector>
 
+#include "scenes/course.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
+#include "studio/compare/measure_table.h"
 #include "studio/loading/loaded_scene.h"
 #include "studio/loading/oddities.h"
+#include "studio/output/printable.h"
 #include "studio/sources/open_file.h"
 
 namespace ctpm::commands {
@@ -27,11 +30,25 @@ Errors errors_of_scripts(const CheckArguments& arguments, const std::string& sce
   return all;
 }
 
+/// Whether a course is good; prints what is wrong.
+bool is_good_course(const std::string& path) {
+  const Result<scenes::CourseSpec> course = scenes::load_course(path, compare::measure_keys());
+  if (!course) return print_errors(course.errors()), false;
+  const std::size_t tasks = course->tasks.size();
+  print("%s: good, %zu %s; %s\n", path.c_str(), tasks, tasks == 1 ? "task" : "tasks",
+        course->evidence.empty() ? "not validated" : ("validated by " + output::printable(course->evidence)).c_str());
+  return true;
+}
+
 int run_check(const CheckArguments& arguments) {
   if (!arguments.scripts.empty() && arguments.scenes.size() > 1)
     return print_errors({{"--script", "belongs to one scene, got " + std::to_string(arguments.scenes.size()), ""}});
   int code = exit_good;
   for (const std::string& path : arguments.scenes) {
+    if (scenes::is_course(path)) {
+      if (!is_good_course(path)) code = exit_bad_input;
+      continue;
+    }
     const Errors of_scripts = errors_of_scripts(arguments, path);
     const Result<loading::LoadedScene> scene = loading::load_whole_scene(path, arguments.load);
     if (!scene || !of_scripts.empty()) {
@@ -52,13 +69,14 @@ int run_check(const CheckArguments& arguments) {
 
 Command add_check(CLI::App& program) {
   auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* app = program.add_subcommand(
-      "check",
-      "Validates scenes with their meshes and scripts; all errors at once. Settles them, and warns of what is odd.");
+  CLI::App* app = program.add_subcommand("check",
+                                         "Validates scenes with their meshes and scripts, and courses; all errors at "
+                                         "once. Settles scenes, and warns of what "
+                                         "is odd.");
   app->footer(
       "Examples: ctpm check scenes/liver.json\n"
       "          ctpm check scenes/liver.json --script scenes/scripts/liver-cut.json");
-  app->add_option("scenes", arguments->scenes, "Scene files (.json)")->required();
+  app->add_option("scenes", arguments->scenes, "Scene or course files (.json)")->required();
   app->add_option("--script", arguments->scripts, "Script of the scene (.json; repeatable)");
   app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths,
                 "Meshes may lie outside the scene's folder");

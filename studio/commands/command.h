@@ -14,6 +14,7 @@ struct Command {
   Run run;
 };
 
+Command add_anonymise(CLI::App& program);
 Command add_import(CLI::App& program);
 Command add_check(CLI::App& program);
 Command add_plan(CLI::App& program);
@@ -23,6 +24,7 @@ Command add_record(CLI::App& program);
 Command add_replay(CLI::App& program);
 Command add_verify(CLI::App& program);
 Command add_info(CLI::App& program);
+Command add_cohort(CLI::App& program);
 Command add_compare(CLI::App& program);
 Command add_recover(CLI::App& program);
 Command add_sign(CLI::App& program);

@@ -6,7 +6,9 @@
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 #include "studio/commands/extremes_text.h"
+#include "studio/output/number_text.h"
 #include "studio/output/printable.h"
+#include "studio/session/anonymise.h"
 #include "studio/session/session_info.h"
 
 namespace ctpm::commands {
@@ -26,6 +28,8 @@ std::string metadata_of(const recordings::SessionReader& reader, const char* key
 }
 
 void print_origin(const recordings::SessionReader& reader) {
+  if (const std::string trainee = metadata_of(reader, session::trainee_key); !trainee.empty())
+    print("trainee    %s\n", printable(trainee).c_str());
   if (const std::string source = metadata_of(reader, "source"); !source.empty())
     print("source     %s\n", printable(source).c_str());
   if (const std::string parent = metadata_of(reader, recordings::parent_session_key); !parent.empty())
@@ -56,8 +60,11 @@ void print_physics(const recordings::SessionReader& reader) {
 void print_text(recordings::SessionReader& reader, const recordings::SessionStatistics& s,
                 const std::vector<recordings::Event>& events) {
   const Model& model = reader.start().model;
-  print("session    %s, recorded %s%s\n", reader.session_id().c_str(),
-        session::utc_text(reader.created_unix_s()).c_str(), reader.ended_cleanly() ? "" : ", without a clean end");
+  const std::string begin = session::begins_at_elapsed_time(reader)
+                                ? output::fixed(reader.created_unix_s(), 0) + " s after the first session"
+                                : session::utc_text(reader.created_unix_s());
+  print("session    %s, recorded %s%s\n", reader.session_id().c_str(), begin.c_str(),
+        reader.ended_cleanly() ? "" : ", without a clean end");
   print("build      %s\n", printable(reader.start().build_fingerprint).c_str());
   print_physics(reader);
   for (const std::string& remark : reader.remarks()) print("note       %s\n", remark.c_str());

@@ -21,11 +21,41 @@ struct OneWay {
   std::size_t count = 0;
 };
 
+/// A path whose distance from points is asked for often, each near the one before.
+class Way {
+ public:
+  explicit Way(const Path& path) : path_(path), along_(path.size(), 0.0) {
+    for (std::size_t i = 1; i < path.size(); ++i) along_[i] = along_[i - 1] + norm(path[i] - path[i - 1]);
+  }
+
+  /// As distance_from(). A place on the path is at least as far as another one less the way between the two: most
+  /// pieces need no look.
+  double distance_to(Vec3 point) {
+    constexpr double kSlack = 1e-9;  // more than rounding, as a share
+    if (path_.size() == 1) return norm(point - path_.front());
+    double nearest = distance_from_segment(point, path_[last_ - 1], path_[last_]);
+    for (std::size_t i = 1; i < path_.size();) {
+      if (const double here = distance_from_segment(point, path_[i - 1], path_[i]); here < nearest)
+        nearest = here, last_ = i;
+      const double reach = along_[i] + (1 - kSlack) * norm(point - path_[i]) - nearest - kSlack * along_.back();
+      i = std::size_t(std::lower_bound(along_.begin() + std::ptrdiff_t(i) + 1, along_.end(), reach) - along_.begin());
+    }
+    return nearest;
+  }
+
+ private:
+  const Path& path_;
+  std::vector<double> along_;  ///< length of the way to each point
+  std::size_t last_ = 1;       ///< end of the piece that was the nearest one
+};
+
 OneWay distances(std::span<const Path> from, std::span<const Path> to, double spacing) {
+  std::vector<Way> ways(to.begin(), to.end());
   OneWay result;
   for (const Path& path : from)
     for (const Vec3& point : with_points_every(path, spacing)) {
-      const double distance = distance_from(point, to);
+      double distance = INFINITY;
+      for (Way& way : ways) distance = std::min(distance, way.distance_to(point));
       result.sum += distance, result.largest = std::max(result.largest, distance), ++result.count;
     }
   return result;

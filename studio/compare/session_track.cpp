@@ -6,8 +6,10 @@
 #include <cstring>
 
 #include "core/model/fields.h"
+#include "recordings/byte_hash.h"
 #include "recordings/replay.h"
 #include "recordings/state_hash.h"
+#include "scenes/scene_file.h"
 #include "studio/session/probes.h"
 
 namespace ctpm::compare {
@@ -26,6 +28,32 @@ std::vector<std::uint8_t> severed_flags(const State& state) {
 }
 
 std::vector<Spell> cuts_of(const SessionTrack& track, const Model& model);
+double work_of(Vec3 force, Vec3 by);
+
+bool holds_tool(const Model& model, std::int32_t tool) { return tool >= 0 && std::size_t(tool) < model.tools.size(); }
+
+/// The organ of which a hand's tool touches the most points; -1: none. Of a cut's own points the organ is not known.
+std::int32_t organ_touched(const Model& model, const State& state, std::size_t hand, bool is_blade) {
+  std::vector<std::int32_t> points(model.organs.size(), 0);
+  if (is_blade)
+    for (const std::int32_t organ : state.edge_organ)
+      if (organ >= 0) ++points[std::size_t(organ)];
+  const auto all = std::int32_t(model.touchable_count()), from = std::int32_t(hand) * all;
+  for (auto at = std::ranges::lower_bound(state.touched, from);
+       !is_blade && at != state.touched.end() && *at < from + all; ++at) {
+    std::int32_t point = *at - from;
+    std::size_t organ = 0;
+    while (organ < model.surfaces.size() && point >= std::int32_t(model.surfaces[organ].vertex.size()))
+      point -= std::int32_t(model.surfaces[organ++].vertex.size());
+    if (organ < model.surfaces.size())
+      ++points[organ];
+    else
+      for (std::size_t o = 0; o < model.organs.size(); ++o)
+        points[o] += point >= model.organs[o].first && point < model.organs[o].first + model.organs[o].count;
+  }
+  const auto most = std::ranges::max_element(points);
+  return most == points.end() || *most == 0 ? -1 : std::int32_t(most - points.begin());
+}
 
 /// Whether a script or a file moved the tool, whose times do not depend on the clock.
 bool is_scripted(const recordings::SessionStart& start) {
@@ -88,7 +116,8 @@ Result<Done> replay_all(recordings::SessionReader& session, SessionTrack& track)
   track.severed_at.assign(ElementPlaces(session.start().model).count, -1);
   Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(session);
   if (!cursor) return cursor.errors();
-  std::vector<double> force = track.force, depth = track.depth, other_force = track.other_force;
+  std::vector<double> force = track.force, depth = track.depth, other_force = track.other_force, work = track.work;
+  std::vector<std::int32_t> organ(track.tick_count(), -1);
   std::vector<std::int32_t> severed = track.severed;
   const std::vector<session::Probe> probes = session::probes_of(session);
   for (const session::Probe& probe : probes) track.probes.push_back({probe.name, {}});
@@ -101,13 +130,23 @@ Result<Done> replay_all(recordings::SessionReader& session, SessionTrack& track)
         force[tick] = norm(report.of_hand(track.hand).tool_force), depth[tick] = report.of_hand(track.hand).depth;
         if (!other_force.empty()) other_force[tick] = norm(report.of_hand(1 - track.hand).tool_force);
         severed[tick] = report.severed;
+        if (tick > 0 && track.tool[tick] == track.tool[tick - 1])
+          work[tick] = work_of(report.of_hand(track.hand).tool_force, track.tip[tick] - track.tip[tick - 1]);
+        if (const Model& model = session.start().model;
+            model.organs.size() > 1 && holds_tool(model, track.tool[tick])) {
+          const bool is_blade = model.tools[std::size_t(track.tool[tick])].kind == ToolKind::scalpel;
+          if (force[tick] > 0) organ[tick] = organ_touched(model, cursor->state(), track.hand, is_blade);
+          if (force[tick] > 0 && organ[tick] < 0 && tick > 0) organ[tick] = organ[tick - 1];  // within a cut
+        }
         blade.look(tick, cursor->state());
       });
   if (!replayed) return replayed.errors();
   blade.finish(cursor->state());
   track.is_verified = track.replays;
   if (track.is_verified)
-    track.force = force, track.depth = depth, track.other_force = other_force, track.severed = severed;
+    track.force = force, track.depth = depth, track.other_force = other_force, track.severed = severed,
+    track.work = work;
+  if (track.is_verified && session.start().model.organs.size() > 1) track.organ = organ;
   track.cuts = cuts_of(track, session.start().model);
   return Done{};
 }
@@ -130,6 +169,22 @@ Result<Done> replay_cuts(recordings::SessionReader& session, SessionTrack& track
     if (const Result<Done> ended = cursor->seek(session.tick_count()); !ended) return ended.errors();
   track.replays = track.replays && cursor->same_so_far();
   blade.finish(cursor->state());
+  return Done{};
+}
+
+/// What is severed in the last State, and the size of its cuts. In which tick something was severed is not known.
+Result<Done> replay_end(recordings::SessionReader& session, SessionTrack& track) {
+  track.severed_at.assign(ElementPlaces(session.start().model).count, -1);
+  if (track.cuts.empty()) return Done{};
+  Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(session);
+  if (!cursor) return cursor.errors();
+  if (const Result<Done> ended = cursor->seek(session.tick_count()); !ended) return ended.errors();
+  const std::vector<std::uint8_t> severed = severed_flags(cursor->state());
+  for (std::size_t i = 0; i < severed.size(); ++i)
+    if (severed[i]) track.severed_at[i] = std::int64_t(track.cuts.back().last) - 1;
+  track.replays = cursor->same_so_far();
+  session::CutMeasures measures(session.start().model);
+  measures.measure(cursor->state()), track.cut = measures.size();
   return Done{};
 }
 
@@ -205,21 +260,38 @@ std::string difference_in_words(const Model& a, const Model& b) {
   return "";
 }
 
+/// Of a tool that is moved `by` against the force of the tissue on it [J].
+double work_of(Vec3 force, Vec3 by) { return -dot(force, by); }
+
+/// In which of the scene's forbidden zones the tip is; none of a scene that another version wrote.
+void find_zones(SessionTrack& track, const recordings::SessionStart& start) {
+  const Result<scenes::SceneText> scene = scenes::read_scene(start.scene_text, track.path);
+  if (!scene || scene->spec.forbidden.empty()) return;
+  const std::vector<scenes::ZoneSpec>& zones = scene->spec.forbidden;
+  for (const scenes::ZoneSpec& zone : zones) track.zones.push_back(zone.name);
+  for (std::size_t i = 0; i < track.tick_count(); ++i) {
+    const auto in = std::ranges::find_if(zones, [&](const auto& zone) { return scenes::is_in(zone, track.tip[i]); });
+    track.zone.push_back(track.tool[i] < 0 || in == zones.end() ? -1 : std::int32_t(in - zones.begin()));
+  }
+}
+
 /// What one hand did.
 struct HandTrack {
   std::vector<std::int32_t> tool;
   std::vector<Vec3> tip;
-  std::vector<double> force, depth;
+  std::vector<double> force, depth, work;
   std::int64_t cuts = 0, holds = 0;  ///< ticks in which it severs, and in which it holds a tool
 
   void add(const Model& model, const recordings::TickRecord& record, std::size_t number) {
     const Hand& hand = record.inputs.hand(number);
     const stepping::HandReport report = record.of_hand(number);
+    const bool goes_on = !tool.empty() && tool.back() == hand.tool;
+    work.push_back(goes_on ? work_of(report.tool_force, hand.position - tip.back()) : 0.0);
     tool.push_back(hand.tool), tip.push_back(hand.position);
     force.push_back(norm(report.tool_force)), depth.push_back(report.depth);
-    const bool holds_tool = hand.tool >= 0 && std::size_t(hand.tool) < model.tools.size();
-    holds += holds_tool;
-    cuts += holds_tool && record.severed > 0 && model.tools[std::size_t(hand.tool)].kind == ToolKind::scalpel;
+    const bool is_held = holds_tool(model, hand.tool);
+    holds += is_held;
+    cuts += is_held && record.severed > 0 && model.tools[std::size_t(hand.tool)].kind == ToolKind::scalpel;
   }
   bool works_more_than(const HandTrack& other) const {
     return cuts != other.cuts ? cuts > other.cuts : holds > other.holds;
@@ -256,7 +328,11 @@ Result<SessionTrack> read_recorded(recordings::SessionReader& session) {
   HandTrack &works = hands[track.hand], &other = hands[1 - track.hand];
   track.tool = std::move(works.tool), track.tip = std::move(works.tip);
   track.force = std::move(works.force), track.depth = std::move(works.depth);
-  track.other_force = std::move(other.force);
+  track.other_force = std::move(other.force), track.work = std::move(works.work);
+  // Where there is one organ, it is the one that is touched.
+  if (start.model.organs.size() == 1)
+    for (const double force : track.force) track.organ.push_back(force > 0 ? 0 : -1);
+  find_zones(track, start);
   constexpr double kSlipShare = 0.01;
   track.is_timed = is_scripted(start) || track.slip <= kSlipShare * track.seconds(track.tick_count());
   track.strokes = strokes_of(track.tool);
@@ -271,7 +347,9 @@ Result<SessionTrack> read_track(recordings::SessionReader& session, Replaying re
   if (track->strokes.empty()) return Error{session.path(), "no tool is ever in the hand", ""};
   const bool is_short = track->seconds(track->tick_count()) <= kShortSession;
   const bool all = replaying == Replaying::all || (replaying == Replaying::short_ones && is_short);
-  const Result<Done> replayed = all ? replay_all(session, *track) : replay_cuts(session, *track);
+  const Result<Done> replayed = all                            ? replay_all(session, *track)
+                                : replaying == Replaying::ends ? replay_end(session, *track)
+                                                               : replay_cuts(session, *track);
   if (!replayed) return replayed.errors();
   return track;
 }
@@ -290,6 +368,17 @@ Result<Done> check_same_scene(const recordings::SessionReader& expert, const rec
   }
   return Error{trainee.path(), "is of another scene than " + expert.path() + ": " + reason,
                "sessions can be compared if they were recorded in the same scene"};
+}
+
+std::uint64_t scene_hash(const Model& model) {
+  std::vector<std::pair<std::string, std::string>> fields;
+  for_each_field(model, FieldBytes{fields});
+  recordings::ByteHash hash;
+  for (const auto& [name, bytes] : fields) {
+    const std::string head = name + " " + std::to_string(bytes.size()) + "\n";
+    hash.add(head.data(), head.size()), hash.add(bytes.data(), bytes.size());
+  }
+  return hash.value();
 }
 
 std::vector<Path> cut_paths(const SessionTrack& track) {

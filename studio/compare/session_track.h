@@ -40,6 +40,11 @@ struct SessionTrack {
   std::vector<double> blade_depth;  ///< of a held blade's edge in the tissue at rest [m], where it was replayed; empty:
                                     ///< no blade (tick_count)
   std::vector<double> other_force;  ///< as `force`, on the tool in the other hand; empty: there is none (tick_count)
+  std::vector<double> work;         ///< of the tool against that force [J]; empty: not known         (tick_count)
+  std::vector<std::int32_t> organ;  ///< that the tool touches most, in Model::organs; -1: none; empty: not known, of a
+                                    ///< session with several organs that was not replayed          (tick_count)
+  std::vector<std::string> zones;   ///< forbidden ones of the scene
+  std::vector<std::int32_t> zone;   ///< in which the tip is, of `zones`; -1: none                    (tick_count)
   std::vector<std::int32_t> severed;     ///< elements severed in the tick                       (tick_count)
   std::vector<Spell> strokes;            ///< ticks in which one tool is held without a break
   std::vector<Spell> cuts;               ///< ticks from the first to the last severed element of each cut
@@ -66,6 +71,7 @@ enum class Replaying {
   short_ones,  ///< those up to kShortSession
   all,
   none,  ///< of cuts alone
+  ends,  ///< nothing but what comes after the last keyframe: what is severed in the end, and the size of the cuts
 };
 inline constexpr double kShortSession = 30;  ///< [s]
 
@@ -76,6 +82,9 @@ Result<SessionTrack> read_track(recordings::SessionReader& session, Replaying re
 /// Checks that both sessions have the same Model: network, tools and physics. Values that do not act on the tissue
 /// (cameras, colours) may differ. Errors: the first difference.
 Result<Done> check_same_scene(const recordings::SessionReader& expert, const recordings::SessionReader& trainee);
+
+/// A number that two Models share where check_same_scene() finds no difference, and else almost never.
+std::uint64_t scene_hash(const Model& model);
 
 /// The paths of the tool's tip during each cut [m].
 std::vector<Path> cut_paths(const SessionTrack& track);

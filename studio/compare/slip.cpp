@@ -6,15 +6,10 @@
 #include "studio/output/number_text.h"
 
 namespace ctpm::compare {
-namespace {
-
-/// Smoothness is a matter of time as well.
 bool depends_on_time(std::string_view key) {
   constexpr std::string_view kSmoothness[] = {"spectral_arc_length", "log_dimensionless_jerk"};
   return key.ends_with("_s") || std::ranges::find(kSmoothness, key) != std::end(kSmoothness);
 }
-
-}  // namespace
 
 void refuse_times(Comparison& comparison, const SessionTrack& expert, const SessionTrack& trainee) {
   std::string note;

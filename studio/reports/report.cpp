@@ -101,6 +101,9 @@ void Report::conclude(ReportVerdict verdict, const std::string& sentence, const 
 
 void Report::add_heading(const std::string& text) { body_ += "<h2>" + escape_html(text) + "</h2>\n"; }
 void Report::add_paragraph(const std::string& text) { body_ += "<p>" + escape_html(text) + "</p>\n"; }
+void Report::add_link(const std::string& text, const std::string& address) {
+  body_ += "<p><a href=\"" + escape_html(address) + "\">" + escape_html(text) + "</a></p>\n";
+}
 void Report::add_verdict(bool is_good, const std::string& text) {
   body_ += std::string("<p class=\"verdict ") + (is_good ? "good" : "bad") + "\">" + escape_html(text) + "</p>\n";
 }

@@ -39,6 +39,9 @@ class Report {
   void add_heading(const std::string& text);
   void add_paragraph(const std::string& text);
 
+  /// Adds a line that leads to another page, by its relative address.
+  void add_link(const std::string& text, const std::string& address);
+
   /// Adds a section with its heading. Error: a picture that cannot be encoded.
   Result<Done> add(const Section& section);
 

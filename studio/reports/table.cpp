@@ -30,6 +30,8 @@ std::string html_cell(const Cell& cell, const Column& column, bool is_only_verdi
   if (const auto* verdict = std::get_if<ReportVerdict>(&cell))
     return "<td" + (is_only_verdict ? " class=\"verdict-cell\">" : title) + "<span class=\"v " + to_word(*verdict) +
            "\">" + to_word(*verdict) + "</span></td>";
+  if (const auto* link = std::get_if<Link>(&cell))
+    return "<td" + title + "<a href=\"" + escape_html(link->address) + "\">" + escape_html(link->text) + "</a></td>";
   return "<td></td>";
 }
 
@@ -38,6 +40,7 @@ std::string csv_cell(const Cell& cell) {
   if (const auto* value = std::get_if<double>(&cell)) return whole_number(*value);
   if (const auto* count = std::get_if<std::int64_t>(&cell)) return std::to_string(*count);
   if (const auto* verdict = std::get_if<ReportVerdict>(&cell)) return to_word(*verdict);
+  if (const auto* link = std::get_if<Link>(&cell)) return output::csv_text(link->text);
   return "";
 }
 
@@ -103,6 +106,7 @@ void write_rows(output::JsonWriter& json, const Table& table) {
       if (const auto* value = std::get_if<double>(&row[i])) json.member(key, *value);
       if (const auto* count = std::get_if<std::int64_t>(&row[i])) json.member(key, *count);
       if (const auto* verdict = std::get_if<ReportVerdict>(&row[i])) json.member(key, to_word(*verdict));
+      if (const auto* link = std::get_if<Link>(&row[i])) json.member(key, std::string_view(link->text));
     }
     json.end_object();
   }

@@ -17,8 +17,13 @@ enum class ReportVerdict {
   refused,  ///< was refused beforehand, which is allowed
 };
 
-/// A number, a word, a verdict, or empty.
-using Cell = std::variant<std::monostate, std::string, double, std::int64_t, ReportVerdict>;
+/// A word that leads to another page, by its relative address.
+struct Link {
+  std::string text, address;
+};
+
+/// A number, a word, a verdict, a link, or empty.
+using Cell = std::variant<std::monostate, std::string, double, std::int64_t, ReportVerdict, Link>;
 
 struct Column {
   std::string key;       ///< name in JSON and CSV, contains the unit (`force_n`)

@@ -4,6 +4,7 @@
 #include <ctime>
 
 #include "studio/output/json_writer.h"
+#include "studio/session/anonymise.h"
 
 namespace ctpm::session {
 namespace {
@@ -47,7 +48,10 @@ std::string info_json(const recordings::SessionReader& reader, const SessionInfo
   const Model& model = reader.start().model;
   output::JsonWriter json;
   json.begin_object().member("session_id", reader.session_id()).member("format_version", reader.format_version());
-  json.member("created_utc", utc_text(reader.created_unix_s())).member("ended_cleanly", reader.ended_cleanly());
+  const bool is_elapsed = begins_at_elapsed_time(reader);
+  json.member("created_utc", is_elapsed ? std::string() : utc_text(reader.created_unix_s()));
+  if (is_elapsed) json.member("created_after_first_s", reader.created_unix_s());
+  json.member("ended_cleanly", reader.ended_cleanly());
   const std::int32_t revision = reader.start().physics_revision;
   json.member("build", reader.start().build_fingerprint).member("physics_revision", revision);
   json.member("physics_remark", recordings::physics_remark(revision))

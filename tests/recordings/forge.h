@@ -65,6 +65,15 @@ class Forge {
     return true;
   }
 
+  /// Adds a part with a right checksum.
+  void add_part(const std::string& name, const std::string& content) {
+    const session_file::Block block = session_file::pack("part " + name, session_file::view(content), seed_, 3);
+    auto insert = database_.prepare("INSERT INTO part VALUES(?1, ?2, ?3, ?4)");
+    CTPM_CHECK(bool(insert), "a part to add");
+    insert->bind(1, name).bind(2, block.size).bind(3, block.checksum).bind(4, session_file::ByteView(block.data));
+    CTPM_CHECK(insert->step() == session_file::Statement::Outcome::done, "a part that is added");
+  }
+
   /// Moves a keyframe to another tick, with the checksum that it has there.
   void move_keyframe(std::int64_t from, std::int64_t to) {
     auto row = database_.prepare("SELECT size, checksum, data FROM keyframe WHERE tick = " + std::to_string(from));

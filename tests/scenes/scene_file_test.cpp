@@ -213,5 +213,33 @@ TEST(BuildModel, AnAnchorThatHoldsNoSphereIsAnError) {
   EXPECT_EQ(built.errors().front().where, "/organs/0/anchors/0");
 }
 
+TEST(ReadScene, ForbiddenZonesAreReadAndChangeNoModel) {
+  const auto scene_of = [](const std::string& zones) {
+    return scenes::read_scene(R"({"format": "ctpm-scene", "version": 1, "name": "rig", "organs": [{"name": "rig",
+      "rig": {"block": [3, 3, 3]}, "material": {"preset": "liver"}}], "forbidden": [)" +
+                                  zones + "]}",
+                              "rig.json");
+  };
+  const auto scene = scene_of(R"({"name": "vessel", "sphere": {"centre_mm": [0, 0, 10], "radius_mm": 5}},
+    {"name": "below", "plane": {"point_mm": [0, 0, 0], "normal": [0, 0, 1]}},
+    {"name": "box", "box": {"min_mm": [1, 1, 1], "max_mm": [2, 2, 2]}})");
+  ASSERT_TRUE(scene) << to_string(scene.errors().front());
+  const std::vector<scenes::ZoneSpec>& zones = scene->spec.forbidden;
+  ASSERT_EQ(zones.size(), 3u);
+  EXPECT_TRUE(scenes::is_in(zones[0], {0, 0, 0.0149}));
+  EXPECT_FALSE(scenes::is_in(zones[0], {0, 0, 0.0151}));
+  EXPECT_TRUE(scenes::is_in(zones[1], {1, 1, -0.1}));
+  EXPECT_FALSE(scenes::is_in(zones[1], {1, 1, 0.1}));
+  EXPECT_TRUE(scenes::is_in(zones[2], {0.0015, 0.0015, 0.002}));
+  EXPECT_FALSE(scenes::is_in(zones[2], {0.0015, 0.0015, 0.0021}));
+  const auto again = scenes::read_scene(scenes::write_scene(scene->spec), "again.json");
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->spec, scene->spec);
+  const auto broken =
+      scene_of(R"({"name": "a"}, {"name": "a", "plane": {"point_mm": [0, 0, 0], "normal": [0, 0, 0]}})");
+  ASSERT_FALSE(broken);
+  EXPECT_EQ(broken.errors().size(), 3u) << "no place, a name twice, no direction";
+}
+
 }  // namespace
 }  // namespace ctpm

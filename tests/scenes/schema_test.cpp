@@ -10,6 +10,7 @@
 #include <fstream>
 #include <string>
 
+#include "scenes/course.h"
 #include "scenes/scene_file.h"
 #include "scenes/script.h"
 #include "tests/scenes/schema_check.h"
@@ -39,11 +40,13 @@ std::string with_tables(const std::string& name, const std::string& tables) {
 TEST(CheckedIn, TheSchemasAreThoseOfTheTables) {
   expect_checked_in("scene.schema.json", scenes::scene_schema());
   expect_checked_in("script.schema.json", scenes::script_schema());
+  expect_checked_in("course.schema.json", scenes::course_schema());
 }
 
 TEST(CheckedIn, TheTablesOfTheDocumentationAreThoseOfTheReader) {
   expect_checked_in("FORMAT.md", with_tables("FORMAT.md", scenes::scene_reference()));
   expect_checked_in("SCRIPT.md", with_tables("SCRIPT.md", scenes::script_reference()));
+  expect_checked_in("COURSE.md", with_tables("COURSE.md", scenes::course_reference()));
 }
 
 /// The first JSON block of a Markdown file.
@@ -60,6 +63,10 @@ TEST(Documentation, ItsExamplesAreReadAndFitTheSchemas) {
   ASSERT_TRUE(script) << to_string(script.errors().front());
   EXPECT_EQ(SchemaCheck(scenes::scene_schema()).problem_of(example_in("FORMAT.md")), "");
   EXPECT_EQ(SchemaCheck(scenes::script_schema()).problem_of(example_in("SCRIPT.md")), "");
+  const Result<scenes::CourseSpec> course = scenes::read_course(
+      example_in("COURSE.md"), "COURSE.md", {"completion_time_s", "peak_force_n", "cut_path_mean_distance_mm"});
+  ASSERT_TRUE(course) << to_string(course.errors().front());
+  EXPECT_EQ(SchemaCheck(scenes::course_schema()).problem_of(example_in("COURSE.md")), "");
 }
 
 TEST(SceneSchema, AcceptsTheShippedScenesAndEverythingThatIsWritten) {

@@ -10,7 +10,9 @@
 
 #include "core/model/box.h"
 #include "studio/compare/advice.h"
+#include "studio/compare/measure_table.h"
 #include "studio/compare/measures.h"
+#include "studio/compare/session_measures.h"
 #include "tests/recordings/sessions.h"
 
 namespace ctpm {
@@ -342,7 +344,7 @@ TEST_F(Measures, EachHasAUnitADirectionAMeaningAndASource) {
   compare::SessionTrack cutting = press();
   cutting.severed_at[0] = 10, cutting.severed[10] = 1, cutting.cuts = {{10, 11}};
   const compare::Comparison comparison = compare::compare_sessions(cutting, cutting, scene_);
-  EXPECT_EQ(comparison.values.size(), 24u);
+  EXPECT_EQ(comparison.values.size(), 27u);
   for (const compare::MeasuredValue& value : comparison.values) {
     EXPECT_NE(std::string(value.measure->unit), "") << value.measure->key;
     EXPECT_NE(std::string(compare::to_word(value.measure->direction)), "") << value.measure->key;
@@ -440,6 +442,44 @@ TEST(Track, IsThatOfTheHandThatCuts) {
   });
   ASSERT_NE(other, comparison.values.end());
   EXPECT_EQ(other->trainee, peak(left.other_force));
+}
+
+TEST(SessionMeasures, WorkImpulseAndZonesAreThoseOfAForceThatIsKnown) {
+  // A tool goes 100 mm in a second against 2 N, the second half of it against 4 N and through a zone; then it goes back
+  // while the tissue pushes it.
+  compare::SessionTrack track = new_track();
+  go(track, {}, {0.1, 0, 0}, 1), go(track, {0.1, 0, 0}, {}, 1);
+  track.zones = {"vessel"};
+  for (std::size_t i = 0; i < 2000; ++i) {
+    const bool is_back = i >= 1000, is_second = i >= 500 && !is_back;
+    track.force[i] = is_second ? 4 : 2;
+    track.work.push_back((is_back ? -1 : 1) * track.force[i] * 1e-4);
+    track.organ.push_back(is_second ? 1 : 0), track.zone.push_back(is_second ? 0 : -1);
+  }
+  track.strokes = {{0, track.tick_count()}};
+  const auto values = compare::measure_session(track, 3.0, 0);
+  const auto value = [&](const compare::Measure& measure) {
+    return *std::ranges::find(values, &measure, &compare::SessionValue::measure)->value;
+  };
+  EXPECT_NEAR(value(compare::kImpulse), 2 * 0.5 + 4 * 0.5 + 2 * 1, 1e-9);
+  EXPECT_NEAR(value(compare::kWork), 1e3 * (2 * 0.05 + 4 * 0.05), 1e-9)
+      << "what the tissue gives back is no work on it";
+  EXPECT_NEAR(value(compare::kWorkAbove), 1e3 * 1 * 0.05, 1e-9);
+  EXPECT_NEAR(value(compare::kZoneTime), 0.5, 1e-9);
+  EXPECT_NEAR(value(compare::kZoneImpulse), 2, 1e-9);
+  EXPECT_NEAR(value(compare::kZoneWork), 200, 1e-9);
+  Model model;
+  model.organs.resize(2), model.organs[0].name = "liver", model.organs[1].name = "kidney";
+  const auto loads = compare::loads_of(track, model);
+  ASSERT_TRUE(loads && loads->size() == 3);
+  EXPECT_EQ((*loads)[1].name, "kidney");
+  EXPECT_NEAR((*loads)[0].peak, 2, 0);
+  EXPECT_NEAR((*loads)[1].peak, 4, 0);
+  EXPECT_NEAR((*loads)[0].impulse, 3, 1e-9);
+  EXPECT_NEAR((*loads)[1].impulse, 2, 1e-9);
+  EXPECT_TRUE((*loads)[2].is_zone);
+  track.organ.clear();
+  EXPECT_FALSE(compare::loads_of(track, model)) << "nobody knows what was touched";
 }
 
 }  // namespace

@@ -257,5 +257,28 @@ TEST(Alignment, PathsOfAnyTwoLengthsAreAligned) {
     }
 }
 
+TEST(PathDistance, IsThatOfEveryPointFromEveryPieceWhateverTheWayDoes) {
+  // A way that winds, comes back on itself and stands still, beside another one in two parts.
+  compare::Path winding;
+  for (int i = 0; i < 900; ++i) {
+    const double t = 0.01 * (i < 600 ? i : 1200 - i);
+    winding.push_back({10 * std::cos(7 * t), 10 * std::sin(3 * t), i % 50 < 10 ? 2.0 : t});
+  }
+  compare::Path first, second;
+  for (int i = 0; i < 400; ++i) first.push_back({0.05 * i - 10, std::sin(0.1 * i), 3});
+  for (int i = 0; i < 100; ++i) second.push_back({0, 0.2 * i - 10, 1});
+  const std::vector<compare::Path> a{winding}, b{first, second};
+  double sum = 0, largest = 0, count = 0;
+  for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)})
+    for (const compare::Path& path : from)
+      for (const Vec3& point : compare::with_points_every(path, 0.5)) {
+        const double distance = compare::distance_from(point, to);
+        sum += distance, largest = std::max(largest, distance), count += 1;
+      }
+  const compare::PathDistance distance = compare::distance_between(a, b, 0.5);
+  EXPECT_EQ(distance.hausdorff, largest);
+  EXPECT_NEAR(distance.mean, sum / count, 1e-12);
+}
+
 }  // namespace
 }  // namespace ctpm

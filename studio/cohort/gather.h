@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/model/result.h"
+#include "scenes/course.h"
+
+namespace ctpm::cohort {
+
+/// A session file, and whose it is: the pseudonym that it holds, else the folder below the one that was named, else its
+/// name.
+struct FoundSession {
+  std::string file, session_id, person;
+  double begun_s = 0;       ///< when, in seconds since 1970, or since the first if `is_elapsed`
+  bool is_elapsed = false;  ///< wall-clock times were taken out of it
+  std::size_t task = 0;     ///< of the course
+  std::size_t attempt = 0;  ///< from 1, of this person in this task, in the order of time
+};
+
+/// All sessions of a course, each with its task.
+struct Gathered {
+  std::vector<FoundSession> experts, trainees;  ///< by task, person and time
+  std::vector<std::string> left_out;            ///< sessions of trainees that belong to no task, and why
+};
+
+/// Finds the sessions below the folders of experts and of trainees. Errors: all sessions that cannot be read; experts
+/// of one task in two scenes; a task with fewer than two experts; a session that occurs twice; two tasks in one scene
+/// between which the path of a session does not choose; a folder without any session.
+Result<Gathered> gather(const scenes::CourseSpec& course, const std::string& trainees);
+
+/// A course of one task that nobody has written: all measures of the experts in a folder, and no pass marks.
+scenes::CourseSpec course_of_folder(const std::string& experts);
+
+}  // namespace ctpm::cohort

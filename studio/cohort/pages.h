@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "studio/cohort/cohort.h"
+#include "studio/reports/report.h"
+
+namespace ctpm::cohort {
+
+/// The page of everybody: index.html.
+std::string educator_page(const Cohort& cohort);
+
+/// The page of one trainee, by the place in Cohort::trainees.
+std::string trainee_page(const Cohort& cohort, std::size_t trainee);
+
+/// Name of a trainee's page within the folder of the report; no two are equal.
+std::string page_name(const Cohort& cohort, std::size_t trainee);
+
+/// What a reader must know to believe any page: whether the course was validated, and the sessions verified.
+void add_caveats(reports::Report& report, const Cohort& cohort);
+
+/// What has been learned by somebody's attempts of a task; open if it has no marks.
+struct Learned {
+  LearningState state = LearningState::open;
+  std::vector<LearningStep> steps;  ///< one for each attempt
+  std::size_t reached = 0;          ///< attempt in which the state began, from 1; 0: it is open
+};
+Learned learned_of(const TaskResult& task, const std::string& person, const scenes::LearningSpec& learning);
+
+/// "learned", "not yet known", "fails too often".
+const char* to_word(LearningState state);
+
+/// The measures that a page of the task shows: those with marks, or else all that have a value; indices of
+/// compare::all_measures().
+std::vector<std::size_t> shown_measures(const TaskResult& task);
+
+/// "at most 4 N", "between 2 and 5 mm"; empty: no pass mark.
+std::string mark_text(const TaskResult& task, std::size_t measure);
+
+/// Lets a plot show at least the range that the educator declared for a measure; all points stay in it.
+void show_declared(reports::Plot& plot, const TaskResult& task, std::size_t measure);
+
+/// What the measures of the pages are, with their sources.
+reports::Table meanings(const Cohort& cohort);
+
+/// Writes index.html, a page for each trainee, results.csv, results.sqlite and statements.jsonl to `folder`. Errors:
+/// those of writing them.
+Result<Done> write_cohort(const Cohort& cohort, const std::string& folder, const std::string& home);
+
+}  // namespace ctpm::cohort

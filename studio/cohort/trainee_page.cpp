@@ -1,0 +1,279 @@
+// The page of one trainee: what to do better, where in the stroke, and how the attempts went on.
+
+#include <algorithm>
+#include <cmath>
+
+#include "studio/cohort/pages.h"
+#include "studio/compare/measure_table.h"
+#include "studio/output/number_text.h"
+
+namespace ctpm::cohort {
+namespace {
+
+using output::fixed;
+using output::short_number;
+
+constexpr int kExpertColour = 0, kTraineeColour = 1, kNeutralColour = 6;
+constexpr double kMillimetres = 1e3;
+constexpr double kForceRounding = 0.01, kPlaceRounding = 0.5e-3;  // of what is called outside the band [N], [m]
+constexpr std::size_t kMostCurves = 8;
+
+std::string with_unit(double value, const compare::Measure& measure) {
+  const std::string unit = measure.unit;
+  return short_number(value) + (unit == "1" ? "" : " " + unit);
+}
+
+reports::Cell percent(std::optional<double> share) {
+  return share ? reports::Cell(fixed(100 * *share, 0) + " %") : reports::Cell(std::string("nobody else"));
+}
+
+/// The latest attempt of everybody else: of a measure, where it has a value.
+std::vector<double> values_of_others(const TaskResult& task, const std::string& person, std::size_t measure) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < task.attempts.size(); ++i) {
+    const bool is_last =
+        i + 1 == task.attempts.size() || task.attempts[i + 1].session.person != task.attempts[i].session.person;
+    if (is_last && task.attempts[i].session.person != person && task.attempts[i].values[measure].value)
+      values.push_back(*task.attempts[i].values[measure].value);
+  }
+  return values;
+}
+
+/// The latest attempt beside pass marks, experts and everybody else.
+reports::Table latest_table(const TaskResult& task, const Attempt& latest) {
+  reports::Table table;
+  table.columns = {{"measure", "measure"},
+                   {"verdict", "pass mark is", 4, true},
+                   {"latest", "latest"},
+                   {"unit", "unit"},
+                   {"mark", "pass mark"},
+                   {"mean", "experts' mean"},
+                   {"deviation", "spread"},
+                   {"deviations", "from the mean, in spreads", 3},
+                   {"experts", "experts no better"},
+                   {"others", "trainees no better"}};
+  for (const std::size_t i : shown_measures(task)) {
+    const compare::SessionValue& value = latest.values[i];
+    const std::vector<double> experts = task.expert_values(i);
+    const std::optional<Spread> spread = spread_of(experts);
+    std::vector<reports::Cell> row{std::string(value.measure->title), reports::Cell(), reports::Cell(),
+                                   std::string(value.measure->unit), mark_text(task, i)};
+    if (!mark_text(task, i).empty())
+      row[1] = std::ranges::find(latest.missed, value.measure->key) == latest.missed.end()
+                   ? reports::ReportVerdict::met
+                   : reports::ReportVerdict::missed;
+    row[2] = value.value ? reports::Cell(*value.value) : reports::Cell("no value: " + value.note);
+    row.push_back(spread ? reports::Cell(spread->mean) : reports::Cell(std::string("insufficient data")));
+    row.push_back(spread ? reports::Cell(spread->deviation) : reports::Cell());
+    const bool has_both = spread && value.value;
+    row.push_back(has_both && spread->deviation > 0 ? reports::Cell((*value.value - spread->mean) / spread->deviation)
+                                                    : reports::Cell());
+    const double target = spread ? spread->mean : 0;
+    const auto share = [&](const std::vector<double>& others) {
+      return has_both ? percent(share_no_better(*value.value, others, value.measure->direction, target))
+                      : reports::Cell();
+    };
+    row.push_back(share(experts)), row.push_back(share(values_of_others(task, latest.session.person, i)));
+    table.rows.push_back(std::move(row));
+  }
+  table.caption = "Experts: " + std::to_string(task.experts.size()) +
+                  " sessions; the spread is their standard deviation. Trainees are compared by their latest attempts.";
+  return table;
+}
+
+/// What the latest attempt did to each organ and forbidden zone, beside the experts.
+reports::Table structures_table(const TaskResult& task, const Attempt& latest) {
+  reports::Table table;
+  table.columns = {{"structure", "structure"},    {"peak", "peak force [N]", 4, true}, {"peak_mean", "experts' mean"},
+                   {"impulse", "impulse [N s]"},  {"impulse_mean", "experts' mean"},   {"work", "work [mJ]"},
+                   {"work_mean", "experts' mean"}};
+  constexpr double kMillijoules = 1e3;
+  for (std::size_t i = 0; i < latest.structures.size(); ++i) {
+    const compare::StructureLoad& load = latest.structures[i];
+    const auto mean = [&](double compare::StructureLoad::*value, double scale) -> reports::Cell {
+      std::vector<double> values;
+      for (const Attempt& expert : task.experts)
+        if (i < expert.structures.size() && expert.structures[i].name == load.name)
+          values.push_back(scale * expert.structures[i].*value);
+      const std::optional<Spread> spread = spread_of(values);
+      return spread ? reports::Cell(spread->mean) : reports::Cell(std::string("insufficient data"));
+    };
+    table.rows.push_back({(load.is_zone ? "forbidden: " : "") + load.name, load.peak,
+                          mean(&compare::StructureLoad::peak, 1), load.impulse,
+                          mean(&compare::StructureLoad::impulse, 1), kMillijoules * load.work,
+                          mean(&compare::StructureLoad::work, kMillijoules)});
+  }
+  table.title = "Each structure";
+  table.caption = "The whole force counts for the organ that the tool touches most.";
+  return table;
+}
+
+reports::Series along(const std::string& name, const std::vector<double>& values, double scale, reports::Stroke stroke,
+                      int colour) {
+  reports::Series series{.name = name, .stroke = stroke, .colour = colour};
+  for (std::size_t i = 0; i < values.size(); ++i) series.x.push_back(double(i)), series.y.push_back(scale * values[i]);
+  return series;
+}
+
+/// A quantity along the stroke: the latest attempt over the experts' band.
+reports::Plot stroke_plot(const std::string& title, const std::string& axis, const StrokeBand& band,
+                          const std::vector<double>& latest, double scale) {
+  std::vector<double> high, low;
+  for (std::size_t i = 0; i < kStrokePlaces; ++i) {
+    high.push_back(band.high(i));
+    low.push_back(std::max(0.0, band.mean[i] - StrokeBand::kOutside * band.deviation[i]));
+  }
+  reports::Plot plot{.title = title, .x_title = "way [%]", .y_title = axis};
+  plot.series = {along("experts' mean", band.mean, scale, reports::Stroke::line, kExpertColour),
+                 along("mean and two spreads", high, scale, reports::Stroke::dashed, kExpertColour),
+                 along("", low, scale, reports::Stroke::dashed, kExpertColour),
+                 along("latest attempt", latest, scale, reports::Stroke::line, kTraineeColour)};
+  return plot;
+}
+
+/// "Between 40 and 55 % of the way the force is above the experts' band: ..."; empty: nowhere.
+std::string excess_text(const StrokeExcess& excess, const std::string& what, const std::string& unit, double scale) {
+  if (!excess.any) return "";
+  const std::string where = excess.from == excess.to ? "At " + std::to_string(excess.worst) + " % of the way "
+                                                     : "Between " + std::to_string(excess.from) + " and " +
+                                                           std::to_string(excess.to) + " % of the way ";
+  return where + what + ": " + short_number(scale * excess.value, 3) + " " + unit + " at " +
+         std::to_string(excess.worst) + " %, the experts' mean there is " + short_number(scale * excess.mean, 3) + " " +
+         unit + ", their spread " + short_number(scale * excess.deviation, 3) + " " + unit + ".";
+}
+
+std::vector<std::string> where_in_stroke(const TaskResult& task, const Attempt& latest) {
+  std::vector<std::string> texts;
+  for (const std::string& text :
+       {excess_text(excess_of(latest.curve.force, task.force, kForceRounding), "the force is above the experts' band",
+                    "N", 1),
+        excess_text(excess_of(distance_from(task.middle, latest.curve), task.deviation, kPlaceRounding),
+                    "the tool is farther from the experts' way than they are", "mm", kMillimetres)})
+    if (!text.empty()) texts.push_back(text);
+  return texts;
+}
+
+reports::Series level(const std::string& name, std::size_t count, double value) {
+  return {.name = name,
+          .x = {1, double(std::max<std::size_t>(2, count))},
+          .y = {value, value},
+          .stroke = reports::Stroke::dashed,
+          .colour = kNeutralColour};
+}
+
+/// The values of a measure over the attempts, over the experts' band, within the declared range.
+reports::Plot curve_plot(const TaskResult& task, const std::vector<const Attempt*>& attempts, std::size_t measure) {
+  const compare::Measure& m = *compare::all_measures()[measure];
+  const std::string unit = m.unit;
+  reports::Plot plot{.title = m.title, .x_title = "attempt", .y_title = unit == "1" ? m.title : "[" + unit + "]"};
+  reports::Series line{.name = "", .colour = kTraineeColour},
+      marks{.name = "attempts", .stroke = reports::Stroke::marks};
+  marks.colour = kTraineeColour;
+  for (const Attempt* attempt : attempts)
+    if (const auto& value = attempt->values[measure].value)
+      for (reports::Series* series : {&line, &marks})
+        series->x.push_back(double(attempt->session.attempt)), series->y.push_back(*value);
+  plot.series = {line, marks};
+  if (const std::optional<Spread> spread = spread_of(task.expert_values(measure)))
+    plot.bands = {
+        {"experts, one spread", spread->mean - spread->deviation, spread->mean + spread->deviation, kExpertColour}};
+  const auto mark = std::ranges::find(task.task.marks, std::string(m.key), &scenes::MarkSpec::measure);
+  if (mark != task.task.marks.end()) {
+    for (const auto& pass : {mark->pass_at_least, mark->pass_at_most})
+      if (pass) plot.series.push_back(level("pass mark", attempts.size(), *pass));
+  }
+  show_declared(plot, task, measure);
+  plot.x_range = {0.5, double(attempts.size()) + 0.5};
+  plot.width = 360, plot.height = 250;
+  return plot;
+}
+
+reports::Plot learning_plot(const Learned& learned, const scenes::LearningSpec& learning) {
+  const LearningLimits limits = limits_of(learning);
+  reports::Plot plot{.title = "Sum of failures", .x_title = "attempt", .y_title = "sum"};
+  reports::Series line{.name = "sum", .stroke = reports::Stroke::path, .colour = kTraineeColour};
+  for (std::size_t i = 0; i < learned.steps.size(); ++i)
+    line.x.push_back(double(i + 1)), line.y.push_back(learned.steps[i].sum);
+  plot.series = {line, level("learned below", learned.steps.size(), limits.learned),
+                 level("fails too often above", learned.steps.size(), limits.failing)};
+  plot.series[2].colour = 1;
+  plot.x_range = {0.5, double(learned.steps.size()) + 0.5};
+  plot.caption = "A failed attempt adds " + short_number(limits.failure, 3) + ", a passed one takes away " +
+                 short_number(limits.pass, 3) + "; at a limit the sum begins at 0 again.";
+  plot.width = 360, plot.height = 250;
+  return plot;
+}
+
+/// What stands above: of the latest attempt of a task.
+std::string verdict_text(const TaskResult& task, const Attempt& latest, const Learned& learned) {
+  const std::string which = task.task.name + ", attempt " + std::to_string(latest.session.attempt);
+  if (!latest.passed) return which + ": measured beside " + std::to_string(task.experts.size()) + " experts.";
+  std::string text = which + (*latest.passed ? ": passed." : ": not passed.");
+  for (std::size_t i = 0; i < std::min<std::size_t>(latest.missed.size(), 3); ++i) {
+    const compare::SessionValue& value = latest.value_of(latest.missed[i]);
+    const std::size_t measure = std::size_t(&value - latest.values.data());
+    text += std::string(i == 0 ? " Missed: " : "; ") + value.measure->title + " (" +
+            (value.value ? with_unit(*value.value, *value.measure) : "no value: " + value.note) + ", pass mark " +
+            mark_text(task, measure) + ")";
+  }
+  if (latest.missed.size() > 3) text += " and " + std::to_string(latest.missed.size() - 3) + " more";
+  if (!latest.missed.empty()) text += ".";
+  if (learned.state == LearningState::open) return text + " Whether it is learned is not yet known.";
+  const std::string since = std::to_string(learned.reached);
+  return text + (learned.state == LearningState::learned ? " Learned, as of attempt " + since + "."
+                                                         : " Too many attempts failed, as of attempt " + since + ".");
+}
+
+void add_task(reports::Report& report, const Cohort& cohort, const TaskResult& task,
+              const std::vector<const Attempt*>& attempts) {
+  const Attempt& latest = *attempts.back();
+  report.add_heading(task.task.name);
+  for (const Attempt* attempt : attempts)
+    for (const std::string& remark : attempt->remarks)
+      report.add_verdict(false, "Attempt " + std::to_string(attempt->session.attempt) + " " + remark + ".");
+  report.add_table(latest_table(task, latest));
+  if (latest.structures.size() > 1) report.add_table(structures_table(task, latest));
+  report.add_plots({stroke_plot("Force along the stroke", "force [N]", task.force, latest.curve.force, 1),
+                    stroke_plot("Distance from the experts' way", "distance [mm]", task.deviation,
+                                distance_from(task.middle, latest.curve), kMillimetres)});
+  std::vector<reports::Plot> curves;
+  const Learned learned = learned_of(task, latest.session.person, cohort.course.learning);
+  if (!learned.steps.empty()) curves.push_back(learning_plot(learned, cohort.course.learning));
+  for (const std::size_t i : shown_measures(task))
+    if (curves.size() < kMostCurves) curves.push_back(curve_plot(task, attempts, i));
+  report.add_heading(task.task.name + ": " + std::to_string(attempts.size()) +
+                     (attempts.size() == 1 ? " attempt" : " attempts"));
+  report.add_plots(curves);
+}
+
+}  // namespace
+
+std::string trainee_page(const Cohort& cohort, std::size_t trainee) {
+  const std::string& person = cohort.trainees[trainee];
+  reports::Report report(person, "Course " + cohort.course.name + ": the latest attempts beside experts.");
+  std::vector<std::string> verdicts, points;
+  bool any = false, all = true;
+  for (const TaskResult& task : cohort.tasks) {
+    const std::vector<const Attempt*> attempts = task.attempts_of(person);
+    if (attempts.empty()) continue;
+    const Attempt& latest = *attempts.back();
+    verdicts.push_back(verdict_text(task, latest, learned_of(task, person, cohort.course.learning)));
+    for (const std::string& text : where_in_stroke(task, latest))
+      points.push_back((cohort.tasks.size() > 1 ? task.task.name + ": " : "") + text);
+    if (latest.passed) any = true, all = all && *latest.passed;
+  }
+  points.insert(points.begin(), verdicts.begin() + 1, verdicts.end());
+  report.conclude(!any  ? reports::ReportVerdict::shown
+                  : all ? reports::ReportVerdict::met
+                        : reports::ReportVerdict::missed,
+                  verdicts.front(), points);
+  add_caveats(report, cohort);
+  for (const TaskResult& task : cohort.tasks)
+    if (const auto attempts = task.attempts_of(person); !attempts.empty()) add_task(report, cohort, task, attempts);
+  report.add_heading("What the measures are");
+  report.add_table(meanings(cohort));
+  report.add_link("All trainees of the course", "index.html");
+  return report.html();
+}
+
+}  // namespace ctpm::cohort

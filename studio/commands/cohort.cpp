@@ -1,0 +1,86 @@
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "scenes/course.h"
+#include "studio/cohort/pages.h"
+#include "studio/commands/command.h"
+#include "studio/commands/console.h"
+#include "studio/compare/measure_table.h"
+#include "studio/output/printable.h"
+
+namespace ctpm::commands {
+namespace {
+
+struct CohortArguments {
+  std::string course, experts, trainees, folder, home = "https://ctpm.invalid";
+  bool verify = false;
+};
+
+Result<scenes::CourseSpec> course_of(const CohortArguments& arguments) {
+  if (arguments.course.empty() == arguments.experts.empty())
+    return Error{"cohort", "give a course, or a folder of experts with --experts", ""};
+  if (!arguments.experts.empty()) return cohort::course_of_folder(arguments.experts);
+  return scenes::load_course(arguments.course, compare::measure_keys());
+}
+
+void print_cohort(const cohort::Cohort& cohort) {
+  for (const cohort::TaskResult& task : cohort.tasks) {
+    print("%s: %zu experts, %zu attempts\n", output::printable(task.task.name).c_str(), task.experts.size(),
+          task.attempts.size());
+    for (const std::string& person : cohort.trainees) {
+      const auto attempts = task.attempts_of(person);
+      if (attempts.empty()) continue;
+      const cohort::Attempt& latest = *attempts.back();
+      const std::string verdict = !latest.passed ? "" : *latest.passed ? ", passed" : ", not passed";
+      const std::string learned =
+          latest.passed ? std::string(", ") + to_word(learned_of(task, person, cohort.course.learning).state) : "";
+      print("  %-24s attempt %zu%s%s\n", output::printable(person).c_str(), latest.session.attempt, verdict.c_str(),
+            learned.c_str());
+    }
+  }
+  if (cohort.course.evidence.empty()) print("not validated: the course names no evidence\n");
+  for (const std::string& text : cohort.left_out) print_remark("left out: " + text);
+}
+
+int run_cohort(const CohortArguments& arguments) {
+  const Result<scenes::CourseSpec> course = course_of(arguments);
+  if (!course) return print_errors(course.errors());
+  cohort::CohortOptions options;
+  options.verify = arguments.verify;
+  options.threads = int(std::max(1u, std::thread::hardware_concurrency()));
+  ProgressLine progress("sessions");
+  options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
+  const Result<cohort::Cohort> measured = cohort::measure_cohort(*course, arguments.trainees, options);
+  if (!measured) return print_errors(measured.errors());
+  if (const Result<Done> ready = reports::prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
+  if (const Result<Done> written = cohort::write_cohort(*measured, arguments.folder, arguments.home); !written)
+    return print_errors(written.errors());
+  print_cohort(*measured);
+  print_remark("written: " + arguments.folder +
+               "/index.html, a page for each trainee, results.csv, results.sqlite, statements.jsonl");
+  return exit_good;
+}
+
+}  // namespace
+
+Command add_cohort(CLI::App& program) {
+  auto arguments = std::make_shared<CohortArguments>();
+  CLI::App* app = program.add_subcommand(
+      "cohort", "Measures many trainees against several experts, attempt by attempt; a page for each and one for all.");
+  app->footer(
+      "Examples: ctpm cohort course.json --trainees sessions/ -o out/course\n"
+      "          ctpm cohort --experts experts/ --trainees sessions/ -o out/cohort");
+  app->add_option("course", arguments->course, "Course file (.json): tasks, experts, ranges and pass marks");
+  app->add_option("--experts", arguments->experts, "In place of a course: folder of at least two experts' sessions");
+  app->add_option("--trainees", arguments->trainees,
+                  "Folder of the sessions; those of one trainee in a folder of its own")
+      ->required();
+  app->add_option("-o,--output", arguments->folder, "Folder for pages and tables; made if missing")->required();
+  app->add_flag("--verify", arguments->verify, "Replay every session; otherwise forces that they state are believed");
+  app->add_option("--home", arguments->home, "Address below which the statements for xAPI name people and tasks");
+  return {app, [arguments] { return run_cohort(*arguments); }};
+}
+
+}  // namespace ctpm::commands

@@ -1,0 +1,297 @@
+// `ctpm cohort` from outside: presses on a small block, some of them too hard.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "recordings/internal/database.h"
+#include "recordings/pseudonym.h"
+#include "tests/studio/commands/run_program.h"
+
+namespace ctpm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ProgramOutcome;
+using testing::run_ctpm;
+using testing::slurp;
+
+bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// Experts, two trainees and a course, made once for all tests.
+class CohortProgram : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new testing::TemporaryFolder;
+    write("block.json", scene("ball"));
+    write("other.json", scene("pusher"));
+    for (const auto& [name, depth] : std::vector<std::pair<std::string, double>>{{"experts/e1", 11.5},
+                                                                                 {"experts/e2", 12},
+                                                                                 {"experts/e3", 12.5},
+                                                                                 {"trainees/Ana/1", 16},
+                                                                                 {"trainees/Ana/2", 12},
+                                                                                 {"trainees/Ana/3", 12.2},
+                                                                                 {"trainees/Ben/1", 18},
+                                                                                 {"trainees/Ben/2", 17}})
+      record("block.json", "ball", name, depth);
+    record("other.json", "pusher", "trainees/Ben/other", 12);
+    write("course.json", course(R"({"measure": "peak_force_n", "low": 0, "high": 50, "pass_at_most": LIMIT},
+                                   {"measure": "completion_time_s"})"));
+  }
+  static void TearDownTestSuite() { delete folder_, folder_ = nullptr; }
+
+  static std::string path(const std::string& name) { return (folder_->path() / name).string(); }
+  static void write(const std::string& name, const std::string& text) {
+    fs::create_directories(fs::path(path(name)).parent_path());
+    std::ofstream(path(name)) << text;
+  }
+  static ProgramOutcome ctpm(const std::vector<std::string>& arguments) { return run_ctpm(arguments, folder_->path()); }
+
+  static std::string scene(const std::string& tool) {
+    return R"({"format": "ctpm-scene", "version": 1, "name": "block", "settle_s": 0, "organs": [{"name": "block",
+      "rig": {"block": [4, 4, 3]}, "material": {"preset": "liver"}, "anchors": [{"lowest_mm": 1}]}],
+      "tools": [{"name": ")" +
+           tool + R"(", "kind": "ball", "radius_mm": 8}]})";
+  }
+  static void record(const std::string& scene, const std::string& tool, const std::string& name, double depth) {
+    std::ostringstream script;
+    script << R"({"format": "ctpm-script", "version": 1, "steps": [{"take": {"tool": ")" << tool
+           << R"(", "at_mm": [0, 0, 45]}}, {"press": {"distance_mm": )" << depth
+           << R"(, "speed_mm_per_s": 60}}, {"wait_s": 0.05}, {"release": {"distance_mm": 12, "speed_mm_per_s": 60}},
+              {"put_away": true}]})";
+    write("script.json", script.str());
+    fs::create_directories(fs::path(path(name)).parent_path());
+    const ProgramOutcome recorded = ctpm({"record", scene, "--script", "script.json", "-o", name + ".ctpm", "--fast"});
+    ASSERT_EQ(recorded.code, 0) << recorded.err;
+  }
+  /// The course with a limit between the experts' peak forces and those of the worst presses.
+  static std::string course(std::string marks) {
+    const double limit = 0.5 * (peak("experts/e3.ctpm") + peak("trainees/Ana/1.ctpm"));
+    if (const auto at = marks.find("LIMIT"); at != std::string::npos) marks.replace(at, 5, std::to_string(limit));
+    return R"({"format": "ctpm-course", "version": 1, "name": "Pressing", "tasks": [{"name": "press",
+      "scene": "block.json", "experts": "experts", "marks": [)" +
+           marks + R"(]}],
+      "learning": {"acceptable_failures": 0.3, "unacceptable_failures": 0.7, "false_alarm": 0.3, "missed": 0.3}})";
+  }
+  static double peak(const std::string& session) {
+    const auto info = nlohmann::json::parse(ctpm({"info", session, "--json"}).out);
+    return info["max_force_n"];
+  }
+  /// The rows of results.csv, as fields without quotes.
+  static std::vector<std::vector<std::string>> rows_of(const std::string& folder) {
+    std::vector<std::vector<std::string>> rows;
+    std::istringstream text(slurp(path(folder + "/results.csv")));
+    for (std::string line; std::getline(text, line);) {
+      rows.emplace_back();
+      std::istringstream fields(line);
+      for (std::string field; std::getline(fields, field, ',');) rows.back().push_back(field);
+    }
+    return rows;
+  }
+  /// The value of a measure of a person's attempt in results.csv; empty: there is none.
+  static std::string value_in(const std::string& folder, const std::string& person, int attempt,
+                              const std::string& measure) {
+    for (const auto& row : rows_of(folder))
+      if (row[3] == person && row[4] == std::to_string(attempt) && row[9] == measure) return row[11];
+    return "no row";
+  }
+
+  static testing::TemporaryFolder* folder_;
+};
+testing::TemporaryFolder* CohortProgram::folder_ = nullptr;
+
+TEST_F(CohortProgram, TraineesAreMeasuredBesideABandOfExperts) {
+  const ProgramOutcome done = ctpm({"cohort", "course.json", "--trainees", "trainees", "-o", "out"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_TRUE(holds(done.out, "press: 3 experts, 5 attempts")) << done.out;
+  EXPECT_TRUE(holds(done.out, "attempt 3, passed")) << done.out;
+  EXPECT_TRUE(holds(done.out, "attempt 2, not passed, fails too often")) << done.out;
+  EXPECT_TRUE(holds(done.out, "not validated")) << done.out;
+  EXPECT_TRUE(holds(done.err, "other.ctpm is of no task")) << done.err;
+
+  // What a session measures by itself is what it says itself, and what `compare` says of it.
+  EXPECT_NEAR(std::stod(value_in("out", "Ana", 1, "peak_force_n")), peak("trainees/Ana/1.ctpm"), 1e-12);
+  const auto compared =
+      nlohmann::json::parse(ctpm({"compare", "experts/e1.ctpm", "trainees/Ana/1.ctpm", "--json"}).out);
+  for (const auto& measure : compared["measures"]) {
+    const std::string key = measure["key"];
+    // A cohort has no force limit of one expert's peak; measures of a pair are means over the experts.
+    if (!measure.contains("expert") || !measure.contains("trainee") || holds(key, "force_limit")) continue;
+    EXPECT_NEAR(std::stod(value_in("out", "Ana", 1, key)), measure["trainee"], 1e-9) << key;
+  }
+  double deviation = 0;
+  for (const std::string expert : {"e1", "e2", "e3"}) {
+    const auto pair =
+        nlohmann::json::parse(ctpm({"compare", "experts/" + expert + ".ctpm", "trainees/Ben/1.ctpm", "--json"}).out);
+    for (const auto& measure : pair["measures"])
+      if (measure["key"] == "aligned_deviation_mean_mm") deviation += double(measure["trainee"]) / 3;
+  }
+  EXPECT_NEAR(std::stod(value_in("out", "Ben", 1, "aligned_deviation_mean_mm")), deviation, 1e-9);
+  EXPECT_EQ(value_in("out", "Ana", 1, "cut_overlap"), "") << "nobody cut: no number stands for it";
+
+  const std::string ana = slurp(path("out/trainee-Ana.html")), ben = slurp(path("out/trainee-Ben.html")),
+                    all = slurp(path("out/index.html"));
+  EXPECT_TRUE(holds(ana, "press, attempt 3: passed."));
+  EXPECT_TRUE(holds(ben, "press, attempt 2: not passed. Missed: peak force ("));
+  EXPECT_TRUE(holds(ben, "% of the way the force is above the experts&#39; band") ||
+              holds(ben, "% of the way the force is above the experts' band"));
+  EXPECT_FALSE(holds(ana, "the force is above the experts"));
+  EXPECT_TRUE(holds(all, "href=\"trainee-Ben.html\""));
+  EXPECT_TRUE(holds(all, "press: 1 of 2 trainees have learned it, 1 passed in the latest attempt."));
+  for (const std::string& page : {ana, ben, all}) EXPECT_TRUE(holds(page, "Not validated"));
+}
+
+TEST_F(CohortProgram, TheSameSessionsGiveTheSameFilesAndVerifyingChangesNoNumber) {
+  ASSERT_EQ(ctpm({"cohort", "course.json", "--trainees", "trainees", "-o", "one"}).code, 0);
+  ASSERT_EQ(ctpm({"cohort", "course.json", "--trainees", "trainees", "-o", "two"}).code, 0);
+  for (const char* file : {"index.html", "trainee-Ana.html", "results.csv", "statements.jsonl"})
+    EXPECT_EQ(slurp(path(std::string("one/") + file)), slurp(path(std::string("two/") + file))) << file;
+  ASSERT_EQ(ctpm({"cohort", "course.json", "--trainees", "trainees", "-o", "verified", "--verify"}).code, 0);
+  EXPECT_EQ(slurp(path("one/results.csv")), slurp(path("verified/results.csv")));
+  EXPECT_TRUE(holds(slurp(path("one/index.html")), "they were not verified"));
+  EXPECT_TRUE(holds(slurp(path("verified/index.html")), "Every session was replayed as it was recorded"));
+}
+
+TEST_F(CohortProgram, TablesAndStatementsHoldEverySession) {
+  ASSERT_EQ(ctpm({"cohort", "course.json", "--trainees", "trainees", "-o", "tables"}).code, 0);
+  const auto rows = rows_of("tables");
+  ASSERT_EQ((rows.size() - 1) % 8, 0u) << "eight sessions, each with every measure";
+  namespace session_file = recordings::session_file;
+  auto database = session_file::Database::open(path("tables/results.sqlite"), session_file::Database::Access::read);
+  ASSERT_TRUE(database);
+  auto count = database->prepare("SELECT count(*), count(value), sum(role = 'expert') FROM result");
+  ASSERT_TRUE(count && count->step() == session_file::Statement::Outcome::row);
+  EXPECT_EQ(count->integer(0), std::int64_t(rows.size() - 1));
+  EXPECT_EQ(count->integer(2) * 8, count->integer(0) * 3);
+  EXPECT_GT(count->integer(1), 0);
+
+  std::istringstream lines(slurp(path("tables/statements.jsonl")));
+  std::vector<nlohmann::json> statements;
+  for (std::string line; std::getline(lines, line);) statements.push_back(nlohmann::json::parse(line));
+  ASSERT_EQ(statements.size(), 5u);
+  EXPECT_EQ(statements[0]["actor"]["account"]["name"], "Ana");
+  EXPECT_FALSE(statements[0]["actor"].contains("mbox"));
+  EXPECT_EQ(statements[0]["verb"]["id"], "http://adlnet.gov/expapi/verbs/failed");
+  EXPECT_EQ(statements[2]["result"]["success"], true);
+  EXPECT_TRUE(statements[0].contains("timestamp"));
+  if (!recordings::name_uuid("x").empty()) {
+    EXPECT_NE(statements[0]["id"], statements[1]["id"]);
+  }
+}
+
+TEST_F(CohortProgram, ANameGivesItsUuid) {
+  if (recordings::name_uuid("x").empty()) GTEST_SKIP() << "built without CTPM_SIGNING";
+  // As Python's uuid.uuid5(uuid.NAMESPACE_URL, ...) prints it.
+  EXPECT_EQ(recordings::name_uuid("https://ctpm.invalid/a"), "c8e87fa2-0dd0-5022-8075-dc9cbd8d7754");
+}
+
+TEST_F(CohortProgram, FoldersWithoutACourseHaveNoMarks) {
+  const ProgramOutcome done = ctpm({"cohort", "--experts", "experts", "--trainees", "trainees", "-o", "folders"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_FALSE(holds(done.out, "passed")) << done.out;
+  EXPECT_TRUE(holds(slurp(path("folders/index.html")), "it has no pass marks"));
+  EXPECT_TRUE(holds(slurp(path("folders/statements.jsonl")), "verbs/completed"));
+}
+
+TEST_F(CohortProgram, AnonymisedSessionsAreOrderedByTheirElapsedTimes) {
+  if (recordings::name_uuid("x").empty()) GTEST_SKIP() << "built without CTPM_SIGNING";
+  const auto anonymise = [&](std::vector<std::string> sessions, const std::string& who, const std::string& out) {
+    sessions.insert(sessions.begin(), "anonymise");
+    sessions.insert(sessions.end(), {"--key", "key", "--trainee", who, "-o", out});
+    const ProgramOutcome done = ctpm(sessions);
+    ASSERT_EQ(done.code, 0) << done.err;
+  };
+  anonymise({"trainees/Ana/3.ctpm", "trainees/Ana/1.ctpm", "trainees/Ana/2.ctpm"}, "Ana", "hidden/");
+  int number = 0;
+  for (const std::string expert : {"e1", "e2", "e3"})
+    anonymise({"experts/" + expert + ".ctpm"}, "Expert " + std::to_string(++number), "hidden-experts/");
+  const ProgramOutcome done = ctpm({"cohort", "--experts", "hidden-experts", "--trainees", "hidden", "-o", "hid"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_FALSE(holds(done.out, "Ana"));
+  const std::string statements = slurp(path("hid/statements.jsonl"));
+  EXPECT_FALSE(holds(statements, "timestamp") || holds(statements, "Ana"));
+  const std::string first = statements.substr(0, statements.find('\n'));
+  const double force =
+      nlohmann::json::parse(first)["result"]["extensions"]["https://ctpm.invalid/measures/peak_force_n"];
+  EXPECT_NEAR(force, peak("trainees/Ana/1.ctpm"), 1e-12) << "the earliest attempt is the first";
+}
+
+TEST_F(CohortProgram, ForceIsCountedForTheOrganThatIsTouchedAndForTheZoneThatTheSceneForbids) {
+  // Two livers beside each other; the tool presses the second one, and its tip ends in a zone.
+  const std::string organs = R"({"name": "left", "mesh": "liver.obj", "material": {"preset": "liver"},
+      "fill": {"radius_mm": 12, "gap_mm": 12}, "anchors": [{"lowest_mm": 20}]},
+      {"name": "right", "mesh": "liver.obj", "at_mm": [400, 0, 0], "material": {"preset": "liver"},
+      "fill": {"radius_mm": 12, "gap_mm": 12}, "anchors": [{"lowest_mm": 20}]})";
+  fs::copy_file(std::string(CTPM_SOURCE_DIR) + "/scenes/organs/liver.obj", path("liver.obj"));
+  write("two.json", R"({"format": "ctpm-scene", "version": 1, "name": "two", "settle_s": 0, "organs": [)" + organs +
+                        R"(], "tools": [{"name": "ball", "kind": "ball", "radius_mm": 10}],
+      "forbidden": [{"name": "vessel", "box": {"min_mm": [300, -200, -200], "max_mm": [500, 200, 96]}},
+                    {"name": "nerve", "sphere": {"centre_mm": [0, 0, 500], "radius_mm": 5}}]})");
+  write("two.script.json", R"({"format": "ctpm-script", "version": 1, "steps": [
+      {"take": {"tool": "ball", "at_mm": [357, 31, 130]}}, {"press": {"distance_mm": 40, "speed_mm_per_s": 100}},
+      {"release": {"distance_mm": 30, "speed_mm_per_s": 100}}, {"put_away": true}]})");
+  for (const std::string name : {"two-experts/a", "two-experts/b", "two-trainees/c"}) {
+    fs::create_directories(fs::path(path(name)).parent_path());
+    const ProgramOutcome recorded =
+        ctpm({"record", "two.json", "--script", "two.script.json", "-o", name + ".ctpm", "--fast"});
+    ASSERT_EQ(recorded.code, 0) << recorded.err;
+  }
+  const std::vector<std::string> command{"cohort", "--experts", "two-experts", "--trainees", "two-trainees", "-o"};
+  auto believed = command, verified = command;
+  believed.push_back("two-believed"), verified.insert(verified.end(), {"two-verified", "--verify"});
+  ASSERT_EQ(ctpm(believed).code, 0);
+  const ProgramOutcome done = ctpm(verified);
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_FALSE(holds(slurp(path("two-believed/results.csv")), "organ right")) << "not replayed: nobody knows";
+  const auto of = [&](const std::string& structure, const std::string& measure) {
+    for (const auto& row : rows_of("two-verified"))
+      if (row.size() > 14 && row[3] == "c" && row[9] == measure && row[14] == structure) return std::stod(row[11]);
+    return -1.0;
+  };
+  const double whole = std::stod(value_in("two-verified", "c", 1, "peak_force_n"));
+  EXPECT_GT(whole, 0.1);
+  EXPECT_EQ(of("organ right", "peak_force_n"), whole);
+  EXPECT_EQ(of("organ left", "peak_force_n"), 0);
+  EXPECT_EQ(of("organ right", "impulse_n_s"), std::stod(value_in("two-verified", "c", 1, "impulse_n_s")));
+  EXPECT_GT(of("zone vessel", "impulse_n_s"), 0);
+  EXPECT_EQ(of("zone nerve", "impulse_n_s"), 0);
+  EXPECT_GT(std::stod(value_in("two-verified", "c", 1, "time_in_forbidden_zones_s")), 0.1);
+  EXPECT_TRUE(holds(slurp(path("two-verified/trainee-c.html")), "forbidden: vessel"));
+}
+
+TEST_F(CohortProgram, WhatCannotBeMeasuredIsRefusedWithEveryReason) {
+  fs::create_directories(path("one-expert"));
+  fs::copy_file(path("experts/e1.ctpm"), path("one-expert/e1.ctpm"));
+  ProgramOutcome refused = ctpm({"cohort", "--experts", "one-expert", "--trainees", "trainees", "-o", "refused"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_TRUE(holds(refused.err, "one expert's session, which cannot tell how much experts differ")) << refused.err;
+  fs::create_directories(path("twice"));
+  for (const char* name : {"e1", "e2"})
+    fs::copy_file(path(std::string("experts/") + name + ".ctpm"), path(std::string("twice/") + name + ".ctpm"));
+  fs::copy_file(path("experts/e1.ctpm"), path("twice/again.ctpm"));
+  write("twice/broken.ctpm", "no session");
+  refused = ctpm({"cohort", "--experts", "twice", "--trainees", "trainees", "-o", "refused"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_TRUE(holds(refused.err, "is the same session as") && holds(refused.err, "broken.ctpm")) << refused.err;
+  write("bad.json", course(R"({"measure": "peak_forse_n"}, {"measure": "completion_time_s", "low": 2, "high": 1})"));
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"cohort", "bad.json", "--trainees", "trainees", "-o", "refused"},
+        {"check", "bad.json"}}) {
+    refused = ctpm(command);
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_TRUE(holds(refused.err, "bad.json:2:") && holds(refused.err, "did you mean \"peak_force_n\"?") &&
+                holds(refused.err, "must be above low"))
+        << refused.err;
+  }
+  EXPECT_FALSE(fs::exists(path("refused")));
+  EXPECT_EQ(ctpm({"check", "course.json"}).code, 0);
+}
+
+}  // namespace
+}  // namespace ctpm
