@@ -3,6 +3,7 @@
 #include "scenes/scene_keys.h"
 #include "scenes/schema.h"
 #include "scenes/script_keys.h"
+#include "scenes/sweep_keys.h"
 
 // The documentation tables.
 namespace ctpm::scenes {
@@ -37,6 +38,8 @@ std::string value_of(const FieldRow& row) {
       return "three numbers, each " + range_of(row);
     case FieldKind::points:
       return "list of three numbers, each " + range_of(row) + at_least(row.least);
+    case FieldKind::values:
+      return "list of numbers, texts, flags or points" + at_least(row.least);
     case FieldKind::choice: {
       std::string words;
       for (const std::string& word : row.words) words += (words.empty() ? "" : ", ") + in_code(word);
@@ -96,5 +99,7 @@ std::string preset_table() {
 std::string scene_reference() { return tables_of(FieldLister::list_of<SceneSpec>()) + preset_table(); }
 
 std::string script_reference() { return tables_of(FieldLister::list_of<Script>()); }
+
+std::string sweep_reference() { return tables_of(FieldLister::list_of<SweepSpec>()); }
 
 }  // namespace ctpm::scenes

@@ -6,6 +6,7 @@
 #include "scenes/presets.h"
 #include "scenes/scene_keys.h"
 #include "scenes/script_keys.h"
+#include "scenes/sweep_keys.h"
 
 namespace ctpm::scenes {
 namespace {
@@ -56,6 +57,10 @@ Json value_of(const FieldRow& row) {
       return point_of(row.range);
     case FieldKind::points:
       return list_of(point_of(row.range), row.least);
+    case FieldKind::values:
+      return list_of(
+          {{"type", {"number", "string", "boolean", "array"}}, {"items", {{"type", "number"}}}, {"minItems", 1}},
+          row.least);
     case FieldKind::choice:
       return words_of(row.words);
     case FieldKind::record:
@@ -104,6 +109,11 @@ std::string scene_schema() {
 std::string script_schema() {
   return schema_of(FieldLister::list_of<Script>(),
                    std::string(script_format_name) + " " + std::to_string(script_format_version));
+}
+
+std::string sweep_schema() {
+  return schema_of(FieldLister::list_of<SweepSpec>(),
+                   std::string(sweep_format_name) + " " + std::to_string(sweep_format_version));
 }
 
 }  // namespace ctpm::scenes
