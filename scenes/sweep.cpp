@@ -6,7 +6,6 @@
 
 #include "scenes/field_reader.h"
 #include "scenes/json_text.h"
-#include "scenes/json_words.h"
 #include "scenes/sweep_keys.h"
 
 namespace ctpm::scenes {
@@ -149,55 +148,6 @@ Result<SweepText> read_sweep(std::string_view text, const std::string& file_name
   check_sweep(problems, sweep.spec);
   if (!problems.is_empty()) return problems.errors();
   return sweep;
-}
-
-namespace {
-
-/// The text with one value set.
-Result<std::string> set_value(const std::string& text, const std::string& file_name, const SetValue& set) {
-  const Result<JsonNode> root = parse_json(text, file_name);
-  if (!root) return root.errors();
-  const JsonNode* node = &*root;
-  std::size_t start = 0;
-  while (start < set.pointer.size()) {
-    const std::size_t end = std::min(set.pointer.find('/', start + 1), set.pointer.size());
-    const JsonNode* next = node->child(set.pointer.substr(start + 1, end - start - 1));
-    if (next == nullptr) break;
-    node = next, start = end;
-  }
-  const std::size_t mark = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
-  std::vector<std::size_t> origin;
-  (void)without_comments(std::string_view(text).substr(mark), &origin);
-  const auto behind = [&](std::size_t end) { return mark + origin[end - 1] + 1; };
-  std::string changed = text;
-  if (start == set.pointer.size()) {
-    const std::size_t begin = mark + origin[node->begin];
-    return changed.replace(begin, behind(node->end) - begin, set.json);
-  }
-  if (node->kind != JsonKind::object)
-    return Error{file_name + ":" + std::to_string(node->place.line) + ":" + std::to_string(node->place.column),
-                 set.pointer.substr(0, start) + ": there is no " + set.pointer.substr(start), ""};
-  std::string added = set.json;
-  for (std::size_t end = set.pointer.size(); end > start;) {
-    const std::size_t slash = set.pointer.rfind('/', end - 1);
-    added = in_quotes(set.pointer.substr(slash + 1, end - slash - 1)) + ": " + added;
-    end = slash;
-    if (end > start) added = "{" + added + "}";
-  }
-  if (node->children.empty()) return changed.insert(mark + origin[node->begin] + 1, added);
-  return changed.insert(behind(node->children.back().end), ", " + added);
-}
-
-}  // namespace
-
-Result<std::string> set_values(const std::string& text, const std::string& file_name,
-                               const std::vector<SetValue>& values) {
-  Result<std::string> changed = text;
-  for (const SetValue& value : values) {
-    changed = set_value(*changed, file_name, value);
-    if (!changed) break;
-  }
-  return changed;
 }
 
 }  // namespace ctpm::scenes

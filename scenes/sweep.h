@@ -57,17 +57,25 @@ struct SweepText {
 /// values, and the rules between them. Reads no scene and no script.
 Result<SweepText> read_sweep(std::string_view text, const std::string& file_name);
 
-/// A value at a place of a JSON text.
-struct SetValue {
-  std::string pointer;  ///< JSON pointer
-  std::string json;
-};
+/// A text of a scene or a script with places for values. Comments and layout stay.
+class ValueSlots {
+ public:
+  /// A text without places, of any format.
+  explicit ValueSlots(const std::string& text) : between_{text} {}
 
-/// The text of a scene or a script with these values at their places; comments and layout stay. A key that is not
-/// written is added where the object around it is, or can be. Errors: the text is not JSON; a pointer that leads
-/// through an item of a list that is not there, or through a value that is no object.
-Result<std::string> set_values(const std::string& text, const std::string& file_name,
-                               const std::vector<SetValue>& values);
+  /// Finds the places of JSON pointers. A key that is not written is added where the object around it is, or can be.
+  /// Errors: the text is not JSON; a pointer that leads through an item of a list that is not there, or through a value
+  /// that is no object; one that leads into the value of another.
+  static Result<ValueSlots> find(const std::string& text, const std::string& file_name,
+                                 const std::vector<std::string>& pointers);
+
+  /// The text with these values, as JSON, at the places (pointer_count).
+  std::string with(const std::vector<std::string>& values) const;
+
+ private:
+  std::vector<std::string> between_;  ///< the text around the places, in its order (pointer_count + 1)
+  std::vector<std::size_t> pointer_;  ///< whose place follows each of them (pointer_count)
+};
 
 /// JSON Schema (2020-12) of sweeps, checked in as sweep.schema.json, and the Markdown tables within SWEEP.md.
 std::string sweep_schema();

@@ -76,6 +76,14 @@ Statement& Statement::bind(int index, std::int64_t value) {
   sqlite3_bind_int64(statement_, index, value);
   return *this;
 }
+Statement& Statement::bind(int index, double value) {
+  sqlite3_bind_double(statement_, index, value);
+  return *this;
+}
+Statement& Statement::bind_nothing(int index) {
+  sqlite3_bind_null(statement_, index);
+  return *this;
+}
 Statement& Statement::bind(int index, const std::string& text) {
   sqlite3_bind_text(statement_, index, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT);
   return *this;

@@ -25,8 +25,10 @@ class Statement {
   ~Statement();
 
   Statement& bind(int index, std::int64_t value);
+  Statement& bind(int index, double value);
   Statement& bind(int index, const std::string& text);
   Statement& bind(int index, ByteView blob);  ///< the bytes must live until reset()
+  Statement& bind_nothing(int index);
 
   /// If failed, Database::problem() gives the reason.
   Outcome step();

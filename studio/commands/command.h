@@ -35,5 +35,6 @@ Command add_bench(CLI::App& program);
 Command add_stability(CLI::App& program);
 Command add_fidelity(CLI::App& program);
 Command add_studio(CLI::App& program);
+Command add_sweep(CLI::App& program);
 
 }  // namespace ctpm::commands

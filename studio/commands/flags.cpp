@@ -8,6 +8,7 @@ namespace {
 /// Fields that libraries name in errors, and their flags.
 constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"continue.at_s", "--at"},
+    {"collect.incomplete", "--incomplete"},
     {"device.address", "--igtl"},
     {"device.allowed", "--igtl-allow"},
     {"device.buttons", "--device-button"},

@@ -85,8 +85,8 @@ class SchemaCheck {
       const scenes::JsonNode* target = schema_.find("$defs")->find(rule.text.substr(std::string("#/$defs/").size()));
       return target == nullptr ? at + ": no " + rule.text : problem(*target, value, at);
     }
-    if (word == "items" && is_list) {
-      for (std::size_t i = 0; i < value.children.size(); ++i)
+    if (word == "items") {
+      for (std::size_t i = 0; is_list && i < value.children.size(); ++i)
         if (const std::string found = problem(rule, value.children[i], scenes::child_pointer(at, i)); !found.empty())
           return found;
       return "";

@@ -77,21 +77,25 @@ TEST(SweepFile, RefusesWhatDoesNotFitTogether) {
         << vary << more << ": " << error_of(sweep_with(vary, more));
 }
 
-TEST(SetValues, KeepsCommentsAndAddsWhatIsNotWritten) {
+TEST(ValueSlots, KeepCommentsAndAddWhatIsNotWritten) {
   const std::string text = "{ // one\n  \"a\": {\"b\": 1 /* two */, \"c\": [1, {\"d\": 2}]}, \"e\": {}\n}\n";
-  const Result<std::string> changed =
-      set_values(text, "f.json", {{"/a/b", "7.5"}, {"/a/c/1/d", "\"x\""}, {"/a/new", "true"}, {"/e/f/g", "[1, 2]"}});
-  ASSERT_TRUE(changed) << to_string(changed.errors().front());
-  EXPECT_EQ(*changed,
+  const Result<ValueSlots> slots = ValueSlots::find(text, "f.json", {"/a/c/1/d", "/a/b", "/a/new", "/e/f/g"});
+  ASSERT_TRUE(slots) << to_string(slots.errors().front());
+  EXPECT_EQ(slots->with({"\"x\"", "7.5", "true", "[1, 2]"}),
             "{ // one\n  \"a\": {\"b\": 7.5 /* two */, \"c\": [1, {\"d\": \"x\"}], \"new\": true}, \"e\": {\"f\": "
             "{\"g\": [1, 2]}}\n}\n");
+  EXPECT_EQ(ValueSlots::find(text, "f.json", {})->with({}), text);
 }
 
-TEST(SetValues, SaysWhereItCannot) {
-  const Result<std::string> beyond = set_values("{\"a\":\n [1]}", "f.json", {{"/a/3/b", "1"}});
+TEST(ValueSlots, SayWhereTheyCannotBe) {
+  const Result<ValueSlots> beyond = ValueSlots::find("{\"a\":\n [1]}", "f.json", {"/a/3/b", "/b", "/a/0/c"});
   ASSERT_FALSE(beyond);
-  EXPECT_EQ(to_string(beyond.errors().front()), "f.json:2:2: error: /a: there is no /3/b");
-  EXPECT_FALSE(set_values("{\"a\": 1}", "f.json", {{"/a/b", "1"}}));
+  ASSERT_EQ(beyond.errors().size(), 2u);
+  EXPECT_EQ(to_string(beyond.errors()[0]), "f.json:2:2: error: /a: there is no /3/b");
+  EXPECT_EQ(to_string(beyond.errors()[1]), "f.json:2:3: error: /a/0: there is no /c");
+  const Result<ValueSlots> within = ValueSlots::find("{\"a\": {\"b\": 1}}", "f.json", {"/a/b", "/a"});
+  ASSERT_FALSE(within);
+  EXPECT_EQ(to_string(within.errors()[0]), "f.json: error: /a/b: lies within another value that varies");
 }
 
 }  // namespace
