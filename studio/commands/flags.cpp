@@ -55,6 +55,7 @@ constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"second.rotation", "--device-second-rotation"},
     {"second.tip", "--device-second-tip"},
     {"second.tool", "--device-second-tool"},
+    {"slurm.tasks_per_element", "--tasks-per-element"},
     {"studio.behind", "--behind"},
     {"studio.bind", "--bind"},
     {"studio.port", "--port"},

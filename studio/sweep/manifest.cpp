@@ -15,7 +15,9 @@ std::string manifest_json(const Plan& plan) {
   output::JsonWriter json;
   json.begin_object().member("format", kFormat).member("version", 1);
   json.member("sweep", std::string_view(plan.file)).member("name", std::string_view(plan.name));
-  json.key("columns").begin_list();
+  json.key("command").begin_list();
+  for (const std::string& word : plan.command) json.value(std::string_view(word));
+  json.end_list().key("columns").begin_list();
   for (std::size_t i = 0; i < plan.columns.size(); ++i)
     json.begin_object()
         .member("name", std::string_view(plan.columns[i]))
@@ -45,8 +47,10 @@ reports::Table manifest_table(const Plan& plan) {
 }  // namespace
 
 Result<Done> write_plan(const Plan& plan, const std::string& folder) {
-  if (const Result<Plan> before = read_plan(folder); before && before->file != plan.file)
-    return Error{folder, "holds the sweep of " + before->file, "choose another folder"};
+  if (const Result<Plan> before = read_plan(folder);
+      before && (before->file != plan.file || before->command != plan.command))
+    return Error{folder, "holds another plan: " + (before->file.empty() ? before->name : before->file),
+                 "choose another folder"};
   if (Result<Done> ready = reports::prepare_folder(folder); !ready) return ready;
   return reports::write_report(
       folder, {{"manifest.csv", reports::to_csv(manifest_table(plan))}, {"manifest.json", manifest_json(plan)}});
@@ -61,6 +65,7 @@ Result<Plan> read_plan(const std::string& folder) {
     if (json.at("format") != kFormat || json.at("version") != 1) return Error{path, "is no plan of this program", ""};
     Plan plan;
     plan.file = json.at("sweep"), plan.name = json.at("name");
+    plan.command = json.at("command").get<std::vector<std::string>>();
     for (const nlohmann::json& column : json.at("columns"))
       plan.columns.push_back(column.at("name")), plan.is_number.push_back(column.at("is_number"));
     for (const nlohmann::json& task : json.at("tasks"))

@@ -26,7 +26,8 @@ struct Task {
 
 /// What a sweep does, and in what order.
 struct Plan {
-  std::string file;  ///< of the sweep, absolute
+  std::string file;                  ///< of the sweep, absolute; empty: `command` is run on each session
+  std::vector<std::string> command;  ///< see plan_each()
   std::string name;
   std::vector<std::string> columns;
   std::vector<bool> is_number;  ///< whether all values of a column are numbers (column_count)

@@ -19,6 +19,7 @@
 #include <thread>
 #include <vector>
 
+#include "studio/sweep/each.h"
 #include "studio/sweep/run_task.h"
 #include "studio/sweep/task_folder.h"
 
@@ -54,7 +55,7 @@ double processor_time() {
 /// Records one run's tasks with processes of its own.
 class Workers {
  public:
-  Workers(const RunRequest& request, Sweep& sweep, const Plan& plan, std::vector<std::size_t> waiting, Shared& shared)
+  Workers(const RunRequest& request, Sweep* sweep, const Plan& plan, std::vector<std::size_t> waiting, Shared& shared)
       : request_(request), sweep_(sweep), plan_(plan), waiting_(std::move(waiting)), shared_(shared) {}
 
   /// Starts the processes, and again where they die, until all has ended.
@@ -69,7 +70,7 @@ class Workers {
   void give_up(const Error& error);
 
   const RunRequest& request_;
-  Sweep& sweep_;
+  Sweep* sweep_;  ///< null: the plan has a command
   const Plan& plan_;
   const std::vector<std::size_t> waiting_;  ///< tasks of the plan
   Shared& shared_;
@@ -96,9 +97,15 @@ bool Workers::work_on(std::int64_t index) {
   if (!claim) return give_up(claim.errors().front()), false;
   if (!*claim) return ++shared_.passed, true;
   Result<std::optional<TaskResult>> result =
-      recorder_->record(task, id, **claim, [&] { return shared_.stop.load(std::memory_order_relaxed); });
+      recorder_ ? recorder_->record(task, id, **claim, [&] { return shared_.stop.load(std::memory_order_relaxed); })
+                : run_each(plan_, task, **claim);
   if (!result) return give_up(result.errors().front()), false;
-  if (!*result) return false;
+  if (!*result) {
+    // A command that a signal ended counts as this process would, had it been killed.
+    claim->reset();
+    if (!recorder_) _exit(1);
+    return false;
+  }
   if (const Result<Done> finished = (*claim)->finish(**result); !finished)
     return give_up(finished.errors().front()), false;
   shared_.task_ns += std::int64_t(1e9 * (*result)->processor_s);
@@ -107,7 +114,7 @@ bool Workers::work_on(std::int64_t index) {
 }
 
 void Workers::work(int slot, std::optional<std::int64_t> first) {
-  recorder_.emplace(sweep_);
+  if (sweep_ != nullptr) recorder_.emplace(*sweep_);
   while (!shared_.stop) {
     const std::int64_t index = first ? *std::exchange(first, std::nullopt) : shared_.next++;
     if (index >= std::int64_t(waiting_.size())) break;
@@ -195,15 +202,19 @@ Result<RunSummary> run_sweep(const RunRequest& request) {
   const auto start = std::chrono::steady_clock::now();
   const Result<Plan> plan = read_plan(request.folder);
   if (!plan) return plan.errors();
-  Result<Sweep> sweep = Sweep::load(plan->file);
-  if (!sweep) return sweep.errors();
-  if (sweep->task_count() != plan->tasks.size())
+  std::optional<Sweep> sweep;
+  if (!plan->file.empty()) {
+    Result<Sweep> loaded = Sweep::load(plan->file);
+    if (!loaded) return loaded.errors();
+    sweep.emplace(std::move(*loaded));
+  }
+  if (sweep && sweep->task_count() != plan->tasks.size())
     return Error{plan->file, "has changed since it was planned",
                  "plan it again: what is done and did not change stays"};
   void* memory = mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) return Error{"", std::string("no memory to share: ") + std::strerror(errno), ""};
   Shared* shared = new (memory) Shared;
-  Workers workers(request, *sweep, *plan, waiting_tasks(request, *plan), *shared);
+  Workers workers(request, sweep ? &*sweep : nullptr, *plan, waiting_tasks(request, *plan), *shared);
   const Result<Done> done = workers.run();
   RunSummary summary;
   summary.recorded = shared->recorded, summary.failed = shared->failed, summary.deaths = workers.deaths();

@@ -40,6 +40,8 @@ class Claim {
   /// Where the session belongs.
   std::string session_path() const { return unfinished_ + "/session.ctpm"; }
   const std::string& folder() const { return unfinished_; }
+  /// The locked file, for a process that works there too.
+  int lock() const { return lock_; }
 
   /// Writes the result and gives the folder its name, by one rename. Error: it cannot be written.
   Result<Done> finish(const TaskResult& result);

@@ -233,6 +233,66 @@ TEST_F(SweepProgram, PlannedAgainKeepsWhatDidNotChangeAndRefusesWhatDid) {
   EXPECT_EQ(status(), "../out: 1 of 2 done, 1 waiting\n");
 }
 
+/// Two sessions of the rig, a.ctpm and b.ctpm, of which b has one bit flipped where its ticks are.
+void record_two(const fs::path& folder) {
+  testing::write_rig(folder);
+  for (const char* name : {"a.ctpm", "b.ctpm"})
+    ASSERT_EQ(testing::run_ctpm({"record", "rig.json", "--script", "press.json", "-o", name, "--fast"}, folder).code,
+              0);
+  const std::string bytes = slurp(folder / "b.ctpm");
+  std::fstream file(folder / "b.ctpm", std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(std::streamoff(bytes.size() / 2));
+  file.put(char(bytes[bytes.size() / 2] ^ 1));
+}
+
+TEST_F(SweepProgram, RunsACommandOnEachSession) {
+  record_two(folder());
+  const ProgramOutcome planned = run({"plan", "--each", "verify", "-o", "out", "a.ctpm", "b.ctpm"});
+  ASSERT_EQ(planned.code, 0) << planned.err;
+  EXPECT_EQ(run({"run", "out"}).code, 1);
+  EXPECT_EQ(status().find("../out: 1 of 2 done, 1 failed\nfailed: session 2, "), 0u) << status();
+  const std::vector<std::string> rows = testing::lines_of(slurp(folder() / "out" / "manifest.csv"));
+  const std::string first = testing::cells_of(rows.at(1)).at(1);
+  EXPECT_NE(slurp(out() / "tasks" / first / "out.txt").find("same: "), std::string::npos);
+  // Mended, it is another session: the plan is not that of the files any more.
+  fs::copy_file(folder() / "a.ctpm", folder() / "b.ctpm", fs::copy_options::overwrite_existing);
+  ASSERT_EQ(run({"retry", "out"}).code, 0);
+  EXPECT_EQ(run({"run", "out"}).code, 2);
+  ASSERT_EQ(run({"plan", "--each", "verify", "-o", "out", "a.ctpm", "b.ctpm"}).code, 0);
+  EXPECT_EQ(run({"run", "out"}).out.find("1 sessions in "), 0u);
+  EXPECT_EQ(run({"collect", "out"}).code, 0);
+}
+
+TEST_F(SweepProgram, ComparesAndExportsEachSession) {
+  record_two(folder());
+  fs::copy_file(folder() / "a.ctpm", folder() / "expert.ctpm");
+  ASSERT_EQ(run({"plan", "--each", "compare expert.ctpm", "-o", "out", "a.ctpm"}).code, 0);
+  const ProgramOutcome compared = run({"run", "out"});
+  EXPECT_EQ(compared.code, 0) << compared.out << compared.err;
+  ASSERT_EQ(run({"collect", "out"}).code, 0);
+  const std::vector<std::string> rows = testing::lines_of(slurp(out() / "results.csv"));
+  EXPECT_NE(rows.at(0).find(",exit_code,"), std::string::npos) << rows[0];
+  EXPECT_NE(rows.at(0).find("force"), std::string::npos) << rows[0];
+  ASSERT_EQ(run({"plan", "--each", "export --size 160x90 --fps 10 -o {out}/small.mp4", "-o", "films", "a.ctpm"}).code,
+            0);
+  const ProgramOutcome exported = run({"run", "films"});
+  EXPECT_EQ(exported.code, 0) << exported.out << exported.err;
+  const auto id = testing::cells_of(testing::lines_of(slurp(folder() / "films" / "manifest.csv")).at(1)).at(1);
+  EXPECT_TRUE(fs::exists(folder() / "films" / "tasks" / id / "small.mp4"));
+}
+
+TEST_F(SweepProgram, RefusesCommandsThatReadNoSession) {
+  testing::write(folder() / "a.ctpm", "x");
+  const ProgramOutcome record = run({"plan", "--each", "record", "-o", "out", "a.ctpm"});
+  EXPECT_EQ(record.code, 2);
+  EXPECT_NE(record.err.find("one of compare, export, info, verify"), std::string::npos) << record.err;
+  const ProgramOutcome twice = run({"plan", "--each", "verify", "-o", "out", "a.ctpm", "a.ctpm", "none.ctpm"});
+  EXPECT_EQ(twice.code, 2);
+  EXPECT_NE(twice.err.find("a.ctpm: error: is there twice"), std::string::npos) << twice.err;
+  EXPECT_NE(twice.err.find("none.ctpm: error: "), std::string::npos) << twice.err;
+  EXPECT_FALSE(fs::exists(out()));
+}
+
 /// What follows "the sweep itself" in the output of a run [%].
 double share_in(const std::string& out) {
   const std::string before = "of which the sweep itself ";
