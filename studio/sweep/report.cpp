@@ -119,6 +119,9 @@ class Page {
     reports::Series means{.name = "mean"};
     for (const auto& [x, group] : by_value(relation)) means.x.push_back(x), means.y.push_back(spread_of(group).mean);
     if (means.x.size() > 1) plot.series.push_back(std::move(means));
+    const Spread range = spread_of(numbers_[relation.column]);
+    const double margin = 0.03 * (range.most - range.least);  // so that no mark is cut
+    plot.x_range = {range.least - margin, range.most + margin};
     plot.caption = "rank correlation " + output::fixed(relation.correlation, 2) +
                    (stride > 1 ? "; one of " + std::to_string(stride) + " sessions is drawn" : "");
     return plot;

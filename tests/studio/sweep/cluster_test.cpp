@@ -68,6 +68,8 @@ TEST_F(SweepOnACluster, EndsWithAllRowsAfterTwoKillsOfTheNodeAndOneOfTheControll
     ASSERT_TRUE(wait_for(finished)) << count_finished();
     cluster.kill_node();
     EXPECT_LT(count_finished(), 1000u);
+    // As long as it takes to boot; Slurm looks only for jobs that are older than its BatchStartTimeout.
+    std::this_thread::sleep_for(std::chrono::seconds(3));
     cluster.start_node();
   }
   ASSERT_TRUE(wait_for(550)) << count_finished();
