@@ -30,6 +30,7 @@ Command add_key(CLI::App& program);
 Command add_export(CLI::App& program);
 Command add_demo(CLI::App& program);
 Command add_fit(CLI::App& program);
+Command add_calibrate(CLI::App& program);
 Command add_paper(CLI::App& program);
 Command add_bench(CLI::App& program);
 Command add_stability(CLI::App& program);

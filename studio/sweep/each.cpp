@@ -18,8 +18,10 @@ namespace fs = std::filesystem;
 constexpr const char *kSession = "{}", *kFolder = "{out}";
 
 /// Commands that read a session, and what they are given where nothing names the folder.
-const std::map<std::string, std::vector<std::string>> kCommands{
-    {"verify", {}}, {"info", {}}, {"export", {"-o", "{out}/film.mp4"}}, {"compare", {"-o", "{out}/compare"}}};
+const std::map<std::string, std::vector<std::string>> kCommands{{"verify", {}},
+                                                                {"info", {}},
+                                                                {"export", {option_word("output", "{out}/film.mp4")}},
+                                                                {"compare", {option_word("output", "{out}/compare")}}};
 
 bool any_holds(const std::vector<std::string>& words, const std::string& part) {
   return std::any_of(words.begin(), words.end(),

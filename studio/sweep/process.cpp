@@ -60,6 +60,10 @@ Result<ProcessOutput> run_process(const std::vector<std::string>& command, int k
                        content_of(err.get()), seconds(used.ru_utime) + seconds(used.ru_stime)};
 }
 
+std::string option_word(const std::string& name, const std::string& value) {
+  return "--" + name + (value.empty() ? "" : "=" + value);
+}
+
 std::string own_program() {
   std::error_code ignored;
   return std::filesystem::read_symlink("/proc/self/exe", ignored).string();

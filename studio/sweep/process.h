@@ -17,6 +17,9 @@ struct ProcessOutput {
 /// lock, which then lasts as long as the last of the two processes. Error: it cannot be started.
 Result<ProcessOutput> run_process(const std::vector<std::string>& command, int kept = -1);
 
+/// A long option as a word of a command line, with its value if that is not empty.
+std::string option_word(const std::string& name, const std::string& value = "");
+
 /// Path of this program's own file.
 std::string own_program();
 

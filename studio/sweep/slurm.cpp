@@ -43,25 +43,25 @@ Result<std::size_t> most_elements() {
 /// The script of an element: a slice of the plan on as many processes as it has processors.
 std::string job_script(const std::string& folder, std::size_t per_element) {
   const std::string count = std::to_string(per_element);
-  return "#!/bin/sh\n# Written by ctpm sweep run: one element of a job array.\n"
-         "exec " +
-         output::shell_word(own_program()) + " sweep run " + output::shell_word(folder) +
-         " --from $((SLURM_ARRAY_TASK_ID * " + count + " + 1)) --to $(((SLURM_ARRAY_TASK_ID + 1) * " + count +
-         ")) --jobs ${SLURM_CPUS_PER_TASK:-1}\n";
+  return "#!/bin/sh\n# Written by ctpm sweep run: one element of a job array.\nexec " +
+         output::shell_word(own_program()) + " sweep run " + output::shell_word(folder) + " " +
+         option_word("from", "$((SLURM_ARRAY_TASK_ID * " + count + " + 1))") + " " +
+         option_word("to", "$(((SLURM_ARRAY_TASK_ID + 1) * " + count + "))") + " " +
+         option_word("jobs", "${SLURM_CPUS_PER_TASK:-1}") + "\n";
 }
 
 std::vector<std::string> sbatch_command(const SlurmRequest& request, const std::string& name, const std::string& folder,
                                         const std::string& array) {
   std::vector<std::string> command{"sbatch",
-                                   "--parsable",
-                                   "--requeue",
-                                   "--open-mode=append",
-                                   "--job-name=" + name,
-                                   "--array=" + array,
-                                   "--output=" + folder + "/slurm/%A_%a.log"};
-  if (!request.partition.empty()) command.push_back("--partition=" + request.partition);
-  if (!request.time.empty()) command.push_back("--time=" + request.time);
-  if (!request.memory.empty()) command.push_back("--mem=" + request.memory);
+                                   option_word("parsable"),
+                                   option_word("requeue"),
+                                   option_word("open-mode", "append"),
+                                   option_word("job-name", name),
+                                   option_word("array", array),
+                                   option_word("output", folder + "/slurm/%A_%a.log")};
+  if (!request.partition.empty()) command.push_back(option_word("partition", request.partition));
+  if (!request.time.empty()) command.push_back(option_word("time", request.time));
+  if (!request.memory.empty()) command.push_back(option_word("mem", request.memory));
   command.insert(command.end(), request.options.begin(), request.options.end());
   command.push_back(folder + "/slurm/job.sh");
   return command;

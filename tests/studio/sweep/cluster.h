@@ -71,11 +71,13 @@ class Cluster {
       if (!spared.contains(child)) kill_all_below(child), ::kill(child, SIGKILL), ::waitpid(child, nullptr, 0);
   }
 
-  /// What an administrator does after a crash of the controller: Slurm drains a node that runs jobs which the
-  /// controller started after it had last saved its state.
-  void resume_node() const {
+  /// What an administrator does after a crash of the controller: where jobs ran that it had started after it had last
+  /// saved its state, Slurm drains the node and holds the jobs.
+  void tidy_up() const {
     if (output_of({"sinfo", "-h", "-o", "%T"}).find("drain") == 0)
       output_of({"scontrol", "update", "NodeName=node", "State=RESUME"});
+    for (const std::string& line : lines_of(output_of({"squeue", "-h", "-r", "-t", "PD", "-o", "%A %r"})))
+      if (line.find("held") != std::string::npos) output_of({"scontrol", "release", line.substr(0, line.find(' '))});
   }
 
   template <class Condition>

@@ -47,13 +47,13 @@ TEST_F(SweepOnACluster, EndsWithAllRowsAfterTwoKillsOfTheNodeAndOneOfTheControll
   testing::write_sweep(folder(), kThousand);
   ASSERT_EQ(run({"plan", "sweep.json", "-o", "out"}).code, 0);
   ASSERT_EQ(run({"plan", "sweep.json", "-o", "here"}).code, 0);
-  Cluster cluster(50);
+  Cluster cluster(25);
   ASSERT_TRUE(cluster.is_ready()) << slurp(cluster.path() / "slurmctld.out") << slurp(cluster.path() / "slurmd.out");
 
-  const ProgramOutcome too_many = run({"run", "out", "--slurm", "--tasks-per-element", "10"});
+  const ProgramOutcome too_many = run({"run", "out", "--slurm", "--tasks-per-element", "20"});
   EXPECT_EQ(too_many.code, 2);
   EXPECT_NE(too_many.err.find(
-                "--tasks-per-element: error: got 10, which makes more elements than Slurm's MaxArraySize of 50"),
+                "--tasks-per-element: error: got 20, which makes more elements than Slurm's MaxArraySize of 25"),
             std::string::npos)
       << too_many.err;
   const ProgramOutcome nowhere = run({"run", "out", "--slurm", "--partition", "none-such"});
@@ -61,9 +61,9 @@ TEST_F(SweepOnACluster, EndsWithAllRowsAfterTwoKillsOfTheNodeAndOneOfTheControll
   EXPECT_NE(nowhere.err.find("invalid partition specified: none-such"), std::string::npos) << nowhere.err;
 
   const ProgramOutcome submitted =
-      run({"run", "out", "--slurm", "--tasks-per-element", "25", "--partition", "all", "--time", "10"});
+      run({"run", "out", "--slurm", "--tasks-per-element", "50", "--partition", "all", "--time", "10"});
   ASSERT_EQ(submitted.code, 0) << submitted.err;
-  EXPECT_NE(submitted.out.find(": 1000 sessions in 40 elements of up to 25\n"), std::string::npos) << submitted.out;
+  EXPECT_NE(submitted.out.find(": 1000 sessions in 20 elements of up to 50\n"), std::string::npos) << submitted.out;
   for (const std::size_t finished : {110, 330}) {
     ASSERT_TRUE(wait_for(finished)) << count_finished();
     cluster.kill_node();
@@ -76,7 +76,7 @@ TEST_F(SweepOnACluster, EndsWithAllRowsAfterTwoKillsOfTheNodeAndOneOfTheControll
   cluster.kill_controller();
   EXPECT_LT(count_finished(), 1000u);
   cluster.start_controller();
-  const auto is_complete = [&] { return cluster.resume_node(), count_finished() == 1000; };
+  const auto is_complete = [&] { return cluster.tidy_up(), count_finished() == 1000; };
   ASSERT_TRUE(Cluster::within_a_minute(is_complete) || Cluster::within_a_minute(is_complete))
       << run({"status", "out"}).out << slurp(cluster.path() / "slurmctld.out");
   EXPECT_EQ(run({"run", "out", "--slurm"}).out, "out: nothing waits\n");
