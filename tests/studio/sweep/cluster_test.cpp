@@ -77,8 +77,9 @@ TEST_F(SweepOnACluster, EndsWithAllRowsAfterTwoKillsOfTheNodeAndOneOfTheControll
   EXPECT_LT(count_finished(), 1000u);
   cluster.start_controller();
   const auto is_complete = [&] { return cluster.tidy_up(), count_finished() == 1000; };
-  ASSERT_TRUE(Cluster::within_a_minute(is_complete) || Cluster::within_a_minute(is_complete))
-      << run({"status", "out"}).out << slurp(cluster.path() / "slurmctld.out");
+  bool all = false;
+  for (int minute = 0; minute < 4 && !all; ++minute) all = Cluster::within_a_minute(is_complete);
+  ASSERT_TRUE(all) << run({"status", "out"}).out << slurp(cluster.path() / "slurmctld.out");
   EXPECT_EQ(run({"run", "out", "--slurm"}).out, "out: nothing waits\n");
 
   ASSERT_EQ(run({"collect", "out"}).code, 0);
