@@ -122,8 +122,8 @@ struct Solution {
   Eigen::MatrixXd slopes;  ///< (residual_count x free_count)
 };
 
-/// Bounded least squares from one start; none if its runs are refused.
-std::optional<Solution> solve(Data& data, const Logs& start, const std::vector<std::size_t>& free) {
+/// Bounded least squares from one start, until the cost changes by less than a share; none if its runs are refused.
+std::optional<Solution> solve(Data& data, const Logs& start, const std::vector<std::size_t>& free, double tolerance) {
   std::vector<double> values;
   for (const std::size_t k : free) values.push_back(std::clamp(start[k], std::log(kLeast[k]), std::log(kMost[k])));
   Logs within = start;
@@ -140,8 +140,7 @@ std::optional<Solution> solve(Data& data, const Logs& start, const std::vector<s
   options.linear_solver_type = ceres::DENSE_QR;
   options.logging_type = ceres::SILENT;
   options.max_num_iterations = 40;
-  // Far below what scatter does: a change of the cost by 1e-6 moves a number by a hundredth of its uncertainty.
-  options.function_tolerance = 1e-6, options.parameter_tolerance = 1e-6;
+  options.function_tolerance = tolerance, options.parameter_tolerance = 1e-6;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   if (!summary.IsSolutionUsable()) return std::nullopt;
@@ -267,20 +266,24 @@ double root_mean_square(const std::vector<double>& values) {
   return values.empty() ? 0 : std::sqrt(squares / double(values.size()));
 }
 
-/// The best of all starts, and how many came there.
+/// Of the cost. The last one is far below what scatter does: it moves a number by a hundredth of its uncertainty.
+constexpr double kEarlyTolerance = 1e-4, kLastTolerance = 1e-6;
+
+/// The best of all starts, followed to its end, and how many came there.
 std::optional<Solution> best_of(Data& data, const Logs& first, const std::vector<std::size_t>& free,
                                 const FitRequest& request, Fit& fit) {
   std::vector<Solution> found;
   for (int n = 0; n < request.starts; ++n) {
     if (request.should_stop && request.should_stop()) return std::nullopt;
-    if (std::optional<Solution> one = solve(data, start_of(first, free, n), free)) found.push_back(std::move(*one));
+    if (std::optional<Solution> one = solve(data, start_of(first, free, n), free, kEarlyTolerance))
+      found.push_back(std::move(*one));
   }
   if (found.empty()) return std::nullopt;
   const auto best = std::min_element(found.begin(), found.end(),
                                      [](const Solution& a, const Solution& b) { return a.cost < b.cost; });
   fit.starts = request.starts;
   for (const Solution& one : found) fit.same_starts += one.cost <= best->cost * 1.01 + 1e-12;
-  return *best;
+  return solve(data, best->logs, free, kLastTolerance);
 }
 
 /// Correlations of the logarithms of the free parameters; 0 where a variance is none.
