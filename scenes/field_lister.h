@@ -11,12 +11,13 @@
 #include "core/model/vec3.h"
 #include "scenes/json_text.h"
 #include "scenes/key_types.h"
+#include "scenes/sweep.h"
 
 // The visitor that lists: the tables as data, from which the JSON Schema and the documentation are made.
 // Internal to scenes.
 namespace ctpm::scenes {
 
-enum class FieldKind { constant, text, preset, number, integer, flag, point, points, choice, record, list };
+enum class FieldKind { constant, text, preset, number, integer, flag, point, points, values, choice, record, list };
 
 /// One key of a record.
 struct FieldRow {
@@ -77,6 +78,9 @@ class FieldLister {
   }
   void points(const Key& key, const std::vector<Vec3>&, const Unit& unit, const Range& range, std::size_t least) {
     numeric(key, FieldKind::points, unit, range).least = least;
+  }
+  void values(const Key& key, const std::vector<SweepValue>&, std::size_t least) {
+    row(key, FieldKind::values).least = least;
   }
   template <class E>
   void choice(const Key& key, E value) {

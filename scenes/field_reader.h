@@ -11,6 +11,7 @@
 #include "scenes/json_text.h"
 #include "scenes/key_types.h"
 #include "scenes/problems.h"
+#include "scenes/sweep.h"
 
 // The visitor that reads: text -> struct, and reports every error with its place. Internal to scenes.
 namespace ctpm::scenes {
@@ -41,6 +42,8 @@ class FieldReader {
   void point(const Key& key, Vec3& value, const Unit& unit, const Range& range);
   void point(const Key& key, std::optional<Vec3>& value, const Unit& unit, const Range& range);
   void points(const Key& key, std::vector<Vec3>& value, const Unit& unit, const Range& range, std::size_t least);
+
+  void values(const Key& key, std::vector<SweepValue>& value, std::size_t least);
 
   template <class E>
   void choice(const Key& key, E& value) {

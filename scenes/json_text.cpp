@@ -203,6 +203,14 @@ const JsonNode* JsonNode::find(std::string_view key) const {
   return nullptr;
 }
 
+const JsonNode* JsonNode::child(const std::string& part) const {
+  if (kind == JsonKind::object) return find(part);
+  if (kind != JsonKind::list) return nullptr;
+  std::size_t index = 0;
+  const auto parsed = std::from_chars(part.data(), part.data() + part.size(), index);
+  return parsed.ec == std::errc() && index < children.size() ? &children[index] : nullptr;
+}
+
 std::string describe(const JsonNode& node) {
   switch (node.kind) {
     case JsonKind::null:

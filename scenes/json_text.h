@@ -25,6 +25,8 @@ struct JsonNode {
 
   /// The first member of that name; null if there is none.
   const JsonNode* find(std::string_view key) const;
+  /// The member or the item that a part of a JSON pointer names; null if there is none.
+  const JsonNode* child(const std::string& part) const;
 };
 
 /// "the number 4", "the text "abc"", "a list of 3" ...: what was got, for messages.

@@ -4,6 +4,7 @@
 #include "scenes/scene_keys.h"
 #include "scenes/schema.h"
 #include "scenes/script_keys.h"
+#include "scenes/sweep_keys.h"
 
 // The documentation tables.
 namespace ctpm::scenes {
@@ -38,6 +39,8 @@ std::string value_of(const FieldRow& row) {
       return "three numbers, each " + range_of(row);
     case FieldKind::points:
       return "list of three numbers, each " + range_of(row) + at_least(row.least);
+    case FieldKind::values:
+      return "list of numbers, texts, flags or points" + at_least(row.least);
     case FieldKind::choice: {
       std::string words;
       for (const std::string& word : row.words) words += (words.empty() ? "" : ", ") + in_code(word);
@@ -99,5 +102,6 @@ std::string scene_reference() { return tables_of(FieldLister::list_of<SceneSpec>
 std::string script_reference() { return tables_of(FieldLister::list_of<Script>()); }
 
 std::string course_reference() { return tables_of(FieldLister::list_of<CourseSpec>()); }
+std::string sweep_reference() { return tables_of(FieldLister::list_of<SweepSpec>()); }
 
 }  // namespace ctpm::scenes

@@ -7,6 +7,7 @@
 #include "scenes/presets.h"
 #include "scenes/scene_keys.h"
 #include "scenes/script_keys.h"
+#include "scenes/sweep_keys.h"
 
 namespace ctpm::scenes {
 namespace {
@@ -57,6 +58,10 @@ Json value_of(const FieldRow& row) {
       return point_of(row.range);
     case FieldKind::points:
       return list_of(point_of(row.range), row.least);
+    case FieldKind::values:
+      return list_of(
+          {{"type", {"number", "string", "boolean", "array"}}, {"items", {{"type", "number"}}}, {"minItems", 1}},
+          row.least);
     case FieldKind::choice:
       return words_of(row.words);
     case FieldKind::record:
@@ -110,6 +115,11 @@ std::string script_schema() {
 std::string course_schema() {
   return schema_of(FieldLister::list_of<CourseSpec>(),
                    std::string(course_format_name) + " " + std::to_string(course_format_version));
+}
+
+std::string sweep_schema() {
+  return schema_of(FieldLister::list_of<SweepSpec>(),
+                   std::string(sweep_format_name) + " " + std::to_string(sweep_format_version));
 }
 
 }  // namespace ctpm::scenes

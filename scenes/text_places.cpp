@@ -1,24 +1,10 @@
 #include "scenes/text_places.h"
 
 #include <algorithm>
-#include <charconv>
 
 #include "scenes/json_text.h"
 
 namespace ctpm::scenes {
-namespace {
-
-/// The member of an object or list that `part` of a pointer names; null if there is none.
-const JsonNode* child_of(const JsonNode& node, const std::string& part) {
-  if (node.kind == JsonKind::object) return node.find(part);
-  if (node.kind != JsonKind::list) return nullptr;
-  std::size_t index = 0;
-  const auto parsed = std::from_chars(part.data(), part.data() + part.size(), index);
-  return parsed.ec == std::errc() && index < node.children.size() ? &node.children[index] : nullptr;
-}
-
-}  // namespace
-
 TextPlaces::TextPlaces(std::shared_ptr<const JsonNode> root, std::string file_name)
     : root_(std::move(root)), file_name_(std::move(file_name)) {}
 
@@ -27,7 +13,7 @@ Place TextPlaces::find(const std::string& pointer) const {
   const JsonNode* node = root_.get();
   for (std::size_t start = 0; start < pointer.size();) {
     const std::size_t end = std::min(pointer.find('/', start + 1), pointer.size());
-    const JsonNode* next = child_of(*node, pointer.substr(start + 1, end - start - 1));
+    const JsonNode* next = node->child(pointer.substr(start + 1, end - start - 1));
     if (next == nullptr) break;
     node = next, start = end;
   }

@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
       add_record(program), add_replay(program),   add_verify(program),    add_info(program),    add_recover(program),
       add_sign(program),   add_key(program),      add_anonymise(program), add_cohort(program),  add_export(program),
       add_demo(program),   add_fit(program),      add_paper(program),     add_compare(program), add_stability(program),
-      add_bench(program),  add_fidelity(program), add_studio(program)};
+      add_bench(program),  add_fidelity(program), add_studio(program),    add_sweep(program),   add_calibrate(program)};
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -32,10 +32,12 @@ Command add_key(CLI::App& program);
 Command add_export(CLI::App& program);
 Command add_demo(CLI::App& program);
 Command add_fit(CLI::App& program);
+Command add_calibrate(CLI::App& program);
 Command add_paper(CLI::App& program);
 Command add_bench(CLI::App& program);
 Command add_stability(CLI::App& program);
 Command add_fidelity(CLI::App& program);
 Command add_studio(CLI::App& program);
+Command add_sweep(CLI::App& program);
 
 }  // namespace ctpm::commands

@@ -8,6 +8,7 @@ namespace {
 /// Fields that libraries name in errors, and their flags.
 constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"continue.at_s", "--at"},
+    {"collect.incomplete", "--incomplete"},
     {"device.address", "--igtl"},
     {"device.allowed", "--igtl-allow"},
     {"device.buttons", "--device-button"},
@@ -54,6 +55,7 @@ constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"second.rotation", "--device-second-rotation"},
     {"second.tip", "--device-second-tip"},
     {"second.tool", "--device-second-tool"},
+    {"slurm.tasks_per_element", "--tasks-per-element"},
     {"studio.behind", "--behind"},
     {"studio.bind", "--bind"},
     {"studio.port", "--port"},

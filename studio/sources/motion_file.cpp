@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "studio/output/csv_cells.h"
 #include "studio/sources/rotation.h"
 
 namespace ctpm::sources {
@@ -18,28 +19,6 @@ constexpr double kMostMillimetres = 100000, kMostSeconds = 100000;
 constexpr double kLengthTolerance = 0.1;  // of a quaternion's length: allows loggers that round to two digits
 constexpr std::size_t kMostErrors = 100;
 
-/// One value of a row, without the blanks and the quotes around it.
-struct Cell {
-  std::string_view text;
-  std::size_t column = 0;  ///< where it starts in its line, counted from 1
-};
-
-std::vector<Cell> cells_of(std::string_view line) {
-  std::vector<Cell> cells;
-  std::size_t first = 0;
-  while (true) {
-    const std::size_t end = std::min(line.find(',', first), line.size());
-    std::size_t from = first, to = end;
-    const auto is_blank = [&](std::size_t i) { return line[i] == ' ' || line[i] == '\t'; };
-    while (from < to && is_blank(from)) ++from;
-    while (to > from && is_blank(to - 1)) --to;
-    if (to - from >= 2 && line[from] == '"' && line[to - 1] == '"') ++from, --to;
-    cells.push_back({line.substr(from, to - from), from + 1});
-    if (end == line.size()) return cells;
-    first = end + 1;
-  }
-}
-
 /// The text of a cell, shortened for a message.
 std::string shown(std::string_view text) { return "'" + std::string(text.substr(0, 40)) + "'"; }
 
@@ -48,22 +27,19 @@ class MotionReader {
   MotionReader(const std::string& file_name, const std::vector<Tool>& tools) : file_(file_name), tools_(tools) {}
 
   Result<Motion> read(std::string_view text) {
-    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-    bool has_header = false;
-    for (line_ = 1; !text.empty(); ++line_) {
-      const std::size_t end = std::min(text.find('\n'), text.size());
-      std::string_view line = text.substr(0, end);
-      text.remove_prefix(std::min(end + 1, text.size()));
-      if (line.ends_with('\r')) line.remove_suffix(1);
-      if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
-      if (has_header) {
-        read_row(line);
-      } else if (has_header = true; !read_header(line)) {
+    const std::vector<output::CsvLine> lines = output::csv_lines(text);
+    for (const output::CsvLine& line : lines) {
+      line_ = line.number;
+      if (&line != &lines.front())
+        read_row(line.text);
+      else if (!read_header(line.text))
         return errors_;  // rows cannot be checked without the columns
-      }
     }
-    if (!has_header) return Error{file_, "is empty", "the first row names the columns: time_s, tool_x_mm ..."};
-    if (motion_.samples.empty() && error_count_ == 0) add(1, "there is no row after the names of the columns");
+    if (lines.empty()) return Error{file_, "is empty", "the first row names the columns: time_s, tool_x_mm ..."};
+    if (motion_.samples.empty() && error_count_ == 0) {
+      ++line_;
+      add(1, "there is no row after the names of the columns");
+    }
     if (error_count_ > kMostErrors)
       errors_.push_back({file_, "and " + std::to_string(error_count_ - kMostErrors) + " more errors", ""});
     if (!errors_.empty()) return errors_;
@@ -77,7 +53,7 @@ class MotionReader {
   }
 
   bool read_header(std::string_view line) {
-    const std::vector<Cell> cells = cells_of(line);
+    const std::vector<output::CsvCell> cells = output::csv_cells(line);
     width_ = cells.size();
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const auto name = std::find(kNames.begin(), kNames.end(), cells[i].text);
@@ -100,7 +76,7 @@ class MotionReader {
   }
 
   void read_row(std::string_view line) {
-    cells_ = cells_of(line);
+    cells_ = output::csv_cells(line);
     if (cells_.size() != width_)
       return add(1, "got " + std::to_string(cells_.size()) + " values, must be " + std::to_string(width_) +
                         ", as many as names in the first row");
@@ -113,7 +89,7 @@ class MotionReader {
     sample.inputs.tool = tool_index();
     if (error_count_ != errors_before) return;
     if (!motion_.samples.empty()) {
-      const Cell& cell = cells_[*place_[time]];
+      const output::CsvCell& cell = cells_[*place_[time]];
       const double before = motion_.samples.back().time;
       if (!(sample.time > before))
         return add(cell.column, "time_s: got " + std::string(cell.text) + ", time must rise from row to row",
@@ -125,7 +101,7 @@ class MotionReader {
   }
 
   double number(Column column, double low, double high) {
-    const Cell& cell = cells_[*place_[column]];
+    const output::CsvCell& cell = cells_[*place_[column]];
     double value = 0;
     const char* end = cell.text.data() + cell.text.size();
     const auto [stop, problem] = std::from_chars(cell.text.data(), end, value);
@@ -150,7 +126,7 @@ class MotionReader {
   }
 
   std::uint32_t button_set() {
-    const Cell& cell = cells_[*place_[buttons]];
+    const output::CsvCell& cell = cells_[*place_[buttons]];
     std::uint32_t set = 0;
     const char* end = cell.text.data() + cell.text.size();
     const auto [stop, problem] = std::from_chars(cell.text.data(), end, set);
@@ -161,7 +137,7 @@ class MotionReader {
 
   std::int32_t tool_index() {
     if (!place_[tool]) return tools_.empty() ? -1 : 0;
-    const Cell& cell = cells_[*place_[tool]];
+    const output::CsvCell& cell = cells_[*place_[tool]];
     if (cell.text.empty()) return -1;
     std::string known;
     for (std::size_t i = 0; i < tools_.size(); ++i) {
@@ -179,7 +155,7 @@ class MotionReader {
   Errors errors_;
   std::size_t error_count_ = 0, line_ = 1, width_ = 0;
   std::array<std::optional<std::size_t>, column_count> place_;  ///< in a row
-  std::vector<Cell> cells_;                                     ///< of the present row
+  std::vector<output::CsvCell> cells_;                          ///< of the present row
 };
 
 }  // namespace

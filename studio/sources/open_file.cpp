@@ -23,8 +23,13 @@ Errors check_script(const std::string& file, const scenes::SceneDraft& scene) {
 Result<OpenedSource> open_script(const std::string& file, const Model& model, const scenes::SceneSpec& scene) {
   const Result<std::string> text = output::read_text_file(file);
   if (!text) return text.errors();
+  return read_script_source(*text, file, model, scene);
+}
+
+Result<OpenedSource> read_script_source(const std::string& text, const std::string& file, const Model& model,
+                                        const scenes::SceneSpec& scene) {
   scenes::PlaceFinder finder = scenes::finder_of(model, scene);
-  const Result<scenes::Script> script = scenes::read_script_for(*text, file, model, &finder);
+  const Result<scenes::Script> script = scenes::read_script_for(text, file, model, &finder);
   if (!script) return script.errors();
   return play_script(*script, model);
 }
@@ -32,7 +37,11 @@ Result<OpenedSource> open_script(const std::string& file, const Model& model, co
 Result<OpenedSource> open_motion(const std::string& file, const Model& model) {
   const Result<std::string> text = output::read_text_file(file);
   if (!text) return text.errors();
-  Result<Motion> motion = read_motion(*text, file, model.tools);
+  return read_motion_source(*text, file, model);
+}
+
+Result<OpenedSource> read_motion_source(const std::string& text, const std::string& file, const Model& model) {
+  Result<Motion> motion = read_motion(text, file, model.tools);
   if (!motion) return motion.errors();
   std::string unused;
   for (const std::string& name : motion->unused_columns) unused += (unused.empty() ? "" : ", ") + name;

@@ -35,4 +35,9 @@ Result<OpenedSource> open_script(const std::string& file, const Model& model, co
 /// not used.
 Result<OpenedSource> open_motion(const std::string& file, const Model& model);
 
+/// The same for a text that stands for the file's.
+Result<OpenedSource> read_script_source(const std::string& text, const std::string& file, const Model& model,
+                                        const scenes::SceneSpec& scene);
+Result<OpenedSource> read_motion_source(const std::string& text, const std::string& file, const Model& model);
+
 }  // namespace ctpm::sources

@@ -62,6 +62,9 @@ class SchemaCheck {
                                   [&](const scenes::JsonNode& one) { return problem(one, value, at).empty(); }) == 1);
     if (word == "$schema" || word == "title" || word == "description" || word == "default" || word == "$defs")
       return "";
+    if (word == "type" && rule.kind == scenes::JsonKind::list)
+      return unless(std::any_of(rule.children.begin(), rule.children.end(),
+                                [&](const scenes::JsonNode& type) { return has_type(value, type.text); }));
     if (word == "type") return unless(has_type(value, rule.text));
     if (word == "const") return unless(are_equal(rule, value));
     if (word == "enum")
@@ -72,7 +75,8 @@ class SchemaCheck {
     if (word == "maximum") return unless(!is_number || number(value) <= number(rule));
     if (word == "exclusiveMinimum") return unless(!is_number || number(value) > number(rule));
     if (word == "exclusiveMaximum") return unless(!is_number || number(value) < number(rule));
-    if (word == "minItems" || word == "minProperties") return unless(count >= number(rule));
+    if (word == "minItems") return unless(!is_list || count >= number(rule));
+    if (word == "minProperties") return unless(count >= number(rule));
     if (word == "maxItems" || word == "maxProperties") return unless(count <= number(rule));
     if (word == "required")
       return unless(std::all_of(rule.children.begin(), rule.children.end(),
@@ -81,8 +85,8 @@ class SchemaCheck {
       const scenes::JsonNode* target = schema_.find("$defs")->find(rule.text.substr(std::string("#/$defs/").size()));
       return target == nullptr ? at + ": no " + rule.text : problem(*target, value, at);
     }
-    if (word == "items" && is_list) {
-      for (std::size_t i = 0; i < value.children.size(); ++i)
+    if (word == "items") {
+      for (std::size_t i = 0; is_list && i < value.children.size(); ++i)
         if (const std::string found = problem(rule, value.children[i], scenes::child_pointer(at, i)); !found.empty())
           return found;
       return "";

@@ -13,6 +13,7 @@
 #include "scenes/course.h"
 #include "scenes/scene_file.h"
 #include "scenes/script.h"
+#include "scenes/sweep.h"
 #include "tests/scenes/schema_check.h"
 #include "tests/scenes/shipped.h"
 
@@ -41,12 +42,14 @@ TEST(CheckedIn, TheSchemasAreThoseOfTheTables) {
   expect_checked_in("scene.schema.json", scenes::scene_schema());
   expect_checked_in("script.schema.json", scenes::script_schema());
   expect_checked_in("course.schema.json", scenes::course_schema());
+  expect_checked_in("sweep.schema.json", scenes::sweep_schema());
 }
 
 TEST(CheckedIn, TheTablesOfTheDocumentationAreThoseOfTheReader) {
   expect_checked_in("FORMAT.md", with_tables("FORMAT.md", scenes::scene_reference()));
   expect_checked_in("SCRIPT.md", with_tables("SCRIPT.md", scenes::script_reference()));
   expect_checked_in("COURSE.md", with_tables("COURSE.md", scenes::course_reference()));
+  expect_checked_in("SWEEP.md", with_tables("SWEEP.md", scenes::sweep_reference()));
 }
 
 /// The first JSON block of a Markdown file.
@@ -61,6 +64,9 @@ TEST(Documentation, ItsExamplesAreReadAndFitTheSchemas) {
   ASSERT_TRUE(scene) << to_string(scene.errors().front());
   const Result<scenes::Script> script = scenes::read_script(example_in("SCRIPT.md"), "SCRIPT.md", {"ball"});
   ASSERT_TRUE(script) << to_string(script.errors().front());
+  const Result<scenes::SweepText> sweep = scenes::read_sweep(example_in("SWEEP.md"), "SWEEP.md");
+  ASSERT_TRUE(sweep) << to_string(sweep.errors().front());
+  EXPECT_EQ(SchemaCheck(scenes::sweep_schema()).problem_of(example_in("SWEEP.md")), "");
   EXPECT_EQ(SchemaCheck(scenes::scene_schema()).problem_of(example_in("FORMAT.md")), "");
   EXPECT_EQ(SchemaCheck(scenes::script_schema()).problem_of(example_in("SCRIPT.md")), "");
   const Result<scenes::CourseSpec> course = scenes::read_course(

@@ -45,6 +45,7 @@ class RunningProgram {
     return "";
   }
 
+  pid_t process() const { return child_; }
   void interrupt() const { ::kill(child_, SIGINT); }
 
   /// Lets no thread of it run for a while.

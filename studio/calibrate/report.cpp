@@ -1,0 +1,164 @@
+#include "studio/calibrate/report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "studio/output/json_writer.h"
+#include "studio/output/number_text.h"
+#include "studio/reports/report.h"
+
+namespace ctpm::calibrate {
+namespace {
+
+/// Digits after the decimal point with which half an interval has one digit; negative: whole tens, hundreds.
+int places_of(const Estimate& estimate) {
+  const double half = std::max(0.5 * (estimate.high() - estimate.low()), 1e-9 * estimate.value);
+  return -int(std::floor(std::log10(half)));
+}
+
+std::string rounded(double value, int places) {
+  const double unit = std::pow(10.0, -places);
+  return output::fixed(std::round(value / unit) * unit, std::max(0, places));
+}
+
+reports::Table estimate_table(const Fit& fit) {
+  reports::Table table;
+  table.columns = {
+      {"what", "what"}, {"value", "value", 4, true}, {"interval", "95 % interval"}, {"unit", "unit"}, {"note", "note"}};
+  for (const Estimate& one : fit.estimates)
+    table.rows.push_back({one.title, told(one), interval_text(one), one.unit,
+                          std::string(one.is_at_bound ? "at bound: the data ask for more" : "")});
+  table.caption =
+      "Intervals are those of a fit that is linear in the logarithms, with Student's t; they know of the scatter of "
+      "the "
+      "data, not of what the model lacks.";
+  return table;
+}
+
+reports::Table correlation_table(const Fit& fit) {
+  reports::Table table;
+  table.title = "Correlation of what was fitted";
+  table.columns = {{"of", "of"}};
+  const std::size_t count = fit.fitted.size();
+  for (const std::string& name : fit.fitted) table.columns.push_back({name, name, 2});
+  for (std::size_t i = 0; i < count; ++i) {
+    table.rows.push_back({fit.fitted[i]});
+    for (std::size_t j = 0; j < count; ++j) table.rows.back().emplace_back(fit.correlation[i * count + j]);
+  }
+  table.caption = "Near 1 or -1: the data tell the two together better than each alone.";
+  return table;
+}
+
+std::vector<reports::Plot> plots_of(const Match& match) {
+  const Measurement& one = *match.measurement;
+  const bool is_slow = one.kind == Kind::indentation;
+  const std::string x_title = is_slow ? "depth [mm]" : "time [s]",
+                    what = one.kind == Kind::creep ? "depth [mm]" : "force [N]";
+  reports::Plot curve{.title = std::string(to_word(one.kind)) + ": " + one.name, .x_title = x_title, .y_title = what};
+  reports::Plot rest{.title = "residuals: network less measured", .x_title = x_title, .y_title = what};
+  reports::Series used{.name = "measured", .stroke = reports::Stroke::marks, .colour = 0},
+      held{.name = "held out", .stroke = reports::Stroke::crosses, .colour = 1},
+      network{.name = "network", .colour = 2}, used_rest = used, held_rest = held;
+  used_rest.name = "in the fit";
+  for (std::size_t i = 0; i < match.simulated.size(); ++i) {
+    const double x = is_slow ? one.rows[i].imposed : one.rows[i].time;
+    reports::Series &at = match.is_held_out[i] ? held : used, &off = match.is_held_out[i] ? held_rest : used_rest;
+    at.x.push_back(x), at.y.push_back(one.rows[i].measured);
+    off.x.push_back(x), off.y.push_back(match.simulated[i] - one.rows[i].measured);
+    network.x.push_back(x), network.y.push_back(match.simulated[i]);
+  }
+  // So that no mark is cut.
+  const double margin = 0.03 * (network.x.back() - network.x.front());
+  curve.x_range = rest.x_range = std::pair(network.x.front() - margin, network.x.back() + margin);
+  curve.series = {used, held, network}, rest.series = {used_rest, held_rest};
+  return {curve, rest};
+}
+
+std::string percent(double share) { return output::short_number(100 * share, 2) + " %"; }
+
+std::string results_json(const Fit& fit) {
+  output::JsonWriter json;
+  json.begin_object().member("format", "ctpm-calibration-results").member("version", 1);
+  json.member("program_version", CTPM_VERSION).key("estimates").begin_list();
+  for (const Estimate& one : fit.estimates) {
+    json.begin_object().member("key", std::string_view(one.key)).member("is_told", one.is_told());
+    json.member("at_bound", one.is_at_bound);
+    if (one.is_told()) json.member("value", one.value).member("low", one.low()).member("high", one.high());
+    json.end_object();
+  }
+  json.end_list().key("correlation");
+  reports::write_rows(json, correlation_table(fit));
+  json.member("error_share", fit.error).member("held_out_error_share", fit.held_out_error);
+  json.member("starts", fit.starts).member("same_starts", fit.same_starts).key("plots").begin_list();
+  for (const Match& match : fit.matches)
+    for (const reports::Plot& plot : plots_of(match)) reports::write_points(json, plot);
+  return json.end_list().end_object().text();
+}
+
+/// The format of an author's own materials (scenes/README.md).
+std::string materials_json(const Fit& fit, const std::string& name) {
+  const scenes::MaterialSpec& m = fit.material;
+  const auto digits = [](double value) { return output::short_number(value, 6); };
+  output::JsonWriter json;
+  json.begin_object().member("format", "ctpm-materials").member("version", 1).key("materials").begin_list();
+  json.begin_object().member("name", std::string_view(name)).member("preset", std::string_view(m.preset));
+  std::string text = json.text();
+  text.pop_back();
+  const Parameters& p = fit.parameters;
+  for (const auto& [key, value] :
+       {std::pair("spring_kpa_per_mm", p.spring()), std::pair("kelvin_kpa_per_mm", p.kelvin()),
+        std::pair("constraint_kpa_per_mm", p.prime()), std::pair("viscosity_kpa_s_per_mm", p.viscosity())})
+    text += ",\n      \"" + std::string(key) + "\": " + digits(value);
+  if (m.calibration_ball) text += ",\n      \"calibration_ball_radius_mm\": " + digits(1e3 * *m.calibration_ball);
+  return text + "\n    }\n  ]\n}\n";
+}
+
+}  // namespace
+
+std::string told(const Estimate& estimate) {
+  return estimate.is_told() ? rounded(estimate.value, places_of(estimate)) : "cannot be told";
+}
+
+std::string interval_text(const Estimate& estimate) {
+  if (!estimate.is_told()) return "";
+  const int places = places_of(estimate);
+  return rounded(estimate.low(), places) + " to " + rounded(estimate.high(), places);
+}
+
+std::vector<std::string> remarks_of(const Fit& fit) {
+  std::vector<std::string> remarks{"The network meets the rows of the fit to " + percent(fit.error) +
+                                   " and those held out to " + percent(fit.held_out_error) +
+                                   " (root mean square, of each measurement's own)."};
+  std::string unknown;
+  for (const Estimate& one : fit.estimates)
+    if (!one.is_told()) unknown += (unknown.empty() ? "" : ", ") + one.key;
+  if (!unknown.empty()) remarks.push_back("The data cannot tell: " + unknown + ".");
+  for (const Estimate& one : fit.estimates)
+    if (one.is_at_bound) remarks.push_back(one.key + " is at its bound: the data ask for more.");
+  remarks.push_back(std::to_string(fit.same_starts) + " of " + std::to_string(fit.starts) +
+                    " starts ended at the same place.");
+  return remarks;
+}
+
+Result<Done> write_calibration(const Fit& fit, const std::string& name, const std::string& start_name,
+                               const std::string& folder) {
+  if (Result<Done> ready = reports::prepare_folder(folder); !ready) return ready;
+  reports::Report report("Material " + name, "Fitted to " + std::to_string(fit.matches.size()) +
+                                                 " measurements, each simulated in the network on the paper's rig.");
+  const bool is_whole = std::all_of(fit.estimates.begin(), fit.estimates.end(),
+                                    [](const Estimate& one) { return one.is_told() && !one.is_at_bound; });
+  const std::vector<std::string> remarks = remarks_of(fit);
+  report.conclude(is_whole ? reports::ReportVerdict::met : reports::ReportVerdict::missed, remarks.front(),
+                  {remarks.begin() + 1, remarks.end()});
+  report.add_table(estimate_table(fit));
+  if (!is_whole)
+    report.add_paragraph("materials.json needs every modulus: what the data cannot tell follows there from " +
+                         start_name + ".");
+  for (const Match& match : fit.matches) report.add_plots(plots_of(match));
+  report.add_table(correlation_table(fit));
+  return reports::write_report(folder, {{"results.json", results_json(fit)},
+                                        {"materials.json", materials_json(fit, name)},
+                                        {"report.html", report.html()}});
+}
+
+}  // namespace ctpm::calibrate

@@ -1,0 +1,199 @@
+// Materials from measurements that the network itself made, whose moduli are known.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+#include "scenes/materials_file.h"
+#include "studio/calibrate/fit.h"
+#include "studio/calibrate/report.h"
+#include "studio/output/files.h"
+#include "tests/studio/commands/run_program.h"
+
+namespace ctpm::calibrate {
+namespace {
+
+const loading::LoadedScene& rig() {
+  static const Result<loading::LoadedScene> scene =
+      loading::load_whole_scene(std::string(CTPM_SOURCE_DIR) + "/scenes/paper/rig-liver.json");
+  EXPECT_TRUE(scene);
+  return *scene;
+}
+
+scenes::MaterialSpec liver() {
+  scenes::MaterialSpec material;
+  material.preset = "liver";
+  return material;
+}
+
+FitRequest from_liver(int starts) {
+  FitRequest request;
+  request.start = liver(), request.starts = starts;
+  return request;
+}
+
+/// Moduli that are not those of the start.
+constexpr Parameters kTruth{9, 4, 1.6, 0.4};
+
+Measurement relaxation(double depth_mm) {
+  Measurement one{"relaxation", Kind::relaxation, {}};
+  for (int i = 1; i <= 60; ++i) {
+    const double time = 0.05 * i;
+    one.rows.push_back({time, std::min(depth_mm, 20 * time), 0});
+  }
+  return one;
+}
+Measurement creep(double load_n) {
+  Measurement one{"creep", Kind::creep, {}};
+  for (int i = 1; i <= 30; ++i) one.rows.push_back({0.1 * i, i < 3 ? load_n * i / 3 : load_n, 0});
+  return one;
+}
+Measurement indentation() {
+  Measurement one{"indentation", Kind::indentation, {}};
+  for (int depth = 1; depth <= 12; ++depth) one.rows.push_back({0, double(depth), 0});
+  return one;
+}
+
+/// What the network does with the truth, with noise of a share of the largest value.
+Measurement measured(Measurement one, double noise, std::mt19937& random) {
+  const auto simulated = simulate(rig(), with_moduli(liver(), kTruth), one);
+  EXPECT_TRUE(simulated);
+  double largest = 0;
+  for (const double value : *simulated) largest = std::max(largest, std::abs(value));
+  std::normal_distribution<double> scatter(0, std::max(noise, 1e-300) * largest);
+  for (std::size_t i = 0; i < one.rows.size(); ++i)
+    one.rows[i].measured = (*simulated)[i] + (noise > 0 ? scatter(random) : 0);
+  return one;
+}
+
+double truth_of(const std::string& key) {
+  if (key == "slow_kpa_per_mm") return kTruth.slow;
+  if (key == "kelvin_kpa_per_mm") return kTruth.kelvin();
+  if (key == "spring_kpa_per_mm") return kTruth.spring();
+  if (key == "constraint_kpa_per_mm") return kTruth.prime();
+  if (key == "viscosity_kpa_s_per_mm") return kTruth.viscosity();
+  return kTruth.time;
+}
+
+TEST(Calibrate, FindsTheModuliThatTheNetworkHad) {
+  std::mt19937 random(1);
+  for (const bool is_creep : {false, true}) {
+    const std::vector<Measurement> data{measured(is_creep ? creep(1.5) : relaxation(8), 0, random)};
+    const Result<Fit> fit = fit_material(rig(), data, from_liver(1));
+    ASSERT_TRUE(fit) << to_string(fit.errors().front());
+    for (const Estimate& one : fit->estimates) {
+      EXPECT_TRUE(one.is_told()) << one.key;
+      EXPECT_NEAR(one.value / truth_of(one.key), 1, 0.01) << one.key << (is_creep ? " from creep" : " from relaxation");
+    }
+    EXPECT_LT(fit->held_out_error, 1e-3);
+  }
+}
+
+TEST(Calibrate, SaysWhatIndentationAloneCannotTell) {
+  std::mt19937 random(1);
+  const std::vector<Measurement> data{measured(indentation(), 0.002, random)};
+  const Result<Fit> fit = fit_material(rig(), data, from_liver(3));
+  ASSERT_TRUE(fit) << to_string(fit.errors().front());
+  for (const Estimate& one : fit->estimates) {
+    const bool is_slow = one.key == "slow_kpa_per_mm" || one.key == "constraint_kpa_per_mm";
+    EXPECT_EQ(one.is_told(), is_slow) << one.key;
+    EXPECT_EQ(told(one) == "cannot be told", !is_slow) << one.key;
+    if (is_slow) {
+      EXPECT_NEAR(one.value / truth_of(one.key), 1, 0.02) << one.key;
+    }
+  }
+  EXPECT_EQ(fit->same_starts, 3);
+  // What it cannot tell is the preset's.
+  EXPECT_NEAR(fit->parameters.ratio, parameters_of(liver()).ratio, 1e-12);
+  EXPECT_NEAR(fit->parameters.time, parameters_of(liver()).time, 1e-12);
+}
+
+TEST(Calibrate, PrintsNoDigitBeyondTheInterval) {
+  Estimate one;
+  one.value = 12.3456, one.factor = 1.05;
+  EXPECT_EQ(told(one) + " " + interval_text(one), "12.3 11.8 to 13.0");
+  one.factor = 3;
+  EXPECT_EQ(told(one) + " " + interval_text(one), "10 0 to 40");
+  one.factor = 11;
+  EXPECT_EQ(told(one) + interval_text(one), "cannot be told");
+}
+
+TEST(Calibrate, SlowHoldsTheTruthInItsIntervalsInNineteenOfTwentyRuns) {
+  constexpr int kRuns = 200;
+  std::mt19937 random(7);
+  std::vector<int> held(6);
+  for (int run = 0; run < kRuns; ++run) {
+    const std::vector<Measurement> data{measured(relaxation(8), 0.005, random)};
+    const Result<Fit> fit = fit_material(rig(), data, from_liver(1));
+    ASSERT_TRUE(fit) << to_string(fit.errors().front());
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      const Estimate& one = fit->estimates[i];
+      held[i] += one.low() <= truth_of(one.key) && truth_of(one.key) <= one.high();
+      if (run == kRuns - 1) std::printf("%s: %d of %d\n", one.key.c_str(), held[i], kRuns);
+    }
+  }
+  // 95 % of 200, less three standard deviations of that number.
+  for (const int count : held) EXPECT_GE(count, 181);
+}
+
+TEST(Measurements, AreKnownByTheirColumns) {
+  const auto slow = read_measurements("depth_mm,force_n\n1,0.1\n2,0.2\n3,0.4\n", "a.csv");
+  ASSERT_TRUE(slow);
+  EXPECT_EQ(slow->front().kind, Kind::indentation);
+  const auto two = read_measurements(
+      "specimen, time_s, load_n, depth_mm\nA,0,0,0\nA,1,2,3\nA,2,2,4\nB,0,1,0\nB,1,1,3\nB,2,1,4\n", "b.csv");
+  ASSERT_TRUE(two);
+  ASSERT_EQ(two->size(), 2u);
+  EXPECT_EQ((*two)[1].name, "b.csv, B");
+  EXPECT_EQ((*two)[0].kind, Kind::creep);
+  EXPECT_EQ((*two)[0].rows[1].imposed, 2);
+  EXPECT_EQ((*two)[0].rows[1].measured, 3);
+}
+
+TEST(Measurements, SayAllMistakesWithTheirPlaces) {
+  const auto all = [](const std::string& text) {
+    const auto read = read_measurements(text, "a.csv");
+    std::string said;
+    if (!read)
+      for (const Error& error : read.errors()) said += to_string(error) + "\n";
+    return said;
+  };
+  EXPECT_EQ(all("depth,force_n\n").find("a.csv:1:1: error: the column 'depth' is not known"), 0u);
+  EXPECT_NE(all("time_s,force_n\n1,2\n").find("a.csv:1:1: error: the columns are those of no experiment"),
+            std::string::npos);
+  const std::string rows = all("time_s,depth_mm,force_n\n0,1,x\n1,-2,1\n1,2\n");
+  for (const char* part : {"a.csv:2:5: error: force_n: got 'x'", "a.csv:3:3: error: depth_mm: got '-2'",
+                           "a.csv:4:1: error: got 2 values, must be 3"})
+    EXPECT_NE(rows.find(part), std::string::npos) << part << "\nin\n" << rows;
+  EXPECT_NE(all("depth_mm,force_n\n1,1\n1,2\n2,2\n").find("a.csv:3:1: error: depth_mm: depth must rise"),
+            std::string::npos);
+  EXPECT_NE(all("depth_mm,force_n\n1,1\n").find("has 1 rows, must have at least 3"), std::string::npos);
+}
+
+TEST(CalibrateProgram, MakesOfThePapersTableAMaterialThatAnImportTakes) {
+  const testing::TemporaryFolder folder;
+  ASSERT_TRUE(output::write_text_file((folder.path() / "table.csv").string(),
+                                      "depth_mm,force_n\n2,0.17\n4,0.25\n6,0.38\n8,0.62\n10,0.84\n12,1.1\n"));
+  const auto done = testing::run_ctpm({"calibrate", "table.csv", "-o", "out", "--name", "mine"}, folder.path());
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_NE(done.out.find("kelvin_kpa_per_mm        cannot be told\n"), std::string::npos) << done.out;
+  const auto materials =
+      scenes::read_materials(testing::slurp(folder.path() / "out" / "materials.json"), "materials.json");
+  ASSERT_TRUE(materials) << to_string(materials.errors().front());
+  EXPECT_EQ(materials->front().name, "mine");
+  const Parameters fitted = parameters_of(materials->front().material);
+  EXPECT_NEAR(fitted.ratio, parameters_of(liver()).ratio, 1e-4);
+  const std::string page = testing::slurp(folder.path() / "out" / "report.html");
+  for (const char* part : {"residuals: network less measured", "cannot be told", "Correlation of what was fitted"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  const auto bad = testing::run_ctpm({"calibrate", "none.csv", "-o", "bad", "--preset", "x"}, folder.path());
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_NE(bad.err.find("none.csv: error: does not exist"), std::string::npos) << bad.err;
+  EXPECT_NE(bad.err.find("--preset: error: there is no preset x"), std::string::npos) << bad.err;
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "bad"));
+}
+
+}  // namespace
+}  // namespace ctpm::calibrate

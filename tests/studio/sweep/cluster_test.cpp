@@ -1,0 +1,106 @@
+// A sweep on a real Slurm, whose node and controller are killed while it runs.
+
+#include "tests/studio/sweep/cluster.h"
+
+#include <gtest/gtest.h>
+
+namespace ctpm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Cluster;
+using testing::ProgramOutcome;
+using testing::run_ctpm;
+using testing::slurp;
+
+constexpr const char* kThousand = R"("method": "latin-hypercube", "samples": 1000, "vary": [
+    {"key": "/organs/0/material/stiffness_scale", "from": 0.5, "to": 4},
+    {"of": "script", "key": "/steps/1/press/distance_mm", "from": 1, "to": 6}])";
+
+class SweepOnACluster : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string reason = Cluster::why_not(); !reason.empty()) GTEST_SKIP() << reason;
+  }
+  ProgramOutcome run(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), "sweep");
+    return run_ctpm(arguments, folder());
+  }
+  std::size_t count_finished() const {
+    std::size_t count = 0;
+    std::error_code not_yet;
+    for (const auto& entry : fs::directory_iterator(folder() / "out" / "tasks", not_yet))
+      count += entry.path().filename().string().front() != '.';
+    return count;
+  }
+  bool wait_for(std::size_t finished) const {
+    return Cluster::within_a_minute([&] { return count_finished() >= finished; });
+  }
+  const fs::path& folder() const { return temporary_.path(); }
+
+ private:
+  testing::TemporaryFolder temporary_;
+};
+
+TEST_F(SweepOnACluster, EndsWithAllRowsAfterTwoKillsOfTheNodeAndOneOfTheController) {
+  testing::write_rig(folder());
+  testing::write_sweep(folder(), kThousand);
+  ASSERT_EQ(run({"plan", "sweep.json", "-o", "out"}).code, 0);
+  ASSERT_EQ(run({"plan", "sweep.json", "-o", "here"}).code, 0);
+  Cluster cluster(25);
+  ASSERT_TRUE(cluster.is_ready()) << slurp(cluster.path() / "slurmctld.out") << slurp(cluster.path() / "slurmd.out");
+
+  const ProgramOutcome too_many = run({"run", "out", "--slurm", "--tasks-per-element", "20"});
+  EXPECT_EQ(too_many.code, 2);
+  EXPECT_NE(too_many.err.find(
+                "--tasks-per-element: error: got 20, which makes more elements than Slurm's MaxArraySize of 25"),
+            std::string::npos)
+      << too_many.err;
+  const ProgramOutcome nowhere = run({"run", "out", "--slurm", "--partition", "none-such"});
+  EXPECT_EQ(nowhere.code, 2);
+  EXPECT_NE(nowhere.err.find("invalid partition specified: none-such"), std::string::npos) << nowhere.err;
+
+  const ProgramOutcome submitted =
+      run({"run", "out", "--slurm", "--tasks-per-element", "50", "--partition", "all", "--time", "10"});
+  ASSERT_EQ(submitted.code, 0) << submitted.err;
+  EXPECT_NE(submitted.out.find(": 1000 sessions in 20 elements of up to 50\n"), std::string::npos) << submitted.out;
+  for (const std::size_t finished : {110, 330}) {
+    ASSERT_TRUE(wait_for(finished)) << count_finished();
+    cluster.kill_node();
+    EXPECT_LT(count_finished(), 1000u);
+    // As long as it takes to boot; Slurm looks only for jobs that are older than its BatchStartTimeout.
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    cluster.start_node();
+  }
+  ASSERT_TRUE(wait_for(550)) << count_finished();
+  cluster.kill_controller();
+  EXPECT_LT(count_finished(), 1000u);
+  cluster.start_controller();
+  const auto is_complete = [&] { return cluster.tidy_up(), count_finished() == 1000; };
+  bool all = false;
+  for (int minute = 0; minute < 4 && !all; ++minute) all = Cluster::within_a_minute(is_complete);
+  ASSERT_TRUE(all) << run({"status", "out"}).out << slurp(cluster.path() / "slurmctld.out");
+  EXPECT_EQ(run({"run", "out", "--slurm"}).out, "out: nothing waits\n");
+
+  ASSERT_EQ(run({"collect", "out"}).code, 0);
+  const std::string rows = slurp(folder() / "out" / "results.csv");
+  EXPECT_EQ(testing::lines_of(rows).size(), 1001u);
+  ASSERT_EQ(run({"run", "here"}).code, 0);
+  ASSERT_EQ(run({"collect", "here"}).code, 0);
+  EXPECT_EQ(rows, slurp(folder() / "here" / "results.csv"));
+}
+
+TEST(SweepWithoutACluster, SaysThatSlurmIsMissing) {
+  const testing::TemporaryFolder folder;
+  testing::write_rig(folder.path());
+  testing::write_sweep(folder.path(), R"("vary": [{"key": "/organs/0/material/stiffness_scale", "values": [1]}])");
+  ASSERT_EQ(run_ctpm({"sweep", "plan", "sweep.json", "-o", "out"}, folder.path()).code, 0);
+  const ProgramOutcome outcome =
+      testing::run({"/usr/bin/env", "PATH=/nowhere", CTPM_PROGRAM, "sweep", "run", "out", "--slurm"}, folder.path());
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("scontrol: error: cannot be started"), std::string::npos) << outcome.err;
+  EXPECT_EQ(run_ctpm({"sweep", "run", "out", "--memory", "1G"}, folder.path()).code, 2);
+}
+
+}  // namespace
+}  // namespace ctpm
