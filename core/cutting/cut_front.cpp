@@ -300,8 +300,8 @@ NewlySwept CutFront::newly_swept(const Step& step, const State& state) const {
   return newly;
 }
 
-/// The front from which a step sweeps. Tissue that slides past the blade, or that moves under a node outside, takes the
-/// front along and sweeps nothing; where a part goes on whose other node rested, the cut would have a hole.
+/// The front from which a step sweeps. A node outside is taken along by the tissue that moves under it, and sweeps
+/// nothing on that way; where its neighbour inside goes on from where it rested, the cut would have a hole.
 Front CutFront::begin_of(const NewlySwept& newly, const State& state) const {
   Front from = front_;
   for (std::size_t n = 0; n + 1 < kEdgeNodes; ++n) {
@@ -315,7 +315,9 @@ Front CutFront::begin_of(const NewlySwept& newly, const State& state) const {
     if (first_rests == second_rests) continue;
     const std::size_t slid = first_rests ? 1 : 0;
     const Vec3 before = state.swept[at + slid];
-    if (norm(before - front_[n + slid]) < reach_[std::size_t(newly[n] - 1)]) from[n + slid] = before;
+    const auto organ = std::size_t(newly[n] - 1);
+    if (depth_.at(organ, front_[n + slid]) <= 0 && norm(before - front_[n + slid]) < reach_[organ])
+      from[n + slid] = before;
   }
   return from;
 }

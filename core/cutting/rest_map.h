@@ -23,8 +23,8 @@ struct Place {
 
   /// Where the place is [m].
   Vec3 at(const Vec3Array& position) const;
-  /// The move of the place at rest that moves it by `move` [m]; none where the tissue is inside out or flat, and at most
-  /// 20 times as long.
+  /// The move of the place at rest that moves it by `move` [m]; none where the tissue is inside out or flat, and at
+  /// most 20 times as long.
   Vec3 at_rest(const Vec3Array& position, Vec3 move) const;
 };
 
