@@ -63,7 +63,7 @@ void CutBody::prepare() {
 }
 
 bool CutBody::update(const State& state) {
-  if (!parts_ && cutting::swept_rows(state) == 0) return false;
+  if (!parts_ && std::ranges::count(state.swept_organ, organ_ + 1) == 0) return false;
   prepare();
   if (!parts_->grid.update(state)) return false;
   parts_->binding.forget_near(parts_->grid.take_changed());

@@ -51,7 +51,11 @@ CutGrid::Node CutGrid::blocks_of(const Model& model, std::size_t organ) {
 }
 
 CutGrid::CutGrid(const Model& model, std::size_t organ)
-    : model_(model), organ_(std::int32_t(organ)), map_(model), depth_(model, map_), torn_tissue_(model, organ, depth_) {
+    : model_(model),
+      organ_(std::int32_t(organ)),
+      map_(model),
+      depth_(model, map_, organ),
+      torn_tissue_(model, organ, depth_) {
   find_frame(model, model.organs[organ]);
   find_surface();
   place_spheres(model, model.organs[organ]);

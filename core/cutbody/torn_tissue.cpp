@@ -17,7 +17,7 @@ bool is_whole(const CutGrid& grid, Index node, int direction) {
 }  // namespace
 
 TornTissue::TornTissue(const Model& model, std::size_t organ, const cutting::TissueDepth& depth)
-    : model_(model), organ_(organ), elements_(model, depth), pieces_(model) {
+    : model_(model), organ_(organ), elements_(model, depth, organ), pieces_(model) {
   pieces_.find(network_);
   whole_ = pieces_.piece();
   network_.axial_severed.assign(model.axial.size(), 0);

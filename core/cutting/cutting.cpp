@@ -93,8 +93,10 @@ RestElements::RestElements(const Model& model)
   for (std::size_t i = 0; i < model.sphere_count(); ++i) place_.push_back(model.rest_position[i]);
 }
 
-RestElements::RestElements(const Model& model, const TissueDepth& depth) : RestElements(model) {
+RestElements::RestElements(const Model& model, const TissueDepth& depth, std::optional<std::size_t> only)
+    : RestElements(model) {
   for (std::size_t o = 0; o < model.organs.size(); ++o) {
+    if (only.value_or(o) != o) continue;
     const OrganRange& organ = model.organs[o];
     const bool has_surface = o < model.surfaces.size() && !model.surfaces[o].triangle.empty();
     for (auto i = std::size_t(organ.first); i < std::size_t(organ.first + organ.count); ++i) {

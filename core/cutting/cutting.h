@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -49,7 +50,8 @@ class RestElements {
   explicit RestElements(const Model& model);
   /// A lattice covers its organ: a sphere outside the organ's surface, or on the boundary of an organ without one,
   /// stands for the tissue next to it inside. So elements lie between places that are in tissue.
-  RestElements(const Model& model, const TissueDepth& depth);
+  /// `only`: the one organ of which that is so, as the depth may know no other.
+  RestElements(const Model& model, const TissueDepth& depth, std::optional<std::size_t> only = {});
 
   /// Where the tissue of a sphere is at rest [m].
   Vec3 place(std::size_t sphere) const { return place_[sphere]; }

@@ -23,9 +23,10 @@ Vec3 most_of(Vec3 a, Vec3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), s
 
 }  // namespace
 
-TissueDepth::TissueDepth(const Model& model, const RestMap& map) : map_(map), grids_(model.organs.size()) {
+TissueDepth::TissueDepth(const Model& model, const RestMap& map, std::optional<std::size_t> only)
+    : map_(map), grids_(model.organs.size()) {
   for (std::size_t o = 0; o < std::min(grids_.size(), model.surfaces.size()); ++o)
-    if (!model.surfaces[o].triangle.empty()) grids_[o] = make_grid(model.surfaces[o]);
+    if (only.value_or(o) == o && !model.surfaces[o].triangle.empty()) grids_[o] = make_grid(model.surfaces[o]);
 }
 
 std::int64_t TissueDepth::bucket_of(const Grid& grid, Vec3 rest) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/cutting/rest_map.h"
@@ -17,8 +18,8 @@ class TissueDepth {
   /// Distance beyond which depths are cut off [m]. The far parts of a grid know only their side.
   static constexpr double kBand = 2.2e-3;
 
-  /// `model` and `map` must outlive the TissueDepth.
-  TissueDepth(const Model& model, const RestMap& map);
+  /// `model` and `map` must outlive the TissueDepth. `only`: the one organ that it will be asked about.
+  TissueDepth(const Model& model, const RestMap& map, std::optional<std::size_t> only = {});
 
   /// Signed distance of a place at rest from the surface of an organ [m]: positive inside, in [-kBand, kBand].
   double at(std::size_t organ, Vec3 rest) const;

@@ -121,6 +121,38 @@ TEST(ThinPieces, AStripWithoutSpheresGoesWithOneSideOfIt) {
   EXPECT_TRUE(with_left == 0 || with_right == 0) << with_left << " " << with_right;
 }
 
+TEST(ThinPieces, AFlapOfOneLayerFollowsItsOwnSpheresAndNotFarOnesBesideIt) {
+  // The second cut ends above the two lowest rows of spheres, by which the flap still hangs on.
+  const Model model = testing::block_to_cut(8, 8, 6, 0.01);
+  State state = rest_state(model);
+  constexpr double kHinge = 0.018;
+  for (const auto& [x, low] : {std::pair{0.0023, kBelow}, {0.0093, kHinge}})
+    testing::cut_along(
+        model,
+        [=](double t) {
+          return testing::straight_front({x, along(t), low}, {x, along(t), 0.08});
+        },
+        state);
+  const auto bent = [&](Vec3 p) {
+    const double up = p.z - kHinge, off = p.x - 0.006, angle = 1.3;
+    return Vec3{0.006 - std::sin(angle) * up + std::cos(angle) * off, p.y,
+                kHinge + std::cos(angle) * up + std::sin(angle) * off};
+  };
+  for (std::size_t i = 0; i < model.sphere_count(); ++i)
+    if (const Vec3 p = model.rest_position[i]; p.x > 0.0023 && p.x < 0.0093 && p.z > kHinge)
+      state.position.set(i, bent(p));
+  const testing::DrawnCut drawn(model, state);
+  int count = 0;
+  double most = 0;
+  for (std::size_t v = 0; v < drawn.vertex.size(); ++v) {
+    const Vec3 p = drawn.surface.vertex[v];
+    if (p.x < 0.0027 || p.x > 0.0089 || p.z < kHinge + 0.024) continue;
+    most = std::max(most, norm(drawn.vertex[v] - bent(p))), ++count;
+  }
+  EXPECT_GT(count, 50);
+  EXPECT_LT(most, 1e-3);
+}
+
 /// An offset that turns with spheres at `arms`, each as heavy as the others.
 TurnedOffset offset_with(const std::vector<Vec3>& arms) {
   TurnedOffset offset;
