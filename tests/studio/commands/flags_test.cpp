@@ -7,6 +7,7 @@
 #include <regex>
 #include <set>
 #include <sstream>
+#include <vector>
 
 #include "tests/studio/commands/run_program.h"
 
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 
 /// Fields that studio's libraries name in errors.
 std::set<std::string> named_fields() {
-  const std::regex name(R"re("([a-z_]+\.[a-z_]+)")re"), file("\\.(h|html|json|csv)$");
+  const std::regex name(R"re("([a-z_]+\.[a-z_]+)")re"), file("\\.(h|html|json|csv|sqlite)$");
   std::set<std::string> fields;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(fs::path(CTPM_SOURCE_DIR) / "studio")) {
     const std::string path = entry.path().generic_string();
@@ -37,8 +38,13 @@ TEST(Flags, EveryFieldThatAnErrorNamesHasAFlagOfTheProgram) {
   EXPECT_GT(fields.size(), 20u);
   const testing::TemporaryFolder folder;
   std::string help;
-  for (const char* command : {"import", "record", "replay", "export", "preview", "paper", "fidelity", "studio"})
-    help += testing::run_ctpm({command, "--help"}, folder.path()).out;
+  const std::vector<std::string> commands[]{{"import"},       {"record"},          {"replay"},   {"export"},
+                                            {"preview"},      {"paper"},           {"fidelity"}, {"studio"},
+                                            {"sweep", "run"}, {"sweep", "collect"}};
+  for (std::vector<std::string> command : commands) {
+    command.push_back("--help");
+    help += testing::run_ctpm(command, folder.path()).out;
+  }
   for (const std::string& field : fields) {
     const std::string flag = commands::flag_of(field);
     EXPECT_EQ(flag[0], '-') << field << " has no flag";
