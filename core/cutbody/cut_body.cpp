@@ -1,6 +1,7 @@
 #include "core/cutbody/cut_body.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "core/cutbody/cut_grid.h"
 #include "core/cutbody/cut_mesh.h"
@@ -9,6 +10,16 @@
 namespace ctpm::cutbody {
 
 using Triangle = std::array<CutGrid::Index, 3>;
+
+namespace {
+
+/// Whether a blade went through an organ. It is asked in each tick, over all rows that there are.
+bool is_swept(const State& state, std::size_t organ) {
+  const std::vector<std::uint8_t>& swept = state.swept_organ;
+  return !swept.empty() && std::memchr(swept.data(), int(organ + 1), swept.size()) != nullptr;
+}
+
+}  // namespace
 
 struct CutBody::Parts {
   Parts(const Model& model, std::size_t organ) : grid(model, organ), binding(model, grid) {}
@@ -63,7 +74,7 @@ void CutBody::prepare() {
 }
 
 bool CutBody::update(const State& state) {
-  if (!parts_ && std::ranges::count(state.swept_organ, organ_ + 1) == 0) return false;
+  if (!parts_ && !is_swept(state, organ_)) return false;
   prepare();
   if (!parts_->grid.update(state)) return false;
   parts_->binding.forget_near(parts_->grid.take_changed());
