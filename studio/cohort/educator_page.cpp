@@ -10,6 +10,10 @@
 namespace ctpm::cohort {
 namespace {
 
+std::string counted(std::size_t count, const std::string& thing) {
+  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+}
+
 using output::fixed;
 using output::short_number;
 
@@ -135,8 +139,8 @@ std::string task_text(const Cohort& cohort, const TaskResult& task) {
   const std::string of_all = " of " + std::to_string(people.size()) + " trainees ";
   if (people.empty()) return task.task.name + ": nobody has tried it.";
   if (!task.has_marks())
-    return task.task.name + ": " + std::to_string(task.attempts.size()) + " attempts of " +
-           std::to_string(people.size()) + " trainees beside " + std::to_string(task.experts.size()) +
+    return task.task.name + ": " + counted(task.attempts.size(), "attempt") + " of " +
+           counted(people.size(), "trainee") + " beside " + std::to_string(task.experts.size()) +
            " experts; it has no pass marks.";
   std::size_t learned = 0, passed = 0;
   std::map<std::string, std::size_t> missed;
@@ -156,7 +160,7 @@ std::string task_text(const Cohort& cohort, const TaskResult& task) {
 }  // namespace
 
 std::string educator_page(const Cohort& cohort) {
-  reports::Report report("Course " + cohort.course.name, std::to_string(cohort.trainees.size()) + " trainees, " +
+  reports::Report report("Course " + cohort.course.name, counted(cohort.trainees.size(), "trainee") + ", " +
                                                              std::to_string(cohort.tasks.size()) +
                                                              (cohort.tasks.size() == 1 ? " task." : " tasks."));
   std::vector<std::string> points;
