@@ -162,6 +162,11 @@ void CutPatches::prepare() {
 }
 
 void CutPatches::follow(std::shared_ptr<const State> state) {
+  const bool was_followed = parts_ && parts_->seen;
+  if (cutting::sweeps_same(was_followed ? *parts_->seen : State{}, *state, std::int32_t(organ_))) {
+    if (was_followed) parts_->binding.forget();
+    return;
+  }
   prepare();
   parts_->seen = std::move(state);
   (void)parts_->grid.update(*parts_->seen);

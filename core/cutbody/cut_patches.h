@@ -56,7 +56,8 @@ class CutPatches {
   /// Does at once what the first cut needs: a grid over the organ.
   void prepare();
 
-  /// Follows the swept surface of `state`.
+  /// Follows the swept surface of `state`. Where it is the same in this organ, patches stay, and what would make new
+  /// ones fast is forgotten.
   void follow(std::shared_ptr<const State> state);
   /// Makes the patches that nobody has asked for yet, until it is told to stop. Other threads may ask for patches
   /// meanwhile; they do not wait for more than one block.

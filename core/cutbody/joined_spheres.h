@@ -32,6 +32,8 @@ class JoinedSpheres {
 
   /// Looks again at what may depend on edges in the box, when it is asked for.
   void forget_near(CutGrid::NodeBox changed);
+  /// Forgets all: it is found again when it is asked for.
+  void forget() { seen_ = {}; }
 
   /// Whether a cut is so near to a node in tissue that it may part it from spheres.
   bool is_near_cut(Index side) { return seen_from(side).has_cut; }

@@ -51,6 +51,8 @@ class SideBinding {
 
   /// Forgets what depends on edges in the box.
   void forget_near(CutGrid::NodeBox changed);
+  /// Forgets all: it is found again when it is asked for.
+  void forget() { bound_ = {}, joined_.forget(); }
 
   /// What a vertex follows, and where it is: on the organ's own surface or on the swept surface of `state`. It is
   /// remembered. A vertex whose side is -1 is far from all cuts.

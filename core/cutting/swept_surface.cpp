@@ -6,6 +6,7 @@
 namespace ctpm::cutting {
 namespace {
 
+constexpr SweptQuad kNothingSwept{-1, {}, {}, {}, {}};
 constexpr double kLongestRow = 1e-3, kInLine = 2e-5;  // [m]
 
 /// Whether the surface newly swept goes through a node.
@@ -62,9 +63,20 @@ double squared_distance(Vec3 p, const SweptQuad& q) {
 
 SweptQuad swept_quad(const State& state, std::size_t row, std::size_t node) {
   const std::size_t at = row * kEdgeNodes + node, before = at - kEdgeNodes;
-  if (state.swept_organ[at] == 0) return {-1, {}, {}, {}, {}};
+  if (state.swept_organ[at] == 0) return kNothingSwept;
   return {state.swept_organ[at] - 1, state.swept[before], state.swept[before + 1], state.swept[at],
           state.swept[at + 1]};
+}
+
+bool sweeps_same(const State& a, const State& b, std::int32_t organ) {
+  const auto at = [&](const State& state, std::size_t row, std::size_t node) {
+    const SweptQuad quad = row < swept_rows(state) ? swept_quad(state, row, node) : kNothingSwept;
+    return quad.organ == organ ? quad : kNothingSwept;
+  };
+  for (std::size_t row = 1; row < std::max(swept_rows(a), swept_rows(b)); ++row)
+    for (std::size_t node = 0; node + 1 < kEdgeNodes; ++node)
+      if (!(at(a, row, node) == at(b, row, node))) return false;
+  return true;
 }
 
 Vec3 stored_place(Vec3 rest) {

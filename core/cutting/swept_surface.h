@@ -25,12 +25,16 @@ inline constexpr std::size_t kMostSweptRows = 4096;
 struct SweptQuad {
   std::int32_t organ;
   Vec3 from, to, from2, to2;  ///< of both nodes, in the row before and in this one, at rest [m]
+  friend bool operator==(const SweptQuad&, const SweptQuad&) = default;
 };
 
 inline std::size_t swept_rows(const State& state) { return state.swept.size() / kEdgeNodes; }
 
 /// The part of row `row` from node `node` to the next; its organ is -1 where nothing was swept.
 SweptQuad swept_quad(const State& state, std::size_t row, std::size_t node);
+
+/// Whether the swept surfaces of two States are the same in an organ.
+bool sweeps_same(const State& a, const State& b, std::int32_t organ);
 
 /// Calls `visit(quad)` for all parts of the swept surface, in the order in which they were swept.
 template <class Visit>

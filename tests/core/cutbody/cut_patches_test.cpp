@@ -1,0 +1,89 @@
+// The surface near cuts, as it is touched.
+
+#include "core/cutbody/cut_patches.h"
+
+#include <memory>
+
+#include "tests/core/blade_blocks.h"
+#include "tests/core/skinned_block.h"
+
+namespace ctpm {
+namespace {
+
+constexpr double kApart = 0.3;  // [m]
+
+/// Two blocks with skins beside each other.
+Model two_blocks() {
+  Model model = testing::make_skinned_block(8, 8, 4);
+  FilledOrgan second = testing::make_block(8, 8, 4);
+  for (Vec3& centre : second.centre) centre.x += kApart;
+  testing::add_faces(second, 0.003);
+  network::OrganSettings settings;
+  settings.name = "second", settings.structure = network::Structure::mass_spring;
+  settings.material = testing::liver_material(), settings.anchored = {0, 1, 2};
+  CTPM_CHECK(bool(network::add_organ(model, second, settings)), "a test's own block is valid");
+  model.tools = {testing::scalpel(0.05), testing::ball(0.005)};
+  return model;
+}
+
+/// Sweeps an upright edge through one of them.
+void sweep(State& state, std::size_t organ, double x) {
+  cutting::NewlySwept newly;
+  newly.fill(std::uint8_t(organ + 1)), newly.back() = 0;
+  const auto front = [&](int step) {
+    const double at = x + kApart * double(organ), along = -0.06 + 0.003 * step;
+    return testing::straight_front({at, along, -0.01}, {at, along, 0.05});
+  };
+  for (int step = 0; step < 40; ++step) cutting::add_swept(state, front(step), front(step + 1), newly);
+}
+
+std::vector<cutbody::CutPatch*> all_patches(cutbody::CutPatches& patches, const State& state) {
+  std::vector<cutbody::CutPatch*> all;
+  patches.begin(state.position);
+  patches.near(Box(Vec3{-1, -1, -1}, Vec3{1, 1, 1}), [&](cutbody::CutPatch& patch) { all.push_back(&patch); });
+  return all;
+}
+
+void expect_same(const std::vector<cutbody::CutPatch*>& a, const std::vector<cutbody::CutPatch*>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t p = 0; p < a.size(); ++p) {
+    ASSERT_EQ(a[p]->body.surface.vertex_count(), b[p]->body.surface.vertex_count());
+    EXPECT_EQ(a[p]->block, b[p]->block);
+    EXPECT_EQ(a[p]->gathers_at, b[p]->gathers_at);
+    for (std::size_t v = 0; v < a[p]->body.surface.vertex_count(); ++v)
+      EXPECT_EQ(a[p]->body.surface.place(std::int32_t(v)), b[p]->body.surface.place(std::int32_t(v)));
+  }
+}
+
+TEST(CutPatches, StayWhereOnlyAnotherOrganIsCutAndGoOnAsIfTheyHadBeenMadeAnew) {
+  const Model model = two_blocks();
+  State state = rest_state(model);
+  cutbody::CutPatches followed(model, 0), second(model, 1);
+  const auto follow = [&] {
+    followed.follow(std::make_shared<State>(state)), second.follow(std::make_shared<State>(state));
+  };
+  follow();
+  sweep(state, 0, 0.0013);
+  follow();
+  ASSERT_TRUE(followed.is_cut());
+  EXPECT_FALSE(second.is_cut());
+  const std::vector<cutbody::CutPatch*> patches = all_patches(followed, state);
+  ASSERT_FALSE(patches.empty());
+  constexpr std::int32_t kMark = -7;
+  for (cutbody::CutPatch* patch : patches) patch->first_wall = kMark;
+
+  sweep(state, 1, 0.0013);
+  follow();
+  EXPECT_TRUE(second.is_cut());
+  ASSERT_EQ(all_patches(followed, state), patches);
+  for (const cutbody::CutPatch* patch : patches) EXPECT_EQ(patch->first_wall, kMark) << "it was made again";
+
+  sweep(state, 0, 0.0253);
+  follow();
+  cutbody::CutPatches fresh(model, 0);
+  fresh.follow(std::make_shared<State>(state));
+  expect_same(all_patches(followed, state), all_patches(fresh, state));
+}
+
+}  // namespace
+}  // namespace ctpm
