@@ -27,21 +27,21 @@ std::shared_ptr<Stage> Desk::stage(std::uint32_t number) {
   return it == stages_.end() ? nullptr : it->second;
 }
 
-void Desk::keep(std::uint32_t number, std::shared_ptr<const loading::LoadedScene> scene) {
+void Desk::keep(std::uint32_t number, std::shared_ptr<KeptScene> scene) {
   const std::lock_guard lock(mutex_);
   kept_[number].swap(scene);
 }
 
-std::shared_ptr<const loading::LoadedScene> Desk::kept(std::uint32_t number) {
+std::shared_ptr<KeptScene> Desk::kept(std::uint32_t number) {
   const std::lock_guard lock(mutex_);
   const auto it = kept_.find(number);
   return it == kept_.end() ? nullptr : it->second;
 }
 
-std::shared_ptr<const loading::LoadedScene> Desk::kept(const std::string& file, const std::string& text) {
+std::shared_ptr<KeptScene> Desk::kept(const std::string& file, const std::string& text) {
   const std::lock_guard lock(mutex_);
   for (const auto& [number, scene] : kept_)
-    if (scene && scene->path == file && scene->scene.text == text) return scene;
+    if (scene && scene->scene().path == file && scene->scene().scene.text == text) return scene;
   return nullptr;
 }
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "studio/loading/loaded_scene.h"
+#include "studio/server/kept_scene.h"
 #include "studio/server/outbox.h"
 #include "studio/server/stage.h"
 #include "studio/server/training.h"
@@ -27,9 +27,9 @@ class Desk {
 
   /// Keeps the scene that stage `number` shows at rest. kept() returns it, or the one that was loaded from that text as
   /// that file; null: there is none.
-  void keep(std::uint32_t number, std::shared_ptr<const loading::LoadedScene> scene);
-  std::shared_ptr<const loading::LoadedScene> kept(std::uint32_t number);
-  std::shared_ptr<const loading::LoadedScene> kept(const std::string& file, const std::string& text);
+  void keep(std::uint32_t number, std::shared_ptr<KeptScene> scene);
+  std::shared_ptr<KeptScene> kept(std::uint32_t number);
+  std::shared_ptr<KeptScene> kept(const std::string& file, const std::string& text);
 
   /// Asks a stage for a moment; nothing happens without such a stage.
   void show(std::uint32_t number, std::int64_t tick, std::uint32_t request);
@@ -59,7 +59,7 @@ class Desk {
   std::shared_ptr<Outbox> outbox_;
   std::mutex mutex_;
   std::map<std::uint32_t, std::shared_ptr<Stage>> stages_;
-  std::map<std::uint32_t, std::shared_ptr<const loading::LoadedScene>> kept_;
+  std::map<std::uint32_t, std::shared_ptr<KeptScene>> kept_;
   std::shared_ptr<Training> training_;
 };
 

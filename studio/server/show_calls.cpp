@@ -62,31 +62,35 @@ Result<std::string> show_scene(Parameters& parameters, const CallContext& contex
   if (!file) return file.errors();
   Result<loading::LoadedScene> loaded = loading::load_whole_scene(*file, options, {}, context.should_stop);
   if (!loaded) return loaded.errors();
-  const auto scene = std::make_shared<const loading::LoadedScene>(*std::move(loaded));
-  const Model& model = scene->built.model;
+  const auto kept = std::make_shared<KeptScene>(*std::move(loaded));
+  const loading::LoadedScene& scene = kept->scene();
+  const Model& model = scene.built.model;
   output::JsonWriter organs;
-  write_organs(organs, *scene);
+  write_organs(organs, scene);
   PictureMaker maker(model, stage);
   context.desk->outbox().send_bytes(shapes_message(model, stage));
   context.desk->outbox().send_bytes(spheres_message(model, stage));
   context.desk->outbox().show(maker.make(rest_state(model), {}));
-  context.desk->keep(stage, scene);
-  return "{\"view\": " + view_json(scene->scene.spec, model) + ", \"organs\": " + organs.text() +
+  context.desk->keep(stage, kept);
+  return "{\"view\": " + view_json(scene.scene.spec, model) + ", \"organs\": " + organs.text() +
          ", \"spheres\": " + std::to_string(model.sphere_count()) +
          ", \"elements\": " + std::to_string(model.element_count()) +
-         ", \"warnings\": " + errors_json(scene->scene.warnings) + "}";
+         ", \"warnings\": " + errors_json(scene.scene.warnings) + "}";
 }
 
 /// The time of a tick of the scene that a stage shows.
 Result<std::string> measure_scene(Parameters& parameters, const CallContext& context) {
   const std::uint32_t stage = stage_of(parameters, context);
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
-  const std::shared_ptr<const loading::LoadedScene> scene = context.desk->kept(stage);
-  if (!scene) return Error{"", "no scene is shown there", ""};
-  const std::optional<double> time = loading::measure_tick(scene->built.model, context.should_stop);
+  const std::shared_ptr<KeptScene> kept = context.desk->kept(stage);
+  if (!kept) return Error{"", "no scene is shown there", ""};
+  const Model& model = kept->scene().built.model;
+  const std::optional<double> time = loading::measure_tick(model, context.should_stop);
   if (!time) return Error{"", "stopped", ""};
+  // Whoever looked at this so long may try it next; before, it would have disturbed what was measured.
+  kept->settle_ahead();
   output::JsonWriter json;
-  json.begin_object().member("measured_tick_time_s", *time).member("tick_s", scene->built.model.tick);
+  json.begin_object().member("measured_tick_time_s", *time).member("tick_s", model.tick);
   return json.member("ticks", loading::kMeasuredTicks).end_object().text();
 }
 

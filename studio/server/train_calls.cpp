@@ -83,19 +83,20 @@ Result<std::string> begin_training(Parameters& parameters, const CallContext& co
     request.file = *place, request.shown = *output;
   }
   // What the page shows of this text need not be loaded again.
-  std::shared_ptr<const loading::LoadedScene> scene = options.text ? context.desk->kept(*file, *options.text) : nullptr;
-  if (!scene) {
+  std::shared_ptr<KeptScene> kept = options.text ? context.desk->kept(*file, *options.text) : nullptr;
+  if (!kept) {
     Result<loading::LoadedScene> loaded = loading::load_whole_scene(*file, options, {}, context.should_stop);
     if (!loaded) return loaded.errors();
-    scene = std::make_shared<const loading::LoadedScene>(*std::move(loaded));
+    kept = std::make_shared<KeptScene>(*std::move(loaded));
   }
-  if (context.should_stop()) return Error{scene_path, "stopped", ""};
-  auto start = std::make_shared<const recordings::SessionStart>(session::start_session(*scene));
-  const std::string view = view_json(scene->scene.spec, start->model);
+  const std::shared_ptr<const recordings::SessionStart> start = kept->start(context.should_stop);
+  if (!start) return Error{scene_path, "stopped", ""};
+  const scenes::SceneText& scene = kept->scene().scene;
+  const std::string view = view_json(scene.spec, start->model);
   const Result<std::string> awaited = context.desk->train(start, request, stage);
   if (!awaited) return awaited.errors();
   output::JsonWriter warnings;
-  write_errors(warnings, scene->scene.warnings);
+  write_errors(warnings, scene.warnings);
   return "{\"scene\": " + json_text(scene_path) + ", \"view\": " + view + ", \"warnings\": " + warnings.text() +
          ", \"awaited\": " + json_text(*awaited) + "}";
 }

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/stepping/step.h"
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
 #include "recordings/session_writer.h"
 #include "scenes/scene_file.h"
+#include "studio/loading/standing.h"
 #include "studio/output/number_text.h"
 #include "studio/output/option_name.h"
 #include "studio/sources/script_source.h"
@@ -15,16 +15,21 @@
 
 namespace ctpm::session {
 
-recordings::SessionStart start_session(const loading::LoadedScene& scene) {
+std::optional<recordings::SessionStart> start_session(const loading::LoadedScene& scene,
+                                                      const std::function<bool()>& should_stop) {
   recordings::SessionStart start;
   start.scene_text = scene.scene.found_text;
   start.model = scene.built.model;
-  start.initial_state = rest_state(start.model);
-  stepping::Stepper(start.model).settle(start.initial_state, std::llround(scene.scene.spec.settle / start.model.tick));
+  std::optional<loading::Standing> settled =
+      loading::settle_scene(start.model, std::llround(scene.scene.spec.settle / start.model.tick), {}, should_stop);
+  if (!settled) return std::nullopt;
+  start.initial_state = std::move(settled->state);
   start.build_fingerprint = version::build_fingerprint();
   start.metadata = {{"scene_name", scene.scene.spec.name}};
   return start;
 }
+
+recordings::SessionStart start_session(const loading::LoadedScene& scene) { return *start_session(scene, {}); }
 
 Result<recordings::SessionStart> continue_session_at(const std::string& file, double at_s) {
   Result<recordings::SessionReader> parent = recordings::SessionReader::open(file);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "core/model/result.h"
@@ -17,7 +19,9 @@ struct RecordOutcome {
   recordings::SessionStatistics statistics;
 };
 
-/// The start of a session of `scene`, settled to rest.
+/// The start of a session of `scene`, settled to rest. None if `should_stop` ended it.
+std::optional<recordings::SessionStart> start_session(const loading::LoadedScene& scene,
+                                                      const std::function<bool()>& should_stop);
 recordings::SessionStart start_session(const loading::LoadedScene& scene);
 
 /// The start of a session that continues the session in `file` from its State at `at_s` [s] and names it as its parent.

@@ -1,0 +1,26 @@
+#include "studio/server/kept_scene.h"
+
+#include <chrono>
+
+#include "studio/session/record_session.h"
+
+namespace ctpm::server {
+
+void KeptScene::settle_ahead() {
+  std::call_once(begun_, [this] {
+    start_ = std::async(std::launch::async, [this]() -> std::shared_ptr<const recordings::SessionStart> {
+      auto start = session::start_session(scene_, [this] { return ends_.load(); });
+      return start ? std::make_shared<const recordings::SessionStart>(*std::move(start)) : nullptr;
+    });
+  });
+}
+
+std::shared_ptr<const recordings::SessionStart> KeptScene::start(const std::function<bool()>& should_stop) {
+  settle_ahead();
+  constexpr auto kLook = std::chrono::milliseconds(10);
+  while (start_.wait_for(kLook) == std::future_status::timeout)
+    if (should_stop()) return nullptr;
+  return start_.get();
+}
+
+}  // namespace ctpm::server
