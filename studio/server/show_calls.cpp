@@ -1,11 +1,13 @@
 // A scene that is shown while its author works on it, and what can be measured of it.
 
+#include <cmath>
 #include <mutex>
 #include <string>
 
 #include "core/model/state.h"
 #include "studio/fidelity/scene.h"
 #include "studio/loading/loaded_scene.h"
+#include "studio/loading/standing.h"
 #include "studio/loading/tick_time.h"
 #include "studio/server/call_table.h"
 #include "studio/server/picture.h"
@@ -83,10 +85,14 @@ Result<std::string> measure_scene(Parameters& parameters, const CallContext& con
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
   const std::shared_ptr<const loading::LoadedScene> scene = context.desk->kept(stage);
   if (!scene) return Error{"", "no scene is shown there", ""};
-  const std::optional<double> time = loading::measure_tick(scene->built.model, context.should_stop);
+  const Model& model = scene->built.model;
+  std::optional<loading::Standing> standing =
+      loading::settle_scene(model, std::llround(scene->scene.spec.settle / model.tick), {}, context.should_stop);
+  const std::optional<double> time =
+      standing ? loading::measure_tick(model, std::move(standing->state), context.should_stop) : std::nullopt;
   if (!time) return Error{"", "stopped", ""};
   output::JsonWriter json;
-  json.begin_object().member("measured_tick_time_s", *time).member("tick_s", scene->built.model.tick);
+  json.begin_object().member("measured_tick_time_s", *time).member("tick_s", model.tick);
   return json.member("ticks", loading::kMeasuredTicks).end_object().text();
 }
 
