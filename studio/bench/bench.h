@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,10 +17,20 @@
 namespace ctpm::bench {
 
 struct BenchOptions {
-  std::vector<std::string> scenes;  ///< scene files for the study in time; empty: the shipped ones
+  std::vector<std::string> scenes;  ///< scene files for the studies of one organ; empty: the shipped ones
   std::string shipped;              ///< folder of the shipped scenes
   bool is_quick = false;            ///< coarser fillings and fewer settings, for a first look
   std::function<void(const Errors& warnings)> take_warnings;  ///< receives the warnings of `scenes`
+};
+
+/// What one choice costs, and how far it alone takes the force from the truth.
+struct CostPoint {
+  std::string organ;
+  std::string kind;  ///< of error: "time", "space", "structure", "lattice phase"
+  std::string name;  ///< of the choice
+  double tick_ms = 0;
+  double force_error = 0;  ///< share
+  bool is_own = false;     ///< the scene's own choice
 };
 
 /// The result of a study: a section for the page, rows for programs, conclusions as sentences.
@@ -27,7 +38,15 @@ struct BenchStudy {
   reports::Section section;
   reports::Table points;
   std::vector<std::string> sentences;
+  std::vector<CostPoint> costs = {};  ///< of choices about one organ, for the diagram that compares the studies
 };
+
+/// The first of `errors`, coarsest refinement first, that is more than a fifth greater than the one before and more
+/// than twice `gap`, which a reference does not tell apart: such a case does not converge. None if there is none.
+std::optional<std::size_t> first_growth(const std::vector<double>& errors, double gap = 0);
+
+/// The scenes of the studies of one organ: those that are named, else the shipped liver.
+std::vector<std::string> scenes_of(const BenchOptions& options);
 
 using BenchProgress = std::function<void(std::int64_t done, std::int64_t total)>;
 
@@ -35,8 +54,16 @@ using BenchProgress = std::function<void(std::int64_t done, std::int64_t total)>
 /// for each scene and motion.
 Result<std::vector<BenchStudy>> run_bench_time(const BenchOptions& options, const BenchProgress& progress);
 
-/// Sphere radii down to a quarter of the shipped one, with one tool and path, against the finest.
-Result<BenchStudy> run_bench_space(const BenchOptions& options, const BenchProgress& progress);
+/// Sphere radii about the scene's own, with one tool and path, against a filling two refinements finer than the finest.
+/// Scenes whose first organ is a rig, or that have no ball, have no such study.
+Result<std::vector<BenchStudy>> run_bench_space(const BenchOptions& options, const BenchProgress& progress);
+
+/// The structures of the same organs, and the scatter of the force as the lattice is turned under them.
+Result<std::vector<BenchStudy>> run_bench_organ(const BenchOptions& options, const BenchProgress& progress);
+
+/// The errors of time, space, structure and lattice phase of each organ in one diagram, force in percent against
+/// milliseconds a tick. Empty without CostPoints.
+std::vector<BenchStudy> compare_costs(const std::vector<BenchStudy>& studies);
 
 /// The four structures on the paper's rig against the closed forms and the paper's Table 1.
 Result<BenchStudy> run_bench_structure(const BenchOptions& options, const BenchProgress& progress);
@@ -55,10 +82,10 @@ struct BenchMotion {
 
 /// Positions, forces and computing time of each tick of a run.
 struct BenchRun {
-  std::vector<Vec3Array> position;                         ///< [m]               (tick_count)
-  std::vector<Vec3> force;                                 ///< on the tool [N]   (tick_count)
-  std::vector<double> seconds;                             ///< wall clock [s]    (tick_count)
-  std::int64_t unconverged = 0;                            ///< ticks whose solver reached its iteration limit
+  std::vector<Vec3Array> position;  ///< [m]               (tick_count)
+  std::vector<Vec3> force;          ///< on the tool [N]   (tick_count)
+  std::vector<double> seconds;      ///< processor time of the thread, whatever else the machine does [s]  (tick_count)
+  std::int64_t unconverged = 0;     ///< ticks whose solver reached its iteration limit
   stepping::StepStatus status = stepping::StepStatus::ok;  ///< status that ended the run early; `ok`: none did
 };
 BenchRun run_motion(const Model& model, const BenchMotion& motion);
@@ -67,10 +94,14 @@ BenchRun run_motion(const Model& model, const BenchMotion& motion);
 double position_error(const BenchRun& run, const BenchRun& reference, const Vec3Array& rest);
 double force_error(const BenchRun& run, const BenchRun& reference);
 
+/// Whether the tool felt any force.
+bool feels(const BenchRun& run);
+
 /// The percentile of `values` at `share` in [0, 1]; 0 if there are none.
 double percentile(std::vector<double> values, double share);
 
-/// Indices of the Pareto-optimal points, fastest first: no other point is both faster and more accurate.
+/// Indices of the Pareto-optimal points, fastest first: no other point is both faster and more accurate. A point whose
+/// error is infinite is never one.
 std::vector<std::size_t> pareto_front(const std::vector<double>& cost, const std::vector<double>& error);
 
 /// Columns of results.csv, the same for every study; a study leaves cells that it does not have empty.

@@ -84,8 +84,8 @@ reports::Table front_of(const BenchStudy& study) {
 Result<Done> write_bench_report(const std::string& folder, const std::vector<BenchStudy>& studies) {
   reports::Report report("Error against run time",
                          "Measured on " + machine() +
-                             ", one thread. Run times are wall clock: what else the machine did then is "
-                             "in them.");
+                             ", one thread. Times are processor time of that thread, not that of other programs; "
+                             "a busy machine still has colder caches.");
   std::vector<std::string> sentences;
   for (const BenchStudy& study : studies)
     sentences.insert(sentences.end(), study.sentences.begin(), study.sentences.end());
@@ -97,7 +97,8 @@ Result<Done> write_bench_report(const std::string& folder, const std::vector<Ben
   }
   for (const BenchStudy& study : studies) {
     if (const Result<Done> added = report.add(study.section); !added) return added;
-    if (study.section.key == "time") report.add_table(front_of(study));
+    if (const reports::Table front = front_of(study); study.section.key == "time" && !front.rows.empty())
+      report.add_table(front);
   }
   return reports::write_report(folder, {{"results.json", results_json(studies)},
                                         {"results.csv", reports::to_csv(all_points(studies))},

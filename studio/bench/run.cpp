@@ -1,7 +1,8 @@
 // Shared by all studies: timed runs, errors, percentiles, the Pareto front.
 
+#include <time.h>
+
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
@@ -9,17 +10,30 @@
 #include "studio/bench/bench.h"
 
 namespace ctpm::bench {
+namespace {
+
+/// Processor time of this thread [s]: a tick of one thread is all in it.
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+}  // namespace
+
+std::vector<std::string> scenes_of(const BenchOptions& options) {
+  return options.scenes.empty() ? std::vector{options.shipped + "/liver.json"} : options.scenes;
+}
 
 BenchRun run_motion(const Model& model, const BenchMotion& motion) {
-  using Clock = std::chrono::steady_clock;
   BenchRun run;
   stepping::Stepper stepper(model);
   State state = rest_state(model);
   for (std::int64_t tick = 0; tick < motion.ticks; ++tick) {
     const Inputs inputs = motion.hand(tick);
-    const Clock::time_point start = Clock::now();
+    const double start = thread_seconds();
     const stepping::StepReport report = stepper.step(state, inputs);
-    run.seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+    run.seconds.push_back(thread_seconds() - start);
     if (report.status == stepping::StepStatus::not_converged) {
       ++run.unconverged;
     } else if (report.status != stepping::StepStatus::ok) {
@@ -48,6 +62,17 @@ double force_error(const BenchRun& run, const BenchRun& reference) {
     off += dot(apart, apart), size += dot(reference.force[t], reference.force[t]);
   }
   return size > 0 ? std::sqrt(off / size) : 0;
+}
+
+bool feels(const BenchRun& run) {
+  return std::any_of(run.force.begin(), run.force.end(), [](Vec3 force) { return norm(force) > 0; });
+}
+
+std::optional<std::size_t> first_growth(const std::vector<double>& errors, double gap) {
+  constexpr double kGrowth = 1.2;
+  for (std::size_t i = 1; i < errors.size(); ++i)
+    if (errors[i] > std::max(kGrowth * errors[i - 1], 2 * gap)) return i;
+  return std::nullopt;
 }
 
 double percentile(std::vector<double> values, double share) {
@@ -82,7 +107,7 @@ reports::Table bench_layout() {
                    {"spheres", "spheres"},
                    {"position_error", "error in position", 3},
                    {"force_error", "error in force", 3},
-                   {"run_time_s_per_s", "run time [s per s]", 3},
+                   {"run_time_s_per_s", "processor time [s per s]", 3},
                    {"tick_p50_ms", "tick p50 [ms]", 3},
                    {"tick_p99_ms", "p99 [ms]", 3},
                    {"tick_p999_ms", "p99.9 [ms]", 3},

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <tuple>
+#include <utility>
 
 #include "core/stepping/step.h"
 #include "studio/bench/bench.h"
@@ -11,7 +13,8 @@
 namespace ctpm::bench {
 namespace {
 
-/// Sphere radius of the shipped organs in this study [m]: the reference takes as long as tens of the finest runs.
+/// Sphere radius of the shipped organs but for the first study, which has their own [m]: references take as long as
+/// tens of the finest runs.
 constexpr double kRadius = 6e-3, kQuickRadius = 9e-3;
 
 constexpr double kReferenceTolerance = 1e-9;
@@ -22,8 +25,12 @@ constexpr double kMostSubsteps = 1000;
 /// Number of ticks for the percentiles of the recommended setting.
 constexpr std::size_t kTimedTicks = 1000;
 
+/// A reference whose own error is more than this says nothing.
+constexpr double kMostGap = 0.05;
+
 struct TimeJob {
   std::string title;
+  std::string organ;  ///< whose own filling it has; empty if another
   Model model;
   BenchMotion motion;
   bool is_pressed;  ///< from above, by a ball
@@ -39,6 +46,7 @@ struct Point {
   Setting setting;
   double position_error = 0, force_error = 0;
   double run_time = 0;                ///< [s per simulated s]
+  bool feels = false;                 ///< the tool felt a force
   double p50 = 0, p99 = 0, p999 = 0;  ///< of a tick [s]
   std::int64_t unconverged = 0;
   bool is_on_front = false;
@@ -85,11 +93,15 @@ BenchMotion press_and_release(const Model& model, std::int32_t tool, Vec3 start,
   return motion;
 }
 
-/// The scene's first ball presses the highest free sphere 6 mm deep.
+/// The scene's first ball presses 6 mm deep from where it touches the highest place of the drawn surface, or where
+/// there is none, the highest free sphere.
 BenchMotion press_the_top(const Model& model, std::int32_t ball) {
   const std::size_t top = top_of(model);
-  const double reach = model.tools[std::size_t(ball)].radius + model.contact_radius[top];
-  return press_and_release(model, ball, model.rest_position[top] + Vec3{0, 0, reach}, 6e-3);
+  Vec3 place = model.rest_position[top] + Vec3{0, 0, model.contact_radius[top]};
+  if (!model.surfaces.empty() && !model.surfaces[0].vertex.empty())
+    place = *std::max_element(model.surfaces[0].vertex.begin(), model.surfaces[0].vertex.end(),
+                              [](Vec3 p, Vec3 q) { return p.z < q.z; });
+  return press_and_release(model, ball, place + Vec3{0, 0, model.tools[std::size_t(ball)].radius}, 6e-3);
 }
 
 /// A pin, added to `model`, moves the highest free sphere as the ball would, without contact.
@@ -147,7 +159,7 @@ Result<TimeJob> make_job(const std::string& path, const std::string& title, cons
   const Result<loading::LoadedScene> scene = loading::load_whole_scene(path, {}, prepare);
   if (!scene) return scene.errors();
   if (options.take_warnings) options.take_warnings(scene->scene.warnings);
-  TimeJob job{title, scene->built.model, {}, deed.kind == ToolKind::ball};
+  TimeJob job{title, "", scene->built.model, {}, deed.kind == ToolKind::ball};
   const std::int32_t tool = first_tool(job.model, deed.kind);
   if (tool < 0)
     return Error{path, std::string("has no ") + (deed.kind == ToolKind::scalpel ? "scalpel" : "ball"),
@@ -166,11 +178,13 @@ Result<std::vector<TimeJob>> make_jobs(const BenchOptions& options) {
       cut{ToolKind::scalpel, cut_along_x};
   const auto shipped = [&](const char* name) { return options.shipped + "/" + name + ".json"; };
   const std::string liver = shipped("liver"), title = "liver, press and release";
-  for (const std::string& path : options.scenes)
+  for (const std::string& path : scenes_of(options)) {
+    const std::string name = options.scenes.empty() ? "liver" : path;
     made.push_back(make_job(
-        path, path + ", press and release", press, [](scenes::SceneSpec&) {}, options));
+        path, name + ", press and release", press, [](scenes::SceneSpec&) {}, options));
+    if (made.back()) made.back()->organ = made.back()->model.organs[0].name;
+  }
   if (options.scenes.empty()) {
-    made.push_back(make_job(liver, title + ", viscosity in kPa s", press, coarse));
     if (!options.is_quick) {
       made.push_back(make_job(liver, title + ", viscosity in Pa s", press, [&](scenes::SceneSpec& spec) {
         coarse(spec), spec.organs[0].material.preset += "-pa-s";
@@ -202,7 +216,7 @@ std::vector<Setting> settings_for(const Model& model, bool is_quick) {
     settings.push_back({Integrator::leapfrog, std::int32_t(n), 1e-4});
   const std::vector<double> tolerances = is_quick ? std::vector{1e-2, 1e-5} : std::vector{1e-1, 1e-2, 1e-4, 1e-6};
   for (const double tolerance : tolerances) {
-    for (std::int32_t n = 1; n <= (is_quick ? 4 : 16); n *= 2)
+    for (std::int32_t n = 1; n <= (is_quick ? 4 : 8); n *= 2)
       settings.push_back({Integrator::backward_euler, n, tolerance});
     for (std::int32_t n = 1; n <= (is_quick ? 2 : 4); n *= 2) settings.push_back({Integrator::sdirk2, n, tolerance});
   }
@@ -213,6 +227,7 @@ Point measure(const TimeJob& job, const Setting& setting, const BenchRun& run, c
   Point point{setting};
   point.position_error = position_error(run, reference, job.model.rest_position);
   point.force_error = force_error(run, reference);
+  point.feels = feels(run);
   double total = 0;
   for (const double seconds : run.seconds) total += seconds;
   point.run_time = total / (double(run.seconds.size()) * job.model.tick);
@@ -222,10 +237,17 @@ Point measure(const TimeJob& job, const Setting& setting, const BenchRun& run, c
   return point;
 }
 
-/// One line for each integrator and tolerance, along its substeps, and the front.
+/// Settings that nothing beats in both. Those under which the tool feels nothing are none.
+std::vector<std::size_t> front_of(const std::vector<Point>& points, double Point::*error) {
+  std::vector<double> cost, errors;
+  for (const Point& p : points) cost.push_back(p.run_time), errors.push_back(p.feels ? p.*error : INFINITY);
+  return pareto_front(cost, errors);
+}
+
+/// One line for each integrator and tolerance, along its substeps, and the front if there is one.
 reports::Plot diagram(const std::string& title, const std::vector<Point>& points, double Point::*error,
-                      const char* what) {
-  reports::Plot plot{.title = title, .x_title = "run time [s per simulated s]", .y_title = what};
+                      const char* what, bool has_front) {
+  reports::Plot plot{.title = title, .x_title = "processor time [s per simulated s]", .y_title = what};
   plot.is_log_x = plot.is_log_y = true;
   for (const Point& p : points) {
     std::string name = stepping::name_of(p.setting.integrator);
@@ -241,35 +263,75 @@ reports::Plot diagram(const std::string& title, const std::vector<Point>& points
     it->x.push_back(p.run_time), it->y.push_back(p.*error);
   }
   reports::Series front{.name = "Pareto front", .stroke = reports::Stroke::marks, .colour = 1};
-  std::vector<double> cost, errors;
-  for (const Point& p : points) cost.push_back(p.run_time), errors.push_back(p.*error);
-  for (const std::size_t i : pareto_front(cost, errors)) front.x.push_back(cost[i]), front.y.push_back(errors[i]);
-  plot.series.push_back(front);
+  for (const std::size_t i : front_of(points, error))
+    front.x.push_back(points[i].run_time), front.y.push_back(points[i].*error);
+  if (has_front) plot.series.push_back(front);
   return plot;
 }
 
-/// Order of the error in the substeps at the tightest tolerance, from the two finest runs whose error the reference can
-/// resolve; its own error is up to `gap`.
-reports::Table orders(const std::vector<Point>& points, double gap) {
+/// The settings of one integrator at its tightest tolerance, coarsest steps first.
+std::vector<const Point*> tightest_of(const std::vector<Point>& points, Integrator integrator) {
+  double tightest = 1;
+  for (const Point& p : points)
+    if (p.setting.integrator == integrator) tightest = std::min(tightest, p.setting.tolerance);
+  std::vector<const Point*> own;
+  for (const Point& p : points)
+    if (p.setting.integrator == integrator && p.setting.tolerance == tightest) own.push_back(&p);
+  return own;
+}
+
+constexpr Integrator kIntegrators[] = {Integrator::leapfrog, Integrator::backward_euler, Integrator::sdirk2};
+
+/// How far a reference is off the run with half as many substeps.
+struct Gap {
+  double position = 0, force = 0;
+};
+
+std::string percent(double share) { return output::short_number(100 * share, 2) + " %"; }
+
+/// Why the steps of a case do not converge; empty if they do.
+std::string why_not_converged(const std::vector<Point>& points, Gap gap) {
+  for (const auto& [name, error, own] :
+       {std::tuple{"force", &Point::force_error, gap.force}, {"position", &Point::position_error, gap.position}}) {
+    for (const Integrator integrator : kIntegrators) {
+      const std::vector<const Point*> steps = tightest_of(points, integrator);
+      std::vector<double> errors;
+      for (const Point* p : steps) errors.push_back(p->*error);
+      const auto at = [&](std::size_t i) {
+        return percent(errors[i]) + " at " + std::to_string(steps[i]->setting.substeps) +
+               (steps[i]->setting.substeps == 1 ? " substep" : " substeps");
+      };
+      if (const std::optional<std::size_t> i = first_growth(errors, own))
+        return std::string("the error of ") + stepping::name_of(integrator) + " in " + name + " grows from " +
+               at(*i - 1) + " to " + at(*i);
+    }
+    if (own > kMostGap)
+      return std::string("the reference itself changes by ") + percent(own) + " in " + name +
+             " when its steps are halved";
+  }
+  return "";
+}
+
+/// Errors at the tightest tolerance, and the order between each row and the one above it. Errors that the reference,
+/// whose own is up to `gap`, does not tell apart have none.
+reports::Table orders(const std::vector<Point>& points, Gap gap) {
   reports::Table table;
-  table.title =
-      "Observed order, between the two finest steps that the reference tells apart, at the tightest "
-      "tolerance";
-  table.columns = {{"integrator", "integrator"}, {"position", "in position", 3}, {"force", "in force", 3}};
-  for (const Integrator integrator : {Integrator::leapfrog, Integrator::backward_euler, Integrator::sdirk2}) {
-    std::vector<const Point*> own;
-    double tightest = 1;
-    for (const Point& p : points)
-      if (p.setting.integrator == integrator) tightest = std::min(tightest, p.setting.tolerance);
-    for (const Point& p : points)
-      if (p.setting.integrator == integrator && p.setting.tolerance == tightest && p.position_error > 2 * gap)
-        own.push_back(&p);
-    if (own.size() < 2) continue;
-    const Point &coarse = *own[own.size() - 2], &fine = *own.back();
-    const double ratio = std::log(double(fine.setting.substeps) / coarse.setting.substeps);
-    table.rows.push_back({std::string(stepping::name_of(integrator)),
-                          std::log(coarse.position_error / fine.position_error) / ratio,
-                          std::log(coarse.force_error / fine.force_error) / ratio});
+  table.title = "Errors at the tightest tolerance, and their orders in the step from the row above";
+  table.columns = {{"integrator", "integrator"},        {"substeps", "substeps"},      {"position", "in position", 3},
+                   {"position_order", "order", 3},      {"force", "in force", 3},      {"force_order", "order", 3},
+                   {"tick_p50_ms", "tick p50 [ms]", 3}, {"tick_p99_ms", "p99 [ms]", 3}};
+  for (const Integrator integrator : kIntegrators) {
+    const Point* before = nullptr;
+    for (const Point* p : tightest_of(points, integrator)) {
+      const auto order = [&](double Point::*error, double own) -> reports::Cell {
+        if (!before || p->*error <= 2 * own) return {};
+        return std::log(before->*error / p->*error) / std::log(double(p->setting.substeps) / before->setting.substeps);
+      };
+      table.rows.push_back({std::string(stepping::name_of(integrator)), std::int64_t(p->setting.substeps),
+                            p->position_error, order(&Point::position_error, gap.position), p->force_error,
+                            order(&Point::force_error, gap.force), 1e3 * p->p50, 1e3 * p->p99});
+      before = p;
+    }
   }
   return table;
 }
@@ -289,15 +351,17 @@ double order_without_contact(const TimeJob& job, std::int32_t fine) {
   return std::log2(error(2) / error(4));
 }
 
-/// Names the most accurate setting whose tick takes at most the scene's tick at p99, with percentiles over many ticks.
-std::string recommendation(const TimeJob& job, std::vector<Point> points) {
+/// Names the most accurate setting whose tick takes at most the scene's tick at p99, with percentiles over many ticks;
+/// none if the case does not converge, for the reason `why`.
+std::string recommendation(const TimeJob& job, std::vector<Point> points, const std::string& why) {
+  if (!why.empty()) return job.title + ": does not converge: " + why + ". Nothing is recommended.";
   const double tick = job.model.tick;
   const std::string rate =
       output::short_number(1e-3 / tick) + " kHz with " + std::to_string(job.model.sphere_count()) + " spheres";
   std::sort(points.begin(), points.end(),
             [](const Point& a, const Point& b) { return a.position_error < b.position_error; });
   for (const Point& p : points) {
-    if (p.p99 > tick) continue;
+    if (p.p99 > tick || !p.feels) continue;
     const Model model = with_setting(job.model, p.setting);
     std::vector<double> seconds;
     while (seconds.size() < kTimedTicks) {
@@ -307,70 +371,109 @@ std::string recommendation(const TimeJob& job, std::vector<Point> points) {
     const double p99 = percentile(seconds, 0.99);
     if (p99 > tick) continue;
     return job.title + ": the most accurate setting that holds " + rate + " on this machine is " +
-           name_of_setting(p.setting) + ": error " + output::short_number(100 * p.position_error, 2) +
-           " % in position and " + output::short_number(100 * p.force_error, 2) + " % in force; ticks of " +
-           output::short_number(1e3 * percentile(seconds, 0.5), 3) + " ms (p50), " +
-           output::short_number(1e3 * p99, 3) + " ms (p99), " +
+           name_of_setting(p.setting) + ": error " + percent(p.position_error) + " in position and " +
+           percent(p.force_error) + " in force; ticks of " + output::short_number(1e3 * percentile(seconds, 0.5), 3) +
+           " ms (p50), " + output::short_number(1e3 * p99, 3) + " ms (p99), " +
            output::short_number(1e3 * percentile(seconds, 0.999), 3) + " ms (p99.9).";
   }
   return job.title + ": no setting holds " + rate + " at p99 on this machine.";
 }
 
-BenchStudy study(const TimeJob& job, const BenchOptions& options, const std::function<void()>& advance) {
-  // The reference and the run with half its step run in parallel; timed runs run alone.
-  const std::int32_t fine = options.is_quick ? 8 : 16;
-  const auto reference_run = [&](std::int32_t substeps) {
+/// What the settings of a scene's own filling cost, at the loosest tolerance that is no looser than the scene's own.
+void add_costs(const TimeJob& job, const std::vector<Point>& points, BenchStudy& study) {
+  const SolverSettings& solver = job.model.solver;
+  const Point* own = nullptr;
+  double tolerance = 1;
+  for (const Point& p : points) tolerance = std::min(tolerance, p.setting.tolerance);
+  for (const Point& p : points)
+    if (p.setting.integrator == solver.integrator && p.setting.substeps == solver.substeps &&
+        p.setting.tolerance <= solver.tolerance && (!own || p.setting.tolerance > own->setting.tolerance))
+      own = &p, tolerance = p.setting.tolerance;
+  for (const Point& p : points)
+    if (p.feels && (p.setting.tolerance == tolerance || p.setting.integrator == Integrator::leapfrog))
+      study.costs.push_back({job.organ, std::string("time, ") + stepping::name_of(p.setting.integrator),
+                             name_of_setting(p.setting), 1e3 * p.p50, p.force_error, &p == own});
+}
+
+/// What the study's section says before its numbers.
+std::vector<std::string> words_of(const TimeJob& job, std::int32_t fine, Gap gap) {
+  return {
+      std::to_string(job.model.sphere_count()) +
+          " spheres of r = " + output::short_number(1e3 * job.model.organs[0].sphere_radius, 3) + " mm, " +
+          std::to_string(job.motion.ticks) + " ticks of " + output::short_number(1e3 * job.model.tick) +
+          " ms, no gravity. Errors are relative differences in L2 over the whole trajectory, of displacements and of "
+          "the force on the tool, from a reference: sdirk2 with " +
+          std::to_string(fine) + " substeps and tolerance " + output::short_number(kReferenceTolerance) +
+          ", two refinements finer than the finest implicit setting. It differs from the run with half as many "
+          "substeps by " +
+          percent(gap.position) + " in position and " + percent(gap.force) +
+          " in force: an estimate of its own error, not a bound. Errors below that are not told apart.",
+      "Numbers in the legend are tolerances; along a line the substeps double."};
+}
+
+std::vector<reports::Cell> row_of(const TimeJob& job, const Point& p) {
+  return {std::string("time"),
+          job.title,
+          reports::Cell(),
+          std::string(stepping::name_of(p.setting.integrator)),
+          std::int64_t(p.setting.substeps),
+          p.setting.tolerance,
+          1e3 * job.model.organs[0].sphere_radius,
+          reports::Cell(),
+          std::int64_t(job.model.sphere_count()),
+          p.position_error,
+          p.force_error,
+          p.run_time,
+          1e3 * p.p50,
+          1e3 * p.p99,
+          1e3 * p.p999,
+          p.unconverged,
+          p.is_on_front ? reports::Cell(std::string("front")) : reports::Cell()};
+}
+
+/// The reference and its distance from the run with half its substeps; both run in parallel, timed runs run alone.
+std::pair<BenchRun, Gap> make_reference(const TimeJob& job, std::int32_t fine) {
+  const auto run = [&](std::int32_t substeps) {
     return run_motion(with_setting(job.model, {Integrator::sdirk2, substeps, kReferenceTolerance}), job.motion);
   };
-  std::future<BenchRun> other = std::async(std::launch::async, [&] { return reference_run(fine / 2); });
-  const BenchRun reference = reference_run(fine), halved = other.get();
-  const double position_gap = position_error(halved, reference, job.model.rest_position),
-               force_gap = force_error(halved, reference);
-  advance();
+  std::future<BenchRun> other = std::async(std::launch::async, [&] { return run(fine / 2); });
+  BenchRun reference = run(fine);
+  const BenchRun halved = other.get();
+  const Gap gap{position_error(halved, reference, job.model.rest_position), force_error(halved, reference)};
+  return {std::move(reference), gap};
+}
 
+BenchStudy study(const TimeJob& job, const BenchOptions& options, const std::function<void()>& advance) {
+  const std::int32_t fine = options.is_quick ? 16 : 32;
+  const auto [reference, gap] = make_reference(job, fine);
+  advance();
   std::vector<Point> points;
   for (const Setting& setting : settings_for(job.model, options.is_quick)) {
     const BenchRun run = run_motion(with_setting(job.model, setting), job.motion);
     if (run.status == stepping::StepStatus::ok) points.push_back(measure(job, setting, run, reference));
   }
-  std::vector<double> cost, errors;
-  for (const Point& p : points) cost.push_back(p.run_time), errors.push_back(p.position_error);
-  for (const std::size_t i : pareto_front(cost, errors)) points[i].is_on_front = true;
-
+  const std::string why = !feels(reference) ? "the tool feels nothing" : why_not_converged(points, gap);
+  if (why.empty())
+    for (const std::size_t i : front_of(points, &Point::position_error)) points[i].is_on_front = true;
   BenchStudy study;
   study.section.key = "time", study.section.title = "Time: " + job.title;
-  study.section.plots = {diagram("position", points, &Point::position_error, "relative L2 error in position"),
-                         diagram("force", points, &Point::force_error, "relative L2 error in force")};
-  study.section.paragraphs = {
-      std::to_string(job.model.sphere_count()) + " spheres, " + std::to_string(job.motion.ticks) + " ticks of " +
-          output::short_number(1e3 * job.model.tick) +
-          " ms, no gravity. Errors are relative differences in L2 over the whole "
-          "trajectory, of displacements and of the force on the tool, from a reference: sdirk2 with " +
-          std::to_string(fine) + " substeps and tolerance " + output::short_number(kReferenceTolerance) +
-          ". The reference itself "
-          "differs from the run with half as many substeps by " +
-          output::short_number(100 * position_gap, 2) + " % in position and " +
-          output::short_number(100 * force_gap, 2) +
-          " % in force: an estimate of its own error, not a bound. Errors below that are not told apart.",
-      "Numbers in the legend are tolerances; along a line the substeps double."};
-  study.sentences = {recommendation(job, points)};
+  study.section.plots = {
+      diagram("position", points, &Point::position_error, "relative L2 error in position", why.empty()),
+      diagram("force", points, &Point::force_error, "relative L2 error in force", why.empty())};
+  study.section.paragraphs = words_of(job, fine, gap);
+  study.sentences = {recommendation(job, points, why)};
   study.section.paragraphs.push_back(study.sentences[0]);
-  study.section.tables = {orders(points, position_gap)};
-  if (job.is_pressed) {
-    study.section.tables[0].rows.push_back(
-        {std::string("sdirk2, without contact"), order_without_contact(job, fine), reports::Cell()});
+  study.section.tables = {orders(points, gap)};
+  if (job.is_pressed)
     study.section.paragraphs.push_back(
-        "SDIRK2 is of second order where the motion is smooth and the steps resolve it. In the last row "
-        "of the table of orders a pin moves the pressed sphere along the ball's way: where that is 2 and the row above "
-        "is less, contacts that begin and end within steps cost the difference, since the force has a kink there.");
-  }
+        "Where a pin moves the pressed sphere along the ball's way, without contact, the order of sdirk2 in position "
+        "is " +
+        output::short_number(order_without_contact(job, fine), 3) +
+        " between 2 and 4 substeps: where that is 2 and the table has less, contacts that begin and end within steps "
+        "cost the difference, since the force has a kink there.");
+  if (!job.organ.empty() && why.empty()) add_costs(job, points, study);
   study.points = bench_layout();
-  for (const Point& p : points)
-    study.points.rows.push_back(
-        {std::string("time"), job.title, reports::Cell(), std::string(stepping::name_of(p.setting.integrator)),
-         std::int64_t(p.setting.substeps), p.setting.tolerance, reports::Cell(), reports::Cell(),
-         std::int64_t(job.model.sphere_count()), p.position_error, p.force_error, p.run_time, 1e3 * p.p50, 1e3 * p.p99,
-         1e3 * p.p999, p.unconverged, p.is_on_front ? reports::Cell(std::string("front")) : reports::Cell()});
+  for (const Point& p : points) study.points.rows.push_back(row_of(job, p));
   return study;
 }
 

@@ -1,3 +1,4 @@
+#include <iterator>
 #include <memory>
 #include <string>
 
@@ -13,28 +14,38 @@ struct BenchArguments {
   bench::BenchOptions options;
 };
 
-/// All studies, each with its own progress. For named scenes only the study in time runs.
-Result<std::vector<bench::BenchStudy>> run_studies(const bench::BenchOptions& options) {
-  const auto line = [](ProgressLine& progress) {
-    return [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
+using Studies = Result<std::vector<bench::BenchStudy>>;
+
+/// A study of the paper's rig, as one of many.
+template <Result<bench::BenchStudy> (*run)(const bench::BenchOptions&, const bench::BenchProgress&)>
+Studies alone(const bench::BenchOptions& options, const bench::BenchProgress& progress) {
+  Result<bench::BenchStudy> study = run(options, progress);
+  if (!study) return study.errors();
+  return std::vector{*std::move(study)};
+}
+
+/// All studies, each with its own progress. For named scenes only those of an organ run.
+Studies run_studies(const bench::BenchOptions& options) {
+  struct Part {
+    const char* title;
+    Studies (*run)(const bench::BenchOptions&, const bench::BenchProgress&);
+    bool is_of_organ;
   };
   std::vector<bench::BenchStudy> studies;
-  {
-    ProgressLine progress("integrators, substeps and tolerances");
-    Result<std::vector<bench::BenchStudy>> time = bench::run_bench_time(options, line(progress));
-    if (!time) return time.errors();
-    studies = std::move(*time);
+  for (const Part& part : {Part{"integrators, substeps and tolerances", &bench::run_bench_time, true},
+                           Part{"sphere radius", &bench::run_bench_space, true},
+                           Part{"structure and lattice phase", &bench::run_bench_organ, true},
+                           Part{"structure", &alone<&bench::run_bench_structure>, false},
+                           Part{"tiling", &alone<&bench::run_bench_tiling>, false}}) {
+    if (!options.scenes.empty() && !part.is_of_organ) continue;
+    ProgressLine line(part.title);
+    Studies own = part.run(options, [&](std::int64_t done, std::int64_t total) { line.show(done, total); });
+    if (!own) return own.errors();
+    std::move(own->begin(), own->end(), std::back_inserter(studies));
   }
-  if (!options.scenes.empty()) return studies;
-  for (const auto& [title, run] :
-       {std::pair{"sphere radius", &bench::run_bench_space}, std::pair{"structure", &bench::run_bench_structure},
-        std::pair{"tiling", &bench::run_bench_tiling}}) {
-    ProgressLine progress(title);
-    Result<bench::BenchStudy> study = run(options, line(progress));
-    if (!study) return study.errors();
-    studies.push_back(std::move(*study));
-  }
-  return studies;
+  std::vector<bench::BenchStudy> all = bench::compare_costs(studies);
+  std::move(studies.begin(), studies.end(), std::back_inserter(all));
+  return all;
 }
 
 int run_bench(const BenchArguments& arguments) {
@@ -56,12 +67,13 @@ Command add_bench(CLI::App& program) {
   arguments->options.take_warnings = print_warnings;
   arguments->options.shipped = std::string(CTPM_SOURCE_DIR) + "/scenes";
   CLI::App* app = program.add_subcommand(
-      "bench", "Measures error against run time: integrators and steps, sphere radius, structure, tiling.");
+      "bench",
+      "Measures error against run time: integrators and steps, sphere radius, structure, lattice phase, tiling.");
   app->footer(
       "Examples: ctpm bench -o out/bench\n"
       "          ctpm bench my/liver.json -o out/bench");
   app->add_option("SCENE", arguments->options.scenes,
-                  "Scenes to study in time; without any, the shipped ones in all ways");
+                  "Scenes whose first organ is studied; without any, the shipped ones in all ways");
   app->add_option("-o,--output", arguments->folder,
                   "Folder for report.html, results.json and results.csv; made if missing")
       ->required();

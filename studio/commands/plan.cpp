@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,19 +9,22 @@
 #include "importers/text.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
+#include "studio/commands/stop_signal.h"
 #include "studio/fidelity/thickness.h"
 #include "studio/loading/loaded_scene.h"
 #include "studio/loading/oddities.h"
 #include "studio/loading/tick_time.h"
 #include "studio/output/files.h"
 #include "studio/output/json_writer.h"
+#include "studio/output/number_text.h"
+#include "studio/session/session_cost.h"
 
 namespace ctpm::commands {
 namespace {
 
 struct PlanArguments {
   std::string scene, script;
-  bool json = false;
+  bool json = false, is_quick = false;
   scenes::LoadOptions load;
 };
 
@@ -139,65 +143,211 @@ Errors thin_parts_of(const loading::LoadedScene& scene) {
   return warnings;
 }
 
-int run_plan(const PlanArguments& arguments) {
-  const Result<loading::LoadedScene> scene = loading::load_whole_scene(arguments.scene, arguments.load);
-  if (!scene) return print_errors(scene.errors());
-  print_warnings(scene->scene.warnings);
-  const Errors thin_parts = thin_parts_of(*scene);
-  print_warnings(thin_parts);
-  Errors oddities = *loading::find_oddities(*scene);
-  if (!arguments.script.empty()) {
-    const Result<std::string> text = output::read_text_file(arguments.script);
-    if (!text) return print_errors(text.errors());
-    std::vector<std::string> tools;
-    for (const Tool& tool : scene->built.model.tools) tools.push_back(tool.name);
-    const Result<scenes::Script> script = scenes::read_script(*text, arguments.script, tools);
-    if (!script) return print_errors(script.errors());
-    for (Error& miss : loading::find_misses(*scene, *script, arguments.script)) oddities.push_back(std::move(miss));
+/// That the script of a session never touched or never cut, though it takes up a tool that would.
+Errors find_misses(const scenes::Script& script, const session::SessionCost& cost, const Model& model,
+                   const std::string& where) {
+  Errors misses;
+  const bool cuts = std::any_of(script.steps.begin(), script.steps.end(), [&](const scenes::ScriptStep& step) {
+    return step.take && std::any_of(model.tools.begin(), model.tools.end(), [&](const Tool& tool) {
+             return tool.name == step.take->tool && tool.kind == ToolKind::scalpel;
+           });
+  });
+  const recordings::SessionStatistics& did = cost.outcome.statistics;
+  if (!(did.max_force > 0))
+    misses.push_back({where, "never touches any tissue", "its places are those of the scene, in mm"});
+  else if (cuts && did.severed == 0)
+    misses.push_back({where, "takes up a scalpel but cuts nothing", "its places are those of the scene, in mm"});
+  if (stepping::is_refused(cost.outcome.run.status))
+    misses.push_back({where, "the simulation is refused before its end", ""});
+  return misses;
+}
+
+/// What is told of a scene.
+struct Plan {
+  const loading::LoadedScene& scene;
+  std::vector<Feature> features;
+  std::size_t bytes = 0;  ///< of all features
+  Errors thin_parts, oddities;
+  double rest = 0;                           ///< median time of a tick at rest [s]
+  std::optional<session::SessionCost> cost;  ///< of a session; none where it was not asked for
+  std::optional<session::FittingRadius> fitting;
+
+  double tick() const { return scene.built.model.tick; }
+  bool holds() const { return cost && !stepping::is_refused(cost->outcome.run.status) && cost->dearest() <= tick(); }
+};
+
+/// The script that `record` would run: the one that is named, else the default one.
+session::ScriptOf script_of(const PlanArguments& arguments) {
+  if (arguments.script.empty())
+    return [](const loading::LoadedScene& scene) -> Result<scenes::Script> {
+      return scenes::default_script(scene.scene.spec, scene.organs);
+    };
+  return [file = arguments.script](const loading::LoadedScene& scene) -> Result<scenes::Script> {
+    const Result<std::string> text = output::read_text_file(file);
+    if (!text) return text.errors();
+    scenes::PlaceFinder finder = scenes::finder_of(scene.built.model, scene.scene.spec);
+    return scenes::read_script_for(*text, file, scene.built.model, &finder);
+  };
+}
+
+/// Runs the session of a plan, and if its ticks are too dear, those of coarser fillings.
+Result<Done> measure(const PlanArguments& arguments, Plan& plan) {
+  const StopSignal stop;
+  const session::ScriptOf script = script_of(arguments);
+  session::RunOptions running;
+  running.should_stop = [&] { return stop.came(); };
+  const auto told = [&](ProgressLine& line) {
+    running.progress = [&line](std::int64_t done, std::int64_t total) { line.show(done, total); };
+  };
+  {
+    ProgressLine line("a session");
+    told(line);
+    Result<session::SessionCost> cost = session::measure_session(plan.scene, script, running);
+    if (!cost) return cost.errors();
+    plan.cost = *std::move(cost);
   }
-  print_warnings(oddities);
-  const Model& model = scene->built.model;
-  const std::vector<Feature> features = features_of(scene->scene.spec, model, rest_state(model));
-  std::size_t total = 0;
-  for (const Feature& feature : features) total += feature.is_in ? feature.bytes : 0;
-  const double tick = *loading::measure_tick(model);
-  const stepping::IntegratorChoice& choice = scene->built.integrator;
-  const std::string solver = solver_of(model, choice);
-  if (arguments.json) {
-    output::JsonWriter json;
-    json.begin_object().member("scene", arguments.scene).member("spheres", model.sphere_count());
-    json.member("elements", model.element_count()).member("memory_bytes", total).member("tick_s", model.tick);
-    json.member("measured_tick_time_s", tick)
-        .member("solver", solver)
-        .member("solver_reason", choice.reason)
-        .key("features")
-        .begin_list();
-    for (const Feature& f : features)
-      json.begin_object()
-          .member("name", f.name)
-          .member("is_in", f.is_in)
-          .member("why", f.why)
-          .member("bytes", f.bytes)
-          .end_object();
-    json.end_list().key("thin_parts").begin_list();
-    for (const Error& warning : thin_parts) json.value(std::string_view(warning.where + ": " + warning.message));
-    json.end_list().key("oddities").begin_list();
-    for (const Error& warning : oddities) json.value(std::string_view(warning.where + ": " + warning.message));
-    std::fputs(json.end_list().end_object().text().c_str(), stdout);
-    return exit_good;
+  if (plan.holds()) return Done{};
+  ProgressLine line("coarser spheres");
+  told(line);
+  Result<std::optional<session::FittingRadius>> fitting =
+      session::find_fitting_radius(plan.scene, arguments.load, script, *plan.cost, running);
+  if (!fitting) return fitting.errors();
+  plan.fitting = *std::move(fitting);
+  return Done{};
+}
+
+void write_times(output::JsonWriter& json, const session::SessionCost& cost) {
+  json.begin_list();
+  for (const session::Deed deed : session::kDeeds)
+    json.begin_object()
+        .member("deed", std::string_view(session::name_of(deed)))
+        .member("ticks", cost.of(deed).ticks)
+        .member("p50_s", cost.of(deed).p50)
+        .member("p99_s", cost.of(deed).p99)
+        .end_object();
+  json.end_list();
+}
+
+void write_warnings(output::JsonWriter& json, const Errors& warnings) {
+  json.begin_list();
+  for (const Error& warning : warnings) json.value(std::string_view(warning.where + ": " + warning.message));
+  json.end_list();
+}
+
+void print_json(const std::string& path, const Plan& plan, const std::string& solver) {
+  const Model& model = plan.scene.built.model;
+  output::JsonWriter json;
+  json.begin_object().member("scene", path).member("spheres", model.sphere_count());
+  json.member("elements", model.element_count()).member("memory_bytes", plan.bytes).member("tick_s", model.tick);
+  json.member("tick_time_at_rest_s", plan.rest);
+  if (plan.cost) {
+    json.member("threads", plan.cost->threads).member("holds_rate", plan.holds()).key("tick_times");
+    write_times(json, *plan.cost);
   }
+  if (plan.fitting) {
+    json.key("holds_rate_with").begin_object().member("radius_factor", plan.fitting->factor);
+    json.member("spheres", plan.fitting->spheres).key("tick_times");
+    write_times(json, plan.fitting->cost);
+    json.end_object();
+  }
+  json.member("solver", solver)
+      .member("solver_reason", plan.scene.built.integrator.reason)
+      .key("features")
+      .begin_list();
+  for (const Feature& f : plan.features)
+    json.begin_object()
+        .member("name", f.name)
+        .member("is_in", f.is_in)
+        .member("why", f.why)
+        .member("bytes", f.bytes)
+        .end_object();
+  json.end_list().key("thin_parts"), write_warnings(json, plan.thin_parts);
+  json.key("oddities"), write_warnings(json, plan.oddities);
+  std::fputs(json.end_object().text().c_str(), stdout);
+}
+
+/// The radii that hold the rate, organ by organ.
+std::string radii_text(const Plan& plan) {
+  std::string text;
+  for (const scenes::OrganSpec& organ : plan.scene.scene.spec.organs)
+    if (!organ.mesh.empty())
+      text += (text.empty() ? "" : ", ") + organ.name + " " + importers::mm_text(organ.fill.radius) + " -> " +
+              importers::mm_text(plan.fitting->factor * organ.fill.radius);
+  return text;
+}
+
+void print_times(const Plan& plan) {
+  const std::string rate = output::short_number(1e-3 / plan.tick()) + " kHz";
+  if (!plan.cost) {
+    print("time: %.3f ms a tick of %g ms at rest, measured now on this machine (median of %d)\n", plan.rest * 1e3,
+          plan.tick() * 1e3, loading::kMeasuredTicks);
+    return;
+  }
+  print("time of a tick of %g ms in a session, measured now on this machine with %s:\n", plan.tick() * 1e3,
+        importers::counted(plan.cost->threads, "thread").c_str());
+  for (const session::Deed deed : session::kDeeds)
+    if (const session::DeedTimes times = plan.cost->of(deed); times.ticks > 0)
+      print("  %-18s p50 %.3f ms, p99 %.3f ms, %lld ticks\n", session::name_of(deed), 1e3 * times.p50, 1e3 * times.p99,
+            (long long)times.ticks);
+  constexpr double kQuiet = 0.9;
+  if (plan.cost->processor_share < kQuiet)
+    print("  other programs held the processor for %.0f %% of the time, which is in these times\n",
+          100 * (1 - plan.cost->processor_share));
+  if (plan.holds()) return print("holds %s at p99\n", rate.c_str());
+  print("does not hold %s at p99\n", rate.c_str());
+  if (plan.fitting)
+    print("holds it with radius_mm and gap_mm times %g (%s; %zu spheres): p99 %.3f ms in contact, %.3f ms in a cut\n",
+          plan.fitting->factor, radii_text(plan).c_str(), plan.fitting->spheres,
+          1e3 * plan.fitting->cost.of(session::Deed::contact).p99, 1e3 * plan.fitting->cost.of(session::Deed::cut).p99);
+  else
+    print("no coarser filling of its meshes was found that does\n");
+}
+
+void print_text(const Plan& plan, const std::string& solver) {
   for (const bool is_in : {true, false}) {
     print(is_in ? "needed:\n" : "left out:\n");
-    for (const Feature& f : features)
+    for (const Feature& f : plan.features)
       if (f.is_in == is_in)
         print("  %-30s %10s  %s\n", f.name.c_str(),
               f.bytes > 0 ? (std::to_string((f.bytes + 1023) / 1024) + " KiB").c_str() : "", f.why.c_str());
   }
-  print("memory: %.1f KiB, %zu bytes a sphere\n", double(total) / 1024,
-        total / std::max<std::size_t>(1, model.sphere_count()));
-  print("solver: %s\n        because %s\n", solver.c_str(), choice.reason.c_str());
-  print("time: %.3f ms a tick of %g ms at rest, measured now on this machine (median of %d)\n", tick * 1e3,
-        model.tick * 1e3, loading::kMeasuredTicks);
+  print("memory: %.1f KiB, %zu bytes a sphere\n", double(plan.bytes) / 1024,
+        plan.bytes / std::max<std::size_t>(1, plan.scene.built.model.sphere_count()));
+  print("solver: %s\n        because %s\n", solver.c_str(), plan.scene.built.integrator.reason.c_str());
+  print_times(plan);
+}
+
+int run_plan(const PlanArguments& arguments) {
+  const Result<loading::LoadedScene> scene = loading::load_whole_scene(arguments.scene, arguments.load);
+  if (!scene) return print_errors(scene.errors());
+  print_warnings(scene->scene.warnings);
+  const Model& model = scene->built.model;
+  const session::ScriptOf script = script_of(arguments);
+  const Result<scenes::Script> steps = script(*scene);
+  if (!steps) return print_errors(steps.errors());
+  Plan plan{*scene,
+            features_of(scene->scene.spec, model, rest_state(model)),
+            0,
+            thin_parts_of(*scene),
+            *loading::find_oddities(*scene),
+            0,
+            {},
+            {}};
+  for (const Feature& feature : plan.features) plan.bytes += feature.is_in ? feature.bytes : 0;
+  print_warnings(plan.thin_parts);
+  if (arguments.is_quick)
+    plan.rest = *loading::measure_tick(model, session::start_session(*scene).initial_state);
+  else if (const Result<Done> measured = measure(arguments, plan); !measured)
+    return print_errors(measured.errors());
+  if (plan.cost && !arguments.script.empty())
+    for (Error& miss : find_misses(*steps, *plan.cost, model, arguments.script))
+      plan.oddities.push_back(std::move(miss));
+  print_warnings(plan.oddities);
+  const std::string solver = solver_of(model, scene->built.integrator);
+  if (arguments.json)
+    print_json(arguments.scene, plan, solver);
+  else
+    print_text(plan, solver);
   return exit_good;
 }
 
@@ -207,10 +357,15 @@ Command add_plan(CLI::App& program) {
   auto arguments = std::make_shared<PlanArguments>();
   CLI::App* app = program.add_subcommand(
       "plan",
-      "Says what a scene needs and what is left out, memory, time, solver, and tissue too thin for its spheres.");
+      "Says what a scene needs and what is left out, memory, solver, tissue too thin for its spheres, and what the "
+      "ticks of a session cost.");
   app->footer("Example: ctpm plan scenes/liver.json");
   app->add_option("scene", arguments->scene, "Scene file (.json)")->required();
-  app->add_option("--script", arguments->script, "Also run this script, and warn if it never touches or cuts");
+  CLI::Option* const script =
+      app->add_option("--script", arguments->script,
+                      "Measure a session of this script instead of the default one's press and cut, and "
+                      "warn if it never touches or cuts");
+  app->add_flag("--quick", arguments->is_quick, "Measure ticks at rest alone, not a session")->excludes(script);
   app->add_flag("--json", arguments->json, "Print JSON");
   app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths,
                 "Meshes may lie outside the scene's folder");

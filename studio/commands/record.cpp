@@ -17,6 +17,7 @@
 #include "studio/output/number_text.h"
 #include "studio/session/recent_times.h"
 #include "studio/session/record_session.h"
+#include "studio/session/tick_times.h"
 #include "studio/sources/open_file.h"
 
 namespace ctpm::commands {
@@ -95,7 +96,8 @@ Result<Beginning> begin(const RecordArguments& arguments) {
   return beginning;
 }
 
-int print_outcome(const std::string& path, const Model& model, const session::RecordOutcome& outcome) {
+int print_outcome(const std::string& path, const Model& model, const session::RecordOutcome& outcome,
+                  const session::TickTimes& times) {
   const recordings::SessionStatistics& s = outcome.statistics;
   const bool was_refused = stepping::is_refused(outcome.run.status);
   if (was_refused)
@@ -106,6 +108,10 @@ int print_outcome(const std::string& path, const Model& model, const session::Re
         (long long)s.ticks, extremes_text(s.max_force, s.max_depth).c_str(), (long long)s.severed);
   print("tick time p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms, %lld late\n", s.tick_time_p50 * 1e3,
         s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3, (long long)outcome.run.late_ticks);
+  for (const session::Deed deed : {session::Deed::contact, session::Deed::cut})
+    if (const session::DeedTimes of = times.of(deed); of.ticks > 0)
+      print("  %s p50 %.3f ms, p99 %.3f ms, %lld ticks\n", session::name_of(deed), of.p50 * 1e3, of.p99 * 1e3,
+            (long long)of.ticks);
   if (s.slip_max > 0)
     print("clock %.3f s behind real time at the end, %.3f s at most%s\n", s.slip, s.slip_max,
           s.slip > 0.1 ? ": THE SESSION IS SHORTER THAN THE TIME IT TOOK" : "");
@@ -148,11 +154,13 @@ int run_record(const RecordArguments& arguments) {
   options.most_ticks = std::llround(arguments.duration_s / start.model.tick);
   options.should_stop = should_stop;
   options.threads = arguments.threads > 0 ? arguments.threads : session::threads_for(start.model);
+  session::TickTimes all_times(start.model);
   const Result<session::RecordOutcome> outcome = [&] {
     ProgressLine progress("recording");
     options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
     session::RecentTimes times;
     options.watch = [&](const State&, const recordings::TickRecord& record, const session::RunOutcome& so_far) {
+      all_times.add(record);
       if (times.add(record.tick_time))
         progress.add("tick p99 " + output::fixed(1e3 * times.p99(), 2) + " ms, clock " + output::fixed(so_far.slip, 3) +
                      " s behind");
@@ -163,7 +171,7 @@ int run_record(const RecordArguments& arguments) {
     return session::record_session(start, *opened->source, arguments.output, arguments.overwrite, options);
   }();
   if (!outcome) return print_errors(outcome.errors());
-  return print_outcome(arguments.output, start.model, *outcome);
+  return print_outcome(arguments.output, start.model, *outcome, all_times);
 }
 
 }  // namespace

@@ -34,17 +34,21 @@ Result<std::vector<stability::StabilityCase>> chosen_cases(const StabilityArgume
 }
 
 void print_runs(const std::vector<stability::StabilityRow>& rows) {
-  std::int64_t counts[4] = {0, 0, 0, 0};
+  std::int64_t automatic[4] = {0, 0, 0, 0}, named[4] = {0, 0, 0, 0};
   for (const stability::StabilityRow& row : rows)
     for (const stability::StabilityRun& run : row.runs) {
-      ++counts[int(run.verdict)];
+      ++(run.asked ? named : automatic)[int(run.verdict)];
       if (run.verdict == reports::ReportVerdict::missed)
         print("missed: %s under %s: %s\n", row.what->title.c_str(), stepping::name_of(run.asked), run.reason.c_str());
     }
-  print("%zu cases, %zu integrators: %lld runs hold, %lld were refused beforehand, %lld fail\n", rows.size(),
-        std::size(stability::kStabilityIntegrators), (long long)counts[int(reports::ReportVerdict::met)],
-        (long long)counts[int(reports::ReportVerdict::refused)],
-        (long long)counts[int(reports::ReportVerdict::missed)]);
+  const auto of = [](const std::int64_t* counts, reports::ReportVerdict verdict) {
+    return (long long)counts[int(verdict)];
+  };
+  using enum reports::ReportVerdict;
+  print("%zu cases: auto holds %lld and fails %lld\n", rows.size(), of(automatic, met),
+        (long long)stability::count_failures(rows));
+  print("integrators that are named: %lld runs hold, %lld were refused beforehand, %lld ran and failed\n",
+        of(named, met), of(named, refused), of(named, missed));
 }
 
 int run_stability_command(const StabilityArguments& arguments) {

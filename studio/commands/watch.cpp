@@ -70,7 +70,7 @@ void look_at_scene(const WatchArguments& arguments) {
   std::vector<std::string> check{"check", arguments.scene};
   for (const std::string& script : arguments.scripts) check.insert(check.end(), {"--script", script});
   if (run_command(add_check, with(check)) != exit_good) return;
-  run_command(add_plan, with({"plan", arguments.scene}));
+  run_command(add_plan, with({"plan", arguments.scene, "--quick"}));
   if (arguments.preview.empty()) return;
   std::vector<std::string> preview{"preview", arguments.scene, "-o", arguments.preview, "--marks", "--overwrite"};
   if (arguments.scripts.size() == 1) preview.insert(preview.end(), {"--script", arguments.scripts.front()});

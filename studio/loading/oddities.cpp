@@ -6,7 +6,6 @@
 #include <numbers>
 #include <string>
 
-#include "studio/loading/script_trial.h"
 #include "studio/loading/standing.h"
 
 namespace ctpm::loading {
@@ -115,24 +114,6 @@ std::optional<Errors> find_oddities(const LoadedScene& scene, const std::functio
   if (!standing) return std::nullopt;
   if (!standing->organ.empty()) look.at_anchors(*standing);
   return look.warnings;
-}
-
-Errors find_misses(const LoadedScene& scene, const scenes::Script& script, const std::string& where) {
-  const Model& model = scene.built.model;
-  const std::optional<Standing> standing = settle_scene(model, std::llround(scene.scene.spec.settle / model.tick));
-  const std::optional<ScriptTrial> trial = try_script(model, standing->state, script);
-  Errors misses;
-  const bool cuts = std::any_of(script.steps.begin(), script.steps.end(), [&](const scenes::ScriptStep& step) {
-    return step.take && std::any_of(model.tools.begin(), model.tools.end(), [&](const Tool& tool) {
-             return tool.name == step.take->tool && tool.kind == ToolKind::scalpel;
-           });
-  });
-  if (!(trial->most_force > 0))
-    misses.push_back({where, "never touches any tissue", "its places are those of the scene, in mm"});
-  else if (cuts && trial->severed == 0)
-    misses.push_back({where, "takes up a scalpel but cuts nothing", "its places are those of the scene, in mm"});
-  if (trial->is_refused) misses.push_back({where, "the simulation is refused before its end", ""});
-  return misses;
 }
 
 }  // namespace ctpm::loading

@@ -4,7 +4,6 @@
 #include <optional>
 #include <string>
 
-#include "scenes/script.h"
 #include "studio/loading/loaded_scene.h"
 
 namespace ctpm::loading {
@@ -13,9 +12,5 @@ namespace ctpm::loading {
 /// its size while it settles; one that is held everywhere, or nowhere with nothing to rest on; a probe, a load or a
 /// camera far from all tissue. Settles the scene. None if `should_stop` ended it.
 std::optional<Errors> find_oddities(const LoadedScene& scene, const std::function<bool()>& should_stop = {});
-
-/// That a script never touches or never cuts, though it takes up a tool that would; empty if all is well.
-/// `where`: the script's file.
-Errors find_misses(const LoadedScene& scene, const scenes::Script& script, const std::string& where);
 
 }  // namespace ctpm::loading

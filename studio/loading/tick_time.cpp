@@ -10,10 +10,9 @@
 
 namespace ctpm::loading {
 
-std::optional<double> measure_tick(const Model& model, const std::function<bool()>& should_stop) {
+std::optional<double> measure_tick(const Model& model, State state, const std::function<bool()>& should_stop) {
   using Clock = std::chrono::steady_clock;
   constexpr int kWarmUp = 20;
-  State state = rest_state(model);
   stepping::Stepper stepper(model);
   std::vector<double> times;
   for (int i = 0; i < kWarmUp + kMeasuredTicks; ++i) {

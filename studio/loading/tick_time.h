@@ -4,17 +4,19 @@
 #include <optional>
 
 #include "core/model/model.h"
+#include "core/model/state.h"
 
 namespace ctpm::loading {
 
 /// Ticks that the median is of.
 inline constexpr int kMeasuredTicks = 41;
 
-/// Median time of a tick at rest on this machine, now [s]. None if `should_stop` ended it.
-std::optional<double> measure_tick(const Model& model, const std::function<bool()>& should_stop = {});
+/// Median time of a tick without a tool on this machine, now [s], from `state`: one that has settled, for a tick at
+/// rest. None if `should_stop` ended it.
+std::optional<double> measure_tick(const Model& model, State state, const std::function<bool()>& should_stop = {});
 
-/// Mean processor time of a tick at rest on this machine [s]: what measure_tick() would give if no other program ran.
-/// None if `should_stop` ended it.
+/// Mean processor time of the first ticks of a scene that has not settled [s], which cost about what those of a press
+/// cost. None if `should_stop` ended it.
 std::optional<double> measure_tick_work(const Model& model, const std::function<bool()>& should_stop = {});
 
 }  // namespace ctpm::loading

@@ -6,7 +6,8 @@
 
 namespace ctpm::server {
 
-void KeptScene::settle_ahead() {
+/// Begins to settle it in a thread of its own, unless that has begun.
+void KeptScene::begin() {
   std::call_once(begun_, [this] {
     start_ = std::async(std::launch::async, [this]() -> std::shared_ptr<const recordings::SessionStart> {
       auto start = session::start_session(scene_, [this] { return ends_.load(); });
@@ -16,7 +17,7 @@ void KeptScene::settle_ahead() {
 }
 
 std::shared_ptr<const recordings::SessionStart> KeptScene::start(const std::function<bool()>& should_stop) {
-  settle_ahead();
+  begin();
   constexpr auto kLook = std::chrono::milliseconds(10);
   while (start_.wait_for(kLook) == std::future_status::timeout)
     if (should_stop()) return nullptr;

@@ -11,7 +11,8 @@
 
 namespace ctpm::server {
 
-/// A scene that a page looks at, and the start of a session of it, which may be settled before it is asked for.
+/// A scene that a page looks at, and the start of a session of it, which is settled once: to measure its ticks, and so
+/// before somebody tries it.
 class KeptScene {
  public:
   explicit KeptScene(loading::LoadedScene scene) : scene_(std::move(scene)) {}
@@ -22,12 +23,12 @@ class KeptScene {
 
   const loading::LoadedScene& scene() const { return scene_; }
 
-  /// Begins to settle it in a thread of its own, unless it has begun.
-  void settle_ahead();
-  /// See session::start_session(). Waits for what settles. Null: `should_stop` ended the wait.
+  /// See session::start_session(). Null: `should_stop` ended the wait; the scene goes on settling for whom asks next.
   std::shared_ptr<const recordings::SessionStart> start(const std::function<bool()>& should_stop);
 
  private:
+  void begin();
+
   const loading::LoadedScene scene_;
   std::atomic<bool> ends_ = false;
   std::once_flag begun_;

@@ -85,10 +85,10 @@ Result<std::string> measure_scene(Parameters& parameters, const CallContext& con
   const std::shared_ptr<KeptScene> kept = context.desk->kept(stage);
   if (!kept) return Error{"", "no scene is shown there", ""};
   const Model& model = kept->scene().built.model;
-  const std::optional<double> time = loading::measure_tick(model, context.should_stop);
+  const std::shared_ptr<const recordings::SessionStart> start = kept->start(context.should_stop);
+  const std::optional<double> time =
+      start ? loading::measure_tick(model, start->initial_state, context.should_stop) : std::nullopt;
   if (!time) return Error{"", "stopped", ""};
-  // Whoever looked at this so long may try it next; before, it would have disturbed what was measured.
-  kept->settle_ahead();
   output::JsonWriter json;
   json.begin_object().member("measured_tick_time_s", *time).member("tick_s", model.tick);
   return json.member("ticks", loading::kMeasuredTicks).end_object().text();

@@ -15,6 +15,7 @@
 #include "studio/server/text.h"
 #include "studio/session/recent_times.h"
 #include "studio/session/record_session.h"
+#include "studio/session/unkept_session.h"
 
 namespace ctpm::server {
 namespace {
@@ -22,25 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr auto kPictureInterval = std::chrono::microseconds(16667);
-
-/// A file that goes with the object, for sessions that nobody keeps.
-class Unkept {
- public:
-  Unkept() {
-    std::string name = (fs::temp_directory_path() / "ctpm-try-XXXXXX").string();
-    if (mkdtemp(name.data())) folder_ = name;
-  }
-  ~Unkept() {
-    std::error_code ignored;
-    if (!folder_.empty()) fs::remove_all(folder_, ignored);
-  }
-  Unkept(const Unkept&) = delete;
-  Unkept& operator=(const Unkept&) = delete;
-  std::string file() const { return (folder_ / "try.ctpm").string(); }
-
- private:
-  fs::path folder_;
-};
 
 /// Button n is pressed while tool n is in the hand.
 std::vector<std::string> buttons_of(const Model& model) {
@@ -167,7 +149,7 @@ void Training::tick() {
       newest_.offer(state, record, so_far.late_ticks, times.p99());
     };
     options.tell = [this](const std::string& problem) { tell("train_fails", problem); };
-    const Unkept unkept;
+    const session::UnkeptSession unkept;
     const std::string file = request_.file.empty() ? unkept.file() : request_.file;
     const Result<session::RecordOutcome> outcome = session::record_session(*start_, *source_, file, false, options);
     outbox_->send(ended_text(request_.file.empty() ? "" : request_.shown, outcome));

@@ -50,7 +50,7 @@ reports::Table overview(const std::vector<StabilityRow>& rows) {
   }
   table.caption =
       "met: all holds. refused: the integrator that was named said before or at the first bad tick "
-      "that it cannot, and left the State as it was. missed: something does not hold, see below.";
+      "that it cannot, and left the State as it was. missed: it ran, and something does not hold, see below.";
   return table;
 }
 
@@ -163,7 +163,7 @@ Result<Done> write_stability_report(const std::string& folder, const std::vector
       "of the second half may not pass that of the first. All bounds have a slack of 1e-4 of what is stored and in "
       "motion, as solves stop at a residual. SDIRK2 says beforehand that it has no numerical damping: where energy "
       "grows or "
-      "rest does not come, it counts as refused, with what was seen.");
+      "rest does not come, that is a failure of SDIRK2 as of any other.");
   const std::vector<reports::Section> sections = failures(rows);
   for (const reports::Section& section : sections)
     if (const Result<Done> added = report.add(section); !added) return added;

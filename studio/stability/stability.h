@@ -39,8 +39,8 @@ struct StabilityCase {
   static constexpr double kAny = std::numeric_limits<double>::infinity();
 };
 
-/// All cases. With `is_quick` the long ones (an hour at rest, 1e5 spheres, the shortest ticks) are reduced, and their
-/// titles say so.
+/// All cases. With `is_quick` the long ones (an hour at rest, 4,096 spheres, the shortest ticks) are reduced, and 1e5
+/// spheres are left out.
 std::vector<StabilityCase> stability_cases(bool is_quick);
 
 /// The result of a case under one integrator.
@@ -71,8 +71,8 @@ struct StabilityRun {
 ///   the mean of the second half above that of the first by at most 5 % of the same energy.
 /// Every bound has a slack of 1e-4 of that energy, because solvers stop at a residual.
 ///
-/// An integrator that announces no numerical damping (IntegratorChoice::damps) counts as refused, not missed, where
-/// energy grows or the tissue does not come to rest.
+/// Refused is only what a named integrator said before the first tick or in the first bad one, which it left undone.
+/// What ran and then failed is missed, also where the integrator had announced that it has no numerical damping.
 StabilityRun run_stability_case(const StabilityCase& what, std::optional<Integrator> integrator);
 
 /// The results of one case, in the order of kStabilityIntegrators.

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 
+#include "importers/mesh.h"
 #include "studio/bench/bench.h"
+#include "studio/fidelity/meshes.h"
 #include "tests/studio/commands/run_program.h"
 
 namespace ctpm {
@@ -21,6 +24,38 @@ TEST(Bench, TheFrontHoldsWhatNothingElseBeatsInBoth) {
   // Fastest first: the more accurate of the two that cost 1, then what costs more and errs less.
   EXPECT_EQ(bench::pareto_front(cost, error), (std::vector<std::size_t>{4, 0}));
   EXPECT_TRUE(bench::pareto_front({}, {}).empty());
+}
+
+TEST(Bench, WhatFeelsNothingIsNeverOnTheFront) {
+  EXPECT_EQ(bench::pareto_front({1, 2}, {INFINITY, 0.1}), (std::vector<std::size_t>{1}));
+  bench::BenchRun run;
+  run.force = {{}, {}};
+  EXPECT_FALSE(bench::feels(run));
+  run.force.push_back({0, 0, 1e-9});
+  EXPECT_TRUE(bench::feels(run));
+}
+
+TEST(Bench, ErrorsThatGrowWithRefinementAreFound) {
+  EXPECT_EQ(bench::first_growth({0.3, 0.12, 1.27, 0.9}), 2u);
+  EXPECT_FALSE(bench::first_growth({0.4, 0.2, 0.21, 0.1}));
+  EXPECT_FALSE(bench::first_growth({0.01, 0.002, 0.004}, 0.002)) << "the reference does not tell these apart";
+  EXPECT_FALSE(bench::first_growth({}));
+}
+
+TEST(Bench, OneDiagramComparesWhatEachChoiceOfAnOrganCosts) {
+  std::vector<bench::BenchStudy> studies(2);
+  studies[0].costs = {{"liver", "time, sdirk2", "1 substep", 0.4, 0.01, true},
+                      {"liver", "time, sdirk2", "2", 0.8, 0.003}};
+  studies[1].costs = {{"liver", "space", "r = 4 mm", 0.4, 0.12, true}, {"kidney", "space", "r = 2 mm", 1, 0.2}};
+  const std::vector<bench::BenchStudy> compared = bench::compare_costs(studies);
+  ASSERT_EQ(compared.size(), 2u);
+  const reports::Plot& plot = compared[0].section.plots.at(0);
+  ASSERT_EQ(plot.series.size(), 3u);
+  EXPECT_EQ(plot.series[1].y, std::vector<double>{12});
+  EXPECT_EQ(plot.series[2].x, (std::vector<double>{0.4, 0.4})) << "the scene's own choices";
+  EXPECT_NE(compared[0].sentences[0].find("12 % by space (r = 4 mm), 1 % by time"), std::string::npos)
+      << compared[0].sentences[0];
+  EXPECT_TRUE(bench::compare_costs({}).empty());
 }
 
 TEST(Bench, PercentilesAreValuesThatWereMeasured) {
@@ -72,8 +107,27 @@ TEST(BenchCommand, ShowsErrorAgainstRunTimeOfAScene) {
   EXPECT_NE(csv.find(",front"), std::string::npos) << csv;
   const std::string page = slurp(folder.path() / "out/report.html");
   EXPECT_NE(page.find("Pareto front"), std::string::npos);
-  EXPECT_NE(page.find("Observed order"), std::string::npos);
+  EXPECT_NE(page.find("their orders in the step"), std::string::npos);
   EXPECT_NE(slurp(folder.path() / "out/results.json").find("ctpm-bench-results"), std::string::npos);
+}
+
+TEST(BenchCommand, SpendsAMillisecondOnTimeSpaceStructureAndPhase) {
+  const TemporaryFolder folder;
+  const importers::RawMesh ball = fidelity::ball_mesh(30e-3, 6e-3);
+  std::ofstream(folder.path() / "ball.obj") << importers::to_obj(ball.vertex, ball.triangle);
+  std::ofstream(folder.path() / "ball.json") << R"({"format": "ctpm-scene", "version": 1, "name": "ball",
+    "organs": [{"name": "ball", "mesh": "ball.obj", "material": {"preset": "liver"},
+                "fill": {"radius_mm": 4, "gap_mm": 4}, "anchors": [{"lowest_mm": 12}]}],
+    "tools": [{"name": "ball", "kind": "ball", "radius_mm": 8}]})";
+  const ProgramOutcome outcome = run_ctpm({"bench", "ball.json", "-o", "out", "--quick"}, folder.path());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("ball: as the scene is, its force is off by"), std::string::npos) << outcome.out;
+  const std::string csv = slurp(folder.path() / "out/results.csv");
+  // The scene's own radius is among those compared, and no reference is.
+  for (const char* row : {"space,ball,ctpm,,,,4,", "lattice phase,ball,ctpm,,,,4,", "organ structure,ball,tpm,,,,4,"})
+    EXPECT_NE(csv.find(row), std::string::npos) << row << "\n" << csv;
+  EXPECT_EQ(csv.find("space,ball,ctpm,,,,2,"), std::string::npos) << csv;
+  EXPECT_NE(slurp(folder.path() / "out/report.html").find("Where a millisecond buys most"), std::string::npos);
 }
 
 TEST(BenchCommand, ASceneWithoutABallIsRefusedWithItsName) {

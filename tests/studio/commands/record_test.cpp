@@ -138,5 +138,24 @@ TEST_F(Record, WhatDoesNotFitTogetherIsToldAtOnceAndNothingIsWritten) {
             {"--at: error: got", "must be in [0, 0.100] s: so long lasts a.ctpm"});
 }
 
+/// "N ticks" of the line that begins with `what`; -1 if there is none.
+std::int64_t ticks_in(const std::string& text, const std::string& what) {
+  const std::size_t line = text.find("\n  " + what);
+  if (line == std::string::npos) return -1;
+  const std::size_t count = text.find("ms, ", text.find("p99", line)) + 4;
+  return std::stoll(text.substr(count));
+}
+
+TEST_F(Record, PlanMeasuresTheTicksOfTheSessionThatIsRecorded) {
+  const std::string planned = ctpm({"plan", "block.json", "--script", "press.json"}),
+                    recorded = ctpm({"record", "block.json", "--script", "press.json", "-o", "a.ctpm", "--fast"});
+  EXPECT_GT(ticks_in(recorded, "in contact"), 500) << recorded;
+  EXPECT_EQ(ticks_in(planned, "in contact"), ticks_in(recorded, "in contact")) << planned << recorded;
+  EXPECT_EQ(ticks_in(planned, "in a cut"), -1) << planned;
+  EXPECT_TRUE(holds(planned, "1 kHz at p99")) << planned;
+  EXPECT_TRUE(holds(ctpm({"plan", "block.json", "--quick"}), "at rest, measured now")) << planned;
+  EXPECT_TRUE(holds(ctpm({"plan", "block.json", "--json"}), "\"deed\": \"in contact\""));
+}
+
 }  // namespace
 }  // namespace ctpm

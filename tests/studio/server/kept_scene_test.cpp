@@ -20,7 +20,6 @@ loading::LoadedScene kidney(double settle) {
 
 TEST(KeptScene, BeginsWhereARecordingBeginsAndSettlesOnce) {
   server::KeptScene kept(kidney(0.2));
-  kept.settle_ahead();
   const auto start = kept.start([] { return false; });
   ASSERT_TRUE(start);
   const recordings::SessionStart recorded = session::start_session(kept.scene());

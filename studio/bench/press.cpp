@@ -1,0 +1,103 @@
+#include "studio/bench/press.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "studio/output/number_text.h"
+
+namespace ctpm::bench {
+namespace {
+
+std::int32_t first_ball(const Model& model) {
+  for (std::size_t i = 0; i < model.tools.size(); ++i)
+    if (model.tools[i].kind == ToolKind::ball) return std::int32_t(i);
+  return -1;
+}
+
+/// Positions of the surface's vertices for spheres at `position`.
+Vec3Array surface_at(const Surface& surface, const Vec3Array& position) {
+  const SurfaceBinding& binding = surface.binding;
+  Vec3Array vertices(surface.vertex.size());
+  for (std::size_t v = 0; v < surface.vertex.size(); ++v)
+    for (auto e = std::size_t(binding.first[v]); e < std::size_t(binding.first[v + 1]); ++e)
+      vertices.add(v, binding.weight[e] * position[std::size_t(binding.sphere[e])]);
+  return vertices;
+}
+
+}  // namespace
+
+BenchMotion press_surface(const Surface& surface, double ball_radius, double tick) {
+  constexpr double kDepth = 6e-3, kSpeed = 0.06;
+  const Vec3 top =
+      *std::max_element(surface.vertex.begin(), surface.vertex.end(), [](Vec3 a, Vec3 b) { return a.z < b.z; });
+  BenchMotion motion;
+  motion.ticks = std::llround(1.2 * kDepth / kSpeed / tick);
+  motion.hand = [=](std::int64_t t) {
+    Inputs inputs;
+    inputs.position = top + Vec3{0, 0, ball_radius - std::min(kDepth, kSpeed * double(t + 1) * tick)};
+    return inputs;
+  };
+  return motion;
+}
+
+double run_time_of(const BenchRun& run, double tick) {
+  return std::accumulate(run.seconds.begin(), run.seconds.end(), 0.0) / (double(run.seconds.size()) * tick);
+}
+
+bool can_press(const loading::LoadedScene& scene) {
+  return !scene.scene.spec.organs.empty() && !scene.scene.spec.organs[0].mesh.empty() &&
+         first_ball(scene.built.model) >= 0;
+}
+
+Result<PressedOrgan> press_organ(const loading::LoadedScene& scene, const Model& model) {
+  const Surface& surface = scene.organs[0].surface;
+  const std::int32_t ball = first_ball(model);
+  BenchMotion motion = press_surface(surface, model.tools[std::size_t(ball)].radius, model.tick);
+  motion.hand = [hand = motion.hand, ball](std::int64_t tick) {
+    Inputs inputs = hand(tick);
+    inputs.tool = ball;
+    return inputs;
+  };
+  const OrganRange& organ = model.organs[0];
+  const double radius = scene.scene.spec.organs[0].fill.radius;
+  PressedOrgan pressed{radius, organ.layer_count, organ.count, run_motion(model, motion)};
+  if (pressed.run.status != stepping::StepStatus::ok)
+    return Error{scene.path, "the press diverged at r = " + output::short_number(1e3 * radius) + " mm", ""};
+  for (Vec3Array& position : pressed.run.position) position = surface_at(surface, position);
+  return pressed;
+}
+
+Result<loading::LoadedScene> load_refilled(const loading::LoadedScene& own, double factor) {
+  return loading::load_whole_scene(own.path, {}, [&](scenes::SceneSpec& spec) {
+    spec.gravity = {}, spec.loads.clear();
+    spec.organs[0].fill.radius *= factor, spec.organs[0].fill.gap *= factor;
+    if (own.built.model.contact_k > 0) spec.contact_stiffness = own.built.model.contact_k;
+  });
+}
+
+std::vector<reports::Cell> row_of(const std::string& study, const std::string& scene, const std::string& model,
+                                  const PressedOrgan& organ, double tick, reports::Cell position_error,
+                                  double force_error) {
+  const std::vector<double>& seconds = organ.run.seconds;
+  return {study,
+          scene,
+          model,
+          reports::Cell(),
+          reports::Cell(),
+          reports::Cell(),
+          1e3 * organ.radius,
+          organ.layers,
+          organ.spheres,
+          std::move(position_error),
+          force_error,
+          run_time_of(organ.run, tick),
+          1e3 * percentile(seconds, 0.5),
+          1e3 * percentile(seconds, 0.99),
+          1e3 * percentile(seconds, 0.999),
+          organ.run.unconverged,
+          reports::Cell()};
+}
+
+}  // namespace ctpm::bench

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+
+#include "studio/bench/bench.h"
+
+// A press that every filling and structure of an organ can be put to.
+namespace ctpm::bench {
+
+/// The organ's own radius and its refinements, each by kRefinement: those that are compared, then what the reference
+/// has beyond the finest of them.
+inline constexpr double kRefinement = 1.4142135623730951;
+inline constexpr int kReferenceRefinements = 2;
+
+/// The ball comes down on the highest point of the surface, 6 mm at 60 mm/s, and stays.
+BenchMotion press_surface(const Surface& surface, double ball_radius, double tick);
+
+/// A motion's processor time [s per simulated s].
+double run_time_of(const BenchRun& run, double tick);
+
+/// The first organ of a scene, pressed by the scene's first ball.
+struct PressedOrgan {
+  double radius = 0;  ///< of its spheres [m]
+  std::int64_t layers = 0, spheres = 0;
+  BenchRun run;  ///< its positions are those of the surface's vertices
+};
+
+/// Whether the first organ of a scene can be filled anew and pressed: it has a mesh, and the scene has a ball.
+bool can_press(const loading::LoadedScene& scene);
+
+/// Presses the first organ of `scene`, whose Model has been changed to `model`. Errors: the press was refused.
+Result<PressedOrgan> press_organ(const loading::LoadedScene& scene, const Model& model);
+
+/// The scene at `path`, without gravity and loads, its first organ filled with spheres whose radius is `factor` times
+/// its own; contacts as stiff as those of its own filling. Errors: those of the scene.
+Result<loading::LoadedScene> load_refilled(const loading::LoadedScene& own, double factor);
+
+/// Lines of results.csv that are common to presses.
+std::vector<reports::Cell> row_of(const std::string& study, const std::string& scene, const std::string& model,
+                                  const PressedOrgan& organ, double tick, reports::Cell position_error,
+                                  double force_error);
+
+}  // namespace ctpm::bench

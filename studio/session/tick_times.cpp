@@ -1,0 +1,42 @@
+#include "studio/session/tick_times.h"
+
+#include <algorithm>
+
+namespace ctpm::session {
+namespace {
+
+/// The smallest time that at least `share_percent` of all do not exceed.
+double nearest_rank(std::vector<float>& times, std::size_t share_percent) {
+  const std::size_t rank = (share_percent * times.size() + 99) / 100;
+  const auto place = times.begin() + std::ptrdiff_t(rank) - 1;
+  std::nth_element(times.begin(), place, times.end());
+  return double(*place);
+}
+
+}  // namespace
+
+const char* name_of(Deed deed) {
+  return deed == Deed::cut ? "in a cut" : deed == Deed::contact ? "in contact" : "no tool in tissue";
+}
+
+Deed TickTimes::deed_of(const recordings::TickRecord& record) const {
+  Deed deed = Deed::none;
+  for (std::size_t hand = 0; hand < std::size_t(model_.hands); ++hand) {
+    const std::int32_t tool = record.inputs.hand(hand).tool;
+    const bool cuts = tool >= 0 && model_.tools[std::size_t(tool)].kind == ToolKind::scalpel;
+    if (record.of_hand(hand).contacts > 0) deed = std::max(deed, cuts ? Deed::cut : Deed::contact);
+  }
+  return deed;
+}
+
+void TickTimes::add(const recordings::TickRecord& record) {
+  times_[std::size_t(deed_of(record))].push_back(float(record.tick_time));
+}
+
+DeedTimes TickTimes::of(Deed deed) const {
+  std::vector<float> times = times_[std::size_t(deed)];
+  if (times.empty()) return {};
+  return {std::int64_t(times.size()), nearest_rank(times, 50), nearest_rank(times, 99)};
+}
+
+}  // namespace ctpm::session
