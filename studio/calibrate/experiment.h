@@ -27,10 +27,10 @@ Parameters parameters_of(const scenes::MaterialSpec& material);
 /// A material with these moduli, and all else as `material` has it.
 scenes::MaterialSpec with_moduli(scenes::MaterialSpec material, const Parameters& parameters);
 
-/// What a measurement would have found on the paper's rig of five spheres (Fig. 3), simulated in the network, at each
-/// of its rows [N] or [mm]; none if a tick is refused. `rig` is a scene with that rig, a pin that holds C and a probe
-/// there; it is pressed with the ball of `material`.
-std::optional<std::vector<double>> simulate(const loading::LoadedScene& rig, const scenes::MaterialSpec& material,
+/// What a measurement would have found on the tissue of a scene, simulated in the network, at each of its rows [N] or
+/// [mm]; none if a tick is refused. The scene has one organ, the paper's rig of five spheres (Fig. 3) or a block, and a
+/// pin and a probe at the sphere that is pressed with the ball of `material`.
+std::optional<std::vector<double>> simulate(const loading::LoadedScene& tissue, const scenes::MaterialSpec& material,
                                             const Measurement& measurement);
 
 }  // namespace ctpm::calibrate

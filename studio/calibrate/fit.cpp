@@ -1,6 +1,5 @@
 #include "studio/calibrate/fit.h"
 
-#include <ceres/ceres.h>
 #include <glog/logging.h>
 
 #include <Eigen/Dense>
@@ -8,153 +7,14 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
+#include "studio/calibrate/least_squares.h"
+
 namespace ctpm::calibrate {
 namespace {
 
-constexpr std::size_t kAll = 4;
 constexpr const char* kNames[kAll] = {"P2", "K'/P2", "K1/K2", "P1"};
-/// Bounds of the parameters, in the units of Parameters. K' may not be less than P2, whatever is rounded.
-constexpr double kLeast[kAll] = {1e-3, 1 + 1e-6, 1e-3, 1e-3}, kMost[kAll] = {1e5, 1e5, 1e3, 1e4};
 /// Within which starts lie, as factors of the first one.
 constexpr double kStartFactor = 10;
-constexpr std::size_t kHeldOut = 5;  ///< every fifth row
-constexpr double kStep = 1e-4;       ///< of a logarithm, for differences
-
-using Logs = std::array<double, kAll>;
-
-Logs logs_of(const Parameters& p) {
-  return {std::log(p.slow), std::log(p.constraint), std::log(p.ratio), std::log(p.time)};
-}
-Parameters parameters_at(const Logs& logs) {
-  return {std::exp(logs[0]), std::exp(logs[1]), std::exp(logs[2]), std::exp(logs[3])};
-}
-
-/// All measurements against the network, as residuals in shares of each measurement's root mean square.
-class Data {
- public:
-  Data(const loading::LoadedScene& rig, const std::vector<Measurement>& measurements, const FitRequest& request)
-      : rig_(rig), measurements_(measurements), request_(request) {
-    for (const Measurement& one : measurements) {
-      double squares = 0;
-      for (const Row& row : one.rows) squares += row.measured * row.measured;
-      scales_.push_back(std::sqrt(squares / double(one.rows.size())));
-    }
-  }
-
-  static bool is_held_out(std::size_t row) { return row % kHeldOut == kHeldOut - 1; }
-
-  std::size_t count(bool held_out) const {
-    std::size_t count = 0;
-    for (const Measurement& one : measurements_)
-      for (std::size_t i = 0; i < one.rows.size(); ++i) count += is_held_out(i) == held_out;
-    return count;
-  }
-
-  std::optional<std::vector<double>> run(const Logs& logs, std::size_t measurement) {
-    ++simulations;
-    if (request_.progress) request_.progress(simulations);
-    return simulate(rig_, with_moduli(request_.start, parameters_at(logs)), measurements_[measurement]);
-  }
-
-  /// Residuals of the rows that take part, or of those that are held out; none if a run is refused.
-  std::optional<std::vector<double>> residuals(const Logs& logs, bool held_out = false) {
-    std::vector<double> all;
-    for (std::size_t m = 0; m < measurements_.size(); ++m) {
-      if (request_.should_stop && request_.should_stop()) return std::nullopt;
-      const auto simulated = run(logs, m);
-      if (!simulated) return std::nullopt;
-      for (std::size_t i = 0; i < simulated->size(); ++i)
-        if (is_held_out(i) == held_out)
-          all.push_back(((*simulated)[i] - measurements_[m].rows[i].measured) / scales_[m]);
-    }
-    return all;
-  }
-
-  std::size_t simulations = 0;
-
- private:
-  const loading::LoadedScene& rig_;
-  const std::vector<Measurement>& measurements_;
-  const FitRequest& request_;
-  std::vector<double> scales_;  ///< (measurement_count)
-};
-
-/// The residuals for Ceres, with differences to one side for their slopes.
-class Cost : public ceres::CostFunction {
- public:
-  Cost(Data& data, const Logs& start, const std::vector<std::size_t>& free) : data_(data), start_(start), free_(free) {
-    set_num_residuals(int(data.count(false)));
-    mutable_parameter_block_sizes()->push_back(int(free.size()));
-  }
-  Logs at(const double* values) const {
-    Logs logs = start_;
-    for (std::size_t i = 0; i < free_.size(); ++i) logs[free_[i]] = values[i];
-    return logs;
-  }
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const Logs logs = at(parameters[0]);
-    const auto here = data_.residuals(logs);
-    if (!here) return false;
-    std::copy(here->begin(), here->end(), residuals);
-    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-    for (std::size_t k = 0; k < free_.size(); ++k) {
-      Logs beside = logs;
-      // Away from the upper bound, where a run may be refused beyond it.
-      const double step = beside[free_[k]] + kStep > std::log(kMost[free_[k]]) ? -kStep : kStep;
-      beside[free_[k]] += step;
-      const auto there = data_.residuals(beside);
-      if (!there) return false;
-      for (std::size_t i = 0; i < here->size(); ++i)
-        jacobians[0][i * free_.size() + k] = ((*there)[i] - (*here)[i]) / step;
-    }
-    return true;
-  }
-
- private:
-  Data& data_;
-  const Logs start_;
-  const std::vector<std::size_t>& free_;
-};
-
-struct Solution {
-  Logs logs{};
-  double cost = 0;
-  Eigen::MatrixXd slopes;  ///< (residual_count x free_count)
-};
-
-/// Bounded least squares from one start, until the cost changes by less than a share; none if its runs are refused.
-std::optional<Solution> solve(Data& data, const Logs& start, const std::vector<std::size_t>& free, double tolerance) {
-  std::vector<double> values;
-  for (const std::size_t k : free) values.push_back(std::clamp(start[k], std::log(kLeast[k]), std::log(kMost[k])));
-  Logs within = start;
-  for (std::size_t i = 0; i < free.size(); ++i) within[free[i]] = values[i];
-  if (!data.residuals(within)) return std::nullopt;
-  ceres::Problem problem;
-  auto* cost = new Cost(data, start, free);
-  problem.AddResidualBlock(cost, nullptr, values.data());
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    problem.SetParameterLowerBound(values.data(), int(i), std::log(kLeast[free[i]]));
-    problem.SetParameterUpperBound(values.data(), int(i), std::log(kMost[free[i]]));
-  }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.logging_type = ceres::SILENT;
-  options.max_num_iterations = 40;
-  options.function_tolerance = tolerance, options.parameter_tolerance = 1e-6;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  if (!summary.IsSolutionUsable()) return std::nullopt;
-  Solution solution;
-  solution.logs = cost->at(values.data()), solution.cost = summary.final_cost;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> slopes(cost->num_residuals(),
-                                                                                Eigen::Index(free.size()));
-  std::vector<double> residuals(std::size_t(cost->num_residuals()));
-  const double* blocks[] = {values.data()};
-  double* jacobians[] = {slopes.data()};
-  if (!cost->Evaluate(blocks, residuals.data(), jacobians)) return std::nullopt;
-  solution.slopes = slopes;
-  return solution;
-}
 
 /// The n-th of the starts: the first is the material's own; the others lie around it, evenly (Halton's sequence). What
 /// is not fitted stays.
@@ -260,30 +120,28 @@ std::vector<Estimate> estimates_of(const Parameters& p, const Certainty& certain
   return all;
 }
 
-double root_mean_square(const std::vector<double>& values) {
-  double squares = 0;
-  for (const double value : values) squares += value * value;
-  return values.empty() ? 0 : std::sqrt(squares / double(values.size()));
-}
-
 /// Of the cost. The last one is far below what scatter does: it moves a number by a hundredth of its uncertainty.
 constexpr double kEarlyTolerance = 1e-4, kLastTolerance = 1e-6;
 
 /// The best of all starts, followed to its end, and how many came there.
 std::optional<Solution> best_of(Data& data, const Logs& first, const std::vector<std::size_t>& free,
                                 const FitRequest& request, Fit& fit) {
+  parallel::Team team(request.threads);
+  fit.starts = request.starts;
+  if (request.starts == 1) return fit.same_starts = 1, solve(data, first, free, kLastTolerance, team);
+  std::vector<std::optional<Solution>> ends(std::size_t(request.starts));
+  team.for_each(request.starts, [&](int n) {
+    parallel::Team alone(1);
+    ends[std::size_t(n)] = solve(data, start_of(first, free, n), free, kEarlyTolerance, alone);
+  });
   std::vector<Solution> found;
-  for (int n = 0; n < request.starts; ++n) {
-    if (request.should_stop && request.should_stop()) return std::nullopt;
-    if (std::optional<Solution> one = solve(data, start_of(first, free, n), free, kEarlyTolerance))
-      found.push_back(std::move(*one));
-  }
-  if (found.empty()) return std::nullopt;
+  for (std::optional<Solution>& end : ends)
+    if (end) found.push_back(std::move(*end));
+  if (found.empty() || (request.should_stop && request.should_stop())) return std::nullopt;
   const auto best = std::min_element(found.begin(), found.end(),
                                      [](const Solution& a, const Solution& b) { return a.cost < b.cost; });
-  fit.starts = request.starts;
   for (const Solution& one : found) fit.same_starts += one.cost <= best->cost * 1.01 + 1e-12;
-  return solve(data, best->logs, free, kLastTolerance);
+  return solve(data, best->logs, free, kLastTolerance, team);
 }
 
 /// Correlations of the logarithms of the free parameters; 0 where a variance is none.
@@ -297,16 +155,32 @@ std::vector<double> correlations_of(const Eigen::MatrixXd& covariance) {
   return correlation;
 }
 
+/// Matches and errors, by what the network did at each row of each measurement.
+void judge(Fit& fit, const std::vector<Measurement>& measurements, const std::vector<std::vector<double>>& simulated) {
+  fit.matches.clear();
+  std::vector<double> used, held_out;
+  for (std::size_t m = 0; m < measurements.size(); ++m) {
+    Match match{&measurements[m], simulated[m], {}};
+    const double scale = scale_of(measurements[m]);
+    for (std::size_t i = 0; i < simulated[m].size(); ++i) {
+      match.is_held_out.push_back(is_held_out(i));
+      (match.is_held_out[i] ? held_out : used).push_back((simulated[m][i] - measurements[m].rows[i].measured) / scale);
+    }
+    fit.matches.push_back(std::move(match));
+  }
+  fit.error = root_mean_square(used), fit.held_out_error = root_mean_square(held_out);
+}
+
 }  // namespace
 
-Result<Fit> fit_material(const loading::LoadedScene& rig, const std::vector<Measurement>& measurements,
+Result<Fit> fit_material(const loading::LoadedScene& tissue, const std::vector<Measurement>& measurements,
                          const FitRequest& request) {
   FLAGS_minloglevel = google::GLOG_FATAL;  // a start that cannot be simulated is not for the terminal
-  Data data(rig, measurements, request);
+  Data data(tissue, measurements, request);
   const bool is_slow = std::all_of(measurements.begin(), measurements.end(),
                                    [](const Measurement& one) { return one.kind == Kind::indentation; });
   const std::vector<std::size_t> free = is_slow ? std::vector<std::size_t>{0, 1} : std::vector<std::size_t>{0, 1, 2, 3};
-  if (measurements.empty() || data.count(false) <= free.size())
+  if (measurements.empty() || data.count() <= free.size())
     return Error{"calibrate", "there are too few rows to fit " + std::to_string(free.size()) + " numbers",
                  "every fifth row is held out"};
   Fit fit;
@@ -320,15 +194,25 @@ Result<Fit> fit_material(const loading::LoadedScene& rig, const std::vector<Meas
   fit.estimates = estimates_of(fit.parameters, certainty, free);
   for (const std::size_t k : free) fit.fitted.push_back(kNames[k]);
   fit.correlation = correlations_of(certainty.covariance);
-  for (std::size_t m = 0; m < measurements.size(); ++m) {
-    Match match{&measurements[m], data.run(best->logs, m).value_or(std::vector<double>()), {}};
-    for (std::size_t i = 0; i < measurements[m].rows.size(); ++i) match.is_held_out.push_back(Data::is_held_out(i));
-    fit.matches.push_back(std::move(match));
-  }
-  fit.error = root_mean_square(data.residuals(best->logs).value_or(std::vector<double>()));
-  fit.held_out_error = root_mean_square(data.residuals(best->logs, true).value_or(std::vector<double>()));
+  std::vector<std::vector<double>> simulated;
+  for (std::size_t m = 0; m < measurements.size(); ++m)
+    simulated.push_back(data.run(best->logs, m).value_or(std::vector<double>(measurements[m].rows.size(), NAN)));
+  judge(fit, measurements, simulated);
   fit.simulations = data.simulations;
+  fit.block = tissue.scene.spec.organs[0].rig->block;
   return fit;
+}
+
+std::optional<double> error_of(const loading::LoadedScene& tissue, const scenes::MaterialSpec& material,
+                               const std::vector<Measurement>& measurements) {
+  std::vector<double> all;
+  for (const Measurement& one : measurements) {
+    const auto simulated = simulate(tissue, material, one);
+    if (!simulated) return std::nullopt;
+    const double scale = scale_of(one);
+    for (std::size_t i = 0; i < simulated->size(); ++i) all.push_back(((*simulated)[i] - one.rows[i].measured) / scale);
+  }
+  return root_mean_square(all);
 }
 
 }  // namespace ctpm::calibrate

@@ -82,7 +82,7 @@ class MeasurementReader {
     const std::string name = file_ + (specimen.empty() ? "" : ", " + specimen);
     const auto found = std::find_if(measurements_.begin(), measurements_.end(),
                                     [&](const Measurement& one) { return one.name == name; });
-    return found != measurements_.end() ? *found : measurements_.emplace_back(Measurement{name, kind_, {}});
+    return found != measurements_.end() ? *found : measurements_.emplace_back(Measurement{name, specimen, kind_, {}});
   }
 
   double number(const std::string& name, double least, double most) {

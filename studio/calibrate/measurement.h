@@ -25,7 +25,8 @@ struct Row {
 
 /// One specimen of one file.
 struct Measurement {
-  std::string name;  ///< file and specimen
+  std::string name;      ///< file and specimen
+  std::string specimen;  ///< as its column says, the same in several files; files without one are of one specimen
   Kind kind = Kind::indentation;
   std::vector<Row> rows;
 

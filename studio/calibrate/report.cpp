@@ -49,6 +49,45 @@ reports::Table correlation_table(const Fit& fit) {
   return table;
 }
 
+std::string percent(double share) { return output::short_number(100 * share, 2) + " %"; }
+
+/// "K2" of "K2, the stiffness at once".
+std::string symbol_of(const Estimate& estimate) { return estimate.title.substr(0, estimate.title.find_first_of(" ,")); }
+
+/// A row for each specimen, and one for what they tell together.
+reports::Table specimen_table(const std::vector<SpecimenFit>& specimens, const std::vector<Estimate>& whole) {
+  reports::Table table;
+  table.title = "Specimens, each alone and left out";
+  table.columns = {{"specimen", "specimen"}};
+  for (const Estimate& one : whole) table.columns.push_back({one.key, symbol_of(one) + " [" + one.unit + "]"});
+  table.columns.push_back({"error_share", "met alone to", 2});
+  table.columns.push_back({"left_out_error_share", "met by the others to", 2});
+  table.columns.push_back({"note", "note"});
+  for (const SpecimenFit& one : specimens) {
+    std::vector<reports::Cell> row{one.name};
+    for (std::size_t i = 0; i < whole.size(); ++i)
+      row.push_back(i < one.estimates.size() ? reports::Cell(told(one.estimates[i])) : reports::Cell());
+    row.push_back(one.estimates.empty() ? reports::Cell() : reports::Cell(percent(one.error)));
+    row.push_back(std::isnan(one.left_out_error) ? reports::Cell() : reports::Cell(percent(one.left_out_error)));
+    row.emplace_back(one.problem);
+    table.rows.push_back(std::move(row));
+  }
+  std::vector<reports::Cell> mean{std::string("mean")}, spread{std::string("spread")};
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const SpecimenSpread of = spread_of(specimens, i);
+    mean.push_back(of.count > 1 ? reports::Cell(output::short_number(of.mean, 3)) : reports::Cell());
+    spread.push_back(of.count > 1 ? reports::Cell(percent(of.deviation)) : reports::Cell());
+  }
+  for (auto* row : {&mean, &spread}) {
+    row->resize(table.columns.size());
+    table.rows.push_back(std::move(*row));
+  }
+  table.caption =
+      "A specimen that was left out takes no part in the fit that meets it. Mean and spread (standard deviation) are "
+      "those of the logarithms: so far may the next specimen be from these, whatever the intervals above say.";
+  return table;
+}
+
 std::vector<reports::Plot> plots_of(const Match& match) {
   const Measurement& one = *match.measurement;
   const bool is_slow = one.kind == Kind::indentation;
@@ -74,9 +113,7 @@ std::vector<reports::Plot> plots_of(const Match& match) {
   return {curve, rest};
 }
 
-std::string percent(double share) { return output::short_number(100 * share, 2) + " %"; }
-
-std::string results_json(const Fit& fit) {
+std::string results_json(const Fit& fit, const std::vector<SpecimenFit>& specimens) {
   output::JsonWriter json;
   json.begin_object().member("format", "ctpm-calibration-results").member("version", 1);
   json.member("program_version", CTPM_VERSION).key("estimates").begin_list();
@@ -89,6 +126,15 @@ std::string results_json(const Fit& fit) {
   json.end_list().key("correlation");
   reports::write_rows(json, correlation_table(fit));
   json.member("error_share", fit.error).member("held_out_error_share", fit.held_out_error);
+  json.key("specimens").begin_list();
+  for (const SpecimenFit& one : specimens) {
+    json.begin_object().member("name", std::string_view(one.name)).member("error_share", one.error);
+    json.member("left_out_error_share", one.left_out_error).key("estimates").begin_object();
+    for (const Estimate& estimate : one.estimates)
+      if (estimate.is_told()) json.member(estimate.key, estimate.value);
+    json.end_object().end_object();
+  }
+  json.end_list();
   json.member("starts", fit.starts).member("same_starts", fit.same_starts).key("plots").begin_list();
   for (const Match& match : fit.matches)
     for (const reports::Plot& plot : plots_of(match)) reports::write_points(json, plot);
@@ -125,7 +171,7 @@ std::string interval_text(const Estimate& estimate) {
   return rounded(estimate.low(), places) + " to " + rounded(estimate.high(), places);
 }
 
-std::vector<std::string> remarks_of(const Fit& fit) {
+std::vector<std::string> remarks_of(const Fit& fit, const std::vector<SpecimenFit>& specimens) {
   std::vector<std::string> remarks{"The network meets the rows of the fit to " + percent(fit.error) +
                                    " and those held out to " + percent(fit.held_out_error) +
                                    " (root mean square, of each measurement's own)."};
@@ -135,28 +181,40 @@ std::vector<std::string> remarks_of(const Fit& fit) {
   if (!unknown.empty()) remarks.push_back("The data cannot tell: " + unknown + ".");
   for (const Estimate& one : fit.estimates)
     if (one.is_at_bound) remarks.push_back(one.key + " is at its bound: the data ask for more.");
+  std::string left_out;
+  for (const SpecimenFit& one : specimens)
+    if (!std::isnan(one.left_out_error)) left_out += (left_out.empty() ? "" : ", ") + percent(one.left_out_error);
+  if (!left_out.empty())
+    remarks.push_back("Whole specimens that were left out are met by the fit of the others to " + left_out + ".");
   remarks.push_back(std::to_string(fit.same_starts) + " of " + std::to_string(fit.starts) +
                     " starts ended at the same place.");
   return remarks;
 }
 
-Result<Done> write_calibration(const Fit& fit, const std::string& name, const std::string& start_name,
-                               const std::string& folder) {
+Result<Done> write_calibration(const Fit& fit, const std::vector<SpecimenFit>& specimens, const std::string& name,
+                               const std::string& start_name, const std::string& folder) {
   if (Result<Done> ready = reports::prepare_folder(folder); !ready) return ready;
-  reports::Report report("Material " + name, "Fitted to " + std::to_string(fit.matches.size()) +
-                                                 " measurements, each simulated in the network on the paper's rig.");
+  reports::Report report("Material " + name,
+                         "Fitted to " + std::to_string(fit.matches.size()) +
+                             " measurements, each simulated in the network on " +
+                             (fit.block ? "a block of the specimen's size." : "the paper's rig of five spheres."));
+  if (!fit.block)
+    report.add_paragraph(
+        "The rig is one contact site: an organ of this material is stiffer than it, because the tissue "
+        "around carries too. ctpm fit scales an organ to it, or give the specimen's size.");
   const bool is_whole = std::all_of(fit.estimates.begin(), fit.estimates.end(),
                                     [](const Estimate& one) { return one.is_told() && !one.is_at_bound; });
-  const std::vector<std::string> remarks = remarks_of(fit);
+  const std::vector<std::string> remarks = remarks_of(fit, specimens);
   report.conclude(is_whole ? reports::ReportVerdict::met : reports::ReportVerdict::missed, remarks.front(),
                   {remarks.begin() + 1, remarks.end()});
   report.add_table(estimate_table(fit));
+  if (!specimens.empty()) report.add_table(specimen_table(specimens, fit.estimates));
   if (!is_whole)
     report.add_paragraph("materials.json needs every modulus: what the data cannot tell follows there from " +
                          start_name + ".");
   for (const Match& match : fit.matches) report.add_plots(plots_of(match));
   report.add_table(correlation_table(fit));
-  return reports::write_report(folder, {{"results.json", results_json(fit)},
+  return reports::write_report(folder, {{"results.json", results_json(fit, specimens)},
                                         {"materials.json", materials_json(fit, name)},
                                         {"report.html", report.html()}});
 }

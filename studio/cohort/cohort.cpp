@@ -1,12 +1,11 @@
 #include "studio/cohort/cohort.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <future>
 #include <mutex>
 #include <set>
 
+#include "core/parallel/team.h"
 #include "recordings/session_reader.h"
 #include "scenes/scene_file.h"
 #include "studio/compare/measure_table.h"
@@ -19,17 +18,6 @@ namespace {
 using compare::SessionTrack;
 using compare::SessionValue;
 using recordings::SessionReader;
-
-/// Runs work(i) for each i on several threads; results go to places of their own, so the order does not matter.
-void run_all(std::size_t count, int threads, const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next{0};
-  std::vector<std::future<void>> workers;
-  for (int i = 0; i < std::max(1, threads); ++i)
-    workers.push_back(std::async(std::launch::async, [&] {
-      for (std::size_t at = next++; at < count; at = next++) work(at);
-    }));
-  for (std::future<void>& worker : workers) worker.get();
-}
 
 /// A session that was read, before it is compared with experts.
 struct ReadSession {
@@ -149,8 +137,10 @@ void set_force_limit(TaskResult& task, const std::string& session) {
 Result<Experts> measure_experts(TaskResult& task, const std::vector<FoundSession>& found, const CohortOptions& options,
                                 const std::function<void()>& tell) {
   set_force_limit(task, found.front().file);
+  parallel::Team team(options.threads);
   std::vector<std::optional<Result<ReadSession>>> read(found.size());
-  run_all(found.size(), options.threads, [&](std::size_t i) {
+  team.for_each(int(found.size()), [&](int at) {
+    const auto i = std::size_t(at);
     read[i] = read_session(found[i], task, options);
     tell();
   });
@@ -165,8 +155,10 @@ Result<Experts> measure_experts(TaskResult& task, const std::vector<FoundSession
   if (!errors.empty()) return errors;
   const std::size_t count = experts.sessions.size();
   std::vector<std::vector<compare::Alignment>> alignments(count);
-  run_all(count, options.threads,
-          [&](std::size_t i) { alignments[i] = alignments_from(experts.sessions, experts.sessions[i]); });
+  team.for_each(int(count), [&](int at) {
+    const auto i = std::size_t(at);
+    alignments[i] = alignments_from(experts.sessions, experts.sessions[i]);
+  });
   double nearest = INFINITY;
   for (std::size_t i = 0; i < count; ++i) {
     double sum = 0;
@@ -272,7 +264,8 @@ Result<Cohort> measure_cohort(const scenes::CourseSpec& course, const std::strin
     const std::vector<FoundSession> found = of_task(gathered->trainees, i);
     task.attempts.resize(found.size());
     std::vector<Errors> failures(found.size());
-    run_all(found.size(), options.threads, [&](std::size_t k) {
+    parallel::Team(options.threads).for_each(int(found.size()), [&](int at) {
+      const auto k = std::size_t(at);
       const Result<ReadSession> read = read_session(found[k], task, options);
       if (read)
         task.attempts[k] = beside(*experts, *read, alignments_from(experts->sessions, *read), task.task);

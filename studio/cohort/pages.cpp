@@ -3,33 +3,15 @@
 #include <algorithm>
 #include <set>
 
-#include "recordings/table_file.h"
 #include "studio/cohort/records.h"
 #include "studio/compare/measure_table.h"
 #include "studio/output/number_text.h"
+#include "studio/reports/sqlite_table.h"
 
 namespace ctpm::cohort {
 namespace {
 
 using output::short_number;
-
-recordings::TableValue value_of(const reports::Cell& cell) {
-  if (const auto* text = std::get_if<std::string>(&cell))
-    return text->empty() ? recordings::TableValue() : recordings::TableValue(*text);
-  if (const auto* number = std::get_if<double>(&cell)) return *number;
-  if (const auto* count = std::get_if<std::int64_t>(&cell)) return *count;
-  return {};
-}
-
-recordings::DataTable data_of(const std::string& name, const reports::Table& table) {
-  recordings::DataTable data{name, {}, {}};
-  for (const reports::Column& column : table.columns) data.columns.push_back(column.key);
-  for (const std::vector<reports::Cell>& row : table.rows) {
-    data.rows.emplace_back();
-    for (const reports::Cell& cell : row) data.rows.back().push_back(value_of(cell));
-  }
-  return data;
-}
 
 const scenes::MarkSpec* mark_of(const TaskResult& task, std::size_t measure) {
   const std::string key = compare::all_measures()[measure]->key;
@@ -131,8 +113,7 @@ Result<Done> write_cohort(const Cohort& cohort, const std::string& folder, const
                                          {"statements.jsonl", statements(cohort, home)}};
   for (std::size_t i = 0; i < cohort.trainees.size(); ++i)
     files.push_back({page_name(cohort, i), trainee_page(cohort, i)});
-  if (Result<Done> written = recordings::write_table_file(folder + "/results.sqlite", {data_of("result", rows)});
-      !written)
+  if (Result<Done> written = reports::write_sqlite(folder + "/results.sqlite", "result", rows); !written)
     return written;
   return reports::write_report(folder, files);
 }

@@ -3,14 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ctpm::cohort {
+#include "studio/output/random_numbers.h"
 
-std::uint64_t random_at(std::uint64_t seed, std::uint64_t counter) {
-  std::uint64_t z = seed + (counter + 1) * 0x9E3779B97F4A7C15ull;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
-  return z ^ (z >> 31);
-}
+namespace ctpm::cohort {
 
 std::optional<Spread> spread_of(std::span<const double> values) {
   if (values.size() < 2) return std::nullopt;
@@ -32,7 +27,7 @@ std::optional<Interval> interval_of_mean(std::span<const double> values, const s
   for (std::uint64_t i = 0; i < means.size(); ++i) {
     double sum = 0;
     for (std::uint64_t k = 0; k < count; ++k)
-      sum += values[((random_at(std::uint64_t(how.seed), i * count + k) >> 32) * count) >> 32];
+      sum += values[((output::random_at(std::uint64_t(how.seed), i * count + k) >> 32) * count) >> 32];
     means[i] = sum / double(count);
   }
   std::ranges::sort(means);

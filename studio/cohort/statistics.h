@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -8,10 +7,6 @@
 #include "scenes/course.h"
 
 namespace ctpm::cohort {
-
-/// The number of a seed at a place: SplitMix64 (Steele, Lea and Flood 2014) as a function of its counter, so that it
-/// depends on no order and no machine.
-std::uint64_t random_at(std::uint64_t seed, std::uint64_t counter);
 
 /// What several values tell of what they were drawn from.
 struct Spread {

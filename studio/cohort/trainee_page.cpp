@@ -137,9 +137,14 @@ std::string excess_text(const StrokeExcess& excess, const std::string& what, con
   const std::string where = excess.from == excess.to ? "At " + std::to_string(excess.worst) + " % of the way "
                                                      : "Between " + std::to_string(excess.from) + " and " +
                                                            std::to_string(excess.to) + " % of the way ";
+  // Two experts are equally far from their middle, but for rounding.
+  constexpr double kRounding = 1e-9;
+  const std::string spread = excess.deviation > kRounding * excess.mean
+                                 ? ", their spread " + short_number(scale * excess.deviation, 3) + " " + unit
+                                 : " for all of them";
   return where + what + ": " + short_number(scale * excess.value, 3) + " " + unit + " at " +
          std::to_string(excess.worst) + " %, the experts' mean there is " + short_number(scale * excess.mean, 3) + " " +
-         unit + ", their spread " + short_number(scale * excess.deviation, 3) + " " + unit + ".";
+         unit + spread + ".";
 }
 
 std::vector<std::string> where_in_stroke(const TaskResult& task, const Attempt& latest) {

@@ -1,5 +1,7 @@
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
@@ -21,7 +23,11 @@ int run_anonymise(const AnonymiseArguments& arguments) {
                                                    : recordings::PseudonymKey::read_or_make(arguments.key, is_new);
   if (!key) return print_errors(key.errors());
   const Result<std::vector<session::AnonymisedSession>> done = session::anonymise(arguments.request, *key);
-  if (!done) return print_errors(done.errors());
+  if (!done) {
+    std::error_code ignored;
+    if (is_new) std::filesystem::remove(arguments.key, ignored);  // nothing has a name of it
+    return print_errors(done.errors());
+  }
   for (const session::AnonymisedSession& one : *done) {
     print("%s: %s\n", one.to.c_str(), one.from.c_str());
     if (!one.trainee.empty()) print("  trainee  %s\n", output::printable(one.trainee).c_str());

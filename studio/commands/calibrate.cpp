@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "scenes/presets.h"
+#include "studio/calibrate/block.h"
 #include "studio/calibrate/report.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
@@ -16,7 +19,8 @@ namespace {
 struct CalibrateArguments {
   std::vector<std::string> files;
   std::string folder, name = "calibrated", preset = "liver";
-  std::optional<double> ball_mm;
+  std::optional<double> ball_mm, sphere_mm;
+  std::vector<double> specimen_mm;  ///< x, y, z; empty: the rig stands for the specimen
   int starts = 5;
 };
 
@@ -36,45 +40,77 @@ Result<std::vector<calibrate::Measurement>> read_all(const std::vector<std::stri
   return all;
 }
 
-void print_fit(const calibrate::Fit& fit) {
+void print_fit(const calibrate::Fit& fit, const std::vector<calibrate::SpecimenFit>& specimens) {
   for (const calibrate::Estimate& one : fit.estimates) {
     const std::string interval = calibrate::interval_text(one);
     print("%-24s %s%s\n", one.key.c_str(), calibrate::told(one).c_str(),
           interval.empty() ? "" : (" (" + interval + ")").c_str());
   }
-  for (const std::string& remark : calibrate::remarks_of(fit)) print("%s\n", remark.c_str());
+  for (const std::string& remark : calibrate::remarks_of(fit, specimens)) print("%s\n", remark.c_str());
+}
+
+const std::string kScenes = std::string(CTPM_SOURCE_DIR) + "/scenes";
+
+scenes::MaterialSpec start_of(const CalibrateArguments& arguments) {
+  scenes::MaterialSpec start;
+  start.preset = arguments.preset;
+  if (arguments.ball_mm) start.calibration_ball = 1e-3 * *arguments.ball_mm;
+  return start;
+}
+
+/// The specimen's block, if its size is given. Adds what is wrong with it, or with the preset.
+std::optional<loading::LoadedScene> block_of(const CalibrateArguments& arguments, Errors& errors) {
+  if (scenes::find_preset(arguments.preset) == nullptr) {
+    std::string known;
+    for (const std::string& name : scenes::preset_names()) known += (known.empty() ? "" : ", ") + name;
+    errors.push_back({"--preset", "there is no preset " + arguments.preset, "one of " + known});
+    return {};
+  }
+  const std::vector<double>& size = arguments.specimen_mm;
+  if (size.empty()) {
+    if (arguments.sphere_mm)
+      errors.push_back({"--sphere-radius-mm", "is of a specimen's block", "--specimen-mm X Y Z"});
+    return {};
+  }
+  Result<loading::LoadedScene> block =
+      calibrate::make_block(kScenes, start_of(arguments), {size[0], size[1], size[2]}, arguments.sphere_mm);
+  if (block) return std::move(*block);
+  errors.insert(errors.end(), block.errors().begin(), block.errors().end());
+  return {};
 }
 
 int run_calibrate(const CalibrateArguments& arguments) {
   const Result<std::vector<calibrate::Measurement>> measurements = read_all(arguments.files);
   Errors errors;
   if (!measurements) errors = measurements.errors();
-  if (scenes::find_preset(arguments.preset) == nullptr) {
-    std::string known;
-    for (const std::string& name : scenes::preset_names()) known += (known.empty() ? "" : ", ") + name;
-    errors.push_back({"--preset", "there is no preset " + arguments.preset, "one of " + known});
-  }
+  const std::optional<loading::LoadedScene> block = block_of(arguments, errors);
   if (!errors.empty()) return print_errors(errors);
-  const Result<loading::LoadedScene> rig =
-      loading::load_whole_scene(std::string(CTPM_SOURCE_DIR) + "/scenes/paper/rig-liver.json");
+  const Result<loading::LoadedScene> rig = loading::load_whole_scene(kScenes + "/paper/rig-liver.json");
   if (!rig) return print_errors(rig.errors());
   const StopSignal stop;
   calibrate::FitRequest request;
-  request.start.preset = arguments.preset;
-  if (arguments.ball_mm) request.start.calibration_ball = 1e-3 * *arguments.ball_mm;
+  request.start = start_of(arguments);
   request.starts = arguments.starts;
   request.should_stop = [&] { return stop.came(); };
+  request.threads = std::max(1, int(std::thread::hardware_concurrency()));
   const Result<calibrate::Fit> fit = [&] {
     ProgressLine progress("simulating");
     request.progress = [&](std::size_t simulations) { progress.show(std::int64_t(simulations), 0); };
-    return calibrate::fit_material(*rig, *measurements, request);
+    Result<calibrate::Fit> on_rig = calibrate::fit_material(*rig, *measurements, request);
+    if (!on_rig || !block) return on_rig;
+    // From there the block has not far to go, and its runs take much longer.
+    request.start = on_rig->material, request.starts = 1;
+    return calibrate::fit_material(*block, *measurements, request);
   }();
   if (!fit) return print_errors(fit.errors());
+  const Result<std::vector<calibrate::SpecimenFit>> specimens =
+      calibrate::fit_specimens(block ? *block : *rig, *measurements, *fit, request);
+  if (!specimens) return print_errors(specimens.errors());
   if (const Result<Done> written =
-          calibrate::write_calibration(*fit, arguments.name, arguments.preset, arguments.folder);
+          calibrate::write_calibration(*fit, *specimens, arguments.name, arguments.preset, arguments.folder);
       !written)
     return print_errors(written.errors());
-  print_fit(*fit);
+  print_fit(*fit, *specimens);
   print_remark("written: " + arguments.folder + "/report.html, results.json, materials.json");
   return exit_good;
 }
@@ -95,6 +131,14 @@ Command add_calibrate(CLI::App& program) {
   app->add_option("--preset", arguments->preset, "Where the fit starts, and where what the data cannot tell comes from")
       ->capture_default_str();
   app->add_option("--ball-radius-mm", arguments->ball_mm, "Radius of the ball that pressed; the preset's if not given")
+      ->check(CLI::Range(0.1, 100.0));
+  app->add_option("--specimen-mm", arguments->specimen_mm,
+                  "Size of the specimen, which lies on a plate and is pressed on the middle of its top: x y thickness; "
+                  "if not given, the paper's rig of five spheres stands for it")
+      ->expected(3)
+      ->check(CLI::Range(1.0, 1000.0));
+  app->add_option("--sphere-radius-mm", arguments->sphere_mm,
+                  "Of the spheres in the specimen; the preset's if not given")
       ->check(CLI::Range(0.1, 100.0));
   app->add_option("--starts", arguments->starts, "Starts of the fit")->check(CLI::Range(1, 100))->capture_default_str();
   return {app, [arguments] { return run_calibrate(*arguments); }};

@@ -7,6 +7,8 @@ namespace {
 
 /// Fields that libraries name in errors, and their flags.
 constexpr std::pair<std::string_view, const char*> kFlags[] = {
+    {"calibrate.specimen_mm", "--specimen-mm"},
+    {"calibrate.sphere_radius_mm", "--sphere-radius-mm"},
     {"continue.at_s", "--at"},
     {"collect.incomplete", "--incomplete"},
     {"device.address", "--igtl"},

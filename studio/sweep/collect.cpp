@@ -5,19 +5,12 @@
 #include <filesystem>
 #include <limits>
 
-#include "recordings/table_file.h"
 #include "studio/output/option_name.h"
 #include "studio/reports/report.h"
+#include "studio/reports/sqlite_table.h"
 
 namespace ctpm::sweep {
 namespace {
-
-recordings::TableValue value_of(const reports::Cell& cell) {
-  if (const auto* text = std::get_if<std::string>(&cell)) return *text;
-  if (const auto* number = std::get_if<double>(&cell)) return *number;
-  if (const auto* whole = std::get_if<std::int64_t>(&cell)) return *whole;
-  return {};
-}
 
 /// One row for each session, whatever became of it. It holds nothing that differs between machines or runs. What varies
 /// is there `as_numbers`, or as it is written.
@@ -45,16 +38,6 @@ reports::Table results_table(const Collection& collection, bool as_numbers) {
     table.rows.push_back(std::move(row));
   }
   return table;
-}
-
-recordings::DataTable data_of(const std::string& name, const reports::Table& table) {
-  recordings::DataTable data{name, {}, {}};
-  for (const reports::Column& column : table.columns) data.columns.push_back(column.key);
-  for (const std::vector<reports::Cell>& row : table.rows) {
-    data.rows.emplace_back();
-    for (const reports::Cell& cell : row) data.rows.back().push_back(value_of(cell));
-  }
-  return data;
 }
 
 }  // namespace
@@ -96,9 +79,7 @@ Result<Done> write_results(const Collection& collection, const std::string& fold
     return Error{folder, "is incomplete: " + state_text(collection) + "; statistics of it would mislead",
                  output::option_name("collect.incomplete") + " makes them of what is there, and says so"};
   const std::string sqlite = (std::filesystem::path(folder) / "results.sqlite").string();
-  if (Result<Done> written =
-          recordings::write_table_file(sqlite, {data_of("sessions", results_table(collection, true))});
-      !written)
+  if (Result<Done> written = reports::write_sqlite(sqlite, "sessions", results_table(collection, true)); !written)
     return written;
   return reports::write_report(folder, {{"results.csv", reports::to_csv(results_table(collection, false))},
                                         {"report.html", report_page(collection)}});

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "studio/output/number_text.h"
+#include "studio/output/random_numbers.h"
 
 namespace ctpm::sweep {
 namespace {
@@ -14,23 +15,18 @@ using scenes::SweepAxis;
 using scenes::SweepSpec;
 using scenes::SweepValue;
 
-/// SplitMix64 of Steele, Lea & Flood (2014): the same on every machine, unlike the distributions of the library.
+/// The numbers of a seed, one after the other.
 class Random {
  public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t next() {
-    std::uint64_t z = (state_ += 0x9E3779B97F4A7C15u);
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return z ^ (z >> 31);
-  }
+  explicit Random(std::uint64_t seed) : seed_(seed) {}
   /// In [0, 1).
-  double share() { return double(next() >> 11) * 0x1p-53; }
+  double share() { return double(output::random_at(seed_, count_++) >> 11) * 0x1p-53; }
   /// In [0, count).
   std::size_t below(std::size_t count) { return std::size_t(share() * double(count)); }
 
  private:
-  std::uint64_t state_;
+  const std::uint64_t seed_;
+  std::uint64_t count_ = 0;
 };
 
 /// The value at a share of an axis's range. Six digits hide in what machines round differently.

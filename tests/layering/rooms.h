@@ -58,7 +58,7 @@ inline const std::vector<Room> kRooms{
     {"studio/render", core_and({"studio/output"}), "ctpm::render"},
     {"studio/video", core_and({"studio/render"}), "ctpm::video"},
     {"studio/views", core_and({"scenes", "studio/output", "studio/render"}), "ctpm::views"},
-    {"studio/reports", core_and({"studio/output", "studio/render"}), "ctpm::reports"},
+    {"studio/reports", core_and({"recordings", "studio/output", "studio/render"}), "ctpm::reports"},
     {"studio/rig", core_and({"scenes"}), "ctpm::rig"},
     {"studio/loading", core_and({"scenes", "importers"}), "ctpm::loading"},
     {"studio/sources", core_and({"scenes", "recordings", "studio/output"}), "ctpm::sources"},

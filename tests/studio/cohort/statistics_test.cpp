@@ -10,6 +10,7 @@
 #include "studio/cohort/cohort.h"
 #include "studio/cohort/stroke.h"
 #include "studio/compare/measure_table.h"
+#include "studio/output/random_numbers.h"
 
 namespace ctpm {
 namespace {
@@ -19,9 +20,9 @@ using cohort::LearningState;
 const std::vector<double> kValues{3.1, 4.7, 2.2, 5.9, 4.4, 3.8, 6.3};
 
 TEST(CohortStatistics, TheRandomNumbersAreThoseThatWerePublished) {
-  EXPECT_EQ(cohort::random_at(1234567, 0), 6457827717110365317u);
-  EXPECT_EQ(cohort::random_at(1234567, 1), 3203168211198807973u);
-  EXPECT_EQ(cohort::random_at(1234567, 2), 9817491932198370423u);
+  EXPECT_EQ(output::random_at(1234567, 0), 6457827717110365317u);
+  EXPECT_EQ(output::random_at(1234567, 1), 3203168211198807973u);
+  EXPECT_EQ(output::random_at(1234567, 2), 9817491932198370423u);
 }
 
 TEST(CohortStatistics, IntervalsAreThoseOfTheReference) {

@@ -38,9 +38,9 @@ TEST(Flags, EveryFieldThatAnErrorNamesHasAFlagOfTheProgram) {
   EXPECT_GT(fields.size(), 20u);
   const testing::TemporaryFolder folder;
   std::string help;
-  const std::vector<std::string> commands[]{{"import"},       {"record"},          {"replay"},   {"export"},
-                                            {"preview"},      {"paper"},           {"fidelity"}, {"studio"},
-                                            {"sweep", "run"}, {"sweep", "collect"}};
+  const std::vector<std::string> commands[]{{"calibrate"}, {"import"},       {"record"},          {"replay"},
+                                            {"export"},    {"preview"},      {"paper"},           {"fidelity"},
+                                            {"studio"},    {"sweep", "run"}, {"sweep", "collect"}};
   for (std::vector<std::string> command : commands) {
     command.push_back("--help");
     help += testing::run_ctpm(command, folder.path()).out;

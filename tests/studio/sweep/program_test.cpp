@@ -93,13 +93,13 @@ TEST_F(SweepProgram, RecordsEverySessionAsRecordWould) {
   EXPECT_NEAR(std::stod(last[6]) / std::stod(fourth[6]), 2, 0.1);
   EXPECT_EQ(testing::run_ctpm({"verify", "out/tasks/" + last[1] + "/session.ctpm"}, folder()).code, 0);
   // The database holds the same rows, numbers as numbers.
-  const ProgramOutcome python = testing::run(
-      {"/usr/bin/python3", "-c",
-       "import sqlite3; c = sqlite3.connect('out/results.sqlite'); "
-       "print(*c.execute('select count(*), sum(stiffness_scale), min(state), max(length(ticks_hash)) from sessions')"
-       ".fetchone())"},
-      folder());
-  EXPECT_EQ(python.out, "6 7.0 done 16\n") << python.err;
+  const ProgramOutcome python = testing::run({"/usr/bin/python3", "-c",
+                                              "import sqlite3; c = sqlite3.connect('out/results.sqlite'); "
+                                              "print(*c.execute('select count(*), sum(stiffness_scale), min(state), "
+                                              "max(length(ticks_hash)), count(error) from sessions')"
+                                              ".fetchone())"},
+                                             folder());
+  EXPECT_EQ(python.out, "6 7.0 done 16 0\n") << python.err;
   const std::string page = slurp(out() / "report.html");
   for (const char* part : {"All 6 sessions were recorded.", "max_force_n by stiffness_scale", "Means by distance_mm"})
     EXPECT_NE(page.find(part), std::string::npos) << part;
