@@ -153,6 +153,9 @@ struct Drawing {
       svg += "<polyline data-name=\"" + escape_html(series.name) + "\" fill=\"none\" stroke=\"" + std::string(ink) +
              "\" stroke-linejoin=\"round\" stroke-width=\"" + (series.stroke == Stroke::path ? "1" : "1.8") + "\"" +
              (series.stroke == Stroke::dashed ? " stroke-dasharray=\"6 4\"" : "") + " points=\"" + points + "\"/>\n";
+    else
+      svg += "<g data-name=\"" + escape_html(series.name) + "\" stroke=\"" + std::string(ink) + "\" data-marks=\"" +
+             points + "\"/>\n";
     if (series.stroke == Stroke::crosses)
       for (const auto& [px, py] : places) add_cross(px, py, ink);
     if (series.stroke == Stroke::marks || series.stroke == Stroke::path)
@@ -334,9 +337,9 @@ for (const svg of document.querySelectorAll("svg[data-x]")) {
   const axis = text => { const [low, high, from, to, log] = text.split(" ").map(Number); return { low, high, from, to, log }; };
   const x = axis(svg.dataset.x), y = axis(svg.dataset.y), [xTitle, yTitle] = svg.dataset.titles.split("|");
   const value = (a, p) => { const v = a.low + (p - a.from) / (a.to - a.from) * (a.high - a.low); return Number((a.log ? 10 ** v : v).toPrecision(3)); };
-  const lines = [...svg.querySelectorAll("polyline")].map(line => ({
-    name: line.dataset.name, ink: line.getAttribute("stroke"),
-    points: line.getAttribute("points").trim().split(" ").filter(p => p).map(p => p.split(",").map(Number)) }));
+  const lines = [...svg.querySelectorAll("polyline, [data-marks]")].map(line => ({
+    name: line.dataset.name, ink: line.getAttribute("stroke"), isMarks: "marks" in line.dataset,
+    points: (line.getAttribute("points") || line.dataset.marks || "").trim().split(" ").filter(p => p).map(p => p.split(",").map(Number)) }));
   if (!lines.some(line => line.points.length)) continue;
   const make = (name, attributes, parent) => { const e = document.createElementNS(svg.namespaceURI, name); for (const k in attributes) e.setAttribute(k, attributes[k]); return parent.appendChild(e); };
   const cursor = make("g", { class: "cursor" }, svg);
@@ -346,18 +349,20 @@ for (const svg of document.querySelectorAll("svg[data-x]")) {
     if (i == -1 || a[0] > px + 0.05) return null;
     return [px, b[0] > a[0] ? a[1] + (px - a[0]) / (b[0] - a[0]) * (b[1] - a[1]) : b[1]];
   };
+  const beside = (points, px) => points.reduce((best, p) => Math.abs((best || [px + 12])[0] - px) > Math.abs(p[0] - px) ? p : best, null);
   const show = event => {
     const place = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
     cursor.replaceChildren();
     if (x.from - 4 > place.x || place.x > x.to + 4 || place.y > y.from + 4 || y.to - 8 > place.y) return;
     const drawn = lines.filter(line => line.points.length);
-    const found = svg.dataset.along
-      ? drawn.map(line => ({ line, p: between(line.points, Math.min(Math.max(place.x, x.from), x.to)) })).filter(one => one.p)
+    const along = svg.dataset.along && drawn.some(line => !line.isMarks);
+    const found = along
+      ? drawn.map(line => ({ line, p: (line.isMarks ? beside : between)(line.points, Math.min(Math.max(place.x, x.from), x.to)) })).filter(one => one.p)
       : [drawn.map(line => ({ line, ...near(line.points, place.x, place.y) })).reduce((a, b) => b.d > a.d ? a : b)];
     if (!found.length) return;
-    const at = svg.dataset.along ? Math.min(Math.max(place.x, x.from), x.to) : found[0].p[0];
+    const at = along ? Math.min(Math.max(place.x, x.from), x.to) : found[0].p[0];
     const rows = [[xTitle + "  " + value(x, at), "#222"], ...found.map(one => [(one.line.name || yTitle) + "  " + value(y, one.p[1]), one.line.ink])];
-    if (svg.dataset.along) make("path", { d: `M${at} ${y.to}V${y.from}` }, cursor);
+    if (along) make("path", { d: `M${at} ${y.to}V${y.from}` }, cursor);
     for (const one of found) make("circle", { cx: one.p[0], cy: one.p[1], r: 3.5, fill: one.line.ink }, cursor);
     const box = make("rect", { rx: 3 }, cursor);
     const texts = rows.map(([text, ink]) => { const t = make("text", { fill: ink }, cursor); t.textContent = text; t.style.fill = ink; return t; });
