@@ -53,7 +53,7 @@ reports::Table people_table(const Cohort& cohort, const TaskResult& task) {
     row.push_back(std::int64_t(attempts.size()));
     row.push_back(latest.passed
                       ? reports::Cell(*latest.passed ? reports::ReportVerdict::met : reports::ReportVerdict::missed)
-                      : reports::Cell(reports::ReportVerdict::shown));
+                      : reports::Cell());
     const auto passed = std::ranges::count_if(attempts, [](const Attempt* a) { return a->passed.value_or(false); });
     row.push_back(latest.passed ? reports::Cell(std::int64_t(passed)) : reports::Cell());
     row.push_back(learned.reached > 0 ? reports::Cell(std::int64_t(learned.reached)) : reports::Cell());
@@ -137,7 +137,7 @@ reports::Plot cohort_curve(const Cohort& cohort, const TaskResult& task, std::si
         {"experts, one spread", spread->mean - spread->deviation, spread->mean + spread->deviation, kExpertColour}};
   show_declared(plot, task, measure);
   plot.x_range = {0.5, (by_attempt.empty() ? 1.0 : double(by_attempt.rbegin()->first)) + 0.5};
-  plot.width = 360, plot.height = 250;
+  shape_small(plot, m.rounding);
   return plot;
 }
 

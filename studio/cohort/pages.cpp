@@ -101,6 +101,12 @@ void show_declared(reports::Plot& plot, const TaskResult& task, std::size_t meas
   plot.y_range = {low, high};
 }
 
+void shape_small(reports::Plot& plot, double rounding) {
+  constexpr double kLeast = 1e-6;
+  plot.width = 360, plot.height = 250;
+  plot.counts_x = true, plot.least_y_span = std::max(2 * rounding, kLeast);
+}
+
 reports::Table meanings(const Cohort& cohort) {
   std::set<std::size_t> shown;
   for (const TaskResult& task : cohort.tasks)

@@ -52,6 +52,9 @@ std::string shown_unit(const compare::Measure& measure);
 /// Lets a plot show at least the range that the educator declared for a measure; all points stay in it.
 void show_declared(reports::Plot& plot, const TaskResult& task, std::size_t measure);
 
+/// Makes a small plot over attempts; differences up to `rounding` [its unit] are not drawn as such.
+void shape_small(reports::Plot& plot, double rounding);
+
 /// What the measures of the pages are, with their sources.
 reports::Table meanings(const Cohort& cohort);
 

@@ -155,7 +155,7 @@ reports::Plot curve_plot(const TaskResult& task, const std::vector<const Attempt
   }
   show_declared(plot, task, measure);
   plot.x_range = {0.5, double(attempts.size()) + 0.5};
-  plot.width = 360, plot.height = 250;
+  shape_small(plot, m.rounding);
   return plot;
 }
 
@@ -171,7 +171,7 @@ reports::Plot learning_plot(const Learned& learned, const scenes::LearningSpec& 
   plot.x_range = {0.5, double(learned.steps.size()) + 0.5};
   plot.caption = "A failed attempt adds " + short_number(limits.failure, 3) + ", a passed one takes away " +
                  short_number(limits.pass, 3) + "; at a limit the sum begins at 0 again.";
-  plot.width = 360, plot.height = 250;
+  shape_small(plot, 0);
   return plot;
 }
 

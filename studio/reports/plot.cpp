@@ -76,6 +76,7 @@ Range range_of(const Plot& plot, bool is_y) {
       if (std::isfinite(v) && (!is_log || v > 0)) range.take(v);
   if (is_y)
     for (const Band& band : plot.bands) range.take(band.low), range.take(band.high);
+  if (is_y && !range.is_empty()) range.high = std::max(range.high, range.low + plot.least_y_span);
   if (range.is_empty()) range = {is_log ? 1.0 : 0.0, is_log ? 10.0 : 1.0};
   if (is_log)
     return {std::pow(10.0, std::floor(std::log10(range.low))), std::pow(10.0, std::ceil(std::log10(range.high)))};
@@ -101,6 +102,9 @@ void add_line(std::string& svg, double x1, double y1, double x2, double y2, cons
 
 bool has_marks_only(const Series& series) { return series.stroke == Stroke::marks || series.stroke == Stroke::crosses; }
 
+/// Whether the legend names it.
+bool is_listed(const Series& series) { return !series.name.empty() && !series.x.empty(); }
+
 /// Draws one plot.
 struct Drawing {
   const Plot& plot;
@@ -110,6 +114,7 @@ struct Drawing {
 
   void add_axes() {
     for (const double v : x.ticks(7)) {
+      if (plot.counts_x && std::abs(v - std::round(v)) > 1e-6) continue;
       add_line(svg, x.at(v), top, x.at(v), bottom, "grid");
       add_text(svg, x.at(v), bottom + 16, "middle", "tick", output::short_number(v));
     }
@@ -193,7 +198,7 @@ struct Drawing {
     };
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
       const Series& s = plot.series[i];
-      if (s.name.empty()) continue;
+      if (!is_listed(s)) continue;
       const auto [px, py] = place();
       if (s.stroke == Stroke::crosses)
         add_cross(px + 11, py - 4, inks[i]);
@@ -218,7 +223,7 @@ struct Drawing {
 
 int legend_rows(const Plot& plot) {
   int entries = 0;
-  for (const Series& s : plot.series) entries += s.name.empty() ? 0 : 1;
+  for (const Series& s : plot.series) entries += is_listed(s) ? 1 : 0;
   for (const Band& band : plot.bands) entries += band.name.empty() ? 0 : 1;
   return (entries + 1) / 2;
 }

@@ -186,7 +186,8 @@ TEST(CalibrateProgram, MakesOfThePapersTableAMaterialThatAnImportTakes) {
   const Parameters fitted = parameters_of(materials->front().material);
   EXPECT_NEAR(fitted.ratio, parameters_of(liver()).ratio, 1e-4);
   const std::string page = testing::slurp(folder.path() / "out" / "report.html");
-  for (const char* part : {"residuals: network less measured", "cannot be told", "Correlation of what was fitted"})
+  for (const char* part : {"residuals: network less measured", "cannot be told", "Correlation of what was fitted",
+                           "At worst the network gives"})
     EXPECT_NE(page.find(part), std::string::npos) << part;
   const auto bad = testing::run_ctpm({"calibrate", "none.csv", "-o", "bad", "--preset", "x"}, folder.path());
   EXPECT_EQ(bad.code, 2);

@@ -143,6 +143,16 @@ TEST(Report, AnEventLeadsToItsPlaceAndStaysWithinTheAxes) {
   EXPECT_GE(place(second) - place(first), 15);
 }
 
+TEST(Report, CountsHaveWholeTicksRoundingIsNoDifferenceAndWhatHasNoPointsHasNoLegend) {
+  reports::Plot plot{.x_range = {{0.5, 1.5}}};
+  plot.series = {{.name = "attempts", .x = {1}, .y = {6e-14}, .stroke = reports::Stroke::marks}, {.name = "mean"}};
+  EXPECT_TRUE(holds(reports::to_svg(plot), ">0.6<") && holds(reports::to_svg(plot), "e-14"));
+  plot.counts_x = true, plot.least_y_span = 0.1;
+  const std::string svg = reports::to_svg(plot);
+  EXPECT_TRUE(holds(svg, ">1<") && holds(svg, ">attempts<"));
+  EXPECT_FALSE(holds(svg, ">0.6<") || holds(svg, "e-14") || holds(svg, ">mean<")) << svg;
+}
+
 TEST(Report, MarksOfSeveralSeriesAtOnePlaceStandSideBySide) {
   reports::Plot plot{.series = {{.x = {1, 2}, .y = {1, 2}, .stroke = reports::Stroke::marks}}};
   const std::string there = reports::to_svg(plot);
