@@ -32,7 +32,7 @@ reports::Table estimate_table(const Fit& fit) {
       "Intervals are those of a fit that is linear in the logarithms, with Student's t; they know of the scatter of "
       "the "
       "data, not of what the model lacks.";
-  return table;
+  return reports::without_empty_columns(std::move(table));
 }
 
 reports::Table correlation_table(const Fit& fit) {
@@ -113,6 +113,29 @@ std::vector<reports::Plot> plots_of(const Match& match) {
   return {curve, rest};
 }
 
+/// Where the network is farthest from what was measured, as a share of the largest value of that measurement.
+std::string worst_row(const Fit& fit) {
+  double most = 0;
+  std::string text;
+  for (const Match& match : fit.matches) {
+    const Measurement& one = *match.measurement;
+    double largest = 0;
+    for (const auto& row : one.rows) largest = std::max(largest, std::abs(row.measured));
+    for (std::size_t i = 0; i < match.simulated.size(); ++i) {
+      const double measured = one.rows[i].measured, off = std::abs(match.simulated[i] - measured) / largest;
+      if (!(off > most)) continue;
+      const bool is_slow = one.kind == Kind::indentation;
+      const std::string unit = one.kind == Kind::creep ? " mm" : " N";
+      most = off;
+      text = "At worst the network gives " + output::short_number(match.simulated[i], 3) + unit + " where " +
+             output::short_number(measured, 3) + unit + " was measured: " + to_word(one.kind) + " " + one.name +
+             " at " + output::short_number(is_slow ? one.rows[i].imposed : one.rows[i].time, 3) +
+             (is_slow ? " mm." : " s.");
+    }
+  }
+  return text;
+}
+
 std::string results_json(const Fit& fit, const std::vector<SpecimenFit>& specimens) {
   output::JsonWriter json;
   json.begin_object().member("format", "ctpm-calibration-results").member("version", 1);
@@ -175,6 +198,7 @@ std::vector<std::string> remarks_of(const Fit& fit, const std::vector<SpecimenFi
   std::vector<std::string> remarks{"The network meets the rows of the fit to " + percent(fit.error) +
                                    " and those held out to " + percent(fit.held_out_error) +
                                    " (root mean square, of each measurement's own)."};
+  if (const std::string worst = worst_row(fit); !worst.empty()) remarks.push_back(worst);
   std::string unknown;
   for (const Estimate& one : fit.estimates)
     if (!one.is_told()) unknown += (unknown.empty() ? "" : ", ") + one.key;

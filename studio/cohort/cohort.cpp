@@ -170,7 +170,7 @@ Result<Experts> measure_experts(TaskResult& task, const std::vector<FoundSession
     task.experts.push_back(beside(experts, experts.sessions[i], alignments[i], task.task));
     curves.push_back(task.experts.back().curve);
   }
-  task.middle = middle_of(curves);
+  task.middle = middle_of(curves), task.middle_expert = experts.middle;
   std::vector<std::vector<double>> forces, distances;
   for (const StrokeCurve& curve : curves)
     forces.push_back(curve.force), distances.push_back(distance_from(task.middle, curve));

@@ -41,6 +41,7 @@ struct TaskResult {
   std::vector<Attempt> experts, attempts;  ///< attempts: by person and time
   StrokeBand force, deviation;             ///< of the experts [N], [m]
   std::vector<Vec3> middle;                ///< of the experts' ways [m]
+  std::size_t middle_expert = 0;           ///< of `experts`, whose way is nearest to those of all others
 
   /// The experts' values of a measure.
   std::vector<double> expert_values(std::size_t measure) const;

@@ -53,19 +53,26 @@ reports::Table people_table(const Cohort& cohort, const TaskResult& task) {
     row.push_back(std::int64_t(attempts.size()));
     row.push_back(latest.passed
                       ? reports::Cell(*latest.passed ? reports::ReportVerdict::met : reports::ReportVerdict::missed)
-                      : reports::Cell(reports::ReportVerdict::shown));
+                      : reports::Cell());
     const auto passed = std::ranges::count_if(attempts, [](const Attempt* a) { return a->passed.value_or(false); });
     row.push_back(latest.passed ? reports::Cell(std::int64_t(passed)) : reports::Cell());
     row.push_back(learned.reached > 0 ? reports::Cell(std::int64_t(learned.reached)) : reports::Cell());
     row.push_back(names_of_missed(latest));
     table.rows.push_back(std::move(row));
   }
-  return table;
+  return without_empty_columns(std::move(table));
 }
 
 std::string interval_text(const std::vector<double>& values, const scenes::IntervalSpec& how) {
   const std::optional<Interval> interval = interval_of_mean(values, how);
-  return interval ? short_number(interval->low, 3) + " to " + short_number(interval->high, 3) : "insufficient data";
+  return interval ? short_number(interval->low, 3) + " to " + short_number(interval->high, 3) : "";
+}
+
+/// Of one value that value; empty: there is none.
+reports::Cell mean_of(const std::vector<double>& values) {
+  if (values.size() == 1) return values[0];
+  const std::optional<Spread> spread = spread_of(values);
+  return spread ? reports::Cell(spread->mean) : reports::Cell();
 }
 
 /// The experts' band, and where the trainees' latest attempts are.
@@ -89,18 +96,19 @@ reports::Table band_table(const Cohort& cohort, const TaskResult& task) {
     for (const std::size_t person : people_of(cohort, task))
       if (const auto& value = task.attempts_of(cohort.trainees[person]).back()->values[i].value)
         latest.push_back(*value);
-    const std::optional<Spread> band = spread_of(experts), others = spread_of(latest);
-    table.rows.push_back({std::string(m.title), std::string(m.unit), std::int64_t(experts.size()),
+    const std::optional<Spread> band = spread_of(experts);
+    table.rows.push_back({std::string(m.title), shown_unit(m), std::int64_t(experts.size()),
                           band ? reports::Cell(band->mean) : reports::Cell(std::string("insufficient data")),
                           band ? reports::Cell(band->deviation) : reports::Cell(),
-                          interval_text(experts, cohort.course.intervals), std::int64_t(latest.size()),
-                          others ? reports::Cell(others->mean) : reports::Cell(std::string("insufficient data")),
+                          interval_text(experts, cohort.course.intervals), std::int64_t(latest.size()), mean_of(latest),
                           interval_text(latest, cohort.course.intervals), mark_text(task, i)});
   }
-  table.caption = "Intervals of means: " + std::to_string(cohort.course.intervals.resamples) +
-                  " bootstrap samples with the seed " + std::to_string(cohort.course.intervals.seed) +
-                  "; of few values they are too narrow. Trainees are counted with their latest attempts.";
-  return table;
+  table.caption =
+      "Intervals of means: " + std::to_string(cohort.course.intervals.resamples) + " bootstrap samples with the seed " +
+      std::to_string(cohort.course.intervals.seed) +
+      "; of few values they are too narrow, and of one there is none. Trainees are counted with their latest "
+      "attempts.";
+  return without_empty_columns(std::move(table));
 }
 
 /// The mean of all trainees in their first, second ... attempt, with its interval, over the experts' band.
@@ -109,8 +117,8 @@ reports::Plot cohort_curve(const Cohort& cohort, const TaskResult& task, std::si
   std::map<std::size_t, std::vector<double>> by_attempt;
   for (const Attempt& attempt : task.attempts)
     if (const auto& value = attempt.values[measure].value) by_attempt[attempt.session.attempt].push_back(*value);
-  const std::string unit = m.unit;
-  reports::Plot plot{.title = m.title, .x_title = "attempt", .y_title = unit == "1" ? m.title : "[" + unit + "]"};
+  const std::string unit = shown_unit(m);
+  reports::Plot plot{.title = m.title, .x_title = "attempt", .y_title = unit.empty() ? "" : "[" + unit + "]"};
   reports::Series all{.name = "attempts", .stroke = reports::Stroke::marks, .colour = 5},
       mean{.name = "mean", .colour = kTraineeColour},
       low{.name = "its interval", .stroke = reports::Stroke::dashed, .colour = kTraineeColour}, high = low;
@@ -129,7 +137,7 @@ reports::Plot cohort_curve(const Cohort& cohort, const TaskResult& task, std::si
         {"experts, one spread", spread->mean - spread->deviation, spread->mean + spread->deviation, kExpertColour}};
   show_declared(plot, task, measure);
   plot.x_range = {0.5, (by_attempt.empty() ? 1.0 : double(by_attempt.rbegin()->first)) + 0.5};
-  plot.width = 360, plot.height = 250;
+  shape_small(plot, m.rounding);
   return plot;
 }
 

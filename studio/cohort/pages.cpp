@@ -69,6 +69,11 @@ std::string mark_text(const TaskResult& task, std::size_t measure) {
   return mark->pass_at_most ? "at most " + short_number(*mark->pass_at_most) : "";
 }
 
+std::string shown_unit(const compare::Measure& measure) {
+  const std::string unit = measure.unit;
+  return unit == "1" ? "" : unit;
+}
+
 void show_declared(reports::Plot& plot, const TaskResult& task, std::size_t measure) {
   const scenes::MarkSpec* mark = mark_of(task, measure);
   if (mark == nullptr || !mark->low || !mark->high) return;
@@ -76,6 +81,12 @@ void show_declared(reports::Plot& plot, const TaskResult& task, std::size_t meas
   for (const reports::Series& series : plot.series)
     for (const double y : series.y) low = std::min(low, y), high = std::max(high, y);
   plot.y_range = {low, high};
+}
+
+void shape_small(reports::Plot& plot, double rounding) {
+  constexpr double kLeast = 1e-6;
+  plot.width = 360, plot.height = 250;
+  plot.counts_x = true, plot.least_y_span = std::max(2 * rounding, kLeast);
 }
 
 reports::Table meanings(const Cohort& cohort) {
@@ -106,13 +117,17 @@ std::string page_name(const Cohort& cohort, std::size_t trainee) {
   return "trainee-" + plain(cohort.trainees[trainee]) + (same > 0 ? "." + std::to_string(same + 1) : "") + ".html";
 }
 
-Result<Done> write_cohort(const Cohort& cohort, const std::string& folder, const std::string& home) {
+Result<Done> write_cohort(const Cohort& cohort, const std::string& folder, const std::string& home,
+                          const MomentArtist& draw) {
   const reports::Table rows = long_table(cohort);
   std::vector<reports::ReportFile> files{{"index.html", educator_page(cohort)},
                                          {"results.csv", reports::to_csv(rows)},
                                          {"statements.jsonl", statements(cohort, home)}};
-  for (std::size_t i = 0; i < cohort.trainees.size(); ++i)
-    files.push_back({page_name(cohort, i), trainee_page(cohort, i)});
+  for (std::size_t i = 0; i < cohort.trainees.size(); ++i) {
+    Result<std::string> page = trainee_page(cohort, i, draw);
+    if (!page) return page.errors();
+    files.push_back({page_name(cohort, i), std::move(*page)});
+  }
   if (Result<Done> written = reports::write_sqlite(folder + "/results.sqlite", "result", rows); !written)
     return written;
   return reports::write_report(folder, files);

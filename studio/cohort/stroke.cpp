@@ -38,23 +38,28 @@ std::vector<double> forces_of(const compare::TimedPath& way, const compare::Sess
 StrokeCurve stroke_curve(const compare::TimedPath& reference, const compare::Alignment& alignment,
                          const compare::TimedPath& way, const compare::SessionTrack& track) {
   const std::vector<double> share = shares_along(reference.place), force = forces_of(way, track);
+  struct AtPoint {
+    Vec3 sum;
+    double count = 0, most = -1, time = 0;
+  };
   // What the session did at each point of the reference.
-  std::vector<Vec3> sum(share.size());
-  std::vector<double> most(share.size(), 0.0), count(share.size(), 0.0);
+  std::vector<AtPoint> point(share.size());
   for (const compare::AlignedPair& pair : alignment.pairs) {
-    sum[pair.a] = sum[pair.a] + way.place[pair.b];
-    most[pair.a] = std::max(most[pair.a], force[pair.b]);
-    count[pair.a] += 1;
+    AtPoint& here = point[pair.a];
+    here.sum = here.sum + way.place[pair.b], here.count += 1;
+    if (force[pair.b] > here.most) here.most = force[pair.b], here.time = way.time[pair.b];
   }
   StrokeCurve curve;
   for (std::size_t i = 0; i < kStrokePlaces; ++i) {
     const double from = double(i) / double(kStrokePlaces - 1), to = double(i + 1) / double(kStrokePlaces - 1);
     const std::size_t at =
         std::min<std::size_t>(std::size_t(std::ranges::lower_bound(share, from) - share.begin()), share.size() - 1);
-    curve.place.push_back((1 / count[at]) * sum[at]);
-    double force_here = most[at];
-    for (std::size_t k = at + 1; k < share.size() && share[k] < to; ++k) force_here = std::max(force_here, most[k]);
-    curve.force.push_back(force_here);
+    curve.place.push_back((1 / point[at].count) * point[at].sum);
+    std::size_t hardest = at;
+    for (std::size_t k = at + 1; k < share.size() && share[k] < to; ++k)
+      if (point[k].most > point[hardest].most) hardest = k;
+    curve.force.push_back(point[hardest].most);
+    curve.time.push_back(point[hardest].time);
   }
   return curve;
 }

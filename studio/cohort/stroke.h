@@ -18,6 +18,7 @@ inline constexpr std::size_t kStrokePlaces = 101;
 struct StrokeCurve {
   std::vector<Vec3> place;    ///< of the tool [m]                               (kStrokePlaces)
   std::vector<double> force;  ///< largest on the tool from there to the next [N] (kStrokePlaces)
+  std::vector<double> time;   ///< of the session, where that force is [s]       (kStrokePlaces)
 };
 
 /// `alignment` leads from the reference's way `reference` (a) to that of the session (b).

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "studio/cohort/pages.h"
+#include "studio/cohort/stroke_part.h"
 #include "studio/compare/measure_table.h"
+#include "studio/compare/reach.h"
 #include "studio/output/number_text.h"
 
 namespace ctpm::cohort {
@@ -14,17 +16,15 @@ using output::fixed;
 using output::short_number;
 
 constexpr int kExpertColour = 0, kTraineeColour = 1, kNeutralColour = 6;
-constexpr double kMillimetres = 1e3;
-constexpr double kForceRounding = 0.01, kPlaceRounding = 0.5e-3;  // of what is called outside the band [N], [m]
 constexpr std::size_t kMostCurves = 8;
 
 std::string with_unit(double value, const compare::Measure& measure) {
-  const std::string unit = measure.unit;
-  return short_number(value) + (unit == "1" ? "" : " " + unit);
+  const std::string unit = shown_unit(measure);
+  return short_number(value) + (unit.empty() ? "" : " " + unit);
 }
 
 reports::Cell percent(std::optional<double> share) {
-  return share ? reports::Cell(fixed(100 * *share, 0) + " %") : reports::Cell(std::string("nobody else"));
+  return share ? reports::Cell(fixed(100 * *share, 0) + " %") : reports::Cell();
 }
 
 /// The latest attempt of everybody else: of a measure, where it has a value.
@@ -37,6 +37,15 @@ std::vector<double> values_of_others(const TaskResult& task, const std::string& 
       values.push_back(*task.attempts[i].values[measure].value);
   }
   return values;
+}
+
+/// What the latest attempt reached less of than the experts in their mean.
+std::vector<compare::Shortfall> shortfalls_of(const TaskResult& task, const Attempt& latest) {
+  std::vector<compare::MeasuredValue> values;
+  for (std::size_t i = 0; i < latest.values.size(); ++i)
+    if (const std::optional<Spread> spread = spread_of(task.expert_values(i)))
+      values.push_back({latest.values[i].measure, spread->mean, latest.values[i].value});
+  return compare::shortfalls_of(values);
 }
 
 /// The latest attempt beside pass marks, experts and everybody else.
@@ -52,12 +61,13 @@ reports::Table latest_table(const TaskResult& task, const Attempt& latest) {
                    {"deviations", "from the mean, in spreads", 3},
                    {"experts", "experts no better"},
                    {"others", "trainees no better"}};
+  const std::vector<compare::Shortfall> shortfalls = shortfalls_of(task, latest);
   for (const std::size_t i : shown_measures(task)) {
     const compare::SessionValue& value = latest.values[i];
     const std::vector<double> experts = task.expert_values(i);
     const std::optional<Spread> spread = spread_of(experts);
     std::vector<reports::Cell> row{std::string(value.measure->title), reports::Cell(), reports::Cell(),
-                                   std::string(value.measure->unit), mark_text(task, i)};
+                                   shown_unit(*value.measure), mark_text(task, i)};
     if (!mark_text(task, i).empty())
       row[1] = std::ranges::find(latest.missed, value.measure->key) == latest.missed.end()
                    ? reports::ReportVerdict::met
@@ -69,7 +79,10 @@ reports::Table latest_table(const TaskResult& task, const Attempt& latest) {
     row.push_back(has_both && spread->deviation > 0 ? reports::Cell((*value.value - spread->mean) / spread->deviation)
                                                     : reports::Cell());
     const double target = spread ? spread->mean : 0;
+    const bool less_done =
+        !shortfalls.empty() && value.measure->grows_with_work && has_both && *value.value < spread->mean;
     const auto share = [&](const std::vector<double>& others) {
+      if (less_done) return reports::Cell(std::string("less done"));
       return has_both ? percent(share_no_better(*value.value, others, value.measure->direction, target))
                       : reports::Cell();
     };
@@ -78,7 +91,10 @@ reports::Table latest_table(const TaskResult& task, const Attempt& latest) {
   }
   table.caption = "Experts: " + std::to_string(task.experts.size()) +
                   " sessions; the spread is their standard deviation. Trainees are compared by their latest attempts.";
-  return table;
+  if (!shortfalls.empty())
+    table.caption += " Less done: the attempt reached less than the experts (" + to_words(shortfalls) +
+                     "), so that a lower value is no better.";
+  return without_empty_columns(std::move(table));
 }
 
 /// What the latest attempt did to each organ and forbidden zone, beside the experts.
@@ -108,56 +124,6 @@ reports::Table structures_table(const TaskResult& task, const Attempt& latest) {
   return table;
 }
 
-reports::Series along(const std::string& name, const std::vector<double>& values, double scale, reports::Stroke stroke,
-                      int colour) {
-  reports::Series series{.name = name, .stroke = stroke, .colour = colour};
-  for (std::size_t i = 0; i < values.size(); ++i) series.x.push_back(double(i)), series.y.push_back(scale * values[i]);
-  return series;
-}
-
-/// A quantity along the stroke: the latest attempt over the experts' band.
-reports::Plot stroke_plot(const std::string& title, const std::string& axis, const StrokeBand& band,
-                          const std::vector<double>& latest, double scale) {
-  std::vector<double> high, low;
-  for (std::size_t i = 0; i < kStrokePlaces; ++i) {
-    high.push_back(band.high(i));
-    low.push_back(std::max(0.0, band.mean[i] - StrokeBand::kOutside * band.deviation[i]));
-  }
-  reports::Plot plot{.title = title, .x_title = "way [%]", .y_title = axis};
-  plot.series = {along("experts' mean", band.mean, scale, reports::Stroke::line, kExpertColour),
-                 along("mean and two spreads", high, scale, reports::Stroke::dashed, kExpertColour),
-                 along("", low, scale, reports::Stroke::dashed, kExpertColour),
-                 along("latest attempt", latest, scale, reports::Stroke::line, kTraineeColour)};
-  return plot;
-}
-
-/// "Between 40 and 55 % of the way the force is above the experts' band: ..."; empty: nowhere.
-std::string excess_text(const StrokeExcess& excess, const std::string& what, const std::string& unit, double scale) {
-  if (!excess.any) return "";
-  const std::string where = excess.from == excess.to ? "At " + std::to_string(excess.worst) + " % of the way "
-                                                     : "Between " + std::to_string(excess.from) + " and " +
-                                                           std::to_string(excess.to) + " % of the way ";
-  // Two experts are equally far from their middle, but for rounding.
-  constexpr double kRounding = 1e-9;
-  const std::string spread = excess.deviation > kRounding * excess.mean
-                                 ? ", their spread " + short_number(scale * excess.deviation, 3) + " " + unit
-                                 : " for all of them";
-  return where + what + ": " + short_number(scale * excess.value, 3) + " " + unit + " at " +
-         std::to_string(excess.worst) + " %, the experts' mean there is " + short_number(scale * excess.mean, 3) + " " +
-         unit + spread + ".";
-}
-
-std::vector<std::string> where_in_stroke(const TaskResult& task, const Attempt& latest) {
-  std::vector<std::string> texts;
-  for (const std::string& text :
-       {excess_text(excess_of(latest.curve.force, task.force, kForceRounding), "the force is above the experts' band",
-                    "N", 1),
-        excess_text(excess_of(distance_from(task.middle, latest.curve), task.deviation, kPlaceRounding),
-                    "the tool is farther from the experts' way than they are", "mm", kMillimetres)})
-    if (!text.empty()) texts.push_back(text);
-  return texts;
-}
-
 reports::Series level(const std::string& name, std::size_t count, double value) {
   return {.name = name,
           .x = {1, double(std::max<std::size_t>(2, count))},
@@ -169,8 +135,8 @@ reports::Series level(const std::string& name, std::size_t count, double value) 
 /// The values of a measure over the attempts, over the experts' band, within the declared range.
 reports::Plot curve_plot(const TaskResult& task, const std::vector<const Attempt*>& attempts, std::size_t measure) {
   const compare::Measure& m = *compare::all_measures()[measure];
-  const std::string unit = m.unit;
-  reports::Plot plot{.title = m.title, .x_title = "attempt", .y_title = unit == "1" ? m.title : "[" + unit + "]"};
+  const std::string unit = shown_unit(m);
+  reports::Plot plot{.title = m.title, .x_title = "attempt", .y_title = unit.empty() ? "" : "[" + unit + "]"};
   reports::Series line{.name = "", .colour = kTraineeColour},
       marks{.name = "attempts", .stroke = reports::Stroke::marks};
   marks.colour = kTraineeColour;
@@ -189,7 +155,7 @@ reports::Plot curve_plot(const TaskResult& task, const std::vector<const Attempt
   }
   show_declared(plot, task, measure);
   plot.x_range = {0.5, double(attempts.size()) + 0.5};
-  plot.width = 360, plot.height = 250;
+  shape_small(plot, m.rounding);
   return plot;
 }
 
@@ -205,7 +171,7 @@ reports::Plot learning_plot(const Learned& learned, const scenes::LearningSpec& 
   plot.x_range = {0.5, double(learned.steps.size()) + 0.5};
   plot.caption = "A failed attempt adds " + short_number(limits.failure, 3) + ", a passed one takes away " +
                  short_number(limits.pass, 3) + "; at a limit the sum begins at 0 again.";
-  plot.width = 360, plot.height = 250;
+  shape_small(plot, 0);
   return plot;
 }
 
@@ -229,18 +195,17 @@ std::string verdict_text(const TaskResult& task, const Attempt& latest, const Le
                                                          : " Too many attempts failed, as of attempt " + since + ".");
 }
 
-void add_task(reports::Report& report, const Cohort& cohort, const TaskResult& task,
-              const std::vector<const Attempt*>& attempts) {
+Result<Done> add_task(reports::Report& report, const Cohort& cohort, const TaskResult& task,
+                      const std::vector<const Attempt*>& attempts, const MomentArtist& draw) {
   const Attempt& latest = *attempts.back();
   report.add_heading(task.task.name);
   for (const Attempt* attempt : attempts)
     for (const std::string& remark : attempt->remarks)
       report.add_verdict(false, "Attempt " + std::to_string(attempt->session.attempt) + " " + remark + ".");
+  const std::string part = "task-" + std::to_string(&task - cohort.tasks.data() + 1);
+  if (Result<Done> added = add_stroke(report, part, task, latest, draw); !added) return added;
   report.add_table(latest_table(task, latest));
   if (latest.structures.size() > 1) report.add_table(structures_table(task, latest));
-  report.add_plots({stroke_plot("Force along the stroke", "force [N]", task.force, latest.curve.force, 1),
-                    stroke_plot("Distance from the experts' way", "distance [mm]", task.deviation,
-                                distance_from(task.middle, latest.curve), kMillimetres)});
   std::vector<reports::Plot> curves;
   const Learned learned = learned_of(task, latest.session.person, cohort.course.learning);
   if (!learned.steps.empty()) curves.push_back(learning_plot(learned, cohort.course.learning));
@@ -249,11 +214,12 @@ void add_task(reports::Report& report, const Cohort& cohort, const TaskResult& t
   report.add_heading(task.task.name + ": " + std::to_string(attempts.size()) +
                      (attempts.size() == 1 ? " attempt" : " attempts"));
   report.add_plots(curves);
+  return Done{};
 }
 
 }  // namespace
 
-std::string trainee_page(const Cohort& cohort, std::size_t trainee) {
+Result<std::string> trainee_page(const Cohort& cohort, std::size_t trainee, const MomentArtist& draw) {
   const std::string& person = cohort.trainees[trainee];
   reports::Report report(person, "Course " + cohort.course.name + ": the latest attempts beside experts.");
   std::vector<std::string> verdicts, points;
@@ -263,8 +229,8 @@ std::string trainee_page(const Cohort& cohort, std::size_t trainee) {
     if (attempts.empty()) continue;
     const Attempt& latest = *attempts.back();
     verdicts.push_back(verdict_text(task, latest, learned_of(task, person, cohort.course.learning)));
-    for (const std::string& text : where_in_stroke(task, latest))
-      points.push_back((cohort.tasks.size() > 1 ? task.task.name + ": " : "") + text);
+    for (const StrokeMoment& moment : moments_of(task, latest))
+      points.push_back((cohort.tasks.size() > 1 ? task.task.name + ": " : "") + moment.text);
     if (latest.passed) any = true, all = all && *latest.passed;
   }
   points.insert(points.begin(), verdicts.begin() + 1, verdicts.end());
@@ -274,7 +240,8 @@ std::string trainee_page(const Cohort& cohort, std::size_t trainee) {
                   verdicts.front(), points);
   add_caveats(report, cohort);
   for (const TaskResult& task : cohort.tasks)
-    if (const auto attempts = task.attempts_of(person); !attempts.empty()) add_task(report, cohort, task, attempts);
+    if (const auto attempts = task.attempts_of(person); !attempts.empty())
+      if (const Result<Done> added = add_task(report, cohort, task, attempts, draw); !added) return added.errors();
   report.add_heading("What the measures are");
   report.add_table(meanings(cohort));
   report.add_link("All trainees of the course", "index.html");

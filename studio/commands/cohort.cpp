@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
 #include <thread>
@@ -7,6 +8,8 @@
 #include "studio/cohort/pages.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
+#include "studio/commands/moment_pictures.h"
+#include "studio/compare/compare_files.h"
 #include "studio/compare/measure_table.h"
 #include "studio/output/printable.h"
 
@@ -15,7 +18,7 @@ namespace {
 
 struct CohortArguments {
   std::string course, experts, trainees, folder, home = "https://ctpm.invalid";
-  bool verify = false;
+  bool verify = false, no_pictures = false;
 };
 
 Result<scenes::CourseSpec> course_of(const CohortArguments& arguments) {
@@ -23,6 +26,20 @@ Result<scenes::CourseSpec> course_of(const CohortArguments& arguments) {
     return Error{"cohort", "give a course, or a folder of experts with --experts", ""};
   if (!arguments.experts.empty()) return cohort::course_of_folder(arguments.experts);
   return scenes::load_course(arguments.course, compare::measure_keys());
+}
+
+/// Sessions that cannot be drawn, because another version wrote their scene, have no pictures.
+std::vector<compare::MomentPictures> draw_pictures(const std::string& trainee, const std::string& expert,
+                                                   const std::vector<std::array<double, 2>>& times) {
+  Result<compare::OpenedFiles> files = compare::open_files(expert, trainee);
+  Errors errors = files ? Errors() : files.errors();
+  if (files) {
+    Result<std::vector<compare::MomentPictures>> pictures = draw_moments(files->trainee, files->expert, times, true);
+    if (pictures) return std::move(*pictures);
+    errors = pictures.errors();
+  }
+  print_remark("warning: no pictures of " + trainee + ": " + errors[0].message);
+  return {};
 }
 
 void print_cohort(const cohort::Cohort& cohort) {
@@ -55,7 +72,9 @@ int run_cohort(const CohortArguments& arguments) {
   const Result<cohort::Cohort> measured = cohort::measure_cohort(*course, arguments.trainees, options);
   if (!measured) return print_errors(measured.errors());
   if (const Result<Done> ready = reports::prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
-  if (const Result<Done> written = cohort::write_cohort(*measured, arguments.folder, arguments.home); !written)
+  if (const Result<Done> written = cohort::write_cohort(*measured, arguments.folder, arguments.home,
+                                                        arguments.no_pictures ? cohort::MomentArtist() : draw_pictures);
+      !written)
     return print_errors(written.errors());
   print_cohort(*measured);
   print_remark("written: " + arguments.folder +
@@ -79,6 +98,7 @@ Command add_cohort(CLI::App& program) {
       ->required();
   app->add_option("-o,--output", arguments->folder, "Folder for pages and tables; made if missing")->required();
   app->add_flag("--verify", arguments->verify, "Replay every session; otherwise forces that they state are believed");
+  app->add_flag("--no-pictures", arguments->no_pictures, "Draw no pictures of where trainees leave the experts' band");
   app->add_option("--home", arguments->home, "Address below which the statements for xAPI name people and tasks");
   return {app, [arguments] { return run_cohort(*arguments); }};
 }

@@ -1,7 +1,6 @@
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,10 +8,9 @@
 #include "studio/commands/command.h"
 #include "studio/commands/comparison_text.h"
 #include "studio/commands/console.h"
+#include "studio/commands/moment_pictures.h"
 #include "studio/commands/physics_warning.h"
 #include "studio/compare/compare_files.h"
-#include "studio/film/stills.h"
-#include "studio/output/number_text.h"
 #include "studio/reports/report.h"
 
 namespace ctpm::commands {
@@ -25,37 +23,20 @@ struct CompareArguments {
   std::optional<bool> verify;
 };
 
-/// The worst moments of the trainee, and the expert at the same places, as both are seen from one camera.
-Result<std::vector<compare::MomentPictures>> draw_moments(compare::ComparedFiles& files) {
+/// The worst moments of the trainee, and the expert at the same places.
+Result<std::vector<compare::MomentPictures>> draw_worst(compare::ComparedFiles& files) {
   const compare::Comparison& comparison = files.comparison;
-  const std::size_t count = std::min(compare::kShownMoments, comparison.moments.size());
-  if (count == 0) return std::vector<compare::MomentPictures>();
-  // Drawn in the order of time, because a replay goes forward; so does the expert along the path.
-  std::vector<std::size_t> order(count);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::sort(order, {}, [&](std::size_t i) { return comparison.moments[i].worst_s; });
-  const double tick = files.trainee_track.tick;
-  std::vector<film::StillsRequest> requests(2);
-  for (const std::size_t i : order) {
+  std::vector<std::array<double, 2>> times;
+  for (std::size_t i = 0; i < std::min(compare::kShownMoments, comparison.moments.size()); ++i) {
     const double at_s = comparison.moments[i].worst_s;
-    requests[0].ticks.push_back(std::llround(at_s / tick));
-    requests[1].ticks.push_back(std::llround(compare::expert_time_at(comparison, at_s) / tick));
+    times.push_back({at_s, compare::expert_time_at(comparison, at_s)});
   }
-  film::ExportOptions options;
-  options.size = {640, 360};
-  options.allow_diverged = !files.trainee_track.replays || !files.expert_track.replays;
-  const auto caption = [&](std::int64_t at, const std::string&) { return output::fixed(double(at) * tick, 2) + " s"; };
-  Result<std::vector<std::vector<render::Frame>>> stills =
-      film::draw_stills({&files.trainee, &files.expert}, requests, caption, options);
-  if (!stills) return stills.errors();
-  std::vector<compare::MomentPictures> pictures(count);
-  for (std::size_t i = 0; i < count; ++i) pictures[order[i]] = {std::move((*stills)[0][i]), std::move((*stills)[1][i])};
-  return pictures;
+  return draw_moments(files.trainee, files.expert, times, !files.trainee_track.replays || !files.expert_track.replays);
 }
 
 /// A session that cannot be drawn, because another version wrote its scene, has a page without pictures.
 Result<Done> write_page(const std::string& folder, compare::ComparedFiles& files, const std::string& to_see_worst) {
-  Result<std::vector<compare::MomentPictures>> pictures = draw_moments(files);
+  Result<std::vector<compare::MomentPictures>> pictures = draw_worst(files);
   if (!pictures) print_remark("warning: the page has no pictures: " + pictures.errors()[0].message);
   return compare::write_comparison(folder, files.sessions(),
                                    pictures ? *pictures : std::vector<compare::MomentPictures>(), to_see_worst);

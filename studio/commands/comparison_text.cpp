@@ -42,6 +42,7 @@ std::string comparison_text(const compare::ComparedSessions& compared, const std
     row.erase(row.find_last_not_of(' ') + 1);
     text += row + "\n";
   }
+  if (const std::string less = compare::less_done_text(comparison); !less.empty()) text += less + "\n";
   text += "what to do better:\n";
   for (const std::string& sentence : compare::advice_of(compared)) text += "  " + sentence + "\n";
   text += comparison.moments.empty() ? "no moment goes beyond a limit\n" : "worst moments of the trainee's session:\n";

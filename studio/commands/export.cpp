@@ -46,10 +46,20 @@ void print_outcome(const film::ExportOutcome& outcome) {
                share(times.encoding) + " encoding");
 }
 
+/// Two sessions are shown in videos alone.
+Errors check_pair(const ExportArguments& arguments, const std::string& what_output_is) {
+  Errors errors;
+  for (const auto& [flag, other] : {std::pair{"--beside", &arguments.beside}, {"--ghost", &arguments.ghost}})
+    if (!other->empty())
+      errors.push_back({flag, "is for videos only, and " + arguments.output + what_output_is,
+                        "give --output a name that ends in .mp4"});
+  return errors;
+}
+
 /// Exports the shape of the tissue for other programs.
 int run_shapes(const ExportArguments& arguments) {
-  if (!arguments.beside.empty())
-    return print_errors({{"--beside", "is for videos", arguments.output + " holds the shapes of one session"}});
+  if (const Errors errors = check_pair(arguments, " holds the shapes of one session"); !errors.empty())
+    return print_errors(errors);
   Result<recordings::SessionReader> reader = recordings::SessionReader::open(arguments.files[0]);
   if (!reader) return print_errors(reader.errors());
   warn_of_physics(*reader);
@@ -98,11 +108,10 @@ Errors check_arguments(const ExportArguments& arguments) {
   const bool is_many = arguments.files.size() > 1, is_picture = is_sheet(arguments.output);
   if (arguments.at_s && !is_picture)
     errors.push_back({"--at-s", "is for .png, .vtp, .vtu and .glb, which hold one moment", ""});
-  for (const auto& [flag, other] : {std::pair{"--beside", &arguments.beside}, {"--ghost", &arguments.ghost}}) {
-    if (is_picture && !other->empty())
-      errors.push_back({flag, "is for videos", arguments.output + " shows the moments of one session"});
+  if (is_picture)
+    for (const Error& error : check_pair(arguments, " is a picture of one session")) errors.push_back(error);
+  for (const auto& [flag, other] : {std::pair{"--beside", &arguments.beside}, {"--ghost", &arguments.ghost}})
     if (is_many && !other->empty()) errors.push_back({flag, "is for one session, and several are given", ""});
-  }
   if (!arguments.align.empty() && arguments.beside.empty() && arguments.ghost.empty())
     errors.push_back({"--align", "needs --beside or --ghost", ""});
   if (is_many && (is_picture || arguments.output.ends_with(".mp4") || arguments.output.ends_with(".avi")))

@@ -4,13 +4,14 @@
 #include <cmath>
 #include <string_view>
 
+#include "studio/compare/measure_table.h"
+#include "studio/compare/reach.h"
 #include "studio/compare/way.h"
 #include "studio/output/number_text.h"
 
 namespace ctpm::compare {
 namespace {
 
-constexpr double kNotableShare = 0.1;  // of the expert's value: a cut that differs by less is as good
 constexpr double kTurnedSeverity = 100;
 
 struct Sentence {
@@ -82,6 +83,14 @@ void add_cut(std::vector<Sentence>& sentences, const SessionTrack& expert, const
                                                                  number(1e3 * expert.cut->depth) + " mm."});
 }
 
+/// How much less deep than the expert a tool without a blade pushes.
+void add_push(std::vector<Sentence>& sentences, const Comparison& comparison) {
+  for (const auto& [measure, expert, trainee] : shortfalls_of(comparison.values))
+    if (measure == &kDepth)
+      sentences.push_back(
+          {1 - trainee / expert, "Push deeper: " + number(trainee) + " mm, the expert " + number(expert) + " mm."});
+}
+
 /// The worse measure whose value is farthest from the expert's, as a share.
 std::string most_to_gain(const Comparison& comparison) {
   const MeasuredValue* most = nullptr;
@@ -106,6 +115,7 @@ std::vector<std::string> advice_of(const ComparedSessions& compared) {
   if (comparison.way != Way::same)
     sentences.push_back({kTurnedSeverity, std::string("Turn the stroke: ") + to_word(comparison.way) + "."});
   add_moments(sentences, comparison.moments);
+  add_push(sentences, comparison);
   add_cut(sentences, compared.expert, compared.trainee);
   std::ranges::stable_sort(sentences, std::greater<>(), &Sentence::severity);
   std::vector<std::string> advice;

@@ -38,6 +38,7 @@ constexpr const char* kOwn = "this program's";
 constexpr const char* kNetwork = "the scene's network";
 
 using enum Direction;
+constexpr bool kGrows = true;
 // Differences that rounding, or the 100 Hz of hands, can make.
 constexpr double kTimeRounding = 0.02, kLengthRounding = 0.1, kForceRounding = 0.01;  // [s], [mm], [N]
 
@@ -49,9 +50,10 @@ const Measure kCompletionTime{"completion_time_s",
                               lower,
                               "from taking the first tool to putting the last one away",
                               kCotin,
-                              kTimeRounding};
-const Measure kPathLength{"path_length_mm", "path length",      "mm", lower, "way of the tool's tip while it is held",
-                          kCotin,           5 * kLengthRounding};
+                              kTimeRounding,
+                              kGrows};
+const Measure kPathLength{"path_length_mm", "path length",       "mm",  lower, "way of the tool's tip while it is held",
+                          kCotin,           5 * kLengthRounding, kGrows};
 const Measure kEconomy{"economy_of_motion",
                        "economy of motion",
                        "1",
@@ -77,15 +79,16 @@ const Measure kJerk{"log_dimensionless_jerk",
 const Measure kIdle{
     "idle_time_s", "idle time",      "s", lower, "a tool in the hand, slower than 5 mm/s for at least 0.3 s",
     kDAngelo,      2 * kTimeRounding};
-const Measure kPeakForce{"peak_force_n", "peak force",  "N", lower, "largest force between tool and tissue",
-                         kHoreman,       kForceRounding};
+const Measure kPeakForce{"peak_force_n", "peak force",   "N",   lower, "largest force between tool and tissue",
+                         kHoreman,       kForceRounding, kGrows};
 const Measure kMeanForce{"mean_force_n",
                          "mean force",
                          "N",
                          lower,
                          "over the way of the tool against a force, so that resting in the tissue does not count",
                          kHoreman,
-                         kForceRounding};
+                         kForceRounding,
+                         kGrows};
 const Measure kOtherPeakForce{"other_hand_peak_force_n",
                               "peak force of the other hand",
                               "N",
@@ -99,30 +102,35 @@ const Measure kTimeAbove{"time_above_force_limit_s",
                          lower,
                          "with a force above the limit",
                          kTrejos,
-                         kTimeRounding};
+                         kTimeRounding,
+                         kGrows};
 const Measure kImpulseAbove{"impulse_above_force_limit_n_s",
                             "impulse above the force limit",
                             "N s",
                             lower,
                             "integral over time of what is above the limit",
                             kTrejos,
-                            kTimeRounding* kForceRounding};
+                            kTimeRounding* kForceRounding,
+                            kGrows};
 const Measure kImpulse{
-    "impulse_n_s", "impulse", "N s", lower, "integral of the force over time", kTrejos, kTimeRounding* kForceRounding};
+    "impulse_n_s", "impulse", "N s", lower, "integral of the force over time", kTrejos, kTimeRounding* kForceRounding,
+    kGrows};
 const Measure kWork{"work_on_tissue_mj",
                     "work on the tissue",
                     "mJ",
                     lower,
                     "of the tool against the force of the tissue, where it moves against it",
                     kOwn,
-                    kForceRounding* kLengthRounding};
+                    kForceRounding* kLengthRounding,
+                    kGrows};
 const Measure kWorkAbove{"work_above_force_limit_mj",
                          "work above the force limit",
                          "mJ",
                          lower,
                          "the same of the part of the force that is above the limit",
                          kOwn,
-                         kForceRounding* kLengthRounding};
+                         kForceRounding* kLengthRounding,
+                         kGrows};
 const Measure kZoneTime{"time_in_forbidden_zones_s",
                         "time in forbidden zones",
                         "s",
@@ -149,7 +157,8 @@ const Measure kBeyondDamage{"time_beyond_damage_depth_s",
                             lower,
                             "with tissue pushed deeper than it can bear",
                             kScene,
-                            kTimeRounding};
+                            kTimeRounding,
+                            kGrows};
 const Measure kSevered{
     "elements_severed", "elements severed", "1", nearer, "springs and constraints of the network", kNetwork};
 const Measure kSeveredBoth{

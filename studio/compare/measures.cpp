@@ -8,6 +8,7 @@
 #include "studio/compare/matched_moments.h"
 #include "studio/compare/measure_table.h"
 #include "studio/compare/moments.h"
+#include "studio/compare/reach.h"
 #include "studio/compare/session_measures.h"
 #include "studio/compare/way.h"
 
@@ -35,6 +36,12 @@ void add_values(Comparison& comparison, const SessionTrack& expert, const Sessio
                                  no_limit ? "no limit: the expert met no force, and none is given" : b[i].note});
     if (measure == &kSevered) add_pair(measure_cut_pair(expert, trainee));
   }
+}
+
+/// Lower is no better where the trainee reached less.
+void set_less_done(Comparison& comparison) {
+  if (shortfalls_of(comparison.values).empty()) return;
+  for (MeasuredValue& value : comparison.values) value.less_done = value.measure->grows_with_work;
 }
 
 /// The force limit: the given one, else the scene's, else the expert's peak and what rounding adds to it.
@@ -66,6 +73,7 @@ Comparison compare_sessions(const SessionTrack& expert, const SessionTrack& trai
     if (limit == 0 || 0.5 * organ.spacing < limit) limit = 0.5 * organ.spacing;
   }
   add_values(comparison, expert, trainee);
+  set_less_done(comparison);
 
   TimedPath expert_path = tool_path(expert), trainee_path = tool_path(trainee);
   comparison.expert_path = std::move(expert_path.place), comparison.expert_time = std::move(expert_path.time);

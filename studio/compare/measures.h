@@ -29,6 +29,8 @@ struct Measure {
   const char* meaning;  ///< one sentence
   const char* source;   ///< who published it
   double rounding = 0;  ///< differences up to this are none, in `unit`
+  /// It grows with how deep and how long a tool works: where less was done, lower says nothing of skill.
+  bool grows_with_work = false;
 };
 
 /// The values of a measure for both sessions, or one value for the pair.
@@ -36,6 +38,7 @@ struct MeasuredValue {
   const Measure* measure = nullptr;
   std::optional<double> expert = {}, trainee = {};  ///< in the measure's unit; expert unset for measures of the pair
   std::string note = {};                            ///< why there is no value; empty if there is one
+  bool less_done = false;  ///< the trainee reached less than the expert, with which the measure grows
 };
 
 enum class MomentKind { force, depth, deviation, pause, stray_cut };

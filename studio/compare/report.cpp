@@ -6,6 +6,7 @@
 
 #include "studio/compare/advice.h"
 #include "studio/compare/plots.h"
+#include "studio/compare/reach.h"
 #include "studio/output/number_text.h"
 #include "studio/reports/report.h"
 
@@ -58,7 +59,7 @@ reports::Table moments_table(const Comparison& comparison) {
   return table;
 }
 
-/// The columns with these keys.
+/// The columns with these keys, as a person reads them: what has no unit has none.
 reports::Table with_columns(const reports::Table& table, const std::vector<std::string>& keys) {
   reports::Table result;
   result.title = table.title, result.caption = table.caption;
@@ -67,7 +68,10 @@ reports::Table with_columns(const reports::Table& table, const std::vector<std::
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
       if (table.columns[i].key != key) continue;
       result.columns.push_back(table.columns[i]);
-      for (std::size_t row = 0; row < table.rows.size(); ++row) result.rows[row].push_back(table.rows[row][i]);
+      for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        const auto* text = std::get_if<std::string>(&table.rows[row][i]);
+        result.rows[row].push_back(key == "unit" && text && *text == "1" ? reports::Cell() : table.rows[row][i]);
+      }
     }
   return result;
 }
@@ -88,7 +92,9 @@ void add_conclusion(reports::Report& report, const ComparedSessions& compared) {
   const std::string first = advice.front();
   advice.erase(advice.begin());
   if (advice.size() > kPoints) advice.resize(kPoints);
-  const bool is_good = compared.comparison.moments.empty() && compared.comparison.way == Way::same;
+  const Comparison& comparison = compared.comparison;
+  const bool is_good =
+      comparison.moments.empty() && comparison.way == Way::same && shortfalls_of(comparison.values).empty();
   report.conclude(is_good ? reports::ReportVerdict::met : reports::ReportVerdict::missed, first, advice);
   for (const std::string& remark : remarks_of(compared)) report.add_verdict(false, remark);
   report.add_paragraph(
@@ -147,6 +153,7 @@ void add_plots(reports::Report& report, const ComparedSessions& compared) {
 
 void add_measures(reports::Report& report, const Comparison& comparison) {
   report.add_heading("Measures");
+  if (const std::string less = less_done_text(comparison); !less.empty()) report.add_paragraph(less);
   report.add_table(
       with_columns(measures_table(comparison), {"measure", "trainee_is", "trainee", "expert", "unit", "better_is"}));
   report.add_heading("What the measures are");
@@ -161,7 +168,15 @@ std::string standing_of(const MeasuredValue& value) {
   const double share = kSameShare * std::max(std::abs(*value.expert), std::abs(*value.trainee));
   if (std::abs(more) <= std::max(share, value.measure->rounding)) return "same";
   if (value.measure->direction == Direction::nearer) return "differs";
-  return (more < 0) == (value.measure->direction == Direction::lower) ? "better" : "worse";
+  if ((more < 0) != (value.measure->direction == Direction::lower)) return "worse";
+  return value.less_done ? "less done" : "better";
+}
+
+std::string less_done_text(const Comparison& comparison) {
+  const std::string what = to_words(shortfalls_of(comparison.values));
+  return what.empty() ? ""
+                      : "Less was done than the expert did (" + what +
+                            "): what grows with the work, such as force and time, is not better for being lower.";
 }
 
 std::vector<std::string> remarks_of(const ComparedSessions& compared) {
@@ -199,6 +214,8 @@ std::string comparison_json(const ComparedSessions& compared) {
     json.member("force_limit_n", *comparison.force_limit).member("force_limit_from", comparison.force_limit_from);
   if (comparison.damage_depth > 0) json.member("damage_depth_mm", 1e3 * comparison.damage_depth);
   json.member("alignment_band", kAlignmentBand);
+  if (const std::string less = less_done_text(comparison); !less.empty())
+    json.member("less_done", std::string_view(less));
   json.key("advice").begin_list();
   for (const std::string& sentence : advice_of(compared)) json.value(std::string_view(sentence));
   json.end_list().key("measures");

@@ -21,8 +21,11 @@ struct ComparedSessions {
 std::vector<std::string> remarks_of(const ComparedSessions& compared);
 
 /// How the trainee's value compares with the expert's: "same" (within 1 % or the measure's rounding), "better",
-/// "worse", "differs". Empty for measures of the pair.
+/// "worse", "differs", "less done" (lower, because the trainee reached less). Empty for measures of the pair.
 std::string standing_of(const MeasuredValue& value);
+
+/// What the trainee reached less of than the expert, and what that means for the measures; empty: nothing.
+std::string less_done_text(const Comparison& comparison);
 
 /// The whole comparison as JSON: sessions, measures with meaning and source, moments, and the points of the plots.
 std::string comparison_json(const ComparedSessions& compared);

@@ -15,15 +15,21 @@ reports::Cell cell(double value) { return std::isfinite(value) ? reports::Cell(v
 /// What a reader of the page needs of the figures of one chapter; results.csv has them all.
 reports::Table goals_of(const Chapter& chapter) {
   reports::Table table;
-  table.columns = {{"name", "figure"}, {"radius_mm", "r [mm]", 3}, {"measured", "measured"},
-                   {"unit", "unit"},   {"reference", "reference"}, {"error_percent", "error [%]", 3},
-                   {"goal", "goal"},   {"verdict", "verdict"},     {"source", "reference from"}};
+  table.columns = {{"name", "figure"},
+                   {"verdict", "verdict"},
+                   {"measured", "measured"},
+                   {"unit", "unit"},
+                   {"goal", "goal"},
+                   {"reference", "reference"},
+                   {"error_percent", "error [%]", 3},
+                   {"radius_mm", "r [mm]", 3},
+                   {"source", "reference from"}};
   for (const Figure& f : chapter.figures)
-    table.rows.push_back({f.name + (f.note.empty() ? "" : " (" + f.note + ")"),
-                          f.radius > 0 ? reports::Cell(1e3 * f.radius) : reports::Cell(), cell(f.measured),
-                          f.unit == "1" ? std::string() : f.unit, f.reference ? cell(*f.reference) : reports::Cell(),
-                          cell(100 * f.error()), f.goal ? f.goal->text(f.unit) : std::string(), f.verdict(), f.source});
-  return table;
+    table.rows.push_back({f.name + (f.note.empty() ? "" : " (" + f.note + ")"), f.verdict(), cell(f.measured),
+                          f.unit == "1" ? std::string() : f.unit, f.goal ? f.goal->text(f.unit) : std::string(),
+                          f.reference ? cell(*f.reference) : reports::Cell(), cell(100 * f.error()),
+                          f.radius > 0 ? reports::Cell(1e3 * f.radius) : reports::Cell(), f.source});
+  return without_empty_columns(std::move(table));
 }
 
 std::string subtitle_of(const FidelityResults& results) {
@@ -40,7 +46,7 @@ std::string subtitle_of(const FidelityResults& results) {
 /// How many goals each recipe meets.
 reports::Table overview(const FidelityResults& results) {
   reports::Table table;
-  table.columns = {{"recipe", "recipe"}, {"met", "goals met"}, {"missed", "goals missed"}, {"verdict", "verdict"}};
+  table.columns = {{"recipe", "recipe"}, {"verdict", "verdict"}, {"met", "goals met"}, {"missed", "goals missed"}};
   for (const Chapter& chapter : results.chapters) {
     std::int64_t met = 0, missed = 0;
     for (const Figure& figure : chapter.figures) {
@@ -50,7 +56,7 @@ reports::Table overview(const FidelityResults& results) {
     const reports::ReportVerdict verdict = missed > 0 ? reports::ReportVerdict::missed
                                            : met > 0  ? reports::ReportVerdict::met
                                                       : reports::ReportVerdict::shown;
-    table.rows.push_back({chapter.section.title, met, missed, verdict});
+    table.rows.push_back({chapter.section.title, verdict, met, missed});
   }
   return table;
 }

@@ -1,6 +1,7 @@
 #include "studio/render/organ_mesh.h"
 
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "studio/render/noise.h"
@@ -18,9 +19,9 @@ std::pair<Vec3, Vec3> tangents(Vec3 normal, Vec3 to_neighbour) {
 
 }  // namespace
 
-void OrganMesh::set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip,
-                            const std::vector<float>& rind, const Shading& at_rest) {
-  lip_.assign(is_lip.begin(), is_lip.end());
+void OrganMesh::set_surface(const Surface& surface, const std::vector<float>& lip, const std::vector<float>& rind,
+                            const Shading& at_rest) {
+  lip_ = lip;
   lip_.resize(surface.vertex.size(), 0.0f);
   rind_ = rind;
   rind_.resize(surface.vertex.size(), 0.0f);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "core/contact/drawn_surfaces.h"
@@ -19,8 +18,9 @@ constexpr double kStainsPerMetre = 72;
 /// The moving vertices of one surface, computed for every picture.
 class OrganMesh {
  public:
-  /// Takes over a surface whose vertices or triangles changed. `is_lip`, `rind`, `at_rest`: as in CutSurface.
-  void set_surface(const Surface& surface, const std::vector<std::uint8_t>& is_lip, const std::vector<float>& rind,
+  /// Takes over a surface whose vertices or triangles changed. `lip`: from nearness_to_lips(), or empty; `rind`,
+  /// `at_rest`: as in CutSurface.
+  void set_surface(const Surface& surface, const std::vector<float>& lip, const std::vector<float>& rind,
                    const Shading& at_rest);
 
   /// Places the surface, that of organ `organ` of the Model of `drawn`, and fills vertices().

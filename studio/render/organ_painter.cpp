@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "studio/render/lips.h"
+
 namespace ctpm::render {
 namespace {
 
@@ -31,7 +33,15 @@ Result<Done> OrganPainter::create(const Gl& gl, const SceneView& scene) {
   drawn_ = std::make_unique<contact::DrawnSurfaces>(*scene.model);
   rest_map_ = std::make_unique<cutting::RestMap>(*scene.model);
   for (std::size_t i = 0; i < scene.model->surfaces.size(); ++i) {
-    organs_.push_back({CutSurface(*scene.model, i), {}, {}, Section(*scene.model, *rest_map_, i), {}, {}, 0, false});
+    organs_.push_back({CutSurface(*scene.model, i),
+                       {},
+                       {},
+                       Section(*scene.model, *rest_map_, i),
+                       {},
+                       {},
+                       0,
+                       false,
+                       scene.model->organs[i].spacing / 3});
     Organ& organ = organs_.back();
     for (VertexArray* array : {&organ.array, &organ.section_array}) {
       array->create(gl);
@@ -66,7 +76,8 @@ void OrganPainter::update(const Gl& gl, const State& state) {
     const bool changed = organ.cut.update(state);
     const Surface& surface = organ.cut.surface();
     if (changed || !organ.is_set)
-      organ.mesh.set_surface(surface, organ.cut.is_lip(), organ.cut.rind(), organ.cut.at_rest());
+      organ.mesh.set_surface(surface, nearness_to_lips(surface, organ.cut.is_lip(), organ.ooze), organ.cut.rind(),
+                             organ.cut.at_rest());
     organ.is_set = true;
     organ.mesh.update(*drawn_, i, surface, state);
     organ.array.set_stream(gl, organ.mesh.vertices());

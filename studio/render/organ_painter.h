@@ -52,6 +52,7 @@ class OrganPainter {
     DepthField depth;  ///< empty without layers
     GLuint depth_texture = 0;
     bool is_set = false;
+    double ooze = 0;  ///< how far blood oozes out of a cut: as far as triangles reach where nothing is cut [m]
   };
 
   /// Index ranges of one organ: triangles that face the eye, walls of cuts, triangles that face away, which only a

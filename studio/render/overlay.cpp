@@ -357,10 +357,14 @@ void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
   if (const std::string text = damage_text(data); !text.empty() && !is_alone)
     plan.warning = banner(text, bottom - h, !is_narrow, kWhite);
   if (data.caption.empty()) return;
-  // In the middle, between the plot and the legend and above the warning.
-  const std::string text = large.shortened(data.caption, is_narrow || is_alone ? width - 2 * pad - px(10) : px(570));
+  // Between the plot and the legend and above the warning; in the middle of the picture where it fits there.
+  const bool is_free = is_narrow || is_alone;
+  const int left = is_free ? px(5) : plan.plot.height > 0 ? plan.plot.x + plan.plot.width + px(10) : margin;
+  const int right = is_free ? width - px(5) : plan.legend.height > 0 ? plan.legend.x - px(10) : width - margin;
+  const std::string text = large.shortened(data.caption, right - left - 2 * pad);
   const int wide = large.width(text) + 2 * pad, high = px(23) + 2 * px(13);
-  plan.caption = {(width - wide) / 2, is_alone ? height - high : bottom - h - px(10) - high, wide, high};
+  plan.caption = {std::clamp((width - wide) / 2, left, std::max(left, right - wide)),
+                  is_alone ? height - high : bottom - h - px(10) - high, wide, high};
   plan.lines.push_back(line(large, text, plan.caption.x + pad, plan.caption.y + px(13), kWhite));
 }
 

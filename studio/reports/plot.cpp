@@ -76,6 +76,7 @@ Range range_of(const Plot& plot, bool is_y) {
       if (std::isfinite(v) && (!is_log || v > 0)) range.take(v);
   if (is_y)
     for (const Band& band : plot.bands) range.take(band.low), range.take(band.high);
+  if (is_y && !range.is_empty()) range.high = std::max(range.high, range.low + plot.least_y_span);
   if (range.is_empty()) range = {is_log ? 1.0 : 0.0, is_log ? 10.0 : 1.0};
   if (is_log)
     return {std::pow(10.0, std::floor(std::log10(range.low))), std::pow(10.0, std::ceil(std::log10(range.high)))};
@@ -101,6 +102,9 @@ void add_line(std::string& svg, double x1, double y1, double x2, double y2, cons
 
 bool has_marks_only(const Series& series) { return series.stroke == Stroke::marks || series.stroke == Stroke::crosses; }
 
+/// Whether the legend names it.
+bool is_listed(const Series& series) { return !series.name.empty() && !series.x.empty(); }
+
 /// Draws one plot.
 struct Drawing {
   const Plot& plot;
@@ -110,6 +114,7 @@ struct Drawing {
 
   void add_axes() {
     for (const double v : x.ticks(7)) {
+      if (plot.counts_x && std::abs(v - std::round(v)) > 1e-6) continue;
       add_line(svg, x.at(v), top, x.at(v), bottom, "grid");
       add_text(svg, x.at(v), bottom + 16, "middle", "tick", output::short_number(v));
     }
@@ -153,6 +158,9 @@ struct Drawing {
       svg += "<polyline data-name=\"" + escape_html(series.name) + "\" fill=\"none\" stroke=\"" + std::string(ink) +
              "\" stroke-linejoin=\"round\" stroke-width=\"" + (series.stroke == Stroke::path ? "1" : "1.8") + "\"" +
              (series.stroke == Stroke::dashed ? " stroke-dasharray=\"6 4\"" : "") + " points=\"" + points + "\"/>\n";
+    else
+      svg += "<g data-name=\"" + escape_html(series.name) + "\" stroke=\"" + std::string(ink) + "\" data-marks=\"" +
+             points + "\"/>\n";
     if (series.stroke == Stroke::crosses)
       for (const auto& [px, py] : places) add_cross(px, py, ink);
     if (series.stroke == Stroke::marks || series.stroke == Stroke::path)
@@ -190,7 +198,7 @@ struct Drawing {
     };
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
       const Series& s = plot.series[i];
-      if (s.name.empty()) continue;
+      if (!is_listed(s)) continue;
       const auto [px, py] = place();
       if (s.stroke == Stroke::crosses)
         add_cross(px + 11, py - 4, inks[i]);
@@ -215,7 +223,7 @@ struct Drawing {
 
 int legend_rows(const Plot& plot) {
   int entries = 0;
-  for (const Series& s : plot.series) entries += s.name.empty() ? 0 : 1;
+  for (const Series& s : plot.series) entries += is_listed(s) ? 1 : 0;
   for (const Band& band : plot.bands) entries += band.name.empty() ? 0 : 1;
   return (entries + 1) / 2;
 }
@@ -334,9 +342,9 @@ for (const svg of document.querySelectorAll("svg[data-x]")) {
   const axis = text => { const [low, high, from, to, log] = text.split(" ").map(Number); return { low, high, from, to, log }; };
   const x = axis(svg.dataset.x), y = axis(svg.dataset.y), [xTitle, yTitle] = svg.dataset.titles.split("|");
   const value = (a, p) => { const v = a.low + (p - a.from) / (a.to - a.from) * (a.high - a.low); return Number((a.log ? 10 ** v : v).toPrecision(3)); };
-  const lines = [...svg.querySelectorAll("polyline")].map(line => ({
-    name: line.dataset.name, ink: line.getAttribute("stroke"),
-    points: line.getAttribute("points").trim().split(" ").filter(p => p).map(p => p.split(",").map(Number)) }));
+  const lines = [...svg.querySelectorAll("polyline, [data-marks]")].map(line => ({
+    name: line.dataset.name, ink: line.getAttribute("stroke"), isMarks: "marks" in line.dataset,
+    points: (line.getAttribute("points") || line.dataset.marks || "").trim().split(" ").filter(p => p).map(p => p.split(",").map(Number)) }));
   if (!lines.some(line => line.points.length)) continue;
   const make = (name, attributes, parent) => { const e = document.createElementNS(svg.namespaceURI, name); for (const k in attributes) e.setAttribute(k, attributes[k]); return parent.appendChild(e); };
   const cursor = make("g", { class: "cursor" }, svg);
@@ -346,18 +354,20 @@ for (const svg of document.querySelectorAll("svg[data-x]")) {
     if (i == -1 || a[0] > px + 0.05) return null;
     return [px, b[0] > a[0] ? a[1] + (px - a[0]) / (b[0] - a[0]) * (b[1] - a[1]) : b[1]];
   };
+  const beside = (points, px) => points.reduce((best, p) => Math.abs((best || [px + 12])[0] - px) > Math.abs(p[0] - px) ? p : best, null);
   const show = event => {
     const place = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
     cursor.replaceChildren();
     if (x.from - 4 > place.x || place.x > x.to + 4 || place.y > y.from + 4 || y.to - 8 > place.y) return;
     const drawn = lines.filter(line => line.points.length);
-    const found = svg.dataset.along
-      ? drawn.map(line => ({ line, p: between(line.points, Math.min(Math.max(place.x, x.from), x.to)) })).filter(one => one.p)
+    const along = svg.dataset.along && drawn.some(line => !line.isMarks);
+    const found = along
+      ? drawn.map(line => ({ line, p: (line.isMarks ? beside : between)(line.points, Math.min(Math.max(place.x, x.from), x.to)) })).filter(one => one.p)
       : [drawn.map(line => ({ line, ...near(line.points, place.x, place.y) })).reduce((a, b) => b.d > a.d ? a : b)];
     if (!found.length) return;
-    const at = svg.dataset.along ? Math.min(Math.max(place.x, x.from), x.to) : found[0].p[0];
+    const at = along ? Math.min(Math.max(place.x, x.from), x.to) : found[0].p[0];
     const rows = [[xTitle + "  " + value(x, at), "#222"], ...found.map(one => [(one.line.name || yTitle) + "  " + value(y, one.p[1]), one.line.ink])];
-    if (svg.dataset.along) make("path", { d: `M${at} ${y.to}V${y.from}` }, cursor);
+    if (along) make("path", { d: `M${at} ${y.to}V${y.from}` }, cursor);
     for (const one of found) make("circle", { cx: one.p[0], cy: one.p[1], r: 3.5, fill: one.line.ink }, cursor);
     const box = make("rect", { rx: 3 }, cursor);
     const texts = rows.map(([text, ink]) => { const t = make("text", { fill: ink }, cursor); t.textContent = text; t.style.fill = ink; return t; });

@@ -54,6 +54,8 @@ struct Plot {
   std::optional<std::pair<double, double>> x_range = {}, y_range = {};  ///< unset: the range of the data
   bool is_log_x = false;  ///< x on a logarithmic axis; points with x <= 0 are left out
   bool is_log_y = false;
+  bool counts_x = false;          ///< x counts something: its ticks are whole numbers
+  double least_y_span = 0;        ///< the y axis shows at least so much, so that rounding is not drawn as a difference
   int width = 520, height = 340;  ///< [pixels]
 };
 

@@ -27,7 +27,7 @@ h2 { font-size: 1.25rem; margin: 2.4rem 0 .5rem; padding-top: .8rem; border-top:
 .verdict { padding: .5rem .8rem; border-left: 5px solid #999; background: #f6f6f6; font-weight: 600; }
 .verdict.good { border-color: #009e73; } .verdict.bad { border-color: #c0392b; }
 .row { display: flex; flex-wrap: wrap; gap: 1.2rem; margin: .8rem 0; }
-figure { margin: 0; flex: 0 1 520px; max-width: 100%; }
+figure { margin: 0; flex: 0 1 var(--wide, 520px); max-width: 100%; }
 figure svg, figure img { max-width: 100%; height: auto; display: block; }
 figure img { border: 1px solid #ddd; }
 .table { overflow-x: auto; margin: .8rem 0 1.2rem; }
@@ -71,10 +71,13 @@ std::string base64(const std::vector<unsigned char>& bytes) {
   return text;
 }
 
-std::string figure(const std::string& content, const std::string& caption, const std::string& id = "") {
+/// `width`: of a plot [pixels]; 0: that of pictures.
+std::string figure(const std::string& content, const std::string& caption, const std::string& id = "", int width = 0) {
   const std::string words =
       caption.empty() ? "" : "<figcaption class=\"caption\">" + escape_html(caption) + "</figcaption>";
-  return "<figure" + (id.empty() ? "" : " id=\"" + escape_html(id) + "\"") + ">" + content + words + "</figure>\n";
+  const std::string style = width > 0 ? " style=\"--wide:" + std::to_string(width) + "px\"" : "";
+  return "<figure" + (id.empty() ? "" : " id=\"" + escape_html(id) + "\"") + style + ">" + content + words +
+         "</figure>\n";
 }
 
 }  // namespace
@@ -112,7 +115,7 @@ void Report::add_table(const Table& table) { body_ += to_html(table); }
 void Report::add_plots(const std::vector<Plot>& plots) {
   body_ += "<div class=\"row\">\n";
   has_plots_ = has_plots_ || !plots.empty();
-  for (const Plot& plot : plots) body_ += figure(to_svg(plot), plot.caption);
+  for (const Plot& plot : plots) body_ += figure(to_svg(plot), plot.caption, "", plot.width);
   body_ += "</div>\n";
 }
 

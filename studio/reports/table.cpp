@@ -28,8 +28,8 @@ std::string html_cell(const Cell& cell, const Column& column, bool is_only_verdi
   if (const auto* count = std::get_if<std::int64_t>(&cell))
     return "<td class=\"n\"" + title + std::to_string(*count) + "</td>";
   if (const auto* verdict = std::get_if<ReportVerdict>(&cell))
-    return "<td" + (is_only_verdict ? " class=\"verdict-cell\">" : title) + "<span class=\"v " + to_word(*verdict) +
-           "\">" + to_word(*verdict) + "</span></td>";
+    return "<td" + (is_only_verdict || column.decides ? " class=\"verdict-cell\">" : title) + "<span class=\"v " +
+           to_word(*verdict) + "\">" + to_word(*verdict) + "</span></td>";
   if (const auto* link = std::get_if<Link>(&cell))
     return "<td" + title + "<a href=\"" + escape_html(link->address) + "\">" + escape_html(link->text) + "</a></td>";
   return "<td></td>";
@@ -62,6 +62,21 @@ const char* to_word(ReportVerdict verdict) {
       return "refused";
   }
   return "";
+}
+
+Table without_empty_columns(Table table) {
+  check_shape(table);
+  const auto is_empty = [](const Cell& cell) {
+    const auto* text = std::get_if<std::string>(&cell);
+    return std::holds_alternative<std::monostate>(cell) || (text && text->empty());
+  };
+  for (std::size_t i = table.columns.size(); i-- > 0;) {
+    if (!std::ranges::all_of(table.rows, [&](const auto& row) { return is_empty(row[i]); })) continue;
+    const auto at = std::ptrdiff_t(i);
+    table.columns.erase(table.columns.begin() + at);
+    for (std::vector<Cell>& row : table.rows) row.erase(row.begin() + at);
+  }
+  return table;
 }
 
 std::string to_html(const Table& table) {

@@ -43,6 +43,9 @@ struct Table {
 /// "met", "missed", "shown", "refused".
 const char* to_word(ReportVerdict verdict);
 
+/// The table without the columns in which no row has a value.
+Table without_empty_columns(Table table);
+
 /// The table as an HTML element; numbers are right-aligned, verdicts coloured.
 std::string to_html(const Table& table);
 

@@ -33,9 +33,10 @@ reports::Table runs_table(const std::vector<StabilityRow>& rows) {
 /// One row per case: the verdict under each integrator.
 reports::Table overview(const std::vector<StabilityRow>& rows) {
   reports::Table table;
-  table.columns = {{"title", "case"}, {"used", "auto takes"}};
+  table.columns = {{"title", "case"}};
   for (const std::optional<Integrator> integrator : kStabilityIntegrators)
-    table.columns.push_back({stepping::name_of(integrator), stepping::name_of(integrator)});
+    table.columns.push_back({stepping::name_of(integrator), stepping::name_of(integrator), 4, !integrator});
+  table.columns.push_back({"used", "auto takes"});
   table.columns.push_back({"reach", "furthest under auto [mm]", 3});
   table.columns.push_back({"expectation", "what must hold"});
   for (const StabilityRow& row : rows) {
@@ -43,9 +44,9 @@ reports::Table overview(const std::vector<StabilityRow>& rows) {
     std::string used = stepping::name_of(automatic.used);
     if (automatic.substeps > 1) used += ", " + std::to_string(automatic.substeps) + " substeps";
     std::vector<reports::Cell> cells;
-    cells.emplace_back(row.what->title), cells.emplace_back(used);
+    cells.emplace_back(row.what->title);
     for (const StabilityRun& run : row.runs) cells.emplace_back(run.verdict);
-    cells.emplace_back(1e3 * automatic.reach), cells.emplace_back(row.what->expectation);
+    cells.emplace_back(used), cells.emplace_back(1e3 * automatic.reach), cells.emplace_back(row.what->expectation);
     table.rows.push_back(cells);
   }
   table.caption =
@@ -115,6 +116,9 @@ void conclude(reports::Report& report, const std::vector<StabilityRow>& rows) {
                       ? "auto holds all " + std::to_string(rows.size()) + " cases."
                       : "auto fails " + std::to_string(failed) + " of " + std::to_string(rows.size()) + " cases.",
                   points);
+  std::vector<double> shares;
+  for (const StabilityRow& row : rows) shares.push_back(row.runs[0].reach / row.what->reach);
+  report.add_plots({reports::plot_of_bounds("Under auto, of the way that spheres may go, this much is gone", shares)});
 }
 
 std::string results_json(const std::vector<StabilityRow>& rows, const std::vector<reports::Section>& failed) {

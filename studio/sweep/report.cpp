@@ -35,8 +35,8 @@ class Page {
   std::string html() {
     reports::Report report("Sweep: " + plan_.name,
                            std::to_string(plan_.tasks.size()) + " sessions, which differ in " + columns_text() + ".");
-    conclude(report);
     const std::vector<Relation> relations = closest_relations();
+    conclude(report, relations);
     if (!relations.empty()) {
       report.add_heading("What goes with what, the closest first");
       report.add_plots(plots_of(relations));
@@ -69,16 +69,30 @@ class Page {
     return text;
   }
 
-  void conclude(reports::Report& report) const {
+  /// What moves most with what varies; empty: nothing that is not likely by chance.
+  std::string finding(const std::vector<Relation>& relations) const {
+    constexpr double kClear = 0.5;  // of a rank correlation
+    if (relations.empty() || std::abs(relations[0].correlation) < kClear) return "";
+    const Relation& closest = relations[0];
+    return collection_.measures[closest.measure] + (closest.correlation > 0 ? " rises" : " falls") +
+           " most clearly with " + plan_.columns[closest.column] + ": rank correlation " +
+           output::fixed(closest.correlation, 2) + ".";
+  }
+
+  void conclude(reports::Report& report, const std::vector<Relation>& relations) const {
     const std::size_t count = plan_.tasks.size();
+    const std::string found = finding(relations),
+                      recorded = "All " + std::to_string(count) + " sessions were recorded.";
     std::vector<std::string> points;
     if (!collection_.is_complete())
       points.push_back("Incomplete: " + state_text(collection_) +
                        ". Statistics are of what is done; what failed may not have failed by chance.");
+    if (collection_.is_complete() && !found.empty()) points.push_back(recorded);
     points.push_back("Every row of results.csv names a session: ctpm verify simulates it again, hash by hash.");
     report.conclude(collection_.is_complete() ? reports::ReportVerdict::met : reports::ReportVerdict::missed,
-                    collection_.is_complete() ? "All " + std::to_string(count) + " sessions were recorded."
-                                              : state_text(collection_) + ".",
+                    !collection_.is_complete() ? state_text(collection_) + "."
+                    : found.empty()            ? recorded
+                                               : found,
                     points);
   }
 

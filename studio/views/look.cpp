@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "studio/output/number_text.h"
 #include "studio/output/option_name.h"
@@ -85,21 +86,58 @@ render::Camera stepped_back(render::Camera camera, double aspect) {
   return camera;
 }
 
-/// A camera given by two or three places; none: the text gives no such places.
-std::optional<render::Camera> placed_camera(const std::string& text, Vec3 up, double aspect) {
-  std::array<double, 9> number{};
-  std::size_t count = 0;
-  const char* at = text.c_str();
-  for (char* end = nullptr; count < number.size(); at = end + 1) {
-    number[count++] = std::strtod(at, &end);
-    if (end == at || !std::isfinite(number[count - 1])) return std::nullopt;
-    if (*end == 0 && (count == 6 || count == 9)) break;
-    if (*end != (count % 3 == 0 ? ':' : ',') || count == number.size()) return std::nullopt;
+constexpr const char* kPlaceHelp = "a place and what it looks at in mm: 0,-300,200:0,0,20";
+
+std::vector<std::string> parts_of(const std::string& text, char between) {
+  std::vector<std::string> parts{""};
+  for (const char c : text)
+    if (c == between)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  return parts;
+}
+
+/// Three numbers between commas. Error: what is wrong with them.
+Result<Vec3> triple_of(const std::string& text, const char* what) {
+  const std::vector<std::string> parts = parts_of(text, ',');
+  const auto wrong = [&](const std::string& why) {
+    return Error{"", std::string(what) + " '" + text + "' " + why, ""};
+  };
+  if (parts.size() != 3)
+    return wrong("has " + std::to_string(parts.size()) + (parts.size() == 1 ? " number" : " numbers") +
+                 " instead of 3");
+  std::array<double, 3> number{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    char* end = nullptr;
+    number[i] = std::strtod(parts[i].c_str(), &end);
+    if (parts[i].empty() || *end != 0 || !std::isfinite(number[i])) return wrong("has '" + parts[i] + "', no number");
   }
-  const auto triple = [&](std::size_t i) { return Vec3{number[i], number[i + 1], number[i + 2]}; };
-  render::Camera camera{1e-3 * triple(0), 1e-3 * triple(3), count == 9 ? triple(6) : up};
+  return Vec3{number[0], number[1], number[2]};
+}
+
+/// Whether a camera is meant as places rather than by its name.
+bool is_of_places(const std::string& camera) { return camera.find_first_of(",:") != std::string::npos; }
+
+/// A camera given by two or three places. Error: what is wrong with them.
+Result<render::Camera> placed_camera(const std::string& text, Vec3 up, double aspect) {
+  const auto wrong = [&](const std::string& why) {
+    return Error{output::option_name("look.camera"), "got '" + text + "': " + why, std::string("give ") + kPlaceHelp};
+  };
+  const std::vector<std::string> parts = parts_of(text, ':');
+  if (parts.size() == 1) return wrong("one place, and what it looks at is missing");
+  if (parts.size() > 3) return wrong(std::to_string(parts.size()) + " places, at most 3 are used");
+  constexpr const char* kWhat[] = {"the eye", "what it looks at", "the upward direction"};
+  std::array<Vec3, 3> place{};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Result<Vec3> read = triple_of(parts[i], kWhat[i]);
+    if (!read) return wrong(read.errors()[0].message);
+    place[i] = *read;
+  }
+  render::Camera camera{1e-3 * place[0], 1e-3 * place[1], parts.size() == 3 ? place[2] : up};
   const Vec3 sight = camera.target - camera.eye;
-  if (norm(sight) == 0 || norm(camera.up) == 0) return std::nullopt;
+  if (norm(sight) == 0) return wrong("the eye is at what it looks at");
+  if (norm(camera.up) == 0) return wrong("the upward direction is 0");
   const auto is_along = [&](Vec3 v) { return norm(cross(sight, v)) < 1e-4 * norm(sight) * norm(v); };
   if (is_along(camera.up)) camera.up = is_along({0, 1, 0}) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   return stepped_back(camera, aspect);
@@ -123,8 +161,7 @@ Result<render::Camera> find_camera(const scenes::SceneSpec& scene, const render:
     known += (known.empty() ? "" : ", ") + camera.name;
   }
   return Error{output::option_name("look.camera"), "the scene has no camera '" + name + "'",
-               "there are: fitted, wound, follow" + (known.empty() ? "" : ", " + known) +
-                   ", or a place and what it looks at in mm: 0,-300,200:0,0,20"};
+               "there are: fitted, wound, follow" + (known.empty() ? "" : ", " + known) + ", or " + kPlaceHelp};
 }
 
 bool is_axis(const std::string& cutaway) { return !cutaway.empty() && cutaway[0] >= 'x' && cutaway[0] <= 'z'; }
@@ -150,7 +187,9 @@ void choose_camera(const std::string& name, const std::string& cutaway, const sc
     look.draw.camera = render::default_camera(view, aspect);
     return;
   }
-  if (const auto placed = placed_camera(name, render::up_of(*view.model), aspect); placed && !is_the_scenes) {
+  if (is_of_places(name) && !is_the_scenes) {
+    const Result<render::Camera> placed = placed_camera(name, render::up_of(*view.model), aspect);
+    if (!placed) return add(placed.errors());
     look.draw.camera = *placed;
     return;
   }

@@ -318,7 +318,7 @@ function Moment({ connection, player, frame, other }: { connection: Connection; 
       </Section>
       <Section title="Session">
         <Readings rows={[
-          ["recorded", info.created_utc.replace("T", " ").replace("Z", " UTC")],
+          ["recorded", info.created_utc.replace("T", " ").replace("Z", " UTC") || "its time of day was taken out"],
           ["network", `${info.spheres} spheres`],
           ["largest force", newtons(info.max_force_n)],
           ["largest depth", millimetres(info.max_depth_m, 2)],

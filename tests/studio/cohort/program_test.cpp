@@ -142,6 +142,9 @@ TEST_F(CohortProgram, TraineesAreMeasuredBesideABandOfExperts) {
   EXPECT_TRUE(holds(ben, "% of the way the force is above the experts&#39; band") ||
               holds(ben, "% of the way the force is above the experts' band"));
   EXPECT_FALSE(holds(ana, "the force is above the experts"));
+  // Events of the plots lead to pictures of the trainee and an expert.
+  EXPECT_TRUE(holds(ben, "href=\"#task-1-moment-1\"") && holds(ben, "<figure id=\"task-1-moment-1\"><img"));
+  EXPECT_TRUE(holds(ben, "The middle expert at the same place"));
   EXPECT_TRUE(holds(all, "href=\"trainee-Ben.html\""));
   EXPECT_TRUE(holds(all, "press: 1 of 2 trainees have learned it, 1 passed in the latest attempt."));
   for (const std::string& page : {ana, ben, all}) EXPECT_TRUE(holds(page, "Not validated"));
@@ -197,6 +200,38 @@ TEST_F(CohortProgram, FoldersWithoutACourseHaveNoMarks) {
   EXPECT_FALSE(holds(done.out, "passed")) << done.out;
   EXPECT_TRUE(holds(slurp(path("folders/index.html")), "it has no pass marks"));
   EXPECT_TRUE(holds(slurp(path("folders/statements.jsonl")), "verbs/completed"));
+}
+
+TEST_F(CohortProgram, TwoExpertsAndOneAttemptAreNotSaidToSpread) {
+  fs::create_directories(path("two"));
+  fs::create_directories(path("lone/Ben"));
+  for (const char* name : {"e1", "e3"})
+    fs::copy_file(path(std::string("experts/") + name + ".ctpm"), path(std::string("two/") + name + ".ctpm"));
+  fs::copy_file(path("trainees/Ben/1.ctpm"), path("lone/Ben/1.ctpm"));
+  const ProgramOutcome done =
+      ctpm({"cohort", "--experts", "two", "--trainees", "lone", "-o", "of-two", "--no-pictures"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  const std::string page = slurp(path("of-two/trainee-Ben.html")), all = slurp(path("of-two/index.html"));
+  EXPECT_TRUE(holds(page, "farther from the experts&#39; way") || holds(page, "farther from the experts' way"));
+  EXPECT_TRUE(holds(page, "mm, two experts have no spread of it."));
+  for (const std::string& text : {page, all}) {
+    for (const char* rounding : {"e-14", "e-15", "e-16", "e-17"})
+      EXPECT_FALSE(holds(text, rounding)) << text.substr(text.find(rounding) - 200, 220);
+    EXPECT_FALSE(holds(text, "insufficient data") || holds(text, "nobody else"));
+    EXPECT_FALSE(holds(text, "<img"));
+  }
+  EXPECT_FALSE(holds(all, "of theirs")) << "one attempt has no interval";
+}
+
+TEST_F(CohortProgram, AShallowerPressHasNoBetterForces) {
+  record("block.json", "ball", "shallow/Cy/1", 8);
+  const ProgramOutcome done = ctpm({"cohort", "--experts", "experts", "--trainees", "shallow", "-o", "shallow-out"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  const std::string page = slurp(path("shallow-out/trainee-Cy.html"));
+  const auto row = page.find("peak force<");
+  ASSERT_NE(row, std::string::npos);
+  EXPECT_TRUE(holds(page.substr(row, page.find("</tr>", row) - row), "less done")) << page.substr(row, 600);
+  EXPECT_TRUE(holds(page, "the attempt reached less than the experts (largest depth "));
 }
 
 TEST_F(CohortProgram, AnonymisedSessionsAreOrderedByTheirElapsedTimes) {

@@ -324,7 +324,12 @@ TEST_F(Export, AContactSheetShowsMomentsThroughTheSession) {
   EXPECT_TRUE(holds(again.err, "exists already")) << again.err;
   const auto pair = export_to("pair.png", {"--beside", "press.ctpm"});
   EXPECT_EQ(pair.code, 2);
-  EXPECT_TRUE(holds(pair.err, "--beside: error: is for videos")) << pair.err;
+  EXPECT_TRUE(holds(pair.err, "--beside: error: is for videos only")) << pair.err;
+  for (const char* other : {"ghost.png", "ghost.glb"}) {
+    const auto ghost = export_to(other, {"--ghost", "press.ctpm"});
+    EXPECT_EQ(ghost.code, 2) << other;
+    EXPECT_TRUE(holds(ghost.err, "--ghost: error: is for videos only")) << ghost.err;
+  }
 }
 
 TEST_F(Export, TheOverlayCanBeLeftOutAndBadWordsAreRefused) {

@@ -107,13 +107,27 @@ TEST_F(WoundCamera, APlaceAndWhatItLooksAtAreACamera) {
   const Vec3 aside{0.1, 0, 0.02};
   EXPECT_NEAR(render::project(wide->draw.camera, 1600, 900, aside).x / 1600,
               render::project(narrow->draw.camera, 450, 900, aside).x / 450, 1e-9);
-  for (const char* wrong : {"0,0:0,0,20", "0,0,0:0,0,0", "1,2,3:4,5", "1,2,3", "1,2,3:4,5,6:", "1,2,x:4,5,6",
-                            "1,2,inf:4,5,6", "1,2,3:4,5,6:0,0,0", "1,2,3:4,5,6:7,8,9:1"}) {
+  for (const auto& [wrong, why] : {std::pair{"0,0:0,0,20", "the eye '0,0' has 2 numbers instead of 3"},
+                                   {"1,2:3", "the eye '1,2' has 2 numbers instead of 3"},
+                                   {"0,0,0:0,0,0", "the eye is at what it looks at"},
+                                   {"1,2,3:4,5", "what it looks at '4,5' has 2 numbers"},
+                                   {"1,2,3", "what it looks at is missing"},
+                                   {"1,2,3:4,5,6:", "the upward direction '' has 1 number instead of 3"},
+                                   {"1,2,x:4,5,6", "has 'x', no number"},
+                                   {"1,2,inf:4,5,6", "has 'inf', no number"},
+                                   {"1,2,:4,5,6", "has '', no number"},
+                                   {"1,2,3:4,5,6:0,0,0", "the upward direction is 0"},
+                                   {"1,2,3:4,5,6:7,8,9:1", "4 places"}}) {
     request.camera = wrong;
     const auto found = views::find_look(request, scene_, view_, kAspect);
     ASSERT_FALSE(found) << wrong;
+    EXPECT_NE(found.errors()[0].message.find(why), std::string::npos) << found.errors()[0].message;
     EXPECT_NE(found.errors()[0].hint.find("0,-300,200:0,0,20"), std::string::npos) << found.errors()[0].hint;
   }
+  request.camera = "behind";
+  const auto unknown = views::find_look(request, scene_, view_, kAspect);
+  ASSERT_FALSE(unknown);
+  EXPECT_NE(unknown.errors()[0].message.find("no camera 'behind'"), std::string::npos) << "a name is taken for a name";
 }
 
 TEST_F(WoundCamera, ASectionIsSeenFromItsFront) {

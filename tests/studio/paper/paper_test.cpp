@@ -230,6 +230,24 @@ INSTANTIATE_TEST_SUITE_P(Paper, EveryModel,
                          ::testing::Values(network::Structure::mass_spring, network::Structure::angle_mass_spring,
                                            network::Structure::tpm, network::Structure::ctpm));
 
+TEST(Paper, WhatTensionDoesToTheUnloadedLiverIsNoSag) {
+  Result<loading::LoadedScene> scene = loading::load_whole_scene(kScenes + "/liver.json");
+  ASSERT_TRUE(scene) << to_string(scene.errors().front());
+  scenes::OrganSpec& organ = scene->scene.spec.organs[0];
+  organ.fill.radius = organ.fill.gap = 0.008;
+  const auto refined = [&] { return paper::refine(*scene, {"", network::Structure::ctpm, false, ""}); };
+  const Result<paper::Refinement> tense = refined();
+  organ.material.prestrain = 0.0;
+  for (scenes::LayerSpec& layer : organ.layers) layer.material.prestrain = 0.0;
+  const Result<paper::Refinement> slack = refined();
+  ASSERT_TRUE(tense && slack);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_GT(slack->fillings[i].sag, 0);
+    EXPECT_NEAR(tense->fillings[i].sag / slack->fillings[i].sag, 1, 0.25) << tense->fillings[i].radius;
+  }
+  EXPECT_NE(tense->fillings[0].held, tense->fillings[1].held) << "their lattices do not lie in each other";
+}
+
 TEST(Paper, ARefinementKnowsItsOrderAndItsLimit) {
   const paper::Refinement first{{{4, 1, 1.8}, {2, 8, 1.9}, {1, 64, 1.95}}};  // 2 - 0.05 r
   EXPECT_NEAR(first.order(), 1, 1e-12);

@@ -239,12 +239,62 @@ double gape(const Model& model, const State& state) {
   return most;
 }
 
+/// Means of two by two pixels.
+render::Frame halved(const render::Frame& frame) {
+  render::Frame half = render::blank_frame(frame.width / 2, frame.height / 2, 0, 0, 0);
+  const auto at = [&](int x, int y, std::size_t c) { return int(frame.rgb[3 * std::size_t(y * frame.width + x) + c]); };
+  for (int y = 0; y < half.height; ++y)
+    for (int x = 0; x < half.width; ++x)
+      for (std::size_t c = 0; c < 3; ++c)
+        half.rgb[3 * std::size_t(y * half.width + x) + c] =
+            std::uint8_t((at(2 * x, 2 * y, c) + at(2 * x + 1, 2 * y, c) + at(2 * x, 2 * y + 1, c) +
+                          at(2 * x + 1, 2 * y + 1, c) + 2) /
+                         4);
+  return half;
+}
+
+/// The largest difference of the means of squares of 8 pixels, in any channel [0 to 255].
+double difference(const render::Frame& a, const render::Frame& b) {
+  constexpr int kSquare = 8;
+  double most = a.width == b.width && a.height == b.height ? 0 : 255;
+  for (int top = 0; most < 255 && top + kSquare <= a.height; top += kSquare)
+    for (int left = 0; left + kSquare <= a.width; left += kSquare)
+      for (std::size_t c = 0; c < 3; ++c) {
+        int sum = 0;
+        for (int y = top; y < top + kSquare; ++y)
+          for (int x = left; x < left + kSquare; ++x) {
+            const std::size_t i = 3 * std::size_t(y * a.width + x) + c;
+            sum += a.rgb[i] - b.rgb[i];
+          }
+        most = std::max(most, std::abs(sum) / double(kSquare * kSquare));
+      }
+  return most;
+}
+
+/// The picture as it would be if the wall were not drawn and the backdrop seen through it.
+render::Frame without_wall(const Stages& stages, std::size_t stage, const render::DrawOptions& options,
+                           const render::Frame& shown, const render::Frame& backdrop) {
+  render::SceneView view = stages.scene->view;
+  view.looks[0].inner = {0.1, 0.7, 0.2}, view.looks[0].blood = 0;  // green, which is nowhere else
+  auto made = render::Renderer::create(shown.width, shown.height, view);
+  EXPECT_TRUE(made);
+  const render::Frame green = (*made)->draw(stages.states[stage], options);
+  render::Frame picture = shown;
+  for (std::size_t i = 0; i < green.rgb.size(); i += 3)
+    if (green.rgb[i + 1] > green.rgb[i] + 25 && green.rgb[i + 1] > green.rgb[i + 2] + 25)
+      std::copy_n(backdrop.rgb.begin() + std::ptrdiff_t(i), 3, picture.rgb.begin() + std::ptrdiff_t(i));
+  return picture;
+}
+
 TEST(CutPicture, FourStagesOfACutFromTwoCameras) {
   const Stages stages = cut_in_stages();
   const Model& model = stages.scene->model;
   ASSERT_EQ(stages.states.size(), 4u);
   EXPECT_GT(gape(model, stages.states[3]), 0.002) << "the lips gape";
-  const std::filesystem::path folder = "cut_stages";
+  // Those of the last two stages were looked at: copy them to pictures/ only when they were looked at again.
+  constexpr double kTolerance = 6;
+  const std::filesystem::path folder = CTPM_CUT_STAGES;
+  const std::string looked_at = std::string(CTPM_SOURCE_DIR) + "/tests/studio/render/pictures/";
   std::filesystem::create_directories(folder);
   auto made = render::Renderer::create(640, 400, stages.scene->view);
   ASSERT_TRUE(made);
@@ -261,7 +311,15 @@ TEST(CutPicture, FourStagesOfACutFromTwoCameras) {
       render::DrawOptions shown = options;
       shown.show_tool = shown.show_ground = true;
       const std::string file = "stage_" + std::to_string(i + 1) + "_" + name + ".png";
-      EXPECT_TRUE(render::write_png((folder / file).string(), (*made)->draw(stages.states[i], shown)));
+      const render::Frame picture = (*made)->draw(stages.states[i], shown);
+      EXPECT_TRUE(render::write_png((folder / file).string(), halved(picture)));
+      if (i < 2) continue;
+      const auto reference = render::read_picture(looked_at + file);
+      EXPECT_TRUE(reference);
+      if (!reference) continue;
+      EXPECT_LT(difference(halved(picture), *reference), kTolerance) << file;
+      EXPECT_GT(difference(halved(without_wall(stages, i, shown, picture, backdrop)), *reference), 2 * kTolerance)
+          << file << ": a missing wall would be seen";
     }
   }
 }

@@ -7,6 +7,7 @@
 #include "core/stepping/step.h"
 #include "core/surface/surface.h"
 #include "studio/render/cut_surface.h"
+#include "studio/render/lips.h"
 #include "studio/render/organ_mesh.h"
 #include "tests/core/topology.h"
 #include "tests/studio/render/scene.h"
@@ -208,6 +209,31 @@ TEST(CutSurface, WallAndLipsStandWhereTheBladePassed) {
     }
 }
 
+TEST(CutSurface, HowNearALipIsDoesNotDependOnTheTrianglesBesideIt) {
+  const auto scene = make_blob_scene(0.003, 60);
+  const State state = cut_along_y(scene->model, 0.001, 0.02, -0.005);
+  render::CutSurface cut_surface(scene->model, 0);
+  ASSERT_TRUE(cut_surface.update(state));
+  const Surface& surface = cut_surface.surface();
+  constexpr double kReach = 0.004;
+  const std::vector<float> nearness = render::nearness_to_lips(surface, cut_surface.is_lip(), kReach);
+  ASSERT_EQ(nearness.size(), surface.vertex.size());
+  std::vector<Vec3> lip;
+  for (std::size_t v = 0; v < cut_surface.outer_vertex_count(); ++v)
+    if (cut_surface.is_lip()[v]) lip.push_back(surface.vertex[v]);
+  double worst = 0;
+  int between = 0;
+  for (std::size_t v = 0; v < cut_surface.outer_vertex_count(); ++v) {
+    double least = kReach;
+    for (const Vec3& p : lip) least = std::min(least, norm(p - surface.vertex[v]));
+    // Between two vertices of the edge it may be nearer than either.
+    worst = std::max(worst, std::abs(nearness[v] - (1 - least / kReach)));
+    between += nearness[v] > 0.1 && nearness[v] < 0.9;
+  }
+  EXPECT_LT(worst, 0.12);
+  EXPECT_GT(between, 100) << "triangles beside the cut are smaller than the reach";
+}
+
 /// Outward normal of the blob at a place on it.
 Vec3 blob_normal(Vec3 p) {
   constexpr double h = 1e-6;
@@ -227,7 +253,8 @@ TEST(CutSurface, NormalsAndColourContinueOverTheClosedCut) {
   contact::DrawnSurfaces drawn(scene->model);
   render::OrganMesh uncut, mesh;
   uncut.set_surface(whole, {}, {}, {}), uncut.update(drawn, 0, whole, rest);
-  mesh.set_surface(surface, cut_surface.is_lip(), cut_surface.rind(), cut_surface.at_rest()),
+  mesh.set_surface(surface, render::nearness_to_lips(surface, cut_surface.is_lip(), 0.003), cut_surface.rind(),
+                   cut_surface.at_rest()),
       mesh.update(drawn, 0, surface, state);
   const auto normal = [](const render::OrganMesh& m, std::size_t v) {
     const float* f = &m.vertices()[v * render::kOrganVertexFloats];

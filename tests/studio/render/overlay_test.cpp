@@ -45,6 +45,21 @@ TEST(Overlay, TextsNeitherOverlapNorLeaveThePicture) {
     }
 }
 
+TEST(Overlay, ACaptionHasTheRoomBesideThePlot) {
+  render::OverlayData data = full_data();
+  data.caption = "tissue damage: deeper than 12 mm", data.legend = {};
+  for (const auto& [width, height] : {std::pair{1280, 720}, {1920, 1080}}) {
+    render::Overlay overlay(width, height);
+    EXPECT_TRUE(std::ranges::any_of(overlay.layout(data), [&](const auto& text) { return text.text == data.caption; }));
+    data.caption.resize(20);  // what fits stands in the middle
+    for (const render::PlacedText& text : overlay.layout(data))
+      if (text.text == data.caption) {
+        EXPECT_NEAR(text.box.x + 0.5 * text.box.width, 0.5 * width, 2);
+      }
+    data.caption = "tissue damage: deeper than 12 mm";
+  }
+}
+
 TEST(Overlay, TimeThatTheSessionLostIsShown) {
   render::Overlay overlay(1280, 720);
   render::OverlayData data = full_data();

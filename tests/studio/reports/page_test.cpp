@@ -70,6 +70,22 @@ TEST_F(Page, APlotReadsTheValuesUnderAMouse) {
   EXPECT_TRUE(holds(after, "data-beside=\"nothing\"")) << "beside the axes there is no value";
 }
 
+TEST_F(Page, MarksAreReadBesideALineAndAlone) {
+  for (const bool has_line : {true, false}) {
+    reports::Plot plot{.title = "Goals", .x_title = "number", .y_title = "share", .x_range = {{0, 4}}};
+    plot.series.push_back({.name = "met", .x = {1, 2, 3}, .y = {2, 6, 4}, .stroke = reports::Stroke::marks});
+    if (has_line) plot.series.push_back({.name = "bound", .x = {0, 4}, .y = {5, 5}});
+    plot.y_range = {0, 8};
+    const std::string after = shown(folder_, page_of(plot) + R"(<script>{
+      const svg = document.querySelector("svg[data-x]"), box = svg.getBoundingClientRect(), scale = box.width / 520;
+      svg.dispatchEvent(new PointerEvent("pointermove", { clientX: box.left + 286 * scale, clientY: box.top + 100 * scale }));
+      document.body.dataset.read = svg.querySelector(".cursor").textContent;
+    }</script>)");
+    EXPECT_TRUE(holds(after, "met  6")) << after.substr(after.find("<body"), 200);
+    EXPECT_EQ(holds(after, "bound  5\""), has_line) << after.substr(after.find("<body"), 200);
+  }
+}
+
 TEST_F(Page, OnASmallScreenNothingIsOutOfSight) {
   reports::Report report("A title that is longer than a telephone is wide, or nearly so", "below it");
   report.conclude(reports::ReportVerdict::missed, "One of two goals is missed.", {"The second one."});
@@ -95,6 +111,25 @@ TEST_F(Page, OnASmallScreenNothingIsOutOfSight) {
   EXPECT_TRUE(holds(after, "data-beside=\"true\"")) << "the verdict stands beside the row's name";
 }
 
+TEST_F(Page, AsManySmallPlotsStandInARowAsFit) {
+  reports::Plot small = force_plot();
+  small.width = 330;
+  reports::Report report("A title", "below it");
+  report.add_plots({small, small, small});
+  const std::string after = shown(folder_, report.html() + R"(<script>
+    document.body.dataset.rows = new Set([...document.querySelectorAll("figure")].map(f => f.getBoundingClientRect().top)).size;
+  </script>)");
+  EXPECT_TRUE(holds(after, "data-rows=\"1\"")) << after.substr(after.find("<body"), 100);
+}
+
+TEST(Report, ColumnsInWhichNothingIsAreLeftOut) {
+  reports::Table table;
+  table.columns = {{"a", "a"}, {"b", "b"}, {"c", "c"}, {"d", "d"}};
+  table.rows = {{reports::Cell(), std::string("x"), std::string(), 1.0}, {reports::Cell(), std::string(), 2.0, 3.0}};
+  const reports::Table shorter = reports::without_empty_columns(table);
+  EXPECT_EQ(reports::to_csv(shorter), "b,c,d\nx,,1\n,2,3\n");
+}
+
 TEST(Report, AnEventLeadsToItsPlaceAndStaysWithinTheAxes) {
   reports::Plot plot = force_plot();
   plot.events = {{1, "1", "force above the limit", "#moment-1"}, {1.01, "2", "pause", ""}, {9, "3", "outside", "#x"}};
@@ -106,6 +141,16 @@ TEST(Report, AnEventLeadsToItsPlaceAndStaysWithinTheAxes) {
   const auto first = svg.find("class=\"flag\""), second = svg.find("class=\"flag\"", first + 1);
   const auto place = [&](std::size_t at) { return std::strtod(svg.c_str() + svg.rfind("x=\"", at) + 3, nullptr); };
   EXPECT_GE(place(second) - place(first), 15);
+}
+
+TEST(Report, CountsHaveWholeTicksRoundingIsNoDifferenceAndWhatHasNoPointsHasNoLegend) {
+  reports::Plot plot{.x_range = {{0.5, 1.5}}};
+  plot.series = {{.name = "attempts", .x = {1}, .y = {6e-14}, .stroke = reports::Stroke::marks}, {.name = "mean"}};
+  EXPECT_TRUE(holds(reports::to_svg(plot), ">0.6<") && holds(reports::to_svg(plot), "e-14"));
+  plot.counts_x = true, plot.least_y_span = 0.1;
+  const std::string svg = reports::to_svg(plot);
+  EXPECT_TRUE(holds(svg, ">1<") && holds(svg, ">attempts<"));
+  EXPECT_FALSE(holds(svg, ">0.6<") || holds(svg, "e-14") || holds(svg, ">mean<")) << svg;
 }
 
 TEST(Report, MarksOfSeveralSeriesAtOnePlaceStandSideBySide) {
