@@ -1,0 +1,108 @@
+// Session files as they are read to be compared.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "core/stepping/step.h"
+#include "recordings/session_writer.h"
+#include "studio/compare/measure_table.h"
+#include "studio/compare/measures.h"
+#include "tests/recordings/sessions.h"
+
+namespace ctpm {
+namespace {
+
+TEST(SameScene, ADifferenceIsNamedAndLooksMayDiffer) {
+  const testing::Folder folder;
+  const auto opened = [&](const std::string& name, const recordings::SessionStart& start) {
+    testing::record_session(folder / name, start, 10);
+    auto reader = recordings::SessionReader::open(folder / name);
+    CTPM_CHECK(bool(reader), "a test's session opens");
+    return std::move(*reader);
+  };
+  const recordings::SessionStart start = testing::small_start();
+  recordings::SessionStart other_look = start, softer = start, larger = testing::small_start(3, 3, 4),
+                           other_tool = start;
+  other_look.look = "block blue", other_look.scene_text = "{}";
+  softer.model.axial.k[7] *= 0.5;
+  other_tool.model.tools[0].name = "fist";
+  const recordings::SessionReader expert = opened("a.ctpm", start);
+  EXPECT_TRUE(compare::check_same_scene(expert, opened("b.ctpm", other_look)));
+  const auto reason = [&](const std::string& name, const recordings::SessionStart& trainee) {
+    const auto same = compare::check_same_scene(expert, opened(name, trainee));
+    return same ? std::string() : same.errors()[0].message;
+  };
+  EXPECT_NE(reason("c.ctpm", softer).find("differs in axial.k"), std::string::npos);
+  EXPECT_NE(reason("d.ctpm", larger).find("36 spheres instead of 27"), std::string::npos);
+  EXPECT_NE(reason("e.ctpm", other_tool).find("its tools are fist"), std::string::npos);
+  EXPECT_NE(reason("f.ctpm", testing::small_start(3, 3, 3, 2)).find("2 hands instead of 1"), std::string::npos);
+}
+
+TEST(Track, FindsTheElementsThatWereSeveredAndWhen) {
+  const testing::Folder folder;
+  const recordings::SessionStart start = testing::small_start();
+  const testing::Lived lived = testing::record_session(folder / "a.ctpm", start, 700, 250);
+  auto reader = recordings::SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(reader);
+  const auto track = compare::read_track(*reader);
+  ASSERT_TRUE(track) << testing::text_of(track.errors());
+  EXPECT_TRUE(track->replays);
+  ASSERT_EQ(track->strokes.size(), 2u);  // the ball, then the scalpel
+  EXPECT_EQ(track->strokes[1], (compare::Spell{400, 700}));
+  std::vector<std::int64_t> severed_in(700);
+  for (const std::int64_t tick : track->severed_at)
+    if (tick >= 0) ++severed_in[std::size_t(tick)];
+  std::int64_t all = 0;
+  for (std::size_t i = 0; i < lived.records.size(); ++i) {
+    EXPECT_EQ(severed_in[i], lived.records[i].severed) << i;
+    all += severed_in[i];
+  }
+  EXPECT_GT(all, 5);
+}
+
+/// A session of two hands, in the other order if `is_swapped`.
+compare::SessionTrack track_of_two(const std::string& path, bool is_swapped) {
+  const recordings::SessionStart start = testing::small_start(3, 3, 3, 2);
+  auto writer = recordings::SessionWriter::create(path, start, {.wait_when_full = true});
+  CTPM_CHECK(bool(writer), "a test's session can be created");
+  State state = start.initial_state;
+  stepping::Stepper stepper(start.model);
+  for (std::int64_t tick = 0; tick < 700; ++tick) {
+    Inputs inputs = testing::scripted_inputs(tick, start.model.rest_position.z.back(), 2);
+    if (is_swapped) {
+      const Hand first = inputs;
+      static_cast<Hand&>(inputs) = inputs.second, inputs.second = first;
+    }
+    const stepping::StepReport report = stepper.step(state, inputs);
+    writer->append(state, recordings::make_record(inputs, report, 1e-4, recordings::state_hash(state)));
+  }
+  CTPM_CHECK(bool(writer->finish()), "a test's session can be finished");
+  auto reader = recordings::SessionReader::open(path);
+  return *compare::read_track(*reader);
+}
+
+TEST(Track, IsThatOfTheHandThatCuts) {
+  const testing::Folder folder;
+  const compare::SessionTrack right = track_of_two(folder / "right.ctpm", false),
+                              left = track_of_two(folder / "left.ctpm", true);
+  EXPECT_EQ(right.hand, 0u);
+  EXPECT_EQ(left.hand, 1u);
+  EXPECT_TRUE(right.is_verified && left.is_verified);
+  EXPECT_EQ(right.tool, left.tool);
+  EXPECT_EQ(right.tip, left.tip);
+  ASSERT_EQ(left.other_force.size(), 700u);
+  const auto peak = [](const std::vector<double>& force) { return *std::max_element(force.begin(), force.end()); };
+  EXPECT_GT(peak(left.other_force), 0.01);
+  EXPECT_NEAR(peak(left.force), peak(right.force), 1e-3 * peak(right.force));
+  const compare::Comparison comparison = compare::compare_sessions(right, left, testing::small_start(3, 3, 3, 2));
+  const auto other = std::find_if(comparison.values.begin(), comparison.values.end(), [](const auto& value) {
+    return value.measure->key == std::string("other_hand_peak_force_n");
+  });
+  ASSERT_NE(other, comparison.values.end());
+  EXPECT_EQ(other->trainee, peak(left.other_force));
+}
+
+}  // namespace
+}  // namespace ctpm
