@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "studio/output/json_writer.h"
 #include "studio/output/number_text.h"
@@ -51,6 +52,13 @@ reports::Table correlation_table(const Fit& fit) {
 
 std::string percent(double share) { return output::short_number(100 * share, 2) + " %"; }
 
+/// A cell with a text, or an empty one.
+reports::Cell cell_if(bool is_known, const std::function<std::string()>& text) {
+  reports::Cell cell;
+  if (is_known) cell = text();
+  return cell;
+}
+
 /// "K2" of "K2, the stiffness at once".
 std::string symbol_of(const Estimate& estimate) { return estimate.title.substr(0, estimate.title.find_first_of(" ,")); }
 
@@ -66,17 +74,17 @@ reports::Table specimen_table(const std::vector<SpecimenFit>& specimens, const s
   for (const SpecimenFit& one : specimens) {
     std::vector<reports::Cell> row{one.name};
     for (std::size_t i = 0; i < whole.size(); ++i)
-      row.push_back(i < one.estimates.size() ? reports::Cell(told(one.estimates[i])) : reports::Cell());
-    row.push_back(one.estimates.empty() ? reports::Cell() : reports::Cell(percent(one.error)));
-    row.push_back(std::isnan(one.left_out_error) ? reports::Cell() : reports::Cell(percent(one.left_out_error)));
+      row.push_back(cell_if(i < one.estimates.size(), [&] { return told(one.estimates[i]); }));
+    row.push_back(cell_if(!one.estimates.empty(), [&] { return percent(one.error); }));
+    row.push_back(cell_if(!std::isnan(one.left_out_error), [&] { return percent(one.left_out_error); }));
     row.emplace_back(one.problem);
     table.rows.push_back(std::move(row));
   }
   std::vector<reports::Cell> mean{std::string("mean")}, spread{std::string("spread")};
   for (std::size_t i = 0; i < whole.size(); ++i) {
     const SpecimenSpread of = spread_of(specimens, i);
-    mean.push_back(of.count > 1 ? reports::Cell(output::short_number(of.mean, 3)) : reports::Cell());
-    spread.push_back(of.count > 1 ? reports::Cell(percent(of.deviation)) : reports::Cell());
+    mean.push_back(cell_if(of.count > 1, [&] { return output::short_number(of.mean, 3); }));
+    spread.push_back(cell_if(of.count > 1, [&] { return percent(of.deviation); }));
   }
   for (auto* row : {&mean, &spread}) {
     row->resize(table.columns.size());
