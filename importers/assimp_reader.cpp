@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/model/vec3.h"
+#include "importers/topology.h"
 #include "importers/wire.h"
 
 namespace ctpm::importers {
@@ -120,6 +121,15 @@ aiMatrix4x4t<double> file_from_scene(const std::string& suffix) {
   return {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
 }
 
+/// Joins vertices at one place, as assimp repeats one for every face that uses it: what is sent is a sixth of it then.
+/// Numbers that are not finite stay as they are, to be named.
+void join_repeats(Collected& found) {
+  if (!std::all_of(found.vertex.begin(), found.vertex.end(), [](Vec3 p) { return is_finite(p); })) return;
+  Soup soup{std::move(found.vertex), std::move(found.triangle)};
+  weld(soup, 0);
+  found.vertex = std::move(soup.vertex), found.triangle = std::move(soup.triangle);
+}
+
 /// Whether assimp's message means a readable file without triangles.
 bool means_no_triangles(const std::string& trouble) {
   return trouble.find("mNumMeshes is 0") != std::string::npos ||
@@ -148,6 +158,9 @@ void send_mesh_file(const std::string& path, const std::string& part, const Send
   const std::string suffix = suffix_of(path);
   if (scene != nullptr && scene->mRootNode != nullptr)
     collect(*scene, *scene->mRootNode, file_from_scene(suffix), part, found);
+  const double unit = scene != nullptr ? unit_said_by(*scene, suffix) : 0.0;
+  importer.FreeScene();
+  join_repeats(found);
 
   wire::Writer message;
   const bool misses_part = !part.empty() && found.triangle.empty();
@@ -155,7 +168,7 @@ void send_mesh_file(const std::string& path, const std::string& part, const Send
   message.put<std::uint64_t>(found.parts.size());
   for (const std::string& name : found.parts) message.put_text(name);
   if (!misses_part) {
-    message.put(scene != nullptr ? unit_said_by(*scene, suffix) : 0.0);
+    message.put(unit);
     message.put_list(found.vertex);
     message.put_list(found.triangle);
     message.put_list(found.part_of_triangle);

@@ -47,6 +47,8 @@ bool fill_one(Mesh& mesh, Halfedge border) {
 }  // namespace
 
 void orient_and_stitch(Soup& soup) {
+  // Most meshes are what they should be.
+  if (is_closed_and_oriented(soup.triangle) && find_pinched(soup).empty()) return;
   PolygonSoup polygons(soup);
   PMP::orient_polygon_soup(polygons.points, polygons.polygons);
   Mesh mesh = to_mesh(polygons);
@@ -59,6 +61,7 @@ void orient_and_stitch(Soup& soup) {
 
 Closing fill_holes(Soup& soup, double largest_hole) {
   Closing closing;
+  if (is_closed_and_oriented(soup.triangle)) return closing;
   Mesh mesh = to_mesh(PolygonSoup(soup));
   std::vector<Halfedge> borders;
   PMP::extract_boundary_cycles(mesh, std::back_inserter(borders));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <utility>
 
 namespace ctpm::importers {
 namespace {
@@ -46,9 +47,11 @@ bool is_inside(const Soup& inner, const Soup& outer) {
 }
 
 PartVote::PartVote(const RawMesh& mesh, double unit_in_metres) : part_count_(mesh.parts.size()) {
+  std::vector<char> has_voted(mesh.vertex.size(), 0);
   for (std::size_t t = 0; t < mesh.part_of_triangle.size(); ++t)
     for (const std::int32_t v : mesh.triangle[t])
-      part_at_.emplace(hash_of(unit_in_metres * mesh.vertex[std::size_t(v)]), mesh.part_of_triangle[t]);
+      if (!std::exchange(has_voted[std::size_t(v)], 1))
+        part_at_.emplace(hash_of(unit_in_metres * mesh.vertex[std::size_t(v)]), mesh.part_of_triangle[t]);
 }
 
 std::int32_t PartVote::part_of(const std::vector<Vec3>& vertex) const {

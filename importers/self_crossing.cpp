@@ -1,6 +1,7 @@
 #include "importers/self_crossing.h"
 
-#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/box_intersection_d.h>
+#include <CGAL/intersections.h>
 
 #include <algorithm>
 #include <array>
@@ -72,9 +73,9 @@ Corners corners_of(const Soup& soup, std::size_t t) {
   return {at(0), at(1), at(2)};
 }
 
-/// Whether two triangles share only corner positions. Triangles at a split corner or edge have common positions but no
-/// common vertices.
-bool only_touch(Corners a, Corners b) {
+/// Whether two triangles have more in common than a corner or an edge of both. Triangles at a split corner or edge have
+/// common positions but no common vertices, so positions decide.
+bool do_cross(Corners a, Corners b) {
   // Move the common corners to the front, in the same order.
   std::size_t common = 0;
   for (std::size_t i = 0; i < 3; ++i)
@@ -85,13 +86,14 @@ bool only_touch(Corners a, Corners b) {
     }
   using Segment = cgal::Kernel::Segment_3;
   using Face = cgal::Kernel::Triangle_3;
+  const Face one(a[0], a[1], a[2]), other(b[0], b[1], b[2]);
+  if (common == 0) return CGAL::do_intersect(one, other);
   if (common == 1)
-    return !CGAL::do_intersect(Face(a[0], a[1], a[2]), Segment(b[1], b[2])) &&
-           !CGAL::do_intersect(Face(b[0], b[1], b[2]), Segment(a[1], a[2]));
+    return CGAL::do_intersect(one, Segment(b[1], b[2])) || CGAL::do_intersect(other, Segment(a[1], a[2]));
   if (common == 2)
-    return !CGAL::coplanar(a[0], a[1], a[2], b[2]) ||
-           CGAL::coplanar_orientation(a[0], a[1], a[2], b[2]) == CGAL::NEGATIVE;
-  return false;
+    return CGAL::coplanar(a[0], a[1], a[2], b[2]) &&
+           CGAL::coplanar_orientation(a[0], a[1], a[2], b[2]) != CGAL::NEGATIVE;
+  return true;
 }
 
 double volume_of(const Soup& soup) { return signed_volume(soup.vertex, soup.triangle, bounding_box(soup).centre()); }
@@ -105,15 +107,30 @@ bool is_as_good(const Soup& mended, const Soup& soup) {
 }  // namespace
 
 std::vector<std::int32_t> find_crossing(const Soup& soup) {
-  namespace PMP = CGAL::Polygon_mesh_processing;
-  using Face = cgal::Mesh::Face_index;
-  const cgal::Mesh mesh = cgal::to_mesh(cgal::PolygonSoup(soup));
-  std::vector<std::pair<Face, Face>> pairs;
-  PMP::self_intersections(mesh, std::back_inserter(pairs));
+  using Box =
+      CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::int32_t, CGAL::Box_intersection_d::ID_FROM_BOX_ADDRESS>;
   std::vector<std::int32_t> crossing;
-  for (const auto& [a, b] : pairs)
-    if (!only_touch(corners_of(soup, std::size_t(a)), corners_of(soup, std::size_t(b))))
-      crossing.push_back(std::int32_t(a)), crossing.push_back(std::int32_t(b));
+  std::vector<Box> boxes;
+  boxes.reserve(soup.triangle.size());
+  for (std::size_t t = 0; t < soup.triangle.size(); ++t) {
+    const Corners p = corners_of(soup, t);
+    if (CGAL::collinear(p[0], p[1], p[2]))
+      crossing.push_back(std::int32_t(t));
+    else
+      boxes.emplace_back(p[0].bbox() + p[1].bbox() + p[2].bbox(), std::int32_t(t));
+  }
+  std::vector<const Box*> order;
+  order.reserve(boxes.size());
+  for (const Box& box : boxes) order.push_back(&box);
+  constexpr std::ptrdiff_t kCutoff = 2000;  // boxes that are compared without a tree
+  CGAL::box_self_intersection_d(
+      order.begin(), order.end(),
+      [&](const Box* one, const Box* other) {
+        const auto a = std::size_t(one->info()), b = std::size_t(other->info());
+        if (do_cross(corners_of(soup, a), corners_of(soup, b)))
+          crossing.push_back(std::int32_t(a)), crossing.push_back(std::int32_t(b));
+      },
+      kCutoff);
   std::sort(crossing.begin(), crossing.end());
   crossing.erase(std::unique(crossing.begin(), crossing.end()), crossing.end());
   return crossing;

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <numeric>
-#include <unordered_map>
 
 namespace ctpm::importers {
 namespace {
@@ -22,12 +22,6 @@ std::uint64_t mixed(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
   h = (h ^ (h >> 32) ^ c) * 0x94D049BB133111EBu;
   return h ^ (h >> 31);
 }
-
-struct CellHash {
-  std::size_t operator()(const std::array<std::int64_t, 3>& c) const {
-    return mixed(std::uint64_t(c[0]), std::uint64_t(c[1]), std::uint64_t(c[2]));
-  }
-};
 
 /// The bits of a position, with -0 mapped to 0.
 std::array<std::int64_t, 3> bits_of(Vec3 p) {
@@ -70,46 +64,136 @@ void renumber(Soup& soup, const std::vector<std::int32_t>& representative) {
   soup.vertex = std::move(kept);
 }
 
+/// Vertices by what they are found by, in a table of open addressing; at most `count` of them.
+class VertexTable {
+ public:
+  explicit VertexTable(std::size_t count) : slot_(std::bit_ceil(2 * count + 1), -1) {}
+
+  /// The slot of the vertex for which `is_it(vertex)` is true, or the free one where it belongs.
+  template <class IsIt>
+  std::int32_t& find(std::uint64_t hash, const IsIt& is_it) {
+    std::size_t at = hash & (slot_.size() - 1);
+    while (slot_[at] >= 0 && !is_it(slot_[at])) at = (at + 1) & (slot_.size() - 1);
+    return slot_[at];
+  }
+
+ private:
+  std::vector<std::int32_t> slot_;
+};
+
+/// The first vertex at each place.
+class Places {
+ public:
+  explicit Places(const std::vector<Vec3>& vertex) : vertex_(vertex), table_(vertex.size()) {
+    for (std::size_t v = 0; v < vertex.size(); ++v)
+      if (std::int32_t& slot = slot_of(vertex[v]); slot < 0) slot = std::int32_t(v);
+  }
+  std::int32_t find(Vec3 place) { return slot_of(place); }  ///< -1: none
+
+ private:
+  std::int32_t& slot_of(Vec3 place) {
+    const auto bits = bits_of(place);
+    return table_.find(mixed(std::uint64_t(bits[0]), std::uint64_t(bits[1]), std::uint64_t(bits[2])),
+                       [&](std::int32_t v) { return bits_of(vertex_[std::size_t(v)]) == bits; });
+  }
+
+  const std::vector<Vec3>& vertex_;
+  VertexTable table_;
+};
+
 /// Maps vertices at equal positions to the first of them.
 std::vector<std::int32_t> same_place(const Soup& soup) {
-  std::unordered_map<std::array<std::int64_t, 3>, std::int32_t, CellHash> first_at;
-  first_at.reserve(soup.vertex.size());
+  Places places(soup.vertex);
   std::vector<std::int32_t> representative(soup.vertex.size());
-  for (std::size_t v = 0; v < soup.vertex.size(); ++v)
-    representative[v] = first_at.emplace(bits_of(soup.vertex[v]), std::int32_t(v)).first->second;
+  for (std::size_t v = 0; v < soup.vertex.size(); ++v) representative[v] = places.find(soup.vertex[v]);
   return representative;
 }
 
+/// Vertices that stay, in cells so much larger than the distance that few balls reach beyond one.
+class StayGrid {
+ public:
+  StayGrid(const std::vector<Vec3>& vertex, double distance)
+      : vertex_(vertex), distance_(distance), table_(vertex.size()), next_(vertex.size(), -1) {}
+
+  void add(std::int32_t v) {
+    std::int32_t& head = head_of(cell_of(vertex_[std::size_t(v)]));
+    next_[std::size_t(v)] = head, head = v;
+  }
+
+  /// The nearest within the distance, the first of equally near ones; -1: none.
+  std::int32_t nearest_to(std::int32_t v) {
+    constexpr double kRounding = 1 + 1e-6;
+    const Vec3 place = vertex_[std::size_t(v)], reach = kRounding * distance_ * Vec3{1, 1, 1};
+    const Cell least = cell_of(place - reach), most = cell_of(place + reach);
+    std::int32_t nearest = -1;
+    double nearest_distance = distance_;
+    for (std::int64_t i = least[0]; i <= most[0]; ++i)
+      for (std::int64_t j = least[1]; j <= most[1]; ++j)
+        for (std::int64_t k = least[2]; k <= most[2]; ++k)
+          for (std::int32_t other = head_of({i, j, k}); other >= 0; other = next_[std::size_t(other)]) {
+            const double d = norm(vertex_[std::size_t(other)] - place);
+            if (d < nearest_distance || (d == nearest_distance && (nearest < 0 || other < nearest)))
+              nearest = other, nearest_distance = d;
+          }
+    return nearest;
+  }
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+  Cell cell_of(Vec3 p) const {
+    constexpr double kCell = 16;  // distances
+    const auto index = [&](double x) { return std::llround(std::floor(x / (kCell * distance_))); };
+    return {index(p.x), index(p.y), index(p.z)};
+  }
+  std::int32_t& head_of(const Cell& cell) {
+    return table_.find(mixed(std::uint64_t(cell[0]), std::uint64_t(cell[1]), std::uint64_t(cell[2])),
+                       [&](std::int32_t v) { return cell_of(vertex_[std::size_t(v)]) == cell; });
+  }
+
+  const std::vector<Vec3>& vertex_;
+  double distance_;
+  VertexTable table_;
+  std::vector<std::int32_t> next_;
+};
+
 /// Maps vertices within `distance` of an earlier kept vertex to the nearest such vertex.
 void join_near(const Soup& soup, double distance, std::vector<std::int32_t>& representative) {
-  const auto cell_of = [&](Vec3 p) {
-    return std::array<std::int64_t, 3>{std::llround(std::floor(p.x / distance)),
-                                       std::llround(std::floor(p.y / distance)),
-                                       std::llround(std::floor(p.z / distance))};
-  };
-  std::unordered_map<std::array<std::int64_t, 3>, std::vector<std::int32_t>, CellHash> stays_in;
+  StayGrid stays(soup.vertex, distance);
   for (std::size_t v = 0; v < soup.vertex.size(); ++v) {
     if (representative[v] != std::int32_t(v)) {
       representative[v] = representative[std::size_t(representative[v])];
       continue;
     }
-    const auto cell = cell_of(soup.vertex[v]);
-    std::int32_t nearest = -1;
-    double nearest_distance = distance;
-    for (int n = 0; n < 27; ++n) {
-      const auto it = stays_in.find({cell[0] + n % 3 - 1, cell[1] + n / 3 % 3 - 1, cell[2] + n / 9 - 1});
-      if (it == stays_in.end()) continue;
-      for (const std::int32_t other : it->second) {
-        const double d = norm(soup.vertex[std::size_t(other)] - soup.vertex[v]);
-        if (d < nearest_distance || (d == nearest_distance && (nearest < 0 || other < nearest)))
-          nearest = other, nearest_distance = d;
-      }
-    }
+    const std::int32_t nearest = stays.nearest_to(std::int32_t(v));
     if (nearest >= 0)
       representative[v] = nearest;
     else
-      stays_in[cell].push_back(std::int32_t(v));
+      stays.add(std::int32_t(v));
   }
+}
+
+/// Numbers in groups, each in ascending order.
+struct Groups {
+  std::vector<std::int32_t> first;  ///< of each group in `number`, and their end (group_count + 1)
+  std::vector<std::int32_t> number;
+};
+
+/// The numbers from 0 to `count` by `group_of(number)`, in time that is linear in them.
+template <class GroupOf>
+Groups group_by(std::size_t count, std::size_t groups, const GroupOf& group_of) {
+  Groups by{std::vector<std::int32_t>(groups + 1, 0), std::vector<std::int32_t>(count)};
+  for (std::size_t n = 0; n < count; ++n) ++by.first[std::size_t(group_of(n)) + 1];
+  for (std::size_t g = 1; g < by.first.size(); ++g) by.first[g] += by.first[g - 1];
+  std::vector<std::int32_t> next(by.first.begin(), by.first.end() - 1);
+  for (std::size_t n = 0; n < count; ++n) by.number[std::size_t(next[std::size_t(group_of(n))]++)] = std::int32_t(n);
+  return by;
+}
+
+/// One more than the largest index of a vertex.
+std::size_t vertices_of(const std::vector<Triangle>& triangle) {
+  std::int32_t count = 0;
+  for (const Triangle& t : triangle) count = std::max({count, t[0] + 1, t[1] + 1, t[2] + 1});
+  return std::size_t(count);
 }
 
 Triangle sorted(Triangle t) {
@@ -126,12 +210,30 @@ Triangle rotated(Triangle t) {
 }  // namespace
 
 std::vector<std::pair<Edge, std::int32_t>> sorted_edges(const std::vector<Triangle>& triangle) {
+  const auto edge = [&](std::size_t n) { return edge_of(triangle[n / 3][n % 3], triangle[n / 3][(n + 1) % 3]); };
+  const Groups by = group_by(3 * triangle.size(), vertices_of(triangle), [&](std::size_t n) { return edge(n) >> 32; });
   std::vector<std::pair<Edge, std::int32_t>> edges;
-  edges.reserve(3 * triangle.size());
-  for (std::size_t t = 0; t < triangle.size(); ++t)
-    for (int c = 0; c < 3; ++c) edges.emplace_back(edge_of(triangle[t][c], triangle[t][(c + 1) % 3]), std::int32_t(t));
-  std::sort(edges.begin(), edges.end());
+  edges.reserve(by.number.size());
+  for (const std::int32_t n : by.number) edges.emplace_back(edge(std::size_t(n)), n / 3);
+  for (std::size_t v = 0; v + 1 < by.first.size(); ++v)
+    std::sort(edges.begin() + by.first[v], edges.begin() + by.first[v + 1]);
   return edges;
+}
+
+bool is_closed_and_oriented(const std::vector<Triangle>& triangle) {
+  const auto edges = sorted_edges(triangle);
+  // Whether triangle `t` runs along the edge from its smaller vertex.
+  const auto runs_up = [&](std::size_t e) {
+    const Triangle& t = triangle[std::size_t(edges[e].second)];
+    const auto low = std::int32_t(edges[e].first >> 32), high = std::int32_t(edges[e].first & 0xFFFFFFFFu);
+    return (t[0] == low && t[1] == high) || (t[1] == low && t[2] == high) || (t[2] == low && t[0] == high);
+  };
+  for (std::size_t e = 0; e < edges.size(); e += 2) {
+    const bool is_pair = e + 1 < edges.size() && edges[e].first == edges[e + 1].first &&
+                         (e + 2 == edges.size() || edges[e + 2].first != edges[e].first);
+    if (!is_pair || runs_up(e) == runs_up(e + 1)) return false;
+  }
+  return true;
 }
 
 BoundingBox bounding_box(const Soup& soup) {
@@ -169,17 +271,15 @@ std::int64_t drop_collapsed(Soup& soup) {
 }
 
 std::int64_t drop_duplicates(Soup& soup) {
-  std::vector<std::int32_t> order(soup.triangle.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::vector<Triangle> key;
-  key.reserve(soup.triangle.size());
-  for (const Triangle& t : soup.triangle) key.push_back(sorted(t));
-  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-    return key[std::size_t(a)] != key[std::size_t(b)] ? key[std::size_t(a)] < key[std::size_t(b)] : a < b;
-  });
+  const auto key = [&](std::int32_t t) { return sorted(soup.triangle[std::size_t(t)]); };
+  Groups by = group_by(soup.triangle.size(), vertices_of(soup.triangle),
+                       [&](std::size_t t) { return key(std::int32_t(t))[0]; });
   std::vector<char> is_doubled(soup.triangle.size(), 0);
-  for (std::size_t i = 1; i < order.size(); ++i)
-    is_doubled[std::size_t(order[i])] = key[std::size_t(order[i])] == key[std::size_t(order[i - 1])];
+  for (std::size_t v = 0; v + 1 < by.first.size(); ++v) {
+    const auto begin = by.number.begin() + by.first[v], end = by.number.begin() + by.first[v + 1];
+    std::sort(begin, end, [&](std::int32_t a, std::int32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+    for (auto t = begin; t != end; ++t) is_doubled[std::size_t(*t)] = t != begin && key(*t) == key(*(t - 1));
+  }
   std::size_t next = 0;
   for (std::size_t t = 0; t < soup.triangle.size(); ++t)
     if (!is_doubled[t]) soup.triangle[next++] = soup.triangle[t];
@@ -189,22 +289,15 @@ std::int64_t drop_duplicates(Soup& soup) {
 }
 
 std::vector<std::int32_t> find_pinched(const Soup& soup) {
-  // Store the triangles at each vertex contiguously.
-  std::vector<std::int32_t> first(soup.vertex.size() + 1, 0);
-  for (const Triangle& t : soup.triangle)
-    for (const std::int32_t v : t) ++first[std::size_t(v) + 1];
-  for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
-  std::vector<std::int32_t> next(first.begin(), first.end() - 1), around(3 * soup.triangle.size());
-  for (std::size_t t = 0; t < soup.triangle.size(); ++t)
-    for (const std::int32_t v : soup.triangle[t]) around[std::size_t(next[std::size_t(v)]++)] = std::int32_t(t);
-
+  const Groups around = group_by(3 * soup.triangle.size(), soup.vertex.size(),
+                                 [&](std::size_t n) { return soup.triangle[n / 3][n % 3]; });
   std::vector<std::int32_t> pinched;
   std::vector<std::pair<std::int32_t, std::int32_t>> spokes;  // other end of an edge, and local index of its triangle
   for (std::size_t v = 0; v < soup.vertex.size(); ++v) {
-    const std::int32_t count = first[v + 1] - first[v];
+    const std::int32_t count = around.first[v + 1] - around.first[v];
     spokes.clear();
     for (std::int32_t n = 0; n < count; ++n)
-      for (const std::int32_t other : soup.triangle[std::size_t(around[std::size_t(first[v] + n)])])
+      for (const std::int32_t other : soup.triangle[std::size_t(around.number[std::size_t(around.first[v] + n)] / 3)])
         if (other != std::int32_t(v)) spokes.emplace_back(other, n);
     std::sort(spokes.begin(), spokes.end());
     Sets fans(static_cast<std::size_t>(count));
@@ -232,32 +325,36 @@ std::vector<Vec3> find_non_manifold_edges(const Soup& soup) {
   return middles;
 }
 
-Parts find_parts(const std::vector<Triangle>& triangle) {
-  Sets sets(triangle.size());
-  const auto edges = sorted_edges(triangle);
+namespace {
+
+Parts parts_by(const std::vector<std::pair<Edge, std::int32_t>>& edges, std::size_t triangles) {
+  Sets sets(triangles);
   for (std::size_t e = 1; e < edges.size(); ++e)
     if (edges[e].first == edges[e - 1].first) sets.join(edges[e].second, edges[e - 1].second);
   Parts parts;
-  parts.of_triangle.resize(triangle.size());
+  parts.of_triangle.resize(triangles);
   // The root of a set is its first triangle, so roots precede their members.
-  for (std::size_t t = 0; t < triangle.size(); ++t) {
+  for (std::size_t t = 0; t < triangles; ++t) {
     const std::int32_t root = sets.root(std::int32_t(t));
     parts.of_triangle[t] = std::size_t(root) == t ? parts.count++ : parts.of_triangle[std::size_t(root)];
   }
   return parts;
 }
 
+}  // namespace
+
+Parts find_parts(const std::vector<Triangle>& triangle) { return parts_by(sorted_edges(triangle), triangle.size()); }
+
 std::int64_t count_joined(const std::vector<Triangle>& triangle) {
-  std::int32_t vertex_count = 0;
-  for (const Triangle& t : triangle) vertex_count = std::max({vertex_count, t[0] + 1, t[1] + 1, t[2] + 1});
-  Sets sets(static_cast<std::size_t>(vertex_count));
-  std::vector<char> is_used(static_cast<std::size_t>(vertex_count), 0);
+  const std::size_t vertex_count = vertices_of(triangle);
+  Sets sets(vertex_count);
+  std::vector<char> is_used(vertex_count, 0);
   for (const Triangle& t : triangle) {
     sets.join(t[0], t[1]), sets.join(t[0], t[2]);
     for (const std::int32_t v : t) is_used[std::size_t(v)] = 1;
   }
   std::int64_t groups = 0;
-  for (std::int32_t v = 0; v < vertex_count; ++v) groups += is_used[std::size_t(v)] && sets.root(v) == v;
+  for (std::int32_t v = 0; v < std::int32_t(vertex_count); ++v) groups += is_used[std::size_t(v)] && sets.root(v) == v;
   return groups;
 }
 
@@ -265,8 +362,8 @@ MeshCounts count_mesh(const std::vector<Vec3>& vertex, const std::vector<Triangl
   MeshCounts counts;
   counts.vertices = std::int64_t(vertex.size());
   counts.triangles = std::int64_t(triangle.size());
-  counts.parts = find_parts(triangle).count;
   const auto edges = sorted_edges(triangle);
+  counts.parts = parts_by(edges, triangle.size()).count;
   for (std::size_t e = 0; e < edges.size();) {
     std::size_t end = e;
     while (end < edges.size() && edges[end].first == edges[e].first) ++end;
@@ -295,26 +392,27 @@ double surface_area(const std::vector<Vec3>& vertex, const std::vector<Triangle>
 }
 
 Turned count_turned(const Soup& before, const Soup& after) {
-  std::unordered_map<std::array<std::int64_t, 3>, std::int32_t, CellHash> vertex_at;
-  vertex_at.reserve(before.vertex.size());
-  for (std::size_t v = 0; v < before.vertex.size(); ++v) vertex_at.emplace(bits_of(before.vertex[v]), std::int32_t(v));
-  std::vector<Triangle> old_triangles;
-  old_triangles.reserve(before.triangle.size());
-  for (const Triangle& t : before.triangle) old_triangles.push_back(rotated(t));
-  std::sort(old_triangles.begin(), old_triangles.end());
+  Places places(before.vertex);
+  std::vector<std::int32_t> place_of(after.vertex.size());
+  for (std::size_t v = 0; v < after.vertex.size(); ++v) place_of[v] = places.find(after.vertex[v]);
+  const auto old_at = [&](std::int32_t n) { return rotated(before.triangle[std::size_t(n)]); };
+  const Groups by =
+      group_by(before.triangle.size(), before.vertex.size(), [&](std::size_t t) { return old_at(std::int32_t(t))[0]; });
 
   Turned count;
   for (const Triangle& t : after.triangle) {
     Triangle old{};
     bool is_old = true;
     for (int c = 0; c < 3 && is_old; ++c) {
-      const auto it = vertex_at.find(bits_of(after.vertex[std::size_t(t[c])]));
-      is_old = it != vertex_at.end();
-      if (is_old) old[c] = it->second;
+      old[c] = place_of[std::size_t(t[c])];
+      is_old = old[c] >= 0;
     }
     if (!is_old) continue;
     const auto has = [&](Triangle wanted) {
-      return std::binary_search(old_triangles.begin(), old_triangles.end(), rotated(wanted));
+      wanted = rotated(wanted);
+      const auto v = std::size_t(wanted[0]);
+      return std::any_of(by.number.begin() + by.first[v], by.number.begin() + by.first[v + 1],
+                         [&](std::int32_t n) { return old_at(n) == wanted; });
     };
     if (has(old))
       ++count.kept;

@@ -41,6 +41,9 @@ std::int64_t drop_duplicates(Soup& soup);
 /// are adjacent.
 std::vector<std::pair<std::uint64_t, std::int32_t>> sorted_edges(const std::vector<Triangle>& triangle);
 
+/// Whether every edge has two triangles, which run along it in opposite directions.
+bool is_closed_and_oriented(const std::vector<Triangle>& triangle);
+
 /// Vertices where fans of triangles touch without a common edge, by ascending index.
 std::vector<std::int32_t> find_pinched(const Soup& soup);
 

@@ -42,6 +42,15 @@ TissueDepth::Bound TissueDepth::bound_of(const Surface& surface, const std::arra
   return {middle, std::max({norm(a - middle), norm(b - middle), norm(c - middle)}), normal, dot(normal, normal)};
 }
 
+TissueDepth::Ball TissueDepth::ball_around(const Bound* begin, const Bound* end) {
+  Vec3 low = begin->middle, high = low;
+  for (const Bound* b = begin; b != end; ++b) low = least_of(low, b->middle), high = most_of(high, b->middle);
+  Ball ball{0.5 * (low + high), 0};
+  for (const Bound* b = begin; b != end; ++b)
+    ball.radius = std::max(ball.radius, kRounding * (norm(b->middle - ball.middle) + b->radius));
+  return ball;
+}
+
 Vec3 TissueDepth::middle_of(const Grid& grid, std::size_t bucket) {
   const auto x = std::size_t(grid.extent[0]), y = std::size_t(grid.extent[1]);
   return grid.low +
@@ -60,6 +69,8 @@ TissueDepth::Grid TissueDepth::make_grid(const Surface& surface) {
                  1 + std::int32_t(size.z / kBucket)};
   const auto& e = grid.extent;
   for (const auto& t : surface.triangle) grid.bound.push_back(bound_of(surface, t));
+  for (std::size_t n = 0; n < grid.bound.size(); n += kBlock)
+    grid.block.push_back(ball_around(&grid.bound[n], grid.bound.data() + std::min(n + kBlock, grid.bound.size())));
   const std::size_t count = std::size_t(e[0]) * std::size_t(e[1]) * std::size_t(e[2]);
   std::vector<std::pair<std::size_t, std::int32_t>> found;  // a bucket, and a triangle near it
   // At first the number of triangles near each bucket.
@@ -169,19 +180,30 @@ Vec3 TissueDepth::nearest_on_surface(std::size_t organ, Vec3 rest) const {
   const Grid& grid = grids_[organ];
   CTPM_CHECK(grid.surface != nullptr, "an organ without a surface has no place on it");
   const Surface& surface = *grid.surface;
+  // Blocks of triangles that are farther than what was found change nothing.
+  const auto for_each_bound = [&](const double& farthest, const auto& visit) {
+    for (std::size_t n = 0; n < grid.bound.size(); ++n) {
+      const Ball& block = grid.block[n / kBlock];
+      if (n % kBlock == 0 && norm(rest - block.middle) > kRounding * (farthest + block.radius))
+        n += kBlock - 1;
+      else
+        visit(n);
+    }
+  };
   // A triangle's middle is a place on the surface.
-  double least2 = kFar, least = kFar;
-  for (const Bound& bound : grid.bound) least2 = std::min(least2, dot(rest - bound.middle, rest - bound.middle));
-  double farthest = kRounding * std::sqrt(least2);
+  double farthest = kFar;
+  for_each_bound(farthest, [&](std::size_t n) { farthest = std::min(farthest, norm(rest - grid.bound[n].middle)); });
+  farthest *= kRounding;
+  double least = kFar;
   Vec3 nearest = rest;
-  for (std::size_t n = 0; n < grid.bound.size(); ++n) {
-    if (grid.bound[n].is_beyond(rest, farthest)) continue;
+  for_each_bound(farthest, [&](std::size_t n) {
+    if (grid.bound[n].is_beyond(rest, farthest)) return;
     const auto& t = surface.triangle[n];
     const Vec3 there = nearest_in_triangle(rest, surface.vertex[std::size_t(t[0])], surface.vertex[std::size_t(t[1])],
                                            surface.vertex[std::size_t(t[2])]);
     const double distance = norm(there - rest);
     if (distance < least) least = distance, nearest = there, farthest = std::min(farthest, kRounding * distance);
-  }
+  });
   return nearest;
 }
 

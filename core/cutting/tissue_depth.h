@@ -45,6 +45,10 @@ class TissueDepth {
       return dot(apart, apart) > most * most || above * above > distance * distance * normal_squared;
     }
   };
+  struct Ball {
+    Vec3 middle;    ///< [m]
+    double radius;  ///< [m]
+  };
   /// Buckets of a cubic grid over the organ, each with the triangles that come within kBand of it.
   struct Grid {
     const Surface* surface = nullptr;
@@ -54,10 +58,13 @@ class TissueDepth {
     std::vector<std::int32_t> first, triangle;  ///< CSR by row
     std::vector<double> near_middle;            ///< distance of its middle from the surface, or infinite (rows) [m]
     std::vector<Bound> bound;                   ///< of each triangle of the surface
+    std::vector<Ball> block;                    ///< around each kBlock triangles that follow each other, ascending
     std::vector<std::int8_t> side;              ///< of each bucket's middle: 1 inside, -1 outside
   };
   static Grid make_grid(const Surface& surface);
   static void find_sides(Grid& grid);
+  static constexpr std::size_t kBlock = 64;
+  static Ball ball_around(const Bound* begin, const Bound* end);
   static Bound bound_of(const Surface& surface, const std::array<std::int32_t, 3>& triangle);
   static Vec3 middle_of(const Grid& grid, std::size_t bucket);
   static std::int64_t bucket_of(const Grid& grid, Vec3 rest);

@@ -17,7 +17,6 @@ reports::Plot diagram(const std::vector<CostPoint>& points) {
                      .x_title = "processor time [ms a tick, p50]",
                      .y_title = "error in force [%]"};
   plot.is_log_x = plot.is_log_y = true;
-  plot.width = 760, plot.height = 420;
   reports::Series own{.name = "the scene's own choice", .stroke = reports::Stroke::marks, .colour = 1};
   for (const CostPoint& p : points) {
     auto it = std::find_if(plot.series.begin(), plot.series.end(),

@@ -379,20 +379,24 @@ std::string recommendation(const TimeJob& job, std::vector<Point> points, const 
   return job.title + ": no setting holds " + rate + " at p99 on this machine.";
 }
 
-/// What the settings of a scene's own filling cost, at the loosest tolerance that is no looser than the scene's own.
+/// What the settings of a scene's own filling cost, each integrator at its loosest tolerance that is no looser than the
+/// scene's own.
 void add_costs(const TimeJob& job, const std::vector<Point>& points, BenchStudy& study) {
   const SolverSettings& solver = job.model.solver;
-  const Point* own = nullptr;
-  double tolerance = 1;
-  for (const Point& p : points) tolerance = std::min(tolerance, p.setting.tolerance);
-  for (const Point& p : points)
-    if (p.setting.integrator == solver.integrator && p.setting.substeps == solver.substeps &&
-        p.setting.tolerance <= solver.tolerance && (!own || p.setting.tolerance > own->setting.tolerance))
-      own = &p, tolerance = p.setting.tolerance;
-  for (const Point& p : points)
-    if (p.feels && (p.setting.tolerance == tolerance || p.setting.integrator == Integrator::leapfrog))
-      study.costs.push_back({job.organ, std::string("time, ") + stepping::name_of(p.setting.integrator),
-                             name_of_setting(p.setting), 1e3 * p.p50, p.force_error, &p == own});
+  for (const Integrator integrator : kIntegrators) {
+    double tolerance = 0;
+    for (const Point& p : points)
+      if (p.setting.integrator == integrator &&
+          (integrator == Integrator::leapfrog || p.setting.tolerance <= solver.tolerance))
+        tolerance = std::max(tolerance, p.setting.tolerance);
+    for (const Point& p : points) {
+      const Setting& s = p.setting;
+      const bool is_own = integrator == solver.integrator && s.substeps == solver.substeps;
+      if (p.feels && s.integrator == integrator && s.tolerance == tolerance)
+        study.costs.push_back({job.organ, std::string("time, ") + stepping::name_of(integrator), name_of_setting(s),
+                               1e3 * p.p50, p.force_error, is_own});
+    }
+  }
 }
 
 /// What the study's section says before its numbers.

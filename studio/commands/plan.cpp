@@ -162,6 +162,9 @@ Errors find_misses(const scenes::Script& script, const session::SessionCost& cos
   return misses;
 }
 
+/// Least share of the processor with which the slowest ticks of a session are told from those of other programs.
+constexpr double kQuiet = 0.9;
+
 /// What is told of a scene.
 struct Plan {
   const loading::LoadedScene& scene;
@@ -173,6 +176,8 @@ struct Plan {
   std::optional<session::FittingRadius> fitting;
 
   double tick() const { return scene.built.model.tick; }
+  /// Whether other programs left the processor to the session, so that its slowest ticks are its own.
+  bool is_quiet() const { return cost && cost->processor_share >= kQuiet; }
   bool holds() const { return cost && !stepping::is_refused(cost->outcome.run.status) && cost->dearest() <= tick(); }
 };
 
@@ -206,7 +211,7 @@ Result<Done> measure(const PlanArguments& arguments, Plan& plan) {
     if (!cost) return cost.errors();
     plan.cost = *std::move(cost);
   }
-  if (plan.holds()) return Done{};
+  if (plan.holds() || !plan.is_quiet()) return Done{};
   ProgressLine line("coarser spheres");
   told(line);
   Result<std::optional<session::FittingRadius>> fitting =
@@ -241,7 +246,9 @@ void print_json(const std::string& path, const Plan& plan, const std::string& so
   json.member("elements", model.element_count()).member("memory_bytes", plan.bytes).member("tick_s", model.tick);
   json.member("tick_time_at_rest_s", plan.rest);
   if (plan.cost) {
-    json.member("threads", plan.cost->threads).member("holds_rate", plan.holds()).key("tick_times");
+    json.member("threads", plan.cost->threads).member("processor_share", plan.cost->processor_share);
+    if (plan.holds() || plan.is_quiet()) json.member("holds_rate", plan.holds());
+    json.key("tick_times");
     write_times(json, *plan.cost);
   }
   if (plan.fitting) {
@@ -289,10 +296,10 @@ void print_times(const Plan& plan) {
     if (const session::DeedTimes times = plan.cost->of(deed); times.ticks > 0)
       print("  %-18s p50 %.3f ms, p99 %.3f ms, %lld ticks\n", session::name_of(deed), 1e3 * times.p50, 1e3 * times.p99,
             (long long)times.ticks);
-  constexpr double kQuiet = 0.9;
-  if (plan.cost->processor_share < kQuiet)
-    print("  other programs held the processor for %.0f %% of the time, which is in these times\n",
-          100 * (1 - plan.cost->processor_share));
+  if (!plan.holds() && !plan.is_quiet())
+    return print(
+        "whether it holds %s at p99 cannot be told: other programs held the processor for %.0f %% of the time\n",
+        rate.c_str(), 100 * (1 - plan.cost->processor_share));
   if (plan.holds()) return print("holds %s at p99\n", rate.c_str());
   print("does not hold %s at p99\n", rate.c_str());
   if (plan.fitting)

@@ -165,10 +165,10 @@ TEST(ReadMesh, TimeAndMemoryAreLimited) {
   EXPECT_EQ(late.errors()[0].where, path);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   options.time_limit_s = 60;
-  options.memory_limit_mib = 30;
+  options.memory_limit_mib = 12;
   const Result<importers::RawMesh> hungry = importers::read_mesh(path, options);
   ASSERT_FALSE(hungry);
-  EXPECT_EQ(hungry.errors()[0].message, "the reader needs more than 30 MiB of memory");
+  EXPECT_EQ(hungry.errors()[0].message, "the reader needs more than 12 MiB of memory");
 #endif
 }
 
