@@ -168,7 +168,7 @@ void judge(Fit& fit, const std::vector<Measurement>& measurements, const std::ve
     }
     fit.matches.push_back(std::move(match));
   }
-  fit.error = root_mean_square(used), fit.held_out_error = root_mean_square(held_out);
+  fit.error = root_mean_square(used), fit.held_out_error = held_out.empty() ? NAN : root_mean_square(held_out);
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ struct Fit {
   std::vector<std::string> fitted;       ///< names of what was fitted
   std::vector<double> correlation;       ///< of their logarithms (fitted_count x fitted_count)
   std::vector<Match> matches;            ///< (measurement_count)
-  double error = 0, held_out_error = 0;  ///< root mean square, of each measurement's own [share]
+  double error = 0, held_out_error = 0;  ///< root mean square, of each measurement's own [share]; NaN: of no row
   int starts = 0, same_starts = 0;       ///< and how many of them ended at the same place
   std::size_t simulations = 0;
   std::optional<Vec3> block;  ///< spheres along x, y and z of the specimen that was pressed; none: the rig

@@ -67,13 +67,17 @@ reports::Table specimen_table(const std::vector<SpecimenFit>& specimens, const s
   reports::Table table;
   table.title = "Specimens, each alone and left out";
   table.columns = {{"specimen", "specimen"}};
-  for (const Estimate& one : whole) table.columns.push_back({one.key, symbol_of(one) + " [" + one.unit + "]"});
+  std::vector<std::size_t> shown;  // what any specimen tells
+  for (std::size_t i = 0; i < whole.size(); ++i)
+    if (spread_of(specimens, i).count > 0) shown.push_back(i);
+  for (const std::size_t i : shown)
+    table.columns.push_back({whole[i].key, symbol_of(whole[i]) + " [" + whole[i].unit + "]"});
   table.columns.push_back({"error_share", "met alone to", 2});
   table.columns.push_back({"left_out_error_share", "met by the others to", 2});
   table.columns.push_back({"note", "note"});
   for (const SpecimenFit& one : specimens) {
     std::vector<reports::Cell> row{one.name};
-    for (std::size_t i = 0; i < whole.size(); ++i)
+    for (const std::size_t i : shown)
       row.push_back(cell_if(i < one.estimates.size(), [&] { return told(one.estimates[i]); }));
     row.push_back(cell_if(!one.estimates.empty(), [&] { return percent(one.error); }));
     row.push_back(cell_if(!std::isnan(one.left_out_error), [&] { return percent(one.left_out_error); }));
@@ -81,7 +85,7 @@ reports::Table specimen_table(const std::vector<SpecimenFit>& specimens, const s
     table.rows.push_back(std::move(row));
   }
   std::vector<reports::Cell> mean{std::string("mean")}, spread{std::string("spread")};
-  for (std::size_t i = 0; i < whole.size(); ++i) {
+  for (const std::size_t i : shown) {
     const SpecimenSpread of = spread_of(specimens, i);
     mean.push_back(cell_if(of.count > 1, [&] { return output::short_number(of.mean, 3); }));
     spread.push_back(cell_if(of.count > 1, [&] { return percent(of.deviation); }));
@@ -101,7 +105,9 @@ std::vector<reports::Plot> plots_of(const Match& match) {
   const bool is_slow = one.kind == Kind::indentation;
   const std::string x_title = is_slow ? "depth [mm]" : "time [s]",
                     what = one.kind == Kind::creep ? "depth [mm]" : "force [N]";
-  reports::Plot curve{.title = std::string(to_word(one.kind)) + ": " + one.name, .x_title = x_title, .y_title = what};
+  reports::Plot curve{.title = std::string(to_word(one.kind)) + ": " + one.name.substr(one.name.rfind('/') + 1),
+                      .x_title = x_title,
+                      .y_title = what};
   reports::Plot rest{.title = "residuals: network less measured", .x_title = x_title, .y_title = what};
   reports::Series used{.name = "measured", .stroke = reports::Stroke::marks, .colour = 0},
       held{.name = "held out", .stroke = reports::Stroke::crosses, .colour = 1},
@@ -203,16 +209,18 @@ std::string interval_text(const Estimate& estimate) {
 }
 
 std::vector<std::string> remarks_of(const Fit& fit, const std::vector<SpecimenFit>& specimens) {
-  std::vector<std::string> remarks{"The network meets the rows of the fit to " + percent(fit.error) +
-                                   " and those held out to " + percent(fit.held_out_error) +
-                                   " (root mean square, of each measurement's own)."};
+  const std::string held_out = std::isnan(fit.held_out_error)
+                                   ? " (too few rows to hold any out; "
+                                   : " and those held out to " + percent(fit.held_out_error) + " (";
+  std::vector<std::string> remarks{"The network meets the rows of the fit to " + percent(fit.error) + held_out +
+                                   "root mean square, of each measurement's own)."};
   if (const std::string worst = worst_row(fit); !worst.empty()) remarks.push_back(worst);
   std::string unknown;
   for (const Estimate& one : fit.estimates)
-    if (!one.is_told()) unknown += (unknown.empty() ? "" : ", ") + one.key;
+    if (!one.is_told()) unknown += (unknown.empty() ? "" : ", ") + symbol_of(one);
   if (!unknown.empty()) remarks.push_back("The data cannot tell: " + unknown + ".");
   for (const Estimate& one : fit.estimates)
-    if (one.is_at_bound) remarks.push_back(one.key + " is at its bound: the data ask for more.");
+    if (one.is_at_bound) remarks.push_back(symbol_of(one) + " is at its bound: the data ask for more.");
   std::string left_out;
   for (const SpecimenFit& one : specimens)
     if (!std::isnan(one.left_out_error)) left_out += (left_out.empty() ? "" : ", ") + percent(one.left_out_error);
@@ -230,16 +238,16 @@ Result<Done> write_calibration(const Fit& fit, const std::vector<SpecimenFit>& s
                          "Fitted to " + std::to_string(fit.matches.size()) +
                              " measurements, each simulated in the network on " +
                              (fit.block ? "a block of the specimen's size." : "the paper's rig of five spheres."));
-  if (!fit.block)
-    report.add_paragraph(
-        "The rig is one contact site: an organ of this material is stiffer than it, because the tissue "
-        "around carries too. ctpm fit scales an organ to it, or give the specimen's size.");
   const bool is_whole = std::all_of(fit.estimates.begin(), fit.estimates.end(),
                                     [](const Estimate& one) { return one.is_told() && !one.is_at_bound; });
   const std::vector<std::string> remarks = remarks_of(fit, specimens);
   report.conclude(is_whole ? reports::ReportVerdict::met : reports::ReportVerdict::missed, remarks.front(),
                   {remarks.begin() + 1, remarks.end()});
   report.add_table(estimate_table(fit));
+  if (!fit.block)
+    report.add_paragraph(
+        "The rig is one contact site: an organ of this material is stiffer than it, because the tissue "
+        "around carries too. ctpm fit scales an organ to it, or give the specimen's size.");
   if (!specimens.empty()) report.add_table(specimen_table(specimens, fit.estimates));
   if (!is_whole)
     report.add_paragraph("materials.json needs every modulus: what the data cannot tell follows there from " +

@@ -57,6 +57,8 @@ Result<RecordOutcome> record_session(const recordings::SessionStart& start, sour
   recordings::WriterOptions writing;
   writing.overwrite = overwrite;
   writing.wait_when_full = !options.in_real_time;
+  // Who waits needs no queue for the seconds that a disk may take; to fill a long one costs more than a short session.
+  if (writing.wait_when_full) writing.queue_ticks = 1 << 11;
   Result<recordings::SessionWriter> writer = recordings::SessionWriter::create(path, start, writing);
   if (!writer) return writer.errors();
 

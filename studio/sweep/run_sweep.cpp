@@ -16,7 +16,6 @@
 #include <map>
 #include <new>
 #include <optional>
-#include <thread>
 #include <vector>
 
 #include "studio/sweep/each.h"
@@ -52,6 +51,28 @@ double processor_time() {
   return sum;
 }
 
+/// Wakes when a process ends, or after a while. Until it is destroyed, the signal of ended processes waits for it.
+class ChildWatch {
+ public:
+  ChildWatch() {
+    sigemptyset(&ended_), sigaddset(&ended_, SIGCHLD);
+    sigprocmask(SIG_BLOCK, &ended_, &before_);
+  }
+  ~ChildWatch() { restore(); }
+  ChildWatch(const ChildWatch&) = delete;
+  ChildWatch& operator=(const ChildWatch&) = delete;
+
+  void wait() const {
+    constexpr timespec kLongest{0, 100'000'000};
+    sigtimedwait(&ended_, nullptr, &kLongest);
+  }
+  /// In a process that does not watch.
+  void restore() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
+
+ private:
+  sigset_t ended_, before_;
+};
+
 /// Records one run's tasks with processes of its own.
 class Workers {
  public:
@@ -74,6 +95,7 @@ class Workers {
   const Plan& plan_;
   const std::vector<std::size_t> waiting_;  ///< tasks of the plan
   Shared& shared_;
+  const ChildWatch watch_;
   std::optional<Recorder> recorder_;           ///< of this process
   std::map<pid_t, int> slot_of_;               ///< of each process
   std::map<std::int64_t, int> deaths_during_;  ///< by waiting task
@@ -130,6 +152,7 @@ Result<Done> Workers::start(int slot, std::optional<std::int64_t> first) {
   const pid_t parent = getpid(), child = fork();
   if (child < 0) return Error{"", std::string("no process can be started: ") + std::strerror(errno), ""};
   if (child > 0) return slot_of_[child] = slot, Done{};
+  watch_.restore();
   // Ctrl-C reaches the whole group; the parent alone decides what it means.
   std::signal(SIGINT, SIG_IGN), std::signal(SIGTERM, SIG_DFL);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
@@ -170,7 +193,7 @@ Result<Done> Workers::run() {
     int status = 0;
     const pid_t ended = waitpid(-1, &status, WNOHANG);
     if (ended == 0) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      watch_.wait();
     } else if (ended < 0 && errno != EINTR) {
       break;
     } else if (const auto found = slot_of_.find(ended); found != slot_of_.end()) {

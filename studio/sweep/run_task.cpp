@@ -103,21 +103,10 @@ Errors Recorder::start(const TaskFiles& files) {
   return {};
 }
 
-Result<std::optional<TaskResult>> Recorder::record(std::size_t task, const std::string& id, const Claim& claim,
-                                                   const std::function<bool()>& should_stop) {
-  const Result<TaskFiles> files = sweep_.files_of(task);
-  if (!files) return files.errors();
-  const std::int64_t begin = own_processor_ns();
-  if (const Errors errors = start(*files); !errors.empty()) return std::optional(failed(errors));
-  const std::int64_t started = own_processor_ns();
-  const Result<std::string> now = sweep_.id_of(*files, started_->scene.scene.spec);
-  if (!now) return now.errors();
-  if (*now != id)
-    return Error{sweep_.file(), "or a file that it names has changed since it was planned",
-                 "plan it again: what is done and did not change stays"};
-  const std::int64_t checked = own_processor_ns();
-  Result<sources::OpenedSource> source = open_source(*files, started_->scene);
-  if (!source) return std::optional(failed(source.errors()));
+std::optional<TaskResult> Recorder::run(const TaskFiles& files, const std::string& id, const Claim& claim,
+                                        const std::function<bool()>& should_stop) {
+  Result<sources::OpenedSource> source = open_source(files, started_->scene);
+  if (!source) return failed(source.errors());
   recordings::SessionStart start = started_->start;
   for (const auto& [key, value] : source->metadata) start.metadata[key] = value;
   start.metadata["sweep"] = sweep_.spec().name, start.metadata["sweep_task"] = id;
@@ -131,11 +120,26 @@ Result<std::optional<TaskResult>> Recorder::record(std::size_t task, const std::
   };
   const Result<session::RecordOutcome> outcome =
       session::record_session(start, *source->source, claim.session_path(), false, options);
-  if (should_stop && should_stop()) return std::optional<TaskResult>();
-  if (!outcome) return std::optional(failed(outcome.errors()));
-  TaskResult result = measures.result(*outcome);
-  result.processor_s = 1e-9 * double(own_processor_ns() - checked + started - begin);
-  return std::optional(std::move(result));
+  if (should_stop && should_stop()) return std::nullopt;
+  return outcome ? measures.result(*outcome) : failed(outcome.errors());
+}
+
+Result<std::optional<TaskResult>> Recorder::record(std::size_t task, const std::string& id, const Claim& claim,
+                                                   const std::function<bool()>& should_stop) {
+  const Result<TaskFiles> files = sweep_.files_of(task);
+  if (!files) return files.errors();
+  const std::int64_t begin = own_processor_ns();
+  if (const Errors errors = start(*files); !errors.empty()) return std::optional(failed(errors));
+  const std::int64_t started = own_processor_ns();
+  const Result<std::string> now = sweep_.id_of(*files, started_->scene.scene.spec);
+  if (!now) return now.errors();
+  if (*now != id)
+    return Error{sweep_.file(), "or a file that it names has changed since it was planned",
+                 "plan it again: what is done and did not change stays"};
+  const std::int64_t checked = own_processor_ns();
+  std::optional<TaskResult> result = run(*files, id, claim, should_stop);
+  if (result) result->processor_s = 1e-9 * double(own_processor_ns() - checked + started - begin);
+  return result;
 }
 
 }  // namespace ctpm::sweep

@@ -30,6 +30,8 @@ class Recorder {
     recordings::SessionStart start;
   };
   Errors start(const TaskFiles& files);
+  std::optional<TaskResult> run(const TaskFiles& files, const std::string& id, const Claim& claim,
+                                const std::function<bool()>& should_stop);
 
   Sweep& sweep_;
   std::optional<Started> started_;  ///< of the last scene

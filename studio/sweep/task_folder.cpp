@@ -65,8 +65,8 @@ bool is_finished(const std::string& sweep_folder, const std::string& id) {
 Result<std::optional<Claim>> Claim::take(const std::string& sweep_folder, const std::string& id) {
   const std::string folder = unfinished_folder(sweep_folder, id), lock_path = folder + kResult;
   std::error_code failure;
-  const bool is_new = fs::create_directory(folder, failure);
-  if (failure) fs::create_directories(folder, failure);
+  const bool is_new = ::mkdir(folder.c_str(), 0777) == 0;
+  if (!is_new && errno != EEXIST) fs::create_directories(folder, failure);
   const int lock = failure ? -1 : ::open(lock_path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
   if (lock < 0) {
     // The one that had it may have finished in between.
@@ -99,8 +99,11 @@ Claim::~Claim() {
 
 Result<Done> Claim::finish(const TaskResult& result) {
   const std::string text = result_json(result);
+  // A file that is cut to nothing is written to the disk when it is closed (ext4), which costs more than all else here.
+  struct stat before {};
+  const bool is_empty = ::fstat(lock_, &before) == 0 && before.st_size == 0;
   const bool is_written =
-      ::ftruncate(lock_, 0) == 0 && ::pwrite(lock_, text.data(), text.size(), 0) == ssize_t(text.size());
+      (is_empty || ::ftruncate(lock_, 0) == 0) && ::pwrite(lock_, text.data(), text.size(), 0) == ssize_t(text.size());
   if (!is_written || ::rename(unfinished_.c_str(), finished_.c_str()) != 0)
     return Error{finished_, std::string("cannot be made: ") + std::strerror(errno), ""};
   ::close(std::exchange(lock_, -1));
