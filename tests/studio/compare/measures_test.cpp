@@ -341,7 +341,8 @@ TEST_F(Measures, LessThatWasDoneIsNotBetterForItsLowerForce) {
       EXPECT_EQ(compare::standing_of(find(comparison, "peak_force_n")),
                 compare::standing_of(find(comparison, "mean_force_n")));
     }
-    EXPECT_EQ(compare::less_done_text(comparison).empty(), compare::shortfalls_of(comparison.values).empty());
+    EXPECT_EQ(compare::less_done_text(comparison).empty(),
+              compare::shortfalls_of(comparison.values, comparison.damage_depth).empty());
     return compare::standing_of(find(comparison, "peak_force_n"));
   };
   EXPECT_EQ(force_is(pressed(0.008, 2), pressed(0.0078, 1)), "better");
@@ -352,6 +353,8 @@ TEST_F(Measures, LessThatWasDoneIsNotBetterForItsLowerForce) {
   EXPECT_EQ(force_is(cutting(0.01, 2e-4, 2), cutting(0.005, 2e-4, 1)), "less done");
   EXPECT_EQ(force_is(cutting(0.01, 2e-4, 2), cutting(0.01, 1e-4, 1)), "less done");
   EXPECT_EQ(force_is(cutting(0.01, 2e-4, 2), press()), "less done") << "nothing was cut";
+
+  EXPECT_EQ(force_is(pressed(0.015, 2), pressed(0.008, 1)), "better") << "who harms the tissue sets no example";
 
   const compare::SessionTrack expert = pressed(0.008, 2), trainee = pressed(0.004, 1);
   const compare::Comparison comparison = compare::compare_sessions(expert, trainee, scene_);
