@@ -85,7 +85,7 @@ void add_cut(std::vector<Sentence>& sentences, const SessionTrack& expert, const
 
 /// How much less deep than the expert a tool without a blade pushes.
 void add_push(std::vector<Sentence>& sentences, const Comparison& comparison) {
-  for (const auto& [measure, expert, trainee] : shortfalls_of(comparison.values))
+  for (const auto& [measure, expert, trainee] : shortfalls_of(comparison.values, comparison.damage_depth))
     if (measure == &kDepth)
       sentences.push_back(
           {1 - trainee / expert, "Push deeper: " + number(trainee) + " mm, the expert " + number(expert) + " mm."});

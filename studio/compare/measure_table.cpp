@@ -157,8 +157,7 @@ const Measure kBeyondDamage{"time_beyond_damage_depth_s",
                             lower,
                             "with tissue pushed deeper than it can bear",
                             kScene,
-                            kTimeRounding,
-                            kGrows};
+                            kTimeRounding};
 const Measure kSevered{
     "elements_severed", "elements severed", "1", nearer, "springs and constraints of the network", kNetwork};
 const Measure kSeveredBoth{

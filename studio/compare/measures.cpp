@@ -40,7 +40,7 @@ void add_values(Comparison& comparison, const SessionTrack& expert, const Sessio
 
 /// Lower is no better where the trainee reached less.
 void set_less_done(Comparison& comparison) {
-  if (shortfalls_of(comparison.values).empty()) return;
+  if (shortfalls_of(comparison.values, comparison.damage_depth).empty()) return;
   for (MeasuredValue& value : comparison.values) value.less_done = value.measure->grows_with_work;
 }
 

@@ -17,7 +17,8 @@ struct Shortfall {
   const Measure* measure = nullptr;  ///< kDepth, kCutDepth or kCutArea
   double expert = 0, trainee = 0;    ///< in the measure's unit; trainee: 0 where nothing was pushed or cut
 };
-std::vector<Shortfall> shortfalls_of(std::span<const MeasuredValue> values);
+/// `damage_depth` [m]: an expert who pushed deeper sets no example; 0: none is known.
+std::vector<Shortfall> shortfalls_of(std::span<const MeasuredValue> values, double damage_depth = 0);
 
 /// "depth of the cut 3 mm of the expert's 8 mm, ..."; empty: none.
 std::string to_words(const std::vector<Shortfall>& shortfalls);

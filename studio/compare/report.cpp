@@ -93,8 +93,8 @@ void add_conclusion(reports::Report& report, const ComparedSessions& compared) {
   advice.erase(advice.begin());
   if (advice.size() > kPoints) advice.resize(kPoints);
   const Comparison& comparison = compared.comparison;
-  const bool is_good =
-      comparison.moments.empty() && comparison.way == Way::same && shortfalls_of(comparison.values).empty();
+  const bool is_good = comparison.moments.empty() && comparison.way == Way::same &&
+                       shortfalls_of(comparison.values, comparison.damage_depth).empty();
   report.conclude(is_good ? reports::ReportVerdict::met : reports::ReportVerdict::missed, first, advice);
   for (const std::string& remark : remarks_of(compared)) report.add_verdict(false, remark);
   report.add_paragraph(
@@ -173,7 +173,7 @@ std::string standing_of(const MeasuredValue& value) {
 }
 
 std::string less_done_text(const Comparison& comparison) {
-  const std::string what = to_words(shortfalls_of(comparison.values));
+  const std::string what = to_words(shortfalls_of(comparison.values, comparison.damage_depth));
   return what.empty() ? ""
                       : "Less was done than the expert did (" + what +
                             "): what grows with the work, such as force and time, is not better for being lower.";

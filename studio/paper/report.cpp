@@ -29,8 +29,11 @@ reports::Table overview(const PaperResults& results) {
     }
     const Counts print = count_claims(results.claims, ClaimKind::print, section.key),
                  behaviour = count_claims(results.claims, ClaimKind::behaviour, section.key);
-    table.rows.push_back({section.title, reports::Cell(), network.asked(), network.missed, print.asked(), print.met,
-                          behaviour.asked(), behaviour.met});
+    std::vector<reports::Cell>& row = table.rows.emplace_back(table.columns.size());
+    row[0] = section.title;
+    if (network.asked() > 0) row[2] = network.asked(), row[3] = network.missed;
+    if (print.asked() > 0) row[4] = print.asked(), row[5] = print.met;
+    if (behaviour.asked() > 0) row[6] = behaviour.asked(), row[7] = behaviour.met;
     if (network.asked() > 0)
       table.rows.back()[1] = network.missed > 0 ? reports::ReportVerdict::missed : reports::ReportVerdict::met;
   }

@@ -27,7 +27,7 @@ h2 { font-size: 1.25rem; margin: 2.4rem 0 .5rem; padding-top: .8rem; border-top:
 .verdict { padding: .5rem .8rem; border-left: 5px solid #999; background: #f6f6f6; font-weight: 600; }
 .verdict.good { border-color: #009e73; } .verdict.bad { border-color: #c0392b; }
 .row { display: flex; flex-wrap: wrap; gap: 1.2rem; margin: .8rem 0; }
-figure { margin: 0; flex: 0 1 var(--wide, 520px); max-width: 100%; }
+figure { margin: 0; flex: 0 1 520px; max-width: 100%; }
 figure svg, figure img { max-width: 100%; height: auto; display: block; }
 figure img { border: 1px solid #ddd; }
 .table { overflow-x: auto; margin: .8rem 0 1.2rem; }
@@ -45,7 +45,7 @@ svg .cursor { pointer-events: none; } svg .cursor path { stroke: #222; } svg .cu
 figure:target { outline: 3px solid #c0392b; outline-offset: 4px; }
 @media (max-width: 600px) {
   body { padding: 0 .9rem; margin: 1rem auto; } h1 { font-size: 1.4rem; } .row { gap: .8rem; }
-  figure { flex-basis: 100%; } figure svg { width: 100%; }
+  figure { flex-basis: 100% !important; } figure svg { width: 100%; }
   svg text, svg .tick { font-size: 15px; } svg .head { font-size: 15.5px; } svg .cursor text { font-size: 17px; }
   .table { overflow-x: visible; } table, tbody { display: block; } thead { display: none; }
   tr { display: flex; flex-wrap: wrap; gap: 0 1rem; padding: .4rem 0; border-bottom: 1px solid #ddd; }
@@ -75,7 +75,7 @@ std::string base64(const std::vector<unsigned char>& bytes) {
 std::string figure(const std::string& content, const std::string& caption, const std::string& id = "", int width = 0) {
   const std::string words =
       caption.empty() ? "" : "<figcaption class=\"caption\">" + escape_html(caption) + "</figcaption>";
-  const std::string style = width > 0 ? " style=\"--wide:" + std::to_string(width) + "px\"" : "";
+  const std::string style = width > 0 ? " style=\"flex-basis:" + std::to_string(width) + "px\"" : "";
   return "<figure" + (id.empty() ? "" : " id=\"" + escape_html(id) + "\"") + style + ">" + content + words +
          "</figure>\n";
 }

@@ -12,64 +12,12 @@
 #include "studio/compare/advice.h"
 #include "studio/compare/measure_table.h"
 #include "studio/compare/measures.h"
-#include "studio/compare/reach.h"
 #include "studio/compare/report.h"
 #include "studio/compare/session_measures.h"
-#include "tests/recordings/sessions.h"
+#include "tests/studio/compare/made_tracks.h"
 
 namespace ctpm {
 namespace {
-
-/// A hand that has moved `seconds` from one place to another, at a steady pace, with a tool.
-void go(compare::SessionTrack& track, Vec3 from, Vec3 to, double seconds) {
-  const int ticks = int(std::lround(seconds / track.tick));
-  for (int i = 1; i <= ticks; ++i) {
-    track.tool.push_back(0);
-    track.tip.push_back(from + (double(i) / ticks) * (to - from));
-    track.force.push_back(0), track.depth.push_back(0), track.severed.push_back(0);
-  }
-}
-
-/// Fills in what a reader would have found.
-compare::SessionTrack finished(compare::SessionTrack track, const Model& model) {
-  track.strokes = {{0, track.tick_count()}};
-  if (track.severed_at.empty()) track.severed_at.assign(compare::ElementPlaces(model).count, -1);
-  return track;
-}
-
-compare::SessionTrack new_track() {
-  compare::SessionTrack track;
-  track.path = "made.ctpm", track.tick = 1e-3;
-  return track;
-}
-
-class Measures : public ::testing::Test {
- protected:
-  const recordings::SessionStart scene_ = [] {
-    recordings::SessionStart start = testing::small_start();
-    start.model.organs.at(0).damage_depth = 0.01;
-    return start;
-  }();
-
-  /// The way of a press that takes 1 s down, `hold_s` of rest, and 1 s up.
-  compare::SessionTrack press(double hold_s = 0) const {
-    compare::SessionTrack track = new_track();
-    go(track, {0, 0, 0.1}, {0, 0, 0.05}, 1);
-    go(track, {0, 0, 0.05}, {0, 0, 0.05}, hold_s);
-    go(track, {0, 0, 0.05}, {0, 0, 0.1}, 1);
-    return finished(track, scene_.model);
-  }
-
-  static const compare::MeasuredValue& find(const compare::Comparison& comparison, const std::string& key) {
-    const auto it = std::find_if(comparison.values.begin(), comparison.values.end(),
-                                 [&](const compare::MeasuredValue& v) { return key == v.measure->key; });
-    CTPM_CHECK(it != comparison.values.end(), "a measure of that name");
-    return *it;
-  }
-  static double trainee(const compare::Comparison& comparison, const std::string& key) {
-    return find(comparison, key).trainee.value();
-  }
-};
 
 TEST_F(Measures, TimePathAndPauseAreThoseOfTheWay) {
   const compare::Comparison comparison = compare::compare_sessions(press(), press(2.5), scene_);
@@ -321,43 +269,6 @@ TEST_F(Measures, RestingInTheTissueDoesNotLowerTheMeanForce) {
   const compare::Comparison comparison = compare::compare_sessions(pressed(0), pressed(3), scene_);
   EXPECT_NEAR(trainee(comparison, "mean_force_n"), 4, 0.05) << "over time it would be 1.75";
   EXPECT_EQ(compare::standing_of(find(comparison, "mean_force_n")), "same");
-}
-
-TEST_F(Measures, LessThatWasDoneIsNotBetterForItsLowerForce) {
-  const auto pressed = [&](double depth, double force) {
-    compare::SessionTrack track = press();
-    for (std::size_t i = 500; i < 1500; ++i) track.depth[i] = depth, track.force[i] = force;
-    return track;
-  };
-  const auto cutting = [&](double depth, double area, double force) {
-    compare::SessionTrack track = pressed(0, force);
-    track.severed_at[0] = 10, track.severed[10] = 1, track.cuts = {{10, 11}};
-    track.cut = session::CutSize{.depth = depth, .length = 0.03, .area = area};
-    return track;
-  };
-  const auto force_is = [&](const compare::SessionTrack& expert, const compare::SessionTrack& trainee) {
-    const compare::Comparison comparison = compare::compare_sessions(expert, trainee, scene_);
-    if (find(comparison, "mean_force_n").trainee) {
-      EXPECT_EQ(compare::standing_of(find(comparison, "peak_force_n")),
-                compare::standing_of(find(comparison, "mean_force_n")));
-    }
-    EXPECT_EQ(compare::less_done_text(comparison).empty(), compare::shortfalls_of(comparison.values).empty());
-    return compare::standing_of(find(comparison, "peak_force_n"));
-  };
-  EXPECT_EQ(force_is(pressed(0.008, 2), pressed(0.0078, 1)), "better");
-  EXPECT_EQ(force_is(pressed(0.008, 2), pressed(0.004, 1)), "less done");
-  EXPECT_EQ(force_is(pressed(0.008, 2), pressed(0.004, 3)), "worse");
-  EXPECT_EQ(force_is(pressed(0.008, 2), press()), "less done") << "nothing was pushed";
-  EXPECT_EQ(force_is(cutting(0.01, 2e-4, 2), cutting(0.01, 2e-4, 1)), "better");
-  EXPECT_EQ(force_is(cutting(0.01, 2e-4, 2), cutting(0.005, 2e-4, 1)), "less done");
-  EXPECT_EQ(force_is(cutting(0.01, 2e-4, 2), cutting(0.01, 1e-4, 1)), "less done");
-  EXPECT_EQ(force_is(cutting(0.01, 2e-4, 2), press()), "less done") << "nothing was cut";
-
-  const compare::SessionTrack expert = pressed(0.008, 2), trainee = pressed(0.004, 1);
-  const compare::Comparison comparison = compare::compare_sessions(expert, trainee, scene_);
-  const recordings::SessionStart& scene = scene_;
-  EXPECT_EQ(compare::advice_of({expert, trainee, scene, comparison}).at(0), "Push deeper: 4 mm, the expert 8 mm.");
-  EXPECT_EQ(compare::standing_of(find(comparison, "economy_of_motion")), "same") << "it does not grow with the work";
 }
 
 TEST_F(Measures, AdviceNamesTheWorstFirstWithItsNumbers) {
