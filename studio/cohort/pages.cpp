@@ -1,8 +1,10 @@
 #include "studio/cohort/pages.h"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
+#include "core/parallel/team.h"
 #include "studio/cohort/records.h"
 #include "studio/compare/measure_table.h"
 #include "studio/output/number_text.h"
@@ -118,15 +120,18 @@ std::string page_name(const Cohort& cohort, std::size_t trainee) {
 }
 
 Result<Done> write_cohort(const Cohort& cohort, const std::string& folder, const std::string& home,
-                          const MomentArtist& draw) {
+                          const MomentArtist& draw, int threads) {
   const reports::Table rows = long_table(cohort);
   std::vector<reports::ReportFile> files{{"index.html", educator_page(cohort)},
                                          {"results.csv", reports::to_csv(rows)},
                                          {"statements.jsonl", statements(cohort, home)}};
-  for (std::size_t i = 0; i < cohort.trainees.size(); ++i) {
-    Result<std::string> page = trainee_page(cohort, i, draw);
-    if (!page) return page.errors();
-    files.push_back({page_name(cohort, i), std::move(*page)});
+  // Each picture takes a replay of its own.
+  std::vector<std::optional<Result<std::string>>> pages(cohort.trainees.size());
+  parallel::Team(threads).for_each(int(pages.size()),
+                                   [&](int i) { pages[std::size_t(i)] = trainee_page(cohort, std::size_t(i), draw); });
+  for (std::size_t i = 0; i < pages.size(); ++i) {
+    if (!*pages[i]) return pages[i]->errors();
+    files.push_back({page_name(cohort, i), std::move(**pages[i])});
   }
   if (Result<Done> written = reports::write_sqlite(folder + "/results.sqlite", "result", rows); !written)
     return written;

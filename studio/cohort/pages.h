@@ -58,9 +58,9 @@ void shape_small(reports::Plot& plot, double rounding);
 /// What the measures of the pages are, with their sources.
 reports::Table meanings(const Cohort& cohort);
 
-/// Writes index.html, a page for each trainee, results.csv, results.sqlite and statements.jsonl to `folder`. Errors:
-/// those of trainee_page() and of writing them.
+/// Writes index.html, a page for each trainee, results.csv, results.sqlite and statements.jsonl to `folder`. `draw` is
+/// called by `threads` threads at once. Errors: those of trainee_page() and of writing them.
 Result<Done> write_cohort(const Cohort& cohort, const std::string& folder, const std::string& home,
-                          const MomentArtist& draw);
+                          const MomentArtist& draw, int threads);
 
 }  // namespace ctpm::cohort

@@ -72,8 +72,9 @@ int run_cohort(const CohortArguments& arguments) {
   const Result<cohort::Cohort> measured = cohort::measure_cohort(*course, arguments.trainees, options);
   if (!measured) return print_errors(measured.errors());
   if (const Result<Done> ready = reports::prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
-  if (const Result<Done> written = cohort::write_cohort(*measured, arguments.folder, arguments.home,
-                                                        arguments.no_pictures ? cohort::MomentArtist() : draw_pictures);
+  if (const Result<Done> written =
+          cohort::write_cohort(*measured, arguments.folder, arguments.home,
+                               arguments.no_pictures ? cohort::MomentArtist() : draw_pictures, options.threads);
       !written)
     return print_errors(written.errors());
   print_cohort(*measured);
