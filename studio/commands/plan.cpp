@@ -283,6 +283,16 @@ std::string radii_text(const Plan& plan) {
   return text;
 }
 
+/// "in contact 0.654 ms, in a cut 0.806 ms", of what happened.
+std::string p99_text(const session::SessionCost& cost) {
+  std::string text;
+  for (const session::Deed deed : session::kDeeds)
+    if (const session::DeedTimes times = cost.of(deed); times.ticks > 0)
+      text += (text.empty() ? "" : ", ") + std::string(session::name_of(deed)) + " " +
+              output::fixed(1e3 * times.p99, 3) + " ms";
+  return text;
+}
+
 void print_times(const Plan& plan) {
   const std::string rate = output::short_number(1e-3 / plan.tick()) + " kHz";
   if (!plan.cost) {
@@ -303,9 +313,8 @@ void print_times(const Plan& plan) {
   if (plan.holds()) return print("holds %s at p99\n", rate.c_str());
   print("does not hold %s at p99\n", rate.c_str());
   if (plan.fitting)
-    print("holds it with radius_mm and gap_mm times %g (%s; %zu spheres): p99 %.3f ms in contact, %.3f ms in a cut\n",
-          plan.fitting->factor, radii_text(plan).c_str(), plan.fitting->spheres,
-          1e3 * plan.fitting->cost.of(session::Deed::contact).p99, 1e3 * plan.fitting->cost.of(session::Deed::cut).p99);
+    print("holds it with radius_mm and gap_mm times %g (%s; %zu spheres): p99 %s\n", plan.fitting->factor,
+          radii_text(plan).c_str(), plan.fitting->spheres, p99_text(plan.fitting->cost).c_str());
   else
     print("no coarser filling of its meshes was found that does\n");
 }
