@@ -55,6 +55,10 @@ Result<std::vector<std::int64_t>> choose_ticks(const recordings::SessionReader& 
                    ""};
     return std::vector<std::int64_t>{std::min<std::int64_t>(std::llround(at / tick), session.tick_count())};
   }
+  if (options.at_s)
+    return Error{output::option_name("exchange.at_s"), "is for files that hold one moment: .vtp, .vtu and .glb",
+                 output::option_name("time_range.from_s") + " and " + output::option_name("time_range.to_s") +
+                     " bound a series"};
   if (!(options.fps >= 1 && options.fps <= 1000))
     return Error{output::option_name("export.fps"),
                  "got " + output::short_number(options.fps, 6) + ", must be in [1, 1000]", ""};

@@ -214,6 +214,7 @@ TEST_F(Exchange, UsdHasAPieceForEachTimeInWhichTheCutStaysTheSame) {
 TEST_F(Exchange, MistakesAreRefusedAndLeaveNothing) {
   EXPECT_EQ(export_to("late.vtp", {"--at-s", "1000"}).code, 2);
   EXPECT_EQ(export_to("fast.pvd", {"--fps", "0"}).code, 2);
+  for (const char* series : {"moment.pvd", "moment.usda"}) EXPECT_EQ(export_to(series, {"--at-s", "1"}).code, 2);
   EXPECT_EQ(export_to("nowhere/a.usda").code, 2);
   EXPECT_EQ(export_to("both.glb", {"--beside", kSession}).code, 2);
   EXPECT_EQ(export_to("video.mp4", {"--at-s", "1"}).code, 2);
