@@ -61,7 +61,7 @@ Result<std::optional<FittingRadius>> find_fitting_radius(const loading::LoadedSc
   std::optional<FittingRadius> best;
   if (std::none_of(organs.begin(), organs.end(), has_mesh)) return best;
   const double tick = scene.built.model.tick;
-  // The coarsest filling that is too dear, and the finest that is not; before there is one, the last that was tried.
+  // The coarsest filling that is too dear, and the finest that is not; before there is one, the scene's own.
   Tried dear{1, cost.dearest()}, other = dear;
   for (int tries = 0; tries < kMostTries; ++tries) {
     const double factor = std::ceil(100 * factor_for(kGoal * tick, dear, other)) / 100;
@@ -75,9 +75,8 @@ Result<std::optional<FittingRadius>> find_fitting_radius(const loading::LoadedSc
     Result<SessionCost> now = measure_session(*coarser, script, running);
     if (!now) return now.errors();
     const Tried tried{factor, now->dearest()};
-    other = tried;
     if (tried.time <= tick && !stepping::is_refused(now->outcome.run.status))
-      best = FittingRadius{factor, coarser->built.model.sphere_count(), *std::move(now)};
+      best = FittingRadius{factor, coarser->built.model.sphere_count(), *std::move(now)}, other = tried;
     else
       dear = tried, other = best ? Tried{best->factor, best->cost.dearest()} : Tried{1, cost.dearest()};
     if (best && best->cost.dearest() >= kGood * tick) break;

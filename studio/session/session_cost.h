@@ -39,8 +39,8 @@ struct FittingRadius {
   SessionCost cost;
 };
 
-/// The smallest radii, from some that are measured, with which SessionCost::dearest() is at most a tick. `path`: the
-/// scene whose `cost` is too high. None if none of those that were measured holds it; if no organ has a mesh. Errors:
+/// The smallest radii, from some that are measured, with which SessionCost::dearest() is at most a tick. `cost`: of
+/// the scene as it is, too high. None if none of those that were measured holds it; if no organ has a mesh. Errors:
 /// those of measure_session() but for what a filling refuses.
 Result<std::optional<FittingRadius>> find_fitting_radius(const loading::LoadedScene& scene,
                                                          const scenes::LoadOptions& load, const ScriptOf& script,
