@@ -80,11 +80,13 @@ Result<std::vector<Moment>> all_moments(recordings::SessionReader& session, cons
   return all;
 }
 
-std::vector<Moment> told_moments(const std::vector<Moment>& all, const std::string& title, double tick) {
+std::vector<Moment> told_moments(const std::vector<Moment>& all, const std::string& title, double tick,
+                                 std::int64_t from) {
   constexpr double kApart = 0.7;  // [s]: of two that are nearer, the later in Kind is told
   const auto apart = std::int64_t(kApart / tick);
-  std::vector<Moment> told{{0, title, Kind::title}};
+  std::vector<Moment> told{{from, title, Kind::title}};
   for (const Moment& moment : all) {
+    if (moment.tick < from) continue;
     const bool is_near = told.size() > 1 && moment.tick - told.back().tick < apart;
     if (!is_near)
       told.push_back(moment);

@@ -31,8 +31,9 @@ Result<std::vector<std::array<double, 2>>> slow_parts(const std::vector<Moment>&
 /// Seconds of a film at its own speed for which a moment's words are shown.
 inline constexpr double kCaptionSeconds = 2.5;
 
-/// Those that a film tells of, apart enough to be read, and the title before them.
-std::vector<Moment> told_moments(const std::vector<Moment>& all, const std::string& title, double tick);
+/// Those that a film tells of which begins in tick `from`, apart enough to be read, and the title before them.
+std::vector<Moment> told_moments(const std::vector<Moment>& all, const std::string& title, double tick,
+                                 std::int64_t from);
 
 /// The words at a tick, `shown` ticks long unless others follow; empty: none.
 std::string words_at(const std::vector<Moment>& moments, std::int64_t tick, std::int64_t shown);

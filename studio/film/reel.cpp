@@ -98,7 +98,7 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, con
   reel.renderer = std::move(*renderer);
   reel.overlay = std::make_unique<render::Overlay>(size.width, height);
   const std::string title = reel.film->scene().name + ": " + std::filesystem::path(session.path()).stem().string();
-  reel.moments = told_moments(*all, title, model.tick);
+  reel.moments = told_moments(*all, title, model.tick, ticks.range.from);
   if (options.strip) reel.strip = strip_of(session, *all, loading::damage_force_of(reel.film->scene()));
   reel.told = std::llround(kCaptionSeconds * options.speed / model.tick);
   reel.ticks = std::move(ticks), reel.speed = options.speed;

@@ -25,6 +25,14 @@ TEST(Captions, WordsAreShownAfterTheirMomentUntilOthersFollow) {
   EXPECT_EQ(film::words_at({}, 5, 2000), "");
 }
 
+TEST(Captions, APartBeginsWithTheTitleAndTellsOnlyOfWhatHappensInIt) {
+  const std::vector<film::Moment> told =
+      film::told_moments({{693, "touches", Kind::contact}, {4332, "cuts", Kind::cut}}, "title", 1e-3, 3000);
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_EQ(film::words_at(told, 3001, 2500), "title") << "the touch was before";
+  EXPECT_EQ(film::words_at(told, 4400, 2500), "cuts");
+}
+
 TEST(Captions, TrackAndPictureSayTheSameInEveryFrame) {
   const std::vector<film::Moment> moments{
       {0, "title", Kind::title}, {333, "one", Kind::cut}, {1500, "two", Kind::cut}, {9999, "beyond", Kind::cut}};
