@@ -355,8 +355,9 @@ template <class V>
 void describe_fields(V& v, SolverSpec& solver) {
   v.choice(Key{"integrator",
                "`leapfrog` is explicit and of second order, `backward-euler` implicit and of first, `sdirk2` implicit "
-               "and of "
-               "second; `auto` takes the cheapest that is stable for the scene, and `ctpm plan` says which and why.",
+               "and of second. `auto` takes the one with the least error for its time: `sdirk2`; `leapfrog` where it "
+               "is cheaper and nothing is cut; `backward-euler`, which damps, where tissue is stiff or hardly damps "
+               "what a cut leaves swinging. `ctpm plan` says which and why.",
                false},
            solver.integrator);
   v.number(Key{"tolerance", "Relative residual at which the solve of a tick stops.", false, "1e-4"}, solver.tolerance,

@@ -33,8 +33,11 @@ struct IntegratorChoice {
   std::string reason;  ///< one sentence
 };
 
-/// Chooses by the Model alone, whatever integrator it names: leapfrog if it is stable with few substeps, else backward
-/// Euler. Uses at least SolverSettings::substeps.
+/// Chooses by the Model alone, whatever integrator it names. Leapfrog where it is stable with so few substeps that they
+/// cost less than an implicit step, and no blade can cut: the spheres at an organ's boundary have next to no mass, and
+/// once a cut frees them, they swing faster than a tick. Else sdirk2, which is L-stable and of second order; backward
+/// Euler where the scene is too stiff for its predictor, or where a cut leaves tissue swinging to which softening
+/// (Eq. 8) gives energy and which its own viscosity hardly damps. Uses at least SolverSettings::substeps.
 IntegratorChoice choose_integrator(const Model& model);
 
 /// Checks whether the integrator and the substeps of the Model are stable for its stiffness.

@@ -13,7 +13,6 @@
 #include "scenes/script.h"
 #include "studio/authoring/anchor_choice.h"
 #include "studio/authoring/capsule.h"
-#include "studio/authoring/damping_choice.h"
 #include "studio/authoring/filling_choice.h"
 #include "studio/authoring/fit_stiffness.h"
 #include "studio/authoring/new_folder.h"
@@ -304,7 +303,6 @@ class Import {
                    output::option_name("import.stiffness_scale")}};
     draft.spec.anchors = choice->anchors;
     draft.part.anchored = choice->held, draft.part.sag = standing.sag, draft.part.size = standing.size;
-    choose_integrator(draft, choice->model);
     tell("trying the script", 0.85);
     return try_script(draft, *choice);
   }
@@ -379,16 +377,6 @@ class Import {
       apply_fit(draft.spec, *fit);
       part.stiffness_scale = fit->scale;
     }
-  }
-
-  /// The integrator damps what cuts leave swinging where the tissue hardly does.
-  void choose_integrator(Draft& draft, Model& model) {
-    if (scene_.solver.integrator != scenes::IntegratorSpec::automatic || !needs_damping(model)) return;
-    scene_.solver.integrator = scenes::IntegratorSpec::backward_euler;
-    model.solver.integrator = Integrator::backward_euler, model.solver.substeps = 1;
-    draft.note("integrator",
-               "the tissue's viscosity hardly damps what a cut leaves swinging, to which softening gives energy",
-               "the scene's integrator is backward-euler, which damps", "");
   }
 
   /// Finds a script that touches and cuts the organ where it has settled.

@@ -19,6 +19,7 @@ namespace {
 constexpr double kSpeed = 40e-3;         // of the blade [m/s]
 constexpr double kBeyond = 10e-3;        // how far strokes begin and end beside the organ [m]
 constexpr double kLongBlade = 0.25;      // [m]
+constexpr double kSettle = 1;            // before the first stroke, as a session does [s]
 constexpr double kWait = 0.5;            // after the last stroke [s]
 constexpr std::int64_t kLookEvery = 25;  // ticks
 constexpr double kMostStretched = 6;
@@ -186,6 +187,7 @@ StrokesResult::Row measure(const Model& model, const std::vector<Stroke>& stroke
   StrokesResult::Row row;
   stepping::Stepper stepper(model);
   State state = rest_state(model);
+  (void)stepper.settle(state, std::int64_t(kSettle / model.tick));
   Look look(model, row);
   const auto step = [&](const Inputs& inputs) {
     const stepping::StepReport report = stepper.step(state, inputs);

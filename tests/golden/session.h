@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -110,13 +111,22 @@ inline Model make_skinned_model(int ni, int nj, int nk, bool is_soft, std::int32
   return model;
 }
 
+/// Sets what auto took when the first rows were made: leapfrog, or backward Euler where that needs many substeps.
+inline void use_first_choice(Model& model) {
+  const double needed = std::ceil(model.tick / (0.9 * stepping::stable_step_bound(model)));
+  const bool is_explicit = needed <= 4;
+  model.solver.integrator = is_explicit ? Integrator::leapfrog : Integrator::backward_euler;
+  model.solver.substeps = is_explicit ? std::int32_t(needed) : 1;
+}
+
 /// Simulates `ticks` ticks, sampled evenly from the 400 of a golden session, of a Model with a ball, a scalpel and
-/// perhaps a pin.
+/// perhaps a pin. Without an integrator: see use_first_choice().
 inline GoldenRun run_golden(Model model, int ticks, std::optional<Integrator> integrator,
                             const stepping::StepperOptions& options = {}, Inputs (*inputs_at)(int) = golden_inputs) {
   model.gravity = {0, 0, -9.81};
   model.solver = {};
-  stepping::resolve_integrator(model, integrator);
+  if (!integrator) use_first_choice(model);
+  if (integrator) stepping::resolve_integrator(model, integrator);
   State state = rest_state(model);
   stepping::Stepper stepper(model, options);
   GoldenRun run;

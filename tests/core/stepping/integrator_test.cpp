@@ -226,10 +226,34 @@ TEST(Automatic, TakesAsManySubstepsAsTheStiffestSphereNeeds) {
   const double bound = stepping::stable_step_bound(model);
   model.tick = 0.5 * bound;
   EXPECT_EQ(stepping::choose_integrator(model).substeps, 1);
+  model.tick = 1.7 * bound;
+  EXPECT_EQ(stepping::choose_integrator(model).integrator, Integrator::leapfrog);
+  EXPECT_EQ(stepping::choose_integrator(model).substeps, 2);
   model.tick = 2.5 * bound;
-  EXPECT_EQ(stepping::choose_integrator(model).substeps, 3);
+  EXPECT_EQ(stepping::choose_integrator(model).integrator, Integrator::sdirk2);
+  EXPECT_EQ(stepping::choose_integrator(model).substeps, 1);
   model.tick = 100 * bound;
   EXPECT_EQ(stepping::choose_integrator(model).integrator, Integrator::backward_euler);
+}
+
+TEST(Automatic, DampsWhatACutLeavesSwinging) {
+  network::Material material = liver_material();
+  material.viscosity = 5e3, material.stiffness_scale = 0.3;
+  Model model = make_block_model(4, 4, 4, network::Structure::ctpm, material);
+  EXPECT_EQ(stepping::choose_integrator(model).integrator, Integrator::leapfrog);
+  model.tools = {testing::scalpel(0.06)};
+  EXPECT_EQ(stepping::choose_integrator(model).integrator, Integrator::sdirk2);
+  // The viscosity of the paper's Figs. 7 and 8 damps next to nothing in a second, and softening may add energy.
+  network::OrganSettings settings;
+  settings.name = "slow", settings.structure = network::Structure::ctpm, settings.material = liver_material();
+  settings.tiling = network::Tiling::two_spheres;
+  Model slow;
+  ASSERT_TRUE(bool(network::add_organ(slow, testing::make_block(4, 4, 4), settings)));
+  slow.tools = model.tools, slow.has_softening = true;
+  ASSERT_LT(stepping::loss_rate(slow), 5);
+  EXPECT_EQ(stepping::choose_integrator(slow).integrator, Integrator::backward_euler);
+  slow.tools.clear();
+  EXPECT_NE(stepping::choose_integrator(slow).integrator, Integrator::backward_euler);
 }
 
 }  // namespace
