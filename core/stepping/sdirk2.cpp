@@ -69,6 +69,7 @@ bool Sdirk2::step(const State& from, const contact::HeldTools& tools, const Subs
     return true;
   }
   report.status = before;
+  ++report.fallbacks;
   if (!fallback_.step(from, tools, part, to, report)) return false;
   find_slope(from.velocity, to.velocity, part.h, to.acceleration);
   return true;
