@@ -355,7 +355,9 @@ template <class V>
 void describe_fields(V& v, SolverSpec& solver) {
   v.choice(Key{"integrator",
                "`leapfrog` is explicit and of second order, `backward-euler` implicit and of first, `sdirk2` implicit "
-               "and of second. `auto` takes the one with the least error for its time: `sdirk2`; `leapfrog` where it "
+               "and of second, but a step that is too long for the motion is left to backward Euler (`record`, "
+               "`bench` and `stability` count such ticks). `auto` takes the one with the least error for its time: "
+               "`sdirk2`; `leapfrog` where it "
                "is cheaper and nothing is cut; `backward-euler`, which damps, where tissue is stiff or hardly damps "
                "what a cut leaves swinging. `ctpm plan` says which and why.",
                false},

@@ -54,9 +54,20 @@ const elements::Coordinates& ImplicitSolve::solve_near(const StateView& predicte
     context_.elements.linearise(predicted, part.h, true, force_, blocks_,
                                 [&](int slab) { begin_slab(slab), begin_blocks(slab); });
   const auto resistance = context_.resistance.linearise(predicted, part.h, force_, blocks_);
-  std::fill(change.begin(), change.end(), 0.0);
+  const auto for_coordinates = [&](auto&& act) {
+    const parallel::Slabs& slabs = context_.elements.slabs();
+    context_.team.for_each(slabs.count(), [&](int slab) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t from = axis * context_.model.sphere_count();
+        act(from + std::size_t(slabs.begin(slab)), from + std::size_t(slabs.end(slab)));
+      }
+    });
+  };
+  for_coordinates([&](std::size_t begin, std::size_t end) { std::fill(&change[begin], &change[end - 1] + 1, 0.0); });
   solve_contacts({before, &predicted.velocity, energy_of(velocity_)}, contacts, resistance, change, report);
-  for (std::size_t i = 0; i < velocity_.size(); ++i) velocity_[i] += change[i];
+  for_coordinates([&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) velocity_[i] += change[i];
+  });
   return velocity_;
 }
 

@@ -15,30 +15,49 @@ constexpr double kLongestMove = 0.1;
 /// Falls back to backward Euler if the predictor misses more than 1 % of the kinetic energy.
 constexpr double kLargestPredictorError = 0.01;
 
-/// to = from + factor * (to - from).
-void stretch(const std::vector<double>& from, double factor, std::vector<double>& to) {
-  for (std::size_t i = 0; i < to.size(); ++i) to[i] = from[i] + factor * (to[i] - from[i]);
+constexpr std::vector<double> Vec3Array::*kAxes[3] = {&Vec3Array::x, &Vec3Array::y, &Vec3Array::z};
+
+/// Calls act(axis, begin, end) for the spheres of each slab, in parallel.
+template <class Act>
+void for_coordinates(const StepContext& context, const Act& act) {
+  const parallel::Slabs& slabs = context.elements.slabs();
+  context.team.for_each(slabs.count(), [&](int slab) {
+    for (const auto axis : kAxes) act(axis, std::size_t(slabs.begin(slab)), std::size_t(slabs.end(slab)));
+  });
 }
 
-void stretch(const Vec3Array& from, double factor, Vec3Array& to) {
-  stretch(from.x, factor, to.x), stretch(from.y, factor, to.y), stretch(from.z, factor, to.z);
+/// to = from + factor * (to - from).
+void stretch(const double* from, double factor, double* __restrict to, std::size_t begin, std::size_t end) {
+  for (std::size_t i = begin; i < end; ++i) to[i] = from[i] + factor * (to[i] - from[i]);
+}
+
+void stretch(const StepContext& context, const Vec3Array& from, double factor, Vec3Array& to) {
+  for_coordinates(context, [&](auto axis, std::size_t begin, std::size_t end) {
+    stretch((from.*axis).data(), factor, (to.*axis).data(), begin, end);
+  });
 }
 
 /// to = velocity + h * acceleration; the acceleration is 0 if none is known.
-void extrapolate(const Vec3Array& velocity, const Vec3Array& acceleration, double h, Vec3Array& to) {
+void extrapolate(const StepContext& context, const Vec3Array& velocity, const Vec3Array& acceleration, double h,
+                 Vec3Array& to) {
   const bool is_known = acceleration.size() > 0;
-  for (std::size_t i = 0; i < to.size(); ++i) to.set(i, velocity[i] + h * (is_known ? acceleration[i] : Vec3{}));
+  for_coordinates(context, [&](auto axis, std::size_t begin, std::size_t end) {
+    const double *v = (velocity.*axis).data(), *a = (acceleration.*axis).data();
+    double* __restrict out = (to.*axis).data();
+    if (is_known)
+      for (std::size_t i = begin; i < end; ++i) out[i] = v[i] + h * a[i];
+    else
+      for (std::size_t i = begin; i < end; ++i) out[i] = v[i] + 0.0;
+  });
 }
 
 /// slope = (to - from) / h.
-void find_slope(const Vec3Array& from, const Vec3Array& to, double h, Vec3Array& slope) {
-  for (std::size_t i = 0; i < to.size(); ++i) slope.set(i, (to[i] - from[i]) / h);
-}
-
-double fastest_squared(const Vec3Array& velocity) {
-  double fastest = 0;
-  for (std::size_t i = 0; i < velocity.size(); ++i) fastest = std::max(fastest, dot(velocity[i], velocity[i]));
-  return fastest;
+void find_slope(const StepContext& context, const Vec3Array& from, const Vec3Array& to, double h, Vec3Array& slope) {
+  for_coordinates(context, [&](auto axis, std::size_t begin, std::size_t end) {
+    const double *first = (from.*axis).data(), *last = (to.*axis).data();
+    double* __restrict out = (slope.*axis).data();
+    for (std::size_t i = begin; i < end; ++i) out[i] = (last[i] - first[i]) / h;
+  });
 }
 
 double shortest_element_of(const Model& model) {
@@ -65,12 +84,13 @@ bool Sdirk2::step(const State& from, const contact::HeldTools& tools, const Subs
   const StepStatus before = report.status;
   if (is_short(from, tools, part) && two_stages(from, tools, part, to, report) &&
       predictor_error(stage_pins_) <= kLargestPredictorError) {
-    find_slope(second_start_.velocity, to.velocity, kStage * part.h, to.acceleration);
+    find_slope(context_, second_start_.velocity, to.velocity, kStage * part.h, to.acceleration);
     return true;
   }
   report.status = before;
+  ++report.fallbacks;
   if (!fallback_.step(from, tools, part, to, report)) return false;
-  find_slope(from.velocity, to.velocity, part.h, to.acceleration);
+  find_slope(context_, from.velocity, to.velocity, part.h, to.acceleration);
   return true;
 }
 
@@ -81,19 +101,23 @@ bool Sdirk2::is_short(const State& from, const contact::HeldTools& tools, const 
   for (const contact::HeldTool& tool : tools)
     if (tool.is(ToolKind::pin))
       jump = std::max(jump, norm(tool.at(part.share) - from.position[std::size_t(tool.tool->sphere)]));
-  return jump <= limit && fastest_squared(from.velocity) * part.h * part.h <= limit * limit;
+  const Vec3Array& v = from.velocity;
+  const double fastest = context_.kernels.fastest_squared(v.x.data(), v.y.data(), v.z.data(), 0, v.size());
+  return jump <= limit && fastest * part.h * part.h <= limit * limit;
 }
 
 bool Sdirk2::two_stages(const State& from, const contact::HeldTools& tools, const Substep& part, Motion& to,
                         StepReport& report) {
   const double h = kStage * part.h, rest = part.h - h;
-  extrapolate(from.velocity, from.acceleration, h, predicted_.velocity);
+  extrapolate(context_, from.velocity, from.acceleration, h, predicted_.velocity);
   const Substep first{h, part.time - rest, part.share - rest / context_.model.tick, part.has_loads};
   if (!dirk_stage(from, tools, first, false, second_start_, report)) return false;
   predicted_.velocity = second_start_.velocity;
-  stretch(from.velocity, part.h / h, predicted_.velocity);
-  stretch(from.position, rest / h, second_start_.position), stretch(from.velocity, rest / h, second_start_.velocity);
-  stretch(from.kelvin_elongation, rest / h, second_start_.kelvin_elongation);
+  stretch(context_, from.velocity, part.h / h, predicted_.velocity);
+  stretch(context_, from.position, rest / h, second_start_.position);
+  stretch(context_, from.velocity, rest / h, second_start_.velocity);
+  stretch(from.kelvin_elongation.data(), rest / h, second_start_.kelvin_elongation.data(), 0,
+          from.kelvin_elongation.size());
   const StateView start(from, second_start_.position, second_start_.velocity, second_start_.kelvin_elongation);
   return dirk_stage(start, tools, {h, part.time, part.share, part.has_loads}, true, to, report);
 }

@@ -13,7 +13,7 @@ namespace ctpm::stepping {
 /// SDIRK2: L-stable, second order (Alexander, "Diagonally implicit Runge-Kutta methods for stiff O.D.E.'s", 1977). Each
 /// of its two stages is a shorter step of backward Euler, linearised about a predictor. The second stage starts from
 /// the first, extrapolated over the rest of the step. If the step is too long for the motion, backward Euler does it
-/// alone.
+/// alone, and the report counts it.
 class Sdirk2 {
  public:
   /// `context` and `solve` must outlive the integrator.

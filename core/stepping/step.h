@@ -42,8 +42,11 @@ struct StepReport : HandReport {
   std::int32_t worst_sphere = -1;  ///< the sphere that failed or the fastest one; -1: none
   double residual = 0;             ///< of the last solve, relative to its first guess
   std::int32_t iterations = 0;     ///< of all solves of the tick
-  std::int32_t severed = 0;        ///< elements, constraints and angle springs severed in this tick
-  std::int32_t came_loose = 0;     ///< pieces that came loose in this tick: the increase of their number
+  /// Substeps that backward Euler did for sdirk2, of first order and with more damping, since its own two stages would
+  /// have missed the motion.
+  std::int32_t fallbacks = 0;
+  std::int32_t severed = 0;     ///< elements, constraints and angle springs severed in this tick
+  std::int32_t came_loose = 0;  ///< pieces that came loose in this tick: the increase of their number
   /// Tissue cells that are inside out at the end of the tick (a corner tetrahedron with J < 0); those that a blade cut
   /// do not count. 0 if the Model has no tissue cells.
   std::int32_t inverted = 0;

@@ -86,6 +86,7 @@ struct BenchRun {
   std::vector<Vec3> force;          ///< on the tool [N]   (tick_count)
   std::vector<double> seconds;      ///< processor time of the thread, whatever else the machine does [s]  (tick_count)
   std::int64_t unconverged = 0;     ///< ticks whose solver reached its iteration limit
+  std::int64_t fallbacks = 0;       ///< ticks in which backward Euler took a step for sdirk2
   stepping::StepStatus status = stepping::StepStatus::ok;  ///< status that ended the run early; `ok`: none did
 };
 BenchRun run_motion(const Model& model, const BenchMotion& motion);

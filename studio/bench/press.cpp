@@ -97,6 +97,7 @@ std::vector<reports::Cell> row_of(const std::string& study, const std::string& s
           1e3 * percentile(seconds, 0.99),
           1e3 * percentile(seconds, 0.999),
           organ.run.unconverged,
+          organ.run.fallbacks,
           reports::Cell()};
 }
 

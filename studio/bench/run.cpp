@@ -34,6 +34,7 @@ BenchRun run_motion(const Model& model, const BenchMotion& motion) {
     const double start = thread_seconds();
     const stepping::StepReport report = stepper.step(state, inputs);
     run.seconds.push_back(thread_seconds() - start);
+    run.fallbacks += report.fallbacks > 0;
     if (report.status == stepping::StepStatus::not_converged) {
       ++run.unconverged;
     } else if (report.status != stepping::StepStatus::ok) {
@@ -112,6 +113,7 @@ reports::Table bench_layout() {
                    {"tick_p99_ms", "p99 [ms]", 3},
                    {"tick_p999_ms", "p99.9 [ms]", 3},
                    {"unconverged_ticks", "ticks not converged"},
+                   {"fallback_ticks", "ticks by backward Euler instead"},
                    {"front", "Pareto front"}};
   return table;
 }

@@ -61,7 +61,8 @@ Result<OrganResult> press_organ(const std::string& shipped, const std::string& o
     result.points.push_back({std::string("structure"), "rig " + organ, std::string(kind.name), reports::Cell(),
                              reports::Cell(), reports::Cell(), reports::Cell(), reports::Cell(),
                              std::int64_t(built->model.sphere_count()), reports::Cell(), off_closed, reports::Cell(),
-                             reports::Cell(), reports::Cell(), reports::Cell(), reports::Cell(), reports::Cell()});
+                             reports::Cell(), reports::Cell(), reports::Cell(), reports::Cell(), reports::Cell(),
+                             reports::Cell()});
   }
   return result;
 }

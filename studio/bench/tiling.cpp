@@ -123,7 +123,7 @@ Result<BenchStudy> run_bench_tiling(const BenchOptions& options, const BenchProg
       study.points.rows.push_back({std::string("tiling"), std::string("block"), std::string(kind.name), reports::Cell(),
                                    reports::Cell(), reports::Cell(), 1e3 * radius, reports::Cell(),
                                    std::int64_t(tiled->spheres), reports::Cell(), std::abs(off), reports::Cell(), p50,
-                                   p99, reports::Cell(), reports::Cell(), reports::Cell()});
+                                   p99, reports::Cell(), reports::Cell(), reports::Cell(), reports::Cell()});
       study.sentences.push_back("tiling " + std::string(kind.name) + ", r = " + output::short_number(1e3 * radius) +
                                 " mm: " + output::short_number(100 * std::abs(off)) +
                                 " % off Lee & Radok after 50 ms, pushed surface spheres differ " +

@@ -48,7 +48,7 @@ struct Point {
   double run_time = 0;                ///< [s per simulated s]
   bool feels = false;                 ///< the tool felt a force
   double p50 = 0, p99 = 0, p999 = 0;  ///< of a tick [s]
-  std::int64_t unconverged = 0;
+  std::int64_t unconverged = 0, fallbacks = 0;
   bool is_on_front = false;
 };
 
@@ -233,7 +233,7 @@ Point measure(const TimeJob& job, const Setting& setting, const BenchRun& run, c
   point.run_time = total / (double(run.seconds.size()) * job.model.tick);
   point.p50 = percentile(run.seconds, 0.5), point.p99 = percentile(run.seconds, 0.99),
   point.p999 = percentile(run.seconds, 0.999);
-  point.unconverged = run.unconverged;
+  point.unconverged = run.unconverged, point.fallbacks = run.fallbacks;
   return point;
 }
 
@@ -432,6 +432,7 @@ std::vector<reports::Cell> row_of(const TimeJob& job, const Point& p) {
           1e3 * p.p99,
           1e3 * p.p999,
           p.unconverged,
+          p.fallbacks,
           p.is_on_front ? reports::Cell(std::string("front")) : reports::Cell()};
 }
 

@@ -122,7 +122,7 @@ RunOutcome run_session(const Model& model, State& state, sources::InputSource& s
       ++outcome.late_ticks;
       writer.event({.tick = tick, .kind = recordings::EventKind::late_tick, .late = late});
     }
-    ++outcome.ticks;
+    ++outcome.ticks, outcome.fallbacks += report.fallbacks > 0;
     outcome.fault = failure.look();
     if (!outcome.fault.empty()) break;
     if (options.watch) options.watch(state, record, outcome);

@@ -16,6 +16,7 @@ namespace ctpm::session {
 struct RunOutcome {
   std::int64_t ticks = 0;
   std::int64_t late_ticks = 0;                             ///< ticks that ended after their deadline, in real time only
+  std::int64_t fallbacks = 0;                              ///< ticks in which backward Euler took a step for sdirk2
   stepping::StepStatus status = stepping::StepStatus::ok;  ///< of the last tick; a diverged tick ends the run
   std::int32_t worst_sphere = -1;
   double slip = 0;    ///< real time less session time at the start of the last tick [s]; 0 if not in real time

@@ -18,6 +18,7 @@ reports::Table runs_table(const std::vector<StabilityRow>& rows) {
                    {"reason", "reason"},
                    {"ticks", "ticks done"},
                    {"unconverged_ticks", "ticks not converged"},
+                   {"fallback_ticks", "ticks by backward Euler instead"},
                    {"reach_mm", "furthest [mm]"},
                    {"end_speed_mm_per_s", "fastest at the end [mm/s]"},
                    {"expectation", "what must hold"}};
@@ -25,7 +26,7 @@ reports::Table runs_table(const std::vector<StabilityRow>& rows) {
     for (const StabilityRun& run : row.runs)
       table.rows.push_back({row.what->key, row.what->title, std::string(stepping::name_of(run.asked)),
                             std::string(stepping::name_of(run.used)), std::int64_t(run.substeps), run.verdict,
-                            run.reason, run.ticks, run.unconverged, 1e3 * run.reach, 1e3 * run.end_speed,
+                            run.reason, run.ticks, run.unconverged, run.fallbacks, 1e3 * run.reach, 1e3 * run.end_speed,
                             row.what->expectation});
   return table;
 }

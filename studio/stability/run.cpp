@@ -185,6 +185,7 @@ StabilityRun run_stability_case(const StabilityCase& what, std::optional<Integra
       run.reason = at_tick(tick, model.tick) + ": input that no hand gives was taken";
     } else {
       ++run.ticks, run.unconverged += report.status == stepping::StepStatus::not_converged;
+      run.fallbacks += report.fallbacks > 0;
       if ((tick + 1) % every == 0 || tick + 1 == what.ticks) {
         const std::string wrong = watch.sample(state, tick + 1, run);
         if (!wrong.empty()) run.reason = at_tick(tick + 1, model.tick) + ": " + wrong;

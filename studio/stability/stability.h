@@ -52,6 +52,7 @@ struct StabilityRun {
   std::string reason;                                               ///< why it was missed or refused; empty if met
   std::int64_t ticks = 0;                                           ///< simulated
   std::int64_t unconverged = 0;                                     ///< ticks whose solver reached its iteration limit
+  std::int64_t fallbacks = 0;        ///< ticks in which backward Euler took a step for sdirk2
   double reach = 0;                  ///< largest distance of a sphere from its rest position [m]
   double end_speed = 0;              ///< fastest sphere at the end [m/s]
   reports::Series distance, energy;  ///< over time [s]: largest distance [mm], total energy [J]

@@ -141,29 +141,51 @@ TEST(Leapfrog, RefusesStepsThatItCannotHoldAndLeavesTheState) {
   EXPECT_NE(stepper.integrator().reason.find("ms"), std::string::npos);
 }
 
-/// State of a deformed block with random sphere velocities of up to `speed` [m/s], one tick after its release.
-State after_a_tick(Integrator integrator, double speed) {
+/// A deformed block with random sphere velocities of up to `speed` [m/s], one tick after its release.
+struct Released {
+  State state;
+  stepping::StepReport report;
+};
+Released after_a_tick(Integrator integrator, double speed) {
   Model model = make_smooth_block(network::Structure::tpm, 1e-3, integrator);
   State state = rest_state(model);
   shake(state, 1e-3, speed);
   for (std::size_t i = 0; i < 9; ++i) state.position.set(i, model.rest_position[i]), state.velocity.set(i, {});
   stepping::Stepper stepper(model);
-  EXPECT_EQ(stepper.step(state, {}).status, stepping::StepStatus::ok);
-  return state;
+  const stepping::StepReport report = stepper.step(state, {});
+  EXPECT_EQ(report.status, stepping::StepStatus::ok);
+  return {state, report};
 }
 
 TEST(Sdirk2, TakesBackwardEulerWhereItsStepIsTooLongForTheMotion) {
   // At 2 m/s the predictor moves too far. At 0.1 m/s it does not, but the velocity of every sphere changes within the
   // tick.
   for (const double speed : {2.0, 0.1}) {
-    const State by_sdirk = after_a_tick(Integrator::sdirk2, speed),
-                by_euler = after_a_tick(Integrator::backward_euler, speed);
-    EXPECT_EQ(by_sdirk.position, by_euler.position) << speed;
-    EXPECT_EQ(by_sdirk.velocity, by_euler.velocity) << speed;
-    EXPECT_EQ(by_sdirk.kelvin_elongation, by_euler.kelvin_elongation) << speed;
+    const Released by_sdirk = after_a_tick(Integrator::sdirk2, speed),
+                   by_euler = after_a_tick(Integrator::backward_euler, speed);
+    EXPECT_EQ(by_sdirk.state.position, by_euler.state.position) << speed;
+    EXPECT_EQ(by_sdirk.state.velocity, by_euler.state.velocity) << speed;
+    EXPECT_EQ(by_sdirk.state.kelvin_elongation, by_euler.state.kelvin_elongation) << speed;
+    EXPECT_EQ(by_sdirk.report.fallbacks, 1) << speed;
+    EXPECT_EQ(by_euler.report.fallbacks, 0) << speed;
   }
-  EXPECT_NE(after_a_tick(Integrator::sdirk2, 0).position,
+  EXPECT_NE(after_a_tick(Integrator::sdirk2, 0).state.position,
             rest_state(make_smooth_block(network::Structure::tpm, 1e-3, Integrator::sdirk2)).position);
+}
+
+TEST(Sdirk2, CountsTheStepsOfATickThatBackwardEulerTook) {
+  Model model = make_smooth_block(network::Structure::tpm, 1e-3, Integrator::sdirk2);
+  model.solver.substeps = 4;
+  State state = rest_state(model);
+  shake(state, 1e-3, 10.0);
+  for (std::size_t i = 0; i < 9; ++i) state.position.set(i, model.rest_position[i]), state.velocity.set(i, {});
+  stepping::Stepper stepper(model);
+  const stepping::StepReport report = stepper.step(state, {});
+  EXPECT_EQ(report.status, stepping::StepStatus::ok);
+  EXPECT_GT(report.fallbacks, 1);
+  EXPECT_LE(report.fallbacks, 4);
+  state = rest_state(model);
+  for (int tick = 0; tick < 3; ++tick) EXPECT_EQ(stepper.step(state, {}).fallbacks, 0) << "at rest, tick " << tick;
 }
 
 TEST(Leapfrog, ALoadThatStartsAtOnceIsOfSecondOrder) {

@@ -105,6 +105,7 @@ TEST(BenchCommand, ShowsErrorAgainstRunTimeOfAScene) {
   EXPECT_NE(csv.find("backward-euler,4"), std::string::npos) << csv;
   EXPECT_NE(csv.find("sdirk2,2"), std::string::npos) << csv;
   EXPECT_NE(csv.find(",front"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("fallback_ticks"), std::string::npos) << csv;
   const std::string page = slurp(folder.path() / "out/report.html");
   EXPECT_NE(page.find("Pareto front"), std::string::npos);
   EXPECT_NE(page.find("their orders in the step"), std::string::npos);
