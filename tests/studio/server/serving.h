@@ -130,6 +130,7 @@ class SocketClient {
     namespace beast = boost::beast;
     beast::get_lowest_layer(socket_).connect(
         boost::asio::ip::tcp::endpoint(boost::asio::ip::address_v4::loopback(), std::uint16_t(serving.port())));
+    beast::get_lowest_layer(socket_).socket().set_option(boost::asio::ip::tcp::no_delay(true));  // as browsers do
     socket_.set_option(beast::websocket::stream_base::decorator([&](beast::websocket::request_type& request) {
       request.set(beast::http::field::sec_websocket_protocol, "ctpm.studio.1, token." + serving.token());
       request.set(beast::http::field::origin, serving.origin());
