@@ -280,10 +280,12 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
   const [error, setError] = useState<Error | null>(null);
 
   const compare = async () => {
-    setError(null), setComparison(null), setProgress([0, 1]);
+    const progress = (done: number, total: number) => setProgress([done, total]);
+    setError(null), setComparison(null), setVerdict(null), progress(0, 1);
     try {
-      setVerdict(await connection.call("session.verify", { path: ended.path }, { progress: (done, total) => setProgress([done, total]) }));
-      if (expert) setComparison(await connection.call<ComparisonResult>("session.compare", { expert, trainee: ended.path }));
+      setVerdict(await connection.call("session.verify", { path: ended.path }, { progress }));
+      progress(0, 1);
+      if (expert) setComparison(await connection.call<ComparisonResult>("session.compare", { expert, trainee: ended.path }, { progress }));
     } catch (failure) {
       setError(failure as Error);
     }

@@ -202,6 +202,21 @@ class SocketClient {
   int last_ = 0;
 };
 
+/// Begins a call and ends it at its first progress, which is in `at` if given. Returns its answer.
+inline nlohmann::json stopped(SocketClient& client, const std::string& call, const nlohmann::json& parameters,
+                              nlohmann::json* at = nullptr) {
+  client.send({{"id", 77}, {"call", call}, {"params", parameters}});
+  for (;;) {
+    const auto message = client.receive();
+    if (!message.is_text) continue;
+    const nlohmann::json answer = nlohmann::json::parse(message.bytes);
+    if (answer.value("id", 0) != 77) continue;
+    if (!answer.contains("progress")) return answer;
+    if (at) *at = answer["progress"];
+    client.send({{"cancel", 77}});
+  }
+}
+
 /// A value at a byte offset of a message.
 template <class T>
 T value_at(const std::string& bytes, std::size_t at) {
