@@ -245,7 +245,8 @@ TEST(Paper, WhatTensionDoesToTheUnloadedLiverIsNoSag) {
     EXPECT_GT(slack->fillings[i].sag, 0);
     EXPECT_NEAR(tense->fillings[i].sag / slack->fillings[i].sag, 1, 0.25) << tense->fillings[i].radius;
   }
-  EXPECT_NE(tense->fillings[0].held, tense->fillings[1].held) << "their lattices do not lie in each other";
+  for (std::size_t i = 1; i < 3; ++i) EXPECT_NEAR(tense->fillings[i].held, tense->fillings[0].held, 1e-6);
+  EXPECT_GT(tense->order(), 0.5) << "the same solid on the same foot";
 }
 
 TEST(Paper, ARefinementKnowsItsOrderAndItsLimit) {
